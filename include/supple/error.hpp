@@ -1,0 +1,18 @@
+#pragma once
+
+#include <stdexcept>
+#include <string>
+
+namespace supple {
+
+/// What went wrong at the library's edge: unusable input, an unknown object, a file that cannot be read.
+///
+/// `what()` is one line without a trailing newline that says what, where and how to mend it, e.g.
+/// `rabbit.obj:17: face index 99 is out of range; the file has 12 vertices so far`.
+/// A broken invariant inside the library is never an `Error`; it asserts in debug builds.
+class Error : public std::runtime_error {
+ public:
+  explicit Error(const std::string& message) : std::runtime_error(message) {}
+};
+
+}  // namespace supple

@@ -1,0 +1,89 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+
+#include "supple/types.hpp"
+
+namespace supple {
+
+/// Shape that encloses the nodes of an object's octree, and the object itself in the broad phase.
+enum class BoundingVolume : std::uint8_t { aabb, sphere };
+
+/// How a sphere is fitted to a node.
+enum class SphereFit : std::uint8_t {
+  /// Centre of the node's box, radius to the farthest vertex (the paper's eq. 5). Conservative.
+  vertices,
+  /// Centre and radius from the box's longest side L (the paper's eq. 3 and 4). It does not enclose the
+  /// corners
+  /// of the box, so collisions are missed: for repeating the paper's experiment only.
+  box,
+};
+
+/// How object pairs are found. All report the same pairs in the same order.
+enum class BroadPhaseMethod : std::uint8_t { octree, sweep, brute };
+
+/// How a region of the scene octree is tested against a sphere.
+enum class RegionSphereTest : std::uint8_t {
+  arvo,       ///< closest point of the region (Arvo 1990)
+  grown_box,  ///< the paper's: the centre in the region grown by the radius; over-reports near corners
+};
+
+/// Which exact stage follows the candidates.
+enum class ContactMode : std::uint8_t {
+  none,          ///< object pairs and candidate counts only
+  intersection,  ///< every intersecting pair of triangles, with its points
+};
+
+/// Shape of the octree of one object.
+struct ObjectOctreeOptions {
+  /// Depth below the root at which splitting ends, 0 to 32 (the paper's level-allowed).
+  std::uint32_t max_level = 16;
+  /// A node with at most this many triangles is not split, ≥ 1. Smaller is tighter, and takes more memory.
+  std::uint32_t leaf_size = 8;
+};
+
+/// Shape of the octree of the scene.
+struct SceneOctreeOptions {
+  /// Depth at which regions no longer expand, 1 to 20; 0 chooses it from the sizes of the objects.
+  std::uint32_t max_level = 0;
+  /// A region expands when this many objects share it, ≥ 2 (the paper: 2).
+  std::uint32_t expand_at = 2;
+  RegionSphereTest region_sphere_test = RegionSphereTest::arvo;
+};
+
+/// Of one object, given when it is added.
+struct ObjectOptions {
+  /// Shown in messages and results; the mesh's name when empty.
+  std::string name;
+  /// Also test the object against itself; triangles that share a vertex id are not a contact.
+  bool self_collision = false;
+  /// Never moves: it is not tested against other static objects, and moving it is an error.
+  bool is_static = false;
+  /// Two objects are tested when each one's `group` has a bit in common with the other's `mask`.
+  std::uint32_t group = 1;
+  std::uint32_t mask = ~std::uint32_t{0};
+  ObjectOctreeOptions octree;
+};
+
+/// Of a scene, fixed at its construction.
+struct SceneOptions {
+  BoundingVolume bounding_volume = BoundingVolume::aabb;
+  SphereFit sphere_fit = SphereFit::vertices;
+  BroadPhaseMethod broad_phase = BroadPhaseMethod::octree;
+  SceneOctreeOptions scene_octree;
+  ContactMode contacts = ContactMode::intersection;
+  /// Also give the points of each contact (`DetectResult::contact_points`). Off saves a little time.
+  bool contact_points = true;
+  /// Also give the paper's output: the vertices in the colliding leaves of both octrees.
+  bool colliding_vertices = false;
+  /// Worker threads, 0 for one a core. The results are the same for any number.
+  std::uint32_t threads = 0;
+};
+
+/// Says whether a pair may be tested; called for pairs whose groups and masks agree and whose volumes
+/// overlap, from one thread, in ascending order. It must answer the same within one step.
+using PairFilter = std::function<bool(ObjectId, ObjectId)>;
+
+}  // namespace supple

@@ -1,0 +1,113 @@
+#pragma once
+
+#include <array>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "supple/mesh.hpp"
+#include "supple/options.hpp"
+#include "supple/result.hpp"
+#include "supple/types.hpp"
+
+namespace supple {
+
+/// Rigid placement: `rotation` (row-major, may also scale or shear) and then `translation`. A point p goes to
+/// fl(R p) + t, each row of R p summed from left to right in double without fused multiply-add.
+struct RigidTransform {
+  std::array<double, 9> rotation{1, 0, 0, 0, 1, 0, 0, 0, 1};
+  Vec3d translation;
+};
+
+/// Many deforming objects, and every contact between them.
+///
+/// ```cpp
+/// supple::Scene scene;
+/// auto rabbit = scene.add(supple::load_mesh("rabbit.obj"));
+/// auto fish = scene.add(fish_mesh, {.self_collision = true});
+/// for (;;) {
+///   scene.set_positions(rabbit, rabbit_xyz);
+///   scene.set_positions(fish, fish_xyz);
+///   for (const supple::Contact& c : scene.detect().contacts) respond(c);
+/// }
+/// ```
+///
+/// Moving an object is one call; its octree, its bounds and the scene follow at the next `detect`. The scene
+/// keeps one copy of each object's positions, in octree order and in the precision they were last given in,
+/// and a second copy only of objects moved by `set_transform`. Calls on one scene must not overlap; different
+/// scenes are independent. Every call that takes an `ObjectId` throws `Error` when the object is not in the
+/// scene.
+class Scene {
+ public:
+  /// Throws `Error` when an option is out of its range.
+  explicit Scene(const SceneOptions& options = {});
+  ~Scene();
+  Scene(Scene&&) noexcept;
+  Scene& operator=(Scene&&) noexcept;
+
+  /// Adds an object; the octree is built from these positions (the rest pose) in O(n). An empty mesh is an
+  /// object that touches nothing. Throws `Error` for a triangle that uses a vertex out of range.
+  ObjectId add(const TriangleMesh& mesh, const ObjectOptions& options = {});
+  ObjectId add(PositionsView<double> positions, std::span<const Triangle> triangles,
+               const ObjectOptions& options = {});
+  ObjectId add(PositionsView<float> positions, std::span<const Triangle> triangles,
+               const ObjectOptions& options = {});
+  /// Its pairs end at the next `detect`.
+  void remove(ObjectId object);
+
+  /// New positions of all vertices, the user's numbering: any stride, or packed x y z. They are copied, in
+  /// O(n). Throws `Error` when the count differs from the mesh's or the object is static.
+  void set_positions(ObjectId object, PositionsView<double> positions);
+  void set_positions(ObjectId object, PositionsView<float> positions);
+  void set_positions(ObjectId object, std::span<const double> xyz);
+  void set_positions(ObjectId object, std::span<const float> xyz);
+  void set_positions(ObjectId object, std::span<const Vec3d> positions) {
+    set_positions(object, PositionsView<double>(positions));
+  }
+  void set_positions(ObjectId object, std::span<const Vec3f> positions) {
+    set_positions(object, PositionsView<float>(positions));
+  }
+  /// Moves the object as it is by `offset`, in O(1): the vertices are not read. Each coordinate becomes
+  /// fl(position + D) in double, D being the sum of the offsets since the last `set_positions`.
+  void translate(ObjectId object, Vec3d offset);
+  /// Places the positions last given by `add` or `set_positions`; replaces earlier transforms and
+  /// translations. O(1) when only the translation changes, O(n) otherwise.
+  void set_transform(ObjectId object, const RigidTransform& transform);
+  void set_static(ObjectId object, bool is_static);
+
+  void set_group(ObjectId object, std::uint32_t group, std::uint32_t mask);
+  void set_self_collision(ObjectId object, bool enabled);
+  /// An empty function removes the filter.
+  void set_pair_filter(PairFilter filter);
+
+  /// Every contact at the current positions.
+  const DetectResult& detect();
+  /// What the last `detect` returned.
+  const DetectResult& result() const;
+  /// Recomputes the last `detect` by exact arithmetic alone over all pairs of triangles, without octrees or
+  /// filters, and lists every difference. Quadratic: about a second for two meshes of 70,000 triangles.
+  VerifyReport verify() const;
+  /// Checks every invariant of every octree and of the broad phase; the empty string, or what is wrong.
+  std::string validate() const;
+
+  std::vector<ObjectId> objects() const;  ///< ascending
+  bool contains(ObjectId object) const;
+  const std::string& name(ObjectId object) const;
+  std::size_t vertex_count(ObjectId object) const;
+  std::size_t triangle_count(ObjectId object) const;
+  /// As the exact tests see it: transforms and translations applied.
+  Vec3d position(ObjectId object, std::uint32_t vertex) const;
+  /// Bounds as of the last `detect`; empty when nothing finite is there.
+  Aabb bounds(ObjectId object) const;
+  OctreeStatistics octree_statistics(ObjectId object) const;
+  /// Regions of the scene octree, root first; empty for other broad phases.
+  std::vector<SceneRegion> scene_regions() const;
+  const SceneOptions& options() const;
+
+ private:
+  class Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace supple

@@ -1,0 +1,12 @@
+#pragma once
+
+/// Everything at once.
+#include "supple/contact.hpp"
+#include "supple/error.hpp"
+#include "supple/mesh.hpp"
+#include "supple/models.hpp"
+#include "supple/options.hpp"
+#include "supple/result.hpp"
+#include "supple/scene.hpp"
+#include "supple/types.hpp"
+#include "supple/version.hpp"

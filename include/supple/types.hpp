@@ -1,0 +1,93 @@
+#pragma once
+
+#include <compare>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+
+namespace supple {
+
+/// Three coordinates, in the user's units (the documents say metres). Right-handed axes.
+template <class Scalar>
+struct Vec3 {
+  Scalar x{}, y{}, z{};
+
+  constexpr Scalar& operator[](int axis) { return axis == 0 ? x : axis == 1 ? y : z; }
+  constexpr const Scalar& operator[](int axis) const { return axis == 0 ? x : axis == 1 ? y : z; }
+  constexpr bool operator==(const Vec3&) const = default;
+
+  friend constexpr Vec3 operator+(Vec3 a, Vec3 b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+  friend constexpr Vec3 operator-(Vec3 a, Vec3 b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+  friend constexpr Vec3 operator*(Vec3 a, Scalar s) { return {a.x * s, a.y * s, a.z * s}; }
+  friend constexpr Vec3 operator*(Scalar s, Vec3 a) { return a * s; }
+};
+using Vec3d = Vec3<double>;
+using Vec3f = Vec3<float>;
+
+/// Closed axis-aligned box in single precision, always rounded outward from the coordinates it bounds.
+/// The empty box is inverted (+inf, -inf): it grows to whatever is added to it.
+struct Aabb {
+  Vec3f min{std::numeric_limits<float>::infinity(), std::numeric_limits<float>::infinity(),
+            std::numeric_limits<float>::infinity()};
+  Vec3f max{-std::numeric_limits<float>::infinity(), -std::numeric_limits<float>::infinity(),
+            -std::numeric_limits<float>::infinity()};
+
+  constexpr bool operator==(const Aabb&) const = default;
+  /// True when the box holds no point at all.
+  constexpr bool empty() const { return !(min.x <= max.x && min.y <= max.y && min.z <= max.z); }
+};
+
+/// Closed ball in single precision. A negative radius is the empty ball.
+struct BoundingSphere {
+  Vec3f center;
+  float radius = -1;
+
+  constexpr bool operator==(const BoundingSphere&) const = default;
+  constexpr bool empty() const { return radius < 0; }
+};
+
+/// Names an object of one scene. `index` is small and used again after a removal, `generation` then differs,
+/// so that an id kept too long is recognised as such. Ordered by index.
+struct ObjectId {
+  std::uint32_t index = 0;
+  std::uint32_t generation = 0;
+
+  constexpr auto operator<=>(const ObjectId&) const = default;
+};
+
+/// Two different objects, `a.index < b.index`.
+struct ObjectPair {
+  ObjectId a, b;
+  constexpr auto operator<=>(const ObjectPair&) const = default;
+};
+
+/// A triangle of object a and one of object b, as indices into each object's own list of triangles.
+struct TrianglePair {
+  std::uint32_t a = 0, b = 0;
+  constexpr auto operator<=>(const TrianglePair&) const = default;
+};
+
+/// Positions as they lie in the user's memory: `count` points, `stride` bytes from one to the next, three
+/// consecutive scalars each. Not owned; read only during the call it is handed to.
+template <class Scalar>
+struct PositionsView {
+  const Scalar* data = nullptr;
+  std::size_t count = 0;
+  std::size_t stride = 3 * sizeof(Scalar);
+
+  PositionsView() = default;
+  PositionsView(const Scalar* first, std::size_t point_count, std::size_t stride_bytes = 3 * sizeof(Scalar))
+      : data(first), count(point_count), stride(stride_bytes) {}
+  PositionsView(std::span<const Vec3<Scalar>> points)
+      : data(points.empty() ? nullptr : &points.front().x),
+        count(points.size()),
+        stride(sizeof(Vec3<Scalar>)) {}
+
+  Vec3<Scalar> operator[](std::size_t i) const {
+    const auto* p = reinterpret_cast<const Scalar*>(reinterpret_cast<const std::byte*>(data) + i * stride);
+    return {p[0], p[1], p[2]};
+  }
+};
+
+}  // namespace supple

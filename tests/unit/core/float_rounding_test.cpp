@@ -1,0 +1,38 @@
+#include "core/float_rounding.hpp"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+namespace supple {
+namespace {
+
+constexpr float inf = std::numeric_limits<float>::infinity();
+
+TEST(FloatRounding, EnclosesAndIsTight) {
+  std::mt19937_64 random(1);
+  std::uniform_real_distribution<double> mantissa(-2, 2);
+  std::uniform_int_distribution<int> exponent(-160, 126);
+  for (int i = 0; i < 100000; ++i) {
+    const double value = std::ldexp(mantissa(random), exponent(random));
+    const float below = round_down(value), above = round_up(value);
+    ASSERT_LE(below, value);
+    ASSERT_GE(above, value);
+    ASSERT_LE(above, std::nextafter(below, inf));
+  }
+}
+
+TEST(FloatRounding, BeyondTheRangeOfFloat) {
+  const float largest = std::numeric_limits<float>::max();
+  EXPECT_EQ(round_down(1e300), largest);
+  EXPECT_EQ(round_up(1e300), inf);
+  EXPECT_EQ(round_down(-1e300), -inf);
+  EXPECT_EQ(round_up(-1e300), -largest);
+  EXPECT_EQ(round_down(1e-300), 0.0f);
+  EXPECT_GT(round_up(1e-300), 0.0f);
+  EXPECT_EQ(round_up(0.5), 0.5f);
+  EXPECT_EQ(round_down(0.5), 0.5f);
+}
+
+}  // namespace
+}  // namespace supple
