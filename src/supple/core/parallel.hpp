@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -7,6 +9,7 @@
 #if !defined(SUPPLE_SERIAL)
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_sort.h>
 #include <tbb/task_arena.h>
 #endif
 
@@ -41,6 +44,28 @@ class Parallel {
     (void)grain;
 #endif
     body(std::size_t{0}, count, std::uint32_t{0});
+  }
+
+  /// True when `body(begin, end)` is true for every range; all ranges are run.
+  template <class Body>
+  bool all_of_ranges(std::size_t count, std::size_t grain, Body&& body) const {
+    std::atomic<bool> all = true;
+    for_ranges(count, grain, [&](std::size_t begin, std::size_t end, std::uint32_t) {
+      if (!body(begin, end)) all.store(false, std::memory_order_relaxed);
+    });
+    return all.load();
+  }
+
+  /// Sorts in place. No two items may be equivalent, so that the result does not depend on the order of work.
+  template <class Iterator, class Less>
+  void sort(Iterator first, Iterator last, const Less& less) const {
+#if !defined(SUPPLE_SERIAL)
+    if (worker_count_ > 1 && last - first > 4096) {
+      arena_->execute([&] { tbb::parallel_sort(first, last, less); });
+      return;
+    }
+#endif
+    std::sort(first, last, less);
   }
 
  private:

@@ -1,0 +1,157 @@
+#include "octree/object_octree.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "geometry/aabb.hpp"
+#include "octree/box_kernels.hpp"
+#include "octree/octree_build.hpp"
+
+namespace supple {
+namespace {
+
+constexpr std::uint32_t unnumbered = std::numeric_limits<std::uint32_t>::max();
+
+std::vector<Vec3d> box_centers(const PositionsView<double>& positions, std::span<const Triangle> triangles) {
+  std::vector<Vec3d> centers;
+  centers.reserve(triangles.size());
+  for (const Triangle& triangle : triangles) {
+    const Vec3d p = positions[triangle[0]], q = positions[triangle[1]], r = positions[triangle[2]];
+    Vec3d center;
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto [low, high] = std::minmax({p[axis], q[axis], r[axis]});
+      center[axis] = low / 2 + high / 2;
+      // std::minmax loses a NaN that is not its first argument; the sum keeps it.
+      if (!std::isfinite(p[axis] * 0 + q[axis] * 0 + r[axis] * 0)) center[axis] = p[axis] + q[axis] + r[axis];
+    }
+    centers.push_back(center);
+  }
+  return centers;
+}
+
+TriangleArrays arrays_of(std::span<const Triangle> triangles, const VertexBuffer& vertices,
+                         std::span<const std::uint8_t> inert) {
+  return {triangles.data(), vertices.is_double() ? nullptr : vertices.floats(),
+          vertices.is_double() ? vertices.doubles() : nullptr, inert.empty() ? nullptr : inert.data()};
+}
+
+Aabb lane_box(const AabbLanes& lanes, int lane) {
+  return {{lanes.min_x[lane], lanes.min_y[lane], lanes.min_z[lane]},
+          {lanes.max_x[lane], lanes.max_y[lane], lanes.max_z[lane]}};
+}
+
+void set_lane(SphereLanes& lanes, int lane, const BoundingSphere& sphere) {
+  lanes.x[lane] = sphere.center.x;
+  lanes.y[lane] = sphere.center.y;
+  lanes.z[lane] = sphere.center.z;
+  lanes.radius[lane] = sphere.radius;
+}
+
+/// The paper's eq. 3 and 4: the ball in the cube over the box's lower corner with the box's longest side.
+BoundingSphere sphere_from_box(const Aabb& box) {
+  if (box.empty()) return {};
+  const double side =
+      std::max({double{box.max.x} - box.min.x, double{box.max.y} - box.min.y, double{box.max.z} - box.min.z});
+  const auto half = static_cast<float>(side / 2);
+  return {{box.min.x + half, box.min.y + half, box.min.z + half}, half};
+}
+
+/// The paper's eq. 5: about the centre of the box, radius to the farthest vertex, rounded up.
+BoundingSphere sphere_around(const Aabb& box, std::span<const Triangle> triangles,
+                             const VertexBuffer& vertices, std::span<const std::uint8_t> inert,
+                             std::uint32_t first) {
+  if (box.empty()) return {};
+  const auto clamped_middle = [](float low, float high) {
+    constexpr double limit = std::numeric_limits<float>::max();
+    return static_cast<float>(
+        (std::clamp(double{low}, -limit, limit) + std::clamp(double{high}, -limit, limit)) / 2);
+  };
+  const Vec3f center{clamped_middle(box.min.x, box.max.x), clamped_middle(box.min.y, box.max.y),
+                     clamped_middle(box.min.z, box.max.z)};
+  double squared_radius = 0;
+  for (std::uint32_t t = 0; t < triangles.size(); ++t) {
+    if (!inert.empty() && inert[first + t] != 0) continue;
+    for (const std::uint32_t vertex : triangles[t]) {
+      const Vec3d p = vertices[vertex];
+      const double dx = p.x - center.x, dy = p.y - center.y, dz = p.z - center.z;
+      squared_radius = std::max(squared_radius, dx * dx + dy * dy + dz * dz);
+    }
+  }
+  // The factor covers the roundings of the sum and of the root, the addend squares that underflow.
+  return {center, round_up(std::sqrt(squared_radius) * (1 + 0x1p-50) + std::numeric_limits<float>::min())};
+}
+
+}  // namespace
+
+ObjectOctree::ObjectOctree(const PositionsView<double>& rest_positions, std::span<const Triangle> triangles,
+                           const ObjectOctreeOptions& options, BoundingVolume bounding_volume,
+                           SphereFit sphere_fit)
+    : sphere_fit_(sphere_fit) {
+  OctreeTopology topology = build_octree(box_centers(rest_positions, triangles), options);
+  nodes_ = std::move(topology.nodes);
+  nodes_.shrink_to_fit();
+  level_begin_ = std::move(topology.level_begin);
+  triangle_ids_ = std::move(topology.order);
+  boxes_.resize(nodes_.size());
+  if (bounding_volume == BoundingVolume::sphere) spheres_.resize(nodes_.size());
+
+  vertex_order_.assign(rest_positions.count, unnumbered);
+  vertex_ids_.reserve(rest_positions.count);
+  const auto number = [&](std::uint32_t user_vertex) {
+    if (vertex_order_[user_vertex] == unnumbered) {
+      vertex_order_[user_vertex] = static_cast<std::uint32_t>(vertex_ids_.size());
+      vertex_ids_.push_back(user_vertex);
+    }
+    return vertex_order_[user_vertex];
+  };
+  triangles_.reserve(triangles.size());
+  for (const std::uint32_t id : triangle_ids_) {
+    const Triangle& triangle = triangles[id];
+    const std::uint32_t p = number(triangle[0]), q = number(triangle[1]), r = number(triangle[2]);
+    triangles_.push_back({p, q, r});
+  }
+  for (std::uint32_t vertex = 0; vertex < rest_positions.count; ++vertex) number(vertex);
+}
+
+void ObjectOctree::refit(const VertexBuffer& vertices, std::span<const std::uint8_t> inert,
+                         const Parallel& parallel) {
+  box_ = Aabb{};
+  sphere_ = BoundingSphere{};
+  if (nodes_.empty()) return;
+  for (std::size_t level = level_begin_.size() - 1; level-- > 0;) {
+    refit_level(static_cast<std::uint32_t>(level), vertices, inert, parallel);
+  }
+  box_ = box_of_lanes(boxes_[0]);
+  if (spheres_.empty()) return;
+  sphere_ = sphere_fit_ == SphereFit::box ? sphere_from_box(box_)
+                                          : sphere_around(box_, triangles_, vertices, inert, 0);
+}
+
+void ObjectOctree::refit_level(std::uint32_t level, const VertexBuffer& vertices,
+                               std::span<const std::uint8_t> inert, const Parallel& parallel) {
+  const TriangleArrays arrays = arrays_of(triangles_, vertices, inert);
+  const std::uint32_t first = level_begin_[level];
+  parallel.for_ranges(
+      level_begin_[level + 1] - first, 512, [&](std::size_t begin, std::size_t end, std::uint32_t) {
+        const auto node_begin = static_cast<std::uint32_t>(first + begin);
+        const auto node_end = static_cast<std::uint32_t>(first + end);
+        refit_boxes(nodes_.data(), boxes_.data(), arrays, node_begin, node_end);
+        if (spheres_.empty()) return;
+        for (std::uint32_t n = node_begin; n < node_end; ++n) {
+          const OctreeNode& node = nodes_[n];
+          for (int lane = 0; lane < node_width; ++lane) {
+            const Aabb box = lane_box(boxes_[n], lane);
+            const std::uint32_t begin_t = node.first_triangle[lane];
+            const std::uint32_t count = lane < node.lane_count ? node.first_triangle[lane + 1] - begin_t : 0;
+            set_lane(spheres_[n], lane,
+                     sphere_fit_ == SphereFit::box
+                         ? sphere_from_box(box)
+                         : sphere_around(box, std::span<const Triangle>(triangles_).subspan(begin_t, count),
+                                         vertices, inert, begin_t));
+          }
+        }
+      });
+}
+
+}  // namespace supple

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <bit>
+#include <cstdint>
+
+namespace supple {
+
+/// Lanes of a node: the eight octants, those without triangles left out.
+constexpr int node_width = 8;
+
+/// Boxes of the lanes of a node, one array an axis and side: a box against eight is six vector comparisons.
+/// Unused lanes hold inverted boxes. Rounded outward.
+struct alignas(64) AabbLanes {
+  float min_x[node_width], min_y[node_width], min_z[node_width];
+  float max_x[node_width], max_y[node_width], max_z[node_width];
+};
+
+/// Balls of the lanes of a node; unused lanes, and lanes without a finite triangle, have a negative radius.
+struct alignas(64) SphereLanes {
+  float x[node_width], y[node_width], z[node_width], radius[node_width];
+};
+
+/// Eight-wide node without its volumes. Lane i holds the triangles [first_triangle[i], first_triangle[i + 1])
+/// of the octree's order; its node, when it is an inner lane, comes after those of the inner lanes before it.
+struct OctreeNode {
+  std::uint32_t first_triangle[node_width + 1];
+  std::uint32_t first_child;  ///< node of the first inner lane; its siblings follow
+  std::uint32_t parent;       ///< node; the root names itself
+  std::uint8_t inner_mask;    ///< bit i: lane i is a node of its own
+  std::uint8_t lane_count;    ///< 1 to 8; lanes from here on are unused
+  std::uint8_t parent_lane;
+  std::uint8_t level;  ///< the root is 0; its lanes are at level 1
+
+  bool is_inner(int lane) const { return (inner_mask >> lane & 1) != 0; }
+  std::uint32_t child(int lane) const {
+    return first_child + static_cast<std::uint32_t>(std::popcount(inner_mask & ((1u << lane) - 1)));
+  }
+  std::uint32_t lane_mask() const { return (1u << lane_count) - 1; }
+};
+static_assert(sizeof(OctreeNode) == 48);
+
+}  // namespace supple

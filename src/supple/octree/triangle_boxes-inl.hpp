@@ -1,0 +1,163 @@
+// Compiled once for each instruction set: include after hwy/highway.h, between HWY_BEFORE_NAMESPACE and
+// HWY_AFTER_NAMESPACE of the including file's own namespace.
+#if defined(SUPPLE_OCTREE_TRIANGLE_BOXES_INL_HPP) == defined(HWY_TARGET_TOGGLE)
+#ifdef SUPPLE_OCTREE_TRIANGLE_BOXES_INL_HPP
+#undef SUPPLE_OCTREE_TRIANGLE_BOXES_INL_HPP
+#else
+#define SUPPLE_OCTREE_TRIANGLE_BOXES_INL_HPP
+#endif
+
+#include <hwy/highway.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+
+#include "core/float_rounding.hpp"
+#include "octree/box_kernels.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace supple {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+#if HWY_TARGET == HWY_SCALAR
+
+/// The meaning of the vector versions below, for machines without them.
+template <class Scalar>
+struct ScalarBox {
+  static constexpr Scalar inf = std::numeric_limits<Scalar>::infinity();
+  Scalar lo[3] = {inf, inf, inf}, hi[3] = {-inf, -inf, -inf};
+
+  void extend(const Scalar* vertex) {
+    for (int axis = 0; axis < 3; ++axis) {
+      lo[axis] = std::min(lo[axis], vertex[axis]);
+      hi[axis] = std::max(hi[axis], vertex[axis]);
+    }
+  }
+  void store(float* lower, float* upper) const {
+    for (int axis = 0; axis < 3; ++axis) {
+      lower[axis] = round_down(lo[axis]);
+      upper[axis] = round_up(hi[axis]);
+    }
+  }
+};
+using FloatBox = ScalarBox<float>;
+using DoubleBox = ScalarBox<double>;
+
+#else
+
+/// A box that grows, x y z in the first three of four lanes.
+struct FloatBox {
+  using Tag = hn::FixedTag<float, 4>;
+  hn::Vec<Tag> lo = hn::Set(Tag(), std::numeric_limits<float>::infinity());
+  hn::Vec<Tag> hi = hn::Set(Tag(), -std::numeric_limits<float>::infinity());
+
+  HWY_INLINE void extend(const float* vertex) {
+    const auto v = hn::LoadU(Tag(), vertex);
+    lo = hn::Min(lo, v);
+    hi = hn::Max(hi, v);
+  }
+  HWY_INLINE void store(float* HWY_RESTRICT lower, float* HWY_RESTRICT upper) const {
+    hn::StoreU(lo, Tag(), lower);
+    hn::StoreU(hi, Tag(), upper);
+  }
+};
+
+/// The same over doubles, rounded outward once at the end.
+struct DoubleBox {
+  using Tag = hn::FixedTag<double, 2>;
+  using FloatTag = hn::FixedTag<float, 2>;
+  static constexpr double inf = std::numeric_limits<double>::infinity();
+  hn::Vec<Tag> lo_xy = hn::Set(Tag(), inf), lo_z = hn::Set(Tag(), inf);
+  hn::Vec<Tag> hi_xy = hn::Set(Tag(), -inf), hi_z = hn::Set(Tag(), -inf);
+
+  HWY_INLINE void extend(const double* vertex) {
+    const auto xy = hn::LoadU(Tag(), vertex);
+    const auto z = hn::LoadU(Tag(), vertex + 2);
+    lo_xy = hn::Min(lo_xy, xy);
+    hi_xy = hn::Max(hi_xy, xy);
+    lo_z = hn::Min(lo_z, z);
+    hi_z = hn::Max(hi_z, z);
+  }
+  HWY_INLINE void store(float* HWY_RESTRICT lower, float* HWY_RESTRICT upper) const {
+    hn::StoreU(round_down(lo_xy), FloatTag(), lower);
+    hn::StoreU(round_down(lo_z), FloatTag(), lower + 2);
+    hn::StoreU(round_up(hi_xy), FloatTag(), upper);
+    hn::StoreU(round_up(hi_z), FloatTag(), upper + 2);
+  }
+
+ private:
+  // As `round_down` and `round_up` of core/float_rounding.hpp.
+  static HWY_INLINE hn::Vec<FloatTag> round_down(hn::Vec<Tag> v) {
+    const FloatTag f32;
+    const auto nearest = hn::Min(hn::DemoteTo(f32, v), hn::Set(f32, std::numeric_limits<float>::max()));
+    const auto too_high = hn::Gt(hn::PromoteTo(Tag(), nearest), v);
+    const auto step = outward_step(nearest);
+    return hn::IfThenElse(demote_mask(too_high), hn::Sub(nearest, step), nearest);
+  }
+  static HWY_INLINE hn::Vec<FloatTag> round_up(hn::Vec<Tag> v) {
+    const FloatTag f32;
+    const auto nearest = hn::Max(hn::DemoteTo(f32, v), hn::Set(f32, -std::numeric_limits<float>::max()));
+    const auto too_low = hn::Lt(hn::PromoteTo(Tag(), nearest), v);
+    const auto step = outward_step(nearest);
+    return hn::IfThenElse(demote_mask(too_low), hn::Add(nearest, step), nearest);
+  }
+  static HWY_INLINE hn::Vec<FloatTag> outward_step(hn::Vec<FloatTag> v) {
+    const FloatTag f32;
+    return hn::Add(hn::Mul(hn::Abs(v), hn::Set(f32, 0x1p-23f)),
+                   hn::Set(f32, std::numeric_limits<float>::min()));
+  }
+  static HWY_INLINE hn::Mask<FloatTag> demote_mask(hn::Mask<Tag> mask) {
+    const FloatTag f32;
+    const auto one_or_zero = hn::IfThenElseZero(mask, hn::Set(Tag(), 1.0));
+    return hn::Gt(hn::DemoteTo(f32, one_or_zero), hn::Zero(f32));
+  }
+};
+
+#endif
+
+template <class Box, class Scalar>
+HWY_INLINE void extend_by_triangle(Box& box, const Scalar* vertices, const Triangle& triangle) {
+  box.extend(vertices + std::size_t{triangle[0]} * 4);
+  box.extend(vertices + std::size_t{triangle[1]} * 4);
+  box.extend(vertices + std::size_t{triangle[2]} * 4);
+}
+
+/// Lane `lane` of `lanes` becomes the given box.
+HWY_INLINE void set_lane(AabbLanes& lanes, int lane, const float* lower, const float* upper) {
+  lanes.min_x[lane] = lower[0];
+  lanes.min_y[lane] = lower[1];
+  lanes.min_z[lane] = lower[2];
+  lanes.max_x[lane] = upper[0];
+  lanes.max_y[lane] = upper[1];
+  lanes.max_z[lane] = upper[2];
+}
+
+/// Lane `lane` becomes the box of the triangles [begin, end); inverted when all of them are inert.
+template <class Box, class Scalar>
+HWY_INLINE void set_lane_to_triangles(AabbLanes& lanes, int lane, const Scalar* vertices,
+                                      const TriangleArrays& arrays, std::uint32_t begin, std::uint32_t end) {
+  Box box;
+  for (std::uint32_t t = begin; t < end; ++t) {
+    if (arrays.inert != nullptr && arrays.inert[t] != 0) continue;
+    extend_by_triangle(box, vertices, arrays.triangles[t]);
+  }
+  HWY_ALIGN float lower[4], upper[4];
+  box.store(lower, upper);
+  set_lane(lanes, lane, lower, upper);
+}
+
+HWY_INLINE void invert_lanes_from(AabbLanes& lanes, int first) {
+  constexpr float inf = std::numeric_limits<float>::infinity();
+  for (int lane = first; lane < node_width; ++lane) {
+    lanes.min_x[lane] = lanes.min_y[lane] = lanes.min_z[lane] = inf;
+    lanes.max_x[lane] = lanes.max_y[lane] = lanes.max_z[lane] = -inf;
+  }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace supple
+HWY_AFTER_NAMESPACE();
+
+#endif

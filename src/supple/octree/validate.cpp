@@ -1,0 +1,155 @@
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "geometry/aabb.hpp"
+#include "octree/object_octree.hpp"
+
+namespace supple {
+namespace {
+
+/// Checks one octree; each step returns the empty string or what is wrong.
+class Validation {
+ public:
+  Validation(const ObjectOctree& octree, const VertexBuffer& vertices, std::span<const std::uint8_t> inert,
+             bool check_spheres)
+      : octree_(octree), vertices_(vertices), inert_(inert), check_spheres_(check_spheres) {}
+
+  std::string run() const {
+    if (std::string wrong = check_permutation(octree_.triangle_ids(), "triangle"); !wrong.empty())
+      return wrong;
+    if (std::string wrong = check_permutation(octree_.vertex_ids(), "vertex"); !wrong.empty()) return wrong;
+    for (std::uint32_t user = 0; user < octree_.vertex_order().size(); ++user) {
+      if (octree_.vertex_ids()[octree_.vertex_order()[user]] != user) return "vertex maps are not inverse";
+    }
+    const auto nodes = octree_.nodes();
+    if (nodes.empty()) return octree_.triangles().empty() ? "" : "triangles without a node";
+    std::vector<std::uint8_t> reached(nodes.size(), 0);
+    std::uint32_t covered = 0;
+    for (std::uint32_t n = 0; n < nodes.size(); ++n) {
+      if (std::string wrong = check_node(n, reached, covered); !wrong.empty()) return wrong;
+    }
+    if (covered != octree_.triangles().size()) return "leaves hold " + std::to_string(covered) + " triangles";
+    if (std::count(reached.begin() + 1, reached.end(), 1) != std::ssize(nodes) - 1) return "unreachable node";
+    return "";
+  }
+
+ private:
+  static std::string check_permutation(std::span<const std::uint32_t> ids, const char* what) {
+    std::vector<std::uint8_t> seen(ids.size(), 0);
+    for (const std::uint32_t id : ids) {
+      if (id >= ids.size() || seen[id]++ != 0) return std::string(what) + " ids are not a permutation";
+    }
+    return "";
+  }
+
+  std::string check_node(std::uint32_t n, std::vector<std::uint8_t>& reached, std::uint32_t& covered) const {
+    const OctreeNode& node = octree_.nodes()[n];
+    const std::string here = "node " + std::to_string(n) + ": ";
+    if (node.lane_count < 1 || node.lane_count > node_width) return here + "lane count out of range";
+    for (int lane = 0; lane < node.lane_count; ++lane) {
+      const std::uint32_t begin = node.first_triangle[lane], end = node.first_triangle[lane + 1];
+      if (begin >= end || end > octree_.triangles().size()) return here + "lane without triangles";
+      if (std::string wrong = check_bounds(n, lane, begin, end); !wrong.empty()) return here + wrong;
+      if (!node.is_inner(lane)) {
+        covered += end - begin;
+        continue;
+      }
+      const std::uint32_t child = node.child(lane);
+      if (child <= n || child >= octree_.nodes().size()) return here + "child out of range";
+      const OctreeNode& below = octree_.nodes()[child];
+      reached[child] = 1;
+      if (below.parent != n || below.parent_lane != lane || below.level != node.level + 1 ||
+          below.first_triangle[0] != begin || below.first_triangle[node_width] != end ||
+          below.lane_count < 2) {
+        return here + "child does not fit its lane";
+      }
+    }
+    for (int lane = node.lane_count; lane < node_width; ++lane) {
+      if (!lane_box(n, lane).empty() || node.is_inner(lane)) return here + "unused lane is not empty";
+    }
+    return "";
+  }
+
+  Aabb lane_box(std::uint32_t n, int lane) const {
+    const AabbLanes& lanes = octree_.boxes()[n];
+    return {{lanes.min_x[lane], lanes.min_y[lane], lanes.min_z[lane]},
+            {lanes.max_x[lane], lanes.max_y[lane], lanes.max_z[lane]}};
+  }
+
+  /// Every vertex of the lane's triangles lies in its volumes, and the box is not larger than rounding
+  /// explains.
+  std::string check_bounds(std::uint32_t n, int lane, std::uint32_t begin, std::uint32_t end) const {
+    const Aabb box = lane_box(n, lane);
+    Aabb tight;
+    for (std::uint32_t t = begin; t < end; ++t) {
+      if (!inert_.empty() && inert_[t] != 0) continue;
+      for (const std::uint32_t vertex : octree_.triangles()[t]) {
+        const Vec3d p = vertices_[vertex];
+        extend(tight, p);
+        for (int axis = 0; axis < 3; ++axis) {
+          if (!(box.min[axis] <= p[axis] && p[axis] <= box.max[axis])) return "box does not enclose a vertex";
+        }
+        if (check_spheres_ && !in_sphere(n, lane, p)) return "sphere does not enclose a vertex";
+      }
+    }
+    if (tight != box && !(tight.empty() && box.empty())) return "box is not tight";
+    return "";
+  }
+
+  bool in_sphere(std::uint32_t n, int lane, Vec3d p) const {
+    const SphereLanes& lanes = octree_.spheres()[n];
+    const double distance = std::hypot(p.x - lanes.x[lane], p.y - lanes.y[lane], p.z - lanes.z[lane]);
+    return distance <= lanes.radius[lane] * (1 + 0x1p-40) || std::isinf(lanes.radius[lane]);
+  }
+
+  const ObjectOctree& octree_;
+  const VertexBuffer& vertices_;
+  std::span<const std::uint8_t> inert_;
+  bool check_spheres_;
+};
+
+}  // namespace
+
+std::string ObjectOctree::validate(const VertexBuffer& vertices, std::span<const std::uint8_t> inert) const {
+  const bool enclosing_spheres = spheres() != nullptr && sphere_fit_ == SphereFit::vertices;
+  return Validation(*this, vertices, inert, enclosing_spheres).run();
+}
+
+OctreeStatistics ObjectOctree::statistics() const {
+  OctreeStatistics result;
+  result.triangles = triangles_.size();
+  result.vertices = vertex_ids_.size();
+  result.nodes = nodes_.size();
+  std::uint64_t lanes = 0;
+  for (const OctreeNode& node : nodes_) {
+    lanes += node.lane_count;
+    for (int lane = 0; lane < node.lane_count; ++lane) {
+      if (node.is_inner(lane)) continue;
+      // An object of one leaf is that leaf: the root itself, not an octant of it.
+      const std::uint32_t level = node.lane_count == 1 ? 0 : node.level + 1u;
+      if (level >= result.leaves_by_level.size()) result.leaves_by_level.resize(level + 1);
+      ++result.leaves_by_level[level];
+      ++result.leaves;
+      result.depth = std::max(result.depth, level);
+      result.largest_leaf =
+          std::max(result.largest_leaf, node.first_triangle[lane + 1] - node.first_triangle[lane]);
+    }
+  }
+  if (result.leaves > 0) {
+    result.mean_leaf_size = static_cast<double>(result.triangles) / static_cast<double>(result.leaves);
+    result.mean_node_width = static_cast<double>(lanes) / static_cast<double>(result.nodes);
+  }
+  result.bytes = nodes_.capacity() * sizeof(OctreeNode) + boxes_.capacity() * sizeof(AabbLanes) +
+                 spheres_.capacity() * sizeof(SphereLanes) + triangles_.capacity() * sizeof(Triangle) +
+                 (triangle_ids_.capacity() + vertex_ids_.capacity() + vertex_order_.capacity() +
+                  level_begin_.capacity()) *
+                     sizeof(std::uint32_t);
+  if (result.triangles > 0) {
+    result.bytes_per_triangle = static_cast<double>(result.bytes) / static_cast<double>(result.triangles);
+  }
+  return result;
+}
+
+}  // namespace supple

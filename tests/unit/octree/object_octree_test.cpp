@@ -1,0 +1,185 @@
+#include "octree/object_octree.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <random>
+
+namespace supple {
+namespace {
+
+struct Soup {
+  std::vector<Vec3d> positions;
+  std::vector<Triangle> triangles;
+};
+
+/// Small triangles scattered over a sphere of the given radius about `center`.
+Soup scattered_soup(std::uint32_t count, double radius, Vec3d center, std::uint32_t seed) {
+  std::mt19937 random(seed);
+  std::normal_distribution<double> normal;
+  Soup soup;
+  for (std::uint32_t t = 0; t < count; ++t) {
+    Vec3d p{normal(random), normal(random), normal(random)};
+    p = p * (radius / std::sqrt(p.x * p.x + p.y * p.y + p.z * p.z + 1e-30)) + center;
+    for (int corner = 0; corner < 3; ++corner) {
+      soup.positions.push_back(p + Vec3d{normal(random), normal(random), normal(random)} * (0.02 * radius));
+    }
+    soup.triangles.push_back({3 * t, 3 * t + 1, 3 * t + 2});
+  }
+  return soup;
+}
+
+struct Built {
+  explicit Built(const Soup& soup, const ObjectOctreeOptions& options = {},
+                 BoundingVolume volume = BoundingVolume::aabb)
+      : octree(PositionsView<double>(soup.positions), soup.triangles, options, volume, SphereFit::vertices) {}
+
+  std::string refit(const Soup& soup, std::uint32_t threads = 1) {
+    const Parallel parallel(threads);
+    vertices.assign(PositionsView<double>(soup.positions), octree.vertex_order(), parallel);
+    octree.refit(vertices, {}, parallel);
+    return octree.validate(vertices, {});
+  }
+
+  ObjectOctree octree;
+  VertexBuffer vertices;
+};
+
+TEST(ObjectOctree, EmptyObject) {
+  Built built(Soup{});
+  EXPECT_EQ(built.refit(Soup{}), "");
+  EXPECT_TRUE(built.octree.nodes().empty());
+  EXPECT_TRUE(built.octree.box().empty());
+}
+
+TEST(ObjectOctree, StaysValidOverSizesAndOptions) {
+  for (const std::uint32_t count : {1u, 2u, 8u, 9u, 100u, 5000u}) {
+    for (const std::uint32_t leaf_size : {1u, 4u, 8u}) {
+      for (const std::uint32_t max_level : {0u, 1u, 3u, 16u}) {
+        for (const BoundingVolume volume : {BoundingVolume::aabb, BoundingVolume::sphere}) {
+          const Soup soup = scattered_soup(count, 2, {1, 2, 3}, count);
+          Built built(soup, {.max_level = max_level, .leaf_size = leaf_size}, volume);
+          EXPECT_EQ(built.refit(soup), "") << count << ' ' << leaf_size << ' ' << max_level;
+          EXPECT_LE(built.octree.statistics().depth, max_level);
+          if (max_level == 16) {
+            EXPECT_LE(built.octree.statistics().largest_leaf, leaf_size);
+          }
+        }
+      }
+    }
+  }
+}
+
+TEST(ObjectOctree, RefitFollowsDeformation) {
+  Soup soup = scattered_soup(3000, 1, {}, 7);
+  Built built(soup);
+  std::mt19937 random(3);
+  std::normal_distribution<double> normal;
+  for (int step = 0; step < 5; ++step) {
+    for (Vec3d& p : soup.positions) p = p + Vec3d{normal(random), normal(random), normal(random)} * 0.1;
+    EXPECT_EQ(built.refit(soup, step % 2 == 0 ? 1 : 4), "");
+  }
+}
+
+TEST(ObjectOctree, FloatAndDoublePositionsGiveTheSameBoxesForFloatValues) {
+  Soup soup = scattered_soup(500, 1, {}, 8);
+  std::vector<Vec3f> singles;
+  for (Vec3d& p : soup.positions) {
+    singles.push_back({static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)});
+    p = {singles.back().x, singles.back().y, singles.back().z};
+  }
+  Built built(soup);
+  EXPECT_EQ(built.refit(soup), "");
+  const Aabb box = built.octree.box();
+  const Parallel parallel(1);
+  VertexBuffer vertices;
+  EXPECT_TRUE(vertices.assign(PositionsView<float>(singles), built.octree.vertex_order(), parallel));
+  EXPECT_FALSE(vertices.is_double());
+  built.octree.refit(vertices, {}, parallel);
+  EXPECT_EQ(built.octree.validate(vertices, {}), "");
+  EXPECT_EQ(built.octree.box(), box);
+}
+
+TEST(ObjectOctree, EqualCentresEndInOneLeaf) {
+  Soup soup;
+  for (std::uint32_t t = 0; t < 100; ++t) {
+    soup.positions.insert(soup.positions.end(), {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
+    soup.triangles.push_back({3 * t, 3 * t + 1, 3 * t + 2});
+  }
+  Built built(soup);
+  EXPECT_EQ(built.refit(soup), "");
+  EXPECT_EQ(built.octree.statistics().largest_leaf, 100u);
+  EXPECT_EQ(built.octree.statistics().depth, 0u);
+}
+
+TEST(ObjectOctree, AFarVertexDoesNotFlattenTheRest) {
+  for (const double far : {1e6, 1e15, 1e30, 1e300}) {
+    Soup soup = scattered_soup(2000, 1, {}, 5);
+    soup.positions[0] = {far, -far, far};
+    Built built(soup);
+    EXPECT_EQ(built.refit(soup), "") << far;
+    EXPECT_LE(built.octree.statistics().largest_leaf, 8u) << far;
+    EXPECT_LT(built.octree.statistics().depth, 12u) << far;
+  }
+}
+
+TEST(ObjectOctree, ExtremeScales) {
+  for (const double scale : {1e-310, 1e-300, 1e-40, 1e-30, 1e30, 1e38, 1e39, 1e300}) {
+    Soup soup = scattered_soup(300, 1, {}, 6);
+    for (Vec3d& p : soup.positions) p = p * scale;
+    for (const BoundingVolume volume : {BoundingVolume::aabb, BoundingVolume::sphere}) {
+      Built built(soup, {}, volume);
+      EXPECT_EQ(built.refit(soup), "") << scale;
+    }
+  }
+}
+
+TEST(ObjectOctree, InertTrianglesAreInNoBox) {
+  Soup soup = scattered_soup(200, 1, {}, 9);
+  soup.positions[30] = {std::numeric_limits<double>::quiet_NaN(), 1e9, 0};
+  soup.positions[61] = {0, std::numeric_limits<double>::infinity(), 0};
+  Built built(soup);
+  const Parallel parallel(1);
+  EXPECT_FALSE(
+      built.vertices.assign(PositionsView<double>(soup.positions), built.octree.vertex_order(), parallel));
+  std::vector<std::uint8_t> inert(200, 0);
+  for (std::uint32_t t = 0; t < 200; ++t) {
+    const std::uint32_t user = built.octree.triangle_ids()[t];
+    inert[t] = user == 10 || user == 20;
+  }
+  built.octree.refit(built.vertices, inert, parallel);
+  EXPECT_EQ(built.octree.validate(built.vertices, inert), "");
+  EXPECT_LT(built.octree.box().max.y, 2);
+}
+
+TEST(ObjectOctree, ValidateFindsAStaleBox) {
+  Soup soup = scattered_soup(100, 1, {}, 10);
+  Built built(soup);
+  EXPECT_EQ(built.refit(soup), "");
+  soup.positions[17].x += 0.5;
+  built.vertices.assign(PositionsView<double>(soup.positions), built.octree.vertex_order(), Parallel(1));
+  EXPECT_NE(built.octree.validate(built.vertices, {}), "");
+}
+
+TEST(ObjectOctree, StridedPositions) {
+  struct Particle {
+    float mass;
+    float position[3];
+    int id;
+  };
+  const Soup soup = scattered_soup(50, 1, {}, 11);
+  std::vector<Particle> particles;
+  for (const Vec3d& p : soup.positions) {
+    particles.push_back({1, {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)}, 0});
+  }
+  Built built(soup);
+  built.vertices.assign(PositionsView<float>(particles[0].position, particles.size(), sizeof(Particle)),
+                        built.octree.vertex_order(), Parallel(1));
+  for (std::uint32_t user = 0; user < particles.size(); ++user) {
+    EXPECT_EQ(built.vertices[built.octree.vertex_order()[user]].y, particles[user].position[1]);
+  }
+}
+
+}  // namespace
+}  // namespace supple
