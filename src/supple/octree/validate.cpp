@@ -1,9 +1,10 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <vector>
 
-#include "geometry/aabb.hpp"
+#include "core/float_rounding.hpp"
 #include "octree/object_octree.hpp"
 
 namespace supple {
@@ -82,19 +83,23 @@ class Validation {
   /// explains.
   std::string check_bounds(std::uint32_t n, int lane, std::uint32_t begin, std::uint32_t end) const {
     const Aabb box = lane_box(n, lane);
-    Aabb tight;
+    constexpr double inf = std::numeric_limits<double>::infinity();
+    Vec3d lower{inf, inf, inf}, upper{-inf, -inf, -inf};
     for (std::uint32_t t = begin; t < end; ++t) {
       if (!inert_.empty() && inert_[t] != 0) continue;
       for (const std::uint32_t vertex : octree_.triangles()[t]) {
         const Vec3d p = vertices_[vertex];
-        extend(tight, p);
         for (int axis = 0; axis < 3; ++axis) {
+          lower[axis] = std::min(lower[axis], p[axis]);
+          upper[axis] = std::max(upper[axis], p[axis]);
           if (!(box.min[axis] <= p[axis] && p[axis] <= box.max[axis])) return "box does not enclose a vertex";
         }
         if (check_spheres_ && !in_sphere(n, lane, p)) return "sphere does not enclose a vertex";
       }
     }
-    if (tight != box && !(tight.empty() && box.empty())) return "box is not tight";
+    const Aabb tight{{round_down(lower.x), round_down(lower.y), round_down(lower.z)},
+                     {round_up(upper.x), round_up(upper.y), round_up(upper.z)}};
+    if (tight != box) return "box is not tight";
     return "";
   }
 
