@@ -97,9 +97,13 @@ class Validation {
         if (check_spheres_ && !in_sphere(n, lane, p)) return "sphere does not enclose a vertex";
       }
     }
-    const Aabb tight{{round_down(lower.x), round_down(lower.y), round_down(lower.z)},
-                     {round_up(upper.x), round_up(upper.y), round_up(upper.z)}};
-    if (tight != box) return "box is not tight";
+    for (int axis = 0; axis < 3; ++axis) {
+      const float least = round_down(lower[axis]), greatest = round_up(upper[axis]);
+      if (least - box.min[axis] > 4 * outward_step(least) ||
+          box.max[axis] - greatest > 4 * outward_step(greatest)) {
+        return "box is larger than rounding explains";
+      }
+    }
     return "";
   }
 
