@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "octree/box_kernels.hpp"
+#include "octree/octree_node.hpp"
+#include "supple/types.hpp"
+
+namespace supple {
+
+/// Two nodes whose lanes are to be tested against each other: those of a in `lanes_a` with those of b in
+/// `lanes_b`.
+struct NodePair {
+  std::uint32_t a = 0, b = 0;
+  std::uint8_t lanes_a = 0xff, lanes_b = 0xff;
+};
+
+/// Where object b lies against object a, when objects were translated: b's volumes move by `offset` and grow
+/// by `slop`, which covers every rounding on the way. Zero for objects at their own positions.
+struct RelativePlacement {
+  Vec3f offset;
+  float slop = 0;
+
+  bool is_identity() const { return offset == Vec3f{} && slop == 0; }
+};
+
+/// Triangles of two leaves whose volumes overlap, in octree order: [begin_a, end_a) against [begin_b, end_b).
+/// Within one leaf of one object the ranges are equal.
+struct LeafPair {
+  std::uint32_t begin_a = 0, end_a = 0, begin_b = 0, end_b = 0;
+};
+
+/// Bit 8 i + j of `masks[k]`: lane i of node a and lane j of node b of `pairs[k]` may overlap. Lanes outside
+/// `lanes_a` give no bits; unused lanes of b may give any. Never misses an overlap.
+void overlap_masks(std::span<const NodePair> pairs, const AabbLanes* a, const AabbLanes* b,
+                   const RelativePlacement& placement, std::uint64_t* masks);
+void overlap_masks(std::span<const NodePair> pairs, const SphereLanes* a, const SphereLanes* b,
+                   const RelativePlacement& placement, std::uint64_t* masks);
+
+/// Appends all pairs of triangles of the leaf pairs whose boxes may overlap, in octree order's numbers; inert
+/// triangles are in none. With `same_object` pairs that share a vertex are left out and each pair comes once,
+/// a < b or b < a. Never misses an overlap. Returns the number of box tests.
+std::uint64_t find_triangle_box_pairs(std::span<const LeafPair> leaf_pairs, const TriangleArrays& a,
+                                      const TriangleArrays& b, const RelativePlacement& placement,
+                                      bool same_object, std::vector<TrianglePair>& pairs);
+
+}  // namespace supple

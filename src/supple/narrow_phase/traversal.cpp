@@ -1,0 +1,131 @@
+#include "narrow_phase/traversal.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "core/float_rounding.hpp"
+
+namespace supple {
+namespace {
+
+void test_lanes(const ObjectPairView& pair, std::span<const NodePair> node_pairs, std::uint64_t* masks) {
+  if (pair.a.spheres != nullptr) {
+    overlap_masks(node_pairs, pair.a.spheres, pair.b.spheres, pair.placement, masks);
+  } else {
+    overlap_masks(node_pairs, pair.a.boxes, pair.b.boxes, pair.placement, masks);
+  }
+}
+
+/// Calls `visit(i, j)` for each pair of lanes that overlap and are asked for; of a node with itself only
+/// those with i <= j.
+template <class Visit>
+void for_each_lane_pair(const ObjectPairView& pair, NodePair node_pair, std::uint64_t mask, Visit&& visit) {
+  const OctreeNode& node_a = pair.a.nodes[node_pair.a];
+  const OctreeNode& node_b = pair.b.nodes[node_pair.b];
+  const std::uint32_t wanted_b = node_pair.lanes_b & node_b.lane_mask();
+  const bool same_node = pair.same_object && node_pair.a == node_pair.b;
+  for (std::uint32_t rest = node_pair.lanes_a & node_a.lane_mask(); rest != 0; rest &= rest - 1) {
+    const int i = std::countr_zero(rest);
+    std::uint32_t hits = static_cast<std::uint32_t>(mask >> (8 * i)) & wanted_b;
+    if (same_node) hits &= ~0u << i;
+    for (; hits != 0; hits &= hits - 1) visit(i, std::countr_zero(hits));
+  }
+}
+
+std::uint8_t lane_bit(int lane) {
+  return static_cast<std::uint8_t>(1u << lane);
+}
+
+/// Largest absolute coordinate of the node's lanes; 0 when all are empty.
+double greatest_coordinate(const OctreeView& view) {
+  if (view.nodes.empty()) return 0;
+  const Aabb box = box_of_lanes(view.boxes[0]);
+  if (box.empty()) return 0;
+  double greatest = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    greatest = std::max({greatest, std::abs(double{box.min[axis]}), std::abs(double{box.max[axis]})});
+  }
+  return greatest;
+}
+
+/// The volumes are those of the untranslated positions. Seen from a, b's move by the difference of the
+/// translations. The slop covers the sums fl(position + translation) that the exact tests see (2^-53 of their
+/// size, in both objects), and where there is a difference, rounding it and the moved coordinates to float
+/// (2^-24 of their size each). Below an ulp it still works: rounding is monotonic, so a gap of at most the
+/// slop closes.
+RelativePlacement place(const OctreeView& a, const OctreeView& b) {
+  if (a.translation == Vec3d{} && b.translation == Vec3d{}) return {};
+  const Vec3d offset = b.translation - a.translation;
+  const auto largest = [](Vec3d v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); };
+  const double size_a = greatest_coordinate(a), size_b = greatest_coordinate(b);
+  const double world = std::max(size_a + largest(a.translation), size_b + largest(b.translation));
+  const double moved = offset == Vec3d{} ? 0 : size_b + largest(offset);
+  return {{static_cast<float>(offset.x), static_cast<float>(offset.y), static_cast<float>(offset.z)},
+          round_up(0x1p-21 * moved + 0x1p-50 * world)};
+}
+
+}  // namespace
+
+OctreeView view_of(const ObjectOctree& octree, const VertexBuffer& vertices,
+                   std::span<const std::uint8_t> inert, Vec3d translation) {
+  return {octree.nodes(),
+          octree.boxes(),
+          octree.spheres(),
+          {octree.triangles().data(), vertices.is_double() ? nullptr : vertices.floats(),
+           vertices.is_double() ? vertices.doubles() : nullptr, inert.empty() ? nullptr : inert.data()},
+          translation};
+}
+
+ObjectPairView pair_of(const OctreeView& a, const OctreeView& b) {
+  return {a, b, place(a, b), false};
+}
+
+ObjectPairView self_pair_of(const OctreeView& object) {
+  // The translation is the same, and rounding may yet bring close positions together.
+  return {object, object, place(object, object), true};
+}
+
+void Traversal::expand_batch(const ObjectPairView& pair, TraversalStats& stats) {
+  const std::size_t count = std::min(node_batch, stack_.size());
+  std::copy(stack_.end() - static_cast<std::ptrdiff_t>(count), stack_.end(), batch_.begin());
+  stack_.resize(stack_.size() - count);
+  test_lanes(pair, {batch_.data(), count}, masks_.data());
+  stats.node_pairs_visited += count;
+  for (std::size_t k = 0; k < count; ++k) {
+    const NodePair node_pair = batch_[k];
+    const OctreeNode& node_a = pair.a.nodes[node_pair.a];
+    const OctreeNode& node_b = pair.b.nodes[node_pair.b];
+    stats.volumes_tested += static_cast<std::uint64_t>(std::popcount(node_pair.lanes_a)) * node_width;
+    for_each_lane_pair(pair, node_pair, masks_[k], [&](int i, int j) {
+      const bool inner_a = node_a.is_inner(i), inner_b = node_b.is_inner(j);
+      if (inner_a && inner_b) {
+        stack_.push_back({node_a.child(i), node_b.child(j)});
+      } else if (inner_a) {
+        stack_.push_back({node_a.child(i), node_pair.b, 0xff, lane_bit(j)});
+      } else if (inner_b) {
+        stack_.push_back({node_pair.a, node_b.child(j), lane_bit(i), 0xff});
+      } else {
+        leaf_pairs_.push_back({node_a.first_triangle[i], node_a.first_triangle[i + 1],
+                               node_b.first_triangle[j], node_b.first_triangle[j + 1]});
+      }
+    });
+  }
+}
+
+void Traversal::refine(const ObjectPairView& pair, NodePair node_pair, std::vector<NodePair>& finer) {
+  if (pair.a.nodes.empty() || pair.b.nodes.empty()) return;
+  std::uint64_t mask = 0;
+  test_lanes(pair, {&node_pair, 1}, &mask);
+  const OctreeNode& node_a = pair.a.nodes[node_pair.a];
+  const OctreeNode& node_b = pair.b.nodes[node_pair.b];
+  for_each_lane_pair(pair, node_pair, mask, [&](int i, int j) {
+    if (node_a.is_inner(i) && node_b.is_inner(j)) {
+      finer.push_back({node_a.child(i), node_b.child(j)});
+    } else {
+      finer.push_back({node_pair.a, node_pair.b, lane_bit(i), lane_bit(j)});
+    }
+  });
+}
+
+}  // namespace supple

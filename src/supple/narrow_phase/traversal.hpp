@@ -1,0 +1,100 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "narrow_phase/overlap_kernels.hpp"
+#include "octree/object_octree.hpp"
+
+namespace supple {
+
+/// What the narrow phase reads of one object; borrowed for the call.
+struct OctreeView {
+  std::span<const OctreeNode> nodes;
+  const AabbLanes* boxes = nullptr;
+  const SphereLanes* spheres = nullptr;  ///< null: the boxes are the volumes
+  TriangleArrays arrays;
+  Vec3d translation;  ///< added to each position
+};
+OctreeView view_of(const ObjectOctree& octree, const VertexBuffer& vertices,
+                   std::span<const std::uint8_t> inert, Vec3d translation);
+
+/// Two objects, or one with itself (`same_object`, a and b being the same view).
+struct ObjectPairView {
+  OctreeView a, b;
+  RelativePlacement placement;
+  bool same_object = false;
+};
+ObjectPairView pair_of(const OctreeView& a, const OctreeView& b);
+ObjectPairView self_pair_of(const OctreeView& object);
+
+struct TraversalStats {
+  std::uint64_t node_pairs_visited = 0;
+  std::uint64_t volumes_tested = 0;
+  std::uint64_t candidate_pairs = 0;
+};
+
+/// Octree against octree, both descended at once. Holds the scratch memory of one worker, kept between calls.
+///
+/// Work is a stack of node pairs of which a batch is tested at a time: eight lanes against eight, 64 bits a
+/// pair. A pair of inner lanes becomes a pair of nodes, a leaf against an inner lane the leaf's node
+/// restricted to that lane against the other's node, and two leaves a leaf pair.
+class Traversal {
+ public:
+  /// Calls `sink(std::span<const TrianglePair>)` with batches of candidates in octree order's numbers: all
+  /// triangle pairs whose boxes overlap, below `root` (all of them: a default `NodePair`). `on_leaves(leaf
+  /// pairs)` sees the pairs of leaves they come from. Never misses a pair; memory does not grow with their
+  /// number.
+  template <class OnLeaves, class Sink>
+  void find_triangle_pairs(const ObjectPairView& pair, NodePair root, TraversalStats& stats,
+                           OnLeaves&& on_leaves, Sink&& sink) {
+    if (pair.a.nodes.empty() || pair.b.nodes.empty()) return;
+    stack_.assign(1, root);
+    leaf_pairs_.clear();
+    while (!stack_.empty()) {
+      expand_batch(pair, stats);
+      if (leaf_pairs_.size() >= leaf_batch || stack_.empty()) {
+        on_leaves(std::span<const LeafPair>(leaf_pairs_));
+        flush_leaves(pair, stats, sink);
+      }
+    }
+  }
+
+  /// One step of the descent for all of `pairs`, for spreading work over threads: what it appends to `finer`
+  /// finds the same triangle pairs. Pairs that involve a leaf stay as they are, restricted to the two lanes.
+  void refine(const ObjectPairView& pair, NodePair node_pair, std::vector<NodePair>& finer);
+
+ private:
+  static constexpr std::size_t node_batch = 64;
+  static constexpr std::size_t leaf_batch = 256;
+  static constexpr std::size_t candidate_batch = 1024;
+
+  void expand_batch(const ObjectPairView& pair, TraversalStats& stats);
+
+  template <class Sink>
+  void flush_leaves(const ObjectPairView& pair, TraversalStats& stats, Sink&& sink) {
+    constexpr std::size_t step = 16;
+    for (std::size_t i = 0; i < leaf_pairs_.size(); i += step) {
+      const auto part =
+          std::span<const LeafPair>(leaf_pairs_).subspan(i, std::min(step, leaf_pairs_.size() - i));
+      stats.volumes_tested += find_triangle_box_pairs(part, pair.a.arrays, pair.b.arrays, pair.placement,
+                                                      pair.same_object, candidates_);
+      if (candidates_.size() >= candidate_batch || i + step >= leaf_pairs_.size()) {
+        stats.candidate_pairs += candidates_.size();
+        if (!candidates_.empty()) sink(std::span<const TrianglePair>(candidates_));
+        candidates_.clear();
+      }
+    }
+    leaf_pairs_.clear();
+  }
+
+  std::vector<NodePair> stack_;
+  std::array<std::uint64_t, node_batch> masks_;
+  std::array<NodePair, node_batch> batch_;
+  std::vector<LeafPair> leaf_pairs_;
+  std::vector<TrianglePair> candidates_;
+};
+
+}  // namespace supple
