@@ -1,0 +1,145 @@
+#include "contact/meeting_point.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cmath>
+#include <utility>
+
+#include "geometry/exact_predicates.hpp"
+#include "geometry/integer_points.hpp"
+#include "geometry/plane_filter.hpp"
+
+namespace supple {
+namespace {
+
+/// Of the end points of an edge from the plane or line that it crosses, up to a common factor.
+struct Distances {
+  double first, second;
+};
+
+/// Floating point will do when both distances are known to this fraction of their sum: the parameter of the
+/// crossing is then off by twice as much at most.
+constexpr double accepted_error = 0x1p-46;
+
+struct Edge {
+  Vec3d first, second;  // in lexicographic order
+
+  Edge(const TrianglePoints& triangle, int index)
+      : first(triangle[static_cast<std::size_t>(index)]),
+        second(triangle[static_cast<std::size_t>((index + 1) % 3)]) {
+    if (lexicographically_less(second, first)) std::swap(first, second);
+  }
+};
+
+bool less(const Edge& a, const Edge& b) {
+  if (a.first != b.first) return lexicographically_less(a.first, b.first);
+  return lexicographically_less(a.second, b.second);
+}
+
+Distances distances_from_plane(const Edge& edge, const TrianglePoints& triangle) {
+  const auto& [r, s, t] = triangle;
+  const FilteredPlane plane(r, s, t);
+  const Filtered first = plane.side(edge.first), second = plane.side(edge.second);
+  const double sum = std::fabs(first.value) + std::fabs(second.value);
+  if (std::max(first.bound, second.bound) < accepted_error * sum && std::isfinite(sum)) {
+    return {std::fabs(first.value), std::fabs(second.value)};
+  }
+  const Vec3d &p = edge.first, &q = edge.second;
+  const std::array<std::array<double, 5>, 3> coordinates{
+      {{r.x, s.x, t.x, p.x, q.x}, {r.y, s.y, t.y, p.y, q.y}, {r.z, s.z, t.z, p.z, q.z}}};
+  return with_integers(coordinates, [](const auto& i) {
+    const auto u = difference(i[1], i[0]), v = difference(i[2], i[0]);
+    const auto [p_distance, q_distance] = relative_magnitudes(determinant(u, v, difference(i[3], i[0])),
+                                                              determinant(u, v, difference(i[4], i[0])));
+    return Distances{p_distance, q_distance};
+  });
+}
+
+/// Seen along `axis`, of the ends of `edge` from the line of `other`.
+Filtered turn(const Edge& other, const Vec3d& point, int axis) {
+  const int x = (axis + 1) % 3, y = (axis + 2) % 3;
+  const double left = (other.second[x] - other.first[x]) * (point[y] - other.first[y]);
+  const double right = (other.second[y] - other.first[y]) * (point[x] - other.first[x]);
+  return {left - right, area_error * (std::fabs(left) + std::fabs(right)) + underflow_error};
+}
+
+Distances distances_from_line(const Edge& edge, const Edge& other) {
+  Distances best{0, 0};
+  for (int axis = 0; axis < 3; ++axis) {
+    const Filtered first = turn(other, edge.first, axis), second = turn(other, edge.second, axis);
+    const double sum = std::fabs(first.value) + std::fabs(second.value);
+    const bool accurate = std::max(first.bound, second.bound) < accepted_error * sum && std::isfinite(sum);
+    if (accurate && sum > best.first + best.second) best = {std::fabs(first.value), std::fabs(second.value)};
+  }
+  for (int axis = 0; best.first + best.second == 0; ++axis) {
+    assert(axis < 3 && "the edges are not parallel");
+    const int x = (axis + 1) % 3, y = (axis + 2) % 3;
+    const Vec3d &p = edge.first, &q = edge.second, &r = other.first, &s = other.second;
+    const std::array<std::array<double, 4>, 2> coordinates{
+        {{p[x], q[x], r[x], s[x]}, {p[y], q[y], r[y], s[y]}}};
+    best = with_integers(coordinates, [](const auto& i) {
+      const auto u = difference(i[3], i[2]);
+      const auto [p_distance, q_distance] =
+          relative_magnitudes(determinant(u, difference(i[0], i[2])), determinant(u, difference(i[1], i[2])));
+      return Distances{p_distance, q_distance};
+    });
+  }
+  return best;
+}
+
+/// The point of the segment at `part`, 0 to 1/2, of the way.
+double interpolate(double from, double to, double part) {
+  const double extent = to - from;
+  if (std::isfinite(extent)) return from + part * extent;
+  return 4 * (from / 4 + part * (to / 4 - from / 4));
+}
+
+Vec3d crossing(const Edge& edge, const Distances& distances) {
+  const bool nearer_first = distances.first <= distances.second;
+  const Vec3d& from = nearer_first ? edge.first : edge.second;
+  const Vec3d& to = nearer_first ? edge.second : edge.first;
+  const double part = std::min(distances.first, distances.second) / (distances.first + distances.second);
+  return {interpolate(from.x, to.x, part), interpolate(from.y, to.y, part), interpolate(from.z, to.z, part)};
+}
+
+/// The exact point is in the box of `points`, so that moving a rounded one there brings it closer.
+template <std::size_t count>
+Vec3d clamp_to_box(Vec3d point, const std::array<Vec3d, count>& points) {
+  for (int axis = 0; axis < 3; ++axis) {
+    double low = points[0][axis], high = low;
+    for (const Vec3d& other : points) {
+      low = std::min(low, other[axis]);
+      high = std::max(high, other[axis]);
+    }
+    point[axis] = std::clamp(point[axis], low, high);
+  }
+  return point;
+}
+
+Vec3d edge_edge_point(Edge edge, Edge other) {
+  if (less(other, edge)) std::swap(edge, other);
+  const Vec3d point = crossing(edge, distances_from_line(edge, other));
+  return clamp_to_box(clamp_to_box(point, std::array{edge.first, edge.second}),
+                      std::array{other.first, other.second});
+}
+
+Vec3d edge_face_point(const Edge& edge, TrianglePoints triangle) {
+  std::sort(triangle.begin(), triangle.end(), lexicographically_less);
+  const Vec3d point = crossing(edge, distances_from_plane(edge, triangle));
+  return clamp_to_box(clamp_to_box(point, std::array{edge.first, edge.second}), triangle);
+}
+
+}  // namespace
+
+Vec3d meeting_point(const TrianglePoints& a, Feature on_a, const TrianglePoints& b, Feature on_b) {
+  if (on_a.kind == FeatureKind::vertex) return a[on_a.index];
+  if (on_b.kind == FeatureKind::vertex) return b[on_b.index];
+  if (on_a.kind == FeatureKind::edge && on_b.kind == FeatureKind::edge) {
+    return edge_edge_point(Edge(a, on_a.index), Edge(b, on_b.index));
+  }
+  return on_a.kind == FeatureKind::edge ? edge_face_point(Edge(a, on_a.index), b)
+                                        : edge_face_point(Edge(b, on_b.index), a);
+}
+
+}  // namespace supple

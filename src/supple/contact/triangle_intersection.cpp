@@ -1,0 +1,414 @@
+#include "contact/triangle_intersection.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <optional>
+
+#include "contact/meeting_point.hpp"
+#include "geometry/exact_predicates.hpp"
+#include "geometry/plane_filter.hpp"
+
+namespace supple {
+namespace {
+
+using Signs = std::array<int, 3>;
+
+constexpr Feature vertex(int corner) {
+  return {FeatureKind::vertex, static_cast<std::uint8_t>(corner)};
+}
+constexpr Feature edge_from(int corner) {
+  return {FeatureKind::edge, static_cast<std::uint8_t>(corner)};
+}
+constexpr Feature face{};
+constexpr Feature edge_between(int i, int j) {
+  return edge_from((i + 1) % 3 == j ? i : j);
+}
+
+const Vec3d& corner(const TrianglePoints& triangle, int i) {
+  return triangle[static_cast<std::size_t>(i)];
+}
+
+/// Where a feature of a and one of b meet in an extreme point of the intersection.
+struct Meeting {
+  Feature on_a, on_b;
+
+  constexpr auto operator<=>(const Meeting&) const = default;
+};
+
+/// At most six: each extreme point of a polygon ends two of its sides, each side lies on one of six edges.
+struct Meetings {
+  std::array<Meeting, 6> items;
+  int count = 0;
+
+  void add(Feature on_a, Feature on_b) {
+    assert(count < 6);
+    items[static_cast<std::size_t>(count++)] = {on_a, on_b};
+  }
+};
+
+bool all(const Signs& signs, int sign) {
+  return signs[0] == sign && signs[1] == sign && signs[2] == sign;
+}
+bool separated(const Signs& signs) {
+  return all(signs, 1) || all(signs, -1);
+}
+
+Signs sides_of_plane(const TrianglePoints& plane, const TrianglePoints& triangle, bool& used_exact) {
+  Signs signs;
+  const FilteredSides filtered(FilteredPlane(plane[0], plane[1], plane[2]), triangle);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Filtered side{filtered.value[i], filtered.bound};
+    signs[i] = side.certain() ? side.sign() : orient3d(plane[0], plane[1], plane[2], triangle[i], used_exact);
+  }
+  return signs;
+}
+
+// Triangles in two different planes
+//
+// Each triangle meets the line that the planes share in a chord, or one is disjoint from it. The apex is a
+// corner alone on its side of the other plane (or alone in it), so that the lines of both edges at the apex
+// cross that plane, and the chord runs from one edge to the other. Whether it does so along d = n_a × n_b or
+// against it follows from the side of the apex: with the chord's ends apex + s (p - apex) and
+// apex + t (q - apex), their difference times the height of the apex over the other plane is a multiple of
+// n_a × n_b of known sign.
+
+struct Chord {
+  int apex, start, end;  // corners: the chord runs along d from edge apex-start to edge apex-end
+  int apex_side;
+  Feature on_start, on_end, on_inside;
+};
+
+bool alone(const Signs& signs, std::size_t i) {
+  const int j = signs[(i + 1) % 3], k = signs[(i + 2) % 3];
+  return signs[i] > 0 ? j <= 0 && k <= 0 : signs[i] < 0 ? j >= 0 && k >= 0 : j * k > 0;
+}
+
+Chord chord_in_plane(const Signs& signs, bool is_b) {
+  const std::size_t apex = alone(signs, 0) ? 0 : alone(signs, 1) ? 1 : 2;
+  const std::size_t next = (apex + 1) % 3, last = (apex + 2) % 3;
+  const bool above = signs[apex] != 0 ? signs[apex] > 0 : signs[next] < 0;
+  const bool forward = above == is_b;
+  Chord chord;
+  chord.apex = static_cast<int>(apex);
+  chord.start = static_cast<int>(forward ? next : last);
+  chord.end = static_cast<int>(forward ? last : next);
+  chord.apex_side = above ? 1 : -1;
+  const auto on_edge_to = [&](int other) {
+    if (signs[apex] == 0) return vertex(chord.apex);
+    return signs[static_cast<std::size_t>(other)] == 0 ? vertex(other) : edge_between(chord.apex, other);
+  };
+  chord.on_start = on_edge_to(chord.start);
+  chord.on_end = on_edge_to(chord.end);
+  chord.on_inside = signs[next] == 0 && signs[last] == 0 ? edge_between(chord.start, chord.end) : face;
+  return chord;
+}
+
+/// Two chords on one line.
+class Chords {
+ public:
+  Chords(const TrianglePoints& a, const Signs& sides_of_a, const TrianglePoints& b, const Signs& sides_of_b,
+         bool& used_exact)
+      : a_(a),
+        b_(b),
+        chord_a_(chord_in_plane(sides_of_a, false)),
+        chord_b_(chord_in_plane(sides_of_b, true)),
+        used_exact_(used_exact) {
+    b_start_to_a_end_ = compare(chord_a_.end, chord_b_.start);
+    if (b_start_to_a_end_ <= 0) b_end_to_a_start_ = compare(chord_a_.start, chord_b_.end);
+  }
+
+  bool meet() const { return b_start_to_a_end_ <= 0 && b_end_to_a_start_ >= 0; }
+
+  void find_meetings(Meetings& meetings) const {
+    const Meeting first = start(), last = end();
+    meetings.add(first.on_a, first.on_b);
+    if (last != first) meetings.add(last.on_a, last.on_b);
+  }
+
+ private:
+  /// Where along d the point of b's edge from its apex to `corner_b` lies, compared to that of a's edge. The
+  /// volume of the four points is (p_a - apex_a) × (y - x) · (p_b - apex_b) for the points x and y of the two
+  /// edges on the line; with y - x = c d that is c ((p_a - apex_a) · n_b) ((p_b - apex_b) · n_a), whose last
+  /// two factors have the sign opposite to the side of the apex.
+  int compare(int corner_a, int corner_b) const {
+    return chord_a_.apex_side * chord_b_.apex_side *
+           orient3d(corner(a_, chord_a_.apex), corner(a_, corner_a), corner(b_, chord_b_.apex),
+                    corner(b_, corner_b), used_exact_);
+  }
+
+  Meeting start() const {
+    const int order = compare(chord_a_.start, chord_b_.start);
+    if (order == 0) return {chord_a_.on_start, chord_b_.on_start};
+    if (order > 0) return {b_start_to_a_end_ == 0 ? chord_a_.on_end : chord_a_.on_inside, chord_b_.on_start};
+    return {chord_a_.on_start, b_end_to_a_start_ == 0 ? chord_b_.on_end : chord_b_.on_inside};
+  }
+  Meeting end() const {
+    const int order = compare(chord_a_.end, chord_b_.end);
+    if (order == 0) return {chord_a_.on_end, chord_b_.on_end};
+    if (order < 0) return {b_end_to_a_start_ == 0 ? chord_a_.on_start : chord_a_.on_inside, chord_b_.on_end};
+    return {chord_a_.on_end, b_start_to_a_end_ == 0 ? chord_b_.on_start : chord_b_.on_inside};
+  }
+
+  const TrianglePoints &a_, &b_;
+  Chord chord_a_, chord_b_;
+  bool& used_exact_;
+  int b_start_to_a_end_ = 0, b_end_to_a_start_ = 0;
+};
+
+// Everything else: triangles in one plane, and triangles without area
+
+/// The smallest simplex with the same points: a triangle, a segment or a point.
+struct Simplex {
+  const TrianglePoints* points;
+  std::array<int, 3> corners;
+  int size;
+
+  const Vec3d& operator[](int i) const { return corner(*points, corners[static_cast<std::size_t>(i)]); }
+  Feature vertex_feature(int i) const { return vertex(corners[static_cast<std::size_t>(i)]); }
+  int edge_count() const { return size == 3 ? 3 : size - 1; }
+  /// Of the edge from the simplex's vertex i to the next one.
+  Feature edge_feature(int i) const {
+    return edge_between(corners[static_cast<std::size_t>(i)],
+                        corners[static_cast<std::size_t>((i + 1) % size)]);
+  }
+  Simplex only(int i) const { return {points, {corners[static_cast<std::size_t>(i)], 0, 0}, 1}; }
+};
+
+Simplex reduce(const TrianglePoints& triangle, bool& used_exact) {
+  if (projection_axis(triangle[0], triangle[1], triangle[2], used_exact) >= 0) {
+    return {&triangle, {0, 1, 2}, 3};
+  }
+  int lowest = 0, highest = 0;
+  for (int i = 1; i < 3; ++i) {
+    if (lexicographically_less(corner(triangle, i), corner(triangle, lowest))) lowest = i;
+    if (lexicographically_less(corner(triangle, highest), corner(triangle, i))) highest = i;
+  }
+  return {&triangle, {lowest, highest, 0}, lowest == highest ? 1 : 2};
+}
+
+/// The part of a segment on which a point of its line lies.
+std::optional<Feature> locate_on_segment(const Vec3d& point, const Simplex& segment) {
+  if (point == segment[0]) return segment.vertex_feature(0);
+  if (point == segment[1]) return segment.vertex_feature(1);
+  const bool inside = lexicographically_less(segment[0], point) == lexicographically_less(point, segment[1]);
+  return inside ? std::optional(segment.edge_feature(0)) : std::nullopt;
+}
+
+/// The part of a triangle that the signs of a point against its three edges name; they are not all zero.
+std::optional<Feature> locate_by_signs(const Signs& signs) {
+  const bool positive = signs[0] > 0 || signs[1] > 0 || signs[2] > 0;
+  const bool negative = signs[0] < 0 || signs[1] < 0 || signs[2] < 0;
+  if (positive && negative) return std::nullopt;
+  for (int i = 0; i < 3; ++i) {
+    if (signs[static_cast<std::size_t>(i)] != 0) continue;
+    if (signs[static_cast<std::size_t>((i + 1) % 3)] == 0) return vertex((i + 1) % 3);
+    if (signs[static_cast<std::size_t>((i + 2) % 3)] == 0) return vertex(i);
+    return edge_from(i);
+  }
+  return face;
+}
+
+/// The part of the simplex on which a point of its plane lies. Along `axis`, the points of that plane are
+/// seen apart, unless point and simplex lie on one line.
+std::optional<Feature> locate(const Vec3d& point, const Simplex& simplex, int axis, bool& used_exact) {
+  if (simplex.size == 1) {
+    return point == simplex[0] ? std::optional(simplex.vertex_feature(0)) : std::nullopt;
+  }
+  if (simplex.size == 2) {
+    if (orient2d(simplex[0], simplex[1], point, axis, used_exact) != 0) return std::nullopt;
+    return locate_on_segment(point, simplex);
+  }
+  Signs signs;
+  for (int i = 0; i < 3; ++i) {
+    signs[static_cast<std::size_t>(i)] = orient2d(simplex[i], simplex[(i + 1) % 3], point, axis, used_exact);
+  }
+  return locate_by_signs(signs);
+}
+
+bool cross_inside(const Simplex& a, int edge_a, const Simplex& b, int edge_b, int axis, bool& used_exact) {
+  const Vec3d &p = a[edge_a], &q = a[(edge_a + 1) % a.size];
+  const Vec3d &r = b[edge_b], &s = b[(edge_b + 1) % b.size];
+  return orient2d(p, q, r, axis, used_exact) * orient2d(p, q, s, axis, used_exact) < 0 &&
+         orient2d(r, s, p, axis, used_exact) * orient2d(r, s, q, axis, used_exact) < 0;
+}
+
+/// Both in one plane, whose points `axis` sees apart. An extreme point of the intersection is a vertex of one
+/// of the two, or two edges cross there.
+void meet_in_plane(const Simplex& a, const Simplex& b, int axis, Meetings& meetings, bool& used_exact) {
+  for (int i = 0; i < a.size; ++i) {
+    if (const auto on_b = locate(a[i], b, axis, used_exact)) meetings.add(a.vertex_feature(i), *on_b);
+  }
+  for (int i = 0; i < b.size; ++i) {
+    const auto on_a = locate(b[i], a, axis, used_exact);
+    if (on_a && on_a->kind != FeatureKind::vertex) meetings.add(*on_a, b.vertex_feature(i));
+  }
+  for (int i = 0; i < a.edge_count(); ++i) {
+    for (int j = 0; j < b.edge_count(); ++j) {
+      if (cross_inside(a, i, b, j, axis, used_exact)) meetings.add(a.edge_feature(i), b.edge_feature(j));
+    }
+  }
+}
+
+/// A segment whose ends lie on different sides of a triangle's plane.
+std::optional<Feature> pierced_feature(const Simplex& segment, const Simplex& triangle, bool& used_exact) {
+  Signs signs;
+  for (int i = 0; i < 3; ++i) {
+    signs[static_cast<std::size_t>(i)] =
+        orient3d(segment[0], segment[1], triangle[i], triangle[(i + 1) % 3], used_exact);
+  }
+  return locate_by_signs(signs);
+}
+
+void meet_triangle(const Simplex& triangle, const Simplex& other, Meetings& meetings, bool& used_exact) {
+  const auto& [p, q, r] = *triangle.points;
+  const int axis = projection_axis(p, q, r, used_exact);
+  const int first = orient3d(p, q, r, other[0], used_exact);
+  const int second = other.size == 2 ? orient3d(p, q, r, other[1], used_exact) : first;
+  if (first == 0 && second == 0) return meet_in_plane(triangle, other, axis, meetings, used_exact);
+  if (first * second > 0) return;
+  if (first * second == 0) {
+    return meet_in_plane(triangle, other.only(first == 0 ? 0 : 1), axis, meetings, used_exact);
+  }
+  if (const auto on_triangle = pierced_feature(other, triangle, used_exact)) {
+    meetings.add(*on_triangle, other.edge_feature(0));
+  }
+}
+
+void meet_segments_or_points(const Simplex& a, const Simplex& b, Meetings& meetings, bool& used_exact) {
+  int axis = -1;
+  if (a.size == 2 && b.size == 2) {
+    if (orient3d(a[0], a[1], b[0], b[1], used_exact) != 0) return;
+    axis = projection_axis(a[0], a[1], b[0], used_exact);
+    if (axis < 0) axis = projection_axis(a[0], a[1], b[1], used_exact);
+  } else if (a.size == 2) {
+    axis = projection_axis(a[0], a[1], b[0], used_exact);
+  } else if (b.size == 2) {
+    axis = projection_axis(b[0], b[1], a[0], used_exact);
+  }
+  // Points of one line need no projection: any axis will do.
+  meet_in_plane(a, b, std::max(axis, 0), meetings, used_exact);
+}
+
+void swap_sides(Meetings& meetings) {
+  for (Meeting& meeting : meetings.items) std::swap(meeting.on_a, meeting.on_b);
+}
+
+/// Triangles of which one has no area or both lie in one plane.
+void find_special_meetings(const TrianglePoints& a, const TrianglePoints& b, Meetings& meetings,
+                           bool& used_exact) {
+  const Simplex simplex_a = reduce(a, used_exact), simplex_b = reduce(b, used_exact);
+  if (simplex_a.size == 3 && simplex_b.size == 3) {
+    const int axis = projection_axis(a[0], a[1], a[2], used_exact);
+    meet_in_plane(simplex_a, simplex_b, axis, meetings, used_exact);
+  } else if (simplex_a.size == 3) {
+    meet_triangle(simplex_a, simplex_b, meetings, used_exact);
+  } else if (simplex_b.size == 3) {
+    meet_triangle(simplex_b, simplex_a, meetings, used_exact);
+    swap_sides(meetings);
+  } else {
+    meet_segments_or_points(simplex_a, simplex_b, meetings, used_exact);
+  }
+}
+
+bool all_finite(const TrianglePoints& triangle) {
+  for (const Vec3d& point : triangle) {
+    if (!std::isfinite(point.x) || !std::isfinite(point.y) || !std::isfinite(point.z)) return false;
+  }
+  return true;
+}
+
+/// Which corners lie where: all of one triangle in the plane of the other means that they share a plane or
+/// that the other has no area.
+enum class Placement : std::uint8_t { apart, crossing, special };
+
+struct Sides {
+  Signs of_a, of_b;  // of a's corners against the plane of b, and of b's against that of a
+};
+
+Placement classify(const TrianglePoints& a, const TrianglePoints& b, Sides& sides, bool& used_exact) {
+  if (!all_finite(a) || !all_finite(b)) return Placement::apart;
+  sides.of_a = sides_of_plane(b, a, used_exact);
+  if (separated(sides.of_a)) return Placement::apart;
+  sides.of_b = sides_of_plane(a, b, used_exact);
+  if (separated(sides.of_b)) return Placement::apart;
+  return all(sides.of_a, 0) || all(sides.of_b, 0) ? Placement::special : Placement::crossing;
+}
+
+/// By the closed edges of a and of b on which a point lies, one bit each.
+unsigned closed_edges(const Meeting& meeting) {
+  const auto edges = [](Feature feature) -> unsigned {
+    if (feature.kind == FeatureKind::face) return 0;
+    if (feature.kind == FeatureKind::edge) return 1u << feature.index;
+    return 1u << feature.index | 1u << (feature.index + 2) % 3;
+  };
+  return edges(meeting.on_a) | edges(meeting.on_b) << 3;
+}
+
+/// Each side of a polygon lies on an edge of a or of b, so neighbours are the points that have one in common;
+/// an edge holds no third point, for it would be between the two and not extreme.
+void order_canonically(Meetings& meetings) {
+  const auto first = meetings.items.begin(), last = first + meetings.count;
+  for (auto at = first; at != last; ++at) std::rotate(std::upper_bound(first, at, *at), at, at + 1);
+  if (meetings.count < 4) return;
+  for (auto at = first; at + 1 < last; ++at) {
+    const auto next = std::find_if(
+        at + 1, last, [&](const Meeting& other) { return (closed_edges(*at) & closed_edges(other)) != 0; });
+    assert(next != last);
+    std::rotate(at + 1, next, next + 1);
+  }
+}
+
+bool certainly_separated(const TrianglePoints& a, const TrianglePoints& b) {
+  return FilteredSides(FilteredPlane(b[0], b[1], b[2]), a).separated() ||
+         FilteredSides(FilteredPlane(a[0], a[1], a[2]), b).separated();
+}
+
+}  // namespace
+
+bool triangles_intersect_undecided(const TrianglePoints& a, const TrianglePoints& b, bool& used_exact) {
+  Sides sides;
+  const Placement placement = classify(a, b, sides, used_exact);
+  if (placement == Placement::apart) return false;
+  if (placement == Placement::crossing) return Chords(a, sides.of_a, b, sides.of_b, used_exact).meet();
+  Meetings meetings;
+  find_special_meetings(a, b, meetings, used_exact);
+  return meetings.count > 0;
+}
+
+TriangleIntersection intersect_triangles_undecided(const TrianglePoints& a, const TrianglePoints& b) {
+  TriangleIntersection result;
+  Sides sides;
+  const Placement placement = classify(a, b, sides, result.used_exact_fallback);
+  if (placement == Placement::apart) return result;
+  Meetings meetings;
+  if (placement == Placement::crossing) {
+    const Chords chords(a, sides.of_a, b, sides.of_b, result.used_exact_fallback);
+    if (chords.meet()) chords.find_meetings(meetings);
+  } else {
+    find_special_meetings(a, b, meetings, result.used_exact_fallback);
+  }
+  order_canonically(meetings);
+  result.intersects = meetings.count > 0;
+  result.kind = meetings.count > 2    ? IntersectionKind::polygon
+                : meetings.count == 2 ? IntersectionKind::segment
+                                      : IntersectionKind::point;
+  result.point_count = static_cast<std::uint8_t>(meetings.count);
+  for (std::size_t i = 0; i < result.point_count; ++i) {
+    const auto [on_a, on_b] = meetings.items[i];
+    result.points[i] = {meeting_point(a, on_a, b, on_b), on_a, on_b};
+  }
+  return result;
+}
+
+bool triangles_intersect(const TrianglePoints& a, const TrianglePoints& b) {
+  bool used_exact = false;
+  return !certainly_separated(a, b) && triangles_intersect_undecided(a, b, used_exact);
+}
+
+TriangleIntersection intersect_triangles(const TrianglePoints& a, const TrianglePoints& b) {
+  if (certainly_separated(a, b)) return {};
+  return intersect_triangles_undecided(a, b);
+}
+
+}  // namespace supple

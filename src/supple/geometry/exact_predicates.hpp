@@ -1,0 +1,23 @@
+#pragma once
+
+#include "supple/types.hpp"
+
+namespace supple {
+
+// Signs of determinants, exact for all finite coordinates: floating point where an error bound proves the
+// sign, integers elsewhere. `used_exact` is set when integers were needed, and otherwise left alone.
+
+/// Sign of (b - a) × (c - a) · (d - a): 1 when d lies on the side of the plane from which a, b, c go
+/// counter-clockwise, 0 when the four points lie in one plane.
+int orient3d(const Vec3d& a, const Vec3d& b, const Vec3d& c, const Vec3d& d, bool& used_exact);
+
+/// Sign of the component along `axis` of (b - a) × (c - a): the turn of a, b, c seen along that axis.
+int orient2d(const Vec3d& a, const Vec3d& b, const Vec3d& c, int axis, bool& used_exact);
+
+/// An axis along which the points do not project onto one line; -1 when they lie on one line in space.
+int projection_axis(const Vec3d& a, const Vec3d& b, const Vec3d& c, bool& used_exact);
+
+/// By x, then y, then z; along a line this is the order of its points.
+bool lexicographically_less(const Vec3d& a, const Vec3d& b);
+
+}  // namespace supple

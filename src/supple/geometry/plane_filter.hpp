@@ -1,0 +1,91 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "supple/triangle_intersection.hpp"
+#include "supple/types.hpp"
+
+namespace supple {
+
+// Error bounds of the floating-point filters, e = 2^-53 being the rounding of one operation.
+//
+// The volume n·w of differences u, v, w with n = u × v is a sum of six products of three differences. Each
+// takes part in 8 roundings (3 differences, product, difference of products, product, 2 sums), so the
+// computed value is off by at most ((1 + e)^8 - 1) times the sum of the products' magnitudes. That sum,
+// computed as m·|w| with m_x = |u_y v_z| + |u_z v_y| and so on, is itself too small by a factor of at most (1
+// - e)^8. Together less than 9 e; 10 e also covers the rounding of the bound.
+//
+// Underflow: sums and differences underflow exactly, a product is off by at most 2^-1075 more. Two of those
+// in n_x are multiplied by |w_x|, one more stands alone: at most 2^-1074 (|w_x| + |w_y| + |w_z|) (1 + 8 e)
+// + 3 · 2^-1075 (1 + 2 e) in all, and 2^-1000 in place of both factors is far above that.
+//
+// Overflow: |n| <= m and |n·w| <= m·|w| hold for the rounded numbers, partial sum by partial sum, because
+// rounding is monotone. So an overflow anywhere makes the bound infinite or NaN, and no comparison
+// "|value| > bound" is then true. The same goes for coordinates that are infinite.
+inline constexpr double volume_error = 10 * 0x1p-53;
+/// Likewise for u_x v_y - u_y v_x: 4 roundings.
+inline constexpr double area_error = 6 * 0x1p-53;
+inline constexpr double underflow_error = 0x1p-1000;
+
+inline Vec3d absolute(const Vec3d& v) {
+  return {std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)};
+}
+inline double dot(const Vec3d& a, const Vec3d& b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
+/// A value, and what it may be off by: when |value| > bound, its sign is the exact one.
+struct Filtered {
+  double value, bound;
+
+  bool certain() const { return std::fabs(value) > bound; }
+  int sign() const { return value > 0 ? 1 : -1; }
+};
+
+/// The plane through three points, rounded, with the sums that bound the rounding errors.
+struct FilteredPlane {
+  Vec3d origin, normal, magnitude;
+
+  FilteredPlane(const Vec3d& a, const Vec3d& b, const Vec3d& c) : origin(a) {
+    const Vec3d u = b - a, v = c - a;
+    const Vec3d first{u.y * v.z, u.z * v.x, u.x * v.y}, second{u.z * v.y, u.x * v.z, u.y * v.x};
+    normal = first - second;
+    magnitude = absolute(first) + absolute(second);
+  }
+
+  /// The error bound for points that differ from the origin by at most `reach` along each axis.
+  double bound(const Vec3d& reach) const {
+    return volume_error * dot(magnitude, reach) + underflow_error * (reach.x + reach.y + reach.z) +
+           underflow_error;
+  }
+  /// Six times the volume of the tetrahedron of the three points and `point`.
+  Filtered side(const Vec3d& point) const {
+    const Vec3d w = point - origin;
+    return {dot(normal, w), bound(absolute(w))};
+  }
+};
+
+/// The sides of the three corners of a triangle, with one bound for all of them.
+struct FilteredSides {
+  std::array<double, 3> value;
+  double bound;
+
+  FilteredSides(const FilteredPlane& plane, const TrianglePoints& triangle) {
+    const Vec3d w0 = triangle[0] - plane.origin, w1 = triangle[1] - plane.origin,
+                w2 = triangle[2] - plane.origin;
+    value = {dot(plane.normal, w0), dot(plane.normal, w1), dot(plane.normal, w2)};
+    bound = plane.bound({std::max({std::fabs(w0.x), std::fabs(w1.x), std::fabs(w2.x)}),
+                         std::max({std::fabs(w0.y), std::fabs(w1.y), std::fabs(w2.y)}),
+                         std::max({std::fabs(w0.z), std::fabs(w1.z), std::fabs(w2.z)})});
+  }
+
+  /// All three strictly on one side of the plane, without doubt.
+  bool separated() const {
+    return std::min({value[0], value[1], value[2]}) > bound ||
+           std::max({value[0], value[1], value[2]}) < -bound;
+  }
+};
+
+}  // namespace supple
