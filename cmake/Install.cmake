@@ -1,11 +1,19 @@
 include(CMakePackageConfigHelpers)
+set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/supple)
 
+# Each library is a component of find_package(supple), with an export of its own.
 install(TARGETS supple EXPORT suppleTargets
   ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
+install(EXPORT suppleTargets NAMESPACE supple:: DESTINATION ${package_dir})
+
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/supple DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
-install(EXPORT suppleTargets NAMESPACE supple:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/supple)
 configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/suppleConfig.cmake.in
-  ${PROJECT_BINARY_DIR}/suppleConfig.cmake INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/supple)
+  ${PROJECT_BINARY_DIR}/suppleConfig.cmake INSTALL_DESTINATION ${package_dir})
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/suppleConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/suppleConfig.cmake ${PROJECT_BINARY_DIR}/suppleConfigVersion.cmake
-  DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/supple)
+  DESTINATION ${package_dir})
+
+if(TARGET supple_cli)
+  install(TARGETS supple_cli RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+  install(FILES ${PROJECT_SOURCE_DIR}/docs/supple.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
+endif()

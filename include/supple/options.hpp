@@ -56,7 +56,7 @@ struct SceneOctreeOptions {
 /// Of one object, given when it is added.
 struct ObjectOptions {
   /// Shown in messages and results; the mesh's name when empty.
-  std::string name;
+  std::string name{};
   /// Also test the object against itself; triangles that share a vertex id are not a contact.
   bool self_collision = false;
   /// Never moves: it is not tested against other static objects, and moving it is an error.
@@ -64,7 +64,7 @@ struct ObjectOptions {
   /// Two objects are tested when each one's `group` has a bit in common with the other's `mask`.
   std::uint32_t group = 1;
   std::uint32_t mask = ~std::uint32_t{0};
-  ObjectOctreeOptions octree;
+  ObjectOctreeOptions octree{};
 };
 
 /// Of a scene, fixed at its construction.
@@ -72,7 +72,7 @@ struct SceneOptions {
   BoundingVolume bounding_volume = BoundingVolume::aabb;
   SphereFit sphere_fit = SphereFit::vertices;
   BroadPhaseMethod broad_phase = BroadPhaseMethod::octree;
-  SceneOctreeOptions scene_octree;
+  SceneOctreeOptions scene_octree{};
   ContactMode contacts = ContactMode::intersection;
   /// Also give the points of each contact (`DetectResult::contact_points`). Off saves a little time.
   bool contact_points = true;

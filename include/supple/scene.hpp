@@ -17,7 +17,7 @@ namespace supple {
 /// fl(R p) + t, each row of R p summed from left to right in double without fused multiply-add.
 struct RigidTransform {
   std::array<double, 9> rotation{1, 0, 0, 0, 1, 0, 0, 0, 1};
-  Vec3d translation;
+  Vec3d translation{};
 };
 
 /// Many deforming objects, and every contact between them.

@@ -1,17 +1,10 @@
 #pragma once
 
-#include <algorithm>
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
-
-#if !defined(SUPPLE_SERIAL)
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-#include <tbb/parallel_sort.h>
-#include <tbb/task_arena.h>
-#endif
+#include <type_traits>
 
 namespace supple {
 
@@ -21,6 +14,9 @@ class Parallel {
  public:
   /// `threads` = 0 takes one for each core.
   explicit Parallel(std::uint32_t threads);
+  ~Parallel();
+  Parallel(Parallel&&) noexcept;
+  Parallel& operator=(Parallel&&) noexcept;
 
   /// Workers that may run at once; `worker` below is less than this.
   std::uint32_t worker_count() const { return worker_count_; }
@@ -30,20 +26,15 @@ class Parallel {
   template <class Body>
   void for_ranges(std::size_t count, std::size_t grain, Body&& body) const {
     if (count == 0) return;
-#if !defined(SUPPLE_SERIAL)
-    if (worker_count_ > 1 && count > grain) {
-      arena_->execute([&] {
-        tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, grain), [&](const auto& range) {
-          body(range.begin(), range.end(),
-               static_cast<std::uint32_t>(tbb::this_task_arena::current_thread_index()));
-        });
-      });
+    if (worker_count_ == 1 || count <= grain) {
+      body(std::size_t{0}, count, std::uint32_t{0});
       return;
     }
-#else
-    (void)grain;
-#endif
-    body(std::size_t{0}, count, std::uint32_t{0});
+    using Callable = std::remove_reference_t<Body>;
+    run(count, grain, const_cast<void*>(static_cast<const void*>(&body)),
+        [](void* callable, std::size_t begin, std::size_t end, std::uint32_t worker) {
+          (*static_cast<Callable*>(callable))(begin, end, worker);
+        });
   }
 
   /// True when `body(begin, end)` is true for every range; all ranges are run.
@@ -56,23 +47,13 @@ class Parallel {
     return all.load();
   }
 
-  /// Sorts in place. No two items may be equivalent, so that the result does not depend on the order of work.
-  template <class Iterator, class Less>
-  void sort(Iterator first, Iterator last, const Less& less) const {
-#if !defined(SUPPLE_SERIAL)
-    if (worker_count_ > 1 && last - first > 4096) {
-      arena_->execute([&] { tbb::parallel_sort(first, last, less); });
-      return;
-    }
-#endif
-    std::sort(first, last, less);
-  }
-
  private:
+  using RangeFunction = void (*)(void* callable, std::size_t begin, std::size_t end, std::uint32_t worker);
+  void run(std::size_t count, std::size_t grain, void* callable, RangeFunction function) const;
+
+  struct Threads;
   std::uint32_t worker_count_ = 1;
-#if !defined(SUPPLE_SERIAL)
-  std::unique_ptr<tbb::task_arena> arena_;
-#endif
+  std::unique_ptr<Threads> threads_;
 };
 
 }  // namespace supple

@@ -1,0 +1,27 @@
+// Which objects begin to touch, and which part: two spheres pass through each other and react only to
+// changes.
+#include <cstdio>
+#include <string>
+
+#include "supple/supple.hpp"
+
+int main() {
+  supple::Scene scene;
+  supple::TriangleMesh ball = supple::make_icosphere(8);
+  ball.name = "still";
+  scene.add(ball, {.is_static = true});
+  ball.name = "passing";
+  const supple::ObjectId passing = scene.add(ball);
+
+  for (int frame = 0; frame <= 12; ++frame) {
+    // Without deformation, moving is O(1): no vertex is read.
+    scene.set_transform(passing, {.translation = {-3.0 + 0.5 * frame, 0.25, 0.125}});
+    const supple::PairEvents& events = scene.detect().contact_events;
+    for (const supple::ObjectPair& pair : events.begin)
+      std::printf("frame %d: %s and %s begin to touch\n", frame, scene.name(pair.a).c_str(),
+                  scene.name(pair.b).c_str());
+    for (const supple::ObjectPair& pair : events.end)
+      std::printf("frame %d: %s and %s part\n", frame, scene.name(pair.a).c_str(),
+                  scene.name(pair.b).c_str());
+  }
+}

@@ -1,0 +1,22 @@
+# LIBRARY is a build folder to install from; without it PROJECT is built with shared libraries first.
+function(run)
+  execute_process(COMMAND ${ARGN} COMMAND_ECHO STDOUT COMMAND_ERROR_IS_FATAL ANY)
+endfunction()
+
+file(REMOVE_RECURSE ${WORK}/prefix ${WORK}/consumer)
+if(NOT LIBRARY)
+  set(LIBRARY ${WORK}/library)
+  # What is tested is the linking, so the quickest build will do.
+  run(${CMAKE_COMMAND} -S ${PROJECT} -B ${LIBRARY} -G ${GENERATOR} -DCMAKE_CXX_COMPILER=${CXX_COMPILER}
+    -DCMAKE_BUILD_TYPE= -DCMAKE_CXX_FLAGS=-O0 -DBUILD_SHARED_LIBS=ON -DSUPPLE_BUILD_TOOLS=OFF
+    -DSUPPLE_BUILD_TESTS=OFF -DSUPPLE_BUILD_EXAMPLES=OFF)
+  run(${CMAKE_COMMAND} --build ${LIBRARY})
+endif()
+run(${CMAKE_COMMAND} --install ${LIBRARY} --prefix ${WORK}/prefix)
+run(${CMAKE_COMMAND} -S ${SOURCE} -B ${WORK}/consumer -G ${GENERATOR} -DCMAKE_CXX_COMPILER=${CXX_COMPILER}
+  -DCMAKE_PREFIX_PATH=${WORK}/prefix)
+run(${CMAKE_COMMAND} --build ${WORK}/consumer)
+execute_process(COMMAND ${WORK}/consumer/consumer OUTPUT_VARIABLE output COMMAND_ERROR_IS_FATAL ANY)
+if(NOT output MATCHES "^supple ${VERSION}: [1-9][0-9]* contacts\n$")
+  message(FATAL_ERROR "the consumer printed: ${output}")
+endif()

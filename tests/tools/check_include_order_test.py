@@ -1,0 +1,80 @@
+"""The include-order check passes on this repository, and fires on each made-up violation."""
+
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+CHECK = ROOT / "tools/check_include_order.py"
+
+
+def run_on(files):
+    """Runs the check on a tree of the given files; returns (exit code, standard error)."""
+    with tempfile.TemporaryDirectory() as folder:
+        for name, text in files.items():
+            path = pathlib.Path(folder, name)
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_text(text)
+        done = subprocess.run([sys.executable, CHECK, folder], capture_output=True, text=True)
+        return done.returncode, done.stderr
+
+
+GOOD = {
+    "include/supple/types.hpp": "#include <cstdint>\n",
+    "include/supple/scene.hpp": '#include "supple/types.hpp"\n',
+    "src/supple/core/parallel.hpp": "#include <tbb/parallel_for.h>\n",
+    "src/supple/geometry/aabb.hpp": '#include "core/parallel.hpp"\n#include "supple/types.hpp"\n',
+    "src/supple/octree/build.cpp": '#include "geometry/aabb.hpp"\n',
+    "cli/options.hpp": "",
+    "cli/main.cpp": '#include <CLI/CLI.hpp>\n#include "options.hpp"\n#include "supple/scene.hpp"\n',
+}
+
+
+class CheckIncludeOrder(unittest.TestCase):
+    def test_this_repository(self):
+        done = subprocess.run([sys.executable, CHECK], capture_output=True, text=True)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+
+    def test_good_tree(self):
+        self.assertEqual(run_on(GOOD), (0, ""))
+
+    def expect(self, name, text, message):
+        code, error = run_on({**GOOD, name: text})
+        self.assertEqual(code, 1)
+        self.assertEqual(len(error.splitlines()), 1, error)
+        self.assertIn(f"{name}:2: ", error)
+        self.assertIn(message, error)
+
+    def test_upward_include(self):
+        self.expect("src/supple/core/late.cpp", '\n#include "octree/build.hpp"\n', "no such header")
+        self.expect("src/supple/core/late.cpp", '\n#include "geometry/aabb.hpp"\n', "core comes before geometry")
+
+    def test_internal_header_without_its_layer(self):
+        self.expect("src/supple/octree/short.cpp", '\n#include "build.hpp"\n', "by its layer")
+
+    def test_threads_have_one_door(self):
+        self.expect("src/supple/octree/threads.cpp", "\n#include <tbb/parallel_sort.h>\n", "only core/")
+
+    def test_public_header_includes_internal_one(self):
+        self.expect("include/supple/bad.hpp", '\n#include "core/parallel.hpp"\n', "only public headers")
+
+    def test_public_header_includes_third_party(self):
+        self.expect("include/supple/bad.hpp", "\n#include <hwy/highway.h>\n", "third party")
+
+    def test_program_includes_internal_header(self):
+        for program in ("formats", "cli", "examples", "benchmarks"):
+            self.expect(f"{program}/bad.cpp", '\n#include "core/parallel.hpp"\n', "only public headers")
+
+    def test_program_leaves_its_folder(self):
+        self.expect("examples/bad.cpp", '\n#include "../cli/options.hpp"\n', "same folder")
+
+    def test_file_outside_the_layers(self):
+        code, error = run_on({**GOOD, "src/supple/misc/a.cpp": ""})
+        self.assertEqual(code, 1)
+        self.assertIn("not in a layer", error)
+
+
+if __name__ == "__main__":
+    unittest.main()

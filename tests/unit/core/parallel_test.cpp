@@ -1,0 +1,57 @@
+#include "core/parallel.hpp"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <stdexcept>
+#include <thread>
+#include <vector>
+
+namespace supple {
+namespace {
+
+class ParallelFor : public testing::TestWithParam<std::uint32_t> {};
+
+TEST_P(ParallelFor, CoversEveryItemOnce) {
+  const Parallel parallel(GetParam());
+  for (const std::size_t count : {0u, 1u, 63u, 64u, 65u, 100000u}) {
+    std::vector<std::uint8_t> visits(count);
+    parallel.for_ranges(count, 64, [&](std::size_t begin, std::size_t end, std::uint32_t worker) {
+      EXPECT_LT(worker, parallel.worker_count());
+      for (std::size_t i = begin; i < end; ++i) ++visits[i];
+    });
+    EXPECT_EQ(std::vector<std::uint8_t>(count, 1), visits);
+  }
+}
+
+TEST_P(ParallelFor, OneWorkerNeverRunsTwiceAtOnce) {
+  const Parallel parallel(GetParam());
+  std::vector<std::atomic<int>> busy(parallel.worker_count());
+  std::atomic<bool> overlap = false;
+  parallel.for_ranges(20000, 1, [&](std::size_t, std::size_t, std::uint32_t worker) {
+    if (busy[worker].fetch_add(1) != 0) overlap = true;
+    std::this_thread::yield();
+    busy[worker].fetch_sub(1);
+  });
+  EXPECT_FALSE(overlap);
+}
+
+TEST_P(ParallelFor, ExceptionsReachTheCaller) {
+  const Parallel parallel(GetParam());
+  const auto throw_late = [](std::size_t, std::size_t end, std::uint32_t) {
+    if (end == 10000) throw std::runtime_error("last range");
+  };
+  EXPECT_THROW(parallel.for_ranges(10000, 16, throw_late), std::runtime_error);
+}
+
+TEST_P(ParallelFor, MoreThreadsThanCoresPrintNothing) {
+  testing::internal::CaptureStderr();
+  const Parallel parallel(GetParam());
+  parallel.for_ranges(10000, 1, [](std::size_t, std::size_t, std::uint32_t) {});
+  EXPECT_EQ("", testing::internal::GetCapturedStderr());
+}
+
+INSTANTIATE_TEST_SUITE_P(Threads, ParallelFor, testing::Values(0u, 1u, 2u, 4u, 64u));
+
+}  // namespace
+}  // namespace supple

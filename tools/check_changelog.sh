@@ -1,0 +1,29 @@
+#!/usr/bin/env bash
+# Fails when something that users can notice changed and CHANGELOG.md did not.
+#
+# usage: check_changelog.sh [BASE]
+#
+# BASE is a commit; by default where this branch left the main branch, or, on the main branch itself, the last
+# release tag. Changes that are not committed yet count as well.
+set -euo pipefail
+cd "$(git rev-parse --show-toplevel)"
+
+fork_point() {
+  local base
+  for main in origin/main main; do
+    base=$(git merge-base HEAD "$main" 2>/dev/null) || continue
+    if [ "$base" != "$(git rev-parse HEAD)" ]; then
+      echo "$base"
+      return
+    fi
+  done
+  git describe --tags --match 'v*' --abbrev=0 2>/dev/null || git rev-list --max-parents=0 HEAD | tail -n 1
+}
+
+base=${1:-$(fork_point)}
+changed=$(git diff --name-only "$base" --)
+visible=$(grep -E '^(include|src|cli|formats)/' <<<"$changed" | head -n 1 || true)
+if [ -n "$visible" ] && ! grep -qx 'CHANGELOG.md' <<<"$changed"; then
+  echo "CHANGELOG.md: no entry since $(git rev-parse --short "$base") although $visible changed; add one under [Unreleased]" >&2
+  exit 1
+fi

@@ -1,0 +1,101 @@
+#!/usr/bin/env python3
+"""Fails on an include that goes against the layers.
+
+usage: check_include_order.py [ROOT]
+
+A folder of src/supple includes only from itself and the folders before it in LAYERS, and names an internal header by
+its folder ("core/parallel.hpp"). Public headers include only public headers and the standard library. Programs around
+the library include only public headers and files of their own folder. Threads have one door, so only core/ may
+include oneTBB.
+"""
+
+import pathlib
+import re
+import sys
+
+LAYERS = [
+    "core", "geometry", "mesh", "octree", "motion", "broad_phase", "narrow_phase", "contact", "scene", "recording",
+]
+PROGRAMS = ["formats", "cli", "examples", "benchmarks"]
+SOURCES = {".cpp", ".hpp", ".h", ".cc"}
+INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
+
+
+def includes(path):
+    """Yields (line number, the bracket, the name) of each include."""
+    for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
+        match = INCLUDE.match(line)
+        if match:
+            yield number, match[1], match[2]
+
+
+def sources(folder):
+    return sorted(p for p in folder.rglob("*") if p.suffix in SOURCES)
+
+
+def is_public(root, name):
+    return name.startswith("supple/") and (root / "include" / name).is_file()
+
+
+def problem_in_library(root, layer, bracket, name):
+    if name.startswith("tbb/") and layer != "core":
+        return "only core/ includes oneTBB; use core/parallel.hpp"
+    if bracket == "<" or is_public(root, name):
+        return None
+    target = name.split("/")[0]
+    if target not in LAYERS or "/" not in name:
+        return f"name an internal header by its layer, one of {', '.join(LAYERS)}"
+    if not (root / "src/supple" / name).is_file():
+        return "there is no such header"
+    if LAYERS.index(target) > LAYERS.index(layer):
+        return f"{layer} comes before {target}, so it must not include from it"
+    return None
+
+
+def problem_in_public_header(root, bracket, name):
+    if bracket == "<":
+        return "a public header needs no third party; move this into src/" if "/" in name else None
+    return None if is_public(root, name) else "a public header includes only public headers (supple/...)"
+
+
+def problem_in_program(root, folder, path, bracket, name):
+    if bracket == "<" or is_public(root, name):
+        return None
+    if any((base / name).is_file() for base in (path.parent, folder)) and ".." not in name:
+        return None
+    return "include only public headers (supple/...) and files of the same folder"
+
+
+def problems(root):
+    """Yields (path, line number, include, what is wrong)."""
+    library = root / "src/supple"
+    for path in sources(library):
+        layer = path.relative_to(library).parts[0]
+        if layer not in LAYERS:
+            yield path, 1, layer, f"not in a layer; move it into one of {', '.join(LAYERS)}"
+            continue
+        for number, bracket, name in includes(path):
+            if what := problem_in_library(root, layer, bracket, name):
+                yield path, number, name, what
+    for path in sources(root / "include"):
+        for number, bracket, name in includes(path):
+            if what := problem_in_public_header(root, bracket, name):
+                yield path, number, name, what
+    for program in PROGRAMS:
+        folder = root / program
+        for path in sources(folder):
+            for number, bracket, name in includes(path):
+                if what := problem_in_program(root, folder, path, bracket, name):
+                    yield path, number, name, what
+
+
+def main():
+    root = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else pathlib.Path(__file__).resolve().parent.parent)
+    found = list(problems(root))
+    for path, number, name, what in found:
+        print(f"{path.relative_to(root)}:{number}: {name}: {what}", file=sys.stderr)
+    return 1 if found else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,9 @@
+#!/usr/bin/env bash
+# Formats every C++ file of the repository in place; with --check only names those that differ, and fails.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+mode=(-i)
+[ "${1:-}" = "--check" ] && mode=(--dry-run --Werror)
+find include src cli formats examples benchmarks tests -name '*.?pp' -print0 2>/dev/null |
+  xargs -0 "${CLANG_FORMAT:-clang-format-14}" "${mode[@]}"

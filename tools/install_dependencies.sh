@@ -1,0 +1,38 @@
+#!/usr/bin/env bash
+# Installs the Debian 12 packages that a build, the tests and the demo need; with --ci also those of the checks,
+# clang and the sanitizers. Does nothing, quickly, when all are there.
+set -euo pipefail
+
+packages=(
+  cmake ninja-build g++ python3
+  libtbb-dev libhwy-dev libboost-dev
+  libassimp-dev libcli11-dev libtomlplusplus-dev rapidjson-dev libfmt-dev
+  libgtest-dev nlohmann-json3-dev libssl-dev libbenchmark-dev
+)
+if [ "${1:-}" = "--ci" ]; then
+  packages+=(git ccache clang-19 libclang-rt-19-dev clang-format)
+fi
+
+if ! command -v dpkg-query >/dev/null; then
+  echo "install_dependencies: not a Debian system; if the build misses something, install your system's equivalents of: ${packages[*]}" >&2
+  exit 0
+fi
+
+missing=()
+for package in "${packages[@]}"; do
+  dpkg -s "$package" 2>/dev/null | grep -q '^Status: install ok installed$' || missing+=("$package")
+done
+[ ${#missing[@]} -gt 0 ] || exit 0
+
+as_root=()
+if [ "$(id -u)" -ne 0 ]; then
+  command -v sudo >/dev/null && as_root=(sudo)
+fi
+if ! command -v apt-get >/dev/null || { [ "$(id -u)" -ne 0 ] && [ ${#as_root[@]} -eq 0 ]; }; then
+  echo "install_dependencies: neither root nor sudo; ask an administrator to run: apt-get install ${missing[*]}" >&2
+  exit 1
+fi
+
+echo "Installing: ${missing[*]}"
+"${as_root[@]}" apt-get update -qq
+"${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${missing[@]}"
