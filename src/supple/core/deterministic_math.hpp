@@ -1,11 +1,4 @@
 #pragma once
 
-namespace supple {
-
-/// Sine and cosine of an angle in turns (1 is a full circle), the same bits on every machine and compiler,
-/// which the standard library does not promise. Within 2 ulp of 1 for |turns| < 2^20; exact at multiples of a
-/// quarter turn.
-double sin_turns(double turns);
-double cos_turns(double turns);
-
-}  // namespace supple
+// The functions are public, so that programs can repeat their motion bit by bit as well.
+#include "supple/trigonometry.hpp"
