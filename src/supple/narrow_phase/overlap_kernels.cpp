@@ -97,38 +97,64 @@ HWY_INLINE bool share_vertex(const Triangle& p, const Triangle& q) {
          (p[2] == q[0]) | (p[2] == q[1]) | (p[2] == q[2]);
 }
 
-std::uint64_t TriangleBoxPairs(const LeafPair* leaf_pairs, std::size_t count, const TriangleArrays& a,
-                               const TriangleArrays& b, const RelativePlacement& placement, bool same_object,
-                               std::vector<TrianglePair>& pairs) {
-  const bool in_place = placement.is_identity();
-  std::uint64_t tests = 0;
-  AabbLanes boxes_a, boxes_b;
-  for (std::size_t k = 0; k < count; ++k) {
-    const LeafPair& leaves = leaf_pairs[k];
-    for (std::uint32_t first_b = leaves.begin_b; first_b < leaves.end_b; first_b += node_width) {
-      const std::uint32_t valid_b = load_boxes(boxes_b, b, first_b, leaves.end_b);
-      if (!in_place) place(boxes_b, placement);
-      for (std::uint32_t first_a = leaves.begin_a; first_a < leaves.end_a; first_a += node_width) {
-        std::uint32_t valid_a = load_boxes(boxes_a, a, first_a, leaves.end_a);
-        for (; valid_a != 0; valid_a &= valid_a - 1) {
-          const int i = std::countr_zero(valid_a);
-          const std::uint32_t triangle_a = first_a + static_cast<std::uint32_t>(i);
-          ++tests;
-          std::uint32_t hits = overlap_mask(boxes_b, lane_box(boxes_a, i)) & valid_b;
-          for (; hits != 0; hits &= hits - 1) {
-            const std::uint32_t triangle_b = first_b + static_cast<std::uint32_t>(std::countr_zero(hits));
-            if (same_object) {
-              // Within one leaf each pair would come twice.
-              if (leaves.begin_a == leaves.begin_b && triangle_b <= triangle_a) continue;
-              if (share_vertex(a.triangles[triangle_a], b.triangles[triangle_b])) continue;
-            }
-            pairs.push_back({triangle_a, triangle_b});
-          }
-        }
+/// What `find_triangle_box_pairs` does, for one call.
+class LeafTests {
+ public:
+  HWY_INLINE LeafTests(const TriangleArrays& a, const TriangleArrays& b, const RelativePlacement& placement,
+                       bool same_object, std::vector<TrianglePair>& pairs)
+      : a_(a), b_(b), placement_(placement), same_object_(same_object), pairs_(pairs) {}
+
+  HWY_INLINE void test(const LeafPair& leaves) {
+    for (std::uint32_t first_a = leaves.begin_a; first_a < leaves.end_a; first_a += node_width) {
+      // Leaf pairs come in runs that share the first leaf.
+      if (first_a != loaded_a_) valid_a_ = load_boxes(boxes_a_, a_, first_a, leaves.end_a);
+      loaded_a_ = first_a;
+      for (std::uint32_t first_b = leaves.begin_b; first_b < leaves.end_b; first_b += node_width) {
+        const std::uint32_t valid_b = load_boxes(boxes_b_, b_, first_b, leaves.end_b);
+        if (!placement_.is_identity()) place(boxes_b_, placement_);
+        test_eight(leaves, first_a, first_b, valid_b);
       }
     }
   }
-  return tests * node_width;
+  std::uint64_t box_tests() const { return tests_ * node_width; }
+
+ private:
+  HWY_INLINE void test_eight(const LeafPair& leaves, std::uint32_t first_a, std::uint32_t first_b,
+                             std::uint32_t valid_b) {
+    for (std::uint32_t rest = valid_a_; rest != 0; rest &= rest - 1) {
+      const int i = std::countr_zero(rest);
+      const std::uint32_t triangle_a = first_a + static_cast<std::uint32_t>(i);
+      ++tests_;
+      std::uint32_t hits = overlap_mask(boxes_b_, lane_box(boxes_a_, i)) & valid_b;
+      for (; hits != 0; hits &= hits - 1) {
+        const std::uint32_t triangle_b = first_b + static_cast<std::uint32_t>(std::countr_zero(hits));
+        if (same_object_) {
+          // Within one leaf each pair would come twice.
+          if (leaves.begin_a == leaves.begin_b && triangle_b <= triangle_a) continue;
+          if (share_vertex(a_.triangles[triangle_a], b_.triangles[triangle_b])) continue;
+        }
+        pairs_.push_back({triangle_a, triangle_b});
+      }
+    }
+  }
+
+  const TriangleArrays& a_;
+  const TriangleArrays& b_;
+  const RelativePlacement& placement_;
+  bool same_object_;
+  std::vector<TrianglePair>& pairs_;
+  AabbLanes boxes_a_, boxes_b_;
+  std::uint32_t loaded_a_ = ~std::uint32_t{0};
+  std::uint32_t valid_a_ = 0;
+  std::uint64_t tests_ = 0;
+};
+
+std::uint64_t TriangleBoxPairs(const LeafPair* leaf_pairs, std::size_t count, const TriangleArrays& a,
+                               const TriangleArrays& b, const RelativePlacement& placement, bool same_object,
+                               std::vector<TrianglePair>& pairs) {
+  LeafTests tests(a, b, placement, same_object, pairs);
+  for (std::size_t k = 0; k < count; ++k) tests.test(leaf_pairs[k]);
+  return tests.box_tests();
 }
 
 }  // namespace HWY_NAMESPACE

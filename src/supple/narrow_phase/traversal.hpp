@@ -75,7 +75,7 @@ class Traversal {
 
   template <class Sink>
   void flush_leaves(const ObjectPairView& pair, TraversalStats& stats, Sink&& sink) {
-    constexpr std::size_t step = 16;
+    constexpr std::size_t step = 32;
     for (std::size_t i = 0; i < leaf_pairs_.size(); i += step) {
       const auto part =
           std::span<const LeafPair>(leaf_pairs_).subspan(i, std::min(step, leaf_pairs_.size() - i));

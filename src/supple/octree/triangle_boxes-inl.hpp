@@ -50,8 +50,12 @@ using DoubleBox = ScalarBox<double>;
 /// A box that grows, x y z in the first three of four lanes.
 struct FloatBox {
   using Tag = hn::FixedTag<float, 4>;
-  hn::Vec<Tag> lo = hn::Set(Tag(), std::numeric_limits<float>::infinity());
-  hn::Vec<Tag> hi = hn::Set(Tag(), -std::numeric_limits<float>::infinity());
+  hn::Vec<Tag> lo, hi;
+
+  // Written out: an implicit constructor would be compiled without the instruction set around it.
+  HWY_INLINE FloatBox()
+      : lo(hn::Set(Tag(), std::numeric_limits<float>::infinity())),
+        hi(hn::Set(Tag(), -std::numeric_limits<float>::infinity())) {}
 
   HWY_INLINE void extend(const float* vertex) {
     const auto v = hn::LoadU(Tag(), vertex);
@@ -69,8 +73,13 @@ struct DoubleBox {
   using Tag = hn::FixedTag<double, 2>;
   using FloatTag = hn::FixedTag<float, 2>;
   static constexpr double inf = std::numeric_limits<double>::infinity();
-  hn::Vec<Tag> lo_xy = hn::Set(Tag(), inf), lo_z = hn::Set(Tag(), inf);
-  hn::Vec<Tag> hi_xy = hn::Set(Tag(), -inf), hi_z = hn::Set(Tag(), -inf);
+  hn::Vec<Tag> lo_xy, lo_z, hi_xy, hi_z;
+
+  HWY_INLINE DoubleBox()
+      : lo_xy(hn::Set(Tag(), inf)),
+        lo_z(hn::Set(Tag(), inf)),
+        hi_xy(hn::Set(Tag(), -inf)),
+        hi_z(hn::Set(Tag(), -inf)) {}
 
   HWY_INLINE void extend(const double* vertex) {
     const auto xy = hn::LoadU(Tag(), vertex);

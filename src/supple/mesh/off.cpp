@@ -1,0 +1,137 @@
+// Geomview's OFF in text, one vertex or face to a line: the variants whose vertices start with x, y and z.
+
+#include <utility>
+
+#include "mesh/mesh_formats.hpp"
+#include "mesh/number_text.hpp"
+#include "mesh/text_scanner.hpp"
+
+namespace supple {
+namespace {
+
+class OffReader {
+ public:
+  OffReader(std::string_view bytes, const std::string& file)
+      : scanner_(bytes, file, {.hash_comments = true}) {}
+
+  TriangleMesh read() {
+    read_keyword();
+    const std::size_t vertices = read_count("the number of vertices");
+    const std::size_t faces = read_count("the number of faces");
+    scanner_.skip_line();
+    check_counts(vertices, faces);
+    mesh_.positions.reserve(vertices);
+    mesh_.triangles.reserve(faces);
+    for (std::size_t i = 0; i < vertices; ++i) read_vertex(i, vertices);
+    for (std::size_t i = 0; i < faces; ++i) read_face(i, faces);
+    if (scanner_.skip_to_word()) {
+      scanner_.fail_here("more follows after the " + std::to_string(vertices) + " vertices and " +
+                         std::to_string(faces) + " faces of the header");
+    }
+    return std::move(mesh_);
+  }
+
+ private:
+  void read_keyword() {
+    scanner_.skip_to_word();
+    for (const char* extra : {"ST", "C", "N"}) scanner_.accept(extra);
+    if (scanner_.accept("4OFF") || scanner_.accept("nOFF") || scanner_.accept("4nOFF")) {
+      scanner_.fail_here("vertices of other than three dimensions (4OFF, nOFF) are not supported");
+    }
+    if (!scanner_.accept("OFF")) scanner_.fail_expected("'OFF', 'COFF', 'NOFF' or 'STOFF'", scanner_.word());
+    scanner_.skip_to_word();
+    if (scanner_.accept("BINARY")) {
+      scanner_.fail_here("binary OFF is not supported; save it as text, or as binary PLY");
+    }
+  }
+
+  std::size_t read_count(const char* what) {
+    scanner_.skip_to_word();
+    const std::int64_t count = scanner_.integer(what);
+    if (count < 0) scanner_.fail_here(std::string(what) + " is " + std::to_string(count));
+    return static_cast<std::size_t>(count);
+  }
+
+  // Before anything is allocated by them. The shortest vertex is "0 0 0", the shortest face "3 0 0 0", and
+  // all but the last are followed by a line end.
+  void check_counts(std::size_t vertices, std::size_t faces) const {
+    const std::size_t available = scanner_.remaining() + 1;
+    if (vertices > available / 6 || faces > (available - 6 * vertices) / 8) {
+      scanner_.fail_here("the header announces " + std::to_string(vertices) + " vertices and " +
+                         std::to_string(faces) + " faces, more than the " +
+                         std::to_string(scanner_.remaining()) + " bytes after it can hold");
+    }
+  }
+
+  void read_vertex(std::size_t i, std::size_t count) {
+    if (!scanner_.skip_to_word()) fail_truncated("vertices", i, count);
+    const double x = scanner_.number("x");
+    const double y = scanner_.number("y");
+    const double z = scanner_.number("z");
+    mesh_.positions.push_back({x, y, z});
+    scanner_.skip_line();
+  }
+
+  void read_face(std::size_t i, std::size_t count) {
+    if (!scanner_.skip_to_word()) fail_truncated("faces", i, count);
+    const std::int64_t corners = scanner_.integer("the number of corners");
+    if (corners < 3) {
+      scanner_.fail_here("face " + std::to_string(i) + " has " + std::to_string(corners) +
+                         " corners; it needs at least 3");
+    }
+    const std::uint32_t first = read_corner(i);
+    std::uint32_t previous = read_corner(i);
+    for (std::int64_t k = 2; k < corners; ++k) {
+      const std::uint32_t corner = read_corner(i);
+      mesh_.triangles.push_back({first, previous, corner});
+      previous = corner;
+    }
+    scanner_.skip_line();
+  }
+
+  std::uint32_t read_corner(std::size_t face) {
+    const std::int64_t index = scanner_.integer("a vertex index");
+    if (index < 0 || static_cast<std::uint64_t>(index) >= mesh_.positions.size()) {
+      scanner_.fail_here("face " + std::to_string(face) + ": vertex index " + std::to_string(index) +
+                         " is out of range; the file has " + std::to_string(mesh_.positions.size()) +
+                         " vertices, counted from 0");
+    }
+    return static_cast<std::uint32_t>(index);
+  }
+
+  [[noreturn]] void fail_truncated(const char* what, std::size_t found, std::size_t announced) const {
+    scanner_.fail_here("the file ends after " + std::to_string(found) + " of the " +
+                       std::to_string(announced) + " " + what + " of the header");
+  }
+
+  TextScanner scanner_;
+  TriangleMesh mesh_;
+};
+
+}  // namespace
+
+TriangleMesh read_off(std::string_view bytes, const std::string& file) {
+  return OffReader(bytes, file).read();
+}
+
+std::string write_off(const TriangleMesh& mesh) {
+  std::string text =
+      "OFF\n" + std::to_string(mesh.positions.size()) + ' ' + std::to_string(mesh.triangles.size()) + " 0\n";
+  for (const Vec3d& position : mesh.positions) {
+    for (int axis = 0; axis < 3; ++axis) {
+      append_double(text, position[axis]);
+      text += axis < 2 ? ' ' : '\n';
+    }
+  }
+  for (const Triangle& triangle : mesh.triangles) {
+    text += '3';
+    for (const std::uint32_t id : triangle) {
+      text += ' ';
+      append_integer(text, id);
+    }
+    text += '\n';
+  }
+  return text;
+}
+
+}  // namespace supple

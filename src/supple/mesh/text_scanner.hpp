@@ -1,0 +1,72 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+namespace supple {
+
+/// `text` between single quotes for a message: at most 40 bytes of it, control characters replaced.
+std::string in_quotes(std::string_view text);
+
+/// What a text format has besides words, blanks and line ends.
+struct TextSyntax {
+  bool hash_comments = false;        ///< '#' starts a comment that lasts to the end of its line
+  bool backslash_continues = false;  ///< a backslash as the last character joins the next line to this one
+};
+
+/// Reads words and numbers, line by line, from a text file held in memory, and knows the line for messages.
+/// Lines end with LF, CR LF or CR; a byte order mark at the start is skipped. Keeps a view of the text.
+class TextScanner {
+ public:
+  TextScanner(std::string_view text, std::string file, TextSyntax syntax);
+
+  /// Skips blanks; true when nothing but perhaps a comment is left on this line.
+  bool at_line_end();
+  /// Moves past the end of this line, whatever is left on it.
+  void skip_line();
+  /// Moves to the next word, on this line or a later one. False at the end of the file.
+  bool skip_to_word();
+  /// Moves past `literal` if the text goes on with exactly it.
+  bool accept(std::string_view literal);
+  /// The next word of this line; empty at its end.
+  std::string_view word();
+
+  /// The next number of this line. Fails, with `what` in the message, when there is none.
+  double number(const char* what);
+  /// The next integer of this line, with `word_may_go_on` also when a '/' follows, and then up to the next
+  /// blank.
+  std::int64_t integer(const char* what, bool word_may_go_on = false);
+
+  std::size_t offset() const { return static_cast<std::size_t>(position_ - begin_); }
+  std::size_t remaining() const { return static_cast<std::size_t>(end_ - position_); }
+  std::size_t line() const { return line_; }
+
+  [[noreturn]] void fail_here(const std::string& message) const { fail_at(line_, message); }
+  [[noreturn]] void fail_at(std::size_t line, const std::string& message) const;
+  /// Fails saying that `what` was expected and that `found`, a word just read, stands there instead.
+  [[noreturn]] void fail_expected(const std::string& what, std::string_view found);
+
+ private:
+  void skip_blanks();
+  void skip_line_break();
+  bool is_continuation(const char* place) const;
+  bool ends_word(const char* place) const;
+
+  const char* begin_;
+  const char* position_;
+  const char* end_;
+  std::size_t line_ = 1;
+  std::string file_;
+  TextSyntax syntax_;
+};
+
+inline bool is_blank(char c) {
+  return c == ' ' || c == '\t' || c == '\v' || c == '\f';
+}
+inline bool is_line_break(char c) {
+  return c == '\n' || c == '\r';
+}
+
+}  // namespace supple

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <array>
+#include <boost/multiprecision/cpp_int.hpp>
+#include <vector>
+
+#include "supple/triangle_intersection.hpp"
+
+namespace supple::testing {
+
+using Rational =
+    boost::multiprecision::number<boost::multiprecision::cpp_rational_backend, boost::multiprecision::et_off>;
+using RationalPoint = std::array<Rational, 3>;
+
+RationalPoint exact(const Vec3d& point);
+RationalPoint subtract(const RationalPoint& a, const RationalPoint& b);
+RationalPoint cross(const RationalPoint& a, const RationalPoint& b);
+Rational dot(const RationalPoint& a, const RationalPoint& b);
+
+/// The extreme points of what two closed triangles share, by cutting the first with the half-spaces whose
+/// intersection the second is, in rational arithmetic. In order around the polygon.
+std::vector<RationalPoint> clipped_extreme_points(const TrianglePoints& a, const TrianglePoints& b);
+
+/// Whether the point is in the relative interior of a part of a triangle.
+bool in_relative_interior(const RationalPoint& point, const TrianglePoints& triangle, Feature feature);
+
+/// The one point in which two features meet, the smaller of which is a vertex or an edge.
+RationalPoint exact_meeting_point(const TrianglePoints& a, Feature on_a, const TrianglePoints& b,
+                                  Feature on_b);
+
+}  // namespace supple::testing

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <random>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "supple/triangle_intersection.hpp"
+
+namespace supple::testing {
+
+using Random = std::mt19937_64;
+
+struct TrianglePair3d {
+  TrianglePoints a, b;
+};
+
+/// A way to draw pairs that stresses one kind of trouble.
+struct PairFamily {
+  std::string name;
+  TrianglePair3d (*draw)(Random&);
+};
+
+/// All of them; the same on every machine.
+const std::vector<PairFamily>& pair_families();
+
+std::string describe(const TrianglePair3d& pair);
+
+/// Debug and sanitizer builds are some twenty times slower.
+inline int scaled_count(int count_in_debug) {
+#ifdef NDEBUG
+  return count_in_debug * 10;
+#else
+  return count_in_debug;
+#endif
+}
+
+}  // namespace supple::testing
