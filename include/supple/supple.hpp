@@ -8,7 +8,7 @@
 #include "supple/options.hpp"
 #include "supple/result.hpp"
 #include "supple/scene.hpp"
-#include "supple/trigonometry.hpp"
 #include "supple/topology.hpp"
+#include "supple/trigonometry.hpp"
 #include "supple/types.hpp"
 #include "supple/version.hpp"
