@@ -1,12 +1,19 @@
 include(CMakePackageConfigHelpers)
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/supple)
 
-# Each library is a component of find_package(supple), with an export of its own.
 install(TARGETS supple EXPORT suppleTargets
   ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/supple DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 install(EXPORT suppleTargets NAMESPACE supple:: DESTINATION ${package_dir})
 
-install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/supple DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+# Its own file of targets, read only on request: who links the library alone needs no Assimp.
+if(TARGET supple_formats)
+  install(TARGETS supple_formats EXPORT suppleFormatsTargets
+    ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/formats/include/supple DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+  install(EXPORT suppleFormatsTargets NAMESPACE supple:: DESTINATION ${package_dir})
+endif()
+
 configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/suppleConfig.cmake.in
   ${PROJECT_BINARY_DIR}/suppleConfig.cmake INSTALL_DESTINATION ${package_dir})
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/suppleConfigVersion.cmake COMPATIBILITY SameMinorVersion)

@@ -4,9 +4,9 @@
 usage: check_include_order.py [ROOT]
 
 A folder of src/supple includes only from itself and the folders before it in LAYERS, and names an internal header by
-its folder ("core/parallel.hpp"). Public headers include only public headers and the standard library. Programs around
-the library include only public headers and files of their own folder. Threads have one door, so only core/ may
-include oneTBB.
+its folder ("core/parallel.hpp"). formats/ is a library of its own that builds on mesh/. Public headers include only
+public headers and the standard library. Programs around the library include only public headers and files of their own
+folder. Threads have one door, so only core/ may include oneTBB.
 """
 
 import pathlib
@@ -16,7 +16,8 @@ import sys
 LAYERS = [
     "core", "geometry", "mesh", "octree", "motion", "broad_phase", "narrow_phase", "contact", "scene", "recording",
 ]
-PROGRAMS = ["formats", "cli", "examples", "benchmarks"]
+PROGRAMS = ["cli", "examples", "benchmarks"]
+PUBLIC = ["include", "formats/include"]
 SOURCES = {".cpp", ".hpp", ".h", ".cc"}
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
 
@@ -34,7 +35,7 @@ def sources(folder):
 
 
 def is_public(root, name):
-    return name.startswith("supple/") and (root / "include" / name).is_file()
+    return name.startswith("supple/") and any((root / folder / name).is_file() for folder in PUBLIC)
 
 
 def problem_in_library(root, layer, bracket, name):
@@ -48,7 +49,7 @@ def problem_in_library(root, layer, bracket, name):
     if not (root / "src/supple" / name).is_file():
         return "there is no such header"
     if LAYERS.index(target) > LAYERS.index(layer):
-        return f"{layer} comes before {target}, so it must not include from it"
+        return f"{layer} comes before {target}, so what builds on {layer} must not include from it"
     return None
 
 
@@ -77,10 +78,15 @@ def problems(root):
         for number, bracket, name in includes(path):
             if what := problem_in_library(root, layer, bracket, name):
                 yield path, number, name, what
-    for path in sources(root / "include"):
+    for path in sources(root / "formats/src"):
         for number, bracket, name in includes(path):
-            if what := problem_in_public_header(root, bracket, name):
+            if what := problem_in_library(root, "mesh", bracket, name):
                 yield path, number, name, what
+    for folder in PUBLIC:
+        for path in sources(root / folder):
+            for number, bracket, name in includes(path):
+                if what := problem_in_public_header(root, bracket, name):
+                    yield path, number, name, what
     for program in PROGRAMS:
         folder = root / program
         for path in sources(folder):

@@ -10,5 +10,6 @@
 #include "supple/result.hpp"
 #include "supple/scene.hpp"
 #include "supple/topology.hpp"
+#include "supple/trigonometry.hpp"
 #include "supple/types.hpp"
 #include "supple/version.hpp"

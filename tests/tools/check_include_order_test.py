@@ -26,9 +26,13 @@ GOOD = {
     "include/supple/scene.hpp": '#include "supple/types.hpp"\n',
     "src/supple/core/parallel.hpp": "#include <tbb/parallel_for.h>\n",
     "src/supple/geometry/aabb.hpp": '#include "core/parallel.hpp"\n#include "supple/types.hpp"\n',
+    "src/supple/octree/tree.hpp": "",
     "src/supple/octree/build.cpp": '#include "geometry/aabb.hpp"\n',
+    "src/supple/mesh/scanner.hpp": "",
+    "formats/include/supple/formats.hpp": '#include "supple/types.hpp"\n',
+    "formats/src/load.cpp": '#include "mesh/scanner.hpp"\n#include "supple/formats.hpp"\n',
     "cli/options.hpp": "",
-    "cli/main.cpp": '#include <CLI/CLI.hpp>\n#include "options.hpp"\n#include "supple/scene.hpp"\n',
+    "cli/main.cpp": '#include <CLI/CLI.hpp>\n#include "options.hpp"\n#include "supple/formats.hpp"\n',
 }
 
 
@@ -64,8 +68,12 @@ class CheckIncludeOrder(unittest.TestCase):
         self.expect("include/supple/bad.hpp", "\n#include <hwy/highway.h>\n", "third party")
 
     def test_program_includes_internal_header(self):
-        for program in ("formats", "cli", "examples", "benchmarks"):
+        for program in ("cli", "examples", "benchmarks"):
             self.expect(f"{program}/bad.cpp", '\n#include "core/parallel.hpp"\n', "only public headers")
+
+    def test_formats_build_on_meshes_only(self):
+        self.expect("formats/src/bad.cpp", '\n#include "octree/tree.hpp"\n', "mesh comes before octree")
+        self.expect("src/supple/mesh/bad.cpp", '\n#include "octree/tree.hpp"\n', "mesh comes before octree")
 
     def test_program_leaves_its_folder(self):
         self.expect("examples/bad.cpp", '\n#include "../cli/options.hpp"\n', "same folder")

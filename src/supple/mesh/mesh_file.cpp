@@ -1,13 +1,8 @@
-#include <algorithm>
-#include <cerrno>
-#include <cstdio>
-#include <filesystem>
 #include <limits>
-#include <memory>
 #include <string>
-#include <system_error>
 
 #include "core/error.hpp"
+#include "mesh/file_access.hpp"
 #include "mesh/mesh_formats.hpp"
 #include "mesh/text_scanner.hpp"
 #include "supple/mesh.hpp"
@@ -25,64 +20,12 @@ constexpr MeshFormat mesh_formats[] = {{".obj", read_obj, write_obj},
                                        {".ply", read_ply, write_ply},
                                        {".stl", read_stl, write_stl}};
 
-struct CloseFile {
-  void operator()(std::FILE* file) const { std::fclose(file); }
-};
-using File = std::unique_ptr<std::FILE, CloseFile>;
-
-std::string reason() {
-  return std::generic_category().message(errno);
-}
-
-// For messages, which are one line whatever the file is called.
-std::string shown(const std::filesystem::path& path) {
-  std::string name = path.string();
-  std::replace_if(
-      name.begin(), name.end(), [](unsigned char c) { return c < 32 || c == 127; }, '?');
-  return name;
-}
-
 const MeshFormat* find_format(const std::filesystem::path& path) {
-  std::string extension = path.extension().string();
-  for (char& c : extension) {
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  }
+  const std::string extension = lower_case_extension(path);
   for (const MeshFormat& format : mesh_formats) {
     if (format.extension == extension) return &format;
   }
   return nullptr;
-}
-
-std::string read_file(const std::filesystem::path& path) {
-  const std::string name = shown(path);
-  std::error_code ignored;
-  if (std::filesystem::is_directory(path, ignored)) fail("cannot open " + name + ": it is a directory");
-  const File file(std::fopen(path.string().c_str(), "rb"));
-  if (!file) fail("cannot open " + name + ": " + reason());
-
-  std::string bytes;
-  const auto expected_size = std::filesystem::file_size(path, ignored);
-  // One byte more than expected, so that the end is seen without growing.
-  std::size_t chunk = ignored ? 65536 : static_cast<std::size_t>(expected_size) + 1;
-  for (std::size_t size = 0;; chunk = std::max(chunk, size)) {
-    bytes.resize(size + chunk);
-    const std::size_t count = std::fread(bytes.data() + size, 1, chunk, file.get());
-    size += count;
-    if (count < chunk) {
-      if (std::ferror(file.get())) fail("cannot read " + name + ": " + reason());
-      bytes.resize(size);
-      return bytes;
-    }
-  }
-}
-
-void write_file(const std::filesystem::path& path, const std::string& bytes) {
-  const std::string name = shown(path);
-  File file(std::fopen(path.string().c_str(), "wb"));
-  if (!file) fail("cannot write " + name + ": " + reason());
-  const bool written = std::fwrite(bytes.data(), 1, bytes.size(), file.get()) == bytes.size();
-  // Closing may be what first finds the disk full.
-  if (!written || std::fclose(file.release()) != 0) fail("cannot write " + name + ": " + reason());
 }
 
 }  // namespace

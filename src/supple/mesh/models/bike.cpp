@@ -2,9 +2,9 @@
 #include <utility>
 #include <vector>
 
-#include "core/deterministic_math.hpp"
 #include "mesh/models/mesh_builder.hpp"
 #include "mesh/models/models.hpp"
+#include "supple/trigonometry.hpp"
 
 // A racing bicycle, drawn in metres and scaled at the end: x forward, y up, the chain on the right at +z.
 //

@@ -4,7 +4,7 @@
 #include <cassert>
 #include <utility>
 
-#include "core/deterministic_math.hpp"
+#include "supple/trigonometry.hpp"
 
 namespace supple::models {
 

@@ -4,10 +4,10 @@
 #include <utility>
 #include <vector>
 
-#include "core/deterministic_math.hpp"
 #include "core/error.hpp"
 #include "mesh/models/vectors.hpp"
 #include "supple/models.hpp"
+#include "supple/trigonometry.hpp"
 
 namespace supple {
 namespace {

@@ -1,4 +1,4 @@
-#include "core/deterministic_math.hpp"
+#include "supple/trigonometry.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,0 +1,13 @@
+#pragma once
+
+namespace supple::cli {
+
+/// Scripts rely on these.
+enum ExitStatus : int {
+  exit_done = 0,
+  exit_contact = 1,      ///< --fail-on-contact, and something touches
+  exit_unusable = 2,     ///< usage or input error, told in one line on standard error
+  exit_differences = 3,  ///< --verify, and brute force disagrees
+};
+
+}  // namespace supple::cli

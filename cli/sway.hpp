@@ -1,0 +1,30 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "supple/types.hpp"
+
+namespace supple::cli {
+
+/// The border of a scene's motion: lowest and highest corner.
+using Bounds = std::array<Vec3d, 2>;
+
+/// An analytic deformation: an object drifts, turned back at the border of the scene, while waves run through
+/// it. A function of time alone, so that any frame can be had at once and is the same bits everywhere.
+struct Sway {
+  Vec3d velocity;          ///< of the drift, units a second
+  double amplitude = 0;    ///< of the waves, units
+  double wavelength = 1;   ///< units, > 0
+  double period = 1;       ///< of the waves, seconds, > 0
+  std::uint64_t seed = 0;  ///< chooses the phases of the waves
+};
+
+/// The positions at `seconds`, from those at rest. Without bounds the drift goes on for ever; in bounds
+/// smaller than the object it stays in place along that axis.
+void sway(const Sway& motion, const std::optional<Bounds>& bounds, const std::vector<Vec3d>& rest,
+          double seconds, std::vector<Vec3d>& positions);
+
+}  // namespace supple::cli

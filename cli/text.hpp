@@ -1,0 +1,22 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+namespace supple::cli {
+
+/// The text with each line break, tab or other control character made a blank: error messages are one line,
+/// whatever a file is called.
+std::string one_line(std::string text);
+
+/// The text with every byte that is not part of valid UTF-8 made U+FFFD: file names need not be text at all.
+std::string valid_utf8(std::string_view text);
+
+/// 1234567 as 1,234,567.
+std::string grouped(std::uint64_t number);
+
+/// `1 frame`, `2 frames`.
+std::string counted(std::uint64_t number, const std::string& noun);
+
+}  // namespace supple::cli

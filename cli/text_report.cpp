@@ -1,0 +1,124 @@
+#include "text_report.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "text.hpp"
+
+namespace supple::cli {
+namespace {
+
+/// A table of more rows says how many it leaves out.
+constexpr std::size_t most_rows = 40;
+
+void add_to(StepStats& sum, const StepStats& stats) {
+  sum.refit_seconds += stats.refit_seconds;
+  sum.broad_phase_seconds += stats.broad_phase_seconds;
+  sum.traversal_seconds += stats.traversal_seconds;
+  sum.exact_seconds += stats.exact_seconds;
+  sum.finish_seconds += stats.finish_seconds;
+  sum.total_seconds += stats.total_seconds;
+  sum.triangles_refitted += stats.triangles_refitted;
+  sum.object_pairs_tested += stats.object_pairs_tested;
+  sum.object_pairs += stats.object_pairs;
+  sum.node_pairs_visited += stats.node_pairs_visited;
+  sum.boxes_tested += stats.boxes_tested;
+  sum.candidate_pairs += stats.candidate_pairs;
+  sum.exact_fallbacks += stats.exact_fallbacks;
+  sum.contacts += stats.contacts;
+}
+
+std::string name_of(const Scene& scene, ObjectId object) {
+  return fmt::format("{} {}", object.index, scene.name(object));
+}
+
+}  // namespace
+
+void TextReport::add(const Frame& frame) {
+  const DetectResult& result = frame.result;
+  ++frames_;
+  for (const ContactGroup& group : result.groups) {
+    PairSummary& pair = pairs_[{group.a, group.b}];
+    ++pair.frames;
+    pair.triangle_pairs += group.contact_count;
+    pair.most = std::max(pair.most, std::uint64_t{group.contact_count});
+  }
+  add_to(sum_, result.stats);
+  begun_ += result.contact_events.begin.size();
+  ended_ += result.contact_events.end.size();
+  non_finite_ = result.non_finite_vertices.size();
+  if (!frame.verify) return;
+  verified_ = true;
+  checked_ += frame.verify->triangle_pairs_checked;
+  differences_ += frame.verify->differences.size();
+}
+
+void TextReport::print(const Scene& scene) const {
+  const std::vector<ObjectId> objects = scene.objects();
+  std::uint64_t triangles = 0;
+  for (const ObjectId object : objects) triangles += scene.triangle_count(object);
+  fmt::print("{}, {}, {}\n\n", counted(objects.size(), "object"), counted(triangles, "triangle"),
+             counted(frames_, "frame"));
+  if (scene.options().contacts != ContactMode::none) print_pairs(scene);
+  print_stages();
+  if (non_finite_ > 0)
+    fmt::print("\n{} not finite in the last frame: triangles that use such vertices touch nothing\n",
+               counted(non_finite_, "position"));
+  if (verified_) print_verify();
+}
+
+void TextReport::print_pairs(const Scene& scene) const {
+  if (pairs_.empty()) {
+    fmt::print("Nothing touches.\n\n");
+    return;
+  }
+  std::vector<std::pair<ObjectPair, PairSummary>> rows(pairs_.begin(), pairs_.end());
+  std::stable_sort(rows.begin(), rows.end(), [](const auto& x, const auto& y) {
+    return x.second.triangle_pairs > y.second.triangle_pairs;
+  });
+  const std::size_t left_out = rows.size() - std::min(rows.size(), most_rows);
+  rows.resize(rows.size() - left_out);
+
+  fmt::print("{:<20} {:<20} {:>8} {:>16} {:>16}\n", "object", "touches", "frames", "triangle pairs",
+             "most in a frame");
+  for (const auto& [pair, summary] : rows) {
+    fmt::print("{:<20} {:<20} {:>8} {:>16} {:>16}\n", name_of(scene, pair.a),
+               pair.a == pair.b ? "itself" : name_of(scene, pair.b), grouped(summary.frames),
+               grouped(summary.triangle_pairs), grouped(summary.most));
+  }
+  if (left_out > 0) fmt::print("and {} with fewer; --csv lists all\n", counted(left_out, "pair"));
+  fmt::print("\n{} that intersect; pairs of objects began to touch {} and parted {}\n\n",
+             counted(sum_.contacts, "triangle pair"), counted(begun_, "time"), counted(ended_, "time"));
+}
+
+void TextReport::print_stages() const {
+  const double frames = static_cast<double>(std::max<std::uint64_t>(frames_, 1));
+  const auto row = [&](const char* stage, double seconds, const std::string& work) {
+    const double share = sum_.total_seconds > 0 ? 100 * seconds / sum_.total_seconds : 0;
+    fmt::print("{:<12} {:>14.3f} {:>7.0f} %   {}\n", stage, 1e3 * seconds / frames, share, work);
+  };
+  fmt::print("{:<12} {:>14} {:>9}   {}\n", "stage", "ms a frame", "share", "in all frames");
+  row("refit", sum_.refit_seconds, counted(sum_.triangles_refitted, "triangle"));
+  row("broad phase", sum_.broad_phase_seconds,
+      fmt::format("{} of {} tested", counted(sum_.object_pairs, "object pair"),
+                  grouped(sum_.object_pairs_tested)));
+  row("traversal", sum_.traversal_seconds,
+      fmt::format("{} from {}", counted(sum_.candidate_pairs, "candidate"),
+                  counted(sum_.boxes_tested, "box test")));
+  row("exact", sum_.exact_seconds,
+      fmt::format("{}, {} decided by exact arithmetic", counted(sum_.contacts, "contact"),
+                  grouped(sum_.exact_fallbacks)));
+  row("finish", sum_.finish_seconds, "");
+  row("total", sum_.total_seconds, "");
+}
+
+void TextReport::print_verify() const {
+  fmt::print("\nverified: {} checked by brute force, {}\n", counted(checked_, "triangle pair"),
+             differences_ == 0 ? "no difference" : counted(differences_, "difference"));
+}
+
+}  // namespace supple::cli

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+
+#include "report.hpp"
+#include "supple/scene.hpp"
+
+namespace supple::cli {
+
+/// Tables of all frames together: which objects touch, what each stage did and how long it took.
+class TextReport {
+ public:
+  void add(const Frame& frame);
+  /// Prints to standard output.
+  void print(const Scene& scene) const;
+
+ private:
+  struct PairSummary {
+    std::uint64_t frames = 0;
+    std::uint64_t triangle_pairs = 0;
+    std::uint64_t most = 0;  ///< triangle pairs in one frame
+  };
+
+  void print_pairs(const Scene& scene) const;
+  void print_stages() const;
+  void print_verify() const;
+
+  std::uint64_t frames_ = 0;
+  std::map<ObjectPair, PairSummary> pairs_;
+  StepStats sum_;
+  std::uint64_t begun_ = 0, ended_ = 0;
+  std::uint64_t non_finite_ = 0;  ///< in the last frame
+  bool verified_ = false;
+  std::uint64_t checked_ = 0, differences_ = 0;
+};
+
+}  // namespace supple::cli

@@ -1,0 +1,120 @@
+#include "toml_reader.hpp"
+
+#include <fmt/core.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "supple/error.hpp"
+
+namespace supple::cli {
+
+const toml::node* TomlReader::node(const std::string& key) {
+  if (std::find(known_.begin(), known_.end(), key) == known_.end()) known_.push_back(key);
+  return table_.get(key);
+}
+
+void TomlReader::fail_at(const toml::source_region& place, const std::string& key,
+                         const std::string& what) const {
+  throw Error(fmt::format("{}:{}: {}: {}{}{}", file_.string(), place.begin.line, where_, key,
+                          key.empty() ? "" : ": ", what));
+}
+
+void TomlReader::fail(const std::string& key, const std::string& what) const {
+  const toml::node* node = table_.get(key);
+  fail_at(node ? node->source() : table_.source(), node ? key : "", what);
+}
+
+double TomlReader::number(const toml::node& node, const std::string& key, const char* expected) const {
+  if (const auto* value = node.as_floating_point(); value && std::isfinite(value->get())) return value->get();
+  if (const auto* value = node.as_integer()) return static_cast<double>(value->get());
+  fail_at(node.source(), key, fmt::format("must be {}", expected));
+}
+
+Vec3d TomlReader::point(const toml::node& node, const std::string& key, const char* expected) const {
+  const toml::array* array = node.as_array();
+  if (!array || array->size() != 3) fail_at(node.source(), key, fmt::format("must be {}", expected));
+  return {number((*array)[0], key, expected), number((*array)[1], key, expected),
+          number((*array)[2], key, expected)};
+}
+
+std::int64_t TomlReader::integer(const std::string& key, std::int64_t lowest, std::int64_t highest) {
+  const toml::node& found = *node(key);
+  const auto* value = found.as_integer();
+  if (!value || value->get() < lowest || value->get() > highest)
+    fail_at(found.source(), key, fmt::format("must be a whole number from {} to {}", lowest, highest));
+  return value->get();
+}
+
+void TomlReader::read(const std::string& key, std::string& value) {
+  const toml::node* found = node(key);
+  if (!found) return;
+  if (!found->is_string()) fail_at(found->source(), key, "must be a string in quotes");
+  value = found->as_string()->get();
+}
+
+void TomlReader::read(const std::string& key, bool& value) {
+  const toml::node* found = node(key);
+  if (!found) return;
+  if (!found->is_boolean()) fail_at(found->source(), key, "must be true or false");
+  value = found->as_boolean()->get();
+}
+
+void TomlReader::read(const std::string& key, double& value) {
+  if (const toml::node* found = node(key)) value = number(*found, key, "a finite number");
+}
+
+void TomlReader::read_positive(const std::string& key, double& value) {
+  read(key, value);
+  if (has(key) && !(value > 0)) fail(key, "must be a number above 0");
+}
+
+void TomlReader::read(const std::string& key, Vec3d& value) {
+  if (const toml::node* found = node(key)) value = point(*found, key, "three finite numbers, [x, y, z]");
+}
+
+void TomlReader::read(const std::string& key, std::uint32_t& value, std::uint32_t lowest,
+                      std::uint32_t highest) {
+  if (has(key)) value = static_cast<std::uint32_t>(integer(key, lowest, highest));
+}
+
+void TomlReader::read(const std::string& key, std::uint64_t& value) {
+  if (has(key)) value = static_cast<std::uint64_t>(integer(key, 0, std::numeric_limits<std::int64_t>::max()));
+}
+
+void TomlReader::read_points(const std::string& key, Vec3d* points, std::size_t count) {
+  const toml::node* found = node(key);
+  if (!found) return;
+  const std::string expected = fmt::format("an array of {} points, each [x, y, z]", count);
+  const toml::array* array = found->as_array();
+  if (!array || array->size() != count) fail_at(found->source(), key, "must be " + expected);
+  for (std::size_t i = 0; i < count; ++i) points[i] = point((*array)[i], key, expected.c_str());
+}
+
+const toml::table* TomlReader::table(const std::string& key) {
+  const toml::node* found = node(key);
+  if (found && !found->is_table()) fail_at(found->source(), key, "must be a table");
+  return found ? found->as_table() : nullptr;
+}
+
+std::vector<const toml::table*> TomlReader::tables(const std::string& key) {
+  const toml::node* found = node(key);
+  std::vector<const toml::table*> tables;
+  if (!found) return tables;
+  if (!found->is_array_of_tables())
+    fail_at(found->source(), key, fmt::format("must be written [[{}]], once for each", key));
+  for (const toml::node& table : *found->as_array()) tables.push_back(table.as_table());
+  return tables;
+}
+
+void TomlReader::finish() const {
+  for (const auto& [key, value] : table_) {
+    if (std::find(known_.begin(), known_.end(), key.str()) == known_.end())
+      fail_at(key.source(), std::string(key.str()),
+              fmt::format("unknown key; allowed here: {}", fmt::join(known_, ", ")));
+  }
+}
+
+}  // namespace supple::cli

@@ -1,0 +1,230 @@
+"""The results of `supple detect`: JSON as docs/json.md describes it, CSV, tables, sequences."""
+
+import json
+import os
+import pty
+import subprocess
+import unittest
+
+from program import CROSSED, FAR, PROGRAM, ROOT, TRIANGLE, UPRIGHT, ProgramTest
+
+STATS = {
+    "refit_seconds", "broad_phase_seconds", "traversal_seconds", "exact_seconds", "finish_seconds", "total_seconds",
+    "objects_refitted", "triangles_refitted", "object_pairs_tested", "object_pairs", "node_pairs_visited",
+    "boxes_tested", "candidate_pairs", "exact_fallbacks", "contacts",
+}
+
+
+class Json(ProgramTest):
+    maxDiff = None
+
+    def setUp(self):
+        super().setUp()
+        for name, mesh in (("a", TRIANGLE), ("b", UPRIGHT), ("far", FAR), ("crossed", CROSSED)):
+            self.write(f"{name}.obj", mesh)
+
+    def test_two_meshes(self):
+        result = self.detect("a.obj", "b.obj")
+        self.assertEqual(list(result), ["supple", "objects", "frames"])
+        self.assertEqual(
+            result["objects"],
+            [{"name": "a", "vertices": 3, "triangles": 1}, {"name": "b", "vertices": 3, "triangles": 1}],
+        )
+        (frame,) = result["frames"]
+        stats = frame.pop("stats")
+        self.assertEqual(set(stats), STATS)
+        self.assertEqual(stats["contacts"], 1)
+        points = [
+            {"position": [0.25, 0.25, 0.0], "on_a": "f", "on_b": "e0"},
+            {"position": [0.75, 0.25, 0.0], "on_a": "e1", "on_b": "v2"},
+        ]
+        (contact,) = frame.pop("contacts")
+        self.assertCountEqual(contact.pop("points"), points)
+        self.assertEqual(contact, {"a": 0, "b": 1, "triangles": [0, 0], "kind": "segment"})
+        self.assertEqual(
+            frame,
+            {
+                "frame": 0,
+                "object_pairs": [[0, 1]],
+                "triangle_pairs": [{"a": 0, "b": 1, "pairs": [[0, 0]]}],
+                "self": [],
+                "events": {"volumes": {"begin": [[0, 1]], "end": []}, "contacts": {"begin": [[0, 1]], "end": []}},
+                "non_finite": [],
+            },
+        )
+
+    def test_without_contact(self):
+        (frame,) = self.detect("a.obj", "far.obj")["frames"]
+        for key in ("object_pairs", "triangle_pairs", "self", "contacts", "non_finite"):
+            self.assertEqual(frame[key], [], key)
+
+    def test_self(self):
+        (frame,) = self.detect("crossed.obj", "--self")["frames"]
+        self.assertEqual(frame["self"], [{"a": 0, "pairs": [[0, 1]]}])
+        self.assertEqual(frame["triangle_pairs"], [])
+        (frame,) = self.detect("crossed.obj")["frames"]
+        self.assertEqual(frame["self"], [])
+
+    def test_contacts_none_finds_object_pairs_only(self):
+        (frame,) = self.detect("a.obj", "b.obj", "--contacts", "none")["frames"]
+        self.assertEqual(frame["object_pairs"], [[0, 1]])
+        self.assertEqual((frame["triangle_pairs"], frame["contacts"]), ([], []))
+
+    def test_no_contact_points(self):
+        (frame,) = self.detect("a.obj", "b.obj", "--no-contact-points")["frames"]
+        self.assertEqual(frame["contacts"], [{"a": 0, "b": 1, "triangles": [0, 0], "kind": "segment"}])
+
+    def test_no_stats(self):
+        (frame,) = self.detect("a.obj", "b.obj", "--no-stats")["frames"]
+        self.assertNotIn("stats", frame)
+
+    def test_verify(self):
+        (frame,) = self.detect("a.obj", "b.obj", "--verify")["frames"]
+        self.assertEqual(frame["verify"], {"triangle_pairs_checked": 1, "intersecting_pairs": 1, "differences": []})
+
+    def test_non_finite_vertices(self):
+        self.write("bad.obj", "v 0 0 nan\nv inf 0 0\nv 0 1 -inf\nv 2 0 0\nf 1 2 3\n")
+        (frame,) = self.detect("bad.obj", "a.obj")["frames"]
+        self.assertEqual(
+            frame["non_finite"],
+            [
+                {"object": 0, "vertex": 0, "position": [0.0, 0.0, "nan"]},
+                {"object": 0, "vertex": 1, "position": ["inf", 0.0, 0.0]},
+                {"object": 0, "vertex": 2, "position": [0.0, 1.0, "-inf"]},
+            ],
+        )
+        self.assertEqual(frame["contacts"], [])
+
+    def test_numbers_read_back_to_the_same_bits(self):
+        tip = (0.1, 1e-300, 123456789.12345679)
+        self.write("tip.obj", ([tip, (1.0, 5.0, 123456789.5), (0.5, 5.0, 123456790.5)], [(0, 1, 2)]))
+        self.write("other.obj", ([tip, (-1.0, -5.0, 0.0), (-1.0, -6.0, 0.5)], [(0, 1, 2)]))
+        (frame,) = self.detect("tip.obj", "other.obj")["frames"]
+        (contact,) = frame["contacts"]
+        self.assertEqual(contact["kind"], "point")
+        self.assertEqual(contact["points"], [{"position": list(tip), "on_a": "v0", "on_b": "v0"}])
+
+    def test_names_that_are_not_text(self):
+        name = os.fsdecode(b"caf\xe9 \xc3\xa9\xed\xa0\x80.obj")
+        self.write(name, TRIANGLE)
+        self.assertEqual(self.detect(name)["objects"][0]["name"], "caf\ufffd \u00e9\ufffd\ufffd\ufffd")
+
+    def test_to_a_file_next_to_tables(self):
+        done = self.run_here("detect", "a.obj", "b.obj", "--json", "result.json")
+        self.assertEqual((done.status, done.error), (0, ""))
+        self.assertIn("1 triangle pair", done.out)
+        result = json.loads((self.folder / "result.json").read_text())
+        self.assertEqual(len(result["frames"]), 1)
+
+    def test_several_inputs_to_standard_output_are_one_document(self):
+        result = self.detect("a.obj", "b.obj", "far.obj", "crossed.obj")
+        self.assertEqual([o["name"] for o in result["objects"]], ["a", "b", "far", "crossed"])
+        pairs = [(g["a"], g["b"]) for g in result["frames"][0]["triangle_pairs"]]
+        self.assertEqual(pairs, [(0, 1), (0, 3), (1, 3)])
+
+    def test_csv_has_the_same_pairs(self):
+        arguments = ("a.obj", "b.obj", "crossed.obj", "--self")
+        done = self.run_here("detect", *arguments, "--csv", "-")
+        self.assertEqual((done.status, done.error), (0, ""))
+        (frame,) = self.detect(*arguments)["frames"]
+        rows = [f"0,{c['a']},{c['b']},{c['triangles'][0]},{c['triangles'][1]}" for c in frame["contacts"]]
+        self.assertEqual(done.out.splitlines(), ["frame,a,b,i,j", *rows])
+        self.assertIn("0,2,2,0,1", rows)
+
+
+class SameBytes(ProgramTest):
+    """The same input gives the same bytes, whatever finds it and on however many threads."""
+
+    def output(self, *arguments):
+        scene = ROOT / "scenes/nine.toml"
+        done = self.run_here("detect", scene, "--steps", 12, "--self", "--json", "-", "--no-stats", *arguments)
+        self.assertEqual((done.status, done.error), (0, ""))
+        return done.out
+
+    def test_threads_and_broad_phases(self):
+        expected = self.output("--threads", "1")
+        self.assertIn('"pairs":[[', expected)
+        for arguments in (["--threads", "2"], ["--threads", "5"], ["--broad-phase", "sweep"], ["--broad-phase", "brute"]):
+            with self.subTest(arguments=arguments):
+                self.assertEqual(self.output(*arguments), expected)
+
+    def test_octree_options_and_spheres_find_the_same_contacts(self):
+        def contacts(*arguments):
+            frames = json.loads(self.output(*arguments))["frames"]
+            return [(f["triangle_pairs"], f["self"], f["contacts"]) for f in frames]
+
+        expected = contacts()
+        sphere = ("--bounding-volume", "sphere")
+        for arguments in (["--max-level", "3"], ["--leaf-size", "1"], [*sphere], [*sphere, "--region-test", "grown-box"]):
+            with self.subTest(arguments=arguments):
+                self.assertEqual(contacts(*arguments), expected)
+
+
+class Sequence(ProgramTest):
+    def setUp(self):
+        super().setUp()
+        for number in (1, 2, 9, 10, 11):
+            shift = 0.1 * number
+            moved = [(x + shift, y, z) for x, y, z in CROSSED[0][3:]]
+            self.write(f"frame_{number}.obj", (CROSSED[0][:3] + moved, CROSSED[1]))
+
+    def test_quoted_pattern_is_in_natural_order(self):
+        result = self.detect("--sequence", "frame_*.obj", "--self")
+        self.assertEqual([o["name"] for o in result["objects"]], ["frame_1"])
+        self.assertEqual([f["frame"] for f in result["frames"]], [0, 1, 2, 3, 4])
+        singles = [self.detect(f"frame_{n}.obj", "--self")["frames"][0] for n in (1, 2, 9, 10, 11)]
+        for frame, single in zip(result["frames"], singles):
+            for key in ("self", "contacts"):
+                self.assertEqual(frame[key], single[key])
+        self.assertNotEqual(result["frames"][0]["contacts"], result["frames"][2]["contacts"])
+
+    def test_files_keep_their_order(self):
+        forward = self.detect("--sequence", "frame_1.obj", "frame_9.obj", "--self")["frames"]
+        backward = self.detect("--sequence", "frame_9.obj", "frame_1.obj", "--self")["frames"]
+        self.assertEqual(forward[0]["contacts"], backward[1]["contacts"])
+        self.assertEqual(forward[1]["contacts"], backward[0]["contacts"])
+
+    def test_other_counts_are_an_error(self):
+        self.write("frame_12.obj", TRIANGLE)
+        done = self.run_here("detect", "--quiet", "--sequence", "frame_*.obj")
+        self.assert_one_line_error(done, "frame_12.obj", "3 vertices", "6")
+
+    def test_other_triangles_are_an_error(self):
+        self.write("frame_12.obj", (CROSSED[0], [(0, 1, 2), (3, 5, 4)]))
+        done = self.run_here("detect", "--quiet", "--sequence", "frame_*.obj")
+        self.assert_one_line_error(done, "frame_12.obj", "triangle 1")
+
+    def test_pattern_with_characters_of_patterns_in_the_name(self):
+        self.write("odd[1].obj", TRIANGLE)
+        self.assertEqual(len(self.detect("odd[1].obj")["objects"]), 1)
+
+
+class Streaming(ProgramTest):
+    """A run of a thousand million frames shows its first results at once."""
+
+    def start(self, *arguments, **streams):
+        process = subprocess.Popen([PROGRAM, "detect", ROOT / "scenes/nine.toml", "--steps", "1000000000", *arguments], **streams)
+        self.addCleanup(process.wait)
+        self.addCleanup(process.kill)
+        return process
+
+    def test_json_and_csv(self):
+        for flag in ("--json", "--csv"):
+            process = self.start(flag, "-", stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
+            self.assertEqual(len(process.stdout.read(100000)), 100000)
+            process.stdout.close()
+
+    def test_progress_on_a_terminal(self):
+        terminal, its_side = pty.openpty()
+        self.addCleanup(os.close, terminal)
+        self.start(stdout=subprocess.DEVNULL, stderr=its_side)
+        os.close(its_side)
+        self.assertRegex(os.read(terminal, 200).decode(), r"^\r\[[#.]+\] frame \d+ of 1000000000")
+
+    def test_no_progress_elsewhere(self):
+        done = self.run_here("detect", ROOT / "scenes/nine.toml", "--steps", "2")
+        self.assertEqual((done.status, done.error), (0, ""))
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,79 @@
+"""Runs the program under test, and writes the meshes that the tests give it."""
+
+import json
+import os
+import pathlib
+import subprocess
+import tempfile
+import unittest
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+PROGRAM = os.environ.get("SUPPLE_PROGRAM", str(ROOT / "build/release/bin/supple"))
+
+
+class Result:
+    def __init__(self, done):
+        self.status = done.returncode
+        self.out = done.stdout
+        self.error = done.stderr
+
+
+def run(*arguments, folder=None, **environment):
+    return Result(
+        subprocess.run(
+            [PROGRAM, *map(str, arguments)],
+            cwd=folder,
+            capture_output=True,
+            text=True,
+            errors="surrogateescape",
+            env={**os.environ, **environment},
+        )
+    )
+
+
+def obj(vertices, triangles):
+    """The text of an OBJ file; triangles count from 0."""
+    lines = [f"v {x!r} {y!r} {z!r}" for x, y, z in vertices]
+    lines += [f"f {a + 1} {b + 1} {c + 1}" for a, b, c in triangles]
+    return "\n".join(lines) + "\n"
+
+
+TRIANGLE = ([(0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0)], [(0, 1, 2)])
+# Stands upright in TRIANGLE's plane: they share the segment from (0.25, 0.25, 0) to (0.75, 0.25, 0).
+UPRIGHT = ([(0.25, 0.25, -1.0), (0.25, 0.25, 1.0), (0.75, 0.25, 0.0)], [(0, 1, 2)])
+FAR = ([(5.0, 0.0, 0.0), (6.0, 0.0, 0.0), (5.0, 1.0, 0.0)], [(0, 1, 2)])
+# Two triangles without a common vertex, crossing each other.
+CROSSED = (TRIANGLE[0] + UPRIGHT[0], [(0, 1, 2), (3, 4, 5)])
+
+
+class ProgramTest(unittest.TestCase):
+    """A test with a folder of its own."""
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+
+    def write(self, name, content):
+        """Writes a file, a mesh given as (vertices, triangles) as OBJ, and returns its path."""
+        path = self.folder / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(obj(*content) if isinstance(content, tuple) else content)
+        return path
+
+    def run_here(self, *arguments, **environment):
+        return run(*arguments, folder=self.folder, **environment)
+
+    def detect(self, *arguments):
+        """The JSON of a run that must succeed."""
+        done = self.run_here("detect", *arguments, "--json", "-")
+        self.assertEqual((done.status, done.error), (0, ""))
+        return json.loads(done.out)
+
+    def assert_one_line_error(self, done, *parts):
+        """Status 2, nothing on standard output, one line on standard error that has each of the parts."""
+        self.assertEqual((done.status, done.out), (2, ""), done.error)
+        self.assertTrue(done.error.endswith("\n"), done.error)
+        self.assertEqual(len(done.error.splitlines()), 1, done.error)
+        for part in parts:
+            self.assertIn(part, done.error)

@@ -1,0 +1,152 @@
+"""What scripts rely on: exit statuses, one-line errors, help that teaches by example."""
+
+import re
+import unittest
+
+from program import CROSSED, FAR, TRIANGLE, UPRIGHT, ProgramTest, run
+
+
+class Help(ProgramTest):
+    def test_version(self):
+        done = run("--version")
+        self.assertEqual((done.status, done.error), (0, ""))
+        self.assertRegex(done.out, r"^supple \d+\.\d+\.\d+\n$")
+
+    def test_help_teaches_by_example(self):
+        for command in ("detect", "info"):
+            done = run(command, "--help")
+            self.assertEqual((done.status, done.error), (0, ""))
+            options, examples = done.out.split("Examples:")
+            lines = re.findall(rf"^  supple {command} .*$", examples, re.M)
+            self.assertGreaterEqual(len(lines), 3)
+            for flag in re.findall(r"(?<= )--[a-z-]+", "\n".join(lines)):
+                self.assertIn(flag, options, "an example uses an option that is not explained")
+
+    def test_help_of_the_program_names_the_commands(self):
+        done = run("--help")
+        self.assertEqual(done.status, 0)
+        for word in ("detect", "info", "Examples:", "Exit status"):
+            self.assertIn(word, done.out)
+
+
+class UsageErrors(ProgramTest):
+    def setUp(self):
+        super().setUp()
+        self.write("a.obj", TRIANGLE)
+        self.write("b.obj", UPRIGHT)
+        self.write("scene.toml", '[[object]]\nmodel = "box"\n')
+
+    def expect(self, *arguments, parts):
+        with self.subTest(arguments=arguments):
+            self.assert_one_line_error(self.run_here(*arguments), *parts)
+
+    def test_command(self):
+        self.expect(parts=["subcommand", "--help"])
+        self.expect("explode", parts=["explode"])
+        self.expect("detect", parts=["required"])
+        self.expect("info", parts=["required"])
+
+    def test_stages_that_do_not_exist_are_usage_errors(self):
+        self.expect("detect", "a.obj", "--distance", "1", parts=["--distance"])
+        self.expect("detect", "a.obj", "--bounding-volume", "obb", parts=["--bounding-volume", "aabb, sphere"])
+        self.expect("detect", "a.obj", "--bounding-volume", "kdop", parts=["--bounding-volume", "aabb, sphere"])
+        self.expect("detect", "a.obj", "--contacts", "proximity", parts=["--contacts", "intersection, none"])
+        self.expect("detect", "a.obj", "--contacts", "continuous", parts=["--contacts", "intersection, none"])
+
+    def test_values(self):
+        self.expect("detect", "a.obj", "--threads", "-1", parts=["--threads", "'-1'", "0 to 1024"])
+        self.expect("detect", "a.obj", "--threads", "two", parts=["--threads", "'two'"])
+        self.expect("detect", "a.obj", "--threads", "1.5", parts=["--threads", "'1.5'"])
+        self.expect("detect", "a.obj", "--max-level", "33", parts=["--max-level", "'33'", "0 to 32"])
+        self.expect("detect", "a.obj", "--leaf-size", "0", parts=["--leaf-size", "'0'"])
+        self.expect("detect", "scene.toml", "--steps", "0", parts=["--steps", "'0'"])
+        self.expect("detect", "a.obj", "--broad-phase", "", parts=["--broad-phase", "octree, sweep, brute"])
+        self.expect("detect", "a.obj", "--json", parts=["--json"])
+
+    def test_options_that_would_have_no_effect(self):
+        self.expect("detect", "a.obj", "--sphere-fit", "box", parts=["--sphere-fit", "--bounding-volume sphere"])
+        self.expect("detect", "a.obj", "--region-test", "arvo", parts=["--region-test", "--bounding-volume sphere"])
+        self.expect("detect", "a.obj", "--no-stats", parts=["--no-stats", "--json"])
+        self.expect("detect", "a.obj", "--steps", "3", parts=["--steps", "scene file"])
+        for flag in ("--verify", "--fail-on-contact"):
+            self.expect("detect", "a.obj", "--contacts", "none", flag, parts=[flag, "--contacts intersection"])
+        self.expect("detect", "a.obj", "--json", "-", "--csv", "-", parts=["--csv", "--json"])
+
+    def test_inputs(self):
+        self.expect("detect", "nothing.obj", parts=["nothing.obj", "no such file"])
+        self.expect("detect", "frame_*.ply", parts=["frame_*.ply", "no file matches"])
+        self.expect("detect", "scene.toml", "a.obj", parts=["scene.toml", "alone"])
+        self.expect("detect", "--sequence", "scene.toml", parts=["scene.toml", "--sequence"])
+        self.expect("detect", "--sequence", "a.obj", "none.obj", parts=["none.obj", "no such file"])
+        self.expect("detect", ".", parts=["."])
+        self.expect("info", "nothing.obj", parts=["nothing.obj", "no such file"])
+
+    def test_broken_mesh_names_file_and_line(self):
+        self.write("bad.obj", "v 0 0 0\nv 1 0 0\nf 1 2 99\n")
+        self.expect("detect", "bad.obj", parts=["bad.obj", "3", "99"])
+        self.expect("info", "bad.obj", parts=["bad.obj", "3", "99"])
+
+    def test_unknown_format_says_which_are_known(self):
+        self.write("a.xyz", "0 0 0\n")
+        self.expect("detect", "a.xyz", parts=["a.xyz", "obj", "ply"])
+
+    def test_outputs(self):
+        self.expect("detect", "a.obj", "--json", "no/such/folder.json", parts=["no/such/folder.json", "cannot write"])
+        self.expect("detect", "a.obj", "--csv", "no/such/folder.csv", parts=["no/such/folder.csv", "cannot write"])
+
+    def test_file_names_with_line_breaks_still_give_one_line(self):
+        self.expect("detect", "no\nsuch.obj", parts=["no such.obj"])
+
+    def test_full_disk(self):
+        for flag in ("--json", "--csv"):
+            self.expect("detect", "a.obj", "--quiet", flag, "/dev/full", parts=["/dev/full", "disk full"])
+
+
+class ExitStatus(ProgramTest):
+    def setUp(self):
+        super().setUp()
+        for name, mesh in (("a", TRIANGLE), ("b", UPRIGHT), ("far", FAR), ("crossed", CROSSED)):
+            self.write(f"{name}.obj", mesh)
+
+    def status(self, *arguments):
+        done = self.run_here("detect", "--quiet", *arguments)
+        self.assertEqual((done.out, done.error), ("", ""))
+        return done.status
+
+    def test_contact_is_no_failure_unless_asked(self):
+        self.assertEqual(self.status("a.obj", "b.obj"), 0)
+
+    def test_fail_on_contact(self):
+        self.assertEqual(self.status("a.obj", "b.obj", "--fail-on-contact"), 1)
+        self.assertEqual(self.status("a.obj", "far.obj", "--fail-on-contact"), 0)
+
+    def test_fail_on_contact_with_itself(self):
+        self.assertEqual(self.status("crossed.obj", "--fail-on-contact"), 0)
+        self.assertEqual(self.status("crossed.obj", "--fail-on-contact", "--self"), 1)
+
+    def test_fail_on_contact_in_any_frame(self):
+        self.write("frame_1.obj", CROSSED)
+        apart = (CROSSED[0][:3] + [(x + 9, y, z) for x, y, z in CROSSED[0][3:]], CROSSED[1])
+        self.write("frame_2.obj", apart)
+        self.assertEqual(self.status("--sequence", "frame_*.obj", "--self", "--fail-on-contact"), 1)
+
+    def test_verify_agrees(self):
+        self.assertEqual(self.status("a.obj", "b.obj", "--verify"), 0)
+
+    def test_verify_differs(self):
+        # The paper's spheres do not enclose the corners of their boxes: two tips that touch there are missed.
+        low = ([(0.0, 0.0, 0.0), (1.0, 0.0, 1.0), (1.0, 1.0, 1.0)], [(0, 1, 2)])
+        high = ([(1.0, 1.0, 1.0), (2.0, 1.0, 2.0), (2.0, 2.0, 2.0)], [(0, 1, 2)])
+        self.write("low.obj", low)
+        self.write("high.obj", high)
+        spheres = ("low.obj", "high.obj", "--verify", "--bounding-volume", "sphere")
+        self.assertEqual(self.status(*spheres), 0)
+        done = self.run_here("detect", *spheres, "--sphere-fit", "box", "--fail-on-contact", "--json", "result.json")
+        self.assertEqual(done.status, 3)
+        self.assertEqual(len(done.error.splitlines()), 1)
+        self.assertIn("not reported", done.error)
+        self.assertIn('"differences":[{"a":0,"b":1,"triangles":[0,0],"missed":true}]', (self.folder / "result.json").read_text())
+
+
+if __name__ == "__main__":
+    unittest.main()
