@@ -8,5 +8,6 @@
 #include "supple/options.hpp"
 #include "supple/result.hpp"
 #include "supple/scene.hpp"
+#include "supple/triangle_intersection.hpp"
 #include "supple/types.hpp"
 #include "supple/version.hpp"
