@@ -117,7 +117,9 @@ TEST_P(SteadyState, NoAllocationsAfterWarmUpAndValidOctreesThroughout) {
     contacts += scene.detect().contacts.size();
     if (step >= warm_up) allocated_in_steps += allocations.load() - before;
     if (step == warm_up) heap_after_warm_up = mallinfo2().uordblks;
-    if (step % validate_every == 0) ASSERT_EQ(scene.validate(), "") << "step " << step;
+    if (step % validate_every == 0) {
+      ASSERT_EQ(scene.validate(), "") << "step " << step;
+    }
   }
   EXPECT_EQ(allocated_in_steps, 0u);
   EXPECT_GT(contacts, static_cast<std::uint64_t>(steps));
