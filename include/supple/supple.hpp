@@ -1,6 +1,7 @@
 #pragma once
 
 /// Everything at once.
+#include "supple/broad_phase.hpp"
 #include "supple/contact.hpp"
 #include "supple/error.hpp"
 #include "supple/mesh.hpp"

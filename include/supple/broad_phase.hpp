@@ -1,0 +1,79 @@
+#pragma once
+
+#include <compare>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "supple/options.hpp"
+#include "supple/result.hpp"
+#include "supple/types.hpp"
+
+namespace supple {
+
+/// Two different objects as indices into the span of volumes, `a < b`.
+struct IndexPair {
+  std::uint32_t a = 0, b = 0;
+  constexpr auto operator<=>(const IndexPair&) const = default;
+};
+
+/// What the last call of `BroadPhase::find_object_pairs` did.
+struct BroadPhaseStats {
+  std::uint64_t object_pairs_tested = 0;  ///< volume against volume
+  std::uint64_t objects_changed = 0;      ///< volumes that differ from the call before, new ones included
+  // Of the scene octree; 0 for other methods.
+  std::uint64_t objects_placed = 0;    ///< taken out of regions or put into others
+  std::uint64_t regions_expanded = 0;  ///< groups of eight made
+  std::uint64_t regions_reduced = 0;   ///< regions that became leaves again
+  std::uint64_t regions_rebuilt = 0;   ///< 1 when all regions were made anew
+  std::uint64_t objects_paired = 0;    ///< whose pairs were searched; those of the others were kept
+};
+
+struct BroadPhaseOptions {
+  BroadPhaseMethod method = BroadPhaseMethod::octree;
+  SceneOctreeOptions scene_octree;
+  /// Worker threads, 0 for one a core. The pairs are the same for any number.
+  std::uint32_t threads = 0;
+};
+
+/// The broad phase by itself: volumes in, overlapping pairs out, for programs that have boxes or balls of
+/// their own and want no meshes.
+///
+/// It keeps what the last call found: volume i is taken to be the same object from call to call, and what did
+/// not change costs close to nothing. Calls on one object must not overlap.
+class BroadPhase {
+ public:
+  /// Throws `Error` when an option is out of its range.
+  explicit BroadPhase(const BroadPhaseOptions& options = {});
+  ~BroadPhase();
+  BroadPhase(BroadPhase&&) noexcept;
+  BroadPhase& operator=(BroadPhase&&) noexcept;
+
+  /// All pairs whose closed volumes overlap, each once, sorted by (a, b). The span lasts until the next call.
+  ///
+  /// The number of volumes may differ from call to call: those past the end are gone. Empty volumes are in no
+  /// pair. Coordinates may be infinite. A box with a NaN is empty, a ball with a NaN overlaps everything but
+  /// empty balls. Balls are compared in double and may be reported when apart by rounding, never the reverse.
+  /// A call with balls after one with boxes, or the reverse, starts afresh.
+  ///
+  /// Cost for n volumes and k pairs: octree O(n + k) for volumes of like size, with c of them changed about
+  /// O(c + k); sweep O(n log n + pairs that overlap along one axis); brute O(n²). No allocation once the
+  /// buffers are as large as the scene needs.
+  std::span<const IndexPair> find_object_pairs(std::span<const Aabb> boxes);
+  std::span<const IndexPair> find_object_pairs(std::span<const BoundingSphere> spheres);
+
+  /// Of the last call.
+  const BroadPhaseStats& stats() const;
+  /// Regions of the scene octree, root first, ascending by number; empty for other methods.
+  std::vector<SceneRegion> regions() const;
+  /// Checks every invariant; the empty string, or what is wrong.
+  std::string validate() const;
+
+ private:
+  class Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace supple

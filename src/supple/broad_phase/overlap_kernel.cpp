@@ -1,0 +1,99 @@
+#include "broad_phase/overlap_kernel.hpp"
+
+#include <algorithm>
+#include <bit>
+
+// Highway compiles the rest of this file once for each instruction set, and picks one when the program runs.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "broad_phase/overlap_kernel.cpp"
+#include <hwy/foreach_target.h>
+
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace supple {
+namespace HWY_NAMESPACE {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+HWY_INLINE void append(const BoxLanes& boxes, std::size_t row, std::size_t column, std::uint32_t hits,
+                       PairBuffer& pairs) {
+  IndexPair* out = pairs.room(kMaxLanes);
+  std::size_t found = 0;
+  const std::uint32_t slot = boxes.slots[row];
+  for (; hits != 0; hits &= hits - 1) {
+    const std::size_t other = column + static_cast<std::size_t>(std::countr_zero(hits));
+    out[found] = {std::min(slot, boxes.slots[other]), std::max(slot, boxes.slots[other])};
+    found += (boxes.begins[row] | boxes.begins[other]) == 7;
+  }
+  pairs.commit(found);
+}
+
+template <bool sorted>
+HWY_INLINE std::uint64_t find_rows(const BoxLanes& boxes, std::size_t begin, std::size_t end,
+                                   PairBuffer& pairs) {
+  const hn::CappedTag<float, kMaxLanes> lanes;
+  const float* const min_x = boxes.min[0].data();
+  const float* const min_y = boxes.min[1].data();
+  const float* const min_z = boxes.min[2].data();
+  const float* const max_x = boxes.max[0].data();
+  const float* const max_y = boxes.max[1].data();
+  const float* const max_z = boxes.max[2].data();
+  std::uint64_t tests = 0;
+  for (std::size_t row = begin; row < end; ++row) {
+    const auto row_min_x = hn::Set(lanes, min_x[row]), row_max_x = hn::Set(lanes, max_x[row]);
+    const auto row_min_y = hn::Set(lanes, min_y[row]), row_max_y = hn::Set(lanes, max_y[row]);
+    const auto row_min_z = hn::Set(lanes, min_z[row]), row_max_z = hn::Set(lanes, max_z[row]);
+    for (std::size_t j = row + 1; j < boxes.count; j += hn::Lanes(lanes)) {
+      const auto begin_before = hn::Le(hn::LoadU(lanes, min_x + j), row_max_x);
+      auto hit = hn::And(begin_before, hn::And(hn::Le(hn::LoadU(lanes, min_y + j), row_max_y),
+                                               hn::Ge(hn::LoadU(lanes, max_y + j), row_min_y)));
+      hit = hn::And(hit, hn::And(hn::Le(hn::LoadU(lanes, min_z + j), row_max_z),
+                                 hn::Ge(hn::LoadU(lanes, max_z + j), row_min_z)));
+      if constexpr (!sorted) hit = hn::And(hit, hn::Ge(hn::LoadU(lanes, max_x + j), row_min_x));
+      if (!hn::AllFalse(lanes, hit)) {
+        std::uint8_t bytes[8] = {};
+        hn::StoreMaskBits(lanes, hit, bytes);
+        append(boxes, row, j, bytes[0] | std::uint32_t{bytes[1]} << 8, pairs);
+      }
+      if constexpr (sorted) {
+        tests += hn::CountTrue(lanes, begin_before);
+        if (!hn::AllTrue(lanes, begin_before)) break;
+      }
+    }
+    if constexpr (!sorted) tests += boxes.count - row - 1;
+  }
+  return tests;
+}
+
+std::uint64_t find_all(const BoxLanes& boxes, std::size_t begin, std::size_t end, PairBuffer& pairs) {
+  return find_rows<false>(boxes, begin, end, pairs);
+}
+
+std::uint64_t find_sorted(const BoxLanes& boxes, std::size_t begin, std::size_t end, PairBuffer& pairs) {
+  return find_rows<true>(boxes, begin, end, pairs);
+}
+
+}  // namespace
+}  // namespace HWY_NAMESPACE
+}  // namespace supple
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace supple {
+
+HWY_EXPORT(find_all);
+HWY_EXPORT(find_sorted);
+
+std::uint64_t find_overlaps(const BoxLanes& boxes, std::size_t begin, std::size_t end, PairBuffer& pairs) {
+  return HWY_DYNAMIC_DISPATCH(find_all)(boxes, begin, end, pairs);
+}
+
+std::uint64_t find_overlaps_sorted(const BoxLanes& boxes, std::size_t begin, std::size_t end,
+                                   PairBuffer& pairs) {
+  return HWY_DYNAMIC_DISPATCH(find_sorted)(boxes, begin, end, pairs);
+}
+
+}  // namespace supple
+#endif

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/parallel.hpp"
+#include "supple/broad_phase.hpp"
+
+namespace supple {
+
+/// Volumes of all object slots at one step. Slots of removed objects hold empty volumes; slots past the end
+/// count as removed. No NaN in boxes.
+struct ObjectVolumes {
+  std::span<const Aabb> boxes;              ///< empty in sphere mode
+  std::span<const BoundingSphere> spheres;  ///< empty in box mode
+  /// Per slot, 0 when the volume is the same as in the call before. Empty: found by comparing. Slots that are
+  /// new count as changed whatever it says.
+  std::span<const std::uint8_t> changed;
+};
+
+/// One of the methods of the broad phase. All find the same pairs: (a, b) exactly when `overlap` of geometry
+/// says so of the two volumes and neither is empty.
+class PairFinder {
+ public:
+  virtual ~PairFinder() = default;
+
+  /// Replaces `pairs` by all overlapping pairs, sorted by (a, b), each once.
+  virtual void find_pairs(const ObjectVolumes& volumes, const Parallel& parallel,
+                          std::vector<IndexPair>& pairs) = 0;
+  virtual std::string validate() const { return {}; }
+  virtual std::vector<SceneRegion> regions() const { return {}; }
+  const BroadPhaseStats& stats() const { return stats_; }
+
+ protected:
+  BroadPhaseStats stats_;
+};
+
+/// Throws `Error` when an option is out of its range.
+std::unique_ptr<PairFinder> make_pair_finder(BroadPhaseMethod method, BoundingVolume bounding_volume,
+                                             const SceneOctreeOptions& octree_options);
+
+}  // namespace supple

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "broad_phase/box_lanes.hpp"
+#include "core/parallel.hpp"
+
+namespace supple {
+
+/// Puts the pairs that workers found into the canonical order, by a and then b.
+class PairSorter {
+ public:
+  /// Replaces `sorted` by the pairs of all `parts`, duplicates dropped. Every a is below `slot_count`.
+  /// A counting sort by a, then each run by b: O(pairs + slots) while no object has very many pairs.
+  void sort(std::span<const PairBuffer> parts, std::size_t slot_count, const Parallel& parallel,
+            std::vector<IndexPair>& sorted);
+
+ private:
+  void sort_by_counting(std::span<const PairBuffer> parts, std::size_t slot_count, const Parallel& parallel,
+                        std::vector<IndexPair>& sorted);
+
+  std::vector<std::size_t> run_end_;
+};
+
+/// Drops the pairs from `first` on whose balls do not overlap.
+void keep_overlapping_spheres(std::span<const BoundingSphere> spheres, std::size_t first, PairBuffer& pairs);
+
+}  // namespace supple

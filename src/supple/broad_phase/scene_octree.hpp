@@ -1,0 +1,143 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "broad_phase/object_volume.hpp"
+#include "broad_phase/scene_cube.hpp"
+#include "broad_phase/slot_lists.hpp"
+#include "supple/options.hpp"
+#include "supple/result.hpp"
+
+namespace supple {
+
+/// The octree of the scene (the paper's section 5): a cube divided into groups of eight regions, which holds
+/// each object in every leaf region that its volume touches, and follows the objects from step to step.
+///
+/// Regions part space at planes, half-open: a box is in the lower half of a region when min < middle and in
+/// the upper half when max >= middle. There is no rounding in this, and the outermost regions reach to
+/// infinity, so an object anywhere is in some leaf. Child k of a region is in the upper half along x, y, z
+/// when bit 0, 1, 2 of k is set.
+///
+/// A region divides an object when the object is no longer than the edge of its children. A region is
+/// expanded exactly when at least `expand_at` of its objects are divided by it and it is above `max_level`.
+/// An object that is large against a region thus never expands it, and one that is divided touches at most
+/// eight regions of that level: there are at most 8 n / expand_at groups on each level, however the n objects
+/// lie. The regions depend on the cube and the present volumes alone, not on the way there.
+class SceneOctree {
+ public:
+  struct Region {
+    std::uint64_t number = 0;
+    Vec3f lower, middle, upper;     ///< lower and upper infinite at the border of the scene
+    std::uint32_t first_child = 0;  ///< the group of eight; 0 for a leaf
+    std::uint32_t divided = 0;      ///< objects in it that it divides
+    SlotLists::List objects;        ///< of a leaf; empty for others
+    std::uint8_t level = 0;
+    bool in_use = false;
+
+    bool is_leaf() const { return first_child == 0; }
+  };
+
+  SceneOctree(BoundingVolume bounding_volume, const SceneOctreeOptions& options);
+
+  /// Makes room for this many slots; new ones are empty.
+  void resize(std::size_t slot_count);
+  std::size_t slot_count() const { return boxes_.size(); }
+  std::span<const Aabb> boxes() const { return boxes_; }
+  std::span<const BoundingSphere> spheres() const { return spheres_; }
+  const SceneCube& cube() const { return cube_; }
+  /// Balls are placed by Arvo's test: two that overlap share a region, but perhaps not the one in which the
+  /// intersection of their boxes begins.
+  bool placed_by_sphere() const { return by_sphere_; }
+
+  bool same_volume(std::uint32_t slot, const ObjectVolume& now) const;
+  /// True only when the new volume touches the same leaves as the present one and is divided by the same
+  /// regions; false when that is not sure without a walk down the regions. O(1).
+  bool stays(std::uint32_t slot, const ObjectVolume& now) const;
+  /// Takes over a new volume and leaves the regions as they are.
+  void set_volume(std::uint32_t slot, const ObjectVolume& now);
+  /// Takes an object out of the regions it left and puts it into those it entered, in one walk down the
+  /// regions of both. `settle` must follow when all objects have moved.
+  void move(std::uint32_t slot, const ObjectVolume& now);
+  /// Expands and reduces the regions that `move` left due for it.
+  void settle();
+  /// Makes all regions anew, top down, O(objects · levels).
+  void build(const SceneCube& cube);
+
+  std::span<const Region> regions() const { return regions_; }
+  std::span<const std::uint32_t> objects(const Region& region) const { return lists_.view(region.objects); }
+  /// Calls `visit(region)` for each leaf that the object is in.
+  template <class Visit>
+  void visit_leaves(std::uint32_t slot, Visit&& visit) const {
+    if (!boxes_[slot].empty()) visit_leaves_below(regions_[0], slot, visit);
+  }
+
+  std::uint64_t expanded_count() const { return expanded_count_; }  ///< since construction
+  std::uint64_t reduced_count() const { return reduced_count_; }
+  std::vector<SceneRegion> describe() const;
+  std::string validate() const;
+
+ private:
+  /// Within which the ends of a box may move while every comparison with the regions' planes comes out the
+  /// same: x, y, z of min, then of max, lower bound inclusive, upper exclusive.
+  struct StayRange {
+    std::array<float, 6> low, high;
+  };
+
+  ObjectVolume volume(std::uint32_t slot) const;
+  std::uint8_t finest_level(const Aabb& box) const;
+  std::uint32_t children_touched(const Region& region, const Aabb& box, const BoundingSphere* sphere) const;
+  std::uint32_t children_touched(const Region& region, std::uint32_t slot) const {
+    return children_touched(region, boxes_[slot], by_sphere_ ? &spheres_[slot] : nullptr);
+  }
+  bool should_expand(const Region& region) const;
+  void make_root();
+  std::uint32_t make_children(std::uint32_t parent);
+  void free_children(std::uint32_t parent);
+  void expand(std::uint32_t index);
+  void reduce(std::uint32_t index);
+  void collect(std::uint32_t index);
+  struct Journey;
+  void move_below(std::uint32_t index, const Journey& journey, bool was_here, bool is_here);
+  void open_stay_range(std::uint32_t slot);
+  void narrow_stay_range(std::uint32_t slot, const Region& region);
+  void set_sphere_stay_range(std::uint32_t slot, const Region& leaf);
+
+  template <class Visit>
+  void visit_leaves_below(const Region& region, std::uint32_t slot, Visit& visit) const {
+    if (region.is_leaf()) {
+      visit(region);
+      return;
+    }
+    for (std::uint32_t mask = children_touched(region, slot); mask != 0; mask &= mask - 1)
+      visit_leaves_below(regions_[region.first_child + static_cast<std::uint32_t>(std::countr_zero(mask))],
+                         slot, visit);
+  }
+
+  struct Census;
+  std::string validate_below(std::uint32_t index, std::span<const std::uint32_t> slots, Census& census) const;
+
+  bool has_spheres_, by_sphere_;
+  std::uint32_t expand_at_;
+  SceneCube cube_;
+  std::vector<Region> regions_;  // the root is alone in the first group
+  std::vector<std::uint32_t> free_groups_;
+  SlotLists lists_;
+  std::vector<std::uint32_t> due_;  // regions to expand or reduce, perhaps several times
+  std::uint64_t expanded_count_ = 0, reduced_count_ = 0;
+
+  // Per slot, of the volumes that the regions hold.
+  std::vector<Aabb> boxes_;
+  std::vector<BoundingSphere> spheres_;
+  std::vector<StayRange> stay_;
+  std::vector<std::uint8_t> finest_level_;  // regions above this level divide the object
+
+  std::vector<std::uint8_t> child_masks_;   // scratch of `expand`
+  std::vector<std::uint32_t> collected_;    // scratch of `reduce`
+  std::vector<std::uint8_t> is_collected_;  // scratch of `reduce`, per slot
+};
+
+}  // namespace supple

@@ -1,0 +1,217 @@
+#include "scene/contact_pass.hpp"
+
+#include <algorithm>
+#include <tuple>
+
+#include "supple/triangle_intersection.hpp"
+
+namespace supple {
+namespace {
+
+/// Tasks a worker that make for an even load, and rounds of refinement to get there.
+constexpr std::size_t tasks_per_worker = 32;
+constexpr int most_refinements = 4;
+
+Vec3d position(const OctreeView& view, std::uint32_t vertex) {
+  const std::size_t i = std::size_t{vertex} * 4;
+  const TriangleArrays& arrays = view.arrays;
+  const Vec3d p = arrays.doubles != nullptr
+                      ? Vec3d{arrays.doubles[i], arrays.doubles[i + 1], arrays.doubles[i + 2]}
+                      : Vec3d{arrays.floats[i], arrays.floats[i + 1], arrays.floats[i + 2]};
+  return p + view.translation;
+}
+
+TrianglePoints points_of(const OctreeView& view, std::uint32_t triangle) {
+  const Triangle& corners = view.arrays.triangles[triangle];
+  return {position(view, corners[0]), position(view, corners[1]), position(view, corners[2])};
+}
+
+}  // namespace
+
+void ContactPass::run(std::span<const ContactJob> jobs, std::span<const ContactObject> objects,
+                      const SceneOptions& options, const Parallel& parallel, StepStats& stats) {
+  jobs_ = jobs;
+  objects_ = objects;
+  options_ = options;
+  parallel_ = &parallel;
+  workers_.resize(parallel.worker_count());
+  for (Worker& worker : workers_) {
+    worker.found.clear();
+    worker.points.clear();
+    worker.leaves.clear();
+    worker.traversal_stats = {};
+    worker.exact_fallbacks = 0;
+    worker.busy_seconds = worker.exact_seconds = 0;
+  }
+  Timer timer;
+  plan_tasks();
+  parallel.for_ranges(tasks_.size(), 1, [&](std::size_t begin, std::size_t end, std::uint32_t w) {
+    Timer busy;
+    for (std::size_t i = begin; i < end; ++i) run_task(tasks_[i], workers_[w]);
+    workers_[w].busy_seconds += busy.lap();
+  });
+  collect_stats(timer.lap(), stats);
+  gather_contacts();
+  gather_colliding_vertices();
+  stats.contacts = contacts_.size();
+  stats.finish_seconds += timer.lap();
+}
+
+ObjectPairView ContactPass::view_of_job(std::uint32_t job) const {
+  const ContactObject& a = objects_[jobs_[job].a];
+  if (jobs_[job].a == jobs_[job].b) return self_pair_of(a.view);
+  return pair_of(a.view, objects_[jobs_[job].b].view);
+}
+
+/// One task a job; with several workers and few jobs, the first levels of the descent are done here to have
+/// enough of them.
+void ContactPass::plan_tasks() {
+  tasks_.clear();
+  for (std::uint32_t job = 0; job < jobs_.size(); ++job) tasks_.push_back({job, {}});
+  if (workers_.size() == 1) return;
+  for (int round = 0; round < most_refinements && tasks_.size() < tasks_per_worker * workers_.size();
+       ++round) {
+    finer_tasks_.clear();
+    for (const Task& task : tasks_) {
+      finer_.clear();
+      workers_[0].traversal.refine(view_of_job(task.job), task.root, finer_);
+      for (const NodePair& root : finer_) finer_tasks_.push_back({task.job, root});
+    }
+    tasks_.swap(finer_tasks_);
+  }
+}
+
+void ContactPass::run_task(const Task& task, Worker& worker) const {
+  const ObjectPairView pair = view_of_job(task.job);
+  const auto on_leaves = [&](std::span<const LeafPair> leaf_pairs) {
+    if (!options_.colliding_vertices) return;
+    for (const LeafPair& leaves : leaf_pairs) worker.leaves.push_back({task.job, leaves});
+  };
+  const auto on_candidates = [&](std::span<const TrianglePair> candidates) {
+    if (options_.contacts == ContactMode::none) return;
+    Timer timer;
+    test_candidates(task.job, pair, candidates, worker);
+    worker.exact_seconds += timer.lap();
+  };
+  worker.traversal.find_triangle_pairs(pair, task.root, worker.traversal_stats, on_leaves, on_candidates);
+}
+
+/// The exact tests see triangles in the order of the results, so that nothing depends on the shape of the
+/// octrees.
+void ContactPass::test_candidates(std::uint32_t job, const ObjectPairView& pair,
+                                  std::span<const TrianglePair> candidates, Worker& worker) const {
+  const ContactObject& a = objects_[jobs_[job].a];
+  const ContactObject& b = objects_[jobs_[job].b];
+  for (TrianglePair candidate : candidates) {
+    if (pair.same_object && a.triangle_ids[candidate.a] > a.triangle_ids[candidate.b]) {
+      std::swap(candidate.a, candidate.b);
+    }
+    const TriangleIntersection shared =
+        intersect_triangles(points_of(pair.a, candidate.a), points_of(pair.b, candidate.b));
+    worker.exact_fallbacks += shared.used_exact_fallback ? 1 : 0;
+    if (!shared.intersects) continue;
+    Contact contact{a.id,
+                    b.id,
+                    a.triangle_ids[candidate.a],
+                    b.triangle_ids[candidate.b],
+                    shared.kind,
+                    shared.point_count,
+                    static_cast<std::uint32_t>(worker.points.size())};
+    if (options_.contact_points) {
+      const auto points = shared.extreme_points();
+      worker.points.insert(worker.points.end(), points.begin(), points.end());
+    }
+    worker.found.push_back({job, contact});
+  }
+}
+
+void ContactPass::gather_contacts() {
+  keys_.clear();
+  for (std::uint32_t w = 0; w < workers_.size(); ++w) {
+    for (std::uint32_t i = 0; i < workers_[w].found.size(); ++i) {
+      const Found& found = workers_[w].found[i];
+      keys_.push_back({found.job, found.contact.triangle_a, found.contact.triangle_b, w, i});
+    }
+  }
+  std::sort(keys_.begin(), keys_.end(), [](const SortKey& p, const SortKey& q) {
+    return std::tie(p.job, p.triangle_a, p.triangle_b) < std::tie(q.job, q.triangle_a, q.triangle_b);
+  });
+  groups_.clear();
+  contacts_.clear();
+  points_.clear();
+  std::uint32_t last_job = 0;
+  for (const SortKey& key : keys_) {
+    const Worker& worker = workers_[key.worker];
+    Contact contact = worker.found[key.index].contact;
+    if (options_.contact_points) {
+      const auto first = worker.points.begin() + contact.first_point;
+      contact.first_point = static_cast<std::uint32_t>(points_.size());
+      points_.insert(points_.end(), first, first + contact.point_count);
+    }
+    if (groups_.empty() || key.job != last_job) {
+      groups_.push_back(
+          {contact.object_a, contact.object_b, static_cast<std::uint32_t>(contacts_.size()), 0});
+      last_job = key.job;
+    }
+    ++groups_.back().contact_count;
+    contacts_.push_back(contact);
+  }
+}
+
+void ContactPass::gather_colliding_vertices() {
+  vertex_groups_.clear();
+  vertices_.clear();
+  if (!options_.colliding_vertices) return;
+  leaves_.clear();
+  for (const Worker& worker : workers_)
+    leaves_.insert(leaves_.end(), worker.leaves.begin(), worker.leaves.end());
+  // The vertices of a job are a set: the order of its leaves does not matter.
+  std::sort(leaves_.begin(), leaves_.end(),
+            [](const CollidingLeaves& p, const CollidingLeaves& q) { return p.job < q.job; });
+  for (auto first = leaves_.begin(); first != leaves_.end();) {
+    const std::uint32_t job = first->job;
+    const auto last =
+        std::find_if(first, leaves_.end(), [&](const auto& leaves) { return leaves.job != job; });
+    CollidingVertices group{objects_[jobs_[job].a].id, objects_[jobs_[job].b].id,
+                            static_cast<std::uint32_t>(vertices_.size()), 0, 0};
+    append_marked_vertices(jobs_[job].a, {first, last}, false);
+    group.count_a = static_cast<std::uint32_t>(vertices_.size()) - group.first_vertex;
+    append_marked_vertices(jobs_[job].b, {first, last}, true);
+    group.count_b = static_cast<std::uint32_t>(vertices_.size()) - group.first_vertex - group.count_a;
+    vertex_groups_.push_back(group);
+    first = last;
+  }
+}
+
+void ContactPass::append_marked_vertices(std::uint32_t object, std::span<const CollidingLeaves> leaves,
+                                         bool side_b) {
+  const ContactObject& owner = objects_[object];
+  marked_.assign(owner.vertex_ids.size(), 0);
+  for (const CollidingLeaves& pair : leaves) {
+    const std::uint32_t begin = side_b ? pair.leaves.begin_b : pair.leaves.begin_a;
+    const std::uint32_t end = side_b ? pair.leaves.end_b : pair.leaves.end_a;
+    for (std::uint32_t t = begin; t < end; ++t) {
+      for (const std::uint32_t vertex : owner.view.arrays.triangles[t]) marked_[owner.vertex_ids[vertex]] = 1;
+    }
+  }
+  for (std::uint32_t vertex = 0; vertex < marked_.size(); ++vertex) {
+    if (marked_[vertex] != 0) vertices_.push_back(vertex);
+  }
+}
+
+void ContactPass::collect_stats(double wall_seconds, StepStats& stats) const {
+  double busy = 0, exact = 0;
+  for (const Worker& worker : workers_) {
+    busy += worker.busy_seconds;
+    exact += worker.exact_seconds;
+    stats.node_pairs_visited += worker.traversal_stats.node_pairs_visited;
+    stats.boxes_tested += worker.traversal_stats.volumes_tested;
+    stats.candidate_pairs += worker.traversal_stats.candidate_pairs;
+    stats.exact_fallbacks += worker.exact_fallbacks;
+  }
+  const double exact_share = busy > 0 ? std::min(1.0, exact / busy) : 0;
+  stats.exact_seconds = wall_seconds * exact_share;
+  stats.traversal_seconds = wall_seconds - stats.exact_seconds;
+}
+
+}  // namespace supple

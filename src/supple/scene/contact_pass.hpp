@@ -1,0 +1,101 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/parallel.hpp"
+#include "core/timer.hpp"
+#include "narrow_phase/traversal.hpp"
+#include "supple/contact.hpp"
+#include "supple/options.hpp"
+#include "supple/result.hpp"
+
+namespace supple {
+
+/// Two objects to be tested against each other, as indices into the objects of the pass; the same twice for
+/// an object against itself. `a <= b`.
+struct ContactJob {
+  std::uint32_t a = 0, b = 0;
+};
+
+/// What the pass reads of an object.
+struct ContactObject {
+  ObjectId id;
+  OctreeView view;
+  std::span<const std::uint32_t> triangle_ids, vertex_ids;  ///< octree order to the user's
+};
+
+/// Narrow phase and exact stage over all jobs of a step, on all workers. Candidates stream from one to the
+/// other in batches. Keeps its memory between steps.
+class ContactPass {
+ public:
+  /// `jobs` ascending; `objects` are addressed by the jobs. The outcome is in canonical order whatever the
+  /// threads.
+  void run(std::span<const ContactJob> jobs, std::span<const ContactObject> objects,
+           const SceneOptions& options, const Parallel& parallel, StepStats& stats);
+
+  std::span<const ContactGroup> groups() const { return groups_; }
+  std::span<const Contact> contacts() const { return contacts_; }
+  std::span<const ContactPoint> contact_points() const { return points_; }
+  std::span<const CollidingVertices> colliding_vertex_groups() const { return vertex_groups_; }
+  std::span<const std::uint32_t> colliding_vertices() const { return vertices_; }
+
+ private:
+  /// Part of a job: the triangle pairs below a pair of nodes.
+  struct Task {
+    std::uint32_t job = 0;
+    NodePair root;
+  };
+  /// A contact as a worker finds it, `contact.first_point` counting that worker's points.
+  struct Found {
+    std::uint32_t job = 0;
+    Contact contact;
+  };
+  struct CollidingLeaves {
+    std::uint32_t job = 0;
+    LeafPair leaves;
+  };
+  struct Worker {
+    Traversal traversal;
+    std::vector<Found> found;
+    std::vector<ContactPoint> points;
+    std::vector<CollidingLeaves> leaves;
+    TraversalStats traversal_stats;
+    std::uint64_t exact_fallbacks = 0;
+    double busy_seconds = 0, exact_seconds = 0;
+  };
+  struct SortKey {
+    std::uint32_t job, triangle_a, triangle_b, worker, index;
+  };
+
+  ObjectPairView view_of_job(std::uint32_t job) const;
+  void plan_tasks();
+  void run_task(const Task& task, Worker& worker) const;
+  void test_candidates(std::uint32_t job, const ObjectPairView& pair,
+                       std::span<const TrianglePair> candidates, Worker& worker) const;
+  void gather_contacts();
+  void gather_colliding_vertices();
+  void append_marked_vertices(std::uint32_t object, std::span<const CollidingLeaves> leaves, bool side_b);
+  void collect_stats(double wall_seconds, StepStats& stats) const;
+
+  std::span<const ContactJob> jobs_;
+  std::span<const ContactObject> objects_;
+  SceneOptions options_;
+  const Parallel* parallel_ = nullptr;
+
+  std::vector<Worker> workers_;
+  std::vector<Task> tasks_, finer_tasks_;
+  std::vector<NodePair> finer_;
+  std::vector<SortKey> keys_;
+  std::vector<CollidingLeaves> leaves_;
+  std::vector<std::uint8_t> marked_;
+
+  std::vector<ContactGroup> groups_;
+  std::vector<Contact> contacts_;
+  std::vector<ContactPoint> points_;
+  std::vector<CollidingVertices> vertex_groups_;
+  std::vector<std::uint32_t> vertices_;
+};
+
+}  // namespace supple

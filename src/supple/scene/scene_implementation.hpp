@@ -1,0 +1,83 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "broad_phase/pair_cache.hpp"
+#include "broad_phase/pair_finder.hpp"
+#include "core/parallel.hpp"
+#include "scene/contact_pass.hpp"
+#include "scene/scene_object.hpp"
+#include "supple/scene.hpp"
+
+namespace supple {
+
+/// The objects and the step; `detect` reads as the list of stages.
+class Scene::Implementation {
+ public:
+  explicit Implementation(const SceneOptions& scene_options);
+
+  ObjectId add(const PositionsView<double>& positions, std::span<const Triangle> triangles,
+               const ObjectOptions& object_options, const std::string& fallback_name);
+  void remove(ObjectId id);
+
+  /// Throws naming `call` when the object is not in the scene.
+  SceneObject& object(ObjectId id, const char* call) const;
+  /// Likewise, and when the object is static.
+  SceneObject& movable_object(ObjectId id, const char* call) const;
+  template <class Scalar>
+  void set_positions(ObjectId id, const PositionsView<Scalar>& positions);
+
+  const DetectResult& detect();
+  VerifyReport verify() const;
+  std::string validate() const;
+
+  bool contains(ObjectId id) const;
+  std::vector<ObjectId> objects() const;
+  /// Anything that changes what `detect` would find.
+  void mark_changed() { detected_ = false; }
+
+  SceneOptions options;
+  Parallel parallel;
+  PairFilter filter;
+  std::unique_ptr<PairFinder> pair_finder;
+  DetectResult result;
+
+ private:
+  struct Slot {
+    std::unique_ptr<SceneObject> object;
+    std::uint32_t generation = 0;
+  };
+
+  void refit_objects();
+  void find_object_pairs();
+  void find_contacts();
+  void report_non_finite();
+  void publish();
+  bool may_pair(const IndexPair& pair) const;
+  ObjectId id_of(std::uint32_t index) const { return {index, slots_[index].generation}; }
+  std::vector<ObjectPair> pairs_to_verify() const;
+
+  std::vector<Slot> slots_;
+  std::vector<std::uint32_t> free_slots_;
+  bool detected_ = false;
+  std::uint64_t step_ = 0;
+
+  // Of the step, by slot; kept for their memory.
+  std::vector<Aabb> boxes_;
+  std::vector<BoundingSphere> spheres_;
+  std::vector<std::uint8_t> changed_;
+  std::vector<std::uint32_t> stale_;
+  std::vector<IndexPair> index_pairs_;
+  std::vector<ObjectPair> object_pairs_, touching_pairs_;
+  std::vector<ContactJob> jobs_;
+  std::vector<ContactObject> contact_objects_;
+  std::vector<NonFiniteVertex> non_finite_;
+  PairCache volume_pairs_, contact_pairs_;
+  ContactPass contact_pass_;
+};
+
+}  // namespace supple

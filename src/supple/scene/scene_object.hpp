@@ -1,0 +1,76 @@
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "core/parallel.hpp"
+#include "narrow_phase/traversal.hpp"
+#include "octree/object_octree.hpp"
+#include "supple/options.hpp"
+#include "supple/result.hpp"
+#include "supple/scene.hpp"
+
+namespace supple {
+
+/// One object of a scene: its octree, its positions and how it is placed.
+///
+/// A position is fl(R p) + T of the position p last given. The octree's volumes are those of fl(R p); T is
+/// added where volumes and positions are read, so that translating is O(1). Where magnitudes are such that
+/// this could lose bits or overflow in single precision, T is settled into the positions instead.
+class SceneObject {
+ public:
+  SceneObject(const PositionsView<double>& positions, std::span<const Triangle> triangles,
+              const ObjectOptions& options, const SceneOptions& scene_options);
+
+  template <class Scalar>
+  void set_positions(const PositionsView<Scalar>& positions, const Parallel& parallel);
+  void translate(Vec3d offset, const Parallel& parallel);
+  void set_transform(const RigidTransform& transform, const Parallel& parallel);
+
+  /// Whether octree or bounds lag behind the positions.
+  bool is_stale() const { return needs_refit_ || needs_bounds_; }
+  bool needs_refit() const { return needs_refit_; }
+  /// Brings octree and bounds up to date.
+  void update(const Parallel& parallel);
+
+  /// Of the placed object, as of the last update.
+  const Aabb& box() const { return box_; }
+  const BoundingSphere& sphere() const { return sphere_; }
+  OctreeView view() const { return view_of(octree_, vertices_, inert_, lazy_translation()); }
+  const ObjectOctree& octree() const { return octree_; }
+  /// Placed position of a vertex in octree order.
+  Vec3d position(std::uint32_t octree_vertex) const;
+  bool is_inert(std::uint32_t octree_triangle) const {
+    return !inert_.empty() && inert_[octree_triangle] != 0;
+  }
+  /// User's numbers, ascending.
+  std::span<const std::uint32_t> non_finite_vertices() const { return non_finite_; }
+  std::string validate() const { return octree_.validate(vertices_, inert_); }
+
+  ObjectOptions options;
+
+ private:
+  Vec3d lazy_translation() const { return is_settled_ ? Vec3d{} : translation_; }
+  void keep_shape();
+  void apply_rotation(const Parallel& parallel);
+  void unsettle(const Parallel& parallel);
+  void settle_if_extreme(const Parallel& parallel);
+  void note_non_finite(bool all_finite);
+
+  ObjectOctree octree_;
+  VertexBuffer vertices_;  // fl(R p), or fl(R p) + T when settled
+  VertexBuffer shape_;     // p, once a transform made `vertices_` differ from it
+  bool has_shape_ = false;
+  bool is_settled_ = false;
+  std::array<double, 9> rotation_ = RigidTransform{}.rotation;
+  Vec3d translation_;
+  std::vector<std::uint8_t> inert_;  // a byte a triangle in octree order, empty when all are finite
+  std::vector<std::uint32_t> non_finite_;
+  bool needs_refit_ = true;
+  bool needs_bounds_ = true;
+  Aabb box_;
+  BoundingSphere sphere_;
+};
+
+}  // namespace supple

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <cstdint>
+#include <cstring>
+#include <string>
+
+#include "supple/scene.hpp"
+
+namespace supple {
+
+/// FNV-1a over what a step reports: equal for equal results, bit for bit.
+inline std::uint64_t hash_of(const DetectResult& result, std::uint64_t hash = 0xcbf29ce484222325u) {
+  const auto add = [&hash](const auto& value) {
+    unsigned char bytes[sizeof(value)];
+    std::memcpy(bytes, &value, sizeof(value));
+    for (const unsigned char byte : bytes) hash = (hash ^ byte) * 0x100000001b3u;
+  };
+  for (const ObjectPair& pair : result.object_pairs) {
+    add(pair.a.index);
+    add(pair.b.index);
+  }
+  for (const Contact& contact : result.contacts) {
+    add(contact.object_a.index);
+    add(contact.object_b.index);
+    add(contact.triangle_a);
+    add(contact.triangle_b);
+    add(contact.kind);
+    add(contact.point_count);
+  }
+  for (const ContactPoint& point : result.contact_points) {
+    add(point.position.x);
+    add(point.position.y);
+    add(point.position.z);
+    add(point.on_a);
+    add(point.on_b);
+  }
+  for (const std::uint32_t vertex : result.colliding_vertices) add(vertex);
+  for (const auto& pairs :
+       {result.volume_events.begin, result.volume_events.end, result.contact_events.begin}) {
+    for (const ObjectPair& pair : pairs) {
+      add(pair.a.index);
+      add(pair.b.index);
+    }
+  }
+  return hash;
+}
+
+/// One line for each difference that `verify` finds, none when it agrees.
+inline std::string differences(const Scene& scene) {
+  std::string text;
+  for (const Difference& d : scene.verify().differences) {
+    text += (d.missed ? "missed " : "reported ") + std::to_string(d.object_a.index) + ":" +
+            std::to_string(d.triangle_a) + " " + std::to_string(d.object_b.index) + ":" +
+            std::to_string(d.triangle_b) + "\n";
+  }
+  return text;
+}
+
+}  // namespace supple

@@ -1,0 +1,302 @@
+#include "supple/broad_phase.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <vector>
+
+#include "broad_phase/object_volume.hpp"
+#include "geometry/aabb.hpp"
+#include "geometry/sphere.hpp"
+#include "supple/error.hpp"
+#include "unit/broad_phase/volume_scenes.hpp"
+
+namespace supple {
+namespace {
+
+using test::box_around;
+using test::kInfinity;
+using test::Random;
+
+constexpr std::array kMethods{BroadPhaseMethod::octree, BroadPhaseMethod::sweep, BroadPhaseMethod::brute};
+const char* name_of(BroadPhaseMethod method) {
+  return method == BroadPhaseMethod::octree  ? "octree"
+         : method == BroadPhaseMethod::sweep ? "sweep"
+                                             : "brute";
+}
+
+template <class Volume>
+std::vector<IndexPair> double_loop(const std::vector<Volume>& volumes) {
+  std::vector<IndexPair> pairs;
+  for (std::uint32_t a = 0; a < volumes.size(); ++a)
+    for (std::uint32_t b = a + 1; b < volumes.size(); ++b)
+      if (!volumes[a].empty() && !volumes[b].empty() && overlap(volumes[a], volumes[b]))
+        pairs.push_back({a, b});
+  return pairs;
+}
+
+template <class Volume>
+std::vector<IndexPair> find(BroadPhase& broad_phase, const std::vector<Volume>& volumes) {
+  const auto pairs = broad_phase.find_object_pairs(std::span<const Volume>(volumes));
+  return {pairs.begin(), pairs.end()};
+}
+
+/// One of each method, the octree in all its variants.
+std::vector<BroadPhaseOptions> all_options() {
+  std::vector<BroadPhaseOptions> all;
+  for (const BroadPhaseMethod method : kMethods)
+    all.push_back({.method = method, .scene_octree = {}, .threads = 1});
+  for (const RegionSphereTest test : {RegionSphereTest::arvo, RegionSphereTest::grown_box})
+    for (const std::uint32_t max_level : {0u, 1u, 4u, 20u})
+      for (const std::uint32_t expand_at : {2u, 9u})
+        all.push_back({BroadPhaseMethod::octree, {max_level, expand_at, test}, 1});
+  return all;
+}
+
+std::string describe(const BroadPhaseOptions& options) {
+  return std::string(name_of(options.method)) + " max_level " +
+         std::to_string(options.scene_octree.max_level) + " expand_at " +
+         std::to_string(options.scene_octree.expand_at) + " sphere test " +
+         std::to_string(static_cast<int>(options.scene_octree.region_sphere_test));
+}
+
+TEST(BroadPhase, EveryMethodFindsTheBoxPairsOfADoubleLoop) {
+  for (const test::NamedBoxes& scene : test::box_scenes()) {
+    const std::vector<IndexPair> expected = double_loop(scene.boxes);
+    for (const BroadPhaseOptions& options : all_options()) {
+      BroadPhase broad_phase(options);
+      ASSERT_EQ(find(broad_phase, scene.boxes), expected) << scene.name << ", " << describe(options);
+      ASSERT_EQ(broad_phase.validate(), "") << scene.name << ", " << describe(options);
+      // The same once more, from what was kept.
+      ASSERT_EQ(find(broad_phase, scene.boxes), expected) << scene.name << ", " << describe(options);
+    }
+  }
+}
+
+TEST(BroadPhase, EveryMethodFindsTheSpherePairsOfADoubleLoop) {
+  for (const test::NamedBoxes& scene : test::box_scenes()) {
+    const std::vector<BoundingSphere> spheres = test::spheres_in(scene.boxes);
+    const std::vector<IndexPair> expected = double_loop(spheres);
+    for (const BroadPhaseOptions& options : all_options()) {
+      BroadPhase broad_phase(options);
+      ASSERT_EQ(find(broad_phase, spheres), expected) << scene.name << ", " << describe(options);
+      ASSERT_EQ(broad_phase.validate(), "") << scene.name << ", " << describe(options);
+      ASSERT_EQ(find(broad_phase, spheres), expected) << scene.name << ", " << describe(options);
+    }
+  }
+}
+
+TEST(BroadPhase, ScenesOfTheTestsHavePairs) {
+  std::size_t with_pairs = 0;
+  for (const test::NamedBoxes& scene : test::box_scenes()) with_pairs += !double_loop(scene.boxes).empty();
+  EXPECT_GE(with_pairs, 13u);
+}
+
+TEST(BroadPhase, TouchingCounts) {
+  const std::vector<Aabb> boxes{
+      {{0, 0, 0}, {1, 1, 1}}, {{1, 1, 1}, {2, 2, 2}}, {{std::nextafter(1.0f, 2.0f), 0, 0}, {2, 1, 1}}};
+  for (const BroadPhaseOptions& options : all_options()) {
+    BroadPhase broad_phase(options);
+    EXPECT_EQ(find(broad_phase, boxes), (std::vector<IndexPair>{{0, 1}, {1, 2}})) << describe(options);
+  }
+  const std::vector<BoundingSphere> spheres{{{0, 0, 0}, 1}, {{3, 0, 0}, 2}, {{3, 4.001f, 0}, 2}};
+  for (const BroadPhaseOptions& options : all_options()) {
+    BroadPhase broad_phase(options);
+    EXPECT_EQ(find(broad_phase, spheres), (std::vector<IndexPair>{{0, 1}})) << describe(options);
+  }
+}
+
+TEST(BroadPhase, TouchingSpheresOfAnySizeShareARegion) {
+  // Pairs at the very limit of the sphere test, where region placement must not be stricter than it.
+  Random random(11);
+  std::vector<BoundingSphere> spheres;
+  for (int i = 0; i < 200; ++i) {
+    const Vec3f center = random.point(-100, 100);
+    const float radius = std::ldexp(random.uniform(0.5f, 1), -static_cast<int>(random.below(30)));
+    const float reach = random.uniform(0.5f, 8);
+    spheres.push_back({center, radius});
+    // To the side along one axis by exactly the sum of the radii, when floats can say so.
+    const int axis = static_cast<int>(random.below(3));
+    Vec3f beside = center;
+    beside[axis] += radius + reach;
+    spheres.push_back({beside, static_cast<float>(std::fabs(double{beside[axis]} - center[axis]) - radius)});
+  }
+  const std::vector<IndexPair> expected = double_loop(spheres);
+  ASSERT_GE(expected.size(), 100u);
+  for (const BroadPhaseOptions& options : all_options()) {
+    BroadPhase broad_phase(options);
+    ASSERT_EQ(find(broad_phase, spheres), expected) << describe(options);
+  }
+}
+
+TEST(BroadPhase, SpheresThatAreNotFiniteFollowTheSphereTest) {
+  constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+  std::vector<BoundingSphere> spheres = test::spheres_in(test::random_boxes(60, 8, 0.6f, 12));
+  spheres[2] = {{kInfinity, 0, 0}, 1};
+  spheres[9] = {{kInfinity, 5, 5}, 2};
+  spheres[17] = {{0, 0, 0}, kInfinity};
+  spheres[23] = {{-kInfinity, kInfinity, 0}, 1};
+  spheres[31] = {{kNaN, 0, 0}, 1};
+  spheres[40] = {{1e30f, 1e30f, 1e30f}, 3e38f};
+  spheres[41] = {{0, 0, 0}, -1};
+  const std::vector<IndexPair> expected = double_loop(spheres);
+  for (const BroadPhaseOptions& options : all_options()) {
+    BroadPhase broad_phase(options);
+    EXPECT_EQ(find(broad_phase, spheres), expected) << describe(options);
+    EXPECT_EQ(find(broad_phase, spheres), expected) << describe(options);
+  }
+}
+
+TEST(BroadPhase, ABoxWithANanIsEmpty) {
+  std::vector<Aabb> boxes(4, box_around({0, 0, 0}, {1, 1, 1}));
+  boxes[1].max.y = std::numeric_limits<float>::quiet_NaN();
+  for (const BroadPhaseOptions& options : all_options()) {
+    BroadPhase broad_phase(options);
+    EXPECT_EQ(find(broad_phase, boxes), (std::vector<IndexPair>{{0, 2}, {0, 3}, {2, 3}}))
+        << describe(options);
+  }
+}
+
+/// Boxes that drift, jump, change size, come and go; the gaits follow one another.
+class MovingBoxes {
+ public:
+  MovingBoxes() : boxes_(test::random_boxes(140, 10, 0.5f, 21)), random_(22) {}
+  const std::vector<Aabb>& boxes() const { return boxes_; }
+
+  void step(int step) {
+    const int gait = step / 10 % 6;
+    for (Aabb& box : boxes_) {
+      const bool moves = gait == 0 || gait == 5 || (gait == 1 && random_.below(40) == 0) ||
+                         (gait == 2 && random_.below(4) == 0);
+      if (!moves || box.empty()) continue;
+      const float stretch = random_.uniform(0.8f, 1.25f);
+      const Vec3f center = (box.min + box.max) * 0.5f + random_.point(-0.3f, 0.3f);
+      Vec3f half = (box.max - box.min) * (0.5f * stretch);
+      for (int axis = 0; axis < 3; ++axis) half[axis] = std::clamp(half[axis], 0.02f, 3.0f);
+      box = gait == 5 && random_.below(3) == 0 ? box_around(random_.point(-40, 40), half)
+                                               : box_around(center, half);
+    }
+    if (gait == 3) boxes_[random_.below(static_cast<std::uint32_t>(boxes_.size()))] = Aabb{};
+    if (gait == 3 || gait == 4) {
+      const Vec3f center = random_.point(0, 12);
+      for (Aabb& box : boxes_)
+        if (box.empty()) box = box_around(center, {0.4f, 0.4f, 0.4f});
+      boxes_.push_back(box_around(random_.point(0, 12), random_.point(0.1f, 0.6f)));
+    }
+    if (step == 75) boxes_.resize(boxes_.size() / 2);
+    if (step == 120) boxes_[7] = box_around({6, 6, 6}, {1e4f, 1e4f, 1e4f});
+    if (step == 140) boxes_.clear();
+    if (step == 143) boxes_ = test::random_boxes(160, 2000, 60, 23);
+    if (step == 190)
+      for (Aabb& box : boxes_) box = box_around({1, 1, 1}, {1, 1, 1});
+  }
+
+ private:
+  std::vector<Aabb> boxes_;
+  Random random_;
+};
+
+TEST(BroadPhase, FollowsMovingBoxesForTwoHundredSteps) {
+  std::vector<BroadPhase> kept;
+  const std::vector<BroadPhaseOptions> options = all_options();
+  for (const BroadPhaseOptions& option : options) kept.emplace_back(option);
+  MovingBoxes world;
+  for (int step = 0; step < 200; ++step) {
+    world.step(step);
+    const std::vector<IndexPair> expected = double_loop(world.boxes());
+    for (std::size_t i = 0; i < kept.size(); ++i) {
+      ASSERT_EQ(find(kept[i], world.boxes()), expected) << "step " << step << ", " << describe(options[i]);
+      ASSERT_EQ(kept[i].validate(), "") << "step " << step << ", " << describe(options[i]);
+    }
+  }
+}
+
+TEST(BroadPhase, FollowsMovingSpheresForTwoHundredSteps) {
+  std::vector<BroadPhase> kept;
+  const std::vector<BroadPhaseOptions> options = all_options();
+  for (const BroadPhaseOptions& option : options) kept.emplace_back(option);
+  MovingBoxes world;
+  for (int step = 0; step < 200; ++step) {
+    world.step(step);
+    const std::vector<BoundingSphere> spheres = test::spheres_in(world.boxes());
+    const std::vector<IndexPair> expected = double_loop(spheres);
+    for (std::size_t i = 0; i < kept.size(); ++i) {
+      ASSERT_EQ(find(kept[i], spheres), expected) << "step " << step << ", " << describe(options[i]);
+      ASSERT_EQ(kept[i].validate(), "") << "step " << step << ", " << describe(options[i]);
+    }
+  }
+}
+
+TEST(BroadPhase, AnyNumberOfThreadsGivesTheSamePairs) {
+  // More objects than one thread is handed at once.
+  std::vector<Aabb> boxes = test::random_boxes(9'000, 30, 0.6f, 31);
+  const std::vector<BoundingSphere> spheres = test::spheres_in(boxes);
+  BroadPhase reference_boxes({.method = BroadPhaseMethod::brute, .scene_octree = {}, .threads = 1});
+  const std::vector<IndexPair> box_pairs = find(reference_boxes, boxes);
+  const std::vector<IndexPair> sphere_pairs = find(reference_boxes, spheres);
+  ASSERT_GT(box_pairs.size(), 2'000u);
+  for (const BroadPhaseMethod method : kMethods) {
+    for (const std::uint32_t threads : {1u, 2u, 3u, 8u}) {
+      BroadPhase broad_phase({.method = method, .scene_octree = {}, .threads = threads});
+      EXPECT_TRUE(find(broad_phase, boxes) == box_pairs) << name_of(method) << " with " << threads;
+      EXPECT_TRUE(find(broad_phase, spheres) == sphere_pairs) << name_of(method) << " with " << threads;
+    }
+  }
+}
+
+TEST(BroadPhase, AnyNumberOfThreadsDoesTheSameWork) {
+  std::vector<BroadPhase> kept;
+  for (const std::uint32_t threads : {1u, 2u, 8u})
+    kept.emplace_back(BroadPhaseOptions{BroadPhaseMethod::octree, {}, threads});
+  Random random(32);
+  std::vector<Aabb> boxes = test::random_boxes(20'000, 60, 0.6f, 33);
+  for (int step = 0; step < 6; ++step) {
+    for (Aabb& box : boxes) {
+      if (step % 2 == 1 && random.below(50) != 0) continue;
+      const Vec3f by = random.point(-0.2f, 0.2f);
+      box = {box.min + by, box.max + by};
+    }
+    const std::vector<IndexPair> expected = find(kept[0], boxes);
+    const std::uint64_t tested = kept[0].stats().object_pairs_tested;
+    for (BroadPhase& broad_phase : kept) {
+      EXPECT_TRUE(find(broad_phase, boxes) == expected) << "step " << step;
+      if (&broad_phase != &kept[0]) {
+        EXPECT_EQ(broad_phase.stats().object_pairs_tested, tested) << "step " << step;
+      }
+    }
+  }
+}
+
+TEST(BroadPhase, SwitchingBetweenBoxesAndSpheresStartsAfresh) {
+  const std::vector<Aabb> boxes = test::random_boxes(100, 5, 0.5f, 41);
+  const std::vector<BoundingSphere> spheres = test::spheres_in(boxes);
+  for (const BroadPhaseOptions& options : all_options()) {
+    BroadPhase broad_phase(options);
+    EXPECT_EQ(find(broad_phase, boxes), double_loop(boxes));
+    EXPECT_EQ(find(broad_phase, spheres), double_loop(spheres));
+    EXPECT_EQ(find(broad_phase, boxes), double_loop(boxes));
+  }
+}
+
+TEST(BroadPhase, RefusesOptionsOutOfRange) {
+  BroadPhaseOptions options;
+  options.scene_octree.max_level = 21;
+  EXPECT_THROW(BroadPhase{options}, Error);
+  options.scene_octree.max_level = 20;
+  options.scene_octree.expand_at = 1;
+  EXPECT_THROW(BroadPhase{options}, Error);
+  options.scene_octree.expand_at = 2;
+  EXPECT_NO_THROW(BroadPhase{options});
+}
+
+TEST(BoundingBox, OfTouchingSpheresTouch) {
+  // Radii far below the spacing of floats at the centre: rounding must not separate the boxes.
+  const BoundingSphere at{{1e6f, 0, 0}, 1e-30f}, there{{1e6f, 1e-30f, 0}, 1e-30f};
+  ASSERT_TRUE(overlap(at, there));
+  EXPECT_TRUE(overlap(bounding_box(at), bounding_box(there)));
+  EXPECT_TRUE(bounding_box(BoundingSphere{}).empty());
+}
+
+}  // namespace
+}  // namespace supple

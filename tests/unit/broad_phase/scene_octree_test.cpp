@@ -1,0 +1,268 @@
+#include "broad_phase/scene_octree.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <vector>
+
+#include "broad_phase/octree_broad_phase.hpp"
+#include "unit/broad_phase/volume_scenes.hpp"
+
+namespace supple {
+namespace {
+
+using test::box_around;
+using test::Random;
+
+/// The octree broad phase by itself, so that counters and flags of change can be seen.
+class Octree {
+ public:
+  explicit Octree(const SceneOctreeOptions& options = {}) : finder_(BoundingVolume::aabb, options) {}
+
+  const BroadPhaseStats& step(const std::vector<Aabb>& boxes, const std::vector<std::uint8_t>& changed = {}) {
+    finder_.find_pairs({.boxes = boxes, .spheres = {}, .changed = changed}, parallel_, pairs_);
+    EXPECT_EQ(finder_.validate(), "");
+    return finder_.stats();
+  }
+  const std::vector<IndexPair>& pairs() const { return pairs_; }
+  std::vector<SceneRegion> regions() const { return finder_.regions(); }
+
+ private:
+  OctreeBroadPhase finder_;
+  Parallel parallel_{1};
+  std::vector<IndexPair> pairs_;
+};
+
+TEST(SceneOctree, NumbersRegionsAsThePaperDoes) {
+  Octree octree({.max_level = 3, .expand_at = 2, .region_sphere_test = {}});
+  octree.step(test::random_boxes(40, 10, 0.2f, 1));
+  const std::vector<SceneRegion> regions = octree.regions();
+  ASSERT_GT(regions.size(), 9u);
+  std::map<std::uint64_t, SceneRegion> by_number;
+  for (const SceneRegion& region : regions) by_number[region.number] = region;
+  ASSERT_EQ(by_number.size(), regions.size()) << "a number is used twice";
+  EXPECT_EQ(regions[0].number, 0u);
+  EXPECT_FALSE(regions[0].is_leaf);
+  for (const auto& [number, region] : by_number) {
+    EXPECT_EQ(by_number.contains(8 * number + 1), !region.is_leaf);
+    if (region.is_leaf) continue;
+    EXPECT_EQ(region.object_count, 0u);
+    const Vec3f middle = (region.box.min + region.box.max) * 0.5f;
+    for (std::uint64_t k = 0; k < 8; ++k) {
+      ASSERT_TRUE(by_number.contains(8 * number + 1 + k)) << "regions come in groups of eight";
+      const SceneRegion& child = by_number[8 * number + 1 + k];
+      EXPECT_EQ(child.level, region.level + 1);
+      for (int axis = 0; axis < 3; ++axis) {
+        const bool upper = (k >> axis & 1) != 0;
+        const float center = 0.5f * (child.box.min[axis] + child.box.max[axis]);
+        EXPECT_EQ(center > middle[axis], upper) << "bit " << axis << " of child " << k;
+      }
+    }
+  }
+}
+
+TEST(SceneOctree, ExpandsWhenTwoShareARegionAndReducesWhenTheyPart) {
+  Octree octree({.max_level = 4, .expand_at = 2, .region_sphere_test = {}});
+  // Two small objects far apart within a cube that two others hold open.
+  std::vector<Aabb> boxes{box_around({0, 0, 0}, {0.01f, 0.01f, 0.01f}),
+                          box_around({16, 16, 16}, {0.01f, 0.01f, 0.01f}),
+                          box_around({1, 15, 1}, {0.01f, 0.01f, 0.01f})};
+  octree.step(boxes);
+  EXPECT_EQ(octree.regions().size(), 9u) << "each of the three is alone in a region of level 1";
+
+  boxes[2] = box_around({0.1f, 0.1f, 0.1f}, {0.01f, 0.01f, 0.01f});
+  // Fewer than a quarter of the objects would have to move for the step to be incremental.
+  std::vector<Aabb> crowd = boxes;
+  Octree many({.max_level = 4, .expand_at = 2, .region_sphere_test = {}});
+  for (int i = 0; i < 12; ++i) crowd.push_back(box_around({12, 2, 2}, {5, 5, 5}));
+  crowd[2] = box_around({1, 15, 1}, {0.01f, 0.01f, 0.01f});
+  many.step(crowd);
+  const std::vector<SceneRegion> before = many.regions();
+
+  crowd[2] = boxes[2];
+  const BroadPhaseStats met = many.step(crowd);
+  EXPECT_EQ(met.objects_placed, 1u);
+  EXPECT_EQ(met.regions_rebuilt, 0u);
+  EXPECT_GE(met.regions_expanded, 1u);
+  EXPECT_EQ(many.regions().size(), before.size() + 8 * met.regions_expanded);
+
+  crowd[2] = box_around({1, 15, 1}, {0.01f, 0.01f, 0.01f});
+  const BroadPhaseStats parted = many.step(crowd);
+  EXPECT_EQ(parted.regions_rebuilt, 0u);
+  EXPECT_GE(parted.regions_reduced, 1u);
+  EXPECT_EQ(many.regions().size(), before.size());
+}
+
+TEST(SceneOctree, LooksOnlyAtWhatMoved) {
+  Octree octree;
+  std::vector<Aabb> boxes = test::random_boxes(2000, 30, 0.5f, 2);
+  const BroadPhaseStats first = octree.step(boxes);
+  EXPECT_EQ(first.objects_changed, 2000u);
+  EXPECT_EQ(first.objects_placed, 2000u);
+  EXPECT_EQ(first.regions_rebuilt, 1u);
+  EXPECT_GT(first.regions_expanded, 0u);
+  const std::vector<IndexPair> pairs = octree.pairs();
+
+  const BroadPhaseStats still = octree.step(boxes);
+  EXPECT_EQ(still.objects_changed, 0u);
+  EXPECT_EQ(still.objects_placed, 0u);
+  EXPECT_EQ(still.objects_paired, 0u);
+  EXPECT_EQ(still.object_pairs_tested, 0u);
+  EXPECT_EQ(still.regions_expanded + still.regions_reduced + still.regions_rebuilt, 0u);
+  EXPECT_EQ(octree.pairs(), pairs);
+
+  // So small a move crosses no plane, but it may change pairs.
+  const float aside = std::nextafter(boxes[5].min.x, -1.0f);
+  boxes[5].min.x = aside;
+  const BroadPhaseStats nudged = octree.step(boxes);
+  EXPECT_EQ(nudged.objects_changed, 1u);
+  EXPECT_EQ(nudged.objects_placed, 0u);
+  EXPECT_EQ(nudged.objects_paired, 1u);
+  EXPECT_GT(nudged.object_pairs_tested, 0u);
+  EXPECT_LT(nudged.object_pairs_tested, 2000u);
+
+  boxes[5] = box_around({29, 29, 29}, {0.5f, 0.5f, 0.5f});
+  const BroadPhaseStats moved = octree.step(boxes);
+  EXPECT_EQ(moved.objects_changed, 1u);
+  EXPECT_EQ(moved.objects_placed, 1u);
+  EXPECT_EQ(moved.regions_rebuilt, 0u);
+}
+
+TEST(SceneOctree, TrustsTheFlagsOfChange) {
+  Octree octree;
+  std::vector<Aabb> boxes = test::random_boxes(300, 10, 0.5f, 3);
+  octree.step(boxes);
+  const std::vector<IndexPair> before = octree.pairs();
+  std::vector<std::uint8_t> changed(boxes.size(), 0);
+  const Aabb old = boxes[4];
+  boxes[4] = box_around({5, 5, 5}, {4, 4, 4});
+  EXPECT_EQ(octree.step(boxes, changed).objects_changed, 0u) << "not flagged, so not looked at";
+  EXPECT_EQ(octree.pairs(), before);
+  changed[4] = 1;
+  EXPECT_EQ(octree.step(boxes, changed).objects_changed, 1u);
+  EXPECT_GT(octree.pairs().size(), before.size());
+  boxes[4] = old;
+  // Slots that are new count as changed.
+  boxes.push_back(boxes[0]);
+  EXPECT_EQ(octree.step(boxes, changed).objects_changed, 2u);
+  EXPECT_TRUE(std::binary_search(octree.pairs().begin(), octree.pairs().end(), IndexPair{0, 300}));
+}
+
+TEST(SceneOctree, IsTheSameHoweverItCameAbout) {
+  // The regions after many small steps are those of a tree made at once in the same cube.
+  Random random(4);
+  std::vector<Aabb> boxes = test::random_boxes(400, 20, 0.4f, 5);
+  SceneCubeChooser chooser;
+  const SceneOctreeOptions options{.max_level = 5, .expand_at = 3, .region_sphere_test = {}};
+  const SceneCube cube = chooser.choose(boxes, 5);
+  SceneOctree kept(BoundingVolume::aabb, options);
+  kept.resize(boxes.size());
+  for (std::uint32_t slot = 0; slot < boxes.size(); ++slot) kept.set_volume(slot, {boxes[slot], {}});
+  kept.build(cube);
+  for (int step = 0; step < 30; ++step) {
+    for (std::uint32_t slot = 0; slot < boxes.size(); ++slot) {
+      if (random.below(3) != 0) continue;
+      boxes[slot] =
+          random.below(20) == 0 ? Aabb{} : box_around(random.point(-3, 23), random.point(0.01f, 0.8f));
+      const ObjectVolume volume{boxes[slot], {}};
+      if (kept.stays(slot, volume))
+        kept.set_volume(slot, volume);
+      else
+        kept.move(slot, volume);
+    }
+    kept.settle();
+    ASSERT_EQ(kept.validate(), "") << "step " << step;
+    SceneOctree fresh(BoundingVolume::aabb, options);
+    fresh.resize(boxes.size());
+    for (std::uint32_t slot = 0; slot < boxes.size(); ++slot) fresh.set_volume(slot, {boxes[slot], {}});
+    fresh.build(cube);
+    const std::vector<SceneRegion> a = kept.describe(), b = fresh.describe();
+    ASSERT_EQ(a.size(), b.size()) << "step " << step;
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      ASSERT_EQ(a[i].number, b[i].number);
+      ASSERT_EQ(a[i].object_count, b[i].object_count);
+      ASSERT_EQ(a[i].is_leaf, b[i].is_leaf);
+    }
+  }
+  EXPECT_GT(kept.expanded_count(), 50u);
+  EXPECT_GT(kept.reduced_count(), 50u);
+}
+
+TEST(SceneOctree, CoincidentObjectsDoNotBlowUpTheRegions) {
+  // The deepest tree allowed, and nothing that dividing could tell apart.
+  const SceneOctreeOptions deepest{.max_level = 20, .expand_at = 2, .region_sphere_test = {}};
+  std::vector<Aabb> boxes(600, box_around({1, 1, 1}, {0.25f, 0.25f, 0.25f}));
+  Octree coincident(deepest);
+  coincident.step(boxes);
+  EXPECT_EQ(coincident.pairs().size(), 600u * 599u / 2);
+  EXPECT_LE(coincident.regions().size(), 8u * 8u * 3u);
+
+  // Points on top of one another in a scene a million times as wide: one chain of regions, at most 8 wide.
+  for (Aabb& box : boxes) box = box_around({1, 1, 1}, {0, 0, 0});
+  boxes.back() = box_around({1e6f, 1e6f, 1e6f}, {1, 1, 1});
+  boxes[1] = boxes.back();
+  for (std::size_t i = 2; i < 40; ++i) boxes[i] = boxes.back();
+  Octree points(deepest);
+  points.step(boxes);
+  EXPECT_LE(points.regions().size(), 2u * 8u * 8u * 20u);
+
+  // A wall through the whole scene touches every region; it expands none of them.
+  std::vector<Aabb> dust = test::random_boxes(200, 10, 0.001f, 6);
+  Octree without(deepest);
+  without.step(dust);
+  Octree with(deepest);
+  dust.push_back({{-100, -100, -100}, {100, 100, 100}});
+  dust.push_back({{-100, -100, -100}, {100, 100, 100}});
+  dust.push_back({{-100, -100, -100}, {100, 100, 100}});
+  with.step(dust);
+  EXPECT_LE(with.regions().size(), without.regions().size() + without.regions().size() / 4);
+}
+
+TEST(SceneOctree, RebuildsWhenTheSceneOutgrowsTheCube) {
+  Octree octree;
+  std::vector<Aabb> boxes = test::random_boxes(1000, 10, 0.2f, 7);
+  octree.step(boxes);
+  const float edge = octree.regions()[0].box.max.x - octree.regions()[0].box.min.x;
+  // Everything flies apart slowly: a few objects cross regions in each step, never many at once.
+  std::uint64_t rebuilt = 0;
+  for (int step = 0; step < 60; ++step) {
+    for (Aabb& box : boxes) box = box_around((box.min + box.max) * (0.5f * 1.05f), {0.1f, 0.1f, 0.1f});
+    rebuilt += octree.step(boxes).regions_rebuilt;
+  }
+  EXPECT_GE(rebuilt, 1u);
+  EXPECT_LT(rebuilt, 60u);
+  const float edge_now = octree.regions()[0].box.max.x - octree.regions()[0].box.min.x;
+  EXPECT_GT(edge_now, 8 * edge);
+}
+
+TEST(SceneCube, IsNotLedAstrayByOutliers) {
+  std::vector<Aabb> boxes = test::random_boxes(1000, 10, 0.2f, 8);
+  SceneCubeChooser chooser;
+  const SceneCube clean = chooser.choose(boxes, 0);
+  for (std::size_t i = 0; i < 10; ++i) boxes[i * 90] = box_around({1e30f, -1e30f, 1e20f}, {1, 1, 1});
+  boxes[5] = {{-test::kInfinity, 0, 0}, {1, 1, test::kInfinity}};
+  const SceneCube cube = chooser.choose(boxes, 0);
+  EXPECT_LT(cube.edge, 2 * clean.edge);
+  EXPECT_GT(cube.edge, 8);
+  EXPECT_FALSE(is_outdated(clean, cube));
+}
+
+TEST(SceneCube, ChoosesALevelThatKeepsRegionsLargerThanObjects) {
+  SceneCubeChooser chooser;
+  for (const float size : {0.001f, 0.05f, 0.4f, 3.0f}) {
+    const std::vector<Aabb> boxes = test::random_boxes(20'000, 20, size, 9);
+    const SceneCube cube = chooser.choose(boxes, 0);
+    EXPECT_GE(cube.max_level, 1u);
+    EXPECT_LE(cube.max_level, 20u);
+    if (cube.max_level == 1) continue;
+    EXPECT_GE(std::ldexp(cube.edge, -static_cast<int>(cube.max_level)), size);
+  }
+  EXPECT_EQ(chooser.choose(test::random_boxes(100, 20, 1, 10), 7).max_level, 7u);
+  EXPECT_EQ(chooser.choose({}, 0).max_level, 1u);
+  // All in one place: no level tells them apart.
+  EXPECT_EQ(chooser.choose(std::vector<Aabb>(5000, box_around({1, 1, 1}, {0, 0, 0})), 0).max_level, 1u);
+}
+
+}  // namespace
+}  // namespace supple
