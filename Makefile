@@ -15,6 +15,8 @@ help:
 
 demo: build
 	build/release/bin/supple detect scenes/nine.toml --steps 300
+	@echo
+	@echo 'Try next: build/release/bin/supple detect scenes/nine.toml --steps 3 --verify --json -'
 
 test: build
 	ctest --preset release

@@ -1,9 +1,163 @@
 #include "info.hpp"
 
-namespace supple::cli {
+#include <fmt/core.h>
+#include <fmt/ranges.h>
 
-int run_info(const InfoOptions&) {
-  return 0;
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <string>
+
+#include "exit_status.hpp"
+#include "inputs.hpp"
+#include "json_writer.hpp"
+#include "supple/scene.hpp"
+#include "supple/topology.hpp"
+#include "supple/version.hpp"
+#include "text.hpp"
+
+namespace supple::cli {
+namespace {
+
+/// All that is told about one object.
+struct MeshInfo {
+  std::string name;
+  MeshTopology topology;
+  std::uint64_t non_finite_vertices = 0;
+  std::optional<Bounds> bounds;  ///< of the finite vertices, none without any
+  OctreeStatistics octree;
+};
+
+void measure_positions(const TriangleMesh& mesh, MeshInfo& info) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  Bounds bounds{Vec3d{infinity, infinity, infinity}, Vec3d{-infinity, -infinity, -infinity}};
+  for (const Vec3d& p : mesh.positions) {
+    if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) {
+      ++info.non_finite_vertices;
+      continue;
+    }
+    for (int axis = 0; axis < 3; ++axis) {
+      bounds[0][axis] = std::fmin(bounds[0][axis], p[axis]);
+      bounds[1][axis] = std::fmax(bounds[1][axis], p[axis]);
+    }
+  }
+  if (info.non_finite_vertices < mesh.positions.size()) info.bounds = bounds;
+}
+
+MeshInfo measure(const InputObject& object, const InfoOptions& options) {
+  MeshInfo info;
+  info.name = object.mesh.name;
+  info.topology = compute_topology(object.mesh);
+  measure_positions(object.mesh, info);
+  ObjectOptions chosen = object.options;
+  chosen.octree.max_level = options.max_level.value_or(chosen.octree.max_level);
+  chosen.octree.leaf_size = options.leaf_size.value_or(chosen.octree.leaf_size);
+  Scene scene({.threads = 1});
+  info.octree = scene.octree_statistics(scene.add(object.mesh, chosen));
+  return info;
+}
+
+std::string describe_surface(const MeshTopology& t) {
+  if (t.edges == 0) return "no triangles";
+  std::string text =
+      t.closed() ? "closed" : fmt::format("open, {}", counted(t.boundary_edges, "boundary edge"));
+  if (t.non_manifold_edges > 0)
+    text += fmt::format(", {}", counted(t.non_manifold_edges, "non-manifold edge"));
+  return text;
+}
+
+void print_text(const MeshInfo& info) {
+  const MeshTopology& t = info.topology;
+  fmt::print("{}\n", info.name);
+  fmt::print("  vertices     {}", grouped(t.vertices));
+  if (t.unused_vertices > 0) fmt::print(", {} of no triangle", grouped(t.unused_vertices));
+  if (info.non_finite_vertices > 0) fmt::print(", {} not finite", grouped(info.non_finite_vertices));
+  fmt::print("\n  triangles    {}", grouped(t.triangles));
+  if (t.degenerate_triangles > 0) fmt::print(", {} with a vertex twice", grouped(t.degenerate_triangles));
+  fmt::print("\n  edges        {}\n", grouped(t.edges));
+  fmt::print("  surface      {}\n", describe_surface(t));
+  fmt::print("  pieces       {}, Euler characteristic {}\n", grouped(t.components), t.euler_characteristic);
+  if (info.bounds) {
+    const auto& [lowest, highest] = *info.bounds;
+    fmt::print("  bounds       ({}, {}, {}) to ({}, {}, {})\n", lowest.x, lowest.y, lowest.z, highest.x,
+               highest.y, highest.z);
+  }
+  const OctreeStatistics& o = info.octree;
+  fmt::print(
+      "  octree       {}, {}, depth {}, {:.1f} triangles a leaf (largest {}), {:.1f} of 8 lanes used\n",
+      counted(o.nodes, "node"), o.leaves == 1 ? "1 leaf" : grouped(o.leaves) + " leaves", o.depth,
+      o.mean_leaf_size, o.largest_leaf, o.mean_node_width);
+  fmt::print("  memory       {} bytes, {:.1f} a triangle\n\n", grouped(o.bytes), o.bytes_per_triangle);
+}
+
+void write_octree(JsonWriter& json, const OctreeStatistics& octree) {
+  json.key("octree");
+  json.begin_object();
+  json.member("nodes", octree.nodes);
+  json.member("leaves", octree.leaves);
+  json.member("depth", std::uint64_t{octree.depth});
+  json.member("largest_leaf", std::uint64_t{octree.largest_leaf});
+  json.member("mean_leaf_size", octree.mean_leaf_size);
+  json.member("mean_node_width", octree.mean_node_width);
+  json.member("bytes", octree.bytes);
+  json.member("bytes_per_triangle", octree.bytes_per_triangle);
+  json.key("leaves_by_level");
+  json.begin_array();
+  for (const std::uint64_t leaves : octree.leaves_by_level) json.value(leaves);
+  json.end_array();
+  json.end_object();
+}
+
+void write_json(JsonWriter& json, const MeshInfo& info) {
+  const MeshTopology& t = info.topology;
+  json.begin_object();
+  json.member("name", info.name);
+  json.member("vertices", t.vertices);
+  json.member("triangles", t.triangles);
+  json.member("edges", t.edges);
+  json.member("closed", t.closed());
+  json.member("boundary_edges", t.boundary_edges);
+  json.member("non_manifold_edges", t.non_manifold_edges);
+  json.member("components", t.components);
+  json.member("euler_characteristic", t.euler_characteristic);
+  json.member("unused_vertices", t.unused_vertices);
+  json.member("degenerate_triangles", t.degenerate_triangles);
+  json.member("non_finite_vertices", info.non_finite_vertices);
+  json.key("bounds");
+  if (info.bounds) {
+    json.begin_array();
+    for (const Vec3d& corner : *info.bounds) json.value(corner);
+    json.end_array();
+  } else {
+    json.null();
+  }
+  write_octree(json, info.octree);
+  json.end_object();
+}
+
+}  // namespace
+
+int run_info(const InfoOptions& options) {
+  const Input input = read_objects(options.inputs);
+  std::optional<JsonWriter> json;
+  if (!options.json.empty()) {
+    json.emplace(options.json);
+    json->begin_object();
+    json->member("supple", std::string(SUPPLE_VERSION));
+    json->key("objects");
+    json->begin_array();
+  }
+  for (const InputObject& object : input.objects) {
+    const MeshInfo info = measure(object, options);
+    if (json) write_json(*json, info);
+    if (options.json != "-") print_text(info);
+  }
+  if (json) {
+    json->end_array();
+    json->end_object();
+    json->close();
+  }
+  return exit_done;
 }
 
 }  // namespace supple::cli

@@ -9,6 +9,7 @@
 
 #include "scene_file.hpp"
 #include "supple/error.hpp"
+#include "supple/formats.hpp"
 
 namespace supple::cli {
 namespace {
@@ -53,7 +54,7 @@ std::vector<fs::path> files_that_match(const std::string& pattern) {
 TriangleMesh read_mesh(const fs::path& path) {
   if (!fs::exists(path))
     throw Error(fmt::format("{}: there is no such file; check the folder and the spelling", path.string()));
-  return load_mesh(path);
+  return load_any_mesh(path);
 }
 
 }  // namespace

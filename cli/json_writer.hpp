@@ -25,10 +25,12 @@ class JsonWriter {
   void key(const char* name) { writer_.Key(name); }
 
   void value(std::uint64_t number) { writer_.Uint64(number); }
+  void value(std::int64_t number) { writer_.Int64(number); }
   void value(double number);
   void value(bool truth) { writer_.Bool(truth); }
   void value(const std::string& text);
   void value(Vec3d point);
+  void null() { writer_.Null(); }
   /// Two numbers, `[a,b]`.
   void pair(std::uint64_t a, std::uint64_t b);
 

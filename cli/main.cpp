@@ -1,11 +1,13 @@
 #include <fmt/core.h>
 
+#include <cstdio>
 #include <exception>
 
 #include "detect.hpp"
 #include "exit_status.hpp"
 #include "info.hpp"
 #include "options.hpp"
+#include "supple/error.hpp"
 #include "text.hpp"
 
 int main(int argument_count, char** arguments) {

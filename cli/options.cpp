@@ -3,7 +3,9 @@
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
+#include <array>
 #include <functional>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -92,6 +94,16 @@ CLI::Option* add_file(CLI::App& app, const std::string& name, std::string& value
   return app.add_option(name, value, description)->type_name("FILE|-");
 }
 
+std::array<CLI::Option*, 2> add_octree_options(CLI::App& app, std::optional<std::uint32_t>& max_level,
+                                               std::optional<std::uint32_t>& leaf_size) {
+  const ObjectOctreeOptions defaults;
+  return {
+      add_number(app, "--max-level", max_level, 0, 32,
+                 fmt::format("Deepest level of an object's octree (default: {})", defaults.max_level)),
+      add_number(app, "--leaf-size", leaf_size, 1, 1'000'000'000,
+                 fmt::format("Triangles up to which a node is not split (default: {})", defaults.leaf_size))};
+}
+
 /// An option that means something only together with a certain choice of another.
 struct Dependence {
   const CLI::Option* option;
@@ -166,12 +178,7 @@ void add_method_options(CLI::App& app, DetectOptions& options, Dependences& depe
            "Region of the scene octree against a sphere: Arvo's test or the paper's")),
        [&, with_spheres] { return with_spheres() && scene.broad_phase == BroadPhaseMethod::octree; },
        "--bounding-volume sphere and --broad-phase octree"});
-  const ObjectOctreeOptions defaults;
-  group(add_number(app, "--max-level", options.max_level, 0, 32,
-                   fmt::format("Deepest level of an object's octree (default: {})", defaults.max_level)));
-  group(
-      add_number(app, "--leaf-size", options.leaf_size, 1, 1'000'000'000,
-                 fmt::format("Triangles up to which a node is not split (default: {})", defaults.leaf_size)));
+  for (CLI::Option* option : add_octree_options(app, options.max_level, options.leaf_size)) group(option);
 }
 
 void add_output_options(CLI::App& app, DetectOptions& options, Dependences& dependences) {
@@ -203,11 +210,7 @@ CLI::App* add_info(CLI::App& program, InfoOptions& options) {
   CLI::App* app = program.add_subcommand("info", "Say what meshes are like, and the octrees built from them");
   app->footer(info_footer);
   app->add_option("MESH|SCENE.toml", options.inputs, "Meshes, or one scene file")->required()->type_name("");
-  add_number(*app, "--max-level", options.octree.max_level, 0, 32,
-             fmt::format("Deepest level of the octree (default: {})", options.octree.max_level));
-  add_number(
-      *app, "--leaf-size", options.octree.leaf_size, 1, 1'000'000'000,
-      fmt::format("Triangles up to which a node is not split (default: {})", options.octree.leaf_size));
+  add_octree_options(*app, options.max_level, options.leaf_size);
   add_file(*app, "--json", options.json, "Write the same as JSON; - is standard output");
   return app;
 }

@@ -27,7 +27,7 @@ struct DetectOptions {
 /// Of `supple info`.
 struct InfoOptions {
   std::vector<std::string> inputs;
-  ObjectOctreeOptions octree;
+  std::optional<std::uint32_t> max_level, leaf_size;
   std::string json;
 };
 

@@ -11,6 +11,7 @@
 
 #include "placement.hpp"
 #include "supple/error.hpp"
+#include "supple/formats.hpp"
 #include "supple/models.hpp"
 #include "text.hpp"
 #include "toml_reader.hpp"
@@ -92,7 +93,7 @@ TriangleMesh read_shape(TomlReader& reader, const fs::path& folder) {
   if (!fs::exists(path))
     reader.fail("mesh",
                 fmt::format("there is no file {}; paths start at the scene file's folder", path.string()));
-  return load_mesh(path);
+  return load_any_mesh(path);
 }
 
 Placement read_placement(TomlReader& reader) {

@@ -8,7 +8,7 @@ int main() {
 
   supple::Scene scene;
   scene.add(supple::make_model("rabbit"), {.is_static = true});
-  const supple::ObjectId fish = scene.add(fish_mesh, {.self_collision = true});
+  const supple::ObjectId fish = scene.add(fish_mesh);
 
   for (int frame = 0; frame < 5; ++frame) {
     // Your own simulation goes here; this one lets the fish swim closer and bend.

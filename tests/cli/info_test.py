@@ -1,0 +1,74 @@
+"""`supple info`: the facts about a mesh, as text and as JSON."""
+
+import json
+import unittest
+
+from program import TRIANGLE, ProgramTest
+
+
+class Info(ProgramTest):
+    maxDiff = None
+
+    def info(self, *arguments):
+        done = self.run_here("info", *arguments, "--json", "-")
+        self.assertEqual((done.status, done.error), (0, ""))
+        return json.loads(done.out)["objects"]
+
+    def test_open_mesh_with_blemishes(self):
+        self.write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 5 5 5\nv nan 0 0\nf 1 2 3\nf 1 1 2\n")
+        (mesh,) = self.info("a.obj")
+        octree = mesh.pop("octree")
+        self.assertEqual(
+            mesh,
+            {
+                "name": "a", "vertices": 5, "triangles": 2, "edges": 3, "closed": False, "boundary_edges": 3,
+                "non_manifold_edges": 0, "components": 1, "euler_characteristic": 1, "unused_vertices": 2,
+                "degenerate_triangles": 1, "non_finite_vertices": 1, "bounds": [[0.0, 0.0, 0.0], [5.0, 5.0, 5.0]],
+            },
+        )
+        self.assertEqual(
+            set(octree),
+            {"nodes", "leaves", "depth", "largest_leaf", "mean_leaf_size", "mean_node_width", "bytes",
+             "bytes_per_triangle", "leaves_by_level"},
+        )
+
+    def test_scene_file(self):
+        self.write("scene.toml", '[[object]]\nname = "ring"\nmodel = "torus"\ntranslate = [1, 0, 0]\n[[object]]\nmodel = "box"\n')
+        ring, box = self.info("scene.toml")
+        self.assertEqual((ring["name"], ring["closed"], ring["euler_characteristic"]), ("ring", True, 0))
+        self.assertEqual((box["name"], box["closed"], box["euler_characteristic"]), ("box", True, 2))
+        self.assertAlmostEqual(ring["bounds"][1][0], 1.7)
+
+    def test_octree_options(self):
+        self.write("scene.toml", '[[object]]\nmodel = "icosphere"\n')
+        shallow = self.info("scene.toml", "--max-level", "2")[0]["octree"]
+        small_leaves = self.info("scene.toml", "--leaf-size", "1")[0]["octree"]
+        large_leaves = self.info("scene.toml", "--leaf-size", "64")[0]["octree"]
+        self.assertLessEqual(shallow["depth"], 2)
+        self.assertGreater(small_leaves["leaves"], large_leaves["leaves"])
+        self.assertLessEqual(large_leaves["largest_leaf"], 64)
+        self.assertEqual(sum(large_leaves["leaves_by_level"]), large_leaves["leaves"])
+
+    def test_text(self):
+        self.write("a.obj", TRIANGLE)
+        done = self.run_here("info", "a.obj")
+        self.assertEqual((done.status, done.error), (0, ""))
+        for part in ("a\n", "vertices     3", "triangles    1", "open, 3 boundary edges", "(0, 0, 0) to (1, 1, 0)"):
+            self.assertIn(part, done.out)
+
+    def test_mesh_of_nothing(self):
+        self.write("points.obj", "v 0 0 0\n")
+        (mesh,) = self.info("points.obj")
+        self.assertEqual((mesh["triangles"], mesh["closed"], mesh["bounds"]), (0, False, [[0.0] * 3, [0.0] * 3]))
+        done = self.run_here("info", "points.obj")
+        self.assertIn("no triangles", done.out)
+
+    def test_no_finite_vertex(self):
+        self.write("nan.obj", "v nan 0 0\nv 0 inf 0\nv 0 0 nan\nf 1 2 3\n")
+        (mesh,) = self.info("nan.obj")
+        self.assertIsNone(mesh["bounds"])
+        self.assertEqual(mesh["non_finite_vertices"], 3)
+
+
+if __name__ == "__main__":
+    unittest.main()
