@@ -89,7 +89,7 @@ struct Wobbling {
   }
 };
 
-class SteadyState : public testing::TestWithParam<std::tuple<BoundingVolume, BroadPhaseMethod>> {};
+class SteadyState : public testing::TestWithParam<std::tuple<BoundingVolume, BroadPhaseMethod, int>> {};
 
 TEST_P(SteadyState, NoAllocationsAfterWarmUpAndValidOctreesThroughout) {
 #ifdef NDEBUG
@@ -129,9 +129,9 @@ TEST_P(SteadyState, NoAllocationsAfterWarmUpAndValidOctreesThroughout) {
 }
 
 INSTANTIATE_TEST_SUITE_P(VolumesAndMethods, SteadyState,
-                         testing::Values(std::tuple{BoundingVolume::aabb, BroadPhaseMethod::octree},
-                                         std::tuple{BoundingVolume::aabb, BroadPhaseMethod::sweep},
-                                         std::tuple{BoundingVolume::sphere, BroadPhaseMethod::octree}));
+                         testing::Values(std::tuple{BoundingVolume::aabb, BroadPhaseMethod::octree, 10000},
+                                         std::tuple{BoundingVolume::aabb, BroadPhaseMethod::sweep, 2500},
+                                         std::tuple{BoundingVolume::sphere, BroadPhaseMethod::octree, 2500}));
 
 }  // namespace
 }  // namespace supple
