@@ -68,41 +68,6 @@ void SceneOctree::resize(std::size_t slot_count) {
   is_collected_.resize(slot_count, 0);
 }
 
-ObjectVolume SceneOctree::volume(std::uint32_t slot) const {
-  return {boxes_[slot], has_spheres_ ? spheres_[slot] : BoundingSphere{}};
-}
-
-bool SceneOctree::same_volume(std::uint32_t slot, const ObjectVolume& now) const {
-  return boxes_[slot] == now.box && (!has_spheres_ || spheres_[slot] == now.sphere);
-}
-
-bool SceneOctree::stays(std::uint32_t slot, const ObjectVolume& now) const {
-  if (now.empty() || boxes_[slot].empty()) return false;
-  const StayRange& range = stay_[slot];
-  for (int axis = 0; axis < 3; ++axis) {
-    const std::size_t k = static_cast<std::size_t>(axis);
-    if (!(range.low[k] <= now.box.min[axis] && now.box.min[axis] < range.high[k])) return false;
-    if (!(range.low[k + 3] <= now.box.max[axis] && now.box.max[axis] < range.high[k + 3])) return false;
-  }
-  return finest_level(now.box) == finest_level_[slot];
-}
-
-void SceneOctree::set_volume(std::uint32_t slot, const ObjectVolume& now) {
-  boxes_[slot] = now.box;
-  if (has_spheres_) spheres_[slot] = now.sphere;
-  finest_level_[slot] = finest_level(now.box);
-}
-
-/// Level of the smallest regions whose edge is no shorter than the box, by powers of two.
-std::uint8_t SceneOctree::finest_level(const Aabb& box) const {
-  double extent = 0;
-  for (int axis = 0; axis < 3; ++axis) extent = std::max(extent, double{box.max[axis]} - box.min[axis]);
-  // The exponent alone: extent / edge is in [2^(e-1), 2^e). Infinity and NaN have the largest.
-  const auto bits = std::bit_cast<std::uint64_t>(extent / cube_.edge);
-  const int exponent = static_cast<int>(bits >> 52 & 0x7ff) - 1022;
-  return static_cast<std::uint8_t>(std::clamp(-exponent, 0, 31));
-}
-
 std::uint32_t SceneOctree::children_touched(const Region& region, const Aabb& box,
                                             const BoundingSphere* sphere) const {
   // The box of a ball that is not finite is all of space, and so are its regions.
@@ -215,6 +180,7 @@ void SceneOctree::set_sphere_stay_range(std::uint32_t slot, const Region& leaf) 
 
 void SceneOctree::build(const SceneCube& cube) {
   cube_ = cube;
+  inverse_edge_ = 1.0 / cube.edge;
   make_root();
   std::uint32_t live = 0;
   for (const Aabb& box : boxes_) live += !box.empty();
