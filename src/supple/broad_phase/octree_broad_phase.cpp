@@ -41,6 +41,10 @@ void OctreeBroadPhase::find_pairs(const ObjectVolumes& volumes, const Parallel& 
   stats_ = {};
   const std::uint64_t expanded = tree_.expanded_count(), reduced = tree_.reduced_count();
   detect_changes(volumes, parallel);
+  if (changed_.empty()) {
+    pairs.assign(last_pairs_.begin(), last_pairs_.end());
+    return;
+  }
   update_regions(volumes);
   stats_.regions_expanded = tree_.expanded_count() - expanded;
   stats_.regions_reduced = tree_.reduced_count() - reduced;
@@ -104,9 +108,8 @@ void OctreeBroadPhase::update_regions(const ObjectVolumes& volumes) {
     live_ -= !tree_.boxes()[slot].empty();
     live_ += !volume_at(volumes, bounding_volume_, slot).empty();
   }
-  // Placing one object again costs about as much as placing this many in a build.
-  constexpr std::size_t kMoveCost = 4;
-  const bool many = kMoveCost * crossing_.size() > live_;
+  // Placing an object again costs a little more than its share of a build.
+  const bool many = 4 * crossing_.size() > 3 * live_;
   for (const std::uint32_t slot : crossing_) {
     const ObjectVolume now = volume_at(volumes, bounding_volume_, slot);
     if (many)
