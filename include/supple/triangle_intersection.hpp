@@ -28,9 +28,9 @@ struct TriangleIntersection {
 /// Whether two closed triangles have a point in common, as exact arithmetic decides on the given coordinates,
 /// whatever finite numbers they are. A triangle with a coordinate that is not finite touches nothing.
 ///
-/// Symmetric, and independent of the order of the corners. About 10 ns for triangles that the plane of one of
-/// them separates, 25 to 50 ns for others, up to some microseconds for coordinates that differ by more
-/// than 2^100 in size. Allocates memory only in that last case.
+/// Symmetric, and independent of the order of the corners. Takes 20 to 40 ns for triangles that the plane of
+/// one of them separates, about 100 ns for others, more where only integers can tell: some microseconds when
+/// coordinates differ by more than 2^100 in size. Allocates memory only in that last case.
 bool triangles_intersect(const TrianglePoints& a, const TrianglePoints& b);
 
 /// The same decision, and the extreme points of what the triangles share, each with the feature of a and the
@@ -43,6 +43,8 @@ bool triangles_intersect(const TrianglePoints& a, const TrianglePoints& b);
 /// segment is listed in ascending order of (on_a, on_b); a polygon goes round in convex order, starting from
 /// the smallest (on_a, on_b) towards the smaller of its two neighbours.
 ///
+/// Takes about 100 ns more than the decision for each point that is not a vertex.
+///
 /// Positions: a vertex is given bit for bit (that of a where both are vertices). Any other point lies on an
 /// edge; it is off the exact one by at most 2^-44 of the edge's extent along each axis plus half a unit in
 /// the last place, and never outside the box of either triangle. It depends on that edge and the opposite
@@ -51,7 +53,8 @@ bool triangles_intersect(const TrianglePoints& a, const TrianglePoints& b);
 TriangleIntersection intersect_triangles(const TrianglePoints& a, const TrianglePoints& b);
 
 /// The same decision as `triangles_intersect`, by integers of unlimited size and separating axes: unrelated
-/// code without any floating-point arithmetic, for checking. Some microseconds to some hundred.
+/// code without any floating-point arithmetic, for checking. Takes 2 to 12 microseconds for coordinates of
+/// ordinary size.
 bool triangles_intersect_by_axes(const TrianglePoints& a, const TrianglePoints& b);
 
 }  // namespace supple

@@ -125,7 +125,9 @@ Vec3d edge_edge_point(Edge edge, Edge other) {
 }
 
 Vec3d edge_face_point(const Edge& edge, TrianglePoints triangle) {
-  std::sort(triangle.begin(), triangle.end(), lexicographically_less);
+  for (const auto& [i, j] : {std::pair(0u, 1u), std::pair(1u, 2u), std::pair(0u, 1u)}) {
+    if (lexicographically_less(triangle[j], triangle[i])) std::swap(triangle[i], triangle[j]);
+  }
   const Vec3d point = crossing(edge, distances_from_plane(edge, triangle));
   return clamp_to_box(clamp_to_box(point, std::array{edge.first, edge.second}), triangle);
 }

@@ -4,6 +4,7 @@
 #include <cassert>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "contact/meeting_point.hpp"
 #include "geometry/exact_predicates.hpp"
@@ -54,12 +55,12 @@ bool separated(const Signs& signs) {
   return all(signs, 1) || all(signs, -1);
 }
 
-Signs sides_of_plane(const TrianglePoints& plane, const TrianglePoints& triangle,
-                     const FilteredSides& filtered, bool& used_exact) {
+Signs sides_of_plane(const FilteredPlane& plane, const TrianglePoints& corners,
+                     const TrianglePoints& triangle, const FilteredSides& filtered, bool& used_exact) {
   Signs signs;
   for (std::size_t i = 0; i < 3; ++i) {
     signs[i] = filtered[i].certain() ? filtered[i].sign()
-                                     : orient3d(plane[0], plane[1], plane[2], triangle[i], used_exact);
+                                     : orient3d(plane, corners[1], corners[2], triangle[i], used_exact);
   }
   return signs;
 }
@@ -163,6 +164,7 @@ struct Simplex {
   const TrianglePoints* points;
   std::array<int, 3> corners;
   int size;
+  Projection projection;  // of a triangle
 
   const Vec3d& operator[](int i) const { return corner(*points, corners[static_cast<std::size_t>(i)]); }
   Feature vertex_feature(int i) const { return vertex(corners[static_cast<std::size_t>(i)]); }
@@ -172,19 +174,18 @@ struct Simplex {
     return edge_between(corners[static_cast<std::size_t>(i)],
                         corners[static_cast<std::size_t>((i + 1) % size)]);
   }
-  Simplex only(int i) const { return {points, {corners[static_cast<std::size_t>(i)], 0, 0}, 1}; }
+  Simplex only(int i) const { return {points, {corners[static_cast<std::size_t>(i)], 0, 0}, 1, {}}; }
 };
 
 Simplex reduce(const TrianglePoints& triangle, bool& used_exact) {
-  if (projection_axis(triangle[0], triangle[1], triangle[2], used_exact) >= 0) {
-    return {&triangle, {0, 1, 2}, 3};
-  }
+  const Projection projection = find_projection(triangle[0], triangle[1], triangle[2], used_exact);
+  if (projection) return {&triangle, {0, 1, 2}, 3, projection};
   int lowest = 0, highest = 0;
   for (int i = 1; i < 3; ++i) {
     if (lexicographically_less(corner(triangle, i), corner(triangle, lowest))) lowest = i;
     if (lexicographically_less(corner(triangle, highest), corner(triangle, i))) highest = i;
   }
-  return {&triangle, {lowest, highest, 0}, lowest == highest ? 1 : 2};
+  return {&triangle, {lowest, highest, 0}, lowest == highest ? 1 : 2, {}};
 }
 
 /// The part of a segment on which a point of its line lies.
@@ -235,14 +236,27 @@ std::optional<Feature> locate(const Vec3d& point, int index, const Simplex& simp
   return point == simplex[0] ? std::optional(simplex.vertex_feature(0)) : std::nullopt;
 }
 
+/// An edge of the triangle has all points strictly beyond it.
+bool edge_separates(const Simplex& triangle, const Turns& turns, int point_count) {
+  for (int i = 0; i < 3; ++i) {
+    bool all_beyond = true;
+    for (int j = 0; j < point_count; ++j) all_beyond &= turns.at(i, j) == -triangle.projection.turn;
+    if (all_beyond) return true;
+  }
+  return false;
+}
+
 bool opposite(const Turns& turns, int edge, int point, int next_point) {
   return turns.at(edge, point) * turns.at(edge, next_point) < 0;
 }
 
 /// Both in one plane, whose points `axis` sees apart, or on one line. An extreme point of the intersection is
-/// a vertex of one of the two, or two edges cross there.
+/// a vertex of one of the two, or two edges cross there. If a is a triangle, the axis is that of its
+/// projection.
 void meet_in_plane(const Simplex& a, const Simplex& b, int axis, Meetings& meetings, bool& used_exact) {
-  const Turns of_b(a, b, axis, used_exact), of_a(b, a, axis, used_exact);
+  const Turns of_b(a, b, axis, used_exact);
+  if (a.size == 3 && edge_separates(a, of_b, b.size)) return;
+  const Turns of_a(b, a, axis, used_exact);
   for (int i = 0; i < a.size; ++i) {
     if (const auto on_b = locate(a[i], i, b, of_a)) meetings.add(a.vertex_feature(i), *on_b);
   }
@@ -271,7 +285,7 @@ std::optional<Feature> pierced_feature(const Simplex& segment, const Simplex& tr
 
 void meet_triangle(const Simplex& triangle, const Simplex& other, Meetings& meetings, bool& used_exact) {
   const auto& [p, q, r] = *triangle.points;
-  const int axis = projection_axis(p, q, r, used_exact);
+  const int axis = triangle.projection.axis;
   const int first = orient3d(p, q, r, other[0], used_exact);
   const int second = other.size == 2 ? orient3d(p, q, r, other[1], used_exact) : first;
   if (first == 0 && second == 0) return meet_in_plane(triangle, other, axis, meetings, used_exact);
@@ -285,18 +299,18 @@ void meet_triangle(const Simplex& triangle, const Simplex& other, Meetings& meet
 }
 
 void meet_segments_or_points(const Simplex& a, const Simplex& b, Meetings& meetings, bool& used_exact) {
-  int axis = -1;
+  Projection projection;
   if (a.size == 2 && b.size == 2) {
     if (orient3d(a[0], a[1], b[0], b[1], used_exact) != 0) return;
-    axis = projection_axis(a[0], a[1], b[0], used_exact);
-    if (axis < 0) axis = projection_axis(a[0], a[1], b[1], used_exact);
+    projection = find_projection(a[0], a[1], b[0], used_exact);
+    if (!projection) projection = find_projection(a[0], a[1], b[1], used_exact);
   } else if (a.size == 2) {
-    axis = projection_axis(a[0], a[1], b[0], used_exact);
+    projection = find_projection(a[0], a[1], b[0], used_exact);
   } else if (b.size == 2) {
-    axis = projection_axis(b[0], b[1], a[0], used_exact);
+    projection = find_projection(b[0], b[1], a[0], used_exact);
   }
   // Points of one line need no projection: any axis will do.
-  meet_in_plane(a, b, std::max(axis, 0), meetings, used_exact);
+  meet_in_plane(a, b, projection ? projection.axis : 0, meetings, used_exact);
 }
 
 void swap_sides(Meetings& meetings) {
@@ -308,8 +322,7 @@ void find_special_meetings(const TrianglePoints& a, const TrianglePoints& b, Mee
                            bool& used_exact) {
   const Simplex simplex_a = reduce(a, used_exact), simplex_b = reduce(b, used_exact);
   if (simplex_a.size == 3 && simplex_b.size == 3) {
-    const int axis = projection_axis(a[0], a[1], a[2], used_exact);
-    meet_in_plane(simplex_a, simplex_b, axis, meetings, used_exact);
+    meet_in_plane(simplex_a, simplex_b, simplex_a.projection.axis, meetings, used_exact);
   } else if (simplex_a.size == 3) {
     meet_triangle(simplex_a, simplex_b, meetings, used_exact);
   } else if (simplex_b.size == 3) {
@@ -337,14 +350,16 @@ struct Sides {
 };
 
 Placement classify(const TrianglePoints& a, const TrianglePoints& b, Sides& sides, bool& used_exact) {
-  const FilteredSides filtered_a(FilteredPlane(b), a);
+  const FilteredPlane plane_b(b);
+  const FilteredSides filtered_a(plane_b, a);
   if (filtered_a.separated()) return Placement::apart;
-  const FilteredSides filtered_b(FilteredPlane(a), b);
+  const FilteredPlane plane_a(a);
+  const FilteredSides filtered_b(plane_a, b);
   if (filtered_b.separated()) return Placement::apart;
   if (!all_finite(a) || !all_finite(b)) return Placement::apart;
-  sides.of_a = sides_of_plane(b, a, filtered_a, used_exact);
+  sides.of_a = sides_of_plane(plane_b, b, a, filtered_a, used_exact);
   if (separated(sides.of_a)) return Placement::apart;
-  sides.of_b = sides_of_plane(a, b, filtered_b, used_exact);
+  sides.of_b = sides_of_plane(plane_a, a, b, filtered_b, used_exact);
   if (separated(sides.of_b)) return Placement::apart;
   return all(sides.of_a, 0) || all(sides.of_b, 0) ? Placement::special : Placement::crossing;
 }

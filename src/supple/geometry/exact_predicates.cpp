@@ -34,13 +34,16 @@ int exact_orient3d(const Vec3d& a, const Vec3d& b, const Vec3d& c, const Vec3d& 
 
 }  // namespace
 
-int orient3d(const Vec3d& a, const Vec3d& b, const Vec3d& c, const Vec3d& d, bool& used_exact) {
-  const FilteredPlane plane(a, b, c);
+int orient3d(const FilteredPlane& plane, const Vec3d& b, const Vec3d& c, const Vec3d& d, bool& used_exact) {
   const Filtered side = plane.side(d);
   if (side.certain()) return side.sign();
   if (d == b || d == c || plainly_coplanar(plane, b, c, d)) return 0;
   used_exact = true;
-  return exact_orient3d(a, b, c, d);
+  return exact_orient3d(plane.origin, b, c, d);
+}
+
+int orient3d(const Vec3d& a, const Vec3d& b, const Vec3d& c, const Vec3d& d, bool& used_exact) {
+  return orient3d(FilteredPlane(a, b, c), b, c, d, used_exact);
 }
 
 int orient2d(const Vec3d& a, const Vec3d& b, const Vec3d& c, int axis, bool& used_exact) {
@@ -61,21 +64,15 @@ int orient2d(const Vec3d& a, const Vec3d& b, const Vec3d& c, int axis, bool& use
   });
 }
 
-int projection_axis(const Vec3d& a, const Vec3d& b, const Vec3d& c, bool& used_exact) {
+Projection find_projection(const Vec3d& a, const Vec3d& b, const Vec3d& c, bool& used_exact) {
   // The largest component first: it is the one that the filter is most likely to decide.
   const Vec3d normal = absolute(FilteredPlane(a, b, c).normal);
   const int first = normal.x >= normal.y && normal.x >= normal.z ? 0 : normal.y >= normal.z ? 1 : 2;
   for (int i = 0; i < 3; ++i) {
     const int axis = (first + i) % 3;
-    if (orient2d(a, b, c, axis, used_exact) != 0) return axis;
+    if (const int turn = orient2d(a, b, c, axis, used_exact)) return {axis, turn};
   }
-  return -1;
-}
-
-bool lexicographically_less(const Vec3d& a, const Vec3d& b) {
-  if (a.x != b.x) return a.x < b.x;
-  if (a.y != b.y) return a.y < b.y;
-  return a.z < b.z;
+  return {};
 }
 
 }  // namespace supple

@@ -164,16 +164,21 @@ TEST(Orient2d, EqualsUnboundedArithmetic) {
   EXPECT_GT(zeros, 100);
 }
 
-TEST(ProjectionAxis, IsOneThatKeepsTheArea) {
+TEST(FindProjection, KeepsTheAreaAndSaysTheTurn) {
   bool used_exact = false;
-  EXPECT_EQ(projection_axis({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, used_exact), 2);
-  EXPECT_EQ(projection_axis({0, 0, 0}, {0, 1, 0}, {0, 0, 1}, used_exact), 0);
-  EXPECT_EQ(projection_axis({0, 0, 0}, {0, 0, 1}, {1, 0, 0}, used_exact), 1);
-  EXPECT_EQ(projection_axis({0, 0, 0}, {1, 1, 1}, {3, 3, 3}, used_exact), -1);
-  EXPECT_EQ(projection_axis({1, 2, 3}, {1, 2, 3}, {1, 2, 3}, used_exact), -1);
-  // Not collinear by one step of a double, in one projection only.
-  EXPECT_EQ(projection_axis({0, 0, 0}, {0.1, 1, 0}, {0.1, 1, smallest}, used_exact) >= 0, true);
-  EXPECT_EQ(projection_axis({0, 0, 0}, {smallest, smallest, 0}, {2 * smallest, smallest, 0}, used_exact), 2);
+  const auto expect = [&](const Vec3d& a, const Vec3d& b, const Vec3d& c, int axis, int turn) {
+    EXPECT_EQ(find_projection(a, b, c, used_exact).axis, axis);
+    EXPECT_EQ(find_projection(a, b, c, used_exact).turn, turn);
+  };
+  expect({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 2, 1);
+  expect({0, 0, 0}, {0, 1, 0}, {1, 0, 0}, 2, -1);
+  expect({0, 0, 0}, {0, 1, 0}, {0, 0, 1}, 0, 1);
+  expect({0, 0, 0}, {0, 0, 1}, {1, 0, 0}, 1, 1);
+  expect({0, 0, 0}, {1, 1, 1}, {3, 3, 3}, -1, 0);
+  expect({1, 2, 3}, {1, 2, 3}, {1, 2, 3}, -1, 0);
+  // Off one line by a step of a double, in one projection only.
+  expect({0, 0, 0}, {smallest, smallest, 0}, {2 * smallest, smallest, 0}, 2, -1);
+  expect({0, 0, 0}, {0, 1, 0}, {0, 1, smallest}, 0, 1);
 }
 
 TEST(FilteredPlane, NeverClaimsAWrongSign) {
