@@ -131,26 +131,25 @@ std::uint32_t SceneCubeChooser::automatic_level(const SceneCube& cube, std::size
   }
   std::sort(cells_.begin(), cells_.end());
 
-  // Objects that share a leaf with an average object, by level, scaled up from the sample.
+  // Objects that share a leaf with an average object, by level, scaled up from the sample. A crowd that no
+  // level parts counts no more than so many, lest it hide what the others gain.
+  constexpr double kCrowd = 512;
   std::array<double, kCellLevels + 1> company{};
-  const double scale =
-      centers_.size() < 2
-          ? 0
-          : static_cast<double>(object_count - 1) /
-                (static_cast<double>(centers_.size() - 1) * static_cast<double>(centers_.size()));
+  const double sampled = static_cast<double>(centers_.size());
+  const double scale = sampled < 2 ? 0 : static_cast<double>(object_count - 1) / (sampled - 1);
   for (std::uint32_t level = 1; level <= deepest; ++level) {
     const std::uint32_t shift = 3 * (kCellLevels - level);
     std::size_t run_begin = 0;
     for (std::size_t i = 1; i <= cells_.size(); ++i) {
       if (i != cells_.size() && cells_[i] >> shift == cells_[run_begin] >> shift) continue;
       const double run = static_cast<double>(i - run_begin);
-      company[level] += run * (run - 1) * scale;
+      company[level] += run / sampled * std::min((run - 1) * scale, kCrowd);
       run_begin = i;
     }
   }
-  // Going deeper is in vain where objects coincide: then the first level does that is about as good as the
-  // last.
-  constexpr double kAboutAsGood = 1.25;
+  // Going deeper is in vain where objects coincide: the first level that does about as well as the last will
+  // do.
+  constexpr double kAboutAsGood = 1.1;
   const double good =
       std::max(object_count <= kFewObjects ? 0.5 : kGoodLeaf, kAboutAsGood * company[deepest]);
   for (std::uint32_t level = 1; level < deepest; ++level)

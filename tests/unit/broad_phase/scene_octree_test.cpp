@@ -260,6 +260,11 @@ TEST(SceneCube, ChoosesALevelThatKeepsRegionsLargerThanObjects) {
   }
   EXPECT_EQ(chooser.choose(test::random_boxes(100, 20, 1, 10), 7).max_level, 7u);
   EXPECT_EQ(chooser.choose({}, 0).max_level, 1u);
+  // A crowd that cannot be parted does not keep the others from being parted.
+  std::vector<Aabb> crowd(4000, box_around({10, 10, 10}, {0, 0, 0}));
+  const std::vector<Aabb> rest = test::random_boxes(4000, 20, 0.01f, 12);
+  crowd.insert(crowd.end(), rest.begin(), rest.end());
+  EXPECT_GE(chooser.choose(crowd, 0).max_level, 3u);
   // All in one place: no level tells them apart.
   EXPECT_EQ(chooser.choose(std::vector<Aabb>(5000, box_around({1, 1, 1}, {0, 0, 0})), 0).max_level, 1u);
 }
