@@ -115,7 +115,7 @@ def main():
     parser.add_argument("--line-width", type=float, default=0.7, help="of borders, 0 for none")
     parser.add_argument(
         "--views",
-        default="0:8,-55:18",
+        default="0:8,40:14",
         help="yaw:pitch in degrees, comma-separated; 0:0 looks along -z",
     )
     arguments = parser.parse_args()

@@ -46,9 +46,10 @@ struct ObjectOctreeOptions {
 
 /// Shape of the octree of the scene.
 struct SceneOctreeOptions {
-  /// Depth at which regions no longer expand, 1 to 20; 0 chooses it from the sizes of the objects.
+  /// Depth at which regions no longer expand, 1 to 20; 0 chooses it from the number, the places and the sizes
+  /// of the objects. Less far from the origin, where floats cannot tell finer regions apart.
   std::uint32_t max_level = 0;
-  /// A region expands when this many objects share it, ≥ 2 (the paper: 2).
+  /// A region expands when this many of its objects fit into regions half its edge, ≥ 2 (the paper: 2).
   std::uint32_t expand_at = 2;
   RegionSphereTest region_sphere_test = RegionSphereTest::arvo;
 };

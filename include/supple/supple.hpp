@@ -10,6 +10,7 @@
 #include "supple/result.hpp"
 #include "supple/scene.hpp"
 #include "supple/topology.hpp"
+#include "supple/triangle_intersection.hpp"
 #include "supple/trigonometry.hpp"
 #include "supple/types.hpp"
 #include "supple/version.hpp"

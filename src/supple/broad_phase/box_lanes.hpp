@@ -20,7 +20,7 @@ struct BoxLanes {
   std::vector<std::uint32_t> slots;  ///< object of each lane
   /// Per lane, bit per axis: the box begins in this part of space. A pair is reported where it begins along
   /// all three axes; 7 everywhere when there is but one part.
-  std::vector<std::uint8_t> begins;
+  std::vector<std::uint32_t> begins;
   std::size_t count = 0;
 
   /// Room for `new_count` boxes, all to be set. The lanes behind them hold NaN, which overlaps nothing.
@@ -28,10 +28,8 @@ struct BoxLanes {
     count = new_count;
     if (slots.size() < count + kMaxLanes) {
       const std::size_t size = count + count / 2 + kMaxLanes;
-      for (int axis = 0; axis < 3; ++axis) {
-        min[static_cast<std::size_t>(axis)].resize(size);
-        max[static_cast<std::size_t>(axis)].resize(size);
-      }
+      for (std::vector<float>& ends : min) ends.resize(size);
+      for (std::vector<float>& ends : max) ends.resize(size);
       slots.resize(size);
       begins.resize(size);
     }
@@ -40,12 +38,13 @@ struct BoxLanes {
   }
 
   /// `first_axis` becomes axis 0 of the lanes, the others follow in turn.
-  void set(std::size_t lane, std::uint32_t slot, const Aabb& box, std::uint8_t begins_here = 7,
+  void set(std::size_t lane, std::uint32_t slot, const Aabb& box, std::uint32_t begins_here = 7,
            int first_axis = 0) {
-    for (int k = 0; k < 3; ++k) {
-      const int axis = first_axis + k < 3 ? first_axis + k : first_axis + k - 3;
-      min[static_cast<std::size_t>(k)][lane] = box.min[axis];
-      max[static_cast<std::size_t>(k)][lane] = box.max[axis];
+    for (std::size_t k = 0; k < 3; ++k) {
+      const int axis = first_axis + static_cast<int>(k) < 3 ? first_axis + static_cast<int>(k)
+                                                            : first_axis + static_cast<int>(k) - 3;
+      min[k][lane] = box.min[axis];
+      max[k][lane] = box.max[axis];
     }
     slots[lane] = slot;
     begins[lane] = begins_here;

@@ -28,7 +28,7 @@ void BruteForce::find_pairs(const ObjectVolumes& volumes, const Parallel& parall
     if (bounding_volume_ == BoundingVolume::sphere)
       keep_overlapping_spheres(volumes.spheres, first, found_[worker]);
   });
-  sorter_.sort(found_, slots, parallel, pairs);
+  sorter_.sort(found_, slots, false, parallel, pairs);
   stats_ = {};
   stats_.object_pairs_tested = tests;
   stats_.objects_changed = stats_.objects_paired = live;

@@ -4,13 +4,19 @@
 
 #include "broad_phase/float_order.hpp"
 #include "broad_phase/overlap_kernel.hpp"
-#include "geometry/aabb.hpp"
 
 namespace supple {
 namespace {
 
 /// Fewer objects than this in a leaf are tested each against each: sorting them first would take longer.
 constexpr std::uint32_t kSortLeafAt = 96;
+
+/// Few boxes overlap, but which comparison says so is anyone's guess.
+bool overlap_without_branches(const Aabb& a, const Aabb& b) {
+  return (static_cast<int>(a.min.x <= b.max.x) & static_cast<int>(b.min.x <= a.max.x) &
+          static_cast<int>(a.min.y <= b.max.y) & static_cast<int>(b.min.y <= a.max.y) &
+          static_cast<int>(a.min.z <= b.max.z) & static_cast<int>(b.min.z <= a.max.z)) != 0;
+}
 
 /// Bit per axis: the box begins in this region and not below it.
 ///
@@ -20,9 +26,9 @@ constexpr std::uint32_t kSortLeafAt = 96;
 /// both, and if it is not, neither are the upper ends, which are no less than the corner. Among the leaves
 /// they share, where every lower end is below each upper side, L is the one whose lower sides are all <= the
 /// corner: along each axis one of the two boxes begins there. Reporting a pair in L alone reports it once.
-std::uint8_t begins_in(const SceneOctree::Region& leaf, const Aabb& box) {
-  return static_cast<std::uint8_t>((box.min.x >= leaf.lower.x) | (box.min.y >= leaf.lower.y) << 1 |
-                                   (box.min.z >= leaf.lower.z) << 2);
+std::uint32_t begins_in(const SceneOctree::Region& leaf, const Aabb& box) {
+  return static_cast<std::uint32_t>((box.min.x >= leaf.lower.x) | (box.min.y >= leaf.lower.y) << 1 |
+                                    (box.min.z >= leaf.lower.z) << 2);
 }
 
 }  // namespace
@@ -35,6 +41,10 @@ void OctreeBroadPhase::find_pairs(const ObjectVolumes& volumes, const Parallel& 
   stats_ = {};
   const std::uint64_t expanded = tree_.expanded_count(), reduced = tree_.reduced_count();
   detect_changes(volumes, parallel);
+  if (changed_.empty()) {
+    pairs.assign(last_pairs_.begin(), last_pairs_.end());
+    return;
+  }
   update_regions(volumes);
   stats_.regions_expanded = tree_.expanded_count() - expanded;
   stats_.regions_reduced = tree_.reduced_count() - reduced;
@@ -56,10 +66,10 @@ void OctreeBroadPhase::find_pairs(const ObjectVolumes& volumes, const Parallel& 
 
   for (std::size_t i = 0; i < workers_.size(); ++i) std::swap(found_[i], workers_[i].found);
   if (few_changed) {
-    sorter_.sort(found_, tree_.slot_count(), parallel, fresh_);
+    sorter_.sort(found_, tree_.slot_count(), tree_.placed_by_sphere(), parallel, fresh_);
     merge_kept(pairs);
   } else {
-    sorter_.sort(found_, tree_.slot_count(), parallel, pairs);
+    sorter_.sort(found_, tree_.slot_count(), tree_.placed_by_sphere(), parallel, pairs);
   }
   last_pairs_.assign(pairs.begin(), pairs.end());
 }
@@ -98,9 +108,8 @@ void OctreeBroadPhase::update_regions(const ObjectVolumes& volumes) {
     live_ -= !tree_.boxes()[slot].empty();
     live_ += !volume_at(volumes, bounding_volume_, slot).empty();
   }
-  // Placing one object again costs about as much as placing this many in a build.
-  constexpr std::size_t kMoveCost = 4;
-  const bool many = kMoveCost * crossing_.size() > live_;
+  // Placing an object again costs a little more than its share of a build.
+  const bool many = 4 * crossing_.size() > 3 * live_;
   for (const std::uint32_t slot : crossing_) {
     const ObjectVolume now = volume_at(volumes, bounding_volume_, slot);
     if (many)
@@ -138,7 +147,7 @@ void OctreeBroadPhase::find_in_leaf(const SceneOctree::Region& leaf, Worker& wor
   const auto slots = tree_.objects(leaf);
   const auto boxes = tree_.boxes();
   const auto begins = [&](const Aabb& box) {
-    return tree_.placed_by_sphere() ? std::uint8_t{7} : begins_in(leaf, box);
+    return tree_.placed_by_sphere() ? std::uint32_t{7} : begins_in(leaf, box);
   };
   const std::size_t first = worker.found.size();
   worker.lanes.resize(slots.size());
@@ -170,18 +179,20 @@ void OctreeBroadPhase::find_of_changed(const Parallel& parallel) {
 }
 
 void OctreeBroadPhase::find_of_object(std::uint32_t slot, Worker& worker) const {
-  const Aabb box = tree_.boxes()[slot];
+  const auto boxes = tree_.boxes();
+  const Aabb box = boxes[slot];
   const std::size_t first = worker.found.size();
   tree_.visit_leaves(slot, [&](const SceneOctree::Region& leaf) {
-    const std::uint8_t begins = tree_.placed_by_sphere() ? std::uint8_t{7} : begins_in(leaf, box);
+    const std::uint32_t begins = tree_.placed_by_sphere() ? std::uint32_t{7} : begins_in(leaf, box);
     for (const std::uint32_t other : tree_.objects(leaf)) {
+      const Aabb& other_box = boxes[other];
+      if (!overlap_without_branches(box, other_box) || other == slot) continue;
       // Of two that changed, the one with the smaller index finds the pair.
-      if (other == slot || (other < slot && changes_[other] != Change::none)) continue;
-      ++worker.tests;
-      const Aabb& other_box = tree_.boxes()[other];
-      if (overlap(box, other_box) && (begins | begins_in(leaf, other_box)) == 7)
+      if (other < slot && changes_[other] != Change::none) continue;
+      if ((begins | begins_in(leaf, other_box)) == 7)
         worker.found.push({std::min(slot, other), std::max(slot, other)});
     }
+    worker.tests += leaf.objects.count - 1;
   });
   if (bounding_volume_ == BoundingVolume::sphere)
     keep_overlapping_spheres(tree_.spheres(), first, worker.found);

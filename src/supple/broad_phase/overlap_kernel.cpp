@@ -1,8 +1,5 @@
 #include "broad_phase/overlap_kernel.hpp"
 
-#include <algorithm>
-#include <bit>
-
 // Highway compiles the rest of this file once for each instruction set, and picks one when the program runs.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "broad_phase/overlap_kernel.cpp"
@@ -17,23 +14,29 @@ namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-HWY_INLINE void append(const BoxLanes& boxes, std::size_t row, std::size_t column, std::uint32_t hits,
+using Floats = hn::CappedTag<float, kMaxLanes>;
+using Integers = hn::RebindToUnsigned<Floats>;
+
+/// Appends the pairs of a row and those of the boxes at `column` whose lanes are hit and that begin here.
+template <class Mask>
+HWY_INLINE void append(const BoxLanes& boxes, std::size_t row, std::size_t column, Mask hit,
                        PairBuffer& pairs) {
-  IndexPair* out = pairs.room(kMaxLanes);
-  std::size_t found = 0;
-  const std::uint32_t slot = boxes.slots[row];
-  for (; hits != 0; hits &= hits - 1) {
-    const std::size_t other = column + static_cast<std::size_t>(std::countr_zero(hits));
-    out[found] = {std::min(slot, boxes.slots[other]), std::max(slot, boxes.slots[other])};
-    found += (boxes.begins[row] | boxes.begins[other]) == 7;
-  }
-  pairs.commit(found);
+  const Integers lanes;
+  const auto begins =
+      hn::Or(hn::Set(lanes, boxes.begins[row]), hn::LoadU(lanes, boxes.begins.data() + column));
+  const auto reported = hn::And(hn::RebindMask(lanes, hit), hn::Eq(begins, hn::Set(lanes, 7)));
+  const auto slot = hn::Set(lanes, boxes.slots[row]);
+  const auto others = hn::LoadU(lanes, boxes.slots.data() + column);
+  static_assert(sizeof(IndexPair) == 2 * sizeof(std::uint32_t));
+  hn::StoreInterleaved2(hn::Compress(hn::Min(slot, others), reported),
+                        hn::Compress(hn::Max(slot, others), reported), lanes, &pairs.room(kMaxLanes)->a);
+  pairs.commit(hn::CountTrue(lanes, reported));
 }
 
 template <bool sorted>
 HWY_INLINE std::uint64_t find_rows(const BoxLanes& boxes, std::size_t begin, std::size_t end,
                                    PairBuffer& pairs) {
-  const hn::CappedTag<float, kMaxLanes> lanes;
+  const Floats lanes;
   const float* const min_x = boxes.min[0].data();
   const float* const min_y = boxes.min[1].data();
   const float* const min_z = boxes.min[2].data();
@@ -52,11 +55,7 @@ HWY_INLINE std::uint64_t find_rows(const BoxLanes& boxes, std::size_t begin, std
       hit = hn::And(hit, hn::And(hn::Le(hn::LoadU(lanes, min_z + j), row_max_z),
                                  hn::Ge(hn::LoadU(lanes, max_z + j), row_min_z)));
       if constexpr (!sorted) hit = hn::And(hit, hn::Ge(hn::LoadU(lanes, max_x + j), row_min_x));
-      if (!hn::AllFalse(lanes, hit)) {
-        std::uint8_t bytes[8] = {};
-        hn::StoreMaskBits(lanes, hit, bytes);
-        append(boxes, row, j, bytes[0] | std::uint32_t{bytes[1]} << 8, pairs);
-      }
+      if (!hn::AllFalse(lanes, hit)) append(boxes, row, j, hit, pairs);
       if constexpr (sorted) {
         tests += hn::CountTrue(lanes, begin_before);
         if (!hn::AllTrue(lanes, begin_before)) break;

@@ -1,6 +1,7 @@
 #include "broad_phase/pair_sorter.hpp"
 
 #include <algorithm>
+#include <limits>
 
 #include "geometry/sphere.hpp"
 
@@ -24,19 +25,21 @@ void sort_run(IndexPair* begin, IndexPair* end) {
 
 }  // namespace
 
-void PairSorter::sort(std::span<const PairBuffer> parts, std::size_t slot_count, const Parallel& parallel,
-                      std::vector<IndexPair>& sorted) {
+void PairSorter::sort(std::span<const PairBuffer> parts, std::size_t slot_count, bool may_repeat,
+                      const Parallel& parallel, std::vector<IndexPair>& sorted) {
   std::size_t total = 0;
   for (const PairBuffer& part : parts) total += part.size();
   sorted.resize(total);
-  if (total >= slot_count / 16) {
+  // Counters of 32 bits halve the memory that is hit at random.
+  const bool countable = total <= std::numeric_limits<std::uint32_t>::max();
+  if (countable && total >= slot_count / 16) {
     sort_by_counting(parts, slot_count, parallel, sorted);
   } else {
     auto out = sorted.begin();
     for (const PairBuffer& part : parts) out = std::copy_n(part.data(), part.size(), out);
     std::sort(sorted.begin(), sorted.end());
   }
-  sorted.erase(std::unique(sorted.begin(), sorted.end()), sorted.end());
+  if (may_repeat) sorted.erase(std::unique(sorted.begin(), sorted.end()), sorted.end());
 }
 
 void PairSorter::sort_by_counting(std::span<const PairBuffer> parts, std::size_t slot_count,

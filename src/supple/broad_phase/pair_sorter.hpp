@@ -12,16 +12,17 @@ namespace supple {
 /// Puts the pairs that workers found into the canonical order, by a and then b.
 class PairSorter {
  public:
-  /// Replaces `sorted` by the pairs of all `parts`, duplicates dropped. Every a is below `slot_count`.
-  /// A counting sort by a, then each run by b: O(pairs + slots) while no object has very many pairs.
-  void sort(std::span<const PairBuffer> parts, std::size_t slot_count, const Parallel& parallel,
-            std::vector<IndexPair>& sorted);
+  /// Replaces `sorted` by the pairs of all `parts`. Every a is below `slot_count`. Duplicates are dropped
+  /// when there may be some. A counting sort by a, then each run by b: O(pairs + slots) while no object has
+  /// very many pairs.
+  void sort(std::span<const PairBuffer> parts, std::size_t slot_count, bool may_repeat,
+            const Parallel& parallel, std::vector<IndexPair>& sorted);
 
  private:
   void sort_by_counting(std::span<const PairBuffer> parts, std::size_t slot_count, const Parallel& parallel,
                         std::vector<IndexPair>& sorted);
 
-  std::vector<std::size_t> run_end_;
+  std::vector<std::uint32_t> run_end_;
 };
 
 /// Drops the pairs from `first` on whose balls do not overlap.

@@ -9,14 +9,14 @@ namespace {
 
 constexpr std::size_t kSampleSize = 4096;
 /// Room for objects to move before they leave the cube, relative to the spread of their centres.
-constexpr double kMargin = 1.25;
+constexpr double kMargin = 1.1;
 /// Beyond this, edges and sums of coordinates would leave the range of float.
 constexpr float kFarthest = 1e37f;
 /// Up to this many objects the regions divide until objects are alone, as in the paper; it costs
 /// microseconds.
 constexpr std::size_t kFewObjects = 64;
 /// More than this many objects in a leaf take longer to test against one another than to divide.
-constexpr double kGoodLeaf = 48;
+constexpr double kGoodLeaf = 64;
 
 /// Bit i of the argument goes to bit 3i.
 std::uint64_t spread_bits(std::uint64_t x) {
@@ -36,11 +36,11 @@ std::uint64_t cell_along_axis(double value, double low, double edge) {
   return static_cast<std::uint64_t>(std::clamp(cell, 0.0, kCells - 1));
 }
 
-/// The next larger number of four significant bits: halves of it lose few digits when added to a coordinate.
+/// The next larger number of six significant bits: halves of it lose few digits when added to a coordinate.
 float round_to_few_bits(double value) {
   int exponent = 0;
   const double fraction = std::frexp(value, &exponent);
-  return static_cast<float>(std::ldexp(std::ceil(fraction * 16), exponent - 4));
+  return static_cast<float>(std::ldexp(std::ceil(fraction * 64), exponent - 6));
 }
 
 }  // namespace

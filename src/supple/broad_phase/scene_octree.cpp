@@ -11,18 +11,19 @@ namespace {
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr std::uint32_t kGroup = 8;
 
-/// Children in the lower and upper half along each axis.
-constexpr std::array<std::array<std::uint32_t, 2>, 3> kHalves{{{0x55, 0xaa}, {0x33, 0xcc}, {0x0f, 0xf0}}};
+/// Children in the upper half along each axis; the others are in the lower.
+constexpr std::array<std::uint32_t, 3> kUpperHalf{0xaa, 0xcc, 0xf0};
 
 /// Children that hold part of the box. It is known to touch the region itself.
 std::uint32_t children_of_box(const Vec3f& middle, const Aabb& box) {
-  std::uint32_t touched = 0xff;
+  std::uint32_t missed = 0;
   for (int axis = 0; axis < 3; ++axis) {
-    const auto& halves = kHalves[static_cast<std::size_t>(axis)];
-    touched &=
-        (box.min[axis] < middle[axis] ? halves[0] : 0) | (box.max[axis] >= middle[axis] ? halves[1] : 0);
+    const std::uint32_t upper = kUpperHalf[static_cast<std::size_t>(axis)];
+    // All bits or none, in place of a branch.
+    missed |= ~upper & -static_cast<std::uint32_t>(!(box.min[axis] < middle[axis]));
+    missed |= upper & -static_cast<std::uint32_t>(!(box.max[axis] >= middle[axis]));
   }
-  return touched;
+  return ~missed & 0xff;
 }
 
 /// Children whose closest point to the centre lies within the ball (Arvo 1990), all when it is not finite.
@@ -66,41 +67,6 @@ void SceneOctree::resize(std::size_t slot_count) {
   stay_.resize(slot_count);
   finest_level_.resize(slot_count, 0);
   is_collected_.resize(slot_count, 0);
-}
-
-ObjectVolume SceneOctree::volume(std::uint32_t slot) const {
-  return {boxes_[slot], has_spheres_ ? spheres_[slot] : BoundingSphere{}};
-}
-
-bool SceneOctree::same_volume(std::uint32_t slot, const ObjectVolume& now) const {
-  return boxes_[slot] == now.box && (!has_spheres_ || spheres_[slot] == now.sphere);
-}
-
-bool SceneOctree::stays(std::uint32_t slot, const ObjectVolume& now) const {
-  if (now.empty() || boxes_[slot].empty()) return false;
-  const StayRange& range = stay_[slot];
-  for (int axis = 0; axis < 3; ++axis) {
-    const std::size_t k = static_cast<std::size_t>(axis);
-    if (!(range.low[k] <= now.box.min[axis] && now.box.min[axis] < range.high[k])) return false;
-    if (!(range.low[k + 3] <= now.box.max[axis] && now.box.max[axis] < range.high[k + 3])) return false;
-  }
-  return finest_level(now.box) == finest_level_[slot];
-}
-
-void SceneOctree::set_volume(std::uint32_t slot, const ObjectVolume& now) {
-  boxes_[slot] = now.box;
-  if (has_spheres_) spheres_[slot] = now.sphere;
-  finest_level_[slot] = finest_level(now.box);
-}
-
-/// Level of the smallest regions whose edge is no shorter than the box, by powers of two.
-std::uint8_t SceneOctree::finest_level(const Aabb& box) const {
-  double extent = 0;
-  for (int axis = 0; axis < 3; ++axis) extent = std::max(extent, double{box.max[axis]} - box.min[axis]);
-  // The exponent alone: extent / edge is in [2^(e-1), 2^e). Infinity and NaN have the largest.
-  const auto bits = std::bit_cast<std::uint64_t>(extent / cube_.edge);
-  const int exponent = static_cast<int>(bits >> 52 & 0x7ff) - 1022;
-  return static_cast<std::uint8_t>(std::clamp(-exponent, 0, 31));
 }
 
 std::uint32_t SceneOctree::children_touched(const Region& region, const Aabb& box,
@@ -177,17 +143,14 @@ void SceneOctree::open_stay_range(std::uint32_t slot) {
 void SceneOctree::narrow_stay_range(std::uint32_t slot, const Region& region) {
   StayRange& range = stay_[slot];
   const Aabb& box = boxes_[slot];
-  for (int axis = 0; axis < 3; ++axis) {
-    const std::size_t k = static_cast<std::size_t>(axis);
-    const float plane = region.middle[axis];
-    if (box.min[axis] < plane)
-      range.high[k] = std::min(range.high[k], plane);
-    else
-      range.low[k] = std::max(range.low[k], plane);
-    if (box.max[axis] < plane)
-      range.high[k + 3] = std::min(range.high[k + 3], plane);
-    else
-      range.low[k + 3] = std::max(range.low[k + 3], plane);
+  const Vec3f& plane = region.middle;
+  const std::array<float, 6> ends{box.min.x, box.min.y, box.min.z, box.max.x, box.max.y, box.max.z};
+  const std::array<float, 6> planes{plane.x, plane.y, plane.z, plane.x, plane.y, plane.z};
+  // Selections in place of branches: which side an end is on is anyone's guess.
+  for (std::size_t k = 0; k < 6; ++k) {
+    const bool below = ends[k] < planes[k];
+    range.low[k] = std::max(range.low[k], below ? -kInfinity : planes[k]);
+    range.high[k] = std::min(range.high[k], below ? planes[k] : kInfinity);
   }
 }
 
@@ -215,6 +178,7 @@ void SceneOctree::set_sphere_stay_range(std::uint32_t slot, const Region& leaf) 
 
 void SceneOctree::build(const SceneCube& cube) {
   cube_ = cube;
+  inverse_edge_ = 1.0 / cube.edge;
   make_root();
   std::uint32_t live = 0;
   for (const Aabb& box : boxes_) live += !box.empty();

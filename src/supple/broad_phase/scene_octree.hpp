@@ -1,6 +1,8 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -123,6 +125,7 @@ class SceneOctree {
   bool has_spheres_, by_sphere_;
   std::uint32_t expand_at_;
   SceneCube cube_;
+  double inverse_edge_ = 1;      // of the cube
   std::vector<Region> regions_;  // the root is alone in the first group
   std::vector<std::uint32_t> free_groups_;
   SlotLists lists_;
@@ -139,5 +142,40 @@ class SceneOctree {
   std::vector<std::uint32_t> collected_;    // scratch of `reduce`
   std::vector<std::uint8_t> is_collected_;  // scratch of `reduce`, per slot
 };
+
+inline ObjectVolume SceneOctree::volume(std::uint32_t slot) const {
+  return {boxes_[slot], has_spheres_ ? spheres_[slot] : BoundingSphere{}};
+}
+
+inline bool SceneOctree::same_volume(std::uint32_t slot, const ObjectVolume& now) const {
+  return boxes_[slot] == now.box && (!has_spheres_ || spheres_[slot] == now.sphere);
+}
+
+/// Level of the smallest regions whose edge is no shorter than the box, by powers of two.
+inline std::uint8_t SceneOctree::finest_level(const Aabb& box) const {
+  double extent = 0;
+  for (int axis = 0; axis < 3; ++axis) extent = std::max(extent, double{box.max[axis]} - box.min[axis]);
+  // The exponent alone: extent / edge is in [2^(e-1), 2^e). Infinity and NaN have the largest.
+  const auto bits = std::bit_cast<std::uint64_t>(extent * inverse_edge_);
+  const int exponent = static_cast<int>(bits >> 52 & 0x7ff) - 1022;
+  return static_cast<std::uint8_t>(std::clamp(-exponent, 0, 31));
+}
+
+inline bool SceneOctree::stays(std::uint32_t slot, const ObjectVolume& now) const {
+  if (now.empty() || boxes_[slot].empty()) return false;
+  const StayRange& range = stay_[slot];
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::size_t k = static_cast<std::size_t>(axis);
+    if (!(range.low[k] <= now.box.min[axis] && now.box.min[axis] < range.high[k])) return false;
+    if (!(range.low[k + 3] <= now.box.max[axis] && now.box.max[axis] < range.high[k + 3])) return false;
+  }
+  return finest_level(now.box) == finest_level_[slot];
+}
+
+inline void SceneOctree::set_volume(std::uint32_t slot, const ObjectVolume& now) {
+  boxes_[slot] = now.box;
+  if (has_spheres_) spheres_[slot] = now.sphere;
+  finest_level_[slot] = finest_level(now.box);
+}
 
 }  // namespace supple

@@ -30,7 +30,7 @@ void SweepAndPrune::find_pairs(const ObjectVolumes& volumes, const Parallel& par
     if (bounding_volume_ == BoundingVolume::sphere)
       keep_overlapping_spheres(volumes.spheres, first, found_[worker]);
   });
-  sorter_.sort(found_, boxes_.size(), parallel, pairs);
+  sorter_.sort(found_, boxes_.size(), false, parallel, pairs);
   stats_ = {};
   stats_.object_pairs_tested = tests;
   stats_.objects_changed = stats_.objects_paired = order_.size();

@@ -54,12 +54,12 @@ bool separated(const Signs& signs) {
   return all(signs, 1) || all(signs, -1);
 }
 
-Signs sides_of_plane(const TrianglePoints& plane, const TrianglePoints& triangle, bool& used_exact) {
+Signs sides_of_plane(const TrianglePoints& plane, const TrianglePoints& triangle,
+                     const FilteredSides& filtered, bool& used_exact) {
   Signs signs;
-  const FilteredSides filtered(FilteredPlane(plane[0], plane[1], plane[2]), triangle);
   for (std::size_t i = 0; i < 3; ++i) {
-    const Filtered side{filtered.value[i], filtered.bound};
-    signs[i] = side.certain() ? side.sign() : orient3d(plane[0], plane[1], plane[2], triangle[i], used_exact);
+    signs[i] = filtered[i].certain() ? filtered[i].sign()
+                                     : orient3d(plane[0], plane[1], plane[2], triangle[i], used_exact);
   }
   return signs;
 }
@@ -209,43 +209,52 @@ std::optional<Feature> locate_by_signs(const Signs& signs) {
   return face;
 }
 
-/// The part of the simplex on which a point of its plane lies. Along `axis`, the points of that plane are
-/// seen apart, unless point and simplex lie on one line.
-std::optional<Feature> locate(const Vec3d& point, const Simplex& simplex, int axis, bool& used_exact) {
-  if (simplex.size == 1) {
-    return point == simplex[0] ? std::optional(simplex.vertex_feature(0)) : std::nullopt;
+/// Turns of the points of one simplex against the edges of another, seen along an axis.
+struct Turns {
+  std::array<Signs, 3> of_edge;  // [edge][point]
+
+  Turns(const Simplex& edges, const Simplex& points, int axis, bool& used_exact) {
+    for (int i = 0; i < edges.edge_count(); ++i) {
+      for (int j = 0; j < points.size; ++j) {
+        at(i, j) = orient2d(edges[i], edges[(i + 1) % edges.size], points[j], axis, used_exact);
+      }
+    }
   }
-  if (simplex.size == 2) {
-    if (orient2d(simplex[0], simplex[1], point, axis, used_exact) != 0) return std::nullopt;
-    return locate_on_segment(point, simplex);
+  int& at(int edge, int point) {
+    return of_edge[static_cast<std::size_t>(edge)][static_cast<std::size_t>(point)];
   }
-  Signs signs;
-  for (int i = 0; i < 3; ++i) {
-    signs[static_cast<std::size_t>(i)] = orient2d(simplex[i], simplex[(i + 1) % 3], point, axis, used_exact);
+  int at(int edge, int point) const {
+    return of_edge[static_cast<std::size_t>(edge)][static_cast<std::size_t>(point)];
   }
-  return locate_by_signs(signs);
+};
+
+/// The part of `simplex` on which a point of its plane lies, the point being the `index`-th of `turns`.
+std::optional<Feature> locate(const Vec3d& point, int index, const Simplex& simplex, const Turns& turns) {
+  if (simplex.size == 3) return locate_by_signs({turns.at(0, index), turns.at(1, index), turns.at(2, index)});
+  if (simplex.size == 2) return turns.at(0, index) == 0 ? locate_on_segment(point, simplex) : std::nullopt;
+  return point == simplex[0] ? std::optional(simplex.vertex_feature(0)) : std::nullopt;
 }
 
-bool cross_inside(const Simplex& a, int edge_a, const Simplex& b, int edge_b, int axis, bool& used_exact) {
-  const Vec3d &p = a[edge_a], &q = a[(edge_a + 1) % a.size];
-  const Vec3d &r = b[edge_b], &s = b[(edge_b + 1) % b.size];
-  return orient2d(p, q, r, axis, used_exact) * orient2d(p, q, s, axis, used_exact) < 0 &&
-         orient2d(r, s, p, axis, used_exact) * orient2d(r, s, q, axis, used_exact) < 0;
+bool opposite(const Turns& turns, int edge, int point, int next_point) {
+  return turns.at(edge, point) * turns.at(edge, next_point) < 0;
 }
 
-/// Both in one plane, whose points `axis` sees apart. An extreme point of the intersection is a vertex of one
-/// of the two, or two edges cross there.
+/// Both in one plane, whose points `axis` sees apart, or on one line. An extreme point of the intersection is
+/// a vertex of one of the two, or two edges cross there.
 void meet_in_plane(const Simplex& a, const Simplex& b, int axis, Meetings& meetings, bool& used_exact) {
+  const Turns of_b(a, b, axis, used_exact), of_a(b, a, axis, used_exact);
   for (int i = 0; i < a.size; ++i) {
-    if (const auto on_b = locate(a[i], b, axis, used_exact)) meetings.add(a.vertex_feature(i), *on_b);
+    if (const auto on_b = locate(a[i], i, b, of_a)) meetings.add(a.vertex_feature(i), *on_b);
   }
-  for (int i = 0; i < b.size; ++i) {
-    const auto on_a = locate(b[i], a, axis, used_exact);
-    if (on_a && on_a->kind != FeatureKind::vertex) meetings.add(*on_a, b.vertex_feature(i));
+  for (int j = 0; j < b.size; ++j) {
+    const auto on_a = locate(b[j], j, a, of_b);
+    if (on_a && on_a->kind != FeatureKind::vertex) meetings.add(*on_a, b.vertex_feature(j));
   }
   for (int i = 0; i < a.edge_count(); ++i) {
     for (int j = 0; j < b.edge_count(); ++j) {
-      if (cross_inside(a, i, b, j, axis, used_exact)) meetings.add(a.edge_feature(i), b.edge_feature(j));
+      if (opposite(of_b, i, j, (j + 1) % b.size) && opposite(of_a, j, i, (i + 1) % a.size)) {
+        meetings.add(a.edge_feature(i), b.edge_feature(j));
+      }
     }
   }
 }
@@ -322,15 +331,20 @@ bool all_finite(const TrianglePoints& triangle) {
 /// that the other has no area.
 enum class Placement : std::uint8_t { apart, crossing, special };
 
+/// Of a's corners against the plane of b, and of b's against that of a.
 struct Sides {
-  Signs of_a, of_b;  // of a's corners against the plane of b, and of b's against that of a
+  Signs of_a, of_b;
 };
 
 Placement classify(const TrianglePoints& a, const TrianglePoints& b, Sides& sides, bool& used_exact) {
+  const FilteredSides filtered_a(FilteredPlane(b), a);
+  if (filtered_a.separated()) return Placement::apart;
+  const FilteredSides filtered_b(FilteredPlane(a), b);
+  if (filtered_b.separated()) return Placement::apart;
   if (!all_finite(a) || !all_finite(b)) return Placement::apart;
-  sides.of_a = sides_of_plane(b, a, used_exact);
+  sides.of_a = sides_of_plane(b, a, filtered_a, used_exact);
   if (separated(sides.of_a)) return Placement::apart;
-  sides.of_b = sides_of_plane(a, b, used_exact);
+  sides.of_b = sides_of_plane(a, b, filtered_b, used_exact);
   if (separated(sides.of_b)) return Placement::apart;
   return all(sides.of_a, 0) || all(sides.of_b, 0) ? Placement::special : Placement::crossing;
 }
@@ -359,14 +373,9 @@ void order_canonically(Meetings& meetings) {
   }
 }
 
-bool certainly_separated(const TrianglePoints& a, const TrianglePoints& b) {
-  return FilteredSides(FilteredPlane(b[0], b[1], b[2]), a).separated() ||
-         FilteredSides(FilteredPlane(a[0], a[1], a[2]), b).separated();
-}
-
 }  // namespace
 
-bool triangles_intersect_undecided(const TrianglePoints& a, const TrianglePoints& b, bool& used_exact) {
+bool triangles_intersect(const TrianglePoints& a, const TrianglePoints& b, bool& used_exact) {
   Sides sides;
   const Placement placement = classify(a, b, sides, used_exact);
   if (placement == Placement::apart) return false;
@@ -376,7 +385,12 @@ bool triangles_intersect_undecided(const TrianglePoints& a, const TrianglePoints
   return meetings.count > 0;
 }
 
-TriangleIntersection intersect_triangles_undecided(const TrianglePoints& a, const TrianglePoints& b) {
+bool triangles_intersect(const TrianglePoints& a, const TrianglePoints& b) {
+  bool used_exact = false;
+  return triangles_intersect(a, b, used_exact);
+}
+
+TriangleIntersection intersect_triangles(const TrianglePoints& a, const TrianglePoints& b) {
   TriangleIntersection result;
   Sides sides;
   const Placement placement = classify(a, b, sides, result.used_exact_fallback);
@@ -399,16 +413,6 @@ TriangleIntersection intersect_triangles_undecided(const TrianglePoints& a, cons
     result.points[i] = {meeting_point(a, on_a, b, on_b), on_a, on_b};
   }
   return result;
-}
-
-bool triangles_intersect(const TrianglePoints& a, const TrianglePoints& b) {
-  bool used_exact = false;
-  return !certainly_separated(a, b) && triangles_intersect_undecided(a, b, used_exact);
-}
-
-TriangleIntersection intersect_triangles(const TrianglePoints& a, const TrianglePoints& b) {
-  if (certainly_separated(a, b)) return {};
-  return intersect_triangles_undecided(a, b);
 }
 
 }  // namespace supple

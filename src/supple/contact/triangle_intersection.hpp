@@ -4,9 +4,7 @@
 
 namespace supple {
 
-/// As the public functions of these names, which start with a test that rejects most pairs; here that test
-/// has been made and did not decide. `used_exact` is set when integers were needed.
-bool triangles_intersect_undecided(const TrianglePoints& a, const TrianglePoints& b, bool& used_exact);
-TriangleIntersection intersect_triangles_undecided(const TrianglePoints& a, const TrianglePoints& b);
+/// The public function of this name; `used_exact` is set when integers were needed, and otherwise left alone.
+bool triangles_intersect(const TrianglePoints& a, const TrianglePoints& b, bool& used_exact);
 
 }  // namespace supple

@@ -38,7 +38,7 @@ int orient3d(const Vec3d& a, const Vec3d& b, const Vec3d& c, const Vec3d& d, boo
   const FilteredPlane plane(a, b, c);
   const Filtered side = plane.side(d);
   if (side.certain()) return side.sign();
-  if (plainly_coplanar(plane, b, c, d)) return 0;
+  if (d == b || d == c || plainly_coplanar(plane, b, c, d)) return 0;
   used_exact = true;
   return exact_orient3d(a, b, c, d);
 }
@@ -50,6 +50,7 @@ int orient2d(const Vec3d& a, const Vec3d& b, const Vec3d& c, int axis, bool& use
   const double magnitude = std::fabs(left) + std::fabs(right);
   const Filtered turn{left - right, area_error * magnitude + underflow_error};
   if (turn.certain()) return turn.sign();
+  if (b[x] == c[x] && b[y] == c[y]) return 0;
   if (magnitude == 0 && zero_or_large(ux) && zero_or_large(uy) && zero_or_large(vx) && zero_or_large(vy)) {
     return 0;
   }

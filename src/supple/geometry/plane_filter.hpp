@@ -32,6 +32,9 @@ inline constexpr double underflow_error = 0x1p-1000;
 inline Vec3d absolute(const Vec3d& v) {
   return {std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)};
 }
+inline Vec3d larger(const Vec3d& a, const Vec3d& b) {
+  return {std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)};
+}
 inline double dot(const Vec3d& a, const Vec3d& b) {
   return a.x * b.x + a.y * b.y + a.z * b.z;
 }
@@ -48,6 +51,8 @@ struct Filtered {
 struct FilteredPlane {
   Vec3d origin, normal, magnitude;
 
+  explicit FilteredPlane(const TrianglePoints& triangle)
+      : FilteredPlane(triangle[0], triangle[1], triangle[2]) {}
   FilteredPlane(const Vec3d& a, const Vec3d& b, const Vec3d& c) : origin(a) {
     const Vec3d u = b - a, v = c - a;
     const Vec3d first{u.y * v.z, u.z * v.x, u.x * v.y}, second{u.z * v.y, u.x * v.z, u.y * v.x};
@@ -76,15 +81,14 @@ struct FilteredSides {
     const Vec3d w0 = triangle[0] - plane.origin, w1 = triangle[1] - plane.origin,
                 w2 = triangle[2] - plane.origin;
     value = {dot(plane.normal, w0), dot(plane.normal, w1), dot(plane.normal, w2)};
-    bound = plane.bound({std::max({std::fabs(w0.x), std::fabs(w1.x), std::fabs(w2.x)}),
-                         std::max({std::fabs(w0.y), std::fabs(w1.y), std::fabs(w2.y)}),
-                         std::max({std::fabs(w0.z), std::fabs(w1.z), std::fabs(w2.z)})});
+    bound = plane.bound(larger(larger(absolute(w0), absolute(w1)), absolute(w2)));
   }
 
+  Filtered operator[](std::size_t i) const { return {value[i], bound}; }
   /// All three strictly on one side of the plane, without doubt.
   bool separated() const {
-    return std::min({value[0], value[1], value[2]}) > bound ||
-           std::max({value[0], value[1], value[2]}) < -bound;
+    return std::max(std::min(std::min(value[0], value[1]), value[2]),
+                    -std::max(std::max(value[0], value[1]), value[2])) > bound;
   }
 };
 

@@ -1,6 +1,7 @@
 #include "scene/contact_pass.hpp"
 
 #include <algorithm>
+#include <array>
 #include <tuple>
 
 #include "supple/triangle_intersection.hpp"
@@ -96,33 +97,52 @@ void ContactPass::run_task(const Task& task, Worker& worker) const {
   worker.traversal.find_triangle_pairs(pair, task.root, worker.traversal_stats, on_leaves, on_candidates);
 }
 
-/// The exact tests see triangles in the order of the results, so that nothing depends on the shape of the
-/// octrees.
+/// A plane of one of the triangles separates most candidates: that is decided for a block at a time, in
+/// vector lanes.
 void ContactPass::test_candidates(std::uint32_t job, const ObjectPairView& pair,
                                   std::span<const TrianglePair> candidates, Worker& worker) const {
   const ContactObject& a = objects_[jobs_[job].a];
-  const ContactObject& b = objects_[jobs_[job].b];
-  for (TrianglePair candidate : candidates) {
-    if (pair.same_object && a.triangle_ids[candidate.a] > a.triangle_ids[candidate.b]) {
-      std::swap(candidate.a, candidate.b);
+  TrianglePairBlock& block = worker.block;
+  for (std::size_t first = 0; first < candidates.size(); first += TrianglePairBlock::capacity) {
+    const auto part =
+        candidates.subspan(first, std::min(TrianglePairBlock::capacity, candidates.size() - first));
+    std::array<TrianglePair, TrianglePairBlock::capacity> ordered;
+    for (std::size_t k = 0; k < part.size(); ++k) {
+      ordered[k] = part[k];
+      // The exact stage sees triangles in the order of the results, so that nothing depends on the octrees'
+      // shape.
+      if (pair.same_object && a.triangle_ids[part[k].a] > a.triangle_ids[part[k].b]) {
+        std::swap(ordered[k].a, ordered[k].b);
+      }
+      block.set(k, points_of(pair.a, ordered[k].a), points_of(pair.b, ordered[k].b));
     }
-    const TriangleIntersection shared =
-        intersect_triangles(points_of(pair.a, candidate.a), points_of(pair.b, candidate.b));
-    worker.exact_fallbacks += shared.used_exact_fallback ? 1 : 0;
-    if (!shared.intersects) continue;
-    Contact contact{a.id,
-                    b.id,
-                    a.triangle_ids[candidate.a],
-                    b.triangle_ids[candidate.b],
-                    shared.kind,
-                    shared.point_count,
-                    static_cast<std::uint32_t>(worker.points.size())};
-    if (options_.contact_points) {
-      const auto points = shared.extreme_points();
-      worker.points.insert(worker.points.end(), points.begin(), points.end());
+    const std::uint64_t separated = planes_separate(block, part.size());
+    for (std::size_t k = 0; k < part.size(); ++k) {
+      if ((separated >> k & 1) == 0) test_candidate(job, pair, ordered[k], worker);
     }
-    worker.found.push_back({job, contact});
   }
+}
+
+void ContactPass::test_candidate(std::uint32_t job, const ObjectPairView& pair, TrianglePair candidate,
+                                 Worker& worker) const {
+  const ContactObject& a = objects_[jobs_[job].a];
+  const ContactObject& b = objects_[jobs_[job].b];
+  const TriangleIntersection shared =
+      intersect_triangles(points_of(pair.a, candidate.a), points_of(pair.b, candidate.b));
+  worker.exact_fallbacks += shared.used_exact_fallback ? 1 : 0;
+  if (!shared.intersects) return;
+  Contact contact{a.id,
+                  b.id,
+                  a.triangle_ids[candidate.a],
+                  b.triangle_ids[candidate.b],
+                  shared.kind,
+                  shared.point_count,
+                  static_cast<std::uint32_t>(worker.points.size())};
+  if (options_.contact_points) {
+    const auto points = shared.extreme_points();
+    worker.points.insert(worker.points.end(), points.begin(), points.end());
+  }
+  worker.found.push_back({job, contact});
 }
 
 void ContactPass::gather_contacts() {

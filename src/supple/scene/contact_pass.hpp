@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "contact/plane_rejection.hpp"
 #include "core/parallel.hpp"
 #include "core/timer.hpp"
 #include "narrow_phase/traversal.hpp"
@@ -58,6 +59,7 @@ class ContactPass {
   };
   struct Worker {
     Traversal traversal;
+    TrianglePairBlock block;
     std::vector<Found> found;
     std::vector<ContactPoint> points;
     std::vector<CollidingLeaves> leaves;
@@ -74,6 +76,8 @@ class ContactPass {
   void run_task(const Task& task, Worker& worker) const;
   void test_candidates(std::uint32_t job, const ObjectPairView& pair,
                        std::span<const TrianglePair> candidates, Worker& worker) const;
+  void test_candidate(std::uint32_t job, const ObjectPairView& pair, TrianglePair candidate,
+                      Worker& worker) const;
   void gather_contacts();
   void gather_colliding_vertices();
   void append_marked_vertices(std::uint32_t object, std::span<const CollidingLeaves> leaves, bool side_b);

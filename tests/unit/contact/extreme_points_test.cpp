@@ -60,7 +60,8 @@ void expect_accurate(const TrianglePair3d& pair, const ContactPoint& point, cons
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const double value = point.position[static_cast<int>(axis)];
     ASSERT_TRUE(std::isfinite(value));
-    const double step = std::nextafter(std::fabs(value), INFINITY) - std::fabs(value);
+    const double size = std::fabs(value), above = std::nextafter(size, INFINITY);
+    const double step = std::isinf(above) ? size - std::nextafter(size, 0) : above - size;
     const Rational extent =
         std::max(edge_extent(pair.a, point.on_a, axis), edge_extent(pair.b, point.on_b, axis));
     const Rational allowed = extent * exact({0x1p-44, 0, 0})[0] + exact({step, 0, 0})[0] / 2;

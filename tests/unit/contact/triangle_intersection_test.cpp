@@ -219,8 +219,9 @@ TEST(TriangleIntersection, NonFiniteCoordinatesTouchNothing) {
 
 TEST(TriangleIntersection, SaysWhenIntegersDecided) {
   EXPECT_FALSE(intersect_triangles(base, {{{1, 1, -1}, {1, 1, 1}, {2, 1, 1}}}).used_exact_fallback);
-  const TrianglePoints tilted{{{0.1, 0.2, 0.3}, {0.7, 0.3, 0.9}, {0.2, 0.8, 0.4}}};
-  EXPECT_TRUE(intersect_triangles(tilted, tilted).used_exact_fallback);
+  // Both in the plane x + y = z, which no coordinate axis singles out.
+  EXPECT_TRUE(intersect_triangles({{{0, 0, 0}, {3, 1, 4}, {1, 3, 4}}}, {{{1, 1, 2}, {5, 1, 6}, {2, 6, 8}}})
+                  .used_exact_fallback);
 }
 
 }  // namespace

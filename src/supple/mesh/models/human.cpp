@@ -69,8 +69,8 @@ void add_hand(ImplicitSurface& surface, Vec3d wrist, Vec3d along, Vec3d palm, Ve
   const Vec3d inward = unit(palm);
   const Vec3d across = unit(thumb);
   surface.set_style(0.025, 0.50);
-  surface.add_ellipsoid(wrist + forward * 0.055, {0.024, 0.060, 0.044}, inward, forward);
-  surface.add_ellipsoid(wrist + forward * 0.125 + inward * 0.008, {0.019, 0.066, 0.038}, inward, forward);
+  surface.add_ellipsoid(wrist + forward * 0.055, {0.026, 0.060, 0.045}, inward, forward);
+  surface.add_ellipsoid(wrist + forward * 0.120 + inward * 0.008, {0.023, 0.062, 0.038}, inward, forward);
   surface.set_style(0.016, 0.36);
   surface.add_bone(wrist + forward * 0.030 + across * 0.028, wrist + forward * 0.098 + across * 0.066, 0.019,
                    0.015);

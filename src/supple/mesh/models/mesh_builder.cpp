@@ -150,13 +150,6 @@ void MeshBuilder::add_strip(std::span<const Vec3d> right, std::span<const Vec3d>
     add_quad(first_right + i, first_right + i + 1, first_left + i + 1, first_left + i);
 }
 
-void MeshBuilder::add_mesh(const TriangleMesh& mesh) {
-  const auto first = static_cast<std::uint32_t>(mesh_.positions.size());
-  mesh_.positions.insert(mesh_.positions.end(), mesh.positions.begin(), mesh.positions.end());
-  for (const Triangle& t : mesh.triangles)
-    mesh_.triangles.push_back({first + t[0], first + t[1], first + t[2]});
-}
-
 TriangleMesh MeshBuilder::finish(std::string name) && {
   mesh_.name = std::move(name);
   normalize(mesh_);

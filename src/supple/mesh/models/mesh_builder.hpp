@@ -58,8 +58,6 @@ class MeshBuilder {
   /// An open sheet between two equally long rows of points, the first row on the right when looking along it.
   void add_strip(std::span<const Vec3d> right, std::span<const Vec3d> left);
 
-  void add_mesh(const TriangleMesh& mesh);
-
   /// The mesh so far, moved and scaled: the centre of its box is the origin, the longest side is 1.
   TriangleMesh finish(std::string name) &&;
 

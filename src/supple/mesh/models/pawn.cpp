@@ -1,4 +1,5 @@
 #include <array>
+#include <utility>
 
 #include "mesh/models/mesh_builder.hpp"
 #include "mesh/models/models.hpp"

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
-#include <iterator>
 #include <queue>
 #include <tuple>
 #include <utility>
@@ -22,7 +21,8 @@ Vec3d normal_of(Vec3d a, Vec3d b, Vec3d c) {
 class EdgeCollapser {
  public:
   EdgeCollapser(TriangleMesh& mesh, const ImplicitSurface& surface)
-      : mesh_(mesh), surface_(surface), around_(mesh.positions.size()), stamps_(mesh.positions.size()) {
+      : mesh_(mesh), around_(mesh.positions.size()), stamps_(mesh.positions.size()) {
+    for (const Vec3d& p : mesh_.positions) wanted_.push_back(surface.sample(p).edge_length);
     for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t)
       for (const std::uint32_t v : mesh_.triangles[t]) around_[v].push_back(t);
     for (std::uint32_t v = 0; v < mesh_.positions.size(); ++v)
@@ -57,17 +57,18 @@ class EdgeCollapser {
 
   std::vector<std::uint32_t> neighbors(std::uint32_t v) const {
     std::vector<std::uint32_t> result;
-    for (const std::uint32_t t : around_[v])
-      for (const std::uint32_t other : mesh_.triangles[t])
-        if (other != v) result.push_back(other);
-    std::sort(result.begin(), result.end());
-    result.erase(std::unique(result.begin(), result.end()), result.end());
+    result.reserve(around_[v].size());
+    // In a closed surface each neighbour follows v in exactly one triangle.
+    for (const std::uint32_t t : around_[v]) {
+      const Triangle& corners = mesh_.triangles[t];
+      result.push_back(corners[0] == v ? corners[1] : corners[1] == v ? corners[2] : corners[0]);
+    }
     return result;
   }
 
   void push(std::uint32_t a, std::uint32_t b) {
     const Vec3d edge = mesh_.positions[b] - mesh_.positions[a];
-    const double wanted = surface_.sample(lerp(mesh_.positions[a], mesh_.positions[b], 0.5)).edge_length;
+    const double wanted = (wanted_[a] + wanted_[b]) / 2;
     queue_.push({dot(edge, edge) / (wanted * wanted), a, b, stamps_[a], stamps_[b]});
   }
 
@@ -75,7 +76,8 @@ class EdgeCollapser {
     const std::vector<std::uint32_t> of_a = neighbors(a);
     const std::vector<std::uint32_t> of_b = neighbors(b);
     std::vector<std::uint32_t> shared;
-    std::set_intersection(of_a.begin(), of_a.end(), of_b.begin(), of_b.end(), std::back_inserter(shared));
+    for (const std::uint32_t v : of_a)
+      if (std::find(of_b.begin(), of_b.end(), v) != of_b.end()) shared.push_back(v);
     // The link condition of closed surfaces: only then does the collapse keep the topology.
     if (shared.size() != 2) return false;
     for (const std::uint32_t v : shared)
@@ -103,6 +105,7 @@ class EdgeCollapser {
 
   void collapse(std::uint32_t kept, std::uint32_t gone) {
     mesh_.positions[kept] = lerp(mesh_.positions[kept], mesh_.positions[gone], 0.5);
+    wanted_[kept] = (wanted_[kept] + wanted_[gone]) / 2;
     for (const std::uint32_t t : around_[gone]) {
       Triangle& triangle = mesh_.triangles[t];
       if (std::find(triangle.begin(), triangle.end(), kept) == triangle.end()) {
@@ -135,7 +138,7 @@ class EdgeCollapser {
   }
 
   TriangleMesh& mesh_;
-  const ImplicitSurface& surface_;
+  std::vector<double> wanted_;                      // edge length at each vertex
   std::vector<std::vector<std::uint32_t>> around_;  // triangles around each vertex
   std::vector<std::uint32_t> stamps_;               // counts a vertex's moves: older candidates are stale
   std::priority_queue<Candidate> queue_;
@@ -244,7 +247,7 @@ void even_out(TriangleMesh& mesh, const ImplicitSurface& surface, std::uint32_t 
 TriangleMesh triangulate_with(const ImplicitSurface& surface, double cell, std::uint32_t vertex_count) {
   TriangleMesh mesh = surface.triangulate(cell);
   collapse_edges(mesh, surface, vertex_count);
-  even_out(mesh, surface, 24);
+  even_out(mesh, surface, 16);
   return mesh;
 }
 

@@ -1,0 +1,77 @@
+#!/usr/bin/env python3
+"""Where the time of `supple detect` goes: medians over several runs, as a Markdown table.
+
+usage: stage_shares.py [--supple PROGRAM] [--runs N] NAME ARGUMENT... [-- NAME ARGUMENT...]...
+
+Each group is a name and what follows `supple detect`, for example
+
+    stage_shares.py cloth-ball --self --threads 1 cloth_ball92.ply -- bunnies --threads 1 two_bunnies.toml
+
+Each run is a process of its own, so the first step is measured, with cold memory: the octrees are built before
+it, and growing buffers are part of it.
+"""
+
+import json
+import platform
+import statistics
+import subprocess
+import sys
+import time
+
+STAGES = ["refit", "broad_phase", "traversal", "exact", "finish"]
+
+
+def run(program, arguments):
+    """Milliseconds of the last frame and of the whole process, and the frame's stats."""
+    start = time.perf_counter()
+    text = subprocess.run([program, "detect", *arguments, "--json", "-", "--quiet"],
+                          check=True, capture_output=True).stdout
+    whole = 1e3 * (time.perf_counter() - start)
+    stats = json.loads(text)["frames"][-1]["stats"]
+    milliseconds = {stage: 1e3 * stats[stage + "_seconds"] for stage in STAGES}
+    milliseconds["detect"] = 1e3 * stats["total_seconds"]
+    milliseconds["process"] = whole
+    return milliseconds, stats
+
+
+def groups_of(words):
+    group = []
+    for word in words + ["--"]:
+        if word != "--":
+            group.append(word)
+        elif group:
+            yield group[0], group[1:]
+            group = []
+
+
+def processor():
+    with open("/proc/cpuinfo", encoding="utf-8") as lines:
+        return next((line.split(":")[1].strip() for line in lines if line.startswith("model name")), "unknown")
+
+
+def main():
+    program, runs, words = "build/release/bin/supple", 9, sys.argv[1:]
+    while words and words[0] in ("--supple", "--runs"):
+        if words[0] == "--supple":
+            program = words[1]
+        else:
+            runs = int(words[1])
+        words = words[2:]
+    if not words or words[0] in ("-h", "--help"):
+        sys.exit(__doc__)
+    print(f"{processor()}, {platform.system()} {platform.machine()}, median of {runs} runs, milliseconds "
+          "(share of detect)\n")
+    print("| workload | " + " | ".join(STAGES) + " | detect | whole process | candidates | contacts |")
+    print("|---|" + "---|" * (len(STAGES) + 4))
+    for name, arguments in groups_of(words):
+        results = [run(program, arguments) for _ in range(runs)]
+        median = {key: statistics.median(result[0][key] for result in results) for key in results[0][0]}
+        stats = results[-1][1]
+        cells = [f"{median[stage]:.2f} ({100 * median[stage] / median['detect']:.0f} %)" for stage in STAGES]
+        print(f"| {name} | " + " | ".join(cells) + f" | {median['detect']:.1f} | {median['process']:.0f} "
+              f"| {stats['candidate_pairs']:,} | {stats['contacts']:,} |")
+        sys.stdout.flush()
+
+
+if __name__ == "__main__":
+    main()

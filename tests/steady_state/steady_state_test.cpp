@@ -1,0 +1,137 @@
+// Ten thousand steps of nine built-in objects that deform and collide: once a period of their motion is over,
+// no step allocates memory, and the octrees stay valid.
+
+#include <gtest/gtest.h>
+#include <malloc.h>
+
+#include <atomic>
+#include <cstdlib>
+#include <new>
+#include <string_view>
+#include <vector>
+
+#include "supple/models.hpp"
+#include "supple/scene.hpp"
+#include "supple/trigonometry.hpp"
+
+namespace {
+
+std::atomic<std::uint64_t> allocations = 0;
+
+void* counted_allocation(std::size_t size, std::size_t alignment) {
+  allocations.fetch_add(1, std::memory_order_relaxed);
+  void* const memory = alignment <= alignof(std::max_align_t)
+                           ? std::malloc(size)
+                           : std::aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment);
+  if (memory == nullptr) throw std::bad_alloc();
+  return memory;
+}
+
+}  // namespace
+
+void* operator new(std::size_t size) {
+  return counted_allocation(size, 1);
+}
+void* operator new[](std::size_t size) {
+  return counted_allocation(size, 1);
+}
+void* operator new(std::size_t size, std::align_val_t alignment) {
+  return counted_allocation(size, static_cast<std::size_t>(alignment));
+}
+void* operator new[](std::size_t size, std::align_val_t alignment) {
+  return counted_allocation(size, static_cast<std::size_t>(alignment));
+}
+void operator delete(void* memory) noexcept {
+  std::free(memory);
+}
+void operator delete[](void* memory) noexcept {
+  std::free(memory);
+}
+void operator delete(void* memory, std::size_t) noexcept {
+  std::free(memory);
+}
+void operator delete[](void* memory, std::size_t) noexcept {
+  std::free(memory);
+}
+void operator delete(void* memory, std::align_val_t) noexcept {
+  std::free(memory);
+}
+void operator delete[](void* memory, std::align_val_t) noexcept {
+  std::free(memory);
+}
+void operator delete(void* memory, std::size_t, std::align_val_t) noexcept {
+  std::free(memory);
+}
+void operator delete[](void* memory, std::size_t, std::align_val_t) noexcept {
+  std::free(memory);
+}
+
+namespace supple {
+namespace {
+
+/// An object that circles the origin and wobbles; the same again after `period` steps.
+struct Wobbling {
+  static constexpr int period = 1000;
+
+  TriangleMesh rest;
+  ObjectId id;
+  double phase = 0;
+  std::vector<Vec3d> now;
+
+  void move_to(int step) {
+    const double turns = static_cast<double>(step % period) / period;
+    const Vec3d centre{0.45 * cos_turns(phase + turns), 0.3 * sin_turns(phase + 2 * turns),
+                       0.45 * sin_turns(3 * phase + turns)};
+    for (std::size_t v = 0; v < now.size(); ++v) {
+      const Vec3d p = rest.positions[v];
+      now[v] = centre + p * (1 + 0.08 * sin_turns(2 * p.x + p.y + 5 * turns + phase));
+    }
+  }
+};
+
+class SteadyState : public testing::TestWithParam<std::tuple<BoundingVolume, BroadPhaseMethod, int>> {};
+
+TEST_P(SteadyState, NoAllocationsAfterWarmUpAndValidOctreesThroughout) {
+#ifdef NDEBUG
+  constexpr int steps = 10000, validate_every = 1;
+#else
+  constexpr int steps = 2000, validate_every = 100;
+#endif
+  constexpr int warm_up = Wobbling::period;
+  Scene scene(
+      {.bounding_volume = std::get<0>(GetParam()), .broad_phase = std::get<1>(GetParam()), .threads = 1});
+  std::vector<Wobbling> objects(9);
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    constexpr std::string_view names[] = {"pawn", "fish", "rabbit"};
+    objects[i].rest = make_model(names[i % 3]);
+    objects[i].id = scene.add(objects[i].rest);
+    objects[i].phase = static_cast<double>(i) / 9;
+    objects[i].now = objects[i].rest.positions;
+  }
+  std::uint64_t contacts = 0, allocated_in_steps = 0;
+  std::size_t heap_after_warm_up = 0;
+  for (int step = 0; step < steps; ++step) {
+    for (Wobbling& object : objects) object.move_to(step);
+    const std::uint64_t before = allocations.load();
+    for (const Wobbling& object : objects) scene.set_positions(object.id, object.now);
+    contacts += scene.detect().contacts.size();
+    if (step >= warm_up) allocated_in_steps += allocations.load() - before;
+    if (step == warm_up) heap_after_warm_up = mallinfo2().uordblks;
+    if (step % validate_every == 0) {
+      ASSERT_EQ(scene.validate(), "") << "step " << step;
+    }
+  }
+  EXPECT_EQ(allocated_in_steps, 0u);
+  EXPECT_GT(contacts, static_cast<std::uint64_t>(steps));
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+  EXPECT_LE(mallinfo2().uordblks, heap_after_warm_up + 4096) << "the heap grew";
+#endif
+}
+
+INSTANTIATE_TEST_SUITE_P(VolumesAndMethods, SteadyState,
+                         testing::Values(std::tuple{BoundingVolume::aabb, BroadPhaseMethod::octree, 10000},
+                                         std::tuple{BoundingVolume::aabb, BroadPhaseMethod::sweep, 2500},
+                                         std::tuple{BoundingVolume::sphere, BroadPhaseMethod::octree, 2500}));
+
+}  // namespace
+}  // namespace supple
