@@ -83,8 +83,9 @@ struct SceneOptions {
   std::uint32_t threads = 0;
 };
 
-/// Says whether a pair may be tested; called for pairs whose groups and masks agree and whose volumes
-/// overlap, from one thread, in ascending order. It must answer the same within one step.
+/// Says whether a pair may be tested; called from one thread, in ascending order, for pairs whose groups and
+/// masks agree: by `detect` for those whose volumes overlap, by `verify` for all. It must answer the same
+/// within one step.
 using PairFilter = std::function<bool(ObjectId, ObjectId)>;
 
 }  // namespace supple

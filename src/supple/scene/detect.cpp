@@ -44,7 +44,6 @@ void Scene::Implementation::refit_objects() {
       stale_.push_back(index);
     }
   }
-  static const Parallel serial(1);
   parallel.for_ranges(stale_.size(), 1, [&](std::size_t begin, std::size_t end, std::uint32_t) {
     for (std::size_t i = begin; i < end; ++i) slots_[stale_[i]].object->update(serial);
   });

@@ -42,6 +42,7 @@ class Scene::Implementation {
 
   SceneOptions options;
   Parallel parallel;
+  Parallel serial{1};
   PairFilter filter;
   std::unique_ptr<PairFinder> pair_finder;
   DetectResult result;
