@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <ostream>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,10 @@ struct Case {
   IntersectionKind kind;
   std::vector<ContactPoint> points;  // none: the triangles are apart
 };
+
+void PrintTo(const Case& named, std::ostream* out) {
+  *out << named.name;
+}
 
 constexpr TrianglePoints base{{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}};
 

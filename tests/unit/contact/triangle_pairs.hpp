@@ -1,5 +1,6 @@
 #pragma once
 
+#include <ostream>
 #include <random>
 #include <string>
 #include <utility>
@@ -20,6 +21,10 @@ struct PairFamily {
   std::string name;
   TrianglePair3d (*draw)(Random&);
 };
+/// Found by GoogleTest, and so in the names of ctest.
+inline void PrintTo(const PairFamily& family, std::ostream* out) {
+  *out << family.name;
+}
 
 /// All of them; the same on every machine.
 const std::vector<PairFamily>& pair_families();
