@@ -3,8 +3,10 @@
 #include <fmt/core.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <fstream>
 #include <limits>
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -42,8 +44,18 @@ std::string available_models() {
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
-/// The parametrised shapes take keys of their own.
-TriangleMesh read_model(TomlReader& reader, const std::string& name) {
+bool is_named_model(const std::string& name) {
+  const auto names = model_names();
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+TriangleMesh named(TriangleMesh mesh, const std::string& name) {
+  mesh.name = name;
+  return mesh;
+}
+
+/// These take keys of their own.
+TriangleMesh read_parametrised_model(TomlReader& reader, const std::string& name) {
   std::uint32_t frequency = 8, rings = 24, sides = 12, resolution = 1, columns = 16, rows = 16;
   if (name == "icosphere") {
     reader.read("frequency", frequency, 1, 4096);
@@ -72,28 +84,31 @@ TriangleMesh read_model(TomlReader& reader, const std::string& name) {
     reader.read_positive("depth", depth);
     return make_cloth(columns, rows, width, depth);
   }
-  for (const std::string_view known : model_names()) {
-    if (name == known) return make_model(name);
-  }
   reader.fail("model", fmt::format("there is no model '{}'; choose one of {}", name, available_models()));
 }
 
-TriangleMesh read_shape(TomlReader& reader, const fs::path& folder) {
+/// Meshes by file or model name: a scene often has the same one many times.
+using Shapes = std::map<std::string, TriangleMesh>;
+
+TriangleMesh read_shape(TomlReader& reader, const fs::path& folder, Shapes& shapes) {
   std::string mesh, model;
   reader.read("mesh", mesh);
   reader.read("model", model);
   if (reader.has("mesh") == reader.has("model"))
     reader.fail(reader.has("mesh") ? "model" : "", "give either mesh = \"FILE\" or model = \"NAME\"");
   if (reader.has("model")) {
-    TriangleMesh shape = read_model(reader, model);
-    shape.name = model;
-    return shape;
+    if (!is_named_model(model)) return named(read_parametrised_model(reader, model), model);
+    const auto [found, is_new] = shapes.try_emplace("model " + model);
+    if (is_new) found->second = named(make_model(model), model);
+    return found->second;
   }
   const fs::path path = folder / mesh;
   if (!fs::exists(path))
     reader.fail("mesh",
                 fmt::format("there is no file {}; paths start at the scene file's folder", path.string()));
-  return load_any_mesh(path);
+  const auto [found, is_new] = shapes.try_emplace("mesh " + path.string());
+  if (is_new) found->second = load_any_mesh(path);
+  return found->second;
 }
 
 Placement read_placement(TomlReader& reader) {
@@ -133,7 +148,8 @@ std::optional<Sway> read_motion(TomlReader& object, const fs::path& path, const 
   return motion;
 }
 
-InputObject read_object(const toml::table& table, const fs::path& path, const std::string& where) {
+InputObject read_object(const toml::table& table, const fs::path& path, const std::string& where,
+                        Shapes& shapes) {
   TomlReader reader(path, table, where);
   InputObject object;
   object.options = read_options(reader);
@@ -141,7 +157,7 @@ InputObject read_object(const toml::table& table, const fs::path& path, const st
   object.motion = read_motion(reader, path, where);
   if (object.motion && object.options.is_static)
     reader.fail("motion", "a static object does not move; leave out motion or static");
-  object.mesh = read_shape(reader, path.parent_path());
+  object.mesh = read_shape(reader, path.parent_path(), shapes);
   reader.finish();
   place(object.mesh.positions, placement);
   if (!object.options.name.empty()) object.mesh.name = object.options.name;
@@ -172,8 +188,9 @@ Input read_scene_file(const fs::path& path) {
   if (const toml::table* scene = reader.table("scene")) read_scene(*scene, path, input);
   const std::vector<const toml::table*> objects = reader.tables("object");
   reader.finish();
+  Shapes shapes;
   for (std::size_t i = 0; i < objects.size(); ++i)
-    input.objects.push_back(read_object(*objects[i], path, fmt::format("[[object]] {}", i)));
+    input.objects.push_back(read_object(*objects[i], path, fmt::format("[[object]] {}", i), shapes));
   if (input.objects.empty())
     throw Error(fmt::format("{}: has no objects; add an [[object]] with mesh or model", path.string()));
   return input;

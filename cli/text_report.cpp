@@ -77,8 +77,10 @@ void TextReport::print_pairs(const Scene& scene) const {
     return;
   }
   std::vector<std::pair<ObjectPair, PairSummary>> rows(pairs_.begin(), pairs_.end());
-  std::stable_sort(rows.begin(), rows.end(), [](const auto& x, const auto& y) {
-    return x.second.triangle_pairs > y.second.triangle_pairs;
+  std::sort(rows.begin(), rows.end(), [](const auto& x, const auto& y) {
+    if (x.second.triangle_pairs != y.second.triangle_pairs)
+      return x.second.triangle_pairs > y.second.triangle_pairs;
+    return x.first < y.first;
   });
   const std::size_t left_out = rows.size() - std::min(rows.size(), most_rows);
   rows.resize(rows.size() - left_out);
