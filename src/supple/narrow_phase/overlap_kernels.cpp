@@ -93,8 +93,11 @@ HWY_INLINE std::uint32_t load_boxes(AabbLanes& lanes, const TriangleArrays& arra
 }
 
 HWY_INLINE bool share_vertex(const Triangle& p, const Triangle& q) {
-  return (p[0] == q[0]) | (p[0] == q[1]) | (p[0] == q[2]) | (p[1] == q[0]) | (p[1] == q[1]) | (p[1] == q[2]) |
-         (p[2] == q[0]) | (p[2] == q[1]) | (p[2] == q[2]);
+  bool shared = false;
+  for (const std::uint32_t vertex : p) {
+    for (const std::uint32_t other : q) shared |= vertex == other;
+  }
+  return shared;
 }
 
 /// What `find_triangle_box_pairs` does, for one call.
