@@ -89,17 +89,24 @@ struct Wobbling {
   }
 };
 
-class SteadyState : public testing::TestWithParam<std::tuple<BoundingVolume, BroadPhaseMethod, int>> {};
+struct Configuration {
+  const char* name;
+  BoundingVolume bounding_volume;
+  BroadPhaseMethod broad_phase;
+  int steps_when_optimised;
+};
+
+class SteadyState : public testing::TestWithParam<Configuration> {};
 
 TEST_P(SteadyState, NoAllocationsAfterWarmUpAndValidOctreesThroughout) {
+  const auto [name, bounding_volume, broad_phase, steps_when_optimised] = GetParam();
 #ifdef NDEBUG
-  constexpr int steps = 10000, validate_every = 1;
+  const int steps = steps_when_optimised, validate_every = 1;
 #else
-  constexpr int steps = 2000, validate_every = 100;
+  const int steps = 1200, validate_every = 100;
 #endif
   constexpr int warm_up = Wobbling::period;
-  Scene scene(
-      {.bounding_volume = std::get<0>(GetParam()), .broad_phase = std::get<1>(GetParam()), .threads = 1});
+  Scene scene({.bounding_volume = bounding_volume, .broad_phase = broad_phase, .threads = 1});
   std::vector<Wobbling> objects(9);
   for (std::size_t i = 0; i < objects.size(); ++i) {
     constexpr std::string_view names[] = {"pawn", "fish", "rabbit"};
@@ -128,10 +135,12 @@ TEST_P(SteadyState, NoAllocationsAfterWarmUpAndValidOctreesThroughout) {
 #endif
 }
 
-INSTANTIATE_TEST_SUITE_P(VolumesAndMethods, SteadyState,
-                         testing::Values(std::tuple{BoundingVolume::aabb, BroadPhaseMethod::octree, 10000},
-                                         std::tuple{BoundingVolume::aabb, BroadPhaseMethod::sweep, 2500},
-                                         std::tuple{BoundingVolume::sphere, BroadPhaseMethod::octree, 2500}));
+INSTANTIATE_TEST_SUITE_P(
+    Configurations, SteadyState,
+    testing::Values(Configuration{"BoxesOctree", BoundingVolume::aabb, BroadPhaseMethod::octree, 10000},
+                    Configuration{"BoxesSweep", BoundingVolume::aabb, BroadPhaseMethod::sweep, 2000},
+                    Configuration{"SpheresOctree", BoundingVolume::sphere, BroadPhaseMethod::octree, 2000}),
+    [](const auto& configuration) { return configuration.param.name; });
 
 }  // namespace
 }  // namespace supple
