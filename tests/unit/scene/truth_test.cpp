@@ -62,12 +62,12 @@ struct Truth : testing::Test {
   static TriangleMesh load(const json& mesh) { return load_mesh(shared_meshes() / mesh.get<std::string>()); }
 
   static void expect_pairs(const DetectResult& result, const json& expected) {
-    EXPECT_EQ(result.contacts.size(), expected["intersecting_pairs"]);
+    EXPECT_EQ(result.contacts.size(), expected["intersecting_pairs"].get<std::size_t>());
     std::string list;
     for (const Contact& c : result.contacts) {
       list += std::to_string(c.triangle_a) + ' ' + std::to_string(c.triangle_b) + '\n';
     }
-    EXPECT_EQ(sha256(list), expected["sha256_of_sorted_pairs"]);
+    EXPECT_EQ(sha256(list), expected["sha256_of_sorted_pairs"].get<std::string>());
   }
 
   /// Volumes are conservative: with boxes, no pair of triangles whose boxes overlap may be lost on the way.
