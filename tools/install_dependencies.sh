@@ -6,7 +6,8 @@ set -euo pipefail
 packages=(
   cmake ninja-build g++ python3
   libtbb-dev libhwy-dev libboost-dev
-  libassimp-dev libcli11-dev libtomlplusplus-dev rapidjson-dev libfmt-dev
+  libassimp-dev zlib1g-dev  # Debian's Assimp names zlib's file for linking, but does not depend on it
+  libcli11-dev libtomlplusplus-dev rapidjson-dev libfmt-dev
   libgtest-dev nlohmann-json3-dev libssl-dev libbenchmark-dev
 )
 if [ "${1:-}" = "--ci" ]; then
