@@ -7,21 +7,33 @@
 #include "exit_status.hpp"
 #include "info.hpp"
 #include "options.hpp"
-#include "supple/error.hpp"
+#include "output_file.hpp"
 #include "text.hpp"
+
+namespace supple::cli {
+namespace {
+
+int run(const CommandLine& line) {
+  switch (line.command) {
+    case CommandLine::Command::detect:
+      return run_detect(line.detect);
+    case CommandLine::Command::info:
+      return run_info(line.info);
+    case CommandLine::Command::exit:
+      break;
+  }
+  return line.exit_status;
+}
+
+}  // namespace
+}  // namespace supple::cli
 
 int main(int argument_count, char** arguments) {
   using namespace supple::cli;
   try {
-    const CommandLine line = parse_command_line(argument_count, arguments);
-    switch (line.command) {
-      case CommandLine::Command::detect:
-        return run_detect(line.detect);
-      case CommandLine::Command::info:
-        return run_info(line.info);
-      case CommandLine::Command::exit:
-        return line.exit_status;
-    }
+    const int exit_status = run(parse_command_line(argument_count, arguments));
+    OutputFile("-").close();
+    return exit_status;
   } catch (const std::exception& error) {
     fmt::print(stderr, "supple: {}\n", one_line(error.what()));
     return exit_unusable;

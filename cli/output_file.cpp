@@ -21,7 +21,7 @@ OutputFile::~OutputFile() {
 }
 
 void OutputFile::check() const {
-  if (std::ferror(stream_)) throw Error(fmt::format("{}: cannot write on; is the disk full?", name_));
+  if (std::ferror(stream_)) throw Error(fmt::format("{}: writing failed; is the disk full?", name_));
 }
 
 void OutputFile::close() {
@@ -29,7 +29,7 @@ void OutputFile::close() {
   const bool written = !std::ferror(stream_) && flushed;
   const bool closed = stream_ == stdout || std::fclose(stream_) == 0;
   stream_ = nullptr;
-  if (!written || !closed) throw Error(fmt::format("{}: cannot write on; is the disk full?", name_));
+  if (!written || !closed) throw Error(fmt::format("{}: writing failed; is the disk full?", name_));
 }
 
 }  // namespace supple::cli

@@ -1,9 +1,10 @@
 """What scripts rely on: exit statuses, one-line errors, help that teaches by example."""
 
 import re
+import subprocess
 import unittest
 
-from program import CROSSED, FAR, TRIANGLE, UPRIGHT, ProgramTest, run
+from program import CROSSED, FAR, PROGRAM, TRIANGLE, UPRIGHT, ProgramTest, run
 
 
 class Help(ProgramTest):
@@ -100,6 +101,11 @@ class UsageErrors(ProgramTest):
     def test_full_disk(self):
         for flag in ("--json", "--csv"):
             self.expect("detect", "a.obj", "--quiet", flag, "/dev/full", parts=["/dev/full", "disk full"])
+        for command in ("detect", "info"):
+            with open("/dev/full", "w", encoding="utf-8") as full:
+                done = subprocess.run([PROGRAM, command, self.folder / "a.obj"], stdout=full, stderr=subprocess.PIPE, text=True)
+            self.assertEqual(done.returncode, 2)
+            self.assertEqual(done.stderr, "supple: standard output: writing failed; is the disk full?\n")
 
 
 class ExitStatus(ProgramTest):
