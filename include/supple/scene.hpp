@@ -86,7 +86,7 @@ class Scene {
   /// What the last `detect` returned.
   const DetectResult& result() const;
   /// Recomputes the last `detect` by exact arithmetic alone over all pairs of triangles, without octrees or
-  /// filters, and lists every difference. Quadratic: about a second for two meshes of 70,000 triangles.
+  /// filters, and lists every difference. Quadratic, but under a second for two meshes of 70,000 triangles.
   VerifyReport verify() const;
   /// Checks every invariant of every octree and of the broad phase; the empty string, or what is wrong.
   std::string validate() const;
