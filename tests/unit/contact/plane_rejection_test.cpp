@@ -2,9 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include <hwy/targets.h>
 #include <bit>
 
+#include "support/instruction_sets.hpp"
 #include "unit/contact/triangle_pairs.hpp"
 
 namespace supple {
@@ -18,16 +18,6 @@ using testing::TrianglePair3d;
 class PlaneRejection : public ::testing::TestWithParam<PairFamily> {};
 INSTANTIATE_TEST_SUITE_P(All, PlaneRejection, ::testing::ValuesIn(pair_families()),
                          [](const auto& family) { return family.param.name; });
-
-/// Calls the function once for each instruction set of this machine.
-template <class Function>
-void for_each_target(Function function) {
-  for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
-    hwy::SetSupportedTargetsForTest(target);
-    function(hwy::TargetName(target));
-  }
-  hwy::SetSupportedTargetsForTest(0);
-}
 
 TEST_P(PlaneRejection, EqualsTheScalarTwinAndNeverRejectsAHit) {
   Random random(31);

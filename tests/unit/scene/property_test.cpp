@@ -5,6 +5,7 @@
 #include <limits>
 #include <vector>
 
+#include "support/instruction_sets.hpp"
 #include "support/scenes.hpp"
 #include "support/soups.hpp"
 
@@ -180,14 +181,48 @@ TEST_P(SceneProperties, DetectEqualsExactBruteForceInEveryConfiguration) {
   }
 }
 
-/// The families' results, bit for bit, on every compiler, build type and number of threads.
-TEST(SceneGoldenHash, IsTheSameEverywhere) {
+std::uint64_t hash_of_all_families(std::uint32_t threads) {
   std::uint64_t hash = 0xcbf29ce484222325u;
   for (const Family& family : families) {
-    Scene scene = scene_of(family.make(3), {.colliding_vertices = true, .threads = 2});
+    Scene scene = scene_of(family.make(3), {.colliding_vertices = true, .threads = threads});
     hash = hash_of(scene.detect(), hash);
   }
-  EXPECT_EQ(hash, 2342057126839866175u);
+  return hash;
+}
+
+/// The families' results, bit for bit, on every compiler, build type, number of threads and instruction set.
+constexpr std::uint64_t golden_hash = 2342057126839866175u;
+
+TEST(SceneGoldenHash, IsTheSameForAnyNumberOfThreads) {
+  for (std::uint32_t threads = 1; threads <= 8; ++threads) {
+    EXPECT_EQ(hash_of_all_families(threads), golden_hash) << threads;
+  }
+}
+
+TEST(SceneGoldenHash, IsTheSameForEveryInstructionSet) {
+  int targets = 0;
+  for_each_target([&](const char* target) {
+    EXPECT_EQ(hash_of_all_families(1), golden_hash) << target;
+    ++targets;
+  });
+  EXPECT_GE(targets, 1);
+}
+
+/// Not only the outcome: every volume that is compared on the way.
+TEST(SceneGoldenHash, EveryInstructionSetTestsTheSameVolumes) {
+  for (const Family& family : families) {
+    const std::vector<TriangleMesh> meshes = family.make(4);
+    Scene reference = scene_of(meshes, {.threads = 1});
+    const StepStats expected = reference.detect().stats;
+    for_each_target([&](const char* target) {
+      Scene scene = scene_of(meshes, {.threads = 1});
+      const StepStats& stats = scene.detect().stats;
+      EXPECT_EQ(stats.node_pairs_visited, expected.node_pairs_visited) << family.name << ' ' << target;
+      EXPECT_EQ(stats.boxes_tested, expected.boxes_tested) << family.name << ' ' << target;
+      EXPECT_EQ(stats.candidate_pairs, expected.candidate_pairs) << family.name << ' ' << target;
+      EXPECT_EQ(scene.validate(), "") << family.name << ' ' << target;
+    });
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Families, SceneProperties, testing::ValuesIn(families),
