@@ -4,67 +4,13 @@
 #include <gtest/gtest.h>
 #include <malloc.h>
 
-#include <atomic>
-#include <cstdlib>
-#include <new>
 #include <string_view>
 #include <vector>
 
+#include "allocation_count.hpp"
 #include "supple/models.hpp"
 #include "supple/scene.hpp"
 #include "supple/trigonometry.hpp"
-
-namespace {
-
-std::atomic<std::uint64_t> allocations = 0;
-
-void* counted_allocation(std::size_t size, std::size_t alignment) {
-  allocations.fetch_add(1, std::memory_order_relaxed);
-  void* const memory = alignment <= alignof(std::max_align_t)
-                           ? std::malloc(size)
-                           : std::aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment);
-  if (memory == nullptr) throw std::bad_alloc();
-  return memory;
-}
-
-}  // namespace
-
-void* operator new(std::size_t size) {
-  return counted_allocation(size, 1);
-}
-void* operator new[](std::size_t size) {
-  return counted_allocation(size, 1);
-}
-void* operator new(std::size_t size, std::align_val_t alignment) {
-  return counted_allocation(size, static_cast<std::size_t>(alignment));
-}
-void* operator new[](std::size_t size, std::align_val_t alignment) {
-  return counted_allocation(size, static_cast<std::size_t>(alignment));
-}
-void operator delete(void* memory) noexcept {
-  std::free(memory);
-}
-void operator delete[](void* memory) noexcept {
-  std::free(memory);
-}
-void operator delete(void* memory, std::size_t) noexcept {
-  std::free(memory);
-}
-void operator delete[](void* memory, std::size_t) noexcept {
-  std::free(memory);
-}
-void operator delete(void* memory, std::align_val_t) noexcept {
-  std::free(memory);
-}
-void operator delete[](void* memory, std::align_val_t) noexcept {
-  std::free(memory);
-}
-void operator delete(void* memory, std::size_t, std::align_val_t) noexcept {
-  std::free(memory);
-}
-void operator delete[](void* memory, std::size_t, std::align_val_t) noexcept {
-  std::free(memory);
-}
 
 namespace supple {
 namespace {
@@ -119,10 +65,10 @@ TEST_P(SteadyState, NoAllocationsAfterWarmUpAndValidOctreesThroughout) {
   std::size_t heap_after_warm_up = 0;
   for (int step = 0; step < steps; ++step) {
     for (Wobbling& object : objects) object.move_to(step);
-    const std::uint64_t before = allocations.load();
+    const std::uint64_t before = allocation_count();
     for (const Wobbling& object : objects) scene.set_positions(object.id, object.now);
     contacts += scene.detect().contacts.size();
-    if (step >= warm_up) allocated_in_steps += allocations.load() - before;
+    if (step >= warm_up) allocated_in_steps += allocation_count() - before;
     if (step == warm_up) heap_after_warm_up = mallinfo2().uordblks;
     if (step % validate_every == 0) {
       ASSERT_EQ(scene.validate(), "") << "step " << step;
