@@ -45,8 +45,9 @@ TriangleMesh read_binary(std::string_view bytes, const std::string& file) {
   }
   if (bytes.size() < announced_size(bytes)) {
     const auto facets = load_scalar<std::uint32_t>(bytes.data() + header_size, std::endian::little);
-    fail(file + ": truncated: the header announces " + std::to_string(facets) + " facets, which need " +
-         std::to_string(announced_size(bytes)) + " bytes; the file has " + std::to_string(bytes.size()));
+    fail(file + ": truncated, or no STL file: the header announces " + std::to_string(facets) +
+         " facets, which need " + std::to_string(announced_size(bytes)) + " bytes; the file has " +
+         std::to_string(bytes.size()));
   }
   VertexWelder welder;
   TriangleMesh mesh;

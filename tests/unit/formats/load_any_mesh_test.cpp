@@ -28,10 +28,10 @@ std::string base64(const std::string& bytes) {
 
 // A square whose two triangles each bring their own three vertices, as two normals would make them: bytes
 // 0-71 points, 72-83 ids.
-std::string square_buffer() {
+std::string square_buffer(float side) {
   std::string bytes;
   for (const int value : {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0}) {
-    append_scalar(bytes, static_cast<float>(value));
+    append_scalar(bytes, side * static_cast<float>(value));
   }
   for (const int id : {0, 1, 2, 3, 4, 5}) append_scalar(bytes, static_cast<std::uint16_t>(id));
   return bytes;
@@ -39,7 +39,7 @@ std::string square_buffer() {
 
 // The nodes use the square (mesh 0), the same square as two primitives with a material each (mesh 1), and its
 // points as mere points (mesh 2).
-std::string gltf(const std::string& nodes) {
+std::string gltf(const std::string& nodes, float side = 1) {
   return R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[)" + nodes + R"(],
 "materials":[{},{"doubleSided":true}],
 "meshes":[
@@ -54,7 +54,7 @@ std::string gltf(const std::string& nodes) {
  {"bufferView":1,"byteOffset":6,"componentType":5123,"count":3,"type":"SCALAR"}],
 "bufferViews":[{"buffer":0,"byteOffset":0,"byteLength":72},{"buffer":0,"byteOffset":72,"byteLength":12}],
 "buffers":[{"byteLength":84,"uri":"data:application/octet-stream;base64,)" +
-         base64(square_buffer()) + R"("}]})";
+         base64(square_buffer(side)) + R"("}]})";
 }
 
 const std::vector<Vec3d> square_points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}};
@@ -65,6 +65,15 @@ TEST(LoadAnyMesh, GltfVerticesAreJoined) {
   const TriangleMesh mesh = load_any_mesh(folder.write("square.gltf", gltf(R"({"mesh":0})")));
   EXPECT_EQ(mesh.name, "square");
   EXPECT_EQ(mesh.positions, square_points);
+  EXPECT_EQ(mesh.triangles, square_triangles);
+}
+
+TEST(LoadAnyMesh, NearVerticesAreNotJoined) {
+  const TemporaryFolder folder;
+  const float side = 1e-7f;
+  const TriangleMesh mesh = load_any_mesh(folder.write("tiny.gltf", gltf(R"({"mesh":0})", side)));
+  ASSERT_EQ(mesh.positions.size(), 4u);
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(mesh.positions[i], double{side} * square_points[i]);
   EXPECT_EQ(mesh.triangles, square_triangles);
 }
 

@@ -134,11 +134,14 @@ const ErrorCase stl_errors[] = {
      "a.stl: not an STL file: neither text that starts with 'solid' nor the 84 bytes that a binary one has "
      "at least"},
     {binary("x", 2, {one}),
-     "a.stl: truncated: the header announces 2 facets, which need 184 bytes; the file has 134"},
+     "a.stl: truncated, or no STL file: the header announces 2 facets, which need 184 bytes; the file has "
+     "134"},
     {binary("solid", 2, {one}),
-     "a.stl: truncated: the header announces 2 facets, which need 184 bytes; the file has 134"},
+     "a.stl: truncated, or no STL file: the header announces 2 facets, which need 184 bytes; the file has "
+     "134"},
     {binary("x", 0xffffffff, {one}),
-     "a.stl: truncated: the header announces 4294967295 facets, which need 214748364834 bytes; the file has "
+     "a.stl: truncated, or no STL file: the header announces 4294967295 facets, which need 214748364834 "
+     "bytes; the file has "
      "134"},
     {"solid a\n", "a.stl:2: expected 'facet' or 'endsolid', found the end of the file"},
     {"solid a\n" + two_facets, "a.stl:16: expected 'facet' or 'endsolid', found the end of the file"},
