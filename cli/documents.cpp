@@ -106,8 +106,10 @@ void print_man(const CLI::App& program) {
       ".SH NAME\nsupple \\- find every collision between triangle meshes that bend, exactly\n.SH SYNOPSIS\n");
   for (const CLI::App* command : commands_of(program))
     fmt::print(".B supple {}\n[OPTIONS] MESH...|SCENE.toml\n.br\n", command->get_name());
-  fmt::print(".SH DESCRIPTION\n{}\nMeshes are OBJ, OFF, PLY or STL files; scene files are TOML.\n",
-             roff(program.get_description()));
+  fmt::print(
+      ".SH DESCRIPTION\n{}\nMeshes are OBJ, OFF, PLY or STL files, or glTF, FBX, COLLADA and others that "
+      "Assimp reads; scene files are TOML.\n",
+      roff(program.get_description()));
   for (const CLI::App* command : commands_of(program)) {
     fmt::print(".SH SUPPLE {}\n{}.\n", upper_case(command->get_name()), roff(command->get_description()));
     for (const CLI::Option* option : command->get_options()) {
