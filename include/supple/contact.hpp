@@ -1,7 +1,9 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 
+#include "supple/continuous.hpp"
 #include "supple/types.hpp"
 
 namespace supple {
@@ -40,6 +42,29 @@ struct Contact {
   std::uint32_t first_point = 0;
 
   constexpr bool operator==(const Contact&) const = default;
+};
+
+/// Which elements of the objects a and b of a continuous contact touch. Of one object with itself there is no
+/// `face_vertex`: the vertex is then the element of a.
+enum class ElementPairKind : std::uint8_t { vertex_face, face_vertex, edge_edge };
+
+/// Two elements that touch within the step. Edges are the distinct pairs of vertices of the triangles; within
+/// one object elements that share a vertex id are not a contact, and edge a is the smaller.
+struct ContinuousContact {
+  ObjectId object_a, object_b;  ///< equal for a contact of an object with itself
+  ElementPairKind kind = ElementPairKind::vertex_face;
+  /// The user's numbers: {v, v} of a vertex, its two vertices of an edge, the smaller first, {t, t} of a
+  /// face, t being the triangle.
+  std::array<std::uint32_t, 2> element_a{}, element_b{};
+  ImpactCertainty certainty = ImpactCertainty::certain;
+  /// When they first touch: in [0, 1], never late, early by `impact_time_tolerance` at most.
+  double time = 0;
+  /// Where on each element: 1, 0, 0 of a vertex; 1 - s, s, 0 along an edge; barycentric in a face.
+  std::array<double, 3> weights_a{}, weights_b{};
+  Vec3d point;   ///< midway between the two points, at `time`
+  Vec3d normal;  ///< unit vector, towards the side of element a before the impact; see `Impact`
+
+  constexpr bool operator==(const ContinuousContact&) const = default;
 };
 
 }  // namespace supple

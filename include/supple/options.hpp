@@ -4,6 +4,7 @@
 #include <functional>
 #include <string>
 
+#include "supple/continuous.hpp"
 #include "supple/types.hpp"
 
 namespace supple {
@@ -34,6 +35,7 @@ enum class RegionSphereTest : std::uint8_t {
 enum class ContactMode : std::uint8_t {
   none,          ///< object pairs and candidate counts only
   intersection,  ///< every intersecting pair of triangles, with its points
+  continuous,    ///< every pair of vertex and face, and of two edges, that touches within the step
 };
 
 /// Shape of the octree of one object.
@@ -77,6 +79,9 @@ struct SceneOptions {
   ContactMode contacts = ContactMode::intersection;
   /// Also give the points of each contact (`DetectResult::contact_points`). Off saves a little time.
   bool contact_points = true;
+  /// Of continuous contacts: how near elements come before they touch, and whether exact arithmetic decides
+  /// what floating point cannot.
+  ImpactOptions impact{};
   /// Also give the paper's output: the vertices in the colliding leaves of both octrees.
   bool colliding_vertices = false;
   /// Worker threads, 0 for one a core. The results are the same for any number.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -11,7 +12,8 @@
 namespace supple {
 
 /// The contacts of one pair of objects, or of one object with itself (`a == b`): a range of
-/// `DetectResult::contacts`. A pair is listed only when it has contacts.
+/// `DetectResult::contacts`, or of `continuous_contacts` in that mode. A pair is listed only when it has
+/// contacts.
 struct ContactGroup {
   ObjectId a, b;
   std::uint32_t first_contact = 0;
@@ -58,8 +60,11 @@ struct StepStats {
   std::uint64_t object_pairs = 0;
   std::uint64_t node_pairs_visited = 0;  ///< eight-wide node against eight-wide node
   std::uint64_t boxes_tested = 0;        ///< volume against volume inside them and at the leaves
-  std::uint64_t candidate_pairs = 0;     ///< triangle pairs whose boxes overlap and that share no vertex
-  std::uint64_t exact_fallbacks = 0;     ///< candidates that floating-point filters could not decide
+  /// Triangle pairs whose boxes overlap and that share no vertex; of continuous contacts 0.
+  std::uint64_t candidate_pairs = 0;
+  /// Likewise vertex-face and edge-edge pairs whose moving boxes meet, of continuous contacts.
+  std::uint64_t vertex_face_candidates = 0, edge_edge_candidates = 0;
+  std::uint64_t exact_fallbacks = 0;  ///< candidates that floating-point filters could not decide
   std::uint64_t contacts = 0;
 };
 
@@ -71,6 +76,9 @@ struct DetectResult {
   std::span<const ContactGroup> groups;
   std::span<const Contact> contacts;
   std::span<const ContactPoint> contact_points;
+  /// Of `ContactMode::continuous`, which leaves the two above empty. By object a, object b, kind, element a,
+  /// element b.
+  std::span<const ContinuousContact> continuous_contacts;
   std::span<const CollidingVertices> colliding_vertex_groups;
   std::span<const std::uint32_t> colliding_vertices;
   std::span<const NonFiniteVertex> non_finite_vertices;
@@ -80,6 +88,9 @@ struct DetectResult {
 
   std::span<const Contact> contacts_of(const ContactGroup& group) const {
     return contacts.subspan(group.first_contact, group.contact_count);
+  }
+  std::span<const ContinuousContact> continuous_contacts_of(const ContactGroup& group) const {
+    return continuous_contacts.subspan(group.first_contact, group.contact_count);
   }
   /// Empty when `SceneOptions::contact_points` is off.
   std::span<const ContactPoint> points_of(const Contact& contact) const {
@@ -97,12 +108,32 @@ struct Difference {
   constexpr bool operator==(const Difference&) const = default;
 };
 
-/// Outcome of the exact brute force over every triangle pair of the scene.
+/// The same of continuous contacts.
+struct ContinuousDifference {
+  enum class Fault : std::uint8_t {
+    missed,  ///< it touches and was not reported
+    added,   ///< reported as certain, and does not touch
+    late,    ///< reported with a time after the first contact
+    early,   ///< reported with a time before the first contact by more than `impact_time_tolerance`
+  };
+  ObjectId object_a, object_b;
+  ElementPairKind kind = ElementPairKind::vertex_face;
+  std::array<std::uint32_t, 2> element_a{}, element_b{};
+  Fault fault = Fault::missed;
+
+  constexpr bool operator==(const ContinuousDifference&) const = default;
+};
+
+/// Outcome of the exact brute force over every triangle pair of the scene, or every vertex-face and edge-edge
+/// pair when contacts are continuous.
 struct VerifyReport {
   std::uint64_t triangle_pairs_checked = 0;
   std::uint64_t intersecting_pairs = 0;
-  std::vector<Difference> differences;  ///< sorted
-  bool agrees() const { return differences.empty(); }
+  std::uint64_t element_pairs_checked = 0;
+  std::uint64_t touching_element_pairs = 0;
+  std::vector<Difference> differences;                       ///< sorted
+  std::vector<ContinuousDifference> continuous_differences;  ///< sorted
+  bool agrees() const { return differences.empty() && continuous_differences.empty(); }
 };
 
 /// Of an object's octree.

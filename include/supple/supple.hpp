@@ -3,6 +3,7 @@
 /// Everything at once.
 #include "supple/broad_phase.hpp"
 #include "supple/contact.hpp"
+#include "supple/continuous.hpp"
 #include "supple/error.hpp"
 #include "supple/mesh.hpp"
 #include "supple/models.hpp"
