@@ -1,0 +1,131 @@
+#include "contact/first_impact.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "contact/closest_points.hpp"
+#include "contact/exact_impact.hpp"
+#include "contact/impact_search.hpp"
+#include "core/error.hpp"
+#include "geometry/plane_filter.hpp"
+
+namespace supple {
+namespace {
+
+Vec3d cross(const Vec3d& a, const Vec3d& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
+/// Of length 1, or zero when there is no direction in it. Scaled first, so that squares do not underflow.
+Vec3d normalized(const Vec3d& v) {
+  const double size = std::max({std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)});
+  if (!(size > 0) || !std::isfinite(size)) return {};
+  const Vec3d scaled{v.x / size, v.y / size, v.z / size};
+  return (1 / std::sqrt(dot(scaled, scaled))) * scaled;
+}
+
+/// Less than this part of the magnitudes that went into a product counts as no direction.
+constexpr double negligible = 0x1p-40;
+
+/// Across both elements, towards the side from which the first came: where it was before, if there was a
+/// before, else against its velocity.
+Vec3d normal_across(const RelativeMotion& motion, const RelativePlaces<double>& places,
+                    const ClosestPoints& at) {
+  const Vec3d product = cross(normalized(places.u), normalized(places.w));
+  const Vec3d n = dot(product, product) > negligible * negligible ? normalized(product) : Vec3d{};
+  const Vec3d velocity = (motion.end.m - motion.start.m) - at.alpha * (motion.end.u - motion.start.u) -
+                         at.beta * (motion.end.w - motion.start.w);
+  const Vec3d before = normalized(motion.start.m - at.alpha * motion.start.u - at.beta * motion.start.w);
+  const double side = dot(n, before), approach = dot(n, normalized(velocity));
+  if (std::fabs(approach) > negligible) return approach < 0 ? n : -1.0 * n;
+  if (std::fabs(side) > negligible) return side > 0 ? n : -1.0 * n;
+  // Within one plane, or along one line: back to where it came from, or the only direction that there is.
+  if (before != Vec3d{}) return before;
+  if (velocity != Vec3d{}) return -1.0 * normalized(velocity);
+  return n;
+}
+
+Vec3d mix(const Vec3d& a, const Vec3d& b, double t) {
+  return (1 - t) * a + t * b;
+}
+
+template <class Motion>
+Impact impact_at(const Motion& motion, const RelativeMotion& relative, double time, double separation) {
+  const RelativePlaces<double> places = places_at(relative, time);
+  const ClosestPoints at = closest_points(places, relative.is_square);
+  Impact impact;
+  impact.time = time;
+  std::array<Vec3d, 4> p;
+  for (std::size_t i = 0; i < 4; ++i) p[i] = mix(motion.start[i], motion.end[i], time);
+  if (relative.is_square) {
+    impact.weights = {1 - at.alpha, at.alpha, 1 - at.beta, at.beta};
+    impact.point = 0.5 * (mix(p[0], p[1], at.alpha) + mix(p[2], p[3], at.beta));
+  } else {
+    impact.weights = {1, std::max(0.0, 1 - at.alpha - at.beta), at.alpha, at.beta};
+    impact.point = 0.5 * (p[0] + (impact.weights[1] * p[1] + at.alpha * p[2] + at.beta * p[3]));
+  }
+  // Where the elements are kept apart, the vector between them is known well; where they touch, it is not.
+  const bool apart = separation > 0 && std::sqrt(at.squared_distance) > 0.5 * separation;
+  impact.normal = apart ? normalized(at.difference) : normal_across(relative, places, at);
+  return impact;
+}
+
+template <class Motion>
+bool is_finite(const Motion& motion) {
+  double sum = 0;  // NaN as soon as one coordinate is NaN or infinite
+  for (std::size_t i = 0; i < 4; ++i) {
+    for (int axis = 0; axis < 3; ++axis) sum += motion.start[i][axis] * 0 + motion.end[i][axis] * 0;
+  }
+  return sum == 0;
+}
+
+template <class Motion>
+std::optional<Impact> checked_first_impact(const Motion& motion, const ImpactOptions& options) {
+  check_impact_options(options, "first_impact");
+  if (!is_finite(motion)) return std::nullopt;
+  bool used_exact = false;
+  return first_impact_of_finite(motion, relative_motion(motion), options, used_exact);
+}
+
+}  // namespace
+
+void check_impact_options(const ImpactOptions& options, const char* where) {
+  if (options.min_separation >= 0 && std::isfinite(options.min_separation)) return;
+  fail(std::string(where) + ": min_separation is " + std::to_string(options.min_separation) +
+       "; it must be a finite number, 0 or greater");
+}
+
+template <class Motion>
+std::optional<Impact> first_impact_of_finite(const Motion& motion, const RelativeMotion& relative,
+                                             const ImpactOptions& options, bool& used_exact) {
+  const ImpactSearch search = search_impact(relative, options.min_separation);
+  if (search.outcome == ImpactSearch::Outcome::apart) return std::nullopt;
+  if (search.outcome == ImpactSearch::Outcome::touching) {
+    return impact_at(motion, relative, search.time, options.min_separation);
+  }
+  used_exact = true;
+  if (!options.exact) {
+    Impact impact = impact_at(motion, relative, search.time, options.min_separation);
+    impact.certainty = ImpactCertainty::within_tolerance;
+    return impact;
+  }
+  const std::optional<TimeBracket> first = options.min_separation == 0
+                                               ? exact_first_contact(motion)
+                                               : first_contact_by_algebra(motion, options.min_separation);
+  if (!first) return std::nullopt;
+  return impact_at(motion, relative, first->low, options.min_separation);
+}
+template std::optional<Impact> first_impact_of_finite(const VertexFaceMotion&, const RelativeMotion&,
+                                                      const ImpactOptions&, bool&);
+template std::optional<Impact> first_impact_of_finite(const EdgeEdgeMotion&, const RelativeMotion&,
+                                                      const ImpactOptions&, bool&);
+
+std::optional<Impact> first_impact(const VertexFaceMotion& motion, const ImpactOptions& options) {
+  return checked_first_impact(motion, options);
+}
+std::optional<Impact> first_impact(const EdgeEdgeMotion& motion, const ImpactOptions& options) {
+  return checked_first_impact(motion, options);
+}
+
+}  // namespace supple

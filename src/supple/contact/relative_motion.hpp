@@ -1,0 +1,35 @@
+#pragma once
+
+#include <array>
+
+#include "supple/continuous.hpp"
+#include "supple/types.hpp"
+
+namespace supple {
+
+/// Two elements as one of them sees the other: their points differ by `m` - alpha `u` - beta `w`, where
+/// (alpha, beta) runs over the corner triangle alpha, beta >= 0, alpha + beta <= 1 for a vertex and a face,
+/// and over the unit square for two edges. All three vectors go straight from `start` to `end`.
+template <class Scalar>
+struct RelativePlaces {
+  Vec3<Scalar> m, u, w;
+};
+struct RelativeMotion {
+  RelativePlaces<double> start, end;
+  bool is_square = false;
+};
+
+inline RelativePlaces<double> relative_vertex_face(const std::array<Vec3d, 4>& p) {
+  return {p[0] - p[1], p[2] - p[1], p[3] - p[1]};
+}
+inline RelativePlaces<double> relative_edge_edge(const std::array<Vec3d, 4>& p) {
+  return {p[0] - p[2], p[0] - p[1], p[3] - p[2]};
+}
+inline RelativeMotion relative_motion(const VertexFaceMotion& motion) {
+  return {relative_vertex_face(motion.start), relative_vertex_face(motion.end), false};
+}
+inline RelativeMotion relative_motion(const EdgeEdgeMotion& motion) {
+  return {relative_edge_edge(motion.start), relative_edge_edge(motion.end), true};
+}
+
+}  // namespace supple
