@@ -55,6 +55,8 @@ VolumePolynomial::VolumePolynomial(const RelativeMotion& motion) {
   const Vec3d twice_n1 = cross(start.u, end.w) + cross(end.u, start.w);
   coefficients_ = {dot(start.m, n0), (dot(end.m, n0) + dot(start.m, twice_n1)) / 3,
                    (dot(start.m, n2) + dot(end.m, twice_n1)) / 3, dot(end.m, n2)};
+  const auto& c = coefficients_;
+  powers_ = {c[0], 3 * (c[1] - c[0]), 3 * (c[2] - 2 * c[1] + c[0]), c[3] - 3 * (c[2] - c[1]) - c[0]};
   const Vec3d m = larger(absolute(start.m), absolute(end.m));
   const Vec3d u = larger(absolute(start.u), absolute(end.u));
   const Vec3d w = larger(absolute(start.w), absolute(end.w));
@@ -64,13 +66,9 @@ VolumePolynomial::VolumePolynomial(const RelativeMotion& motion) {
 }
 
 double VolumePolynomial::value(double t) const {
-  return split(coefficients_, t).first[3];
-}
-
-double VolumePolynomial::slope(double t) const {
   const auto& c = coefficients_;
-  const double d0 = c[1] - c[0], d1 = c[2] - c[1], d2 = c[3] - c[2];
-  return 3 * mix(mix(d0, d1, t), mix(d1, d2, t), t);
+  const double c01 = mix(c[0], c[1], t), c12 = mix(c[1], c[2], t), c23 = mix(c[2], c[3], t);
+  return mix(mix(c01, c12, t), mix(c12, c23, t), t);
 }
 
 bool VolumePolynomial::never_zero(double low, double high) const {
@@ -88,10 +86,7 @@ bool VolumePolynomial::changes_sign(double low, double high) const {
 }
 
 void VolumePolynomial::add_turning_points(std::array<double, 4>& knots, std::size_t& count) const {
-  const auto& c = coefficients_;
-  // The slope is a t^2 + 2 b t + d, up to a factor.
-  const double d = c[1] - c[0], middle = c[2] - c[1], last = c[3] - c[2];
-  const double a = d - 2 * middle + last, b = middle - d;
+  const double a = 3 * powers_[3], b = powers_[2], d = powers_[1];  // the slope is a t^2 + 2 b t + d
   const double discriminant = b * b - a * d;
   if (!(discriminant > 0)) return;
   const double q = -(b + std::copysign(std::sqrt(discriminant), b));
@@ -102,18 +97,14 @@ void VolumePolynomial::add_turning_points(std::array<double, 4>& knots, std::siz
   }
 }
 
-double VolumePolynomial::zero_between(double low, double high) const {
-  double at_low = value(low);
-  const double at_high = value(high);
+double VolumePolynomial::zero_between(double low, double high, double at_low, double at_high) const {
   double t = low + (high - low) * (at_low / (at_low - at_high));
   for (int step = 0; step < 60; ++step) {
     if (!(t > low && t < high)) t = low + (high - low) / 2;
-    const double at = value(t);
-    if (std::fabs(at) <= 0x1p-6 * error_) return t;
+    const double at = estimate(t);
+    if (std::fabs(at) <= error_ / 4) break;
     ((at > 0) == (at_low > 0) ? low : high) = t;
-    const double next = t - at / slope(t);
-    if (std::fabs(next - t) <= 0x1p-54 || !(high - low > 0x1p-53)) return std::clamp(next, low, high);
-    t = next;
+    t -= at / slope(t);
   }
   return t;
 }
@@ -135,20 +126,20 @@ VolumePolynomial::Intervals VolumePolynomial::near_zeros() const {
   std::size_t count = 1;
   add_turning_points(knots, count);
   knots[count++] = 1;
-  for (std::size_t k = 0; k < count; ++k) {
-    const double here = value(knots[k]);
+  double here = estimate(0);
+  for (std::size_t k = 0;; ++k) {
     if (std::fabs(here) <= 2 * error_) {
-      const auto& c = coefficients_;
-      const double curvature = 6 * mix(c[2] - 2 * c[1] + c[0], c[3] - 2 * c[2] + c[1], knots[k]);
+      const double t = knots[k], curvature = 3 * powers_[3] * t + powers_[2];
       const bool turning = k != 0 && k + 1 != count;
-      add(knots[k],
-          turning ? 4 * std::sqrt(error_ / std::fabs(curvature)) : 4 * error_ / std::fabs(slope(knots[k])));
+      add(t, turning ? 4 * std::sqrt(error_ / std::fabs(curvature)) : 4 * error_ / std::fabs(slope(t)));
     }
     if (k + 1 == count) break;
-    const double next = value(knots[k + 1]);
-    if ((here > 0) == (next > 0)) continue;
-    const double t = zero_between(knots[k], knots[k + 1]);
-    add(t, 2 * error_ / std::fabs(slope(t)));
+    const double next = estimate(knots[k + 1]);
+    if ((here > 0) != (next > 0)) {
+      const double t = zero_between(knots[k], knots[k + 1], here, next);
+      add(t, 2 * error_ / std::fabs(slope(t)));
+    }
+    here = next;
   }
   return result;
 }

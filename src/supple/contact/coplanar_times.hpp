@@ -35,12 +35,16 @@ class VolumePolynomial {
   Intervals near_zeros() const;
 
  private:
-  double slope(double t) const;
+  /// Plain values, and slopes, by the powers of t.
+  double estimate(double t) const {
+    return ((powers_[3] * t + powers_[2]) * t + powers_[1]) * t + powers_[0];
+  }
+  double slope(double t) const { return (3 * powers_[3] * t + 2 * powers_[2]) * t + powers_[1]; }
   /// The one zero of a stretch of time over which the value grows or falls and changes its sign.
-  double zero_between(double low, double high) const;
+  double zero_between(double low, double high, double at_low, double at_high) const;
   void add_turning_points(std::array<double, 4>& knots, std::size_t& count) const;
 
-  std::array<double, 4> coefficients_;
+  std::array<double, 4> coefficients_, powers_;
   double error_;
   bool in_range_;
 };
