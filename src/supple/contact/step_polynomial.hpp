@@ -84,9 +84,8 @@ Cubic<Int> powers(const Cubic<Int>& c) {
 /// 8 times the polynomial over the first half of the step, taken as a step of its own: y becomes x + 2 y.
 template <class Int>
 Cubic<Int> first_half(const Cubic<Int>& c) {
-  const Int y3 = c[0] << 3, y2 = c[1] << 2, y1 = c[2] << 1;
-  const Int sum = y2 + y1;
-  return {y3, y3 + y3 + y3 + y2, y3 + y3 + y3 + y2 + sum, y3 + sum + c[3]};
+  const Int sum = c[0] + c[1], tripled = sum + c[0] + c[0];
+  return {c[0] << 3, tripled << 2, (tripled + c[1] + c[2]) << 1, sum + c[2] + c[3]};
 }
 template <class Int>
 Cubic<Int> second_half(const Cubic<Int>& c) {
