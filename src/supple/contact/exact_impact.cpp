@@ -239,8 +239,8 @@ template <class Numbers>
 bool FirstContact<Numbers>::on_one_segment(Root& root, Definition definition) const {
   for (const Quadratic<Area>& component : normal_) definition.add(component);
   for (const PointAndSegment& vertices : segments()) {
-    const AreaVector off_line = cross(vector(vertices.first, vertices.point),
-                                      vector(vertices.first, vertices.second));
+    const AreaVector off_line =
+        cross(vector(vertices.first, vertices.point), vector(vertices.first, vertices.second));
     if (vanish(root, definition, off_line) && between_ends(root, definition, vertices)) return true;
   }
   return false;
@@ -261,7 +261,8 @@ bool FirstContact<Numbers>::between_ends(Root& root, const Definition& definitio
 
 /// Of a polynomial that is zero at the root just when the others named are.
 template <class Numbers>
-int FirstContact<Numbers>::sign_at(Root& root, const Definition& definition, const Quadratic<Area>& polynomial,
+int FirstContact<Numbers>::sign_at(Root& root, const Definition& definition,
+                                   const Quadratic<Area>& polynomial,
                                    std::span<const Quadratic<Area>> zero_together) const {
   int result = sign_over(root.interval, polynomial);
   if (result != 0 || vanish(root, definition, zero_together)) return result;

@@ -31,8 +31,7 @@ template <class Int>
 auto hessian(const Cubic<Int>& c) {
   const auto c02 = product(c[0], c[2]), c03 = product(c[0], c[3]), c13 = product(c[1], c[3]);
   using Square = decltype(product(c[0], c[0]));
-  return Quadratic<Square>{product(c[1], c[1]) - c02 - (c02 << 1),
-                           product(c[1], c[2]) - c03 - (c03 << 3),
+  return Quadratic<Square>{product(c[1], c[1]) - c02 - (c02 << 1), product(c[1], c[2]) - c03 - (c03 << 3),
                            product(c[2], c[2]) - c13 - (c13 << 1)};
 }
 template <class Int>
@@ -50,7 +49,8 @@ inline Cubic<UnboundedInteger> without_repetition(const Cubic<UnboundedInteger>&
   return raised(Quadratic<UnboundedInteger>{p * p * c[1] - q * rest, p * rest, p * p * c[3]});
 }
 
-/// All roots from 0 to 1 of a polynomial that is not zero, by bisection until Descartes' rule tells them apart.
+/// All roots from 0 to 1 of a polynomial that is not zero, by bisection until Descartes' rule tells them
+/// apart.
 template <class Numbers>
 StepRoots<Numbers> find_roots(const Cubic<typename Numbers::Volume>& polynomial) {
   using Value = typename Numbers::VolumeAtTime;
@@ -185,7 +185,8 @@ TimeBracket neighbouring_doubles(StepRoot<Numbers>& root) {
   double t = rounded.guess(low, high, root.sign_before);
   for (int step = 1; next_above_low() < high; ++step) {
     // Newton's steps from exact values nearly always end at once; these make sure that it does end.
-    if (step % 4 == 0 || !(t > low && t < high)) t = step < 64 ? low + (high - low) / 2 : middle_double(low, high);
+    if (step % 4 == 0 || !(t > low && t < high))
+      t = step < 64 ? low + (high - low) / 2 : middle_double(low, high);
     typename Numbers::Time numerator;
     if (!to_numerator(t, root, numerator)) return {low, high};
     const auto value = value_at(root.powers, numerator, interval.exponent);

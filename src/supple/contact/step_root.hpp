@@ -47,9 +47,9 @@ struct TimeInterval {
 template <class Numbers>
 struct StepRoot {
   TimeInterval<Numbers> interval;
-  int sign_before = 0;                               ///< of the polynomial in the interval before the root
+  int sign_before = 0;                             ///< of the polynomial in the interval before the root
   Cubic<typename Numbers::VolumeAtTime> powers{};  ///< coefficients of 1, t, t², t³
-  bool too_fine = false;                             ///< the numbers do not suffice to go on
+  bool too_fine = false;                           ///< the numbers do not suffice to go on
 };
 
 /// 8^exponent times the value at time / 2^exponent.

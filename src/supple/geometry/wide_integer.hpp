@@ -123,8 +123,7 @@ WideInteger<m + n> product(const WideInteger<m>& a, const WideInteger<n>& b) {
   return result;
 }
 inline WideInteger<2> product(const WideInteger<1>& a, const WideInteger<1>& b) {
-  const Int128 value =
-      Int128{static_cast<std::int64_t>(a.words[0])} * static_cast<std::int64_t>(b.words[0]);
+  const Int128 value = Int128{static_cast<std::int64_t>(a.words[0])} * static_cast<std::int64_t>(b.words[0]);
   WideInteger<2> result;
   result.words = {static_cast<std::uint64_t>(value), static_cast<std::uint64_t>(value >> 64)};
   return result;
@@ -168,7 +167,8 @@ double approximate(const Int& value, int exponent) {
   const bool negative = sign(value) < 0;
   const Int magnitude = negative ? Int(-value) : value;
   const int excess = std::max(0, bit_length(magnitude) - 64);
-  const double top = std::ldexp(static_cast<double>(lowest_word(Int(magnitude >> excess))), excess + exponent);
+  const double top =
+      std::ldexp(static_cast<double>(lowest_word(Int(magnitude >> excess))), excess + exponent);
   return negative ? -top : top;
 }
 
