@@ -112,7 +112,7 @@ int run_detect(const DetectOptions& options) {
     touched = touched || !frame.result.contacts.empty();
     if (frame.verify && !frame.verify->agrees() && !std::exchange(differed, true))
       print_difference(scene, number, *frame.verify);
-    progress.update(number + 1);
+    progress.update(number + 1, fmt::format("frame {} of {}", number + 1, frames));
   }
   reports.finish();
   if (differed) return exit_differences;

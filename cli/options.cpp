@@ -4,7 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <array>
-#include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -12,6 +12,7 @@
 
 #include "documents.hpp"
 #include "exit_status.hpp"
+#include "option_kinds.hpp"
 #include "supple/version.hpp"
 #include "text.hpp"
 
@@ -22,9 +23,10 @@ constexpr const char* program_footer = R"(Examples:
   supple detect rabbit.obj fish.ply         which triangles of the two intersect?
   supple detect --help                      every option, with examples
   supple info rabbit.obj                    counts, bounds, holes, octree statistics
+  supple ccd-queries edge-edge/*.csv        single continuous queries, compared with the answers known
 
 Exit status: 0 done; 1 with --fail-on-contact when something touches; 2 usage or input error, told in one line;
-3 with --verify when brute force disagrees.)";
+3 with --verify when brute force disagrees, and of ccd-queries when an answer is false.)";
 
 constexpr const char* detect_footer = R"(Examples:
   supple detect rabbit.obj fish.ply
@@ -50,49 +52,21 @@ constexpr const char* info_footer = R"(Examples:
   supple info scene.toml
       Every object of a scene, as placed.)";
 
-/// An option that takes one of a few words. The first choice is the default.
-template <class Enum>
-CLI::Option* add_choice(CLI::App& app, const std::string& name, Enum& value,
-                        const std::vector<std::pair<std::string, Enum>>& choices,
-                        const std::string& description) {
-  std::string words, alternatives;
-  for (const auto& [word, meaning] : choices) {
-    words += (words.empty() ? "" : "|") + word;
-    alternatives += (alternatives.empty() ? "" : ", ") + word;
-  }
-  const auto parse = [&value, choices, alternatives, name](const std::string& given) {
-    for (const auto& [word, meaning] : choices) {
-      if (word != given) continue;
-      value = meaning;
-      return;
-    }
-    throw CLI::ValidationError(name, fmt::format("'{}' is not one of {}", given, alternatives));
-  };
-  return app
-      .add_option_function<std::string>(name, parse,
-                                        fmt::format("{} (default: {})", description, choices.front().first))
-      ->type_name(words);
-}
+constexpr const char* ccd_queries_footer = R"(Examples:
+  supple ccd-queries sample-queries/*/vertex-face/*.csv
+      How many touch, how many of the answers in the files are missed, and the time a query takes?
+  supple ccd-queries --kind edge-edge queries.csv --list-false
+      The kind is told by a folder named vertex-face or edge-edge, or a file name that ends in vf or ee; else say it.
+  supple ccd-queries 227vf.csv --answers 227vf_mma_bool.json
+      Answers from a JSON list of true and false.
+  supple ccd-queries data.csv --kind vertex-face --min-separation 0.01 --verify
+      Elements touch that come within 0.01; algebra decides each query anew.
+  supple ccd-queries 227vf.csv --json - --no-stats
+      The time of every impact as JSON, the same bytes in every run.
 
-/// A number from `lowest` to `highest`.
-template <class Number>
-CLI::Option* add_number(CLI::App& app, const std::string& name, Number& value, std::uint32_t lowest,
-                        std::uint32_t highest, const std::string& description) {
-  const auto parse = [&value, lowest, highest, name](const std::string& given) {
-    std::uint32_t number = 0;
-    if (!CLI::detail::lexical_cast(given, number) || number < lowest || number > highest ||
-        given.find_first_not_of("0123456789") != std::string::npos)
-      throw CLI::ValidationError(
-          name, fmt::format("'{}' is not a whole number from {} to {}", given, lowest, highest));
-    value = number;
-  };
-  return app.add_option_function<std::string>(name, parse, description)->type_name("N");
-}
-
-CLI::Option* add_file(CLI::App& app, const std::string& name, std::string& value,
-                      const std::string& description) {
-  return app.add_option(name, value, description)->type_name("FILE|-");
-}
+A query is eight rows: the vertices v, f0, f1, f2 of a vertex and a face, or a0, a1, b0, b1 of two edges, at the start
+of the step, and the same at its end. A row is numerator,denominator of x, y and z, whole numbers of any size, and
+perhaps the answer, 0 or 1, the same in all eight. Each coordinate must be exactly a double.)";
 
 std::array<CLI::Option*, 2> add_octree_options(CLI::App& app, std::optional<std::uint32_t>& max_level,
                                                std::optional<std::uint32_t>& leaf_size) {
@@ -104,19 +78,27 @@ std::array<CLI::Option*, 2> add_octree_options(CLI::App& app, std::optional<std:
                  fmt::format("Triangles up to which a node is not split (default: {})", defaults.leaf_size))};
 }
 
-/// An option that means something only together with a certain choice of another.
-struct Dependence {
-  const CLI::Option* option;
-  std::function<bool()> satisfied;
-  std::string needs;
-};
-using Dependences = std::vector<Dependence>;
+std::array<CLI::Option*, 2> add_impact_options(CLI::App& app, ImpactOptions& impact) {
+  return {add_length(app, "--min-separation", impact.min_separation,
+                     "Elements touch when they come this close, in the unit of the coordinates (default: 0)"),
+          add_choice<bool>(
+              app, "--undecided", impact.exact, {{"exact", true}, {"report", false}},
+              "What floating point cannot tell: decided by exact arithmetic, or reported as touching "
+              "within tolerance")};
+}
 
-void check(const Dependences& dependences) {
-  for (const Dependence& d : dependences) {
-    if (d.option->count() > 0 && !d.satisfied())
-      throw CLI::ValidationError(d.option->get_name(), "has no effect without " + d.needs);
-  }
+void add_kind(CLI::App& app, std::optional<QueryKind>& kind) {
+  const std::map<std::string, QueryKind> kinds{{"vertex-face", QueryKind::vertex_face},
+                                               {"edge-edge", QueryKind::edge_edge}};
+  const auto parse = [&kind, kinds](const std::string& given) {
+    const auto found = kinds.find(given);
+    if (found == kinds.end())
+      throw CLI::ValidationError("--kind", fmt::format("'{}' is not one of vertex-face, edge-edge", given));
+    kind = found->second;
+  };
+  app.add_option_function<std::string>("--kind", parse,
+                                       "What the queries are about (default: told by the paths)")
+      ->type_name("vertex-face|edge-edge");
 }
 
 void add_input_options(CLI::App& app, DetectOptions& options) {
@@ -215,6 +197,37 @@ CLI::App* add_info(CLI::App& program, InfoOptions& options) {
   return app;
 }
 
+CLI::App* add_ccd_queries(CLI::App& program, CcdQueriesOptions& options, Dependences& dependences) {
+  CLI::App* app = program.add_subcommand(
+      "ccd-queries",
+      "Put single vertex-face and edge-edge queries of continuous collision, as published with answers");
+  app->footer(ccd_queries_footer);
+  app->add_option("FILE.csv", options.inputs, "Files of queries")->required()->type_name("");
+  add_kind(*app, options.kind);
+  app->add_option("--answers", options.answers,
+                  "JSON list of true and false, one a query, for a file without a column of answers; once "
+                  "for each file, "
+                  "in the same order")
+      ->type_name("FILE")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  add_impact_options(*app, options.impact);
+  app->add_flag(
+      "--verify", options.verify,
+      "Decide each query by algebra too, and compare outcome and time; differences exit with status 3");
+  dependences.push_back(
+      {app->add_flag("--list-false", options.list_false, "Name each query that was answered falsely"),
+       [&] { return !options.quiet && options.json != "-"; }, "tables on standard output"});
+  add_file(*app, "--json", options.json,
+           "Write the time of every impact and all counts; - is standard output");
+  dependences.push_back({app->add_flag_callback(
+                             "--no-stats", [&] { options.json_stats = false; },
+                             "Leave measured times out of the JSON, so that equal results are equal files"),
+                         [&] { return !options.json.empty(); }, "--json"});
+  app->add_flag("--quiet", options.quiet, "No table and no progress");
+  return app;
+}
+
 void check_outputs(const DetectOptions& options) {
   if (options.json == "-" && options.csv == "-")
     throw CLI::ValidationError("--csv", "--json already writes to standard output; give one of them a file");
@@ -242,6 +255,7 @@ CommandLine parse_command_line(int argument_count, const char* const* arguments)
   Dependences dependences;
   const CLI::App* detect = add_detect(program, result.detect, dependences);
   const CLI::App* info = add_info(program, result.info);
+  add_ccd_queries(program, result.ccd_queries, dependences);
   try {
     program.parse(argument_count, arguments);
     if (!document.empty()) {
@@ -251,8 +265,9 @@ CommandLine parse_command_line(int argument_count, const char* const* arguments)
     if (program.get_subcommands().empty()) throw CLI::RequiredError::Subcommand(1);
     check(dependences);
     check_outputs(result.detect);
-    result.command = detect->parsed() ? CommandLine::Command::detect : CommandLine::Command::info;
-    (void)info;
+    result.command = detect->parsed() ? CommandLine::Command::detect
+                     : info->parsed() ? CommandLine::Command::info
+                                      : CommandLine::Command::ccd_queries;
   } catch (const CLI::Success& success) {  // help and version
     result.exit_status = program.exit(success);
   } catch (const CLI::ParseError& error) {

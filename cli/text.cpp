@@ -49,7 +49,11 @@ std::string grouped(std::uint64_t number) {
 }
 
 std::string counted(std::uint64_t number, const std::string& noun) {
-  return fmt::format("{} {}{}", grouped(number), noun, number == 1 ? "" : "s");
+  return counted(number, noun, noun + "s");
+}
+
+std::string counted(std::uint64_t number, const std::string& noun, const std::string& nouns) {
+  return fmt::format("{} {}", grouped(number), number == 1 ? noun : nouns);
 }
 
 }  // namespace supple::cli

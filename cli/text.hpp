@@ -18,5 +18,7 @@ std::string grouped(std::uint64_t number);
 
 /// `1 frame`, `2 frames`.
 std::string counted(std::uint64_t number, const std::string& noun);
+/// `1 query`, `2 queries`.
+std::string counted(std::uint64_t number, const std::string& noun, const std::string& nouns);
 
 }  // namespace supple::cli
