@@ -27,9 +27,11 @@ struct RelativePlacement {
 };
 
 /// Triangles of two leaves whose volumes overlap, in octree order: [begin_a, end_a) against [begin_b, end_b).
-/// Within one leaf of one object the ranges are equal.
+/// Within one leaf of one object the ranges are equal. `lane_a` and `lane_b` are the leaves' places: eight
+/// times the node plus the lane.
 struct LeafPair {
   std::uint32_t begin_a = 0, end_a = 0, begin_b = 0, end_b = 0;
+  std::uint32_t lane_a = 0, lane_b = 0;
 };
 
 /// Bit 8 i + j of `masks[k]`: lane i of node a and lane j of node b of `pairs[k]` may overlap. Lanes outside

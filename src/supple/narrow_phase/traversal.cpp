@@ -10,7 +10,9 @@ namespace supple {
 namespace {
 
 void test_lanes(const ObjectPairView& pair, std::span<const NodePair> node_pairs, std::uint64_t* masks) {
-  if (pair.a.spheres != nullptr) {
+  if (pair.is_moving()) {
+    moving_overlap_masks(node_pairs, pair.a.moving, pair.b.moving, pair.separation, masks);
+  } else if (pair.a.spheres != nullptr) {
     overlap_masks(node_pairs, pair.a.spheres, pair.b.spheres, pair.placement, masks);
   } else {
     overlap_masks(node_pairs, pair.a.boxes, pair.b.boxes, pair.placement, masks);
@@ -31,6 +33,10 @@ void for_each_lane_pair(const ObjectPairView& pair, NodePair node_pair, std::uin
     if (same_node) hits &= ~0u << i;
     for (; hits != 0; hits &= hits - 1) visit(i, std::countr_zero(hits));
   }
+}
+
+std::uint32_t lane_number(std::uint32_t node, int lane) {
+  return node * node_width + static_cast<std::uint32_t>(lane);
 }
 
 std::uint8_t lane_bit(int lane) {
@@ -74,16 +80,33 @@ OctreeView view_of(const ObjectOctree& octree, const VertexBuffer& vertices,
           octree.spheres(),
           {octree.triangles().data(), vertices.is_double() ? nullptr : vertices.floats(),
            vertices.is_double() ? vertices.doubles() : nullptr, inert.empty() ? nullptr : inert.data()},
-          translation};
+          translation,
+          {}};
+}
+
+OctreeView moving_view_of(const ObjectOctree& octree, const SurfaceElements& elements,
+                          const MovingBoxes& boxes) {
+  OctreeView view;
+  view.nodes = octree.nodes();
+  view.moving = boxes.view(octree, elements);
+  return view;
 }
 
 ObjectPairView pair_of(const OctreeView& a, const OctreeView& b) {
-  return {a, b, place(a, b), false};
+  return {a, b, place(a, b), false, 0};
 }
 
 ObjectPairView self_pair_of(const OctreeView& object) {
   // The translation is the same, and rounding may yet bring close positions together.
-  return {object, object, place(object, object), true};
+  return {object, object, place(object, object), true, 0};
+}
+
+ObjectPairView moving_pair_of(const OctreeView& a, const OctreeView& b, double separation) {
+  return {a, b, {}, false, round_up(separation)};
+}
+
+ObjectPairView moving_self_pair_of(const OctreeView& object, double separation) {
+  return {object, object, {}, true, round_up(separation)};
 }
 
 void Traversal::expand_batch(const ObjectPairView& pair, TraversalStats& stats) {
@@ -107,7 +130,8 @@ void Traversal::expand_batch(const ObjectPairView& pair, TraversalStats& stats) 
         stack_.push_back({node_pair.a, node_b.child(j), lane_bit(i), 0xff});
       } else {
         leaf_pairs_.push_back({node_a.first_triangle[i], node_a.first_triangle[i + 1],
-                               node_b.first_triangle[j], node_b.first_triangle[j + 1]});
+                               node_b.first_triangle[j], node_b.first_triangle[j + 1],
+                               lane_number(node_pair.a, i), lane_number(node_pair.b, j)});
       }
     });
   }

@@ -5,7 +5,9 @@
 #include <span>
 #include <vector>
 
+#include "narrow_phase/element_kernels.hpp"
 #include "narrow_phase/overlap_kernels.hpp"
+#include "octree/moving_boxes.hpp"
 #include "octree/object_octree.hpp"
 
 namespace supple {
@@ -17,23 +19,36 @@ struct OctreeView {
   const SphereLanes* spheres = nullptr;  ///< null: the boxes are the volumes
   TriangleArrays arrays;
   Vec3d translation;  ///< added to each position
+  MovingView moving;  ///< of objects in motion, of which `nodes` and this are read only
 };
 OctreeView view_of(const ObjectOctree& octree, const VertexBuffer& vertices,
                    std::span<const std::uint8_t> inert, Vec3d translation);
+/// Of an object in motion, at rest or not; `boxes` are refitted.
+OctreeView moving_view_of(const ObjectOctree& octree, const SurfaceElements& elements,
+                          const MovingBoxes& boxes);
 
 /// Two objects, or one with itself (`same_object`, a and b being the same view).
 struct ObjectPairView {
   OctreeView a, b;
   RelativePlacement placement;
   bool same_object = false;
+  /// Of objects in motion: elements touch that come this near, not less than what was asked for.
+  float separation = 0;
+
+  bool is_moving() const { return a.moving.start != nullptr; }
 };
 ObjectPairView pair_of(const OctreeView& a, const OctreeView& b);
 ObjectPairView self_pair_of(const OctreeView& object);
+/// The same of moving views; `separation` ≥ 0, not NaN.
+ObjectPairView moving_pair_of(const OctreeView& a, const OctreeView& b, double separation);
+ObjectPairView moving_self_pair_of(const OctreeView& object, double separation);
 
 struct TraversalStats {
   std::uint64_t node_pairs_visited = 0;
   std::uint64_t volumes_tested = 0;
   std::uint64_t candidate_pairs = 0;
+  /// Of objects in motion, for which `candidate_pairs` stays.
+  std::uint64_t vertex_face_candidates = 0, edge_edge_candidates = 0;
 };
 
 /// Octree against octree, both descended at once. Holds the scratch memory of one worker, kept between calls.
@@ -60,6 +75,36 @@ class Traversal {
         flush_leaves(pair, stats, sink);
       }
     }
+  }
+
+  /// The same of objects in motion: calls `sink(ElementPairKind, std::span<const ElementPair>)` with batches
+  /// of candidates, octree order's numbers, of at most `ElementPairBatches::capacity`. These are all
+  /// vertex-face, face-vertex and edge-edge pairs whose boxes are not apart by more than the separation, on
+  /// one side of one axis, at both ends of the step. Of one object with itself those that share a vertex are
+  /// left out, and there is no `face_vertex`. Each pair comes once, over all the roots of a `refine`.
+  template <class Sink>
+  void find_element_pairs(const ObjectPairView& pair, NodePair root, TraversalStats& stats, Sink&& sink) {
+    if (pair.a.nodes.empty() || pair.b.nodes.empty()) return;
+    auto count_and_sink = [&](ElementPairKind kind, std::span<const ElementPair> pairs) {
+      (kind == ElementPairKind::edge_edge ? stats.edge_edge_candidates : stats.vertex_face_candidates) +=
+          pairs.size();
+      sink(kind, pairs);
+    };
+    element_pairs_.set_sink(
+        [](void* context, ElementPairKind kind, std::span<const ElementPair> pairs) {
+          (*static_cast<decltype(count_and_sink)*>(context))(kind, pairs);
+        },
+        &count_and_sink);
+    stack_.assign(1, root);
+    leaf_pairs_.clear();
+    while (!stack_.empty()) {
+      expand_batch(pair, stats);
+      if (leaf_pairs_.size() < leaf_batch && !stack_.empty()) continue;
+      stats.volumes_tested += find_element_box_pairs(leaf_pairs_, pair.a.moving, pair.b.moving,
+                                                     pair.separation, pair.same_object, element_pairs_);
+      leaf_pairs_.clear();
+    }
+    element_pairs_.flush();
   }
 
   /// One step of the descent for all of `pairs`, for spreading work over threads: what it appends to `finer`
@@ -95,6 +140,7 @@ class Traversal {
   std::array<NodePair, node_batch> batch_;
   std::vector<LeafPair> leaf_pairs_;
   std::vector<TrianglePair> candidates_;
+  ElementPairBatches element_pairs_;
 };
 
 }  // namespace supple

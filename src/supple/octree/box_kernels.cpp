@@ -11,27 +11,8 @@ HWY_BEFORE_NAMESPACE();
 namespace supple {
 namespace HWY_NAMESPACE {
 
-HWY_INLINE float min_of_eight(const float* values) {
-  const hn::CappedTag<float, node_width> tag;
-  auto least = hn::Load(tag, values);
-  for (std::size_t i = hn::Lanes(tag); i < node_width; i += hn::Lanes(tag)) {
-    least = hn::Min(least, hn::Load(tag, values + i));
-  }
-  return hn::GetLane(hn::MinOfLanes(tag, least));
-}
-
-HWY_INLINE float max_of_eight(const float* values) {
-  const hn::CappedTag<float, node_width> tag;
-  auto greatest = hn::Load(tag, values);
-  for (std::size_t i = hn::Lanes(tag); i < node_width; i += hn::Lanes(tag)) {
-    greatest = hn::Max(greatest, hn::Load(tag, values + i));
-  }
-  return hn::GetLane(hn::MaxOfLanes(tag, greatest));
-}
-
 Aabb BoxOfLanes(const AabbLanes& lanes) {
-  return {{min_of_eight(lanes.min_x), min_of_eight(lanes.min_y), min_of_eight(lanes.min_z)},
-          {max_of_eight(lanes.max_x), max_of_eight(lanes.max_y), max_of_eight(lanes.max_z)}};
+  return enclose_lanes(lanes);
 }
 
 template <class Box, class Scalar>
@@ -47,7 +28,7 @@ void refit_nodes(const OctreeNode* nodes, AabbLanes* boxes, const Scalar* vertic
     }
     invert_lanes_from(lanes, node.lane_count);
     if (node.parent == n) continue;
-    const Aabb box = BoxOfLanes(lanes);
+    const Aabb box = enclose_lanes(lanes);
     set_lane(boxes[node.parent], node.parent_lane, &box.min.x, &box.max.x);
   }
 }

@@ -31,6 +31,8 @@ class ObjectOctree {
                const ObjectOctreeOptions& options, BoundingVolume bounding_volume, SphereFit sphere_fit);
 
   std::span<const OctreeNode> nodes() const { return nodes_; }
+  /// First node of each level, then the number of nodes.
+  std::span<const std::uint32_t> level_begin() const { return level_begin_; }
   const AabbLanes* boxes() const { return boxes_.data(); }
   /// Null unless the bounding volume is the sphere.
   const SphereLanes* spheres() const { return spheres_.empty() ? nullptr : spheres_.data(); }
@@ -65,7 +67,7 @@ class ObjectOctree {
   std::vector<SphereLanes> spheres_;
   std::vector<Triangle> triangles_;
   std::vector<std::uint32_t> triangle_ids_, vertex_ids_, vertex_order_;
-  std::vector<std::uint32_t> level_begin_;  // first node of each level, then the number of nodes
+  std::vector<std::uint32_t> level_begin_;
   SphereFit sphere_fit_;
   Aabb box_;
   BoundingSphere sphere_;

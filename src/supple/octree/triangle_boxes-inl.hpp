@@ -165,6 +165,29 @@ HWY_INLINE void invert_lanes_from(AabbLanes& lanes, int first) {
   }
 }
 
+HWY_INLINE float min_of_eight(const float* values) {
+  const hn::CappedTag<float, node_width> tag;
+  auto least = hn::Load(tag, values);
+  for (std::size_t i = hn::Lanes(tag); i < node_width; i += hn::Lanes(tag)) {
+    least = hn::Min(least, hn::Load(tag, values + i));
+  }
+  return hn::GetLane(hn::MinOfLanes(tag, least));
+}
+
+HWY_INLINE float max_of_eight(const float* values) {
+  const hn::CappedTag<float, node_width> tag;
+  auto greatest = hn::Load(tag, values);
+  for (std::size_t i = hn::Lanes(tag); i < node_width; i += hn::Lanes(tag)) {
+    greatest = hn::Max(greatest, hn::Load(tag, values + i));
+  }
+  return hn::GetLane(hn::MaxOfLanes(tag, greatest));
+}
+
+HWY_INLINE Aabb enclose_lanes(const AabbLanes& lanes) {
+  return {{min_of_eight(lanes.min_x), min_of_eight(lanes.min_y), min_of_eight(lanes.min_z)},
+          {max_of_eight(lanes.max_x), max_of_eight(lanes.max_y), max_of_eight(lanes.max_z)}};
+}
+
 }  // namespace HWY_NAMESPACE
 }  // namespace supple
 HWY_AFTER_NAMESPACE();

@@ -9,10 +9,6 @@
 namespace supple {
 namespace {
 
-/// Tasks a worker that make for an even load, and rounds of refinement to get there.
-constexpr std::size_t tasks_per_worker = 32;
-constexpr int most_refinements = 4;
-
 Vec3d position(const OctreeView& view, std::uint32_t vertex) {
   const std::size_t i = std::size_t{vertex} * 4;
   const TriangleArrays& arrays = view.arrays;
@@ -45,7 +41,8 @@ void ContactPass::run(std::span<const ContactJob> jobs, std::span<const ContactO
     worker.busy_seconds = worker.exact_seconds = 0;
   }
   Timer timer;
-  plan_tasks();
+  tasks_.plan(static_cast<std::uint32_t>(jobs.size()), workers_.size(), workers_[0].traversal,
+              [&](std::uint32_t job) { return view_of_job(job); });
   parallel.for_ranges(tasks_.size(), 1, [&](std::size_t begin, std::size_t end, std::uint32_t w) {
     Timer busy;
     for (std::size_t i = begin; i < end; ++i) run_task(tasks_[i], workers_[w]);
@@ -64,25 +61,7 @@ ObjectPairView ContactPass::view_of_job(std::uint32_t job) const {
   return pair_of(a.view, objects_[jobs_[job].b].view);
 }
 
-/// One task a job; with several workers and few jobs, the first levels of the descent are done here to have
-/// enough of them.
-void ContactPass::plan_tasks() {
-  tasks_.clear();
-  for (std::uint32_t job = 0; job < jobs_.size(); ++job) tasks_.push_back({job, {}});
-  if (workers_.size() == 1) return;
-  for (int round = 0; round < most_refinements && tasks_.size() < tasks_per_worker * workers_.size();
-       ++round) {
-    finer_tasks_.clear();
-    for (const Task& task : tasks_) {
-      finer_.clear();
-      workers_[0].traversal.refine(view_of_job(task.job), task.root, finer_);
-      for (const NodePair& root : finer_) finer_tasks_.push_back({task.job, root});
-    }
-    tasks_.swap(finer_tasks_);
-  }
-}
-
-void ContactPass::run_task(const Task& task, Worker& worker) const {
+void ContactPass::run_task(const ContactTask& task, Worker& worker) const {
   const ObjectPairView pair = view_of_job(task.job);
   const auto on_leaves = [&](std::span<const LeafPair> leaf_pairs) {
     if (!options_.colliding_vertices) return;

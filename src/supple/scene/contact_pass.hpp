@@ -8,17 +8,12 @@
 #include "core/parallel.hpp"
 #include "core/timer.hpp"
 #include "narrow_phase/traversal.hpp"
+#include "scene/contact_tasks.hpp"
 #include "supple/contact.hpp"
 #include "supple/options.hpp"
 #include "supple/result.hpp"
 
 namespace supple {
-
-/// Two objects to be tested against each other, as indices into the objects of the pass; the same twice for
-/// an object against itself. `a <= b`.
-struct ContactJob {
-  std::uint32_t a = 0, b = 0;
-};
 
 /// What the pass reads of an object.
 struct ContactObject {
@@ -43,11 +38,6 @@ class ContactPass {
   std::span<const std::uint32_t> colliding_vertices() const { return vertices_; }
 
  private:
-  /// Part of a job: the triangle pairs below a pair of nodes.
-  struct Task {
-    std::uint32_t job = 0;
-    NodePair root;
-  };
   /// A contact as a worker finds it, `contact.first_point` counting that worker's points.
   struct Found {
     std::uint32_t job = 0;
@@ -72,8 +62,7 @@ class ContactPass {
   };
 
   ObjectPairView view_of_job(std::uint32_t job) const;
-  void plan_tasks();
-  void run_task(const Task& task, Worker& worker) const;
+  void run_task(const ContactTask& task, Worker& worker) const;
   void test_candidates(std::uint32_t job, const ObjectPairView& pair,
                        std::span<const TrianglePair> candidates, Worker& worker) const;
   void test_candidate(std::uint32_t job, const ObjectPairView& pair, TrianglePair candidate,
@@ -89,8 +78,7 @@ class ContactPass {
   const Parallel* parallel_ = nullptr;
 
   std::vector<Worker> workers_;
-  std::vector<Task> tasks_, finer_tasks_;
-  std::vector<NodePair> finer_;
+  ContactTasks tasks_;
   std::vector<SortKey> keys_;
   std::vector<CollidingLeaves> leaves_;
   std::vector<std::uint8_t> marked_;

@@ -1,11 +1,39 @@
 #include <algorithm>
 
+#include <limits>
+
 #include "core/error.hpp"
+#include "core/float_rounding.hpp"
 #include "core/timer.hpp"
 #include "scene/scene_implementation.hpp"
-#include "scene/verify.hpp"
 
 namespace supple {
+
+namespace {
+
+// Volumes of two objects that come within the separation of each other overlap when each grows by half of it.
+// The growth and its sums are rounded up by more than they can lose.
+
+double growth(double separation) {
+  return separation > 0 ? separation * (0.5 + 0x1p-20) + std::numeric_limits<float>::min() : 0;
+}
+
+Aabb grown(const Aabb& box, double by) {
+  if (by == 0 || box.empty()) return box;
+  Aabb result;
+  for (int axis = 0; axis < 3; ++axis) {
+    result.min[axis] = round_down(box.min[axis] - by);
+    result.max[axis] = round_up(box.max[axis] + by);
+  }
+  return result;
+}
+
+BoundingSphere grown(const BoundingSphere& sphere, double by) {
+  if (by == 0 || sphere.empty()) return sphere;
+  return {sphere.center, round_up(sphere.radius + by)};
+}
+
+}  // namespace
 
 const DetectResult& Scene::Implementation::detect() {
   result.stats = {};
@@ -14,7 +42,12 @@ const DetectResult& Scene::Implementation::detect() {
   result.stats.refit_seconds = stage.lap();
   find_object_pairs();
   result.stats.broad_phase_seconds = stage.lap();
-  find_contacts();
+  plan_jobs();
+  if (is_continuous()) {
+    find_impacts();
+  } else {
+    find_contacts();
+  }
   stage.lap();
   report_non_finite();
   publish();
@@ -26,6 +59,7 @@ const DetectResult& Scene::Implementation::detect() {
 /// Large objects take all workers one after the other; small ones go side by side.
 void Scene::Implementation::refit_objects() {
   constexpr std::size_t large = 16384;  // triangles
+  const double growth_of_volumes = is_continuous() ? growth(options.impact.min_separation) : 0;
   boxes_.resize(slots_.size());
   spheres_.resize(slots_.size());
   changed_.resize(slots_.size(), 0);
@@ -50,8 +84,8 @@ void Scene::Implementation::refit_objects() {
   for (std::uint32_t index = 0; index < slots_.size(); ++index) {
     if (changed_[index] == 0) continue;
     const SceneObject* const object = slots_[index].object.get();
-    boxes_[index] = object != nullptr ? object->box() : Aabb{};
-    spheres_[index] = object != nullptr ? object->sphere() : BoundingSphere{};
+    boxes_[index] = object != nullptr ? grown(object->box(), growth_of_volumes) : Aabb{};
+    spheres_[index] = object != nullptr ? grown(object->sphere(), growth_of_volumes) : BoundingSphere{};
   }
 }
 
@@ -81,21 +115,61 @@ bool Scene::Implementation::may_pair(const IndexPair& pair) const {
   return !filter || filter(id_of(pair.a), id_of(pair.b));
 }
 
-void Scene::Implementation::find_contacts() {
-  contact_objects_.clear();
+/// Objects against themselves and each other, in canonical order.
+void Scene::Implementation::plan_jobs() {
   jobs_.clear();
   auto pair = object_pairs_.begin();
+  for (std::uint32_t index = 0; index < slots_.size(); ++index) {
+    const SceneObject* const object = slots_[index].object.get();
+    if (object == nullptr) continue;
+    if (object->options.self_collision) jobs_.push_back({index, index});
+    for (; pair != object_pairs_.end() && pair->a.index == index; ++pair)
+      jobs_.push_back({index, pair->b.index});
+  }
+}
+
+void Scene::Implementation::find_contacts() {
+  contact_objects_.clear();
   for (std::uint32_t index = 0; index < slots_.size(); ++index) {
     const SceneObject* const object = slots_[index].object.get();
     contact_objects_.emplace_back();
     if (object == nullptr) continue;
     contact_objects_.back() = {id_of(index), object->view(), object->octree().triangle_ids(),
                                object->octree().vertex_ids()};
-    if (object->options.self_collision) jobs_.push_back({index, index});
-    for (; pair != object_pairs_.end() && pair->a.index == index; ++pair)
-      jobs_.push_back({index, pair->b.index});
   }
   contact_pass_.run(jobs_, contact_objects_, options, parallel, result.stats);
+}
+
+void Scene::Implementation::list_moving_objects() {
+  moving_objects_.clear();
+  for (std::uint32_t index = 0; index < slots_.size(); ++index) {
+    const SceneObject* const object = slots_[index].object.get();
+    moving_objects_.emplace_back();
+    if (object == nullptr) continue;
+    moving_objects_.back() = {id_of(index),   object->moving_view(),           &object->start(),
+                              &object->end(), object->octree().triangle_ids(), object->octree().vertex_ids()};
+  }
+}
+
+void Scene::Implementation::find_impacts() {
+  list_moving_objects();
+  impact_pass_.run(jobs_, moving_objects_, options.impact, parallel, result.stats);
+}
+
+std::optional<ContinuousContact> Scene::Implementation::earliest_impact(const char* call) {
+  if (!is_continuous()) {
+    fail(std::string(call) +
+         ": the scene does not look for continuous contacts; make it with SceneOptions::contacts continuous");
+  }
+  const StepStats stats = result.stats;
+  refit_objects();
+  find_object_pairs();
+  plan_jobs();
+  list_moving_objects();
+  result.stats = stats;
+  result.object_pairs = {};  // they were of another call
+  mark_changed();
+  return impact_pass_.find_earliest(jobs_, moving_objects_, options.impact, parallel);
 }
 
 void Scene::Implementation::report_non_finite() {
@@ -105,21 +179,22 @@ void Scene::Implementation::report_non_finite() {
     if (object == nullptr) continue;
     for (const std::uint32_t vertex : object->non_finite_vertices()) {
       non_finite_.push_back(
-          {id_of(index), vertex, object->position(object->octree().vertex_order()[vertex])});
+          {id_of(index), vertex, object->non_finite_position(object->octree().vertex_order()[vertex])});
     }
   }
 }
 
 void Scene::Implementation::publish() {
   touching_pairs_.clear();
-  for (const ContactGroup& group : contact_pass_.groups()) {
+  result.groups = is_continuous() ? impact_pass_.groups() : contact_pass_.groups();
+  for (const ContactGroup& group : result.groups) {
     if (group.a != group.b) touching_pairs_.push_back({group.a, group.b});
   }
   volume_pairs_.update(object_pairs_);
   contact_pairs_.update(touching_pairs_);
   result.step = step_++;
   result.object_pairs = object_pairs_;
-  result.groups = contact_pass_.groups();
+  result.continuous_contacts = impact_pass_.contacts();
   result.contacts = contact_pass_.contacts();
   result.contact_points = contact_pass_.contact_points();
   result.colliding_vertex_groups = contact_pass_.colliding_vertex_groups();
@@ -128,76 +203,6 @@ void Scene::Implementation::publish() {
   result.volume_events = volume_pairs_.events();
   result.contact_events = contact_pairs_.events();
   detected_ = true;
-}
-
-/// All pairs that `detect` must look at, found without volumes: those whose filters agree.
-std::vector<ObjectPair> Scene::Implementation::pairs_to_verify() const {
-  std::vector<ObjectPair> pairs;
-  for (const ObjectId a : objects()) {
-    if (slots_[a.index].object->options.self_collision) pairs.push_back({a, a});
-    for (const ObjectId b : objects()) {
-      if (a < b && may_pair({a.index, b.index})) pairs.push_back({a, b});
-    }
-  }
-  return pairs;
-}
-
-namespace {
-
-PlainObject plain_object(const SceneObject& object, std::vector<Triangle>& triangles) {
-  const ObjectOctree& octree = object.octree();
-  PlainObject plain;
-  plain.positions.reserve(octree.vertex_order().size());
-  for (const std::uint32_t vertex : octree.vertex_order()) plain.positions.push_back(object.position(vertex));
-  triangles.resize(octree.triangles().size());
-  for (std::uint32_t t = 0; t < triangles.size(); ++t) {
-    const Triangle& corners = octree.triangles()[t];
-    for (int corner = 0; corner < 3; ++corner) {
-      triangles[octree.triangle_ids()[t]][corner] = octree.vertex_ids()[corners[corner]];
-    }
-  }
-  plain.triangles = triangles;
-  return plain;
-}
-
-}  // namespace
-
-VerifyReport Scene::Implementation::verify() const {
-  if (!detected_) fail("verify: nothing was detected at the present positions; call detect first");
-  if (options.contacts == ContactMode::none)
-    fail("verify: the scene has contacts switched off; there is nothing to compare");
-  VerifyReport report;
-  auto group = result.groups.begin();
-  for (const ObjectPair& pair : pairs_to_verify()) {
-    std::vector<Triangle> triangles_a, triangles_b;
-    const bool same_object = pair.a == pair.b;
-    const PlainObject a = plain_object(*slots_[pair.a.index].object, triangles_a);
-    const PlainObject b = same_object ? a : plain_object(*slots_[pair.b.index].object, triangles_b);
-    const std::vector<TrianglePair> truth = intersecting_pairs_by_brute_force(a, b, same_object, parallel);
-    std::vector<TrianglePair> reported;
-    if (group != result.groups.end() && group->a == pair.a && group->b == pair.b) {
-      for (const Contact& contact : result.contacts_of(*group)) {
-        reported.push_back({contact.triangle_a, contact.triangle_b});
-      }
-      ++group;
-    }
-    const std::uint64_t count_a = triangles_a.size();
-    report.triangle_pairs_checked += same_object
-                                         ? count_a * (count_a - std::min<std::uint64_t>(count_a, 1)) / 2
-                                         : count_a * triangles_b.size();
-    report.intersecting_pairs += truth.size();
-    const auto note = [&](const std::vector<TrianglePair>& from, const std::vector<TrianglePair>& without,
-                          bool missed) {
-      std::vector<TrianglePair> difference;
-      std::set_difference(from.begin(), from.end(), without.begin(), without.end(),
-                          std::back_inserter(difference));
-      for (const TrianglePair& p : difference)
-        report.differences.push_back({pair.a, pair.b, p.a, p.b, missed});
-    };
-    note(truth, reported, true);
-    note(reported, truth, false);
-  }
-  return report;
 }
 
 }  // namespace supple

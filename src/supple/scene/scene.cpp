@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "contact/first_impact.hpp"
 #include "core/error.hpp"
 #include "scene/scene_implementation.hpp"
 
@@ -30,6 +31,7 @@ void check_finite(const Vec3d& v, const char* call, const char* what) {
 
 const SceneOptions& checked(const SceneOptions& options) {
   check_range("SceneOptions::threads", options.threads, 0, 1024);
+  check_impact_options(options.impact, "SceneOptions::impact");
   return options;
 }
 
@@ -48,12 +50,19 @@ void check_triangles(const std::string& name, std::size_t vertex_count, std::spa
 
 /// Positions from packed coordinates.
 template <class Scalar>
-PositionsView<Scalar> packed(std::span<const Scalar> xyz) {
+PositionsView<Scalar> packed(std::span<const Scalar> xyz, const char* call) {
   if (xyz.size() % 3 != 0) {
-    fail("set_positions: " + std::to_string(xyz.size()) +
+    fail(std::string(call) + ": " + std::to_string(xyz.size()) +
          " coordinates are no whole number of points; give x y z of each");
   }
   return {xyz.data(), xyz.size() / 3};
+}
+
+void check_count(const SceneObject& object, std::size_t count, const char* call) {
+  const std::size_t vertices = object.octree().vertex_ids().size();
+  if (count == vertices) return;
+  fail(std::string(call) + ": " + std::to_string(count) + " positions for " + object.options.name +
+       ", which has " + std::to_string(vertices) + " vertices; give one for each vertex");
 }
 
 }  // namespace
@@ -122,12 +131,18 @@ SceneObject& Scene::Implementation::movable_object(ObjectId id, const char* call
 template <class Scalar>
 void Scene::Implementation::set_positions(ObjectId id, const PositionsView<Scalar>& positions) {
   SceneObject& found = movable_object(id, "set_positions");
-  const std::size_t vertices = found.octree().vertex_ids().size();
-  if (positions.count != vertices) {
-    fail("set_positions: " + std::to_string(positions.count) + " positions for " + found.options.name +
-         ", which has " + std::to_string(vertices) + " vertices; give one for each vertex");
-  }
+  check_count(found, positions.count, "set_positions");
   found.set_positions(positions, parallel);
+  mark_changed();
+}
+
+template <class Scalar>
+void Scene::Implementation::set_motion(ObjectId id, const PositionsView<Scalar>& from,
+                                       const PositionsView<Scalar>& to) {
+  SceneObject& found = movable_object(id, "set_motion");
+  check_count(found, from.count, "set_motion");
+  check_count(found, to.count, "set_motion");
+  found.set_motion(from, to, parallel);
   mark_changed();
 }
 
@@ -185,10 +200,23 @@ void Scene::set_positions(ObjectId object, PositionsView<float> positions) {
   implementation_->set_positions(object, positions);
 }
 void Scene::set_positions(ObjectId object, std::span<const double> xyz) {
-  implementation_->set_positions(object, packed(xyz));
+  implementation_->set_positions(object, packed(xyz, "set_positions"));
 }
 void Scene::set_positions(ObjectId object, std::span<const float> xyz) {
-  implementation_->set_positions(object, packed(xyz));
+  implementation_->set_positions(object, packed(xyz, "set_positions"));
+}
+
+void Scene::set_motion(ObjectId object, PositionsView<double> from, PositionsView<double> to) {
+  implementation_->set_motion(object, from, to);
+}
+void Scene::set_motion(ObjectId object, PositionsView<float> from, PositionsView<float> to) {
+  implementation_->set_motion(object, from, to);
+}
+void Scene::set_motion(ObjectId object, std::span<const double> from, std::span<const double> to) {
+  implementation_->set_motion(object, packed(from, "set_motion"), packed(to, "set_motion"));
+}
+void Scene::set_motion(ObjectId object, std::span<const float> from, std::span<const float> to) {
+  implementation_->set_motion(object, packed(from, "set_motion"), packed(to, "set_motion"));
 }
 
 void Scene::translate(ObjectId object, Vec3d offset) {
@@ -232,6 +260,13 @@ void Scene::set_pair_filter(PairFilter filter) {
 
 const DetectResult& Scene::detect() {
   return implementation_->detect();
+}
+std::optional<ContinuousContact> Scene::earliest_impact() {
+  return implementation_->earliest_impact("earliest_impact");
+}
+double Scene::max_step() {
+  const auto earliest = implementation_->earliest_impact("max_step");
+  return earliest ? earliest->time : 1;
 }
 const DetectResult& Scene::result() const {
   return implementation_->result;
@@ -277,7 +312,7 @@ Aabb Scene::bounds(ObjectId object) const {
 }
 
 OctreeStatistics Scene::octree_statistics(ObjectId object) const {
-  return implementation_->object(object, "octree_statistics").octree().statistics();
+  return implementation_->object(object, "octree_statistics").octree_statistics();
 }
 
 std::vector<SceneRegion> Scene::scene_regions() const {

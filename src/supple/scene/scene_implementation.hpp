@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "broad_phase/pair_finder.hpp"
 #include "core/parallel.hpp"
 #include "scene/contact_pass.hpp"
+#include "scene/impact_pass.hpp"
 #include "scene/scene_object.hpp"
 #include "supple/scene.hpp"
 
@@ -31,7 +33,11 @@ class Scene::Implementation {
   template <class Scalar>
   void set_positions(ObjectId id, const PositionsView<Scalar>& positions);
 
+  template <class Scalar>
+  void set_motion(ObjectId id, const PositionsView<Scalar>& from, const PositionsView<Scalar>& to);
+
   const DetectResult& detect();
+  std::optional<ContinuousContact> earliest_impact(const char* call);
   VerifyReport verify() const;
   std::string validate() const;
 
@@ -55,7 +61,14 @@ class Scene::Implementation {
 
   void refit_objects();
   void find_object_pairs();
+  void plan_jobs();
   void find_contacts();
+  void list_moving_objects();
+  void find_impacts();
+  /// `group` is what was reported of the pair, or null.
+  void verify_contacts(const ObjectPair& pair, const ContactGroup* group, VerifyReport& report) const;
+  void verify_impacts(const ObjectPair& pair, const ContactGroup* group, VerifyReport& report) const;
+  bool is_continuous() const { return options.contacts == ContactMode::continuous; }
   void report_non_finite();
   void publish();
   bool may_pair(const IndexPair& pair) const;
@@ -76,9 +89,11 @@ class Scene::Implementation {
   std::vector<ObjectPair> object_pairs_, touching_pairs_;
   std::vector<ContactJob> jobs_;
   std::vector<ContactObject> contact_objects_;
+  std::vector<MovingObject> moving_objects_;
   std::vector<NonFiniteVertex> non_finite_;
   PairCache volume_pairs_, contact_pairs_;
   ContactPass contact_pass_;
+  ImpactPass impact_pass_;
 };
 
 }  // namespace supple

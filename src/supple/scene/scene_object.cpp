@@ -32,6 +32,21 @@ Aabb moved(const Aabb& box, const Vec3d& offset) {
   return result;
 }
 
+/// The ball around a box.
+BoundingSphere sphere_around(const Aabb& box) {
+  if (box.empty()) return {};
+  BoundingSphere sphere;
+  double squared_radius = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double low = box.min[axis], high = box.max[axis];
+    sphere.center[axis] = static_cast<float>((low + high) / 2);
+    const double reach = std::max(high - sphere.center[axis], sphere.center[axis] - low);
+    squared_radius += reach * reach;
+  }
+  sphere.radius = round_up(std::sqrt(squared_radius) * (1 + 0x1p-50));
+  return sphere;
+}
+
 /// Encloses fl(p + offset) of every p in the ball.
 BoundingSphere moved(const BoundingSphere& sphere, const Vec3d& offset) {
   if (offset == Vec3d{} || sphere.empty()) return sphere;
@@ -56,11 +71,14 @@ SceneObject::SceneObject(const PositionsView<double>& positions, std::span<const
                          const ObjectOptions& object_options, const SceneOptions& scene_options)
     : options(object_options),
       octree_(positions, triangles, object_options.octree, scene_options.bounding_volume,
-              scene_options.sphere_fit) {}
+              scene_options.sphere_fit),
+      is_continuous_(scene_options.contacts == ContactMode::continuous) {
+  if (is_continuous_) elements_ = SurfaceElements(octree_);
+}
 
 template <class Scalar>
 void SceneObject::set_positions(const PositionsView<Scalar>& positions, const Parallel& parallel) {
-  has_shape_ = is_settled_ = false;
+  has_shape_ = is_settled_ = has_motion_ = false;
   rotation_ = RigidTransform{}.rotation;
   translation_ = {};
   note_non_finite(vertices_.assign(positions, octree_.vertex_order(), parallel));
@@ -68,14 +86,30 @@ void SceneObject::set_positions(const PositionsView<Scalar>& positions, const Pa
 template void SceneObject::set_positions(const PositionsView<float>&, const Parallel&);
 template void SceneObject::set_positions(const PositionsView<double>&, const Parallel&);
 
+template <class Scalar>
+void SceneObject::set_motion(const PositionsView<Scalar>& from, const PositionsView<Scalar>& to,
+                             const Parallel& parallel) {
+  set_positions(to, parallel);
+  if (!is_continuous_) return;
+  has_motion_ = true;
+  const bool start_finite = start_.assign(from, octree_.vertex_order(), parallel);
+  if (!start_finite) note_non_finite(false);
+}
+template void SceneObject::set_motion(const PositionsView<float>&, const PositionsView<float>&,
+                                      const Parallel&);
+template void SceneObject::set_motion(const PositionsView<double>&, const PositionsView<double>&,
+                                      const Parallel&);
+
 void SceneObject::translate(Vec3d offset, const Parallel& parallel) {
   unsettle(parallel);
+  has_motion_ = false;
   translation_ = translation_ + offset;
   needs_bounds_ = true;
 }
 
 void SceneObject::set_transform(const RigidTransform& transform, const Parallel& parallel) {
   unsettle(parallel);
+  has_motion_ = false;
   translation_ = transform.translation;
   needs_bounds_ = true;
   if (transform.rotation == rotation_) return;
@@ -102,19 +136,20 @@ void SceneObject::unsettle(const Parallel& parallel) {
   apply_rotation(parallel);
 }
 
-void SceneObject::settle_if_extreme(const Parallel& parallel) {
-  if (is_settled_ || translation_ == Vec3d{}) return;
+bool SceneObject::is_extreme() const {
   const Aabb& box = octree_.box();
   const double size = box.empty() ? 0
                                   : std::max(largest({box.min.x, box.min.y, box.min.z}),
                                              largest({box.max.x, box.max.y, box.max.z}));
-  if (size <= largest_lazy_size && largest(translation_) <= largest_lazy_size) return;
+  return size > largest_lazy_size || largest(translation_) > largest_lazy_size;
+}
+
+void SceneObject::settle(const Parallel& parallel) {
   keep_shape();
   apply_rotation(parallel);
   const VertexBuffer rotated = vertices_;
   note_non_finite(vertices_.transform(rotated, parallel, [&](const Vec3d& p) { return p + translation_; }));
   is_settled_ = true;
-  octree_.refit(vertices_, inert_, parallel);
 }
 
 void SceneObject::note_non_finite(bool all_finite) {
@@ -127,16 +162,51 @@ void SceneObject::note_non_finite(bool all_finite) {
     for (const std::uint32_t vertex : octree_.triangles()[t]) inert_[t] |= !is_finite(vertices_[vertex]);
   }
   for (std::uint32_t user = 0; user < vertices_.size(); ++user) {
-    if (!is_finite(vertices_[octree_.vertex_order()[user]])) non_finite_.push_back(user);
+    if (!is_finite(non_finite_position(octree_.vertex_order()[user]))) non_finite_.push_back(user);
   }
 }
 
 void SceneObject::update(const Parallel& parallel) {
-  if (needs_refit_) octree_.refit(vertices_, inert_, parallel);
-  settle_if_extreme(parallel);
-  box_ = moved(octree_.box(), lazy_translation());
-  sphere_ = moved(octree_.sphere(), lazy_translation());
+  if (is_continuous_) {
+    update_moving(parallel);
+  } else {
+    if (needs_refit_) octree_.refit(vertices_, inert_, parallel);
+    if (!is_settled_ && translation_ != Vec3d{} && is_extreme()) {
+      settle(parallel);
+      octree_.refit(vertices_, inert_, parallel);
+    }
+    box_ = moved(octree_.box(), lazy_translation());
+    sphere_ = moved(octree_.sphere(), lazy_translation());
+  }
   needs_refit_ = needs_bounds_ = false;
+}
+
+void SceneObject::update_moving(const Parallel& parallel) {
+  if (!is_settled_ && translation_ != Vec3d{}) settle(parallel);
+  moving_boxes_.refit(octree_, elements_, start(), end(), parallel);
+  box_ = moving_boxes_.swept_box();
+  sphere_ = sphere_around(box_);
+}
+
+std::string SceneObject::validate() const {
+  if (!is_continuous_) return octree_.validate(vertices_, inert_);
+  const std::string wrong = elements_.validate(octree_);
+  return wrong.empty() ? moving_boxes_.validate(octree_, elements_, start(), end()) : wrong;
+}
+
+OctreeStatistics SceneObject::octree_statistics() const {
+  OctreeStatistics statistics = octree_.statistics();
+  statistics.bytes += moving_boxes_.bytes() + elements_.bytes();
+  if (statistics.triangles != 0) {
+    statistics.bytes_per_triangle =
+        static_cast<double>(statistics.bytes) / static_cast<double>(statistics.triangles);
+  }
+  return statistics;
+}
+
+Vec3d SceneObject::non_finite_position(std::uint32_t octree_vertex) const {
+  const Vec3d end = position(octree_vertex);
+  return is_finite(end) ? start()[octree_vertex] : end;
 }
 
 Vec3d SceneObject::position(std::uint32_t octree_vertex) const {

@@ -6,7 +6,9 @@
 
 #include "core/parallel.hpp"
 #include "narrow_phase/traversal.hpp"
+#include "octree/moving_boxes.hpp"
 #include "octree/object_octree.hpp"
+#include "octree/surface_elements.hpp"
 #include "supple/options.hpp"
 #include "supple/result.hpp"
 #include "supple/scene.hpp"
@@ -25,6 +27,9 @@ class SceneObject {
 
   template <class Scalar>
   void set_positions(const PositionsView<Scalar>& positions, const Parallel& parallel);
+  template <class Scalar>
+  void set_motion(const PositionsView<Scalar>& from, const PositionsView<Scalar>& to,
+                  const Parallel& parallel);
   void translate(Vec3d offset, const Parallel& parallel);
   void set_transform(const RigidTransform& transform, const Parallel& parallel);
 
@@ -34,19 +39,26 @@ class SceneObject {
   /// Brings octree and bounds up to date.
   void update(const Parallel& parallel);
 
-  /// Of the placed object, as of the last update.
+  /// Of the placed object, as of the last update; with continuous contacts, around its whole motion.
   const Aabb& box() const { return box_; }
   const BoundingSphere& sphere() const { return sphere_; }
   OctreeView view() const { return view_of(octree_, vertices_, inert_, lazy_translation()); }
+  /// With continuous contacts: the path's ends, the same buffer at rest, and the boxes around them.
+  const VertexBuffer& start() const { return has_motion_ ? start_ : vertices_; }
+  const VertexBuffer& end() const { return vertices_; }
+  OctreeView moving_view() const { return moving_view_of(octree_, elements_, moving_boxes_); }
   const ObjectOctree& octree() const { return octree_; }
   /// Placed position of a vertex in octree order.
   Vec3d position(std::uint32_t octree_vertex) const;
+  /// The same, or where the path starts when the coordinates that are not finite are there.
+  Vec3d non_finite_position(std::uint32_t octree_vertex) const;
   bool is_inert(std::uint32_t octree_triangle) const {
     return !inert_.empty() && inert_[octree_triangle] != 0;
   }
   /// User's numbers, ascending.
   std::span<const std::uint32_t> non_finite_vertices() const { return non_finite_; }
-  std::string validate() const { return octree_.validate(vertices_, inert_); }
+  std::string validate() const;
+  OctreeStatistics octree_statistics() const;
 
   ObjectOptions options;
 
@@ -55,7 +67,9 @@ class SceneObject {
   void keep_shape();
   void apply_rotation(const Parallel& parallel);
   void unsettle(const Parallel& parallel);
-  void settle_if_extreme(const Parallel& parallel);
+  bool is_extreme() const;
+  void settle(const Parallel& parallel);
+  void update_moving(const Parallel& parallel);
   void note_non_finite(bool all_finite);
 
   ObjectOctree octree_;
@@ -67,6 +81,12 @@ class SceneObject {
   Vec3d translation_;
   std::vector<std::uint8_t> inert_;  // a byte a triangle in octree order, empty when all are finite
   std::vector<std::uint32_t> non_finite_;
+  // Of continuous contacts, for which the octree's own volumes are not kept up to date.
+  bool is_continuous_;
+  bool has_motion_ = false;
+  VertexBuffer start_;
+  SurfaceElements elements_;
+  MovingBoxes moving_boxes_;
   bool needs_refit_ = true;
   bool needs_bounds_ = true;
   Aabb box_;

@@ -1,90 +1,146 @@
-#include "scene/verify.hpp"
-
 #include <algorithm>
-#include <cmath>
+#include <iterator>
+#include <tuple>
 
-#include "supple/triangle_intersection.hpp"
+#include "core/error.hpp"
+#include "scene/brute_force_contacts.hpp"
+#include "scene/brute_force_impacts.hpp"
+#include "scene/scene_implementation.hpp"
 
 namespace supple {
 namespace {
 
-struct BoxedTriangle {
-  double min[3], max[3];
-  std::uint32_t triangle;
-};
-
-TrianglePoints points_of(const PlainObject& object, std::uint32_t triangle) {
-  const Triangle& ids = object.triangles[triangle];
-  return {object.positions[ids[0]], object.positions[ids[1]], object.positions[ids[2]]};
-}
-
-/// The exact boxes of all finite triangles.
-std::vector<BoxedTriangle> boxed_triangles(const PlainObject& object) {
-  std::vector<BoxedTriangle> result;
-  result.reserve(object.triangles.size());
-  for (std::uint32_t t = 0; t < object.triangles.size(); ++t) {
-    const TrianglePoints p = points_of(object, t);
-    BoxedTriangle boxed{{}, {}, t};
-    bool finite = true;
-    for (int axis = 0; axis < 3; ++axis) {
-      for (const Vec3d& corner : p) finite = finite && std::isfinite(corner[axis]);
-      boxed.min[axis] = std::min({p[0][axis], p[1][axis], p[2][axis]});
-      boxed.max[axis] = std::max({p[0][axis], p[1][axis], p[2][axis]});
+std::vector<Triangle> user_triangles(const SceneObject& object) {
+  const ObjectOctree& octree = object.octree();
+  std::vector<Triangle> triangles(octree.triangles().size());
+  for (std::uint32_t t = 0; t < triangles.size(); ++t) {
+    const Triangle& corners = octree.triangles()[t];
+    for (int corner = 0; corner < 3; ++corner) {
+      triangles[octree.triangle_ids()[t]][corner] = octree.vertex_ids()[corners[corner]];
     }
-    if (finite) result.push_back(boxed);
   }
-  return result;
+  return triangles;
 }
 
-bool boxes_overlap(const BoxedTriangle& p, const BoxedTriangle& q) {
-  for (int axis = 0; axis < 3; ++axis) {
-    if (p.min[axis] > q.max[axis] || q.min[axis] > p.max[axis]) return false;
-  }
-  return true;
+PlainObject plain_object(const SceneObject& object) {
+  PlainObject plain{{}, user_triangles(object)};
+  for (const std::uint32_t vertex : object.octree().vertex_order())
+    plain.positions.push_back(object.position(vertex));
+  return plain;
 }
 
-bool share_vertex(const Triangle& p, const Triangle& q) {
-  return std::any_of(p.begin(), p.end(),
-                     [&](std::uint32_t vertex) { return std::find(q.begin(), q.end(), vertex) != q.end(); });
+PlainMovingObject plain_moving_object(const SceneObject& object) {
+  PlainMovingObject plain{{}, {}, user_triangles(object)};
+  for (const std::uint32_t vertex : object.octree().vertex_order()) {
+    plain.start.push_back(object.start()[vertex]);
+    plain.end.push_back(object.end()[vertex]);
+  }
+  return plain;
+}
+
+auto place_of(const ContinuousContact& contact) {
+  return std::tie(contact.kind, contact.element_a, contact.element_b);
+}
+auto place_of(const TouchingElements& touching) {
+  return std::tie(touching.kind, touching.element_a, touching.element_b);
+}
+
+/// Both lists in canonical order.
+void compare(const ObjectPair& pair, std::span<const ContinuousContact> reported,
+             std::span<const TouchingElements> truth, std::vector<ContinuousDifference>& differences) {
+  using Fault = ContinuousDifference::Fault;
+  const auto note = [&](const auto& elements, Fault fault) {
+    differences.push_back({pair.a, pair.b, elements.kind, elements.element_a, elements.element_b, fault});
+  };
+  auto found = reported.begin();
+  for (const TouchingElements& expected : truth) {
+    for (; found != reported.end() && place_of(*found) < place_of(expected); ++found) {
+      if (found->certainty == ImpactCertainty::certain) note(*found, Fault::added);
+    }
+    if (found == reported.end() || place_of(*found) != place_of(expected)) {
+      note(expected, Fault::missed);
+      continue;
+    }
+    if (found->time > expected.time.low) note(expected, Fault::late);
+    const bool is_certain = found->certainty == ImpactCertainty::certain;
+    if (is_certain && found->time < expected.time.high - impact_time_tolerance) note(expected, Fault::early);
+    ++found;
+  }
+  for (; found != reported.end(); ++found) {
+    if (found->certainty == ImpactCertainty::certain) note(*found, Fault::added);
+  }
 }
 
 }  // namespace
 
-std::vector<TrianglePair> intersecting_pairs_by_brute_force(const PlainObject& a, const PlainObject& b,
-                                                            bool same_object, const Parallel& parallel) {
-  const std::vector<BoxedTriangle> boxes_a = boxed_triangles(a);
-  std::vector<BoxedTriangle> boxes_b = boxed_triangles(b);
-  std::sort(boxes_b.begin(), boxes_b.end(), [](const BoxedTriangle& p, const BoxedTriangle& q) {
-    return p.min[0] != q.min[0] ? p.min[0] < q.min[0] : p.triangle < q.triangle;
-  });
-  // Greatest max x of the boxes up to each: where it is less than a box's min x, none so far reaches that
-  // box.
-  std::vector<double> reach;
-  reach.reserve(boxes_b.size());
-  for (const BoxedTriangle& q : boxes_b)
-    reach.push_back(reach.empty() ? q.max[0] : std::max(reach.back(), q.max[0]));
-
-  std::vector<std::vector<TrianglePair>> found(parallel.worker_count());
-  parallel.for_ranges(boxes_a.size(), 64, [&](std::size_t begin, std::size_t end, std::uint32_t worker) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const BoxedTriangle& p = boxes_a[i];
-      const auto first = std::lower_bound(reach.begin(), reach.end(), p.min[0]) - reach.begin();
-      for (auto q = boxes_b.begin() + first; q != boxes_b.end() && q->min[0] <= p.max[0]; ++q) {
-        if (same_object &&
-            (q->triangle <= p.triangle || share_vertex(a.triangles[p.triangle], a.triangles[q->triangle]))) {
-          continue;
-        }
-        if (boxes_overlap(p, *q) &&
-            triangles_intersect_by_axes(points_of(a, p.triangle), points_of(b, q->triangle))) {
-          found[worker].push_back({p.triangle, q->triangle});
-        }
-      }
+/// All pairs that `detect` must look at, found without volumes: those whose filters agree.
+std::vector<ObjectPair> Scene::Implementation::pairs_to_verify() const {
+  std::vector<ObjectPair> pairs;
+  for (const ObjectId a : objects()) {
+    if (slots_[a.index].object->options.self_collision) pairs.push_back({a, a});
+    for (const ObjectId b : objects()) {
+      if (a < b && may_pair({a.index, b.index})) pairs.push_back({a, b});
     }
-  });
-  std::vector<TrianglePair> pairs;
-  for (const auto& part : found) pairs.insert(pairs.end(), part.begin(), part.end());
-  std::sort(pairs.begin(), pairs.end());
+  }
   return pairs;
+}
+
+void Scene::Implementation::verify_contacts(const ObjectPair& pair, const ContactGroup* group,
+                                            VerifyReport& report) const {
+  const bool same_object = pair.a == pair.b;
+  const PlainObject a = plain_object(*slots_[pair.a.index].object);
+  const PlainObject b = same_object ? a : plain_object(*slots_[pair.b.index].object);
+  const std::vector<TrianglePair> truth = intersecting_pairs_by_brute_force(a, b, same_object, parallel);
+  std::vector<TrianglePair> reported;
+  if (group != nullptr) {
+    for (const Contact& contact : result.contacts_of(*group))
+      reported.push_back({contact.triangle_a, contact.triangle_b});
+  }
+  const std::uint64_t count_a = a.triangles.size();
+  report.triangle_pairs_checked += same_object ? count_a * (count_a - std::min<std::uint64_t>(count_a, 1)) / 2
+                                               : count_a * b.triangles.size();
+  report.intersecting_pairs += truth.size();
+  const auto note = [&](const std::vector<TrianglePair>& from, const std::vector<TrianglePair>& without,
+                        bool missed) {
+    std::vector<TrianglePair> difference;
+    std::set_difference(from.begin(), from.end(), without.begin(), without.end(),
+                        std::back_inserter(difference));
+    for (const TrianglePair& p : difference) report.differences.push_back({pair.a, pair.b, p.a, p.b, missed});
+  };
+  note(truth, reported, true);
+  note(reported, truth, false);
+}
+
+void Scene::Implementation::verify_impacts(const ObjectPair& pair, const ContactGroup* group,
+                                           VerifyReport& report) const {
+  const bool same_object = pair.a == pair.b;
+  const PlainMovingObject a = plain_moving_object(*slots_[pair.a.index].object);
+  const PlainMovingObject b = same_object ? a : plain_moving_object(*slots_[pair.b.index].object);
+  const BruteForceImpacts truth =
+      find_impacts_by_brute_force(a, b, same_object, options.impact.min_separation, parallel);
+  report.element_pairs_checked += truth.pairs_checked;
+  report.touching_element_pairs += truth.touching.size();
+  compare(pair,
+          group != nullptr ? result.continuous_contacts_of(*group) : std::span<const ContinuousContact>{},
+          truth.touching, report.continuous_differences);
+}
+
+VerifyReport Scene::Implementation::verify() const {
+  if (!detected_) fail("verify: nothing was detected at the present positions; call detect first");
+  if (options.contacts == ContactMode::none)
+    fail("verify: the scene has contacts switched off; there is nothing to compare");
+  VerifyReport report;
+  auto next = result.groups.begin();
+  for (const ObjectPair& pair : pairs_to_verify()) {
+    const bool reported = next != result.groups.end() && next->a == pair.a && next->b == pair.b;
+    const ContactGroup* const group = reported ? &*next++ : nullptr;
+    if (is_continuous()) {
+      verify_impacts(pair, group, report);
+    } else {
+      verify_contacts(pair, group, report);
+    }
+  }
+  return report;
 }
 
 }  // namespace supple

@@ -1,8 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
-#include <span>
 #include <vector>
 
 #include "core/parallel.hpp"
@@ -14,7 +12,7 @@ namespace supple {
 /// An object as the brute force sees it: placed positions and triangles in the user's numbers.
 struct PlainObject {
   std::vector<Vec3d> positions;
-  std::span<const Triangle> triangles;
+  std::vector<Triangle> triangles;
 };
 
 /// All intersecting pairs of triangles of two objects, sorted; of an object with itself (`same_object`) those

@@ -1,0 +1,329 @@
+#include "contact/exact_impact.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <span>
+
+#include "contact/root_search.hpp"
+#include "geometry/integer_points.hpp"
+
+namespace supple {
+namespace {
+
+enum class Elements { vertex_and_face, two_edges };
+
+/// Numbers of the four vertices.
+struct PointAndSegment {
+  std::size_t point, first, second;
+};
+constexpr std::array<PointAndSegment, 3> face_segments{{{0, 1, 2}, {0, 2, 3}, {0, 3, 1}}};
+constexpr std::array<PointAndSegment, 4> edge_segments{{{0, 2, 3}, {1, 2, 3}, {2, 0, 1}, {3, 0, 1}}};
+
+/// Elements touch when the vector m between two of their vertices is a sum α u + β w of their sides, with
+/// α ≥ 0, β ≥ 0 and α + β ≤ 1 for a vertex and a face, with 0 ≤ α ≤ 1 and 0 ≤ β ≤ 1 for two edges. With the
+/// normal n = u × w: m · n = 0, α n = m × w, β n = u × m, of which one component decides that is not zero
+/// in n. Where n = 0 everything is in one plane and the face or both edges on a line.
+template <class Numbers>
+class FirstContact {
+ public:
+  using Length = typename Numbers::Length;
+  using Area = typename Numbers::Area;
+  using Volume = typename Numbers::Volume;
+  using Vertices = std::array<std::array<Length, 3>, 8>;  ///< at the start, and then at the end
+
+  FirstContact(Elements elements, const Vertices& vertices) : elements_(elements), vertices_(vertices) {}
+
+  /// False if the numbers do not suffice.
+  bool search();
+  const std::optional<TimeBracket>& first() const { return first_; }
+
+ private:
+  struct MovingVector {
+    Vector3<Length> start, end;
+  };
+  using AreaVector = std::array<Quadratic<Area>, 3>;
+  using Root = StepRoot<Numbers>;
+  using Definition = CommonRoots<Numbers>;  ///< quadratic polynomials whose root a root also is
+
+  void set_conditions(const AreaVector& alpha, const AreaVector& beta);
+  bool apart_throughout() const;
+  void search_in_one_plane();
+  void search_along_lines();
+  void consider_roots(const Cubic<Volume>& polynomial, const Definition& definition);
+  void consider_roots(const Quadratic<Area>& polynomial);
+  void consider(Root root, const Definition& definition);
+
+  bool touch(Root& root, const Definition& definition) const;
+  bool inside(Root& root, const Definition& definition, std::size_t axis, int normal_sign) const;
+  bool on_one_segment(Root& root, Definition definition) const;
+  bool between_ends(Root& root, const Definition& definition, const PointAndSegment& vertices) const;
+  bool vanish(const Root& root, Definition definition, std::span<const Quadratic<Area>> polynomials) const;
+  int sign_at(Root& root, const Definition& definition, const Quadratic<Area>& polynomial,
+              std::span<const Quadratic<Area>> zero_together) const;
+
+  MovingVector vector(std::size_t from, std::size_t to) const {
+    return {difference(vertices_[to], vertices_[from]), difference(vertices_[to + 4], vertices_[from + 4])};
+  }
+  Quadratic<Area> offset(std::size_t from, std::size_t to, std::size_t axis) const {
+    const auto [start, end] = vector(from, to);
+    return raised(std::array<Area, 2>{Area(start[axis]), Area(end[axis])});
+  }
+  std::span<const PointAndSegment> segments() const {
+    if (elements_ == Elements::two_edges) return edge_segments;
+    return face_segments;
+  }
+  std::span<const AreaVector> conditions() const { return std::span(conditions_).first(condition_count_); }
+  static AreaVector cross(const MovingVector& a, const MovingVector& b);
+  static Cubic<Volume> dot(const MovingVector& a, const AreaVector& b);
+
+  Elements elements_;
+  Vertices vertices_;
+  AreaVector normal_;
+  std::array<AreaVector, 4> conditions_;  ///< not opposite to the normal where the elements touch
+  std::size_t condition_count_ = 0;
+  std::optional<TimeBracket> first_;
+  bool exhausted_ = false;
+};
+
+template <class Numbers>
+auto FirstContact<Numbers>::cross(const MovingVector& a, const MovingVector& b) -> AreaVector {
+  AreaVector result;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const std::size_t x = (axis + 1) % 3, y = (axis + 2) % 3;
+    result[axis] = {product(a.start[x], b.start[y]) - product(a.start[y], b.start[x]),
+                    product(a.start[x], b.end[y]) - product(a.start[y], b.end[x]) +
+                        product(a.end[x], b.start[y]) - product(a.end[y], b.start[x]),
+                    product(a.end[x], b.end[y]) - product(a.end[y], b.end[x])};
+  }
+  return result;
+}
+
+template <class Numbers>
+auto FirstContact<Numbers>::dot(const MovingVector& a, const AreaVector& b) -> Cubic<Volume> {
+  Cubic<Volume> result{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      result[i] += product(a.start[axis], b[axis][i]);
+      result[i + 1] += product(a.end[axis], b[axis][i]);
+    }
+  }
+  return result;
+}
+
+template <class Numbers>
+bool FirstContact<Numbers>::search() {
+  const bool edges = elements_ == Elements::two_edges;
+  const MovingVector m = edges ? vector(2, 0) : vector(1, 0);
+  const MovingVector u = edges ? vector(1, 0) : vector(1, 2);
+  const MovingVector w = edges ? vector(2, 3) : vector(1, 3);
+  normal_ = cross(u, w);
+  const Cubic<Volume> volume = dot(m, normal_);
+  if (strict_sign(volume) != 0) return true;
+  set_conditions(cross(m, w), cross(u, m));
+  if (apart_throughout()) return true;
+  if (!all_zero(volume)) {
+    consider_roots(volume, {});
+  } else {
+    search_in_one_plane();
+  }
+  return !exhausted_;
+}
+
+template <class Numbers>
+void FirstContact<Numbers>::set_conditions(const AreaVector& alpha, const AreaVector& beta) {
+  conditions_[0] = alpha;
+  conditions_[1] = beta;
+  condition_count_ = elements_ == Elements::two_edges ? 4 : 3;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const Quadratic<Area> rest = difference(normal_[axis], alpha[axis]);
+    if (elements_ == Elements::two_edges) {
+      conditions_[2][axis] = rest;
+      conditions_[3][axis] = difference(normal_[axis], beta[axis]);
+    } else {
+      conditions_[2][axis] = difference(rest, beta[axis]);
+    }
+  }
+}
+
+template <class Numbers>
+bool FirstContact<Numbers>::apart_throughout() const {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const int normal_sign = strict_sign(normal_[axis]);
+    if (normal_sign == 0) continue;
+    for (const AreaVector& condition : conditions()) {
+      if (strict_sign(condition[axis]) == -normal_sign) return true;
+    }
+  }
+  return false;
+}
+
+/// The first contact is at the start or where one of the signs changes that decide.
+template <class Numbers>
+void FirstContact<Numbers>::search_in_one_plane() {
+  consider(Root{}, {});
+  if (first_) return;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (all_zero(normal_[axis])) continue;
+    consider_roots(normal_[axis]);
+    for (const AreaVector& condition : conditions()) consider_roots(condition[axis]);
+    return;
+  }
+  search_along_lines();
+}
+
+/// The face or both edges are on one line at all times, the others in it or not.
+template <class Numbers>
+void FirstContact<Numbers>::search_along_lines() {
+  for (const auto [point, a, b] : segments()) {
+    const AreaVector off_line = cross(vector(a, point), vector(a, b));
+    const auto off = std::find_if_not(off_line.begin(), off_line.end(), all_zero<Area, 3>);
+    if (off != off_line.end()) {
+      consider_roots(*off);
+      continue;
+    }
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      consider_roots(offset(point, a, axis));
+      consider_roots(offset(point, b, axis));
+    }
+  }
+}
+
+template <class Numbers>
+void FirstContact<Numbers>::consider_roots(const Quadratic<Area>& polynomial) {
+  if (all_zero(polynomial)) return;
+  Definition definition;
+  definition.add(polynomial);
+  consider_roots(widened<Volume>(raised(polynomial)), definition);
+}
+
+template <class Numbers>
+void FirstContact<Numbers>::consider_roots(const Cubic<Volume>& polynomial, const Definition& definition) {
+  const StepRoots<Numbers> found = find_roots<Numbers>(polynomial);
+  exhausted_ = exhausted_ || found.incomplete;
+  for (std::size_t i = 0; i < found.count; ++i) consider(found.roots[i], definition);
+}
+
+template <class Numbers>
+void FirstContact<Numbers>::consider(Root root, const Definition& definition) {
+  const TimeBracket bracket = neighbouring_doubles(root);
+  const bool earlier = !first_ || bracket.low < first_->low || bracket.high < first_->high;
+  if (earlier && touch(root, definition)) first_ = bracket;
+  exhausted_ = exhausted_ || root.too_fine;
+}
+
+template <class Numbers>
+bool FirstContact<Numbers>::touch(Root& root, const Definition& definition) const {
+  for (bool looked_closer = false;; looked_closer = true) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const int normal_sign = sign_over(root.interval, normal_[axis]);
+      if (normal_sign != 0) return inside(root, definition, axis, normal_sign);
+    }
+    if (!looked_closer && vanish(root, definition, normal_)) return on_one_segment(root, definition);
+    if (!narrow(root)) return false;
+  }
+}
+
+template <class Numbers>
+bool FirstContact<Numbers>::inside(Root& root, const Definition& definition, std::size_t axis,
+                                   int normal_sign) const {
+  for (const AreaVector& condition : conditions()) {
+    // α = 0 and the like make all components zero.
+    if (sign_at(root, definition, condition[axis], condition) == -normal_sign) return false;
+  }
+  return true;
+}
+
+template <class Numbers>
+bool FirstContact<Numbers>::on_one_segment(Root& root, Definition definition) const {
+  for (const Quadratic<Area>& component : normal_) definition.add(component);
+  for (const PointAndSegment& vertices : segments()) {
+    const AreaVector off_line =
+        cross(vector(vertices.first, vertices.point), vector(vertices.first, vertices.second));
+    if (vanish(root, definition, off_line) && between_ends(root, definition, vertices)) return true;
+  }
+  return false;
+}
+
+/// Of three vertices on one line: the first is in the box of the others.
+template <class Numbers>
+bool FirstContact<Numbers>::between_ends(Root& root, const Definition& definition,
+                                         const PointAndSegment& vertices) const {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const std::array<Quadratic<Area>, 2> offsets{offset(vertices.point, vertices.first, axis),
+                                                 offset(vertices.point, vertices.second, axis)};
+    const int side = sign_at(root, definition, offsets[0], std::span(offsets).first(1));
+    if (side != 0 && sign_at(root, definition, offsets[1], std::span(offsets).last(1)) == side) return false;
+  }
+  return true;
+}
+
+/// Of a polynomial that is zero at the root just when the others named are.
+template <class Numbers>
+int FirstContact<Numbers>::sign_at(Root& root, const Definition& definition,
+                                   const Quadratic<Area>& polynomial,
+                                   std::span<const Quadratic<Area>> zero_together) const {
+  int result = sign_over(root.interval, polynomial);
+  if (result != 0 || vanish(root, definition, zero_together)) return result;
+  while (result == 0 && narrow(root)) result = sign_over(root.interval, polynomial);
+  return result;
+}
+
+/// All of the polynomials, at the root.
+template <class Numbers>
+bool FirstContact<Numbers>::vanish(const Root& root, Definition definition,
+                                   std::span<const Quadratic<Area>> polynomials) const {
+  for (const Quadratic<Area>& polynomial : polynomials) {
+    if (sign_over(root.interval, polynomial) != 0) return false;
+    definition.add(polynomial);
+  }
+  return root.interval.is_point() || definition.any_in(root.interval);
+}
+
+template <class Numbers>
+bool search_with(Elements elements, const std::array<std::array<double, 8>, 3>& coordinates,
+                 const std::array<int, 3>& lowest, std::optional<TimeBracket>& first) {
+  typename FirstContact<Numbers>::Vertices vertices;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (std::size_t i = 0; i < 8; ++i) {
+      vertices[i][axis] = to_integer<typename Numbers::Length>(coordinates[axis][i], lowest[axis]);
+    }
+  }
+  FirstContact<Numbers> contact(elements, vertices);
+  const bool decided = contact.search();
+  first = contact.first();
+  return decided;
+}
+
+std::optional<TimeBracket> first_contact(Elements elements, const std::array<Vec3d, 4>& start,
+                                         const std::array<Vec3d, 4>& end) {
+  std::array<std::array<double, 8>, 3> coordinates;
+  std::array<int, 3> lowest;
+  int widest = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    auto& row = coordinates[static_cast<std::size_t>(axis)];
+    for (std::size_t i = 0; i < 4; ++i) row[i] = start[i][axis], row[i + 4] = end[i][axis];
+    if (!std::all_of(row.begin(), row.end(), [](double x) { return std::isfinite(x); })) return {};
+    const BitRange range(row);
+    lowest[static_cast<std::size_t>(axis)] = range.lowest;
+    widest = std::max(widest, range.width);
+  }
+  std::optional<TimeBracket> first;
+  if (widest <= 60 && search_with<FixedNumbers<1>>(elements, coordinates, lowest, first)) return first;
+  if (widest <= 124 && search_with<FixedNumbers<2>>(elements, coordinates, lowest, first)) return first;
+  search_with<UnboundedNumbers>(elements, coordinates, lowest, first);
+  return first;
+}
+
+}  // namespace
+
+std::optional<TimeBracket> exact_first_contact(const VertexFaceMotion& motion) {
+  return first_contact(Elements::vertex_and_face, motion.start, motion.end);
+}
+
+std::optional<TimeBracket> exact_first_contact(const EdgeEdgeMotion& motion) {
+  return first_contact(Elements::two_edges, motion.start, motion.end);
+}
+
+}  // namespace supple

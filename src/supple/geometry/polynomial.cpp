@@ -1,0 +1,252 @@
+#include "geometry/polynomial.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+namespace supple {
+
+namespace {
+
+using Integer = Polynomial::Integer;
+using Coefficients = std::vector<Integer>;
+
+/// q(x + 1).
+void shift_by_one(Coefficients& c) {
+  for (std::size_t done = 1; done < c.size(); ++done) {
+    for (std::size_t i = c.size() - 1; i >= done; --i) c[i - 1] += c[i];
+  }
+}
+
+/// 2^(n bits) q((x + k) / 2^bits), n being q's degree: q over one interval, moved to [0, 1].
+Polynomial on_interval(const Polynomial& q, const BinaryFraction& left) {
+  Coefficients c = q.coefficients();
+  const std::size_t size = c.size();
+  if (left.bits == 0 || size == 0) return q;
+  for (std::size_t i = 0; i + 1 < size; ++i) c[i] <<= static_cast<std::size_t>(left.bits) * (size - 1 - i);
+  if (!left.numerator.is_zero()) {
+    for (std::size_t done = 1; done < size; ++done) {
+      for (std::size_t i = size - 1; i >= done; --i) c[i - 1] += c[i] * left.numerator;
+    }
+  }
+  return Polynomial(std::move(c));
+}
+
+/// The remainder of a power of q's leading coefficient, times p, divided by q.
+Polynomial pseudo_remainder(const Polynomial& p, const Polynomial& q) {
+  Coefficients rest = p.coefficients();
+  const Coefficients& divisor = q.coefficients();
+  while (rest.size() >= divisor.size()) {
+    const Integer factor = rest.back();
+    const std::size_t shift = rest.size() - divisor.size();
+    rest.pop_back();
+    for (Integer& c : rest) c *= divisor.back();
+    for (std::size_t i = 0; i + 1 < divisor.size(); ++i) rest[shift + i] -= factor * divisor[i];
+    while (!rest.empty() && rest.back().is_zero()) rest.pop_back();
+  }
+  return Polynomial(std::move(rest));
+}
+
+/// p / q, where that has integer coefficients.
+Polynomial exact_quotient(const Polynomial& p, const Polynomial& q) {
+  Coefficients rest = p.coefficients();
+  const Coefficients& divisor = q.coefficients();
+  assert(rest.size() >= divisor.size());
+  Coefficients quotient(rest.size() - divisor.size() + 1);
+  for (std::size_t at = quotient.size(); at-- > 0;) {
+    quotient[at] = rest[at + divisor.size() - 1] / divisor.back();
+    for (std::size_t i = 0; i < divisor.size(); ++i) rest[at + i] -= quotient[at] * divisor[i];
+  }
+  return Polynomial(std::move(quotient));
+}
+
+/// Roots of p in the open interval from `left` to left + 2^-left.bits; `local` is p there, moved to [0, 1].
+void isolate(const Polynomial& p, const Polynomial& local, const BinaryFraction& left,
+             std::vector<UnitRoot>& roots) {
+  const int variations = sign_variations(local).count;
+  if (variations == 0) return;
+  if (variations == 1) {
+    roots.emplace_back(p, left);
+    return;
+  }
+  Coefficients half = local.coefficients();
+  for (std::size_t i = 0; i < half.size(); ++i) half[i] <<= half.size() - 1 - i;
+  const BinaryFraction middle{2 * left.numerator + 1, left.bits + 1};
+  isolate(p, Polynomial(half), {2 * left.numerator, left.bits + 1}, roots);
+  shift_by_one(half);
+  if (half[0].is_zero()) roots.emplace_back(middle);
+  isolate(p, Polynomial(std::move(half)), middle, roots);
+}
+
+}  // namespace
+
+Polynomial::Polynomial(std::vector<Integer> coefficients) : coefficients_(std::move(coefficients)) {
+  while (!coefficients_.empty() && coefficients_.back().is_zero()) coefficients_.pop_back();
+}
+
+Polynomial operator+(const Polynomial& p, const Polynomial& q) {
+  const bool p_longer = p.degree() >= q.degree();
+  Coefficients sum = p_longer ? p.coefficients_ : q.coefficients_;
+  const Coefficients& other = p_longer ? q.coefficients_ : p.coefficients_;
+  for (std::size_t i = 0; i < other.size(); ++i) sum[i] += other[i];
+  return Polynomial(std::move(sum));
+}
+
+Polynomial operator-(const Polynomial& p, const Polynomial& q) {
+  Coefficients difference = p.coefficients_;
+  if (difference.size() < q.coefficients_.size()) difference.resize(q.coefficients_.size());
+  for (std::size_t i = 0; i < q.coefficients_.size(); ++i) difference[i] -= q.coefficients_[i];
+  return Polynomial(std::move(difference));
+}
+
+Polynomial operator*(const Polynomial& p, const Polynomial& q) {
+  if (p.is_zero() || q.is_zero()) return {};
+  Coefficients product(p.coefficients_.size() + q.coefficients_.size() - 1);
+  for (std::size_t i = 0; i < p.coefficients_.size(); ++i) {
+    for (std::size_t j = 0; j < q.coefficients_.size(); ++j) {
+      product[i + j] += p.coefficients_[i] * q.coefficients_[j];
+    }
+  }
+  return Polynomial(std::move(product));
+}
+
+Polynomial operator*(const Polynomial& p, const Integer& factor) {
+  Coefficients product = p.coefficients_;
+  for (Integer& c : product) c *= factor;
+  return Polynomial(std::move(product));
+}
+
+Polynomial derivative(const Polynomial& p) {
+  Coefficients slope;
+  for (std::size_t i = 1; i < p.coefficients().size(); ++i) slope.push_back(p.coefficients()[i] * i);
+  return Polynomial(std::move(slope));
+}
+
+Polynomial primitive_part(const Polynomial& p) {
+  if (p.is_zero()) return p;
+  Coefficients c = p.coefficients();
+  Integer content = abs(c.back());
+  for (std::size_t i = 0; i + 1 < c.size() && content != 1; ++i) {
+    content = boost::multiprecision::gcd(content, c[i]);
+  }
+  if (c.back().sign() < 0) content = -content;
+  if (content != 1) {
+    for (Integer& value : c) value /= content;
+  }
+  return Polynomial(std::move(c));
+}
+
+Polynomial gcd(const Polynomial& p, const Polynomial& q) {
+  Polynomial larger = primitive_part(p), smaller = primitive_part(q);
+  if (larger.degree() < smaller.degree()) std::swap(larger, smaller);
+  while (smaller.degree() > 0) {
+    Polynomial rest = primitive_part(pseudo_remainder(larger, smaller));
+    larger = std::move(smaller);
+    smaller = std::move(rest);
+  }
+  return smaller.is_zero() ? larger : smaller;
+}
+
+Polynomial squarefree_part(const Polynomial& p) {
+  const Polynomial primitive = primitive_part(p);
+  return exact_quotient(primitive, gcd(primitive, derivative(primitive)));
+}
+
+int sign_at(const Polynomial& p, const BinaryFraction& x) {
+  const Coefficients& c = p.coefficients();
+  if (c.empty()) return 0;
+  Integer value = c.back();
+  for (std::size_t i = c.size() - 1; i-- > 0;) {
+    value *= x.numerator;
+    value += c[i] << static_cast<std::size_t>(x.bits) * (c.size() - 1 - i);
+  }
+  return value.sign();
+}
+
+SignVariations sign_variations(const Polynomial& p) {
+  // (1 + x)^n p(1 / (1 + x)) has the Bernstein coefficients times positive numbers.
+  Coefficients bernstein(p.coefficients().rbegin(), p.coefficients().rend());
+  shift_by_one(bernstein);
+  SignVariations result;
+  for (const Integer& value : bernstein) {
+    const int sign = value.sign();
+    if (sign == 0 || sign == result.sign) continue;
+    result.count += result.sign != 0;
+    result.sign = sign;
+  }
+  return result;
+}
+
+UnitRoot::UnitRoot(BinaryFraction x) : left_(std::move(x)), exact_(true) {}
+
+UnitRoot::UnitRoot(const Polynomial& p, BinaryFraction x)
+    : polynomial_(p), left_(std::move(x)), exact_(false) {
+  const Polynomial local = on_interval(p, left_);
+  assert(sign_variations(local).count % 2 == 1);
+  const auto first =
+      std::ranges::find_if(local.coefficients(), [](const Integer& c) { return !c.is_zero(); });
+  sign_after_left_ = first->sign();
+}
+
+void UnitRoot::halve() {
+  left_.numerator = 2 * left_.numerator + 1;
+  ++left_.bits;
+  const int sign = sign_at(polynomial_, left_);
+  if (sign == 0) {
+    exact_ = true;
+  } else if (sign != sign_after_left_) {
+    left_.numerator -= 1;
+  }
+}
+
+int UnitRoot::sign_of(const Polynomial& q) {
+  constexpr int halvings_per_attempt = 4, attempts = 6;
+  for (int attempt = 0; attempt < attempts; ++attempt) {
+    if (exact_) return sign_at(q, left_);
+    const SignVariations variations = sign_variations(on_interval(q, left_));
+    if (variations.count == 0) return variations.sign;
+    for (int i = 0; i < halvings_per_attempt && !exact_; ++i) halve();
+  }
+  if (exact_) return sign_at(q, left_);
+  // A root of q must be one of the common divisor, which has no more than this one here, and a simple one.
+  if (sign_variations(on_interval(gcd(polynomial_, q), left_)).count % 2 == 1) return 0;
+  while (!exact_) {
+    const SignVariations variations = sign_variations(on_interval(q, left_));
+    if (variations.count == 0) return variations.sign;
+    halve();
+  }
+  return sign_at(q, left_);
+}
+
+std::pair<double, double> UnitRoot::neighbouring_doubles() {
+  constexpr int digits = 53, finest = 1074;
+  const auto size = [this] {
+    return left_.numerator.is_zero() ? 0 : static_cast<int>(msb(left_.numerator)) + 1;
+  };
+  while (!exact_ && size() < digits && left_.bits < finest) halve();
+  const int excess = std::max({size() - digits, left_.bits - finest, 0});
+  const Integer low = left_.numerator >> excess;
+  const bool is_double = exact_ && (low << excess) == left_.numerator;
+  const auto value = [&](const Integer& k) {
+    return std::ldexp(k.convert_to<double>(), excess - left_.bits);
+  };
+  return {value(low), value(is_double ? low : Integer(low + 1))};
+}
+
+std::vector<UnitRoot> roots_in_unit_interval(const Polynomial& p) {
+  assert(!p.is_zero());
+  std::vector<UnitRoot> roots;
+  if (p.coefficients().front().is_zero()) roots.emplace_back(BinaryFraction{0, 0});
+  const int variations = sign_variations(p).count;
+  if (variations == 1) {
+    roots.emplace_back(p, BinaryFraction{});
+  } else if (variations > 1) {
+    // Only simple roots can be told apart by halving intervals.
+    const Polynomial simple = squarefree_part(p);
+    isolate(simple, simple, {}, roots);
+  }
+  if (sign_at(p, {1, 0}) == 0) roots.emplace_back(BinaryFraction{1, 0});
+  return roots;
+}
+
+}  // namespace supple

@@ -1,0 +1,98 @@
+#pragma once
+
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+#include "geometry/integer_points.hpp"
+
+namespace supple {
+
+/// A polynomial of one variable with integer coefficients of any size: c[0] + c[1] x + c[2] x² + …
+/// Without leading zeros, so that the polynomial 0 has no coefficients at all.
+class Polynomial {
+ public:
+  using Integer = UnboundedInteger;
+
+  Polynomial() = default;
+  explicit Polynomial(std::vector<Integer> coefficients);
+
+  /// -1 for the polynomial 0.
+  int degree() const { return static_cast<int>(coefficients_.size()) - 1; }
+  bool is_zero() const { return coefficients_.empty(); }
+  const std::vector<Integer>& coefficients() const { return coefficients_; }
+  bool operator==(const Polynomial&) const = default;
+
+  friend Polynomial operator+(const Polynomial& p, const Polynomial& q);
+  friend Polynomial operator-(const Polynomial& p, const Polynomial& q);
+  friend Polynomial operator*(const Polynomial& p, const Polynomial& q);
+  friend Polynomial operator*(const Polynomial& p, const Integer& factor);
+
+ private:
+  std::vector<Integer> coefficients_;
+};
+
+Polynomial derivative(const Polynomial& p);
+
+/// The coefficients divided by what they all have in common, the leading one made positive.
+Polynomial primitive_part(const Polynomial& p);
+
+/// The greatest common divisor, primitive. gcd(0, 0) = 0.
+Polynomial gcd(const Polynomial& p, const Polynomial& q);
+
+/// A primitive polynomial with the same roots, all of them simple. p is not 0.
+Polynomial squarefree_part(const Polynomial& p);
+
+/// numerator / 2^bits.
+struct BinaryFraction {
+  UnboundedInteger numerator = 0;
+  int bits = 0;
+};
+
+/// The sign of p(x), where x = numerator / 2^bits.
+int sign_at(const Polynomial& p, const BinaryFraction& x);
+
+/// What the signs of a polynomial's coefficients in the Bernstein basis of an interval tell of it.
+struct SignVariations {
+  /// The roots in the open interval are as many, counted with multiplicity, or fewer by an even number
+  /// (Descartes' rule of signs).
+  int count = 0;
+  /// The sign throughout the open interval where `count` is 0; 0 for the polynomial 0.
+  int sign = 0;
+};
+
+/// In the open interval (0, 1).
+SignVariations sign_variations(const Polynomial& p);
+
+/// The one root of a polynomial in some interval: an algebraic number in [0, 1].
+///
+/// Keeps the open interval (k, k + 1) / 2^bits that holds it and no other root, or the number k / 2^bits
+/// that it is. The interval shrinks as questions ask for it, which changes none of the answers.
+class UnitRoot {
+ public:
+  /// Exactly x.
+  explicit UnitRoot(BinaryFraction x);
+  /// In the open interval from x to x + 2^-x.bits, where p has one root, a simple one.
+  UnitRoot(const Polynomial& p, BinaryFraction x);
+
+  /// The sign that q has at the root.
+  int sign_of(const Polynomial& q);
+
+  /// The largest double that is at most the root and the smallest that is at least the root.
+  std::pair<double, double> neighbouring_doubles();
+
+ private:
+  void halve();
+
+  Polynomial polynomial_;
+  BinaryFraction left_;
+  int sign_after_left_ = 0;
+  bool exact_;
+};
+
+/// The roots in [0, 1], ascending, each once. p is not 0. Roots are isolated by halving the interval until
+/// Descartes' rule leaves none or one (Collins and Akritas, Polynomial real root isolation using Descartes'
+/// rule of signs, 1976).
+std::vector<UnitRoot> roots_in_unit_interval(const Polynomial& p);
+
+}  // namespace supple

@@ -1,0 +1,227 @@
+#include "narrow_phase/element_kernels.hpp"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "narrow_phase/element_kernels.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include <algorithm>
+#include <bit>
+#include <limits>
+
+#include "core/float_rounding.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace supple {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// One box at both ends of the step: min x, y, z, max x, y, z.
+struct MovingBox {
+  float start[6], end[6];
+};
+
+HWY_INLINE void load_box(float* box, const float* boxes, std::size_t stride, std::size_t i) {
+  for (std::size_t side = 0; side < 6; ++side) box[side] = boxes[side * stride + i];
+}
+
+/// Grows the box by at least the separation. Bounds stay within the range of float, and inverted boxes
+/// inverted, so that those are apart from all others still.
+HWY_INLINE void grow(float* box, float separation) {
+  constexpr float greatest = std::numeric_limits<float>::max();
+  if (box[0] > greatest) return;
+  for (int axis = 0; axis < 3; ++axis) {
+    const float low = box[axis] - separation, high = box[axis + 3] + separation;
+    box[axis] = std::max(low - outward_step(low), -greatest);
+    box[axis + 3] = std::min(high + outward_step(high), greatest);
+  }
+}
+
+HWY_INLINE MovingBox moving_box(const MovingBoxArrays& arrays, std::size_t i, float separation) {
+  MovingBox box;
+  load_box(box.start, arrays.start, arrays.stride, i);
+  load_box(box.end, arrays.end, arrays.stride, i);
+  if (separation > 0) {
+    grow(box.start, separation);
+    grow(box.end, separation);
+  }
+  return box;
+}
+
+HWY_INLINE MovingBoxArrays lanes_of(const MovingView& view, std::uint32_t node) {
+  return {view.start[node].min_x, view.end[node].min_x, node_width};
+}
+
+/// Bits of the boxes from `first` on, a vector of them, that are not apart from `box` on one side of an axis
+/// at both ends.
+template <class Tag>
+HWY_INLINE std::uint64_t meeting_bits(Tag tag, const MovingBox& box, const MovingBoxArrays& arrays,
+                                      std::size_t first) {
+  const auto apart_on = [&](std::size_t axis) HWY_ATTR {
+    const float* const start = arrays.start + axis * arrays.stride + first;
+    const float* const end = arrays.end + axis * arrays.stride + first;
+    const std::size_t to_max = 3 * arrays.stride;
+    const auto above = hn::And(hn::Gt(hn::LoadU(tag, start), hn::Set(tag, box.start[axis + 3])),
+                               hn::Gt(hn::LoadU(tag, end), hn::Set(tag, box.end[axis + 3])));
+    const auto below = hn::And(hn::Lt(hn::LoadU(tag, start + to_max), hn::Set(tag, box.start[axis])),
+                               hn::Lt(hn::LoadU(tag, end + to_max), hn::Set(tag, box.end[axis])));
+    return hn::Or(above, below);
+  };
+  const auto apart = hn::Or(apart_on(0), hn::Or(apart_on(1), apart_on(2)));
+  std::uint8_t bytes[8] = {};
+  hn::StoreMaskBits(tag, hn::Not(apart), bytes);
+  return std::uint64_t{bytes[0]} | std::uint64_t{bytes[1]} << 8;
+}
+
+void MovingOverlapMasks(const NodePair* pairs, std::size_t count, const MovingView& a, const MovingView& b,
+                        float separation, std::uint64_t* masks) {
+  const hn::CappedTag<float, node_width> tag;
+  for (std::size_t k = 0; k < count; ++k) {
+    const MovingBoxArrays lanes_a = lanes_of(a, pairs[k].a), lanes_b = lanes_of(b, pairs[k].b);
+    std::uint64_t mask = 0;
+    for (std::uint32_t rest = pairs[k].lanes_a; rest != 0; rest &= rest - 1) {
+      const auto i = static_cast<std::size_t>(std::countr_zero(rest));
+      const MovingBox box = moving_box(lanes_a, i, separation);
+      for (std::size_t j = 0; j < node_width; j += hn::Lanes(tag)) {
+        mask |= meeting_bits(tag, box, lanes_b, j) << (8 * i + j);
+      }
+    }
+    masks[k] = mask;
+  }
+}
+
+/// What `find_element_box_pairs` does, for one call.
+class ElementTests {
+ public:
+  HWY_INLINE ElementTests(const MovingView& a, const MovingView& b, float separation, bool same_object,
+                          ElementPairBatches& batches)
+      : a_(a), b_(b), separation_(separation), same_object_(same_object), batches_(batches) {}
+
+  HWY_INLINE void test(const LeafPair& leaves) {
+    same_leaf_ = same_object_ && leaves.begin_a == leaves.begin_b;
+    box_a_ = moving_box(lanes_of(a_, leaves.lane_a / node_width), leaves.lane_a % node_width, separation_);
+    box_b_ = moving_box(lanes_of(b_, leaves.lane_b / node_width), leaves.lane_b % node_width, separation_);
+    const ElementRange vertices_a{a_.first_vertex[leaves.begin_a], a_.first_vertex[leaves.end_a]};
+    const ElementRange vertices_b{b_.first_vertex[leaves.begin_b], b_.first_vertex[leaves.end_b]};
+    const ElementRange faces_a{leaves.begin_a, leaves.end_a}, faces_b{leaves.begin_b, leaves.end_b};
+    match<Kind::vertex_face>(a_.vertices, vertices_a, b_.faces, faces_b);
+    if (!same_leaf_) match<Kind::face_vertex>(a_.faces, faces_a, b_.vertices, vertices_b);
+    match<Kind::edge_edge>(a_.edges, {a_.first_edge[leaves.begin_a], a_.first_edge[leaves.end_a]}, b_.edges,
+                           {b_.first_edge[leaves.begin_b], b_.first_edge[leaves.end_b]});
+  }
+  std::uint64_t box_tests() const { return tests_; }
+
+ private:
+  using Kind = ElementPairKind;
+  using Tag = hn::CappedTag<float, 16>;
+  /// Elements taken at a time: a bit each. The order of what is found does not depend on the instruction set.
+  static constexpr std::uint32_t block = 64;
+
+  template <Kind kind>
+  HWY_INLINE void match(const MovingBoxArrays& boxes_a, ElementRange range_a, const MovingBoxArrays& boxes_b,
+                        ElementRange range_b) {
+    for (std::uint32_t a = range_a.begin; a < range_a.end; a += block) {
+      const ElementRange part_a{a, std::min(a + block, range_a.end)};
+      const std::uint64_t near_b = near_leaf(box_b_, boxes_a, part_a);
+      if (near_b == 0) continue;
+      for (std::uint32_t b = range_b.begin; b < range_b.end; b += block) {
+        const ElementRange part_b{b, std::min(b + block, range_b.end)};
+        const std::uint64_t near_a = near_leaf(box_a_, boxes_b, part_b);
+        if (near_a != 0) match_blocks<kind>(boxes_a, a, near_b, boxes_b, part_b, near_a);
+      }
+    }
+  }
+
+  /// Which elements may come near the other leaf.
+  HWY_INLINE std::uint64_t near_leaf(const MovingBox& leaf, const MovingBoxArrays& boxes,
+                                     ElementRange range) {
+    const std::uint64_t all = ~std::uint64_t{0} >> (block - range.size());
+    return same_leaf_ ? all : meeting_elements(leaf, boxes, range) & all;
+  }
+
+  /// The bits past the range may be any.
+  HWY_INLINE std::uint64_t meeting_elements(const MovingBox& box, const MovingBoxArrays& boxes,
+                                            ElementRange range) {
+    const Tag tag;
+    tests_ += range.size();
+    std::uint64_t bits = meeting_bits(tag, box, boxes, range.begin);
+    for (std::uint32_t j = static_cast<std::uint32_t>(hn::Lanes(tag)); j < range.size();
+         j += static_cast<std::uint32_t>(hn::Lanes(tag))) {
+      bits |= meeting_bits(tag, box, boxes, range.begin + j) << j;
+    }
+    return bits;
+  }
+
+  template <Kind kind>
+  HWY_INLINE void match_blocks(const MovingBoxArrays& boxes_a, std::uint32_t first_a, std::uint64_t some_a,
+                               const MovingBoxArrays& boxes_b, ElementRange range_b, std::uint64_t some_b) {
+    for (; some_a != 0; some_a &= some_a - 1) {
+      const std::uint32_t a = first_a + static_cast<std::uint32_t>(std::countr_zero(some_a));
+      std::uint64_t hits = meeting_elements(moving_box(boxes_a, a, separation_), boxes_b, range_b) & some_b;
+      for (; hits != 0; hits &= hits - 1) {
+        add<kind>(a, range_b.begin + static_cast<std::uint32_t>(std::countr_zero(hits)));
+      }
+    }
+  }
+
+  template <Kind kind>
+  HWY_INLINE void add(std::uint32_t a, std::uint32_t b) {
+    if (!same_object_) {
+      batches_.add(kind, {a, b});
+    } else if constexpr (kind == Kind::edge_edge) {
+      // Within one leaf each pair would come twice.
+      if (same_leaf_ && b <= a) return;
+      const Edge &p = a_.edge_ids[a], &q = a_.edge_ids[b];
+      if (p[0] == q[0] || p[0] == q[1] || p[1] == q[0] || p[1] == q[1]) return;
+      batches_.add(kind, {a, b});
+    } else {
+      const std::uint32_t vertex = kind == Kind::vertex_face ? a : b,
+                          face = kind == Kind::vertex_face ? b : a;
+      const Triangle& corners = a_.face_ids[face];
+      if (corners[0] == vertex || corners[1] == vertex || corners[2] == vertex) return;
+      batches_.add(Kind::vertex_face, {vertex, face});
+    }
+  }
+
+  const MovingView& a_;
+  const MovingView& b_;
+  float separation_;
+  bool same_object_;
+  ElementPairBatches& batches_;
+  bool same_leaf_ = false;
+  MovingBox box_a_, box_b_;
+  std::uint64_t tests_ = 0;
+};
+
+std::uint64_t ElementBoxPairs(const LeafPair* leaf_pairs, std::size_t count, const MovingView& a,
+                              const MovingView& b, float separation, bool same_object,
+                              ElementPairBatches& batches) {
+  ElementTests tests(a, b, separation, same_object, batches);
+  for (std::size_t k = 0; k < count; ++k) tests.test(leaf_pairs[k]);
+  return tests.box_tests();
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace supple
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace supple {
+
+HWY_EXPORT(MovingOverlapMasks);
+HWY_EXPORT(ElementBoxPairs);
+
+void moving_overlap_masks(std::span<const NodePair> pairs, const MovingView& a, const MovingView& b,
+                          float separation, std::uint64_t* masks) {
+  HWY_DYNAMIC_DISPATCH(MovingOverlapMasks)(pairs.data(), pairs.size(), a, b, separation, masks);
+}
+
+std::uint64_t find_element_box_pairs(std::span<const LeafPair> leaf_pairs, const MovingView& a,
+                                     const MovingView& b, float separation, bool same_object,
+                                     ElementPairBatches& batches) {
+  return HWY_DYNAMIC_DISPATCH(ElementBoxPairs)(leaf_pairs.data(), leaf_pairs.size(), a, b, separation,
+                                               same_object, batches);
+}
+
+}  // namespace supple
+#endif

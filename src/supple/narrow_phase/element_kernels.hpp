@@ -1,0 +1,72 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "narrow_phase/overlap_kernels.hpp"
+#include "octree/moving_boxes.hpp"
+#include "supple/contact.hpp"
+
+namespace supple {
+
+/// Two elements in octree order's numbers: vertex and face, face and vertex or two edges of objects a and b.
+struct ElementPair {
+  std::uint32_t a = 0, b = 0;
+  constexpr auto operator<=>(const ElementPair&) const = default;
+};
+
+/// Candidates on their way to whoever tests them: a batch a kind, handed over when full.
+class ElementPairBatches {
+ public:
+  static constexpr std::size_t capacity = 1024;
+  using Sink = void (*)(void* context, ElementPairKind kind, std::span<const ElementPair> pairs);
+
+  /// Whom the batches go to; borrowed until `flush`.
+  void set_sink(Sink sink, void* context) {
+    sink_ = sink;
+    context_ = context;
+  }
+  void add(ElementPairKind kind, ElementPair pair) {
+    Batch& batch = batches_[static_cast<std::size_t>(kind)];
+    batch.pairs[batch.count++] = pair;
+    if (batch.count == capacity) hand_over(kind);
+  }
+  /// Hands over what is left.
+  void flush() {
+    for (std::size_t kind = 0; kind < batches_.size(); ++kind) {
+      if (batches_[kind].count > 0) hand_over(static_cast<ElementPairKind>(kind));
+    }
+  }
+
+ private:
+  struct Batch {
+    std::size_t count = 0;
+    std::array<ElementPair, capacity> pairs;
+  };
+  void hand_over(ElementPairKind kind) {
+    Batch& batch = batches_[static_cast<std::size_t>(kind)];
+    const std::size_t count = batch.count;
+    batch.count = 0;
+    sink_(context_, kind, {batch.pairs.data(), count});
+  }
+
+  std::array<Batch, 3> batches_;
+  Sink sink_ = nullptr;
+  void* context_ = nullptr;
+};
+
+/// As `overlap_masks`, of nodes in motion: the bits of lanes that are not apart by more than `separation` all
+/// the time.
+void moving_overlap_masks(std::span<const NodePair> pairs, const MovingView& a, const MovingView& b,
+                          float separation, std::uint64_t* masks);
+
+/// Adds all pairs of elements of the leaf pairs that may come within `separation` of each other, by their
+/// boxes at both ends of the step. With `same_object` pairs that share a vertex are left out, each pair comes
+/// once and faces are always b. Never misses a pair. Returns the number of box tests.
+std::uint64_t find_element_box_pairs(std::span<const LeafPair> leaf_pairs, const MovingView& a,
+                                     const MovingView& b, float separation, bool same_object,
+                                     ElementPairBatches& batches);
+
+}  // namespace supple

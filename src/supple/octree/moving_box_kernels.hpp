@@ -1,0 +1,57 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "octree/octree_node.hpp"
+#include "octree/surface_elements.hpp"
+#include "supple/mesh.hpp"
+
+namespace supple {
+
+/// Where the kernels read the box of each vertex: x y z of its lower corner at `lower + vertex * step`, of
+/// its upper corner likewise; a fourth float may be read. Both are the vertex itself where it is of floats.
+struct VertexCorners {
+  const float* lower = nullptr;
+  const float* upper = nullptr;
+  std::size_t step = 4;
+};
+
+/// Boxes of many elements: six arrays, `stride` floats apart, of min x, y, z and max x, y, z.
+struct BoxArrays {
+  float* values = nullptr;
+  std::size_t stride = 0;
+
+  float& at(int side, std::size_t element) const {
+    return values[static_cast<std::size_t>(side) * stride + element];
+  }
+};
+
+/// Rounds the vertices [begin, end), four doubles each, outward: eight floats each, the lower and the upper
+/// corner, within the range of float.
+void round_corners(const double* vertices, float* corners, std::uint32_t begin, std::uint32_t end);
+
+/// Boxes of the elements [begin, end). All vertices count as finite. Each chooses the widest instruction set
+/// at run time; the boxes are equal on all.
+void set_vertex_boxes(const VertexCorners& corners, const BoxArrays& boxes, std::uint32_t begin,
+                      std::uint32_t end);
+void set_edge_boxes(const VertexCorners& corners, const Edge* edges, const BoxArrays& boxes,
+                    std::uint32_t begin, std::uint32_t end);
+void set_face_boxes(const VertexCorners& corners, const Triangle* faces, const BoxArrays& boxes,
+                    std::uint32_t begin, std::uint32_t end);
+
+/// What the boxes of leaf lanes are made of.
+struct LeafElements {
+  BoxArrays vertices, edges, faces;
+  const std::uint32_t* first_vertex = nullptr;
+  const std::uint32_t* first_edge = nullptr;
+  /// The faces of a leaf enclose its other elements, unless some are inert.
+  bool faces_enclose = true;
+};
+
+/// Boxes of all leaf lanes of the nodes [begin, end), and of each of these nodes in its parent's lane, as
+/// `refit_boxes` does.
+void refit_element_boxes(const OctreeNode* nodes, AabbLanes* boxes, const LeafElements& elements,
+                         std::uint32_t begin, std::uint32_t end);
+
+}  // namespace supple

@@ -1,0 +1,94 @@
+#include "octree/surface_elements.hpp"
+
+#include <algorithm>
+#include <set>
+
+namespace supple {
+namespace {
+
+/// A side of a triangle: three a triangle, in octree order.
+struct Side {
+  Edge edge;
+  std::uint32_t place;
+};
+
+/// Vertices are numbered by first use, the smaller of an edge comes from few places: sorting them apart by it
+/// leaves short runs to sort.
+std::vector<Side> sorted_sides(std::span<const Triangle> triangles, std::uint32_t vertex_count) {
+  const auto side = [&](std::uint32_t triangle, std::uint32_t corner) {
+    const std::uint32_t p = triangles[triangle][corner], q = triangles[triangle][(corner + 1) % 3];
+    return Side{{std::min(p, q), std::max(p, q)}, 3 * triangle + corner};
+  };
+  std::vector<std::uint32_t> next(std::size_t{vertex_count} + 1, 0);
+  const auto for_each_side = [&](auto&& visit) {
+    for (std::uint32_t t = 0; t < triangles.size(); ++t) {
+      for (std::uint32_t corner = 0; corner < 3; ++corner) visit(side(t, corner));
+    }
+  };
+  for_each_side([&](const Side& s) { ++next[s.edge[0] + 1]; });
+  for (std::uint32_t v = 0; v < vertex_count; ++v) next[v + 1] += next[v];
+  std::vector<Side> sides(3 * triangles.size());
+  for_each_side([&](const Side& s) { sides[next[s.edge[0]]++] = s; });
+  for (std::uint32_t v = 0; v < vertex_count; ++v) {
+    std::sort(sides.begin() + (v == 0 ? 0 : next[v - 1]), sides.begin() + next[v],
+              [](const Side& p, const Side& q) {
+                return p.edge[1] != q.edge[1] ? p.edge[1] < q.edge[1] : p.place < q.place;
+              });
+  }
+  return sides;
+}
+
+}  // namespace
+
+SurfaceElements::SurfaceElements(const ObjectOctree& octree) {
+  const auto triangles = octree.triangles();
+  first_vertex_.reserve(triangles.size() + 1);
+  for (const Triangle& triangle : triangles) {
+    first_vertex_.push_back(
+        std::max({first_vertex_.back(), triangle[0] + 1, triangle[1] + 1, triangle[2] + 1}));
+  }
+  const std::vector<Side> sides = sorted_sides(triangles, vertex_count());
+  std::vector<std::uint8_t> is_first(sides.size(), 0);
+  std::uint32_t count = 0;
+  for (std::size_t i = 0; i < sides.size(); ++i) {
+    const Edge& edge = sides[i].edge;
+    if (edge[0] == edge[1] || (i > 0 && sides[i - 1].edge == edge)) continue;
+    is_first[sides[i].place] = 1;
+    ++count;
+  }
+  edges_.reserve(count);
+  first_edge_.reserve(triangles.size() + 1);
+  for (std::uint32_t t = 0; t < triangles.size(); ++t) {
+    for (std::uint32_t corner = 0; corner < 3; ++corner) {
+      if (is_first[3 * t + corner] == 0) continue;
+      const auto [p, q] = std::minmax(triangles[t][corner], triangles[t][(corner + 1) % 3]);
+      edges_.push_back({p, q});
+    }
+    first_edge_.push_back(static_cast<std::uint32_t>(edges_.size()));
+  }
+}
+
+std::string SurfaceElements::validate(const ObjectOctree& octree) const {
+  const auto triangles = octree.triangles();
+  if (first_vertex_.size() != triangles.size() + 1 || first_edge_.size() != triangles.size() + 1) {
+    return "elements of another octree";
+  }
+  std::set<Edge> seen;
+  std::uint32_t vertices = 0, edges = 0;
+  for (std::uint32_t t = 0; t < triangles.size(); ++t) {
+    if (first_vertex_[t] != vertices || first_edge_[t] != edges) return "owned elements do not follow on";
+    for (std::uint32_t corner = 0; corner < 3; ++corner) {
+      const std::uint32_t p = triangles[t][corner], q = triangles[t][(corner + 1) % 3];
+      if (p > vertices) return "vertices are not in the order of first use";
+      vertices = std::max(vertices, p + 1);
+      const Edge edge{std::min(p, q), std::max(p, q)};
+      if (p == q || !seen.insert(edge).second) continue;
+      if (edges >= edges_.size() || edges_[edges] != edge) return "edges are not in the order of first use";
+      ++edges;
+    }
+  }
+  if (first_vertex_.back() != vertices || first_edge_.back() != edges) return "elements are missing";
+  return edges == edges_.size() ? "" : "edges of no triangle";
+}
+
+}  // namespace supple

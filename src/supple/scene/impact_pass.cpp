@@ -1,0 +1,303 @@
+#include "scene/impact_pass.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <tuple>
+#include <type_traits>
+#include <utility>
+
+#include "contact/first_impact.hpp"
+#include "contact/impact_search.hpp"
+#include "core/float_rounding.hpp"
+#include "core/timer.hpp"
+
+namespace supple {
+namespace {
+
+constexpr std::size_t block_size = RelativeMotionBlock::capacity;
+
+/// A vertex, in octree order, of one of the objects at hand.
+struct VertexRef {
+  const MovingObject* object;
+  std::uint32_t vertex;
+};
+
+/// The four vertices of a pair of elements in the order in which motions have them.
+std::array<VertexRef, 4> vertices_of(ElementPairKind kind, ElementPair pair, const MovingObject& a,
+                                     const MovingObject& b) {
+  switch (kind) {
+    case ElementPairKind::vertex_face: {
+      const Triangle& face = b.view.moving.face_ids[pair.b];
+      return {{{&a, pair.a}, {&b, face[0]}, {&b, face[1]}, {&b, face[2]}}};
+    }
+    case ElementPairKind::face_vertex: {
+      const Triangle& face = a.view.moving.face_ids[pair.a];
+      return {{{&b, pair.b}, {&a, face[0]}, {&a, face[1]}, {&a, face[2]}}};
+    }
+    default: {
+      const Edge& first = a.view.moving.edge_ids[pair.a];
+      const Edge& second = b.view.moving.edge_ids[pair.b];
+      return {{{&a, first[0]}, {&a, first[1]}, {&b, second[0]}, {&b, second[1]}}};
+    }
+  }
+}
+
+template <class Motion>
+Motion motion_of(const std::array<VertexRef, 4>& vertices) {
+  Motion motion;
+  for (std::size_t i = 0; i < 4; ++i) {
+    motion.start[i] = (*vertices[i].object->start)[vertices[i].vertex];
+    motion.end[i] = (*vertices[i].object->end)[vertices[i].vertex];
+  }
+  return motion;
+}
+
+std::uint32_t user_vertex(const VertexRef& ref) {
+  return ref.object->vertex_ids[ref.vertex];
+}
+
+/// Edges by their smaller vertex, and of one object with itself the smaller edge first, in the user's
+/// numbers: so that nothing in a contact depends on the octrees' shape.
+void sort_edges(std::array<VertexRef, 4>& vertices) {
+  for (const std::size_t i : {0u, 2u}) {
+    if (user_vertex(vertices[i + 1]) < user_vertex(vertices[i])) std::swap(vertices[i], vertices[i + 1]);
+  }
+  if (vertices[0].object != vertices[2].object) return;
+  if (std::pair(user_vertex(vertices[2]), user_vertex(vertices[3])) <
+      std::pair(user_vertex(vertices[0]), user_vertex(vertices[1]))) {
+    std::swap(vertices[0], vertices[2]);
+    std::swap(vertices[1], vertices[3]);
+  }
+}
+
+/// The motion as it is until `time`, with that as its end.
+RelativeMotion until(const RelativeMotion& motion, double time) {
+  return {motion.start, places_at(motion, time), motion.is_square};
+}
+
+/// What the impact says of the elements of a and b.
+void set_impact(ContinuousContact& contact, const Impact& impact) {
+  const auto& w = impact.weights;
+  contact.certainty = impact.certainty;
+  contact.time = impact.time;
+  contact.point = impact.point;
+  contact.normal = impact.normal;
+  switch (contact.kind) {
+    case ElementPairKind::vertex_face:
+      contact.weights_a = {1, 0, 0};
+      contact.weights_b = {w[1], w[2], w[3]};
+      break;
+    case ElementPairKind::face_vertex:
+      contact.weights_a = {w[1], w[2], w[3]};
+      contact.weights_b = {1, 0, 0};
+      contact.normal = -1.0 * impact.normal;
+      break;
+    case ElementPairKind::edge_edge:
+      contact.weights_a = {w[0], w[1], 0};
+      contact.weights_b = {w[2], w[3], 0};
+      break;
+  }
+}
+
+}  // namespace
+
+void ImpactPass::run(std::span<const ContactJob> jobs, std::span<const MovingObject> objects,
+                     const ImpactOptions& options, const Parallel& parallel, StepStats& stats) {
+  Timer timer;
+  search(Search::all, jobs, objects, options, parallel);
+  collect_stats(timer.lap(), stats);
+  gather_contacts();
+  stats.contacts = contacts_.size();
+  stats.finish_seconds += timer.lap();
+}
+
+std::optional<ContinuousContact> ImpactPass::find_earliest(std::span<const ContactJob> jobs,
+                                                           std::span<const MovingObject> objects,
+                                                           const ImpactOptions& options,
+                                                           const Parallel& parallel) {
+  search(Search::earliest, jobs, objects, options, parallel);
+  const Worker* best = nullptr;
+  for (const Worker& worker : workers_) {
+    if (!worker.earliest) continue;
+    if (best == nullptr || std::tie(worker.earliest->time, worker.earliest_key) <
+                               std::tie(best->earliest->time, best->earliest_key)) {
+      best = &worker;
+    }
+  }
+  return best != nullptr ? best->earliest : std::nullopt;
+}
+
+void ImpactPass::search(Search search, std::span<const ContactJob> jobs,
+                        std::span<const MovingObject> objects, const ImpactOptions& options,
+                        const Parallel& parallel) {
+  search_ = search;
+  jobs_ = jobs;
+  objects_ = objects;
+  options_ = options;
+  parallel_ = &parallel;
+  latest_ = 1;
+  workers_.resize(parallel.worker_count());
+  for (Worker& worker : workers_) {
+    worker.found.clear();
+    worker.keys.clear();
+    worker.traversal_stats = {};
+    worker.exact_fallbacks = 0;
+    worker.busy_seconds = worker.exact_seconds = 0;
+    worker.earliest.reset();
+  }
+  tasks_.plan(static_cast<std::uint32_t>(jobs.size()), workers_.size(), workers_[0].traversal,
+              [&](std::uint32_t job) { return view_of_job(job); });
+  parallel.for_ranges(tasks_.size(), 1, [&](std::size_t begin, std::size_t end, std::uint32_t w) {
+    Timer busy;
+    for (std::size_t i = begin; i < end; ++i) run_task(tasks_[i], workers_[w]);
+    workers_[w].busy_seconds += busy.lap();
+  });
+}
+
+ObjectPairView ImpactPass::view_of_job(std::uint32_t job) const {
+  const MovingObject& a = objects_[jobs_[job].a];
+  const MovingObject& b = objects_[jobs_[job].b];
+  return &a == &b ? moving_self_pair_of(a.view, options_.min_separation)
+                  : moving_pair_of(a.view, b.view, options_.min_separation);
+}
+
+void ImpactPass::run_task(const ContactTask& task, Worker& worker) {
+  worker.traversal.find_element_pairs(
+      view_of_job(task.job), task.root, worker.traversal_stats,
+      [&](ElementPairKind kind, std::span<const ElementPair> candidates) {
+        Timer timer;
+        for (std::size_t first = 0; first < candidates.size(); first += block_size) {
+          const std::size_t count = std::min(block_size, candidates.size() - first);
+          test_candidates(task.job, kind, candidates.subspan(first, count), worker);
+        }
+        worker.exact_seconds += timer.lap();
+      });
+}
+
+/// Most candidates are far from touching: that is decided for a block at a time, in vector lanes.
+void ImpactPass::test_candidates(std::uint32_t job, ElementPairKind kind,
+                                 std::span<const ElementPair> candidates, Worker& worker) {
+  const MovingObject& a = objects_[jobs_[job].a];
+  const MovingObject& b = objects_[jobs_[job].b];
+  // Reported times may be early by the tolerance, so that the first of them can be of a pair that touches
+  // after the first touch.
+  const double latest = std::min(1.0, latest_.load(std::memory_order_relaxed) + impact_time_tolerance);
+  for (std::size_t k = 0; k < candidates.size(); ++k) {
+    const auto vertices = vertices_of(kind, candidates[k], a, b);
+    const RelativeMotion motion = kind == ElementPairKind::edge_edge
+                                      ? relative_motion(motion_of<EdgeEdgeMotion>(vertices))
+                                      : relative_motion(motion_of<VertexFaceMotion>(vertices));
+    worker.block.set(k, latest < 1 ? until(motion, latest) : motion);
+  }
+  std::uint64_t left = may_touch(worker.block, candidates.size(), kind == ElementPairKind::edge_edge,
+                                 round_up(options_.min_separation));
+  for (; left != 0; left &= left - 1) {
+    test_candidate(job, kind, candidates[static_cast<std::size_t>(std::countr_zero(left))], worker);
+  }
+}
+
+void ImpactPass::test_candidate(std::uint32_t job, ElementPairKind kind, ElementPair candidate,
+                                Worker& worker) {
+  const MovingObject& a = objects_[jobs_[job].a];
+  const MovingObject& b = objects_[jobs_[job].b];
+  auto vertices = vertices_of(kind, candidate, a, b);
+  bool used_exact = false;
+  const auto first_impact_of = [&]<class Motion>(std::type_identity<Motion>) {
+    const Motion motion = motion_of<Motion>(vertices);
+    return first_impact_of_finite(motion, relative_motion(motion), options_, used_exact);
+  };
+  ContinuousContact contact;
+  contact.object_a = a.id;
+  contact.object_b = b.id;
+  contact.kind = kind;
+  std::optional<Impact> impact;
+  if (kind == ElementPairKind::edge_edge) {
+    sort_edges(vertices);
+    impact = first_impact_of(std::type_identity<EdgeEdgeMotion>());
+    contact.element_a = {user_vertex(vertices[0]), user_vertex(vertices[1])};
+    contact.element_b = {user_vertex(vertices[2]), user_vertex(vertices[3])};
+  } else {
+    impact = first_impact_of(std::type_identity<VertexFaceMotion>());
+    const bool vertex_first = kind == ElementPairKind::vertex_face;
+    const std::uint32_t of_a = vertex_first ? a.vertex_ids[candidate.a] : a.triangle_ids[candidate.a];
+    const std::uint32_t of_b = vertex_first ? b.triangle_ids[candidate.b] : b.vertex_ids[candidate.b];
+    contact.element_a = {of_a, of_a};
+    contact.element_b = {of_b, of_b};
+  }
+  worker.exact_fallbacks += used_exact ? 1 : 0;
+  if (!impact) return;
+  set_impact(contact, *impact);
+  keep({job, kind, contact.element_a, contact.element_b}, contact, worker);
+}
+
+void ImpactPass::keep(Key key, const ContinuousContact& contact, Worker& worker) {
+  if (search_ == Search::all) {
+    key.worker = static_cast<std::uint32_t>(&worker - workers_.data());
+    key.index = static_cast<std::uint32_t>(worker.found.size());
+    worker.keys.push_back(key);
+    worker.found.push_back(contact);
+    return;
+  }
+  if (worker.earliest && std::tie(worker.earliest->time, worker.earliest_key) < std::tie(contact.time, key)) {
+    return;
+  }
+  worker.earliest = contact;
+  worker.earliest_key = key;
+  double latest = latest_.load(std::memory_order_relaxed);
+  while (contact.time < latest &&
+         !latest_.compare_exchange_weak(latest, contact.time, std::memory_order_relaxed)) {
+  }
+}
+
+/// Sorts each worker's keys and merges them pair by pair, in parallel, into those of the first.
+void ImpactPass::merge_keys() {
+  parallel_->for_ranges(workers_.size(), 1, [&](std::size_t begin, std::size_t end, std::uint32_t) {
+    for (std::size_t w = begin; w < end; ++w) std::sort(workers_[w].keys.begin(), workers_[w].keys.end());
+  });
+  for (std::size_t step = 1; step < workers_.size(); step *= 2) {
+    const std::size_t merges = (workers_.size() - step + 2 * step - 1) / (2 * step);
+    parallel_->for_ranges(merges, 1, [&](std::size_t begin, std::size_t end, std::uint32_t) {
+      for (std::size_t i = begin; i < end; ++i) {
+        Worker& first = workers_[2 * step * i];
+        const Worker& second = workers_[2 * step * i + step];
+        first.merged_keys.resize(first.keys.size() + second.keys.size());
+        std::merge(first.keys.begin(), first.keys.end(), second.keys.begin(), second.keys.end(),
+                   first.merged_keys.begin());
+        first.keys.swap(first.merged_keys);
+      }
+    });
+  }
+}
+
+void ImpactPass::gather_contacts() {
+  merge_keys();
+  const std::vector<Key>& keys = workers_.front().keys;
+  contacts_.resize(keys.size());
+  parallel_->for_ranges(keys.size(), 4096, [&](std::size_t begin, std::size_t end, std::uint32_t) {
+    for (std::size_t i = begin; i < end; ++i) contacts_[i] = workers_[keys[i].worker].found[keys[i].index];
+  });
+  groups_.clear();
+  for (std::uint32_t i = 0; i < keys.size(); ++i) {
+    if (i == 0 || keys[i].job != keys[i - 1].job)
+      groups_.push_back({contacts_[i].object_a, contacts_[i].object_b, i, 0});
+    ++groups_.back().contact_count;
+  }
+}
+
+void ImpactPass::collect_stats(double wall_seconds, StepStats& stats) const {
+  double busy = 0, exact = 0;
+  for (const Worker& worker : workers_) {
+    busy += worker.busy_seconds;
+    exact += worker.exact_seconds;
+    stats.node_pairs_visited += worker.traversal_stats.node_pairs_visited;
+    stats.boxes_tested += worker.traversal_stats.volumes_tested;
+    stats.vertex_face_candidates += worker.traversal_stats.vertex_face_candidates;
+    stats.edge_edge_candidates += worker.traversal_stats.edge_edge_candidates;
+    stats.exact_fallbacks += worker.exact_fallbacks;
+  }
+  const double exact_share = busy > 0 ? std::min(1.0, exact / busy) : 0;
+  stats.exact_seconds = wall_seconds * exact_share;
+  stats.traversal_seconds = wall_seconds - stats.exact_seconds;
+}
+
+}  // namespace supple

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "narrow_phase/traversal.hpp"
+#include "support/soups.hpp"
+
+namespace supple {
+
+/// A mesh that moves, with all that the narrow phase needs of it.
+struct MovingObject {
+  /// `end` empty: at rest.
+  MovingObject(const TriangleMesh& mesh_in, const std::vector<Vec3d>& end_in,
+               const ObjectOctreeOptions& options = {}, bool floats = true, std::uint32_t threads = 1)
+      : mesh(mesh_in),
+        octree(PositionsView<double>(mesh.positions), mesh.triangles, options, BoundingVolume::aabb,
+               SphereFit::vertices),
+        elements(octree),
+        at_rest(end_in.empty()) {
+    const Parallel parallel(threads);
+    assign(start, mesh.positions, floats, parallel);
+    if (!at_rest) assign(end, end_in, floats, parallel);
+    boxes.refit(octree, elements, start, end_positions(), parallel);
+  }
+  const VertexBuffer& end_positions() const { return at_rest ? start : end; }
+  OctreeView view() const { return moving_view_of(octree, elements, boxes); }
+  std::string validate() const {
+    const std::string wrong = elements.validate(octree);
+    return wrong.empty() ? boxes.validate(octree, elements, start, end_positions()) : wrong;
+  }
+  /// As stored, the user's numbers.
+  Vec3d position(std::uint32_t vertex, bool at_end) const {
+    return (at_end ? end_positions() : start)[octree.vertex_order()[vertex]];
+  }
+
+  TriangleMesh mesh;
+  ObjectOctree octree;
+  SurfaceElements elements;
+  VertexBuffer start, end;
+  bool at_rest;
+  MovingBoxes boxes;
+
+ private:
+  void assign(VertexBuffer& buffer, const std::vector<Vec3d>& positions, bool floats,
+              const Parallel& parallel) {
+    if (!floats) {
+      buffer.assign(PositionsView<double>(positions), octree.vertex_order(), parallel);
+      return;
+    }
+    std::vector<Vec3f> rounded;
+    for (const Vec3d& p : positions) {
+      rounded.push_back({static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)});
+    }
+    buffer.assign(PositionsView<float>(rounded), octree.vertex_order(), parallel);
+  }
+};
+
+/// Each vertex somewhere within `distance` of where it was, after all of them went by `common`.
+inline std::vector<Vec3d> displaced(const TriangleMesh& mesh, double distance, std::uint64_t seed,
+                                    Vec3d common = {}) {
+  RandomNumbers random(seed);
+  std::vector<Vec3d> positions;
+  for (const Vec3d& p : mesh.positions) positions.push_back(p + common + random.vector(distance));
+  return positions;
+}
+
+}  // namespace supple
