@@ -21,6 +21,8 @@ namespace {
 
 constexpr const char* program_footer = R"(Examples:
   supple detect rabbit.obj fish.ply         which triangles of the two intersect?
+  supple detect --contacts continuous --self --sequence 'frame_*.obj'
+                                            what passes through something between two frames, and when?
   supple detect --help                      every option, with examples
   supple info rabbit.obj                    counts, bounds, holes, octree statistics
   supple ccd-queries edge-edge/*.csv        single continuous queries, compared with the answers known
@@ -39,6 +41,10 @@ constexpr const char* detect_footer = R"(Examples:
       A scene file: objects with placement, options and motion.
   supple detect a.stl b.stl --fail-on-contact --quiet && echo apart
       For scripts: the exit status is 1 when anything touches.
+  supple detect --contacts continuous --self --sequence 'frame_*.ply' --json impacts.json
+      What passes through something between two frames: each vertex and face, each two edges, and when they first meet.
+  supple detect --contacts continuous --min-separation 0.001 scene.toml --steps 300
+      Elements already touch when they come within 0.001.
   supple detect rabbit.obj fish.ply --verify
       Check the result against exact brute force over all pairs of triangles.
   supple detect a.obj b.obj --json - --no-stats | sha256sum
@@ -80,11 +86,11 @@ std::array<CLI::Option*, 2> add_octree_options(CLI::App& app, std::optional<std:
 
 std::array<CLI::Option*, 2> add_impact_options(CLI::App& app, ImpactOptions& impact) {
   return {add_length(app, "--min-separation", impact.min_separation,
-                     "Elements touch when they come this close, in the unit of the coordinates (default: 0)"),
-          add_choice<bool>(
-              app, "--undecided", impact.exact, {{"exact", true}, {"report", false}},
-              "What floating point cannot tell: decided by exact arithmetic, or reported as touching "
-              "within tolerance")};
+                     "Continuous contacts begin when elements come this close, in the unit of the "
+                     "coordinates (default: 0)"),
+          add_choice<bool>(app, "--undecided", impact.exact, {{"exact", true}, {"report", false}},
+                           "Continuous contacts that floating point cannot tell: decided by exact "
+                           "arithmetic, or reported as within tolerance")};
 }
 
 void add_kind(CLI::App& app, std::optional<QueryKind>& kind) {
@@ -111,26 +117,39 @@ void add_input_options(CLI::App& app, DetectOptions& options) {
          "gives its files in natural number order")
       ->group("Input");
   add_number(app, "--steps", options.steps, 1, 1'000'000'000,
-             "Frames of a scene file to go through (default: 1)")
+             "Frames of a scene file to go through, or steps from frame to frame of continuous contacts "
+             "(default: 1)")
       ->group("Input");
 }
 
 void add_stage_options(CLI::App& app, DetectOptions& options, Dependences& dependences) {
   SceneOptions& scene = options.scene;
   const auto group = [](CLI::Option* option) { return option->group("Detection"); };
-  group(add_choice<ContactMode>(app, "--contacts", scene.contacts,
-                                {{"intersection", ContactMode::intersection}, {"none", ContactMode::none}},
-                                "Exact stage: every intersecting pair of triangles, or object pairs only"));
+  group(add_choice<ContactMode>(
+      app, "--contacts", scene.contacts,
+      {{"intersection", ContactMode::intersection},
+       {"continuous", ContactMode::continuous},
+       {"none", ContactMode::none}},
+      "Exact stage: every intersecting pair of triangles; every vertex and face and every two "
+      "edges that touch between a frame and the next, and when; or object pairs only"));
   group(app.add_flag("--self", options.self, "Also test every object against itself"));
-  group(app.add_flag_callback(
-      "--no-contact-points", [&] { scene.contact_points = false; }, "Leave out the points of each contact"));
+  dependences.push_back({group(app.add_flag_callback(
+                             "--no-contact-points", [&] { scene.contact_points = false; },
+                             "Leave out the points of each contact")),
+                         [&] { return scene.contacts != ContactMode::continuous; },
+                         "--contacts intersection"});
+  for (CLI::Option* option : add_impact_options(app, scene.impact))
+    dependences.push_back(
+        {group(option), [&] { return scene.contacts == ContactMode::continuous; }, "--contacts continuous"});
   dependences.push_back({group(app.add_flag("--fail-on-contact", options.fail_on_contact,
                                             "Exit with status 1 when anything touches")),
-                         [&] { return scene.contacts != ContactMode::none; }, "--contacts intersection"});
+                         [&] { return scene.contacts != ContactMode::none; },
+                         "--contacts intersection or continuous"});
   dependences.push_back({group(app.add_flag("--verify", options.verify,
                                             "Check each frame against exact brute force over all pairs of "
-                                            "triangles; differences exit with status 3")),
-                         [&] { return scene.contacts != ContactMode::none; }, "--contacts intersection"});
+                                            "triangles, or of elements; differences exit with status 3")),
+                         [&] { return scene.contacts != ContactMode::none; },
+                         "--contacts intersection or continuous"});
   group(
       add_number(app, "--threads", scene.threads, 0, 1024, "Worker threads, 0 for one a core (default: 0)"));
 }
@@ -167,13 +186,21 @@ void add_output_options(CLI::App& app, DetectOptions& options, Dependences& depe
   const auto group = [](CLI::Option* option) { return option->group("Output"); };
   group(
       add_file(app, "--json", options.json, "Write the whole result, frame by frame; - is standard output"));
-  group(add_file(app, "--csv", options.csv,
-                 "Write a row a triangle pair: frame,a,b,i,j; - is standard output"));
+  group(add_file(
+      app, "--csv", options.csv,
+      "Write a row a contact: frame,a,b,i,j of triangles, or frame,a,b,kind,a0,a1,b0,b1,time,certainty; - is "
+      "standard output"));
   dependences.push_back({group(app.add_flag_callback(
-                             "--no-stats", [&] { options.json_stats = false; },
+                             "--no-stats", [&] { options.json_content.stats = false; },
                              "Leave times and counts out of the JSON, so that equal results are "
                              "equal files")),
                          [&] { return !options.json.empty(); }, "--json"});
+  dependences.push_back(
+      {group(app.add_flag(
+           "--contact-details", options.json_content.contact_details,
+           "Also write of each continuous contact the weights, the point and the normal to the JSON")),
+       [&] { return !options.json.empty() && options.scene.contacts == ContactMode::continuous; },
+       "--json and --contacts continuous"});
   group(app.add_flag("--quiet", options.quiet, "No tables and no progress"));
 }
 

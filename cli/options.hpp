@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "json_report.hpp"
 #include "query_file.hpp"
 #include "supple/options.hpp"
 
@@ -21,7 +22,7 @@ struct DetectOptions {
   bool verify = false;
   bool fail_on_contact = false;
   bool quiet = false;
-  bool json_stats = true;
+  JsonContent json_content;
   std::string json, csv;  ///< empty: none; "-": standard output
 };
 

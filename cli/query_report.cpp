@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "continuous_json.hpp"
 #include "supple/version.hpp"
 #include "text.hpp"
 
@@ -114,20 +115,6 @@ void write_differences(JsonWriter& json, const std::vector<QueryDifference>& dif
 
 const char* name_of(QueryKind kind) {
   return kind == QueryKind::vertex_face ? "vertex-face" : "edge-edge";
-}
-
-const char* name_of(ContinuousDifference::Fault fault) {
-  switch (fault) {
-    case ContinuousDifference::Fault::missed:
-      return "missed";
-    case ContinuousDifference::Fault::added:
-      return "added";
-    case ContinuousDifference::Fault::late:
-      return "late";
-    case ContinuousDifference::Fault::early:
-      break;
-  }
-  return "early";
 }
 
 void print_queries(const std::vector<QueryFileResult>& files, bool verified, bool list_false) {

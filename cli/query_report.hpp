@@ -35,7 +35,6 @@ struct QueryFileResult {
 };
 
 const char* name_of(QueryKind kind);
-const char* name_of(ContinuousDifference::Fault fault);
 
 /// A table with a row a file and a row for all; then, with `list_false`, a line a query that was answered
 /// wrongly.
