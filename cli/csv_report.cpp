@@ -3,10 +3,25 @@
 #include <fmt/core.h>
 #include <fmt/format.h>
 
+#include <array>
+
+#include "continuous_json.hpp"
+
 namespace supple::cli {
 
-CsvReport::CsvReport(const std::string& file_name) : file_(file_name) {
-  std::fputs("frame,a,b,i,j\n", file_.stream());
+namespace {
+
+/// An edge has two ids, a vertex and a face one.
+std::string ids_of(const std::array<std::uint32_t, 2>& element, ElementPairKind kind) {
+  if (kind == ElementPairKind::edge_edge) return fmt::format("{},{}", element[0], element[1]);
+  return fmt::format("{},", element[0]);
+}
+
+}  // namespace
+
+CsvReport::CsvReport(const std::string& file_name, ContactMode contacts) : file_(file_name) {
+  const bool continuous = contacts == ContactMode::continuous;
+  std::fputs(continuous ? "frame,a,b,kind,a0,a1,b0,b1,time,certainty\n" : "frame,a,b,i,j\n", file_.stream());
 }
 
 void CsvReport::add(const Frame& frame) {
@@ -14,6 +29,12 @@ void CsvReport::add(const Frame& frame) {
   for (const Contact& c : frame.result.contacts) {
     fmt::format_to(fmt::appender(rows), "{},{},{},{},{}\n", frame.number, c.object_a.index, c.object_b.index,
                    c.triangle_a, c.triangle_b);
+  }
+  for (const ContinuousContact& c : frame.result.continuous_contacts) {
+    fmt::format_to(fmt::appender(rows), "{},{},{},{},{},{},{},{}\n", frame.number, c.object_a.index,
+                   c.object_b.index, name_of(c.kind), ids_of(c.element_a, c.kind),
+                   ids_of(c.element_b, c.kind), c.time,
+                   c.certainty == ImpactCertainty::certain ? "certain" : "within_tolerance");
   }
   std::fwrite(rows.data(), 1, rows.size(), file_.stream());
   file_.check();

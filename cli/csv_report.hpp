@@ -4,14 +4,14 @@
 
 #include "output_file.hpp"
 #include "report.hpp"
+#include "supple/options.hpp"
 
 namespace supple::cli {
 
-/// A row a triangle pair, `frame,a,b,i,j`: objects a and b, equal for a contact of an object with itself, and
-/// their triangles.
+/// A row a contact, as docs/json.md describes them: the frame, the objects, and their triangles or elements.
 class CsvReport {
  public:
-  explicit CsvReport(const std::string& file_name);
+  CsvReport(const std::string& file_name, ContactMode contacts);
 
   void add(const Frame& frame);
   void finish() { file_.close(); }

@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cctype>
 #include <string>
 #include <string_view>
@@ -36,8 +37,14 @@ std::string spelling(const CLI::Option* option) {
   return fmt::format("{} {}", names, option->get_type_name());
 }
 
-std::string usage(const CLI::App& command) {
-  return fmt::format("supple {} [OPTIONS] MESH...|SCENE.toml", command.get_name());
+/// `[OPTIONS] MESH...|SCENE.toml`
+std::string arguments_of(const CLI::App& command) {
+  std::string inputs;
+  for (const CLI::Option* option : command.get_options()) {
+    if (option->get_positional()) inputs = option->get_name(true);
+  }
+  inputs.insert(std::min(inputs.find('|'), inputs.size()), "...");
+  return "[OPTIONS] " + inputs;
 }
 
 void print_markdown_options(const CLI::App& app) {
@@ -65,8 +72,8 @@ void print_markdown(const CLI::App& program) {
       program.get_description());
   print_markdown_footer(program.get_footer());
   for (const CLI::App* command : commands_of(program)) {
-    fmt::print("\n## supple {}\n\n{}.\n\n`{}`\n\n", command->get_name(), command->get_description(),
-               usage(*command));
+    fmt::print("\n## supple {}\n\n{}.\n\n`supple {} {}`\n\n", command->get_name(), command->get_description(),
+               command->get_name(), arguments_of(*command));
     print_markdown_options(*command);
     print_markdown_footer(command->get_footer());
   }
@@ -98,6 +105,7 @@ void print_roff_footer(const std::string& footer) {
   const std::size_t end_of_examples = footer.find("\n\n");
   const std::string examples = footer.substr(0, end_of_examples);
   fmt::print(".nf\n{}\n.fi\n", roff(examples.substr(examples.find('\n') + 1)));
+  if (end_of_examples != std::string::npos) fmt::print(".PP\n{}\n", roff(footer.substr(end_of_examples + 2)));
 }
 
 void print_man(const CLI::App& program) {
@@ -105,7 +113,7 @@ void print_man(const CLI::App& program) {
   fmt::print(
       ".SH NAME\nsupple \\- find every collision between triangle meshes that bend, exactly\n.SH SYNOPSIS\n");
   for (const CLI::App* command : commands_of(program))
-    fmt::print(".B supple {}\n[OPTIONS] MESH...|SCENE.toml\n.br\n", command->get_name());
+    fmt::print(".B supple {}\n{}\n.br\n", command->get_name(), arguments_of(*command));
   fmt::print(
       ".SH DESCRIPTION\n{}\nMeshes are OBJ, OFF, PLY or STL files, or glTF, FBX, COLLADA and others that "
       "Assimp reads; scene files are TOML.\n",
@@ -124,7 +132,7 @@ void print_man(const CLI::App& program) {
       ".TP\n.B 0\nDone.\n"
       ".TP\n.B 1\nWith \\-\\-fail\\-on\\-contact: something touches.\n"
       ".TP\n.B 2\nUsage or input error, told in one line on standard error.\n"
-      ".TP\n.B 3\nWith \\-\\-verify: brute force disagrees.\n");
+      ".TP\n.B 3\nWith \\-\\-verify: brute force disagrees. Of ccd\\-queries: an answer is false.\n");
 }
 
 }  // namespace

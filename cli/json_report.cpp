@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "continuous_json.hpp"
 #include "supple/version.hpp"
 
 namespace supple::cli {
@@ -114,6 +115,8 @@ void write_stats(JsonWriter& json, const StepStats& stats) {
   json.member("node_pairs_visited", stats.node_pairs_visited);
   json.member("boxes_tested", stats.boxes_tested);
   json.member("candidate_pairs", stats.candidate_pairs);
+  json.member("vertex_face_candidates", stats.vertex_face_candidates);
+  json.member("edge_edge_candidates", stats.edge_edge_candidates);
   json.member("exact_fallbacks", stats.exact_fallbacks);
   json.member("contacts", stats.contacts);
   json.end_object();
@@ -141,8 +144,8 @@ void write_verify(JsonWriter& json, const VerifyReport& report) {
 
 }  // namespace
 
-JsonReport::JsonReport(const std::string& file_name, const Scene& scene, bool with_stats)
-    : json_(file_name), with_points_(scene.options().contact_points), with_stats_(with_stats) {
+JsonReport::JsonReport(const std::string& file_name, const Scene& scene, const JsonContent& content)
+    : json_(file_name), options_(scene.options()), content_(content) {
   json_.begin_object();
   json_.member("supple", std::string(SUPPLE_VERSION));
   json_.key("objects");
@@ -164,17 +167,27 @@ void JsonReport::add(const Frame& frame) {
   json_.begin_object();
   json_.member("frame", frame.number);
   write_object_pairs(json_, "object_pairs", result.object_pairs);
-  write_groups(json_, "triangle_pairs", result, false);
-  write_groups(json_, "self", result, true);
-  write_contacts(json_, result, with_points_);
+  if (options_.contacts == ContactMode::continuous) {
+    write_continuous_groups(json_, result, !options_.impact.exact);
+    if (content_.contact_details) write_continuous_contacts(json_, result);
+  } else {
+    write_groups(json_, "triangle_pairs", result, false);
+    write_groups(json_, "self", result, true);
+    write_contacts(json_, result, options_.contact_points);
+  }
   json_.key("events");
   json_.begin_object();
   write_events(json_, "volumes", result.volume_events);
   write_events(json_, "contacts", result.contact_events);
   json_.end_object();
   write_non_finite(json_, result.non_finite_vertices);
-  if (frame.verify) write_verify(json_, *frame.verify);
-  if (with_stats_) write_stats(json_, result.stats);
+  if (frame.verify) {
+    if (options_.contacts == ContactMode::continuous)
+      write_continuous_verify(json_, *frame.verify);
+    else
+      write_verify(json_, *frame.verify);
+  }
+  if (content_.stats) write_stats(json_, result.stats);
   json_.end_object();
   json_.flush();
 }

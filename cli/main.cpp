@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <exception>
 
+#include "ccd_queries.hpp"
 #include "detect.hpp"
 #include "exit_status.hpp"
 #include "info.hpp"
@@ -19,6 +20,8 @@ int run(const CommandLine& line) {
       return run_detect(line.detect);
     case CommandLine::Command::info:
       return run_info(line.info);
+    case CommandLine::Command::ccd_queries:
+      return run_ccd_queries(line.ccd_queries);
     case CommandLine::Command::exit:
       break;
   }

@@ -4,7 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <array>
-#include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -12,6 +12,7 @@
 
 #include "documents.hpp"
 #include "exit_status.hpp"
+#include "option_kinds.hpp"
 #include "supple/version.hpp"
 #include "text.hpp"
 
@@ -20,11 +21,14 @@ namespace {
 
 constexpr const char* program_footer = R"(Examples:
   supple detect rabbit.obj fish.ply         which triangles of the two intersect?
+  supple detect --contacts continuous --self --sequence 'frame_*.obj'
+                                            what passes through something between two frames, and when?
   supple detect --help                      every option, with examples
   supple info rabbit.obj                    counts, bounds, holes, octree statistics
+  supple ccd-queries edge-edge/*.csv        single continuous queries, compared with the answers known
 
 Exit status: 0 done; 1 with --fail-on-contact when something touches; 2 usage or input error, told in one line;
-3 with --verify when brute force disagrees.)";
+3 with --verify when brute force disagrees, and of ccd-queries when an answer is false.)";
 
 constexpr const char* detect_footer = R"(Examples:
   supple detect rabbit.obj fish.ply
@@ -37,6 +41,10 @@ constexpr const char* detect_footer = R"(Examples:
       A scene file: objects with placement, options and motion.
   supple detect a.stl b.stl --fail-on-contact --quiet && echo apart
       For scripts: the exit status is 1 when anything touches.
+  supple detect --contacts continuous --self --sequence 'frame_*.ply' --json impacts.json
+      What passes through something between two frames: each vertex and face, each two edges, and when they first meet.
+  supple detect --contacts continuous --min-separation 0.001 scene.toml --steps 300
+      Elements already touch when they come within 0.001.
   supple detect rabbit.obj fish.ply --verify
       Check the result against exact brute force over all pairs of triangles.
   supple detect a.obj b.obj --json - --no-stats | sha256sum
@@ -50,49 +58,21 @@ constexpr const char* info_footer = R"(Examples:
   supple info scene.toml
       Every object of a scene, as placed.)";
 
-/// An option that takes one of a few words. The first choice is the default.
-template <class Enum>
-CLI::Option* add_choice(CLI::App& app, const std::string& name, Enum& value,
-                        const std::vector<std::pair<std::string, Enum>>& choices,
-                        const std::string& description) {
-  std::string words, alternatives;
-  for (const auto& [word, meaning] : choices) {
-    words += (words.empty() ? "" : "|") + word;
-    alternatives += (alternatives.empty() ? "" : ", ") + word;
-  }
-  const auto parse = [&value, choices, alternatives, name](const std::string& given) {
-    for (const auto& [word, meaning] : choices) {
-      if (word != given) continue;
-      value = meaning;
-      return;
-    }
-    throw CLI::ValidationError(name, fmt::format("'{}' is not one of {}", given, alternatives));
-  };
-  return app
-      .add_option_function<std::string>(name, parse,
-                                        fmt::format("{} (default: {})", description, choices.front().first))
-      ->type_name(words);
-}
+constexpr const char* ccd_queries_footer = R"(Examples:
+  supple ccd-queries sample-queries/*/vertex-face/*.csv
+      How many touch, how many of the answers in the files are missed, and the time a query takes?
+  supple ccd-queries --kind edge-edge queries.csv --list-false
+      The kind is told by a folder named vertex-face or edge-edge, or a file name that ends in vf or ee; else say it.
+  supple ccd-queries 227vf.csv --answers 227vf_mma_bool.json
+      Answers from a JSON list of true and false.
+  supple ccd-queries data.csv --kind vertex-face --min-separation 0.01 --verify
+      Elements touch that come within 0.01; algebra decides each query anew.
+  supple ccd-queries 227vf.csv --json - --no-stats
+      The time of every impact as JSON, the same bytes in every run.
 
-/// A number from `lowest` to `highest`.
-template <class Number>
-CLI::Option* add_number(CLI::App& app, const std::string& name, Number& value, std::uint32_t lowest,
-                        std::uint32_t highest, const std::string& description) {
-  const auto parse = [&value, lowest, highest, name](const std::string& given) {
-    std::uint32_t number = 0;
-    if (!CLI::detail::lexical_cast(given, number) || number < lowest || number > highest ||
-        given.find_first_not_of("0123456789") != std::string::npos)
-      throw CLI::ValidationError(
-          name, fmt::format("'{}' is not a whole number from {} to {}", given, lowest, highest));
-    value = number;
-  };
-  return app.add_option_function<std::string>(name, parse, description)->type_name("N");
-}
-
-CLI::Option* add_file(CLI::App& app, const std::string& name, std::string& value,
-                      const std::string& description) {
-  return app.add_option(name, value, description)->type_name("FILE|-");
-}
+A query is eight rows: the vertices v, f0, f1, f2 of a vertex and a face, or a0, a1, b0, b1 of two edges, at the start
+of the step, and the same at its end. A row is numerator,denominator of x, y and z, whole numbers of any size, and
+perhaps the answer, 0 or 1, the same in all eight. Each coordinate must be exactly a double.)";
 
 std::array<CLI::Option*, 2> add_octree_options(CLI::App& app, std::optional<std::uint32_t>& max_level,
                                                std::optional<std::uint32_t>& leaf_size) {
@@ -104,19 +84,27 @@ std::array<CLI::Option*, 2> add_octree_options(CLI::App& app, std::optional<std:
                  fmt::format("Triangles up to which a node is not split (default: {})", defaults.leaf_size))};
 }
 
-/// An option that means something only together with a certain choice of another.
-struct Dependence {
-  const CLI::Option* option;
-  std::function<bool()> satisfied;
-  std::string needs;
-};
-using Dependences = std::vector<Dependence>;
+std::array<CLI::Option*, 2> add_impact_options(CLI::App& app, ImpactOptions& impact) {
+  return {add_length(app, "--min-separation", impact.min_separation,
+                     "Continuous contacts begin when elements come this close, in the unit of the "
+                     "coordinates (default: 0)"),
+          add_choice<bool>(app, "--undecided", impact.exact, {{"exact", true}, {"report", false}},
+                           "Continuous contacts that floating point cannot tell: decided by exact "
+                           "arithmetic, or reported as within tolerance")};
+}
 
-void check(const Dependences& dependences) {
-  for (const Dependence& d : dependences) {
-    if (d.option->count() > 0 && !d.satisfied())
-      throw CLI::ValidationError(d.option->get_name(), "has no effect without " + d.needs);
-  }
+void add_kind(CLI::App& app, std::optional<QueryKind>& kind) {
+  const std::map<std::string, QueryKind> kinds{{"vertex-face", QueryKind::vertex_face},
+                                               {"edge-edge", QueryKind::edge_edge}};
+  const auto parse = [&kind, kinds](const std::string& given) {
+    const auto found = kinds.find(given);
+    if (found == kinds.end())
+      throw CLI::ValidationError("--kind", fmt::format("'{}' is not one of vertex-face, edge-edge", given));
+    kind = found->second;
+  };
+  app.add_option_function<std::string>("--kind", parse,
+                                       "What the queries are about (default: told by the paths)")
+      ->type_name("vertex-face|edge-edge");
 }
 
 void add_input_options(CLI::App& app, DetectOptions& options) {
@@ -129,26 +117,39 @@ void add_input_options(CLI::App& app, DetectOptions& options) {
          "gives its files in natural number order")
       ->group("Input");
   add_number(app, "--steps", options.steps, 1, 1'000'000'000,
-             "Frames of a scene file to go through (default: 1)")
+             "Frames of a scene file to go through, or steps from frame to frame of continuous contacts "
+             "(default: 1)")
       ->group("Input");
 }
 
 void add_stage_options(CLI::App& app, DetectOptions& options, Dependences& dependences) {
   SceneOptions& scene = options.scene;
   const auto group = [](CLI::Option* option) { return option->group("Detection"); };
-  group(add_choice<ContactMode>(app, "--contacts", scene.contacts,
-                                {{"intersection", ContactMode::intersection}, {"none", ContactMode::none}},
-                                "Exact stage: every intersecting pair of triangles, or object pairs only"));
+  group(add_choice<ContactMode>(
+      app, "--contacts", scene.contacts,
+      {{"intersection", ContactMode::intersection},
+       {"continuous", ContactMode::continuous},
+       {"none", ContactMode::none}},
+      "Exact stage: every intersecting pair of triangles; every vertex and face and every two "
+      "edges that touch between a frame and the next, and when; or object pairs only"));
   group(app.add_flag("--self", options.self, "Also test every object against itself"));
-  group(app.add_flag_callback(
-      "--no-contact-points", [&] { scene.contact_points = false; }, "Leave out the points of each contact"));
+  dependences.push_back({group(app.add_flag_callback(
+                             "--no-contact-points", [&] { scene.contact_points = false; },
+                             "Leave out the points of each contact")),
+                         [&] { return scene.contacts != ContactMode::continuous; },
+                         "--contacts intersection"});
+  for (CLI::Option* option : add_impact_options(app, scene.impact))
+    dependences.push_back(
+        {group(option), [&] { return scene.contacts == ContactMode::continuous; }, "--contacts continuous"});
   dependences.push_back({group(app.add_flag("--fail-on-contact", options.fail_on_contact,
                                             "Exit with status 1 when anything touches")),
-                         [&] { return scene.contacts != ContactMode::none; }, "--contacts intersection"});
+                         [&] { return scene.contacts != ContactMode::none; },
+                         "--contacts intersection or continuous"});
   dependences.push_back({group(app.add_flag("--verify", options.verify,
                                             "Check each frame against exact brute force over all pairs of "
-                                            "triangles; differences exit with status 3")),
-                         [&] { return scene.contacts != ContactMode::none; }, "--contacts intersection"});
+                                            "triangles, or of elements; differences exit with status 3")),
+                         [&] { return scene.contacts != ContactMode::none; },
+                         "--contacts intersection or continuous"});
   group(
       add_number(app, "--threads", scene.threads, 0, 1024, "Worker threads, 0 for one a core (default: 0)"));
 }
@@ -185,13 +186,21 @@ void add_output_options(CLI::App& app, DetectOptions& options, Dependences& depe
   const auto group = [](CLI::Option* option) { return option->group("Output"); };
   group(
       add_file(app, "--json", options.json, "Write the whole result, frame by frame; - is standard output"));
-  group(add_file(app, "--csv", options.csv,
-                 "Write a row a triangle pair: frame,a,b,i,j; - is standard output"));
+  group(add_file(
+      app, "--csv", options.csv,
+      "Write a row a contact: frame,a,b,i,j of triangles, or frame,a,b,kind,a0,a1,b0,b1,time,certainty; - is "
+      "standard output"));
   dependences.push_back({group(app.add_flag_callback(
-                             "--no-stats", [&] { options.json_stats = false; },
+                             "--no-stats", [&] { options.json_content.stats = false; },
                              "Leave times and counts out of the JSON, so that equal results are "
                              "equal files")),
                          [&] { return !options.json.empty(); }, "--json"});
+  dependences.push_back(
+      {group(app.add_flag(
+           "--contact-details", options.json_content.contact_details,
+           "Also write of each continuous contact the weights, the point and the normal to the JSON")),
+       [&] { return !options.json.empty() && options.scene.contacts == ContactMode::continuous; },
+       "--json and --contacts continuous"});
   group(app.add_flag("--quiet", options.quiet, "No tables and no progress"));
 }
 
@@ -212,6 +221,37 @@ CLI::App* add_info(CLI::App& program, InfoOptions& options) {
   app->add_option("MESH|SCENE.toml", options.inputs, "Meshes, or one scene file")->required()->type_name("");
   add_octree_options(*app, options.max_level, options.leaf_size);
   add_file(*app, "--json", options.json, "Write the same as JSON; - is standard output");
+  return app;
+}
+
+CLI::App* add_ccd_queries(CLI::App& program, CcdQueriesOptions& options, Dependences& dependences) {
+  CLI::App* app = program.add_subcommand(
+      "ccd-queries",
+      "Put single vertex-face and edge-edge queries of continuous collision, as published with answers");
+  app->footer(ccd_queries_footer);
+  app->add_option("FILE.csv", options.inputs, "Files of queries")->required()->type_name("");
+  add_kind(*app, options.kind);
+  app->add_option("--answers", options.answers,
+                  "JSON list of true and false, one a query, for a file without a column of answers; once "
+                  "for each file, "
+                  "in the same order")
+      ->type_name("FILE")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  add_impact_options(*app, options.impact);
+  app->add_flag(
+      "--verify", options.verify,
+      "Decide each query by algebra too, and compare outcome and time; differences exit with status 3");
+  dependences.push_back(
+      {app->add_flag("--list-false", options.list_false, "Name each query that was answered falsely"),
+       [&] { return !options.quiet && options.json != "-"; }, "tables on standard output"});
+  add_file(*app, "--json", options.json,
+           "Write the time of every impact and all counts; - is standard output");
+  dependences.push_back({app->add_flag_callback(
+                             "--no-stats", [&] { options.json_stats = false; },
+                             "Leave measured times out of the JSON, so that equal results are equal files"),
+                         [&] { return !options.json.empty(); }, "--json"});
+  app->add_flag("--quiet", options.quiet, "No table and no progress");
   return app;
 }
 
@@ -242,6 +282,7 @@ CommandLine parse_command_line(int argument_count, const char* const* arguments)
   Dependences dependences;
   const CLI::App* detect = add_detect(program, result.detect, dependences);
   const CLI::App* info = add_info(program, result.info);
+  add_ccd_queries(program, result.ccd_queries, dependences);
   try {
     program.parse(argument_count, arguments);
     if (!document.empty()) {
@@ -251,8 +292,9 @@ CommandLine parse_command_line(int argument_count, const char* const* arguments)
     if (program.get_subcommands().empty()) throw CLI::RequiredError::Subcommand(1);
     check(dependences);
     check_outputs(result.detect);
-    result.command = detect->parsed() ? CommandLine::Command::detect : CommandLine::Command::info;
-    (void)info;
+    result.command = detect->parsed() ? CommandLine::Command::detect
+                     : info->parsed() ? CommandLine::Command::info
+                                      : CommandLine::Command::ccd_queries;
   } catch (const CLI::Success& success) {  // help and version
     result.exit_status = program.exit(success);
   } catch (const CLI::ParseError& error) {

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "json_report.hpp"
+#include "query_file.hpp"
 #include "supple/options.hpp"
 
 namespace supple::cli {
@@ -20,7 +22,7 @@ struct DetectOptions {
   bool verify = false;
   bool fail_on_contact = false;
   bool quiet = false;
-  bool json_stats = true;
+  JsonContent json_content;
   std::string json, csv;  ///< empty: none; "-": standard output
 };
 
@@ -31,12 +33,26 @@ struct InfoOptions {
   std::string json;
 };
 
+/// Of `supple ccd-queries`.
+struct CcdQueriesOptions {
+  std::vector<std::string> inputs;   ///< query files or patterns
+  std::vector<std::string> answers;  ///< none, or one for each query file
+  std::optional<QueryKind> kind;     ///< told by the paths when absent
+  ImpactOptions impact;
+  bool verify = false;
+  bool list_false = false;
+  bool quiet = false;
+  bool json_stats = true;
+  std::string json;
+};
+
 struct CommandLine {
-  enum class Command { detect, info, exit };
+  enum class Command { detect, info, ccd_queries, exit };
   Command command = Command::exit;
   int exit_status = 0;  ///< of `Command::exit`: help, version or a usage error, already printed
   DetectOptions detect;
   InfoOptions info;
+  CcdQueriesOptions ccd_queries;
 };
 
 /// Prints help, version and generated documents to standard output, a usage error as one line to standard

@@ -16,12 +16,11 @@ Progress::~Progress() {
   if (shown_) fmt::print(stderr, "\r\033[K");
 }
 
-void Progress::update(std::uint64_t done) {
+void Progress::update(std::uint64_t done, std::string_view what) {
   if (!enabled_ || Clock::now() < next_) return;
   constexpr std::uint64_t width = 40;
   const std::uint64_t filled = done * width / total_;
-  fmt::print(stderr, "\r[{}{}] frame {} of {}\033[K", std::string(filled, '#'),
-             std::string(width - filled, '.'), done, total_);
+  fmt::print(stderr, "\r[{}{}] {}\033[K", std::string(filled, '#'), std::string(width - filled, '.'), what);
   shown_ = true;
   next_ = Clock::now() + std::chrono::milliseconds(100);
 }

@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <string_view>
 
 namespace supple::cli {
 
@@ -15,7 +16,8 @@ class Progress {
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  void update(std::uint64_t done);
+  /// `what` says it in words: `frame 3 of 10`.
+  void update(std::uint64_t done, std::string_view what);
 
  private:
   using Clock = std::chrono::steady_clock;

@@ -42,6 +42,10 @@ std::string valid_utf8(std::string_view text) {
   return valid;
 }
 
+std::string name_of(const Scene& scene, ObjectId object) {
+  return fmt::format("{} {}", object.index, scene.name(object));
+}
+
 std::string grouped(std::uint64_t number) {
   std::string text = fmt::format("{}", number);
   for (std::size_t at = text.size(); at > 3; at -= 3) text.insert(at - 3, 1, ',');
@@ -49,7 +53,11 @@ std::string grouped(std::uint64_t number) {
 }
 
 std::string counted(std::uint64_t number, const std::string& noun) {
-  return fmt::format("{} {}{}", grouped(number), noun, number == 1 ? "" : "s");
+  return counted(number, noun, noun + "s");
+}
+
+std::string counted(std::uint64_t number, const std::string& noun, const std::string& nouns) {
+  return fmt::format("{} {}", grouped(number), number == 1 ? noun : nouns);
 }
 
 }  // namespace supple::cli

@@ -1,8 +1,11 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <string_view>
+
+#include "supple/scene.hpp"
 
 namespace supple::cli {
 
@@ -13,10 +16,18 @@ std::string one_line(std::string text);
 /// The text with every byte that is not part of valid UTF-8 made U+FFFD: file names need not be text at all.
 std::string valid_utf8(std::string_view text);
 
+/// A table of more rows says how many it leaves out.
+inline constexpr std::size_t most_rows = 40;
+
+/// An object in a table: its number and name.
+std::string name_of(const Scene& scene, ObjectId object);
+
 /// 1234567 as 1,234,567.
 std::string grouped(std::uint64_t number);
 
 /// `1 frame`, `2 frames`.
 std::string counted(std::uint64_t number, const std::string& noun);
+/// `1 query`, `2 queries`.
+std::string counted(std::uint64_t number, const std::string& noun, const std::string& nouns);
 
 }  // namespace supple::cli

@@ -12,9 +12,6 @@
 namespace supple::cli {
 namespace {
 
-/// A table of more rows says how many it leaves out.
-constexpr std::size_t most_rows = 40;
-
 void add_to(StepStats& sum, const StepStats& stats) {
   sum.refit_seconds += stats.refit_seconds;
   sum.broad_phase_seconds += stats.broad_phase_seconds;
@@ -28,12 +25,10 @@ void add_to(StepStats& sum, const StepStats& stats) {
   sum.node_pairs_visited += stats.node_pairs_visited;
   sum.boxes_tested += stats.boxes_tested;
   sum.candidate_pairs += stats.candidate_pairs;
+  sum.vertex_face_candidates += stats.vertex_face_candidates;
+  sum.edge_edge_candidates += stats.edge_edge_candidates;
   sum.exact_fallbacks += stats.exact_fallbacks;
   sum.contacts += stats.contacts;
-}
-
-std::string name_of(const Scene& scene, ObjectId object) {
-  return fmt::format("{} {}", object.index, scene.name(object));
 }
 
 }  // namespace
@@ -47,28 +42,35 @@ void TextReport::add(const Frame& frame) {
     pair.triangle_pairs += group.contact_count;
     pair.most = std::max(pair.most, std::uint64_t{group.contact_count});
   }
+  impacts_.add(frame);
   add_to(sum_, result.stats);
   begun_ += result.contact_events.begin.size();
   ended_ += result.contact_events.end.size();
   non_finite_ = result.non_finite_vertices.size();
   if (!frame.verify) return;
   verified_ = true;
-  checked_ += frame.verify->triangle_pairs_checked;
-  differences_ += frame.verify->differences.size();
+  checked_ += frame.verify->triangle_pairs_checked + frame.verify->element_pairs_checked;
+  differences_ += frame.verify->differences.size() + frame.verify->continuous_differences.size();
 }
 
 void TextReport::print(const Scene& scene) const {
+  const char* const frame = scene.options().contacts == ContactMode::continuous ? "step" : "frame";
   const std::vector<ObjectId> objects = scene.objects();
   std::uint64_t triangles = 0;
   for (const ObjectId object : objects) triangles += scene.triangle_count(object);
   fmt::print("{}, {}, {}\n\n", counted(objects.size(), "object"), counted(triangles, "triangle"),
-             counted(frames_, "frame"));
-  if (scene.options().contacts != ContactMode::none) print_pairs(scene);
-  print_stages();
+             counted(frames_, frame));
+  print_contacts(scene);
+  print_stages(frame);
   if (non_finite_ > 0)
     fmt::print("\n{} not finite in the last frame: triangles that use such vertices touch nothing\n",
                counted(non_finite_, "position"));
-  if (verified_) print_verify();
+  if (verified_) print_verify(scene);
+}
+
+void TextReport::print_contacts(const Scene& scene) const {
+  if (scene.options().contacts == ContactMode::intersection) print_pairs(scene);
+  if (scene.options().contacts == ContactMode::continuous) impacts_.print(scene);
 }
 
 void TextReport::print_pairs(const Scene& scene) const {
@@ -97,19 +99,21 @@ void TextReport::print_pairs(const Scene& scene) const {
              counted(sum_.contacts, "triangle pair"), counted(begun_, "time"), counted(ended_, "time"));
 }
 
-void TextReport::print_stages() const {
+void TextReport::print_stages(const char* frame) const {
   const double frames = static_cast<double>(std::max<std::uint64_t>(frames_, 1));
   const auto row = [&](const char* stage, double seconds, const std::string& work) {
     const double share = sum_.total_seconds > 0 ? 100 * seconds / sum_.total_seconds : 0;
     fmt::print("{:<12} {:>14.3f} {:>7.0f} %   {}\n", stage, 1e3 * seconds / frames, share, work);
   };
-  fmt::print("{:<12} {:>14} {:>9}   {}\n", "stage", "ms a frame", "share", "in all frames");
+  fmt::print("{:<12} {:>14} {:>9}   in all {}s\n", "stage", fmt::format("ms a {}", frame), "share", frame);
   row("refit", sum_.refit_seconds, counted(sum_.triangles_refitted, "triangle"));
   row("broad phase", sum_.broad_phase_seconds,
       fmt::format("{} of {} tested", counted(sum_.object_pairs, "object pair"),
                   grouped(sum_.object_pairs_tested)));
   row("traversal", sum_.traversal_seconds,
-      fmt::format("{} from {}", counted(sum_.candidate_pairs, "candidate"),
+      fmt::format("{} from {}",
+                  counted(sum_.candidate_pairs + sum_.vertex_face_candidates + sum_.edge_edge_candidates,
+                          "candidate"),
                   counted(sum_.boxes_tested, "box test")));
   row("exact", sum_.exact_seconds,
       fmt::format("{}, {} decided by exact arithmetic", counted(sum_.contacts, "contact"),
@@ -118,8 +122,10 @@ void TextReport::print_stages() const {
   row("total", sum_.total_seconds, "");
 }
 
-void TextReport::print_verify() const {
-  fmt::print("\nverified: {} checked by brute force, {}\n", counted(checked_, "triangle pair"),
+void TextReport::print_verify(const Scene& scene) const {
+  const bool continuous = scene.options().contacts == ContactMode::continuous;
+  fmt::print("\nverified: {} checked by brute force, {}\n",
+             counted(checked_, continuous ? "element pair" : "triangle pair"),
              differences_ == 0 ? "no difference" : counted(differences_, "difference"));
 }
 

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <map>
 
+#include "impact_tables.hpp"
 #include "report.hpp"
 #include "supple/scene.hpp"
 
@@ -22,12 +23,14 @@ class TextReport {
     std::uint64_t most = 0;  ///< triangle pairs in one frame
   };
 
+  void print_contacts(const Scene& scene) const;
   void print_pairs(const Scene& scene) const;
-  void print_stages() const;
-  void print_verify() const;
+  void print_stages(const char* frame) const;
+  void print_verify(const Scene& scene) const;
 
   std::uint64_t frames_ = 0;
   std::map<ObjectPair, PairSummary> pairs_;
+  ImpactTables impacts_;  ///< of continuous contacts
   StepStats sum_;
   std::uint64_t begun_ = 0, ended_ = 0;
   std::uint64_t non_finite_ = 0;  ///< in the last frame

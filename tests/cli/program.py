@@ -45,6 +45,20 @@ FAR = ([(5.0, 0.0, 0.0), (6.0, 0.0, 0.0), (5.0, 1.0, 0.0)], [(0, 1, 2)])
 # Two triangles without a common vertex, crossing each other.
 CROSSED = (TRIANGLE[0] + UPRIGHT[0], [(0, 1, 2), (3, 4, 5)])
 
+# A face, and another whose vertex 0 points down at it: moved down by 2, it goes through the face at half of the step.
+FLOOR = ([(0.0, 0.0, 0.0), (4.0, 0.0, 0.0), (0.0, 4.0, 0.0)], [(0, 1, 2)])
+SPIKE = ([(1.0, 1.0, 1.0), (1.25, 1.0, 5.0), (1.0, 1.25, 5.0)], [(0, 1, 2)])
+
+
+def moved(mesh, x, y, z):
+    return ([(vx + x, vy + y, vz + z) for vx, vy, vz in mesh[0]], mesh[1])
+
+
+def joined(a, b):
+    """Both meshes as one, the vertices and triangles of the second after those of the first."""
+    first = len(a[0])
+    return (a[0] + b[0], a[1] + [tuple(v + first for v in t) for t in b[1]])
+
 
 class ProgramTest(unittest.TestCase):
     """A test with a folder of its own."""

@@ -1,9 +1,12 @@
-"""Large public meshes whose intersecting triangle pairs are known exactly: every pair must be found, and no other."""
+"""Large public meshes whose intersecting triangle pairs, and in motion whose touching elements, are known exactly: all of
+them must be found, and no other."""
 
 import hashlib
 import json
 import os
 import pathlib
+import re
+import struct
 import sys
 import unittest
 
@@ -26,6 +29,38 @@ def placement(transform):
         else:
             keys.append(f"translate = {[float(t) for t in value.split(':')]}")
     return "\n".join(keys)
+
+
+def read_obj_triangles(path):
+    triangles = []
+    for line in path.read_text().splitlines():
+        if line.startswith("f "):
+            corners = [int(corner.split("/")[0]) - 1 for corner in line.split()[1:]]
+            triangles += [(corners[0], corners[i], corners[i + 1]) for i in range(1, len(corners) - 1)]
+    return triangles
+
+
+def read_ply_triangles(path):
+    """Of a binary PLY file of triangles: a count in a byte and three ids in four bytes each, to the end of the file."""
+    content = path.read_bytes()
+    header = content[: content.index(b"end_header")].decode()
+    row = (">" if "big_endian" in header else "<") + "B3i"
+    (count,) = re.findall(r"element face (\d+)", header)
+    faces = content[len(content) - int(count) * struct.calcsize(row) :]
+    return [corners for _, *corners in struct.iter_unpack(row, faces)]
+
+
+def edge_numbers(path):
+    """The published numbers of edges (smaller id, larger id): ordered by the larger, then the smaller."""
+    triangles = read_obj_triangles(path) if path.suffix == ".obj" else read_ply_triangles(path)
+    edges = {(min(e), max(e)) for a, b, c in triangles for e in ((a, b), (b, c), (c, a))}
+    return {edge: number for number, edge in enumerate(sorted(edges, key=lambda e: (e[1], e[0])))}
+
+
+def read_contacts(path):
+    """The time of each published contact (kind, first, second), as text."""
+    rows = (line.split() for line in path.read_text().splitlines())
+    return {(kind, int(first), int(second)): time for kind, first, second, time in rows}
 
 
 def digest(pairs):
@@ -66,6 +101,48 @@ class Truth(ProgramTest):
         for case, frame in zip(cases, frames):
             with self.subTest(case["name"]):
                 self.expect(case, frame["self"][0]["pairs"])
+
+    def expect_step(self, case, step, edges):
+        self.assertEqual(len(edges), case["edges"])
+        (group,) = step["continuous"]
+        found = {("vf", v, f): time for v, f, time in group["vf"]}
+        for a0, a1, b0, b1, time in group["ee"]:
+            pair = sorted((edges[a0, a1], edges[b0, b1]))
+            found["ee", *pair] = time
+        self.assertEqual(len(found), len(group["vf"]) + len(group["ee"]))
+        for kind in ("vf", "ee"):
+            pairs = sorted((first, second) for k, first, second in found if k == kind)
+            truth = case[f"touching_{kind}"]
+            self.assertEqual((len(pairs), digest(pairs)), (truth["pairs"], truth["sha256_of_sorted_pairs"]))
+        self.expect_times(found, read_contacts(DATA / f"contacts/{case['name']}.txt"))
+
+    def expect_times(self, found, published):
+        self.assertEqual(set(found), set(published))
+        for contact, text in published.items():
+            # Fifteen digits: the truth is within half a unit of the last.
+            early, late = float(text) * (1 - 1e-14) - 2.0**-30, float(text) * (1 + 1e-14)
+            self.assertTrue(early <= found[contact] <= late, f"{contact}: {found[contact]}, published {text}")
+
+    def test_steps(self):
+        cases = {case["name"]: case for case in self.truth["steps"]}
+        for name in ("cloth-funnel-227-228", "cloth-ball-92-93"):
+            with self.subTest(name):
+                case = cases[name]
+                frames = [DATA / case["frame0"], DATA / case["frame1"]]
+                (step,) = self.detect("--contacts", "continuous", "--self", "--sequence", *frames)["frames"]
+                self.expect_step(case, step, edge_numbers(frames[0]))
+
+    def test_sequence_of_steps(self):
+        cases = [case for case in self.truth["steps"] if case["name"].startswith("kick-")]
+        edges = edge_numbers(DATA / cases[0]["frame0"])
+        steps = self.detect("--contacts", "continuous", "--self", "--sequence", DATA / "kick/*.obj")["frames"]
+        self.assertEqual(len(steps), len(cases))
+        for case, step in zip(cases, steps):
+            with self.subTest(case["name"]):
+                if case["touching_vf"]["pairs"] + case["touching_ee"]["pairs"] == 0:
+                    self.assertEqual((step["continuous"], step["earliest"]), ([], None))
+                else:
+                    self.expect_step(case, step, edges)
 
 
 if __name__ == "__main__":

@@ -4,7 +4,7 @@ import re
 import subprocess
 import unittest
 
-from program import CROSSED, FAR, PROGRAM, TRIANGLE, UPRIGHT, ProgramTest, run
+from program import CROSSED, FAR, FLOOR, PROGRAM, SPIKE, TRIANGLE, UPRIGHT, ProgramTest, joined, moved, run
 
 
 class Help(ProgramTest):
@@ -14,7 +14,7 @@ class Help(ProgramTest):
         self.assertRegex(done.out, r"^supple \d+\.\d+\.\d+\n$")
 
     def test_help_teaches_by_example(self):
-        for command in ("detect", "info"):
+        for command in ("detect", "info", "ccd-queries"):
             done = run(command, "--help")
             self.assertEqual((done.status, done.error), (0, ""))
             options, examples = done.out.split("Examples:")
@@ -26,7 +26,7 @@ class Help(ProgramTest):
     def test_help_of_the_program_names_the_commands(self):
         done = run("--help")
         self.assertEqual(done.status, 0)
-        for word in ("detect", "info", "Examples:", "Exit status"):
+        for word in ("detect", "info", "ccd-queries", "Examples:", "Exit status"):
             self.assertIn(word, done.out)
 
 
@@ -46,13 +46,13 @@ class UsageErrors(ProgramTest):
         self.expect("explode", parts=["explode"])
         self.expect("detect", parts=["required"])
         self.expect("info", parts=["required"])
+        self.expect("ccd-queries", parts=["required"])
 
     def test_stages_that_do_not_exist_are_usage_errors(self):
         self.expect("detect", "a.obj", "--distance", "1", parts=["--distance"])
         self.expect("detect", "a.obj", "--bounding-volume", "obb", parts=["--bounding-volume", "aabb, sphere"])
         self.expect("detect", "a.obj", "--bounding-volume", "kdop", parts=["--bounding-volume", "aabb, sphere"])
-        self.expect("detect", "a.obj", "--contacts", "proximity", parts=["--contacts", "intersection, none"])
-        self.expect("detect", "a.obj", "--contacts", "continuous", parts=["--contacts", "intersection, none"])
+        self.expect("detect", "a.obj", "--contacts", "proximity", parts=["--contacts", "intersection, continuous, none"])
 
     def test_values(self):
         self.expect("detect", "a.obj", "--threads", "-1", parts=["--threads", "'-1'", "0 to 1024"])
@@ -61,6 +61,9 @@ class UsageErrors(ProgramTest):
         self.expect("detect", "a.obj", "--max-level", "33", parts=["--max-level", "'33'", "0 to 32"])
         self.expect("detect", "a.obj", "--leaf-size", "0", parts=["--leaf-size", "'0'"])
         self.expect("detect", "scene.toml", "--steps", "0", parts=["--steps", "'0'"])
+        for value in ("-1", "inf", "nan", "1e999", "1 ", "x", ""):
+            self.expect("detect", "a.obj", "--contacts", "continuous", "--min-separation", value, parts=["--min-separation", f"'{value}'", "from 0 up"])
+        self.expect("detect", "a.obj", "--contacts", "continuous", "--undecided", "yes", parts=["--undecided", "exact, report"])
         self.expect("detect", "a.obj", "--broad-phase", "", parts=["--broad-phase", "octree, sweep, brute"])
         self.expect("detect", "a.obj", "--json", parts=["--json"])
 
@@ -71,6 +74,11 @@ class UsageErrors(ProgramTest):
         self.expect("detect", "a.obj", "--steps", "3", parts=["--steps", "scene file"])
         for flag in ("--verify", "--fail-on-contact"):
             self.expect("detect", "a.obj", "--contacts", "none", flag, parts=[flag, "--contacts intersection"])
+        for flag in (("--min-separation", "0"), ("--undecided", "report"), ("--contact-details", "--json", "x")):
+            self.expect("detect", "a.obj", *flag, parts=[flag[0], "--contacts continuous"])
+            self.expect("detect", "a.obj", "--contacts", "none", *flag, parts=[flag[0], "--contacts continuous"])
+        self.expect("detect", "a.obj", "--contacts", "continuous", "--contact-details", parts=["--contact-details", "--json"])
+        self.expect("detect", "a.obj", "--contacts", "continuous", "--no-contact-points", parts=["--no-contact-points", "--contacts intersection"])
         self.expect("detect", "a.obj", "--json", "-", "--csv", "-", parts=["--csv", "--json"])
 
     def test_inputs(self):
@@ -81,6 +89,10 @@ class UsageErrors(ProgramTest):
         self.expect("detect", "--sequence", "a.obj", "none.obj", parts=["none.obj", "no such file"])
         self.expect("detect", ".", parts=["."])
         self.expect("info", "nothing.obj", parts=["nothing.obj", "no such file"])
+
+    def test_continuous_contacts_of_one_frame(self):
+        self.write("frame_1.obj", TRIANGLE)
+        self.expect("detect", "--contacts", "continuous", "--sequence", "frame_*.obj", parts=["frame_1.obj", "two frames"])
 
     def test_broken_mesh_names_file_and_line(self):
         self.write("bad.obj", "v 0 0 0\nv 1 0 0\nf 1 2 99\n")
@@ -135,6 +147,13 @@ class ExitStatus(ProgramTest):
         apart = (CROSSED[0][:3] + [(x + 9, y, z) for x, y, z in CROSSED[0][3:]], CROSSED[1])
         self.write("frame_2.obj", apart)
         self.assertEqual(self.status("--sequence", "frame_*.obj", "--self", "--fail-on-contact"), 1)
+
+    def test_fail_on_contact_within_any_step(self):
+        for number, height in enumerate((4, 1, -1, -20)):
+            self.write(f"fall_{number}.obj", joined(FLOOR, moved(SPIKE, 0, 0, height)))
+        falls = ("--contacts", "continuous", "--self", "--fail-on-contact", "--sequence")
+        self.assertEqual(self.status(*falls, "fall_?.obj"), 1)
+        self.assertEqual(self.status(*falls, "fall_0.obj", "fall_1.obj"), 0)
 
     def test_verify_agrees(self):
         self.assertEqual(self.status("a.obj", "b.obj", "--verify"), 0)

@@ -1,0 +1,196 @@
+#include "continuous_json.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace supple::cli {
+namespace {
+
+using Contacts = std::span<const ContinuousContact>;
+using Kind = ElementPairKind;
+using Element = std::array<std::uint32_t, 2>;
+
+/// The kinds that a group can have: of one object with itself the vertex is always the element of a.
+std::vector<Kind> kinds_of(const ContactGroup& group) {
+  if (group.a == group.b) return {Kind::vertex_face, Kind::edge_edge};
+  return {Kind::vertex_face, Kind::face_vertex, Kind::edge_edge};
+}
+
+/// Those of one kind stand together.
+Contacts of_kind(Contacts group, Kind kind) {
+  const auto is_before = [&](const ContinuousContact& c) { return c.kind < kind; };
+  const auto is_not_after = [&](const ContinuousContact& c) { return c.kind <= kind; };
+  const auto first = std::partition_point(group.begin(), group.end(), is_before);
+  return {first, std::partition_point(first, group.end(), is_not_after)};
+}
+
+/// One id of a vertex or a face, two of an edge.
+void write_ids(JsonWriter& json, const Element& element, Kind kind) {
+  json.value(std::uint64_t{element[0]});
+  if (kind == Kind::edge_edge) json.value(std::uint64_t{element[1]});
+}
+
+/// A row a contact: the ids of both elements and the time.
+void write_rows(JsonWriter& json, Contacts contacts) {
+  json.begin_array();
+  for (const ContinuousContact& contact : contacts) {
+    json.begin_array();
+    write_ids(json, contact.element_a, contact.kind);
+    write_ids(json, contact.element_b, contact.kind);
+    json.value(contact.time);
+    json.end_array();
+  }
+  json.end_array();
+}
+
+/// The rows, counted from 0, of those that are only within tolerance.
+void write_uncertain_rows(JsonWriter& json, Contacts contacts) {
+  json.begin_array();
+  for (std::size_t row = 0; row < contacts.size(); ++row) {
+    if (contacts[row].certainty != ImpactCertainty::certain) json.value(std::uint64_t{row});
+  }
+  json.end_array();
+}
+
+void write_earliest(JsonWriter& json, Contacts contacts) {
+  const auto first = std::min_element(contacts.begin(), contacts.end(),
+                                      [](const auto& x, const auto& y) { return x.time < y.time; });
+  json.key("earliest");
+  if (first == contacts.end())
+    json.null();
+  else
+    json.value(first->time);
+}
+
+void write_element(JsonWriter& json, const Element& element, Kind kind) {
+  if (kind == Kind::edge_edge)
+    json.pair(element[0], element[1]);
+  else
+    json.value(std::uint64_t{element[0]});
+}
+
+void write_elements(JsonWriter& json, const Element& a, const Element& b, Kind kind) {
+  json.member("kind", std::string(name_of(kind)));
+  json.key("elements");
+  json.begin_array();
+  write_element(json, a, kind);
+  write_element(json, b, kind);
+  json.end_array();
+}
+
+/// As many as the element has vertices.
+void write_weights(JsonWriter& json, const char* name, const std::array<double, 3>& weights,
+                   std::size_t count) {
+  json.key(name);
+  json.begin_array();
+  for (std::size_t i = 0; i < count; ++i) json.value(weights[i]);
+  json.end_array();
+}
+
+/// Vertices of the elements of a and b.
+std::array<std::size_t, 2> sizes_of_elements(Kind kind) {
+  switch (kind) {
+    case Kind::vertex_face:
+      return {1, 3};
+    case Kind::face_vertex:
+      return {3, 1};
+    case Kind::edge_edge:
+      break;
+  }
+  return {2, 2};
+}
+
+void write_objects(JsonWriter& json, ObjectId a, ObjectId b) {
+  json.member("a", std::uint64_t{a.index});
+  json.member("b", std::uint64_t{b.index});
+}
+
+}  // namespace
+
+const char* name_of(ElementPairKind kind) {
+  return kind == Kind::vertex_face ? "vf" : kind == Kind::face_vertex ? "fv" : "ee";
+}
+
+const char* name_of(ContinuousDifference::Fault fault) {
+  switch (fault) {
+    case ContinuousDifference::Fault::missed:
+      return "missed";
+    case ContinuousDifference::Fault::added:
+      return "added";
+    case ContinuousDifference::Fault::late:
+      return "late";
+    case ContinuousDifference::Fault::early:
+      break;
+  }
+  return "early";
+}
+
+void write_continuous_groups(JsonWriter& json, const DetectResult& result, bool with_certainty) {
+  json.key("continuous");
+  json.begin_array();
+  for (const ContactGroup& group : result.groups) {
+    const Contacts contacts = result.continuous_contacts_of(group);
+    const std::vector<Kind> kinds = kinds_of(group);
+    json.begin_object();
+    write_objects(json, group.a, group.b);
+    for (const Kind kind : kinds) {
+      json.key(name_of(kind));
+      write_rows(json, of_kind(contacts, kind));
+    }
+    if (with_certainty) {
+      json.key("within_tolerance");
+      json.begin_object();
+      for (const Kind kind : kinds) {
+        json.key(name_of(kind));
+        write_uncertain_rows(json, of_kind(contacts, kind));
+      }
+      json.end_object();
+    }
+    json.end_object();
+  }
+  json.end_array();
+  write_earliest(json, result.continuous_contacts);
+}
+
+void write_continuous_contacts(JsonWriter& json, const DetectResult& result) {
+  json.key("contacts");
+  json.begin_array();
+  for (const ContinuousContact& contact : result.continuous_contacts) {
+    const auto [size_a, size_b] = sizes_of_elements(contact.kind);
+    json.begin_object();
+    write_objects(json, contact.object_a, contact.object_b);
+    write_elements(json, contact.element_a, contact.element_b, contact.kind);
+    json.member("time", contact.time);
+    json.member("certain", contact.certainty == ImpactCertainty::certain);
+    write_weights(json, "weights_a", contact.weights_a, size_a);
+    write_weights(json, "weights_b", contact.weights_b, size_b);
+    json.member("point", contact.point);
+    json.member("normal", contact.normal);
+    json.end_object();
+  }
+  json.end_array();
+}
+
+void write_continuous_verify(JsonWriter& json, const VerifyReport& report) {
+  json.key("verify");
+  json.begin_object();
+  json.member("element_pairs_checked", report.element_pairs_checked);
+  json.member("touching_element_pairs", report.touching_element_pairs);
+  json.key("differences");
+  json.begin_array();
+  for (const ContinuousDifference& difference : report.continuous_differences) {
+    json.begin_object();
+    write_objects(json, difference.object_a, difference.object_b);
+    write_elements(json, difference.element_a, difference.element_b, difference.kind);
+    json.member("fault", std::string(name_of(difference.fault)));
+    json.end_object();
+  }
+  json.end_array();
+  json.end_object();
+}
+
+}  // namespace supple::cli

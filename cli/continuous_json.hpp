@@ -1,0 +1,22 @@
+#pragma once
+
+#include "json_writer.hpp"
+#include "supple/result.hpp"
+
+namespace supple::cli {
+
+/// `vf`, `fv` or `ee`.
+const char* name_of(ElementPairKind kind);
+/// `missed`, `added`, `late` or `early`.
+const char* name_of(ContinuousDifference::Fault fault);
+
+// What docs/json.md describes of a step with continuous contacts.
+
+/// `continuous` and `earliest`. `with_certainty` lists what is within tolerance only.
+void write_continuous_groups(JsonWriter& json, const DetectResult& result, bool with_certainty);
+/// `contacts`, each with where it is.
+void write_continuous_contacts(JsonWriter& json, const DetectResult& result);
+/// `verify`.
+void write_continuous_verify(JsonWriter& json, const VerifyReport& report);
+
+}  // namespace supple::cli

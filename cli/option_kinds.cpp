@@ -1,0 +1,34 @@
+#include "option_kinds.hpp"
+
+#include <charconv>
+#include <cmath>
+#include <system_error>
+
+namespace supple::cli {
+
+CLI::Option* add_length(CLI::App& app, const std::string& name, double& value,
+                        const std::string& description) {
+  const auto parse = [&value, name](const std::string& given) {
+    double number = 0;
+    const char* const end = given.data() + given.size();
+    const auto [parsed, fault] = std::from_chars(given.data(), end, number);
+    if (fault != std::errc{} || parsed != end || !std::isfinite(number) || number < 0)
+      throw CLI::ValidationError(name, fmt::format("'{}' is not a finite number from 0 up", given));
+    value = number;
+  };
+  return app.add_option_function<std::string>(name, parse, description)->type_name("D");
+}
+
+CLI::Option* add_file(CLI::App& app, const std::string& name, std::string& value,
+                      const std::string& description) {
+  return app.add_option(name, value, description)->type_name("FILE|-");
+}
+
+void check(const Dependences& dependences) {
+  for (const Dependence& d : dependences) {
+    if (d.option->count() > 0 && !d.satisfied())
+      throw CLI::ValidationError(d.option->get_name(), "has no effect without " + d.needs);
+  }
+}
+
+}  // namespace supple::cli

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "json_writer.hpp"
+#include "query_file.hpp"
+#include "supple/result.hpp"
+
+namespace supple::cli {
+
+/// A query on which `first_impact` and `first_contact_by_algebra` differ.
+struct QueryDifference {
+  std::uint64_t query = 0;
+  ContinuousDifference::Fault fault = ContinuousDifference::Fault::missed;
+  std::optional<double> reported;    ///< none: it was said not to touch
+  std::optional<TimeBracket> truth;  ///< none: it does not touch
+};
+
+/// What became of the queries of one file.
+struct QueryFileResult {
+  std::string path;
+  QueryKind kind = QueryKind::vertex_face;
+  std::vector<std::optional<double>> times;  ///< of the first impact, one a query
+  std::uint64_t touching = 0;
+  std::uint64_t within_tolerance = 0;  ///< of those that touch
+  bool compared = false;               ///< with answers
+  std::vector<std::uint64_t> false_negatives, false_positives;
+  double seconds_per_query = 0;
+  std::vector<QueryDifference> differences;  ///< only with --verify
+
+  std::uint64_t false_answers() const { return false_negatives.size() + false_positives.size(); }
+};
+
+const char* name_of(QueryKind kind);
+
+/// A table with a row a file and a row for all; then, with `list_false`, a line a query that was answered
+/// wrongly.
+void print_queries(const std::vector<QueryFileResult>& files, bool verified, bool list_false);
+
+/// The JSON that docs/json.md describes, a file at a time.
+class QueryJsonReport {
+ public:
+  QueryJsonReport(const std::string& file_name, double min_separation, bool with_stats, bool verified);
+
+  void add(const QueryFileResult& file);
+  void finish(const std::vector<QueryFileResult>& files);
+
+ private:
+  JsonWriter json_;
+  bool with_stats_, verified_;
+};
+
+}  // namespace supple::cli
