@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "core/trigonometry.hpp"
 #include "supple/error.hpp"
 #include "supple/models.hpp"
+#include "supple/trigonometry.hpp"
 #include "support/hard_scenes.hpp"
 #include "support/instruction_sets.hpp"
 #include "support/scenes.hpp"
