@@ -241,6 +241,13 @@ TEST(ContactAlgebra, CoordinatesFarApartInSize) {
   EXPECT_EQ(vertex_on_face({0, 0, 1}, {0, 0, -1}, huge, smallest), between(std::nextafter(0.5, 0)));
 }
 
+TEST(ContactAlgebra, RejectsNothingForWhatRoundingDoes) {
+  // Rounded down to multiples of 2^-55, the face lies below the vertex's end, which is below the true face.
+  constexpr double eighth = 0x1p-58;
+  EXPECT_EQ(vertex_on_face({0, 0, 1}, {0, 0, 0}, {{{-1, -1, -eighth}, {-1, 1, -eighth}, {1, 0, 7 * eighth}}}),
+            between(std::nextafter(1, 0)));
+}
+
 TEST(ContactAlgebra, NotFiniteTouchesNothing) {
   for (const double value : {infinity, -infinity, std::nan("")}) {
     EXPECT_EQ(vertex_on_face({1, 1, value}, {1, 1, -1}, flat_face), never);
