@@ -19,7 +19,10 @@ struct OctreeView {
   const SphereLanes* spheres = nullptr;  ///< null: the boxes are the volumes
   TriangleArrays arrays;
   Vec3d translation;  ///< added to each position
-  MovingView moving;  ///< of objects in motion, of which `nodes` and this are read only
+  MovingView moving;  ///< of objects in motion, of which `nodes`, this and the next are read only
+  /// Masks of an `UnfoldedLanes` of these very positions, or null: an object against itself is then not
+  /// looked for in lanes that cannot touch themselves. Candidates are lost thereby, contacts are not.
+  const std::uint8_t* unfolded = nullptr;
 };
 OctreeView view_of(const ObjectOctree& octree, const VertexBuffer& vertices,
                    std::span<const std::uint8_t> inert, Vec3d translation);
