@@ -9,7 +9,9 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstdint>
+#include <cstdlib>
 #include <limits>
 #include <optional>
 #include <span>
@@ -97,6 +99,83 @@ bool apart_along_an_axis(const FixedPoint& fixed, std::size_t first_size) {
       }
     }
     if (std::max(above, below) > fixed.separation) return true;
+  }
+  return false;
+}
+
+/// Not below the square root of a number below 2^42.
+std::int64_t root_rounded_up(std::int64_t square) {
+  std::int64_t root = 0;
+  for (std::int64_t bit = 1 << 20; bit > 0; bit >>= 1) {
+    if ((root + bit) * (root + bit) < square) root += bit;
+  }
+  return root + 1;
+}
+
+/// As `apart_along_an_axis` along a direction with entries of at most 2^20; false along (0, 0, 0).
+bool apart_along(const Vector3<std::int64_t>& direction, const FixedPoint& fixed, std::size_t first_size) {
+  std::int64_t sum = 0, square = 0;
+  for (const std::int64_t value : direction) sum += std::abs(value), square += value * value;
+  if (sum == 0) return false;
+  Int128 above = std::numeric_limits<std::int64_t>::max(), below = above;
+  above <<= 32, below <<= 32;
+  for (std::size_t moment = 0; moment < 2; ++moment) {
+    std::array<Int128, 4> along{};
+    for (std::size_t i = 0; i < 4; ++i) {
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        along[i] += Int128{fixed.at(moment, i)[axis]} * direction[axis];
+      }
+    }
+    for (std::size_t i = 0; i < first_size; ++i) {
+      for (std::size_t j = first_size; j < 4; ++j) {
+        above = std::min(above, along[i] - along[j]);
+        below = std::min(below, along[j] - along[i]);
+      }
+    }
+  }
+  // Each coordinate of a difference may be off by 1.
+  return std::max(above, below) >= Int128{fixed.separation} * root_rounded_up(square) + sum;
+}
+
+/// About the same direction, with entries of at most 2^20.
+Vector3<std::int64_t> shortened(Vector3<std::int64_t> v) {
+  std::uint64_t all = 0;
+  for (const std::int64_t value : v) all |= static_cast<std::uint64_t>(std::abs(value));
+  const int excess = std::max(0, 44 - std::countl_zero(all));
+  for (std::int64_t& value : v) value >>= excess;
+  return v;
+}
+
+/// Tries directions that tell many elements apart: the normals of both, in the middle of the step, or
+/// across one edge of an element, or between two vertices.
+bool apart_along_a_direction(const FixedPoint& fixed, std::size_t first_size) {
+  const auto path = [&](std::size_t from, std::size_t to) {
+    Vector3<std::int64_t> result;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      result[axis] =
+          fixed.at(0, to)[axis] - fixed.at(0, from)[axis] + fixed.at(1, to)[axis] - fixed.at(1, from)[axis];
+    }
+    return shortened(result);
+  };
+  const auto across = [](const Vector3<std::int64_t>& u, const Vector3<std::int64_t>& v) {
+    Vector3<std::int64_t> result;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::size_t j = (i + 1) % 3, k = (i + 2) % 3;
+      result[i] = u[j] * v[k] - u[k] * v[j];
+    }
+    return shortened(result);
+  };
+  const auto u = path(first_size == 1 ? 2 : 0, 1), v = path(2, 3);
+  const Vector3<std::int64_t> normal = across(u, v);
+  if (apart_along(normal, fixed, first_size) || apart_along(across(normal, u), fixed, first_size) ||
+      apart_along(across(normal, v), fixed, first_size)) {
+    return true;
+  }
+  if (first_size == 1 && apart_along(across(normal, path(1, 3)), fixed, first_size)) return true;
+  for (std::size_t i = 0; i < first_size; ++i) {
+    for (std::size_t j = first_size; j < 4; ++j) {
+      if (apart_along(path(j, i), fixed, first_size)) return true;
+    }
   }
   return false;
 }
@@ -335,6 +414,7 @@ std::optional<TimeBracket> first_contact(const std::array<Vec3d, 4>& start, cons
   const FixedPoint fixed(numbers);
   if (apart_along_an_axis(fixed, first_size)) return std::nullopt;
   if (min_separation == 0 && never_coplanar(fixed, first_size)) return std::nullopt;
+  if (apart_along_a_direction(fixed, first_size)) return std::nullopt;
   const Elements elements(numbers, first_size == 2);
   const bool cubic_tells = elements.touching_only() && !elements.volume().is_zero();
   return cubic_tells ? first_coplanar_contact(elements) : first_contact_of_features(elements);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <cstdint>
 
 namespace supple {
 
@@ -45,6 +46,37 @@ Polynomial pseudo_remainder(const Polynomial& p, const Polynomial& q) {
     while (!rest.empty() && rest.back().is_zero()) rest.pop_back();
   }
   return Polynomial(std::move(rest));
+}
+
+/// Whether there is no common divisor in the integers modulo a prime, and hence none at all. Nearly always
+/// tells what the slow Euclidean algorithm with unbounded integers would.
+bool coprime_modulo_prime(const Polynomial& p, const Polynomial& q) {
+  static constexpr std::uint64_t prime = (std::uint64_t{1} << 61) - 1;
+  const auto times = [](std::uint64_t a, std::uint64_t b) {
+    const Int128 product = Int128{a} * b;
+    return static_cast<std::uint64_t>(product % prime);
+  };
+  const auto residues = [](const Polynomial& polynomial) {
+    std::vector<std::uint64_t> result;
+    for (const Integer& c : polynomial.coefficients()) {
+      const auto rest = static_cast<std::uint64_t>(abs(c) % prime);
+      result.push_back(c.sign() < 0 && rest != 0 ? prime - rest : rest);
+    }
+    return result;
+  };
+  std::vector<std::uint64_t> a = residues(p), b = residues(q);
+  // With this leading coefficient, all divisors of p keep their degrees.
+  if (a.empty() || a.back() == 0) return false;
+  while (true) {
+    while (!b.empty() && b.back() == 0) b.pop_back();
+    if (b.size() < 2) return b.size() == 1;
+    if (a.size() < b.size()) std::swap(a, b);
+    const std::uint64_t factor = prime - a.back();
+    const std::size_t shift = a.size() - b.size();
+    for (std::uint64_t& value : a) value = times(value, b.back());
+    for (std::size_t i = 0; i < b.size(); ++i) a[shift + i] = (a[shift + i] + times(factor, b[i])) % prime;
+    std::swap(a, b);
+  }
 }
 
 /// p / q, where that has integer coefficients.
@@ -137,6 +169,7 @@ Polynomial primitive_part(const Polynomial& p) {
 }
 
 Polynomial gcd(const Polynomial& p, const Polynomial& q) {
+  if (coprime_modulo_prime(p, q)) return Polynomial({1});
   Polynomial larger = primitive_part(p), smaller = primitive_part(q);
   if (larger.degree() < smaller.degree()) std::swap(larger, smaller);
   while (smaller.degree() > 0) {

@@ -52,22 +52,28 @@ HWY_INLINE MovingBoxArrays lanes_of(const MovingView& view, std::uint32_t node) 
   return {view.start[node].min_x, view.end[node].min_x, node_width};
 }
 
-/// Bits of the boxes from `first` on, a vector of them, that are not apart from `box` on one side of an axis
+/// Whether the boxes from `first` on, a vector of them, are apart from `box` along the axis: on the same side
 /// at both ends.
+template <class Tag>
+HWY_INLINE hn::Mask<Tag> apart_along(Tag tag, const MovingBox& box, const MovingBoxArrays& arrays,
+                                     std::size_t first, std::size_t axis) {
+  const float* const start = arrays.start + axis * arrays.stride + first;
+  const float* const end = arrays.end + axis * arrays.stride + first;
+  const std::size_t to_max = 3 * arrays.stride;
+  const auto above = hn::And(hn::Gt(hn::LoadU(tag, start), hn::Set(tag, box.start[axis + 3])),
+                             hn::Gt(hn::LoadU(tag, end), hn::Set(tag, box.end[axis + 3])));
+  const auto below = hn::And(hn::Lt(hn::LoadU(tag, start + to_max), hn::Set(tag, box.start[axis])),
+                             hn::Lt(hn::LoadU(tag, end + to_max), hn::Set(tag, box.end[axis])));
+  return hn::Or(above, below);
+}
+
+/// Bits of the boxes from `first` on, a vector of them, that are not apart from `box` along any axis.
 template <class Tag>
 HWY_INLINE std::uint64_t meeting_bits(Tag tag, const MovingBox& box, const MovingBoxArrays& arrays,
                                       std::size_t first) {
-  const auto apart_on = [&](std::size_t axis) HWY_ATTR {
-    const float* const start = arrays.start + axis * arrays.stride + first;
-    const float* const end = arrays.end + axis * arrays.stride + first;
-    const std::size_t to_max = 3 * arrays.stride;
-    const auto above = hn::And(hn::Gt(hn::LoadU(tag, start), hn::Set(tag, box.start[axis + 3])),
-                               hn::Gt(hn::LoadU(tag, end), hn::Set(tag, box.end[axis + 3])));
-    const auto below = hn::And(hn::Lt(hn::LoadU(tag, start + to_max), hn::Set(tag, box.start[axis])),
-                               hn::Lt(hn::LoadU(tag, end + to_max), hn::Set(tag, box.end[axis])));
-    return hn::Or(above, below);
-  };
-  const auto apart = hn::Or(apart_on(0), hn::Or(apart_on(1), apart_on(2)));
+  const auto apart =
+      hn::Or(apart_along(tag, box, arrays, first, 0),
+             hn::Or(apart_along(tag, box, arrays, first, 1), apart_along(tag, box, arrays, first, 2)));
   std::uint8_t bytes[8] = {};
   hn::StoreMaskBits(tag, hn::Not(apart), bytes);
   return std::uint64_t{bytes[0]} | std::uint64_t{bytes[1]} << 8;
@@ -124,10 +130,12 @@ class ElementTests {
       const ElementRange part_a{a, std::min(a + block, range_a.end)};
       const std::uint64_t near_b = near_leaf(box_b_, boxes_a, part_a);
       if (near_b == 0) continue;
-      for (std::uint32_t b = range_b.begin; b < range_b.end; b += block) {
+      // Within one leaf each pair of edges would come twice.
+      const bool half = kind == Kind::edge_edge && same_leaf_;
+      for (std::uint32_t b = half ? a : range_b.begin; b < range_b.end; b += block) {
         const ElementRange part_b{b, std::min(b + block, range_b.end)};
         const std::uint64_t near_a = near_leaf(box_a_, boxes_b, part_b);
-        if (near_a != 0) match_blocks<kind>(boxes_a, a, near_b, boxes_b, part_b, near_a);
+        if (near_a != 0) match_blocks<kind>(boxes_a, part_a, near_b, boxes_b, part_b, near_a);
       }
     }
   }
@@ -152,34 +160,56 @@ class ElementTests {
     return bits;
   }
 
+  /// One by one those of the side that has fewer, against the other side.
   template <Kind kind>
-  HWY_INLINE void match_blocks(const MovingBoxArrays& boxes_a, std::uint32_t first_a, std::uint64_t some_a,
+  HWY_INLINE void match_blocks(const MovingBoxArrays& boxes_a, ElementRange range_a, std::uint64_t some_a,
                                const MovingBoxArrays& boxes_b, ElementRange range_b, std::uint64_t some_b) {
-    for (; some_a != 0; some_a &= some_a - 1) {
-      const std::uint32_t a = first_a + static_cast<std::uint32_t>(std::countr_zero(some_a));
-      std::uint64_t hits = meeting_elements(moving_box(boxes_a, a, separation_), boxes_b, range_b) & some_b;
-      for (; hits != 0; hits &= hits - 1) {
-        add<kind>(a, range_b.begin + static_cast<std::uint32_t>(std::countr_zero(hits)));
+    const bool one_block = kind == Kind::edge_edge && same_leaf_ && range_a.begin == range_b.begin;
+    if (one_block || std::popcount(some_a) <= std::popcount(some_b)) {
+      for (; some_a != 0; some_a &= some_a - 1) {
+        if (one_block) some_b = some_a & (some_a - 1);
+        const std::uint32_t a = range_a.begin + static_cast<std::uint32_t>(std::countr_zero(some_a));
+        const std::uint64_t hits = meeting_elements(moving_box(boxes_a, a, separation_), boxes_b, range_b);
+        add<kind, false>(a, range_b.begin, hits & some_b);
       }
+      return;
+    }
+    for (; some_b != 0; some_b &= some_b - 1) {
+      const std::uint32_t b = range_b.begin + static_cast<std::uint32_t>(std::countr_zero(some_b));
+      const std::uint64_t hits = meeting_elements(moving_box(boxes_b, b, separation_), boxes_a, range_a);
+      add<kind, true>(b, range_a.begin, hits & some_a);
     }
   }
 
-  template <Kind kind>
-  HWY_INLINE void add(std::uint32_t a, std::uint32_t b) {
-    if (!same_object_) {
-      batches_.add(kind, {a, b});
-    } else if constexpr (kind == Kind::edge_edge) {
-      // Within one leaf each pair would come twice.
-      if (same_leaf_ && b <= a) return;
-      const Edge &p = a_.edge_ids[a], &q = a_.edge_ids[b];
-      if (p[0] == q[0] || p[0] == q[1] || p[1] == q[0] || p[1] == q[1]) return;
-      batches_.add(kind, {a, b});
+  /// Element `one` of a, or of b when `of_b`, with those of the other that `hits` names from `first` on.
+  template <Kind kind, bool of_b>
+  HWY_INLINE void add(std::uint32_t one, std::uint32_t first, std::uint64_t hits) {
+    if (hits == 0) return;
+    // Of one object the vertex comes first.
+    const bool turned = same_object_ && kind == Kind::face_vertex;
+    const Kind reported = turned ? Kind::vertex_face : kind;
+    ElementPair* const pairs = batches_.room_for(reported, block);
+    std::size_t count = 0;
+    for (; hits != 0; hits &= hits - 1) {
+      const std::uint32_t other = first + static_cast<std::uint32_t>(std::countr_zero(hits));
+      pairs[count] = turned != of_b ? ElementPair{other, one} : ElementPair{one, other};
+      // Added up rather than branched on: which pairs share a vertex is hard to foretell.
+      count += same_object_ && share_vertex<kind, of_b>(one, other) ? 0u : 1u;
+    }
+    batches_.added(reported, count);
+  }
+
+  template <Kind kind, bool of_b>
+  HWY_INLINE bool share_vertex(std::uint32_t one, std::uint32_t other) const {
+    const auto same = [](std::uint32_t p, std::uint32_t q) { return p == q ? 1u : 0u; };
+    if constexpr (kind == Kind::edge_edge) {
+      const Edge &p = a_.edge_ids[one], &q = a_.edge_ids[other];
+      return (same(p[0], q[0]) | same(p[0], q[1]) | same(p[1], q[0]) | same(p[1], q[1])) != 0;
     } else {
-      const std::uint32_t vertex = kind == Kind::vertex_face ? a : b,
-                          face = kind == Kind::vertex_face ? b : a;
-      const Triangle& corners = a_.face_ids[face];
-      if (corners[0] == vertex || corners[1] == vertex || corners[2] == vertex) return;
-      batches_.add(Kind::vertex_face, {vertex, face});
+      constexpr bool one_is_vertex = (kind == Kind::vertex_face) != of_b;
+      const std::uint32_t vertex = one_is_vertex ? one : other;
+      const Triangle& corners = a_.face_ids[one_is_vertex ? other : one];
+      return (same(corners[0], vertex) | same(corners[1], vertex) | same(corners[2], vertex)) != 0;
     }
   }
 

@@ -28,10 +28,15 @@ class ElementPairBatches {
     sink_ = sink;
     context_ = context;
   }
-  void add(ElementPairKind kind, ElementPair pair) {
+  /// Where `count` more pairs of the kind can be written, `count` being far below the capacity; how many of
+  /// them there are is then told by `added`.
+  ElementPair* room_for(ElementPairKind kind, std::size_t count) {
     Batch& batch = batches_[static_cast<std::size_t>(kind)];
-    batch.pairs[batch.count++] = pair;
-    if (batch.count == capacity) hand_over(kind);
+    if (batch.count + count > capacity) hand_over(kind);
+    return batch.pairs.data() + batch.count;
+  }
+  void added(ElementPairKind kind, std::size_t count) {
+    batches_[static_cast<std::size_t>(kind)].count += count;
   }
   /// Hands over what is left.
   void flush() {

@@ -35,6 +35,11 @@ void for_each_lane_pair(const ObjectPairView& pair, NodePair node_pair, std::uin
   }
 }
 
+/// Whether the descent goes on below the lane.
+bool goes_on(const ObjectPairView& pair, const OctreeNode& node, int lane) {
+  return pair.is_moving() ? !is_moving_leaf(node, lane) : node.is_inner(lane);
+}
+
 std::uint32_t lane_number(std::uint32_t node, int lane) {
   return node * node_width + static_cast<std::uint32_t>(lane);
 }
@@ -121,7 +126,7 @@ void Traversal::expand_batch(const ObjectPairView& pair, TraversalStats& stats) 
     const OctreeNode& node_b = pair.b.nodes[node_pair.b];
     stats.volumes_tested += static_cast<std::uint64_t>(std::popcount(node_pair.lanes_a)) * node_width;
     for_each_lane_pair(pair, node_pair, masks_[k], [&](int i, int j) {
-      const bool inner_a = node_a.is_inner(i), inner_b = node_b.is_inner(j);
+      const bool inner_a = goes_on(pair, node_a, i), inner_b = goes_on(pair, node_b, j);
       if (inner_a && inner_b) {
         stack_.push_back({node_a.child(i), node_b.child(j)});
       } else if (inner_a) {
@@ -144,7 +149,7 @@ void Traversal::refine(const ObjectPairView& pair, NodePair node_pair, std::vect
   const OctreeNode& node_a = pair.a.nodes[node_pair.a];
   const OctreeNode& node_b = pair.b.nodes[node_pair.b];
   for_each_lane_pair(pair, node_pair, mask, [&](int i, int j) {
-    if (node_a.is_inner(i) && node_b.is_inner(j)) {
+    if (goes_on(pair, node_a, i) && goes_on(pair, node_b, j)) {
       finer.push_back({node_a.child(i), node_b.child(j)});
     } else {
       finer.push_back({node_pair.a, node_pair.b, lane_bit(i), lane_bit(j)});

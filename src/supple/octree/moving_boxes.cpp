@@ -228,9 +228,10 @@ std::string check_moment(const ObjectOctree& octree, const SurfaceElements& elem
     return validation.check(at_end ? boxes.end : boxes.start, boxes.stride, i, corners, bounds);
   };
   for (std::size_t n = nodes.size(); n-- > 0;) {
+    if (!has_moving_boxes(nodes[n])) continue;
     for (int lane = 0; lane < node_width; ++lane) {
       Aabb bounds;
-      if (lane < nodes[n].lane_count && nodes[n].is_inner(lane)) {
+      if (lane < nodes[n].lane_count && !is_moving_leaf(nodes[n], lane)) {
         bounds = node_boxes[nodes[n].child(lane)];
       } else if (lane < nodes[n].lane_count) {
         const std::uint32_t first = nodes[n].first_triangle[lane], last = nodes[n].first_triangle[lane + 1];

@@ -35,6 +35,9 @@ struct OctreeNode {
   std::uint32_t child(int lane) const {
     return first_child + static_cast<std::uint32_t>(std::popcount(inner_mask & ((1u << lane) - 1)));
   }
+  /// Triangles of the lane, and of the whole node.
+  std::uint32_t size(int lane) const { return first_triangle[lane + 1] - first_triangle[lane]; }
+  std::uint32_t size() const { return first_triangle[node_width] - first_triangle[0]; }
   std::uint32_t lane_mask() const { return (1u << lane_count) - 1; }
 };
 static_assert(sizeof(OctreeNode) == 48);

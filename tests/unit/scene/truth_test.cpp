@@ -3,10 +3,14 @@
 #include <gtest/gtest.h>
 #include <openssl/evp.h>
 
+#include <algorithm>
+#include <array>
 #include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
+#include <utility>
 
 #include "support/scenes.hpp"
 #include "unit/mesh/shared_meshes.hpp"
@@ -128,6 +132,73 @@ TEST_F(Truth, VerifyAgreesOnRealMeshes) {
   touching.add(turned);
   touching.detect();
   EXPECT_EQ(differences(touching), "");
+}
+
+/// As truth.json numbers edges: by their larger vertex, then by the smaller.
+std::map<std::array<std::uint32_t, 2>, std::uint32_t> edge_numbers(const TriangleMesh& mesh) {
+  std::map<std::array<std::uint32_t, 2>, std::uint32_t> numbers;
+  for (const Triangle& triangle : mesh.triangles) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto [low, high] = std::minmax(triangle[i], triangle[(i + 1) % 3]);
+      numbers[{high, low}] = 0;
+    }
+  }
+  std::uint32_t next = 0;
+  for (auto& [edge, number] : numbers) number = next++;
+  return numbers;
+}
+
+/// Sorted pairs of element numbers with their times.
+using TouchingTimes = std::map<std::pair<std::uint32_t, std::uint32_t>, double>;
+
+void expect_touching(const TouchingTimes& found, const json& expected) {
+  EXPECT_EQ(found.size(), expected["pairs"].get<std::size_t>());
+  std::string list;
+  for (const auto& [pair, time] : found)
+    list += std::to_string(pair.first) + ' ' + std::to_string(pair.second) + '\n';
+  EXPECT_EQ(sha256(list), expected["sha256_of_sorted_pairs"].get<std::string>());
+}
+
+TEST_F(Truth, StepsTouchWhereAndWhenExactArithmeticSays) {
+  constexpr double printed = 1e-15;  // the listed times have 15 digits
+  for (const json& expected : truth["steps"]) {
+    SCOPED_TRACE(expected["name"].get<std::string>());
+    const TriangleMesh from = load(expected["frame0"]), to = load(expected["frame1"]);
+    SceneOptions options;
+    options.contacts = ContactMode::continuous;
+    Scene scene(options);
+    scene.set_motion(scene.add(from, {.self_collision = true}), from.positions, to.positions);
+    const auto numbers = edge_numbers(from);
+    const auto number = [&](const std::array<std::uint32_t, 2>& edge) {
+      return numbers.at({edge[1], edge[0]});
+    };
+    std::map<std::string, TouchingTimes> found;
+    for (const ContinuousContact& contact : scene.detect().continuous_contacts) {
+      if (contact.kind == ElementPairKind::edge_edge) {
+        const auto pair = std::minmax(number(contact.element_a), number(contact.element_b));
+        found["ee"][pair] = contact.time;
+      } else {
+        found["vf"][{contact.element_a[0], contact.element_b[0]}] = contact.time;
+      }
+    }
+    expect_touching(found["vf"], expected["touching_vf"]);
+    expect_touching(found["ee"], expected["touching_ee"]);
+    const auto earliest = scene.earliest_impact();
+    EXPECT_EQ(earliest.has_value(), found["vf"].size() + found["ee"].size() != 0);
+
+    std::ifstream list(shared_meshes() / "contacts" / (expected["name"].get<std::string>() + ".txt"));
+    std::string kind;
+    std::uint32_t first = 0, second = 0;
+    double time = 0;
+    while (list >> kind >> first >> second >> time) {
+      const auto contact = found[kind].find({first, second});
+      ASSERT_NE(contact, found[kind].end()) << kind << ' ' << first << ' ' << second;
+      EXPECT_LE(contact->second, time + printed) << kind << ' ' << first << ' ' << second;
+      EXPECT_GE(contact->second, time - impact_time_tolerance - printed)
+          << kind << ' ' << first << ' ' << second;
+      EXPECT_LE(earliest->time, time + printed);
+    }
+  }
 }
 
 }  // namespace

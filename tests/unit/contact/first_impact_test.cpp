@@ -1,0 +1,351 @@
+// First impacts of single pairs of elements against algebra, over random and adversarial motions: a million
+// in optimised builds, fewer where sanitizers slow them down.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <numeric>
+#include <optional>
+
+#include "contact/impact_filter.hpp"
+#include "core/float_rounding.hpp"
+#include "supple/continuous.hpp"
+#include "supple/error.hpp"
+#include "support/instruction_sets.hpp"
+#include "support/soups.hpp"
+
+namespace supple {
+namespace {
+
+#if defined(NDEBUG) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+constexpr int queries_per_family = 32000;
+#else
+constexpr int queries_per_family = 320;
+#endif
+
+using Corners = std::array<Vec3d, 4>;
+struct Paths {
+  Corners start, end;
+};
+
+template <class Function>
+void for_each_coordinate(Paths& paths, Function function) {
+  for (Corners* corners : {&paths.start, &paths.end}) {
+    for (Vec3d& p : *corners) {
+      for (int axis = 0; axis < 3; ++axis) function(p[axis]);
+    }
+  }
+}
+
+Paths random_paths(RandomNumbers& random, double size, double step) {
+  Paths paths;
+  for (std::size_t i = 0; i < 4; ++i) {
+    paths.start[i] = random.vector(size);
+    paths.end[i] = paths.start[i] + random.vector(step);
+  }
+  return paths;
+}
+
+/// Whole numbers from -n to n: most of all the degenerate cases.
+Paths lattice_paths(RandomNumbers& random, std::uint32_t n) {
+  Paths paths;
+  for_each_coordinate(paths, [&](double& x) { x = static_cast<double>(random.below(2 * n + 1)) - n; });
+  return paths;
+}
+
+void nudge(RandomNumbers& random, double& x) {
+  const std::uint32_t way = random.below(6);
+  if (way == 0) x = std::nextafter(x, 10);
+  if (way == 1) x = std::nextafter(x, -10);
+}
+
+/// Weights of the four vertices at a common point of both elements, those of the second negative.
+std::array<double, 4> common_point_weights(RandomNumbers& random, bool edges) {
+  // Eighths, ends included: products with lattice coordinates stay exact.
+  const auto eighth = [&](std::uint32_t most) { return random.below(most + 1) / 8.0; };
+  if (edges) {
+    const double s = eighth(8), r = eighth(8);
+    return {1 - s, s, -(1 - r), -r};
+  }
+  const double alpha = eighth(8), beta = eighth(static_cast<std::uint32_t>(8 - 8 * alpha));
+  return {1, -(1 - alpha - beta), -alpha, -beta};
+}
+
+/// Moves one vertex so that the elements share a point at time 1/2, 1/4, ... exactly, or nearly when nudged.
+Paths meeting_paths(RandomNumbers& random, bool edges, bool nudged) {
+  Paths paths = lattice_paths(random, 8);
+  const std::array<double, 4> weights = common_point_weights(random, edges);
+  const double time = random.below(9) / 8.0;
+  std::size_t moved = 0;  // a vertex with a weight that divides without rounding
+  for (std::size_t i = 0; i < 4; ++i) {
+    if (std::abs(weights[i]) == 1 || std::abs(weights[i]) == 0.5) moved = i;
+  }
+  if (std::abs(weights[moved]) < 0.5) return paths;
+  for (int axis = 0; axis < 3; ++axis) {
+    double gap = 0;
+    for (std::size_t i = 0; i < 4; ++i) {
+      gap += weights[i] * ((1 - time) * paths.start[i][axis] + time * paths.end[i][axis]);
+    }
+    paths.start[moved][axis] -= gap / weights[moved];
+    paths.end[moved][axis] -= gap / weights[moved];
+  }
+  if (nudged) for_each_coordinate(paths, [&](double& x) { nudge(random, x); });
+  return paths;
+}
+
+struct QueryFamily {
+  const char* name;
+  std::function<Paths(RandomNumbers&, bool edges)> make;
+};
+
+const QueryFamily query_families[] = {
+    {"Random", [](RandomNumbers& r, bool) { return random_paths(r, 1, 1); }},
+    {"Slow", [](RandomNumbers& r, bool) { return random_paths(r, 1, 1e-5); }},
+    {"Fast", [](RandomNumbers& r, bool) { return random_paths(r, 1e-2, 3); }},
+    {"FarFromTheOrigin",
+     [](RandomNumbers& r, bool) {
+       Paths paths = random_paths(r, 1, 1);
+       for_each_coordinate(paths, [](double& x) { x += 1e7; });
+       return paths;
+     }},
+    {"SinglePrecision",
+     [](RandomNumbers& r, bool) {
+       Paths paths = random_paths(r, 1, 0.5);
+       for_each_coordinate(paths, [](double& x) { x = static_cast<float>(x); });
+       return paths;
+     }},
+    {"SmallLattice", [](RandomNumbers& r, bool) { return lattice_paths(r, 1); }},
+    {"Lattice", [](RandomNumbers& r, bool) { return lattice_paths(r, 3); }},
+    {"NudgedLattice",
+     [](RandomNumbers& r, bool) {
+       Paths paths = lattice_paths(r, 2);
+       for_each_coordinate(paths, [&](double& x) { nudge(r, x); });
+       return paths;
+     }},
+    {"OnePlane",
+     [](RandomNumbers& r, bool) {
+       Paths paths = r.below(2) == 0 ? lattice_paths(r, 3) : random_paths(r, 1, 1);
+       for (Corners* corners : {&paths.start, &paths.end}) {
+         for (Vec3d& p : *corners) p.z = 0.5;
+       }
+       return paths;
+     }},
+    {"OneLine",
+     [](RandomNumbers& r, bool) {
+       Paths paths = lattice_paths(r, 4);
+       for (Corners* corners : {&paths.start, &paths.end}) {
+         for (Vec3d& p : *corners) p = {p.x, 2 * p.x, -p.x};
+       }
+       return paths;
+     }},
+    {"AtRest",
+     [](RandomNumbers& r, bool) {
+       Paths paths = lattice_paths(r, 2);
+       paths.end = paths.start;
+       return paths;
+     }},
+    {"Collapsing",
+     [](RandomNumbers& r, bool) {
+       Paths paths = lattice_paths(r, 2);
+       Corners& corners = r.below(2) == 0 ? paths.start : paths.end;
+       corners[1 + r.below(3)] = corners[1 + r.below(3)];
+       return paths;
+     }},
+    {"Meeting", [](RandomNumbers& r, bool edges) { return meeting_paths(r, edges, false); }},
+    {"NearlyMeeting", [](RandomNumbers& r, bool edges) { return meeting_paths(r, edges, true); }},
+    {"Huge",
+     [](RandomNumbers& r, bool) {
+       Paths paths = r.below(2) == 0 ? lattice_paths(r, 3) : random_paths(r, 1, 1);
+       for_each_coordinate(paths, [](double& x) { x *= 0x1p500; });
+       return paths;
+     }},
+    {"Tiny",
+     [](RandomNumbers& r, bool) {
+       Paths paths = r.below(2) == 0 ? lattice_paths(r, 3) : random_paths(r, 1, 1);
+       for_each_coordinate(paths, [](double& x) { x *= 0x1p-500; });
+       return paths;
+     }},
+    {"MixedScales",
+     [](RandomNumbers& r, bool) {
+       Paths paths = lattice_paths(r, 2);
+       for_each_coordinate(paths, [&](double& x) {
+         const std::uint32_t way = r.below(10);
+         if (way == 0) x *= 0x1p40;
+         if (way == 1) x *= 0x1p-40;
+       });
+       return paths;
+     }},
+};
+
+/// Of what is decided by degree six and not by degree three, and by the thousandfold slower algebra.
+constexpr int separated_share = 16;
+
+class FirstImpact : public testing::TestWithParam<QueryFamily> {};
+
+/// The vector filter may only reject what does not touch.
+void expect_filter_keeps(const RelativeMotion& motion, double separation) {
+  RelativeMotionBlock block;
+  block.set(0, motion);
+  EXPECT_EQ(may_touch(block, 1, motion.is_square, round_up(separation)), 1u);
+}
+
+template <class Motion>
+void expect_first_impact(const Motion& motion, double separation, int& touching) {
+  const std::optional<Impact> impact = first_impact(motion, {.min_separation = separation});
+  const std::optional<TimeBracket> truth = first_contact_by_algebra(motion, separation);
+  ASSERT_EQ(impact.has_value(), truth.has_value());
+  if (!truth) return;
+  ++touching;
+  expect_filter_keeps(relative_motion(motion), separation);
+  EXPECT_EQ(impact->certainty, ImpactCertainty::certain);
+  EXPECT_LE(impact->time, truth->low);
+  EXPECT_GE(impact->time, truth->high - impact_time_tolerance);
+  EXPECT_GE(impact->time, 0);
+  for (const double weight : impact->weights) {
+    EXPECT_GE(weight, 0);
+    EXPECT_LE(weight, 1);
+  }
+  EXPECT_NEAR(std::accumulate(impact->weights.begin(), impact->weights.end(), 0.0), 2, 1e-12);
+  const Vec3d n = impact->normal;
+  const double length = std::hypot(n.x, n.y, n.z);
+  EXPECT_TRUE(length == 0 || std::abs(length - 1) < 1e-12) << length;
+}
+
+template <class Motion>
+void expect_family(const QueryFamily& family, bool edges, std::uint64_t seed) {
+  RandomNumbers random(seed);
+  int touching = 0;
+  for (int query = 0; query < queries_per_family; ++query) {
+    const Paths paths = family.make(random, edges);
+    const Motion motion{paths.start, paths.end};
+    expect_first_impact(motion, 0, touching);
+    if (query % separated_share == 0) {
+      const double size = std::abs(paths.start[0].x) + std::abs(paths.start[1].y);
+      const double separation = std::ldexp(size, -static_cast<int>(random.below(8)));
+      expect_first_impact(motion, separation, touching);
+    }
+    if (testing::Test::HasFailure()) FAIL() << "query " << query;
+  }
+  EXPECT_GT(touching, 0);
+}
+
+TEST_P(FirstImpact, OfVertexAndFaceEqualsAlgebra) {
+  expect_family<VertexFaceMotion>(GetParam(), false, 1);
+}
+
+TEST_P(FirstImpact, OfTwoEdgesEqualsAlgebra) {
+  expect_family<EdgeEdgeMotion>(GetParam(), true, 2);
+}
+
+INSTANTIATE_TEST_SUITE_P(Families, FirstImpact, testing::ValuesIn(query_families),
+                         [](const auto& family) { return family.param.name; });
+
+TEST(ImpactFilter, KeepsWhatTouchesOnEveryInstructionSet) {
+  RandomNumbers random(3);
+  for (int round = 0; round < 20; ++round) {
+    for (const bool edges : {false, true}) {
+      RelativeMotionBlock block;
+      std::uint64_t touching = 0;
+      for (std::size_t k = 0; k < 64; ++k) {
+        const Paths paths = meeting_paths(random, edges, true);
+        const VertexFaceMotion face{paths.start, paths.end};
+        const EdgeEdgeMotion edge{paths.start, paths.end};
+        const bool touches = edges ? first_impact(edge).has_value() : first_impact(face).has_value();
+        touching |= std::uint64_t{touches} << k;
+        block.set(k, edges ? relative_motion(edge) : relative_motion(face));
+      }
+      for_each_target([&](const char* target) {
+        EXPECT_EQ(touching & ~may_touch(block, 64, edges, 0), 0u) << target;
+        EXPECT_EQ(may_touch(block, 17, edges, 0) >> 17, 0u) << target;
+      });
+    }
+  }
+}
+
+TEST(ImpactFilter, TellsMostPairsApart) {
+  RandomNumbers random(4);
+  int left = 0;
+  for (int query = 0; query < 1000; ++query) {
+    const Paths paths = random_paths(random, 1, 0.1);
+    RelativeMotionBlock block;
+    block.set(0, relative_motion(EdgeEdgeMotion{paths.start, paths.end}));
+    left += may_touch(block, 1, true, 0) != 0 ? 1 : 0;
+  }
+  EXPECT_LT(left, 200);
+}
+
+TEST(FirstImpactDetails, OfAVertexThatFallsOnAFace) {
+  const VertexFaceMotion motion{{{{1, 1, 1}, {0, 0, 0}, {4, 0, 0}, {0, 4, 0}}},
+                                {{{1, 1, -1}, {0, 0, 0}, {4, 0, 0}, {0, 4, 0}}}};
+  const std::optional<Impact> impact = first_impact(motion);
+  ASSERT_TRUE(impact);
+  EXPECT_NEAR(impact->time, 0.5, 1e-12);
+  EXPECT_EQ(impact->normal, (Vec3d{0, 0, 1}));
+  EXPECT_NEAR(impact->weights[1], 0.5, 1e-12);
+  const std::optional<Impact> sooner = first_impact(motion, {.min_separation = 0.5});
+  ASSERT_TRUE(sooner);
+  EXPECT_NEAR(sooner->time, 0.25, 1e-9);
+  EXPECT_LE(sooner->time, 0.25);
+  EXPECT_NEAR(sooner->point.z, 0.25, 1e-9);
+  EXPECT_EQ(sooner->normal, (Vec3d{0, 0, 1}));
+}
+
+TEST(FirstImpactDetails, NormalsPointToWhereTheFirstElementCameFrom) {
+  RandomNumbers random(5);
+  int checked = 0;
+  for (int query = 0; query < 3000; ++query) {
+    const Paths paths = random_paths(random, 1, 1);
+    const EdgeEdgeMotion motion{paths.start, paths.end};
+    const std::optional<Impact> impact = first_impact(motion);
+    if (!impact || impact->time < 1e-3) continue;
+    // Just before the impact, the two points are apart along the normal.
+    const double t = impact->time - 1e-4;
+    Vec3d gap;
+    for (std::size_t i = 0; i < 4; ++i) {
+      const Vec3d p = (1 - t) * paths.start[i] + t * paths.end[i];
+      gap = gap + (i < 2 ? 1.0 : -1.0) * impact->weights[i] * p;
+    }
+    EXPECT_GT(gap.x * impact->normal.x + gap.y * impact->normal.y + gap.z * impact->normal.z, 0) << query;
+    ++checked;
+  }
+  EXPECT_GT(checked, 100);
+}
+
+TEST(FirstImpactDetails, DoNotDependOnTheOrderOfTheElements) {
+  RandomNumbers random(6);
+  for (int query = 0; query < 2000; ++query) {
+    const Paths paths = meeting_paths(random, true, query % 2 == 1);
+    const auto swapped = [](const Corners& p) { return Corners{p[3], p[2], p[0], p[1]}; };
+    const std::optional<Impact> one = first_impact(EdgeEdgeMotion{paths.start, paths.end});
+    const std::optional<Impact> other =
+        first_impact(EdgeEdgeMotion{swapped(paths.start), swapped(paths.end)});
+    ASSERT_EQ(one.has_value(), other.has_value());
+    if (one) {
+      EXPECT_NEAR(one->time, other->time, impact_time_tolerance);
+    }
+  }
+}
+
+TEST(FirstImpactErrors, AreForSeparationsThatAreNone) {
+  const VertexFaceMotion motion{};
+  for (const double wrong :
+       {-1.0, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+    EXPECT_THROW(first_impact(motion, {.min_separation = wrong}), Error);
+  }
+}
+
+TEST(FirstImpactErrors, NothingTouchesWhatIsNotFinite) {
+  EdgeEdgeMotion motion{};  // all at the origin
+  EXPECT_TRUE(first_impact(motion));
+  motion.end[2].y = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_FALSE(first_impact(motion));
+  motion.end[2].y = -std::numeric_limits<double>::infinity();
+  EXPECT_FALSE(first_impact(motion));
+}
+
+}  // namespace
+}  // namespace supple
