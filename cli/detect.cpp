@@ -141,24 +141,21 @@ const char* outcome_of(ContinuousDifference::Fault fault) {
   return "were reported with a time too long before they touch";
 }
 
+/// What the elements of a and of b are.
+std::array<const char*, 2> nouns_of(ElementPairKind kind) {
+  if (kind == ElementPairKind::vertex_face) return {"vertex", "face"};
+  if (kind == ElementPairKind::face_vertex) return {"face", "vertex"};
+  return {"edge", "edge"};
+}
+
 std::string describe(const Scene& scene, const ContinuousDifference& d) {
-  const auto element = [&](const char* noun, const std::array<std::uint32_t, 2>& ids, ObjectId object) {
-    const std::string numbers =
-        ids[0] == ids[1] ? fmt::format("{}", ids[0]) : fmt::format("{} {}", ids[0], ids[1]);
-    return fmt::format("{} {} of {}", noun, numbers, one_line(scene.name(object)));
+  const auto [noun_a, noun_b] = nouns_of(d.kind);
+  const auto numbers = [](const std::array<std::uint32_t, 2>& ids) {
+    return ids[0] == ids[1] ? fmt::format("{}", ids[0]) : fmt::format("{} {}", ids[0], ids[1]);
   };
-  const bool edges = d.kind == ElementPairKind::edge_edge,
-             vertex_first = d.kind == ElementPairKind::vertex_face;
-  return fmt::format("{} and {} {}",
-                     element(edges          ? "edge"
-                             : vertex_first ? "vertex"
-                                            : "face",
-                             d.element_a, d.object_a),
-                     element(edges          ? "edge"
-                             : vertex_first ? "face"
-                                            : "vertex",
-                             d.element_b, d.object_b),
-                     outcome_of(d.fault));
+  return fmt::format("{} {} of {} and {} {} of {} {}", noun_a, numbers(d.element_a),
+                     one_line(scene.name(d.object_a)), noun_b, numbers(d.element_b),
+                     one_line(scene.name(d.object_b)), outcome_of(d.fault));
 }
 
 /// The first difference of the run, told to people: the rest is in the JSON.

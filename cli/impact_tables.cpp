@@ -57,8 +57,9 @@ void ImpactTables::print_steps() const {
 
 void ImpactTables::print_pairs(const Scene& scene) const {
   std::vector<std::pair<ObjectPair, Pair>> rows(pairs_.begin(), pairs_.end());
-  std::stable_sort(rows.begin(), rows.end(), [](const auto& x, const auto& y) {
-    return x.second.counts.all() > y.second.counts.all();
+  std::sort(rows.begin(), rows.end(), [](const auto& x, const auto& y) {
+    const std::uint64_t contacts_x = x.second.counts.all(), contacts_y = y.second.counts.all();
+    return contacts_x != contacts_y ? contacts_x > contacts_y : x.first < y.first;
   });
   fmt::print("{:<20} {:<20} {:>8} {:>16} {:>16}\n", "object", "touches", "steps", "vertex-face", "edge-edge");
   std::uint64_t contacts = 0;
