@@ -60,7 +60,8 @@ struct Scaled {
   RelativePlaces<double> places;
 
   explicit Scaled(const RelativePlaces<double>& unscaled) : places(unscaled) {
-    const double size = largest(larger(larger(absolute(unscaled.m), absolute(unscaled.u)), absolute(unscaled.w)));
+    const double size =
+        largest(larger(larger(absolute(unscaled.m), absolute(unscaled.u)), absolute(unscaled.w)));
     if (!(size > 0x1p100 || size < 0x1p-100) || size == 0) return;
     factor = std::ldexp(1.0, std::clamp(-std::ilogb(size), -1000, 1000));
     places = {factor * unscaled.m, factor * unscaled.u, factor * unscaled.w};

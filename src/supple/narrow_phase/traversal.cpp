@@ -11,7 +11,7 @@ namespace {
 
 void test_lanes(const ObjectPairView& pair, std::span<const NodePair> node_pairs, std::uint64_t* masks) {
   if (pair.is_moving()) {
-    moving_overlap_masks(node_pairs, pair.a.moving, pair.b.moving, pair.separation, masks);
+    moving_overlap_masks(node_pairs, pair.a.moving, pair.b.moving, pair.part_of_step(), masks);
   } else if (pair.a.spheres != nullptr) {
     overlap_masks(node_pairs, pair.a.spheres, pair.b.spheres, pair.placement, masks);
   } else {
@@ -100,22 +100,22 @@ OctreeView moving_view_of(const ObjectOctree& octree, const SurfaceElements& ele
 }
 
 ObjectPairView pair_of(const OctreeView& a, const OctreeView& b) {
-  return {a, b, place(a, b), false, 0};
+  return {a, b, place(a, b), false, 0, nullptr};
 }
 
 ObjectPairView self_pair_of(const OctreeView& object) {
   // The translation is the same, and rounding may yet bring close positions together.
-  ObjectPairView pair{object, object, place(object, object), true, 0};
+  ObjectPairView pair{object, object, place(object, object), true, 0, nullptr};
   if (!pair.placement.is_identity()) pair.a.unfolded = nullptr;
   return pair;
 }
 
 ObjectPairView moving_pair_of(const OctreeView& a, const OctreeView& b, double separation) {
-  return {a, b, {}, false, round_up(separation)};
+  return {a, b, {}, false, round_up(separation), nullptr};
 }
 
 ObjectPairView moving_self_pair_of(const OctreeView& object, double separation) {
-  ObjectPairView pair{object, object, {}, true, round_up(separation)};
+  ObjectPairView pair{object, object, {}, true, round_up(separation), nullptr};
   if (separation > 0) pair.a.unfolded = nullptr;
   return pair;
 }

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <atomic>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -37,7 +39,14 @@ struct ObjectPairView {
   bool same_object = false;
   /// Of objects in motion: elements touch that come this near, not less than what was asked for.
   float separation = 0;
+  /// Null, or up to when in the step elements that touch are of interest; it may fall while they are looked
+  /// for.
+  const std::atomic<float>* latest = nullptr;
 
+  PartOfStep part_of_step() const {
+    constexpr float least = 0x1p-20f;
+    return {separation, latest != nullptr ? std::max(latest->load(std::memory_order_relaxed), least) : 1.0f};
+  }
   bool is_moving() const { return a.moving.start != nullptr; }
 };
 ObjectPairView pair_of(const OctreeView& a, const OctreeView& b);
@@ -104,7 +113,7 @@ class Traversal {
       expand_batch(pair, stats);
       if (leaf_pairs_.size() < leaf_batch && !stack_.empty()) continue;
       stats.volumes_tested += find_element_box_pairs(leaf_pairs_, pair.a.moving, pair.b.moving,
-                                                     pair.separation, pair.same_object, element_pairs_);
+                                                     pair.part_of_step(), pair.same_object, element_pairs_);
       leaf_pairs_.clear();
     }
     element_pairs_.flush();
