@@ -87,6 +87,10 @@ const std::vector<Case> cases{
     vertex("PassesAtASurd", {1, 1, -1}, {1, 1, 3}, above(0x1.9e3779b97f4a7p-2),
            {{{}, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}}}, {{{}, {0, 0, 0}, {5, 0, 4}, {0, 5, 0}}}),
 
+    // The side is passed at another time than the plane, with no double between them.
+    vertex("FallsBesideByLessThanADouble", {-1, 1, 1}, {2 - unit, 1, -2}, {}),
+    vertex("FallsInsideByLessThanADouble", {1, 1, 1}, {-2 + unit, 1, -2}, above(0x1.5555555555555p-2)),
+
     // In the plane of the face
     vertex("SlidesInFromASide", {-1, 1, 0}, {3, 1, 0}, exactly(0.25)),
     vertex("SlidesInOverACorner", {-1, -1, 0}, {2, 2, 0}, above(0x1.5555555555555p-2)),
@@ -359,6 +363,40 @@ TEST(ExactImpact, RandomMotionDoesNotDependOnOrderAxesAndScale) {
       ASSERT_EQ(text(first_contact(equal)), text(first)) << describe(motion);
     }
   }
+}
+
+/// At a third of the step the vertex is on a side of the face, where one number is not rounded off it.
+VertexFaceMotion nearly_on_a_side(RandomNumbers& random) {
+  VertexFaceMotion motion;
+  const auto integers = [&] {
+    return Vec3d{random.below(33) - 16.0, random.below(33) - 16.0, random.below(33) - 16.0};
+  };
+  std::array<Vec3d, 4> then{Vec3d{}, integers(), integers(), integers()};
+  then[0] = then[1] + 0.25 * (then[2] - then[1]);
+  for (std::size_t i = 0; i < 4; ++i) {
+    const Vec3d path = integers();
+    motion.start[i] = then[i] - path;
+    motion.end[i] = then[i] + 2 * path;
+  }
+  double& number = motion.end[random.below(4)][static_cast<int>(random.below(3))];
+  number = std::nextafter(number, random.below(2) == 0 ? -99.0 : 99.0);
+  return motion;
+}
+
+TEST(ExactImpact, TellsTimesApartThatNoDoubleSeparates) {
+  RandomNumbers random(5);
+  int touching = 0;
+  const int count = scaled_count(50);
+  for (int i = 0; i < count; ++i) {
+    const Motion motion = nearly_on_a_side(random);
+    const auto first = first_contact(motion);
+    touching += first.has_value();
+    for (const Motion& equal : equal_motions(motion)) {
+      ASSERT_EQ(text(first_contact(equal)), text(first)) << describe(motion);
+    }
+  }
+  EXPECT_GT(touching, count / 4);
+  EXPECT_LT(touching, count * 3 / 4);
 }
 
 /// So that sums of some are exact.
