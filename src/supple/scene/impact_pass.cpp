@@ -70,9 +70,95 @@ void sort_edges(std::array<VertexRef, 4>& vertices) {
   }
 }
 
-/// The motion as it is until `time`, with that as its end.
-RelativeMotion until(const RelativeMotion& motion, double time) {
-  return {motion.start, places_at(motion, time), motion.is_square};
+/// Positions of an object in octree order, four scalars each, at both ends of the step.
+template <class Scalar>
+struct Path {
+  const Scalar* start;
+  const Scalar* end;
+
+  explicit Path(const MovingObject& object) {
+    if constexpr (std::is_same_v<Scalar, float>) {
+      start = object.start->floats(), end = object.end->floats();
+    } else {
+      start = object.start->doubles(), end = object.end->doubles();
+    }
+  }
+};
+
+template <class Scalar>
+Vec3<Scalar> vertex(const Scalar* positions, std::uint32_t index) {
+  const Scalar* const p = positions + std::size_t{index} * 4;
+  return {p[0], p[1], p[2]};
+}
+
+/// Fills a block with pairs as they are until `latest`. Differences of floats are rounded to float once, all
+/// others in double before.
+template <class ScalarA, class ScalarB>
+class BlockFill {
+ public:
+  BlockFill(const MovingObject& a, const MovingObject& b, float latest, RelativeMotionBlock& block)
+      : a_(a), b_(b), path_a_(a), path_b_(b), latest_(latest), block_(block) {}
+
+  void set(std::size_t k, ElementPairKind kind, ElementPair pair) {
+    if (kind == ElementPairKind::vertex_face) {
+      set_vertex_face(k, path_a_, pair.a, path_b_, b_.view.moving.face_ids[pair.b]);
+    } else if (kind == ElementPairKind::face_vertex) {
+      set_vertex_face(k, path_b_, pair.b, path_a_, a_.view.moving.face_ids[pair.a]);
+    } else {
+      set_edge_edge(k, a_.view.moving.edge_ids[pair.a], b_.view.moving.edge_ids[pair.b]);
+    }
+  }
+
+ private:
+  using Row = RelativeMotionBlock;
+
+  template <class ScalarV, class ScalarF>
+  void set_vertex_face(std::size_t k, const Path<ScalarV>& v, std::uint32_t index, const Path<ScalarF>& f,
+                       const Triangle& face) {
+    const Vec3<ScalarF> s0 = vertex(f.start, face[0]), e0 = vertex(f.end, face[0]);
+    set(k, Row::m, difference(vertex(v.start, index), s0), difference(vertex(v.end, index), e0));
+    set(k, Row::u, difference(vertex(f.start, face[1]), s0), difference(vertex(f.end, face[1]), e0));
+    set(k, Row::w, difference(vertex(f.start, face[2]), s0), difference(vertex(f.end, face[2]), e0));
+  }
+
+  void set_edge_edge(std::size_t k, const Edge& p, const Edge& q) {
+    const Vec3<ScalarA> sp = vertex(path_a_.start, p[0]), ep = vertex(path_a_.end, p[0]);
+    const Vec3<ScalarB> sq = vertex(path_b_.start, q[0]), eq = vertex(path_b_.end, q[0]);
+    set(k, Row::m, difference(sp, sq), difference(ep, eq));
+    set(k, Row::u, difference(sp, vertex(path_a_.start, p[1])), difference(ep, vertex(path_a_.end, p[1])));
+    set(k, Row::w, difference(vertex(path_b_.start, q[1]), sq), difference(vertex(path_b_.end, q[1]), eq));
+  }
+
+  template <class P, class Q>
+  static auto difference(const Vec3<P>& p, const Vec3<Q>& q) {
+    using Scalar = std::common_type_t<P, Q>;
+    return Vec3<Scalar>{Scalar{p.x} - Scalar{q.x}, Scalar{p.y} - Scalar{q.y}, Scalar{p.z} - Scalar{q.z}};
+  }
+
+  template <class Scalar>
+  void set(std::size_t k, std::size_t row, const Vec3<Scalar>& start, const Vec3<Scalar>& end) {
+    for (int axis = 0; axis < 3; ++axis) {
+      float* const rows = block_.rows[row + static_cast<std::size_t>(axis)] + k;
+      rows[0] = static_cast<float>(start[axis]);
+      rows[Row::end * Row::capacity] =
+          latest_ < 1 ? static_cast<float>((1 - double{latest_}) * start[axis] + double{latest_} * end[axis])
+                      : static_cast<float>(end[axis]);
+    }
+  }
+
+  const MovingObject& a_;
+  const MovingObject& b_;
+  Path<ScalarA> path_a_;
+  Path<ScalarB> path_b_;
+  float latest_;
+  RelativeMotionBlock& block_;
+};
+
+template <class ScalarA, class ScalarB>
+void fill(const MovingObject& a, const MovingObject& b, float latest, ElementPairKind kind,
+          std::span<const ElementPair> candidates, RelativeMotionBlock& block) {
+  BlockFill<ScalarA, ScalarB> filled(a, b, latest, block);
+  for (std::size_t k = 0; k < candidates.size(); ++k) filled.set(k, kind, candidates[k]);
 }
 
 /// What the impact says of the elements of a and b.
@@ -182,13 +268,10 @@ void ImpactPass::test_candidates(std::uint32_t job, ElementPairKind kind,
   const MovingObject& a = objects_[jobs_[job].a];
   const MovingObject& b = objects_[jobs_[job].b];
   const float latest = latest_.load(std::memory_order_relaxed);
-  for (std::size_t k = 0; k < candidates.size(); ++k) {
-    const auto vertices = vertices_of(kind, candidates[k], a, b);
-    const RelativeMotion motion = kind == ElementPairKind::edge_edge
-                                      ? relative_motion(motion_of<EdgeEdgeMotion>(vertices))
-                                      : relative_motion(motion_of<VertexFaceMotion>(vertices));
-    worker.block.set(k, latest < 1 ? until(motion, latest) : motion);
-  }
+  const auto fill_block = a.end->is_double() ? b.end->is_double() ? fill<double, double> : fill<double, float>
+                          : b.end->is_double() ? fill<float, double>
+                                               : fill<float, float>;
+  fill_block(a, b, latest, kind, candidates, worker.block);
   std::uint64_t left = may_touch(worker.block, candidates.size(), kind == ElementPairKind::edge_edge,
                                  round_up(options_.min_separation));
   for (; left != 0; left &= left - 1) {

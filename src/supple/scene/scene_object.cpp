@@ -74,7 +74,9 @@ SceneObject::SceneObject(const PositionsView<double>& positions, std::span<const
       octree_(positions, triangles, object_options.octree, scene_options.bounding_volume,
               scene_options.sphere_fit),
       is_continuous_(scene_options.contacts == ContactMode::continuous),
-      keeps_apart_(is_continuous_ && scene_options.impact.min_separation > 0) {
+      // Neighbours come within a separation; and the paper's output is of all leaves whose volumes overlap.
+      passes_over_unfolded_(is_continuous_ ? scene_options.impact.min_separation == 0
+                                           : !scene_options.colliding_vertices) {
   if (is_continuous_) elements_ = SurfaceElements(octree_);
 }
 
@@ -181,7 +183,7 @@ void SceneObject::update(const Parallel& parallel) {
     box_ = moved(octree_.box(), lazy_translation());
     sphere_ = moved(octree_.sphere(), lazy_translation());
   }
-  if (options.self_collision && needs_refit_ && !keeps_apart_) update_unfolded(parallel);
+  if (options.self_collision && needs_refit_ && passes_over_unfolded_) update_unfolded(parallel);
   needs_refit_ = needs_bounds_ = false;
 }
 

@@ -90,7 +90,7 @@ class SceneObject {
   SurfaceElements elements_;
   MovingBoxes moving_boxes_;
   // For objects that are tested against themselves.
-  bool keeps_apart_;  // at a separation, neighbours touch
+  bool passes_over_unfolded_;
   UnfoldedLanes unfolded_;
   bool has_unfolded_ = false;  // of the present positions
   std::uint32_t steps_without_unfolded_ = 0;
