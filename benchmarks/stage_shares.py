@@ -12,6 +12,7 @@ it, and growing buffers are part of it.
 """
 
 import json
+import os
 import platform
 import statistics
 import subprocess
@@ -19,19 +20,24 @@ import sys
 import time
 
 STAGES = ["refit", "broad_phase", "traversal", "exact", "finish"]
+CANDIDATES = ["candidate_pairs", "vertex_face_candidates", "edge_edge_candidates"]
 
 
 def run(program, arguments):
-    """Milliseconds of the last frame and of the whole process, and the frame's stats."""
+    """Milliseconds of the last frame and of the whole process, its peak memory, and the frame's stats."""
     start = time.perf_counter()
-    text = subprocess.run([program, "detect", *arguments, "--json", "-", "--quiet"],
-                          check=True, capture_output=True).stdout
+    process = subprocess.Popen([program, "detect", *arguments, "--json", "-", "--quiet"], stdout=subprocess.PIPE)
+    text = process.stdout.read()
+    _, status, usage = os.wait4(process.pid, 0)
     whole = 1e3 * (time.perf_counter() - start)
+    if status != 0:
+        sys.exit(f"supple detect {' '.join(arguments)} failed")
     stats = json.loads(text)["frames"][-1]["stats"]
-    milliseconds = {stage: 1e3 * stats[stage + "_seconds"] for stage in STAGES}
-    milliseconds["detect"] = 1e3 * stats["total_seconds"]
-    milliseconds["process"] = whole
-    return milliseconds, stats
+    figures = {stage: 1e3 * stats[stage + "_seconds"] for stage in STAGES}
+    figures["detect"] = 1e3 * stats["total_seconds"]
+    figures["process"] = whole
+    figures["megabytes"] = usage.ru_maxrss / 1024
+    return figures, stats
 
 
 def groups_of(words):
@@ -61,15 +67,16 @@ def main():
         sys.exit(__doc__)
     print(f"{processor()}, {platform.system()} {platform.machine()}, median of {runs} runs, milliseconds "
           "(share of detect)\n")
-    print("| workload | " + " | ".join(STAGES) + " | detect | whole process | candidates | contacts |")
-    print("|---|" + "---|" * (len(STAGES) + 4))
+    print("| workload | " + " | ".join(STAGES) + " | detect | whole process | peak MB | candidates | contacts |")
+    print("|---|" + "---|" * (len(STAGES) + 5))
     for name, arguments in groups_of(words):
         results = [run(program, arguments) for _ in range(runs)]
         median = {key: statistics.median(result[0][key] for result in results) for key in results[0][0]}
         stats = results[-1][1]
+        candidates = sum(stats[kind] for kind in CANDIDATES)
         cells = [f"{median[stage]:.2f} ({100 * median[stage] / median['detect']:.0f} %)" for stage in STAGES]
         print(f"| {name} | " + " | ".join(cells) + f" | {median['detect']:.1f} | {median['process']:.0f} "
-              f"| {stats['candidate_pairs']:,} | {stats['contacts']:,} |")
+              f"| {median['megabytes']:.0f} | {candidates:,} | {stats['contacts']:,} |")
         sys.stdout.flush()
 
 

@@ -3,6 +3,7 @@
 
 #include <benchmark/benchmark.h>
 
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <vector>
@@ -164,5 +165,67 @@ void triangle_pair(benchmark::State& state) {
   for (auto _ : state) benchmark::DoNotOptimize(intersect_triangles(a, b).intersects);
 }
 BENCHMARK(triangle_pair)->DenseRange(0, 2);
+
+/// One continuous query: elements far apart, apart for want of a common time, touching, sliding within one
+/// plane until they touch at a corner, and touching as their distance becomes 0.05.
+void first_impact_of_edges(benchmark::State& state) {
+  const std::array<Vec3d, 2> a0{{{0, 0, 0}, {1, 0.1, 0}}};
+  struct Query {
+    std::array<Vec3d, 4> start, end;
+    double separation = 0;
+  };
+  const Query queries[] = {
+      {{a0[0], a0[1], {0.5, -1, 2}, {0.5, 1, 2.5}}, {a0[0], a0[1], {0.5, -1, 1}, {0.5, 1, 1.5}}},
+      {{a0[0], a0[1], {1.5, -1, 1}, {1.5, 1, 1.2}}, {a0[0], a0[1], {1.2, -1, -1}, {1.4, 1, -0.8}}},
+      {{a0[0], a0[1], {0.5, -1, 1}, {0.5, 1, 1.2}}, {a0[0], a0[1], {0.4, -1, -1}, {0.6, 1, -0.8}}},
+      {{a0[0], a0[1], {2, 0, 0}, {2, 1, 0}}, {a0[0], a0[1], {1, 0.1, 0}, {1, 1.1, 0}}},
+      {{a0[0], a0[1], {0.5, -1, 1}, {0.5, 1, 1.2}}, {a0[0], a0[1], {0.4, -1, -1}, {0.6, 1, -0.8}}, 0.05}};
+  const auto& [start, end, separation] = queries[state.range(0)];
+  const EdgeEdgeMotion motion{start, end};
+  const ImpactOptions options{.min_separation = separation};
+  for (auto _ : state) benchmark::DoNotOptimize(first_impact(motion, options).has_value());
+}
+BENCHMARK(first_impact_of_edges)->DenseRange(0, 4);
+
+/// A cloth with itself, crumpled at both ends of the step. Arguments: squares a side, threads, whether only
+/// the earliest impact is wanted; items are triangles.
+void continuous_step(benchmark::State& state) {
+  const auto squares = static_cast<std::uint32_t>(state.range(0));
+  const TriangleMesh cloth = make_cloth(squares, squares);
+  SceneOptions options;
+  options.contacts = ContactMode::continuous;
+  options.threads = static_cast<std::uint32_t>(state.range(1));
+  Scene scene(options);
+  const ObjectId id = scene.add(cloth, {.self_collision = true});
+  std::vector<Vec3d> from, to;
+  for (const Vec3d& p : cloth.positions) {  // folds that pass through each other
+    const double wave = sin_turns(3 * p.x), other = sin_turns(2.5 * p.z + 0.2);
+    from.push_back({0.3 * p.x + 0.1 * wave, 0.2 * wave * other, p.z});
+    to.push_back({0.3 * p.x + 0.12 * wave, 0.2 * wave * other + 0.02 * p.z, p.z + 0.01 * other});
+  }
+  StepStats sum;
+  std::size_t contacts = 0;
+  for (auto _ : state) {
+    scene.set_motion(id, from, to);
+    if (state.range(2) != 0) {
+      contacts = scene.earliest_impact().has_value() ? 1 : 0;
+      continue;
+    }
+    const DetectResult& result = scene.detect();
+    contacts = result.continuous_contacts.size();
+    sum.traversal_seconds += result.stats.traversal_seconds;
+    sum.exact_seconds += result.stats.exact_seconds;
+  }
+  state.counters["candidates_ms"] =
+      benchmark::Counter(1e3 * sum.traversal_seconds, benchmark::Counter::kAvgIterations);
+  state.counters["verdicts_ms"] =
+      benchmark::Counter(1e3 * sum.exact_seconds, benchmark::Counter::kAvgIterations);
+  state.counters["contacts"] = static_cast<double>(contacts);
+  count_items(state, cloth.triangles.size());
+}
+BENCHMARK(continuous_step)
+    ->ArgsProduct({{64, 200}, {1, 2}, {0, 1}})
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
 
 }  // namespace

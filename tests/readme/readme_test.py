@@ -1,4 +1,4 @@
-"""The README shows a program, its output and a CMake project; all three are checked against the real thing."""
+"""The README shows programs, their output and a CMake project; all are checked against the real thing."""
 
 import pathlib
 import re
@@ -7,28 +7,29 @@ import sys
 import unittest
 
 ROOT = pathlib.Path(sys.argv[1])
-PROGRAM = sys.argv[2]
+PROGRAMS = [pathlib.Path(name) for name in sys.argv[2:]]
 
 
-def block(language):
-    """The README's first block of code in this language."""
-    match = re.search(rf"^```{language}\n(.*?)^```$", (ROOT / "README.md").read_text(), re.M | re.S)
-    return match[1] if match else None
+def blocks(language):
+    """The README's blocks of code in this language."""
+    return re.findall(rf"^```{language}\n(.*?)^```$", (ROOT / "README.md").read_text(), re.M | re.S)
 
 
 class Readme(unittest.TestCase):
     maxDiff = None
 
-    def test_program_is_the_example_that_is_compiled(self):
-        self.assertEqual(block(r"cpp"), (ROOT / "examples/hello.cpp").read_text())
+    def test_programs_are_the_examples_that_are_compiled(self):
+        sources = [ROOT / "examples" / f"{program.name.removeprefix('example_')}.cpp" for program in PROGRAMS]
+        self.assertEqual(blocks("cpp"), [source.read_text() for source in sources])
 
-    def test_output(self):
-        done = subprocess.run([PROGRAM], capture_output=True, text=True, check=True)
-        self.assertEqual(block(r"text"), done.stdout)
+    def test_outputs(self):
+        outputs = [subprocess.run([program], capture_output=True, text=True, check=True).stdout
+                   for program in PROGRAMS]
+        self.assertEqual(blocks("text"), outputs)
 
     def test_cmake_project_is_the_one_that_the_install_test_builds(self):
         project = (ROOT / "tests/install/consumer/CMakeLists.txt").read_text()
-        self.assertIn(block("cmake"), project)
+        self.assertIn(blocks("cmake")[0], project)
 
     def test_links_exist(self):
         links = re.findall(r"\]\(([^)#]+)[^)]*\)", (ROOT / "README.md").read_text())

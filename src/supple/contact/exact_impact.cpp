@@ -207,6 +207,8 @@ void FirstContact<Numbers>::consider_roots(const Cubic<Volume>& polynomial, cons
 
 template <class Numbers>
 void FirstContact<Numbers>::consider(Root root, const Definition& definition) {
+  const TimeInterval<Numbers>& interval = root.interval;
+  if (first_ && round_time(interval.low, interval.exponent, false) >= first_->high) return;
   const TimeBracket bracket = neighbouring_doubles(root);
   const bool earlier = !first_ || bracket.low < first_->low || bracket.high < first_->high;
   if (earlier && touch(root, definition)) first_ = bracket;
@@ -310,9 +312,10 @@ std::optional<TimeBracket> first_contact(Elements elements, const std::array<Vec
     widest = std::max(widest, range.width);
   }
   std::optional<TimeBracket> first;
-  if (widest <= 60 && search_with<FixedNumbers<1>>(elements, coordinates, lowest, first)) return first;
-  if (widest <= 124 && search_with<FixedNumbers<2>>(elements, coordinates, lowest, first)) return first;
-  search_with<UnboundedNumbers>(elements, coordinates, lowest, first);
+  const bool decided = widest <= 60    ? search_with<FixedNumbers<1>>(elements, coordinates, lowest, first)
+                       : widest <= 124 ? search_with<FixedNumbers<2>>(elements, coordinates, lowest, first)
+                                       : false;
+  if (!decided) search_with<UnboundedNumbers>(elements, coordinates, lowest, first);
   return first;
 }
 

@@ -17,9 +17,13 @@ Vec3d cross(const Vec3d& a, const Vec3d& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
+double largest(const Vec3d& v) {
+  return std::max({v.x, v.y, v.z});
+}
+
 /// Of length 1, or zero when there is no direction in it. Scaled first, so that squares do not underflow.
 Vec3d normalized(const Vec3d& v) {
-  const double size = std::max({std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)});
+  const double size = largest(absolute(v));
   if (!(size > 0) || !std::isfinite(size)) return {};
   const Vec3d scaled{v.x / size, v.y / size, v.z / size};
   return (1 / std::sqrt(dot(scaled, scaled))) * scaled;
@@ -50,10 +54,24 @@ Vec3d mix(const Vec3d& a, const Vec3d& b, double t) {
   return (1 - t) * a + t * b;
 }
 
+/// Places times a power of two, so that products of coordinates neither overflow nor underflow.
+struct Scaled {
+  double factor = 1;
+  RelativePlaces<double> places;
+
+  explicit Scaled(const RelativePlaces<double>& unscaled) : places(unscaled) {
+    const double size =
+        largest(larger(larger(absolute(unscaled.m), absolute(unscaled.u)), absolute(unscaled.w)));
+    if (!(size > 0x1p100 || size < 0x1p-100) || size == 0) return;
+    factor = std::ldexp(1.0, std::clamp(-std::ilogb(size), -1000, 1000));
+    places = {factor * unscaled.m, factor * unscaled.u, factor * unscaled.w};
+  }
+};
+
 template <class Motion>
 Impact impact_at(const Motion& motion, const RelativeMotion& relative, double time, double separation) {
-  const RelativePlaces<double> places = places_at(relative, time);
-  const ClosestPoints at = closest_points(places, relative.is_square);
+  const Scaled places(places_at(relative, time));
+  const ClosestPoints at = closest_points(places.places, relative.is_square);
   Impact impact;
   impact.time = time;
   std::array<Vec3d, 4> p;
@@ -66,8 +84,8 @@ Impact impact_at(const Motion& motion, const RelativeMotion& relative, double ti
     impact.point = 0.5 * (p[0] + (impact.weights[1] * p[1] + at.alpha * p[2] + at.beta * p[3]));
   }
   // Where the elements are kept apart, the vector between them is known well; where they touch, it is not.
-  const bool apart = separation > 0 && std::sqrt(at.squared_distance) > 0.5 * separation;
-  impact.normal = apart ? normalized(at.difference) : normal_across(relative, places, at);
+  const bool apart = separation > 0 && std::sqrt(at.squared_distance) > 0.5 * places.factor * separation;
+  impact.normal = apart ? normalized(at.difference) : normal_across(relative, places.places, at);
   return impact;
 }
 

@@ -79,9 +79,14 @@ std::array<int, 3> signs_over(const TimeInterval<Numbers>& interval,
 /// The sign that the polynomial has in all of the interval, or 0 when that is not seen.
 template <class Numbers>
 int sign_over(const TimeInterval<Numbers>& interval, const Quadratic<typename Numbers::Area>& quadratic) {
+  if (interval.is_point() && interval.exponent == 0) {
+    return sign(quadratic[sign(interval.low) == 0 ? 0 : 2]);
+  }
+  const SignChanges changes = sign_changes(quadratic);
+  if (changes.count == 0) return changes.first;
   const auto [low, between, high] = signs_over(interval, quadratic);
-  if (low + between + high == 0 || low * between < 0 || between * high < 0 || low * high < 0) return 0;
-  return low + between + high > 0 ? 1 : -1;
+  if (low * between < 0 || between * high < 0 || low * high < 0) return 0;
+  return low != 0 ? low : between != 0 ? between : high;
 }
 
 /// The common roots of some quadratic polynomials.

@@ -92,22 +92,38 @@ Polynomial exact_quotient(const Polynomial& p, const Polynomial& q) {
   return Polynomial(std::move(quotient));
 }
 
+/// 2^(n bits) p(x / 2^bits), n being p's degree.
+Polynomial stretched(const Polynomial& p, int bits) {
+  return on_interval(p, {0, bits});
+}
+
 /// Roots of p in the open interval from `left` to left + 2^-left.bits; `local` is p there, moved to [0, 1].
-void isolate(const Polynomial& p, const Polynomial& local, const BinaryFraction& left,
-             std::vector<UnitRoot>& roots) {
+void isolate(const Polynomial& p, Polynomial local, BinaryFraction left, std::vector<UnitRoot>& roots) {
   const int variations = sign_variations(local).count;
   if (variations == 0) return;
   if (variations == 1) {
-    roots.emplace_back(p, left);
+    roots.emplace_back(p, std::move(left));
     return;
   }
-  Coefficients half = local.coefficients();
-  for (std::size_t i = 0; i < half.size(); ++i) half[i] <<= half.size() - 1 - i;
+  // With all variations in a part of the interval there are no roots in the rest. Long ways to the left come
+  // from numbers of very different size.
+  Polynomial half;
+  for (int bits = 1; bits > 0;) {
+    half = stretched(local, bits);
+    if (sign_variations(half).count == variations) {
+      local = std::move(half);
+      left = {left.numerator << bits, left.bits + bits};
+      bits *= 2;
+    } else {
+      bits /= 2;
+    }
+  }
   const BinaryFraction middle{2 * left.numerator + 1, left.bits + 1};
-  isolate(p, Polynomial(half), {2 * left.numerator, left.bits + 1}, roots);
-  shift_by_one(half);
-  if (half[0].is_zero()) roots.emplace_back(middle);
-  isolate(p, Polynomial(std::move(half)), middle, roots);
+  isolate(p, half, {2 * left.numerator, left.bits + 1}, roots);
+  Coefficients right = half.coefficients();
+  shift_by_one(right);
+  if (right[0].is_zero()) roots.emplace_back(middle);
+  isolate(p, Polynomial(std::move(right)), middle, roots);
 }
 
 }  // namespace
@@ -181,6 +197,7 @@ Polynomial gcd(const Polynomial& p, const Polynomial& q) {
 }
 
 Polynomial squarefree_part(const Polynomial& p) {
+  if (coprime_modulo_prime(p, derivative(p))) return p;
   const Polynomial primitive = primitive_part(p);
   return exact_quotient(primitive, gcd(primitive, derivative(primitive)));
 }
@@ -233,22 +250,19 @@ void UnitRoot::halve() {
 }
 
 int UnitRoot::sign_of(const Polynomial& q) {
-  constexpr int halvings_per_attempt = 4, attempts = 6;
-  for (int attempt = 0; attempt < attempts; ++attempt) {
+  constexpr int halvings_before_zero_is_likely = 16;
+  bool may_be_zero = true;
+  for (int halvings = 4;; halvings *= 2) {
     if (exact_) return sign_at(q, left_);
     const SignVariations variations = sign_variations(on_interval(q, left_));
     if (variations.count == 0) return variations.sign;
-    for (int i = 0; i < halvings_per_attempt && !exact_; ++i) halve();
+    if (may_be_zero && halvings > halvings_before_zero_is_likely) {
+      // A root of q here is one of the common divisor, which has no other here, and a simple one.
+      if (sign_variations(on_interval(gcd(polynomial_, q), left_)).count % 2 == 1) return 0;
+      may_be_zero = false;
+    }
+    for (int i = 0; i < halvings && !exact_; ++i) halve();
   }
-  if (exact_) return sign_at(q, left_);
-  // A root of q must be one of the common divisor, which has no more than this one here, and a simple one.
-  if (sign_variations(on_interval(gcd(polynomial_, q), left_)).count % 2 == 1) return 0;
-  while (!exact_) {
-    const SignVariations variations = sign_variations(on_interval(q, left_));
-    if (variations.count == 0) return variations.sign;
-    halve();
-  }
-  return sign_at(q, left_);
 }
 
 std::pair<double, double> UnitRoot::neighbouring_doubles() {

@@ -40,7 +40,7 @@ Polynomial primitive_part(const Polynomial& p);
 /// The greatest common divisor, primitive. gcd(0, 0) = 0.
 Polynomial gcd(const Polynomial& p, const Polynomial& q);
 
-/// A primitive polynomial with the same roots, all of them simple. p is not 0.
+/// A polynomial with the same roots, all of them simple. p is not 0.
 Polynomial squarefree_part(const Polynomial& p);
 
 /// numerator / 2^bits.

@@ -37,13 +37,33 @@ HWY_INLINE void grow(float* box, float separation) {
   }
 }
 
-HWY_INLINE MovingBox moving_box(const MovingBoxArrays& arrays, std::size_t i, float separation) {
+/// Bounds at a time between the two ends, from those at both: farther out, to the side of `outward` (-1 or
+/// 1), than rounding can take them. Within the range of float, so that an inverted box stays inverted.
+template <class Tag, class Vector = hn::Vec<Tag>>
+HWY_INLINE Vector between(Tag tag, Vector start, Vector end, float time, float outward) {
+  constexpr float greatest = std::numeric_limits<float>::max();
+  const Vector sizes = hn::Add(hn::Abs(start), hn::Abs(end));
+  const Vector slack = hn::Min(hn::Mul(hn::Set(tag, 0x1p-21f), sizes), hn::Set(tag, greatest / 4));
+  const Vector bound = hn::Add(hn::Mul(start, hn::Set(tag, 1 - time)), hn::Mul(end, hn::Set(tag, time)));
+  const Vector moved =
+      hn::Add(bound, hn::Mul(hn::Set(tag, outward), hn::Add(slack, hn::Set(tag, 0x1p-120f))));
+  return hn::Min(hn::Max(moved, hn::Set(tag, -greatest)), hn::Set(tag, greatest));
+}
+
+HWY_INLINE MovingBox moving_box(const MovingBoxArrays& arrays, std::size_t i, const PartOfStep& part) {
   MovingBox box;
   load_box(box.start, arrays.start, arrays.stride, i);
   load_box(box.end, arrays.end, arrays.stride, i);
-  if (separation > 0) {
-    grow(box.start, separation);
-    grow(box.end, separation);
+  if (part.separation > 0) {
+    grow(box.start, part.separation);
+    grow(box.end, part.separation);
+  }
+  if (part.latest < 1) {
+    const hn::CappedTag<float, 1> one;
+    for (std::size_t side = 0; side < 6; ++side) {
+      box.end[side] = hn::GetLane(between(one, hn::Set(one, box.start[side]), hn::Set(one, box.end[side]),
+                                          part.latest, side < 3 ? -1.0f : 1.0f));
+    }
   }
   return box;
 }
@@ -53,43 +73,49 @@ HWY_INLINE MovingBoxArrays lanes_of(const MovingView& view, std::uint32_t node) 
 }
 
 /// Whether the boxes from `first` on, a vector of them, are apart from `box` along the axis: on the same side
-/// at both ends.
+/// at both ends of the part of the step.
 template <class Tag>
 HWY_INLINE hn::Mask<Tag> apart_along(Tag tag, const MovingBox& box, const MovingBoxArrays& arrays,
-                                     std::size_t first, std::size_t axis) {
+                                     std::size_t first, std::size_t axis, float latest) {
   const float* const start = arrays.start + axis * arrays.stride + first;
   const float* const end = arrays.end + axis * arrays.stride + first;
   const std::size_t to_max = 3 * arrays.stride;
-  const auto above = hn::And(hn::Gt(hn::LoadU(tag, start), hn::Set(tag, box.start[axis + 3])),
-                             hn::Gt(hn::LoadU(tag, end), hn::Set(tag, box.end[axis + 3])));
-  const auto below = hn::And(hn::Lt(hn::LoadU(tag, start + to_max), hn::Set(tag, box.start[axis])),
-                             hn::Lt(hn::LoadU(tag, end + to_max), hn::Set(tag, box.end[axis])));
+  const auto start_min = hn::LoadU(tag, start), start_max = hn::LoadU(tag, start + to_max);
+  auto end_min = hn::LoadU(tag, end), end_max = hn::LoadU(tag, end + to_max);
+  if (latest < 1) {
+    end_min = between(tag, start_min, end_min, latest, -1.0f);
+    end_max = between(tag, start_max, end_max, latest, 1.0f);
+  }
+  const auto above = hn::And(hn::Gt(start_min, hn::Set(tag, box.start[axis + 3])),
+                             hn::Gt(end_min, hn::Set(tag, box.end[axis + 3])));
+  const auto below =
+      hn::And(hn::Lt(start_max, hn::Set(tag, box.start[axis])), hn::Lt(end_max, hn::Set(tag, box.end[axis])));
   return hn::Or(above, below);
 }
 
 /// Bits of the boxes from `first` on, a vector of them, that are not apart from `box` along any axis.
 template <class Tag>
 HWY_INLINE std::uint64_t meeting_bits(Tag tag, const MovingBox& box, const MovingBoxArrays& arrays,
-                                      std::size_t first) {
-  const auto apart =
-      hn::Or(apart_along(tag, box, arrays, first, 0),
-             hn::Or(apart_along(tag, box, arrays, first, 1), apart_along(tag, box, arrays, first, 2)));
+                                      std::size_t first, float latest) {
+  const auto apart = hn::Or(apart_along(tag, box, arrays, first, 0, latest),
+                            hn::Or(apart_along(tag, box, arrays, first, 1, latest),
+                                   apart_along(tag, box, arrays, first, 2, latest)));
   std::uint8_t bytes[8] = {};
   hn::StoreMaskBits(tag, hn::Not(apart), bytes);
   return std::uint64_t{bytes[0]} | std::uint64_t{bytes[1]} << 8;
 }
 
 void MovingOverlapMasks(const NodePair* pairs, std::size_t count, const MovingView& a, const MovingView& b,
-                        float separation, std::uint64_t* masks) {
+                        const PartOfStep& part, std::uint64_t* masks) {
   const hn::CappedTag<float, node_width> tag;
   for (std::size_t k = 0; k < count; ++k) {
     const MovingBoxArrays lanes_a = lanes_of(a, pairs[k].a), lanes_b = lanes_of(b, pairs[k].b);
     std::uint64_t mask = 0;
     for (std::uint32_t rest = pairs[k].lanes_a; rest != 0; rest &= rest - 1) {
       const auto i = static_cast<std::size_t>(std::countr_zero(rest));
-      const MovingBox box = moving_box(lanes_a, i, separation);
+      const MovingBox box = moving_box(lanes_a, i, part);
       for (std::size_t j = 0; j < node_width; j += hn::Lanes(tag)) {
-        mask |= meeting_bits(tag, box, lanes_b, j) << (8 * i + j);
+        mask |= meeting_bits(tag, box, lanes_b, j, part.latest) << (8 * i + j);
       }
     }
     masks[k] = mask;
@@ -99,14 +125,14 @@ void MovingOverlapMasks(const NodePair* pairs, std::size_t count, const MovingVi
 /// What `find_element_box_pairs` does, for one call.
 class ElementTests {
  public:
-  HWY_INLINE ElementTests(const MovingView& a, const MovingView& b, float separation, bool same_object,
+  HWY_INLINE ElementTests(const MovingView& a, const MovingView& b, const PartOfStep& part, bool same_object,
                           ElementPairBatches& batches)
-      : a_(a), b_(b), separation_(separation), same_object_(same_object), batches_(batches) {}
+      : a_(a), b_(b), part_(part), same_object_(same_object), batches_(batches) {}
 
   HWY_INLINE void test(const LeafPair& leaves) {
     same_leaf_ = same_object_ && leaves.begin_a == leaves.begin_b;
-    box_a_ = moving_box(lanes_of(a_, leaves.lane_a / node_width), leaves.lane_a % node_width, separation_);
-    box_b_ = moving_box(lanes_of(b_, leaves.lane_b / node_width), leaves.lane_b % node_width, separation_);
+    box_a_ = moving_box(lanes_of(a_, leaves.lane_a / node_width), leaves.lane_a % node_width, part_);
+    box_b_ = moving_box(lanes_of(b_, leaves.lane_b / node_width), leaves.lane_b % node_width, part_);
     const ElementRange vertices_a{a_.first_vertex[leaves.begin_a], a_.first_vertex[leaves.end_a]};
     const ElementRange vertices_b{b_.first_vertex[leaves.begin_b], b_.first_vertex[leaves.end_b]};
     const ElementRange faces_a{leaves.begin_a, leaves.end_a}, faces_b{leaves.begin_b, leaves.end_b};
@@ -152,10 +178,10 @@ class ElementTests {
                                             ElementRange range) {
     const Tag tag;
     tests_ += range.size();
-    std::uint64_t bits = meeting_bits(tag, box, boxes, range.begin);
+    std::uint64_t bits = meeting_bits(tag, box, boxes, range.begin, part_.latest);
     for (std::uint32_t j = static_cast<std::uint32_t>(hn::Lanes(tag)); j < range.size();
          j += static_cast<std::uint32_t>(hn::Lanes(tag))) {
-      bits |= meeting_bits(tag, box, boxes, range.begin + j) << j;
+      bits |= meeting_bits(tag, box, boxes, range.begin + j, part_.latest) << j;
     }
     return bits;
   }
@@ -169,14 +195,14 @@ class ElementTests {
       for (; some_a != 0; some_a &= some_a - 1) {
         if (one_block) some_b = some_a & (some_a - 1);
         const std::uint32_t a = range_a.begin + static_cast<std::uint32_t>(std::countr_zero(some_a));
-        const std::uint64_t hits = meeting_elements(moving_box(boxes_a, a, separation_), boxes_b, range_b);
+        const std::uint64_t hits = meeting_elements(moving_box(boxes_a, a, part_), boxes_b, range_b);
         add<kind, false>(a, range_b.begin, hits & some_b);
       }
       return;
     }
     for (; some_b != 0; some_b &= some_b - 1) {
       const std::uint32_t b = range_b.begin + static_cast<std::uint32_t>(std::countr_zero(some_b));
-      const std::uint64_t hits = meeting_elements(moving_box(boxes_b, b, separation_), boxes_a, range_a);
+      const std::uint64_t hits = meeting_elements(moving_box(boxes_b, b, part_), boxes_a, range_a);
       add<kind, true>(b, range_a.begin, hits & some_a);
     }
   }
@@ -215,7 +241,7 @@ class ElementTests {
 
   const MovingView& a_;
   const MovingView& b_;
-  float separation_;
+  PartOfStep part_;
   bool same_object_;
   ElementPairBatches& batches_;
   bool same_leaf_ = false;
@@ -224,9 +250,9 @@ class ElementTests {
 };
 
 std::uint64_t ElementBoxPairs(const LeafPair* leaf_pairs, std::size_t count, const MovingView& a,
-                              const MovingView& b, float separation, bool same_object,
+                              const MovingView& b, const PartOfStep& part, bool same_object,
                               ElementPairBatches& batches) {
-  ElementTests tests(a, b, separation, same_object, batches);
+  ElementTests tests(a, b, part, same_object, batches);
   for (std::size_t k = 0; k < count; ++k) tests.test(leaf_pairs[k]);
   return tests.box_tests();
 }
@@ -242,15 +268,15 @@ HWY_EXPORT(MovingOverlapMasks);
 HWY_EXPORT(ElementBoxPairs);
 
 void moving_overlap_masks(std::span<const NodePair> pairs, const MovingView& a, const MovingView& b,
-                          float separation, std::uint64_t* masks) {
-  HWY_DYNAMIC_DISPATCH(MovingOverlapMasks)(pairs.data(), pairs.size(), a, b, separation, masks);
+                          const PartOfStep& part, std::uint64_t* masks) {
+  HWY_DYNAMIC_DISPATCH(MovingOverlapMasks)(pairs.data(), pairs.size(), a, b, part, masks);
 }
 
 std::uint64_t find_element_box_pairs(std::span<const LeafPair> leaf_pairs, const MovingView& a,
-                                     const MovingView& b, float separation, bool same_object,
+                                     const MovingView& b, const PartOfStep& part, bool same_object,
                                      ElementPairBatches& batches) {
-  return HWY_DYNAMIC_DISPATCH(ElementBoxPairs)(leaf_pairs.data(), leaf_pairs.size(), a, b, separation,
-                                               same_object, batches);
+  return HWY_DYNAMIC_DISPATCH(ElementBoxPairs)(leaf_pairs.data(), leaf_pairs.size(), a, b, part, same_object,
+                                               batches);
 }
 
 }  // namespace supple

@@ -62,16 +62,23 @@ class ElementPairBatches {
   void* context_ = nullptr;
 };
 
-/// As `overlap_masks`, of nodes in motion: the bits of lanes that are not apart by more than `separation` all
-/// the time.
-void moving_overlap_masks(std::span<const NodePair> pairs, const MovingView& a, const MovingView& b,
-                          float separation, std::uint64_t* masks);
+/// What boxes in motion are tested for: coming within `separation` of each other, not after `latest`, which
+/// is from 2^-20 to 1.
+struct PartOfStep {
+  float separation = 0;
+  float latest = 1;
+};
 
-/// Adds all pairs of elements of the leaf pairs that may come within `separation` of each other, by their
+/// As `overlap_masks`, of nodes in motion: the bits of lanes that are not apart by more than the separation
+/// all the time.
+void moving_overlap_masks(std::span<const NodePair> pairs, const MovingView& a, const MovingView& b,
+                          const PartOfStep& part, std::uint64_t* masks);
+
+/// Adds all pairs of elements of the leaf pairs that may come within the separation of each other, by their
 /// boxes at both ends of the step. With `same_object` pairs that share a vertex are left out, each pair comes
 /// once and faces are always b. Never misses a pair. Returns the number of box tests.
 std::uint64_t find_element_box_pairs(std::span<const LeafPair> leaf_pairs, const MovingView& a,
-                                     const MovingView& b, float separation, bool same_object,
+                                     const MovingView& b, const PartOfStep& part, bool same_object,
                                      ElementPairBatches& batches);
 
 }  // namespace supple

@@ -11,7 +11,7 @@ namespace {
 
 void test_lanes(const ObjectPairView& pair, std::span<const NodePair> node_pairs, std::uint64_t* masks) {
   if (pair.is_moving()) {
-    moving_overlap_masks(node_pairs, pair.a.moving, pair.b.moving, pair.separation, masks);
+    moving_overlap_masks(node_pairs, pair.a.moving, pair.b.moving, pair.part_of_step(), masks);
   } else if (pair.a.spheres != nullptr) {
     overlap_masks(node_pairs, pair.a.spheres, pair.b.spheres, pair.placement, masks);
   } else {
@@ -27,10 +27,11 @@ void for_each_lane_pair(const ObjectPairView& pair, NodePair node_pair, std::uin
   const OctreeNode& node_b = pair.b.nodes[node_pair.b];
   const std::uint32_t wanted_b = node_pair.lanes_b & node_b.lane_mask();
   const bool same_node = pair.same_object && node_pair.a == node_pair.b;
+  const std::uint32_t unfolded = same_node && pair.a.unfolded != nullptr ? pair.a.unfolded[node_pair.a] : 0;
   for (std::uint32_t rest = node_pair.lanes_a & node_a.lane_mask(); rest != 0; rest &= rest - 1) {
     const int i = std::countr_zero(rest);
     std::uint32_t hits = static_cast<std::uint32_t>(mask >> (8 * i)) & wanted_b;
-    if (same_node) hits &= ~0u << i;
+    if (same_node) hits &= ~0u << i & ~(unfolded & 1u << i);
     for (; hits != 0; hits &= hits - 1) visit(i, std::countr_zero(hits));
   }
 }
@@ -86,7 +87,8 @@ OctreeView view_of(const ObjectOctree& octree, const VertexBuffer& vertices,
           {octree.triangles().data(), vertices.is_double() ? nullptr : vertices.floats(),
            vertices.is_double() ? vertices.doubles() : nullptr, inert.empty() ? nullptr : inert.data()},
           translation,
-          {}};
+          {},
+          nullptr};
 }
 
 OctreeView moving_view_of(const ObjectOctree& octree, const SurfaceElements& elements,
@@ -98,20 +100,24 @@ OctreeView moving_view_of(const ObjectOctree& octree, const SurfaceElements& ele
 }
 
 ObjectPairView pair_of(const OctreeView& a, const OctreeView& b) {
-  return {a, b, place(a, b), false, 0};
+  return {a, b, place(a, b), false, 0, nullptr};
 }
 
 ObjectPairView self_pair_of(const OctreeView& object) {
   // The translation is the same, and rounding may yet bring close positions together.
-  return {object, object, place(object, object), true, 0};
+  ObjectPairView pair{object, object, place(object, object), true, 0, nullptr};
+  if (!pair.placement.is_identity()) pair.a.unfolded = nullptr;
+  return pair;
 }
 
 ObjectPairView moving_pair_of(const OctreeView& a, const OctreeView& b, double separation) {
-  return {a, b, {}, false, round_up(separation)};
+  return {a, b, {}, false, round_up(separation), nullptr};
 }
 
 ObjectPairView moving_self_pair_of(const OctreeView& object, double separation) {
-  return {object, object, {}, true, round_up(separation)};
+  ObjectPairView pair{object, object, {}, true, round_up(separation), nullptr};
+  if (separation > 0) pair.a.unfolded = nullptr;
+  return pair;
 }
 
 void Traversal::expand_batch(const ObjectPairView& pair, TraversalStats& stats) {

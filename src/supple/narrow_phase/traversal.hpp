@@ -1,6 +1,8 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <atomic>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -19,7 +21,10 @@ struct OctreeView {
   const SphereLanes* spheres = nullptr;  ///< null: the boxes are the volumes
   TriangleArrays arrays;
   Vec3d translation;  ///< added to each position
-  MovingView moving;  ///< of objects in motion, of which `nodes` and this are read only
+  MovingView moving;  ///< of objects in motion, of which `nodes`, this and the next are read only
+  /// Masks of an `UnfoldedLanes` of these very positions, or null: an object against itself is then not
+  /// looked for in lanes that cannot touch themselves. Candidates are lost thereby, contacts are not.
+  const std::uint8_t* unfolded = nullptr;
 };
 OctreeView view_of(const ObjectOctree& octree, const VertexBuffer& vertices,
                    std::span<const std::uint8_t> inert, Vec3d translation);
@@ -34,7 +39,14 @@ struct ObjectPairView {
   bool same_object = false;
   /// Of objects in motion: elements touch that come this near, not less than what was asked for.
   float separation = 0;
+  /// Null, or up to when in the step elements that touch are of interest; it may fall while they are looked
+  /// for.
+  const std::atomic<float>* latest = nullptr;
 
+  PartOfStep part_of_step() const {
+    constexpr float least = 0x1p-20f;
+    return {separation, latest != nullptr ? std::max(latest->load(std::memory_order_relaxed), least) : 1.0f};
+  }
   bool is_moving() const { return a.moving.start != nullptr; }
 };
 ObjectPairView pair_of(const OctreeView& a, const OctreeView& b);
@@ -101,7 +113,7 @@ class Traversal {
       expand_batch(pair, stats);
       if (leaf_pairs_.size() < leaf_batch && !stack_.empty()) continue;
       stats.volumes_tested += find_element_box_pairs(leaf_pairs_, pair.a.moving, pair.b.moving,
-                                                     pair.separation, pair.same_object, element_pairs_);
+                                                     pair.part_of_step(), pair.same_object, element_pairs_);
       leaf_pairs_.clear();
     }
     element_pairs_.flush();

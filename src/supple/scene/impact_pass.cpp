@@ -157,8 +157,10 @@ void ImpactPass::search(Search search, std::span<const ContactJob> jobs,
 ObjectPairView ImpactPass::view_of_job(std::uint32_t job) const {
   const MovingObject& a = objects_[jobs_[job].a];
   const MovingObject& b = objects_[jobs_[job].b];
-  return &a == &b ? moving_self_pair_of(a.view, options_.min_separation)
-                  : moving_pair_of(a.view, b.view, options_.min_separation);
+  ObjectPairView pair = &a == &b ? moving_self_pair_of(a.view, options_.min_separation)
+                                 : moving_pair_of(a.view, b.view, options_.min_separation);
+  if (search_ == Search::earliest) pair.latest = &latest_;
+  return pair;
 }
 
 void ImpactPass::run_task(const ContactTask& task, Worker& worker) {
@@ -179,9 +181,7 @@ void ImpactPass::test_candidates(std::uint32_t job, ElementPairKind kind,
                                  std::span<const ElementPair> candidates, Worker& worker) {
   const MovingObject& a = objects_[jobs_[job].a];
   const MovingObject& b = objects_[jobs_[job].b];
-  // Reported times may be early by the tolerance, so that the first of them can be of a pair that touches
-  // after the first touch.
-  const double latest = std::min(1.0, latest_.load(std::memory_order_relaxed) + impact_time_tolerance);
+  const float latest = latest_.load(std::memory_order_relaxed);
   for (std::size_t k = 0; k < candidates.size(); ++k) {
     const auto vertices = vertices_of(kind, candidates[k], a, b);
     const RelativeMotion motion = kind == ElementPairKind::edge_edge
@@ -243,9 +243,11 @@ void ImpactPass::keep(Key key, const ContinuousContact& contact, Worker& worker)
   }
   worker.earliest = contact;
   worker.earliest_key = key;
-  double latest = latest_.load(std::memory_order_relaxed);
-  while (contact.time < latest &&
-         !latest_.compare_exchange_weak(latest, contact.time, std::memory_order_relaxed)) {
+  // Reported times may be early by the tolerance, so that the first of them can be of a pair that touches
+  // after the first touch.
+  const float until = round_up(contact.time + impact_time_tolerance);
+  float latest = latest_.load(std::memory_order_relaxed);
+  while (until < latest && !latest_.compare_exchange_weak(latest, until, std::memory_order_relaxed)) {
   }
 }
 

@@ -87,8 +87,8 @@ class ImpactPass {
   const Parallel* parallel_ = nullptr;
   std::vector<Worker> workers_;
   ContactTasks tasks_;
-  /// No contact with a later time is looked for.
-  std::atomic<double> latest_ = 1;
+  /// Nothing that touches only later than this is looked for.
+  std::atomic<float> latest_ = 1;
 
   std::vector<ContactGroup> groups_;
   std::vector<ContinuousContact> contacts_;

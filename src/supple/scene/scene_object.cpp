@@ -1,6 +1,7 @@
 #include "scene/scene_object.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <utility>
 
@@ -72,7 +73,8 @@ SceneObject::SceneObject(const PositionsView<double>& positions, std::span<const
     : options(object_options),
       octree_(positions, triangles, object_options.octree, scene_options.bounding_volume,
               scene_options.sphere_fit),
-      is_continuous_(scene_options.contacts == ContactMode::continuous) {
+      is_continuous_(scene_options.contacts == ContactMode::continuous),
+      keeps_apart_(is_continuous_ && scene_options.impact.min_separation > 0) {
   if (is_continuous_) elements_ = SurfaceElements(octree_);
 }
 
@@ -154,6 +156,7 @@ void SceneObject::settle(const Parallel& parallel) {
 
 void SceneObject::note_non_finite(bool all_finite) {
   needs_refit_ = needs_bounds_ = true;
+  has_unfolded_ = false;
   inert_.clear();
   non_finite_.clear();
   if (all_finite) return;
@@ -178,6 +181,7 @@ void SceneObject::update(const Parallel& parallel) {
     box_ = moved(octree_.box(), lazy_translation());
     sphere_ = moved(octree_.sphere(), lazy_translation());
   }
+  if (options.self_collision && needs_refit_ && !keeps_apart_) update_unfolded(parallel);
   needs_refit_ = needs_bounds_ = false;
 }
 
@@ -188,6 +192,37 @@ void SceneObject::update_moving(const Parallel& parallel) {
   sphere_ = sphere_around(box_);
 }
 
+/// Where too few lanes are unfolded, as in crumpled cloth, looking for them costs more than it saves: it is
+/// then left for some steps.
+void SceneObject::update_unfolded(const Parallel& parallel) {
+  constexpr std::uint32_t rest_steps = 15, least_share = 8;
+  if (steps_without_unfolded_ > 0) {
+    --steps_without_unfolded_;
+    return;
+  }
+  if (unfolded_.masks().empty()) unfolded_ = UnfoldedLanes(octree_);
+  unfolded_.refit(octree_, start(), end(), parallel);
+  has_unfolded_ = true;
+  std::size_t lanes = 0, unfolded = 0;
+  for (std::size_t node = 0; node < octree_.nodes().size(); ++node) {
+    lanes += octree_.nodes()[node].lane_count;
+    unfolded += static_cast<std::size_t>(std::popcount(unfolded_.masks()[node]));
+  }
+  if (unfolded * least_share < lanes) steps_without_unfolded_ = rest_steps;
+}
+
+OctreeView SceneObject::view() const {
+  OctreeView view = view_of(octree_, vertices_, inert_, lazy_translation());
+  if (has_unfolded_) view.unfolded = unfolded_.masks().data();
+  return view;
+}
+
+OctreeView SceneObject::moving_view() const {
+  OctreeView view = moving_view_of(octree_, elements_, moving_boxes_);
+  if (has_unfolded_) view.unfolded = unfolded_.masks().data();
+  return view;
+}
+
 std::string SceneObject::validate() const {
   if (!is_continuous_) return octree_.validate(vertices_, inert_);
   const std::string wrong = elements_.validate(octree_);
@@ -196,7 +231,7 @@ std::string SceneObject::validate() const {
 
 OctreeStatistics SceneObject::octree_statistics() const {
   OctreeStatistics statistics = octree_.statistics();
-  statistics.bytes += moving_boxes_.bytes() + elements_.bytes();
+  statistics.bytes += moving_boxes_.bytes() + elements_.bytes() + unfolded_.bytes();
   if (statistics.triangles != 0) {
     statistics.bytes_per_triangle =
         static_cast<double>(statistics.bytes) / static_cast<double>(statistics.triangles);

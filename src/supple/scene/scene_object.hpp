@@ -9,6 +9,7 @@
 #include "octree/moving_boxes.hpp"
 #include "octree/object_octree.hpp"
 #include "octree/surface_elements.hpp"
+#include "octree/unfolded_lanes.hpp"
 #include "supple/options.hpp"
 #include "supple/result.hpp"
 #include "supple/scene.hpp"
@@ -42,11 +43,11 @@ class SceneObject {
   /// Of the placed object, as of the last update; with continuous contacts, around its whole motion.
   const Aabb& box() const { return box_; }
   const BoundingSphere& sphere() const { return sphere_; }
-  OctreeView view() const { return view_of(octree_, vertices_, inert_, lazy_translation()); }
+  OctreeView view() const;
   /// With continuous contacts: the path's ends, the same buffer at rest, and the boxes around them.
   const VertexBuffer& start() const { return has_motion_ ? start_ : vertices_; }
   const VertexBuffer& end() const { return vertices_; }
-  OctreeView moving_view() const { return moving_view_of(octree_, elements_, moving_boxes_); }
+  OctreeView moving_view() const;
   const ObjectOctree& octree() const { return octree_; }
   /// Placed position of a vertex in octree order.
   Vec3d position(std::uint32_t octree_vertex) const;
@@ -70,6 +71,7 @@ class SceneObject {
   bool is_extreme() const;
   void settle(const Parallel& parallel);
   void update_moving(const Parallel& parallel);
+  void update_unfolded(const Parallel& parallel);
   void note_non_finite(bool all_finite);
 
   ObjectOctree octree_;
@@ -87,6 +89,11 @@ class SceneObject {
   VertexBuffer start_;
   SurfaceElements elements_;
   MovingBoxes moving_boxes_;
+  // For objects that are tested against themselves.
+  bool keeps_apart_;  // at a separation, neighbours touch
+  UnfoldedLanes unfolded_;
+  bool has_unfolded_ = false;  // of the present positions
+  std::uint32_t steps_without_unfolded_ = 0;
   bool needs_refit_ = true;
   bool needs_bounds_ = true;
   Aabb box_;

@@ -241,6 +241,13 @@ TEST(ContactAlgebra, CoordinatesFarApartInSize) {
   EXPECT_EQ(vertex_on_face({0, 0, 1}, {0, 0, -1}, huge, smallest), between(std::nextafter(0.5, 0)));
 }
 
+TEST(ContactAlgebra, RejectsNothingForWhatRoundingDoes) {
+  // Rounded down to multiples of 2^-55, the face lies below the vertex's end, which is below the true face.
+  constexpr double eighth = 0x1p-58;
+  EXPECT_EQ(vertex_on_face({0, 0, 1}, {0, 0, 0}, {{{-1, -1, -eighth}, {-1, 1, -eighth}, {1, 0, 7 * eighth}}}),
+            between(std::nextafter(1, 0)));
+}
+
 TEST(ContactAlgebra, NotFiniteTouchesNothing) {
   for (const double value : {infinity, -infinity, std::nan("")}) {
     EXPECT_EQ(vertex_on_face({1, 1, value}, {1, 1, -1}, flat_face), never);
@@ -257,10 +264,9 @@ TEST(ContactAlgebra, RefusesSeparation) {
   EXPECT_EQ(vertex_on_face({1, 1, 1}, {1, 1, -1}, flat_face, -0.0), exactly(0.5));
 }
 
-/// What rational geometry says at rational times must agree with the bracket. True for a contact.
+/// What rational geometry says at rational times must agree with the bracket.
 template <class Motion>
-bool agrees_with_samples(const Motion& motion, double separation) {
-  constexpr int samples = 12;
+Answer answer_that_agrees_with_samples(const Motion& motion, double separation, int samples) {
   const Answer found = first_contact_by_algebra(motion, separation);
   const Rational limit = Rational(separation) * Rational(separation);
   const auto near = [&](const Rational& time) { return testing::squared_distance_at(motion, time) <= limit; };
@@ -269,14 +275,22 @@ bool agrees_with_samples(const Motion& motion, double separation) {
     if (found && (time > Rational(found->low) || time == Rational(found->high))) break;
     EXPECT_FALSE(near(time)) << "at " << time;
   }
-  if (!found) return false;
-  if (found->low == found->high) {
+  if (found && found->low == found->high) {
     EXPECT_TRUE(near(Rational(found->low))) << found->low;
-  } else {
+  } else if (found) {
     EXPECT_EQ(found->high, std::nextafter(found->low, 2.0));
     EXPECT_FALSE(near(Rational(found->low)));
-    EXPECT_LT(testing::squared_distance_at(motion, Rational(found->high)), limit + Rational(1e-12));
   }
+  return found;
+}
+
+/// The same for coordinates of moderate size. True for a contact.
+template <class Motion>
+bool agrees_with_samples(const Motion& motion, double separation) {
+  const Answer found = answer_that_agrees_with_samples(motion, separation, 12);
+  if (!found) return false;
+  const Rational limit = Rational(separation) * Rational(separation);
+  EXPECT_LE(testing::squared_distance_at(motion, Rational(found->high)), limit + Rational(1e-12));
   return true;
 }
 
@@ -326,6 +340,29 @@ TEST(ContactAlgebra, AgreesWithRationalGeometryInThePlane) {
     if (HasFailure()) FAIL() << "query " << i;
   }
   EXPECT_GT(contacts, 75);
+}
+
+TEST(ContactAlgebra, AgreesWithRationalGeometryOnNumbersOfAllSizes) {
+  RandomNumbers random(9);
+  int contacts = 0;
+  for (int i = 0; i < 20; ++i) {
+    const int largest_exponent = i % 4 == 0 ? 300 : 100;
+    const auto number = [&] {
+      const double digits = random.below(4) == 0 ? 0 : random.uniform(-1, 1);
+      const auto exponent = static_cast<int>(random.below(static_cast<std::uint32_t>(2 * largest_exponent)));
+      return std::ldexp(digits, exponent - largest_exponent);
+    };
+    VertexFaceMotion vf;
+    EdgeEdgeMotion ee;
+    for (Points* points : {&vf.start, &vf.end, &ee.start, &ee.end}) {
+      for (Vec3d& p : *points) p = {number(), number(), number()};
+    }
+    const double separation = i % 3 == 0 ? std::fabs(number()) : 0;
+    contacts += answer_that_agrees_with_samples(vf, separation, 4).has_value();
+    contacts += answer_that_agrees_with_samples(ee, separation, 4).has_value();
+    if (HasFailure()) FAIL() << "query " << i;
+  }
+  EXPECT_GT(contacts, 8);
 }
 
 template <class Motion>

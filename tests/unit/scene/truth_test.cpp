@@ -88,7 +88,6 @@ TEST_F(Truth, SelfIntersections) {
     Scene scene;
     scene.add(load(expected["mesh"]), {.self_collision = true});
     expect_pairs(scene.detect(), expected);
-    expect_candidates(scene.result(), expected);
   }
 }
 
@@ -175,8 +174,8 @@ TEST_F(Truth, StepsTouchWhereAndWhenExactArithmeticSays) {
     std::map<std::string, TouchingTimes> found;
     for (const ContinuousContact& contact : scene.detect().continuous_contacts) {
       if (contact.kind == ElementPairKind::edge_edge) {
-        const auto pair = std::minmax(number(contact.element_a), number(contact.element_b));
-        found["ee"][pair] = contact.time;
+        const std::uint32_t a = number(contact.element_a), b = number(contact.element_b);
+        found["ee"][std::minmax(a, b)] = contact.time;
       } else {
         found["vf"][{contact.element_a[0], contact.element_b[0]}] = contact.time;
       }

@@ -1,0 +1,40 @@
+// A cloth falls so fast that it would be through a ball between two steps; each step is cut where it first
+// touches.
+#include <cstdio>
+#include <vector>
+
+#include "supple/supple.hpp"
+
+int main() {
+  const supple::TriangleMesh cloth_mesh = supple::make_cloth(40, 40);
+
+  supple::SceneOptions options;
+  options.contacts = supple::ContactMode::continuous;
+  options.impact.min_separation = 1e-3;  // of the cloth's thickness
+  supple::Scene scene(options);
+  scene.add(supple::make_icosphere(12), {.name = "ball", .is_static = true});
+  const supple::ObjectId cloth = scene.add(cloth_mesh, {.name = "cloth", .self_collision = true});
+
+  std::vector<supple::Vec3d> now = cloth_mesh.positions;
+  for (supple::Vec3d& p : now) p.y += 3;
+  const supple::Vec3d velocity{0, -4, 0};  // a step is 1
+  for (int step = 0; step < 2; ++step) {
+    std::vector<supple::Vec3d> next = now;
+    for (supple::Vec3d& p : next) p = p + velocity;
+    scene.set_motion(cloth, now, next);
+
+    const auto impact = scene.earliest_impact();
+    if (!impact) {
+      std::printf("step %d: nothing in the way\n", step);
+      now = next;
+      continue;
+    }
+    std::printf("step %d: %s and %s touch at %.6f, normal (%.3f, %.3f, %.3f); %zu pairs would touch\n", step,
+                scene.name(impact->object_a).c_str(), scene.name(impact->object_b).c_str(), impact->time,
+                impact->normal.x, impact->normal.y, impact->normal.z,
+                scene.detect().continuous_contacts.size());
+    // Your own response goes here; this one only stops short of it.
+    const double part = 0.9 * scene.max_step();
+    for (std::size_t i = 0; i < now.size(); ++i) now[i] = (1 - part) * now[i] + part * next[i];
+  }
+}
