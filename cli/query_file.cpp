@@ -1,8 +1,9 @@
 #include "query_file.hpp"
 
 #include <fmt/core.h>
-#include <rapidjson/document.h>
 #include <rapidjson/error/en.h>
+#include <rapidjson/memorystream.h>
+#include <rapidjson/reader.h>
 
 #include <algorithm>
 #include <array>
@@ -221,6 +222,20 @@ std::optional<QueryKind> kind_of_stem(const fs::path& path) {
   return std::nullopt;
 }
 
+/// Accepts a list of true and false, nothing else.
+struct AnswerHandler : rapidjson::BaseReaderHandler<rapidjson::UTF8<>, AnswerHandler> {
+  std::vector<bool> answers;
+  bool in_list = false;
+
+  bool Default() { return false; }
+  bool StartArray() { return !std::exchange(in_list, true); }
+  bool EndArray(rapidjson::SizeType) { return true; }
+  bool Bool(bool answer) {
+    if (in_list) answers.push_back(answer);
+    return in_list;
+  }
+};
+
 std::uint64_t line_of(const std::string& text, std::size_t offset) {
   const auto end = text.begin() + static_cast<std::ptrdiff_t>(std::min(offset, text.size()));
   return 1 + static_cast<std::uint64_t>(std::count(text.begin(), end, '\n'));
@@ -252,20 +267,18 @@ void read_answers(const fs::path& path, QueryFile& file) {
                             path.string()));
   std::ifstream stream = open(path);
   const std::string text{std::istreambuf_iterator<char>(stream), {}};
-  rapidjson::Document document;
-  document.Parse<rapidjson::kParseIterativeFlag>(text.data(), text.size());
-  if (document.HasParseError())
-    throw Error(fmt::format("{}:{}: not valid JSON: {}", path.string(),
-                            line_of(text, document.GetErrorOffset()),
-                            rapidjson::GetParseError_En(document.GetParseError())));
-  if (!document.IsArray())
-    throw Error(fmt::format("{}: must be a list of true and false, one a query", path.string()));
-  file.answers.emplace();
-  for (const rapidjson::Value& value : document.GetArray()) {
-    if (!value.IsBool())
-      throw Error(fmt::format("{}: entry {} must be true or false", path.string(), file.answers->size()));
-    file.answers->push_back(value.GetBool());
-  }
+  AnswerHandler handler;
+  rapidjson::MemoryStream input(text.data(), text.size());
+  const rapidjson::ParseResult parsed =
+      rapidjson::Reader().Parse<rapidjson::kParseIterativeFlag>(input, handler);
+  const auto fail = [&](const std::string& what) {
+    throw Error(fmt::format("{}:{}: {}", path.string(), line_of(text, parsed.Offset()), what));
+  };
+  if (parsed.Code() == rapidjson::kParseErrorTermination)
+    fail(handler.in_list ? fmt::format("entry {} must be true or false", handler.answers.size())
+                         : "must be a list of true and false, one a query");
+  if (!parsed) fail(fmt::format("not valid JSON: {}", rapidjson::GetParseError_En(parsed.Code())));
+  file.answers = std::move(handler.answers);
   if (file.answers->size() != file.size())
     throw Error(fmt::format("{}: has {}, but {} has {}; it needs one a query", path.string(),
                             counted(file.answers->size(), "answer"), file.path.string(),
