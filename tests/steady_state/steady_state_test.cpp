@@ -88,5 +88,47 @@ INSTANTIATE_TEST_SUITE_P(
                     Configuration{"SpheresOctree", BoundingVolume::sphere, BroadPhaseMethod::octree, 2000}),
     [](const auto& configuration) { return configuration.param.name; });
 
+/// Continuous contacts of a cloth with itself and a ball, both of them on paths.
+TEST(SteadyStateContinuous, NoAllocationsAfterWarmUp) {
+#ifdef NDEBUG
+  constexpr int steps = 240;
+#else
+  constexpr int steps = 48;
+#endif
+  constexpr int period = 12;
+  SceneOptions options;
+  options.contacts = ContactMode::continuous;
+  options.threads = 1;
+  Scene scene(options);
+  const TriangleMesh cloth_mesh = make_cloth(24, 24), ball_mesh = make_icosphere(6);
+  const ObjectId cloth = scene.add(cloth_mesh, {.self_collision = true}), ball = scene.add(ball_mesh);
+  std::vector<Vec3d> cloth_from(cloth_mesh.positions.size()), cloth_to = cloth_from;
+  std::vector<Vec3d> ball_from(ball_mesh.positions.size()), ball_to = ball_from;
+  const auto place = [&](int step, std::vector<Vec3d>& of_cloth, std::vector<Vec3d>& of_ball) {
+    const double turns = static_cast<double>(step % period) / period;
+    for (std::size_t v = 0; v < of_cloth.size(); ++v) {
+      const Vec3d p = cloth_mesh.positions[v];
+      const double fold = sin_turns(2 * p.x + turns);
+      of_cloth[v] = {0.4 * p.x + 0.1 * fold, 0.2 * fold * sin_turns(2 * p.z), p.z};
+    }
+    for (std::size_t v = 0; v < of_ball.size(); ++v)
+      of_ball[v] = ball_mesh.positions[v] * 0.15 + Vec3d{0, 0.3 * sin_turns(turns), 0.1};
+  };
+  std::uint64_t contacts = 0, allocated_in_steps = 0;
+  for (int step = 0; step < steps; ++step) {
+    place(step, cloth_from, ball_from);
+    place(step + 1, cloth_to, ball_to);
+    const std::uint64_t before = allocation_count();
+    scene.set_motion(cloth, cloth_from, cloth_to);
+    scene.set_motion(ball, ball_from, ball_to);
+    contacts += scene.earliest_impact().has_value() ? 1 : 0;
+    contacts += scene.detect().continuous_contacts.size();
+    if (step >= 2 * period) allocated_in_steps += allocation_count() - before;
+    ASSERT_EQ(scene.validate(), "") << "step " << step;
+  }
+  EXPECT_EQ(allocated_in_steps, 0u);
+  EXPECT_GT(contacts, static_cast<std::uint64_t>(steps));
+}
+
 }  // namespace
 }  // namespace supple
