@@ -109,10 +109,16 @@ TEST(SteadyStateContinuous, NoAllocationsAfterWarmUp) {
     for (std::size_t v = 0; v < of_cloth.size(); ++v) {
       const Vec3d p = cloth_mesh.positions[v];
       const double fold = sin_turns(2 * p.x + turns);
-      of_cloth[v] = {0.4 * p.x + 0.1 * fold, 0.2 * fold * sin_turns(2 * p.z), p.z};
+      // Nothing stays in line: the widest integers, for polynomials with repeated roots, are not on the
+      // stack.
+      const double bend = sin_turns(1.7 * p.x + 2.3 * p.z + turns),
+                   other = sin_turns(p.x - 3.1 * p.z - turns);
+      of_cloth[v] = {0.4 * p.x + 0.1 * fold + 0.02 * bend, 0.2 * fold * sin_turns(2 * p.z) + 0.01 * other,
+                     p.z + 0.02 * other - 0.01 * bend};
     }
     for (std::size_t v = 0; v < of_ball.size(); ++v)
-      of_ball[v] = ball_mesh.positions[v] * 0.15 + Vec3d{0, 0.3 * sin_turns(turns), 0.1};
+      of_ball[v] =
+          ball_mesh.positions[v] * (0.15 + 0.01 * turns) + Vec3d{0.01 * turns, 0.3 * sin_turns(turns), 0.1};
   };
   std::uint64_t contacts = 0, allocated_in_steps = 0;
   for (int step = 0; step < steps; ++step) {
