@@ -146,7 +146,7 @@ TEST(UnfoldedLanes, MostLanesOfALargeSmoothSheet) {
     EXPECT_GT(lanes, 20u);
     // Some have boundaries too jagged.
     EXPECT_GT(3 * large.count(), 2 * lanes);
-    large.expect_true_claims();
+    if (floats) large.expect_true_claims();
   }
 }
 
@@ -165,11 +165,8 @@ TEST(UnfoldedLanes, ABalloonWithinALargeSheet) {
     return sheet_lanes.lanes.masks()[0];
   };
   EXPECT_EQ(root_lanes({sheet(40, 40), {}}), 0xf);
-  const Unfolded at_rest(sheet(40, 40, balloon), {}), blown(sheet(40, 40), mapped(sheet(40, 40), balloon));
-  EXPECT_EQ(root_lanes(at_rest), 0xe);
-  EXPECT_EQ(root_lanes(blown), 0xe);
-  at_rest.expect_true_claims();
-  blown.expect_true_claims();
+  EXPECT_EQ(root_lanes({sheet(40, 40, balloon), {}}), 0xe);
+  EXPECT_EQ(root_lanes({sheet(40, 40), mapped(sheet(40, 40), balloon)}), 0xe);
 }
 
 TEST(UnfoldedLanes, SurfacesThatCloseOrOverlap) {
