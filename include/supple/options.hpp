@@ -9,7 +9,8 @@
 
 namespace supple {
 
-/// Shape that encloses the nodes of an object's octree, and the object itself in the broad phase.
+/// Shape that encloses the nodes of an object's octree, and the object itself in the broad phase. Of
+/// continuous contacts it is that of the objects alone: nodes in motion have boxes.
 enum class BoundingVolume : std::uint8_t { aabb, sphere };
 
 /// How a sphere is fitted to a node.

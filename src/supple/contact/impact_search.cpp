@@ -98,88 +98,100 @@ Outcome search_coplanar_times(const RelativeMotion& motion, double& time) {
   return volume.never_zero(passed, 1) ? Outcome::apart : Outcome::unsure;
 }
 
-/// The least component along a direction that differences of the elements have, over the step.
-///
-/// Components of the differences' corners go straight in time. Each is off by at most 8 roundings of the
-/// magnitudes' sum at the ends, and 3 more between them; the bound has twice that.
-class DirectedGap {
- public:
-  DirectedGap(const RelativeMotion& motion, const Vec3d& direction, double separation)
-      : count_(motion.is_square ? 4 : 3) {
-    corners(motion.start, direction, at_start_);
-    corners(motion.end, direction, at_end_);
-    const auto reach = [&](const Vec3d& a, const Vec3d& b) {
-      return dot(absolute(direction), larger(absolute(a), absolute(b)));
-    };
-    slack_ = 0x1p-48 * (reach(motion.start.m, motion.end.m) + reach(motion.start.u, motion.end.u) +
-                        reach(motion.start.w, motion.end.w)) +
-             0x1p-900;
-    // The addend is more than squares that underflow make.
-    const double length = separation > 0 ? std::sqrt(dot(direction, direction) + 0x1p-900) : 0;
-    least_ = separation * length * (1 + 0x1p-49) + slack_;
-  }
+/// Differences of the elements as seen from a moment: where they are closest, and their corners.
+struct Moment {
+  double time;
+  RelativePlaces<double> places;
+  ClosestPoints closest;
+  double distance;
 
-  bool separates(double t) const {
-    for (std::size_t i = 0; i < count_; ++i) {
-      if (!((1 - t) * at_start_[i] + t * at_end_[i] > least_)) return false;
-    }
-    return true;
-  }
-  /// The time after `t` up to which the gap stays open; above 1 when it never closes, `t` when that cannot
-  /// be told.
-  double open_until(double t) const {
-    if (separates(1)) return 2;
-    double result = 1;
-    for (std::size_t i = 0; i < count_; ++i) {
-      if (at_end_[i] > least_) continue;
-      result = std::min(result, (at_start_[i] - least_ - slack_) / (at_start_[i] - at_end_[i]));
-    }
-    return result > t && separates(result) ? result : t;
-  }
-
- private:
-  void corners(const RelativePlaces<double>& places, const Vec3d& direction, std::array<double, 4>& values) {
-    const double m = dot(direction, places.m), u = dot(direction, places.u), w = dot(direction, places.w);
-    values = {m, m - u, m - w, m - u - w};
-  }
-
-  std::size_t count_;
-  std::array<double, 4> at_start_, at_end_;
-  double least_, slack_;
+  Moment(const RelativeMotion& motion, double at)
+      : time(at),
+        places(places_at(motion, at)),
+        closest(closest_points(places, motion.is_square)),
+        distance(std::sqrt(closest.squared_distance)) {}
 };
 
-/// Within the separation at time `t`, without doubt.
-bool surely_touching(const RelativeMotion& motion, double separation, double t) {
-  const ClosestPoints closest = closest_points(places_at(motion, t), motion.is_square);
-  const double reach = largest(motion.start.m) + largest(motion.end.m) + largest(motion.start.u) +
-                       largest(motion.end.u) + largest(motion.start.w) + largest(motion.end.w);
-  // Not more than 12 roundings of each of three coordinates of the difference, 8 of the length.
-  const double error = 0x1p-46 * reach + 0x1p-500;
-  return std::sqrt(closest.squared_distance) * (1 + 0x1p-49) + error < separation;
+/// Components along `direction` of the differences' corners; those of two edges are four.
+std::array<double, 4> corners_along(const Vec3d& direction, const RelativePlaces<double>& places) {
+  const double m = dot(direction, places.m), u = dot(direction, places.u), w = dot(direction, places.w);
+  return {m, m - u, m - w, m - u - w};
 }
 
-/// Goes forward in time as long as the elements are seen to be apart along the direction in which they are
-/// closest, looks again, and so on: directional conservative advancement. Near a turning face it closes in
-/// quadratically.
+/// Greatest magnitudes over the step, by axis, of everything that makes up a difference.
+Vec3d reach_of(const RelativeMotion& motion) {
+  const auto& [start, end, is_square] = motion;
+  return larger(absolute(start.m), absolute(end.m)) + larger(absolute(start.u), absolute(end.u)) +
+         larger(absolute(start.w), absolute(end.w));
+}
+
+/// Whether the elements are farther apart than the separation from one moment to the other, without doubt.
+///
+/// Let n go straight from the direction in which they are closest at first to that at last, and all corners
+/// as they do: along n, each is a quadratic in time, and |n| is convex. They are apart where the quadratics
+/// are above the separation times a bound of |n|: where Bernstein coefficients are. Each is off by at most 16
+/// roundings of the magnitudes' sum: three for places, six for components and sums, three for the mean.
+bool apart_between(const Moment& first, const Moment& last, const RelativeMotion& motion, const Vec3d& reach,
+                   double separation) {
+  const Vec3d &n0 = first.closest.difference, &n1 = last.closest.difference;
+  const double slack = 0x1p-48 * dot(larger(absolute(n0), absolute(n1)), reach) + 0x1p-900;
+  // The addend is more than squares that underflow make.
+  const auto bound = [&](const Vec3d& n) {
+    return separation > 0 ? separation * std::sqrt(dot(n, n) + 0x1p-900) * (1 + 0x1p-49) : 0;
+  };
+  const double least0 = bound(n0) + slack, least1 = bound(n1) + slack;
+  const std::array<double, 4> c00 = corners_along(n0, first.places), c01 = corners_along(n0, last.places);
+  const std::array<double, 4> c10 = corners_along(n1, first.places), c11 = corners_along(n1, last.places);
+  for (std::size_t i = 0; i < (motion.is_square ? 4 : 3); ++i) {
+    if (!(c00[i] > least0 && c11[i] > least1 && (c01[i] + c10[i]) / 2 > (least0 + least1) / 2)) return false;
+  }
+  return true;
+}
+
+/// Within the separation, without doubt: places and closest points make not more than 12 roundings of each of
+/// three coordinates of the difference, its length 8.
+bool surely_touching(const Moment& moment, const Vec3d& reach, double separation) {
+  return moment.distance * (1 + 0x1p-49) + 0x1p-46 * (reach.x + reach.y + reach.z) + 0x1p-500 < separation;
+}
+
+/// When the distance becomes the separation by its rate of change; beyond the step when it grows.
+double expected_time(const Moment& moment, const RelativeMotion& motion, double separation) {
+  const auto& [start, end, is_square] = motion;
+  const ClosestPoints& at = moment.closest;
+  const Vec3d velocity = (end.m - start.m) - at.alpha * (end.u - start.u) - at.beta * (end.w - start.w);
+  const double rate = dot(velocity, at.difference) / moment.distance;
+  return rate < 0 ? moment.time + (moment.distance - separation) / -rate : 2;
+}
+
+/// Goes forward in time as long as the elements are seen to be apart: conservative advancement along a
+/// direction that turns with them. Closes in quadratically on the moment at which they touch.
 Outcome advance(const RelativeMotion& motion, double separation, double& time) {
-  constexpr int most_steps = 40;
-  constexpr double least_progress = impact_time_tolerance / 16;
+  constexpr int most_steps = 48;
+  constexpr double closing = impact_time_tolerance / 4, least_progress = closing / 2;
+  const Vec3d reach = reach_of(motion);
   time = 0;
+  Moment here(motion, 0);
+  if (!apart_between(here, here, motion, reach, separation)) {
+    return surely_touching(here, reach, separation) ? Outcome::touching : Outcome::unsure;
+  }
+  double farthest = 1;  // that is worth a try
   for (int step = 0; step < most_steps; ++step) {
-    const ClosestPoints closest = closest_points(places_at(motion, time), motion.is_square);
-    const DirectedGap gap(motion, closest.difference, separation);
-    if (!gap.separates(time)) {
-      return surely_touching(motion, separation, time) ? Outcome::touching : Outcome::unsure;
-    }
-    const double next = gap.open_until(time);
-    if (next > 1) return Outcome::apart;
-    if (next - time < least_progress) {
+    const double expected = expected_time(here, motion, separation);
+    // Rather short of it: beyond, the way there cannot be seen to be free.
+    double next = std::min(expected - (expected - time) / 16, farthest);
+    if (!(next - time > least_progress)) next = std::min(time + closing, 1.0);
+    const Moment there(motion, next);
+    if (apart_between(here, there, motion, reach, separation)) {
+      if (next == 1) return Outcome::apart;
+      farthest = std::min(1.0, next + 8 * (next - time));
       time = next;
-      const bool touching =
-          surely_touching(motion, separation, std::min(1.0, next + impact_time_tolerance / 2));
-      return touching ? Outcome::touching : Outcome::unsure;
+      here = there;
+      continue;
     }
-    time = next;
+    if (next - time <= closing) {
+      return surely_touching(there, reach, separation) ? Outcome::touching : Outcome::unsure;
+    }
+    farthest = time + (next - time) / 4;
   }
   return Outcome::unsure;
 }
