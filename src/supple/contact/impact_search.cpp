@@ -166,8 +166,8 @@ double expected_time(const Moment& moment, const RelativeMotion& motion, double 
 /// Goes forward in time as long as the elements are seen to be apart: conservative advancement along a
 /// direction that turns with them. Closes in quadratically on the moment at which they touch.
 Outcome advance(const RelativeMotion& motion, double separation, double& time) {
-  constexpr int most_steps = 48;
-  constexpr double closing = impact_time_tolerance / 4, least_progress = closing / 2;
+  constexpr int most_steps = 200;  // some microseconds, where algebra takes hundreds
+  constexpr double closing = impact_time_tolerance / 4;
   const Vec3d reach = reach_of(motion);
   time = 0;
   Moment here(motion, 0);
@@ -179,7 +179,8 @@ Outcome advance(const RelativeMotion& motion, double separation, double& time) {
     const double expected = expected_time(here, motion, separation);
     // Rather short of it: beyond, the way there cannot be seen to be free.
     double next = std::min(expected - (expected - time) / 16, farthest);
-    if (!(next - time > least_progress)) next = std::min(time + closing, 1.0);
+    const bool is_closing = !(next - time > closing);
+    if (is_closing) next = std::min(time + closing, 1.0);
     const Moment there(motion, next);
     if (apart_between(here, there, motion, reach, separation)) {
       if (next == 1) return Outcome::apart;
@@ -188,8 +189,11 @@ Outcome advance(const RelativeMotion& motion, double separation, double& time) {
       here = there;
       continue;
     }
-    if (next - time <= closing) {
-      return surely_touching(there, reach, separation) ? Outcome::touching : Outcome::unsure;
+    if (is_closing) {
+      const bool touching =
+          surely_touching(there, reach, separation) ||
+          surely_touching(Moment(motion, std::min(time + 2 * closing, 1.0)), reach, separation);
+      return touching ? Outcome::touching : Outcome::unsure;
     }
     farthest = time + (next - time) / 4;
   }
