@@ -77,7 +77,7 @@ class Group {
   /// make an error below 6 · 2^-24 of the magnitudes' sum; the extent of the elements adds two more terms and
   /// roundings. 2^-20 covers them all and the rounding of the bound, the constants cover underflow. What
   /// overflows makes the bound infinite or NaN, and the comparison false.
-  HWY_INLINE LaneMask separated_along(const Vector3& n) const {
+  HWY_NOINLINE LaneMask separated_along(const Vector3& n) const {
     const Lanes d;
     const Vector size = sum(absolute(n));
     const Vector tiny = hn::Set(d, 0x1p-110f);
@@ -100,7 +100,7 @@ class Group {
   ///
   /// Coordinates, minors, products and sums take part in at most 12 roundings of 2^-24, 2^-19 is more than
   /// twice that. Eight times the magnitudes overflow before any sum does.
-  HWY_INLINE LaneMask never_coplanar() const {
+  HWY_NOINLINE LaneMask never_coplanar() const {
     const Lanes d;
     const Vector third = hn::Set(d, 1.0f / 3.0f), half = hn::Set(d, 0.5f);
     const Vector3 n0 = cross(start_.u, start_.w), n2 = cross(end_.u, end_.w);

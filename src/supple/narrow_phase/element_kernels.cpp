@@ -50,7 +50,7 @@ HWY_INLINE Vector between(Tag tag, Vector start, Vector end, float time, float o
   return hn::Min(hn::Max(moved, hn::Set(tag, -greatest)), hn::Set(tag, greatest));
 }
 
-HWY_INLINE MovingBox moving_box(const MovingBoxArrays& arrays, std::size_t i, const PartOfStep& part) {
+HWY_NOINLINE MovingBox moving_box(const MovingBoxArrays& arrays, std::size_t i, const PartOfStep& part) {
   MovingBox box;
   load_box(box.start, arrays.start, arrays.stride, i);
   load_box(box.end, arrays.end, arrays.stride, i);
@@ -105,6 +105,19 @@ HWY_INLINE std::uint64_t meeting_bits(Tag tag, const MovingBox& box, const Movin
   return std::uint64_t{bytes[0]} | std::uint64_t{bytes[1]} << 8;
 }
 
+/// Bits of the boxes of a range of at most 64 elements that are not apart from `box`; bits past the range may
+/// be any. A function of its own: inlined wherever it is used, it takes compilers minutes.
+HWY_NOINLINE std::uint64_t meeting_elements(const MovingBox& box, const MovingBoxArrays& boxes,
+                                            ElementRange range, float latest) {
+  const hn::CappedTag<float, 16> tag;
+  const auto lanes = static_cast<std::uint32_t>(hn::Lanes(tag));
+  std::uint64_t bits = meeting_bits(tag, box, boxes, range.begin, latest);
+  for (std::uint32_t j = lanes; j < range.size(); j += lanes) {
+    bits |= meeting_bits(tag, box, boxes, range.begin + j, latest) << j;
+  }
+  return bits;
+}
+
 void MovingOverlapMasks(const NodePair* pairs, std::size_t count, const MovingView& a, const MovingView& b,
                         const PartOfStep& part, std::uint64_t* masks) {
   const hn::CappedTag<float, node_width> tag;
@@ -125,11 +138,11 @@ void MovingOverlapMasks(const NodePair* pairs, std::size_t count, const MovingVi
 /// What `find_element_box_pairs` does, for one call.
 class ElementTests {
  public:
-  HWY_INLINE ElementTests(const MovingView& a, const MovingView& b, const PartOfStep& part, bool same_object,
-                          ElementPairBatches& batches)
+  ElementTests(const MovingView& a, const MovingView& b, const PartOfStep& part, bool same_object,
+               ElementPairBatches& batches)
       : a_(a), b_(b), part_(part), same_object_(same_object), batches_(batches) {}
 
-  HWY_INLINE void test(const LeafPair& leaves) {
+  void test(const LeafPair& leaves) {
     same_leaf_ = same_object_ && leaves.begin_a == leaves.begin_b;
     box_a_ = moving_box(lanes_of(a_, leaves.lane_a / node_width), leaves.lane_a % node_width, part_);
     box_b_ = moving_box(lanes_of(b_, leaves.lane_b / node_width), leaves.lane_b % node_width, part_);
@@ -145,13 +158,12 @@ class ElementTests {
 
  private:
   using Kind = ElementPairKind;
-  using Tag = hn::CappedTag<float, 16>;
   /// Elements taken at a time: a bit each. The order of what is found does not depend on the instruction set.
   static constexpr std::uint32_t block = 64;
 
   template <Kind kind>
-  HWY_INLINE void match(const MovingBoxArrays& boxes_a, ElementRange range_a, const MovingBoxArrays& boxes_b,
-                        ElementRange range_b) {
+  void match(const MovingBoxArrays& boxes_a, ElementRange range_a, const MovingBoxArrays& boxes_b,
+             ElementRange range_b) {
     for (std::uint32_t a = range_a.begin; a < range_a.end; a += block) {
       const ElementRange part_a{a, std::min(a + block, range_a.end)};
       const std::uint64_t near_b = near_leaf(box_b_, boxes_a, part_a);
@@ -167,49 +179,40 @@ class ElementTests {
   }
 
   /// Which elements may come near the other leaf.
-  HWY_INLINE std::uint64_t near_leaf(const MovingBox& leaf, const MovingBoxArrays& boxes,
-                                     ElementRange range) {
+  std::uint64_t near_leaf(const MovingBox& leaf, const MovingBoxArrays& boxes, ElementRange range) {
     const std::uint64_t all = ~std::uint64_t{0} >> (block - range.size());
-    return same_leaf_ ? all : meeting_elements(leaf, boxes, range) & all;
+    return same_leaf_ ? all : meeting(leaf, boxes, range) & all;
   }
 
-  /// The bits past the range may be any.
-  HWY_INLINE std::uint64_t meeting_elements(const MovingBox& box, const MovingBoxArrays& boxes,
-                                            ElementRange range) {
-    const Tag tag;
+  std::uint64_t meeting(const MovingBox& box, const MovingBoxArrays& boxes, ElementRange range) {
     tests_ += range.size();
-    std::uint64_t bits = meeting_bits(tag, box, boxes, range.begin, part_.latest);
-    for (std::uint32_t j = static_cast<std::uint32_t>(hn::Lanes(tag)); j < range.size();
-         j += static_cast<std::uint32_t>(hn::Lanes(tag))) {
-      bits |= meeting_bits(tag, box, boxes, range.begin + j, part_.latest) << j;
-    }
-    return bits;
+    return meeting_elements(box, boxes, range, part_.latest);
   }
 
   /// One by one those of the side that has fewer, against the other side.
   template <Kind kind>
-  HWY_INLINE void match_blocks(const MovingBoxArrays& boxes_a, ElementRange range_a, std::uint64_t some_a,
-                               const MovingBoxArrays& boxes_b, ElementRange range_b, std::uint64_t some_b) {
+  void match_blocks(const MovingBoxArrays& boxes_a, ElementRange range_a, std::uint64_t some_a,
+                    const MovingBoxArrays& boxes_b, ElementRange range_b, std::uint64_t some_b) {
     const bool one_block = kind == Kind::edge_edge && same_leaf_ && range_a.begin == range_b.begin;
     if (one_block || std::popcount(some_a) <= std::popcount(some_b)) {
       for (; some_a != 0; some_a &= some_a - 1) {
         if (one_block) some_b = some_a & (some_a - 1);
         const std::uint32_t a = range_a.begin + static_cast<std::uint32_t>(std::countr_zero(some_a));
-        const std::uint64_t hits = meeting_elements(moving_box(boxes_a, a, part_), boxes_b, range_b);
+        const std::uint64_t hits = meeting(moving_box(boxes_a, a, part_), boxes_b, range_b);
         add<kind, false>(a, range_b.begin, hits & some_b);
       }
       return;
     }
     for (; some_b != 0; some_b &= some_b - 1) {
       const std::uint32_t b = range_b.begin + static_cast<std::uint32_t>(std::countr_zero(some_b));
-      const std::uint64_t hits = meeting_elements(moving_box(boxes_b, b, part_), boxes_a, range_a);
+      const std::uint64_t hits = meeting(moving_box(boxes_b, b, part_), boxes_a, range_a);
       add<kind, true>(b, range_a.begin, hits & some_a);
     }
   }
 
   /// Element `one` of a, or of b when `of_b`, with those of the other that `hits` names from `first` on.
   template <Kind kind, bool of_b>
-  HWY_INLINE void add(std::uint32_t one, std::uint32_t first, std::uint64_t hits) {
+  void add(std::uint32_t one, std::uint32_t first, std::uint64_t hits) {
     if (hits == 0) return;
     // Of one object the vertex comes first.
     const bool turned = same_object_ && kind == Kind::face_vertex;
