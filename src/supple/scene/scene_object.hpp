@@ -92,8 +92,8 @@ class SceneObject {
   // For objects that are tested against themselves.
   bool passes_over_unfolded_;
   UnfoldedLanes unfolded_;
-  bool has_unfolded_ = false;  // of the present positions
-  std::uint32_t steps_without_unfolded_ = 0;
+  bool has_unfolded_ = false;                 // of the present positions
+  std::uint32_t steps_without_unfolded_ = 1;  // finding the boundaries is for objects that go on moving
   bool needs_refit_ = true;
   bool needs_bounds_ = true;
   Aabb box_;
