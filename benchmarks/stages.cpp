@@ -200,8 +200,9 @@ void continuous_step(benchmark::State& state) {
   std::vector<Vec3d> from, to;
   for (const Vec3d& p : cloth.positions) {  // folds that pass through each other
     const double wave = sin_turns(3 * p.x), other = sin_turns(2.5 * p.z + 0.2);
-    from.push_back({0.3 * p.x + 0.1 * wave, 0.2 * wave * other, p.z});
-    to.push_back({0.3 * p.x + 0.12 * wave, 0.2 * wave * other + 0.02 * p.z, p.z + 0.01 * other});
+    const double bend = 0.02 * sin_turns(1.7 * p.x + 2.3 * p.z), shift = 0.01 * sin_turns(p.x - 3.1 * p.z);
+    from.push_back({0.3 * p.x + 0.1 * wave + bend, 0.2 * wave * other, p.z + shift});
+    to.push_back({0.3 * p.x + 0.12 * wave - bend, 0.2 * wave * other + 0.02 * p.z, p.z - shift});
   }
   StepStats sum;
   std::size_t contacts = 0;

@@ -43,9 +43,11 @@ struct ObjectPairView {
   /// for.
   const std::atomic<float>* latest = nullptr;
 
+  /// Bounds between the two ends cost more than those at the ends, and a large part of the step saves little.
   PartOfStep part_of_step() const {
-    constexpr float least = 0x1p-20f;
-    return {separation, latest != nullptr ? std::max(latest->load(std::memory_order_relaxed), least) : 1.0f};
+    constexpr float least = 0x1p-20f, most = 0.125f;
+    const float until = latest != nullptr ? latest->load(std::memory_order_relaxed) : 1;
+    return {separation, until < most ? std::max(until, least) : 1};
   }
   bool is_moving() const { return a.moving.start != nullptr; }
 };
