@@ -83,7 +83,8 @@ struct SceneOptions {
   /// Of continuous contacts: how near elements come before they touch, and whether exact arithmetic decides
   /// what floating point cannot.
   ImpactOptions impact{};
-  /// Also give the paper's output: the vertices in the colliding leaves of both octrees.
+  /// Also give the paper's output: the vertices in the colliding leaves of both octrees. Not of continuous
+  /// contacts.
   bool colliding_vertices = false;
   /// Worker threads, 0 for one a core. The results are the same for any number.
   std::uint32_t threads = 0;
