@@ -14,7 +14,7 @@ import re
 import sys
 
 LAYERS = [
-    "core", "geometry", "mesh", "octree", "motion", "broad_phase", "narrow_phase", "contact", "scene", "recording",
+    "core", "geometry", "mesh", "octree", "motion", "broad_phase", "narrow_phase", "contact", "scene", "simulation",
 ]
 PROGRAMS = ["cli", "examples", "benchmarks"]
 PUBLIC = ["include", "formats/include"]
