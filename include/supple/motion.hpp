@@ -1,0 +1,127 @@
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "supple/mesh.hpp"
+#include "supple/types.hpp"
+
+namespace supple {
+
+/// How positions and velocities are carried on by a time step.
+enum class Integrator : std::uint8_t {
+  verlet,            ///< velocity Verlet, damped as Teschner et al. 2004 do; second order
+  symplectic_euler,  ///< velocities first, positions with the new velocities; first order, one force a step
+  backward_euler,    ///< implicit: a sparse linear system a step; first order, stable at any stiffness
+};
+
+/// What a mesh is made of when it becomes masses and springs. Units are the user's; these are of metres,
+/// kilograms and seconds.
+struct MassSpringOptions {
+  Integrator integrator = Integrator::verlet;
+  /// Equal parts a step is cut into, ≥ 1.
+  std::uint32_t substeps = 1;
+
+  double vertex_mass = 1;        ///< m, kg, of each vertex, > 0
+  double stiffness = 50;         ///< k_s, N/m, of the spring on each edge, ≥ 0
+  double damping = 0.5;          ///< k_d, N s/m, along each spring, ≥ 0
+  double air_friction = 0;       ///< k_d of eq. 1, N s/m, of each vertex against the air about it, ≥ 0
+  double bending_stiffness = 0;  ///< N/m, of a spring across each edge, between the two corners opposite, ≥ 0
+  /// N/m, of a force that keeps the area of each triangle: see `MassSpringBody`. ≥ 0
+  double area_stiffness = 0;
+  Vec3d gravity{};  ///< m/s²
+
+  /// Limit to deformation: an edge is kept between (1 - max_strain) and (1 + max_strain) times its rest length
+  /// (Provot 1995). Infinite: no limit. > 0
+  double max_strain = std::numeric_limits<double>::infinity();
+  /// Strain beyond which an edge flows: its rest length follows so that the elastic strain goes back to this.
+  /// Infinite: elastic. ≥ 0
+  double yield_strain = std::numeric_limits<double>::infinity();
+  /// Part of the strain beyond `yield_strain` that flows in a second: 1/s, > 0.
+  double plastic_rate = 10;
+
+  /// Vertices that forces do not move.
+  std::vector<std::uint32_t> fixed_vertices{};
+  /// Worker threads, 0 for one a core. Results are the same for any number.
+  std::uint32_t threads = 0;
+};
+
+/// Joules.
+struct MassSpringEnergy {
+  double kinetic = 0;
+  double elastic = 0;  ///< of springs on and across edges
+  double area = 0;     ///< of the forces that keep areas
+  double gravity = 0;  ///< -m g·x, 0 at the origin
+  double total() const { return kinetic + elastic + area + gravity; }
+};
+
+/// How far triangles are from their areas at rest: |A - A0| / A0, of triangles with an area at rest.
+struct AreaError {
+  double largest = 0;
+  double mean = 0;
+};
+
+/// A mesh as masses at its vertices and springs on its edges: section 4 of the paper, eq. 1 and 2.
+///
+/// [the model is documented here by its implementer: the force of a spring, of an area, which error remains]
+///
+/// Vertices that no triangle uses fly freely. Triangles of no area at rest, repeated ids and duplicates are fine;
+/// an edge of no length at rest pulls its ends together. Vertices whose rest position is not finite stay where
+/// they are and pull at nothing.
+class MassSpringBody {
+ public:
+  /// At rest, without velocity. O(n log n). Throws `Error` as `check_mesh` does, or when an option is out of its
+  /// range.
+  explicit MassSpringBody(const TriangleMesh& rest, const MassSpringOptions& options = {});
+  ~MassSpringBody();
+  MassSpringBody(MassSpringBody&&) noexcept;
+  MassSpringBody& operator=(MassSpringBody&&) noexcept;
+
+  /// Carries positions and velocities on by `seconds` > 0, in `substeps` parts. When a number stops being finite,
+  /// or a vertex moves further in one substep than a hundred times the size of the body, state is put back to
+  /// what it was before the call and `Error` is thrown, which names the vertex and says which step would be
+  /// stable. O(n); no allocation in steady state except by `backward_euler`.
+  void step(double seconds);
+
+  std::span<const Vec3d> positions() const;
+  std::span<const Vec3d> velocities() const;  ///< metres a second
+  // These replace all of them; the sizes must be that of the mesh, or `Error` is thrown.
+  void set_positions(std::span<const Vec3d> positions);
+  void set_velocities(std::span<const Vec3d> velocities);
+  /// Newtons on each vertex, besides gravity; they hold until set again. Empty: none.
+  void set_external_forces(std::span<const Vec3d> forces);
+  /// Adds a velocity to each mass, as the paper does (v_i = v_i + v_d), and to the air about it, so that friction
+  /// does not stop it.
+  void add_drift(Vec3d velocity);
+  /// Reverses the mean velocity, and that of the air, along an axis (0, 1, 2).
+  void turn_back(int axis);
+
+  std::size_t vertex_count() const;
+  const MassSpringOptions& options() const;
+  /// The longest step, substeps considered, at which the explicit integrators stay stable, by Gershgorin's bound
+  /// on the rest state's frequencies; infinite for `backward_euler`.
+  double stable_step() const;
+
+  MassSpringEnergy energy() const;
+  Vec3d momentum() const;          ///< Σ m v, kg m/s
+  Vec3d angular_momentum() const;  ///< Σ m x × v, about the origin
+  Vec3d center_of_mass() const;
+  Vec3d mean_velocity() const;
+  double area() const;  ///< of all triangles
+  AreaError area_error() const;
+  /// Of each spring on an edge: its vertices, ascending, and its rest length now (plastic flow changes it).
+  struct Spring {
+    std::uint32_t a = 0, b = 0;
+    double rest_length = 0;
+  };
+  std::vector<Spring> springs() const;
+
+ private:
+  class Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace supple
