@@ -1,7 +1,7 @@
 #pragma once
 
 #include "contact/relative_motion.hpp"
-#include "geometry/plane_filter.hpp"
+#include "geometry/vector.hpp"
 
 namespace supple {
 

@@ -4,20 +4,10 @@
 #include <cmath>
 #include <utility>
 
-#include "geometry/plane_filter.hpp"
+#include "geometry/vector.hpp"
 
 namespace supple {
 namespace {
-
-Vec3d cross(const Vec3d& a, const Vec3d& b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-double largest(const Vec3d& v) {
-  return std::max({v.x, v.y, v.z});
-}
-double mix(double a, double b, double t) {
-  return (1 - t) * a + t * b;
-}
 
 /// All values on one side of zero by more than `error`.
 bool one_sign(const std::array<double, 4>& c, double error) {
@@ -61,7 +51,7 @@ VolumePolynomial::VolumePolynomial(const RelativeMotion& motion) {
   const Vec3d u = larger(absolute(start.u), absolute(end.u));
   const Vec3d w = larger(absolute(start.w), absolute(end.w));
   const Vec3d minors{u.y * w.z + u.z * w.y, u.z * w.x + u.x * w.z, u.x * w.y + u.y * w.x};
-  in_range_ = std::max({largest(m), largest(u), largest(w)}) <= 0x1p100;
+  in_range_ = largest_magnitude(larger(larger(m, u), w)) <= 0x1p100;
   error_ = 0x1p-47 * dot(m, minors) + 0x1p-960;
 }
 

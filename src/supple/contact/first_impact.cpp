@@ -8,22 +8,14 @@
 #include "contact/exact_impact.hpp"
 #include "contact/impact_search.hpp"
 #include "core/error.hpp"
-#include "geometry/plane_filter.hpp"
+#include "geometry/vector.hpp"
 
 namespace supple {
 namespace {
 
-Vec3d cross(const Vec3d& a, const Vec3d& b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-
-double largest(const Vec3d& v) {
-  return std::max({v.x, v.y, v.z});
-}
-
 /// Of length 1, or zero when there is no direction in it. Scaled first, so that squares do not underflow.
 Vec3d normalized(const Vec3d& v) {
-  const double size = largest(absolute(v));
+  const double size = largest_magnitude(v);
   if (!(size > 0) || !std::isfinite(size)) return {};
   const Vec3d scaled{v.x / size, v.y / size, v.z / size};
   return (1 / std::sqrt(dot(scaled, scaled))) * scaled;
@@ -50,10 +42,6 @@ Vec3d normal_across(const RelativeMotion& motion, const RelativePlaces<double>& 
   return n;
 }
 
-Vec3d mix(const Vec3d& a, const Vec3d& b, double t) {
-  return (1 - t) * a + t * b;
-}
-
 /// Places times a power of two, so that products of coordinates neither overflow nor underflow.
 struct Scaled {
   double factor = 1;
@@ -61,7 +49,7 @@ struct Scaled {
 
   explicit Scaled(const RelativePlaces<double>& unscaled) : places(unscaled) {
     const double size =
-        largest(larger(larger(absolute(unscaled.m), absolute(unscaled.u)), absolute(unscaled.w)));
+        largest_magnitude(larger(larger(absolute(unscaled.m), absolute(unscaled.u)), absolute(unscaled.w)));
     if (!(size > 0x1p100 || size < 0x1p-100) || size == 0) return;
     factor = std::ldexp(1.0, std::clamp(-std::ilogb(size), -1000, 1000));
     places = {factor * unscaled.m, factor * unscaled.u, factor * unscaled.w};

@@ -8,28 +8,20 @@
 #include "contact/closest_points.hpp"
 #include "contact/coplanar_times.hpp"
 #include "geometry/plane_filter.hpp"
+#include "geometry/vector.hpp"
 
 namespace supple {
 namespace {
 
 using Outcome = ImpactSearch::Outcome;
 
-Vec3d cross(const Vec3d& a, const Vec3d& b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-double largest(const Vec3d& v) {
-  return std::max({std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)});
-}
-Vec3d mix(const Vec3d& a, const Vec3d& b, double t) {
-  return (1 - t) * a + t * b;
-}
-
 /// Greatest magnitudes over the step of a vector that goes straight, and of its change.
 struct Extent {
   double size, change;
 
   Extent(const Vec3d& start, const Vec3d& end)
-      : size(std::max(largest(start), largest(end))), change(largest(end - start)) {}
+      : size(std::max(largest_magnitude(start), largest_magnitude(end))),
+        change(largest_magnitude(end - start)) {}
 };
 
 enum class Place : std::uint8_t { inside, outside, unclear };

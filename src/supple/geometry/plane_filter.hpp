@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "geometry/vector.hpp"
 #include "supple/triangle_intersection.hpp"
 #include "supple/types.hpp"
 
@@ -28,16 +29,6 @@ inline constexpr double volume_error = 10 * 0x1p-53;
 /// Likewise for u_x v_y - u_y v_x: 4 roundings.
 inline constexpr double area_error = 6 * 0x1p-53;
 inline constexpr double underflow_error = 0x1p-1000;
-
-inline Vec3d absolute(const Vec3d& v) {
-  return {std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)};
-}
-inline Vec3d larger(const Vec3d& a, const Vec3d& b) {
-  return {std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)};
-}
-inline double dot(const Vec3d& a, const Vec3d& b) {
-  return a.x * b.x + a.y * b.y + a.z * b.z;
-}
 
 /// A value, and what it may be off by: when |value| > bound, its sign is the exact one.
 struct Filtered {

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "geometry/vector.hpp"
+
 namespace supple {
 namespace {
 
@@ -11,18 +13,6 @@ namespace {
 constexpr double rounding = 0x1p-53;
 /// Products below the range of double lose at most some denormals; no coordinate of use is near this.
 constexpr double underflow = 1e-290;
-
-Vec3d cross(const Vec3d& p, const Vec3d& q) {
-  return {p.y * q.z - p.z * q.y, p.z * q.x - p.x * q.z, p.x * q.y - p.y * q.x};
-}
-
-double dot(const Vec3d& p, const Vec3d& q) {
-  return p.x * q.x + p.y * q.y + p.z * q.z;
-}
-
-double greatest(const Vec3d& v) {
-  return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
-}
 
 double sum_of_sizes(const Vec3d& v) {
   return std::abs(v.x) + std::abs(v.y) + std::abs(v.z);
@@ -134,7 +124,7 @@ void UnfoldedLanes::refit_node(const ObjectOctree& octree, const Scalar* start, 
             ? normals_of(octree.triangles().subspan(node.first_triangle[lane], node.size(lane)), start, end)
             : node_normals_[node.child(lane)];
     double least = 0, size = 0;
-    const Vec3d direction = normals.sum * (1 / greatest(normals.sum));
+    const Vec3d direction = normals.sum * (1 / largest_magnitude(normals.sum));
     for (int axis = 0; axis < 3; ++axis) {
       all.sum[axis] += normals.sum[axis];
       all.low[axis] = std::min(all.low[axis], normals.low[axis]);
@@ -165,11 +155,12 @@ UnfoldedLanes::Normals UnfoldedLanes::normals_of(std::span<const Triangle> trian
     const Vec3d a0 = position(start, triangle[0]), a1 = position(end, triangle[0]);
     const Vec3d e0 = position(start, triangle[1]) - a0, e1 = position(end, triangle[1]) - a1;
     const Vec3d f0 = position(start, triangle[2]) - a0, f1 = position(end, triangle[2]) - a1;
-    const double least_size =
-        std::max(greatest(e0), greatest(e1)) * std::max(greatest(f0), greatest(f1)) * 0x1p-28 + underflow;
+    const double least_size = std::max(largest_magnitude(e0), largest_magnitude(e1)) *
+                                  std::max(largest_magnitude(f0), largest_magnitude(f1)) * 0x1p-28 +
+                              underflow;
     const Vec3d coefficients[3] = {cross(e0, f0), (cross(e0, f1) + cross(e1, f0)) * 0.5, cross(e1, f1)};
     for (const Vec3d& coefficient : std::span(coefficients).first(at_rest ? 1 : 3)) {
-      const double size = greatest(coefficient);
+      const double size = largest_magnitude(coefficient);
       const Vec3d normal = coefficient * (1 / size);
       // Written so that NaN and overflow are without hope; so is what turns away from the others.
       const bool reliable = size > least_size && std::isfinite(dot(normal, {1, 1, 1}));
@@ -223,7 +214,8 @@ bool UnfoldedLanes::goes_round_once(const Boundary& boundary, const Vec3d& n, co
       if (!(turn > 0)) return false;
       least_turn = std::min(least_turn, turn);
     }
-    reach = std::max({reach, greatest(u0), greatest(u1), greatest(v0), greatest(v1)});
+    reach = std::max(
+        {reach, largest_magnitude(u0), largest_magnitude(u1), largest_magnitude(v0), largest_magnitude(v1)});
     least_side = std::min(least_side, std::abs(dot(across, u0)));
     times_round += dot(across, u0) < 0 && dot(across, v0) >= 0 ? 1 : 0;
   }

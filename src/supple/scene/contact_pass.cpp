@@ -36,19 +36,13 @@ void ContactPass::run(std::span<const ContactJob> jobs, std::span<const ContactO
     worker.found.clear();
     worker.points.clear();
     worker.leaves.clear();
-    worker.traversal_stats = {};
-    worker.exact_fallbacks = 0;
-    worker.busy_seconds = worker.exact_seconds = 0;
+    worker.stats = {};
   }
   Timer timer;
   tasks_.plan(static_cast<std::uint32_t>(jobs.size()), workers_.size(), workers_[0].traversal,
               [&](std::uint32_t job) { return view_of_job(job); });
-  parallel.for_ranges(tasks_.size(), 1, [&](std::size_t begin, std::size_t end, std::uint32_t w) {
-    Timer busy;
-    for (std::size_t i = begin; i < end; ++i) run_task(tasks_[i], workers_[w]);
-    workers_[w].busy_seconds += busy.lap();
-  });
-  collect_stats(timer.lap(), stats);
+  tasks_.run(parallel, workers_, [&](const ContactTask& task, Worker& worker) { run_task(task, worker); });
+  add_stats(workers_, timer.lap(), stats);
   gather_contacts();
   gather_colliding_vertices();
   stats.contacts = contacts_.size();
@@ -71,9 +65,9 @@ void ContactPass::run_task(const ContactTask& task, Worker& worker) const {
     if (options_.contacts == ContactMode::none) return;
     Timer timer;
     test_candidates(task.job, pair, candidates, worker);
-    worker.exact_seconds += timer.lap();
+    worker.stats.exact_seconds += timer.lap();
   };
-  worker.traversal.find_triangle_pairs(pair, task.root, worker.traversal_stats, on_leaves, on_candidates);
+  worker.traversal.find_triangle_pairs(pair, task.root, worker.stats.traversal, on_leaves, on_candidates);
 }
 
 /// A plane of one of the triangles separates most candidates: that is decided for a block at a time, in
@@ -108,7 +102,7 @@ void ContactPass::test_candidate(std::uint32_t job, const ObjectPairView& pair, 
   const ContactObject& b = objects_[jobs_[job].b];
   const TriangleIntersection shared =
       intersect_triangles(points_of(pair.a, candidate.a), points_of(pair.b, candidate.b));
-  worker.exact_fallbacks += shared.used_exact_fallback ? 1 : 0;
+  worker.stats.exact_fallbacks += shared.used_exact_fallback ? 1 : 0;
   if (!shared.intersects) return;
   Contact contact{a.id,
                   b.id,
@@ -196,21 +190,6 @@ void ContactPass::append_marked_vertices(std::uint32_t object, std::span<const C
   for (std::uint32_t vertex = 0; vertex < marked_.size(); ++vertex) {
     if (marked_[vertex] != 0) vertices_.push_back(vertex);
   }
-}
-
-void ContactPass::collect_stats(double wall_seconds, StepStats& stats) const {
-  double busy = 0, exact = 0;
-  for (const Worker& worker : workers_) {
-    busy += worker.busy_seconds;
-    exact += worker.exact_seconds;
-    stats.node_pairs_visited += worker.traversal_stats.node_pairs_visited;
-    stats.boxes_tested += worker.traversal_stats.volumes_tested;
-    stats.candidate_pairs += worker.traversal_stats.candidate_pairs;
-    stats.exact_fallbacks += worker.exact_fallbacks;
-  }
-  const double exact_share = busy > 0 ? std::min(1.0, exact / busy) : 0;
-  stats.exact_seconds = wall_seconds * exact_share;
-  stats.traversal_seconds = wall_seconds - stats.exact_seconds;
 }
 
 }  // namespace supple

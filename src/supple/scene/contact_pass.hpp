@@ -53,9 +53,7 @@ class ContactPass {
     std::vector<Found> found;
     std::vector<ContactPoint> points;
     std::vector<CollidingLeaves> leaves;
-    TraversalStats traversal_stats;
-    std::uint64_t exact_fallbacks = 0;
-    double busy_seconds = 0, exact_seconds = 0;
+    TaskStats stats;
   };
   struct SortKey {
     std::uint32_t job, triangle_a, triangle_b, worker, index;
@@ -70,7 +68,6 @@ class ContactPass {
   void gather_contacts();
   void gather_colliding_vertices();
   void append_marked_vertices(std::uint32_t object, std::span<const CollidingLeaves> leaves, bool side_b);
-  void collect_stats(double wall_seconds, StepStats& stats) const;
 
   std::span<const ContactJob> jobs_;
   std::span<const ContactObject> objects_;

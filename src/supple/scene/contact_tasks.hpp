@@ -1,10 +1,14 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
 
+#include "core/parallel.hpp"
+#include "core/timer.hpp"
 #include "narrow_phase/traversal.hpp"
+#include "supple/result.hpp"
 
 namespace supple {
 
@@ -18,6 +22,14 @@ struct ContactJob {
 struct ContactTask {
   std::uint32_t job = 0;
   NodePair root;
+};
+
+/// What a worker did of the tasks of a step.
+struct TaskStats {
+  TraversalStats traversal;
+  std::uint64_t exact_fallbacks = 0;
+  double busy_seconds = 0;
+  double exact_seconds = 0;  ///< of these, in the exact stage
 };
 
 /// Splits jobs into tasks that load the workers evenly. Keeps its memory between steps.
@@ -43,8 +55,15 @@ class ContactTasks {
     }
   }
 
-  std::size_t size() const { return tasks_.size(); }
-  const ContactTask& operator[](std::size_t i) const { return tasks_[i]; }
+  /// Calls `run_task(task, worker)` for all tasks, on all workers; each has `TaskStats stats`.
+  template <class Worker, class RunTask>
+  void run(const Parallel& parallel, std::vector<Worker>& workers, RunTask&& run_task) const {
+    parallel.for_ranges(tasks_.size(), 1, [&](std::size_t begin, std::size_t end, std::uint32_t w) {
+      Timer busy;
+      for (std::size_t i = begin; i < end; ++i) run_task(tasks_[i], workers[w]);
+      workers[w].stats.busy_seconds += busy.lap();
+    });
+  }
 
  private:
   static constexpr std::size_t tasks_per_worker = 32;
@@ -53,5 +72,25 @@ class ContactTasks {
   std::vector<ContactTask> tasks_, finer_tasks_;
   std::vector<NodePair> finer_;
 };
+
+/// Adds up what the workers did. Traversal and exact stage took `wall_seconds` together, split as the
+/// workers' own clocks say.
+template <class Worker>
+void add_stats(const std::vector<Worker>& workers, double wall_seconds, StepStats& stats) {
+  double busy = 0, exact = 0;
+  for (const Worker& worker : workers) {
+    const TaskStats& done = worker.stats;
+    busy += done.busy_seconds;
+    exact += done.exact_seconds;
+    stats.node_pairs_visited += done.traversal.node_pairs_visited;
+    stats.boxes_tested += done.traversal.volumes_tested;
+    stats.candidate_pairs += done.traversal.candidate_pairs;
+    stats.vertex_face_candidates += done.traversal.vertex_face_candidates;
+    stats.edge_edge_candidates += done.traversal.edge_edge_candidates;
+    stats.exact_fallbacks += done.exact_fallbacks;
+  }
+  stats.exact_seconds = wall_seconds * (busy > 0 ? std::min(1.0, exact / busy) : 0);
+  stats.traversal_seconds = wall_seconds - stats.exact_seconds;
+}
 
 }  // namespace supple

@@ -191,7 +191,7 @@ void ImpactPass::run(std::span<const ContactJob> jobs, std::span<const MovingObj
                      const ImpactOptions& options, const Parallel& parallel, StepStats& stats) {
   Timer timer;
   search(Search::all, jobs, objects, options, parallel);
-  collect_stats(timer.lap(), stats);
+  add_stats(workers_, timer.lap(), stats);
   gather_contacts();
   stats.contacts = contacts_.size();
   stats.finish_seconds += timer.lap();
@@ -226,18 +226,12 @@ void ImpactPass::search(Search search, std::span<const ContactJob> jobs,
   for (Worker& worker : workers_) {
     worker.found.clear();
     worker.keys.clear();
-    worker.traversal_stats = {};
-    worker.exact_fallbacks = 0;
-    worker.busy_seconds = worker.exact_seconds = 0;
+    worker.stats = {};
     worker.earliest.reset();
   }
   tasks_.plan(static_cast<std::uint32_t>(jobs.size()), workers_.size(), workers_[0].traversal,
               [&](std::uint32_t job) { return view_of_job(job); });
-  parallel.for_ranges(tasks_.size(), 1, [&](std::size_t begin, std::size_t end, std::uint32_t w) {
-    Timer busy;
-    for (std::size_t i = begin; i < end; ++i) run_task(tasks_[i], workers_[w]);
-    workers_[w].busy_seconds += busy.lap();
-  });
+  tasks_.run(parallel, workers_, [&](const ContactTask& task, Worker& worker) { run_task(task, worker); });
 }
 
 ObjectPairView ImpactPass::view_of_job(std::uint32_t job) const {
@@ -251,14 +245,14 @@ ObjectPairView ImpactPass::view_of_job(std::uint32_t job) const {
 
 void ImpactPass::run_task(const ContactTask& task, Worker& worker) {
   worker.traversal.find_element_pairs(
-      view_of_job(task.job), task.root, worker.traversal_stats,
+      view_of_job(task.job), task.root, worker.stats.traversal,
       [&](ElementPairKind kind, std::span<const ElementPair> candidates) {
         Timer timer;
         for (std::size_t first = 0; first < candidates.size(); first += block_size) {
           const std::size_t count = std::min(block_size, candidates.size() - first);
           test_candidates(task.job, kind, candidates.subspan(first, count), worker);
         }
-        worker.exact_seconds += timer.lap();
+        worker.stats.exact_seconds += timer.lap();
       });
 }
 
@@ -307,7 +301,7 @@ void ImpactPass::test_candidate(std::uint32_t job, ElementPairKind kind, Element
     contact.element_a = {of_a, of_a};
     contact.element_b = {of_b, of_b};
   }
-  worker.exact_fallbacks += used_exact ? 1 : 0;
+  worker.stats.exact_fallbacks += used_exact ? 1 : 0;
   if (!impact) return;
   set_impact(contact, *impact);
   keep({job, kind, contact.element_a, contact.element_b}, contact, worker);
@@ -367,22 +361,6 @@ void ImpactPass::gather_contacts() {
       groups_.push_back({contacts_[i].object_a, contacts_[i].object_b, i, 0});
     ++groups_.back().contact_count;
   }
-}
-
-void ImpactPass::collect_stats(double wall_seconds, StepStats& stats) const {
-  double busy = 0, exact = 0;
-  for (const Worker& worker : workers_) {
-    busy += worker.busy_seconds;
-    exact += worker.exact_seconds;
-    stats.node_pairs_visited += worker.traversal_stats.node_pairs_visited;
-    stats.boxes_tested += worker.traversal_stats.volumes_tested;
-    stats.vertex_face_candidates += worker.traversal_stats.vertex_face_candidates;
-    stats.edge_edge_candidates += worker.traversal_stats.edge_edge_candidates;
-    stats.exact_fallbacks += worker.exact_fallbacks;
-  }
-  const double exact_share = busy > 0 ? std::min(1.0, exact / busy) : 0;
-  stats.exact_seconds = wall_seconds * exact_share;
-  stats.traversal_seconds = wall_seconds - stats.exact_seconds;
 }
 
 }  // namespace supple

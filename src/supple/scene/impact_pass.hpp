@@ -59,9 +59,7 @@ class ImpactPass {
     RelativeMotionBlock block;
     std::vector<ContinuousContact> found;
     std::vector<Key> keys, merged_keys;
-    TraversalStats traversal_stats;
-    std::uint64_t exact_fallbacks = 0;
-    double busy_seconds = 0, exact_seconds = 0;
+    TaskStats stats;
     /// Of `find_earliest`.
     std::optional<ContinuousContact> earliest;
     Key earliest_key;
@@ -78,7 +76,6 @@ class ImpactPass {
   void keep(Key key, const ContinuousContact& contact, Worker& worker);
   void merge_keys();
   void gather_contacts();
-  void collect_stats(double wall_seconds, StepStats& stats) const;
 
   Search search_ = Search::all;
   std::span<const ContactJob> jobs_;

@@ -19,10 +19,6 @@
 namespace supple {
 namespace {
 
-using models::cross;
-using models::dot;
-using models::length;
-
 /// Triangles that hang together through shared vertices.
 struct Component {
   std::size_t vertices = 0, edges = 0, border_edges = 0;

@@ -65,14 +65,14 @@ class Icosphere {
     // Corners at distance 2 are neighbours, the next nearest are at 2 golden.
     const auto near = [&](std::uint32_t a, std::uint32_t b) {
       const Vec3d d = mesh_.positions[b] - mesh_.positions[a];
-      return models::dot(d, d) < 5;
+      return dot(d, d) < 5;
     };
     for (std::uint32_t a = 0; a < 12; ++a) {
       for (std::uint32_t b = a + 1; b < 12; ++b) {
         for (std::uint32_t c = b + 1; c < 12; ++c) {
           if (!near(a, b) || !near(b, c) || !near(a, c)) continue;
           const auto& p = mesh_.positions;
-          const bool outward = models::dot(models::cross(p[b] - p[a], p[c] - p[a]), p[a]) > 0;
+          const bool outward = dot(cross(p[b] - p[a], p[c] - p[a]), p[a]) > 0;
           faces_.push_back(outward ? Triangle{a, b, c} : Triangle{a, c, b});
         }
       }

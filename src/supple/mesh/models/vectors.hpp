@@ -1,22 +1,9 @@
 #pragma once
 
-#include <cmath>
-
+#include "geometry/vector.hpp"
 #include "supple/types.hpp"
 
 namespace supple::models {
-
-inline double dot(Vec3d a, Vec3d b) {
-  return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-
-inline Vec3d cross(Vec3d a, Vec3d b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-
-inline double length(Vec3d a) {
-  return std::sqrt(dot(a, a));
-}
 
 /// The direction of `a`, which must not be zero.
 inline Vec3d unit(Vec3d a) {
