@@ -113,7 +113,8 @@ bool DeformationLimit::apply(std::span<const SpringElement> edges, double second
       const std::uint32_t first = first_color_[color];
       parallel.for_ranges(first_color_[color + 1] - first, edges_at_a_time,
                           [&](std::size_t begin, std::size_t end, std::uint32_t) {
-                            for (std::size_t i = first + begin; i < first + end; ++i) shorten(edges[by_color_[i]]);
+                            for (std::size_t i = first + begin; i < first + end; ++i)
+                              shorten(edges[by_color_[i]]);
                           });
     }
   }
