@@ -7,6 +7,8 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "supple/error.hpp"
 #include "supple/mesh.hpp"
@@ -31,6 +33,15 @@ struct MassSpringMotion {
   double random_force = 0;              ///< N, size of the random forces on the vertices; they sum to zero
   double deform_seconds = 0;            ///< for how long these act, before the object is sent off
   std::optional<std::uint64_t> seed{};  ///< instead of the object's number
+
+  /// Vertices that are pulled along.
+  struct Handle {
+    std::vector<std::uint32_t> vertices{};
+    Vec3d by{};          ///< m, where they are moved
+    double seconds = 1;  ///< how long it takes, uniformly, > 0; then they hold
+  };
+  /// Their vertices become fixed ones of `springs`.
+  std::vector<Handle> handles{};
 };
 
 /// The user's own motion: writes where the vertices are at `seconds`; `positions` holds where they were the

@@ -196,7 +196,7 @@ void BackwardEuler::System::find_directions(const ImplicitStep& step) {
   const auto find = [&](const std::vector<SpringElement>& springs, std::vector<Vec3d>& directions) {
     for (std::size_t i = 0; i < springs.size(); ++i) {
       const Vec3d d = step.positions[springs[i].b] - step.positions[springs[i].a];
-      const double length = models::length(d);
+      const double length = length(d);
       directions[i] = length > 0 ? d * (1 / length) : Vec3d{};
     }
   };
@@ -220,7 +220,7 @@ double BackwardEuler::System::potential(const ImplicitStep& step, std::span<cons
                                double stiffness) {
     for (std::size_t i = 0; i < springs.size(); ++i) {
       const auto& [a, b, rest_length] = springs[i];
-      const double stretch = models::length(positions_[b] - positions_[a]) - rest_length;
+      const double stretch = length(positions_[b] - positions_[a]) - rest_length;
       const double rate = dot(velocities[b] - velocities[a], directions[i]);
       sum += 0.5 * stiffness * stretch * stretch + 0.5 * h * options_.damping * rate * rate;
     }
@@ -265,7 +265,7 @@ void BackwardEuler::System::add_springs(const ImplicitStep& step, const std::vec
   for (std::size_t i = 0; i < springs.size(); ++i) {
     const auto& [a, b, rest_length] = springs[i];
     const Vec3d d = positions_[b] - positions_[a];
-    const double length = models::length(d);
+    const double length = length(d);
     const double rate = dot(tried_[b] - tried_[a], directions[i]);
     const Vec3d pull =
         spring_force(d, {}, stiffness, 0, rest_length) * h + directions[i] * (h * options_.damping * rate);

@@ -4,12 +4,10 @@
 #include <cmath>
 #include <limits>
 
-#include "mesh/models/vectors.hpp"
+#include "geometry/vector.hpp"
 
 namespace supple {
 namespace {
-
-using models::dot;
 
 constexpr std::size_t edges_at_a_time = 2048;
 
@@ -86,7 +84,7 @@ bool DeformationLimit::apply(std::span<const SpringElement> edges, double second
   const auto within = [&](std::size_t begin, std::size_t end) {
     return std::all_of(edges.begin() + begin, edges.begin() + end, [&](const SpringElement& edge) {
       const Bounds bounds(edge, max_strain_);
-      const double length = models::length(positions[edge.b] - positions[edge.a]);
+      const double length = length(positions[edge.b] - positions[edge.a]);
       const double excess = std::max(length - bounds.longest, bounds.shortest - length);
       return !(excess > tolerance * edge.rest_length) || !can_move(edge);
     });
@@ -94,7 +92,7 @@ bool DeformationLimit::apply(std::span<const SpringElement> edges, double second
   const auto shorten = [&](const SpringElement& edge) {
     const double weight_a = inverse_masses_[edge.a], weight_b = inverse_masses_[edge.b];
     const Vec3d d = positions[edge.b] - positions[edge.a];
-    const double length = models::length(d);
+    const double length = length(d);
     const Bounds bounds(edge, max_strain_);
     const double wanted = std::clamp(length, bounds.shortest, bounds.longest);
     if (wanted == length || !can_move(edge)) return;

@@ -3,14 +3,11 @@
 #include <array>
 #include <cmath>
 
-#include "mesh/models/vectors.hpp"
+#include "geometry/vector.hpp"
 #include "motion/spring_network.hpp"
 #include "supple/types.hpp"
 
 namespace supple {
-
-using models::cross;
-using models::dot;
 
 /// Force on end a of a spring; on b it is the opposite. `d` = x_b - x_a, `velocity` = v_b - v_a.
 ///

@@ -13,7 +13,7 @@ double elastic_energy(std::span<const SpringElement> springs, double stiffness,
                       std::span<const Vec3d> positions) {
   double sum = 0;
   for (const SpringElement& spring : springs) {
-    const double stretch = models::length(positions[spring.b] - positions[spring.a]) - spring.rest_length;
+    const double stretch = length(positions[spring.b] - positions[spring.a]) - spring.rest_length;
     sum += 0.5 * stiffness * stretch * stretch;
   }
   return sum;
@@ -31,7 +31,7 @@ Sum sum_of_free(std::span<const VertexKind> kinds, Term term) {
 }  // namespace
 
 MassSpringEnergy MassSpring::energy() const {
-  const auto& [x, v] = now_;
+  const std::vector<Vec3d>&x = now_.positions, &v = now_.velocities;
   const double mass = options_.vertex_mass;
   MassSpringEnergy energy;
   energy.kinetic = sum_of_free<double>(kinds_, [&](std::size_t i) { return 0.5 * mass * dot(v[i], v[i]); });

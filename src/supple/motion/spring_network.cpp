@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "mesh/models/vectors.hpp"
+#include "geometry/vector.hpp"
 
 namespace supple {
 namespace {
@@ -57,7 +57,7 @@ std::vector<SpringElement> springs_between(std::span<const Ends> pairs, std::spa
   std::vector<SpringElement> springs;
   springs.reserve(pairs.size());
   for (const auto& [a, b] : pairs) {
-    const double rest_length = models::length(positions[b] - positions[a]);
+    const double rest_length = length(positions[b] - positions[a]);
     if (std::isfinite(rest_length)) springs.push_back({a, b, rest_length});
   }
   return springs;
@@ -71,7 +71,7 @@ std::vector<AreaElement> areas_of(const TriangleMesh& rest) {
     double longest_squared = 0;
     for (int corner = 0; corner < 3; ++corner) {
       const Vec3d side = p[t[(corner + 1) % 3]] - p[t[corner]];
-      longest_squared = std::max(longest_squared, models::dot(side, side));
+      longest_squared = std::max(longest_squared, dot(side, side));
     }
     const double inverse_scale = 4 / (std::sqrt(3.0) * longest_squared);
     if (area > 0 && std::isfinite(longest_squared) && std::isfinite(inverse_scale)) {
@@ -159,7 +159,7 @@ bool is_finite(Vec3d p) {
 }
 
 double triangle_area(Vec3d a, Vec3d b, Vec3d c) {
-  return 0.5 * models::length(models::cross(b - a, c - a));
+  return 0.5 * length(cross(b - a, c - a));
 }
 
 }  // namespace supple

@@ -30,11 +30,11 @@ double stable_explicit_step(const SpringNetwork& network, std::span<const Vertex
     const AreaGradient gradient = area_gradient(rest[t[0]], rest[t[1]], rest[t[2]]);
     double sum = 0;
     for (int corner = 0; corner < 3; ++corner) {
-      if (is_free(t[corner])) sum += models::length(gradient.of_corner[corner]);
+      if (is_free(t[corner])) sum += length(gradient.of_corner[corner]);
     }
     for (int corner = 0; corner < 3; ++corner) {
       stiffness[t[corner]] +=
-          options.area_stiffness * area.inverse_scale * models::length(gradient.of_corner[corner]) * sum;
+          options.area_stiffness * area.inverse_scale * length(gradient.of_corner[corner]) * sum;
     }
   }
   double shortest = infinity;
