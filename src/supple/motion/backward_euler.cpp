@@ -196,7 +196,7 @@ void BackwardEuler::System::find_directions(const ImplicitStep& step) {
   const auto find = [&](const std::vector<SpringElement>& springs, std::vector<Vec3d>& directions) {
     for (std::size_t i = 0; i < springs.size(); ++i) {
       const Vec3d d = step.positions[springs[i].b] - step.positions[springs[i].a];
-      const double length = length(d);
+      const double length = supple::length(d);
       directions[i] = length > 0 ? d * (1 / length) : Vec3d{};
     }
   };
@@ -265,7 +265,7 @@ void BackwardEuler::System::add_springs(const ImplicitStep& step, const std::vec
   for (std::size_t i = 0; i < springs.size(); ++i) {
     const auto& [a, b, rest_length] = springs[i];
     const Vec3d d = positions_[b] - positions_[a];
-    const double length = length(d);
+    const double length = supple::length(d);
     const double rate = dot(tried_[b] - tried_[a], directions[i]);
     const Vec3d pull =
         spring_force(d, {}, stiffness, 0, rest_length) * h + directions[i] * (h * options_.damping * rate);

@@ -84,7 +84,7 @@ bool DeformationLimit::apply(std::span<const SpringElement> edges, double second
   const auto within = [&](std::size_t begin, std::size_t end) {
     return std::all_of(edges.begin() + begin, edges.begin() + end, [&](const SpringElement& edge) {
       const Bounds bounds(edge, max_strain_);
-      const double length = length(positions[edge.b] - positions[edge.a]);
+      const double length = supple::length(positions[edge.b] - positions[edge.a]);
       const double excess = std::max(length - bounds.longest, bounds.shortest - length);
       return !(excess > tolerance * edge.rest_length) || !can_move(edge);
     });
@@ -92,7 +92,7 @@ bool DeformationLimit::apply(std::span<const SpringElement> edges, double second
   const auto shorten = [&](const SpringElement& edge) {
     const double weight_a = inverse_masses_[edge.a], weight_b = inverse_masses_[edge.b];
     const Vec3d d = positions[edge.b] - positions[edge.a];
-    const double length = length(d);
+    const double length = supple::length(d);
     const Bounds bounds(edge, max_strain_);
     const double wanted = std::clamp(length, bounds.shortest, bounds.longest);
     if (wanted == length || !can_move(edge)) return;
