@@ -36,6 +36,9 @@ class DeformationLimit {
     return inverse_masses_[edge.a] + inverse_masses_[edge.b] > 0;
   }
 
+  bool correct(const SpringElement& edge, double seconds, std::span<Vec3d> positions,
+               std::span<Vec3d> velocities) const;
+
   std::vector<double> inverse_masses_;
   double max_strain_;
   std::vector<std::uint32_t> by_color_;     // edges
