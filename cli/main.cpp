@@ -5,6 +5,7 @@
 
 #include "ccd_queries.hpp"
 #include "detect.hpp"
+#include "diff.hpp"
 #include "exit_status.hpp"
 #include "info.hpp"
 #include "options.hpp"
@@ -22,6 +23,8 @@ int run(const CommandLine& line) {
       return run_info(line.info);
     case CommandLine::Command::ccd_queries:
       return run_ccd_queries(line.ccd_queries);
+    case CommandLine::Command::diff:
+      return run_diff(line.diff);
     case CommandLine::Command::exit:
       break;
   }
