@@ -31,7 +31,7 @@ Sum sum_of_free(std::span<const VertexKind> kinds, Term term) {
 }  // namespace
 
 MassSpringEnergy MassSpring::energy() const {
-  const auto& [x, v] = now_;
+  const std::vector<Vec3d>&x = now_.positions, &v = now_.velocities;
   const double mass = options_.vertex_mass;
   MassSpringEnergy energy;
   energy.kinetic =

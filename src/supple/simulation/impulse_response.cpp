@@ -71,9 +71,10 @@ void ImpulseResponse::resolve(std::span<const RespondingObject> objects, double 
   }
 }
 
-std::span<const Vec3d> ImpulseResponse::velocity_changes(ObjectId object) const {
+std::optional<ImpulseResponse::Change> ImpulseResponse::change(ObjectId object) const {
   const Participant& participant = participants_[object.index];
-  return participant.is_changed ? std::span<const Vec3d>(participant.change) : std::span<const Vec3d>();
+  if (!participant.is_changed) return std::nullopt;
+  return Change{participant.changes[0], participant.changes[1]};
 }
 
 void ImpulseResponse::begin(std::span<const RespondingObject> objects) {
@@ -84,7 +85,9 @@ void ImpulseResponse::begin(std::span<const RespondingObject> objects) {
     participant.is_resting = object.from.data() == object.to.data();
     participant.is_changed = false;
     participant.is_stale = !participant.is_resting;
-    if (participant.has_mass) participant.change.assign(object.from.size(), Vec3d{});
+    if (participant.has_mass) {
+      for (auto& changes : participant.changes) changes.assign(object.from.size(), Vec3d{});
+    }
     if (!participant.is_resting) moving_.push_back(object.id);
   }
 }
@@ -96,44 +99,54 @@ void ImpulseResponse::show_paths() {
     object.is_stale = false;
     to_.assign(object.now.to.begin(), object.now.to.end());
     if (object.is_changed) {
-      for (std::size_t i = 0; i < to_.size(); ++i) to_[i] = to_[i] + seconds_ * object.change[i];
+      for (std::size_t i = 0; i < to_.size(); ++i) to_[i] = to_[i] + seconds_ * object.changes[0][i];
     }
     scene_.set_motion(id, object.now.from, to_);
   }
 }
 
-/// Brings the speed along the normal to what is wanted, and slows what slides by at most `friction` times as
-/// much.
 bool ImpulseResponse::respond(const ContinuousContact& contact) {
   const ElementPoint a = point_of(contact.object_a, contact.element_a,
                                   contact.kind == ElementPairKind::face_vertex, contact.weights_a);
   const ElementPoint b = point_of(contact.object_b, contact.element_b,
                                   contact.kind == ElementPairKind::vertex_face, contact.weights_b);
+  Vec3d normal = contact.normal;
+  double parting = 0;
+  double restitution = options_.restitution;
+  if (contact.time == 0) {
+    // The contact's normal may go by the velocity, which an earlier round has turned round.
+    const Vec3d between = start(a) - start(b);
+    const double distance = std::sqrt(dot(between, between));
+    if (distance > 1e-6 * options_.thickness) normal = between * (1 / distance);
+    parting = repulsion_part * std::max(options_.thickness - distance, 0.0) / seconds_;
+    restitution = 0;  // what lies on something does not hop
+  }
+  const bool moved = push_apart(a, b, normal, parting, 0, Velocity::average);
+  return push_apart(a, b, normal, 0, restitution, Velocity::end) || moved;
+}
+
+/// Raises the speed along the normal to at least `least_speed`, and to what restitution asks for; slows what
+/// slides by at most `friction` times as much. False when nothing had to be done.
+bool ImpulseResponse::push_apart(const ElementPoint& a, const ElementPoint& b, Vec3d normal,
+                                 double least_speed, double restitution, Velocity kind) {
   const double mobility_of_both = mobility(a) + mobility(b);
   if (!(mobility_of_both > 0)) return false;
-  const Vec3d normal = contact.normal;
-  const Vec3d approach = velocity(a) - velocity(b);
-  const double speed = dot(approach, normal);
-
-  double wanted = -options_.restitution * speed;
-  if (contact.time == 0) {
-    const double distance = dot(start(a) - start(b), normal);
-    wanted = repulsion_part * std::max(options_.thickness - distance, 0.0) / seconds_;
-  }
-  const double change = wanted - speed;
-  // Of what parts already, or only by rounding does not.
-  if (!(speed < 0 || contact.time == 0) || !(change > 1e-9 * options_.thickness / seconds_)) return false;
+  const Vec3d relative = velocity(a, kind) - velocity(b, kind);
+  const double speed = dot(relative, normal);
+  const double change = std::max(least_speed, -restitution * speed) - speed;
+  const double rounding = 1e-9 * options_.thickness / seconds_;
+  if (!(change > rounding)) return false;
 
   Vec3d impulse = normal * (change / mobility_of_both);
-  const Vec3d slide = approach - normal * speed;
+  const Vec3d slide = relative - normal * speed;
   const double slide_speed = std::sqrt(dot(slide, slide));
   if (options_.friction > 0 && slide_speed > 0) {
     const double slowed = std::min(options_.friction * change, slide_speed);
     impulse = impulse - slide * (slowed / (slide_speed * mobility_of_both));
   }
   if (!std::isfinite(dot(impulse, impulse))) return false;
-  push(a, impulse);
-  push(b, impulse * -1.0);
+  push(a, impulse, kind);
+  push(b, impulse * -1.0, kind);
   return true;
 }
 
@@ -157,15 +170,16 @@ Vec3d ImpulseResponse::start(const ElementPoint& point) const {
   return sum;
 }
 
-/// Average over the step.
-Vec3d ImpulseResponse::velocity(const ElementPoint& point) const {
+Vec3d ImpulseResponse::velocity(const ElementPoint& point, Velocity kind) const {
   const Participant& object = *point.object;
   if (object.is_resting) return {};
   Vec3d sum;
   for (std::uint32_t i = 0; i < point.count; ++i) {
     const std::uint32_t vertex = point.vertices[i];
-    Vec3d v = (object.now.to[vertex] - object.now.from[vertex]) * (1 / seconds_);
-    if (object.has_mass) v = v + object.change[vertex];
+    const bool is_end = kind == Velocity::end && object.has_mass;
+    Vec3d v = is_end ? object.now.velocities[vertex]
+                     : (object.now.to[vertex] - object.now.from[vertex]) * (1 / seconds_);
+    if (object.has_mass) v = v + object.changes[static_cast<std::size_t>(kind)][vertex];
     sum = sum + v * point.weights[i];
   }
   return sum;
@@ -182,13 +196,14 @@ double ImpulseResponse::mobility(const ElementPoint& point) const {
   return sum;
 }
 
-void ImpulseResponse::push(const ElementPoint& point, Vec3d impulse) {
+void ImpulseResponse::push(const ElementPoint& point, Vec3d impulse, Velocity kind) {
   Participant& object = *point.object;
   if (!object.has_mass) return;
   for (std::uint32_t i = 0; i < point.count; ++i) {
     const std::uint32_t vertex = point.vertices[i];
     if (object.is_fixed[vertex] != 0) continue;
-    object.change[vertex] = object.change[vertex] + impulse * (point.weights[i] * object.now.inverse_mass);
+    Vec3d& change = object.changes[static_cast<std::size_t>(kind)][vertex];
+    change = change + impulse * (point.weights[i] * object.now.inverse_mass);
   }
   object.is_changed = true;
   object.is_stale = true;

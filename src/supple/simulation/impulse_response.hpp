@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -14,8 +15,9 @@ namespace supple {
 /// One object's part in a step: where its vertices go, and what may be done about it.
 struct RespondingObject {
   ObjectId id;
-  std::span<const Vec3d> from, to;  // the same when it rests
-  double inverse_mass = 0;          // of each vertex; 0 when impulses do not move the object
+  std::span<const Vec3d> from, to;    // the same when it rests
+  std::span<const Vec3d> velocities;  // at the end of the step, of what has mass
+  double inverse_mass = 0;            // of each vertex; 0 when impulses do not move the object
 };
 
 /// Impulses at contacts by Bridson, Fedkiw and Anderson, "Robust treatment of collisions, contact and
@@ -35,11 +37,15 @@ class ImpulseResponse {
   void remove(ObjectId object);
   void set_positions(ObjectId object, std::span<const Vec3d> positions);
 
-  /// Finds by how much velocities have to change on the way, which takes `seconds`. Objects that rest must be
-  /// listed too.
+  /// Finds which impulses are needed on the way, which takes `seconds`. Objects that rest must be listed too.
   void resolve(std::span<const RespondingObject> objects, double seconds);
-  /// m/s, to be added to the velocities, and times `seconds` to `to`; empty when nothing is to be added.
-  std::span<const Vec3d> velocity_changes(ObjectId object) const;
+  /// What impulses do to the vertices of an object.
+  struct Change {
+    std::span<const Vec3d> of_average_velocity;  // times the step's seconds, to be added to `to`
+    std::span<const Vec3d> of_velocity;
+  };
+  /// Nothing when no impulse was given to it.
+  std::optional<Change> change(ObjectId object) const;
 
  private:
   struct Participant {
@@ -48,10 +54,12 @@ class ImpulseResponse {
     bool has_mass = false;
     bool is_resting = true;
     RespondingObject now;
-    std::vector<Vec3d> change;
-    bool is_changed = false;  // in this step
-    bool is_stale = false;    // the scene does not know the change yet
+    std::array<std::vector<Vec3d>, 2> changes;  // by `Velocity`
+    bool is_changed = false;                    // in this step
+    bool is_stale = false;                      // the scene does not know the path yet
   };
+  /// Which of a vertex's velocities is meant.
+  enum class Velocity : std::uint8_t { average, end };
   /// A point of an element: a vertex, a point of an edge or of a face.
   struct ElementPoint {
     Participant* object = nullptr;
@@ -65,10 +73,12 @@ class ImpulseResponse {
   bool respond(const ContinuousContact& contact);
   ElementPoint point_of(ObjectId object, const std::array<std::uint32_t, 2>& element, bool is_face,
                         const std::array<double, 3>& weights);
+  bool push_apart(const ElementPoint& a, const ElementPoint& b, Vec3d normal, double least_speed,
+                  double restitution, Velocity kind);
   Vec3d start(const ElementPoint& point) const;
-  Vec3d velocity(const ElementPoint& point) const;
+  Vec3d velocity(const ElementPoint& point, Velocity kind) const;
   double mobility(const ElementPoint& point) const;
-  void push(const ElementPoint& point, Vec3d impulse);
+  void push(const ElementPoint& point, Vec3d impulse, Velocity kind);
 
   ContactResponse options_;
   Scene scene_;

@@ -85,12 +85,12 @@ MovingBody::MovingBody(MassSpringBody rest, const MassSpringMotion& motion, doub
   pull_handles();
 }
 
-void MovingBody::change_velocities(std::span<const Vec3d> changes) {
+void MovingBody::change_velocities(std::span<const Vec3d> of_average, std::span<const Vec3d> after) {
   positions_.assign(body.positions().begin(), body.positions().end());
   velocities_.assign(body.velocities().begin(), body.velocities().end());
-  for (std::size_t i = 0; i < changes.size(); ++i) {
-    positions_[i] = positions_[i] + time_step_ * changes[i];
-    velocities_[i] = velocities_[i] + changes[i];
+  for (std::size_t i = 0; i < positions_.size(); ++i) {
+    positions_[i] = positions_[i] + time_step_ * of_average[i];
+    velocities_[i] = velocities_[i] + after[i];
   }
   body.set_positions(positions_);
   body.set_velocities(velocities_);

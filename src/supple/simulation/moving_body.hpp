@@ -23,8 +23,8 @@ class MovingBody {
 
   MassSpringBody body;
 
-  /// Another velocity, one for each vertex, during the whole step that was just taken and after it.
-  void change_velocities(std::span<const Vec3d> changes);
+  /// Changes of the average velocity over the step just taken, and of the velocity after it, of each vertex.
+  void change_velocities(std::span<const Vec3d> of_average, std::span<const Vec3d> after);
   /// After a step that will not be undone: all that changes velocities and forces for the next one.
   void end_step(const std::optional<Border>& border);
 

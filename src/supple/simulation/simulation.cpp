@@ -228,18 +228,19 @@ void Simulation::Implementation::respond_to_contacts() {
     if (object == nullptr) continue;
     if (object->moving_body != nullptr) {
       const MassSpringBody& body = object->moving_body->body;
-      responding_.push_back({object->id, object->before, body.positions(), 1 / body.options().vertex_mass});
+      responding_.push_back(
+          {object->id, object->before, body.positions(), body.velocities(), 1 / body.options().vertex_mass});
     } else if (object->function != nullptr) {
-      responding_.push_back({object->id, object->own_positions, object->next});
+      responding_.push_back({object->id, object->own_positions, object->next, {}});
     } else {
-      responding_.push_back({object->id, object->own_positions, object->own_positions});
+      responding_.push_back({object->id, object->own_positions, object->own_positions, {}});
     }
   }
   response_->resolve(responding_, options.time_step);
   for (const auto& object : objects_) {
     if (object == nullptr || object->moving_body == nullptr) continue;
-    const std::span<const Vec3d> changes = response_->velocity_changes(object->id);
-    if (!changes.empty()) object->moving_body->change_velocities(changes);
+    if (const auto change = response_->change(object->id))
+      object->moving_body->change_velocities(change->of_average_velocity, change->of_velocity);
   }
 }
 
