@@ -8,6 +8,6 @@ namespace supple::cli {
 
 /// Reads a scene file (docs/scene_file.md). Throws `Error` that names file, line and key and says what is
 /// allowed; a key that means nothing there is an error too.
-Input read_scene_file(const std::filesystem::path& path);
+Input read_scene_file(const std::filesystem::path& path, const SceneOverrides& overrides = {});
 
 }  // namespace supple::cli

@@ -80,7 +80,7 @@ MovingBody::MovingBody(MassSpringBody rest, const MassSpringMotion& motion, doub
       deform_seconds_(motion.deform_seconds),
       handles_(motion.handles) {
   if (deform_seconds_ > 0 && motion.random_force > 0)
-    body.set_external_forces(deforming_forces(body.positions(), motion.random_force, random));
+    body.set_external_forces(deforming_forces(body.positions(), body.springs(), motion.random_force, random));
   send_off_in_time();
   pull_handles();
 }
