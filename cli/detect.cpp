@@ -35,6 +35,7 @@ std::vector<ObjectId> add_objects(Scene& scene, const Input& input, const Detect
     chosen.self_collision = chosen.self_collision || options.self;
     chosen.octree.max_level = options.max_level.value_or(chosen.octree.max_level);
     chosen.octree.leaf_size = options.leaf_size.value_or(chosen.octree.leaf_size);
+    chosen.octree.arity = options.tree_arity.value_or(chosen.octree.arity);
     ids.push_back(scene.add(object.mesh, chosen));
   }
   return ids;

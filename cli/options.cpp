@@ -12,6 +12,7 @@
 
 #include "documents.hpp"
 #include "exit_status.hpp"
+#include "experiments/experiment_options.hpp"
 #include "option_kinds.hpp"
 #include "supple/version.hpp"
 #include "text.hpp"
@@ -26,6 +27,7 @@ constexpr const char* program_footer = R"(Examples:
   supple detect --help                      every option, with examples
   supple info rabbit.obj                    counts, bounds, holes, octree statistics
   supple ccd-queries edge-edge/*.csv        single continuous queries, compared with the answers known
+  supple experiment scaling --quick         how does time grow with the number of objects, and does the paper say so?
 
 Exit status: 0 done; 1 with --fail-on-contact when something touches; 2 usage or input error, told in one line;
 3 with --verify when brute force disagrees, and of ccd-queries when an answer is false.)";
@@ -180,6 +182,16 @@ void add_method_options(CLI::App& app, DetectOptions& options, Dependences& depe
        [&, with_spheres] { return with_spheres() && scene.broad_phase == BroadPhaseMethod::octree; },
        "--bounding-volume sphere and --broad-phase octree"});
   for (CLI::Option* option : add_octree_options(app, options.max_level, options.leaf_size)) group(option);
+  const auto parse_arity = [&options](const std::string& given) {
+    if (given != "2" && given != "4" && given != "8")
+      throw CLI::ValidationError("--tree-arity", fmt::format("'{}' is not one of 8, 4, 2", given));
+    options.scene.scene_octree.arity = static_cast<std::uint32_t>(given.front() - '0');
+    options.tree_arity = options.scene.scene_octree.arity;
+  };
+  group(app.add_option_function<std::string>(
+               "--tree-arity", parse_arity,
+               "Children of a node, in the trees of objects and of the scene (default: 8)")
+            ->type_name("8|4|2"));
 }
 
 void add_output_options(CLI::App& app, DetectOptions& options, Dependences& dependences) {
@@ -283,6 +295,7 @@ CommandLine parse_command_line(int argument_count, const char* const* arguments)
   const CLI::App* detect = add_detect(program, result.detect, dependences);
   const CLI::App* info = add_info(program, result.info);
   add_ccd_queries(program, result.ccd_queries, dependences);
+  const CLI::App* experiment = experiments::add_experiment(program, result.experiment, dependences);
   try {
     program.parse(argument_count, arguments);
     if (!document.empty()) {
@@ -292,9 +305,10 @@ CommandLine parse_command_line(int argument_count, const char* const* arguments)
     if (program.get_subcommands().empty()) throw CLI::RequiredError::Subcommand(1);
     check(dependences);
     check_outputs(result.detect);
-    result.command = detect->parsed() ? CommandLine::Command::detect
-                     : info->parsed() ? CommandLine::Command::info
-                                      : CommandLine::Command::ccd_queries;
+    result.command = detect->parsed()       ? CommandLine::Command::detect
+                     : info->parsed()       ? CommandLine::Command::info
+                     : experiment->parsed() ? CommandLine::Command::experiment
+                                            : CommandLine::Command::ccd_queries;
   } catch (const CLI::Success& success) {  // help and version
     result.exit_status = program.exit(success);
   } catch (const CLI::ParseError& error) {

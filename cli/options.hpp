@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "experiments/experiment.hpp"
 #include "json_report.hpp"
 #include "query_file.hpp"
 #include "supple/options.hpp"
@@ -18,7 +19,7 @@ struct DetectOptions {
   std::uint64_t steps = 1;          ///< of a scene file
   SceneOptions scene;
   bool self = false;
-  std::optional<std::uint32_t> max_level, leaf_size;
+  std::optional<std::uint32_t> max_level, leaf_size, tree_arity;
   bool verify = false;
   bool fail_on_contact = false;
   bool quiet = false;
@@ -47,12 +48,13 @@ struct CcdQueriesOptions {
 };
 
 struct CommandLine {
-  enum class Command { detect, info, ccd_queries, exit };
+  enum class Command { detect, info, ccd_queries, experiment, exit };
   Command command = Command::exit;
   int exit_status = 0;  ///< of `Command::exit`: help, version or a usage error, already printed
   DetectOptions detect;
   InfoOptions info;
   CcdQueriesOptions ccd_queries;
+  experiments::ExperimentOptions experiment;
 };
 
 /// Prints help, version and generated documents to standard output, a usage error as one line to standard
