@@ -34,8 +34,8 @@ struct MassSpringOptions {
   double area_stiffness = 0;
   Vec3d gravity{};  ///< m/s²
 
-  /// Limit to deformation: an edge is kept between (1 - max_strain) and (1 + max_strain) times its rest length
-  /// (Provot 1995). Infinite: no limit. > 0
+  /// Limit to deformation: an edge is kept between (1 - max_strain) and (1 + max_strain) times its rest
+  /// length (Provot 1995). Infinite: no limit. > 0
   double max_strain = std::numeric_limits<double>::infinity();
   /// Strain beyond which an edge flows: its rest length follows so that the elastic strain goes back to this.
   /// Infinite: elastic. ≥ 0
@@ -68,23 +68,26 @@ struct AreaError {
 ///
 /// [the model is documented here by its implementer: the force of a spring, of an area, which error remains]
 ///
-/// Vertices that no triangle uses fly freely. Triangles of no area at rest, repeated ids and duplicates are fine;
-/// an edge of no length at rest pulls its ends together. Vertices whose rest position is not finite stay where
-/// they are and pull at nothing.
+/// Vertices that no triangle uses fly freely. Triangles of no area at rest, repeated ids and duplicates are
+/// fine; an edge of no length at rest pulls its ends together. Vertices whose rest position is not finite
+/// stay where they are and pull at nothing.
 class MassSpringBody {
  public:
-  /// At rest, without velocity. O(n log n). Throws `Error` as `check_mesh` does, or when an option is out of its
-  /// range.
+  /// At rest, without velocity. O(n log n). Throws `Error` as `check_mesh` does, or when an option is out of
+  /// its range.
   explicit MassSpringBody(const TriangleMesh& rest, const MassSpringOptions& options = {});
   ~MassSpringBody();
   MassSpringBody(MassSpringBody&&) noexcept;
   MassSpringBody& operator=(MassSpringBody&&) noexcept;
 
-  /// Carries positions and velocities on by `seconds` > 0, in `substeps` parts. When a number stops being finite,
-  /// or a vertex moves further in one substep than a hundred times the size of the body, state is put back to
-  /// what it was before the call and `Error` is thrown, which names the vertex and says which step would be
-  /// stable. O(n); no allocation in steady state except by `backward_euler`.
+  /// Carries positions and velocities on by `seconds` > 0, in `substeps` parts. When a number stops being
+  /// finite, or a vertex moves further in one substep than a hundred times the size of the body, state is put
+  /// back to what it was before the call and `Error` is thrown, which names the vertex and says which step
+  /// would be stable. O(n); no allocation in steady state except by `backward_euler`.
   void step(double seconds);
+  /// Puts positions, velocities and rest lengths back to what they were before the last `step`, bit by bit.
+  /// Only right after that call; what was set between is lost.
+  void undo_step();
 
   std::span<const Vec3d> positions() const;
   std::span<const Vec3d> velocities() const;  ///< metres a second
@@ -93,16 +96,16 @@ class MassSpringBody {
   void set_velocities(std::span<const Vec3d> velocities);
   /// Newtons on each vertex, besides gravity; they hold until set again. Empty: none.
   void set_external_forces(std::span<const Vec3d> forces);
-  /// Adds a velocity to each mass, as the paper does (v_i = v_i + v_d), and to the air about it, so that friction
-  /// does not stop it.
+  /// Adds a velocity to each mass, as the paper does (v_i = v_i + v_d), and to the air about it, so that
+  /// friction does not stop it.
   void add_drift(Vec3d velocity);
   /// Reverses the mean velocity, and that of the air, along an axis (0, 1, 2).
   void turn_back(int axis);
 
   std::size_t vertex_count() const;
   const MassSpringOptions& options() const;
-  /// The longest step, substeps considered, at which the explicit integrators stay stable, by Gershgorin's bound
-  /// on the rest state's frequencies; infinite for `backward_euler`.
+  /// The longest step, substeps considered, at which the explicit integrators stay stable, by Gershgorin's
+  /// bound on the rest state's frequencies; infinite for `backward_euler`.
   double stable_step() const;
 
   MassSpringEnergy energy() const;

@@ -1,0 +1,40 @@
+#include "core/random.hpp"
+
+#include <cmath>
+
+namespace supple {
+namespace {
+
+constexpr std::uint64_t golden_ratio = 0x9e3779b97f4a7c15u;
+
+std::uint64_t mix(std::uint64_t z) {
+  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
+  z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
+  return z ^ (z >> 31);
+}
+
+}  // namespace
+
+Random::Random(std::uint64_t seed, std::uint64_t stream)
+    : state_(mix(mix(seed + golden_ratio) + stream * golden_ratio)) {}
+
+std::uint64_t Random::next() {
+  state_ += golden_ratio;
+  return mix(state_);
+}
+
+double Random::uniform() {
+  return static_cast<double>(next() >> 11) * 0x1p-53;
+}
+
+/// Of points in a cube, those in the ball: without trigonometry.
+Vec3d Random::direction() {
+  for (;;) {
+    const double x = 2 * uniform() - 1, y = 2 * uniform() - 1, z = 2 * uniform() - 1;
+    const double squared = x * x + y * y + z * z;
+    if (squared > 1 || squared < 0x1p-20) continue;
+    return Vec3d{x, y, z} * (1 / std::sqrt(squared));
+  }
+}
+
+}  // namespace supple

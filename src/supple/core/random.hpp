@@ -1,0 +1,26 @@
+#pragma once
+
+#include <cstdint>
+
+#include "supple/types.hpp"
+
+namespace supple {
+
+/// Random numbers, the same bits on every machine: the SplitMix64 generator by Steele, Lea and Flood ("Fast
+/// splittable pseudorandom number generators", 2014).
+class Random {
+ public:
+  /// Streams of one seed have nothing to do with one another.
+  explicit Random(std::uint64_t seed, std::uint64_t stream = 0);
+
+  std::uint64_t next();
+  /// Of [0, 1), all multiples of 2^-53 alike.
+  double uniform();
+  /// Of length 1, all directions alike.
+  Vec3d direction();
+
+ private:
+  std::uint64_t state_;
+};
+
+}  // namespace supple

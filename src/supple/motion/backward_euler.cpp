@@ -1,0 +1,341 @@
+#include "motion/backward_euler.hpp"
+
+// The same operations in the same order on every machine.
+#define EIGEN_DONT_VECTORIZE
+#define EIGEN_DONT_PARALLELIZE
+#include <Eigen/SparseCholesky>
+#include <Eigen/SparseCore>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "motion/element_forces.hpp"
+
+namespace supple {
+namespace {
+
+using Matrix = Eigen::SparseMatrix<double, Eigen::ColMajor, int>;
+using Vector = Eigen::VectorXd;
+
+/// Newton's method ends at a change this much smaller than its first.
+constexpr double tolerance = 1e-7;
+
+constexpr std::uint32_t no_row = ~std::uint32_t{0};
+
+/// Rows and columns of one vertex against another's.
+using Block = std::array<std::array<double, 3>, 3>;
+
+/// p qᵀ · factor
+Block product(Vec3d p, Vec3d q, double factor) {
+  Block block;
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) block[i][j] = factor * p[i] * q[j];
+  }
+  return block;
+}
+
+void add_diagonal(Block& block, double value) {
+  for (int i = 0; i < 3; ++i) block[i][i] += value;
+}
+
+}  // namespace
+
+/// Rows are the coordinates of free vertices, three each, in the order of the mesh. Only the lower half is stored.
+class BackwardEuler::System {
+ public:
+  System(const SpringNetwork& network, std::span<const VertexKind> kinds, const MassSpringOptions& options);
+  void solve(const ImplicitStep& step, std::span<Vec3d> velocities);
+
+ private:
+  void lay_out(const SpringNetwork& network);
+  void find_directions(const ImplicitStep& step);
+  bool go_down(const ImplicitStep& step, std::span<Vec3d> velocities, double& lowest);
+  double potential(const ImplicitStep& step, std::span<const Vec3d> velocities);
+  void linearise(const ImplicitStep& step, std::span<const Vec3d> velocities);
+  void add_springs(const ImplicitStep& step, const std::vector<SpringElement>& springs,
+                   std::span<const Vec3d> directions, double stiffness);
+  void add_area(const ImplicitStep& step, const AreaElement& element);
+  void add_block(std::uint32_t p, std::uint32_t q, const Block& block);
+  void add_gradient(std::uint32_t vertex, Vec3d value);
+  Vec3d change_of(std::uint32_t vertex) const;
+  Vec3d mean_of_free(std::span<const Vec3d> values) const;
+  void keep_momentum(const ImplicitStep& step, std::span<Vec3d> velocities) const;
+
+  MassSpringOptions options_;
+  std::vector<VertexKind> kinds_;
+  std::vector<std::uint32_t> row_of_;       // of each vertex; no_row where it is not free
+  std::vector<std::uint32_t> first_below_;  // of each row vertex, in below_; one more at the end
+  std::vector<std::uint32_t> below_;        // row vertices of blocks below the diagonal, column by column
+  Matrix matrix_;
+  Vector gradient_, change_;
+  Eigen::SimplicialLDLT<Matrix, Eigen::Lower> cholesky_;
+  std::vector<Vec3d> edge_directions_, bending_directions_;  // at the start of the step
+  std::vector<Vec3d> positions_, tried_;
+};
+
+BackwardEuler::System::System(const SpringNetwork& network, std::span<const VertexKind> kinds,
+                              const MassSpringOptions& options)
+    : options_(options), kinds_(kinds.begin(), kinds.end()), row_of_(kinds.size(), no_row) {
+  std::uint32_t rows = 0;
+  for (std::uint32_t v = 0; v < kinds.size(); ++v) {
+    if (kinds[v] == VertexKind::free) row_of_[v] = rows++;
+  }
+  first_below_.assign(std::size_t{rows} + 1, 0);
+  lay_out(network);
+  gradient_.resize(3 * static_cast<Eigen::Index>(rows));
+  edge_directions_.resize(network.edges.elements.size());
+  bending_directions_.resize(network.bending.elements.size());
+  positions_.resize(kinds.size());
+  tried_.resize(kinds.size());
+  if (rows > 0) cholesky_.analyzePattern(matrix_);
+}
+
+void BackwardEuler::System::lay_out(const SpringNetwork& network) {
+  std::vector<std::array<std::uint32_t, 2>> blocks;  // column, row
+  for (const auto* springs : {&network.edges.elements, &network.bending.elements}) {
+    for (const SpringElement& spring : *springs) {
+      const std::uint32_t a = row_of_[spring.a], b = row_of_[spring.b];
+      if (a != no_row && b != no_row) blocks.push_back({std::min(a, b), std::max(a, b)});
+    }
+  }
+  std::sort(blocks.begin(), blocks.end());
+  for (const auto& [column, row] : blocks) {
+    ++first_below_[column + 1];
+    below_.push_back(row);
+  }
+  const std::size_t rows = first_below_.size() - 1;
+  for (std::size_t r = 0; r < rows; ++r) first_below_[r + 1] += first_below_[r];
+
+  const auto size = static_cast<Eigen::Index>(3 * rows);
+  matrix_.resize(size, size);
+  matrix_.resizeNonZeros(static_cast<Eigen::Index>(6 * rows + 9 * below_.size()));
+  int place = 0;
+  for (std::size_t column = 0; column < rows; ++column) {
+    for (int c = 0; c < 3; ++c) {
+      matrix_.outerIndexPtr()[3 * column + c] = place;
+      for (int r = c; r < 3; ++r) matrix_.innerIndexPtr()[place++] = static_cast<int>(3 * column) + r;
+      for (std::uint32_t i = first_below_[column]; i < first_below_[column + 1]; ++i) {
+        for (int r = 0; r < 3; ++r) matrix_.innerIndexPtr()[place++] = static_cast<int>(3 * below_[i]) + r;
+      }
+    }
+  }
+  matrix_.outerIndexPtr()[size] = place;
+}
+
+void BackwardEuler::System::solve(const ImplicitStep& step, std::span<Vec3d> velocities) {
+  find_directions(step);
+  // Newton's method starts from what would fly on or from what would keep its shape, whichever is lower.
+  std::copy(step.velocities.begin(), step.velocities.end(), velocities.begin());
+  double lowest = potential(step, velocities);
+  const Vec3d mean = mean_of_free(step.velocities);
+  for (std::size_t v = 0; v < kinds_.size(); ++v) {
+    tried_[v] = kinds_[v] == VertexKind::free ? mean : step.velocities[v];
+  }
+  if (const double rigid = potential(step, tried_); rigid < lowest) {
+    lowest = rigid;
+    std::copy(tried_.begin(), tried_.end(), velocities.begin());
+  }
+  if (gradient_.size() == 0) return;
+
+  double first_change = 0;
+  for (int iteration = 0; iteration < max_newton_iterations && std::isfinite(lowest); ++iteration) {
+    linearise(step, velocities);
+    cholesky_.factorize(matrix_);
+    change_ = cholesky_.solve(gradient_);
+    if (!go_down(step, velocities, lowest)) break;
+    const double change = change_.cwiseAbs().maxCoeff();
+    if (iteration == 0) first_change = change;
+    if (!(change > tolerance * first_change)) break;
+  }
+  keep_momentum(step, velocities);
+}
+
+/// Goes along the change as far as the potential becomes lower by a part of what its slope promises (Armijo's rule).
+bool BackwardEuler::System::go_down(const ImplicitStep& step, std::span<Vec3d> velocities, double& lowest) {
+  const double slope = change_.dot(gradient_), rounding = 1e-13 * std::abs(lowest);
+  double part = 1;
+  for (int halving = 0; halving < 30; ++halving, part *= 0.5) {
+    for (std::uint32_t v = 0; v < kinds_.size(); ++v) tried_[v] = velocities[v] + change_of(v) * part;
+    const double value = potential(step, tried_);
+    if (!(value <= lowest - 1e-4 * part * slope + rounding)) continue;
+    lowest = value;
+    std::copy(tried_.begin(), tried_.end(), velocities.begin());
+    return true;
+  }
+  return false;
+}
+
+void BackwardEuler::System::find_directions(const ImplicitStep& step) {
+  const auto find = [&](const std::vector<SpringElement>& springs, std::vector<Vec3d>& directions) {
+    for (std::size_t i = 0; i < springs.size(); ++i) {
+      const Vec3d d = step.positions[springs[i].b] - step.positions[springs[i].a];
+      const double length = models::length(d);
+      directions[i] = length > 0 ? d * (1 / length) : Vec3d{};
+    }
+  };
+  find(step.network.edges.elements, edge_directions_);
+  find(step.network.bending.elements, bending_directions_);
+}
+
+double BackwardEuler::System::potential(const ImplicitStep& step, std::span<const Vec3d> velocities) {
+  const double h = step.seconds;
+  double sum = 0;
+  for (std::uint32_t v = 0; v < kinds_.size(); ++v) {
+    positions_[v] = step.positions[v] + velocities[v] * h;
+    if (kinds_[v] != VertexKind::free) continue;
+    const Vec3d change = velocities[v] - step.velocities[v], wind = velocities[v] - step.air_velocity;
+    Vec3d load = options_.gravity * options_.vertex_mass;
+    if (!step.external_forces.empty()) load = load + step.external_forces[v];
+    sum += 0.5 * options_.vertex_mass * dot(change, change) + 0.5 * h * options_.air_friction * dot(wind, wind) -
+           h * dot(load, change);
+  }
+  const auto add_springs = [&](const std::vector<SpringElement>& springs, std::span<const Vec3d> directions,
+                               double stiffness) {
+    for (std::size_t i = 0; i < springs.size(); ++i) {
+      const auto& [a, b, rest_length] = springs[i];
+      const double stretch = models::length(positions_[b] - positions_[a]) - rest_length;
+      const double rate = dot(velocities[b] - velocities[a], directions[i]);
+      sum += 0.5 * stiffness * stretch * stretch + 0.5 * h * options_.damping * rate * rate;
+    }
+  };
+  add_springs(step.network.edges.elements, edge_directions_, options_.stiffness);
+  add_springs(step.network.bending.elements, bending_directions_, options_.bending_stiffness);
+  for (const AreaElement& element : step.network.areas.elements) {
+    const Triangle& t = element.corners;
+    const double growth = triangle_area(positions_[t[0]], positions_[t[1]], positions_[t[2]]) - element.rest_area;
+    sum += 0.5 * options_.area_stiffness * growth * growth * element.inverse_scale;
+  }
+  return sum;
+}
+
+/// The negative gradient of the potential, and its second derivative without what may be negative.
+void BackwardEuler::System::linearise(const ImplicitStep& step, std::span<const Vec3d> velocities) {
+  const double h = step.seconds;
+  std::fill(matrix_.valuePtr(), matrix_.valuePtr() + matrix_.nonZeros(), 0.0);
+  gradient_.setZero();
+  for (std::uint32_t v = 0; v < kinds_.size(); ++v) {
+    positions_[v] = step.positions[v] + velocities[v] * h;
+    tried_[v] = velocities[v];
+    if (kinds_[v] != VertexKind::free) continue;
+    Vec3d load = options_.gravity * options_.vertex_mass;
+    if (!step.external_forces.empty()) load = load + step.external_forces[v];
+    add_gradient(v, load * h - (velocities[v] - step.velocities[v]) * options_.vertex_mass -
+                        (velocities[v] - step.air_velocity) * (h * options_.air_friction));
+    const double diagonal = options_.vertex_mass + h * options_.air_friction;
+    Block block{};
+    add_diagonal(block, diagonal);
+    add_block(v, v, block);
+  }
+  add_springs(step, step.network.edges.elements, edge_directions_, options_.stiffness);
+  add_springs(step, step.network.bending.elements, bending_directions_, options_.bending_stiffness);
+  for (const AreaElement& element : step.network.areas.elements) add_area(step, element);
+}
+
+void BackwardEuler::System::add_springs(const ImplicitStep& step, const std::vector<SpringElement>& springs,
+                                        std::span<const Vec3d> directions, double stiffness) {
+  const double h = step.seconds;
+  for (std::size_t i = 0; i < springs.size(); ++i) {
+    const auto& [a, b, rest_length] = springs[i];
+    const Vec3d d = positions_[b] - positions_[a];
+    const double length = models::length(d);
+    const double rate = dot(tried_[b] - tried_[a], directions[i]);
+    const Vec3d pull = spring_force(d, {}, stiffness, 0, rest_length) * h +
+                       directions[i] * (h * options_.damping * rate);
+    add_gradient(a, pull);
+    add_gradient(b, Vec3d{} - pull);
+    // A spring that is compressed would push its ends out of line; that is what may be negative.
+    const Vec3d n = length > 0 ? d * (1 / length) : Vec3d{};
+    const double across = length > 0 ? std::max(0.0, 1 - rest_length / length) : 1;
+    Block block = product(n, n, h * h * stiffness * (1 - across));
+    add_diagonal(block, h * h * stiffness * across);
+    const Block damping = product(directions[i], directions[i], h * options_.damping);
+    for (int r = 0; r < 3; ++r) {
+      for (int c = 0; c < 3; ++c) block[r][c] += damping[r][c];
+    }
+    add_block(a, a, block);
+    add_block(b, b, block);
+    for (auto& row : block) {
+      for (double& value : row) value = -value;
+    }
+    add_block(b, a, block);
+  }
+}
+
+void BackwardEuler::System::add_area(const ImplicitStep& step, const AreaElement& element) {
+  const Triangle& t = element.corners;
+  const auto forces =
+      area_forces(element, options_.area_stiffness, positions_[t[0]], positions_[t[1]], positions_[t[2]]);
+  const AreaGradient gradient = area_gradient(positions_[t[0]], positions_[t[1]], positions_[t[2]]);
+  const double stiffness = options_.area_stiffness * element.inverse_scale * step.seconds * step.seconds;
+  for (int i = 0; i < 3; ++i) {
+    add_gradient(t[i], forces[i] * step.seconds);
+    for (int j = 0; j <= i; ++j) {
+      add_block(t[i], t[j], product(gradient.of_corner[i], gradient.of_corner[j], stiffness));
+    }
+  }
+}
+
+/// Adds to the rows of p and the columns of q.
+void BackwardEuler::System::add_block(std::uint32_t p, std::uint32_t q, const Block& block) {
+  const std::uint32_t row = std::max(row_of_[p], row_of_[q]), column = std::min(row_of_[p], row_of_[q]);
+  if (row == no_row) return;
+  const auto first = below_.begin() + first_below_[column], last = below_.begin() + first_below_[column + 1];
+  const bool transposed = row != row_of_[p];
+  const auto rank = row == column ? 0 : 1 + (std::lower_bound(first, last, row) - first);
+  for (int c = 0; c < 3; ++c) {
+    double* const values = matrix_.valuePtr() + matrix_.outerIndexPtr()[3 * column + c];
+    if (rank == 0) {
+      for (int r = c; r < 3; ++r) values[r - c] += block[r][c];
+    } else {
+      for (int r = 0; r < 3; ++r) values[3 * rank - c + r] += transposed ? block[c][r] : block[r][c];
+    }
+  }
+}
+
+void BackwardEuler::System::add_gradient(std::uint32_t vertex, Vec3d value) {
+  if (row_of_[vertex] == no_row) return;
+  for (int axis = 0; axis < 3; ++axis) gradient_[3 * row_of_[vertex] + axis] += value[axis];
+}
+
+Vec3d BackwardEuler::System::change_of(std::uint32_t vertex) const {
+  if (row_of_[vertex] == no_row) return {};
+  const double* const values = change_.data() + 3 * row_of_[vertex];
+  return {values[0], values[1], values[2]};
+}
+
+Vec3d BackwardEuler::System::mean_of_free(std::span<const Vec3d> values) const {
+  Vec3d sum;
+  for (std::size_t v = 0; v < kinds_.size(); ++v) {
+    if (kinds_[v] == VertexKind::free) sum = sum + values[v];
+  }
+  return sum * (1 / static_cast<double>(std::max<std::size_t>(1, first_below_.size() - 1)));
+}
+
+/// What springs pull sums to zero. So the mean velocity is known, and takes out what rounding and the tolerance
+/// of Newton's method, times stiffness, have left in it.
+void BackwardEuler::System::keep_momentum(const ImplicitStep& step, std::span<Vec3d> velocities) const {
+  for (const VertexKind kind : kinds_) {
+    if (kind == VertexKind::fixed) return;
+  }
+  const double h = step.seconds, mass = options_.vertex_mass, friction = options_.air_friction;
+  Vec3d load = options_.gravity * mass;
+  if (!step.external_forces.empty()) load = load + mean_of_free(step.external_forces);
+  const Vec3d wanted = (mean_of_free(step.velocities) * mass + (load + step.air_velocity * friction) * h) *
+                       (1 / (mass + h * friction));
+  const Vec3d error = wanted - mean_of_free(velocities);
+  for (std::size_t v = 0; v < kinds_.size(); ++v) {
+    if (kinds_[v] == VertexKind::free) velocities[v] = velocities[v] + error;
+  }
+}
+
+BackwardEuler::BackwardEuler(const SpringNetwork& network, std::span<const VertexKind> kinds,
+                             const MassSpringOptions& options)
+    : system_(std::make_unique<System>(network, kinds, options)) {}
+BackwardEuler::~BackwardEuler() = default;
+
+void BackwardEuler::solve(const ImplicitStep& step, std::span<Vec3d> velocities_after) {
+  system_->solve(step, velocities_after);
+}
+
+}  // namespace supple

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/parallel.hpp"
+#include "motion/spring_network.hpp"
+#include "supple/motion.hpp"
+#include "supple/types.hpp"
+
+namespace supple {
+
+/// Adds up what elements pull at vertices, in one order for any number of threads.
+class ForceSum {
+ public:
+  explicit ForceSum(const SpringNetwork& network);
+
+  void compute(const SpringNetwork& network, const MassSpringOptions& options, std::span<const Vec3d> positions,
+               std::span<const Vec3d> velocities, const Parallel& parallel);
+
+  /// Newtons, of all elements, as last computed.
+  Vec3d on_vertex(const SpringNetwork& network, std::uint32_t vertex) const {
+    Vec3d sum = in_block_[vertex];
+    for (std::uint32_t s = network.first_slot[vertex]; s < network.first_slot[vertex + 1]; ++s) {
+      sum = sum + crossing_[s];
+    }
+    return sum;
+  }
+
+ private:
+  std::vector<Vec3d> in_block_;  // of each vertex, by elements within its block
+  std::vector<Vec3d> crossing_;  // of each slot
+};
+
+}  // namespace supple

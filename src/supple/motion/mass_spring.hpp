@@ -1,0 +1,94 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/parallel.hpp"
+#include "motion/backward_euler.hpp"
+#include "motion/deformation_limit.hpp"
+#include "motion/force_sum.hpp"
+#include "motion/spring_network.hpp"
+#include "motion/vertex_kind.hpp"
+#include "supple/motion.hpp"
+
+namespace supple {
+
+/// What `MassSpringBody` promises, without threads of its own.
+class MassSpring {
+ public:
+  MassSpring(const TriangleMesh& rest, const MassSpringOptions& options);
+
+  void step(double seconds, const Parallel& parallel);
+
+  std::span<const Vec3d> positions() const { return now_.positions; }
+  std::span<const Vec3d> velocities() const { return now_.velocities; }
+  void set_positions(std::span<const Vec3d> positions);
+  void set_velocities(std::span<const Vec3d> velocities);
+  void set_external_forces(std::span<const Vec3d> forces);
+  void add_drift(Vec3d velocity);
+  void turn_back(int axis);
+
+  const MassSpringOptions& options() const { return options_; }
+  double stable_step() const { return stable_substep_ * options_.substeps; }
+
+  MassSpringEnergy energy() const;
+  Vec3d momentum() const;
+  Vec3d angular_momentum() const;
+  Vec3d center_of_mass() const;
+  Vec3d mean_velocity() const;
+  double area() const;
+  AreaError area_error() const;
+  std::vector<MassSpringBody::Spring> springs() const;
+
+ private:
+  struct State {
+    std::vector<Vec3d> positions, velocities;
+  };
+  struct RestShape {
+    std::vector<SpringElement> edges, bending;
+    std::vector<AreaElement> areas;
+  };
+
+  void check_size(std::size_t size, const char* what) const;
+  void carry_on(const State& from, State& to, double seconds, const Parallel& parallel);
+  void verlet(const State& from, State& to, double seconds, const Parallel& parallel);
+  void symplectic_euler(const State& from, State& to, double seconds, const Parallel& parallel);
+  void implicit_euler(const State& from, State& to, double seconds, const Parallel& parallel);
+  void find_accelerations(const State& state, const Parallel& parallel);
+  Vec3d acceleration(std::uint32_t vertex, Vec3d velocity) const;
+  void flow_plastically(const State& state, double seconds, const Parallel& parallel);
+  /// Calls `visit(first, last)` with the vertices of each block.
+  template <class Visit>
+  void for_blocks(const Parallel& parallel, Visit visit);
+  void check_vertices(const State& from, const State& to, std::uint32_t first, std::uint32_t last);
+  std::uint32_t first_bad_vertex() const;
+  [[noreturn]] void fail_at(std::uint32_t vertex, double seconds) const;
+
+  MassSpringOptions options_;
+  std::string name_;
+  std::vector<Triangle> triangles_;
+  std::vector<double> rest_areas_;
+  SpringNetwork network_;
+  std::vector<Triangle> edge_numbers_;  // of each element of an area; empty when nothing flows
+  std::vector<VertexKind> kinds_;
+  std::vector<double> inverse_masses_;  // 0: fixed or inert
+  std::vector<Vec3d> external_forces_;  // empty: none
+  Vec3d air_velocity_;
+  double longest_way_squared_;
+  double stable_substep_;
+
+  // Substeps go from one to another and leave the first as it was, until all have gone well.
+  State now_, next_, after_next_;
+  RestShape rest_before_;
+  ForceSum forces_;
+  std::vector<Vec3d> accelerations_, predicted_;
+  bool accelerations_known_ = false;
+  std::vector<std::uint32_t> bad_vertices_;  // the first of each block
+  std::unique_ptr<DeformationLimit> limit_;
+  std::unique_ptr<BackwardEuler> backward_euler_;
+};
+
+}  // namespace supple

@@ -1,0 +1,97 @@
+#include "core/parallel.hpp"
+#include "motion/mass_spring.hpp"
+#include "supple/motion.hpp"
+
+namespace supple {
+namespace {
+
+// Below this a step takes less than a millisecond, and whoever steps many bodies has threads of his own.
+constexpr std::size_t vertices_worth_threads = 10000;
+
+}  // namespace
+
+class MassSpringBody::Implementation {
+ public:
+  Implementation(const TriangleMesh& rest, const MassSpringOptions& options) : masses(rest, options) {}
+
+  void step(double seconds) {
+    if (!has_threads && masses.positions().size() > vertices_worth_threads) {
+      parallel = Parallel(masses.options().threads);
+      has_threads = true;
+    }
+    masses.step(seconds, parallel);
+  }
+
+  MassSpring masses;
+  Parallel parallel{1};
+  bool has_threads = false;
+};
+
+MassSpringBody::MassSpringBody(const TriangleMesh& rest, const MassSpringOptions& options)
+    : implementation_(std::make_unique<Implementation>(rest, options)) {}
+MassSpringBody::~MassSpringBody() = default;
+MassSpringBody::MassSpringBody(MassSpringBody&&) noexcept = default;
+MassSpringBody& MassSpringBody::operator=(MassSpringBody&&) noexcept = default;
+
+void MassSpringBody::step(double seconds) {
+  implementation_->step(seconds);
+}
+
+std::span<const Vec3d> MassSpringBody::positions() const {
+  return implementation_->masses.positions();
+}
+std::span<const Vec3d> MassSpringBody::velocities() const {
+  return implementation_->masses.velocities();
+}
+void MassSpringBody::set_positions(std::span<const Vec3d> positions) {
+  implementation_->masses.set_positions(positions);
+}
+void MassSpringBody::set_velocities(std::span<const Vec3d> velocities) {
+  implementation_->masses.set_velocities(velocities);
+}
+void MassSpringBody::set_external_forces(std::span<const Vec3d> forces) {
+  implementation_->masses.set_external_forces(forces);
+}
+void MassSpringBody::add_drift(Vec3d velocity) {
+  implementation_->masses.add_drift(velocity);
+}
+void MassSpringBody::turn_back(int axis) {
+  implementation_->masses.turn_back(axis);
+}
+
+std::size_t MassSpringBody::vertex_count() const {
+  return implementation_->masses.positions().size();
+}
+const MassSpringOptions& MassSpringBody::options() const {
+  return implementation_->masses.options();
+}
+double MassSpringBody::stable_step() const {
+  return implementation_->masses.stable_step();
+}
+
+MassSpringEnergy MassSpringBody::energy() const {
+  return implementation_->masses.energy();
+}
+Vec3d MassSpringBody::momentum() const {
+  return implementation_->masses.momentum();
+}
+Vec3d MassSpringBody::angular_momentum() const {
+  return implementation_->masses.angular_momentum();
+}
+Vec3d MassSpringBody::center_of_mass() const {
+  return implementation_->masses.center_of_mass();
+}
+Vec3d MassSpringBody::mean_velocity() const {
+  return implementation_->masses.mean_velocity();
+}
+double MassSpringBody::area() const {
+  return implementation_->masses.area();
+}
+AreaError MassSpringBody::area_error() const {
+  return implementation_->masses.area_error();
+}
+std::vector<MassSpringBody::Spring> MassSpringBody::springs() const {
+  return implementation_->masses.springs();
+}
+
+}  // namespace supple

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <exception>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/parallel.hpp"
+#include "simulation/impulse_response.hpp"
+#include "simulation/moving_body.hpp"
+#include "supple/simulation.hpp"
+
+namespace supple {
+
+/// One object: moved by a body, by a function, or by nothing.
+struct SimulatedObject {
+  ObjectId id;
+  std::unique_ptr<MovingBody> moving_body;
+  MotionFunction function;
+  std::vector<Vec3d> own_positions;  // of objects without a body
+  std::vector<Vec3d> next;           // what the function wrote, until the step is sure
+  std::vector<Vec3d> before;         // where the last step began; only where the way there is looked at
+  bool is_on_path = false;           // in the scene, by the last step
+  std::exception_ptr failure;        // of the body, in this step
+
+  bool moves() const { return moving_body != nullptr || function != nullptr; }
+  std::span<const Vec3d> positions() const {
+    return moving_body ? moving_body->body.positions() : std::span<const Vec3d>(own_positions);
+  }
+};
+
+class Simulation::Implementation {
+ public:
+  explicit Implementation(const SimulationOptions& options);
+
+  ObjectId add(const TriangleMesh& mesh, const ObjectOptions& object_options, const MassSpringMotion* motion,
+               MotionFunction function);
+  void remove(ObjectId id);
+  const DetectResult& detect();
+  const DetectResult& step();
+  void set_positions(ObjectId id, std::span<const Vec3d> positions);
+  SimulatedObject& object(ObjectId id, const char* call) const;
+
+  SimulationOptions options;
+  Scene scene;
+  std::uint64_t steps = 0;
+  double motion_seconds = 0;
+
+ private:
+  void add_to_response(const TriangleMesh& mesh, const ObjectOptions& object_options,
+                       const SimulatedObject& object);
+  void call_functions(double seconds);
+  void remember_positions();
+  void step_bodies();
+  [[noreturn]] void undo_step_because_of(const SimulatedObject& failed);
+  void respond_to_contacts();
+  void accept_written_positions();
+  void place_in_scene();
+  void prepare_next_step();
+  bool is_continuous() const { return options.scene.contacts == ContactMode::continuous; }
+
+  Parallel parallel_;
+  std::optional<ImpulseResponse> response_;
+  std::vector<std::unique_ptr<SimulatedObject>> objects_;  // by index
+  std::vector<SimulatedObject*> small_bodies_;             // scratch of a step, and so
+  std::vector<RespondingObject> responding_;
+};
+
+}  // namespace supple

@@ -1,0 +1,71 @@
+#include "simulation/deforming_forces.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "supple/models.hpp"
+
+namespace supple {
+namespace {
+
+Vec3d cross(Vec3d a, Vec3d b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
+double length(Vec3d a) {
+  return std::sqrt(a.x * a.x + a.y * a.y + a.z * a.z);
+}
+
+TEST(DeformingForces, SumToZeroAndTurnNothing) {
+  const TriangleMesh mesh = make_model("rabbit");
+  Random random(3);
+  const std::vector<Vec3d> forces = deforming_forces(mesh.positions, 2, random);
+  ASSERT_EQ(forces.size(), mesh.positions.size());
+  Vec3d sum, torque;
+  double squares = 0;
+  for (std::size_t i = 0; i < forces.size(); ++i) {
+    sum = sum + forces[i];
+    torque = torque + cross(mesh.positions[i], forces[i]);
+    squares += length(forces[i]) * length(forces[i]);
+  }
+  EXPECT_LT(length(sum), 1e-10);
+  EXPECT_LT(length(torque), 1e-10);
+  EXPECT_NEAR(std::sqrt(squares / static_cast<double>(forces.size())), 2, 1e-12);
+}
+
+TEST(DeformingForces, PullAlikeAtNeighbours) {
+  const TriangleMesh mesh = make_icosphere(12);
+  Random random(3);
+  const std::vector<Vec3d> forces = deforming_forces(mesh.positions, 1, random);
+  for (const Triangle& t : mesh.triangles) {
+    const double edge = length(mesh.positions[t[0]] - mesh.positions[t[1]]);
+    EXPECT_LT(length(forces[t[0]] - forces[t[1]]), 6 * edge);
+  }
+}
+
+TEST(DeformingForces, OfNothingPointsAndLines) {
+  Random random(3);
+  EXPECT_TRUE(deforming_forces({}, 1, random).empty());
+  const std::vector<Vec3d> point{{1, 2, 3}};
+  EXPECT_EQ(deforming_forces(point, 1, random)[0], Vec3d{});
+  const std::vector<Vec3d> line{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}};
+  const std::vector<Vec3d> forces = deforming_forces(line, 1, random);
+  EXPECT_LT(length(forces[0] + forces[1] + forces[2]), 1e-15);
+  EXPECT_GT(length(forces[0]), 0.1);
+}
+
+TEST(DeformingForces, LeaveOutWhatIsNotFinite) {
+  TriangleMesh mesh = make_icosphere(2);
+  mesh.positions[4].y = std::numeric_limits<double>::quiet_NaN();
+  Random random(3);
+  const std::vector<Vec3d> forces = deforming_forces(mesh.positions, 1, random);
+  EXPECT_EQ(forces[4], Vec3d{});
+  Vec3d sum;
+  for (const Vec3d& force : forces) sum = sum + force;
+  EXPECT_LT(length(sum), 1e-12);
+}
+
+}  // namespace
+}  // namespace supple
