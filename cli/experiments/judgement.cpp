@@ -5,12 +5,17 @@
 #include <algorithm>
 #include <cmath>
 
+#include "text.hpp"
+
 namespace supple::experiments {
 namespace {
 
-Verdict judge(const PowerLaw& fit, double formula) {
+Verdict judge(const Growth& growth) {
+  const PowerLaw fit = fit_power_law(growth.points);
   if (!(fit.standard_error <= 0.25)) return Verdict::cannot_tell;
-  return verdict_of(fit.exponent - formula <= std::max(exponent_tolerance, 2 * fit.standard_error));
+  const double excess = fit.exponent - exponent_of(growth.formula_at, growth.points);
+  if (excess <= std::max(exponent_tolerance, 2 * fit.standard_error)) return Verdict::holds;
+  return growth.counts() || excess > time_tolerance ? Verdict::does_not_hold : Verdict::cannot_tell;
 }
 
 /// One that does not hold decides, then one that cannot be told.
@@ -19,26 +24,33 @@ Verdict both(Verdict a, Verdict b) {
   return a == Verdict::cannot_tell ? a : b;
 }
 
-std::string sizes_of(const Points& points) {
-  const auto [low, high] = std::minmax_element(points.begin(), points.end());
-  return fmt::format("{} to {}", rounded(low->first), rounded(high->first, 7));
+std::string described(const Growth& growth) {
+  const PowerLaw fit = fit_power_law(growth.points);
+  if (fit.points < 3)
+    return fmt::format("{}: {} measured, too few for a fit.", growth.quantity,
+                       cli::counted(fit.points, "size"));
+  return fmt::format("{}: {} grow{} with exponent {}, {} over the same sizes with {:.2f}.", growth.quantity,
+                     growth.unit, growth.counts() ? "" : "s", text_of(fit), growth.formula,
+                     exponent_of(growth.formula_at, growth.points));
 }
 
 }  // namespace
 
+std::string sizes_of(const Points& points) {
+  const auto low = std::min_element(points.begin(), points.end()),
+             high = std::max_element(points.begin(), points.end());
+  const auto whole = [](double size) { return cli::grouped(static_cast<std::uint64_t>(size)); };
+  return fmt::format("{} to {}", whole(low->first), whole(high->first));
+}
+
 Claim judge_bounds(const std::string& paper, const std::vector<Growth>& growths) {
   Claim claim{paper, Verdict::holds, {}};
+  const bool counted =
+      std::any_of(growths.begin(), growths.end(), [](const Growth& g) { return g.counts(); });
   for (const Growth& growth : growths) {
-    const PowerLaw fit = fit_power_law(growth.points);
-    const double formula = exponent_of(growth.formula_at, growth.points);
-    claim.verdict = both(claim.verdict, judge(fit, formula));
+    if (growth.counts() == counted) claim.verdict = both(claim.verdict, judge(growth));
     if (!claim.reason.empty()) claim.reason += ' ';
-    if (fit.points < 3) {
-      claim.reason += fmt::format("{}: {} sizes measured, too few for a fit.", growth.quantity, fit.points);
-      continue;
-    }
-    claim.reason += fmt::format("{} grows with exponent {}; {} has {:.2f} over the same sizes.",
-                                growth.quantity, text_of(fit), growth.formula, formula);
+    claim.reason += described(growth);
   }
   return claim;
 }
@@ -48,13 +60,13 @@ Table exponents_table(const std::string& name, const std::string& caption, const
   Table table{name,
               caption,
               {{"quantity", "Quantity"},
-               {"unit", "Unit"},
+               {"unit", "Of"},
                {"sizes", size},
                {"points", "Points"},
                {"exponent", "Exponent", 3},
                {"standard_error", "± error", 2},
-               {"formula", "The paper's"},
-               {"formula_exponent", "its exponent", 3}}};
+               {"formula", "The paper"},
+               {"formula_exponent", "exponent", 3}}};
   for (const Growth& growth : growths) {
     if (growth.points.empty()) continue;
     const PowerLaw fit = fit_power_law(growth.points);

@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 #include <sys/wait.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <cstdlib>
@@ -106,6 +107,21 @@ class ScratchFolder {
   fs::path path_;
 };
 
+/// Large numbers as 10 k, 100 k; along a logarithmic axis no more room than the points take.
+std::string ranges_of(const Plot& plot) {
+  double low = 0, high = 0, highest_y = 0;
+  for (const Series& series : plot.series) {
+    for (const auto& [x, y] : series.points) {
+      low = high == 0 ? x : std::min(low, x);
+      high = std::max(high, x);
+      highest_y = std::max(highest_y, y);
+    }
+  }
+  std::string script = highest_y >= 1e5 ? "set format y '%.0s %c'\n" : "set format y '%g'\n";
+  if (plot.logarithmic_x && low > 0) script += fmt::format("set xrange [{}:{}]\n", low / 1.25, high * 1.25);
+  return script;
+}
+
 }  // namespace
 
 GnuplotMissing::GnuplotMissing()
@@ -117,12 +133,12 @@ std::string gnuplot_script(const Plot& plot) {
   std::string script =
       "set terminal svg noenhanced size 760,430 dynamic font 'sans-serif,14'\n"
       "set border 3\nset tics nomirror\nset grid lc rgb '#999999' lw 0.4 dt 1\n"
-      "set key outside right top Left reverse samplen 2 spacing 1.15\n"
-      "set format y '%g'\n";
+      "set key outside right top Left reverse samplen 2 spacing 1.15\n";
   script += fmt::format("set title {}\nset xlabel {}\nset ylabel {}\n", quoted(plot.title),
                         quoted(plot.x_label), quoted(plot.y_label));
   if (plot.logarithmic_x) script += "set logscale x\nset format x '%.0s %c'\n";
-  if (plot.logarithmic_y) script += "set logscale y\nset format y '%.0s %c'\n";
+  if (plot.logarithmic_y) script += "set logscale y\n";
+  script += ranges_of(plot);
   if (!plot.logarithmic_y) script += "set yrange [0:*]\n";
   if (!plot.x_names.empty()) {
     std::string names;
