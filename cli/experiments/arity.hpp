@@ -10,7 +10,7 @@ namespace supple::experiments {
 
 struct ArityOptions {
   bool quick = false;
-  int frames = 5;  ///< ≥ 1; their median counts
+  int frames = 5;  ///< ≥ 1; the fastest counts
   std::uint32_t threads = 1;
   std::uint64_t seed = 1;
 };

@@ -15,7 +15,8 @@ Verdict judge(const Growth& growth) {
   if (!(fit.standard_error <= 0.25)) return Verdict::cannot_tell;
   const double excess = fit.exponent - exponent_of(growth.formula_at, growth.points);
   if (excess <= std::max(exponent_tolerance, 2 * fit.standard_error)) return Verdict::holds;
-  return growth.counts() || excess > time_tolerance ? Verdict::does_not_hold : Verdict::cannot_tell;
+  return growth.counts() || excess > std::max(time_tolerance, 3 * fit.standard_error) ? Verdict::does_not_hold
+                                                                                      : Verdict::cannot_tell;
 }
 
 /// One that does not hold decides, then one that cannot be told.

@@ -49,6 +49,11 @@ BroadCost cost_of_boxes(BroadPhaseMethod method, std::size_t count, const Scalin
   BroadPhase broad_phase(broad_phase_options);
   BroadCost cost;
   cost.first_seconds = seconds_of([&] { broad_phase.find_object_pairs(field.boxes()); });
+  if (cost.first_seconds < 0.1) {
+    BroadPhase again(broad_phase_options);
+    cost.first_seconds =
+        std::min(cost.first_seconds, seconds_of([&] { again.find_object_pairs(field.boxes()); }));
+  }
   // A method of which one step takes long is not noisy.
   const int frames = cost.first_seconds > 1 ? std::min(options.frames, 2) : options.frames;
   std::vector<double> steps;
@@ -57,7 +62,7 @@ BroadCost cost_of_boxes(BroadPhaseMethod method, std::size_t count, const Scalin
     steps.push_back(seconds_of([&] { cost.pairs = broad_phase.find_object_pairs(field.boxes()).size(); }));
     cost.tests = broad_phase.stats().object_pairs_tested;
   }
-  cost.step_seconds = median(steps);
+  cost.step_seconds = least(steps);
   return cost;
 }
 
@@ -114,7 +119,7 @@ struct NarrowCurves {
 
 struct ShapeCurves {
   std::array<NarrowCurves, 2> poses;
-  Points build_seconds, refit_seconds, sphere_refit_seconds, sphere_refit_reads;
+  Points build_seconds, refit_seconds, refit_reads, sphere_refit_seconds, sphere_refit_reads;
 };
 
 /// Corners of triangles read to fit a sphere to each node and to the object: a triangle's once a level.
@@ -140,6 +145,7 @@ void measure_shapes(const ScalingOptions& options, Work& work, Table& table, Sha
       if (p == 0) {
         curves.build_seconds.emplace_back(vertices, cost.build_seconds / 2);
         curves.refit_seconds.emplace_back(vertices, cost.refit_seconds / 2);
+        curves.refit_reads.emplace_back(vertices, static_cast<double>(cost.stats.triangles_refitted) / 2);
         curves.sphere_refit_reads.emplace_back(vertices, sphere_reads(cost.octree_a));
       }
       table.add({std::string(poses[p].name), ball.positions.size(), ball.triangles.size(),
@@ -249,6 +255,7 @@ std::vector<Growth> shape_growths(const ShapeCurves& c) {
           {"Surfaces that coincide", "time", c.poses[1].seconds, formula, narrow_phase_formula},
           {"Building the octree", "time", c.build_seconds, "n log n", n_log_n},
           {"Refit with boxes", "time", c.refit_seconds, "n", linear},
+          {"Refit with boxes", "triangles read", c.refit_reads, "n", linear},
           {"Refit with spheres about the vertices (eq. 5)", "time", c.sphere_refit_seconds, "n", linear}};
 }
 
@@ -303,8 +310,8 @@ std::vector<Claim> judge_narrow(const std::vector<Growth>& growths, const Points
         "leaf collides with some other, and no hierarchy can do with fewer than n tests: the bound cannot "
         "hold. It "
         "takes each level to divide n by eight, but a surface passes through about four of eight octants.";
-  claims.push_back(judge_bounds("Refitting the boxes takes O(V) (5.1).", {growths[5]}));
-  claims.push_back(judge_sphere_refit(reads, growths[6].points));
+  claims.push_back(judge_bounds("Refitting the boxes takes O(V) (5.1).", {growths[6], growths[5]}));
+  claims.push_back(judge_sphere_refit(reads, growths[7].points));
   claims.push_back(judge_bounds("Building an object's octree takes O(n log n) (6).", {growths[4]}));
   return claims;
 }
@@ -320,10 +327,11 @@ Section broad_section(const ScalingOptions& options, Table table, const std::arr
   time.series.push_back(formula_line("n log n", in_milliseconds(c[0].step_seconds), n_log_n, 5));
   tests.series.push_back(formula_line("n log n", c[0].tests, n_log_n, 5));
   Section section{"Number of objects", {}};
-  section.blocks.emplace_back(fmt::format(
-      "Boxes with sides of 0.5 to 1, one in every eight units of volume, all in motion. A step is the median "
-      "of {} after the first. Brute force stops where a step would take longer than {} s.",
-      options.frames, rounded(options.brute_seconds)));
+  section.blocks.emplace_back(
+      fmt::format("Boxes with sides of 0.5 to 1, one in every eight units of volume, all in motion. A step "
+                  "is the fastest "
+                  "of {} after the first. Brute force stops where a step would take longer than {} s.",
+                  options.frames, rounded(options.brute_seconds)));
   section.blocks.emplace_back(std::move(time));
   section.blocks.emplace_back(std::move(tests));
   section.blocks.emplace_back(std::move(table));
@@ -370,7 +378,6 @@ ScalingOptions scaling_options(bool quick) {
   options.object_counts = {1000, 3162, 10'000, 31'623, 100'000, 316'228};
   options.frequencies = {8, 16, 32, 64, 96};
   options.brute_seconds = 2;
-  options.frames = 3;
   return options;
 }
 

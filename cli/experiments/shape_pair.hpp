@@ -13,7 +13,7 @@ namespace supple::experiments {
 TriangleMesh turned(TriangleMesh mesh);
 TriangleMesh moved(TriangleMesh mesh, Vec3d offset);
 
-/// What one pair of objects costs, step by step; times are medians.
+/// What one pair of objects costs, step by step; times are the least of several.
 struct PairCost {
   double build_seconds = 0;  ///< of both octrees, with all that adding objects takes
   double refit_seconds = 0;  ///< of both

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
 
 namespace supple::experiments {
 
@@ -16,11 +15,8 @@ void Work::done(std::uint64_t steps, const std::string& what) {
   progress_.update(done_, what + left);
 }
 
-double median(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const std::size_t middle = (values.size() - 1) / 2;
-  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(middle), values.end());
-  return values[middle];
+double least(const std::vector<double>& seconds) {
+  return seconds.empty() ? 0 : *std::min_element(seconds.begin(), seconds.end());
 }
 
 std::string duration(double seconds) {

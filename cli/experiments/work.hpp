@@ -30,8 +30,8 @@ double seconds_of(Call&& call) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-/// The middle one, of an even number the lower of the two; 0 of none.
-double median(std::vector<double> values);
+/// The least of the times of the same work, 0 of none: whatever else the machine does only adds.
+double least(const std::vector<double>& seconds);
 
 /// `2 min 10 s`
 std::string duration(double seconds);
