@@ -1,7 +1,8 @@
 #include <gtest/gtest.h>
 #include "supple/models.hpp"
 #include "supple/motion.hpp"
-namespace supple { namespace {
+namespace supple {
+namespace {
 TEST(MotionSmoke, Falls) {
   for (auto integrator : {Integrator::verlet, Integrator::symplectic_euler, Integrator::backward_euler}) {
     MassSpringBody body(make_model("rabbit"), {.integrator = integrator, .gravity = {0, -10, 0}});
@@ -10,4 +11,5 @@ TEST(MotionSmoke, Falls) {
     std::printf("%.17g %g %g\n", body.center_of_mass().y, body.energy().elastic, body.mean_velocity().y);
   }
 }
-}}
+}  // namespace
+}  // namespace supple
