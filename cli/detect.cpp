@@ -13,6 +13,7 @@
 #include "inputs.hpp"
 #include "json_report.hpp"
 #include "progress.hpp"
+#include "recorded_input.hpp"
 #include "supple/error.hpp"
 #include "supple/scene.hpp"
 #include "text.hpp"
@@ -43,6 +44,7 @@ std::vector<ObjectId> add_objects(Scene& scene, const Input& input, const Detect
 
 /// How often `detect` is called: for each frame, or from each frame to the next.
 std::uint64_t count_steps(const Input& input, const DetectOptions& options) {
+  if (input.recording) return count_recorded_steps(input, options.scene.contacts);
   if (input.frames.empty()) return options.steps;
   if (options.scene.contacts != ContactMode::continuous) return input.frames.size();
   if (input.frames.size() < 2)
@@ -63,7 +65,10 @@ class Mover {
   void move(std::uint64_t frame);
 
  private:
-  bool is_moved(std::size_t object) const { return !input_.frames.empty() || input_.objects[object].motion; }
+  bool is_moved(std::size_t object) const {
+    if (input_.recording) return !input_.objects[object].options.is_static;
+    return !input_.frames.empty() || input_.objects[object].motion;
+  }
   std::vector<Vec3d> positions(std::size_t object, std::uint64_t frame) const;
 
   Scene& scene_;
@@ -87,6 +92,7 @@ void Mover::move(std::uint64_t frame) {
 
 std::vector<Vec3d> Mover::positions(std::size_t object, std::uint64_t frame) const {
   const InputObject& moved = input_.objects[object];
+  if (input_.recording) return recorded_positions(input_, object, frame);
   if (!input_.frames.empty()) return frame == 0 ? moved.mesh.positions : read_frame(input_, frame).positions;
   std::vector<Vec3d> positions;
   sway(*moved.motion, input_.bounds, moved.mesh.positions, static_cast<double>(frame) * input_.time_step,

@@ -116,7 +116,7 @@ void print_man(const CLI::App& program) {
     fmt::print(".B supple {}\n{}\n.br\n", command->get_name(), arguments_of(*command));
   fmt::print(
       ".SH DESCRIPTION\n{}\nMeshes are OBJ, OFF, PLY or STL files, or glTF, FBX, COLLADA and others that "
-      "Assimp reads; scene files are TOML.\n",
+      "Assimp reads; scene files are TOML, recordings HDF5.\n",
       roff(program.get_description()));
   for (const CLI::App* command : commands_of(program)) {
     fmt::print(".SH SUPPLE {}\n{}.\n", upper_case(command->get_name()), roff(command->get_description()));
@@ -130,7 +130,7 @@ void print_man(const CLI::App& program) {
   fmt::print(
       ".SH EXIT STATUS\n"
       ".TP\n.B 0\nDone.\n"
-      ".TP\n.B 1\nWith \\-\\-fail\\-on\\-contact: something touches.\n"
+      ".TP\n.B 1\nWith \\-\\-fail\\-on\\-contact: something touches. Of diff: the recordings differ.\n"
       ".TP\n.B 2\nUsage or input error, told in one line on standard error.\n"
       ".TP\n.B 3\nWith \\-\\-verify: brute force disagrees. Of ccd\\-queries: an answer is false.\n");
 }

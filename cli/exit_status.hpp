@@ -6,6 +6,7 @@ namespace supple::cli {
 enum ExitStatus : int {
   exit_done = 0,
   exit_contact = 1,      ///< --fail-on-contact, and something touches
+  exit_differ = 1,       ///< of diff
   exit_unusable = 2,     ///< usage or input error, told in one line on standard error
   exit_differences = 3,  ///< --verify, and brute force disagrees; or a false answer to a query
 };

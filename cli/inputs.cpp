@@ -7,6 +7,7 @@
 #include <cctype>
 #include <string_view>
 
+#include "recorded_input.hpp"
 #include "scene_file.hpp"
 #include "supple/error.hpp"
 #include "supple/formats.hpp"
@@ -99,6 +100,12 @@ Input read_objects(const std::vector<std::string>& names) {
           fmt::format("{}: a scene file stands alone; add the other meshes to it as objects", *scene));
     return read_scene_file(*scene);
   }
+  if (const auto recording = std::find_if(names.begin(), names.end(), is_recording);
+      recording != names.end()) {
+    if (names.size() > 1)
+      throw Error(fmt::format("{}: a recording stands alone; leave out the other inputs", *recording));
+    return read_recording(*recording);
+  }
   Input input;
   for (const fs::path& path : expand_patterns(names)) input.objects.push_back({read_mesh(path), {}, {}});
   return input;
@@ -108,6 +115,8 @@ Input read_sequence(const std::vector<std::string>& names) {
   const auto scene = std::find_if(names.begin(), names.end(), is_scene_file);
   if (scene != names.end())
     throw Error(fmt::format("{}: a scene file is no frame of a sequence; leave out --sequence", *scene));
+  if (const auto recording = std::find_if(names.begin(), names.end(), is_recording); recording != names.end())
+    throw Error(fmt::format("{}: a recording has its own frames; leave out --sequence", *recording));
   Input input;
   input.frames = expand_patterns(names);
   for (const fs::path& path : input.frames) {

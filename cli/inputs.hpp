@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -8,6 +9,10 @@
 #include "supple/mesh.hpp"
 #include "supple/options.hpp"
 #include "sway.hpp"
+
+namespace supple {
+class Recording;
+}
 
 namespace supple::cli {
 
@@ -23,6 +28,9 @@ struct Input {
   std::vector<InputObject> objects;
   /// Frames of the one object, the first being its mesh; empty when the input is no sequence.
   std::vector<std::filesystem::path> frames;
+  /// Says where the objects are in each frame; null when the input is no recording.
+  std::shared_ptr<const Recording> recording{};
+  std::string recording_name{};
   std::optional<Bounds> bounds;
   double time_step = 0.01;  ///< seconds between frames
 };
@@ -30,7 +38,7 @@ struct Input {
 bool is_scene_file(const std::string& name);
 
 /// Meshes by name or quoted pattern (`part*.obj`, in natural number order), an object each; or one scene
-/// file.
+/// file; or one recording.
 Input read_objects(const std::vector<std::string>& names);
 /// The first frame, and the names of all.
 Input read_sequence(const std::vector<std::string>& names);

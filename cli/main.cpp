@@ -5,6 +5,7 @@
 
 #include "ccd_queries.hpp"
 #include "detect.hpp"
+#include "diff.hpp"
 #include "exit_status.hpp"
 #include "experiments/experiment.hpp"
 #include "info.hpp"
@@ -25,6 +26,8 @@ int run(const CommandLine& line) {
       return run_ccd_queries(line.ccd_queries);
     case CommandLine::Command::experiment:
       return experiments::run_experiment(line.experiment);
+    case CommandLine::Command::diff:
+      return run_diff(line.diff);
     case CommandLine::Command::exit:
       break;
   }

@@ -28,8 +28,9 @@ constexpr const char* program_footer = R"(Examples:
   supple info rabbit.obj                    counts, bounds, holes, octree statistics
   supple ccd-queries edge-edge/*.csv        single continuous queries, compared with the answers known
   supple experiment scaling --quick         how does time grow with the number of objects, and does the paper say so?
+  supple diff a.h5 b.h5                     where do two recordings differ first?
 
-Exit status: 0 done; 1 with --fail-on-contact when something touches; 2 usage or input error, told in one line;
+Exit status: 0 done; 1 with --fail-on-contact when something touches, and of diff when recordings differ; 2 usage or input error, told in one line;
 3 with --verify when brute force disagrees, and of ccd-queries when an answer is false.)";
 
 constexpr const char* detect_footer = R"(Examples:
@@ -41,6 +42,8 @@ constexpr const char* detect_footer = R"(Examples:
       Frames of one object. Quote the pattern: frame_10 then comes after frame_9, not after frame_1.
   supple detect scene.toml --steps 300
       A scene file: objects with placement, options and motion.
+  supple detect run.h5 --verify
+      A recording: each of its frames anew, the objects with the options that they were recorded with.
   supple detect a.stl b.stl --fail-on-contact --quiet && echo apart
       For scripts: the exit status is 1 when anything touches.
   supple detect --contacts continuous --self --sequence 'frame_*.ply' --json impacts.json
@@ -51,6 +54,18 @@ constexpr const char* detect_footer = R"(Examples:
       Check the result against exact brute force over all pairs of triangles.
   supple detect a.obj b.obj --json - --no-stats | sha256sum
       The same input gives the same bytes for any number of threads and any broad phase.)";
+
+constexpr const char* diff_footer = R"(Examples:
+  supple diff a.h5 b.h5
+      The first frame and item in which two recordings differ, with both values; the exit status is 1 when they do.
+  supple diff a.h5 b.h5 --tolerance 1e-9
+      Positions, points of contacts, and times, weights and normals of continuous ones may differ by so much.
+  supple diff a.h5 b.h5 --quiet && echo equal
+      For scripts.
+  supple diff a.h5 b.h5 --json -
+      The same as JSON on standard output.
+
+Seconds that were measured, and counts that depend on the number of threads, are not compared.)";
 
 constexpr const char* info_footer = R"(Examples:
   supple info rabbit.obj
@@ -110,7 +125,8 @@ void add_kind(CLI::App& app, std::optional<QueryKind>& kind) {
 }
 
 void add_input_options(CLI::App& app, DetectOptions& options) {
-  app.add_option("MESH|SCENE.toml", options.inputs, "Meshes, an object each; or one scene file")
+  app.add_option("MESH|SCENE.toml|RUN.h5", options.inputs,
+                 "Meshes, an object each; or one scene file or recording")
       ->required()
       ->type_name("");
   app.add_flag(
@@ -267,6 +283,19 @@ CLI::App* add_ccd_queries(CLI::App& program, CcdQueriesOptions& options, Depende
   return app;
 }
 
+void add_diff(CLI::App& program, DiffOptions& options) {
+  CLI::App* app = program.add_subcommand("diff", "Say in which frame and item two recordings differ first");
+  app->footer(diff_footer);
+  app->add_option("RECORDING.h5", options.recordings, "The two recordings")
+      ->required()
+      ->expected(2)
+      ->type_name("");
+  add_length(*app, "--tolerance", options.tolerance,
+             "Coordinates may differ by so much, in their unit (default: 0, the same bits)");
+  add_file(*app, "--json", options.json, "Write the same as JSON; - is standard output");
+  app->add_flag("--quiet", options.quiet, "Only the exit status");
+}
+
 void check_outputs(const DetectOptions& options) {
   if (options.json == "-" && options.csv == "-")
     throw CLI::ValidationError("--csv", "--json already writes to standard output; give one of them a file");
@@ -294,7 +323,8 @@ CommandLine parse_command_line(int argument_count, const char* const* arguments)
   Dependences dependences;
   const CLI::App* detect = add_detect(program, result.detect, dependences);
   const CLI::App* info = add_info(program, result.info);
-  add_ccd_queries(program, result.ccd_queries, dependences);
+  const CLI::App* ccd_queries = add_ccd_queries(program, result.ccd_queries, dependences);
+  add_diff(program, result.diff);
   const CLI::App* experiment = experiments::add_experiment(program, result.experiment, dependences);
   try {
     program.parse(argument_count, arguments);
@@ -305,10 +335,10 @@ CommandLine parse_command_line(int argument_count, const char* const* arguments)
     if (program.get_subcommands().empty()) throw CLI::RequiredError::Subcommand(1);
     check(dependences);
     check_outputs(result.detect);
-    result.command = detect->parsed()       ? CommandLine::Command::detect
-                     : info->parsed()       ? CommandLine::Command::info
-                     : experiment->parsed() ? CommandLine::Command::experiment
-                                            : CommandLine::Command::ccd_queries;
+    result.command = detect->parsed()        ? CommandLine::Command::detect
+                     : info->parsed()        ? CommandLine::Command::info
+                     : ccd_queries->parsed() ? CommandLine::Command::ccd_queries
+                                             : CommandLine::Command::diff;
   } catch (const CLI::Success& success) {  // help and version
     result.exit_status = program.exit(success);
   } catch (const CLI::ParseError& error) {

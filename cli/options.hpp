@@ -14,7 +14,7 @@ namespace supple::cli {
 
 /// Of `supple detect`.
 struct DetectOptions {
-  std::vector<std::string> inputs;  ///< meshes, patterns, or one scene file
+  std::vector<std::string> inputs;  ///< meshes, patterns, or one scene file or recording
   bool sequence = false;            ///< the inputs are frames of one object
   std::uint64_t steps = 1;          ///< of a scene file
   SceneOptions scene;
@@ -47,14 +47,23 @@ struct CcdQueriesOptions {
   std::string json;
 };
 
+/// Of `supple diff`.
+struct DiffOptions {
+  std::vector<std::string> recordings;  ///< two
+  double tolerance = 0;
+  bool quiet = false;
+  std::string json;
+};
+
 struct CommandLine {
-  enum class Command { detect, info, ccd_queries, experiment, exit };
+  enum class Command { detect, info, ccd_queries, diff, experiment, exit };
   Command command = Command::exit;
   int exit_status = 0;  ///< of `Command::exit`: help, version or a usage error, already printed
   DetectOptions detect;
   InfoOptions info;
   CcdQueriesOptions ccd_queries;
   experiments::ExperimentOptions experiment;
+  DiffOptions diff;
 };
 
 /// Prints help, version and generated documents to standard output, a usage error as one line to standard

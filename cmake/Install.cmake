@@ -14,6 +14,14 @@ if(TARGET supple_formats)
   install(EXPORT suppleFormatsTargets NAMESPACE supple:: DESTINATION ${package_dir})
 endif()
 
+# Likewise without HDF5.
+if(TARGET supple_recording)
+  install(TARGETS supple_recording EXPORT suppleRecordingTargets
+    ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/recording/include/supple DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+  install(EXPORT suppleRecordingTargets NAMESPACE supple:: DESTINATION ${package_dir})
+endif()
+
 configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/suppleConfig.cmake.in
   ${PROJECT_BINARY_DIR}/suppleConfig.cmake INSTALL_DESTINATION ${package_dir})
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/suppleConfigVersion.cmake COMPATIBILITY SameMinorVersion)

@@ -4,9 +4,10 @@
 usage: check_include_order.py [ROOT]
 
 A folder of src/supple includes only from itself and the folders before it in LAYERS, and names an internal header by
-its folder ("core/parallel.hpp"). formats/ is a library of its own that builds on mesh/. Public headers include only
-public headers and the standard library. Programs around the library include only public headers and files of their own
-folder. Threads have one door, so only core/ may include oneTBB.
+its folder ("core/parallel.hpp"). formats/ is a library of its own that builds on mesh/, recording/
+one that knows only public headers. Public headers include only
+public headers and the standard library. recording/ and the programs around the library include only public headers and
+files of their own folder. Threads have one door, so only core/ may include oneTBB.
 """
 
 import pathlib
@@ -16,8 +17,8 @@ import sys
 LAYERS = [
     "core", "geometry", "mesh", "octree", "motion", "broad_phase", "narrow_phase", "contact", "scene", "simulation",
 ]
-PROGRAMS = ["cli", "examples", "benchmarks"]
-PUBLIC = ["include", "formats/include"]
+PROGRAMS = ["recording/src", "cli", "examples", "benchmarks"]
+PUBLIC = ["include", "formats/include", "recording/include"]
 SOURCES = {".cpp", ".hpp", ".h", ".cc"}
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
 

@@ -85,8 +85,9 @@ class MassSpringBody {
   /// back to what it was before the call and `Error` is thrown, which names the vertex and says which step
   /// would be stable. O(n); no allocation in steady state except by `backward_euler`.
   void step(double seconds);
-  /// Puts positions, velocities and rest lengths back to what they were before the last `step`, bit by bit.
-  /// Only right after that call; what was set between is lost.
+  /// Puts the body back to what it was before the last `step`, whatever positions and velocities it was given
+  /// since; external forces, drift and the direction of the air stay. Throws `Error` when there is no such
+  /// step, or it was undone or failed. O(1), or O(n) when the body flows.
   void undo_step();
 
   std::span<const Vec3d> positions() const;

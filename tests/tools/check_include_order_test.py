@@ -31,8 +31,11 @@ GOOD = {
     "src/supple/mesh/scanner.hpp": "",
     "formats/include/supple/formats.hpp": '#include "supple/types.hpp"\n',
     "formats/src/load.cpp": '#include "mesh/scanner.hpp"\n#include "supple/formats.hpp"\n',
+    "recording/include/supple/recording.hpp": '#include "supple/types.hpp"\n',
+    "recording/src/layout.hpp": "#include <hdf5.h>\n",
+    "recording/src/reader.cpp": '#include "layout.hpp"\n#include "supple/recording.hpp"\n',
     "cli/options.hpp": "",
-    "cli/main.cpp": '#include <CLI/CLI.hpp>\n#include "options.hpp"\n#include "supple/formats.hpp"\n',
+    "cli/main.cpp": '#include <CLI/CLI.hpp>\n#include "options.hpp"\n#include "supple/formats.hpp"\n#include "supple/recording.hpp"\n',
 }
 
 
@@ -67,8 +70,11 @@ class CheckIncludeOrder(unittest.TestCase):
     def test_public_header_includes_third_party(self):
         self.expect("include/supple/bad.hpp", "\n#include <hwy/highway.h>\n", "third party")
 
+    def test_recording_header_names_no_third_party(self):
+        self.expect("recording/include/supple/bad.hpp", "\n#include <hdf5/hdf5.h>\n", "third party")
+
     def test_program_includes_internal_header(self):
-        for program in ("cli", "examples", "benchmarks"):
+        for program in ("recording/src", "cli", "examples", "benchmarks"):
             self.expect(f"{program}/bad.cpp", '\n#include "core/parallel.hpp"\n', "only public headers")
 
     def test_formats_build_on_meshes_only(self):

@@ -26,9 +26,9 @@ struct RecordedObject {
 /// What a recording says once.
 struct RecordingHeader {
   std::vector<RecordedObject> objects{};
-  double time_step = 0.01;  ///< s
-  SceneOptions scene{};     ///< threads are not kept
-  std::string scene_file{}; ///< text of the scene file that was simulated; empty when there is none
+  double time_step = 0.01;   ///< s
+  SceneOptions scene{};      ///< threads are not kept
+  std::string scene_file{};  ///< text of the scene file that was simulated; empty when there is none
 };
 
 /// Everything of one frame, as `DetectResult` has it.
@@ -42,11 +42,12 @@ struct RecordedFrame {
   StepStats stats{};
 };
 
-/// Writes a recording (docs/recording.md), an HDF5 file, and beside it an XDMF file of the same stem that ParaView
-/// opens.
+/// Writes a recording (docs/recording.md), an HDF5 file, and beside it an XDMF file of the same stem that
+/// ParaView opens.
 ///
-/// The file is readable at any time up to the last flush, also after the process is killed: between flushes nothing
-/// is written over what the file already refers to. `add` flushes once a second, the destructor at the end.
+/// The file is readable at any time up to the last flush, also after the process is killed: between flushes
+/// nothing is written over what the file already refers to. `add` flushes once a second, the destructor at
+/// the end.
 class Recorder {
  public:
   /// Replaces the files. Throws `Error` when they cannot be written.
@@ -56,8 +57,8 @@ class Recorder {
   Recorder(Recorder&&) noexcept;
   Recorder& operator=(Recorder&&) noexcept;
 
-  /// A frame: positions of each object in the header's order. Throws `Error` when a size differs, or the disk is
-  /// full: what was flushed stays readable.
+  /// A frame: positions of each object in the header's order. Throws `Error` when a size differs, or the disk
+  /// is full: what was flushed stays readable.
   void add(double time, std::span<const std::span<const Vec3d>> positions, const DetectResult& result);
   void flush();
   void close();
@@ -90,11 +91,11 @@ class Recording {
 /// The first place in which two recordings differ.
 struct RecordingDifference {
   std::optional<std::uint64_t> frame;  ///< none: in what they say once, or in their number of frames
-  std::string what;  ///< one line: the item, its number and both values
+  std::string what;                    ///< one line: the item, its number and both values
 };
 
-/// Compares all but times measured and file-specific text; nothing when they are equal. Positions and other lengths
-/// may differ by `tolerance` ≥ 0 in each coordinate; 0 compares bits.
+/// Compares all but times measured and file-specific text; nothing when they are equal. Positions and other
+/// lengths may differ by `tolerance` ≥ 0 in each coordinate; 0 compares bits.
 std::optional<RecordingDifference> find_first_difference(const Recording& a, const Recording& b,
                                                          double tolerance = 0);
 

@@ -70,20 +70,20 @@ MassSpring::MassSpring(const TriangleMesh& rest, const MassSpringOptions& option
       inverse_masses_(inverse_masses(kinds_, options.vertex_mass)),
       longest_way_squared_(longest_way_squared(rest.positions)),
       stable_substep_(stable_explicit_step(network_, kinds_, options, rest.positions)),
-      now_{rest.positions, std::vector<Vec3d>(rest.positions.size())},
+      now_{rest.positions, std::vector<Vec3d>(rest.positions.size()), {}},
       next_(now_),
       forces_(network_),
       bad_vertices_(network_.block_count(), none) {
   rest_areas_.reserve(triangles_.size());
   for (const Triangle& t : triangles_) {
-    rest_areas_.push_back(
-        triangle_area(rest.positions[t[0]], rest.positions[t[1]], rest.positions[t[2]]));
+    rest_areas_.push_back(triangle_area(rest.positions[t[0]], rest.positions[t[1]], rest.positions[t[2]]));
   }
-  if (options_.substeps > 1) after_next_ = now_;
   if (options_.integrator == Integrator::verlet) {
-    accelerations_.resize(rest.positions.size());
+    now_.accelerations.resize(rest.positions.size());
+    next_.accelerations.resize(rest.positions.size());
     predicted_.resize(rest.positions.size());
   }
+  if (options_.substeps > 1) after_next_ = now_;
   if (options_.integrator == Integrator::backward_euler) {
     backward_euler_ = std::make_unique<BackwardEuler>(network_, kinds_, options_);
   }
@@ -101,36 +101,58 @@ void MassSpring::step(double seconds, const Parallel& parallel) {
          " s; it must be finite and above 0");
   }
   const bool is_plastic = options_.yield_strain < std::numeric_limits<double>::infinity();
-  if (is_plastic) rest_before_ = {network_.edges.elements, network_.bending.elements, network_.areas.elements};
+  if (is_plastic)
+    rest_before_ = {network_.edges.elements, network_.bending.elements, network_.areas.elements};
   const double substep = seconds / options_.substeps;
-  const State* from = &now_;
+  State* from = &now_;
   for (std::uint32_t i = 0; i < options_.substeps; ++i) {
     State& to = from == &next_ ? after_next_ : next_;
     carry_on(*from, to, substep, parallel);
     if (const std::uint32_t bad = first_bad_vertex(); bad != none) {
-      if (is_plastic) {
-        network_.edges.elements = rest_before_.edges;
-        network_.bending.elements = rest_before_.bending;
-        network_.areas.elements = rest_before_.areas;
-      }
-      accelerations_known_ = false;
+      restore_rest_shape();
+      before_ = nullptr;
       fail_at(bad, seconds);
     }
     from = &to;
   }
-  std::swap(now_, from == &next_ ? next_ : after_next_);
+  before_ = from == &next_ ? &MassSpring::next_ : &MassSpring::after_next_;
+  std::swap(now_, this->*before_);
 }
 
-void MassSpring::carry_on(const State& from, State& to, double seconds, const Parallel& parallel) {
+void MassSpring::undo_step() {
+  if (before_ == nullptr) {
+    fail("masses and springs of mesh '" + name_ +
+         "': there is no step to undo; only the last one can be undone");
+  }
+  std::swap(now_, this->*before_);
+  before_ = nullptr;
+  restore_rest_shape();
+}
+
+void MassSpring::restore_rest_shape() {
+  if (!(options_.yield_strain < std::numeric_limits<double>::infinity())) return;
+  network_.edges.elements = rest_before_.edges;
+  network_.bending.elements = rest_before_.bending;
+  network_.areas.elements = rest_before_.areas;
+}
+
+void MassSpring::carry_on(State& from, State& to, double seconds, const Parallel& parallel) {
   switch (options_.integrator) {
-    case Integrator::verlet: verlet(from, to, seconds, parallel); break;
-    case Integrator::symplectic_euler: symplectic_euler(from, to, seconds, parallel); break;
-    case Integrator::backward_euler: implicit_euler(from, to, seconds, parallel); break;
+    case Integrator::verlet:
+      verlet(from, to, seconds, parallel);
+      break;
+    case Integrator::symplectic_euler:
+      symplectic_euler(from, to, seconds, parallel);
+      break;
+    case Integrator::backward_euler:
+      implicit_euler(from, to, seconds, parallel);
+      break;
   }
   if (limit_ != nullptr && first_bad_vertex() == none) {
     if (limit_->apply(network_.edges.elements, seconds, to.positions, to.velocities, parallel)) {
-      accelerations_known_ = false;
-      for_blocks(parallel, [&](std::uint32_t first, std::uint32_t last) { check_vertices(from, to, first, last); });
+      to.accelerations_known = false;
+      for_blocks(parallel,
+                 [&](std::uint32_t first, std::uint32_t last) { check_vertices(from, to, first, last); });
     }
   }
   if (options_.yield_strain < std::numeric_limits<double>::infinity() && first_bad_vertex() == none) {
@@ -139,34 +161,36 @@ void MassSpring::carry_on(const State& from, State& to, double seconds, const Pa
 }
 
 /// Velocity Verlet, after Teschner et al. 2004. Forces that depend on velocity see that predicted for the end
-/// of the step; the difference to the velocity there is of second order in the time step, that which it makes to
-/// the result of third.
-void MassSpring::verlet(const State& from, State& to, double seconds, const Parallel& parallel) {
-  if (!accelerations_known_) find_accelerations(from, parallel);
+/// of the step; the difference to the velocity there is of second order in the time step, that which it makes
+/// to the result of third.
+void MassSpring::verlet(State& from, State& to, double seconds, const Parallel& parallel) {
+  if (!from.accelerations_known) find_accelerations(from, parallel);
   for_blocks(parallel, [&](std::uint32_t first, std::uint32_t last) {
     for (std::uint32_t v = first; v < last; ++v) {
-      to.positions[v] =
-          from.positions[v] + (from.velocities[v] * seconds + accelerations_[v] * (0.5 * seconds * seconds));
-      predicted_[v] = from.velocities[v] + accelerations_[v] * seconds;
+      to.positions[v] = from.positions[v] +
+                        (from.velocities[v] * seconds + from.accelerations[v] * (0.5 * seconds * seconds));
+      predicted_[v] = from.velocities[v] + from.accelerations[v] * seconds;
     }
   });
   forces_.compute(network_, options_, to.positions, predicted_, parallel);
   for_blocks(parallel, [&](std::uint32_t first, std::uint32_t last) {
     for (std::uint32_t v = first; v < last; ++v) {
       const Vec3d after = acceleration(v, predicted_[v]);
-      to.velocities[v] = from.velocities[v] + (accelerations_[v] + after) * (0.5 * seconds);
-      accelerations_[v] = after;
+      to.velocities[v] = from.velocities[v] + (from.accelerations[v] + after) * (0.5 * seconds);
+      to.accelerations[v] = after;
     }
     check_vertices(from, to, first, last);
   });
+  to.accelerations_known = true;
 }
 
-void MassSpring::find_accelerations(const State& state, const Parallel& parallel) {
+void MassSpring::find_accelerations(State& state, const Parallel& parallel) {
   forces_.compute(network_, options_, state.positions, state.velocities, parallel);
   for_blocks(parallel, [&](std::uint32_t first, std::uint32_t last) {
-    for (std::uint32_t v = first; v < last; ++v) accelerations_[v] = acceleration(v, state.velocities[v]);
+    for (std::uint32_t v = first; v < last; ++v)
+      state.accelerations[v] = acceleration(v, state.velocities[v]);
   });
-  accelerations_known_ = true;
+  state.accelerations_known = true;
 }
 
 void MassSpring::symplectic_euler(const State& from, State& to, double seconds, const Parallel& parallel) {
@@ -191,14 +215,14 @@ void MassSpring::implicit_euler(const State& from, State& to, double seconds, co
   });
 }
 
-void MassSpring::flow_plastically(const State& state, double seconds, const Parallel& parallel) {
+void MassSpring::flow_plastically(State& state, double seconds, const Parallel& parallel) {
   const auto springs_flow = [&](std::span<SpringElement> springs) {
     return flow(springs, options_.yield_strain, options_.plastic_rate, seconds, state.positions, parallel);
   };
   const bool edges_flowed = springs_flow(network_.edges.elements);
   const bool bending_flowed = springs_flow(network_.bending.elements);
   if (edges_flowed) follow_rest_lengths(network_.areas.elements, edge_numbers_, network_.edges.elements);
-  if (edges_flowed || bending_flowed) accelerations_known_ = false;
+  if (edges_flowed || bending_flowed) state.accelerations_known = false;
 }
 
 /// Eq. 1 of the paper, solved for the acceleration: m a = f_ext - k_d v - f_s, the friction that of still air
@@ -239,13 +263,13 @@ std::uint32_t MassSpring::first_bad_vertex() const {
 }
 
 void MassSpring::fail_at(std::uint32_t vertex, double seconds) const {
-  const std::string where =
-      "masses and springs of mesh '" + name_ + "': vertex " + std::to_string(vertex);
+  const std::string where = "masses and springs of mesh '" + name_ + "': vertex " + std::to_string(vertex);
   if (!is_finite(now_.positions[vertex]) || !is_finite(now_.velocities[vertex])) {
     fail(where + " was given a position or velocity that is not finite");
   }
   const std::string what = where + " flies off in a step of " + in_digits(seconds) + " s";
-  if (!(seconds > stable_step())) fail(what + "; velocities, forces or stretch must be smaller than those given");
+  if (!(seconds > stable_step()))
+    fail(what + "; velocities, forces or stretch must be smaller than those given");
   fail(what + "; steps below " + in_digits(stable_step()) +
        " s are stable, more substeps or backward_euler make them longer");
 }
@@ -259,7 +283,7 @@ void MassSpring::check_size(std::size_t size, const char* what) const {
 void MassSpring::set_positions(std::span<const Vec3d> positions) {
   check_size(positions.size(), "positions");
   std::copy(positions.begin(), positions.end(), now_.positions.begin());
-  accelerations_known_ = false;
+  now_.accelerations_known = false;
 }
 
 void MassSpring::set_velocities(std::span<const Vec3d> velocities) {
@@ -267,13 +291,13 @@ void MassSpring::set_velocities(std::span<const Vec3d> velocities) {
   for (std::size_t v = 0; v < velocities.size(); ++v) {
     now_.velocities[v] = kinds_[v] == VertexKind::inert ? Vec3d{} : velocities[v];
   }
-  accelerations_known_ = false;
+  now_.accelerations_known = false;
 }
 
 void MassSpring::set_external_forces(std::span<const Vec3d> forces) {
   if (!forces.empty()) check_size(forces.size(), "forces");
   external_forces_.assign(forces.begin(), forces.end());
-  accelerations_known_ = false;
+  now_.accelerations_known = false;
 }
 
 void MassSpring::add_drift(Vec3d velocity) {
@@ -281,7 +305,7 @@ void MassSpring::add_drift(Vec3d velocity) {
     if (kinds_[v] == VertexKind::free) now_.velocities[v] = now_.velocities[v] + velocity;
   }
   air_velocity_ = air_velocity_ + velocity;
-  accelerations_known_ = false;
+  now_.accelerations_known = false;
 }
 
 void MassSpring::turn_back(int axis) {
@@ -293,7 +317,7 @@ void MassSpring::turn_back(int axis) {
     if (kinds_[v] == VertexKind::free) now_.velocities[v][axis] -= 2 * mean;
   }
   air_velocity_[axis] = -air_velocity_[axis];
-  accelerations_known_ = false;
+  now_.accelerations_known = false;
 }
 
 }  // namespace supple

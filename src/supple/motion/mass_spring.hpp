@@ -22,6 +22,7 @@ class MassSpring {
   MassSpring(const TriangleMesh& rest, const MassSpringOptions& options);
 
   void step(double seconds, const Parallel& parallel);
+  void undo_step();
 
   std::span<const Vec3d> positions() const { return now_.positions; }
   std::span<const Vec3d> velocities() const { return now_.velocities; }
@@ -46,20 +47,23 @@ class MassSpring {
  private:
   struct State {
     std::vector<Vec3d> positions, velocities;
+    std::vector<Vec3d> accelerations;  // of Verlet's
+    bool accelerations_known = false;
   };
   struct RestShape {
     std::vector<SpringElement> edges, bending;
     std::vector<AreaElement> areas;
   };
 
+  void restore_rest_shape();
   void check_size(std::size_t size, const char* what) const;
-  void carry_on(const State& from, State& to, double seconds, const Parallel& parallel);
-  void verlet(const State& from, State& to, double seconds, const Parallel& parallel);
+  void carry_on(State& from, State& to, double seconds, const Parallel& parallel);
+  void verlet(State& from, State& to, double seconds, const Parallel& parallel);
   void symplectic_euler(const State& from, State& to, double seconds, const Parallel& parallel);
   void implicit_euler(const State& from, State& to, double seconds, const Parallel& parallel);
-  void find_accelerations(const State& state, const Parallel& parallel);
+  void find_accelerations(State& state, const Parallel& parallel);
   Vec3d acceleration(std::uint32_t vertex, Vec3d velocity) const;
-  void flow_plastically(const State& state, double seconds, const Parallel& parallel);
+  void flow_plastically(State& state, double seconds, const Parallel& parallel);
   /// Calls `visit(first, last)` with the vertices of each block.
   template <class Visit>
   void for_blocks(const Parallel& parallel, Visit visit);
@@ -82,10 +86,10 @@ class MassSpring {
 
   // Substeps go from one to another and leave the first as it was, until all have gone well.
   State now_, next_, after_next_;
+  State MassSpring::*before_ = nullptr;  // which of these the last step began from
   RestShape rest_before_;
   ForceSum forces_;
-  std::vector<Vec3d> accelerations_, predicted_;
-  bool accelerations_known_ = false;
+  std::vector<Vec3d> predicted_;
   std::vector<std::uint32_t> bad_vertices_;  // the first of each block
   std::unique_ptr<DeformationLimit> limit_;
   std::unique_ptr<BackwardEuler> backward_euler_;

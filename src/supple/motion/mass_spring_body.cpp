@@ -36,6 +36,9 @@ MassSpringBody& MassSpringBody::operator=(MassSpringBody&&) noexcept = default;
 void MassSpringBody::step(double seconds) {
   implementation_->step(seconds);
 }
+void MassSpringBody::undo_step() {
+  implementation_->masses.undo_step();
+}
 
 std::span<const Vec3d> MassSpringBody::positions() const {
   return implementation_->masses.positions();

@@ -110,15 +110,19 @@ bool ImpulseResponse::respond(const ContinuousContact& contact) {
                                   contact.kind == ElementPairKind::face_vertex, contact.weights_a);
   const ElementPoint b = point_of(contact.object_b, contact.element_b,
                                   contact.kind == ElementPairKind::vertex_face, contact.weights_b);
+  Vec3d normal = contact.normal;
   double parting = 0;
   double restitution = options_.restitution;
   if (contact.time == 0) {
-    const double distance = dot(start(a) - start(b), contact.normal);
+    // The contact's normal may go by the velocity, which an earlier round has turned round.
+    const Vec3d between = start(a) - start(b);
+    const double distance = std::sqrt(dot(between, between));
+    if (distance > 1e-6 * options_.thickness) normal = between * (1 / distance);
     parting = repulsion_part * std::max(options_.thickness - distance, 0.0) / seconds_;
     restitution = 0;  // what lies on something does not hop
   }
-  const bool moved = push_apart(a, b, contact.normal, parting, 0, Velocity::average);
-  return push_apart(a, b, contact.normal, 0, restitution, Velocity::end) || moved;
+  const bool moved = push_apart(a, b, normal, parting, 0, Velocity::average);
+  return push_apart(a, b, normal, 0, restitution, Velocity::end) || moved;
 }
 
 /// Raises the speed along the normal to at least `least_speed`, and to what restitution asks for; slows what

@@ -9,13 +9,13 @@ namespace {
 
 TEST(Random, GivesTheSameBitsEverywhere) {
   Random random(1, 2);
-  EXPECT_EQ(random.next(), 0u);
-  EXPECT_EQ(random.next(), 0u);
-  EXPECT_EQ(random.uniform(), 0);
+  EXPECT_EQ(random.next(), 11446999876264359965u);
+  EXPECT_EQ(random.next(), 9047282882916087253u);
+  EXPECT_EQ(random.uniform(), 0x1.db8db58a72b98p-2);
   const Vec3d direction = random.direction();
-  EXPECT_EQ(direction.x, 0);
-  EXPECT_EQ(direction.y, 0);
-  EXPECT_EQ(direction.z, 0);
+  EXPECT_EQ(direction.x, 0x1.892c51938e7a7p-3);
+  EXPECT_EQ(direction.y, -0x1.95d83bf8ae341p-3);
+  EXPECT_EQ(direction.z, -0x1.ec2045bac62dap-1);
 }
 
 TEST(Random, DiffersBetweenSeedsAndStreams) {

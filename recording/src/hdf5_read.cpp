@@ -1,0 +1,208 @@
+#include "hdf5_read.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <system_error>
+
+#include "hdf5_write.hpp"
+#include "supple/error.hpp"
+#include "text.hpp"
+
+namespace supple {
+namespace {
+
+constexpr std::size_t block_bytes = std::size_t{1} << 16;
+
+/// The text of an attribute or a dataset of one string; `read` fills memory of the given type.
+template <class Read>
+std::string read_text(hid_t stored, hid_t space, Read read) {
+  if (H5Tget_class(stored) != H5T_STRING || H5Sget_simple_extent_npoints(space) != 1) throw Hdf5Failure();
+  const DatatypeHandle type(check(H5Tcopy(stored)));
+  if (check(H5Tis_variable_str(stored)) > 0) {
+    char* text = nullptr;
+    check(read(type.id(), &text));
+    const std::string result = text ? text : "";
+    check(H5Dvlen_reclaim(type.id(), space, H5P_DEFAULT, &text));
+    return result;
+  }
+  std::string result(H5Tget_size(stored), '\0');
+  check(read(type.id(), result.data()));
+  result.resize(std::min(result.find('\0'), result.size()));
+  return result;
+}
+
+bool is_number(hid_t type) {
+  const H5T_class_t kind = H5Tget_class(type);
+  return kind == H5T_INTEGER || kind == H5T_FLOAT || kind == H5T_ENUM;
+}
+
+std::string shape_text(const std::vector<hsize_t>& row_shape) {
+  std::string text = "(rows";
+  for (const hsize_t size : row_shape) text += ", " + std::to_string(size);
+  return text + ")";
+}
+
+FileHandle open_for_reading(const std::string& path) {
+  std::error_code error;
+  if (!std::filesystem::exists(path, error))
+    throw Error(path + ": there is no such file; check the folder and the spelling");
+  if (std::filesystem::is_directory(path, error))
+    throw Error(path + ": is a folder; give the recording's .h5 file");
+  if (const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), std::fclose);
+      !file)
+    throw Error(path + ": cannot read: " + std::generic_category().message(errno) +
+                "; check who may read it");
+  const PropertyListHandle access(check(H5Pcreate(H5P_FILE_ACCESS)));
+  check(H5Pset_fclose_degree(access.id(), H5F_CLOSE_STRONG));
+  check(H5Pset_file_locking(access.id(), false, true));  // it may be read while it is recorded
+  FileHandle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access.id()));
+  if (file) return file;
+  if (H5Fis_hdf5(path.c_str()) > 0)
+    throw Error(path + ": is damaged or cut short; copy it again in full, or record again");
+  throw Error(path + ": is no recording (not an HDF5 file); make one with supple simulate --record");
+}
+
+}  // namespace
+
+InputFile::InputFile(const std::string& path) : path_(path), file_(open_for_reading(path)) {
+  std::error_code error;
+  size_ = std::filesystem::file_size(path, error);
+}
+
+void InputFile::fail(const std::string& item, const std::string& what) const {
+  throw Error(path_ + ": /" + item + ": " + what);
+}
+
+bool InputFile::has_attribute(const std::string& group, const char* name) const {
+  return H5Aexists_by_name(id(), group.c_str(), name, H5P_DEFAULT) > 0;
+}
+
+std::size_t InputFile::count_links(const std::string& group) const {
+  H5G_info_t info{};
+  if (H5Gget_info_by_name(id(), group.c_str(), &info, H5P_DEFAULT) < 0)
+    fail(group, "is missing; the file is damaged or not a whole recording, record again");
+  return info.nlinks;
+}
+
+AttributeHandle InputFile::open_attribute(const std::string& group, const char* name) const {
+  AttributeHandle attribute(H5Aopen_by_name(id(), group.c_str(), name, H5P_DEFAULT, H5P_DEFAULT));
+  if (!attribute)
+    fail(group == "/" ? "" : group,
+         std::string("attribute ") + name +
+             " is missing; the file is damaged or not a whole recording, record again");
+  return attribute;
+}
+
+double InputFile::number(const std::string& group, const char* name) const {
+  const AttributeHandle attribute = open_attribute(group, name);
+  const DatatypeHandle type(H5Aget_type(attribute.id()));
+  const DataspaceHandle space(H5Aget_space(attribute.id()));
+  double value = 0;
+  if (!is_number(type.id()) || H5Sget_simple_extent_npoints(space.id()) != 1 ||
+      H5Aread(attribute.id(), H5T_NATIVE_DOUBLE, &value) < 0)
+    fail(group == "/" ? "" : group, std::string("attribute ") + name + " is no single number; record again");
+  return value;
+}
+
+std::uint32_t InputFile::count(const std::string& group, const char* name, std::uint32_t largest) const {
+  const double value = number(group, name);
+  if (!(value >= 0 && value <= largest) || value != std::floor(value))
+    fail(group == "/" ? "" : group, std::string("attribute ") + name + " is " + to_text(value) +
+                                        ", not a whole number from 0 to " + std::to_string(largest) +
+                                        "; record again");
+  return static_cast<std::uint32_t>(value);
+}
+
+std::string InputFile::text(const std::string& group, const char* name) const {
+  const AttributeHandle attribute = open_attribute(group, name);
+  const DatatypeHandle type(H5Aget_type(attribute.id()));
+  const DataspaceHandle space(H5Aget_space(attribute.id()));
+  try {
+    return read_text(type.id(), space.id(),
+                     [&](hid_t memory, void* to) { return H5Aread(attribute.id(), memory, to); });
+  } catch (const Hdf5Failure&) {
+    fail(group == "/" ? "" : group, std::string("attribute ") + name + " is no text; record again");
+  }
+}
+
+std::string InputFile::text_dataset(const std::string& path) const {
+  const DatasetHandle dataset(H5Dopen2(id(), path.c_str(), H5P_DEFAULT));
+  if (!dataset) fail(path, "is missing; the file is damaged or not a whole recording, record again");
+  const DatatypeHandle type(H5Dget_type(dataset.id()));
+  const DataspaceHandle space(H5Dget_space(dataset.id()));
+  try {
+    return read_text(type.id(), space.id(), [&](hid_t memory, void* to) {
+      return H5Dread(dataset.id(), memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, to);
+    });
+  } catch (const Hdf5Failure&) {
+    fail(path, "is no text; record again");
+  }
+}
+
+ColumnReader::ColumnReader(const InputFile& file, std::string path, ScalarType type,
+                           std::vector<hsize_t> row_shape)
+    : file_(&file),
+      path_(std::move(path)),
+      type_(type),
+      row_shape_(std::move(row_shape)),
+      row_bytes_(size_of(type)) {
+  const PropertyListHandle access(check(H5Pcreate(H5P_DATASET_ACCESS)));
+  check(H5Pset_chunk_cache(access.id(), 5, 4 * block_bytes, 1.0));
+  dataset_ = DatasetHandle(H5Dopen2(file.id(), path_.c_str(), access.id()));
+  if (!dataset_) file.fail(path_, "is missing; the file is damaged or not a whole recording, record again");
+  const DatatypeHandle stored(H5Dget_type(dataset_.id()));
+  const DataspaceHandle space(H5Dget_space(dataset_.id()));
+  const int rank = H5Sget_simple_extent_ndims(space.id());
+  std::vector<hsize_t> size(rank > 0 ? static_cast<std::size_t>(rank) : 1);
+  if (rank > 0) H5Sget_simple_extent_dims(space.id(), size.data(), nullptr);
+  if (!is_number(stored.id()) || rank != static_cast<int>(row_shape_.size()) + 1 ||
+      !std::equal(row_shape_.begin(), row_shape_.end(), size.begin() + 1))
+    file.fail(path_, "does not hold numbers of the shape " + shape_text(row_shape_) + "; record again");
+  rows_ = size[0];
+  for (const hsize_t n : row_shape_) row_bytes_ *= n;
+  // What is missing would be read as zeros, and a damaged number of rows would ask for any amount of memory.
+  const std::uint64_t stored_row_bytes = row_bytes_ / size_of(type_) * H5Tget_size(stored.id());
+  const std::uint64_t storage = H5Dget_storage_size(dataset_.id());
+  if (storage > file.size() || (stored_row_bytes > 0 && rows_ > storage / stored_row_bytes))
+    file.fail(path_, "has " + std::to_string(rows_) +
+                         " rows, which are not all in the file; it is damaged or cut short, copy it again or "
+                         "record again");
+}
+
+void ColumnReader::read(std::uint64_t first, std::size_t count, std::byte* to) {
+  if (first > rows_ || count > rows_ - first) file_->fail(path_, "has too few rows; record again");
+  if (count == 0 || row_bytes_ == 0) return;
+  const std::uint64_t block_rows = std::max<std::uint64_t>(block_bytes / row_bytes_, 1);
+  if (count >= block_rows) {
+    read_from_file(first, count, to);
+    return;
+  }
+  if (first < block_first_ || first + count > block_first_ + block_count_) {
+    block_first_ = first;
+    block_count_ = 0;  // until it is read
+    const std::uint64_t rows = std::min(block_rows, rows_ - first);
+    block_.resize(rows * row_bytes_);
+    read_from_file(first, rows, block_.data());
+    block_count_ = rows;
+  }
+  std::copy_n(block_.data() + (first - block_first_) * row_bytes_, count * row_bytes_, to);
+}
+
+void ColumnReader::read_from_file(std::uint64_t first, std::size_t count, std::byte* to) const {
+  std::vector<hsize_t> start(row_shape_.size() + 1), size(row_shape_.size() + 1);
+  start[0] = first;
+  size[0] = count;
+  std::copy(row_shape_.begin(), row_shape_.end(), size.begin() + 1);
+  const DataspaceHandle in_file(H5Dget_space(dataset_.id()));
+  const DataspaceHandle in_memory(H5Screate_simple(static_cast<int>(size.size()), size.data(), nullptr));
+  if (H5Sselect_hyperslab(in_file.id(), H5S_SELECT_SET, start.data(), nullptr, size.data(), nullptr) < 0 ||
+      H5Dread(dataset_.id(), native_type(type_), in_memory.id(), in_file.id(), H5P_DEFAULT, to) < 0)
+    file_->fail(path_, "cannot be read from row " + std::to_string(first) +
+                           "; the file is damaged or cut short, copy it again or record again");
+}
+
+}  // namespace supple

@@ -1,0 +1,70 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "hdf5_handles.hpp"
+#include "layout.hpp"
+
+namespace supple {
+
+/// A file that is read, with its name for messages. Everything throws `Error` when an item is missing, of
+/// another type or shape, or cannot be read.
+class InputFile {
+ public:
+  /// Says what is wrong with a file that HDF5 cannot open.
+  explicit InputFile(const std::string& path);
+
+  hid_t id() const { return file_.id(); }
+  const std::string& path() const { return path_; }
+  std::uint64_t size() const { return size_; }
+
+  bool has_attribute(const std::string& group, const char* name) const;
+  std::size_t count_links(const std::string& group) const;
+  double number(const std::string& group, const char* name) const;
+  /// A whole number from 0 to `largest`.
+  std::uint32_t count(const std::string& group, const char* name,
+                      std::uint32_t largest = ~std::uint32_t{0}) const;
+  std::string text(const std::string& group, const char* name) const;
+  std::string text_dataset(const std::string& path) const;
+
+  [[noreturn]] void fail(const std::string& item, const std::string& what) const;
+
+ private:
+  AttributeHandle open_attribute(const std::string& group, const char* name) const;
+
+  std::string path_;
+  FileHandle file_;
+  std::uint64_t size_ = 0;
+};
+
+/// A dataset of numbers, read by rows.
+class ColumnReader {
+ public:
+  /// `row_shape` is that of one row: nothing for a single number, {3} for a point, {n, 3} for n points. The
+  /// file must outlive it.
+  ColumnReader(const InputFile& file, std::string path, ScalarType type, std::vector<hsize_t> row_shape);
+
+  std::uint64_t rows() const { return rows_; }
+  const std::string& path() const { return path_; }
+  /// Copies rows that exist. Few rows come out of a block that is kept, so that frames in a row are read
+  /// quickly.
+  void read(std::uint64_t first, std::size_t count, std::byte* to);
+
+ private:
+  void read_from_file(std::uint64_t first, std::size_t count, std::byte* to) const;
+
+  const InputFile* file_;
+  std::string path_;
+  ScalarType type_;
+  std::vector<hsize_t> row_shape_;
+  std::size_t row_bytes_;
+  DatasetHandle dataset_;
+  std::uint64_t rows_ = 0;
+  std::vector<std::byte> block_;
+  std::uint64_t block_first_ = 0, block_count_ = 0;
+};
+
+}  // namespace supple

@@ -1,0 +1,474 @@
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <cstring>
+#include <optional>
+#include <system_error>
+#include <utility>
+
+#include "commit_driver.hpp"
+#include "hdf5_write.hpp"
+#include "layout.hpp"
+#include "supple/error.hpp"
+#include "supple/recording.hpp"
+#include "supple/version.hpp"
+#include "xdmf_file.hpp"
+
+namespace supple {
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+constexpr auto flush_interval = std::chrono::seconds(1);
+/// So much may wait in memory for the flush.
+constexpr std::size_t most_pending_bytes = std::size_t{32} << 20;
+constexpr std::size_t frames_in_chunk = 1024;
+constexpr std::size_t rows_in_chunk = 4096;
+
+/// From the ids by which results name objects to their places in the file.
+class Places {
+ public:
+  explicit Places(const std::vector<RecordedObject>& objects) {
+    for (std::size_t place = 0; place < objects.size(); ++place) {
+      const ObjectId id = objects[place].id;
+      if (id.index >= by_index_.size()) by_index_.resize(id.index + std::size_t{1});
+      if (by_index_[id.index])
+        throw Error("objects " + std::to_string(by_index_[id.index]->place) + " and " +
+                    std::to_string(place) + " of a recording have the same id; give each its own");
+      by_index_[id.index] = Entry{id.generation, static_cast<std::uint32_t>(place)};
+    }
+  }
+
+  ObjectId operator()(ObjectId id) const {
+    if (id.index >= by_index_.size() || !by_index_[id.index] ||
+        by_index_[id.index]->generation != id.generation)
+      throw Error("a result names object " + std::to_string(id.index) + " of generation " +
+                  std::to_string(id.generation) +
+                  ", which the recording's header does not have; list every object");
+    return {by_index_[id.index]->place, 0};
+  }
+
+ private:
+  struct Entry {
+    std::uint32_t generation = 0, place = 0;
+  };
+  std::vector<std::optional<Entry>> by_index_;
+};
+
+template <class Row>
+std::vector<Row> with_places(std::span<const Row> rows, const Places& place_of) {
+  std::vector<Row> result(rows.begin(), rows.end());
+  for (Row& row : result) {
+    if constexpr (std::is_same_v<Row, ObjectPair>) {
+      row = {place_of(row.a), place_of(row.b)};
+    } else {
+      row.object_a = place_of(row.object_a);
+      row.object_b = place_of(row.object_b);
+    }
+  }
+  return result;
+}
+
+template <class Row>
+std::vector<ColumnWriter> create_columns(hid_t file, const char* group, std::size_t chunk_rows) {
+  create_group(file, group);
+  std::vector<ColumnWriter> columns;
+  for (const ColumnOf<Row>& column : columns_of<Row>())
+    columns.emplace_back(file, std::string(group) + "/" + column.name, column.type, column.width, chunk_rows);
+  return columns;
+}
+
+template <class Row>
+void append_rows(std::vector<ColumnWriter>& columns, std::span<const Row> rows) {
+  for (std::size_t c = 0; c < columns.size(); ++c) {
+    const ColumnOf<Row>& column = columns_of<Row>()[c];
+    std::byte* to = columns[c].append(rows.size());
+    for (const Row& row : rows) {
+      column.store(row, to);
+      to += column.bytes();
+    }
+  }
+}
+
+/// Rows of which each frame has any number, and where those of each frame end.
+template <class Row>
+class RaggedWriter {
+ public:
+  RaggedWriter(hid_t file, const char* group)
+      : columns_(create_columns<Row>(file, group, rows_in_chunk)),
+        end_(file, std::string(group) + "/end", ScalarType::uint64, 1, frames_in_chunk) {}
+
+  void append(std::span<const Row> rows) {
+    append_rows(columns_, rows);
+    rows_ += rows.size();
+    end_.append_value(&rows_);
+  }
+  template <class Function>
+  void for_each_column(Function function) {
+    for (ColumnWriter& column : columns_) function(column);
+    function(end_);
+  }
+
+ private:
+  std::vector<ColumnWriter> columns_;
+  ColumnWriter end_;
+  std::uint64_t rows_ = 0;
+};
+
+void write_header(hid_t file, const RecordingHeader& header) {
+  const auto attribute = [file](const char* name, auto value) { write_attribute(file, "/", name, value); };
+  const auto choice = [&](const char* name, const auto& words, auto value) {
+    attribute(name, std::string(words.at(static_cast<std::size_t>(value))));
+  };
+  attribute("format", std::string(format_name));
+  attribute("version", format_version);
+  attribute("program_version", std::string(SUPPLE_VERSION));
+  attribute("time_step", header.time_step);
+  const SceneOptions& scene = header.scene;
+  choice("contact_mode", choice_names::contacts, scene.contacts);
+  attribute("contact_points", scene.contact_points);
+  attribute("colliding_vertices", scene.colliding_vertices);
+  attribute("min_separation", scene.impact.min_separation);
+  attribute("exact_impacts", scene.impact.exact);
+  choice("bounding_volume", choice_names::bounding_volume, scene.bounding_volume);
+  choice("sphere_fit", choice_names::sphere_fit, scene.sphere_fit);
+  choice("broad_phase", choice_names::broad_phase, scene.broad_phase);
+  choice("region_sphere_test", choice_names::region_sphere_test, scene.scene_octree.region_sphere_test);
+  attribute("scene_octree_max_level", scene.scene_octree.max_level);
+  attribute("scene_octree_expand_at", scene.scene_octree.expand_at);
+  write_text(file, "scene_file", header.scene_file);
+}
+
+PositionsWriter write_object(hid_t file, std::size_t place, const RecordedObject& object) {
+  const std::string path = object_path(place);
+  create_group(file, path);
+  const auto attribute = [&](const char* name, auto value) { write_attribute(file, path, name, value); };
+  const ObjectOptions& options = object.options;
+  attribute("name", options.name);
+  attribute("id_index", object.id.index);
+  attribute("id_generation", object.id.generation);
+  attribute("self_collision", options.self_collision);
+  attribute("is_static", options.is_static);
+  attribute("group", options.group);
+  attribute("mask", options.mask);
+  attribute("octree_max_level", options.octree.max_level);
+  attribute("octree_leaf_size", options.octree.leaf_size);
+  write_rows(file, path + "/rest_positions", ScalarType::float64, object.rest_positions.size(), 3,
+             object.rest_positions.data());
+  write_rows(file, path + "/triangles", ScalarType::uint32, object.triangles.size(), 3,
+             object.triangles.data());
+  return {file, path + "/positions", object.rest_positions.size()};
+}
+
+void check_header(const RecordingHeader& header) {
+  for (std::size_t place = 0; place < header.objects.size(); ++place) {
+    const RecordedObject& object = header.objects[place];
+    for (std::size_t t = 0; t < object.triangles.size(); ++t) {
+      for (const std::uint32_t vertex : object.triangles[t]) {
+        if (vertex >= object.rest_positions.size())
+          throw Error("triangle " + std::to_string(t) + " of object " + std::to_string(place) +
+                      " of a recording uses vertex " + std::to_string(vertex) + " of " +
+                      std::to_string(object.rest_positions.size()) + "; give the mesh that the scene has");
+      }
+    }
+  }
+}
+
+/// The datasets of a file that grow, and what waits for them.
+struct Datasets {
+  Datasets(hid_t file, const RecordingHeader& header) {
+    write_header(file, header);
+    create_group(file, "objects");
+    for (std::size_t place = 0; place < header.objects.size(); ++place)
+      positions.push_back(write_object(file, place, header.objects[place]));
+    object_pairs.emplace(file, group_names::object_pairs);
+    contacts.emplace(file, group_names::contacts);
+    contact_points.emplace(file, group_names::contact_points);
+    continuous_contacts.emplace(file, group_names::continuous_contacts);
+    create_group(file, "events");
+    for (const char* name : {group_names::volume_begin, group_names::volume_end, group_names::contact_begin,
+                             group_names::contact_end})
+      events.emplace_back(file, name);
+    statistics = create_columns<StepStats>(file, group_names::statistics, frames_in_chunk);
+    // Created last and so made longer last: a frame is there when its time is.
+    time.emplace(file, "time", ScalarType::float64, 1, frames_in_chunk);
+  }
+
+  template <class Function>
+  void for_each_column(Function function) {
+    object_pairs->for_each_column(function);
+    contacts->for_each_column(function);
+    contact_points->for_each_column(function);
+    continuous_contacts->for_each_column(function);
+    for (RaggedWriter<ObjectPair>& pairs : events) pairs.for_each_column(function);
+    for (ColumnWriter& column : statistics) function(column);
+    function(*time);
+  }
+
+  std::vector<PositionsWriter> positions;
+  std::optional<RaggedWriter<ObjectPair>> object_pairs;
+  std::optional<RaggedWriter<Contact>> contacts;
+  std::optional<RaggedWriter<ContactPoint>> contact_points;
+  std::optional<RaggedWriter<ContinuousContact>> continuous_contacts;
+  std::vector<RaggedWriter<ObjectPair>>
+      events;  ///< as in `DetectResult`: begin and end of volumes, of contacts
+  std::vector<ColumnWriter> statistics;
+  std::optional<ColumnWriter> time;
+};
+
+[[noreturn]] void fail_to_create(const fs::path& path, int error) {
+  throw Error(path.string() + ": cannot write: " + std::strerror(error) +
+              "; choose a file in a folder that exists and is yours");
+}
+
+/// Where the name leads: a link stays a link.
+fs::path final_path(const fs::path& path) {
+  std::error_code error;
+  if (!fs::exists(path, error)) return path;
+  if (!fs::is_regular_file(path, error)) throw Error(path.string() + ": is no regular file; record to one");
+  return fs::is_symlink(path, error) ? fs::canonical(path) : path;
+}
+
+fs::path xdmf_path(const fs::path& path) {
+  fs::path result = path;
+  result.replace_extension(".xdmf");
+  if (result == path)
+    throw Error(path.string() + ": the XDMF file beside the recording has this name; end it in .h5");
+  return result;
+}
+
+}  // namespace
+
+class Recorder::Implementation {
+ public:
+  Implementation(const fs::path& path, const RecordingHeader& header);
+  ~Implementation() {
+    try {
+      close();
+    } catch (const std::exception&) {
+    }
+  }
+  Implementation(const Implementation&) = delete;
+  Implementation& operator=(const Implementation&) = delete;
+
+  void add(double time, std::span<const std::span<const Vec3d>> positions, const DetectResult& result);
+  void flush();
+  void close();
+
+ private:
+  struct Object {
+    std::size_t vertices = 0;
+    bool is_static = false;
+    std::vector<Vec3d> first_positions;  ///< of a static object
+  };
+  struct Rows;
+
+  void create(const RecordingHeader& header);
+  void check_open() const;
+  void check_positions(std::span<const std::span<const Vec3d>> positions) const;
+  void append(double time, std::span<const std::span<const Vec3d>> positions, const Rows& rows);
+  std::size_t pending_bytes();
+  void write_out();
+  void close_file();
+  [[noreturn]] void stop();
+
+  fs::path path_;
+  Places place_of_;
+  std::vector<Object> objects_;
+  FileHandle file_;
+  std::optional<Datasets> datasets_;
+  std::optional<XdmfFile> xdmf_;
+  std::uint64_t frames_ = 0, flushed_frames_ = 0;
+  Clock::time_point last_flush_ = Clock::now();
+  std::string failure_;  ///< why it stopped
+  bool closed_ = false;
+};
+
+/// The rows of a frame, with places for ids.
+struct Recorder::Implementation::Rows {
+  Rows(const DetectResult& result, const Places& place_of)
+      : object_pairs(with_places(result.object_pairs, place_of)),
+        contacts(with_places(result.contacts, place_of)),
+        contact_points(result.contact_points),
+        continuous_contacts(with_places(result.continuous_contacts, place_of)),
+        events{with_places(result.volume_events.begin, place_of),
+               with_places(result.volume_events.end, place_of),
+               with_places(result.contact_events.begin, place_of),
+               with_places(result.contact_events.end, place_of)},
+        stats(result.stats) {}
+
+  std::vector<ObjectPair> object_pairs;
+  std::vector<Contact> contacts;
+  std::span<const ContactPoint> contact_points;
+  std::vector<ContinuousContact> continuous_contacts;
+  std::array<std::vector<ObjectPair>, 4> events;
+  StepStats stats;
+};
+
+Recorder::Implementation::Implementation(const fs::path& path, const RecordingHeader& header)
+    : path_(final_path(path)), place_of_(header.objects) {
+  check_header(header);
+  const fs::path xdmf = xdmf_path(path_);
+  for (const RecordedObject& object : header.objects)
+    objects_.push_back({object.rest_positions.size(), object.options.is_static, {}});
+  const QuietErrors quiet;
+  create(header);
+  xdmf_.emplace(xdmf, path_, header);
+}
+
+void Recorder::Implementation::create(const RecordingHeader& header) {
+  // Under another name until it says all that it says once: then it takes the place of the old one at a
+  // stroke.
+  const fs::path draft = path_.string() + ".part";
+  const int descriptor = open(draft.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  if (descriptor < 0) fail_to_create(path_, errno);
+  ::close(descriptor);
+  std::error_code error;
+  try {
+    file_ = create_committed_file(draft);
+    if (!file_) throw Hdf5Failure();
+    datasets_.emplace(file_.id(), header);
+    check(H5Fflush(file_.id(), H5F_SCOPE_LOCAL));
+    fs::rename(draft, path_, error);
+  } catch (const Hdf5Failure&) {
+    error = std::error_code(file_ ? write_error(file_.id()) : ENOMEM, std::generic_category());
+    if (!error) error = std::error_code(EIO, std::generic_category());
+  }
+  if (!error) return;
+  if (file_) discard_writes(file_.id());
+  close_file();
+  std::error_code ignored;
+  fs::remove(draft, ignored);
+  fail_to_create(path_, error.value());
+}
+
+void Recorder::Implementation::check_open() const {
+  if (!failure_.empty()) throw Error(failure_);
+  if (closed_) throw Error(path_.string() + ": the recording is closed; add frames before close()");
+}
+
+void Recorder::Implementation::check_positions(std::span<const std::span<const Vec3d>> positions) const {
+  if (positions.size() != objects_.size())
+    throw Error(path_.string() + ": frame " + std::to_string(frames_) + " has positions of " +
+                std::to_string(positions.size()) + " objects, the recording has " +
+                std::to_string(objects_.size()) + "; give those of each object of the header, in its order");
+  for (std::size_t place = 0; place < objects_.size(); ++place) {
+    const Object& object = objects_[place];
+    if (positions[place].size() != object.vertices)
+      throw Error(path_.string() + ": frame " + std::to_string(frames_) + " has " +
+                  std::to_string(positions[place].size()) + " positions of object " + std::to_string(place) +
+                  ", which has " + std::to_string(object.vertices) + " vertices; give one a vertex");
+    if (object.is_static && frames_ > 0 && object.vertices > 0 &&
+        std::memcmp(positions[place].data(), object.first_positions.data(), positions[place].size_bytes()) !=
+            0)
+      throw Error(path_.string() + ": object " + std::to_string(place) + " moves in frame " +
+                  std::to_string(frames_) + ", and is static in the header; record it with is_static off");
+  }
+}
+
+void Recorder::Implementation::add(double time, std::span<const std::span<const Vec3d>> positions,
+                                   const DetectResult& result) {
+  check_open();
+  check_positions(positions);
+  const Rows rows(result, place_of_);
+  const QuietErrors quiet;
+  try {
+    append(time, positions, rows);
+    ++frames_;
+    if (pending_bytes() >= most_pending_bytes || Clock::now() - last_flush_ >= flush_interval) write_out();
+  } catch (const Hdf5Failure&) {
+    stop();
+  }
+}
+
+void Recorder::Implementation::append(double time, std::span<const std::span<const Vec3d>> positions,
+                                      const Rows& rows) {
+  for (std::size_t place = 0; place < objects_.size(); ++place) {
+    Object& object = objects_[place];
+    if (object.is_static && frames_ > 0) continue;
+    if (object.is_static) object.first_positions.assign(positions[place].begin(), positions[place].end());
+    datasets_->positions[place].append(positions[place]);
+  }
+  datasets_->object_pairs->append(rows.object_pairs);
+  datasets_->contacts->append(rows.contacts);
+  datasets_->contact_points->append(rows.contact_points);
+  datasets_->continuous_contacts->append(rows.continuous_contacts);
+  for (std::size_t i = 0; i < rows.events.size(); ++i) datasets_->events[i].append(rows.events[i]);
+  append_rows(datasets_->statistics, std::span(&rows.stats, 1));
+  datasets_->time->append_value(&time);
+  xdmf_->add_frame(time);
+}
+
+std::size_t Recorder::Implementation::pending_bytes() {
+  std::size_t bytes = xdmf_->pending_bytes();
+  datasets_->for_each_column([&](const ColumnWriter& column) { bytes += column.pending_bytes(); });
+  return bytes;
+}
+
+void Recorder::Implementation::write_out() {
+  datasets_->for_each_column([](ColumnWriter& column) { column.write_pending(); });
+  check(H5Fflush(file_.id(), H5F_SCOPE_LOCAL));
+  flushed_frames_ = frames_;
+  last_flush_ = Clock::now();
+  // After the numbers that it names.
+  xdmf_->write();
+}
+
+void Recorder::Implementation::stop() {
+  const int error = write_error(file_.id());
+  failure_ = path_.string() + ": writing failed: " + (error != 0 ? std::strerror(error) : "HDF5 refused") +
+             "; the recording ends after its first " + std::to_string(flushed_frames_) +
+             " frames, make room and record again";
+  discard_writes(file_.id());
+  close_file();
+  throw Error(failure_);
+}
+
+void Recorder::Implementation::close_file() {
+  datasets_.reset();
+  file_.reset();
+}
+
+void Recorder::Implementation::flush() {
+  check_open();
+  const QuietErrors quiet;
+  try {
+    write_out();
+  } catch (const Hdf5Failure&) {
+    stop();
+  }
+}
+
+void Recorder::Implementation::close() {
+  if (closed_) return;
+  flush();
+  closed_ = true;
+  const QuietErrors quiet;
+  datasets_.reset();
+  // All is flushed; this only says so.
+  if (!file_.reset()) throw Error(path_.string() + ": closing failed; check the disk and record again");
+  xdmf_.reset();
+}
+
+Recorder::Recorder(const std::filesystem::path& path, const RecordingHeader& header)
+    : implementation_(std::make_unique<Implementation>(path, header)) {}
+Recorder::~Recorder() = default;
+Recorder::Recorder(Recorder&&) noexcept = default;
+Recorder& Recorder::operator=(Recorder&&) noexcept = default;
+
+void Recorder::add(double time, std::span<const std::span<const Vec3d>> positions,
+                   const DetectResult& result) {
+  implementation_->add(time, positions, result);
+}
+void Recorder::flush() {
+  implementation_->flush();
+}
+void Recorder::close() {
+  implementation_->close();
+}
+
+}  // namespace supple

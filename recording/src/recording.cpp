@@ -1,0 +1,403 @@
+#include "supple/recording.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <new>
+#include <stdexcept>
+#include <string_view>
+#include <utility>
+
+#include "hdf5_read.hpp"
+#include "hdf5_write.hpp"
+#include "layout.hpp"
+#include "supple/error.hpp"
+#include "supple/version.hpp"
+#include "text.hpp"
+
+namespace supple {
+namespace {
+
+constexpr const char* damaged = "; the file is damaged, record again";
+
+template <class Words>
+std::size_t read_choice(const InputFile& file, const char* name, const Words& words) {
+  const std::string word = file.text("/", name);
+  const auto found = std::find(words.begin(), words.end(), word);
+  if (found == words.end())
+    file.fail("", std::string("attribute ") + name + " is '" + word +
+                      "', which this program does not know; use the supple " + "that recorded it");
+  return static_cast<std::size_t>(found - words.begin());
+}
+
+void check_format(const InputFile& file) {
+  if (!file.has_attribute("/", "format") || file.text("/", "format") != format_name)
+    throw Error(file.path() + ": is an HDF5 file, but no recording; make one with supple simulate --record");
+  const std::uint32_t version = file.count("/", "version");
+  if (version != format_version)
+    throw Error(file.path() + ": is a recording of version " + std::to_string(version) +
+                ", supple " SUPPLE_VERSION " reads version " + std::to_string(format_version) +
+                "; read it with the supple that wrote it" +
+                (version > format_version ? ", or a newer one" : ""));
+}
+
+SceneOptions read_scene_options(const InputFile& file) {
+  SceneOptions scene;
+  scene.contacts = static_cast<ContactMode>(read_choice(file, "contact_mode", choice_names::contacts));
+  scene.contact_points = file.count("/", "contact_points", 1) == 1;
+  scene.colliding_vertices = file.count("/", "colliding_vertices", 1) == 1;
+  scene.impact.min_separation = file.number("/", "min_separation");
+  scene.impact.exact = file.count("/", "exact_impacts", 1) == 1;
+  scene.bounding_volume =
+      static_cast<BoundingVolume>(read_choice(file, "bounding_volume", choice_names::bounding_volume));
+  scene.sphere_fit = static_cast<SphereFit>(read_choice(file, "sphere_fit", choice_names::sphere_fit));
+  scene.broad_phase =
+      static_cast<BroadPhaseMethod>(read_choice(file, "broad_phase", choice_names::broad_phase));
+  scene.scene_octree.region_sphere_test = static_cast<RegionSphereTest>(
+      read_choice(file, "region_sphere_test", choice_names::region_sphere_test));
+  scene.scene_octree.max_level = file.count("/", "scene_octree_max_level");
+  scene.scene_octree.expand_at = file.count("/", "scene_octree_expand_at");
+  return scene;
+}
+
+template <class Element>
+std::vector<Element> read_all(const InputFile& file, const std::string& path, ScalarType type) {
+  ColumnReader column(file, path, type, {3});
+  std::vector<Element> elements(column.rows());
+  column.read(0, elements.size(), reinterpret_cast<std::byte*>(elements.data()));
+  return elements;
+}
+
+RecordedObject read_object(const InputFile& file, std::size_t place) {
+  const std::string path = object_path(place);
+  RecordedObject object{};
+  object.id = {file.count(path, "id_index"), file.count(path, "id_generation")};
+  object.options.name = file.text(path, "name");
+  object.options.self_collision = file.count(path, "self_collision", 1) == 1;
+  object.options.is_static = file.count(path, "is_static", 1) == 1;
+  object.options.group = file.count(path, "group");
+  object.options.mask = file.count(path, "mask");
+  object.options.octree.max_level = file.count(path, "octree_max_level");
+  object.options.octree.leaf_size = file.count(path, "octree_leaf_size");
+  object.rest_positions = read_all<Vec3d>(file, path + "/rest_positions", ScalarType::float64);
+  object.triangles = read_all<Triangle>(file, path + "/triangles", ScalarType::uint32);
+  for (std::size_t t = 0; t < object.triangles.size(); ++t) {
+    for (const std::uint32_t vertex : object.triangles[t]) {
+      if (vertex >= object.rest_positions.size())
+        file.fail(path + "/triangles", "row " + std::to_string(t) + " names vertex " +
+                                           std::to_string(vertex) + ", the object has " +
+                                           std::to_string(object.rest_positions.size()) + damaged);
+    }
+  }
+  return object;
+}
+
+RecordingHeader read_header(const InputFile& file) {
+  check_format(file);
+  RecordingHeader header;
+  header.time_step = file.number("/", "time_step");
+  header.scene = read_scene_options(file);
+  header.scene_file = file.text_dataset("scene_file");
+  const std::size_t count = file.count_links("objects");
+  for (std::size_t place = 0; place < count; ++place) header.objects.push_back(read_object(file, place));
+  return header;
+}
+
+/// The rows of one frame, of a group that has any number of rows a frame.
+template <class Row>
+class RaggedReader {
+ public:
+  RaggedReader(const InputFile& file, const char* group, std::uint64_t frames)
+      : file_(&file), end_(file, std::string(group) + "/end", ScalarType::uint64, {}) {
+    for (const ColumnOf<Row>& column : columns_of<Row>()) {
+      std::vector<hsize_t> row_shape;
+      if (column.width > 1) row_shape.push_back(column.width);
+      columns_.emplace_back(file, std::string(group) + "/" + column.name, column.type, std::move(row_shape));
+    }
+    check_ends(frames);
+  }
+
+  std::vector<Row> rows(std::uint64_t frame) {
+    const std::uint64_t first = frame == 0 ? 0 : end_of(frame - 1);
+    std::vector<Row> rows(end_of(frame) - first);
+    for (std::size_t c = 0; c < columns_.size(); ++c) {
+      const ColumnOf<Row>& column = columns_of<Row>()[c];
+      bytes_.resize(rows.size() * column.bytes());
+      columns_[c].read(first, rows.size(), bytes_.data());
+      for (std::size_t i = 0; i < rows.size(); ++i) column.load(rows[i], bytes_.data() + i * column.bytes());
+    }
+    return rows;
+  }
+
+  /// Of a row of the frame.
+  [[noreturn]] void fail(std::uint64_t frame, std::size_t row, const char* column, std::uint64_t value,
+                         std::uint64_t allowed) {
+    for (const ColumnReader& reader : columns_) {
+      if (!reader.path().ends_with(std::string("/") + column)) continue;
+      file_->fail(reader.path(), "row " + std::to_string(row) + " of frame " + std::to_string(frame) +
+                                     " is " + std::to_string(value) + ", not below " +
+                                     std::to_string(allowed) + damaged);
+    }
+    file_->fail(end_.path(), "is damaged; record again");
+  }
+
+ private:
+  std::uint64_t end_of(std::uint64_t frame) {
+    std::uint64_t end = 0;
+    end_.read(frame, 1, reinterpret_cast<std::byte*>(&end));
+    return end;
+  }
+
+  void check_ends(std::uint64_t frames) {
+    std::uint64_t last = 0;
+    for (std::uint64_t frame = 0; frame < frames; ++frame) {
+      const std::uint64_t end = end_of(frame);
+      if (end < last)
+        file_->fail(end_.path(), "frame " + std::to_string(frame) + " ends at row " + std::to_string(end) +
+                                     ", before the frame before it, which ends at " + std::to_string(last) +
+                                     damaged);
+      last = end;
+    }
+    for (const ColumnReader& column : columns_) {
+      if (column.rows() < last)
+        file_->fail(column.path(), "has " + std::to_string(column.rows()) + " rows, the frames name " +
+                                       std::to_string(last) + damaged);
+    }
+  }
+
+  const InputFile* file_;
+  ColumnReader end_;
+  std::vector<ColumnReader> columns_;
+  std::vector<std::byte> bytes_;
+};
+
+/// What HDF5 or the machine refuses becomes an `Error` that names the file.
+template <class Function>
+auto with_errors_of(const std::string& path, Function function) {
+  const QuietErrors quiet;
+  try {
+    return function();
+  } catch (const Hdf5Failure&) {
+    throw Error(path + ": cannot be read; it is damaged, copy it again or record again");
+  } catch (const std::bad_alloc&) {
+    throw Error(path + ": does not fit into memory, or is damaged; copy it again or record again");
+  } catch (const std::length_error&) {
+    throw Error(path + ": is damaged; copy it again or record again");
+  }
+}
+
+}  // namespace
+
+class Recording::Implementation {
+ public:
+  explicit Implementation(const std::string& path);
+
+  RecordedFrame frame(std::uint64_t number);
+  std::vector<Vec3d> positions(std::uint64_t frame, std::size_t object);
+  const RecordingHeader& header() const { return header_; }
+  std::uint64_t frame_count() const { return time_.rows(); }
+  const std::string& path() const { return file_.path(); }
+
+ private:
+  void check_frame(std::uint64_t number) const;
+  std::vector<ObjectPair> pairs(RaggedReader<ObjectPair>& rows, std::uint64_t frame) const;
+  void check_elements(std::uint64_t frame, std::size_t row, const ContinuousContact& contact);
+  std::vector<Contact> contacts(std::uint64_t frame, std::size_t points);
+  std::vector<ContactPoint> contact_points(std::uint64_t frame);
+  std::vector<ContinuousContact> continuous_contacts(std::uint64_t frame);
+  StepStats stats(std::uint64_t frame);
+
+  template <class Row>
+  void check_below(RaggedReader<Row>& rows, std::uint64_t frame, std::size_t row, const char* column,
+                   std::uint64_t value, std::uint64_t allowed) const {
+    if (value >= allowed) rows.fail(frame, row, column, value, allowed);
+  }
+
+  InputFile file_;
+  RecordingHeader header_;
+  ColumnReader time_;
+  RaggedReader<ObjectPair> object_pairs_;
+  RaggedReader<Contact> contacts_;
+  RaggedReader<ContactPoint> contact_points_;
+  RaggedReader<ContinuousContact> continuous_contacts_;
+  RaggedReader<ObjectPair> volume_begin_, volume_end_, contact_begin_, contact_end_;
+  std::vector<ColumnReader> statistics_;
+  std::vector<ColumnReader> positions_;
+};
+
+Recording::Implementation::Implementation(const std::string& path)
+    : file_(path),
+      header_(read_header(file_)),
+      time_(file_, "time", ScalarType::float64, {}),
+      object_pairs_(file_, group_names::object_pairs, frame_count()),
+      contacts_(file_, group_names::contacts, frame_count()),
+      contact_points_(file_, group_names::contact_points, frame_count()),
+      continuous_contacts_(file_, group_names::continuous_contacts, frame_count()),
+      volume_begin_(file_, group_names::volume_begin, frame_count()),
+      volume_end_(file_, group_names::volume_end, frame_count()),
+      contact_begin_(file_, group_names::contact_begin, frame_count()),
+      contact_end_(file_, group_names::contact_end, frame_count()) {
+  const auto check_frames = [this](const ColumnReader& column, std::uint64_t needed) {
+    if (column.rows() < needed)
+      file_.fail(column.path(), "has " + std::to_string(column.rows()) + " frames, the recording has " +
+                                    std::to_string(frame_count()) + damaged);
+  };
+  for (const ColumnOf<StepStats>& column : columns_of<StepStats>()) {
+    statistics_.emplace_back(file_, std::string(group_names::statistics) + "/" + column.name, column.type,
+                             std::vector<hsize_t>{});
+    check_frames(statistics_.back(), frame_count());
+  }
+  for (std::size_t place = 0; place < header_.objects.size(); ++place) {
+    const RecordedObject& object = header_.objects[place];
+    positions_.emplace_back(file_, object_path(place) + "/positions", ScalarType::float64,
+                            std::vector<hsize_t>{object.rest_positions.size(), 3});
+    check_frames(positions_.back(),
+                 object.options.is_static ? std::min<std::uint64_t>(frame_count(), 1) : frame_count());
+  }
+}
+
+void Recording::Implementation::check_frame(std::uint64_t number) const {
+  if (number >= frame_count())
+    throw Error(path() + ": there is no frame " + std::to_string(number) + "; the recording has " +
+                std::to_string(frame_count()) + ", counted from 0");
+}
+
+std::vector<ObjectPair> Recording::Implementation::pairs(RaggedReader<ObjectPair>& rows,
+                                                         std::uint64_t frame) const {
+  const std::size_t objects = header_.objects.size();
+  std::vector<ObjectPair> pairs = rows.rows(frame);
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    check_below(rows, frame, i, "object_a", pairs[i].a.index, objects);
+    check_below(rows, frame, i, "object_b", pairs[i].b.index, objects);
+    pairs[i] = {header_.objects[pairs[i].a.index].id, header_.objects[pairs[i].b.index].id};
+  }
+  return pairs;
+}
+
+std::vector<Contact> Recording::Implementation::contacts(std::uint64_t frame, std::size_t points) {
+  const std::vector<RecordedObject>& objects = header_.objects;
+  std::vector<Contact> contacts = contacts_.rows(frame);
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    Contact& c = contacts[i];
+    const auto check_value = [&](const char* column, std::uint64_t value, std::uint64_t allowed) {
+      check_below(contacts_, frame, i, column, value, allowed);
+    };
+    check_value("object_a", c.object_a.index, objects.size());
+    check_value("object_b", c.object_b.index, objects.size());
+    const RecordedObject &a = objects[c.object_a.index], &b = objects[c.object_b.index];
+    check_value("triangle_a", c.triangle_a, a.triangles.size());
+    check_value("triangle_b", c.triangle_b, b.triangles.size());
+    check_value("kind", static_cast<std::uint64_t>(c.kind), 3);
+    if (points > 0) {
+      check_value("point_count", c.point_count, points + 1);
+      check_value("first_point", c.first_point, points - c.point_count + 1);
+    }
+    c.object_a = a.id;
+    c.object_b = b.id;
+  }
+  return contacts;
+}
+
+std::vector<ContactPoint> Recording::Implementation::contact_points(std::uint64_t frame) {
+  std::vector<ContactPoint> points = contact_points_.rows(frame);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    check_below(contact_points_, frame, i, "feature_a", static_cast<std::uint64_t>(points[i].on_a.kind), 3);
+    check_below(contact_points_, frame, i, "feature_b", static_cast<std::uint64_t>(points[i].on_b.kind), 3);
+    check_below(contact_points_, frame, i, "feature_index_a", points[i].on_a.index, 3);
+    check_below(contact_points_, frame, i, "feature_index_b", points[i].on_b.index, 3);
+  }
+  return points;
+}
+
+void Recording::Implementation::check_elements(std::uint64_t frame, std::size_t row,
+                                               const ContinuousContact& contact) {
+  const auto check_element = [&](const char* column, ObjectId object,
+                                 const std::array<std::uint32_t, 2>& element, bool is_face) {
+    const RecordedObject& of = header_.objects[object.index];
+    const std::size_t allowed = is_face ? of.triangles.size() : of.rest_positions.size();
+    for (const std::uint32_t number : element)
+      check_below(continuous_contacts_, frame, row, column, number, allowed);
+  };
+  check_element("element_a", contact.object_a, contact.element_a,
+                contact.kind == ElementPairKind::face_vertex);
+  check_element("element_b", contact.object_b, contact.element_b,
+                contact.kind == ElementPairKind::vertex_face);
+}
+
+std::vector<ContinuousContact> Recording::Implementation::continuous_contacts(std::uint64_t frame) {
+  const std::vector<RecordedObject>& objects = header_.objects;
+  std::vector<ContinuousContact> contacts = continuous_contacts_.rows(frame);
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    ContinuousContact& c = contacts[i];
+    const auto check_value = [&](const char* column, std::uint64_t value, std::uint64_t allowed) {
+      check_below(continuous_contacts_, frame, i, column, value, allowed);
+    };
+    check_value("object_a", c.object_a.index, objects.size());
+    check_value("object_b", c.object_b.index, objects.size());
+    check_value("kind", static_cast<std::uint64_t>(c.kind), 3);
+    check_value("certainty", static_cast<std::uint64_t>(c.certainty), 2);
+    check_elements(frame, i, c);
+    c.object_a = objects[c.object_a.index].id;
+    c.object_b = objects[c.object_b.index].id;
+  }
+  return contacts;
+}
+
+StepStats Recording::Implementation::stats(std::uint64_t frame) {
+  StepStats stats;
+  for (std::size_t c = 0; c < statistics_.size(); ++c) {
+    std::array<std::byte, 8> bytes{};
+    statistics_[c].read(frame, 1, bytes.data());
+    columns_of<StepStats>()[c].load(stats, bytes.data());
+  }
+  return stats;
+}
+
+RecordedFrame Recording::Implementation::frame(std::uint64_t number) {
+  check_frame(number);
+  RecordedFrame frame;
+  time_.read(number, 1, reinterpret_cast<std::byte*>(&frame.time));
+  frame.object_pairs = pairs(object_pairs_, number);
+  frame.contact_points = contact_points(number);
+  frame.contacts = contacts(number, frame.contact_points.size());
+  frame.continuous_contacts = continuous_contacts(number);
+  frame.volume_begin = pairs(volume_begin_, number);
+  frame.volume_end = pairs(volume_end_, number);
+  frame.contact_begin = pairs(contact_begin_, number);
+  frame.contact_end = pairs(contact_end_, number);
+  frame.stats = stats(number);
+  return frame;
+}
+
+std::vector<Vec3d> Recording::Implementation::positions(std::uint64_t frame, std::size_t object) {
+  check_frame(frame);
+  if (object >= positions_.size())
+    throw Error(path() + ": there is no object " + std::to_string(object) + "; the recording has " +
+                std::to_string(positions_.size()) + ", counted from 0");
+  std::vector<Vec3d> positions(header_.objects[object].rest_positions.size());
+  const std::uint64_t row = header_.objects[object].options.is_static ? 0 : frame;
+  positions_[object].read(row, 1, reinterpret_cast<std::byte*>(positions.data()));
+  return positions;
+}
+
+Recording::Recording(const std::filesystem::path& path)
+    : implementation_(
+          with_errors_of(path.string(), [&] { return std::make_unique<Implementation>(path.string()); })) {}
+Recording::~Recording() = default;
+Recording::Recording(Recording&&) noexcept = default;
+Recording& Recording::operator=(Recording&&) noexcept = default;
+
+const RecordingHeader& Recording::header() const {
+  return implementation_->header();
+}
+std::uint64_t Recording::frame_count() const {
+  return implementation_->frame_count();
+}
+RecordedFrame Recording::frame(std::uint64_t number) const {
+  return with_errors_of(implementation_->path(), [&] { return implementation_->frame(number); });
+}
+std::vector<Vec3d> Recording::positions(std::uint64_t frame, std::size_t object) const {
+  return with_errors_of(implementation_->path(), [&] { return implementation_->positions(frame, object); });
+}
+
+}  // namespace supple

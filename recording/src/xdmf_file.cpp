@@ -1,0 +1,130 @@
+#include "xdmf_file.hpp"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <string_view>
+
+#include "layout.hpp"
+#include "supple/error.hpp"
+#include "text.hpp"
+
+namespace supple {
+namespace {
+
+constexpr std::string_view opening_tags =
+    "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
+    "<Xdmf Version=\"2.0\">\n<Domain>\n"
+    "<Grid Name=\"recording\" GridType=\"Collection\" CollectionType=\"Temporal\">\n";
+constexpr std::string_view closing_tags = "</Grid>\n</Domain>\n</Xdmf>\n";
+
+/// Bytes of the character of UTF-8 that the text starts with, 0 when it starts with none that XML allows.
+std::size_t character_length(std::string_view text) {
+  const auto lead = static_cast<unsigned char>(text[0]);
+  if (lead < 0x80) return lead >= 0x20 && lead != 0x7f ? 1 : 0;
+  const std::size_t length = lead >= 0xf0 ? 4 : lead >= 0xe0 ? 3 : 2;
+  if (lead < 0xc2 || lead > 0xf4 || text.size() < length) return 0;
+  for (std::size_t i = 1; i < length; ++i) {
+    if ((static_cast<unsigned char>(text[i]) & 0xc0) != 0x80) return 0;
+  }
+  const auto second = static_cast<unsigned char>(text[1]);
+  const bool allowed = !(lead == 0xe0 && second < 0xa0) && !(lead == 0xed && second > 0x9f) &&
+                       !(lead == 0xf0 && second < 0x90) && !(lead == 0xf4 && second > 0x8f) &&
+                       !(lead == 0xef && second == 0xbf && static_cast<unsigned char>(text[2]) >= 0xbe);
+  return allowed ? length : 0;
+}
+
+/// As XML has it within quotes; what XML cannot hold becomes a question mark.
+std::string escaped(std::string_view text) {
+  std::string result;
+  while (!text.empty()) {
+    const std::size_t length = character_length(text);
+    if (length == 0) {
+      result += '?';
+    } else if (text[0] == '&') {
+      result += "&amp;";
+    } else if (text[0] == '<') {
+      result += "&lt;";
+    } else if (text[0] == '>') {
+      result += "&gt;";
+    } else if (text[0] == '"') {
+      result += "&quot;";
+    } else {
+      result += text.substr(0, length);
+    }
+    text.remove_prefix(length == 0 ? 1 : length);
+  }
+  return result;
+}
+
+[[noreturn]] void fail_to_write(const std::filesystem::path& path) {
+  throw Error(path.string() + ": cannot write: " + std::strerror(errno) +
+              "; choose a file in a folder that exists and is yours");
+}
+
+}  // namespace
+
+XdmfFile::XdmfFile(const std::filesystem::path& path, const std::filesystem::path& recording,
+                   const RecordingHeader& header)
+    : path_(path) {
+  const std::string file = escaped(recording.filename().string());
+  for (std::size_t place = 0; place < header.objects.size(); ++place) {
+    const RecordedObject& object = header.objects[place];
+    if (object.triangles.empty()) continue;
+    const std::string triangles = std::to_string(object.triangles.size());
+    const std::string vertices = std::to_string(object.rest_positions.size());
+    const std::string source = file + ":/" + object_path(place);
+    Grid grid;
+    grid.before_frame = "<Grid Name=\"" + escaped(object.options.name) +
+                        "\" GridType=\"Uniform\">\n<Topology TopologyType=\"Triangle\" NumberOfElements=\"" +
+                        triangles + "\">\n<DataItem Dimensions=\"" + triangles +
+                        " 3\" NumberType=\"UInt\" Precision=\"4\" Format=\"HDF\">" + source +
+                        "/triangles</DataItem>\n</Topology>\n<Geometry GeometryType=\"XYZ\">\n"
+                        "<DataItem ItemType=\"HyperSlab\" Dimensions=\"1 " +
+                        vertices + " 3\">\n<DataItem Dimensions=\"3 3\" NumberType=\"Int\" Format=\"XML\">";
+    grid.before_frame_count = " 0 0 1 1 1 1 " + vertices + " 3</DataItem>\n<DataItem Dimensions=\"";
+    grid.rest = " " + vertices + " 3\" NumberType=\"Float\" Precision=\"8\" Format=\"HDF\">" + source +
+                "/positions</DataItem>\n</DataItem>\n</Geometry>\n</Grid>\n";
+    grid.moves = !object.options.is_static;
+    grids_.push_back(std::move(grid));
+  }
+  descriptor_ = open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  if (descriptor_ < 0) fail_to_write(path);
+  pending_ = opening_tags;
+  write();
+}
+
+XdmfFile::~XdmfFile() {
+  if (descriptor_ >= 0) close(descriptor_);
+}
+
+void XdmfFile::add_frame(double time) {
+  pending_ +=
+      "<Grid GridType=\"Collection\" CollectionType=\"Spatial\">\n<Time Value=\"" + to_text(time) + "\"/>\n";
+  ++frames_;
+  for (const Grid& grid : grids_) {
+    pending_ += grid.before_frame + std::to_string(grid.moves ? frames_ - 1 : 0) + grid.before_frame_count +
+                std::to_string(grid.moves ? frames_ : 1) + grid.rest;
+  }
+  pending_ += "</Grid>\n";
+}
+
+void XdmfFile::write() {
+  if (pending_.empty()) return;
+  const std::size_t longer_by = pending_.size();
+  pending_ += closing_tags;
+  std::size_t done = 0;
+  while (done < pending_.size()) {
+    const ssize_t written =
+        pwrite(descriptor_, pending_.data() + done, pending_.size() - done, static_cast<off_t>(end_ + done));
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) fail_to_write(path_);
+    done += static_cast<std::size_t>(written);
+  }
+  end_ += longer_by;
+  pending_.clear();
+}
+
+}  // namespace supple

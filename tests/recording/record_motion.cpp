@@ -1,0 +1,181 @@
+// Writes a recording of objects whose place in each frame a script can compute: the program that the tests of
+// recordings stop in the middle, and whose output they read.
+//
+// usage: record_motion OUT.h5 FRAMES [OPTION...]
+//
+//   --contacts none|intersection|continuous
+//   --frames-between-flushes N  0 (default): the recorder flushes as it sees fit
+//   --copies N                  objects of each kind, 1
+//   --pause MICROSECONDS        after each frame
+//   --kill-at N                 the process ends itself, as kill -9 does, in place of its Nth write to a file
+//   --tear-at N                 the same, after the part of that write that lies in its first page
+//   --fail-at N                 that write and all after it fail as on a full disk
+//
+// It prints the number of frames after each flush, and at the end the number of writes.
+
+#include <fcntl.h>
+#include <signal.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "supple/models.hpp"
+#include "supple/recording.hpp"
+#include "supple/scene.hpp"
+
+namespace {
+
+std::int64_t writes = 0, kill_at = -1, tear_at = -1, fail_at = -1;
+
+ssize_t counted_write(int file, const void* bytes, std::size_t size, off_t offset) {
+  const std::int64_t number = writes++;
+  if (number == tear_at) {
+    const std::size_t in_page = 4096 - static_cast<std::size_t>(offset) % 4096;
+    syscall(SYS_pwrite64, file, bytes, std::min(size, in_page), offset);
+  }
+  if (number == tear_at || number == kill_at) kill(getpid(), SIGKILL);
+  if (fail_at >= 0 && number >= fail_at) {
+    errno = ENOSPC;
+    return -1;
+  }
+  return syscall(SYS_pwrite64, file, bytes, size, offset);
+}
+
+}  // namespace
+
+// Takes the place of the C library's in this program.
+extern "C" ssize_t pwrite(int file, const void* bytes, std::size_t size, off_t offset) {
+  return counted_write(file, bytes, size, offset);
+}
+extern "C" ssize_t pwrite64(int file, const void* bytes, std::size_t size, off_t offset) {
+  return counted_write(file, bytes, size, offset);
+}
+
+namespace {
+
+using namespace supple;
+
+struct Arguments {
+  std::string path;
+  std::uint64_t frames = 0, frames_between_flushes = 0, copies = 1, pause = 0;
+  ContactMode contacts = ContactMode::intersection;
+};
+
+Arguments parse(int count, char** words) {
+  Arguments arguments;
+  if (count < 3) std::exit(2);
+  arguments.path = words[1];
+  arguments.frames = std::strtoull(words[2], nullptr, 10);
+  for (int i = 3; i + 1 < count; i += 2) {
+    const std::string_view option = words[i], value = words[i + 1];
+    const std::int64_t number = std::strtoll(words[i + 1], nullptr, 10);
+    if (option == "--contacts")
+      arguments.contacts = value == "none"         ? ContactMode::none
+                           : value == "continuous" ? ContactMode::continuous
+                                                   : ContactMode::intersection;
+    else if (option == "--frames-between-flushes")
+      arguments.frames_between_flushes = static_cast<std::uint64_t>(number);
+    else if (option == "--copies")
+      arguments.copies = static_cast<std::uint64_t>(number);
+    else if (option == "--pause")
+      arguments.pause = static_cast<std::uint64_t>(number);
+    else if (option == "--kill-at")
+      kill_at = number;
+    else if (option == "--tear-at")
+      tear_at = number;
+    else if (option == "--fail-at")
+      fail_at = number;
+    else
+      std::exit(2);
+  }
+  return arguments;
+}
+
+/// A sphere that goes up and down along x through a box that stands, and a cloth that folds into itself.
+class Motion {
+ public:
+  explicit Motion(const Arguments& arguments) : scene_({.contacts = arguments.contacts, .threads = 1}) {
+    header_.time_step = 0.0078125;
+    header_.scene = scene_.options();
+    header_.scene_file = "# drawn up by record_motion\n";
+    for (std::uint64_t copy = 0; copy < arguments.copies; ++copy) {
+      ObjectOptions fixed, folding;
+      fixed.is_static = true;
+      folding.self_collision = true;
+      add(make_icosphere(2), "sphere", {});
+      add(make_box({1, 1, 1}, 2), "box", fixed);
+      add(make_cloth(4, 4), "cloth \xc3\xa9", folding);
+    }
+  }
+  const RecordingHeader& header() const { return header_; }
+
+  /// Moves everything to where it is in a frame and detects.
+  const DetectResult& step(std::uint64_t frame) {
+    for (std::size_t i = 0; i < header_.objects.size(); ++i) {
+      const RecordedObject& object = header_.objects[i];
+      if (object.options.is_static) continue;
+      const std::vector<Vec3d> from = positions_[i];
+      for (std::size_t v = 0; v < from.size(); ++v) positions_[i][v] = moved(object.rest_positions[v], frame);
+      if (scene_.options().contacts == ContactMode::continuous)
+        scene_.set_motion(object.id, from, positions_[i]);
+      else
+        scene_.set_positions(object.id, positions_[i]);
+    }
+    return scene_.detect();
+  }
+  std::vector<std::span<const Vec3d>> positions() const { return {positions_.begin(), positions_.end()}; }
+
+ private:
+  /// Exact in double: steps of 1/64, and a fold of y = |x| that opens and closes.
+  static Vec3d moved(Vec3d rest, std::uint64_t frame) {
+    const double place = static_cast<double>(frame % 64) / 64;
+    return {rest.x + place, rest.y * (1 - place), rest.z};
+  }
+  void add(const TriangleMesh& mesh, const char* name, ObjectOptions options) {
+    options.name = name;
+    header_.objects.push_back({scene_.add(mesh, options), options, mesh.positions, mesh.triangles});
+    positions_.push_back(mesh.positions);
+  }
+
+  Scene scene_;
+  RecordingHeader header_;
+  std::vector<std::vector<Vec3d>> positions_;
+};
+
+void run(const Arguments& arguments) {
+  Motion motion(arguments);
+  Recorder recorder(arguments.path, motion.header());
+  for (std::uint64_t frame = 0; frame < arguments.frames; ++frame) {
+    const DetectResult& result = motion.step(frame);
+    const auto positions = motion.positions();
+    recorder.add(static_cast<double>(frame) * motion.header().time_step, positions, result);
+    if (arguments.frames_between_flushes > 0 && (frame + 1) % arguments.frames_between_flushes == 0) {
+      recorder.flush();
+      std::printf("%llu\n", static_cast<unsigned long long>(frame + 1));
+      std::fflush(stdout);
+    }
+    if (arguments.pause > 0) usleep(static_cast<useconds_t>(arguments.pause));
+  }
+  recorder.close();
+  std::printf("writes %lld\n", static_cast<long long>(writes));
+}
+
+}  // namespace
+
+int main(int count, char** words) {
+  try {
+    run(parse(count, words));
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 2;
+  }
+}
