@@ -131,8 +131,10 @@ void print_man(const CLI::App& program) {
       ".SH EXIT STATUS\n"
       ".TP\n.B 0\nDone.\n"
       ".TP\n.B 1\nWith \\-\\-fail\\-on\\-contact: something touches. Of diff: the recordings differ.\n"
-      ".TP\n.B 2\nUsage or input error, told in one line on standard error.\n"
-      ".TP\n.B 3\nWith \\-\\-verify: brute force disagrees. Of ccd\\-queries: an answer is false.\n");
+      ".TP\n.B 2\nUsage or input error, told in one line on standard error. Of simulate: the motion blew "
+      "up.\n"
+      ".TP\n.B 3\nWith \\-\\-verify: brute force disagrees. Of ccd\\-queries: an answer is false.\n"
+      ".TP\n.B 130, 143\nOf simulate: interrupted by SIGINT, SIGTERM; its files are complete up to there.\n");
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 #include <fmt/ranges.h>
 
+#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -24,13 +25,13 @@ struct MeshInfo {
   std::string name;
   MeshTopology topology;
   std::uint64_t non_finite_vertices = 0;
-  std::optional<Bounds> bounds;  ///< of the finite vertices, none without any
+  std::optional<std::array<Vec3d, 2>> bounds;  ///< of the finite vertices, none without any
   OctreeStatistics octree;
 };
 
 void measure_positions(const TriangleMesh& mesh, MeshInfo& info) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
-  Bounds bounds{Vec3d{infinity, infinity, infinity}, Vec3d{-infinity, -infinity, -infinity}};
+  std::array<Vec3d, 2> bounds{Vec3d{infinity, infinity, infinity}, Vec3d{-infinity, -infinity, -infinity}};
   for (const Vec3d& p : mesh.positions) {
     if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) {
       ++info.non_finite_vertices;

@@ -6,11 +6,11 @@
 #include <algorithm>
 #include <cctype>
 #include <string_view>
+#include <utility>
 
 #include "recorded_input.hpp"
 #include "scene_file.hpp"
 #include "supple/error.hpp"
-#include "supple/formats.hpp"
 
 namespace supple::cli {
 namespace {
@@ -52,12 +52,6 @@ std::vector<fs::path> files_that_match(const std::string& pattern) {
   return {names.begin(), names.end()};
 }
 
-TriangleMesh read_mesh(const fs::path& path) {
-  if (!fs::exists(path))
-    throw Error(fmt::format("{}: there is no such file; check the folder and the spelling", path.string()));
-  return load_any_mesh(path);
-}
-
 }  // namespace
 
 bool natural_less(const std::string& a, const std::string& b) {
@@ -92,13 +86,13 @@ bool is_scene_file(const std::string& name) {
   return extension == ".toml";
 }
 
-Input read_objects(const std::vector<std::string>& names) {
+Input read_objects(const std::vector<std::string>& names, const SceneOverrides& overrides) {
   const auto scene = std::find_if(names.begin(), names.end(), is_scene_file);
   if (scene != names.end()) {
     if (names.size() > 1)
       throw Error(
           fmt::format("{}: a scene file stands alone; add the other meshes to it as objects", *scene));
-    return read_scene_file(*scene);
+    return read_scene_file(*scene, overrides);
   }
   if (const auto recording = std::find_if(names.begin(), names.end(), is_recording);
       recording != names.end()) {
@@ -117,36 +111,17 @@ Input read_sequence(const std::vector<std::string>& names) {
     throw Error(fmt::format("{}: a scene file is no frame of a sequence; leave out --sequence", *scene));
   if (const auto recording = std::find_if(names.begin(), names.end(), is_recording); recording != names.end())
     throw Error(fmt::format("{}: a recording has its own frames; leave out --sequence", *recording));
-  Input input;
-  input.frames = expand_patterns(names);
-  for (const fs::path& path : input.frames) {
+  FrameSequence frames;
+  frames.files = expand_patterns(names);
+  for (const fs::path& path : frames.files) {
     if (!fs::exists(path))
       throw Error(fmt::format("{}: there is no such file; check the folder and the spelling", path.string()));
   }
-  input.objects.push_back({read_mesh(input.frames.front()), {}, {}});
+  Input input;
+  input.frames = {frames.files.front().string(), frames.files.size()};
+  TriangleMesh first = read_mesh(frames.files.front());
+  input.objects.push_back({std::move(first), {}, std::move(frames)});
   return input;
-}
-
-TriangleMesh read_frame(const Input& sequence, std::size_t frame) {
-  const TriangleMesh& first = sequence.objects.front().mesh;
-  TriangleMesh mesh = read_mesh(sequence.frames[frame]);
-  const std::string name = sequence.frames[frame].string();
-  const auto check_count = [&](const char* what, std::size_t count, std::size_t expected) {
-    if (count == expected) return;
-    throw Error(
-        fmt::format("{}: has {} {}, but {} has {}; frames of a sequence are one object that only bends", name,
-                    count, what, sequence.frames.front().string(), expected));
-  };
-  check_count("vertices", mesh.positions.size(), first.positions.size());
-  check_count("triangles", mesh.triangles.size(), first.triangles.size());
-  const auto difference =
-      std::mismatch(mesh.triangles.begin(), mesh.triangles.end(), first.triangles.begin()).first;
-  if (difference != mesh.triangles.end())
-    throw Error(fmt::format(
-        "{}: triangle {} has other vertices than in {}; frames of a sequence are one object that only "
-        "bends",
-        name, difference - mesh.triangles.begin(), sequence.frames.front().string()));
-  return mesh;
 }
 
 }  // namespace supple::cli

@@ -1,50 +1,65 @@
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
+#include "frame_files.hpp"
 #include "supple/mesh.hpp"
 #include "supple/options.hpp"
+#include "supple/recording.hpp"
+#include "supple/simulation.hpp"
 #include "sway.hpp"
 
-namespace supple {
-class Recording;
-}
-
 namespace supple::cli {
+
+/// Where an object was in each frame of a recording.
+struct RecordedMotion {
+  std::shared_ptr<const Recording> recording;
+  std::size_t object = 0;  ///< its place in there
+};
+
+/// What moves an object from frame to frame.
+using Motion = std::variant<Sway, MassSpringMotion, FrameSequence, RecordedMotion>;
 
 /// An object to add to the scene, placed.
 struct InputObject {
   TriangleMesh mesh;
   ObjectOptions options;
-  std::optional<Sway> motion;
+  std::optional<Motion> motion;
 };
 
-/// What a command works on: objects, and what moves them from frame to frame.
+/// What a command works on: objects, and what moves them.
 struct Input {
   std::vector<InputObject> objects;
-  /// Frames of the one object, the first being its mesh; empty when the input is no sequence.
-  std::vector<std::filesystem::path> frames;
-  /// Says where the objects are in each frame; null when the input is no recording.
-  std::shared_ptr<const Recording> recording{};
-  std::string recording_name{};
-  std::optional<Bounds> bounds;
-  double time_step = 0.01;  ///< seconds between frames
+  SimulationOptions simulation;  ///< all but its scene
+  /// Of a sequence or a recording.
+  struct Frames {
+    std::string name{};  ///< in messages
+    std::uint64_t count = 0;
+  };
+  std::optional<Frames> frames{};
+  std::string scene_text;  ///< of the scene file; empty when there is none
+};
+
+/// What the command line says instead of the scene file.
+struct SceneOverrides {
+  std::optional<std::uint64_t> seed{};
+  std::optional<double> time_step{};
 };
 
 bool is_scene_file(const std::string& name);
 
 /// Meshes by name or quoted pattern (`part*.obj`, in natural number order), an object each; or one scene
 /// file; or one recording.
-Input read_objects(const std::vector<std::string>& names);
-/// The first frame, and the names of all.
+Input read_objects(const std::vector<std::string>& names, const SceneOverrides& overrides = {});
+/// The object of the first frame, moved by all of them.
 Input read_sequence(const std::vector<std::string>& names);
-/// A later frame of a sequence; throws `Error` when it is not the same object: other counts or other
-/// triangles.
-TriangleMesh read_frame(const Input& sequence, std::size_t frame);
 
 /// Each pattern replaced by the files that match, in natural number order: frame_9 before frame_10. Throws
 /// `Error` when none does.

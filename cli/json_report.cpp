@@ -99,9 +99,11 @@ void write_non_finite(JsonWriter& json, std::span<const NonFiniteVertex> vertice
   json.end_array();
 }
 
-void write_stats(JsonWriter& json, const StepStats& stats) {
+void write_stats(JsonWriter& json, const Frame& frame) {
+  const StepStats& stats = frame.result.stats;
   json.key("stats");
   json.begin_object();
+  if (frame.simulated) json.member("motion_seconds", frame.simulated->motion_seconds);
   json.member("refit_seconds", stats.refit_seconds);
   json.member("broad_phase_seconds", stats.broad_phase_seconds);
   json.member("traversal_seconds", stats.traversal_seconds);
@@ -166,6 +168,7 @@ void JsonReport::add(const Frame& frame) {
   const DetectResult& result = frame.result;
   json_.begin_object();
   json_.member("frame", frame.number);
+  if (frame.simulated) json_.member("time", frame.simulated->time);
   write_object_pairs(json_, "object_pairs", result.object_pairs);
   if (options_.contacts == ContactMode::continuous) {
     write_continuous_groups(json_, result, !options_.impact.exact);
@@ -187,7 +190,7 @@ void JsonReport::add(const Frame& frame) {
     else
       write_verify(json_, *frame.verify);
   }
-  if (content_.stats) write_stats(json_, result.stats);
+  if (content_.stats) write_stats(json_, frame);
   json_.end_object();
   json_.flush();
 }

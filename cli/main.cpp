@@ -11,6 +11,7 @@
 #include "info.hpp"
 #include "options.hpp"
 #include "output_file.hpp"
+#include "simulate.hpp"
 #include "text.hpp"
 
 namespace supple::cli {
@@ -20,6 +21,8 @@ int run(const CommandLine& line) {
   switch (line.command) {
     case CommandLine::Command::detect:
       return run_detect(line.detect);
+    case CommandLine::Command::simulate:
+      return run_simulate(line.simulate);
     case CommandLine::Command::info:
       return run_info(line.info);
     case CommandLine::Command::ccd_queries:

@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -53,6 +54,10 @@ CLI::Option* add_number(CLI::App& app, const std::string& name, Number& value, s
 /// A finite number ≥ 0.
 CLI::Option* add_length(CLI::App& app, const std::string& name, double& value,
                         const std::string& description);
+
+/// A finite number > 0; `unit` stands for it in the help.
+CLI::Option* add_seconds(CLI::App& app, const std::string& name, std::optional<double>& value,
+                         const std::string& unit, const std::string& description);
 
 /// A file to write, `-` being standard output.
 CLI::Option* add_file(CLI::App& app, const std::string& name, std::string& value,

@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <array>
+#include <limits>
 #include <map>
 #include <optional>
 #include <string>
@@ -25,13 +26,16 @@ constexpr const char* program_footer = R"(Examples:
   supple detect --contacts continuous --self --sequence 'frame_*.obj'
                                             what passes through something between two frames, and when?
   supple detect --help                      every option, with examples
+  supple simulate scene.toml --steps 300 --record run.h5
+                                            objects that move by themselves, and what touches on the way
   supple info rabbit.obj                    counts, bounds, holes, octree statistics
   supple ccd-queries edge-edge/*.csv        single continuous queries, compared with the answers known
   supple experiment scaling --quick         how does time grow with the number of objects, and does the paper say so?
   supple diff a.h5 b.h5                     where do two recordings differ first?
 
-Exit status: 0 done; 1 with --fail-on-contact when something touches, and of diff when recordings differ; 2 usage or input error, told in one line;
-3 with --verify when brute force disagrees, and of ccd-queries when an answer is false.)";
+Exit status: 0 done; 1 with --fail-on-contact when something touches, and of diff when recordings differ; 2 usage or
+input error, told in one line, and of simulate a motion that blows up; 3 with --verify when brute force disagrees, and of
+ccd-queries when an answer is false; 130 and 143 of simulate when it is interrupted, after it has closed its files.)";
 
 constexpr const char* detect_footer = R"(Examples:
   supple detect rabbit.obj fish.ply
@@ -66,6 +70,21 @@ constexpr const char* diff_footer = R"(Examples:
       The same as JSON on standard output.
 
 Seconds that were measured, and counts that depend on the number of threads, are not compared.)";
+
+constexpr const char* simulate_footer = R"(Examples:
+  supple simulate scenes/rabbit_pile.toml
+      Rabbits fall on each other: what touched, how fast it went, and where the time was spent.
+  supple simulate scenes/fish_tank.toml --seconds 10 --record run.h5
+      Every frame and contact in an HDF5 file; ParaView opens the run.xdmf beside it.
+  supple simulate scenes/table1_9.toml --steps 1000 --seed 7 --json - --no-stats
+      Another seed sends objects off in other directions; the same seed gives the same bytes everywhere.
+  supple simulate scenes/cloth_over_ball.toml --contacts continuous --self
+      Also what passes through something between two frames, and through itself.
+  supple simulate scenes/soft_block.toml --time-step 0.001
+      Shorter steps than the scene file's.
+
+N steps give N + 1 frames: frame 0 is the start, frame k what is there after k steps. Continuous contacts of frame k are
+those of the way from frame k - 1. Ctrl-C ends the run after the step that is under way, with its files and tables complete.)";
 
 constexpr const char* info_footer = R"(Examples:
   supple info rabbit.obj
@@ -140,7 +159,7 @@ void add_input_options(CLI::App& app, DetectOptions& options) {
       ->group("Input");
 }
 
-void add_stage_options(CLI::App& app, DetectOptions& options, Dependences& dependences) {
+void add_stage_options(CLI::App& app, DetectionOptions& options, Dependences& dependences) {
   SceneOptions& scene = options.scene;
   const auto group = [](CLI::Option* option) { return option->group("Detection"); };
   group(add_choice<ContactMode>(
@@ -172,7 +191,7 @@ void add_stage_options(CLI::App& app, DetectOptions& options, Dependences& depen
       add_number(app, "--threads", scene.threads, 0, 1024, "Worker threads, 0 for one a core (default: 0)"));
 }
 
-void add_method_options(CLI::App& app, DetectOptions& options, Dependences& dependences) {
+void add_method_options(CLI::App& app, DetectionOptions& options, Dependences& dependences) {
   SceneOptions& scene = options.scene;
   const auto group = [](CLI::Option* option) { return option->group("Method"); };
   const auto with_spheres = [&] { return scene.bounding_volume == BoundingVolume::sphere; };
@@ -210,7 +229,7 @@ void add_method_options(CLI::App& app, DetectOptions& options, Dependences& depe
             ->type_name("8|4|2"));
 }
 
-void add_output_options(CLI::App& app, DetectOptions& options, Dependences& dependences) {
+void add_output_options(CLI::App& app, DetectionOptions& options, Dependences& dependences) {
   const auto group = [](CLI::Option* option) { return option->group("Output"); };
   group(
       add_file(app, "--json", options.json, "Write the whole result, frame by frame; - is standard output"));
@@ -239,6 +258,34 @@ CLI::App* add_detect(CLI::App& program, DetectOptions& options, Dependences& dep
   add_input_options(*app, options);
   add_stage_options(*app, options, dependences);
   add_method_options(*app, options, dependences);
+  add_output_options(*app, options, dependences);
+  return app;
+}
+
+void add_simulation_options(CLI::App& app, SimulateOptions& options) {
+  app.add_option("SCENE.toml", options.input, "A scene file")->required()->type_name("");
+  const auto group = [](CLI::Option* option) { return option->group("Simulation"); };
+  CLI::Option* const steps = group(add_number(app, "--steps", options.steps, 1, 1'000'000'000,
+                                              "Steps to take (default: 300, without --seconds)"));
+  group(add_seconds(app, "--seconds", options.seconds, "S", "Simulated time, instead of steps"))
+      ->excludes(steps);
+  group(add_seconds(app, "--time-step", options.time_step, "H", "Seconds of a step, instead of the scene's"));
+  group(add_number(app, "--seed", options.seed, 0, std::numeric_limits<std::uint32_t>::max(),
+                   "Chooses what is random, instead of the scene's"));
+}
+
+CLI::App* add_simulate(CLI::App& program, SimulateOptions& options, Dependences& dependences) {
+  CLI::App* app = program.add_subcommand(
+      "simulate", "Let the objects of a scene move by themselves, and find every contact on the way");
+  app->footer(simulate_footer);
+  add_simulation_options(*app, options);
+  add_stage_options(*app, options, dependences);
+  add_method_options(*app, options, dependences);
+  app->add_option("--record", options.record,
+                  "Write positions, contacts, events and statistics of each frame as HDF5, and an XDMF file "
+                  "beside it that ParaView opens")
+      ->type_name("FILE.h5")
+      ->group("Output");
   add_output_options(*app, options, dependences);
   return app;
 }
@@ -296,7 +343,7 @@ void add_diff(CLI::App& program, DiffOptions& options) {
   app->add_flag("--quiet", options.quiet, "Only the exit status");
 }
 
-void check_outputs(const DetectOptions& options) {
+void check_outputs(const DetectionOptions& options) {
   if (options.json == "-" && options.csv == "-")
     throw CLI::ValidationError("--csv", "--json already writes to standard output; give one of them a file");
 }
@@ -322,6 +369,7 @@ CommandLine parse_command_line(int argument_count, const char* const* arguments)
 
   Dependences dependences;
   const CLI::App* detect = add_detect(program, result.detect, dependences);
+  const CLI::App* simulate = add_simulate(program, result.simulate, dependences);
   const CLI::App* info = add_info(program, result.info);
   const CLI::App* ccd_queries = add_ccd_queries(program, result.ccd_queries, dependences);
   add_diff(program, result.diff);
@@ -335,9 +383,12 @@ CommandLine parse_command_line(int argument_count, const char* const* arguments)
     if (program.get_subcommands().empty()) throw CLI::RequiredError::Subcommand(1);
     check(dependences);
     check_outputs(result.detect);
+    check_outputs(result.simulate);
     result.command = detect->parsed()        ? CommandLine::Command::detect
+                     : simulate->parsed()    ? CommandLine::Command::simulate
                      : info->parsed()        ? CommandLine::Command::info
                      : ccd_queries->parsed() ? CommandLine::Command::ccd_queries
+                     : experiment->parsed()  ? CommandLine::Command::experiment
                                              : CommandLine::Command::diff;
   } catch (const CLI::Success& success) {  // help and version
     result.exit_status = program.exit(success);

@@ -12,11 +12,8 @@
 
 namespace supple::cli {
 
-/// Of `supple detect`.
-struct DetectOptions {
-  std::vector<std::string> inputs;  ///< meshes, patterns, or one scene file or recording
-  bool sequence = false;            ///< the inputs are frames of one object
-  std::uint64_t steps = 1;          ///< of a scene file
+/// What finds contacts and reports them: of each command that does.
+struct DetectionOptions {
   SceneOptions scene;
   bool self = false;
   std::optional<std::uint32_t> max_level, leaf_size, tree_arity;
@@ -25,6 +22,23 @@ struct DetectOptions {
   bool quiet = false;
   JsonContent json_content;
   std::string json, csv;  ///< empty: none; "-": standard output
+};
+
+/// Of `supple detect`.
+struct DetectOptions : DetectionOptions {
+  std::vector<std::string> inputs;  ///< meshes, patterns, or one scene file or recording
+  bool sequence = false;            ///< the inputs are frames of one object
+  std::uint64_t steps = 1;          ///< of a scene file
+};
+
+/// Of `supple simulate`.
+struct SimulateOptions : DetectionOptions {
+  std::string input;  ///< a scene file
+  std::optional<std::uint64_t> steps;
+  std::optional<double> seconds;  ///< simulated; only one of the two is given
+  std::optional<std::uint64_t> seed;
+  std::optional<double> time_step;
+  std::string record;  ///< a file, or empty
 };
 
 /// Of `supple info`.
@@ -56,10 +70,11 @@ struct DiffOptions {
 };
 
 struct CommandLine {
-  enum class Command { detect, info, ccd_queries, diff, experiment, exit };
+  enum class Command { detect, simulate, info, ccd_queries, diff, experiment, exit };
   Command command = Command::exit;
   int exit_status = 0;  ///< of `Command::exit`: help, version or a usage error, already printed
   DetectOptions detect;
+  SimulateOptions simulate;
   InfoOptions info;
   CcdQueriesOptions ccd_queries;
   experiments::ExperimentOptions experiment;

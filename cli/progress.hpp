@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <string>
 #include <string_view>
 
 namespace supple::cli {
@@ -10,7 +11,8 @@ namespace supple::cli {
 /// standard error is no terminal.
 class Progress {
  public:
-  Progress(std::uint64_t total, bool enabled);
+  /// What `total` counts, e.g. `step`: its rate is shown too. Empty when it is not for people's eyes.
+  Progress(std::uint64_t total, bool enabled, std::string_view noun = {});
   /// Removes the line, so that what follows starts clean.
   ~Progress();
   Progress(const Progress&) = delete;
@@ -22,10 +24,17 @@ class Progress {
  private:
   using Clock = std::chrono::steady_clock;
 
+  /// `, 12.3 steps/s, 0:05 left`.
+  std::string pace(std::uint64_t done, Clock::time_point now);
+
   std::uint64_t total_;
   bool enabled_;
+  std::string noun_;
   bool shown_ = false;
   Clock::time_point next_;
+  Clock::time_point last_;  ///< when `last_done_` were done
+  std::uint64_t last_done_ = 0;
+  double rate_ = 0;  ///< a second, of the last seconds; 0 when not known yet
 };
 
 }  // namespace supple::cli

@@ -11,7 +11,13 @@ namespace supple::cli {
 struct Frame {
   std::uint64_t number = 0;
   const DetectResult& result;
-  std::optional<VerifyReport> verify;
+  std::optional<VerifyReport> verify{};
+  /// Of frames that are simulated.
+  struct Simulated {
+    double time = 0;            ///< s, since the start
+    double motion_seconds = 0;  ///< by the wall clock
+  };
+  std::optional<Simulated> simulated{};
 };
 
 }  // namespace supple::cli

@@ -4,7 +4,9 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <fstream>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <string>
@@ -12,6 +14,7 @@
 #include <vector>
 
 #include "placement.hpp"
+#include "scene_motion.hpp"
 #include "supple/error.hpp"
 #include "supple/formats.hpp"
 #include "supple/models.hpp"
@@ -25,13 +28,18 @@ namespace fs = std::filesystem;
 
 constexpr std::uint32_t most = std::numeric_limits<std::uint32_t>::max();
 
-toml::table parse_toml(const fs::path& path) {
+std::string read_text(const fs::path& path) {
   std::ifstream stream(path, std::ios::binary);
+  std::string text{std::istreambuf_iterator<char>(stream), {}};
   if (!stream || fs::is_directory(path))
     throw Error(
         fmt::format("{}: cannot read this scene file; check the folder and the spelling", path.string()));
+  return text;
+}
+
+toml::table parse_toml(const std::string& text, const fs::path& path) {
   try {
-    return toml::parse(stream, path.string());
+    return toml::parse(text, path.string());
   } catch (const toml::parse_error& error) {
     throw Error(fmt::format("{}:{}: not valid TOML: {}", path.string(), error.source().begin.line,
                             one_line(std::string(error.description()))));
@@ -90,10 +98,13 @@ TriangleMesh read_parametrised_model(TomlReader& reader, const std::string& name
 /// Meshes by file or model name: a scene often has the same one many times.
 using Shapes = std::map<std::string, TriangleMesh>;
 
-TriangleMesh read_shape(TomlReader& reader, const fs::path& folder, Shapes& shapes) {
+/// `frames` has the meshes of an object that is moved by files; it may do without another.
+TriangleMesh read_shape(TomlReader& reader, const fs::path& folder, const FrameSequence* frames,
+                        Shapes& shapes) {
   std::string mesh, model;
   reader.read("mesh", mesh);
   reader.read("model", model);
+  if (frames && mesh.empty() && model.empty()) return read_mesh(frames->files.front());
   if (reader.has("mesh") == reader.has("model"))
     reader.fail(reader.has("mesh") ? "model" : "", "give either mesh = \"FILE\" or model = \"NAME\"");
   if (reader.has("model")) {
@@ -131,66 +142,117 @@ ObjectOptions read_options(TomlReader& reader) {
   return options;
 }
 
-std::optional<Sway> read_motion(TomlReader& object, const fs::path& path, const std::string& where) {
-  const toml::table* table = object.table("motion");
-  if (!table) return std::nullopt;
-  TomlReader reader(path, *table, where + ": motion");
-  std::string kind;
-  reader.read("kind", kind);
-  if (kind != "sway") reader.fail("kind", "must be kind = \"sway\"");
-  Sway motion;
-  reader.read("velocity", motion.velocity);
-  reader.read("amplitude", motion.amplitude);
-  reader.read_positive("wavelength", motion.wavelength);
-  reader.read_positive("period", motion.period);
-  reader.read("seed", motion.seed);
-  reader.finish();
-  return motion;
-}
+/// Copies of an object on a grid.
+struct Copies {
+  std::array<std::uint32_t, 3> repeat{1, 1, 1};
+  Vec3d spacing;
+  bool random_rotation = false;
 
-InputObject read_object(const toml::table& table, const fs::path& path, const std::string& where,
-                        Shapes& shapes) {
-  TomlReader reader(path, table, where);
-  InputObject object;
-  object.options = read_options(reader);
-  const Placement placement = read_placement(reader);
-  object.motion = read_motion(reader, path, where);
-  if (object.motion && object.options.is_static)
-    reader.fail("motion", "a static object does not move; leave out motion or static");
-  object.mesh = read_shape(reader, path.parent_path(), shapes);
-  reader.finish();
-  place(object.mesh.positions, placement);
-  if (!object.options.name.empty()) object.mesh.name = object.options.name;
-  return object;
-}
+  std::uint64_t count() const { return std::uint64_t{repeat[0]} * repeat[1] * repeat[2]; }
+  /// Of a copy from the middle of the grid. Copies are counted along x first, then y, then z.
+  Vec3d offset(std::uint64_t copy) const;
+};
 
-void read_scene(const toml::table& table, const fs::path& path, Input& input) {
-  TomlReader reader(path, table, "[scene]");
-  Bounds bounds;
-  reader.read_points("bounds", bounds.data(), bounds.size());
-  if (reader.has("bounds")) {
-    for (int axis = 0; axis < 3; ++axis) {
-      if (!(bounds[0][axis] < bounds[1][axis]))
-        reader.fail("bounds", "each coordinate of the first corner must be below the second's");
-    }
-    input.bounds = bounds;
+Vec3d Copies::offset(std::uint64_t copy) const {
+  Vec3d offset;
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::uint32_t along = repeat[static_cast<std::size_t>(axis)];
+    offset[axis] = (static_cast<double>(copy % along) - 0.5 * (along - 1.0)) * spacing[axis];
+    copy /= along;
   }
-  reader.read_positive("time_step", input.time_step);
+  return offset;
+}
+
+Copies read_copies(TomlReader& reader) {
+  constexpr std::uint32_t most_copies = 1'000'000;
+  Copies copies;
+  reader.read("repeat", copies.repeat, 1, most_copies);
+  reader.read("spacing", copies.spacing);
+  reader.read("random_rotation", copies.random_rotation);
+  if (reader.has("spacing") && !reader.has("repeat"))
+    reader.fail("spacing", "has no effect without repeat = [nx, ny, nz]");
+  if (copies.count() > most_copies)
+    reader.fail("repeat", fmt::format("these are {} copies; {} are allowed", copies.count(), most_copies));
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (copies.repeat[axis] > 1 && copies.spacing[static_cast<int>(axis)] == 0)
+      reader.fail("repeat", "needs spacing = [dx, dy, dz] along each axis with more than one copy");
+  }
+  return copies;
+}
+
+void read_objects(const toml::table& table, const fs::path& path, const std::string& where, Vec3d gravity,
+                  Shapes& shapes, Input& input) {
+  TomlReader reader(path, table, where);
+  const ObjectOptions options = read_options(reader);
+  const Placement placement = read_placement(reader);
+  const Copies copies = read_copies(reader);
+  SceneMotion motion(reader, path, where, gravity);
+  if (!motion.empty() && options.is_static)
+    reader.fail("motion", "a static object does not move; leave out motion or static");
+  const TriangleMesh mesh = read_shape(reader, path.parent_path(), motion.frames(), shapes);
   reader.finish();
+
+  for (std::uint64_t copy = 0; copy < copies.count(); ++copy) {
+    Placement placed = placement;
+    if (copies.count() > 1) placed.translate = placed.translate + copies.offset(copy);
+    if (copies.random_rotation) placed.turn = random_rotation(input.simulation.seed, input.objects.size());
+    InputObject& object = input.objects.emplace_back(InputObject{mesh, options, {}});
+    place(object.mesh.positions, placed);
+    object.motion = motion.of_copy(copy, placed, object.mesh.positions);
+    if (!options.name.empty()) object.mesh.name = options.name;
+    if (copies.count() > 1) object.mesh.name += fmt::format(" {}", copy + 1);
+    object.options.name = object.mesh.name;
+  }
+  motion.check_boxes();
+}
+
+ContactResponse read_response(const toml::table& table, const fs::path& path) {
+  TomlReader reader(path, table, "[scene]: response");
+  ContactResponse response;
+  response.enabled = true;
+  reader.read_positive("thickness", response.thickness);
+  reader.read_non_negative("restitution", response.restitution);
+  if (response.restitution > 1) reader.fail("restitution", "must be a number from 0 to 1");
+  reader.read_non_negative("friction", response.friction);
+  reader.read("iterations", response.iterations, 1, 1000);
+  reader.finish();
+  return response;
+}
+
+/// Returns the gravity of its masses and springs.
+Vec3d read_scene(const toml::table& table, const fs::path& path, SimulationOptions& simulation) {
+  TomlReader reader(path, table, "[scene]");
+  if (reader.has("bounds")) reader.read_box("bounds", simulation.border.emplace(), false);
+  reader.read_positive("time_step", simulation.time_step);
+  reader.read("seed", simulation.seed);
+  Vec3d gravity;
+  reader.read("gravity", gravity);
+  if (const toml::table* response = reader.table("response"))
+    simulation.response = read_response(*response, path);
+  reader.finish();
+  return gravity;
 }
 
 }  // namespace
 
-Input read_scene_file(const fs::path& path) {
-  const toml::table file = parse_toml(path);
-  TomlReader reader(path, file, "scene file");
+Input read_scene_file(const fs::path& path, const SceneOverrides& overrides) {
+  return read_scene_text(read_text(path), path, overrides);
+}
+
+Input read_scene_text(std::string text, const fs::path& path, const SceneOverrides& overrides) {
   Input input;
-  if (const toml::table* scene = reader.table("scene")) read_scene(*scene, path, input);
-  const std::vector<const toml::table*> objects = reader.tables("object");
+  input.scene_text = std::move(text);
+  const toml::table file = parse_toml(input.scene_text, path);
+  TomlReader reader(path, file, "scene file");
+  Vec3d gravity;
+  if (const toml::table* scene = reader.table("scene")) gravity = read_scene(*scene, path, input.simulation);
+  const std::vector<const toml::table*> objects = reader.tables("object", "[[object]]");
   reader.finish();
+  input.simulation.seed = overrides.seed.value_or(input.simulation.seed);
+  input.simulation.time_step = overrides.time_step.value_or(input.simulation.time_step);
   Shapes shapes;
   for (std::size_t i = 0; i < objects.size(); ++i)
-    input.objects.push_back(read_object(*objects[i], path, fmt::format("[[object]] {}", i), shapes));
+    read_objects(*objects[i], path, fmt::format("[[object]] {}", i), gravity, shapes, input);
   if (input.objects.empty())
     throw Error(fmt::format("{}: has no objects; add an [[object]] with mesh or model", path.string()));
   return input;

@@ -4,20 +4,14 @@
 #include <cmath>
 #include <limits>
 
+#include "random.hpp"
 #include "supple/trigonometry.hpp"
 
 namespace supple::cli {
 namespace {
 
-/// A number of [0, 1) that depends on all bits of the seed (the SplitMix64 generator by Steele, Lea and
-/// Flood, 2014).
 double random_phase(std::uint64_t seed, std::uint64_t axis) {
-  std::uint64_t z = seed * 3 + axis + 1;
-  z *= 0x9e3779b97f4a7c15u;
-  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-  z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-  z ^= z >> 31;
-  return static_cast<double>(z >> 11) / 9007199254740992.0;
+  return random_unit(seed * 3 + axis + 1);
 }
 
 /// Where a point that started at 0 is after `distance`, thrown back at `lowest` ≤ 0 and `highest` ≥ 0.
@@ -29,18 +23,18 @@ double reflect(double distance, double lowest, double highest) {
   return lowest + (there_and_back <= room ? there_and_back : 2 * room - there_and_back);
 }
 
-double drift(const Sway& motion, const std::optional<Bounds>& bounds, const std::vector<Vec3d>& rest,
-             int axis, double seconds) {
+double drift(const Sway& motion, const std::optional<Border>& border, std::span<const Vec3d> rest, int axis,
+             double seconds) {
   const double distance = motion.velocity[axis] * seconds;
-  if (!bounds) return distance;
+  if (!border) return distance;
   double lowest = std::numeric_limits<double>::infinity(), highest = -lowest;
   for (const Vec3d& p : rest) {
     if (!std::isfinite(p[axis])) continue;
     lowest = std::min(lowest, p[axis]);
     highest = std::max(highest, p[axis]);
   }
-  const double room_below = (*bounds)[0][axis] - (lowest - motion.amplitude);
-  const double room_above = (*bounds)[1][axis] - (highest + motion.amplitude);
+  const double room_below = (*border)[0][axis] - (lowest - motion.amplitude);
+  const double room_above = (*border)[1][axis] - (highest + motion.amplitude);
   if (!(room_below < room_above)) return 0;
   // An object that starts beyond the border is first brought to it.
   const double start = std::clamp(0.0, room_below, room_above);
@@ -49,16 +43,15 @@ double drift(const Sway& motion, const std::optional<Bounds>& bounds, const std:
 
 }  // namespace
 
-void sway(const Sway& motion, const std::optional<Bounds>& bounds, const std::vector<Vec3d>& rest,
-          double seconds, std::vector<Vec3d>& positions) {
+void sway(const Sway& motion, const std::optional<Border>& border, std::span<const Vec3d> rest,
+          double seconds, std::span<Vec3d> positions) {
   Vec3d offset;
   std::array<double, 3> phase;
   for (int axis = 0; axis < 3; ++axis) {
-    offset[axis] = drift(motion, bounds, rest, axis, seconds);
+    offset[axis] = drift(motion, border, rest, axis, seconds);
     phase[static_cast<std::size_t>(axis)] =
         random_phase(motion.seed, static_cast<std::uint64_t>(axis)) + seconds / motion.period;
   }
-  positions.resize(rest.size());
   for (std::size_t i = 0; i < rest.size(); ++i) {
     const Vec3d p = rest[i];
     // Each wave moves points along one axis and runs along another, so that the object bends and shears.

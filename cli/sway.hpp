@@ -1,16 +1,13 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <optional>
-#include <vector>
+#include <span>
 
+#include "supple/simulation.hpp"
 #include "supple/types.hpp"
 
 namespace supple::cli {
-
-/// The border of a scene's motion: lowest and highest corner.
-using Bounds = std::array<Vec3d, 2>;
 
 /// An analytic deformation: an object drifts, turned back at the border of the scene, while waves run through
 /// it. A function of time alone, so that any frame can be had at once and is the same bits everywhere.
@@ -22,9 +19,9 @@ struct Sway {
   std::uint64_t seed = 0;  ///< chooses the phases of the waves
 };
 
-/// The positions at `seconds`, from those at rest. Without bounds the drift goes on for ever; in bounds
+/// The positions at `seconds`, from those at rest. Without a border the drift goes on for ever; within one
 /// smaller than the object it stays in place along that axis.
-void sway(const Sway& motion, const std::optional<Bounds>& bounds, const std::vector<Vec3d>& rest,
-          double seconds, std::vector<Vec3d>& positions);
+void sway(const Sway& motion, const std::optional<Border>& border, std::span<const Vec3d> rest,
+          double seconds, std::span<Vec3d> positions);
 
 }  // namespace supple::cli

@@ -44,6 +44,11 @@ void TextReport::add(const Frame& frame) {
   }
   impacts_.add(frame);
   add_to(sum_, result.stats);
+  if (frame.simulated) {
+    simulated_ = true;
+    motion_seconds_ += frame.simulated->motion_seconds;
+  }
+  volumes_begun_ += result.volume_events.begin.size();
   begun_ += result.contact_events.begin.size();
   ended_ += result.contact_events.end.size();
   non_finite_ = result.non_finite_vertices.size();
@@ -54,14 +59,14 @@ void TextReport::add(const Frame& frame) {
 }
 
 void TextReport::print(const Scene& scene) const {
-  const char* const frame = scene.options().contacts == ContactMode::continuous ? "step" : "frame";
   const std::vector<ObjectId> objects = scene.objects();
   std::uint64_t triangles = 0;
   for (const ObjectId object : objects) triangles += scene.triangle_count(object);
   fmt::print("{}, {}, {}\n\n", counted(objects.size(), "object"), counted(triangles, "triangle"),
-             counted(frames_, frame));
+             counted(frames_, noun_));
   print_contacts(scene);
-  print_stages(frame);
+  if (simulated_) print_collisions();
+  print_stages();
   if (non_finite_ > 0)
     fmt::print("\n{} not finite in the last frame: triangles that use such vertices touch nothing\n",
                counted(non_finite_, "position"));
@@ -99,13 +104,21 @@ void TextReport::print_pairs(const Scene& scene) const {
              counted(sum_.contacts, "triangle pair"), counted(begun_, "time"), counted(ended_, "time"));
 }
 
-void TextReport::print_stages(const char* frame) const {
+void TextReport::print_collisions() const {
+  fmt::print(
+      "collisions: {} that two objects' volumes began to overlap, {} that two objects began to touch\n\n",
+      counted(volumes_begun_, "time"), counted(begun_, "time"));
+}
+
+void TextReport::print_stages() const {
   const double frames = static_cast<double>(std::max<std::uint64_t>(frames_, 1));
+  const double total_seconds = sum_.total_seconds + motion_seconds_;
   const auto row = [&](const char* stage, double seconds, const std::string& work) {
-    const double share = sum_.total_seconds > 0 ? 100 * seconds / sum_.total_seconds : 0;
+    const double share = total_seconds > 0 ? 100 * seconds / total_seconds : 0;
     fmt::print("{:<12} {:>14.3f} {:>7.0f} %   {}\n", stage, 1e3 * seconds / frames, share, work);
   };
-  fmt::print("{:<12} {:>14} {:>9}   in all {}s\n", "stage", fmt::format("ms a {}", frame), "share", frame);
+  fmt::print("{:<12} {:>14} {:>9}   in all {}s\n", "stage", fmt::format("ms a {}", noun_), "share", noun_);
+  if (simulated_) row("motion", motion_seconds_, "");
   row("refit", sum_.refit_seconds, counted(sum_.triangles_refitted, "triangle"));
   row("broad phase", sum_.broad_phase_seconds,
       fmt::format("{} of {} tested", counted(sum_.object_pairs, "object pair"),
@@ -119,7 +132,7 @@ void TextReport::print_stages(const char* frame) const {
       fmt::format("{}, {} decided by exact arithmetic", counted(sum_.contacts, "contact"),
                   grouped(sum_.exact_fallbacks)));
   row("finish", sum_.finish_seconds, "");
-  row("total", sum_.total_seconds, "");
+  row("total", total_seconds, "");
 }
 
 void TextReport::print_verify(const Scene& scene) const {

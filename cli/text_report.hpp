@@ -2,6 +2,8 @@
 
 #include <cstdint>
 #include <map>
+#include <string>
+#include <utility>
 
 #include "impact_tables.hpp"
 #include "report.hpp"
@@ -12,6 +14,9 @@ namespace supple::cli {
 /// Tables of all frames together: which objects touch, what each stage did and how long it took.
 class TextReport {
  public:
+  /// `noun` is what a frame is called: `frame` or `step`.
+  explicit TextReport(std::string noun) : noun_(std::move(noun)) {}
+
   void add(const Frame& frame);
   /// Prints to standard output.
   void print(const Scene& scene) const;
@@ -25,14 +30,18 @@ class TextReport {
 
   void print_contacts(const Scene& scene) const;
   void print_pairs(const Scene& scene) const;
-  void print_stages(const char* frame) const;
+  void print_collisions() const;
+  void print_stages() const;
   void print_verify(const Scene& scene) const;
 
+  std::string noun_;
   std::uint64_t frames_ = 0;
   std::map<ObjectPair, PairSummary> pairs_;
   ImpactTables impacts_;  ///< of continuous contacts
   StepStats sum_;
-  std::uint64_t begun_ = 0, ended_ = 0;
+  std::uint64_t volumes_begun_ = 0, begun_ = 0, ended_ = 0;
+  bool simulated_ = false;
+  double motion_seconds_ = 0;
   std::uint64_t non_finite_ = 0;  ///< in the last frame
   bool verified_ = false;
   std::uint64_t checked_ = 0, differences_ = 0;

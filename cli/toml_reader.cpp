@@ -71,6 +71,35 @@ void TomlReader::read_positive(const std::string& key, double& value) {
   if (has(key) && !(value > 0)) fail(key, "must be a number above 0");
 }
 
+void TomlReader::read_non_negative(const std::string& key, double& value) {
+  read(key, value);
+  if (has(key) && !(value >= 0)) fail(key, "must be a number from 0 up");
+}
+
+std::size_t TomlReader::choice(const std::string& key, const std::vector<std::string>& words) {
+  if (!has(key)) return none_given;
+  std::string given;
+  read(key, given);
+  const auto found = std::find(words.begin(), words.end(), given);
+  if (found == words.end()) fail(key, fmt::format("'{}' is not one of {}", given, fmt::join(words, ", ")));
+  return static_cast<std::size_t>(found - words.begin());
+}
+
+void TomlReader::read(const std::string& key, std::array<std::uint32_t, 3>& value, std::uint32_t lowest,
+                      std::uint32_t highest) {
+  const toml::node* found = node(key);
+  if (!found) return;
+  const std::string expected = fmt::format("must be three whole numbers from {} to {}", lowest, highest);
+  const toml::array* array = found->as_array();
+  if (!array || array->size() != value.size()) fail_at(found->source(), key, expected);
+  for (std::size_t i = 0; i < value.size(); ++i) {
+    const auto* number = (*array)[i].as_integer();
+    if (!number || number->get() < lowest || number->get() > highest)
+      fail_at((*array)[i].source(), key, expected);
+    value[i] = static_cast<std::uint32_t>(number->get());
+  }
+}
+
 void TomlReader::read(const std::string& key, Vec3d& value) {
   if (const toml::node* found = node(key)) value = point(*found, key, "three finite numbers, [x, y, z]");
 }
@@ -84,13 +113,31 @@ void TomlReader::read(const std::string& key, std::uint64_t& value) {
   if (has(key)) value = static_cast<std::uint64_t>(integer(key, 0, std::numeric_limits<std::int64_t>::max()));
 }
 
-void TomlReader::read_points(const std::string& key, Vec3d* points, std::size_t count) {
+std::array<Vec3d, 2> TomlReader::corners(const toml::node& node, const std::string& key, const char* expected,
+                                         bool may_be_flat) const {
+  const toml::array* array = node.as_array();
+  if (!array || array->size() != 2) fail_at(node.source(), key, fmt::format("must be {}", expected));
+  const std::array<Vec3d, 2> box{point((*array)[0], key, expected), point((*array)[1], key, expected)};
+  for (int axis = 0; axis < 3; ++axis) {
+    if (box[0][axis] < box[1][axis] || (may_be_flat && box[0][axis] == box[1][axis])) continue;
+    fail_at(node.source(), key,
+            fmt::format("each coordinate of the first corner must {} the second's",
+                        may_be_flat ? "not be above" : "be below"));
+  }
+  return box;
+}
+
+void TomlReader::read_box(const std::string& key, std::array<Vec3d, 2>& box, bool may_be_flat) {
+  if (const toml::node* found = node(key))
+    box = corners(*found, key, "two corners, [[x, y, z], [x, y, z]], the lowest first", may_be_flat);
+}
+
+void TomlReader::read(const std::string& key, std::vector<std::array<Vec3d, 2>>& boxes) {
+  constexpr const char* expected = "an array of boxes, each [[x, y, z], [x, y, z]], the lowest corner first";
   const toml::node* found = node(key);
   if (!found) return;
-  const std::string expected = fmt::format("an array of {} points, each [x, y, z]", count);
-  const toml::array* array = found->as_array();
-  if (!array || array->size() != count) fail_at(found->source(), key, "must be " + expected);
-  for (std::size_t i = 0; i < count; ++i) points[i] = point((*array)[i], key, expected.c_str());
+  if (!found->is_array()) fail_at(found->source(), key, fmt::format("must be {}", expected));
+  for (const toml::node& one : *found->as_array()) boxes.push_back(corners(one, key, expected, true));
 }
 
 const toml::table* TomlReader::table(const std::string& key) {
@@ -99,12 +146,12 @@ const toml::table* TomlReader::table(const std::string& key) {
   return found ? found->as_table() : nullptr;
 }
 
-std::vector<const toml::table*> TomlReader::tables(const std::string& key) {
+std::vector<const toml::table*> TomlReader::tables(const std::string& key, const std::string& written) {
   const toml::node* found = node(key);
   std::vector<const toml::table*> tables;
   if (!found) return tables;
   if (!found->is_array_of_tables())
-    fail_at(found->source(), key, fmt::format("must be written [[{}]], once for each", key));
+    fail_at(found->source(), key, fmt::format("must be written {}, once for each", written));
   for (const toml::node& table : *found->as_array()) tables.push_back(table.as_table());
   return tables;
 }

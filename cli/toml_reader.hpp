@@ -2,9 +2,11 @@
 
 #include <toml++/toml.h>
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "supple/types.hpp"
@@ -29,12 +31,22 @@ class TomlReader {
   void read(const std::string& key, std::uint32_t& value, std::uint32_t lowest, std::uint32_t highest);
   void read(const std::string& key, std::uint64_t& value);
   void read_positive(const std::string& key, double& value);
-  /// An array of as many points as `points` has.
-  void read_points(const std::string& key, Vec3d* points, std::size_t count);
+  void read_non_negative(const std::string& key, double& value);
+  /// One of a few words.
+  template <class Value>
+  void read_choice(const std::string& key, Value& value,
+                   const std::vector<std::pair<std::string, Value>>& choices);
+  /// Three whole numbers.
+  void read(const std::string& key, std::array<std::uint32_t, 3>& value, std::uint32_t lowest,
+            std::uint32_t highest);
+  /// Lowest and highest corner; along each axis the first is below the second.
+  void read_box(const std::string& key, std::array<Vec3d, 2>& box, bool may_be_flat);
+  /// An array of boxes, each [lowest corner, highest corner]; these may be flat.
+  void read(const std::string& key, std::vector<std::array<Vec3d, 2>>& boxes);
   /// The table under a key, or null.
   const toml::table* table(const std::string& key);
-  /// The tables of `[[key]]`.
-  std::vector<const toml::table*> tables(const std::string& key);
+  /// The tables of an array; `written` says how the array is written in a scene file.
+  std::vector<const toml::table*> tables(const std::string& key, const std::string& written);
 
   /// Throws for a key that was never asked for.
   void finish() const;
@@ -46,6 +58,11 @@ class TomlReader {
   double number(const toml::node& node, const std::string& key, const char* expected) const;
   Vec3d point(const toml::node& node, const std::string& key, const char* expected) const;
   std::int64_t integer(const std::string& key, std::int64_t lowest, std::int64_t highest);
+  std::array<Vec3d, 2> corners(const toml::node& node, const std::string& key, const char* expected,
+                               bool may_be_flat) const;
+  /// Which of the words a key has; `none_given` when the key is absent.
+  std::size_t choice(const std::string& key, const std::vector<std::string>& words);
+  static constexpr std::size_t none_given = static_cast<std::size_t>(-1);
   [[noreturn]] void fail_at(const toml::source_region& place, const std::string& key,
                             const std::string& what) const;
 
@@ -54,5 +71,13 @@ class TomlReader {
   std::string where_;
   std::vector<std::string> known_;
 };
+
+template <class Value>
+void TomlReader::read_choice(const std::string& key, Value& value,
+                             const std::vector<std::pair<std::string, Value>>& choices) {
+  std::vector<std::string> words;
+  for (const auto& [word, meaning] : choices) words.push_back(word);
+  if (const std::size_t chosen = choice(key, words); chosen != none_given) value = choices[chosen].second;
+}
 
 }  // namespace supple::cli

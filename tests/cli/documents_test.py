@@ -26,7 +26,7 @@ class Documents(ProgramTest):
 
     def test_manual_page_has_every_option(self):
         page = (ROOT / "docs/supple.1").read_text().replace("\\-", "-")
-        for command in ("detect", "info", "ccd-queries"):
+        for command in ("detect", "simulate", "info", "ccd-queries"):
             for flag in re.findall(r"^  (--[a-z-]+)", run(command, "--help").out, re.M):
                 self.assertIn(flag, page)
 
@@ -38,14 +38,17 @@ class Documents(ProgramTest):
         example = re.search(r"```toml\n(.*?)```", page, re.S)[1]
         self.write("scene.toml", example)
         self.write("meshes/cow.obj", ([(0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0)], [(0, 1, 2)]))
-        self.assertEqual([o["name"] for o in self.detect("scene.toml", "--steps", "2")["objects"]], ["cow", "fish"])
+        self.assertEqual([o["name"] for o in self.detect("scene.toml", "--steps", "2")["objects"]], ["cow", "fish"] + [f"ball {n}" for n in range(1, 19)])
 
     def test_scene_file_page_names_every_key(self):
         page = (ROOT / "docs/scene_file.md").read_text()
         for section, keys in (
             ("[scene]\nx = 1\n", r"allowed here: (.*?);? "),
             ("[[object]]\nmodel = 'box'\nx = 1\n", r"allowed here: (.*?)$"),
+            ("[scene]\nresponse = {x = 1}\n", r"allowed here: (.*?)$"),
             ("[[object]]\nmodel = 'box'\nmotion = {kind = 'sway', x = 1}\n", r"allowed here: (.*?)$"),
+            ("[[object]]\nmodel = 'box'\nmotion = {kind = 'mass_spring', x = 1}\n", r"allowed here: (.*?)$"),
+            ("[[object]]\nmotion = {kind = 'frames', files = 'x.toml', x = 1}\n", r"allowed here: (.*?)$"),
         ):
             error = self.run_here("detect", self.write("x.toml", section)).error.strip()
             for key in error.split("allowed here: ")[1].split(", "):

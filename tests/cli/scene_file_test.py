@@ -1,6 +1,7 @@
 """Scene files: what they mean, bit for bit, and what is said about a wrong one."""
 
 import hashlib
+import json
 import math
 import unittest
 
@@ -135,6 +136,133 @@ class Meaning(ProgramTest):
         self.assertEqual({object for pair in began for object in pair}, set(range(9)))
 
 
+SPRINGS = 'motion = {{ kind = "mass_spring", {} }}\n'
+
+
+class Copies(ProgramTest):
+    def objects(self, text, steps=1, *arguments):
+        """Names, and which objects touch in each frame."""
+        self.write("scene.toml", text)
+        result = self.detect("scene.toml", "--steps", str(steps), *arguments)
+        return [o["name"] for o in result["objects"]], [f["object_pairs"] for f in result["frames"]]
+
+    def test_names_and_places(self):
+        # A grid of 2 x 1 x 3 about (1, 0, 0); the probe, which comes last, is where the copy in the far corner is.
+        grid = '[[object]]\nname = "fish"\nmodel = "box"\nsize = [0.1, 0.1, 0.1]\ntranslate = [1, 0, 0]\n' \
+               "repeat = [2, 1, 3]\nspacing = [2, 0, 5]\n"
+        for x, z, copy in ((0, -5, 1), (2, -5, 2), (0, 0, 3), (2, 5, 6)):
+            probe = f'[[object]]\nmodel = "box"\nsize = [0.01, 0.01, 0.01]\ntranslate = [{x}, 0, {z}]\n'
+            names, frames = self.objects(grid + probe)
+            self.assertEqual(names, [f"fish {n}" for n in range(1, 7)] + ["box"])
+            self.assertEqual(frames, [[[copy - 1, 6]]])
+
+    def test_a_single_copy_keeps_its_name(self):
+        self.assertEqual(self.objects('[[object]]\nmodel = "box"\nrepeat = [1, 1, 1]\n')[0], ["box"])
+
+    def test_random_rotation_keeps_shape_and_place_and_follows_the_seed(self):
+        bounds = {}
+        for seed in (1, 2):
+            self.write("scene.toml", f'[scene]\nseed = {seed}\n[[object]]\nmodel = "box"\nsize = [4, 2, 1]\n'
+                       "repeat = [3, 1, 1]\nspacing = [10, 0, 0]\nrandom_rotation = true\n")
+            done = self.run_here("info", "scene.toml", "--json", "-")
+            bounds[seed] = [o["bounds"] for o in json.loads(done.out)["objects"]]
+            for copy, (low, high) in enumerate(bounds[seed]):
+                center = [(a + b) / 2 for a, b in zip(low, high)]
+                for value, expected in zip(center, (10 * (copy - 1), 0, 0)):
+                    self.assertAlmostEqual(value, expected)
+                # Of a turned box the squares of the half sides lie between the shortest and the diagonal.
+                for a, b in zip(low, high):
+                    self.assertTrue(0.5 - 1e-9 <= (b - a) / 2 <= math.sqrt(21) / 2 + 1e-9)
+        corners = [str(b) for b in bounds[1] + bounds[2]]
+        self.assertEqual(len(set(corners)), 6)
+
+    def test_copies_sway_apart(self):
+        text = '[[object]]\nmodel = "box"\nrepeat = [2, 1, 1]\nspacing = [1.05, 0, 0]\n' \
+               'motion = { kind = "sway", amplitude = 0.2, seed = 1 }\n'
+        _, frames = self.objects(text, 100)
+        self.assertIn([], frames)
+        self.assertIn([[0, 1]], frames)
+
+
+class Frames(ProgramTest):
+    def setUp(self):
+        super().setUp()
+        for number, shift in ((1, 0.0), (2, 1.0), (10, 2.0)):
+            self.write(f"frames/f_{number}.obj", ([(x + shift, y, z) for x, y, z in TRIANGLE[0]], TRIANGLE[1]))
+        # Crosses the placed triangle only where the second frame has it.
+        self.write("probe.obj", ([(12.2, 0.2, -1.0), (12.2, 0.2, 1.0), (12.21, 0.2, 0.0)], [(0, 1, 2)]))
+
+    def touching(self, keys, steps):
+        self.write("scene.toml", '[[object]]\nmesh = "probe.obj"\n[[object]]\nscale = 2\ntranslate = [10, 0, 0]\n'
+                   f'motion = {{ kind = "frames", files = "frames/f_*.obj"{keys} }}\n')
+        frames = self.detect("scene.toml", "--steps", str(steps))["frames"]
+        return [f["frame"] for f in frames if f["contacts"]]
+
+    def test_frame_k_at_step_k_then_the_last_holds(self):
+        self.assertEqual(self.touching("", 8), [1])
+
+    def test_loop(self):
+        self.assertEqual(self.touching(", loop = true", 8), [1, 4, 7])
+
+    def test_other_topology_is_an_error(self):
+        self.write("frames/f_3.obj", (TRIANGLE[0], [(0, 2, 1)]))
+        self.write("scene.toml", '[[object]]\nmotion = { kind = "frames", files = "frames/f_*.obj" }\n')
+        done = self.run_here("detect", "scene.toml", "--steps", "9", "--quiet")
+        self.assert_one_line_error(done, "f_3.obj", "triangle 0")
+
+
+class Springs(ProgramTest):
+    def touching(self, scene, motion, steps=40):
+        """Frames in which the box that moves touches the plate, which stands across the x axis at 1."""
+        self.write("scene.toml", f"[scene]\ntime_step = 0.1\n{scene}\n"
+                   '[[object]]\nname = "plate"\nmodel = "box"\nsize = [0.01, 9, 9]\ntranslate = [1.005, 0, 0]\nstatic = true\n'
+                   f'[[object]]\nmodel = "box"\n{SPRINGS.format(motion)}')
+        frames = self.detect("scene.toml", "--steps", str(steps), "--no-contact-points")["frames"]
+        return [f["frame"] for f in frames if f["contacts"]]
+
+    def test_kind_alone_is_enough_and_rests(self):
+        self.assertEqual(self.touching("", "stiffness = 50.0"), [])
+
+    def test_velocity(self):
+        # From 0.5 to 1 at 0.25 m/s: 2 s, which are 20 steps, but for rounding.
+        self.assertIn(self.touching("", "velocity = [0.25, 0, 0]")[0], (20, 21))
+
+    def test_gravity_of_the_scene_and_of_its_own(self):
+        # From 0.5 to 1 at 1 m/s²: 1 s.
+        for keys in ("", ", integrator = 'symplectic_euler'", ", integrator = 'backward_euler'", ", substeps = 4"):
+            self.assertIn(self.touching("gravity = [1, 0, 0]", "damping = 0" + keys)[0], (9, 10, 11))
+        self.assertEqual(self.touching("gravity = [1, 0, 0]", "gravity = [0, 0, 0]"), [])
+        self.assertIn(self.touching("", "gravity = [1, 0, 0]")[0], (9, 10, 11))
+
+    def test_border_turns_back(self):
+        self.assertEqual(self.touching("bounds = [[-2, -2, -2], [0.9, 2, 2]]", "velocity = [0.25, 0, 0]"), [])
+
+    def test_fixed_holds_against_gravity(self):
+        motion = "gravity = [1, 0, 0], stiffness = 50, damping = 5, substeps = 4"
+        self.assertTrue(self.touching("", motion))
+        self.assertEqual(self.touching("", motion + ", fixed = [[[-0.5, -1, -1], [-0.5, 1, 1]]]", 200), [])
+
+    def test_pull_moves_in_its_time_and_holds(self):
+        # The side at 0.5 is pulled by 1 in 2 s: it reaches the plate after 1 s, and stays beyond it.
+        touching = self.touching("", "pull = [{ box = [[0.5, -1, -1], [0.5, 1, 1]], by = [1, 0, 0], seconds = 2 }]")
+        self.assertIn(touching[0], (10, 11))
+        self.assertEqual(touching, list(range(touching[0], 40)))
+
+    def test_response_stops(self):
+        response = "response = { thickness = 0.01, iterations = 8 }"
+        self.assertEqual(self.touching(response, "velocity = [0.25, 0, 0], stiffness = 500, substeps = 4"), [])
+
+    def test_seed_decides_unless_the_object_has_one(self):
+        def contacts(seed, keys):
+            self.write("scene.toml", f'[scene]\nseed = {seed}\n[[object]]\nmodel = "icosphere"\n[[object]]\nmodel = "icosphere"\n'
+                       + SPRINGS.format("random_speed = 1" + keys))
+            return self.detect("scene.toml", "--steps", "20")["frames"][-1]["contacts"]
+
+        self.assertEqual(contacts(1, ""), contacts(1, ""))
+        self.assertNotEqual(contacts(1, ""), contacts(2, ""))
+        self.assertNotEqual(contacts(1, ", seed = 5"), contacts(1, ", seed = 6"))
+
+
 class Errors(ProgramTest):
     def expect(self, text, line, *parts):
         with self.subTest(text=text):
@@ -177,10 +305,60 @@ class Errors(ProgramTest):
     def test_motion(self):
         box = '[[object]]\nmodel = "box"\n'
         self.expect(box + 'motion = "sway"\n', 3, "motion", "table")
-        self.expect(box + 'motion = { kind = "swim" }\n', 3, "kind", "sway")
+        self.expect(box + 'motion = { kind = "swim" }\n', 3, "kind", "'swim'", "sway, mass_spring, frames")
+        self.expect(box + 'motion = { velocity = [0, 0, 0] }\n', 3, "motion", "kind", "sway", "mass_spring", "frames")
         self.expect(box + 'motion = { kind = "sway", period = 0 }\n', 3, "period", "above 0")
         self.expect(box + 'motion = { kind = "sway", seed = -1 }\n', 3, "seed", "0 to")
         self.expect(box + 'static = true\nmotion = { kind = "sway" }\n', 4, "motion", "static")
+
+    def test_scene(self):
+        box = '[[object]]\nmodel = "box"\n'
+        self.expect("[scene]\nseed = -1\n" + box, 2, "seed", "0 to")
+        self.expect("[scene]\ngravity = 9.81\n" + box, 2, "gravity", "three finite numbers")
+        self.expect("[scene]\nresponse = true\n" + box, 2, "response", "table")
+        for text, parts in (
+            ("thickness = 0", ["thickness", "above 0"]), ("restitution = 2", ["restitution", "0 to 1"]),
+            ("friction = -1", ["friction", "from 0 up"]), ("iterations = 0", ["iterations", "1 to"]),
+            ("hardness = 1", ["hardness", "thickness, restitution, friction, iterations"]),
+        ):
+            self.expect(f"[scene]\nresponse = {{ {text} }}\n" + box, 2, "[scene]: response", *parts)
+
+    def test_copies(self):
+        box = '[[object]]\nmodel = "box"\n'
+        self.expect(box + "repeat = 3\n", 3, "repeat", "three whole numbers")
+        self.expect(box + "repeat = [0, 1, 1]\n", 3, "repeat", "from 1 to")
+        self.expect(box + "repeat = [2, 1, 1]\n", 3, "repeat", "spacing")
+        self.expect(box + "repeat = [9999, 9999, 1]\nspacing = [1, 1, 1]\n", 3, "repeat", "allowed")
+        self.expect(box + "spacing = [1, 1, 1]\n", 3, "spacing", "repeat")
+        self.expect(box + "random_rotation = 1\n", 3, "random_rotation", "true or false")
+
+    def test_springs(self):
+        box = '[[object]]\nmodel = "box"\n'
+        for text, parts in (
+            ("integrator = 'euler'", ["integrator", "'euler'", "verlet, symplectic_euler, backward_euler"]),
+            ("substeps = 0", ["substeps", "1 to"]), ("mass = 0", ["mass", "above 0"]),
+            ("stiffness = -1", ["stiffness", "from 0 up"]), ("damping = -1", ["damping", "from 0 up"]),
+            ("air_friction = -1", ["air_friction", "from 0 up"]), ("bending_stiffness = -1", ["bending_stiffness", "from 0 up"]),
+            ("area_stiffness = -1", ["area_stiffness", "from 0 up"]), ("max_strain = 0", ["max_strain", "above 0"]),
+            ("yield_strain = -1", ["yield_strain", "from 0 up"]), ("plastic_rate = 0", ["plastic_rate", "above 0"]),
+            ("random_speed = -1", ["random_speed", "from 0 up"]), ("random_force = -1", ["random_force", "from 0 up"]),
+            ("deform_seconds = -1", ["deform_seconds", "from 0 up"]), ("seed = 1.5", ["seed", "whole number"]),
+            ("amplitude = 1", ["amplitude", "unknown key", "stiffness"]),
+            ("fixed = 1", ["fixed", "array of boxes"]), ("fixed = [[[0, 0, 0]]]", ["fixed", "array of boxes"]),
+            ("fixed = [[[0, 0, 0], [1, -1, 1]]]", ["fixed", "corner"]),
+            ("fixed = [[[-9, -9, -9], [9, 9, 9]], [[5, 5, 5], [6, 6, 6]]]", ["fixed", "box 1 holds no vertex"]),
+            ("pull = 1", ["pull", "pull = [{"]), ("pull = [{ by = [0, 0, 0] }]", ["pull 0", "box"]),
+            ("pull = [{ box = [[0, 0, 0], [1, 1, 1]] }]", ["pull 0", "by"]),
+            ("pull = [{ box = [[0, 0, 0], [1, 1, 1]], by = [0, 0, 0], seconds = 0 }]", ["pull 0", "seconds", "above 0"]),
+            ("pull = [{ box = [[5, 5, 5], [6, 6, 6]], by = [0, 0, 0] }]", ["pull", "box 0 holds no vertex"]),
+            ("fixed = [[[-9, -9, -9], [9, 9, 9]]], pull = [{ box = [[0, 0, 0], [1, 1, 1]], by = [0, 0, 0] }]", ["pull", "box 0", "fixed"]),
+        ):
+            self.expect(box + SPRINGS.format(text), 3, "[[object]] 0: motion", *parts)
+
+    def test_frames(self):
+        self.expect('[[object]]\nmotion = { kind = "frames" }\n', 2, "motion", "files")
+        self.expect('[[object]]\nmotion = { kind = "frames", files = "f_*.ply" }\n', 2, "files", "f_*.ply", "no file matches")
+        self.expect('[[object]]\nmotion = { kind = "frames", files = "f.ply" }\n', 2, "files", "f.ply", "no file")
 
     def test_file(self):
         self.assert_one_line_error(self.run_here("detect", "none.toml"), "none.toml", "cannot read")

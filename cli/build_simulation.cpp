@@ -1,0 +1,107 @@
+#include "build_simulation.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "frame_files.hpp"
+#include "text.hpp"
+
+namespace supple::cli {
+namespace {
+
+ObjectOptions options_of(const InputObject& object, const DetectionOptions& options) {
+  ObjectOptions chosen = object.options;
+  chosen.self_collision = chosen.self_collision || options.self;
+  chosen.octree.max_level = options.max_level.value_or(chosen.octree.max_level);
+  chosen.octree.leaf_size = options.leaf_size.value_or(chosen.octree.leaf_size);
+  chosen.octree.arity = options.tree_arity.value_or(chosen.octree.arity);
+  return chosen;
+}
+
+/// Adds an object, one `add` for each kind of motion.
+struct Adder {
+  Simulation& simulation;
+  TriangleMesh mesh;
+  const ObjectOptions& options;
+
+  void operator()(const Sway& motion) {
+    const auto swayed = [motion, border = simulation.options().border, rest = mesh.positions](
+                            double seconds, std::span<Vec3d> positions) {
+      sway(motion, border, rest, seconds, positions);
+    };
+    swayed(0, mesh.positions);
+    simulation.add(mesh, options, swayed);
+  }
+
+  void operator()(const MassSpringMotion& motion) { simulation.add(mesh, options, motion); }
+
+  /// Says which step ends at a time.
+  auto step_at() const {
+    return [time_step = simulation.options().time_step](double seconds) {
+      return static_cast<std::uint64_t>(std::llround(seconds / time_step));
+    };
+  }
+
+  void operator()(const FrameSequence& sequence) {
+    const auto frames = std::make_shared<const FrameFiles>(sequence, mesh);
+    frames->read(0, mesh.positions);
+    simulation.add(mesh, options, [step = step_at(), frames](double seconds, std::span<Vec3d> positions) {
+      frames->read(step(seconds), positions);
+    });
+  }
+
+  void operator()(const RecordedMotion& motion) {
+    simulation.add(mesh, options, [step = step_at(), motion](double seconds, std::span<Vec3d> positions) {
+      const std::vector<Vec3d> recorded = motion.recording->positions(step(seconds), motion.object);
+      std::copy(recorded.begin(), recorded.end(), positions.begin());
+    });
+  }
+};
+
+}  // namespace
+
+Simulation build_simulation(const Input& input, const DetectionOptions& options) {
+  SimulationOptions chosen = input.simulation;
+  chosen.scene = options.scene;
+  Simulation simulation(chosen);
+  for (const InputObject& object : input.objects) {
+    const ObjectOptions object_options = options_of(object, options);
+    if (object.motion)
+      std::visit(Adder{simulation, object.mesh, object_options}, *object.motion);
+    else
+      simulation.add(object.mesh, object_options);
+  }
+  return simulation;
+}
+
+void warn_of_long_steps(const Simulation& simulation, const std::string& scene_file) {
+  const double time_step = simulation.options().time_step;
+  double shortest = time_step;
+  ObjectId worst;
+  std::uint64_t count = 0;
+  for (const ObjectId object : simulation.scene().objects()) {
+    const MassSpringBody* const body = simulation.body(object);
+    if (!body || body->stable_step() >= time_step) continue;
+    ++count;
+    if (body->stable_step() >= shortest) continue;
+    shortest = body->stable_step();
+    worst = object;
+  }
+  if (count == 0) return;
+  const std::uint32_t substeps = simulation.body(worst)->options().substeps;
+  fmt::print(
+      stderr,
+      "supple: warning: {}: time_step {} is too long for {}{}: its motion is stable up to {:.3g}; give it "
+      "substeps = {}, a lower stiffness or integrator = \"backward_euler\", or shorten time_step\n",
+      one_line(scene_file), time_step, one_line(simulation.scene().name(worst)),
+      count > 1 ? fmt::format(" and {}", counted(count - 1, "other object")) : "", shortest,
+      std::ceil(time_step / shortest * substeps));
+}
+
+}  // namespace supple::cli

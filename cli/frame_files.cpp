@@ -1,0 +1,47 @@
+#include "frame_files.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "supple/error.hpp"
+#include "supple/formats.hpp"
+
+namespace supple::cli {
+
+TriangleMesh read_mesh(const std::filesystem::path& path) {
+  if (!std::filesystem::exists(path))
+    throw Error(fmt::format("{}: there is no such file; check the folder and the spelling", path.string()));
+  return load_any_mesh(path);
+}
+
+FrameFiles::FrameFiles(FrameSequence sequence, const TriangleMesh& mesh)
+    : sequence_(std::move(sequence)), vertex_count_(mesh.positions.size()), triangles_(mesh.triangles) {}
+
+void FrameFiles::read(std::uint64_t step, std::span<Vec3d> positions) const {
+  const std::uint64_t count = sequence_.files.size();
+  const std::uint64_t frame = sequence_.loop ? step % count : std::min(step, count - 1);
+  const std::string name = sequence_.files[frame].string();
+  const std::string first = sequence_.files.front().string();
+  TriangleMesh mesh = read_mesh(sequence_.files[frame]);
+  const auto check_count = [&](const char* what, std::size_t given, std::size_t expected) {
+    if (given == expected) return;
+    throw Error(
+        fmt::format("{}: has {} {}, but {} has {}; frames of a sequence are one object that only bends", name,
+                    given, what, first, expected));
+  };
+  check_count("vertices", mesh.positions.size(), vertex_count_);
+  check_count("triangles", mesh.triangles.size(), triangles_.size());
+  const auto difference =
+      std::mismatch(mesh.triangles.begin(), mesh.triangles.end(), triangles_.begin()).first;
+  if (difference != mesh.triangles.end())
+    throw Error(fmt::format(
+        "{}: triangle {} has other vertices than in {}; frames of a sequence are one object that only "
+        "bends",
+        name, difference - mesh.triangles.begin(), first));
+  if (sequence_.placement) place(mesh.positions, *sequence_.placement);
+  std::copy(mesh.positions.begin(), mesh.positions.end(), positions.begin());
+}
+
+}  // namespace supple::cli

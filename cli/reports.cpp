@@ -1,0 +1,90 @@
+#include "reports.hpp"
+
+#include <fmt/core.h>
+
+#include <array>
+#include <cstdint>
+#include <utility>
+
+#include "exit_status.hpp"
+#include "text.hpp"
+
+namespace supple::cli {
+namespace {
+
+std::string describe(const Scene& scene, const Difference& d) {
+  return fmt::format("triangle {} of {} and triangle {} of {} {}", d.triangle_a,
+                     one_line(scene.name(d.object_a)), d.triangle_b, one_line(scene.name(d.object_b)),
+                     d.missed ? "intersect and were not reported" : "were reported and do not intersect");
+}
+
+const char* outcome_of(ContinuousDifference::Fault fault) {
+  switch (fault) {
+    case ContinuousDifference::Fault::missed:
+      return "touch and were not reported";
+    case ContinuousDifference::Fault::added:
+      return "were reported and do not touch";
+    case ContinuousDifference::Fault::late:
+      return "were reported with a time after they touch";
+    case ContinuousDifference::Fault::early:
+      break;
+  }
+  return "were reported with a time too long before they touch";
+}
+
+/// What the elements of a and of b are.
+std::array<const char*, 2> nouns_of(ElementPairKind kind) {
+  if (kind == ElementPairKind::vertex_face) return {"vertex", "face"};
+  if (kind == ElementPairKind::face_vertex) return {"face", "vertex"};
+  return {"edge", "edge"};
+}
+
+std::string describe(const Scene& scene, const ContinuousDifference& d) {
+  const auto [noun_a, noun_b] = nouns_of(d.kind);
+  const auto numbers = [](const std::array<std::uint32_t, 2>& ids) {
+    return ids[0] == ids[1] ? fmt::format("{}", ids[0]) : fmt::format("{} {}", ids[0], ids[1]);
+  };
+  return fmt::format("{} {} of {} and {} {} of {} {}", noun_a, numbers(d.element_a),
+                     one_line(scene.name(d.object_a)), noun_b, numbers(d.element_b),
+                     one_line(scene.name(d.object_b)), outcome_of(d.fault));
+}
+
+void print_difference(const Scene& scene, const std::string& noun, std::uint64_t frame,
+                      const VerifyReport& report) {
+  const bool continuous = !report.continuous_differences.empty();
+  fmt::print(stderr, "supple: verify: {} {} has {} from brute force; the first: {}\n", noun, frame,
+             counted(report.differences.size() + report.continuous_differences.size(), "difference"),
+             continuous ? describe(scene, report.continuous_differences.front())
+                        : describe(scene, report.differences.front()));
+}
+
+}  // namespace
+
+Reports::Reports(const DetectionOptions& options, const Scene& scene, std::string noun)
+    : options_(options), scene_(scene), noun_(std::move(noun)) {
+  if (!options.json.empty()) json_.emplace(options.json, scene, options.json_content);
+  if (!options.csv.empty()) csv_.emplace(options.csv, options.scene.contacts);
+  if (!options.quiet && options.json != "-" && options.csv != "-") text_.emplace(noun_);
+}
+
+void Reports::add(const Frame& frame) {
+  if (json_) json_->add(frame);
+  if (csv_) csv_->add(frame);
+  if (text_) text_->add(frame);
+  touched_ = touched_ || !frame.result.groups.empty();
+  if (frame.verify && !frame.verify->agrees() && !std::exchange(differed_, true))
+    print_difference(scene_, noun_, frame.number, *frame.verify);
+}
+
+void Reports::finish() {
+  if (json_) json_->finish();
+  if (csv_) csv_->finish();
+  if (text_) text_->print(scene_);
+}
+
+int Reports::exit_status() const {
+  if (differed_) return exit_differences;
+  return options_.fail_on_contact && touched_ ? exit_contact : exit_done;
+}
+
+}  // namespace supple::cli

@@ -1,0 +1,186 @@
+#include "scene_motion.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "supple/error.hpp"
+
+namespace supple::cli {
+namespace {
+
+Sway read_sway(TomlReader& reader) {
+  Sway motion;
+  reader.read("velocity", motion.velocity);
+  reader.read("amplitude", motion.amplitude);
+  reader.read_positive("wavelength", motion.wavelength);
+  reader.read_positive("period", motion.period);
+  reader.read("seed", motion.seed);
+  return motion;
+}
+
+MassSpringOptions read_springs(TomlReader& reader, Vec3d gravity) {
+  MassSpringOptions springs;
+  springs.gravity = gravity;
+  reader.read_choice<Integrator>("integrator", springs.integrator,
+                                 {{"verlet", Integrator::verlet},
+                                  {"symplectic_euler", Integrator::symplectic_euler},
+                                  {"backward_euler", Integrator::backward_euler}});
+  reader.read("substeps", springs.substeps, 1, 1'000'000);
+  reader.read_positive("mass", springs.vertex_mass);
+  reader.read_non_negative("stiffness", springs.stiffness);
+  reader.read_non_negative("damping", springs.damping);
+  reader.read_non_negative("air_friction", springs.air_friction);
+  reader.read_non_negative("bending_stiffness", springs.bending_stiffness);
+  reader.read_non_negative("area_stiffness", springs.area_stiffness);
+  reader.read("gravity", springs.gravity);
+  reader.read_positive("max_strain", springs.max_strain);
+  reader.read_non_negative("yield_strain", springs.yield_strain);
+  reader.read_positive("plastic_rate", springs.plastic_rate);
+  return springs;
+}
+
+bool holds(const Border& box, Vec3d p) {
+  return p.x >= box[0].x && p.x <= box[1].x && p.y >= box[0].y && p.y <= box[1].y && p.z >= box[0].z &&
+         p.z <= box[1].z;
+}
+
+std::vector<std::uint32_t> vertices_in(const Border& box, const std::vector<Vec3d>& positions) {
+  std::vector<std::uint32_t> vertices;
+  for (std::uint32_t i = 0; i < positions.size(); ++i) {
+    if (holds(box, positions[i])) vertices.push_back(i);
+  }
+  return vertices;
+}
+
+bool contains(const std::vector<std::uint32_t>& ascending, std::uint32_t vertex) {
+  return std::binary_search(ascending.begin(), ascending.end(), vertex);
+}
+
+}  // namespace
+
+SceneMotion::SceneMotion(TomlReader& object, const std::filesystem::path& scene_file, std::string where,
+                         Vec3d gravity)
+    : file_(scene_file), table_(object.table("motion")), where_(std::move(where) + ": motion") {
+  if (!table_) return;
+  TomlReader reader(file_, *table_, where_);
+  read_kind(reader, gravity);
+  reader.finish();
+  fixed_found_.resize(fixed_.size());
+  pulls_found_.resize(pulls_.size());
+}
+
+void SceneMotion::read_kind(TomlReader& reader, Vec3d gravity) {
+  enum class Kind { none, sway, mass_spring, frames };
+  Kind kind = Kind::none;
+  reader.read_choice<Kind>(
+      "kind", kind, {{"sway", Kind::sway}, {"mass_spring", Kind::mass_spring}, {"frames", Kind::frames}});
+  if (kind == Kind::none)
+    reader.fail("kind", "kind is missing; choose kind = \"sway\", \"mass_spring\" or \"frames\"");
+  if (kind == Kind::sway) motion_ = read_sway(reader);
+  if (kind == Kind::mass_spring) motion_ = read_mass_spring(reader, gravity);
+  if (kind == Kind::frames) motion_ = read_frames(reader);
+}
+
+MassSpringMotion SceneMotion::read_mass_spring(TomlReader& reader, Vec3d gravity) {
+  MassSpringMotion motion;
+  motion.springs = read_springs(reader, gravity);
+  reader.read("velocity", motion.velocity);
+  reader.read_non_negative("random_speed", motion.random_speed);
+  reader.read_non_negative("random_force", motion.random_force);
+  reader.read_non_negative("deform_seconds", motion.deform_seconds);
+  if (reader.has("seed")) reader.read("seed", motion.seed.emplace());
+  reader.read("fixed", fixed_);
+  read_pulls(reader);
+  return motion;
+}
+
+void SceneMotion::read_pulls(TomlReader& reader) {
+  for (const toml::table* table :
+       reader.tables("pull", "pull = [{ box = …, by = …, seconds = … }], a table")) {
+    TomlReader pull(file_, *table, fmt::format("{}: pull {}", where_, pulls_.size()));
+    Pull& added = pulls_.emplace_back();
+    pull.read_box("box", added.box, true);
+    pull.read("by", added.by);
+    pull.read_positive("seconds", added.seconds);
+    for (const char* key : {"box", "by"}) {
+      if (!pull.has(key)) pull.fail(key, fmt::format("{} is missing; a pull is {{ box, by, seconds }}", key));
+    }
+    pull.finish();
+  }
+}
+
+FrameSequence SceneMotion::read_frames(TomlReader& reader) const {
+  FrameSequence frames;
+  std::string pattern;
+  reader.read("files", pattern);
+  reader.read("loop", frames.loop);
+  if (pattern.empty()) reader.fail("files", "files is missing; give the frames, files = \"frame_*.ply\"");
+  try {
+    frames.files = expand_patterns({(file_.parent_path() / pattern).string()});
+  } catch (const Error& error) {
+    reader.fail("files", error.what());
+  }
+  if (!std::filesystem::exists(frames.files.front()))
+    reader.fail("files", fmt::format("there is no file {}; paths start at the scene file's folder",
+                                     frames.files.front().string()));
+  return frames;
+}
+
+std::optional<Motion> SceneMotion::of_copy(std::uint64_t copy, const Placement& placement,
+                                           const std::vector<Vec3d>& positions) {
+  if (!motion_) return std::nullopt;
+  Motion motion = *motion_;
+  if (auto* sway = std::get_if<Sway>(&motion)) sway->seed += copy;
+  if (auto* frames = std::get_if<FrameSequence>(&motion)) frames->placement = placement;
+  if (auto* springs = std::get_if<MassSpringMotion>(&motion)) {
+    if (springs->seed) *springs->seed += copy;
+    select_vertices(*springs, positions);
+  }
+  return motion;
+}
+
+void SceneMotion::select_vertices(MassSpringMotion& motion, const std::vector<Vec3d>& positions) {
+  std::vector<std::uint32_t>& fixed = motion.springs.fixed_vertices;
+  for (std::size_t i = 0; i < fixed_.size(); ++i) {
+    const std::vector<std::uint32_t> found = vertices_in(fixed_[i], positions);
+    fixed_found_[i] = fixed_found_[i] || !found.empty();
+    fixed.insert(fixed.end(), found.begin(), found.end());
+  }
+  std::sort(fixed.begin(), fixed.end());
+  fixed.erase(std::unique(fixed.begin(), fixed.end()), fixed.end());
+
+  std::vector<std::uint32_t> taken = fixed;
+  for (std::size_t i = 0; i < pulls_.size(); ++i) {
+    const std::vector<std::uint32_t> found = vertices_in(pulls_[i].box, positions);
+    const auto twice = std::find_if(found.begin(), found.end(),
+                                    [&](std::uint32_t vertex) { return contains(taken, vertex); });
+    if (twice != found.end())
+      TomlReader(file_, *table_, where_)
+          .fail("pull", fmt::format("box {} holds vertex {}, which is fixed or pulled by another box; the "
+                                    "boxes must not share vertices",
+                                    i, *twice));
+    if (found.empty()) continue;
+    pulls_found_[i] = true;
+    motion.handles.push_back({found, pulls_[i].by, pulls_[i].seconds});
+    taken.insert(taken.end(), found.begin(), found.end());
+    std::sort(taken.begin(), taken.end());
+  }
+}
+
+void SceneMotion::check_boxes() const {
+  const auto check = [&](const char* key, const std::vector<bool>& found) {
+    const auto empty = std::find(found.begin(), found.end(), false);
+    if (empty != found.end())
+      TomlReader(file_, *table_, where_)
+          .fail(key, fmt::format("box {} holds no vertex; boxes are in the coordinates of the placed mesh, "
+                                 "which supple info shows",
+                                 empty - found.begin()));
+  };
+  check("fixed", fixed_found_);
+  check("pull", pulls_found_);
+}
+
+}  // namespace supple::cli

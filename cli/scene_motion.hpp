@@ -1,0 +1,53 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "inputs.hpp"
+#include "toml_reader.hpp"
+
+namespace supple::cli {
+
+/// The `motion` of one [[object]] of a scene file, which moves each of its copies.
+class SceneMotion {
+ public:
+  /// `object` is the reader of the [[object]], `where` its name in messages; gravity is the scene's. Throws
+  /// as `read_scene_file` does.
+  SceneMotion(TomlReader& object, const std::filesystem::path& scene_file, std::string where, Vec3d gravity);
+
+  bool empty() const { return table_ == nullptr; }
+  /// The mesh files of `kind = "frames"`; null for other kinds.
+  const FrameSequence* frames() const { return motion_ ? std::get_if<FrameSequence>(&*motion_) : nullptr; }
+
+  /// The motion of a copy: its own seed, and the vertices that lie in the boxes.
+  std::optional<Motion> of_copy(std::uint64_t copy, const Placement& placement,
+                                const std::vector<Vec3d>& positions);
+  /// Throws when a box held no vertex of any copy.
+  void check_boxes() const;
+
+ private:
+  struct Pull {
+    Border box{};
+    Vec3d by{};
+    double seconds = 1;
+  };
+
+  void read_kind(TomlReader& reader, Vec3d gravity);
+  MassSpringMotion read_mass_spring(TomlReader& reader, Vec3d gravity);
+  FrameSequence read_frames(TomlReader& reader) const;
+  void read_pulls(TomlReader& reader);
+  void select_vertices(MassSpringMotion& motion, const std::vector<Vec3d>& positions);
+
+  std::filesystem::path file_;
+  const toml::table* table_;
+  std::string where_;
+  std::optional<Motion> motion_;
+  std::vector<Border> fixed_;
+  std::vector<Pull> pulls_;
+  std::vector<bool> fixed_found_, pulls_found_;  ///< whether a vertex of any copy lies in the box
+};
+
+}  // namespace supple::cli
