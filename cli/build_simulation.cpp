@@ -20,6 +20,7 @@ ObjectOptions options_of(const InputObject& object, const DetectionOptions& opti
   chosen.self_collision = chosen.self_collision || options.self;
   chosen.octree.max_level = options.max_level.value_or(chosen.octree.max_level);
   chosen.octree.leaf_size = options.leaf_size.value_or(chosen.octree.leaf_size);
+  chosen.octree.arity = options.tree_arity.value_or(chosen.octree.arity);
   return chosen;
 }
 

@@ -7,6 +7,7 @@
 #include "detect.hpp"
 #include "diff.hpp"
 #include "exit_status.hpp"
+#include "experiments/experiment.hpp"
 #include "info.hpp"
 #include "options.hpp"
 #include "output_file.hpp"
@@ -26,6 +27,8 @@ int run(const CommandLine& line) {
       return run_info(line.info);
     case CommandLine::Command::ccd_queries:
       return run_ccd_queries(line.ccd_queries);
+    case CommandLine::Command::experiment:
+      return experiments::run_experiment(line.experiment);
     case CommandLine::Command::diff:
       return run_diff(line.diff);
     case CommandLine::Command::exit:

@@ -13,6 +13,7 @@
 
 #include "documents.hpp"
 #include "exit_status.hpp"
+#include "experiments/experiment_options.hpp"
 #include "option_kinds.hpp"
 #include "supple/version.hpp"
 #include "text.hpp"
@@ -29,6 +30,7 @@ constexpr const char* program_footer = R"(Examples:
                                             objects that move by themselves, and what touches on the way
   supple info rabbit.obj                    counts, bounds, holes, octree statistics
   supple ccd-queries edge-edge/*.csv        single continuous queries, compared with the answers known
+  supple experiment scaling --quick         how does time grow with the number of objects, and does the paper say so?
   supple diff a.h5 b.h5                     where do two recordings differ first?
 
 Exit status: 0 done; 1 with --fail-on-contact when something touches, and of diff when recordings differ; 2 usage or
@@ -215,6 +217,16 @@ void add_method_options(CLI::App& app, DetectionOptions& options, Dependences& d
        [&, with_spheres] { return with_spheres() && scene.broad_phase == BroadPhaseMethod::octree; },
        "--bounding-volume sphere and --broad-phase octree"});
   for (CLI::Option* option : add_octree_options(app, options.max_level, options.leaf_size)) group(option);
+  const auto parse_arity = [&options](const std::string& given) {
+    if (given != "2" && given != "4" && given != "8")
+      throw CLI::ValidationError("--tree-arity", fmt::format("'{}' is not one of 8, 4, 2", given));
+    options.scene.scene_octree.arity = static_cast<std::uint32_t>(given.front() - '0');
+    options.tree_arity = options.scene.scene_octree.arity;
+  };
+  group(app.add_option_function<std::string>(
+               "--tree-arity", parse_arity,
+               "Children of a node, in the trees of objects and of the scene (default: 8)")
+            ->type_name("8|4|2"));
 }
 
 void add_output_options(CLI::App& app, DetectionOptions& options, Dependences& dependences) {
@@ -361,6 +373,7 @@ CommandLine parse_command_line(int argument_count, const char* const* arguments)
   const CLI::App* info = add_info(program, result.info);
   const CLI::App* ccd_queries = add_ccd_queries(program, result.ccd_queries, dependences);
   add_diff(program, result.diff);
+  const CLI::App* experiment = experiments::add_experiment(program, result.experiment, dependences);
   try {
     program.parse(argument_count, arguments);
     if (!document.empty()) {
@@ -375,6 +388,7 @@ CommandLine parse_command_line(int argument_count, const char* const* arguments)
                      : simulate->parsed()    ? CommandLine::Command::simulate
                      : info->parsed()        ? CommandLine::Command::info
                      : ccd_queries->parsed() ? CommandLine::Command::ccd_queries
+                     : experiment->parsed()  ? CommandLine::Command::experiment
                                              : CommandLine::Command::diff;
   } catch (const CLI::Success& success) {  // help and version
     result.exit_status = program.exit(success);

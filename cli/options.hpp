@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "experiments/experiment.hpp"
 #include "json_report.hpp"
 #include "query_file.hpp"
 #include "supple/options.hpp"
@@ -15,7 +16,7 @@ namespace supple::cli {
 struct DetectionOptions {
   SceneOptions scene;
   bool self = false;
-  std::optional<std::uint32_t> max_level, leaf_size;
+  std::optional<std::uint32_t> max_level, leaf_size, tree_arity;
   bool verify = false;
   bool fail_on_contact = false;
   bool quiet = false;
@@ -69,13 +70,14 @@ struct DiffOptions {
 };
 
 struct CommandLine {
-  enum class Command { detect, simulate, info, ccd_queries, diff, exit };
+  enum class Command { detect, simulate, info, ccd_queries, diff, experiment, exit };
   Command command = Command::exit;
   int exit_status = 0;  ///< of `Command::exit`: help, version or a usage error, already printed
   DetectOptions detect;
   SimulateOptions simulate;
   InfoOptions info;
   CcdQueriesOptions ccd_queries;
+  experiments::ExperimentOptions experiment;
   DiffOptions diff;
 };
 

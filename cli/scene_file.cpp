@@ -236,8 +236,12 @@ Vec3d read_scene(const toml::table& table, const fs::path& path, SimulationOptio
 }  // namespace
 
 Input read_scene_file(const fs::path& path, const SceneOverrides& overrides) {
+  return read_scene_text(read_text(path), path, overrides);
+}
+
+Input read_scene_text(std::string text, const fs::path& path, const SceneOverrides& overrides) {
   Input input;
-  input.scene_text = read_text(path);
+  input.scene_text = std::move(text);
   const toml::table file = parse_toml(input.scene_text, path);
   TomlReader reader(path, file, "scene file");
   Vec3d gravity;

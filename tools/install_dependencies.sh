@@ -8,7 +8,7 @@ packages=(
   libtbb-dev libhwy-dev libboost-dev libeigen3-dev
   libassimp-dev zlib1g-dev  # Debian's Assimp names zlib's file for linking, but does not depend on it
   libhdf5-dev
-  libcli11-dev libtomlplusplus-dev rapidjson-dev libfmt-dev
+  libcli11-dev libtomlplusplus-dev rapidjson-dev libfmt-dev gnuplot-nox
   libgtest-dev nlohmann-json3-dev libssl-dev libbenchmark-dev
 )
 if [ "${1:-}" = "--ci" ]; then

@@ -41,20 +41,29 @@ enum class ContactMode : std::uint8_t {
 
 /// Shape of the octree of one object.
 struct ObjectOctreeOptions {
-  /// Depth below the root at which splitting ends, 0 to 32 (the paper's level-allowed).
+  /// Depth below the root at which splitting ends, 0 to 32 (the paper's level-allowed). It counts levels of
+  /// eight children whatever the arity: a tree of arity 4 may have half as many levels more (rounded down),
+  /// one of arity 2 three times as many, so that no cell is smaller.
   std::uint32_t max_level = 16;
   /// A node with at most this many triangles is not split, ≥ 1. Smaller is tighter, and takes more memory.
   std::uint32_t leaf_size = 8;
+  /// Children of a node: 8, 4 or 2. A level then halves a node's cell along three axes, two or one, which
+  /// take turns. Contacts are the same for all, the paper's colliding vertices are not: the leaves differ.
+  /// Nodes are eight lanes wide in any case, so fewer children take more memory and time; for comparison.
+  std::uint32_t arity = 8;
 };
 
 /// Shape of the octree of the scene.
 struct SceneOctreeOptions {
   /// Depth at which regions no longer expand, 1 to 20; 0 chooses it from the number, the places and the sizes
-  /// of the objects. Less far from the origin, where floats cannot tell finer regions apart.
+  /// of the objects. Less far from the origin, where floats cannot tell finer regions apart. It counts levels
+  /// of eight children whatever the arity, as `ObjectOctreeOptions::max_level` does.
   std::uint32_t max_level = 0;
   /// A region expands when this many of its objects fit into regions half its edge, ≥ 2 (the paper: 2).
   std::uint32_t expand_at = 2;
   RegionSphereTest region_sphere_test = RegionSphereTest::arvo;
+  /// Children of a region: 8, 4 or 2. The pairs found are the same; for comparison.
+  std::uint32_t arity = 8;
 };
 
 /// Of one object, given when it is added.

@@ -59,7 +59,8 @@ struct StepStats {
   std::uint64_t object_pairs_tested = 0;  ///< volume against volume in the broad phase
   std::uint64_t object_pairs = 0;
   std::uint64_t node_pairs_visited = 0;  ///< eight-wide node against eight-wide node
-  std::uint64_t boxes_tested = 0;        ///< volume against volume inside them and at the leaves
+  /// Volume against volume inside them and at the leaves; lanes of a node that have no child do not count.
+  std::uint64_t boxes_tested = 0;
   /// Triangle pairs whose boxes overlap and that share no vertex; of continuous contacts 0.
   std::uint64_t candidate_pairs = 0;
   /// Likewise vertex-face and edge-edge pairs whose moving boxes meet, of continuous contacts.
@@ -153,8 +154,9 @@ struct OctreeStatistics {
 
 /// One region of the scene octree, for inspection and drawing.
 struct SceneRegion {
-  std::uint64_t number = 0;  ///< h of the paper's R(h, k): the root is 0, children of h are 8h + 1 … 8h + 8
-  std::uint32_t level = 0;   ///< k
+  /// h of the paper's R(h, k): the root is 0, children of h are 8h + 1 … 8h + 8; of arity k, kh + 1 … kh + k.
+  std::uint64_t number = 0;
+  std::uint32_t level = 0;  ///< k
   Aabb box;
   bool is_leaf = true;
   std::uint32_t object_count = 0;  ///< objects that touch a leaf; 0 for inner regions

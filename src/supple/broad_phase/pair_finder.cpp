@@ -17,6 +17,8 @@ std::unique_ptr<PairFinder> make_pair_finder(BroadPhaseMethod method, BoundingVo
          "; it must be 1 to 20, or 0 to have it chosen");
   if (octree_options.expand_at < 2)
     fail("scene octree: expand_at is " + std::to_string(octree_options.expand_at) + "; it must be 2 or more");
+  if (octree_options.arity != 2 && octree_options.arity != 4 && octree_options.arity != 8)
+    fail("scene octree: arity is " + std::to_string(octree_options.arity) + "; it must be 2, 4 or 8");
   switch (method) {
     case BroadPhaseMethod::octree:
       return std::make_unique<OctreeBroadPhase>(bounding_volume, octree_options);

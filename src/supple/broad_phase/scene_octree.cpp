@@ -9,20 +9,24 @@ namespace supple {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr std::uint32_t kGroup = 8;
+constexpr std::uint32_t kMostChildren = 8;
 
-/// Children in the upper half along each axis; the others are in the lower.
+/// Children in the upper half along the axis of each bit; the others are in the lower.
 constexpr std::array<std::uint32_t, 3> kUpperHalf{0xaa, 0xcc, 0xf0};
 
-/// Children that hold part of the box. It is known to touch the region itself.
-std::uint32_t children_of_box(const Vec3f& middle, const Aabb& box) {
+/// Children that do not hold part of the box, by the plane of one bit.
+std::uint32_t missed_across(float middle, float min, float max, std::uint32_t upper) {
+  // All bits or none, in place of a branch.
+  return (~upper & -static_cast<std::uint32_t>(!(min < middle))) |
+         (upper & -static_cast<std::uint32_t>(!(max >= middle)));
+}
+
+/// Children of eight that hold part of the box. It is known to touch the region itself.
+std::uint32_t octants_of_box(const Vec3f& middle, const Aabb& box) {
   std::uint32_t missed = 0;
-  for (int axis = 0; axis < 3; ++axis) {
-    const std::uint32_t upper = kUpperHalf[static_cast<std::size_t>(axis)];
-    // All bits or none, in place of a branch.
-    missed |= ~upper & -static_cast<std::uint32_t>(!(box.min[axis] < middle[axis]));
-    missed |= upper & -static_cast<std::uint32_t>(!(box.max[axis] >= middle[axis]));
-  }
+  for (int axis = 0; axis < 3; ++axis)
+    missed |=
+        missed_across(middle[axis], box.min[axis], box.max[axis], kUpperHalf[static_cast<std::size_t>(axis)]);
   return ~missed & 0xff;
 }
 
@@ -34,7 +38,7 @@ std::uint32_t children_of_box(const Vec3f& middle, const Aabb& box) {
 /// Distances are differences of floats taken in double: each has a relative error of 2^-53 (none of the
 /// squares can underflow), their sum one below 2^-50, so that it passes against r² (1 + 2^-40) at every
 /// level.
-std::uint32_t children_of_sphere(const SceneOctree::Region& region, const BoundingSphere& sphere) {
+std::uint32_t octants_of_sphere(const SceneOctree::Region& region, const BoundingSphere& sphere) {
   const double limit = double{sphere.radius} * sphere.radius * (1 + 0x1p-40);
   std::array<std::array<double, 2>, 3> squared{};
   for (int axis = 0; axis < 3; ++axis) {
@@ -44,7 +48,7 @@ std::uint32_t children_of_sphere(const SceneOctree::Region& region, const Boundi
     squared[static_cast<std::size_t>(axis)] = {below > 0 ? below * below : 0, above > 0 ? above * above : 0};
   }
   std::uint32_t touched = 0;
-  for (std::uint32_t child = 0; child < kGroup; ++child) {
+  for (std::uint32_t child = 0; child < kMostChildren; ++child) {
     const double distance = squared[0][child & 1] + squared[1][child >> 1 & 1] + squared[2][child >> 2 & 1];
     touched |= static_cast<std::uint32_t>(!(distance > limit)) << child;
   }
@@ -57,7 +61,9 @@ SceneOctree::SceneOctree(BoundingVolume bounding_volume, const SceneOctreeOption
     : has_spheres_(bounding_volume == BoundingVolume::sphere),
       // The paper's grown box holds the centre exactly when the region touches the box around the ball.
       by_sphere_(has_spheres_ && options.region_sphere_test == RegionSphereTest::arvo),
-      expand_at_(options.expand_at) {
+      expand_at_(options.expand_at),
+      arity_(options.arity),
+      axes_per_level_(static_cast<int>(std::bit_width(options.arity)) - 1) {
   make_root();
 }
 
@@ -72,12 +78,39 @@ void SceneOctree::resize(std::size_t slot_count) {
 std::uint32_t SceneOctree::children_touched(const Region& region, const Aabb& box,
                                             const BoundingSphere* sphere) const {
   // The box of a ball that is not finite is all of space, and so are its regions.
-  return sphere == nullptr || box.min.x == -kInfinity ? children_of_box(region.middle, box)
+  return sphere == nullptr || box.min.x == -kInfinity ? children_of_box(region, box)
                                                       : children_of_sphere(region, *sphere);
 }
 
+std::uint32_t SceneOctree::children_of_box(const Region& region, const Aabb& box) const {
+  if (arity_ == kMostChildren) return octants_of_box(region.middle, box);
+  std::uint32_t missed = 0;
+  for (int turn = 0; turn < axes_per_level_; ++turn) {
+    const int axis = split_axis(region.level, turn);
+    missed |= missed_across(region.middle[axis], box.min[axis], box.max[axis],
+                            kUpperHalf[static_cast<std::size_t>(turn)]);
+  }
+  return ~missed & ((1u << arity_) - 1);
+}
+
+/// Two children that differ only along axes that are not halved are one: of the eight octants, those that
+/// make up a child. A ball touches the child when it touches one of them.
+std::uint32_t SceneOctree::children_of_sphere(const Region& region, const BoundingSphere& sphere) const {
+  const std::uint32_t octants = octants_of_sphere(region, sphere);
+  if (arity_ == kMostChildren) return octants;
+  std::uint32_t touched = 0;
+  for (std::uint32_t rest = octants; rest != 0; rest &= rest - 1) {
+    const auto octant = static_cast<std::uint32_t>(std::countr_zero(rest));
+    std::uint32_t child = 0;
+    for (int turn = 0; turn < axes_per_level_; ++turn)
+      child |= (octant >> split_axis(region.level, turn) & 1) << turn;
+    touched |= 1u << child;
+  }
+  return touched;
+}
+
 bool SceneOctree::should_expand(const Region& region) const {
-  return region.divided >= expand_at_ && region.level < cube_.max_level;
+  return region.divided >= expand_at_ && region.level < deepest_level_;
 }
 
 void SceneOctree::make_root() {
@@ -85,7 +118,7 @@ void SceneOctree::make_root() {
   free_groups_.clear();
   lists_.clear();
   due_.clear();
-  regions_.resize(kGroup);
+  regions_.resize(arity_);
   Region& root = regions_[0];
   root.lower = {-kInfinity, -kInfinity, -kInfinity};
   root.upper = {kInfinity, kInfinity, kInfinity};
@@ -96,24 +129,26 @@ void SceneOctree::make_root() {
 std::uint32_t SceneOctree::make_children(std::uint32_t parent_index) {
   std::uint32_t first = static_cast<std::uint32_t>(regions_.size());
   if (free_groups_.empty()) {
-    regions_.resize(regions_.size() + kGroup);
+    regions_.resize(regions_.size() + arity_);
   } else {
     first = free_groups_.back();
     free_groups_.pop_back();
   }
   Region& parent = regions_[parent_index];
   parent.first_child = first;
-  const float quarter = std::ldexp(cube_.edge, -static_cast<int>(parent.level) - 2);
-  for (std::uint32_t k = 0; k < kGroup; ++k) {
+  for (std::uint32_t k = 0; k < arity_; ++k) {
     Region& child = regions_[first + k];
     child = {};
     child.in_use = true;
-    child.number = 8 * parent.number + 1 + k;
+    child.number = arity_ * parent.number + 1 + k;
     child.level = static_cast<std::uint8_t>(parent.level + 1);
     child.lower = parent.lower;
     child.upper = parent.upper;
-    for (int axis = 0; axis < 3; ++axis) {
-      const bool upper_half = (k >> axis & 1) != 0;
+    child.middle = parent.middle;
+    for (int turn = 0; turn < axes_per_level_; ++turn) {
+      const int axis = split_axis(parent.level, turn);
+      const float quarter = std::ldexp(cube_.edge, -halvings(axis, parent.level) - 2);
+      const bool upper_half = (k >> turn & 1) != 0;
       if (upper_half)
         child.lower[axis] = std::max(parent.lower[axis], parent.middle[axis]);
       else
@@ -126,7 +161,7 @@ std::uint32_t SceneOctree::make_children(std::uint32_t parent_index) {
 
 void SceneOctree::free_children(std::uint32_t parent_index) {
   const std::uint32_t first = regions_[parent_index].first_child;
-  for (std::uint32_t k = 0; k < kGroup; ++k) {
+  for (std::uint32_t k = 0; k < arity_; ++k) {
     lists_.release(regions_[first + k].objects);
     regions_[first + k].in_use = false;
   }
@@ -159,7 +194,7 @@ void SceneOctree::narrow_stay_range(std::uint32_t slot, const Region& region) {
 /// edge, 2^-20 of the radius, which is far more than the 2^-40 that `children_of_sphere` adds and all
 /// roundings.
 void SceneOctree::set_sphere_stay_range(std::uint32_t slot, const Region& leaf) {
-  const float edge = std::ldexp(cube_.edge, -static_cast<int>(leaf.level));
+  const float edge = shortest_edge(leaf.level);
   StayRange range;
   for (int axis = 0; axis < 3; ++axis) {
     const std::size_t k = static_cast<std::size_t>(axis);
@@ -179,6 +214,7 @@ void SceneOctree::set_sphere_stay_range(std::uint32_t slot, const Region& leaf) 
 void SceneOctree::build(const SceneCube& cube) {
   cube_ = cube;
   inverse_edge_ = 1.0 / cube.edge;
+  deepest_level_ = cube.max_level * 3 / static_cast<std::uint32_t>(axes_per_level_);
   make_root();
   std::uint32_t live = 0;
   for (const Aabb& box : boxes_) live += !box.empty();
@@ -188,7 +224,7 @@ void SceneOctree::build(const SceneCube& cube) {
     finest_level_[slot] = finest_level(boxes_[slot]);
     open_stay_range(slot);
     lists_.push(regions_[0].objects, slot);
-    regions_[0].divided += finest_level_[slot] > 0;
+    regions_[0].divided += divides(0, finest_level_[slot]);
   }
   if (should_expand(regions_[0])) expand(0);
 }
@@ -199,7 +235,7 @@ void SceneOctree::expand(std::uint32_t index) {
   const Region region = regions_[index];
   std::span<const std::uint32_t> slots = lists_.view(region.objects);
   child_masks_.resize(slots.size());
-  std::array<std::uint32_t, kGroup> counts{};
+  std::array<std::uint32_t, kMostChildren> counts{};
   for (std::size_t i = 0; i < slots.size(); ++i) {
     const std::uint32_t slot = slots[i];
     std::uint32_t mask = children_touched(region, slot);
@@ -210,19 +246,19 @@ void SceneOctree::expand(std::uint32_t index) {
       narrow_stay_range(slot, region);
     for (; mask != 0; mask &= mask - 1) ++counts[static_cast<std::size_t>(std::countr_zero(mask))];
   }
-  for (std::uint32_t k = 0; k < kGroup; ++k) lists_.reserve(regions_[first + k].objects, counts[k]);
+  for (std::uint32_t k = 0; k < arity_; ++k) lists_.reserve(regions_[first + k].objects, counts[k]);
   slots = lists_.view(region.objects);
   for (std::size_t i = 0; i < slots.size(); ++i) {
     const std::uint32_t slot = slots[i];
-    const bool divides = finest_level_[slot] > region.level + 1;
+    const bool divided_below = divides(region.level + 1u, finest_level_[slot]);
     for (std::uint32_t mask = child_masks_[i]; mask != 0; mask &= mask - 1) {
       Region& child = regions_[first + static_cast<std::uint32_t>(std::countr_zero(mask))];
       lists_.push(child.objects, slot);
-      child.divided += divides;
+      child.divided += divided_below;
     }
   }
   lists_.release(regions_[index].objects);
-  for (std::uint32_t child = first; child < first + kGroup; ++child) {
+  for (std::uint32_t child = first; child < first + arity_; ++child) {
     if (should_expand(regions_[child])) {
       expand(child);
     } else if (by_sphere_) {
@@ -233,7 +269,7 @@ void SceneOctree::expand(std::uint32_t index) {
 
 void SceneOctree::collect(std::uint32_t index) {
   const std::uint32_t first = regions_[index].first_child;
-  for (std::uint32_t child = first; child < first + kGroup; ++child) {
+  for (std::uint32_t child = first; child < first + arity_; ++child) {
     if (!regions_[child].is_leaf()) {
       collect(child);
       continue;
@@ -275,8 +311,8 @@ void SceneOctree::move(std::uint32_t slot, const ObjectVolume& now) {
 
 void SceneOctree::move_below(std::uint32_t index, const Journey& journey, bool was_here, bool is_here) {
   Region& region = regions_[index];
-  region.divided -= was_here && journey.finest_from > region.level;
-  region.divided += is_here && journey.finest_to > region.level;
+  region.divided -= was_here && divides(region.level, journey.finest_from);
+  region.divided += is_here && divides(region.level, journey.finest_to);
   if (should_expand(region) == region.is_leaf()) due_.push_back(index);
   if (region.is_leaf()) {
     if (was_here && !is_here) lists_.erase(region.objects, journey.slot);
@@ -314,8 +350,8 @@ std::vector<SceneRegion> SceneOctree::describe() const {
   for (const Region& region : regions_) {
     if (!region.in_use) continue;
     SceneRegion entry{region.number, region.level, {}, region.is_leaf(), region.objects.count};
-    const float half = std::ldexp(cube_.edge, -static_cast<int>(region.level) - 1);
     for (int axis = 0; axis < 3; ++axis) {
+      const float half = std::ldexp(cube_.edge, -halvings(axis, region.level) - 1);
       entry.box.min[axis] = region.middle[axis] - half;
       entry.box.max[axis] = region.middle[axis] + half;
     }
@@ -347,10 +383,10 @@ std::string SceneOctree::validate() const {
     return "scene octree: scratch of reduce is not clean";
   Census census;
   if (std::string wrong = validate_below(0, live, census); !wrong.empty()) return wrong;
-  const std::size_t pool = 1 + regions_.size() - kGroup;
-  if (census.regions + kGroup * free_groups_.size() != pool)
+  const std::size_t pool = 1 + regions_.size() - arity_;
+  if (census.regions + arity_ * free_groups_.size() != pool)
     return "scene octree: " + std::to_string(pool) + " regions in the pool, but " +
-           std::to_string(census.regions) + " in use and " + std::to_string(kGroup * free_groups_.size()) +
+           std::to_string(census.regions) + " in use and " + std::to_string(arity_ * free_groups_.size()) +
            " free";
   if (census.list_capacity + lists_.free_capacity() != lists_.size())
     return "scene octree: runs of object lists are lost or used twice";
@@ -366,7 +402,7 @@ std::string SceneOctree::validate_below(std::uint32_t index, std::span<const std
   census.list_capacity += lists_.capacity(region.objects);
   if (!region.in_use) return name + "is on the free list";
   std::uint32_t divided = 0;
-  for (const std::uint32_t slot : slots) divided += finest_level_[slot] > region.level;
+  for (const std::uint32_t slot : slots) divided += divides(region.level, finest_level_[slot]);
   if (divided != region.divided)
     return name + "counts " + std::to_string(region.divided) + " objects it divides, but there are " +
            std::to_string(divided);
@@ -381,11 +417,12 @@ std::string SceneOctree::validate_below(std::uint32_t index, std::span<const std
     return {};
   }
   if (region.objects.count != 0) return name + "is expanded, but holds objects";
-  std::array<std::vector<std::uint32_t>, kGroup> inside;
+  std::array<std::vector<std::uint32_t>, kMostChildren> inside;
   for (const std::uint32_t slot : slots) {
     if (!by_sphere_) {
       const StayRange& range = stay_[slot];
-      for (int axis = 0; axis < 3; ++axis) {
+      for (int turn = 0; turn < axes_per_level_; ++turn) {
+        const int axis = split_axis(region.level, turn);
         const std::size_t k = static_cast<std::size_t>(axis);
         const float plane = region.middle[axis];
         if ((range.low[k] < plane && plane < range.high[k]) ||
@@ -394,12 +431,12 @@ std::string SceneOctree::validate_below(std::uint32_t index, std::span<const std
       }
     }
     const std::uint32_t mask = children_touched(region, slot);
-    for (std::size_t k = 0; k < kGroup; ++k)
+    for (std::size_t k = 0; k < arity_; ++k)
       if ((mask >> k & 1) != 0) inside[k].push_back(slot);
   }
-  for (std::uint32_t k = 0; k < kGroup; ++k) {
+  for (std::uint32_t k = 0; k < arity_; ++k) {
     const Region& child = regions_[region.first_child + k];
-    if (child.number != 8 * region.number + 1 + k || child.level != region.level + 1)
+    if (child.number != arity_ * region.number + 1 + k || child.level != region.level + 1)
       return name + "child " + std::to_string(k) + " has number " + std::to_string(child.number);
     if (std::string wrong = validate_below(region.first_child + k, inside[k], census); !wrong.empty())
       return wrong;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -29,12 +30,16 @@ namespace supple {
 /// An object that is large against a region thus never expands it, and one that is divided touches at most
 /// eight regions of that level: there are at most 8 n / expand_at groups on each level, however the n objects
 /// lie. The regions depend on the cube and the present volumes alone, not on the way there.
+///
+/// A tree of arity 4 or 2 halves its regions along two axes or one, x, y and z in turn; the bits of k are for
+/// these axes in the order of their turns. A region is then no cube, and it divides an object that is no
+/// longer than the shortest edge of its children.
 class SceneOctree {
  public:
   struct Region {
     std::uint64_t number = 0;
     Vec3f lower, middle, upper;     ///< lower and upper infinite at the border of the scene
-    std::uint32_t first_child = 0;  ///< the group of eight; 0 for a leaf
+    std::uint32_t first_child = 0;  ///< the group of children; 0 for a leaf
     std::uint32_t divided = 0;      ///< objects in it that it divides
     SlotLists::List objects;        ///< of a leaf; empty for others
     std::uint8_t level = 0;
@@ -89,12 +94,26 @@ class SceneOctree {
     std::array<float, 6> low, high;
   };
 
+  /// How often regions of this level are halved along the axis, counted from the root.
+  int halvings(int axis, std::uint32_t level) const {
+    return (static_cast<int>(level) * axes_per_level_ + 2 - axis) / 3;
+  }
+  /// The axis that bit `turn` of a child's number is for.
+  int split_axis(std::uint32_t level, int turn) const {
+    return (static_cast<int>(level) * axes_per_level_ + turn) % 3;
+  }
+  float shortest_edge(std::uint32_t level) const { return std::ldexp(cube_.edge, -halvings(0, level)); }
+  bool divides(std::uint32_t level, std::uint8_t finest_level) const {
+    return finest_level >= halvings(0, level + 1);
+  }
   ObjectVolume volume(std::uint32_t slot) const;
   std::uint8_t finest_level(const Aabb& box) const;
   std::uint32_t children_touched(const Region& region, const Aabb& box, const BoundingSphere* sphere) const;
   std::uint32_t children_touched(const Region& region, std::uint32_t slot) const {
     return children_touched(region, boxes_[slot], by_sphere_ ? &spheres_[slot] : nullptr);
   }
+  std::uint32_t children_of_box(const Region& region, const Aabb& box) const;
+  std::uint32_t children_of_sphere(const Region& region, const BoundingSphere& sphere) const;
   bool should_expand(const Region& region) const;
   void make_root();
   std::uint32_t make_children(std::uint32_t parent);
@@ -124,6 +143,9 @@ class SceneOctree {
 
   bool has_spheres_, by_sphere_;
   std::uint32_t expand_at_;
+  std::uint32_t arity_;
+  int axes_per_level_;
+  std::uint32_t deepest_level_ = 1;  // of this tree: levels of arity 4 and 2 are more than the cube's
   SceneCube cube_;
   double inverse_edge_ = 1;      // of the cube
   std::vector<Region> regions_;  // the root is alone in the first group
@@ -136,7 +158,7 @@ class SceneOctree {
   std::vector<Aabb> boxes_;
   std::vector<BoundingSphere> spheres_;
   std::vector<StayRange> stay_;
-  std::vector<std::uint8_t> finest_level_;  // regions above this level divide the object
+  std::vector<std::uint8_t> finest_level_;  // in levels of eight: regions whose children are above divide it
 
   std::vector<std::uint8_t> child_masks_;   // scratch of `expand`
   std::vector<std::uint32_t> collected_;    // scratch of `reduce`

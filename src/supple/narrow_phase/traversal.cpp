@@ -130,7 +130,9 @@ void Traversal::expand_batch(const ObjectPairView& pair, TraversalStats& stats) 
     const NodePair node_pair = batch_[k];
     const OctreeNode& node_a = pair.a.nodes[node_pair.a];
     const OctreeNode& node_b = pair.b.nodes[node_pair.b];
-    stats.volumes_tested += static_cast<std::uint64_t>(std::popcount(node_pair.lanes_a)) * node_width;
+    stats.volumes_tested +=
+        static_cast<std::uint64_t>(std::popcount(node_pair.lanes_a & node_a.lane_mask())) *
+        static_cast<std::uint64_t>(std::popcount(node_pair.lanes_b & node_b.lane_mask()));
     for_each_lane_pair(pair, node_pair, masks_[k], [&](int i, int j) {
       const bool inner_a = goes_on(pair, node_a, i), inner_b = goes_on(pair, node_b, j);
       if (inner_a && inner_b) {

@@ -87,7 +87,7 @@ BoundingSphere sphere_around(const Aabb& box, std::span<const Triangle> triangle
 ObjectOctree::ObjectOctree(const PositionsView<double>& rest_positions, std::span<const Triangle> triangles,
                            const ObjectOctreeOptions& options, BoundingVolume bounding_volume,
                            SphereFit sphere_fit)
-    : sphere_fit_(sphere_fit) {
+    : sphere_fit_(sphere_fit), arity_(options.arity) {
   OctreeTopology topology = build_octree(box_centers(rest_positions, triangles), options);
   nodes_ = std::move(topology.nodes);
   nodes_.shrink_to_fit();

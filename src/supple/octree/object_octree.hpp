@@ -21,7 +21,8 @@ namespace supple {
 /// Every triangle is in the one octant that holds the centre of its box. An octant with all triangles of its
 /// parent is not a node of its own: the parent shrinks to it, so each inner node has two lanes at least and a
 /// stray vertex far away costs one level. Nodes lie level by level. Triangles and vertices are renumbered in
-/// octree order, so that a refit streams through memory.
+/// octree order, so that a refit streams through memory. A tree of arity 4 or 2 has quarters or halves for
+/// octants and leaves lanes empty.
 ///
 /// Memory besides the positions: 240 bytes a node, 16 a triangle, 8 a vertex; 128 a node more with spheres.
 class ObjectOctree {
@@ -69,6 +70,7 @@ class ObjectOctree {
   std::vector<std::uint32_t> triangle_ids_, vertex_ids_, vertex_order_;
   std::vector<std::uint32_t> level_begin_;
   SphereFit sphere_fit_;
+  std::uint32_t arity_;
   Aabb box_;
   BoundingSphere sphere_;
 };

@@ -1,6 +1,7 @@
 #include "octree/octree_build.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cassert>
 #include <cmath>
 #include <limits>
@@ -9,8 +10,10 @@ namespace supple {
 namespace {
 
 constexpr int bits_per_axis = 21;
+constexpr int bits_of_code = 3 * bits_per_axis;
 
-/// Place of a point in the octree: three bits a level, the first level highest.
+/// Place of a point in the octree: three bits a level, the first level highest. A tree of fewer children
+/// reads two or one of the bits at a time, which halve z, y and x in turn.
 struct Coded {
   std::uint64_t code;
   std::uint32_t index;
@@ -41,7 +44,12 @@ bool is_finite(const Vec3d& p) {
 class Builder {
  public:
   Builder(std::span<const Vec3d> centers, const ObjectOctreeOptions& options)
-      : centers_(centers), options_(options), coded_(centers.size()) {
+      : centers_(centers),
+        options_(options),
+        bits_per_level_(static_cast<int>(std::bit_width(options.arity)) - 1),
+        deepest_(options.max_level * 3 / static_cast<std::uint32_t>(bits_per_level_)),
+        coded_(centers.size()) {
+    assert(options.arity == 2 || options.arity == 4 || options.arity == 8);
     for (std::uint32_t i = 0; i < coded_.size(); ++i) coded_[i] = {0, i};
   }
 
@@ -86,18 +94,20 @@ class Builder {
   }
 
   bool should_split(Range range, std::uint32_t level) {
-    if (range.end - range.begin <= options_.leaf_size || level >= options_.max_level) return false;
+    if (range.end - range.begin <= options_.leaf_size || level >= deepest_) return false;
     if (coded_[range.begin].code != coded_[range.end - 1].code) return true;
     // The codes are used up while the points differ still: a cube of their own gives them new ones.
     assign_codes(range);
     return coded_[range.begin].code != coded_[range.end - 1].code;
   }
 
-  /// Eight octants of the smallest regular cell that holds the range; those without points are left out.
+  /// Octants, quarters or halves of the smallest regular cell that holds the range; those without points are
+  /// left out.
   OctreeNode split(Range range) const {
     const std::uint64_t differing = coded_[range.begin].code ^ coded_[range.end - 1].code;
     assert(differing != 0);
-    const auto shift = (std::bit_width(differing) - 1) / 3 * 3;
+    const int level = (bits_of_code - static_cast<int>(std::bit_width(differing))) / bits_per_level_;
+    const int shift = std::max(bits_of_code - (level + 1) * bits_per_level_, 0);
     OctreeNode node = empty_node();
     std::uint32_t i = range.begin;
     while (i < range.end) {
@@ -156,6 +166,8 @@ class Builder {
 
   std::span<const Vec3d> centers_;
   ObjectOctreeOptions options_;
+  int bits_per_level_;
+  std::uint32_t deepest_;  ///< level, in levels of this tree
   std::vector<Coded> coded_;
 };
 

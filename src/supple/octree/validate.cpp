@@ -14,8 +14,8 @@ namespace {
 class Validation {
  public:
   Validation(const ObjectOctree& octree, const VertexBuffer& vertices, std::span<const std::uint8_t> inert,
-             bool check_spheres)
-      : octree_(octree), vertices_(vertices), inert_(inert), check_spheres_(check_spheres) {}
+             bool check_spheres, std::uint32_t arity)
+      : octree_(octree), vertices_(vertices), inert_(inert), check_spheres_(check_spheres), arity_(arity) {}
 
   std::string run() const {
     if (std::string wrong = check_permutation(octree_.triangle_ids(), "triangle"); !wrong.empty())
@@ -48,7 +48,7 @@ class Validation {
   std::string check_node(std::uint32_t n, std::vector<std::uint8_t>& reached, std::uint32_t& covered) const {
     const OctreeNode& node = octree_.nodes()[n];
     const std::string here = "node " + std::to_string(n) + ": ";
-    if (node.lane_count < 1 || node.lane_count > node_width) return here + "lane count out of range";
+    if (node.lane_count < 1 || node.lane_count > arity_) return here + "lane count out of range";
     for (int lane = 0; lane < node.lane_count; ++lane) {
       const std::uint32_t begin = node.first_triangle[lane], end = node.first_triangle[lane + 1];
       if (begin >= end || end > octree_.triangles().size()) return here + "lane without triangles";
@@ -117,13 +117,14 @@ class Validation {
   const VertexBuffer& vertices_;
   std::span<const std::uint8_t> inert_;
   bool check_spheres_;
+  std::uint32_t arity_;
 };
 
 }  // namespace
 
 std::string ObjectOctree::validate(const VertexBuffer& vertices, std::span<const std::uint8_t> inert) const {
   const bool enclosing_spheres = spheres() != nullptr && sphere_fit_ == SphereFit::vertices;
-  return Validation(*this, vertices, inert, enclosing_spheres).run();
+  return Validation(*this, vertices, inert, enclosing_spheres, arity_).run();
 }
 
 OctreeStatistics ObjectOctree::statistics() const {

@@ -29,6 +29,11 @@ void check_finite(const Vec3d& v, const char* call, const char* what) {
   }
 }
 
+void check_arity(const char* option, std::uint32_t arity) {
+  if (arity == 2 || arity == 4 || arity == 8) return;
+  fail(std::string(option) + " is " + std::to_string(arity) + "; it must be 2, 4 or 8");
+}
+
 const SceneOptions& checked(const SceneOptions& options) {
   check_range("SceneOptions::threads", options.threads, 0, 1024);
   check_impact_options(options.impact, "SceneOptions::impact");
@@ -81,6 +86,7 @@ ObjectId Scene::Implementation::add(const PositionsView<double>& positions,
   if (named.name.empty()) named.name = fallback_name.empty() ? described({index, 0}) : fallback_name;
   check_range("ObjectOctreeOptions::max_level", named.octree.max_level, 0, 32);
   check_range("ObjectOctreeOptions::leaf_size", named.octree.leaf_size, 1, 0xffffffff);
+  check_arity("ObjectOctreeOptions::arity", named.octree.arity);
   check_triangles(named.name, positions.count, triangles);
   auto object = std::make_unique<SceneObject>(positions, triangles, named, options);
   object->set_positions(positions, parallel);

@@ -51,6 +51,10 @@ std::vector<BroadPhaseOptions> all_options() {
     for (const std::uint32_t max_level : {0u, 1u, 4u, 20u})
       for (const std::uint32_t expand_at : {2u, 9u})
         all.push_back({BroadPhaseMethod::octree, {max_level, expand_at, test}, 1});
+  for (const RegionSphereTest test : {RegionSphereTest::arvo, RegionSphereTest::grown_box})
+    for (const std::uint32_t max_level : {0u, 1u, 20u})
+      for (const std::uint32_t arity : {2u, 4u})
+        all.push_back({BroadPhaseMethod::octree, {max_level, 2, test, arity}, 1});
   return all;
 }
 
@@ -58,7 +62,8 @@ std::string describe(const BroadPhaseOptions& options) {
   return std::string(name_of(options.method)) + " max_level " +
          std::to_string(options.scene_octree.max_level) + " expand_at " +
          std::to_string(options.scene_octree.expand_at) + " sphere test " +
-         std::to_string(static_cast<int>(options.scene_octree.region_sphere_test));
+         std::to_string(static_cast<int>(options.scene_octree.region_sphere_test)) + " arity " +
+         std::to_string(options.scene_octree.arity);
 }
 
 TEST(BroadPhase, EveryMethodFindsTheBoxPairsOfADoubleLoop) {
@@ -288,6 +293,8 @@ TEST(BroadPhase, RefusesOptionsOutOfRange) {
   EXPECT_THROW(BroadPhase{options}, Error);
   options.scene_octree.expand_at = 2;
   EXPECT_NO_THROW(BroadPhase{options});
+  options.scene_octree.arity = 6;
+  EXPECT_THROW(BroadPhase{options}, Error);
 }
 
 TEST(BoundingBox, OfTouchingSpheresTouch) {

@@ -34,8 +34,12 @@ class Octree {
   std::vector<IndexPair> pairs_;
 };
 
-TEST(SceneOctree, NumbersRegionsAsThePaperDoes) {
-  Octree octree({.max_level = 3, .expand_at = 2, .region_sphere_test = {}});
+class SceneOctreeArity : public testing::TestWithParam<std::uint32_t> {};
+
+TEST_P(SceneOctreeArity, NumbersRegionsAsThePaperDoes) {
+  const std::uint32_t arity = GetParam();
+  const int axes_per_level = arity == 8 ? 3 : arity == 4 ? 2 : 1;
+  Octree octree({.max_level = 3, .expand_at = 2, .region_sphere_test = {}, .arity = arity});
   octree.step(test::random_boxes(40, 10, 0.2f, 1));
   const std::vector<SceneRegion> regions = octree.regions();
   ASSERT_GT(regions.size(), 9u);
@@ -45,22 +49,30 @@ TEST(SceneOctree, NumbersRegionsAsThePaperDoes) {
   EXPECT_EQ(regions[0].number, 0u);
   EXPECT_FALSE(regions[0].is_leaf);
   for (const auto& [number, region] : by_number) {
-    EXPECT_EQ(by_number.contains(8 * number + 1), !region.is_leaf);
+    EXPECT_EQ(by_number.contains(arity * number + 1), !region.is_leaf);
     if (region.is_leaf) continue;
     EXPECT_EQ(region.object_count, 0u);
     const Vec3f middle = (region.box.min + region.box.max) * 0.5f;
-    for (std::uint64_t k = 0; k < 8; ++k) {
-      ASSERT_TRUE(by_number.contains(8 * number + 1 + k)) << "regions come in groups of eight";
-      const SceneRegion& child = by_number[8 * number + 1 + k];
+    for (std::uint64_t k = 0; k < arity; ++k) {
+      ASSERT_TRUE(by_number.contains(arity * number + 1 + k)) << "regions come in groups";
+      const SceneRegion& child = by_number[arity * number + 1 + k];
       EXPECT_EQ(child.level, region.level + 1);
-      for (int axis = 0; axis < 3; ++axis) {
-        const bool upper = (k >> axis & 1) != 0;
+      for (int turn = 0; turn < 3; ++turn) {
+        const int axis = (static_cast<int>(region.level) * axes_per_level + turn) % 3;
+        if (turn >= axes_per_level) {
+          EXPECT_EQ(child.box.min[axis], region.box.min[axis]) << "not halved at this level";
+          EXPECT_EQ(child.box.max[axis], region.box.max[axis]);
+          continue;
+        }
+        const bool upper = (k >> turn & 1) != 0;
         const float center = 0.5f * (child.box.min[axis] + child.box.max[axis]);
-        EXPECT_EQ(center > middle[axis], upper) << "bit " << axis << " of child " << k;
+        EXPECT_EQ(center > middle[axis], upper) << "bit " << turn << " of child " << k;
       }
     }
   }
 }
+
+INSTANTIATE_TEST_SUITE_P(Arities, SceneOctreeArity, testing::Values(2u, 4u, 8u));
 
 TEST(SceneOctree, ExpandsWhenTwoShareARegionAndReducesWhenTheyPart) {
   Octree octree({.max_level = 4, .expand_at = 2, .region_sphere_test = {}});
@@ -149,12 +161,13 @@ TEST(SceneOctree, TrustsTheFlagsOfChange) {
   EXPECT_TRUE(std::binary_search(octree.pairs().begin(), octree.pairs().end(), IndexPair{0, 300}));
 }
 
-TEST(SceneOctree, IsTheSameHoweverItCameAbout) {
+TEST_P(SceneOctreeArity, IsTheSameHoweverItCameAbout) {
   // The regions after many small steps are those of a tree made at once in the same cube.
   Random random(4);
   std::vector<Aabb> boxes = test::random_boxes(400, 20, 0.4f, 5);
   SceneCubeChooser chooser;
-  const SceneOctreeOptions options{.max_level = 5, .expand_at = 3, .region_sphere_test = {}};
+  const SceneOctreeOptions options{
+      .max_level = 5, .expand_at = 3, .region_sphere_test = {}, .arity = GetParam()};
   const SceneCube cube = chooser.choose(boxes, 5);
   SceneOctree kept(BoundingVolume::aabb, options);
   kept.resize(boxes.size());

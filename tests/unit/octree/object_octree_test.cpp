@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <random>
@@ -57,17 +58,64 @@ TEST(ObjectOctree, StaysValidOverSizesAndOptions) {
   for (const std::uint32_t count : {1u, 2u, 8u, 9u, 100u, 5000u}) {
     for (const std::uint32_t leaf_size : {1u, 4u, 8u}) {
       for (const std::uint32_t max_level : {0u, 1u, 3u, 16u}) {
-        for (const BoundingVolume volume : {BoundingVolume::aabb, BoundingVolume::sphere}) {
+        for (const std::uint32_t arity : {2u, 4u, 8u}) {
+          const BoundingVolume volume = count % 2 == 0 ? BoundingVolume::aabb : BoundingVolume::sphere;
           const Soup soup = scattered_soup(count, 2, {1, 2, 3}, count);
-          Built built(soup, {.max_level = max_level, .leaf_size = leaf_size}, volume);
-          EXPECT_EQ(built.refit(soup), "") << count << ' ' << leaf_size << ' ' << max_level;
-          EXPECT_LE(built.octree.statistics().depth, max_level);
+          Built built(soup, {.max_level = max_level, .leaf_size = leaf_size, .arity = arity}, volume);
+          EXPECT_EQ(built.refit(soup), "") << count << ' ' << leaf_size << ' ' << max_level << ' ' << arity;
+          const OctreeStatistics statistics = built.octree.statistics();
+          EXPECT_LE(statistics.depth, max_level * 3 / (arity == 8 ? 3 : arity == 4 ? 2 : 1));
+          EXPECT_LE(statistics.mean_node_width, arity);
           if (max_level == 16) {
-            EXPECT_LE(built.octree.statistics().largest_leaf, leaf_size);
+            EXPECT_LE(statistics.largest_leaf, leaf_size);
           }
         }
       }
     }
+  }
+}
+
+TEST(ObjectOctree, TreesOfAnyArityEndInTheSameCells) {
+  // Down to single triangles: the same leaves in the same order, by half the levels, or three times as many.
+  const Soup soup = scattered_soup(3000, 1, {}, 12);
+  Built eight(soup, {.leaf_size = 1});
+  EXPECT_EQ(eight.refit(soup), "");
+  std::uint32_t last_depth = eight.octree.statistics().depth;
+  std::uint64_t last_nodes = eight.octree.statistics().nodes;
+  for (const std::uint32_t arity : {4u, 2u}) {
+    Built other(soup, {.leaf_size = 1, .arity = arity});
+    EXPECT_EQ(other.refit(soup), "");
+    const auto ids = other.octree.triangle_ids(), expected = eight.octree.triangle_ids();
+    EXPECT_TRUE(std::equal(ids.begin(), ids.end(), expected.begin(), expected.end()));
+    EXPECT_EQ(other.octree.box(), eight.octree.box());
+    const OctreeStatistics statistics = other.octree.statistics();
+    EXPECT_EQ(statistics.leaves, 3000u);
+    EXPECT_GT(statistics.depth, last_depth);
+    EXPECT_GT(statistics.nodes, last_nodes);
+    last_depth = statistics.depth;
+    last_nodes = statistics.nodes;
+  }
+  EXPECT_EQ(last_nodes, 2999u) << "a binary tree has one node less than leaves";
+}
+
+TEST(ObjectOctree, LevelsOfAnyArityAreCountedInEights) {
+  // Points on a grid of 16 cells a side, one triangle a cell: two levels of eight leave 4 cells a side.
+  Soup soup;
+  std::uint32_t next = 0;
+  for (int x = 0; x < 16; ++x)
+    for (int y = 0; y < 16; ++y)
+      for (int z = 0; z < 16; ++z) {
+        soup.positions.insert(
+            soup.positions.end(),
+            {{x + 0.25, y + 0.25, z + 0.25}, {x + 0.5, y + 0.25, z + 0.25}, {x + 0.25, y + 0.5, z + 0.5}});
+        soup.triangles.push_back({next, next + 1, next + 2});
+        next += 3;
+      }
+  for (const std::uint32_t arity : {2u, 4u, 8u}) {
+    Built built(soup, {.max_level = 2, .leaf_size = 1, .arity = arity});
+    EXPECT_EQ(built.refit(soup), "");
+    EXPECT_EQ(built.octree.statistics().leaves, 64u) << arity;
+    EXPECT_EQ(built.octree.statistics().depth, arity == 8 ? 2u : arity == 4 ? 3u : 6u);
   }
 }
 

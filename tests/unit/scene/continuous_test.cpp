@@ -47,10 +47,12 @@ SceneOptions continuous(double separation = 0, std::uint32_t threads = 1) {
   return options;
 }
 
-Scene scene_of(const std::vector<Moving>& objects, const SceneOptions& options, std::uint32_t leaf_size = 3) {
+Scene scene_of(const std::vector<Moving>& objects, const SceneOptions& options, std::uint32_t leaf_size = 3,
+               std::uint32_t arity = 8) {
   Scene scene(options);
   for (const Moving& object : objects) {
-    const ObjectId id = scene.add(object.mesh, {.self_collision = true, .octree = {.leaf_size = leaf_size}});
+    const ObjectId id =
+        scene.add(object.mesh, {.self_collision = true, .octree = {.leaf_size = leaf_size, .arity = arity}});
     scene.set_motion(id, object.mesh.positions, object.to);
   }
   return scene;
@@ -91,7 +93,7 @@ TEST_P(ContinuousScenes, EqualAlgebraInEveryConfiguration) {
         SceneOptions options = continuous(0, threads);
         options.bounding_volume = volume;
         options.broad_phase = method;
-        Scene scene = scene_of(objects, options, threads);
+        Scene scene = scene_of(objects, options, threads, threads == 1 ? 8 : threads == 2 ? 4 : 2);
         ASSERT_EQ(contacts_of(scene), expected) << threads;
         ASSERT_EQ(scene.validate(), "");
       }

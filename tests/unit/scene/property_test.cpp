@@ -9,10 +9,11 @@
 namespace supple {
 namespace {
 
-Scene scene_of(const std::vector<TriangleMesh>& meshes, const SceneOptions& options) {
+Scene scene_of(const std::vector<TriangleMesh>& meshes, const SceneOptions& options,
+               std::uint32_t arity = 8) {
   Scene scene(options);
   for (const TriangleMesh& mesh : meshes) {
-    scene.add(mesh, {.self_collision = true, .octree = {.leaf_size = 3}});
+    scene.add(mesh, {.self_collision = true, .octree = {.leaf_size = 3, .arity = arity}});
   }
   return scene;
 }
@@ -42,6 +43,26 @@ TEST_P(SceneProperties, DetectEqualsExactBruteForceInEveryConfiguration) {
           }
         }
       }
+    }
+  }
+}
+
+TEST_P(SceneProperties, TreesOfAnyArityGiveTheSameContacts) {
+  const std::vector<TriangleMesh> meshes = GetParam().make(5);
+  Scene reference = scene_of(meshes, {.threads = 1});
+  const std::uint64_t hash = hash_of(reference.detect());
+  for (const BoundingVolume volume : {BoundingVolume::aabb, BoundingVolume::sphere}) {
+    for (const std::uint32_t arity : {2u, 4u}) {
+      Scene scene = scene_of(
+          meshes, {.bounding_volume = volume, .scene_octree = {.arity = arity}, .threads = 2}, arity);
+      const DetectResult& result = scene.detect();
+      ASSERT_TRUE(std::equal(result.contacts.begin(), result.contacts.end(),
+                             reference.result().contacts.begin(), reference.result().contacts.end()))
+          << arity;
+      if (volume == BoundingVolume::aabb) {
+        ASSERT_EQ(hash_of(result), hash) << arity;
+      }
+      ASSERT_EQ(scene.validate(), "");
     }
   }
 }

@@ -42,9 +42,10 @@ struct LivingScene {
     const std::uint32_t kind = random.below(4);
     const TriangleMesh mesh = kind == 0 ? crumpled_sheet(4, 3, 0.15, random.below(1000))
                                         : random_soup(random.below(30), 0.5, 0.3, random.below(1000));
-    const ObjectId id =
-        scene.add(mesh, {.self_collision = random.below(2) == 0,
-                         .octree = {.max_level = random.below(8), .leaf_size = 1 + random.below(6)}});
+    const ObjectId id = scene.add(mesh, {.self_collision = random.below(2) == 0,
+                                         .octree = {.max_level = random.below(8),
+                                                    .leaf_size = 1 + random.below(6),
+                                                    .arity = 2u << random.below(3)}});
     meshes.resize(std::max<std::size_t>(meshes.size(), id.index + 1));
     meshes[id.index] = mesh;
     scene.translate(id, random.vector(1));

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace supple::experiments {
+
+using Points = std::vector<std::pair<double, double>>;
+
+/// y = factor · x^exponent.
+struct PowerLaw {
+  double exponent = 0;
+  double factor = 0;
+  double standard_error = 0;  ///< of the exponent; NaN for fewer than three points
+  std::size_t points = 0;
+};
+
+/// Least squares on the logarithms. Points with a coordinate that is not above 0 are left out; with fewer
+/// than two left, or all at one x, everything is NaN.
+PowerLaw fit_power_law(const Points& points);
+
+/// The exponent that the same fit finds for a formula at the same x: n log n over a range is close to some
+/// power.
+double exponent_of(const std::function<double(double)>& formula, const Points& points);
+
+/// `1.03 ± 0.02`
+std::string text_of(const PowerLaw& fit);
+
+}  // namespace supple::experiments

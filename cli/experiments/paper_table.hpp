@@ -1,0 +1,34 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string>
+
+#include "experiments/table.hpp"
+#include "supple/options.hpp"
+
+namespace supple::experiments {
+
+/// A row of the paper's Table 1, and what section 7 says of it: five runs of ten minutes.
+struct PaperRow {
+  std::uint32_t objects;
+  BoundingVolume volume;
+  std::array<double, 5> broad, narrow;             ///< collisions of each run
+  double text_seconds_broad, text_seconds_narrow;  ///< seconds for a collision, as the text has them
+};
+
+std::span<const PaperRow> paper_rows();
+/// Null when the paper has no such row.
+const PaperRow* paper_row(std::uint32_t objects, BoundingVolume volume);
+
+double mean(std::span<const double> values);
+/// Ten minutes over the mean number.
+double seconds_per_collision(std::span<const double> counts);
+
+/// The averages recomputed from the table, beside the text's, and where they disagree.
+Table paper_arithmetic();
+
+const char* name_of(BoundingVolume volume);
+
+}  // namespace supple::experiments

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "experiments/fit.hpp"
+#include "supple/error.hpp"
+
+namespace supple::experiments {
+
+struct Series {
+  enum class Style { line_and_points, points, dashed_line };
+  std::string label;
+  Points points;
+  Style style = Style::line_and_points;
+  int color = -1;  ///< of the palette; -1: the next one
+};
+
+struct Plot {
+  std::string title;
+  std::string x_label, y_label;
+  bool logarithmic_x = true, logarithmic_y = true;
+  std::vector<Series> series{};
+  /// In place of numbers along x.
+  std::vector<std::pair<double, std::string>> x_names{};
+};
+
+/// There is no gnuplot to be run.
+struct GnuplotMissing : Error {
+  GnuplotMissing();
+};
+
+/// The input that makes gnuplot draw the plot as SVG.
+std::string gnuplot_script(const Plot& plot);
+/// Draws by the program `gnuplot`, as an <svg> element to stand in HTML: no external names, the page's own
+/// text colour. `number` tells plots of one page apart. Throws `GnuplotMissing`, or `Error` when gnuplot
+/// fails.
+std::string svg_of(const Plot& plot, int number);
+
+}  // namespace supple::experiments

@@ -1,0 +1,131 @@
+#include "experiments/table.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include "experiments/html.hpp"
+#include "supple/error.hpp"
+#include "text.hpp"
+
+namespace supple::experiments {
+namespace {
+
+bool is_number(const Cell& cell) {
+  return std::holds_alternative<std::uint64_t>(cell) || std::holds_alternative<double>(cell);
+}
+
+/// Characters, not bytes: every byte of UTF-8 but those that continue a character.
+std::size_t width_of(const std::string& text) {
+  return static_cast<std::size_t>(std::count_if(
+      text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xc0) != 0x80; }));
+}
+
+std::string padded(const std::string& text, std::size_t width, bool to_the_right) {
+  const std::string blanks(width - std::min(width, width_of(text)), ' ');
+  return to_the_right ? blanks + text : text + blanks;
+}
+
+std::string csv_field(const Cell& cell) {
+  if (const auto* count = std::get_if<std::uint64_t>(&cell)) return fmt::format("{}", *count);
+  if (const auto* number = std::get_if<double>(&cell)) return fmt::format("{}", *number);
+  const auto* text = std::get_if<std::string>(&cell);
+  if (text == nullptr) return "";
+  if (text->find_first_of(",\"\n\r") == std::string::npos) return *text;
+  std::string quoted = "\"";
+  for (const char c : *text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + '"';
+}
+
+}  // namespace
+
+void Table::add(std::vector<Cell> row) {
+  if (row.size() != columns.size())
+    throw Error(fmt::format("table {}: a row of {} cells for {} columns", name, row.size(), columns.size()));
+  rows.push_back(std::move(row));
+}
+
+std::string rounded(double value, int digits) {
+  if (!std::isfinite(value)) return std::isnan(value) ? "–" : value > 0 ? "∞" : "-∞";
+  if (value == 0) return "0";
+  const double magnitude = std::floor(std::log10(std::fabs(value)));
+  if (magnitude < -5 || magnitude > 8) return fmt::format("{:.{}e}", value, digits - 1);
+  const int decimals = std::max(0, digits - 1 - static_cast<int>(magnitude));
+  return fmt::format("{:.{}f}", value, decimals);
+}
+
+std::string text_of(const Cell& cell, const Column& column) {
+  if (const auto* count = std::get_if<std::uint64_t>(&cell)) return cli::grouped(*count);
+  if (const auto* number = std::get_if<double>(&cell)) return rounded(*number, column.digits);
+  if (const auto* text = std::get_if<std::string>(&cell)) return *text;
+  return "–";
+}
+
+std::string text_of(const Table& table) {
+  const std::size_t count = table.columns.size();
+  std::vector<std::size_t> widths(count);
+  std::vector<bool> right(count, true);
+  for (std::size_t c = 0; c < count; ++c) {
+    widths[c] = width_of(table.columns[c].heading);
+    for (const auto& row : table.rows) {
+      widths[c] = std::max(widths[c], width_of(text_of(row[c], table.columns[c])));
+      if (std::holds_alternative<std::string>(row[c])) right[c] = false;
+    }
+  }
+  const auto line = [&](const auto& text) {
+    std::string result;
+    for (std::size_t c = 0; c < count; ++c)
+      result.append(2, ' ').append(padded(text(c), widths[c], right[c]));
+    result.erase(result.find_last_not_of(' ') + 1);
+    return result + '\n';
+  };
+  std::string result = table.caption + '\n';
+  result += line([&](std::size_t c) { return table.columns[c].heading; });
+  for (const auto& row : table.rows)
+    result += line([&](std::size_t c) { return text_of(row[c], table.columns[c]); });
+  return result;
+}
+
+std::string csv_of(const Table& table) {
+  std::string result;
+  for (std::size_t c = 0; c < table.columns.size(); ++c) {
+    if (c > 0) result += ',';
+    result += table.columns[c].name;
+  }
+  result += '\n';
+  for (const auto& row : table.rows) {
+    for (std::size_t c = 0; c < row.size(); ++c) {
+      if (c > 0) result += ',';
+      result += csv_field(row[c]);
+    }
+    result += '\n';
+  }
+  return result;
+}
+
+std::string html_of(const Table& table) {
+  Html html;
+  html.open("div", {{"class", "table"}});
+  html.open("table");
+  html.element("caption", table.caption);
+  html.open("thead");
+  html.open("tr");
+  for (const Column& column : table.columns) html.element("th", column.heading);
+  html.close();
+  html.close();
+  html.open("tbody");
+  for (const auto& row : table.rows) {
+    html.open("tr");
+    for (std::size_t c = 0; c < row.size(); ++c) {
+      const bool number = is_number(row[c]) || std::holds_alternative<std::monostate>(row[c]);
+      html.element("td", text_of(row[c], table.columns[c]),
+                   number ? Html::Attributes{{"class", "number"}} : Html::Attributes{});
+    }
+    html.close();
+  }
+  return html.finish();
+}
+
+}  // namespace supple::experiments

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace supple::experiments {
+
+/// Nothing, a word, a count or a measured number.
+using Cell = std::variant<std::monostate, std::string, std::uint64_t, double>;
+
+struct Column {
+  std::string name;     ///< in the CSV file: lower_case, with the unit
+  std::string heading;  ///< for people
+  int digits = 3;       ///< significant ones of a measured number for people
+};
+
+/// One table for the terminal, the CSV file and the report.
+struct Table {
+  std::string name;  ///< of the CSV file, without its ending
+  std::string caption;
+  std::vector<Column> columns;
+  std::vector<std::vector<Cell>> rows{};
+
+  /// Throws `Error` unless there is a cell for each column.
+  void add(std::vector<Cell> row);
+};
+
+/// As people read it: thousands grouped, a measured number with the column's digits.
+std::string text_of(const Cell& cell, const Column& column);
+/// Aligned columns under the caption.
+std::string text_of(const Table& table);
+/// RFC 4180 with line feeds; measured numbers so that reading them gives the same number.
+std::string csv_of(const Table& table);
+std::string html_of(const Table& table);
+
+/// `digits` significant digits, never in scientific notation unless far from 1.
+std::string rounded(double value, int digits = 3);
+
+}  // namespace supple::experiments

@@ -1,0 +1,158 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "experiments/arity.hpp"
+#include "experiments/box_field.hpp"
+#include "experiments/paper_table.hpp"
+#include "experiments/scaling.hpp"
+#include "experiments/shape_pair.hpp"
+#include "experiments/table1.hpp"
+#include "supple/models.hpp"
+
+namespace supple::experiments {
+namespace {
+
+TEST(PaperTable, AveragesAreThoseOfTheText) {
+  for (const PaperRow& row : paper_rows()) {
+    EXPECT_NEAR(seconds_per_collision(row.broad), row.text_seconds_broad, 0.0101);
+    EXPECT_NEAR(seconds_per_collision(row.narrow), row.text_seconds_narrow, 0.0101);
+  }
+  EXPECT_NEAR(mean(paper_row(3, BoundingVolume::sphere)->broad), 12.4, 1e-12);
+  EXPECT_EQ(paper_row(4, BoundingVolume::sphere), nullptr);
+}
+
+TEST(PaperTable, TellsWhatTheTextCutOff) {
+  const Table table = paper_arithmetic();
+  ASSERT_EQ(table.rows.size(), 12u);
+  const auto comparison = [&](std::size_t row) { return std::get<std::string>(table.rows[row].back()); };
+  EXPECT_EQ(comparison(0), "agrees");                 // 600 / 24.6 = 24.390
+  EXPECT_EQ(comparison(2), "cut off, not rounded");   // 600 / 12.4 = 48.387, the text has 48.38
+  for (std::size_t row = 0; row < 12; ++row) EXPECT_NE(comparison(row), "differs");
+}
+
+TEST(BoxField, StaysInItsCubeAtOneDensity) {
+  BoxField field(1000, 7);
+  for (int step = 0; step < 300; ++step) field.move();
+  for (const Aabb& box : field.boxes()) {
+    for (int axis = 0; axis < 3; ++axis) {
+      EXPECT_GT(box.min[axis], -0.1f);
+      EXPECT_LT(box.max[axis], 20.1f);
+    }
+  }
+  EXPECT_EQ(BoxField(10, 7).boxes(), BoxField(10, 7).boxes());
+  EXPECT_NE(BoxField(10, 7).boxes(), BoxField(10, 8).boxes());
+}
+
+TEST(ShapePair, TurnsWithoutStretching) {
+  const TriangleMesh ball = make_icosphere(3), other = turned(ball);
+  EXPECT_NE(ball.positions, other.positions);
+  for (std::size_t i = 0; i < ball.positions.size(); ++i) {
+    const Vec3d p = ball.positions[i], q = other.positions[i];
+    EXPECT_NEAR(p.x * p.x + p.y * p.y + p.z * p.z, q.x * q.x + q.y * q.y + q.z * q.z, 1e-12);
+  }
+}
+
+TEST(ShapePair, EveryArityFindsTheSameCandidates) {
+  const TriangleMesh ball = make_icosphere(6), other = moved(turned(ball), {0.5, 0, 0});
+  const PairCost eight = cost_of_pair(ball, other, {.leaf_size = 1}, 1, 1);
+  EXPECT_GT(eight.stats.candidate_pairs, 0u);
+  for (const std::uint32_t arity : {2u, 4u}) {
+    const PairCost cost = cost_of_pair(ball, other, {.leaf_size = 1, .arity = arity}, 1, 1);
+    EXPECT_EQ(cost.stats.candidate_pairs, eight.stats.candidate_pairs);
+    EXPECT_GT(cost.stats.node_pairs_visited, eight.stats.node_pairs_visited);
+    EXPECT_GT(cost.octree_a.depth, eight.octree_a.depth);
+  }
+}
+
+std::vector<std::string> columns_of(const Table& table, const std::string& skipped) {
+  std::vector<std::string> text;
+  for (const auto& row : table.rows)
+    for (std::size_t c = 0; c < row.size(); ++c)
+      if (table.columns[c].name.find(skipped) == std::string::npos) text.push_back(text_of(row[c], table.columns[c]));
+  return text;
+}
+
+const Table& table_of(const Report& report, const std::string& name) {
+  for (const Section& section : report.sections)
+    for (const Block& block : section.blocks)
+      if (const auto* table = std::get_if<Table>(&block); table != nullptr && table->name == name) return *table;
+  throw std::runtime_error("no table " + name);
+}
+
+ScalingOptions tiny_scaling(std::uint32_t threads) {
+  ScalingOptions options;
+  options.object_counts = {100, 200, 400};
+  options.frequencies = {2, 4, 8};
+  options.frames = 2;
+  options.threads = threads;
+  return options;
+}
+
+TEST(Scaling, CountsDoNotDependOnThreads) {
+  const Report one = run_scaling(tiny_scaling(1), false), three = run_scaling(tiny_scaling(3), false);
+  for (const char* const name : {"scaling_broad_phase", "scaling_vertices"})
+    EXPECT_EQ(columns_of(table_of(one, name), "_ms"), columns_of(table_of(three, name), "_ms"));
+  EXPECT_EQ(table_of(one, "scaling_broad_phase").rows.size(), 9u);
+}
+
+TEST(Scaling, BruteForceTestsAllPairsAndStopsInTime) {
+  ScalingOptions options = tiny_scaling(1);
+  const Report report = run_scaling(options, false);
+  const auto& rows = table_of(report, "scaling_broad_phase").rows;
+  EXPECT_EQ(std::get<std::uint64_t>(rows[2][4]), 4950u);
+  EXPECT_EQ(report.claims.front().verdict, Verdict::holds) << report.claims.front().reason;
+  options.brute_seconds = 0;
+  const auto stopped = table_of(run_scaling(options, false), "scaling_broad_phase").rows;
+  EXPECT_TRUE(std::holds_alternative<std::uint64_t>(stopped[2][4])) << "the smallest is always measured";
+  EXPECT_TRUE(std::holds_alternative<std::monostate>(stopped[5][4]));
+}
+
+TEST(Table1, EventsAreTheSameForAnyNumberOfThreads) {
+  const auto steps = [](std::uint64_t taken) { return taken < 150; };
+  for (const BoundingVolume volume : {BoundingVolume::aabb, BoundingVolume::sphere}) {
+    const RunCounts one = run_scene("table1_9", volume, 3, 1, steps);
+    EXPECT_EQ(one.steps, 150u);
+    EXPECT_EQ(one.failure, "");
+    EXPECT_GT(one.broad, 0u) << "nothing met: the test shows nothing";
+    EXPECT_EQ(run_scene("table1_9", volume, 3, 3, steps), one);
+  }
+}
+
+TEST(Table1, VolumesChangeNoExactContact) {
+  Table1Options options;
+  options.scenes = {"table1_3"};
+  options.runs = 2;
+  options.simulated_seconds = 4;
+  options.threads = 1;
+  const Report report = run_table1(options, false);
+  const auto& rows = table_of(report, "table1_runs").rows;
+  ASSERT_EQ(rows.size(), 4u);
+  EXPECT_EQ(rows[0][7], rows[2][7]);
+  EXPECT_EQ(rows[1][7], rows[3][7]);
+}
+
+TEST(Table1, HasEveryScene) {
+  EXPECT_EQ(table1_scene_names(),
+            (std::vector<std::string>{"table1_3", "table1_6", "table1_9", "three_humans", "three_bikes"}));
+  EXPECT_THROW(run_scene("table1_4", BoundingVolume::aabb, 1, 1, [](std::uint64_t) { return false; }), Error);
+  for (const std::string& name : table1_scene_names()) {
+    const RunCounts counts =
+        run_scene(name, BoundingVolume::aabb, 1, 1, [](std::uint64_t) { return false; });
+    EXPECT_EQ(counts.broad, 0u) << name << " begins apart";
+  }
+}
+
+TEST(Arity, QuickRunHasEveryArity) {
+  ArityOptions options;
+  options.quick = true;
+  options.frames = 1;
+  const Report report = run_arity(options, false);
+  const auto& rows = table_of(report, "arity_objects").rows;
+  ASSERT_EQ(rows.size() % 3, 0u);
+  for (std::size_t i = 0; i < rows.size(); ++i) EXPECT_EQ(std::get<std::uint64_t>(rows[i][2]), 2u << (i % 3));
+}
+
+}  // namespace
+}  // namespace supple::experiments

@@ -1,0 +1,86 @@
+#include "experiments/report.hpp"
+
+#include <gtest/gtest.h>
+
+#include "experiments/html.hpp"
+#include "supple/error.hpp"
+
+namespace supple::experiments {
+namespace {
+
+Table small_table() {
+  Table table{"small", "A table", {{"word", "Word"}, {"count", "Count"}, {"number_ms", "Number ms", 3}}};
+  table.add({std::string("a, \"b\""), std::uint64_t{1234567}, 0.1});
+  table.add({std::string("<c>"), {}, 1234.5678});
+  return table;
+}
+
+TEST(Table, CsvQuotesAndKeepsNumbersWhole) {
+  EXPECT_EQ(csv_of(small_table()), "word,count,number_ms\n\"a, \"\"b\"\"\",1234567,0.1\n<c>,,1234.5678\n");
+}
+
+TEST(Table, TextIsAligned) {
+  EXPECT_EQ(text_of(small_table()),
+            "A table\n"
+            "  Word        Count  Number ms\n"
+            "  a, \"b\"  1,234,567      0.100\n"
+            "  <c>             –       1235\n");
+}
+
+TEST(Table, HtmlIsEscaped) {
+  const std::string html = html_of(small_table());
+  EXPECT_NE(html.find("<td>&lt;c&gt;</td>"), std::string::npos);
+  EXPECT_NE(html.find("<td class=\"number\">1,234,567</td>"), std::string::npos);
+}
+
+TEST(Table, RefusesARowOfAnotherWidth) {
+  Table table = small_table();
+  EXPECT_THROW(table.add({std::string("alone")}), Error);
+}
+
+TEST(Rounded, HasSignificantDigits) {
+  EXPECT_EQ(rounded(0), "0");
+  EXPECT_EQ(rounded(0.0012345), "0.00123");
+  EXPECT_EQ(rounded(12.345), "12.3");
+  EXPECT_EQ(rounded(1234.5), "1234");
+  EXPECT_EQ(rounded(99.99), "100");
+  EXPECT_EQ(rounded(-2.5, 2), "-2.5");
+  EXPECT_EQ(rounded(1e-9), "1.00e-09");
+  EXPECT_EQ(rounded(1.0 / 0.0), "∞");
+}
+
+TEST(Html, ClosesWhatIsOpen) {
+  Html html;
+  html.open("div", {{"title", "\"a\" & b"}});
+  html.open("p");
+  html.text("1 < 2");
+  EXPECT_EQ(html.finish(), "<div title=\"&quot;a&quot; &amp; b\">\n<p>\n1 &lt; 2</p>\n</div>\n");
+}
+
+TEST(Report, SaysWhatHolds) {
+  Report report;
+  report.title = "Title";
+  report.claims = {{"one", Verdict::holds, "because"},
+                   {"two", Verdict::does_not_hold, "for"},
+                   {"three", Verdict::cannot_tell, "as"}};
+  report.sections.push_back({"Section", {std::string("Paragraph"), small_table(), Plot{"P", "x", "y"}}});
+  const std::string text = text_of(report);
+  EXPECT_NE(text.find("- one\n  Holds. because\n- two\n  Does not hold. for\n- three\n  Cannot be told. as\n"),
+            std::string::npos);
+  const std::string html = html_of(report, {"<svg></svg>"});
+  EXPECT_NE(html.find("claim fails"), std::string::npos);
+  EXPECT_NE(html.find("<svg></svg>"), std::string::npos);
+}
+
+TEST(Plot, ScriptQuotesText) {
+  Plot plot{"Author's plot", "x", "y"};
+  plot.series.push_back({"it's", {{1, 2}, {10, 20}}});
+  plot.series.push_back({"nothing", {}});
+  const std::string script = gnuplot_script(plot);
+  EXPECT_NE(script.find("set title 'Author''s plot'"), std::string::npos);
+  EXPECT_NE(script.find("title 'it''s'\n1 2\n10 20\ne\n"), std::string::npos);
+  EXPECT_EQ(script.find("nothing"), std::string::npos) << "a series without points is left out";
+}
+
+}  // namespace
+}  // namespace supple::experiments
