@@ -9,8 +9,6 @@
 namespace supple {
 namespace {
 
-using models::dot;
-
 constexpr std::size_t edges_at_a_time = 512;
 
 struct Bounds {
