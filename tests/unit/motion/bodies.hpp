@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "geometry/vector.hpp"
 #include "supple/models.hpp"
 #include "supple/motion.hpp"
 #include "support/soups.hpp"
@@ -49,10 +50,6 @@ inline std::vector<Vec3d> deformed(const TriangleMesh& mesh, double stretch, dou
     positions[v] = Vec3d{(1 + stretch) * p.x, p.y / (1 + stretch), p.z} + noise[v];
   }
   return positions;
-}
-
-inline double length(Vec3d a) {
-  return std::sqrt(a.x * a.x + a.y * a.y + a.z * a.z);
 }
 
 inline double largest_difference(std::span<const Vec3d> a, std::span<const Vec3d> b) {

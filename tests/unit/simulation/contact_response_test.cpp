@@ -3,15 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/vector.hpp"
 #include "supple/models.hpp"
 #include "supple/simulation.hpp"
 
 namespace supple {
 namespace {
-
-double length(Vec3d a) {
-  return std::sqrt(a.x * a.x + a.y * a.y + a.z * a.z);
-}
 
 TriangleMesh placed(TriangleMesh mesh, double size, Vec3d at) {
   for (Vec3d& p : mesh.positions) p = size * p + at;

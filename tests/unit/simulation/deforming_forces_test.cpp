@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <limits>
 
+#include "geometry/vector.hpp"
 #include "supple/models.hpp"
 
 namespace supple {
@@ -15,10 +16,6 @@ namespace {
 
 Vec3d cross(Vec3d a, Vec3d b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-
-double length(Vec3d a) {
-  return std::sqrt(a.x * a.x + a.y * a.y + a.z * a.z);
 }
 
 TEST(DeformingForces, SumToZeroAndTurnNothing) {

@@ -1,4 +1,5 @@
 #include "supple/simulation.hpp"
+#include "geometry/vector.hpp"
 
 #include <gtest/gtest.h>
 
@@ -21,10 +22,6 @@ using Points = std::vector<Vec3d>;
 
 Points copied(std::span<const Vec3d> points) {
   return {points.begin(), points.end()};
-}
-
-double length(Vec3d a) {
-  return std::sqrt(a.x * a.x + a.y * a.y + a.z * a.z);
 }
 
 TriangleMesh placed(TriangleMesh mesh, double size, Vec3d at, const std::string& name = "") {
