@@ -18,15 +18,17 @@ struct ImplicitStep {
   double seconds = 0;
 };
 
-/// Velocities at the end of a step of backward Euler, m (v1 - v0) = h f(x0 + h v1, v1): Newton's method with the
-/// Jacobians of Baraff & Witkin 1998, made positive semidefinite by leaving out what compression takes away.
+/// Velocities at the end of a step of backward Euler, m (v1 - v0) = h f(x0 + h v1, v1): Newton's method with
+/// the Jacobians of Baraff & Witkin 1998, made positive semidefinite by leaving out what compression takes
+/// away.
 ///
-/// Each iteration must lower the potential whose stationary points are the solutions, m |v - v0|² / 2 + energy
+/// Each iteration must lower the potential whose stationary points are the solutions, m |v - v0|² / 2 +
+/// energy
 /// (+ dissipation), so that energy stays bounded at any stiffness and step. The damping of springs acts along
 /// their directions at the start.
 class BackwardEuler {
  public:
-  static constexpr int max_newton_iterations = 10;
+  static constexpr int max_newton_iterations = 6;
 
   BackwardEuler(const SpringNetwork& network, std::span<const VertexKind> kinds,
                 const MassSpringOptions& options);

@@ -18,7 +18,8 @@ class OptionCheck {
     if (allowed) return;
     std::string text;
     append_double(text, value);
-    fail("masses and springs of mesh '" + mesh_.name + "': " + option + " is " + text + "; it must be " + range);
+    fail("masses and springs of mesh '" + mesh_.name + "': " + option + " is " + text + "; it must be " +
+         range);
   }
   void at_least_zero(const char* option, double value) const {
     require(value >= 0 && std::isfinite(value), option, value, "finite and not negative");

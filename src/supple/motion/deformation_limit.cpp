@@ -11,7 +11,7 @@ namespace {
 
 using models::dot;
 
-constexpr std::size_t edges_at_a_time = 2048;
+constexpr std::size_t edges_at_a_time = 512;
 
 struct Bounds {
   double shortest, longest;
@@ -21,6 +21,10 @@ struct Bounds {
       : shortest(std::max(0.0, 1 - max_strain) * edge.rest_length),
         longest(edge.rest_length > 0 ? (1 + max_strain) * edge.rest_length
                                      : std::numeric_limits<double>::infinity()) {}
+
+  bool have(double squared_length) const {
+    return squared_length >= shortest * shortest && squared_length <= longest * longest;
+  }
 };
 
 /// What to add to x_b - x_a so that it is `wanted` long, along x - h v where that is possible.
@@ -83,41 +87,56 @@ DeformationLimit::DeformationLimit(const SpringNetwork& network, std::span<const
 
 bool DeformationLimit::apply(std::span<const SpringElement> edges, double seconds, std::span<Vec3d> positions,
                              std::span<Vec3d> velocities, const Parallel& parallel) const {
-  const auto within = [&](std::size_t begin, std::size_t end) {
-    return std::all_of(edges.begin() + begin, edges.begin() + end, [&](const SpringElement& edge) {
-      const Bounds bounds(edge, max_strain_);
-      const double length = models::length(positions[edge.b] - positions[edge.a]);
-      const double excess = std::max(length - bounds.longest, bounds.shortest - length);
-      return !(excess > tolerance * edge.rest_length) || !can_move(edge);
-    });
-  };
-  const auto shorten = [&](const SpringElement& edge) {
-    const double weight_a = inverse_masses_[edge.a], weight_b = inverse_masses_[edge.b];
-    const Vec3d d = positions[edge.b] - positions[edge.a];
-    const double length = models::length(d);
+  const auto is_within = [&](const SpringElement& edge) {
     const Bounds bounds(edge, max_strain_);
-    const double wanted = std::clamp(length, bounds.shortest, bounds.longest);
-    if (wanted == length || !can_move(edge)) return;
-    const Vec3d before = d - (velocities[edge.b] - velocities[edge.a]) * seconds;
-    const Vec3d change = correction(d, before, wanted);
-    const Vec3d of_a = change * (-weight_a / (weight_a + weight_b));
-    const Vec3d of_b = change * (weight_b / (weight_a + weight_b));
-    positions[edge.a] = positions[edge.a] + of_a;
-    positions[edge.b] = positions[edge.b] + of_b;
-    velocities[edge.a] = velocities[edge.a] + of_a * (1 / seconds);
-    velocities[edge.b] = velocities[edge.b] + of_b * (1 / seconds);
+    const Vec3d d = positions[edge.b] - positions[edge.a];
+    return bounds.have(dot(d, d)) || !can_move(edge);
+  };
+  if (parallel.all_of_ranges(edges.size(), edges_at_a_time, [&](std::size_t begin, std::size_t end) {
+        return std::all_of(edges.begin() + begin, edges.begin() + end, is_within);
+      })) {
+    return false;
+  }
+  const auto one_color = [&](std::size_t color) {
+    const std::uint32_t first = first_color_[color];
+    return parallel.all_of_ranges(first_color_[color + 1] - first, edges_at_a_time,
+                                  [&](std::size_t begin, std::size_t end) {
+                                    bool all = true;
+                                    for (std::size_t i = first + begin; i < first + end; ++i) {
+                                      const SpringElement& edge = edges[by_color_[i]];
+                                      if (!is_within(edge) && !correct(edge, seconds, positions, velocities))
+                                        all = false;
+                                    }
+                                    return all;
+                                  });
   };
   for (int round = 0; round < max_rounds; ++round) {
-    if (parallel.all_of_ranges(edges.size(), edges_at_a_time, within)) return round > 0;
+    bool all = true;
     for (std::size_t color = 0; color + 1 < first_color_.size(); ++color) {
-      const std::uint32_t first = first_color_[color];
-      parallel.for_ranges(first_color_[color + 1] - first, edges_at_a_time,
-                          [&](std::size_t begin, std::size_t end, std::uint32_t) {
-                            for (std::size_t i = first + begin; i < first + end; ++i) shorten(edges[by_color_[i]]);
-                          });
+      if (!one_color(color)) all = false;
     }
+    if (all) break;
   }
-  return max_rounds > 0;
+  return true;
+}
+
+/// True when the edge was within the tolerance before.
+bool DeformationLimit::correct(const SpringElement& edge, double seconds, std::span<Vec3d> positions,
+                               std::span<Vec3d> velocities) const {
+  const double weight_a = inverse_masses_[edge.a], weight_b = inverse_masses_[edge.b];
+  const Vec3d d = positions[edge.b] - positions[edge.a];
+  const double length = models::length(d);
+  const Bounds bounds(edge, max_strain_);
+  const double wanted = std::clamp(length, bounds.shortest, bounds.longest);
+  const Vec3d before = d - (velocities[edge.b] - velocities[edge.a]) * seconds;
+  const Vec3d change = correction(d, before, wanted);
+  const Vec3d of_a = change * (-weight_a / (weight_a + weight_b));
+  const Vec3d of_b = change * (weight_b / (weight_a + weight_b));
+  positions[edge.a] = positions[edge.a] + of_a;
+  positions[edge.b] = positions[edge.b] + of_b;
+  velocities[edge.a] = velocities[edge.a] + of_a * (1 / seconds);
+  velocities[edge.b] = velocities[edge.b] + of_b * (1 / seconds);
+  return !(std::abs(length - wanted) > tolerance * edge.rest_length);
 }
 
 }  // namespace supple

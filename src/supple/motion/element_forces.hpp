@@ -14,8 +14,8 @@ using models::dot;
 
 /// Force on end a of a spring; on b it is the opposite. `d` = x_b - x_a, `velocity` = v_b - v_a.
 ///
-/// Eq. 2 of the paper, (k_s (|d| - s) + k_d |d|˙) d/|d|, with |d|˙ = velocity·d / |d|: damping along the spring
-/// (Teschner et al. 2004). A spring of no length has no direction and does not pull.
+/// Eq. 2 of the paper, (k_s (|d| - s) + k_d |d|˙) d/|d|, with |d|˙ = velocity·d / |d|: damping along the
+/// spring (Teschner et al. 2004). A spring of no length has no direction and does not pull.
 inline Vec3d spring_force(Vec3d d, Vec3d velocity, double stiffness, double damping, double rest_length) {
   const double length = std::sqrt(dot(d, d));
   if (!(length > 0)) return {};

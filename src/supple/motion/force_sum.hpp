@@ -16,8 +16,8 @@ class ForceSum {
  public:
   explicit ForceSum(const SpringNetwork& network);
 
-  void compute(const SpringNetwork& network, const MassSpringOptions& options, std::span<const Vec3d> positions,
-               std::span<const Vec3d> velocities, const Parallel& parallel);
+  void compute(const SpringNetwork& network, const MassSpringOptions& options,
+               std::span<const Vec3d> positions, std::span<const Vec3d> velocities, const Parallel& parallel);
 
   /// Newtons, of all elements, as last computed.
   Vec3d on_vertex(const SpringNetwork& network, std::uint32_t vertex) const {

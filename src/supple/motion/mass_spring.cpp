@@ -76,8 +76,7 @@ MassSpring::MassSpring(const TriangleMesh& rest, const MassSpringOptions& option
       bad_vertices_(network_.block_count(), none) {
   rest_areas_.reserve(triangles_.size());
   for (const Triangle& t : triangles_) {
-    rest_areas_.push_back(
-        triangle_area(rest.positions[t[0]], rest.positions[t[1]], rest.positions[t[2]]));
+    rest_areas_.push_back(triangle_area(rest.positions[t[0]], rest.positions[t[1]], rest.positions[t[2]]));
   }
   if (options_.integrator == Integrator::verlet) {
     now_.accelerations.resize(rest.positions.size());
@@ -102,7 +101,8 @@ void MassSpring::step(double seconds, const Parallel& parallel) {
          " s; it must be finite and above 0");
   }
   const bool is_plastic = options_.yield_strain < std::numeric_limits<double>::infinity();
-  if (is_plastic) rest_before_ = {network_.edges.elements, network_.bending.elements, network_.areas.elements};
+  if (is_plastic)
+    rest_before_ = {network_.edges.elements, network_.bending.elements, network_.areas.elements};
   const double substep = seconds / options_.substeps;
   State* from = &now_;
   for (std::uint32_t i = 0; i < options_.substeps; ++i) {
@@ -121,7 +121,8 @@ void MassSpring::step(double seconds, const Parallel& parallel) {
 
 void MassSpring::undo_step() {
   if (before_ == nullptr) {
-    fail("masses and springs of mesh '" + name_ + "': there is no step to undo; only the last one can be undone");
+    fail("masses and springs of mesh '" + name_ +
+         "': there is no step to undo; only the last one can be undone");
   }
   std::swap(now_, this->*before_);
   before_ = nullptr;
@@ -137,14 +138,21 @@ void MassSpring::restore_rest_shape() {
 
 void MassSpring::carry_on(State& from, State& to, double seconds, const Parallel& parallel) {
   switch (options_.integrator) {
-    case Integrator::verlet: verlet(from, to, seconds, parallel); break;
-    case Integrator::symplectic_euler: symplectic_euler(from, to, seconds, parallel); break;
-    case Integrator::backward_euler: implicit_euler(from, to, seconds, parallel); break;
+    case Integrator::verlet:
+      verlet(from, to, seconds, parallel);
+      break;
+    case Integrator::symplectic_euler:
+      symplectic_euler(from, to, seconds, parallel);
+      break;
+    case Integrator::backward_euler:
+      implicit_euler(from, to, seconds, parallel);
+      break;
   }
   if (limit_ != nullptr && first_bad_vertex() == none) {
     if (limit_->apply(network_.edges.elements, seconds, to.positions, to.velocities, parallel)) {
       to.accelerations_known = false;
-      for_blocks(parallel, [&](std::uint32_t first, std::uint32_t last) { check_vertices(from, to, first, last); });
+      for_blocks(parallel,
+                 [&](std::uint32_t first, std::uint32_t last) { check_vertices(from, to, first, last); });
     }
   }
   if (options_.yield_strain < std::numeric_limits<double>::infinity() && first_bad_vertex() == none) {
@@ -153,14 +161,14 @@ void MassSpring::carry_on(State& from, State& to, double seconds, const Parallel
 }
 
 /// Velocity Verlet, after Teschner et al. 2004. Forces that depend on velocity see that predicted for the end
-/// of the step; the difference to the velocity there is of second order in the time step, that which it makes to
-/// the result of third.
+/// of the step; the difference to the velocity there is of second order in the time step, that which it makes
+/// to the result of third.
 void MassSpring::verlet(State& from, State& to, double seconds, const Parallel& parallel) {
   if (!from.accelerations_known) find_accelerations(from, parallel);
   for_blocks(parallel, [&](std::uint32_t first, std::uint32_t last) {
     for (std::uint32_t v = first; v < last; ++v) {
-      to.positions[v] =
-          from.positions[v] + (from.velocities[v] * seconds + from.accelerations[v] * (0.5 * seconds * seconds));
+      to.positions[v] = from.positions[v] +
+                        (from.velocities[v] * seconds + from.accelerations[v] * (0.5 * seconds * seconds));
       predicted_[v] = from.velocities[v] + from.accelerations[v] * seconds;
     }
   });
@@ -179,7 +187,8 @@ void MassSpring::verlet(State& from, State& to, double seconds, const Parallel& 
 void MassSpring::find_accelerations(State& state, const Parallel& parallel) {
   forces_.compute(network_, options_, state.positions, state.velocities, parallel);
   for_blocks(parallel, [&](std::uint32_t first, std::uint32_t last) {
-    for (std::uint32_t v = first; v < last; ++v) state.accelerations[v] = acceleration(v, state.velocities[v]);
+    for (std::uint32_t v = first; v < last; ++v)
+      state.accelerations[v] = acceleration(v, state.velocities[v]);
   });
   state.accelerations_known = true;
 }
@@ -254,13 +263,13 @@ std::uint32_t MassSpring::first_bad_vertex() const {
 }
 
 void MassSpring::fail_at(std::uint32_t vertex, double seconds) const {
-  const std::string where =
-      "masses and springs of mesh '" + name_ + "': vertex " + std::to_string(vertex);
+  const std::string where = "masses and springs of mesh '" + name_ + "': vertex " + std::to_string(vertex);
   if (!is_finite(now_.positions[vertex]) || !is_finite(now_.velocities[vertex])) {
     fail(where + " was given a position or velocity that is not finite");
   }
   const std::string what = where + " flies off in a step of " + in_digits(seconds) + " s";
-  if (!(seconds > stable_step())) fail(what + "; velocities, forces or stretch must be smaller than those given");
+  if (!(seconds > stable_step()))
+    fail(what + "; velocities, forces or stretch must be smaller than those given");
   fail(what + "; steps below " + in_digits(stable_step()) +
        " s are stable, more substeps or backward_euler make them longer");
 }

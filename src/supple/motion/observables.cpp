@@ -34,9 +34,9 @@ MassSpringEnergy MassSpring::energy() const {
   const std::vector<Vec3d>&x = now_.positions, &v = now_.velocities;
   const double mass = options_.vertex_mass;
   MassSpringEnergy energy;
-  energy.kinetic =
-      sum_of_free<double>(kinds_, [&](std::size_t i) { return 0.5 * mass * dot(v[i], v[i]); });
-  energy.gravity = sum_of_free<double>(kinds_, [&](std::size_t i) { return -mass * dot(options_.gravity, x[i]); });
+  energy.kinetic = sum_of_free<double>(kinds_, [&](std::size_t i) { return 0.5 * mass * dot(v[i], v[i]); });
+  energy.gravity =
+      sum_of_free<double>(kinds_, [&](std::size_t i) { return -mass * dot(options_.gravity, x[i]); });
   energy.elastic = elastic_energy(network_.edges.elements, options_.stiffness, x) +
                    elastic_energy(network_.bending.elements, options_.bending_stiffness, x);
   for (const AreaElement& element : network_.areas.elements) {
@@ -102,7 +102,8 @@ AreaError MassSpring::area_error() const {
 std::vector<MassSpringBody::Spring> MassSpring::springs() const {
   std::vector<MassSpringBody::Spring> springs;
   springs.reserve(network_.edges.elements.size());
-  for (const SpringElement& edge : network_.edges.elements) springs.push_back({edge.a, edge.b, edge.rest_length});
+  for (const SpringElement& edge : network_.edges.elements)
+    springs.push_back({edge.a, edge.b, edge.rest_length});
   std::sort(springs.begin(), springs.end(),
             [](const auto& p, const auto& q) { return p.a != q.a ? p.a < q.a : p.b < q.b; });
   return springs;

@@ -48,7 +48,8 @@ std::vector<Ends> pairs_across_edges(std::span<const Side> sides, std::span<cons
   }
   std::sort(pairs.begin(), pairs.end());
   pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
-  std::erase_if(pairs, [&](const Ends& pair) { return std::binary_search(edges.begin(), edges.end(), pair); });
+  std::erase_if(pairs,
+                [&](const Ends& pair) { return std::binary_search(edges.begin(), edges.end(), pair); });
   return pairs;
 }
 

@@ -17,8 +17,8 @@ struct SpringElement {
   std::array<std::uint32_t, 2> vertices() const { return {a, b}; }
 };
 
-/// Pulls at the corners of a triangle. `inverse_scale` is one over the area of the equilateral triangle on its
-/// longest side: over the area itself slivers would be stiff without bound.
+/// Pulls at the corners of a triangle. `inverse_scale` is one over the area of the equilateral triangle on
+/// its longest side: over the area itself slivers would be stiff without bound.
 struct AreaElement {
   Triangle corners{};
   double rest_area = 0;
@@ -27,13 +27,13 @@ struct AreaElement {
   const Triangle& vertices() const { return corners; }
 };
 
-/// Vertices that share a block of forces. Fixed, so that sums have one order for any number of threads; a block's
-/// positions, velocities and forces stay in the second level of cache.
+/// Vertices that share a block of forces. Fixed, so that sums have one order for any number of threads; a
+/// block's positions, velocities and forces stay in the second level of cache.
 constexpr std::uint32_t vertex_block_size = 2048;
 
-/// Elements by the block of their first vertex; within a block, first those that stay inside it, then those that
-/// cross into others. Blocks add up the forces of the former in place. The latter hand theirs in at slots, one for
-/// each vertex of each, which lie vertex by vertex, so that nobody waits for anybody.
+/// Elements by the block of their first vertex; within a block, first those that stay inside it, then those
+/// that cross into others. Blocks add up the forces of the former in place. The latter hand theirs in at
+/// slots, one for each vertex of each, which lie vertex by vertex, so that nobody waits for anybody.
 template <class Element>
 struct ElementBlocks {
   std::vector<Element> elements;
@@ -56,7 +56,8 @@ struct SpringNetwork {
 };
 
 /// Elements of vertices that are not finite are left out, and those whose size is beyond the range of double.
-/// An edge of many triangles has a bending spring for each two that follow each other in the mesh. O(n log n).
+/// An edge of many triangles has a bending spring for each two that follow each other in the mesh. O(n log
+/// n).
 SpringNetwork build_spring_network(const TriangleMesh& rest, bool with_bending, bool with_areas);
 
 bool is_finite(Vec3d p);

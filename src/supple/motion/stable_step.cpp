@@ -41,7 +41,8 @@ double stable_explicit_step(const SpringNetwork& network, std::span<const Vertex
   for (std::uint32_t v = 0; v < kinds.size(); ++v) {
     if (!is_free(v)) continue;
     const double squared_frequency = stiffness[v] / options.vertex_mass;
-    const double rate = damping[v] / options.vertex_mass * (options.integrator == Integrator::verlet ? 1 : 0.5);
+    const double rate =
+        damping[v] / options.vertex_mass * (options.integrator == Integrator::verlet ? 1 : 0.5);
     const double inverse_step = 0.5 * (rate + std::sqrt(rate * rate + squared_frequency));
     shortest = std::min(shortest, 1 / inverse_step);
   }
