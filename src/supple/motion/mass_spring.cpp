@@ -106,6 +106,7 @@ void MassSpring::step(double seconds, const Parallel& parallel) {
     rest_before_.bending = network_.bending.elements;
     rest_before_.areas = network_.areas.elements;
   }
+  before_ = nullptr;
   const double substep = seconds / options_.substeps;
   State* from = &now_;
   for (std::uint32_t i = 0; i < options_.substeps; ++i) {
@@ -113,7 +114,6 @@ void MassSpring::step(double seconds, const Parallel& parallel) {
     carry_on(*from, to, substep, parallel);
     if (const std::uint32_t bad = first_bad_vertex(); bad != none) {
       restore_rest_shape();
-      before_ = nullptr;
       fail_at(bad, seconds);
     }
     from = &to;

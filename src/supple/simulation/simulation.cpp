@@ -11,8 +11,8 @@
 namespace supple {
 namespace {
 
-/// Vertices from which a body is given all threads.
-constexpr std::size_t large_body = 8192;
+/// A body of more vertices is given all threads; those of fewer would not use them.
+constexpr std::size_t large_body = 10000;
 
 void check(bool is_in_range, const char* option, double value, const char* range) {
   if (!is_in_range) fail(std::string(option) + " is " + std::to_string(value) + "; it must be " + range);
@@ -95,7 +95,7 @@ ObjectId Simulation::Implementation::add(const TriangleMesh& mesh, const ObjectO
     added->own_positions = mesh.positions;
     added->id = scene.add(mesh, object_options);
   } else {
-    const std::uint32_t threads = mesh.positions.size() >= large_body ? options.scene.threads : 1;
+    const std::uint32_t threads = mesh.positions.size() > large_body ? options.scene.threads : 1;
     MassSpringBody body = make_body(mesh, *motion, threads);
     added->id = scene.add(mesh, object_options);
     const std::uint64_t number = added->id.index | std::uint64_t{added->id.generation} << 32;
