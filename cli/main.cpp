@@ -1,4 +1,5 @@
 #include <fmt/core.h>
+#include <hdf5.h>
 
 #include <cstdio>
 #include <exception>
@@ -42,6 +43,9 @@ int run(const CommandLine& line) {
 
 int main(int argument_count, char** arguments) {
   using namespace supple::cli;
+  // All recordings are closed by then; what a damaged one left open inside HDF5 would be told on standard
+  // error.
+  H5dont_atexit();
   try {
     const int exit_status = run(parse_command_line(argument_count, arguments));
     OutputFile("-").close();

@@ -19,18 +19,12 @@ constexpr std::size_t block_bytes = std::size_t{1} << 16;
 
 /// The text of an attribute or a dataset of one string; `read` fills memory of the given type.
 template <class Read>
-std::string read_text(hid_t stored, hid_t space, Read read) {
-  if (H5Tget_class(stored) != H5T_STRING || H5Sget_simple_extent_npoints(space) != 1) throw Hdf5Failure();
-  const DatatypeHandle type(check(H5Tcopy(stored)));
-  if (check(H5Tis_variable_str(stored)) > 0) {
-    char* text = nullptr;
-    check(read(type.id(), &text));
-    const std::string result = text ? text : "";
-    check(H5Dvlen_reclaim(type.id(), space, H5P_DEFAULT, &text));
-    return result;
-  }
-  std::string result(H5Tget_size(stored), '\0');
-  check(read(type.id(), result.data()));
+std::string read_text(hid_t type, hid_t space, std::uint64_t file_size, Read read) {
+  if (H5Tget_class(type) != H5T_STRING || H5Tis_variable_str(type) != 0 ||
+      H5Sget_simple_extent_npoints(space) != 1 || H5Tget_size(type) > file_size)
+    throw Hdf5Failure();
+  std::string result(H5Tget_size(type), '\0');
+  check(read(type, result.data()));
   result.resize(std::min(result.find('\0'), result.size()));
   return result;
 }
@@ -125,7 +119,7 @@ std::string InputFile::text(const std::string& group, const char* name) const {
   const DatatypeHandle type(H5Aget_type(attribute.id()));
   const DataspaceHandle space(H5Aget_space(attribute.id()));
   try {
-    return read_text(type.id(), space.id(),
+    return read_text(type.id(), space.id(), size_,
                      [&](hid_t memory, void* to) { return H5Aread(attribute.id(), memory, to); });
   } catch (const Hdf5Failure&) {
     fail(group == "/" ? "" : group, std::string("attribute ") + name + " is no text; record again");
@@ -138,7 +132,7 @@ std::string InputFile::text_dataset(const std::string& path) const {
   const DatatypeHandle type(H5Dget_type(dataset.id()));
   const DataspaceHandle space(H5Dget_space(dataset.id()));
   try {
-    return read_text(type.id(), space.id(), [&](hid_t memory, void* to) {
+    return read_text(type.id(), space.id(), size_, [&](hid_t memory, void* to) {
       return H5Dread(dataset.id(), memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, to);
     });
   } catch (const Hdf5Failure&) {

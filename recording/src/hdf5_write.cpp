@@ -30,9 +30,11 @@ PropertyListHandle one_chunk_in_memory(std::size_t bytes) {
   return properties;
 }
 
-DatatypeHandle text_type() {
+/// Of fixed size: HDF5 does not check the heap of texts of any size, and so may crash on a damaged file.
+DatatypeHandle text_type(const std::string& text) {
   DatatypeHandle type(check(H5Tcopy(H5T_C_S1)));
-  check(H5Tset_size(type.id(), H5T_VARIABLE));
+  check(H5Tset_size(type.id(), std::max<std::size_t>(text.size(), 1)));
+  check(H5Tset_strpad(type.id(), H5T_STR_NULLPAD));
   check(H5Tset_cset(type.id(), H5T_CSET_UTF8));
   return type;
 }
@@ -79,18 +81,16 @@ void write_attribute(hid_t file, const std::string& group, const char* name, boo
 }
 
 void write_attribute(hid_t file, const std::string& group, const char* name, const std::string& value) {
-  const char* text = value.c_str();
-  write_attribute(file, group, name, text_type().id(), static_cast<const void*>(&text));
+  write_attribute(file, group, name, text_type(value).id(), static_cast<const void*>(value.c_str()));
 }
 
 void write_text(hid_t file, const std::string& path, const std::string& text) {
   const DataspaceHandle scalar(check(H5Screate(H5S_SCALAR)));
-  const DatatypeHandle type = text_type();
+  const DatatypeHandle type = text_type(text);
   const PropertyListHandle properties = timeless(H5P_DATASET_CREATE);
   const DatasetHandle dataset(check(
       H5Dcreate2(file, path.c_str(), type.id(), scalar.id(), H5P_DEFAULT, properties.id(), H5P_DEFAULT)));
-  const char* start = text.c_str();
-  check(H5Dwrite(dataset.id(), type.id(), H5S_ALL, H5S_ALL, H5P_DEFAULT, static_cast<const void*>(&start)));
+  check(H5Dwrite(dataset.id(), type.id(), H5S_ALL, H5S_ALL, H5P_DEFAULT, text.c_str()));
 }
 
 void write_rows(hid_t file, const std::string& path, ScalarType type, std::size_t rows, std::size_t width,
