@@ -27,8 +27,8 @@ TEST(PaperTable, TellsWhatTheTextCutOff) {
   const Table table = paper_arithmetic();
   ASSERT_EQ(table.rows.size(), 12u);
   const auto comparison = [&](std::size_t row) { return std::get<std::string>(table.rows[row].back()); };
-  EXPECT_EQ(comparison(0), "agrees");                 // 600 / 24.6 = 24.390
-  EXPECT_EQ(comparison(2), "cut off, not rounded");   // 600 / 12.4 = 48.387, the text has 48.38
+  EXPECT_EQ(comparison(0), "agrees");                // 600 / 24.6 = 24.390
+  EXPECT_EQ(comparison(2), "cut off, not rounded");  // 600 / 12.4 = 48.387, the text has 48.38
   for (std::size_t row = 0; row < 12; ++row) EXPECT_NE(comparison(row), "differs");
 }
 
@@ -70,14 +70,16 @@ std::vector<std::string> columns_of(const Table& table, const std::string& skipp
   std::vector<std::string> text;
   for (const auto& row : table.rows)
     for (std::size_t c = 0; c < row.size(); ++c)
-      if (table.columns[c].name.find(skipped) == std::string::npos) text.push_back(text_of(row[c], table.columns[c]));
+      if (table.columns[c].name.find(skipped) == std::string::npos)
+        text.push_back(text_of(row[c], table.columns[c]));
   return text;
 }
 
 const Table& table_of(const Report& report, const std::string& name) {
   for (const Section& section : report.sections)
     for (const Block& block : section.blocks)
-      if (const auto* table = std::get_if<Table>(&block); table != nullptr && table->name == name) return *table;
+      if (const auto* table = std::get_if<Table>(&block); table != nullptr && table->name == name)
+        return *table;
   throw std::runtime_error("no table " + name);
 }
 
@@ -138,8 +140,7 @@ TEST(Table1, HasEveryScene) {
             (std::vector<std::string>{"table1_3", "table1_6", "table1_9", "three_humans", "three_bikes"}));
   EXPECT_THROW(run_scene("table1_4", BoundingVolume::aabb, 1, 1, [](std::uint64_t) { return false; }), Error);
   for (const std::string& name : table1_scene_names()) {
-    const RunCounts counts =
-        run_scene(name, BoundingVolume::aabb, 1, 1, [](std::uint64_t) { return false; });
+    const RunCounts counts = run_scene(name, BoundingVolume::aabb, 1, 1, [](std::uint64_t) { return false; });
     EXPECT_EQ(counts.broad, 0u) << name << " begins apart";
   }
 }
