@@ -34,7 +34,7 @@ Case case_of(const std::string& name, const TriangleMesh& a, const TriangleMesh&
   return result;
 }
 
-std::vector<Case> cases(bool quick) {
+std::vector<Case> cases(const ArityOptions& options) {
   const std::vector<Vec3d> offsets{{0.1, 0.05, 0.1}, {0.3, 0.1, 0.05}, {0.55, 0.15, 0.1}};
   const std::vector<Vec3d> crossing{{0.25, 0, 0}, {1, 0.125, 0.0625}, {1.75, 0.25, 0}};
   const auto pair = [&](const char* a, const char* b) {
@@ -42,10 +42,9 @@ std::vector<Case> cases(bool quick) {
     return case_of(name, make_model(a), make_model(b), offsets);
   };
   std::vector<Case> all{pair("pawn", "fish"), pair("rabbit", "rabbit"), pair("human", "human")};
-  const std::uint32_t frequency = quick ? 32 : 128;
-  const std::uint32_t rings = quick ? 128 : 512;
-  if (!quick) all.push_back(pair("bike", "bike"));
-  const TriangleMesh ball = make_icosphere(frequency), torus = make_torus(rings, rings / 2);
+  if (options.with_bikes) all.push_back(pair("bike", "bike"));
+  const TriangleMesh ball = make_icosphere(options.frequency),
+                     torus = make_torus(options.rings, options.rings / 2);
   all.push_back(case_of(fmt::format("balls of {} triangles", ball.triangles.size()), ball, ball, crossing));
   all.push_back(case_of(fmt::format("tori of {} triangles", torus.triangles.size()), torus, torus,
                         {{0.1, 0, 0}, {0.5, 0, 0.1}, {0.9, 0.1, 0}}));
@@ -140,10 +139,8 @@ SceneCost cost_of_scene_tree(std::uint32_t arity, std::size_t count, const Arity
 using SceneCosts = std::vector<std::array<SceneCost, 3>>;
 
 SceneCosts measure_scene_trees(const ArityOptions& options, Work& work, Table& table) {
-  std::vector<std::size_t> counts{1000, 10'000};
-  if (!options.quick) counts.push_back(100'000);
   SceneCosts costs;
-  for (const std::size_t count : counts) {
+  for (const std::size_t count : options.box_counts) {
     std::array<SceneCost, 3> row;
     for (std::size_t k = 0; k < arities.size(); ++k) {
       work.done(1, fmt::format("scene tree of {} boxes, {} children", count, arities[k]));
@@ -333,9 +330,20 @@ Table scene_table() {
 
 }  // namespace
 
+ArityOptions arity_options(bool quick) {
+  ArityOptions options;
+  if (!quick) return options;
+  options.frequency = 32;
+  options.rings = 128;
+  options.with_bikes = false;
+  options.box_counts = {1000, 10'000};
+  options.frames = 3;
+  return options;
+}
+
 Report run_arity(const ArityOptions& options, bool show_progress) {
-  const std::vector<Case> all = cases(options.quick);
-  Work work(2 * all.size() * arities.size() + (options.quick ? 2 : 3) * arities.size(), show_progress);
+  const std::vector<Case> all = cases(options);
+  Work work(2 * all.size() * arities.size() + options.box_counts.size() * arities.size(), show_progress);
   Table objects = objects_table(), scenes = scene_table();
   const Sums single = measure_objects(all, 1, options, work, objects);
   const Sums usual = measure_objects(all, ObjectOctreeOptions{}.leaf_size, options, work, objects);

@@ -29,9 +29,7 @@ Report run(const ExperimentOptions& options) {
     scaling.seed = options.seed;
     return run_scaling(scaling, !options.quiet);
   }
-  ArityOptions arity;
-  arity.quick = options.quick;
-  arity.frames = options.quick ? 3 : 5;
+  ArityOptions arity = arity_options(options.quick);
   arity.threads = options.threads.value_or(1);
   arity.seed = options.seed;
   return run_arity(arity, !options.quiet);
