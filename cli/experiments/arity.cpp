@@ -4,13 +4,16 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "experiments/box_field.hpp"
 #include "experiments/shape_pair.hpp"
 #include "supple/broad_phase.hpp"
 #include "supple/models.hpp"
+#include "text.hpp"
 
 namespace supple::experiments {
 namespace {
@@ -31,17 +34,17 @@ Case case_of(const std::string& name, const TriangleMesh& a, const TriangleMesh&
   return result;
 }
 
-std::vector<Case> cases(bool quick) {
+std::vector<Case> cases(const ArityOptions& options) {
   const std::vector<Vec3d> offsets{{0.1, 0.05, 0.1}, {0.3, 0.1, 0.05}, {0.55, 0.15, 0.1}};
   const std::vector<Vec3d> crossing{{0.25, 0, 0}, {1, 0.125, 0.0625}, {1.75, 0.25, 0}};
   const auto pair = [&](const char* a, const char* b) {
-    return case_of(fmt::format("{}, {}", a, b), make_model(a), make_model(b), offsets);
+    const std::string name = a == std::string_view(b) ? fmt::format("{}s", a) : fmt::format("{}, {}", a, b);
+    return case_of(name, make_model(a), make_model(b), offsets);
   };
   std::vector<Case> all{pair("pawn", "fish"), pair("rabbit", "rabbit"), pair("human", "human")};
-  const std::uint32_t frequency = quick ? 32 : 128;
-  const std::uint32_t rings = quick ? 128 : 512;
-  if (!quick) all.push_back(pair("bike", "bike"));
-  const TriangleMesh ball = make_icosphere(frequency), torus = make_torus(rings, rings / 2);
+  if (options.with_bikes) all.push_back(pair("bike", "bike"));
+  const TriangleMesh ball = make_icosphere(options.frequency),
+                     torus = make_torus(options.rings, options.rings / 2);
   all.push_back(case_of(fmt::format("balls of {} triangles", ball.triangles.size()), ball, ball, crossing));
   all.push_back(case_of(fmt::format("tori of {} triangles", torus.triangles.size()), torus, torus,
                         {{0.1, 0, 0}, {0.5, 0, 0.1}, {0.9, 0.1, 0}}));
@@ -136,10 +139,8 @@ SceneCost cost_of_scene_tree(std::uint32_t arity, std::size_t count, const Arity
 using SceneCosts = std::vector<std::array<SceneCost, 3>>;
 
 SceneCosts measure_scene_trees(const ArityOptions& options, Work& work, Table& table) {
-  std::vector<std::size_t> counts{1000, 10'000};
-  if (!options.quick) counts.push_back(100'000);
   SceneCosts costs;
-  for (const std::size_t count : counts) {
+  for (const std::size_t count : options.box_counts) {
     std::array<SceneCost, 3> row;
     for (std::size_t k = 0; k < arities.size(); ++k) {
       work.done(1, fmt::format("scene tree of {} boxes, {} children", count, arities[k]));
@@ -187,33 +188,35 @@ double volumes_of(const Sum& sum) {
 
 Claim judge_better(const Sums& sums) {
   const auto tests = relative(sums, tests_of), volumes = relative(sums, volumes_of);
+  const auto work = relative(sums, [](const Sum& sum) { return tests_of(sum) + volumes_of(sum); });
   const auto seconds = relative(sums, seconds_of_sum);
   const auto refit = relative(sums, [](const Sum& sum) { return sum.refit_seconds; });
   const auto fewest_tests = fewest(sums, tests_of), fastest = fewest(sums, seconds_of_sum);
   Claim claim{
       "“For rigid bodies, binary trees are used, and for DO it has been shown that 4-ary trees or 8-ary "
       "trees "
-      "give better performance” (2, citing [LAM01]). Read as: no more tests, within 5 %, and fewer volumes "
-      "to "
-      "refit.",
-      Verdict::does_not_hold,
+      "give better performance” (2, citing [LAM01]). Read as: at least 5 % fewer volumes tested and "
+      "refitted.",
+      Verdict::cannot_tell,
       {}};
-  for (const std::size_t k : {1u, 2u})
-    if (tests[k] <= 1.05 * tests[0] && volumes[k] < volumes[0]) claim.verdict = Verdict::holds;
+  const double best = std::min(work[1], work[2]);
+  if (best < 0.95 * work[0]) claim.verdict = Verdict::holds;
+  if (best > 1.05 * work[0]) claim.verdict = Verdict::does_not_hold;
   claim.reason = fmt::format(
       "Eight children being 1: {:.2f} tests of a volume against a volume with four children, {:.2f} with "
       "two; {:.2f} and "
-      "{:.2f} volumes to refit. Of {} cases the fewest tests are with two, four and eight children in {}, {} "
-      "and {}: in "
-      "tests alone there is little between them. Times: {:.2f} and {:.2f} for the descent, {:.2f} and {:.2f} "
-      "for "
-      "refitting; the descent is shortest with two, four and eight in {}, {} and {} cases. But nodes are "
-      "eight lanes "
-      "wide here and tested at once, whatever they hold: that favours eight children in time, and is no "
-      "merit of the "
-      "tree. Counts do not depend on it.",
-      tests[1], tests[0], volumes[1], volumes[0], sums.size(), fewest_tests[0], fewest_tests[1],
-      fewest_tests[2], seconds[1], seconds[0], refit[1], refit[0], fastest[0], fastest[1], fastest[2]);
+      "{:.2f} volumes to refit; both together {:.2f} and {:.2f}. Of {} cases the fewest tests are with two, "
+      "four and eight "
+      "children in {}, {} and {}. Times: {:.2f} and {:.2f} for the descent, {:.2f} and {:.2f} for refitting; "
+      "the descent "
+      "is shortest with two, four and eight in {}, {} and {} cases. But nodes are eight lanes wide here and "
+      "tested at "
+      "once, whatever they hold: that favours eight children in time, and is no merit of the tree. Counts do "
+      "not depend "
+      "on it.",
+      tests[1], tests[0], volumes[1], volumes[0], work[1], work[0], sums.size(), fewest_tests[0],
+      fewest_tests[1], fewest_tests[2], seconds[1], seconds[0], refit[1], refit[0], fastest[0], fastest[1],
+      fastest[2]);
   return claim;
 }
 
@@ -252,7 +255,7 @@ Claim judge_binary_collisions(const Sums& sums) {
       "If no more than one pair of children collided, a descent would compare no more pairs of nodes than "
       "both trees have "
       "levels, together {} in all cases; it compared {}.",
-      levels, visited);
+      cli::grouped(levels), cli::grouped(visited));
   return claim;
 }
 
@@ -287,8 +290,7 @@ Plot relative_plot(const std::string& title, const std::string& label, const std
     plot.x_names.emplace_back(static_cast<double>(i), std::move(name));
   }
   for (std::size_t k = 0; k < arities.size(); ++k) {
-    Series series{
-        fmt::format("{} children", arities[k]), {}, Series::Style::line_and_points, static_cast<int>(k)};
+    Series series{fmt::format("{} children", arities[k]), {}, Series::Style::points, static_cast<int>(k)};
     for (std::size_t i = 0; i < sums.size(); ++i)
       series.points.emplace_back(static_cast<double>(i), number(sums[i][k]) / number(sums[i][2]));
     plot.series.push_back(std::move(series));
@@ -328,9 +330,20 @@ Table scene_table() {
 
 }  // namespace
 
+ArityOptions arity_options(bool quick) {
+  ArityOptions options;
+  if (!quick) return options;
+  options.frequency = 32;
+  options.rings = 128;
+  options.with_bikes = false;
+  options.box_counts = {1000, 10'000};
+  options.frames = 3;
+  return options;
+}
+
 Report run_arity(const ArityOptions& options, bool show_progress) {
-  const std::vector<Case> all = cases(options.quick);
-  Work work(2 * all.size() * arities.size() + (options.quick ? 2 : 3) * arities.size(), show_progress);
+  const std::vector<Case> all = cases(options);
+  Work work(2 * all.size() * arities.size() + options.box_counts.size() * arities.size(), show_progress);
   Table objects = objects_table(), scenes = scene_table();
   const Sums single = measure_objects(all, 1, options, work, objects);
   const Sums usual = measure_objects(all, ObjectOctreeOptions{}.leaf_size, options, work, objects);

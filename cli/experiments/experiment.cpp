@@ -8,20 +8,28 @@
 #include "experiments/arity.hpp"
 #include "experiments/report.hpp"
 #include "experiments/scaling.hpp"
+#include "experiments/table1.hpp"
 
 namespace supple::experiments {
 namespace {
 
 Report run(const ExperimentOptions& options) {
+  if (options.kind == ExperimentOptions::Kind::table1) {
+    Table1Options table1 = table1_options(options.quick);
+    table1.runs = options.runs.value_or(table1.runs);
+    table1.simulated_seconds = options.simulated_seconds.value_or(table1.simulated_seconds);
+    if (options.wall_clock) table1.wall_clock = *options.wall_clock;
+    table1.threads = options.threads.value_or(0);
+    table1.seed = options.seed;
+    return run_table1(table1, !options.quiet);
+  }
   if (options.kind == ExperimentOptions::Kind::scaling) {
     ScalingOptions scaling = scaling_options(options.quick);
     scaling.threads = options.threads.value_or(1);
     scaling.seed = options.seed;
     return run_scaling(scaling, !options.quiet);
   }
-  ArityOptions arity;
-  arity.quick = options.quick;
-  arity.frames = options.quick ? 3 : 5;
+  ArityOptions arity = arity_options(options.quick);
   arity.threads = options.threads.value_or(1);
   arity.seed = options.seed;
   return run_arity(arity, !options.quiet);

@@ -48,8 +48,9 @@ CLI::App* add_experiment(CLI::App& program, ExperimentOptions& options, cli::Dep
   app->add_flag("--quick", options.quick, "A small version, in under a minute");
   app->add_option("--output", options.output, "Folder to write to (default: experiment_ and the name)")
       ->type_name("DIR");
-  cli::add_number(*app, "--threads", options.threads, 0, 1024,
-                  "Worker threads, 0 for one a core (default: 0 for table1, 1 for the others)");
+  cli::add_number(
+      *app, "--threads", options.threads, 0, 1024,
+      "Worker threads, of table1 runs at a time; 0 for one a core (default: 0 for table1, 1 for the others)");
   cli::add_number(*app, "--seed", options.seed, 0, 1'000'000'000, "Of the random numbers (default: 1)");
   const auto table1_only = [&](CLI::Option* option) {
     dependences.push_back(

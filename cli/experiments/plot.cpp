@@ -33,7 +33,7 @@ std::string style_of(const Series& series, std::size_t color) {
   const char* const shade = palette[color % palette.size()];
   switch (series.style) {
     case Series::Style::points:
-      return fmt::format("with points pt 7 ps 0.6 lc rgb '{}'", shade);
+      return fmt::format("with points pt 7 ps 0.8 lc rgb '{}'", shade);
     case Series::Style::dashed_line:
       return fmt::format("with lines dt 2 lw 1.5 lc rgb '{}'", shade);
     case Series::Style::line_and_points:

@@ -28,6 +28,10 @@ std::string padded(const std::string& text, std::size_t width, bool to_the_right
   return to_the_right ? blanks + text : text + blanks;
 }
 
+Html::Attributes class_of(bool number) {
+  return number ? Html::Attributes{{"class", "number"}} : Html::Attributes{};
+}
+
 std::string csv_field(const Cell& cell) {
   if (const auto* count = std::get_if<std::uint64_t>(&cell)) return fmt::format("{}", *count);
   if (const auto* number = std::get_if<double>(&cell)) return fmt::format("{}", *number);
@@ -112,7 +116,10 @@ std::string html_of(const Table& table) {
   html.element("caption", table.caption);
   html.open("thead");
   html.open("tr");
-  for (const Column& column : table.columns) html.element("th", column.heading);
+  for (std::size_t c = 0; c < table.columns.size(); ++c) {
+    const bool number = !table.rows.empty() && is_number(table.rows.front()[c]);
+    html.element("th", table.columns[c].heading, class_of(number));
+  }
   html.close();
   html.close();
   html.open("tbody");
@@ -120,8 +127,7 @@ std::string html_of(const Table& table) {
     html.open("tr");
     for (std::size_t c = 0; c < row.size(); ++c) {
       const bool number = is_number(row[c]) || std::holds_alternative<std::monostate>(row[c]);
-      html.element("td", text_of(row[c], table.columns[c]),
-                   number ? Html::Attributes{{"class", "number"}} : Html::Attributes{});
+      html.element("td", text_of(row[c], table.columns[c]), class_of(number));
     }
     html.close();
   }

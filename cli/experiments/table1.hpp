@@ -18,7 +18,7 @@ struct Table1Options {
   std::uint32_t runs = 5;           ///< ≥ 1; run k has the seed `seed` + k
   double simulated_seconds = 600;
   std::optional<double> wall_clock{};  ///< seconds a run; none: by events only
-  std::uint32_t threads = 0;
+  std::uint32_t threads = 0;  ///< runs by events at a time, or threads of one by the clock; 0: one a core
   std::uint64_t seed = 1;
 };
 

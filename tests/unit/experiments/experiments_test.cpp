@@ -1,7 +1,8 @@
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
+#include <stdexcept>
+#include <string>
+#include <vector>
 
 #include "experiments/arity.hpp"
 #include "experiments/box_field.hpp"
@@ -9,15 +10,17 @@
 #include "experiments/scaling.hpp"
 #include "experiments/shape_pair.hpp"
 #include "experiments/table1.hpp"
+#include "supple/error.hpp"
 #include "supple/models.hpp"
 
 namespace supple::experiments {
 namespace {
 
-TEST(PaperTable, AveragesAreThoseOfTheText) {
+TEST(PaperTable, AveragesAreThoseOfTheTextButForOne) {
   for (const PaperRow& row : paper_rows()) {
-    EXPECT_NEAR(seconds_per_collision(row.broad), row.text_seconds_broad, 0.0101);
-    EXPECT_NEAR(seconds_per_collision(row.narrow), row.text_seconds_narrow, 0.0101);
+    const bool is_the_one = row.objects == 9 && row.volume == BoundingVolume::aabb;
+    EXPECT_NEAR(seconds_per_collision(row.broad), row.text_seconds_broad, is_the_one ? 0.012 : 0.01);
+    EXPECT_NEAR(seconds_per_collision(row.narrow), row.text_seconds_narrow, 0.01);
   }
   EXPECT_NEAR(mean(paper_row(3, BoundingVolume::sphere)->broad), 12.4, 1e-12);
   EXPECT_EQ(paper_row(4, BoundingVolume::sphere), nullptr);
@@ -29,7 +32,12 @@ TEST(PaperTable, TellsWhatTheTextCutOff) {
   const auto comparison = [&](std::size_t row) { return std::get<std::string>(table.rows[row].back()); };
   EXPECT_EQ(comparison(0), "agrees");                // 600 / 24.6 = 24.390
   EXPECT_EQ(comparison(2), "cut off, not rounded");  // 600 / 12.4 = 48.387, the text has 48.38
-  for (std::size_t row = 0; row < 12; ++row) EXPECT_NE(comparison(row), "differs");
+  EXPECT_EQ(comparison(8), "differs");               // 600 / 83.2 = 7.2115, the text has 7.20
+  for (std::size_t row = 0; row < 12; ++row) {
+    if (row != 8) {
+      EXPECT_NE(comparison(row), "differs") << row;
+    }
+  }
 }
 
 TEST(BoxField, StaysInItsCubeAtOneDensity) {
@@ -130,6 +138,9 @@ TEST(Table1, VolumesChangeNoExactContact) {
   options.threads = 1;
   const Report report = run_table1(options, false);
   const auto& rows = table_of(report, "table1_runs").rows;
+  options.threads = 3;
+  EXPECT_EQ(csv_of(table_of(run_table1(options, false), "table1_runs")),
+            csv_of(table_of(report, "table1_runs")));
   ASSERT_EQ(rows.size(), 4u);
   EXPECT_EQ(rows[0][7], rows[2][7]);
   EXPECT_EQ(rows[1][7], rows[3][7]);
@@ -145,14 +156,23 @@ TEST(Table1, HasEveryScene) {
   }
 }
 
-TEST(Arity, QuickRunHasEveryArity) {
+TEST(Arity, HasEveryArity) {
   ArityOptions options;
-  options.quick = true;
+  options.frequency = 4;
+  options.rings = 12;
+  options.box_counts = {100, 300};
+  options.with_bikes = false;
   options.frames = 1;
   const Report report = run_arity(options, false);
   const auto& rows = table_of(report, "arity_objects").rows;
-  ASSERT_EQ(rows.size() % 3, 0u);
+  ASSERT_EQ(rows.size(), 30u);
   for (std::size_t i = 0; i < rows.size(); ++i) EXPECT_EQ(std::get<std::uint64_t>(rows[i][2]), 2u << (i % 3));
+  const auto& scenes = table_of(report, "arity_scene").rows;
+  ASSERT_EQ(scenes.size(), 6u);
+  for (std::size_t i = 0; i < 6; i += 3) {
+    EXPECT_EQ(scenes[i].back(), scenes[i + 1].back());
+    EXPECT_EQ(scenes[i].back(), scenes[i + 2].back());
+  }
 }
 
 }  // namespace
