@@ -54,10 +54,10 @@ void Table::add(std::vector<Cell> row) {
 std::string rounded(double value, int digits) {
   if (!std::isfinite(value)) return std::isnan(value) ? "–" : value > 0 ? "∞" : "-∞";
   if (value == 0) return "0";
-  const double magnitude = std::floor(std::log10(std::fabs(value)));
-  if (magnitude < -5 || magnitude > 8) return fmt::format("{:.{}e}", value, digits - 1);
-  const int decimals = std::max(0, digits - 1 - static_cast<int>(magnitude));
-  return fmt::format("{:.{}f}", value, decimals);
+  const std::string scientific = fmt::format("{:.{}e}", value, digits - 1);
+  const int magnitude = std::stoi(scientific.substr(scientific.find('e') + 1));
+  if (magnitude < -5 || magnitude > 8) return scientific;
+  return fmt::format("{:.{}f}", value, std::max(0, digits - 1 - magnitude));
 }
 
 std::string text_of(const Cell& cell, const Column& column) {
