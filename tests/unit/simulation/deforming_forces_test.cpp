@@ -14,10 +14,6 @@
 namespace supple {
 namespace {
 
-Vec3d cross(Vec3d a, Vec3d b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-
 TEST(DeformingForces, SumToZeroAndTurnNothing) {
   const TriangleMesh mesh = make_torus(12, 8);
   Random random(3);
