@@ -47,21 +47,29 @@ const CommittedFile* committed(const H5FD_t* file) {
   return reinterpret_cast<const CommittedFile*>(file);
 }
 
-herr_t write_now(CommittedFile& file, haddr_t address, const unsigned char* bytes, std::size_t size) {
-  if (file.discarding) return 0;
-  file.end_of_file = std::max(file.end_of_file, address + size);
+/// After a write that failed nothing reaches the file any more, so that it stays as the last flush left it.
+/// HDF5 is told of no failure, for which it is not prepared everywhere, and finds its metadata in memory
+/// until it closes.
+void fail_with(CommittedFile& file, int error) {
+  if (file.error == 0) file.error = error;
+  file.discarding = true;
+}
+
+/// False when it failed.
+bool write_now(CommittedFile& file, haddr_t address, const unsigned char* bytes, std::size_t size) {
   while (size > 0) {
     const ssize_t written = pwrite(file.descriptor, bytes, size, static_cast<off_t>(address));
     if (written < 0 && errno == EINTR) continue;
     if (written <= 0) {
-      if (file.error == 0) file.error = written < 0 ? errno : ENOSPC;
-      return -1;
+      fail_with(file, written < 0 ? errno : ENOSPC);
+      return false;
     }
     bytes += written;
     address += static_cast<haddr_t>(written);
     size -= static_cast<std::size_t>(written);
+    file.end_of_file = std::max(file.end_of_file, address);
   }
-  return 0;
+  return true;
 }
 
 /// The place of a block in the order of a flush.
@@ -80,17 +88,16 @@ Turn turn_of(haddr_t address, const HeldBlock& block) {
   return {2, 0, address};
 }
 
-herr_t commit(CommittedFile& file) {
+void commit(CommittedFile& file) {
   std::vector<std::pair<Turn, const HeldBlock*>> order;
   for (const auto& [address, block] : file.held) order.push_back({turn_of(address, block), &block});
   std::sort(order.begin(), order.end());
   for (const auto& [turn, block] : order) {
     assert(turn.address / page_size == (turn.address + block->bytes.size() - 1) / page_size);
-    if (write_now(file, turn.address, block->bytes.data(), block->bytes.size()) < 0) return -1;
+    if (!write_now(file, turn.address, block->bytes.data(), block->bytes.size())) return;
   }
   file.held.clear();
   file.committed_end = file.end_of_allocation;
-  return 0;
 }
 
 // What HDF5 calls. Nothing may throw through it.
@@ -185,14 +192,16 @@ herr_t write_file(H5FD_t* base, H5FD_mem_t type, hid_t, haddr_t address, std::si
   CommittedFile* file = committed(base);
   const auto* bytes = static_cast<const unsigned char*>(buffer);
   // Of raw data only rows are new that no header counts yet; the others in the same chunk stay what they are.
-  if (type == H5FD_MEM_DRAW || address >= file->committed_end) return write_now(*file, address, bytes, size);
+  const bool is_held = type != H5FD_MEM_DRAW && address < file->committed_end;
+  if (!file->discarding && !is_held && write_now(*file, address, bytes, size)) return 0;
+  if (type == H5FD_MEM_DRAW) return 0;
   try {
     HeldBlock& block = file->held[address];
     block.type = type;
     block.bytes.resize(std::max(block.bytes.size(), size));
     std::copy_n(bytes, size, block.bytes.begin());
   } catch (const std::bad_alloc&) {
-    file->error = ENOMEM;
+    fail_with(*file, ENOMEM);
     return -1;
   }
   return 0;
@@ -202,8 +211,8 @@ herr_t truncate_file(H5FD_t* base, hid_t, hbool_t) {
   CommittedFile* file = committed(base);
   if (file->discarding || file->end_of_file >= file->end_of_allocation) return 0;
   if (ftruncate(file->descriptor, static_cast<off_t>(file->end_of_allocation)) != 0) {
-    file->error = errno;
-    return -1;
+    fail_with(*file, errno);
+    return 0;
   }
   file->end_of_file = file->end_of_allocation;
   return 0;
@@ -213,11 +222,11 @@ herr_t flush_file(H5FD_t* base, hid_t, hbool_t) {
   CommittedFile* file = committed(base);
   if (file->discarding) return 0;
   try {
-    return commit(*file);
+    commit(*file);
   } catch (const std::bad_alloc&) {
-    file->error = ENOMEM;
-    return -1;
+    fail_with(*file, ENOMEM);
   }
+  return 0;
 }
 
 H5FD_class_t driver_class() {

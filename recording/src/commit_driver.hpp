@@ -29,10 +29,11 @@ namespace supple {
 /// Creates the file, or empties it. The handle is invalid when that fails; `errno` says why.
 FileHandle create_committed_file(const std::filesystem::path& path);
 
-/// The `errno` of the first write that failed, 0 when none has.
+/// The `errno` of the first write that failed, 0 when none has. HDF5 itself is not told: ask after each call
+/// that may write. Nothing written from then on reaches the file.
 int write_error(hid_t file);
 
-/// Nothing reaches the file any more: it stays as the last flush left it, and closing it does not fail.
+/// Nothing reaches the file any more: it stays as the last flush left it.
 void discard_writes(hid_t file);
 
 }  // namespace supple

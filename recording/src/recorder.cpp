@@ -220,6 +220,15 @@ struct Datasets {
   std::optional<ColumnWriter> time;
 };
 
+void check_writes(hid_t file) {
+  if (write_error(file) != 0) throw Hdf5Failure();
+}
+
+void flush_file(hid_t file) {
+  check(H5Fflush(file, H5F_SCOPE_LOCAL));
+  check_writes(file);
+}
+
 [[noreturn]] void fail_to_create(const fs::path& path, int error) {
   throw Error(path.string() + ": cannot write: " + std::strerror(error) +
               "; choose a file in a folder that exists and is yours");
@@ -332,7 +341,7 @@ void Recorder::Implementation::create(const RecordingHeader& header) {
     file_ = create_committed_file(draft);
     if (!file_) throw Hdf5Failure();
     datasets_.emplace(file_.id(), header);
-    check(H5Fflush(file_.id(), H5F_SCOPE_LOCAL));
+    flush_file(file_.id());
     fs::rename(draft, path_, error);
   } catch (const Hdf5Failure&) {
     error = std::error_code(file_ ? write_error(file_.id()) : ENOMEM, std::generic_category());
@@ -401,6 +410,7 @@ void Recorder::Implementation::append(double time, std::span<const std::span<con
   append_rows(datasets_->statistics, std::span(&rows.stats, 1));
   datasets_->time->append_value(&time);
   xdmf_->add_frame(time);
+  check_writes(file_.id());
 }
 
 std::size_t Recorder::Implementation::pending_bytes() {
@@ -411,7 +421,7 @@ std::size_t Recorder::Implementation::pending_bytes() {
 
 void Recorder::Implementation::write_out() {
   datasets_->for_each_column([](ColumnWriter& column) { column.write_pending(); });
-  check(H5Fflush(file_.id(), H5F_SCOPE_LOCAL));
+  flush_file(file_.id());
   flushed_frames_ = frames_;
   last_flush_ = Clock::now();
   // After the numbers that it names.

@@ -26,7 +26,7 @@ class Documents(ProgramTest):
 
     def test_manual_page_has_every_option(self):
         page = (ROOT / "docs/supple.1").read_text().replace("\\-", "-")
-        for command in ("detect", "simulate", "info", "ccd-queries"):
+        for command in ("detect", "simulate", "info", "ccd-queries", "diff", "experiment"):
             for flag in re.findall(r"^  (--[a-z-]+)", run(command, "--help").out, re.M):
                 self.assertIn(flag, page)
 

@@ -14,7 +14,7 @@ class Help(ProgramTest):
         self.assertRegex(done.out, r"^supple \d+\.\d+\.\d+\n$")
 
     def test_help_teaches_by_example(self):
-        for command in ("detect", "simulate", "info", "ccd-queries"):
+        for command in ("detect", "simulate", "info", "ccd-queries", "diff"):
             done = run(command, "--help")
             self.assertEqual((done.status, done.error), (0, ""))
             options, examples = done.out.split("Examples:")
@@ -26,7 +26,7 @@ class Help(ProgramTest):
     def test_help_of_the_program_names_the_commands(self):
         done = run("--help")
         self.assertEqual(done.status, 0)
-        for word in ("detect", "simulate", "info", "ccd-queries", "Examples:", "Exit status"):
+        for word in ("detect", "simulate", "info", "ccd-queries", "diff", "experiment", "Examples:", "Exit status"):
             self.assertIn(word, done.out)
 
 
@@ -47,6 +47,7 @@ class UsageErrors(ProgramTest):
         self.expect("detect", parts=["required"])
         self.expect("info", parts=["required"])
         self.expect("ccd-queries", parts=["required"])
+        self.expect("diff", parts=["required"])
 
     def test_stages_that_do_not_exist_are_usage_errors(self):
         self.expect("detect", "a.obj", "--distance", "1", parts=["--distance"])

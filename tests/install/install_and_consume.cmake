@@ -3,7 +3,7 @@ function(run)
   execute_process(COMMAND ${ARGN} COMMAND_ECHO STDOUT COMMAND_ERROR_IS_FATAL ANY)
 endfunction()
 
-file(REMOVE_RECURSE ${WORK}/prefix ${WORK}/consumer)
+file(REMOVE_RECURSE ${WORK}/prefix ${WORK}/consumer ${WORK}/recording_consumer)
 if(NOT LIBRARY)
   set(LIBRARY ${WORK}/library)
   # What is tested is the linking, so the quickest build will do.
@@ -13,10 +13,16 @@ if(NOT LIBRARY)
   run(${CMAKE_COMMAND} --build ${LIBRARY})
 endif()
 run(${CMAKE_COMMAND} --install ${LIBRARY} --prefix ${WORK}/prefix)
-run(${CMAKE_COMMAND} -S ${SOURCE} -B ${WORK}/consumer -G ${GENERATOR} -DCMAKE_CXX_COMPILER=${CXX_COMPILER}
-  -DCMAKE_PREFIX_PATH=${WORK}/prefix)
-run(${CMAKE_COMMAND} --build ${WORK}/consumer)
-execute_process(COMMAND ${WORK}/consumer/consumer OUTPUT_VARIABLE output COMMAND_ERROR_IS_FATAL ANY)
-if(NOT output MATCHES "^supple ${VERSION}: [1-9][0-9]* contacts\n$")
-  message(FATAL_ERROR "the consumer printed: ${output}")
-endif()
+function(build_and_run name expected)
+  run(${CMAKE_COMMAND} -S ${SOURCE}/${name} -B ${WORK}/${name} -G ${GENERATOR} -DCMAKE_CXX_COMPILER=${CXX_COMPILER}
+    -DCMAKE_PREFIX_PATH=${WORK}/prefix)
+  run(${CMAKE_COMMAND} --build ${WORK}/${name})
+  execute_process(COMMAND ${WORK}/${name}/${name} WORKING_DIRECTORY ${WORK}/${name} OUTPUT_VARIABLE output
+    COMMAND_ERROR_IS_FATAL ANY)
+  if(NOT output MATCHES "${expected}")
+    message(FATAL_ERROR "${name} printed: ${output}")
+  endif()
+endfunction()
+
+build_and_run(consumer "^supple ${VERSION}: [1-9][0-9]* contacts\n$")
+build_and_run(recording_consumer "^supple ${VERSION}: frame at 0.5 s\n$")

@@ -15,7 +15,7 @@
 
 namespace supple {
 
-/// What a recording says of an object once.
+/// What a recording says of an object once. An object with `is_static` must not move while it is recorded.
 struct RecordedObject {
   ObjectId id;  ///< by which results name it
   ObjectOptions options{};
@@ -50,7 +50,8 @@ struct RecordedFrame {
 /// the end.
 class Recorder {
  public:
-  /// Replaces the files. Throws `Error` when they cannot be written.
+  /// Replaces the files; the old recording stays until the new one has its header. Throws `Error` when they
+  /// cannot be written, or the header does not fit together.
   Recorder(const std::filesystem::path& path, const RecordingHeader& header);
   /// Closes without throwing; call `close` to know of errors.
   ~Recorder();
@@ -68,7 +69,9 @@ class Recorder {
   std::unique_ptr<Implementation> implementation_;
 };
 
-/// Reads a recording.
+/// Reads a recording, also one that is being written: the frames that were flushed when it was opened. Calls
+/// on one recording must not overlap, constant or not, nor with any other use of HDF5 unless that was built
+/// for threads.
 class Recording {
  public:
   /// Throws `Error` when it is no recording, of a version not known, or damaged; it says which.
@@ -79,6 +82,8 @@ class Recording {
 
   const RecordingHeader& header() const;
   std::uint64_t frame_count() const;
+  /// Throws `Error` when there is no such frame, or what is stored of it names what does not exist. Frames in
+  /// a row are read fastest.
   RecordedFrame frame(std::uint64_t number) const;
   /// Of one object, by its place in the header.
   std::vector<Vec3d> positions(std::uint64_t frame, std::size_t object) const;

@@ -1,0 +1,384 @@
+"""Recordings as others see them: a process that is killed leaves a whole file, h5py reads what docs/recording.md says,
+`supple detect` finds again what was recorded, `supple diff` tells what differs."""
+
+import importlib.util
+import json
+import os
+import pathlib
+import random
+import re
+import resource
+import signal
+import subprocess
+import sys
+import time
+import unittest
+import xml.etree.ElementTree
+
+if importlib.util.find_spec("h5py") is None and sys.executable != "/usr/bin/python3":
+    found = subprocess.run(["/usr/bin/python3", "-c", "import h5py"], capture_output=True)
+    if found.returncode == 0:  # Debian's h5py belongs to Debian's Python
+        os.execv("/usr/bin/python3", ["/usr/bin/python3", *sys.argv])
+try:
+    import h5py
+    import numpy
+except ImportError:
+    h5py = None
+
+from program import ROOT, TRIANGLE, ProgramTest, run
+
+RECORD = os.environ.get("SUPPLE_RECORD_MOTION", str(ROOT / "build/release/bin/record_motion"))
+PAGE = (ROOT / "docs/recording.md").read_text()
+with_h5py = unittest.skipUnless(h5py, "needs h5py")
+
+
+def datasets(file):
+    """Path and values of every dataset."""
+    found = {}
+    file.visititems(lambda path, item: found.update({path: item[()]}) if isinstance(item, h5py.Dataset) else None)
+    return found
+
+
+def rows_in(path, values, frame_count):
+    """How many rows of a dataset belong to so many frames."""
+    if path == "scene_file" or path.endswith(("/rest_positions", "/triangles")):
+        return None
+    if path == "objects/1/positions":  # static
+        return min(frame_count, 1)
+    group = path.rpartition("/")[0]
+    if not path.endswith("/end") and f"{group}/end" in values:
+        return int(values[f"{group}/end"][frame_count - 1]) if frame_count else 0
+    return frame_count
+
+
+class RecordingTest(ProgramTest):
+    def record(self, name, *arguments, check=True, **options):
+        done = subprocess.run([RECORD, name, *map(str, arguments)], cwd=self.folder, capture_output=True, text=True,
+                              **options)
+        if check:
+            self.assertEqual((done.returncode, done.stderr), (0, ""))
+        return done
+
+    def assert_first_frames(self, path, whole, at_least):
+        """The file opens, and its frames are the first ones of `whole`, values of datasets."""
+        with h5py.File(path, "r") as file:
+            values = datasets(file)
+        frame_count = len(values["time"])
+        self.assertGreaterEqual(frame_count, at_least)
+        self.assertEqual(values.keys(), whole.keys())
+        for name, expected in whole.items():
+            if name.endswith("_seconds"):
+                continue
+            count = rows_in(name, whole, frame_count)
+            if count is None:
+                self.assertTrue(numpy.array_equal(values[name], expected), name)
+            else:
+                self.assertGreaterEqual(len(values[name]), count, name)
+                self.assertTrue(numpy.array_equal(values[name][:count], expected[:count]), name)
+        return frame_count
+
+
+class Killed(RecordingTest):
+    """Every frame of the last flush is there, in h5py and in this program."""
+
+    FLUSHES = ("--frames-between-flushes", 5)
+
+    def setUp(self):
+        super().setUp()
+        self.record("whole.h5", 600)
+        if h5py:
+            with h5py.File(self.folder / "whole.h5", "r") as file:
+                self.whole = datasets(file)
+
+    def check(self, output):
+        flushed = [int(line) for line in output.split("\n")[:-1] if line.isdigit()]
+        path = self.folder / "killed.h5"
+        if not path.exists():
+            self.assertEqual(flushed, [])
+            return
+        if h5py:
+            self.assert_first_frames(path, self.whole, max(flushed, default=0))
+        done = self.run_here("diff", "whole.h5", "killed.h5", "--json", "-")
+        self.assertEqual((done.status, done.error), (1, ""))
+        result = json.loads(done.out)
+        self.assertGreaterEqual(result["frames"][1], max(flushed, default=0))
+        self.assertEqual(result["what"], "number of frames: 600 and {}".format(result["frames"][1]))
+        path.unlink()
+
+    def test_at_random_moments(self):
+        moments = random.Random(7)
+        for _ in range(30):
+            with subprocess.Popen([RECORD, "killed.h5", "100000", *map(str, self.FLUSHES), "--pause", "200"],
+                                  cwd=self.folder, stdout=subprocess.PIPE, text=True) as process:
+                time.sleep(moments.uniform(0.005, 0.12))
+                process.send_signal(signal.SIGKILL)
+                output = process.stdout.read()
+            self.check(output)
+
+    def test_at_single_writes(self):
+        """The places are chosen so that each kind of write is among them: prime steps through all writes of 20 frames."""
+        writes = int(self.record("count.h5", 20, *self.FLUSHES).stdout.split()[-1])
+        self.assertGreater(writes, 300)
+        for option, step in (("--kill-at", 31), ("--tear-at", 29)):
+            for number in range(0, writes, step):
+                done = self.record("killed.h5", 20, *self.FLUSHES, option, number, check=False)
+                self.assertEqual(done.returncode, -signal.SIGKILL)
+                self.check(done.stdout)
+
+    def test_when_chunk_indexes_split(self):
+        """A node of an index has 64 entries, a frame each."""
+        arguments = (150, "--contacts", "none", "--frames-between-flushes", 10)
+        self.record("whole.h5", 150, "--contacts", "none")
+        writes = int(self.record("count.h5", *arguments).stdout.split()[-1])
+        whole = Killed.whole_of(self.folder / "whole.h5") if h5py else None
+        for number in range(writes // 2 - 80, writes // 2 + 80, 11):
+            done = self.record("killed.h5", *arguments, "--tear-at", number, check=False)
+            self.assertEqual(done.returncode, -signal.SIGKILL)
+            flushed = int(done.stdout.split()[-1])
+            if h5py:
+                self.assert_first_frames(self.folder / "killed.h5", whole, flushed)
+
+    @staticmethod
+    def whole_of(path):
+        with h5py.File(path, "r") as file:
+            return datasets(file)
+
+    def test_disk_full(self):
+        for number in (0, 100, 400, 1000):
+            path = self.folder / "killed.h5"
+            path.unlink(missing_ok=True)
+            done = self.record("killed.h5", 600, *self.FLUSHES, "--fail-at", number, check=False)
+            self.assertEqual(done.returncode, 2)
+            self.assertEqual(len(done.stderr.splitlines()), 1, done.stderr)
+            self.assertIn("killed.h5: ", done.stderr)
+            self.assertIn("No space left on device", done.stderr)
+            self.assertFalse((self.folder / "killed.h5.part").exists())
+            self.check(done.stdout)
+
+    def test_file_size_limit(self):
+        def limit():
+            signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+            resource.setrlimit(resource.RLIMIT_FSIZE, (1 << 20, 1 << 20))
+
+        done = self.record("killed.h5", 600, *self.FLUSHES, check=False, preexec_fn=limit)
+        self.assertEqual(done.returncode, 2)
+        self.assertRegex(done.stderr, r"^killed\.h5: writing failed: .* the recording ends after its first \d+ frames")
+        self.check(done.stdout)
+
+
+class Document(RecordingTest):
+    """docs/recording.md against a file, in both directions."""
+
+    def setUp(self):
+        super().setUp()
+        self.record("run.h5", 30)
+        self.record("moving.h5", 30, "--contacts", "continuous")
+
+    @with_h5py
+    def test_every_dataset(self):
+        rows = re.findall(r"^\| `([\w/]+)` \| \((.*?)\) \| (text|\w+\d+) \|", PAGE, re.M)
+        documented = {path: (shape, kind) for path, shape, kind in rows}
+        with h5py.File(self.folder / "run.h5", "r") as file:
+            found = {re.sub(r"^objects/\d+", "objects/0", path) for path in datasets(file)}
+            self.assertEqual(set(documented), found)
+            frame_count, (n, _) = len(file["time"]), file["objects/0/rest_positions"].shape
+            m = len(file["objects/0/triangles"])
+            for path, (shape, kind) in documented.items():
+                stored = file[path]
+                if kind == "text":
+                    self.assertEqual((stored.dtype.kind, stored.shape), ("S", ()), path)
+                    continue
+                self.assertEqual(stored.dtype, numpy.dtype(kind), path)
+                symbols = {"F": frame_count, "n": n, "m": m, "rows": stored.shape[0]}
+                sizes = tuple(symbols[s] if s in symbols else int(s) for s in shape.split(", "))
+                self.assertEqual(stored.shape, sizes, path)
+
+    @with_h5py
+    def test_every_attribute(self):
+        file_part, object_part = PAGE.split("### Attributes of an object")
+        kinds = {"text": "S", "uint8": "u1", "uint32": "u4", "float64": "f8"}
+        with h5py.File(self.folder / "run.h5", "r") as file:
+            for part, group in ((file_part, file), (object_part.split("### Datasets")[0], file["objects/2"])):
+                documented = {}
+                for names, kind in re.findall(r"^\| (`[\w`, ]+`) \| (\w+) \|", part, re.M):
+                    documented.update(dict.fromkeys(re.findall(r"`(\w+)`", names), kind))
+                self.assertEqual(set(documented), set(group.attrs))
+                for name, kind in documented.items():
+                    stored = group.attrs.get_id(name).dtype
+                    self.assertEqual(stored.kind if kind == "text" else stored.str[1:], kinds[kind], name)
+            self.assertEqual(file["objects/2"].attrs["name"].decode(), "cloth é")
+            self.assertTrue(file.attrs["program_version"].decode().count(".") == 2)
+
+    @with_h5py
+    def test_example(self):
+        example = re.search(r"```python\n(.*?)```", PAGE, re.S)[1]
+        done = subprocess.run([sys.executable, "-c", example], cwd=self.folder, capture_output=True, text=True)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        lines = done.stdout.splitlines()
+        self.assertEqual(lines[0], "supple recording 1 intersection")
+        contacts = [len(f["contacts"]) for f in self.detect("run.h5")["frames"]]
+        told = [int(line.split(" s: ")[1].split(" contacts")[0]) for line in lines[1:]]
+        self.assertEqual(told, [count for count in contacts if count > 0])
+        self.assertGreater(sum(told), 0)
+
+    def test_xdmf(self):
+        for name in ("run", "moving"):
+            root = xml.etree.ElementTree.parse(self.folder / f"{name}.xdmf").getroot()
+            (series,) = root.find("Domain").findall("Grid")
+            steps = series.findall("Grid")
+            self.assertEqual([float(s.find("Time").get("Value")) for s in steps], [f / 128 for f in range(30)])
+            for frame, step in enumerate(steps):
+                grids = step.findall("Grid")
+                self.assertEqual([g.get("Name") for g in grids], ["sphere", "box", "cloth é"])
+                for place, grid in enumerate(grids):
+                    slab = grid.find("Geometry/DataItem")
+                    selection, source = slab.findall("DataItem")
+                    self.assertEqual(source.text, f"{name}.h5:/objects/{place}/positions")
+                    self.assertEqual(selection.text.split()[0], str(0 if place == 1 else frame))
+                    self.assertEqual(grid.find("Topology/DataItem").text, f"{name}.h5:/objects/{place}/triangles")
+
+
+class Detect(RecordingTest):
+    """What is detected on a recording is what was recorded."""
+
+    def recorded(self, file, frame, group, *columns):
+        end = file[f"{group}/end"]
+        rows = slice(end[frame - 1] if frame else 0, end[frame])
+        return [tuple(row) for row in zip(*(file[f"{group}/{column}"][rows].tolist() for column in columns))]
+
+    @with_h5py
+    def test_intersections(self):
+        self.record("run.h5", 70)
+        frames = self.detect("run.h5", "--verify")["frames"]
+        self.assertEqual(len(frames), 70)
+        total = 0
+        with h5py.File(self.folder / "run.h5", "r") as file:
+            for number, frame in enumerate(frames):
+                self.assertEqual(frame["verify"]["differences"], [])
+                pairs = [tuple(pair) for pair in frame["object_pairs"]]
+                self.assertEqual(pairs, self.recorded(file, number, "object_pairs", "object_a", "object_b"))
+                contacts = [(c["a"], c["b"], *c["triangles"], ("point", "segment", "polygon").index(c["kind"]),
+                             len(c["points"])) for c in frame["contacts"]]
+                columns = ("object_a", "object_b", "triangle_a", "triangle_b", "kind", "point_count")
+                self.assertEqual(contacts, self.recorded(file, number, "contacts", *columns))
+                points = [p["position"] for c in frame["contacts"] for p in c["points"]]
+                self.assertEqual(points, [p for (p,) in self.recorded(file, number, "contact_points", "position")])
+                for kind in ("volume", "contact"):
+                    for event in ("begin", "end"):
+                        pairs = [tuple(pair) for pair in frame["events"][f"{kind}s"][event]]
+                        stored = self.recorded(file, number, f"events/{kind}_{event}", "object_a", "object_b")
+                        self.assertEqual(pairs, stored)
+                total += len(contacts)
+        self.assertGreater(total, 1000)
+
+    @with_h5py
+    def test_continuous_contacts(self):
+        self.record("run.h5", 70, "--contacts", "continuous")
+        steps = self.detect("run.h5", "--contacts", "continuous", "--contact-details", "--verify")["frames"]
+        self.assertEqual(len(steps), 69)
+        total = 0
+        with h5py.File(self.folder / "run.h5", "r") as file:
+            for number, step in enumerate(steps):
+                self.assertEqual(step["verify"]["differences"], [])
+                columns = ("object_a", "object_b", "kind", "element_a", "element_b", "time", "point", "normal")
+                stored = self.recorded(file, number + 1, "continuous_contacts", *columns)
+                self.assertEqual([s[5:] for s in stored],
+                                 [(c["time"], c["point"], c["normal"]) for c in step["contacts"]])
+                total += len(stored)
+        self.assertGreater(total, 1000)
+
+    def test_options(self):
+        self.record("run.h5", 20)
+        before = self.detect("run.h5", "--no-stats")
+        for options in (("--broad-phase", "sweep"), ("--threads", "2"), ("--leaf-size", "3")):
+            self.assertEqual(self.detect("run.h5", "--no-stats", *options), before)
+        more = self.detect("run.h5", "--no-stats", "--self")
+        self.assertEqual(more["objects"], before["objects"])
+        self.assertEqual([o["name"] for o in more["objects"]], ["sphere", "box", "cloth é"])
+
+    def test_info(self):
+        self.record("run.h5", 2)
+        self.assertIn("sphere", self.run_here("info", "run.h5").out)
+
+    def test_errors(self):
+        self.record("none.h5", 0)
+        self.record("one.h5", 1)
+        self.write("a.obj", TRIANGLE)
+        for arguments, parts in (
+            (["none.h5"], ["none.h5: the recording has no frame"]),
+            (["one.h5", "--contacts", "continuous"], ["one.h5: one frame is no motion"]),
+            (["one.h5", "a.obj"], ["one.h5: a recording stands alone"]),
+            (["one.h5", "--sequence"], ["one.h5: a recording has its own frames; leave out --sequence"]),
+            (["one.h5", "--steps", "2"], ["--steps"]),
+            (["missing.h5"], ["missing.h5: there is no such file"]),
+        ):
+            with self.subTest(arguments=arguments):
+                self.assert_one_line_error(self.run_here("detect", *arguments), *parts)
+
+
+class Diff(RecordingTest):
+    def setUp(self):
+        super().setUp()
+        self.record("a.h5", 10)
+        self.record("b.h5", 10, "--frames-between-flushes", 3)
+
+    def test_equal(self):
+        done = self.run_here("diff", "a.h5", "b.h5")
+        self.assertEqual((done.status, done.out, done.error), (0, "a.h5 and b.h5 are equal: 10 frames\n", ""))
+        done = self.run_here("diff", "a.h5", "b.h5", "--quiet")
+        self.assertEqual((done.status, done.out, done.error), (0, "", ""))
+
+    @with_h5py
+    def test_different(self):
+        with h5py.File(self.folder / "b.h5", "r+") as file:
+            file["objects/2/positions"][7, 11, 1] += 0.125
+        done = self.run_here("diff", "a.h5", "b.h5")
+        self.assertEqual((done.status, done.error), (1, ""))
+        self.assertRegex(done.out, r"^a\.h5 and b\.h5 differ in frame 7: position of vertex 11 of object 2 'cloth é': "
+                                   r"\(.*\) and \(.*\)\n$")
+        done = self.run_here("diff", "a.h5", "b.h5", "--json", "-", "--tolerance", "0.1")
+        result = json.loads(done.out)
+        self.assertEqual(done.status, 1)
+        self.assertEqual(result["recordings"], ["a.h5", "b.h5"])
+        self.assertEqual((result["equal"], result["frame"], result["frames"]), (False, 7, [10, 10]))
+        self.assertIn("vertex 11", result["what"])
+        self.assertEqual(self.run_here("diff", "a.h5", "b.h5", "--quiet").status, 1)
+        self.assertEqual(self.run_here("diff", "a.h5", "b.h5", "--tolerance", "0.125").status, 0)
+
+    def test_number_of_frames(self):
+        self.record("b.h5", 9)
+        done = self.run_here("diff", "a.h5", "b.h5")
+        self.assertEqual((done.status, done.out), (1, "a.h5 and b.h5 differ: number of frames: 10 and 9\n"))
+
+    def test_errors(self):
+        text = self.write("text.h5", "no recording")
+        (self.folder / "cut.h5").write_bytes((self.folder / "a.h5").read_bytes()[:100000])
+        for arguments, parts in (
+            (["a.h5"], ["RECORDING"]),
+            (["a.h5", "b.h5", "a.h5"], ["RECORDING.h5"]),
+            (["a.h5", "b.h5", "--tolerance", "-1"], ["--tolerance"]),
+            (["a.h5", "missing.h5"], ["missing.h5: there is no such file"]),
+            (["a.h5", text], ["text.h5: is no recording"]),
+            (["a.h5", "cut.h5"], ["cut.h5: is damaged or cut short"]),
+            (["a.h5", "."], [".: is a folder"]),
+        ):
+            with self.subTest(arguments=arguments):
+                self.assert_one_line_error(self.run_here("diff", *arguments), *parts)
+
+    @with_h5py
+    def test_damaged_files(self):
+        def delete(file):
+            del file["contacts/kind"]
+
+        def raise_version(file):
+            file.attrs["version"] = 2
+
+        for change, part in ((delete, "/contacts/kind: is missing"), (raise_version, "is a recording of version 2")):
+            (self.folder / "bad.h5").write_bytes((self.folder / "a.h5").read_bytes())
+            with h5py.File(self.folder / "bad.h5", "r+") as file:
+                change(file)
+            self.assert_one_line_error(self.run_here("diff", "a.h5", "bad.h5"), "bad.h5: ", part)
+
+
+if __name__ == "__main__":
+    unittest.main()
