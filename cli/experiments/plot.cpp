@@ -144,8 +144,8 @@ std::string gnuplot_script(const Plot& plot) {
     std::string names;
     for (const auto& [x, name] : plot.x_names)
       names += fmt::format("{}{} {}", names.empty() ? "" : ", ", quoted(name), x);
-    script += fmt::format("set xtics ({})\nset xrange [{}:{}]\n", names, plot.x_names.front().first - 0.5,
-                          plot.x_names.back().first + 0.5);
+    script += fmt::format("set xtics ({})\nset xrange [{}:{}]\n", names, plot.x_names.front().first - 0.8,
+                          plot.x_names.back().first + 0.8);
   }
   std::string lines, data;
   std::size_t next_color = 0;

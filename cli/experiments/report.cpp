@@ -19,7 +19,7 @@ constexpr const char* style = R"(
   --holds: #0b6e3a; --fails: #b3261e; --open: #7a5b00; }
 @media (prefers-color-scheme: dark) { :root { --text: #e6e6e6; --page: #16181b; --soft: #23272c; --line: #474d54;
   --holds: #5fd08f; --fails: #ff8a80; --open: #e6c15a; } }
-body { margin: 2rem auto; max-width: 56rem; padding: 0 1rem; background: var(--page); color: var(--text);
+body { margin: 2rem auto; max-width: 64rem; padding: 0 1rem; background: var(--page); color: var(--text);
   font: 16px/1.5 sans-serif; }
 h1 { font-size: 1.7rem; line-height: 1.25; } h2 { font-size: 1.25rem; margin-top: 2.2rem; }
 .table { overflow-x: auto; margin: 1.2rem 0; }

@@ -241,7 +241,7 @@ Table means_table(const std::string& name, const std::string& caption, const std
 /// Runs as points, ours beside the paper's, for 3, 6 and 9 objects.
 Plot counts_plot(const std::string& title, const std::vector<Runs>& all, std::uint64_t RunCounts::*member,
                  std::array<double, 5> PaperRow::*paper_member) {
-  Plot plot{title, "objects", "collisions in ten minutes", false, false};
+  Plot plot{title, "objects", "collisions in ten minutes", false, true};
   plot.x_names = {{3, "3"}, {6, "6"}, {9, "9"}};
   int color = 0;
   for (const bool ours : {true, false}) {
@@ -547,7 +547,7 @@ Table1Options table1_options(bool quick) {
   if (!quick) return options;
   options.scenes = {"table1_3", "table1_6", "table1_9", "three_humans"};
   options.runs = 2;
-  options.simulated_seconds = 10;
+  options.simulated_seconds = 6;
   return options;
 }
 
