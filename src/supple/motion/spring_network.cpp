@@ -12,20 +12,23 @@ using Ends = std::array<std::uint32_t, 2>;
 
 struct Side {
   Ends ends;
-  std::uint32_t opposite;
+  std::uint32_t triangle, opposite;
+
+  auto operator<=>(const Side&) const = default;
 };
 
 /// Of triangles of three different vertices, by their ends; among equals in the order of the triangles.
 std::vector<Side> sorted_sides(std::span<const Triangle> triangles) {
   std::vector<Side> sides;
   sides.reserve(3 * triangles.size());
-  for (const Triangle& t : triangles) {
+  for (std::uint32_t i = 0; i < triangles.size(); ++i) {
+    const Triangle& t = triangles[i];
     for (int corner = 0; corner < 3; ++corner) {
       const std::uint32_t p = t[corner], q = t[(corner + 1) % 3], r = t[(corner + 2) % 3];
-      if (p != q) sides.push_back({{std::min(p, q), std::max(p, q)}, r});
+      if (p != q) sides.push_back({{std::min(p, q), std::max(p, q)}, i, r});
     }
   }
-  std::stable_sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) { return a.ends < b.ends; });
+  std::sort(sides.begin(), sides.end());
   return sides;
 }
 
@@ -90,26 +93,28 @@ bool crosses(const Element& element) {
 }
 
 template <class Element>
-ElementBlocks<Element> in_blocks(std::vector<Element> elements, std::uint32_t block_count) {
-  const auto block_of = [](const Element& e) { return e.vertices()[0] / vertex_block_size; };
-  std::stable_sort(elements.begin(), elements.end(), [&](const Element& p, const Element& q) {
-    return block_of(p) != block_of(q) ? block_of(p) < block_of(q) : crosses(p) < crosses(q);
-  });
+ElementBlocks<Element> in_blocks(const std::vector<Element>& elements, std::uint32_t block_count) {
+  // Two groups a block, in which elements keep their order.
+  const auto group_of = [](const Element& e) {
+    return 2 * std::size_t{e.vertices()[0] / vertex_block_size} + (crosses(e) ? 1 : 0);
+  };
+  std::vector<std::uint32_t> first(2 * std::size_t{block_count} + 1);
+  for (const Element& e : elements) ++first[group_of(e) + 1];
+  for (std::size_t group = 1; group < first.size(); ++group) first[group] += first[group - 1];
+
   ElementBlocks<Element> blocks;
-  std::uint32_t i = 0, slot = 0;
-  const auto count = static_cast<std::uint32_t>(elements.size());
+  std::uint32_t slots = 0;
   for (std::uint32_t block = 0; block < block_count; ++block) {
-    blocks.first.push_back(i);
-    while (i < count && block_of(elements[i]) == block && !crosses(elements[i])) ++i;
-    blocks.first_crossing.push_back(i);
-    blocks.first_slot.push_back(slot);
-    for (; i < count && block_of(elements[i]) == block; ++i) {
-      slot += static_cast<std::uint32_t>(elements[i].vertices().size());
-    }
+    blocks.first.push_back(first[2 * block]);
+    blocks.first_crossing.push_back(first[2 * block + 1]);
+    blocks.first_slot.push_back(slots);
+    slots += (first[2 * block + 2] - first[2 * block + 1]) *
+             static_cast<std::uint32_t>(Element{}.vertices().size());
   }
-  blocks.first.push_back(i);
-  blocks.slots.resize(slot);
-  blocks.elements = std::move(elements);
+  blocks.first.push_back(first.back());
+  blocks.slots.resize(slots);
+  blocks.elements.resize(elements.size());
+  for (const Element& e : elements) blocks.elements[first[group_of(e)]++] = e;
   return blocks;
 }
 
