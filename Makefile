@@ -4,7 +4,7 @@ JOBS ?= $(shell nproc)
 .PHONY: help demo test build bench check format docs clean dependencies
 
 help:
-	@echo 'make demo     build, then nine deforming objects that collide for 300 frames'
+	@echo 'make demo     build, then a cloth that falls over a ball, and nine objects that collide'
 	@echo 'make test     build, then every test'
 	@echo 'make build    the release build: build/release/bin/supple'
 	@echo 'make bench    build and run the benchmarks'
@@ -14,8 +14,11 @@ help:
 	@echo 'make clean    remove build/'
 
 demo: build
-	build/release/bin/supple detect scenes/nine.toml --steps 300
+	build/release/bin/supple simulate scenes/table1_9.toml --steps 1000
 	@echo
+	build/release/bin/supple simulate scenes/cloth_over_ball.toml --steps 200 --record build/cloth.h5
+	@echo
+	@echo 'ParaView opens build/cloth.xdmf.'
 	@echo 'Try next: build/release/bin/supple detect scenes/nine.toml --steps 3 --verify --json -'
 
 test: build

@@ -24,14 +24,19 @@ namespace supple {
 using Border = std::array<Vec3d, 2>;
 
 /// A body of masses and springs, and how it is set in motion: first deformed in place by random forces, then
-/// sent off with a velocity (section 4 of the paper). Random numbers come from the scene's seed and the
-/// object's number: the same on every machine.
+/// sent off with a velocity (section 4 of the paper: v_i = v_i + v_d). Times count from when the object is
+/// added. Random numbers come from the simulation's seed and the object's number: the same on every machine.
 struct MassSpringMotion {
+  /// `threads` = 0 leaves it to the simulation: many small bodies are stepped side by side, large ones by all
+  /// threads.
   MassSpringOptions springs{};
-  Vec3d velocity{};                     ///< m/s, from `deform_seconds` on
-  double random_speed = 0;              ///< m/s, in a random direction, added to it
-  double random_force = 0;              ///< N, size of the random forces on the vertices; they sum to zero
-  double deform_seconds = 0;            ///< for how long these act, before the object is sent off
+  Vec3d velocity{};         ///< m/s, from `deform_seconds` on
+  double random_speed = 0;  ///< m/s, ≥ 0, in a random direction, added to it
+  /// N, ≥ 0, root mean square of the random forces on the vertices. They are waves about as long as the
+  /// object, so that neighbours are pulled alike, and stay the same all the while; they sum to zero and turn
+  /// nothing.
+  double random_force = 0;
+  double deform_seconds = 0;            ///< ≥ 0, for how long these act, before the object is sent off
   std::optional<std::uint64_t> seed{};  ///< instead of the object's number
 
   /// Vertices that are pulled along.
@@ -40,37 +45,53 @@ struct MassSpringMotion {
     Vec3d by{};          ///< m, where they are moved
     double seconds = 1;  ///< how long it takes, uniformly, > 0; then they hold
   };
-  /// Their vertices become fixed ones of `springs`.
+  /// Their vertices become fixed ones of `springs`; a vertex belongs to one handle at most.
   std::vector<Handle> handles{};
 };
 
-/// The user's own motion: writes where the vertices are at `seconds`; `positions` holds where they were the
-/// step before (at first, at rest).
+/// The user's own motion: writes where the vertices are at `seconds`, the simulation's time at the end of the
+/// step; `positions` holds where they were the step before (at first, at rest). Called once a step, from one
+/// thread, in the order of objects, and again for the same step when that fails and is repeated. It must not
+/// call the simulation.
 using MotionFunction = std::function<void(double seconds, std::span<Vec3d> positions)>;
 
-/// Simple response to contacts: vertices and edges that would pass through something, or come nearer than
-/// `thickness`, get impulses along the contact's normal that stop the approach. Momentum is conserved between
-/// bodies of masses and springs; whatever moves otherwise, or rests, is not moved by it. It pushes apart what
-/// it can and makes no promise; the contacts reported are those of the scene.
+/// Simple response to contacts, by impulses (Bridson, Fedkiw and Anderson 2002): vertices and faces, and
+/// edges, that would pass through each other in a step, or come nearer than `thickness`, get impulses along
+/// the contact's normal that stop the approach; what is too near already is moved apart gently, by a tenth of
+/// what is missing a step. Objects are tested against themselves where `self_collision` asks for it, and
+/// groups and masks hold. Momentum is conserved between bodies of masses and springs; fixed vertices, and
+/// whatever moves otherwise or rests, are not moved.
+///
+/// It makes no promise; the contacts reported are those of the scene. It works as long as objects do not
+/// intersect at first and steps are short: nothing moves further than about an edge in one, and springs do
+/// not swing unseen between two steps. So `time_step` should not exceed `MassSpringBody::stable_step()` of a
+/// single substep; twice that feeds energy to the springs, however many substeps there are. `thickness`
+/// should be well below the shortest edge.
+///
+/// Costs up to `iterations` continuous detections a step, and memory for a second scene.
 struct ContactResponse {
   bool enabled = false;
   double thickness = 1e-3;       ///< m, > 0
-  double restitution = 0;        ///< 0 stops the approach, 1 returns it
+  double restitution = 0;        ///< from 0, which stops the approach, to 1, which returns it
   double friction = 0;           ///< Coulomb's coefficient, ≥ 0
-  std::uint32_t iterations = 4;  ///< rounds of detection and impulses a step, ≥ 1
+  std::uint32_t iterations = 4;  ///< rounds of detection and impulses a step at most, ≥ 1
 };
 
 struct SimulationOptions {
   SceneOptions scene{};
   double time_step = 0.01;  ///< s, > 0
-  /// Turns bodies of masses and springs back: one that reaches beyond a side and moves outward has its mean
-  /// velocity along that axis reversed.
+  /// Turns bodies of masses and springs back (section 5.2 of the paper): one that reaches beyond a side after
+  /// a step, and whose mean velocity points outward, has that velocity reversed along the axis. So it may
+  /// reach out by the way of a step, comes back from wherever it is, and loses no speed; gravity does not
+  /// press it out. One that is larger than the room is turned back at every step, and so stays where it is.
+  /// Fixed vertices are not turned. A side may be infinite.
   std::optional<Border> border{};
   std::uint64_t seed = 0;
   ContactResponse response{};
 };
 
-/// A body that could not be carried on: a number stopped being finite, or a vertex flew off.
+/// A body that could not be carried on: a number stopped being finite, or a vertex flew off. The message
+/// names the object and the step, and says which time step would do.
 struct MotionError : Error {
   MotionError(const std::string& message, std::string object_name, std::uint64_t at_step)
       : Error(message), object(std::move(object_name)), step(at_step) {}
@@ -102,11 +123,11 @@ class Simulation {
   ObjectId add(const TriangleMesh& mesh, const ObjectOptions& object, MotionFunction motion);
   void remove(ObjectId object);
 
-  /// What touches where everything is now. Nothing moves; there are no continuous contacts.
+  /// What touches where everything is now. Nothing moves: continuous contacts are those at time 0.
   const DetectResult& detect();
-  /// Moves everything on by one time step, then detects: continuous contacts are those of the way there.
-  /// Throws `MotionError` when a body blows up; whatever the user's motion throws comes through. Either way
-  /// everything is as before the call.
+  /// Moves everything on by one time step, then detects: continuous contacts are those of the way there,
+  /// which is straight. Throws `MotionError` when a body blows up; whatever the user's motion throws comes
+  /// through. Either way everything is as before the call. Objects without motion cost nothing.
   const DetectResult& step();
 
   std::uint64_t step_count() const;  ///< steps taken
@@ -117,10 +138,13 @@ class Simulation {
   /// The scene that detects; objects are moved by the simulation alone.
   const Scene& scene() const;
   std::span<const Vec3d> positions(ObjectId object) const;
-  /// Puts an object somewhere else: an object without motion, or a body, which keeps its velocities. At the
-  /// next step continuous contacts see the way from here.
+  /// Puts an object somewhere else: an object without motion, or a body, which keeps its velocities. It is
+  /// there at once: at the next step continuous contacts see the way from here. Throws `Error` as
+  /// `Scene::set_positions` does, or when the object is moved by a function.
   void set_positions(ObjectId object, std::span<const Vec3d> positions);
-  /// The masses and springs of an object, to look at or to push; null when it has none.
+  /// The masses and springs of an object, to look at or to push; null when it has none. Stays where it is
+  /// until the object is removed. Positions that are set here show after the next step; external forces are
+  /// those of the simulation until `deform_seconds` have passed.
   MassSpringBody* body(ObjectId object);
   const MassSpringBody* body(ObjectId object) const;
 

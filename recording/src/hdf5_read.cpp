@@ -77,8 +77,11 @@ void InputFile::fail(const std::string& item, const std::string& what) const {
   throw Error(path_ + ": /" + item + ": " + what);
 }
 
-bool InputFile::has_attribute(const std::string& group, const char* name) const {
-  return H5Aexists_by_name(id(), group.c_str(), name, H5P_DEFAULT) > 0;
+bool InputFile::has_text(const std::string& group, const char* name) const {
+  const AttributeHandle attribute(H5Aopen_by_name(id(), group.c_str(), name, H5P_DEFAULT, H5P_DEFAULT));
+  if (!attribute) return false;
+  const DatatypeHandle type(H5Aget_type(attribute.id()));
+  return H5Tget_class(type.id()) == H5T_STRING;
 }
 
 std::size_t InputFile::count_links(const std::string& group) const {

@@ -21,7 +21,7 @@ class InputFile {
   const std::string& path() const { return path_; }
   std::uint64_t size() const { return size_; }
 
-  bool has_attribute(const std::string& group, const char* name) const;
+  bool has_text(const std::string& group, const char* name) const;
   std::size_t count_links(const std::string& group) const;
   double number(const std::string& group, const char* name) const;
   /// A whole number from 0 to `largest`.

@@ -31,7 +31,7 @@ std::size_t read_choice(const InputFile& file, const char* name, const Words& wo
 }
 
 void check_format(const InputFile& file) {
-  if (!file.has_attribute("/", "format") || file.text("/", "format") != format_name)
+  if (!file.has_text("/", "format") || file.text("/", "format") != format_name)
     throw Error(file.path() + ": is an HDF5 file, but no recording; make one with supple simulate --record");
   const std::uint32_t version = file.count("/", "version");
   if (version != format_version)

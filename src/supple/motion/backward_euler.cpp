@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "motion/element_forces.hpp"
@@ -52,6 +53,7 @@ class BackwardEuler::System {
  private:
   void lay_out(const SpringNetwork& network);
   void find_directions(const ImplicitStep& step);
+  void give_up(const ImplicitStep& step, std::span<Vec3d> velocities) const;
   void solve_linear();
   bool go_down(const ImplicitStep& step, std::span<Vec3d> velocities, double& lowest);
   double potential(const ImplicitStep& step, std::span<const Vec3d> velocities);
@@ -141,9 +143,10 @@ void BackwardEuler::System::solve(const ImplicitStep& step, std::span<Vec3d> vel
     std::copy(tried_.begin(), tried_.end(), velocities.begin());
   }
   if (gradient_.size() == 0) return;
+  if (!std::isfinite(lowest)) return give_up(step, velocities);
 
   double first_change = 0;
-  for (int iteration = 0; iteration < max_newton_iterations && std::isfinite(lowest); ++iteration) {
+  for (int iteration = 0; iteration < max_newton_iterations; ++iteration) {
     linearise(step, velocities);
     // The matrix is at least the masses, so that this bounds the change.
     if (gradient_.norm() <= tolerance * options_.vertex_mass * first_change) break;
@@ -154,6 +157,21 @@ void BackwardEuler::System::solve(const ImplicitStep& step, std::span<Vec3d> vel
     if (!(change > tolerance * first_change)) break;
   }
   keep_momentum(step, velocities);
+}
+
+/// Forces or stretch that are not finite show in the velocities, so that the step is refused.
+void BackwardEuler::System::give_up(const ImplicitStep& step, std::span<Vec3d> velocities) const {
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  bool any = false;
+  for (std::uint32_t v = 0; v < kinds_.size(); ++v) {
+    if (kinds_[v] != VertexKind::free || step.external_forces.empty() || is_finite(step.external_forces[v]))
+      continue;
+    velocities[v] = {nan, nan, nan};
+    any = true;
+  }
+  for (std::uint32_t v = 0; v < kinds_.size() && !any; ++v) {
+    if (kinds_[v] == VertexKind::free) velocities[v] = {nan, nan, nan};
+  }
 }
 
 /// Conjugate gradients take about ten times the root of the condition number, each a product with the matrix;

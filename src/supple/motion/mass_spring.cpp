@@ -101,8 +101,11 @@ void MassSpring::step(double seconds, const Parallel& parallel) {
          " s; it must be finite and above 0");
   }
   const bool is_plastic = options_.yield_strain < std::numeric_limits<double>::infinity();
-  if (is_plastic)
-    rest_before_ = {network_.edges.elements, network_.bending.elements, network_.areas.elements};
+  if (is_plastic) {
+    rest_before_.edges = network_.edges.elements;
+    rest_before_.bending = network_.bending.elements;
+    rest_before_.areas = network_.areas.elements;
+  }
   const double substep = seconds / options_.substeps;
   State* from = &now_;
   for (std::uint32_t i = 0; i < options_.substeps; ++i) {

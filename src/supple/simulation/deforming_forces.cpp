@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
+#include <numeric>
+#include <utility>
 
 #include "supple/trigonometry.hpp"
 
@@ -93,6 +96,36 @@ void remove_torque(std::vector<Vec3d>& forces, const std::vector<Vec3d>& arms) {
   for (std::size_t i = 0; i < forces.size(); ++i) forces[i] = forces[i] - cross(turn, arms[i]);
 }
 
+/// Vertices that springs join, directly or by way of others; numbers into the cloud.
+std::vector<std::vector<std::size_t>> pieces_of(const Cloud& cloud, std::size_t vertex_count,
+                                                std::span<const MassSpringBody::Spring> springs) {
+  std::vector<std::size_t> parents(vertex_count);
+  std::iota(parents.begin(), parents.end(), std::size_t{0});
+  const auto root_of = [&](std::size_t vertex) {
+    while (parents[vertex] != vertex) vertex = parents[vertex] = parents[parents[vertex]];
+    return vertex;
+  };
+  for (const MassSpringBody::Spring& spring : springs) parents[root_of(spring.a)] = root_of(spring.b);
+  std::map<std::size_t, std::vector<std::size_t>> by_root;
+  for (std::size_t i = 0; i < cloud.vertices.size(); ++i) by_root[root_of(cloud.vertices[i])].push_back(i);
+  std::vector<std::vector<std::size_t>> pieces;
+  for (auto& [root, piece] : by_root) pieces.push_back(std::move(piece));
+  return pieces;
+}
+
+/// Takes off what would move or turn a piece as a whole.
+void keep_in_place(const std::vector<std::size_t>& piece, const Cloud& cloud, std::vector<Vec3d>& forces) {
+  std::vector<Vec3d> its_forces, arms;
+  for (const std::size_t i : piece) {
+    its_forces.push_back(forces[i]);
+    arms.push_back(cloud.from_centre[i]);
+  }
+  remove_sum(arms);
+  remove_sum(its_forces);
+  remove_torque(its_forces, arms);
+  for (std::size_t i = 0; i < piece.size(); ++i) forces[piece[i]] = its_forces[i];
+}
+
 void scale_to(std::vector<Vec3d>& forces, double root_mean_square) {
   double squares = 0;
   for (const Vec3d& force : forces) squares += dot(force, force);
@@ -103,7 +136,9 @@ void scale_to(std::vector<Vec3d>& forces, double root_mean_square) {
 
 }  // namespace
 
-std::vector<Vec3d> deforming_forces(std::span<const Vec3d> rest, double size, Random& random) {
+std::vector<Vec3d> deforming_forces(std::span<const Vec3d> rest,
+                                    std::span<const MassSpringBody::Spring> springs, double size,
+                                    Random& random) {
   std::vector<Vec3d> all(rest.size());
   const Cloud cloud = cloud_of(rest);
   if (!(cloud.size > 0)) return all;
@@ -112,8 +147,7 @@ std::vector<Vec3d> deforming_forces(std::span<const Vec3d> rest, double size, Ra
     for (std::size_t i = 0; i < forces.size(); ++i)
       forces[i] = forces[i] + wave.force * sin_turns(dot(wave.along, cloud.from_centre[i]) + wave.phase);
   }
-  remove_sum(forces);
-  remove_torque(forces, cloud.from_centre);
+  for (const auto& piece : pieces_of(cloud, rest.size(), springs)) keep_in_place(piece, cloud, forces);
   scale_to(forces, size);
   for (std::size_t i = 0; i < forces.size(); ++i) all[cloud.vertices[i]] = forces[i];
   return all;

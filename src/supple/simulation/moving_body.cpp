@@ -80,7 +80,7 @@ MovingBody::MovingBody(MassSpringBody rest, const MassSpringMotion& motion, doub
       deform_seconds_(motion.deform_seconds),
       handles_(motion.handles) {
   if (deform_seconds_ > 0 && motion.random_force > 0)
-    body.set_external_forces(deforming_forces(body.positions(), motion.random_force, random));
+    body.set_external_forces(deforming_forces(body.positions(), body.springs(), motion.random_force, random));
   send_off_in_time();
   pull_handles();
 }
@@ -115,10 +115,25 @@ void MovingBody::turn_back_at(const Border& border) {
   }
   const Vec3d velocity = body.mean_velocity();
   for (int axis = 0; axis < 3; ++axis) {
-    const bool leaves_below = low[axis] < border[0][axis] && velocity[axis] < 0;
-    const bool leaves_above = high[axis] > border[1][axis] && velocity[axis] > 0;
-    if (leaves_below || leaves_above) body.turn_back(axis);
+    if (low[axis] < border[0][axis]) turn_back_from_side(axis, -1, velocity[axis]);
+    if (high[axis] > border[1][axis]) turn_back_from_side(axis, 1, velocity[axis]);
   }
+}
+
+/// `outward` is the sign of the way out. The least speed of the way back is what gravity takes off it in a
+/// step, and a little more for friction: less, and a body that lies on a side would sink into it bit by bit.
+void MovingBody::turn_back_from_side(int axis, double outward, double velocity) {
+  const double pull = std::max(outward * body.options().gravity[axis] * time_step_, 0.0);
+  const double speed = outward * velocity;
+  if (!(speed + pull > 0)) return;
+  if (speed > 0) body.turn_back(axis);
+  const double missing = 1.25 * pull - std::fabs(speed);
+  if (!(missing > 0)) return;
+  const std::span<const Vec3d> before = body.velocities();
+  velocities_.assign(before.begin(), before.end());
+  for (Vec3d& v : velocities_) v[axis] -= outward * missing;
+  for (const std::uint32_t vertex : body.options().fixed_vertices) velocities_[vertex] = before[vertex];
+  body.set_velocities(velocities_);
 }
 
 void MovingBody::send_off_in_time() {

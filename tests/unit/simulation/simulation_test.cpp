@@ -371,6 +371,22 @@ TEST(Simulation, ObjectsOutsideTheBorderComeBackAndLargeOnesStay) {
   EXPECT_LT(std::fabs(x), 0.35);
 }
 
+TEST(Simulation, GravityDoesNotPressThroughTheBorder) {
+  for (const Integrator integrator : {Integrator::verlet, Integrator::symplectic_euler}) {
+    for (const double air_friction : {0.0, 0.05}) {
+      Simulation simulation(in_a_room(1, ContactMode::none));
+      MassSpringMotion motion = springy();
+      motion.springs.integrator = integrator;
+      motion.springs.gravity = {0, 0, 9.81};
+      motion.springs.air_friction = air_friction;
+      const ObjectId id = simulation.add(placed(make_icosphere(1), 0.2, {}), {}, motion);
+      for (int step = 0; step < 3000; ++step) simulation.step();
+      EXPECT_LT(simulation.body(id)->center_of_mass().z, 0.835);
+      EXPECT_GT(simulation.body(id)->center_of_mass().z, air_friction > 0 ? 0.82 : -0.9);
+    }
+  }
+}
+
 TEST(Simulation, GivesTheSameBitsForAnyNumberOfThreads) {
   const auto run = [](std::uint32_t threads) {
     SimulationOptions options = in_a_room(0.9);

@@ -1,0 +1,108 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "supple/recording.hpp"
+#include "supple/scene.hpp"
+#include "unit/mesh/mesh_files.hpp"
+
+namespace supple {
+
+/// What a scene gave in a frame, kept.
+inline RecordedFrame kept(double time, const DetectResult& result) {
+  RecordedFrame frame;
+  const auto keep = [](auto& to, auto from) { to.assign(from.begin(), from.end()); };
+  frame.time = time;
+  keep(frame.object_pairs, result.object_pairs);
+  keep(frame.contacts, result.contacts);
+  keep(frame.contact_points, result.contact_points);
+  keep(frame.continuous_contacts, result.continuous_contacts);
+  keep(frame.volume_begin, result.volume_events.begin);
+  keep(frame.volume_end, result.volume_events.end);
+  keep(frame.contact_begin, result.contact_events.begin);
+  keep(frame.contact_end, result.contact_events.end);
+  frame.stats = result.stats;
+  return frame;
+}
+
+/// A `DetectResult` that shows a frame.
+inline DetectResult shown(const RecordedFrame& frame) {
+  DetectResult result;
+  result.object_pairs = frame.object_pairs;
+  result.contacts = frame.contacts;
+  result.contact_points = frame.contact_points;
+  result.continuous_contacts = frame.continuous_contacts;
+  result.volume_events.begin = frame.volume_begin;
+  result.volume_events.end = frame.volume_end;
+  result.contact_events.begin = frame.contact_begin;
+  result.contact_events.end = frame.contact_end;
+  result.stats = frame.stats;
+  return result;
+}
+
+/// All that a recording has, in memory: to be changed and written again.
+struct Contents {
+  RecordingHeader header;
+  std::vector<RecordedFrame> frames;
+  std::vector<std::vector<std::vector<Vec3d>>> positions;  ///< of each frame, of each object
+
+  void write(const std::filesystem::path& path) const {
+    Recorder recorder(path, header);
+    for (std::size_t f = 0; f < frames.size(); ++f) {
+      const std::vector<std::span<const Vec3d>> views(positions[f].begin(), positions[f].end());
+      recorder.add(frames[f].time, views, shown(frames[f]));
+    }
+    recorder.close();
+  }
+};
+
+inline Contents read_contents(const Recording& recording) {
+  Contents contents{recording.header(), {}, {}};
+  for (std::uint64_t f = 0; f < recording.frame_count(); ++f) {
+    contents.frames.push_back(recording.frame(f));
+    contents.positions.emplace_back();
+    for (std::size_t i = 0; i < contents.header.objects.size(); ++i)
+      contents.positions.back().push_back(recording.positions(f, i));
+  }
+  return contents;
+}
+
+/// Objects that move through each other by random steps.
+inline Contents simulate(const std::vector<TriangleMesh>& meshes, std::vector<ObjectOptions> options,
+                         const SceneOptions& scene_options, std::uint64_t frames) {
+  Contents contents;
+  Scene scene(scene_options);
+  contents.header.scene = scene_options;
+  contents.header.time_step = 0.1;
+  options.resize(meshes.size());
+  std::vector<std::vector<Vec3d>> positions;
+  for (std::size_t i = 0; i < meshes.size(); ++i) {
+    if (options[i].name.empty()) options[i].name = "object " + std::to_string(i);
+    const ObjectId id = scene.add(meshes[i], options[i]);
+    contents.header.objects.push_back({id, options[i], meshes[i].positions, meshes[i].triangles});
+    positions.push_back(meshes[i].positions);
+  }
+  for (std::uint64_t f = 0; f < frames; ++f) {
+    for (std::size_t i = 0; i < meshes.size(); ++i) {
+      if (options[i].is_static) continue;
+      const std::vector<Vec3d> from = positions[i];
+      for (std::size_t v = 0; v < from.size(); ++v) {
+        const double x = static_cast<double>((f * 7 + v * 3 + i * 5) % 11) / 11 - 0.4;
+        positions[i][v] = meshes[i].positions[v] + Vec3d{x, 0.3 * x, static_cast<double>(f % 5) / 8};
+      }
+      if (scene_options.contacts == ContactMode::continuous)
+        scene.set_motion(contents.header.objects[i].id, from, positions[i]);
+      else
+        scene.set_positions(contents.header.objects[i].id, positions[i]);
+    }
+    contents.frames.push_back(kept(0.1 * static_cast<double>(f), scene.detect()));
+    contents.positions.push_back(positions);
+  }
+  return contents;
+}
+
+}  // namespace supple

@@ -1,0 +1,317 @@
+#include "supple/recording.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <fstream>
+#include <iterator>
+#include <limits>
+
+#include "supple/error.hpp"
+#include "supple/models.hpp"
+#include "support/soups.hpp"
+#include "unit/recording/recorded_scenes.hpp"
+
+namespace supple {
+namespace {
+
+void expect_equal_bits(const std::vector<Vec3d>& a, const std::vector<Vec3d>& b) {
+  ASSERT_EQ(a.size(), b.size());
+  EXPECT_TRUE(a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(Vec3d)) == 0);
+}
+
+void expect_equal(const RecordedFrame& a, const RecordedFrame& b) {
+  EXPECT_EQ(a.time, b.time);
+  EXPECT_EQ(a.object_pairs, b.object_pairs);
+  EXPECT_EQ(a.contacts, b.contacts);
+  EXPECT_EQ(a.contact_points, b.contact_points);
+  EXPECT_EQ(a.continuous_contacts, b.continuous_contacts);
+  EXPECT_EQ(a.volume_begin, b.volume_begin);
+  EXPECT_EQ(a.volume_end, b.volume_end);
+  EXPECT_EQ(a.contact_begin, b.contact_begin);
+  EXPECT_EQ(a.contact_end, b.contact_end);
+  EXPECT_EQ(std::memcmp(&a.stats, &b.stats, sizeof a.stats), 0);
+}
+
+void expect_equal(const RecordingHeader& a, const RecordingHeader& b) {
+  EXPECT_EQ(a.time_step, b.time_step);
+  EXPECT_EQ(a.scene_file, b.scene_file);
+  EXPECT_EQ(a.scene.bounding_volume, b.scene.bounding_volume);
+  EXPECT_EQ(a.scene.sphere_fit, b.scene.sphere_fit);
+  EXPECT_EQ(a.scene.broad_phase, b.scene.broad_phase);
+  EXPECT_EQ(a.scene.scene_octree.max_level, b.scene.scene_octree.max_level);
+  EXPECT_EQ(a.scene.scene_octree.expand_at, b.scene.scene_octree.expand_at);
+  EXPECT_EQ(a.scene.scene_octree.region_sphere_test, b.scene.scene_octree.region_sphere_test);
+  EXPECT_EQ(a.scene.contacts, b.scene.contacts);
+  EXPECT_EQ(a.scene.contact_points, b.scene.contact_points);
+  EXPECT_EQ(a.scene.colliding_vertices, b.scene.colliding_vertices);
+  EXPECT_EQ(a.scene.impact.min_separation, b.scene.impact.min_separation);
+  EXPECT_EQ(a.scene.impact.exact, b.scene.impact.exact);
+  ASSERT_EQ(a.objects.size(), b.objects.size());
+  for (std::size_t i = 0; i < a.objects.size(); ++i) {
+    const RecordedObject &p = a.objects[i], &q = b.objects[i];
+    EXPECT_EQ(p.id, q.id);
+    EXPECT_EQ(p.options.name, q.options.name);
+    EXPECT_EQ(p.options.self_collision, q.options.self_collision);
+    EXPECT_EQ(p.options.is_static, q.options.is_static);
+    EXPECT_EQ(p.options.group, q.options.group);
+    EXPECT_EQ(p.options.mask, q.options.mask);
+    EXPECT_EQ(p.options.octree.max_level, q.options.octree.max_level);
+    EXPECT_EQ(p.options.octree.leaf_size, q.options.octree.leaf_size);
+    expect_equal_bits(p.rest_positions, q.rest_positions);
+    EXPECT_EQ(p.triangles, q.triangles);
+  }
+}
+
+/// Writes, reads, compares; returns what was read.
+Contents round_trip(const Contents& contents) {
+  const TemporaryFolder folder;
+  contents.write(folder / "run.h5");
+  const Recording recording(folder / "run.h5");
+  Contents read = read_contents(recording);
+  expect_equal(contents.header, read.header);
+  EXPECT_EQ(contents.frames.size(), recording.frame_count());
+  for (std::size_t f = 0; f < std::min(contents.frames.size(), read.frames.size()); ++f) {
+    expect_equal(contents.frames[f], read.frames[f]);
+    for (std::size_t i = 0; i < read.header.objects.size(); ++i)
+      expect_equal_bits(contents.positions[f][i], read.positions[f][i]);
+  }
+  return read;
+}
+
+/// Two soups, one against itself as well, and one that stands.
+Contents soups(ContactMode mode, std::uint64_t frames = 12) {
+  ObjectOptions folding, fixed;
+  folding.self_collision = true;
+  fixed.is_static = true;
+  SceneOptions scene;
+  scene.contacts = mode;
+  scene.threads = 1;
+  return simulate({random_soup(30, 1, 0.5, 1), random_soup(20, 1, 0.6, 2), random_soup(20, 1, 0.6, 3)},
+                  {folding, ObjectOptions{}, fixed}, scene, frames);
+}
+
+template <class Rows>
+std::size_t count_all(const std::vector<RecordedFrame>& frames, Rows rows) {
+  std::size_t count = 0;
+  for (const RecordedFrame& frame : frames) count += (frame.*rows).size();
+  return count;
+}
+
+TEST(Recording, RoundTripOfIntersections) {
+  const Contents read = round_trip(soups(ContactMode::intersection));
+  EXPECT_GT(count_all(read.frames, &RecordedFrame::contacts), 100u);
+  EXPECT_GT(count_all(read.frames, &RecordedFrame::contact_points), 100u);
+  EXPECT_GT(count_all(read.frames, &RecordedFrame::volume_begin), 0u);
+  EXPECT_GT(count_all(read.frames, &RecordedFrame::contact_begin), 0u);
+}
+
+TEST(Recording, RoundTripOfContinuousContacts) {
+  const Contents read = round_trip(soups(ContactMode::continuous));
+  EXPECT_GT(count_all(read.frames, &RecordedFrame::continuous_contacts), 100u);
+  EXPECT_EQ(count_all(read.frames, &RecordedFrame::contacts), 0u);
+}
+
+TEST(Recording, RoundTripOfEndingPairs) {
+  Contents contents = soups(ContactMode::intersection, 3);
+  const auto& objects = contents.header.objects;
+  contents.frames[2].volume_end = {{objects[0].id, objects[2].id}};
+  contents.frames[2].contact_end = {{objects[0].id, objects[1].id}, {objects[1].id, objects[2].id}};
+  round_trip(contents);
+}
+
+TEST(Recording, RoundTripOfEveryOption) {
+  Contents contents = soups(ContactMode::none, 2);
+  SceneOptions& scene = contents.header.scene;
+  scene.bounding_volume = BoundingVolume::sphere;
+  scene.sphere_fit = SphereFit::box;
+  scene.broad_phase = BroadPhaseMethod::sweep;
+  scene.scene_octree = {7, 3, RegionSphereTest::grown_box};
+  scene.contact_points = false;
+  scene.impact = {0.125, false};
+  scene.colliding_vertices = true;
+  contents.header.time_step = 0x1.8p-7;
+  contents.header.scene_file = "[scene]\nname = \"\xe2\x88\x9e\"\n";
+  ObjectOptions& options = contents.header.objects[1].options;
+  options.name = "\xe5\x85\x94 & <rabbit> \"x\"";
+  options.group = 6;
+  options.mask = 9;
+  options.octree = {3, 77};
+  round_trip(contents);
+}
+
+TEST(Recording, RoundTripOfNumbersThatAreNotFinite) {
+  Contents contents = soups(ContactMode::intersection, 3);
+  const double infinity = std::numeric_limits<double>::infinity();
+  contents.positions[1][0][3] = {std::numeric_limits<double>::quiet_NaN(), -infinity, infinity};
+  contents.positions[2][1][0] = {-0.0, std::numeric_limits<double>::denorm_min(), 1e308};
+  round_trip(contents);
+}
+
+TEST(Recording, RoundTripOfIdsThatWereUsedBefore) {
+  Contents contents = soups(ContactMode::intersection, 2);
+  const auto rename = [&](ObjectId from, ObjectId to) {
+    for (RecordedObject& object : contents.header.objects) object.id = object.id == from ? to : object.id;
+    for (RecordedFrame& frame : contents.frames) {
+      for (auto* pairs : {&frame.object_pairs, &frame.volume_begin, &frame.contact_begin}) {
+        for (ObjectPair& pair : *pairs) pair = {pair.a == from ? to : pair.a, pair.b == from ? to : pair.b};
+      }
+      for (Contact& c : frame.contacts) {
+        c.object_a = c.object_a == from ? to : c.object_a;
+        c.object_b = c.object_b == from ? to : c.object_b;
+      }
+    }
+  };
+  rename(contents.header.objects[2].id, {900, 4});
+  rename(contents.header.objects[0].id, {0, 17});
+  round_trip(contents);
+}
+
+TEST(Recording, SceneWithoutObjects) {
+  Contents contents = simulate({}, {}, {.threads = 1}, 4);
+  round_trip(contents);
+}
+
+TEST(Recording, NoFrames) {
+  round_trip(soups(ContactMode::intersection, 0));
+  round_trip(Contents{});
+}
+
+TEST(Recording, ObjectsWithoutVerticesAndTriangles) {
+  TriangleMesh empty, points;
+  points.positions = {{0, 0, 0}, {1, 2, 3}};
+  ObjectOptions fixed;
+  fixed.is_static = true;
+  round_trip(simulate({empty, make_icosphere(1), points, empty}, {{}, {}, {}, fixed}, {.threads = 1}, 5));
+}
+
+TEST(Recording, TenThousandFrames) {
+  SceneOptions scene;
+  scene.contacts = ContactMode::none;
+  scene.threads = 1;
+  const Contents contents = simulate({make_box({1, 1, 1}), make_box({1, 1, 1})}, {}, scene, 10000);
+  const TemporaryFolder folder;
+  contents.write(folder / "long.h5");
+  const Recording recording(folder / "long.h5");
+  ASSERT_EQ(recording.frame_count(), 10000u);
+  for (const std::uint64_t f : {0u, 1u, 63u, 64u, 65u, 1023u, 1024u, 4095u, 4096u, 7777u, 9999u, 3u}) {
+    expect_equal(contents.frames[f], recording.frame(f));
+    expect_equal_bits(contents.positions[f][1], recording.positions(f, 1));
+  }
+}
+
+TEST(Recording, OfStaticObjectsOneRow) {
+  const TemporaryFolder folder;
+  soups(ContactMode::none, 5).write(folder / "run.h5");
+  const Recording recording(folder / "run.h5");
+  expect_equal_bits(recording.positions(0, 2), recording.positions(4, 2));
+  Contents moving = soups(ContactMode::none, 5);
+  moving.positions[3][2][7].y += 1;
+  EXPECT_THROW(moving.write(folder / "run.h5"), Error);
+}
+
+TEST(Recording, ReadsWhatWasFlushedWhileItIsWritten) {
+  const Contents contents = soups(ContactMode::intersection, 6);
+  const TemporaryFolder folder;
+  Recorder recorder(folder / "run.h5", contents.header);
+  EXPECT_EQ(Recording(folder / "run.h5").frame_count(), 0u);
+  for (std::size_t f = 0; f < 6; ++f) {
+    const std::vector<std::span<const Vec3d>> views(contents.positions[f].begin(),
+                                                    contents.positions[f].end());
+    recorder.add(contents.frames[f].time, views, shown(contents.frames[f]));
+    if (f % 2 == 1) recorder.flush();
+    const Recording now(folder / "run.h5");
+    ASSERT_EQ(now.frame_count(), (f + 1) / 2 * 2);
+    if (now.frame_count() > 0)
+      expect_equal(contents.frames[now.frame_count() - 1], now.frame(now.frame_count() - 1));
+  }
+}
+
+TEST(Recording, OldOneStaysUntilTheNewOneIsThere) {
+  const TemporaryFolder folder;
+  soups(ContactMode::none, 3).write(folder / "run.h5");
+  RecordingHeader wrong = soups(ContactMode::none, 0).header;
+  wrong.objects[0].triangles[2][1] = 100000;
+  EXPECT_THROW(Recorder(folder / "run.h5", wrong), Error);
+  EXPECT_EQ(Recording(folder / "run.h5").frame_count(), 3u);
+  soups(ContactMode::none, 1).write(folder / "run.h5");
+  EXPECT_EQ(Recording(folder / "run.h5").frame_count(), 1u);
+}
+
+TEST(Recording, EqualContentsAreEqualFiles) {
+  const Contents contents = soups(ContactMode::intersection, 20);
+  const TemporaryFolder folder;
+  const auto bytes_of = [](const std::filesystem::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    return std::string(std::istreambuf_iterator<char>(file), {});
+  };
+  contents.write(folder / "a.h5");
+  contents.write(folder / "b.h5");
+  EXPECT_EQ(bytes_of(folder / "a.h5"), bytes_of(folder / "b.h5"));
+}
+
+TEST(Recorder, RefusesWhatDoesNotFitTheHeaderAndGoesOn) {
+  const Contents contents = soups(ContactMode::intersection, 3);
+  const TemporaryFolder folder;
+  Recorder recorder(folder / "run.h5", contents.header);
+  std::vector<std::span<const Vec3d>> views(contents.positions[0].begin(), contents.positions[0].end());
+  const DetectResult nothing;
+  const std::span<const std::span<const Vec3d>> all = views;
+  EXPECT_NE(error_of([&] { recorder.add(0, all.first(2), nothing); }).find("2 objects, the recording has 3"),
+            std::string::npos);
+  views[1] = views[1].first(5);
+  EXPECT_NE(error_of([&] { recorder.add(0, views, nothing); }).find("5 positions of object 1"),
+            std::string::npos);
+  views[1] = contents.positions[0][1];
+  RecordedFrame strange = contents.frames[0];
+  strange.object_pairs = {{{0, 0}, {8, 1}}};
+  EXPECT_NE(error_of([&] { recorder.add(0, views, shown(strange)); }).find("object 8 of generation 1"),
+            std::string::npos);
+  recorder.add(contents.frames[0].time, views, shown(contents.frames[0]));
+  recorder.close();
+  EXPECT_NE(error_of([&] { recorder.add(0, views, nothing); }).find("closed"), std::string::npos);
+  const Recording recording(folder / "run.h5");
+  ASSERT_EQ(recording.frame_count(), 1u);
+  expect_equal(contents.frames[0], recording.frame(0));
+}
+
+TEST(Recorder, RefusesIdsThatAreNotDistinct) {
+  RecordingHeader header = soups(ContactMode::none, 0).header;
+  header.objects[2].id = header.objects[0].id;
+  const TemporaryFolder folder;
+  EXPECT_NE(error_of([&] { Recorder(folder / "run.h5", header); }).find("same id"), std::string::npos);
+}
+
+TEST(Recorder, NamesPathsThatCannotBeWritten) {
+  const TemporaryFolder folder;
+  for (const std::filesystem::path& path :
+       {folder / "missing/run.h5", std::filesystem::path("/proc/run.h5")}) {
+    const std::string error = error_of([&] { Recorder(path, RecordingHeader{}); });
+    EXPECT_EQ(error.find(path.string() + ": cannot write: "), 0u) << error;
+  }
+  EXPECT_NE(error_of([&] { Recorder("/dev/null", RecordingHeader{}); }).find("no regular file"),
+            std::string::npos);
+  EXPECT_NE(error_of([&] { Recorder(folder / "run.xdmf", RecordingHeader{}); }).find(".h5"),
+            std::string::npos);
+}
+
+TEST(Recorder, FollowsALink) {
+  const TemporaryFolder folder;
+  std::ofstream(folder / "target.h5") << "old";
+  std::filesystem::create_symlink(folder / "target.h5", folder / "link.h5");
+  soups(ContactMode::none, 2).write(folder / "link.h5");
+  EXPECT_TRUE(std::filesystem::is_symlink(folder / "link.h5"));
+  EXPECT_EQ(Recording(folder / "target.h5").frame_count(), 2u);
+}
+
+TEST(Recording, NoSuchFrameOrObject) {
+  const TemporaryFolder folder;
+  soups(ContactMode::none, 2).write(folder / "run.h5");
+  const Recording recording(folder / "run.h5");
+  EXPECT_NE(error_of([&] { recording.frame(2); }).find("no frame 2; the recording has 2"), std::string::npos);
+  EXPECT_NE(error_of([&] { recording.positions(0, 3); }).find("no object 3"), std::string::npos);
+  EXPECT_NE(error_of([&] { recording.positions(7, 0); }).find("no frame 7"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace supple
