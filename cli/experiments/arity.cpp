@@ -194,8 +194,7 @@ Claim judge_better(const Sums& sums) {
   const auto fewest_tests = fewest(sums, tests_of), fastest = fewest(sums, seconds_of_sum);
   Claim claim{
       "“For rigid bodies, binary trees are used, and for DO it has been shown that 4-ary trees or 8-ary "
-      "trees "
-      "give better performance” (2, citing [LAM01]). Read as: at least 5 % fewer volumes tested and "
+      "trees give better performance” (2, citing [LAM01]). Read as: at least 5 % fewer volumes tested and "
       "refitted.",
       Verdict::cannot_tell,
       {}};
@@ -204,16 +203,11 @@ Claim judge_better(const Sums& sums) {
   if (best > 1.05 * work[0]) claim.verdict = Verdict::does_not_hold;
   claim.reason = fmt::format(
       "Eight children being 1: {:.2f} tests of a volume against a volume with four children, {:.2f} with "
-      "two; {:.2f} and "
-      "{:.2f} volumes to refit; both together {:.2f} and {:.2f}. Of {} cases the fewest tests are with two, "
-      "four and eight "
-      "children in {}, {} and {}. Times: {:.2f} and {:.2f} for the descent, {:.2f} and {:.2f} for refitting; "
-      "the descent "
-      "is shortest with two, four and eight in {}, {} and {} cases. But nodes are eight lanes wide here and "
-      "tested at "
-      "once, whatever they hold: that favours eight children in time, and is no merit of the tree. Counts do "
-      "not depend "
-      "on it.",
+      "two; {:.2f} and {:.2f} volumes to refit; both together {:.2f} and {:.2f}. Of {} cases the fewest "
+      "tests are with two, four and eight children in {}, {} and {}. Times: {:.2f} and {:.2f} for the "
+      "descent, {:.2f} and {:.2f} for refitting; the descent is shortest with two, four and eight in {}, {} "
+      "and {} cases. But nodes are eight lanes wide here and tested at once, whatever they hold: that "
+      "favours eight children in time, and is no merit of the tree. Counts do not depend on it.",
       tests[1], tests[0], volumes[1], volumes[0], work[1], work[0], sums.size(), fewest_tests[0],
       fewest_tests[1], fewest_tests[2], seconds[1], seconds[0], refit[1], refit[0], fastest[0], fastest[1],
       fastest[2]);
@@ -226,18 +220,16 @@ Claim judge_depth(const Sums& sums) {
   for (const auto& row : sums) octants += row[2].width / static_cast<double>(sums.size());
   Claim claim{
       "“This phase can be changed using k-ary trees …, so that the complexity would change in the log_k n” "
-      "(7): "
-      "the depth with two children is three times that with eight, with four 1.5 times.",
+      "(7): the depth with two children is three times that with eight, with four 1.5 times.",
       Verdict::cannot_tell,
       {}};
   const auto near = [](double value, double expected) { return std::abs(value / expected - 1) < 0.2; };
   claim.verdict = verdict_of(near(depth[0], 3) && near(depth[1], 1.5));
   claim.reason = fmt::format(
       "With leaves of one triangle the mean depth with two children is {:.2f} times that with eight, with "
-      "four {:.2f} "
-      "times. The nodes of eight have {:.1f} children on average, because a surface leaves octants empty and "
-      "small nodes "
-      "hold few triangles: an octree of a surface is deeper than the logarithm of base eight.",
+      "four {:.2f} times. The nodes of eight have {:.1f} children on average, because a surface leaves "
+      "octants empty and small nodes hold few triangles: an octree of a surface is deeper than the logarithm "
+      "of base eight.",
       depth[0], depth[1], octants);
   return claim;
 }
@@ -253,8 +245,7 @@ Claim judge_binary_collisions(const Sums& sums) {
   claim.verdict = verdict_of(visited <= levels);
   claim.reason = fmt::format(
       "If no more than one pair of children collided, a descent would compare no more pairs of nodes than "
-      "both trees have "
-      "levels, together {} in all cases; it compared {}.",
+      "both trees have levels, together {} in all cases; it compared {}.",
       cli::grouped(levels), cli::grouped(visited));
   return claim;
 }
@@ -271,8 +262,8 @@ Claim judge_scene(const SceneCosts& costs) {
     if (row[0].pairs != row[2].pairs || row[1].pairs != row[2].pairs) claim.verdict = Verdict::does_not_hold;
   claim.reason = fmt::format(
       "For the largest scene a step takes {:.2f} times as long with four children and {:.2f} times with two "
-      "as with eight; "
-      "there are {:.2f} and {:.2f} times as many regions, {:.2f} and {:.2f} times as many tests.",
+      "as with eight; there are {:.2f} and {:.2f} times as many regions, {:.2f} and {:.2f} times as many "
+      "tests.",
       ratio(1), ratio(0), static_cast<double>(largest[1].regions) / static_cast<double>(largest[2].regions),
       static_cast<double>(largest[0].regions) / static_cast<double>(largest[2].regions),
       static_cast<double>(largest[1].tests) / static_cast<double>(largest[2].tests),
@@ -354,10 +345,8 @@ Report run_arity(const ArityOptions& options, bool show_progress) {
   report.title = "Trees of two, four and eight children";
   report.summary =
       "The same objects, in the same poses, with trees that divide a cell in two, four or eight at each "
-      "level. With leaves "
-      "of one triangle all three end in the same leaves and differ in the way down alone; leaves of up to "
-      "eight triangles "
-      "are the usual ones. The contacts are the same for all.";
+      "level. With leaves of one triangle all three end in the same leaves and differ in the way down alone; "
+      "leaves of up to eight triangles are the usual ones. The contacts are the same for all.";
   report.parameters = {
       {"seed", fmt::format("{}", options.seed)},
       {"threads", options.threads == 0 ? "one a core" : fmt::format("{}", options.threads)},

@@ -228,8 +228,8 @@ Claim less_than_quadratic(const Points& seconds, const Points& tests) {
   claim.verdict = verdict_of(time.exponent + 2 * time.standard_error < 2 && count.exponent < 2);
   claim.reason = fmt::format(
       "With objects of like size at constant density, a step of the octree grows with exponent {}, its tests "
-      "with {}. "
-      "No method can do better than n² where all objects overlap: then there are n² pairs to report.",
+      "with {}. No method can do better than n² where all objects overlap: then there are n² pairs to "
+      "report.",
       text_of(time), text_of(count));
   return claim;
 }
@@ -267,8 +267,7 @@ std::vector<Claim> judge_broad(const std::array<BroadCurves, 3>& curves, const s
   if (claims.back().verdict == Verdict::does_not_hold)
     claims.back().reason +=
         " Sorting is n log n; the pairs that overlap along the swept axis alone come on top, and at constant "
-        "density in "
-        "three dimensions these grow as n^(5/3).";
+        "density in three dimensions these grow as n^(5/3).";
   claims.push_back(
       judge_bounds("The region-BV test of all objects takes O(n log n) (7): placing all objects in regions, "
                    "the first step.",
@@ -288,10 +287,8 @@ Claim judge_sphere_refit(const Points& reads, const Points& seconds) {
   claim.verdict = verdict_of(last < 1.1 * first);
   claim.reason = fmt::format(
       "True of the one sphere of an object, which the paper speaks of. With a sphere in each node every "
-      "level reads all "
-      "triangles, a vertex {:.0f} times on average at {} vertices and {:.0f} times at {}: it is O(V log V). "
-      "Times grow "
-      "with exponent {}.",
+      "level reads all triangles, a vertex {:.0f} times on average at {} vertices and {:.0f} times at {}: it "
+      "is O(V log V). Times grow with exponent {}.",
       first, cli::grouped(static_cast<std::uint64_t>(reads.front().first)), last,
       cli::grouped(static_cast<std::uint64_t>(reads.back().first)), text_of(fit_power_law(seconds)));
   return claim;
@@ -300,16 +297,14 @@ Claim judge_sphere_refit(const Points& reads, const Points& seconds) {
 std::vector<Claim> judge_narrow(const std::vector<Growth>& growths, const Points& reads) {
   std::vector<Claim> claims;
   claims.push_back(
-      judge_bounds("The narrow phase is O(4^(log n) log n), log of base 8 (6, 7, 8), which is "
-                   "n^(2/3) log n.",
+      judge_bounds("The narrow phase is O(4^(log n) log n), log of base 8 (6, 7, 8), which is n^(2/3) log n.",
                    {growths[0], growths[2], growths[1], growths[3]}));
   if (claims.back().verdict == Verdict::does_not_hold)
     claims.back().reason +=
         " Where surfaces cross, only nodes along a curve collide, about √n of them. Where they lie on each "
-        "other every "
-        "leaf collides with some other, and no hierarchy can do with fewer than n tests: the bound cannot "
-        "hold. It "
-        "takes each level to divide n by eight, but a surface passes through about four of eight octants.";
+        "other every leaf collides with some other, and no hierarchy can do with fewer than n tests: the "
+        "bound cannot hold. It takes each level to divide n by eight, but a surface passes through about "
+        "four of eight octants.";
   claims.push_back(judge_bounds("Refitting the boxes takes O(V) (5.1).", {growths[6], growths[5]}));
   claims.push_back(judge_sphere_refit(reads, growths[7].points));
   claims.push_back(judge_bounds("Building an object's octree takes O(n log n) (6).", {growths[4]}));
@@ -327,11 +322,10 @@ Section broad_section(const ScalingOptions& options, Table table, const std::arr
   time.series.push_back(formula_line("n log n", in_milliseconds(c[0].step_seconds), n_log_n, 5));
   tests.series.push_back(formula_line("n log n", c[0].tests, n_log_n, 5));
   Section section{"Number of objects", {}};
-  section.blocks.emplace_back(
-      fmt::format("Boxes with sides of 0.5 to 1, one in every eight units of volume, all in motion. A step "
-                  "is the fastest "
-                  "of {} after the first. Brute force stops where a step would take longer than {} s.",
-                  options.frames, rounded(options.brute_seconds)));
+  section.blocks.emplace_back(fmt::format(
+      "Boxes with sides of 0.5 to 1, one in every eight units of volume, all in motion. A step is the "
+      "fastest of {} after the first. Brute force stops where a step would take longer than {} s.",
+      options.frames, rounded(options.brute_seconds)));
   section.blocks.emplace_back(std::move(time));
   section.blocks.emplace_back(std::move(tests));
   section.blocks.emplace_back(std::move(table));
@@ -414,10 +408,8 @@ Report run_scaling(const ScalingOptions& options, bool show_progress) {
   report.title = "How time grows with objects and with vertices";
   report.summary =
       "Times of the broad phase, the narrow phase, and of building and refitting octrees against the size of "
-      "the "
-      "problem, and powers of it fitted by least squares on logarithms, beside the paper's formulas. Numbers "
-      "of tests "
-      "depend on no machine; times do.";
+      "the problem, and powers of it fitted by least squares on logarithms, beside the paper's formulas. "
+      "Numbers of tests depend on no machine; times do.";
   report.parameters = {
       {"seed", fmt::format("{}", options.seed)},
       {"threads", options.threads == 0 ? "one a core" : fmt::format("{}", options.threads)},

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "experiments/paper_table.hpp"
+#include "supple/options.hpp"
+
+namespace supple::experiments {
+
+struct Table1Options {
+  std::vector<std::string> scenes;  ///< of `table1_scene_names`
+  std::uint32_t runs = 5;           ///< ≥ 1; run k has the seed `seed` + k
+  double simulated_seconds = 600;
+  std::optional<double> wall_clock{};  ///< seconds a run; none: by events only
+  std::uint32_t threads = 0;  ///< runs by events at a time, or threads of one by the clock; 0: one a core
+  std::uint64_t seed = 1;
+};
+
+inline constexpr std::array table1_volumes{BoundingVolume::aabb, BoundingVolume::sphere};
+
+/// Collisions that begin in one run.
+struct RunCounts {
+  std::uint64_t broad = 0;   ///< pairs of objects whose volumes begin to overlap
+  std::uint64_t narrow = 0;  ///< pairs of which leaves of both octrees begin to overlap: the paper's output
+  std::uint64_t exact = 0;   ///< pairs whose triangles begin to intersect
+  std::uint64_t steps = 0;
+  std::string failure{};  ///< why the motion broke off; empty: it did not
+
+  bool operator==(const RunCounts&) const = default;
+};
+
+/// One run of a scene, stopped when `go_on(steps taken)` says no. Every octree's leaves are single triangles,
+/// as the paper's are. The counts are the same for any number of threads.
+RunCounts run_scene(const std::string& scene, BoundingVolume volume, std::uint64_t seed,
+                    std::uint32_t threads, const std::function<bool(std::uint64_t steps)>& go_on);
+
+/// All runs of one scene with one volume.
+struct Runs {
+  std::string scene;
+  std::size_t objects = 0;
+  std::string models;
+  BoundingVolume volume{};
+  std::vector<RunCounts> counts;
+  double run_seconds = 0;  ///< of a run, simulated or by the clock
+
+  std::vector<double> numbers(std::uint64_t RunCounts::*member) const {
+    std::vector<double> result;
+    for (const RunCounts& run : counts) result.push_back(static_cast<double>(run.*member));
+    return result;
+  }
+  double mean_of(std::uint64_t RunCounts::*member) const { return mean(numbers(member)); }
+  double seconds_for_one(std::uint64_t RunCounts::*member) const { return run_seconds / mean_of(member); }
+};
+
+/// Those of a scene with a volume, or null.
+const Runs* find(const std::vector<Runs>& all, const std::string& scene, BoundingVolume volume);
+
+/// Every scene with both volumes, `simulated_seconds` a run. Runs are independent of each other: each has one
+/// thread, and several are under way at a time.
+std::vector<Runs> run_by_events(const Table1Options& options, bool show_progress);
+/// The same, `run_seconds` by the clock a run, one after the other.
+std::vector<Runs> run_by_clock(const Table1Options& options, double run_seconds, bool show_progress);
+
+}  // namespace supple::experiments
