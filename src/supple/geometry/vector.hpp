@@ -19,6 +19,9 @@ inline double length(const Vec3d& v) {
   return std::sqrt(dot(v, v));
 }
 
+inline bool is_finite(const Vec3d& v) {
+  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
 inline Vec3d absolute(const Vec3d& v) {
   return {std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)};
 }

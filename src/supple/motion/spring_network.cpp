@@ -159,10 +159,6 @@ SpringNetwork build_spring_network(const TriangleMesh& rest, bool with_bending, 
   return network;
 }
 
-bool is_finite(Vec3d p) {
-  return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
-}
-
 double triangle_area(Vec3d a, Vec3d b, Vec3d c) {
   return 0.5 * length(cross(b - a, c - a));
 }

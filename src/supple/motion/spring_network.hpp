@@ -60,8 +60,6 @@ struct SpringNetwork {
 /// n).
 SpringNetwork build_spring_network(const TriangleMesh& rest, bool with_bending, bool with_areas);
 
-bool is_finite(Vec3d p);
-
 /// |(b - a) × (c - a)| / 2
 double triangle_area(Vec3d a, Vec3d b, Vec3d c);
 

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "geometry/aabb.hpp"
+#include "geometry/vector.hpp"
 #include "octree/box_kernels.hpp"
 
 namespace supple {
@@ -38,10 +39,6 @@ void invert(std::vector<float>& boxes, std::size_t element) {
   constexpr float inf = std::numeric_limits<float>::infinity();
   const std::size_t stride = boxes.size() / 6;
   for (std::size_t side = 0; side < 6; ++side) boxes[side * stride + element] = side < 3 ? inf : -inf;
-}
-
-bool is_finite(const Vec3d& p) {
-  return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
 }
 
 Aabb root_box(const std::vector<AabbLanes>& nodes) {

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "geometry/vector.hpp"
+
 namespace supple {
 namespace {
 
@@ -35,10 +37,6 @@ std::uint64_t spread_bits(std::uint64_t v) {
   v = (v | v << 8) & 0x100f00f00f00f00fu;
   v = (v | v << 4) & 0x10c30c30c30c30c3u;
   return (v | v << 2) & 0x1249249249249249u;
-}
-
-bool is_finite(const Vec3d& p) {
-  return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
 }
 
 class Builder {

@@ -5,6 +5,8 @@
 #include <optional>
 #include <tuple>
 
+#include "geometry/vector.hpp"
+
 namespace supple {
 namespace {
 
@@ -17,10 +19,6 @@ struct BoxedElement {
   double sweep_min() const { return std::min(start_min[0], end_min[0]); }
   double sweep_max() const { return std::max(start_max[0], end_max[0]); }
 };
-
-bool is_finite(const Vec3d& p) {
-  return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
-}
 
 /// Appends the element unless it is inert.
 void append(const PlainMovingObject& object, std::array<std::uint32_t, 3> vertices,

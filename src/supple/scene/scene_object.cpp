@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/float_rounding.hpp"
+#include "geometry/vector.hpp"
 
 namespace supple {
 namespace {
@@ -16,10 +17,6 @@ constexpr double largest_lazy_size = 1e30;
 
 double largest(const Vec3d& v) {
   return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
-}
-
-bool is_finite(const Vec3d& p) {
-  return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
 }
 
 /// Encloses fl(p + offset) of every p in the box: the rounded sum is monotonic.

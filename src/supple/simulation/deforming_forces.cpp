@@ -7,22 +7,11 @@
 #include <numeric>
 #include <utility>
 
+#include "geometry/vector.hpp"
 #include "supple/trigonometry.hpp"
 
 namespace supple {
 namespace {
-
-double dot(Vec3d a, Vec3d b) {
-  return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-
-Vec3d cross(Vec3d a, Vec3d b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-
-bool is_finite(Vec3d p) {
-  return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
-}
 
 /// The vertices that forces may pull at.
 struct Cloud {

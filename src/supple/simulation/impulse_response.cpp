@@ -4,15 +4,13 @@
 #include <cassert>
 #include <cmath>
 
+#include "geometry/vector.hpp"
+
 namespace supple {
 namespace {
 
 /// Of the depth by which elements are too near, the part that a step may make up for (Bridson et al.: 0.1).
 constexpr double repulsion_part = 0.1;
-
-double dot(Vec3d a, Vec3d b) {
-  return a.x * b.x + a.y * b.y + a.z * b.z;
-}
 
 SceneOptions scene_options(const ContactResponse& response, std::uint32_t threads) {
   SceneOptions options;
