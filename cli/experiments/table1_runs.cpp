@@ -80,8 +80,8 @@ std::vector<Runs> plan(const Table1Options& options, std::vector<Task>& tasks) {
     }
   }
   // The longest first, so that no thread ends with one of them alone.
-  std::stable_sort(tasks.begin(), tasks.end(),
-                   [](const Task& a, const Task& b) { return a.steps * a.vertices > b.steps * b.vertices; });
+  std::sort(tasks.begin(), tasks.end(),
+            [](const Task& a, const Task& b) { return a.steps * a.vertices > b.steps * b.vertices; });
   return all;
 }
 
