@@ -12,7 +12,7 @@ packages=(
   libgtest-dev nlohmann-json3-dev libssl-dev libbenchmark-dev
 )
 if [ "${1:-}" = "--ci" ]; then
-  packages+=(git clang-19 libclang-rt-19-dev clang-format)
+  packages+=(git clang-19 libclang-rt-19-dev clang-format python3-h5py)
 fi
 
 if ! command -v dpkg-query >/dev/null; then
