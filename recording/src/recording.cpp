@@ -200,7 +200,10 @@ class Recording::Implementation {
 
  private:
   void check_frame(std::uint64_t number) const;
-  std::vector<ObjectPair> pairs(RaggedReader<ObjectPair>& rows, std::uint64_t frame) const;
+  std::vector<ObjectPair> pairs(RaggedReader<ObjectPair>& reader, std::uint64_t frame) const {
+    return rows_of_objects(reader, frame, &ObjectPair::a, &ObjectPair::b,
+                           [](std::size_t, const ObjectPair&) {});
+  }
   void check_elements(std::uint64_t frame, std::size_t row, const ContinuousContact& contact);
   std::vector<Contact> contacts(std::uint64_t frame, std::size_t points);
   std::vector<ContactPoint> contact_points(std::uint64_t frame);
@@ -211,6 +214,24 @@ class Recording::Implementation {
   void check_below(RaggedReader<Row>& rows, std::uint64_t frame, std::size_t row, const char* column,
                    std::uint64_t value, std::uint64_t allowed) const {
     if (value >= allowed) rows.fail(frame, row, column, value, allowed);
+  }
+
+  /// A file names objects by their places in the recording. `check(number, row)` sees these; then they become
+  /// ids.
+  template <class Row, class Check>
+  std::vector<Row> rows_of_objects(RaggedReader<Row>& reader, std::uint64_t frame, ObjectId Row::*object_a,
+                                   ObjectId Row::*object_b, Check check) const {
+    const std::vector<RecordedObject>& objects = header_.objects;
+    std::vector<Row> rows = reader.rows(frame);
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      ObjectId &a = rows[i].*object_a, &b = rows[i].*object_b;
+      check_below(reader, frame, i, "object_a", a.index, objects.size());
+      check_below(reader, frame, i, "object_b", b.index, objects.size());
+      check(i, rows[i]);
+      a = objects[a.index].id;
+      b = objects[b.index].id;
+    }
+    return rows;
   }
 
   InputFile file_;
@@ -262,40 +283,20 @@ void Recording::Implementation::check_frame(std::uint64_t number) const {
                 std::to_string(frame_count()) + ", counted from 0");
 }
 
-std::vector<ObjectPair> Recording::Implementation::pairs(RaggedReader<ObjectPair>& rows,
-                                                         std::uint64_t frame) const {
-  const std::size_t objects = header_.objects.size();
-  std::vector<ObjectPair> pairs = rows.rows(frame);
-  for (std::size_t i = 0; i < pairs.size(); ++i) {
-    check_below(rows, frame, i, "object_a", pairs[i].a.index, objects);
-    check_below(rows, frame, i, "object_b", pairs[i].b.index, objects);
-    pairs[i] = {header_.objects[pairs[i].a.index].id, header_.objects[pairs[i].b.index].id};
-  }
-  return pairs;
-}
-
 std::vector<Contact> Recording::Implementation::contacts(std::uint64_t frame, std::size_t points) {
-  const std::vector<RecordedObject>& objects = header_.objects;
-  std::vector<Contact> contacts = contacts_.rows(frame);
-  for (std::size_t i = 0; i < contacts.size(); ++i) {
-    Contact& c = contacts[i];
+  const auto check = [&](std::size_t row, const Contact& c) {
     const auto check_value = [&](const char* column, std::uint64_t value, std::uint64_t allowed) {
-      check_below(contacts_, frame, i, column, value, allowed);
+      check_below(contacts_, frame, row, column, value, allowed);
     };
-    check_value("object_a", c.object_a.index, objects.size());
-    check_value("object_b", c.object_b.index, objects.size());
-    const RecordedObject &a = objects[c.object_a.index], &b = objects[c.object_b.index];
-    check_value("triangle_a", c.triangle_a, a.triangles.size());
-    check_value("triangle_b", c.triangle_b, b.triangles.size());
+    check_value("triangle_a", c.triangle_a, header_.objects[c.object_a.index].triangles.size());
+    check_value("triangle_b", c.triangle_b, header_.objects[c.object_b.index].triangles.size());
     check_value("kind", static_cast<std::uint64_t>(c.kind), 3);
     if (points > 0) {
       check_value("point_count", c.point_count, points + 1);
       check_value("first_point", c.first_point, points - c.point_count + 1);
     }
-    c.object_a = a.id;
-    c.object_b = b.id;
-  }
-  return contacts;
+  };
+  return rows_of_objects(contacts_, frame, &Contact::object_a, &Contact::object_b, check);
 }
 
 std::vector<ContactPoint> Recording::Implementation::contact_points(std::uint64_t frame) {
@@ -325,22 +326,13 @@ void Recording::Implementation::check_elements(std::uint64_t frame, std::size_t 
 }
 
 std::vector<ContinuousContact> Recording::Implementation::continuous_contacts(std::uint64_t frame) {
-  const std::vector<RecordedObject>& objects = header_.objects;
-  std::vector<ContinuousContact> contacts = continuous_contacts_.rows(frame);
-  for (std::size_t i = 0; i < contacts.size(); ++i) {
-    ContinuousContact& c = contacts[i];
-    const auto check_value = [&](const char* column, std::uint64_t value, std::uint64_t allowed) {
-      check_below(continuous_contacts_, frame, i, column, value, allowed);
-    };
-    check_value("object_a", c.object_a.index, objects.size());
-    check_value("object_b", c.object_b.index, objects.size());
-    check_value("kind", static_cast<std::uint64_t>(c.kind), 3);
-    check_value("certainty", static_cast<std::uint64_t>(c.certainty), 2);
-    check_elements(frame, i, c);
-    c.object_a = objects[c.object_a.index].id;
-    c.object_b = objects[c.object_b.index].id;
-  }
-  return contacts;
+  const auto check = [&](std::size_t row, const ContinuousContact& c) {
+    check_below(continuous_contacts_, frame, row, "kind", static_cast<std::uint64_t>(c.kind), 3);
+    check_below(continuous_contacts_, frame, row, "certainty", static_cast<std::uint64_t>(c.certainty), 2);
+    check_elements(frame, row, c);
+  };
+  return rows_of_objects(continuous_contacts_, frame, &ContinuousContact::object_a,
+                         &ContinuousContact::object_b, check);
 }
 
 StepStats Recording::Implementation::stats(std::uint64_t frame) {

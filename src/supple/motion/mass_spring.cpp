@@ -1,6 +1,8 @@
 #include "motion/mass_spring.hpp"
 
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <cmath>
 
 #include "core/error.hpp"
@@ -19,6 +21,14 @@ std::string in_digits(double value) {
   std::string text;
   append_double(text, value);
   return text;
+}
+
+/// To three digits: a bound that has been estimated deserves no more.
+std::string rounded(double value) {
+  std::array<char, 32> text{};
+  const auto [end, error] =
+      std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::general, 3);
+  return {text.data(), end};
 }
 
 std::vector<VertexKind> vertex_kinds(const TriangleMesh& rest, const MassSpringOptions& options) {
@@ -273,7 +283,7 @@ void MassSpring::fail_at(std::uint32_t vertex, double seconds) const {
   const std::string what = where + " flies off in a step of " + in_digits(seconds) + " s";
   if (!(seconds > stable_step()))
     fail(what + "; velocities, forces or stretch must be smaller than those given");
-  fail(what + "; steps below " + in_digits(stable_step()) +
+  fail(what + "; steps below " + rounded(stable_step()) +
        " s are stable, more substeps or backward_euler make them longer");
 }
 
