@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "motion/element_forces.hpp"
+#include "motion/force_sum.hpp"
 
 namespace supple {
 namespace {
@@ -24,6 +25,7 @@ using Vector = Eigen::VectorXd;
 constexpr double tolerance = 1e-3;
 
 constexpr std::uint32_t no_row = ~std::uint32_t{0};
+constexpr std::uint32_t no_part = ~std::uint32_t{0};
 
 /// Rows and columns of one vertex against another's.
 using Block = std::array<std::array<double, 3>, 3>;
@@ -55,6 +57,9 @@ class BackwardEuler::System {
   void find_directions(const ImplicitStep& step);
   void give_up(const ImplicitStep& step, std::span<Vec3d> velocities) const;
   void solve_linear();
+  Vector solve_sparse(const Vector& right);
+  void add_volumes(const ImplicitStep& step);
+  void keep_volumes(const ImplicitStep& step);
   bool go_down(const ImplicitStep& step, std::span<Vec3d> velocities, double& lowest);
   double potential(const ImplicitStep& step, std::span<const Vec3d> velocities);
   void linearise(const ImplicitStep& step, std::span<const Vec3d> velocities);
@@ -76,14 +81,21 @@ class BackwardEuler::System {
   Vector gradient_, change_;
   Eigen::ConjugateGradient<Matrix, Eigen::Lower> conjugate_gradient_;
   Eigen::SimplicialLDLT<Matrix, Eigen::Lower> cholesky_;
-  bool is_analyzed_ = false;
+  bool is_analyzed_ = false, is_factorized_ = false;
+  VolumeSum volumes_;
+  std::vector<std::uint32_t> part_of_rows_;                  // of each row vertex; empty without volumes
+  Vector volume_gradient_;                                   // ∂V/∂x of the part that a vertex belongs to
+  std::vector<double> along_change_, along_response_;        // of each part; scratch
   std::vector<Vec3d> edge_directions_, bending_directions_;  // at the start of the step
   std::vector<Vec3d> positions_, tried_;
 };
 
 BackwardEuler::System::System(const SpringNetwork& network, std::span<const VertexKind> kinds,
                               const MassSpringOptions& options)
-    : options_(options), kinds_(kinds.begin(), kinds.end()), row_of_(kinds.size(), no_row) {
+    : options_(options),
+      kinds_(kinds.begin(), kinds.end()),
+      row_of_(kinds.size(), no_row),
+      volumes_(network) {
   std::uint32_t rows = 0;
   for (std::uint32_t v = 0; v < kinds.size(); ++v) {
     if (kinds[v] == VertexKind::free) row_of_[v] = rows++;
@@ -93,6 +105,17 @@ BackwardEuler::System::System(const SpringNetwork& network, std::span<const Vert
   gradient_.resize(3 * static_cast<Eigen::Index>(rows));
   edge_directions_.resize(network.edges.elements.size());
   bending_directions_.resize(network.bending.elements.size());
+  if (!network.parts.empty()) {
+    part_of_rows_.assign(rows, no_part);
+    for (const VolumeElement& element : network.volumes.elements) {
+      for (const std::uint32_t v : element.corners) {
+        if (row_of_[v] != no_row) part_of_rows_[row_of_[v]] = element.part;
+      }
+    }
+    volume_gradient_.resize(gradient_.size());
+    along_change_.resize(network.parts.size());
+    along_response_.resize(network.parts.size());
+  }
   positions_.resize(kinds.size());
   tried_.resize(kinds.size());
 }
@@ -151,6 +174,7 @@ void BackwardEuler::System::solve(const ImplicitStep& step, std::span<Vec3d> vel
     // The matrix is at least the masses, so that this bounds the change.
     if (gradient_.norm() <= tolerance * options_.vertex_mass * first_change) break;
     solve_linear();
+    keep_volumes(step);
     if (!go_down(step, velocities, lowest)) break;
     const double change = change_.cwiseAbs().maxCoeff();
     if (iteration == 0) first_change = change;
@@ -176,22 +200,70 @@ void BackwardEuler::System::give_up(const ImplicitStep& step, std::span<Vec3d> v
 
 /// Conjugate gradients take about ten times the root of the condition number, each a product with the matrix;
 /// Cholesky's factors take as long as three roots of the number of vertices of these, measured on sheets.
-void BackwardEuler::System::solve_linear() {
+Vector BackwardEuler::System::solve_sparse(const Vector& right) {
   double largest = 0;
   for (Eigen::Index row = 0; row < matrix_.cols(); ++row) {
     largest = std::max(largest, matrix_.valuePtr()[matrix_.outerIndexPtr()[row]]);
   }
   const auto vertices = static_cast<double>(first_below_.size() - 1);
-  if (100 * largest <= 9 * vertices * options_.vertex_mass) {
+  if (!is_factorized_ && 100 * largest <= 9 * vertices * options_.vertex_mass) {
     conjugate_gradient_.setTolerance(1e-8);
     conjugate_gradient_.compute(matrix_);
-    change_ = conjugate_gradient_.solve(gradient_);
-    if (conjugate_gradient_.info() == Eigen::Success) return;
+    Vector solution = conjugate_gradient_.solve(right);
+    if (conjugate_gradient_.info() == Eigen::Success) return solution;
   }
   if (!is_analyzed_) cholesky_.analyzePattern(matrix_);
-  is_analyzed_ = true;
-  cholesky_.factorize(matrix_);
-  change_ = cholesky_.solve(gradient_);
+  if (!is_factorized_) cholesky_.factorize(matrix_);
+  is_analyzed_ = is_factorized_ = true;
+  return cholesky_.solve(right);
+}
+
+void BackwardEuler::System::solve_linear() {
+  is_factorized_ = false;
+  change_ = solve_sparse(gradient_);
+}
+
+/// A closed part's volume adds κ g gᵀ to the matrix, g being ∂V/∂x and κ = h² k / |V0|, which is positive
+/// semidefinite and dense. The inverse of the sum follows from that of the sparse matrix by the formula of
+/// Sherman and Morrison. Nothing else joins two parts, so one solution serves all of them.
+void BackwardEuler::System::keep_volumes(const ImplicitStep& step) {
+  if (part_of_rows_.empty()) return;
+  const Vector response = solve_sparse(volume_gradient_);
+  std::fill(along_change_.begin(), along_change_.end(), 0.0);
+  std::fill(along_response_.begin(), along_response_.end(), 0.0);
+  for (std::size_t row = 0; row < part_of_rows_.size(); ++row) {
+    if (part_of_rows_[row] == no_part) continue;
+    const auto gradient = volume_gradient_.segment<3>(static_cast<Eigen::Index>(3 * row));
+    along_change_[part_of_rows_[row]] += gradient.dot(change_.segment<3>(static_cast<Eigen::Index>(3 * row)));
+    along_response_[part_of_rows_[row]] +=
+        gradient.dot(response.segment<3>(static_cast<Eigen::Index>(3 * row)));
+  }
+  for (std::size_t row = 0; row < part_of_rows_.size(); ++row) {
+    const std::uint32_t part = part_of_rows_[row];
+    if (part == no_part) continue;
+    const double stiffness =
+        step.seconds * step.seconds * options_.volume_stiffness * step.network.parts[part].inverse_scale;
+    const double factor = stiffness * along_change_[part] / (1 + stiffness * along_response_[part]);
+    const auto at = static_cast<Eigen::Index>(3 * row);
+    change_.segment<3>(at) -= factor * response.segment<3>(at);
+  }
+}
+
+void BackwardEuler::System::add_volumes(const ImplicitStep& step) {
+  if (part_of_rows_.empty()) return;
+  volumes_.compute(step.network, positions_, Parallel(1));
+  volume_gradient_.setZero();
+  for (const VolumeElement& element : step.network.volumes.elements) {
+    const Triangle& t = element.corners;
+    const Vec3d third = area_vector(positions_[t[0]], positions_[t[1]], positions_[t[2]]) * (1.0 / 3);
+    const double pressure = -options_.volume_stiffness * volumes_.growth(step.network, element.part) *
+                            step.network.parts[element.part].inverse_scale;
+    for (const std::uint32_t v : t) {
+      if (row_of_[v] == no_row) continue;
+      add_gradient(v, third * (pressure * step.seconds));
+      for (int axis = 0; axis < 3; ++axis) volume_gradient_[3 * row_of_[v] + axis] += third[axis];
+    }
+  }
 }
 
 /// Goes along the change as far as the potential becomes lower by a part of what its slope promises (Armijo's
@@ -251,6 +323,11 @@ double BackwardEuler::System::potential(const ImplicitStep& step, std::span<cons
         triangle_area(positions_[t[0]], positions_[t[1]], positions_[t[2]]) - element.rest_area;
     sum += 0.5 * options_.area_stiffness * growth * growth * element.inverse_scale;
   }
+  volumes_.compute(step.network, positions_, Parallel(1));
+  for (std::size_t part = 0; part < step.network.parts.size(); ++part) {
+    const double growth = volumes_.growth(step.network, part);
+    sum += 0.5 * options_.volume_stiffness * growth * growth * step.network.parts[part].inverse_scale;
+  }
   return sum;
 }
 
@@ -275,6 +352,7 @@ void BackwardEuler::System::linearise(const ImplicitStep& step, std::span<const 
   add_springs(step, step.network.edges.elements, edge_directions_, options_.stiffness);
   add_springs(step, step.network.bending.elements, bending_directions_, options_.bending_stiffness);
   for (const AreaElement& element : step.network.areas.elements) add_area(step, element);
+  add_volumes(step);
 }
 
 void BackwardEuler::System::add_springs(const ImplicitStep& step, const std::vector<SpringElement>& springs,
