@@ -35,6 +35,7 @@ MassSpringOptions read_springs(TomlReader& reader, Vec3d gravity) {
   reader.read_non_negative("air_friction", springs.air_friction);
   reader.read_non_negative("bending_stiffness", springs.bending_stiffness);
   reader.read_non_negative("area_stiffness", springs.area_stiffness);
+  reader.read_non_negative("volume_stiffness", springs.volume_stiffness);
   reader.read("gravity", springs.gravity);
   reader.read_positive("max_strain", springs.max_strain);
   reader.read_non_negative("yield_strain", springs.yield_strain);

@@ -58,15 +58,17 @@ using MotionFunction = std::function<void(double seconds, std::span<Vec3d> posit
 /// Simple response to contacts, by impulses (Bridson, Fedkiw and Anderson 2002): vertices and faces, and
 /// edges, that would pass through each other in a step, or come nearer than `thickness`, get impulses along
 /// the contact's normal that stop the approach; what is too near already is moved apart gently, by a tenth of
-/// what is missing a step. Objects are tested against themselves where `self_collision` asks for it, and
-/// groups and masks hold. Momentum is conserved between bodies of masses and springs; fixed vertices, and
-/// whatever moves otherwise or rests, are not moved.
+/// what is missing a step. An impulse also moves the vertices about, as far as springs carry it in a step, so
+/// that it does not strain them by more than it takes from the motion; energy grows by no more than what
+/// moving apart takes, a percent or so at long steps. Objects are tested against themselves where
+/// `self_collision` asks for it, and groups and masks hold. Momentum is conserved between bodies of masses
+/// and springs; fixed vertices, and whatever moves otherwise or rests, are not moved.
 ///
 /// It makes no promise; the contacts reported are those of the scene. It works as long as objects do not
-/// intersect at first and steps are short: nothing moves further than about an edge in one, and springs do
-/// not swing unseen between two steps. So `time_step` should not exceed `MassSpringBody::stable_step()` of a
-/// single substep; twice that feeds energy to the springs, however many substeps there are. `thickness`
-/// should be well below the shortest edge.
+/// intersect at first and steps are short: nothing moves further than about an edge in one. `time_step` may
+/// be a few tens of times as long as springs bear without substeps; impulses go no further than 256 vertices,
+/// so springs that carry them further, h² stiffness / mass above 50 or so, may gain energy.
+/// `thickness` should be well below the shortest edge.
 ///
 /// Costs up to `iterations` continuous detections a step, and memory for a second scene.
 struct ContactResponse {

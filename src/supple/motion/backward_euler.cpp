@@ -118,14 +118,22 @@ void BackwardEuler::solve_by_factor(const Parallel& parallel) {
   if (!factor_) factor_.emplace(equations_.make_factor());
   equations_.fill(diagonal_, *factor_);
   factor_->factorise(equations_.smallest_diagonal(), parallel);
+  solve_factored(descent_, change_);
+  if (!equations_.has_volumes()) return;
+  solve_factored(equations_.volume_gradient(), product_);
+  equations_.keep_volumes(product_, change_);
+}
+
+void BackwardEuler::solve_factored(std::span<const Vec3d> right, std::span<Vec3d> solution) {
   std::size_t row = 0;
   for (std::size_t v = 0; v < kinds_.size(); ++v) {
-    if (kinds_[v] == VertexKind::free) of_rows_[row++] = descent_[v];
+    if (kinds_[v] == VertexKind::free) of_rows_[row++] = right[v];
   }
   factor_->solve(of_rows_, of_rows_);
   row = 0;
-  for (std::size_t v = 0; v < kinds_.size(); ++v)
-    change_[v] = kinds_[v] == VertexKind::free ? of_rows_[row++] : Vec3d{};
+  for (std::size_t v = 0; v < kinds_.size(); ++v) {
+    solution[v] = kinds_[v] == VertexKind::free ? of_rows_[row++] : Vec3d{};
+  }
 }
 
 /// False when it has taken longer than a factorisation, in all of this step.

@@ -40,6 +40,7 @@ class BackwardEuler {
   bool conjugate_gradients(const Parallel& parallel);
   double precondition(const Parallel& parallel);
   void solve_by_factor(const Parallel& parallel);
+  void solve_factored(std::span<const Vec3d> right, std::span<Vec3d> solution);
   bool go_down(std::span<Vec3d> velocities, double& lowest, const Parallel& parallel);
   double product_of(std::span<const Vec3d> p, std::span<const Vec3d> q, const Parallel& parallel);
   Vec3d mean_of_free(std::span<const Vec3d> values) const;

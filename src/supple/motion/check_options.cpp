@@ -44,6 +44,7 @@ void check_options(const MassSpringOptions& options, const TriangleMesh& mesh) {
   check.at_least_zero("air_friction", options.air_friction);
   check.at_least_zero("bending_stiffness", options.bending_stiffness);
   check.at_least_zero("area_stiffness", options.area_stiffness);
+  check.at_least_zero("volume_stiffness", options.volume_stiffness);
   for (int axis = 0; axis < 3; ++axis) {
     check.require(std::isfinite(options.gravity[axis]), "gravity", options.gravity[axis], "finite");
   }

@@ -53,15 +53,59 @@ void add_areas(const ElementBlocks<AreaElement>& areas, std::uint32_t block, dou
   }
 }
 
+/// Pressure pushes each corner with a third of what it does to the triangle.
+void add_volumes(const ElementBlocks<VolumeElement>& volumes, std::uint32_t block,
+                 std::span<const double> pressures, const Vec3d* positions, Vec3d* in_block,
+                 Vec3d* crossing) {
+  const auto force = [&](const VolumeElement& element) {
+    const Triangle& t = element.corners;
+    return area_vector(positions[t[0]], positions[t[1]], positions[t[2]]) * (pressures[element.part] / 3);
+  };
+  for (std::uint32_t i = volumes.first[block]; i < volumes.first_crossing[block]; ++i) {
+    const Vec3d f = force(volumes.elements[i]);
+    for (const std::uint32_t corner : volumes.elements[i].corners) in_block[corner] = in_block[corner] + f;
+  }
+  const std::uint32_t* slot = volumes.slots.data() + volumes.first_slot[block];
+  for (std::uint32_t i = volumes.first_crossing[block]; i < volumes.first[block + 1]; ++i, slot += 3) {
+    const Vec3d f = force(volumes.elements[i]);
+    for (int corner = 0; corner < 3; ++corner) crossing[slot[corner]] = f;
+  }
+}
+
 }  // namespace
 
+VolumeSum::VolumeSum(const SpringNetwork& network)
+    : of_runs_(network.runs.size()), of_parts_(network.parts.size()) {}
+
+void VolumeSum::compute(const SpringNetwork& network, std::span<const Vec3d> positions,
+                        const Parallel& parallel) {
+  const std::span<const VolumeElement> elements = network.volumes.elements;
+  parallel.for_ranges(network.runs.size(), 1, [&](std::size_t begin, std::size_t end, std::uint32_t) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const VolumeRun& run = network.runs[i];
+      of_runs_[i] = volume_of(elements.subspan(run.first, run.last - run.first),
+                              positions[network.parts[run.part].origin], positions);
+    }
+  });
+  std::fill(of_parts_.begin(), of_parts_.end(), 0.0);
+  for (std::size_t i = 0; i < network.runs.size(); ++i) of_parts_[network.runs[i].part] += of_runs_[i];
+}
+
 ForceSum::ForceSum(const SpringNetwork& network)
-    : in_block_(network.vertex_count), crossing_(network.first_slot.back()) {}
+    : in_block_(network.vertex_count),
+      crossing_(network.first_slot.back()),
+      volumes_(network),
+      pressures_(network.parts.size()) {}
 
 void ForceSum::compute(const SpringNetwork& network, const MassSpringOptions& options,
                        std::span<const Vec3d> positions, std::span<const Vec3d> velocities,
                        const Parallel& parallel) {
   const Motion motion{positions.data(), velocities.data()};
+  volumes_.compute(network, positions, parallel);
+  for (std::size_t part = 0; part < pressures_.size(); ++part) {
+    pressures_[part] =
+        -options.volume_stiffness * volumes_.growth(network, part) * network.parts[part].inverse_scale;
+  }
   parallel.for_ranges(network.block_count(), 1, [&](std::size_t begin, std::size_t end, std::uint32_t) {
     for (auto block = static_cast<std::uint32_t>(begin); block < end; ++block) {
       const std::uint32_t first = block * vertex_block_size;
@@ -73,6 +117,7 @@ void ForceSum::compute(const SpringNetwork& network, const MassSpringOptions& op
                   in_block_.data(), crossing_.data());
       add_areas(network.areas, block, options.area_stiffness, motion.positions, in_block_.data(),
                 crossing_.data());
+      add_volumes(network.volumes, block, pressures_, motion.positions, in_block_.data(), crossing_.data());
     }
   });
 }

@@ -11,6 +11,23 @@
 
 namespace supple {
 
+/// The volumes of closed parts, added up run by run, in one order for any number of threads.
+class VolumeSum {
+ public:
+  explicit VolumeSum(const SpringNetwork& network);
+
+  void compute(const SpringNetwork& network, std::span<const Vec3d> positions, const Parallel& parallel);
+
+  double of_part(std::size_t part) const { return of_parts_[part]; }
+  /// V - V0
+  double growth(const SpringNetwork& network, std::size_t part) const {
+    return of_parts_[part] - network.parts[part].rest_volume;
+  }
+
+ private:
+  std::vector<double> of_runs_, of_parts_;
+};
+
 /// Adds up what elements pull at vertices, in one order for any number of threads.
 class ForceSum {
  public:
@@ -31,6 +48,8 @@ class ForceSum {
  private:
   std::vector<Vec3d> in_block_;  // of each vertex, by elements within its block
   std::vector<Vec3d> crossing_;  // of each slot
+  VolumeSum volumes_;
+  std::vector<double> pressures_;  // of each closed part
 };
 
 }  // namespace supple

@@ -59,13 +59,27 @@ MassSpringOptions checked(const MassSpringOptions& options, const TriangleMesh& 
   return options;
 }
 
+/// Those whose volume is kept: all, or none.
+ClosedParts parts_to_keep(const ClosedParts& closed, const MassSpringOptions& options,
+                          const TriangleMesh& rest) {
+  if (!(options.volume_stiffness > 0)) return {};
+  if (closed.parts.empty() && closed.left_out == 0 && !rest.triangles.empty()) {
+    fail("masses and springs of mesh '" + rest.name + "': volume_stiffness is " +
+         in_digits(options.volume_stiffness) +
+         ", but no part of the mesh is closed; close it, wind its triangles alike, or leave the option at 0");
+  }
+  return closed;
+}
+
 }  // namespace
 
 MassSpring::MassSpring(const TriangleMesh& rest, const MassSpringOptions& options)
     : options_(checked(options, rest)),
       name_(rest.name),
       triangles_(rest.triangles),
-      network_(build_spring_network(rest, options.bending_stiffness > 0, options.area_stiffness > 0)),
+      closed_(closed_parts(rest)),
+      network_(build_spring_network(rest, options.bending_stiffness > 0, options.area_stiffness > 0,
+                                    parts_to_keep(closed_, options, rest))),
       kinds_(vertex_kinds(rest, options)),
       inverse_masses_(inverse_masses(kinds_, options.vertex_mass)),
       longest_way_squared_(longest_way_squared(rest.positions)),

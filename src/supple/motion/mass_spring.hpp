@@ -41,6 +41,7 @@ class MassSpring {
   Vec3d center_of_mass() const;
   Vec3d mean_velocity() const;
   double area() const;
+  double volume() const;
   AreaError area_error() const;
   std::vector<MassSpringBody::Spring> springs() const;
 
@@ -75,6 +76,7 @@ class MassSpring {
   std::string name_;
   std::vector<Triangle> triangles_;
   std::vector<double> rest_areas_;
+  ClosedParts closed_;
   SpringNetwork network_;
   std::vector<Triangle> edge_numbers_;  // of each element of an area; empty when nothing flows
   std::vector<VertexKind> kinds_;

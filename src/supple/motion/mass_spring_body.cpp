@@ -85,6 +85,9 @@ Vec3d MassSpringBody::mean_velocity() const {
 double MassSpringBody::area() const {
   return implementation_->masses.area();
 }
+double MassSpringBody::volume() const {
+  return implementation_->masses.volume();
+}
 AreaError MassSpringBody::area_error() const {
   return implementation_->masses.area_error();
 }

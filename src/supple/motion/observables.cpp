@@ -44,6 +44,12 @@ MassSpringEnergy MassSpring::energy() const {
     const double growth = triangle_area(x[t[0]], x[t[1]], x[t[2]]) - element.rest_area;
     energy.area += 0.5 * options_.area_stiffness * growth * growth * element.inverse_scale;
   }
+  VolumeSum volumes(network_);
+  volumes.compute(network_, x, Parallel(1));
+  for (std::size_t part = 0; part < network_.parts.size(); ++part) {
+    const double growth = volumes.growth(network_, part);
+    energy.volume += 0.5 * options_.volume_stiffness * growth * growth * network_.parts[part].inverse_scale;
+  }
   return energy;
 }
 
@@ -79,6 +85,18 @@ double MassSpring::area() const {
   for (const Triangle& t : triangles_) {
     const double area = triangle_area(now_.positions[t[0]], now_.positions[t[1]], now_.positions[t[2]]);
     if (std::isfinite(area)) sum += area;
+  }
+  return sum;
+}
+
+double MassSpring::volume() const {
+  double sum = 0;
+  const std::span<const VolumeElement> elements = closed_.elements;
+  for (std::size_t begin = 0, end = 0; begin < elements.size(); begin = end) {
+    const std::uint32_t part = elements[begin].part;
+    while (end < elements.size() && elements[end].part == part) ++end;
+    sum += volume_of(elements.subspan(begin, end - begin), now_.positions[closed_.parts[part].origin],
+                     now_.positions);
   }
   return sum;
 }

@@ -129,11 +129,24 @@ void for_each_slot(ElementBlocks<Element>& blocks, Visit visit) {
   }
 }
 
+std::vector<VolumeRun> runs_of(const ElementBlocks<VolumeElement>& volumes) {
+  std::vector<VolumeRun> runs;
+  for (std::size_t block = 0; block + 1 < volumes.first.size(); ++block) {
+    for (std::uint32_t i = volumes.first[block]; i < volumes.first[block + 1]; ++i) {
+      const std::uint32_t part = volumes.elements[i].part;
+      if (i == volumes.first[block] || runs.back().part != part) runs.push_back({i, i, part});
+      ++runs.back().last;
+    }
+  }
+  return runs;
+}
+
 void number_slots(SpringNetwork& network) {
   const auto for_all = [&](auto visit) {
     for_each_slot(network.edges, visit);
     for_each_slot(network.bending, visit);
     for_each_slot(network.areas, visit);
+    for_each_slot(network.volumes, visit);
   };
   network.first_slot.assign(std::size_t{network.vertex_count} + 1, 0);
   for_all([&](std::uint32_t vertex, std::uint32_t&) { ++network.first_slot[vertex + 1]; });
@@ -144,7 +157,8 @@ void number_slots(SpringNetwork& network) {
 
 }  // namespace
 
-SpringNetwork build_spring_network(const TriangleMesh& rest, bool with_bending, bool with_areas) {
+SpringNetwork build_spring_network(const TriangleMesh& rest, bool with_bending, bool with_areas,
+                                   const ClosedParts& closed) {
   SpringNetwork network;
   network.vertex_count = static_cast<std::uint32_t>(rest.positions.size());
   const std::uint32_t block_count = network.block_count();
@@ -155,6 +169,9 @@ SpringNetwork build_spring_network(const TriangleMesh& rest, bool with_bending, 
   if (with_bending) across = pairs_across_edges(sides, edges);
   network.bending = in_blocks(springs_between(across, rest.positions), block_count);
   network.areas = in_blocks(with_areas ? areas_of(rest) : std::vector<AreaElement>{}, block_count);
+  network.volumes = in_blocks(closed.elements, block_count);
+  network.parts = closed.parts;
+  network.runs = runs_of(network.volumes);
   number_slots(network);
   return network;
 }

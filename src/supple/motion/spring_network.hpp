@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "motion/closed_parts.hpp"
 #include "supple/mesh.hpp"
 
 namespace supple {
@@ -43,12 +44,21 @@ struct ElementBlocks {
   std::vector<std::uint32_t> first_slot;      ///< of a block, in `slots`
 };
 
+/// Elements of one part that follow each other: [first, last).
+struct VolumeRun {
+  std::uint32_t first = 0, last = 0;
+  std::uint32_t part = 0;
+};
+
 /// What pulls at the vertices of a mesh, and where forces are gathered.
 struct SpringNetwork {
   std::uint32_t vertex_count = 0;
   ElementBlocks<SpringElement> edges;    ///< one for each pair of different vertices of a triangle
   ElementBlocks<SpringElement> bending;  ///< one across each edge, where that is no edge itself
   ElementBlocks<AreaElement> areas;      ///< triangles with an area
+  ElementBlocks<VolumeElement> volumes;  ///< triangles of `parts`
+  std::vector<ClosedPart> parts;
+  std::vector<VolumeRun> runs;  ///< of `volumes`, all of them in order; none goes from a block into the next
   /// Slots of vertex v: [first_slot[v], first_slot[v + 1]).
   std::vector<std::uint32_t> first_slot;
 
@@ -58,7 +68,8 @@ struct SpringNetwork {
 /// Elements of vertices that are not finite are left out, and those whose size is beyond the range of double.
 /// An edge of many triangles has a bending spring for each two that follow each other in the mesh. O(n log
 /// n).
-SpringNetwork build_spring_network(const TriangleMesh& rest, bool with_bending, bool with_areas);
+SpringNetwork build_spring_network(const TriangleMesh& rest, bool with_bending, bool with_areas,
+                                   const ClosedParts& closed = {});
 
 /// |(b - a) × (c - a)| / 2
 double triangle_area(Vec3d a, Vec3d b, Vec3d c);

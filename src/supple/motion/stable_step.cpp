@@ -8,6 +8,35 @@
 #include "motion/element_forces.hpp"
 
 namespace supple {
+namespace {
+
+/// At rest there is no pressure, and a part's stiffness is k / V0 ∂V/∂x ∂V/∂xᵀ.
+void add_volumes(const SpringNetwork& network, std::span<const VertexKind> kinds, double volume_stiffness,
+                 std::span<const Vec3d> rest, std::vector<double>& stiffness) {
+  std::vector<Vec3d> gradient(kinds.size());
+  for (const VolumeElement& element : network.volumes.elements) {
+    const Triangle& t = element.corners;
+    const Vec3d third = area_vector(rest[t[0]], rest[t[1]], rest[t[2]]) * (1.0 / 3);
+    for (const std::uint32_t v : t) gradient[v] = gradient[v] + third;
+  }
+  // A vertex belongs to one part at most.
+  constexpr std::uint32_t none = ~std::uint32_t{0};
+  std::vector<std::uint32_t> part_of(kinds.size(), none);
+  for (const VolumeElement& element : network.volumes.elements) {
+    for (const std::uint32_t v : element.corners) part_of[v] = element.part;
+  }
+  std::vector<double> sums(network.parts.size());
+  for (std::size_t v = 0; v < kinds.size(); ++v) {
+    if (part_of[v] != none && kinds[v] == VertexKind::free) sums[part_of[v]] += length(gradient[v]);
+  }
+  for (std::size_t v = 0; v < kinds.size(); ++v) {
+    if (part_of[v] == none) continue;
+    stiffness[v] +=
+        volume_stiffness * network.parts[part_of[v]].inverse_scale * length(gradient[v]) * sums[part_of[v]];
+  }
+}
+
+}  // namespace
 
 double stable_explicit_step(const SpringNetwork& network, std::span<const VertexKind> kinds,
                             const MassSpringOptions& options, std::span<const Vec3d> rest) {
@@ -37,6 +66,7 @@ double stable_explicit_step(const SpringNetwork& network, std::span<const Vertex
           options.area_stiffness * area.inverse_scale * length(gradient.of_corner[corner]) * sum;
     }
   }
+  add_volumes(network, kinds, options.volume_stiffness, rest, stiffness);
   double shortest = infinity;
   for (std::uint32_t v = 0; v < kinds.size(); ++v) {
     if (!is_free(v)) continue;

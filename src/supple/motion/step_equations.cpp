@@ -15,7 +15,7 @@ constexpr std::uint32_t none = ~std::uint32_t{0};
 
 StepEquations::StepEquations(const SpringNetwork& network, std::span<const VertexKind> kinds,
                              const MassSpringOptions& options)
-    : options_(options), kinds_(kinds.begin(), kinds.end()), row_of_(kinds.size(), none) {
+    : options_(options), kinds_(kinds.begin(), kinds.end()), volumes_(network), row_of_(kinds.size(), none) {
   for (std::size_t v = 0; v < kinds.size(); ++v) {
     if (kinds[v] == VertexKind::free) row_of_[v] = free_count_++;
   }
@@ -25,6 +25,15 @@ StepEquations::StepEquations(const SpringNetwork& network, std::span<const Verte
   springs_.resize(spring_ends_.size());
   areas_.resize(triangles_.size());
   along_areas_.resize(triangles_.size());
+  if (!network.parts.empty()) {
+    part_of_.assign(kinds.size(), none);
+    for (const VolumeElement& element : network.volumes.elements) {
+      for (const std::uint32_t v : element.corners) part_of_[v] = element.part;
+    }
+    volume_gradient_.resize(kinds.size());
+    along_parts_.resize(network.parts.size());
+    along_response_.resize(network.parts.size());
+  }
   chunk_sums_.resize(chunk_count(std::max({kinds.size(), spring_ends_.size(), triangles_.size()})));
 }
 
@@ -114,7 +123,7 @@ double StepEquations::visit(std::span<const Vec3d> velocities, const Parallel& p
   sum += visit_springs(step_->network.edges.elements, 0, options_.stiffness, velocities, parallel);
   sum += visit_springs(step_->network.bending.elements, step_->network.edges.elements.size(),
                        options_.bending_stiffness, velocities, parallel);
-  return sum + visit_areas(parallel);
+  return sum + visit_areas(parallel) + visit_volumes(parallel);
 }
 
 double StepEquations::visit_vertices(std::span<const Vec3d> velocities, const Parallel& parallel) {
@@ -175,9 +184,57 @@ double StepEquations::visit_areas(const Parallel& parallel) {
   });
 }
 
+double StepEquations::visit_volumes(const Parallel& parallel) {
+  if (!has_volumes()) return 0;
+  volumes_.compute(step_->network, positions_, parallel);
+  double sum = 0;
+  for (std::size_t part = 0; part < along_parts_.size(); ++part) {
+    const double growth = volumes_.growth(step_->network, part);
+    sum += 0.5 * options_.volume_stiffness * growth * growth * step_->network.parts[part].inverse_scale;
+  }
+  return sum;
+}
+
+void StepEquations::find_volume_gradient() {
+  std::fill(volume_gradient_.begin(), volume_gradient_.end(), Vec3d{});
+  for (const VolumeElement& element : step_->network.volumes.elements) {
+    const Triangle& t = element.corners;
+    const Vec3d third = area_vector(positions_[t[0]], positions_[t[1]], positions_[t[2]]) * (1.0 / 3);
+    for (const std::uint32_t v : t) {
+      if (kinds_[v] == VertexKind::free) volume_gradient_[v] = volume_gradient_[v] + third;
+    }
+  }
+}
+
+double StepEquations::volume_stiffness(std::size_t part) const {
+  return step_->seconds * step_->seconds * options_.volume_stiffness *
+         step_->network.parts[part].inverse_scale;
+}
+
+/// g·x of each closed part.
+void StepEquations::sum_of_parts(std::span<const Vec3d> x, std::span<double> along) const {
+  std::fill(along.begin(), along.end(), 0.0);
+  for (std::size_t v = 0; v < part_of_.size(); ++v) {
+    if (part_of_[v] != none) along[part_of_[v]] += dot(volume_gradient_[v], x[v]);
+  }
+}
+
+void StepEquations::keep_volumes(std::span<const Vec3d> response, std::span<Vec3d> solution) {
+  sum_of_parts(solution, along_parts_);
+  sum_of_parts(response, along_response_);
+  for (std::size_t part = 0; part < along_parts_.size(); ++part) {
+    const double stiffness = volume_stiffness(part);
+    along_parts_[part] *= stiffness / (1 + stiffness * along_response_[part]);
+  }
+  for (std::size_t v = 0; v < part_of_.size(); ++v) {
+    if (part_of_[v] != none) solution[v] = solution[v] - response[v] * along_parts_[part_of_[v]];
+  }
+}
+
 void StepEquations::gather(std::span<const Vec3d> velocities, std::span<Vec3d> descent,
-                           std::span<SymmetricBlock> diagonal, const Parallel& parallel) const {
+                           std::span<SymmetricBlock> diagonal, const Parallel& parallel) {
   const double h = step_->seconds;
+  if (has_volumes()) find_volume_gradient();
   for_chunks(kinds_.size(), parallel, [&](std::size_t begin, std::size_t end) {
     for (auto v = static_cast<std::uint32_t>(begin); v < end; ++v) {
       if (kinds_[v] != VertexKind::free) {
@@ -199,6 +256,10 @@ void StepEquations::gather(std::span<const Vec3d> velocities, std::span<Vec3d> d
         sum = sum + of_corner * area.push;
         block += SymmetricBlock::outer(of_corner, area.weight);
       }
+      if (has_volumes() && part_of_[v] != none) {
+        sum = sum - volume_gradient_[v] *
+                        (volume_stiffness(part_of_[v]) / h * volumes_.growth(step_->network, part_of_[v]));
+      }
       descent[v] = sum;
       diagonal[v] = block;
     }
@@ -213,6 +274,11 @@ double StepEquations::multiply(std::span<const Vec3d> x, std::span<Vec3d> produc
       along_areas_[i] = areas_[i].weight * (dot(g[0], x[t[0]]) + dot(g[1], x[t[1]]) + dot(g[2], x[t[2]]));
     }
   });
+  if (has_volumes()) {
+    sum_of_parts(x, along_parts_);
+    for (std::size_t part = 0; part < along_parts_.size(); ++part)
+      along_parts_[part] *= volume_stiffness(part);
+  }
   return sum_of_chunks(kinds_.size(), parallel, [&](std::size_t begin, std::size_t end) {
     double along = 0;
     for (auto v = static_cast<std::uint32_t>(begin); v < end; ++v) {
@@ -227,6 +293,9 @@ double StepEquations::multiply(std::span<const Vec3d> x, std::span<Vec3d> produc
       for (std::uint32_t i = first_corner_[v]; i < first_corner_[v + 1]; ++i) {
         const auto& [area, corner] = corners_[i];
         sum = sum + areas_[area].of_corner[corner] * along_areas_[area];
+      }
+      if (has_volumes() && part_of_[v] != none) {
+        sum = sum + volume_gradient_[v] * along_parts_[part_of_[v]];
       }
       product[v] = sum;
       along += dot(x[v], sum);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/parallel.hpp"
+#include "motion/force_sum.hpp"
 #include "motion/sparse_factor.hpp"
 #include "motion/spring_network.hpp"
 #include "motion/symmetric_block.hpp"
@@ -33,6 +34,9 @@ struct ImplicitStep {
 /// Vectors have an entry for each vertex; those of vertices that are not free are 0. Elements are visited one
 /// by one, then each vertex adds up what its elements say in their order, so that the bits are the same for
 /// any number of threads. No allocation after construction.
+///
+/// The volume of a closed part adds κ g gᵀ to the second derivative, g being ∂V/∂x and κ = h² k / |V0|: that
+/// is dense, so factors are of the rest, the sparse part.
 class StepEquations {
  public:
   StepEquations(const SpringNetwork& network, std::span<const VertexKind> kinds,
@@ -45,15 +49,22 @@ class StepEquations {
   void begin(const ImplicitStep& step, const Parallel& parallel);
   /// The potential there, and what elements say to it.
   double visit(std::span<const Vec3d> velocities, const Parallel& parallel);
-  /// The negative slope, and the blocks on the diagonal, where `visit` was last.
+  /// The negative slope, and the blocks on the diagonal of the sparse part, where `visit` was last.
   void gather(std::span<const Vec3d> velocities, std::span<Vec3d> descent, std::span<SymmetricBlock> diagonal,
-              const Parallel& parallel) const;
+              const Parallel& parallel);
   /// The second derivative where `visit` was last, times x; returns xᵀ times that.
   double multiply(std::span<const Vec3d> x, std::span<Vec3d> product, const Parallel& parallel);
 
-  /// For the pattern of the second derivative; rows are free vertices in the order of the mesh.
+  /// For the pattern of the sparse part; rows are free vertices in the order of the mesh.
   SparseFactor make_factor() const;
   void fill(std::span<const SymmetricBlock> diagonal, SparseFactor& factor) const;
+  bool has_volumes() const { return !part_of_.empty(); }
+  /// g, of the part that a vertex belongs to, where `gather` was last.
+  std::span<const Vec3d> volume_gradient() const { return volume_gradient_; }
+  /// Makes of what solves the system of the sparse part what solves all of it, by the formula of Sherman and
+  /// Morrison. `response` solves the sparse part for `volume_gradient`: nothing else joins two closed parts,
+  /// so that one solution serves all of them.
+  void keep_volumes(std::span<const Vec3d> response, std::span<Vec3d> solution);
 
  private:
   struct SpringState {
@@ -79,6 +90,10 @@ class StepEquations {
   double visit_vertices(std::span<const Vec3d> velocities, const Parallel& parallel);
   template <class Sum>
   double sum_of_chunks(std::size_t count, const Parallel& parallel, Sum sum) const;
+  double visit_volumes(const Parallel& parallel);
+  void find_volume_gradient();
+  double volume_stiffness(std::size_t part) const;  // κ
+  void sum_of_parts(std::span<const Vec3d> x, std::span<double> along) const;
   Vec3d load(std::uint32_t vertex) const;
 
   MassSpringOptions options_;
@@ -98,6 +113,10 @@ class StepEquations {
   std::vector<SpringState> springs_;
   std::vector<AreaState> areas_;
   std::vector<double> along_areas_;
+  VolumeSum volumes_;
+  std::vector<std::uint32_t> part_of_;  // of each vertex; empty without volumes
+  std::vector<Vec3d> volume_gradient_;
+  std::vector<double> along_parts_, along_response_;
   mutable std::vector<double> chunk_sums_;
   std::vector<std::array<std::uint32_t, 2>> pairs_;  // rows with a block
   std::vector<std::uint32_t> pair_of_spring_;

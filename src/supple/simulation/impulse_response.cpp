@@ -24,15 +24,16 @@ SceneOptions scene_options(const ContactResponse& response, std::uint32_t thread
 
 }  // namespace
 
-ImpulseResponse::ImpulseResponse(const ContactResponse& options, std::uint32_t threads)
-    : options_(options), scene_(scene_options(options, threads)) {
+ImpulseResponse::ImpulseResponse(const ContactResponse& options, double seconds, std::uint32_t threads)
+    : options_(options), seconds_(seconds), scene_(scene_options(options, threads)) {
   scene_.set_pair_filter([this](ObjectId a, ObjectId b) {
     return participants_[a.index].has_mass || participants_[b.index].has_mass;
   });
 }
 
-ObjectId ImpulseResponse::add(const TriangleMesh& mesh, const ObjectOptions& options, bool has_mass,
-                              std::span<const std::uint32_t> fixed) {
+ObjectId ImpulseResponse::add(const TriangleMesh& mesh, const ObjectOptions& options,
+                              const MassSpringOptions* springs) {
+  const bool has_mass = springs != nullptr;
   ObjectOptions own = options;
   own.is_static = false;
   own.self_collision = options.self_collision && has_mass;
@@ -42,8 +43,7 @@ ObjectId ImpulseResponse::add(const TriangleMesh& mesh, const ObjectOptions& opt
   object = {};
   object.triangles = mesh.triangles;
   object.has_mass = has_mass;
-  object.is_fixed.assign(mesh.positions.size(), 0);
-  for (const std::uint32_t vertex : fixed) object.is_fixed[vertex] = 1;
+  if (has_mass) object.spread.emplace(mesh, *springs, seconds_);
   return id;
 }
 
@@ -56,8 +56,7 @@ void ImpulseResponse::set_positions(ObjectId object, std::span<const Vec3d> posi
   scene_.set_positions(object, positions);
 }
 
-void ImpulseResponse::resolve(std::span<const RespondingObject> objects, double seconds) {
-  seconds_ = seconds;
+void ImpulseResponse::resolve(std::span<const RespondingObject> objects) {
   begin(objects);
   for (std::uint32_t round = 0; round < options_.iterations; ++round) {
     show_paths();
@@ -127,20 +126,20 @@ bool ImpulseResponse::respond(const ContinuousContact& contact) {
 /// slides by at most `friction` times as much. False when nothing had to be done.
 bool ImpulseResponse::push_apart(const ElementPoint& a, const ElementPoint& b, Vec3d normal,
                                  double least_speed, double restitution, Velocity kind) {
-  const double mobility_of_both = mobility(a) + mobility(b);
-  if (!(mobility_of_both > 0)) return false;
+  const double mobility = mobility_of_both(a, b);
+  if (!(mobility > 0)) return false;
   const Vec3d relative = velocity(a, kind) - velocity(b, kind);
   const double speed = dot(relative, normal);
   const double change = std::max(least_speed, -restitution * speed) - speed;
   const double rounding = 1e-9 * options_.thickness / seconds_;
   if (!(change > rounding)) return false;
 
-  Vec3d impulse = normal * (change / mobility_of_both);
+  Vec3d impulse = normal * (change / mobility);
   const Vec3d slide = relative - normal * speed;
   const double slide_speed = std::sqrt(dot(slide, slide));
   if (options_.friction > 0 && slide_speed > 0) {
     const double slowed = std::min(options_.friction * change, slide_speed);
-    impulse = impulse - slide * (slowed / (slide_speed * mobility_of_both));
+    impulse = impulse - slide * (slowed / (slide_speed * mobility));
   }
   if (!std::isfinite(dot(impulse, impulse))) return false;
   push(a, impulse, kind);
@@ -183,25 +182,31 @@ Vec3d ImpulseResponse::velocity(const ElementPoint& point, Velocity kind) const 
   return sum;
 }
 
-/// By how much an impulse of 1 that is shared out by the weights changes the point's velocity.
-double ImpulseResponse::mobility(const ElementPoint& point) const {
-  if (!point.object->has_mass) return 0;
+/// By how much an impulse of 1 on the first point changes the velocity of the second.
+double ImpulseResponse::mobility(const ElementPoint& a, const ElementPoint& b) const {
+  if (a.object != b.object || !a.object->has_mass) return 0;
   double sum = 0;
-  for (std::uint32_t i = 0; i < point.count; ++i) {
-    if (point.object->is_fixed[point.vertices[i]] == 0)
-      sum += point.weights[i] * point.weights[i] * point.object->now.inverse_mass;
+  for (std::uint32_t i = 0; i < a.count; ++i) {
+    for (std::uint32_t j = 0; j < b.count; ++j)
+      sum += a.weights[i] * b.weights[j] * a.object->spread->share(a.vertices[i], b.vertices[j]);
   }
-  return sum;
+  return sum * a.object->now.inverse_mass;
+}
+
+/// By how much an impulse of 1 on one point and its opposite on the other change their relative velocity.
+double ImpulseResponse::mobility_of_both(const ElementPoint& a, const ElementPoint& b) const {
+  return mobility(a, a) + mobility(b, b) - mobility(a, b) - mobility(b, a);
 }
 
 void ImpulseResponse::push(const ElementPoint& point, Vec3d impulse, Velocity kind) {
   Participant& object = *point.object;
   if (!object.has_mass) return;
   for (std::uint32_t i = 0; i < point.count; ++i) {
-    const std::uint32_t vertex = point.vertices[i];
-    if (object.is_fixed[vertex] != 0) continue;
-    Vec3d& change = object.changes[static_cast<std::size_t>(kind)][vertex];
-    change = change + impulse * (point.weights[i] * object.now.inverse_mass);
+    const Vec3d all = impulse * (point.weights[i] * object.now.inverse_mass);
+    for (const ImpulseSpread::Share& share : object.spread->from(point.vertices[i])) {
+      Vec3d& change = object.changes[static_cast<std::size_t>(kind)][share.vertex];
+      change = change + all * share.part;
+    }
   }
   object.is_changed = true;
   object.is_stale = true;

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "simulation/impulse_spread.hpp"
 #include "supple/mesh.hpp"
 #include "supple/scene.hpp"
 #include "supple/simulation.hpp"
@@ -25,20 +26,25 @@ struct RespondingObject {
 /// what is near from the start. The paper's order of both, and its velocities, average over the step, are
 /// kept; impulses are applied one after the other in the canonical order of contacts, so that each conserves
 /// momentum and all machines agree.
+///
+/// Unlike theirs, an impulse moves not only the vertices of its elements, but also what their springs would
+/// drag along within the step: see `ImpulseSpread`. With M = m + h² L for mass it is an inelastic one, which
+/// takes motion from a body and strains its springs by less than that.
 class ImpulseResponse {
  public:
-  ImpulseResponse(const ContactResponse& options, std::uint32_t threads);
+  /// `seconds` is the length of each step.
+  ImpulseResponse(const ContactResponse& options, double seconds, std::uint32_t threads);
   ImpulseResponse(const ImpulseResponse&) = delete;
   ImpulseResponse& operator=(const ImpulseResponse&) = delete;
 
-  /// The calls of a scene, which then gives the same ids. `fixed` vertices are moved by no impulse.
-  ObjectId add(const TriangleMesh& mesh, const ObjectOptions& options, bool has_mass,
-               std::span<const std::uint32_t> fixed);
+  /// The calls of a scene, which then gives the same ids. `springs` of what has mass, else null; vertices
+  /// that are fixed in them are moved by no impulse.
+  ObjectId add(const TriangleMesh& mesh, const ObjectOptions& options, const MassSpringOptions* springs);
   void remove(ObjectId object);
   void set_positions(ObjectId object, std::span<const Vec3d> positions);
 
-  /// Finds which impulses are needed on the way, which takes `seconds`. Objects that rest must be listed too.
-  void resolve(std::span<const RespondingObject> objects, double seconds);
+  /// Finds which impulses are needed on the way of a step. Objects that rest must be listed too.
+  void resolve(std::span<const RespondingObject> objects);
   /// What impulses do to the vertices of an object.
   struct Change {
     std::span<const Vec3d> of_average_velocity;  // times the step's seconds, to be added to `to`
@@ -50,8 +56,8 @@ class ImpulseResponse {
  private:
   struct Participant {
     std::vector<Triangle> triangles;
-    std::vector<std::uint8_t> is_fixed;
     bool has_mass = false;
+    std::optional<ImpulseSpread> spread;  // of what has mass
     bool is_resting = true;
     RespondingObject now;
     std::array<std::vector<Vec3d>, 2> changes;  // by `Velocity`
@@ -77,12 +83,13 @@ class ImpulseResponse {
                   double restitution, Velocity kind);
   Vec3d start(const ElementPoint& point) const;
   Vec3d velocity(const ElementPoint& point, Velocity kind) const;
-  double mobility(const ElementPoint& point) const;
+  double mobility(const ElementPoint& a, const ElementPoint& b) const;
+  double mobility_of_both(const ElementPoint& a, const ElementPoint& b) const;
   void push(const ElementPoint& point, Vec3d impulse, Velocity kind);
 
   ContactResponse options_;
+  double seconds_;
   Scene scene_;
-  double seconds_ = 0;
   std::vector<Participant> participants_;  // by index
   std::vector<ObjectId> moving_;
   std::vector<Vec3d> to_;  // scratch

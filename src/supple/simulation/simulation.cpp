@@ -76,7 +76,7 @@ Simulation::Implementation::Implementation(const SimulationOptions& simulation_o
     : options(checked(simulation_options)),
       scene(simulation_options.scene),
       parallel_(simulation_options.scene.threads) {
-  if (options.response.enabled) response_.emplace(options.response, options.scene.threads);
+  if (options.response.enabled) response_.emplace(options.response, options.time_step, options.scene.threads);
 }
 
 /// Whatever may throw comes first.
@@ -113,9 +113,8 @@ void Simulation::Implementation::add_to_response(const TriangleMesh& mesh,
                                                  const ObjectOptions& object_options,
                                                  const SimulatedObject& object) {
   const MovingBody* const moving = object.moving_body.get();
-  const std::span<const std::uint32_t> fixed =
-      moving != nullptr ? std::span(moving->body.options().fixed_vertices) : std::span<const std::uint32_t>();
-  [[maybe_unused]] const ObjectId id = response_->add(mesh, object_options, moving != nullptr, fixed);
+  const MassSpringOptions* const springs = moving != nullptr ? &moving->body.options() : nullptr;
+  [[maybe_unused]] const ObjectId id = response_->add(mesh, object_options, springs);
   assert(id == object.id);
 }
 
@@ -236,7 +235,7 @@ void Simulation::Implementation::respond_to_contacts() {
       responding_.push_back({object->id, object->own_positions, object->own_positions, {}});
     }
   }
-  response_->resolve(responding_, options.time_step);
+  response_->resolve(responding_);
   for (const auto& object : objects_) {
     if (object == nullptr || object->moving_body == nullptr) continue;
     if (const auto change = response_->change(object->id))

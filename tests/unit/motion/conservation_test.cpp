@@ -13,10 +13,13 @@ struct EnergyError {
   double largest = 0, drift = 0;
 };
 
-EnergyError energy_error(Integrator integrator, double step, int steps) {
+EnergyError energy_error(Integrator integrator, double step, int steps, double volume_stiffness = 0) {
   const TriangleMesh mesh = make_icosphere(2);
-  MassSpringBody body(mesh,
-                      {.integrator = integrator, .damping = 0, .bending_stiffness = 5, .area_stiffness = 20});
+  MassSpringBody body(mesh, {.integrator = integrator,
+                             .damping = 0,
+                             .bending_stiffness = 5,
+                             .area_stiffness = 20,
+                             .volume_stiffness = volume_stiffness});
   body.set_positions(deformed(mesh, 0.2, 0.02, 1));
   const double before = body.energy().total();
   EnergyError error;
@@ -36,6 +39,14 @@ TEST(Energy, OfVerletSwingsButDoesNotDrift) {
   EXPECT_LT(std::abs(coarse.drift), 2e-4);
   const EnergyError fine = energy_error(Integrator::verlet, 0.01, 4000);
   EXPECT_NEAR(coarse.largest / fine.largest, 4, 0.8) << "second order";
+}
+
+TEST(Energy, OfVerletIsKeptByVolumesToo) {
+  const EnergyError coarse = energy_error(Integrator::verlet, 0.02, 2000, 100);
+  EXPECT_LT(coarse.largest, 0.05);
+  EXPECT_LT(std::abs(coarse.drift), 1e-3);
+  const EnergyError fine = energy_error(Integrator::verlet, 0.01, 4000, 100);
+  EXPECT_NEAR(coarse.largest / fine.largest, 4, 1) << "second order";
 }
 
 TEST(Energy, OfSymplecticEulerDoesNotDrift) {
@@ -103,6 +114,9 @@ INSTANTIATE_TEST_SUITE_P(
              {.integrator = Integrator::symplectic_euler, .bending_stiffness = 9, .area_stiffness = 30}},
         Kind{"BackwardEuler",
              {.integrator = Integrator::backward_euler, .bending_stiffness = 9, .area_stiffness = 30}},
+        Kind{"VerletVolume", {.vertex_mass = 0.5, .bending_stiffness = 9, .volume_stiffness = 200}},
+        Kind{"SymplecticEulerVolume", {.integrator = Integrator::symplectic_euler, .volume_stiffness = 200}},
+        Kind{"BackwardEulerVolume", {.integrator = Integrator::backward_euler, .volume_stiffness = 1e6}},
         Kind{"StiffBackwardEuler", {.integrator = Integrator::backward_euler, .stiffness = 1e9}},
         Kind{"Limited", {.max_strain = 0.1}},
         Kind{"LimitedSymplecticEuler", {.integrator = Integrator::symplectic_euler, .max_strain = 0.1}},

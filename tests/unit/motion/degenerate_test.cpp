@@ -133,6 +133,7 @@ TEST(MassSpringOptionsCheck, NamesWhatIsOutOfRange) {
   expect({.air_friction = -2}, "air_friction");
   expect({.bending_stiffness = -2}, "bending_stiffness");
   expect({.area_stiffness = std::numeric_limits<double>::infinity()}, "area_stiffness is inf");
+  expect({.volume_stiffness = -3}, "volume_stiffness is -3");
   expect({.gravity = {0, nan, 0}}, "gravity");
   expect({.max_strain = 0}, "max_strain is 0");
   expect({.yield_strain = -0.5}, "yield_strain");

@@ -183,6 +183,71 @@ TEST(ContactResponse, FixedAndFunctionDrivenVerticesAreNotMoved) {
   EXPECT_EQ(simulation.detect().contacts.size(), 0u);
 }
 
+double energy_of(const Simulation& simulation) {
+  double sum = 0;
+  for (const ObjectId id : simulation.scene().objects()) {
+    if (const MassSpringBody* const body = simulation.body(id)) sum += body->energy().total();
+  }
+  return sum;
+}
+
+/// Steps of 10 ms are ten times as long as springs alone bear: only substeps carry them.
+TEST(ContactResponse, FeedsNoEnergyToSpringsAtLongSteps) {
+  for (const Integrator integrator : {Integrator::verlet, Integrator::symplectic_euler}) {
+    SimulationOptions options = responding(0.01);
+    options.response.thickness = 0.02;
+    options.response.friction = 0.3;
+    Simulation simulation(options);
+    simulation.add(placed(make_icosphere(6), 0.5, {}), {.is_static = true});
+    MassSpringMotion motion;
+    motion.springs.integrator = integrator;
+    motion.springs.substeps = 8;
+    motion.springs.vertex_mass = 1e-3;
+    motion.springs.stiffness = 40;
+    motion.springs.bending_stiffness = 1;
+    motion.springs.damping = 0.005;
+    motion.springs.gravity = {0, -9.81, 0};
+    simulation.add(placed(make_cloth(14, 14), 1.6, {0.05, 0.6, 0.03}), {.self_collision = true}, motion);
+    const double at_first = energy_of(simulation);
+    double lowest = at_first;
+    std::size_t contacts = 0;
+    for (int step = 0; step < 200; ++step) {
+      contacts += simulation.step().contacts.size();
+      const double energy = energy_of(simulation);
+      // What is too near is moved apart against gravity and springs, a little.
+      ASSERT_LT(energy, lowest + 0.015 * at_first) << "step " << step;
+      lowest = std::min(lowest, energy);
+    }
+    EXPECT_EQ(contacts, 0u);
+    EXPECT_LT(lowest, 0.4 * at_first);
+  }
+}
+
+TEST(ContactResponse, FeedsNoEnergyToBallsThatMeetAtLongSteps) {
+  Simulation simulation(responding(0.01));
+  for (int i = 0; i < 4; ++i) {
+    MassSpringMotion motion;
+    motion.springs.substeps = 16;
+    motion.springs.vertex_mass = 1e-2;
+    motion.springs.stiffness = 600;
+    motion.springs.bending_stiffness = 300;
+    motion.springs.damping = 0;
+    motion.springs.volume_stiffness = 2000;
+    motion.velocity = {i % 2 == 0 ? 2.0 : -2.0, i < 2 ? 1.0 : -1.0, 0};
+    simulation.add(placed(make_icosphere(3), 0.25, {i % 2 == 0 ? -0.5 : 0.5, i < 2 ? -0.5 : 0.5, 0.05 * i}),
+                   {}, motion);
+  }
+  simulation.step();
+  const Momentum before = momentum_of(simulation);
+  const double energy_before = energy_of(simulation);
+  for (int step = 0; step < 200; ++step) {
+    simulation.step();
+    ASSERT_LT(energy_of(simulation), 1.02 * energy_before) << "step " << step;
+    ASSERT_LT(length(momentum_of(simulation).linear - before.linear), 1e-12);
+  }
+  EXPECT_LT(energy_of(simulation), 0.8 * energy_before);
+}
+
 TEST(ContactResponse, GivesTheSameBitsForAnyNumberOfThreads) {
   const auto run = [](std::uint32_t threads) {
     SimulationOptions options = responding(0.004);
