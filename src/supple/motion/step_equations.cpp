@@ -22,7 +22,8 @@ StepEquations::StepEquations(const SpringNetwork& network, std::span<const Verte
   connect(network);
   positions_.resize(kinds.size());
   directions_.resize(spring_ends_.size());
-  springs_.resize(spring_ends_.size());
+  pulls_.resize(spring_ends_.size());
+  blocks_.resize(spring_ends_.size());
   areas_.resize(triangles_.size());
   along_areas_.resize(triangles_.size());
   if (!network.parts.empty()) {
@@ -156,11 +157,11 @@ double StepEquations::visit_springs(const std::vector<SpringElement>& springs, s
       const Vec3d n = d * inverse;
       // A spring that is compressed would push its ends out of line; that is what may be negative.
       const double across = length > 0 ? std::max(0.0, stretch * inverse) : 1;
-      SpringState& state = springs_[first_state + i];
-      state.pull = n * (h * stiffness * stretch) + direction * (of_rate * rate);
-      state.block = SymmetricBlock::outer(n, of_stretch * (1 - across));
-      state.block.add_diagonal(of_stretch * across);
-      state.block += SymmetricBlock::outer(direction, of_rate);
+      pulls_[first_state + i] = n * (h * stiffness * stretch) + direction * (of_rate * rate);
+      SymmetricBlock block = SymmetricBlock::outer(n, of_stretch * (1 - across));
+      block.add_diagonal(of_stretch * across);
+      block += SymmetricBlock::outer(direction, of_rate);
+      blocks_[first_state + i] = block;
     }
     return sum;
   });
@@ -246,9 +247,9 @@ void StepEquations::gather(std::span<const Vec3d> velocities, std::span<Vec3d> d
       SymmetricBlock block;
       block.add_diagonal(diagonal_of_mass_);
       for (std::uint32_t i = first_end_[v]; i < first_end_[v + 1]; ++i) {
-        const SpringState& spring = springs_[ends_[i].spring];
-        sum = ends_[i].other > v ? sum + spring.pull : sum - spring.pull;
-        block += spring.block;
+        const Vec3d pull = pulls_[ends_[i].spring];
+        sum = ends_[i].other > v ? sum + pull : sum - pull;
+        block += blocks_[ends_[i].spring];
       }
       for (std::uint32_t i = first_corner_[v]; i < first_corner_[v + 1]; ++i) {
         const AreaState& area = areas_[corners_[i].area];
@@ -288,7 +289,7 @@ double StepEquations::multiply(std::span<const Vec3d> x, std::span<Vec3d> produc
       }
       Vec3d sum = x[v] * diagonal_of_mass_;
       for (std::uint32_t i = first_end_[v]; i < first_end_[v + 1]; ++i) {
-        sum = sum + springs_[ends_[i].spring].block * (x[v] - x[ends_[i].other]);
+        sum = sum + blocks_[ends_[i].spring] * (x[v] - x[ends_[i].other]);
       }
       for (std::uint32_t i = first_corner_[v]; i < first_corner_[v + 1]; ++i) {
         const auto& [area, corner] = corners_[i];
@@ -314,8 +315,8 @@ void StepEquations::fill(std::span<const SymmetricBlock> diagonal, SparseFactor&
     if (row_of_[v] != none) factor.add_diagonal(row_of_[v], diagonal[v]);
   }
   const auto places = factor.places();
-  for (std::size_t s = 0; s < springs_.size(); ++s) {
-    if (pair_of_spring_[s] != none) factor.add(places[pair_of_spring_[s]], springs_[s].block.negative());
+  for (std::size_t s = 0; s < blocks_.size(); ++s) {
+    if (pair_of_spring_[s] != none) factor.add(places[pair_of_spring_[s]], blocks_[s].negative());
   }
   for (std::size_t t = 0; t < areas_.size(); ++t) {
     for (std::size_t c = 0; c < 3; ++c) {

@@ -67,10 +67,6 @@ class StepEquations {
   void keep_volumes(std::span<const Vec3d> response, std::span<Vec3d> solution);
 
  private:
-  struct SpringState {
-    Vec3d pull;  // on its first end, over h
-    SymmetricBlock block;
-  };
   struct AreaState {
     std::array<Vec3d, 3> of_corner;
     double push = 0, weight = 0;
@@ -109,8 +105,9 @@ class StepEquations {
   std::vector<std::array<std::uint32_t, 2>> spring_ends_;
 
   std::vector<Vec3d> positions_;
-  std::vector<Vec3d> directions_;  // of springs
-  std::vector<SpringState> springs_;
+  std::vector<Vec3d> directions_;       // of springs
+  std::vector<Vec3d> pulls_;            // of springs at their first ends, over h
+  std::vector<SymmetricBlock> blocks_;  // of springs
   std::vector<AreaState> areas_;
   std::vector<double> along_areas_;
   VolumeSum volumes_;
