@@ -116,7 +116,7 @@ double BackwardEuler::expected_iterations() const {
 /// What conjugate gradients have come to is of no use to it.
 void BackwardEuler::solve_by_factor(const Parallel& parallel) {
   if (!factor_) factor_.emplace(equations_.make_factor());
-  equations_.fill(diagonal_, *factor_);
+  equations_.fill(diagonal_, *factor_, parallel);
   factor_->factorise(equations_.smallest_diagonal(), parallel);
   solve_factored(descent_, change_);
   if (!equations_.has_volumes()) return;

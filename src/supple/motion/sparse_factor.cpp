@@ -16,7 +16,7 @@ using Rows = std::vector<std::uint32_t>;
 constexpr std::uint32_t none = ~std::uint32_t{0};
 
 std::size_t padded(std::size_t count) {
-  return (count + panel_slack - 1) / panel_slack * panel_slack;
+  return count + panel_slack;
 }
 
 /// Rows below the diagonal of each column, for pairs in the order of elimination.
@@ -91,7 +91,7 @@ bool may_merge(const Columns& child, const Columns& parent, double& zeros) {
                         (0.5 * (child.width + parent.width + 1) + static_cast<double>(parent.below.size()));
   zeros = merged - child.blocks() - parent.blocks() + child.zeros + parent.zeros;
   const std::uint32_t width = child.width + parent.width;
-  const double share = width <= 4 ? 0.7 : width <= 16 ? 0.25 : 0.1;
+  const double share = width <= 4 ? 0.6 : width <= 16 ? 0.15 : 0.05;
   return zeros <= share * merged;
 }
 
@@ -240,8 +240,10 @@ SparseFactor::Place SparseFactor::place_of(std::uint32_t p, std::uint32_t q) con
           static_cast<std::uint32_t>(panel.pitch), position_[p] < position_[q]};
 }
 
-void SparseFactor::set_zero() {
-  std::fill(values_.begin(), values_.end(), 0.0);
+void SparseFactor::set_zero(const Parallel& parallel) {
+  parallel.for_ranges(values_.size(), 65536, [&](std::size_t begin, std::size_t end, std::uint32_t) {
+    std::fill(values_.data() + begin, values_.data() + end, 0.0);
+  });
 }
 
 void SparseFactor::add_diagonal(std::uint32_t row, const SymmetricBlock& block) {
@@ -273,7 +275,7 @@ void SparseFactor::add(const Place& place, Vec3d p, Vec3d q) {
 
 void SparseFactor::factorise(double smallest, const Parallel& parallel) {
   while (scratch_.size() < parallel.worker_count()) {
-    scratch_.push_back({Rows(position_.size()), std::vector<double>(largest_product_ + 2 * panel_slack)});
+    scratch_.push_back({Rows(position_.size()), std::vector<double>(largest_product_)});
   }
   for (std::size_t level = 0; level + 1 < first_of_level_.size(); ++level) {
     const std::uint32_t first = first_of_level_[level];

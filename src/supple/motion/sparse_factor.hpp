@@ -37,7 +37,7 @@ class SparseFactor {
   double products() const { return products_; }
   double entries() const { return entries_; }
 
-  void set_zero();
+  void set_zero(const Parallel& parallel);
   void add_diagonal(std::uint32_t row, const SymmetricBlock& block);
   void add(const Place& place, const SymmetricBlock& block);
   /// p qᵀ at the rows of p and the columns of q.

@@ -309,8 +309,9 @@ SparseFactor StepEquations::make_factor() const {
   return SparseFactor(free_count_, pairs_);
 }
 
-void StepEquations::fill(std::span<const SymmetricBlock> diagonal, SparseFactor& factor) const {
-  factor.set_zero();
+void StepEquations::fill(std::span<const SymmetricBlock> diagonal, SparseFactor& factor,
+                         const Parallel& parallel) const {
+  factor.set_zero(parallel);
   for (std::size_t v = 0; v < kinds_.size(); ++v) {
     if (row_of_[v] != none) factor.add_diagonal(row_of_[v], diagonal[v]);
   }
