@@ -11,8 +11,8 @@ namespace supple::cli {
 namespace {
 
 void print_row(const std::string& name, double start, const MassSpringEnergy& end) {
-  fmt::print("{:<20} {:>13.6g} {:>13.6g} {:>11.4g} {:>11.4g} {:>11.4g} {:>11.4g}\n", name, start, end.total(),
-             end.kinetic, end.elastic, end.area, end.gravity);
+  fmt::print("{:<20} {:>13.6g} {:>13.6g} {:>11.4g} {:>11.4g} {:>11.4g} {:>11.4g} {:>11.4g}\n", name, start,
+             end.total(), end.kinetic, end.elastic, end.area, end.volume, end.gravity);
 }
 
 }  // namespace
@@ -26,8 +26,8 @@ EnergyTable::EnergyTable(const Simulation& simulation) {
 
 void EnergyTable::print(const Simulation& simulation) const {
   if (rows_.empty()) return;
-  fmt::print("\n{:<20} {:>13} {:>13} {:>11} {:>11} {:>11} {:>11}\n", "energy, J", "at the start",
-             "at the end", "kinetic", "elastic", "area", "gravity");
+  fmt::print("\n{:<20} {:>13} {:>13} {:>11} {:>11} {:>11} {:>11} {:>11}\n", "energy, J", "at the start",
+             "at the end", "kinetic", "elastic", "area", "volume", "gravity");
   double all_at_start = 0;
   MassSpringEnergy all;
   for (std::size_t i = 0; i < rows_.size(); ++i) {
@@ -36,6 +36,7 @@ void EnergyTable::print(const Simulation& simulation) const {
     all.kinetic += energy.kinetic;
     all.elastic += energy.elastic;
     all.area += energy.area;
+    all.volume += energy.volume;
     all.gravity += energy.gravity;
     if (i < most_rows)
       print_row(name_of(simulation.scene(), rows_[i].object), rows_[i].total_at_start, energy);

@@ -17,7 +17,7 @@ namespace supple {
 /// Shares sum to 1, but for what goes into fixed vertices. Only the nearest `patch_size` vertices share.
 class ImpulseSpread {
  public:
-  static constexpr std::size_t patch_size = 256;
+  static constexpr std::size_t patch_size = 1024;
 
   struct Share {
     std::uint32_t vertex = 0;
