@@ -104,9 +104,10 @@ class Steps(SimulateTest):
         self.assertRegex(done.out, r"50 steps of 0.02 s: 1 s simulated in \S+ s, \S+ steps/s")
         self.assertRegex(done.out, r"collisions: [1-9]\d* times? .* volumes .*, [1-9]\d* times? .* touch")
         self.assertRegex(done.out, r"\nmotion +\S+ +\d+ %")
-        rows = re.findall(r"^(0 icosphere|1 icosphere|all)((?: +\S+){6})$", done.out, re.M)
+        rows = re.findall(r"^(0 icosphere|1 icosphere|all)((?: +\S+){7})$", done.out, re.M)
         self.assertEqual([name for name, _ in rows], ["0 icosphere", "1 icosphere", "all"])
-        start, end = (float(x) for x in rows[2][1].split()[:2])
+        start, end, *parts = (float(x) for x in rows[2][1].split())
+        self.assertAlmostEqual(end, sum(parts), delta=0.01 * end)
         self.assertEqual(start, 0)
         self.assertGreater(end, 20)  # 84 masses of 1 kg at 1 m/s, less what damping takes
         self.assertLess(end, 60)
