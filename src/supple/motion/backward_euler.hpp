@@ -20,8 +20,8 @@ namespace supple {
 /// stiffness and step.
 ///
 /// Its linear systems are solved by conjugate gradients, no further than Newton's method has use for. They
-/// are preconditioned by the blocks on the diagonal; where that takes longer than a factorisation would, by
-/// Cholesky's factor of the matrix, or of that of an iteration before. What a step gives depends on what it
+/// are preconditioned by the blocks on the diagonal; where that takes longer than a factorisation would, the
+/// systems are solved by Cholesky's factors. What a step gives depends on what it
 /// is given alone, on no step before.
 class BackwardEuler {
  public:
@@ -39,7 +39,7 @@ class BackwardEuler {
   double expected_iterations() const;
   bool conjugate_gradients(const Parallel& parallel);
   double precondition(const Parallel& parallel);
-  void solve_by_factor(const Parallel& parallel);
+  void solve_by_factor();
   void solve_factored(std::span<const Vec3d> right, std::span<Vec3d> solution);
   bool go_down(std::span<Vec3d> velocities, double& lowest, const Parallel& parallel);
   double product_of(std::span<const Vec3d> p, std::span<const Vec3d> q, const Parallel& parallel);

@@ -309,15 +309,13 @@ SparseFactor StepEquations::make_factor() const {
   return SparseFactor(free_count_, pairs_);
 }
 
-void StepEquations::fill(std::span<const SymmetricBlock> diagonal, SparseFactor& factor,
-                         const Parallel& parallel) const {
-  factor.set_zero(parallel);
+void StepEquations::fill(std::span<const SymmetricBlock> diagonal, SparseFactor& factor) const {
+  factor.set_zero();
   for (std::size_t v = 0; v < kinds_.size(); ++v) {
     if (row_of_[v] != none) factor.add_diagonal(row_of_[v], diagonal[v]);
   }
-  const auto places = factor.places();
   for (std::size_t s = 0; s < blocks_.size(); ++s) {
-    if (pair_of_spring_[s] != none) factor.add(places[pair_of_spring_[s]], blocks_[s].negative());
+    if (pair_of_spring_[s] != none) factor.add(pair_of_spring_[s], blocks_[s].negative());
   }
   for (std::size_t t = 0; t < areas_.size(); ++t) {
     for (std::size_t c = 0; c < 3; ++c) {
@@ -325,7 +323,7 @@ void StepEquations::fill(std::span<const SymmetricBlock> diagonal, SparseFactor&
       std::uint32_t p = triangles_[t][c], q = triangles_[t][(c + 1) % 3];
       Vec3d of_p = areas_[t].of_corner[c], of_q = areas_[t].of_corner[(c + 1) % 3];
       if (row_of_[p] > row_of_[q]) std::swap(of_p, of_q);
-      factor.add(places[pairs_of_area_[t][c]], of_p * areas_[t].weight, of_q);
+      factor.add(pairs_of_area_[t][c], of_p * areas_[t].weight, of_q);
     }
   }
 }

@@ -57,7 +57,7 @@ class StepEquations {
 
   /// For the pattern of the sparse part; rows are free vertices in the order of the mesh.
   SparseFactor make_factor() const;
-  void fill(std::span<const SymmetricBlock> diagonal, SparseFactor& factor, const Parallel& parallel) const;
+  void fill(std::span<const SymmetricBlock> diagonal, SparseFactor& factor) const;
   bool has_volumes() const { return !part_of_.empty(); }
   /// g, of the part that a vertex belongs to, where `gather` was last.
   std::span<const Vec3d> volume_gradient() const { return volume_gradient_; }

@@ -6,7 +6,6 @@
 
 #include "core/parallel.hpp"
 #include "motion/mass_spring.hpp"
-#include "motion/panel_kernels.hpp"
 #include "supple/error.hpp"
 #include "unit/motion/bodies.hpp"
 
@@ -206,8 +205,8 @@ TEST(StepEquations, ProductIsSymmetricAboveTheMassesAndWhatTheFactorUndoes) {
   EXPECT_GE(square, e.equations.smallest_diagonal() * product(x, x));
 
   SparseFactor factor = e.equations.make_factor();
-  e.equations.fill(diagonal, factor, e.parallel);
-  factor.factorise(e.equations.smallest_diagonal(), e.parallel);
+  e.equations.fill(diagonal, factor);
+  factor.factorise();
   const auto solve = [&](std::span<const Vec3d> right) {
     std::vector<Vec3d> rows, solution;
     for (std::size_t v = 0; v < count; ++v) {
@@ -236,13 +235,13 @@ struct Matrix {
       blocks.push_back(SymmetricBlock::outer(n, 1));
   }
   void fill(SparseFactor& factor) const {
-    factor.set_zero(Parallel(1));
+    factor.set_zero();
     SymmetricBlock one;
     one.add_diagonal(1);
     for (std::uint32_t row = 0; row < count; ++row) factor.add_diagonal(row, one);
-    for (std::size_t i = 0; i < pairs.size(); ++i) {
+    for (std::uint32_t i = 0; i < pairs.size(); ++i) {
       for (const std::uint32_t row : pairs[i]) factor.add_diagonal(row, blocks[i]);
-      factor.add(factor.places()[i], blocks[i].negative());
+      factor.add(i, blocks[i].negative());
     }
   }
   std::vector<Vec3d> multiply(std::span<const Vec3d> x) const {
@@ -289,58 +288,15 @@ TEST(SparseFactor, SolvesWhatItFactored) {
                              {7, {}, 53},        {2, {{0, 1}}, 54},
                              {40, star(40), 55}, {23, all_with_all(23), 56},
                              {60, star(20), 57}, {15 * 15, grid(15), 58}};
-  const Parallel parallel(1);
   for (const Matrix& matrix : matrices) {
     SparseFactor factor(matrix.count, matrix.pairs);
     const std::vector<Vec3d> x = random_vectors(matrix.count, 1, 59);
     for (int again = 0; again < 2; ++again) {
       matrix.fill(factor);
-      factor.factorise(1, parallel);
+      factor.factorise();
       std::vector<Vec3d> solution(matrix.count);
       factor.solve(matrix.multiply(x), solution);
       EXPECT_LT(largest_difference(solution, x), 1e-11) << matrix.count;
-    }
-  }
-}
-
-TEST(SparseFactor, IsTheSameForAnyNumberOfThreads) {
-  const Matrix matrix(30 * 30, grid(30), 61);
-  const std::vector<Vec3d> b = random_vectors(matrix.count, 1, 62);
-  std::vector<Vec3d> expected;
-  for (std::uint32_t threads = 1; threads <= 5; ++threads) {
-    const Parallel parallel(threads);
-    SparseFactor factor(matrix.count, matrix.pairs);
-    matrix.fill(factor);
-    factor.factorise(1, parallel);
-    std::vector<Vec3d> x(matrix.count);
-    factor.solve(b, x);
-    if (threads == 1) expected = x;
-    EXPECT_EQ(x, expected) << threads;
-  }
-}
-
-TEST(SparseFactor, FillsLittleOfASheet) {
-  // Row by row it would be 40 entries a column and more.
-  const Pairs pairs = grid(40);
-  EXPECT_LT(SparseFactor(1600, pairs).entries(), 25 * 1600);
-}
-
-TEST(PanelProduct, IsWhatAddingUpOneByOneGives) {
-  for (const std::size_t rows : {3u, 6u, 9u, 15u, 24u, 33u, 48u, 51u}) {
-    for (const std::size_t depth : {1u, 3u, 12u}) {
-      const std::size_t columns = std::min<std::size_t>(rows, 9), pitch = rows + 2,
-                        pitch_u = rows + panel_slack;
-      const std::vector<Vec3d> random = random_vectors(pitch * depth + panel_slack, 1, 71);
-      std::vector<double> a, u(pitch_u * columns);
-      for (const Vec3d& v : random) a.push_back(v.x);
-      multiply_panel(a.data(), pitch, rows, columns, depth, u.data(), pitch_u);
-      for (std::size_t j = 0; j < columns; ++j) {
-        for (std::size_t i = j - j % 3; i < rows; ++i) {
-          double sum = 0;
-          for (std::size_t k = 0; k < depth; ++k) sum += a[i + k * pitch] * a[j + k * pitch];
-          EXPECT_EQ(u[i + j * pitch_u], sum);
-        }
-      }
     }
   }
 }
