@@ -58,7 +58,7 @@ void verlet_shuffled(benchmark::State& state) {
 }
 BENCHMARK(verlet_shuffled)->ArgName("threads")->Arg(1)->Arg(2)->UseRealTime()->Unit(benchmark::kMillisecond);
 
-/// A square sheet of that many vertices a side, and k h² / m.
+/// A square sheet of that many vertices a side that hangs from two corners, k h² / m, and threads.
 void backward_euler(benchmark::State& state) {
   const auto side = static_cast<std::uint32_t>(state.range(0));
   MassSpringOptions options;
@@ -66,11 +66,43 @@ void backward_euler(benchmark::State& state) {
   options.stiffness = static_cast<double>(state.range(1)) * 1e4;
   options.gravity = {0, -10, 0};
   options.fixed_vertices = {0, side - 1};
+  options.threads = static_cast<std::uint32_t>(state.range(2));
   time_steps(state, make_cloth(side - 1, side - 1, 1, 1), options, 0.01);
 }
 BENCHMARK(backward_euler)
-    ->ArgNames({"side", "stiffness"})
-    ->ArgsProduct({{20, 40, 80}, {0, 1, 100, 1000000}})
+    ->ArgNames({"side", "stiffness", "threads"})
+    ->ArgsProduct({{20, 40, 80, 142}, {0, 1, 100, 1000000}, {1, 2}})
+    ->UseRealTime()
+    ->MeasureProcessCPUTime()
+    ->Unit(benchmark::kMillisecond);
+
+/// The block of scenes/soft_block.toml, pulled at all of its top.
+void soft_block(benchmark::State& state) {
+  const TriangleMesh mesh = make_box({2, 1, 2}, 20);
+  MassSpringOptions options{.integrator = Integrator::backward_euler,
+                            .vertex_mass = 0.01,
+                            .stiffness = 100,
+                            .damping = 1,
+                            .air_friction = 0.02,
+                            .bending_stiffness = 50};
+  if (state.range(0) == 1) options.volume_stiffness = 1000;
+  options.threads = static_cast<std::uint32_t>(state.range(1));
+  std::vector<Vec3d> forces(mesh.positions.size());
+  for (std::uint32_t v = 0; v < forces.size(); ++v) {
+    if (mesh.positions[v].y < -0.499) options.fixed_vertices.push_back(v);
+    if (mesh.positions[v].y > 0.499) forces[v] = {0.02, 0.05, 0};
+  }
+  MassSpringBody body(mesh, options);
+  body.set_external_forces(forces);
+  const auto springs = static_cast<std::int64_t>(body.springs().size());
+  for (auto _ : state) body.step(0.01);
+  state.SetItemsProcessed(springs * state.iterations());
+}
+BENCHMARK(soft_block)
+    ->ArgNames({"volume", "threads"})
+    ->ArgsProduct({{0, 1}, {1, 2}})
+    ->UseRealTime()
+    ->MeasureProcessCPUTime()
     ->Unit(benchmark::kMillisecond);
 
 }  // namespace

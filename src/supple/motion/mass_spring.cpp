@@ -233,7 +233,8 @@ void MassSpring::symplectic_euler(const State& from, State& to, double seconds, 
 
 void MassSpring::implicit_euler(const State& from, State& to, double seconds, const Parallel& parallel) {
   backward_euler_->solve(
-      {network_, from.positions, from.velocities, external_forces_, air_velocity_, seconds}, to.velocities);
+      {network_, from.positions, from.velocities, external_forces_, air_velocity_, seconds}, to.velocities,
+      parallel);
   for_blocks(parallel, [&](std::uint32_t first, std::uint32_t last) {
     for (std::uint32_t v = first; v < last; ++v) {
       to.positions[v] = from.positions[v] + to.velocities[v] * seconds;

@@ -1,21 +1,16 @@
 #include "core/parallel.hpp"
 #include "motion/mass_spring.hpp"
+#include "motion/worth_threads.hpp"
 #include "supple/motion.hpp"
 
 namespace supple {
-namespace {
-
-// Below this a step takes less than a millisecond, and whoever steps many bodies has threads of his own.
-constexpr std::size_t vertices_worth_threads = 10000;
-
-}  // namespace
 
 class MassSpringBody::Implementation {
  public:
   Implementation(const TriangleMesh& rest, const MassSpringOptions& options) : masses(rest, options) {}
 
   void step(double seconds) {
-    if (!has_threads && masses.positions().size() > vertices_worth_threads) {
+    if (!has_threads && is_worth_threads(masses.positions().size(), masses.options().integrator)) {
       parallel = Parallel(masses.options().threads);
       has_threads = true;
     }

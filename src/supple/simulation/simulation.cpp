@@ -6,13 +6,11 @@
 
 #include "core/error.hpp"
 #include "core/timer.hpp"
+#include "motion/worth_threads.hpp"
 #include "simulation/simulation_implementation.hpp"
 
 namespace supple {
 namespace {
-
-/// A body of more vertices is given all threads; those of fewer would not use them.
-constexpr std::size_t large_body = 10000;
 
 void check(bool is_in_range, const char* option, double value, const char* range) {
   if (!is_in_range) fail(std::string(option) + " is " + std::to_string(value) + "; it must be " + range);
@@ -95,7 +93,9 @@ ObjectId Simulation::Implementation::add(const TriangleMesh& mesh, const ObjectO
     added->own_positions = mesh.positions;
     added->id = scene.add(mesh, object_options);
   } else {
-    const std::uint32_t threads = mesh.positions.size() > large_body ? options.scene.threads : 1;
+    // A body that would not use threads goes beside others.
+    const bool has_threads = is_worth_threads(mesh.positions.size(), motion->springs.integrator);
+    const std::uint32_t threads = has_threads ? options.scene.threads : 1;
     MassSpringBody body = make_body(mesh, *motion, threads);
     added->id = scene.add(mesh, object_options);
     const std::uint64_t number = added->id.index | std::uint64_t{added->id.generation} << 32;
