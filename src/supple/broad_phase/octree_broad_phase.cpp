@@ -1,6 +1,7 @@
 #include "broad_phase/octree_broad_phase.hpp"
 
 #include <algorithm>
+#include <cstring>
 
 #include "broad_phase/float_order.hpp"
 #include "broad_phase/overlap_kernel.hpp"
@@ -79,23 +80,37 @@ void OctreeBroadPhase::detect_changes(const ObjectVolumes& volumes, const Parall
   const std::size_t slots = std::max(given, known_slots_);
   tree_.resize(slots);
   changes_.resize(slots);
-  constexpr std::size_t kGrain = 8192;
-  parallel.for_ranges(slots, kGrain, [&](std::size_t begin, std::size_t end, std::uint32_t) {
-    for (std::size_t i = begin; i < end; ++i) {
-      changes_[i] = Change::none;
-      if (i < known_slots_ && i < volumes.changed.size() && volumes.changed[i] == 0) continue;
-      const std::uint32_t slot = static_cast<std::uint32_t>(i);
-      const ObjectVolume now = volume_at(volumes, bounding_volume_, i);
-      if (tree_.same_volume(slot, now)) continue;
-      const bool stays = tree_.stays(slot, now);
-      changes_[i] = stays ? Change::within_regions : Change::across_regions;
-      if (stays) tree_.set_volume(slot, now);
+  // Most of a scene is often at rest: whole blocks of boxes are compared at once.
+  const std::size_t comparable = bounding_volume_ == BoundingVolume::aabb ? std::min(given, known_slots_) : 0;
+  constexpr std::size_t kBlock = 8, kGrain = 1024;
+  const std::size_t blocks = (slots + kBlock - 1) / kBlock;
+  parallel.for_ranges(blocks, kGrain, [&](std::size_t first, std::size_t last, std::uint32_t) {
+    for (std::size_t block = first; block < last; ++block) {
+      const std::size_t begin = block * kBlock, end = std::min(begin + kBlock, slots);
+      const bool same = end <= comparable && std::memcmp(&volumes.boxes[begin], &tree_.boxes()[begin],
+                                                         (end - begin) * sizeof(Aabb)) == 0;
+      for (std::size_t i = begin; i < end; ++i) changes_[i] = same ? Change::none : take_change(volumes, i);
     }
   });
   known_slots_ = given;
+  collect_changes();
+}
+
+/// Compares a volume with that of the step before, and takes it over when its object stays in its regions.
+OctreeBroadPhase::Change OctreeBroadPhase::take_change(const ObjectVolumes& volumes, std::size_t i) {
+  if (i < known_slots_ && i < volumes.changed.size() && volumes.changed[i] == 0) return Change::none;
+  const std::uint32_t slot = static_cast<std::uint32_t>(i);
+  const ObjectVolume now = volume_at(volumes, bounding_volume_, i);
+  if (tree_.same_volume(slot, now)) return Change::none;
+  if (!tree_.stays(slot, now)) return Change::across_regions;
+  tree_.set_volume(slot, now);
+  return Change::within_regions;
+}
+
+void OctreeBroadPhase::collect_changes() {
   changed_.clear();
   crossing_.clear();
-  for (std::uint32_t slot = 0; slot < slots; ++slot) {
+  for (std::uint32_t slot = 0; slot < changes_.size(); ++slot) {
     if (changes_[slot] == Change::none) continue;
     changed_.push_back(slot);
     if (changes_[slot] == Change::across_regions) crossing_.push_back(slot);

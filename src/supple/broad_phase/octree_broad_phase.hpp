@@ -37,6 +37,8 @@ class OctreeBroadPhase final : public PairFinder {
   };
 
   void detect_changes(const ObjectVolumes& volumes, const Parallel& parallel);
+  Change take_change(const ObjectVolumes& volumes, std::size_t i);
+  void collect_changes();
   void update_regions(const ObjectVolumes& volumes);
   void find_all(const Parallel& parallel);
   void find_in_leaf(const SceneOctree::Region& leaf, Worker& worker) const;
