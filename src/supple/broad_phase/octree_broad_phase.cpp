@@ -12,13 +12,6 @@ namespace {
 /// Fewer objects than this in a leaf are tested each against each: sorting them first would take longer.
 constexpr std::uint32_t kSortLeafAt = 96;
 
-/// Few boxes overlap, but which comparison says so is anyone's guess.
-bool overlap_without_branches(const Aabb& a, const Aabb& b) {
-  return (static_cast<int>(a.min.x <= b.max.x) & static_cast<int>(b.min.x <= a.max.x) &
-          static_cast<int>(a.min.y <= b.max.y) & static_cast<int>(b.min.y <= a.max.y) &
-          static_cast<int>(a.min.z <= b.max.z) & static_cast<int>(b.min.z <= a.max.z)) != 0;
-}
-
 /// Bit per axis: the box begins in this region and not below it.
 ///
 /// The intersection of two boxes that share a leaf has its lower corner at the larger of their lower ends.
@@ -199,12 +192,11 @@ void OctreeBroadPhase::find_of_object(std::uint32_t slot, Worker& worker) const 
   const std::size_t first = worker.found.size();
   tree_.visit_leaves(slot, [&](const SceneOctree::Region& leaf) {
     const std::uint32_t begins = tree_.placed_by_sphere() ? std::uint32_t{7} : begins_in(leaf, box);
-    for (const std::uint32_t other : tree_.objects(leaf)) {
-      const Aabb& other_box = boxes[other];
-      if (!overlap_without_branches(box, other_box) || other == slot) continue;
+    find_overlaps_of(box, boxes, tree_.objects(leaf), worker.others);
+    for (const std::uint32_t other : worker.others) {
       // Of two that changed, the one with the smaller index finds the pair.
-      if (other < slot && changes_[other] != Change::none) continue;
-      if ((begins | begins_in(leaf, other_box)) == 7)
+      if (other == slot || (other < slot && changes_[other] != Change::none)) continue;
+      if ((begins | begins_in(leaf, boxes[other])) == 7)
         worker.found.push({std::min(slot, other), std::max(slot, other)});
     }
     worker.tests += leaf.objects.count - 1;

@@ -32,6 +32,7 @@ class OctreeBroadPhase final : public PairFinder {
   struct Worker {
     BoxLanes lanes;
     std::vector<std::uint64_t> order;
+    std::vector<std::uint32_t> others;
     PairBuffer found;
     std::uint64_t tests = 0;
   };
