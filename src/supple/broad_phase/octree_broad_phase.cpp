@@ -1,6 +1,7 @@
 #include "broad_phase/octree_broad_phase.hpp"
 
 #include <algorithm>
+#include <cstring>
 
 #include "broad_phase/float_order.hpp"
 #include "broad_phase/overlap_kernel.hpp"
@@ -10,13 +11,6 @@ namespace {
 
 /// Fewer objects than this in a leaf are tested each against each: sorting them first would take longer.
 constexpr std::uint32_t kSortLeafAt = 96;
-
-/// Few boxes overlap, but which comparison says so is anyone's guess.
-bool overlap_without_branches(const Aabb& a, const Aabb& b) {
-  return (static_cast<int>(a.min.x <= b.max.x) & static_cast<int>(b.min.x <= a.max.x) &
-          static_cast<int>(a.min.y <= b.max.y) & static_cast<int>(b.min.y <= a.max.y) &
-          static_cast<int>(a.min.z <= b.max.z) & static_cast<int>(b.min.z <= a.max.z)) != 0;
-}
 
 /// Bit per axis: the box begins in this region and not below it.
 ///
@@ -79,23 +73,37 @@ void OctreeBroadPhase::detect_changes(const ObjectVolumes& volumes, const Parall
   const std::size_t slots = std::max(given, known_slots_);
   tree_.resize(slots);
   changes_.resize(slots);
-  constexpr std::size_t kGrain = 8192;
-  parallel.for_ranges(slots, kGrain, [&](std::size_t begin, std::size_t end, std::uint32_t) {
-    for (std::size_t i = begin; i < end; ++i) {
-      changes_[i] = Change::none;
-      if (i < known_slots_ && i < volumes.changed.size() && volumes.changed[i] == 0) continue;
-      const std::uint32_t slot = static_cast<std::uint32_t>(i);
-      const ObjectVolume now = volume_at(volumes, bounding_volume_, i);
-      if (tree_.same_volume(slot, now)) continue;
-      const bool stays = tree_.stays(slot, now);
-      changes_[i] = stays ? Change::within_regions : Change::across_regions;
-      if (stays) tree_.set_volume(slot, now);
+  // Most of a scene is often at rest: whole blocks of boxes are compared at once.
+  const std::size_t comparable = bounding_volume_ == BoundingVolume::aabb ? std::min(given, known_slots_) : 0;
+  constexpr std::size_t kBlock = 8, kGrain = 1024;
+  const std::size_t blocks = (slots + kBlock - 1) / kBlock;
+  parallel.for_ranges(blocks, kGrain, [&](std::size_t first, std::size_t last, std::uint32_t) {
+    for (std::size_t block = first; block < last; ++block) {
+      const std::size_t begin = block * kBlock, end = std::min(begin + kBlock, slots);
+      const bool same = end <= comparable && std::memcmp(&volumes.boxes[begin], &tree_.boxes()[begin],
+                                                         (end - begin) * sizeof(Aabb)) == 0;
+      for (std::size_t i = begin; i < end; ++i) changes_[i] = same ? Change::none : take_change(volumes, i);
     }
   });
   known_slots_ = given;
+  collect_changes();
+}
+
+/// Compares a volume with that of the step before, and takes it over when its object stays in its regions.
+OctreeBroadPhase::Change OctreeBroadPhase::take_change(const ObjectVolumes& volumes, std::size_t i) {
+  if (i < known_slots_ && i < volumes.changed.size() && volumes.changed[i] == 0) return Change::none;
+  const std::uint32_t slot = static_cast<std::uint32_t>(i);
+  const ObjectVolume now = volume_at(volumes, bounding_volume_, i);
+  if (tree_.same_volume(slot, now)) return Change::none;
+  if (!tree_.stays(slot, now)) return Change::across_regions;
+  tree_.set_volume(slot, now);
+  return Change::within_regions;
+}
+
+void OctreeBroadPhase::collect_changes() {
   changed_.clear();
   crossing_.clear();
-  for (std::uint32_t slot = 0; slot < slots; ++slot) {
+  for (std::uint32_t slot = 0; slot < changes_.size(); ++slot) {
     if (changes_[slot] == Change::none) continue;
     changed_.push_back(slot);
     if (changes_[slot] == Change::across_regions) crossing_.push_back(slot);
@@ -184,12 +192,11 @@ void OctreeBroadPhase::find_of_object(std::uint32_t slot, Worker& worker) const 
   const std::size_t first = worker.found.size();
   tree_.visit_leaves(slot, [&](const SceneOctree::Region& leaf) {
     const std::uint32_t begins = tree_.placed_by_sphere() ? std::uint32_t{7} : begins_in(leaf, box);
-    for (const std::uint32_t other : tree_.objects(leaf)) {
-      const Aabb& other_box = boxes[other];
-      if (!overlap_without_branches(box, other_box) || other == slot) continue;
+    find_overlaps_of(box, boxes, tree_.objects(leaf), worker.others);
+    for (const std::uint32_t other : worker.others) {
       // Of two that changed, the one with the smaller index finds the pair.
-      if (other < slot && changes_[other] != Change::none) continue;
-      if ((begins | begins_in(leaf, other_box)) == 7)
+      if (other == slot || (other < slot && changes_[other] != Change::none)) continue;
+      if ((begins | begins_in(leaf, boxes[other])) == 7)
         worker.found.push({std::min(slot, other), std::max(slot, other)});
     }
     worker.tests += leaf.objects.count - 1;

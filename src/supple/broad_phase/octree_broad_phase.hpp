@@ -32,11 +32,14 @@ class OctreeBroadPhase final : public PairFinder {
   struct Worker {
     BoxLanes lanes;
     std::vector<std::uint64_t> order;
+    std::vector<std::uint32_t> others;
     PairBuffer found;
     std::uint64_t tests = 0;
   };
 
   void detect_changes(const ObjectVolumes& volumes, const Parallel& parallel);
+  Change take_change(const ObjectVolumes& volumes, std::size_t i);
+  void collect_changes();
   void update_regions(const ObjectVolumes& volumes);
   void find_all(const Parallel& parallel);
   void find_in_leaf(const SceneOctree::Region& leaf, Worker& worker) const;

@@ -1,10 +1,14 @@
 #include "broad_phase/overlap_kernel.hpp"
 
+#include <array>
+#include <limits>
+
 // Highway compiles the rest of this file once for each instruction set, and picks one when the program runs.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "broad_phase/overlap_kernel.cpp"
 #include <hwy/foreach_target.h>
 
+#include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
@@ -74,6 +78,32 @@ std::uint64_t find_sorted(const BoxLanes& boxes, std::size_t begin, std::size_t 
   return find_rows<true>(boxes, begin, end, pairs);
 }
 
+/// A box is loaded as its first four and its last four numbers; a bound that always holds stands where they
+/// say the same or belong to the other end.
+std::size_t find_of(const Aabb& box, std::span<const Aabb> boxes, std::span<const std::uint32_t> slots,
+                    std::uint32_t* found) {
+  const hn::CappedTag<float, 4> lanes;  // four, but for the target without vectors
+  constexpr float infinity = std::numeric_limits<float>::infinity();
+  alignas(16) const std::array<float, 4> upper{box.max.x, box.max.y, box.max.z, infinity};
+  alignas(16) const std::array<float, 4> lower{-infinity, box.min.x, box.min.y, box.min.z};
+  // The boxes lie apart in memory: all are asked for before the first is needed.
+  for (const std::uint32_t slot : slots) hwy::Prefetch(&boxes[slot]);
+  std::size_t count = 0;
+  for (const std::uint32_t slot : slots) {
+    const float* const ends = &boxes[slot].min.x;
+    bool overlaps = true;
+    for (std::size_t i = 0; i < 4; i += hn::Lanes(lanes)) {
+      const auto starts = hn::Le(hn::LoadU(lanes, ends + i), hn::Load(lanes, upper.data() + i));
+      const auto stops = hn::Ge(hn::LoadU(lanes, ends + 2 + i), hn::Load(lanes, lower.data() + i));
+      overlaps = overlaps && hn::AllTrue(lanes, hn::And(starts, stops));
+    }
+    // No branch: which of them overlap is anyone's guess.
+    found[count] = slot;
+    count += static_cast<std::size_t>(overlaps);
+  }
+  return count;
+}
+
 }  // namespace
 }  // namespace HWY_NAMESPACE
 }  // namespace supple
@@ -84,6 +114,7 @@ namespace supple {
 
 HWY_EXPORT(find_all);
 HWY_EXPORT(find_sorted);
+HWY_EXPORT(find_of);
 
 std::uint64_t find_overlaps(const BoxLanes& boxes, std::size_t begin, std::size_t end, PairBuffer& pairs) {
   return HWY_DYNAMIC_DISPATCH(find_all)(boxes, begin, end, pairs);
@@ -92,6 +123,13 @@ std::uint64_t find_overlaps(const BoxLanes& boxes, std::size_t begin, std::size_
 std::uint64_t find_overlaps_sorted(const BoxLanes& boxes, std::size_t begin, std::size_t end,
                                    PairBuffer& pairs) {
   return HWY_DYNAMIC_DISPATCH(find_sorted)(boxes, begin, end, pairs);
+}
+
+void find_overlaps_of(const Aabb& box, std::span<const Aabb> boxes, std::span<const std::uint32_t> slots,
+                      std::vector<std::uint32_t>& found) {
+  static_assert(sizeof(Aabb) == 6 * sizeof(float));
+  found.resize(slots.size() + 1);
+  found.resize(HWY_DYNAMIC_DISPATCH(find_of)(box, boxes, slots, found.data()));
 }
 
 }  // namespace supple

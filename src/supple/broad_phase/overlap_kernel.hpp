@@ -2,6 +2,8 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
+#include <vector>
 
 #include "broad_phase/box_lanes.hpp"
 
@@ -14,5 +16,9 @@ std::uint64_t find_overlaps(const BoxLanes& boxes, std::size_t begin, std::size_
 /// The same for boxes sorted by ascending lower end along axis 0: a row ends where the boxes begin behind it.
 std::uint64_t find_overlaps_sorted(const BoxLanes& boxes, std::size_t begin, std::size_t end,
                                    PairBuffer& pairs);
+
+/// Replaces `found` by those of the slots whose boxes overlap this one.
+void find_overlaps_of(const Aabb& box, std::span<const Aabb> boxes, std::span<const std::uint32_t> slots,
+                      std::vector<std::uint32_t>& found);
 
 }  // namespace supple

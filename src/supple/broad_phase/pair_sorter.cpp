@@ -1,7 +1,9 @@
 #include "broad_phase/pair_sorter.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <limits>
+#include <utility>
 
 #include "geometry/sphere.hpp"
 
@@ -21,6 +23,19 @@ void sort_run(IndexPair* begin, IndexPair* end) {
     for (; hole != begin && pair.b < hole[-1].b; --hole) *hole = hole[-1];
     *hole = pair;
   }
+}
+
+/// Pairs whose a is in [first_slot, first_slot + slot_count), of less than 2^32.
+void sort_bucket(std::span<const IndexPair> pairs, std::uint32_t first_slot, std::size_t slot_count,
+                 std::vector<std::uint32_t>& run_end, IndexPair* sorted) {
+  run_end.assign(slot_count + 1, 0);
+  for (const IndexPair pair : pairs) ++run_end[pair.a - first_slot + 1];
+  for (std::size_t slot = 0; slot < slot_count; ++slot) run_end[slot + 1] += run_end[slot];
+  // From here run_end[a] is where the next pair of a goes, and at last where its run ends.
+  for (const IndexPair pair : pairs) sorted[run_end[pair.a - first_slot]++] = pair;
+  std::uint32_t begin = 0;
+  for (std::size_t slot = 0; slot < slot_count; begin = run_end[slot++])
+    if (run_end[slot] - begin > 1) sort_run(sorted + begin, sorted + run_end[slot]);
 }
 
 }  // namespace
@@ -44,22 +59,47 @@ void PairSorter::sort(std::span<const PairBuffer> parts, std::size_t slot_count,
 
 void PairSorter::sort_by_counting(std::span<const PairBuffer> parts, std::size_t slot_count,
                                   const Parallel& parallel, std::vector<IndexPair>& sorted) {
-  run_end_.assign(slot_count + 1, 0);
-  for (const PairBuffer& part : parts)
-    for (std::size_t i = 0; i < part.size(); ++i) ++run_end_[part.data()[i].a + 1];
-  for (std::size_t slot = 0; slot < slot_count; ++slot) run_end_[slot + 1] += run_end_[slot];
-  // From here run_end_[a] is where the next pair of a goes, and at last where its run ends.
-  for (const PairBuffer& part : parts) {
-    for (std::size_t i = 0; i < part.size(); ++i) {
-      const IndexPair pair = part.data()[i];
-      sorted[run_end_[pair.a]++] = pair;
+  // Counters of a bucket stay in the first-level cache, and so do the places that a part writes to next.
+  constexpr int kBits = 11;
+  const int shift = std::max(kBits, static_cast<int>(std::bit_width(slot_count)) - kBits);
+  const std::size_t bucket_count = (slot_count >> shift) + 1;
+  fill_buckets(parts, shift, bucket_count, parallel);
+  counters_.resize(parallel.worker_count());
+  parallel.for_ranges(bucket_count, 1, [&](std::size_t begin, std::size_t end, std::uint32_t worker) {
+    for (std::size_t bucket = begin; bucket < end; ++bucket) {
+      const std::size_t first = bucket == 0 ? 0 : bucket_end_[bucket - 1];
+      sort_bucket({bucketed_.data() + first, bucket_end_[bucket] - first},
+                  static_cast<std::uint32_t>(bucket << shift), std::size_t{1} << shift, counters_[worker],
+                  sorted.data() + first);
     }
-  }
-  constexpr std::size_t kGrain = 4096;
-  parallel.for_ranges(slot_count, kGrain, [&](std::size_t begin, std::size_t end, std::uint32_t) {
-    for (std::size_t slot = begin; slot < end; ++slot)
-      sort_run(sorted.data() + (slot == 0 ? 0 : run_end_[slot - 1]), sorted.data() + run_end_[slot]);
   });
+}
+
+/// Pairs by the upper bits of a. Each part has its own places in each bucket.
+void PairSorter::fill_buckets(std::span<const PairBuffer> parts, int shift, std::size_t bucket_count,
+                              const Parallel& parallel) {
+  const auto each_pair = [&](auto&& visit) {
+    parallel.for_ranges(parts.size(), 1, [&](std::size_t begin, std::size_t end, std::uint32_t) {
+      for (std::size_t part = begin; part < end; ++part) {
+        std::size_t* const places = places_.data() + part * bucket_count;
+        for (std::size_t i = 0; i < parts[part].size(); ++i) {
+          const IndexPair pair = parts[part].data()[i];
+          visit(places[pair.a >> shift], pair);
+        }
+      }
+    });
+  };
+  places_.assign(parts.size() * bucket_count, 0);
+  each_pair([](std::size_t& place, IndexPair) { ++place; });
+  bucket_end_.resize(bucket_count);
+  std::size_t total = 0;
+  for (std::size_t bucket = 0; bucket < bucket_count; ++bucket) {
+    for (std::size_t part = 0; part < parts.size(); ++part)
+      total += std::exchange(places_[part * bucket_count + bucket], total);
+    bucket_end_[bucket] = total;
+  }
+  bucketed_.resize(total);
+  each_pair([&](std::size_t& place, IndexPair pair) { bucketed_[place++] = pair; });
 }
 
 void keep_overlapping_spheres(std::span<const BoundingSphere> spheres, std::size_t first, PairBuffer& pairs) {

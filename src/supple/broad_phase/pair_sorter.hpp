@@ -13,8 +13,8 @@ namespace supple {
 class PairSorter {
  public:
   /// Replaces `sorted` by the pairs of all `parts`. Every a is below `slot_count`. Duplicates are dropped
-  /// when there may be some. A counting sort by a, then each run by b: O(pairs + slots) while no object has
-  /// very many pairs.
+  /// when there may be some. Buckets by the upper bits of a, in each a counting sort by a, then each run by
+  /// b: O(pairs + slots) while no object has very many pairs.
   void sort(std::span<const PairBuffer> parts, std::size_t slot_count, bool may_repeat,
             const Parallel& parallel, std::vector<IndexPair>& sorted);
 
@@ -22,7 +22,13 @@ class PairSorter {
   void sort_by_counting(std::span<const PairBuffer> parts, std::size_t slot_count, const Parallel& parallel,
                         std::vector<IndexPair>& sorted);
 
-  std::vector<std::uint32_t> run_end_;
+  void fill_buckets(std::span<const PairBuffer> parts, int shift, std::size_t bucket_count,
+                    const Parallel& parallel);
+
+  std::vector<std::size_t> places_;      // per part and bucket, where its next pair goes
+  std::vector<std::size_t> bucket_end_;  // per bucket
+  std::vector<IndexPair> bucketed_;
+  std::vector<std::vector<std::uint32_t>> counters_;  // per worker
 };
 
 /// Drops the pairs from `first` on whose balls do not overlap.

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "supple/mesh.hpp"
+#include "supple/types.hpp"
+
+namespace supple::benchmarks {
+
+/// Workload C: one mesh that is tested against itself while its vertices go straight from `start` to `end`.
+struct ClothStep {
+  std::vector<Vec3d> start, end;
+  std::vector<Triangle> triangles;
+};
+
+/// `cloth-ball` and `cloth-funnel` are real frames, and nothing when they are not there; `crumpled` is made:
+/// a sheet of 90,000 triangles whose folds pass through each other. Throws `Error` for other names.
+std::optional<ClothStep> make_cloth_step(const std::string& name);
+
+}  // namespace supple::benchmarks

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "supple/types.hpp"
+
+namespace supple::benchmarks {
+
+/// Names of the four kinds of box fields.
+inline constexpr std::array<std::string_view, 4> box_field_names{"u1", "u8", "clu", "cl8"};
+
+/// Workload A: n boxes, each with a constant velocity of a tenth of its size a frame in a random direction;
+/// its centre turns back at the walls of a cube of side L.
+///
+/// - u1, u8: unit cubes anywhere; L = 2 n^(1/3) and n^(1/3).
+/// - clu, cl8: sizes from 1/64 to 16 (Pareto's distribution, alpha 2), each edge a half to the whole of it;
+///   Gaussian clusters of 512 with sigma 0.25 L / clusters^(1/3); L = 0.30 n^(1/3) and 0.13 n^(1/3).
+///
+/// Faces lie on a lattice of 2^-13, lower ones on even, upper ones on odd multiples: no two boxes touch
+/// without overlapping, and all coordinates are exact in single precision, so every method must find the same
+/// pairs.
+class MovingBoxes {
+ public:
+  /// Throws `Error` for a name that is not in `box_field_names`.
+  MovingBoxes(std::string_view name, std::size_t count, std::uint64_t seed = 1);
+
+  std::span<const Aabb> boxes() const { return boxes_; }
+  /// One frame on; only every `one_in`-th box moves.
+  void advance(std::size_t one_in = 1);
+  double side() const { return side_; }
+
+ private:
+  struct Motion {
+    Vec3d center, half_extent, velocity;
+  };
+  void snap(std::size_t box);
+
+  double side_;
+  std::vector<Motion> motions_;
+  std::vector<Aabb> boxes_;
+};
+
+}  // namespace supple::benchmarks
