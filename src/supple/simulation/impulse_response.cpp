@@ -83,6 +83,7 @@ void ImpulseResponse::begin(std::span<const RespondingObject> objects) {
     participant.is_changed = false;
     participant.is_stale = !participant.is_resting;
     if (participant.has_mass) {
+      participant.spread->begin_step();
       for (auto& changes : participant.changes) changes.assign(object.from.size(), Vec3d{});
     }
     if (!participant.is_resting) moving_.push_back(object.id);

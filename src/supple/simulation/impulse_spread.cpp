@@ -62,12 +62,20 @@ ImpulseSpread::ImpulseSpread(const TriangleMesh& rest, const MassSpringOptions& 
   }
 }
 
+void ImpulseSpread::begin_step() {
+  constexpr std::size_t most_shares = (std::size_t{64} << 20) / sizeof(Share);
+  if (share_count_ <= most_shares) return;
+  for (std::vector<Share>& shares : shares_) shares = {};
+  share_count_ = 0;
+}
+
 std::span<const ImpulseSpread::Share> ImpulseSpread::from(std::uint32_t vertex) {
   std::vector<Share>& shares = shares_[vertex];
   if (shares.empty() && is_fixed_[vertex] == 0) {
     gather_patch(vertex);
     solve();
     shares = largest_shares();
+    share_count_ += shares.size();
     for (const std::uint32_t v : patch_) place_[v] = no_place;
   }
   return shares;

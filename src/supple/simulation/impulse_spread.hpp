@@ -26,7 +26,9 @@ class ImpulseSpread {
 
   ImpulseSpread(const TriangleMesh& rest, const MassSpringOptions& springs, double seconds);
 
-  /// By vertex. Nothing of fixed vertices. Stays valid; computed when first asked for.
+  /// Forgets shares when those kept take more than 64 MB; they come out the same again.
+  void begin_step();
+  /// By vertex. Nothing of fixed vertices. Computed when first asked for, valid until the step's end.
   std::span<const Share> from(std::uint32_t vertex);
   /// Of `from(vertex)` that of `other`, 0 when it has none.
   double share(std::uint32_t vertex, std::uint32_t other);
@@ -49,6 +51,7 @@ class ImpulseSpread {
   std::vector<std::uint32_t> first_;  // in neighbors_, of each vertex; one more at the end
   std::vector<Neighbor> neighbors_;
   std::vector<std::vector<Share>> shares_;  // by vertex; empty until asked for
+  std::size_t share_count_ = 0;
 
   // Scratch of one patch.
   std::vector<std::uint32_t> patch_, place_;  // vertices, and of each vertex its place among them
