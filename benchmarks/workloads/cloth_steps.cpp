@@ -16,6 +16,11 @@ std::optional<ClothStep> load_step(const std::string& first, const std::string& 
   return ClothStep{std::move(start->positions), std::move(end->positions), std::move(start->triangles)};
 }
 
+/// As the real frames have it: boxes in single precision are then the same as in double.
+Vec3d in_single(Vec3d p) {
+  return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
+}
+
 /// Pushed together to a third of its width, so that it lies in folds, and dented along the other axis.
 ClothStep crumpled() {
   const TriangleMesh sheet = make_cloth(300, 150, 2, 1);
@@ -24,8 +29,8 @@ ClothStep crumpled() {
     const double fold = sin_turns(3 * p.x + 0.1 * p.z), dent = sin_turns(2.5 * p.z + 0.2 + 0.3 * p.x);
     const double ripple = sin_turns(7.3 * p.x + 5.9 * p.z), bend = 0.015 * sin_turns(1.7 * p.x + 2.3 * p.z);
     const double x = 0.33 * p.x + 0.08 * fold, y = 0.12 * fold * dent + 0.004 * ripple;
-    step.start.push_back({x + bend, y, p.z + 0.01 * dent});
-    step.end.push_back({x - bend + 0.004 * fold, y + 0.01 * p.z, p.z + 0.012 * dent});
+    step.start.push_back(in_single({x + bend, y, p.z + 0.01 * dent}));
+    step.end.push_back(in_single({x - bend + 0.004 * fold, y + 0.01 * p.z, p.z + 0.012 * dent}));
   }
   return step;
 }
