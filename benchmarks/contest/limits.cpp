@@ -81,7 +81,10 @@ double read_bandwidth(std::size_t bytes, unsigned threads) {
       if (++ready == threads) start = wall_milliseconds();
       while (ready < threads) std::this_thread::yield();
       std::uint64_t sum = 0;
-      for (std::size_t i = 0; i < repetitions; ++i) sum += sum_of(arrays[thread]);
+      for (std::size_t i = 0; i < repetitions; ++i) {
+        sum += sum_of(arrays[thread]);
+        std::atomic_signal_fence(std::memory_order_seq_cst);  // or it would be read only once
+      }
       total += sum;
     };
     std::vector<std::thread> helpers;

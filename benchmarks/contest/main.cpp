@@ -27,7 +27,8 @@ namespace {
 constexpr const char* usage =
     "usage: supple_contest [--seconds S] [--rounds N] [--cpu N] [--only-supple] CELL | --missing\n"
     "CELL: A/FIELD/N  A/FIELD/N/drift  A/FIELD/N/one-percent  B/SHAPExCOPIES[-rest]  C/CLOTH\n"
-    "      threads/B/...  threads/C/...  limits/bandwidth  limits/refit/TRIANGLES  memory/SHAPE\n"
+    "      growth/SHAPExCOPIES  threads/B/...  threads/C/...  limits/bandwidth  limits/refit/TRIANGLES  "
+    "memory/SHAPE\n"
     "FIELD: u1 u8 clu cl8   SHAPE: 980, 18000, 69620, ... or bunny   CLOTH: cloth-ball cloth-funnel "
     "crumpled\n";
 
@@ -521,6 +522,10 @@ void run(const Choice& choice) {
       run_boxes(choice, boxes, output);
   } else if (cell.starts_with("B/")) {
     run_copies(choice, after("B/"), false, output);
+  } else if (cell.starts_with("growth/")) {
+    Choice alone = choice;
+    alone.only_supple = true;
+    run_copies(alone, after("growth/"), false, output);
   } else if (cell.starts_with("C/")) {
     run_cloth(choice, after("C/"), false, output);
   } else if (cell.starts_with("threads/B/")) {
