@@ -8,7 +8,8 @@ import statistics
 COLORS = {"Supple": "#0077bb", "Embree": "#ee7733", "CGAL": "#009988", "FCL": "#cc3311", "Bullet": "#9467bd",
           "ODE": "#b8860b", "baseline sweep": "#888888", "baseline grid": "#555577"}
 STAGES = {"update": "#0077bb", "traversal": "#33aa77", "triangle tests": "#ee7733", "order and events": "#999999"}
-OTHER_COLOR = "#666666"
+REFIT = {"handing over": "#33aa77", "refit": "#0077bb"}
+OTHER_COLOR = "#888888"
 
 STYLE = """
 body { font: 15px/1.45 system-ui, sans-serif; max-width: 62rem; margin: 2rem auto; padding: 0 1rem;
@@ -78,7 +79,7 @@ def short(value):
 
 def line_plot(title, x_label, y_label, series):
     """Both axes logarithmic; series are (name, color, dashed, [(x, y)...])."""
-    width, height, left, top, right, bottom = 760, 380, 62, 34, 170, 44
+    width, height, left, top, right, bottom = 800, 390, 62, 46, 210, 44
     xs = [x for _, _, _, points in series for x, _ in points]
     ys = [y for _, _, _, points in series for _, y in points]
     low_x, high_x = min(xs) / 1.2, max(xs) * 1.2
@@ -92,7 +93,7 @@ def line_plot(title, x_label, y_label, series):
     for tick in log_ticks(low_x, high_x):
         body += (f'<line y1="{top}" y2="{height - bottom}" x1="{at_x(tick):.1f}" x2="{at_x(tick):.1f}" '
                  f'stroke="#8885" stroke-width="0.6"/>' + text(at_x(tick), height - bottom + 16, short(tick), "middle"))
-    body += text((left + width - right) / 2, height - 6, x_label, "middle") + text(left, top - 6, y_label)
+    body += text((left + width - right) / 2, height - 6, x_label, "middle") + text(left, top - 8, y_label, "end")
     for number, (name, color, dashed, points) in enumerate(series):
         path = " ".join(f"{at_x(x):.1f},{at_y(y):.1f}" for x, y in points)
         dash = ' stroke-dasharray="5 4"' if dashed else ""
@@ -187,13 +188,18 @@ def box_plots(cells):
 
 
 def stage_bars(cell):
+    """By stage where a contestant tells its stages."""
     bars = []
     for c in cell["contestants"]:
-        median = statistics.median(c["cpu_ms"])
-        stages = {name: value for name, value in c["mean_stage_ms"].items() if name in STAGES}
-        total = sum(stages.values())
-        parts = [(name, STAGES[name], value / total * median) for name, value in stages.items()] if total else []
-        bars.append((c["name"], parts or [("", color_of(c["name"]), median)]))
+        median, told = statistics.median(c["cpu_ms"]), c["mean_stage_ms"]
+        stages = [(name, color, told.get(name, 0)) for name, color in STAGES.items()]
+        if cell["cell"].startswith("limits/") and told:
+            refit = told["refit alone"]
+            stages = [(name, color, value) for (name, color), value in
+                      zip(REFIT.items(), (told["update"] - refit, refit))]
+        total = sum(value for _, _, value in stages)
+        bars.append((c["name"], [(name, color, value / total * median) for name, color, value in stages if value]
+                     if total else [("", OTHER_COLOR, median)]))
     return bars
 
 

@@ -22,8 +22,8 @@ Vec3d in_single(Vec3d p) {
 }
 
 /// Pushed together to a third of its width, so that it lies in folds, and dented along the other axis.
-ClothStep crumpled() {
-  const TriangleMesh sheet = make_cloth(300, 150, 2, 1);
+ClothStep crumpled(std::uint32_t columns, std::uint32_t rows) {
+  const TriangleMesh sheet = make_cloth(columns, rows, 2, 1);
   ClothStep step{{}, {}, sheet.triangles};
   for (const Vec3d& p : sheet.positions) {
     const double fold = sin_turns(3 * p.x + 0.1 * p.z), dent = sin_turns(2.5 * p.z + 0.2 + 0.3 * p.x);
@@ -41,8 +41,10 @@ std::optional<ClothStep> make_cloth_step(const std::string& name) {
   if (name == "cloth-ball")
     return load_step("cloth-ball/frames/cloth_ball92.ply", "cloth-ball/frames/cloth_ball93.ply");
   if (name == "cloth-funnel") return load_step("cloth-funnel/frames/227.ply", "cloth-funnel/frames/228.ply");
-  if (name == "crumpled") return crumpled();
-  throw Error("no cloth is named '" + name + "'; choose one of cloth-ball, cloth-funnel, crumpled");
+  if (name == "crumpled") return crumpled(300, 150);
+  if (name == "crumpled-small") return crumpled(48, 24);
+  throw Error("no cloth is named '" + name +
+              "'; choose one of cloth-ball, cloth-funnel, crumpled, crumpled-small");
 }
 
 }  // namespace supple::benchmarks
