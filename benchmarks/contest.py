@@ -316,6 +316,43 @@ def print_table(lines):
         print("  ".join(text.ljust(width) for text, width in zip(line, widths)).rstrip())
 
 
+def markdown_table(lines):
+    rows = ["| " + " | ".join(line) + " |" for line in lines]
+    return "\n".join([rows[0], "|" + "---|" * len(lines[0]), *rows[1:]])
+
+
+def times_by_cell(cells):
+    """Median processor milliseconds, a row a cell and a column a contestant, of each workload."""
+    groups = {}
+    for cell in cells:
+        groups.setdefault(cell["cell"].split("/")[0], []).append(cell)
+    for name, group in groups.items():
+        names = list(dict.fromkeys(c["name"] for cell in group for c in cell["contestants"]))
+        if name not in ("A", "B", "C", "process") or not names:
+            continue
+        lines = [["ms", *names, "pairs"]]
+        for cell in group:
+            medians = {c["name"]: statistics.median(c["cpu_ms"]) for c in cell["contestants"]}
+            if medians and not any(name.startswith("Supple,") for name in medians):
+                lines.append([cell["cell"], *(contest_report.rounded(medians[name]) if name in medians else ""
+                                              for name in names), f"{cell['contestants'][0]['pairs']:,}"])
+        yield [line[:1] + [text for text, heading in zip(line[1:], lines[0][1:]) if not heading.startswith("Supple,")]
+               for line in lines]
+
+
+def markdown_of(about, cells, judge):
+    parts = ["# Supple against others, " + about["date"][:10],
+             "\n".join(f"- {name}: {value}" for name, value in about.items()),
+             "## What is asked and what is reached", markdown_table(table_of(judge)),
+             "## Median milliseconds of processor time"]
+    parts += [markdown_table(lines) for lines in times_by_cell(cells)]
+    values = [[cell["cell"], name, contest_report.rounded(value)] for cell in cells
+              for name, value in cell["values"].items() if name != "triangles"]
+    if values:
+        parts.append(markdown_table([["cell", "what", "value"], *values]))
+    return "\n\n".join(parts) + "\n"
+
+
 def write_csv(path, cells):
     with open(path, "w", encoding="utf-8", newline="") as file:
         writer = csv.writer(file, lineterminator="\n")
@@ -353,10 +390,11 @@ def write_results(arguments, about, cells, judge):
     (folder / "results.html").write_text(page, encoding="utf-8")
     print(f"\nWritten: {folder}/results.html, results.json, results.csv")
     if arguments.save:
-        path = ROOT / "benchmarks/results" / file_name_of(about)
+        path = ROOT / "benchmarks/results" / file_name_of(about)  # has dots, so suffixes are added, not replaced
         kept = {"about": about, "judgement": judge.rows, "cells": compact(cells)}
-        path.with_suffix(".json").write_text(json.dumps(kept, indent=1) + "\n", encoding="utf-8")
-        print(f"Kept: {path.with_suffix('.json')}")
+        path.with_name(path.name + ".json").write_text(json.dumps(kept, indent=1) + "\n", encoding="utf-8")
+        path.with_name(path.name + ".md").write_text(markdown_of(about, cells, judge), encoding="utf-8")
+        print(f"Kept: {path}.json and .md")
 
 
 def chosen_cells(arguments):

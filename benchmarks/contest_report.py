@@ -12,12 +12,13 @@ REFIT = {"handing over": "#33aa77", "refit": "#0077bb"}
 OTHER_COLOR = "#888888"
 
 STYLE = """
-body { font: 15px/1.45 system-ui, sans-serif; max-width: 62rem; margin: 2rem auto; padding: 0 1rem;
+body { font: 15px/1.45 system-ui, sans-serif; max-width: 68rem; margin: 2rem auto; padding: 0 1rem;
   color: #1a1a1a; background: #fff; }
 table { border-collapse: collapse; margin: 0.6rem 0 1.4rem; font-variant-numeric: tabular-nums; }
 th, td { padding: 0.18rem 0.7rem 0.18rem 0; text-align: right; border-bottom: 1px solid #8884; white-space: nowrap; }
 th:first-child, td:first-child, td.text, th.text { text-align: left; }
 .aim { color: #00705a; font-weight: 600; } .reach { color: #0064a0; } .missed { color: #b32400; }
+td.text { white-space: normal; }
 svg { display: block; max-width: 100%; height: auto; margin: 0.8rem 0; }
 svg text { font: 12px system-ui, sans-serif; fill: currentColor; } svg .title { font-size: 14px; font-weight: 600; }
 @media (prefers-color-scheme: dark) {
