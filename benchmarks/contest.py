@@ -316,6 +316,22 @@ def print_table(lines):
         print("  ".join(text.ljust(width) for text, width in zip(line, widths)).rstrip())
 
 
+def summary_of(judge):
+    """A line for each row: the range over its cells, and how many meet what."""
+    lines = [["workload", "against", "lowest", "highest", "reach", "aim", "cells that reach the aim, reach, miss"]]
+    groups = {}
+    for row in judge.rows:
+        groups.setdefault(row["row"], []).append(row)
+    for name, rows in groups.items():
+        bound = "≤ " if rows[0]["smaller_is_better"] else "≥ "
+        ratios = [row["ratio"] for row in rows]
+        met = [sum(row["met"] == word for row in rows) for word in ("aim", "reach", "missed")]
+        lines.append([name, ", ".join(dict.fromkeys(row["against"] for row in rows)), f"{min(ratios):.2f}",
+                      f"{max(ratios):.2f}", f"{bound}{rows[0]['reach']:g}", f"{bound}{rows[0]['aim']:g}",
+                      ", ".join(map(str, met))])
+    return lines
+
+
 def markdown_table(lines):
     rows = ["| " + " | ".join(line) + " |" for line in lines]
     return "\n".join([rows[0], "|" + "---|" * len(lines[0]), *rows[1:]])
@@ -343,7 +359,8 @@ def times_by_cell(cells):
 def markdown_of(about, cells, judge):
     parts = ["# Supple against others, " + about["date"][:10],
              "\n".join(f"- {name}: {value}" for name, value in about.items()),
-             "## What is asked and what is reached", markdown_table(table_of(judge)),
+             "## What is asked and what is reached", markdown_table(summary_of(judge)),
+             "## Cell by cell", markdown_table(table_of(judge)),
              "## Median milliseconds of processor time"]
     parts += [markdown_table(lines) for lines in times_by_cell(cells)]
     values = [[cell["cell"], name, contest_report.rounded(value)] for cell in cells
@@ -366,7 +383,7 @@ def write_csv(path, cells):
 
 
 def file_name_of(about):
-    machine = re.sub(r"[^a-z0-9.]+", "-", re.sub(r"\(r\)|\(tm\)|cpu|processor|@", " ", about["processor"].lower()))
+    machine = re.sub(r"[^a-z0-9.]+", "-", re.sub(r"\(r\)|\(tm\)|intel|amd|cpu|processor|@", " ", about["processor"].lower()))
     return f"{about['date'][:10]}-{machine.strip('-')}-contest"
 
 
@@ -381,6 +398,15 @@ def compact(cells):
     return kept
 
 
+def keep(about, cells, judge):
+    path = ROOT / "benchmarks/results" / file_name_of(about)
+    result = {"about": about, "judgement": judge.rows, "cells": compact(cells)}
+    # The name has dots: an ending is added, not replaced.
+    path.with_name(path.name + ".json").write_text(json.dumps(result, indent=1) + "\n", encoding="utf-8")
+    path.with_name(path.name + ".md").write_text(markdown_of(about, cells, judge), encoding="utf-8")
+    print(f"Kept: {path}.json and .md")
+
+
 def write_results(arguments, about, cells, judge):
     folder = arguments.output
     result = {"about": about, "judgement": judge.rows, "cells": cells}
@@ -390,11 +416,7 @@ def write_results(arguments, about, cells, judge):
     (folder / "results.html").write_text(page, encoding="utf-8")
     print(f"\nWritten: {folder}/results.html, results.json, results.csv")
     if arguments.save:
-        path = ROOT / "benchmarks/results" / file_name_of(about)  # has dots, so suffixes are added, not replaced
-        kept = {"about": about, "judgement": judge.rows, "cells": compact(cells)}
-        path.with_name(path.name + ".json").write_text(json.dumps(kept, indent=1) + "\n", encoding="utf-8")
-        path.with_name(path.name + ".md").write_text(markdown_of(about, cells, judge), encoding="utf-8")
-        print(f"Kept: {path}.json and .md")
+        keep(about, cells, judge)
 
 
 def chosen_cells(arguments):
