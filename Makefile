@@ -1,13 +1,17 @@
 # The short way to everything; CMakePresets.json holds the details.
 JOBS ?= $(shell nproc)
 
-.PHONY: help demo test build bench check format docs clean dependencies
+BASE ?= HEAD
+
+.PHONY: help demo test build bench bench-quick bench-kernels bench-compare contest check format docs clean dependencies
 
 help:
 	@echo 'make demo     build, then a cloth that falls over a ball, and nine objects that collide'
 	@echo 'make test     build, then every test'
 	@echo 'make build    the release build: build/release/bin/supple'
-	@echo 'make bench    build and run the benchmarks'
+	@echo 'make bench    Supple against Embree, CGAL, FCL, Bullet and ODE: up to 25 minutes; bench-quick takes one'
+	@echo 'make bench-kernels   stages and kernels of Supple by themselves'
+	@echo 'make bench-compare BASE=COMMIT   this working tree against a commit'
 	@echo 'make check    format, include order, changelog, generated documents'
 	@echo 'make format   format the C++ sources'
 	@echo 'make docs     write the documents that are generated from the command line'
@@ -28,10 +32,25 @@ build: dependencies
 	cmake --preset release
 	cmake --build --preset release -j $(JOBS)
 
-bench: dependencies
+# CONTEST passes options on: make bench CONTEST="--only 'B/*' --save"
+bench: contest
+	benchmarks/contest.py $(CONTEST)
+
+bench-quick: contest
+	benchmarks/contest.py --quick $(CONTEST)
+
+contest:
+	tools/install_dependencies.sh --bench
+	cmake --preset release -DSUPPLE_BUILD_PEER_BENCHMARKS=ON
+	cmake --build --preset release -j $(JOBS) --target contest
+
+bench-kernels: dependencies
 	cmake --preset release -DSUPPLE_BUILD_BENCHMARKS=ON
 	cmake --build --preset release -j $(JOBS)
 	build/release/bin/supple_benchmarks
+
+bench-compare: dependencies
+	benchmarks/contest_compare.py $(BASE) $(CONTEST)
 
 check: build
 	tools/install_dependencies.sh --ci

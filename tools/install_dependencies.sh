@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Installs the Debian 12 packages that a build, the tests and the demo need; with --ci also those of the checks,
-# clang and the sanitizers. Does nothing, quickly, when all are there.
+# clang and the sanitizers, with --bench the libraries that benchmarks compare with. Does nothing, quickly, when all
+# are there.
 set -euo pipefail
 
 packages=(
@@ -13,6 +14,9 @@ packages=(
 )
 if [ "${1:-}" = "--ci" ]; then
   packages+=(git clang-19 libclang-rt-19-dev clang-format python3-h5py)
+fi
+if [ "${1:-}" = "--bench" ]; then
+  packages+=(git pkg-config libembree-dev libcgal-dev libfcl-dev libbullet-dev libode-dev)
 fi
 
 if ! command -v dpkg-query >/dev/null; then

@@ -1,7 +1,8 @@
 #include "workloads/deforming_copies.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <array>
+#include <regex>
 #include <utility>
 
 #include "supple/error.hpp"
@@ -71,7 +72,7 @@ DeformingCopies::DeformingCopies(TriangleMesh mesh, std::size_t copies, double s
     for (const Vec3d& p : mesh_.positions) {
       copy.rest.push_back(rounded({dot(rotation[0], p), dot(rotation[1], p), dot(rotation[2], p)}));
     }
-    copy.positions.resize(copy.rest.size());
+    copy.positions.resize(copy.rest.size() + 1);
     deform(copy);
   }
 }
@@ -80,11 +81,17 @@ void DeformingCopies::deform(Copy& copy) const {
   const double slow = time_ * turns_of_radian + copy.phase, fast = 1.7 * time_ * turns_of_radian + copy.phase;
   const double shift = 0.03 * sin_turns(slow);
   const Vec3d center = copy.center + Vec3d{shift, shift, shift};
+  copy.bounds = {};
   for (std::size_t i = 0; i < copy.rest.size(); ++i) {
     const Vec3d b{copy.rest[i].x, copy.rest[i].y, copy.rest[i].z};
     const double wide = sin_turns((3 * b.x + 4 * b.y) * turns_of_radian + slow);
     const double narrow = sin_turns((9 * b.z - 7 * b.x) * turns_of_radian + fast);
-    copy.positions[i] = rounded(center + b * (1 + 0.04 * wide + 0.015 * narrow));
+    const Vec3f p = rounded(center + b * (1 + 0.04 * wide + 0.015 * narrow));
+    for (int axis = 0; axis < 3; ++axis) {
+      copy.bounds.min[axis] = std::min(copy.bounds.min[axis], p[axis]);
+      copy.bounds.max[axis] = std::max(copy.bounds.max[axis], p[axis]);
+    }
+    copy.positions[i] = p;
   }
 }
 
@@ -96,24 +103,19 @@ void DeformingCopies::advance() {
 }
 
 std::optional<DeformingCopies> make_deforming_copies(const std::string& name) {
-  const std::size_t cross = name.find('x'), rest = name.find("-rest");
-  const std::string shape = name.substr(0, cross);
-  std::size_t copies = 0;
-  if (cross != std::string::npos) {
-    for (const char c : name.substr(cross + 1, rest == std::string::npos ? rest : rest - cross - 1)) {
-      copies = c >= '0' && c <= '9' && copies < 100000 ? 10 * copies + static_cast<std::size_t>(c - '0') : 0;
-    }
-  }
-  const bool is_bunny = shape == "bunny";
-  if (copies == 0 || !(is_bunny || shape == "980" || shape == "18000" || shape == "69620"))
+  static const std::regex form("(bunny|[1-9][0-9]{1,7})x([1-9][0-9]{0,4})(-rest)?");
+  std::smatch parts;
+  const bool matches = std::regex_match(name, parts, form);
+  const std::string shape = matches ? parts[1].str() : "0";
+  std::uint32_t frequency = 1;
+  while (shape != "bunny" && 20 * frequency * frequency < std::stoul(shape)) ++frequency;
+  if (!matches || (shape != "bunny" && 20 * frequency * frequency != std::stoul(shape)))
     throw Error(
         "no deforming copies are named '" + name +
-        "'; write SHAPExCOPIES with one of 980, 18000, 69620, bunny, and -rest when most are at rest");
-  const std::size_t one_in = rest == std::string::npos ? 1 : 10;
-  if (!is_bunny) {
-    const std::uint32_t frequency = shape == "980" ? 7 : shape == "18000" ? 30 : 59;
-    return DeformingCopies(make_icosphere(frequency), copies, 1.9, one_in);
-  }
+        "'; write SHAPExCOPIES, SHAPE being bunny or a number of triangles that is 20 times a square, "
+        "such as 18000x64, and -rest when most are at rest");
+  const std::size_t copies = std::stoul(parts[2].str()), one_in = parts[3].matched ? 10 : 1;
+  if (shape != "bunny") return DeformingCopies(make_icosphere(frequency), copies, 1.9, one_in);
   auto bunny = load_shared("models/stanford-bunny.obj");
   if (!bunny) return std::nullopt;
   normalize(*bunny);

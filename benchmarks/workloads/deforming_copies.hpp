@@ -23,8 +23,12 @@ class DeformingCopies {
   std::size_t copies() const { return copies_.size(); }
   std::size_t triangle_count() const { return mesh_.triangles.size() * copies_.size(); }
   const std::vector<Triangle>& triangles() const { return mesh_.triangles; }
-  /// Of one copy at present.
-  std::span<const Vec3f> positions(std::size_t copy) const { return copies_[copy].positions; }
+  const TriangleMesh& mesh() const { return mesh_; }
+  /// Of one copy at present. One coordinate past the last may be read: for those who load four at a time.
+  std::span<const Vec3f> positions(std::size_t copy) const {
+    return std::span(copies_[copy].positions).first(copies_[copy].rest.size());
+  }
+  const Aabb& bounds(std::size_t copy) const { return copies_[copy].bounds; }
   /// Whether the last `advance` moved it.
   bool moves(std::size_t copy) const { return copy % one_in_ == 0; }
   /// One frame on.
@@ -35,6 +39,7 @@ class DeformingCopies {
     Vec3d center;
     double phase = 0;  // in turns
     std::vector<Vec3f> rest, positions;
+    Aabb bounds;
   };
   void deform(Copy& copy) const;
 
@@ -44,9 +49,9 @@ class DeformingCopies {
   std::vector<Copy> copies_;
 };
 
-/// A cell of workload B by name: SHAPExCOPIES with SHAPE 980, 18000, 69620 (triangles of a geodesic sphere of
-/// radius 1) or bunny; an ending `-rest` leaves nine copies of ten at rest. Nothing when the bunny is not
-/// there; throws `Error` for other names.
+/// A cell of workload B by name: SHAPExCOPIES, SHAPE being the triangles of a geodesic sphere of radius 1,
+/// such as 980, 18000, 69620 (20 times a square), or bunny; an ending `-rest` leaves nine copies of ten at
+/// rest. Nothing when the bunny is not there; throws `Error` for other names.
 std::optional<DeformingCopies> make_deforming_copies(const std::string& name);
 
 }  // namespace supple::benchmarks

@@ -1,0 +1,498 @@
+#!/usr/bin/env python3
+"""Supple against Embree, CGAL, FCL, Bullet, ODE and two short baselines on the workloads of docs/performance.md.
+
+usage: contest.py [--build DIR] [--quick] [--only CELL]... [--seconds S] [--output DIR] [--save] [--list]
+
+    --build DIR    the build with supple_contest in its bin/ (default: build/release)
+    --quick        a cell of each kind, about a minute; otherwise all, up to 25 minutes
+    --only CELL    only this cell, or all whose names match a pattern such as 'A/u1/*'; may be repeated
+    --seconds S    processor time for each cell
+    --output DIR   where results.json, results.csv and results.html go (default: build/contest)
+    --save         also keep the results in benchmarks/results/, named by date and machine
+    --list         print the cells
+
+Each cell is a process of its own, in which all contestants take their frames in turn. Ratios are of medians of
+processor time on one thread, of wall time where two threads are compared with one. Exit status 3 when contestants
+disagree on the pairs, 1 when a cell fails otherwise.
+"""
+
+import argparse
+import csv
+import datetime
+import fnmatch
+import json
+import math
+import os
+import pathlib
+import platform
+import re
+import statistics
+import subprocess
+import sys
+import time
+
+import contest_report
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+FIELDS = ["u1", "u8", "clu", "cl8"]
+BASELINES = {"baseline sweep", "baseline grid"}
+GROWTH = [f"growth/{triangles}x2" for triangles in (500, 5120, 50000, 499280, 1997120)]
+
+FULL = (
+    [f"A/{field}/{count}" for field in FIELDS for count in (1000, 10000, 100000, 1000000)]
+    + ["A/u1/100000/drift", "A/u1/100000/one-percent"]
+    + [f"B/{name}" for name in ("980x64", "980x512", "18000x9", "18000x64", "69620x9", "69620x64", "bunnyx9",
+                                "18000x64-rest", "69620x64-rest")]
+    + ["C/cloth-funnel", "C/cloth-ball", "C/crumpled"]
+    + ["process/cloth-ball", "process/two-bunnies"]
+    + ["threads/B/18000x64", "threads/C/cloth-ball", "threads/C/crumpled"]
+    + GROWTH
+    + ["limits/bandwidth"]
+    + [f"limits/refit/{triangles}" for triangles in (980, 18000, 69620, 1310720)]
+    + ["memory/69620", "memory/bunny"]
+)
+QUICK = (
+    [f"A/{field}/10000" for field in FIELDS]
+    + ["A/u1/100000", "A/clu/100000", "A/u1/100000/one-percent", "B/980x64", "B/18000x9", "B/bunnyx9",
+       "B/18000x64-rest", "C/cloth-funnel", "C/crumpled", "process/two-bunnies", "threads/B/18000x64"]
+    + GROWTH[:3]
+    + ["limits/refit/69620", "memory/69620"]
+)
+
+
+class Disagreement(Exception):
+    """Contestants that find different pairs."""
+
+
+# --- running ---
+
+
+def run_cell(build, cell, seconds):
+    """The cell's JSON from supple_contest."""
+    command = [build / "bin/supple_contest", cell, "--seconds", str(seconds)]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    if done.returncode == 3:
+        raise Disagreement(done.stderr.strip())
+    if done.returncode != 0:
+        raise RuntimeError(f"{cell}: {done.stderr.strip() or f'exit status {done.returncode}'}")
+    return json.loads(done.stdout)
+
+
+def shared_data():
+    return pathlib.Path(os.environ.get("SUPPLE_DATA", ROOT.parent / "shared/data"))
+
+
+def shifted_copy(mesh, folder):
+    """The OBJ file with 0.025 added to every x, written once."""
+    copy = folder / f"{mesh.stem}-shifted.obj"
+    if not copy.exists():
+        lines = []
+        for line in mesh.read_text(encoding="utf-8").splitlines():
+            words = line.split()
+            if words[:1] == ["v"]:
+                line = f"v {float(words[1]) + 0.025:.9g} {words[2]} {words[3]}"
+            lines.append(line)
+        copy.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    return copy
+
+
+def time_process(command):
+    """Processor and wall milliseconds of a process pinned to one core."""
+    start = time.perf_counter()
+    process = subprocess.Popen(command, stdout=subprocess.DEVNULL,
+                               preexec_fn=lambda: os.sched_setaffinity(0, {min(os.sched_getaffinity(0))}))
+    _, status, usage = os.wait4(process.pid, 0)
+    process.returncode = os.waitstatus_to_exitcode(status)
+    wall = 1e3 * (time.perf_counter() - start)
+    if process.returncode != 0:
+        raise RuntimeError(f"{' '.join(map(str, command))}: exit status {process.returncode}")
+    return 1e3 * (usage.ru_utime + usage.ru_stime), wall
+
+
+def pairs_in(path):
+    """Of what either program wrote."""
+    result = json.loads(path.read_text(encoding="utf-8"))
+    if "pairs" in result:
+        return result["pairs"]
+    frame = result["frames"][0]
+    return [pair for group in frame["self"] + frame["triangle_pairs"] for pair in group["pairs"]]
+
+
+def run_process_cell(build, cell, seconds, folder):
+    """Whole processes in turn: reading, detecting, writing JSON."""
+    data = shared_data()
+    if cell == "process/cloth-ball":
+        meshes, options = [data / "scalable-ccd/cloth-ball/frames/cloth_ball92.ply"], ["--self"]
+    else:
+        bunny = data / "models/stanford-bunny.obj"
+        meshes, options = [bunny, bunny], []
+    result = {"cell": cell, "skipped": None, "values": {}, "contestants": []}
+    if not meshes[0].exists():
+        return result | {"skipped": f"no {meshes[0].name}; set SUPPLE_DATA"}
+    if not (build / "bin/supple_cgal_detect").exists():
+        return result | {"skipped": "built without CGAL"}
+    if len(meshes) == 2:
+        meshes[1] = shifted_copy(meshes[1], folder)
+    outputs = {"Supple": folder / "supple.json", "CGAL": folder / "cgal.json"}
+    commands = {
+        "Supple": [build / "bin/supple", "detect", *options, "--threads", "1", "--quiet", "--no-contact-points",
+                   "--json", outputs["Supple"], *meshes],
+        "CGAL": [build / "bin/supple_cgal_detect", outputs["CGAL"], *meshes],
+    }
+    times = {name: [] for name in commands}
+    start = time.perf_counter()
+    while len(times["CGAL"]) < 5 or time.perf_counter() - start < 2 * seconds:
+        for name, command in commands.items():
+            times[name].append(time_process(command))
+    found = {name: pairs_in(path) for name, path in outputs.items()}
+    if sorted(found["Supple"]) != sorted(found["CGAL"]):
+        raise Disagreement(f"{cell}: CGAL finds {len(found['CGAL'])} pairs, Supple {len(found['Supple'])}, "
+                           "or as many others")
+    for name in commands:
+        result["contestants"].append({
+            "name": name, "threads": 1, "pairs": len(found[name]), "hash": "", "mean_stage_ms": {},
+            "cpu_ms": [cpu for cpu, _ in times[name]], "wall_ms": [wall for _, wall in times[name]]})
+    return result
+
+
+# --- judging ---
+
+
+class Judge:
+    """Rows of the table: what each cell reaches of what is asked."""
+
+    def __init__(self, cells):
+        self.cells = {cell["cell"]: cell for cell in cells if not cell["skipped"]}
+        self.rows = []
+
+    def median(self, cell, name, clock="cpu_ms"):
+        for contestant in self.cells.get(cell, {"contestants": []})["contestants"]:
+            if contestant["name"] == name:
+                return statistics.median(contestant[clock])
+        return None
+
+    def best(self, cell, names):
+        """The fastest of those that are there, and its name."""
+        times = [(self.median(cell, name), name) for name in names]
+        return min((pair for pair in times if pair[0] is not None), default=(None, None))
+
+    def add(self, row, cell, against, value, reach, aim, smaller_is_better=False):
+        if value is None:
+            return
+        sign = -1 if smaller_is_better else 1
+        met = "aim" if sign * value >= sign * aim else "reach" if sign * value >= sign * reach else "missed"
+        self.rows.append({"row": row, "cell": cell, "against": against, "ratio": value, "reach": reach, "aim": aim,
+                          "smaller_is_better": smaller_is_better, "met": met})
+
+    def add_faster(self, row, cell, names, reach, aim, supple="Supple"):
+        """How many times as fast as the best of the others."""
+        best, name = self.best(cell, names)
+        own = self.median(cell, supple)
+        if best is not None and own:
+            self.add(row, cell, name, best / own, reach, aim)
+
+    def libraries(self, cell):
+        return [c["name"] for c in self.cells[cell]["contestants"]
+                if c["name"] not in BASELINES and not c["name"].startswith("Supple")]
+
+    def matching(self, pattern):
+        return [name for name in self.cells if re.fullmatch(pattern, name)]
+
+
+def exponent(points):
+    """Of the power law closest to the points, by least squares of logarithms."""
+    xs, ys = [math.log(x) for x, _ in points], [math.log(y) for _, y in points]
+    x_mean, y_mean = statistics.mean(xs), statistics.mean(ys)
+    return (sum((x - x_mean) * (y - y_mean) for x, y in zip(xs, ys))
+            / sum((x - x_mean) ** 2 for x in xs))
+
+
+def growth_points(judge):
+    """Name and (size, milliseconds) of each series that shows growth."""
+    series = []
+    for field in FIELDS:
+        points = [(int(cell.split("/")[2]), judge.median(cell, "Supple"))
+                  for cell in judge.matching(f"A/{field}/[0-9]+")]
+        series.append((f"objects, {field}", sorted(points)))
+    points = [(judge.cells[cell]["values"]["triangles"], judge.median(cell, "Supple"))
+              for cell in judge.matching("growth/.*")]
+    series.append(("triangles, two spheres", sorted(points)))
+    return [(name, points) for name, points in series if len(points) >= 3]
+
+
+def judge_refit(judge, cell):
+    own = next((c for c in judge.cells[cell]["contestants"] if c["name"] == "Supple"), None)
+    ideal = judge.median(cell, "ideal, 4 per slot")
+    if own and ideal:
+        alone = own["mean_stage_ms"]["refit alone"] / statistics.mean(own["cpu_ms"]) * statistics.median(own["cpu_ms"])
+        judge.add("refit alone, per triangle", cell, "ideal refit", alone / ideal, 2, 1.3, True)
+
+
+def judged(cells):
+    judge = Judge(cells)
+    copies = [("B 69,620 × 64, whole frame", "B/69620x64", 5, 9), ("B 18,000 × 9 and × 64", "B/18000x(9|64)", 4, 8),
+              ("B 980 × 64 and × 512", "B/980x(64|512)", 3, 5), ("B bunny × 9", "B/bunnyx9", 4, 8),
+              ("B with 90 % of the objects at rest", "B/.*-rest", 10, 30)]
+    for row, pattern, reach, aim in copies:
+        for cell in judge.matching(pattern):
+            judge.add_faster(row, cell, judge.libraries(cell), reach, aim)
+    for cell in judge.matching("limits/refit/.*"):
+        judge_refit(judge, cell)
+    boxes = judge.matching("A/[a-z0-9]+/[0-9]+")
+    for cell in boxes:
+        judge.add_faster("A, the best library", cell, judge.libraries(cell), 2.5, 4)
+    for cell in boxes:
+        judge.add_faster("A, the baselines", cell, BASELINES, 1, 1.5)
+    for cell in judge.matching("A/.*/drift"):
+        drifted, fresh = judge.median(cell, "Supple, drifted"), judge.median(cell, "Supple, fresh")
+        judge.add("A after 500 frames of drift", cell, "Supple, fresh", drifted / fresh, 1.1, 1, True)
+    for cell in judge.matching("A/.*/one-percent"):
+        judge.add_faster("A with 1 % of the boxes moving", cell, ["Supple, all move"], 10, 30,
+                         "Supple, one percent moves")
+    for cell in judge.matching("C/.*"):
+        judge.add_faster("C, candidates and verdicts, against Embree's candidates", cell, ["Embree"], 1, 2)
+    for cell in judge.matching("process/.*"):
+        judge.add_faster("whole process supple detect", cell, ["CGAL"], 2, 4)
+    for cell in judge.matching("threads/.*"):
+        one, two = judge.median(cell, "Supple", "wall_ms"), judge.median(cell, "Supple, 2 threads", "wall_ms")
+        judge.add("two threads", cell, "Supple, 1 thread", one / two, 1.7, 1.9)
+    for name, points in growth_points(judge):
+        judge.add("growth, exponent", name, "linear", exponent(points), 1.1, 1.05, True)
+    for cell in judge.matching("memory/.*"):
+        judge.add("memory besides the mesh, bytes a triangle", cell, "", judge.cells[cell]["values"]
+                  ["heap bytes a triangle"], 64, 40, True)
+    return judge
+
+
+# --- telling ---
+
+
+def processor():
+    with open("/proc/cpuinfo", encoding="utf-8") as lines:
+        return next((line.split(":")[1].strip() for line in lines if line.startswith("model name")), "unknown")
+
+
+def git(*arguments):
+    done = subprocess.run(["git", "-C", ROOT, *arguments], capture_output=True, text=True, check=False)
+    return done.stdout.strip()
+
+
+def cache_entry(build, name):
+    for line in (build / "CMakeCache.txt").read_text(encoding="utf-8").splitlines():
+        if line.startswith(name + ":"):
+            return line.split("=", 1)[1]
+    return ""
+
+
+def description(build, arguments, missing):
+    compiler = cache_entry(build, "CMAKE_CXX_COMPILER") or "c++"
+    version = subprocess.run([compiler, "--version"], capture_output=True, text=True, check=False).stdout.split("\n")[0]
+    return {
+        "date": datetime.datetime.now(datetime.timezone.utc).strftime("%Y-%m-%d %H:%M UTC"),
+        "commit": git("rev-parse", "--short", "HEAD") + (" with changes" if git("status", "--porcelain", "src", "include")
+                                                         else ""),
+        "processor": processor(),
+        "cores": str(os.cpu_count()),
+        "system": f"{platform.system()} {platform.release()}",
+        "compiler": f"{version}, {cache_entry(build, 'CMAKE_BUILD_TYPE')}",
+        "load when it began": f"{os.getloadavg()[0]:.1f} processes",
+        "run": "quick" if arguments.quick else "chosen cells" if arguments.only else "full",
+        "left out": ", ".join(missing) or "nothing",
+    }
+
+
+def table_of(judge):
+    lines = [["workload", "cell", "against", "ratio", "reach", "aim", ""]]
+    for row in judge.rows:
+        bound = "≤ " if row["smaller_is_better"] else "≥ "
+        lines.append([row["row"], row["cell"], row["against"], f"{row['ratio']:.2f}", f"{bound}{row['reach']:g}",
+                      f"{bound}{row['aim']:g}", row["met"]])
+    return lines
+
+
+def print_table(lines):
+    widths = [max(len(line[i]) for line in lines) for i in range(len(lines[0]))]
+    for line in lines:
+        print("  ".join(text.ljust(width) for text, width in zip(line, widths)).rstrip())
+
+
+def summary_of(judge):
+    """A line for each row: the range over its cells, and how many meet what."""
+    lines = [["workload", "against", "lowest", "highest", "reach", "aim", "cells that reach the aim, reach, miss"]]
+    groups = {}
+    for row in judge.rows:
+        groups.setdefault(row["row"], []).append(row)
+    for name, rows in groups.items():
+        bound = "≤ " if rows[0]["smaller_is_better"] else "≥ "
+        ratios = [row["ratio"] for row in rows]
+        met = [sum(row["met"] == word for row in rows) for word in ("aim", "reach", "missed")]
+        lines.append([name, ", ".join(dict.fromkeys(row["against"] for row in rows)), f"{min(ratios):.2f}",
+                      f"{max(ratios):.2f}", f"{bound}{rows[0]['reach']:g}", f"{bound}{rows[0]['aim']:g}",
+                      ", ".join(map(str, met))])
+    return lines
+
+
+def markdown_table(lines):
+    rows = ["| " + " | ".join(line) + " |" for line in lines]
+    return "\n".join([rows[0], "|" + "---|" * len(lines[0]), *rows[1:]])
+
+
+def times_by_cell(cells):
+    """Median processor milliseconds, a row a cell and a column a contestant, of each workload."""
+    groups = {}
+    for cell in cells:
+        groups.setdefault(cell["cell"].split("/")[0], []).append(cell)
+    for name, group in groups.items():
+        names = list(dict.fromkeys(c["name"] for cell in group for c in cell["contestants"]))
+        if name not in ("A", "B", "C", "process") or not names:
+            continue
+        lines = [["ms", *names, "pairs"]]
+        for cell in group:
+            medians = {c["name"]: statistics.median(c["cpu_ms"]) for c in cell["contestants"]}
+            if medians and not any(name.startswith("Supple,") for name in medians):
+                lines.append([cell["cell"], *(contest_report.rounded(medians[name]) if name in medians else ""
+                                              for name in names), f"{cell['contestants'][0]['pairs']:,}"])
+        yield [line[:1] + [text for text, heading in zip(line[1:], lines[0][1:]) if not heading.startswith("Supple,")]
+               for line in lines]
+
+
+def markdown_of(about, cells, judge):
+    parts = ["# Supple against others, " + about["date"][:10],
+             "\n".join(f"- {name}: {value}" for name, value in about.items()),
+             "## What is asked and what is reached", markdown_table(summary_of(judge)),
+             "## Cell by cell", markdown_table(table_of(judge)),
+             "## Median milliseconds of processor time"]
+    parts += [markdown_table(lines) for lines in times_by_cell(cells)]
+    values = [[cell["cell"], name, contest_report.rounded(value)] for cell in cells
+              for name, value in cell["values"].items() if name != "triangles"]
+    if values:
+        parts.append(markdown_table([["cell", "what", "value"], *values]))
+    return "\n\n".join(parts) + "\n"
+
+
+def write_csv(path, cells):
+    with open(path, "w", encoding="utf-8", newline="") as file:
+        writer = csv.writer(file, lineterminator="\n")
+        writer.writerow(["cell", "contestant", "threads", "pairs", "frames", "cpu_ms_q1", "cpu_ms_median", "cpu_ms_q3",
+                         "wall_ms_median"])
+        for cell in cells:
+            for c in cell["contestants"]:
+                q1, q2, q3 = contest_report.quartiles(c["cpu_ms"])
+                writer.writerow([cell["cell"], c["name"], c["threads"], c["pairs"], len(c["cpu_ms"]), f"{q1:.4g}",
+                                 f"{q2:.4g}", f"{q3:.4g}", f"{statistics.median(c['wall_ms']):.4g}"])
+
+
+def file_name_of(about):
+    machine = re.sub(r"[^a-z0-9.]+", "-", re.sub(r"\(r\)|\(tm\)|intel|amd|cpu|processor|@", " ", about["processor"].lower()))
+    return f"{about['date'][:10]}-{machine.strip('-')}-contest"
+
+
+def compact(cells):
+    """Of samples only what the tables need: results are kept for years."""
+    kept = []
+    for cell in cells:
+        contestants = [{key: value for key, value in c.items() if key not in ("cpu_ms", "wall_ms")}
+                       | {"frames": len(c["cpu_ms"]), "cpu_ms_quartiles": contest_report.quartiles(c["cpu_ms"]),
+                          "wall_ms_quartiles": contest_report.quartiles(c["wall_ms"])} for c in cell["contestants"]]
+        kept.append(cell | {"contestants": contestants})
+    return kept
+
+
+def keep(about, cells, judge):
+    path = ROOT / "benchmarks/results" / file_name_of(about)
+    result = {"about": about, "judgement": judge.rows, "cells": compact(cells)}
+    # The name has dots: an ending is added, not replaced.
+    path.with_name(path.name + ".json").write_text(json.dumps(result, indent=1) + "\n", encoding="utf-8")
+    path.with_name(path.name + ".md").write_text(markdown_of(about, cells, judge), encoding="utf-8")
+    print(f"Kept: {path}.json and .md")
+
+
+def write_results(arguments, about, cells, judge):
+    folder = arguments.output
+    result = {"about": about, "judgement": judge.rows, "cells": cells}
+    (folder / "results.json").write_text(json.dumps(result, indent=1) + "\n", encoding="utf-8")
+    write_csv(folder / "results.csv", cells)
+    page = contest_report.html_of(about, cells, judge.rows, growth_points(judge))
+    (folder / "results.html").write_text(page, encoding="utf-8")
+    print(f"\nWritten: {folder}/results.html, results.json, results.csv")
+    if arguments.save:
+        keep(about, cells, judge)
+
+
+def chosen_cells(arguments):
+    cells = QUICK if arguments.quick else FULL
+    if not arguments.only:
+        return cells
+    chosen = [cell for cell in FULL if any(fnmatch.fnmatch(cell, pattern) for pattern in arguments.only)]
+    # A name that is in no list may still be a cell, such as B/5120x27.
+    chosen += [name for name in arguments.only if name not in chosen and "*" not in name]
+    return chosen
+
+
+def run_all(arguments, cells):
+    """Results, and whether any cell failed and contestants disagreed."""
+    results, failed, disagree = [], False, False
+    for number, cell in enumerate(cells, 1):
+        start = time.perf_counter()
+        try:
+            if cell.startswith("process/"):
+                result = run_process_cell(arguments.build, cell, arguments.seconds, arguments.output)
+            else:
+                result = run_cell(arguments.build, cell, arguments.seconds)
+        except Disagreement as error:
+            print(f"DISAGREEMENT {error}", flush=True)
+            disagree = True
+            continue
+        except (RuntimeError, json.JSONDecodeError) as error:
+            print(f"FAILED {error}", flush=True)
+            failed = True
+            continue
+        results.append(result)
+        told = ", ".join(f"{c['name']} {statistics.median(c['cpu_ms']):.3g}" for c in result["contestants"])
+        if result["values"] and not told:
+            told = ", ".join(f"{name} {value:.3g}" for name, value in result["values"].items())
+        print(f"[{number}/{len(cells)}, {time.perf_counter() - start:.0f} s] {cell}: "
+              f"{'left out: ' + result['skipped'] if result['skipped'] else told}", flush=True)
+    return results, failed, disagree
+
+
+def parsed(words):
+    parser = argparse.ArgumentParser(usage=__doc__.split("usage: ")[1].split("\n\n")[0])
+    parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build/release")
+    parser.add_argument("--quick", action="store_true")
+    parser.add_argument("--only", action="append", default=[])
+    parser.add_argument("--seconds", type=float)
+    parser.add_argument("--output", type=pathlib.Path, default=ROOT / "build/contest")
+    parser.add_argument("--save", action="store_true")
+    parser.add_argument("--list", action="store_true")
+    arguments = parser.parse_args(words)
+    if arguments.seconds is None:
+        arguments.seconds = 1 if arguments.quick else 5
+    return arguments
+
+
+def main():
+    arguments = parsed(sys.argv[1:])
+    cells = chosen_cells(arguments)
+    if arguments.list:
+        print("\n".join(cells))
+        return 0
+    if not (arguments.build / "bin/supple_contest").exists():
+        sys.exit(f"contest.py: no {arguments.build}/bin/supple_contest; run: make bench")
+    missing = subprocess.run([arguments.build / "bin/supple_contest", "--missing"], capture_output=True, text=True,
+                             check=True).stdout.split()
+    about = description(arguments.build, arguments, missing)
+    for name, value in about.items():
+        print(f"{name}: {value}")
+    print("\nmedian milliseconds of processor time", flush=True)
+    arguments.output.mkdir(parents=True, exist_ok=True)
+    results, failed, disagree = run_all(arguments, cells)
+    judge = judged(results)
+    print()
+    print_table(table_of(judge))
+    write_results(arguments, about, results, judge)
+    return 3 if disagree else 1 if failed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

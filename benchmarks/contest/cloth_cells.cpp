@@ -1,0 +1,93 @@
+#include <algorithm>
+#include <optional>
+
+#include "contest/cells.hpp"
+#include "supple/continuous.hpp"
+
+namespace supple::benchmarks {
+namespace {
+
+/// What exact verdicts, one by one, leave of the candidates.
+PairDigest touching(const ClothStep& step, std::span<const ElementPair> candidates) {
+  const auto edges = edges_of(step.triangles);
+  PairDigest digest;
+  const auto corners = [&](const std::vector<Vec3d>& p, std::array<std::uint32_t, 4> v) {
+    return std::array<Vec3d, 4>{p[v[0]], p[v[1]], p[v[2]], p[v[3]]};
+  };
+  for (const ElementPair& pair : candidates) {
+    if (pair.is_edge_edge) {
+      const std::array<std::uint32_t, 4> v{edges[pair.a][0], edges[pair.a][1], edges[pair.b][0],
+                                           edges[pair.b][1]};
+      if (first_impact(EdgeEdgeMotion{corners(step.start, v), corners(step.end, v)}))
+        digest.add(pair.a, pair.b);
+    } else {
+      const Triangle& t = step.triangles[pair.b];
+      const std::array<std::uint32_t, 4> v{pair.a, t[0], t[1], t[2]};
+      if (first_impact(VertexFaceMotion{corners(step.start, v), corners(step.end, v)}))
+        digest.add(pair.a, pair.b + (std::uint64_t{1} << 32));
+    }
+  }
+  return digest;
+}
+
+struct KnownCounts {
+  const char* cloth;
+  std::size_t vertex_face, edge_edge;
+};
+/// Of the real frames: pairs whose boxes overlap.
+constexpr KnownCounts known_candidates[] = {{"cloth-funnel", 7319, 33770}, {"cloth-ball", 1655541, 5197332}};
+
+void check_known(const Choice& choice, const std::string& cloth, std::span<const ElementPair> candidates) {
+  const auto edge_edge = static_cast<std::size_t>(std::count_if(
+      candidates.begin(), candidates.end(), [](const ElementPair& pair) { return pair.is_edge_edge; }));
+  for (const KnownCounts& known : known_candidates) {
+    if (known.cloth == cloth &&
+        (known.edge_edge != edge_edge || known.vertex_face != candidates.size() - edge_edge))
+      throw Disagreement(choice.cell + ": the others find " + std::to_string(candidates.size() - edge_edge) +
+                         " / " + std::to_string(edge_edge) + " candidates, known are " +
+                         std::to_string(known.vertex_face) + " / " + std::to_string(known.edge_edge));
+  }
+}
+
+/// The same step there and back: every frame has new coordinates, and the same pairs.
+void turn_round(ClothStep& step) {
+  step.start.swap(step.end);
+}
+
+}  // namespace
+
+void run_cloth(const Choice& choice, const std::string& name, bool two_threads, Output& output) {
+  auto step = make_cloth_step(name);
+  if (!step) return output.skip("the frames of " + name + " are not there; set SUPPLE_DATA");
+  output.value("triangles", static_cast<double>(step->triangles.size()));
+  std::optional<PairDigest> expected;
+  const auto others = other_cloth_contestants();
+  if (!others.empty() && !two_threads && !choice.only_supple) {
+    const auto first = others.front().make();
+    first->prepare(*step);
+    first->frame(*step);
+    check_known(choice, name, first->candidates());
+    expected = touching(*step, first->candidates());
+  }
+  Turns<ClothStep, Contestant<ClothStep>> turns;
+  turns.add("Supple", 1, make_supple_cloth(1), *step);
+  if (two_threads) turns.add("Supple, 2 threads", 2, make_supple_cloth(2), *step);
+  if (!two_threads && !choice.only_supple) {
+    for (const auto& entry : others) turns.add(entry.name, 1, entry.make(), *step);
+  }
+  turns.run(
+      choice, *step, [&] { turn_round(*step); },
+      [&](const std::vector<std::size_t>& ran, const auto&, const std::vector<Record>& records) {
+        if (expected && records[0].pairs != *expected)
+          throw Disagreement(choice.cell + ": Supple finds " + text_of(records[0].pairs) +
+                             " that touch, exact verdicts on all candidates " + text_of(*expected));
+        // Contacts are compared with contacts, candidates with candidates.
+        const std::size_t first = two_threads || records.size() < 2 ? 0 : 1;
+        for (const std::size_t i : ran) {
+          if (i >= first) check_equal(choice.cell, records[first], records[i]);
+        }
+      });
+  output.records(turns.records());
+}
+
+}  // namespace supple::benchmarks

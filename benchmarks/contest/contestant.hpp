@@ -1,0 +1,93 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "supple/broad_phase.hpp"
+#include "workloads/cloth_steps.hpp"
+#include "workloads/deforming_copies.hpp"
+#include "workloads/moving_boxes.hpp"
+
+namespace supple::benchmarks {
+
+/// A set of pairs in a form that does not depend on their order.
+struct PairDigest {
+  std::uint64_t count = 0;
+  std::uint64_t hash = 0;
+
+  /// Both numbers of 64 bits name one side each; the order of the sides does not matter.
+  void add(std::uint64_t a, std::uint64_t b);
+  bool operator==(const PairDigest&) const = default;
+};
+
+/// A part of the last frame.
+struct StageTime {
+  const char* name = "";
+  double cpu_milliseconds = 0;
+};
+
+/// A library, or a method without one, on one workload.
+template <class Workload>
+class Contestant {
+ public:
+  virtual ~Contestant() = default;
+  /// Whatever is done once and not timed: structures from the workload as it is.
+  virtual void prepare(const Workload& workload) = 0;
+  /// What is timed: the workload's new state in, all pairs into an array, each once.
+  virtual void frame(const Workload& workload) = 0;
+  /// Of the last frame; not timed.
+  virtual PairDigest pairs() const = 0;
+  virtual std::vector<StageTime> stages() const { return {}; }
+};
+
+using BoxContestant = Contestant<MovingBoxes>;
+using CopiesContestant = Contestant<DeformingCopies>;
+
+/// Two elements of one mesh by vertices: a vertex and a face {v, v, v}, {f0, f1, f2}, or two edges. Pairs
+/// that share a vertex are no candidates.
+struct ElementPair {
+  bool is_edge_edge = false;
+  std::uint32_t a = 0, b = 0;  ///< vertex and triangle, or indices of two edges as `MeshEdges` numbers them
+};
+
+/// The distinct edges of a mesh, smaller vertex first, in ascending order.
+std::vector<std::array<std::uint32_t, 2>> edges_of(const std::vector<Triangle>& triangles);
+
+/// Finds candidates only: all pairs of `ElementPair`s whose boxes around both ends of the step overlap.
+class ClothContestant : public Contestant<ClothStep> {
+ public:
+  PairDigest pairs() const override;
+  /// Of the last frame, when it lists them.
+  virtual std::span<const ElementPair> candidates() const = 0;
+};
+
+/// How to make a contestant, and for which sizes it is worth waiting.
+template <class Contestant>
+struct Entry {
+  std::string name;
+  std::function<std::unique_ptr<Contestant>()> make;
+  std::size_t largest = std::numeric_limits<std::size_t>::max();  ///< boxes or triangles
+};
+
+/// All but Supple, as far as their libraries were there when this was built.
+std::vector<Entry<BoxContestant>> other_box_contestants();
+std::vector<Entry<CopiesContestant>> other_copies_contestants();
+std::vector<Entry<ClothContestant>> other_cloth_contestants();
+/// Libraries that were not there.
+std::vector<std::string> missing_libraries();
+
+std::unique_ptr<BoxContestant> make_supple_boxes(std::uint32_t threads);
+std::unique_ptr<CopiesContestant> make_supple_copies(std::uint32_t threads);
+/// Its pairs are those that touch, its stages include what it had for candidates.
+std::unique_ptr<Contestant<ClothStep>> make_supple_cloth(std::uint32_t threads);
+
+/// Of the calling process by the processor's clock.
+double cpu_milliseconds();
+double wall_milliseconds();
+
+}  // namespace supple::benchmarks

@@ -1,0 +1,233 @@
+#include <embree3/rtcore.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "contest/peers.hpp"
+#include "contest/swept_boxes.hpp"
+#include "contest/triangle_test.hpp"
+
+namespace supple::benchmarks {
+namespace {
+
+/// One thread; the peers are compared on one.
+class Device {
+ public:
+  Device() : device_(rtcNewDevice("threads=1,set_affinity=0")) {
+    if (device_ == nullptr) throw std::runtime_error("Embree makes no device");
+  }
+  ~Device() { rtcReleaseDevice(device_); }
+  Device(const Device&) = delete;
+  Device& operator=(const Device&) = delete;
+  operator RTCDevice() const { return device_; }
+
+ private:
+  RTCDevice device_;
+};
+
+/// Boxes that a callback gives, as one geometry in one scene: `rtcCollide` takes no triangles.
+class BoxScene {
+ public:
+  BoxScene(RTCDevice device, std::size_t count, RTCBoundsFunction bounds, void* user, RTCBuildQuality quality)
+      : scene_(rtcNewScene(device)), geometry_(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER)) {
+    // Only dynamic scenes of low quality refit, or build by Morton codes; compact ones refit faster.
+    rtcSetSceneBuildQuality(scene_, RTC_BUILD_QUALITY_LOW);
+    rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_DYNAMIC | RTC_SCENE_FLAG_COMPACT);
+    rtcSetGeometryUserPrimitiveCount(geometry_, static_cast<unsigned>(count));
+    rtcSetGeometryUserData(geometry_, user);
+    rtcSetGeometryBoundsFunction(geometry_, bounds, nullptr);
+    rtcSetGeometryBuildQuality(geometry_, quality);
+    rtcCommitGeometry(geometry_);
+    rtcAttachGeometry(scene_, geometry_);
+    rtcCommitScene(scene_);
+  }
+  ~BoxScene() {
+    rtcReleaseGeometry(geometry_);
+    rtcReleaseScene(scene_);
+  }
+  BoxScene(const BoxScene&) = delete;
+  BoxScene& operator=(const BoxScene&) = delete;
+
+  void update() {
+    rtcCommitGeometry(geometry_);
+    rtcCommitScene(scene_);
+  }
+  RTCScene scene() const { return scene_; }
+
+ private:
+  RTCScene scene_;
+  RTCGeometry geometry_;
+};
+
+void set_bounds(RTCBounds& bounds, const Aabb& box) {
+  bounds.lower_x = box.min.x;
+  bounds.lower_y = box.min.y;
+  bounds.lower_z = box.min.z;
+  bounds.upper_x = box.max.x;
+  bounds.upper_y = box.max.y;
+  bounds.upper_z = box.max.z;
+}
+
+void bounds_of_listed_box(const RTCBoundsFunctionArguments* arguments) {
+  const auto* const boxes = static_cast<const Aabb* const*>(arguments->geometryUserPtr);
+  set_bounds(*arguments->bounds_o, (*boxes)[arguments->primID]);
+}
+
+class EmbreeBoxes : public BoxContestant {
+ public:
+  void prepare(const MovingBoxes& field) override {
+    boxes_ = field.boxes().data();
+    scene_ = std::make_unique<BoxScene>(device_, field.boxes().size(), bounds_of_listed_box, &boxes_,
+                                        RTC_BUILD_QUALITY_LOW);
+  }
+  void frame(const MovingBoxes& field) override {
+    boxes_ = field.boxes().data();
+    scene_->update();
+    pairs_.clear();
+    rtcCollide(scene_->scene(), scene_->scene(), keep, this);
+  }
+  PairDigest pairs() const override {
+    PairDigest digest;
+    for (const IndexPair& pair : pairs_) digest.add(pair.a, pair.b);
+    return digest;
+  }
+
+ private:
+  /// Leaves that overlap, in both orders.
+  static void keep(void* user, RTCCollision* collisions, unsigned count) {
+    auto& self = *static_cast<EmbreeBoxes*>(user);
+    for (unsigned i = 0; i < count; ++i) {
+      const unsigned a = collisions[i].primID0, b = collisions[i].primID1;
+      if (a < b && boxes_overlap(self.boxes_[a], self.boxes_[b])) self.pairs_.push_back({a, b});
+    }
+  }
+
+  Device device_;
+  const Aabb* boxes_ = nullptr;
+  std::unique_ptr<BoxScene> scene_;
+  std::vector<IndexPair> pairs_;
+};
+
+class EmbreeCopies : public CandidateContestant {
+ public:
+  void prepare(const DeformingCopies& copies) override {
+    meshes_.resize(copies.copies());
+    for (std::size_t i = 0; i < copies.copies(); ++i) {
+      meshes_[i] = {copies.positions(i).data(), copies.triangles().data()};
+      scenes_.push_back(std::make_unique<BoxScene>(device_, copies.triangles().size(), bounds_of_triangle,
+                                                   &meshes_[i], RTC_BUILD_QUALITY_REFIT));
+    }
+  }
+
+ private:
+  struct Mesh {
+    const Vec3f* positions = nullptr;
+    const Triangle* triangles = nullptr;
+  };
+  struct Pair {
+    EmbreeCopies* self;
+    IndexPair objects;
+  };
+
+  static void bounds_of_triangle(const RTCBoundsFunctionArguments* arguments) {
+    const Mesh& mesh = *static_cast<const Mesh*>(arguments->geometryUserPtr);
+    const Triangle& t = mesh.triangles[arguments->primID];
+    const Vec3f &p = mesh.positions[t[0]], &q = mesh.positions[t[1]], &r = mesh.positions[t[2]];
+    set_bounds(*arguments->bounds_o, {{std::min(p.x, std::min(q.x, r.x)), std::min(p.y, std::min(q.y, r.y)),
+                                       std::min(p.z, std::min(q.z, r.z))},
+                                      {std::max(p.x, std::max(q.x, r.x)), std::max(p.y, std::max(q.y, r.y)),
+                                       std::max(p.z, std::max(q.z, r.z))}});
+  }
+  static void keep(void* user, RTCCollision* collisions, unsigned count) {
+    const Pair& pair = *static_cast<const Pair*>(user);
+    for (unsigned i = 0; i < count; ++i) {
+      pair.self->candidates_.push_back(
+          {pair.objects.a, pair.objects.b, collisions[i].primID0, collisions[i].primID1});
+    }
+  }
+  void update(const DeformingCopies& copies) override {
+    for (std::size_t i = 0; i < scenes_.size(); ++i) {
+      meshes_[i].positions = copies.positions(i).data();
+      if (copies.moves(i)) scenes_[i]->update();
+    }
+  }
+  void find_candidates(const DeformingCopies& copies) override {
+    for (const IndexPair& objects : overlapping_copies(copies, boxes_)) {
+      Pair pair{this, objects};
+      rtcCollide(scenes_[objects.a]->scene(), scenes_[objects.b]->scene(), keep, &pair);
+    }
+  }
+
+  Device device_;
+  std::vector<Mesh> meshes_;
+  std::vector<std::unique_ptr<BoxScene>> scenes_;
+  std::vector<Aabb> boxes_;
+};
+
+class EmbreeCloth : public ClothContestant {
+ public:
+  void prepare(const ClothStep& step) override {
+    triangles_ = step.triangles;
+    boxes_.prepare(step);
+    boxes_.update(step);
+    lists_ = {boxes_.vertex_boxes.data(), boxes_.edge_boxes.data(), boxes_.face_boxes.data()};
+    const std::size_t counts[] = {boxes_.vertex_boxes.size(), boxes_.edge_boxes.size(),
+                                  boxes_.face_boxes.size()};
+    for (std::size_t i = 0; i < 3; ++i) {
+      scenes_[i] = std::make_unique<BoxScene>(device_, counts[i], bounds_of_listed_box, &lists_[i],
+                                              RTC_BUILD_QUALITY_REFIT);
+    }
+  }
+  void frame(const ClothStep& step) override {
+    boxes_.update(step);
+    for (const auto& scene : scenes_) scene->update();
+    candidates_.clear();
+    rtcCollide(scenes_[0]->scene(), scenes_[2]->scene(), keep_vertex_face, this);
+    rtcCollide(scenes_[1]->scene(), scenes_[1]->scene(), keep_edges, this);
+  }
+  std::span<const ElementPair> candidates() const override { return candidates_; }
+
+ private:
+  static void keep_vertex_face(void* user, RTCCollision* collisions, unsigned count) {
+    auto& self = *static_cast<EmbreeCloth*>(user);
+    for (unsigned i = 0; i < count; ++i) {
+      const std::uint32_t place = collisions[i].primID0, face = collisions[i].primID1;
+      const std::uint32_t vertex = self.boxes_.used_vertices[place];
+      if (boxes_overlap(self.boxes_.vertex_boxes[place], self.boxes_.face_boxes[face]) &&
+          !has_corner(self.triangles_[face], vertex))
+        self.candidates_.push_back({false, vertex, face});
+    }
+  }
+  static void keep_edges(void* user, RTCCollision* collisions, unsigned count) {
+    auto& self = *static_cast<EmbreeCloth*>(user);
+    for (unsigned i = 0; i < count; ++i) {
+      const std::uint32_t a = collisions[i].primID0, b = collisions[i].primID1;
+      if (a < b && boxes_overlap(self.boxes_.edge_boxes[a], self.boxes_.edge_boxes[b]) &&
+          !self.boxes_.edges_share(a, b))
+        self.candidates_.push_back({true, a, b});
+    }
+  }
+
+  Device device_;
+  ClothBoxes boxes_;
+  std::vector<Triangle> triangles_;
+  std::array<const Aabb*, 3> lists_{};
+  std::array<std::unique_ptr<BoxScene>, 3> scenes_;
+  std::vector<ElementPair> candidates_;
+};
+
+}  // namespace
+
+std::unique_ptr<BoxContestant> make_embree_boxes() {
+  return std::make_unique<EmbreeBoxes>();
+}
+
+std::unique_ptr<CopiesContestant> make_embree_copies() {
+  return std::make_unique<EmbreeCopies>();
+}
+
+std::unique_ptr<ClothContestant> make_embree_cloth() {
+  return std::make_unique<EmbreeCloth>();
+}
+
+}  // namespace supple::benchmarks

@@ -1,0 +1,87 @@
+#include <malloc.h>
+
+#include "contest/cells.hpp"
+#include "contest/limits.hpp"
+#include "supple/scene.hpp"
+
+namespace supple::benchmarks {
+namespace {
+
+class Ideal : public Contestant<DeformingCopies> {
+ public:
+  explicit Ideal(std::size_t per_slot) : per_slot_(per_slot) {}
+  void prepare(const DeformingCopies& copies) override {
+    refit_ = std::make_unique<IdealRefit>(copies.mesh(), per_slot_);
+  }
+  void frame(const DeformingCopies&) override { refit_->run(); }
+  PairDigest pairs() const override { return {}; }
+
+ private:
+  std::size_t per_slot_;
+  std::unique_ptr<IdealRefit> refit_;
+};
+
+double heap_bytes() {
+  const auto info = mallinfo2();
+  return static_cast<double>(info.uordblks + info.hblkhd);
+}
+
+}  // namespace
+
+void run_bandwidth(Output& output) {
+  for (const unsigned threads : {1u, 2u}) {
+    pin_to(0, static_cast<int>(threads));
+    const struct {
+      const char* name;
+      std::size_t kilobytes;
+    } sizes[] = {{"L2", 512}, {"L3", 8192}, {"memory", 262144}};
+    for (const auto& [name, kilobytes] : sizes) {
+      output.value(std::string(name) + " GB/s, " + std::to_string(threads) + " threads",
+                   read_bandwidth(threads * kilobytes * 1024, threads));
+    }
+  }
+}
+
+void run_refit(const Choice& choice, const std::string& triangles, Output& output) {
+  auto mesh = make_deforming_copies(triangles + "x1");
+  if (!mesh) return output.skip("the bunny is not there; set SUPPLE_DATA");
+  Turns<DeformingCopies, CopiesContestant> turns;
+  turns.add("Supple", 1, make_supple_copies(1), *mesh);
+  turns.add("ideal, 1 per slot", 1, std::make_unique<Ideal>(1), *mesh);
+  turns.add("ideal, 4 per slot", 1, std::make_unique<Ideal>(4), *mesh);
+  turns.run(
+      choice, *mesh, [&] { mesh->advance(); }, [](const auto&, const auto&, const auto&) {});
+  output.value("triangles", static_cast<double>(mesh->triangle_count()));
+  output.records(turns.records());
+}
+
+void run_memory(const std::string& shape, Output& output) {
+  auto copies = make_deforming_copies(shape + "x2");
+  if (!copies) return output.skip("the bunny is not there; set SUPPLE_DATA");
+  const double before = heap_bytes();
+  SceneOptions options;
+  options.threads = 1;
+  Scene scene(options);
+  std::vector<ObjectId> objects;
+  for (std::size_t i = 0; i < copies->copies(); ++i)
+    objects.push_back(scene.add(PositionsView<float>(copies->positions(i)), copies->triangles()));
+  for (int frame = 0; frame < 3; ++frame) {
+    copies->advance();
+    for (std::size_t i = 0; i < objects.size(); ++i) scene.set_positions(objects[i], copies->positions(i));
+    scene.detect();
+  }
+  malloc_trim(0);
+  const double held = heap_bytes() - before;
+  double octrees = 0, positions = 0;
+  for (const ObjectId object : objects) {
+    octrees += static_cast<double>(scene.octree_statistics(object).bytes);
+    positions += static_cast<double>(scene.vertex_count(object) * sizeof(Vec3f));
+  }
+  const auto triangles = static_cast<double>(copies->triangle_count());
+  output.value("triangles", triangles);
+  output.value("heap bytes a triangle", held / triangles);
+  output.value("octree bytes a triangle", octrees / triangles);
+  output.value("positions bytes a triangle", positions / triangles);
+}
+
+}  // namespace supple::benchmarks

@@ -1,0 +1,110 @@
+// One cell of the contest: all contestants on one workload, frame by frame in turn, and their times as JSON.
+// benchmarks/contest.py runs the cells and makes tables of them.
+
+#include <cstdio>
+#include <cstdlib>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "contest/cells.hpp"
+
+namespace supple::benchmarks {
+namespace {
+
+constexpr const char* usage =
+    "usage: supple_contest [--seconds S] [--rounds N] [--cpu N] [--only-supple] [--spoil NAME] CELL | "
+    "--missing\n"
+    "CELL: A/FIELD/N  A/FIELD/N/drift  A/FIELD/N/one-percent  B/SHAPExCOPIES[-rest]  C/CLOTH\n"
+    "      growth/SHAPExCOPIES  threads/B/...  threads/C/...  limits/bandwidth  limits/refit/TRIANGLES  "
+    "memory/SHAPE\n"
+    "FIELD: u1 u8 clu cl8   SHAPE: 980, 18000, 69620, ... or bunny   CLOTH: cloth-ball cloth-funnel "
+    "crumpled\n";
+
+void run(const Choice& choice) {
+  const std::string& cell = choice.cell;
+  Output output(cell);
+  const auto after = [&](std::string_view prefix) { return cell.substr(prefix.size()); };
+  const bool two_threads = cell.starts_with("threads/");
+  if (two_threads)
+    pin_to(0, 2);
+  else if (!cell.starts_with("limits/bandwidth"))
+    pin_to(choice.cpu, 1);
+  if (cell.starts_with("A/")) {
+    run_boxes(choice, after("A/"), output);
+  } else if (cell.starts_with("B/")) {
+    run_copies(choice, after("B/"), false, output);
+  } else if (cell.starts_with("growth/")) {
+    Choice alone = choice;
+    alone.only_supple = true;
+    run_copies(alone, after("growth/"), false, output);
+  } else if (cell.starts_with("C/")) {
+    run_cloth(choice, after("C/"), false, output);
+  } else if (cell.starts_with("threads/B/")) {
+    run_copies(choice, after("threads/B/"), true, output);
+  } else if (cell.starts_with("threads/C/")) {
+    run_cloth(choice, after("threads/C/"), true, output);
+  } else if (cell == "limits/bandwidth") {
+    run_bandwidth(output);
+  } else if (cell.starts_with("limits/refit/")) {
+    run_refit(choice, after("limits/refit/"), output);
+  } else if (cell.starts_with("memory/")) {
+    run_memory(after("memory/"), output);
+  } else {
+    throw Error("no cell is named '" + cell + "'\n" + usage);
+  }
+  output.print();
+}
+
+double number_of(const std::string& text) {
+  char* end = nullptr;
+  const double number = std::strtod(text.c_str(), &end);
+  if (text.empty() || *end != '\0' || !(number >= 0)) throw Error("'" + text + "' is no number\n" + usage);
+  return number;
+}
+
+Choice choice_of(const std::vector<std::string>& words) {
+  Choice choice;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    const bool has_value = i + 1 < words.size();
+    if (words[i] == "--seconds" && has_value)
+      choice.seconds = number_of(words[++i]);
+    else if (words[i] == "--rounds" && has_value)
+      choice.rounds = static_cast<std::size_t>(number_of(words[++i]));
+    else if (words[i] == "--cpu" && has_value)
+      choice.cpu = static_cast<int>(number_of(words[++i]));
+    else if (words[i] == "--spoil" && has_value)
+      choice.spoiled = words[++i];
+    else if (words[i] == "--only-supple")
+      choice.only_supple = true;
+    else if (words[i].starts_with("-") || !choice.cell.empty())
+      throw Error(usage);
+    else
+      choice.cell = words[i];
+  }
+  if (choice.cell.empty()) throw Error(usage);
+  return choice;
+}
+
+}  // namespace
+}  // namespace supple::benchmarks
+
+/// 0; 1 for wrong use; 3 when contestants disagree.
+int main(int argument_count, char** arguments) {
+  using namespace supple::benchmarks;
+  const std::vector<std::string> words(arguments + 1, arguments + argument_count);
+  try {
+    if (words == std::vector<std::string>{"--missing"}) {
+      for (const std::string& library : missing_libraries()) std::puts(library.c_str());
+      return 0;
+    }
+    run(choice_of(words));
+  } catch (const Disagreement& error) {
+    std::fprintf(stderr, "supple_contest: %s\n", error.what());
+    return 3;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "supple_contest: %s\n", error.what());
+    return 1;
+  }
+  return 0;
+}

@@ -1,0 +1,132 @@
+#include <algorithm>
+
+#include "contest/contestant.hpp"
+#include "supple/scene.hpp"
+
+namespace supple::benchmarks {
+namespace {
+
+class SuppleBoxes : public BoxContestant {
+ public:
+  explicit SuppleBoxes(std::uint32_t threads)
+      : broad_phase_({.method = BroadPhaseMethod::octree, .scene_octree = {}, .threads = threads}) {}
+  void prepare(const MovingBoxes& field) override { frame(field); }
+  void frame(const MovingBoxes& field) override { pairs_ = broad_phase_.find_object_pairs(field.boxes()); }
+  PairDigest pairs() const override {
+    PairDigest digest;
+    for (const IndexPair& pair : pairs_) digest.add(pair.a, pair.b);
+    return digest;
+  }
+
+ private:
+  BroadPhase broad_phase_;
+  std::span<const IndexPair> pairs_;
+};
+
+SceneOptions options_of(std::uint32_t threads, ContactMode contacts) {
+  SceneOptions options;
+  options.threads = threads;
+  options.contacts = contacts;
+  options.contact_points = false;  // pairs are all that the others give
+  return options;
+}
+
+/// The stages of `detect` share its processor time as they share its wall time.
+std::vector<StageTime> stages_of(const StepStats& stats, double handing_over, double detect) {
+  const double scale = stats.total_seconds > 0 ? detect / stats.total_seconds : 0;
+  return {{"update", handing_over + stats.refit_seconds * scale},
+          {"traversal", (stats.broad_phase_seconds + stats.traversal_seconds) * scale},
+          {"triangle tests", stats.exact_seconds * scale},
+          {"order and events", stats.finish_seconds * scale},
+          {"refit alone", stats.refit_seconds * scale}};
+}
+
+class SuppleCopies : public CopiesContestant {
+ public:
+  explicit SuppleCopies(std::uint32_t threads) : scene_(options_of(threads, ContactMode::intersection)) {}
+
+  void prepare(const DeformingCopies& copies) override {
+    for (std::size_t i = 0; i < copies.copies(); ++i)
+      objects_.push_back(scene_.add(PositionsView<float>(copies.positions(i)), copies.triangles()));
+    scene_.detect();
+  }
+  void frame(const DeformingCopies& copies) override {
+    const double start = cpu_milliseconds();
+    for (std::size_t i = 0; i < objects_.size(); ++i) {
+      if (copies.moves(i)) scene_.set_positions(objects_[i], copies.positions(i));
+    }
+    const double handed_over = cpu_milliseconds();
+    const StepStats& stats = scene_.detect().stats;
+    stages_ = stages_of(stats, handed_over - start, cpu_milliseconds() - handed_over);
+  }
+  PairDigest pairs() const override {
+    PairDigest digest;
+    for (const Contact& contact : scene_.result().contacts) {
+      digest.add(contact.object_a.index + (std::uint64_t{contact.triangle_a} << 32),
+                 contact.object_b.index + (std::uint64_t{contact.triangle_b} << 32));
+    }
+    return digest;
+  }
+  std::vector<StageTime> stages() const override { return stages_; }
+
+ private:
+  Scene scene_;
+  std::vector<ObjectId> objects_;
+  std::vector<StageTime> stages_;
+};
+
+class SuppleCloth : public Contestant<ClothStep> {
+ public:
+  explicit SuppleCloth(std::uint32_t threads) : scene_(options_of(threads, ContactMode::continuous)) {}
+
+  void prepare(const ClothStep& step) override {
+    cloth_ = scene_.add(PositionsView<double>(step.start), step.triangles, {.self_collision = true});
+    edges_ = edges_of(step.triangles);
+    frame(step);
+  }
+  void frame(const ClothStep& step) override {
+    const double start = cpu_milliseconds();
+    scene_.set_motion(cloth_, step.start, step.end);
+    const double handed_over = cpu_milliseconds();
+    const StepStats& stats = scene_.detect().stats;
+    stages_ = stages_of(stats, handed_over - start, cpu_milliseconds() - handed_over);
+  }
+  PairDigest pairs() const override {
+    PairDigest digest;
+    for (const ContinuousContact& contact : scene_.result().continuous_contacts) {
+      if (contact.kind == ElementPairKind::edge_edge)
+        digest.add(edge(contact.element_a), edge(contact.element_b));
+      else
+        digest.add(contact.element_a[0], contact.element_b[0] + (std::uint64_t{1} << 32));
+    }
+    return digest;
+  }
+  std::vector<StageTime> stages() const override { return stages_; }
+
+ private:
+  std::uint64_t edge(const std::array<std::uint32_t, 2>& vertices) const {
+    return static_cast<std::uint64_t>(std::lower_bound(edges_.begin(), edges_.end(), vertices) -
+                                      edges_.begin());
+  }
+
+  Scene scene_;
+  ObjectId cloth_;
+  std::vector<std::array<std::uint32_t, 2>> edges_;
+  std::vector<StageTime> stages_;
+};
+
+}  // namespace
+
+std::unique_ptr<BoxContestant> make_supple_boxes(std::uint32_t threads) {
+  return std::make_unique<SuppleBoxes>(threads);
+}
+
+std::unique_ptr<CopiesContestant> make_supple_copies(std::uint32_t threads) {
+  return std::make_unique<SuppleCopies>(threads);
+}
+
+std::unique_ptr<Contestant<ClothStep>> make_supple_cloth(std::uint32_t threads) {
+  return std::make_unique<SuppleCloth>(threads);
+}
+
+}  // namespace supple::benchmarks

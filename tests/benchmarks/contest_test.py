@@ -1,0 +1,132 @@
+"""The contest at sizes that take no time: contestants agree, a difference is noticed, generators give the same bits
+everywhere, and the driver writes what it says."""
+
+import contextlib
+import csv
+import io
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+import xml.etree.ElementTree
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "benchmarks"))
+import contest  # noqa: E402
+
+BUILD = pathlib.Path(sys.argv.pop(1)) if len(sys.argv) > 1 else ROOT / "build/release"
+PROGRAM = BUILD / "bin/supple_contest"
+
+
+# The pairs of the third frame, on every machine: who changes a generator changes these.
+KNOWN = {
+    "A/u1/300": (146, "bb31efa6c86c9ff2"),
+    "A/u8/300": (972, "c085a2c958750839"),
+    "A/clu/300": (3, "9889e6e540c3fa0c"),
+    "A/cl8/3000": (4401, "8b398c98a987e21d"),
+    "B/80x27": (433, "f06c26275e9b4920"),
+    "B/980x8": (586, "26afb7f4fd3f4d3e"),
+    "B/980x8-rest": (588, "9950207e72b04ad8"),
+}
+
+
+def run(*arguments):
+    return subprocess.run([PROGRAM, *arguments], capture_output=True, text=True, check=False)
+
+
+def contestants_of(cell):
+    done = run(cell, "--seconds", "0.01", "--rounds", "3")
+    if done.returncode != 0:
+        raise AssertionError(done.stderr)
+    return json.loads(done.stdout)["contestants"]
+
+
+class Cells(unittest.TestCase):
+    def test_all_find_the_same_known_pairs(self):
+        for cell, pairs in KNOWN.items():
+            with self.subTest(cell=cell):
+                for contestant in contestants_of(cell):
+                    self.assertEqual((contestant["pairs"], contestant["hash"]), pairs, contestant["name"])
+
+    def test_verdicts_on_a_cloth_are_those_on_all_candidates(self):
+        contestants = contestants_of("C/crumpled-small")
+        self.assertEqual(contestants[0]["pairs"], 930)
+        for contestant in contestants[1:]:
+            self.assertEqual(contestant["pairs"], 22954, contestant["name"])
+
+    def test_a_lost_pair_is_noticed(self):
+        done = run("A/u1/300", "--rounds", "1", "--spoil", "baseline grid")
+        self.assertEqual(done.returncode, 3)
+        self.assertIn("A/u1/300", done.stderr)
+        self.assertIn("baseline grid", done.stderr)
+
+    def test_special_cells(self):
+        for cell in ("A/u1/300/drift", "A/u1/300/one-percent", "threads/B/80x8", "limits/refit/80", "growth/80x2"):
+            with self.subTest(cell=cell):
+                self.assertTrue(contestants_of(cell))
+        values = json.loads(run("memory/980").stdout)["values"]
+        self.assertGreater(values["heap bytes a triangle"], values["octree bytes a triangle"])
+
+    def test_wrong_names(self):
+        for cell in ("A/u1/0", "A/u2/10", "B/981x2", "B/80x0", "C/flag", "D/1"):
+            with self.subTest(cell=cell):
+                done = run(cell)
+                self.assertEqual(done.returncode, 1)
+                self.assertIn("supple_contest: no ", done.stderr)
+
+
+class Judgement(unittest.TestCase):
+    @staticmethod
+    def cell(name, **milliseconds):
+        return {"cell": name, "skipped": None, "values": {}, "contestants": [
+            {"name": contestant.replace("_", " "), "cpu_ms": times, "wall_ms": times, "mean_stage_ms": {}}
+            for contestant, times in milliseconds.items()]}
+
+    def test_against_the_best_library_and_the_best_baseline(self):
+        rows = contest.judged([self.cell("A/u1/1000", Supple=[1, 2, 9], Embree=[9, 9, 9], CGAL=[6, 6, 6],
+                                         baseline_sweep=[1, 1, 1], baseline_grid=[3, 3, 3])]).rows
+        told = {row["row"]: (row["against"], row["ratio"], row["met"]) for row in rows}
+        self.assertEqual(told["A, the best library"], ("CGAL", 3, "reach"))
+        self.assertEqual(told["A, the baselines"], ("baseline sweep", 0.5, "missed"))
+
+    def test_smaller_is_better(self):
+        cell = {"cell": "memory/980", "skipped": None, "values": {"heap bytes a triangle": 39.0}, "contestants": []}
+        self.assertEqual(contest.judged([cell]).rows[0]["met"], "aim")
+        cell["values"]["heap bytes a triangle"] = 64.5
+        self.assertEqual(contest.judged([cell]).rows[0]["met"], "missed")
+
+    def test_exponent(self):
+        self.assertAlmostEqual(contest.exponent([(1, 2), (10, 20), (100, 200)]), 1)
+        self.assertAlmostEqual(contest.exponent([(1, 1), (4, 8), (16, 64)]), 1.5)
+
+
+class Driver(unittest.TestCase):
+    def test_writes_results(self):
+        with tempfile.TemporaryDirectory() as folder:
+            done = subprocess.run(
+                [sys.executable, ROOT / "benchmarks/contest.py", "--build", BUILD, "--output", folder, "--seconds",
+                 "0.01", "--only", "A/u1/300", "--only", "A/u1/600", "--only", "B/80x8", "--only", "C/crumpled-small",
+                 "--only", "limits/refit/80"], capture_output=True, text=True, check=False)
+            self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+            results = json.loads((pathlib.Path(folder) / "results.json").read_text(encoding="utf-8"))
+            self.assertEqual([cell["cell"] for cell in results["cells"]],
+                             ["A/u1/300", "A/u1/600", "B/80x8", "C/crumpled-small", "limits/refit/80"])
+            with open(pathlib.Path(folder) / "results.csv", encoding="utf-8") as file:
+                self.assertIn("baseline sweep", [row["contestant"] for row in csv.DictReader(file)])
+            page = (pathlib.Path(folder) / "results.html").read_text(encoding="utf-8")
+            tree = xml.etree.ElementTree.fromstring(page.removeprefix("<!DOCTYPE html>\n"))
+            self.assertGreaterEqual(len(tree.findall(".//svg")), 4)
+            self.assertNotIn("http", page)
+
+    def test_a_failed_cell_fails_the_run(self):
+        arguments = contest.parsed(["--build", str(BUILD), "--seconds", "0.01"])
+        with contextlib.redirect_stdout(io.StringIO()) as told:
+            results, failed, disagree = contest.run_all(arguments, ["A/u2/10"])
+        self.assertEqual((results, failed, disagree), ([], True, False))
+        self.assertIn("A/u2/10", told.getvalue())
+
+
+if __name__ == "__main__":
+    unittest.main()
