@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <tuple>
 
 #include "supple/triangle_intersection.hpp"
@@ -21,6 +22,15 @@ Vec3d position(const OctreeView& view, std::uint32_t vertex) {
 TrianglePoints points_of(const OctreeView& view, std::uint32_t triangle) {
   const Triangle& corners = view.arrays.triangles[triangle];
   return {position(view, corners[0]), position(view, corners[1]), position(view, corners[2])};
+}
+
+void set_corners(float (&rows)[9][TrianglePairBlock<float>::capacity], std::size_t place,
+                 const TriangleArrays& arrays, std::uint32_t triangle) {
+  std::size_t row = 0;
+  for (const std::uint32_t vertex : arrays.triangles[triangle]) {
+    const float* const corner = arrays.floats + std::size_t{vertex} * 4;
+    for (int axis = 0; axis < 3; ++axis) rows[row++][place] = corner[axis];
+  }
 }
 
 }  // namespace
@@ -70,16 +80,14 @@ void ContactPass::run_task(const ContactTask& task, Worker& worker) const {
   worker.traversal.find_triangle_pairs(pair, task.root, worker.stats.traversal, on_leaves, on_candidates);
 }
 
-/// A plane of one of the triangles separates most candidates: that is decided for a block at a time, in
-/// vector lanes.
+/// Floating point decides all but few candidates, a block of them at a time in vector lanes.
 void ContactPass::test_candidates(std::uint32_t job, const ObjectPairView& pair,
                                   std::span<const TrianglePair> candidates, Worker& worker) const {
+  constexpr std::size_t capacity = TrianglePairBlock<float>::capacity;
   const ContactObject& a = objects_[jobs_[job].a];
-  TrianglePairBlock& block = worker.block;
-  for (std::size_t first = 0; first < candidates.size(); first += TrianglePairBlock::capacity) {
-    const auto part =
-        candidates.subspan(first, std::min(TrianglePairBlock::capacity, candidates.size() - first));
-    std::array<TrianglePair, TrianglePairBlock::capacity> ordered;
+  for (std::size_t first = 0; first < candidates.size(); first += capacity) {
+    const auto part = candidates.subspan(first, std::min(capacity, candidates.size() - first));
+    std::array<TrianglePair, capacity> ordered;
     for (std::size_t k = 0; k < part.size(); ++k) {
       ordered[k] = part[k];
       // The exact stage sees triangles in the order of the results, so that nothing depends on the octrees'
@@ -87,34 +95,63 @@ void ContactPass::test_candidates(std::uint32_t job, const ObjectPairView& pair,
       if (pair.same_object && a.triangle_ids[part[k].a] > a.triangle_ids[part[k].b]) {
         std::swap(ordered[k].a, ordered[k].b);
       }
-      block.set(k, points_of(pair.a, ordered[k].a), points_of(pair.b, ordered[k].b));
     }
-    const std::uint64_t separated = planes_separate(block, part.size());
-    for (std::size_t k = 0; k < part.size(); ++k) {
-      if ((separated >> k & 1) == 0) test_candidate(job, pair, ordered[k], worker);
+    const PairVerdicts verdicts = filter_candidates(pair, {ordered.data(), part.size()}, worker);
+    std::uint64_t undecided = ~verdicts.apart;
+    if (part.size() < capacity) undecided &= (std::uint64_t{1} << part.size()) - 1;
+    for (; undecided != 0; undecided &= undecided - 1) {
+      const auto k = static_cast<std::size_t>(std::countr_zero(undecided));
+      if ((verdicts.crossing >> k & 1) != 0 && !options_.contact_points) {
+        add_contact(job, ordered[k], IntersectionKind::segment, 2, worker);
+      } else {
+        test_candidate(job, pair, ordered[k], worker);
+      }
     }
   }
 }
 
+PairVerdicts ContactPass::filter_candidates(const ObjectPairView& pair,
+                                            std::span<const TrianglePair> candidates, Worker& worker) const {
+  const auto is_single = [](const OctreeView& view) {
+    return view.arrays.floats != nullptr && view.translation == Vec3d{};
+  };
+  if (is_single(pair.a) && is_single(pair.b)) {
+    for (std::size_t k = 0; k < candidates.size(); ++k) {
+      set_corners(worker.floats.a, k, pair.a.arrays, candidates[k].a);
+      set_corners(worker.floats.b, k, pair.b.arrays, candidates[k].b);
+    }
+    return filter_pairs(worker.floats, candidates.size());
+  }
+  for (std::size_t k = 0; k < candidates.size(); ++k) {
+    worker.doubles.set(k, points_of(pair.a, candidates[k].a), points_of(pair.b, candidates[k].b));
+  }
+  return filter_pairs(worker.doubles, candidates.size());
+}
+
 void ContactPass::test_candidate(std::uint32_t job, const ObjectPairView& pair, TrianglePair candidate,
                                  Worker& worker) const {
-  const ContactObject& a = objects_[jobs_[job].a];
-  const ContactObject& b = objects_[jobs_[job].b];
   const TriangleIntersection shared =
       intersect_triangles(points_of(pair.a, candidate.a), points_of(pair.b, candidate.b));
   worker.stats.exact_fallbacks += shared.used_exact_fallback ? 1 : 0;
   if (!shared.intersects) return;
-  Contact contact{a.id,
-                  b.id,
-                  a.triangle_ids[candidate.a],
-                  b.triangle_ids[candidate.b],
-                  shared.kind,
-                  shared.point_count,
-                  static_cast<std::uint32_t>(worker.points.size())};
+  add_contact(job, candidate, shared.kind, shared.point_count, worker);
   if (options_.contact_points) {
     const auto points = shared.extreme_points();
     worker.points.insert(worker.points.end(), points.begin(), points.end());
   }
+}
+
+void ContactPass::add_contact(std::uint32_t job, TrianglePair pair, IntersectionKind kind,
+                              std::uint8_t point_count, Worker& worker) const {
+  const ContactObject& a = objects_[jobs_[job].a];
+  const ContactObject& b = objects_[jobs_[job].b];
+  const Contact contact{a.id,
+                        b.id,
+                        a.triangle_ids[pair.a],
+                        b.triangle_ids[pair.b],
+                        kind,
+                        point_count,
+                        static_cast<std::uint32_t>(worker.points.size())};
   worker.found.push_back({job, contact});
 }
 

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "contact/plane_rejection.hpp"
+#include "contact/pair_filter.hpp"
 #include "core/parallel.hpp"
 #include "core/timer.hpp"
 #include "narrow_phase/traversal.hpp"
@@ -49,7 +49,8 @@ class ContactPass {
   };
   struct Worker {
     Traversal traversal;
-    TrianglePairBlock block;
+    TrianglePairBlock<float> floats;
+    TrianglePairBlock<double> doubles;
     std::vector<Found> found;
     std::vector<ContactPoint> points;
     std::vector<CollidingLeaves> leaves;
@@ -63,8 +64,12 @@ class ContactPass {
   void run_task(const ContactTask& task, Worker& worker) const;
   void test_candidates(std::uint32_t job, const ObjectPairView& pair,
                        std::span<const TrianglePair> candidates, Worker& worker) const;
+  PairVerdicts filter_candidates(const ObjectPairView& pair, std::span<const TrianglePair> candidates,
+                                 Worker& worker) const;
   void test_candidate(std::uint32_t job, const ObjectPairView& pair, TrianglePair candidate,
                       Worker& worker) const;
+  void add_contact(std::uint32_t job, TrianglePair pair, IntersectionKind kind, std::uint8_t point_count,
+                   Worker& worker) const;
   void gather_contacts();
   void gather_colliding_vertices();
   void append_marked_vertices(std::uint32_t object, std::span<const CollidingLeaves> leaves, bool side_b);
