@@ -17,9 +17,11 @@ namespace supple {
 /// What the narrow phase reads of one object; borrowed for the call.
 struct OctreeView {
   std::span<const OctreeNode> nodes;
+  const ObjectOctree* octree = nullptr;  ///< whose nodes are to be refreshed before they are read, or null
   const AabbLanes* boxes = nullptr;
   const SphereLanes* spheres = nullptr;  ///< null: the boxes are the volumes
   TriangleArrays arrays;
+  Aabb box;           ///< of all positions
   Vec3d translation;  ///< added to each position
   MovingView moving;  ///< of objects in motion, of which `nodes`, this and the next are read only
   /// Masks of an `UnfoldedLanes` of these very positions, or null: an object against itself is then not
