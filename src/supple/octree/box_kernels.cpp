@@ -17,16 +17,41 @@ Aabb BoxOfLanes(const AabbLanes& lanes) {
   return enclose_lanes(lanes);
 }
 
+/// A node without inner lanes, as most are; gives its box.
+template <class Box, class Scalar>
+HWY_INLINE Box refit_bottom_node(const OctreeNode& node, AabbLanes& lanes, const Scalar* vertices,
+                                 const TriangleArrays& arrays) {
+  Box all;
+  for (int first = 0; first < node_width; first += 4) {
+    Box boxes[4];
+    const int count = std::min(node.lane_count - first, 4);
+    for (int i = 0; i < count; ++i) {
+      boxes[i] = box_of_triangles<Box>(vertices, arrays, node.first_triangle[first + i],
+                                       node.first_triangle[first + i + 1]);
+      all.extend(boxes[i]);
+    }
+    set_four_lanes(lanes, first, boxes);
+  }
+  return all;
+}
+
 template <class Box, class Scalar>
 void refit_nodes(const OctreeNode* nodes, AabbLanes* boxes, const Scalar* vertices,
                  const TriangleArrays& arrays, std::uint32_t begin, std::uint32_t end, std::uint32_t root) {
   for (std::uint32_t n = begin; n < end; ++n) {
     const OctreeNode& node = nodes[n];
     AabbLanes& lanes = boxes[n];
+    if (node.inner_mask == 0) {
+      const Box box = refit_bottom_node<Box>(node, lanes, vertices, arrays);
+      invert_lanes_from(lanes, node.lane_count);
+      if (n != root) set_lane(boxes[node.parent], node.parent_lane, box);
+      continue;
+    }
     for (int lane = 0; lane < node.lane_count; ++lane) {
       if (node.is_inner(lane)) continue;
-      set_lane_to_triangles<Box>(lanes, lane, vertices, arrays, node.first_triangle[lane],
-                                 node.first_triangle[lane + 1]);
+      set_lane(
+          lanes, lane,
+          box_of_triangles<Box>(vertices, arrays, node.first_triangle[lane], node.first_triangle[lane + 1]));
     }
     invert_lanes_from(lanes, node.lane_count);
     if (n == root) continue;
