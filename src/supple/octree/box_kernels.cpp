@@ -73,27 +73,29 @@ void RefitBoxes(const OctreeNode* nodes, AabbLanes* boxes, const TriangleArrays&
 template <class Box, class Scalar>
 Aabb enclose_vertices(const Scalar* vertices, std::uint32_t begin, std::uint32_t end,
                       const std::uint32_t* others, std::size_t other_count) {
-  constexpr std::size_t width = 4;
-  Box boxes[width];
+  // Named one by one: an array of them would live in memory.
+  Box p, q, r, s;
   std::size_t i = begin;
-  for (; i + width <= end; i += width) {
-    for (std::size_t k = 0; k < width; ++k) boxes[k].extend(vertices + (i + k) * 4);
+  for (; i + 4 <= end; i += 4) {
+    p.extend(vertices + i * 4);
+    q.extend(vertices + i * 4 + 4);
+    r.extend(vertices + i * 4 + 8);
+    s.extend(vertices + i * 4 + 12);
   }
-  for (; i < end; ++i) boxes[0].extend(vertices + i * 4);
-  for (i = 0; i + width <= other_count; i += width) {
-    for (std::size_t k = 0; k < width; ++k) boxes[k].extend(vertices + std::size_t{others[i + k]} * 4);
+  for (; i < end; ++i) p.extend(vertices + i * 4);
+  for (i = 0; i + 4 <= other_count; i += 4) {
+    p.extend(vertices + std::size_t{others[i]} * 4);
+    q.extend(vertices + std::size_t{others[i + 1]} * 4);
+    r.extend(vertices + std::size_t{others[i + 2]} * 4);
+    s.extend(vertices + std::size_t{others[i + 3]} * 4);
   }
-  for (; i < other_count; ++i) boxes[0].extend(vertices + std::size_t{others[i]} * 4);
-  Aabb result;
-  for (const Box& box : boxes) {
-    HWY_ALIGN float lower[4], upper[4];
-    box.store(lower, upper);
-    for (int axis = 0; axis < 3; ++axis) {
-      result.min[axis] = std::min(result.min[axis], lower[axis]);
-      result.max[axis] = std::max(result.max[axis], upper[axis]);
-    }
-  }
-  return result;
+  for (; i < other_count; ++i) p.extend(vertices + std::size_t{others[i]} * 4);
+  p.extend(q);
+  r.extend(s);
+  p.extend(r);
+  HWY_ALIGN float lower[4], upper[4];
+  p.store(lower, upper);
+  return {{lower[0], lower[1], lower[2]}, {upper[0], upper[1], upper[2]}};
 }
 
 Aabb BoxOfVertices(const TriangleArrays& arrays, std::uint32_t begin, std::uint32_t end,

@@ -1,5 +1,7 @@
 #include "octree/object_octree.hpp"
 
+#include <hwy/cache_control.h>
+
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -181,11 +183,31 @@ void ObjectOctree::refresh_subtree(std::uint32_t subtree, const TriangleArrays& 
   std::atomic<std::uint8_t>& state = subtree_states_[subtree];
   std::uint8_t seen = is_stale;
   if (state.compare_exchange_strong(seen, in_work, std::memory_order_acquire)) {
+    fetch_ahead(subtree, arrays);
     refit_subtree(subtrees_[subtree].root, arrays);
     state.store(is_fresh, std::memory_order_release);
     return;
   }
   while (state.load(std::memory_order_acquire) != is_fresh) std::this_thread::yield();
+}
+
+/// What a subtree is refitted from lies in two or three places in memory, long out of the cache.
+void ObjectOctree::fetch_ahead(std::uint32_t subtree, const TriangleArrays& arrays) const {
+  constexpr std::size_t line = 64;
+  const auto fetch = [](const void* begin, const void* end) {
+    for (auto at = static_cast<const char*>(begin); at < static_cast<const char*>(end); at += line) {
+      hwy::Prefetch(at);
+    }
+  };
+  const OctreeNode& root = nodes_[subtrees_[subtree].root];
+  const std::size_t vertex_begin = subtrees_.vertex_begin(subtree) * std::size_t{4};
+  const std::size_t vertex_end = subtrees_.vertex_end(subtree) * std::size_t{4};
+  fetch(arrays.triangles + root.first_triangle[0], arrays.triangles + root.first_triangle[node_width]);
+  if (arrays.doubles != nullptr) {
+    fetch(arrays.doubles + vertex_begin, arrays.doubles + vertex_end);
+  } else {
+    fetch(arrays.floats + vertex_begin, arrays.floats + vertex_end);
+  }
 }
 
 /// Deepest level first. The nodes of a subtree that are of one level follow each other, as their parents do.

@@ -86,6 +86,7 @@ class ObjectOctree {
                    const Parallel& parallel);
 
   void refresh_subtree(std::uint32_t subtree, const TriangleArrays& arrays) const;
+  void fetch_ahead(std::uint32_t subtree, const TriangleArrays& arrays) const;
   void refit_subtree(std::uint32_t root, const TriangleArrays& arrays) const;
 
   enum SubtreeState : std::uint8_t { is_fresh, is_stale, in_work };

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <tuple>
 
 #include "supple/triangle_intersection.hpp"
 
@@ -155,36 +154,48 @@ void ContactPass::add_contact(std::uint32_t job, TrianglePair pair, Intersection
   worker.found.push_back({job, contact});
 }
 
-void ContactPass::gather_contacts() {
-  keys_.clear();
+/// Jobs are in order already: contacts are counted into them, and sorted within.
+void ContactPass::sort_found() {
+  first_of_job_.assign(jobs_.size() + 2, 0);
+  for (const Worker& worker : workers_) {
+    for (const Found& found : worker.found) ++first_of_job_[found.job + 2];
+  }
+  for (std::size_t job = 2; job < first_of_job_.size(); ++job) first_of_job_[job] += first_of_job_[job - 1];
+  keys_.resize(first_of_job_.back());
   for (std::uint32_t w = 0; w < workers_.size(); ++w) {
     for (std::uint32_t i = 0; i < workers_[w].found.size(); ++i) {
       const Found& found = workers_[w].found[i];
-      keys_.push_back({found.job, found.contact.triangle_a, found.contact.triangle_b, w, i});
+      const std::uint64_t place = std::uint64_t{found.contact.triangle_a} << 32 | found.contact.triangle_b;
+      keys_[first_of_job_[found.job + 1]++] = {place, w, i};
     }
   }
-  std::sort(keys_.begin(), keys_.end(), [](const SortKey& p, const SortKey& q) {
-    return std::tie(p.job, p.triangle_a, p.triangle_b) < std::tie(q.job, q.triangle_a, q.triangle_b);
+  first_of_job_.pop_back();
+  parallel_->for_ranges(jobs_.size(), 16, [&](std::size_t begin, std::size_t end, std::uint32_t) {
+    for (std::size_t job = begin; job < end; ++job) {
+      std::sort(keys_.begin() + first_of_job_[job], keys_.begin() + first_of_job_[job + 1],
+                [](const SortKey& p, const SortKey& q) { return p.place < q.place; });
+    }
   });
+}
+
+void ContactPass::gather_contacts() {
+  sort_found();
   groups_.clear();
-  contacts_.clear();
   points_.clear();
-  std::uint32_t last_job = 0;
-  for (const SortKey& key : keys_) {
-    const Worker& worker = workers_[key.worker];
-    Contact contact = worker.found[key.index].contact;
-    if (options_.contact_points) {
-      const auto first = worker.points.begin() + contact.first_point;
-      contact.first_point = static_cast<std::uint32_t>(points_.size());
-      points_.insert(points_.end(), first, first + contact.point_count);
-    }
-    if (groups_.empty() || key.job != last_job) {
-      groups_.push_back(
-          {contact.object_a, contact.object_b, static_cast<std::uint32_t>(contacts_.size()), 0});
-      last_job = key.job;
-    }
-    ++groups_.back().contact_count;
-    contacts_.push_back(contact);
+  contacts_.resize(keys_.size());
+  for (std::size_t job = 0; job < jobs_.size(); ++job) {
+    const std::uint32_t first = first_of_job_[job], count = first_of_job_[job + 1] - first;
+    if (count > 0) groups_.push_back({objects_[jobs_[job].a].id, objects_[jobs_[job].b].id, first, count});
+  }
+  parallel_->for_ranges(keys_.size(), 4096, [&](std::size_t begin, std::size_t end, std::uint32_t) {
+    for (std::size_t i = begin; i < end; ++i)
+      contacts_[i] = workers_[keys_[i].worker].found[keys_[i].index].contact;
+  });
+  if (!options_.contact_points) return;
+  for (std::size_t i = 0; i < keys_.size(); ++i) {
+    const auto first = workers_[keys_[i].worker].points.begin() + contacts_[i].first_point;
+    contacts_[i].first_point = static_cast<std::uint32_t>(points_.size());
+    points_.insert(points_.end(), first, first + contacts_[i].point_count);
   }
 }
 

@@ -56,8 +56,10 @@ class ContactPass {
     std::vector<CollidingLeaves> leaves;
     TaskStats stats;
   };
+  /// Where a contact was put, and its place within its job: triangle a, then triangle b.
   struct SortKey {
-    std::uint32_t job, triangle_a, triangle_b, worker, index;
+    std::uint64_t place;
+    std::uint32_t worker, index;
   };
 
   ObjectPairView view_of_job(std::uint32_t job) const;
@@ -70,6 +72,7 @@ class ContactPass {
                       Worker& worker) const;
   void add_contact(std::uint32_t job, TrianglePair pair, IntersectionKind kind, std::uint8_t point_count,
                    Worker& worker) const;
+  void sort_found();
   void gather_contacts();
   void gather_colliding_vertices();
   void append_marked_vertices(std::uint32_t object, std::span<const CollidingLeaves> leaves, bool side_b);
@@ -81,7 +84,8 @@ class ContactPass {
 
   std::vector<Worker> workers_;
   ContactTasks tasks_;
-  std::vector<SortKey> keys_;
+  std::vector<SortKey> keys_;                // by job
+  std::vector<std::uint32_t> first_of_job_;  // in `keys_`, and one past the last
   std::vector<CollidingLeaves> leaves_;
   std::vector<std::uint8_t> marked_;
 
