@@ -36,7 +36,6 @@ void set_corners(float (&rows)[9][TrianglePairBlock<float>::capacity], std::size
 
 void ContactPass::run(std::span<const ContactJob> jobs, std::span<const ContactObject> objects,
                       const SceneOptions& options, const Parallel& parallel, StepStats& stats) {
-  jobs_ = jobs;
   objects_ = objects;
   options_ = options;
   parallel_ = &parallel;
@@ -48,7 +47,8 @@ void ContactPass::run(std::span<const ContactJob> jobs, std::span<const ContactO
     worker.stats = {};
   }
   Timer timer;
-  tasks_.plan(static_cast<std::uint32_t>(jobs.size()), workers_.size(), workers_[0].traversal,
+  plan_outcomes(jobs);
+  tasks_.plan(static_cast<std::uint32_t>(jobs_.size()), workers_.size(), workers_[0].traversal,
               [&](std::uint32_t job) { return view_of_job(job); });
   tasks_.run(parallel, workers_, [&](const ContactTask& task, Worker& worker) { run_task(task, worker); });
   add_stats(workers_, timer.lap(), stats);
@@ -56,6 +56,32 @@ void ContactPass::run(std::span<const ContactJob> jobs, std::span<const ContactO
   gather_colliding_vertices();
   stats.contacts = contacts_.size();
   stats.finish_seconds += timer.lap();
+}
+
+/// Splits the jobs into those to be done and those whose outcome is known. Both lists ascend.
+void ContactPass::plan_outcomes(std::span<const ContactJob> jobs) {
+  outcomes_.swap(last_outcomes_);
+  if (!is_complete_) last_outcomes_.clear();
+  is_complete_ = false;
+  outcomes_.clear();
+  sources_.clear();
+  jobs_.clear();
+  std::uint32_t last = 0;
+  for (const ContactJob& job : jobs) {
+    const auto precedes = [&](const ContactJob& other) {
+      return other.a != job.a ? other.a < job.a : other.b < job.b;
+    };
+    while (last < last_outcomes_.size() && precedes(last_outcomes_[last].job)) ++last;
+    const Outcome outcome{job, objects_[job.a].version, objects_[job.b].version, 0, 0};
+    outcomes_.push_back(outcome);
+    // The vertices of colliding leaves are not kept.
+    const bool is_known = !options_.colliding_vertices && last < last_outcomes_.size() &&
+                          last_outcomes_[last].job.a == job.a && last_outcomes_[last].job.b == job.b &&
+                          last_outcomes_[last].version_a == outcome.version_a &&
+                          last_outcomes_[last].version_b == outcome.version_b;
+    sources_.push_back(is_known ? last : none);
+    if (!is_known) jobs_.push_back(job);
+  }
 }
 
 ObjectPairView ContactPass::view_of_job(std::uint32_t job) const {
@@ -180,23 +206,48 @@ void ContactPass::sort_found() {
 
 void ContactPass::gather_contacts() {
   sort_found();
+  contacts_.swap(last_contacts_);
+  points_.swap(last_points_);
   groups_.clear();
   points_.clear();
-  contacts_.resize(keys_.size());
-  for (std::size_t job = 0; job < jobs_.size(); ++job) {
-    const std::uint32_t first = first_of_job_[job], count = first_of_job_[job + 1] - first;
-    if (count > 0) groups_.push_back({objects_[jobs_[job].a].id, objects_[jobs_[job].b].id, first, count});
+  std::uint32_t job = 0, total = 0;
+  for (std::size_t i = 0; i < outcomes_.size(); ++i) {
+    Outcome& outcome = outcomes_[i];
+    outcome.first_contact = total;
+    outcome.contact_count = sources_[i] != none ? last_outcomes_[sources_[i]].contact_count
+                                                : first_of_job_[job + 1] - first_of_job_[job];
+    if (sources_[i] == none) ++job;
+    total += outcome.contact_count;
   }
-  parallel_->for_ranges(keys_.size(), 4096, [&](std::size_t begin, std::size_t end, std::uint32_t) {
-    for (std::size_t i = begin; i < end; ++i)
-      contacts_[i] = workers_[keys_[i].worker].found[keys_[i].index].contact;
-  });
+  contacts_.resize(total);
+  job = 0;
+  for (std::size_t i = 0; i < outcomes_.size(); ++i) {
+    const Outcome& outcome = outcomes_[i];
+    const std::uint32_t first_key = sources_[i] == none ? first_of_job_[job++] : 0;
+    if (outcome.contact_count == 0) continue;
+    groups_.push_back({objects_[outcome.job.a].id, objects_[outcome.job.b].id, outcome.first_contact,
+                       outcome.contact_count});
+    for (std::uint32_t k = 0; k < outcome.contact_count; ++k) {
+      Contact& contact = contacts_[outcome.first_contact + k];
+      if (sources_[i] != none) {
+        contact = last_contacts_[last_outcomes_[sources_[i]].first_contact + k];
+        append_points(last_points_.data(), contact);
+      } else {
+        const Worker& worker = workers_[keys_[first_key + k].worker];
+        contact = worker.found[keys_[first_key + k].index].contact;
+        append_points(worker.points.data(), contact);
+      }
+    }
+  }
+  is_complete_ = true;
+}
+
+/// The contact's points, whose first is told by it, go to the end of all; it then tells where they are.
+void ContactPass::append_points(const ContactPoint* points, Contact& contact) {
   if (!options_.contact_points) return;
-  for (std::size_t i = 0; i < keys_.size(); ++i) {
-    const auto first = workers_[keys_[i].worker].points.begin() + contacts_[i].first_point;
-    contacts_[i].first_point = static_cast<std::uint32_t>(points_.size());
-    points_.insert(points_.end(), first, first + contacts_[i].point_count);
-  }
+  const ContactPoint* const first = points + contact.first_point;
+  contact.first_point = static_cast<std::uint32_t>(points_.size());
+  points_.insert(points_.end(), first, first + contact.point_count);
 }
 
 void ContactPass::gather_colliding_vertices() {
