@@ -110,7 +110,7 @@ struct Chord {
   HWY_INLINE Chord(const Corners<Tag>& corners, const Sides<Tag>& sides, bool is_b) {
     const auto first_alone = hn::Not(hn::Xor(sides.above[1], sides.above[2]));
     const auto second_alone = hn::Not(hn::Xor(sides.above[0], sides.above[2]));
-    const auto pick = [&](int first, int second, int third) {
+    const auto pick = [&](int first, int second, int third) HWY_ATTR {
       return select<Tag>(first_alone, corners[first],
                          select<Tag>(second_alone, corners[second], corners[third]));
     };
@@ -119,7 +119,7 @@ struct Chord {
     // Masks, not numbers: a mask is not a vector on all machines.
     const auto zero = hn::Zero(Tag());
     const auto one = hn::Set(Tag(), hn::TFromD<Tag>(1));
-    const auto flag = [&](hn::Mask<Tag> mask) { return hn::IfThenElse(mask, one, zero); };
+    const auto flag = [&](hn::Mask<Tag> mask) HWY_ATTR { return hn::IfThenElse(mask, one, zero); };
     apex_above =
         hn::Gt(hn::IfThenElse(first_alone, flag(sides.above[0]),
                               hn::IfThenElse(second_alone, flag(sides.above[1]), flag(sides.above[2]))),
@@ -160,7 +160,7 @@ PairVerdicts filter(const TrianglePairBlock<Scalar>& block, std::size_t count) {
   const Tag d;
   PairVerdicts verdicts;
   for (std::size_t first = 0; first < count; first += hn::Lanes(d)) {
-    const auto load = [&](const auto& rows, std::size_t corner) {
+    const auto load = [&](const auto& rows, std::size_t corner) HWY_ATTR {
       return Vector3<Tag>{hn::Load(d, rows[3 * corner] + first), hn::Load(d, rows[3 * corner + 1] + first),
                           hn::Load(d, rows[3 * corner + 2] + first)};
     };

@@ -2,6 +2,7 @@
 
 #include <random>
 #include <stdexcept>
+#include <tuple>
 #include <vector>
 
 #include "supple/models.hpp"
