@@ -44,8 +44,10 @@ struct PairEvents {
   std::span<const ObjectPair> begin, stay, end;
 };
 
-/// Seconds by the wall clock and counts of one step. Traversal and exact tests run interleaved on several
-/// threads: their times are the time of both together, split as the threads' own clocks say.
+/// Seconds by the wall clock and counts of what was done in one step: contacts of two objects that both are
+/// where they were are known from the step before, and what led to them is not counted again. Traversal and
+/// exact tests run interleaved on several threads: their times are the time of both together, split as the
+/// threads' own clocks say.
 struct StepStats {
   double refit_seconds = 0;        ///< new positions into octrees
   double broad_phase_seconds = 0;  ///< object volumes into object pairs

@@ -70,26 +70,32 @@ void BoxOverlapMasks(const NodePair* pairs, std::size_t count, const AabbLanes* 
   }
 }
 
-/// The boxes of eight triangles from `begin` on, and which of them there are and are not inert.
+/// The boxes of up to eight triangles from `begin` on. Further lanes get that of the last one: less than
+/// guessing how many there are.
 template <class Box, class Scalar>
-HWY_INLINE std::uint32_t load_triangle_boxes(AabbLanes& lanes, const Scalar* vertices,
-                                             const TriangleArrays& arrays, std::uint32_t begin,
-                                             std::uint32_t end) {
-  const int count = static_cast<int>(std::min<std::uint32_t>(end - begin, node_width));
-  std::uint32_t valid = 0;
-  for (int j = 0; j < count; ++j) {
-    const std::uint32_t t = begin + static_cast<std::uint32_t>(j);
-    set_lane_to_triangles<Box>(lanes, j, vertices, arrays, t, t + 1);
-    valid |= (arrays.inert == nullptr || arrays.inert[t] == 0 ? 1u : 0u) << j;
+HWY_INLINE void load_triangle_boxes(LeafBoxes& leaf, const Scalar* vertices, const TriangleArrays& arrays,
+                                    std::uint32_t begin, std::uint32_t end) {
+  for (std::uint32_t first = 0; first < node_width; first += 4) {
+    Box boxes[4];
+    for (std::uint32_t i = 0; i < 4; ++i) {
+      extend_by_triangle(boxes[i], vertices, arrays.triangles[std::min(begin + first + i, end - 1)]);
+    }
+    set_four_lanes(leaf.lanes, static_cast<int>(first), boxes);
   }
-  invert_lanes_from(lanes, count);
-  return valid;
+  const std::uint32_t count = std::min<std::uint32_t>(end - begin, node_width);
+  leaf.lane_mask = (1u << count) - 1;
+  for (std::uint32_t i = 0; arrays.inert != nullptr && i < count; ++i) {
+    if (arrays.inert[begin + i] != 0) leaf.lane_mask &= ~(1u << i);
+  }
 }
 
-HWY_INLINE std::uint32_t load_boxes(AabbLanes& lanes, const TriangleArrays& arrays, std::uint32_t begin,
-                                    std::uint32_t end) {
-  return arrays.doubles != nullptr ? load_triangle_boxes<DoubleBox>(lanes, arrays.doubles, arrays, begin, end)
-                                   : load_triangle_boxes<FloatBox>(lanes, arrays.floats, arrays, begin, end);
+HWY_INLINE void load_boxes(LeafBoxes& leaf, const TriangleArrays& arrays, std::uint32_t begin,
+                           std::uint32_t end) {
+  if (arrays.doubles != nullptr) {
+    load_triangle_boxes<DoubleBox>(leaf, arrays.doubles, arrays, begin, end);
+  } else {
+    load_triangle_boxes<FloatBox>(leaf, arrays.floats, arrays, begin, end);
+  }
 }
 
 HWY_INLINE bool share_vertex(const Triangle& p, const Triangle& q) {
@@ -100,62 +106,92 @@ HWY_INLINE bool share_vertex(const Triangle& p, const Triangle& q) {
   return shared;
 }
 
+/// Bit i to the bits of byte i.
+HWY_INLINE std::uint64_t spread_to_bytes(std::uint32_t bits) {
+  const std::uint64_t copies = bits * 0x0101010101010101u;
+  const std::uint64_t ones = copies & 0x8040201008040201u;  // one bit of each byte
+  return ((ones + 0x7f7f7f7f7f7f7f7fu) >> 7 & 0x0101010101010101u) * 0xffu;
+}
+
 /// What `find_triangle_box_pairs` does, for one call.
 class LeafTests {
  public:
   HWY_INLINE LeafTests(const TriangleArrays& a, const TriangleArrays& b, const RelativePlacement& placement,
-                       bool same_object, std::vector<TrianglePair>& pairs)
-      : a_(a), b_(b), placement_(placement), same_object_(same_object), pairs_(pairs) {}
+                       bool same_object, LeafBoxCache& cache, TrianglePairList& pairs)
+      : a_(a), b_(b), placement_(placement), same_object_(same_object), cache_(cache), pairs_(pairs) {}
 
   HWY_INLINE void test(const LeafPair& leaves) {
     for (std::uint32_t first_a = leaves.begin_a; first_a < leaves.end_a; first_a += node_width) {
-      // Leaf pairs come in runs that share the first leaf.
-      if (first_a != loaded_a_) valid_a_ = load_boxes(boxes_a_, a_, first_a, leaves.end_a);
-      loaded_a_ = first_a;
+      const LeafBoxes& boxes_a = boxes_of_a(first_a, leaves.end_a);
       for (std::uint32_t first_b = leaves.begin_b; first_b < leaves.end_b; first_b += node_width) {
-        const std::uint32_t valid_b = load_boxes(boxes_b_, b_, first_b, leaves.end_b);
-        if (!placement_.is_identity()) place(boxes_b_, placement_);
-        test_eight(leaves, first_a, first_b, valid_b);
+        test_eight(leaves, boxes_a, boxes_of_b(first_b, leaves.end_b));
       }
     }
   }
-  std::uint64_t box_tests() const { return tests_ * node_width; }
+  std::uint64_t box_tests() const { return tests_ * node_width * node_width; }
 
  private:
-  HWY_INLINE void test_eight(const LeafPair& leaves, std::uint32_t first_a, std::uint32_t first_b,
-                             std::uint32_t valid_b) {
-    for (std::uint32_t rest = valid_a_; rest != 0; rest &= rest - 1) {
-      const int i = std::countr_zero(rest);
-      const std::uint32_t triangle_a = first_a + static_cast<std::uint32_t>(i);
-      ++tests_;
-      std::uint32_t hits = overlap_mask(boxes_b_, lane_box(boxes_a_, i)) & valid_b;
-      for (; hits != 0; hits &= hits - 1) {
-        const std::uint32_t triangle_b = first_b + static_cast<std::uint32_t>(std::countr_zero(hits));
-        if (same_object_) {
-          // Within one leaf each pair would come twice.
-          if (leaves.begin_a == leaves.begin_b && triangle_b <= triangle_a) continue;
-          if (share_vertex(a_.triangles[triangle_a], b_.triangles[triangle_b])) continue;
-        }
-        pairs_.push_back({triangle_a, triangle_b});
-      }
+  /// Leaves that follow each other in octree order fall into different places.
+  static HWY_INLINE LeafBoxes& place_in(std::array<LeafBoxes, LeafBoxCache::size>& entries,
+                                        std::uint32_t first) {
+    static_assert(LeafBoxCache::size == 32);
+    return entries[first * 0x9e3779b1u >> 27];
+  }
+
+  HWY_INLINE const LeafBoxes& boxes_of_a(std::uint32_t first, std::uint32_t end) {
+    LeafBoxes& entry = place_in(cache_.a, first);
+    if (entry.first != first) load_boxes(entry, a_, first, end);
+    entry.first = first;
+    return entry;
+  }
+  HWY_INLINE const LeafBoxes& boxes_of_b(std::uint32_t first, std::uint32_t end) {
+    LeafBoxes& entry = place_in(cache_.b, first);
+    if (entry.first == first) return entry;
+    load_boxes(entry, b_, first, end);
+    entry.first = first;
+    if (!placement_.is_identity()) place(entry.lanes, placement_);
+    return entry;
+  }
+
+  /// All eight against all eight, as there is no telling which.
+  HWY_INLINE void test_eight(const LeafPair& leaves, const LeafBoxes& boxes_a, const LeafBoxes& boxes_b) {
+    std::uint64_t hits = 0;
+    for (int i = 0; i < node_width; ++i) {
+      hits |= std::uint64_t{overlap_mask(boxes_b.lanes, lane_box(boxes_a.lanes, i)) & boxes_b.lane_mask}
+              << (8 * i);
     }
+    hits &= spread_to_bytes(boxes_a.lane_mask);
+    ++tests_;
+    TrianglePair* const room = pairs_.room_for(64);
+    std::size_t count = 0;
+    for (; hits != 0; hits &= hits - 1) {
+      const auto place = static_cast<std::uint32_t>(std::countr_zero(hits));
+      const TrianglePair pair{boxes_a.first + (place >> 3), boxes_b.first + (place & 7)};
+      room[count] = pair;
+      count += same_object_ && is_left_out(leaves, pair) ? 0 : 1;
+    }
+    pairs_.added(count);
+  }
+
+  HWY_INLINE bool is_left_out(const LeafPair& leaves, const TrianglePair& pair) const {
+    // Within one leaf each pair would come twice.
+    if (leaves.begin_a == leaves.begin_b && pair.b <= pair.a) return true;
+    return share_vertex(a_.triangles[pair.a], b_.triangles[pair.b]);
   }
 
   const TriangleArrays& a_;
   const TriangleArrays& b_;
   const RelativePlacement& placement_;
   bool same_object_;
-  std::vector<TrianglePair>& pairs_;
-  AabbLanes boxes_a_, boxes_b_;
-  std::uint32_t loaded_a_ = ~std::uint32_t{0};
-  std::uint32_t valid_a_ = 0;
+  LeafBoxCache& cache_;
+  TrianglePairList& pairs_;
   std::uint64_t tests_ = 0;
 };
 
 std::uint64_t TriangleBoxPairs(const LeafPair* leaf_pairs, std::size_t count, const TriangleArrays& a,
                                const TriangleArrays& b, const RelativePlacement& placement, bool same_object,
-                               std::vector<TrianglePair>& pairs) {
-  LeafTests tests(a, b, placement, same_object, pairs);
+                               LeafBoxCache& cache, TrianglePairList& pairs) {
+  LeafTests tests(a, b, placement, same_object, cache, pairs);
   for (std::size_t k = 0; k < count; ++k) tests.test(leaf_pairs[k]);
   return tests.box_tests();
 }
@@ -177,9 +213,9 @@ void overlap_masks(std::span<const NodePair> pairs, const AabbLanes* a, const Aa
 
 std::uint64_t find_triangle_box_pairs(std::span<const LeafPair> leaf_pairs, const TriangleArrays& a,
                                       const TriangleArrays& b, const RelativePlacement& placement,
-                                      bool same_object, std::vector<TrianglePair>& pairs) {
+                                      bool same_object, LeafBoxCache& cache, TrianglePairList& pairs) {
   return HWY_DYNAMIC_DISPATCH(TriangleBoxPairs)(leaf_pairs.data(), leaf_pairs.size(), a, b, placement,
-                                                same_object, pairs);
+                                                same_object, cache, pairs);
 }
 
 namespace {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -34,6 +36,43 @@ struct LeafPair {
   std::uint32_t lane_a = 0, lane_b = 0;
 };
 
+/// Boxes of up to eight triangles of a leaf.
+struct LeafBoxes {
+  AabbLanes lanes;
+  std::uint32_t first;      ///< triangle
+  std::uint32_t lane_mask;  ///< lanes that have a triangle that is not inert
+};
+
+/// The boxes of leaves looked at last: most are asked for again soon. Of two objects as they lie; to be
+/// cleared for others.
+struct LeafBoxCache {
+  static constexpr std::size_t size = 32;
+  std::array<LeafBoxes, size> a, b;
+
+  void clear() {
+    for (std::size_t i = 0; i < size; ++i) a[i].first = b[i].first = none;
+  }
+  static constexpr std::uint32_t none = ~std::uint32_t{0};
+};
+
+/// Candidates on their way. Memory is taken only where there are more of them than ever before.
+class TrianglePairList {
+ public:
+  /// Where `count` more pairs can be written; how many of them there are is then told by `added`.
+  TrianglePair* room_for(std::size_t count) {
+    if (pairs_.size() < count_ + count) pairs_.resize(2 * (count_ + count));
+    return pairs_.data() + count_;
+  }
+  void added(std::size_t count) { count_ += count; }
+  std::size_t size() const { return count_; }
+  std::span<const TrianglePair> pairs() const { return {pairs_.data(), count_}; }
+  void clear() { count_ = 0; }
+
+ private:
+  std::vector<TrianglePair> pairs_;
+  std::size_t count_ = 0;
+};
+
 /// Bit 8 i + j of `masks[k]`: lane i of node a and lane j of node b of `pairs[k]` may overlap. Lanes outside
 /// `lanes_a` give no bits; unused lanes of b may give any. Never misses an overlap.
 void overlap_masks(std::span<const NodePair> pairs, const AabbLanes* a, const AabbLanes* b,
@@ -46,6 +85,6 @@ void overlap_masks(std::span<const NodePair> pairs, const SphereLanes* a, const 
 /// a < b or b < a. Never misses an overlap. Returns the number of box tests.
 std::uint64_t find_triangle_box_pairs(std::span<const LeafPair> leaf_pairs, const TriangleArrays& a,
                                       const TriangleArrays& b, const RelativePlacement& placement,
-                                      bool same_object, std::vector<TrianglePair>& pairs);
+                                      bool same_object, LeafBoxCache& cache, TrianglePairList& pairs);
 
 }  // namespace supple

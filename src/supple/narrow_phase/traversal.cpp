@@ -10,6 +10,10 @@ namespace supple {
 namespace {
 
 void test_lanes(const ObjectPairView& pair, std::span<const NodePair> node_pairs, std::uint64_t* masks) {
+  for (const NodePair& nodes : node_pairs) {
+    if (pair.a.octree != nullptr) pair.a.octree->refresh(nodes.a, pair.a.arrays);
+    if (pair.b.octree != nullptr) pair.b.octree->refresh(nodes.b, pair.b.arrays);
+  }
   if (pair.is_moving()) {
     moving_overlap_masks(node_pairs, pair.a.moving, pair.b.moving, pair.part_of_step(), masks);
   } else if (pair.a.spheres != nullptr) {
@@ -41,6 +45,13 @@ bool goes_on(const ObjectPairView& pair, const OctreeNode& node, int lane) {
   return pair.is_moving() ? !is_moving_leaf(node, lane) : node.is_inner(lane);
 }
 
+/// Of eight bits; the instruction is not among those that every machine has.
+std::uint32_t bit_count(std::uint32_t bits) {
+  bits -= bits >> 1 & 0x55u;
+  bits = (bits & 0x33u) + (bits >> 2 & 0x33u);
+  return (bits + (bits >> 4)) & 0x0fu;
+}
+
 std::uint32_t lane_number(std::uint32_t node, int lane) {
   return node * node_width + static_cast<std::uint32_t>(lane);
 }
@@ -49,10 +60,8 @@ std::uint8_t lane_bit(int lane) {
   return static_cast<std::uint8_t>(1u << lane);
 }
 
-/// Largest absolute coordinate of the node's lanes; 0 when all are empty.
-double greatest_coordinate(const OctreeView& view) {
-  if (view.nodes.empty()) return 0;
-  const Aabb box = box_of_lanes(view.boxes[0]);
+/// Largest absolute coordinate of the box; 0 when it is empty.
+double greatest_coordinate(const Aabb& box) {
   if (box.empty()) return 0;
   double greatest = 0;
   for (int axis = 0; axis < 3; ++axis) {
@@ -70,7 +79,7 @@ RelativePlacement place(const OctreeView& a, const OctreeView& b) {
   if (a.translation == Vec3d{} && b.translation == Vec3d{}) return {};
   const Vec3d offset = b.translation - a.translation;
   const auto largest = [](Vec3d v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); };
-  const double size_a = greatest_coordinate(a), size_b = greatest_coordinate(b);
+  const double size_a = greatest_coordinate(a.box), size_b = greatest_coordinate(b.box);
   const double world = std::max(size_a + largest(a.translation), size_b + largest(b.translation));
   const double moved = offset == Vec3d{} ? 0 : size_b + largest(offset);
   return {{static_cast<float>(offset.x), static_cast<float>(offset.y), static_cast<float>(offset.z)},
@@ -81,14 +90,15 @@ RelativePlacement place(const OctreeView& a, const OctreeView& b) {
 
 OctreeView view_of(const ObjectOctree& octree, const VertexBuffer& vertices,
                    std::span<const std::uint8_t> inert, Vec3d translation) {
-  return {octree.nodes(),
-          octree.boxes(),
-          octree.spheres(),
-          {octree.triangles().data(), vertices.is_double() ? nullptr : vertices.floats(),
-           vertices.is_double() ? vertices.doubles() : nullptr, inert.empty() ? nullptr : inert.data()},
-          translation,
-          {},
-          nullptr};
+  OctreeView view;
+  view.nodes = octree.nodes();
+  view.octree = &octree;
+  view.boxes = octree.boxes();
+  view.spheres = octree.spheres();
+  view.arrays = arrays_of(octree.triangles(), vertices, inert);
+  view.box = octree.box();
+  view.translation = translation;
+  return view;
 }
 
 OctreeView moving_view_of(const ObjectOctree& octree, const SurfaceElements& elements,
@@ -130,9 +140,8 @@ void Traversal::expand_batch(const ObjectPairView& pair, TraversalStats& stats) 
     const NodePair node_pair = batch_[k];
     const OctreeNode& node_a = pair.a.nodes[node_pair.a];
     const OctreeNode& node_b = pair.b.nodes[node_pair.b];
-    stats.volumes_tested +=
-        static_cast<std::uint64_t>(std::popcount(node_pair.lanes_a & node_a.lane_mask())) *
-        static_cast<std::uint64_t>(std::popcount(node_pair.lanes_b & node_b.lane_mask()));
+    stats.volumes_tested += std::uint64_t{bit_count(node_pair.lanes_a & node_a.lane_mask())} *
+                            bit_count(node_pair.lanes_b & node_b.lane_mask());
     for_each_lane_pair(pair, node_pair, masks_[k], [&](int i, int j) {
       const bool inner_a = goes_on(pair, node_a, i), inner_b = goes_on(pair, node_b, j);
       if (inner_a && inner_b) {

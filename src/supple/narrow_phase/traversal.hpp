@@ -17,9 +17,11 @@ namespace supple {
 /// What the narrow phase reads of one object; borrowed for the call.
 struct OctreeView {
   std::span<const OctreeNode> nodes;
+  const ObjectOctree* octree = nullptr;  ///< whose nodes are to be refreshed before they are read, or null
   const AabbLanes* boxes = nullptr;
   const SphereLanes* spheres = nullptr;  ///< null: the boxes are the volumes
   TriangleArrays arrays;
+  Aabb box;           ///< of all positions
   Vec3d translation;  ///< added to each position
   MovingView moving;  ///< of objects in motion, of which `nodes`, this and the next are read only
   /// Masks of an `UnfoldedLanes` of these very positions, or null: an object against itself is then not
@@ -82,6 +84,7 @@ class Traversal {
     if (pair.a.nodes.empty() || pair.b.nodes.empty()) return;
     stack_.assign(1, root);
     leaf_pairs_.clear();
+    leaf_boxes_.clear();
     while (!stack_.empty()) {
       expand_batch(pair, stats);
       if (leaf_pairs_.size() >= leaf_batch || stack_.empty()) {
@@ -139,10 +142,10 @@ class Traversal {
       const auto part =
           std::span<const LeafPair>(leaf_pairs_).subspan(i, std::min(step, leaf_pairs_.size() - i));
       stats.volumes_tested += find_triangle_box_pairs(part, pair.a.arrays, pair.b.arrays, pair.placement,
-                                                      pair.same_object, candidates_);
+                                                      pair.same_object, leaf_boxes_, candidates_);
       if (candidates_.size() >= candidate_batch || i + step >= leaf_pairs_.size()) {
         stats.candidate_pairs += candidates_.size();
-        if (!candidates_.empty()) sink(std::span<const TrianglePair>(candidates_));
+        if (candidates_.size() > 0) sink(candidates_.pairs());
         candidates_.clear();
       }
     }
@@ -153,7 +156,8 @@ class Traversal {
   std::array<std::uint64_t, node_batch> masks_;
   std::array<NodePair, node_batch> batch_;
   std::vector<LeafPair> leaf_pairs_;
-  std::vector<TrianglePair> candidates_;
+  LeafBoxCache leaf_boxes_;
+  TrianglePairList candidates_;
   ElementPairBatches element_pairs_;
 };
 

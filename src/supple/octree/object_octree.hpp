@@ -1,12 +1,16 @@
 #pragma once
 
+#include <atomic>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "core/parallel.hpp"
+#include "octree/box_kernels.hpp"
 #include "octree/octree_node.hpp"
+#include "octree/subtrees.hpp"
 #include "octree/vertex_buffer.hpp"
 #include "supple/mesh.hpp"
 #include "supple/options.hpp"
@@ -14,6 +18,10 @@
 #include "supple/types.hpp"
 
 namespace supple {
+
+/// What the kernels read of the triangles and of their vertices; `inert` may be empty.
+TriangleArrays arrays_of(std::span<const Triangle> triangles, const VertexBuffer& vertices,
+                         std::span<const std::uint8_t> inert);
 
 /// Regular octree over the triangles of one object: built once, top-down, from the rest pose; its volumes
 /// refitted whenever the object deforms.
@@ -34,6 +42,7 @@ class ObjectOctree {
   std::span<const OctreeNode> nodes() const { return nodes_; }
   /// First node of each level, then the number of nodes.
   std::span<const std::uint32_t> level_begin() const { return level_begin_; }
+  /// Of nodes that `refresh` was called for since a lazy refit.
   const AabbLanes* boxes() const { return boxes_.data(); }
   /// Null unless the bounding volume is the sphere.
   const SphereLanes* spheres() const { return spheres_.empty() ? nullptr : spheres_.data(); }
@@ -50,12 +59,25 @@ class ObjectOctree {
   /// `inert` has a byte a triangle (octree order), or is empty: triangles to leave out.
   void refit(const VertexBuffer& vertices, std::span<const std::uint8_t> inert, const Parallel& parallel);
 
+  /// The same for boxes of objects without inert triangles, as far as no query has to ask: the box of the
+  /// whole object and of the top nodes' lanes, in one pass over the vertices. The others are those of
+  /// `vertices` when `refresh` is called. Rounded outward once, boxes of doubles may be tighter by an ulp.
+  void refit_lazily(const VertexBuffer& vertices, const Parallel& parallel);
+  /// Brings the boxes of a node up to date that is reached from the root, all nodes on the way having been
+  /// refreshed. Threads may call it at once.
+  void refresh(std::uint32_t node, const TriangleArrays& arrays) const {
+    const std::uint32_t subtree = subtrees_.of_root(node);
+    if (subtree != Subtree::none && subtree_states_[subtree].load(std::memory_order_acquire) != is_fresh) {
+      refresh_subtree(subtree, arrays);
+    }
+  }
+
   /// Volumes of the whole object after a refit; empty when it has no finite triangle.
   const Aabb& box() const { return box_; }
   const BoundingSphere& sphere() const { return sphere_; }
 
   /// The empty string when every invariant holds and every volume encloses its triangles; else what is wrong.
-  /// Spheres fitted to boxes do not enclose and are not checked for it.
+  /// Spheres fitted to boxes do not enclose and are not checked for it. Refreshes all nodes.
   std::string validate(const VertexBuffer& vertices, std::span<const std::uint8_t> inert) const;
   OctreeStatistics statistics() const;
 
@@ -63,8 +85,16 @@ class ObjectOctree {
   void refit_level(std::uint32_t level, const VertexBuffer& vertices, std::span<const std::uint8_t> inert,
                    const Parallel& parallel);
 
+  void refresh_subtree(std::uint32_t subtree, const TriangleArrays& arrays) const;
+  void fetch_ahead(std::uint32_t subtree, const TriangleArrays& arrays) const;
+  void refit_subtree(std::uint32_t root, const TriangleArrays& arrays) const;
+
+  enum SubtreeState : std::uint8_t { is_fresh, is_stale, in_work };
+
   std::vector<OctreeNode> nodes_;
-  std::vector<AabbLanes> boxes_;
+  mutable std::vector<AabbLanes> boxes_;  // those of stale subtrees are brought up to date when asked for
+  Subtrees subtrees_;
+  std::unique_ptr<std::atomic<std::uint8_t>[]> subtree_states_;
   std::vector<SphereLanes> spheres_;
   std::vector<Triangle> triangles_;
   std::vector<std::uint32_t> triangle_ids_, vertex_ids_, vertex_order_;

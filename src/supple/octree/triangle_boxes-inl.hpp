@@ -35,6 +35,12 @@ struct ScalarBox {
       hi[axis] = std::max(hi[axis], vertex[axis]);
     }
   }
+  void extend(const ScalarBox& other) {
+    for (int axis = 0; axis < 3; ++axis) {
+      lo[axis] = std::min(lo[axis], other.lo[axis]);
+      hi[axis] = std::max(hi[axis], other.hi[axis]);
+    }
+  }
   void store(float* lower, float* upper) const {
     for (int axis = 0; axis < 3; ++axis) {
       lower[axis] = round_down(lo[axis]);
@@ -62,6 +68,12 @@ struct FloatBox {
     lo = hn::Min(lo, v);
     hi = hn::Max(hi, v);
   }
+  HWY_INLINE void extend(const FloatBox& other) {
+    lo = hn::Min(lo, other.lo);
+    hi = hn::Max(hi, other.hi);
+  }
+  HWY_INLINE hn::Vec<Tag> lower() const { return lo; }
+  HWY_INLINE hn::Vec<Tag> upper() const { return hi; }
   HWY_INLINE void store(float* HWY_RESTRICT lower, float* HWY_RESTRICT upper) const {
     hn::StoreU(lo, Tag(), lower);
     hn::StoreU(hi, Tag(), upper);
@@ -88,6 +100,18 @@ struct DoubleBox {
     hi_xy = hn::Max(hi_xy, xy);
     lo_z = hn::Min(lo_z, z);
     hi_z = hn::Max(hi_z, z);
+  }
+  HWY_INLINE void extend(const DoubleBox& other) {
+    lo_xy = hn::Min(lo_xy, other.lo_xy);
+    lo_z = hn::Min(lo_z, other.lo_z);
+    hi_xy = hn::Max(hi_xy, other.hi_xy);
+    hi_z = hn::Max(hi_z, other.hi_z);
+  }
+  HWY_INLINE hn::Vec<FloatBox::Tag> lower() const {
+    return hn::Combine(FloatBox::Tag(), round_down(lo_z), round_down(lo_xy));
+  }
+  HWY_INLINE hn::Vec<FloatBox::Tag> upper() const {
+    return hn::Combine(FloatBox::Tag(), round_up(hi_z), round_up(hi_xy));
   }
   HWY_INLINE void store(float* HWY_RESTRICT lower, float* HWY_RESTRICT upper) const {
     hn::StoreU(round_down(lo_xy), FloatTag(), lower);
@@ -143,19 +167,69 @@ HWY_INLINE void set_lane(AabbLanes& lanes, int lane, const float* lower, const f
   lanes.max_z[lane] = upper[2];
 }
 
-/// Lane `lane` becomes the box of the triangles [begin, end); inverted when all of them are inert.
+/// Box of the triangles [begin, end); inverted when all of them are inert. A box for each corner, so that
+/// none waits for the others.
 template <class Box, class Scalar>
-HWY_INLINE void set_lane_to_triangles(AabbLanes& lanes, int lane, const Scalar* vertices,
-                                      const TriangleArrays& arrays, std::uint32_t begin, std::uint32_t end) {
-  Box box;
-  for (std::uint32_t t = begin; t < end; ++t) {
-    if (arrays.inert != nullptr && arrays.inert[t] != 0) continue;
-    extend_by_triangle(box, vertices, arrays.triangles[t]);
+HWY_INLINE Box box_of_triangles(const Scalar* vertices, const TriangleArrays& arrays, std::uint32_t begin,
+                                std::uint32_t end) {
+  Box first, second, third;
+  const auto extend = [&](std::uint32_t t) HWY_ATTR {
+    const Triangle& triangle = arrays.triangles[t];
+    first.extend(vertices + std::size_t{triangle[0]} * 4);
+    second.extend(vertices + std::size_t{triangle[1]} * 4);
+    third.extend(vertices + std::size_t{triangle[2]} * 4);
+  };
+  if (arrays.inert == nullptr && end - begin <= node_width) {
+    // The last triangle again and again costs less than guessing how many there are.
+    for (std::uint32_t i = 0; i < node_width; ++i) extend(std::min(begin + i, end - 1));
+  } else {
+    for (std::uint32_t t = begin; t < end; ++t) {
+      if (arrays.inert == nullptr || arrays.inert[t] == 0) extend(t);
+    }
   }
+  first.extend(second);
+  first.extend(third);
+  return first;
+}
+
+template <class Box>
+HWY_INLINE void set_lane(AabbLanes& lanes, int lane, const Box& box) {
   HWY_ALIGN float lower[4], upper[4];
   box.store(lower, upper);
   set_lane(lanes, lane, lower, upper);
 }
+
+#if HWY_TARGET == HWY_SCALAR
+
+/// Lanes `first` to `first` + 3 become the given boxes.
+template <class Box>
+HWY_INLINE void set_four_lanes(AabbLanes& lanes, int first, const Box (&boxes)[4]) {
+  for (int i = 0; i < 4; ++i) set_lane(lanes, first + i, boxes[i]);
+}
+
+#else
+
+/// x y z of four corners become four x, four y and four z.
+HWY_INLINE void store_transposed(hn::Vec<FloatBox::Tag> p, hn::Vec<FloatBox::Tag> q, hn::Vec<FloatBox::Tag> r,
+                                 hn::Vec<FloatBox::Tag> s, float* x, float* y, float* z) {
+  const FloatBox::Tag tag;
+  const auto xy_pq = hn::InterleaveLower(tag, p, q), xy_rs = hn::InterleaveLower(tag, r, s);
+  const auto z_pq = hn::InterleaveUpper(tag, p, q), z_rs = hn::InterleaveUpper(tag, r, s);
+  hn::Store(hn::ConcatLowerLower(tag, xy_rs, xy_pq), tag, x);
+  hn::Store(hn::ConcatUpperUpper(tag, xy_rs, xy_pq), tag, y);
+  hn::Store(hn::ConcatLowerLower(tag, z_rs, z_pq), tag, z);
+}
+
+/// Lanes `first` to `first` + 3 become the given boxes; `first` is 0 or 4.
+template <class Box>
+HWY_INLINE void set_four_lanes(AabbLanes& lanes, int first, const Box (&boxes)[4]) {
+  store_transposed(boxes[0].lower(), boxes[1].lower(), boxes[2].lower(), boxes[3].lower(),
+                   lanes.min_x + first, lanes.min_y + first, lanes.min_z + first);
+  store_transposed(boxes[0].upper(), boxes[1].upper(), boxes[2].upper(), boxes[3].upper(),
+                   lanes.max_x + first, lanes.max_y + first, lanes.max_z + first);
+}
+
+#endif
 
 HWY_INLINE void invert_lanes_from(AabbLanes& lanes, int first) {
   constexpr float inf = std::numeric_limits<float>::infinity();

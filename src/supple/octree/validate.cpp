@@ -123,6 +123,10 @@ class Validation {
 }  // namespace
 
 std::string ObjectOctree::validate(const VertexBuffer& vertices, std::span<const std::uint8_t> inert) const {
+  for (std::size_t s = 0; s < subtrees_.size(); ++s) {
+    if (subtrees_[s].root != Subtree::none)
+      refresh(subtrees_[s].root, arrays_of(triangles_, vertices, inert));
+  }
   const bool enclosing_spheres = spheres() != nullptr && sphere_fit_ == SphereFit::vertices;
   return Validation(*this, vertices, inert, enclosing_spheres, arity_).run();
 }
@@ -155,7 +159,8 @@ OctreeStatistics ObjectOctree::statistics() const {
                  spheres_.capacity() * sizeof(SphereLanes) + triangles_.capacity() * sizeof(Triangle) +
                  (triangle_ids_.capacity() + vertex_ids_.capacity() + vertex_order_.capacity() +
                   level_begin_.capacity()) *
-                     sizeof(std::uint32_t);
+                     sizeof(std::uint32_t) +
+                 subtrees_.bytes() + subtrees_.size();
   if (result.triangles > 0) {
     result.bytes_per_triangle = static_cast<double>(result.bytes) / static_cast<double>(result.triangles);
   }

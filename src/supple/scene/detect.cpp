@@ -62,12 +62,14 @@ void Scene::Implementation::refit_objects() {
   const double growth_of_volumes = is_continuous() ? growth(options.impact.min_separation) : 0;
   boxes_.resize(slots_.size());
   spheres_.resize(slots_.size());
+  versions_.resize(slots_.size(), 0);
   changed_.resize(slots_.size(), 0);
   stale_.clear();
   for (std::uint32_t index = 0; index < slots_.size(); ++index) {
     SceneObject* const object = slots_[index].object.get();
     if (object == nullptr || !object->is_stale()) continue;
     changed_[index] = 1;
+    versions_[index] = ++last_version_;
     if (object->needs_refit()) {
       ++result.stats.objects_refitted;
       result.stats.triangles_refitted += object->octree().triangles().size();
@@ -135,7 +137,7 @@ void Scene::Implementation::find_contacts() {
     contact_objects_.emplace_back();
     if (object == nullptr) continue;
     contact_objects_.back() = {id_of(index), object->view(), object->octree().triangle_ids(),
-                               object->octree().vertex_ids()};
+                               object->octree().vertex_ids(), versions_[index]};
   }
   contact_pass_.run(jobs_, contact_objects_, options, parallel, result.stats);
 }

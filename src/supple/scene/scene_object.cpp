@@ -172,16 +172,24 @@ void SceneObject::update(const Parallel& parallel) {
   if (is_continuous_) {
     update_moving(parallel);
   } else {
-    if (needs_refit_) octree_.refit(vertices_, inert_, parallel);
+    if (needs_refit_) refit_octree(parallel);
     if (!is_settled_ && translation_ != Vec3d{} && is_extreme()) {
       settle(parallel);
-      octree_.refit(vertices_, inert_, parallel);
+      refit_octree(parallel);
     }
     box_ = moved(octree_.box(), lazy_translation());
     sphere_ = moved(octree_.sphere(), lazy_translation());
   }
   if (options.self_collision && needs_refit_ && passes_over_unfolded_) update_unfolded(parallel);
   needs_refit_ = needs_bounds_ = false;
+}
+
+void SceneObject::refit_octree(const Parallel& parallel) {
+  if (inert_.empty() && octree_.spheres() == nullptr) {
+    octree_.refit_lazily(vertices_, parallel);
+  } else {
+    octree_.refit(vertices_, inert_, parallel);
+  }
 }
 
 void SceneObject::update_moving(const Parallel& parallel) {

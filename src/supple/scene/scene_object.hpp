@@ -70,6 +70,7 @@ class SceneObject {
   void unsettle(const Parallel& parallel);
   bool is_extreme() const;
   void settle(const Parallel& parallel);
+  void refit_octree(const Parallel& parallel);
   void update_moving(const Parallel& parallel);
   void update_unfolded(const Parallel& parallel);
   void note_non_finite(bool all_finite);

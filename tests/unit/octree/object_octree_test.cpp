@@ -201,6 +201,49 @@ TEST(ObjectOctree, InertTrianglesAreInNoBox) {
   EXPECT_LT(built.octree.box().max.y, 2);
 }
 
+TEST(ObjectOctree, LazyRefitGivesTheSameVolumesWhereAsked) {
+  for (const std::uint32_t count : {1u, 9u, 200u, 300u, 5000u}) {
+    for (const std::uint32_t arity : {2u, 8u}) {
+      Soup soup = scattered_soup(count, 2, {1, 2, 3}, count);
+      soup.positions.push_back({100, 100, 100});  // of no triangle
+      Built full(soup, {.arity = arity}), lazy(soup, {.arity = arity});
+      ASSERT_EQ(lazy.refit(soup), "");
+      for (Vec3d& p : soup.positions) {
+        p = {static_cast<float>(p.x + 0.3 * std::sin(5 * p.y)), static_cast<float>(p.y),
+             static_cast<float>(p.z)};
+      }
+      ASSERT_EQ(full.refit(soup), "");
+      lazy.vertices = full.vertices;
+      lazy.octree.refit_lazily(lazy.vertices, Parallel(2));
+      EXPECT_EQ(lazy.octree.box(), full.octree.box());
+      const TriangleArrays arrays = arrays_of(lazy.octree.triangles(), lazy.vertices, {});
+      // From the root down, as queries come, by several threads at once.
+      Parallel(4).for_ranges(4, 1, [&](std::size_t, std::size_t, std::uint32_t) {
+        for (std::uint32_t n = 0; n < lazy.octree.nodes().size(); ++n) lazy.octree.refresh(n, arrays);
+      });
+      for (std::uint32_t n = 0; n < lazy.octree.nodes().size(); ++n) {
+        for (int lane = 0; lane < lazy.octree.nodes()[n].lane_count; ++lane) {
+          const AabbLanes &found = lazy.octree.boxes()[n], &expected = full.octree.boxes()[n];
+          ASSERT_EQ(found.min_x[lane], expected.min_x[lane]) << count << ' ' << n << ' ' << lane;
+          ASSERT_EQ(found.max_x[lane], expected.max_x[lane]) << count << ' ' << n << ' ' << lane;
+          ASSERT_EQ(found.min_z[lane], expected.min_z[lane]) << count << ' ' << n << ' ' << lane;
+        }
+      }
+      EXPECT_EQ(lazy.octree.validate(lazy.vertices, {}), "");
+    }
+  }
+}
+
+TEST(ObjectOctree, ValidateRefreshesWhatNoQueryAskedFor) {
+  Soup soup = scattered_soup(3000, 1, {}, 14);
+  Built built(soup);
+  ASSERT_EQ(built.refit(soup), "");
+  for (Vec3d& p : soup.positions) p.x *= 2;
+  built.vertices.assign(PositionsView<double>(soup.positions), built.octree.vertex_order(), Parallel(1));
+  built.octree.refit_lazily(built.vertices, Parallel(1));
+  EXPECT_EQ(built.octree.validate(built.vertices, {}), "");
+}
+
 TEST(ObjectOctree, ValidateFindsAStaleBox) {
   Soup soup = scattered_soup(100, 1, {}, 10);
   Built built(soup);
