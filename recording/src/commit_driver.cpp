@@ -270,7 +270,10 @@ FileHandle create_committed_file(const std::filesystem::path& path) {
   // The format of HDF5 1.8: everyone reads it, and it has no marks of a file open for writing, which would
   // stay after a kill and turn readers away.
   if (H5Pset_libver_bounds(access.id(), H5F_LIBVER_V18, H5F_LIBVER_V18) < 0) return {};
-  return FileHandle(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.id()));
+  // The root is an object like others: equal recordings are equal files only without its times.
+  const PropertyListHandle creation(H5Pcreate(H5P_FILE_CREATE));
+  if (H5Pset_obj_track_times(creation.id(), false) < 0) return {};
+  return FileHandle(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation.id(), access.id()));
 }
 
 int write_error(hid_t file) {
