@@ -90,7 +90,7 @@ bool run_copies(const std::string& cell, const Choice& choice) {
     copies->advance();
     const double before = cpu_milliseconds();
     for (std::size_t i = 0; i < objects.size(); ++i) {
-      if (copies->moves(i)) scene.set_positions(objects[i], copies->positions(i));
+      if (copies->moves(i)) scene.share_positions(objects[i], PositionsView<float>(copies->positions(i)));
     }
     return cpu_milliseconds() - before;
   });

@@ -53,7 +53,9 @@ class SuppleCopies : public CopiesContestant {
   void frame(const DeformingCopies& copies) override {
     const double start = cpu_milliseconds();
     for (std::size_t i = 0; i < objects_.size(); ++i) {
-      if (copies.moves(i)) scene_.set_positions(objects_[i], copies.positions(i));
+      if (copies.moves(i)) {
+        scene_.share_positions(objects_[i], PositionsView<float>(copies.positions(i)));
+      }
     }
     const double handed_over = cpu_milliseconds();
     const StepStats& stats = scene_.detect().stats;

@@ -45,8 +45,9 @@ struct ObjectOctreeOptions {
   /// eight children whatever the arity: a tree of arity 4 may have half as many levels more (rounded down),
   /// one of arity 2 three times as many, so that no cell is smaller.
   std::uint32_t max_level = 16;
-  /// A node with at most this many triangles is not split, ≥ 1. Smaller is tighter, and takes more memory.
-  std::uint32_t leaf_size = 8;
+  /// A node with at most this many triangles is not split, ≥ 1. The triangles of two leaves that meet are
+  /// tested in vectors, so that small leaves are slower; and they take more memory.
+  std::uint32_t leaf_size = 64;
   /// Children of a node: 8, 4 or 2. A level then halves a node's cell along three axes, two or one, which
   /// take turns. Contacts are the same for all, the paper's colliding vertices are not: the leaves differ.
   /// Nodes are eight lanes wide in any case, so fewer children take more memory and time; for comparison.

@@ -35,10 +35,10 @@ struct RigidTransform {
 /// ```
 ///
 /// Moving an object is one call; its octree, its bounds and the scene follow at the next `detect`. The scene
-/// keeps one copy of each object's positions, in octree order and in the precision they were last given in,
-/// and a second copy only of objects moved by `set_transform`. Calls on one scene must not overlap; different
-/// scenes are independent. Every call that takes an `ObjectId` throws `Error` when the object is not in the
-/// scene.
+/// keeps one copy of each object's positions, in the precision they were last given in (none of those it
+/// shares), and a second copy only of objects moved by `set_transform`. Calls on one scene must not overlap;
+/// different scenes are independent. Every call that takes an `ObjectId` throws `Error` when the object is
+/// not in the scene.
 class Scene {
  public:
   /// Throws `Error` when an option is out of its range.
@@ -69,6 +69,13 @@ class Scene {
   void set_positions(ObjectId object, std::span<const Vec3f> positions) {
     set_positions(object, PositionsView<float>(positions));
   }
+  /// As `set_positions`, but nothing is copied: the scene reads the positions where they are, from now on
+  /// until the object is given others or removed. They must stay there that long, and keep their values until
+  /// they are to move: then change them between calls on the scene and call this again (what reads them in
+  /// between sees half of the change). Copied all the same, as by `set_positions`, when the contacts of the
+  /// scene are continuous, or the stride is not a multiple of the scalar's size. O(1).
+  void share_positions(ObjectId object, PositionsView<double> positions);
+  void share_positions(ObjectId object, PositionsView<float> positions);
   /// Moves the object as it is by `offset`, in O(1): the vertices are not read. Each coordinate becomes
   /// fl(position + D) in double, D being the sum of the offsets since the last `set_positions`.
   void translate(ObjectId object, Vec3d offset);

@@ -2,11 +2,14 @@
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "narrow_phase/overlap_kernels.cpp"
+#include <hwy/cache_control.h>
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
 #include <algorithm>
 #include <bit>
+#include <type_traits>
+#include <utility>
 
 #include "octree/triangle_boxes-inl.hpp"
 
@@ -70,33 +73,235 @@ void BoxOverlapMasks(const NodePair* pairs, std::size_t count, const AabbLanes* 
   }
 }
 
-/// The boxes of up to eight triangles from `begin` on. Further lanes get that of the last one: less than
-/// guessing how many there are.
+HWY_INLINE Aabb placed(Aabb box, const RelativePlacement& placement) {
+  for (int axis = 0; axis < 3; ++axis) {
+    box.min[axis] += placement.offset[axis] - placement.slop;
+    box.max[axis] += placement.offset[axis] + placement.slop;
+  }
+  return box;
+}
+
+using BoxTag = hn::CappedTag<float, 16>;
+using NumberTag = hn::Rebind<std::uint32_t, BoxTag>;
+using BoxVec = hn::Vec<BoxTag>;
+using NumberVec = hn::Vec<NumberTag>;
+using BoxMask = hn::Mask<BoxTag>;
+
+/// The triangles [begin, end), a block at most. Four at a time, the last one again and again where there are
+/// no four.
 template <class Box, class Scalar>
-HWY_INLINE void load_triangle_boxes(LeafBoxes& leaf, const Scalar* vertices, const TriangleArrays& arrays,
+HWY_INLINE void load_triangle_boxes(LeafBoxes& leaf, VertexArray<Scalar> positions, const Triangle* triangles,
                                     std::uint32_t begin, std::uint32_t end) {
-  for (std::uint32_t first = 0; first < node_width; first += 4) {
+  for (std::uint32_t first = begin; first < end; first += 4) {
     Box boxes[4];
     for (std::uint32_t i = 0; i < 4; ++i) {
-      extend_by_triangle(boxes[i], vertices, arrays.triangles[std::min(begin + first + i, end - 1)]);
+      extend_by_triangle(boxes[i], positions, triangles[std::min(first + i, end - 1)]);
     }
-    set_four_lanes(leaf.lanes, static_cast<int>(first), boxes);
-  }
-  const std::uint32_t count = std::min<std::uint32_t>(end - begin, node_width);
-  leaf.lane_mask = (1u << count) - 1;
-  for (std::uint32_t i = 0; arrays.inert != nullptr && i < count; ++i) {
-    if (arrays.inert[begin + i] != 0) leaf.lane_mask &= ~(1u << i);
+    set_four_boxes(leaf, first - begin, boxes);
   }
 }
 
-HWY_INLINE void load_boxes(LeafBoxes& leaf, const TriangleArrays& arrays, std::uint32_t begin,
-                           std::uint32_t end) {
-  if (arrays.doubles != nullptr) {
-    load_triangle_boxes<DoubleBox>(leaf, arrays.doubles, arrays, begin, end);
-  } else {
-    load_triangle_boxes<FloatBox>(leaf, arrays.floats, arrays, begin, end);
+#if HWY_TARGET != HWY_SCALAR
+
+/// Vertices of a leaf, from which the boxes of its triangles are looked up in registers: far less work than
+/// to read three vertices a triangle from memory. Of floats `high` is not used: it would be the same as
+/// `low`.
+struct LeafVertexTables {
+  /// Vertices that are looked up in so many vectors at most. More would take longer than reading them.
+  static constexpr std::size_t most_vectors = 4, lanes = hn::MaxLanes(BoxTag());
+  static constexpr std::size_t capacity = std::min<std::size_t>(64, most_vectors* lanes);
+
+  std::size_t count;
+  HWY_ALIGN float low[3][capacity];
+  HWY_ALIGN float high[3][capacity];
+};
+
+/// `count` is a multiple of four.
+HWY_INLINE void load_vertices(LeafVertexTables& tables, VertexArray<float> positions,
+                              const std::uint32_t* vertices, std::size_t count) {
+  for (std::size_t i = 0; i < count; i += leaf_vertices_step) {
+    store_transposed(load_vertex(positions[vertices[i]]), load_vertex(positions[vertices[i + 1]]),
+                     load_vertex(positions[vertices[i + 2]]), load_vertex(positions[vertices[i + 3]]),
+                     tables.low[0] + i, tables.low[1] + i, tables.low[2] + i);
+  }
+  tables.count = count;
+}
+
+HWY_INLINE void load_vertices(LeafVertexTables& tables, VertexArray<double> positions,
+                              const std::uint32_t* vertices, std::size_t count) {
+  for (std::size_t i = 0; i < count; i += leaf_vertices_step) {
+    DoubleBox boxes[leaf_vertices_step];
+    for (std::size_t k = 0; k < leaf_vertices_step; ++k) boxes[k].extend(positions[vertices[i + k]]);
+    store_transposed(boxes[0].lower(), boxes[1].lower(), boxes[2].lower(), boxes[3].lower(),
+                     tables.low[0] + i, tables.low[1] + i, tables.low[2] + i);
+    store_transposed(boxes[0].upper(), boxes[1].upper(), boxes[2].upper(), boxes[3].upper(),
+                     tables.high[0] + i, tables.high[1] + i, tables.high[2] + i);
+  }
+  tables.count = count;
+}
+
+/// One corner of each triangle of a vector.
+class Corners {
+ public:
+  HWY_INLINE explicit Corners(const std::uint8_t* places)
+      : place_(hn::PromoteTo(NumberTag(), hn::LoadU(hn::Rebind<std::uint8_t, NumberTag>(), places))),
+        in_vector_(hn::IndicesFromVec(BoxTag(),
+                                      hn::And(place_, hn::Set(NumberTag(), LeafVertexTables::lanes - 1)))) {}
+
+  HWY_INLINE BoxVec of(const float* table, std::size_t count) const {
+    const BoxTag tag;
+    auto value = hn::TableLookupLanes(hn::Load(tag, table), in_vector_);
+    for (std::size_t begin = LeafVertexTables::lanes; begin < count; begin += LeafVertexTables::lanes) {
+      const auto last_before = hn::Set(NumberTag(), static_cast<std::uint32_t>(begin - 1));
+      value = hn::IfThenElse(hn::RebindMask(tag, hn::Gt(place_, last_before)),
+                             hn::TableLookupLanes(hn::Load(tag, table + begin), in_vector_), value);
+    }
+    return value;
+  }
+
+ private:
+  NumberVec place_;
+  decltype(hn::IndicesFromVec(BoxTag(), NumberVec())) in_vector_;
+};
+
+/// Boxes of the triangles whose corners start at `corners`, a vector of them, to the place `to`.
+template <class Scalar>
+HWY_INLINE void look_up(const LeafVertexTables& tables, const std::uint8_t* corners, std::size_t stride,
+                        LeafBoxes& boxes, std::size_t to) {
+  const BoxTag tag;
+  const Corners p(corners), q(corners + stride), r(corners + 2 * stride);
+  float* const lows[3] = {boxes.min_x + to, boxes.min_y + to, boxes.min_z + to};
+  float* const highs[3] = {boxes.max_x + to, boxes.max_y + to, boxes.max_z + to};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const float* const low = tables.low[axis];
+    const auto lp = p.of(low, tables.count), lq = q.of(low, tables.count), lr = r.of(low, tables.count);
+    hn::Store(hn::Min(hn::Min(lp, lq), lr), tag, lows[axis]);
+    if constexpr (std::is_same_v<Scalar, float>) {
+      hn::Store(hn::Max(hn::Max(lp, lq), lr), tag, highs[axis]);
+    } else {
+      const float* const high = tables.high[axis];
+      const auto hp = p.of(high, tables.count), hq = q.of(high, tables.count), hr = r.of(high, tables.count);
+      hn::Store(hn::Max(hn::Max(hp, hq), hr), tag, highs[axis]);
+    }
   }
 }
+
+#endif
+
+template <class Box, class Scalar>
+HWY_INLINE void load_leaf_boxes(LeafBoxes& leaf, VertexArray<Scalar> positions, const LeafArrays& object,
+                                [[maybe_unused]] std::uint32_t lane, std::uint32_t begin, std::uint32_t end) {
+#if HWY_TARGET != HWY_SCALAR
+  const LeafVertexArrays leaves = object.vertices;
+  const std::size_t first = leaves.first[lane], count = leaves.first[lane + 1] - first;
+  if (count <= LeafVertexTables::capacity) {
+    LeafVertexTables tables;
+    load_vertices(tables, positions, leaves.vertices + first, count);
+    for (std::size_t t = begin; t < end; t += LeafVertexTables::lanes) {
+      look_up<Scalar>(tables, leaves.corners + t, leaves.stride, leaf, t - begin);
+    }
+    return;
+  }
+#endif
+  load_triangle_boxes<Box>(leaf, positions, object.triangles.triangles, begin, end);
+}
+
+/// The triangles [begin, end) of a leaf, a block at most.
+HWY_INLINE void load_boxes(LeafBoxes& leaf, const LeafArrays& object, std::uint32_t lane, std::uint32_t begin,
+                           std::uint32_t end) {
+  const TriangleArrays& arrays = object.triangles;
+  if (arrays.doubles.data != nullptr) {
+    load_leaf_boxes<DoubleBox>(leaf, arrays.doubles, object, lane, begin, end);
+  } else {
+    load_leaf_boxes<FloatBox>(leaf, arrays.floats, object, lane, begin, end);
+  }
+  leaf.size = end - begin;
+  leaf.triangles = ~std::uint64_t{0} >> (leaf_block - leaf.size);
+  for (std::uint32_t t = begin; arrays.inert != nullptr && t < end; ++t) {
+    if (arrays.inert[t] != 0) leaf.triangles &= ~(std::uint64_t{1} << (t - begin));
+  }
+}
+
+HWY_INLINE void place(LeafBoxes& leaf, const RelativePlacement& placement) {
+  for (std::uint32_t i = 0; i < leaf_block; ++i) {
+    leaf.min_x[i] += placement.offset.x - placement.slop;
+    leaf.min_y[i] += placement.offset.y - placement.slop;
+    leaf.min_z[i] += placement.offset.z - placement.slop;
+    leaf.max_x[i] += placement.offset.x + placement.slop;
+    leaf.max_y[i] += placement.offset.y + placement.slop;
+    leaf.max_z[i] += placement.offset.z + placement.slop;
+  }
+}
+
+HWY_INLINE std::uint64_t bits_of(BoxMask mask) {
+  std::uint8_t bytes[8] = {};
+  hn::StoreMaskBits(BoxTag(), mask, bytes);
+  return bytes[0] + 256u * bytes[1];
+}
+
+/// Which of the boxes from `first` on, a vector of them, meet `box`: closed boxes, exact comparisons.
+HWY_INLINE BoxMask meeting(const LeafBoxes& leaf, std::size_t first, const Aabb& box) {
+  const BoxTag tag;
+  const auto x = hn::And(hn::Le(hn::Load(tag, leaf.min_x + first), hn::Set(tag, box.max.x)),
+                         hn::Ge(hn::Load(tag, leaf.max_x + first), hn::Set(tag, box.min.x)));
+  const auto y = hn::And(hn::Le(hn::Load(tag, leaf.min_y + first), hn::Set(tag, box.max.y)),
+                         hn::Ge(hn::Load(tag, leaf.max_y + first), hn::Set(tag, box.min.y)));
+  const auto z = hn::And(hn::Le(hn::Load(tag, leaf.min_z + first), hn::Set(tag, box.max.z)),
+                         hn::Ge(hn::Load(tag, leaf.max_z + first), hn::Set(tag, box.min.z)));
+  return hn::And(x, hn::And(y, z));
+}
+
+/// The triangles of a block whose boxes meet `box`.
+HWY_INLINE std::uint64_t meeting(const LeafBoxes& leaf, const Aabb& box) {
+  std::uint64_t bits = 0;
+  for (std::size_t i = 0; i < leaf.size; i += hn::Lanes(BoxTag()))
+    bits |= bits_of(meeting(leaf, i, box)) << i;
+  return bits & leaf.triangles;
+}
+
+HWY_INLINE BoxMask mask_of(std::uint64_t bits) {
+  const std::uint8_t bytes[8] = {static_cast<std::uint8_t>(bits), static_cast<std::uint8_t>(bits >> 8)};
+  return hn::LoadMaskBits(BoxTag(), bytes);
+}
+
+HWY_INLINE Aabb box_at(const LeafBoxes& leaf, std::uint32_t i) {
+  return {{leaf.min_x[i], leaf.min_y[i], leaf.min_z[i]}, {leaf.max_x[i], leaf.max_y[i], leaf.max_z[i]}};
+}
+
+#if HWY_TARGET == HWY_SCALAR
+
+template <bool chosen_is_b>
+HWY_INLINE std::size_t store_pairs(NumberVec triangles, BoxMask chosen, std::uint32_t other,
+                                   TrianglePair* pairs) {
+  const std::uint32_t triangle = hn::GetLane(triangles);
+  *pairs = chosen_is_b ? TrianglePair{other, triangle} : TrianglePair{triangle, other};
+  return hn::CountTrue(BoxTag(), chosen);
+}
+
+#else
+
+/// The chosen triangles, each with `other`; returns how many. Writes a whole vector of pairs in any case.
+template <bool chosen_is_b>
+HWY_INLINE std::size_t store_pairs(NumberVec triangles, BoxMask chosen, std::uint32_t other,
+                                   TrianglePair* pairs) {
+  static_assert(std::endian::native == std::endian::little && sizeof(TrianglePair) == 8);
+  const NumberTag numbers;
+  const hn::Half<NumberTag> half;
+  const hn::Repartition<std::uint64_t, NumberTag> whole_pairs;
+  const auto others = hn::Set(whole_pairs, chosen_is_b ? std::uint64_t{other} : std::uint64_t{other} << 32);
+  const auto paired = [&](hn::Vec<hn::Half<NumberTag>> v) HWY_ATTR {
+    const auto wide = hn::PromoteTo(whole_pairs, v);
+    if constexpr (chosen_is_b) return hn::Or(hn::ShiftLeft<32>(wide), others);
+    return hn::Or(wide, others);
+  };
+  const auto compressed = hn::Compress(triangles, hn::RebindMask(numbers, chosen));
+  auto* const place = reinterpret_cast<std::uint64_t*>(pairs);
+  hn::StoreU(paired(hn::LowerHalf(half, compressed)), whole_pairs, place);
+  hn::StoreU(paired(hn::UpperHalf(half, compressed)), whole_pairs, place + hn::Lanes(whole_pairs));
+  return hn::CountTrue(BoxTag(), chosen);
+}
+
+#endif
 
 HWY_INLINE bool share_vertex(const Triangle& p, const Triangle& q) {
   bool shared = false;
@@ -106,81 +311,143 @@ HWY_INLINE bool share_vertex(const Triangle& p, const Triangle& q) {
   return shared;
 }
 
-/// Bit i to the bits of byte i.
-HWY_INLINE std::uint64_t spread_to_bytes(std::uint32_t bits) {
-  const std::uint64_t copies = bits * 0x0101010101010101u;
-  const std::uint64_t ones = copies & 0x8040201008040201u;  // one bit of each byte
-  return ((ones + 0x7f7f7f7f7f7f7f7fu) >> 7 & 0x0101010101010101u) * 0xffu;
-}
-
 /// What `find_triangle_box_pairs` does, for one call.
 class LeafTests {
  public:
-  HWY_INLINE LeafTests(const TriangleArrays& a, const TriangleArrays& b, const RelativePlacement& placement,
+  HWY_INLINE LeafTests(const LeafArrays& a, const LeafArrays& b, const RelativePlacement& placement,
                        bool same_object, LeafBoxCache& cache, TrianglePairList& pairs)
       : a_(a), b_(b), placement_(placement), same_object_(same_object), cache_(cache), pairs_(pairs) {}
 
   HWY_INLINE void test(const LeafPair& leaves) {
-    for (std::uint32_t first_a = leaves.begin_a; first_a < leaves.end_a; first_a += node_width) {
-      const LeafBoxes& boxes_a = boxes_of_a(first_a, leaves.end_a);
-      for (std::uint32_t first_b = leaves.begin_b; first_b < leaves.end_b; first_b += node_width) {
-        test_eight(leaves, boxes_a, boxes_of_b(first_b, leaves.end_b));
+    const bool same_leaf = same_object_ && leaves.begin_a == leaves.begin_b;
+    const Aabb box_a = leaf_box(a_, leaves.lane_a), box_b = placed(leaf_box(b_, leaves.lane_b), placement_);
+    for (std::uint32_t first_a = leaves.begin_a; first_a < leaves.end_a; first_a += leaf_block) {
+      const LeafBoxes& boxes_a = boxes_of_a(leaves.lane_a, first_a, leaves.end_a);
+      const std::uint64_t some_a = near(boxes_a, box_b);
+      if (some_a == 0) continue;
+      for (std::uint32_t first_b = same_leaf ? first_a : leaves.begin_b; first_b < leaves.end_b;
+           first_b += leaf_block) {
+        const LeafBoxes& boxes_b = boxes_of_b(leaves.lane_b, first_b, leaves.end_b);
+        const std::uint64_t some_b = near(boxes_b, box_a);
+        if (same_leaf && first_a == first_b) {
+          match<true, true>(first_a, boxes_a, some_a, first_b, boxes_b, some_b);
+        } else if (std::popcount(some_a) <= std::popcount(some_b)) {
+          match<true, false>(first_a, boxes_a, some_a, first_b, boxes_b, some_b);
+        } else {
+          match<false, false>(first_b, boxes_b, some_b, first_a, boxes_a, some_a);
+        }
       }
     }
   }
-  std::uint64_t box_tests() const { return tests_ * node_width * node_width; }
+  std::uint64_t box_tests() const { return tests_; }
+
+  /// Fetches into the cache, for a pair to be tested soon, where its leaves' vertices are told; and sooner,
+  /// these vertices.
+  HWY_INLINE void fetch_lists(const LeafPair& leaves) const {
+    if (!is_cached(cache_.a(), leaves.begin_a)) fetch_lists(a_, leaves.lane_a, leaves.begin_a);
+    if (!is_cached(cache_.b(), leaves.begin_b)) fetch_lists(b_, leaves.lane_b, leaves.begin_b);
+  }
+  HWY_INLINE void fetch_vertices(const LeafPair& leaves) const {
+    if (!is_cached(cache_.a(), leaves.begin_a)) fetch_vertices(a_, leaves.lane_a);
+    if (!is_cached(cache_.b(), leaves.begin_b)) fetch_vertices(b_, leaves.lane_b);
+  }
 
  private:
-  /// Leaves that follow each other in octree order fall into different places.
-  static HWY_INLINE LeafBoxes& place_in(std::array<LeafBoxes, LeafBoxCache::size>& entries,
-                                        std::uint32_t first) {
+  static HWY_INLINE bool is_cached(const LeafBoxCache::Side& side, std::uint32_t first) {
+    return side.first_triangles[place_of(first)] == first;
+  }
+  static HWY_INLINE void fetch_lists(const LeafArrays& object, std::uint32_t lane, std::uint32_t begin) {
+    const LeafVertexArrays& leaves = object.vertices;
+    for (std::size_t corner = 0; corner < 3; ++corner) {
+      hwy::Prefetch(leaves.corners + corner * leaves.stride + begin);
+    }
+    hwy::Prefetch(leaves.vertices + leaves.first[lane]);
+  }
+  static HWY_INLINE void fetch_vertices(const LeafArrays& object, std::uint32_t lane) {
+    const std::uint32_t begin = object.vertices.first[lane];
+    const std::uint32_t end = std::min(object.vertices.first[lane + 1], begin + leaf_block);
+    const auto fetch = [&](auto positions) HWY_ATTR {
+      for (std::uint32_t i = begin; i < end; i += 2) hwy::Prefetch(positions[object.vertices.vertices[i]]);
+    };
+    object.triangles.doubles.data != nullptr ? fetch(object.triangles.doubles)
+                                             : fetch(object.triangles.floats);
+  }
+
+  static HWY_INLINE Aabb leaf_box(const LeafArrays& object, std::uint32_t lane) {
+    return lane_box(object.boxes[lane / node_width], static_cast<int>(lane % node_width));
+  }
+
+  /// Blocks that follow each other in octree order fall into different places.
+  static HWY_INLINE std::size_t place_of(std::uint32_t first) {
     static_assert(LeafBoxCache::size == 32);
-    return entries[first * 0x9e3779b1u >> 27];
+    return first * 0x9e3779b1u >> 27;
   }
-
-  HWY_INLINE const LeafBoxes& boxes_of_a(std::uint32_t first, std::uint32_t end) {
-    LeafBoxes& entry = place_in(cache_.a, first);
-    if (entry.first != first) load_boxes(entry, a_, first, end);
-    entry.first = first;
-    return entry;
-  }
-  HWY_INLINE const LeafBoxes& boxes_of_b(std::uint32_t first, std::uint32_t end) {
-    LeafBoxes& entry = place_in(cache_.b, first);
-    if (entry.first == first) return entry;
-    load_boxes(entry, b_, first, end);
-    entry.first = first;
-    if (!placement_.is_identity()) place(entry.lanes, placement_);
-    return entry;
-  }
-
-  /// All eight against all eight, as there is no telling which.
-  HWY_INLINE void test_eight(const LeafPair& leaves, const LeafBoxes& boxes_a, const LeafBoxes& boxes_b) {
-    std::uint64_t hits = 0;
-    for (int i = 0; i < node_width; ++i) {
-      hits |= std::uint64_t{overlap_mask(boxes_b.lanes, lane_box(boxes_a.lanes, i)) & boxes_b.lane_mask}
-              << (8 * i);
+  HWY_INLINE const LeafBoxes& boxes_of_a(std::uint32_t lane, std::uint32_t first, std::uint32_t leaf_end) {
+    const std::size_t place = place_of(first);
+    LeafBoxes& entry = cache_.a().boxes[place];
+    if (std::exchange(cache_.a().first_triangles[place], first) != first) {
+      load_boxes(entry, a_, lane, first, std::min(first + leaf_block, leaf_end));
     }
-    hits &= spread_to_bytes(boxes_a.lane_mask);
-    ++tests_;
-    TrianglePair* const room = pairs_.room_for(64);
+    return entry;
+  }
+  HWY_INLINE const LeafBoxes& boxes_of_b(std::uint32_t lane, std::uint32_t first, std::uint32_t leaf_end) {
+    const std::size_t place = place_of(first);
+    LeafBoxes& entry = cache_.b().boxes[place];
+    if (std::exchange(cache_.b().first_triangles[place], first) != first) {
+      load_boxes(entry, b_, lane, first, std::min(first + leaf_block, leaf_end));
+      if (!placement_.is_identity()) supple::HWY_NAMESPACE::place(entry, placement_);
+    }
+    return entry;
+  }
+
+  HWY_INLINE std::uint64_t near(const LeafBoxes& boxes, const Aabb& leaf) {
+    tests_ += boxes.size;
+    return meeting(boxes, leaf);
+  }
+
+  /// One by one those of one side, against vectors of the other's; or in one block each with those after it.
+  template <bool others_are_b, bool each_with_later>
+  HWY_INLINE void match(std::uint32_t first_one, const LeafBoxes& ones, std::uint64_t some_ones,
+                        std::uint32_t first_other, const LeafBoxes& others, std::uint64_t some_others) {
+    constexpr std::uint32_t lanes = hn::MaxLanes(BoxTag());
+    constexpr std::uint64_t all_lanes = (std::uint64_t{1} << lanes) - 1;
+    const auto count_ones = static_cast<std::uint64_t>(std::popcount(some_ones));
+    tests_ += count_ones * static_cast<std::uint64_t>(std::popcount(some_others));
+    TrianglePair* const room = pairs_.room_for(count_ones * leaf_block + lanes);
     std::size_t count = 0;
-    for (; hits != 0; hits &= hits - 1) {
-      const auto place = static_cast<std::uint32_t>(std::countr_zero(hits));
-      const TrianglePair pair{boxes_a.first + (place >> 3), boxes_b.first + (place & 7)};
-      room[count] = pair;
-      count += same_object_ && is_left_out(leaves, pair) ? 0 : 1;
+    for (std::uint32_t i = 0; i < others.size; i += lanes) {
+      const std::uint64_t some = some_others >> i & all_lanes;
+      if (some == 0) continue;
+      const BoxMask wanted = mask_of(some);
+      const NumberVec triangles = hn::Iota(NumberTag(), first_other + i);
+      for (std::uint64_t rest = some_ones; rest != 0; rest &= rest - 1) {
+        const auto one = static_cast<std::uint32_t>(std::countr_zero(rest));
+        BoxMask hits = hn::And(meeting(others, i, box_at(ones, one)), wanted);
+        if constexpr (each_with_later) {
+          const auto later = hn::Gt(triangles, hn::Set(NumberTag(), first_one + one));
+          hits = hn::And(hits, hn::RebindMask(BoxTag(), later));
+        }
+        count += store_pairs<others_are_b>(triangles, hits, first_one + one, room + count);
+      }
     }
-    pairs_.added(count);
+    pairs_.added(same_object_ ? without_neighbours(room, count) : count);
   }
 
-  HWY_INLINE bool is_left_out(const LeafPair& leaves, const TrianglePair& pair) const {
-    // Within one leaf each pair would come twice.
-    if (leaves.begin_a == leaves.begin_b && pair.b <= pair.a) return true;
-    return share_vertex(a_.triangles[pair.a], b_.triangles[pair.b]);
+  /// Leaves out the pairs that share a vertex; returns how many stay. Added up rather than branched on: which
+  /// ones do is hard to foretell.
+  HWY_INLINE std::size_t without_neighbours(TrianglePair* pairs, std::size_t count) const {
+    const Triangle* const triangles = a_.triangles.triangles;
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      const TrianglePair pair = pairs[i];
+      pairs[kept] = pair;
+      kept += share_vertex(triangles[pair.a], triangles[pair.b]) ? 0 : 1;
+    }
+    return kept;
   }
 
-  const TriangleArrays& a_;
-  const TriangleArrays& b_;
+  const LeafArrays& a_;
+  const LeafArrays& b_;
   const RelativePlacement& placement_;
   bool same_object_;
   LeafBoxCache& cache_;
@@ -188,11 +455,16 @@ class LeafTests {
   std::uint64_t tests_ = 0;
 };
 
-std::uint64_t TriangleBoxPairs(const LeafPair* leaf_pairs, std::size_t count, const TriangleArrays& a,
-                               const TriangleArrays& b, const RelativePlacement& placement, bool same_object,
+std::uint64_t TriangleBoxPairs(const LeafPair* leaf_pairs, std::size_t count, const LeafArrays& a,
+                               const LeafArrays& b, const RelativePlacement& placement, bool same_object,
                                LeafBoxCache& cache, TrianglePairList& pairs) {
+  constexpr std::size_t lists_ahead = 6, vertices_ahead = 3;
   LeafTests tests(a, b, placement, same_object, cache, pairs);
-  for (std::size_t k = 0; k < count; ++k) tests.test(leaf_pairs[k]);
+  for (std::size_t k = 0; k < count; ++k) {
+    if (k + lists_ahead < count) tests.fetch_lists(leaf_pairs[k + lists_ahead]);
+    if (k + vertices_ahead < count) tests.fetch_vertices(leaf_pairs[k + vertices_ahead]);
+    tests.test(leaf_pairs[k]);
+  }
   return tests.box_tests();
 }
 
@@ -211,8 +483,8 @@ void overlap_masks(std::span<const NodePair> pairs, const AabbLanes* a, const Aa
   HWY_DYNAMIC_DISPATCH(BoxOverlapMasks)(pairs.data(), pairs.size(), a, b, placement, masks);
 }
 
-std::uint64_t find_triangle_box_pairs(std::span<const LeafPair> leaf_pairs, const TriangleArrays& a,
-                                      const TriangleArrays& b, const RelativePlacement& placement,
+std::uint64_t find_triangle_box_pairs(std::span<const LeafPair> leaf_pairs, const LeafArrays& a,
+                                      const LeafArrays& b, const RelativePlacement& placement,
                                       bool same_object, LeafBoxCache& cache, TrianglePairList& pairs) {
   return HWY_DYNAMIC_DISPATCH(TriangleBoxPairs)(leaf_pairs.data(), leaf_pairs.size(), a, b, placement,
                                                 same_object, cache, pairs);

@@ -36,23 +36,38 @@ struct LeafPair {
   std::uint32_t lane_a = 0, lane_b = 0;
 };
 
-/// Boxes of up to eight triangles of a leaf.
-struct LeafBoxes {
-  AabbLanes lanes;
-  std::uint32_t first;      ///< triangle
-  std::uint32_t lane_mask;  ///< lanes that have a triangle that is not inert
+/// Triangles of a leaf that are tested at a time: a bit each. Larger leaves are taken in such blocks.
+constexpr std::uint32_t leaf_block = 64;
+
+/// Boxes of the triangles of a block, one array an axis and side. Those past the last triangle hold anything.
+struct alignas(64) LeafBoxes {
+  float min_x[leaf_block], min_y[leaf_block], min_z[leaf_block];
+  float max_x[leaf_block], max_y[leaf_block], max_z[leaf_block];
+  std::uint64_t triangles;  ///< bit i: there is a triangle i, and it is not inert
+  std::uint32_t size;       ///< triangles, inert ones included
 };
 
-/// The boxes of leaves looked at last: most are asked for again soon. Of two objects as they lie; to be
-/// cleared for others.
-struct LeafBoxCache {
+/// The boxes of blocks looked at last: most are asked for again soon. Of two objects as they lie; to be
+/// cleared for others. 100 KB, for the second-level cache.
+class LeafBoxCache {
+ public:
   static constexpr std::size_t size = 32;
-  std::array<LeafBoxes, size> a, b;
 
+  LeafBoxCache() { clear(); }
   void clear() {
-    for (std::size_t i = 0; i < size; ++i) a[i].first = b[i].first = none;
+    a_.first_triangles.fill(none);
+    b_.first_triangles.fill(none);
   }
+  struct Side {
+    std::array<std::uint32_t, size> first_triangles;
+    std::array<LeafBoxes, size> boxes;
+  };
+  Side& a() { return a_; }
+  Side& b() { return b_; }
+
+ private:
   static constexpr std::uint32_t none = ~std::uint32_t{0};
+  Side a_, b_;
 };
 
 /// Candidates on their way. Memory is taken only where there are more of them than ever before.
@@ -80,11 +95,21 @@ void overlap_masks(std::span<const NodePair> pairs, const AabbLanes* a, const Aa
 void overlap_masks(std::span<const NodePair> pairs, const SphereLanes* a, const SphereLanes* b,
                    const RelativePlacement& placement, std::uint64_t* masks);
 
+/// What the leaf tests read of an object: its triangles, and the boxes and vertices of its leaves.
+struct LeafArrays {
+  const TriangleArrays& triangles;
+  const AabbLanes* boxes = nullptr;
+  LeafVertexArrays vertices;
+};
+
 /// Appends all pairs of triangles of the leaf pairs whose boxes may overlap, in octree order's numbers; inert
 /// triangles are in none. With `same_object` pairs that share a vertex are left out and each pair comes once,
 /// a < b or b < a. Never misses an overlap. Returns the number of box tests.
-std::uint64_t find_triangle_box_pairs(std::span<const LeafPair> leaf_pairs, const TriangleArrays& a,
-                                      const TriangleArrays& b, const RelativePlacement& placement,
+///
+/// Of each leaf, only triangles count that meet the box of the other; these are tested one by one, those of
+/// the side that has fewer, against vectors of the other side's.
+std::uint64_t find_triangle_box_pairs(std::span<const LeafPair> leaf_pairs, const LeafArrays& a,
+                                      const LeafArrays& b, const RelativePlacement& placement,
                                       bool same_object, LeafBoxCache& cache, TrianglePairList& pairs);
 
 }  // namespace supple

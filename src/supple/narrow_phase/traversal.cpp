@@ -10,10 +10,6 @@ namespace supple {
 namespace {
 
 void test_lanes(const ObjectPairView& pair, std::span<const NodePair> node_pairs, std::uint64_t* masks) {
-  for (const NodePair& nodes : node_pairs) {
-    if (pair.a.octree != nullptr) pair.a.octree->refresh(nodes.a, pair.a.arrays);
-    if (pair.b.octree != nullptr) pair.b.octree->refresh(nodes.b, pair.b.arrays);
-  }
   if (pair.is_moving()) {
     moving_overlap_masks(node_pairs, pair.a.moving, pair.b.moving, pair.part_of_step(), masks);
   } else if (pair.a.spheres != nullptr) {
@@ -92,9 +88,9 @@ OctreeView view_of(const ObjectOctree& octree, const VertexBuffer& vertices,
                    std::span<const std::uint8_t> inert, Vec3d translation) {
   OctreeView view;
   view.nodes = octree.nodes();
-  view.octree = &octree;
   view.boxes = octree.boxes();
   view.spheres = octree.spheres();
+  view.leaf_vertices = octree.leaf_vertices();
   view.arrays = arrays_of(octree.triangles(), vertices, inert);
   view.box = octree.box();
   view.translation = translation;

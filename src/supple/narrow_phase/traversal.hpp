@@ -17,10 +17,10 @@ namespace supple {
 /// What the narrow phase reads of one object; borrowed for the call.
 struct OctreeView {
   std::span<const OctreeNode> nodes;
-  const ObjectOctree* octree = nullptr;  ///< whose nodes are to be refreshed before they are read, or null
   const AabbLanes* boxes = nullptr;
   const SphereLanes* spheres = nullptr;  ///< null: the boxes are the volumes
   TriangleArrays arrays;
+  LeafVertexArrays leaf_vertices;
   Aabb box;           ///< of all positions
   Vec3d translation;  ///< added to each position
   MovingView moving;  ///< of objects in motion, of which `nodes`, this and the next are read only
@@ -138,11 +138,13 @@ class Traversal {
   template <class Sink>
   void flush_leaves(const ObjectPairView& pair, TraversalStats& stats, Sink&& sink) {
     constexpr std::size_t step = 32;
+    const LeafArrays a{pair.a.arrays, pair.a.boxes, pair.a.leaf_vertices},
+        b{pair.b.arrays, pair.b.boxes, pair.b.leaf_vertices};
     for (std::size_t i = 0; i < leaf_pairs_.size(); i += step) {
       const auto part =
           std::span<const LeafPair>(leaf_pairs_).subspan(i, std::min(step, leaf_pairs_.size() - i));
-      stats.volumes_tested += find_triangle_box_pairs(part, pair.a.arrays, pair.b.arrays, pair.placement,
-                                                      pair.same_object, leaf_boxes_, candidates_);
+      stats.volumes_tested +=
+          find_triangle_box_pairs(part, a, b, pair.placement, pair.same_object, leaf_boxes_, candidates_);
       if (candidates_.size() >= candidate_batch || i + step >= leaf_pairs_.size()) {
         stats.candidate_pairs += candidates_.size();
         if (candidates_.size() > 0) sink(candidates_.pairs());

@@ -124,7 +124,7 @@ void RoundCorners(const double* vertices, float* corners, std::uint32_t begin, s
   constexpr float greatest = std::numeric_limits<float>::max();
   for (std::size_t vertex = begin; vertex < end; ++vertex) {
     DoubleBox box;
-    box.extend(vertices + 4 * vertex);
+    box.extend(vertices + 3 * vertex);
     HWY_ALIGN float lower[4], upper[4];
     box.store(lower, upper);
     float* const target = corners + 8 * vertex;

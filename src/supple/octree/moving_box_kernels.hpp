@@ -14,7 +14,7 @@ namespace supple {
 struct VertexCorners {
   const float* lower = nullptr;
   const float* upper = nullptr;
-  std::size_t step = 4;
+  std::size_t step = 3;
 };
 
 /// Boxes of many elements: six arrays, `stride` floats apart, of min x, y, z and max x, y, z.
@@ -27,7 +27,7 @@ struct BoxArrays {
   }
 };
 
-/// Rounds the vertices [begin, end), four doubles each, outward: eight floats each, the lower and the upper
+/// Rounds the vertices [begin, end), three doubles each, outward: eight floats each, the lower and the upper
 /// corner, within the range of float.
 void round_corners(const double* vertices, float* corners, std::uint32_t begin, std::uint32_t end);
 

@@ -47,7 +47,7 @@ Aabb root_box(const std::vector<AabbLanes>& nodes) {
 
 }  // namespace
 
-void MovingBoxes::refit(const ObjectOctree& octree, const SurfaceElements& elements,
+bool MovingBoxes::refit(const ObjectOctree& octree, const SurfaceElements& elements,
                         const VertexBuffer& start, const VertexBuffer& end, const Parallel& parallel) {
   at_rest_ = &start == &end;
   const bool some_inert = mark_inert(start, end, parallel);
@@ -57,12 +57,13 @@ void MovingBoxes::refit(const ObjectOctree& octree, const SurfaceElements& eleme
     if (some_inert) invert_inert(*moment, elements, octree.triangles());
     refit_nodes(*moment, octree, elements, !some_inert, parallel);
   }
+  return !some_inert;
 }
 
 void MovingBoxes::set_boxes(Moment& moment, const VertexBuffer& positions, const SurfaceElements& elements,
                             std::span<const Triangle> faces, const Parallel& parallel) {
   const std::uint32_t vertex_count = elements.vertex_count();
-  VertexCorners corners{positions.floats(), positions.floats(), 4};
+  VertexCorners corners{positions.floats().data, positions.floats().data, positions.floats().stride};
   if (positions.is_double()) {
     moment.corners.resize(8 * std::size_t{vertex_count});
     corners = {moment.corners.data(), moment.corners.data() + 4, 8};
@@ -74,7 +75,7 @@ void MovingBoxes::set_boxes(Moment& moment, const VertexBuffer& positions, const
   };
   const BoxArrays vertices = sized(moment.vertices, vertex_count);
   ranges(vertex_count, [&](std::uint32_t begin, std::uint32_t end) {
-    if (positions.is_double()) round_corners(positions.doubles(), moment.corners.data(), begin, end);
+    if (positions.is_double()) round_corners(positions.doubles().data, moment.corners.data(), begin, end);
     set_vertex_boxes(corners, vertices, begin, end);
   });
   const BoxArrays edges = sized(moment.edges, elements.edge_count());
@@ -91,10 +92,10 @@ void MovingBoxes::set_boxes(Moment& moment, const VertexBuffer& positions, const
 bool MovingBoxes::mark_inert(const VertexBuffer& start, const VertexBuffer& end, const Parallel& parallel) {
   const auto all_finite = [&](const VertexBuffer& positions) {
     return parallel.all_of_ranges(positions.size(), grain, [&](std::size_t first, std::size_t last) {
-      const auto finite = [&](const auto* scalars) {
-        auto sum = scalars[0] * 0;  // NaN as soon as one coordinate is not finite
-        for (std::size_t i = 4 * first; i < 4 * last; i += 4) {
-          sum += scalars[i] * 0 + scalars[i + 1] * 0 + scalars[i + 2] * 0;
+      const auto finite = [&](const auto& vertices) {
+        auto sum = vertices[first][0] * 0;  // NaN as soon as one coordinate is not finite
+        for (std::size_t v = first; v < last; ++v) {
+          sum += vertices[v][0] * 0 + vertices[v][1] * 0 + vertices[v][2] * 0;
         }
         return sum == 0;
       };

@@ -46,8 +46,8 @@ struct MovingView {
 class MovingBoxes {
  public:
   /// In O(n); bounds of nodes bottom-up. `start` and `end` are the same object when it is at rest. Takes no
-  /// memory after the first call.
-  void refit(const ObjectOctree& octree, const SurfaceElements& elements, const VertexBuffer& start,
+  /// memory after the first call. Returns whether all vertices are finite at both ends.
+  bool refit(const ObjectOctree& octree, const SurfaceElements& elements, const VertexBuffer& start,
              const VertexBuffer& end, const Parallel& parallel);
 
   /// Of what was last refitted.

@@ -28,11 +28,13 @@ template <class Scalar>
 struct ScalarBox {
   static constexpr Scalar inf = std::numeric_limits<Scalar>::infinity();
   Scalar lo[3] = {inf, inf, inf}, hi[3] = {-inf, -inf, -inf};
+  Scalar sum = 0;
 
   void extend(const Scalar* vertex) {
     for (int axis = 0; axis < 3; ++axis) {
       lo[axis] = std::min(lo[axis], vertex[axis]);
       hi[axis] = std::max(hi[axis], vertex[axis]);
+      sum += vertex[axis];
     }
   }
   void extend(const ScalarBox& other) {
@@ -40,7 +42,9 @@ struct ScalarBox {
       lo[axis] = std::min(lo[axis], other.lo[axis]);
       hi[axis] = std::max(hi[axis], other.hi[axis]);
     }
+    sum += other.sum;
   }
+  bool all_finite() const { return sum - sum == 0; }
   void store(float* lower, float* upper) const {
     for (int axis = 0; axis < 3; ++axis) {
       lower[axis] = round_down(lo[axis]);
@@ -53,24 +57,42 @@ using DoubleBox = ScalarBox<double>;
 
 #else
 
+/// x y z and one more, nothing past z being read.
+HWY_INLINE hn::Vec<hn::FixedTag<float, 4>> load_vertex(const float* vertex) {
+#if HWY_TARGET <= HWY_AVX3
+  const hn::FixedTag<float, 4> tag;
+  return hn::MaskedLoad(hn::FirstN(tag, 3), tag, vertex);
+#else
+  const hn::FixedTag<float, 2> half;
+  return hn::Combine(hn::FixedTag<float, 4>(), hn::Set(half, vertex[2]), hn::LoadU(half, vertex));
+#endif
+}
+
 /// A box that grows, x y z in the first three of four lanes.
 struct FloatBox {
   using Tag = hn::FixedTag<float, 4>;
-  hn::Vec<Tag> lo, hi;
+  hn::Vec<Tag> lo, hi, sum;
 
   // Written out: an implicit constructor would be compiled without the instruction set around it.
   HWY_INLINE FloatBox()
       : lo(hn::Set(Tag(), std::numeric_limits<float>::infinity())),
-        hi(hn::Set(Tag(), -std::numeric_limits<float>::infinity())) {}
+        hi(hn::Set(Tag(), -std::numeric_limits<float>::infinity())),
+        sum(hn::Zero(Tag())) {}
 
   HWY_INLINE void extend(const float* vertex) {
-    const auto v = hn::LoadU(Tag(), vertex);
+    const auto v = load_vertex(vertex);
     lo = hn::Min(lo, v);
     hi = hn::Max(hi, v);
+    sum = hn::Add(sum, v);
   }
   HWY_INLINE void extend(const FloatBox& other) {
     lo = hn::Min(lo, other.lo);
     hi = hn::Max(hi, other.hi);
+    sum = hn::Add(sum, other.sum);
+  }
+  /// False when a coordinate is not finite, or their sum overflows.
+  HWY_INLINE bool all_finite() const {
+    return hn::AllTrue(Tag(), hn::Eq(hn::Sub(sum, sum), hn::Zero(Tag())));
   }
   HWY_INLINE hn::Vec<Tag> lower() const { return lo; }
   HWY_INLINE hn::Vec<Tag> upper() const { return hi; }
@@ -85,17 +107,19 @@ struct DoubleBox {
   using Tag = hn::FixedTag<double, 2>;
   using FloatTag = hn::FixedTag<float, 2>;
   static constexpr double inf = std::numeric_limits<double>::infinity();
-  hn::Vec<Tag> lo_xy, lo_z, hi_xy, hi_z;
+  hn::Vec<Tag> lo_xy, lo_z, hi_xy, hi_z, sum;
 
   HWY_INLINE DoubleBox()
       : lo_xy(hn::Set(Tag(), inf)),
         lo_z(hn::Set(Tag(), inf)),
         hi_xy(hn::Set(Tag(), -inf)),
-        hi_z(hn::Set(Tag(), -inf)) {}
+        hi_z(hn::Set(Tag(), -inf)),
+        sum(hn::Zero(Tag())) {}
 
   HWY_INLINE void extend(const double* vertex) {
     const auto xy = hn::LoadU(Tag(), vertex);
-    const auto z = hn::LoadU(Tag(), vertex + 2);
+    const auto z = hn::Set(Tag(), vertex[2]);
+    sum = hn::Add(sum, hn::Add(xy, z));
     lo_xy = hn::Min(lo_xy, xy);
     hi_xy = hn::Max(hi_xy, xy);
     lo_z = hn::Min(lo_z, z);
@@ -106,6 +130,10 @@ struct DoubleBox {
     lo_z = hn::Min(lo_z, other.lo_z);
     hi_xy = hn::Max(hi_xy, other.hi_xy);
     hi_z = hn::Max(hi_z, other.hi_z);
+    sum = hn::Add(sum, other.sum);
+  }
+  HWY_INLINE bool all_finite() const {
+    return hn::AllTrue(Tag(), hn::Eq(hn::Sub(sum, sum), hn::Zero(Tag())));
   }
   HWY_INLINE hn::Vec<FloatBox::Tag> lower() const {
     return hn::Combine(FloatBox::Tag(), round_down(lo_z), round_down(lo_xy));
@@ -151,10 +179,10 @@ struct DoubleBox {
 #endif
 
 template <class Box, class Scalar>
-HWY_INLINE void extend_by_triangle(Box& box, const Scalar* vertices, const Triangle& triangle) {
-  box.extend(vertices + std::size_t{triangle[0]} * 4);
-  box.extend(vertices + std::size_t{triangle[1]} * 4);
-  box.extend(vertices + std::size_t{triangle[2]} * 4);
+HWY_INLINE void extend_by_triangle(Box& box, VertexArray<Scalar> positions, const Triangle& triangle) {
+  box.extend(positions[triangle[0]]);
+  box.extend(positions[triangle[1]]);
+  box.extend(positions[triangle[2]]);
 }
 
 /// Lane `lane` of `lanes` becomes the given box.
@@ -167,31 +195,6 @@ HWY_INLINE void set_lane(AabbLanes& lanes, int lane, const float* lower, const f
   lanes.max_z[lane] = upper[2];
 }
 
-/// Box of the triangles [begin, end); inverted when all of them are inert. A box for each corner, so that
-/// none waits for the others.
-template <class Box, class Scalar>
-HWY_INLINE Box box_of_triangles(const Scalar* vertices, const TriangleArrays& arrays, std::uint32_t begin,
-                                std::uint32_t end) {
-  Box first, second, third;
-  const auto extend = [&](std::uint32_t t) HWY_ATTR {
-    const Triangle& triangle = arrays.triangles[t];
-    first.extend(vertices + std::size_t{triangle[0]} * 4);
-    second.extend(vertices + std::size_t{triangle[1]} * 4);
-    third.extend(vertices + std::size_t{triangle[2]} * 4);
-  };
-  if (arrays.inert == nullptr && end - begin <= node_width) {
-    // The last triangle again and again costs less than guessing how many there are.
-    for (std::uint32_t i = 0; i < node_width; ++i) extend(std::min(begin + i, end - 1));
-  } else {
-    for (std::uint32_t t = begin; t < end; ++t) {
-      if (arrays.inert == nullptr || arrays.inert[t] == 0) extend(t);
-    }
-  }
-  first.extend(second);
-  first.extend(third);
-  return first;
-}
-
 template <class Box>
 HWY_INLINE void set_lane(AabbLanes& lanes, int lane, const Box& box) {
   HWY_ALIGN float lower[4], upper[4];
@@ -201,10 +204,19 @@ HWY_INLINE void set_lane(AabbLanes& lanes, int lane, const Box& box) {
 
 #if HWY_TARGET == HWY_SCALAR
 
-/// Lanes `first` to `first` + 3 become the given boxes.
-template <class Box>
-HWY_INLINE void set_four_lanes(AabbLanes& lanes, int first, const Box (&boxes)[4]) {
-  for (int i = 0; i < 4; ++i) set_lane(lanes, first + i, boxes[i]);
+/// Boxes `first` to `first` + 3 of six arrays become the given ones.
+template <class Arrays, class Box>
+HWY_INLINE void set_four_boxes(Arrays& arrays, std::size_t first, const Box (&boxes)[4]) {
+  for (std::size_t i = 0; i < 4; ++i) {
+    float lower[3], upper[3];
+    boxes[i].store(lower, upper);
+    arrays.min_x[first + i] = lower[0];
+    arrays.min_y[first + i] = lower[1];
+    arrays.min_z[first + i] = lower[2];
+    arrays.max_x[first + i] = upper[0];
+    arrays.max_y[first + i] = upper[1];
+    arrays.max_z[first + i] = upper[2];
+  }
 }
 
 #else
@@ -220,13 +232,13 @@ HWY_INLINE void store_transposed(hn::Vec<FloatBox::Tag> p, hn::Vec<FloatBox::Tag
   hn::Store(hn::ConcatLowerLower(tag, z_rs, z_pq), tag, z);
 }
 
-/// Lanes `first` to `first` + 3 become the given boxes; `first` is 0 or 4.
-template <class Box>
-HWY_INLINE void set_four_lanes(AabbLanes& lanes, int first, const Box (&boxes)[4]) {
+/// Boxes `first` to `first` + 3 of six arrays become the given ones; `first` is a multiple of four.
+template <class Arrays, class Box>
+HWY_INLINE void set_four_boxes(Arrays& arrays, std::size_t first, const Box (&boxes)[4]) {
   store_transposed(boxes[0].lower(), boxes[1].lower(), boxes[2].lower(), boxes[3].lower(),
-                   lanes.min_x + first, lanes.min_y + first, lanes.min_z + first);
+                   arrays.min_x + first, arrays.min_y + first, arrays.min_z + first);
   store_transposed(boxes[0].upper(), boxes[1].upper(), boxes[2].upper(), boxes[3].upper(),
-                   lanes.max_x + first, lanes.max_y + first, lanes.max_z + first);
+                   arrays.max_x + first, arrays.max_y + first, arrays.max_z + first);
 }
 
 #endif

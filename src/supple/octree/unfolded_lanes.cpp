@@ -19,8 +19,8 @@ double sum_of_sizes(const Vec3d& v) {
 }
 
 template <class Scalar>
-Vec3d position(const Scalar* vertices, std::uint32_t vertex) {
-  const Scalar* const p = vertices + std::size_t{vertex} * 4;
+Vec3d position(const VertexArray<Scalar>& vertices, std::uint32_t vertex) {
+  const Scalar* const p = vertices[vertex];
   return {p[0], p[1], p[2]};
 }
 
@@ -112,8 +112,8 @@ void UnfoldedLanes::refit(const ObjectOctree& octree, const VertexBuffer& start,
 }
 
 template <class Scalar>
-void UnfoldedLanes::refit_node(const ObjectOctree& octree, const Scalar* start, const Scalar* end,
-                               std::uint32_t n) {
+void UnfoldedLanes::refit_node(const ObjectOctree& octree, const VertexArray<Scalar>& start,
+                               const VertexArray<Scalar>& end, std::uint32_t n) {
   const OctreeNode& node = octree.nodes()[n];
   if (!has_moving_boxes(node)) return;
   Normals all;
@@ -145,11 +145,12 @@ void UnfoldedLanes::refit_node(const ObjectOctree& octree, const Scalar* start, 
 /// of its sides at either end, each is wrong by less than 16 roundings of E F, and its greatest coordinate m
 /// is compared with E F so that this is below 2^-21 m.
 template <class Scalar>
-UnfoldedLanes::Normals UnfoldedLanes::normals_of(std::span<const Triangle> triangles, const Scalar* start,
-                                                 const Scalar* end) {
+UnfoldedLanes::Normals UnfoldedLanes::normals_of(std::span<const Triangle> triangles,
+                                                 const VertexArray<Scalar>& start,
+                                                 const VertexArray<Scalar>& end) {
   constexpr Normals hopeless{{}, {-1, -1, -1}, {1, 1, 1}};
   static_assert(16 * rounding <= 0x1p-21 * 0x1p-28);
-  const bool at_rest = start == end;
+  const bool at_rest = start.data == end.data;
   Normals normals;
   for (const Triangle& triangle : triangles) {
     const Vec3d a0 = position(start, triangle[0]), a1 = position(end, triangle[0]);
@@ -179,8 +180,8 @@ UnfoldedLanes::Normals UnfoldedLanes::normals_of(std::span<const Triangle> trian
 /// coordinate of any u, a coefficient is wrong by less than 32 roundings of |n| R², |n| being the sum of
 /// sizes.
 template <class Scalar>
-bool UnfoldedLanes::goes_round_once(const Boundary& boundary, const Vec3d& n, const Scalar* start,
-                                    const Scalar* end) const {
+bool UnfoldedLanes::goes_round_once(const Boundary& boundary, const Vec3d& n,
+                                    const VertexArray<Scalar>& start, const VertexArray<Scalar>& end) const {
   if (boundary.begin == boundary.end) return false;
   const auto edges =
       std::span<const Edge>(boundary_edges_).subspan(boundary.begin, boundary.end - boundary.begin);

@@ -65,12 +65,14 @@ class UnfoldedLanes {
   };
 
   template <class Scalar>
-  void refit_node(const ObjectOctree& octree, const Scalar* start, const Scalar* end, std::uint32_t n);
+  void refit_node(const ObjectOctree& octree, const VertexArray<Scalar>& start,
+                  const VertexArray<Scalar>& end, std::uint32_t n);
   template <class Scalar>
-  static Normals normals_of(std::span<const Triangle> triangles, const Scalar* start, const Scalar* end);
+  static Normals normals_of(std::span<const Triangle> triangles, const VertexArray<Scalar>& start,
+                            const VertexArray<Scalar>& end);
   template <class Scalar>
-  bool goes_round_once(const Boundary& boundary, const Vec3d& n, const Scalar* start,
-                       const Scalar* end) const;
+  bool goes_round_once(const Boundary& boundary, const Vec3d& n, const VertexArray<Scalar>& start,
+                       const VertexArray<Scalar>& end) const;
 
   std::vector<Edge> boundary_edges_;  // directed, octree vertices
   std::vector<Boundary> boundaries_;  // eight a node

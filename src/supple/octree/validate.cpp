@@ -21,6 +21,7 @@ class Validation {
     if (std::string wrong = check_permutation(octree_.triangle_ids(), "triangle"); !wrong.empty())
       return wrong;
     if (std::string wrong = check_permutation(octree_.vertex_ids(), "vertex"); !wrong.empty()) return wrong;
+    if (octree_.vertex_ids().size() != octree_.vertex_order().size()) return "vertex maps are not inverse";
     for (std::uint32_t user = 0; user < octree_.vertex_order().size(); ++user) {
       if (octree_.vertex_ids()[octree_.vertex_order()[user]] != user) return "vertex maps are not inverse";
     }
@@ -123,10 +124,6 @@ class Validation {
 }  // namespace
 
 std::string ObjectOctree::validate(const VertexBuffer& vertices, std::span<const std::uint8_t> inert) const {
-  for (std::size_t s = 0; s < subtrees_.size(); ++s) {
-    if (subtrees_[s].root != Subtree::none)
-      refresh(subtrees_[s].root, arrays_of(triangles_, vertices, inert));
-  }
   const bool enclosing_spheres = spheres() != nullptr && sphere_fit_ == SphereFit::vertices;
   return Validation(*this, vertices, inert, enclosing_spheres, arity_).run();
 }
@@ -134,7 +131,7 @@ std::string ObjectOctree::validate(const VertexBuffer& vertices, std::span<const
 OctreeStatistics ObjectOctree::statistics() const {
   OctreeStatistics result;
   result.triangles = triangles_.size();
-  result.vertices = vertex_ids_.size();
+  result.vertices = vertex_count_;
   result.nodes = nodes_.size();
   std::uint64_t lanes = 0;
   for (const OctreeNode& node : nodes_) {
@@ -158,9 +155,10 @@ OctreeStatistics ObjectOctree::statistics() const {
   result.bytes = nodes_.capacity() * sizeof(OctreeNode) + boxes_.capacity() * sizeof(AabbLanes) +
                  spheres_.capacity() * sizeof(SphereLanes) + triangles_.capacity() * sizeof(Triangle) +
                  (triangle_ids_.capacity() + vertex_ids_.capacity() + vertex_order_.capacity() +
-                  level_begin_.capacity()) *
+                  level_begin_.capacity() + first_leaf_vertex_.capacity() + leaf_vertices_.capacity() +
+                  unused_vertices_.capacity()) *
                      sizeof(std::uint32_t) +
-                 subtrees_.bytes() + subtrees_.size();
+                 leaf_corners_.capacity();
   if (result.triangles > 0) {
     result.bytes_per_triangle = static_cast<double>(result.bytes) / static_cast<double>(result.triangles);
   }

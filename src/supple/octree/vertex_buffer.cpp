@@ -1,5 +1,7 @@
 #include "octree/vertex_buffer.hpp"
 
+#include <cassert>
+
 namespace supple {
 
 void VertexBuffer::resize(std::size_t count, bool is_double) {
@@ -8,34 +10,50 @@ void VertexBuffer::resize(std::size_t count, bool is_double) {
     if (is_double) std::vector<float>().swap(floats_);
     if (!is_double) std::vector<double>().swap(doubles_);
   }
-  if (is_double) doubles_.resize(4 * count);
-  if (!is_double) floats_.resize(4 * count);
+  // One scalar more than there are, so that four can be read from the last vertex on.
+  if (is_double) doubles_.resize(3 * count + 1);
+  if (!is_double) floats_.resize(3 * count + 1);
+  borrowed_ = nullptr;
   count_ = count;
   is_double_ = is_double;
 }
 
 template <class Scalar>
-bool VertexBuffer::assign(const PositionsView<Scalar>& positions, std::span<const std::uint32_t> octree_order,
+void VertexBuffer::assign(const PositionsView<Scalar>& positions, std::span<const std::uint32_t> numbers,
                           const Parallel& parallel) {
   resize(positions.count, sizeof(Scalar) == sizeof(double));
   Scalar* const target = storage(Scalar{}).data();
-  return parallel.all_of_ranges(positions.count, 16384, [&](std::size_t begin, std::size_t end) {
-    Scalar non_finite = 0;  // NaN as soon as one coordinate is NaN or infinite
-    for (std::size_t i = begin; i < end; ++i) {
-      const Vec3<Scalar> p = positions[i];
-      Scalar* const vertex = target + std::size_t{octree_order[i]} * 4;
-      vertex[0] = p.x;
-      vertex[1] = p.y;
-      vertex[2] = p.z;
-      non_finite += p.x * 0 + p.y * 0 + p.z * 0;
+  const auto copy = [&](std::size_t from, std::size_t to) {
+    const Vec3<Scalar> p = positions[from];
+    target[3 * to] = p.x;
+    target[3 * to + 1] = p.y;
+    target[3 * to + 2] = p.z;
+  };
+  parallel.for_ranges(positions.count, 16384, [&](std::size_t begin, std::size_t end, std::uint32_t) {
+    if (numbers.empty()) {
+      for (std::size_t i = begin; i < end; ++i) copy(i, i);
+    } else {
+      for (std::size_t i = begin; i < end; ++i) copy(i, numbers[i]);
     }
-    return non_finite == 0;
   });
 }
 
-template bool VertexBuffer::assign(const PositionsView<float>&, std::span<const std::uint32_t>,
+template <class Scalar>
+void VertexBuffer::borrow(const PositionsView<Scalar>& positions) {
+  assert(positions.stride % sizeof(Scalar) == 0);
+  std::vector<float>().swap(floats_);
+  std::vector<double>().swap(doubles_);
+  borrowed_ = positions.data;
+  borrowed_stride_ = positions.stride / sizeof(Scalar);
+  count_ = positions.count;
+  is_double_ = sizeof(Scalar) == sizeof(double);
+}
+
+template void VertexBuffer::assign(const PositionsView<float>&, std::span<const std::uint32_t>,
                                    const Parallel&);
-template bool VertexBuffer::assign(const PositionsView<double>&, std::span<const std::uint32_t>,
+template void VertexBuffer::assign(const PositionsView<double>&, std::span<const std::uint32_t>,
                                    const Parallel&);
+template void VertexBuffer::borrow(const PositionsView<float>&);
+template void VertexBuffer::borrow(const PositionsView<double>&);
 
 }  // namespace supple

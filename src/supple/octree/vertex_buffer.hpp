@@ -10,29 +10,48 @@
 
 namespace supple {
 
-/// The positions of an object in octree order, in the precision they were given in. Four scalars a vertex (x,
-/// y, z and an unused one), so that one vector load reads a vertex.
+/// Vertices in memory: x y z of vertex v are the three scalars from `(*this)[v]` on. What follows them need
+/// not be readable.
+template <class Scalar>
+struct VertexArray {
+  const Scalar* data = nullptr;
+  std::size_t stride = 3;  ///< scalars from one vertex to the next
+
+  const Scalar* operator[](std::size_t vertex) const { return data + vertex * stride; }
+};
+
+/// The positions of an object in the numbering of its octree, in the precision they were given in: a copy,
+/// or where they lie in the user's memory.
 class VertexBuffer {
  public:
   std::size_t size() const { return count_; }
   bool is_double() const { return is_double_; }
-  const float* floats() const { return floats_.data(); }
-  const double* doubles() const { return doubles_.data(); }
+  /// Null data when they are doubles; and the reverse.
+  VertexArray<float> floats() const { return is_double_ ? VertexArray<float>{} : array(floats_); }
+  VertexArray<double> doubles() const { return is_double_ ? array(doubles_) : VertexArray<double>{}; }
 
   Vec3d operator[](std::uint32_t vertex) const {
-    const std::size_t i = std::size_t{vertex} * 4;
-    if (is_double_) return {doubles_[i], doubles_[i + 1], doubles_[i + 2]};
-    return {floats_[i], floats_[i + 1], floats_[i + 2]};
+    if (is_double_) {
+      const double* const p = doubles()[vertex];
+      return {p[0], p[1], p[2]};
+    }
+    const float* const p = floats()[vertex];
+    return {p[0], p[1], p[2]};
   }
 
-  /// Vertex `octree_order[i]` of the buffer becomes `positions[i]`. Returns whether all of them are finite.
+  /// Vertex `numbers[i]` of the buffer becomes `positions[i]`, or vertex i when `numbers` is empty.
   template <class Scalar>
-  bool assign(const PositionsView<Scalar>& positions, std::span<const std::uint32_t> octree_order,
+  void assign(const PositionsView<Scalar>& positions, std::span<const std::uint32_t> numbers,
               const Parallel& parallel);
 
-  /// Each vertex becomes `function(vertex)` of `source`, in double. Returns whether all of them are finite.
+  /// The buffer becomes these positions where they are; their stride is a multiple of the scalar's size. A
+  /// copy made before is given back.
+  template <class Scalar>
+  void borrow(const PositionsView<Scalar>& positions);
+
+  /// Each vertex becomes `function(vertex)` of `source`, in double.
   template <class Function>
-  bool transform(const VertexBuffer& source, const Parallel& parallel, const Function& function);
+  void transform(const VertexBuffer& source, const Parallel& parallel, const Function& function);
 
   std::size_t bytes() const {
     return floats_.capacity() * sizeof(float) + doubles_.capacity() * sizeof(double);
@@ -43,26 +62,29 @@ class VertexBuffer {
   std::vector<float>& storage(float) { return floats_; }
   std::vector<double>& storage(double) { return doubles_; }
 
+  template <class Scalar>
+  VertexArray<Scalar> array(const std::vector<Scalar>& copy) const {
+    if (borrowed_ == nullptr) return {copy.data(), 3};
+    return {static_cast<const Scalar*>(borrowed_), borrowed_stride_};
+  }
+
   std::vector<float> floats_;
   std::vector<double> doubles_;
+  const void* borrowed_ = nullptr;
+  std::size_t borrowed_stride_ = 0;
   std::size_t count_ = 0;
   bool is_double_ = false;
 };
 
 template <class Function>
-bool VertexBuffer::transform(const VertexBuffer& source, const Parallel& parallel, const Function& function) {
+void VertexBuffer::transform(const VertexBuffer& source, const Parallel& parallel, const Function& function) {
   const std::size_t count = source.size();
   resize(count, true);
-  return parallel.all_of_ranges(count, 16384, [&](std::size_t begin, std::size_t end) {
-    double non_finite = 0;  // NaN as soon as one coordinate is NaN or infinite
+  parallel.for_ranges(count, 16384, [&](std::size_t begin, std::size_t end, std::uint32_t) {
     for (std::size_t i = begin; i < end; ++i) {
       const Vec3d p = function(source[static_cast<std::uint32_t>(i)]);
-      doubles_[4 * i] = p.x;
-      doubles_[4 * i + 1] = p.y;
-      doubles_[4 * i + 2] = p.z;
-      non_finite += p.x * 0 + p.y * 0 + p.z * 0;
+      for (int axis = 0; axis < 3; ++axis) doubles_[3 * i + static_cast<std::size_t>(axis)] = p[axis];
     }
-    return non_finite == 0;
   });
 }
 

@@ -10,12 +10,11 @@ namespace supple {
 namespace {
 
 Vec3d position(const OctreeView& view, std::uint32_t vertex) {
-  const std::size_t i = std::size_t{vertex} * 4;
+  const auto at = [&](const auto& vertices) {
+    return Vec3d{vertices[vertex][0], vertices[vertex][1], vertices[vertex][2]};
+  };
   const TriangleArrays& arrays = view.arrays;
-  const Vec3d p = arrays.doubles != nullptr
-                      ? Vec3d{arrays.doubles[i], arrays.doubles[i + 1], arrays.doubles[i + 2]}
-                      : Vec3d{arrays.floats[i], arrays.floats[i + 1], arrays.floats[i + 2]};
-  return p + view.translation;
+  return (arrays.doubles.data != nullptr ? at(arrays.doubles) : at(arrays.floats)) + view.translation;
 }
 
 TrianglePoints points_of(const OctreeView& view, std::uint32_t triangle) {
@@ -27,7 +26,7 @@ void set_corners(float (&rows)[9][TrianglePairBlock<float>::capacity], std::size
                  const TriangleArrays& arrays, std::uint32_t triangle) {
   std::size_t row = 0;
   for (const std::uint32_t vertex : arrays.triangles[triangle]) {
-    const float* const corner = arrays.floats + std::size_t{vertex} * 4;
+    const float* const corner = arrays.floats[vertex];
     for (int axis = 0; axis < 3; ++axis) rows[row++][place] = corner[axis];
   }
 }
@@ -138,7 +137,7 @@ void ContactPass::test_candidates(std::uint32_t job, const ObjectPairView& pair,
 PairVerdicts ContactPass::filter_candidates(const ObjectPairView& pair,
                                             std::span<const TrianglePair> candidates, Worker& worker) const {
   const auto is_single = [](const OctreeView& view) {
-    return view.arrays.floats != nullptr && view.translation == Vec3d{};
+    return view.arrays.floats.data != nullptr && view.translation == Vec3d{};
   };
   if (is_single(pair.a) && is_single(pair.b)) {
     for (std::size_t k = 0; k < candidates.size(); ++k) {
@@ -278,12 +277,12 @@ void ContactPass::gather_colliding_vertices() {
 void ContactPass::append_marked_vertices(std::uint32_t object, std::span<const CollidingLeaves> leaves,
                                          bool side_b) {
   const ContactObject& owner = objects_[object];
-  marked_.assign(owner.vertex_ids.size(), 0);
+  marked_.assign(owner.vertex_count, 0);
   for (const CollidingLeaves& pair : leaves) {
     const std::uint32_t begin = side_b ? pair.leaves.begin_b : pair.leaves.begin_a;
     const std::uint32_t end = side_b ? pair.leaves.end_b : pair.leaves.end_a;
     for (std::uint32_t t = begin; t < end; ++t) {
-      for (const std::uint32_t vertex : owner.view.arrays.triangles[t]) marked_[owner.vertex_ids[vertex]] = 1;
+      for (const std::uint32_t vertex : owner.view.arrays.triangles[t]) marked_[vertex] = 1;
     }
   }
   for (std::uint32_t vertex = 0; vertex < marked_.size(); ++vertex) {

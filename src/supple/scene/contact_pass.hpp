@@ -19,7 +19,8 @@ namespace supple {
 struct ContactObject {
   ObjectId id;
   OctreeView view;
-  std::span<const std::uint32_t> triangle_ids, vertex_ids;  ///< octree order to the user's
+  std::span<const std::uint32_t> triangle_ids;  ///< octree order to the user's
+  std::size_t vertex_count = 0;
   std::uint64_t version = 0;  ///< another one whenever a position is, and of each object
 };
 

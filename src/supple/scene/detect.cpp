@@ -137,7 +137,7 @@ void Scene::Implementation::find_contacts() {
     contact_objects_.emplace_back();
     if (object == nullptr) continue;
     contact_objects_.back() = {id_of(index), object->view(), object->octree().triangle_ids(),
-                               object->octree().vertex_ids(), versions_[index]};
+                               object->octree().vertex_count(), versions_[index]};
   }
   contact_pass_.run(jobs_, contact_objects_, options, parallel, result.stats);
 }
@@ -181,7 +181,7 @@ void Scene::Implementation::report_non_finite() {
     if (object == nullptr) continue;
     for (const std::uint32_t vertex : object->non_finite_vertices()) {
       non_finite_.push_back(
-          {id_of(index), vertex, object->non_finite_position(object->octree().vertex_order()[vertex])});
+          {id_of(index), vertex, object->non_finite_position(object->octree().octree_vertex(vertex))});
     }
   }
 }

@@ -70,11 +70,10 @@ void sort_edges(std::array<VertexRef, 4>& vertices) {
   }
 }
 
-/// Positions of an object in octree order, four scalars each, at both ends of the step.
+/// Positions of an object in octree order at both ends of the step.
 template <class Scalar>
 struct Path {
-  const Scalar* start;
-  const Scalar* end;
+  VertexArray<Scalar> start, end;
 
   explicit Path(const MovingObject& object) {
     if constexpr (std::is_same_v<Scalar, float>) {
@@ -86,8 +85,8 @@ struct Path {
 };
 
 template <class Scalar>
-Vec3<Scalar> vertex(const Scalar* positions, std::uint32_t index) {
-  const Scalar* const p = positions + std::size_t{index} * 4;
+Vec3<Scalar> vertex(const VertexArray<Scalar>& positions, std::uint32_t index) {
+  const Scalar* const p = positions[index];
   return {p[0], p[1], p[2]};
 }
 

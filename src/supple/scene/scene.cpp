@@ -64,7 +64,7 @@ PositionsView<Scalar> packed(std::span<const Scalar> xyz, const char* call) {
 }
 
 void check_count(const SceneObject& object, std::size_t count, const char* call) {
-  const std::size_t vertices = object.octree().vertex_ids().size();
+  const std::size_t vertices = object.octree().vertex_count();
   if (count == vertices) return;
   fail(std::string(call) + ": " + std::to_string(count) + " positions for " + object.options.name +
        ", which has " + std::to_string(vertices) + " vertices; give one for each vertex");
@@ -143,6 +143,14 @@ void Scene::Implementation::set_positions(ObjectId id, const PositionsView<Scala
 }
 
 template <class Scalar>
+void Scene::Implementation::share_positions(ObjectId id, const PositionsView<Scalar>& positions) {
+  SceneObject& found = movable_object(id, "share_positions");
+  check_count(found, positions.count, "share_positions");
+  found.share_positions(positions, parallel);
+  mark_changed();
+}
+
+template <class Scalar>
 void Scene::Implementation::set_motion(ObjectId id, const PositionsView<Scalar>& from,
                                        const PositionsView<Scalar>& to) {
   SceneObject& found = movable_object(id, "set_motion");
@@ -210,6 +218,13 @@ void Scene::set_positions(ObjectId object, std::span<const double> xyz) {
 }
 void Scene::set_positions(ObjectId object, std::span<const float> xyz) {
   implementation_->set_positions(object, packed(xyz, "set_positions"));
+}
+
+void Scene::share_positions(ObjectId object, PositionsView<double> positions) {
+  implementation_->share_positions(object, positions);
+}
+void Scene::share_positions(ObjectId object, PositionsView<float> positions) {
+  implementation_->share_positions(object, positions);
 }
 
 void Scene::set_motion(ObjectId object, PositionsView<double> from, PositionsView<double> to) {
@@ -296,7 +311,7 @@ const std::string& Scene::name(ObjectId object) const {
 }
 
 std::size_t Scene::vertex_count(ObjectId object) const {
-  return implementation_->object(object, "vertex_count").octree().vertex_ids().size();
+  return implementation_->object(object, "vertex_count").octree().vertex_count();
 }
 
 std::size_t Scene::triangle_count(ObjectId object) const {
@@ -305,12 +320,12 @@ std::size_t Scene::triangle_count(ObjectId object) const {
 
 Vec3d Scene::position(ObjectId object, std::uint32_t vertex) const {
   const SceneObject& found = implementation_->object(object, "position");
-  const auto order = found.octree().vertex_order();
-  if (vertex >= order.size()) {
+  const std::size_t count = found.octree().vertex_count();
+  if (vertex >= count) {
     fail("position: " + found.options.name + " has no vertex " + std::to_string(vertex) + "; it has " +
-         std::to_string(order.size()) + ", numbered from 0");
+         std::to_string(count) + ", numbered from 0");
   }
-  return found.position(order[vertex]);
+  return found.position(found.octree().octree_vertex(vertex));
 }
 
 Aabb Scene::bounds(ObjectId object) const {

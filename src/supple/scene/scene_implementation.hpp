@@ -32,6 +32,8 @@ class Scene::Implementation {
   SceneObject& movable_object(ObjectId id, const char* call) const;
   template <class Scalar>
   void set_positions(ObjectId id, const PositionsView<Scalar>& positions);
+  template <class Scalar>
+  void share_positions(ObjectId id, const PositionsView<Scalar>& positions);
 
   template <class Scalar>
   void set_motion(ObjectId id, const PositionsView<Scalar>& from, const PositionsView<Scalar>& to);

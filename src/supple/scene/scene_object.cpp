@@ -69,7 +69,9 @@ SceneObject::SceneObject(const PositionsView<double>& positions, std::span<const
                          const ObjectOptions& object_options, const SceneOptions& scene_options)
     : options(object_options),
       octree_(positions, triangles, object_options.octree, scene_options.bounding_volume,
-              scene_options.sphere_fit),
+              scene_options.sphere_fit,
+              scene_options.contacts == ContactMode::continuous ? VertexNumbering::by_first_use
+                                                                : VertexNumbering::given),
       is_continuous_(scene_options.contacts == ContactMode::continuous),
       // Neighbours come within a separation; and the paper's output is of all leaves whose volumes overlap.
       passes_over_unfolded_(is_continuous_ ? scene_options.impact.min_separation == 0
@@ -79,13 +81,20 @@ SceneObject::SceneObject(const PositionsView<double>& positions, std::span<const
 
 template <class Scalar>
 void SceneObject::set_positions(const PositionsView<Scalar>& positions, const Parallel& parallel) {
-  has_shape_ = is_settled_ = has_motion_ = false;
-  rotation_ = RigidTransform{}.rotation;
-  translation_ = {};
-  note_non_finite(vertices_.assign(positions, octree_.vertex_order(), parallel));
+  place_afresh();
+  vertices_.assign(positions, octree_.vertex_order(), parallel);
 }
 template void SceneObject::set_positions(const PositionsView<float>&, const Parallel&);
 template void SceneObject::set_positions(const PositionsView<double>&, const Parallel&);
+
+template <class Scalar>
+void SceneObject::share_positions(const PositionsView<Scalar>& positions, const Parallel& parallel) {
+  if (is_continuous_ || positions.stride % sizeof(Scalar) != 0) return set_positions(positions, parallel);
+  place_afresh();
+  vertices_.borrow(positions);
+}
+template void SceneObject::share_positions(const PositionsView<float>&, const Parallel&);
+template void SceneObject::share_positions(const PositionsView<double>&, const Parallel&);
 
 template <class Scalar>
 void SceneObject::set_motion(const PositionsView<Scalar>& from, const PositionsView<Scalar>& to,
@@ -93,13 +102,25 @@ void SceneObject::set_motion(const PositionsView<Scalar>& from, const PositionsV
   set_positions(to, parallel);
   if (!is_continuous_) return;
   has_motion_ = true;
-  const bool start_finite = start_.assign(from, octree_.vertex_order(), parallel);
-  if (!start_finite) note_non_finite(false);
+  start_.assign(from, octree_.vertex_order(), parallel);
 }
 template void SceneObject::set_motion(const PositionsView<float>&, const PositionsView<float>&,
                                       const Parallel&);
 template void SceneObject::set_motion(const PositionsView<double>&, const PositionsView<double>&,
                                       const Parallel&);
+
+/// Positions given anew replace all that was done to those before.
+void SceneObject::place_afresh() {
+  has_shape_ = is_settled_ = has_motion_ = false;
+  rotation_ = RigidTransform{}.rotation;
+  translation_ = {};
+  mark_moved();
+}
+
+void SceneObject::mark_moved() {
+  needs_refit_ = needs_bounds_ = true;
+  has_unfolded_ = false;
+}
 
 void SceneObject::translate(Vec3d offset, const Parallel& parallel) {
   unsettle(parallel);
@@ -126,10 +147,11 @@ void SceneObject::keep_shape() {
 
 void SceneObject::apply_rotation(const Parallel& parallel) {
   const auto& r = rotation_;
-  note_non_finite(vertices_.transform(shape_, parallel, [&](const Vec3d& p) {
+  vertices_.transform(shape_, parallel, [&](const Vec3d& p) {
     return Vec3d{r[0] * p.x + r[1] * p.y + r[2] * p.z, r[3] * p.x + r[4] * p.y + r[5] * p.z,
                  r[6] * p.x + r[7] * p.y + r[8] * p.z};
-  }));
+  });
+  mark_moved();
 }
 
 void SceneObject::unsettle(const Parallel& parallel) {
@@ -149,22 +171,18 @@ void SceneObject::settle(const Parallel& parallel) {
   keep_shape();
   apply_rotation(parallel);
   const VertexBuffer rotated = vertices_;
-  note_non_finite(vertices_.transform(rotated, parallel, [&](const Vec3d& p) { return p + translation_; }));
+  vertices_.transform(rotated, parallel, [&](const Vec3d& p) { return p + translation_; });
+  mark_moved();
   is_settled_ = true;
 }
 
-void SceneObject::note_non_finite(bool all_finite) {
-  needs_refit_ = needs_bounds_ = true;
-  has_unfolded_ = false;
-  inert_.clear();
-  non_finite_.clear();
-  if (all_finite) return;
-  inert_.resize(octree_.triangles().size(), 0);
+void SceneObject::find_non_finite() {
+  inert_.assign(octree_.triangles().size(), 0);
   for (std::uint32_t t = 0; t < inert_.size(); ++t) {
     for (const std::uint32_t vertex : octree_.triangles()[t]) inert_[t] |= !is_finite(vertices_[vertex]);
   }
   for (std::uint32_t user = 0; user < vertices_.size(); ++user) {
-    if (!is_finite(non_finite_position(octree_.vertex_order()[user]))) non_finite_.push_back(user);
+    if (!is_finite(non_finite_position(octree_.octree_vertex(user)))) non_finite_.push_back(user);
   }
 }
 
@@ -185,16 +203,18 @@ void SceneObject::update(const Parallel& parallel) {
 }
 
 void SceneObject::refit_octree(const Parallel& parallel) {
-  if (inert_.empty() && octree_.spheres() == nullptr) {
-    octree_.refit_lazily(vertices_, parallel);
-  } else {
-    octree_.refit(vertices_, inert_, parallel);
-  }
+  inert_.clear();
+  non_finite_.clear();
+  if (octree_.refit(vertices_, {}, parallel)) return;
+  find_non_finite();
+  octree_.refit(vertices_, inert_, parallel);
 }
 
 void SceneObject::update_moving(const Parallel& parallel) {
   if (!is_settled_ && translation_ != Vec3d{}) settle(parallel);
-  moving_boxes_.refit(octree_, elements_, start(), end(), parallel);
+  inert_.clear();
+  non_finite_.clear();
+  if (!moving_boxes_.refit(octree_, elements_, start(), end(), parallel)) find_non_finite();
   box_ = moving_boxes_.swept_box();
   sphere_ = sphere_around(box_);
 }

@@ -28,6 +28,9 @@ class SceneObject {
 
   template <class Scalar>
   void set_positions(const PositionsView<Scalar>& positions, const Parallel& parallel);
+  /// The same without a copy, where that can be: of discrete contacts, and strides of whole scalars.
+  template <class Scalar>
+  void share_positions(const PositionsView<Scalar>& positions, const Parallel& parallel);
   template <class Scalar>
   void set_motion(const PositionsView<Scalar>& from, const PositionsView<Scalar>& to,
                   const Parallel& parallel);
@@ -53,9 +56,6 @@ class SceneObject {
   Vec3d position(std::uint32_t octree_vertex) const;
   /// The same, or where the path starts when the coordinates that are not finite are there.
   Vec3d non_finite_position(std::uint32_t octree_vertex) const;
-  bool is_inert(std::uint32_t octree_triangle) const {
-    return !inert_.empty() && inert_[octree_triangle] != 0;
-  }
   /// User's numbers, ascending.
   std::span<const std::uint32_t> non_finite_vertices() const { return non_finite_; }
   std::string validate() const;
@@ -73,7 +73,9 @@ class SceneObject {
   void refit_octree(const Parallel& parallel);
   void update_moving(const Parallel& parallel);
   void update_unfolded(const Parallel& parallel);
-  void note_non_finite(bool all_finite);
+  void place_afresh();
+  void mark_moved();
+  void find_non_finite();
 
   ObjectOctree octree_;
   VertexBuffer vertices_;  // fl(R p), or fl(R p) + T when settled
@@ -82,7 +84,7 @@ class SceneObject {
   bool is_settled_ = false;
   std::array<double, 9> rotation_ = RigidTransform{}.rotation;
   Vec3d translation_;
-  std::vector<std::uint8_t> inert_;  // a byte a triangle in octree order, empty when all are finite
+  std::vector<std::uint8_t> inert_;  // as of the last update: a byte a triangle in octree order, or empty
   std::vector<std::uint32_t> non_finite_;
   // Of continuous contacts, for which the octree's own volumes are not kept up to date.
   bool is_continuous_;

@@ -14,18 +14,18 @@ std::vector<Triangle> user_triangles(const SceneObject& object) {
   const ObjectOctree& octree = object.octree();
   std::vector<Triangle> triangles(octree.triangles().size());
   for (std::uint32_t t = 0; t < triangles.size(); ++t) {
-    const Triangle& corners = octree.triangles()[t];
-    for (int corner = 0; corner < 3; ++corner) {
-      triangles[octree.triangle_ids()[t]][corner] = octree.vertex_ids()[corners[corner]];
-    }
+    Triangle& triangle = triangles[octree.triangle_ids()[t]] = octree.triangles()[t];
+    if (octree.vertex_ids().empty()) continue;
+    for (std::uint32_t& vertex : triangle) vertex = octree.vertex_ids()[vertex];
   }
   return triangles;
 }
 
 PlainObject plain_object(const SceneObject& object) {
   PlainObject plain{{}, user_triangles(object)};
-  for (const std::uint32_t vertex : object.octree().vertex_order())
-    plain.positions.push_back(object.position(vertex));
+  const ObjectOctree& octree = object.octree();
+  for (std::uint32_t vertex = 0; vertex < octree.vertex_count(); ++vertex)
+    plain.positions.push_back(object.position(octree.octree_vertex(vertex)));
   return plain;
 }
 

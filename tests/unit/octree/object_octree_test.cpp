@@ -142,9 +142,9 @@ TEST(ObjectOctree, FloatAndDoublePositionsGiveTheSameBoxesForFloatValues) {
   const Aabb box = built.octree.box();
   const Parallel parallel(1);
   VertexBuffer vertices;
-  EXPECT_TRUE(vertices.assign(PositionsView<float>(singles), built.octree.vertex_order(), parallel));
+  vertices.assign(PositionsView<float>(singles), built.octree.vertex_order(), parallel);
   EXPECT_FALSE(vertices.is_double());
-  built.octree.refit(vertices, {}, parallel);
+  EXPECT_TRUE(built.octree.refit(vertices, {}, parallel));
   EXPECT_EQ(built.octree.validate(vertices, {}), "");
   EXPECT_EQ(built.octree.box(), box);
 }
@@ -167,7 +167,7 @@ TEST(ObjectOctree, AFarVertexDoesNotFlattenTheRest) {
     soup.positions[0] = {far, -far, far};
     Built built(soup);
     EXPECT_EQ(built.refit(soup), "") << far;
-    EXPECT_LE(built.octree.statistics().largest_leaf, 8u) << far;
+    EXPECT_LE(built.octree.statistics().largest_leaf, ObjectOctreeOptions{}.leaf_size) << far;
     EXPECT_LT(built.octree.statistics().depth, 12u) << far;
   }
 }
@@ -189,59 +189,68 @@ TEST(ObjectOctree, InertTrianglesAreInNoBox) {
   soup.positions[61] = {0, std::numeric_limits<double>::infinity(), 0};
   Built built(soup);
   const Parallel parallel(1);
-  EXPECT_FALSE(
-      built.vertices.assign(PositionsView<double>(soup.positions), built.octree.vertex_order(), parallel));
+  built.vertices.assign(PositionsView<double>(soup.positions), built.octree.vertex_order(), parallel);
+  EXPECT_FALSE(built.octree.refit(built.vertices, {}, parallel));
   std::vector<std::uint8_t> inert(200, 0);
   for (std::uint32_t t = 0; t < 200; ++t) {
     const std::uint32_t user = built.octree.triangle_ids()[t];
     inert[t] = user == 10 || user == 20;
   }
-  built.octree.refit(built.vertices, inert, parallel);
+  EXPECT_TRUE(built.octree.refit(built.vertices, inert, parallel));
   EXPECT_EQ(built.octree.validate(built.vertices, inert), "");
   EXPECT_LT(built.octree.box().max.y, 2);
 }
 
-TEST(ObjectOctree, LazyRefitGivesTheSameVolumesWhereAsked) {
-  for (const std::uint32_t count : {1u, 9u, 200u, 300u, 5000u}) {
-    for (const std::uint32_t arity : {2u, 8u}) {
-      Soup soup = scattered_soup(count, 2, {1, 2, 3}, count);
-      soup.positions.push_back({100, 100, 100});  // of no triangle
-      Built full(soup, {.arity = arity}), lazy(soup, {.arity = arity});
-      ASSERT_EQ(lazy.refit(soup), "");
-      for (Vec3d& p : soup.positions) {
-        p = {static_cast<float>(p.x + 0.3 * std::sin(5 * p.y)), static_cast<float>(p.y),
-             static_cast<float>(p.z)};
-      }
-      ASSERT_EQ(full.refit(soup), "");
-      lazy.vertices = full.vertices;
-      lazy.octree.refit_lazily(lazy.vertices, Parallel(2));
-      EXPECT_EQ(lazy.octree.box(), full.octree.box());
-      const TriangleArrays arrays = arrays_of(lazy.octree.triangles(), lazy.vertices, {});
-      // From the root down, as queries come, by several threads at once.
-      Parallel(4).for_ranges(4, 1, [&](std::size_t, std::size_t, std::uint32_t) {
-        for (std::uint32_t n = 0; n < lazy.octree.nodes().size(); ++n) lazy.octree.refresh(n, arrays);
-      });
-      for (std::uint32_t n = 0; n < lazy.octree.nodes().size(); ++n) {
-        for (int lane = 0; lane < lazy.octree.nodes()[n].lane_count; ++lane) {
-          const AabbLanes &found = lazy.octree.boxes()[n], &expected = full.octree.boxes()[n];
-          ASSERT_EQ(found.min_x[lane], expected.min_x[lane]) << count << ' ' << n << ' ' << lane;
-          ASSERT_EQ(found.max_x[lane], expected.max_x[lane]) << count << ' ' << n << ' ' << lane;
-          ASSERT_EQ(found.min_z[lane], expected.min_z[lane]) << count << ' ' << n << ' ' << lane;
-        }
-      }
-      EXPECT_EQ(lazy.octree.validate(lazy.vertices, {}), "");
+TEST(ObjectOctree, NumberingsGiveTheSameVolumes) {
+  for (const std::uint32_t count : {1u, 9u, 200u, 5000u}) {
+    Soup soup = scattered_soup(count, 2, {1, 2, 3}, count);
+    soup.positions.push_back({100, 100, 100});  // of no triangle
+    const PositionsView<double> positions(soup.positions);
+    Built by_first_use(soup);
+    ASSERT_EQ(by_first_use.refit(soup), "");
+    ObjectOctree given(positions, soup.triangles, {}, BoundingVolume::aabb, SphereFit::vertices,
+                       VertexNumbering::given);
+    EXPECT_TRUE(given.vertex_order().empty() && given.vertex_ids().empty());
+    VertexBuffer copied, borrowed;
+    copied.assign(positions, {}, Parallel(1));
+    borrowed.borrow(positions);
+    EXPECT_EQ(borrowed.bytes(), 0u);
+    for (const VertexBuffer* const vertices : {&copied, &borrowed}) {
+      EXPECT_TRUE(given.refit(*vertices, {}, Parallel(2)));
+      EXPECT_EQ(given.validate(*vertices, {}), "");
+      EXPECT_EQ(given.box(), by_first_use.octree.box());
     }
   }
 }
 
-TEST(ObjectOctree, ValidateRefreshesWhatNoQueryAskedFor) {
-  Soup soup = scattered_soup(3000, 1, {}, 14);
-  Built built(soup);
-  ASSERT_EQ(built.refit(soup), "");
-  for (Vec3d& p : soup.positions) p.x *= 2;
-  built.vertices.assign(PositionsView<double>(soup.positions), built.octree.vertex_order(), Parallel(1));
-  built.octree.refit_lazily(built.vertices, Parallel(1));
-  EXPECT_EQ(built.octree.validate(built.vertices, {}), "");
+TEST(ObjectOctree, TellsOfANonFiniteVertexWhereverItIs) {
+  constexpr double inf = std::numeric_limits<double>::infinity();
+  const Soup soup = [] {
+    Soup result = scattered_soup(150, 1, {}, 21);
+    result.positions.push_back({0, 0, 0});  // of no triangle
+    return result;
+  }();
+  for (std::size_t vertex = 0; vertex < soup.positions.size(); vertex += 50) {
+    for (const double wrong : {inf, -inf, std::numeric_limits<double>::quiet_NaN()}) {
+      for (int axis = 0; axis < 3; ++axis) {
+        for (const bool single : {false, true}) {
+          Soup broken = soup;
+          broken.positions[vertex][axis] = wrong;
+          std::vector<Vec3f> singles;
+          for (const Vec3d& p : broken.positions)
+            singles.push_back({static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)});
+          Built built(soup);
+          if (single) {
+            built.vertices.assign(PositionsView<float>(singles), built.octree.vertex_order(), Parallel(1));
+          } else {
+            built.vertices.assign(PositionsView<double>(broken.positions), built.octree.vertex_order(),
+                                  Parallel(1));
+          }
+          EXPECT_FALSE(built.octree.refit(built.vertices, {}, Parallel(1))) << vertex << ' ' << axis;
+        }
+      }
+    }
+  }
 }
 
 TEST(ObjectOctree, ValidateFindsAStaleBox) {
