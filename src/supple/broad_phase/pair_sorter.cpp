@@ -67,9 +67,10 @@ void PairSorter::sort_by_counting(std::span<const PairBuffer> parts, std::size_t
   counters_.resize(parallel.worker_count());
   parallel.for_ranges(bucket_count, 1, [&](std::size_t begin, std::size_t end, std::uint32_t worker) {
     for (std::size_t bucket = begin; bucket < end; ++bucket) {
-      const std::size_t first = bucket == 0 ? 0 : bucket_end_[bucket - 1];
+      const std::size_t first = bucket == 0 ? 0 : bucket_end_[bucket - 1], first_slot = bucket << shift;
       sort_bucket({bucketed_.data() + first, bucket_end_[bucket] - first},
-                  static_cast<std::uint32_t>(bucket << shift), std::size_t{1} << shift, counters_[worker],
+                  static_cast<std::uint32_t>(first_slot),
+                  std::min(std::size_t{1} << shift, slot_count - first_slot), counters_[worker],
                   sorted.data() + first);
     }
   });

@@ -3,10 +3,13 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include <algorithm>
+#include <array>
 #include <type_traits>
 
 #include "contact/pair_filter.hpp"
 #include "geometry/plane_filter.hpp"
+#include "octree/vertex_loads-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace supple::HWY_NAMESPACE {
@@ -154,34 +157,170 @@ HWY_INLINE std::uint64_t bits_of(hn::Mask<Tag> mask) {
   return std::uint64_t{bytes[0]} | std::uint64_t{bytes[1]} << 8;
 }
 
-template <class Scalar>
-PairVerdicts filter(const TrianglePairBlock<Scalar>& block, std::size_t count) {
-  using Tag = hn::CappedTag<Scalar, 16>;
-  const Tag d;
-  PairVerdicts verdicts;
-  for (std::size_t first = 0; first < count; first += hn::Lanes(d)) {
-    const auto load = [&](const auto& rows, std::size_t corner) HWY_ATTR {
-      return Vector3<Tag>{hn::Load(d, rows[3 * corner] + first), hn::Load(d, rows[3 * corner + 1] + first),
-                          hn::Load(d, rows[3 * corner + 2] + first)};
-    };
-    const Corners<Tag> a{load(block.a, 0), load(block.a, 1), load(block.a, 2)};
-    const Corners<Tag> b{load(block.b, 0), load(block.b, 1), load(block.b, 2)};
-    const Sides<Tag> of_a(b, a), of_b(a, b);
-    const auto separated = hn::Or(of_a.separated, of_b.separated);
-    const auto in_general_position = hn::AndNot(separated, hn::And(of_a.certain, of_b.certain));
-    auto apart = separated;
-    if (!hn::AllFalse(d, in_general_position)) {
-      const Chord<Tag> chord_a(a, of_a, false), chord_b(b, of_b, true);
-      const Order<Tag> b_start_to_a_end(chord_a, chord_a.end, chord_b, chord_b.start);
-      const Order<Tag> b_end_to_a_start(chord_a, chord_a.start, chord_b, chord_b.end);
-      const auto beyond = hn::Or(b_start_to_a_end.positive(), b_end_to_a_start.negative());
-      const auto overlap = hn::And(b_start_to_a_end.negative(), b_end_to_a_start.positive());
-      apart = hn::Or(apart, hn::And(in_general_position, beyond));
-      verdicts.crossing |= bits_of<Tag>(hn::And(in_general_position, overlap)) << first;
+// Reading corners. A register has blocks of 16 bytes: four floats or two doubles. Corners are read into
+// blocks and transposed there, so that each register gets one coordinate of as many pairs as it has lanes.
+
+#if HWY_TARGET == HWY_SCALAR
+
+/// The corners of one triangle: the meaning of the vector version below.
+template <std::uint32_t TrianglePair::*side, class Tag, class Source>
+HWY_INLINE void read_corners(VertexArray<Source> vertices, const PlacedTriangles& source, const TrianglePair* pairs,
+                             Corners<Tag>& corners) {
+  using Scalar = hn::TFromD<Tag>;
+  const Vec3d& t = source.translation;
+  for (int i = 0; i < 3; ++i) {
+    const Source* const p = vertices[source.arrays.triangles[pairs->*side][i]];
+    corners[i] = {hn::Set(Tag(), Scalar(p[0])), hn::Set(Tag(), Scalar(p[1])), hn::Set(Tag(), Scalar(p[2]))};
+    if constexpr (std::is_same_v<Scalar, double>) {
+      corners[i] = {hn::Add(corners[i].x, hn::Set(Tag(), t.x)), hn::Add(corners[i].y, hn::Set(Tag(), t.y)),
+                    hn::Add(corners[i].z, hn::Set(Tag(), t.z))};
     }
-    verdicts.apart |= bits_of<Tag>(apart) << first;
   }
-  if (count < 64) {
+}
+
+#else
+
+/// Three registers, one a corner.
+template <class Tag>
+struct CornerBlocks {
+  hn::Vec<Tag> corner[3];
+};
+
+/// Corners of every `step`th of the pairs, a block each: what `read` makes of the place of a position.
+template <std::uint32_t TrianglePair::*side, class Tag, std::size_t step, class Source, class Read>
+HWY_INLINE CornerBlocks<Tag> read_blocks(VertexArray<Source> vertices, const Triangle* triangles,
+                                         const TrianglePair* pairs, const Read& read) {
+  constexpr std::size_t blocks = hn::MaxLanes(Tag()) * sizeof(hn::TFromD<Tag>) / 16;
+  if constexpr (blocks == 1) {
+    const Triangle& triangle = triangles[pairs->*side];
+    return {{read(vertices[triangle[0]]), read(vertices[triangle[1]]),
+             read(vertices[triangle[2]])}};
+  } else {
+    using Half = hn::Half<Tag>;
+    const Tag d;
+    const auto lower = read_blocks<side, Half, step>(vertices, triangles, pairs, read);
+    const auto upper = read_blocks<side, Half, step>(vertices, triangles, pairs + step * (blocks / 2), read);
+    return {{hn::Combine(d, upper.corner[0], lower.corner[0]),
+             hn::Combine(d, upper.corner[1], lower.corner[1]),
+             hn::Combine(d, upper.corner[2], lower.corner[2])}};
+  }
+}
+
+// Objects with inlined functions, which lambdas are not without optimisation.
+
+struct FourFloats {
+  HWY_INLINE auto operator()(const float* position) const {
+    return load_vertex(position);
+  }
+};
+/// As doubles, x and y.
+struct TwoDoubles {
+  HWY_INLINE auto operator()(const double* position) const {
+    return hn::LoadU(hn::FixedTag<double, 2>(), position);
+  }
+  HWY_INLINE auto operator()(const float* position) const {
+    return hn::PromoteTo(hn::FixedTag<double, 2>(), hn::LoadU(hn::FixedTag<float, 2>(), position));
+  }
+};
+/// z twice.
+struct DoubleZ {
+  template <class Source>
+  HWY_INLINE auto operator()(const Source* position) const {
+    return hn::Set(hn::FixedTag<double, 2>(), double{position[2]});
+  }
+};
+
+template <std::uint32_t TrianglePair::*side, class Tag>
+HWY_INLINE void read_floats(VertexArray<float> vertices, const Triangle* triangles, const TrianglePair* pairs,
+                            Corners<Tag>& corners) {
+  const Tag d;
+  const FourFloats read;
+  const auto v0 = read_blocks<side, Tag, 4>(vertices, triangles, pairs, read);
+  const auto v1 = read_blocks<side, Tag, 4>(vertices, triangles, pairs + 1, read);
+  const auto v2 = read_blocks<side, Tag, 4>(vertices, triangles, pairs + 2, read);
+  const auto v3 = read_blocks<side, Tag, 4>(vertices, triangles, pairs + 3, read);
+  for (int i = 0; i < 3; ++i) {
+    const auto xy_even = hn::InterleaveLower(d, v0.corner[i], v2.corner[i]);
+    const auto xy_odd = hn::InterleaveLower(d, v1.corner[i], v3.corner[i]);
+    const auto z_even = hn::InterleaveUpper(d, v0.corner[i], v2.corner[i]);
+    const auto z_odd = hn::InterleaveUpper(d, v1.corner[i], v3.corner[i]);
+    corners[i] = {hn::InterleaveLower(d, xy_even, xy_odd), hn::InterleaveUpper(d, xy_even, xy_odd),
+                  hn::InterleaveLower(d, z_even, z_odd)};
+  }
+}
+
+template <std::uint32_t TrianglePair::*side, class Tag, class Source>
+HWY_INLINE void read_doubles(VertexArray<Source> vertices, const PlacedTriangles& source, const TrianglePair* pairs,
+                             Corners<Tag>& corners) {
+  const Tag d;
+  const Triangle* const triangles = source.arrays.triangles;
+  const TwoDoubles read_xy;
+  const DoubleZ read_z;
+  const auto xy_even = read_blocks<side, Tag, 2>(vertices, triangles, pairs, read_xy);
+  const auto xy_odd = read_blocks<side, Tag, 2>(vertices, triangles, pairs + 1, read_xy);
+  const auto z_even = read_blocks<side, Tag, 2>(vertices, triangles, pairs, read_z);
+  const auto z_odd = read_blocks<side, Tag, 2>(vertices, triangles, pairs + 1, read_z);
+  const auto tx = hn::Set(d, source.translation.x), ty = hn::Set(d, source.translation.y),
+             tz = hn::Set(d, source.translation.z);
+  for (int i = 0; i < 3; ++i) {
+    corners[i] = {hn::Add(hn::InterleaveLower(d, xy_even.corner[i], xy_odd.corner[i]), tx),
+                  hn::Add(hn::InterleaveUpper(d, xy_even.corner[i], xy_odd.corner[i]), ty),
+                  hn::Add(hn::InterleaveLower(d, z_even.corner[i], z_odd.corner[i]), tz)};
+  }
+}
+
+template <std::uint32_t TrianglePair::*side, class Tag, class Source>
+HWY_INLINE void read_corners(VertexArray<Source> vertices, const PlacedTriangles& source, const TrianglePair* pairs,
+                             Corners<Tag>& corners) {
+  if constexpr (std::is_same_v<hn::TFromD<Tag>, float>) {
+    read_floats<side, Tag>(vertices, source.arrays.triangles, pairs, corners);
+  } else {
+    read_doubles<side, Tag>(vertices, source, pairs, corners);
+  }
+}
+
+#endif
+
+/// Verdicts on as many pairs as there are lanes.
+template <class Tag>
+HWY_INLINE void decide(const Corners<Tag>& a, const Corners<Tag>& b, std::size_t first,
+                       PairVerdicts& verdicts) {
+  const Tag d;
+  const Sides<Tag> of_a(b, a), of_b(a, b);
+  const auto separated = hn::Or(of_a.separated, of_b.separated);
+  const auto in_general_position = hn::AndNot(separated, hn::And(of_a.certain, of_b.certain));
+  auto apart = separated;
+  if (!hn::AllFalse(d, in_general_position)) {
+    const Chord<Tag> chord_a(a, of_a, false), chord_b(b, of_b, true);
+    const Order<Tag> b_start_to_a_end(chord_a, chord_a.end, chord_b, chord_b.start);
+    const Order<Tag> b_end_to_a_start(chord_a, chord_a.start, chord_b, chord_b.end);
+    const auto beyond = hn::Or(b_start_to_a_end.positive(), b_end_to_a_start.negative());
+    const auto overlap = hn::And(b_start_to_a_end.negative(), b_end_to_a_start.positive());
+    apart = hn::Or(apart, hn::And(in_general_position, beyond));
+    verdicts.crossing |= bits_of<Tag>(hn::And(in_general_position, overlap)) << first;
+  }
+  verdicts.apart |= bits_of<Tag>(apart) << first;
+}
+
+template <class Scalar, class SourceA, class SourceB>
+HWY_INLINE PairVerdicts filter(VertexArray<SourceA> vertices_a, VertexArray<SourceB> vertices_b, const PlacedTriangles& a,
+                               const PlacedTriangles& b, const TrianglePair* pairs, std::size_t count) {
+  using Tag = hn::CappedTag<Scalar, 16>;
+  const std::size_t lanes = hn::Lanes(Tag());
+  PairVerdicts verdicts;
+  std::array<TrianglePair, 16> last;
+  for (std::size_t first = 0; first < count; first += lanes) {
+    const TrianglePair* part = pairs + first;
+    if (count - first < lanes) {
+      last.fill(pairs[first]);
+      part = std::copy(part, pairs + count, last.begin()) - (count - first);
+    }
+    Corners<Tag> corners_a, corners_b;
+    read_corners<&TrianglePair::a, Tag>(vertices_a, a, part, corners_a);
+    read_corners<&TrianglePair::b, Tag>(vertices_b, b, part, corners_b);
+    decide<Tag>(corners_a, corners_b, first, verdicts);
+  }
+  if (count < pair_filter_capacity) {
     const std::uint64_t asked = (std::uint64_t{1} << count) - 1;
     verdicts.apart &= asked;
     verdicts.crossing &= asked;
@@ -189,11 +328,19 @@ PairVerdicts filter(const TrianglePairBlock<Scalar>& block, std::size_t count) {
   return verdicts;
 }
 
-PairVerdicts filter_floats(const TrianglePairBlock<float>& block, std::size_t count) {
-  return filter(block, count);
+PairVerdicts filter_floats(const PlacedTriangles& a, const PlacedTriangles& b, const TrianglePair* pairs,
+                           std::size_t count) {
+  return filter<float>(a.arrays.floats, b.arrays.floats, a, b, pairs, count);
 }
-PairVerdicts filter_doubles(const TrianglePairBlock<double>& block, std::size_t count) {
-  return filter(block, count);
+PairVerdicts filter_doubles(const PlacedTriangles& a, const PlacedTriangles& b, const TrianglePair* pairs,
+                            std::size_t count) {
+  if (a.arrays.doubles.data == nullptr && b.arrays.doubles.data == nullptr)
+    return filter<double>(a.arrays.floats, b.arrays.floats, a, b, pairs, count);
+  if (a.arrays.doubles.data == nullptr)
+    return filter<double>(a.arrays.floats, b.arrays.doubles, a, b, pairs, count);
+  if (b.arrays.doubles.data == nullptr)
+    return filter<double>(a.arrays.doubles, b.arrays.floats, a, b, pairs, count);
+  return filter<double>(a.arrays.doubles, b.arrays.doubles, a, b, pairs, count);
 }
 
 }  // namespace
@@ -206,11 +353,14 @@ namespace supple {
 HWY_EXPORT(filter_floats);
 HWY_EXPORT(filter_doubles);
 
-PairVerdicts filter_pairs(const TrianglePairBlock<float>& block, std::size_t count) {
-  return HWY_DYNAMIC_DISPATCH(filter_floats)(block, count);
-}
-PairVerdicts filter_pairs(const TrianglePairBlock<double>& block, std::size_t count) {
-  return HWY_DYNAMIC_DISPATCH(filter_doubles)(block, count);
+PairVerdicts filter_pairs(const PlacedTriangles& a, const PlacedTriangles& b,
+                          std::span<const TrianglePair> pairs) {
+  const auto is_single = [](const PlacedTriangles& triangles) {
+    return triangles.arrays.floats.data != nullptr && triangles.translation == Vec3d{};
+  };
+  if (is_single(a) && is_single(b))
+    return HWY_DYNAMIC_DISPATCH(filter_floats)(a, b, pairs.data(), pairs.size());
+  return HWY_DYNAMIC_DISPATCH(filter_doubles)(a, b, pairs.data(), pairs.size());
 }
 
 }  // namespace supple

@@ -2,30 +2,17 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
-#include "supple/triangle_intersection.hpp"
+#include "octree/box_kernels.hpp"
+#include "supple/types.hpp"
 
 namespace supple {
 
-/// Pairs of triangles as structure-of-arrays, so that one vector register holds a coordinate of several
-/// pairs. 4.5 KiB of floats, 9 of doubles: meant to live in a thread's own memory, filled again and again.
-template <class Scalar>
-struct TrianglePairBlock {
-  static constexpr std::size_t capacity = 64;
-
-  /// `[3 * corner + axis][pair]`
-  alignas(64) Scalar a[9][capacity] = {};
-  alignas(64) Scalar b[9][capacity] = {};
-
-  void set(std::size_t pair, const TrianglePoints& triangle_a, const TrianglePoints& triangle_b) {
-    for (std::size_t corner = 0; corner < 3; ++corner) {
-      for (int axis = 0; axis < 3; ++axis) {
-        const std::size_t row = 3 * corner + static_cast<std::size_t>(axis);
-        a[row][pair] = static_cast<Scalar>(triangle_a[corner][axis]);
-        b[row][pair] = static_cast<Scalar>(triangle_b[corner][axis]);
-      }
-    }
-  }
+/// Triangles of an object, and what is added to each position as it is read.
+struct PlacedTriangles {
+  TriangleArrays arrays;
+  Vec3d translation;
 };
 
 /// What the floating-point filter proves, a bit a pair. Pairs with neither bit are for `intersect_triangles`.
@@ -36,9 +23,14 @@ struct PairVerdicts {
   constexpr bool operator==(const PairVerdicts&) const = default;
 };
 
-/// Verdicts on the pairs i < count <= capacity. Of a triangle with a coordinate that is not finite the bit
-/// `apart` may be either, the bit `crossing` is clear. Equal on all instruction sets.
-PairVerdicts filter_pairs(const TrianglePairBlock<float>& block, std::size_t count);
-PairVerdicts filter_pairs(const TrianglePairBlock<double>& block, std::size_t count);
+/// Pairs that are tested in one call.
+constexpr std::size_t pair_filter_capacity = 64;
+
+/// Verdicts on pairs of a triangle of `a` and one of `b`, as many as the capacity or fewer. In lanes of
+/// floats where both objects have floats and are not translated, of doubles else. Of a triangle with a
+/// coordinate that is not finite the bit `apart` may be either, the bit `crossing` is clear. Equal on all
+/// instruction sets.
+PairVerdicts filter_pairs(const PlacedTriangles& a, const PlacedTriangles& b,
+                          std::span<const TrianglePair> pairs);
 
 }  // namespace supple

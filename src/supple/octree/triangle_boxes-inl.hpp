@@ -15,6 +15,7 @@
 
 #include "core/float_rounding.hpp"
 #include "octree/box_kernels.hpp"
+#include "octree/vertex_loads-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace supple {
@@ -56,17 +57,6 @@ using FloatBox = ScalarBox<float>;
 using DoubleBox = ScalarBox<double>;
 
 #else
-
-/// x y z and one more, nothing past z being read.
-HWY_INLINE hn::Vec<hn::FixedTag<float, 4>> load_vertex(const float* vertex) {
-#if HWY_TARGET <= HWY_AVX3
-  const hn::FixedTag<float, 4> tag;
-  return hn::MaskedLoad(hn::FirstN(tag, 3), tag, vertex);
-#else
-  const hn::FixedTag<float, 2> half;
-  return hn::Combine(hn::FixedTag<float, 4>(), hn::Set(half, vertex[2]), hn::LoadU(half, vertex));
-#endif
-}
 
 /// A box that grows, x y z in the first three of four lanes.
 struct FloatBox {

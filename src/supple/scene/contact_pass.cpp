@@ -1,12 +1,20 @@
 #include "scene/contact_pass.hpp"
 
+#include <hwy/cache_control.h>
+
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cstring>
+#include <type_traits>
+#include <utility>
 
 #include "supple/triangle_intersection.hpp"
 
 namespace supple {
+
+static_assert(std::is_trivially_copyable_v<Contact> && std::is_trivially_copyable_v<ContactPoint>);
+
 namespace {
 
 Vec3d position(const OctreeView& view, std::uint32_t vertex) {
@@ -22,13 +30,20 @@ TrianglePoints points_of(const OctreeView& view, std::uint32_t triangle) {
   return {position(view, corners[0]), position(view, corners[1]), position(view, corners[2])};
 }
 
-void set_corners(float (&rows)[9][TrianglePairBlock<float>::capacity], std::size_t place,
-                 const TriangleArrays& arrays, std::uint32_t triangle) {
-  std::size_t row = 0;
-  for (const std::uint32_t vertex : arrays.triangles[triangle]) {
-    const float* const corner = arrays.floats[vertex];
-    for (int axis = 0; axis < 3; ++axis) rows[row++][place] = corner[axis];
+template <class Visit>
+void for_each_bit(std::uint64_t bits, Visit&& visit) {
+  for (; bits != 0; bits &= bits - 1) visit(static_cast<std::size_t>(std::countr_zero(bits)));
+}
+
+/// The exact stage sees triangles in the order of the results, so that nothing depends on the octrees' shape.
+std::span<const TrianglePair> in_order_of_results(std::span<const TrianglePair> pairs,
+                                                  std::span<const std::uint32_t> triangle_ids,
+                                                  std::span<TrianglePair> ordered) {
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    ordered[k] = pairs[k];
+    if (triangle_ids[pairs[k].a] > triangle_ids[pairs[k].b]) std::swap(ordered[k].a, ordered[k].b);
   }
+  return ordered.first(pairs.size());
 }
 
 }  // namespace
@@ -39,7 +54,9 @@ void ContactPass::run(std::span<const ContactJob> jobs, std::span<const ContactO
   options_ = options;
   parallel_ = &parallel;
   workers_.resize(parallel.worker_count());
-  for (Worker& worker : workers_) {
+  for (std::size_t w = 0; w < workers_.size(); ++w) {
+    Worker& worker = workers_[w];
+    worker.number = static_cast<std::uint16_t>(w);
     worker.found.clear();
     worker.points.clear();
     worker.leaves.clear();
@@ -49,6 +66,7 @@ void ContactPass::run(std::span<const ContactJob> jobs, std::span<const ContactO
   plan_outcomes(jobs);
   tasks_.plan(static_cast<std::uint32_t>(jobs_.size()), workers_.size(), workers_[0].traversal,
               [&](std::uint32_t job) { return view_of_job(job); });
+  task_outcomes_.resize(tasks_.tasks().size());
   tasks_.run(parallel, workers_, [&](const ContactTask& task, Worker& worker) { run_task(task, worker); });
   add_stats(workers_, timer.lap(), stats);
   gather_contacts();
@@ -71,14 +89,14 @@ void ContactPass::plan_outcomes(std::span<const ContactJob> jobs) {
       return other.a != job.a ? other.a < job.a : other.b < job.b;
     };
     while (last < last_outcomes_.size() && precedes(last_outcomes_[last].job)) ++last;
-    const Outcome outcome{job, objects_[job.a].version, objects_[job.b].version, 0, 0};
+    const Outcome outcome{job, objects_[job.a].version, objects_[job.b].version, {}, {}};
     outcomes_.push_back(outcome);
     // The vertices of colliding leaves are not kept.
     const bool is_known = !options_.colliding_vertices && last < last_outcomes_.size() &&
                           last_outcomes_[last].job.a == job.a && last_outcomes_[last].job.b == job.b &&
                           last_outcomes_[last].version_a == outcome.version_a &&
                           last_outcomes_[last].version_b == outcome.version_b;
-    sources_.push_back(is_known ? last : none);
+    sources_.push_back({is_known ? last : none, 0, 0});
     if (!is_known) jobs_.push_back(job);
   }
 }
@@ -89,8 +107,10 @@ ObjectPairView ContactPass::view_of_job(std::uint32_t job) const {
   return pair_of(a.view, objects_[jobs_[job].b].view);
 }
 
-void ContactPass::run_task(const ContactTask& task, Worker& worker) const {
+void ContactPass::run_task(const ContactTask& task, Worker& worker) {
   const ObjectPairView pair = view_of_job(task.job);
+  const std::span<const std::uint32_t> ids_a = objects_[jobs_[task.job].a].triangle_ids;
+  const std::span<const std::uint32_t> ids_b = objects_[jobs_[task.job].b].triangle_ids;
   const auto on_leaves = [&](std::span<const LeafPair> leaf_pairs) {
     if (!options_.colliding_vertices) return;
     for (const LeafPair& leaves : leaf_pairs) worker.leaves.push_back({task.job, leaves});
@@ -98,155 +118,155 @@ void ContactPass::run_task(const ContactTask& task, Worker& worker) const {
   const auto on_candidates = [&](std::span<const TrianglePair> candidates) {
     if (options_.contacts == ContactMode::none) return;
     Timer timer;
-    test_candidates(task.job, pair, candidates, worker);
+    const std::size_t first = worker.found.size();
+    test_candidates(pair, ids_a, ids_b, candidates, worker);
+    for (FoundContact& found : std::span(worker.found).subspan(first)) {
+      found.triangle_a = ids_a[found.triangle_a];
+      found.triangle_b = ids_b[found.triangle_b];
+    }
     worker.stats.exact_seconds += timer.lap();
   };
+  TaskOutcome& outcome = task_outcomes_[static_cast<std::size_t>(&task - tasks_.tasks().data())];
+  outcome = {worker.number,
+             {static_cast<std::uint32_t>(worker.found.size()), 0},
+             {static_cast<std::uint32_t>(worker.points.size()), 0}};
   worker.traversal.find_triangle_pairs(pair, task.root, worker.stats.traversal, on_leaves, on_candidates);
+  outcome.contacts.count = static_cast<std::uint32_t>(worker.found.size()) - outcome.contacts.first;
+  outcome.points.count = static_cast<std::uint32_t>(worker.points.size()) - outcome.points.first;
 }
 
 /// Floating point decides all but few candidates, a block of them at a time in vector lanes.
-void ContactPass::test_candidates(std::uint32_t job, const ObjectPairView& pair,
+void ContactPass::test_candidates(const ObjectPairView& pair, std::span<const std::uint32_t> ids_a,
+                                  std::span<const std::uint32_t> ids_b,
                                   std::span<const TrianglePair> candidates, Worker& worker) const {
-  constexpr std::size_t capacity = TrianglePairBlock<float>::capacity;
-  const ContactObject& a = objects_[jobs_[job].a];
-  for (std::size_t first = 0; first < candidates.size(); first += capacity) {
-    const auto part = candidates.subspan(first, std::min(capacity, candidates.size() - first));
-    std::array<TrianglePair, capacity> ordered;
-    for (std::size_t k = 0; k < part.size(); ++k) {
-      ordered[k] = part[k];
-      // The exact stage sees triangles in the order of the results, so that nothing depends on the octrees'
-      // shape.
-      if (pair.same_object && a.triangle_ids[part[k].a] > a.triangle_ids[part[k].b]) {
-        std::swap(ordered[k].a, ordered[k].b);
-      }
-    }
-    const PairVerdicts verdicts = filter_candidates(pair, {ordered.data(), part.size()}, worker);
-    std::uint64_t undecided = ~verdicts.apart;
-    if (part.size() < capacity) undecided &= (std::uint64_t{1} << part.size()) - 1;
-    for (; undecided != 0; undecided &= undecided - 1) {
-      const auto k = static_cast<std::size_t>(std::countr_zero(undecided));
-      if ((verdicts.crossing >> k & 1) != 0 && !options_.contact_points) {
-        add_contact(job, ordered[k], IntersectionKind::segment, 2, worker);
-      } else {
-        test_candidate(job, pair, ordered[k], worker);
-      }
-    }
+  const PlacedTriangles triangles_a{pair.a.arrays, pair.a.translation};
+  const PlacedTriangles triangles_b{pair.b.arrays, pair.b.translation};
+  std::array<TrianglePair, pair_filter_capacity> ordered;
+  for (std::size_t first = 0; first < candidates.size(); first += pair_filter_capacity) {
+    auto part = candidates.subspan(first, std::min(pair_filter_capacity, candidates.size() - first));
+    if (pair.same_object) part = in_order_of_results(part, ids_a, ordered);
+    const PairVerdicts verdicts = filter_pairs(triangles_a, triangles_b, part);
+    const std::uint64_t crossing = options_.contact_points ? 0 : verdicts.crossing;
+    for_each_bit(crossing, [&](std::size_t k) {
+      worker.found.push_back({part[k].a, part[k].b, 0, worker.number, IntersectionKind::segment, 2});
+      // They are asked for once the whole batch is done.
+      hwy::Prefetch(&ids_a[part[k].a]);
+      hwy::Prefetch(&ids_b[part[k].b]);
+    });
+    const std::uint64_t asked = ~std::uint64_t{0} >> (pair_filter_capacity - part.size());
+    for_each_bit(asked & ~(verdicts.apart | crossing),
+                 [&](std::size_t k) { test_candidate(pair, part[k], worker); });
   }
 }
 
-PairVerdicts ContactPass::filter_candidates(const ObjectPairView& pair,
-                                            std::span<const TrianglePair> candidates, Worker& worker) const {
-  const auto is_single = [](const OctreeView& view) {
-    return view.arrays.floats.data != nullptr && view.translation == Vec3d{};
-  };
-  if (is_single(pair.a) && is_single(pair.b)) {
-    for (std::size_t k = 0; k < candidates.size(); ++k) {
-      set_corners(worker.floats.a, k, pair.a.arrays, candidates[k].a);
-      set_corners(worker.floats.b, k, pair.b.arrays, candidates[k].b);
-    }
-    return filter_pairs(worker.floats, candidates.size());
-  }
-  for (std::size_t k = 0; k < candidates.size(); ++k) {
-    worker.doubles.set(k, points_of(pair.a, candidates[k].a), points_of(pair.b, candidates[k].b));
-  }
-  return filter_pairs(worker.doubles, candidates.size());
-}
-
-void ContactPass::test_candidate(std::uint32_t job, const ObjectPairView& pair, TrianglePair candidate,
-                                 Worker& worker) const {
+void ContactPass::test_candidate(const ObjectPairView& pair, TrianglePair candidate, Worker& worker) const {
   const TriangleIntersection shared =
       intersect_triangles(points_of(pair.a, candidate.a), points_of(pair.b, candidate.b));
   worker.stats.exact_fallbacks += shared.used_exact_fallback ? 1 : 0;
   if (!shared.intersects) return;
-  add_contact(job, candidate, shared.kind, shared.point_count, worker);
+  worker.found.push_back({candidate.a, candidate.b, static_cast<std::uint32_t>(worker.points.size()),
+                          worker.number, shared.kind, shared.point_count});
   if (options_.contact_points) {
     const auto points = shared.extreme_points();
     worker.points.insert(worker.points.end(), points.begin(), points.end());
   }
 }
 
-void ContactPass::add_contact(std::uint32_t job, TrianglePair pair, IntersectionKind kind,
-                              std::uint8_t point_count, Worker& worker) const {
-  const ContactObject& a = objects_[jobs_[job].a];
-  const ContactObject& b = objects_[jobs_[job].b];
-  const Contact contact{a.id,
-                        b.id,
-                        a.triangle_ids[pair.a],
-                        b.triangle_ids[pair.b],
-                        kind,
-                        point_count,
-                        static_cast<std::uint32_t>(worker.points.size())};
-  worker.found.push_back({job, contact});
-}
-
-/// Jobs are in order already: contacts are counted into them, and sorted within.
-void ContactPass::sort_found() {
-  first_of_job_.assign(jobs_.size() + 2, 0);
-  for (const Worker& worker : workers_) {
-    for (const Found& found : worker.found) ++first_of_job_[found.job + 2];
-  }
-  for (std::size_t job = 2; job < first_of_job_.size(); ++job) first_of_job_[job] += first_of_job_[job - 1];
-  keys_.resize(first_of_job_.back());
-  for (std::uint32_t w = 0; w < workers_.size(); ++w) {
-    for (std::uint32_t i = 0; i < workers_[w].found.size(); ++i) {
-      const Found& found = workers_[w].found[i];
-      const std::uint64_t place = std::uint64_t{found.contact.triangle_a} << 32 | found.contact.triangle_b;
-      keys_[first_of_job_[found.job + 1]++] = {place, w, i};
-    }
-  }
-  first_of_job_.pop_back();
-  parallel_->for_ranges(jobs_.size(), 16, [&](std::size_t begin, std::size_t end, std::uint32_t) {
-    for (std::size_t job = begin; job < end; ++job) {
-      std::sort(keys_.begin() + first_of_job_[job], keys_.begin() + first_of_job_[job + 1],
-                [](const SortKey& p, const SortKey& q) { return p.place < q.place; });
-    }
-  });
-}
-
+/// Jobs are in order already: each gets its place, and is sorted within. What is known moves within the
+/// buffers, the rest is written around it.
 void ContactPass::gather_contacts() {
-  sort_found();
-  contacts_.swap(last_contacts_);
-  points_.swap(last_points_);
-  groups_.clear();
-  points_.clear();
-  std::uint32_t job = 0, total = 0;
-  for (std::size_t i = 0; i < outcomes_.size(); ++i) {
-    Outcome& outcome = outcomes_[i];
-    outcome.first_contact = total;
-    outcome.contact_count = sources_[i] != none ? last_outcomes_[sources_[i]].contact_count
-                                                : first_of_job_[job + 1] - first_of_job_[job];
-    if (sources_[i] == none) ++job;
-    total += outcome.contact_count;
-  }
-  contacts_.resize(total);
-  job = 0;
-  for (std::size_t i = 0; i < outcomes_.size(); ++i) {
-    const Outcome& outcome = outcomes_[i];
-    const std::uint32_t first_key = sources_[i] == none ? first_of_job_[job++] : 0;
-    if (outcome.contact_count == 0) continue;
-    groups_.push_back({objects_[outcome.job.a].id, objects_[outcome.job.b].id, outcome.first_contact,
-                       outcome.contact_count});
-    for (std::uint32_t k = 0; k < outcome.contact_count; ++k) {
-      Contact& contact = contacts_[outcome.first_contact + k];
-      if (sources_[i] != none) {
-        contact = last_contacts_[last_outcomes_[sources_[i]].first_contact + k];
-        append_points(last_points_.data(), contact);
+  place_outcomes();
+  move_known(contacts_, &Outcome::contacts);
+  move_known(points_, &Outcome::points);
+  parallel_->for_ranges(outcomes_.size(), 8, [&](std::size_t begin, std::size_t end, std::uint32_t w) {
+    for (std::size_t i = begin; i < end; ++i) {
+      if (sources_[i].known == none) {
+        gather_found(sources_[i], outcomes_[i], workers_[w]);
       } else {
-        const Worker& worker = workers_[keys_[first_key + k].worker];
-        contact = worker.found[keys_[first_key + k].index].contact;
-        append_points(worker.points.data(), contact);
+        renumber_points(last_outcomes_[sources_[i].known], outcomes_[i]);
       }
     }
-  }
+  });
+  list_groups();
   is_complete_ = true;
 }
 
-/// The contact's points, whose first is told by it, go to the end of all; it then tells where they are.
-void ContactPass::append_points(const ContactPoint* points, Contact& contact) {
-  if (!options_.contact_points) return;
-  const ContactPoint* const first = points + contact.first_point;
-  contact.first_point = static_cast<std::uint32_t>(points_.size());
-  points_.insert(points_.end(), first, first + contact.point_count);
+void ContactPass::place_outcomes() {
+  const std::span<const ContactTask> tasks = tasks_.tasks();
+  std::uint32_t job = 0, task = 0;
+  Range contacts, points;
+  for (std::size_t i = 0; i < outcomes_.size(); ++i) {
+    Outcome& outcome = outcomes_[i];
+    Source& source = sources_[i];
+    if (source.known != none) {
+      outcome.contacts.count = last_outcomes_[source.known].contacts.count;
+      outcome.points.count = last_outcomes_[source.known].points.count;
+    } else {
+      source.first_task = task;
+      for (; task < tasks.size() && tasks[task].job == job; ++task) {
+        outcome.contacts.count += task_outcomes_[task].contacts.count;
+        outcome.points.count += task_outcomes_[task].points.count;
+      }
+      source.task_count = task - source.first_task;
+      ++job;
+    }
+    contacts = outcome.contacts = {contacts.end(), outcome.contacts.count};
+    points = outcome.points = {points.end(), outcome.points.count};
+  }
+}
+
+/// Known outcomes are in the order that they had, so that none which moves down comes to lie on one which is
+/// yet to move up, nor the other way round.
+template <class Item>
+void ContactPass::move_known(std::vector<Item>& items, Range Outcome::*range) {
+  const std::size_t total = outcomes_.empty() ? 0 : (outcomes_.back().*range).end();
+  if (items.size() < total) items.resize(total);
+  const auto move = [&](std::size_t i, bool down) {
+    if (sources_[i].known == none) return;
+    const Range from = last_outcomes_[sources_[i].known].*range, to = outcomes_[i].*range;
+    if (to.first == from.first || (to.first < from.first) != down) return;
+    std::memmove(items.data() + to.first, items.data() + from.first, to.count * sizeof(Item));
+  };
+  for (std::size_t i = 0; i < outcomes_.size(); ++i) move(i, true);
+  for (std::size_t i = outcomes_.size(); i-- > 0;) move(i, false);
+  items.resize(total);
+}
+
+void ContactPass::renumber_points(const Outcome& known, const Outcome& outcome) {
+  const std::uint32_t change = outcome.points.first - known.points.first;
+  if (change == 0) return;
+  const auto first = contacts_.begin() + outcome.contacts.first;
+  std::for_each(first, first + outcome.contacts.count,
+                [&](Contact& contact) { contact.first_point += change; });
+}
+
+void ContactPass::gather_found(const Source& source, const Outcome& outcome, Worker& worker) {
+  worker.of_job.clear();
+  for (std::uint32_t task = source.first_task; task < source.first_task + source.task_count; ++task) {
+    const TaskOutcome& part = task_outcomes_[task];
+    const auto first = workers_[part.worker].found.begin() + part.contacts.first;
+    worker.of_job.insert(worker.of_job.end(), first, first + part.contacts.count);
+  }
+  sort_contacts(worker.of_job, worker.scratch);
+  const ObjectId a = objects_[outcome.job.a].id, b = objects_[outcome.job.b].id;
+  Contact* contact = contacts_.data() + outcome.contacts.first;
+  std::uint32_t point = outcome.points.first;
+  for (const FoundContact& found : worker.of_job) {
+    *contact++ = {a, b, found.triangle_a, found.triangle_b, found.kind, found.point_count, point};
+    if (!options_.contact_points) continue;
+    std::copy_n(workers_[found.worker].points.begin() + found.first_point, found.point_count,
+                points_.begin() + point);
+    point += found.point_count;
+  }
+}
+
+void ContactPass::list_groups() {
+  groups_.clear();
+  for (const Outcome& outcome : outcomes_) {
+    if (outcome.contacts.count == 0) continue;
+    groups_.push_back({objects_[outcome.job.a].id, objects_[outcome.job.b].id, outcome.contacts.first,
+                       outcome.contacts.count});
+  }
 }
 
 void ContactPass::gather_colliding_vertices() {

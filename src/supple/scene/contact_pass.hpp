@@ -8,6 +8,7 @@
 #include "core/parallel.hpp"
 #include "core/timer.hpp"
 #include "narrow_phase/traversal.hpp"
+#include "scene/contact_order.hpp"
 #include "scene/contact_tasks.hpp"
 #include "supple/contact.hpp"
 #include "supple/options.hpp"
@@ -41,73 +42,78 @@ class ContactPass {
   std::span<const std::uint32_t> colliding_vertices() const { return vertices_; }
 
  private:
-  /// A contact as a worker finds it, `contact.first_point` counting that worker's points.
-  struct Found {
-    std::uint32_t job = 0;
-    Contact contact;
-  };
   struct CollidingLeaves {
     std::uint32_t job = 0;
     LeafPair leaves;
   };
   struct Worker {
+    std::uint16_t number = 0;
     Traversal traversal;
-    TrianglePairBlock<float> floats;
-    TrianglePairBlock<double> doubles;
-    std::vector<Found> found;
+    std::vector<FoundContact> found;  // of its tasks, one after the other
     std::vector<ContactPoint> points;
     std::vector<CollidingLeaves> leaves;
     TaskStats stats;
+    // Of one job at a time, for putting its contacts into order.
+    std::vector<FoundContact> of_job, scratch;
   };
-  /// Where a contact was put, and its place within its job: triangle a, then triangle b.
-  struct SortKey {
-    std::uint64_t place;
-    std::uint32_t worker, index;
-  };
+  struct Range {
+    std::uint32_t first = 0, count = 0;
 
-  /// What was found for a job: a range of the contacts of its step.
+    std::uint32_t end() const { return first + count; }
+  };
+  /// What a task found: ranges of its worker's contacts and points.
+  struct TaskOutcome {
+    std::uint32_t worker = 0;
+    Range contacts, points;
+  };
+  /// What was found for a job: ranges of the contacts and points of its step.
   struct Outcome {
     ContactJob job;
     std::uint64_t version_a = 0, version_b = 0;
-    std::uint32_t first_contact = 0, contact_count = 0;
+    Range contacts, points;
+  };
+  /// Where an outcome comes from: that of the step before, or else tasks of this step.
+  struct Source {
+    std::uint32_t known = none;
+    std::uint32_t first_task = 0, task_count = 0;
   };
   static constexpr std::uint32_t none = ~std::uint32_t{0};
 
   void plan_outcomes(std::span<const ContactJob> jobs);
-  void append_points(const ContactPoint* points, Contact& contact);
   ObjectPairView view_of_job(std::uint32_t job) const;
-  void run_task(const ContactTask& task, Worker& worker) const;
-  void test_candidates(std::uint32_t job, const ObjectPairView& pair,
-                       std::span<const TrianglePair> candidates, Worker& worker) const;
-  PairVerdicts filter_candidates(const ObjectPairView& pair, std::span<const TrianglePair> candidates,
-                                 Worker& worker) const;
-  void test_candidate(std::uint32_t job, const ObjectPairView& pair, TrianglePair candidate,
-                      Worker& worker) const;
-  void add_contact(std::uint32_t job, TrianglePair pair, IntersectionKind kind, std::uint8_t point_count,
-                   Worker& worker) const;
-  void sort_found();
+  void run_task(const ContactTask& task, Worker& worker);
+  /// Contacts come with the octrees' triangles; `ids_a` and `ids_b` are the user's.
+  void test_candidates(const ObjectPairView& pair, std::span<const std::uint32_t> ids_a,
+                       std::span<const std::uint32_t> ids_b, std::span<const TrianglePair> candidates,
+                       Worker& worker) const;
+  void test_candidate(const ObjectPairView& pair, TrianglePair candidate, Worker& worker) const;
   void gather_contacts();
+  void place_outcomes();
+  template <class Item>
+  void move_known(std::vector<Item>& items, Range Outcome::*range);
+  void renumber_points(const Outcome& known, const Outcome& outcome);
+  void gather_found(const Source& source, const Outcome& outcome, Worker& worker);
+  void list_groups();
   void gather_colliding_vertices();
   void append_marked_vertices(std::uint32_t object, std::span<const CollidingLeaves> leaves, bool side_b);
 
-  std::vector<ContactJob> jobs_;  // to be done; `Found::job` and tasks count these
+  std::vector<ContactJob> jobs_;  // to be done; tasks count these
   std::span<const ContactObject> objects_;
   SceneOptions options_;
   const Parallel* parallel_ = nullptr;
 
   std::vector<Worker> workers_;
   ContactTasks tasks_;
-  std::vector<SortKey> keys_;                // by job
-  std::vector<std::uint32_t> first_of_job_;  // in `keys_`, and one past the last
+  std::vector<TaskOutcome> task_outcomes_;
   std::vector<CollidingLeaves> leaves_;
   std::vector<std::uint8_t> marked_;
 
   std::vector<ContactGroup> groups_;
-  std::vector<Contact> contacts_, last_contacts_;
-  std::vector<ContactPoint> points_, last_points_;
+  std::vector<Contact> contacts_;
+  std::vector<ContactPoint> points_;
   std::vector<Outcome> outcomes_, last_outcomes_;  // of all jobs
   bool is_complete_ = true;                        // no exception left the last step unfinished
-  std::vector<std::uint32_t> sources_;             // of each outcome: that of the step before, or `none`
+  std::vector<Source> sources_;                    // of each outcome
   std::vector<CollidingVertices> vertex_groups_;
   std::vector<std::uint32_t> vertices_;
 };

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "core/parallel.hpp"
@@ -54,6 +55,9 @@ class ContactTasks {
       tasks_.swap(finer_tasks_);
     }
   }
+
+  /// By job.
+  std::span<const ContactTask> tasks() const { return tasks_; }
 
   /// Calls `run_task(task, worker)` for all tasks, on all workers; each has `TaskStats stats`.
   template <class Worker, class RunTask>

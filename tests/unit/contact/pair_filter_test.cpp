@@ -2,8 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <bit>
 #include <cmath>
+#include <limits>
+#include <span>
+#include <type_traits>
+#include <vector>
 
 #include "geometry/vector.hpp"
 #include "support/instruction_sets.hpp"
@@ -112,23 +117,71 @@ TrianglePoints widened(const std::array<Vec3<Scalar>, 3>& triangle) {
   return result;
 }
 
+/// Triangles in an object's arrays, each with vertices of its own. The fourth scalar is not to be read.
+template <class Scalar>
+class TriangleList {
+ public:
+  void add(const std::array<Vec3<Scalar>, 3>& corners) {
+    const auto first = static_cast<std::uint32_t>(positions_.size() / 4);
+    // Numbered backwards, so that a mistake with numbers shows.
+    for (std::size_t i = 3; i-- > 0;)
+      positions_.insert(positions_.end(),
+                        {corners[i].x, corners[i].y, corners[i].z, std::numeric_limits<Scalar>::quiet_NaN()});
+    triangles_.push_back({first + 2, first + 1, first});
+  }
+  PlacedTriangles placed(const Vec3d& translation = {}) const {
+    PlacedTriangles placed{{}, translation};
+    placed.arrays.triangles = triangles_.data();
+    if constexpr (std::is_same_v<Scalar, float>) placed.arrays.floats = {positions_.data(), 4};
+    if constexpr (std::is_same_v<Scalar, double>) placed.arrays.doubles = {positions_.data(), 4};
+    return placed;
+  }
+
+ private:
+  std::vector<Scalar> positions_;
+  std::vector<Triangle> triangles_;
+};
+
+/// Two lists, and pairs of a triangle of each; those of b are numbered backwards.
+template <class ScalarA, class ScalarB = ScalarA>
+struct PairList {
+  explicit PairList(std::size_t count) {
+    for (std::uint32_t i = 0; i < count; ++i) pairs.push_back({i, static_cast<std::uint32_t>(count) - 1 - i});
+  }
+  void set(std::size_t pair, const std::array<Vec3<ScalarA>, 3>& of_a,
+           const std::array<Vec3<ScalarB>, 3>& of_b) {
+    corners_b.resize(pairs.size());
+    corners_b[pairs[pair].b] = of_b;
+    a.add(of_a);
+    if (pair + 1 < pairs.size()) return;
+    for (const auto& corners : corners_b) b.add(corners);
+  }
+  PairVerdicts verdicts(std::size_t count, const Vec3d& of_a = {}, const Vec3d& of_b = {}) const {
+    return filter_pairs(a.placed(of_a), b.placed(of_b), std::span(pairs).first(count));
+  }
+
+  TriangleList<ScalarA> a;
+  TriangleList<ScalarB> b;
+  std::vector<std::array<Vec3<ScalarB>, 3>> corners_b;
+  std::vector<TrianglePair> pairs;
+};
+
 class PairFilterTest : public ::testing::TestWithParam<PairFamily> {};
 INSTANTIATE_TEST_SUITE_P(All, PairFilterTest, ::testing::ValuesIn(pair_families()),
                          [](const auto& family) { return family.param.name; });
 
 template <class Scalar>
 void expect_true_verdicts(const PairFamily& family) {
-  using Block = TrianglePairBlock<Scalar>;
   Random random(31);
   for (int round = 0; round < 20; ++round) {
-    Block block;
+    PairList<Scalar> block(pair_filter_capacity);
     PairVerdicts expected;
     std::uint64_t hits = 0, segments = 0, finite = 0;
-    for (std::size_t i = 0; i < Block::capacity; ++i) {
+    for (std::size_t i = 0; i < pair_filter_capacity; ++i) {
       TrianglePair3d pair = family.draw(random);
       const auto a = converted<Scalar>(pair.a), b = converted<Scalar>(pair.b);
       pair = {widened(a), widened(b)};
-      block.set(i, pair.a, pair.b);
+      block.set(i, a, b);
       const TriangleIntersection shared = intersect_triangles(pair.a, pair.b);
       hits |= std::uint64_t{shared.intersects} << i;
       segments |= std::uint64_t{shared.intersects && shared.kind == IntersectionKind::segment} << i;
@@ -143,13 +196,12 @@ void expect_true_verdicts(const PairFamily& family) {
     ASSERT_EQ(expected.apart & hits, 0u);
     ASSERT_EQ(expected.crossing & ~segments, 0u);
     for_each_target([&](const char* target) {
-      const PairVerdicts all = filter_pairs(block, Block::capacity);
+      const PairVerdicts all = block.verdicts(pair_filter_capacity);
       EXPECT_EQ(all.apart & finite, expected.apart & finite) << target;
       EXPECT_EQ(all.crossing, expected.crossing) << target;
       for (const std::size_t count : {std::size_t{0}, std::size_t{1}, std::size_t{13}, std::size_t{63}}) {
         const std::uint64_t asked = (std::uint64_t{1} << count) - 1;
-        EXPECT_EQ(filter_pairs(block, count), (PairVerdicts{all.apart & asked, all.crossing & asked}))
-            << target;
+        EXPECT_EQ(block.verdicts(count), (PairVerdicts{all.apart & asked, all.crossing & asked})) << target;
       }
     });
   }
@@ -163,17 +215,58 @@ TEST_P(PairFilterTest, NeverWrongInSinglePrecision) {
   expect_true_verdicts<float>(GetParam());
 }
 
+/// Objects whose positions are of different precisions and translated: filtered as doubles, where they are.
+template <class ScalarA, class ScalarB>
+void expect_verdicts_where_they_are() {
+  Random random(34);
+  for (const PairFamily& family : pair_families()) {
+    const Vec3d shift_a{0.375, -1e-3, 7}, shift_b{0.1, 0.2, 7.25};
+    PairList<ScalarA, ScalarB> block(pair_filter_capacity);
+    PairVerdicts expected;
+    std::uint64_t finite = 0;
+    for (std::size_t i = 0; i < pair_filter_capacity; ++i) {
+      const TrianglePair3d pair = family.draw(random);
+      const auto a = converted<ScalarA>(pair.a);
+      const auto b = converted<ScalarB>(pair.b);
+      block.set(i, a, b);
+      TrianglePoints placed_a = widened(a), placed_b = widened(b);
+      bool all_finite = true;
+      for (std::size_t k = 0; k < 3; ++k) {
+        placed_a[k] = placed_a[k] + shift_a;
+        placed_b[k] = placed_b[k] + shift_b;
+        all_finite = all_finite && is_finite(placed_a[k]) && is_finite(placed_b[k]);
+      }
+      const ScalarTwin<double> twin(placed_a, placed_b);
+      finite |= std::uint64_t{all_finite} << i;
+      expected.apart |= std::uint64_t{twin.apart} << i;
+      expected.crossing |= std::uint64_t{twin.crossing} << i;
+    }
+    for_each_target([&](const char* target) {
+      const PairVerdicts all = block.verdicts(pair_filter_capacity, shift_a, shift_b);
+      EXPECT_EQ(all.apart & finite, expected.apart & finite) << target << ' ' << family.name;
+      EXPECT_EQ(all.crossing, expected.crossing) << target << ' ' << family.name;
+    });
+  }
+}
+
+TEST(PairFilterPlaces, TranslatedObjectsOfEitherPrecision) {
+  expect_verdicts_where_they_are<float, float>();
+  expect_verdicts_where_they_are<float, double>();
+  expect_verdicts_where_they_are<double, float>();
+  expect_verdicts_where_they_are<double, double>();
+}
+
 TEST(PairFilterRate, MostSeparatedPairsAreRejected) {
   Random random(32);
-  TrianglePairBlock<double> block;
   int rejected = 0;
   for (int round = 0; round < 20; ++round) {
-    for (std::size_t i = 0; i < block.capacity; ++i) {
+    PairList<double> block(pair_filter_capacity);
+    for (std::size_t i = 0; i < pair_filter_capacity; ++i) {
       TrianglePair3d pair = pair_families()[0].draw(random);
       for (std::size_t k = 0; k < 3; ++k) pair.b[k] = pair.a[k] * 0.99 + Vec3d{0.5, 0.3, 0.2};
       block.set(i, pair.a, pair.b);
     }
-    rejected += std::popcount(filter_pairs(block, block.capacity).apart);
+    rejected += std::popcount(block.verdicts(pair_filter_capacity).apart);
   }
   EXPECT_GT(rejected, 1200);
 }
@@ -181,14 +274,14 @@ TEST(PairFilterRate, MostSeparatedPairsAreRejected) {
 template <class Scalar>
 int undecided_in_general_position() {
   Random random(33);
-  TrianglePairBlock<Scalar> block;
   int undecided = 0;
   for (int round = 0; round < 20; ++round) {
-    for (std::size_t i = 0; i < block.capacity; ++i) {
+    PairList<Scalar> block(pair_filter_capacity);
+    for (std::size_t i = 0; i < pair_filter_capacity; ++i) {
       const TrianglePair3d pair = pair_families()[0].draw(random);
-      block.set(i, pair.a, pair.b);
+      block.set(i, converted<Scalar>(pair.a), converted<Scalar>(pair.b));
     }
-    const PairVerdicts verdicts = filter_pairs(block, block.capacity);
+    const PairVerdicts verdicts = block.verdicts(pair_filter_capacity);
     undecided += std::popcount(~(verdicts.apart | verdicts.crossing));
   }
   return undecided;

@@ -52,7 +52,11 @@ void expect_as_new(const World& world, const DetectResult& result, const SceneOp
   for (std::size_t i = 0; i < result.contacts.size(); ++i) {
     const Contact &found = result.contacts[i], &truth = expected.contacts[i];
     EXPECT_EQ(found.object_a.index, truth.object_a.index);
+    EXPECT_EQ(found.object_b.index, truth.object_b.index);
     EXPECT_EQ(found.triangle_a, truth.triangle_a);
+    EXPECT_EQ(found.triangle_b, truth.triangle_b);
+    EXPECT_EQ(found.kind, truth.kind);
+    EXPECT_EQ(found.point_count, truth.point_count);
     EXPECT_EQ(found.triangle_b, truth.triangle_b);
     EXPECT_EQ(found.first_point, truth.first_point);
   }
