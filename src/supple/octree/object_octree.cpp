@@ -188,7 +188,9 @@ void ObjectOctree::refresh_subtree(std::uint32_t subtree, const TriangleArrays& 
     state.store(is_fresh, std::memory_order_release);
     return;
   }
+#if !defined(SUPPLE_SERIAL)
   while (state.load(std::memory_order_acquire) != is_fresh) std::this_thread::yield();
+#endif
 }
 
 /// What a subtree is refitted from lies in two or three places in memory, long out of the cache.
