@@ -3,14 +3,18 @@
 # scalar, SSE4, AVX2 and AVX-512 on this machine, NEON under qemu, WebAssembly under node. All must give the results of
 # tests/support/golden_scenes.hpp. What this machine lacks a compiler for is skipped, and said to be;
 # tools/install_dependencies.sh --instruction-sets installs all on Debian 12.
+#
+#   tools/check_instruction_sets.sh [x86_64] [aarch64] [wasm32]    all when none is named
 set -euo pipefail
 cd "$(dirname "$0")/.."
 jobs=${JOBS:-$(nproc)}
+chosen=" ${*:-x86_64 aarch64 wasm32} "
 
 # check MACHINE "TOOLS" "SETS" "RUNNER" CMAKE-OPTION...
 check() {
   local machine=$1 tools=$2 sets=$3 runner=$4 folder=build/instruction_sets/$1 tool set status
   shift 4
+  [[ $chosen == *" $machine "* ]] || return 0
   for tool in $tools; do
     command -v "$tool" >/dev/null || { echo "$machine: skipped, for there is no $tool"; return; }
   done

@@ -22,8 +22,6 @@ void __stack_chk_fail();
 void __stack_chk_fail() {
   std::abort();
 }
-void* __cxa_allocate_exception(std::size_t);
-void __cxa_throw(void*, void*, void (*)(void*));
 void* __cxa_allocate_exception(std::size_t) {
   std::abort();
 }
