@@ -221,11 +221,15 @@ def growth_points(judge):
 
 
 def judge_refit(judge, cell):
+    """Against an ideal that writes as many boxes of leaves, so that a shallower tree cannot buy the ratio, and one of
+    four triangles a box."""
     own = next((c for c in judge.cells[cell]["contestants"] if c["name"] == "Supple"), None)
-    ideal = judge.median(cell, "ideal, 4 per slot")
-    if own and ideal:
-        alone = own["mean_stage_ms"]["refit alone"] / statistics.mean(own["cpu_ms"]) * statistics.median(own["cpu_ms"])
-        judge.add("refit alone, per triangle", cell, "ideal refit", alone / ideal, 2, 1.3, True)
+    for row, ideal in (("refit alone, leaves as wide", "ideal, leaves as wide"),
+                       ("refit alone, 4 triangles a box", "ideal, 4 per slot")):
+        limit = judge.median(cell, ideal)
+        if own and limit:
+            alone = own["mean_stage_ms"]["refit alone"] / statistics.mean(own["cpu_ms"]) * statistics.median(own["cpu_ms"])
+            judge.add(row, cell, ideal, alone / limit, 2, 1.3, True)
 
 
 def judged(cells):

@@ -16,7 +16,7 @@ std::string name_of(Feature feature) {
   return fmt::format("{}{}", feature.kind == FeatureKind::vertex ? 'v' : 'e', feature.index);
 }
 
-std::string name_of(IntersectionKind kind) {
+const char* name_of(IntersectionKind kind) {
   return kind == IntersectionKind::point     ? "point"
          : kind == IntersectionKind::segment ? "segment"
                                              : "polygon";

@@ -29,6 +29,8 @@ class JsonWriter {
   void value(double number);
   void value(bool truth) { writer_.Bool(truth); }
   void value(const std::string& text);
+  /// In ASCII, as names that the program gives are.
+  void value(const char* text) { writer_.String(text); }
   void value(Vec3d point);
   void null() { writer_.Null(); }
   /// Two numbers, `[a,b]`.

@@ -5,6 +5,16 @@ target_compile_options(supple_compile_options INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Wnon-virtual-dtor
   # One result on every machine: no multiply-add that the source does not spell out.
   -ffp-contract=off)
+if(NOT CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
+  # Kernels keep vectors in structures, which SVE's and RVV's cannot be in. Highway 1.0 has no vectors of doubles for
+  # WebAssembly: there its portable ones are taken, which the compiler turns into the same instructions.
+  target_compile_definitions(supple_compile_options INTERFACE
+    "HWY_DISABLED_TARGETS=(HWY_SVE|HWY_SVE2|HWY_SVE_256|HWY_SVE2_128|HWY_RVV|HWY_WASM|HWY_WASM_EMU256)")
+  if(CMAKE_SYSTEM_PROCESSOR MATCHES "aarch64|arm64")
+    # All of these have NEON: nothing is left to be chosen at run time, which this name switches off.
+    target_compile_definitions(supple_compile_options INTERFACE TOOLCHAIN_MISS_SYS_AUXV_H)
+  endif()
+endif()
 if(SUPPLE_WARNINGS_AS_ERRORS)
   target_compile_options(supple_compile_options INTERFACE -Werror)
 endif()

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Installs the Debian 12 packages that a build, the tests and the demo need; with --ci also those of the checks,
-# clang and the sanitizers, with --bench the libraries that benchmarks compare with. Does nothing, quickly, when all
-# are there.
+# clang and the sanitizers, with --bench the libraries that benchmarks compare with, with --instruction-sets the compilers
+# and emulators of tools/check_instruction_sets.sh. Does nothing, quickly, when all are there.
 set -euo pipefail
 
 packages=(
@@ -17,6 +17,10 @@ if [ "${1:-}" = "--ci" ]; then
 fi
 if [ "${1:-}" = "--bench" ]; then
   packages+=(git pkg-config libembree-dev libcgal-dev libfcl-dev libbullet-dev libode-dev)
+fi
+
+if [ "${1:-}" = "--instruction-sets" ]; then
+  packages+=(g++-aarch64-linux-gnu qemu-user clang-19 lld-19 wasi-libc libc++-19-dev-wasm32 libclang-rt-19-dev-wasm32 nodejs)
 fi
 
 if ! command -v dpkg-query >/dev/null; then

@@ -1,5 +1,7 @@
 #include <malloc.h>
 
+#include <cmath>
+
 #include "contest/cells.hpp"
 #include "contest/limits.hpp"
 #include "supple/scene.hpp"
@@ -20,6 +22,13 @@ class Ideal : public Contestant<DeformingCopies> {
   std::size_t per_slot_;
   std::unique_ptr<IdealRefit> refit_;
 };
+
+/// Triangles in a leaf of Supple's octree, so that the ideal does not write more boxes than Supple does.
+std::size_t leaf_width(const DeformingCopies& copies) {
+  Scene scene;
+  const ObjectId object = scene.add(PositionsView<float>(copies.positions(0)), copies.triangles());
+  return static_cast<std::size_t>(std::lround(scene.octree_statistics(object).mean_leaf_size));
+}
 
 double heap_bytes() {
   const auto info = mallinfo2();
@@ -49,9 +58,12 @@ void run_refit(const Choice& choice, const std::string& triangles, Output& outpu
   turns.add("Supple", 1, make_supple_copies(1), *mesh);
   turns.add("ideal, 1 per slot", 1, std::make_unique<Ideal>(1), *mesh);
   turns.add("ideal, 4 per slot", 1, std::make_unique<Ideal>(4), *mesh);
+  const std::size_t width = leaf_width(*mesh);
+  turns.add("ideal, leaves as wide", 1, std::make_unique<Ideal>(width), *mesh);
   turns.run(
       choice, *mesh, [&] { mesh->advance(); }, [](const auto&, const auto&, const auto&) {});
   output.value("triangles", static_cast<double>(mesh->triangle_count()));
+  output.value("triangles a leaf", static_cast<double>(width));
   output.records(turns.records());
 }
 

@@ -6,6 +6,7 @@
 #include <atomic>
 #include <numeric>
 #include <thread>
+#include <type_traits>
 
 #include "contest/contestant.hpp"
 
@@ -146,8 +147,8 @@ void IdealRefit::write_node(const Corners (&boxes)[8], Node& node, Bounds& aroun
   hn::Store(all.high, d, around.high);
 }
 
-template <std::size_t per_slot>
-void IdealRefit::run_lowest() {
+template <class Count>
+void IdealRefit::run_lowest(Count per_slot) {
   const hn::Full128<float> d;
   const std::uint32_t* index = indices_.data();
   for (std::size_t i = 0; i < levels_.front().size(); ++i) {
@@ -180,9 +181,11 @@ void IdealRefit::run_level(std::size_t level) {
 
 void IdealRefit::run() {
   if (per_slot_ == 1)
-    run_lowest<1>();
+    run_lowest(std::integral_constant<std::size_t, 1>());
+  else if (per_slot_ == 4)
+    run_lowest(std::integral_constant<std::size_t, 4>());
   else
-    run_lowest<4>();
+    run_lowest(per_slot_);
   for (std::size_t level = 1; level < levels_.size(); ++level) run_level(level);
 }
 

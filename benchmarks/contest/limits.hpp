@@ -15,7 +15,7 @@ double read_bandwidth(std::size_t bytes, unsigned threads);
 /// out, nothing else done. Triangles lie along a Morton curve with vertices numbered by first use.
 class IdealRefit {
  public:
-  /// `per_slot` triangles, 1 or 4, in each of the eight boxes of a node of the lowest level.
+  /// `per_slot` triangles, at least 1, in each of the eight boxes of a node of the lowest level.
   IdealRefit(const TriangleMesh& mesh, std::size_t per_slot);
   void run();
   std::size_t triangles() const { return indices_.size() / 3; }
@@ -31,8 +31,9 @@ class IdealRefit {
   };
   struct Corners;
   static void write_node(const Corners (&boxes)[8], Node& node, Bounds& around);
-  template <std::size_t per_slot>
-  void run_lowest();
+  /// `per_slot_`, known when compiling where it is small.
+  template <class Count>
+  void run_lowest(Count per_slot);
   void run_level(std::size_t level);
 
   std::size_t per_slot_;

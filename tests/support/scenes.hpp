@@ -34,6 +34,17 @@ inline std::uint64_t hash_of(const DetectResult& result, std::uint64_t hash = 0x
     add(point.on_a);
     add(point.on_b);
   }
+  for (const ContinuousContact& contact : result.continuous_contacts) {
+    add(contact.object_a.index);
+    add(contact.object_b.index);
+    add(contact.kind);
+    for (const auto& element : {contact.element_a, contact.element_b}) add(element);
+    add(contact.certainty);
+    add(contact.time);
+    for (const auto& weights : {contact.weights_a, contact.weights_b}) add(weights);
+    add(contact.point);
+    add(contact.normal);
+  }
   for (const std::uint32_t vertex : result.colliding_vertices) add(vertex);
   for (const auto& pairs :
        {result.volume_events.begin, result.volume_events.end, result.contact_events.begin}) {

@@ -2,21 +2,11 @@
 
 #include <vector>
 
-#include "support/hard_scenes.hpp"
+#include "support/golden_scenes.hpp"
 #include "support/instruction_sets.hpp"
-#include "support/scenes.hpp"
 
 namespace supple {
 namespace {
-
-Scene scene_of(const std::vector<TriangleMesh>& meshes, const SceneOptions& options,
-               std::uint32_t arity = 8) {
-  Scene scene(options);
-  for (const TriangleMesh& mesh : meshes) {
-    scene.add(mesh, {.self_collision = true, .octree = {.leaf_size = 3, .arity = arity}});
-  }
-  return scene;
-}
 
 class SceneProperties : public testing::TestWithParam<Family> {};
 
@@ -67,21 +57,10 @@ TEST_P(SceneProperties, TreesOfAnyArityGiveTheSameContacts) {
   }
 }
 
-std::uint64_t hash_of_all_families(std::uint32_t threads) {
-  std::uint64_t hash = 0xcbf29ce484222325u;
-  for (const Family& family : hard_families()) {
-    Scene scene = scene_of(family.make(3), {.colliding_vertices = true, .threads = threads});
-    hash = hash_of(scene.detect(), hash);
-  }
-  return hash;
-}
-
-/// The families' results, bit for bit, on every compiler, build type, number of threads and instruction set.
-constexpr std::uint64_t golden_hash = 2342057126839866175u;
-
 TEST(SceneGoldenHash, IsTheSameForAnyNumberOfThreads) {
   for (std::uint32_t threads = 1; threads <= 8; ++threads) {
     EXPECT_EQ(hash_of_all_families(threads), golden_hash) << threads;
+    EXPECT_EQ(continuous_hash_of_all_families(threads), golden_continuous_hash) << threads;
   }
 }
 
@@ -89,6 +68,7 @@ TEST(SceneGoldenHash, IsTheSameForEveryInstructionSet) {
   int targets = 0;
   for_each_target([&](const char* target) {
     EXPECT_EQ(hash_of_all_families(1), golden_hash) << target;
+    EXPECT_EQ(continuous_hash_of_all_families(1), golden_continuous_hash) << target;
     ++targets;
   });
   EXPECT_GE(targets, 1);

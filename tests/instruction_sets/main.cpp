@@ -1,0 +1,62 @@
+// The results of the hard scenes, compared with those that are equal everywhere: for machines and instruction
+// sets that the unit tests do not run on. Prints one line; exits with 1 when they differ, and with 77 when
+// this machine does not have the instruction set.
+
+#include <hwy/targets.h>
+
+#include <cinttypes>
+#include <cstdio>
+#include <cstdlib>
+
+#include "support/golden_scenes.hpp"
+
+static_assert(HWY_TARGETS == SUPPLE_TARGET, "the options choose another instruction set, or several");
+
+#if defined(__wasm__)
+// Debian's C++ library for WebAssembly has no exceptions, and its C library not the stack guard that the
+// compiler's own functions ask for.
+extern "C" {
+extern std::uintptr_t __stack_chk_guard;
+std::uintptr_t __stack_chk_guard = 1;
+void __stack_chk_fail();
+void __stack_chk_fail() {
+  std::abort();
+}
+void* __cxa_allocate_exception(std::size_t) {
+  std::abort();
+}
+void __cxa_throw(void*, void*, void (*)(void*)) {
+  std::abort();
+}
+}
+#endif
+
+namespace {
+
+bool machine_has_it() {
+#if defined(__AVX512F__)
+  return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw");
+#elif defined(__AVX2__)
+  return __builtin_cpu_supports("avx2");
+#elif defined(__SSE4_2__)
+  return __builtin_cpu_supports("sse4.2");
+#else
+  return true;
+#endif
+}
+
+}  // namespace
+
+int main() {
+  const char* const name = hwy::TargetName(HWY_STATIC_TARGET);
+  if (!machine_has_it()) {
+    std::printf("%s: compiled, not run: this machine does not have it\n", name);
+    return 77;
+  }
+  const std::uint64_t contacts = supple::hash_of_all_families(1);
+  const std::uint64_t continuous = supple::continuous_hash_of_all_families(1);
+  const bool equal = contacts == supple::golden_hash && continuous == supple::golden_continuous_hash;
+  std::printf("%s: %" PRIu64 " %" PRIu64 " %s\n", name, contacts, continuous,
+              equal ? "as everywhere" : "DIFFERENT");
+  return equal ? 0 : 1;
+}

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "support/hard_scenes.hpp"
+#include "support/scenes.hpp"
+
+namespace supple {
+
+/// What all hard families give together, bit for bit, on every machine, compiler, build type, number of
+/// threads and instruction set: contacts of positions, and contacts on the way from one set of positions to
+/// another.
+constexpr std::uint64_t golden_hash = 2342057126839866175u;
+constexpr std::uint64_t golden_continuous_hash = 14350918484739907705u;
+
+inline Scene scene_of(const std::vector<TriangleMesh>& meshes, const SceneOptions& options,
+                      std::uint32_t arity = 8) {
+  Scene scene(options);
+  for (const TriangleMesh& mesh : meshes) {
+    scene.add(mesh, {.self_collision = true, .octree = {.leaf_size = 3, .arity = arity}});
+  }
+  return scene;
+}
+
+inline std::uint64_t hash_of_all_families(std::uint32_t threads) {
+  std::uint64_t hash = 0xcbf29ce484222325u;
+  for (const Family& family : hard_families()) {
+    Scene scene = scene_of(family.make(3), {.colliding_vertices = true, .threads = threads});
+    hash = hash_of(scene.detect(), hash);
+  }
+  return hash;
+}
+
+/// Of each object the first triangles only: nearly all of these pairs are left to exact arithmetic.
+inline std::uint64_t continuous_hash_of_all_families(std::uint32_t threads) {
+  std::uint64_t hash = 0xcbf29ce484222325u;
+  for (const Family& family : hard_families()) {
+    std::vector<TriangleMesh> from = family.make(6);
+    const std::vector<TriangleMesh> to = family.make(7);
+    for (TriangleMesh& mesh : from) mesh.triangles.resize(std::min(mesh.triangles.size(), std::size_t{12}));
+    SceneOptions options;
+    options.contacts = ContactMode::continuous;
+    options.threads = threads;
+    Scene scene = scene_of(from, options);
+    const std::vector<ObjectId> objects = scene.objects();
+    for (std::size_t i = 0; i < objects.size(); ++i) {
+      scene.set_motion(objects[i], from[i].positions, to[i].positions);
+    }
+    hash = hash_of(scene.detect(), hash);
+  }
+  return hash;
+}
+
+}  // namespace supple
