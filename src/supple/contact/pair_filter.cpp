@@ -164,8 +164,8 @@ HWY_INLINE std::uint64_t bits_of(hn::Mask<Tag> mask) {
 
 /// The corners of one triangle: the meaning of the vector version below.
 template <std::uint32_t TrianglePair::*side, class Tag, class Source>
-HWY_INLINE void read_corners(VertexArray<Source> vertices, const PlacedTriangles& source, const TrianglePair* pairs,
-                             Corners<Tag>& corners) {
+HWY_INLINE void read_corners(VertexArray<Source> vertices, const PlacedTriangles& source,
+                             const TrianglePair* pairs, Corners<Tag>& corners) {
   using Scalar = hn::TFromD<Tag>;
   const Vec3d& t = source.translation;
   for (int i = 0; i < 3; ++i) {
@@ -193,8 +193,7 @@ HWY_INLINE CornerBlocks<Tag> read_blocks(VertexArray<Source> vertices, const Tri
   constexpr std::size_t blocks = hn::MaxLanes(Tag()) * sizeof(hn::TFromD<Tag>) / 16;
   if constexpr (blocks == 1) {
     const Triangle& triangle = triangles[pairs->*side];
-    return {{read(vertices[triangle[0]]), read(vertices[triangle[1]]),
-             read(vertices[triangle[2]])}};
+    return {{read(vertices[triangle[0]]), read(vertices[triangle[1]]), read(vertices[triangle[2]])}};
   } else {
     using Half = hn::Half<Tag>;
     const Tag d;
@@ -209,9 +208,7 @@ HWY_INLINE CornerBlocks<Tag> read_blocks(VertexArray<Source> vertices, const Tri
 // Objects with inlined functions, which lambdas are not without optimisation.
 
 struct FourFloats {
-  HWY_INLINE auto operator()(const float* position) const {
-    return load_vertex(position);
-  }
+  HWY_INLINE auto operator()(const float* position) const { return load_vertex(position); }
 };
 /// As doubles, x and y.
 struct TwoDoubles {
@@ -250,8 +247,8 @@ HWY_INLINE void read_floats(VertexArray<float> vertices, const Triangle* triangl
 }
 
 template <std::uint32_t TrianglePair::*side, class Tag, class Source>
-HWY_INLINE void read_doubles(VertexArray<Source> vertices, const PlacedTriangles& source, const TrianglePair* pairs,
-                             Corners<Tag>& corners) {
+HWY_INLINE void read_doubles(VertexArray<Source> vertices, const PlacedTriangles& source,
+                             const TrianglePair* pairs, Corners<Tag>& corners) {
   const Tag d;
   const Triangle* const triangles = source.arrays.triangles;
   const TwoDoubles read_xy;
@@ -270,8 +267,8 @@ HWY_INLINE void read_doubles(VertexArray<Source> vertices, const PlacedTriangles
 }
 
 template <std::uint32_t TrianglePair::*side, class Tag, class Source>
-HWY_INLINE void read_corners(VertexArray<Source> vertices, const PlacedTriangles& source, const TrianglePair* pairs,
-                             Corners<Tag>& corners) {
+HWY_INLINE void read_corners(VertexArray<Source> vertices, const PlacedTriangles& source,
+                             const TrianglePair* pairs, Corners<Tag>& corners) {
   if constexpr (std::is_same_v<hn::TFromD<Tag>, float>) {
     read_floats<side, Tag>(vertices, source.arrays.triangles, pairs, corners);
   } else {
@@ -303,8 +300,9 @@ HWY_INLINE void decide(const Corners<Tag>& a, const Corners<Tag>& b, std::size_t
 }
 
 template <class Scalar, class SourceA, class SourceB>
-HWY_INLINE PairVerdicts filter(VertexArray<SourceA> vertices_a, VertexArray<SourceB> vertices_b, const PlacedTriangles& a,
-                               const PlacedTriangles& b, const TrianglePair* pairs, std::size_t count) {
+HWY_INLINE PairVerdicts filter(VertexArray<SourceA> vertices_a, VertexArray<SourceB> vertices_b,
+                               const PlacedTriangles& a, const PlacedTriangles& b, const TrianglePair* pairs,
+                               std::size_t count) {
   using Tag = hn::CappedTag<Scalar, 16>;
   const std::size_t lanes = hn::Lanes(Tag());
   PairVerdicts verdicts;

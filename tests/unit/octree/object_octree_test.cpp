@@ -257,7 +257,7 @@ TEST(ObjectOctree, ValidateFindsAStaleBox) {
   Soup soup = scattered_soup(100, 1, {}, 10);
   Built built(soup);
   EXPECT_EQ(built.refit(soup), "");
-  soup.positions[17].x += 0.5;
+  soup.positions[17].x += 5;  // out of any leaf
   built.vertices.assign(PositionsView<double>(soup.positions), built.octree.vertex_order(), Parallel(1));
   EXPECT_NE(built.octree.validate(built.vertices, {}), "");
 }
