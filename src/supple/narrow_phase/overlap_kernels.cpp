@@ -2,7 +2,6 @@
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "narrow_phase/overlap_kernels.cpp"
-#include <hwy/cache_control.h>
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
@@ -341,38 +340,7 @@ class LeafTests {
   }
   std::uint64_t box_tests() const { return tests_; }
 
-  /// Fetches into the cache, for a pair to be tested soon, where its leaves' vertices are told; and sooner,
-  /// these vertices.
-  HWY_INLINE void fetch_lists(const LeafPair& leaves) const {
-    if (!is_cached(cache_.a(), leaves.begin_a)) fetch_lists(a_, leaves.lane_a, leaves.begin_a);
-    if (!is_cached(cache_.b(), leaves.begin_b)) fetch_lists(b_, leaves.lane_b, leaves.begin_b);
-  }
-  HWY_INLINE void fetch_vertices(const LeafPair& leaves) const {
-    if (!is_cached(cache_.a(), leaves.begin_a)) fetch_vertices(a_, leaves.lane_a);
-    if (!is_cached(cache_.b(), leaves.begin_b)) fetch_vertices(b_, leaves.lane_b);
-  }
-
  private:
-  static HWY_INLINE bool is_cached(const LeafBoxCache::Side& side, std::uint32_t first) {
-    return side.first_triangles[place_of(first)] == first;
-  }
-  static HWY_INLINE void fetch_lists(const LeafArrays& object, std::uint32_t lane, std::uint32_t begin) {
-    const LeafVertexArrays& leaves = object.vertices;
-    for (std::size_t corner = 0; corner < 3; ++corner) {
-      hwy::Prefetch(leaves.corners + corner * leaves.stride + begin);
-    }
-    hwy::Prefetch(leaves.vertices + leaves.first[lane]);
-  }
-  static HWY_INLINE void fetch_vertices(const LeafArrays& object, std::uint32_t lane) {
-    const std::uint32_t begin = object.vertices.first[lane];
-    const std::uint32_t end = std::min(object.vertices.first[lane + 1], begin + leaf_block);
-    const auto fetch = [&](auto positions) HWY_ATTR {
-      for (std::uint32_t i = begin; i < end; i += 2) hwy::Prefetch(positions[object.vertices.vertices[i]]);
-    };
-    object.triangles.doubles.data != nullptr ? fetch(object.triangles.doubles)
-                                             : fetch(object.triangles.floats);
-  }
-
   static HWY_INLINE Aabb leaf_box(const LeafArrays& object, std::uint32_t lane) {
     return lane_box(object.boxes[lane / node_width], static_cast<int>(lane % node_width));
   }
@@ -458,13 +426,8 @@ class LeafTests {
 std::uint64_t TriangleBoxPairs(const LeafPair* leaf_pairs, std::size_t count, const LeafArrays& a,
                                const LeafArrays& b, const RelativePlacement& placement, bool same_object,
                                LeafBoxCache& cache, TrianglePairList& pairs) {
-  constexpr std::size_t lists_ahead = 6, vertices_ahead = 3;
   LeafTests tests(a, b, placement, same_object, cache, pairs);
-  for (std::size_t k = 0; k < count; ++k) {
-    if (k + lists_ahead < count) tests.fetch_lists(leaf_pairs[k + lists_ahead]);
-    if (k + vertices_ahead < count) tests.fetch_vertices(leaf_pairs[k + vertices_ahead]);
-    tests.test(leaf_pairs[k]);
-  }
+  for (std::size_t k = 0; k < count; ++k) tests.test(leaf_pairs[k]);
   return tests.box_tests();
 }
 

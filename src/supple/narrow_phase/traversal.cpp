@@ -19,33 +19,38 @@ void test_lanes(const ObjectPairView& pair, std::span<const NodePair> node_pairs
   }
 }
 
+/// Bit i to the bits of byte i.
+std::uint64_t spread_to_bytes(std::uint32_t bits) {
+  const std::uint64_t copies = bits * 0x0101010101010101u;
+  const std::uint64_t ones = copies & 0x8040201008040201u;  // one bit of each byte
+  return ((ones + 0x7f7f7f7f7f7f7f7fu) >> 7 & 0x0101010101010101u) * 0xffu;
+}
+
 /// Calls `visit(i, j)` for each pair of lanes that overlap and are asked for; of a node with itself only
-/// those with i <= j.
+/// those with i <= j. In one loop over all of them: a loop for each i would end unforeseen each time.
 template <class Visit>
 void for_each_lane_pair(const ObjectPairView& pair, NodePair node_pair, std::uint64_t mask, Visit&& visit) {
   const OctreeNode& node_a = pair.a.nodes[node_pair.a];
   const OctreeNode& node_b = pair.b.nodes[node_pair.b];
-  const std::uint32_t wanted_b = node_pair.lanes_b & node_b.lane_mask();
-  const bool same_node = pair.same_object && node_pair.a == node_pair.b;
-  const std::uint32_t unfolded = same_node && pair.a.unfolded != nullptr ? pair.a.unfolded[node_pair.a] : 0;
-  for (std::uint32_t rest = node_pair.lanes_a & node_a.lane_mask(); rest != 0; rest &= rest - 1) {
-    const int i = std::countr_zero(rest);
-    std::uint32_t hits = static_cast<std::uint32_t>(mask >> (8 * i)) & wanted_b;
-    if (same_node) hits &= ~0u << i & ~(unfolded & 1u << i);
-    for (; hits != 0; hits &= hits - 1) visit(i, std::countr_zero(hits));
+  mask &= spread_to_bytes(node_pair.lanes_a & node_a.lane_mask());
+  mask &= (node_pair.lanes_b & node_b.lane_mask()) * 0x0101010101010101u;
+  if (pair.same_object && node_pair.a == node_pair.b) {
+    constexpr std::uint64_t upper_half = 0x80c0e0f0f8fcfeffu;
+    mask &= upper_half;
+    const std::uint32_t unfolded = pair.a.unfolded != nullptr ? pair.a.unfolded[node_pair.a] : 0;
+    for (std::uint32_t rest = unfolded; rest != 0; rest &= rest - 1) {
+      mask &= ~(std::uint64_t{1} << 9 * std::countr_zero(rest));
+    }
+  }
+  for (; mask != 0; mask &= mask - 1) {
+    const int place = std::countr_zero(mask);
+    visit(place >> 3, place & 7);
   }
 }
 
 /// Whether the descent goes on below the lane.
 bool goes_on(const ObjectPairView& pair, const OctreeNode& node, int lane) {
   return pair.is_moving() ? !is_moving_leaf(node, lane) : node.is_inner(lane);
-}
-
-/// Of eight bits; the instruction is not among those that every machine has.
-std::uint32_t bit_count(std::uint32_t bits) {
-  bits -= bits >> 1 & 0x55u;
-  bits = (bits & 0x33u) + (bits >> 2 & 0x33u);
-  return (bits + (bits >> 4)) & 0x0fu;
 }
 
 std::uint32_t lane_number(std::uint32_t node, int lane) {

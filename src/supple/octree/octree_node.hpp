@@ -1,12 +1,18 @@
 #pragma once
 
-#include <bit>
 #include <cstdint>
 
 namespace supple {
 
 /// Lanes of a node: the eight octants, those without triangles left out.
 constexpr int node_width = 8;
+
+/// Of the low eight bits. `std::popcount` is a call where not every machine has the instruction.
+constexpr std::uint32_t bit_count(std::uint32_t bits) {
+  bits -= bits >> 1 & 0x55u;
+  bits = (bits & 0x33u) + (bits >> 2 & 0x33u);
+  return (bits + (bits >> 4)) & 0x0fu;
+}
 
 /// Boxes of the lanes of a node, one array an axis and side: a box against eight is six vector comparisons.
 /// Unused lanes hold inverted boxes. Rounded outward.
@@ -32,9 +38,7 @@ struct OctreeNode {
   std::uint8_t level;  ///< the root is 0; its lanes are at level 1
 
   bool is_inner(int lane) const { return (inner_mask >> lane & 1) != 0; }
-  std::uint32_t child(int lane) const {
-    return first_child + static_cast<std::uint32_t>(std::popcount(inner_mask & ((1u << lane) - 1)));
-  }
+  std::uint32_t child(int lane) const { return first_child + bit_count(inner_mask & ((1u << lane) - 1)); }
   /// Triangles of the lane, and of the whole node.
   std::uint32_t size(int lane) const { return first_triangle[lane + 1] - first_triangle[lane]; }
   std::uint32_t size() const { return first_triangle[node_width] - first_triangle[0]; }
