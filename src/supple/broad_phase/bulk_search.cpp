@@ -11,6 +11,8 @@ namespace {
 /// Boxes of a block fit into the second-level cache twice.
 constexpr std::size_t kBlockSize = 4096;
 constexpr std::uint32_t kMostBlocks = 1024;
+/// With a pair among so many tests branches on whether there are any are mispredicted too often.
+constexpr std::uint64_t kTestsPerPair = 48;
 
 std::uint32_t divisions_of(double width, double cell, double most) {
   return static_cast<std::uint32_t>(std::clamp(width / cell, 1.0, most));
@@ -19,24 +21,28 @@ std::uint32_t divisions_of(double width, double cell, double most) {
 }  // namespace
 
 void BulkSearch::find(std::span<const Aabb> boxes, std::span<const BoundingSphere> spheres,
-                      const Parallel& parallel, std::span<PairBins> found) {
+                      const Parallel& parallel, std::size_t last_pair_count, std::span<PairBins> found) {
   boxes_.exact = boxes;
   boxes_.spheres = spheres;
   planner_.choose(boxes, plan_);
   divide();
   measure(boxes, parallel);
   deal(parallel);
+  // As it was in the step before; a wrong guess costs little.
+  boxes_.is_dense = kTestsPerPair * last_pair_count >= tests();
   workers_.resize(parallel.worker_count());
   for (std::size_t i = 0; i < workers_.size(); ++i) {
     workers_[i].pairs = &found[i];
     workers_[i].tests = 0;
   }
-  parallel.for_ranges(block_begins_.size() - 1, 1,
-                      [&](std::size_t first, std::size_t last, std::uint32_t worker) {
-                        for (std::size_t block = first; block < last; ++block)
-                          search_rows(boxes_, level_of(block), block_begins_[block], block_begins_[block + 1],
-                                      workers_[worker]);
-                      });
+  constexpr std::size_t kGrain = 512;
+  parallel.for_ranges(box_count(), kGrain, [&](std::size_t begin, std::size_t end, std::uint32_t worker) {
+    for (std::size_t level = 0; level < boxes_.levels.size(); ++level) {
+      const std::size_t first = std::max<std::size_t>(begin, block_begins_[measure_.first_block[level]]);
+      const std::size_t last = std::min<std::size_t>(end, block_begins_[measure_.first_block[level + 1]]);
+      if (first < last) search_rows(boxes_, level, first, last, workers_[worker]);
+    }
+  });
 }
 
 std::uint64_t BulkSearch::tests() const {
@@ -163,14 +169,17 @@ void BulkSearch::order_block(std::size_t block) {
                                           block_begins_[block + 1] - block_begins_[block]);
   std::fill(next + std::size_t{first_row} * rows.divisions[0],
             next + std::size_t{last_row} * rows.divisions[0], 0);
-  for (const MeasuredBox& box : here) ++next[cell_of(box)];
+  // Where the blocks of the boxes were, which are dealt by now.
+  std::uint32_t* const cells = blocks_.data() + block_begins_[block];
+  for (std::size_t i = 0; i < here.size(); ++i) ++next[cells[i] = cell_of(here[i])];
   std::uint32_t begin = block_begins_[block];
   for (std::size_t cell = std::size_t{first_row} * rows.divisions[0];
        cell < std::size_t{last_row} * rows.divisions[0]; ++cell)
     begin += std::exchange(next[cell], begin);
   const auto& [first, second, third] = measure_.axes;
-  for (const MeasuredBox& box : here) {
-    const std::uint32_t place = next[cell_of(box)]++;
+  for (std::size_t i = 0; i < here.size(); ++i) {
+    const MeasuredBox& box = here[i];
+    const std::uint32_t place = next[cells[i]]++;
     boxes_.ends[0][place] = box.ends[first];
     boxes_.ends[1][place] = box.ends[second];
     boxes_.ends[2][place] = box.ends[third];

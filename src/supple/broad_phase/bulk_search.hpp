@@ -16,9 +16,9 @@ namespace supple {
 class BulkSearch {
  public:
   /// Adds the pairs to `found`, which has bins for each worker. Of balls, if there are some, these are the
-  /// boxes, and only pairs of balls that overlap are added.
+  /// boxes, and only pairs of balls that overlap are added. `last_pair_count` pairs came of the call before.
   void find(std::span<const Aabb> boxes, std::span<const BoundingSphere> spheres, const Parallel& parallel,
-            std::span<PairBins> found);
+            std::size_t last_pair_count, std::span<PairBins> found);
   std::uint64_t tests() const;
   std::size_t box_count() const { return block_begins_.back(); }  ///< that were not empty
 

@@ -97,7 +97,7 @@ void OctreeBroadPhase::search_regions(const ObjectVolumes& volumes, const Parall
 void OctreeBroadPhase::search_in_bulk(const ObjectVolumes& volumes, const Parallel& parallel) {
   has_regions_ = false;
   tree_.set_volumes(volumes);
-  bulk_.find(tree_.boxes(), tree_.spheres(), parallel,
+  bulk_.find(tree_.boxes(), tree_.spheres(), parallel, pairs_.size(),
              sorter_.start(parallel.worker_count(), tree_.slot_count()));
   sorter_.finish(false, parallel, pairs_);
   live_ = stats_.objects_paired = bulk_.box_count();

@@ -103,6 +103,7 @@ void PairSorter::sort_bin(std::size_t bin, bool may_repeat, Runs& runs, std::spa
     runs.a.resize(sorted.size() + sorted.size() / 2 + kMaxLanes);
     runs.b.resize(runs.a.size());
   }
+  runs.marks.resize(slot_count_ / 64 + 1, 0);
   std::uint32_t* const run_a = runs.a.data();
   std::uint32_t* const run_b = runs.b.data();
   for_each_pair([&](std::uint32_t a, std::uint32_t b) {
@@ -110,7 +111,7 @@ void PairSorter::sort_bin(std::size_t bin, bool may_repeat, Runs& runs, std::spa
     run_a[place] = a;
     run_b[place] = b;
   });
-  sort_runs({run_a, sorted.size()}, {run_b, sorted.size()}, end, first_slot, may_repeat, sorted);
+  sort_runs({run_a, sorted.size()}, {run_b, sorted.size()}, end, first_slot, may_repeat, runs.marks, sorted);
 }
 
 void keep_overlapping_spheres(std::span<const BoundingSphere> spheres, std::size_t first, PairBuffer& pairs) {

@@ -62,6 +62,7 @@ class PairSorter {
   struct Runs {
     std::vector<std::uint32_t> end;  // per slot of a bin
     std::vector<std::uint32_t> a, b;
+    std::vector<std::uint64_t> marks;  // bit per slot, all 0 between bins
   };
   void sort_bin(std::size_t bin, bool may_repeat, Runs& runs, std::span<IndexPair> sorted) const;
 

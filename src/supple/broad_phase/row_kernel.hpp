@@ -38,6 +38,7 @@ struct DealtBoxes {
   std::array<std::vector<std::uint32_t>, 3> ends;
   std::vector<std::uint32_t> slots;
   std::vector<std::uint32_t> cell_begins;     ///< per cell and one more
+  bool is_dense = false;                      ///< a vector of lanes holds a pair more often than not
   std::vector<BoxRows> levels;                ///< from the smallest boxes to the largest
   std::span<const Aabb> exact;                ///< per slot
   std::span<const BoundingSphere> spheres{};  ///< per slot; where there are some, these decide

@@ -14,19 +14,28 @@ constexpr std::size_t kMostLevels = 4;
 constexpr double kRowCost = 6;     // one more row that a box is held against
 constexpr double kVectorCost = 3;  // 16 boxes that it is held against
 constexpr double kLanes = 16;
+constexpr double kFewVectors = 8;
 
 }  // namespace
 
 void SearchPlanner::choose(std::span<const Aabb> boxes, SearchPlan& plan) {
   sample(boxes);
   bound(plan);
+  measure_extents();
+  choose_axes(plan);
+  plan.levels.clear();
+  if (suits_one_row(plan)) {
+    add_row(plan);
+    return;
+  }
   measure_sizes();
   choose_levels(plan);
+  add_row(plan);
 }
 
 /// Every k-th box, without those that are empty or have no finite centre.
 void SearchPlanner::sample(std::span<const Aabb> boxes) {
-  const std::size_t wanted = std::min<std::size_t>(128 + boxes.size() / 128, 1024);
+  const std::size_t wanted = std::min<std::size_t>(64 + boxes.size() / 64, 1024);
   const std::size_t stride = boxes.size() / wanted + 1;
   sampled_.clear();
   for (std::size_t i = stride / 2; i < boxes.size(); i += stride) {
@@ -65,7 +74,7 @@ void SearchPlanner::bound(SearchPlan& plan) {
   }
 }
 
-void SearchPlanner::measure_sizes() {
+void SearchPlanner::measure_extents() {
   double largest_mean = 0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     double sum = 0;
@@ -74,6 +83,33 @@ void SearchPlanner::measure_sizes() {
     largest_mean = std::max(largest_mean, mean_extent_[axis]);
   }
   for (double& mean : mean_extent_) mean = std::max({mean, 1e-3 * largest_mean, 1e-30});
+}
+
+/// The sweep is along the axis on which boxes are spread widest, in mean extents.
+void SearchPlanner::choose_axes(SearchPlan& plan) {
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    width_[axis] = std::max(plan.high[axis] - plan.low[axis], mean_extent_[axis]) / mean_extent_[axis];
+  std::sort(plan.axes.begin(), plan.axes.end(), [&](std::size_t a, std::size_t b) {
+    return width_[a] != width_[b] ? width_[a] > width_[b] : a < b;
+  });
+}
+
+/// When a box meets few vectors of others along the sweep, dividing costs more than it saves.
+bool SearchPlanner::suits_one_row(const SearchPlan& plan) const {
+  return static_cast<double>(count_) / width_[plan.axes[0]] < kFewVectors * kLanes;
+}
+
+/// One row for all that is left.
+void SearchPlanner::add_row(SearchPlan& plan) {
+  SearchPlan::Level row;
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    row.cell[axis] = 2 * (plan.high[axis] - plan.low[axis]) + 1e-30;
+  const bool is_alone = plan.levels.empty();
+  row.cell[plan.axes[0]] /= is_alone ? static_cast<double>(count_) + 1 : 128;
+  plan.levels.push_back(row);
+}
+
+void SearchPlanner::measure_sizes() {
   for (Sampled& one : sampled_) {
     one.size = 0;
     for (std::size_t axis = 0; axis < 3; ++axis)
@@ -106,13 +142,8 @@ double SearchPlanner::crowding(const SearchPlan& plan) {
 /// take among themselves, and what larger ones take with them; that is estimated for some sizes and widths of
 /// rows, in mean extents, and the best taken.
 void SearchPlanner::choose_levels(SearchPlan& plan) {
-  std::array<double, 3> width{};
-  for (std::size_t axis = 0; axis < 3; ++axis)
-    width[axis] = std::max(plan.high[axis] - plan.low[axis], mean_extent_[axis]) / mean_extent_[axis];
-  std::sort(plan.axes.begin(), plan.axes.end(),
-            [&](std::size_t a, std::size_t b) { return width[a] != width[b] ? width[a] > width[b] : a < b; });
+  const std::array<double, 3>& width = width_;
   const double crowd = crowding(plan);
-  plan.levels.clear();
   const double per_sampled =
       static_cast<double>(count_) / static_cast<double>(std::max<std::size_t>(sampled_.size(), 1));
   std::size_t begin = 0;
@@ -173,11 +204,6 @@ void SearchPlanner::choose_levels(SearchPlan& plan) {
     plan.levels.push_back(level);
     begin = best_end;
   } while (begin < sampled_.size());
-  // A row for boxes larger than any of the sample.
-  SearchPlan::Level rest = plan.levels.back();
-  for (std::size_t axis = 0; axis < 3; ++axis) rest.cell[axis] = 2 * (plan.high[axis] - plan.low[axis]);
-  rest.cell[plan.axes[0]] /= 128;
-  plan.levels.push_back(rest);
 }
 
 }  // namespace supple

@@ -33,6 +33,10 @@ class SearchPlanner {
   };
   void sample(std::span<const Aabb> boxes);
   void bound(SearchPlan& plan);
+  void measure_extents();
+  void choose_axes(SearchPlan& plan);
+  bool suits_one_row(const SearchPlan& plan) const;
+  void add_row(SearchPlan& plan);
   void measure_sizes();
   double crowding(const SearchPlan& plan);
   void choose_levels(SearchPlan& plan);
@@ -40,7 +44,7 @@ class SearchPlanner {
   std::vector<Sampled> sampled_;
   std::vector<float> scratch_;
   std::vector<std::uint32_t> cells_;
-  std::array<double, 3> mean_extent_{};
+  std::array<double, 3> mean_extent_{}, width_{};  // width in mean extents
   std::size_t count_ = 0;
 };
 
