@@ -94,7 +94,7 @@ void BulkSearch::divide() {
 }
 
 void BulkSearch::measure(std::span<const Aabb> boxes, const Parallel& parallel) {
-  measured_.resize(boxes.size() + 1);
+  measured_.resize(std::max(measured_.size(), boxes.size() + 1));
   blocks_.resize(boxes.size());
   const std::size_t level_count = boxes_.levels.size(), block_count = measure_.first_block[level_count];
   // Some for each worker, so that none waits long for another.
@@ -130,20 +130,25 @@ void BulkSearch::deal(const Parallel& parallel) {
     for (Chunk& chunk : chunks_) total += std::exchange(chunk.block_sizes[block], total);
   }
   block_begins_[block_count] = total;
-  dealt_.resize(total);
-  parallel.for_ranges(chunks_.size(), 1, [&](std::size_t first, std::size_t last, std::uint32_t) {
-    for (std::size_t i = first; i < last; ++i) {
-      Chunk& chunk = chunks_[i];
-      for (std::size_t k = chunk.begin; k < chunk.begin + chunk.measured; ++k)
-        dealt_[chunk.block_sizes[blocks_[k]]++] = measured_[k];
-    }
-  });
+  if (block_count == 1 && chunks_.size() == 1) {
+    dealt_.swap(measured_);
+  } else {
+    dealt_.resize(std::max<std::size_t>(dealt_.size(), total));
+    parallel.for_ranges(chunks_.size(), 1, [&](std::size_t first, std::size_t last, std::uint32_t) {
+      for (std::size_t i = first; i < last; ++i) deal_chunk(chunks_[i]);
+    });
+  }
   for (std::vector<std::uint32_t>& ends : boxes_.ends) ends.resize(total + kMaxLanes);
   boxes_.slots.resize(total + kMaxLanes);
   parallel.for_ranges(block_count, 1, [&](std::size_t first, std::size_t last, std::uint32_t) {
     for (std::size_t block = first; block < last; ++block) order_block(block);
   });
   boxes_.cell_begins[0] = 0;
+}
+
+void BulkSearch::deal_chunk(Chunk& chunk) {
+  for (std::size_t i = chunk.begin; i < chunk.begin + chunk.measured; ++i)
+    dealt_[chunk.block_sizes[blocks_[i]]++] = measured_[i];
 }
 
 std::size_t BulkSearch::level_of(std::size_t block) const {

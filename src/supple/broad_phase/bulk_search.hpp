@@ -33,6 +33,7 @@ class BulkSearch {
   void divide();
   void measure(std::span<const Aabb> boxes, const Parallel& parallel);
   void deal(const Parallel& parallel);
+  void deal_chunk(Chunk& chunk);
   void order_block(std::size_t block);
   std::size_t level_of(std::size_t block) const;
 

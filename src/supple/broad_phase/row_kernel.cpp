@@ -252,7 +252,7 @@ std::size_t measure(const BoxMeasure& measure, std::span<const BoxRows> levels, 
   return count;
 }
 
-template <bool dense>
+template <bool dense, bool only_row>
 void search_level(const DealtBoxes& boxes, std::size_t level, std::size_t begin, std::size_t end,
                   RowSearch& search) {
   Arrays arrays{boxes.ends[0].data(), boxes.ends[1].data(), boxes.ends[2].data(),
@@ -263,6 +263,10 @@ void search_level(const DealtBoxes& boxes, std::size_t level, std::size_t begin,
     const Row row = row_of(arrays, place);
     const auto visit = [&](std::size_t from, std::size_t to)
                            HWY_ATTR { against<dense>(row, from, to, boxes, arrays, search); };
+    if constexpr (only_row) {
+      visit(place + 1, cell_begins[rows.division(0, row.high[0]) + 1]);
+      continue;
+    }
     const Span cells = span_of(rows, row, 0), second = span_of(rows, row, 1);
     const std::uint32_t own_second = rows.division(1, row.low[1]), own_third = rows.division(2, row.low[2]);
     const std::size_t own_row = std::size_t{own_third * rows.divisions[1] + own_second} * rows.divisions[0];
@@ -281,10 +285,15 @@ void search_level(const DealtBoxes& boxes, std::size_t level, std::size_t begin,
 
 void search(const DealtBoxes& boxes, std::size_t level, std::size_t begin, std::size_t end,
             RowSearch& row_search) {
-  if (boxes.is_dense)
-    search_level<true>(boxes, level, begin, end, row_search);
+  const bool only_row = boxes.levels.size() == 1 && boxes.levels[0].row_count() == 1;
+  if (only_row && boxes.is_dense)
+    search_level<true, true>(boxes, level, begin, end, row_search);
+  else if (only_row)
+    search_level<false, true>(boxes, level, begin, end, row_search);
+  else if (boxes.is_dense)
+    search_level<true, false>(boxes, level, begin, end, row_search);
   else
-    search_level<false>(boxes, level, begin, end, row_search);
+    search_level<false, false>(boxes, level, begin, end, row_search);
 }
 
 }  // namespace
