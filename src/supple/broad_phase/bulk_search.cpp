@@ -1,7 +1,7 @@
 #include "broad_phase/bulk_search.hpp"
 
 #include <algorithm>
-#include <bit>
+#include <atomic>
 #include <cmath>
 #include <utility>
 
@@ -11,6 +11,8 @@ namespace {
 /// Boxes of a block fit into the second-level cache twice.
 constexpr std::size_t kBlockSize = 4096;
 constexpr std::uint32_t kMostBlocks = 1024;
+/// Boxes that an average box shares its cell with; more take longer to search than regions to be made.
+constexpr std::uint64_t kMostInCell = 256;
 /// With a pair among so many tests branches on whether there are any are mispredicted too often.
 constexpr std::uint64_t kTestsPerPair = 48;
 
@@ -20,14 +22,14 @@ std::uint32_t divisions_of(double width, double cell, double most) {
 
 }  // namespace
 
-void BulkSearch::find(std::span<const Aabb> boxes, std::span<const BoundingSphere> spheres,
+bool BulkSearch::find(std::span<const Aabb> boxes, std::span<const BoundingSphere> spheres,
                       const Parallel& parallel, std::size_t last_pair_count, std::span<PairBins> found) {
   boxes_.exact = boxes;
   boxes_.spheres = spheres;
   planner_.choose(boxes, plan_);
   divide();
   measure(boxes, parallel);
-  deal(parallel);
+  if (deal(parallel) > kMostInCell * box_count()) return false;
   // As it was in the step before; a wrong guess costs little.
   boxes_.is_dense = kTestsPerPair * last_pair_count >= tests();
   workers_.resize(parallel.worker_count());
@@ -43,6 +45,7 @@ void BulkSearch::find(std::span<const Aabb> boxes, std::span<const BoundingSpher
       if (first < last) search_rows(boxes_, level, first, last, workers_[worker]);
     }
   });
+  return true;
 }
 
 std::uint64_t BulkSearch::tests() const {
@@ -121,7 +124,7 @@ void BulkSearch::measure(std::span<const Aabb> boxes, const Parallel& parallel) 
             std::max(boxes_.levels[level].reach[k], chunk.reach[level][plan_.axes[k]]);
 }
 
-void BulkSearch::deal(const Parallel& parallel) {
+std::uint64_t BulkSearch::deal(const Parallel& parallel) {
   const std::size_t block_count = measure_.first_block.back();
   block_begins_.resize(block_count + 1);
   std::uint32_t total = 0;
@@ -140,10 +143,12 @@ void BulkSearch::deal(const Parallel& parallel) {
   }
   for (std::vector<std::uint32_t>& ends : boxes_.ends) ends.resize(total + kMaxLanes);
   boxes_.slots.resize(total + kMaxLanes);
+  std::atomic<std::uint64_t> squares = 0;
   parallel.for_ranges(block_count, 1, [&](std::size_t first, std::size_t last, std::uint32_t) {
-    for (std::size_t block = first; block < last; ++block) order_block(block);
+    for (std::size_t block = first; block < last; ++block) squares += order_block(block);
   });
   boxes_.cell_begins[0] = 0;
+  return squares;
 }
 
 void BulkSearch::deal_chunk(Chunk& chunk) {
@@ -159,7 +164,7 @@ std::size_t BulkSearch::level_of(std::size_t block) const {
 
 /// Counts the boxes of each cell and puts them there. While they are counted and placed the begin of a cell
 /// stands where at last that of the next one does.
-void BulkSearch::order_block(std::size_t block) {
+std::uint64_t BulkSearch::order_block(std::size_t block) {
   const std::size_t level = level_of(block);
   const BoxRows& rows = boxes_.levels[level];
   const std::uint8_t log2 = measure_.rows_per_block_log2[level];
@@ -172,15 +177,19 @@ void BulkSearch::order_block(std::size_t block) {
   };
   const std::span<const MeasuredBox> here(dealt_.data() + block_begins_[block],
                                           block_begins_[block + 1] - block_begins_[block]);
-  std::fill(next + std::size_t{first_row} * rows.divisions[0],
-            next + std::size_t{last_row} * rows.divisions[0], 0);
+  const std::size_t first_cell = std::size_t{first_row} * rows.divisions[0];
+  const std::size_t last_cell = std::size_t{last_row} * rows.divisions[0];
+  std::fill(next + first_cell, next + last_cell, 0);
   // Where the blocks of the boxes were, which are dealt by now.
   std::uint32_t* const cells = blocks_.data() + block_begins_[block];
   for (std::size_t i = 0; i < here.size(); ++i) ++next[cells[i] = cell_of(here[i])];
   std::uint32_t begin = block_begins_[block];
-  for (std::size_t cell = std::size_t{first_row} * rows.divisions[0];
-       cell < std::size_t{last_row} * rows.divisions[0]; ++cell)
-    begin += std::exchange(next[cell], begin);
+  std::uint64_t squares = 0;
+  for (std::size_t cell = first_cell; cell < last_cell; ++cell) {
+    const std::uint64_t count = std::exchange(next[cell], begin);
+    begin += static_cast<std::uint32_t>(count);
+    squares += count * count;
+  }
   const auto& [first, second, third] = measure_.axes;
   for (std::size_t i = 0; i < here.size(); ++i) {
     const MeasuredBox& box = here[i];
@@ -190,6 +199,7 @@ void BulkSearch::order_block(std::size_t block) {
     boxes_.ends[2][place] = box.ends[third];
     boxes_.slots[place] = box.slot;
   }
+  return squares;
 }
 
 }  // namespace supple

@@ -15,9 +15,11 @@ namespace supple {
 /// the rows beside, 16 at a time. Each pair is found once. Memory is kept from call to call.
 class BulkSearch {
  public:
-  /// Adds the pairs to `found`, which has bins for each worker. Of balls, if there are some, these are the
-  /// boxes, and only pairs of balls that overlap are added. `last_pair_count` pairs came of the call before.
-  void find(std::span<const Aabb> boxes, std::span<const BoundingSphere> spheres, const Parallel& parallel,
+  /// Adds the pairs to `found`, which has bins for each worker, or returns false without having searched: so
+  /// many boxes share cells that regions, which divide space where they are, will do better. Of balls, if
+  /// there are some, these are the boxes, and only pairs of balls that overlap are added. `last_pair_count`
+  /// pairs came of the call before.
+  bool find(std::span<const Aabb> boxes, std::span<const BoundingSphere> spheres, const Parallel& parallel,
             std::size_t last_pair_count, std::span<PairBins> found);
   std::uint64_t tests() const;
   std::size_t box_count() const { return block_begins_.back(); }  ///< that were not empty
@@ -32,9 +34,10 @@ class BulkSearch {
 
   void divide();
   void measure(std::span<const Aabb> boxes, const Parallel& parallel);
-  void deal(const Parallel& parallel);
+  /// Returns the sum over all cells of the squares of their counts.
+  std::uint64_t deal(const Parallel& parallel);
   void deal_chunk(Chunk& chunk);
-  void order_block(std::size_t block);
+  std::uint64_t order_block(std::size_t block);
   std::size_t level_of(std::size_t block) const;
 
   SearchPlanner planner_;

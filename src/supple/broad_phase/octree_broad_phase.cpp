@@ -97,8 +97,9 @@ void OctreeBroadPhase::search_regions(const ObjectVolumes& volumes, const Parall
 void OctreeBroadPhase::search_in_bulk(const ObjectVolumes& volumes, const Parallel& parallel) {
   has_regions_ = false;
   tree_.set_volumes(volumes);
-  bulk_.find(tree_.boxes(), tree_.spheres(), parallel, pairs_.size(),
-             sorter_.start(parallel.worker_count(), tree_.slot_count()));
+  const auto bins = sorter_.start(parallel.worker_count(), tree_.slot_count());
+  if (!bulk_.find(tree_.boxes(), tree_.spheres(), parallel, pairs_.size(), bins))
+    return search_regions(volumes, parallel, false);
   sorter_.finish(false, parallel, pairs_);
   live_ = stats_.objects_paired = bulk_.box_count();
   stats_.object_pairs_tested = bulk_.tests();

@@ -10,10 +10,11 @@ namespace {
 constexpr float kFarthest = 1e37f;
 constexpr std::size_t kMostLevels = 4;
 
-/// Nanoseconds on a 2.5 GHz Xeon with vectors of 16 lanes; only their ratios matter.
+/// Nanoseconds, about, by profiles on a 2.5 GHz Xeon with vectors of 16 lanes; only their ratios matter.
 constexpr double kRowCost = 6;     // one more row that a box is held against
 constexpr double kVectorCost = 3;  // 16 boxes that it is held against
 constexpr double kLanes = 16;
+/// Up to so many vectors in one row dividing costs more than it saves: 16 were slower.
 constexpr double kFewVectors = 8;
 
 }  // namespace
