@@ -23,7 +23,7 @@ struct IndexPair {
 struct BroadPhaseStats {
   std::uint64_t object_pairs_tested = 0;  ///< volume against volume
   std::uint64_t objects_changed = 0;      ///< volumes that differ from the call before, new ones included
-  // Of the scene octree; 0 for other methods.
+  // Of the scene octree; 0 for other methods, and in a call that searches all pairs without regions.
   std::uint64_t objects_placed = 0;    ///< taken out of regions or put into others
   std::uint64_t regions_expanded = 0;  ///< groups of eight made
   std::uint64_t regions_reduced = 0;   ///< regions that became leaves again
@@ -58,15 +58,17 @@ class BroadPhase {
   /// empty balls. Balls are compared in double and may be reported when apart by rounding, never the reverse.
   /// A call with balls after one with boxes, or the reverse, starts afresh.
   ///
-  /// Cost for n volumes and k pairs: octree O(n + k) for volumes of like size, with c of them changed about
-  /// O(c + k); sweep O(n log n + pairs that overlap along one axis); brute O(n²). No allocation once the
+  /// Cost for n volumes and k pairs: octree O(n + k), with c of them changed for some calls about O(c + k)
+  /// besides comparing volumes; when many changed, all pairs are searched anew without regions, whichever
+  /// costs less; sweep O(n log n + pairs that overlap along one axis); brute O(n²). No allocation once the
   /// buffers are as large as the scene needs.
   std::span<const IndexPair> find_object_pairs(std::span<const Aabb> boxes);
   std::span<const IndexPair> find_object_pairs(std::span<const BoundingSphere> spheres);
 
   /// Of the last call.
   const BroadPhaseStats& stats() const;
-  /// Regions of the scene octree, root first, ascending by number; empty for other methods.
+  /// Regions of the scene octree, root first, ascending by number; empty for other methods. Made for this
+  /// call, O(n log n), when the last search did without.
   std::vector<SceneRegion> regions() const;
   /// Checks every invariant; the empty string, or what is wrong.
   std::string validate() const;

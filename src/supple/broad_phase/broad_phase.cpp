@@ -15,8 +15,7 @@ class BroadPhase::Implementation {
       finder_ = make(kind);
       kind_ = kind;
     }
-    finder_->find_pairs(volumes, parallel_, pairs_);
-    return pairs_;
+    return finder_->find_pairs(volumes, parallel_);
   }
 
   const PairFinder& finder() const { return *finder_; }
@@ -30,7 +29,6 @@ class BroadPhase::Implementation {
   Parallel parallel_;
   BoundingVolume kind_ = BoundingVolume::aabb;
   std::unique_ptr<PairFinder> finder_;
-  std::vector<IndexPair> pairs_;
 };
 
 BroadPhase::BroadPhase(const BroadPhaseOptions& options)

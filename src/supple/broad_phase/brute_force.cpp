@@ -7,8 +7,7 @@
 
 namespace supple {
 
-void BruteForce::find_pairs(const ObjectVolumes& volumes, const Parallel& parallel,
-                            std::vector<IndexPair>& pairs) {
+std::span<const IndexPair> BruteForce::find_pairs(const ObjectVolumes& volumes, const Parallel& parallel) {
   const std::size_t slots = slot_count(volumes, bounding_volume_);
   lanes_.resize(slots);
   std::size_t live = 0;
@@ -28,10 +27,11 @@ void BruteForce::find_pairs(const ObjectVolumes& volumes, const Parallel& parall
     if (bounding_volume_ == BoundingVolume::sphere)
       keep_overlapping_spheres(volumes.spheres, first, found_[worker]);
   });
-  sorter_.sort(found_, slots, false, parallel, pairs);
+  sorter_.sort(found_, slots, false, parallel, pairs_);
   stats_ = {};
   stats_.object_pairs_tested = tests;
   stats_.objects_changed = stats_.objects_paired = live;
+  return pairs_;
 }
 
 }  // namespace supple

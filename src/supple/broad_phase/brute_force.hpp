@@ -13,14 +13,14 @@ class BruteForce final : public PairFinder {
  public:
   explicit BruteForce(BoundingVolume bounding_volume) : bounding_volume_(bounding_volume) {}
 
-  void find_pairs(const ObjectVolumes& volumes, const Parallel& parallel,
-                  std::vector<IndexPair>& pairs) override;
+  std::span<const IndexPair> find_pairs(const ObjectVolumes& volumes, const Parallel& parallel) override;
 
  private:
   BoundingVolume bounding_volume_;
   BoxLanes lanes_;
   std::vector<PairBuffer> found_;  // per worker
   PairSorter sorter_;
+  std::vector<IndexPair> pairs_;
 };
 
 }  // namespace supple

@@ -27,9 +27,8 @@ class PairFinder {
  public:
   virtual ~PairFinder() = default;
 
-  /// Replaces `pairs` by all overlapping pairs, sorted by (a, b), each once.
-  virtual void find_pairs(const ObjectVolumes& volumes, const Parallel& parallel,
-                          std::vector<IndexPair>& pairs) = 0;
+  /// All overlapping pairs, sorted by (a, b), each once; they last until the next call.
+  virtual std::span<const IndexPair> find_pairs(const ObjectVolumes& volumes, const Parallel& parallel) = 0;
   virtual std::string validate() const { return {}; }
   virtual std::vector<SceneRegion> regions() const { return {}; }
   const BroadPhaseStats& stats() const { return stats_; }

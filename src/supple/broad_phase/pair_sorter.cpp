@@ -2,105 +2,116 @@
 
 #include <algorithm>
 #include <bit>
-#include <limits>
 #include <utility>
 
+#include "broad_phase/run_kernel.hpp"
 #include "geometry/sphere.hpp"
 
 namespace supple {
-namespace {
 
-/// One run of equal a. Most are shorter than a handful.
-void sort_run(IndexPair* begin, IndexPair* end) {
-  constexpr std::ptrdiff_t kInsertionLimit = 24;
-  if (end - begin > kInsertionLimit) {
-    std::sort(begin, end, [](IndexPair x, IndexPair y) { return x.b < y.b; });
-    return;
+void PairBins::reset(int shift, std::size_t bin_count) {
+  shift_ = shift;
+  chunk_count_ = bin_count;
+  if (before_.size() < bin_count) {
+    before_.resize(2 * bin_count);
+    pool_.resize(before_.size() * kChunk);
   }
-  for (IndexPair* i = begin + 1; i < end; ++i) {
-    const IndexPair pair = *i;
-    IndexPair* hole = i;
-    for (; hole != begin && pair.b < hole[-1].b; --hole) *hole = hole[-1];
-    *hole = pair;
-  }
+  next_.resize(bin_count);
+  for (std::size_t bin = 0; bin < bin_count; ++bin) next_[bin] = bin * kChunk;
 }
 
-/// Pairs whose a is in [first_slot, first_slot + slot_count), of less than 2^32.
-void sort_bucket(std::span<const IndexPair> pairs, std::uint32_t first_slot, std::size_t slot_count,
-                 std::vector<std::uint32_t>& run_end, IndexPair* sorted) {
-  run_end.assign(slot_count + 1, 0);
-  for (const IndexPair pair : pairs) ++run_end[pair.a - first_slot + 1];
-  for (std::size_t slot = 0; slot < slot_count; ++slot) run_end[slot + 1] += run_end[slot];
-  // From here run_end[a] is where the next pair of a goes, and at last where its run ends.
-  for (const IndexPair pair : pairs) sorted[run_end[pair.a - first_slot]++] = pair;
-  std::uint32_t begin = 0;
-  for (std::size_t slot = 0; slot < slot_count; begin = run_end[slot++])
-    if (run_end[slot] - begin > 1) sort_run(sorted + begin, sorted + run_end[slot]);
+std::size_t PairBins::chunk_after(std::size_t chunk) {
+  if (chunk_count_ == before_.size()) {
+    before_.resize(2 * chunk_count_);
+    pool_.resize(before_.size() * kChunk);
+  }
+  before_[chunk_count_] = static_cast<std::uint32_t>(chunk);
+  return chunk_count_++ * kChunk;
 }
 
-}  // namespace
+std::size_t PairBins::count(std::size_t bin) const {
+  std::size_t sum = 0;
+  for_each_chunk(bin, [&](std::span<const IndexPair> pairs) { sum += pairs.size(); });
+  return sum;
+}
+
+std::span<PairBins> PairSorter::start(std::size_t workers, std::size_t slot_count) {
+  // Counters of a bin stay in the first-level cache, and so do the places that a worker writes to next.
+  constexpr int kBits = 11;
+  shift_ = std::max(kBits, static_cast<int>(std::bit_width(slot_count)) - kBits);
+  slot_count_ = slot_count;
+  bins_.resize(workers);
+  const std::size_t bin_count = (slot_count >> shift_) + 1;
+  for (PairBins& bins : bins_) bins.reset(shift_, bin_count);
+  bin_begins_.resize(bin_count + 1);
+  return bins_;
+}
+
+void PairSorter::finish(bool may_repeat, const Parallel& parallel, std::vector<IndexPair>& sorted) {
+  const std::size_t bin_count = bin_begins_.size() - 1;
+  bin_begins_[0] = 0;
+  for (std::size_t bin = 0; bin < bin_count; ++bin) {
+    bin_begins_[bin + 1] = bin_begins_[bin];
+    for (const PairBins& bins : bins_) bin_begins_[bin + 1] += bins.count(bin);
+  }
+  sorted.resize(bin_begins_[bin_count]);
+  runs_.resize(parallel.worker_count());
+  parallel.for_ranges(bin_count, 1, [&](std::size_t begin, std::size_t end, std::uint32_t worker) {
+    for (std::size_t bin = begin; bin < end; ++bin)
+      sort_bin(bin, may_repeat, runs_[worker],
+               {sorted.data() + bin_begins_[bin], bin_begins_[bin + 1] - bin_begins_[bin]});
+  });
+  if (may_repeat) sorted.erase(std::unique(sorted.begin(), sorted.end()), sorted.end());
+}
 
 void PairSorter::sort(std::span<const PairBuffer> parts, std::size_t slot_count, bool may_repeat,
                       const Parallel& parallel, std::vector<IndexPair>& sorted) {
   std::size_t total = 0;
   for (const PairBuffer& part : parts) total += part.size();
-  sorted.resize(total);
-  // Counters of 32 bits halve the memory that is hit at random.
-  const bool countable = total <= std::numeric_limits<std::uint32_t>::max();
-  if (countable && total >= slot_count / 16) {
-    sort_by_counting(parts, slot_count, parallel, sorted);
-  } else {
-    auto out = sorted.begin();
-    for (const PairBuffer& part : parts) out = std::copy_n(part.data(), part.size(), out);
-    std::sort(sorted.begin(), sorted.end());
+  if (total >= slot_count / 16) {
+    const auto bins = start(parts.size(), slot_count);
+    parallel.for_ranges(parts.size(), 1, [&](std::size_t begin, std::size_t end, std::uint32_t) {
+      for (std::size_t part = begin; part < end; ++part)
+        for (std::size_t i = 0; i < parts[part].size(); ++i) bins[part].push(parts[part].data()[i]);
+    });
+    return finish(may_repeat, parallel, sorted);
   }
+  sorted.resize(total);
+  auto out = sorted.begin();
+  for (const PairBuffer& part : parts) out = std::copy_n(part.data(), part.size(), out);
+  std::sort(sorted.begin(), sorted.end());
   if (may_repeat) sorted.erase(std::unique(sorted.begin(), sorted.end()), sorted.end());
 }
 
-void PairSorter::sort_by_counting(std::span<const PairBuffer> parts, std::size_t slot_count,
-                                  const Parallel& parallel, std::vector<IndexPair>& sorted) {
-  // Counters of a bucket stay in the first-level cache, and so do the places that a part writes to next.
-  constexpr int kBits = 11;
-  const int shift = std::max(kBits, static_cast<int>(std::bit_width(slot_count)) - kBits);
-  const std::size_t bucket_count = (slot_count >> shift) + 1;
-  fill_buckets(parts, shift, bucket_count, parallel);
-  counters_.resize(parallel.worker_count());
-  parallel.for_ranges(bucket_count, 1, [&](std::size_t begin, std::size_t end, std::uint32_t worker) {
-    for (std::size_t bucket = begin; bucket < end; ++bucket) {
-      const std::size_t first = bucket == 0 ? 0 : bucket_end_[bucket - 1], first_slot = bucket << shift;
-      sort_bucket({bucketed_.data() + first, bucket_end_[bucket] - first},
-                  static_cast<std::uint32_t>(first_slot),
-                  std::min(std::size_t{1} << shift, slot_count - first_slot), counters_[worker],
-                  sorted.data() + first);
-    }
-  });
-}
-
-/// Pairs by the upper bits of a. Each part has its own places in each bucket.
-void PairSorter::fill_buckets(std::span<const PairBuffer> parts, int shift, std::size_t bucket_count,
-                              const Parallel& parallel) {
-  const auto each_pair = [&](auto&& visit) {
-    parallel.for_ranges(parts.size(), 1, [&](std::size_t begin, std::size_t end, std::uint32_t) {
-      for (std::size_t part = begin; part < end; ++part) {
-        std::size_t* const places = places_.data() + part * bucket_count;
-        for (std::size_t i = 0; i < parts[part].size(); ++i) {
-          const IndexPair pair = parts[part].data()[i];
-          visit(places[pair.a >> shift], pair);
-        }
-      }
-    });
+void PairSorter::sort_bin(std::size_t bin, bool may_repeat, Runs& runs, std::span<IndexPair> sorted) const {
+  if (sorted.empty()) return;
+  const auto first_slot = static_cast<std::uint32_t>(bin << shift_);
+  std::vector<std::uint32_t>& end = runs.end;
+  // While they are filled the begin of a run stands where at last its end does.
+  end.assign(std::min(std::size_t{1} << shift_, slot_count_ - first_slot) + 1, 0);
+  std::uint32_t* const next = end.data() + 1;
+  const auto for_each_pair = [&](auto&& visit) {
+    for (const PairBins& bins : bins_)
+      bins.for_each_chunk(bin, [&](std::span<const IndexPair> pairs) {
+        for (const IndexPair pair : pairs) visit(pair.a - first_slot, pair.b);
+      });
   };
-  places_.assign(parts.size() * bucket_count, 0);
-  each_pair([](std::size_t& place, IndexPair) { ++place; });
-  bucket_end_.resize(bucket_count);
-  std::size_t total = 0;
-  for (std::size_t bucket = 0; bucket < bucket_count; ++bucket) {
-    for (std::size_t part = 0; part < parts.size(); ++part)
-      total += std::exchange(places_[part * bucket_count + bucket], total);
-    bucket_end_[bucket] = total;
+  for_each_pair([&](std::uint32_t a, std::uint32_t) { ++next[a]; });
+  std::uint32_t begin = 0;
+  for (std::size_t a = 0; a + 1 < end.size(); ++a) begin += std::exchange(next[a], begin);
+  if (runs.a.size() < sorted.size() + kMaxLanes) {
+    runs.a.resize(sorted.size() + sorted.size() / 2 + kMaxLanes);
+    runs.b.resize(runs.a.size());
   }
-  bucketed_.resize(total);
-  each_pair([&](std::size_t& place, IndexPair pair) { bucketed_[place++] = pair; });
+  runs.marks.resize(slot_count_ / 64 + 1, 0);
+  std::uint32_t* const run_a = runs.a.data();
+  std::uint32_t* const run_b = runs.b.data();
+  for_each_pair([&](std::uint32_t a, std::uint32_t b) {
+    const std::uint32_t place = next[a]++;
+    run_a[place] = a;
+    run_b[place] = b;
+  });
+  sort_runs({run_a, sorted.size()}, {run_b, sorted.size()}, end, first_slot, may_repeat, runs.marks, sorted);
 }
 
 void keep_overlapping_spheres(std::span<const BoundingSphere> spheres, std::size_t first, PairBuffer& pairs) {

@@ -229,6 +229,19 @@ void SceneOctree::build(const SceneCube& cube) {
   if (should_expand(regions_[0])) expand(0);
 }
 
+void SceneOctree::set_volumes(const ObjectVolumes& volumes) {
+  if (!has_spheres_) {
+    const auto rest = std::copy(volumes.boxes.begin(), volumes.boxes.end(), boxes_.begin());
+    std::fill(rest, boxes_.end(), Aabb{});
+    return;
+  }
+  for (std::size_t slot = 0; slot < boxes_.size(); ++slot) {
+    const ObjectVolume now = volume_at(volumes, BoundingVolume::sphere, slot);
+    boxes_[slot] = now.box;
+    spheres_[slot] = now.sphere;
+  }
+}
+
 void SceneOctree::expand(std::uint32_t index) {
   ++expanded_count_;
   const std::uint32_t first = make_children(index);

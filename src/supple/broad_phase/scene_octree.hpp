@@ -66,6 +66,8 @@ class SceneOctree {
   bool stays(std::uint32_t slot, const ObjectVolume& now) const;
   /// Takes over a new volume and leaves the regions as they are.
   void set_volume(std::uint32_t slot, const ObjectVolume& now);
+  /// Takes over all volumes; `build` must follow before the regions are used.
+  void set_volumes(const ObjectVolumes& volumes);
   /// Takes an object out of the regions it left and puts it into those it entered, in one walk down the
   /// regions of both. `settle` must follow when all objects have moved.
   void move(std::uint32_t slot, const ObjectVolume& now);
@@ -170,6 +172,7 @@ inline ObjectVolume SceneOctree::volume(std::uint32_t slot) const {
 }
 
 inline bool SceneOctree::same_volume(std::uint32_t slot, const ObjectVolume& now) const {
+  if (boxes_[slot].empty() && now.empty()) return true;
   return boxes_[slot] == now.box && (!has_spheres_ || spheres_[slot] == now.sphere);
 }
 

@@ -11,8 +11,7 @@
 
 namespace supple {
 
-void SweepAndPrune::find_pairs(const ObjectVolumes& volumes, const Parallel& parallel,
-                               std::vector<IndexPair>& pairs) {
+std::span<const IndexPair> SweepAndPrune::find_pairs(const ObjectVolumes& volumes, const Parallel& parallel) {
   take_volumes(volumes);
   choose_axis();
   update_order();
@@ -30,10 +29,11 @@ void SweepAndPrune::find_pairs(const ObjectVolumes& volumes, const Parallel& par
     if (bounding_volume_ == BoundingVolume::sphere)
       keep_overlapping_spheres(volumes.spheres, first, found_[worker]);
   });
-  sorter_.sort(found_, boxes_.size(), false, parallel, pairs);
+  sorter_.sort(found_, boxes_.size(), false, parallel, pairs_);
   stats_ = {};
   stats_.object_pairs_tested = tests;
   stats_.objects_changed = stats_.objects_paired = order_.size();
+  return pairs_;
 }
 
 void SweepAndPrune::take_volumes(const ObjectVolumes& volumes) {

@@ -15,8 +15,7 @@ class SweepAndPrune final : public PairFinder {
  public:
   explicit SweepAndPrune(BoundingVolume bounding_volume) : bounding_volume_(bounding_volume) {}
 
-  void find_pairs(const ObjectVolumes& volumes, const Parallel& parallel,
-                  std::vector<IndexPair>& pairs) override;
+  std::span<const IndexPair> find_pairs(const ObjectVolumes& volumes, const Parallel& parallel) override;
   std::string validate() const override;
 
  private:
@@ -39,6 +38,7 @@ class SweepAndPrune final : public PairFinder {
   BoxLanes lanes_;
   std::vector<PairBuffer> found_;  // per worker
   PairSorter sorter_;
+  std::vector<IndexPair> pairs_;
 };
 
 }  // namespace supple

@@ -99,11 +99,11 @@ void Scene::Implementation::find_object_pairs() {
   } else {
     volumes.boxes = boxes_;
   }
-  pair_finder->find_pairs(volumes, parallel, index_pairs_);
+  const std::span<const IndexPair> overlapping = pair_finder->find_pairs(volumes, parallel);
   std::fill(changed_.begin(), changed_.end(), std::uint8_t{0});
   result.stats.object_pairs_tested = pair_finder->stats().object_pairs_tested;
   object_pairs_.clear();
-  for (const IndexPair& pair : index_pairs_) {
+  for (const IndexPair& pair : overlapping) {
     if (may_pair(pair)) object_pairs_.push_back({id_of(pair.a), id_of(pair.b)});
   }
   result.stats.object_pairs = object_pairs_.size();

@@ -89,7 +89,6 @@ class Scene::Implementation {
   std::vector<std::uint64_t> versions_;  // of positions: never the same twice
   std::uint64_t last_version_ = 0;
   std::vector<std::uint32_t> stale_;
-  std::vector<IndexPair> index_pairs_;
   std::vector<ObjectPair> object_pairs_, touching_pairs_;
   std::vector<ContactJob> jobs_;
   std::vector<ContactObject> contact_objects_;

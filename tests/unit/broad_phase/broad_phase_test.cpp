@@ -50,11 +50,11 @@ std::vector<BroadPhaseOptions> all_options() {
   for (const RegionSphereTest test : {RegionSphereTest::arvo, RegionSphereTest::grown_box})
     for (const std::uint32_t max_level : {0u, 1u, 4u, 20u})
       for (const std::uint32_t expand_at : {2u, 9u})
-        all.push_back({BroadPhaseMethod::octree, {max_level, expand_at, test}, 1});
+        all.push_back({BroadPhaseMethod::octree, {max_level, expand_at, test, 8, true}, 1});
   for (const RegionSphereTest test : {RegionSphereTest::arvo, RegionSphereTest::grown_box})
     for (const std::uint32_t max_level : {0u, 1u, 20u})
       for (const std::uint32_t arity : {2u, 4u})
-        all.push_back({BroadPhaseMethod::octree, {max_level, 2, test, arity}, 1});
+        all.push_back({BroadPhaseMethod::octree, {max_level, 2, test, arity, true}, 1});
   return all;
 }
 

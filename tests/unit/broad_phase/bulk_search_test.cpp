@@ -1,0 +1,256 @@
+#include "broad_phase/bulk_search.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+#include <vector>
+
+#include "broad_phase/octree_broad_phase.hpp"
+#include "geometry/aabb.hpp"
+#include "geometry/sphere.hpp"
+#include "unit/broad_phase/volume_scenes.hpp"
+
+namespace supple {
+namespace {
+
+using test::box_around;
+using test::kInfinity;
+using test::Random;
+
+/// The bulk search by itself.
+class Bulk {
+ public:
+  explicit Bulk(std::uint32_t threads) : parallel_(threads) {}
+  const std::vector<IndexPair>& find(std::span<const Aabb> boxes,
+                                     std::span<const BoundingSphere> spheres = {}) {
+    const auto bins = sorter_.start(parallel_.worker_count(), boxes.size());
+    did_search_ = search_.find(boxes, spheres, parallel_, pairs_.size(), bins);
+    sorter_.finish(false, parallel_, pairs_);
+    return pairs_;
+  }
+  bool did_search() const { return did_search_; }
+  std::uint64_t tests() const { return search_.tests(); }
+
+ private:
+  Parallel parallel_;
+  BulkSearch search_;
+  bool did_search_ = false;
+  PairSorter sorter_;
+  std::vector<IndexPair> pairs_;
+};
+
+std::vector<IndexPair> double_loop(const std::vector<Aabb>& boxes) {
+  std::vector<IndexPair> pairs;
+  for (std::uint32_t a = 0; a < boxes.size(); ++a)
+    for (std::uint32_t b = a + 1; b < boxes.size(); ++b)
+      if (!boxes[a].empty() && !boxes[b].empty() && overlap(boxes[a], boxes[b])) pairs.push_back({a, b});
+  return pairs;
+}
+
+/// Side by side, so that many touch and none of them overlap in more than a face.
+std::vector<Aabb> lattice(std::uint32_t x, std::uint32_t y, std::uint32_t z) {
+  std::vector<Aabb> boxes;
+  for (std::uint32_t i = 0; i < x * y * z; ++i) {
+    const Vec3f low{static_cast<float>(i % x), static_cast<float>(i / x % y),
+                    static_cast<float>(i / (x * y))};
+    boxes.push_back({low, low + Vec3f{1, 1, 1}});
+  }
+  return boxes;
+}
+
+/// Extents over many powers of two, along each axis by itself.
+std::vector<Aabb> mixed_boxes(std::size_t count, int lowest, int highest, float side, std::uint32_t seed) {
+  Random random(seed);
+  std::vector<Aabb> boxes;
+  for (std::size_t i = 0; i < count; ++i) {
+    Vec3f half;
+    const auto powers = static_cast<std::uint32_t>(highest - lowest + 1);
+    for (int axis = 0; axis < 3; ++axis)
+      half[axis] = std::ldexp(random.uniform(0.5f, 1), lowest + static_cast<int>(random.below(powers)));
+    boxes.push_back(box_around(random.point(-side, side), half));
+  }
+  return boxes;
+}
+
+std::vector<Aabb> clusters(std::size_t count, std::uint32_t seed) {
+  Random random(seed);
+  std::vector<Aabb> boxes;
+  Vec3f center;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (i % 100 == 0) center = random.point(0, 1000);
+    const float half = random.below(60) == 0 ? 20.0f : 0.05f;
+    boxes.push_back(box_around(center + random.point(-2, 2), {half, half, half}));
+  }
+  return boxes;
+}
+
+std::vector<test::NamedBoxes> hard_scenes() {
+  constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+  std::vector<test::NamedBoxes> scenes = test::box_scenes();
+  scenes.push_back({"nothing", {}});
+  scenes.push_back({"one", {box_around({1, 2, 3}, {1, 1, 1})}});
+  scenes.push_back({"only empty ones", std::vector<Aabb>(40)});
+  scenes.push_back({"dense", test::random_boxes(1500, 9, 0.5f, 1)});
+  scenes.push_back({"sparse", test::random_boxes(1500, 60, 0.5f, 2)});
+  scenes.push_back({"lattice", lattice(12, 11, 10)});
+  scenes.push_back({"line", lattice(900, 1, 1)});
+  scenes.push_back({"plane", lattice(1, 35, 30)});
+  scenes.push_back({"powers of two", mixed_boxes(1200, -12, 3, 8, 3)});
+  scenes.push_back({"powers of ten", mixed_boxes(600, -100, 100, 1e10f, 4)});
+  scenes.push_back({"clusters", clusters(1500, 5)});
+  scenes.push_back({"all equal", std::vector<Aabb>(700, box_around({3, 4, 5}, {1, 2, 3}))});
+  scenes.push_back({"points", std::vector<Aabb>(300, box_around({3, 4, 5}, {0, 0, 0}))});
+  std::vector<Aabb> boxes = test::random_boxes(1200, 30, 0.5f, 6);
+  for (std::size_t i = 0; i < boxes.size(); i += 2) boxes[i] = box_around({7, 7, 7}, {0.25f, 0.25f, 0.25f});
+  scenes.push_back({"half of them in one place", boxes});
+  boxes = test::random_boxes(1500, 25, 0.5f, 7);
+  boxes[3] = {{-kInfinity, -kInfinity, -kInfinity}, {kInfinity, kInfinity, kInfinity}};
+  boxes[700] = {{-kInfinity, 3, 3}, {kInfinity, 4, 4}};
+  boxes[701] = {{kInfinity, 3, 3}, {kInfinity, 4, 4}};
+  boxes[702].min.y = kNaN;
+  boxes[703] = Aabb{};
+  boxes[704] = box_around({1e30f, -1e30f, 1e38f}, {1e29f, 1, 1});
+  boxes[705] = {{-3e38f, -3e38f, -3e38f}, {3e38f, 3e38f, 3e38f}};
+  boxes[706] = {{-0.0f, 0.0f, -0.0f}, {0.0f, -0.0f, 0.0f}};
+  scenes.push_back({"infinite, empty and far away", boxes});
+  boxes = test::random_boxes(1500, 1e-3f, 2e-5f, 8);
+  for (Aabb& box : boxes) box = {box.min + Vec3f{1e4f, 1e4f, 1e4f}, box.max + Vec3f{1e4f, 1e4f, 1e4f}};
+  scenes.push_back({"far from the origin", boxes});
+  return scenes;
+}
+
+TEST(BulkSearch, FindsThePairsOfADoubleLoop) {
+  // One after the other, so that what is kept of one scene must not show in the next.
+  Bulk one(1), three(3);
+  std::size_t with_pairs = 0, searched = 0;
+  for (const test::NamedBoxes& scene : hard_scenes()) {
+    const std::vector<IndexPair> expected = double_loop(scene.boxes);
+    with_pairs += !expected.empty();
+    const std::vector<IndexPair> found = one.find(scene.boxes);
+    searched += one.did_search();
+    if (!one.did_search()) {
+      EXPECT_GT(scene.boxes.size(), 256u) << scene.name << " is not that crowded";
+      EXPECT_TRUE(found.empty());
+      continue;
+    }
+    ASSERT_EQ(found, expected) << scene.name;
+    ASSERT_EQ(one.find(scene.boxes), expected) << scene.name << ", once more";
+    ASSERT_EQ(three.find(scene.boxes), expected) << scene.name << ", three threads";
+    EXPECT_GE(one.tests(), expected.size()) << scene.name;
+  }
+  EXPECT_GE(with_pairs, 20u);
+  EXPECT_GE(searched, 20u);
+}
+
+TEST(OctreeBroadPhase, FindsThePairsOfADoubleLoopHoweverItSearches) {
+  const Parallel parallel(1);
+  for (const test::NamedBoxes& scene : hard_scenes()) {
+    OctreeBroadPhase finder(BoundingVolume::aabb, {});
+    std::vector<Aabb> boxes = scene.boxes;
+    for (int step = 0; step < 3; ++step) {
+      const auto found = finder.find_pairs({.boxes = boxes, .spheres = {}, .changed = {}}, parallel);
+      const std::vector<IndexPair> expected = double_loop(boxes);
+      ASSERT_TRUE(std::equal(found.begin(), found.end(), expected.begin(), expected.end())) << scene.name;
+      for (Aabb& box : boxes) box.max.x = box.max.x + 0.25f * (box.max.x - box.min.x);
+    }
+  }
+}
+
+TEST(BulkSearch, ThreadsDoTheSameTests) {
+  const std::vector<Aabb> boxes = clusters(20'000, 9);
+  Bulk one(1), four(4);
+  const std::vector<IndexPair> expected = one.find(boxes);
+  EXPECT_GT(expected.size(), 1000u);
+  EXPECT_TRUE(four.find(boxes) == expected);
+  EXPECT_EQ(four.tests(), one.tests());
+}
+
+TEST(BulkSearch, DividesWhatIsDense) {
+  // Against 200 million for brute force and ten million for a sweep.
+  const std::vector<Aabb> boxes = test::random_boxes(20'000, 27, 0.5f, 10);
+  Bulk bulk(1);
+  bulk.find(boxes);
+  EXPECT_LT(bulk.tests(), 2'000'000u);
+}
+
+TEST(BulkSearch, OfBallsKeepsThoseThatOverlap) {
+  const std::vector<Aabb> boxes = test::random_boxes(900, 9, 0.5f, 11);
+  const std::vector<BoundingSphere> spheres = test::spheres_in(boxes);
+  std::vector<Aabb> around;
+  for (const BoundingSphere& sphere : spheres) around.push_back(bounding_box(sphere));
+  std::vector<IndexPair> expected = double_loop(around);
+  const std::size_t of_boxes = expected.size();
+  std::erase_if(expected, [&](IndexPair pair) { return !overlap(spheres[pair.a], spheres[pair.b]); });
+  ASSERT_LT(expected.size(), of_boxes);
+  EXPECT_EQ(Bulk(1).find(around, spheres), expected);
+}
+
+TEST(PairSorter, SortsRunsOfAnyLength) {
+  const Parallel parallel(2);
+  PairSorter sorter;
+  for (const std::uint32_t slots : {70u, 3000u, 500'000u}) {
+    Random random(slots);
+    std::vector<IndexPair> expected, sorted;
+    const auto bins = sorter.start(2, slots);
+    for (const std::uint32_t length : {0u, 1u, 2u, 15u, 16u, 17u, 63u, 64u, 65u, 66u, 300u, 2500u}) {
+      const std::uint32_t a = random.below(slots / 2);
+      for (std::uint32_t i = 0; i < length; ++i) expected.push_back({a, a + 1 + random.below(slots - a - 1)});
+    }
+    std::sort(expected.begin(), expected.end());
+    expected.erase(std::unique(expected.begin(), expected.end()), expected.end());
+    std::vector<IndexPair> mixed = expected;
+    for (std::size_t i = mixed.size(); i > 1; --i)
+      std::swap(mixed[i - 1], mixed[random.below(static_cast<std::uint32_t>(i))]);
+    for (std::size_t i = 0; i < mixed.size(); ++i) bins[i % 2].push(mixed[i]);
+    sorter.finish(false, parallel, sorted);
+    EXPECT_EQ(sorted, expected) << slots;
+    sorter.start(2, slots);
+    for (const IndexPair pair : mixed) {
+      bins[0].push(pair);
+      bins[1].push(pair);
+    }
+    sorter.finish(true, parallel, sorted);
+    EXPECT_EQ(sorted, expected) << slots << ", each twice";
+  }
+}
+
+TEST(OctreeBroadPhase, LeavesRegionsBehindWhileManyMoveAndMakesThemAgain) {
+  const Parallel parallel(1);
+  OctreeBroadPhase finder(BoundingVolume::aabb, {});
+  OctreeBroadPhase by_regions(BoundingVolume::aabb, {.always_regions = true});
+  std::vector<Aabb> boxes = test::random_boxes(1000, 15, 0.5f, 12);
+  Random random(13);
+  const auto step = [&](std::size_t moving) {
+    for (std::size_t i = 0; i < moving; ++i) {
+      const Vec3f by = random.point(-0.3f, 0.3f);
+      boxes[i] = {boxes[i].min + by, boxes[i].max + by};
+    }
+    const ObjectVolumes volumes{.boxes = boxes, .spheres = {}, .changed = {}};
+    const auto found = finder.find_pairs(volumes, parallel),
+               expected = by_regions.find_pairs(volumes, parallel);
+    EXPECT_TRUE(std::equal(found.begin(), found.end(), expected.begin(), expected.end()));
+    EXPECT_EQ(finder.validate(), "");
+    EXPECT_EQ(finder.stats().objects_changed, by_regions.stats().objects_changed);
+    return finder.stats();
+  };
+  EXPECT_EQ(step(0).regions_rebuilt, 1u);
+  for (int i = 0; i < 3; ++i) {
+    const BroadPhaseStats stats = step(1000);
+    EXPECT_EQ(stats.objects_paired, 1000u);
+    EXPECT_EQ(stats.objects_placed, 0u);
+    EXPECT_GT(finder.regions().size(), 8u) << "regions are there for who asks";
+  }
+  std::uint64_t rebuilt = 0;
+  for (int i = 0; i < 10; ++i) {
+    const BroadPhaseStats stats = step(5);
+    rebuilt += stats.regions_rebuilt;
+    if (i == 9) {
+      EXPECT_EQ(stats.objects_paired, 5u);
+    }
+  }
+  EXPECT_EQ(rebuilt, 1u);
+}
+
+}  // namespace
+}  // namespace supple
