@@ -267,19 +267,10 @@ HWY_INLINE Aabb box_at(const LeafBoxes& leaf, std::uint32_t i) {
   return {{leaf.min_x[i], leaf.min_y[i], leaf.min_z[i]}, {leaf.max_x[i], leaf.max_y[i], leaf.max_z[i]}};
 }
 
-#if HWY_TARGET == HWY_SCALAR
+#if HWY_TARGET <= HWY_AVX3
 
-template <bool chosen_is_b>
-HWY_INLINE std::size_t store_pairs(NumberVec triangles, BoxMask chosen, std::uint32_t other,
-                                   TrianglePair* pairs) {
-  const std::uint32_t triangle = hn::GetLane(triangles);
-  *pairs = chosen_is_b ? TrianglePair{other, triangle} : TrianglePair{triangle, other};
-  return hn::CountTrue(BoxTag(), chosen);
-}
-
-#else
-
-/// The chosen triangles, each with `other`; returns how many. Writes a whole vector of pairs in any case.
+/// The chosen triangles, each with `other`; returns how many. Writes a whole vector of pairs in any case, and
+/// does not branch on what is chosen. Only AVX-512 compresses vectors by an instruction.
 template <bool chosen_is_b>
 HWY_INLINE std::size_t store_pairs(NumberVec triangles, BoxMask chosen, std::uint32_t other,
                                    TrianglePair* pairs) {
@@ -298,6 +289,21 @@ HWY_INLINE std::size_t store_pairs(NumberVec triangles, BoxMask chosen, std::uin
   hn::StoreU(paired(hn::LowerHalf(half, compressed)), whole_pairs, place);
   hn::StoreU(paired(hn::UpperHalf(half, compressed)), whole_pairs, place + hn::Lanes(whole_pairs));
   return hn::CountTrue(BoxTag(), chosen);
+}
+
+#else
+
+template <bool chosen_is_b>
+HWY_INLINE std::size_t store_pairs(NumberVec triangles, BoxMask chosen, std::uint32_t other,
+                                   TrianglePair* pairs) {
+  const std::uint32_t first = hn::GetLane(triangles);
+  std::size_t count = 0;
+  for (std::uint64_t bits = bits_of(chosen); bits != 0; bits &= bits - 1) {
+    const auto place = static_cast<std::uint32_t>(std::countr_zero(bits));
+    const std::uint32_t triangle = first + place;
+    pairs[count++] = chosen_is_b ? TrianglePair{other, triangle} : TrianglePair{triangle, other};
+  }
+  return count;
 }
 
 #endif
@@ -392,8 +398,8 @@ class LeafTests {
         const auto one = static_cast<std::uint32_t>(std::countr_zero(rest));
         BoxMask hits = hn::And(meeting(others, i, box_at(ones, one)), wanted);
         if constexpr (each_with_later) {
-          const auto later = hn::Gt(triangles, hn::Set(NumberTag(), first_one + one));
-          hits = hn::And(hits, hn::RebindMask(BoxTag(), later));
+          const std::uint32_t not_later = one < i ? 0 : std::min(one - i + 1, lanes);
+          hits = hn::And(hits, mask_of(all_lanes << not_later & all_lanes));
         }
         count += store_pairs<others_are_b>(triangles, hits, first_one + one, room + count);
       }
