@@ -16,7 +16,8 @@ constexpr std::uint32_t kSortLeafAt = 96;
 /// The search of one object costs as much as several objects' share of a search for all.
 constexpr std::size_t kSearchCost = 6;
 
-/// Making regions costs as much as so many frames in which they would have been of use.
+/// Regions are made again after so many frames in a row in which few objects changed: one such frame among
+/// others does not pay for them.
 constexpr std::size_t kFramesWorthRegions = 4;
 
 bool is_changed(const Aabb& now, const Aabb& before) {
