@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <iterator>
 #include <type_traits>
 #include <utility>
 
@@ -40,14 +41,16 @@ HWY_INLINE Aabb lane_box(const AabbLanes& lanes, int i) {
   return {{lanes.min_x[i], lanes.min_y[i], lanes.min_z[i]}, {lanes.max_x[i], lanes.max_y[i], lanes.max_z[i]}};
 }
 
-HWY_INLINE void place(AabbLanes& lanes, const RelativePlacement& placement) {
-  for (int j = 0; j < node_width; ++j) {
-    lanes.min_x[j] += placement.offset.x - placement.slop;
-    lanes.min_y[j] += placement.offset.y - placement.slop;
-    lanes.min_z[j] += placement.offset.z - placement.slop;
-    lanes.max_x[j] += placement.offset.x + placement.slop;
-    lanes.max_y[j] += placement.offset.y + placement.slop;
-    lanes.max_z[j] += placement.offset.z + placement.slop;
+/// Moves and grows the boxes of six arrays.
+template <class Arrays>
+HWY_INLINE void place(Arrays& boxes, const RelativePlacement& placement) {
+  for (std::size_t i = 0; i < std::size(boxes.min_x); ++i) {
+    boxes.min_x[i] += placement.offset.x - placement.slop;
+    boxes.min_y[i] += placement.offset.y - placement.slop;
+    boxes.min_z[i] += placement.offset.z - placement.slop;
+    boxes.max_x[i] += placement.offset.x + placement.slop;
+    boxes.max_y[i] += placement.offset.y + placement.slop;
+    boxes.max_z[i] += placement.offset.z + placement.slop;
   }
 }
 
@@ -218,17 +221,6 @@ HWY_INLINE void load_boxes(LeafBoxes& leaf, const LeafArrays& object, std::uint3
   leaf.triangles = ~std::uint64_t{0} >> (leaf_block - leaf.size);
   for (std::uint32_t t = begin; arrays.inert != nullptr && t < end; ++t) {
     if (arrays.inert[t] != 0) leaf.triangles &= ~(std::uint64_t{1} << (t - begin));
-  }
-}
-
-HWY_INLINE void place(LeafBoxes& leaf, const RelativePlacement& placement) {
-  for (std::uint32_t i = 0; i < leaf_block; ++i) {
-    leaf.min_x[i] += placement.offset.x - placement.slop;
-    leaf.min_y[i] += placement.offset.y - placement.slop;
-    leaf.min_z[i] += placement.offset.z - placement.slop;
-    leaf.max_x[i] += placement.offset.x + placement.slop;
-    leaf.max_y[i] += placement.offset.y + placement.slop;
-    leaf.max_z[i] += placement.offset.z + placement.slop;
   }
 }
 
