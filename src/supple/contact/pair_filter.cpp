@@ -311,7 +311,8 @@ HWY_INLINE PairVerdicts filter(VertexArray<SourceA> vertices_a, VertexArray<Sour
     const TrianglePair* part = pairs + first;
     if (count - first < lanes) {
       last.fill(pairs[first]);
-      part = std::copy(part, pairs + count, last.begin()) - (count - first);
+      std::copy(part, pairs + count, last.begin());
+      part = last.data();
     }
     Corners<Tag> corners_a, corners_b;
     read_corners<&TrianglePair::a, Tag>(vertices_a, a, part, corners_a);

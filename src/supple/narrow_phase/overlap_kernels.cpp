@@ -377,7 +377,7 @@ class LeafTests {
                         std::uint32_t first_other, const LeafBoxes& others, std::uint64_t some_others) {
     constexpr std::uint32_t lanes = hn::MaxLanes(BoxTag());
     constexpr std::uint64_t all_lanes = (std::uint64_t{1} << lanes) - 1;
-    const auto count_ones = static_cast<std::uint64_t>(std::popcount(some_ones));
+    const auto count_ones = static_cast<std::size_t>(std::popcount(some_ones));
     tests_ += count_ones * static_cast<std::uint64_t>(std::popcount(some_others));
     TrianglePair* const room = pairs_.room_for(count_ones * leaf_block + lanes);
     std::size_t count = 0;
