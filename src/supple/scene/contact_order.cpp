@@ -54,7 +54,7 @@ HWY_EXPORT(place_in_buckets);
 namespace {
 
 constexpr int most_bucket_bits = 12;
-constexpr std::size_t contacts_of_bucket = 12;
+constexpr std::size_t contacts_of_bucket = 3;
 /// Larger buckets are sorted by comparing.
 constexpr std::size_t most_ranked = 256;
 constexpr int key_bits = 31;

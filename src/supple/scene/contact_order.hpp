@@ -23,7 +23,7 @@ static_assert(sizeof(FoundContact) == 16);
 /// Puts the contacts of one job at a time into the order of the result: by triangle a, then by triangle b.
 /// Keeps its memory between jobs.
 ///
-/// Contacts are counted into buckets of a range of triangles a each, about a dozen to a bucket. Within a
+/// Contacts are counted into buckets of a range of triangles a each, a few to a bucket. Within a
 /// bucket the place of a contact is how many others come before it, which vectors of keys count without
 /// branches.
 class ContactOrder {
