@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "supple/contact.hpp"
@@ -19,9 +20,27 @@ struct FoundContact {
 };
 static_assert(sizeof(FoundContact) == 16);
 
-/// Puts the contacts of a job, all of different triangles, into the order of the result: by triangle a, then
-/// by triangle b. O(n) while no triangle has very many contacts, O(n log n) at worst. `scratch` is any
-/// vector, kept for its memory.
-void sort_contacts(std::vector<FoundContact>& found, std::vector<FoundContact>& scratch);
+/// Puts the contacts of one job at a time into the order of the result: by triangle a, then by triangle b.
+/// Keeps its memory between jobs.
+///
+/// Contacts are counted into buckets of a range of triangles a each, a few to a bucket. Within a
+/// bucket the place of a contact is how many others come before it, which vectors of keys count without
+/// branches.
+class ContactOrder {
+ public:
+  /// `found` are of different pairs of triangles. What is returned lasts until the next call. O(n) while no
+  /// range of triangles has very many contacts, O(n log n) at worst.
+  std::span<const FoundContact> sort(std::span<const FoundContact> found);
+
+ private:
+  struct Keys;
+  void sort_by_buckets(std::span<const FoundContact> found, const Keys& keys, std::span<FoundContact> sorted);
+
+  // Of one bucket after the other: what tells the order within it, which contact that is of, and where that
+  // belongs.
+  std::vector<std::int32_t> keys_, places_;
+  std::vector<std::uint32_t> numbers_;
+  std::vector<FoundContact> sorted_;
+};
 
 }  // namespace supple

@@ -240,18 +240,26 @@ void ContactPass::renumber_points(const Outcome& known, const Outcome& outcome) 
                 [&](Contact& contact) { contact.first_point += change; });
 }
 
-void ContactPass::gather_found(const Source& source, const Outcome& outcome, Worker& worker) {
+/// Those of one task are used where they are.
+std::span<const FoundContact> ContactPass::found_of(const Source& source, Worker& worker) const {
+  const auto tasks = std::span(task_outcomes_).subspan(source.first_task, source.task_count);
+  const auto found = [&](const TaskOutcome& task) {
+    return std::span(workers_[task.worker].found).subspan(task.contacts.first, task.contacts.count);
+  };
+  if (tasks.size() == 1) return found(tasks.front());
   worker.of_job.clear();
-  for (std::uint32_t task = source.first_task; task < source.first_task + source.task_count; ++task) {
-    const TaskOutcome& part = task_outcomes_[task];
-    const auto first = workers_[part.worker].found.begin() + part.contacts.first;
-    worker.of_job.insert(worker.of_job.end(), first, first + part.contacts.count);
+  for (const TaskOutcome& task : tasks) {
+    const auto part = found(task);
+    worker.of_job.insert(worker.of_job.end(), part.begin(), part.end());
   }
-  sort_contacts(worker.of_job, worker.scratch);
+  return worker.of_job;
+}
+
+void ContactPass::gather_found(const Source& source, const Outcome& outcome, Worker& worker) {
   const ObjectId a = objects_[outcome.job.a].id, b = objects_[outcome.job.b].id;
   Contact* contact = contacts_.data() + outcome.contacts.first;
   std::uint32_t point = outcome.points.first;
-  for (const FoundContact& found : worker.of_job) {
+  for (const FoundContact& found : worker.order.sort(found_of(source, worker))) {
     *contact++ = {a, b, found.triangle_a, found.triangle_b, found.kind, found.point_count, point};
     if (!options_.contact_points) continue;
     std::copy_n(workers_[found.worker].points.begin() + found.first_point, found.point_count,

@@ -53,8 +53,9 @@ class ContactPass {
     std::vector<ContactPoint> points;
     std::vector<CollidingLeaves> leaves;
     TaskStats stats;
-    // Of one job at a time, for putting its contacts into order.
-    std::vector<FoundContact> of_job, scratch;
+    // For putting the contacts of one job at a time into order.
+    std::vector<FoundContact> of_job;
+    ContactOrder order;
   };
   struct Range {
     std::uint32_t first = 0, count = 0;
@@ -92,6 +93,7 @@ class ContactPass {
   template <class Item>
   void move_known(std::vector<Item>& items, Range Outcome::*range);
   void renumber_points(const Outcome& known, const Outcome& outcome);
+  std::span<const FoundContact> found_of(const Source& source, Worker& worker) const;
   void gather_found(const Source& source, const Outcome& outcome, Worker& worker);
   void list_groups();
   void gather_colliding_vertices();

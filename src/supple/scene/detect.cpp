@@ -1,6 +1,6 @@
 #include <algorithm>
-
 #include <limits>
+#include <vector>
 
 #include "core/error.hpp"
 #include "core/float_rounding.hpp"
@@ -56,9 +56,11 @@ const DetectResult& Scene::Implementation::detect() {
   return result;
 }
 
-/// Large objects take all workers one after the other; small ones go side by side.
+/// Objects go side by side. One that is a large part of the work would keep its worker while the others wait:
+/// such objects take all workers, one after the other.
 void Scene::Implementation::refit_objects() {
-  constexpr std::size_t large = 16384;  // triangles
+  constexpr std::size_t least_large = 16384;  // triangles; fewer are not worth splitting
+  constexpr std::size_t shares_of_worker = 8;
   const double growth_of_volumes = is_continuous() ? growth(options.impact.min_separation) : 0;
   boxes_.resize(slots_.size());
   spheres_.resize(slots_.size());
@@ -66,20 +68,23 @@ void Scene::Implementation::refit_objects() {
   changed_.resize(slots_.size(), 0);
   stale_.clear();
   for (std::uint32_t index = 0; index < slots_.size(); ++index) {
-    SceneObject* const object = slots_[index].object.get();
+    const SceneObject* const object = slots_[index].object.get();
     if (object == nullptr || !object->is_stale()) continue;
     changed_[index] = 1;
     versions_[index] = ++last_version_;
-    if (object->needs_refit()) {
-      ++result.stats.objects_refitted;
-      result.stats.triangles_refitted += object->octree().triangles().size();
-    }
-    if (object->octree().triangles().size() >= large) {
-      object->update(parallel);
-    } else {
-      stale_.push_back(index);
-    }
+    stale_.push_back(index);
+    if (!object->needs_refit()) continue;
+    ++result.stats.objects_refitted;
+    result.stats.triangles_refitted += object->octree().triangles().size();
   }
+  const std::size_t share = result.stats.triangles_refitted / (shares_of_worker * parallel.worker_count());
+  std::erase_if(stale_, [&](std::uint32_t index) {
+    SceneObject& object = *slots_[index].object;
+    if (!object.needs_refit() || object.octree().triangles().size() < std::max(least_large, share))
+      return false;
+    object.update(parallel);
+    return true;
+  });
   parallel.for_ranges(stale_.size(), 1, [&](std::size_t begin, std::size_t end, std::uint32_t) {
     for (std::size_t i = begin; i < end; ++i) slots_[stale_[i]].object->update(serial);
   });

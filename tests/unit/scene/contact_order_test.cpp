@@ -9,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "support/instruction_sets.hpp"
+
 namespace supple {
 namespace {
 
@@ -25,19 +27,21 @@ std::vector<FoundContact> contacts_of(const std::set<std::pair<std::uint32_t, st
   return found;
 }
 
-void expect_sorted(std::vector<FoundContact> found, std::vector<FoundContact>& scratch) {
+void expect_sorted(const std::vector<FoundContact>& found, ContactOrder& order) {
   std::vector<FoundContact> expected = found;
   std::sort(expected.begin(), expected.end(), [](const FoundContact& p, const FoundContact& q) {
     return std::tie(p.triangle_a, p.triangle_b) < std::tie(q.triangle_a, q.triangle_b);
   });
-  sort_contacts(found, scratch);
-  EXPECT_EQ(found, expected);
+  for_each_target([&](const char* target) {
+    const auto sorted = order.sort(found);
+    EXPECT_EQ(std::vector<FoundContact>(sorted.begin(), sorted.end()), expected) << target;
+  });
 }
 
 TEST(ContactOrder, RandomContactsOfAnyNumberAndSpread) {
   std::mt19937 random(17);
-  std::vector<FoundContact> scratch;  // of the sort before
-  for (const std::size_t count : {0u, 1u, 2u, 23u, 24u, 25u, 100u, 3000u}) {
+  ContactOrder order;  // with what the sort before left in its memory
+  for (const std::size_t count : {0u, 1u, 2u, 12u, 25u, 100u, 3000u}) {
     for (const std::uint32_t spread : {1u, 2u, 60u, 511u, 512u, 70000u, 0xffffffffu}) {
       std::set<std::pair<std::uint32_t, std::uint32_t>> triangles;
       const std::uint32_t least = spread < 0x7fffffff ? static_cast<std::uint32_t>(random() % 0x7fffffff) : 0;
@@ -45,19 +49,36 @@ TEST(ContactOrder, RandomContactsOfAnyNumberAndSpread) {
         triangles.insert({least + static_cast<std::uint32_t>(random()) % spread,
                           static_cast<std::uint32_t>(random()) % 5000});
       }
-      expect_sorted(contacts_of(triangles, random), scratch);
+      expect_sorted(contacts_of(triangles, random), order);
+    }
+  }
+}
+
+/// Keys of 31 bits just hold what is left of the triangles' numbers, or just do not.
+TEST(ContactOrder, NumbersOfAnyWidth) {
+  std::mt19937 random(19);
+  ContactOrder order;
+  for (const int bits_a : {1, 15, 21, 22, 31}) {
+    for (const int bits_b : {1, 16, 21, 22, 30, 31, 32}) {
+      std::set<std::pair<std::uint32_t, std::uint32_t>> triangles{{0, 0}};
+      const auto most = [](int bits) { return ~std::uint32_t{0} >> (32 - bits); };
+      triangles.insert({most(bits_a), most(bits_b)});
+      for (int i = 0; i < 200; ++i)
+        triangles.insert({static_cast<std::uint32_t>(random()) & most(bits_a),
+                          static_cast<std::uint32_t>(random()) & most(bits_b)});
+      expect_sorted(contacts_of(triangles, random), order);
     }
   }
 }
 
 TEST(ContactOrder, OneTriangleAgainstVeryMany) {
   std::mt19937 random(18);
-  std::vector<FoundContact> scratch;
+  ContactOrder order;
   std::set<std::pair<std::uint32_t, std::uint32_t>> triangles;
   for (std::uint32_t b = 0; b < 2000; ++b) triangles.insert({7, b * 3});
   for (std::uint32_t a = 0; a < 2000; ++a) triangles.insert({a * 5, 9});
   for (const std::uint32_t end : {0u, 0xffffffffu}) triangles.insert({end, end});
-  expect_sorted(contacts_of(triangles, random), scratch);
+  expect_sorted(contacts_of(triangles, random), order);
 }
 
 }  // namespace
