@@ -23,6 +23,9 @@ class BulkSearch {
             std::size_t last_pair_count, std::span<PairBins> found);
   std::uint64_t tests() const;
   std::size_t box_count() const { return block_begins_.back(); }  ///< that were not empty
+  /// How the last call searched.
+  const BoxMeasure& measure() const { return measure_; }
+  const DealtBoxes& dealt() const { return boxes_; }
 
  private:
   /// A range of boxes that are measured by one worker.
