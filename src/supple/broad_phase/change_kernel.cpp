@@ -35,7 +35,7 @@ HWY_INLINE bool same(const Aabb* now, const Aabb* before) {
 std::size_t list_changed(const Aabb* now, const Aabb* before, std::size_t begin, std::size_t end,
                          std::uint32_t* out) {
   // The processor's own guesses end at each page.
-  constexpr std::size_t kAhead = 64;
+  constexpr std::size_t kAhead = 192;
   std::size_t count = 0;
   for (std::size_t i = begin; i < end;) {
     const std::size_t block_end = i + kBlock < end ? i + kBlock : end;

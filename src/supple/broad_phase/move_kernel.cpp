@@ -194,6 +194,7 @@ class Mover {
     move.hull = hull_of(move.was.steps, move.is.steps);
     for_ranges(move.hull, [&](CellRange range) HWY_ATTR {
       hwy::Prefetch(range.first);
+      hwy::Prefetch(range.last);
       if (move.range_count < move.ranges.size()) move.ranges[move.range_count] = range;
       ++move.range_count;
     });
@@ -201,10 +202,9 @@ class Mover {
 
   HWY_INLINE void fetch_boxes(const Move& move) const {
     for (std::size_t k = 0; k < std::min(move.range_count, move.ranges.size()); ++k) {
-      const MeasuredBox* const first = cells_.boxes() + *move.ranges[k].first;
-      hwy::Prefetch(first);
-      hwy::Prefetch(first + 4);
-      hwy::Prefetch(first + 8);
+      const MeasuredBox* const last = cells_.boxes() + *move.ranges[k].last;
+      for (const MeasuredBox* box = cells_.boxes() + *move.ranges[k].first; box < last; box += 4)
+        hwy::Prefetch(box);
     }
   }
 
