@@ -21,7 +21,7 @@ constexpr std::size_t kBlock = 8;
 constexpr std::size_t kNumbers = kBlock * sizeof(Aabb) / sizeof(float);
 
 /// Whether two blocks of boxes are the same bit by bit.
-HWY_INLINE bool same(const Aabb* now, const Aabb* before) {
+HWY_INLINE bool same_block(const Aabb* now, const Aabb* before) {
   const hn::CappedTag<float, 16> lanes;  // their number parts a block
   const hn::RebindToUnsigned<hn::CappedTag<float, 16>> bits;
   const float *const a = &now->min.x, *const b = &before->min.x;
@@ -31,6 +31,26 @@ HWY_INLINE bool same(const Aabb* now, const Aabb* before) {
                                     hn::BitCast(bits, hn::LoadU(lanes, b + i))));
   return hn::AllTrue(bits, hn::Eq(differ, hn::Zero(bits)));
 }
+
+/// Whether a box is another than it was.
+#if HWY_TARGET == HWY_SCALAR
+bool differ(const Aabb& now, const Aabb& before) {
+  return std::memcmp(&now, &before, sizeof(Aabb)) != 0 && !(now.empty() && before.empty());
+}
+#else
+HWY_INLINE bool differ(const Aabb& now, const Aabb& before) {
+  // The first four and the last four numbers.
+  const hn::Full128<float> lanes;
+  const hn::Full128<std::uint32_t> bits;
+  const auto mins = hn::LoadU(lanes, &now.min.x), maxs = hn::LoadU(lanes, &now.min.z);
+  const auto first = hn::Xor(hn::BitCast(bits, mins), hn::BitCast(bits, hn::LoadU(lanes, &before.min.x)));
+  const auto last = hn::Xor(hn::BitCast(bits, maxs), hn::BitCast(bits, hn::LoadU(lanes, &before.min.z)));
+  const bool same = hn::AllTrue(bits, hn::Eq(hn::Or(first, last), hn::Zero(bits)));
+  const auto is_below = hn::And(hn::Le(mins, hn::Shuffle0321(maxs)), hn::FirstN(lanes, 3));
+  if (HWY_UNLIKELY(hn::CountTrue(lanes, is_below) != 3)) return !same && !before.empty();
+  return !same;
+}
+#endif
 
 std::size_t list_changed(const Aabb* now, const Aabb* before, std::size_t begin, std::size_t end,
                          std::uint32_t* out) {
@@ -45,14 +65,13 @@ std::size_t list_changed(const Aabb* now, const Aabb* before, std::size_t begin,
         hwy::Prefetch(reinterpret_cast<const char*>(before + i + kAhead) + 64 * k);
       }
     }
-    if (block_end == i + kBlock && same(now + i, before + i)) {
+    if (block_end == i + kBlock && same_block(now + i, before + i)) {
       i = block_end;
       continue;
     }
     for (; i < block_end; ++i) {
       out[count] = static_cast<std::uint32_t>(i);
-      const bool differs = std::memcmp(now + i, before + i, sizeof(Aabb)) != 0;
-      count += static_cast<std::size_t>(differs && !(now[i].empty() && before[i].empty()));
+      count += static_cast<std::size_t>(differ(now[i], before[i]));
     }
   }
   return count;

@@ -35,6 +35,20 @@ class Measure {
     }
     return !box.empty();
   }
+  struct Reach {
+    std::array<std::uint32_t, 3> extents;
+    static Reach nothing() { return {}; }
+    std::array<std::uint32_t, 3> largest() const { return extents; }
+  };
+  static std::size_t batch() { return 1; }
+  bool many(const Aabb* box, std::uint32_t slot, MeasuredBox* out, Reach& reach) const {
+    std::array<std::uint32_t, 4> extents;
+    out->slot = slot;
+    if (!ends(*box, *out, extents)) return false;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      reach.extents[axis] = std::max(reach.extents[axis], extents[axis]);
+    return true;
+  }
 
  private:
   /// NaN, which only empty boxes have, is 1.
@@ -47,16 +61,61 @@ class Measure {
   const BoxMeasure& measure_;
 };
 #else
-/// A box is loaded as its first four and its last four numbers.
 class Measure {
+  using ManyFloats = hn::CappedTag<float, kMaxLanes>;
+  using ManyWords = hn::RebindToUnsigned<ManyFloats>;
+  using Packed = hn::Half<ManyWords>;
+
  public:
-  explicit Measure(const BoxMeasure& measure) {
+  /// The largest extents, some of them in each lane.
+  struct Reach {
+    hn::Vec<Packed> x, y, z;
+
+    static HWY_INLINE Reach nothing() {
+      const Packed packed;
+      return {hn::Zero(packed), hn::Zero(packed), hn::Zero(packed)};
+    }
+    HWY_INLINE std::array<std::uint32_t, 3> largest() const {
+      const Packed packed;
+      return {hn::GetLane(hn::MaxOfLanes(packed, x)), hn::GetLane(hn::MaxOfLanes(packed, y)),
+              hn::GetLane(hn::MaxOfLanes(packed, z))};
+    }
+  };
+  explicit Measure(const BoxMeasure& measure) : measure_(measure) {
     for (std::size_t i = 0; i < 8; ++i) {
       const std::size_t axis = (i < 4 ? i : i + 1) % 3;  // x y z x, then z x y z
       low_[i] = measure.low[axis];
       scale_[i] = measure.steps_per_unit[axis];
     }
   }
+  /// Boxes that `many` takes.
+  static std::size_t batch() { return hn::Lanes(ManyFloats()) / 2; }
+  /// The same as `ends` for as many boxes one behind the other, with slots from `slot` on, and their reach; or
+  /// false when one of them is empty.
+  HWY_INLINE bool many(const Aabb* boxes, std::uint32_t slot, MeasuredBox* out, Reach& reach) const {
+    const ManyFloats floats_of_two;
+    // Along each axis the lower and the upper end of each box in turn.
+    hn::Vec<ManyFloats> x, y, z;
+    hn::LoadInterleaved3(floats_of_two, &boxes->min.x, x, y, z);
+    const auto is_below = [&](hn::Vec<ManyFloats> ends)
+                              HWY_ATTR { return hn::Le(ends, hn::Shuffle2301(ends)); };
+    const auto below = hn::And(hn::And(is_below(x), is_below(y)), is_below(z));
+    // The lower end of a box tells; to the upper one the other comparison would belong.
+    const auto is_upper = hn::Eq(hn::And(hn::Iota(ManyWords(), 0), hn::Set(ManyWords(), 1)), hn::Set(ManyWords(), 1));
+    if (!hn::AllTrue(floats_of_two, hn::Or(below, hn::RebindMask(floats_of_two, is_upper)))) return false;
+    const Packed packed;
+    const auto ends_x = pack(x, 0), ends_y = pack(y, 1), ends_z = pack(z, 2);
+    hn::StoreInterleaved4(ends_x, ends_y, ends_z, hn::Iota(packed, slot), packed, out->ends.data());
+    const auto extents = [&](hn::Vec<Packed> ends) HWY_ATTR {
+      return hn::Sub(hn::Sub(hn::Set(packed, 0xffffu), hn::ShiftRight<16>(ends)),
+                     hn::And(ends, hn::Set(packed, 0xffffu)));
+    };
+    reach.x = hn::Max(reach.x, extents(ends_x));
+    reach.y = hn::Max(reach.y, extents(ends_y));
+    reach.z = hn::Max(reach.z, extents(ends_z));
+    return true;
+  }
+  /// A box is loaded as its first four and its last four numbers.
   /// Ends in steps, or false when the box is empty.
   HWY_INLINE bool ends(const Aabb& box, MeasuredBox& out, std::array<std::uint32_t, 4>& extents) const {
     const hn::Full128<std::uint32_t> words;
@@ -83,6 +142,21 @@ class Measure {
     return hn::And(hn::BitCast(words, hn::Add(clamped, hn::Set(floats, 0x1p23f))), hn::Set(words, 0xffffu));
   }
 
+  HWY_INLINE hn::Vec<Packed> pack(hn::Vec<ManyFloats> ends, std::size_t axis) const {
+    const ManyFloats tag;
+    const ManyWords words;
+    const hn::RepartitionToWide<ManyWords> boxes;
+    const auto place = hn::Mul(hn::Sub(ends, hn::Set(tag, measure_.low[axis])),
+                               hn::Set(tag, measure_.steps_per_unit[axis]));
+    const auto clamped = hn::Min(hn::Max(place, hn::Set(tag, 1.0f)), hn::Set(tag, kSteps - 2.0f));
+    const auto steps =
+        hn::And(hn::BitCast(words, hn::Add(clamped, hn::Set(tag, 0x1p23f))), hn::Set(words, 0xffffu));
+    const auto both = hn::BitCast(boxes, steps);
+    const auto upper = hn::Sub(hn::Set(boxes, 0xffffu), hn::ShiftRight<32>(both));
+    return hn::TruncateTo(Packed(), hn::Or(both, hn::ShiftLeft<16>(upper)));
+  }
+
+  const BoxMeasure& measure_;
   alignas(16) std::array<float, 8> low_, scale_;
 };
 #endif

@@ -162,25 +162,51 @@ HWY_INLINE void for_rows(const std::uint32_t* cell_begins, const BoxRows& rows, 
   }
 }
 
+/// The level and block of a box.
+HWY_INLINE void deal(const BoxMeasure& measure, std::span<const BoxRows> levels, std::size_t i,
+                     const MeasuredBoxes& out) {
+  const MeasuredBox& box = out.boxes[i];
+  std::array<std::uint32_t, 4> extents;
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    extents[axis] = 0xffff - (box.ends[axis] >> 16) - (box.ends[axis] & 0xffff);
+  const std::size_t level = measure.level_of(extents);
+  const BoxRows& rows = levels[level];
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    out.reach[level][axis] = std::max(out.reach[level][axis], extents[axis]);
+  const std::uint32_t row = rows.row_of(measure.low_step(box, 1), measure.low_step(box, 2));
+  const std::uint32_t block = measure.first_block[level] + (row >> measure.rows_per_block_log2[level]);
+  out.blocks[i] = block;
+  ++out.block_sizes[block];
+}
+
 std::size_t measure(const BoxMeasure& measure, std::span<const BoxRows> levels, std::span<const Aabb> boxes,
                     std::uint32_t slot, const MeasuredBoxes& out) {
   const Measure of_box(measure);
+  Measure::Reach reach = Measure::Reach::nothing();
+  const bool one_block = measure.first_block.back() == 1;
+  const std::size_t batch = of_box.batch();
   std::size_t count = 0;
-  for (const Aabb& box : boxes) {
-    MeasuredBox& measured = out.boxes[count];
-    std::array<std::uint32_t, 4> extents;
-    const bool is_box = of_box.ends(box, measured, extents);
-    measured.slot = slot++;
-    if (!is_box) continue;
-    const std::size_t level = measure.level_of(extents);
-    const BoxRows& rows = levels[level];
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      out.reach[level][axis] = std::max(out.reach[level][axis], extents[axis]);
-    const std::uint32_t row = rows.row_of(measure.low_step(measured, 1), measure.low_step(measured, 2));
-    const std::uint32_t block = measure.first_block[level] + (row >> measure.rows_per_block_log2[level]);
-    out.blocks[count++] = block;
-    ++out.block_sizes[block];
+  for (std::size_t i = 0; i < boxes.size();) {
+    const auto first = slot + static_cast<std::uint32_t>(i);
+    if (i + batch <= boxes.size() && of_box.many(&boxes[i], first, out.boxes + count, reach)) {
+      for (std::size_t k = 0; k < batch && !one_block; ++k) deal(measure, levels, count + k, out);
+      i += batch;
+      count += batch;
+      continue;
+    }
+    for (const std::size_t end = std::min(i + batch, boxes.size()); i < end; ++i) {
+      std::array<std::uint32_t, 4> extents;
+      const bool is_box = of_box.ends(boxes[i], out.boxes[count], extents);
+      out.boxes[count].slot = slot + static_cast<std::uint32_t>(i);
+      if (is_box) deal(measure, levels, count++, out);
+    }
   }
+  if (!one_block) return count;
+  // What was left of the only block when boxes were measured many at a time.
+  std::fill_n(out.blocks, count, 0);
+  out.block_sizes[0] = static_cast<std::uint32_t>(count);
+  const std::array<std::uint32_t, 3> largest = reach.largest();
+  for (std::size_t axis = 0; axis < 3; ++axis) out.reach[0][axis] = std::max(out.reach[0][axis], largest[axis]);
   return count;
 }
 
