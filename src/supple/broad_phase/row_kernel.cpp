@@ -210,6 +210,63 @@ std::size_t measure(const BoxMeasure& measure, std::span<const BoxRows> levels, 
   return count;
 }
 
+#if HWY_TARGET != HWY_SCALAR
+constexpr std::size_t kRowsAtOnce = 4;
+
+/// The boxes [place, place + 4) of the only row against those behind each of them, where few overlap: a vector
+/// of others is loaded once for four, and there is one branch for all.
+HWY_INLINE void search_four(const DealtBoxes& boxes, std::size_t place, Arrays& arrays, RowSearch& search) {
+  const Words lanes;
+  const std::uint32_t* const cell_begins = boxes.cell_begins.data();
+  const Row row_0 = row_of(arrays, place), row_1 = row_of(arrays, place + 1), row_2 = row_of(arrays, place + 2),
+            row_3 = row_of(arrays, place + 3);
+  std::size_t end = 0;
+  const auto end_of = [&](const Row& row, std::size_t own) HWY_ATTR {
+    const std::size_t own_end = cell_begins[boxes.levels[0].division(0, row.high[0]) + 1];
+    arrays.tests += own_end - own - 1;
+    end = std::max(end, own_end);
+  };
+  end_of(row_0, place);
+  end_of(row_1, place + 1);
+  end_of(row_2, place + 2);
+  end_of(row_3, place + 3);
+  const auto apart_by = [&](const Row& row, std::size_t j) HWY_ATTR {
+    const auto over = hn::Or(hn::Or(excess(arrays.ends_0 + j, row.bounds_0), excess(arrays.ends_1 + j, row.bounds_1)),
+                             excess(arrays.ends_2 + j, row.bounds_2));
+    return hn::And(over, hn::Set(lanes, 0xfffefffeu));
+  };
+  // Those that are not behind a row are far from it.
+  const auto none_of = [&](std::size_t k) HWY_ATTR {
+    return hn::VecFromMask(lanes, hn::FirstN(lanes, k));
+  };
+  auto hide_1 = none_of(1), hide_2 = none_of(2), hide_3 = none_of(3);
+  for (std::size_t j = place + 1; j < end; j += hn::Lanes(lanes)) {
+    const auto apart_0 = apart_by(row_0, j), apart_1 = hn::Or(apart_by(row_1, j), hide_1),
+               apart_2 = hn::Or(apart_by(row_2, j), hide_2), apart_3 = hn::Or(apart_by(row_3, j), hide_3);
+    hide_1 = hide_2 = hide_3 = hn::Zero(lanes);
+    const auto least = hn::Min(hn::Min(apart_0, apart_1), hn::Min(apart_2, apart_3));
+    if (HWY_LIKELY(hn::AllFalse(lanes, hn::Eq(least, hn::Zero(lanes))))) continue;
+    const auto near_of = [&](hn::Vec<Words> apart) HWY_ATTR -> std::uint64_t {
+      return bits_of(hn::Eq(apart, hn::Zero(lanes)));
+    };
+    const std::uint64_t in_range = end - j < 16 ? (1u << (end - j)) - 1 : 0xffff;
+    std::uint64_t near = near_of(apart_0) | near_of(apart_1) << 16 | near_of(apart_2) << 32 | near_of(apart_3) << 48;
+    near &= in_range * 0x0001000100010001u;
+    for (; near != 0; near &= near - 1) {
+      const auto bit = static_cast<std::size_t>(std::countr_zero(near));
+      const std::uint32_t slot = arrays.slots[place + bit / 16], other = arrays.slots[j + bit % 16];
+      arrays.first[arrays.count] = slot;
+      arrays.second[arrays.count] = other;
+      arrays.count += static_cast<std::size_t>(overlap(boxes.exact[slot], boxes.exact[other]));
+    }
+    if (HWY_UNLIKELY(arrays.count > RowSearch::kBatch - 4 * kMaxLanes)) {
+      flush(boxes.spheres, arrays.count, search);
+      arrays.count = 0;
+    }
+  }
+}
+#endif
+
 template <bool dense, bool only_row>
 void search_level(const DealtBoxes& boxes, std::size_t level, std::size_t begin, std::size_t end,
                   RowSearch& search) {
@@ -217,7 +274,12 @@ void search_level(const DealtBoxes& boxes, std::size_t level, std::size_t begin,
                 boxes.slots.data(),   search.first.data(),  search.second.data()};
   const std::uint32_t* const cell_begins = boxes.cell_begins.data();
   const BoxRows rows = boxes.levels[level];
-  for (std::size_t place = begin; place < end; ++place) {
+  std::size_t place = begin;
+#if HWY_TARGET != HWY_SCALAR
+  if constexpr (only_row && !dense)
+    for (; place + kRowsAtOnce <= end; place += kRowsAtOnce) search_four(boxes, place, arrays, search);
+#endif
+  for (; place < end; ++place) {
     const Row row = row_of(arrays, place);
     const auto visit = [&](std::size_t from, std::size_t to)
                            HWY_ATTR { against<dense>(row, from, to, boxes, arrays, search); };
