@@ -54,8 +54,8 @@ bool BulkSearch::find(std::span<const Aabb> boxes, std::span<const BoundingSpher
   return true;
 }
 
-/// Few boxes have a plan once in some calls: it takes as long as a tenth of the search. False when none suits;
-/// it is not trusted when boxes have become many in a cell or larger.
+/// Few boxes have a plan once in some calls: it takes as long as a tenth of the search. False when none
+/// suits; it is not trusted when boxes have become many in a cell or larger.
 bool BulkSearch::deal_by_old_plan(const Parallel& parallel) {
   constexpr std::size_t kFew = 16384;
   constexpr std::uint32_t kUses = 8;

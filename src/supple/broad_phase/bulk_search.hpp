@@ -46,10 +46,10 @@ class BulkSearch {
 
   SearchPlanner planner_;
   SearchPlan plan_;
-  std::uint32_t plan_uses_ = 0;               // since it was made
-  std::size_t planned_count_ = 0;             // of boxes when it was made
+  std::uint32_t plan_uses_ = 0;                   // since it was made
+  std::size_t planned_count_ = 0;                 // of boxes when it was made
   std::array<std::uint32_t, 3> planned_reach_{};  // of the largest ones then
-  std::uint64_t company_ = 0;                 // sum over all cells of the squares of their counts then
+  std::uint64_t company_ = 0;                     // sum over all cells of the squares of their counts then
   BoxMeasure measure_;
   std::vector<Chunk> chunks_;
   std::vector<MeasuredBox> measured_, dealt_;

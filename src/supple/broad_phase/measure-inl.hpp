@@ -90,8 +90,8 @@ class Measure {
   }
   /// Boxes that `many` takes.
   static std::size_t batch() { return hn::Lanes(ManyFloats()) / 2; }
-  /// The same as `ends` for as many boxes one behind the other, with slots from `slot` on, and their reach; or
-  /// false when one of them is empty.
+  /// The same as `ends` for as many boxes one behind the other, with slots from `slot` on, and their reach;
+  /// or false when one of them is empty.
   HWY_INLINE bool many(const Aabb* boxes, std::uint32_t slot, MeasuredBox* out, Reach& reach) const {
     const ManyFloats floats_of_two;
     // Along each axis the lower and the upper end of each box in turn.
@@ -101,7 +101,8 @@ class Measure {
                               HWY_ATTR { return hn::Le(ends, hn::Shuffle2301(ends)); };
     const auto below = hn::And(hn::And(is_below(x), is_below(y)), is_below(z));
     // The lower end of a box tells; to the upper one the other comparison would belong.
-    const auto is_upper = hn::Eq(hn::And(hn::Iota(ManyWords(), 0), hn::Set(ManyWords(), 1)), hn::Set(ManyWords(), 1));
+    const auto is_upper =
+        hn::Eq(hn::And(hn::Iota(ManyWords(), 0), hn::Set(ManyWords(), 1)), hn::Set(ManyWords(), 1));
     if (!hn::AllTrue(floats_of_two, hn::Or(below, hn::RebindMask(floats_of_two, is_upper)))) return false;
     const Packed packed;
     const auto ends_x = pack(x, 0), ends_y = pack(y, 1), ends_z = pack(z, 2);
@@ -146,8 +147,8 @@ class Measure {
     const ManyFloats tag;
     const ManyWords words;
     const hn::RepartitionToWide<ManyWords> boxes;
-    const auto place = hn::Mul(hn::Sub(ends, hn::Set(tag, measure_.low[axis])),
-                               hn::Set(tag, measure_.steps_per_unit[axis]));
+    const auto place =
+        hn::Mul(hn::Sub(ends, hn::Set(tag, measure_.low[axis])), hn::Set(tag, measure_.steps_per_unit[axis]));
     const auto clamped = hn::Min(hn::Max(place, hn::Set(tag, 1.0f)), hn::Set(tag, kSteps - 2.0f));
     const auto steps =
         hn::And(hn::BitCast(words, hn::Add(clamped, hn::Set(tag, 0x1p23f))), hn::Set(words, 0xffffu));

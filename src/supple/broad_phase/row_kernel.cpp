@@ -49,13 +49,17 @@ HWY_INLINE hn::Vec<Words> excess(const std::uint32_t* ends, Bounds bounds) {
 #endif
 
 void flush(std::span<const BoundingSphere> spheres, std::size_t count, RowSearch& search) {
-  PairBins& pairs = *search.pairs;
-  for (std::size_t i = 0; i < count; ++i) {
-    const std::uint32_t a = std::min(search.first[i], search.second[i]);
-    const std::uint32_t b = std::max(search.first[i], search.second[i]);
-    if (!spheres.empty() && !overlap(spheres[a], spheres[b])) continue;
-    pairs.push({a, b});
+  if (!spheres.empty()) {
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::uint32_t a = search.first[i], b = search.second[i];
+      search.first[kept] = a;
+      search.second[kept] = b;
+      kept += static_cast<std::size_t>(overlap(spheres[a], spheres[b]));
+    }
+    count = kept;
   }
+  search.pairs->push_all(search.first.data(), search.second.data(), count);
 }
 
 /// The arrays that are read and written all the time; by value, as the compiler takes each word that is
@@ -206,20 +210,21 @@ std::size_t measure(const BoxMeasure& measure, std::span<const BoxRows> levels, 
   std::fill_n(out.blocks, count, 0);
   out.block_sizes[0] = static_cast<std::uint32_t>(count);
   const std::array<std::uint32_t, 3> largest = reach.largest();
-  for (std::size_t axis = 0; axis < 3; ++axis) out.reach[0][axis] = std::max(out.reach[0][axis], largest[axis]);
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    out.reach[0][axis] = std::max(out.reach[0][axis], largest[axis]);
   return count;
 }
 
 #if HWY_TARGET != HWY_SCALAR
 constexpr std::size_t kRowsAtOnce = 4;
 
-/// The boxes [place, place + 4) of the only row against those behind each of them, where few overlap: a vector
-/// of others is loaded once for four, and there is one branch for all.
+/// The boxes [place, place + 4) of the only row against those behind each of them, where few overlap: a
+/// vector of others is loaded once for four, and there is one branch for all.
 HWY_INLINE void search_four(const DealtBoxes& boxes, std::size_t place, Arrays& arrays, RowSearch& search) {
   const Words lanes;
   const std::uint32_t* const cell_begins = boxes.cell_begins.data();
-  const Row row_0 = row_of(arrays, place), row_1 = row_of(arrays, place + 1), row_2 = row_of(arrays, place + 2),
-            row_3 = row_of(arrays, place + 3);
+  const Row row_0 = row_of(arrays, place), row_1 = row_of(arrays, place + 1),
+            row_2 = row_of(arrays, place + 2), row_3 = row_of(arrays, place + 3);
   std::size_t end = 0;
   const auto end_of = [&](const Row& row, std::size_t own) HWY_ATTR {
     const std::size_t own_end = cell_begins[boxes.levels[0].division(0, row.high[0]) + 1];
@@ -231,14 +236,13 @@ HWY_INLINE void search_four(const DealtBoxes& boxes, std::size_t place, Arrays& 
   end_of(row_2, place + 2);
   end_of(row_3, place + 3);
   const auto apart_by = [&](const Row& row, std::size_t j) HWY_ATTR {
-    const auto over = hn::Or(hn::Or(excess(arrays.ends_0 + j, row.bounds_0), excess(arrays.ends_1 + j, row.bounds_1)),
-                             excess(arrays.ends_2 + j, row.bounds_2));
+    const auto over =
+        hn::Or(hn::Or(excess(arrays.ends_0 + j, row.bounds_0), excess(arrays.ends_1 + j, row.bounds_1)),
+               excess(arrays.ends_2 + j, row.bounds_2));
     return hn::And(over, hn::Set(lanes, 0xfffefffeu));
   };
   // Those that are not behind a row are far from it.
-  const auto none_of = [&](std::size_t k) HWY_ATTR {
-    return hn::VecFromMask(lanes, hn::FirstN(lanes, k));
-  };
+  const auto none_of = [&](std::size_t k) HWY_ATTR { return hn::VecFromMask(lanes, hn::FirstN(lanes, k)); };
   auto hide_1 = none_of(1), hide_2 = none_of(2), hide_3 = none_of(3);
   for (std::size_t j = place + 1; j < end; j += hn::Lanes(lanes)) {
     const auto apart_0 = apart_by(row_0, j), apart_1 = hn::Or(apart_by(row_1, j), hide_1),
@@ -246,11 +250,11 @@ HWY_INLINE void search_four(const DealtBoxes& boxes, std::size_t place, Arrays& 
     hide_1 = hide_2 = hide_3 = hn::Zero(lanes);
     const auto least = hn::Min(hn::Min(apart_0, apart_1), hn::Min(apart_2, apart_3));
     if (HWY_LIKELY(hn::AllFalse(lanes, hn::Eq(least, hn::Zero(lanes))))) continue;
-    const auto near_of = [&](hn::Vec<Words> apart) HWY_ATTR -> std::uint64_t {
-      return bits_of(hn::Eq(apart, hn::Zero(lanes)));
-    };
+    const auto near_of = [&](hn::Vec<Words> apart)
+                             HWY_ATTR -> std::uint64_t { return bits_of(hn::Eq(apart, hn::Zero(lanes))); };
     const std::uint64_t in_range = end - j < 16 ? (1u << (end - j)) - 1 : 0xffff;
-    std::uint64_t near = near_of(apart_0) | near_of(apart_1) << 16 | near_of(apart_2) << 32 | near_of(apart_3) << 48;
+    std::uint64_t near =
+        near_of(apart_0) | near_of(apart_1) << 16 | near_of(apart_2) << 32 | near_of(apart_3) << 48;
     near &= in_range * 0x0001000100010001u;
     for (; near != 0; near &= near - 1) {
       const auto bit = static_cast<std::size_t>(std::countr_zero(near));
