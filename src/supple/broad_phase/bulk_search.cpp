@@ -59,7 +59,8 @@ bool BulkSearch::find(std::span<const Aabb> boxes, std::span<const BoundingSpher
 bool BulkSearch::deal_by_old_plan(const Parallel& parallel) {
   constexpr std::size_t kFew = 16384;
   constexpr std::uint32_t kUses = 8;
-  if (boxes_.exact.size() != planned_count_ || planned_count_ > kFew || plan_uses_ == kUses) return false;
+  const std::size_t count = boxes_.exact.size();
+  if (count == 0 || count != planned_count_ || count > kFew || plan_uses_ == kUses) return false;
   ++plan_uses_;
   for (BoxRows& rows : boxes_.levels) rows.reach = {};
   measure(boxes_.exact, parallel);
