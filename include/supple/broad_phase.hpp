@@ -23,7 +23,7 @@ struct IndexPair {
 struct BroadPhaseStats {
   std::uint64_t object_pairs_tested = 0;  ///< volume against volume
   std::uint64_t objects_changed = 0;      ///< volumes that differ from the call before, new ones included
-  // Of the scene octree; 0 for other methods, and in a call that searches all pairs without regions.
+  // Of the scene octree; 0 for other methods, and in a call that searches without regions.
   std::uint64_t objects_placed = 0;    ///< taken out of regions or put into others
   std::uint64_t regions_expanded = 0;  ///< groups of eight made
   std::uint64_t regions_reduced = 0;   ///< regions that became leaves again
