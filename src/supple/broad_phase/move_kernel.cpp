@@ -202,9 +202,10 @@ class Mover {
 
   HWY_INLINE void fetch_boxes(const Move& move) const {
     for (std::size_t k = 0; k < std::min(move.range_count, move.ranges.size()); ++k) {
-      const MeasuredBox* const last = cells_.boxes() + *move.ranges[k].last;
-      for (const MeasuredBox* box = cells_.boxes() + *move.ranges[k].first; box < last; box += 4)
-        hwy::Prefetch(box);
+      constexpr std::size_t kMost = 64, kInLine = 4;
+      const std::size_t begin = *move.ranges[k].first;
+      const std::size_t end = std::min<std::size_t>(*move.ranges[k].last, begin + kMost);
+      for (std::size_t place = begin; place < end; place += kInLine) hwy::Prefetch(cells_.boxes() + place);
     }
   }
 

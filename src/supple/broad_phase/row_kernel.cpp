@@ -14,6 +14,7 @@
 #include <hwy/highway.h>
 
 #include "broad_phase/measure-inl.hpp"
+#include "core/packed_lanes-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace supple {
@@ -134,7 +135,8 @@ HWY_INLINE void against(const Row& row, std::size_t begin, std::size_t end, cons
     const auto sure = hn::And(in_range, hn::Eq(over, hn::Zero(lanes)));
     const auto undecided = hn::AndNot(sure, hn::And(in_range, hn::Eq(apart, hn::Zero(lanes))));
     hn::StoreU(hn::Set(lanes, row.slot), lanes, arrays.first + arrays.count);
-    hn::StoreU(hn::Compress(hn::LoadU(lanes, arrays.slots + j), sure), lanes, arrays.second + arrays.count);
+    hn::StoreU(packed_lanes(lanes, hn::LoadU(lanes, arrays.slots + j), sure), lanes,
+               arrays.second + arrays.count);
     arrays.count += hn::CountTrue(lanes, sure);
     if (HWY_UNLIKELY(!hn::AllFalse(lanes, undecided)))
       arrays.count = decide(boxes, row.slot, j, bits_of(undecided), arrays.count, search);
