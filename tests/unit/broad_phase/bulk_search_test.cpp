@@ -9,6 +9,7 @@
 #include "broad_phase/octree_broad_phase.hpp"
 #include "geometry/aabb.hpp"
 #include "geometry/sphere.hpp"
+#include "support/instruction_sets.hpp"
 #include "unit/broad_phase/volume_scenes.hpp"
 
 namespace supple {
@@ -155,6 +156,41 @@ TEST(OctreeBroadPhase, FindsThePairsOfADoubleLoopHoweverItSearches) {
       for (Aabb& box : boxes) box.max.x = box.max.x + 0.25f * (box.max.x - box.min.x);
     }
   }
+}
+
+TEST(BulkSearch, EveryInstructionSetFindsThePairsOfADoubleLoop) {
+  for (const test::NamedBoxes& scene : hard_scenes()) {
+    const std::vector<IndexPair> expected = double_loop(scene.boxes);
+    std::uint64_t tests = 0;
+    for_each_target([&](const char* name) {
+      Bulk bulk(1);
+      bulk.find(scene.boxes);
+      // Once more: whether pairs are dense is known from the call before.
+      const std::vector<IndexPair>& found = bulk.find(scene.boxes);
+      if (!bulk.did_search()) return;
+      EXPECT_EQ(found, expected) << scene.name << " by " << name;
+      if (tests == 0) tests = bulk.tests();
+      EXPECT_EQ(bulk.tests(), tests) << scene.name << " by " << name;
+    });
+  }
+}
+
+TEST(BulkSearch, FewBoxesThatFlyApartHaveANewPlan) {
+  // The plan of the calls before is of another place, of smaller boxes, of boxes that did not crowd.
+  Bulk bulk(1);
+  std::vector<Aabb> boxes = test::random_boxes(3000, 40, 0.5f, 14);
+  bulk.find(boxes);
+  const std::uint64_t tests = bulk.tests();
+  const auto check = [&](const char* what) {
+    ASSERT_EQ(bulk.find(boxes), double_loop(boxes)) << what;
+    EXPECT_LT(bulk.tests(), 3 * tests) << what;
+  };
+  for (Aabb& box : boxes) box = {box.min + Vec3f{900, 0, 0}, box.max + Vec3f{900, 0, 0}};
+  check("moved aside");
+  for (Aabb& box : boxes) box = {box.min * 0.01f, box.max * 0.01f};
+  check("shrunk");
+  for (Aabb& box : boxes) box = {box.min * 1e4f, box.max * 1e4f};
+  check("grown");
 }
 
 TEST(BulkSearch, ThreadsDoTheSameTests) {
