@@ -253,6 +253,8 @@ def judged(cells):
     for cell in judge.matching("A/.*/one-percent"):
         judge.add_faster("A with 1 % of the boxes moving", cell, ["Supple, all move"], 10, 30,
                          "Supple, one percent moves")
+        judge.add_faster("A with 1 % of the boxes moving, told which", cell, ["Supple, all move"], 10, 30,
+                         "Supple, one percent moves, told")
     for cell in judge.matching("C/.*"):
         judge.add_faster("C, candidates and verdicts, against Embree's candidates", cell, ["Embree"], 1, 2)
     for cell in judge.matching("process/.*"):

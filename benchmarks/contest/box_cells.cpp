@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cstdlib>
 
 #include "contest/cells.hpp"
@@ -7,7 +8,7 @@ namespace {
 
 struct BoxCell {
   std::string field, variant;
-  std::size_t count = 0;
+  std::size_t count = 0, one_in = 0;  // of which moves, where few do
 };
 
 BoxCell box_cell_of(const std::string& text) {  // after "A/"
@@ -20,8 +21,11 @@ BoxCell box_cell_of(const std::string& text) {  // after "A/"
     cell.count = std::strtoull(number.c_str(), nullptr, 10);
   }
   if (second != std::string::npos) cell.variant = text.substr(second + 1);
-  if (cell.count == 0 || (!cell.variant.empty() && cell.variant != "drift" && cell.variant != "one-percent"))
-    throw Error("no cell is named A/" + text + "; write FIELD/N, FIELD/N/drift or FIELD/N/one-percent");
+  if (cell.variant == "one-percent") cell.one_in = 100;
+  if (cell.variant.starts_with("one-in-")) cell.one_in = std::strtoull(cell.variant.c_str() + 7, nullptr, 10);
+  if (cell.count == 0 || (!cell.variant.empty() && cell.variant != "drift" && cell.one_in == 0))
+    throw Error("no cell is named A/" + text +
+                "; write FIELD/N, FIELD/N/drift, FIELD/N/one-percent or FIELD/N/one-in-K");
   return cell;
 }
 
@@ -57,8 +61,8 @@ void run_drift(const Choice& choice, const BoxCell& cell, Output& output) {
   output.records(turns.records());
 }
 
-/// A frame in which one box of a hundred moves against one in which all do. Two fields: each contestant has
-/// its own.
+/// A frame in which one box of some moves, found by comparing or told, against one in which all do. Two
+/// fields: contestants have their own.
 class OnField : public BoxContestant {
  public:
   OnField(std::unique_ptr<BoxContestant> contestant, const MovingBoxes& field)
@@ -72,18 +76,26 @@ class OnField : public BoxContestant {
   const MovingBoxes& field_;
 };
 
-void run_one_percent(const Choice& choice, const BoxCell& cell, Output& output) {
+void run_few(const Choice& choice, const BoxCell& cell, Output& output) {
   MovingBoxes all(cell.field, cell.count), few(cell.field, cell.count);
+  std::vector<std::uint32_t> moving;
+  for (std::size_t i = 0; i < cell.count; i += cell.one_in) moving.push_back(static_cast<std::uint32_t>(i));
+  const std::string share = cell.one_in == 100 ? "one percent" : "one in " + std::to_string(cell.one_in);
   Turns<MovingBoxes, BoxContestant> turns;
   turns.add("Supple, all move", 1, std::make_unique<OnField>(make_supple_boxes(1), all), all);
-  turns.add("Supple, one percent moves", 1, std::make_unique<OnField>(make_supple_boxes(1), few), all);
+  turns.add("Supple, " + share + " moves", 1, std::make_unique<OnField>(make_supple_boxes(1), few), all);
+  turns.add("Supple, " + share + " moves, told", 1,
+            std::make_unique<OnField>(make_supple_boxes_told(moving), few), all);
   turns.run(
       choice, all,
       [&] {
         all.advance();
-        few.advance(100);
+        few.advance(cell.one_in);
       },
-      [](const auto&, const auto&, const auto&) {});
+      [&](const std::vector<std::size_t>& ran, const auto&, const std::vector<Record>& records) {
+        const auto did = [&](std::size_t i) { return std::find(ran.begin(), ran.end(), i) != ran.end(); };
+        if (did(1) && did(2)) check_equal(choice.cell, records[1], records[2]);
+      });
   output.records(turns.records());
 }
 
@@ -93,8 +105,8 @@ void run_boxes(const Choice& choice, const std::string& name, Output& output) {
   const BoxCell cell = box_cell_of(name);
   if (cell.variant == "drift")
     run_drift(choice, cell, output);
-  else if (cell.variant == "one-percent")
-    run_one_percent(choice, cell, output);
+  else if (cell.one_in != 0)
+    run_few(choice, cell, output);
   else
     run_all(choice, cell, output);
 }

@@ -10,7 +10,7 @@ namespace supple::benchmarks {
 // What each kind of cell runs; `cell` is its name without the kind in front. All throw `Error` for a name
 // that is none, and `Disagreement`.
 
-/// FIELD/N, FIELD/N/drift, FIELD/N/one-percent.
+/// FIELD/N, FIELD/N/drift, FIELD/N/one-percent, FIELD/N/one-in-K.
 void run_boxes(const Choice& choice, const std::string& cell, Output& output);
 /// SHAPExCOPIES, with -rest; with two threads, Supple on one and on two.
 void run_copies(const Choice& choice, const std::string& cell, bool two_threads, Output& output);

@@ -82,6 +82,8 @@ std::vector<Entry<ClothContestant>> other_cloth_contestants();
 std::vector<std::string> missing_libraries();
 
 std::unique_ptr<BoxContestant> make_supple_boxes(std::uint32_t threads);
+/// One thread; told that of the boxes no others than these move.
+std::unique_ptr<BoxContestant> make_supple_boxes_told(std::vector<std::uint32_t> moving);
 std::unique_ptr<CopiesContestant> make_supple_copies(std::uint32_t threads);
 /// Its pairs are those that touch, its stages include what it had for candidates.
 std::unique_ptr<Contestant<ClothStep>> make_supple_cloth(std::uint32_t threads);

@@ -15,7 +15,8 @@ namespace {
 constexpr const char* usage =
     "usage: supple_contest [--seconds S] [--rounds N] [--cpu N] [--only-supple] [--spoil NAME] CELL | "
     "--missing\n"
-    "CELL: A/FIELD/N  A/FIELD/N/drift  A/FIELD/N/one-percent  B/SHAPExCOPIES[-rest]  C/CLOTH\n"
+    "CELL: A/FIELD/N  A/FIELD/N/drift  A/FIELD/N/one-percent  A/FIELD/N/one-in-K\n"
+    "      B/SHAPExCOPIES[-rest]  C/CLOTH\n"
     "      growth/SHAPExCOPIES  threads/B/...  threads/C/...  limits/bandwidth  limits/refit/TRIANGLES  "
     "memory/SHAPE\n"
     "FIELD: u1 u8 clu cl8   SHAPE: 980, 18000, 69620, ... or bunny   CLOTH: cloth-ball cloth-funnel "

@@ -23,6 +23,26 @@ class SuppleBoxes : public BoxContestant {
   std::span<const IndexPair> pairs_;
 };
 
+/// Knows which boxes may have moved.
+class SuppleBoxesTold : public BoxContestant {
+ public:
+  explicit SuppleBoxesTold(std::vector<std::uint32_t> moving) : moving_(std::move(moving)) {}
+  void prepare(const MovingBoxes& field) override { pairs_ = broad_phase_.find_object_pairs(field.boxes()); }
+  void frame(const MovingBoxes& field) override {
+    pairs_ = broad_phase_.find_object_pairs(field.boxes(), moving_);
+  }
+  PairDigest pairs() const override {
+    PairDigest digest;
+    for (const IndexPair& pair : pairs_) digest.add(pair.a, pair.b);
+    return digest;
+  }
+
+ private:
+  BroadPhase broad_phase_{{.method = BroadPhaseMethod::octree, .scene_octree = {}, .threads = 1}};
+  std::vector<std::uint32_t> moving_;
+  std::span<const IndexPair> pairs_;
+};
+
 SceneOptions options_of(std::uint32_t threads, ContactMode contacts) {
   SceneOptions options;
   options.threads = threads;
@@ -121,6 +141,10 @@ class SuppleCloth : public Contestant<ClothStep> {
 
 std::unique_ptr<BoxContestant> make_supple_boxes(std::uint32_t threads) {
   return std::make_unique<SuppleBoxes>(threads);
+}
+
+std::unique_ptr<BoxContestant> make_supple_boxes_told(std::vector<std::uint32_t> moving) {
+  return std::make_unique<SuppleBoxesTold>(std::move(moving));
 }
 
 std::unique_ptr<CopiesContestant> make_supple_copies(std::uint32_t threads) {

@@ -23,7 +23,7 @@ struct IndexPair {
 struct BroadPhaseStats {
   std::uint64_t object_pairs_tested = 0;  ///< volume against volume
   std::uint64_t objects_changed = 0;      ///< volumes that differ from the call before, new ones included
-  // Of the scene octree; 0 for other methods, and in a call that searches all pairs without regions.
+  // Of the scene octree; 0 for other methods, and in a call that searches without regions.
   std::uint64_t objects_placed = 0;    ///< taken out of regions or put into others
   std::uint64_t regions_expanded = 0;  ///< groups of eight made
   std::uint64_t regions_reduced = 0;   ///< regions that became leaves again
@@ -58,12 +58,22 @@ class BroadPhase {
   /// empty balls. Balls are compared in double and may be reported when apart by rounding, never the reverse.
   /// A call with balls after one with boxes, or the reverse, starts afresh.
   ///
-  /// Cost for n volumes and k pairs: octree O(n + k), with c of them changed for some calls about O(c + k)
-  /// besides comparing volumes; when many changed, all pairs are searched anew without regions, whichever
-  /// costs less; sweep O(n log n + pairs that overlap along one axis); brute O(n²). No allocation once the
-  /// buffers are as large as the scene needs.
+  /// Cost for n volumes and k pairs: octree O(n + k), with c of them changed O(c), besides comparing volumes
+  /// and moving pairs in memory, or all anew, whichever costs less; sweep O(n log n + pairs that overlap
+  /// along one axis); brute O(n²). No allocation once the buffers are as large as the scene needs.
   std::span<const IndexPair> find_object_pairs(std::span<const Aabb> boxes);
   std::span<const IndexPair> find_object_pairs(std::span<const BoundingSphere> spheres);
+
+  /// The same, told which volumes may differ from the call before: `changed` has the indices of all that do,
+  /// in any order; one that does not differ, or is there twice, does no harm. Volumes past the end of those
+  /// of the call before are found without. The octree looks at no others, in O(c) instead of O(n): one that
+  /// changed and is not in the list is taken to be as it was last seen, until a list has it or a call comes
+  /// without one. The other methods look at all.
+  /// Throws `Error` when an index is not below the number of volumes.
+  std::span<const IndexPair> find_object_pairs(std::span<const Aabb> boxes,
+                                               std::span<const std::uint32_t> changed);
+  std::span<const IndexPair> find_object_pairs(std::span<const BoundingSphere> spheres,
+                                               std::span<const std::uint32_t> changed);
 
   /// Of the last call.
   const BroadPhaseStats& stats() const;

@@ -65,8 +65,8 @@ struct SceneOctreeOptions {
   RegionSphereTest region_sphere_test = RegionSphereTest::arvo;
   /// Children of a region: 8, 4 or 2. The pairs found are the same; for comparison.
   std::uint32_t arity = 8;
-  /// Search the regions also in steps in which many objects changed and a search without them costs less. The
-  /// pairs found are the same; for comparison.
+  /// Search the regions in every step. Otherwise they are left to scenes with many objects in one place:
+  /// elsewhere a search without them costs less. The pairs found are the same; for comparison.
   bool always_regions = false;
 };
 

@@ -1,6 +1,8 @@
 #include "supple/broad_phase.hpp"
 
+#include "broad_phase/object_volume.hpp"
 #include "broad_phase/pair_finder.hpp"
+#include "core/error.hpp"
 #include "core/parallel.hpp"
 
 namespace supple {
@@ -16,6 +18,19 @@ class BroadPhase::Implementation {
       kind_ = kind;
     }
     return finder_->find_pairs(volumes, parallel_);
+  }
+
+  /// Told of changes.
+  std::span<const IndexPair> find(BoundingVolume kind, ObjectVolumes volumes,
+                                  std::span<const std::uint32_t> changed) {
+    const std::size_t count = slot_count(volumes, kind);
+    for (const std::uint32_t index : changed)
+      if (index >= count)
+        fail("broad phase: the list of changed volumes has " + std::to_string(index) + ", but there are " +
+             std::to_string(count) + " volumes; list indices into them");
+    // After volumes of the other kind there is nothing to which changes could be told.
+    if (kind == kind_) volumes.changed = changed;
+    return find(kind, volumes);
   }
 
   const PairFinder& finder() const { return *finder_; }
@@ -38,11 +53,21 @@ BroadPhase::BroadPhase(BroadPhase&&) noexcept = default;
 BroadPhase& BroadPhase::operator=(BroadPhase&&) noexcept = default;
 
 std::span<const IndexPair> BroadPhase::find_object_pairs(std::span<const Aabb> boxes) {
-  return implementation_->find(BoundingVolume::aabb, {.boxes = boxes, .spheres = {}, .changed = {}});
+  return implementation_->find(BoundingVolume::aabb, {.boxes = boxes, .spheres = {}});
 }
 
 std::span<const IndexPair> BroadPhase::find_object_pairs(std::span<const BoundingSphere> spheres) {
-  return implementation_->find(BoundingVolume::sphere, {.boxes = {}, .spheres = spheres, .changed = {}});
+  return implementation_->find(BoundingVolume::sphere, {.boxes = {}, .spheres = spheres});
+}
+
+std::span<const IndexPair> BroadPhase::find_object_pairs(std::span<const Aabb> boxes,
+                                                         std::span<const std::uint32_t> changed) {
+  return implementation_->find(BoundingVolume::aabb, {.boxes = boxes, .spheres = {}}, changed);
+}
+
+std::span<const IndexPair> BroadPhase::find_object_pairs(std::span<const BoundingSphere> spheres,
+                                                         std::span<const std::uint32_t> changed) {
+  return implementation_->find(BoundingVolume::sphere, {.boxes = {}, .spheres = spheres}, changed);
 }
 
 const BroadPhaseStats& BroadPhase::stats() const {

@@ -26,10 +26,16 @@ bool BulkSearch::find(std::span<const Aabb> boxes, std::span<const BoundingSpher
                       const Parallel& parallel, std::size_t last_pair_count, std::span<PairBins> found) {
   boxes_.exact = boxes;
   boxes_.spheres = spheres;
-  planner_.choose(boxes, plan_);
-  divide();
-  measure(boxes, parallel);
-  if (deal(parallel) > kMostInCell * box_count()) return false;
+  if (!deal_by_old_plan(parallel)) {
+    planner_.choose(boxes, plan_);
+    divide();
+    measure(boxes, parallel);
+    company_ = deal(parallel);
+    plan_uses_ = 0;
+    planned_count_ = boxes.size();
+    planned_reach_ = boxes_.levels.back().reach;
+  }
+  if (company_ > kMostInCell * box_count()) return false;
   // As it was in the step before; a wrong guess costs little.
   boxes_.is_dense = kTestsPerPair * last_pair_count >= tests();
   workers_.resize(parallel.worker_count());
@@ -46,6 +52,21 @@ bool BulkSearch::find(std::span<const Aabb> boxes, std::span<const BoundingSpher
     }
   });
   return true;
+}
+
+/// Few boxes have a plan once in some calls: it takes as long as a tenth of the search. False when none
+/// suits; it is not trusted when boxes have become many in a cell or larger.
+bool BulkSearch::deal_by_old_plan(const Parallel& parallel) {
+  constexpr std::size_t kFew = 16384;
+  constexpr std::uint32_t kUses = 8;
+  const std::size_t count = boxes_.exact.size();
+  if (count == 0 || count != planned_count_ || count > kFew || plan_uses_ == kUses) return false;
+  ++plan_uses_;
+  for (BoxRows& rows : boxes_.levels) rows.reach = {};
+  measure(boxes_.exact, parallel);
+  for (std::size_t k = 0; k < 3; ++k)
+    if (boxes_.levels.back().reach[k] > planned_reach_[k] + planned_reach_[k] / 2) return false;
+  return deal(parallel) <= company_ + company_ / 4 + 16;
 }
 
 std::uint64_t BulkSearch::tests() const {
@@ -171,7 +192,9 @@ std::uint64_t BulkSearch::order_block(std::size_t block) {
   const std::uint32_t first_row = static_cast<std::uint32_t>(block - measure_.first_block[level]) << log2;
   const std::uint32_t last_row = std::min(first_row + (1u << log2), rows.row_count());
   std::uint32_t* const next = boxes_.cell_begins.data() + rows.first_cell + 1;
+  const bool one_row = rows.row_count() == 1;
   const auto cell_of = [&](const MeasuredBox& box) {
+    if (one_row) return rows.division(0, measure_.low_step(box, 0));
     return rows.row_of(measure_.low_step(box, 1), measure_.low_step(box, 2)) * rows.divisions[0] +
            rows.division(0, measure_.low_step(box, 0));
   };

@@ -23,6 +23,9 @@ class BulkSearch {
             std::size_t last_pair_count, std::span<PairBins> found);
   std::uint64_t tests() const;
   std::size_t box_count() const { return block_begins_.back(); }  ///< that were not empty
+  /// How the last call searched.
+  const BoxMeasure& measure() const { return measure_; }
+  const DealtBoxes& dealt() const { return boxes_; }
 
  private:
   /// A range of boxes that are measured by one worker.
@@ -32,6 +35,7 @@ class BulkSearch {
     std::vector<std::array<std::uint32_t, 3>> reach;
   };
 
+  bool deal_by_old_plan(const Parallel& parallel);
   void divide();
   void measure(std::span<const Aabb> boxes, const Parallel& parallel);
   /// Returns the sum over all cells of the squares of their counts.
@@ -42,6 +46,10 @@ class BulkSearch {
 
   SearchPlanner planner_;
   SearchPlan plan_;
+  std::uint32_t plan_uses_ = 0;                   // since it was made
+  std::size_t planned_count_ = 0;                 // of boxes when it was made
+  std::array<std::uint32_t, 3> planned_reach_{};  // of the largest ones then
+  std::uint64_t company_ = 0;                     // sum over all cells of the squares of their counts then
   BoxMeasure measure_;
   std::vector<Chunk> chunks_;
   std::vector<MeasuredBox> measured_, dealt_;

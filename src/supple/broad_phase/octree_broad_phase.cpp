@@ -1,10 +1,12 @@
 #include "broad_phase/octree_broad_phase.hpp"
 
-#include <algorithm>
-#include <atomic>
-#include <cstring>
+#include <hwy/cache_control.h>
 
+#include <algorithm>
+
+#include "broad_phase/change_kernel.hpp"
 #include "broad_phase/float_order.hpp"
+#include "broad_phase/move_kernel.hpp"
 #include "broad_phase/overlap_kernel.hpp"
 
 namespace supple {
@@ -16,13 +18,9 @@ constexpr std::uint32_t kSortLeafAt = 96;
 /// The search of one object costs as much as several objects' share of a search for all.
 constexpr std::size_t kSearchCost = 6;
 
-/// Regions are made again after so many frames in a row in which few objects changed: one such frame among
-/// others does not pay for them.
-constexpr std::size_t kFramesWorthRegions = 4;
-
-bool is_changed(const Aabb& now, const Aabb& before) {
-  return std::memcmp(&now, &before, sizeof now) != 0 && !(now.empty() && before.empty());
-}
+/// Boxes are dealt out anew after so many tests for each of them: by then they have moved about, and dealing
+/// costs little against the tests.
+constexpr std::int64_t kTestsPerDeal = 256;
 
 /// Bit per axis: the box begins in this region and not below it.
 ///
@@ -49,22 +47,14 @@ std::span<const IndexPair> OctreeBroadPhase::find_pairs(const ObjectVolumes& vol
                                                         const Parallel& parallel) {
   stats_ = {};
   detect_changes(volumes, parallel);
-  if (stats_.objects_changed == 0) return pairs_;
-  workers_.resize(parallel.worker_count());
-  found_.resize(parallel.worker_count());
-  for (Worker& worker : workers_) {
-    worker.found.clear();
-    worker.tests = 0;
-  }
-  const bool few_changed = kSearchCost * stats_.objects_changed < live_;
-  if (few_changed) ++frames_of_few_;
-  if (!few_changed && has_regions_ever_ && !always_regions_) {
-    frames_of_few_ = 0;
-    search_in_bulk(volumes, parallel);
-  } else if (few_changed && !has_regions_ && frames_of_few_ < kFramesWorthRegions) {
-    search_in_bulk(volumes, parallel);
-  } else {
+  stats_.objects_changed = changed_.size();
+  if (changed_.empty()) return pairs_;
+  const bool few_changed = kSearchCost * changed_.size() < live_;
+  if (always_regions_ || (few_changed && basis_ == Basis::regions)) {
     search_regions(volumes, parallel, few_changed);
+  } else if (!few_changed || !move_in_cells(volumes)) {
+    take_over(volumes);
+    search_in_bulk(volumes, parallel);
   }
   return pairs_;
 }
@@ -72,85 +62,154 @@ std::span<const IndexPair> OctreeBroadPhase::find_pairs(const ObjectVolumes& vol
 /// By the regions, which follow the objects first.
 void OctreeBroadPhase::search_regions(const ObjectVolumes& volumes, const Parallel& parallel,
                                       bool few_changed) {
+  workers_.resize(parallel.worker_count());
+  found_.resize(parallel.worker_count());
+  for (Worker& worker : workers_) {
+    worker.found.clear();
+    worker.tests = 0;
+  }
   const std::uint64_t expanded = tree_.expanded_count(), reduced = tree_.reduced_count();
-  collect_changes();
-  if (has_regions_) {
+  if (basis_ == Basis::regions) {
     follow_changes(volumes);
   } else {
-    tree_.set_volumes(volumes);
+    take_over(volumes);
     make_regions();
   }
   stats_.regions_expanded = tree_.expanded_count() - expanded;
   stats_.regions_reduced = tree_.reduced_count() - reduced;
-  if (few_changed)
+  if (few_changed) {
+    is_changed_.resize(tree_.slot_count(), 0);
+    for (const std::uint32_t slot : changed_) is_changed_[slot] = 1;
     find_of_changed(parallel);
-  else
+  } else {
     find_all(parallel);
+  }
   for (std::size_t i = 0; i < workers_.size(); ++i) {
     stats_.object_pairs_tested += workers_[i].tests;
     std::swap(found_[i], workers_[i].found);
   }
   sorter_.sort(found_, tree_.slot_count(), tree_.placed_by_sphere(), parallel, few_changed ? fresh_ : pairs_);
-  if (few_changed) merge_kept();
+  if (!few_changed) return;
+  merge_kept();
+  for (const std::uint32_t slot : changed_) is_changed_[slot] = 0;
 }
 
-/// Anew, without regions; they fall behind until they are worth being made again.
+/// Anew, without regions, which fall behind, unless the scene is too crowded for this.
 void OctreeBroadPhase::search_in_bulk(const ObjectVolumes& volumes, const Parallel& parallel) {
-  has_regions_ = false;
-  tree_.set_volumes(volumes);
+  basis_ = Basis::nothing;
   const auto bins = sorter_.start(parallel.worker_count(), tree_.slot_count());
   if (!bulk_.find(tree_.boxes(), tree_.spheres(), parallel, pairs_.size(), bins))
     return search_regions(volumes, parallel, false);
   sorter_.finish(false, parallel, pairs_);
+  basis_ = Basis::bulk;
   live_ = stats_.objects_paired = bulk_.box_count();
   stats_.object_pairs_tested = bulk_.tests();
+}
+
+/// Of few objects, in the cells of the last search in bulk, or false when there are none or they are used up.
+bool OctreeBroadPhase::move_in_cells(const ObjectVolumes& volumes) {
+  if (basis_ == Basis::bulk) {
+    cells_.fill(bulk_.measure(), bulk_.dealt());
+    tests_left_ = kTestsPerDeal * static_cast<std::int64_t>(live_ + 1);
+    basis_ = Basis::cells;
+  }
+  if (basis_ != Basis::cells) return false;
+  moved_boxes_.clear();
+  moved_spheres_.clear();
+  for (const std::uint32_t slot : changed_) {
+    const ObjectVolume now = volume_at(volumes, bounding_volume_, slot);
+    live_ -= !tree_.boxes()[slot].empty();
+    live_ += !now.empty();
+    moved_boxes_.push_back(now.box);
+    if (bounding_volume_ == BoundingVolume::sphere) moved_spheres_.push_back(now.sphere);
+  }
+  toggled_.clear();
+  const std::int64_t tests = tests_left_;
+  if (!move_boxes(cells_, {changed_, moved_boxes_, moved_spheres_}, tree_.mutable_boxes(),
+                  tree_.mutable_spheres(), tests_left_, toggled_))
+    return false;
+  patch_.toggle(toggled_, pairs_);
+  stats_.objects_paired = changed_.size();
+  stats_.object_pairs_tested = static_cast<std::uint64_t>(tests - tests_left_);
+  return true;
 }
 
 void OctreeBroadPhase::detect_changes(const ObjectVolumes& volumes, const Parallel& parallel) {
   const std::size_t given = slot_count(volumes, bounding_volume_);
   const std::size_t slots = std::max(given, known_slots_);
   tree_.resize(slots);
-  is_changed_.resize(slots);
-  std::atomic<std::size_t> changed = 0;
-  constexpr std::size_t kGrain = 8192;
-  parallel.for_ranges(slots, kGrain, [&](std::size_t begin, std::size_t end, std::uint32_t) {
-    changed += detect_changes_in(volumes, begin, end);
-  });
+  if (volumes.changed)
+    take_told(volumes);
+  else
+    compare_all(volumes, parallel);
   known_slots_ = given;
-  stats_.objects_changed = changed;
 }
 
-std::size_t OctreeBroadPhase::detect_changes_in(const ObjectVolumes& volumes, std::size_t begin,
-                                                std::size_t end) {
-  // Most of a scene is often at rest: whole blocks of boxes are compared at once.
-  constexpr std::size_t kBlock = 8;
+/// Those that the caller says, and slots that are new or gone.
+void OctreeBroadPhase::take_told(const ObjectVolumes& volumes) {
+  const std::size_t given = slot_count(volumes, bounding_volume_);
+  listed_.assign(volumes.changed->begin(), volumes.changed->end());
+  for (std::size_t slot = std::min(given, known_slots_); slot < std::max(given, known_slots_); ++slot)
+    listed_.push_back(static_cast<std::uint32_t>(slot));
+  if (!std::is_sorted(listed_.begin(), listed_.end())) std::sort(listed_.begin(), listed_.end());
+  listed_.erase(std::unique(listed_.begin(), listed_.end()), listed_.end());
+  // They lie apart in memory.
+  constexpr std::size_t kFetchAhead = 16;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < listed_.size(); ++i) {
+    const std::uint32_t ahead = listed_[std::min(i + kFetchAhead, listed_.size() - 1)];
+    hwy::Prefetch(tree_.boxes().data() + ahead);
+    if (ahead < volumes.boxes.size()) hwy::Prefetch(volumes.boxes.data() + ahead);
+    listed_[count] = listed_[i];
+    count += static_cast<std::size_t>(is_changed(volumes, listed_[i]));
+  }
+  changed_ = {listed_.data(), count};
+}
+
+void OctreeBroadPhase::compare_all(const ObjectVolumes& volumes, const Parallel& parallel) {
+  constexpr std::size_t kChunk = 8192;
+  const std::size_t slots = tree_.slot_count(), chunk_count = (slots + kChunk - 1) / kChunk;
+  if (listed_.size() < slots) listed_.resize(slots);
+  chunk_sizes_.resize(chunk_count);
+  parallel.for_ranges(chunk_count, 1, [&](std::size_t first, std::size_t last, std::uint32_t) {
+    for (std::size_t chunk = first; chunk < last; ++chunk) {
+      const std::size_t begin = chunk * kChunk;
+      chunk_sizes_[chunk] =
+          list_changed(volumes, begin, std::min(begin + kChunk, slots), listed_.data() + begin);
+    }
+  });
+  std::size_t count = 0;
+  for (std::size_t chunk = 0; chunk < chunk_count; ++chunk) {
+    std::copy_n(listed_.data() + chunk * kChunk, chunk_sizes_[chunk], listed_.data() + count);
+    count += chunk_sizes_[chunk];
+  }
+  changed_ = {listed_.data(), count};
+}
+
+std::size_t OctreeBroadPhase::list_changed(const ObjectVolumes& volumes, std::size_t begin, std::size_t end,
+                                           std::uint32_t* out) const {
   const bool by_box = bounding_volume_ == BoundingVolume::aabb;
   const std::size_t comparable = by_box ? std::min(volumes.boxes.size(), known_slots_) : 0;
-  const Aabb* const now = volumes.boxes.data();
-  const Aabb* const before = tree_.boxes().data();
-  std::size_t changed = 0;
-  for (std::size_t i = begin; i < end;) {
-    const std::size_t block_end = std::min(i + kBlock, end);
-    if (block_end > comparable || !volumes.changed.empty()) {
-      for (; i < block_end; ++i) changed += is_changed_[i] = is_changed(volumes, i);
-    } else if (std::memcmp(now + i, before + i, (block_end - i) * sizeof(Aabb)) == 0) {
-      for (; i < block_end; ++i) is_changed_[i] = 0;
-    } else {
-      for (; i < block_end; ++i) changed += is_changed_[i] = supple::is_changed(now[i], before[i]);
-    }
+  std::size_t count = 0;
+  if (begin < comparable) {
+    const std::size_t last = std::min(end, comparable);
+    count = list_changed_boxes(volumes.boxes.data(), tree_.boxes().data(), begin, last, out);
+    begin = last;
   }
-  return changed;
+  for (std::size_t i = begin; i < end; ++i)
+    if (is_changed(volumes, i)) out[count++] = static_cast<std::uint32_t>(i);
+  return count;
 }
 
 bool OctreeBroadPhase::is_changed(const ObjectVolumes& volumes, std::size_t i) const {
-  if (i < known_slots_ && i < volumes.changed.size() && volumes.changed[i] == 0) return false;
   return !tree_.same_volume(static_cast<std::uint32_t>(i), volume_at(volumes, bounding_volume_, i));
 }
 
-void OctreeBroadPhase::collect_changes() {
-  changed_.clear();
-  for (std::size_t i = 0; i < is_changed_.size(); ++i)
-    if (is_changed_[i] != 0) changed_.push_back(static_cast<std::uint32_t>(i));
+/// The volumes that changed, when it does not matter what regions or cells hold.
+void OctreeBroadPhase::take_over(const ObjectVolumes& volumes) {
+  if (!volumes.changed) return tree_.set_volumes(volumes);
+  for (const std::uint32_t slot : changed_)
+    tree_.set_volume(slot, volume_at(volumes, bounding_volume_, slot));
 }
 
 /// Objects that stay in their regions only have their volumes taken over.
@@ -192,7 +251,7 @@ void OctreeBroadPhase::follow_changes(const ObjectVolumes& volumes) {
 
 void OctreeBroadPhase::make_regions() {
   tree_.build(cube_chooser_.choose(tree_.boxes(), max_level_));
-  has_regions_ = has_regions_ever_ = true;
+  basis_ = Basis::regions;
   placed_since_choice_ = 0;
   live_ = 0;
   for (const Aabb& box : tree_.boxes()) live_ += !box.empty();
@@ -201,7 +260,7 @@ void OctreeBroadPhase::make_regions() {
 }
 
 std::vector<SceneRegion> OctreeBroadPhase::regions() const {
-  return has_regions_ ? tree_.describe() : present_regions().describe();
+  return basis_ == Basis::regions ? tree_.describe() : present_regions().describe();
 }
 
 /// Those that would be made of the objects' present volumes.
@@ -294,7 +353,8 @@ void OctreeBroadPhase::merge_kept() {
 std::string OctreeBroadPhase::validate() const {
   if (!std::is_sorted(pairs_.begin(), pairs_.end()))
     return "scene octree: the pairs kept from the last step are not sorted";
-  return has_regions_ ? tree_.validate() : present_regions().validate();
+  if (basis_ == Basis::cells) return cells_.validate(tree_.boxes());
+  return basis_ == Basis::regions ? tree_.validate() : std::string();
 }
 
 }  // namespace supple

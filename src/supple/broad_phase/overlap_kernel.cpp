@@ -11,6 +11,8 @@
 #include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
+#include "core/packed_lanes-inl.hpp"
+
 HWY_BEFORE_NAMESPACE();
 namespace supple {
 namespace HWY_NAMESPACE {
@@ -32,8 +34,9 @@ HWY_INLINE void append(const BoxLanes& boxes, std::size_t row, std::size_t colum
   const auto slot = hn::Set(lanes, boxes.slots[row]);
   const auto others = hn::LoadU(lanes, boxes.slots.data() + column);
   static_assert(sizeof(IndexPair) == 2 * sizeof(std::uint32_t));
-  hn::StoreInterleaved2(hn::Compress(hn::Min(slot, others), reported),
-                        hn::Compress(hn::Max(slot, others), reported), lanes, &pairs.room(kMaxLanes)->a);
+  hn::StoreInterleaved2(packed_lanes(lanes, hn::Min(slot, others), reported),
+                        packed_lanes(lanes, hn::Max(slot, others), reported), lanes,
+                        &pairs.room(kMaxLanes)->a);
   pairs.commit(hn::CountTrue(lanes, reported));
 }
 

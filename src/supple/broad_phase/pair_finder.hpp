@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -16,9 +17,9 @@ namespace supple {
 struct ObjectVolumes {
   std::span<const Aabb> boxes;              ///< empty in sphere mode
   std::span<const BoundingSphere> spheres;  ///< empty in box mode
-  /// Per slot, 0 when the volume is the same as in the call before. Empty: found by comparing. Slots that are
-  /// new count as changed whatever it says.
-  std::span<const std::uint8_t> changed;
+  /// Slots whose volumes may differ from the call before, in any order, perhaps repeated. Nothing: found by
+  /// comparing. Slots that are new or gone count as changed whatever it says.
+  std::optional<std::span<const std::uint32_t>> changed{};
 };
 
 /// One of the methods of the broad phase. All find the same pairs: (a, b) exactly when `overlap` of geometry

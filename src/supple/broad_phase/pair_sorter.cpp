@@ -29,6 +29,25 @@ std::size_t PairBins::chunk_after(std::size_t chunk) {
   return chunk_count_++ * kChunk;
 }
 
+void PairBins::push_all(const std::uint32_t* first, const std::uint32_t* second, std::size_t count) {
+  const auto pair_of = [&](std::size_t i) -> IndexPair {
+    return {std::min(first[i], second[i]), std::max(first[i], second[i])};
+  };
+  if (next_.size() != 1) {
+    for (std::size_t i = 0; i < count; ++i) push(pair_of(i));
+    return;
+  }
+  // One bin: by whole chunks.
+  for (std::size_t i = 0; i < count;) {
+    IndexPair* const out = pool_.data() + next_[0];
+    const std::size_t part = std::min(count - i, kChunk - next_[0] % kChunk);
+    for (std::size_t k = 0; k < part; ++k) out[k] = pair_of(i + k);
+    i += part;
+    next_[0] += part;
+    if (next_[0] % kChunk == 0) next_[0] = chunk_after(next_[0] / kChunk - 1);
+  }
+}
+
 std::size_t PairBins::count(std::size_t bin) const {
   std::size_t sum = 0;
   for_each_chunk(bin, [&](std::span<const IndexPair> pairs) { sum += pairs.size(); });

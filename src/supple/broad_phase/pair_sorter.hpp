@@ -20,6 +20,8 @@ class PairBins {
     pool_[next] = pair;
     if (++next % kChunk == 0) next = chunk_after(next / kChunk - 1);
   }
+  /// All pairs (first[i], second[i]), the smaller index first.
+  void push_all(const std::uint32_t* first, const std::uint32_t* second, std::size_t count);
   std::size_t count(std::size_t bin) const;
   /// Calls `visit(pairs)` for parts of a bin, in no order.
   template <class Visit>

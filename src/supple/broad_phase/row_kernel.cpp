@@ -13,6 +13,9 @@
 
 #include <hwy/highway.h>
 
+#include "broad_phase/measure-inl.hpp"
+#include "core/packed_lanes-inl.hpp"
+
 HWY_BEFORE_NAMESPACE();
 namespace supple {
 namespace HWY_NAMESPACE {
@@ -47,13 +50,17 @@ HWY_INLINE hn::Vec<Words> excess(const std::uint32_t* ends, Bounds bounds) {
 #endif
 
 void flush(std::span<const BoundingSphere> spheres, std::size_t count, RowSearch& search) {
-  PairBins& pairs = *search.pairs;
-  for (std::size_t i = 0; i < count; ++i) {
-    const std::uint32_t a = std::min(search.first[i], search.second[i]);
-    const std::uint32_t b = std::max(search.first[i], search.second[i]);
-    if (!spheres.empty() && !overlap(spheres[a], spheres[b])) continue;
-    pairs.push({a, b});
+  if (!spheres.empty()) {
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::uint32_t a = search.first[i], b = search.second[i];
+      search.first[kept] = a;
+      search.second[kept] = b;
+      kept += static_cast<std::size_t>(overlap(spheres[a], spheres[b]));
+    }
+    count = kept;
   }
+  search.pairs->push_all(search.first.data(), search.second.data(), count);
 }
 
 /// The arrays that are read and written all the time; by value, as the compiler takes each word that is
@@ -128,7 +135,8 @@ HWY_INLINE void against(const Row& row, std::size_t begin, std::size_t end, cons
     const auto sure = hn::And(in_range, hn::Eq(over, hn::Zero(lanes)));
     const auto undecided = hn::AndNot(sure, hn::And(in_range, hn::Eq(apart, hn::Zero(lanes))));
     hn::StoreU(hn::Set(lanes, row.slot), lanes, arrays.first + arrays.count);
-    hn::StoreU(hn::Compress(hn::LoadU(lanes, arrays.slots + j), sure), lanes, arrays.second + arrays.count);
+    hn::StoreU(packed_lanes(lanes, hn::LoadU(lanes, arrays.slots + j), sure), lanes,
+               arrays.second + arrays.count);
     arrays.count += hn::CountTrue(lanes, sure);
     if (HWY_UNLIKELY(!hn::AllFalse(lanes, undecided)))
       arrays.count = decide(boxes, row.slot, j, bits_of(undecided), arrays.count, search);
@@ -160,97 +168,110 @@ HWY_INLINE void for_rows(const std::uint32_t* cell_begins, const BoxRows& rows, 
   }
 }
 
-#if HWY_TARGET == HWY_SCALAR
-class Measure {
- public:
-  explicit Measure(const BoxMeasure& measure) : measure_(measure) {}
-  /// Ends in steps, or false when the box is empty.
-  bool ends(const Aabb& box, MeasuredBox& out, std::array<std::uint32_t, 4>& extents) const {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const int k = static_cast<int>(axis);
-      const std::uint32_t low = step(box.min[k], axis), high = step(box.max[k], axis);
-      out.ends[axis] = low | (0xffff - high) << 16;
-      extents[axis] = high - low;
-    }
-    return !box.empty();
-  }
-
- private:
-  /// NaN, which only empty boxes have, is 1.
-  std::uint32_t step(float value, std::size_t axis) const {
-    const float place = (value - measure_.low[axis]) * measure_.steps_per_unit[axis];
-    const float clamped = place > 1 ? std::min(place, kSteps - 2.0f) : 1.0f;
-    return std::bit_cast<std::uint32_t>(clamped + 0x1p23f) & 0xffff;
-  }
-
-  const BoxMeasure& measure_;
-};
-#else
-/// A box is loaded as its first four and its last four numbers.
-class Measure {
- public:
-  explicit Measure(const BoxMeasure& measure) {
-    for (std::size_t i = 0; i < 8; ++i) {
-      const std::size_t axis = (i < 4 ? i : i + 1) % 3;  // x y z x, then z x y z
-      low_[i] = measure.low[axis];
-      scale_[i] = measure.steps_per_unit[axis];
-    }
-  }
-  /// Ends in steps, or false when the box is empty.
-  HWY_INLINE bool ends(const Aabb& box, MeasuredBox& out, std::array<std::uint32_t, 4>& extents) const {
-    const hn::Full128<std::uint32_t> words;
-    const auto mins = hn::LoadU(floats, &box.min.x);      // and max x
-    const auto end_part = hn::LoadU(floats, &box.min.z);  // and the other maxima
-    const auto first = steps(mins, 0), last = hn::Shuffle0321(steps(end_part, 4));
-    const auto ends = hn::Or(first, hn::ShiftLeft<16>(hn::Sub(hn::Set(words, 0xffffu), last)));
-    hn::Store(ends, words, out.ends.data());
-    hn::StoreU(hn::Sub(last, first), words, extents.data());
-    const auto is_below = hn::Le(mins, hn::Shuffle0321(end_part));
-    return hn::CountTrue(floats, hn::And(is_below, hn::FirstN(floats, 3))) == 3;
-  }
-
- private:
-  static constexpr hn::Full128<float> floats{};
-
-  /// To whole numbers by the bits that are left when 2^23 is added.
-  HWY_INLINE hn::Vec<hn::Full128<std::uint32_t>> steps(hn::Vec<hn::Full128<float>> values,
-                                                       std::size_t i) const {
-    const hn::Full128<std::uint32_t> words;
-    const auto place =
-        hn::Mul(hn::Sub(values, hn::Load(floats, low_.data() + i)), hn::Load(floats, scale_.data() + i));
-    const auto clamped = hn::Min(hn::Max(place, hn::Set(floats, 1.0f)), hn::Set(floats, kSteps - 2.0f));
-    return hn::And(hn::BitCast(words, hn::Add(clamped, hn::Set(floats, 0x1p23f))), hn::Set(words, 0xffffu));
-  }
-
-  alignas(16) std::array<float, 8> low_, scale_;
-};
-#endif
+/// The level and block of a box.
+HWY_INLINE void deal(const BoxMeasure& measure, std::span<const BoxRows> levels, std::size_t i,
+                     const MeasuredBoxes& out) {
+  const MeasuredBox& box = out.boxes[i];
+  std::array<std::uint32_t, 4> extents;
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    extents[axis] = 0xffff - (box.ends[axis] >> 16) - (box.ends[axis] & 0xffff);
+  const std::size_t level = measure.level_of(extents);
+  const BoxRows& rows = levels[level];
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    out.reach[level][axis] = std::max(out.reach[level][axis], extents[axis]);
+  const std::uint32_t row = rows.row_of(measure.low_step(box, 1), measure.low_step(box, 2));
+  const std::uint32_t block = measure.first_block[level] + (row >> measure.rows_per_block_log2[level]);
+  out.blocks[i] = block;
+  ++out.block_sizes[block];
+}
 
 std::size_t measure(const BoxMeasure& measure, std::span<const BoxRows> levels, std::span<const Aabb> boxes,
                     std::uint32_t slot, const MeasuredBoxes& out) {
   const Measure of_box(measure);
+  Measure::Reach reach = Measure::Reach::nothing();
+  const bool one_block = measure.first_block.back() == 1;
+  const std::size_t batch = of_box.batch();
   std::size_t count = 0;
-  for (const Aabb& box : boxes) {
-    MeasuredBox& measured = out.boxes[count];
-    std::array<std::uint32_t, 4> extents;
-    const bool is_box = of_box.ends(box, measured, extents);
-    measured.slot = slot++;
-    if (!is_box) continue;
-    std::size_t level = 0;
-    for (; level + 1 < levels.size(); ++level) {
-      const auto& largest = measure.largest[level];
-      if (extents[0] <= largest[0] && extents[1] <= largest[1] && extents[2] <= largest[2]) break;
+  for (std::size_t i = 0; i < boxes.size();) {
+    const auto first = slot + static_cast<std::uint32_t>(i);
+    if (i + batch <= boxes.size() && of_box.many(&boxes[i], first, out.boxes + count, reach)) {
+      for (std::size_t k = 0; k < batch && !one_block; ++k) deal(measure, levels, count + k, out);
+      i += batch;
+      count += batch;
+      continue;
     }
-    const BoxRows& rows = levels[level];
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      out.reach[level][axis] = std::max(out.reach[level][axis], extents[axis]);
-    const std::uint32_t row = rows.row_of(measure.low_step(measured, 1), measure.low_step(measured, 2));
-    const std::uint32_t block = measure.first_block[level] + (row >> measure.rows_per_block_log2[level]);
-    out.blocks[count++] = block;
-    ++out.block_sizes[block];
+    for (const std::size_t end = std::min(i + batch, boxes.size()); i < end; ++i) {
+      std::array<std::uint32_t, 4> extents;
+      const bool is_box = of_box.ends(boxes[i], out.boxes[count], extents);
+      out.boxes[count].slot = slot + static_cast<std::uint32_t>(i);
+      if (is_box) deal(measure, levels, count++, out);
+    }
   }
+  if (!one_block) return count;
+  // What was left of the only block when boxes were measured many at a time.
+  std::fill_n(out.blocks, count, 0);
+  out.block_sizes[0] = static_cast<std::uint32_t>(count);
+  const std::array<std::uint32_t, 3> largest = reach.largest();
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    out.reach[0][axis] = std::max(out.reach[0][axis], largest[axis]);
   return count;
 }
+
+#if HWY_TARGET != HWY_SCALAR
+constexpr std::size_t kRowsAtOnce = 4;
+
+/// The boxes [place, place + 4) of the only row against those behind each of them, where few overlap: a
+/// vector of others is loaded once for four, and there is one branch for all.
+HWY_INLINE void search_four(const DealtBoxes& boxes, std::size_t place, Arrays& arrays, RowSearch& search) {
+  const Words lanes;
+  const std::uint32_t* const cell_begins = boxes.cell_begins.data();
+  const Row row_0 = row_of(arrays, place), row_1 = row_of(arrays, place + 1),
+            row_2 = row_of(arrays, place + 2), row_3 = row_of(arrays, place + 3);
+  std::size_t end = 0;
+  const auto end_of = [&](const Row& row, std::size_t own) HWY_ATTR {
+    const std::size_t own_end = cell_begins[boxes.levels[0].division(0, row.high[0]) + 1];
+    arrays.tests += own_end - own - 1;
+    end = std::max(end, own_end);
+  };
+  end_of(row_0, place);
+  end_of(row_1, place + 1);
+  end_of(row_2, place + 2);
+  end_of(row_3, place + 3);
+  const auto apart_by = [&](const Row& row, std::size_t j) HWY_ATTR {
+    const auto over =
+        hn::Or(hn::Or(excess(arrays.ends_0 + j, row.bounds_0), excess(arrays.ends_1 + j, row.bounds_1)),
+               excess(arrays.ends_2 + j, row.bounds_2));
+    return hn::And(over, hn::Set(lanes, 0xfffefffeu));
+  };
+  // Those that are not behind a row are far from it.
+  const auto none_of = [&](std::size_t k) HWY_ATTR { return hn::VecFromMask(lanes, hn::FirstN(lanes, k)); };
+  auto hide_1 = none_of(1), hide_2 = none_of(2), hide_3 = none_of(3);
+  for (std::size_t j = place + 1; j < end; j += hn::Lanes(lanes)) {
+    const auto apart_0 = apart_by(row_0, j), apart_1 = hn::Or(apart_by(row_1, j), hide_1),
+               apart_2 = hn::Or(apart_by(row_2, j), hide_2), apart_3 = hn::Or(apart_by(row_3, j), hide_3);
+    hide_1 = hide_2 = hide_3 = hn::Zero(lanes);
+    const auto least = hn::Min(hn::Min(apart_0, apart_1), hn::Min(apart_2, apart_3));
+    if (HWY_LIKELY(hn::AllFalse(lanes, hn::Eq(least, hn::Zero(lanes))))) continue;
+    const auto near_of = [&](hn::Vec<Words> apart)
+                             HWY_ATTR -> std::uint64_t { return bits_of(hn::Eq(apart, hn::Zero(lanes))); };
+    const std::uint64_t in_range = end - j < 16 ? (1u << (end - j)) - 1 : 0xffff;
+    std::uint64_t near =
+        near_of(apart_0) | near_of(apart_1) << 16 | near_of(apart_2) << 32 | near_of(apart_3) << 48;
+    near &= in_range * 0x0001000100010001u;
+    for (; near != 0; near &= near - 1) {
+      const auto bit = static_cast<std::size_t>(std::countr_zero(near));
+      const std::uint32_t slot = arrays.slots[place + bit / 16], other = arrays.slots[j + bit % 16];
+      arrays.first[arrays.count] = slot;
+      arrays.second[arrays.count] = other;
+      arrays.count += static_cast<std::size_t>(overlap(boxes.exact[slot], boxes.exact[other]));
+    }
+    if (HWY_UNLIKELY(arrays.count > RowSearch::kBatch - 4 * kMaxLanes)) {
+      flush(boxes.spheres, arrays.count, search);
+      arrays.count = 0;
+    }
+  }
+}
+#endif
 
 template <bool dense, bool only_row>
 void search_level(const DealtBoxes& boxes, std::size_t level, std::size_t begin, std::size_t end,
@@ -259,7 +280,12 @@ void search_level(const DealtBoxes& boxes, std::size_t level, std::size_t begin,
                 boxes.slots.data(),   search.first.data(),  search.second.data()};
   const std::uint32_t* const cell_begins = boxes.cell_begins.data();
   const BoxRows rows = boxes.levels[level];
-  for (std::size_t place = begin; place < end; ++place) {
+  std::size_t place = begin;
+#if HWY_TARGET != HWY_SCALAR
+  if constexpr (only_row && !dense)
+    for (; place + kRowsAtOnce <= end; place += kRowsAtOnce) search_four(boxes, place, arrays, search);
+#endif
+  for (; place < end; ++place) {
     const Row row = row_of(arrays, place);
     const auto visit = [&](std::size_t from, std::size_t to)
                            HWY_ATTR { against<dense>(row, from, to, boxes, arrays, search); };

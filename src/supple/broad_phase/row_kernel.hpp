@@ -61,6 +61,16 @@ struct BoxMeasure {
   std::uint32_t low_step(const MeasuredBox& box, std::size_t axis) const {
     return box.ends[axes[axis]] & 0xffff;
   }
+  /// Of a box with these extents in steps, x, y, z and one more that is not looked at.
+  std::size_t level_of(const std::array<std::uint32_t, 4>& extents) const {
+    std::size_t level = 0;
+    for (; level + 1 < largest.size(); ++level) {
+      if (extents[0] <= largest[level][0] && extents[1] <= largest[level][1] &&
+          extents[2] <= largest[level][2])
+        break;
+    }
+    return level;
+  }
 };
 
 /// Where the results of `measure_boxes` go.

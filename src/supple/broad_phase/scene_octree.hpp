@@ -66,6 +66,9 @@ class SceneOctree {
   bool stays(std::uint32_t slot, const ObjectVolume& now) const;
   /// Takes over a new volume and leaves the regions as they are.
   void set_volume(std::uint32_t slot, const ObjectVolume& now);
+  /// The volumes themselves; when some are changed `build` must follow before the regions are used.
+  std::span<Aabb> mutable_boxes() { return boxes_; }
+  std::span<BoundingSphere> mutable_spheres() { return spheres_; }
   /// Takes over all volumes; `build` must follow before the regions are used.
   void set_volumes(const ObjectVolumes& volumes);
   /// Takes an object out of the regions it left and puts it into those it entered, in one walk down the

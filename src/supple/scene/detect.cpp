@@ -88,8 +88,10 @@ void Scene::Implementation::refit_objects() {
   parallel.for_ranges(stale_.size(), 1, [&](std::size_t begin, std::size_t end, std::uint32_t) {
     for (std::size_t i = begin; i < end; ++i) slots_[stale_[i]].object->update(serial);
   });
+  changed_slots_.clear();
   for (std::uint32_t index = 0; index < slots_.size(); ++index) {
     if (changed_[index] == 0) continue;
+    changed_slots_.push_back(index);
     const SceneObject* const object = slots_[index].object.get();
     boxes_[index] = object != nullptr ? grown(object->box(), growth_of_volumes) : Aabb{};
     spheres_[index] = object != nullptr ? grown(object->sphere(), growth_of_volumes) : BoundingSphere{};
@@ -98,7 +100,7 @@ void Scene::Implementation::refit_objects() {
 
 void Scene::Implementation::find_object_pairs() {
   ObjectVolumes volumes;
-  volumes.changed = changed_;
+  volumes.changed = changed_slots_;
   if (options.bounding_volume == BoundingVolume::sphere) {
     volumes.spheres = spheres_;
   } else {

@@ -86,6 +86,7 @@ class Scene::Implementation {
   std::vector<Aabb> boxes_;
   std::vector<BoundingSphere> spheres_;
   std::vector<std::uint8_t> changed_;
+  std::vector<std::uint32_t> changed_slots_;
   std::vector<std::uint64_t> versions_;  // of positions: never the same twice
   std::uint64_t last_version_ = 0;
   std::vector<std::uint32_t> stale_;

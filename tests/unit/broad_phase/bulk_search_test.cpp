@@ -9,6 +9,7 @@
 #include "broad_phase/octree_broad_phase.hpp"
 #include "geometry/aabb.hpp"
 #include "geometry/sphere.hpp"
+#include "support/instruction_sets.hpp"
 #include "unit/broad_phase/volume_scenes.hpp"
 
 namespace supple {
@@ -149,12 +150,47 @@ TEST(OctreeBroadPhase, FindsThePairsOfADoubleLoopHoweverItSearches) {
     OctreeBroadPhase finder(BoundingVolume::aabb, {});
     std::vector<Aabb> boxes = scene.boxes;
     for (int step = 0; step < 3; ++step) {
-      const auto found = finder.find_pairs({.boxes = boxes, .spheres = {}, .changed = {}}, parallel);
+      const auto found = finder.find_pairs({.boxes = boxes, .spheres = {}}, parallel);
       const std::vector<IndexPair> expected = double_loop(boxes);
       ASSERT_TRUE(std::equal(found.begin(), found.end(), expected.begin(), expected.end())) << scene.name;
       for (Aabb& box : boxes) box.max.x = box.max.x + 0.25f * (box.max.x - box.min.x);
     }
   }
+}
+
+TEST(BulkSearch, EveryInstructionSetFindsThePairsOfADoubleLoop) {
+  for (const test::NamedBoxes& scene : hard_scenes()) {
+    const std::vector<IndexPair> expected = double_loop(scene.boxes);
+    std::uint64_t tests = 0;
+    for_each_target([&](const char* name) {
+      Bulk bulk(1);
+      bulk.find(scene.boxes);
+      // Once more: whether pairs are dense is known from the call before.
+      const std::vector<IndexPair>& found = bulk.find(scene.boxes);
+      if (!bulk.did_search()) return;
+      EXPECT_EQ(found, expected) << scene.name << " by " << name;
+      if (tests == 0) tests = bulk.tests();
+      EXPECT_EQ(bulk.tests(), tests) << scene.name << " by " << name;
+    });
+  }
+}
+
+TEST(BulkSearch, FewBoxesThatFlyApartHaveANewPlan) {
+  // The plan of the calls before is of another place, of smaller boxes, of boxes that did not crowd.
+  Bulk bulk(1);
+  std::vector<Aabb> boxes = test::random_boxes(3000, 40, 0.5f, 14);
+  bulk.find(boxes);
+  const std::uint64_t tests = bulk.tests();
+  const auto check = [&](const char* what) {
+    ASSERT_EQ(bulk.find(boxes), double_loop(boxes)) << what;
+    EXPECT_LT(bulk.tests(), 3 * tests) << what;
+  };
+  for (Aabb& box : boxes) box = {box.min + Vec3f{900, 0, 0}, box.max + Vec3f{900, 0, 0}};
+  check("moved aside");
+  for (Aabb& box : boxes) box = {box.min * 0.01f, box.max * 0.01f};
+  check("shrunk");
+  for (Aabb& box : boxes) box = {box.min * 1e4f, box.max * 1e4f};
+  check("grown");
 }
 
 TEST(BulkSearch, ThreadsDoTheSameTests) {
@@ -213,43 +249,6 @@ TEST(PairSorter, SortsRunsOfAnyLength) {
     sorter.finish(true, parallel, sorted);
     EXPECT_EQ(sorted, expected) << slots << ", each twice";
   }
-}
-
-TEST(OctreeBroadPhase, LeavesRegionsBehindWhileManyMoveAndMakesThemAgain) {
-  const Parallel parallel(1);
-  OctreeBroadPhase finder(BoundingVolume::aabb, {});
-  OctreeBroadPhase by_regions(BoundingVolume::aabb, {.always_regions = true});
-  std::vector<Aabb> boxes = test::random_boxes(1000, 15, 0.5f, 12);
-  Random random(13);
-  const auto step = [&](std::size_t moving) {
-    for (std::size_t i = 0; i < moving; ++i) {
-      const Vec3f by = random.point(-0.3f, 0.3f);
-      boxes[i] = {boxes[i].min + by, boxes[i].max + by};
-    }
-    const ObjectVolumes volumes{.boxes = boxes, .spheres = {}, .changed = {}};
-    const auto found = finder.find_pairs(volumes, parallel),
-               expected = by_regions.find_pairs(volumes, parallel);
-    EXPECT_TRUE(std::equal(found.begin(), found.end(), expected.begin(), expected.end()));
-    EXPECT_EQ(finder.validate(), "");
-    EXPECT_EQ(finder.stats().objects_changed, by_regions.stats().objects_changed);
-    return finder.stats();
-  };
-  EXPECT_EQ(step(0).regions_rebuilt, 1u);
-  for (int i = 0; i < 3; ++i) {
-    const BroadPhaseStats stats = step(1000);
-    EXPECT_EQ(stats.objects_paired, 1000u);
-    EXPECT_EQ(stats.objects_placed, 0u);
-    EXPECT_GT(finder.regions().size(), 8u) << "regions are there for who asks";
-  }
-  std::uint64_t rebuilt = 0;
-  for (int i = 0; i < 10; ++i) {
-    const BroadPhaseStats stats = step(5);
-    rebuilt += stats.regions_rebuilt;
-    if (i == 9) {
-      EXPECT_EQ(stats.objects_paired, 5u);
-    }
-  }
-  EXPECT_EQ(rebuilt, 1u);
 }
 
 }  // namespace

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
+#include <span>
 #include <vector>
 
 #include "broad_phase/octree_broad_phase.hpp"
@@ -15,12 +17,14 @@ namespace {
 using test::box_around;
 using test::Random;
 
-/// The octree broad phase by itself, so that counters and flags of change can be seen.
+/// The octree broad phase by itself, always by regions, so that counters and lists of change can be seen.
 class Octree {
  public:
-  explicit Octree(const SceneOctreeOptions& options = {}) : finder_(BoundingVolume::aabb, options) {}
+  explicit Octree(SceneOctreeOptions options = {})
+      : finder_(BoundingVolume::aabb, (options.always_regions = true, options)) {}
 
-  const BroadPhaseStats& step(const std::vector<Aabb>& boxes, const std::vector<std::uint8_t>& changed = {}) {
+  const BroadPhaseStats& step(const std::vector<Aabb>& boxes,
+                              std::optional<std::span<const std::uint32_t>> changed = {}) {
     const auto pairs = finder_.find_pairs({.boxes = boxes, .spheres = {}, .changed = changed}, parallel_);
     pairs_.assign(pairs.begin(), pairs.end());
     EXPECT_EQ(finder_.validate(), "");
@@ -142,17 +146,17 @@ TEST(SceneOctree, LooksOnlyAtWhatMoved) {
   EXPECT_EQ(moved.regions_rebuilt, 0u);
 }
 
-TEST(SceneOctree, TrustsTheFlagsOfChange) {
+TEST(SceneOctree, TrustsTheListOfChange) {
   Octree octree;
   std::vector<Aabb> boxes = test::random_boxes(300, 10, 0.5f, 3);
   octree.step(boxes);
   const std::vector<IndexPair> before = octree.pairs();
-  std::vector<std::uint8_t> changed(boxes.size(), 0);
+  std::vector<std::uint32_t> changed;
   const Aabb old = boxes[4];
   boxes[4] = box_around({5, 5, 5}, {4, 4, 4});
-  EXPECT_EQ(octree.step(boxes, changed).objects_changed, 0u) << "not flagged, so not looked at";
+  EXPECT_EQ(octree.step(boxes, changed).objects_changed, 0u) << "not listed, so not looked at";
   EXPECT_EQ(octree.pairs(), before);
-  changed[4] = 1;
+  changed = {4, 7, 4};
   EXPECT_EQ(octree.step(boxes, changed).objects_changed, 1u);
   EXPECT_GT(octree.pairs().size(), before.size());
   boxes[4] = old;
@@ -234,7 +238,7 @@ TEST(SceneOctree, CoincidentObjectsDoNotBlowUpTheRegions) {
 }
 
 TEST(SceneOctree, RebuildsWhenTheSceneOutgrowsTheCube) {
-  Octree octree({.always_regions = true});
+  Octree octree;
   std::vector<Aabb> boxes = test::random_boxes(1000, 10, 0.2f, 7);
   octree.step(boxes);
   const float edge = octree.regions()[0].box.max.x - octree.regions()[0].box.min.x;

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+namespace supple {
+
+/// For each set of eight lanes, bit by bit, the numbers of those in it, ascending; zeros behind them.
+inline constexpr std::array<std::array<std::uint8_t, 8>, 256> kPackedLanes = [] {
+  std::array<std::array<std::uint8_t, 8>, 256> table{};
+  for (std::size_t set = 0; set < table.size(); ++set) {
+    std::size_t count = 0;
+    for (std::size_t lane = 0; lane < 8; ++lane)
+      if ((set >> lane & 1) != 0) table[set][count++] = static_cast<std::uint8_t>(lane);
+  }
+  return table;
+}();
+
+}  // namespace supple
