@@ -43,6 +43,9 @@ const DetectResult& Scene::Implementation::detect() {
   find_object_pairs();
   result.stats.broad_phase_seconds = stage.lap();
   plan_jobs();
+  stage.lap();
+  rebuild_degraded();
+  result.stats.rebuild_seconds = stage.lap();
   if (is_continuous()) {
     find_impacts();
   } else {
@@ -56,15 +59,34 @@ const DetectResult& Scene::Implementation::detect() {
   return result;
 }
 
-/// Large objects take all workers one after the other; small ones go side by side.
-void Scene::Implementation::refit_objects() {
+/// Calls `function(object, parallel)`: large objects take all workers one after the other; small ones go
+/// side by side.
+template <class Function>
+void Scene::Implementation::for_each_object(std::span<const std::uint32_t> indices,
+                                            const Function& function) {
   constexpr std::size_t large = 16384;  // triangles
+  small_.clear();
+  for (const std::uint32_t index : indices) {
+    SceneObject& object = *slots_[index].object;
+    if (object.octree().triangles().size() >= large) {
+      function(object, parallel);
+    } else {
+      small_.push_back(index);
+    }
+  }
+  parallel.for_ranges(small_.size(), 1, [&](std::size_t begin, std::size_t end, std::uint32_t) {
+    for (std::size_t i = begin; i < end; ++i) function(*slots_[small_[i]].object, serial);
+  });
+}
+
+void Scene::Implementation::refit_objects() {
   const double growth_of_volumes = is_continuous() ? growth(options.impact.min_separation) : 0;
   boxes_.resize(slots_.size());
   spheres_.resize(slots_.size());
   versions_.resize(slots_.size(), 0);
   changed_.resize(slots_.size(), 0);
   stale_.clear();
+  last_version_before_ = last_version_;
   for (std::uint32_t index = 0; index < slots_.size(); ++index) {
     SceneObject* const object = slots_[index].object.get();
     if (object == nullptr || !object->is_stale()) continue;
@@ -74,15 +96,9 @@ void Scene::Implementation::refit_objects() {
       ++result.stats.objects_refitted;
       result.stats.triangles_refitted += object->octree().triangles().size();
     }
-    if (object->octree().triangles().size() >= large) {
-      object->update(parallel);
-    } else {
-      stale_.push_back(index);
-    }
+    stale_.push_back(index);
   }
-  parallel.for_ranges(stale_.size(), 1, [&](std::size_t begin, std::size_t end, std::uint32_t) {
-    for (std::size_t i = begin; i < end; ++i) slots_[stale_[i]].object->update(serial);
-  });
+  for_each_object(stale_, [](SceneObject& object, const Parallel& workers) { object.update(workers); });
   for (std::uint32_t index = 0; index < slots_.size(); ++index) {
     if (changed_[index] == 0) continue;
     const SceneObject* const object = slots_[index].object.get();
@@ -130,6 +146,49 @@ void Scene::Implementation::plan_jobs() {
   }
 }
 
+/// Of each octree, other than those whose outcome is known as nothing moved.
+void Scene::Implementation::count_queries() {
+  queries_.assign(slots_.size(), 0);
+  for (const ContactJob& job : jobs_) {
+    if (std::max(versions_[job.a], versions_[job.b]) <= last_version_before_) continue;
+    if (job.a == job.b) {
+      queries_[job.a] += SceneObject::queries_of_self;
+    } else {
+      queries_[job.a] += 1;
+      queries_[job.b] += 1;
+    }
+  }
+}
+
+/// Those for which it pays, some in a step: the others wait.
+void Scene::Implementation::rebuild_degraded() {
+  constexpr std::uint64_t most_triangles = 131072;  // a step, but at least one object
+  degraded_.clear();
+  for (std::uint32_t index = 0; index < slots_.size(); ++index) {
+    const SceneObject* const object = slots_[index].object.get();
+    if (object != nullptr && object->is_degraded()) degraded_.push_back(index);
+  }
+  if (degraded_.empty()) return;
+  count_queries();
+  std::size_t chosen = 0;
+  std::uint64_t triangles = 0;
+  for (const std::uint32_t index : degraded_) {
+    SceneObject& object = *slots_[index].object;
+    if (!object.count_queries(queries_[index]) || queries_[index] == 0) continue;
+    if (triangles > 0 && triangles + object.degraded_triangles() > most_triangles) continue;
+    triangles += object.degraded_triangles();
+    degraded_[chosen++] = index;
+    result.stats.subtrees_rebuilt -= object.subtrees_rebuilt();
+    result.stats.triangles_rebuilt -= object.triangles_rebuilt();
+  }
+  degraded_.resize(chosen);
+  for_each_object(degraded_, [](SceneObject& object, const Parallel& workers) { object.rebuild(workers); });
+  for (const std::uint32_t index : degraded_) {
+    result.stats.subtrees_rebuilt += slots_[index].object->subtrees_rebuilt();
+    result.stats.triangles_rebuilt += slots_[index].object->triangles_rebuilt();
+  }
+}
+
 void Scene::Implementation::find_contacts() {
   contact_objects_.clear();
   for (std::uint32_t index = 0; index < slots_.size(); ++index) {
@@ -167,6 +226,7 @@ std::optional<ContinuousContact> Scene::Implementation::earliest_impact(const ch
   refit_objects();
   find_object_pairs();
   plan_jobs();
+  rebuild_degraded();
   list_moving_objects();
   result.stats = stats;
   result.object_pairs = {};  // they were of another call
