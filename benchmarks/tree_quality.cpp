@@ -64,18 +64,14 @@ struct Contestant {
     candidates += stats.candidate_pairs + stats.vertex_face_candidates + stats.edge_edge_candidates;
   }
 
-  double degradation() const {
-    double most = 0;
-    for (const ObjectId object : objects) {
-      most = std::max(most, scene.octree_statistics(object).degradation);
-    }
-    return most;
+  /// Of all octrees: visits of a query by the surface-area heuristic.
+  void add_costs() {
+    for (const ObjectId object : objects) visits += scene.octree_statistics(object).cost;
   }
 
-  double cost() const { return scene.octree_statistics(objects[0]).cost; }
   Scene scene;
   std::vector<ObjectId> objects;
-  double milliseconds = 0, longest = 0, refit = 0, rebuild = 0, traversal = 0;
+  double milliseconds = 0, longest = 0, refit = 0, rebuild = 0, traversal = 0, visits = 0;
   std::uint64_t subtrees = 0, triangles = 0, candidates = 0;
 };
 
@@ -91,25 +87,25 @@ void check_equal(const DetectResult& p, const DetectResult& q) {
 void run_cell(const std::string& cell, const Choice& choice) {
   DegradingShapes shapes(cell);
   Contestant built(shapes, choice, true), kept(shapes, choice, false);
-  double worst_built = 0, worst_kept = 0;
   for (std::size_t frame = 0; frame < choice.frames; ++frame) {
     (frame % 2 == 0 ? built : kept).step(shapes);
     (frame % 2 == 0 ? kept : built).step(shapes);
     check_equal(built.scene.result(), kept.scene.result());
-    worst_built += built.cost() / kept.cost() / static_cast<double>(choice.frames);
-    worst_kept = std::max(worst_kept, kept.degradation());
+    built.add_costs();
+    kept.add_costs();
     shapes.advance();
   }
   const double frames = static_cast<double>(choice.frames);
-  const auto print = [&](const Contestant& side, const char* name, double worst) {
-    std::printf("%-8s %-6s %9.3f %9.3f %9.3f %9.3f %9.3f %9.2f %7llu %11llu %13llu %6.2f\n", cell.c_str(),
+  const auto print = [&](const Contestant& side, const char* name) {
+    std::printf("%-8s %-6s %9.3f %9.3f %9.3f %9.3f %9.3f %9.0f %7llu %11llu %13llu %6.2f\n", cell.c_str(),
                 name, side.milliseconds / frames, side.refit / frames, side.rebuild / frames,
-                side.traversal / frames, side.longest, worst, static_cast<unsigned long long>(side.subtrees),
+                side.traversal / frames, side.longest, side.visits / frames,
+                static_cast<unsigned long long>(side.subtrees),
                 static_cast<unsigned long long>(side.triangles),
                 static_cast<unsigned long long>(side.candidates), side.milliseconds / kept.milliseconds);
   };
-  print(kept, "kept", worst_kept);
-  print(built, "built", worst_built);
+  print(kept, "kept");
+  print(built, "built");
   std::fflush(stdout);
 }
 
@@ -137,7 +133,7 @@ Choice choice_of(int argument_count, char** arguments) {
 
 void run(const Choice& choice) {
   std::printf("%-8s %-6s %9s %9s %9s %9s %9s %9s %7s %11s %13s %6s\n", "cell", "octree", "ms", "refit",
-              "rebuild", "traverse", "longest", "degraded", "subtrees", "triangles", "candidates", "ratio");
+              "rebuild", "traverse", "longest", "visits", "subtrees", "triangles", "candidates", "ratio");
   for (const std::string& cell : choice.cells) run_cell(cell, choice);
 }
 

@@ -15,11 +15,6 @@ namespace {
 /// with two dozen triangles has about this.
 constexpr double usual_reference = 16;
 
-double half_surface(const Aabb& box) {
-  const auto extent = [&](int axis) { return std::max(0.0, double{box.max[axis]} - double{box.min[axis]}); };
-  return extent(0) * extent(1) + extent(1) * extent(2) + extent(2) * extent(0);
-}
-
 }  // namespace
 
 bool TreeQuality::is_known() const {

@@ -5,6 +5,7 @@
 #include "core/error.hpp"
 #include "core/float_rounding.hpp"
 #include "core/timer.hpp"
+#include "geometry/aabb.hpp"
 #include "scene/scene_implementation.hpp"
 
 namespace supple {
@@ -146,7 +147,8 @@ void Scene::Implementation::plan_jobs() {
   }
 }
 
-/// Of each octree, other than those whose outcome is known as nothing moved.
+/// Of each octree, but those whose outcome is known as nothing moved. Another object asks for as much of an
+/// octree as the surface of what their boxes share.
 void Scene::Implementation::count_queries() {
   queries_.assign(slots_.size(), 0);
   for (const ContactJob& job : jobs_) {
@@ -154,15 +156,17 @@ void Scene::Implementation::count_queries() {
     if (job.a == job.b) {
       queries_[job.a] += SceneObject::queries_of_self;
     } else {
-      queries_[job.a] += 1;
-      queries_[job.b] += 1;
+      const double asked_for = half_surface(shared_box(boxes_[job.a], boxes_[job.b]));
+      for (const std::uint32_t index : {job.a, job.b}) {
+        if (asked_for > 0) queries_[index] += asked_for / half_surface(boxes_[index]);
+      }
     }
   }
 }
 
 /// Those for which it pays, some in a step: the others wait.
 void Scene::Implementation::rebuild_degraded() {
-  constexpr std::uint64_t most_triangles = 131072;  // a step, but at least one object
+  constexpr std::uint64_t most_triangles = 65536;  // a step, but at least one object
   degraded_.clear();
   for (std::uint32_t index = 0; index < slots_.size(); ++index) {
     const SceneObject* const object = slots_[index].object.get();
@@ -174,7 +178,7 @@ void Scene::Implementation::rebuild_degraded() {
   std::uint64_t triangles = 0;
   for (const std::uint32_t index : degraded_) {
     SceneObject& object = *slots_[index].object;
-    if (!object.count_queries(queries_[index]) || queries_[index] == 0) continue;
+    if (!(queries_[index] > 0) || !object.count_queries(queries_[index])) continue;
     if (triangles > 0 && triangles + object.degraded_triangles() > most_triangles) continue;
     triangles += object.degraded_triangles();
     degraded_[chosen++] = index;

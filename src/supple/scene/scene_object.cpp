@@ -19,10 +19,10 @@ constexpr double largest_lazy_size = 1e30;
 constexpr std::uint32_t refits_watched = 16;
 /// Of building an octree anew, in queries of it as built: what is the same however small the degraded part,
 /// and sorting all of it.
-constexpr double price_of_relinking = 20, price_of_building = 100;
-/// Of what queries of the degraded parts cost, that a new tree must save. Leaves that are patches of the
-/// surface stay good for longer than those that are parts of space, and more of them cannot touch themselves.
-constexpr double least_saving = 0.5;
+constexpr double price_of_relinking = 10, price_of_building = 50;
+/// Of what queries of the degraded parts cost, that a new tree must save: leaves that are patches of the
+/// surface stay good for longer than those that are parts of space. And more of them cannot touch themselves.
+constexpr double least_saving = 0.5, least_saving_of_self = 0.75;
 constexpr double most_patience = 1024;
 
 double largest(const Vec3d& v) {
@@ -310,7 +310,8 @@ void SceneObject::rebuild(const Parallel& parallel) {
   }
   TreeQuality quality = quality_;
   quality.update_references({octree.nodes(), octree.boxes(), leaf_limit()}, changes.old_nodes);
-  if (!(quality_.cost() - quality.cost() >= least_saving * quality_.degraded_cost())) {
+  const double least = options.self_collision ? least_saving_of_self : least_saving;
+  if (!(quality_.cost() - quality.cost() >= least * quality_.degraded_cost())) {
     quality_.set_references(tree_boxes());
     patience_ = std::min(2 * patience_, most_patience);
     return;

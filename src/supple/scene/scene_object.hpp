@@ -49,9 +49,9 @@ class SceneObject {
   void set_rest_quality(const Parallel& parallel);
   /// Parts of the octree, as of the last update, are worth building anew: if it is asked for often enough.
   bool is_degraded() const { return quality_.share() > 0; }
-  /// So many queries of the octree in a step, each of another object or `queries_of_self`. Returns whether by
-  /// now they have cost as much too much as building the degraded parts anew will cost: waiting longer could
-  /// cost more than twice of what would have been best, whatever follows.
+  /// So many queries of the whole octree in a step; the object against itself is `queries_of_self`. Returns
+  /// whether by now they have cost as much too much as building the degraded parts anew will cost: never more
+  /// than twice what would have been best, whatever follows.
   bool count_queries(double queries);
   static constexpr double queries_of_self = 8;
   /// Triangles that `rebuild` is about to sort.
