@@ -21,8 +21,9 @@ constexpr std::uint32_t refits_watched = 16;
 /// and sorting all of it.
 constexpr double price_of_relinking = 10, price_of_building = 50;
 /// Of what queries of the degraded parts cost, that a new tree must save: leaves that are patches of the
-/// surface stay good for longer than those that are parts of space. And more of them cannot touch themselves.
-constexpr double least_saving = 0.5, least_saving_of_self = 0.75;
+/// surface stay good for longer than those that are parts of space. And where the surface is smooth, more of
+/// them cannot touch themselves.
+constexpr double least_saving = 0.5, least_saving_of_smooth = 0.75;
 constexpr double most_patience = 1024;
 
 double largest(const Vec3d& v) {
@@ -253,7 +254,9 @@ void SceneObject::update_unfolded(const Parallel& parallel) {
     lanes += octree_.nodes()[node].lane_count;
     unfolded += static_cast<std::size_t>(std::popcount(unfolded_.masks()[node]));
   }
-  if (unfolded * least_share < lanes) steps_without_unfolded_ = rest_steps;
+  const bool pays = unfolded * least_share >= lanes;
+  was_unfolded_ = was_unfolded_ || pays;
+  if (!pays) steps_without_unfolded_ = rest_steps;
 }
 
 TreeBoxes SceneObject::tree_boxes() const {
@@ -310,7 +313,7 @@ void SceneObject::rebuild(const Parallel& parallel) {
   }
   TreeQuality quality = quality_;
   quality.update_references({octree.nodes(), octree.boxes(), leaf_limit()}, changes.old_nodes);
-  const double least = options.self_collision ? least_saving_of_self : least_saving;
+  const double least = was_unfolded_ ? least_saving_of_smooth : least_saving;
   if (!(quality_.cost() - quality.cost() >= least * quality_.degraded_cost())) {
     quality_.set_references(tree_boxes());
     patience_ = std::min(2 * patience_, most_patience);

@@ -120,6 +120,7 @@ class SceneObject {
   bool passes_over_unfolded_;
   UnfoldedLanes unfolded_;
   bool has_unfolded_ = false;                 // of the present positions
+  bool was_unfolded_ = false;                 // enough of it to be worth the search, at some time
   std::uint32_t steps_without_unfolded_ = 1;  // finding the boundaries is for objects that go on moving
   // The paper's results depend on leaves: they stay those of the rest pose.
   bool may_rebuild_;
