@@ -88,6 +88,7 @@ void print_text(const MeshInfo& info) {
       "  octree       {}, {}, depth {}, {:.1f} triangles a leaf (largest {}), {:.1f} of 8 lanes used\n",
       counted(o.nodes, "node"), o.leaves == 1 ? "1 leaf" : grouped(o.leaves) + " leaves", o.depth,
       o.mean_leaf_size, o.largest_leaf, o.mean_node_width);
+  if (o.cost > 0) fmt::print("  quality      {:.1f} visits of a query\n", o.cost);
   fmt::print("  memory       {} bytes, {:.1f} a triangle\n\n", grouped(o.bytes), o.bytes_per_triangle);
 }
 
@@ -100,6 +101,7 @@ void write_octree(JsonWriter& json, const OctreeStatistics& octree) {
   json.member("largest_leaf", std::uint64_t{octree.largest_leaf});
   json.member("mean_leaf_size", octree.mean_leaf_size);
   json.member("mean_node_width", octree.mean_node_width);
+  json.member("cost", octree.cost);
   json.member("bytes", octree.bytes);
   json.member("bytes_per_triangle", octree.bytes_per_triangle);
   json.key("leaves_by_level");

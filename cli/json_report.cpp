@@ -106,12 +106,15 @@ void write_stats(JsonWriter& json, const Frame& frame) {
   if (frame.simulated) json.member("motion_seconds", frame.simulated->motion_seconds);
   json.member("refit_seconds", stats.refit_seconds);
   json.member("broad_phase_seconds", stats.broad_phase_seconds);
+  json.member("rebuild_seconds", stats.rebuild_seconds);
   json.member("traversal_seconds", stats.traversal_seconds);
   json.member("exact_seconds", stats.exact_seconds);
   json.member("finish_seconds", stats.finish_seconds);
   json.member("total_seconds", stats.total_seconds);
   json.member("objects_refitted", stats.objects_refitted);
   json.member("triangles_refitted", stats.triangles_refitted);
+  json.member("subtrees_rebuilt", stats.subtrees_rebuilt);
+  json.member("triangles_rebuilt", stats.triangles_rebuilt);
   json.member("object_pairs_tested", stats.object_pairs_tested);
   json.member("object_pairs", stats.object_pairs);
   json.member("node_pairs_visited", stats.node_pairs_visited);

@@ -15,11 +15,14 @@ namespace {
 void add_to(StepStats& sum, const StepStats& stats) {
   sum.refit_seconds += stats.refit_seconds;
   sum.broad_phase_seconds += stats.broad_phase_seconds;
+  sum.rebuild_seconds += stats.rebuild_seconds;
   sum.traversal_seconds += stats.traversal_seconds;
   sum.exact_seconds += stats.exact_seconds;
   sum.finish_seconds += stats.finish_seconds;
   sum.total_seconds += stats.total_seconds;
   sum.triangles_refitted += stats.triangles_refitted;
+  sum.subtrees_rebuilt += stats.subtrees_rebuilt;
+  sum.triangles_rebuilt += stats.triangles_rebuilt;
   sum.object_pairs_tested += stats.object_pairs_tested;
   sum.object_pairs += stats.object_pairs;
   sum.node_pairs_visited += stats.node_pairs_visited;
@@ -123,6 +126,9 @@ void TextReport::print_stages() const {
   row("broad phase", sum_.broad_phase_seconds,
       fmt::format("{} of {} tested", counted(sum_.object_pairs, "object pair"),
                   grouped(sum_.object_pairs_tested)));
+  row("rebuild", sum_.rebuild_seconds,
+      fmt::format("{} in {}", counted(sum_.triangles_rebuilt, "triangle"),
+                  counted(sum_.subtrees_rebuilt, "part")));
   row("traversal", sum_.traversal_seconds,
       fmt::format("{} from {}",
                   counted(sum_.candidate_pairs + sum_.vertex_face_candidates + sum_.edge_edge_candidates,

@@ -52,6 +52,10 @@ struct ObjectOctreeOptions {
   /// take turns. Contacts are the same for all, the paper's colliding vertices are not: the leaves differ.
   /// Nodes are eight lanes wide in any case, so fewer children take more memory and time; for comparison.
   std::uint32_t arity = 8;
+  /// Build parts anew when the object has deformed so far from what they were built from that queries cost
+  /// too much, and a scene has paid for that often enough. Contacts are the same; for comparison. Never when
+  /// a scene gives the paper's colliding vertices or has its spheres, which depend on the leaves.
+  bool rebuild_degraded = true;
 };
 
 /// Shape of the octree of the scene.

@@ -51,6 +51,7 @@ struct PairEvents {
 struct StepStats {
   double refit_seconds = 0;        ///< new positions into octrees
   double broad_phase_seconds = 0;  ///< object volumes into object pairs
+  double rebuild_seconds = 0;      ///< degraded parts of octrees anew
   double traversal_seconds = 0;    ///< object pairs into candidate triangle pairs
   double exact_seconds = 0;        ///< candidates into contacts
   double finish_seconds = 0;       ///< canonical order and events
@@ -58,6 +59,8 @@ struct StepStats {
 
   std::uint64_t objects_refitted = 0;
   std::uint64_t triangles_refitted = 0;
+  std::uint64_t subtrees_rebuilt = 0;  ///< parts of octrees that had degraded, and their triangles
+  std::uint64_t triangles_rebuilt = 0;
   std::uint64_t object_pairs_tested = 0;  ///< volume against volume in the broad phase
   std::uint64_t object_pairs = 0;
   std::uint64_t node_pairs_visited = 0;  ///< eight-wide node against eight-wide node
@@ -152,6 +155,14 @@ struct OctreeStatistics {
   std::uint64_t bytes = 0;         ///< all memory of the octree: nodes, ids and maps, without the positions
   double bytes_per_triangle = 0;
   std::vector<std::uint64_t> leaves_by_level;
+  /// What a query whose box meets the object's visits on average, by the surface-area heuristic: a visit a
+  /// lane, and an eighth for each triangle of a leaf. Of the boxes as last refitted; 0 when they have no
+  /// surface.
+  double cost = 0;
+  /// The cost over what it was when built: 1 as built, 2 when queries cost twice as much.
+  double degradation = 1;
+  std::uint64_t subtrees_rebuilt = 0;  ///< since the object was added, and their triangles
+  std::uint64_t triangles_rebuilt = 0;
 };
 
 /// One region of the scene octree, for inspection and drawing.

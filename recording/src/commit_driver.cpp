@@ -95,6 +95,8 @@ void commit(CommittedFile& file) {
   for (const auto& [turn, block] : order) {
     assert(turn.address / page_size == (turn.address + block->bytes.size() - 1) / page_size);
     if (!write_now(file, turn.address, block->bytes.data(), block->bytes.size())) return;
+    // It says where the file ends: whatever fails after it, the file may not end before.
+    if (block->type == H5FD_MEM_SUPER) file.committed_end = file.end_of_allocation;
   }
   file.held.clear();
   file.committed_end = file.end_of_allocation;

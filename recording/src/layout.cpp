@@ -90,6 +90,8 @@ const std::vector<ColumnOf<StepStats>>& columns_of() {
       column<Row>(
           "broad_phase_seconds", [](auto& row) -> auto& { return row.broad_phase_seconds; }),
       column<Row>(
+          "rebuild_seconds", [](auto& row) -> auto& { return row.rebuild_seconds; }),
+      column<Row>(
           "traversal_seconds", [](auto& row) -> auto& { return row.traversal_seconds; }),
       column<Row>(
           "exact_seconds", [](auto& row) -> auto& { return row.exact_seconds; }),
@@ -101,6 +103,10 @@ const std::vector<ColumnOf<StepStats>>& columns_of() {
           "objects_refitted", [](auto& row) -> auto& { return row.objects_refitted; }),
       column<Row>(
           "triangles_refitted", [](auto& row) -> auto& { return row.triangles_refitted; }),
+      column<Row>(
+          "subtrees_rebuilt", [](auto& row) -> auto& { return row.subtrees_rebuilt; }),
+      column<Row>(
+          "triangles_rebuilt", [](auto& row) -> auto& { return row.triangles_rebuilt; }),
       column<Row>(
           "object_pairs_tested", [](auto& row) -> auto& { return row.object_pairs_tested; }),
       column<Row>(

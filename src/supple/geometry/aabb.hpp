@@ -29,4 +29,20 @@ void extend(Aabb& box, const Vec3<Scalar>& point) {
   }
 }
 
+/// What two boxes share: empty, or inverted, when they are apart.
+inline Aabb shared_box(const Aabb& a, const Aabb& b) {
+  Aabb result;
+  for (int axis = 0; axis < 3; ++axis) {
+    result.min[axis] = std::max(a.min[axis], b.min[axis]);
+    result.max[axis] = std::min(a.max[axis], b.max[axis]);
+  }
+  return result;
+}
+
+/// Half of the box's surface: 0 when it is empty.
+inline double half_surface(const Aabb& box) {
+  const auto extent = [&](int axis) { return std::max(0.0, double{box.max[axis]} - double{box.min[axis]}); };
+  return extent(0) * extent(1) + extent(1) * extent(2) + extent(2) * extent(0);
+}
+
 }  // namespace supple

@@ -15,7 +15,9 @@ namespace {
 
 constexpr std::uint32_t unnumbered = std::numeric_limits<std::uint32_t>::max();
 
-std::vector<Vec3d> box_centers(const PositionsView<double>& positions, std::span<const Triangle> triangles) {
+/// `positions[v]` is vertex v.
+template <class Positions>
+std::vector<Vec3d> box_centers(const Positions& positions, std::span<const Triangle> triangles) {
   std::vector<Vec3d> centers;
   centers.reserve(triangles.size());
   for (const Triangle& triangle : triangles) {
@@ -88,7 +90,7 @@ TriangleArrays arrays_of(std::span<const Triangle> triangles, const VertexBuffer
 ObjectOctree::ObjectOctree(const PositionsView<double>& rest_positions, std::span<const Triangle> triangles,
                            const ObjectOctreeOptions& options, BoundingVolume bounding_volume,
                            SphereFit sphere_fit, VertexNumbering numbering)
-    : vertex_count_(rest_positions.count), sphere_fit_(sphere_fit), arity_(options.arity) {
+    : vertex_count_(rest_positions.count), options_(options), sphere_fit_(sphere_fit) {
   OctreeTopology topology = build_octree(box_centers(rest_positions, triangles), options);
   nodes_ = std::move(topology.nodes);
   nodes_.shrink_to_fit();
@@ -96,27 +98,64 @@ ObjectOctree::ObjectOctree(const PositionsView<double>& rest_positions, std::spa
   triangle_ids_ = std::move(topology.order);
   boxes_.resize(nodes_.size());
   if (bounding_volume == BoundingVolume::sphere) spheres_.resize(nodes_.size());
-  number_vertices(triangles, numbering);
+  triangles_.reserve(triangles.size());
+  for (const std::uint32_t id : triangle_ids_) triangles_.push_back(triangles[id]);
+  if (numbering == VertexNumbering::by_first_use) {
+    vertex_ids_.resize(vertex_count_);
+    vertex_order_ = number_by_first_use();
+    for (std::uint32_t user = 0; user < vertex_count_; ++user) vertex_ids_[vertex_order_[user]] = user;
+  }
   list_leaf_vertices();
 }
 
-void ObjectOctree::number_vertices(std::span<const Triangle> triangles, VertexNumbering numbering) {
-  triangles_.reserve(triangles.size());
-  for (const std::uint32_t id : triangle_ids_) triangles_.push_back(triangles[id]);
-  if (numbering == VertexNumbering::given) return;
-  vertex_order_.assign(vertex_count_, unnumbered);
-  vertex_ids_.reserve(vertex_count_);
-  const auto number = [&](std::uint32_t user_vertex) {
-    if (vertex_order_[user_vertex] == unnumbered) {
-      vertex_order_[user_vertex] = static_cast<std::uint32_t>(vertex_ids_.size());
-      vertex_ids_.push_back(user_vertex);
-    }
-    return vertex_order_[user_vertex];
+/// Renumbers the corners of all triangles; gives the new number of each vertex.
+std::vector<std::uint32_t> ObjectOctree::number_by_first_use() {
+  std::vector<std::uint32_t> numbers(vertex_count_, unnumbered);
+  std::uint32_t next = 0;
+  const auto number = [&](std::uint32_t vertex) {
+    if (numbers[vertex] == unnumbered) numbers[vertex] = next++;
+    return numbers[vertex];
   };
   for (Triangle& triangle : triangles_) {
     for (std::uint32_t& vertex : triangle) vertex = number(vertex);
   }
   for (std::uint32_t vertex = 0; vertex < vertex_count_; ++vertex) number(vertex);
+  return numbers;
+}
+
+OctreeRebuild ObjectOctree::rebuild(std::span<const std::uint32_t> subtrees, const VertexBuffer& vertices) {
+  std::vector<NewSubtree> built;
+  built.reserve(subtrees.size());
+  for (const std::uint32_t node : subtrees) built.push_back(build_subtree(node, vertices));
+  RelinkedNodes relinked = relink(nodes_, built);
+  nodes_ = std::move(relinked.nodes);
+  nodes_.shrink_to_fit();
+  level_begin_ = std::move(relinked.level_begin);
+  boxes_.resize(nodes_.size());
+  if (!spheres_.empty()) spheres_.resize(nodes_.size());
+  std::vector<std::uint32_t> numbers;
+  if (!vertex_order_.empty()) {
+    numbers = number_by_first_use();
+    for (std::uint32_t& vertex : vertex_order_) vertex = numbers[vertex];
+    for (std::uint32_t user = 0; user < vertex_count_; ++user) vertex_ids_[vertex_order_[user]] = user;
+  }
+  list_leaf_vertices();
+  return {std::move(relinked.old_nodes), std::move(numbers)};
+}
+
+/// Its triangles come into their new order at once.
+NewSubtree ObjectOctree::build_subtree(std::uint32_t node, const VertexBuffer& vertices) {
+  const std::size_t first = nodes_[node].first_triangle[0], count = nodes_[node].size();
+  const std::vector<Triangle> triangles(triangles_.begin() + static_cast<std::ptrdiff_t>(first),
+                                        triangles_.begin() + static_cast<std::ptrdiff_t>(first + count));
+  const std::vector<std::uint32_t> ids(triangle_ids_.begin() + static_cast<std::ptrdiff_t>(first),
+                                       triangle_ids_.begin() + static_cast<std::ptrdiff_t>(first + count));
+  NewSubtree subtree{node, build_octree(box_centers(vertices, triangles), options_, nodes_[node].level)};
+  for (std::size_t i = 0; i < count; ++i) {
+    triangles_[first + i] = triangles[subtree.topology.order[i]];
+    triangle_ids_[first + i] = ids[subtree.topology.order[i]];
+  }
+  return subtree;
 }
 
 void ObjectOctree::list_leaf_vertices() {
@@ -124,10 +163,13 @@ void ObjectOctree::list_leaf_vertices() {
     std::uint32_t leaf, place;
   };
   std::vector<Place> last_places(vertex_count_, {unnumbered, 0});
+  first_leaf_vertex_.clear();
+  leaf_vertices_.clear();
+  unused_vertices_.clear();
   first_leaf_vertex_.reserve(nodes_.size() * node_width + 1);
   leaf_vertices_.reserve(triangles_.size());
   const std::size_t stride = triangles_.size() + corners_ahead;
-  leaf_corners_.resize(3 * stride, 0);
+  leaf_corners_.assign(3 * stride, 0);
   for (const OctreeNode& node : nodes_) {
     for (int lane = 0; lane < node_width; ++lane) {
       const auto leaf = static_cast<std::uint32_t>(first_leaf_vertex_.size());

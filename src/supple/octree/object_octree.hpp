@@ -8,6 +8,7 @@
 #include "core/parallel.hpp"
 #include "octree/box_kernels.hpp"
 #include "octree/octree_node.hpp"
+#include "octree/rebuild.hpp"
 #include "octree/vertex_buffer.hpp"
 #include "supple/mesh.hpp"
 #include "supple/options.hpp"
@@ -24,8 +25,14 @@ TriangleArrays arrays_of(std::span<const Triangle> triangles, const VertexBuffer
 /// order. By first use, what a run of triangles owns is contiguous, and positions are to be renumbered.
 enum class VertexNumbering { given, by_first_use };
 
-/// Regular octree over the triangles of one object: built once, top-down, from the rest pose; its volumes
-/// refitted whenever the object deforms.
+/// What a rebuild did: what each node was before (`RelinkedNodes::old_nodes`), and the new number of each
+/// octree vertex, or nothing when vertices keep theirs.
+struct OctreeRebuild {
+  std::vector<std::uint32_t> old_nodes, new_vertices;
+};
+
+/// Regular octree over the triangles of one object: built top-down from the rest pose; its volumes refitted
+/// whenever the object deforms, and subtrees that no longer fit built anew when asked for.
 ///
 /// Every triangle is in the one octant that holds the centre of its box. An octant with all triangles of its
 /// parent is not a node of its own: the parent shrinks to it, so each inner node has two lanes at least and a
@@ -71,6 +78,11 @@ class ObjectOctree {
   /// the volumes are of no use, when it is empty and some vertex is not finite.
   bool refit(const VertexBuffer& vertices, std::span<const std::uint8_t> inert, const Parallel& parallel);
 
+  /// Builds the subtrees of these nodes, of which none is below another, anew from present positions. Volumes
+  /// are to be refitted then; all that goes by numbers of the octree's triangles, nodes or vertices is to be
+  /// made anew. O(n) and O(m log m) of m triangles in the subtrees.
+  OctreeRebuild rebuild(std::span<const std::uint32_t> subtrees, const VertexBuffer& vertices);
+
   /// Volumes of the whole object after a refit; empty when it has no finite triangle.
   const Aabb& box() const { return box_; }
   const BoundingSphere& sphere() const { return sphere_; }
@@ -81,7 +93,8 @@ class ObjectOctree {
   OctreeStatistics statistics() const;
 
  private:
-  void number_vertices(std::span<const Triangle> triangles, VertexNumbering numbering);
+  std::vector<std::uint32_t> number_by_first_use();
+  NewSubtree build_subtree(std::uint32_t node, const VertexBuffer& vertices);
   void list_leaf_vertices();
   bool refit_level(std::uint32_t level, const VertexBuffer& vertices, std::span<const std::uint8_t> inert,
                    const Parallel& parallel);
@@ -98,8 +111,8 @@ class ObjectOctree {
   // As `LeafVertexArrays`, and the vertices of no triangle.
   std::vector<std::uint32_t> first_leaf_vertex_, leaf_vertices_, unused_vertices_;
   std::vector<std::uint8_t> leaf_corners_;
+  ObjectOctreeOptions options_;
   SphereFit sphere_fit_;
-  std::uint32_t arity_;
   Aabb box_;
   BoundingSphere sphere_;
 };

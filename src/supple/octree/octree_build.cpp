@@ -39,13 +39,22 @@ std::uint64_t spread_bits(std::uint64_t v) {
   return (v | v << 2) & 0x1249249249249249u;
 }
 
+int bits_per_level(const ObjectOctreeOptions& options) {
+  return static_cast<int>(std::bit_width(options.arity)) - 1;
+}
+
+/// In levels of a tree of that arity.
+std::uint32_t deepest_level(const ObjectOctreeOptions& options) {
+  return options.max_level * 3 / static_cast<std::uint32_t>(bits_per_level(options));
+}
+
 class Builder {
  public:
-  Builder(std::span<const Vec3d> centers, const ObjectOctreeOptions& options)
+  Builder(std::span<const Vec3d> centers, const ObjectOctreeOptions& options, std::uint32_t first_level)
       : centers_(centers),
         options_(options),
-        bits_per_level_(static_cast<int>(std::bit_width(options.arity)) - 1),
-        deepest_(options.max_level * 3 / static_cast<std::uint32_t>(bits_per_level_)),
+        bits_per_level_(bits_per_level(options)),
+        deepest_(deepest_level(options) - std::min(deepest_level(options), first_level)),
         coded_(centers.size()) {
     assert(options.arity == 2 || options.arity == 4 || options.arity == 8);
     for (std::uint32_t i = 0; i < coded_.size(); ++i) coded_[i] = {0, i};
@@ -165,14 +174,15 @@ class Builder {
   std::span<const Vec3d> centers_;
   ObjectOctreeOptions options_;
   int bits_per_level_;
-  std::uint32_t deepest_;  ///< level, in levels of this tree
+  std::uint32_t deepest_;  ///< level
   std::vector<Coded> coded_;
 };
 
 }  // namespace
 
-OctreeTopology build_octree(std::span<const Vec3d> centers, const ObjectOctreeOptions& options) {
-  return Builder(centers, options).build();
+OctreeTopology build_octree(std::span<const Vec3d> centers, const ObjectOctreeOptions& options,
+                            std::uint32_t first_level) {
+  return Builder(centers, options, first_level).build();
 }
 
 }  // namespace supple

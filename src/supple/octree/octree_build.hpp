@@ -19,7 +19,8 @@ struct OctreeTopology {
 
 /// Regular top-down octree over points (the centres of triangles), in O(n log n). Non-finite points are taken
 /// as the lower corner of the rest. Equal points cannot be split and may leave a leaf larger than
-/// `leaf_size`.
-OctreeTopology build_octree(std::span<const Vec3d> centers, const ObjectOctreeOptions& options);
+/// `leaf_size`. `first_level` is that of the root in the tree that it becomes a part of; nodes count from 0.
+OctreeTopology build_octree(std::span<const Vec3d> centers, const ObjectOctreeOptions& options,
+                            std::uint32_t first_level = 0);
 
 }  // namespace supple

@@ -125,7 +125,7 @@ class Validation {
 
 std::string ObjectOctree::validate(const VertexBuffer& vertices, std::span<const std::uint8_t> inert) const {
   const bool enclosing_spheres = spheres() != nullptr && sphere_fit_ == SphereFit::vertices;
-  return Validation(*this, vertices, inert, enclosing_spheres, arity_).run();
+  return Validation(*this, vertices, inert, enclosing_spheres, options_.arity).run();
 }
 
 OctreeStatistics ObjectOctree::statistics() const {

@@ -49,6 +49,19 @@ void VertexBuffer::borrow(const PositionsView<Scalar>& positions) {
   is_double_ = sizeof(Scalar) == sizeof(double);
 }
 
+VertexBuffer VertexBuffer::renumbered(std::span<const std::uint32_t> numbers) const {
+  assert(borrowed_ == nullptr && numbers.size() == count_);
+  VertexBuffer result = *this;
+  for (std::size_t vertex = 0; vertex < count_; ++vertex) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const std::size_t from = 3 * vertex + axis, to = 3 * std::size_t{numbers[vertex]} + axis;
+      if (is_double_) result.doubles_[to] = doubles_[from];
+      if (!is_double_) result.floats_[to] = floats_[from];
+    }
+  }
+  return result;
+}
+
 template void VertexBuffer::assign(const PositionsView<float>&, std::span<const std::uint32_t>,
                                    const Parallel&);
 template void VertexBuffer::assign(const PositionsView<double>&, std::span<const std::uint32_t>,

@@ -53,6 +53,9 @@ class VertexBuffer {
   template <class Function>
   void transform(const VertexBuffer& source, const Parallel& parallel, const Function& function);
 
+  /// A copy in which vertex v is vertex `numbers[v]`; not of borrowed positions.
+  VertexBuffer renumbered(std::span<const std::uint32_t> numbers) const;
+
   std::size_t bytes() const {
     return floats_.capacity() * sizeof(float) + doubles_.capacity() * sizeof(double);
   }

@@ -5,6 +5,7 @@
 #include "core/error.hpp"
 #include "core/float_rounding.hpp"
 #include "core/timer.hpp"
+#include "geometry/aabb.hpp"
 #include "scene/scene_implementation.hpp"
 
 namespace supple {
@@ -43,6 +44,9 @@ const DetectResult& Scene::Implementation::detect() {
   find_object_pairs();
   result.stats.broad_phase_seconds = stage.lap();
   plan_jobs();
+  stage.lap();
+  rebuild_degraded();
+  result.stats.rebuild_seconds = stage.lap();
   if (is_continuous()) {
     find_impacts();
   } else {
@@ -56,17 +60,39 @@ const DetectResult& Scene::Implementation::detect() {
   return result;
 }
 
-/// Objects go side by side. One that is a large part of the work would keep its worker while the others wait:
-/// such objects take all workers, one after the other.
-void Scene::Implementation::refit_objects() {
+/// Calls `function(object, parallel)`, side by side. An object that is a large part of the work would keep
+/// its worker while the others wait: such objects take all workers, one after the other. `work` says how many
+/// triangles an object takes.
+template <class Work, class Function>
+void Scene::Implementation::for_each_object(std::span<const std::uint32_t> indices, const Work& work,
+                                            const Function& function) {
   constexpr std::size_t least_large = 16384;  // triangles; fewer are not worth splitting
   constexpr std::size_t shares_of_worker = 8;
+  std::size_t total = 0;
+  for (const std::uint32_t index : indices) total += work(*slots_[index].object);
+  const std::size_t large = std::max(least_large, total / (shares_of_worker * parallel.worker_count()));
+  small_.clear();
+  for (const std::uint32_t index : indices) {
+    SceneObject& object = *slots_[index].object;
+    if (work(object) >= large) {
+      function(object, parallel);
+    } else {
+      small_.push_back(index);
+    }
+  }
+  parallel.for_ranges(small_.size(), 1, [&](std::size_t begin, std::size_t end, std::uint32_t) {
+    for (std::size_t i = begin; i < end; ++i) function(*slots_[small_[i]].object, serial);
+  });
+}
+
+void Scene::Implementation::refit_objects() {
   const double growth_of_volumes = is_continuous() ? growth(options.impact.min_separation) : 0;
   boxes_.resize(slots_.size());
   spheres_.resize(slots_.size());
   versions_.resize(slots_.size(), 0);
   changed_.resize(slots_.size(), 0);
   stale_.clear();
+  last_version_before_ = last_version_;
   for (std::uint32_t index = 0; index < slots_.size(); ++index) {
     const SceneObject* const object = slots_[index].object.get();
     if (object == nullptr || !object->is_stale()) continue;
@@ -77,17 +103,11 @@ void Scene::Implementation::refit_objects() {
     ++result.stats.objects_refitted;
     result.stats.triangles_refitted += object->octree().triangles().size();
   }
-  const std::size_t share = result.stats.triangles_refitted / (shares_of_worker * parallel.worker_count());
-  std::erase_if(stale_, [&](std::uint32_t index) {
-    SceneObject& object = *slots_[index].object;
-    if (!object.needs_refit() || object.octree().triangles().size() < std::max(least_large, share))
-      return false;
-    object.update(parallel);
-    return true;
-  });
-  parallel.for_ranges(stale_.size(), 1, [&](std::size_t begin, std::size_t end, std::uint32_t) {
-    for (std::size_t i = begin; i < end; ++i) slots_[stale_[i]].object->update(serial);
-  });
+  const auto triangles_to_refit = [](const SceneObject& object) {
+    return object.needs_refit() ? object.octree().triangles().size() : std::size_t{0};
+  };
+  for_each_object(stale_, triangles_to_refit,
+                  [](SceneObject& object, const Parallel& workers) { object.update(workers); });
   changed_slots_.clear();
   for (std::uint32_t index = 0; index < slots_.size(); ++index) {
     if (changed_[index] == 0) continue;
@@ -137,6 +157,54 @@ void Scene::Implementation::plan_jobs() {
   }
 }
 
+/// Of each octree, but those whose outcome is known as nothing moved. Another object asks for as much of an
+/// octree as the surface of what their boxes share.
+void Scene::Implementation::count_queries() {
+  queries_.assign(slots_.size(), 0);
+  for (const ContactJob& job : jobs_) {
+    if (std::max(versions_[job.a], versions_[job.b]) <= last_version_before_) continue;
+    if (job.a == job.b) {
+      queries_[job.a] += SceneObject::queries_of_self;
+    } else {
+      const double asked_for = half_surface(shared_box(boxes_[job.a], boxes_[job.b]));
+      for (const std::uint32_t index : {job.a, job.b}) {
+        if (asked_for > 0) queries_[index] += asked_for / half_surface(boxes_[index]);
+      }
+    }
+  }
+}
+
+/// Those for which it pays, some in a step: the others wait.
+void Scene::Implementation::rebuild_degraded() {
+  constexpr std::uint64_t most_triangles = 65536;  // a step, but at least one object
+  degraded_.clear();
+  for (std::uint32_t index = 0; index < slots_.size(); ++index) {
+    const SceneObject* const object = slots_[index].object.get();
+    if (object != nullptr && object->is_degraded()) degraded_.push_back(index);
+  }
+  if (degraded_.empty()) return;
+  count_queries();
+  std::size_t chosen = 0;
+  std::uint64_t triangles = 0;
+  for (const std::uint32_t index : degraded_) {
+    SceneObject& object = *slots_[index].object;
+    if (!(queries_[index] > 0) || !object.count_queries(queries_[index])) continue;
+    if (triangles > 0 && triangles + object.degraded_triangles() > most_triangles) continue;
+    triangles += object.degraded_triangles();
+    degraded_[chosen++] = index;
+    result.stats.subtrees_rebuilt -= object.subtrees_rebuilt();
+    result.stats.triangles_rebuilt -= object.triangles_rebuilt();
+  }
+  degraded_.resize(chosen);
+  const auto all_triangles = [](const SceneObject& object) { return object.octree().triangles().size(); };
+  for_each_object(degraded_, all_triangles,
+                  [](SceneObject& object, const Parallel& workers) { object.rebuild(workers); });
+  for (const std::uint32_t index : degraded_) {
+    result.stats.subtrees_rebuilt += slots_[index].object->subtrees_rebuilt();
+    result.stats.triangles_rebuilt += slots_[index].object->triangles_rebuilt();
+  }
+}
+
 void Scene::Implementation::find_contacts() {
   contact_objects_.clear();
   for (std::uint32_t index = 0; index < slots_.size(); ++index) {
@@ -174,6 +242,7 @@ std::optional<ContinuousContact> Scene::Implementation::earliest_impact(const ch
   refit_objects();
   find_object_pairs();
   plan_jobs();
+  rebuild_degraded();
   list_moving_objects();
   result.stats = stats;
   result.object_pairs = {};  // they were of another call

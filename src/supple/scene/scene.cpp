@@ -90,6 +90,7 @@ ObjectId Scene::Implementation::add(const PositionsView<double>& positions,
   check_triangles(named.name, positions.count, triangles);
   auto object = std::make_unique<SceneObject>(positions, triangles, named, options);
   object->set_positions(positions, parallel);
+  object->set_rest_quality(parallel);
   if (free_slots_.empty()) {
     slots_.emplace_back();
   } else {

@@ -62,8 +62,12 @@ class Scene::Implementation {
   };
 
   void refit_objects();
+  template <class Work, class Function>
+  void for_each_object(std::span<const std::uint32_t> indices, const Work& work, const Function& function);
   void find_object_pairs();
   void plan_jobs();
+  void count_queries();
+  void rebuild_degraded();
   void find_contacts();
   void list_moving_objects();
   void find_impacts();
@@ -87,9 +91,10 @@ class Scene::Implementation {
   std::vector<BoundingSphere> spheres_;
   std::vector<std::uint8_t> changed_;
   std::vector<std::uint32_t> changed_slots_;
-  std::vector<std::uint64_t> versions_;  // of positions: never the same twice
-  std::uint64_t last_version_ = 0;
-  std::vector<std::uint32_t> stale_;
+  std::vector<std::uint64_t> versions_;                       // of positions: never the same twice
+  std::uint64_t last_version_ = 0, last_version_before_ = 0;  // of all, and that of the step before
+  std::vector<std::uint32_t> stale_, degraded_, small_;
+  std::vector<double> queries_;  // of degraded objects
   std::vector<ObjectPair> object_pairs_, touching_pairs_;
   std::vector<ContactJob> jobs_;
   std::vector<ContactObject> contact_objects_;

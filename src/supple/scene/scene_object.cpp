@@ -15,6 +15,17 @@ namespace {
 /// of volumes and translations stay far from it.
 constexpr double largest_lazy_size = 1e30;
 
+/// Refits in a row of which the octree's quality is measured once it was found degraded.
+constexpr std::uint32_t refits_watched = 16;
+/// Of building an octree anew, in queries of it as built: what is the same however small the degraded part,
+/// and sorting all of it.
+constexpr double price_of_relinking = 10, price_of_building = 50;
+/// Of what queries of the degraded parts cost, that a new tree must save: leaves that are patches of the
+/// surface stay good for longer than those that are parts of space. And where the surface is smooth, more of
+/// them cannot touch themselves.
+constexpr double least_saving = 0.5, least_saving_of_smooth = 0.75;
+constexpr double most_patience = 1024;
+
 double largest(const Vec3d& v) {
   return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
 }
@@ -63,6 +74,14 @@ BoundingSphere moved(const BoundingSphere& sphere, const Vec3d& offset) {
   return result;
 }
 
+/// A byte a triangle: whether a vertex of it is not finite.
+void mark_inert(const ObjectOctree& octree, const VertexBuffer& vertices, std::vector<std::uint8_t>& inert) {
+  inert.assign(octree.triangles().size(), 0);
+  for (std::uint32_t t = 0; t < inert.size(); ++t) {
+    for (const std::uint32_t vertex : octree.triangles()[t]) inert[t] |= !is_finite(vertices[vertex]);
+  }
+}
+
 }  // namespace
 
 SceneObject::SceneObject(const PositionsView<double>& positions, std::span<const Triangle> triangles,
@@ -75,7 +94,9 @@ SceneObject::SceneObject(const PositionsView<double>& positions, std::span<const
       is_continuous_(scene_options.contacts == ContactMode::continuous),
       // Neighbours come within a separation; and the paper's output is of all leaves whose volumes overlap.
       passes_over_unfolded_(is_continuous_ ? scene_options.impact.min_separation == 0
-                                           : !scene_options.colliding_vertices) {
+                                           : !scene_options.colliding_vertices),
+      may_rebuild_(object_options.octree.rebuild_degraded && !scene_options.colliding_vertices &&
+                   scene_options.sphere_fit == SphereFit::vertices) {
   if (is_continuous_) elements_ = SurfaceElements(octree_);
 }
 
@@ -177,10 +198,7 @@ void SceneObject::settle(const Parallel& parallel) {
 }
 
 void SceneObject::find_non_finite() {
-  inert_.assign(octree_.triangles().size(), 0);
-  for (std::uint32_t t = 0; t < inert_.size(); ++t) {
-    for (const std::uint32_t vertex : octree_.triangles()[t]) inert_[t] |= !is_finite(vertices_[vertex]);
-  }
+  mark_inert(octree_, vertices_, inert_);
   for (std::uint32_t user = 0; user < vertices_.size(); ++user) {
     if (!is_finite(non_finite_position(octree_.octree_vertex(user)))) non_finite_.push_back(user);
   }
@@ -199,6 +217,7 @@ void SceneObject::update(const Parallel& parallel) {
     sphere_ = moved(octree_.sphere(), lazy_translation());
   }
   if (options.self_collision && needs_refit_ && passes_over_unfolded_) update_unfolded(parallel);
+  if (needs_refit_) measure_quality();
   needs_refit_ = needs_bounds_ = false;
 }
 
@@ -235,7 +254,92 @@ void SceneObject::update_unfolded(const Parallel& parallel) {
     lanes += octree_.nodes()[node].lane_count;
     unfolded += static_cast<std::size_t>(std::popcount(unfolded_.masks()[node]));
   }
-  if (unfolded * least_share < lanes) steps_without_unfolded_ = rest_steps;
+  const bool pays = unfolded * least_share >= lanes;
+  was_unfolded_ = was_unfolded_ || pays;
+  if (!pays) steps_without_unfolded_ = rest_steps;
+}
+
+TreeBoxes SceneObject::tree_boxes() const {
+  const AabbLanes* const moving = moving_boxes_.view(octree_, elements_).end;
+  return {octree_.nodes(), moving != nullptr ? moving : octree_.boxes(), leaf_limit()};
+}
+
+std::uint32_t SceneObject::leaf_limit() const {
+  return is_continuous_ ? moving_leaf_size : 0;
+}
+
+void SceneObject::set_rest_quality(const Parallel& parallel) {
+  refit_octree(parallel);
+  quality_.set_references(tree_boxes());
+}
+
+/// A tree degrades over many steps, mostly: it is looked at now and then, not in time with a motion that
+/// repeats, and all the time when it has lately been found degraded.
+void SceneObject::measure_quality() {
+  if (!may_rebuild_ || --refits_until_measured_ > 0) return;
+  quality_.measure(tree_boxes());
+  if (is_degraded()) refits_to_watch_ = refits_watched;
+  refits_until_measured_ = 1;
+  if (refits_to_watch_ > 0) {
+    --refits_to_watch_;
+  } else {
+    random_ = random_ * 1664525 + 1013904223;
+    refits_until_measured_ += random_ >> 28;
+  }
+}
+
+bool SceneObject::count_queries(double queries) {
+  waste_ += queries * quality_.saving();
+  return waste_ >= patience_ * (price_of_relinking + price_of_building * quality_.share());
+}
+
+std::uint64_t SceneObject::degraded_triangles() const {
+  std::uint64_t count = 0;
+  for (const std::uint32_t node : quality_.degraded()) count += octree_.nodes()[node].size();
+  return count;
+}
+
+void SceneObject::rebuild(const Parallel& parallel) {
+  waste_ = 0;
+  ObjectOctree octree = octree_;
+  const OctreeRebuild changes = octree.rebuild(quality_.degraded(), vertices_);
+  const bool renumbers = !changes.new_vertices.empty();
+  VertexBuffer vertices = renumbers ? vertices_.renumbered(changes.new_vertices) : VertexBuffer{};
+  const VertexBuffer& present = renumbers ? vertices : vertices_;
+  if (!octree.refit(present, {}, parallel)) {
+    std::vector<std::uint8_t> inert;
+    mark_inert(octree, present, inert);
+    octree.refit(present, inert, parallel);
+  }
+  TreeQuality quality = quality_;
+  quality.update_references({octree.nodes(), octree.boxes(), leaf_limit()}, changes.old_nodes);
+  const double least = was_unfolded_ ? least_saving_of_smooth : least_saving;
+  if (!(quality_.cost() - quality.cost() >= least * quality_.degraded_cost())) {
+    quality_.set_references(tree_boxes());
+    patience_ = std::min(2 * patience_, most_patience);
+    return;
+  }
+  patience_ = std::max(patience_ / 2, 1.0);
+  subtrees_rebuilt_ += quality_.degraded().size();
+  triangles_rebuilt_ += degraded_triangles();
+  VertexBuffer start = renumbers && has_motion_ ? start_.renumbered(changes.new_vertices) : VertexBuffer{};
+  VertexBuffer shape = renumbers && has_shape_ ? shape_.renumbered(changes.new_vertices) : VertexBuffer{};
+  SurfaceElements elements = is_continuous_ ? SurfaceElements(octree) : SurfaceElements{};
+  // Nothing here takes memory. What the update needs it may lack: then the next one makes good what is
+  // missing.
+  mark_moved();
+  quality_ = std::move(quality);
+  octree_ = std::move(octree);
+  if (renumbers) {
+    vertices_ = std::move(vertices);
+    start_ = std::move(start);
+    shape_ = std::move(shape);
+  }
+  elements_ = std::move(elements);
+  unfolded_ = {};
+  refits_until_measured_ = 2;  // not by this update
+  refits_to_watch_ = refits_watched;
+  update(parallel);
 }
 
 OctreeView SceneObject::view() const {
@@ -258,7 +362,13 @@ std::string SceneObject::validate() const {
 
 OctreeStatistics SceneObject::octree_statistics() const {
   OctreeStatistics statistics = octree_.statistics();
-  statistics.bytes += moving_boxes_.bytes() + elements_.bytes() + unfolded_.bytes();
+  statistics.bytes += moving_boxes_.bytes() + elements_.bytes() + unfolded_.bytes() + quality_.bytes();
+  TreeQuality quality = quality_;
+  quality.measure(tree_boxes());
+  statistics.cost = quality.cost();
+  statistics.degradation = quality.degradation();
+  statistics.subtrees_rebuilt = subtrees_rebuilt_;
+  statistics.triangles_rebuilt = triangles_rebuilt_;
   if (statistics.triangles != 0) {
     statistics.bytes_per_triangle =
         static_cast<double>(statistics.bytes) / static_cast<double>(statistics.triangles);

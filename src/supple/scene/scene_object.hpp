@@ -8,6 +8,7 @@
 #include "narrow_phase/traversal.hpp"
 #include "octree/moving_boxes.hpp"
 #include "octree/object_octree.hpp"
+#include "octree/quality.hpp"
 #include "octree/surface_elements.hpp"
 #include "octree/unfolded_lanes.hpp"
 #include "supple/options.hpp"
@@ -43,6 +44,26 @@ class SceneObject {
   /// Brings octree and bounds up to date.
   void update(const Parallel& parallel);
 
+  /// The rest positions that the octree was built from are set: its boxes are what later ones are compared
+  /// with.
+  void set_rest_quality(const Parallel& parallel);
+  /// Parts of the octree, as of the last update, are worth building anew: if it is asked for often enough.
+  bool is_degraded() const { return quality_.share() > 0; }
+  /// So many queries of the whole octree in a step; the object against itself is `queries_of_self`. Returns
+  /// whether by now they have cost as much too much as building the degraded parts anew will cost: never more
+  /// than twice what would have been best, whatever follows.
+  bool count_queries(double queries);
+  static constexpr double queries_of_self = 8;
+  /// Triangles that `rebuild` is about to sort.
+  std::uint64_t degraded_triangles() const;
+  /// Builds the degraded parts anew from present positions; if these are much better than what is there, they
+  /// take its place, and the object is brought up to date again. Views are of no use then; what is found does
+  /// not change.
+  void rebuild(const Parallel& parallel);
+  /// Since the object was added, and their triangles.
+  std::uint64_t subtrees_rebuilt() const { return subtrees_rebuilt_; }
+  std::uint64_t triangles_rebuilt() const { return triangles_rebuilt_; }
+
   /// Of the placed object, as of the last update; with continuous contacts, around its whole motion.
   const Aabb& box() const { return box_; }
   const BoundingSphere& sphere() const { return sphere_; }
@@ -76,6 +97,9 @@ class SceneObject {
   void place_afresh();
   void mark_moved();
   void find_non_finite();
+  TreeBoxes tree_boxes() const;
+  std::uint32_t leaf_limit() const;
+  void measure_quality();
 
   ObjectOctree octree_;
   VertexBuffer vertices_;  // fl(R p), or fl(R p) + T when settled
@@ -96,7 +120,15 @@ class SceneObject {
   bool passes_over_unfolded_;
   UnfoldedLanes unfolded_;
   bool has_unfolded_ = false;                 // of the present positions
+  bool was_unfolded_ = false;                 // enough of it to be worth the search, at some time
   std::uint32_t steps_without_unfolded_ = 1;  // finding the boundaries is for objects that go on moving
+  // The paper's results depend on leaves: they stay those of the rest pose.
+  bool may_rebuild_;
+  TreeQuality quality_;
+  std::uint32_t refits_until_measured_ = 1, refits_to_watch_ = 0, random_ = 0;
+  double waste_ = 0;     // of queries since the last try, in queries of the octree as built
+  double patience_ = 2;  // doubled each time that building anew did not help
+  std::uint64_t subtrees_rebuilt_ = 0, triangles_rebuilt_ = 0;
   bool needs_refit_ = true;
   bool needs_bounds_ = true;
   Aabb box_;

@@ -1,0 +1,181 @@
+#include "octree/rebuild.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "octree/object_octree.hpp"
+#include "octree/surface_elements.hpp"
+#include "support/soups.hpp"
+
+namespace supple {
+namespace {
+
+/// An octree and the positions of its object, which come in the user's numbers.
+struct Tree {
+  Tree(const TriangleMesh& mesh_in, const ObjectOctreeOptions& options, BoundingVolume volume,
+       VertexNumbering numbering)
+      : mesh(mesh_in),
+        octree(PositionsView<double>(mesh.positions), mesh.triangles, options, volume, SphereFit::vertices,
+               numbering) {
+    place(mesh.positions);
+  }
+
+  void place(const std::vector<Vec3d>& positions) {
+    mesh.positions = positions;
+    vertices.assign(PositionsView<double>(positions), octree.vertex_order(), parallel);
+    refit();
+  }
+  void refit() {
+    inert.assign(octree.triangles().size(), 0);
+    for (std::size_t t = 0; t < inert.size(); ++t) {
+      for (const std::uint32_t v : octree.triangles()[t]) {
+        if (!std::isfinite(vertices[v].x)) inert[t] = 1;
+      }
+    }
+    if (std::count(inert.begin(), inert.end(), 1) == 0) inert.clear();
+    octree.refit(vertices, inert, parallel);
+  }
+  /// Nodes none of which is below another, each other one about.
+  std::vector<std::uint32_t> some_nodes(RandomNumbers& random) const {
+    std::vector<std::uint32_t> chosen;
+    std::vector<std::uint8_t> taken(octree.nodes().size(), 0);
+    for (std::uint32_t n = 0; n < octree.nodes().size(); ++n) {
+      if (n > 0) taken[n] = taken[octree.nodes()[n].parent];
+      if (taken[n] != 0 || random.below(3) != 0) continue;
+      taken[n] = 1;
+      chosen.push_back(n);
+    }
+    return chosen;
+  }
+  void rebuild(const std::vector<std::uint32_t>& nodes) {
+    const OctreeRebuild changes = octree.rebuild(nodes, vertices);
+    ASSERT_EQ(changes.old_nodes.size(), octree.nodes().size());
+    if (!changes.new_vertices.empty()) vertices = vertices.renumbered(changes.new_vertices);
+    refit();
+  }
+  void expect_valid() const {
+    EXPECT_EQ(octree.validate(vertices, inert), "");
+    for (std::size_t t = 0; t < octree.triangles().size(); ++t) {
+      for (std::size_t corner = 0; corner < 3; ++corner) {
+        const std::uint32_t user = mesh.triangles[octree.triangle_ids()[t]][corner];
+        ASSERT_EQ(octree.octree_vertex(user), octree.triangles()[t][corner]);
+      }
+    }
+    for (std::uint32_t user = 0; user < mesh.positions.size(); ++user) {
+      const Vec3d found = vertices[octree.octree_vertex(user)];
+      const Vec3d& given = mesh.positions[user];
+      ASSERT_TRUE(found == given || (std::isnan(found.x) && std::isnan(given.x)));
+    }
+    if (!octree.vertex_order().empty()) {
+      EXPECT_EQ(SurfaceElements(octree).validate(octree), "");
+    }
+  }
+
+  TriangleMesh mesh;
+  Parallel parallel{1};
+  ObjectOctree octree;
+  VertexBuffer vertices;
+  std::vector<std::uint8_t> inert;
+};
+
+/// Positions that trees find hard, by number.
+std::vector<Vec3d> deformed(std::vector<Vec3d> positions, std::uint32_t way, RandomNumbers& random) {
+  switch (way % 6) {
+    case 0:
+      for (Vec3d& p : positions) p = p + random.vector(1);
+      break;
+    case 1:
+      for (Vec3d& p : positions) p = {1, 2, 3};
+      break;
+    case 2:
+      for (Vec3d& p : positions) p = p * 1e300;
+      break;
+    case 3:
+      for (Vec3d& p : positions) {
+        if (random.below(10) == 0) p.x = std::numeric_limits<double>::quiet_NaN();
+      }
+      break;
+    case 4:
+      for (Vec3d& p : positions) p = {std::nearbyint(p.x), std::nearbyint(3 * p.y), 0};
+      break;
+    default:
+      for (std::size_t i = positions.size(); i-- > 1;) {
+        std::swap(positions[i], positions[random.below(static_cast<std::uint32_t>(i + 1))]);
+      }
+  }
+  return positions;
+}
+
+TEST(Rebuild, AnySubtreesOfAnyTreeStayValid) {
+  RandomNumbers random(1);
+  std::uint32_t round = 0;
+  for (std::uint32_t count = 1; count <= 70; count += 1 + count / 8) {
+    const TriangleMesh mesh =
+        count % 2 == 0 ? random_soup(count, 1, 0.3, count) : crumpled_sheet(count, 2, 0.1, count);
+    for (const std::uint32_t arity : {2u, 4u, 8u}) {
+      SCOPED_TRACE(std::to_string(count) + " triangles, arity " + std::to_string(arity));
+      ObjectOctreeOptions options;
+      options.leaf_size = 1 + random.below(5);
+      options.arity = arity;
+      options.max_level = random.below(4) == 0 ? 2 : 16;
+      const auto volume = count % 3 == 0 ? BoundingVolume::sphere : BoundingVolume::aabb;
+      Tree tree(mesh, options, volume,
+                ++round % 2 == 0 ? VertexNumbering::given : VertexNumbering::by_first_use);
+      for (std::uint32_t way = 0; way < 8; ++way) {
+        tree.place(deformed(mesh.positions, way, random));
+        tree.rebuild(tree.some_nodes(random));
+        tree.expect_valid();
+        const OctreeStatistics statistics = tree.octree.statistics();
+        EXPECT_LE(statistics.depth, options.max_level * 3 / (arity == 8 ? 3 : arity == 4 ? 2 : 1));
+        if (HasFailure()) return;
+      }
+    }
+  }
+}
+
+TEST(Rebuild, OfTheRootIsTheTreeBuiltFromPresentPositions) {
+  RandomNumbers random(2);
+  const TriangleMesh rest = random_soup(3000, 1, 0.05, 3);
+  for (const VertexNumbering numbering : {VertexNumbering::given, VertexNumbering::by_first_use}) {
+    Tree tree(rest, {}, BoundingVolume::aabb, numbering);
+    tree.place(deformed(rest.positions, 0, random));
+    tree.rebuild({0});
+    tree.expect_valid();
+    const Tree fresh(tree.mesh, {}, BoundingVolume::aabb, numbering);
+    ASSERT_EQ(tree.octree.nodes().size(), fresh.octree.nodes().size());
+    // Triangles whose centres are equal may come in another order.
+    EXPECT_TRUE(std::equal(tree.octree.triangle_ids().begin(), tree.octree.triangle_ids().end(),
+                           fresh.octree.triangle_ids().begin()));
+    EXPECT_EQ(tree.octree.statistics().leaves_by_level, fresh.octree.statistics().leaves_by_level);
+  }
+}
+
+TEST(Rebuild, KeepsWhatIsNotChosen) {
+  const TriangleMesh rest = random_soup(5000, 1, 0.05, 4);
+  Tree tree(rest, {}, BoundingVolume::aabb, VertexNumbering::given);
+  const std::vector<std::uint32_t> ids(tree.octree.triangle_ids().begin(), tree.octree.triangle_ids().end());
+  const OctreeNode chosen = tree.octree.nodes()[2];
+  RandomNumbers random(5);
+  tree.place(deformed(rest.positions, 0, random));
+  const OctreeRebuild changes = tree.octree.rebuild(std::vector<std::uint32_t>{2}, tree.vertices);
+  std::size_t others = 0;
+  for (std::size_t t = 0; t < ids.size(); ++t) {
+    if (t >= chosen.first_triangle[0] && t < chosen.first_triangle[node_width]) continue;
+    EXPECT_EQ(tree.octree.triangle_ids()[t], ids[t]);
+    ++others;
+  }
+  EXPECT_GT(others, 1000u);
+  EXPECT_EQ(changes.old_nodes[0], 0u);
+  EXPECT_EQ(std::count(changes.old_nodes.begin(), changes.old_nodes.end(), 2u), 1);
+  EXPECT_GT(std::count(changes.old_nodes.begin(), changes.old_nodes.end(), no_node), 0);
+  tree.refit();
+  tree.expect_valid();
+}
+
+}  // namespace
+}  // namespace supple
