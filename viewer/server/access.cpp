@@ -17,11 +17,11 @@ namespace supple::viewer {
 namespace {
 
 std::string bracketed(const std::string& address) {
-  std::string text = address;
-  if (address.find(':') != std::string::npos) {
-    text.insert(0, "[");
-    text += ']';
-  }
+  if (address.find(':') == std::string::npos) return address;
+  std::string text;
+  text += '[';
+  text += address;
+  text += ']';
   return text;
 }
 
@@ -68,7 +68,10 @@ Target parse_target(std::string_view target) {
 
 Access::Access(const std::string& address, std::uint16_t port, std::string token)
     : any_address_(address == "0.0.0.0" || address == "::"), token_(std::move(token)) {
-  if (port != 80) port_ = ':' + std::to_string(port);  // browsers leave out 80
+  if (port != 80) {  // browsers leave it out
+    port_ += ':';
+    port_ += std::to_string(port);
+  }
   if (any_address_) {
     hosts_.push_back(address == "::" ? "[::1]" : "127.0.0.1");
     std::array<char, 256> name{};
@@ -82,7 +85,7 @@ Access::Access(const std::string& address, std::uint16_t port, std::string token
 
 bool Access::knows_host(std::string_view host) const {
   if (std::find(hosts_.begin(), hosts_.end(), host) != hosts_.end()) return true;
-  if (!any_address_ || host.size() <= port_.size()) return false;
+  if (!any_address_ || host.size() < port_.size()) return false;
   const std::string_view name = host.substr(0, host.size() - port_.size());
   return host.substr(name.size()) == port_ && is_address(name);
 }

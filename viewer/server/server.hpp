@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "session.hpp"
+#include "session/session.hpp"
 
 namespace supple::viewer {
 

@@ -13,7 +13,7 @@
 #include <thread>
 #include <vector>
 
-#include "session.hpp"
+#include "session/session.hpp"
 
 namespace supple::viewer {
 
