@@ -17,7 +17,7 @@ import sys
 LAYERS = [
     "core", "geometry", "mesh", "octree", "motion", "broad_phase", "narrow_phase", "contact", "scene", "simulation",
 ]
-PROGRAMS = ["recording/src", "cli", "examples", "benchmarks"]
+PROGRAMS = ["recording/src", "viewer/session", "cli", "examples", "benchmarks"]
 PUBLIC = ["include", "formats/include", "recording/include"]
 SOURCES = {".cpp", ".hpp", ".h", ".cc"}
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
