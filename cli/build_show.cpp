@@ -13,6 +13,7 @@
 #include "build_simulation.hpp"
 #include "frame_files.hpp"
 #include "progress.hpp"
+#include "session/statistics.hpp"
 #include "supple/error.hpp"
 #include "text.hpp"
 
@@ -80,11 +81,15 @@ class RecordedFrames : public viewer::Frames {
     std::map<ObjectId, std::uint32_t> places;
     for (const RecordedObject& object : recording_->header().objects)
       places.emplace(object.id, static_cast<std::uint32_t>(places.size()));
-    for (const Column& column : columns) series_.names.emplace_back(column.name);
+    // As frames name them, so that a page plots both alike.
+    series_.names.emplace_back("time");
+    for (const viewer::Statistic& statistic : viewer::statistics) series_.names.emplace_back(statistic.name);
     Progress progress(count(), true);
     for (std::uint64_t number = 0; number < count(); ++number) {
       const RecordedFrame frame = recording_->summary(number);
-      for (const Column& column : columns) series_.values.push_back(column.value(frame));
+      series_.values.push_back(frame.time);
+      for (const viewer::Statistic& statistic : viewer::statistics)
+        series_.values.push_back(viewer::value_of(statistic, frame.stats));
       const auto add = [&](const std::vector<ObjectPair>& pairs, std::vector<viewer::Series::Event>& events) {
         for (const ObjectPair& pair : pairs)
           events.push_back({static_cast<std::uint32_t>(number), places.at(pair.a), places.at(pair.b)});
@@ -103,25 +108,6 @@ class RecordedFrames : public viewer::Frames {
   const viewer::Series& series() const override { return series_; }
 
  private:
-  struct Column {
-    const char* name;
-    double (*value)(const RecordedFrame&);
-  };
-  /// What a page plots, by the names of the statistics of its frames.
-  static constexpr Column columns[] = {
-      {"time", [](const RecordedFrame& f) { return f.time; }},
-      {"object_pairs", [](const RecordedFrame& f) { return static_cast<double>(f.stats.object_pairs); }},
-      {"candidate_pairs", [](const RecordedFrame& f) { return static_cast<double>(f.stats.candidate_pairs); }},
-      {"contacts", [](const RecordedFrame& f) { return static_cast<double>(f.stats.contacts); }},
-      {"refit_seconds", [](const RecordedFrame& f) { return f.stats.refit_seconds; }},
-      {"broad_phase_seconds", [](const RecordedFrame& f) { return f.stats.broad_phase_seconds; }},
-      {"rebuild_seconds", [](const RecordedFrame& f) { return f.stats.rebuild_seconds; }},
-      {"traversal_seconds", [](const RecordedFrame& f) { return f.stats.traversal_seconds; }},
-      {"exact_seconds", [](const RecordedFrame& f) { return f.stats.exact_seconds; }},
-      {"finish_seconds", [](const RecordedFrame& f) { return f.stats.finish_seconds; }},
-      {"total_seconds", [](const RecordedFrame& f) { return f.stats.total_seconds; }},
-  };
-
   std::shared_ptr<const Recording> recording_;
   viewer::Series series_;
 };
