@@ -231,8 +231,20 @@ class Request : public std::enable_shared_from_this<Request> {
     if (parser_.get().method() == http::verb::head) response.body() = {};
     stream_.expires_after(30s);
     http::async_write(stream_, response, [self = shared_from_this()](error_code error, std::size_t) {
-      if (!error) self->stream_.socket().shutdown(tcp::socket::shutdown_send, error);
+      if (error) return;
+      self->stream_.socket().shutdown(tcp::socket::shutdown_send, error);
+      self->stream_.expires_after(2s);
+      self->drain();
     });
+  }
+
+  /// What is closed with something unread is reset, and the answer may be lost with it.
+  void drain() {
+    buffer_.clear();
+    stream_.async_read_some(buffer_.prepare(buffer_.max_size()),
+                            [self = shared_from_this()](error_code error, std::size_t) {
+                              if (!error) self->drain();
+                            });
   }
 
   static std::string_view text(beast::string_view view) { return {view.data(), view.size()}; }
