@@ -14,7 +14,7 @@
 #include "supple/options.hpp"
 #include "supple/recording.hpp"
 #include "supple/simulation.hpp"
-#include "sway.hpp"
+#include "supple/sway.hpp"
 
 namespace supple::cli {
 

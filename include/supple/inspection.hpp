@@ -26,14 +26,14 @@ struct CandidatePair {
 
 /// The stage that told two triangles apart, in the order of the flow.
 enum class PairStage : std::uint8_t {
-  not_tested,        ///< the scene does not test these objects: static, group and mask, filter, no self-collision
-  shared_vertex,     ///< of one object, with a common vertex (or one and the same): never a contact
-  inert,             ///< a corner is not a finite number
-  object_volumes,    ///< the volumes of the objects are apart: the broad phase
-  octree_volumes,    ///< volumes of two octree cells are apart: the narrow phase
-  triangle_boxes,    ///< the boxes of the triangles are apart: the leaves
-  exact_test,        ///< the triangles themselves are apart
-  contact,           ///< they are not apart: a contact
+  not_tested,  ///< the scene does not test these objects: static, group and mask, filter, no self-collision
+  shared_vertex,   ///< of one object, with a common vertex (or one and the same): never a contact
+  inert,           ///< a corner is not a finite number
+  object_volumes,  ///< the volumes of the objects are apart: the broad phase
+  octree_volumes,  ///< volumes of two octree cells are apart: the narrow phase
+  triangle_boxes,  ///< the boxes of the triangles are apart: the leaves
+  exact_test,      ///< the triangles themselves are apart
+  contact,         ///< they are not apart: a contact
 };
 
 /// Why two triangles are, or are not, a contact (`Scene::explain`).
@@ -42,7 +42,7 @@ struct PairExplanation {
   /// The two volumes that are apart: of the objects, of octree cells, of the triangles; empty for other
   /// stages. They are of the present positions.
   Aabb box_a, box_b;
-  BoundingSphere sphere_a, sphere_b;  ///< not empty when spheres, not boxes, told them apart
+  BoundingSphere sphere_a, sphere_b;       ///< not empty when spheres, not boxes, told them apart
   std::uint32_t level_a = 0, level_b = 0;  ///< of those cells
   /// At `exact_test`: an axis that separates the triangles, of unit length, and by how much, rounded; at
   /// `object_volumes`, `octree_volumes` and `triangle_boxes` of boxes: the coordinate axis along which they

@@ -13,7 +13,16 @@ std::uint64_t mix(std::uint64_t z) {
   return z ^ (z >> 31);
 }
 
+/// All multiples of 2^-53 in [0, 1) alike.
+double unit(std::uint64_t bits) {
+  return static_cast<double>(bits >> 11) * 0x1p-53;
+}
+
 }  // namespace
+
+double random_unit(std::uint64_t number) {
+  return unit(mix(number * golden_ratio));
+}
 
 Random::Random(std::uint64_t seed, std::uint64_t stream)
     : state_(mix(mix(seed + golden_ratio) + stream * golden_ratio)) {}
@@ -24,7 +33,7 @@ std::uint64_t Random::next() {
 }
 
 double Random::uniform() {
-  return static_cast<double>(next() >> 11) * 0x1p-53;
+  return unit(next());
 }
 
 /// Of points in a cube, those in the ball: without trigonometry.

@@ -6,6 +6,10 @@
 
 namespace supple {
 
+/// A number of [0, 1) that depends on all bits of `number`: for what has a number of its own and no
+/// generator.
+double random_unit(std::uint64_t number);
+
 /// Random numbers, the same bits on every machine: the SplitMix64 generator by Steele, Lea and Flood ("Fast
 /// splittable pseudorandom number generators", 2014).
 class Random {

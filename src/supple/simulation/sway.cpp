@@ -1,13 +1,14 @@
-#include "sway.hpp"
+#include "supple/sway.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
-#include "random.hpp"
+#include "core/random.hpp"
 #include "supple/trigonometry.hpp"
 
-namespace supple::cli {
+namespace supple {
 namespace {
 
 double random_phase(std::uint64_t seed, std::uint64_t axis) {
@@ -62,4 +63,4 @@ void sway(const Sway& motion, const std::optional<Border>& border, std::span<con
   }
 }
 
-}  // namespace supple::cli
+}  // namespace supple
