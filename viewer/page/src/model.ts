@@ -143,12 +143,14 @@ export class Model extends Emitter<ModelEvents> {
     const sameObjects =
       before?.title === message.text.title && old.length === this.objects.length &&
       old.every((object, i) => object.triangles === this.objects[i]!.triangles);
-    if (!sameObjects) this.clearSelection();
+    if (!sameObjects) this.selection = null;
+    this.explained = [];
     this.explanation = null;
     this.contact = null;
     const names = message.text.source === "recording" ? message.text.series : ["time", ...message.text.statistics];
     this.history.reset(names);
     this.emit("scene", message.text);
+    this.emit("explanation", null);
   }
 
   takeFrame(message: FrameMessage): void {

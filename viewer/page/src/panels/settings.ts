@@ -32,16 +32,20 @@ export class Settings {
     if (scene.integrator !== null) this.values["integrator"] = scene.integrator;
     if (this.model.can("set")) {
       this.choice("bounding_volume", "Bounding volume");
-      this.number("max_level", "Octree levels", 0, 21, 1);
-      this.number("leaf_size", "Triangles a leaf", 1, 64, 1);
+      this.number("max_level", "Octree levels", 0, 32, 1);
+      this.number("leaf_size", "Triangles a leaf", 1, null, 1);
       this.choice("broad_phase", "Broad phase");
       this.choice("contacts", "Contacts");
-      this.number("objects", "Objects", 1, 10_000, 1);
-      if ("integrator" in this.values) this.choice("integrator", "Integrator");
-      this.number("time_step", "Time step", 1e-6, 1, 0);
+      if (scene.source === "simulation") this.ofSimulation();
     }
     this.drawing(gui.addFolder("Drawing"));
     if (focused) this.element.querySelector<HTMLElement>(`[data-setting="${focused}"] :is(input, select)`)?.focus();
+  }
+
+  private ofSimulation(): void {
+    this.number("objects", "Objects", 1, null, 1);
+    if ("integrator" in this.values) this.choice("integrator", "Integrator");
+    this.number("time_step", "Time step", 1e-6, null, null);
   }
 
   private choice(name: keyof typeof CHOICES, label: string): void {
@@ -51,9 +55,11 @@ export class Settings {
     this.tie(this.gui!.add(this.values, name, choices), name, label);
   }
 
-  private number(name: string, label: string, least: number, most: number, step: number): void {
-    const controller = this.gui!.add(this.values, name).min(least).max(most);
-    if (step > 0) controller.step(step);
+  /** With both limits it gets a slider, else a field. */
+  private number(name: string, label: string, least: number, most: number | null, step: number | null): void {
+    const controller = this.gui!.add(this.values, name).min(least);
+    if (most !== null) controller.max(most);
+    if (step !== null) controller.step(step);
     this.tie(controller, name, label);
   }
 

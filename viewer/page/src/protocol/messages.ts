@@ -50,6 +50,7 @@ export interface FrameText {
   time: number;
   playing: boolean;
   speed: number;
+  loop?: boolean;
   octree_levels: (number | null)[];
   omitted: Record<string, number>;
 }
@@ -275,8 +276,8 @@ function frameText(json: Record<string, unknown>): FrameText {
   need(isNumber(f.speed), "speed");
   f.octree_levels ??= [];
   f.omitted ??= {};
-  need(Array.isArray(f.octree_levels), "octree_levels");
-  need(typeof f.omitted === "object", "omitted");
+  need(Array.isArray(f.octree_levels) && f.octree_levels.every((level) => level === null || isCount(level)), "octree_levels");
+  need(typeof f.omitted === "object" && Object.values(f.omitted).every(isCount), "omitted");
   return f;
 }
 
