@@ -7,7 +7,7 @@ A folder of src/supple includes only from itself and the folders before it in LA
 its folder ("core/parallel.hpp"). formats/ is a library of its own that builds on mesh/, recording/
 one that knows only public headers. Public headers include only
 public headers and the standard library. recording/ and the programs around the library include only public headers and
-files of their own folder. Threads have one door, so only core/ may include oneTBB.
+files of their own folder, and those of the viewer that SHARED names. Threads have one door, so only core/ may include oneTBB.
 """
 
 import pathlib

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "supple/inspection.hpp"
 #include "supple/mesh.hpp"
 #include "supple/options.hpp"
 #include "supple/result.hpp"
@@ -120,6 +121,28 @@ class Scene {
   VerifyReport verify() const;
   /// Checks every invariant of every octree and of the broad phase; the empty string, or what is wrong.
   std::string validate() const;
+
+  /// To look into the last `detect`: each of the next three throws `Error` when something was changed since
+  /// (of `octree_cells`, the object was moved), or an id is out of range. They take memory and one thread.
+  ///
+  /// The cells of an object's octree at `level`, and shallower leaves too, so that together they cover the
+  /// object; without a level all leaves. Shallow ones first. Their volumes hold the triangles where they are
+  /// now, rounded outward; those without a finite triangle are empty. Of continuous contacts they are those
+  /// at the end of the step, and cells of few triangles count as leaves, as the search takes them.
+  std::vector<OctreeCell> octree_cells(ObjectId object, std::optional<std::uint32_t> level) const;
+  /// The deepest level that has cells; 0 of an object without triangles, which has no cell.
+  std::uint32_t octree_depth(ObjectId object) const;
+  /// All pairs of triangles that the narrow phase hands to the exact stage, sorted; the first `limit` of
+  /// them, and in `total`, when it is not null, how many there are. Also those that `detect` need not look
+  /// at: of two objects that both are where they were, and in the smooth parts of an object that cannot touch
+  /// themselves. Of continuous contacts, triangles whose boxes meet on the way, by a bound that is not below
+  /// `ImpactOptions::min_separation`; pairs that share a vertex are left out there too, though elements of
+  /// them are tested. As fast as a `detect` by one thread; memory is of the order of `limit`.
+  std::vector<CandidatePair> candidates(std::size_t limit, std::uint64_t* total = nullptr) const;
+  /// Why two triangles are a contact of the last `detect`, or which stage told them apart. Calls the pair
+  /// filter. O(n) of the objects' triangles; of continuous contacts also of the contacts of the two.
+  PairExplanation explain(ObjectId object_a, std::uint32_t triangle_a, ObjectId object_b,
+                          std::uint32_t triangle_b) const;
 
   std::vector<ObjectId> objects() const;  ///< ascending
   bool contains(ObjectId object) const;

@@ -1,13 +1,14 @@
 #pragma once
 
-#include <rapidjson/document.h>
-
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
+#include "json_value.hpp"
 #include "names.hpp"
 #include "supple/types.hpp"
 
@@ -17,8 +18,7 @@ namespace supple::viewer {
 /// means nothing. An optional member that is not there is nothing and no error.
 class Arguments {
  public:
-  Arguments(const rapidjson::Value& object, std::string command)
-      : object_(object), command_(std::move(command)) {}
+  Arguments(const JsonValue& object, std::string command) : object_(object), command_(std::move(command)) {}
 
   bool has(const char* name) { return find(name) != nullptr; }
   std::optional<bool> boolean(const char* name);
@@ -30,15 +30,15 @@ class Arguments {
   std::optional<std::vector<std::uint32_t>> numbers(const char* name);
   template <class Enumeration>
   std::optional<Enumeration> one_of(const char* name) {
-    const rapidjson::Value* const value = find(name);
+    const JsonValue* const value = find(name);
     if (value == nullptr) return std::nullopt;
     std::optional<Enumeration> found;
-    if (value->IsString()) found = named<Enumeration>({value->GetString(), value->GetStringLength()});
+    if (value->kind == JsonValue::Kind::text) found = named<Enumeration>(value->text);
     if (!found) must_be(name, "one of " + list_of_names<Enumeration>());
     return found;
   }
   /// What the member holds, to be read by other arguments; null when it is not there.
-  const rapidjson::Value* member(const char* name) { return find(name); }
+  const JsonValue* member(const char* name) { return find(name); }
 
   /// The member that must be there.
   template <class Value>
@@ -54,9 +54,9 @@ class Arguments {
   const std::string& error() const { return error_; }  ///< empty when nothing is wrong
 
  private:
-  const rapidjson::Value* find(const char* name);
+  const JsonValue* find(const char* name);
 
-  const rapidjson::Value& object_;
+  const JsonValue& object_;
   std::string command_;
   std::vector<std::string_view> known_;
   std::string error_;

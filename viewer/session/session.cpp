@@ -1,7 +1,5 @@
 #include "session.hpp"
 
-#include <rapidjson/document.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -16,6 +14,7 @@
 #include "failure.hpp"
 #include "frame_message.hpp"
 #include "json_text.hpp"
+#include "json_value.hpp"
 #include "layers.hpp"
 #include "message.hpp"
 #include "player.hpp"
@@ -60,8 +59,8 @@ class Session::Implementation {
   };
   static const Command commands_[];
 
-  void obey(const rapidjson::Value& command);
-  void run(const Command& command, const rapidjson::Value& text);
+  void obey(const JsonValue& command);
+  void run(const Command& command, const JsonValue& text);
 
   void credit(Arguments& arguments);
   void play(Arguments& arguments);
@@ -78,7 +77,7 @@ class Session::Implementation {
   void release(Arguments& arguments);
   void read(Arguments& arguments);
 
-  void read_octree(const rapidjson::Value& octree, Layers& layers, Arguments& arguments) const;
+  void read_octree(const JsonValue& octree, Layers& layers, Arguments& arguments) const;
   void set_stage(const Settings& settings);
   static std::uint32_t id_of(const char* name, Arguments& arguments);
   bool is_of_recording(Arguments& arguments) const;
@@ -189,35 +188,34 @@ void Session::Implementation::command(std::string_view json) {
     fail("more than " + std::to_string(most_replies) + " answers wait; some commands were passed over");
     return;
   }
-  rapidjson::Document document;
-  // Iterative: nested lists of any depth take no stack.
-  document.Parse<rapidjson::kParseIterativeFlag>(json.data(), json.size());
-  if (document.HasParseError() || !document.IsObject()) {
+  std::size_t error = 0;
+  const auto text = parse_json(json, error);
+  if (!text || text->kind != JsonValue::Kind::object) {
     fail("a command must be a JSON object, as {\"do\": \"play\"}; this is none, from byte " +
-         std::to_string(document.HasParseError() ? document.GetErrorOffset() : 0) + " on");
+         std::to_string(error) + " on");
     return;
   }
-  obey(document);
+  obey(*text);
 }
 
-void Session::Implementation::obey(const rapidjson::Value& text) {
-  if (const auto id = text.FindMember("id"); id != text.MemberEnd()) {
-    if (!id->value.IsNumber()) return fail("id must be a number");
-    id_ = id->value.GetDouble();
+void Session::Implementation::obey(const JsonValue& text) {
+  if (const JsonValue* const id = text.find("id")) {
+    if (!id->is_number()) return fail("id must be a number");
+    id_ = id->number;
   }
-  const auto name = text.FindMember("do");
-  if (name == text.MemberEnd() || !name->value.IsString())
+  const JsonValue* const name = text.find("do");
+  if (name == nullptr || name->kind != JsonValue::Kind::text)
     return fail("a command must say what to do, as {\"do\": \"play\"}");
-  const std::string_view wanted(name->value.GetString(), name->value.GetStringLength());
+  const std::string& wanted = name->text;
   for (const Command& command : commands_) {
     if (wanted == command.name) return run(command, text);
   }
   std::string list;
   for (const Command& command : commands_) list += (list.empty() ? "" : ", ") + std::string(command.name);
-  fail("there is no command " + std::string(wanted.substr(0, 40)) + "; there are " + list);
+  fail("there is no command " + wanted.substr(0, 40) + "; there are " + list);
 }
 
-void Session::Implementation::run(const Command& command, const rapidjson::Value& text) {
+void Session::Implementation::run(const Command& command, const JsonValue& text) {
   Arguments arguments(text, command.name);
   if (command.has_answer && !id_)
     return fail(std::string(command.name) + " needs an id, a number, to answer to");
@@ -285,18 +283,19 @@ void Session::Implementation::layers(Arguments& arguments) {
   layers.candidates = arguments.boolean("candidates").value_or(layers.candidates);
   layers.scene_regions = arguments.boolean("scene_regions").value_or(layers.scene_regions);
   layers.colliding_vertices = arguments.boolean("colliding_vertices").value_or(layers.colliding_vertices);
-  if (const rapidjson::Value* const octree = arguments.member("octree")) {
+  if (const JsonValue* const octree = arguments.member("octree")) {
     layers.octree_objects.clear();
-    if (!octree->IsNull()) read_octree(*octree, layers, arguments);
+    if (octree->kind != JsonValue::Kind::null) read_octree(*octree, layers, arguments);
   }
   if (!arguments.check()) return;
   layers_ = std::move(layers);
   has_news_ = true;
 }
 
-void Session::Implementation::read_octree(const rapidjson::Value& octree, Layers& layers,
+void Session::Implementation::read_octree(const JsonValue& octree, Layers& layers,
                                           Arguments& arguments) const {
-  if (!octree.IsObject()) return arguments.must_be("octree", "null, or {\"objects\": […], \"level\": …}");
+  if (octree.kind != JsonValue::Kind::object)
+    return arguments.must_be("octree", "null, or {\"objects\": […], \"level\": …}");
   Arguments inner(octree, "octree");
   auto objects = inner.required("objects", inner.numbers("objects"));
   const auto level = inner.required("level", inner.integer("level", -1, 1000));

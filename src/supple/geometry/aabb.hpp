@@ -29,6 +29,17 @@ void extend(Aabb& box, const Vec3<Scalar>& point) {
   }
 }
 
+/// Encloses fl(p + offset) of every p in the box: the rounded sum is monotonic.
+inline Aabb moved(const Aabb& box, const Vec3d& offset) {
+  if (offset == Vec3d{} || box.empty()) return box;
+  Aabb result;
+  for (int axis = 0; axis < 3; ++axis) {
+    result.min[axis] = round_down(double{box.min[axis]} + offset[axis]);
+    result.max[axis] = round_up(double{box.max[axis]} + offset[axis]);
+  }
+  return result;
+}
+
 /// What two boxes share: empty, or inverted, when they are apart.
 inline Aabb shared_box(const Aabb& a, const Aabb& b) {
   Aabb result;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <memory>
 
 #include "core/float_rounding.hpp"
 
@@ -48,9 +49,11 @@ void for_each_lane_pair(const ObjectPairView& pair, NodePair node_pair, std::uin
   }
 }
 
-/// Whether the descent goes on below the lane.
-bool goes_on(const ObjectPairView& pair, const OctreeNode& node, int lane) {
-  return pair.is_moving() ? !is_moving_leaf(node, lane) : node.is_inner(lane);
+/// The lane that the triangle is in.
+int lane_of(const OctreeNode& node, std::uint32_t triangle) {
+  int lane = 0;
+  while (node.first_triangle[lane + 1] <= triangle) ++lane;
+  return lane;
 }
 
 std::uint32_t lane_number(std::uint32_t node, int lane) {
@@ -131,6 +134,39 @@ ObjectPairView moving_self_pair_of(const OctreeView& object, double separation) 
   return pair;
 }
 
+LanePair last_lanes(const ObjectPairView& pair, TrianglePair triangles) {
+  LanePair at;
+  for (;;) {
+    const OctreeNode& node_a = pair.a.nodes[at.node_a];
+    const OctreeNode& node_b = pair.b.nodes[at.node_b];
+    at.lane_a = lane_of(node_a, triangles.a);
+    at.lane_b = lane_of(node_b, triangles.b);
+    const NodePair nodes{at.node_a, at.node_b, lane_bit(at.lane_a), lane_bit(at.lane_b)};
+    std::uint64_t mask = 0;
+    test_lanes(pair, {&nodes, 1}, &mask);
+    at.apart = (mask >> (node_width * at.lane_a + at.lane_b) & 1) == 0;
+    const bool inner_a = goes_on(pair.a, node_a, at.lane_a), inner_b = goes_on(pair.b, node_b, at.lane_b);
+    if (at.apart || !(inner_a || inner_b)) return at;
+    if (inner_a) at.node_a = node_a.child(at.lane_a);
+    if (inner_b) at.node_b = node_b.child(at.lane_b);
+  }
+}
+
+bool leaf_triangles_apart(const ObjectPairView& pair, const LanePair& leaves, TrianglePair triangles) {
+  const LeafPair both{triangles.a,
+                      triangles.a + 1,
+                      triangles.b,
+                      triangles.b + 1,
+                      lane_number(leaves.node_a, leaves.lane_a),
+                      lane_number(leaves.node_b, leaves.lane_b)};
+  const auto cache = std::make_unique<LeafBoxCache>();
+  TrianglePairList found;
+  find_triangle_box_pairs({&both, 1}, {pair.a.arrays, pair.a.boxes, pair.a.leaf_vertices},
+                          {pair.b.arrays, pair.b.boxes, pair.b.leaf_vertices}, pair.placement,
+                          pair.same_object, *cache, found);
+  return found.size() == 0;
+}
+
 void Traversal::expand_batch(const ObjectPairView& pair, TraversalStats& stats) {
   const std::size_t count = std::min(node_batch, stack_.size());
   std::copy(stack_.end() - static_cast<std::ptrdiff_t>(count), stack_.end(), batch_.begin());
@@ -144,7 +180,7 @@ void Traversal::expand_batch(const ObjectPairView& pair, TraversalStats& stats) 
     stats.volumes_tested += std::uint64_t{bit_count(node_pair.lanes_a & node_a.lane_mask())} *
                             bit_count(node_pair.lanes_b & node_b.lane_mask());
     for_each_lane_pair(pair, node_pair, masks_[k], [&](int i, int j) {
-      const bool inner_a = goes_on(pair, node_a, i), inner_b = goes_on(pair, node_b, j);
+      const bool inner_a = goes_on(pair.a, node_a, i), inner_b = goes_on(pair.b, node_b, j);
       if (inner_a && inner_b) {
         stack_.push_back({node_a.child(i), node_b.child(j)});
       } else if (inner_a) {
@@ -167,7 +203,7 @@ void Traversal::refine(const ObjectPairView& pair, NodePair node_pair, std::vect
   const OctreeNode& node_a = pair.a.nodes[node_pair.a];
   const OctreeNode& node_b = pair.b.nodes[node_pair.b];
   for_each_lane_pair(pair, node_pair, mask, [&](int i, int j) {
-    if (goes_on(pair, node_a, i) && goes_on(pair, node_b, j)) {
+    if (goes_on(pair.a, node_a, i) && goes_on(pair.b, node_b, j)) {
       finer.push_back({node_a.child(i), node_b.child(j)});
     } else {
       finer.push_back({node_pair.a, node_pair.b, lane_bit(i), lane_bit(j)});

@@ -28,6 +28,10 @@ struct OctreeView {
   /// looked for in lanes that cannot touch themselves. Candidates are lost thereby, contacts are not.
   const std::uint8_t* unfolded = nullptr;
 };
+/// Whether the descent goes on below the lane.
+inline bool goes_on(const OctreeView& view, const OctreeNode& node, int lane) {
+  return view.moving.start != nullptr ? !is_moving_leaf(node, lane) : node.is_inner(lane);
+}
 OctreeView view_of(const ObjectOctree& octree, const VertexBuffer& vertices,
                    std::span<const std::uint8_t> inert, Vec3d translation);
 /// Of an object in motion, at rest or not; `boxes` are refitted.
@@ -66,6 +70,19 @@ struct TraversalStats {
   /// Of objects in motion, for which `candidate_pairs` stays.
   std::uint64_t vertex_face_candidates = 0, edge_edge_candidates = 0;
 };
+
+/// Two lanes that the descent compares.
+struct LanePair {
+  std::uint32_t node_a = 0, node_b = 0;
+  int lane_a = 0, lane_b = 0;
+  bool apart = false;  ///< the volumes are: the descent ends here
+};
+/// Where the descent from the roots to two triangles ends, octree order's numbers: at the first lanes on the
+/// way that are apart, or else at the two leaves. Of one object with itself, `triangles.a < triangles.b`.
+LanePair last_lanes(const ObjectPairView& pair, TrianglePair triangles);
+/// Whether the narrow phase tells two triangles of two leaves apart by their boxes, as `find_triangle_pairs`
+/// would.
+bool leaf_triangles_apart(const ObjectPairView& pair, const LanePair& leaves, TrianglePair triangles);
 
 /// Octree against octree, both descended at once. Holds the scratch memory of one worker, kept between calls.
 ///
@@ -122,6 +139,19 @@ class Traversal {
       leaf_pairs_.clear();
     }
     element_pairs_.flush();
+  }
+
+  /// Calls `on_leaves(std::span<const LeafPair>)` with all pairs of leaves whose volumes overlap, in motion
+  /// or not.
+  template <class OnLeaves>
+  void find_leaf_pairs(const ObjectPairView& pair, TraversalStats& stats, OnLeaves&& on_leaves) {
+    if (pair.a.nodes.empty() || pair.b.nodes.empty()) return;
+    stack_.assign(1, NodePair{});
+    while (!stack_.empty()) {
+      leaf_pairs_.clear();
+      expand_batch(pair, stats);
+      on_leaves(std::span<const LeafPair>(leaf_pairs_));
+    }
   }
 
   /// One step of the descent for all of `pairs`, for spreading work over threads: what it appends to `finer`

@@ -300,6 +300,20 @@ std::string Scene::validate() const {
   return implementation_->validate();
 }
 
+std::vector<OctreeCell> Scene::octree_cells(ObjectId object, std::optional<std::uint32_t> level) const {
+  return implementation_->octree_cells(object, level);
+}
+std::uint32_t Scene::octree_depth(ObjectId object) const {
+  return implementation_->octree_depth(object);
+}
+std::vector<CandidatePair> Scene::candidates(std::size_t limit, std::uint64_t* total) const {
+  return implementation_->candidates(limit, total);
+}
+PairExplanation Scene::explain(ObjectId object_a, std::uint32_t triangle_a, ObjectId object_b,
+                               std::uint32_t triangle_b) const {
+  return implementation_->explain(object_a, triangle_a, object_b, triangle_b);
+}
+
 std::vector<ObjectId> Scene::objects() const {
   return implementation_->objects();
 }

@@ -43,6 +43,12 @@ class Scene::Implementation {
   VerifyReport verify() const;
   std::string validate() const;
 
+  std::vector<OctreeCell> octree_cells(ObjectId id, std::optional<std::uint32_t> level) const;
+  std::uint32_t octree_depth(ObjectId id) const;
+  std::vector<CandidatePair> candidates(std::size_t limit, std::uint64_t* total) const;
+  PairExplanation explain(ObjectId id_a, std::uint32_t triangle_a, ObjectId id_b,
+                          std::uint32_t triangle_b) const;
+
   bool contains(ObjectId id) const;
   std::vector<ObjectId> objects() const;
   /// Anything that changes what `detect` would find.
@@ -78,6 +84,13 @@ class Scene::Implementation {
   void report_non_finite();
   void publish();
   bool may_pair(const IndexPair& pair) const;
+  OctreeView search_view(const SceneObject& object) const {
+    return is_continuous() ? object.moving_view() : object.view();
+  }
+  /// As the narrow phase takes them, but for what it passes over because it cannot touch itself.
+  ObjectPairView search_view(const ContactJob& job) const;
+  PairExplanation explain_in_order(const ContactJob& job, TrianglePair triangles) const;
+  bool touch_on_the_way(const ContactJob& job, TrianglePair triangles) const;
   ObjectId id_of(std::uint32_t index) const { return {index, slots_[index].generation}; }
   std::vector<ObjectPair> pairs_to_verify() const;
 

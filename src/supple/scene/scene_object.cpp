@@ -6,6 +6,8 @@
 #include <utility>
 
 #include "core/float_rounding.hpp"
+#include "geometry/aabb.hpp"
+#include "geometry/sphere.hpp"
 #include "geometry/vector.hpp"
 
 namespace supple {
@@ -30,17 +32,6 @@ double largest(const Vec3d& v) {
   return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
 }
 
-/// Encloses fl(p + offset) of every p in the box: the rounded sum is monotonic.
-Aabb moved(const Aabb& box, const Vec3d& offset) {
-  if (offset == Vec3d{} || box.empty()) return box;
-  Aabb result;
-  for (int axis = 0; axis < 3; ++axis) {
-    result.min[axis] = round_down(double{box.min[axis]} + offset[axis]);
-    result.max[axis] = round_up(double{box.max[axis]} + offset[axis]);
-  }
-  return result;
-}
-
 /// The ball around a box.
 BoundingSphere sphere_around(const Aabb& box) {
   if (box.empty()) return {};
@@ -54,24 +45,6 @@ BoundingSphere sphere_around(const Aabb& box) {
   }
   sphere.radius = round_up(std::sqrt(squared_radius) * (1 + 0x1p-50));
   return sphere;
-}
-
-/// Encloses fl(p + offset) of every p in the ball.
-BoundingSphere moved(const BoundingSphere& sphere, const Vec3d& offset) {
-  if (offset == Vec3d{} || sphere.empty()) return sphere;
-  BoundingSphere result;
-  double squared_shift = 0;  // of the centre, by rounding it to float
-  double magnitude = sphere.radius;
-  for (int axis = 0; axis < 3; ++axis) {
-    const double center = double{sphere.center[axis]} + offset[axis];
-    result.center[axis] = static_cast<float>(center);
-    const double shift = result.center[axis] - center;
-    squared_shift += shift * shift;
-    magnitude += std::abs(center);
-  }
-  result.radius =
-      round_up(double{sphere.radius} + std::sqrt(squared_shift) * (1 + 0x1p-50) + magnitude * 0x1p-50);
-  return result;
 }
 
 /// A byte a triangle: whether a vertex of it is not finite.

@@ -7,12 +7,12 @@
 #include <boost/beast/websocket.hpp>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <map>
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
+
+#include "support/viewer_messages.hpp"
 
 namespace supple::viewer {
 
@@ -52,31 +52,6 @@ inline Answer get(std::uint16_t port, const std::string& target, std::string hos
   return ask(port, request.append(fields).append("\r\n"));
 }
 
-/// A message of the viewer's protocol, as far as the server's tests look into it.
-struct Received {
-  std::vector<std::byte> bytes{};
-
-  std::uint32_t at(std::size_t offset) const {
-    std::uint32_t value = 0;
-    std::memcpy(&value, bytes.data() + offset, sizeof value);
-    return value;
-  }
-  unsigned kind() const { return at(4) >> 16; }
-  /// The data of the first section of this tag; nothing when there is none.
-  std::optional<std::string> section(std::uint32_t tag) const {
-    std::size_t offset = 16;
-    for (std::uint32_t i = 0; i < at(12); ++i) {
-      const std::uint32_t length = at(offset + 12);
-      if (at(offset) == tag) return std::string(reinterpret_cast<const char*>(bytes.data()) + offset + 16, length);
-      offset += 16 + (length + 15) / 16 * 16;
-    }
-    return std::nullopt;
-  }
-  std::string text() const { return section(1).value_or(""); }
-};
-
-enum Kind : unsigned { scene = 1, frame = 2, answer = 3, failure = 4, series = 5 };
-
 /// A page's end of a WebSocket.
 class PageClient {
  public:
@@ -97,17 +72,17 @@ class PageClient {
   void send(const std::string& text) { socket_.write(boost::asio::buffer(text)); }
   auto& socket() { return socket_; }
 
-  Received receive() {
+  ViewerMessage receive() {
     boost::beast::flat_buffer buffer;
     socket_.read(buffer);
     const auto* const first = static_cast<const std::byte*>(buffer.data().data());
-    return {{first, first + buffer.size()}};
+    return ViewerMessage(std::vector<std::byte>(first, first + buffer.size()));
   }
   /// The next message of a kind; others are passed over.
-  Received receive(Kind kind) {
-    Received received = receive();
-    while (received.kind() != kind) received = receive();
-    return received;
+  ViewerMessage receive(ViewerMessage::Kind kind) {
+    ViewerMessage message = receive();
+    while (message.kind != kind) message = receive();
+    return message;
   }
   /// Reads until the other end closes: the code it gives, 0 when the connection is just gone.
   std::uint16_t receive_close() {

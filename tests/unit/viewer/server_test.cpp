@@ -4,11 +4,14 @@
 #include <unistd.h>
 
 #include <atomic>
+#include <algorithm>
 #include <chrono>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <thread>
+#include <utility>
 
 #include "session/show.hpp"
 #include "supple/error.hpp"
@@ -21,6 +24,7 @@ namespace {
 using namespace std::chrono_literals;
 using nlohmann::json;
 
+using Kind = ViewerMessage::Kind;
 constexpr std::string_view page = "<!doctype html><title>The page</title>";
 
 /// Two boxes that bend.
@@ -127,7 +131,7 @@ TEST_F(ViewerServer, HostMustBeItself) {
   start();
   const std::string number = ":" + std::to_string(port());
   EXPECT_EQ(get(port(), with_token("/"), "localhost" + number).status, 200u);
-  for (const std::string host : {std::string(), "evil.example" + number, std::string("127.0.0.1"),
+  for (const std::string& host : {std::string(), "evil.example" + number, std::string("127.0.0.1"),
                                  std::string("127.0.0.1:1"), "127.0.0.1.evil.example" + number}) {
     const Answer refusal = get(port(), with_token("/"), host);
     EXPECT_EQ(refusal.status, 403u) << host;
@@ -149,7 +153,7 @@ TEST_F(ViewerServer, SessionNeedsTokenHostAndOrigin) {
                              const std::string& path = "/session") {
     try {
       PageClient client(port(), given_token, given_host, origin, path);
-      return client.receive().kind() == scene;
+      return client.receive().kind == Kind::scene;
     } catch (const boost::system::system_error& error) {
       EXPECT_EQ(error.code(), boost::beast::websocket::error::upgrade_declined);
       return false;
@@ -174,17 +178,16 @@ TEST_F(ViewerServer, SessionNeedsTokenHostAndOrigin) {
 TEST_F(ViewerServer, SceneThenFramesAgainstCredit) {
   start();
   PageClient client = connect();
-  const Received first = client.receive();
-  ASSERT_EQ(first.kind(), scene);
-  EXPECT_EQ(json::parse(first.text())["title"], "small");
+  const ViewerMessage first = client.receive();
+  ASSERT_EQ(first.kind, Kind::scene);
+  EXPECT_EQ(first.json["title"], "small");
   client.send(R"({"do": "credit", "frames": 1})");
-  const Received start_frame = client.receive();
-  ASSERT_EQ(start_frame.kind(), frame);
-  EXPECT_EQ(json::parse(start_frame.text())["step"], 0);
-  EXPECT_EQ(start_frame.bytes.size(), start_frame.at(8));
+  const ViewerMessage start_frame = client.receive();
+  ASSERT_EQ(start_frame.kind, Kind::frame);
+  EXPECT_EQ(start_frame.json["step"], 0);
   client.send(R"({"do": "step"})");
   client.send(R"({"do": "credit", "frames": 1})");
-  EXPECT_EQ(json::parse(client.receive(frame).text())["step"], 1);
+  EXPECT_EQ(client.receive(Kind::frame).json["step"], 1);
 }
 
 TEST_F(ViewerServer, WhatIsNotUnderstoodIsAFailureNotTheEnd) {
@@ -192,23 +195,23 @@ TEST_F(ViewerServer, WhatIsNotUnderstoodIsAFailureNotTheEnd) {
   PageClient client = connect();
   for (const std::string text : {"", "{", "[1]", R"({"do": "fly"})", R"({"do": "seek", "frame": "x"})", "\xff\xfe"}) {
     client.send(text);
-    const json answer = json::parse(client.receive(failure).text());
+    const json answer = client.receive(Kind::failure).json;
     EXPECT_EQ(answer["fatal"], false) << text;
     EXPECT_NE(answer["message"], "");
   }
   client.send(R"({"do": "read", "object": 0, "id": 5})");
-  EXPECT_EQ(json::parse(client.receive(answer).text())["id"], 5);
+  EXPECT_EQ(client.receive(Kind::answer).json["id"], 5);
 }
 
 TEST_F(ViewerServer, ASecondPageTakesOver) {
   start();
   PageClient first = connect();
-  first.receive(scene);
+  first.receive(Kind::scene);
   PageClient second = connect();
-  EXPECT_EQ(second.receive().kind(), scene);
+  EXPECT_EQ(second.receive().kind, Kind::scene);
   EXPECT_EQ(first.receive_close(), 4001);
   second.send(R"({"do": "credit", "frames": 1})");
-  EXPECT_EQ(second.receive().kind(), frame);
+  EXPECT_EQ(second.receive().kind, Kind::frame);
 }
 
 TEST_F(ViewerServer, APageThatDoesNotReadIsTakenOverToo) {
@@ -221,9 +224,9 @@ TEST_F(ViewerServer, APageThatDoesNotReadIsTakenOverToo) {
   first.send(R"({"do": "play"})");
   std::this_thread::sleep_for(200ms);  // what is sent now fills the socket
   PageClient second = connect();
-  EXPECT_EQ(second.receive().kind(), scene);
+  EXPECT_EQ(second.receive().kind, Kind::scene);
   second.send(R"({"do": "credit", "frames": 1})");
-  EXPECT_EQ(second.receive(frame).section(32).has_value(), true);
+  EXPECT_TRUE(second.receive(Kind::frame).has(32, 2));
 }
 
 TEST_F(ViewerServer, OnlyTextsUpToAMegabyteAreCommands) {
@@ -236,12 +239,12 @@ TEST_F(ViewerServer, OnlyTextsUpToAMegabyteAreCommands) {
   // A mebibyte is still looked at.
   PageClient large = connect();
   large.send(std::string(std::size_t{1} << 20, ' '));
-  EXPECT_EQ(large.receive(failure).kind(), failure);
+  EXPECT_EQ(large.receive(Kind::failure).json["fatal"], false);
   large.send(std::string((std::size_t{1} << 20) + 1, ' '));
   EXPECT_EQ(large.receive_close(), 4003);
 
   PageClient in_pieces = connect();
-  in_pieces.receive(scene);
+  in_pieces.receive(Kind::scene);
   boost::system::error_code error;
   for (int i = 0; i < 3000 && !error; ++i)
     in_pieces.socket().write_some(false, boost::asio::buffer(std::string(1000, ' ')), error);
@@ -258,7 +261,7 @@ TEST_F(ViewerServer, MoreCommandsThanMayWaitAreAllCarriedOut) {
     for (int i = 0; i < count; ++i)
       client.send(R"({"do": "read", "object": 0, "id": )" + std::to_string(i) + padding + "}");
   });
-  for (int i = 0; i < count; ++i) EXPECT_EQ(json::parse(client.receive(answer).text())["id"], i);
+  for (int i = 0; i < count; ++i) EXPECT_EQ(client.receive(Kind::answer).json["id"], i);
   sender.join();
 }
 
@@ -268,10 +271,10 @@ TEST_F(ViewerServer, ASlowPageGetsTheNewest) {
   client.send(R"({"do": "speed", "factor": 0})");
   client.send(R"({"do": "play"})");
   client.send(R"({"do": "credit", "frames": 1})");
-  const int first = json::parse(client.receive(frame).text())["step"];
+  const int first = client.receive(Kind::frame).json["step"];
   std::this_thread::sleep_for(300ms);
   client.send(R"({"do": "credit", "frames": 1})");
-  const int second = json::parse(client.receive(frame).text())["step"];
+  const int second = client.receive(Kind::frame).json["step"];
   EXPECT_GT(second, first + 10) << "the simulation waited for the page, or frames queued";
 }
 
@@ -283,15 +286,15 @@ TEST_F(ViewerServer, TimeStandsStillWhileNobodyLooksAndAPageComesBack) {
     client.send(R"({"do": "speed", "factor": 0})");
     client.send(R"({"do": "play"})");
     client.send(R"({"do": "credit", "frames": 8})");
-    before = json::parse(client.receive(frame).text())["step"];
+    before = client.receive(Kind::frame).json["step"];
   }  // the connection is cut without a close
   std::this_thread::sleep_for(100ms);
   const auto step_of_a_new_page = [&] {
     PageClient client = connect();
-    EXPECT_EQ(client.receive().kind(), scene);
+    EXPECT_EQ(client.receive().kind, Kind::scene);
     client.send(R"({"do": "pause"})");
     client.send(R"({"do": "credit", "frames": 1})");
-    return json::parse(client.receive(frame).text())["step"].get<int>();
+    return client.receive(Kind::frame).json["step"].get<int>();
   };
   const int after = step_of_a_new_page();
   EXPECT_GE(after, before);
@@ -302,7 +305,7 @@ TEST_F(ViewerServer, TimeStandsStillWhileNobodyLooksAndAPageComesBack) {
 TEST_F(ViewerServer, APageThatGivesNoSignOfLifeIsGivenUp) {
   start(small_show(), 400ms);
   PageClient client = connect();
-  client.receive(scene);
+  client.receive(Kind::scene);
   std::this_thread::sleep_for(1500ms);  // pings are answered by reading only
   EXPECT_NE(client.receive_close(), 4002);
   PageClient alive = connect();
@@ -310,14 +313,14 @@ TEST_F(ViewerServer, APageThatGivesNoSignOfLifeIsGivenUp) {
     std::this_thread::sleep_for(1500ms);
     alive.send(R"({"do": "read", "object": 0, "id": 1})");
   });
-  EXPECT_EQ(alive.receive(answer).kind(), answer) << "one that answers pings stays";
+  EXPECT_EQ(alive.receive(Kind::answer).json["id"], 1) << "one that answers pings stays";
   ender.join();
 }
 
 TEST_F(ViewerServer, TheEndOfTheProgramIsTold) {
   start();
   PageClient client = connect();
-  client.receive(scene);
+  client.receive(Kind::scene);
   std::thread ender([this] { end(); });
   EXPECT_EQ(client.receive_close(), 4002);
   ender.join();
@@ -352,7 +355,7 @@ TEST_F(ViewerServer, AnUnforeseenFailureEndsItWithTheReason) {
   show.frames = std::make_shared<const BrokenFrames>();
   start(std::move(show));
   PageClient client = connect();
-  client.receive(scene);
+  client.receive(Kind::scene);
   client.send(R"({"do": "seek", "frame": 1})");
   EXPECT_EQ(client.receive_close(), 4004);
   end();
@@ -371,13 +374,10 @@ TEST_F(ViewerServer, LargeFramesArriveWhole) {
   int last = -1;
   client.send(R"({"do": "credit", "frames": 4})");
   for (int i = 0; i < 20; ++i) {
-    const Received received = client.receive(frame);
+    const ViewerMessage received = client.receive(Kind::frame);
     client.send(R"({"do": "credit", "frames": 1})");
-    ASSERT_EQ(received.bytes.size(), received.at(8));
-    const std::optional<std::string> positions = received.section(32);
-    ASSERT_TRUE(positions.has_value());
-    EXPECT_EQ(positions->size(), 12 * vertices);
-    const int step = json::parse(received.text())["step"];
+    EXPECT_EQ(received.section(32, 0).data.size(), 12 * vertices);
+    const int step = received.json["step"];
     EXPECT_GT(step, last);
     last = step;
   }

@@ -1,0 +1,243 @@
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "contact/triangle_gap.hpp"
+#include "core/error.hpp"
+#include "geometry/aabb.hpp"
+#include "geometry/sphere.hpp"
+#include "geometry/vector.hpp"
+#include "scene/moving_faces.hpp"
+#include "scene/scene_implementation.hpp"
+#include "supple/triangle_intersection.hpp"
+
+namespace supple {
+namespace {
+
+std::uint32_t octree_triangle(const SceneObject& object, std::uint32_t triangle) {
+  const std::span<const std::uint32_t> ids = object.octree().triangle_ids();
+  if (triangle >= ids.size()) {
+    fail("explain: " + object.options.name + " has no triangle " + std::to_string(triangle) + "; it has " +
+         std::to_string(ids.size()) + ", numbered from 0");
+  }
+  return static_cast<std::uint32_t>(std::find(ids.begin(), ids.end(), triangle) - ids.begin());
+}
+
+TrianglePoints points_of(const SceneObject& object, std::uint32_t triangle) {
+  const Triangle& corners = object.octree().triangles()[triangle];
+  return {object.position(corners[0]), object.position(corners[1]), object.position(corners[2])};
+}
+
+/// At either end of the step.
+bool is_inert(const SceneObject& object, std::uint32_t triangle) {
+  const Triangle& corners = object.octree().triangles()[triangle];
+  return std::any_of(corners.begin(), corners.end(), [&](std::uint32_t vertex) {
+    return !is_finite(object.position(vertex)) || !is_finite(object.start()[vertex]);
+  });
+}
+
+/// The same with a and b in each other's place.
+PairExplanation mirrored(PairExplanation explanation) {
+  std::swap(explanation.box_a, explanation.box_b);
+  std::swap(explanation.sphere_a, explanation.sphere_b);
+  std::swap(explanation.level_a, explanation.level_b);
+  explanation.axis = Vec3d{} - explanation.axis;
+  return explanation;
+}
+
+/// The corners of a box in double.
+struct Corners {
+  Vec3d low, high;
+};
+
+Corners corners_of(const Aabb& box, const Vec3d& translation) {
+  return {Vec3d{box.min.x, box.min.y, box.min.z} + translation,
+          Vec3d{box.max.x, box.max.y, box.max.z} + translation};
+}
+
+Corners corners_of(const TrianglePoints& points) {
+  Corners corners{points[0], points[0]};
+  for (const Vec3d& p : points) {
+    for (int axis = 0; axis < 3; ++axis) {
+      corners.low[axis] = std::min(corners.low[axis], p[axis]);
+      corners.high[axis] = std::max(corners.high[axis], p[axis]);
+    }
+  }
+  return corners;
+}
+
+Aabb box_of(const Corners& corners) {
+  Aabb box;
+  extend(box, corners.low);
+  extend(box, corners.high);
+  return box;
+}
+
+/// The axis along which boxes are furthest apart, from a to b, and by how much.
+void set_gap(PairExplanation& explanation, const Corners& a, const Corners& b) {
+  explanation.distance = -INFINITY;
+  const auto consider = [&](int axis, double sign, double gap) {
+    if (!(gap > explanation.distance)) return;
+    explanation.distance = gap;
+    explanation.axis = {};
+    explanation.axis[axis] = sign;
+  };
+  for (int axis = 0; axis < 3; ++axis) {
+    consider(axis, 1, b.low[axis] - a.high[axis]);
+    consider(axis, -1, a.low[axis] - b.high[axis]);
+  }
+}
+
+/// The direction from one centre to the other, and the way between the balls. Balls that do not hold what
+/// they are fitted to may also be empty.
+void set_gap(PairExplanation& explanation, const Vec3d& between_centers) {
+  const double distance = length(between_centers);
+  if (!(distance > 0)) return;
+  explanation.axis = between_centers * (1 / distance);
+  explanation.distance = distance - explanation.sphere_a.radius - explanation.sphere_b.radius;
+}
+
+Vec3d center(const BoundingSphere& sphere, const Vec3d& translation) {
+  return Vec3d{sphere.center.x, sphere.center.y, sphere.center.z} + translation;
+}
+
+PairExplanation objects_apart(const SceneObject& a, const SceneObject& b, BoundingVolume volume) {
+  PairExplanation explanation{.stage = PairStage::object_volumes};
+  if (volume == BoundingVolume::sphere) {
+    explanation.sphere_a = a.sphere();
+    explanation.sphere_b = b.sphere();
+    set_gap(explanation, center(b.sphere(), {}) - center(a.sphere(), {}));
+  } else {
+    explanation.box_a = a.box();
+    explanation.box_b = b.box();
+    set_gap(explanation, corners_of(a.box(), {}), corners_of(b.box(), {}));
+  }
+  return explanation;
+}
+
+/// Lanes of the root are cells of level 1, unless it has only one, which then is the root.
+std::uint32_t cell_level(const OctreeView& view, std::uint32_t node) {
+  return view.nodes[node].lane_count == 1 ? 0 : view.nodes[node].level + 1u;
+}
+
+Aabb lane_box(const OctreeView& view, std::uint32_t node, int lane) {
+  const AabbLanes& lanes = (view.moving.start != nullptr ? view.moving.end : view.boxes)[node];
+  return {{lanes.min_x[lane], lanes.min_y[lane], lanes.min_z[lane]},
+          {lanes.max_x[lane], lanes.max_y[lane], lanes.max_z[lane]}};
+}
+
+BoundingSphere lane_sphere(const OctreeView& view, std::uint32_t node, int lane) {
+  const SphereLanes& lanes = view.spheres[node];
+  return {{lanes.x[lane], lanes.y[lane], lanes.z[lane]}, lanes.radius[lane]};
+}
+
+PairExplanation cells_apart(const ObjectPairView& pair, const LanePair& at) {
+  PairExplanation explanation{.stage = PairStage::octree_volumes};
+  explanation.level_a = cell_level(pair.a, at.node_a);
+  explanation.level_b = cell_level(pair.b, at.node_b);
+  const Vec3d &to_a = pair.a.translation, &to_b = pair.b.translation;
+  if (pair.a.spheres != nullptr) {
+    const BoundingSphere a = lane_sphere(pair.a, at.node_a, at.lane_a);
+    const BoundingSphere b = lane_sphere(pair.b, at.node_b, at.lane_b);
+    explanation.sphere_a = moved(a, to_a);
+    explanation.sphere_b = moved(b, to_b);
+    set_gap(explanation, center(b, to_b) - center(a, to_a));
+  } else {
+    const Aabb a = lane_box(pair.a, at.node_a, at.lane_a), b = lane_box(pair.b, at.node_b, at.lane_b);
+    explanation.box_a = moved(a, to_a);
+    explanation.box_b = moved(b, to_b);
+    set_gap(explanation, corners_of(a, to_a), corners_of(b, to_b));
+  }
+  return explanation;
+}
+
+PairExplanation triangle_boxes_apart(const TrianglePoints& a, const TrianglePoints& b) {
+  PairExplanation explanation{.stage = PairStage::triangle_boxes};
+  const Corners corners_a = corners_of(a), corners_b = corners_of(b);
+  explanation.box_a = box_of(corners_a);
+  explanation.box_b = box_of(corners_b);
+  set_gap(explanation, corners_a, corners_b);
+  return explanation;
+}
+
+PairExplanation triangles_apart(const TrianglePoints& a, const TrianglePoints& b) {
+  PairExplanation explanation{.stage = PairStage::exact_test};
+  // Of continuous contacts they may meet all the same: when they did from the start, no element touching
+  // another.
+  if (triangles_intersect(a, b)) return explanation;
+  const TriangleGap gap = triangle_gap(a, b);
+  explanation.axis = gap.axis;
+  explanation.distance = gap.distance;
+  return explanation;
+}
+
+}  // namespace
+
+/// Whether an element of one triangle touches one of the other.
+bool Scene::Implementation::touch_on_the_way(const ContactJob& job, TrianglePair triangles) const {
+  const auto corners = [&](std::uint32_t slot, std::uint32_t triangle) {
+    const ObjectOctree& octree = slots_[slot].object->octree();
+    Triangle ids = octree.triangles()[triangle];
+    for (std::uint32_t& vertex : ids) vertex = octree.vertex_ids()[vertex];
+    return std::pair(octree.triangle_ids()[triangle], ids);
+  };
+  const auto [id_a, corners_a] = corners(job.a, triangles.a);
+  const auto [id_b, corners_b] = corners(job.b, triangles.b);
+  const auto has = [](std::uint32_t id, const Triangle& of, bool is_face,
+                      const std::array<std::uint32_t, 2>& element) {
+    if (is_face) return element[0] == id;
+    return std::all_of(element.begin(), element.end(), [&](std::uint32_t vertex) {
+      return std::find(of.begin(), of.end(), vertex) != of.end();
+    });
+  };
+  const auto touches = [&](const ContinuousContact& contact) {
+    const bool face_a = contact.kind == ElementPairKind::face_vertex;
+    const bool face_b = contact.kind == ElementPairKind::vertex_face;
+    if (has(id_a, corners_a, face_a, contact.element_a) && has(id_b, corners_b, face_b, contact.element_b))
+      return true;
+    return job.a == job.b && has(id_b, corners_b, face_a, contact.element_a) &&
+           has(id_a, corners_a, face_b, contact.element_b);
+  };
+  return std::any_of(result.groups.begin(), result.groups.end(), [&](const ContactGroup& group) {
+    if (group.a != id_of(job.a) || group.b != id_of(job.b)) return false;
+    const auto contacts = result.continuous_contacts_of(group);
+    return std::any_of(contacts.begin(), contacts.end(), touches);
+  });
+}
+
+/// The stages of `detect`, one after the other; triangles in the order in which the descent takes them.
+PairExplanation Scene::Implementation::explain_in_order(const ContactJob& job, TrianglePair triangles) const {
+  const SceneObject &a = *slots_[job.a].object, &b = *slots_[job.b].object;
+  const bool same_object = job.a == job.b;
+  if (same_object ? !a.options.self_collision : !may_pair({job.a, job.b}))
+    return {.stage = PairStage::not_tested};
+  // Elements touch on their own account, whatever triangles they belong to.
+  if (is_continuous() && touch_on_the_way(job, triangles)) return {};
+  if (same_object && share_vertex(a.octree().triangles()[triangles.a], b.octree().triangles()[triangles.b]))
+    return {.stage = PairStage::shared_vertex};
+  if (is_inert(a, triangles.a) || is_inert(b, triangles.b)) return {.stage = PairStage::inert};
+  const ObjectPair ids{id_of(job.a), id_of(job.b)};
+  if (!same_object && !std::binary_search(object_pairs_.begin(), object_pairs_.end(), ids))
+    return objects_apart(a, b, options.bounding_volume);
+  const ObjectPairView pair = search_view(job);
+  const LanePair at = last_lanes(pair, triangles);
+  if (at.apart) return cells_apart(pair, at);
+  const TrianglePoints points_a = points_of(a, triangles.a), points_b = points_of(b, triangles.b);
+  const bool boxes_apart =
+      pair.is_moving() ? moving_faces_apart(pair, triangles) : leaf_triangles_apart(pair, at, triangles);
+  if (boxes_apart) return triangle_boxes_apart(points_a, points_b);
+  if (!is_continuous() && triangles_intersect(points_a, points_b)) return {};
+  return triangles_apart(points_a, points_b);
+}
+
+PairExplanation Scene::Implementation::explain(ObjectId id_a, std::uint32_t triangle_a, ObjectId id_b,
+                                               std::uint32_t triangle_b) const {
+  const TrianglePair triangles{octree_triangle(object(id_a, "explain"), triangle_a),
+                               octree_triangle(object(id_b, "explain"), triangle_b)};
+  if (!detected_) fail("explain: nothing was detected at the present positions; call detect first");
+  const bool in_order = id_a == id_b ? triangles.a <= triangles.b : id_a < id_b;
+  if (in_order) return explain_in_order({id_a.index, id_b.index}, triangles);
+  return mirrored(explain_in_order({id_b.index, id_a.index}, {triangles.b, triangles.a}));
+}
+
+}  // namespace supple

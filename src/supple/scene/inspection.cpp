@@ -1,0 +1,184 @@
+#include <algorithm>
+#include <memory>
+#include <utility>
+
+#include "core/error.hpp"
+#include "geometry/aabb.hpp"
+#include "geometry/sphere.hpp"
+#include "scene/moving_faces.hpp"
+#include "scene/scene_implementation.hpp"
+
+namespace supple {
+namespace {
+
+/// The lanes of an octree as cells, where the object is now.
+class CellReader {
+ public:
+  explicit CellReader(const OctreeView& view)
+      : view_(view), boxes_(view.moving.start != nullptr ? view.moving.end : view.boxes) {}
+
+  /// Whether the object is one leaf: the root itself then, not an octant of it.
+  bool is_one_leaf() const {
+    return view_.nodes.size() > 0 && view_.nodes[0].lane_count == 1 && !goes_on(view_, view_.nodes[0], 0);
+  }
+
+  /// Calls `visit(node, lane, is_leaf)` for every lane that the search knows; shallow ones first.
+  template <class Visit>
+  void for_each_lane(Visit&& visit) const {
+    for (const OctreeNode& node : view_.nodes) {
+      // Below the leaves of objects in motion there are nodes without boxes.
+      if (view_.moving.start != nullptr && !has_moving_boxes(node)) continue;
+      for (int lane = 0; lane < node.lane_count; ++lane) visit(node, lane, !goes_on(view_, node, lane));
+    }
+  }
+
+  OctreeCell cell(const OctreeNode& node, int lane, bool is_leaf) const {
+    OctreeCell cell;
+    cell.level = is_one_leaf() ? 0 : node.level + 1u;
+    cell.is_leaf = is_leaf;
+    cell.triangle_count = node.size(lane);
+    const auto n = static_cast<std::size_t>(&node - view_.nodes.data());
+    const AabbLanes& boxes = boxes_[n];
+    cell.box = moved(Aabb{{boxes.min_x[lane], boxes.min_y[lane], boxes.min_z[lane]},
+                          {boxes.max_x[lane], boxes.max_y[lane], boxes.max_z[lane]}},
+                     view_.translation);
+    if (view_.spheres == nullptr) return cell;
+    const SphereLanes& spheres = view_.spheres[n];
+    cell.sphere =
+        moved(BoundingSphere{{spheres.x[lane], spheres.y[lane], spheres.z[lane]}, spheres.radius[lane]},
+              view_.translation);
+    return cell;
+  }
+
+  /// The whole object; of one that has triangles.
+  OctreeCell root(const BoundingSphere& sphere) const {
+    OctreeCell cell{0, is_one_leaf(), view_.nodes[0].size(), {}, {}};
+    cell.box = moved(box_of_lanes(boxes_[0]), view_.translation);
+    if (view_.spheres != nullptr) cell.sphere = sphere;
+    return cell;
+  }
+
+ private:
+  OctreeView view_;
+  const AabbLanes* boxes_;
+};
+
+/// The first pairs of many, in order, without keeping all of them.
+class FirstPairs {
+ public:
+  explicit FirstPairs(std::size_t limit) : limit_(limit) {}
+
+  void add(TrianglePair pair) {
+    ++count_;
+    if (limit_ == 0) return;
+    pairs_.push_back(pair);
+    if (pairs_.size() >= 2 * limit_ + slack) drop_last();
+  }
+  std::uint64_t count() const { return count_; }
+  std::span<const TrianglePair> sorted() {
+    drop_last();
+    std::sort(pairs_.begin(), pairs_.end());
+    return pairs_;
+  }
+
+ private:
+  static constexpr std::size_t slack = 1024;
+
+  void drop_last() {
+    if (pairs_.size() <= limit_) return;
+    std::nth_element(pairs_.begin(), pairs_.begin() + static_cast<std::ptrdiff_t>(limit_), pairs_.end());
+    pairs_.resize(limit_);
+  }
+
+  std::size_t limit_;
+  std::uint64_t count_ = 0;
+  std::vector<TrianglePair> pairs_;
+};
+
+/// Of two leaves of objects in motion, the triangles whose boxes meet on the way.
+template <class Visit>
+void for_each_moving_pair(const ObjectPairView& pair, const LeafPair& leaves, Visit&& visit) {
+  const bool same_leaf = pair.same_object && leaves.begin_a == leaves.begin_b;
+  for (std::uint32_t a = leaves.begin_a; a < leaves.end_a; ++a) {
+    for (std::uint32_t b = same_leaf ? a + 1 : leaves.begin_b; b < leaves.end_b; ++b) {
+      if (pair.same_object && share_vertex(pair.a.moving.face_ids[a], pair.b.moving.face_ids[b])) continue;
+      if (!moving_faces_apart(pair, {a, b})) visit(TrianglePair{a, b});
+    }
+  }
+}
+
+/// All candidates of two objects, octree order's numbers.
+template <class Visit>
+void for_each_candidate(Traversal& traversal, const ObjectPairView& pair, Visit&& visit) {
+  TraversalStats stats;
+  if (pair.is_moving()) {
+    traversal.find_leaf_pairs(pair, stats, [&](std::span<const LeafPair> leaf_pairs) {
+      for (const LeafPair& leaves : leaf_pairs) for_each_moving_pair(pair, leaves, visit);
+    });
+  } else {
+    traversal.find_triangle_pairs(
+        pair, {}, stats, [](std::span<const LeafPair>) {},
+        [&](std::span<const TrianglePair> pairs) { std::for_each(pairs.begin(), pairs.end(), visit); });
+  }
+}
+
+}  // namespace
+
+std::vector<OctreeCell> Scene::Implementation::octree_cells(ObjectId id,
+                                                            std::optional<std::uint32_t> level) const {
+  const SceneObject& asked = object(id, "octree_cells");
+  if (asked.is_stale()) {
+    fail("octree_cells: " + asked.options.name + " was moved since anything was detected; call detect first");
+  }
+  std::vector<OctreeCell> cells;
+  if (asked.octree().nodes().empty()) return cells;
+  const CellReader reader(search_view(asked));
+  if (level == 0) return {reader.root(asked.sphere())};
+  reader.for_each_lane([&](const OctreeNode& node, int lane, bool is_leaf) {
+    const std::uint32_t here = node.level + 1u;
+    const bool is_asked_for = !level ? is_leaf : here == *level || (is_leaf && here < *level);
+    if (is_asked_for) cells.push_back(reader.cell(node, lane, is_leaf));
+  });
+  return cells;
+}
+
+std::uint32_t Scene::Implementation::octree_depth(ObjectId id) const {
+  const CellReader reader(search_view(object(id, "octree_depth")));
+  if (reader.is_one_leaf()) return 0;
+  std::uint32_t depth = 0;
+  reader.for_each_lane([&](const OctreeNode& node, int, bool) { depth = std::max(depth, node.level + 1u); });
+  return depth;
+}
+
+ObjectPairView Scene::Implementation::search_view(const ContactJob& job) const {
+  OctreeView a = search_view(*slots_[job.a].object), b = search_view(*slots_[job.b].object);
+  a.unfolded = b.unfolded = nullptr;
+  const double separation = options.impact.min_separation;
+  if (job.a == job.b) return is_continuous() ? moving_self_pair_of(a, separation) : self_pair_of(a);
+  return is_continuous() ? moving_pair_of(a, b, separation) : pair_of(a, b);
+}
+
+/// Jobs are in order already.
+std::vector<CandidatePair> Scene::Implementation::candidates(std::size_t limit, std::uint64_t* total) const {
+  if (!detected_) fail("candidates: nothing was detected at the present positions; call detect first");
+  std::vector<CandidatePair> all;
+  std::uint64_t count = 0;
+  const auto traversal = std::make_unique<Traversal>();
+  for (const ContactJob& job : jobs_) {
+    const std::span<const std::uint32_t> ids_a = slots_[job.a].object->octree().triangle_ids();
+    const std::span<const std::uint32_t> ids_b = slots_[job.b].object->octree().triangle_ids();
+    FirstPairs pairs(limit - all.size());
+    for_each_candidate(*traversal, search_view(job), [&](const TrianglePair& pair) {
+      TrianglePair named{ids_a[pair.a], ids_b[pair.b]};
+      if (job.a == job.b && named.a > named.b) std::swap(named.a, named.b);
+      pairs.add(named);
+    });
+    count += pairs.count();
+    for (const TrianglePair& pair : pairs.sorted())
+      all.push_back({id_of(job.a), id_of(job.b), pair.a, pair.b});
+  }
+  if (total != nullptr) *total = count;
+  return all;
+}
+
+}  // namespace supple

@@ -1,0 +1,41 @@
+#pragma once
+
+#include "narrow_phase/traversal.hpp"
+#include "octree/moving_boxes.hpp"
+#include "supple/mesh.hpp"
+#include "supple/types.hpp"
+
+namespace supple {
+
+/// Box of a face in motion, at one end of the step; empty when the face is inert.
+inline Aabb face_box(const MovingBoxArrays& faces, const float* boxes, std::uint32_t face) {
+  const auto at = [&](std::size_t side) { return boxes[side * faces.stride + face]; };
+  return {{at(0), at(1), at(2)}, {at(3), at(4), at(5)}};
+}
+
+/// Whether two faces are apart by more than the separation, on one side of one axis, at both ends of the step
+/// and so all the time. Octree order's numbers.
+inline bool moving_faces_apart(const ObjectPairView& pair, TrianglePair faces) {
+  const MovingBoxArrays &a = pair.a.moving.faces, &b = pair.b.moving.faces;
+  const Aabb start_a = face_box(a, a.start, faces.a), end_a = face_box(a, a.end, faces.a);
+  const Aabb start_b = face_box(b, b.start, faces.b), end_b = face_box(b, b.end, faces.b);
+  const double separation = pair.separation;
+  const auto below = [&](const Aabb& low, const Aabb& high, int axis) {
+    return double{high.min[axis]} - low.max[axis] > separation;
+  };
+  if (start_a.empty() || start_b.empty()) return true;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (below(start_a, start_b, axis) && below(end_a, end_b, axis)) return true;
+    if (below(start_b, start_a, axis) && below(end_b, end_a, axis)) return true;
+  }
+  return false;
+}
+
+inline bool share_vertex(const Triangle& p, const Triangle& q) {
+  for (const std::uint32_t vertex : p) {
+    if (vertex == q[0] || vertex == q[1] || vertex == q[2]) return true;
+  }
+  return false;
+}
+
+}  // namespace supple
