@@ -15,15 +15,6 @@
 namespace supple::cli {
 namespace {
 
-ObjectOptions options_of(const InputObject& object, const DetectionOptions& options) {
-  ObjectOptions chosen = object.options;
-  chosen.self_collision = chosen.self_collision || options.self;
-  chosen.octree.max_level = options.max_level.value_or(chosen.octree.max_level);
-  chosen.octree.leaf_size = options.leaf_size.value_or(chosen.octree.leaf_size);
-  chosen.octree.arity = options.tree_arity.value_or(chosen.octree.arity);
-  return chosen;
-}
-
 /// Adds an object, one `add` for each kind of motion.
 struct Adder {
   Simulation& simulation;
@@ -65,6 +56,15 @@ struct Adder {
 };
 
 }  // namespace
+
+ObjectOptions options_of(const InputObject& object, const MethodOptions& options) {
+  ObjectOptions chosen = object.options;
+  chosen.self_collision = chosen.self_collision || options.self;
+  chosen.octree.max_level = options.max_level.value_or(chosen.octree.max_level);
+  chosen.octree.leaf_size = options.leaf_size.value_or(chosen.octree.leaf_size);
+  chosen.octree.arity = options.tree_arity.value_or(chosen.octree.arity);
+  return chosen;
+}
 
 Simulation build_simulation(const Input& input, const DetectionOptions& options) {
   SimulationOptions chosen = input.simulation;

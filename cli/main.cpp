@@ -14,6 +14,7 @@
 #include "output_file.hpp"
 #include "simulate.hpp"
 #include "text.hpp"
+#include "view.hpp"
 
 namespace supple::cli {
 namespace {
@@ -24,6 +25,8 @@ int run(const CommandLine& line) {
       return run_detect(line.detect);
     case CommandLine::Command::simulate:
       return run_simulate(line.simulate);
+    case CommandLine::Command::view:
+      return run_view(line.view);
     case CommandLine::Command::info:
       return run_info(line.info);
     case CommandLine::Command::ccd_queries:

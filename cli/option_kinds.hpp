@@ -46,7 +46,7 @@ CLI::Option* add_number(CLI::App& app, const std::string& name, Number& value, s
         given.find_first_not_of("0123456789") != std::string::npos)
       throw CLI::ValidationError(
           name, fmt::format("'{}' is not a whole number from {} to {}", given, lowest, highest));
-    value = number;
+    value = static_cast<Number>(number);
   };
   return app.add_option_function<std::string>(name, parse, description)->type_name("N");
 }

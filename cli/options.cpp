@@ -28,6 +28,7 @@ constexpr const char* program_footer = R"(Examples:
   supple detect --help                      every option, with examples
   supple simulate scene.toml --steps 300 --record run.h5
                                             objects that move by themselves, and what touches on the way
+  supple view run.h5                        the same in a browser, live or recorded
   supple info rabbit.obj                    counts, bounds, holes, octree statistics
   supple ccd-queries edge-edge/*.csv        single continuous queries, compared with the answers known
   supple experiment scaling --quick         how does time grow with the number of objects, and does the paper say so?
@@ -35,7 +36,7 @@ constexpr const char* program_footer = R"(Examples:
 
 Exit status: 0 done; 1 with --fail-on-contact when something touches, and of diff when recordings differ; 2 usage or
 input error, told in one line, and of simulate a motion that blows up; 3 with --verify when brute force disagrees, and of
-ccd-queries when an answer is false; 130 and 143 of simulate when it is interrupted, after it has closed its files.)";
+ccd-queries when an answer is false; 130 and 143 of simulate when it is interrupted, after it has closed its files; 0 of view.)";
 
 constexpr const char* detect_footer = R"(Examples:
   supple detect rabbit.obj fish.ply
@@ -85,6 +86,22 @@ constexpr const char* simulate_footer = R"(Examples:
 
 N steps give N + 1 frames: frame 0 is the start, frame k what is there after k steps. Continuous contacts of frame k are
 those of the way from frame k - 1. Ctrl-C ends the run after the step that is under way, with its files and tables complete.)";
+
+constexpr const char* view_footer = R"(Examples:
+  supple view scenes/nine.toml
+      Objects that bend and meet: watch, pull at a vertex, look into the octrees.
+  supple view run.h5
+      A recording of supple simulate --record: play, go back, jump to where objects begin to touch.
+  supple view rabbit.obj fish.ply
+      Meshes, an object each: where do they meet, and why not elsewhere?
+  supple view --sequence 'frame_*.ply' --self
+      Frames of one object, with what it does to itself.
+  supple view scenes/soft_block.toml --no-open --port 8080
+      On another machine: ssh -L 8080:127.0.0.1:8080 brings the page to yours.
+  supple view scenes/nine.toml --export nine.html
+      One file to send: whoever opens it can do the same, without supple and without a server.
+
+The address has a token, another one each time, which keeps others out. Ctrl-C ends the program; the page says so.)";
 
 constexpr const char* info_footer = R"(Examples:
   supple info rabbit.obj
@@ -143,55 +160,61 @@ void add_kind(CLI::App& app, std::optional<QueryKind>& kind) {
       ->type_name("vertex-face|edge-edge");
 }
 
-void add_input_options(CLI::App& app, DetectOptions& options) {
-  app.add_option("MESH|SCENE.toml|RUN.h5", options.inputs,
+/// Meshes, a scene file, a recording, or frames.
+void add_input_options(CLI::App& app, std::vector<std::string>& inputs, bool& sequence) {
+  app.add_option("MESH|SCENE.toml|RUN.h5", inputs,
                  "Meshes, an object each; or one scene file or recording")
       ->required()
       ->type_name("");
   app.add_flag(
-         "--sequence", options.sequence,
+         "--sequence", sequence,
          "The meshes are frames of one object, in the order given; a quoted pattern such as 'frame_*.ply' "
          "gives its files in natural number order")
       ->group("Input");
-  add_number(app, "--steps", options.steps, 1, 1'000'000'000,
-             "Frames of a scene file to go through, or steps from frame to frame of continuous contacts "
-             "(default: 1)")
-      ->group("Input");
 }
 
-void add_stage_options(CLI::App& app, DetectionOptions& options, Dependences& dependences) {
+CLI::Option* group_of_detection(CLI::Option* option) {
+  return option->group("Detection");
+}
+
+void add_stage_options(CLI::App& app, MethodOptions& options, Dependences& dependences) {
   SceneOptions& scene = options.scene;
-  const auto group = [](CLI::Option* option) { return option->group("Detection"); };
-  group(add_choice<ContactMode>(
+  group_of_detection(add_choice<ContactMode>(
       app, "--contacts", scene.contacts,
       {{"intersection", ContactMode::intersection},
        {"continuous", ContactMode::continuous},
        {"none", ContactMode::none}},
       "Exact stage: every intersecting pair of triangles; every vertex and face and every two "
       "edges that touch between a frame and the next, and when; or object pairs only"));
-  group(app.add_flag("--self", options.self, "Also test every object against itself"));
-  dependences.push_back({group(app.add_flag_callback(
+  group_of_detection(app.add_flag("--self", options.self, "Also test every object against itself"));
+  for (CLI::Option* option : add_impact_options(app, scene.impact))
+    dependences.push_back({group_of_detection(option),
+                           [&] { return scene.contacts == ContactMode::continuous; },
+                           "--contacts continuous"});
+  group_of_detection(
+      add_number(app, "--threads", scene.threads, 0, 1024, "Worker threads, 0 for one a core (default: 0)"));
+}
+
+/// What reports of contacts have, and how they are checked.
+void add_report_options(CLI::App& app, DetectionOptions& options, Dependences& dependences) {
+  SceneOptions& scene = options.scene;
+  dependences.push_back({group_of_detection(app.add_flag_callback(
                              "--no-contact-points", [&] { scene.contact_points = false; },
                              "Leave out the points of each contact")),
                          [&] { return scene.contacts != ContactMode::continuous; },
                          "--contacts intersection"});
-  for (CLI::Option* option : add_impact_options(app, scene.impact))
-    dependences.push_back(
-        {group(option), [&] { return scene.contacts == ContactMode::continuous; }, "--contacts continuous"});
-  dependences.push_back({group(app.add_flag("--fail-on-contact", options.fail_on_contact,
-                                            "Exit with status 1 when anything touches")),
+  dependences.push_back({group_of_detection(app.add_flag("--fail-on-contact", options.fail_on_contact,
+                                                         "Exit with status 1 when anything touches")),
                          [&] { return scene.contacts != ContactMode::none; },
                          "--contacts intersection or continuous"});
-  dependences.push_back({group(app.add_flag("--verify", options.verify,
-                                            "Check each frame against exact brute force over all pairs of "
-                                            "triangles, or of elements; differences exit with status 3")),
-                         [&] { return scene.contacts != ContactMode::none; },
-                         "--contacts intersection or continuous"});
-  group(
-      add_number(app, "--threads", scene.threads, 0, 1024, "Worker threads, 0 for one a core (default: 0)"));
+  dependences.push_back(
+      {group_of_detection(app.add_flag("--verify", options.verify,
+                                       "Check each frame against exact brute force over all pairs of "
+                                       "triangles, or of elements; differences exit with status 3")),
+       [&] { return scene.contacts != ContactMode::none; }, "--contacts intersection or continuous"});
 }
 
-void add_method_options(CLI::App& app, DetectionOptions& options, Dependences& dependences) {
+void add_method_options(CLI::App& app, MethodOptions& options, Dependences& dependences) {
   SceneOptions& scene = options.scene;
   const auto group = [](CLI::Option* option) { return option->group("Method"); };
   const auto with_spheres = [&] { return scene.bounding_volume == BoundingVolume::sphere; };
@@ -255,11 +278,24 @@ CLI::App* add_detect(CLI::App& program, DetectOptions& options, Dependences& dep
   CLI::App* app =
       program.add_subcommand("detect", "Find every contact of static meshes, a sequence or a scene");
   app->footer(detect_footer);
-  add_input_options(*app, options);
+  add_input_options(*app, options.inputs, options.sequence);
+  add_number(*app, "--steps", options.steps, 1, 1'000'000'000,
+             "Frames of a scene file to go through, or steps from frame to frame of continuous contacts "
+             "(default: 1)")
+      ->group("Input");
   add_stage_options(*app, options, dependences);
+  add_report_options(*app, options, dependences);
   add_method_options(*app, options, dependences);
   add_output_options(*app, options, dependences);
   return app;
+}
+
+void add_scene_overrides(CLI::App& app, std::optional<std::uint64_t>& seed, std::optional<double>& time_step) {
+  add_seconds(app, "--time-step", time_step, "H", "Seconds of a step, instead of the scene's")
+      ->group("Simulation");
+  add_number(app, "--seed", seed, 0, std::numeric_limits<std::uint32_t>::max(),
+             "Chooses what is random, instead of the scene's")
+      ->group("Simulation");
 }
 
 void add_simulation_options(CLI::App& app, SimulateOptions& options) {
@@ -269,9 +305,7 @@ void add_simulation_options(CLI::App& app, SimulateOptions& options) {
                                               "Steps to take (default: 300, without --seconds)"));
   group(add_seconds(app, "--seconds", options.seconds, "S", "Simulated time, instead of steps"))
       ->excludes(steps);
-  group(add_seconds(app, "--time-step", options.time_step, "H", "Seconds of a step, instead of the scene's"));
-  group(add_number(app, "--seed", options.seed, 0, std::numeric_limits<std::uint32_t>::max(),
-                   "Chooses what is random, instead of the scene's"));
+  add_scene_overrides(app, options.seed, options.time_step);
 }
 
 CLI::App* add_simulate(CLI::App& program, SimulateOptions& options, Dependences& dependences) {
@@ -280,6 +314,7 @@ CLI::App* add_simulate(CLI::App& program, SimulateOptions& options, Dependences&
   app->footer(simulate_footer);
   add_simulation_options(*app, options);
   add_stage_options(*app, options, dependences);
+  add_report_options(*app, options, dependences);
   add_method_options(*app, options, dependences);
   app->add_option("--record", options.record,
                   "Write positions, contacts, events and statistics of each frame as HDF5, and an XDMF file "
@@ -287,6 +322,35 @@ CLI::App* add_simulate(CLI::App& program, SimulateOptions& options, Dependences&
       ->type_name("FILE.h5")
       ->group("Output");
   add_output_options(*app, options, dependences);
+  return app;
+}
+
+CLI::App* add_view(CLI::App& program, ViewOptions& options, Dependences& dependences) {
+  CLI::App* app = program.add_subcommand(
+      "view", "Watch objects move and collide in a browser, pull at them, and see what finds the contacts");
+  app->footer(view_footer);
+  add_input_options(*app, options.inputs, options.sequence);
+  add_scene_overrides(*app, options.seed, options.time_step);
+  add_stage_options(*app, options, dependences);
+  add_method_options(*app, options, dependences);
+
+  const auto group = [](CLI::Option* option) { return option->group("Page"); };
+  const auto is_served = [&] { return options.page_file.empty(); };
+  const char* const no_export = "a page that is served, not written by --export";
+  dependences.push_back(
+      {group(add_number(*app, "--port", options.port, 0, 65535, "Where to listen, 0 for any port that is free (default: 0)")),
+       is_served, no_export});
+  dependences.push_back({group(app->add_option("--host", options.address,
+                                               "IP address to listen at; with any but this machine's own others who reach "
+                                               "it and know the address can look and steer (default: 127.0.0.1)")
+                                   ->type_name("ADDRESS")),
+                         is_served, no_export});
+  dependences.push_back({group(app->add_flag_callback("--no-open", [&] { options.open_browser = false; },
+                                                      "Print the address, but open no browser")),
+                         is_served, no_export});
+  group(app->add_option("--export", options.page_file,
+                        "Write one HTML file instead, which needs no server: any browser shows it, the detection runs in the page")
+            ->type_name("PAGE.html"));
   return app;
 }
 
@@ -370,6 +434,7 @@ CommandLine parse_command_line(int argument_count, const char* const* arguments)
   Dependences dependences;
   const CLI::App* detect = add_detect(program, result.detect, dependences);
   const CLI::App* simulate = add_simulate(program, result.simulate, dependences);
+  const CLI::App* view = add_view(program, result.view, dependences);
   const CLI::App* info = add_info(program, result.info);
   const CLI::App* ccd_queries = add_ccd_queries(program, result.ccd_queries, dependences);
   add_diff(program, result.diff);
@@ -386,6 +451,7 @@ CommandLine parse_command_line(int argument_count, const char* const* arguments)
     check_outputs(result.simulate);
     result.command = detect->parsed()        ? CommandLine::Command::detect
                      : simulate->parsed()    ? CommandLine::Command::simulate
+                     : view->parsed()        ? CommandLine::Command::view
                      : info->parsed()        ? CommandLine::Command::info
                      : ccd_queries->parsed() ? CommandLine::Command::ccd_queries
                      : experiment->parsed()  ? CommandLine::Command::experiment

@@ -12,11 +12,15 @@
 
 namespace supple::cli {
 
-/// What finds contacts and reports them: of each command that does.
-struct DetectionOptions {
+/// What finds contacts, and how.
+struct MethodOptions {
   SceneOptions scene;
   bool self = false;
   std::optional<std::uint32_t> max_level, leaf_size, tree_arity;
+};
+
+/// What finds contacts and reports them: of each command that does.
+struct DetectionOptions : MethodOptions {
   bool verify = false;
   bool fail_on_contact = false;
   bool quiet = false;
@@ -39,6 +43,18 @@ struct SimulateOptions : DetectionOptions {
   std::optional<std::uint64_t> seed;
   std::optional<double> time_step;
   std::string record;  ///< a file, or empty
+};
+
+/// Of `supple view`.
+struct ViewOptions : MethodOptions {
+  std::vector<std::string> inputs;  ///< meshes, patterns, or one scene file or recording
+  bool sequence = false;            ///< the inputs are frames of one object
+  std::optional<std::uint64_t> seed;
+  std::optional<double> time_step;
+  std::string address = "127.0.0.1";
+  std::uint16_t port = 0;  ///< 0: any that is free
+  bool open_browser = true;
+  std::string page_file;  ///< to write instead of serving, or empty
 };
 
 /// Of `supple info`.
@@ -70,11 +86,12 @@ struct DiffOptions {
 };
 
 struct CommandLine {
-  enum class Command { detect, simulate, info, ccd_queries, diff, experiment, exit };
+  enum class Command { detect, simulate, view, info, ccd_queries, diff, experiment, exit };
   Command command = Command::exit;
   int exit_status = 0;  ///< of `Command::exit`: help, version or a usage error, already printed
   DetectOptions detect;
   SimulateOptions simulate;
+  ViewOptions view;
   InfoOptions info;
   CcdQueriesOptions ccd_queries;
   experiments::ExperimentOptions experiment;

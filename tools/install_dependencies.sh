@@ -10,10 +10,16 @@ packages=(
   libassimp-dev zlib1g-dev  # Debian's Assimp names zlib's file for linking, but does not depend on it
   libhdf5-dev
   libcli11-dev libtomlplusplus-dev rapidjson-dev libfmt-dev gnuplot-nox
+  # The viewer, which also needs npm:
+  clang-19 lld-19 wasi-libc libc++-19-dev-wasm32 libc++abi-19-dev-wasm32 libclang-rt-19-dev-wasm32
   libgtest-dev nlohmann-json3-dev libssl-dev libbenchmark-dev
 )
+# Node.js from elsewhere has its own npm, and does not go together with Debian's.
+if ! command -v npm >/dev/null; then
+  packages+=(nodejs npm)
+fi
 if [ "${1:-}" = "--ci" ]; then
-  packages+=(git clang-19 libclang-rt-19-dev clang-format python3-h5py)
+  packages+=(git libclang-rt-19-dev clang-format python3-h5py)
 fi
 if [ "${1:-}" = "--bench" ]; then
   packages+=(git pkg-config libembree-dev libcgal-dev libfcl-dev libbullet-dev libode-dev)

@@ -193,6 +193,7 @@ class Recording::Implementation {
   explicit Implementation(const std::string& path);
 
   RecordedFrame frame(std::uint64_t number);
+  RecordedFrame summary(std::uint64_t number);
   std::vector<Vec3d> positions(std::uint64_t frame, std::size_t object);
   const RecordingHeader& header() const { return header_; }
   std::uint64_t frame_count() const { return time_.rows(); }
@@ -345,19 +346,24 @@ StepStats Recording::Implementation::stats(std::uint64_t frame) {
   return stats;
 }
 
-RecordedFrame Recording::Implementation::frame(std::uint64_t number) {
+RecordedFrame Recording::Implementation::summary(std::uint64_t number) {
   check_frame(number);
   RecordedFrame frame;
   time_.read(number, 1, reinterpret_cast<std::byte*>(&frame.time));
-  frame.object_pairs = pairs(object_pairs_, number);
-  frame.contact_points = contact_points(number);
-  frame.contacts = contacts(number, frame.contact_points.size());
-  frame.continuous_contacts = continuous_contacts(number);
   frame.volume_begin = pairs(volume_begin_, number);
   frame.volume_end = pairs(volume_end_, number);
   frame.contact_begin = pairs(contact_begin_, number);
   frame.contact_end = pairs(contact_end_, number);
   frame.stats = stats(number);
+  return frame;
+}
+
+RecordedFrame Recording::Implementation::frame(std::uint64_t number) {
+  RecordedFrame frame = summary(number);
+  frame.object_pairs = pairs(object_pairs_, number);
+  frame.contact_points = contact_points(number);
+  frame.contacts = contacts(number, frame.contact_points.size());
+  frame.continuous_contacts = continuous_contacts(number);
   return frame;
 }
 
@@ -387,6 +393,9 @@ std::uint64_t Recording::frame_count() const {
 }
 RecordedFrame Recording::frame(std::uint64_t number) const {
   return with_errors_of(implementation_->path(), [&] { return implementation_->frame(number); });
+}
+RecordedFrame Recording::summary(std::uint64_t number) const {
+  return with_errors_of(implementation_->path(), [&] { return implementation_->summary(number); });
 }
 std::vector<Vec3d> Recording::positions(std::uint64_t frame, std::size_t object) const {
   return with_errors_of(implementation_->path(), [&] { return implementation_->positions(frame, object); });

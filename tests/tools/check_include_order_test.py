@@ -34,7 +34,12 @@ GOOD = {
     "recording/include/supple/recording.hpp": '#include "supple/types.hpp"\n',
     "recording/src/layout.hpp": "#include <hdf5.h>\n",
     "recording/src/reader.cpp": '#include "layout.hpp"\n#include "supple/recording.hpp"\n',
+    "viewer/session/session.hpp": "",
+    "viewer/session/session.cpp": '#include "session.hpp"\n#include "supple/types.hpp"\n',
+    "viewer/export/page_file.hpp": "",
+    "viewer/server/server.hpp": '#include "session/session.hpp"\n',
     "cli/options.hpp": "",
+    "cli/view.cpp": '#include "server/server.hpp"\n#include "export/page_file.hpp"\n#include "session/session.hpp"\n',
     "cli/main.cpp": '#include <CLI/CLI.hpp>\n#include "options.hpp"\n#include "supple/formats.hpp"\n#include "supple/recording.hpp"\n',
 }
 
@@ -74,8 +79,18 @@ class CheckIncludeOrder(unittest.TestCase):
         self.expect("recording/include/supple/bad.hpp", "\n#include <hdf5/hdf5.h>\n", "third party")
 
     def test_program_includes_internal_header(self):
-        for program in ("recording/src", "cli", "examples", "benchmarks"):
+        for program in ("recording/src", "viewer/session", "viewer/server", "viewer/export", "cli", "examples", "benchmarks"):
             self.expect(f"{program}/bad.cpp", '\n#include "core/parallel.hpp"\n', "only public headers")
+
+    def test_viewer_is_included_in_one_direction(self):
+        for name, include in (
+            ("viewer/session/bad.cpp", "server/server.hpp"),
+            ("viewer/export/bad.cpp", "session/session.hpp"),
+            ("viewer/server/bad.cpp", "export/page_file.hpp"),
+            ("viewer/server/bad.cpp", "session/missing.hpp"),
+            ("examples/bad.cpp", "session/session.hpp"),
+        ):
+            self.expect(name, f'\n#include "{include}"\n', "only public headers")
 
     def test_formats_build_on_meshes_only(self):
         self.expect("formats/src/bad.cpp", '\n#include "octree/tree.hpp"\n', "mesh comes before octree")

@@ -85,6 +85,8 @@ class Recording {
   /// Throws `Error` when there is no such frame, or what is stored of it names what does not exist. Frames in
   /// a row are read fastest.
   RecordedFrame frame(std::uint64_t number) const;
+  /// Likewise, without pairs and contacts: time, events and statistics, which take a fraction of the time.
+  RecordedFrame summary(std::uint64_t number) const;
   /// Of one object, by its place in the header.
   std::vector<Vec3d> positions(std::uint64_t frame, std::size_t object) const;
 

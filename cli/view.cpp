@@ -1,0 +1,110 @@
+#include "view.hpp"
+
+#include <fmt/core.h>
+
+#include <cstdio>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "browser.hpp"
+#include "build_show.hpp"
+#include "exit_status.hpp"
+#include "export/embedded.hpp"
+#include "export/page_file.hpp"
+#include "inputs.hpp"
+#include "interruption.hpp"
+#include "server/server.hpp"
+#include "session/packed_show.hpp"
+#include "session/session.hpp"
+#include "supple/error.hpp"
+#include "text.hpp"
+
+namespace supple::cli {
+namespace {
+
+void check_build() {
+  if (viewer::embedded_page().empty())
+    throw Error(
+        "this supple was built without the viewer; configure the build with -DSUPPLE_BUILD_VIEWER=ON, which "
+        "needs npm and clang-19's WebAssembly (tools/install_dependencies.sh gets them on Debian 12)");
+}
+
+Input read_input(const ViewOptions& options) {
+  const bool is_scene = is_scene_file(options.inputs.front());
+  if (options.seed && !is_scene) throw Error("--seed: only a scene file has something random; leave it out");
+  if (options.time_step && !is_scene && !options.sequence)
+    throw Error("--time-step: only a scene file and --sequence have steps of their own; leave it out");
+  if (!options.sequence) return read_objects(options.inputs, {options.seed, options.time_step});
+  Input input = read_sequence(options.inputs);
+  // Files say nothing of time; this is how fast films go.
+  constexpr double film_seconds = 0.04;
+  input.simulation.time_step = options.time_step.value_or(film_seconds);
+  return input;
+}
+
+/// What a page of a recording holds before it is compressed, in bytes: positions as floats.
+double size_of_frames(const viewer::Show& show) {
+  if (!show.frames) return 0;
+  double vertices = 0;
+  for (const viewer::ShowObject& object : show.objects) {
+    if (!object.options.is_static) vertices += static_cast<double>(object.mesh.positions.size());
+  }
+  return 12 * vertices * static_cast<double>(show.frames->count());
+}
+
+void check_page_size(const std::string& file, double bytes, double most) {
+  if (bytes <= most) return;
+  throw Error(fmt::format(
+      "{}: would be a page of {:.0f} MB{}, more than the {} MB that browsers still open; record fewer frames "
+      "or coarser meshes, or send the recording itself",
+      file, bytes / 1e6, most > viewer::largest_page ? " before compression" : "",
+      viewer::largest_page / 1'000'000));
+}
+
+int write_page(const viewer::Show& show, const ViewOptions& options) {
+  // Positions do not compress by more than this.
+  constexpr double most_compression = 10;
+  const auto most = static_cast<double>(viewer::largest_page);
+  check_page_size(options.page_file, size_of_frames(show), most_compression * most);
+  const std::vector<std::byte> packed = viewer::pack(show);
+  const std::string page =
+      viewer::page_with_cargo(viewer::embedded_page(), packed, viewer::embedded_module());
+  check_page_size(options.page_file, static_cast<double>(page.size()), most);
+  viewer::replace_file(options.page_file, page);
+  fmt::print("{}: {:.2f} MB, {}{}\n", one_line(options.page_file), static_cast<double>(page.size()) / 1e6,
+             counted(show.objects.size(), "object"),
+             show.frames ? fmt::format(", {}", counted(show.frames->count(), "frame")) : "");
+  return exit_done;
+}
+
+void warn_of_others(const ViewOptions& options) {
+  if (viewer::is_loopback(options.address)) return;
+  fmt::print(stderr,
+             "supple: warning: --host {}: everyone who reaches this machine's network address and knows the "
+             "address below can look and steer, and it goes over the network unencrypted\n",
+             one_line(options.address));
+}
+
+int serve(viewer::Show show, const ViewOptions& options) {
+  warn_of_others(options);
+  viewer::Server server(viewer::Session(std::move(show)),
+                        {options.address, options.port, viewer::embedded_page()});
+  const Interruption interruption;
+  fmt::print("Open {}\n", server.url());
+  std::fflush(stdout);
+  if (options.open_browser) open_browser(server.url());
+  server.run([&] { return interruption.signal() != 0; });
+  return exit_done;
+}
+
+}  // namespace
+
+int run_view(const ViewOptions& options) {
+  check_build();
+  viewer::Show show = build_show(read_input(options), options);
+  if (!options.page_file.empty()) return write_page(show, options);
+  return serve(std::move(show), options);
+}
+
+}  // namespace supple::cli

@@ -1,0 +1,406 @@
+#include "server/server.hpp"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <algorithm>
+#include <chrono>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <utility>
+
+#include "session/show.hpp"
+#include "supple/error.hpp"
+#include "supple/models.hpp"
+#include "unit/viewer/page_client.hpp"
+
+namespace supple::viewer {
+namespace {
+
+using namespace std::chrono_literals;
+using nlohmann::json;
+
+using Kind = ViewerMessage::Kind;
+constexpr std::string_view page = "<!doctype html><title>The page</title>";
+
+/// Two boxes that bend.
+Show small_show() {
+  Show show;
+  show.title = "small";
+  for (int i = 0; i < 2; ++i) {
+    MassSpringMotion motion;
+    motion.random_speed = 0.1;
+    show.objects.push_back({make_box({1, 1, 1}, 2), {}, motion});
+  }
+  return show;
+}
+
+class ViewerServer : public testing::Test {
+ protected:
+  ViewerServer() { alarm(120); }  // what waits for ever is a failure
+  ~ViewerServer() override {
+    end();
+    alarm(0);
+  }
+
+  void start(Show show = small_show(), std::chrono::milliseconds patience = 30s) {
+    server_.emplace(Session(std::move(show)), ServerOptions{"127.0.0.1", 0, page, patience});
+    thread_ = std::thread([this] {
+      try {
+        server_->run([this] { return should_end_.load(); });
+      } catch (const std::exception& error) {
+        failure_ = error.what();
+      }
+    });
+  }
+  void end() {
+    should_end_ = true;
+    if (thread_.joinable()) thread_.join();
+    server_.reset();
+  }
+
+  std::uint16_t port() const { return server_->port(); }
+  PageClient connect() { return PageClient(port(), server_->token()); }
+  std::string with_token(const std::string& path) const { return path + "?token=" + server_->token(); }
+  std::string own_host() const { return "127.0.0.1:" + std::to_string(port()); }
+
+  std::string failure_;
+
+ private:
+  std::optional<Server> server_;
+  std::thread thread_;
+  std::atomic<bool> should_end_ = false;
+};
+
+TEST_F(ViewerServer, PageNeedsTheToken) {
+  start();
+  const Answer answer = get(port(), with_token("/"));
+  EXPECT_EQ(answer.status, 200u);
+  EXPECT_EQ(answer.body, page);
+  for (const std::string target : {"/", "/?token=", "/?token=0123456789abcdef0123456789abcdef"}) {
+    const Answer refusal = get(port(), target);
+    EXPECT_EQ(refusal.status, 403u) << target;
+    EXPECT_NE(refusal.body.find("supple view"), std::string::npos) << "does not help: " << refusal.body;
+    EXPECT_EQ(refusal.body.find("The page"), std::string::npos);
+  }
+}
+
+TEST_F(ViewerServer, UrlIsWhatOneOpens) {
+  start();
+  const Server other(Session(small_show()), {"127.0.0.1", 0, page});
+  EXPECT_EQ(other.url(), "http://127.0.0.1:" + std::to_string(other.port()) + "/?token=" + other.token());
+  EXPECT_EQ(get(port(), "/?token=" + other.token()).status, 403u) << "each server has a token of its own";
+}
+
+TEST_F(ViewerServer, PageIsNotKeptNorFramedNorMayItLoadAnything) {
+  start();
+  for (const char* const target : {"/", "/nothing"}) {
+    auto fields = get(port(), with_token(target)).fields;
+    EXPECT_EQ(fields["Cache-Control"], "no-store");
+    EXPECT_EQ(fields["X-Content-Type-Options"], "nosniff");
+    EXPECT_EQ(fields["Referrer-Policy"], "no-referrer");
+    const std::string policy = fields["Content-Security-Policy"];
+    for (const std::string part : {"default-src 'none'", "frame-ancestors 'none'", "connect-src 'self' ws://"})
+      EXPECT_NE(policy.find(part), std::string::npos) << policy;
+    EXPECT_EQ(policy.find('*'), std::string::npos) << policy;
+  }
+}
+
+TEST_F(ViewerServer, ThereIsNothingElse) {
+  start();
+  for (const std::string path : {"/favicon.ico", "/index.html", "/../etc/passwd", "/session", "//"})
+    EXPECT_EQ(get(port(), with_token(path)).status, 404u) << path;
+}
+
+TEST_F(ViewerServer, OtherMethodsAreRefused) {
+  start();
+  const std::string rest = " HTTP/1.1\r\nHost: " + own_host() + "\r\n\r\n";
+  for (const std::string method : {"PUT ", "DELETE ", "OPTIONS "})
+    EXPECT_EQ(ask(port(), method + with_token("/") + rest).status, 405u) << method;
+  const Answer head = ask(port(), "HEAD " + with_token("/") + rest, true);
+  EXPECT_EQ(head.status, 200u);
+  EXPECT_EQ(head.body, "");
+  EXPECT_EQ(head.fields.at("Content-Length"), std::to_string(page.size()));
+}
+
+TEST_F(ViewerServer, HostMustBeItself) {
+  start();
+  const std::string number = ":" + std::to_string(port());
+  EXPECT_EQ(get(port(), with_token("/"), "localhost" + number).status, 200u);
+  for (const std::string& host : {std::string(), "evil.example" + number, std::string("127.0.0.1"),
+                                 std::string("127.0.0.1:1"), "127.0.0.1.evil.example" + number}) {
+    const Answer refusal = get(port(), with_token("/"), host);
+    EXPECT_EQ(refusal.status, 403u) << host;
+    EXPECT_NE(refusal.body.find(own_host()), std::string::npos) << refusal.body;
+  }
+}
+
+TEST_F(ViewerServer, WhatIsNoRequestIsRefused) {
+  start();
+  EXPECT_EQ(ask(port(), "\x16\x03\x01 hello\r\n\r\n").status, 400u);
+  EXPECT_EQ(ask(port(), "GET / HTTP/1.1\r\nX: " + std::string(100'000, 'x') + "\r\n\r\n").status, 413u);
+  EXPECT_EQ(get(port(), with_token("/")).status, 200u) << "it goes on serving";
+}
+
+TEST_F(ViewerServer, SessionNeedsTokenHostAndOrigin) {
+  start();
+  const std::string token = with_token("").substr(7), host = own_host();
+  const auto is_let_in = [&](const std::string& given_token, const std::string& given_host, const std::string& origin,
+                             const std::string& path = "/session") {
+    try {
+      PageClient client(port(), given_token, given_host, origin, path);
+      return client.receive().kind == Kind::scene;
+    } catch (const boost::system::system_error& error) {
+      EXPECT_EQ(error.code(), boost::beast::websocket::error::upgrade_declined);
+      return false;
+    }
+  };
+  EXPECT_TRUE(is_let_in(token, host, "http://" + host));
+  EXPECT_TRUE(is_let_in(token, host, "")) << "no browser";
+  const std::string local = "localhost:" + std::to_string(port());
+  EXPECT_TRUE(is_let_in(token, local, "http://" + local));
+
+  EXPECT_FALSE(is_let_in("", host, "http://" + host));
+  EXPECT_FALSE(is_let_in(std::string(32, '0'), host, "http://" + host));
+  for (const std::string origin : {"null", "http://evil.example", "http://127.0.0.1:1", "file://"})
+    EXPECT_FALSE(is_let_in(token, host, origin)) << origin;
+  EXPECT_FALSE(is_let_in(token, host, "https://" + host));
+  EXPECT_FALSE(is_let_in(token, host, "http://" + local));
+  EXPECT_FALSE(is_let_in(token, "evil.example", "http://evil.example"));
+  EXPECT_FALSE(is_let_in(token, host, "http://" + host, "/"));
+  EXPECT_FALSE(is_let_in(token, host, "http://" + host, "/other"));
+}
+
+TEST_F(ViewerServer, SceneThenFramesAgainstCredit) {
+  start();
+  PageClient client = connect();
+  const ViewerMessage first = client.receive();
+  ASSERT_EQ(first.kind, Kind::scene);
+  EXPECT_EQ(first.json["title"], "small");
+  client.send(R"({"do": "credit", "frames": 1})");
+  const ViewerMessage start_frame = client.receive();
+  ASSERT_EQ(start_frame.kind, Kind::frame);
+  EXPECT_EQ(start_frame.json["step"], 0);
+  client.send(R"({"do": "step"})");
+  client.send(R"({"do": "credit", "frames": 1})");
+  EXPECT_EQ(client.receive(Kind::frame).json["step"], 1);
+}
+
+TEST_F(ViewerServer, WhatIsNotUnderstoodIsAFailureNotTheEnd) {
+  start();
+  PageClient client = connect();
+  for (const std::string text : {"", "{", "[1]", R"({"do": "fly"})", R"({"do": "seek", "frame": "x"})", "\xff\xfe"}) {
+    client.send(text);
+    const json answer = client.receive(Kind::failure).json;
+    EXPECT_EQ(answer["fatal"], false) << text;
+    EXPECT_NE(answer["message"], "");
+  }
+  client.send(R"({"do": "read", "object": 0, "id": 5})");
+  EXPECT_EQ(client.receive(Kind::answer).json["id"], 5);
+}
+
+TEST_F(ViewerServer, ASecondPageTakesOver) {
+  start();
+  PageClient first = connect();
+  first.receive(Kind::scene);
+  PageClient second = connect();
+  EXPECT_EQ(second.receive().kind, Kind::scene);
+  EXPECT_EQ(first.receive_close(), 4001);
+  second.send(R"({"do": "credit", "frames": 1})");
+  EXPECT_EQ(second.receive().kind, Kind::frame);
+}
+
+TEST_F(ViewerServer, APageThatDoesNotReadIsTakenOverToo) {
+  Show show = small_show();
+  show.objects.push_back({make_cloth(300, 300), {}, Sway{{}, 0.1}});
+  start(std::move(show));
+  PageClient first = connect();
+  first.send(R"({"do": "speed", "factor": 0})");
+  first.send(R"({"do": "credit", "frames": 8})");
+  first.send(R"({"do": "play"})");
+  std::this_thread::sleep_for(200ms);  // what is sent now fills the socket
+  PageClient second = connect();
+  EXPECT_EQ(second.receive().kind, Kind::scene);
+  second.send(R"({"do": "credit", "frames": 1})");
+  EXPECT_TRUE(second.receive(Kind::frame).has(32, 2));
+}
+
+TEST_F(ViewerServer, OnlyTextsUpToAMegabyteAreCommands) {
+  start();
+  PageClient binary = connect();
+  binary.socket().binary(true);
+  binary.send(R"({"do": "pause"})");
+  EXPECT_EQ(binary.receive_close(), 4003);
+
+  // A mebibyte is still looked at.
+  PageClient large = connect();
+  large.send(std::string(std::size_t{1} << 20, ' '));
+  EXPECT_EQ(large.receive(Kind::failure).json["fatal"], false);
+  large.send(std::string((std::size_t{1} << 20) + 1, ' '));
+  EXPECT_EQ(large.receive_close(), 4003);
+
+  PageClient in_pieces = connect();
+  in_pieces.receive(Kind::scene);
+  boost::system::error_code error;
+  for (int i = 0; i < 3000 && !error; ++i)
+    in_pieces.socket().write_some(false, boost::asio::buffer(std::string(1000, ' ')), error);
+  EXPECT_EQ(in_pieces.receive_close(), 4003);
+}
+
+TEST_F(ViewerServer, MoreCommandsThanMayWaitAreAllCarriedOut) {
+  start();
+  PageClient client = connect();
+  // Together more than wait at a time, each with an answer that must be read meanwhile.
+  const std::string padding(100'000, ' ');
+  constexpr int count = 200;
+  std::thread sender([&] {
+    for (int i = 0; i < count; ++i)
+      client.send(R"({"do": "read", "object": 0, "id": )" + std::to_string(i) + padding + "}");
+  });
+  for (int i = 0; i < count; ++i) EXPECT_EQ(client.receive(Kind::answer).json["id"], i);
+  sender.join();
+}
+
+TEST_F(ViewerServer, ASlowPageGetsTheNewest) {
+  start();
+  PageClient client = connect();
+  client.send(R"({"do": "speed", "factor": 0})");
+  client.send(R"({"do": "play"})");
+  client.send(R"({"do": "credit", "frames": 1})");
+  const int first = client.receive(Kind::frame).json["step"];
+  std::this_thread::sleep_for(300ms);
+  client.send(R"({"do": "credit", "frames": 1})");
+  const int second = client.receive(Kind::frame).json["step"];
+  EXPECT_GT(second, first + 10) << "the simulation waited for the page, or frames queued";
+}
+
+TEST_F(ViewerServer, TimeStandsStillWhileNobodyLooksAndAPageComesBack) {
+  start();
+  int before = 0;
+  {
+    PageClient client = connect();
+    client.send(R"({"do": "speed", "factor": 0})");
+    client.send(R"({"do": "play"})");
+    client.send(R"({"do": "credit", "frames": 8})");
+    before = client.receive(Kind::frame).json["step"];
+  }  // the connection is cut without a close
+  std::this_thread::sleep_for(100ms);
+  const auto step_of_a_new_page = [&] {
+    PageClient client = connect();
+    EXPECT_EQ(client.receive().kind, Kind::scene);
+    client.send(R"({"do": "pause"})");
+    client.send(R"({"do": "credit", "frames": 1})");
+    return client.receive(Kind::frame).json["step"].get<int>();
+  };
+  const int after = step_of_a_new_page();
+  EXPECT_GE(after, before);
+  std::this_thread::sleep_for(100ms);
+  EXPECT_EQ(step_of_a_new_page(), after) << "it was paused";
+}
+
+TEST_F(ViewerServer, APageThatGivesNoSignOfLifeIsGivenUp) {
+  start(small_show(), 400ms);
+  PageClient client = connect();
+  client.receive(Kind::scene);
+  std::this_thread::sleep_for(1500ms);  // pings are answered by reading only
+  EXPECT_NE(client.receive_close(), 4002);
+  PageClient alive = connect();
+  std::thread ender([&] {
+    std::this_thread::sleep_for(1500ms);
+    alive.send(R"({"do": "read", "object": 0, "id": 1})");
+  });
+  EXPECT_EQ(alive.receive(Kind::answer).json["id"], 1) << "one that answers pings stays";
+  ender.join();
+}
+
+TEST_F(ViewerServer, TheEndOfTheProgramIsTold) {
+  start();
+  PageClient client = connect();
+  client.receive(Kind::scene);
+  std::thread ender([this] { end(); });
+  EXPECT_EQ(client.receive_close(), 4002);
+  ender.join();
+  EXPECT_EQ(failure_, "");
+}
+
+TEST_F(ViewerServer, EndsWithoutAPageAndWithOneThatDoesNotAnswer) {
+  start();
+  const PageClient client = connect();
+  const auto from = std::chrono::steady_clock::now();
+  end();
+  EXPECT_LT(std::chrono::steady_clock::now() - from, 10s);
+}
+
+/// Frames that cannot be had, by no fault of the file.
+class BrokenFrames : public Frames {
+ public:
+  std::uint64_t count() const override { return 2; }
+  void read(std::uint64_t frame, std::size_t, std::span<Vec3d> positions) const override {
+    if (frame > 0) throw std::runtime_error("out of everything");
+    std::fill(positions.begin(), positions.end(), Vec3d{});
+  }
+  const Series& series() const override { return series_; }
+
+ private:
+  Series series_;
+};
+
+TEST_F(ViewerServer, AnUnforeseenFailureEndsItWithTheReason) {
+  Show show;
+  show.objects.push_back({make_box({1, 1, 1}, 1), {}, {}});
+  show.frames = std::make_shared<const BrokenFrames>();
+  start(std::move(show));
+  PageClient client = connect();
+  client.receive(Kind::scene);
+  client.send(R"({"do": "seek", "frame": 1})");
+  EXPECT_EQ(client.receive_close(), 4004);
+  end();
+  EXPECT_EQ(failure_, "out of everything");
+}
+
+TEST_F(ViewerServer, LargeFramesArriveWhole) {
+  Show show;
+  show.objects.push_back({make_cloth(320, 320), {}, Sway{{}, 0.1}});
+  const std::size_t vertices = show.objects[0].mesh.positions.size();
+  EXPECT_GT(vertices, 100'000u);
+  start(std::move(show));
+  PageClient client = connect();
+  client.send(R"({"do": "speed", "factor": 0})");
+  client.send(R"({"do": "play"})");
+  int last = -1;
+  client.send(R"({"do": "credit", "frames": 4})");
+  for (int i = 0; i < 20; ++i) {
+    const ViewerMessage received = client.receive(Kind::frame);
+    client.send(R"({"do": "credit", "frames": 1})");
+    EXPECT_EQ(received.section(32, 0).data.size(), 12 * vertices);
+    const int step = received.json["step"];
+    EXPECT_GT(step, last);
+    last = step;
+  }
+}
+
+TEST(ViewerServerOptions, SaysWhatIsWrongWithAnAddress) {
+  const auto error_of = [](const std::string& address, std::uint16_t port) -> std::string {
+    try {
+      const Server server(Session(small_show()), {address, port, page});
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "";
+  };
+  const Server first(Session(small_show()), {"127.0.0.1", 0, page});
+  EXPECT_NE(error_of("127.0.0.1", first.port()).find("Address already in use"), std::string::npos);
+  EXPECT_NE(error_of("somewhere", 0).find("somewhere: is no IP address"), std::string::npos);
+  EXPECT_NE(error_of("203.0.113.1", 0).find("203.0.113.1, port 0: cannot listen"), std::string::npos);
+  EXPECT_TRUE(is_loopback("127.0.0.1"));
+  EXPECT_TRUE(is_loopback("::1"));
+  EXPECT_FALSE(is_loopback("0.0.0.0"));
+  EXPECT_THROW(is_loopback("localhost:80"), Error);
+}
+
+}  // namespace
+}  // namespace supple::viewer

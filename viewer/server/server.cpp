@@ -1,0 +1,415 @@
+#include "server.hpp"
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/post.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <boost/beast/core.hpp>
+#include <boost/beast/http.hpp>
+#include <boost/beast/websocket.hpp>
+#include <cstddef>
+#include <exception>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "access.hpp"
+#include "session_thread.hpp"
+#include "supple/error.hpp"
+#include "supple/version.hpp"
+
+namespace supple::viewer {
+namespace {
+
+namespace asio = boost::asio;
+namespace beast = boost::beast;
+namespace http = beast::http;
+namespace websocket = beast::websocket;
+using asio::ip::tcp;
+using boost::system::error_code;
+using namespace std::chrono_literals;
+
+constexpr std::size_t largest_command = std::size_t{1} << 20;
+/// As many bytes of commands may wait for a step to end before no more are read.
+constexpr std::size_t most_waiting = std::size_t{4} << 20;
+/// Of requests that are being read or answered.
+constexpr int most_requests = 64;
+
+enum CloseCode : std::uint16_t { taken_over = 4001, program_ends = 4002, no_command = 4003, session_failed = 4004 };
+
+asio::ip::address parse_address(const std::string& text) {
+  error_code error;
+  const auto address = asio::ip::make_address(text, error);
+  if (!error) return address;
+  std::string message = text;
+  message += ": is no IP address; give one of this machine, such as 127.0.0.1, or 0.0.0.0 for all";
+  throw Error(message);
+}
+
+/// A page that is connected: a WebSocket.
+class Page : public std::enable_shared_from_this<Page> {
+ public:
+  /// What becomes of it, on the thread of the sockets.
+  struct Listener {
+    std::function<void()> came, left, sent;
+    /// Says whether more should be read now.
+    std::function<bool(std::string)> command;
+  };
+
+  Page(beast::tcp_stream stream, std::chrono::milliseconds patience) : socket_(std::move(stream)) {
+    beast::get_lowest_layer(socket_).expires_never();  // the WebSocket has its own clock
+    websocket::stream_base::timeout times{};
+    times.handshake_timeout = std::min<std::chrono::milliseconds>(patience, 5s);
+    times.idle_timeout = patience;
+    times.keep_alive_pings = true;
+    socket_.set_option(times);
+    socket_.auto_fragment(false);  // a message at once, not in pieces of 4 KiB
+    socket_.binary(true);
+  }
+
+  void accept(const http::request<http::empty_body>& request, Listener listener) {
+    listener_ = std::move(listener);
+    socket_.async_accept(request, [self = shared_from_this()](error_code error) {
+      if (error) return;
+      self->listener_.came();
+      self->read();
+    });
+  }
+
+  void send(Message message) {
+    if (is_closing_) return;
+    const asio::const_buffer bytes(message->data(), message->size());
+    socket_.async_write(bytes, [self = shared_from_this(), message](error_code, std::size_t) {
+      self->listener_.sent();
+    });
+  }
+
+  /// After `Listener::command` said no.
+  void read_on() {
+    if (std::exchange(is_paused_, false)) read();
+  }
+
+  void close(CloseCode code, const char* reason, std::function<void()> then = [] {}) {
+    if (std::exchange(is_closing_, true)) return then();
+    const websocket::close_reason why(static_cast<websocket::close_code>(code), reason);
+    socket_.async_close(why, [self = shared_from_this(), then](error_code) { then(); });
+  }
+
+ private:
+  void read() {
+    socket_.async_read_some(text_, largest_command + 1 - text_.size(),
+                            [self = shared_from_this()](error_code error, std::size_t) { self->take(error); });
+  }
+
+  void take(error_code error) {
+    if (error) {
+      is_closing_ = true;
+      return listener_.left();
+    }
+    // What comes after the close is not looked at, but must be read for the page's own close to be found.
+    if (is_closing_) {
+      text_.consume(text_.size());
+      return read();
+    }
+    if (!socket_.got_text() || text_.size() > largest_command) {
+      close(no_command, socket_.got_text() ? "a command is at most 1 MiB" : "commands are texts");
+      return take({});
+    }
+    bool more = true;
+    if (socket_.is_message_done()) {
+      more = listener_.command(beast::buffers_to_string(text_.data()));
+      text_.consume(text_.size());
+    }
+    is_paused_ = !more;
+    if (more) read();
+  }
+
+  websocket::stream<beast::tcp_stream> socket_;
+  beast::flat_buffer text_;
+  Listener listener_;
+  bool is_paused_ = false, is_closing_ = false;
+};
+
+/// What a page of this server may load: itself, and its session.
+std::string content_policy(std::string_view host) {
+  std::string policy =
+      "default-src 'none'; script-src 'unsafe-inline' 'wasm-unsafe-eval' blob:; worker-src blob:; style-src "
+      "'unsafe-inline'; img-src data: blob:; media-src blob:; font-src data:; base-uri 'none'; form-action 'none'; "
+      "frame-ancestors 'none'; connect-src 'self' ws://";
+  policy += host;
+  return policy;
+}
+
+constexpr std::string_view no_token_page = R"(<!doctype html>
+<html lang="en"><meta charset="utf-8"><title>Supple</title>
+<style>body { font: 16px/1.5 system-ui, sans-serif; max-width: 40em; margin: 20vh auto; padding: 0 1em; color-scheme: light dark }</style>
+<h1>This address is not complete</h1>
+<p><code>supple view</code> prints an address with a token in it, which keeps others out. Open the page by that address; it is
+another one each time the program starts.</p>
+</html>
+)";
+
+/// A connection until it has been answered, or has become a page's.
+class Request : public std::enable_shared_from_this<Request> {
+ public:
+  struct Context {
+    const Access& access;
+    std::string_view page;
+    std::function<void(beast::tcp_stream, const http::request<http::empty_body>&)> connect;
+    int& count;  ///< of these
+  };
+
+  Request(tcp::socket socket, const Context& context) : stream_(std::move(socket)), context_(context) {
+    ++context_.count;
+  }
+  ~Request() { --context_.count; }
+  Request(const Request&) = delete;
+  Request& operator=(const Request&) = delete;
+
+  void read() {
+    stream_.expires_after(10s);
+    http::async_read(stream_, buffer_, parser_, [self = shared_from_this()](error_code error, std::size_t) {
+      if (!error) return self->answer();
+      if (error == http::error::body_limit || error == http::error::header_limit)
+        return self->refuse(http::status::payload_too_large, "The request is too large.\n");
+      if (error.category() == make_error_code(http::error::end_of_stream).category() &&
+          error != http::error::end_of_stream && error != http::error::partial_message)
+        self->refuse(http::status::bad_request, "This is no request of HTTP.\n");
+    });
+  }
+
+ private:
+  void answer() {
+    const auto& request = parser_.get();
+    const std::string_view host = text(request[http::field::host]);
+    if (!context_.access.knows_host(host)) {
+      std::string message = "This server does not go by that name or port; ask it as http://";
+      message += context_.access.host();
+      message += '\n';
+      return refuse(http::status::forbidden, message);
+    }
+    const Target target = parse_target(text(request.target()));
+    if (target.path == "/session" && websocket::is_upgrade(request)) return connect(host, target.token);
+    if (target.path != "/") return refuse(http::status::not_found, "There is nothing here.\n");
+    if (request.method() != http::verb::get && request.method() != http::verb::head)
+      return refuse(http::status::method_not_allowed, "Only GET and HEAD are understood.\n");
+    if (!context_.access.knows_token(target.token)) {
+      respond(http::status::forbidden, "text/html; charset=utf-8", no_token_page);
+    } else {
+      respond(http::status::ok, "text/html; charset=utf-8", context_.page);
+    }
+  }
+
+  void connect(std::string_view host, std::string_view token) {
+    const auto& request = parser_.get();
+    if (!Access::is_own_origin(text(request[http::field::origin]), host))
+      return refuse(http::status::forbidden, "Pages of other sites have no access.\n");
+    if (!context_.access.knows_token(token)) return refuse(http::status::forbidden, "The token is wrong.\n");
+    context_.connect(std::move(stream_), request);
+  }
+
+  void refuse(http::status status, std::string_view message) {
+    body_ = message;
+    respond(status, "text/plain; charset=utf-8", body_);
+  }
+
+  void respond(http::status status, const char* type, std::string_view body) {
+    response_.emplace(status, 11);
+    http::response<http::span_body<const char>>& response = *response_;
+    response.set(http::field::server, "supple " SUPPLE_VERSION);
+    response.set(http::field::content_type, type);
+    response.set(http::field::cache_control, "no-store");
+    response.set("Referrer-Policy", "no-referrer");  // the address has the token
+    response.set("X-Content-Type-Options", "nosniff");
+    response.set("Cross-Origin-Opener-Policy", "same-origin");
+    response.set("Cross-Origin-Resource-Policy", "same-origin");
+    response.set("Content-Security-Policy", content_policy(context_.access.host()));
+    response.keep_alive(false);
+    response.body() = {body.data(), body.size()};
+    response.prepare_payload();
+    if (parser_.get().method() == http::verb::head) response.body() = {};
+    stream_.expires_after(30s);
+    http::async_write(stream_, response, [self = shared_from_this()](error_code error, std::size_t) {
+      if (!error) self->stream_.socket().shutdown(tcp::socket::shutdown_send, error);
+    });
+  }
+
+  static std::string_view text(beast::string_view view) { return {view.data(), view.size()}; }
+
+  beast::tcp_stream stream_;
+  Context context_;
+  beast::flat_buffer buffer_{16 * 1024};
+  http::request_parser<http::empty_body> parser_;
+  std::string body_;
+  std::optional<http::response<http::span_body<const char>>> response_;
+};
+
+}  // namespace
+
+bool is_loopback(const std::string& address) {
+  return parse_address(address).is_loopback();
+}
+
+class Server::Implementation {
+ public:
+  Implementation(Session session, const ServerOptions& options)
+      : options_(options),
+        acceptor_(listen(sockets_, options)),
+        access_(options.address, acceptor_.local_endpoint().port(), make_token()),
+        requests_{access_, options.page,
+                  [this](beast::tcp_stream stream, const auto& request) { connect(std::move(stream), request); },
+                  request_count_},
+        clock_(sockets_),
+        session_(std::move(session), listener()) {}
+
+  std::uint16_t port() const { return acceptor_.local_endpoint().port(); }
+  const Access& access() const { return access_; }
+
+  void run(const std::function<bool()>& should_end) {
+    accept();
+    watch(should_end);
+    sockets_.run();
+    if (failure_) std::rethrow_exception(failure_);
+    if (has_failed_) throw Error("the session has failed for good; the page says why");
+  }
+
+ private:
+  static tcp::acceptor listen(asio::io_context& sockets, const ServerOptions& options) {
+    const tcp::endpoint endpoint(parse_address(options.address), options.port);
+    try {
+      tcp::acceptor acceptor(sockets);
+      acceptor.open(endpoint.protocol());
+      acceptor.set_option(asio::socket_base::reuse_address(true));
+      acceptor.bind(endpoint);
+      acceptor.listen();
+      return acceptor;
+    } catch (const boost::system::system_error& error) {
+      std::string message = options.address;
+      message += ", port ";
+      message += std::to_string(options.port);
+      message += ": cannot listen: ";
+      message += error.code().message();
+      message += "; choose another port, or 0 for any that is free, and an address of this machine";
+      throw Error(message);
+    }
+  }
+
+  void accept() {
+    acceptor_.async_accept([this](error_code error, tcp::socket socket) {
+      if (!acceptor_.is_open()) return;
+      if (!error) {
+        socket.set_option(tcp::no_delay(true), error);
+        // More than a few are none of people's doing. Out of file descriptors, there is nothing to be done.
+        if (request_count_ < most_requests)
+          std::make_shared<Request>(std::move(socket), requests_)->read();
+        return accept();
+      }
+      clock_of_retry_.expires_after(100ms);
+      clock_of_retry_.async_wait([this](error_code) { if (acceptor_.is_open()) accept(); });
+    });
+  }
+
+  void watch(const std::function<bool()>& should_end) {
+    if (should_end()) return end(program_ends, "the program has ended");
+    clock_.expires_after(100ms);
+    clock_.async_wait([this, &should_end](error_code) {
+      if (!is_ending_) watch(should_end);
+    });
+  }
+
+  /// No more is accepted; what is connected is told, and waited for no longer than a second.
+  void end(CloseCode code, const char* reason) {
+    if (std::exchange(is_ending_, true)) return;
+    error_code ignored;
+    acceptor_.close(ignored);
+    clock_.expires_after(1s);
+    clock_.async_wait([this](error_code error) { if (!error) sockets_.stop(); });
+    if (!page_) return sockets_.stop();
+    page_->close(code, reason, [this] { sockets_.stop(); });
+  }
+
+  void connect(beast::tcp_stream stream, const http::request<http::empty_body>& request) {
+    const PageNumber number = ++page_count_;
+    const auto page = std::make_shared<Page>(std::move(stream), options_.patience);
+    Page::Listener listener;
+    listener.came = [this, number, weak = std::weak_ptr(page)] {
+      if (page_) page_->close(taken_over, "taken over by another page");
+      page_ = weak.lock();
+      page_number_ = number;
+      if (is_ending_) return page_->close(program_ends, "the program has ended");
+      session_.page_came(number);
+    };
+    listener.left = [this, number] {
+      session_.page_left(number);
+      if (page_number_ == number) page_.reset();
+    };
+    listener.sent = [this, number] { session_.message_sent(number); };
+    listener.command = [this, number](std::string text) {
+      return session_.command(number, std::move(text)) < most_waiting;
+    };
+    page->accept(request, std::move(listener));
+  }
+
+  /// Called on the session's thread, goes on on the thread of the sockets.
+  SessionThread::Listener listener() {
+    return {[this](PageNumber number, Message message) {
+              asio::post(sockets_, [this, number, message] {
+                if (page_ && page_number_ == number) page_->send(message);
+              });
+            },
+            [this] {
+              asio::post(sockets_, [this] {
+                if (page_) page_->read_on();
+              });
+            },
+            [this](std::exception_ptr failure) {
+              asio::post(sockets_, [this, failure] {
+                has_failed_ = true;
+                failure_ = failure;
+                end(session_failed, "the session has failed");
+              });
+            }};
+  }
+
+  ServerOptions options_;
+  int request_count_ = 0;  ///< outlives the requests, which the next member holds
+  asio::io_context sockets_{1};
+  tcp::acceptor acceptor_;
+  Access access_;
+  Request::Context requests_;
+  asio::steady_timer clock_;
+  asio::steady_timer clock_of_retry_{sockets_};
+  std::shared_ptr<Page> page_;
+  PageNumber page_count_ = 0, page_number_ = 0;
+  bool is_ending_ = false, has_failed_ = false;
+  std::exception_ptr failure_;
+  SessionThread session_;  ///< the last member: its thread posts to the others
+};
+
+Server::Server(Session session, const ServerOptions& options)
+    : implementation_(std::make_unique<Implementation>(std::move(session), options)) {}
+
+Server::~Server() = default;
+
+std::uint16_t Server::port() const {
+  return implementation_->port();
+}
+
+const std::string& Server::token() const {
+  return implementation_->access().token();
+}
+
+std::string Server::url() const {
+  std::string url = "http://";
+  url += implementation_->access().host();
+  url += "/?token=";
+  url += token();
+  return url;
+}
+
+void Server::run(const std::function<bool()>& should_end) {
+  implementation_->run(should_end);
+}
+
+}  // namespace supple::viewer

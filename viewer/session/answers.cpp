@@ -1,0 +1,115 @@
+#include "answers.hpp"
+
+#include <cmath>
+#include <span>
+#include <string>
+
+#include "extent.hpp"
+#include "names.hpp"
+#include "normals.hpp"
+
+namespace supple::viewer {
+namespace {
+
+void add_pair(std::uint32_t a, std::uint32_t b, JsonText& json) {
+  json.begin_array();
+  json.value(a);
+  json.value(b);
+  json.end_array();
+}
+
+/// Up to `most` of the triangles that one meets.
+void add_contacts_of(const DetectResult& result, std::uint32_t object, std::uint32_t triangle,
+                     JsonText& json) {
+  constexpr std::uint64_t most = 1000;
+  std::uint64_t count = 0;
+  json.key("contacts");
+  json.begin_array();
+  for (const Contact& c : result.contacts) {
+    const bool is_a = c.object_a.index == object && c.triangle_a == triangle;
+    const bool is_b = c.object_b.index == object && c.triangle_b == triangle;
+    if (!is_a && !is_b) continue;
+    if (++count > most) continue;
+    if (is_a)
+      add_pair(c.object_b.index, c.triangle_b, json);
+    else
+      add_pair(c.object_a.index, c.triangle_a, json);
+  }
+  json.end_array();
+  json.member("contact_count", count);
+}
+
+void add_octree(const OctreeStatistics& octree, JsonText& json) {
+  json.key("octree");
+  json.begin_object();
+  json.member("nodes", octree.nodes);
+  json.member("leaves", octree.leaves);
+  json.member("depth", octree.depth);
+  json.member("largest_leaf", octree.largest_leaf);
+  json.member("mean_leaf_size", octree.mean_leaf_size);
+  json.member("mean_node_width", octree.mean_node_width);
+  json.member("bytes", octree.bytes);
+  json.member("cost", octree.cost);
+  json.member("degradation", octree.degradation);
+  json.member("subtrees_rebuilt", octree.subtrees_rebuilt);
+  json.key("leaves_by_level");
+  json.begin_array();
+  for (const std::uint64_t leaves : octree.leaves_by_level) json.value(leaves);
+  json.end_array();
+  json.end_object();
+}
+
+std::uint64_t contact_count(const DetectResult& result, std::uint32_t object) {
+  std::uint64_t count = 0;
+  for (const ContactGroup& group : result.groups) {
+    if (group.a.index == object || group.b.index == object) count += group.contact_count;
+  }
+  return count;
+}
+
+}  // namespace
+
+void answer_read_vertex(const Source& source, std::uint32_t object, std::uint32_t vertex, JsonText& json) {
+  json.member("object", object);
+  json.member("vertex", vertex);
+  json.member("position", source.positions(object)[vertex]);
+}
+
+void answer_read_triangle(const Show& show, const Source& source, std::uint32_t object,
+                          std::uint32_t triangle, JsonText& json) {
+  const Triangle& corners = show.objects[object].mesh.triangles[triangle];
+  const std::span<const Vec3d> positions = source.positions(object);
+  const Vec3d a = positions[corners[0]], b = positions[corners[1]], c = positions[corners[2]];
+  json.member("object", object);
+  json.member("triangle", triangle);
+  json.key("vertices");
+  json.begin_array();
+  for (const std::uint32_t corner : corners) json.value(corner);
+  json.end_array();
+  json.member("area", area(a, b, c));
+  json.member("normal", unit_normal(a, b, c));
+  add_contacts_of(source.scene().result(), object, triangle, json);
+}
+
+void answer_read_object(const Show& show, const Source& source, std::uint32_t object, JsonText& json) {
+  const TriangleMesh& mesh = show.objects[object].mesh;
+  Extent extent;
+  extent.add(source.positions(object));
+  json.member("object", object);
+  json.member("name", source.scene().name(source.id(object)));
+  json.member("vertices", std::uint64_t{mesh.positions.size()});
+  json.member("triangles", std::uint64_t{mesh.triangles.size()});
+  json.key("bounds");
+  if (extent.empty()) {
+    json.null();
+  } else {
+    json.begin_array();
+    json.value(extent.low);
+    json.value(extent.high);
+    json.end_array();
+  }
+  json.member("contact_count", contact_count(source.scene().result(), object));
+  add_octree(source.scene().octree_statistics(source.id(object)), json);
+}
+
+}  // namespace supple::viewer

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "json_value.hpp"
+#include "names.hpp"
+#include "supple/types.hpp"
+
+namespace supple::viewer {
+
+/// Reads what a command says. The first thing that is wrong is kept, in words for people; what is then given
+/// means nothing. An optional member that is not there is nothing and no error.
+class Arguments {
+ public:
+  Arguments(const JsonValue& object, std::string command) : object_(object), command_(std::move(command)) {}
+
+  bool has(const char* name) { return find(name) != nullptr; }
+  std::optional<bool> boolean(const char* name);
+  std::optional<std::int64_t> integer(const char* name, std::int64_t low, std::int64_t high);
+  std::optional<double> number(const char* name, double low, double high);
+  std::optional<Vec3d> point(const char* name);
+  /// An object's number and one of its triangles; only that they are two whole numbers is checked.
+  std::optional<std::array<std::uint32_t, 2>> pair(const char* name);
+  std::optional<std::vector<std::uint32_t>> numbers(const char* name);
+  template <class Enumeration>
+  std::optional<Enumeration> one_of(const char* name) {
+    const JsonValue* const value = find(name);
+    if (value == nullptr) return std::nullopt;
+    std::optional<Enumeration> found;
+    if (value->kind == JsonValue::Kind::text) found = named<Enumeration>(value->text);
+    if (!found) must_be(name, "one of " + list_of_names<Enumeration>());
+    return found;
+  }
+  /// What the member holds, to be read by other arguments; null when it is not there.
+  const JsonValue* member(const char* name) { return find(name); }
+
+  /// The member that must be there.
+  template <class Value>
+  Value required(const char* name, std::optional<Value> value) {
+    if (!value && error_.empty()) error_ = command_ + ": " + name + " is missing";
+    return value.value_or(Value{});
+  }
+  void must_be(const char* name, const std::string& what);
+  void fail(std::string error);
+
+  /// False when something is wrong, also with members that nobody asked for.
+  bool check();
+  const std::string& error() const { return error_; }  ///< empty when nothing is wrong
+
+ private:
+  const JsonValue* find(const char* name);
+
+  const JsonValue& object_;
+  std::string command_;
+  std::vector<std::string_view> known_;
+  std::string error_;
+};
+
+}  // namespace supple::viewer

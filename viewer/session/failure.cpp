@@ -1,0 +1,48 @@
+#include "failure.hpp"
+
+#include <new>
+
+#include "supple/error.hpp"
+
+#if defined(__cpp_exceptions)
+
+namespace supple::viewer {
+
+std::optional<Failure> failure_of(const std::function<void()>& action) {
+  try {
+    action();
+  } catch (const Error& error) {
+    return Failure{error.what()};
+  } catch (const std::bad_alloc&) {
+    return Failure{"there is not enough memory for that; show fewer or smaller objects", true};
+  }
+  return std::nullopt;
+}
+
+void fail(const std::string& message) {
+  throw Error(message);
+}
+
+}  // namespace supple::viewer
+
+#else
+
+namespace supple {
+/// The library's own door (core/error.hpp), which leads to the failure handler.
+[[noreturn]] void fail(const std::string& message);
+}  // namespace supple
+
+namespace supple::viewer {
+
+std::optional<Failure> failure_of(const std::function<void()>& action) {
+  action();
+  return std::nullopt;
+}
+
+void fail(const std::string& message) {
+  supple::fail(message);
+}
+
+}  // namespace supple::viewer
+
+#endif

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+
+namespace supple::viewer {
+
+struct Failure {
+  std::string message;
+  bool out_of_memory = false;
+};
+
+/// What `action` fails with: the message of the `Error` that it throws, or that there is no memory left, or
+/// nothing when it succeeds. Where exceptions are compiled out, what fails does not return: the library's
+/// failure handler ends the session.
+std::optional<Failure> failure_of(const std::function<void()>& action);
+
+/// Reports unusable input, as the library does.
+[[noreturn]] void fail(const std::string& message);
+
+}  // namespace supple::viewer

@@ -1,0 +1,250 @@
+#include "frame_message.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <iterator>
+
+#include "normals.hpp"
+#include "statistics.hpp"
+
+namespace supple::viewer {
+namespace {
+
+using Row = std::array<float, 8>;
+using Ids = std::array<std::uint32_t, 8>;
+
+constexpr std::size_t most_elements = 1'000'000;
+
+Row row_of(const std::array<float, 3>& first, float w, const std::array<float, 3>& second, float last) {
+  return {first[0], first[1], first[2], w, second[0], second[1], second[2], last};
+}
+
+std::array<float, 3> floats(const Vec3d& v) {
+  return Center{}(v);
+}
+
+Vec3d normal_of(const FrameView& frame, std::uint32_t object, std::uint32_t triangle) {
+  const std::span<const Vec3d> positions = frame.source.positions(object);
+  const Triangle& corners = frame.show.objects[object].mesh.triangles[triangle];
+  return unit_normal(positions[corners[0]], positions[corners[1]], positions[corners[2]]);
+}
+
+/// That of triangle b, or of a where b has no area.
+Vec3d normal_of(const FrameView& frame, const Contact& contact) {
+  const Vec3d normal = normal_of(frame, contact.object_b.index, contact.triangle_b);
+  return normal != Vec3d{} ? normal : normal_of(frame, contact.object_a.index, contact.triangle_a);
+}
+
+}  // namespace
+
+void FramePacker::forget() {
+  versions_.clear();
+  touching_.clear();
+  paper_vertices_.forget();
+}
+
+void FramePacker::pack(const FrameView& frame, MessageWriter& message) {
+  message_ = &message;
+  omissions_.clear();
+  octree_levels_.clear();
+  message.begin(MessageKind::frame);
+  add_positions(frame);
+  add_contacts(frame);
+  add_impacts(frame);
+  add_events(frame.source.scene().result());
+  add_statistics(frame);
+  if (frame.layers.candidates) add_candidates(frame);
+  for (const std::uint32_t object : frame.layers.octree_objects) add_octree(frame, object);
+  if (frame.layers.scene_regions) add_scene_regions(frame);
+  if (frame.layers.colliding_vertices)
+    add_colliding_vertices(frame);
+  else
+    paper_vertices_.forget();
+  add_text(frame);
+}
+
+void FramePacker::add_positions(const FrameView& frame) {
+  versions_.resize(frame.show.objects.size(), 0);
+  for (std::size_t i = 0; i < versions_.size(); ++i) {
+    const std::uint64_t version = frame.source.version(i);
+    if (versions_[i] == version) continue;
+    versions_[i] = version;
+    const std::span<const Vec3d> positions = frame.source.positions(i);
+    const auto sent =
+        message_->add<std::array<float, 3>>(Tag::positions, static_cast<std::uint32_t>(i), positions.size());
+    std::transform(positions.begin(), positions.end(), sent.begin(), frame.center);
+  }
+}
+
+void FramePacker::add_contacts(const FrameView& frame) {
+  const DetectResult& result = frame.source.scene().result();
+  const std::size_t pair_count = limited("object_pairs", result.object_pairs.size());
+  const auto pairs = message_->add<std::array<std::uint32_t, 2>>(Tag::object_pairs, pair_count);
+  for (std::size_t i = 0; i < pair_count; ++i)
+    pairs[i] = {result.object_pairs[i].a.index, result.object_pairs[i].b.index};
+
+  const std::size_t count = limited("contacts", result.contacts.size());
+  const bool has_points = !result.contact_points.empty();
+  const auto rows = message_->add<Ids>(Tag::contacts, count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const Contact& c = result.contacts[i];
+    rows[i] = {c.object_a.index,
+               c.triangle_a,
+               c.object_b.index,
+               c.triangle_b,
+               static_cast<std::uint32_t>(c.kind),
+               has_points ? c.point_count : 0u,
+               has_points ? c.first_point : 0u,
+               0};
+  }
+  if (has_points) add_contact_points(frame, count);
+}
+
+/// Those of the contacts that are sent. They stand in the order of contacts.
+void FramePacker::add_contact_points(const FrameView& frame, std::size_t contact_count) {
+  const DetectResult& result = frame.source.scene().result();
+  const Contact* const last = contact_count == 0 ? nullptr : &result.contacts[contact_count - 1];
+  const std::size_t count = last == nullptr ? 0 : last->first_point + last->point_count;
+  const auto rows = message_->add<Row>(Tag::contact_points, count);
+  for (const Contact& contact : result.contacts.first(contact_count)) {
+    const std::array<float, 3> normal = floats(normal_of(frame, contact));
+    for (std::size_t i = 0; i < contact.point_count; ++i) {
+      const std::size_t point = contact.first_point + i;
+      rows[point] = row_of(frame.center(result.contact_points[point].position), 0, normal, 0);
+    }
+  }
+}
+
+void FramePacker::add_impacts(const FrameView& frame) {
+  const auto contacts = frame.source.scene().result().continuous_contacts;
+  if (frame.source.scene().options().contacts != ContactMode::continuous) return;
+  const std::size_t count = limited("impacts", contacts.size());
+  const auto rows = message_->add<Ids>(Tag::impacts, count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const ContinuousContact& c = contacts[i];
+    rows[i] = {c.object_a.index,
+               c.element_a[0],
+               c.element_a[1],
+               c.object_b.index,
+               c.element_b[0],
+               c.element_b[1],
+               static_cast<std::uint32_t>(c.kind),
+               static_cast<std::uint32_t>(c.certainty)};
+  }
+  const auto points = message_->add<Row>(Tag::impact_points, count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const ContinuousContact& c = contacts[i];
+    points[i] = row_of(frame.center(c.point), static_cast<float>(c.time), floats(c.normal), 0);
+  }
+}
+
+/// Since the frame that was sent last, which may be some steps ago.
+void FramePacker::add_events(const DetectResult& result) {
+  now_touching_.clear();
+  for (const ContactGroup& group : result.groups) {
+    if (group.a != group.b) now_touching_.emplace_back(group.a.index, group.b.index);
+  }
+  const auto add_missing = [&](Tag tag, const ObjectPairs& pairs, const ObjectPairs& from) {
+    changed_.clear();
+    std::set_difference(pairs.begin(), pairs.end(), from.begin(), from.end(), std::back_inserter(changed_));
+    add_pairs(tag, changed_);
+  };
+  add_missing(Tag::contact_begin, now_touching_, touching_);
+  add_missing(Tag::contact_end, touching_, now_touching_);
+  touching_.swap(now_touching_);
+}
+
+void FramePacker::add_pairs(Tag tag, const ObjectPairs& pairs) {
+  const auto rows = message_->add<std::array<std::uint32_t, 2>>(tag, pairs.size());
+  for (std::size_t i = 0; i < pairs.size(); ++i) rows[i] = {pairs[i].first, pairs[i].second};
+}
+
+void FramePacker::add_statistics(const FrameView& frame) {
+  const StepStats& stats = frame.source.scene().result().stats;
+  const auto values = message_->add<double>(Tag::statistics, 1 + std::size(statistics));
+  values[0] = frame.source.motion_seconds();
+  std::transform(std::begin(statistics), std::end(statistics), values.begin() + 1,
+                 [&](const Statistic& statistic) { return value_of(statistic, stats); });
+}
+
+void FramePacker::add_candidates(const FrameView& frame) {
+  std::uint64_t total = 0;
+  const std::vector<CandidatePair> candidates = frame.source.scene().candidates(most_elements, &total);
+  limited("candidates", total);
+  const auto rows = message_->add<std::array<std::uint32_t, 4>>(Tag::candidates, candidates.size());
+  std::transform(candidates.begin(), candidates.end(), rows.begin(), [](const CandidatePair& pair) {
+    return std::array{pair.object_a.index, pair.triangle_a, pair.object_b.index, pair.triangle_b};
+  });
+}
+
+/// Spheres when cells have them, else boxes. Cells without a finite triangle have neither.
+void FramePacker::add_octree(const FrameView& frame, std::uint32_t object) {
+  const Scene& scene = frame.source.scene();
+  const ObjectId id = frame.source.id(object);
+  octree_levels_.push_back(scene.octree_depth(id));
+  std::vector<OctreeCell> cells = scene.octree_cells(id, frame.layers.octree_level);
+  std::erase_if(cells, [](const OctreeCell& cell) { return cell.box.empty() && cell.sphere.empty(); });
+  const bool has_spheres = !cells.empty() && !cells.front().sphere.empty();
+  const std::size_t count = limited("octree", cells.size());
+  const auto rows = message_->add<Row>(has_spheres ? Tag::octree_spheres : Tag::octree_boxes, object, count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const OctreeCell& cell = cells[i];
+    const float level = static_cast<float>(cell.level);
+    const float triangles = cell.is_leaf ? static_cast<float>(cell.triangle_count) : -1;
+    rows[i] = has_spheres
+                  ? row_of(frame.center(cell.sphere.center), cell.sphere.radius, {level, triangles, 0}, 0)
+                  : row_of(frame.center(cell.box.min), level, frame.center(cell.box.max), triangles);
+  }
+}
+
+void FramePacker::add_scene_regions(const FrameView& frame) {
+  const std::vector<SceneRegion> regions = frame.source.scene().scene_regions();
+  const auto rows = message_->add<Row>(Tag::scene_regions, limited("scene_regions", regions.size()));
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const SceneRegion& region = regions[i];
+    rows[i] =
+        row_of(frame.center(region.box.min), static_cast<float>(region.level), frame.center(region.box.max),
+               region.is_leaf ? static_cast<float>(region.object_count) : -1);
+  }
+}
+
+void FramePacker::add_colliding_vertices(const FrameView& frame) {
+  const auto& vertices = paper_vertices_.find(frame.show, frame.source);
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    const std::size_t count = limited("colliding_vertices", vertices[i].size());
+    const auto sent =
+        message_->add<std::uint32_t>(Tag::colliding_vertices, static_cast<std::uint32_t>(i), count);
+    std::copy_n(vertices[i].begin(), count, sent.begin());
+  }
+}
+
+void FramePacker::add_text(const FrameView& frame) {
+  json_.clear();
+  json_.begin_object();
+  json_.member("generation", frame.generation);
+  json_.member("step", frame.source.step());
+  json_.member("time", frame.source.time());
+  json_.member("playing", frame.playing);
+  json_.member("speed", frame.speed);
+  json_.member("loop", frame.loop);
+  json_.key("octree_levels");
+  json_.begin_array();
+  for (const std::uint32_t level : octree_levels_) json_.value(level);
+  json_.end_array();
+  json_.key("omitted");
+  json_.begin_object();
+  for (const Omission& omission : omissions_) json_.member(omission.layer, omission.count);
+  json_.end_object();
+  json_.end_object();
+  message_->add_text(json_.text());
+}
+
+/// How many of the elements are sent; the rest is noted, one object's after the other's added up.
+std::size_t FramePacker::limited(const char* layer, std::uint64_t count) {
+  if (count <= most_elements) return static_cast<std::size_t>(count);
+  omissions_.push_back({layer, count});
+  return most_elements;
+}
+
+}  // namespace supple::viewer

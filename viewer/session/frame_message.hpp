@@ -1,0 +1,69 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "center.hpp"
+#include "json_text.hpp"
+#include "layers.hpp"
+#include "message.hpp"
+#include "paper_vertices.hpp"
+#include "show.hpp"
+#include "source.hpp"
+
+namespace supple::viewer {
+
+/// What a frame is made from.
+struct FrameView {
+  const Show& show;
+  const Source& source;
+  const Layers& layers;
+  Center center{};
+  std::uint64_t generation = 0;
+  bool playing = false;
+  double speed = 1;
+  bool loop = false;
+};
+
+/// Writes frames, and remembers what the page has already.
+class FramePacker {
+ public:
+  /// The page has nothing, or there is another scene.
+  void forget();
+  void pack(const FrameView& frame, MessageWriter& message);
+
+ private:
+  using ObjectPairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
+  /// Elements of a layer that is too large, and how many there truly are.
+  struct Omission {
+    const char* layer;
+    std::uint64_t count;
+  };
+
+  void add_positions(const FrameView& frame);
+  void add_contacts(const FrameView& frame);
+  void add_contact_points(const FrameView& frame, std::size_t contact_count);
+  void add_impacts(const FrameView& frame);
+  void add_events(const DetectResult& result);
+  void add_pairs(Tag tag, const ObjectPairs& pairs);
+  void add_statistics(const FrameView& frame);
+  void add_candidates(const FrameView& frame);
+  void add_octree(const FrameView& frame, std::uint32_t object);
+  void add_scene_regions(const FrameView& frame);
+  void add_colliding_vertices(const FrameView& frame);
+  void add_text(const FrameView& frame);
+  std::size_t limited(const char* layer, std::uint64_t count);
+
+  MessageWriter* message_ = nullptr;
+  std::vector<std::uint64_t> versions_;  // of the positions that were sent; 0 for none
+  ObjectPairs touching_, now_touching_, changed_;
+  std::vector<Omission> omissions_;
+  std::vector<std::uint32_t> octree_levels_;
+  PaperVertices paper_vertices_;
+  JsonText json_;
+};
+
+}  // namespace supple::viewer

@@ -1,0 +1,83 @@
+#pragma once
+
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string_view>
+#include <type_traits>
+#include <vector>
+
+namespace supple::viewer {
+
+// The numbers of docs/protocol.md.
+
+enum class MessageKind : std::uint16_t { scene = 1, frame = 2, answer = 3, failure = 4, series = 5 };
+
+enum class Tag : std::uint32_t {
+  text = 1,
+  triangles = 16,
+  positions = 32,
+  object_pairs = 33,
+  contacts = 34,
+  contact_points = 35,
+  impacts = 36,
+  impact_points = 37,
+  candidates = 38,
+  scene_regions = 39,
+  octree_boxes = 40,
+  octree_spheres = 41,
+  colliding_vertices = 42,
+  statistics = 43,
+  contact_begin = 44,
+  contact_end = 45,
+  series = 64,
+  series_begin = 65,
+  series_end = 66,
+};
+
+/// In a section that belongs to no object.
+inline constexpr std::uint32_t no_object = ~std::uint32_t{0};
+
+/// Writes one message after the other into the same memory, which only grows.
+class MessageWriter {
+ public:
+  void begin(MessageKind kind);
+  void add_text(std::string_view json);
+  /// A section of so many elements, for the caller to write before anything else is added.
+  template <class Element>
+  std::span<Element> add(Tag tag, std::uint32_t object, std::size_t count) {
+    static_assert(std::is_trivially_copyable_v<Element> && alignof(Element) <= alignment);
+    std::byte* const data = add_section(tag, object, count, count * sizeof(Element));
+    return {reinterpret_cast<Element*>(data), count};
+  }
+  template <class Element>
+  std::span<Element> add(Tag tag, std::size_t count) {
+    return add<Element>(tag, no_object, count);
+  }
+  /// A section whose elements are so many values each.
+  template <class Value>
+  std::span<Value> add_rows(Tag tag, std::size_t count, std::size_t values) {
+    std::byte* const data = add_section(tag, no_object, count, count * values * sizeof(Value));
+    return {reinterpret_cast<Value*>(data), count * values};
+  }
+  /// The whole message; it lasts until the next `begin`.
+  std::span<const std::byte> finish();
+
+ private:
+  static_assert(std::endian::native == std::endian::little, "messages are little-endian, read in place");
+  static constexpr std::size_t alignment = 16;
+  struct alignas(alignment) Block {
+    std::byte bytes[alignment];
+  };
+
+  std::byte* add_section(Tag tag, std::uint32_t object, std::size_t count, std::size_t length);
+  std::byte* append(std::size_t length);
+
+  std::vector<Block> blocks_;  // as long as the longest message so far
+  std::size_t used_ = 0;       // of them
+  MessageKind kind_{};
+  std::uint32_t section_count_ = 0;
+};
+
+}  // namespace supple::viewer

@@ -1,0 +1,12 @@
+#pragma once
+
+#include "supple/mesh.hpp"
+#include "supple/types.hpp"
+
+namespace supple::viewer {
+
+/// Of unit length; zero when the corners span no area or are not finite.
+Vec3d unit_normal(const Vec3d& a, const Vec3d& b, const Vec3d& c);
+double area(const Vec3d& a, const Vec3d& b, const Vec3d& c);
+
+}  // namespace supple::viewer

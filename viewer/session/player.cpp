@@ -1,0 +1,135 @@
+#include "player.hpp"
+
+#include <algorithm>
+
+namespace supple::viewer {
+namespace {
+
+/// Longer pauses than this, as when a machine slept, do not count.
+constexpr double longest_pause = 0.25;
+
+std::uint64_t last_frame(const RecordingSource& recording) {
+  return std::max<std::uint64_t>(recording.frame_count(), 1) - 1;
+}
+
+}  // namespace
+
+void Player::play(Stage& stage) {
+  playing_ = true;
+  steps_ = 0;
+  due_ = 0;
+  clock_.reset();
+  if (RecordingSource* const recording = stage.recording();
+      recording != nullptr && !target_ && recording->step() == last_frame(*recording))
+    target_ = 0;
+}
+
+void Player::pause() {
+  playing_ = false;
+  steps_ = 0;
+}
+
+void Player::step(std::int64_t count) {
+  playing_ = false;
+  steps_ += count;
+}
+
+void Player::set_speed(double factor) {
+  speed_ = factor;
+  due_ = 0;
+}
+
+void Player::seek(std::uint64_t frame) {
+  target_ = frame;
+  steps_ = 0;
+  clock_.reset();
+}
+
+void Player::restart() {
+  steps_ = 0;
+  due_ = 0;
+  clock_.reset();
+  target_.reset();
+}
+
+Player::Outcome Player::advance(Stage& stage, double seconds) {
+  const double passed = std::clamp(seconds, 0.0, longest_pause);
+  if (SimulationSource* const simulation = stage.simulation())
+    return advance_simulation(*simulation, stage.show().simulation.time_step, passed);
+  return advance_recording(*stage.recording(), passed);
+}
+
+Player::Outcome Player::advance_simulation(SimulationSource& simulation, double time_step, double seconds) {
+  const bool moves = playing_ || simulation.needs_steps();
+  if (steps_ > 0) {
+    --steps_;
+    simulation.take_step();
+    return {true, steps_ > 0 ? 0 : idle_seconds};
+  }
+  const bool is_due = moves && take_due_step(time_step, seconds);
+  const bool changed = is_due || simulation.settle();
+  if (is_due) simulation.take_step();
+  if (!moves) return {changed};
+  return {changed, speed_ > 0 ? std::max(time_step - due_, 0.0) / speed_ : 0};
+}
+
+/// Keeps up with time while it can; what it cannot catch up with by the next step is given up.
+bool Player::take_due_step(double time_step, double seconds) {
+  if (speed_ == 0) return true;
+  due_ += seconds * speed_;
+  if (due_ < time_step) return false;
+  due_ = std::min(due_ - time_step, time_step);
+  return true;
+}
+
+Player::Outcome Player::advance_recording(RecordingSource& recording, double seconds) {
+  const bool was_playing = playing_;
+  const std::uint64_t frame = due_frame(recording, seconds);
+  Outcome outcome{frame != recording.step() || was_playing != playing_};
+  // Forgotten first: a frame that cannot be read is not tried again and again.
+  target_.reset();
+  if (frame != recording.step()) recording.seek(frame);
+  if (playing_) outcome.wait = wait_for_frame(recording);
+  return outcome;
+}
+
+std::uint64_t Player::due_frame(RecordingSource& recording, double seconds) {
+  const std::uint64_t now = target_.value_or(recording.step());
+  const std::uint64_t last = last_frame(recording);
+  if (steps_ != 0) {
+    const std::int64_t wanted = static_cast<std::int64_t>(now) + std::exchange(steps_, 0);
+    return static_cast<std::uint64_t>(std::clamp(wanted, std::int64_t{0}, static_cast<std::int64_t>(last)));
+  }
+  if (target_ || !playing_) return now;
+  if (now == last && !loop_) {
+    playing_ = false;
+    return now;
+  }
+  return frame_in_time(recording, seconds);
+}
+
+/// Of a recording that plays and has not ended.
+std::uint64_t Player::frame_in_time(RecordingSource& recording, double seconds) {
+  const std::uint64_t now = recording.step(), last = last_frame(recording);
+  if (speed_ == 0) return now == last ? 0 : now + 1;
+  clock_ = clock_.value_or(recording.time()) + seconds * speed_;
+  // The last frame lasts as long as the one before it.
+  const double length = last > 0 ? recording.time_of(last) - recording.time_of(last - 1) : 0;
+  const double end = recording.time_of(last) + length;
+  if (now == last || (loop_ && *clock_ >= end)) {
+    if (*clock_ < end) return now;
+    clock_ = recording.time_of(0);
+    return 0;
+  }
+  return std::max(recording.frame_at(*clock_), now);
+}
+
+double Player::wait_for_frame(const RecordingSource& recording) const {
+  if (speed_ == 0) return 0;
+  const std::uint64_t now = recording.step();
+  if (now == last_frame(recording)) return loop_ ? 0.01 : 0;
+  const double next = recording.time_of(now + 1) - clock_.value_or(recording.time());
+  return std::clamp(next / speed_, 0.0, idle_seconds);
+}
+
+}  // namespace supple::viewer

@@ -1,0 +1,136 @@
+#include "scene_message.hpp"
+
+#include <algorithm>
+#include <array>
+#include <string>
+#include <vector>
+
+#include "extent.hpp"
+#include "names.hpp"
+#include "statistics.hpp"
+#include "supple/version.hpp"
+
+namespace supple::viewer {
+namespace {
+
+const MassSpringMotion* body_of(const ShowObject& object) {
+  return std::get_if<MassSpringMotion>(&object.motion);
+}
+
+void add_objects(const Stage& stage, JsonText& json) {
+  json.key("objects");
+  json.begin_array();
+  for (std::size_t i = 0; i < stage.show().objects.size(); ++i) {
+    const ShowObject& object = stage.show().objects[i];
+    json.begin_object();
+    json.member("name", stage.source().scene().name(stage.source().id(i)));
+    json.member("vertices", std::uint64_t{object.mesh.positions.size()});
+    json.member("triangles", std::uint64_t{object.mesh.triangles.size()});
+    json.member("static", object.options.is_static);
+    json.member("body", body_of(object) != nullptr);
+    json.member("waves", std::holds_alternative<Sway>(object.motion));
+    json.member("self_collision", object.options.self_collision);
+    json.end_object();
+  }
+  json.end_array();
+}
+
+void add_place(const Stage& stage, JsonText& json) {
+  const Extent extent = extent_of(stage.show());
+  const Vec3d center = stage.center().at;
+  json.member("center", center);
+  json.key("bounds");
+  json.begin_array();
+  json.value(extent.empty() ? Vec3d{} : extent.low - center);
+  json.value(extent.empty() ? Vec3d{} : extent.high - center);
+  json.end_array();
+}
+
+void add_options(const Stage& stage, JsonText& json) {
+  const Show& show = stage.show();
+  const SceneOptions& scene = show.simulation.scene;
+  const ObjectOctreeOptions octree =
+      show.objects.empty() ? ObjectOctreeOptions{} : show.objects.front().options.octree;
+  json.member("time_step", show.simulation.time_step);
+  json.member("seed", show.simulation.seed);
+  json.member("bounding_volume", name_of(scene.bounding_volume));
+  json.member("contacts", name_of(scene.contacts));
+  json.member("broad_phase", name_of(scene.broad_phase));
+  json.member("max_level", octree.max_level);
+  json.member("leaf_size", octree.leaf_size);
+  json.key("integrator");
+  const auto first_body = std::find_if(show.objects.begin(), show.objects.end(),
+                                       [](const ShowObject& object) { return body_of(object) != nullptr; });
+  if (first_body == show.objects.end())
+    json.null();
+  else
+    json.value(name_of(body_of(*first_body)->springs.integrator));
+}
+
+void add_abilities(Stage& stage, JsonText& json) {
+  json.member("source", stage.recording() ? "recording" : "simulation");
+  json.key("frames");
+  if (RecordingSource* const recording = stage.recording())
+    json.value(recording->frame_count());
+  else
+    json.null();
+  const std::vector<std::string> simulation{"play", "reset", "grab", "set"}, recording{"play", "seek", "set"};
+  json.member("can", std::span<const std::string>(stage.recording() ? recording : simulation));
+}
+
+void add_column_names(Stage& stage, JsonText& json) {
+  json.key("statistics");
+  json.begin_array();
+  json.value("motion_seconds");
+  for (const Statistic& statistic : statistics) json.value(statistic.name);
+  json.end_array();
+  static const std::vector<std::string> none;
+  json.member("series",
+              std::span<const std::string>(stage.recording() ? stage.show().frames->series().names : none));
+}
+
+void add_events(Tag tag, const std::vector<Series::Event>& events, MessageWriter& message) {
+  const auto rows = message.add<std::array<std::uint32_t, 3>>(tag, events.size());
+  std::transform(events.begin(), events.end(), rows.begin(), [](const Series::Event& event) {
+    return std::array{event.frame, event.a, event.b};
+  });
+}
+
+}  // namespace
+
+void pack_scene(Stage& stage, std::uint64_t generation, JsonText& json, MessageWriter& message) {
+  const Show& show = stage.show();
+  json.clear();
+  json.begin_object();
+  json.member("version", SUPPLE_VERSION);
+  json.member("title", show.title);
+  json.member("generation", generation);
+  add_abilities(stage, json);
+  add_place(stage, json);
+  add_objects(stage, json);
+  add_options(stage, json);
+  add_column_names(stage, json);
+  json.member("warnings", std::span<const std::string>(show.warnings));
+  json.end_object();
+  message.begin(MessageKind::scene);
+  message.add_text(json.text());
+  for (std::size_t i = 0; i < show.objects.size(); ++i) {
+    const std::vector<Triangle>& triangles = show.objects[i].mesh.triangles;
+    const auto sent = message.add<Triangle>(Tag::triangles, static_cast<std::uint32_t>(i), triangles.size());
+    std::copy(triangles.begin(), triangles.end(), sent.begin());
+  }
+}
+
+void pack_series(const Frames& frames, MessageWriter& message) {
+  const Series& series = frames.series();
+  const std::size_t columns = series.names.size();
+  const std::size_t rows = columns == 0 ? 0 : series.values.size() / columns;
+  message.begin(MessageKind::series);
+  // Rows are the elements, columns their parts.
+  const auto values = message.add_rows<double>(Tag::series, rows, columns);
+  std::copy_n(series.values.begin(), values.size(), values.begin());
+  add_events(Tag::series_begin, series.begin, message);
+  add_events(Tag::series_end, series.end, message);
+}
+
+}  // namespace supple::viewer

@@ -1,0 +1,127 @@
+#include "settings.hpp"
+
+#include <cmath>
+#include <cstddef>
+#include <string>
+#include <utility>
+
+#include "extent.hpp"
+#include "failure.hpp"
+#include "supple/mesh.hpp"
+
+namespace supple::viewer {
+namespace {
+
+/// A grid of so many cells a side, in x and z, holds this many copies of all objects.
+std::size_t grid_side(std::size_t copies) {
+  std::size_t side = 1;
+  while (side * side < copies) ++side;
+  return side;
+}
+
+/// How far copies are apart: a border's room, or a tenth more than what the objects take.
+Vec3d cell_size(const Show& show) {
+  Vec3d size = 1.1 * extent_of(show).size();
+  const std::optional<Border>& border = show.simulation.border;
+  for (const int axis : {0, 2}) {
+    const double room = border ? (*border)[1][axis] - (*border)[0][axis] : 0;
+    if (std::isfinite(room)) size[axis] = std::max(size[axis], room);
+    if (!(size[axis] > 0)) size[axis] = 1;
+  }
+  return size;
+}
+
+void set_apart(ShowObject& object, std::size_t copy, const Vec3d& offset) {
+  if (object.options.name.empty()) object.options.name = object.mesh.name;
+  object.options.name += " #";
+  object.options.name += std::to_string(copy + 1);
+  for (Vec3d& p : object.mesh.positions) p = p + offset;
+  // The same waves and random numbers would let copies move alike.
+  if (auto* const sway = std::get_if<Sway>(&object.motion)) sway->seed += copy * 1'000'003;
+  if (auto* const springs = std::get_if<MassSpringMotion>(&object.motion); springs && springs->seed)
+    *springs->seed += copy * 1'000'003;
+}
+
+void repeat_objects(Show& show, std::size_t count) {
+  std::vector<ShowObject>& objects = show.objects;
+  const std::size_t given = objects.size();
+  if (count <= given || given == 0) {
+    objects.resize(std::min(count, given));
+    return;
+  }
+  const Vec3d cell = cell_size(show);
+  const std::size_t copies = (count + given - 1) / given;
+  const std::size_t side = grid_side(copies);
+  objects.reserve(count);
+  for (std::size_t i = given; i < count; ++i) {
+    const std::size_t copy = i / given;
+    const Vec3d offset{static_cast<double>(copy % side) * cell.x, 0,
+                       static_cast<double>(copy / side) * cell.z};
+    objects.push_back(objects[i % given]);
+    set_apart(objects.back(), copy, offset);
+  }
+  if (show.simulation.border) {
+    Vec3d& far = (*show.simulation.border)[1];
+    far.x += static_cast<double>(side - 1) * cell.x;
+    far.z += static_cast<double>((copies - 1) / side) * cell.z;
+  }
+}
+
+[[noreturn]] void fail_about(const ShowObject& object, const char* what, double value, const char* range) {
+  std::string message = object.options.name.empty() ? object.mesh.name : object.options.name;
+  message += std::string(": ") + what;
+  message += " is " + std::to_string(value);
+  message += std::string("; it must be ") + range;
+  fail(message);
+}
+
+void check_sway(const ShowObject& object, const Sway& sway) {
+  const auto positive = [](double value) { return std::isfinite(value) && value > 0; };
+  if (!positive(sway.wavelength))
+    fail_about(object, "Sway::wavelength", sway.wavelength, "finite and more than 0");
+  if (!positive(sway.period)) fail_about(object, "Sway::period", sway.period, "finite and more than 0");
+  if (!std::isfinite(sway.amplitude)) fail_about(object, "Sway::amplitude", sway.amplitude, "finite");
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!std::isfinite(sway.velocity[axis]))
+      fail_about(object, "Sway::velocity", sway.velocity[axis], "finite");
+  }
+}
+
+}  // namespace
+
+Show arranged(const Show& show, const Settings& settings) {
+  Show arranged = show;
+  if (settings.objects) repeat_objects(arranged, *settings.objects);
+  SimulationOptions& simulation = arranged.simulation;
+  simulation.scene.bounding_volume = settings.bounding_volume.value_or(simulation.scene.bounding_volume);
+  simulation.scene.broad_phase = settings.broad_phase.value_or(simulation.scene.broad_phase);
+  simulation.scene.contacts = settings.contacts.value_or(simulation.scene.contacts);
+  // A scene of its own gives these (FramePacker), and only when they are asked for.
+  simulation.scene.colliding_vertices = false;
+  simulation.time_step = settings.time_step.value_or(simulation.time_step);
+  simulation.seed = settings.seed.value_or(simulation.seed);
+  for (ShowObject& object : arranged.objects) {
+    ObjectOctreeOptions& octree = object.options.octree;
+    octree.max_level = settings.max_level.value_or(octree.max_level);
+    octree.leaf_size = settings.leaf_size.value_or(octree.leaf_size);
+    if (auto* const motion = std::get_if<MassSpringMotion>(&object.motion))
+      motion->springs.integrator = settings.integrator.value_or(motion->springs.integrator);
+  }
+  return arranged;
+}
+
+void check_show(const Show& show) {
+  constexpr std::size_t most_elements = 100'000'000;
+  std::size_t vertices = 0, triangles = 0;
+  for (const ShowObject& object : show.objects) {
+    check_mesh(object.mesh);
+    if (const auto* const sway = std::get_if<Sway>(&object.motion)) check_sway(object, *sway);
+    vertices += object.mesh.positions.size();
+    triangles += object.mesh.triangles.size();
+  }
+  if (std::max(vertices, triangles) <= most_elements) return;
+  fail("the objects have " + std::to_string(vertices) + " vertices and " + std::to_string(triangles) +
+       " triangles; a page can show at most " + std::to_string(most_elements) + " of each");
+}
+
+}  // namespace supple::viewer

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "show.hpp"
+#include "supple/motion.hpp"
+#include "supple/options.hpp"
+
+namespace supple::viewer {
+
+/// What the commands `set` and `reset` say instead of the show.
+struct Settings {
+  std::optional<BoundingVolume> bounding_volume{};
+  std::optional<std::uint32_t> max_level{}, leaf_size{};
+  std::optional<std::uint32_t> objects{};  ///< how many
+  std::optional<Integrator> integrator{};
+  std::optional<BroadPhaseMethod> broad_phase{};
+  std::optional<ContactMode> contacts{};
+  std::optional<double> time_step{};
+  std::optional<std::uint64_t> seed{};
+};
+
+/// The show with these settings. More objects than it has are copies, set out in a grid beside it, in a
+/// border that grows with them.
+Show arranged(const Show& show, const Settings& settings);
+
+/// Throws `Error` that names the object and the value when an object of a show is not what it should be, or
+/// when there is more than messages can hold.
+void check_show(const Show& show);
+
+}  // namespace supple::viewer

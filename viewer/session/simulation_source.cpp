@@ -1,0 +1,129 @@
+#include "simulation_source.hpp"
+
+#include <algorithm>
+#include <variant>
+
+#include "extent.hpp"
+
+namespace supple::viewer {
+
+SimulationSource::SimulationSource(const Show& show)
+    : show_(show),
+      simulation_(show.simulation),
+      versions_(show.objects.size(), 1),
+      bends_(show.objects.size()) {
+  for (const ShowObject& object : show.objects) add(object);
+  simulation_.detect();
+}
+
+void SimulationSource::add(const ShowObject& object) {
+  if (const auto* const springs = std::get_if<MassSpringMotion>(&object.motion)) {
+    ids_.push_back(simulation_.add(object.mesh, object.options, *springs));
+  } else if (std::holds_alternative<Sway>(object.motion)) {
+    const std::size_t number = ids_.size();
+    TriangleMesh start = object.mesh;
+    move_swaying(number, 0, start.positions);
+    ids_.push_back(
+        simulation_.add(start, object.options, [this, number](double seconds, std::span<Vec3d> positions) {
+          move_swaying(number, seconds, positions);
+        }));
+  } else {
+    ids_.push_back(simulation_.add(object.mesh, object.options));
+  }
+}
+
+/// The waves, on top of them what it was bent by before, and what is held where it is dragged to.
+void SimulationSource::move_swaying(std::size_t object, double seconds, std::span<Vec3d> positions) {
+  const ShowObject& shown = show_.objects[object];
+  sway(std::get<Sway>(shown.motion), show_.simulation.border, shown.mesh.positions, seconds, positions);
+  const std::vector<Vec3d>& bend = bends_[object];
+  for (std::size_t i = 0; i < bend.size(); ++i) positions[i] = positions[i] + bend[i];
+  if (!grip_ || grip_->object != object || !grip_->target) return;
+  held_offset_ = *grip_->target - positions[grip_->vertex];
+  for (std::size_t i = 0; i < grip_->vertices.size(); ++i) {
+    Vec3d& p = positions[grip_->vertices[i]];
+    p = p + grip_->weights[i] * held_offset_;
+  }
+}
+
+void SimulationSource::take_step() {
+  if (grip_ && grip_->target) {
+    pull_held();
+    bend_held();
+  }
+  simulation_.step();
+  is_detected_ = true;
+  motion_seconds_ = simulation_.motion_seconds();
+  for (std::size_t i = 0; i < versions_.size(); ++i) {
+    if (moves_by_itself(i)) ++versions_[i];
+  }
+}
+
+std::optional<std::string> SimulationSource::grab(std::size_t object, std::uint32_t vertex,
+                                                  std::optional<double> radius) {
+  release();
+  const ShowObject& shown = show_.objects[object];
+  const std::string& name = scene().name(ids_[object]);
+  if (shown.options.is_static) return name + " is static: it neither moves nor bends";
+  const auto about_vertex = [&] { return "vertex " + std::to_string(vertex) + " of " + name; };
+  if (!is_finite(shown.mesh.positions[vertex]) || !is_finite(positions(object)[vertex]))
+    return about_vertex() + " is at no finite place; take another one";
+  is_fixed_.clear();
+  if (const MassSpringBody* const body = simulation_.body(ids_[object])) {
+    is_fixed_.resize(shown.mesh.positions.size());
+    for (const std::uint32_t fixed : body->options().fixed_vertices) is_fixed_[fixed] = true;
+    if (is_fixed_[vertex]) return about_vertex() + " is a fixed one; take another one";
+  }
+  grip_ = take_hold(shown.mesh, positions(object), vertex, radius);
+  grip_->object = object;
+  return std::nullopt;
+}
+
+void SimulationSource::drag(const Vec3d& target) {
+  grip_->target = target;
+  is_dragged_ = true;
+}
+
+void SimulationSource::release() {
+  if (!grip_) return;
+  settle();
+  if (grip_->target && std::holds_alternative<Sway>(show_.objects[grip_->object].motion)) {
+    std::vector<Vec3d>& bend = bends_[grip_->object];
+    bend.resize(show_.objects[grip_->object].mesh.positions.size());
+    for (std::size_t i = 0; i < grip_->vertices.size(); ++i)
+      bend[grip_->vertices[i]] = bend[grip_->vertices[i]] + grip_->weights[i] * held_offset_;
+  }
+  grip_.reset();
+  is_dragged_ = false;
+  held_offset_ = {};
+}
+
+bool SimulationSource::needs_steps() const {
+  return grip_ && grip_->target && moves_by_itself(grip_->object);
+}
+
+bool SimulationSource::settle() {
+  bend_held();
+  if (is_detected_) return false;
+  simulation_.detect();
+  is_detected_ = true;
+  return true;
+}
+
+void SimulationSource::bend_held() {
+  if (!grip_ || !is_dragged_ || moves_by_itself(grip_->object)) return;
+  const std::span<const Vec3d> now = positions(grip_->object);
+  scratch_.assign(now.begin(), now.end());
+  bend(*grip_, scratch_);
+  simulation_.set_positions(ids_[grip_->object], scratch_);
+  ++versions_[grip_->object];
+  is_dragged_ = false;
+  is_detected_ = false;
+}
+
+void SimulationSource::pull_held() {
+  if (MassSpringBody* const body = simulation_.body(ids_[grip_->object]))
+    pull(*grip_, is_fixed_, *body, show_.simulation.time_step, scratch_);
+}
+
+}  // namespace supple::viewer

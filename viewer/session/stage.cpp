@@ -1,0 +1,30 @@
+#include "stage.hpp"
+
+#include <algorithm>
+
+#include "extent.hpp"
+
+namespace supple::viewer {
+
+Stage::Stage(const Show& show, const Settings& settings, std::uint64_t frame)
+    : show_(arranged(show, settings)), center_{extent_of(show_).center()} {
+  check_show(show_);
+  if (show_.frames == nullptr) {
+    simulation_ = std::make_unique<SimulationSource>(show_);
+    return;
+  }
+  recording_ = std::make_unique<RecordingSource>(show_);
+  if (frame > 0) recording_->seek(frame);
+}
+
+const Source& Stage::source() const {
+  return simulation_ ? static_cast<const Source&>(*simulation_) : *recording_;
+}
+
+bool Stage::has_motion() const {
+  if (recording_) return recording_->frame_count() > 1;
+  return std::any_of(show_.objects.begin(), show_.objects.end(),
+                     [](const ShowObject& object) { return object.motion.index() != 0; });
+}
+
+}  // namespace supple::viewer
