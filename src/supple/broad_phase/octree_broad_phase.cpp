@@ -98,7 +98,8 @@ void OctreeBroadPhase::search_regions(const ObjectVolumes& volumes, const Parall
   for (const std::uint32_t slot : changed_) is_changed_[slot] = 0;
 }
 
-/// Judged by some of many boxes. A search in bulk is right whatever the others did, and needs no list of them.
+/// Judged by some of many boxes. A search in bulk is right whatever the others did, and needs no list of
+/// them.
 bool OctreeBroadPhase::did_most_change(const ObjectVolumes& volumes) const {
   constexpr std::size_t kMany = 1 << 14, kJudged = 64;
   const std::size_t count = volumes.boxes.size();
