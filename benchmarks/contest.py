@@ -429,6 +429,10 @@ def chosen_cells(arguments):
     cells = QUICK if arguments.quick else FULL
     if not arguments.only:
         return cells
+    for pattern in arguments.only:
+        if "*" in pattern and not fnmatch.filter(FULL, pattern):
+            sys.exit(f"contest.py: no cell matches {pattern}; --list prints all, and --only takes one name or pattern "
+                     "and may be repeated")
     chosen = [cell for cell in FULL if any(fnmatch.fnmatch(cell, pattern) for pattern in arguments.only)]
     # A name that is in no list may still be a cell, such as B/5120x27.
     chosen += [name for name in arguments.only if name not in chosen and "*" not in name]

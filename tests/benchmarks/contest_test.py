@@ -127,6 +127,11 @@ class Driver(unittest.TestCase):
         self.assertEqual((results, failed, disagree), ([], True, False))
         self.assertIn("A/u2/10", told.getvalue())
 
+    def test_a_pattern_that_matches_nothing_is_an_error(self):
+        self.assertGreater(len(contest.chosen_cells(contest.parsed(["--only", "A/u1/*", "--only", "B/80x8"]))), 4)
+        with self.assertRaisesRegex(SystemExit, "no cell matches A/u1/\\*,B/\\*"):
+            contest.chosen_cells(contest.parsed(["--only", "A/u1/*,B/*"]))
+
 
 if __name__ == "__main__":
     unittest.main()

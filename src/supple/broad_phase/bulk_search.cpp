@@ -5,12 +5,16 @@
 #include <cmath>
 #include <utility>
 
+#include "broad_phase/change_kernel.hpp"
+
 namespace supple {
 namespace {
 
 /// Boxes of a block fit into the second-level cache twice.
 constexpr std::size_t kBlockSize = 4096;
 constexpr std::uint32_t kMostBlocks = 1024;
+/// Boxes that come are still in the second-level cache when so many are measured.
+constexpr std::size_t kMeasuredAtOnce = 2048;
 /// Boxes that an average box shares its cell with; more take longer to search than regions to be made.
 constexpr std::uint64_t kMostInCell = 256;
 /// With a pair among so many tests branches on whether there are any are mispredicted too often.
@@ -23,13 +27,14 @@ std::uint32_t divisions_of(double width, double cell, double most) {
 }  // namespace
 
 bool BulkSearch::find(std::span<const Aabb> boxes, std::span<const BoundingSphere> spheres,
-                      const Parallel& parallel, std::size_t last_pair_count, std::span<PairBins> found) {
+                      const Parallel& parallel, std::size_t last_pair_count, std::span<PairBins> found,
+                      const IncomingBoxes& incoming) {
   boxes_.exact = boxes;
   boxes_.spheres = spheres;
-  if (!deal_by_old_plan(parallel)) {
-    planner_.choose(boxes, plan_);
+  if (!incoming.from.empty() || !deal_by_old_plan(parallel)) {
+    planner_.choose(incoming.from.empty() ? boxes : incoming.from, plan_);
     divide();
-    measure(boxes, parallel);
+    measure(incoming, parallel);
     company_ = deal(parallel);
     plan_uses_ = 0;
     planned_count_ = boxes.size();
@@ -63,7 +68,7 @@ bool BulkSearch::deal_by_old_plan(const Parallel& parallel) {
   if (count == 0 || count != planned_count_ || count > kFew || plan_uses_ == kUses) return false;
   ++plan_uses_;
   for (BoxRows& rows : boxes_.levels) rows.reach = {};
-  measure(boxes_.exact, parallel);
+  measure({}, parallel);
   for (std::size_t k = 0; k < 3; ++k)
     if (boxes_.levels.back().reach[k] > planned_reach_[k] + planned_reach_[k] / 2) return false;
   return deal(parallel) <= company_ + company_ / 4 + 16;
@@ -117,32 +122,46 @@ void BulkSearch::divide() {
   boxes_.cell_begins.resize(std::size_t{cells} + 2);
 }
 
-void BulkSearch::measure(std::span<const Aabb> boxes, const Parallel& parallel) {
-  measured_.resize(std::max(measured_.size(), boxes.size() + 1));
-  blocks_.resize(boxes.size());
-  const std::size_t level_count = boxes_.levels.size(), block_count = measure_.first_block[level_count];
+void BulkSearch::measure(const IncomingBoxes& incoming, const Parallel& parallel) {
+  const std::size_t count = boxes_.exact.size();
+  measured_.resize(std::max(measured_.size(), count + 1));
+  blocks_.resize(count);
   // Some for each worker, so that none waits long for another.
   const std::size_t chunk_count = parallel.worker_count() == 1 ? 1 : 4 * parallel.worker_count();
   chunks_.resize(chunk_count);
   parallel.for_ranges(chunk_count, 1, [&](std::size_t first, std::size_t last, std::uint32_t) {
     for (std::size_t i = first; i < last; ++i) {
-      Chunk& chunk = chunks_[i];
-      chunk.begin = boxes.size() * i / chunk_count;
-      chunk.end = boxes.size() * (i + 1) / chunk_count;
-      chunk.block_sizes.assign(block_count, 0);
-      chunk.reach.assign(level_count, {});
-      chunk.measured =
-          measure_boxes(measure_, boxes_.levels, boxes.subspan(chunk.begin, chunk.end - chunk.begin),
-                        static_cast<std::uint32_t>(chunk.begin),
-                        {measured_.data() + chunk.begin, blocks_.data() + chunk.begin,
-                         chunk.block_sizes.data(), chunk.reach.data()});
+      chunks_[i].begin = count * i / chunk_count;
+      chunks_[i].end = count * (i + 1) / chunk_count;
+      measure_chunk(incoming, chunks_[i]);
     }
   });
-  for (std::size_t level = 0; level < level_count; ++level)
+  for (std::size_t level = 0; level < boxes_.levels.size(); ++level)
     for (std::size_t k = 0; k < 3; ++k)
       for (const Chunk& chunk : chunks_)
         boxes_.levels[level].reach[k] =
             std::max(boxes_.levels[level].reach[k], chunk.reach[level][plan_.axes[k]]);
+}
+
+void BulkSearch::measure_chunk(const IncomingBoxes& incoming, Chunk& chunk) {
+  chunk.block_sizes.assign(measure_.first_block.back(), 0);
+  chunk.reach.assign(boxes_.levels.size(), {});
+  chunk.measured = chunk.changed = 0;
+  for (std::size_t begin = chunk.begin; begin < chunk.end; begin += kMeasuredAtOnce) {
+    const std::size_t end = std::min(begin + kMeasuredAtOnce, chunk.end);
+    if (!incoming.from.empty())
+      chunk.changed += take_over_boxes(incoming.from.data(), incoming.to, begin, end);
+    const std::size_t place = chunk.begin + chunk.measured;
+    chunk.measured += measure_boxes(
+        measure_, boxes_.levels, boxes_.exact.subspan(begin, end - begin), static_cast<std::uint32_t>(begin),
+        {measured_.data() + place, blocks_.data() + place, chunk.block_sizes.data(), chunk.reach.data()});
+  }
+}
+
+std::size_t BulkSearch::changed() const {
+  std::size_t sum = 0;
+  for (const Chunk& chunk : chunks_) sum += chunk.changed;
+  return sum;
 }
 
 std::uint64_t BulkSearch::deal(const Parallel& parallel) {

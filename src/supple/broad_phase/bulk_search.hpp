@@ -10,6 +10,13 @@
 
 namespace supple {
 
+/// Boxes that have come, and where they are to be kept: copied as they are measured, so that they come from
+/// memory once. None when empty.
+struct IncomingBoxes {
+  std::span<const Aabb> from;
+  Aabb* to = nullptr;  ///< the boxes that are searched, as they were
+};
+
 /// Finds all overlapping pairs of boxes anew, with nothing kept from the step before: boxes are measured in
 /// whole steps, dealt out by size, row and cell, and each is held against those that follow it in its row and
 /// the rows beside, 16 at a time. Each pair is found once. Memory is kept from call to call.
@@ -20,8 +27,9 @@ class BulkSearch {
   /// there are some, these are the boxes, and only pairs of balls that overlap are added. `last_pair_count`
   /// pairs came of the call before.
   bool find(std::span<const Aabb> boxes, std::span<const BoundingSphere> spheres, const Parallel& parallel,
-            std::size_t last_pair_count, std::span<PairBins> found);
+            std::size_t last_pair_count, std::span<PairBins> found, const IncomingBoxes& incoming = {});
   std::uint64_t tests() const;
+  std::size_t changed() const;  ///< how many of the incoming boxes differed from those before
   std::size_t box_count() const { return block_begins_.back(); }  ///< that were not empty
   /// How the last call searched.
   const BoxMeasure& measure() const { return measure_; }
@@ -30,14 +38,15 @@ class BulkSearch {
  private:
   /// A range of boxes that are measured by one worker.
   struct Chunk {
-    std::size_t begin = 0, end = 0, measured = 0;
+    std::size_t begin = 0, end = 0, measured = 0, changed = 0;
     std::vector<std::uint32_t> block_sizes;  // then the places that its boxes go to
     std::vector<std::array<std::uint32_t, 3>> reach;
   };
 
   bool deal_by_old_plan(const Parallel& parallel);
   void divide();
-  void measure(std::span<const Aabb> boxes, const Parallel& parallel);
+  void measure(const IncomingBoxes& incoming, const Parallel& parallel);
+  void measure_chunk(const IncomingBoxes& incoming, Chunk& chunk);
   /// Returns the sum over all cells of the squares of their counts.
   std::uint64_t deal(const Parallel& parallel);
   void deal_chunk(Chunk& chunk);

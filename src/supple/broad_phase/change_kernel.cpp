@@ -52,19 +52,22 @@ HWY_INLINE bool differ(const Aabb& now, const Aabb& before) {
 }
 #endif
 
+/// The processor's own guesses of what is read next end at each page.
+constexpr std::size_t kAhead = 192;
+
+HWY_INLINE void fetch_ahead(const Aabb* now, const Aabb* before, std::size_t i) {
+  for (std::size_t k = 0; k < 3; ++k) {
+    hwy::Prefetch(reinterpret_cast<const char*>(now + i + kAhead) + 64 * k);
+    hwy::Prefetch(reinterpret_cast<const char*>(before + i + kAhead) + 64 * k);
+  }
+}
+
 std::size_t list_changed(const Aabb* now, const Aabb* before, std::size_t begin, std::size_t end,
                          std::uint32_t* out) {
-  // The processor's own guesses end at each page.
-  constexpr std::size_t kAhead = 192;
   std::size_t count = 0;
   for (std::size_t i = begin; i < end;) {
     const std::size_t block_end = i + kBlock < end ? i + kBlock : end;
-    if (i + kAhead + kBlock <= end) {
-      for (std::size_t k = 0; k < 3; ++k) {
-        hwy::Prefetch(reinterpret_cast<const char*>(now + i + kAhead) + 64 * k);
-        hwy::Prefetch(reinterpret_cast<const char*>(before + i + kAhead) + 64 * k);
-      }
-    }
+    if (i + kAhead + kBlock <= end) fetch_ahead(now, before, i);
     if (block_end == i + kBlock && same_block(now + i, before + i)) {
       i = block_end;
       continue;
@@ -73,6 +76,16 @@ std::size_t list_changed(const Aabb* now, const Aabb* before, std::size_t begin,
       out[count] = static_cast<std::uint32_t>(i);
       count += static_cast<std::size_t>(differ(now[i], before[i]));
     }
+  }
+  return count;
+}
+
+std::size_t take_over(const Aabb* now, Aabb* before, std::size_t begin, std::size_t end) {
+  std::size_t count = 0;
+  for (std::size_t i = begin; i < end; ++i) {
+    if ((i - begin) % kBlock == 0) fetch_ahead(now, before, i);  // past the end too, where the next begin
+    count += static_cast<std::size_t>(differ(now[i], before[i]));
+    before[i] = now[i];
   }
   return count;
 }
@@ -86,10 +99,15 @@ HWY_AFTER_NAMESPACE();
 namespace supple {
 
 HWY_EXPORT(list_changed);
+HWY_EXPORT(take_over);
 
 std::size_t list_changed_boxes(const Aabb* now, const Aabb* before, std::size_t begin, std::size_t end,
                                std::uint32_t* out) {
   return HWY_DYNAMIC_DISPATCH(list_changed)(now, before, begin, end, out);
+}
+
+std::size_t take_over_boxes(const Aabb* now, Aabb* before, std::size_t begin, std::size_t end) {
+  return HWY_DYNAMIC_DISPATCH(take_over)(now, before, begin, end);
 }
 
 }  // namespace supple

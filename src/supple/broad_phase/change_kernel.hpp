@@ -12,4 +12,7 @@ namespace supple {
 std::size_t list_changed_boxes(const Aabb* now, const Aabb* before, std::size_t begin, std::size_t end,
                                std::uint32_t* out);
 
+/// Copies boxes [begin, end) over those that were there before; returns how many differed, in the same sense.
+std::size_t take_over_boxes(const Aabb* now, Aabb* before, std::size_t begin, std::size_t end);
+
 }  // namespace supple

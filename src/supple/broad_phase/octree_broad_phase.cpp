@@ -46,6 +46,10 @@ OctreeBroadPhase::OctreeBroadPhase(BoundingVolume bounding_volume, const SceneOc
 std::span<const IndexPair> OctreeBroadPhase::find_pairs(const ObjectVolumes& volumes,
                                                         const Parallel& parallel) {
   stats_ = {};
+  if (did_most_change(volumes)) {
+    search_in_bulk(volumes, parallel, {volumes.boxes, tree_.mutable_boxes().data()});
+    return pairs_;
+  }
   detect_changes(volumes, parallel);
   stats_.objects_changed = changed_.size();
   if (changed_.empty()) return pairs_;
@@ -94,12 +98,28 @@ void OctreeBroadPhase::search_regions(const ObjectVolumes& volumes, const Parall
   for (const std::uint32_t slot : changed_) is_changed_[slot] = 0;
 }
 
+/// Judged by some of many boxes. A search in bulk is right whatever the others did, and needs no list of
+/// them.
+bool OctreeBroadPhase::did_most_change(const ObjectVolumes& volumes) const {
+  constexpr std::size_t kMany = 1 << 14, kJudged = 64;
+  const std::size_t count = volumes.boxes.size();
+  if (bounding_volume_ != BoundingVolume::aabb || volumes.changed || count != known_slots_ || count < kMany)
+    return false;
+  if (count != tree_.slot_count() || always_regions_ || basis_ == Basis::regions) return false;
+  std::size_t changed = 0;
+  for (std::size_t i = 0; i < kJudged; ++i)
+    changed += static_cast<std::size_t>(is_changed(volumes, count * i / kJudged));
+  return 2 * changed > kJudged;
+}
+
 /// Anew, without regions, which fall behind, unless the scene is too crowded for this.
-void OctreeBroadPhase::search_in_bulk(const ObjectVolumes& volumes, const Parallel& parallel) {
+void OctreeBroadPhase::search_in_bulk(const ObjectVolumes& volumes, const Parallel& parallel,
+                                      const IncomingBoxes& incoming) {
   basis_ = Basis::nothing;
   const auto bins = sorter_.start(parallel.worker_count(), tree_.slot_count());
-  if (!bulk_.find(tree_.boxes(), tree_.spheres(), parallel, pairs_.size(), bins))
-    return search_regions(volumes, parallel, false);
+  const bool found = bulk_.find(tree_.boxes(), tree_.spheres(), parallel, pairs_.size(), bins, incoming);
+  if (!incoming.from.empty()) stats_.objects_changed = bulk_.changed();
+  if (!found) return search_regions(volumes, parallel, false);
   sorter_.finish(false, parallel, pairs_);
   basis_ = Basis::bulk;
   live_ = stats_.objects_paired = bulk_.box_count();

@@ -42,7 +42,9 @@ class OctreeBroadPhase final : public PairFinder {
   };
 
   void search_regions(const ObjectVolumes& volumes, const Parallel& parallel, bool few_changed);
-  void search_in_bulk(const ObjectVolumes& volumes, const Parallel& parallel);
+  void search_in_bulk(const ObjectVolumes& volumes, const Parallel& parallel,
+                      const IncomingBoxes& incoming = {});
+  bool did_most_change(const ObjectVolumes& volumes) const;
   bool move_in_cells(const ObjectVolumes& volumes);
   void detect_changes(const ObjectVolumes& volumes, const Parallel& parallel);
   void take_told(const ObjectVolumes& volumes);

@@ -26,6 +26,7 @@ std::size_t PairBins::chunk_after(std::size_t chunk) {
     pool_.resize(before_.size() * kChunk);
   }
   before_[chunk_count_] = static_cast<std::uint32_t>(chunk);
+  fetch(chunk_count_);
   return chunk_count_++ * kChunk;
 }
 

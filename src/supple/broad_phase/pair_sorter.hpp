@@ -1,5 +1,7 @@
 #pragma once
 
+#include <hwy/cache_control.h>
+
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -28,6 +30,7 @@ class PairBins {
   void for_each_chunk(std::size_t bin, Visit&& visit) const {
     std::size_t chunk = next_[bin] / kChunk, size = next_[bin] % kChunk;
     while (true) {
+      if (chunk != bin) fetch(before_[chunk]);
       visit(std::span<const IndexPair>(pool_.data() + chunk * kChunk, size));
       if (chunk == bin) return;
       chunk = before_[chunk];
@@ -36,9 +39,14 @@ class PairBins {
   }
 
  private:
-  static constexpr std::size_t kChunk = 128;
+  static constexpr std::size_t kChunk = 128, kPairsPerLine = 8;
   /// Where a further chunk of the same bin begins.
   std::size_t chunk_after(std::size_t chunk);
+  /// Chunks of a bin lie apart in memory: the processor does not guess which comes next.
+  void fetch(std::size_t chunk) const {
+    const IndexPair* const first = pool_.data() + chunk * kChunk;
+    for (std::size_t i = 0; i < kChunk; i += kPairsPerLine) hwy::Prefetch(first + i);
+  }
 
   int shift_ = 0;
   std::size_t chunk_count_ = 0;

@@ -190,6 +190,7 @@ std::size_t measure(const BoxMeasure& measure, std::span<const BoxRows> levels, 
   const Measure of_box(measure);
   Measure::Reach reach = Measure::Reach::nothing();
   const bool one_block = measure.first_block.back() == 1;
+  const std::uint32_t before = out.block_sizes[0];
   const std::size_t batch = of_box.batch();
   std::size_t count = 0;
   for (std::size_t i = 0; i < boxes.size();) {
@@ -210,7 +211,7 @@ std::size_t measure(const BoxMeasure& measure, std::span<const BoxRows> levels, 
   if (!one_block) return count;
   // What was left of the only block when boxes were measured many at a time.
   std::fill_n(out.blocks, count, 0);
-  out.block_sizes[0] = static_cast<std::uint32_t>(count);
+  out.block_sizes[0] = before + static_cast<std::uint32_t>(count);
   const std::array<std::uint32_t, 3> largest = reach.largest();
   for (std::size_t axis = 0; axis < 3; ++axis)
     out.reach[0][axis] = std::max(out.reach[0][axis], largest[axis]);

@@ -280,5 +280,20 @@ TEST(OctreeBroadPhase, DealsBoxesOutAnewWhenTheyHaveMovedFar) {
   EXPECT_LE(anew, 20u);
 }
 
+TEST(OctreeBroadPhase, CountsAndKeepsWhatChangedHoweverManyDid) {
+  TwoKinds kinds;
+  constexpr float kSide = 40;
+  std::vector<Aabb> boxes = test::random_boxes(20'000, kSide, 0.5f, 12);
+  Random random(13);
+  for (const std::uint32_t one_in : {1u, 1u, 0u, 1u, 100u, 2u, 3u, 1u, 8u, 1u, 2000u, 1u, 1u}) {
+    for (Aabb& box : boxes)
+      if (one_in != 0 && random.below(one_in) == 0) box = moved(box, random, kSide, 0.5f);
+    kinds.step(boxes);
+    if (one_in == 3) boxes.resize(boxes.size() - 1500);
+    if (one_in == 8) boxes.insert(boxes.end(), 2000, box_around({1, 2, 3}, {0.01f, 0.01f, 0.01f}));
+  }
+  EXPECT_EQ(boxes.size(), 20'500u);
+}
+
 }  // namespace
 }  // namespace supple
