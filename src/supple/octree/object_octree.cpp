@@ -7,6 +7,7 @@
 
 #include "geometry/aabb.hpp"
 #include "geometry/vector.hpp"
+#include "octree/balanced_build.hpp"
 #include "octree/box_kernels.hpp"
 #include "octree/octree_build.hpp"
 
@@ -32,6 +33,16 @@ std::vector<Vec3d> box_centers(const Positions& positions, std::span<const Trian
     centers.push_back(center);
   }
   return centers;
+}
+
+/// Balanced trees are of eight children.
+template <class Positions>
+OctreeTopology build_topology(const Positions& positions, std::span<const Triangle> triangles,
+                              std::size_t vertex_count, const ObjectOctreeOptions& options,
+                              std::uint32_t first_level) {
+  const std::vector<Vec3d> centers = box_centers(positions, triangles);
+  if (options.regular || options.arity != 8) return build_octree(centers, options, first_level);
+  return build_balanced_octree(centers, triangles, vertex_count, options, first_level);
 }
 
 Aabb lane_box(const AabbLanes& lanes, int lane) {
@@ -91,7 +102,7 @@ ObjectOctree::ObjectOctree(const PositionsView<double>& rest_positions, std::spa
                            const ObjectOctreeOptions& options, BoundingVolume bounding_volume,
                            SphereFit sphere_fit, VertexNumbering numbering)
     : vertex_count_(rest_positions.count), options_(options), sphere_fit_(sphere_fit) {
-  OctreeTopology topology = build_octree(box_centers(rest_positions, triangles), options);
+  OctreeTopology topology = build_topology(rest_positions, triangles, vertex_count_, options, 0);
   nodes_ = std::move(topology.nodes);
   nodes_.shrink_to_fit();
   level_begin_ = std::move(topology.level_begin);
@@ -150,7 +161,8 @@ NewSubtree ObjectOctree::build_subtree(std::uint32_t node, const VertexBuffer& v
                                         triangles_.begin() + static_cast<std::ptrdiff_t>(first + count));
   const std::vector<std::uint32_t> ids(triangle_ids_.begin() + static_cast<std::ptrdiff_t>(first),
                                        triangle_ids_.begin() + static_cast<std::ptrdiff_t>(first + count));
-  NewSubtree subtree{node, build_octree(box_centers(vertices, triangles), options_, nodes_[node].level)};
+  NewSubtree subtree{node,
+                     build_topology(vertices, triangles, vertex_count_, options_, nodes_[node].level)};
   for (std::size_t i = 0; i < count; ++i) {
     triangles_[first + i] = triangles[subtree.topology.order[i]];
     triangle_ids_[first + i] = ids[subtree.topology.order[i]];
