@@ -1,6 +1,7 @@
 #include "octree/balanced_build.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -40,7 +41,7 @@ class BalancedBuilder {
         parts_(connected_parts(triangles, vertex_count)),
         options_(options),
         deepest_(options.max_level - std::min(options.max_level, first_level)),
-        fill_(options.leaf_size - options.leaf_size / 4),
+        fill_(options.leaf_size / 2 + options.leaf_size % 2),
         points_(centers.size()) {}
 
   OctreeTopology build() {
@@ -110,6 +111,7 @@ class BalancedBuilder {
       node.first_triangle[i] = lane.begin;
       if (!should_split(lane, node.level + 1u) || lanes_.size() == 1) {
         fill_places(lane);
+        order_leaf(std::span(points_).subspan(lane.begin, lane.size()));
         continue;
       }
       node.inner_mask = static_cast<std::uint8_t>(node.inner_mask | 1u << i);
@@ -121,13 +123,14 @@ class BalancedBuilder {
     topology_.nodes[n] = node;
   }
 
-  /// Below a node are as few levels as may be, of full nodes but the first; on the last it has as many lanes
-  /// as leaves.
+  /// Below a node are as few levels as may be: children fill up what their parent planned for, however its
+  /// cuts came out. A node on the last has a lane for each leaf; others have two, four or eight, as halves
+  /// follow grids and the like better than sevenths, and nodes of leaves are well filled all the same.
   void choose_lanes(const Range& range, std::uint32_t level) {
-    const std::uint32_t most = (fill_ + options_.leaf_size) / 2;
+    const std::uint32_t most = fill_ + (options_.leaf_size - fill_) / 2;
     std::uint64_t under_lane = 1;  // leaves
     std::uint32_t levels = 1;
-    while (range.size() > under_lane * most * node_width) {
+    while (range.size() > under_lane * (level == 0 ? most : options_.leaf_size) * node_width) {
       under_lane *= node_width;
       ++levels;
     }
@@ -143,7 +146,7 @@ class BalancedBuilder {
   }
 
   void cut_into_lanes(const Range& range, std::uint32_t lanes) {
-    if (lanes == 1 || range.size() <= options_.leaf_size) {
+    if (lanes == 1 || range.size() <= (range.parts == 1 ? options_.leaf_size : fill_)) {
       lanes_.push_back(range);
       return;
     }
@@ -215,6 +218,29 @@ class BalancedBuilder {
     return static_cast<std::uint32_t>(cut_.cut(points, box.longest_axis(), box, goal));
   }
 
+  /// Along the Morton curve of 64 cells of the cube around it: neighbours follow each other, so that pairs of
+  /// triangles that are tested together mostly end alike.
+  void order_leaf(std::span<CutPoint> points) {
+    const CutBox box = box_of(points);
+    const float scale = 4 / box.extent(box.longest_axis());
+    if (!(scale < std::numeric_limits<float>::infinity())) return;
+    std::array<std::uint32_t, 65> next{};
+    leaf_cells_.clear();
+    leaf_points_.assign(points.begin(), points.end());
+    for (const CutPoint& point : points) {
+      constexpr std::uint8_t spread[4] = {0, 1, 8, 9};
+      std::uint32_t cell = 0;
+      for (int axis = 0; axis < 3; ++axis) {
+        cell |= std::uint32_t{spread[std::min(static_cast<int>((point.at[axis] - box.low[axis]) * scale), 3)]}
+                << axis;
+      }
+      leaf_cells_.push_back(static_cast<std::uint8_t>(cell));
+      ++next[cell + 1];
+    }
+    for (std::size_t cell = 0; cell < 64; ++cell) next[cell + 1] += next[cell];
+    for (std::size_t i = 0; i < points.size(); ++i) points[next[leaf_cells_[i]]++] = leaf_points_[i];
+  }
+
   /// With the triangles of the range's parts.
   void fill_places(const Range& range) {
     std::uint32_t place = range.begin;
@@ -280,6 +306,8 @@ class BalancedBuilder {
   // Of the node that is being split.
   std::vector<Range> lanes_;
   std::uint64_t lane_limit_ = 0;  ///< triangles
+  std::vector<std::uint8_t> leaf_cells_;
+  std::vector<CutPoint> leaf_points_;
 };
 
 }  // namespace

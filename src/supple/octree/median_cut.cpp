@@ -1,6 +1,8 @@
 #include "octree/median_cut.hpp"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -31,14 +33,17 @@ void extend(CutBox& box, const CutBox& other) {
 }
 
 CutBox box_of(std::span<const CutPoint> points) {
-  CutBox box = empty_cut_box();
+  // The number comes along as a fourth coordinate: so four are compared at a time.
+  constexpr float inf = std::numeric_limits<float>::infinity();
+  std::array<float, 4> low{inf, inf, inf, inf}, high{-inf, -inf, -inf, -inf};
   for (const CutPoint& point : points) {
-    for (int axis = 0; axis < 3; ++axis) {
-      box.low[axis] = point.at[axis] < box.low[axis] ? point.at[axis] : box.low[axis];
-      box.high[axis] = point.at[axis] > box.high[axis] ? point.at[axis] : box.high[axis];
+    const auto at = std::bit_cast<std::array<float, 4>>(point);
+    for (std::size_t lane = 0; lane < 4; ++lane) {
+      low[lane] = at[lane] < low[lane] ? at[lane] : low[lane];
+      high[lane] = at[lane] > high[lane] ? at[lane] : high[lane];
     }
   }
-  return box;
+  return {{low[0], low[1], low[2]}, {high[0], high[1], high[2]}};
 }
 
 int CutBox::longest_axis() const {
@@ -53,16 +58,15 @@ double CutBox::surface() const {
 }
 
 std::size_t MedianCut::cut(std::span<CutPoint> points, int axis, const CutBox& box, const CutGoal& goal) {
-  Cells cells{box.low[axis], box.high[axis], 0, points.size() < 1024 ? 128u : 1024u};
-  for (;;) {
+  const std::uint32_t cell_count = points.size() < 256 ? 64 : points.size() < 2048 ? 256 : 1024;
+  Cells cells{box.low[axis], box.high[axis], 0, cell_count};
+  for (bool all_within = true;; all_within = false) {
     cells.scale = static_cast<float>(cells.count - 2) / (cells.high - cells.low);
     // Equal, or so near that floats have no reciprocal for it.
     if (!(cells.scale < std::numeric_limits<float>::infinity())) return cut_equal(points, axis, cells, goal);
-    weigh(points, axis, cells);
+    weigh(points, axis, cells, all_within);
     const std::uint32_t best = best_cell(goal);
-    if (best != 0) {
-      return partition(points, [&](const CutPoint& point) { return cells(point.at[axis]) >= best; });
-    }
+    if (best != 0) return cut_before(points, axis, cells, best);
     // The target is within a cell that weighs too much: look into it.
     std::uint32_t target_cell = 0;
     for (std::uint32_t before = 0; before + cell_weights_[target_cell] < goal.target; ++target_cell) {
@@ -79,12 +83,13 @@ std::size_t MedianCut::cut(std::span<CutPoint> points, int axis, const CutBox& b
   }
 }
 
-void MedianCut::weigh(std::span<const CutPoint> points, int axis, const Cells& cells) {
+void MedianCut::weigh(std::span<const CutPoint> points, int axis, const Cells& cells, bool all_within) {
   cell_weights_.assign(cells.count, 0);
-  if (weights_.empty()) {
-    for (const CutPoint& point : points) ++cell_weights_[cells(point.at[axis])];
+  std::uint32_t* const cell_weights = cell_weights_.data();
+  if (all_within && weights_.empty()) {
+    for (const CutPoint& point : points) ++cell_weights[cells.within(point.at[axis])];
   } else {
-    for (const CutPoint& point : points) cell_weights_[cells(point.at[axis])] += weight(point);
+    for (const CutPoint& point : points) cell_weights[cells(point.at[axis])] += weight(point);
   }
 }
 
@@ -120,20 +125,33 @@ std::uint32_t MedianCut::best_cell(const CutGoal& goal) const {
   return nearest_distance <= reach ? nearest : 0;
 }
 
+/// Those in the cells before `cell` come first.
+std::size_t MedianCut::cut_before(std::span<CutPoint> points, int axis, const Cells& cells,
+                                  std::uint32_t cell) {
+  if (cell == cells.count - 1) {
+    return partition(points, [&](const CutPoint& point) { return point.at[axis] > cells.high; });
+  }
+  // A number is rounded down to a whole one or more exactly when it is so much itself.
+  const float low = cells.low, scale = cells.scale, least = static_cast<float>(cell - 1);
+  return partition(points, [=](const CutPoint& point) { return (point.at[axis] - low) * scale >= least; });
+}
+
 template <class IsUpper>
 std::size_t MedianCut::partition(std::span<CutPoint> points, IsUpper is_upper) {
   if (upper_.size() < points.size()) upper_.resize(points.size());
-  std::size_t lower = 0, upper = 0;
+  // Both are written and one counts, without a branch that would be guessed wrong half of the time.
+  CutPoint* lower = points.data();
+  CutPoint* upper = upper_.data();
   for (const CutPoint& point : points) {
     const CutPoint copy = point;
-    const bool goes_up = is_upper(copy);
-    points[lower] = copy;
-    upper_[upper] = copy;
-    lower += goes_up ? 0 : 1;
-    upper += goes_up ? 1 : 0;
+    const std::ptrdiff_t goes_up = is_upper(copy) ? 1 : 0;
+    *lower = copy;
+    *upper = copy;
+    lower += 1 - goes_up;
+    upper += goes_up;
   }
-  std::copy_n(upper_.begin(), upper, points.begin() + static_cast<std::ptrdiff_t>(lower));
-  return lower;
+  std::copy(upper_.data(), upper, lower);
+  return static_cast<std::size_t>(lower - points.data());
 }
 
 /// Before those in the cells, behind them, or in their midst when neither is within the limits.

@@ -7,7 +7,7 @@
 namespace supple {
 
 /// A point that is to be told apart from others: of something with that number, of some weight.
-struct CutPoint {
+struct alignas(16) CutPoint {
   float at[3];
   std::uint32_t id;
 };
@@ -47,26 +47,29 @@ class MedianCut {
   std::size_t cut(std::span<CutPoint> points, int axis, const CutBox& box, const CutGoal& goal);
 
  private:
-  /// The coordinates from `low` to `high` in cells of one size; those before and those behind them have a
-  /// cell each.
+  /// The coordinates from `low` to `high` in cells of one size, from 1 to `count` - 2; those before and those
+  /// behind them have a cell each.
   struct Cells {
     float low, high, scale;
-    std::uint32_t count;  ///< with these two
+    std::uint32_t count;
 
+    /// Of a coordinate from `low` to `high`.
+    std::uint32_t within(float coordinate) const {
+      const float cell = (coordinate - low) * scale, last = static_cast<float>(count - 3);
+      return 1 + static_cast<std::uint32_t>(cell < last ? cell : last);
+    }
     std::uint32_t operator()(float coordinate) const {
-      if (coordinate < low) return 0;
-      if (coordinate > high) return count - 1;
-      const auto cell = static_cast<std::uint32_t>((coordinate - low) * scale);
-      return 1 + (cell < count - 3 ? cell : count - 3);
+      return coordinate < low ? 0 : coordinate > high ? count - 1 : within(coordinate);
     }
   };
 
   std::uint32_t weight(const CutPoint& point) const { return weights_.empty() ? 1 : weights_[point.id]; }
-  void weigh(std::span<const CutPoint> points, int axis, const Cells& cells);
+  void weigh(std::span<const CutPoint> points, int axis, const Cells& cells, bool all_within);
   std::uint32_t best_cell(const CutGoal& goal) const;
+  std::size_t cut_before(std::span<CutPoint> points, int axis, const Cells& cells, std::uint32_t cell);
+  std::size_t cut_equal(std::span<CutPoint> points, int axis, const Cells& cells, const CutGoal& goal);
   template <class IsUpper>
   std::size_t partition(std::span<CutPoint> points, IsUpper is_upper);
-  std::size_t cut_equal(std::span<CutPoint> points, int axis, const Cells& cells, const CutGoal& goal);
 
   std::span<const std::uint32_t> weights_;
   std::vector<std::uint32_t> cell_weights_;
