@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <tuple>
 #include <utility>
 
 #include "geometry/aabb.hpp"
@@ -154,18 +155,20 @@ OctreeRebuild ObjectOctree::rebuild(std::span<const std::uint32_t> subtrees, con
   return {std::move(relinked.old_nodes), std::move(numbers)};
 }
 
-/// Its triangles come into their new order at once.
+/// Its triangles come into their new order at once. They are built in the user's order, so that a subtree does
+/// not depend on what was there before.
 NewSubtree ObjectOctree::build_subtree(std::uint32_t node, const VertexBuffer& vertices) {
   const std::size_t first = nodes_[node].first_triangle[0], count = nodes_[node].size();
-  const std::vector<Triangle> triangles(triangles_.begin() + static_cast<std::ptrdiff_t>(first),
-                                        triangles_.begin() + static_cast<std::ptrdiff_t>(first + count));
-  const std::vector<std::uint32_t> ids(triangle_ids_.begin() + static_cast<std::ptrdiff_t>(first),
-                                       triangle_ids_.begin() + static_cast<std::ptrdiff_t>(first + count));
+  std::vector<std::pair<std::uint32_t, Triangle>> given;
+  given.reserve(count);
+  for (std::size_t t = first; t < first + count; ++t) given.emplace_back(triangle_ids_[t], triangles_[t]);
+  std::sort(given.begin(), given.end(), [](auto& p, auto& q) { return p.first < q.first; });
+  for (std::size_t i = 0; i < count; ++i) triangles_[first + i] = given[i].second;
+  const auto triangles = std::span<const Triangle>(triangles_).subspan(first, count);
   NewSubtree subtree{node,
                      build_topology(vertices, triangles, vertex_count_, options_, nodes_[node].level)};
   for (std::size_t i = 0; i < count; ++i) {
-    triangles_[first + i] = triangles[subtree.topology.order[i]];
-    triangle_ids_[first + i] = ids[subtree.topology.order[i]];
+    std::tie(triangle_ids_[first + i], triangles_[first + i]) = given[subtree.topology.order[i]];
   }
   return subtree;
 }
