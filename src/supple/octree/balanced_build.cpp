@@ -171,6 +171,8 @@ class BalancedBuilder {
     if (range.parts < 2) return false;
     const std::span<CutPoint> points = parts_of(range);
     const CutBox all = box_of_parts(points);
+    // Triangles can have new coordinates.
+    if (all.extent(all.longest_axis()) < least_extent) return false;
     const std::size_t count = order_parts(points, range.size());
     const auto lower_parts = points.first(count), upper_parts = points.subspan(count);
     std::uint32_t size = 0;

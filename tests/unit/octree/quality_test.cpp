@@ -163,7 +163,7 @@ TEST(TreeQuality, IsNotKnownOfWhatHasNoSurfaceOrTooMuch) {
   EXPECT_EQ(measured.quality.degradation(), 1);
   EXPECT_TRUE(measured.quality.degraded().empty());
   measured.measure(mesh.positions);
-  EXPECT_EQ(measured.quality.degradation(), 1);
+  EXPECT_DOUBLE_EQ(measured.quality.degradation(), 1);
 }
 
 TEST(TreeQuality, FindsAnObjectBuiltWhileItWasAPoint) {
