@@ -1,6 +1,8 @@
 #include "octree/connected_parts.hpp"
 
+#include <algorithm>
 #include <limits>
+#include <numeric>
 
 #include "mesh/vertex_sets.hpp"
 
@@ -11,6 +13,16 @@ ConnectedParts connected_parts(std::span<const Triangle> triangles, std::size_t 
   for (const Triangle& triangle : triangles) {
     sets.join(triangle[0], triangle[1]);
     sets.join(triangle[1], triangle[2]);
+  }
+  // Most objects hang together.
+  const bool is_one = std::all_of(triangles.begin(), triangles.end(), [&](const Triangle& triangle) {
+    return sets.root(triangle[0]) == sets.root(triangles[0][0]);
+  });
+  if (is_one && !triangles.empty()) {
+    ConnectedParts whole{{}, {0, static_cast<std::uint32_t>(triangles.size())}};
+    whole.triangles.resize(triangles.size());
+    std::iota(whole.triangles.begin(), whole.triangles.end(), 0u);
+    return whole;
   }
   constexpr std::uint32_t unknown = std::numeric_limits<std::uint32_t>::max();
   std::vector<std::uint32_t> part_of_root(vertex_count, unknown), part_of_triangle;
