@@ -9,9 +9,9 @@
 
 namespace supple {
 
-/// Balanced top-down octree over triangles by their centres: eight-wide nodes, each made by up to three rounds
-/// of cuts in two. Leaves come out about equally full, at half of `leaf_size` mostly, and so do the nodes
-/// above them; a regular octree has as many of both as the cells of space happen to cut out.
+/// Balanced top-down octree over triangles by their centres: eight-wide nodes, each made by up to three
+/// rounds of cuts in two. Leaves come out about equally full, at half of `leaf_size` mostly, and so do the
+/// nodes above them; a regular octree has as many of both as the cells of space happen to cut out.
 ///
 /// Triangles that hang together by vertices stay together: cuts go between such parts first, as these may go
 /// different ways, unless their boxes would overlap too much. Within a part the longest axis is cut near the

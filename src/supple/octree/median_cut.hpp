@@ -43,7 +43,8 @@ class MedianCut {
   explicit MedianCut(std::span<const std::uint32_t> weights = {}) : weights_(weights) {}
 
   /// Puts those of the lower side first, both sides in the order in which they were; returns how many these
-  /// are: at least one of two or more, and not all, if none weighs more than the target or than the rest. O(n).
+  /// are: at least one of two or more, and not all, if none weighs more than the target or than the rest.
+  /// O(n).
   std::size_t cut(std::span<CutPoint> points, int axis, const CutBox& box, const CutGoal& goal);
 
  private:

@@ -155,8 +155,8 @@ OctreeRebuild ObjectOctree::rebuild(std::span<const std::uint32_t> subtrees, con
   return {std::move(relinked.old_nodes), std::move(numbers)};
 }
 
-/// Its triangles come into their new order at once. They are built in the user's order, so that a subtree does
-/// not depend on what was there before.
+/// Its triangles come into their new order at once. They are built in the user's order, so that a subtree
+/// does not depend on what was there before.
 NewSubtree ObjectOctree::build_subtree(std::uint32_t node, const VertexBuffer& vertices) {
   const std::size_t first = nodes_[node].first_triangle[0], count = nodes_[node].size();
   std::vector<std::pair<std::uint32_t, Triangle>> given;
@@ -165,8 +165,7 @@ NewSubtree ObjectOctree::build_subtree(std::uint32_t node, const VertexBuffer& v
   std::sort(given.begin(), given.end(), [](auto& p, auto& q) { return p.first < q.first; });
   for (std::size_t i = 0; i < count; ++i) triangles_[first + i] = given[i].second;
   const auto triangles = std::span<const Triangle>(triangles_).subspan(first, count);
-  NewSubtree subtree{node,
-                     build_topology(vertices, triangles, vertex_count_, options_, nodes_[node].level)};
+  NewSubtree subtree{node, build_topology(vertices, triangles, vertex_count_, options_, nodes_[node].level)};
   for (std::size_t i = 0; i < count; ++i) {
     std::tie(triangle_ids_[first + i], triangles_[first + i]) = given[subtree.topology.order[i]];
   }

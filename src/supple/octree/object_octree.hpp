@@ -39,9 +39,9 @@ struct OctreeRebuild {
 /// is not a node of its own: the parent shrinks to it, so that a stray vertex far away costs one level. A
 /// regular tree of arity 4 or 2 has quarters or halves for octants and leaves lanes empty.
 ///
-/// Each inner node has two lanes at least. Nodes lie level by level. Triangles are renumbered in octree order.
-/// Leaves are large: testing dozens of triangles in vectors costs less than nodes that would tell them apart,
-/// and only the triangles of leaves that a query meets are looked at.
+/// Each inner node has two lanes at least. Nodes lie level by level. Triangles are renumbered in octree
+/// order. Leaves are large: testing dozens of triangles in vectors costs less than nodes that would tell them
+/// apart, and only the triangles of leaves that a query meets are looked at.
 ///
 /// Memory besides the positions: 272 bytes a node, 19 a triangle, 4 for each vertex of each leaf; 8 a vertex
 /// when numbered by first use, 128 a node more with spheres.

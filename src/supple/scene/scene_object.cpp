@@ -74,8 +74,8 @@ BoundingSphere moved(const BoundingSphere& sphere, const Vec3d& offset) {
   return result;
 }
 
-/// Vertices, edges and faces of two leaves are all tested in continuous contacts, most of them in vain: leaves
-/// half as large are faster. A regular octree is what it is asked to be.
+/// Vertices, edges and faces of two leaves are all tested in continuous contacts, most of them in vain:
+/// leaves half as large are faster. A regular octree is what it is asked to be.
 ObjectOctreeOptions octree_options(const ObjectOptions& options, const SceneOptions& scene_options) {
   ObjectOctreeOptions octree = options.octree;
   if (scene_options.contacts == ContactMode::continuous && !octree.regular && octree.arity == 8) {
@@ -98,8 +98,7 @@ SceneObject::SceneObject(const PositionsView<double>& positions, std::span<const
                          const ObjectOptions& object_options, const SceneOptions& scene_options)
     : options(object_options),
       octree_(positions, triangles, octree_options(object_options, scene_options),
-              scene_options.bounding_volume,
-              scene_options.sphere_fit,
+              scene_options.bounding_volume, scene_options.sphere_fit,
               scene_options.contacts == ContactMode::continuous ? VertexNumbering::by_first_use
                                                                 : VertexNumbering::given),
       is_continuous_(scene_options.contacts == ContactMode::continuous),

@@ -81,15 +81,32 @@ TriangleMesh hard(TriangleMesh mesh, std::uint32_t way, RandomNumbers& random) {
   constexpr double inf = std::numeric_limits<double>::infinity();
   for (Vec3d& p : mesh.positions) {
     switch (way) {
-      case 0: p = {1, 2, 3}; break;
-      case 1: p = p * 1e-310; break;
-      case 2: p = p * 1e305; break;
-      case 3: p = {static_cast<double>(random.below(2)), 0, 0}; break;
-      case 4: p = random.below(3) == 0 ? Vec3d{inf, 0, 0} : p; break;
-      case 5: p = random.below(40) == 0 ? p * 1e30 : p; break;
-      case 6: p = p + Vec3d{1e12, -1e12, 0}; break;
-      case 7: p = p * std::exp(700 * random.uniform(-1, 1)); break;
-      default: p = {p.x, 0, 0};
+      case 0:
+        p = {1, 2, 3};
+        break;
+      case 1:
+        p = p * 1e-310;
+        break;
+      case 2:
+        p = p * 1e305;
+        break;
+      case 3:
+        p = {static_cast<double>(random.below(2)), 0, 0};
+        break;
+      case 4:
+        p = random.below(3) == 0 ? Vec3d{inf, 0, 0} : p;
+        break;
+      case 5:
+        p = random.below(40) == 0 ? p * 1e30 : p;
+        break;
+      case 6:
+        p = p + Vec3d{1e12, -1e12, 0};
+        break;
+      case 7:
+        p = p * std::exp(700 * random.uniform(-1, 1));
+        break;
+      default:
+        p = {p.x, 0, 0};
     }
   }
   return mesh;
@@ -270,11 +287,20 @@ TEST(MedianCut, KeepsWithinItsLimitsAndTheOrder) {
     for (std::uint32_t i = 0; i < count; ++i) {
       const auto x = static_cast<float>(random.uniform(-1, 1));
       switch (round % 5) {
-        case 0: places.push_back(x); break;
-        case 1: places.push_back(static_cast<float>(random.below(3))); break;
-        case 2: places.push_back(x * x * x * x * 1e-30f * (random.below(9) == 0 ? 1e37f : 1)); break;
-        case 3: places.push_back(static_cast<float>(random.below(50)) * 0x1p-100f); break;
-        default: places.push_back(random.below(2) == 0 ? 0 : x);
+        case 0:
+          places.push_back(x);
+          break;
+        case 1:
+          places.push_back(static_cast<float>(random.below(3)));
+          break;
+        case 2:
+          places.push_back(x * x * x * x * 1e-30f * (random.below(9) == 0 ? 1e37f : 1));
+          break;
+        case 3:
+          places.push_back(static_cast<float>(random.below(50)) * 0x1p-100f);
+          break;
+        default:
+          places.push_back(random.below(2) == 0 ? 0 : x);
       }
     }
     std::vector<CutPoint> points = points_at(places);

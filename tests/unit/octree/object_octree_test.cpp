@@ -61,7 +61,8 @@ TEST(ObjectOctree, StaysValidOverSizesAndOptions) {
         for (const auto& [arity, regular] : {std::pair{2u, true}, {4u, true}, {8u, true}, {8u, false}}) {
           const BoundingVolume volume = count % 2 == 0 ? BoundingVolume::aabb : BoundingVolume::sphere;
           const Soup soup = scattered_soup(count, 2, {1, 2, 3}, count);
-          Built built(soup, {.max_level = max_level, .leaf_size = leaf_size, .arity = arity, .regular = regular},
+          Built built(soup,
+                      {.max_level = max_level, .leaf_size = leaf_size, .arity = arity, .regular = regular},
                       volume);
           EXPECT_EQ(built.refit(soup), "") << count << ' ' << leaf_size << ' ' << max_level << ' ' << arity;
           const OctreeStatistics statistics = built.octree.statistics();
