@@ -33,6 +33,7 @@ PairCost cost_of_pair(const TriangleMesh& a, const TriangleMesh& b, const Object
   Scene scene(options);
   ObjectOptions object;
   object.octree = octree;
+  object.octree.regular = true;
   PairCost cost;
   ObjectId id_a, id_b;
   std::vector<double> builds;

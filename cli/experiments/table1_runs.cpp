@@ -94,6 +94,7 @@ RunCounts run_scene(const std::string& scene, BoundingVolume volume, std::uint64
   for (const cli::InputObject& object : input.objects) {
     ObjectOptions options = object.options;
     options.octree.leaf_size = 1;
+    options.octree.regular = true;
     simulation.add(object.mesh, options, std::get<MassSpringMotion>(*object.motion));
   }
   RunCounts counts;

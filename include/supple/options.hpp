@@ -46,12 +46,17 @@ struct ObjectOctreeOptions {
   /// one of arity 2 three times as many, so that no cell is smaller.
   std::uint32_t max_level = 16;
   /// A node with at most this many triangles is not split, ≥ 1. The triangles of two leaves that meet are
-  /// tested in vectors, so that small leaves are slower; and they take more memory.
+  /// tested in vectors, so that small leaves are slower; and they take more memory. With continuous contacts
+  /// half as many, unless `regular`.
   std::uint32_t leaf_size = 64;
   /// Children of a node: 8, 4 or 2. A level then halves a node's cell along three axes, two or one, which
   /// take turns. Contacts are the same for all, the paper's colliding vertices are not: the leaves differ.
   /// Nodes are eight lanes wide in any case, so fewer children take more memory and time; for comparison.
   std::uint32_t arity = 8;
+  /// Build the paper's regular octree: a node's children are the octants of its cell. Otherwise, and if the
+  /// arity is 8, triangles are shared out among children so that leaves are about equally full, which takes
+  /// fewer of them. Contacts are the same, the paper's colliding vertices are not: the leaves differ.
+  bool regular = false;
   /// Build parts anew when the object has deformed so far from what they were built from that queries cost
   /// too much, and a scene has paid for that often enough. Contacts are the same; for comparison. Never when
   /// a scene gives the paper's colliding vertices or has its spheres, which depend on the leaves.

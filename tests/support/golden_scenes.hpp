@@ -20,7 +20,9 @@ inline Scene scene_of(const std::vector<TriangleMesh>& meshes, const SceneOption
                       std::uint32_t arity = 8) {
   Scene scene(options);
   for (const TriangleMesh& mesh : meshes) {
-    scene.add(mesh, {.self_collision = true, .octree = {.leaf_size = 3, .arity = arity}});
+    // Colliding vertices are those of whole leaves: the hash is of a regular octree's.
+    scene.add(mesh, {.self_collision = true,
+                     .octree = {.leaf_size = 3, .arity = arity, .regular = options.colliding_vertices}});
   }
   return scene;
 }

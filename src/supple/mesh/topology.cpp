@@ -1,8 +1,9 @@
 #include "supple/topology.hpp"
 
 #include <algorithm>
-#include <numeric>
 #include <vector>
+
+#include "mesh/vertex_sets.hpp"
 
 namespace supple {
 namespace {
@@ -15,25 +16,6 @@ bool is_degenerate(const Triangle& triangle) {
 std::uint64_t edge_key(std::uint32_t a, std::uint32_t b) {
   return std::uint64_t{std::min(a, b)} << 32 | std::max(a, b);
 }
-
-// Disjoint sets of vertices, as trees in a flat array; halving the paths keeps them short.
-class VertexSets {
- public:
-  explicit VertexSets(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0u); }
-
-  std::uint32_t root(std::uint32_t vertex) {
-    while (parent_[vertex] != vertex) vertex = parent_[vertex] = parent_[parent_[vertex]];
-    return vertex;
-  }
-  void join(std::uint32_t a, std::uint32_t b) {
-    a = root(a);
-    b = root(b);
-    parent_[std::max(a, b)] = std::min(a, b);
-  }
-
- private:
-  std::vector<std::uint32_t> parent_;
-};
 
 void count_edges(std::vector<std::uint64_t> edges, MeshTopology& topology) {
   std::sort(edges.begin(), edges.end());

@@ -11,6 +11,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "core/packed_lanes-inl.hpp"
 #include "octree/triangle_boxes-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -259,7 +260,7 @@ HWY_INLINE Aabb box_at(const LeafBoxes& leaf, std::uint32_t i) {
   return {{leaf.min_x[i], leaf.min_y[i], leaf.min_z[i]}, {leaf.max_x[i], leaf.max_y[i], leaf.max_z[i]}};
 }
 
-#if HWY_TARGET <= HWY_AVX3
+#if HWY_TARGET <= HWY_AVX2
 
 /// The chosen triangles, each with `other`; returns how many. Writes a whole vector of pairs in any case, and
 /// does not branch on what is chosen. Only AVX-512 compresses vectors by an instruction.
@@ -276,7 +277,7 @@ HWY_INLINE std::size_t store_pairs(NumberVec triangles, BoxMask chosen, std::uin
     if constexpr (chosen_is_b) return hn::Or(hn::ShiftLeft<32>(wide), others);
     return hn::Or(wide, others);
   };
-  const auto compressed = hn::Compress(triangles, hn::RebindMask(numbers, chosen));
+  const auto compressed = packed_lanes(numbers, triangles, hn::RebindMask(numbers, chosen));
   auto* const place = reinterpret_cast<std::uint64_t*>(pairs);
   hn::StoreU(paired(hn::LowerHalf(half, compressed)), whole_pairs, place);
   hn::StoreU(paired(hn::UpperHalf(half, compressed)), whole_pairs, place + hn::Lanes(whole_pairs));

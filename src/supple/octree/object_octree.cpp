@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <tuple>
 #include <utility>
 
 #include "geometry/aabb.hpp"
 #include "geometry/vector.hpp"
+#include "octree/balanced_build.hpp"
 #include "octree/box_kernels.hpp"
 #include "octree/octree_build.hpp"
 
@@ -32,6 +34,16 @@ std::vector<Vec3d> box_centers(const Positions& positions, std::span<const Trian
     centers.push_back(center);
   }
   return centers;
+}
+
+/// Balanced trees are of eight children.
+template <class Positions>
+OctreeTopology build_topology(const Positions& positions, std::span<const Triangle> triangles,
+                              std::size_t vertex_count, const ObjectOctreeOptions& options,
+                              std::uint32_t first_level) {
+  const std::vector<Vec3d> centers = box_centers(positions, triangles);
+  if (options.regular || options.arity != 8) return build_octree(centers, options, first_level);
+  return build_balanced_octree(centers, triangles, vertex_count, options, first_level);
 }
 
 Aabb lane_box(const AabbLanes& lanes, int lane) {
@@ -91,7 +103,7 @@ ObjectOctree::ObjectOctree(const PositionsView<double>& rest_positions, std::spa
                            const ObjectOctreeOptions& options, BoundingVolume bounding_volume,
                            SphereFit sphere_fit, VertexNumbering numbering)
     : vertex_count_(rest_positions.count), options_(options), sphere_fit_(sphere_fit) {
-  OctreeTopology topology = build_octree(box_centers(rest_positions, triangles), options);
+  OctreeTopology topology = build_topology(rest_positions, triangles, vertex_count_, options, 0);
   nodes_ = std::move(topology.nodes);
   nodes_.shrink_to_fit();
   level_begin_ = std::move(topology.level_begin);
@@ -143,17 +155,19 @@ OctreeRebuild ObjectOctree::rebuild(std::span<const std::uint32_t> subtrees, con
   return {std::move(relinked.old_nodes), std::move(numbers)};
 }
 
-/// Its triangles come into their new order at once.
+/// Its triangles come into their new order at once. They are built in the user's order, so that a subtree
+/// does not depend on what was there before.
 NewSubtree ObjectOctree::build_subtree(std::uint32_t node, const VertexBuffer& vertices) {
   const std::size_t first = nodes_[node].first_triangle[0], count = nodes_[node].size();
-  const std::vector<Triangle> triangles(triangles_.begin() + static_cast<std::ptrdiff_t>(first),
-                                        triangles_.begin() + static_cast<std::ptrdiff_t>(first + count));
-  const std::vector<std::uint32_t> ids(triangle_ids_.begin() + static_cast<std::ptrdiff_t>(first),
-                                       triangle_ids_.begin() + static_cast<std::ptrdiff_t>(first + count));
-  NewSubtree subtree{node, build_octree(box_centers(vertices, triangles), options_, nodes_[node].level)};
+  std::vector<std::pair<std::uint32_t, Triangle>> given;
+  given.reserve(count);
+  for (std::size_t t = first; t < first + count; ++t) given.emplace_back(triangle_ids_[t], triangles_[t]);
+  std::sort(given.begin(), given.end(), [](auto& p, auto& q) { return p.first < q.first; });
+  for (std::size_t i = 0; i < count; ++i) triangles_[first + i] = given[i].second;
+  const auto triangles = std::span<const Triangle>(triangles_).subspan(first, count);
+  NewSubtree subtree{node, build_topology(vertices, triangles, vertex_count_, options_, nodes_[node].level)};
   for (std::size_t i = 0; i < count; ++i) {
-    triangles_[first + i] = triangles[subtree.topology.order[i]];
-    triangle_ids_[first + i] = ids[subtree.topology.order[i]];
+    std::tie(triangle_ids_[first + i], triangles_[first + i]) = given[subtree.topology.order[i]];
   }
   return subtree;
 }

@@ -31,21 +31,24 @@ struct OctreeRebuild {
   std::vector<std::uint32_t> old_nodes, new_vertices;
 };
 
-/// Regular octree over the triangles of one object: built top-down from the rest pose; its volumes refitted
-/// whenever the object deforms, and subtrees that no longer fit built anew when asked for.
+/// Octree over the triangles of one object: built top-down from the rest pose; its volumes refitted whenever
+/// the object deforms, and subtrees that no longer fit built anew when asked for.
 ///
-/// Every triangle is in the one octant that holds the centre of its box. An octant with all triangles of its
-/// parent is not a node of its own: the parent shrinks to it, so each inner node has two lanes at least and a
-/// stray vertex far away costs one level. Nodes lie level by level. Triangles are renumbered in octree order.
-/// Leaves are large: testing dozens of triangles in vectors costs less than nodes that would tell them apart,
-/// and only the triangles of leaves that a query meets are looked at. A tree of arity 4 or 2 has quarters or
-/// halves for octants and leaves lanes empty.
+/// It is balanced (`octree/balanced_build.hpp`) or, when asked for, the paper's regular one. In that every
+/// triangle is in the one octant that holds the centre of its box. An octant with all triangles of its parent
+/// is not a node of its own: the parent shrinks to it, so that a stray vertex far away costs one level. A
+/// regular tree of arity 4 or 2 has quarters or halves for octants and leaves lanes empty.
+///
+/// Each inner node has two lanes at least. Nodes lie level by level. Triangles are renumbered in octree
+/// order. Leaves are large: testing dozens of triangles in vectors costs less than nodes that would tell them
+/// apart, and only the triangles of leaves that a query meets are looked at.
 ///
 /// Memory besides the positions: 272 bytes a node, 19 a triangle, 4 for each vertex of each leaf; 8 a vertex
 /// when numbered by first use, 128 a node more with spheres.
 class ObjectOctree {
  public:
-  /// O(n log n). Non-finite vertices are allowed; their triangles count as lying in the first octant.
+  /// O(n log n). Non-finite vertices are allowed; their triangles count as lying in the lower
+  /// corner.
   ObjectOctree(const PositionsView<double>& rest_positions, std::span<const Triangle> triangles,
                const ObjectOctreeOptions& options, BoundingVolume bounding_volume, SphereFit sphere_fit,
                VertexNumbering numbering = VertexNumbering::by_first_use);

@@ -4,7 +4,7 @@
 
 namespace supple {
 
-/// Lanes of a node: the eight octants, those without triangles left out.
+/// Lanes of a node: its children; those without triangles are left out.
 constexpr int node_width = 8;
 
 /// Of the low eight bits. `std::popcount` is a call where not every machine has the instruction.

@@ -58,10 +58,12 @@ TEST(ObjectOctree, StaysValidOverSizesAndOptions) {
   for (const std::uint32_t count : {1u, 2u, 8u, 9u, 100u, 5000u}) {
     for (const std::uint32_t leaf_size : {1u, 4u, 8u}) {
       for (const std::uint32_t max_level : {0u, 1u, 3u, 16u}) {
-        for (const std::uint32_t arity : {2u, 4u, 8u}) {
+        for (const auto& [arity, regular] : {std::pair{2u, true}, {4u, true}, {8u, true}, {8u, false}}) {
           const BoundingVolume volume = count % 2 == 0 ? BoundingVolume::aabb : BoundingVolume::sphere;
           const Soup soup = scattered_soup(count, 2, {1, 2, 3}, count);
-          Built built(soup, {.max_level = max_level, .leaf_size = leaf_size, .arity = arity}, volume);
+          Built built(soup,
+                      {.max_level = max_level, .leaf_size = leaf_size, .arity = arity, .regular = regular},
+                      volume);
           EXPECT_EQ(built.refit(soup), "") << count << ' ' << leaf_size << ' ' << max_level << ' ' << arity;
           const OctreeStatistics statistics = built.octree.statistics();
           EXPECT_LE(statistics.depth, max_level * 3 / (arity == 8 ? 3 : arity == 4 ? 2 : 1));
@@ -78,7 +80,7 @@ TEST(ObjectOctree, StaysValidOverSizesAndOptions) {
 TEST(ObjectOctree, TreesOfAnyArityEndInTheSameCells) {
   // Down to single triangles: the same leaves in the same order, by half the levels, or three times as many.
   const Soup soup = scattered_soup(3000, 1, {}, 12);
-  Built eight(soup, {.leaf_size = 1});
+  Built eight(soup, {.leaf_size = 1, .regular = true});
   EXPECT_EQ(eight.refit(soup), "");
   std::uint32_t last_depth = eight.octree.statistics().depth;
   std::uint64_t last_nodes = eight.octree.statistics().nodes;
@@ -112,7 +114,7 @@ TEST(ObjectOctree, LevelsOfAnyArityAreCountedInEights) {
         next += 3;
       }
   for (const std::uint32_t arity : {2u, 4u, 8u}) {
-    Built built(soup, {.max_level = 2, .leaf_size = 1, .arity = arity});
+    Built built(soup, {.max_level = 2, .leaf_size = 1, .arity = arity, .regular = true});
     EXPECT_EQ(built.refit(soup), "");
     EXPECT_EQ(built.octree.statistics().leaves, 64u) << arity;
     EXPECT_EQ(built.octree.statistics().depth, arity == 8 ? 2u : arity == 4 ? 3u : 6u);
@@ -149,26 +151,33 @@ TEST(ObjectOctree, FloatAndDoublePositionsGiveTheSameBoxesForFloatValues) {
   EXPECT_EQ(built.octree.box(), box);
 }
 
-TEST(ObjectOctree, EqualCentresEndInOneLeaf) {
+TEST(ObjectOctree, EqualCentresEndInOneLeafOfARegularTree) {
   Soup soup;
   for (std::uint32_t t = 0; t < 100; ++t) {
     soup.positions.insert(soup.positions.end(), {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
     soup.triangles.push_back({3 * t, 3 * t + 1, 3 * t + 2});
   }
-  Built built(soup);
+  Built built(soup, {.regular = true});
   EXPECT_EQ(built.refit(soup), "");
   EXPECT_EQ(built.octree.statistics().largest_leaf, 100u);
   EXPECT_EQ(built.octree.statistics().depth, 0u);
+  Built balanced(soup);
+  EXPECT_EQ(balanced.refit(soup), "");
+  EXPECT_EQ(balanced.octree.statistics().leaves, 3u);
 }
 
 TEST(ObjectOctree, AFarVertexDoesNotFlattenTheRest) {
-  for (const double far : {1e6, 1e15, 1e30, 1e300}) {
-    Soup soup = scattered_soup(2000, 1, {}, 5);
-    soup.positions[0] = {far, -far, far};
-    Built built(soup);
-    EXPECT_EQ(built.refit(soup), "") << far;
-    EXPECT_LE(built.octree.statistics().largest_leaf, ObjectOctreeOptions{}.leaf_size) << far;
-    EXPECT_LT(built.octree.statistics().depth, 12u) << far;
+  for (const bool regular : {false, true}) {
+    for (const double far : {1e6, 1e15, 1e30, 1e300}) {
+      for (const std::size_t vertex : {0u, 3000u, 5999u}) {
+        Soup soup = scattered_soup(2000, 1, {}, 5);
+        soup.positions[vertex] = {far, -far, far};
+        Built built(soup, {.regular = regular});
+        EXPECT_EQ(built.refit(soup), "") << far;
+        EXPECT_LE(built.octree.statistics().largest_leaf, ObjectOctreeOptions{}.leaf_size) << far;
+        EXPECT_LT(built.octree.statistics().depth, regular ? 12u : 4u) << far;
+      }
+    }
   }
 }
 

@@ -14,10 +14,10 @@ namespace {
 
 /// An octree of a soup, refitted to positions, and its quality.
 struct Measured {
-  explicit Measured(const TriangleMesh& mesh_in)
+  explicit Measured(const TriangleMesh& mesh_in, bool regular = false)
       : mesh(mesh_in),
-        octree(PositionsView<double>(mesh.positions), mesh.triangles, {}, BoundingVolume::aabb,
-               SphereFit::vertices, VertexNumbering::given) {
+        octree(PositionsView<double>(mesh.positions), mesh.triangles, {.regular = regular},
+               BoundingVolume::aabb, SphereFit::vertices, VertexNumbering::given) {
     refit(mesh.positions);
     quality.set_references(boxes());
   }
@@ -163,20 +163,26 @@ TEST(TreeQuality, IsNotKnownOfWhatHasNoSurfaceOrTooMuch) {
   EXPECT_EQ(measured.quality.degradation(), 1);
   EXPECT_TRUE(measured.quality.degraded().empty());
   measured.measure(mesh.positions);
-  EXPECT_EQ(measured.quality.degradation(), 1);
+  EXPECT_DOUBLE_EQ(measured.quality.degradation(), 1);
 }
 
 TEST(TreeQuality, FindsAnObjectBuiltWhileItWasAPoint) {
   TriangleMesh mesh = random_soup(1000, 1, 0.02, 7);
   const std::vector<Vec3d> spread = mesh.positions;
   std::fill(mesh.positions.begin(), mesh.positions.end(), Vec3d{});
-  Measured measured(mesh);
-  ASSERT_EQ(measured.octree.statistics().largest_leaf, 1000u);
-  measured.measure(spread);
-  ASSERT_EQ(measured.quality.degraded().size(), 1u);
-  measured.rebuild();
-  EXPECT_LE(measured.octree.statistics().largest_leaf, ObjectOctreeOptions{}.leaf_size);
-  EXPECT_EQ(measured.octree.validate(measured.vertices, {}), "");
+  for (const bool regular : {false, true}) {
+    Measured measured(mesh, regular);
+    // A regular octree cannot divide equal points, a balanced one divides them anyhow.
+    ASSERT_EQ(measured.octree.statistics().largest_leaf == 1000, regular);
+    measured.measure(spread);
+    ASSERT_EQ(measured.quality.degraded().size(), 1u);
+    ASSERT_EQ(measured.quality.degraded()[0], 0u);
+    const double before = measured.quality.cost();
+    measured.rebuild();
+    EXPECT_LT(measured.quality.cost(), before / 2);
+    EXPECT_LE(measured.octree.statistics().largest_leaf, ObjectOctreeOptions{}.leaf_size);
+    EXPECT_EQ(measured.octree.validate(measured.vertices, {}), "");
+  }
 }
 
 TEST(TreeQuality, IsTheSameOnAllInstructionSetsAndThreads) {

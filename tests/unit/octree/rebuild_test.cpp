@@ -141,14 +141,16 @@ TEST(Rebuild, AnySubtreesOfAnyTreeStayValid) {
 TEST(Rebuild, OfTheRootIsTheTreeBuiltFromPresentPositions) {
   RandomNumbers random(2);
   const TriangleMesh rest = random_soup(3000, 1, 0.05, 3);
-  for (const VertexNumbering numbering : {VertexNumbering::given, VertexNumbering::by_first_use}) {
-    Tree tree(rest, {}, BoundingVolume::aabb, numbering);
+  for (const auto& [numbering, regular] : {std::pair{VertexNumbering::given, false},
+                                           {VertexNumbering::by_first_use, false},
+                                           {VertexNumbering::given, true}}) {
+    const ObjectOctreeOptions options{.regular = regular};
+    Tree tree(rest, options, BoundingVolume::aabb, numbering);
     tree.place(deformed(rest.positions, 0, random));
     tree.rebuild({0});
     tree.expect_valid();
-    const Tree fresh(tree.mesh, {}, BoundingVolume::aabb, numbering);
+    const Tree fresh(tree.mesh, options, BoundingVolume::aabb, numbering);
     ASSERT_EQ(tree.octree.nodes().size(), fresh.octree.nodes().size());
-    // Triangles whose centres are equal may come in another order.
     EXPECT_TRUE(std::equal(tree.octree.triangle_ids().begin(), tree.octree.triangle_ids().end(),
                            fresh.octree.triangle_ids().begin()));
     EXPECT_EQ(tree.octree.statistics().leaves_by_level, fresh.octree.statistics().leaves_by_level);

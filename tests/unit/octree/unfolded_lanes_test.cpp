@@ -164,9 +164,11 @@ TEST(UnfoldedLanes, ABalloonWithinALargeSheet) {
     EXPECT_EQ(root.lane_count, 4);
     return sheet_lanes.lanes.masks()[0];
   };
-  EXPECT_EQ(root_lanes({sheet(40, 40), {}}), 0xf);
-  EXPECT_EQ(root_lanes({sheet(40, 40, balloon), {}}), 0xe);
-  EXPECT_EQ(root_lanes({sheet(40, 40), mapped(sheet(40, 40), balloon)}), 0xe);
+  // Its four lanes are the quarters of the sheet.
+  const ObjectOctreeOptions quarters{.regular = true};
+  EXPECT_EQ(root_lanes({sheet(40, 40), {}, quarters}), 0xf);
+  EXPECT_EQ(root_lanes({sheet(40, 40, balloon), {}, quarters}), 0xe);
+  EXPECT_EQ(root_lanes({sheet(40, 40), mapped(sheet(40, 40), balloon), quarters}), 0xe);
 }
 
 TEST(UnfoldedLanes, SurfacesThatCloseOrOverlap) {

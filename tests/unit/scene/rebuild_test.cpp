@@ -255,7 +255,7 @@ TEST(SceneRebuild, SurvivesPositionsOfAllKinds) {
           ASSERT_EQ(differences(built.scene), "");
         }
       }
-      if (self_collision && triangles >= 33) {
+      if (self_collision && triangles >= 70) {
         EXPECT_GT(built.rebuilt(), 0u) << triangles;
       }
     }

@@ -1,0 +1,355 @@
+#include "octree/balanced_build.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "octree/connected_parts.hpp"
+#include "octree/median_cut.hpp"
+#include "supple/models.hpp"
+#include "support/soups.hpp"
+
+namespace supple {
+namespace {
+
+std::vector<Vec3d> centers_of(const TriangleMesh& mesh) {
+  std::vector<Vec3d> centers;
+  for (const Triangle& t : mesh.triangles) {
+    centers.push_back((mesh.positions[t[0]] + mesh.positions[t[1]] + mesh.positions[t[2]]) * (1.0 / 3));
+  }
+  return centers;
+}
+
+OctreeTopology built(const TriangleMesh& mesh, const ObjectOctreeOptions& options = {}) {
+  return build_balanced_octree(centers_of(mesh), mesh.triangles, mesh.positions.size(), options);
+}
+
+/// The triangles of each leaf, in the order of the tree.
+std::vector<std::vector<std::uint32_t>> leaves_of(const OctreeTopology& topology) {
+  std::vector<std::vector<std::uint32_t>> leaves;
+  for (const OctreeNode& node : topology.nodes) {
+    for (int lane = 0; lane < node.lane_count; ++lane) {
+      if (node.is_inner(lane)) continue;
+      leaves.emplace_back(topology.order.begin() + node.first_triangle[lane],
+                          topology.order.begin() + node.first_triangle[lane + 1]);
+    }
+  }
+  return leaves;
+}
+
+/// That all is in place: what each triangle is in once, and what nodes say of each other.
+void expect_sound(const OctreeTopology& topology, std::size_t count, const ObjectOctreeOptions& options) {
+  std::vector<std::uint32_t> sorted = topology.order, all(count);
+  std::sort(sorted.begin(), sorted.end());
+  std::iota(all.begin(), all.end(), 0u);
+  ASSERT_EQ(sorted, all);
+  ASSERT_EQ(topology.level_begin.back(), topology.nodes.size());
+  std::size_t in_leaves = 0;
+  for (std::uint32_t n = 0; n < topology.nodes.size(); ++n) {
+    const OctreeNode& node = topology.nodes[n];
+    ASSERT_GE(n, topology.level_begin[node.level]);
+    ASSERT_LT(n, topology.level_begin[node.level + 1u]);
+    ASSERT_TRUE(node.lane_count >= 2 || topology.nodes.size() == 1);
+    for (int lane = 0; lane < node.lane_count; ++lane) {
+      ASSERT_GT(node.size(lane), 0u);
+      if (!node.is_inner(lane)) {
+        in_leaves += node.size(lane);
+        if (node.level + 1u < options.max_level) {
+          ASSERT_LE(node.size(lane), options.leaf_size);
+        }
+        continue;
+      }
+      const OctreeNode& child = topology.nodes[node.child(lane)];
+      ASSERT_LT(child.level, options.max_level);
+      ASSERT_EQ(child.parent, n);
+      ASSERT_EQ(child.parent_lane, lane);
+      ASSERT_EQ(child.first_triangle[0], node.first_triangle[lane]);
+      ASSERT_EQ(child.first_triangle[node_width], node.first_triangle[lane + 1]);
+    }
+  }
+  ASSERT_EQ(in_leaves, count);
+}
+
+/// Positions that are hard to tell apart, by number.
+TriangleMesh hard(TriangleMesh mesh, std::uint32_t way, RandomNumbers& random) {
+  constexpr double inf = std::numeric_limits<double>::infinity();
+  for (Vec3d& p : mesh.positions) {
+    switch (way) {
+      case 0:
+        p = {1, 2, 3};
+        break;
+      case 1:
+        p = p * 1e-310;
+        break;
+      case 2:
+        p = p * 1e305;
+        break;
+      case 3:
+        p = {static_cast<double>(random.below(2)), 0, 0};
+        break;
+      case 4:
+        p = random.below(3) == 0 ? Vec3d{inf, 0, 0} : p;
+        break;
+      case 5:
+        p = random.below(40) == 0 ? p * 1e30 : p;
+        break;
+      case 6:
+        p = p + Vec3d{1e12, -1e12, 0};
+        break;
+      case 7:
+        p = p * std::exp(700 * random.uniform(-1, 1));
+        break;
+      default:
+        p = {p.x, 0, 0};
+    }
+  }
+  return mesh;
+}
+
+TEST(BalancedBuild, IsSoundForAnySizesOptionsAndPositions) {
+  RandomNumbers random(1);
+  for (std::uint32_t count = 0; count < 700; count += 1 + count / 3) {
+    for (std::uint32_t way = 0; way < 10; ++way) {
+      for (const bool in_parts : {false, true}) {
+        const TriangleMesh mesh = in_parts ? random_soup(count, 1, 0.1, count)
+                                           : crumpled_sheet(count == 0 ? 0 : 1 + count / 8, 4, 0.1, count);
+        const ObjectOctreeOptions options{.max_level = random.below(4) == 0 ? random.below(4) : 16,
+                                          .leaf_size = 1 + random.below(random.below(2) == 0 ? 4 : 70)};
+        SCOPED_TRACE(std::to_string(count) + " way " + std::to_string(way) + " leaf size " +
+                     std::to_string(options.leaf_size) + " level " + std::to_string(options.max_level));
+        expect_sound(built(hard(mesh, way, random), options), mesh.triangles.size(), options);
+        if (HasFailure()) return;
+      }
+    }
+  }
+}
+
+TEST(BalancedBuild, FillsLeavesAndNodesEvenly) {
+  for (const std::uint32_t frequency : {7u, 13u, 20u, 30u, 44u, 59u}) {
+    const TriangleMesh ball = make_icosphere(frequency);
+    const OctreeTopology topology = built(ball);
+    std::size_t least = ball.triangles.size(), most = 0;
+    const auto leaves = leaves_of(topology);
+    for (const auto& leaf : leaves) {
+      least = std::min(least, leaf.size());
+      most = std::max(most, leaf.size());
+    }
+    const double mean = static_cast<double>(ball.triangles.size()) / static_cast<double>(leaves.size());
+    EXPECT_GE(mean, 24) << frequency;
+    EXPECT_LE(mean, 48) << frequency;
+    EXPECT_LE(static_cast<double>(most), 1.7 * mean) << frequency;
+    EXPECT_GE(static_cast<double>(least), 0.5 * mean) << frequency;
+    std::size_t lanes = 0;
+    for (const OctreeNode& node : topology.nodes) lanes += node.lane_count;
+    EXPECT_GE(static_cast<double>(lanes), 5.5 * static_cast<double>(topology.nodes.size())) << frequency;
+  }
+}
+
+TEST(BalancedBuild, KeepsPartsWhole) {
+  // Small sheets of 30 triangles, one in each cell of a grid and crossing into their neighbours'.
+  RandomNumbers random(2);
+  TriangleMesh mesh;
+  constexpr std::uint32_t of_part = 30;
+  for (std::uint32_t part = 0; part < 200; ++part) {
+    const TriangleMesh sheet = crumpled_sheet(5, 3, 0.01, part);
+    const Vec3d place = Vec3d{double(part % 10), double(part / 10 % 10), double(part / 100)} * 0.7;
+    const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+    for (const Vec3d& p : sheet.positions) mesh.positions.push_back(p + place + random.vector(0.05));
+    for (const Triangle& t : sheet.triangles) {
+      mesh.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+    }
+  }
+  const auto leaves = leaves_of(built(mesh));
+  for (const auto& leaf : leaves) {
+    std::set<std::uint32_t> parts;
+    for (const std::uint32_t t : leaf) parts.insert(t / of_part);
+    EXPECT_EQ(leaf.size(), of_part * parts.size());
+  }
+  EXPECT_LE(leaves.size(), 200u);
+}
+
+TEST(BalancedBuild, CutsThroughPartsThatAreEntangled) {
+  // Threads that cross the whole square, half of them along x and half along z.
+  TriangleMesh mesh;
+  for (std::uint32_t thread = 0; thread < 64; ++thread) {
+    const TriangleMesh sheet = crumpled_sheet(64, 1, 0, 0);
+    const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+    for (const Vec3d& p : sheet.positions) {
+      const double along = p.x, across = (thread / 2 + p.z) / 32.0;
+      mesh.positions.push_back(thread % 2 == 0 ? Vec3d{along, 0, across} : Vec3d{across, 0, along});
+    }
+    for (const Triangle& t : sheet.triangles) {
+      mesh.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+    }
+  }
+  const std::vector<Vec3d> centers = centers_of(mesh);
+  double area = 0;
+  for (const auto& leaf : leaves_of(built(mesh))) {
+    double low_x = 1, high_x = 0, low_z = 1, high_z = 0;
+    for (const std::uint32_t t : leaf) {
+      low_x = std::min(low_x, centers[t].x);
+      high_x = std::max(high_x, centers[t].x);
+      low_z = std::min(low_z, centers[t].z);
+      high_z = std::max(high_z, centers[t].z);
+    }
+    area += (high_x - low_x) * (high_z - low_z);
+  }
+  EXPECT_LT(area, 1.5) << "leaves tile the square";
+}
+
+TEST(BalancedBuild, CutsGridsBetweenRows) {
+  for (const auto& [columns, rows] : {std::pair{40u, 30u}, {24u, 24u}, {100u, 50u}, {64u, 64u}}) {
+    const TriangleMesh sheet = crumpled_sheet(columns, rows, 0, 0);
+    // Both triangles of a square have the same centre, as boxes of theirs would.
+    std::vector<Vec3d> centers = centers_of(sheet);
+    for (std::size_t t = 0; t < centers.size(); t += 2) centers[t] = centers[t + 1];
+    const OctreeTopology topology =
+        build_balanced_octree(centers, sheet.triangles, sheet.positions.size(), {});
+    std::size_t straight = 0;
+    const auto leaves = leaves_of(topology);
+    for (const auto& leaf : leaves) {
+      std::uint32_t left = columns, right = 0, top = rows, bottom = 0;
+      for (const std::uint32_t t : leaf) {
+        const std::uint32_t column = t / 2 % columns, row = t / 2 / columns;
+        left = std::min(left, column);
+        right = std::max(right, column);
+        top = std::min(top, row);
+        bottom = std::max(bottom, row);
+      }
+      straight += leaf.size() == 2 * std::size_t{right - left + 1} * (bottom - top + 1) ? 1 : 0;
+    }
+    EXPECT_EQ(straight, leaves.size()) << columns << " x " << rows;
+  }
+}
+
+TEST(BalancedBuild, EqualTrianglesAreSharedOutInTheirOrder) {
+  TriangleMesh mesh = random_soup(200, 1, 0.1, 3);
+  std::fill(mesh.positions.begin(), mesh.positions.end(), Vec3d{1, 1, 1});
+  const OctreeTopology topology = built(mesh, {.leaf_size = 16});
+  std::vector<std::uint32_t> all(200);
+  std::iota(all.begin(), all.end(), 0u);
+  EXPECT_EQ(topology.order, all);
+  EXPECT_EQ(topology.nodes.size(), 5u);
+}
+
+TEST(BalancedBuild, OneFarVertexLeavesTheRestApart) {
+  for (const double far : {1e10, 1e30, 1e300}) {
+    for (const std::size_t at : {0u, 500u, 1000u, 1999u}) {
+      TriangleMesh mesh = random_soup(2000, 1, 0.01, 4);
+      mesh.positions[3 * at] = {far, far, -far};
+      const std::vector<Vec3d> centers = centers_of(mesh);
+      std::size_t small = 0;
+      const auto leaves = leaves_of(built(mesh));
+      for (const auto& leaf : leaves) {
+        Vec3d low{1, 1, 1}, high{-1, -1, -1};
+        for (const std::uint32_t t : leaf) {
+          for (int axis = 0; axis < 3; ++axis) {
+            low[axis] = std::min(low[axis], centers[t][axis]);
+            high[axis] = std::max(high[axis], centers[t][axis]);
+          }
+        }
+        const Vec3d size = high - low;
+        small += size.x * size.y * size.z < 0.5 ? 1 : 0;
+      }
+      // All but the few that have been cut beside it.
+      EXPECT_GE(small + 8, leaves.size()) << far << ' ' << at;
+    }
+  }
+}
+
+TEST(ConnectedParts, AreFoundByTheirVertices) {
+  EXPECT_EQ(connected_parts({}, 0).count(), 0u);
+  const std::vector<Triangle> triangles{{0, 1, 2}, {6, 7, 8}, {2, 3, 4}, {5, 5, 5}, {8, 9, 8}, {4, 10, 0}};
+  const ConnectedParts parts = connected_parts(triangles, 11);
+  ASSERT_EQ(parts.count(), 3u);
+  EXPECT_EQ(parts.triangles, (std::vector<std::uint32_t>{0, 2, 5, 1, 4, 3}));
+  EXPECT_EQ(parts.first, (std::vector<std::uint32_t>{0, 3, 5, 6}));
+}
+
+std::vector<CutPoint> points_at(const std::vector<float>& places) {
+  std::vector<CutPoint> points;
+  for (const float x : places) points.push_back({{x, 0, 0}, static_cast<std::uint32_t>(points.size())});
+  return points;
+}
+
+TEST(MedianCut, KeepsWithinItsLimitsAndTheOrder) {
+  RandomNumbers random(5);
+  MedianCut cut;
+  for (int round = 0; round < 3000; ++round) {
+    const std::uint32_t count = 2 + random.below(round % 10 == 0 ? 3000 : 60);
+    std::vector<float> places;
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const auto x = static_cast<float>(random.uniform(-1, 1));
+      switch (round % 5) {
+        case 0:
+          places.push_back(x);
+          break;
+        case 1:
+          places.push_back(static_cast<float>(random.below(3)));
+          break;
+        case 2:
+          places.push_back(x * x * x * x * 1e-30f * (random.below(9) == 0 ? 1e37f : 1));
+          break;
+        case 3:
+          places.push_back(static_cast<float>(random.below(50)) * 0x1p-100f);
+          break;
+        default:
+          places.push_back(random.below(2) == 0 ? 0 : x);
+      }
+    }
+    std::vector<CutPoint> points = points_at(places);
+    const std::uint32_t least = 1 + random.below(count - 1), most = least + random.below(count - least);
+    const CutGoal goal{least + random.below(most - least + 1), least, most};
+    const std::size_t lower = cut.cut(points, 0, box_of(points), goal);
+    ASSERT_GE(lower, least);
+    ASSERT_LE(lower, most);
+    float highest = points[0].at[0], lowest = points[lower].at[0];
+    for (std::size_t i = 0; i < count; ++i) {
+      if (i < lower) highest = std::max(highest, points[i].at[0]);
+      if (i >= lower) lowest = std::min(lowest, points[i].at[0]);
+      if (i > 0 && i != lower) {
+        ASSERT_LT(points[i - 1].id, points[i].id);
+      }
+    }
+    ASSERT_LE(highest, lowest);
+  }
+}
+
+TEST(MedianCut, PrefersAGapNearTheTarget) {
+  std::vector<float> places;
+  for (int i = 0; i < 100; ++i) places.push_back(static_cast<float>(i) + (i < 53 ? 0.0f : 20.0f));
+  std::vector<CutPoint> points = points_at(places);
+  EXPECT_EQ(MedianCut().cut(points, 0, box_of(points), {50, 40, 60}), 53u);
+  // Beyond its reach the target counts.
+  EXPECT_NEAR(static_cast<double>(MedianCut().cut(points, 0, box_of(points), {30, 20, 60})), 30, 1);
+}
+
+TEST(MedianCut, WeighsWhatHasWeights) {
+  std::vector<CutPoint> points = points_at({5, 3, 4, 1, 2});
+  const std::vector<std::uint32_t> weights{2, 9, 3, 1, 5};
+  // In order: 1, 5, 9, 3, 2 of 20.
+  EXPECT_EQ(MedianCut(weights).cut(points, 0, box_of(points), {10, 1, 19}), 2u);
+  EXPECT_EQ(points[0].id, 3u);
+  EXPECT_EQ(points[1].id, 4u);
+  EXPECT_EQ(points[2].id, 0u);
+}
+
+TEST(MedianCut, BoxesEncloseTheirPointsAlone) {
+  std::vector<CutPoint> points = points_at({2, -1, 7});
+  points[1].id = 0x7fc00001;  // the bits of a NaN
+  const CutBox box = box_of(points);
+  EXPECT_EQ(box.low[0], -1);
+  EXPECT_EQ(box.high[0], 7);
+  EXPECT_EQ(box.longest_axis(), 0);
+  EXPECT_EQ(box.surface(), 0);
+  EXPECT_LT(box_of({}).extent(1), 0);
+}
+
+}  // namespace
+}  // namespace supple
