@@ -224,7 +224,9 @@ class Request : public std::enable_shared_from_this<Request> {
     response.set("X-Content-Type-Options", "nosniff");
     response.set("Cross-Origin-Opener-Policy", "same-origin");
     response.set("Cross-Origin-Resource-Policy", "same-origin");
-    response.set("Content-Security-Policy", content_policy(context_.access.host()));
+    const std::string_view host = text(parser_.get()[http::field::host]);
+    response.set("Content-Security-Policy",
+                 content_policy(context_.access.knows_host(host) ? host : context_.access.host()));
     response.keep_alive(false);
     response.body() = {body.data(), body.size()};
     response.prepare_payload();
