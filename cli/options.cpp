@@ -36,7 +36,8 @@ constexpr const char* program_footer = R"(Examples:
 
 Exit status: 0 done; 1 with --fail-on-contact when something touches, and of diff when recordings differ; 2 usage or
 input error, told in one line, and of simulate a motion that blows up; 3 with --verify when brute force disagrees, and of
-ccd-queries when an answer is false; 130 and 143 of simulate when it is interrupted, after it has closed its files; 0 of view.)";
+ccd-queries when an answer is false; 130 and 143 of simulate when it is interrupted, after it has closed its files.
+view ends by that, with 0.)";
 
 constexpr const char* detect_footer = R"(Examples:
   supple detect rabbit.obj fish.ply
