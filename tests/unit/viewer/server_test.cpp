@@ -31,6 +31,7 @@ constexpr std::string_view page = "<!doctype html><title>The page</title>";
 Show small_show() {
   Show show;
   show.title = "small";
+  show.simulation.scene.threads = 1;
   for (int i = 0; i < 2; ++i) {
     MassSpringMotion motion;
     motion.random_speed = 0.1;
@@ -368,6 +369,7 @@ TEST_F(ViewerServer, AnUnforeseenFailureEndsItWithTheReason) {
 
 TEST_F(ViewerServer, LargeFramesArriveWhole) {
   Show show;
+  show.simulation.scene.threads = 1;
   show.objects.push_back({make_cloth(320, 320), {}, Sway{{}, 0.1}});
   const std::size_t vertices = show.objects[0].mesh.positions.size();
   EXPECT_GT(vertices, 100'000u);
