@@ -1,0 +1,330 @@
+// A simulation in the program, seen and steered in a page.
+import assert from "node:assert/strict";
+import { join } from "node:path";
+import { camera, counts, pause, picture, scenes, seenTriangle, settled, step, TWO_BALLS, until } from "./harness.mjs";
+
+const nine = join(scenes, "nine.toml");
+
+async function movesPausesAndSteps(stage) {
+  const { page } = await stage.view(nine);
+  const before = { at: await page.evaluate(() => supple.positionOf(0, 0)), picture: await picture(page) };
+  await until(page, () => supple.model.frame.text.step > 5);
+  assert.notDeepEqual(await page.evaluate(() => supple.positionOf(0, 0)), before.at);
+  assert.notEqual(await picture(page), before.picture);
+
+  await pause(page);
+  const paused = await step(page);
+  await page.waitForTimeout(400);
+  assert.equal(await step(page), paused);
+  await page.getByRole("button", { name: "Step", exact: true }).click();
+  await until(page, (wanted) => supple.model.frame.text.step === wanted, paused + 1);
+  await page.getByRole("button", { name: "Play" }).click();
+  await until(page, (paused) => supple.model.frame.text.step > paused + 3, paused);
+}
+
+async function resetsWithASeedAndSpeed(stage) {
+  const { page } = await stage.view(nine);
+  await until(page, () => supple.model.frame.text.step > 10);
+  await page.getByRole("combobox", { name: "Speed" }).selectOption("0.1");
+  await until(page, () => supple.model.frame.text.speed === 0.1);
+  const generation = await page.evaluate(() => supple.model.scene.generation);
+  await page.getByRole("spinbutton", { name: "Seed" }).fill("7");
+  await page.getByRole("spinbutton", { name: "Seed" }).press("Enter");
+  await until(page, (old) => supple.model.scene.generation > old && supple.model.frame, generation);
+  assert.equal(await page.evaluate(() => supple.model.scene.seed), 7);
+  await pause(page);
+  await page.getByRole("button", { name: "Reset" }).click();
+  await until(page, () => supple.model.frame?.text.step === 0);
+}
+
+/** Each layer that has something to show changes the picture, and shows as much as the session says. */
+async function eachLayerShows(stage) {
+  const { page } = await stage.view(nine);
+  await until(page, () => supple.model.frame.contacts.length > 200 && supple.model.frame.objectPairs.length > 8);
+  await pause(page);
+  const layers = [
+    ["Scene octree", "regions"], ["Object octrees", "boxes"], ["Object pairs", "pairs"], ["Candidate pairs", "candidates"],
+    ["Intersecting triangles", "triangles"], ["Contact points", "points"], ["Contact normals", "normals"],
+    ["Intersection curves", "curves"], ["Colliding vertices", "vertices"], ["Surfaces", null], ["Wireframe", null],
+  ];
+  const boxes = page.getByRole("list", { name: "Layers" });
+  for (const [label] of layers) await boxes.getByRole("checkbox", { name: label }).setChecked(label === "Surfaces");
+  await settled(page);
+  const bare = await picture(page);
+  for (const [label, count] of layers) {
+    const box = boxes.getByRole("checkbox", { name: label });
+    await box.click();
+    if (count) await until(page, (name) => supple.counts()[name] > 0, count);
+    await settled(page);
+    assert.notEqual(await picture(page), bare, `${label} shows nothing`);
+    await box.click();
+    if (count) await until(page, (name) => supple.counts()[name] === 0, count);
+    await settled(page);
+    assert.equal(await picture(page), bare, `${label} does not go away`);
+  }
+}
+
+async function countsAreTheSessions(stage) {
+  const { page } = await stage.view(nine);
+  await until(page, () => supple.model.frame.contacts.length > 200);
+  await pause(page);
+  for (const label of ["Object pairs", "Candidate pairs", "Colliding vertices"]) await page.getByRole("checkbox", { name: label }).check();
+  await until(page, () => supple.counts().candidates > 0 && supple.counts().vertices > 0);
+  await settled(page);
+  const { drawn, frame, statistics } = await page.evaluate(() => ({
+    drawn: supple.counts(),
+    frame: { contacts: supple.model.frame.contacts.length / 8, points: supple.model.frame.contactPoints.length / 8, pairs: supple.model.frame.objectPairs.length / 2 },
+    statistics: Object.fromEntries(supple.model.scene.statistics.map((name, i) => [name, supple.model.frame.statistics[i]])),
+  }));
+  assert.equal(drawn.points, frame.points);
+  assert.equal(drawn.pairs, frame.pairs);
+  assert.equal(frame.contacts, statistics.contacts);
+  assert.equal(frame.pairs, statistics.object_pairs);
+  assert.equal(drawn.candidates, statistics.candidate_pairs);
+}
+
+async function octreeLevels(stage) {
+  const { page } = await stage.view(stage.file("balls.toml", TWO_BALLS));
+  await page.getByRole("checkbox", { name: "Object octrees" }).check();
+  await until(page, () => supple.counts().boxes > 0);
+  const leaves = (await counts(page)).boxes;
+  const levels = page.getByRole("combobox", { name: "Octree level" });
+  await until(page, () => document.querySelector('[aria-label="Octree level"]').options.length > 2);
+  await levels.selectOption("0");
+  await until(page, (leaves) => supple.counts().boxes > 0 && supple.counts().boxes < leaves, leaves);
+  const roots = (await counts(page)).boxes;
+  await page.getByRole("button", { name: /^left/ }).click();
+  await page.getByRole("checkbox", { name: "Selected only" }).check();
+  await until(page, (roots) => supple.counts().boxes === roots / 2, roots);
+}
+
+async function hidesAndColoursObjects(stage) {
+  const { page } = await stage.view(stage.file("balls.toml", TWO_BALLS));
+  await settled(page);
+  const both = await picture(page);
+  await page.getByRole("checkbox", { name: "Show left" }).uncheck();
+  await settled(page);
+  const one = await picture(page);
+  assert.notEqual(one, both);
+  await page.getByRole("checkbox", { name: "Show left" }).check();
+  await settled(page);
+  assert.equal(await picture(page), both);
+  await page.getByLabel("Colour of left").fill("#ff00ff");
+  await settled(page);
+  const pink = await picture(page);
+  assert.notEqual(pink, both);
+  await page.getByRole("button", { name: /^left/ }).click();
+  await page.getByLabel("Opacity of left").fill("0.3");
+  await settled(page);
+  assert.notEqual(await picture(page), pink);
+}
+
+async function picksATriangle(stage) {
+  const { page } = await stage.view(stage.file("balls.toml", TWO_BALLS));
+  await settled(page);
+  const seen = await seenTriangle(page, 1);
+  await page.mouse.click(seen.x, seen.y);
+  const details = page.getByRole("region", { name: "Selection" });
+  await details.getByRole("heading", { name: `Triangle ${seen.triangle}` }).waitFor();
+  await details.getByText("area").waitFor();
+  const exact = await details.locator("code").first().innerText();
+  const vertex = await page.evaluate(() => supple.model.selection.vertex);
+  const shown = await page.evaluate(([object, vertex]) => supple.positionOf(object, vertex), [1, vertex]);
+  const center = await page.evaluate(() => supple.model.scene.center);
+  exact.split("\n").map(Number).forEach((x, i) => assert.ok(Math.abs(x - shown[i] - center[i]) < 1e-6, `${exact} is not ${shown}`));
+  await page.mouse.click(seen.x, 120);  // the ground
+  await until(page, () => supple.model.selection === null);
+}
+
+async function contactTableFlies(stage) {
+  const { page } = await stage.view(nine);
+  await until(page, () => supple.model.frame.contacts.length > 400);
+  await pause(page);
+  await page.getByRole("tab", { name: "Contacts" }).click();
+  const grid = page.getByRole("grid", { name: "Contacts" });
+  const total = await page.evaluate(() => supple.model.frame.contacts.length / 8);
+  assert.equal(Number(await grid.getAttribute("aria-rowcount")), total);
+  assert.ok((await grid.getByRole("row").count()) < 100, "rows out of sight have elements");
+  const before = await camera(page);
+  await grid.getByRole("row").nth(3).click();
+  await until(page, () => supple.model.contact !== null);
+  await settled(page);
+  const after = await camera(page);
+  assert.notDeepEqual(after.target, before.target);
+  const key = await page.evaluate(() => [...supple.model.contact]);
+  assert.deepEqual(key, await page.evaluate(() => [...supple.model.frame.contacts.subarray(24, 28)]));
+  await page.keyboard.press("ArrowDown");
+  await page.keyboard.press("ArrowDown");
+  assert.deepEqual(await page.evaluate(() => [...supple.model.contact]), await page.evaluate(() => [...supple.model.frame.contacts.subarray(40, 44)]));
+  await page.keyboard.press("End");
+  assert.deepEqual(await page.evaluate(() => [...supple.model.contact]), await page.evaluate(() => [...supple.model.frame.contacts.slice(-8, -4)]));
+  assert.equal(await grid.locator('[aria-selected="true"]').count(), 1);
+  await page.getByRole("tab", { name: "Inspect" }).click();
+  await page.getByRole("heading", { name: "Contact", exact: true }).waitFor();
+}
+
+async function contactPointsArePicked(stage) {
+  const { page } = await stage.view(nine);
+  await until(page, () => supple.model.frame.contacts.length > 200);
+  await pause(page);
+  const at = await page.evaluate(() => supple.project([...supple.model.frame.contactPoints.subarray(0, 3)]));
+  await page.mouse.click(at.x, at.y);
+  await until(page, () => supple.model.contact !== null);
+  await page.getByRole("heading", { name: "Contact", exact: true }).waitFor();
+}
+
+async function saysWhyThereIsNoContact(stage) {
+  const { page } = await stage.view(stage.file("balls.toml", TWO_BALLS));
+  await settled(page);
+  await page.getByRole("radio", { name: "Why no contact?" }).click();
+  for (const object of [0, 1]) {
+    const seen = await seenTriangle(page, object);
+    await page.mouse.click(seen.x, seen.y);
+  }
+  const verdict = page.getByRole("status", { name: "Explanation" });
+  await verdict.getByRole("heading", { name: /objects are apart/ }).waitFor();
+  await verdict.getByText("Apart by").waitFor();
+  assert.equal(await page.evaluate(() => supple.model.explanation.stage), "object_volumes");
+  assert.ok(Math.abs((await page.evaluate(() => supple.model.explanation.distance)) - 0.2) < 0.05);
+  await page.keyboard.press("Escape");
+  await until(page, () => supple.model.explanation === null);
+}
+
+async function saysThatAContactIsOne(stage) {
+  const { page } = await stage.view(nine);
+  await until(page, () => supple.model.frame.contacts.length > 0);
+  await pause(page);
+  const [a, triangleA, b, triangleB] = await page.evaluate(() => [...supple.model.frame.contacts.subarray(0, 4)]);
+  await page.getByLabel("Object A").selectOption(String(a));
+  await page.getByLabel("Triangle A").fill(String(triangleA));
+  await page.getByLabel("Object B").selectOption(String(b));
+  await page.getByLabel("Triangle B").fill(String(triangleB));
+  await page.getByRole("button", { name: "Explain" }).click();
+  await until(page, () => supple.model.explanation?.stage === "contact");
+  await page.getByLabel("Triangle B").fill("999999");
+  await page.getByRole("button", { name: "Explain" }).click();
+  await page.getByText("There is no triangle 999999").waitFor();
+}
+
+/** A vertex of one ball is pulled into the other; contacts begin. */
+async function pullingMakesContacts(stage) {
+  const { page } = await stage.view(stage.file("balls.toml", TWO_BALLS));
+  await settled(page);
+  assert.equal(await page.evaluate(() => supple.model.frame.contacts.length), 0);
+  const left = await seenTriangle(page, 0);
+  const right = await seenTriangle(page, 1);
+  await page.getByRole("radio", { name: "Grab and pull" }).click();
+  await page.mouse.move(left.x, left.y);
+  await page.mouse.down();
+  await page.mouse.move((left.x + right.x) / 2, right.y, { steps: 10 });
+  await page.mouse.move(right.x, right.y, { steps: 10 });
+  await until(page, () => supple.model.frame.contacts.length > 0);
+  await page.mouse.up();
+  await settled(page);
+  assert.ok((await counts(page)).points > 0);
+  const moved = await page.evaluate(() => supple.model.selection.object);
+  assert.equal(moved, 0);
+}
+
+async function pullsASoftBody(stage) {
+  const { page } = await stage.view(join(scenes, "soft_block.toml"));
+  await pause(page);
+  const body = await page.evaluate(() => supple.model.objects.findIndex((object) => object.isBody));
+  const seen = await seenTriangle(page, body);
+  await page.getByRole("radio", { name: "Grab and pull" }).click();
+  await page.mouse.move(seen.x, seen.y);
+  await page.mouse.down();
+  await until(page, () => supple.model.selection?.vertex !== null && supple.model.selection);
+  const vertex = await page.evaluate(() => supple.model.selection.vertex);
+  const before = await page.evaluate(([object, vertex]) => supple.positionOf(object, vertex), [body, vertex]);
+  await page.mouse.move(seen.x, seen.y - 150, { steps: 12 });
+  await until(
+    page,
+    ([object, vertex, before]) => Math.hypot(...supple.positionOf(object, vertex).map((x, i) => x - before[i])) > 0.02,
+    [body, vertex, before],
+  );
+  await page.mouse.up();
+}
+
+async function staticObjectsAreNotPulled(stage) {
+  const { page } = await stage.view(join(scenes, "cloth_over_ball.toml"));
+  await pause(page);
+  const ball = await page.evaluate(() => supple.model.objects.findIndex((object) => object.isStatic));
+  const cloth = await page.evaluate(() => supple.model.objects.findIndex((object) => !object.isStatic));
+  await page.getByRole("checkbox", { name: `Show ${await page.evaluate((i) => supple.model.objects[i].name, cloth)}` }).uncheck();
+  const seen = await seenTriangle(page, ball);
+  await page.getByRole("radio", { name: "Grab and pull" }).click();
+  await page.mouse.click(seen.x, seen.y);
+  await page.getByRole("log").getByText("is static").waitFor();
+}
+
+async function settingsStartAnew(stage) {
+  const { page } = await stage.view(nine);
+  await page.getByRole("checkbox", { name: "Object octrees" }).check();
+  await until(page, () => supple.counts().boxes > 0);
+  await page.getByRole("tab", { name: "Settings" }).click();
+  await page.getByLabel("Bounding volume").selectOption("sphere");
+  await until(page, () => supple.model.scene.bounding_volume === "sphere" && supple.counts().balls > 0 && supple.counts().boxes === 0);
+  await page.getByLabel("Broad phase").selectOption("sweep");
+  await until(page, () => supple.model.scene.broad_phase === "sweep");
+  const objects = page.getByLabel("Objects", { exact: true }).and(page.locator("input"));
+  await objects.fill("12");
+  await objects.press("Enter");
+  await until(page, () => supple.model.scene.objects.length === 12 && supple.model.frame);
+  await page.getByRole("checkbox", { name: /^Show .*#2$/ }).first().waitFor();
+  await page.getByLabel("Contacts", { exact: true }).and(page.locator("select")).selectOption("continuous");
+  await until(page, () => supple.model.scene.contacts === "continuous");
+  await until(page, () => supple.model.frame?.impacts.length > 0);
+}
+
+async function integratorsChange(stage) {
+  const { page } = await stage.view(join(scenes, "soft_block.toml"));
+  await page.getByRole("tab", { name: "Settings" }).click();
+  const other = await page.evaluate(() => (supple.model.scene.integrator === "verlet" ? "symplectic_euler" : "verlet"));
+  await page.getByLabel("Integrator").selectOption(other);
+  await until(page, (wanted) => supple.model.scene.integrator === wanted && supple.model.frame?.text.step > 0, other);
+}
+
+async function continuousContactsAreListed(stage) {
+  const { page } = await stage.view(nine, "--contacts", "continuous");
+  await until(page, () => supple.model.frame.impacts.length > 0);
+  await pause(page);
+  await page.getByRole("checkbox", { name: "Contact normals" }).check();
+  await settled(page);
+  const impacts = await page.evaluate(() => supple.model.frame.impacts.length / 8);
+  assert.equal((await counts(page)).points, impacts);
+  assert.equal((await counts(page)).normals, impacts);
+  await page.getByRole("tab", { name: "Contacts" }).click();
+  await page.getByRole("row").first().click();
+  await until(page, () => supple.model.contact !== null);
+}
+
+async function plotsFollow(stage) {
+  const { page } = await stage.view(nine);
+  await page.getByRole("tab", { name: "Plots" }).click();
+  await until(page, () => supple.model.history.frames.length > 20);
+  assert.equal(await page.locator("figure canvas").count(), 3);
+  const rows = await page.evaluate(() => supple.model.history.column("contacts").at(-1));
+  assert.ok(Number.isFinite(rows));
+}
+
+export const tests = [
+  ["moves, pauses and steps", movesPausesAndSteps],
+  ["resets with a seed, at another speed", resetsWithASeedAndSpeed],
+  ["each layer shows", eachLayerShows],
+  ["layers show what the session counts", countsAreTheSessions],
+  ["octrees by level, of one object", octreeLevels],
+  ["objects are hidden and coloured", hidesAndColoursObjects],
+  ["a triangle is picked and read", picksATriangle],
+  ["the contact table flies to contacts", contactTableFlies],
+  ["a contact point is picked", contactPointsArePicked],
+  ["two picked triangles: why no contact", saysWhyThereIsNoContact],
+  ["two named triangles: a contact, and one that is not there", saysThatAContactIsOne],
+  ["pulling a vertex makes contacts", pullingMakesContacts],
+  ["a soft body is pulled", pullsASoftBody],
+  ["a static object says that it does not bend", staticObjectsAreNotPulled],
+  ["settings start anew", settingsStartAnew],
+  ["integrators change", integratorsChange],
+  ["continuous contacts", continuousContactsAreListed],
+  ["plots follow", plotsFollow],
+];

@@ -1,0 +1,311 @@
+// The page by itself: camera, keys, pictures, videos, looks, and what it says when something is wrong.
+import assert from "node:assert/strict";
+import { statSync } from "node:fs";
+import { join } from "node:path";
+import { camera, hasFrame, pause, picture, scenes, settled, step, TWO_BALLS, until } from "./harness.mjs";
+
+const nine = join(scenes, "nine.toml");
+const balls = (stage) => stage.file("balls.toml", TWO_BALLS);
+
+async function cameraMoves(stage) {
+  const { page } = await stage.view(balls(stage));
+  await settled(page);
+  const canvas = await page.locator("canvas.view").boundingBox();
+  const [x, y] = [canvas.x + canvas.width / 2, canvas.y + canvas.height / 2];
+  const before = await camera(page);
+  await page.mouse.move(x, y);
+  await page.mouse.down();
+  await page.mouse.move(x + 120, y + 40, { steps: 5 });
+  await page.mouse.up();
+  const orbited = await camera(page);
+  assert.notDeepEqual(orbited.position, before.position);
+  assert.deepEqual(orbited.target, before.target);
+  await page.mouse.down({ button: "right" });
+  await page.mouse.move(x, y, { steps: 5 });
+  await page.mouse.up({ button: "right" });
+  assert.notDeepEqual((await camera(page)).target, orbited.target);
+
+  // What is below the cursor stays there while the wheel turns.
+  const seen = await page.evaluate(() => supple.project(supple.positionOf(0, 0)));
+  await page.mouse.move(seen.x, seen.y);
+  await page.mouse.wheel(0, -300);
+  await settled(page);
+  const after = await page.evaluate(() => supple.project(supple.positionOf(0, 0)));
+  assert.ok(Math.hypot(after.x - seen.x, after.y - seen.y) < 12, `it moved from ${JSON.stringify(seen)} to ${JSON.stringify(after)}`);
+}
+
+async function viewsAndAddress(stage) {
+  const { page } = await stage.view(balls(stage));
+  await page.getByRole("combobox", { name: "Axis view" }).selectOption("right");
+  await settled(page);
+  const right = await camera(page);
+  assert.ok(Math.abs(right.position[2] - right.target[2]) < 1e-6 && right.position[0] > right.target[0]);
+  await page.getByRole("button", { name: "Orthographic" }).click();
+  await until(page, () => location.hash.includes("orthographic"));
+  const address = page.url();
+  await page.reload();
+  await hasFrame(page);
+  assert.equal(page.url(), address);
+  const again = await camera(page);
+  assert.ok(again.orthographic);
+  right.position.forEach((value, i) => assert.ok(Math.abs(again.position[i] - value) < 1e-3));
+  await page.getByRole("button", { name: "Frame all" }).click();
+  await settled(page);
+}
+
+async function savesAPicture(stage) {
+  const { page } = await stage.view(balls(stage));
+  const [download] = await Promise.all([page.waitForEvent("download"), page.getByRole("button", { name: "Save a picture" }).click()]);
+  assert.match(download.suggestedFilename(), /^supple-.*\.png$/);
+  const path = stage.file("picture.png");
+  await download.saveAs(path);
+  assert.ok(statSync(path).size > 5000);
+}
+
+async function recordsAVideo(stage) {
+  const { page } = await stage.view(nine);
+  await page.getByRole("button", { name: "Record a video" }).click();
+  await page.waitForTimeout(1500);
+  const [download] = await Promise.all([page.waitForEvent("download"), page.getByRole("button", { name: "End the video" }).click()]);
+  const path = stage.file("film.webm");
+  await download.saveAs(path);
+  assert.ok(statSync(path).size > 5000);
+}
+
+/** Nothing but keys, from the first look to a contact that is read. */
+async function keyboardAlone(stage) {
+  const { page } = await stage.view(nine);
+  const key = (name) => page.keyboard.press(name);
+  await until(page, () => supple.model.frame.contacts.length > 0);
+  await key("Space");
+  await until(page, () => !supple.model.frame.text.playing);
+  const paused = await step(page);
+  await key("ArrowRight");
+  await until(page, (wanted) => supple.model.frame.text.step === wanted, paused + 1);
+  const before = await camera(page);
+  await key("Shift+ArrowLeft");
+  assert.notDeepEqual((await camera(page)).position, before.position);
+  await key("o");
+  assert.ok((await camera(page)).orthographic);
+  await key("1");
+  await key("f");
+  await key("p");
+  await until(page, () => supple.counts().pairs > 0);
+  await key("?");
+  await page.getByRole("dialog", { name: "Keyboard shortcuts" }).waitFor();
+  await key("Escape");
+  await until(page, () => !document.querySelector("dialog").open);
+
+  const tabTo = async (wanted) => {
+    for (let i = 0; i < 200; ++i) {
+      await key("Tab");
+      const focus = await page.evaluate(() => {
+        const at = document.activeElement;
+        return { name: at.getAttribute("aria-label") ?? at.textContent, outline: getComputedStyle(at).outlineStyle };
+      });
+      if (!wanted.test(focus.name)) continue;
+      assert.notEqual(focus.outline, "none", `${focus.name} has focus and does not show it`);
+      return;
+    }
+    assert.fail(`Tab never comes to ${wanted}`);
+  };
+  await tabTo(/^Inspect$/);
+  await key("ArrowRight");
+  await tabTo(/^Contacts$/);
+  await key("ArrowDown");
+  await until(page, () => supple.model.contact !== null);
+
+  // Pulls a vertex: select an object, hold it, move it, let go.
+  await tabTo(/^Step$/);
+  await page.evaluate(() => supple.model.select({ object: 3, triangle: null, vertex: 5 }));
+  await page.evaluate(() => document.activeElement.blur());
+  await key("g");
+  const held = await page.evaluate(() => supple.positionOf(3, 5));
+  await key("Enter");
+  for (let i = 0; i < 5; ++i) await key("ArrowUp");
+  await until(page, (held) => Math.hypot(...supple.positionOf(3, 5).map((x, i) => x - held[i])) > 0.05, held);
+  await key("Enter");
+  await key("Escape");
+  await until(page, () => supple.model.tool === "select");
+}
+
+async function lightAndDark(stage) {
+  const { page } = await stage.view(balls(stage));
+  const ground = () => page.evaluate(() => getComputedStyle(document.body).backgroundColor);
+  const dark = await ground();
+  const drawn = await picture(page);
+  await page.getByRole("button", { name: "Light or dark" }).click();
+  assert.notEqual(await ground(), dark);
+  assert.notEqual(await picture(page), drawn);
+  await page.reload();
+  await hasFrame(page);
+  assert.notEqual(await ground(), dark, "the choice is forgotten");
+}
+
+async function everythingHasAName(stage) {
+  const { page } = await stage.view(nine);
+  for (const tab of ["Inspect", "Contacts", "Plots", "Settings"]) {
+    await page.getByRole("tab", { name: tab }).click();
+    const nameless = await page.evaluate(() =>
+      [...document.querySelectorAll("button, input, select, canvas.view, [role=grid]")]
+        .filter((element) => element.offsetParent !== null)
+        .filter((element) => !(element.getAttribute("aria-label") || element.getAttribute("aria-labelledby") || element.textContent.trim() || element.labels?.length))
+        .map((element) => element.outerHTML.slice(0, 120)),
+    );
+    assert.deepEqual(nameless, []);
+  }
+}
+
+const says = (page, title) => page.getByRole("alertdialog", { name: title }).waitFor();
+
+async function killedProgram(stage) {
+  const { page, program } = await stage.view(nine);
+  await program.stop("SIGKILL");
+  await says(page, "The connection is lost");
+  await page.getByRole("button", { name: "Reconnect" }).click();
+  await says(page, "The connection is lost");
+}
+
+async function endedProgram(stage) {
+  const { page, program } = await stage.view(nine);
+  const { code } = await program.stop("SIGINT");
+  assert.equal(code, 0);
+  await says(page, "The program has ended");
+}
+
+async function secondPage(stage) {
+  const { page, program } = await stage.view(nine);
+  const second = await stage.page();
+  await second.goto(program.address);
+  await hasFrame(second);
+  await says(page, "Open in another page");
+  await page.getByRole("button", { name: "Take it back" }).click();
+  await until(page, () => supple.status.state === "connected" && supple.model.frame !== null);
+  await says(second, "Open in another page");
+  await until(page, (before) => supple.model.framesSeen > before, await page.evaluate(() => supple.model.framesSeen));
+}
+
+/** A page whose session answers with what the test says instead of the program. */
+async function pageWithMessages(stage, alter) {
+  const program = await stage.program(balls(stage));
+  const page = await stage.page();
+  await page.routeWebSocket(/\/session/, (socket) => {
+    const server = socket.connectToServer();
+    socket.onMessage((command) => server.send(command));
+    server.onMessage((message) => alter(Buffer.from(message), (bytes) => socket.send(bytes), socket));
+  });
+  await page.goto(program.address);
+  return page;
+}
+
+async function malformedMessage(stage) {
+  let frames = 0;
+  const page = await pageWithMessages(stage, (message, send) => {
+    if (message.readUInt16LE(6) === 2 && ++frames === 2) message.writeUInt32LE(0x7fffffff, 20);
+    send(message);
+  });
+  await hasFrame(page);
+  await page.getByRole("checkbox", { name: "Object octrees" }).check();  // asks for another frame
+  await says(page, "The page does not understand the program");
+  assert.equal(await page.locator("canvas.view").isVisible(), true);
+}
+
+async function laterVersion(stage) {
+  const page = await pageWithMessages(stage, (message, send) => {
+    message.writeUInt16LE(2, 4);
+    send(message);
+  });
+  await says(page, "The page does not understand the program");
+  await page.getByText("version 2").waitFor();
+}
+
+/** A message of kind and text, as docs/protocol.md has it. */
+function textMessage(kind, json) {
+  const text = Buffer.from(JSON.stringify(json));
+  const length = 32 + Math.ceil(text.length / 16) * 16;
+  const message = Buffer.alloc(length);
+  message.writeUInt32LE(0x4c505553, 0);
+  message.writeUInt16LE(1, 4);
+  message.writeUInt16LE(kind, 6);
+  message.writeUInt32LE(length, 8);
+  message.writeUInt32LE(1, 12);
+  message.writeUInt32LE(1, 16);
+  message.writeUInt32LE(0xffffffff, 20);
+  message.writeUInt32LE(text.length, 24);
+  message.writeUInt32LE(text.length, 28);
+  text.copy(message, 32);
+  return message;
+}
+
+async function hugeScene(stage) {
+  const page = await pageWithMessages(stage, (message, send) => {
+    if (message.readUInt16LE(6) !== 1) return;
+    const text = JSON.parse(message.subarray(32, 32 + message.readUInt32LE(28)).toString());
+    text.objects = [{ ...text.objects[0], name: "city", vertices: 900_000_000, triangles: 0 }];
+    send(textMessage(1, text));
+  });
+  await says(page, "This scene is too large for the page");
+  await page.getByText("city has 900,000,000 vertices").waitFor();
+}
+
+async function failedSession(stage) {
+  const page = await pageWithMessages(stage, (message, send) => {
+    if (message.readUInt16LE(6) === 1) send(textMessage(4, { message: "there is no memory left for the octree", fatal: true }));
+  });
+  await says(page, "The session has failed");
+  await page.getByText("no memory left for the octree").waitFor();
+}
+
+async function noWebGl(stage) {
+  const program = await stage.program(balls(stage));
+  const page = await stage.page();
+  await page.addInitScript(() => {
+    const get = HTMLCanvasElement.prototype.getContext;
+    HTMLCanvasElement.prototype.getContext = function (kind, ...rest) {
+      return kind.startsWith("webgl") ? null : get.call(this, kind, ...rest);
+    };
+  });
+  await page.goto(program.address);
+  await says(page, "This page cannot draw");
+}
+
+async function lostContext(stage) {
+  const { page } = await stage.view(balls(stage));
+  await page.evaluate(() => supple.loseContext());
+  await says(page, "The picture is lost");
+}
+
+async function wrongToken(stage) {
+  const program = await stage.program(balls(stage));
+  const page = await stage.page();
+  const answer = await page.goto(program.address.replace(/token=.*/, "token=0"));
+  assert.equal(answer.status(), 403);
+  await page.getByRole("heading", { name: "This address is not complete" }).waitFor();
+}
+
+async function emptyScene(stage) {
+  const { page } = await stage.view(stage.file("point.obj", "v 0 0 0\n"));
+  await pause(page);
+  assert.equal(await page.evaluate(() => supple.model.objects[0].triangles), 0);
+}
+
+export const tests = [
+  ["orbits, pans and zooms to the cursor", cameraMoves],
+  ["axis views, orthographic, and the view in the address", viewsAndAddress],
+  ["saves a picture", savesAPicture],
+  ["records a video", recordsAVideo],
+  ["keyboard alone", keyboardAlone],
+  ["light and dark", lightAndDark],
+  ["everything has a name", everythingHasAName],
+  ["a killed program", killedProgram],
+  ["a program that ends", endedProgram],
+  ["a second page takes over, and gives back", secondPage],
+  ["a malformed message", malformedMessage],
+  ["a message of a later version", laterVersion],
+  ["a huge scene", hugeScene],
+  ["a session that fails", failedSession],
+  ["no WebGL", noWebGl],
+  ["a lost picture", lostContext],
+  ["a wrong token", wrongToken],
+  ["a mesh without triangles", emptyScene],
+];

@@ -1,0 +1,112 @@
+// A recording: play, scrub, step, loop, jump from event to event.
+import assert from "node:assert/strict";
+import { join } from "node:path";
+import { runProgram, scenes, settled, step, until } from "./harness.mjs";
+
+const FRAMES = 60;
+
+async function open(stage) {
+  const file = stage.file("run.h5");
+  await runProgram(stage.supple, ["simulate", join(scenes, "nine.toml"), "--steps", String(FRAMES), "--record", file, "--quiet"]);
+  const { page } = await stage.view(file);
+  await until(page, () => supple.model.history.frames.length > 0);
+  return page;
+}
+
+const isAt = (page, frame) => until(page, (frame) => supple.model.frame.text.step === frame, frame);
+
+async function scrubs(stage) {
+  const page = await open(stage);
+  const frames = await page.evaluate(() => supple.model.scene.frames);
+  const slider = page.getByRole("slider", { name: "Timeline" });
+  const box = await slider.boundingBox();
+  await page.mouse.move(box.x + 8, box.y + box.height / 2);
+  await page.mouse.down();
+  await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2, { steps: 20 });
+  await page.mouse.up();
+  await settled(page);
+  const middle = await step(page);
+  assert.ok(Math.abs(middle - (frames - 1) / 2) <= 2, `at ${middle}`);
+  assert.equal(Number(await slider.inputValue()), middle);
+  const expected = await page.evaluate(() => supple.model.history.column("contacts")[supple.model.frame.text.step]);
+  assert.equal(await page.evaluate(() => supple.model.frame.contacts.length / 8), expected, "the contacts of a frame are those that were recorded");
+}
+
+async function stepsAndPlays(stage) {
+  const page = await open(stage);
+  const last = await page.evaluate(() => supple.model.scene.frames - 1);
+  await page.getByRole("button", { name: "First frame" }).click();
+  await settled(page);
+  await isAt(page, 0);
+  await page.getByRole("button", { name: "Step", exact: true }).click();
+  await isAt(page, 1);
+  await page.getByRole("button", { name: "Step", exact: true }).click();
+  await isAt(page, 2);
+  await page.getByRole("button", { name: "Step back" }).click();
+  await isAt(page, 1);
+  await page.getByRole("button", { name: "Last frame" }).click();
+  await isAt(page, last);
+  await page.getByRole("combobox", { name: "Speed" }).selectOption("10");
+  await page.getByRole("button", { name: "Play" }).click();
+  await until(page, (last) => supple.model.frame.text.step > 0 && supple.model.frame.text.step < last, last);
+  await until(page, (last) => supple.model.frame.text.step === last && !supple.model.frame.text.playing, last);
+  await page.getByRole("button", { name: "Loop" }).click();
+  await page.getByRole("button", { name: "Play" }).click();
+  await until(page, (last) => supple.model.frame.text.step < last, last);
+  await until(page, (last) => supple.model.frame.text.step > last / 2, last);
+  await until(page, (last) => supple.model.frame.text.step < last / 4, last);
+}
+
+async function jumpsToEvents(stage) {
+  const page = await open(stage);
+  await page.getByRole("button", { name: "First frame" }).click();
+  await isAt(page, 0);
+  const events = await page.evaluate(() => {
+    const { begin, end } = supple.model.history.events;
+    return [...new Set([...begin, ...end].map(({ frame }) => frame))].sort((a, b) => a - b).filter((frame) => frame > 0);
+  });
+  assert.ok(events.length >= 2, `${events.length} events`);
+  for (const frame of events.slice(0, 2)) {
+    await page.getByRole("button", { name: "Next event" }).click();
+    await isAt(page, frame);
+  }
+  await page.getByRole("button", { name: "Previous event" }).click();
+  await isAt(page, events[0]);
+}
+
+async function plotsSeek(stage) {
+  const page = await open(stage);
+  await page.getByRole("tab", { name: "Plots" }).click();
+  const plot = page.locator("figure .u-over").first();
+  await plot.waitFor();
+  await page.waitForTimeout(400);
+  const box = await plot.boundingBox();
+  await page.mouse.move(box.x + box.width * 0.25, box.y + 20);
+  await page.mouse.click(box.x + box.width * 0.5, box.y + 20);
+  await settled(page);
+  const at = await step(page);
+  const frames = await page.evaluate(() => supple.model.scene.frames);
+  assert.ok(Math.abs(at - frames / 2) < frames / 6, `at ${at}`);
+}
+
+async function isNotPulled(stage) {
+  const page = await open(stage);
+  await page.getByRole("radio", { name: "Grab and pull" }).click();
+  const at = await page.evaluate(() => {
+    const { triangles } = supple.model.objects[0];
+    for (let i = 0; i < triangles; ++i) {
+      const at = supple.project(supple.centroid(0, i));
+      if (supple.pickAt(at.x, at.y)) return at;
+    }
+  });
+  await page.mouse.click(at.x, at.y);
+  await page.getByRole("log").getByText("A recording cannot be pulled").waitFor();
+}
+
+export const tests = [
+  ["the timeline scrubs", scrubs],
+  ["steps, plays to the end and loops", stepsAndPlays],
+  ["jumps from event to event", jumpsToEvents],
+  ["a plot seeks", plotsSeek],
+  ["a recording says that it cannot be pulled", isNotPulled],
+];

@@ -1,0 +1,295 @@
+/** Puts the page together. */
+import { Client, type Status } from "./client";
+import { Film, savePicture } from "./capture";
+import { listenToKeys } from "./keyboard";
+import { Model, TOOLS, type Tool } from "./model";
+import { ContactTable } from "./panels/contact_table";
+import { h, icon, iconButton, setIcon } from "./panels/dom";
+import { helpSheet } from "./panels/help";
+import { Inspector } from "./panels/inspector";
+import { Card, Notices } from "./panels/notices";
+import { Player } from "./panels/player";
+import { Plots } from "./panels/plots";
+import { ScenePanel } from "./panels/scene_panel";
+import { Settings } from "./panels/settings";
+import { Tools } from "./tools";
+import { openSocket } from "./transport/socket";
+import { hasCargo, openWorker } from "./transport/worker";
+import { AXIS_VIEWS, type AxisView } from "./view/camera";
+import { SceneView } from "./view/scene_view";
+
+const TOOL_LABELS: Record<Tool, [label: string, key: string]> = {
+  select: ["Select", "V"],
+  grab: ["Grab and pull", "G"],
+  explain: ["Why no contact?", "W"],
+};
+const THEME = "supple-theme";
+
+function cannotDraw(error: unknown): string {
+  const why = error instanceof Error ? error.message : String(error);
+  return `This browser gives the page no WebGL 2 (${why}). Switch on hardware acceleration, or try another browser.`;
+}
+
+export class App {
+  readonly model = new Model();
+  readonly carriesLibrary = hasCargo();
+  view!: SceneView;
+  client!: Client;
+  player!: Player;
+  tools!: Tools;
+  readonly help = helpSheet();
+  readonly notices = new Notices();
+  readonly card = new Card(() => this.client.connect(), this.carriesLibrary);
+  private scenePanel!: ScenePanel;
+  private plots!: Plots;
+  private readonly film_ = new Film();
+  private readonly canvas = h("canvas", { class: "view", tabindex: 0, role: "img", "aria-label": "3D view" });
+  private readonly title = h("span", { class: "title" });
+  private readonly connection = h("span", { class: "connection", role: "status", "aria-label": "Connection" });
+  private readonly orthoButton = iconButton("perspective", "Orthographic", "O", () => this.toggleOrthographic());
+  private readonly filmButton = iconButton("film", "Record a video", "Shift+V", () => this.film());
+  private readonly toolButtons = new Map<Tool, HTMLButtonElement>();
+  private arrivals: number[] = [];
+  private openTab: (name: string) => void = () => {};
+
+  constructor(private readonly body: HTMLElement) {}
+
+  start(): void {
+    this.applyTheme(localStore(THEME));
+    this.body.append(this.canvas, this.card.element, this.notices.element);
+    try {
+      this.view = new SceneView(this.canvas, this.model);
+    } catch (error) {
+      this.card.fail("This page cannot draw", cannotDraw(error));
+      return;
+    }
+    this.build();
+    this.listen();
+    this.paint();
+    this.client.connect();
+    this.exposeForTests();
+  }
+
+  private build(): void {
+    const { model, view } = this;
+    this.client = new Client(model, this.carriesLibrary ? openWorker : openSocket, (objects) => view.obstacle(objects));
+    const fly = () => view.frameSelection();
+    const inspector = new Inspector(model, this.client, fly);
+    this.scenePanel = new ScenePanel(model, fly);
+    this.player = new Player(model, this.client);
+    this.tools = new Tools(model, this.client, view, inspector);
+    this.plots = new Plots(model, (frame) => this.player.seek(frame));
+    const tabs = this.tabs({
+      Inspect: inspector.element,
+      Contacts: new ContactTable(model, fly).element,
+      Plots: this.plots.element,
+      Settings: new Settings(model, this.client).element,
+    });
+    this.body.append(this.header(), this.scenePanel.element, tabs, this.player.element, this.help);
+    listenToKeys(this);
+  }
+
+  private header(): HTMLElement {
+    const tools = TOOLS.map((tool) => {
+      const [label, key] = TOOL_LABELS[tool];
+      const button = iconButton(tool, label, key, () => this.model.setTool(tool));
+      button.append(h("span", { class: "text" }, label));
+      button.setAttribute("role", "radio");
+      button.setAttribute("aria-checked", String(tool === this.model.tool));
+      this.toolButtons.set(tool, button);
+      return button;
+    });
+    const views = h("select", { "aria-label": "Axis view", title: "Axis view (1 to 6)", onchange: () => this.axisView(views) });
+    views.append(h("option", { value: "" }, "View"), ...Object.keys(AXIS_VIEWS).map((name, i) => h("option", { value: name }, `${name} (${i + 1})`)));
+    return h(
+      "header", { class: "top" },
+      h("span", { class: "brand" }, logo(), "Supple"), this.title, this.connection,
+      h("div", { class: "group tools", role: "radiogroup", "aria-label": "Tool" }, ...tools),
+      h("div", { class: "group" },
+        iconButton("frame", "Frame all", "F", () => this.view.frameAll()), views, this.orthoButton,
+        iconButton("camera", "Save a picture", "Shift+S", () => this.picture()), this.filmButton,
+        iconButton("panels", "Hide or show the panels", "H", () => this.togglePanels()),
+        iconButton("theme", "Light or dark", "T", () => this.toggleTheme()),
+        h("button", { type: "button", class: "icon", "aria-label": "Keyboard shortcuts", title: "Keyboard shortcuts (?)", onclick: () => this.help.showModal() }, "?")),
+    );
+  }
+
+  private axisView(views: HTMLSelectElement): void {
+    if (views.value !== "") this.view.rig.lookAlong(views.value as AxisView);
+    views.value = "";
+  }
+
+  private tabs(pages: Record<string, HTMLElement>): HTMLElement {
+    const names = Object.keys(pages);
+    const buttons = names.map((name) =>
+      h("button", { type: "button", role: "tab", id: `tab-${name}`, "aria-controls": `page-${name}`, onclick: () => this.openTab(name) }, name),
+    );
+    const panels = names.map((name) => h("div", { role: "tabpanel", id: `page-${name}`, "aria-labelledby": `tab-${name}`, class: "page" }, pages[name]!));
+    this.openTab = (wanted) => {
+      names.forEach((name, i) => {
+        panels[i]!.hidden = name !== wanted;
+        buttons[i]!.setAttribute("aria-selected", String(name === wanted));
+        buttons[i]!.tabIndex = name === wanted ? 0 : -1;
+      });
+    };
+    const bar = h("div", { class: "tabs", role: "tablist", "aria-label": "Details" }, ...buttons);
+    bar.addEventListener("keydown", (event) => {
+      const step = event.key === "ArrowRight" ? 1 : event.key === "ArrowLeft" ? -1 : 0;
+      if (step === 0) return;
+      event.preventDefault();
+      event.stopPropagation();
+      const at = buttons.findIndex((button) => button.getAttribute("aria-selected") === "true");
+      const next = buttons[(at + step + buttons.length) % buttons.length]!;
+      next.click();
+      next.focus();
+    });
+    this.openTab("Inspect");
+    return h("aside", { class: "panel right", "aria-label": "Details" }, bar, ...panels);
+  }
+
+  private listen(): void {
+    const { model, view, client } = this;
+    client.on("status", (status) => this.showStatus(status));
+    client.on("notice", (text) => this.notices.show(text));
+    model.on("scene", (scene) => {
+      this.title.textContent = scene.title;
+      document.title = `${scene.title} · Supple`;
+      this.card.showStatus({ state: "connected" });
+      if (scene.objects.length === 0) this.notices.show("This scene has no objects.");
+    });
+    model.on("frame", () => {
+      this.card.hide();
+      this.arrivals.push(performance.now());
+    });
+    model.on("tool", (tool) => {
+      for (const [name, button] of this.toolButtons) button.setAttribute("aria-checked", String(name === tool));
+      this.canvas.dataset["tool"] = tool;
+      if (tool === "explain") this.openTab("Inspect");
+    });
+    model.on("explanation", () => model.explanation && this.openTab("Inspect"));
+    view.onLost = (why) => {
+      client.send({ do: "pause" });
+      this.card.fail("The picture is lost", why);
+    };
+    view.onTurn = () => {
+      this.player.turn();
+      this.tools.turn();
+      client.giveCredit();
+    };
+    setInterval(() => this.tick(), 250);
+    matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.paint());
+  }
+
+  /** What need not be said in each frame. */
+  private tick(): void {
+    const now = performance.now();
+    this.arrivals = this.arrivals.filter((time) => time > now - 1000);
+    this.player.showRate(this.player.playing ? this.arrivals.length : 0);
+    this.scenePanel.showCounts(this.view.layers.counts());
+  }
+
+  private showStatus(status: Status): void {
+    const words = { connecting: "connecting", connected: this.carriesLibrary ? "in this page" : "live", ended: "ended" };
+    this.connection.textContent = words[status.state];
+    this.connection.dataset["state"] = status.state;
+    if (status.state === "ended" && this.film_.running) this.film();
+    this.card.showStatus(status);
+  }
+
+  picture(): void {
+    savePicture(this.view);
+  }
+
+  film(): void {
+    if (this.film_.running) this.film_.stop();
+    else {
+      try {
+        this.film_.start(this.view);
+      } catch (error) {
+        this.notices.show((error as Error).message);
+      }
+    }
+    const on = this.film_.running;
+    setIcon(this.filmButton, "film", on ? "End the video" : "Record a video", "Shift+V");
+    this.filmButton.classList.toggle("recording", on);
+  }
+
+  toggleOrthographic(): void {
+    const on = !this.view.rig.isOrthographic;
+    this.view.rig.setOrthographic(on);
+    setIcon(this.orthoButton, on ? "ortho" : "perspective", on ? "Perspective" : "Orthographic", "O");
+  }
+
+  togglePanels(): void {
+    this.body.classList.toggle("bare");
+  }
+
+  escape(): void {
+    if (this.tools.isPulling) return this.tools.release();
+    if (this.model.tool !== "select") return this.model.setTool("select");
+    this.model.clearSelection();
+    this.model.setExplained([], null);
+  }
+
+  private get isDark(): boolean {
+    const chosen = document.documentElement.dataset["theme"];
+    return chosen ? chosen === "dark" : matchMedia("(prefers-color-scheme: dark)").matches;
+  }
+
+  toggleTheme(): void {
+    const next = this.isDark ? "light" : "dark";
+    this.applyTheme(next);
+    localStore(THEME, next);
+    this.paint();
+  }
+
+  private applyTheme(theme: string | null): void {
+    if (theme === "light" || theme === "dark") document.documentElement.dataset["theme"] = theme;
+  }
+
+  /** Takes the theme's colours over to what style sheets do not reach. */
+  private paint(): void {
+    const style = getComputedStyle(document.documentElement);
+    this.view.setBackground(style.getPropertyValue("--ground").trim());
+    this.view.setInk(style.getPropertyValue("--ink").trim());
+    this.plots.rebuild();
+  }
+
+  /** What the end-to-end tests look at; not an interface for anyone else. */
+  private exposeForTests(): void {
+    const { model, view, client, player } = this;
+    Object.assign(window, {
+      supple: {
+        model, client,
+        get status() { return client.status; },
+        get playing() { return player.playing; },
+        counts: () => view.layers.counts(),
+        project: (point: number[]) => view.project(point),
+        positionOf: (object: number, vertex: number) => view.positionOf(object, vertex),
+        centroid: (object: number, triangle: number) => view.centroid(object, triangle),
+        pickAt: (x: number, y: number) => view.pickAt(x, y),
+        camera: () => ({ position: view.rig.camera.position.toArray(), target: view.rig.controls.target.toArray(), zoom: view.rig.camera.zoom, orthographic: view.rig.isOrthographic }),
+        drawTimes: () => [...view.times],
+        drawn: () => view.statistics(),
+        draw: () => view.draw(),
+        loseContext: () => (view.canvas.getContext("webgl2") as WebGL2RenderingContext).getExtension("WEBGL_lose_context")?.loseContext(),
+      },
+    });
+  }
+}
+
+function logo(): SVGSVGElement {
+  const mark = icon("");
+  mark.innerHTML = '<path d="M1 13L6 3l4 10z" fill="#56b4e9" stroke="none"/><path d="M15 13L11 4 6 11z" fill="#d55e00" stroke="none" fill-opacity=".9"/>';
+  return mark;
+}
+
+/** What this browser remembers; nothing where it remembers nothing. */
+function localStore(name: string, value?: string): string | null {
+  try {
+    if (value !== undefined) localStorage.setItem(name, value);
+    return localStorage.getItem(name);
+  } catch {
+    return null;
+  }
+}

@@ -1,0 +1,132 @@
+/** Between the transport and the model: reads messages, gives credit, matches answers to questions. */
+import { Emitter } from "./emitter";
+import type { Model } from "./model";
+import { countsOf, MessageError, readMessage, type SceneCounts } from "./protocol/messages";
+import type { EndReason, Transport, TransportEvents } from "./transport/transport";
+
+export type Status =
+  | { state: "connecting" }
+  | { state: "connected" }
+  | { state: "ended"; reason: EndReason | "malformed" | "too-large"; detail: string };
+
+interface ClientEvents {
+  status: Status;
+  /** A command that failed, or a warning: one line. */
+  notice: string;
+}
+
+/** Frames that may be under way: one that is drawn, and one behind it. */
+const CREDIT = 2;
+
+export class Client extends Emitter<ClientEvents> {
+  status: Status = { state: "connecting" };
+  private transport: Transport | null = null;
+  private scene: SceneCounts | null = null;
+  private credit = 0;
+  private nextId = 1;
+  private readonly questions = new Map<number, { resolve(text: Record<string, unknown>): void; reject(error: Error): void }>();
+
+  constructor(
+    private readonly model: Model,
+    private readonly open: (events: TransportEvents) => Transport,
+    /** Looks whether a scene can be shown before anything is made of it: a sentence, or null. */
+    private readonly obstacle: (objects: { name: string; vertices: number; triangles: number }[]) => string | null,
+  ) {
+    super();
+    model.on("request", () => this.send(model.request()));
+  }
+
+  connect(): void {
+    this.transport?.close();
+    this.scene = null;
+    this.credit = 0;
+    this.setStatus({ state: "connecting" });
+    const transport: Transport = this.open({
+      open: () => this.setStatus({ state: "connected" }),
+      message: (buffer) => {
+        if (this.status.state !== "ended") this.receive(buffer);
+      },
+      end: (reason, detail) => this.end(reason, detail),
+    });
+    this.transport = transport;
+  }
+
+  send(command: Record<string, unknown>): void {
+    if (this.status.state !== "ended") this.transport?.send(command);
+  }
+
+  /** Sends a command that is answered. */
+  ask(command: Record<string, unknown>): Promise<Record<string, unknown>> {
+    if (this.status.state === "ended") return Promise.reject(new Error("there is no session"));
+    const id = this.nextId++;
+    return new Promise((resolve, reject) => {
+      this.questions.set(id, { resolve, reject });
+      this.send({ ...command, id });
+    });
+  }
+
+  /** Called when a frame can be drawn: lets the session send the next ones. */
+  giveCredit(): void {
+    if (!this.scene || this.credit >= CREDIT || this.status.state !== "connected") return;
+    this.send({ do: "credit", frames: CREDIT - this.credit });
+    this.credit = CREDIT;
+  }
+
+  private receive(buffer: ArrayBuffer): void {
+    try {
+      this.take(buffer);
+    } catch (error) {
+      if (error instanceof RangeError) this.end("too-large", "The browser has not enough memory for this scene.");
+      else if (error instanceof MessageError) this.end("malformed", `A message cannot be read: ${error.message}.`);
+      else throw error;
+    }
+  }
+
+  private take(buffer: ArrayBuffer): void {
+    const message = readMessage(buffer, this.scene);
+    switch (message.kind) {
+      case "scene": {
+        const obstacle = this.obstacle(message.text.objects);
+        if (obstacle) return this.end("too-large", obstacle);
+        this.scene = countsOf(message.text);
+        this.credit = 0;
+        this.model.takeScene(message);
+        this.send(this.model.request());
+        for (const warning of message.text.warnings) this.emit("notice", warning);
+        return;
+      }
+      case "frame":
+        this.credit = Math.max(0, this.credit - 1);
+        return this.model.takeFrame(message);
+      case "series":
+        return this.model.takeSeries(message);
+      case "answer":
+        this.questions.get(message.text.id)?.resolve(message.text);
+        this.questions.delete(message.text.id);
+        return;
+      case "failure": {
+        const { message: text, fatal, id } = message.text;
+        if (fatal) return this.end("failed", text);
+        if (id !== undefined && this.questions.has(id)) {
+          this.questions.get(id)!.reject(new Error(text));
+          this.questions.delete(id);
+        } else {
+          this.emit("notice", text);
+        }
+      }
+    }
+  }
+
+  private end(reason: EndReason | "malformed" | "too-large", detail: string): void {
+    if (this.status.state === "ended") return;  // the first reason is the one that says most
+    this.transport?.close();
+    for (const question of this.questions.values()) question.reject(new Error("the session has ended"));
+    this.questions.clear();
+    this.setStatus({ state: "ended", reason, detail });
+  }
+
+  private setStatus(status: Status): void {
+    this.status = status;
+    this.emit("status", status);
+  }
+}

@@ -1,0 +1,18 @@
+/** Okabe and Ito's colours, which people with any kind of colour vision can tell apart. */
+export const OKABE_ITO = {
+  orange: "#e69f00",
+  sky: "#56b4e9",
+  green: "#009e73",
+  yellow: "#f0e442",
+  blue: "#0072b2",
+  vermillion: "#d55e00",
+  purple: "#cc79a7",
+} as const;
+
+/** Of objects; vermillion is left to contacts and yellow to what is selected. */
+const OBJECTS = ["#56b4e9", "#e6b450", "#3fae8f", "#cc9bb9", "#4f8fc0", "#a9b4bd", "#8fb87a", "#b79a86"];
+export const objectColour = (index: number): string => OBJECTS[index % OBJECTS.length]!;
+
+/** Of octree levels and regions. */
+export const LEVELS = [OKABE_ITO.blue, OKABE_ITO.orange, OKABE_ITO.green, OKABE_ITO.purple, OKABE_ITO.sky, OKABE_ITO.vermillion];
+export const levelColour = (level: number): string => LEVELS[level % LEVELS.length]!;

@@ -1,0 +1,254 @@
+/** What the page knows: the scene as the session told it, the newest frame, and what the person chose. */
+import { objectColour } from "./colours";
+import { Emitter } from "./emitter";
+import type { FrameMessage, SceneMessage, SceneText, SeriesMessage } from "./protocol/messages";
+
+export interface ObjectState {
+  index: number;
+  name: string;
+  vertices: number;
+  triangles: number;
+  isStatic: boolean;
+  isBody: boolean;
+  /** Where it is now, minus the scene's centre; written in place. */
+  positions: Float32Array;
+  corners: Uint32Array;
+  visible: boolean;
+  colour: string;
+  opacity: number;
+}
+
+export const LAYERS = [
+  "surface", "wireframe", "regions", "octree", "pairs", "candidates", "triangles", "points", "normals", "curves", "vertices",
+] as const;
+export type Layer = (typeof LAYERS)[number];
+
+export const TOOLS = ["select", "grab", "explain"] as const;
+export type Tool = (typeof TOOLS)[number];
+
+export interface Selection {
+  object: number;
+  triangle: number | null;
+  vertex: number | null;
+}
+
+/** A contact by what touches, so that it stays selected from frame to frame. */
+export type ContactKey = readonly [objectA: number, elementA: number, objectB: number, elementB: number];
+
+export interface Explanation {
+  stage: string;
+  text: string;
+  boxes: [number[][], number[][]] | null;
+  spheres: number[][] | null;
+  levels: number[] | null;
+  axis: number[] | null;
+  distance: number | null;
+}
+
+export interface Events {
+  begin: { frame: number; a: number; b: number }[];
+  end: { frame: number; a: number; b: number }[];
+}
+
+interface ModelEvents {
+  scene: SceneText;
+  frame: FrameMessage;
+  /** Visibility, colour or opacity of objects, layers, the theme: what is drawn, not what is there. */
+  display: null;
+  /** Layers that the session has to send. */
+  request: null;
+  selection: null;
+  tool: Tool;
+  explanation: null;
+  history: null;
+}
+
+const LIVE_ROWS = 4000;
+
+/** Rows of numbers, a row a frame: of a recording all of them, of a simulation those that were seen. */
+export class History {
+  names: string[] = [];
+  columns: number[][] = [];
+  frames: number[] = [];
+  events: Events = { begin: [], end: [] };
+
+  reset(names: string[]): void {
+    this.names = names;
+    this.columns = names.map(() => []);
+    this.frames = [];
+    this.events = { begin: [], end: [] };
+  }
+
+  push(frame: number, row: ArrayLike<number>): void {
+    this.frames.push(frame);
+    for (let i = 0; i < this.columns.length; ++i) this.columns[i]!.push(row[i] ?? NaN);
+    if (this.frames.length <= LIVE_ROWS) return;
+    const surplus = LIVE_ROWS / 4;  // in bulk, so that it costs little a frame
+    this.frames.splice(0, surplus);
+    for (const column of this.columns) column.splice(0, surplus);
+    const first = this.frames[0]!;
+    this.events.begin = this.events.begin.filter((event) => event.frame >= first);
+    this.events.end = this.events.end.filter((event) => event.frame >= first);
+  }
+
+  column(name: string): number[] | null {
+    const at = this.names.indexOf(name);
+    return at < 0 ? null : this.columns[at]!;
+  }
+}
+
+export class Model extends Emitter<ModelEvents> {
+  scene: SceneText | null = null;
+  objects: ObjectState[] = [];
+  frame: FrameMessage | null = null;
+  framesSeen = 0;
+  readonly history = new History();
+
+  layers: Record<Layer, boolean> = {
+    surface: true, wireframe: false, regions: false, octree: false, pairs: false, candidates: false,
+    triangles: true, points: true, normals: false, curves: true, vertices: false,
+  };
+  octree: { onlySelected: boolean; level: number } = { onlySelected: false, level: -1 };
+  throughSurfaces = true;
+  pointSize = 5;
+  normalLength = 0.05;  // of the scene's size
+
+  tool: Tool = "select";
+  selection: Selection | null = null;
+  contact: ContactKey | null = null;
+  explained: { object: number; triangle: number }[] = [];
+  explanation: Explanation | null = null;
+
+  takeScene(message: SceneMessage): void {
+    const before = this.scene;
+    const old = this.objects;
+    this.scene = message.text;
+    this.frame = null;
+    this.objects = message.text.objects.map((object, index) => {
+      const kept = old[index]?.name === object.name ? old[index] : undefined;
+      return {
+        index,
+        name: object.name,
+        vertices: object.vertices,
+        triangles: object.triangles,
+        isStatic: object.static,
+        isBody: object.body,
+        positions: new Float32Array(3 * object.vertices),
+        corners: message.triangles.get(index) ?? new Uint32Array(0),
+        visible: kept?.visible ?? true,
+        colour: kept?.colour ?? objectColour(index),
+        opacity: kept?.opacity ?? 1,
+      };
+    });
+    const sameObjects =
+      before?.title === message.text.title && old.length === this.objects.length &&
+      old.every((object, i) => object.triangles === this.objects[i]!.triangles);
+    if (!sameObjects) this.selection = null;
+    this.explained = [];
+    this.explanation = null;
+    this.contact = null;
+    const names = message.text.source === "recording" ? message.text.series : ["time", ...message.text.statistics];
+    this.history.reset(names);
+    this.emit("scene", message.text);
+    this.emit("explanation", null);
+  }
+
+  takeFrame(message: FrameMessage): void {
+    if (!this.scene || message.text.generation !== this.scene.generation) return;
+    for (const [object, positions] of message.positions) this.objects[object]!.positions.set(positions);
+    this.frame = message;
+    this.framesSeen += 1;
+    if (this.scene.source === "simulation") this.remember(message);
+    this.emit("frame", message);
+  }
+
+  takeSeries(message: SeriesMessage): void {
+    const width = this.history.names.length;
+    this.history.reset(this.history.names);
+    const rows = width === 0 ? 0 : message.values.length / width;
+    for (let c = 0; c < width; ++c) {
+      const column = new Array<number>(rows);
+      for (let row = 0; row < rows; ++row) column[row] = message.values[row * width + c]!;
+      this.history.columns[c] = column;
+    }
+    this.history.frames = Array.from({ length: rows }, (_, row) => row);
+    const list = (data: Uint32Array) =>
+      Array.from({ length: data.length / 3 }, (_, i) => ({ frame: data[3 * i]!, a: data[3 * i + 1]!, b: data[3 * i + 2]! }));
+    this.history.events = { begin: list(message.begin), end: list(message.end) };
+    this.emit("history", null);
+  }
+
+  private remember(message: FrameMessage): void {
+    const { step, time } = message.text;
+    const frames = this.history.frames;
+    if (frames.length > 0 && frames[frames.length - 1]! >= step) return;  // the same step again, layers changed
+    this.history.push(step, [time, ...message.statistics]);
+    for (const [events, data] of [[this.history.events.begin, message.begin], [this.history.events.end, message.end]] as const)
+      for (let i = 0; i < data.length; i += 2) events.push({ frame: step, a: data[i]!, b: data[i + 1]! });
+    this.emit("history", null);
+  }
+
+  can(command: string): boolean {
+    return this.scene?.can.includes(command) ?? false;
+  }
+
+  select(selection: Selection | null, contact: ContactKey | null = null): void {
+    this.selection = selection;
+    this.contact = contact;
+    this.emit("selection", null);
+    if (this.layers.octree && this.octree.onlySelected) this.emit("request", null);
+  }
+
+  clearSelection(): void {
+    this.explained = [];
+    this.explanation = null;
+    this.select(null);
+  }
+
+  setTool(tool: Tool): void {
+    this.tool = tool;
+    if (tool !== "explain") this.setExplained([], null);
+    this.emit("tool", tool);
+  }
+
+  setExplained(triangles: { object: number; triangle: number }[], explanation: Explanation | null): void {
+    this.explained = triangles;
+    this.explanation = explanation;
+    this.emit("explanation", null);
+  }
+
+  setLayer(layer: Layer, on: boolean): void {
+    this.layers[layer] = on;
+    if (["regions", "octree", "candidates", "vertices"].includes(layer)) this.emit("request", null);
+    this.emit("display", null);
+  }
+
+  /** The `layers` command for what is switched on. */
+  request(): Record<string, unknown> {
+    const objects =
+      this.octree.onlySelected && this.selection
+        ? [this.selection.object]
+        : this.objects.filter((object) => object.visible).map((object) => object.index);
+    return {
+      do: "layers",
+      candidates: this.layers.candidates,
+      scene_regions: this.layers.regions,
+      colliding_vertices: this.layers.vertices,
+      octree: this.layers.octree ? { objects, level: this.octree.level } : null,
+    };
+  }
+}
+
+/** The bounds of vertices, of those that are numbers; null when there are none. */
+export function boundsOf(objects: Iterable<ObjectState>): { lower: number[]; upper: number[] } | null {
+  const lower = [Infinity, Infinity, Infinity];
+  const upper = [-Infinity, -Infinity, -Infinity];
+  for (const { positions } of objects)
+    for (let i = 0; i < positions.length; i += 3)
+      for (let axis = 0; axis < 3; ++axis) {
+        const x = positions[i + axis]!;
+        if (x < lower[axis]!) lower[axis] = x;
+        if (x > upper[axis]!) upper[axis] = x;
+      }
+  return lower.every((x, axis) => Number.isFinite(x) && Number.isFinite(upper[axis]!)) ? { lower, upper } : null;
+}

@@ -1,0 +1,38 @@
+import { h } from "./dom";
+
+const GROUPS: [string, [string, string][]][] = [
+  ["Play", [
+    ["Space", "play or pause"], ["→ ←", "a step on, or back in a recording"], ["Home End", "first, last frame"],
+    [". ,", "next, previous event"], ["[ ]", "slower, faster"], ["L", "loop a recording"], ["R", "reset with the seed"],
+  ]],
+  ["Look", [
+    ["drag", "orbit; right button or Shift: pan"], ["wheel", "zoom to the cursor"], ["Shift + arrows", "orbit"], ["Alt + arrows", "pan"], ["+ −", "zoom"],
+    ["F", "frame all"], ["Shift + F", "frame the selection"], ["1 … 6", "front, back, right, left, top, bottom"], ["O", "orthographic or perspective"],
+  ]],
+  ["Work", [
+    ["V", "select: click an object, triangle, contact"], ["G", "grab: drag a vertex, or select one and use Enter and the arrows"], ["W", "why no contact: click two triangles"],
+    ["Esc", "let go, clear the selection, close"],
+  ]],
+  ["Layers", [
+    ["S X", "surfaces, wireframe"], ["N B", "scene octree, object octrees"], ["P C", "object pairs, candidates"],
+    ["I D", "intersecting triangles, contact points"], ["Y U J", "normals, curves, vertices"],
+  ]],
+  ["Page", [
+    ["Shift + S", "save a picture"], ["Shift + V", "record a video, or end it"], ["T", "light or dark"], ["H", "hide or show the panels"], ["?", "this sheet"],
+  ]],
+];
+
+export function helpSheet(): HTMLDialogElement {
+  const groups = GROUPS.map(([title, rows]) =>
+    h("section", {}, h("h3", {}, title), h("dl", {}, ...rows.flatMap(([keys, does]) => [h("dt", {}, ...keys.split(" ").map((key) => h("kbd", {}, key))), h("dd", {}, does)]))),
+  );
+  const dialog = h(
+    "dialog", { class: "help", "aria-label": "Keyboard shortcuts" },
+    h("header", {}, h("h2", {}, "Keys"), h("button", { type: "button", class: "text-button", onclick: () => dialog.close() }, "Close")),
+    h("div", { class: "groups" }, ...groups),
+  );
+  dialog.addEventListener("click", (event) => {
+    if (event.target === dialog) dialog.close();
+  });
+  return dialog;
+}

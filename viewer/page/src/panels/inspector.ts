@@ -1,0 +1,228 @@
+/** Ids and values of what was picked, and why two triangles are, or are not, a contact. */
+import type { Client } from "../client";
+import { OKABE_ITO } from "../colours";
+import type { Explanation, Model } from "../model";
+import { findContact } from "../view/scene_view";
+import { h, readable } from "./dom";
+
+/** While things move, values are read anew so often. */
+const REFRESH_MILLISECONDS = 250;
+
+const STAGES: Record<string, string> = {
+  not_tested: "Not tested",
+  shared_vertex: "They share a vertex",
+  inert: "A corner is not a finite number",
+  object_volumes: "Broad phase: the objects are apart",
+  octree_volumes: "Narrow phase: octree cells are apart",
+  triangle_boxes: "Leaves: the boxes of the triangles are apart",
+  exact_test: "Exact stage: the triangles are apart",
+  contact: "They are a contact",
+};
+
+function show(value: unknown): string {
+  if (typeof value === "number") return readable(value);
+  if (Array.isArray(value)) return value.map(show).join(", ");
+  if (value !== null && typeof value === "object")
+    return Object.entries(value).map(([name, inner]) => `${name.replace(/_/g, " ")} ${show(inner)}`).join("; ");
+  return value === null ? "none" : String(value);
+}
+
+/** Numbers in full: what a person copies. */
+function showExactly(value: unknown): string {
+  return Array.isArray(value) ? value.map(showExactly).join("\n") : String(value);
+}
+
+type Row = [name: string, value: string | Node];
+
+function table(rows: Row[]): HTMLElement {
+  return h("dl", {}, ...rows.flatMap(([name, value]) => [h("dt", {}, name), h("dd", {}, value)]));
+}
+
+export class Inspector {
+  readonly element = h("div", { class: "inspector" });
+  private readonly details = h("div", { class: "details", "aria-label": "Selection", role: "region" });
+  private readonly verdict = h("div", { class: "verdict", role: "status", "aria-label": "Explanation" });
+  private readonly fields: { object: HTMLSelectElement; triangle: HTMLInputElement }[];
+  private answers = new Map<string, Record<string, unknown> | string>();
+  private due: ReturnType<typeof setTimeout> | undefined;
+  private round = 0;
+
+  constructor(private readonly model: Model, private readonly client: Client, private readonly fly: () => void) {
+    this.fields = ["A", "B"].map((side) => ({
+      object: h("select", { "aria-label": `Object ${side}` }),
+      triangle: h("input", { type: "number", min: 0, step: 1, value: 0, "aria-label": `Triangle ${side}` }),
+    }));
+    this.element.append(this.details, this.explainForm());
+    model.on("scene", () => this.reset());
+    model.on("selection", () => this.changed());
+    model.on("explanation", () => this.showVerdict());
+    model.on("frame", () => this.later());
+    this.draw();
+  }
+
+  private explainForm(): HTMLElement {
+    const rows = this.fields.map(({ object, triangle }, i) =>
+      h("div", { class: "field" }, h("span", { class: "side", style: `background:${i === 0 ? OKABE_ITO.orange : OKABE_ITO.sky}` }, "AB"[i]!), object, triangle),
+    );
+    const submit = (event: Event) => {
+      event.preventDefault();
+      void this.explain(this.fields.map((field) => ({ object: Number(field.object.value), triangle: field.triangle.valueAsNumber || 0 })));
+    };
+    return h(
+      "form", { class: "explain", onsubmit: submit },
+      h("h3", {}, "Why no contact?"),
+      h("p", { class: "hint" }, "Pick two triangles with the tool ", h("kbd", {}, "W"), ", or name them."),
+      ...rows,
+      h("button", { type: "submit" }, "Explain"),
+      this.verdict,
+    );
+  }
+
+  /** Asks which stage told two triangles apart. */
+  async explain(pair: { object: number; triangle: number }[]): Promise<void> {
+    pair.forEach(({ object, triangle }, i) => {
+      this.fields[i]!.object.value = String(object);
+      this.fields[i]!.triangle.value = String(triangle);
+    });
+    const [a, b] = pair;
+    const missing = pair.find(({ object, triangle }) => !(triangle < (this.model.objects[object]?.triangles ?? 0)));
+    if (missing) return this.complain(`There is no triangle ${missing.triangle} in ${this.model.objects[missing.object]?.name ?? "that object"}.`);
+    if (!a || !b) {
+      this.model.setExplained(pair, null);
+      return;
+    }
+    try {
+      const answer = await this.client.ask({ do: "explain", a: [a.object, a.triangle], b: [b.object, b.triangle] });
+      this.model.setExplained(pair, answer as unknown as Explanation);
+    } catch (error) {
+      this.complain((error as Error).message);
+    }
+  }
+
+  private complain(text: string): void {
+    this.model.setExplained([], null);
+    this.verdict.replaceChildren(h("p", {}, text));
+  }
+
+  private showVerdict(): void {
+    const { explained, explanation } = this.model;
+    if (!explanation) {
+      const text = explained.length === 1 ? "Now the second triangle." : "";
+      this.verdict.replaceChildren(...(text ? [h("p", {}, text)] : []));
+      return;
+    }
+    const rows: Row[] = [];
+    if (explanation.levels && explanation.stage === "octree_volumes") rows.push(["Levels", show(explanation.levels)]);
+    if (explanation.distance) rows.push(["Apart by", readable(explanation.distance)]);
+    if (explanation.axis && explanation.distance) rows.push(["Along", show(explanation.axis)]);
+    this.verdict.replaceChildren(
+      h("h4", {}, STAGES[explanation.stage] ?? explanation.stage), h("p", {}, explanation.text), table(rows),
+    );
+  }
+
+  private reset(): void {
+    for (const { object } of this.fields)
+      object.replaceChildren(...this.model.objects.map(({ index, name }) => h("option", { value: index }, name)));
+    if (this.model.objects.length > 1) this.fields[1]!.object.value = "1";
+    this.changed();
+  }
+
+  private changed(): void {
+    this.answers.clear();
+    clearTimeout(this.due);
+    this.due = undefined;
+    void this.read();
+  }
+
+  private later(): void {
+    this.due ??= setTimeout(() => {
+      this.due = undefined;
+      void this.read();
+    }, REFRESH_MILLISECONDS);
+  }
+
+  /** Asks the session for exact values of what is selected. */
+  private async read(): Promise<void> {
+    const { selection } = this.model;
+    const round = ++this.round;
+    if (!selection || !this.element.isConnected) return this.draw();
+    const questions: [string, Record<string, unknown>][] = [["object", { object: selection.object }]];
+    if (selection.triangle !== null) questions.push(["triangle", { object: selection.object, triangle: selection.triangle }]);
+    if (selection.vertex !== null) questions.push(["vertex", { object: selection.object, vertex: selection.vertex }]);
+    await Promise.all(
+      questions.map(async ([name, about]) => {
+        const answer = await this.client.ask({ do: "read", ...about }).catch((error: Error) => error.message);
+        if (round === this.round) this.answers.set(name, answer);
+      }),
+    );
+    if (round === this.round) this.draw();
+  }
+
+  private rowsOf(name: string, exact: string[] = []): Row[] {
+    const answer = this.answers.get(name);
+    if (answer === undefined) return [];
+    if (typeof answer === "string") return [["", answer]];
+    return Object.entries(answer)
+      .filter(([key]) => !["id", "name", "object", "triangle", "vertex"].includes(key))
+      .map(([key, value]) => {
+        if (key === "contacts" && Array.isArray(value)) return ["contacts", this.contactLinks(value as [number, number][])];
+        return [key.replace(/_/g, " "), exact.includes(key) ? h("code", {}, showExactly(value)) : show(value)];
+      });
+  }
+
+  private contactLinks(others: [number, number][]): Node {
+    if (others.length === 0) return document.createTextNode("none");
+    const links = others.slice(0, 50).map(([object, triangle]) => {
+      const press = () => {
+        this.model.select({ object, triangle, vertex: null });
+        this.fly();
+      };
+      return h("button", { type: "button", class: "link", onclick: press }, `${this.model.objects[object]?.name ?? object} ${triangle}`);
+    });
+    const more = others.length > 50 ? [`and ${others.length - 50} more`] : [];
+    return h("span", { class: "links" }, ...links, ...more);
+  }
+
+  private contactRows(): Row[] {
+    const { contact, frame } = this.model;
+    if (!contact || !frame) return [];
+    const [a, elementA, b, elementB] = contact;
+    const rows: Row[] = [["between", `${this.model.objects[a]!.name} ${elementA} and ${this.model.objects[b]!.name} ${elementB}`]];
+    const place = findContact(frame, contact);
+    if (place < 0) return [...rows, ["now", "no longer a contact"]];
+    const isImpact = frame.impacts.length > 0;
+    const data = isImpact ? frame.impactPoints : frame.contactPoints;
+    const first = isImpact ? place : frame.contacts[8 * place + 6]!;
+    const count = isImpact ? 1 : frame.contacts[8 * place + 5]!;
+    const center = this.model.scene!.center;
+    rows.push(["points", String(count)]);
+    for (let k = 0; k < count; ++k) {
+      const at = 8 * (first + k);
+      rows.push([k === 0 ? "at" : "", [0, 1, 2].map((axis) => readable(data[at + axis]! + center[axis]!)).join(", ")]);
+    }
+    if (count > 0) rows.push(["normal", show(Array.from(data.subarray(8 * first + 4, 8 * first + 7)))]);
+    if (isImpact) rows.push(["time in step", readable(data[8 * first + 3]!)]);
+    return rows;
+  }
+
+  private draw(): void {
+    const { selection } = this.model;
+    if (!selection) {
+      this.details.replaceChildren(h("p", { class: "hint empty" }, "Click an object, a triangle or a contact point to read its ids and values."));
+      return;
+    }
+    const object = this.model.objects[selection.object];
+    if (!object) return;
+    const kind = object.isBody ? "soft body" : object.isStatic ? "static" : "moving";
+    const parts: HTMLElement[] = [];
+    const contact = this.contactRows();
+    if (contact.length > 0) parts.push(h("h3", {}, "Contact"), table(contact));
+    if (selection.vertex !== null) parts.push(h("h3", {}, `Vertex ${selection.vertex}`), table(this.rowsOf("vertex", ["position"])));
+    if (selection.triangle !== null) parts.push(h("h3", {}, `Triangle ${selection.triangle}`), table(this.rowsOf("triangle")));
+    parts.push(
+      h("h3", {}, object.name),
+      table([["object", `${object.index}, ${kind}`], ["size", `${readable(object.vertices)} vertices, ${readable(object.triangles)} triangles`], ...this.rowsOf("object").filter(([name]) => name !== "vertices" && name !== "triangles")]),
+    );
+    this.details.replaceChildren(...parts);
+  }
+}

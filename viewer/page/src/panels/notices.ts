@@ -1,0 +1,79 @@
+/** Short notices, and the card that takes the middle of the page when there is nothing to show any more. */
+import type { Status } from "../client";
+import { h } from "./dom";
+
+const NOTICE_MILLISECONDS = 9000;
+
+export class Notices {
+  readonly element = h("div", { class: "notices", role: "log", "aria-live": "polite", "aria-label": "Messages" });
+
+  show(text: string): void {
+    const shown = [...this.element.children].find((child) => child.firstChild?.textContent === text);
+    if (shown) return;
+    const notice = h("div", { class: "notice" }, h("span", {}, text));
+    notice.append(h("button", { type: "button", class: "text-button", "aria-label": "Dismiss", onclick: () => notice.remove() }, "×"));
+    this.element.append(notice);
+    while (this.element.children.length > 4) this.element.firstChild!.remove();
+    setTimeout(() => notice.remove(), NOTICE_MILLISECONDS);
+  }
+}
+
+interface Words {
+  title: string;
+  text: string;
+  again: string;
+}
+
+function wordsOf(status: Extract<Status, { state: "ended" }>, carriesLibrary: boolean): Words {
+  const { reason, detail } = status;
+  switch (reason) {
+    case "lost":
+      return { title: "The connection is lost", text: "The program may have ended, or the network between has failed. What you see is the last frame.", again: "Reconnect" };
+    case "taken-over":
+      return { title: "Open in another page", text: "Another page has taken over this session. It shows one page at a time.", again: "Take it back" };
+    case "program-ended":
+      return { title: "The program has ended", text: "Start supple view again, then open the address that it prints.", again: "Reconnect" };
+    case "refused":
+      return { title: "The program refused what this page sent", text: detail || "Page and program may be of different versions. Reload the page.", again: "Reconnect" };
+    case "failed":
+      return { title: "The session has failed", text: detail || "The program says more where it runs.", again: carriesLibrary ? "Start again" : "Reconnect" };
+    case "malformed":
+      return { title: "The page does not understand the program", text: `${detail} Page and program may be of different versions. Reload the page.`, again: "Reconnect" };
+    case "too-large":
+      return { title: "This scene is too large for the page", text: detail, again: "Try again" };
+  }
+}
+
+export class Card {
+  readonly element = h("div", { class: "card", hidden: true });
+
+  constructor(private readonly reconnect: () => void, private readonly carriesLibrary: boolean) {}
+
+  showStatus(status: Status): void {
+    if (status.state === "connecting") {
+      this.fill("status", "Connecting…", this.carriesLibrary ? "The library is being unpacked." : "Waiting for the program.", null);
+    } else if (status.state === "connected") {
+      this.fill("status", "Connected", "Waiting for the scene.", null);
+    } else {
+      const { title, text, again } = wordsOf(status, this.carriesLibrary);
+      this.fill("alertdialog", title, text, h("button", { type: "button", class: "primary", onclick: this.reconnect }, again));
+    }
+  }
+
+  /** For what no connection mends. */
+  fail(title: string, text: string): void {
+    this.fill("alertdialog", title, text, h("button", { type: "button", class: "primary", onclick: () => location.reload() }, "Reload"));
+  }
+
+  hide(): void {
+    this.element.hidden = true;
+  }
+
+  private fill(role: string, title: string, text: string, action: HTMLElement | null): void {
+    this.element.setAttribute("role", role);
+    this.element.setAttribute("aria-label", title);
+    this.element.replaceChildren(h("h2", {}, title), h("p", {}, text), ...(action ? [action] : []));
+    this.element.hidden = false;
+    action?.focus();
+  }
+}

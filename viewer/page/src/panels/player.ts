@@ -1,0 +1,189 @@
+/** Play, step, speed, reset and, of a recording, the timeline with its events. */
+import type { Client } from "../client";
+import { OKABE_ITO } from "../colours";
+import type { Model } from "../model";
+import { h, iconButton, readable, setIcon } from "./dom";
+
+const SPEEDS = [0.1, 0.25, 0.5, 1, 2, 5, 10];
+
+export class Player {
+  readonly element: HTMLElement;
+  playing = false;
+  private looping = false;
+  private speed = 1;
+  private readonly play = iconButton("play", "Play", "Space", () => this.togglePlay());
+  private readonly loop = iconButton("loop", "Loop", "L", () => this.toggleLoop());
+  private readonly speeds = h("select", { "aria-label": "Speed", title: "Speed ([ and ])", onchange: () => this.setSpeed(Number(this.speeds.value)) });
+  private readonly seed = h("input", { type: "number", min: 0, step: 1, "aria-label": "Seed", title: "Seed of the next reset" });
+  private readonly slider = h("input", { type: "range", min: 0, max: 0, step: 1, value: 0, "aria-label": "Timeline", oninput: () => this.scrub() });
+  private readonly marks = h("canvas", { class: "marks", "aria-hidden": "true" });
+  private readonly place = h("output", { class: "place", "aria-label": "Place" });
+  private readonly rate = h("output", { class: "rate", "aria-label": "Frames a second", title: "Frames a second that arrive" });
+  private readonly recordingOnly: HTMLElement[];
+  private readonly simulationOnly: HTMLElement[];
+  private wanted: number | null = null;
+  private asked: number | null = null;
+
+  constructor(private readonly model: Model, private readonly client: Client) {
+    const first = iconButton("back", "First frame", "Home", () => this.seek(0));
+    const last = iconButton("forward", "Last frame", "End", () => this.seek(Infinity));
+    const previous = iconButton("previousEvent", "Previous event", ",", () => this.jump(-1));
+    const next = iconButton("nextEvent", "Next event", ".", () => this.jump(1));
+    const back = h("button", { type: "button", class: "text-button", "aria-label": "Step back", title: "Step back (←)", onclick: () => this.step(-1) }, "−1");
+    const forward = h("button", { type: "button", class: "text-button", "aria-label": "Step", title: "Step (→)", onclick: () => this.step(1) }, "+1");
+    const reset = iconButton("reset", "Reset", "R", () => this.reset());
+    const track = h("div", { class: "track" }, this.marks, this.slider);
+    const seed = h("label", { class: "seed" }, "Seed ", this.seed);
+    this.recordingOnly = [first, last, previous, next, back, this.loop, track];
+    this.simulationOnly = [reset, seed];
+    this.speeds.append(h("option", { value: 0 }, "fastest"), ...SPEEDS.map((speed) => h("option", { value: speed }, `${speed}×`)));
+    this.seed.addEventListener("change", () => this.reset());
+    this.element = h(
+      "footer", { class: "player", "aria-label": "Player", role: "toolbar" },
+      first, previous, back, this.play, forward, next, last, this.loop, reset, seed, this.speeds, track, this.place, this.rate,
+    );
+    model.on("scene", () => this.build());
+    model.on("frame", (frame) => this.show(frame.text));
+    model.on("history", () => this.drawMarks());
+    new ResizeObserver(() => this.drawMarks()).observe(track);
+  }
+
+  private get frames(): number | null {
+    return this.model.scene?.frames ?? null;
+  }
+
+  private build(): void {
+    const scene = this.model.scene!;
+    const isRecording = scene.source === "recording";
+    for (const element of this.recordingOnly) element.hidden = !isRecording;
+    for (const element of this.simulationOnly) element.hidden = isRecording;
+    this.speeds.querySelector<HTMLOptionElement>("option[value='0']")!.hidden = isRecording;
+    this.slider.max = String(Math.max(0, (scene.frames ?? 1) - 1));
+    this.seed.value = String(scene.seed);
+    this.wanted = this.asked = null;
+    this.element.classList.toggle("recording", isRecording);
+    this.drawMarks();
+  }
+
+  private show(text: { step: number; time: number; playing: boolean; speed: number; loop?: boolean }): void {
+    this.setPlaying(text.playing);
+    this.speed = text.speed;
+    if (document.activeElement !== this.speeds) this.speeds.value = String(this.speed);
+    if (text.loop !== undefined) this.setLooping(text.loop);
+    if (this.asked === text.step) this.asked = null;
+    if (this.asked === null && this.wanted === null) this.slider.value = String(text.step);
+    const of = this.frames === null ? "" : ` / ${readable(this.frames - 1)}`;
+    this.place.textContent = `${this.frames === null ? "step" : "frame"} ${readable(text.step)}${of} · ${text.time.toFixed(3)} s`;
+    this.slider.setAttribute("aria-valuetext", this.place.textContent);
+  }
+
+  showRate(rate: number): void {
+    this.rate.textContent = rate > 0 ? `${Math.round(rate)} fps` : "";
+  }
+
+  private setPlaying(on: boolean): void {
+    if (this.playing === on) return;
+    this.playing = on;
+    setIcon(this.play, on ? "pause" : "play", on ? "Pause" : "Play", "Space");
+  }
+
+  private setLooping(on: boolean): void {
+    this.looping = on;
+    this.loop.setAttribute("aria-pressed", String(on));
+  }
+
+  togglePlay(): void {
+    this.client.send({ do: this.playing ? "pause" : "play" });
+    this.setPlaying(!this.playing);
+  }
+
+  pause(): void {
+    if (!this.playing) return;
+    this.client.send({ do: "pause" });
+    this.setPlaying(false);
+  }
+
+  step(count: number): void {
+    if (count < 0 && !this.model.can("seek")) return;
+    this.client.send({ do: "step", count });
+    this.setPlaying(false);
+  }
+
+  toggleLoop(): void {
+    if (!this.model.can("seek")) return;
+    this.setLooping(!this.looping);
+    this.client.send({ do: "loop", on: this.looping });
+  }
+
+  setSpeed(factor: number): void {
+    this.client.send({ do: "speed", factor });
+    this.speed = factor;
+    this.speeds.value = String(factor);
+  }
+
+  faster(direction: 1 | -1): void {
+    const at = SPEEDS.indexOf(this.speed);
+    const now = at < 0 ? (direction > 0 ? SPEEDS.length - 2 : SPEEDS.length) : at;
+    this.setSpeed(SPEEDS[Math.max(0, Math.min(SPEEDS.length - 1, now + direction))]!);
+  }
+
+  reset(): void {
+    if (!this.model.can("reset")) return;
+    const seed = this.seed.valueAsNumber;
+    this.client.send(Number.isInteger(seed) && seed >= 0 ? { do: "reset", seed } : { do: "reset" });
+  }
+
+  seek(frame: number): void {
+    if (this.frames === null || !this.model.can("seek")) return;
+    this.wanted = Math.max(0, Math.min(this.frames - 1, frame));
+    this.slider.value = String(this.wanted);
+  }
+
+  private scrub(): void {
+    this.pause();
+    this.seek(this.slider.valueAsNumber);
+  }
+
+  /** At most one seek a picture, however fast the slider moves. */
+  turn(): void {
+    if (this.wanted === null) return;
+    if (this.wanted !== this.model.frame?.text.step) {
+      this.client.send({ do: "seek", frame: this.wanted });
+      this.asked = this.wanted;
+    }
+    this.wanted = null;
+  }
+
+  /** To the next or previous frame in which objects begin or cease to touch. */
+  jump(direction: 1 | -1): void {
+    if (!this.model.can("seek")) return;
+    const now = this.wanted ?? this.asked ?? this.model.frame?.text.step ?? 0;
+    const { begin, end } = this.model.history.events;
+    let best: number | null = null;
+    for (const { frame } of [...begin, ...end])
+      if ((frame - now) * direction > 0 && (best === null || (best - frame) * direction > 0)) best = frame;
+    if (best === null) return;
+    this.pause();
+    this.seek(best);
+  }
+
+  /** Begin events above the timeline, end events below it. */
+  private drawMarks(): void {
+    const { marks, frames } = this;
+    const ratio = devicePixelRatio;
+    const { clientWidth: width, clientHeight: height } = marks;
+    if (width === 0 || frames === null) return;
+    marks.width = width * ratio;
+    marks.height = height * ratio;
+    const context = marks.getContext("2d")!;
+    context.scale(ratio, ratio);
+    const inset = 8;  // half of the slider's handle
+    const place = (frame: number) => inset + ((width - 2 * inset) * frame) / Math.max(1, frames - 1);
+    const { begin, end } = this.model.history.events;
+    for (const [events, colour, top] of [[begin, OKABE_ITO.vermillion, 0], [end, OKABE_ITO.blue, height - 6]] as const) {
+      context.fillStyle = colour;
+      const columns = new Set(events.map(({ frame }) => Math.round(place(frame))));
+      for (const x of columns) context.fillRect(x - 0.75, top, 1.5, 6);
+    }
+  }
+}

@@ -1,0 +1,122 @@
+/** Numbers over frames: pairs, contacts, time of each stage; the cursor is the frame that is shown. */
+import uPlot from "uplot";
+import "uplot/dist/uPlot.min.css";
+import { OKABE_ITO } from "../colours";
+import type { Model } from "../model";
+import { h } from "./dom";
+
+const HEIGHT = 132;
+const REDRAW_MILLISECONDS = 150;
+const LINES = [OKABE_ITO.blue, OKABE_ITO.orange, OKABE_ITO.green, OKABE_ITO.vermillion, OKABE_ITO.purple, OKABE_ITO.sky, "#8a8f98"];
+
+interface Plot {
+  title: string;
+  columns: string[];
+  scale: number;
+  plot: uPlot;
+}
+
+const isStage = (name: string): boolean => name.endsWith("_seconds");
+const labelOf = (name: string): string => name.replace(/_seconds$/, "").replace(/_/g, " ");
+
+export class Plots {
+  readonly element = h("div", { class: "plots" });
+  private plots: Plot[] = [];
+  private due: ReturnType<typeof setTimeout> | undefined;
+
+  constructor(private readonly model: Model, private readonly seek: (frame: number) => void) {
+    model.on("scene", () => this.build());
+    model.on("history", () => this.later());
+    model.on("frame", () => this.later());
+    new ResizeObserver(() => this.resize()).observe(this.element);
+  }
+
+  /** Colours come from the page's theme. */
+  rebuild(): void {
+    this.build();
+  }
+
+  private build(): void {
+    for (const { plot } of this.plots) plot.destroy();
+    this.plots = [];
+    this.element.replaceChildren();
+    if (!this.model.scene) return;
+    const { names } = this.model.history;
+    const has = (wanted: string[]) => wanted.filter((name) => names.includes(name));
+    const stages = names.filter(isStage);
+    this.add("Object pairs", has(["object_pairs"]), 1, "");
+    this.add("Contacts and candidates", has(["contacts", "candidate_pairs"]), 1, "");
+    this.add("Time per stage, milliseconds", stages, 1000, "ms");
+    if (this.plots.length === 0) this.element.append(h("p", { class: "hint empty" }, "This recording says nothing of its frames."));
+    this.update();
+  }
+
+  private add(title: string, columns: string[], scale: number, unit: string): void {
+    if (columns.length === 0) return;
+    const style = getComputedStyle(document.documentElement);
+    const ink = style.getPropertyValue("--ink-soft").trim();
+    const grid = style.getPropertyValue("--line").trim();
+    const axis = { stroke: ink, grid: { stroke: grid, width: 1 }, ticks: { stroke: grid, width: 1 }, font: "11px system-ui" };
+    const holder = h("figure", { "aria-label": title }, h("figcaption", {}, title));
+    const options: uPlot.Options = {
+      width: Math.max(120, this.element.clientWidth),
+      height: HEIGHT,
+      scales: { x: { time: false } },
+      legend: { live: false },
+      cursor: { points: { show: false }, drag: { x: false, y: false } },
+      axes: [{ ...axis, size: 26 }, { ...axis, size: 52, values: (_, ticks) => ticks.map((tick) => `${tick}${unit && ""}`) }],
+      series: [{ label: "frame" }, ...columns.map((name, i) => ({ label: labelOf(name), stroke: LINES[i % LINES.length]!, width: 1.5, points: { show: false } }))],
+      hooks: { draw: [(plot) => this.drawCursor(plot)] },
+    };
+    const empty = [[], ...columns.map(() => [])] as unknown as uPlot.AlignedData;
+    const plot = new uPlot(options, empty, holder);
+    plot.over.addEventListener("click", () => {
+      const at = plot.cursor.idx;
+      if (at !== null && at !== undefined) this.seek(this.model.history.frames[at]!);
+    });
+    this.element.append(holder);
+    this.plots.push({ title, columns, scale, plot });
+  }
+
+  private drawCursor(plot: uPlot): void {
+    const step = this.model.frame?.text.step;
+    if (step === undefined || this.model.history.frames.length === 0) return;
+    const x = plot.valToPos(step, "x", true);
+    const { left, top, width, height } = plot.bbox;
+    if (x < left || x > left + width) return;
+    plot.ctx.save();
+    plot.ctx.strokeStyle = OKABE_ITO.vermillion;
+    plot.ctx.lineWidth = 1.5 * devicePixelRatio;
+    plot.ctx.beginPath();
+    plot.ctx.moveTo(x, top);
+    plot.ctx.lineTo(x, top + height);
+    plot.ctx.stroke();
+    plot.ctx.restore();
+  }
+
+  private later(): void {
+    this.due ??= setTimeout(() => {
+      this.due = undefined;
+      this.update();
+    }, REDRAW_MILLISECONDS);
+  }
+
+  update(): void {
+    if (this.element.clientWidth === 0) return;  // another tab is shown
+    const { frames } = this.model.history;
+    for (const { columns, scale, plot } of this.plots) {
+      const lines = columns.map((name) => {
+        const column = this.model.history.column(name)!;
+        return scale === 1 ? column : column.map((value) => value * scale);
+      });
+      plot.setData([frames, ...lines]);
+    }
+  }
+
+  private resize(): void {
+    const width = this.element.clientWidth;
+    if (width === 0) return;
+    for (const { plot } of this.plots) if (plot.width !== width) plot.setSize({ width, height: HEIGHT });
+    this.update();
+  }
+}

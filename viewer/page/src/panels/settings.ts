@@ -1,0 +1,89 @@
+/** What can be changed while running: the session starts anew with it. */
+import GUI, { type Controller } from "lil-gui";
+import type { Client } from "../client";
+import type { Model } from "../model";
+import { h } from "./dom";
+
+const CHOICES = {
+  bounding_volume: ["aabb", "sphere"],
+  broad_phase: ["octree", "sweep", "brute"],
+  contacts: ["intersection", "continuous", "none"],
+  integrator: ["verlet", "symplectic_euler", "backward_euler"],
+} as const;
+
+export class Settings {
+  readonly element = h("div", { class: "settings" });
+  private gui: GUI | null = null;
+  private values: Record<string, string | number> = {};
+
+  constructor(private readonly model: Model, private readonly client: Client) {
+    model.on("scene", () => this.build());
+  }
+
+  private build(): void {
+    const focused = (document.activeElement as HTMLElement | null)?.closest("[data-setting]")?.getAttribute("data-setting");
+    this.gui?.destroy();
+    const gui = new GUI({ container: this.element, title: "Collision detection", width: 1 });
+    this.gui = gui;
+    const { scene } = this.model;
+    if (!scene) return;
+    const { bounding_volume, broad_phase, contacts, max_level, leaf_size, time_step } = scene;
+    this.values = { bounding_volume, broad_phase, contacts, max_level, leaf_size, time_step, objects: scene.objects.length };
+    if (scene.integrator !== null) this.values["integrator"] = scene.integrator;
+    if (this.model.can("set")) {
+      this.choice("bounding_volume", "Bounding volume");
+      this.number("max_level", "Octree levels", 0, 32, 1);
+      this.number("leaf_size", "Triangles a leaf", 1, null, 1);
+      this.choice("broad_phase", "Broad phase");
+      this.choice("contacts", "Contacts");
+      if (scene.source === "simulation") this.ofSimulation();
+    }
+    this.drawing(gui.addFolder("Drawing"));
+    if (focused) this.element.querySelector<HTMLElement>(`[data-setting="${focused}"] :is(input, select)`)?.focus();
+  }
+
+  private ofSimulation(): void {
+    this.number("objects", "Objects", 1, null, 1);
+    if ("integrator" in this.values) this.choice("integrator", "Integrator");
+    this.number("time_step", "Time step", 1e-6, null, null);
+  }
+
+  private choice(name: keyof typeof CHOICES, label: string): void {
+    const choices: string[] = [...CHOICES[name]];
+    const now = String(this.values[name]);
+    if (!choices.includes(now)) choices.push(now);  // of a later session
+    this.tie(this.gui!.add(this.values, name, choices), name, label);
+  }
+
+  /** With both limits it gets a slider, else a field. */
+  private number(name: string, label: string, least: number, most: number | null, step: number | null): void {
+    const controller = this.gui!.add(this.values, name).min(least);
+    if (most !== null) controller.max(most);
+    if (step !== null) controller.step(step);
+    this.tie(controller, name, label);
+  }
+
+  private tie(controller: Controller, name: string, label: string): void {
+    controller.name(label);
+    controller.domElement.dataset["setting"] = name;
+    for (const input of controller.domElement.querySelectorAll("input, select")) input.setAttribute("aria-label", label);
+    controller.onFinishChange((value: string | number) => {
+      this.client
+        .ask({ do: "set", [name]: value })
+        .then(() => undefined)
+        .catch((error: Error) => {
+          this.client.emit("notice", error.message);
+          this.build();  // shows what still holds
+        });
+    });
+  }
+
+  private drawing(folder: GUI): void {
+    const changed = () => this.model.emit("display", null);
+    folder.add(this.model, "throughSurfaces").name("Marks through surfaces").onChange(changed);
+    folder.add(this.model, "pointSize", 2, 20, 1).name("Point size").onChange(changed);
+    folder.add(this.model, "normalLength", 0.005, 0.3).name("Normal length").onChange(changed);
+    for (const controller of folder.controllers)
+      for (const input of controller.domElement.querySelectorAll("input")) input.setAttribute("aria-label", controller._name);
+  }
+}

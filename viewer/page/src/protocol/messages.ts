@@ -1,0 +1,412 @@
+/**
+ * Reader of the session's binary messages (docs/protocol.md). It checks everything it relies on and gives
+ * typed arrays that look straight into the message: nothing is copied.
+ */
+
+export const NONE = 0xffffffff;
+const MAGIC = 0x4c505553;
+const VERSION = 1;
+const ALIGNMENT = 16;
+
+export class MessageError extends Error {}
+
+export interface SceneObject {
+  name: string;
+  vertices: number;
+  triangles: number;
+  static: boolean;
+  body: boolean;
+  self_collision: boolean;
+}
+
+export type Vector = [number, number, number];
+
+export interface SceneText {
+  version: string;
+  title: string;
+  source: "simulation" | "recording";
+  generation: number;
+  center: Vector;
+  bounds: [Vector, Vector];
+  objects: SceneObject[];
+  frames: number | null;
+  time_step: number;
+  seed: number;
+  bounding_volume: string;
+  contacts: string;
+  broad_phase: string;
+  max_level: number;
+  leaf_size: number;
+  integrator: string | null;
+  can: string[];
+  statistics: string[];
+  series: string[];
+  warnings: string[];
+}
+
+export interface FrameText {
+  generation: number;
+  step: number;
+  time: number;
+  playing: boolean;
+  speed: number;
+  loop?: boolean;
+  octree_levels: (number | null)[];
+  omitted: Record<string, number>;
+}
+
+export interface SceneMessage {
+  kind: "scene";
+  text: SceneText;
+  triangles: Map<number, Uint32Array>;
+}
+
+/** What has no section is empty; positions are there of the objects that moved. */
+export interface FrameMessage {
+  kind: "frame";
+  text: FrameText;
+  positions: Map<number, Float32Array>;
+  objectPairs: Uint32Array;
+  contacts: Uint32Array;
+  contactPoints: Float32Array;
+  impacts: Uint32Array;
+  impactPoints: Float32Array;
+  candidates: Uint32Array;
+  sceneRegions: Float32Array;
+  octreeBoxes: Map<number, Float32Array>;
+  octreeSpheres: Map<number, Float32Array>;
+  collidingVertices: Map<number, Uint32Array>;
+  statistics: Float64Array;
+  begin: Uint32Array;
+  end: Uint32Array;
+}
+
+export interface AnswerMessage {
+  kind: "answer";
+  text: { id: number } & Record<string, unknown>;
+}
+
+export interface FailureMessage {
+  kind: "failure";
+  text: { message: string; fatal: boolean; id?: number };
+}
+
+export interface SeriesMessage {
+  kind: "series";
+  values: Float64Array;
+  begin: Uint32Array;
+  end: Uint32Array;
+}
+
+export type Message = SceneMessage | FrameMessage | AnswerMessage | FailureMessage | SeriesMessage;
+
+const KINDS = ["", "scene", "frame", "answer", "failure", "series"] as const;
+
+interface Form {
+  name: string;
+  array: Uint8ArrayConstructor | Uint32ArrayConstructor | Float32ArrayConstructor | Float64ArrayConstructor;
+  /** Numbers an element; 0 where the scene says how many. */
+  width: number;
+  kinds: readonly string[];
+  perObject?: boolean;
+}
+
+const FORMS: Record<number, Form> = {
+  1: { name: "text", array: Uint8Array, width: 1, kinds: ["scene", "frame", "answer", "failure"] },
+  16: { name: "triangles", array: Uint32Array, width: 3, kinds: ["scene"], perObject: true },
+  32: { name: "positions", array: Float32Array, width: 3, kinds: ["frame"], perObject: true },
+  33: { name: "object_pairs", array: Uint32Array, width: 2, kinds: ["frame"] },
+  34: { name: "contacts", array: Uint32Array, width: 8, kinds: ["frame"] },
+  35: { name: "contact_points", array: Float32Array, width: 8, kinds: ["frame"] },
+  36: { name: "impacts", array: Uint32Array, width: 8, kinds: ["frame"] },
+  37: { name: "impact_points", array: Float32Array, width: 8, kinds: ["frame"] },
+  38: { name: "candidates", array: Uint32Array, width: 4, kinds: ["frame"] },
+  39: { name: "scene_regions", array: Float32Array, width: 8, kinds: ["frame"] },
+  40: { name: "octree_boxes", array: Float32Array, width: 8, kinds: ["frame"], perObject: true },
+  41: { name: "octree_spheres", array: Float32Array, width: 8, kinds: ["frame"], perObject: true },
+  42: { name: "colliding_vertices", array: Uint32Array, width: 1, kinds: ["frame"], perObject: true },
+  43: { name: "statistics", array: Float64Array, width: 1, kinds: ["frame"] },
+  44: { name: "contact_begin", array: Uint32Array, width: 2, kinds: ["frame"] },
+  45: { name: "contact_end", array: Uint32Array, width: 2, kinds: ["frame"] },
+  64: { name: "series", array: Float64Array, width: 0, kinds: ["series"] },
+  65: { name: "series_begin", array: Uint32Array, width: 3, kinds: ["series"] },
+  66: { name: "series_end", array: Uint32Array, width: 3, kinds: ["series"] },
+};
+
+type Data = Uint8Array | Uint32Array | Float32Array | Float64Array;
+
+/** What a frame is checked against: the scene it belongs to. */
+export interface SceneCounts {
+  generation: number;
+  vertices: number[];
+  triangles: number[];
+  statistics: number;
+  series: number;
+}
+
+export function countsOf(scene: SceneText): SceneCounts {
+  return {
+    generation: scene.generation,
+    vertices: scene.objects.map((object) => object.vertices),
+    triangles: scene.objects.map((object) => object.triangles),
+    statistics: scene.statistics.length,
+    series: scene.series.length,
+  };
+}
+
+function fail(what: string): never {
+  throw new MessageError(what);
+}
+
+class Sections {
+  private readonly found = new Map<string, Map<number, Data>>();
+
+  add(form: Form, object: number, data: Data): void {
+    let objects = this.found.get(form.name);
+    if (!objects) this.found.set(form.name, (objects = new Map()));
+    if (objects.has(object)) fail(`its section ${form.name} comes twice`);
+    objects.set(object, data);
+  }
+
+  one<T extends Data>(name: string, empty: T): T {
+    return (this.found.get(name)?.get(NONE) as T | undefined) ?? empty;
+  }
+
+  each<T extends Data>(name: string): Map<number, T> {
+    return (this.found.get(name) ?? new Map()) as Map<number, T>;
+  }
+
+  json(): Record<string, unknown> {
+    const bytes = this.found.get("text")?.get(NONE) as Uint8Array | undefined;
+    if (!bytes) fail("it has no text");
+    let value: unknown;
+    try {
+      value = JSON.parse(new TextDecoder("utf-8", { fatal: true }).decode(bytes));
+    } catch {
+      fail("its text is not JSON");
+    }
+    if (typeof value !== "object" || value === null || Array.isArray(value)) fail("its text is no JSON object");
+    return value as Record<string, unknown>;
+  }
+}
+
+function readSections(buffer: ArrayBuffer, kind: string, count: number, seriesWidth: number): Sections {
+  const view = new DataView(buffer);
+  const sections = new Sections();
+  let at = ALIGNMENT;
+  for (let i = 0; i < count; ++i) {
+    if (at + ALIGNMENT > buffer.byteLength) fail("it ends within its sections");
+    const tag = view.getUint32(at, true);
+    const object = view.getUint32(at + 4, true);
+    const elements = view.getUint32(at + 8, true);
+    const bytes = view.getUint32(at + 12, true);
+    const start = at + ALIGNMENT;
+    at = start + Math.ceil(bytes / ALIGNMENT) * ALIGNMENT;
+    if (at > buffer.byteLength) fail("a section reaches past its end");
+    const form = FORMS[tag];
+    if (!form) continue;  // of a later version
+    if (!form.kinds.includes(kind)) fail(`a message of kind ${kind} has a section ${form.name}`);
+    if ((form.perObject ?? false) !== (object !== NONE)) fail(`its section ${form.name} has a wrong object`);
+    const width = form.width || seriesWidth;
+    const numbers = elements * width;
+    if (numbers * form.array.BYTES_PER_ELEMENT !== bytes) fail(`the length of its section ${form.name} does not fit`);
+    sections.add(form, object, new form.array(buffer, start, numbers));
+  }
+  if (at !== buffer.byteLength) fail("it is longer than its sections");
+  return sections;
+}
+
+const isNumber = (value: unknown): value is number => typeof value === "number" && Number.isFinite(value);
+const isCount = (value: unknown): value is number => isNumber(value) && Number.isInteger(value) && value >= 0;
+const isText = (value: unknown): value is string => typeof value === "string";
+const isVector = (value: unknown): value is Vector =>
+  Array.isArray(value) && value.length === 3 && value.every(isNumber);
+const isTexts = (value: unknown): value is string[] => Array.isArray(value) && value.every(isText);
+
+function need(ok: boolean, name: string): void {
+  if (!ok) fail(`its text has no valid “${name}”`);
+}
+
+function sceneText(json: Record<string, unknown>): SceneText {
+  const s = json as unknown as SceneText;
+  for (const name of ["version", "title", "bounding_volume", "contacts", "broad_phase"] as const) need(isText(s[name]), name);
+  need(s.source === "simulation" || s.source === "recording", "source");
+  need(isCount(s.generation), "generation");
+  need(isVector(s.center), "center");
+  need(Array.isArray(s.bounds) && s.bounds.length === 2 && s.bounds.every(isVector), "bounds");
+  need(s.frames === null || isCount(s.frames), "frames");
+  need((s.frames !== null) === (s.source === "recording"), "frames");
+  need(isNumber(s.time_step), "time_step");
+  need(isNumber(s.seed), "seed");
+  need(isCount(s.max_level), "max_level");
+  need(isCount(s.leaf_size), "leaf_size");
+  need(s.integrator === null || isText(s.integrator), "integrator");
+  for (const name of ["can", "statistics", "series", "warnings"] as const) need(isTexts(s[name]), name);
+  need(Array.isArray(s.objects), "objects");
+  for (const object of s.objects as unknown[]) {
+    need(typeof object === "object" && object !== null, "objects");
+    const o = object as SceneObject;
+    need(isText(o.name) && isCount(o.vertices) && isCount(o.triangles), "objects");
+  }
+  return s;
+}
+
+function readScene(sections: Sections): SceneMessage {
+  const text = sceneText(sections.json());
+  const triangles = sections.each<Uint32Array>("triangles");
+  for (const [object, corners] of triangles) {
+    const of = text.objects[object];
+    if (!of) fail("it has triangles of an object that is not there");
+    if (corners.length !== 3 * of.triangles) fail(`it has not all triangles of ${of.name}`);
+    for (let i = 0; i < corners.length; ++i)
+      if (corners[i]! >= of.vertices) fail(`triangle ${Math.floor(i / 3)} of ${of.name} has a vertex that is not there`);
+  }
+  text.objects.forEach((object, i) => {
+    if (object.triangles > 0 && !triangles.has(i)) fail(`it has no triangles of ${object.name}`);
+  });
+  return { kind: "scene", text, triangles };
+}
+
+function frameText(json: Record<string, unknown>): FrameText {
+  const f = json as unknown as FrameText;
+  need(isCount(f.generation), "generation");
+  need(isCount(f.step), "step");
+  need(isNumber(f.time), "time");
+  need(typeof f.playing === "boolean", "playing");
+  need(isNumber(f.speed), "speed");
+  f.octree_levels ??= [];
+  f.omitted ??= {};
+  need(Array.isArray(f.octree_levels) && f.octree_levels.every((level) => level === null || isCount(level)), "octree_levels");
+  need(typeof f.omitted === "object" && Object.values(f.omitted).every(isCount), "omitted");
+  return f;
+}
+
+/** Every `stride` numbers hold an object and a number below `limits` of it, at two places. */
+function checkIds(name: string, data: Uint32Array, stride: number, at: [number, number], limits: number[]): void {
+  for (let i = 0; i < data.length; i += stride)
+    for (const place of at) {
+      const limit = limits[data[i + place]!];
+      if (limit === undefined || data[i + place + 1]! >= limit) fail(`its section ${name} names what is not there`);
+    }
+}
+
+function checkPairs(name: string, data: Uint32Array, stride: number, at: number, objects: number): void {
+  for (let i = 0; i < data.length; i += stride)
+    if (data[i + at]! >= objects || data[i + at + 1]! >= objects) fail(`its section ${name} names an object that is not there`);
+}
+
+function checkContacts(contacts: Uint32Array, points: number): void {
+  for (let i = 0; i < contacts.length; i += 8)
+    if (contacts[i + 4]! > 2 || contacts[i + 5]! + contacts[i + 6]! > points) fail("a contact has points that are not there");
+}
+
+function checkImpacts(impacts: Uint32Array, scene: SceneCounts): void {
+  for (let i = 0; i < impacts.length; i += 8) {
+    const kind = impacts[i + 6]!;
+    if (kind > 2) fail("an impact is of a kind that is not there");
+    for (const side of [0, 1]) {
+      const object = impacts[i + 3 * side]!;
+      const isFace = (kind === 0 && side === 1) || (kind === 1 && side === 0);
+      const limit = (isFace ? scene.triangles : scene.vertices)[object];
+      const first = impacts[i + 3 * side + 1]!;
+      const second = impacts[i + 3 * side + 2]!;
+      if (limit === undefined || first >= limit || (kind === 2 && second >= limit)) fail("an impact is of what is not there");
+    }
+  }
+}
+
+function readFrame(sections: Sections, scene: SceneCounts): FrameMessage {
+  const text = frameText(sections.json());
+  const words = new Uint32Array(0);
+  const floats = new Float32Array(0);
+  const frame: FrameMessage = {
+    kind: "frame",
+    text,
+    positions: sections.each("positions"),
+    objectPairs: sections.one("object_pairs", words),
+    contacts: sections.one("contacts", words),
+    contactPoints: sections.one("contact_points", floats),
+    impacts: sections.one("impacts", words),
+    impactPoints: sections.one("impact_points", floats),
+    candidates: sections.one("candidates", words),
+    sceneRegions: sections.one("scene_regions", floats),
+    octreeBoxes: sections.each("octree_boxes"),
+    octreeSpheres: sections.each("octree_spheres"),
+    collidingVertices: sections.each("colliding_vertices"),
+    statistics: sections.one("statistics", new Float64Array(0)),
+    begin: sections.one("contact_begin", words),
+    end: sections.one("contact_end", words),
+  };
+  if (text.generation !== scene.generation) return frame;  // of a scene that is gone; nobody looks into it
+  for (const [object, positions] of frame.positions)
+    if (positions.length !== 3 * (scene.vertices[object] ?? -1)) fail(`it has not all positions of object ${object}`);
+  for (const [object, vertices] of frame.collidingVertices) {
+    const limit = scene.vertices[object] ?? 0;
+    if (vertices.some((vertex) => vertex >= limit)) fail("its section colliding_vertices names what is not there");
+  }
+  for (const shapes of [frame.octreeBoxes, frame.octreeSpheres])
+    for (const object of shapes.keys()) if (object >= scene.vertices.length) fail("it has an octree of an object that is not there");
+  checkPairs("object_pairs", frame.objectPairs, 2, 0, scene.vertices.length);
+  checkPairs("contact_begin", frame.begin, 2, 0, scene.vertices.length);
+  checkPairs("contact_end", frame.end, 2, 0, scene.vertices.length);
+  checkIds("contacts", frame.contacts, 8, [0, 2], scene.triangles);
+  checkContacts(frame.contacts, frame.contactPoints.length / 8);
+  checkIds("candidates", frame.candidates, 4, [0, 2], scene.triangles);
+  checkImpacts(frame.impacts, scene);
+  if (frame.impactPoints.length !== frame.impacts.length) fail("impacts and their points are not as many");
+  if (frame.statistics.length !== 0 && frame.statistics.length !== scene.statistics) fail("its statistics are not those of the scene");
+  return frame;
+}
+
+function readSeries(sections: Sections, scene: SceneCounts): SeriesMessage {
+  const words = new Uint32Array(0);
+  const series: SeriesMessage = {
+    kind: "series",
+    values: sections.one("series", new Float64Array(0)),
+    begin: sections.one("series_begin", words),
+    end: sections.one("series_end", words),
+  };
+  checkPairs("series_begin", series.begin, 3, 1, scene.vertices.length);
+  checkPairs("series_end", series.end, 3, 1, scene.vertices.length);
+  return series;
+}
+
+function readAnswer(sections: Sections): AnswerMessage {
+  const text = sections.json() as AnswerMessage["text"];
+  need(isNumber(text.id), "id");
+  return { kind: "answer", text };
+}
+
+function readFailure(sections: Sections): FailureMessage {
+  const text = sections.json() as FailureMessage["text"];
+  need(isText(text.message), "message");
+  need(typeof text.fatal === "boolean", "fatal");
+  return { kind: "failure", text };
+}
+
+const NO_SCENE: SceneCounts = { generation: -1, vertices: [], triangles: [], statistics: 0, series: 0 };
+
+/**
+ * Reads one message. `scene` is what the last scene message said, null before the first one.
+ * Throws `MessageError`, one sentence, for what is no message of this version.
+ */
+export function readMessage(buffer: ArrayBuffer, scene: SceneCounts | null): Message {
+  if (buffer.byteLength < ALIGNMENT) fail("it is shorter than a header");
+  const view = new DataView(buffer);
+  if (view.getUint32(0, true) !== MAGIC) fail("it does not begin as a message of Supple does");
+  const version = view.getUint16(4, true);
+  if (version !== VERSION) fail(`it is of version ${version}, and this page reads version ${VERSION}`);
+  if (view.getUint32(8, true) !== buffer.byteLength || buffer.byteLength % ALIGNMENT !== 0) fail("its length is not what it says");
+  const kind = KINDS[view.getUint16(6, true)];
+  if (!kind) fail("it is of an unknown kind");
+  const counts = scene ?? NO_SCENE;
+  if ((kind === "frame" || kind === "series") && !scene) fail(`a ${kind} came before the scene`);
+  const sections = readSections(buffer, kind, view.getUint32(12, true), counts.series);
+  switch (kind) {
+    case "scene": return readScene(sections);
+    case "frame": return readFrame(sections, counts);
+    case "answer": return readAnswer(sections);
+    case "failure": return readFailure(sections);
+    case "series": return readSeries(sections, counts);
+  }
+}

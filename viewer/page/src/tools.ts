@@ -1,0 +1,158 @@
+/** What the mouse does to objects: select, grab and pull, or ask why two triangles do not touch. */
+import type { Client } from "./client";
+import type { Model } from "./model";
+import type { Inspector } from "./panels/inspector";
+import type { SceneView } from "./view/scene_view";
+
+/** A press that moves less than this is a click. */
+const CLICK_PIXELS = 4;
+/** How far an arrow key pulls, of the view's height. */
+const KEY_PULL = 0.02;
+
+interface Grip {
+  object: number;
+  vertex: number;
+  start: [number, number, number];
+  to: [number, number, number];
+  /** Set when the target has moved since it was sent. */
+  moved: boolean;
+}
+
+export class Tools {
+  private grip: Grip | null = null;
+  private pressed: { x: number; y: number } | null = null;
+
+  constructor(
+    private readonly model: Model, private readonly client: Client, private readonly view: SceneView, private readonly inspector: Inspector,
+  ) {
+    const { canvas } = view;
+    // Before the camera's controls, which must not orbit while a vertex is pulled.
+    canvas.addEventListener("pointerdown", (event) => this.press(event), { capture: true });
+    canvas.addEventListener("pointermove", (event) => this.move(event));
+    canvas.addEventListener("pointerup", (event) => this.lift(event));
+    canvas.addEventListener("pointercancel", () => this.release());
+    model.on("tool", () => this.release());
+    model.on("scene", () => this.forget());
+    model.on("frame", () => this.grip && this.showPull());
+  }
+
+  get isPulling(): boolean {
+    return this.grip !== null;
+  }
+
+  private press(event: PointerEvent): void {
+    if (event.button !== 0) return;
+    this.pressed = { x: event.clientX, y: event.clientY };
+    if (this.model.tool !== "grab") return;
+    const hit = this.view.pickAt(event.clientX, event.clientY);
+    if (!hit) return;
+    this.model.select({ object: hit.object, triangle: null, vertex: hit.vertex });
+    this.grab(hit.object, hit.vertex);
+    this.view.rig.controls.enabled = false;
+    this.view.canvas.setPointerCapture(event.pointerId);
+  }
+
+  private move(event: PointerEvent): void {
+    if (!this.grip || !this.pressed) return;
+    const to = this.view.pointAt(event.clientX, event.clientY, this.grip.start);
+    if (to) this.pullTo([to.x, to.y, to.z]);
+  }
+
+  private lift(event: PointerEvent): void {
+    const from = this.pressed;
+    this.pressed = null;
+    if (this.grip) {
+      this.turn();
+      return this.release();
+    }
+    if (!from || Math.hypot(event.clientX - from.x, event.clientY - from.y) > CLICK_PIXELS) return;
+    this.click(event.clientX, event.clientY);
+  }
+
+  private click(x: number, y: number): void {
+    if (this.model.tool === "explain") return this.pickForExplanation(x, y);
+    const { frame } = this.model;
+    const place = this.view.contactAt(x, y);
+    if (frame && place >= 0) {
+      const isImpact = frame.impacts.length > 0;
+      const data = isImpact ? frame.impacts : frame.contacts;
+      const at = (i: number) => data[8 * place + i]!;
+      const isFace = !isImpact || at(6) === 1;
+      this.model.select({ object: at(0), triangle: isFace ? at(1) : null, vertex: null }, isImpact ? [at(0), at(1), at(3), at(4)] : [at(0), at(1), at(2), at(3)]);
+      return;
+    }
+    const hit = this.view.pickAt(x, y);
+    this.model.select(hit ? { object: hit.object, triangle: hit.triangle, vertex: hit.vertex } : null);
+  }
+
+  private pickForExplanation(x: number, y: number): void {
+    const hit = this.view.pickAt(x, y);
+    if (!hit) return;
+    const { explained } = this.model;
+    const next = { object: hit.object, triangle: hit.triangle };
+    void this.inspector.explain(explained.length === 1 ? [explained[0]!, next] : [next]);
+  }
+
+  private grab(object: number, vertex: number): void {
+    if (!this.model.can("grab")) {
+      this.client.emit("notice", "A recording cannot be pulled; open the scene itself.");
+      return;
+    }
+    const start = this.view.positionOf(object, vertex);
+    this.grip = { object, vertex, start, to: start, moved: false };
+    this.client.ask({ do: "grab", object, vertex }).catch((error: Error) => {
+      this.client.emit("notice", error.message);
+      this.forget();
+    });
+  }
+
+  /** With the keyboard: holds the selected vertex, or lets go. */
+  toggleGrip(): void {
+    if (this.grip) return this.release();
+    const { selection } = this.model;
+    if (this.model.tool !== "grab" || !selection) return;
+    const corner = selection.triangle !== null ? this.model.objects[selection.object]!.corners[3 * selection.triangle]! : 0;
+    const vertex = selection.vertex ?? corner;
+    this.model.select({ ...selection, vertex });
+    this.grab(selection.object, vertex);
+    this.showPull();
+  }
+
+  /** With the keyboard: pulls across the view. */
+  nudge(right: number, up: number): void {
+    if (!this.grip) return;
+    const { camera, controls } = this.view.rig;
+    const step = KEY_PULL * camera.position.distanceTo(controls.target);
+    const e = camera.matrixWorld.elements;
+    const [x, y, z] = this.grip.to;
+    this.pullTo([x + step * (right * e[0]! + up * e[4]!), y + step * (right * e[1]! + up * e[5]!), z + step * (right * e[2]! + up * e[6]!)]);
+  }
+
+  private pullTo(to: [number, number, number]): void {
+    this.grip!.to = to;
+    this.grip!.moved = true;
+    this.showPull();
+  }
+
+  private showPull(): void {
+    this.view.showPull(this.view.positionOf(this.grip!.object, this.grip!.vertex), this.grip!.to);
+  }
+
+  /** At most one command a picture, however often the mouse moves. */
+  turn(): void {
+    if (!this.grip?.moved) return;
+    this.grip.moved = false;
+    this.client.send({ do: "drag", to: this.grip.to });
+  }
+
+  release(): void {
+    if (this.grip) this.client.send({ do: "release" });
+    this.forget();
+  }
+
+  private forget(): void {
+    this.grip = null;
+    this.view.rig.controls.enabled = true;
+    this.view.showPull(null, null);
+  }
+}

@@ -1,0 +1,31 @@
+import type { EndReason, Transport, TransportEvents } from "./transport";
+
+const REASONS: Record<number, EndReason> = { 4001: "taken-over", 4002: "program-ended", 4003: "refused", 4004: "failed" };
+
+/** The session of the program that served this page. */
+export function openSocket(events: TransportEvents): Transport {
+  const token = new URLSearchParams(location.search).get("token") ?? "";
+  const scheme = location.protocol === "https:" ? "wss:" : "ws:";
+  const socket = new WebSocket(`${scheme}//${location.host}/session?token=${encodeURIComponent(token)}`);
+  socket.binaryType = "arraybuffer";
+  let closed = false;
+  socket.onopen = () => events.open();
+  socket.onmessage = (event: MessageEvent) => {
+    if (event.data instanceof ArrayBuffer) events.message(event.data);
+    else events.message(new ArrayBuffer(0));  // a text is no message either, and the reader says so
+  };
+  socket.onclose = (event) => {
+    if (closed) return;
+    closed = true;
+    events.end(REASONS[event.code] ?? "lost", event.reason);
+  };
+  return {
+    send(command) {
+      if (socket.readyState === WebSocket.OPEN) socket.send(JSON.stringify(command));
+    },
+    close() {
+      closed = true;
+      socket.close();
+    },
+  };
+}

@@ -1,0 +1,198 @@
+import * as THREE from "three";
+import { OrbitControls } from "three/addons/controls/OrbitControls.js";
+
+const FIELD_OF_VIEW = 40;
+const FLIGHT_MILLISECONDS = 350;
+
+/** From where an axis view looks. */
+export const AXIS_VIEWS = {
+  front: [0, 0, 1], back: [0, 0, -1], right: [1, 0, 0], left: [-1, 0, 0], top: [0, 1, 0], bottom: [0, -1, 0],
+} as const;
+export type AxisView = keyof typeof AXIS_VIEWS;
+
+interface Flight {
+  begin: number;
+  from: { position: THREE.Vector3; target: THREE.Vector3; zoom: number };
+  to: { position: THREE.Vector3; target: THREE.Vector3; zoom: number };
+}
+
+/**
+ * The camera, perspective or orthographic: orbits, pans, zooms to the cursor, flies, and is kept in the
+ * address so that a view can be sent.
+ */
+export class CameraRig {
+  camera: THREE.PerspectiveCamera | THREE.OrthographicCamera;
+  readonly controls: OrbitControls;
+  private readonly perspective = new THREE.PerspectiveCamera(FIELD_OF_VIEW, 1, 0.01, 100);
+  private readonly orthographic = new THREE.OrthographicCamera(-1, 1, 1, -1, 0.01, 100);
+  private flight: Flight | null = null;
+  private radius = 1;
+  private aspect = 1;
+  private saving: ReturnType<typeof setTimeout> | undefined;
+
+  constructor(canvas: HTMLElement, private readonly changed: () => void) {
+    this.camera = this.perspective;
+    this.camera.position.set(1.2, 0.8, 2);
+    this.controls = new OrbitControls(this.camera, canvas);
+    this.controls.zoomToCursor = true;
+    this.controls.enableDamping = false;
+    this.controls.addEventListener("change", () => this.moved());
+    this.controls.addEventListener("start", () => (this.flight = null));
+  }
+
+  get isOrthographic(): boolean {
+    return this.camera === this.orthographic;
+  }
+
+  resize(width: number, height: number): void {
+    this.aspect = width / Math.max(height, 1);
+    this.fit();
+    this.changed();
+  }
+
+  /** How far the scene reaches, for the clipping planes. */
+  setExtent(radius: number): void {
+    this.radius = Math.max(radius, 1e-30);
+    this.fit();
+  }
+
+  private get distance(): number {
+    return this.camera.position.distanceTo(this.controls.target);
+  }
+
+  /** Half of what an orthographic view shows in height at zoom 1. */
+  private get halfHeight(): number {
+    return this.distance * Math.tan((FIELD_OF_VIEW * Math.PI) / 360);
+  }
+
+  private fit(): void {
+    const reach = this.distance + this.camera.position.length() + 8 * this.radius;
+    this.perspective.aspect = this.aspect;
+    this.perspective.near = Math.max(0.01 * this.distance, 1e-5 * reach);
+    this.perspective.far = reach;
+    const half = this.halfHeight;
+    Object.assign(this.orthographic, {
+      top: half, bottom: -half, left: -half * this.aspect, right: half * this.aspect, near: -reach, far: reach,
+    });
+    this.camera.updateProjectionMatrix();
+  }
+
+  private moved(): void {
+    this.fit();
+    this.changed();
+    clearTimeout(this.saving);
+    this.saving = setTimeout(() => this.save(), 250);
+  }
+
+  setOrthographic(on: boolean): void {
+    if (on === this.isOrthographic) return;
+    const next = on ? this.orthographic : this.perspective;
+    next.position.copy(this.camera.position);
+    next.up.copy(this.camera.up);
+    if (on) {
+      this.orthographic.zoom = 1;
+    } else {
+      // A zoom has no place in perspective: come as much closer instead.
+      next.position.sub(this.controls.target).divideScalar(this.orthographic.zoom).add(this.controls.target);
+    }
+    this.camera = next;
+    this.controls.object = next;
+    this.controls.update();
+    this.moved();
+  }
+
+  /** Looks at a ball so that all of it is seen, from where the camera is or from a direction. */
+  frame(center: THREE.Vector3, radius: number, direction?: THREE.Vector3, fly = true): void {
+    const from = direction ?? this.camera.position.clone().sub(this.controls.target);
+    if (from.lengthSq() === 0) from.set(0, 0, 1);
+    const half = (FIELD_OF_VIEW * Math.PI) / 360;
+    const narrow = Math.min(1, this.aspect);
+    const distance = (Math.max(radius, 1e-9) * 1.08) / (Math.sin(half) * narrow);
+    this.go(center.clone().add(from.normalize().multiplyScalar(distance)), center, fly);
+  }
+
+  lookAlong(view: AxisView, fly = true): void {
+    const direction = new THREE.Vector3(...AXIS_VIEWS[view]);
+    if (view === "top" || view === "bottom") direction.z += 1e-4;  // straight down has no upright
+    const to = this.controls.target.clone().add(direction.normalize().multiplyScalar(this.distance));
+    this.go(to, this.controls.target.clone(), fly, this.camera.zoom);
+  }
+
+  private go(position: THREE.Vector3, target: THREE.Vector3, fly: boolean, zoom = 1): void {
+    const from = { position: this.camera.position.clone(), target: this.controls.target.clone(), zoom: this.camera.zoom };
+    const still = matchMedia("(prefers-reduced-motion: reduce)").matches;
+    this.flight = { begin: fly && !still ? performance.now() : -Infinity, from, to: { position, target, zoom } };
+    this.changed();
+    if (!fly || still) this.advance(performance.now());
+  }
+
+  /** Goes on with a flight; true while there is one. */
+  advance(now: number): boolean {
+    if (!this.flight) return false;
+    const { begin, from, to } = this.flight;
+    const t = Math.min(1, (now - begin) / FLIGHT_MILLISECONDS);
+    const part = t * t * (3 - 2 * t);
+    this.controls.target.lerpVectors(from.target, to.target, part);
+    this.camera.position.lerpVectors(from.position, to.position, part);
+    this.camera.zoom = from.zoom + (to.zoom - from.zoom) * part;
+    if (t >= 1) this.flight = null;
+    this.controls.update();
+    this.moved();
+    return this.flight !== null;
+  }
+
+  /** By keys: turns by angles, moves by parts of the view, or zooms. */
+  orbit(right: number, up: number): void {
+    const offset = new THREE.Spherical().setFromVector3(this.camera.position.clone().sub(this.controls.target));
+    offset.theta -= right;
+    offset.phi = Math.min(Math.PI - 1e-3, Math.max(1e-3, offset.phi - up));
+    this.camera.position.setFromSpherical(offset).add(this.controls.target);
+    this.controls.update();
+    this.moved();
+  }
+
+  pan(right: number, up: number): void {
+    const scale = (2 * this.halfHeight) / this.camera.zoom;
+    const shift = new THREE.Vector3(right * scale, up * scale, 0).applyQuaternion(this.camera.quaternion);
+    this.camera.position.add(shift);
+    this.controls.target.add(shift);
+    this.controls.update();
+    this.moved();
+  }
+
+  zoom(factor: number): void {
+    if (this.isOrthographic) this.camera.zoom *= factor;
+    else this.camera.position.sub(this.controls.target).divideScalar(factor).add(this.controls.target);
+    this.controls.update();
+    this.moved();
+  }
+
+  private save(): void {
+    const short = (x: number) => String(Number(x.toPrecision(6)));
+    const numbers = [...this.camera.position, ...this.controls.target, this.camera.zoom].map(short);
+    const hash = `#camera=${numbers.join(",")}${this.isOrthographic ? ",orthographic" : ""}`;
+    try {
+      history.replaceState(null, "", location.pathname + location.search + hash);
+    } catch {
+      // A browser that does not let a file's address change; the view just is not in it.
+    }
+  }
+
+  /** Takes the view from the address; false when there is none. */
+  restore(): boolean {
+    const match = /[#&]camera=([^&]*)/.exec(location.hash);
+    if (!match) return false;
+    const parts = decodeURIComponent(match[1]!).split(",");
+    const [px, py, pz, tx, ty, tz, zoom] = parts.slice(0, 7).map(Number);
+    const numbers = [px, py, pz, tx, ty, tz, zoom];
+    if (numbers.some((x) => x === undefined || !Number.isFinite(x)) || !(zoom! > 0)) return false;
+    this.setOrthographic(parts[7] === "orthographic");
+    this.flight = null;
+    this.camera.position.set(px!, py!, pz!);
+    this.controls.target.set(tx!, ty!, tz!);
+    this.camera.zoom = zoom!;
+    this.controls.update();
+    this.moved();
+    return true;
+  }
+}

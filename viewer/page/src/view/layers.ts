@@ -1,0 +1,259 @@
+/** Layers over the surfaces: each is filled from the model's newest frame when it is switched on. */
+import * as THREE from "three";
+import { OKABE_ITO } from "../colours";
+import { boundsOf, type Model, type ObjectState } from "../model";
+import { Cells, Dots, Faces, Lines } from "./primitives";
+
+const CONTACT = OKABE_ITO.vermillion;
+
+/** Writes the three corners of a triangle and gives the place after them. */
+function writeTriangle(into: Float32Array, at: number, object: ObjectState, triangle: number): number {
+  for (let corner = 0; corner < 3; ++corner) {
+    const from = 3 * object.corners[3 * triangle + corner]!;
+    into[at++] = object.positions[from]!;
+    into[at++] = object.positions[from + 1]!;
+    into[at++] = object.positions[from + 2]!;
+  }
+  return at;
+}
+
+function writeCentroid(into: Float32Array, at: number, object: ObjectState, triangle: number): number {
+  for (let axis = 0; axis < 3; ++axis) {
+    let sum = 0;
+    for (let corner = 0; corner < 3; ++corner)
+      sum += object.positions[3 * object.corners[3 * triangle + corner]! + axis]!;
+    into[at++] = sum / 3;
+  }
+  return at;
+}
+
+/** Triangles that were seen in this round, without clearing anything between rounds. */
+class Marks {
+  private round = 0;
+  private stamps: Uint32Array[] = [];
+
+  fit(objects: ObjectState[]): void {
+    this.stamps = objects.map((object) => new Uint32Array(object.triangles));
+    this.round = 0;
+  }
+
+  begin(): void {
+    this.round += 1;
+  }
+
+  /** True the first time in a round. */
+  mark(object: number, triangle: number): boolean {
+    const stamps = this.stamps[object]!;
+    if (stamps[triangle] === this.round) return false;
+    stamps[triangle] = this.round;
+    return true;
+  }
+}
+
+export class Layers {
+  readonly group = new THREE.Group();
+  readonly regions = new Cells("boxes", { colour: "#ffffff", opacity: 0.85 });
+  readonly boxes = new Cells("boxes", { colour: "#ffffff", opacity: 0.9 });
+  readonly balls = new Cells("balls", { colour: "#ffffff", opacity: 0.8 });
+  readonly pairs = new Lines({ colour: OKABE_ITO.green, size: 3, depthTest: false, order: 4 });
+  readonly candidateFaces = new Faces({ colour: OKABE_ITO.yellow, opacity: 0.85, order: 1 });
+  readonly candidates = new Lines({ colour: OKABE_ITO.blue, size: 1.5, depthTest: false, order: 3 });
+  readonly triangles = new Faces({ colour: CONTACT, opacity: 0.95, order: 2 });
+  readonly points = new Dots({ colour: OKABE_ITO.yellow, order: 6 });
+  readonly normals = new Lines({ colour: OKABE_ITO.sky, size: 2, depthTest: false, order: 5 });
+  readonly curves = new Lines({ colour: "#ffffff", size: 2.5, depthTest: false, order: 5 });
+  readonly vertices = new Dots({ colour: OKABE_ITO.purple, order: 6 });
+  private readonly marks = new Marks();
+
+  constructor(private readonly model: Model) {
+    for (const layer of this.all()) this.group.add(layer.shape);
+    model.on("scene", () => this.marks.fit(model.objects));
+  }
+
+  private all() {
+    return [
+      this.regions, this.boxes, this.balls, this.pairs, this.candidateFaces, this.candidates, this.triangles,
+      this.points, this.normals, this.curves, this.vertices,
+    ];
+  }
+
+  /** How many elements each layer draws; tests read it. */
+  counts(): Record<string, number> {
+    const { regions, boxes, balls, pairs, candidates, candidateFaces, triangles, points, normals, curves, vertices } = this;
+    return Object.fromEntries(
+      Object.entries({ regions, boxes, balls, pairs, candidates, candidateFaces, triangles, points, normals, curves, vertices })
+        .map(([name, layer]) => [name, layer.count]),
+    );
+  }
+
+  update(): void {
+    const { layers } = this.model;
+    for (const layer of [this.points, this.vertices, this.curves, this.normals]) layer.depthTest = !this.model.throughSurfaces;
+    this.points.size = this.model.pointSize + 2;
+    this.vertices.size = this.model.pointSize;
+    this.fillCells(layers.regions, layers.octree);
+    this.fillPairs(layers.pairs);
+    this.fillCandidates(layers.candidates);
+    this.fillTriangles(layers.triangles);
+    this.fillPoints(layers.points);
+    this.fillNormals(layers.normals);
+    this.fillCurves(layers.curves);
+    this.fillVertices(layers.vertices);
+  }
+
+  private shown(object: number): boolean {
+    return this.model.objects[object]?.visible ?? false;
+  }
+
+  private fillCells(regions: boolean, octree: boolean): void {
+    const { frame } = this.model;
+    const ofShown = (cells: Map<number, Float32Array> | undefined) =>
+      octree && cells ? [...cells].filter(([object]) => this.shown(object)).map(([, data]) => data) : [];
+    this.regions.fill(regions && frame ? [frame.sceneRegions] : []);
+    this.boxes.fill(ofShown(frame?.octreeBoxes));
+    this.balls.fill(ofShown(frame?.octreeSpheres));
+  }
+
+  private fillPairs(on: boolean): void {
+    const pairs = this.model.frame?.objectPairs;
+    if (!on || !pairs) return this.pairs.fill(0, () => 0);
+    const centres = this.model.objects.map((object) => {
+      const bounds = boundsOf([object]);
+      return bounds ? bounds.lower.map((x, axis) => (x + bounds.upper[axis]!) / 2) : null;
+    });
+    this.pairs.fill(pairs.length / 2, (into) => {
+      let at = 0;
+      for (let i = 0; i < pairs.length; i += 2) {
+        const a = centres[pairs[i]!];
+        const b = centres[pairs[i + 1]!];
+        if (!a || !b || !this.shown(pairs[i]!) || !this.shown(pairs[i + 1]!)) continue;
+        into.set(a, at);
+        into.set(b, at + 3);
+        at += 6;
+      }
+      return at / 6;
+    });
+  }
+
+  private fillCandidates(on: boolean): void {
+    const pairs = on ? this.model.frame?.candidates : undefined;
+    const objects = this.model.objects;
+    const count = pairs ? pairs.length / 4 : 0;
+    this.candidates.fill(count, (into) => {
+      let at = 0;
+      for (let i = 0; i < pairs!.length; i += 4) {
+        if (!this.shown(pairs![i]!) || !this.shown(pairs![i + 2]!)) continue;
+        at = writeCentroid(into, at, objects[pairs![i]!]!, pairs![i + 1]!);
+        at = writeCentroid(into, at, objects[pairs![i + 2]!]!, pairs![i + 3]!);
+      }
+      return at / 6;
+    });
+    this.fillFaces(this.candidateFaces, pairs ?? new Uint32Array(0), 4, [0, 2], () => true);
+  }
+
+  /** The triangles that are named at two places of each `stride` numbers, each once. */
+  private fillFaces(
+    faces: Faces, data: Uint32Array, stride: number, places: [number, number], isFace: (i: number, side: number) => boolean,
+  ): void {
+    this.marks.begin();
+    faces.fill((2 * data.length) / stride, (into) => {
+      let at = 0;
+      for (let i = 0; i < data.length; i += stride)
+        places.forEach((place, side) => {
+          const object = data[i + place]!;
+          const triangle = data[i + place + 1]!;
+          if (this.shown(object) && isFace(i, side) && this.marks.mark(object, triangle))
+            at = writeTriangle(into, at, this.model.objects[object]!, triangle);
+        });
+      return at / 9;
+    });
+  }
+
+  private fillTriangles(on: boolean): void {
+    const { frame } = this.model;
+    const none = new Uint32Array(0);
+    if (frame && frame.impacts.length > 0)
+      this.fillFaces(this.triangles, on ? frame.impacts : none, 8, [0, 3], (i, side) => frame.impacts[i + 6] === 1 - side);
+    else this.fillFaces(this.triangles, on && frame ? frame.contacts : none, 8, [0, 2], () => true);
+  }
+
+  /** The points of contacts or impacts whose objects are both shown: calls with the place of each. */
+  private eachPoint(visit: (data: Float32Array, at: number) => void): void {
+    const { frame } = this.model;
+    if (!frame) return;
+    const { contacts, impacts } = frame;
+    for (let i = 0; i < contacts.length; i += 8) {
+      if (!this.shown(contacts[i]!) || !this.shown(contacts[i + 2]!)) continue;
+      const first = contacts[i + 6]!;
+      for (let k = 0; k < contacts[i + 5]!; ++k) visit(frame.contactPoints, 8 * (first + k));
+    }
+    for (let i = 0; i < impacts.length; i += 8)
+      if (this.shown(impacts[i]!) && this.shown(impacts[i + 3]!)) visit(frame.impactPoints, i);
+  }
+
+  private pointCount(): number {
+    const { frame } = this.model;
+    return frame ? (frame.contactPoints.length + frame.impactPoints.length) / 8 : 0;
+  }
+
+  private fillPoints(on: boolean): void {
+    this.points.fill(on ? this.pointCount() : 0, (into) => {
+      let at = 0;
+      this.eachPoint((data, from) => {
+        into[at++] = data[from]!;
+        into[at++] = data[from + 1]!;
+        into[at++] = data[from + 2]!;
+      });
+      return at / 3;
+    });
+  }
+
+  private fillNormals(on: boolean): void {
+    const bounds = this.model.scene?.bounds;
+    const size = bounds ? Math.hypot(...bounds[1].map((x, axis) => x - bounds[0][axis]!)) : 1;
+    const length = this.model.normalLength * size;
+    this.normals.fill(on ? this.pointCount() : 0, (into) => {
+      let at = 0;
+      this.eachPoint((data, from) => {
+        for (let axis = 0; axis < 3; ++axis) into[at++] = data[from + axis]!;
+        for (let axis = 0; axis < 3; ++axis) into[at++] = data[from + axis]! + length * data[from + 4 + axis]!;
+      });
+      return at / 6;
+    });
+  }
+
+  private fillCurves(on: boolean): void {
+    const { frame } = this.model;
+    if (!on || !frame) return this.curves.fill(0, () => 0);
+    const { contacts, contactPoints } = frame;
+    this.curves.fill(contactPoints.length / 8, (into) => {
+      let at = 0;
+      for (let i = 0; i < contacts.length; i += 8) {
+        const count = contacts[i + 5]!;
+        if (count < 2 || !this.shown(contacts[i]!) || !this.shown(contacts[i + 2]!)) continue;
+        const first = contacts[i + 6]!;
+        const lines = count === 2 ? 1 : count;  // a polygon is closed
+        for (let k = 0; k < lines; ++k)
+          for (const point of [first + k, first + ((k + 1) % count)])
+            for (let axis = 0; axis < 3; ++axis) into[at++] = contactPoints[8 * point + axis]!;
+      }
+      return at / 6;
+    });
+  }
+
+  private fillVertices(on: boolean): void {
+    const groups = on && this.model.frame ? this.model.frame.collidingVertices : new Map<number, Uint32Array>();
+    let count = 0;
+    for (const vertices of groups.values()) count += vertices.length;
+    this.vertices.fill(count, (into) => {
+      let at = 0;
+      for (const [index, vertices] of groups) {
+        if (!this.shown(index)) continue;
+        const { positions } = this.model.objects[index]!;
+        for (const vertex of vertices)
+          for (let axis = 0; axis < 3; ++axis) into[at++] = positions[3 * vertex + axis]!;
+      }
+      return at / 3;
+    });
+  }
+}

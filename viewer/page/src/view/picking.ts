@@ -1,0 +1,69 @@
+/** What a ray hits. Looked for when a person clicks, over flat arrays, so that nothing has to be kept up to date. */
+import type { ObjectState } from "../model";
+
+export interface Hit {
+  object: number;
+  triangle: number;
+  vertex: number;  // the corner closest to where the ray hits
+  distance: number;
+  point: [number, number, number];
+}
+
+interface Ray {
+  origin: ArrayLike<number>;
+  direction: ArrayLike<number>;
+}
+
+/** The first triangle along the ray within one object, or null. Both sides count. */
+export function pickTriangle(ray: Ray, object: ObjectState, farthest: number): Hit | null {
+  const [ox, oy, oz] = [ray.origin[0]!, ray.origin[1]!, ray.origin[2]!];
+  const [dx, dy, dz] = [ray.direction[0]!, ray.direction[1]!, ray.direction[2]!];
+  const { positions: p, corners } = object;
+  let best = farthest;
+  let found = -1;
+  let weights: [number, number] = [0, 0];
+  for (let i = 0; i < corners.length; i += 3) {
+    const a = 3 * corners[i]!, b = 3 * corners[i + 1]!, c = 3 * corners[i + 2]!;
+    const ax = p[a]!, ay = p[a + 1]!, az = p[a + 2]!;
+    const ux = p[b]! - ax, uy = p[b + 1]! - ay, uz = p[b + 2]! - az;
+    const vx = p[c]! - ax, vy = p[c + 1]! - ay, vz = p[c + 2]! - az;
+    const hx = dy * vz - dz * vy, hy = dz * vx - dx * vz, hz = dx * vy - dy * vx;
+    const determinant = ux * hx + uy * hy + uz * hz;
+    if (determinant === 0) continue;
+    const sx = ox - ax, sy = oy - ay, sz = oz - az;
+    const u = (sx * hx + sy * hy + sz * hz) / determinant;
+    if (!(u >= 0 && u <= 1)) continue;
+    const qx = sy * uz - sz * uy, qy = sz * ux - sx * uz, qz = sx * uy - sy * ux;
+    const v = (dx * qx + dy * qy + dz * qz) / determinant;
+    if (!(v >= 0 && u + v <= 1)) continue;
+    const t = (vx * qx + vy * qy + vz * qz) / determinant;
+    if (!(t > 0 && t < best)) continue;
+    best = t;
+    found = i / 3;
+    weights = [u, v];
+  }
+  if (found < 0) return null;
+  const [u, v] = weights;
+  const nearest = u > v ? (u > 1 - u - v ? 1 : 0) : v > 1 - u - v ? 2 : 0;
+  return {
+    object: object.index,
+    triangle: found,
+    vertex: corners[3 * found + nearest]!,
+    distance: best,
+    point: [ox + best * dx, oy + best * dy, oz + best * dz],
+  };
+}
+
+/** The first triangle of all that are shown. */
+export function pick(ray: Ray, objects: ObjectState[]): Hit | null {
+  let first: Hit | null = null;
+  let farthest = Infinity;
+  for (const object of objects) {
+    if (!object.visible || object.opacity < 0.05) continue;
+    const hit = pickTriangle(ray, object, farthest);
+    if (!hit) continue;
+    first = hit;
+    farthest = hit.distance;
+  }
+  return first;
+}

@@ -1,0 +1,257 @@
+/** What layers are drawn with: dots, thick lines, faces, boxes and balls, each in one draw call. */
+import * as THREE from "three";
+import { LEVELS } from "../colours";
+import { Stream } from "./stream";
+
+interface Style {
+  colour: string;
+  opacity?: number;
+  /** In pixels of the page. */
+  size?: number;
+  depthTest?: boolean;
+  order?: number;
+}
+
+/** Uniforms that all primitives share; the view keeps them up to date. */
+export const shared = { resolution: { value: new THREE.Vector2(1, 1) }, pixelRatio: { value: 1 } };
+
+function materialOf(style: Style, vertexShader: string, fragmentShader: string): THREE.ShaderMaterial {
+  return new THREE.ShaderMaterial({
+    glslVersion: THREE.GLSL3,
+    uniforms: {
+      resolution: shared.resolution,
+      pixelRatio: shared.pixelRatio,
+      colour: { value: new THREE.Color(style.colour) },
+      opacity: { value: style.opacity ?? 1 },
+      size: { value: style.size ?? 1 },
+    },
+    vertexShader,
+    fragmentShader: `precision highp float; uniform vec3 colour; uniform float opacity; out vec4 result;\n${fragmentShader}`,
+    transparent: true,
+    depthTest: style.depthTest ?? true,
+    depthWrite: false,
+    side: THREE.DoubleSide,
+  });
+}
+
+abstract class Primitive<Shape extends THREE.Object3D & { material: THREE.ShaderMaterial }> {
+  abstract readonly shape: Shape;
+  count = 0;
+
+  protected prepare(style: Style): void {
+    this.shape.frustumCulled = false;
+    this.shape.renderOrder = style.order ?? 1;
+    this.shape.visible = false;
+  }
+
+  set depthTest(on: boolean) {
+    this.shape.material.depthTest = on;
+  }
+
+  set colour(colour: string) {
+    (this.shape.material.uniforms["colour"]!.value as THREE.Color).set(colour);
+  }
+
+  set size(size: number) {
+    this.shape.material.uniforms["size"]!.value = size;
+  }
+
+  protected show(count: number): void {
+    this.count = count;
+    this.shape.visible = count > 0;
+  }
+}
+
+const FLAT = "void main() { result = linearToOutputTexel(vec4(colour, opacity)); }";
+
+/** Points as round dots with a dark rim; an element is x, y, z. */
+export class Dots extends Primitive<THREE.Points<THREE.BufferGeometry, THREE.ShaderMaterial>> {
+  readonly shape;
+  private readonly stream: Stream;
+
+  constructor(style: Style) {
+    super();
+    const geometry = new THREE.BufferGeometry();
+    this.stream = new Stream(geometry, 3, { position: [3, 0] }, false);
+    const material = materialOf(
+      style,
+      `uniform float size, pixelRatio;
+       void main() {
+         gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
+         gl_PointSize = size * pixelRatio;
+       }`,
+      `void main() {
+         float r = length(gl_PointCoord - 0.5) * 2.0;
+         if (r > 1.0) discard;
+         vec3 c = r > 0.72 ? vec3(0.02) : colour;
+         result = linearToOutputTexel(vec4(c, opacity));
+       }`,
+    );
+    this.shape = new THREE.Points(geometry, material);
+    this.prepare(style);
+  }
+
+  fill(count: number, write: (into: Float32Array) => number): void {
+    const written = count > 0 ? write(this.stream.reserve(count)) : 0;
+    this.stream.commit(written);
+    this.show(written);
+  }
+}
+
+/** Lines of a width in pixels; an element is from x, y, z to x, y, z. */
+export class Lines extends Primitive<THREE.Mesh<THREE.InstancedBufferGeometry, THREE.ShaderMaterial>> {
+  readonly shape;
+  private readonly stream: Stream;
+
+  constructor(style: Style) {
+    super();
+    const geometry = new THREE.InstancedBufferGeometry();
+    geometry.setAttribute("position", new THREE.Float32BufferAttribute([0, -1, 0, 1, -1, 0, 1, 1, 0, 0, 1, 0], 3));
+    geometry.setIndex([0, 1, 2, 0, 2, 3]);
+    this.stream = new Stream(geometry, 6, { start: [3, 0], finish: [3, 3] }, true);
+    const material = materialOf(
+      style,
+      // A line that begins behind the eye is cut where it comes into view, or its direction on the screen is wrong.
+      `uniform float size; uniform vec2 resolution; in vec3 start; in vec3 finish;
+       void main() {
+         vec4 a = modelViewMatrix * vec4(start, 1.0), b = modelViewMatrix * vec4(finish, 1.0);
+         if (projectionMatrix[2][3] == -1.0) {
+           float near = -0.5 * projectionMatrix[3][2] / projectionMatrix[2][2];
+           float edge = -abs(near);
+           if (a.z > edge && b.z < edge) a = mix(a, b, (edge - a.z) / (b.z - a.z));
+           else if (b.z > edge && a.z < edge) b = mix(b, a, (edge - b.z) / (a.z - b.z));
+         }
+         vec4 p = projectionMatrix * a, q = projectionMatrix * b;
+         vec2 along = (q.xy / q.w - p.xy / p.w) * resolution;
+         along = dot(along, along) > 0.0 ? normalize(along) : vec2(1.0, 0.0);
+         vec4 at = position.x < 0.5 ? p : q;
+         at.xy += vec2(-along.y, along.x) * position.y * size / resolution * at.w;
+         gl_Position = at;
+       }`,
+      FLAT,
+    );
+    this.shape = new THREE.Mesh(geometry, material);
+    this.prepare(style);
+  }
+
+  fill(count: number, write: (into: Float32Array) => number): void {
+    const written = count > 0 ? write(this.stream.reserve(count)) : 0;
+    this.stream.commit(written);
+    this.show(written);
+  }
+}
+
+/** Triangles laid over surfaces; an element is a corner, x, y, z. */
+export class Faces extends Primitive<THREE.Mesh<THREE.BufferGeometry, THREE.ShaderMaterial>> {
+  readonly shape;
+  private readonly stream: Stream;
+
+  constructor(style: Style) {
+    super();
+    const geometry = new THREE.BufferGeometry();
+    this.stream = new Stream(geometry, 3, { position: [3, 0] }, false);
+    const material = materialOf(
+      style,
+      `out vec3 seen;
+       void main() {
+         vec4 at = modelViewMatrix * vec4(position, 1.0);
+         seen = at.xyz;
+         gl_Position = projectionMatrix * at;
+       }`,
+      `in vec3 seen;
+       void main() {
+         vec3 normal = normalize(cross(dFdx(seen), dFdy(seen)));
+         result = linearToOutputTexel(vec4(colour * (0.55 + 0.45 * abs(normal.z)), opacity));
+       }`,
+    );
+    material.polygonOffset = true;
+    material.polygonOffsetFactor = -1;
+    material.polygonOffsetUnits = -1;
+    this.shape = new THREE.Mesh(geometry, material);
+    this.prepare(style);
+  }
+
+  /** `count` triangles at most; `write` gives how many it wrote. */
+  fill(count: number, write: (into: Float32Array) => number): void {
+    const written = count > 0 ? write(this.stream.reserve(3 * count)) : 0;
+    this.stream.commit(3 * written);
+    this.show(written);
+  }
+}
+
+function boxEdges(): number[] {
+  const edges: number[] = [];
+  for (let axis = 0; axis < 3; ++axis)
+    for (const u of [0, 1])
+      for (const v of [0, 1])
+        for (const t of [0, 1]) {
+          const corner = [0, 0, 0];
+          corner[axis] = t;
+          corner[(axis + 1) % 3] = u;
+          corner[(axis + 2) % 3] = v;
+          edges.push(...corner);
+        }
+  return edges;
+}
+
+function ringEdges(sides = 32): number[] {
+  const edges: number[] = [];
+  for (let axis = 0; axis < 3; ++axis)
+    for (let i = 0; i < sides; ++i)
+      for (const k of [i, i + 1]) {
+        const corner = [0, 0, 0];
+        corner[axis] = Math.cos((2 * Math.PI * k) / sides);
+        corner[(axis + 1) % 3] = Math.sin((2 * Math.PI * k) / sides);
+        edges.push(...corner);
+      }
+  return edges;
+}
+
+const LEVEL_SHADER = `
+  uniform vec3 levels[${LEVELS.length}]; uniform float opacity; flat out vec4 tint;
+  void paint(float level, float contents) {
+    tint = vec4(levels[int(level) % ${LEVELS.length}], contents < 0.0 ? 0.45 * opacity : opacity);
+  }`;
+
+/**
+ * Octree cells as the protocol has them, eight numbers each, in the colours of their levels: boxes (lower
+ * corner, level, upper corner, contents) or balls (centre, radius, level, contents).
+ */
+export class Cells extends Primitive<THREE.LineSegments<THREE.InstancedBufferGeometry, THREE.ShaderMaterial>> {
+  readonly shape;
+  private readonly stream: Stream;
+
+  constructor(kind: "boxes" | "balls", style: Style) {
+    super();
+    const geometry = new THREE.InstancedBufferGeometry();
+    const edges = kind === "boxes" ? boxEdges() : ringEdges();
+    geometry.setAttribute("position", new THREE.Float32BufferAttribute(edges, 3));
+    this.stream = new Stream(geometry, 8, { first: [4, 0], second: [4, 4] }, true);
+    const place =
+      kind === "boxes"
+        ? "vec3 at = mix(first.xyz, second.xyz, position); paint(first.w, second.w);"
+        : "vec3 at = first.xyz + first.w * position; paint(second.x, second.y);";
+    const material = materialOf(
+      style,
+      `in vec4 first; in vec4 second; ${LEVEL_SHADER}
+       void main() { ${place} gl_Position = projectionMatrix * modelViewMatrix * vec4(at, 1.0); }`,
+      "flat in vec4 tint; void main() { result = linearToOutputTexel(tint); }",
+    );
+    material.uniforms["levels"] = { value: LEVELS.map((colour) => new THREE.Color(colour)) };
+    this.shape = new THREE.LineSegments(geometry, material);
+    this.prepare(style);
+  }
+
+  fill(parts: Iterable<Float32Array>): void {
+    const list = [...parts];
+    const count = list.reduce((sum, part) => sum + part.length / 8, 0);
+    const into = this.stream.reserve(count);
+    let at = 0;
+    for (const part of list) {
+      into.set(part, at);
+      at += part.length;
+    }
+    this.stream.commit(count);
+    this.show(count);
+  }
+}

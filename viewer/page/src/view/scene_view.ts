@@ -1,0 +1,430 @@
+/** Draws the model: surfaces, layers, what is selected. Only when something has changed. */
+import * as THREE from "three";
+import { OKABE_ITO } from "../colours";
+import { boundsOf, type Model, type ObjectState } from "../model";
+import { CameraRig } from "./camera";
+import { Layers } from "./layers";
+import { pick, type Hit } from "./picking";
+import { Dots, Faces, Lines, shared } from "./primitives";
+
+interface Drawn {
+  surface: THREE.Mesh<THREE.BufferGeometry, THREE.MeshStandardMaterial>;
+  wireframe: THREE.Mesh<THREE.BufferGeometry, THREE.MeshBasicMaterial>;
+}
+
+/** More than any graphics card takes in one buffer. */
+const LARGEST_BUFFER = 0x80000000;
+
+export class SceneView {
+  readonly rig: CameraRig;
+  readonly layers: Layers;
+  /** Called before a picture is drawn; tells the session that it may send the next frame. */
+  onTurn: () => void = () => {};
+  /** Called when the graphics card has given up. */
+  onLost: (why: string) => void = () => {};
+  readonly times: number[] = [];
+  private readonly renderer: THREE.WebGLRenderer;
+  private readonly scene = new THREE.Scene();
+  private readonly light = new THREE.DirectionalLight(0xffffff, 2.2);
+  private drawn: Drawn[] = [];
+  private readonly selected = new Faces({ colour: OKABE_ITO.yellow, opacity: 0.9, order: 3 });
+  private readonly vertex = new Dots({ colour: OKABE_ITO.yellow, size: 11, depthTest: false, order: 8 });
+  private readonly contactDot = new Dots({ colour: OKABE_ITO.vermillion, size: 12, depthTest: false, order: 9 });
+  private readonly outlines = [OKABE_ITO.orange, OKABE_ITO.sky].map((colour) => new Lines({ colour, size: 2.5, depthTest: false, order: 7 }));
+  private readonly picked = [OKABE_ITO.orange, OKABE_ITO.sky].map((colour) => new Faces({ colour, opacity: 0.95, order: 4 }));
+  private readonly gap = new Lines({ colour: "#ffffff", size: 2, depthTest: false, order: 8 });
+  private readonly pull = new Lines({ colour: OKABE_ITO.vermillion, size: 2.5, depthTest: false, order: 8 });
+  private dirty = true;
+  private filled = false;
+  private checkMemory = false;
+  private hasFramed = false;
+
+  constructor(readonly canvas: HTMLCanvasElement, private readonly model: Model) {
+    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, powerPreference: "high-performance" });
+    this.rig = new CameraRig(canvas, () => this.invalidate());
+    this.layers = new Layers(model);
+    this.scene.add(new THREE.HemisphereLight(0xffffff, 0x8890a0, 1.4), this.light, this.light.target, this.layers.group);
+    for (const extra of [this.selected, this.vertex, this.contactDot, ...this.outlines, ...this.picked, this.gap, this.pull])
+      this.scene.add(extra.shape);
+    canvas.addEventListener("webglcontextlost", (event) => {
+      event.preventDefault();
+      this.onLost("The graphics card has given up on this scene, which may be too large for it.");
+    });
+    model.on("scene", () => this.build());
+    model.on("frame", (frame) => {
+      for (const object of frame.positions.keys()) this.drawn[object]!.surface.geometry.getAttribute("position").needsUpdate = true;
+      if (!this.hasFramed) this.firstFrame();
+      this.refill();
+    });
+    model.on("display", () => this.refresh());
+    model.on("selection", () => this.refresh());
+    model.on("explanation", () => this.refresh());
+    new ResizeObserver(() => this.resize()).observe(canvas);
+    this.resize();
+    requestAnimationFrame((now) => this.turn(now));
+  }
+
+  /** A sentence about why a scene cannot be shown on this machine, or null. */
+  obstacle(objects: { name: string; vertices: number; triangles: number }[]): string | null {
+    const gl = this.renderer.getContext() as WebGL2RenderingContext;
+    const most = gl.getParameter(gl.MAX_ELEMENT_INDEX) as number;
+    for (const { name, vertices, triangles } of objects)
+      if (12 * Math.max(vertices, triangles) > LARGEST_BUFFER || vertices > most)
+        return `${name} has ${vertices.toLocaleString("en")} vertices and ${triangles.toLocaleString("en")} triangles, more than this browser can draw. Show a part of the scene, or a coarser mesh.`;
+    return null;
+  }
+
+  setBackground(colour: string): void {
+    this.renderer.setClearColor(new THREE.Color(colour));
+    this.invalidate();
+  }
+
+  setInk(colour: string): void {
+    this.layers.curves.colour = colour;
+    this.gap.colour = colour;
+    this.invalidate();
+  }
+
+  invalidate(): void {
+    this.dirty = true;
+  }
+
+  private refill(): void {
+    this.filled = false;
+    this.dirty = true;
+  }
+
+  private resize(): void {
+    const { clientWidth: width, clientHeight: height } = this.canvas;
+    if (width === 0 || height === 0) return;
+    const ratio = Math.min(devicePixelRatio, 2);
+    this.renderer.setPixelRatio(ratio);
+    this.renderer.setSize(width, height, false);
+    shared.resolution.value.set(width, height);
+    shared.pixelRatio.value = ratio;
+    this.rig.resize(width, height);
+  }
+
+  private build(): void {
+    for (const { surface, wireframe } of this.drawn) {
+      this.scene.remove(surface, wireframe);
+      surface.geometry.dispose();
+      surface.material.dispose();
+      wireframe.material.dispose();
+    }
+    this.drawn = this.model.objects.map((object) => this.makeObject(object));
+    const bounds = this.model.scene!.bounds;
+    this.rig.setExtent(Math.hypot(...bounds[0], ...bounds[1]));
+    this.checkMemory = true;
+    this.pull.fill(0, () => 0);
+    this.refresh();
+  }
+
+  private makeObject(object: ObjectState): Drawn {
+    const geometry = new THREE.BufferGeometry();
+    const positions = new THREE.BufferAttribute(object.positions, 3);
+    positions.setUsage(THREE.DynamicDrawUsage);
+    geometry.setAttribute("position", positions);
+    geometry.setIndex(new THREE.BufferAttribute(object.corners, 1));
+    // Flat shading takes normals from derivatives on the card: nothing to compute as objects bend.
+    const surface = new THREE.Mesh(
+      geometry,
+      new THREE.MeshStandardMaterial({
+        flatShading: true, side: THREE.DoubleSide, roughness: 0.75, metalness: 0,
+        polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1,
+      }),
+    );
+    const wireframe = new THREE.Mesh(geometry, new THREE.MeshBasicMaterial({ wireframe: true, transparent: true }));
+    for (const mesh of [surface, wireframe]) {
+      mesh.frustumCulled = false;  // bounds would have to follow each frame
+      this.scene.add(mesh);
+    }
+    return { surface, wireframe };
+  }
+
+  /** Takes over what objects look like and what is selected. */
+  refresh(): void {
+    const { layers, selection } = this.model;
+    this.model.objects.forEach((object, i) => {
+      const { surface, wireframe } = this.drawn[i]!;
+      const material = surface.material;
+      surface.visible = object.visible && layers.surface;
+      wireframe.visible = object.visible && layers.wireframe;
+      material.color.set(object.colour);
+      material.opacity = object.opacity;
+      const transparent = object.opacity < 1;
+      if (material.transparent !== transparent) {
+        material.transparent = transparent;
+        material.depthWrite = !transparent;
+        material.needsUpdate = true;
+      }
+      const isSelected = selection?.object === i;
+      material.emissive.set(isSelected ? object.colour : "#000000");
+      material.emissiveIntensity = isSelected ? 0.25 : 0;
+      wireframe.material.color.set(layers.surface ? "#101418" : object.colour);
+      wireframe.material.opacity = layers.surface ? 0.35 : 1;
+    });
+    this.refill();
+  }
+
+  private fill(): void {
+    this.filled = true;
+    this.layers.update();
+    this.fillSelection();
+    this.fillExplanation();
+  }
+
+  private writeCorners(into: Float32Array, object: number, triangle: number): number {
+    const { corners, positions } = this.model.objects[object]!;
+    for (let corner = 0; corner < 3; ++corner)
+      for (let axis = 0; axis < 3; ++axis)
+        into[3 * corner + axis] = positions[3 * corners[3 * triangle + corner]! + axis]!;
+    return 1;
+  }
+
+  private fillSelection(): void {
+    const { selection } = this.model;
+    const triangle = selection?.triangle ?? null;
+    this.selected.fill(triangle === null ? 0 : 1, (into) => this.writeCorners(into, selection!.object, triangle!));
+    const vertex = selection?.vertex ?? null;
+    this.vertex.fill(vertex === null ? 0 : 1, (into) => {
+      into.set(this.positionOf(selection!.object, vertex!));
+      return 1;
+    });
+    const point = this.contactPoint();
+    this.contactDot.fill(point ? 1 : 0, (into) => {
+      into.set(point!);
+      return 1;
+    });
+  }
+
+  /** Where the selected contact is now, if it still is one. */
+  contactPoint(): number[] | null {
+    const { contact, frame } = this.model;
+    if (!contact || !frame) return null;
+    const at = findContact(frame, contact);
+    if (at < 0) return null;
+    if (frame.impacts.length > 0) return Array.from(frame.impactPoints.subarray(8 * at, 8 * at + 3));
+    const count = frame.contacts[8 * at + 5]!;
+    const first = frame.contacts[8 * at + 6]!;
+    const mean = [0, 0, 0];
+    for (let k = 0; k < count; ++k)
+      for (let axis = 0; axis < 3; ++axis) mean[axis]! += frame.contactPoints[8 * (first + k) + axis]! / count;
+    return count > 0 ? mean : null;
+  }
+
+  private fillExplanation(): void {
+    const { explained, explanation } = this.model;
+    this.picked.forEach((faces, side) => {
+      const of = explained[side];
+      faces.fill(of ? 1 : 0, (into) => this.writeCorners(into, of!.object, of!.triangle));
+    });
+    this.outlines.forEach((lines, side) => {
+      const box = explanation?.boxes?.[side];
+      const ball = explanation?.spheres?.[side];
+      if (box) lines.fill(12, (into) => writeBox(into, box));
+      else if (ball) lines.fill(144, (into) => writeBall(into, ball));
+      else lines.fill(0, () => 0);
+    });
+    const axis = explanation?.axis;
+    const span = axis && explanation.distance ? this.gapSpan(axis, explanation.distance) : null;
+    this.gap.fill(span ? 1 : 0, (into) => {
+      into.set(span!);
+      return 1;
+    });
+  }
+
+  /** A line of the length of the distance, between what is apart. */
+  private gapSpan(axis: number[], distance: number): number[] | null {
+    const { explained, explanation } = this.model;
+    const boxes = explanation?.boxes;
+    const centres = boxes
+      ? boxes.map((box) => box[0]!.map((x, i) => (x + box[1]![i]!) / 2))
+      : explained.map(({ object, triangle }) => this.centroid(object, triangle));
+    if (centres.length < 2) return null;
+    const middle = centres[0]!.map((x, i) => (x + centres[1]![i]!) / 2);
+    return [-0.5, 0.5].flatMap((part) => middle.map((x, i) => x + part * distance * axis[i]!));
+  }
+
+  centroid(object: number, triangle: number): number[] {
+    const corners = new Float32Array(9);
+    this.writeCorners(corners, object, triangle);
+    return [0, 1, 2].map((axis) => (corners[axis]! + corners[3 + axis]! + corners[6 + axis]!) / 3);
+  }
+
+  positionOf(object: number, vertex: number): [number, number, number] {
+    const { positions } = this.model.objects[object]!;
+    return [positions[3 * vertex]!, positions[3 * vertex + 1]!, positions[3 * vertex + 2]!];
+  }
+
+  /** Shows which vertex is pulled where, or nothing. */
+  showPull(from: ArrayLike<number> | null, to: ArrayLike<number> | null): void {
+    this.pull.fill(from && to ? 1 : 0, (into) => {
+      into.set(from!, 0);
+      into.set(to!, 3);
+      return 1;
+    });
+    this.invalidate();
+  }
+
+  private firstFrame(): void {
+    this.hasFramed = true;
+    if (!this.rig.restore()) this.frameAll(new THREE.Vector3(0.55, 0.4, 1), false);
+  }
+
+  frameAll(direction?: THREE.Vector3, fly = true): void {
+    const bounds = boundsOf(this.model.objects.filter((object) => object.visible));
+    if (bounds) this.frameBounds(bounds, direction, fly);
+  }
+
+  /** Frames what is selected: a contact, a triangle or vertex, an object; else all. */
+  frameSelection(): void {
+    const { selection } = this.model;
+    const point = this.contactPoint();
+    if (point) return this.flyTo(point);
+    if (!selection) return this.frameAll();
+    if (selection.triangle !== null) return this.flyTo(this.centroid(selection.object, selection.triangle));
+    const bounds = boundsOf([this.model.objects[selection.object]!]);
+    if (bounds) this.frameBounds(bounds);
+  }
+
+  flyTo(point: ArrayLike<number>): void {
+    const bounds = this.model.scene!.bounds;
+    const size = Math.hypot(...bounds[1].map((x, axis) => x - bounds[0][axis]!)) || 1;
+    this.rig.frame(new THREE.Vector3(point[0], point[1], point[2]), 0.06 * size);
+  }
+
+  private frameBounds(bounds: { lower: number[]; upper: number[] }, direction?: THREE.Vector3, fly = true): void {
+    const lower = new THREE.Vector3(...bounds.lower);
+    const upper = new THREE.Vector3(...bounds.upper);
+    this.rig.setExtent(Math.max(lower.length(), upper.length()));
+    this.rig.frame(lower.clone().add(upper).multiplyScalar(0.5), lower.distanceTo(upper) / 2, direction, fly);
+  }
+
+  private rayAt(x: number, y: number): THREE.Ray {
+    const box = this.canvas.getBoundingClientRect();
+    const caster = new THREE.Raycaster();
+    const at = new THREE.Vector2(((x - box.left) / box.width) * 2 - 1, 1 - ((y - box.top) / box.height) * 2);
+    this.rig.camera.updateMatrixWorld();
+    caster.setFromCamera(at, this.rig.camera);
+    return caster.ray;
+  }
+
+  pickAt(x: number, y: number): Hit | null {
+    const { origin, direction } = this.rayAt(x, y);
+    return pick({ origin: origin.toArray(), direction: direction.toArray() }, this.model.objects);
+  }
+
+  /** The point below the cursor in the plane through a point that faces the camera. */
+  pointAt(x: number, y: number, through: ArrayLike<number>): THREE.Vector3 | null {
+    const normal = this.rig.camera.getWorldDirection(new THREE.Vector3());
+    const plane = new THREE.Plane().setFromNormalAndCoplanarPoint(normal, new THREE.Vector3(through[0], through[1], through[2]));
+    return this.rayAt(x, y).intersectPlane(plane, new THREE.Vector3());
+  }
+
+  /** Where a point is in the window, in pixels. */
+  project(point: ArrayLike<number>): { x: number; y: number } {
+    const box = this.canvas.getBoundingClientRect();
+    this.rig.camera.updateMatrixWorld();
+    const at = new THREE.Vector3(point[0], point[1], point[2]).project(this.rig.camera);
+    return { x: box.left + ((at.x + 1) / 2) * box.width, y: box.top + ((1 - at.y) / 2) * box.height };
+  }
+
+  /** The contact whose point is closest to the cursor, within so many pixels; its place in the frame, or −1. */
+  contactAt(x: number, y: number, reach = 8): number {
+    const { frame } = this.model;
+    if (!frame || !this.model.layers.points) return -1;
+    const box = this.canvas.getBoundingClientRect();
+    this.rig.camera.updateMatrixWorld();
+    const matrix = new THREE.Matrix4().multiplyMatrices(this.rig.camera.projectionMatrix, this.rig.camera.matrixWorldInverse);
+    const at = new THREE.Vector3();
+    let best = reach;
+    let found = -1;
+    const look = (data: Float32Array, from: number, contact: number) => {
+      at.set(data[from]!, data[from + 1]!, data[from + 2]!).applyMatrix4(matrix);
+      if (at.z < -1 || at.z > 1) return;
+      const away = Math.hypot(box.left + ((at.x + 1) / 2) * box.width - x, box.top + ((1 - at.y) / 2) * box.height - y);
+      if (away >= best) return;
+      best = away;
+      found = contact;
+    };
+    const { contacts, impacts } = frame;
+    for (let i = 0; i < contacts.length; i += 8)
+      for (let k = 0; k < contacts[i + 5]!; ++k) look(frame.contactPoints, 8 * (contacts[i + 6]! + k), i / 8);
+    for (let i = 0; i < impacts.length; i += 8) look(frame.impactPoints, i, i / 8);
+    return found;
+  }
+
+  private turn(now: number): void {
+    requestAnimationFrame((next) => this.turn(next));
+    this.rig.advance(now);
+    this.onTurn();
+    if (!this.dirty) return;
+    this.draw();
+    this.times.push(now);
+    if (this.times.length > 600) this.times.splice(0, 300);
+  }
+
+  /** Draws at once, so that the canvas can be read in the same turn. */
+  draw(): void {
+    this.dirty = false;
+    if (!this.filled) this.fill();
+    this.light.position.copy(this.rig.camera.position);
+    this.light.target.position.copy(this.rig.controls.target);
+    this.renderer.render(this.scene, this.rig.camera);
+    if (this.checkMemory && this.model.frame) {
+      this.checkMemory = false;
+      const gl = this.renderer.getContext();
+      if (gl.getError() === gl.OUT_OF_MEMORY) this.onLost("The graphics card has not enough memory for this scene.");
+    }
+  }
+
+  statistics(): { calls: number; triangles: number } {
+    return { calls: this.renderer.info.render.calls, triangles: this.renderer.info.render.triangles };
+  }
+}
+
+/** The place of a contact in a frame, or −1. */
+export function findContact(
+  frame: { contacts: Uint32Array; impacts: Uint32Array }, key: readonly [number, number, number, number],
+): number {
+  const isImpact = frame.impacts.length > 0;
+  const data = isImpact ? frame.impacts : frame.contacts;
+  const places = isImpact ? [0, 1, 3, 4] : [0, 1, 2, 3];
+  for (let i = 0; i < data.length; i += 8)
+    if (places.every((place, k) => data[i + place] === key[k])) return i / 8;
+  return -1;
+}
+
+function writeBox(into: Float32Array, box: number[][]): number {
+  let at = 0;
+  for (let axis = 0; axis < 3; ++axis)
+    for (const u of [0, 1])
+      for (const v of [0, 1])
+        for (const t of [0, 1]) {
+          const corner = [0, 0, 0];
+          corner[axis] = box[t]![axis]!;
+          corner[(axis + 1) % 3] = box[u]![(axis + 1) % 3]!;
+          corner[(axis + 2) % 3] = box[v]![(axis + 2) % 3]!;
+          into.set(corner, at);
+          at += 3;
+        }
+  return 12;
+}
+
+/** Three rings; a ball is its centre and its radius. */
+function writeBall(into: Float32Array, ball: number[]): number {
+  const sides = 48;
+  let at = 0;
+  for (let axis = 0; axis < 3; ++axis)
+    for (let i = 0; i < sides; ++i)
+      for (const k of [i, i + 1]) {
+        const angle = (2 * Math.PI * k) / sides;
+        const corner = ball.slice(0, 3);
+        corner[axis]! += ball[3]! * Math.cos(angle);
+        corner[(axis + 1) % 3]! += ball[3]! * Math.sin(angle);
+        into.set(corner, at);
+        at += 3;
+      }
+  return 3 * sides;
+}

@@ -1,0 +1,81 @@
+/** Writes messages as the session does, for tests of the reader. */
+import { NONE } from "../src/protocol/messages";
+
+type Numbers = Uint8Array | Uint32Array | Float32Array | Float64Array;
+export interface Section {
+  tag: number;
+  object?: number;
+  count: number;
+  data: Numbers;
+}
+
+export const KIND = { scene: 1, frame: 2, answer: 3, failure: 4, series: 5 };
+
+export function text(json: unknown): Section {
+  const data = new TextEncoder().encode(JSON.stringify(json));
+  return { tag: 1, count: data.length, data };
+}
+
+const padded = (length: number): number => Math.ceil(length / 16) * 16;
+
+export function message(kind: number, ...sections: Section[]): ArrayBuffer {
+  const length = 16 + sections.reduce((sum, section) => sum + 16 + padded(section.data.byteLength), 0);
+  const buffer = new ArrayBuffer(length);
+  const view = new DataView(buffer);
+  view.setUint32(0, 0x4c505553, true);
+  view.setUint16(4, 1, true);
+  view.setUint16(6, kind, true);
+  view.setUint32(8, length, true);
+  view.setUint32(12, sections.length, true);
+  let at = 16;
+  for (const { tag, object = NONE, count, data } of sections) {
+    [tag, object, count, data.byteLength].forEach((value, i) => view.setUint32(at + 4 * i, value, true));
+    new Uint8Array(buffer, at + 16, data.byteLength).set(new Uint8Array(data.buffer, data.byteOffset, data.byteLength));
+    at += 16 + padded(data.byteLength);
+  }
+  return buffer;
+}
+
+export const SCENE = {
+  version: "0.5.0", title: "two", source: "simulation", generation: 1, center: [0, 0, 0], bounds: [[-1, -1, -1], [1, 1, 1]],
+  objects: [
+    { name: "one", vertices: 3, triangles: 1, static: false, body: true, self_collision: false },
+    { name: "other", vertices: 4, triangles: 2, static: true, body: false, self_collision: false },
+  ],
+  frames: null, time_step: 0.01, seed: 0, bounding_volume: "aabb", contacts: "intersection", broad_phase: "octree",
+  max_level: 16, leaf_size: 64, integrator: "verlet", can: ["play", "reset", "grab", "set"], statistics: ["total_seconds", "contacts"],
+  series: ["time", "contacts"], warnings: [],
+};
+
+export const FRAME = { generation: 1, step: 3, time: 0.03, playing: true, speed: 1, octree_levels: [], omitted: {} };
+
+export const words = (tag: number, width: number, numbers: number[], object = NONE): Section =>
+  ({ tag, object, count: numbers.length / width, data: new Uint32Array(numbers) });
+export const floats = (tag: number, width: number, numbers: number[], object = NONE): Section =>
+  ({ tag, object, count: numbers.length / width, data: new Float32Array(numbers) });
+
+export const sceneMessage = (): ArrayBuffer => message(KIND.scene, text(SCENE), words(16, 3, [0, 1, 2], 0), words(16, 3, [0, 1, 2, 0, 2, 3], 1));
+
+/** A frame with a section of every tag. */
+export const frameMessage = (): ArrayBuffer =>
+  message(
+    KIND.frame, text(FRAME),
+    floats(32, 3, [0, 0, 0, 1, 0, 0, 0, 1, 0], 0),
+    floats(32, 3, [0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, NaN], 1),
+    words(33, 2, [0, 1]),
+    words(34, 8, [0, 0, 1, 1, 1, 2, 0, 0]),
+    floats(35, 8, [0, 0, 0, 0, 0, 0, 1, 0, 1, 0, 0, 0, 0, 0, 1, 0]),
+    words(36, 8, [0, 2, 0, 1, 1, 0, 0, 0]),
+    floats(37, 8, [0, 0, 0, 0.5, 0, 0, 1, 0]),
+    words(38, 4, [0, 0, 1, 1]),
+    floats(39, 8, [-1, -1, -1, 0, 1, 1, 1, -1]),
+    floats(40, 8, [-1, -1, -1, 0, 1, 1, 1, 2], 1),
+    floats(41, 8, [0, 0, 0, 1, 0, 2, 0, 0], 1),
+    words(42, 1, [0, 3], 1),
+    { tag: 43, count: 2, data: new Float64Array([0.001, 1]) },
+    words(44, 2, [0, 1]),
+    words(45, 2, []),
+  );
+
+export const seriesMessage = (): ArrayBuffer =>
+  message(KIND.series, { tag: 64, count: 2, data: new Float64Array([0, 1, 0.1, 2]) }, words(65, 3, [1, 0, 1]), words(66, 3, []));
