@@ -49,11 +49,11 @@ struct PairExplanation {
   BoundingSphere sphere_a{}, sphere_b{};   ///< not empty when spheres, not boxes, told them apart
   std::uint32_t level_a = 0, level_b = 0;  ///< of those cells
   /// At `exact_test` the direction from a to b, of unit length, between the points where the triangles are
-  /// closest, which separates them, and their distance: rounded, and zero where rounding leaves none. At
-  /// `object_volumes`, `octree_volumes` and `triangle_boxes` the coordinate axis from a to b along which the
-  /// boxes are furthest apart, or the direction between the centres of spheres, and by how much. Of
-  /// continuous contacts, where these are at the end of the step, which is zero for triangles that meet
-  /// there: they did so all the time.
+  /// closest, and their distance: rounded; where rounding leaves none it is 0, and the direction one that
+  /// separates them as well as rounding lets it. At `object_volumes`, `octree_volumes` and `triangle_boxes`
+  /// the coordinate axis from a to b along which the boxes are furthest apart, or the direction between the
+  /// centres of spheres, and by how much. Of continuous contacts, where these are at the end of the step;
+  /// both zero for triangles that meet there: they did so all the time.
   Vec3d axis{};
   double distance = 0;
 };

@@ -12,8 +12,11 @@
 
 namespace supple::viewer {
 
-/// The members of the answers to `read`, written into an object that is begun. Numbers must
-/// exist.
+/// The members of the answers to `explain` and `read`, written into an object that is begun. Numbers must
+/// exist. An object and one of its triangles:
+using ObjectTriangle = std::array<std::uint32_t, 2>;
+void answer_explain(const Show& show, const Source& source, const Center& center, ObjectTriangle a,
+                    ObjectTriangle b, JsonText& json);
 void answer_read_vertex(const Source& source, std::uint32_t object, std::uint32_t vertex, JsonText& json);
 void answer_read_triangle(const Show& show, const Source& source, std::uint32_t object,
                           std::uint32_t triangle, JsonText& json);

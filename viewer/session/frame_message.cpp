@@ -47,12 +47,15 @@ void FramePacker::forget() {
 void FramePacker::pack(const FrameView& frame, MessageWriter& message) {
   message_ = &message;
   omissions_.clear();
+  octree_levels_.clear();
   message.begin(MessageKind::frame);
   add_positions(frame);
   add_contacts(frame);
   add_impacts(frame);
   add_events(frame.source.scene().result());
   add_statistics(frame);
+  if (frame.layers.candidates) add_candidates(frame);
+  for (const std::uint32_t object : frame.layers.octree_objects) add_octree(frame, object);
   if (frame.layers.scene_regions) add_scene_regions(frame);
   if (frame.layers.colliding_vertices)
     add_colliding_vertices(frame);
@@ -165,6 +168,36 @@ void FramePacker::add_statistics(const FrameView& frame) {
                  [&](const Statistic& statistic) { return value_of(statistic, stats); });
 }
 
+void FramePacker::add_candidates(const FrameView& frame) {
+  std::uint64_t total = 0;
+  const std::vector<CandidatePair> candidates = frame.source.scene().candidates(most_elements, &total);
+  limited("candidates", total);
+  const auto rows = message_->add<std::array<std::uint32_t, 4>>(Tag::candidates, candidates.size());
+  std::transform(candidates.begin(), candidates.end(), rows.begin(), [](const CandidatePair& pair) {
+    return std::array{pair.object_a.index, pair.triangle_a, pair.object_b.index, pair.triangle_b};
+  });
+}
+
+/// Spheres when cells have them, else boxes. Cells without a finite triangle have neither.
+void FramePacker::add_octree(const FrameView& frame, std::uint32_t object) {
+  const Scene& scene = frame.source.scene();
+  const ObjectId id = frame.source.id(object);
+  octree_levels_.push_back(scene.octree_depth(id));
+  std::vector<OctreeCell> cells = scene.octree_cells(id, frame.layers.octree_level);
+  std::erase_if(cells, [](const OctreeCell& cell) { return cell.box.empty() && cell.sphere.empty(); });
+  const bool has_spheres = !cells.empty() && !cells.front().sphere.empty();
+  const std::size_t count = limited("octree", cells.size());
+  const auto rows = message_->add<Row>(has_spheres ? Tag::octree_spheres : Tag::octree_boxes, object, count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const OctreeCell& cell = cells[i];
+    const float level = static_cast<float>(cell.level);
+    const float triangles = cell.is_leaf ? static_cast<float>(cell.triangle_count) : -1;
+    rows[i] = has_spheres
+                  ? row_of(frame.center(cell.sphere.center), cell.sphere.radius, {level, triangles, 0}, 0)
+                  : row_of(frame.center(cell.box.min), level, frame.center(cell.box.max), triangles);
+  }
+}
+
 void FramePacker::add_scene_regions(const FrameView& frame) {
   const std::vector<SceneRegion> regions = frame.source.scene().scene_regions();
   const auto rows = message_->add<Row>(Tag::scene_regions, limited("scene_regions", regions.size()));
@@ -197,6 +230,7 @@ void FramePacker::add_text(const FrameView& frame) {
   json_.member("loop", frame.loop);
   json_.key("octree_levels");
   json_.begin_array();
+  for (const std::uint32_t level : octree_levels_) json_.value(level);
   json_.end_array();
   json_.key("omitted");
   json_.begin_object();

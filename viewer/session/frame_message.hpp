@@ -50,6 +50,8 @@ class FramePacker {
   void add_events(const DetectResult& result);
   void add_pairs(Tag tag, const ObjectPairs& pairs);
   void add_statistics(const FrameView& frame);
+  void add_candidates(const FrameView& frame);
+  void add_octree(const FrameView& frame, std::uint32_t object);
   void add_scene_regions(const FrameView& frame);
   void add_colliding_vertices(const FrameView& frame);
   void add_text(const FrameView& frame);
@@ -59,6 +61,7 @@ class FramePacker {
   std::vector<std::uint64_t> versions_;  // of the positions that were sent; 0 for none
   ObjectPairs touching_, now_touching_, changed_;
   std::vector<Omission> omissions_;
+  std::vector<std::uint32_t> octree_levels_;
   PaperVertices paper_vertices_;
   JsonText json_;
 };

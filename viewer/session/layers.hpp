@@ -13,6 +13,8 @@ struct Layers {
   bool colliding_vertices = false;
   std::vector<std::uint32_t> octree_objects{};  ///< whose octrees, ascending
   std::optional<std::uint32_t> octree_level{};  ///< nothing: the leaves
+
+  bool operator==(const Layers&) const = default;
 };
 
 }  // namespace supple::viewer

@@ -75,6 +75,7 @@ class Session::Implementation {
   void grab(Arguments& arguments);
   void drag(Arguments& arguments);
   void release(Arguments& arguments);
+  void explain(Arguments& arguments);
   void read(Arguments& arguments);
 
   void read_octree(const JsonValue& octree, Layers& layers, Arguments& arguments) const;
@@ -89,7 +90,7 @@ class Session::Implementation {
   void fail(const std::string& message, bool fatal = false);
   void add_reply(MessageKind kind);
   void begin_reply();
-  void pack_frame();
+  bool pack_frame();
 
   Show show_;
   Settings settings_;
@@ -116,7 +117,8 @@ const Session::Implementation::Command Session::Implementation::commands_[] = {
     {"seek", &Implementation::seek},       {"layers", &Implementation::layers},
     {"reset", &Implementation::reset},     {"set", &Implementation::set},
     {"grab", &Implementation::grab},       {"drag", &Implementation::drag},
-    {"release", &Implementation::release}, {"read", &Implementation::read, true},
+    {"release", &Implementation::release}, {"explain", &Implementation::explain, true},
+    {"read", &Implementation::read, true},
 };
 
 void Session::Implementation::greet() {
@@ -164,17 +166,26 @@ std::span<const std::byte> Session::Implementation::next_message() {
   } else if (has_news_ && credit_ > 0 && !has_ended_) {
     has_news_ = false;
     --credit_;
-    pack_frame();
+    if (!pack_frame()) return next_message();
   } else {
     return {};
   }
   return message_.finish();
 }
 
-void Session::Implementation::pack_frame() {
-  packer_.pack({stage_->show(), stage_->source(), layers_, stage_->center(), generation_, player_.playing(),
-                player_.speed(), player_.loop()},
-               message_);
+/// False when that failed; what was asked for besides the usual is then left out from now on.
+bool Session::Implementation::pack_frame() {
+  const FrameView frame{stage_->show(), stage_->source(),  layers_,         stage_->center(),
+                        generation_,    player_.playing(), player_.speed(), player_.loop()};
+  const auto failure = failure_of([&] { packer_.pack(frame, message_); });
+  if (!failure) return true;
+  id_.reset();
+  packer_.forget();
+  const bool is_fatal = layers_ == Layers{};
+  layers_ = {};
+  has_news_ = true;
+  fail(failure->message, is_fatal);
+  return false;
 }
 
 // Commands: all is read and checked before anything is done.
@@ -369,6 +380,13 @@ void Session::Implementation::release(Arguments& arguments) {
   if (!is_of_simulation(arguments) || !arguments.check()) return;
   stage_->simulation()->release();
   has_news_ = true;
+}
+
+void Session::Implementation::explain(Arguments& arguments) {
+  const auto a = arguments.required("a", arguments.pair("a")),
+             b = arguments.required("b", arguments.pair("b"));
+  if (!has_triangle(a, arguments) || !has_triangle(b, arguments) || !arguments.check()) return;
+  answer_explain(stage_->show(), stage_->source(), stage_->center(), a, b, json_);
 }
 
 void Session::Implementation::read(Arguments& arguments) {

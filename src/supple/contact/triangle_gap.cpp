@@ -1,6 +1,8 @@
 #include "contact/triangle_gap.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "contact/closest_points.hpp"
 #include "geometry/vector.hpp"
@@ -8,25 +10,18 @@
 namespace supple {
 namespace {
 
-/// The shortest way from a to b found so far.
-struct ShortestWay {
-  Vec3d way;
-  double squared_length = INFINITY;
+/// Seen from `origin`, and a quarter in size, so that differences do not overflow.
+TrianglePoints quarter(const TrianglePoints& points, const Vec3d& origin) {
+  TrianglePoints result;
+  for (std::size_t i = 0; i < 3; ++i) result[i] = 0.25 * points[i] - 0.25 * origin;
+  return result;
+}
 
-  void consider(const Vec3d& candidate, double squared) {
-    if (!(squared < squared_length)) return;
-    way = candidate;
-    squared_length = squared;
-  }
-};
-
-/// Multiplied by a power of two, so that no square overflows and few underflow.
-TrianglePoints scaled(const TrianglePoints& points, int exponent) {
-  TrianglePoints result = points;
-  for (Vec3d& p : result) {
+TrianglePoints scaled(TrianglePoints points, int exponent) {
+  for (Vec3d& p : points) {
     for (int axis = 0; axis < 3; ++axis) p[axis] = std::ldexp(p[axis], exponent);
   }
-  return result;
+  return points;
 }
 
 int exponent_of(const TrianglePoints& a, const TrianglePoints& b) {
@@ -37,28 +32,79 @@ int exponent_of(const TrianglePoints& a, const TrianglePoints& b) {
   return largest > 0 ? std::ilogb(largest) : 0;
 }
 
-}  // namespace
+/// Tries directions and keeps the one along which the triangles are furthest apart.
+class WidestGap {
+ public:
+  WidestGap(const TrianglePoints& a, const TrianglePoints& b) : a_(a), b_(b) {}
+
+  void consider(const Vec3d& direction) {
+    const double size = length(direction);
+    if (!(size > 0)) return;
+    const Vec3d axis = direction * (1 / size);
+    const auto [low_a, high_a] = range(a_, axis);
+    const auto [low_b, high_b] = range(b_, axis);
+    keep(axis, low_b - high_a);
+    keep(-1.0 * axis, low_a - high_b);
+  }
+  TriangleGap gap() const { return gap_; }
+
+ private:
+  static std::pair<double, double> range(const TrianglePoints& points, const Vec3d& axis) {
+    const double p = dot(points[0], axis), q = dot(points[1], axis), r = dot(points[2], axis);
+    return {std::min({p, q, r}), std::max({p, q, r})};
+  }
+  void keep(const Vec3d& axis, double distance) {
+    if (distance > gap_.distance) gap_ = {axis, distance};
+  }
+
+  const TrianglePoints &a_, &b_;
+  TriangleGap gap_{{}, -INFINITY};
+};
 
 /// Triangles that do not meet are closest at a corner of one and a point of the other, or at points of two
 /// edges.
-TriangleGap triangle_gap(const TrianglePoints& a, const TrianglePoints& b) {
-  const int exponent = exponent_of(a, b);
-  const TrianglePoints p = scaled(a, -exponent), q = scaled(b, -exponent);
-  ShortestWay shortest;
+Vec3d shortest_way(const TrianglePoints& p, const TrianglePoints& q) {
+  ClosestPoints closest;
+  closest.squared_distance = INFINITY;
+  const auto consider = [&](const ClosestPoints& other) {
+    if (other.squared_distance < closest.squared_distance) closest = other;
+  };
   for (std::size_t i = 0; i < 3; ++i) {
-    const ClosestPoints of_a = closest_points(relative_vertex_face({p[i], q[0], q[1], q[2]}), false);
-    shortest.consider(-1.0 * of_a.difference, of_a.squared_distance);
-    const ClosestPoints of_b = closest_points(relative_vertex_face({q[i], p[0], p[1], p[2]}), false);
-    shortest.consider(of_b.difference, of_b.squared_distance);
+    consider(closest_points(relative_vertex_face({p[i], q[0], q[1], q[2]}), false));
+    consider(closest_points(relative_vertex_face({q[i], p[0], p[1], p[2]}), false));
+    for (std::size_t j = 0; j < 3; ++j)
+      consider(closest_points(relative_edge_edge({p[i], p[(i + 1) % 3], q[j], q[(j + 1) % 3]}), true));
+  }
+  return closest.difference;
+}
+
+}  // namespace
+
+/// The shortest way, unless rounding is all that it is: then one of the axes that separate triangles,
+/// whatever these have collapsed to.
+TriangleGap triangle_gap(const TrianglePoints& a, const TrianglePoints& b) {
+  const TrianglePoints seen_a = quarter(a, a[0]), seen_b = quarter(b, a[0]);
+  // Of size 1, so that no square overflows and few underflow.
+  const int exponent = exponent_of(seen_a, seen_b);
+  const TrianglePoints p = scaled(seen_a, -exponent), q = scaled(seen_b, -exponent);
+  WidestGap widest(p, q);
+  widest.consider(shortest_way(p, q));
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Vec3d edge_p = p[(i + 1) % 3] - p[i];
     for (std::size_t j = 0; j < 3; ++j) {
-      const ClosestPoints of_edges =
-          closest_points(relative_edge_edge({p[i], p[(i + 1) % 3], q[j], q[(j + 1) % 3]}), true);
-      shortest.consider(-1.0 * of_edges.difference, of_edges.squared_distance);
+      const Vec3d edge_q = q[(j + 1) % 3] - q[j], normal = cross(edge_p, edge_q);
+      for (const Vec3d& axis : {edge_p, edge_q, normal, cross(edge_p, normal), cross(edge_q, normal)})
+        widest.consider(axis);
     }
   }
-  const double distance = length(shortest.way);
-  if (!(distance > 0)) return {};
-  return {shortest.way * (1 / distance), std::ldexp(distance, exponent)};
+  for (const TrianglePoints* const triangle : {&p, &q}) {
+    const auto& [r, s, t] = *triangle;
+    const Vec3d normal = cross(s - r, t - r);
+    for (const Vec3d& axis : {normal, cross(normal, s - r), cross(normal, t - s), cross(normal, r - t)})
+      widest.consider(axis);
+  }
+  const TriangleGap gap = widest.gap();
+  return {gap.axis, std::ldexp(std::max(gap.distance, 0.0), exponent + 2)};
 }
 
 }  // namespace supple

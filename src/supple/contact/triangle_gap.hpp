@@ -5,9 +5,10 @@
 
 namespace supple {
 
-/// How far apart two triangles are, and the direction from a to b in which they are: rounded.
+/// How far apart two triangles are, and the direction from a to b in which they are: rounded. Where rounding
+/// leaves no distance, it is 0 and the direction the one that separates them best.
 struct TriangleGap {
-  Vec3d axis;  ///< unit vector; zero where rounding leaves no distance
+  Vec3d axis;  ///< unit vector; zero of two triangles that are one and the same point
   double distance = 0;
 };
 

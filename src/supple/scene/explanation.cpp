@@ -7,8 +7,8 @@
 #include "geometry/aabb.hpp"
 #include "geometry/sphere.hpp"
 #include "geometry/vector.hpp"
-#include "scene/moving_faces.hpp"
 #include "scene/scene_implementation.hpp"
+#include "scene/searched_volumes.hpp"
 #include "supple/triangle_intersection.hpp"
 
 namespace supple {
@@ -101,16 +101,17 @@ Vec3d center(const BoundingSphere& sphere, const Vec3d& translation) {
   return Vec3d{sphere.center.x, sphere.center.y, sphere.center.z} + translation;
 }
 
-PairExplanation objects_apart(const SceneObject& a, const SceneObject& b, BoundingVolume volume) {
+PairExplanation objects_apart(const SceneObject& a, const SceneObject& b, const SceneOptions& options) {
+  const bool is_continuous = options.contacts == ContactMode::continuous;
   PairExplanation explanation{.stage = PairStage::object_volumes};
-  if (volume == BoundingVolume::sphere) {
+  if (options.bounding_volume == BoundingVolume::sphere) {
     explanation.sphere_a = a.sphere();
     explanation.sphere_b = b.sphere();
     set_gap(explanation, center(b.sphere(), {}) - center(a.sphere(), {}));
   } else {
-    explanation.box_a = a.box();
-    explanation.box_b = b.box();
-    set_gap(explanation, corners_of(a.box(), {}), corners_of(b.box(), {}));
+    explanation.box_a = is_continuous ? unclamped(a.box()) : a.box();
+    explanation.box_b = is_continuous ? unclamped(b.box()) : b.box();
+    set_gap(explanation, corners_of(explanation.box_a, {}), corners_of(explanation.box_b, {}));
   }
   return explanation;
 }
@@ -118,17 +119,6 @@ PairExplanation objects_apart(const SceneObject& a, const SceneObject& b, Boundi
 /// Lanes of the root are cells of level 1, unless it has only one, which then is the root.
 std::uint32_t cell_level(const OctreeView& view, std::uint32_t node) {
   return view.nodes[node].lane_count == 1 ? 0 : view.nodes[node].level + 1u;
-}
-
-Aabb lane_box(const OctreeView& view, std::uint32_t node, int lane) {
-  const AabbLanes& lanes = (view.moving.start != nullptr ? view.moving.end : view.boxes)[node];
-  return {{lanes.min_x[lane], lanes.min_y[lane], lanes.min_z[lane]},
-          {lanes.max_x[lane], lanes.max_y[lane], lanes.max_z[lane]}};
-}
-
-BoundingSphere lane_sphere(const OctreeView& view, std::uint32_t node, int lane) {
-  const SphereLanes& lanes = view.spheres[node];
-  return {{lanes.x[lane], lanes.y[lane], lanes.z[lane]}, lanes.radius[lane]};
 }
 
 PairExplanation cells_apart(const ObjectPairView& pair, const LanePair& at) {
@@ -218,7 +208,7 @@ PairExplanation Scene::Implementation::explain_in_order(const ContactJob& job, T
   if (is_inert(a, triangles.a) || is_inert(b, triangles.b)) return {.stage = PairStage::inert};
   const ObjectPair ids{id_of(job.a), id_of(job.b)};
   if (!same_object && !std::binary_search(object_pairs_.begin(), object_pairs_.end(), ids))
-    return objects_apart(a, b, options.bounding_volume);
+    return objects_apart(a, b, options);
   const ObjectPairView pair = search_view(job);
   const LanePair at = last_lanes(pair, triangles);
   if (at.apart) return cells_apart(pair, at);

@@ -5,8 +5,8 @@
 #include "core/error.hpp"
 #include "geometry/aabb.hpp"
 #include "geometry/sphere.hpp"
-#include "scene/moving_faces.hpp"
 #include "scene/scene_implementation.hpp"
+#include "scene/searched_volumes.hpp"
 
 namespace supple {
 namespace {
@@ -14,8 +14,7 @@ namespace {
 /// The lanes of an octree as cells, where the object is now.
 class CellReader {
  public:
-  explicit CellReader(const OctreeView& view)
-      : view_(view), boxes_(view.moving.start != nullptr ? view.moving.end : view.boxes) {}
+  explicit CellReader(const OctreeView& view) : view_(view) {}
 
   /// Whether the object is one leaf: the root itself then, not an octant of it.
   bool is_one_leaf() const {
@@ -37,30 +36,23 @@ class CellReader {
     cell.level = is_one_leaf() ? 0 : node.level + 1u;
     cell.is_leaf = is_leaf;
     cell.triangle_count = node.size(lane);
-    const auto n = static_cast<std::size_t>(&node - view_.nodes.data());
-    const AabbLanes& boxes = boxes_[n];
-    cell.box = moved(Aabb{{boxes.min_x[lane], boxes.min_y[lane], boxes.min_z[lane]},
-                          {boxes.max_x[lane], boxes.max_y[lane], boxes.max_z[lane]}},
-                     view_.translation);
-    if (view_.spheres == nullptr) return cell;
-    const SphereLanes& spheres = view_.spheres[n];
-    cell.sphere =
-        moved(BoundingSphere{{spheres.x[lane], spheres.y[lane], spheres.z[lane]}, spheres.radius[lane]},
-              view_.translation);
+    const auto n = static_cast<std::uint32_t>(&node - view_.nodes.data());
+    cell.box = moved(lane_box(view_, n, lane), view_.translation);
+    if (view_.spheres != nullptr) cell.sphere = moved(lane_sphere(view_, n, lane), view_.translation);
     return cell;
   }
 
   /// The whole object; of one that has triangles.
   OctreeCell root(const BoundingSphere& sphere) const {
     OctreeCell cell{0, is_one_leaf(), view_.nodes[0].size(), {}, {}};
-    cell.box = moved(box_of_lanes(boxes_[0]), view_.translation);
+    for (int lane = 0; lane < view_.nodes[0].lane_count; ++lane) extend(cell.box, lane_box(view_, 0, lane));
+    cell.box = moved(cell.box, view_.translation);
     if (view_.spheres != nullptr) cell.sphere = sphere;
     return cell;
   }
 
  private:
   OctreeView view_;
-  const AabbLanes* boxes_;
 };
 
 /// The first pairs of many, in order, without keeping all of them.

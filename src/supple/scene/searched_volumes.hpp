@@ -1,11 +1,38 @@
 #pragma once
 
+#include <cstdint>
+#include <limits>
+
 #include "narrow_phase/traversal.hpp"
 #include "octree/moving_boxes.hpp"
 #include "supple/mesh.hpp"
 #include "supple/types.hpp"
 
 namespace supple {
+
+/// Boxes in motion are kept within the range of float: what reaches to its end may reach beyond.
+inline Aabb unclamped(const Aabb& box) {
+  constexpr float greatest = std::numeric_limits<float>::max(), inf = std::numeric_limits<float>::infinity();
+  Aabb result = box;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (box.min[axis] == -greatest) result.min[axis] = -inf;
+    if (box.max[axis] == greatest) result.max[axis] = inf;
+  }
+  return result;
+}
+
+/// Of the lane's triangles where they are now, or at the end of the step, but for the view's translation.
+inline Aabb lane_box(const OctreeView& view, std::uint32_t node, int lane) {
+  const bool is_moving = view.moving.start != nullptr;
+  const AabbLanes& lanes = (is_moving ? view.moving.end : view.boxes)[node];
+  const Aabb box{{lanes.min_x[lane], lanes.min_y[lane], lanes.min_z[lane]},
+                 {lanes.max_x[lane], lanes.max_y[lane], lanes.max_z[lane]}};
+  return is_moving ? unclamped(box) : box;
+}
+inline BoundingSphere lane_sphere(const OctreeView& view, std::uint32_t node, int lane) {
+  const SphereLanes& lanes = view.spheres[node];
+  return {{lanes.x[lane], lanes.y[lane], lanes.z[lane]}, lanes.radius[lane]};
+}
 
 /// Box of a face in motion, at one end of the step; empty when the face is inert.
 inline Aabb face_box(const MovingBoxArrays& faces, const float* boxes, std::uint32_t face) {
