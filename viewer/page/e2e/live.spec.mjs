@@ -233,7 +233,7 @@ async function pullsASoftBody(stage) {
   const { page } = await stage.view(join(scenes, "soft_block.toml"));
   await pause(page);
   const body = await page.evaluate(() => supple.model.objects.findIndex((object) => object.isBody));
-  const seen = await seenTriangle(page, body);
+  const seen = await seenTriangle(page, body, 0.2);  // its bottom is held
   await page.getByRole("radio", { name: "Grab and pull" }).click();
   await page.mouse.move(seen.x, seen.y);
   await page.mouse.down();

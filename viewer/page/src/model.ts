@@ -120,7 +120,7 @@ export class Model extends Emitter<ModelEvents> {
   octree: { onlySelected: boolean; level: number } = { onlySelected: false, level: -1 };
   throughSurfaces = true;
   pointSize = 5;
-  normalLength = 0.05;  // of the scene's size
+  normalLength = 0.015;  // of the scene's size
 
   tool: Tool = "select";
   selection: Selection | null = null;
