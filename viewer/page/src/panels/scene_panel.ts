@@ -99,11 +99,10 @@ export class ScenePanel {
         this.model.emit("display", null);
       },
     });
-    const kind = object.isBody ? "soft body" : object.isStatic ? "static" : "moving";
     const name = h(
       "button",
       {
-        type: "button", class: "name", title: `${object.name}: ${kind}, ${readable(object.vertices)} vertices, ${readable(object.triangles)} triangles. Double click frames it.`,
+        type: "button", class: "name", title: `${object.name}: ${object.kind}, ${readable(object.vertices)} vertices, ${readable(object.triangles)} triangles. Double click frames it.`,
         onclick: () => this.model.select({ object: object.index, triangle: null, vertex: null }),
         ondblclick: () => this.frameObject(),
       },

@@ -291,14 +291,16 @@ export class SceneView {
   flyTo(point: ArrayLike<number>): void {
     const bounds = this.model.scene!.bounds;
     const size = Math.hypot(...bounds[1].map((x, axis) => x - bounds[0][axis]!)) || 1;
-    this.rig.frame(new THREE.Vector3(point[0], point[1], point[2]), 0.06 * size);
+    const [x, y, z] = Array.from(point) as [number, number, number];
+    const half = 0.05 * size;
+    this.rig.frame(new THREE.Vector3(x - half, y - half, z - half), new THREE.Vector3(x + half, y + half, z + half));
   }
 
   private frameBounds(bounds: { lower: number[]; upper: number[] }, direction?: THREE.Vector3, fly = true): void {
     const lower = new THREE.Vector3(...bounds.lower);
     const upper = new THREE.Vector3(...bounds.upper);
     this.rig.setExtent(Math.max(lower.length(), upper.length()));
-    this.rig.frame(lower.clone().add(upper).multiplyScalar(0.5), lower.distanceTo(upper) / 2, direction, fly);
+    this.rig.frame(lower, upper, direction, fly);
   }
 
   private rayAt(x: number, y: number): THREE.Ray {
