@@ -7,7 +7,7 @@ import { h } from "./dom";
 
 const HEIGHT = 132;
 const REDRAW_MILLISECONDS = 150;
-const LINES = [OKABE_ITO.blue, OKABE_ITO.orange, OKABE_ITO.green, OKABE_ITO.vermillion, OKABE_ITO.purple, OKABE_ITO.sky, "#8a8f98"];
+const LINES = [OKABE_ITO.blue, OKABE_ITO.orange, OKABE_ITO.green, OKABE_ITO.vermillion, OKABE_ITO.purple, OKABE_ITO.sky, "#8a8f98", "#9c6b3c"];
 
 interface Plot {
   title: string;

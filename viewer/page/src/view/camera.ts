@@ -102,21 +102,24 @@ export class CameraRig {
     this.moved();
   }
 
-  /** Looks at a box so that all of it is seen, from where the camera is or from a direction. */
-  frame(lower: THREE.Vector3, upper: THREE.Vector3, direction?: THREE.Vector3, fly = true): void {
-    const center = lower.clone().add(upper).multiplyScalar(0.5);
+  /** Looks at a place so that all points are seen, from where the camera is or from a direction; those that are no numbers are passed over. */
+  frame(center: THREE.Vector3, points: Iterable<ArrayLike<number>>, direction?: THREE.Vector3, fly = true): void {
     const back = direction?.clone() ?? this.camera.position.clone().sub(this.controls.target);
     if (back.lengthSq() === 0) back.set(0, 0, 1);
     back.normalize();
     const right = new THREE.Vector3().crossVectors(this.camera.up, back).normalize();
     const up = new THREE.Vector3().crossVectors(back, right);
-    const slope = Math.tan((FIELD_OF_VIEW * Math.PI) / 360);
+    const slope = Math.tan((FIELD_OF_VIEW * Math.PI) / 360) / FRAME_MARGIN;
     let distance = 1e-9;
-    for (let i = 0; i < 8; ++i) {
-      const corner = new THREE.Vector3(i & 1 ? upper.x : lower.x, i & 2 ? upper.y : lower.y, i & 4 ? upper.z : lower.z).sub(center);
-      const aside = Math.max(Math.abs(corner.dot(right)) / this.aspect, Math.abs(corner.dot(up)));
-      distance = Math.max(distance, corner.dot(back) + (FRAME_MARGIN * aside) / slope);
-    }
+    for (const list of points)
+      for (let i = 0; i < list.length; i += 3) {
+        const x = list[i]! - center.x, y = list[i + 1]! - center.y, z = list[i + 2]! - center.z;
+        const aside = Math.max(
+          Math.abs(x * right.x + y * right.y + z * right.z) / this.aspect, Math.abs(x * up.x + y * up.y + z * up.z),
+        );
+        const needed = x * back.x + y * back.y + z * back.z + aside / slope;
+        if (needed > distance) distance = needed;
+      }
     this.go(center.clone().add(back.multiplyScalar(distance)), center, fly);
   }
 

@@ -52,9 +52,8 @@ export class SceneView {
     });
     model.on("scene", () => this.build());
     model.on("frame", (frame) => {
-      for (const object of frame.positions.keys()) this.drawn[object]!.surface.geometry.getAttribute("position").needsUpdate = true;
+      this.touch(frame.positions.keys());
       if (!this.hasFramed) this.firstFrame();
-      this.refill();
     });
     model.on("display", () => this.refresh());
     model.on("selection", () => this.refresh());
@@ -87,6 +86,12 @@ export class SceneView {
 
   invalidate(): void {
     this.dirty = true;
+  }
+
+  /** These objects have new positions. */
+  touch(objects: Iterable<number> = this.drawn.keys()): void {
+    for (const object of objects) this.drawn[object]!.surface.geometry.getAttribute("position").needsUpdate = true;
+    this.refill();
   }
 
   private refill(): void {
@@ -273,8 +278,7 @@ export class SceneView {
   }
 
   frameAll(direction?: THREE.Vector3, fly = true): void {
-    const bounds = boundsOf(this.model.objects.filter((object) => object.visible));
-    if (bounds) this.frameBounds(bounds, direction, fly);
+    this.frameObjects(this.model.objects.filter((object) => object.visible), direction, fly);
   }
 
   /** Frames what is selected: a contact, a triangle or vertex, an object; else all. */
@@ -284,23 +288,23 @@ export class SceneView {
     if (point) return this.flyTo(point);
     if (!selection) return this.frameAll();
     if (selection.triangle !== null) return this.flyTo(this.centroid(selection.object, selection.triangle));
-    const bounds = boundsOf([this.model.objects[selection.object]!]);
-    if (bounds) this.frameBounds(bounds);
+    this.frameObjects([this.model.objects[selection.object]!]);
   }
 
-  flyTo(point: ArrayLike<number>): void {
+  flyTo(point: number[]): void {
     const bounds = this.model.scene!.bounds;
-    const size = Math.hypot(...bounds[1].map((x, axis) => x - bounds[0][axis]!)) || 1;
-    const [x, y, z] = Array.from(point) as [number, number, number];
-    const half = 0.05 * size;
-    this.rig.frame(new THREE.Vector3(x - half, y - half, z - half), new THREE.Vector3(x + half, y + half, z + half));
+    const reach = 0.04 * (Math.hypot(...bounds[1].map((x, axis) => x - bounds[0][axis]!)) || 1);
+    const around = [-reach, reach].flatMap((step) => [0, 1, 2].map((axis) => point.map((x, i) => (i === axis ? x + step : x))));
+    this.rig.frame(new THREE.Vector3().fromArray(point), around);
   }
 
-  private frameBounds(bounds: { lower: number[]; upper: number[] }, direction?: THREE.Vector3, fly = true): void {
-    const lower = new THREE.Vector3(...bounds.lower);
-    const upper = new THREE.Vector3(...bounds.upper);
+  private frameObjects(objects: ObjectState[], direction?: THREE.Vector3, fly = true): void {
+    const bounds = boundsOf(objects);
+    if (!bounds) return;
+    const lower = new THREE.Vector3().fromArray(bounds.lower);
+    const upper = new THREE.Vector3().fromArray(bounds.upper);
     this.rig.setExtent(Math.max(lower.length(), upper.length()));
-    this.rig.frame(lower, upper, direction, fly);
+    this.rig.frame(lower.add(upper).multiplyScalar(0.5), objects.map((object) => object.positions), direction, fly);
   }
 
   private rayAt(x: number, y: number): THREE.Ray {
