@@ -152,7 +152,7 @@ async function contactTableFlies(stage) {
   const after = await camera(page);
   assert.notDeepEqual(after.target, before.target);
   const key = await page.evaluate(() => [...supple.model.contact]);
-  assert.deepEqual(key, await page.evaluate(() => [...supple.model.frame.contacts.subarray(24, 28)]));
+  assert.deepEqual(key, await page.evaluate(() => [...supple.model.frame.contacts.slice(24, 28)]));
   await page.keyboard.press("ArrowDown");
   await page.keyboard.press("ArrowDown");
   assert.deepEqual(await page.evaluate(() => [...supple.model.contact]), await page.evaluate(() => [...supple.model.frame.contacts.subarray(40, 44)]));

@@ -1,5 +1,6 @@
 /** What the page knows: the scene as the session told it, the newest frame, and what the person chose. */
 import { objectColour } from "./colours";
+import { sidesOf, type ContactKey } from "./contacts";
 import { Emitter } from "./emitter";
 import type { FrameMessage, SceneMessage, SceneObject, SceneText, SeriesMessage } from "./protocol/messages";
 
@@ -33,9 +34,6 @@ export interface Selection {
   triangle: number | null;
   vertex: number | null;
 }
-
-/** A contact by what touches, so that it stays selected from frame to frame. */
-export type ContactKey = readonly [objectA: number, elementA: number, objectB: number, elementB: number];
 
 export interface Explanation {
   stage: string;
@@ -207,6 +205,12 @@ export class Model extends Emitter<ModelEvents> {
     this.contact = contact;
     this.emit("selection", null);
     if (this.layers.octree && this.octree.onlySelected) this.emit("request", null);
+  }
+
+  /** Selects a contact, and what of object a touches in it. */
+  selectContact(key: ContactKey): void {
+    const [a] = sidesOf(key);
+    this.select({ object: a.object, triangle: a.isFace ? a.elements[0]! : null, vertex: null }, key);
   }
 
   clearSelection(): void {

@@ -1,8 +1,8 @@
 /** Ids and values of what was picked, and why two triangles are, or are not, a contact. */
 import type { Client } from "../client";
 import { OKABE_ITO } from "../colours";
+import { findContact, hasImpacts, kindAt, pointsAt, sidesOf } from "../contacts";
 import type { Explanation, Model } from "../model";
-import { findContact } from "../view/scene_view";
 import { h, readable } from "./dom";
 
 /** While things move, values are read anew so often. */
@@ -191,14 +191,12 @@ export class Inspector {
   private contactRows(): Row[] {
     const { contact, frame } = this.model;
     if (!contact || !frame) return [];
-    const [a, elementA, b, elementB] = contact;
-    const rows: Row[] = [["between", `${this.model.objects[a]!.name} ${elementA} and ${this.model.objects[b]!.name} ${elementB}`]];
+    const sides = sidesOf(contact).map(({ object, elements }) => `${this.model.objects[object]!.name} ${elements.join("–")}`);
+    const rows: Row[] = [["between", sides.join(" and ")]];
     const place = findContact(frame, contact);
     if (place < 0) return [...rows, ["now", "no longer a contact"]];
-    const isImpact = frame.impacts.length > 0;
-    const data = isImpact ? frame.impactPoints : frame.contactPoints;
-    const first = isImpact ? place : frame.contacts[8 * place + 6]!;
-    const count = isImpact ? 1 : frame.contacts[8 * place + 5]!;
+    rows.push(["kind", kindAt(frame, place)]);
+    const { data, first, count } = pointsAt(frame, place);
     const center = this.model.scene!.center;
     rows.push(["points", String(count)]);
     for (let k = 0; k < count; ++k) {
@@ -206,7 +204,7 @@ export class Inspector {
       rows.push([k === 0 ? "at" : "", [0, 1, 2].map((axis) => readable(data[at + axis]! + center[axis]!)).join(", ")]);
     }
     if (count > 0) rows.push(["normal", show(Array.from(data.subarray(8 * first + 4, 8 * first + 7)))]);
-    if (isImpact) rows.push(["time in step", readable(data[8 * first + 3]!)]);
+    if (hasImpacts(frame)) rows.push(["time in step", readable(data[8 * first + 3]!)]);
     return rows;
   }
 

@@ -1,6 +1,7 @@
 /** Draws the model: surfaces, layers, what is selected. Only when something has changed. */
 import * as THREE from "three";
 import { OKABE_ITO } from "../colours";
+import { contactCount, findContact, pointsAt } from "../contacts";
 import { boundsOf, type Model, type ObjectState } from "../model";
 import { CameraRig } from "./camera";
 import { Layers } from "./layers";
@@ -209,12 +210,10 @@ export class SceneView {
     if (!contact || !frame) return null;
     const at = findContact(frame, contact);
     if (at < 0) return null;
-    if (frame.impacts.length > 0) return Array.from(frame.impactPoints.subarray(8 * at, 8 * at + 3));
-    const count = frame.contacts[8 * at + 5]!;
-    const first = frame.contacts[8 * at + 6]!;
+    const { data, first, count } = pointsAt(frame, at);
     const mean = [0, 0, 0];
     for (let k = 0; k < count; ++k)
-      for (let axis = 0; axis < 3; ++axis) mean[axis]! += frame.contactPoints[8 * (first + k) + axis]! / count;
+      for (let axis = 0; axis < 3; ++axis) mean[axis]! += data[8 * (first + k) + axis]! / count;
     return count > 0 ? mean : null;
   }
 
@@ -346,18 +345,17 @@ export class SceneView {
     const at = new THREE.Vector3();
     let best = reach;
     let found = -1;
-    const look = (data: Float32Array, from: number, contact: number) => {
-      at.set(data[from]!, data[from + 1]!, data[from + 2]!).applyMatrix4(matrix);
-      if (at.z < -1 || at.z > 1) return;
-      const away = Math.hypot(box.left + ((at.x + 1) / 2) * box.width - x, box.top + ((1 - at.y) / 2) * box.height - y);
-      if (away >= best) return;
-      best = away;
-      found = contact;
-    };
-    const { contacts, impacts } = frame;
-    for (let i = 0; i < contacts.length; i += 8)
-      for (let k = 0; k < contacts[i + 5]!; ++k) look(frame.contactPoints, 8 * (contacts[i + 6]! + k), i / 8);
-    for (let i = 0; i < impacts.length; i += 8) look(frame.impactPoints, i, i / 8);
+    for (let place = 0; place < contactCount(frame); ++place) {
+      const { data, first, count } = pointsAt(frame, place);
+      for (let from = 8 * first; from < 8 * (first + count); from += 8) {
+        at.set(data[from]!, data[from + 1]!, data[from + 2]!).applyMatrix4(matrix);
+        if (at.z < -1 || at.z > 1) continue;
+        const away = Math.hypot(box.left + ((at.x + 1) / 2) * box.width - x, box.top + ((1 - at.y) / 2) * box.height - y);
+        if (away >= best) continue;
+        best = away;
+        found = place;
+      }
+    }
     return found;
   }
 
@@ -388,18 +386,6 @@ export class SceneView {
   statistics(): { calls: number; triangles: number } {
     return { calls: this.renderer.info.render.calls, triangles: this.renderer.info.render.triangles };
   }
-}
-
-/** The place of a contact in a frame, or −1. */
-export function findContact(
-  frame: { contacts: Uint32Array; impacts: Uint32Array }, key: readonly [number, number, number, number],
-): number {
-  const isImpact = frame.impacts.length > 0;
-  const data = isImpact ? frame.impacts : frame.contacts;
-  const places = isImpact ? [0, 1, 3, 4] : [0, 1, 2, 3];
-  for (let i = 0; i < data.length; i += 8)
-    if (places.every((place, k) => data[i + place] === key[k])) return i / 8;
-  return -1;
 }
 
 function writeBox(into: Float32Array, box: number[][]): number {
