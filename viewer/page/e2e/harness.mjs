@@ -105,7 +105,9 @@ export const camera = (page) => page.evaluate(() => supple.camera());
 
 /** Pauses and waits until the last frame is there. */
 export async function pause(page) {
-  if (await page.evaluate(() => supple.playing)) await page.getByRole("button", { name: "Pause" }).click();
+  const button = page.getByRole("button", { name: "Pause" });
+  // A recording may end by itself meanwhile: then there is no such button any more.
+  if (await button.count()) await button.click({ timeout: 5000 }).catch(() => {});
   await until(page, () => !supple.model.frame.text.playing);
   await settled(page);
 }
