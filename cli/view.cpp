@@ -87,9 +87,9 @@ void warn_of_others(const ViewOptions& options) {
 }
 
 int serve(viewer::Show show, const ViewOptions& options) {
-  warn_of_others(options);
   viewer::Server server(viewer::Session(std::move(show)),
                         {options.address, options.port, viewer::embedded_page()});
+  warn_of_others(options);
   const Interruption interruption;
   fmt::print("Open {}\n", server.url());
   std::fflush(stdout);

@@ -14,7 +14,7 @@ class Help(ProgramTest):
         self.assertRegex(done.out, r"^supple \d+\.\d+\.\d+\n$")
 
     def test_help_teaches_by_example(self):
-        for command in ("detect", "simulate", "info", "ccd-queries", "diff"):
+        for command in ("detect", "simulate", "view", "info", "ccd-queries", "diff"):
             done = run(command, "--help")
             self.assertEqual((done.status, done.error), (0, ""))
             options, examples = done.out.split("Examples:")
@@ -26,7 +26,7 @@ class Help(ProgramTest):
     def test_help_of_the_program_names_the_commands(self):
         done = run("--help")
         self.assertEqual(done.status, 0)
-        for word in ("detect", "simulate", "info", "ccd-queries", "diff", "experiment", "Examples:", "Exit status"):
+        for word in ("detect", "simulate", "view", "info", "ccd-queries", "diff", "experiment", "Examples:", "Exit status"):
             self.assertIn(word, done.out)
 
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "start.hpp"
+
 namespace supple::viewer {
 
 const std::vector<std::vector<std::uint32_t>>& PaperVertices::find(const Show& show, const Source& source) {
@@ -10,7 +12,8 @@ const std::vector<std::vector<std::uint32_t>>& PaperVertices::find(const Show& s
     options.contacts = ContactMode::none;
     options.colliding_vertices = true;
     scene_.emplace(options);
-    for (const ShowObject& object : show.objects) ids_.push_back(scene_->add(object.mesh, object.options));
+    for (const ShowObject& object : show.objects)
+      ids_.push_back(scene_->add(start_of(show, object), object.options));
     versions_.assign(ids_.size(), 0);
   }
   for (std::size_t i = 0; i < ids_.size(); ++i) {

@@ -1,5 +1,6 @@
 #include "settings.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <string>
@@ -42,6 +43,21 @@ void set_apart(ShowObject& object, std::size_t copy, const Vec3d& offset) {
     *springs->seed += copy * 1'000'003;
 }
 
+/// Of so many objects, the list repeated.
+void check_size(const Show& show, std::size_t count) {
+  constexpr std::uint64_t most_elements = 100'000'000;
+  std::uint64_t vertices = 0, triangles = 0;
+  for (std::size_t i = 0; i < count && !show.objects.empty(); ++i) {
+    const TriangleMesh& mesh = show.objects[i % show.objects.size()].mesh;
+    vertices += mesh.positions.size();
+    triangles += mesh.triangles.size();
+  }
+  if (std::max(vertices, triangles) <= most_elements) return;
+  fail(std::to_string(count) + " objects have " + std::to_string(vertices) + " vertices and " +
+       std::to_string(triangles) + " triangles; a page can show " + std::to_string(most_elements) +
+       " of each at most");
+}
+
 void repeat_objects(Show& show, std::size_t count) {
   std::vector<ShowObject>& objects = show.objects;
   const std::size_t given = objects.size();
@@ -49,6 +65,7 @@ void repeat_objects(Show& show, std::size_t count) {
     objects.resize(std::min(count, given));
     return;
   }
+  check_size(show, count);
   const Vec3d cell = cell_size(show);
   const std::size_t copies = (count + given - 1) / given;
   const std::size_t side = grid_side(copies);
@@ -87,9 +104,18 @@ void check_sway(const ShowObject& object, const Sway& sway) {
   }
 }
 
+void check_show(const Show& show) {
+  for (const ShowObject& object : show.objects) {
+    check_mesh(object.mesh);
+    if (const auto* const sway = std::get_if<Sway>(&object.motion)) check_sway(object, *sway);
+  }
+  check_size(show, show.objects.size());
+}
+
 }  // namespace
 
 Show arranged(const Show& show, const Settings& settings) {
+  check_show(show);
   Show arranged = show;
   if (settings.objects) repeat_objects(arranged, *settings.objects);
   SimulationOptions& simulation = arranged.simulation;
@@ -108,20 +134,6 @@ Show arranged(const Show& show, const Settings& settings) {
       motion->springs.integrator = settings.integrator.value_or(motion->springs.integrator);
   }
   return arranged;
-}
-
-void check_show(const Show& show) {
-  constexpr std::size_t most_elements = 100'000'000;
-  std::size_t vertices = 0, triangles = 0;
-  for (const ShowObject& object : show.objects) {
-    check_mesh(object.mesh);
-    if (const auto* const sway = std::get_if<Sway>(&object.motion)) check_sway(object, *sway);
-    vertices += object.mesh.positions.size();
-    triangles += object.mesh.triangles.size();
-  }
-  if (std::max(vertices, triangles) <= most_elements) return;
-  fail("the objects have " + std::to_string(vertices) + " vertices and " + std::to_string(triangles) +
-       " triangles; a page can show at most " + std::to_string(most_elements) + " of each");
 }
 
 }  // namespace supple::viewer

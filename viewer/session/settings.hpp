@@ -22,11 +22,8 @@ struct Settings {
 };
 
 /// The show with these settings. More objects than it has are copies, set out in a grid beside it, in a
-/// border that grows with them.
+/// border that grows with them. Throws `Error` that names the object and the value when an object of the show
+/// is not what it should be, or when there is more than messages can hold.
 Show arranged(const Show& show, const Settings& settings);
-
-/// Throws `Error` that names the object and the value when an object of a show is not what it should be, or
-/// when there is more than messages can hold.
-void check_show(const Show& show);
 
 }  // namespace supple::viewer

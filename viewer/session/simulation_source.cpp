@@ -4,6 +4,7 @@
 #include <variant>
 
 #include "extent.hpp"
+#include "start.hpp"
 
 namespace supple::viewer {
 
@@ -21,12 +22,10 @@ void SimulationSource::add(const ShowObject& object) {
     ids_.push_back(simulation_.add(object.mesh, object.options, *springs));
   } else if (std::holds_alternative<Sway>(object.motion)) {
     const std::size_t number = ids_.size();
-    TriangleMesh start = object.mesh;
-    move_swaying(number, 0, start.positions);
-    ids_.push_back(
-        simulation_.add(start, object.options, [this, number](double seconds, std::span<Vec3d> positions) {
-          move_swaying(number, seconds, positions);
-        }));
+    ids_.push_back(simulation_.add(start_of(show_, object), object.options,
+                                   [this, number](double seconds, std::span<Vec3d> positions) {
+                                     move_swaying(number, seconds, positions);
+                                   }));
   } else {
     ids_.push_back(simulation_.add(object.mesh, object.options));
   }

@@ -8,7 +8,6 @@ namespace supple::viewer {
 
 Stage::Stage(const Show& show, const Settings& settings, std::uint64_t frame)
     : show_(arranged(show, settings)), center_{extent_of(show_).center()} {
-  check_show(show_);
   if (show_.frames == nullptr) {
     simulation_ = std::make_unique<SimulationSource>(show_);
     return;

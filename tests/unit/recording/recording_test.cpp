@@ -75,6 +75,12 @@ Contents round_trip(const Contents& contents) {
   EXPECT_EQ(contents.frames.size(), recording.frame_count());
   for (std::size_t f = 0; f < std::min(contents.frames.size(), read.frames.size()); ++f) {
     expect_equal(contents.frames[f], read.frames[f]);
+    RecordedFrame without_contacts = contents.frames[f];
+    without_contacts.object_pairs.clear();
+    without_contacts.contacts.clear();
+    without_contacts.contact_points.clear();
+    without_contacts.continuous_contacts.clear();
+    expect_equal(without_contacts, recording.summary(f));
     for (std::size_t i = 0; i < read.header.objects.size(); ++i)
       expect_equal_bits(contents.positions[f][i], read.positions[f][i]);
   }
@@ -312,6 +318,7 @@ TEST(Recording, NoSuchFrameOrObject) {
   soups(ContactMode::none, 2).write(folder / "run.h5");
   const Recording recording(folder / "run.h5");
   EXPECT_NE(error_of([&] { recording.frame(2); }).find("no frame 2; the recording has 2"), std::string::npos);
+  EXPECT_NE(error_of([&] { recording.summary(2); }).find("no frame 2"), std::string::npos);
   EXPECT_NE(error_of([&] { recording.positions(0, 3); }).find("no object 3"), std::string::npos);
   EXPECT_NE(error_of([&] { recording.positions(7, 0); }).find("no frame 7"), std::string::npos);
 }

@@ -105,7 +105,9 @@ export const camera = (page) => page.evaluate(() => supple.camera());
 
 /** Pauses and waits until the last frame is there. */
 export async function pause(page) {
-  if (await page.evaluate(() => supple.playing)) await page.getByRole("button", { name: "Pause" }).click();
+  const button = page.getByRole("button", { name: "Pause" });
+  // A recording may end by itself meanwhile: then there is no such button any more.
+  if (await button.count()) await button.click({ timeout: 5000 }).catch(() => {});
   await until(page, () => !supple.model.frame.text.playing);
   await settled(page);
 }
@@ -128,17 +130,19 @@ export const picture = (page) =>
     return document.querySelector("canvas.view").toDataURL();
   });
 
-/** Where to click for a triangle that is seen: one that a ray through its middle meets first. */
-export const seenTriangle = (page, object) =>
-  page.evaluate((object) => {
+/** Where to click for a triangle that is seen: one that a ray through its middle meets first, and that is not lower than `least`. */
+export const seenTriangle = (page, object, least = -Infinity) =>
+  page.evaluate(([object, least]) => {
     const { triangles } = supple.model.objects[object];
     for (let triangle = 0; triangle < triangles; ++triangle) {
-      const at = supple.project(supple.centroid(object, triangle));
+      const middle = supple.centroid(object, triangle);
+      if (middle[1] < least) continue;
+      const at = supple.project(middle);
       const hit = supple.pickAt(at.x, at.y);
       if (hit?.object === object && hit.triangle === triangle) return { ...at, object, triangle, vertex: hit.vertex };
     }
     throw new Error(`no triangle of object ${object} is seen`);
-  }, object);
+  }, [object, least]);
 
 /** Two balls that stand apart and do not move by themselves. */
 export const TWO_BALLS = `

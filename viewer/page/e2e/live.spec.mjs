@@ -152,13 +152,13 @@ async function contactTableFlies(stage) {
   const after = await camera(page);
   assert.notDeepEqual(after.target, before.target);
   const key = await page.evaluate(() => [...supple.model.contact]);
-  assert.deepEqual(key, await page.evaluate(() => [...supple.model.frame.contacts.subarray(24, 28)]));
+  assert.deepEqual(key, await page.evaluate(() => [...supple.model.frame.contacts.slice(24, 28)]));
   await page.keyboard.press("ArrowDown");
   await page.keyboard.press("ArrowDown");
   assert.deepEqual(await page.evaluate(() => [...supple.model.contact]), await page.evaluate(() => [...supple.model.frame.contacts.subarray(40, 44)]));
   await page.keyboard.press("End");
   assert.deepEqual(await page.evaluate(() => [...supple.model.contact]), await page.evaluate(() => [...supple.model.frame.contacts.slice(-8, -4)]));
-  assert.equal(await grid.locator('[aria-selected="true"]').count(), 1);
+  await grid.locator('[aria-selected="true"]').waitFor();
   await page.getByRole("tab", { name: "Inspect" }).click();
   await page.getByRole("heading", { name: "Contact", exact: true }).waitFor();
 }
@@ -211,8 +211,11 @@ async function pullingMakesContacts(stage) {
   const { page } = await stage.view(stage.file("balls.toml", TWO_BALLS));
   await settled(page);
   assert.equal(await page.evaluate(() => supple.model.frame.contacts.length), 0);
-  const left = await seenTriangle(page, 0);
-  const right = await seenTriangle(page, 1);
+  // From the front, the side of the left ball that looks at the right one, to the middle of that one.
+  await page.getByRole("combobox", { name: "Axis view" }).selectOption("front");
+  await settled(page);
+  const left = await page.evaluate(() => supple.project([-0.13, 0, 0.1]));
+  const right = await page.evaluate(() => supple.project([0.5, 0, 0.1]));
   await page.getByRole("radio", { name: "Grab and pull" }).click();
   await page.mouse.move(left.x, left.y);
   await page.mouse.down();
@@ -230,7 +233,7 @@ async function pullsASoftBody(stage) {
   const { page } = await stage.view(join(scenes, "soft_block.toml"));
   await pause(page);
   const body = await page.evaluate(() => supple.model.objects.findIndex((object) => object.isBody));
-  const seen = await seenTriangle(page, body);
+  const seen = await seenTriangle(page, body, 0.2);  // its bottom is held
   await page.getByRole("radio", { name: "Grab and pull" }).click();
   await page.mouse.move(seen.x, seen.y);
   await page.mouse.down();

@@ -1,7 +1,7 @@
 // A recording: play, scrub, step, loop, jump from event to event.
 import assert from "node:assert/strict";
 import { join } from "node:path";
-import { runProgram, scenes, settled, step, until } from "./harness.mjs";
+import { pause, runProgram, scenes, settled, step, until } from "./harness.mjs";
 
 const FRAMES = 60;
 
@@ -9,6 +9,7 @@ async function open(stage) {
   const file = stage.file("run.h5");
   await runProgram(stage.supple, ["simulate", join(scenes, "nine.toml"), "--steps", String(FRAMES), "--record", file, "--quiet"]);
   const { page } = await stage.view(file);
+  await pause(page);
   await until(page, () => supple.model.history.frames.length > 0);
   return page;
 }

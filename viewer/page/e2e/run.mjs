@@ -37,6 +37,8 @@ async function runTest({ name, body }, browser) {
   const begin = Date.now();
   try {
     await Promise.race([body(stage), tooLong]);
+    for (const page of stage.contexts.flatMap((context) => context.pages()))
+      if (await page.locator('[aria-label="The page has failed"]').count()) throw new Error("the page says that it has failed");
     if (stage.errors.length > 0) throw new Error(`the page has errors: ${stage.errors.join("; ")}`);
     console.log(`ok    ${name} (${((Date.now() - begin) / 1000).toFixed(1)} s)`);
     return true;

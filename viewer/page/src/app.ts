@@ -272,6 +272,8 @@ export class App {
         drawTimes: () => [...view.times],
         drawn: () => view.statistics(),
         draw: () => view.draw(),
+        /** As if a frame had brought all positions anew. */
+        touch: () => view.touch(),
         loseContext: () => (view.canvas.getContext("webgl2") as WebGL2RenderingContext).getExtension("WEBGL_lose_context")?.loseContext(),
       },
     });

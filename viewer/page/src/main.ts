@@ -11,11 +11,19 @@ function fail(error: unknown): void {
   document.body.append(card);
 }
 
-addEventListener("error", (event) => fail(event.error ?? event.message), { once: true });
-addEventListener("unhandledrejection", (event) => fail(event.reason), { once: true });
+let hasFailed = false;
+function failOnce(error: unknown): void {
+  if (!hasFailed) fail(error);
+  hasFailed = true;
+}
+
+addEventListener("error", (event) => {
+  if (event.error) failOnce(event.error);  // without one it is a remark of the browser's, as of layout that settles late
+});
+addEventListener("unhandledrejection", (event) => failOnce(event.reason));
 
 try {
   new App(document.body).start();
 } catch (error) {
-  fail(error);
+  failOnce(error);
 }

@@ -1,7 +1,8 @@
 /** What the page knows: the scene as the session told it, the newest frame, and what the person chose. */
 import { objectColour } from "./colours";
+import { sidesOf, type ContactKey } from "./contacts";
 import { Emitter } from "./emitter";
-import type { FrameMessage, SceneMessage, SceneText, SeriesMessage } from "./protocol/messages";
+import type { FrameMessage, SceneMessage, SceneObject, SceneText, SeriesMessage } from "./protocol/messages";
 
 export interface ObjectState {
   index: number;
@@ -10,6 +11,8 @@ export interface ObjectState {
   triangles: number;
   isStatic: boolean;
   isBody: boolean;
+  /** How it moves, in a word or two. */
+  kind: string;
   /** Where it is now, minus the scene's centre; written in place. */
   positions: Float32Array;
   corners: Uint32Array;
@@ -31,9 +34,6 @@ export interface Selection {
   triangle: number | null;
   vertex: number | null;
 }
-
-/** A contact by what touches, so that it stays selected from frame to frame. */
-export type ContactKey = readonly [objectA: number, elementA: number, objectB: number, elementB: number];
 
 export interface Explanation {
   stage: string;
@@ -97,6 +97,13 @@ export class History {
   }
 }
 
+function kindOf(object: SceneObject, source: SceneText["source"]): string {
+  if (object.static) return "static";
+  if (source === "recording") return "recorded";
+  if (object.body) return "soft body";
+  return object.waves ? "swaying" : "at rest";
+}
+
 export class Model extends Emitter<ModelEvents> {
   scene: SceneText | null = null;
   objects: ObjectState[] = [];
@@ -111,7 +118,7 @@ export class Model extends Emitter<ModelEvents> {
   octree: { onlySelected: boolean; level: number } = { onlySelected: false, level: -1 };
   throughSurfaces = true;
   pointSize = 5;
-  normalLength = 0.05;  // of the scene's size
+  normalLength = 0.015;  // of the scene's size
 
   tool: Tool = "select";
   selection: Selection | null = null;
@@ -133,6 +140,7 @@ export class Model extends Emitter<ModelEvents> {
         triangles: object.triangles,
         isStatic: object.static,
         isBody: object.body,
+        kind: kindOf(object, message.text.source),
         positions: new Float32Array(3 * object.vertices),
         corners: message.triangles.get(index) ?? new Uint32Array(0),
         visible: kept?.visible ?? true,
@@ -197,6 +205,12 @@ export class Model extends Emitter<ModelEvents> {
     this.contact = contact;
     this.emit("selection", null);
     if (this.layers.octree && this.octree.onlySelected) this.emit("request", null);
+  }
+
+  /** Selects a contact, and what of object a touches in it. */
+  selectContact(key: ContactKey): void {
+    const [a] = sidesOf(key);
+    this.select({ object: a.object, triangle: a.isFace ? a.elements[0]! : null, vertex: null }, key);
   }
 
   clearSelection(): void {

@@ -1,5 +1,6 @@
 /** What the mouse does to objects: select, grab and pull, or ask why two triangles do not touch. */
 import type { Client } from "./client";
+import { keyAt } from "./contacts";
 import type { Model } from "./model";
 import type { Inspector } from "./panels/inspector";
 import type { SceneView } from "./view/scene_view";
@@ -74,11 +75,7 @@ export class Tools {
     const { frame } = this.model;
     const place = this.view.contactAt(x, y);
     if (frame && place >= 0) {
-      const isImpact = frame.impacts.length > 0;
-      const data = isImpact ? frame.impacts : frame.contacts;
-      const at = (i: number) => data[8 * place + i]!;
-      const isFace = !isImpact || at(6) === 1;
-      this.model.select({ object: at(0), triangle: isFace ? at(1) : null, vertex: null }, isImpact ? [at(0), at(1), at(3), at(4)] : [at(0), at(1), at(2), at(3)]);
+      this.model.selectContact(keyAt(frame, place));
       return;
     }
     const hit = this.view.pickAt(x, y);

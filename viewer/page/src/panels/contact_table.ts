@@ -1,14 +1,11 @@
 /** All contacts of the frame, as many as there are: only the rows in sight have elements. */
-import type { ContactKey, Model } from "../model";
-import type { FrameMessage } from "../protocol/messages";
-import { findContact } from "../view/scene_view";
+import { contactCount, findContact, involves, keyAt, kindAt, sidesOf } from "../contacts";
+import type { Model } from "../model";
 import { h, readable } from "./dom";
 
 const ROW = 24;
 /** Browsers give up on elements that are higher than this. */
 const HIGHEST = 8_000_000;
-const KINDS = ["point", "segment", "polygon"];
-const IMPACT_KINDS = ["vertex–face", "face–vertex", "edge–edge"];
 
 export class ContactTable {
   readonly element: HTMLElement;
@@ -44,32 +41,15 @@ export class ContactTable {
 
   private get count(): number {
     const { frame } = this.model;
-    return this.listed ? this.listed.length : frame ? this.dataOf(frame).length / 8 : 0;
-  }
-
-  private dataOf(frame: FrameMessage): Uint32Array {
-    return frame.impacts.length > 0 ? frame.impacts : frame.contacts;
-  }
-
-  /** The key of the contact at a place of the frame. */
-  private keyAt(place: number): ContactKey {
-    const frame = this.model.frame!;
-    const data = this.dataOf(frame);
-    const from = 8 * place;
-    return frame.impacts.length > 0
-      ? [data[from]!, data[from + 1]!, data[from + 3]!, data[from + 4]!]
-      : [data[from]!, data[from + 1]!, data[from + 2]!, data[from + 3]!];
+    return this.listed ? this.listed.length : frame ? contactCount(frame) : 0;
   }
 
   private update(): void {
     const { frame, selection } = this.model;
     this.listed = null;
     if (frame && this.only.checked && selection) {
-      const data = this.dataOf(frame);
-      const second = frame.impacts.length > 0 ? 3 : 2;
       this.listed = [];
-      for (let i = 0; i < data.length; i += 8)
-        if (data[i] === selection.object || data[i + second] === selection.object) this.listed.push(i / 8);
+      for (let place = 0; place < contactCount(frame); ++place) if (involves(frame, place, selection.object)) this.listed.push(place);
     }
     const text = frame ? `${readable(this.count)} contacts · ${readable(frame.objectPairs.length / 2)} object pairs` : "";
     if (this.summary.textContent !== text) this.summary.textContent = text;
@@ -112,29 +92,24 @@ export class ContactTable {
   private fillRow(row: HTMLElement, index: number): void {
     const frame = this.model.frame!;
     const place = this.listed ? this.listed[index]! : index;
-    const data = this.dataOf(frame);
-    const [a, elementA, b, elementB] = this.keyAt(place);
-    const isImpact = frame.impacts.length > 0;
-    const kind = isImpact ? IMPACT_KINDS[data[8 * place + 6]!]! : KINDS[data[8 * place + 4]!]!;
-    const texts = [this.model.objects[a]!.name, String(elementA), this.model.objects[b]!.name, String(elementB), kind];
+    const key = keyAt(frame, place);
+    const sides = sidesOf(key).flatMap(({ object, elements }) => [this.model.objects[object]!.name, elements.join("–")]);
+    const texts = [...sides, kindAt(frame, place)];
     texts.forEach((text, i) => {
       const cell = row.children[i]!;
       if (cell.textContent !== text) cell.textContent = text;
     });
     row.dataset["row"] = String(index);
     row.setAttribute("aria-rowindex", String(index + 1));
-    const contact = this.model.contact;
-    const selected = contact !== null && contact[0] === a && contact[1] === elementA && contact[2] === b && contact[3] === elementB;
+    const { contact } = this.model;
+    const selected = contact !== null && contact.length === key.length && contact.every((id, i) => id === key[i]);
     row.setAttribute("aria-selected", String(selected));
   }
 
   private choose(index: number): void {
     if (!(index >= 0 && index < this.count)) return;
     const place = this.listed ? this.listed[index]! : index;
-    const key = this.keyAt(place);
-    const frame = this.model.frame!;
-    const isFace = frame.impacts.length === 0 || frame.impacts[8 * place + 6] === 1;
-    this.model.select({ object: key[0], triangle: isFace ? key[1] : null, vertex: null }, key);
+    this.model.selectContact(keyAt(this.model.frame!, place));
     this.reveal(index);
     this.fly();
   }

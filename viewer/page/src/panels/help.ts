@@ -6,8 +6,8 @@ const GROUPS: [string, [string, string][]][] = [
     [". ,", "next, previous event"], ["[ ]", "slower, faster"], ["L", "loop a recording"], ["R", "reset with the seed"],
   ]],
   ["Look", [
-    ["drag", "orbit; right button or Shift: pan"], ["wheel", "zoom to the cursor"], ["Shift + arrows", "orbit"], ["Alt + arrows", "pan"], ["+ −", "zoom"],
-    ["F", "frame all"], ["Shift + F", "frame the selection"], ["1 … 6", "front, back, right, left, top, bottom"], ["O", "orthographic or perspective"],
+    ["drag", "orbit; right button or Shift: pan"], ["wheel", "zoom to the cursor"], ["Shift arrows", "orbit"], ["Alt arrows", "pan"], ["+ −", "zoom"],
+    ["F", "frame all"], ["Shift F", "frame the selection"], ["1 … 6", "front, back, right, left, top, bottom"], ["O", "orthographic or perspective"],
   ]],
   ["Work", [
     ["V", "select: click an object, triangle, contact"], ["G", "grab: drag a vertex, or select one and use Enter and the arrows"], ["W", "why no contact: click two triangles"],
@@ -18,7 +18,7 @@ const GROUPS: [string, [string, string][]][] = [
     ["I D", "intersecting triangles, contact points"], ["Y U J", "normals, curves, vertices"],
   ]],
   ["Page", [
-    ["Shift + S", "save a picture"], ["Shift + V", "record a video, or end it"], ["T", "light or dark"], ["H", "hide or show the panels"], ["?", "this sheet"],
+    ["Shift S", "save a picture"], ["Shift V", "record a video, or end it"], ["T", "light or dark"], ["H", "hide or show the panels"], ["?", "this sheet"],
   ]],
 ];
 

@@ -1,8 +1,8 @@
 /** Ids and values of what was picked, and why two triangles are, or are not, a contact. */
 import type { Client } from "../client";
 import { OKABE_ITO } from "../colours";
+import { findContact, hasImpacts, kindAt, pointsAt, sidesOf } from "../contacts";
 import type { Explanation, Model } from "../model";
-import { findContact } from "../view/scene_view";
 import { h, readable } from "./dom";
 
 /** While things move, values are read anew so often. */
@@ -22,14 +22,19 @@ const STAGES: Record<string, string> = {
 function show(value: unknown): string {
   if (typeof value === "number") return readable(value);
   if (Array.isArray(value)) return value.map(show).join(", ");
-  if (value !== null && typeof value === "object")
-    return Object.entries(value).map(([name, inner]) => `${name.replace(/_/g, " ")} ${show(inner)}`).join("; ");
   return value === null ? "none" : String(value);
 }
 
 /** Numbers in full: what a person copies. */
 function showExactly(value: unknown): string {
   return Array.isArray(value) ? value.map(showExactly).join("\n") : String(value);
+}
+
+/** Members of an object, and of the objects within it. */
+function rowsOf(value: Record<string, unknown>): [string, unknown][] {
+  return Object.entries(value).flatMap(([name, inner]) =>
+    inner !== null && typeof inner === "object" && !Array.isArray(inner) ? rowsOf(inner as Record<string, unknown>) : [[name, inner] as [string, unknown]],
+  );
 }
 
 type Row = [name: string, value: string | Node];
@@ -162,12 +167,12 @@ export class Inspector {
     const answer = this.answers.get(name);
     if (answer === undefined) return [];
     if (typeof answer === "string") return [["", answer]];
-    return Object.entries(answer)
-      .filter(([key]) => !["id", "name", "object", "triangle", "vertex"].includes(key))
-      .map(([key, value]) => {
-        if (key === "contacts" && Array.isArray(value)) return ["contacts", this.contactLinks(value as [number, number][])];
-        return [key.replace(/_/g, " "), exact.includes(key) ? h("code", {}, showExactly(value)) : show(value)];
-      });
+    return rowsOf(answer).flatMap(([key, value]): Row[] => {
+      if (["id", "name", "object", "triangle", "vertex"].includes(key)) return [];
+      if (key === "contacts" && Array.isArray(value)) return [["contacts", this.contactLinks(value as [number, number][])]];
+      if (key === "bounds" && Array.isArray(value)) return [["from", show(value[0])], ["to", show(value[1])]];
+      return [[key.replace(/_/g, " "), exact.includes(key) ? h("code", {}, showExactly(value)) : show(value)]];
+    });
   }
 
   private contactLinks(others: [number, number][]): Node {
@@ -186,14 +191,12 @@ export class Inspector {
   private contactRows(): Row[] {
     const { contact, frame } = this.model;
     if (!contact || !frame) return [];
-    const [a, elementA, b, elementB] = contact;
-    const rows: Row[] = [["between", `${this.model.objects[a]!.name} ${elementA} and ${this.model.objects[b]!.name} ${elementB}`]];
+    const sides = sidesOf(contact).map(({ object, elements }) => `${this.model.objects[object]!.name} ${elements.join("–")}`);
+    const rows: Row[] = [["between", sides.join(" and ")]];
     const place = findContact(frame, contact);
     if (place < 0) return [...rows, ["now", "no longer a contact"]];
-    const isImpact = frame.impacts.length > 0;
-    const data = isImpact ? frame.impactPoints : frame.contactPoints;
-    const first = isImpact ? place : frame.contacts[8 * place + 6]!;
-    const count = isImpact ? 1 : frame.contacts[8 * place + 5]!;
+    rows.push(["kind", kindAt(frame, place)]);
+    const { data, first, count } = pointsAt(frame, place);
     const center = this.model.scene!.center;
     rows.push(["points", String(count)]);
     for (let k = 0; k < count; ++k) {
@@ -201,7 +204,7 @@ export class Inspector {
       rows.push([k === 0 ? "at" : "", [0, 1, 2].map((axis) => readable(data[at + axis]! + center[axis]!)).join(", ")]);
     }
     if (count > 0) rows.push(["normal", show(Array.from(data.subarray(8 * first + 4, 8 * first + 7)))]);
-    if (isImpact) rows.push(["time in step", readable(data[8 * first + 3]!)]);
+    if (hasImpacts(frame)) rows.push(["time in step", readable(data[8 * first + 3]!)]);
     return rows;
   }
 
@@ -213,7 +216,6 @@ export class Inspector {
     }
     const object = this.model.objects[selection.object];
     if (!object) return;
-    const kind = object.isBody ? "soft body" : object.isStatic ? "static" : "moving";
     const parts: HTMLElement[] = [];
     const contact = this.contactRows();
     if (contact.length > 0) parts.push(h("h3", {}, "Contact"), table(contact));
@@ -221,7 +223,7 @@ export class Inspector {
     if (selection.triangle !== null) parts.push(h("h3", {}, `Triangle ${selection.triangle}`), table(this.rowsOf("triangle")));
     parts.push(
       h("h3", {}, object.name),
-      table([["object", `${object.index}, ${kind}`], ["size", `${readable(object.vertices)} vertices, ${readable(object.triangles)} triangles`], ...this.rowsOf("object").filter(([name]) => name !== "vertices" && name !== "triangles")]),
+      table([["object", `${object.index}, ${object.kind}`], ["size", `${readable(object.vertices)} vertices, ${readable(object.triangles)} triangles`], ...this.rowsOf("object").filter(([name]) => name !== "vertices" && name !== "triangles")]),
     );
     this.details.replaceChildren(...parts);
   }

@@ -46,10 +46,12 @@ function wordsOf(status: Extract<Status, { state: "ended" }>, carriesLibrary: bo
 
 export class Card {
   readonly element = h("div", { class: "card", hidden: true });
+  private isFinal = false;
 
   constructor(private readonly reconnect: () => void, private readonly carriesLibrary: boolean) {}
 
   showStatus(status: Status): void {
+    if (this.isFinal) return;
     if (status.state === "connecting") {
       this.fill("status", "Connecting…", this.carriesLibrary ? "The library is being unpacked." : "Waiting for the program.", null);
     } else if (status.state === "connected") {
@@ -63,9 +65,11 @@ export class Card {
   /** For what no connection mends. */
   fail(title: string, text: string): void {
     this.fill("alertdialog", title, text, h("button", { type: "button", class: "primary", onclick: () => location.reload() }, "Reload"));
+    this.isFinal = true;
   }
 
   hide(): void {
+    if (this.isFinal) return;
     this.element.hidden = true;
   }
 

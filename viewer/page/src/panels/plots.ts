@@ -7,7 +7,7 @@ import { h } from "./dom";
 
 const HEIGHT = 132;
 const REDRAW_MILLISECONDS = 150;
-const LINES = [OKABE_ITO.blue, OKABE_ITO.orange, OKABE_ITO.green, OKABE_ITO.vermillion, OKABE_ITO.purple, OKABE_ITO.sky, "#8a8f98"];
+const LINES = [OKABE_ITO.blue, OKABE_ITO.orange, OKABE_ITO.green, OKABE_ITO.vermillion, OKABE_ITO.purple, OKABE_ITO.sky, "#8a8f98", "#9c6b3c"];
 
 interface Plot {
   title: string;
@@ -28,7 +28,7 @@ export class Plots {
     model.on("scene", () => this.build());
     model.on("history", () => this.later());
     model.on("frame", () => this.later());
-    new ResizeObserver(() => this.resize()).observe(this.element);
+    new ResizeObserver(() => requestAnimationFrame(() => this.resize())).observe(this.element);
   }
 
   /** Colours come from the page's theme. */
@@ -44,14 +44,14 @@ export class Plots {
     const { names } = this.model.history;
     const has = (wanted: string[]) => wanted.filter((name) => names.includes(name));
     const stages = names.filter(isStage);
-    this.add("Object pairs", has(["object_pairs"]), 1, "");
-    this.add("Contacts and candidates", has(["contacts", "candidate_pairs"]), 1, "");
-    this.add("Time per stage, milliseconds", stages, 1000, "ms");
+    this.add("Object pairs", has(["object_pairs"]), 1);
+    this.add("Contacts and candidates", has(["contacts", "candidate_pairs"]), 1);
+    this.add("Time per stage, milliseconds", stages, 1000);
     if (this.plots.length === 0) this.element.append(h("p", { class: "hint empty" }, "This recording says nothing of its frames."));
     this.update();
   }
 
-  private add(title: string, columns: string[], scale: number, unit: string): void {
+  private add(title: string, columns: string[], scale: number): void {
     if (columns.length === 0) return;
     const style = getComputedStyle(document.documentElement);
     const ink = style.getPropertyValue("--ink-soft").trim();
@@ -64,7 +64,7 @@ export class Plots {
       scales: { x: { time: false } },
       legend: { live: false },
       cursor: { points: { show: false }, drag: { x: false, y: false } },
-      axes: [{ ...axis, size: 26 }, { ...axis, size: 52, values: (_, ticks) => ticks.map((tick) => `${tick}${unit && ""}`) }],
+      axes: [{ ...axis, size: 26 }, { ...axis, size: 52 }],
       series: [{ label: "frame" }, ...columns.map((name, i) => ({ label: labelOf(name), stroke: LINES[i % LINES.length]!, width: 1.5, points: { show: false } }))],
       hooks: { draw: [(plot) => this.drawCursor(plot)] },
     };

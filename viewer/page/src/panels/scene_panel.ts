@@ -1,5 +1,5 @@
 /** The objects of the scene and the layers that are drawn over them. */
-import { LEVELS, OKABE_ITO } from "../colours";
+import { levelColour, LEVELS, OKABE_ITO } from "../colours";
 import type { Layer, Model, ObjectState } from "../model";
 import { h, readable } from "./dom";
 
@@ -37,6 +37,10 @@ export class ScenePanel {
   private readonly counts = new Map<Layer, HTMLElement>();
   private readonly boxes = new Map<Layer, HTMLInputElement>();
   private readonly levels = h("select", { "aria-label": "Octree level" });
+  private readonly legend = h(
+    "div", { class: "legend", hidden: true, title: "Colours of levels; they begin again after the last" },
+    ...LEVELS.map((_, level) => h("span", { style: `--level:${levelColour(level)}` }, String(level))),
+  );
   private readonly omitted = h("p", { class: "hint", role: "status", hidden: true });
   private rows: HTMLLIElement[] = [];
   private deepest = -1;
@@ -46,7 +50,7 @@ export class ScenePanel {
       "aside",
       { class: "panel left", "aria-label": "Scene" },
       h("section", { class: "grow" }, h("h2", {}, "Objects", this.allButton()), this.list),
-      h("section", {}, h("h2", {}, "Layers"), this.layerList(), this.octreeOptions(), this.omitted),
+      h("section", {}, h("h2", {}, "Layers"), this.layerList(), this.octreeOptions(), this.legend, this.omitted),
     );
     model.on("scene", () => this.build());
     model.on("selection", () => this.markSelected());
@@ -99,11 +103,10 @@ export class ScenePanel {
         this.model.emit("display", null);
       },
     });
-    const kind = object.isBody ? "soft body" : object.isStatic ? "static" : "moving";
     const name = h(
       "button",
       {
-        type: "button", class: "name", title: `${object.name}: ${kind}, ${readable(object.vertices)} vertices, ${readable(object.triangles)} triangles. Double click frames it.`,
+        type: "button", class: "name", title: `${object.name}: ${object.kind}, ${readable(object.vertices)} vertices, ${readable(object.triangles)} triangles. Double click frames it.`,
         onclick: () => this.model.select({ object: object.index, triangle: null, vertex: null }),
         ondblclick: () => this.frameObject(),
       },
@@ -161,7 +164,9 @@ export class ScenePanel {
   }
 
   private refresh(): void {
-    for (const [layer, box] of this.boxes) box.checked = this.model.layers[layer];
+    const { layers } = this.model;
+    for (const [layer, box] of this.boxes) box.checked = layers[layer];
+    this.legend.hidden = !layers.octree && !layers.regions;
   }
 
   /** Counts beside the layers, of the newest frame. */

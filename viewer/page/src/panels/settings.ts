@@ -82,7 +82,7 @@ export class Settings {
     const changed = () => this.model.emit("display", null);
     folder.add(this.model, "throughSurfaces").name("Marks through surfaces").onChange(changed);
     folder.add(this.model, "pointSize", 2, 20, 1).name("Point size").onChange(changed);
-    folder.add(this.model, "normalLength", 0.005, 0.3).name("Normal length").onChange(changed);
+    folder.add(this.model, "normalLength", 0.002, 0.1).name("Normal length").onChange(changed);
     for (const controller of folder.controllers)
       for (const input of controller.domElement.querySelectorAll("input")) input.setAttribute("aria-label", controller._name);
   }

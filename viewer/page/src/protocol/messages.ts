@@ -16,6 +16,7 @@ export interface SceneObject {
   triangles: number;
   static: boolean;
   body: boolean;
+  waves?: boolean;
   self_collision: boolean;
 }
 

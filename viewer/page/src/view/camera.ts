@@ -3,6 +3,7 @@ import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 
 const FIELD_OF_VIEW = 40;
 const FLIGHT_MILLISECONDS = 350;
+const FRAME_MARGIN = 1.1;
 
 /** From where an axis view looks. */
 export const AXIS_VIEWS = {
@@ -101,14 +102,25 @@ export class CameraRig {
     this.moved();
   }
 
-  /** Looks at a ball so that all of it is seen, from where the camera is or from a direction. */
-  frame(center: THREE.Vector3, radius: number, direction?: THREE.Vector3, fly = true): void {
-    const from = direction ?? this.camera.position.clone().sub(this.controls.target);
-    if (from.lengthSq() === 0) from.set(0, 0, 1);
-    const half = (FIELD_OF_VIEW * Math.PI) / 360;
-    const narrow = Math.min(1, this.aspect);
-    const distance = (Math.max(radius, 1e-9) * 1.08) / (Math.sin(half) * narrow);
-    this.go(center.clone().add(from.normalize().multiplyScalar(distance)), center, fly);
+  /** Looks at a place so that all points are seen, from where the camera is or from a direction; those that are no numbers are passed over. */
+  frame(center: THREE.Vector3, points: Iterable<ArrayLike<number>>, direction?: THREE.Vector3, fly = true): void {
+    const back = direction?.clone() ?? this.camera.position.clone().sub(this.controls.target);
+    if (back.lengthSq() === 0) back.set(0, 0, 1);
+    back.normalize();
+    const right = new THREE.Vector3().crossVectors(this.camera.up, back).normalize();
+    const up = new THREE.Vector3().crossVectors(back, right);
+    const slope = Math.tan((FIELD_OF_VIEW * Math.PI) / 360) / FRAME_MARGIN;
+    let distance = 1e-9;
+    for (const list of points)
+      for (let i = 0; i < list.length; i += 3) {
+        const x = list[i]! - center.x, y = list[i + 1]! - center.y, z = list[i + 2]! - center.z;
+        const aside = Math.max(
+          Math.abs(x * right.x + y * right.y + z * right.z) / this.aspect, Math.abs(x * up.x + y * up.y + z * up.z),
+        );
+        const needed = x * back.x + y * back.y + z * back.z + aside / slope;
+        if (needed > distance) distance = needed;
+      }
+    this.go(center.clone().add(back.multiplyScalar(distance)), center, fly);
   }
 
   lookAlong(view: AxisView, fly = true): void {
@@ -130,7 +142,7 @@ export class CameraRig {
   advance(now: number): boolean {
     if (!this.flight) return false;
     const { begin, from, to } = this.flight;
-    const t = Math.min(1, (now - begin) / FLIGHT_MILLISECONDS);
+    const t = Math.max(0, Math.min(1, (now - begin) / FLIGHT_MILLISECONDS));  // a picture may be of before the key
     const part = t * t * (3 - 2 * t);
     this.controls.target.lerpVectors(from.target, to.target, part);
     this.camera.position.lerpVectors(from.position, to.position, part);

@@ -1,6 +1,7 @@
 /** Draws the model: surfaces, layers, what is selected. Only when something has changed. */
 import * as THREE from "three";
 import { OKABE_ITO } from "../colours";
+import { contactCount, findContact, pointsAt } from "../contacts";
 import { boundsOf, type Model, type ObjectState } from "../model";
 import { CameraRig } from "./camera";
 import { Layers } from "./layers";
@@ -52,9 +53,8 @@ export class SceneView {
     });
     model.on("scene", () => this.build());
     model.on("frame", (frame) => {
-      for (const object of frame.positions.keys()) this.drawn[object]!.surface.geometry.getAttribute("position").needsUpdate = true;
+      this.touch(frame.positions.keys());
       if (!this.hasFramed) this.firstFrame();
-      this.refill();
     });
     model.on("display", () => this.refresh());
     model.on("selection", () => this.refresh());
@@ -87,6 +87,12 @@ export class SceneView {
 
   invalidate(): void {
     this.dirty = true;
+  }
+
+  /** These objects have new positions. */
+  touch(objects: Iterable<number> = this.drawn.keys()): void {
+    for (const object of objects) this.drawn[object]!.surface.geometry.getAttribute("position").needsUpdate = true;
+    this.refill();
   }
 
   private refill(): void {
@@ -204,12 +210,10 @@ export class SceneView {
     if (!contact || !frame) return null;
     const at = findContact(frame, contact);
     if (at < 0) return null;
-    if (frame.impacts.length > 0) return Array.from(frame.impactPoints.subarray(8 * at, 8 * at + 3));
-    const count = frame.contacts[8 * at + 5]!;
-    const first = frame.contacts[8 * at + 6]!;
+    const { data, first, count } = pointsAt(frame, at);
     const mean = [0, 0, 0];
     for (let k = 0; k < count; ++k)
-      for (let axis = 0; axis < 3; ++axis) mean[axis]! += frame.contactPoints[8 * (first + k) + axis]! / count;
+      for (let axis = 0; axis < 3; ++axis) mean[axis]! += data[8 * (first + k) + axis]! / count;
     return count > 0 ? mean : null;
   }
 
@@ -273,8 +277,7 @@ export class SceneView {
   }
 
   frameAll(direction?: THREE.Vector3, fly = true): void {
-    const bounds = boundsOf(this.model.objects.filter((object) => object.visible));
-    if (bounds) this.frameBounds(bounds, direction, fly);
+    this.frameObjects(this.model.objects.filter((object) => object.visible), direction, fly);
   }
 
   /** Frames what is selected: a contact, a triangle or vertex, an object; else all. */
@@ -284,21 +287,23 @@ export class SceneView {
     if (point) return this.flyTo(point);
     if (!selection) return this.frameAll();
     if (selection.triangle !== null) return this.flyTo(this.centroid(selection.object, selection.triangle));
-    const bounds = boundsOf([this.model.objects[selection.object]!]);
-    if (bounds) this.frameBounds(bounds);
+    this.frameObjects([this.model.objects[selection.object]!]);
   }
 
-  flyTo(point: ArrayLike<number>): void {
+  flyTo(point: number[]): void {
     const bounds = this.model.scene!.bounds;
-    const size = Math.hypot(...bounds[1].map((x, axis) => x - bounds[0][axis]!)) || 1;
-    this.rig.frame(new THREE.Vector3(point[0], point[1], point[2]), 0.06 * size);
+    const reach = 0.04 * (Math.hypot(...bounds[1].map((x, axis) => x - bounds[0][axis]!)) || 1);
+    const around = [-reach, reach].flatMap((step) => [0, 1, 2].map((axis) => point.map((x, i) => (i === axis ? x + step : x))));
+    this.rig.frame(new THREE.Vector3().fromArray(point), around);
   }
 
-  private frameBounds(bounds: { lower: number[]; upper: number[] }, direction?: THREE.Vector3, fly = true): void {
-    const lower = new THREE.Vector3(...bounds.lower);
-    const upper = new THREE.Vector3(...bounds.upper);
+  private frameObjects(objects: ObjectState[], direction?: THREE.Vector3, fly = true): void {
+    const bounds = boundsOf(objects);
+    if (!bounds) return;
+    const lower = new THREE.Vector3().fromArray(bounds.lower);
+    const upper = new THREE.Vector3().fromArray(bounds.upper);
     this.rig.setExtent(Math.max(lower.length(), upper.length()));
-    this.rig.frame(lower.clone().add(upper).multiplyScalar(0.5), lower.distanceTo(upper) / 2, direction, fly);
+    this.rig.frame(lower.add(upper).multiplyScalar(0.5), objects.map((object) => object.positions), direction, fly);
   }
 
   private rayAt(x: number, y: number): THREE.Ray {
@@ -340,18 +345,17 @@ export class SceneView {
     const at = new THREE.Vector3();
     let best = reach;
     let found = -1;
-    const look = (data: Float32Array, from: number, contact: number) => {
-      at.set(data[from]!, data[from + 1]!, data[from + 2]!).applyMatrix4(matrix);
-      if (at.z < -1 || at.z > 1) return;
-      const away = Math.hypot(box.left + ((at.x + 1) / 2) * box.width - x, box.top + ((1 - at.y) / 2) * box.height - y);
-      if (away >= best) return;
-      best = away;
-      found = contact;
-    };
-    const { contacts, impacts } = frame;
-    for (let i = 0; i < contacts.length; i += 8)
-      for (let k = 0; k < contacts[i + 5]!; ++k) look(frame.contactPoints, 8 * (contacts[i + 6]! + k), i / 8);
-    for (let i = 0; i < impacts.length; i += 8) look(frame.impactPoints, i, i / 8);
+    for (let place = 0; place < contactCount(frame); ++place) {
+      const { data, first, count } = pointsAt(frame, place);
+      for (let from = 8 * first; from < 8 * (first + count); from += 8) {
+        at.set(data[from]!, data[from + 1]!, data[from + 2]!).applyMatrix4(matrix);
+        if (at.z < -1 || at.z > 1) continue;
+        const away = Math.hypot(box.left + ((at.x + 1) / 2) * box.width - x, box.top + ((1 - at.y) / 2) * box.height - y);
+        if (away >= best) continue;
+        best = away;
+        found = place;
+      }
+    }
     return found;
   }
 
@@ -382,18 +386,6 @@ export class SceneView {
   statistics(): { calls: number; triangles: number } {
     return { calls: this.renderer.info.render.calls, triangles: this.renderer.info.render.triangles };
   }
-}
-
-/** The place of a contact in a frame, or −1. */
-export function findContact(
-  frame: { contacts: Uint32Array; impacts: Uint32Array }, key: readonly [number, number, number, number],
-): number {
-  const isImpact = frame.impacts.length > 0;
-  const data = isImpact ? frame.impacts : frame.contacts;
-  const places = isImpact ? [0, 1, 3, 4] : [0, 1, 2, 3];
-  for (let i = 0; i < data.length; i += 8)
-    if (places.every((place, k) => data[i + place] === key[k])) return i / 8;
-  return -1;
 }
 
 function writeBox(into: Float32Array, box: number[][]): number {

@@ -1,0 +1,207 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "../../support/viewer_page.hpp"
+
+namespace supple::viewer {
+namespace {
+
+using Json = nlohmann::json;
+using Message = ViewerMessage;
+using Row = std::array<float, 8>;
+
+/// Balls that touch or nearly do, of which one waves and one is tested against itself.
+Show crowd(BoundingVolume volume = BoundingVolume::aabb) {
+  Show show;
+  show.simulation.scene.bounding_volume = volume;
+  for (int i = 0; i < 6; ++i)
+    show.objects.push_back(
+        test_ball(("ball " + std::to_string(i)).c_str(), {1.7 * (i % 3), 1.8 * (i / 3), 0.1 * i}, 6));
+  show.objects[1].motion = Sway{.velocity = {0.2, -0.1, 0.3}, .amplitude = 0.1};
+  show.objects[2].options.self_collision = true;
+  show.objects[4].options.is_static = show.objects[5].options.is_static = true;
+  return show;
+}
+
+Row row(const std::array<Vec3f, 1>& a, float w, Vec3f b, float v) {
+  return {a[0].x, a[0].y, a[0].z, w, b.x, b.y, b.z, v};
+}
+
+Vec3d wide(Vec3f p) {
+  return {p.x, p.y, p.z};
+}
+
+Vec3f narrow(Vec3f p, Vec3d center) {
+  return as_floats(std::array{wide(p)}, center)[0];
+}
+
+TEST(ViewerLayers, AreLeftOutUntilAskedForAndAgainAfterwards) {
+  TestPage page(crowd());
+  page.scene();
+  const auto has_layers = [](const Message& frame) {
+    return frame.has(38) || frame.has(39) || frame.has(40, 0) || frame.has(41, 0) || frame.has(42, 0);
+  };
+  EXPECT_FALSE(has_layers(page.frame()));
+  page.ask({{"do", "layers"},
+            {"candidates", true},
+            {"scene_regions", true},
+            {"colliding_vertices", true},
+            {"octree", {{"objects", {3, 0, 3}}, {"level", 1}}}});
+  const Message frame = page.frame();
+  EXPECT_TRUE(frame.has(38) && frame.has(39) && frame.has(40, 0) && frame.has(40, 3) && frame.has(42, 0));
+  EXPECT_FALSE(frame.has(40, 1));
+  page.ask({{"do", "layers"}, {"candidates", false}});  // what is not named stays
+  const Message fewer = page.frame();
+  EXPECT_FALSE(fewer.has(38));
+  EXPECT_TRUE(fewer.has(39) && fewer.has(40, 3));
+  page.ask({{"do", "layers"}, {"scene_regions", false}, {"colliding_vertices", false}, {"octree", nullptr}});
+  EXPECT_FALSE(has_layers(page.frame()));
+}
+
+TEST(ViewerLayers, AreWhatTheLibrarySays) {
+  for (const BoundingVolume volume : {BoundingVolume::aabb, BoundingVolume::sphere}) {
+    const Show show = crowd(volume);
+    Simulation simulation = simulation_of(show);
+    TestPage page(show);
+    const Vec3d center = center_of(page.scene());
+    const Scene& scene = simulation.scene();
+    for (int step = 0; step < 12; ++step) {
+      if (step > 0) simulation.step();
+      const int level = step % 4 - 1;
+      page.ask({{"do", "layers"},
+                {"candidates", true},
+                {"scene_regions", true},
+                {"octree", {{"objects", {0, 1, 2, 3, 4, 5}}, {"level", level}}}});
+      const Message frame = step == 0 ? page.frame() : page.frame_after_steps(1);
+
+      std::vector<std::array<std::uint32_t, 4>> candidates;
+      for (const CandidatePair& c : scene.candidates(1'000'000))
+        candidates.push_back({c.object_a.index, c.triangle_a, c.object_b.index, c.triangle_b});
+      EXPECT_GT(candidates.size(), 0u);
+      EXPECT_EQ((frame.values<std::array<std::uint32_t, 4>>(38)), candidates);
+
+      std::vector<Row> regions;
+      for (const SceneRegion& r : scene.scene_regions())
+        regions.push_back(row({narrow(r.box.min, center)}, static_cast<float>(r.level),
+                              narrow(r.box.max, center),
+                              r.is_leaf ? static_cast<float>(r.object_count) : -1));
+      EXPECT_EQ(frame.values<Row>(39), regions);
+
+      for (const ObjectId id : scene.objects()) {
+        std::vector<Row> cells;
+        const auto wanted = level < 0 ? std::nullopt : std::optional<std::uint32_t>(level);
+        for (const OctreeCell& cell : scene.octree_cells(id, wanted)) {
+          const float triangles = cell.is_leaf ? static_cast<float>(cell.triangle_count) : -1;
+          const float at = static_cast<float>(cell.level);
+          if (volume == BoundingVolume::sphere)
+            cells.push_back(
+                row({narrow(cell.sphere.center, center)}, cell.sphere.radius, {at, triangles, 0}, 0));
+          else
+            cells.push_back(row({narrow(cell.box.min, center)}, at, narrow(cell.box.max, center), triangles));
+        }
+        EXPECT_GT(cells.size(), 0u);
+        EXPECT_EQ(frame.values<Row>(volume == BoundingVolume::sphere ? 41 : 40, id.index), cells);
+        EXPECT_EQ(frame.json["octree_levels"][id.index], scene.octree_depth(id));
+      }
+    }
+  }
+}
+
+/// The paper's output is that of a scene which was made to give it.
+TEST(ViewerLayers, CollidingVerticesAreThoseOfASceneThatGivesThem) {
+  for (const ContactMode contacts : {ContactMode::intersection, ContactMode::none, ContactMode::continuous}) {
+    Show show = crowd();
+    show.simulation.scene.contacts = contacts;
+    Show giving = show;
+    giving.simulation.scene.contacts = ContactMode::intersection;
+    giving.simulation.scene.colliding_vertices = true;
+    Simulation simulation = simulation_of(giving);
+    TestPage page(show);
+    page.scene();
+    page.ask({{"do", "layers"}, {"colliding_vertices", true}});
+    for (int step = 0; step < 10; ++step) {
+      const Message frame = step == 0 ? page.frame() : page.frame_after_steps(1);
+      const DetectResult& result = step == 0 ? simulation.detect() : simulation.step();
+      std::vector<std::set<std::uint32_t>> expected(show.objects.size());
+      for (const CollidingVertices& group : result.colliding_vertex_groups) {
+        for (std::uint32_t i = 0; i < group.count_a + group.count_b; ++i)
+          expected[i < group.count_a ? group.a.index : group.b.index].insert(
+              result.colliding_vertices[group.first_vertex + i]);
+      }
+      for (std::uint32_t i = 0; i < expected.size(); ++i) {
+        const auto sent = frame.values<std::uint32_t>(42, i);
+        EXPECT_EQ(sent, std::vector<std::uint32_t>(expected[i].begin(), expected[i].end()));
+      }
+      EXPECT_FALSE(expected[0].empty());
+    }
+  }
+}
+
+TEST(ViewerLayers, WhatIsTooLargeIsCutAndSaid) {
+  // 1200 triangles on one another, twice: 1,440,000 pairs, all of which touch.
+  Show show;
+  for (const char* name : {"heap", "other heap"}) {
+    ShowObject heap;
+    heap.mesh.name = name;
+    for (std::uint32_t i = 0; i < 1200; ++i) {
+      heap.mesh.positions.insert(heap.mesh.positions.end(), {{0, 0, 0}, {1, 0, 0}, {0, 1, 0.001 * i}});
+      heap.mesh.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+    }
+    show.objects.push_back(std::move(heap));
+  }
+  TestPage page(show);
+  page.scene();
+  page.ask({{"do", "layers"}, {"candidates", true}});
+  const Message frame = page.frame();
+  EXPECT_EQ(frame.section(38).count, 1'000'000u);
+  EXPECT_EQ(frame.section(34).count, 1'000'000u);
+  EXPECT_EQ(frame.json["omitted"], (Json{{"contacts", 1'440'000}, {"candidates", 1'440'000}}));
+  const auto last = frame.values<std::array<std::uint32_t, 8>>(34).back();
+  EXPECT_EQ(frame.section(35).count, last[5] + last[6]);
+}
+
+TEST(ViewerLayers, ExplainsWhatTheLibraryExplains) {
+  for (const BoundingVolume volume : {BoundingVolume::aabb, BoundingVolume::sphere}) {
+    const Show show = crowd(volume);
+    Simulation simulation = simulation_of(show);
+    TestPage page(show);
+    const Vec3d center = center_of(page.scene());
+    const char* const names[] = {"not_tested",     "shared_vertex",  "inert",      "object_volumes",
+                                 "octree_volumes", "triangle_boxes", "exact_test", "contact"};
+    std::set<std::string> stages, texts;
+    std::uint32_t random = 12345;
+    const auto below = [&](std::uint32_t count) {
+      return (random = random * 1664525 + 1013904223) / 65536 % count;
+    };
+    for (int i = 0; i < 3000; ++i) {
+      const std::uint32_t a = below(6), b = below(6), s = below(720), t = below(720);
+      const PairExplanation why = simulation.scene().explain({a, 0}, s, {b, 0}, t);
+      const Json answer = page.ask({{"do", "explain"}, {"a", {a, s}}, {"b", {b, t}}});
+      ASSERT_EQ(answer["stage"], names[static_cast<int>(why.stage)]);
+      EXPECT_EQ(answer["distance"], why.distance);
+      EXPECT_EQ(answer["levels"], (Json{why.level_a, why.level_b}));
+      ASSERT_EQ(answer["boxes"].is_null(), why.box_a.empty());
+      if (!why.box_a.empty()) {
+        EXPECT_EQ(answer["boxes"][0][1][2], static_cast<double>(why.box_a.max.z) - center.z);
+      }
+      ASSERT_EQ(answer["spheres"].is_null(), why.sphere_a.empty());
+      if (!why.sphere_a.empty()) {
+        EXPECT_EQ(answer["spheres"][1][3], static_cast<double>(why.sphere_b.radius));
+      }
+      stages.insert(answer["stage"]);
+      texts.insert(answer["text"]);
+    }
+    for (const char* stage : {"not_tested", "object_volumes", "octree_volumes"})
+      EXPECT_TRUE(stages.contains(stage)) << stage;
+    EXPECT_TRUE(texts.contains("ball 4 and ball 5 are not tested against each other: both are static"));
+    EXPECT_TRUE(texts.contains("ball 1 is not tested against itself: its self-collision is off"));
+    EXPECT_EQ(page.ask({{"do", "explain"}, {"a", {2, 7}}, {"b", {2, 7}}})["stage"], "shared_vertex");
+  }
+}
+
+}  // namespace
+}  // namespace supple::viewer

@@ -1,0 +1,332 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "../../support/viewer_page.hpp"
+#include "session/packed_show.hpp"
+
+namespace supple::viewer {
+namespace {
+
+using Json = nlohmann::json;
+using Message = ViewerMessage;
+using Pair = std::array<std::uint32_t, 2>;
+
+/// Frames in memory; some of them may be damaged.
+struct StoredFrames final : Frames {
+  std::vector<std::vector<std::vector<Vec3d>>> positions;  // by frame and object
+  Series rows;
+  std::vector<std::uint64_t> damaged;
+
+  std::uint64_t count() const override { return positions.size(); }
+  void read(std::uint64_t frame, std::size_t object, std::span<Vec3d> to) const override {
+    if (std::find(damaged.begin(), damaged.end(), frame) != damaged.end())
+      throw Error("run.h5: frame " + std::to_string(frame) + " is damaged");
+    std::copy(positions[frame][object].begin(), positions[frame][object].end(), to.begin());
+  }
+  const Series& series() const override { return rows; }
+};
+
+/// What a simulation did, and its contacts frame by frame.
+struct Recorded {
+  std::shared_ptr<StoredFrames> frames = std::make_shared<StoredFrames>();
+  Show show;
+  std::vector<std::vector<Contact>> contacts;
+  std::vector<std::vector<ContinuousContact>> impacts;
+
+  std::size_t frame_count() const { return contacts.size(); }
+};
+
+Show flight() {
+  Show show;
+  show.objects = {test_ball("ball", {}), test_ball("flying", {2.6, 0, 0}), test_ball("wall", {-2.5, 0, 0})};
+  show.objects[1].motion = Sway{.velocity = {-3, 0, 0}, .amplitude = 0.05};
+  show.objects[2].options.is_static = true;
+  return show;
+}
+
+Recorded record(int frames, ContactMode contacts = ContactMode::intersection) {
+  Show live = flight();
+  live.simulation.scene.contacts = contacts;
+  Simulation simulation = simulation_of(live);
+  Recorded recorded;
+  recorded.frames->rows.names = {"time", "contacts"};
+  for (int frame = 0; frame < frames; ++frame) {
+    const DetectResult& result = frame == 0 ? simulation.detect() : simulation.step();
+    auto& positions = recorded.frames->positions.emplace_back();
+    for (const ObjectId id : simulation.scene().objects())
+      positions.emplace_back(simulation.positions(id).begin(), simulation.positions(id).end());
+    recorded.contacts.emplace_back(result.contacts.begin(), result.contacts.end());
+    recorded.impacts.emplace_back(result.continuous_contacts.begin(), result.continuous_contacts.end());
+    const auto count = static_cast<double>(result.stats.contacts);
+    recorded.frames->rows.values.insert(recorded.frames->rows.values.end(), {simulation.time(), count});
+    const auto number = static_cast<std::uint32_t>(frame);
+    for (const ObjectPair& pair : result.contact_events.begin)
+      recorded.frames->rows.begin.push_back({number, pair.a.index, pair.b.index});
+    for (const ObjectPair& pair : result.contact_events.end)
+      recorded.frames->rows.end.push_back({number, pair.a.index, pair.b.index});
+  }
+  recorded.show = live;
+  for (std::size_t i = 0; i < live.objects.size(); ++i) {
+    recorded.show.objects[i].motion = {};
+    recorded.show.objects[i].mesh.positions = recorded.frames->positions[0][i];
+  }
+  recorded.show.frames = recorded.frames;
+  return recorded;
+}
+
+std::size_t contact_count(const Message& frame) {
+  return frame.section(34).count;
+}
+
+/// The scene and the series.
+std::vector<Message> opening(TestPage& page) {
+  std::vector<Message> messages = page.drain();
+  EXPECT_EQ(messages.size(), 2u);
+  EXPECT_EQ(messages.at(0).kind, Message::scene);
+  EXPECT_EQ(messages.at(1).kind, Message::series);
+  return messages;
+}
+
+TEST(ViewerRecording, TellsSceneAndSeries) {
+  const Recorded recorded = record(60);
+  TestPage page(recorded.show);
+  const std::vector<Message> messages = opening(page);
+  const Json& scene = messages[0].json;
+  EXPECT_EQ(scene["source"], "recording");
+  EXPECT_EQ(scene["frames"], 60);
+  EXPECT_EQ(scene["can"], (Json{"play", "seek", "set"}));
+  EXPECT_EQ(scene["series"], (Json{"time", "contacts"}));
+  const Message& series = messages[1];
+  EXPECT_EQ(series.section(64).count, 60u);
+  EXPECT_EQ(series.values<double>(64), recorded.frames->rows.values);
+  using Event = std::array<std::uint32_t, 3>;
+  const auto begin = series.values<Event>(65);
+  ASSERT_EQ(begin.size(), 1u);
+  const Series::Event& expected = recorded.frames->rows.begin[0];
+  EXPECT_EQ(begin[0], (Event{expected.frame, expected.a, expected.b}));
+}
+
+TEST(ViewerRecording, EachFrameIsDetectedAsItWas) {
+  const Recorded recorded = record(60);
+  TestPage page(recorded.show);
+  const Vec3d center = center_of(opening(page)[0]);
+  page.ask({{"do", "pause"}});
+  std::size_t most = 0;
+  // Forward, back and far.
+  std::vector<std::uint32_t> order;
+  for (std::uint32_t i = 0; i < 60; ++i) order.push_back(i * 37 % 60);
+  for (const std::uint32_t number : order) {
+    page.ask({{"do", "seek"}, {"frame", number}});
+    page.session.advance(0);
+    const Message frame = page.frame();
+    ASSERT_EQ(frame.json["step"], number);
+    EXPECT_DOUBLE_EQ(frame.json["time"], 0.01 * number);
+    EXPECT_EQ(contact_count(frame), recorded.contacts[number].size());
+    if (frame.has(32, 1)) {
+      EXPECT_EQ(frame.values<Vec3f>(32, 1), as_floats(recorded.frames->positions[number][1], center));
+    }
+    EXPECT_FALSE(number != order[0] && frame.has(32, 2)) << "the wall is sent once";
+    most = std::max(most, contact_count(frame));
+  }
+  EXPECT_GT(most, 0u);
+}
+
+TEST(ViewerRecording, ContinuousContactsAreThoseOfTheWayFromTheFrameBefore) {
+  const Recorded recorded = record(60, ContactMode::continuous);
+  TestPage page(recorded.show);
+  opening(page);
+  page.ask({{"do", "pause"}});
+  std::size_t most = 0;
+  for (std::uint32_t i = 0; i < 60; ++i) {
+    const std::uint32_t number = i < 30 ? i * 2 : (89 - i) * 2 - 59;
+    page.ask({{"do", "seek"}, {"frame", number}});
+    page.session.advance(0);
+    const Message frame = page.frame();
+    ASSERT_EQ(frame.json["step"], number);
+    ASSERT_EQ(frame.section(36).count, recorded.impacts[number].size()) << number;
+    const auto points = frame.values<std::array<float, 8>>(37);
+    for (std::size_t c = 0; c < points.size(); ++c)
+      EXPECT_EQ(points[c][3], static_cast<float>(recorded.impacts[number][c].time));
+    most = std::max(most, points.size());
+  }
+  EXPECT_GT(most, 0u);
+}
+
+TEST(ViewerRecording, PlaysInItsOwnTimeAndLeavesOutWhatIsLate) {
+  TestPage page(record(60).show);
+  opening(page);
+  Session& session = page.session;
+  EXPECT_NEAR(session.advance(0), 0.01, 1e-12);
+  EXPECT_EQ(page.frame().json["playing"], true);
+  EXPECT_NEAR(session.advance(0.004), 0.006, 1e-12);
+  EXPECT_NEAR(session.advance(0.006), 0.01, 1e-9);
+  EXPECT_EQ(page.frame().json["step"], 1);
+  session.advance(0.1);  // late: ten frames at once
+  EXPECT_EQ(page.frame().json["step"], 11);
+  page.ask({{"do", "speed"}, {"factor", 2}});
+  session.advance(0.05);
+  EXPECT_EQ(page.frame().json["step"], 21);
+  page.ask({{"do", "speed"}, {"factor", 0}});
+  session.advance(0.05);
+  EXPECT_EQ(page.frame().json["step"], 22);
+  page.ask({{"do", "speed"}, {"factor", 1}});
+  for (int i = 0; i < 10; ++i) session.advance(0.2);
+  const Message end = page.frame();
+  EXPECT_EQ(end.json["step"], 59);
+  EXPECT_EQ(end.json["playing"], false);
+  page.ask({{"do", "play"}});  // from the beginning
+  session.advance(0);
+  const Message again = page.frame();
+  EXPECT_EQ(again.json["step"], 0);
+  EXPECT_EQ(again.json["playing"], true);
+}
+
+TEST(ViewerRecording, LoopsAndStepsBothWaysWithinItsEnds) {
+  TestPage page(record(20).show);
+  opening(page);
+  Session& session = page.session;
+  page.ask({{"do", "loop"}, {"on", true}});
+  page.ask({{"do", "speed"}, {"factor", 0}});
+  std::vector<int> seen;
+  for (int i = 0; i < 45; ++i) {
+    session.advance(0.01);
+    seen.push_back(page.frame().json["step"]);
+  }
+  for (int i = 0; i < 45; ++i) EXPECT_EQ(seen[static_cast<std::size_t>(i)], (i + 1) % 20);
+  page.ask({{"do", "speed"}, {"factor", 1}});
+  for (int i = 0; i < 100; ++i) session.advance(0.01);
+  EXPECT_EQ(page.frame().json["playing"], true);
+
+  const auto step = [&](int count) {
+    page.ask({{"do", "step"}, {"count", count}});
+    session.advance(0);
+    return page.frame().json["step"].get<int>();
+  };
+  page.ask({{"do", "seek"}, {"frame", 10}});
+  session.advance(0);
+  EXPECT_EQ(page.frame().json["step"], 10);
+  EXPECT_EQ(step(3), 13);
+  EXPECT_EQ(step(-5), 8);
+  EXPECT_EQ(step(-100), 0);
+  EXPECT_EQ(step(1000), 19);
+  EXPECT_FALSE(page.failure(R"({"do": "seek", "frame": 20})").empty());
+  EXPECT_FALSE(page.failure(R"({"do": "grab", "object": 0, "vertex": 0})").empty());
+  EXPECT_FALSE(page.failure(R"({"do": "reset"})").empty());
+  EXPECT_FALSE(page.failure(R"({"do": "set", "objects": 2})").empty());
+}
+
+TEST(ViewerRecording, EventsAreThoseOfTheFramesThatAreSeen) {
+  const Recorded recorded = record(60);
+  TestPage page(recorded.show);
+  opening(page);
+  page.ask({{"do", "pause"}});
+  page.frame();
+  const std::uint32_t begin = recorded.frames->rows.begin.at(0).frame;
+  const auto seek = [&](std::uint32_t frame) {
+    page.ask({{"do", "seek"}, {"frame", frame}});
+    page.session.advance(0);
+    return page.frame();
+  };
+  EXPECT_EQ(seek(begin).values<Pair>(44), (std::vector<Pair>{{0, 1}}));
+  EXPECT_TRUE(seek(begin + 1).values<Pair>(44).empty());
+  EXPECT_EQ(seek(begin - 1).values<Pair>(45), (std::vector<Pair>{{0, 1}}));
+}
+
+TEST(ViewerRecording, AFrameThatCannotBeReadLeavesAllAsItWas) {
+  const Recorded recorded = record(60);
+  TestPage page(recorded.show);
+  opening(page);
+  page.ask({{"do", "pause"}});
+  page.ask({{"do", "seek"}, {"frame", 40}});
+  page.session.advance(0);
+  const Message before = page.frame();
+  EXPECT_GT(contact_count(before), 0u);
+  recorded.frames->damaged = {41};
+  page.ask({{"do", "seek"}, {"frame", 41}});
+  page.session.advance(0);
+  const Message failure = page.only(Message::failure);
+  EXPECT_EQ(failure.json["message"], "run.h5: frame 41 is damaged");
+  EXPECT_EQ(failure.json["fatal"], false);
+  page.session.advance(0);
+  const Message after = page.frame();
+  EXPECT_EQ(after.json["step"], 40);
+  EXPECT_EQ(contact_count(after), contact_count(before));
+  EXPECT_FALSE(after.has(32, 1));
+  page.ask({{"do", "play"}});  // stops before it
+  for (int i = 0; i < 5; ++i) page.session.advance(0.01);
+  EXPECT_EQ(page.only(Message::failure).json["message"], "run.h5: frame 41 is damaged");
+  EXPECT_EQ(page.frame().json["playing"], false);
+  page.ask({{"do", "seek"}, {"frame", 42}});
+  page.session.advance(0);
+  EXPECT_EQ(page.frame().json["step"], 42);
+}
+
+TEST(ViewerRecording, SetDetectsTheSameFrameAnew) {
+  const Recorded recorded = record(60);
+  TestPage page(recorded.show);
+  opening(page);
+  page.ask({{"do", "pause"}});
+  page.ask({{"do", "seek"}, {"frame", 45}});
+  page.session.advance(0);
+  page.say({{"do", "set"}, {"bounding_volume", "sphere"}, {"max_level", 3}, {"broad_phase", "sweep"}});
+  EXPECT_EQ(opening(page)[0].json["bounding_volume"], "sphere");
+  const Message frame = page.frame();
+  EXPECT_EQ(frame.json["step"], 45);
+  EXPECT_EQ(contact_count(frame), recorded.contacts[45].size());
+  page.say({{"do", "set"}, {"contacts", "continuous"}});
+  opening(page);
+  EXPECT_GT(page.frame().section(36).count, 0u);
+}
+
+TEST(ViewerRecording, WithoutSeriesOrWithoutFramesItIsFine) {
+  Recorded recorded = record(5);
+  recorded.frames->rows = {};
+  TestPage page(recorded.show);
+  const std::vector<Message> messages = opening(page);
+  EXPECT_EQ(messages[0].json["series"], Json::array());
+  EXPECT_EQ(messages[1].section(64).count, 0u);
+  page.ask({{"do", "seek"}, {"frame", 4}});
+  page.session.advance(0);
+  EXPECT_DOUBLE_EQ(page.frame().json["time"], 0.04);
+
+  recorded.frames->positions.clear();
+  TestPage empty(recorded.show);
+  EXPECT_EQ(opening(empty)[0].json["frames"], 0);
+  empty.session.advance(1);
+  EXPECT_EQ(empty.frame().json["step"], 0);
+  empty.ask({{"do", "step"}, {"count", 1}});
+  empty.ask({{"do", "play"}});
+  empty.session.advance(1);
+  EXPECT_EQ(empty.frame().json["step"], 0);
+}
+
+TEST(ViewerRecording, PackedFramesAreThoseOfTheRecordingAsFloats) {
+  const Recorded recorded = record(60);
+  const Show packed = unpack(pack(recorded.show));
+  TestPage page(packed), original(recorded.show);
+  const auto told = opening(page), told_there = opening(original);
+  EXPECT_EQ(told[0].json, told_there[0].json);
+  EXPECT_EQ(told[1].values<double>(64), recorded.frames->rows.values);
+  std::vector<Vec3d> positions(92);
+  for (const std::uint64_t frame : {0, 17, 59}) {
+    for (std::size_t object = 0; object < 3; ++object) {
+      packed.frames->read(frame, object, positions);
+      for (std::size_t i = 0; i < positions.size(); ++i) {
+        const Vec3d p = recorded.frames->positions[frame][object][i];
+        for (int axis = 0; axis < 3; ++axis) ASSERT_NEAR(positions[i][axis], p[axis], 2e-7);
+        if (object != 1) {
+          ASSERT_EQ(positions[i], p) << "what never moves is kept as it is";
+        }
+      }
+    }
+  }
+  EXPECT_THROW(packed.frames->read(60, 0, positions), Error);
+}
+
+}  // namespace
+}  // namespace supple::viewer

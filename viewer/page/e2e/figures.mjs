@@ -1,0 +1,100 @@
+// Makes the pictures of the viewer in docs/images: node e2e/figures.mjs PATH/TO/supple
+import { existsSync } from "node:fs";
+import { join, resolve } from "node:path";
+import { chromium } from "playwright-core";
+import { CHROMIUM_FLAGS, pause, repository, scenes, settled, Stage, until } from "./harness.mjs";
+
+const images = join(repository, "docs/images");
+
+/** Only the 3D view, without panels. */
+async function saveView(page, name, keys = []) {
+  await page.keyboard.press("h");
+  await page.waitForTimeout(300);  // the view grows first
+  await page.keyboard.press("f");
+  await settled(page);
+  for (const key of keys) await page.keyboard.press(key);
+  await settled(page);
+  await page.locator("canvas.view").screenshot({ path: join(images, name) });
+}
+
+const check = (page, label, on = true) => page.getByRole("checkbox", { name: label, exact: true }).setChecked(on);
+
+/** Stops at a frame that shows something, and frames it. */
+async function stopWhen(page, condition) {
+  await until(page, condition);
+  await pause(page);
+}
+
+/** The paper's Figure 3: the octree of the broad phase, with spheres round the objects. */
+async function broadPhase(stage) {
+  const program = await stage.program(join(scenes, "nine.toml"), "--bounding-volume", "sphere");
+  const page = await stage.page({ colorScheme: "light", viewport: { width: 1100, height: 720 } });
+  await page.goto(program.address);
+  await stopWhen(page, () => supple.model.frame?.text.step > 60);
+  await check(page, "Scene octree");
+  await check(page, "Object octrees");
+  await until(page, () => supple.counts().balls > 0);
+  await page.getByRole("combobox", { name: "Octree level" }).selectOption("0");
+  await check(page, "Contact points", false);
+  await saveView(page, "broad_phase_spheres.png", ["-", "-", "-", "-", "-"]);
+}
+
+const TWO_RABBITS = `
+[scene]
+bounds = [[-1.2, -1.2, -1.2], [1.2, 1.2, 1.2]]
+[[object]]
+name = "one"
+model = "rabbit"
+translate = [-0.16, 0, 0]
+rotate_xyz_degrees = [0, 30, 0]
+[[object]]
+name = "other"
+model = "rabbit"
+translate = [0.2, 0.05, 0.05]
+rotate_xyz_degrees = [0, 200, 8]
+`;
+
+/** The paper's Figure 5: a collision in the narrow phase, with boxes. */
+async function narrowPhase(stage) {
+  const program = await stage.program(stage.file("rabbits.toml", TWO_RABBITS));
+  const page = await stage.page({ colorScheme: "light", viewport: { width: 1100, height: 720 } });
+  await page.goto(program.address);
+  await stopWhen(page, () => supple.model.frame?.contacts.length > 0);
+  await check(page, "Object octrees");
+  await check(page, "Wireframe");
+  await check(page, "Contact points", false);
+  await until(page, () => supple.counts().boxes > 0);
+  await saveView(page, "narrow_phase_boxes.png");
+}
+
+async function wholePage(stage) {
+  const program = await stage.program(join(scenes, "nine.toml"));
+  const page = await stage.page({ viewport: { width: 1440, height: 860 } });
+  await page.goto(program.address);
+  await until(page, () => supple.model.history.frames.length > 60);
+  await stopWhen(page, () => supple.model.frame.contacts.length > 3000);
+  await page.keyboard.press("f");
+  await page.getByRole("tab", { name: "Plots" }).click();
+  await page.getByRole("button", { name: /^rabbit 1/ }).click();
+  await settled(page);
+  await page.screenshot({ path: join(images, "viewer.png") });
+}
+
+const [program] = process.argv.slice(2);
+if (!program || !existsSync(program)) {
+  console.error("usage: node e2e/figures.mjs PATH/TO/supple");
+  process.exit(2);
+}
+const browser = await chromium.launch({ executablePath: process.env.SUPPLE_CHROMIUM ?? "/usr/bin/chromium", headless: true, args: CHROMIUM_FLAGS });
+try {
+  for (const make of [broadPhase, narrowPhase, wholePage]) {
+    const stage = new Stage(resolve(program), browser);
+    try {
+      await make(stage);
+    } finally {
+      await stage.cleanUp();
+    }
+  }
+} finally {
+  await browser.close();
+}

@@ -1,0 +1,90 @@
+// How fast the viewer is on this machine: node e2e/measure.mjs PATH/TO/supple
+// Frames a second that come from the program into the page, and the time of a picture.
+import { existsSync } from "node:fs";
+import { resolve } from "node:path";
+import { chromium } from "playwright-core";
+import { CHROMIUM_FLAGS, hasFrame, pause, Stage, until } from "./harness.mjs";
+
+const SECONDS = 6;
+
+/** Balls that sway far from one another; a ball of frequency f has 10 f² + 2 vertices and 20 f² triangles. */
+function ballScene(count, frequency) {
+  const balls = Array.from({ length: count }, (_, i) => `
+[[object]]
+name = "ball ${i}"
+model = "icosphere"
+frequency = ${frequency}
+translate = [${3 * i}, 0, 0]
+motion = { kind = "sway", amplitude = 0.1, wavelength = 1.5, period = 1, seed = ${i} }`);
+  return `[scene]\ntime_step = 0.01\n${balls.join("\n")}\n`;
+}
+
+/** A small window: where pixels are made in software, they must not be all that is measured. */
+async function open(stage, scene) {
+  const program = await stage.program(stage.file("balls.toml", scene));
+  const page = await stage.page({ viewport: { width: 900, height: 400 } });
+  await page.goto(program.address);
+  await hasFrame(page);
+  return page;
+}
+
+/** Frames that arrive in a second, with what is drawn or without. */
+async function stream(stage, count, frequency, draws) {
+  const page = await open(stage, ballScene(count, frequency));
+  await page.getByRole("combobox", { name: "Speed" }).selectOption("0");
+  await page.getByRole("checkbox", { name: "Surfaces" }).setChecked(draws);
+  await page.waitForTimeout(1500);
+  const { frames, steps, seconds, vertices } = await page.evaluate(async (wanted) => {
+    const begin = performance.now();
+    const [frames, steps] = [supple.model.framesSeen, supple.model.frame.text.step];
+    await new Promise((done) => setTimeout(done, 1000 * wanted));
+    const vertices = supple.model.objects.reduce((sum, object) => sum + object.vertices, 0);
+    return { frames: supple.model.framesSeen - frames, steps: supple.model.frame.text.step - steps, seconds: (performance.now() - begin) / 1000, vertices };
+  }, SECONDS);
+  const how = draws ? "drawn" : "read and taken over, surfaces not drawn";
+  console.log(`${vertices.toLocaleString("en")} vertices, ${how}: ${(frames / seconds).toFixed(1)} frames/s, ${(steps / seconds).toFixed(1)} steps/s`);
+}
+
+/** Of a picture with all vertices new: until the script is done, and until the pixels are. */
+async function picture(stage, frequency) {
+  const page = await open(stage, ballScene(1, frequency));
+  await pause(page);
+  await until(page, () => supple.model.frame.contacts.length === 0);
+  const { script, pixels, triangles } = await page.evaluate(() => {
+    const gl = document.querySelector("canvas.view").getContext("webgl2");
+    const pixel = new Uint8Array(4);
+    const times = [];
+    for (let i = 0; i < 30; ++i) {
+      const begin = performance.now();
+      supple.touch();
+      supple.draw();
+      const drawn = performance.now();
+      gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, pixel);
+      times.push([drawn - begin, performance.now() - begin]);
+    }
+    const median = (at) => times.map((pair) => pair[at]).sort((a, b) => a - b)[15];
+    return { script: median(0), pixels: median(1), triangles: supple.model.objects[0].triangles };
+  });
+  console.log(`${triangles.toLocaleString("en")} triangles: ${script.toFixed(2)} ms of script a picture, ${pixels.toFixed(1)} ms with its pixels`);
+}
+
+const [program] = process.argv.slice(2);
+if (!program || !existsSync(program)) {
+  console.error("usage: node e2e/measure.mjs PATH/TO/supple");
+  process.exit(2);
+}
+const flags = process.env.SUPPLE_GPU ? ["--no-sandbox"] : CHROMIUM_FLAGS;
+const browser = await chromium.launch({ executablePath: process.env.SUPPLE_CHROMIUM ?? "/usr/bin/chromium", headless: true, args: flags });
+try {
+  const measures = [(s) => stream(s, 10, 32, false), (s) => stream(s, 10, 32, true), (s) => stream(s, 1, 100, false), (s) => stream(s, 1, 100, true), (s) => picture(s, 22), (s) => picture(s, 71)];
+  for (const measure of measures) {
+    const stage = new Stage(resolve(program), browser);
+    try {
+      await measure(stage);
+    } finally {
+      await stage.cleanUp();
+    }
+  }
+} finally {
+  await browser.close();
+}

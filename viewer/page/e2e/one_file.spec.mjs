@@ -1,0 +1,109 @@
+// A page that carries the library and what it shows, opened as a file: no program, no server.
+import assert from "node:assert/strict";
+import { join } from "node:path";
+import { pathToFileURL } from "node:url";
+import { hasFrame, pause, runProgram, scenes, seenTriangle, settled, step, TWO_BALLS, until } from "./harness.mjs";
+
+/** Exports a page and opens it; every request for anything else fails the test. */
+async function open(stage, ...input) {
+  const file = stage.file("page.html");
+  await runProgram(stage.supple, ["view", ...input, "--export", file]);
+  const page = await stage.page({ offline: true });
+  page.on("request", (request) => {
+    if (!/^(file|blob|data):/.test(request.url())) stage.errors.push(`it asks for ${request.url()}`);
+  });
+  await page.goto(pathToFileURL(file).href);
+  await hasFrame(page);
+  return page;
+}
+
+async function movesAndCollides(stage) {
+  const page = await open(stage, join(scenes, "nine.toml"));
+  await until(page, () => supple.model.frame.text.step > 10 && supple.model.frame.contacts.length > 0);
+  await pause(page);
+  const paused = await step(page);
+  await page.getByRole("button", { name: "Step", exact: true }).click();
+  await until(page, (wanted) => supple.model.frame.text.step === wanted, paused + 1);
+  await page.getByRole("checkbox", { name: "Object octrees" }).check();
+  await until(page, () => supple.counts().boxes > 0);
+}
+
+/** The same step has the same contacts as in the program, with the same bits. */
+async function agreesWithTheProgram(stage) {
+  const scene = join(scenes, "nine.toml");
+  const at = async (page) => {
+    await pause(page);
+    await page.getByRole("button", { name: "Reset" }).click();
+    await until(page, () => supple.model.frame?.text.step === 0);
+    for (let i = 1; i <= 12; ++i) {
+      await page.getByRole("button", { name: "Step", exact: true }).click();
+      await until(page, (wanted) => supple.model.frame.text.step === wanted, i);
+    }
+    return page.evaluate(async () => {
+      const { contacts, contactPoints } = supple.model.frame;
+      const all = new Blob([contacts, contactPoints, ...supple.model.objects.map(({ positions }) => positions)]);
+      let hash = 0x811c9dc5;  // FNV-1a: a page from a file has no crypto.subtle
+      for (const byte of new Uint8Array(await all.arrayBuffer())) hash = Math.imul(hash ^ byte, 0x01000193) >>> 0;
+      return { contacts: contacts.length / 8, hash };
+    });
+  };
+  const carried = await at(await open(stage, scene));
+  const { page } = await stage.view(scene);
+  assert.ok(carried.contacts > 0);
+  assert.deepEqual(carried, await at(page));
+}
+
+async function isPulled(stage) {
+  const page = await open(stage, stage.file("balls.toml", TWO_BALLS));
+  await page.getByRole("combobox", { name: "Axis view" }).selectOption("front");
+  await settled(page);
+  const left = await page.evaluate(() => supple.project([-0.13, 0, 0.1]));
+  const right = await page.evaluate(() => supple.project([0.5, 0, 0.1]));
+  await page.getByRole("radio", { name: "Grab and pull" }).click();
+  await page.mouse.move(left.x, left.y);
+  await page.mouse.down();
+  await page.mouse.move(right.x, right.y, { steps: 12 });
+  await until(page, () => supple.model.frame.contacts.length > 0);
+  await page.mouse.up();
+  const seen = await seenTriangle(page, 1);
+  await page.getByRole("radio", { name: "Select" }).click();
+  await page.mouse.click(seen.x, seen.y);
+  await page.getByRole("region", { name: "Selection" }).getByText("area").waitFor();
+}
+
+async function playsARecording(stage) {
+  const file = stage.file("run.h5");
+  await runProgram(stage.supple, ["simulate", join(scenes, "nine.toml"), "--steps", "30", "--record", file, "--quiet"]);
+  const page = await open(stage, file);
+  await until(page, () => supple.model.history.frames.length > 0);
+  await pause(page);
+  await page.getByRole("slider", { name: "Timeline" }).fill("20");
+  await until(page, () => supple.model.frame.text.step === 20);
+  assert.equal(
+    await page.evaluate(() => supple.model.frame.contacts.length / 8),
+    await page.evaluate(() => supple.model.history.column("contacts")[20]),
+  );
+}
+
+async function saysWhatIsBroken(stage) {
+  const file = stage.file("page.html");
+  await runProgram(stage.supple, ["view", join(scenes, "nine.toml"), "--export", file]);
+  const page = await stage.page();
+  await page.addInitScript(() => {
+    document.addEventListener("readystatechange", () => {
+      const show = document.getElementById("supple-show");
+      if (show) show.textContent = "AAAA";
+    });
+  });
+  await page.goto(pathToFileURL(file).href);
+  await page.getByRole("alertdialog", { name: "The session has failed" }).waitFor();
+  await page.getByText("cannot be unpacked").waitFor();
+}
+
+export const tests = [
+  ["moves and collides", movesAndCollides],
+  ["agrees with the program to the bit", agreesWithTheProgram],
+  ["a vertex is pulled", isPulled],
+  ["plays a recording", playsARecording],
+  ["says that what it carries is broken", saysWhatIsBroken],
+];

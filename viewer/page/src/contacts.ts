@@ -1,0 +1,71 @@
+/** Contacts of a frame, of either kind: triangles that intersect, or elements that meet on their way. */
+import type { FrameMessage } from "./protocol/messages";
+
+type ContactData = Pick<FrameMessage, "contacts" | "impacts">;
+
+/**
+ * A contact by what touches, so that it stays selected from frame to frame: object and triangle of both
+ * sides; of an impact object and two elements of both sides, and its kind.
+ */
+export type ContactKey = readonly number[];
+
+export interface ContactSide {
+  object: number;
+  /** A triangle or a vertex, or the two vertices of an edge. */
+  elements: number[];
+  isFace: boolean;
+}
+
+const STRIDE = 8;
+const KINDS = ["point", "segment", "polygon"];
+const IMPACT_KINDS = ["vertex–face", "face–vertex", "edge–edge"];
+
+export const hasImpacts = (frame: ContactData): boolean => frame.impacts.length > 0;
+
+export function contactCount(frame: ContactData): number {
+  return (hasImpacts(frame) ? frame.impacts : frame.contacts).length / STRIDE;
+}
+
+export function keyAt(frame: ContactData, place: number): ContactKey {
+  const from = STRIDE * place;
+  return Array.from(hasImpacts(frame) ? frame.impacts.subarray(from, from + 7) : frame.contacts.subarray(from, from + 4));
+}
+
+/** The place of a contact in a frame, or −1. */
+export function findContact(frame: ContactData, key: ContactKey): number {
+  const data = hasImpacts(frame) ? frame.impacts : frame.contacts;
+  if (key.length !== (hasImpacts(frame) ? 7 : 4)) return -1;
+  for (let i = 0; i < data.length; i += STRIDE) {
+    let same = 0;
+    while (same < key.length && data[i + same] === key[same]) same += 1;
+    if (same === key.length) return i / STRIDE;
+  }
+  return -1;
+}
+
+export function sidesOf(key: ContactKey): [ContactSide, ContactSide] {
+  if (key.length === 4)
+    return [{ object: key[0]!, elements: [key[1]!], isFace: true }, { object: key[2]!, elements: [key[3]!], isFace: true }];
+  const kind = key[6]!;
+  const side = (at: number, isFace: boolean): ContactSide =>
+    ({ object: key[at]!, elements: kind === 2 ? [key[at + 1]!, key[at + 2]!] : [key[at + 1]!], isFace });
+  return [side(0, kind === 1), side(3, kind === 0)];
+}
+
+export function kindAt(frame: ContactData, place: number): string {
+  return hasImpacts(frame) ? IMPACT_KINDS[frame.impacts[STRIDE * place + 6]!]! : KINDS[frame.contacts[STRIDE * place + 4]!]!;
+}
+
+/** Whether the contact at a place has an object on one of its sides. */
+export function involves(frame: ContactData, place: number, object: number): boolean {
+  const from = STRIDE * place;
+  return hasImpacts(frame)
+    ? frame.impacts[from] === object || frame.impacts[from + 3] === object
+    : frame.contacts[from] === object || frame.contacts[from + 2] === object;
+}
+
+/** Where the points of a contact are: in which data, from which row on, and how many. */
+export function pointsAt(frame: FrameMessage, place: number): { data: Float32Array; first: number; count: number } {
+  if (hasImpacts(frame)) return { data: frame.impactPoints, first: place, count: 1 };
+  return { data: frame.contactPoints, first: frame.contacts[STRIDE * place + 6]!, count: frame.contacts[STRIDE * place + 5]! };
+}

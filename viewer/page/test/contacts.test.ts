@@ -1,0 +1,29 @@
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { contactCount, findContact, involves, keyAt, pointsAt, sidesOf } from "../src/contacts";
+import { countsOf, readMessage, type FrameMessage, type SceneMessage } from "../src/protocol/messages";
+import { floats, FRAME, KIND, message, sceneMessage, text, words, type Section } from "./build_message";
+
+const counts = countsOf((readMessage(sceneMessage(), null) as SceneMessage).text);
+const frameOf = (...sections: Section[]) =>
+  readMessage(message(KIND.frame, text(FRAME), ...sections), counts) as FrameMessage;
+
+test("intersections are found again by what touches", () => {
+  const frame = frameOf(words(34, 8, [0, 0, 1, 0, 1, 2, 0, 0, 0, 0, 1, 1, 0, 1, 2, 0]), floats(35, 8, new Array<number>(24).fill(0)));
+  assert.equal(contactCount(frame), 2);
+  assert.deepEqual([0, 1].map((place) => findContact(frame, keyAt(frame, place))), [0, 1]);
+  assert.equal(findContact(frame, [0, 0, 1, 2]), -1);
+  assert.deepEqual(sidesOf(keyAt(frame, 1)), [{ object: 0, elements: [0], isFace: true }, { object: 1, elements: [1], isFace: true }]);
+  assert.deepEqual([pointsAt(frame, 1).first, pointsAt(frame, 1).count], [2, 1]);
+  assert.deepEqual([involves(frame, 0, 1), involves(frame, 0, 2)], [true, false]);
+});
+
+test("impacts of edges that share a vertex are told apart", () => {
+  const rows = [[0, 0, 1, 1, 0, 1, 2, 1], [0, 0, 2, 1, 0, 1, 2, 1], [0, 2, 0, 1, 1, 0, 0, 1], [0, 0, 0, 1, 3, 0, 1, 1]];
+  const frame = frameOf(words(36, 8, rows.flat()), floats(37, 8, new Array<number>(32).fill(0)));
+  assert.deepEqual(rows.map((_, place) => findContact(frame, keyAt(frame, place))), [0, 1, 2, 3]);
+  assert.deepEqual(sidesOf(keyAt(frame, 1))[0], { object: 0, elements: [0, 2], isFace: false });
+  assert.deepEqual(sidesOf(keyAt(frame, 2))[1], { object: 1, elements: [1], isFace: true });
+  assert.deepEqual(sidesOf(keyAt(frame, 3))[0], { object: 0, elements: [0], isFace: true });
+  assert.ok(involves(frame, 3, 1));
+});
