@@ -10,30 +10,37 @@ Vec3d cross(const Vec3d& a, const Vec3d& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
+/// Not `std::hypot`, which is not the same bits in every library.
 double length(const Vec3d& v) {
-  return std::hypot(v.x, v.y, v.z);
+  return std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z);
 }
 
 double largest(const Vec3d& v) {
   return std::max({std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)});
 }
 
+/// Twice the vector of a triangle's area, of sides that are divided by `size`, the largest coordinate of two of them:
+/// products of small or large ones would leave the range of numbers. Zero where there is no size to tell.
+Vec3d scaled_normal(const Vec3d& a, const Vec3d& b, const Vec3d& c, double& size) {
+  const Vec3d ab = b - a, ac = c - a;
+  size = std::max(largest(ab), largest(ac));
+  if (!(size > 0) || !std::isfinite(size)) return {};
+  return cross(ab * (1 / size), ac * (1 / size));
+}
+
 }  // namespace
 
 Vec3d unit_normal(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
-  Vec3d ab = b - a, ac = c - a;
-  // Sides of length 1 or so: products of small or large ones would leave the range of numbers.
-  const double size = std::max(largest(ab), largest(ac));
-  if (!(size > 0) || !std::isfinite(size)) return {};
-  ab = ab * (1 / size);
-  ac = ac * (1 / size);
-  const Vec3d normal = cross(ab, ac);
+  double size = 0;
+  const Vec3d normal = scaled_normal(a, b, c, size);
   const double sine = length(normal);
   return sine > 0 && std::isfinite(sine) ? normal * (1 / sine) : Vec3d{};
 }
 
 double area(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
-  return 0.5 * length(cross(b - a, c - a));
+  double size = 0;
+  const Vec3d normal = scaled_normal(a, b, c, size);
+  return size > 0 ? 0.5 * length(normal) * size * size : size;
 }
 
 }  // namespace supple::viewer

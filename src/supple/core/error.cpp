@@ -1,18 +1,25 @@
 #include "core/error.hpp"
 
+#include <cstdlib>
+
 #include "supple/error.hpp"
 
-#if !defined(__cpp_exceptions)
-#include <cstdlib>
-#endif
-
 namespace supple {
+namespace {
+
+FailureHandler failure_handler = nullptr;
+
+}  // namespace
+
+void set_failure_handler(FailureHandler handler) {
+  failure_handler = handler;
+}
 
 void fail(const std::string& message) {
 #if defined(__cpp_exceptions)
   throw Error(message);
 #else
-  (void)message;
+  if (failure_handler != nullptr) failure_handler(message);
   std::abort();
 #endif
 }
