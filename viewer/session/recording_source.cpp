@@ -43,7 +43,7 @@ RecordingSource::RecordingSource(const Show& show)
 }
 
 double RecordingSource::time_of(std::uint64_t frame) const {
-  if (frame < times_.size()) return times_[frame];
+  if (frame < times_.size()) return times_[static_cast<std::size_t>(frame)];
   return static_cast<double>(frame) * show_.simulation.time_step;
 }
 
