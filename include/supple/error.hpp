@@ -15,9 +15,10 @@ class Error : public std::runtime_error {
   explicit Error(const std::string& message) : std::runtime_error(message) {}
 };
 
-/// Called with the message instead of throwing `Error` where the library was compiled without exceptions, as for
-/// WebAssembly; without effect elsewhere. It must not return: what failed is left as it was in the middle, so that
-/// the objects that took part are of no use any more. Without a handler, or when it returns, the program is aborted.
+/// Called with the message instead of throwing `Error` where the library was compiled without exceptions, as
+/// for WebAssembly; without effect elsewhere. It must not return: what failed is left as it was in the
+/// middle, so that the objects that took part are of no use any more. Without a handler, or when it returns,
+/// the program is aborted.
 using FailureHandler = void (*)(const std::string& message);
 void set_failure_handler(FailureHandler handler);
 

@@ -5,10 +5,9 @@
 #include <string>
 #include <string_view>
 
-namespace supple {
+#include "mesh/quotes.hpp"
 
-/// `text` between single quotes for a message: at most 40 bytes of it, control characters replaced.
-std::string in_quotes(std::string_view text);
+namespace supple {
 
 /// What a text format has besides words, blanks and line ends.
 struct TextSyntax {
