@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <atomic>
+#include <algorithm>
 #include <chrono>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -104,8 +104,7 @@ TEST_F(ViewerServer, PageIsNotKeptNorFramedNorMayItLoadAnything) {
     EXPECT_EQ(fields["X-Content-Type-Options"], "nosniff");
     EXPECT_EQ(fields["Referrer-Policy"], "no-referrer");
     const std::string policy = fields["Content-Security-Policy"];
-    for (const std::string part :
-         {"default-src 'none'", "frame-ancestors 'none'", "connect-src 'self' ws://"})
+    for (const std::string part : {"default-src 'none'", "frame-ancestors 'none'", "connect-src 'self' ws://"})
       EXPECT_NE(policy.find(part), std::string::npos) << policy;
     EXPECT_EQ(policy.find('*'), std::string::npos) << policy;
   }
@@ -133,7 +132,7 @@ TEST_F(ViewerServer, HostMustBeItself) {
   const std::string number = ":" + std::to_string(port());
   EXPECT_EQ(get(port(), with_token("/"), "localhost" + number).status, 200u);
   for (const std::string& host : {std::string(), "evil.example" + number, std::string("127.0.0.1"),
-                                  std::string("127.0.0.1:1"), "127.0.0.1.evil.example" + number}) {
+                                 std::string("127.0.0.1:1"), "127.0.0.1.evil.example" + number}) {
     const Answer refusal = get(port(), with_token("/"), host);
     EXPECT_EQ(refusal.status, 403u) << host;
     EXPECT_NE(refusal.body.find(own_host()), std::string::npos) << refusal.body;
@@ -150,8 +149,8 @@ TEST_F(ViewerServer, WhatIsNoRequestIsRefused) {
 TEST_F(ViewerServer, SessionNeedsTokenHostAndOrigin) {
   start();
   const std::string token = with_token("").substr(7), host = own_host();
-  const auto is_let_in = [&](const std::string& given_token, const std::string& given_host,
-                             const std::string& origin, const std::string& path = "/session") {
+  const auto is_let_in = [&](const std::string& given_token, const std::string& given_host, const std::string& origin,
+                             const std::string& path = "/session") {
     try {
       PageClient client(port(), given_token, given_host, origin, path);
       return client.receive().kind == Kind::scene;
@@ -194,8 +193,7 @@ TEST_F(ViewerServer, SceneThenFramesAgainstCredit) {
 TEST_F(ViewerServer, WhatIsNotUnderstoodIsAFailureNotTheEnd) {
   start();
   PageClient client = connect();
-  for (const std::string text :
-       {"", "{", "[1]", R"({"do": "fly"})", R"({"do": "seek", "frame": "x"})", "\xff\xfe"}) {
+  for (const std::string text : {"", "{", "[1]", R"({"do": "fly"})", R"({"do": "seek", "frame": "x"})", "\xff\xfe"}) {
     client.send(text);
     const json answer = client.receive(Kind::failure).json;
     EXPECT_EQ(answer["fatal"], false) << text;
