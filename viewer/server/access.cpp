@@ -92,7 +92,8 @@ bool Access::knows_host(std::string_view host) const {
 
 bool Access::is_own_origin(std::string_view origin, std::string_view host) {
   constexpr std::string_view scheme = "http://";
-  return origin.empty() || (origin.substr(0, scheme.size()) == scheme && origin.substr(scheme.size()) == host);
+  return origin.empty() ||
+         (origin.substr(0, scheme.size()) == scheme && origin.substr(scheme.size()) == host);
 }
 
 bool Access::knows_token(std::string_view token) const {

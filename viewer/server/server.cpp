@@ -36,7 +36,12 @@ constexpr std::size_t most_waiting = std::size_t{4} << 20;
 /// Of requests that are being read or answered.
 constexpr int most_requests = 64;
 
-enum CloseCode : std::uint16_t { taken_over = 4001, program_ends = 4002, no_command = 4003, session_failed = 4004 };
+enum CloseCode : std::uint16_t {
+  taken_over = 4001,
+  program_ends = 4002,
+  no_command = 4003,
+  session_failed = 4004
+};
 
 asio::ip::address parse_address(const std::string& text) {
   error_code error;
@@ -80,9 +85,8 @@ class Page : public std::enable_shared_from_this<Page> {
   void send(Message message) {
     if (is_closing_) return;
     const asio::const_buffer bytes(message->data(), message->size());
-    socket_.async_write(bytes, [self = shared_from_this(), message](error_code, std::size_t) {
-      self->listener_.sent();
-    });
+    socket_.async_write(
+        bytes, [self = shared_from_this(), message](error_code, std::size_t) { self->listener_.sent(); });
   }
 
   /// After `Listener::command` said no.
@@ -90,7 +94,8 @@ class Page : public std::enable_shared_from_this<Page> {
     if (std::exchange(is_paused_, false)) read();
   }
 
-  void close(CloseCode code, const char* reason, std::function<void()> then = [] {}) {
+  void close(
+      CloseCode code, const char* reason, std::function<void()> then = [] {}) {
     if (std::exchange(is_closing_, true)) return then();
     const websocket::close_reason why(static_cast<websocket::close_code>(code), reason);
     socket_.async_close(why, [self = shared_from_this(), then](error_code) { then(); });
@@ -98,8 +103,9 @@ class Page : public std::enable_shared_from_this<Page> {
 
  private:
   void read() {
-    socket_.async_read_some(text_, largest_command + 1 - text_.size(),
-                            [self = shared_from_this()](error_code error, std::size_t) { self->take(error); });
+    socket_.async_read_some(
+        text_, largest_command + 1 - text_.size(),
+        [self = shared_from_this()](error_code error, std::size_t) { self->take(error); });
   }
 
   void take(error_code error) {
@@ -135,7 +141,8 @@ class Page : public std::enable_shared_from_this<Page> {
 std::string content_policy(std::string_view host) {
   std::string policy =
       "default-src 'none'; script-src 'unsafe-inline' 'wasm-unsafe-eval' blob:; worker-src blob:; style-src "
-      "'unsafe-inline'; img-src data: blob:; media-src blob:; font-src data:; base-uri 'none'; form-action 'none'; "
+      "'unsafe-inline'; img-src data: blob:; media-src blob:; font-src data:; base-uri 'none'; form-action "
+      "'none'; "
       "frame-ancestors 'none'; connect-src 'self' ws://";
   policy += host;
   return policy;
@@ -271,9 +278,10 @@ class Server::Implementation {
       : options_(options),
         acceptor_(listen(sockets_, options)),
         access_(options.address, acceptor_.local_endpoint().port(), make_token()),
-        requests_{access_, options.page,
-                  [this](beast::tcp_stream stream, const auto& request) { connect(std::move(stream), request); },
-                  request_count_},
+        requests_{
+            access_, options.page,
+            [this](beast::tcp_stream stream, const auto& request) { connect(std::move(stream), request); },
+            request_count_},
         clock_(sockets_),
         session_(std::move(session), listener()) {}
 
@@ -315,12 +323,13 @@ class Server::Implementation {
       if (!error) {
         socket.set_option(tcp::no_delay(true), error);
         // More than a few are none of people's doing. Out of file descriptors, there is nothing to be done.
-        if (request_count_ < most_requests)
-          std::make_shared<Request>(std::move(socket), requests_)->read();
+        if (request_count_ < most_requests) std::make_shared<Request>(std::move(socket), requests_)->read();
         return accept();
       }
       clock_of_retry_.expires_after(100ms);
-      clock_of_retry_.async_wait([this](error_code) { if (acceptor_.is_open()) accept(); });
+      clock_of_retry_.async_wait([this](error_code) {
+        if (acceptor_.is_open()) accept();
+      });
     });
   }
 
@@ -338,7 +347,9 @@ class Server::Implementation {
     error_code ignored;
     acceptor_.close(ignored);
     clock_.expires_after(1s);
-    clock_.async_wait([this](error_code error) { if (!error) sockets_.stop(); });
+    clock_.async_wait([this](error_code error) {
+      if (!error) sockets_.stop();
+    });
     if (!page_) return sockets_.stop();
     page_->close(code, reason, [this] { sockets_.stop(); });
   }

@@ -51,9 +51,11 @@ TEST(Access, OnlyTheWholeTokenWillDo) {
 TEST(Access, KnowsItselfByAddressAndPort) {
   const Access access("127.0.0.1", 8080, "t");
   EXPECT_EQ(access.host(), "127.0.0.1:8080");
-  for (const char* const host : {"127.0.0.1:8080", "localhost:8080"}) EXPECT_TRUE(access.knows_host(host)) << host;
-  for (const char* const host : {"", "127.0.0.1", "127.0.0.1:80", "127.0.0.1:80800", "127.0.0.2:8080", "localhost",
-                                 "evil.example:8080", "127.0.0.1.evil.example:8080", "evil.example", ":8080"})
+  for (const char* const host : {"127.0.0.1:8080", "localhost:8080"})
+    EXPECT_TRUE(access.knows_host(host)) << host;
+  for (const char* const host :
+       {"", "127.0.0.1", "127.0.0.1:80", "127.0.0.1:80800", "127.0.0.2:8080", "localhost",
+        "evil.example:8080", "127.0.0.1.evil.example:8080", "evil.example", ":8080"})
     EXPECT_FALSE(access.knows_host(host)) << host;
 }
 
@@ -62,8 +64,8 @@ TEST(Access, AtAllAddressesAnyAddressWillDoButNoForeignName) {
   EXPECT_EQ(access.host(), "127.0.0.1:8080");
   for (const char* const host : {"127.0.0.1:8080", "localhost:8080", "10.1.2.3:8080", "[fe80::1]:8080"})
     EXPECT_TRUE(access.knows_host(host)) << host;
-  for (const char* const host : {"10.1.2.3", "10.1.2.3:80", "evil.example:8080", "1.evil.example:8080", "evil.example1:8080",
-                                 ":8080", "[:8080", ""})
+  for (const char* const host : {"10.1.2.3", "10.1.2.3:80", "evil.example:8080", "1.evil.example:8080",
+                                 "evil.example1:8080", ":8080", "[:8080", ""})
     EXPECT_FALSE(access.knows_host(host)) << host;
 }
 
@@ -81,8 +83,9 @@ TEST(Access, BrowsersLeaveOutPort80) {
 TEST(Access, PagesOfOtherSitesAreTold) {
   EXPECT_TRUE(Access::is_own_origin("http://127.0.0.1:8080", "127.0.0.1:8080"));
   EXPECT_TRUE(Access::is_own_origin("", "127.0.0.1:8080"));
-  for (const char* const origin : {"null", "http://evil.example", "https://127.0.0.1:8080", "http://127.0.0.1:3000",
-                                   "http://localhost:8080", "http://127.0.0.1:8080/", "http://", "file://"})
+  for (const char* const origin :
+       {"null", "http://evil.example", "https://127.0.0.1:8080", "http://127.0.0.1:3000",
+        "http://localhost:8080", "http://127.0.0.1:8080/", "http://", "file://"})
     EXPECT_FALSE(Access::is_own_origin(origin, "127.0.0.1:8080")) << origin;
 }
 

@@ -56,8 +56,8 @@ inline Answer get(std::uint16_t port, const std::string& target, std::string hos
 class PageClient {
  public:
   /// Throws `boost::system::system_error` when it is not let in.
-  PageClient(std::uint16_t port, const std::string& token, std::string host = "default", const std::string& origin = "",
-             const std::string& path = "/session") {
+  PageClient(std::uint16_t port, const std::string& token, std::string host = "default",
+             const std::string& origin = "", const std::string& path = "/session") {
     namespace websocket = boost::beast::websocket;
     if (host == "default") host = "127.0.0.1:" + std::to_string(port);
     socket_.next_layer().connect({boost::asio::ip::make_address("127.0.0.1"), port});

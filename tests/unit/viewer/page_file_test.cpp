@@ -102,7 +102,8 @@ TEST(PageFile, WhatIsEmbeddedIsWhatWasBuilt) {
     return std::string(std::istreambuf_iterator<char>(stream), {});
   };
   EXPECT_EQ(embedded_page(), content(SUPPLE_VIEWER_PAGE));
-  const std::string_view module(reinterpret_cast<const char*>(embedded_module().data()), embedded_module().size());
+  const std::string_view module(reinterpret_cast<const char*>(embedded_module().data()),
+                                embedded_module().size());
   EXPECT_EQ(module, content(SUPPLE_VIEWER_MODULE));
   EXPECT_NO_THROW(page_with_cargo(embedded_page(), {}, {}));
 }
@@ -148,7 +149,8 @@ TEST_F(ReplaceFile, LeavesNothingWhereItCannotWrite) {
     }
     return "";
   };
-  EXPECT_NE(error_of(folder_ / "no" / "page.html").find("page.html: cannot write: No such file"), std::string::npos);
+  EXPECT_NE(error_of(folder_ / "no" / "page.html").find("page.html: cannot write: No such file"),
+            std::string::npos);
   EXPECT_NE(error_of(folder_).find("directory"), std::string::npos);
   EXPECT_NE(error_of("/dev/null").find("/dev/null: cannot write"), std::string::npos);
   EXPECT_TRUE(fs::is_character_file("/dev/null"));
