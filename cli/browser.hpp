@@ -4,8 +4,8 @@
 
 namespace supple::cli {
 
-/// Opens an address in the user's browser, where there is a screen; does nothing otherwise, or when there is no
-/// browser.
+/// Opens an address in the user's browser, where there is a screen; does nothing otherwise, or when there is
+/// no browser.
 void open_browser(const std::string& url);
 
 }  // namespace supple::cli

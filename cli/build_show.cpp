@@ -120,10 +120,10 @@ std::shared_ptr<const viewer::Frames> frames_of(const Input& input, const ViewOp
   }
   if (!has_motion<FrameSequence>(input)) return nullptr;
   if (has_motion<MassSpringMotion>(input))
-    throw Error(
-        fmt::format("{}: some objects are moved by files, others by masses and springs, which the viewer "
-                    "cannot show together; record them first, supple simulate {} --record run.h5, and view run.h5",
-                    options.inputs.front(), options.inputs.front()));
+    throw Error(fmt::format(
+        "{}: some objects are moved by files, others by masses and springs, which the viewer "
+        "cannot show together; record them first, supple simulate {} --record run.h5, and view run.h5",
+        options.inputs.front(), options.inputs.front()));
   return std::make_shared<const FileFrames>(input);
 }
 

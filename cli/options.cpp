@@ -163,8 +163,7 @@ void add_kind(CLI::App& app, std::optional<QueryKind>& kind) {
 
 /// Meshes, a scene file, a recording, or frames.
 void add_input_options(CLI::App& app, std::vector<std::string>& inputs, bool& sequence) {
-  app.add_option("MESH|SCENE.toml|RUN.h5", inputs,
-                 "Meshes, an object each; or one scene file or recording")
+  app.add_option("MESH|SCENE.toml|RUN.h5", inputs, "Meshes, an object each; or one scene file or recording")
       ->required()
       ->type_name("");
   app.add_flag(
@@ -291,7 +290,8 @@ CLI::App* add_detect(CLI::App& program, DetectOptions& options, Dependences& dep
   return app;
 }
 
-void add_scene_overrides(CLI::App& app, std::optional<std::uint64_t>& seed, std::optional<double>& time_step) {
+void add_scene_overrides(CLI::App& app, std::optional<std::uint64_t>& seed,
+                         std::optional<double>& time_step) {
   add_seconds(app, "--time-step", time_step, "H", "Seconds of a step, instead of the scene's")
       ->group("Simulation");
   add_number(app, "--seed", seed, 0, std::numeric_limits<std::uint32_t>::max(),
@@ -338,19 +338,22 @@ CLI::App* add_view(CLI::App& program, ViewOptions& options, Dependences& depende
   const auto group = [](CLI::Option* option) { return option->group("Page"); };
   const auto is_served = [&] { return options.page_file.empty(); };
   const char* const no_export = "a page that is served, not written by --export";
+  dependences.push_back({group(add_number(*app, "--port", options.port, 0, 65535,
+                                          "Where to listen, 0 for any port that is free (default: 0)")),
+                         is_served, no_export});
   dependences.push_back(
-      {group(add_number(*app, "--port", options.port, 0, 65535, "Where to listen, 0 for any port that is free (default: 0)")),
+      {group(app->add_option("--host", options.address,
+                             "IP address to listen at; with any but this machine's own others who reach "
+                             "it and know the address can look and steer (default: 127.0.0.1)")
+                 ->type_name("ADDRESS")),
        is_served, no_export});
-  dependences.push_back({group(app->add_option("--host", options.address,
-                                               "IP address to listen at; with any but this machine's own others who reach "
-                                               "it and know the address can look and steer (default: 127.0.0.1)")
-                                   ->type_name("ADDRESS")),
-                         is_served, no_export});
-  dependences.push_back({group(app->add_flag_callback("--no-open", [&] { options.open_browser = false; },
-                                                      "Print the address, but open no browser")),
-                         is_served, no_export});
+  dependences.push_back(
+      {group(app->add_flag_callback(
+           "--no-open", [&] { options.open_browser = false; }, "Print the address, but open no browser")),
+       is_served, no_export});
   group(app->add_option("--export", options.page_file,
-                        "Write one HTML file instead, which needs no server: any browser shows it, the detection runs in the page")
+                        "Write one HTML file instead, which needs no server: any browser shows it, the "
+                        "detection runs in the page")
             ->type_name("PAGE.html"));
   return app;
 }

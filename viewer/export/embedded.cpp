@@ -23,10 +23,11 @@ std::string_view text_of(std::span<const std::byte> bytes) {
 #endif
 
 // The assembler reads a file of megabytes at once; as an array of numbers the compiler would take minutes.
-#define SUPPLE_EMBED(name, file)                                                             \
-  asm(SUPPLE_READ_ONLY ".balign 16\n.globl " SUPPLE_SYMBOL(name) "\n" SUPPLE_SYMBOL(name)    \
-      ":\n.incbin \"" file "\"\n.globl " SUPPLE_SYMBOL(name) "_end\n" SUPPLE_SYMBOL(name) \
-      "_end:\n.byte 0\n" SUPPLE_TEXT_AGAIN)
+#define SUPPLE_EMBED(name, file)                                                     \
+  asm(SUPPLE_READ_ONLY ".balign 16\n.globl " SUPPLE_SYMBOL(name) "\n" SUPPLE_SYMBOL( \
+      name) ":\n.incbin \"" file                                                     \
+            "\"\n.globl " SUPPLE_SYMBOL(name) "_end\n" SUPPLE_SYMBOL(                \
+                name) "_end:\n.byte 0\n" SUPPLE_TEXT_AGAIN)
 
 SUPPLE_EMBED("supple_viewer_page", SUPPLE_VIEWER_PAGE);
 SUPPLE_EMBED("supple_viewer_module", SUPPLE_VIEWER_MODULE);

@@ -76,7 +76,8 @@ void append_element(std::string& page, std::string_view id, std::span<const std:
 /// A file beside the one to be replaced, removed unless it takes its place.
 class TemporaryFile {
  public:
-  explicit TemporaryFile(const std::filesystem::path& target) : target_(target), name_(target.string() + ".XXXXXX") {
+  explicit TemporaryFile(const std::filesystem::path& target)
+      : target_(target), name_(target.string() + ".XXXXXX") {
     file_ = mkstemp(name_.data());
     if (file_ < 0) fail_to_write(target_, errno);
   }
