@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "extent.hpp"
 
@@ -10,8 +11,11 @@ namespace {
 
 /// The spring's frequency times the step.
 constexpr double stiffness = 0.5;
-/// Of the way to the target, the part that a step from rest makes up for.
-constexpr double part_of_step = stiffness * stiffness / ((1 + stiffness) * (1 + stiffness));
+
+/// What the springs of a vertex with this weight divide its velocity by in a step.
+double slowing(double weight, double damping) {
+  return 1 + weight * stiffness * (2 * damping + stiffness);
+}
 
 double squared_length(const Vec3d& v) {
   return v.x * v.x + v.y * v.y + v.z * v.z;
@@ -48,8 +52,6 @@ Grip take_hold(const TriangleMesh& rest, std::span<const Vec3d> now, std::uint32
   Grip grip;
   grip.vertex = vertex;
   grip.anchor = now[vertex];
-  const double edge = mean_edge(rest);
-  grip.reach = edge > 0 ? std::min(edge / part_of_step, size) : size;
   for (std::size_t i = 0; i < rest.positions.size(); ++i) {
     // Of what is not finite the comparison is false.
     const double squares = squared_length(rest.positions[i] - rest.positions[vertex]) / (reach * reach);
@@ -59,6 +61,11 @@ Grip take_hold(const TriangleMesh& rest, std::span<const Vec3d> now, std::uint32
     grip.weights.push_back(i == vertex ? 1 : (1 - squares) * (1 - squares));
     grip.from.push_back(now[i]);
   }
+  const double held = std::accumulate(grip.weights.begin(), grip.weights.end(), 0.0);
+  grip.damping = std::sqrt(static_cast<double>(rest.positions.size()) / held);
+  const double edge = mean_edge(rest);
+  const double part_of_step = stiffness * stiffness / slowing(1, grip.damping);
+  grip.reach = edge > 0 ? std::min(edge / part_of_step, size) : size;
   return grip;
 }
 
@@ -79,8 +86,7 @@ void pull(const Grip& grip, const std::vector<bool>& is_fixed, MassSpringBody& b
     const double weight = grip.weights[i];
     const Vec3d way = shortened(grip.from[i] + offset - positions[vertex], grip.reach);
     Vec3d& v = velocities[vertex];
-    v = (v + (weight * stiffness * stiffness / seconds) * way) *
-        (1 / (1 + weight * stiffness * (2 + stiffness)));
+    v = (v + (weight * stiffness * stiffness / seconds) * way) * (1 / slowing(weight, grip.damping));
   }
   body.set_velocities(velocities);
 }

@@ -21,6 +21,9 @@ struct Grip {
   std::vector<double> weights{};
   std::vector<Vec3d> from{};  ///< where these vertices were when it was taken
   Vec3d anchor{};             ///< and where the vertex was
+  /// Of the springs that pull: times the critical damping of the masses they hold, so that it is that of the
+  /// whole body, which hangs on them.
+  double damping = 1;
   /// How far from its target a vertex pulls at most.
   double reach = 0;
   std::optional<Vec3d> target{};  ///< of the vertex, once it is dragged
@@ -34,10 +37,10 @@ Grip take_hold(const TriangleMesh& rest, std::span<const Vec3d> now, std::uint32
 void bend(const Grip& grip, std::span<Vec3d> positions);
 
 /// Gives the vertices of the grip velocities that bring them nearer to the target in a step of that length,
-/// as critically damped springs would that a step of backward Euler carries on. Each is stable by itself, and
-/// weak beside the inertia of the mass (a ninth of the way a step), so that it does not disturb what an
-/// integrator bears; none moves a vertex by more than the mesh's mean edge in a step. `is_fixed` may be
-/// empty.
+/// as damped springs would that a step of backward Euler carries on: a body that moves as a whole gets there
+/// without swinging. Each is stable by itself, and weak beside the inertia of the mass, so that it does not
+/// disturb what an integrator bears; none moves a vertex by more than the mesh's mean edge in a step.
+/// `is_fixed` may be empty.
 void pull(const Grip& grip, const std::vector<bool>& is_fixed, MassSpringBody& body, double seconds,
           std::vector<Vec3d>& velocities);
 

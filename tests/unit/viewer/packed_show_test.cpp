@@ -150,7 +150,7 @@ TEST(PackedShow, DamagedBytesNeverDoHarm) {
   for (const Show& show : {rich_show(), recorded_show()}) {
     const auto bytes = pack(show);
     int refused = 0, taken = 0;
-    for (int round = 0; round < 4000; ++round) {
+    for (int round = 0; round < 1500; ++round) {
       auto changed = bytes;
       // Most in the first part, where counts and options are.
       const auto near = static_cast<std::uint32_t>(std::min<std::size_t>(bytes.size(), 400));
@@ -181,8 +181,8 @@ TEST(PackedShow, DamagedBytesNeverDoHarm) {
       } catch (const Error&) {
       }
     }
-    EXPECT_GT(refused, 100);
-    EXPECT_GT(taken, 100);
+    EXPECT_GT(refused, 50);
+    EXPECT_GT(taken, 50);
   }
 }
 
