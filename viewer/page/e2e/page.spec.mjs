@@ -115,15 +115,17 @@ async function keyboardAlone(stage) {
   await key("ArrowDown");
   await until(page, () => supple.model.contact !== null);
 
-  // Pulls a vertex: select an object, hold it, move it, let go.
-  await tabTo(/^Step$/);
-  await page.evaluate(() => supple.model.select({ object: 3, triangle: null, vertex: 5 }));
-  await page.evaluate(() => document.activeElement.blur());
+  // Pulls a vertex: selects an object, holds its first vertex, moves it, lets go.
+  await tabTo(/^fish 1/);
+  await key("Enter");
+  const object = await page.evaluate(() => supple.model.selection.object);
   await key("g");
-  const held = await page.evaluate(() => supple.positionOf(3, 5));
+  await tabTo(/^3D view$/);
+  const held = await page.evaluate((object) => supple.positionOf(object, 0), object);
   await key("Enter");
   for (let i = 0; i < 5; ++i) await key("ArrowUp");
-  await until(page, (held) => Math.hypot(...supple.positionOf(3, 5).map((x, i) => x - held[i])) > 0.05, held);
+  const isMoved = ([object, held]) => Math.hypot(...supple.positionOf(object, 0).map((x, i) => x - held[i])) > 0.05;
+  await until(page, isMoved, [object, held]);
   await key("Enter");
   await key("Escape");
   await until(page, () => supple.model.tool === "select");
