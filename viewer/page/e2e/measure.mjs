@@ -34,15 +34,34 @@ async function stream(stage, count, frequency, draws) {
   await page.getByRole("combobox", { name: "Speed" }).selectOption("0");
   await page.getByRole("checkbox", { name: "Surfaces" }).setChecked(draws);
   await page.waitForTimeout(1500);
-  const { frames, steps, seconds, vertices } = await page.evaluate(async (wanted) => {
+  const { frames, steps, turns, reading, seconds, vertices } = await page.evaluate(async (wanted) => {
     const begin = performance.now();
     const [frames, steps] = [supple.model.framesSeen, supple.model.frame.text.step];
+    let turns = 0;
+    const turn = () => {
+      turns += 1;
+      requestAnimationFrame(turn);
+    };
+    requestAnimationFrame(turn);
+    let reading = 0;
+    const receive = supple.client.receive;
+    supple.client.receive = function (message) {
+      const from = performance.now();
+      receive.call(this, message);
+      reading += performance.now() - from;
+    };
     await new Promise((done) => setTimeout(done, 1000 * wanted));
     const vertices = supple.model.objects.reduce((sum, object) => sum + object.vertices, 0);
-    return { frames: supple.model.framesSeen - frames, steps: supple.model.frame.text.step - steps, seconds: (performance.now() - begin) / 1000, vertices };
+    return {
+      frames: supple.model.framesSeen - frames, steps: supple.model.frame.text.step - steps, turns, reading, vertices,
+      seconds: (performance.now() - begin) / 1000,
+    };
   }, SECONDS);
-  const how = draws ? "drawn" : "read and taken over, surfaces not drawn";
-  console.log(`${vertices.toLocaleString("en")} vertices, ${how}: ${(frames / seconds).toFixed(1)} frames/s, ${(steps / seconds).toFixed(1)} steps/s`);
+  const how = draws ? "drawn" : "surfaces not drawn";
+  console.log(
+    `${vertices.toLocaleString("en")} vertices, ${how}: ${(frames / seconds).toFixed(1)} frames/s, ${(steps / seconds).toFixed(1)} steps/s, ` +
+      `${(turns / seconds).toFixed(1)} turns of the browser/s, ${(reading / frames).toFixed(2)} ms a frame to read and take over`,
+  );
 }
 
 /** Of a picture with all vertices new: until the script is done, and until the pixels are. */
