@@ -61,6 +61,7 @@ class Session::Implementation {
 
   void obey(const JsonValue& command);
   void run(const Command& command, const JsonValue& text);
+  void catch_up();
 
   void credit(Arguments& arguments);
   void play(Arguments& arguments);
@@ -226,10 +227,19 @@ void Session::Implementation::obey(const JsonValue& text) {
   fail("there is no command " + wanted.substr(0, 40) + "; there are " + list);
 }
 
+/// Goes to the frame that was sought last, so that answers are of that one.
+void Session::Implementation::catch_up() {
+  if (!stage_->recording()) return;
+  const auto id = id_;
+  advance(0);
+  id_ = id;
+}
+
 void Session::Implementation::run(const Command& command, const JsonValue& text) {
   Arguments arguments(text, command.name);
   if (command.has_answer && !id_)
     return fail(std::string(command.name) + " needs an id, a number, to answer to");
+  if (command.has_answer) catch_up();
   begin_reply();
   const auto failure = failure_of([&] { (this->*command.handle)(arguments); });
   if (failure) arguments.fail(failure->message);

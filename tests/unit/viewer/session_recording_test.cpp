@@ -136,6 +136,19 @@ TEST(ViewerRecording, EachFrameIsDetectedAsItWas) {
   EXPECT_GT(most, 0u);
 }
 
+TEST(ViewerRecording, WhatIsReadAfterASeekIsOfThatFrame) {
+  const Recorded recorded = record(20);
+  TestPage page(recorded.show);
+  opening(page);
+  page.ask({{"do", "pause"}});
+  for (const std::uint32_t number : {15u, 3u}) {
+    page.ask({{"do", "seek"}, {"frame", number}});
+    const Vec3d expected = recorded.frames->positions[number][1][0];
+    const Json answer = page.ask({{"do", "read"}, {"object", 1}, {"vertex", 0}});
+    EXPECT_EQ(answer["position"], (Json{expected.x, expected.y, expected.z}));
+  }
+}
+
 TEST(ViewerRecording, ContinuousContactsAreThoseOfTheWayFromTheFrameBefore) {
   const Recorded recorded = record(60, ContactMode::continuous);
   TestPage page(recorded.show);
