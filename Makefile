@@ -23,7 +23,8 @@ demo: build
 	build/release/bin/supple simulate scenes/cloth_over_ball.toml --steps 200 --record build/cloth.h5
 	@echo
 	@echo 'ParaView opens build/cloth.xdmf.'
-	@echo 'Try next: build/release/bin/supple detect scenes/nine.toml --steps 3 --verify --json -'
+	@echo 'Try next: build/release/bin/supple view scenes/nine.toml'
+	@echo '          build/release/bin/supple detect scenes/nine.toml --steps 3 --verify --json -'
 
 test: build
 	ctest --preset release
