@@ -2,7 +2,7 @@
 import { existsSync } from "node:fs";
 import { join, resolve } from "node:path";
 import { chromium } from "playwright-core";
-import { CHROMIUM_FLAGS, pause, repository, scenes, settled, Stage, until } from "./harness.mjs";
+import { CHROMIUM_FLAGS, chromiumPath, pause, repository, scenes, settled, Stage, until } from "./harness.mjs";
 
 const images = join(repository, "docs/images");
 
@@ -85,7 +85,7 @@ if (!program || !existsSync(program)) {
   console.error("usage: node e2e/figures.mjs PATH/TO/supple");
   process.exit(2);
 }
-const browser = await chromium.launch({ executablePath: process.env.SUPPLE_CHROMIUM ?? "/usr/bin/chromium", headless: true, args: CHROMIUM_FLAGS });
+const browser = await chromium.launch({ executablePath: chromiumPath(), headless: true, args: CHROMIUM_FLAGS });
 try {
   for (const make of [broadPhase, narrowPhase, wholePage]) {
     const stage = new Stage(resolve(program), browser);

@@ -1,6 +1,6 @@
 // What the tests are written with: a program, a page that shows it, and a few ways to look and to wait.
 import { spawn } from "node:child_process";
-import { mkdtempSync, rmSync, writeFileSync } from "node:fs";
+import { existsSync, mkdtempSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { dirname, join, resolve } from "node:path";
 import { fileURLToPath } from "node:url";
@@ -46,7 +46,27 @@ export function runProgram(supple, args, options = {}) {
   });
 }
 
-export const CHROMIUM_FLAGS = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist"];
+/** WebGL in software, or by the graphics card where SUPPLE_GPU is set. */
+const SOFTWARE_FLAGS = ["--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist", "--disable-gpu-compositing"];
+export const CHROMIUM_FLAGS = ["--no-sandbox", ...(process.env.SUPPLE_GPU ? [] : SOFTWARE_FLAGS)];
+
+/** The browser to use; undefined where there is none. */
+export function chromiumPath() {
+  const places = [process.env.SUPPLE_CHROMIUM, "/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome"];
+  return places.find((path) => path && existsSync(path));
+}
+
+/** Balls that sway far from one another; a ball of frequency f has 10 f² + 2 vertices and 20 f² triangles. */
+export function swayingBalls(count, frequency) {
+  const balls = Array.from({ length: count }, (_, i) => `
+[[object]]
+name = "ball ${i}"
+model = "icosphere"
+frequency = ${frequency}
+translate = [${3 * i}, 0, 0]
+motion = { kind = "sway", amplitude = 0.1, wavelength = 1.5, period = 1, seed = ${i} }`);
+  return `[scene]\ntime_step = 0.01\n${balls.join("\n")}\n`;
+}
 
 /** All that one test needs, and cleans up after it. */
 export class Stage {

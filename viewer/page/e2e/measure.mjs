@@ -3,21 +3,7 @@
 import { existsSync } from "node:fs";
 import { resolve } from "node:path";
 import { chromium } from "playwright-core";
-import { CHROMIUM_FLAGS, hasFrame, pause, Stage, until } from "./harness.mjs";
-
-const SECONDS = 6;
-
-/** Balls that sway far from one another; a ball of frequency f has 10 f² + 2 vertices and 20 f² triangles. */
-function ballScene(count, frequency) {
-  const balls = Array.from({ length: count }, (_, i) => `
-[[object]]
-name = "ball ${i}"
-model = "icosphere"
-frequency = ${frequency}
-translate = [${3 * i}, 0, 0]
-motion = { kind = "sway", amplitude = 0.1, wavelength = 1.5, period = 1, seed = ${i} }`);
-  return `[scene]\ntime_step = 0.01\n${balls.join("\n")}\n`;
-}
+import { CHROMIUM_FLAGS, chromiumPath, hasFrame, pause, Stage, swayingBalls, until } from "./harness.mjs";
 
 /** A small window: where pixels are made in software, they must not be all that is measured. */
 async function open(stage, scene) {
@@ -28,45 +14,9 @@ async function open(stage, scene) {
   return page;
 }
 
-/** Frames that arrive in a second, with what is drawn or without. */
-async function stream(stage, count, frequency, draws) {
-  const page = await open(stage, ballScene(count, frequency));
-  await page.getByRole("combobox", { name: "Speed" }).selectOption("0");
-  await page.getByRole("checkbox", { name: "Surfaces" }).setChecked(draws);
-  await page.waitForTimeout(1500);
-  const { frames, steps, turns, reading, seconds, vertices } = await page.evaluate(async (wanted) => {
-    const begin = performance.now();
-    const [frames, steps] = [supple.model.framesSeen, supple.model.frame.text.step];
-    let turns = 0;
-    const turn = () => {
-      turns += 1;
-      requestAnimationFrame(turn);
-    };
-    requestAnimationFrame(turn);
-    let reading = 0;
-    const receive = supple.client.receive;
-    supple.client.receive = function (message) {
-      const from = performance.now();
-      receive.call(this, message);
-      reading += performance.now() - from;
-    };
-    await new Promise((done) => setTimeout(done, 1000 * wanted));
-    const vertices = supple.model.objects.reduce((sum, object) => sum + object.vertices, 0);
-    return {
-      frames: supple.model.framesSeen - frames, steps: supple.model.frame.text.step - steps, turns, reading, vertices,
-      seconds: (performance.now() - begin) / 1000,
-    };
-  }, SECONDS);
-  const how = draws ? "drawn" : "surfaces not drawn";
-  console.log(
-    `${vertices.toLocaleString("en")} vertices, ${how}: ${(frames / seconds).toFixed(1)} frames/s, ${(steps / seconds).toFixed(1)} steps/s, ` +
-      `${(turns / seconds).toFixed(1)} turns of the browser/s, ${(reading / frames).toFixed(2)} ms a frame to read and take over`,
-  );
-}
-
 /** Of a picture with all vertices new: until the script is done, and until the pixels are. */
 async function picture(stage, frequency) {
-  const page = await open(stage, ballScene(1, frequency));
+  const page = await open(stage, swayingBalls(1, frequency));
   await pause(page);
   await until(page, () => supple.model.frame.contacts.length === 0);
   const { script, pixels, triangles } = await page.evaluate(() => {
@@ -92,14 +42,12 @@ if (!program || !existsSync(program)) {
   console.error("usage: node e2e/measure.mjs PATH/TO/supple");
   process.exit(2);
 }
-const flags = process.env.SUPPLE_GPU ? ["--no-sandbox"] : CHROMIUM_FLAGS;
-const browser = await chromium.launch({ executablePath: process.env.SUPPLE_CHROMIUM ?? "/usr/bin/chromium", headless: true, args: flags });
+const browser = await chromium.launch({ executablePath: chromiumPath(), headless: true, args: CHROMIUM_FLAGS });
 try {
-  const measures = [(s) => stream(s, 10, 32, false), (s) => stream(s, 10, 32, true), (s) => stream(s, 1, 100, false), (s) => stream(s, 1, 100, true), (s) => picture(s, 22), (s) => picture(s, 71)];
-  for (const measure of measures) {
+  for (const frequency of [22, 71]) {
     const stage = new Stage(resolve(program), browser);
     try {
-      await measure(stage);
+      await picture(stage, frequency);
     } finally {
       await stage.cleanUp();
     }

@@ -5,19 +5,18 @@ import { existsSync, mkdirSync, readdirSync } from "node:fs";
 import { dirname, join, resolve } from "node:path";
 import { fileURLToPath, pathToFileURL } from "node:url";
 import { chromium } from "playwright-core";
-import { CHROMIUM_FLAGS, Stage } from "./harness.mjs";
+import { CHROMIUM_FLAGS, chromiumPath, Stage } from "./harness.mjs";
 
 const here = dirname(fileURLToPath(import.meta.url));
 const results = join(here, "results");
 const TEST_MILLISECONDS = 120_000;
-const BROWSERS = [process.env.SUPPLE_CHROMIUM, "/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome"];
 
 const [program, ...words] = process.argv.slice(2);
 if (!program || !existsSync(program)) {
   console.error("usage: node e2e/run.mjs PATH/TO/supple [WORDS OF A TEST'S NAME]");
   process.exit(2);
 }
-const executable = BROWSERS.find((path) => path && existsSync(path));
+const executable = chromiumPath();
 if (!executable) {
   console.log("skipped: there is no Chromium (apt-get install chromium, or set SUPPLE_CHROMIUM)");
   process.exit(77);
