@@ -4,7 +4,7 @@ import { Film, savePicture } from "./capture";
 import { listenToKeys } from "./keyboard";
 import { Model, TOOLS, type Tool } from "./model";
 import { ContactTable } from "./panels/contact_table";
-import { h, icon, iconButton, setIcon } from "./panels/dom";
+import { colourOf, h, icon, iconButton, setIcon } from "./panels/dom";
 import { helpSheet } from "./panels/help";
 import { Inspector } from "./panels/inspector";
 import { Card, Notices } from "./panels/notices";
@@ -249,9 +249,8 @@ export class App {
 
   /** Takes the theme's colours over to what style sheets do not reach. */
   private paint(): void {
-    const style = getComputedStyle(document.documentElement);
-    this.view.setBackground(style.getPropertyValue("--ground").trim());
-    this.view.setInk(style.getPropertyValue("--ink").trim());
+    this.view.setBackground(colourOf("--ground"));
+    this.view.setInk(colourOf("--ink"));
     this.plots.rebuild();
   }
 

@@ -60,6 +60,15 @@ export function setIcon(button: HTMLButtonElement, name: string, label: string, 
   button.title = key ? `${label} (${key})` : label;
 }
 
+/** A colour of the style sheet, as `rgb(…)`: of the theme that holds now. */
+export function colourOf(name: string): string {
+  const probe = h("span", { style: `color: var(${name})` });
+  document.body.append(probe);
+  const { color } = getComputedStyle(probe);
+  probe.remove();
+  return color;
+}
+
 /** A number as people read it. */
 export function readable(x: number): string {
   if (!Number.isFinite(x)) return String(x);
