@@ -155,6 +155,7 @@ export class App {
       this.title.textContent = scene.title;
       document.title = `${scene.title} · Supple`;
       this.card.showStatus({ state: "connected" });
+      this.notices.warn(scene.warnings);
       if (scene.objects.length === 0) this.notices.show("This scene has no objects.");
     });
     model.on("frame", () => {

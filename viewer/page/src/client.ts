@@ -11,7 +11,7 @@ export type Status =
 
 interface ClientEvents {
   status: Status;
-  /** A command that failed, or a warning: one line. */
+  /** A command that failed: one line. */
   notice: string;
 }
 
@@ -92,7 +92,6 @@ export class Client extends Emitter<ClientEvents> {
         this.credit = 0;
         this.model.takeScene(message);
         this.send(this.model.request());
-        for (const warning of message.text.warnings) this.emit("notice", warning);
         return;
       }
       case "frame":
