@@ -2,7 +2,7 @@
 import { Client, type Status } from "./client";
 import { Film, savePicture } from "./capture";
 import { listenToKeys } from "./keyboard";
-import { Model, TOOLS, type Tool } from "./model";
+import { Model, TOOLS, type Layer, type Tool } from "./model";
 import { ContactTable } from "./panels/contact_table";
 import { colourOf, h, icon, iconButton, setIcon } from "./panels/dom";
 import { helpSheet } from "./panels/help";
@@ -10,7 +10,7 @@ import { Inspector } from "./panels/inspector";
 import { Card, Notices } from "./panels/notices";
 import { Player } from "./panels/player";
 import { Plots } from "./panels/plots";
-import { ScenePanel } from "./panels/scene_panel";
+import { LAYER_ROWS, ScenePanel } from "./panels/scene_panel";
 import { Settings } from "./panels/settings";
 import { Tools } from "./tools";
 import { openSocket } from "./transport/socket";
@@ -24,6 +24,12 @@ const TOOL_LABELS: Record<Tool, [label: string, key: string]> = {
   explain: ["Why no contact?", "W"],
 };
 const THEME = "supple-theme";
+
+/** What the session could not do; its own line first. */
+function sayFailure({ text, layers }: { text: string; layers: Layer[] }): string {
+  const labels = LAYER_ROWS.filter(({ layer }) => layers.includes(layer)).map(({ label }) => label);
+  return labels.length > 0 ? `${text}. Switched off: ${labels.join(", ")}.` : text;
+}
 
 function cannotDraw(error: unknown): string {
   const why = error instanceof Error ? error.message : String(error);
@@ -151,6 +157,7 @@ export class App {
     const { model, view, client } = this;
     client.on("status", (status) => this.showStatus(status));
     client.on("notice", (text) => this.notices.show(text));
+    client.on("failure", (failure) => this.notices.show(sayFailure(failure)));
     model.on("scene", (scene) => {
       this.title.textContent = scene.title;
       document.title = `${scene.title} · Supple`;

@@ -1,7 +1,7 @@
 /** Between the transport and the model: reads messages, gives credit, matches answers to questions. */
 import { Emitter } from "./emitter";
-import type { Model } from "./model";
-import { countsOf, MessageError, readMessage, type SceneCounts } from "./protocol/messages";
+import type { Layer, Model } from "./model";
+import { countsOf, MessageError, readMessage, type FailureMessage, type SceneCounts } from "./protocol/messages";
 import type { EndReason, Transport, TransportEvents } from "./transport/transport";
 
 export type Status =
@@ -11,8 +11,10 @@ export type Status =
 
 interface ClientEvents {
   status: Status;
-  /** A command that failed: one line. */
+  /** What the page has to say about what was wanted of it: one line. */
   notice: string;
+  /** What the session says that it cannot do, when nobody waits for an answer, and the layers that are switched off by that. */
+  failure: { text: string; layers: Layer[] };
 }
 
 /** Frames that may be under way: one that is drawn, and one behind it. */
@@ -103,17 +105,19 @@ export class Client extends Emitter<ClientEvents> {
         this.questions.get(message.text.id)?.resolve(message.text);
         this.questions.delete(message.text.id);
         return;
-      case "failure": {
-        const { message: text, fatal, id } = message.text;
-        if (fatal) return this.end("failed", text);
-        if (id !== undefined && this.questions.has(id)) {
-          this.questions.get(id)!.reject(new Error(text));
-          this.questions.delete(id);
-        } else {
-          this.emit("notice", text);
-        }
-      }
+      case "failure":
+        return this.takeFailure(message.text);
     }
+  }
+
+  private takeFailure({ message: text, fatal, id, layers }: FailureMessage["text"]): void {
+    if (fatal) return this.end("failed", text);
+    const question = id === undefined ? undefined : this.questions.get(id);
+    if (question) {
+      this.questions.delete(id!);
+      return question.reject(new Error(text));
+    }
+    this.emit("failure", { text, layers: layers ? this.model.dropLayers(layers) : [] });
   }
 
   private end(reason: EndReason | "malformed" | "too-large", detail: string): void {
