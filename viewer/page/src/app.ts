@@ -1,10 +1,13 @@
 /** Puts the page together. */
 import { Client, type Status } from "./client";
-import { Film, savePicture } from "./capture";
+import { Film } from "./capture/film";
+import { FramesRun } from "./capture/frames";
+import { savePicture } from "./capture/picture";
 import { listenToKeys } from "./keyboard";
 import { Model, TOOLS, type Layer, type Tool } from "./model";
 import { ContactTable } from "./panels/contact_table";
 import { colourOf, h, icon, iconButton, setIcon } from "./panels/dom";
+import { FramesDialog } from "./panels/frames_dialog";
 import { helpSheet } from "./panels/help";
 import { Inspector } from "./panels/inspector";
 import { Card, Notices } from "./panels/notices";
@@ -48,6 +51,7 @@ export class App {
   readonly card = new Card(() => this.client.connect(), this.carriesLibrary);
   private scenePanel!: ScenePanel;
   private plots!: Plots;
+  private framesDialog!: FramesDialog;
   private readonly film_ = new Film();
   private readonly canvas = h("canvas", { class: "view", tabindex: 0, role: "img", "aria-label": "3D view" });
   private readonly title = h("span", { class: "title" });
@@ -85,13 +89,16 @@ export class App {
     this.player = new Player(model, this.client);
     this.tools = new Tools(model, this.client, view, inspector);
     this.plots = new Plots(model, (frame) => this.player.seek(frame));
+    this.framesDialog = new FramesDialog(
+      model, view, (plan, signal, progress) => new FramesRun(model, this.client, view, plan, signal, progress).go(), (text) => this.notices.show(text),
+    );
     const tabs = this.tabs({
       Inspect: inspector.element,
       Contacts: new ContactTable(model, fly).element,
       Plots: this.plots.element,
       Settings: new Settings(model, this.client).element,
     });
-    this.body.append(this.header(), this.scenePanel.element, tabs, this.player.element, this.help);
+    this.body.append(this.header(), this.scenePanel.element, tabs, this.player.element, this.help, this.framesDialog.element);
     listenToKeys(this);
   }
 
@@ -114,6 +121,7 @@ export class App {
       h("div", { class: "group" },
         iconButton("frame", "Frame all", "F", () => this.view.frameAll()), views, this.orthoButton,
         iconButton("camera", "Save a picture", "Shift+S", () => this.picture()), this.filmButton,
+        iconButton("frames", "Save frames as pictures…", "Shift+P", () => this.frames()),
         iconButton("panels", "Hide or show the panels", "H", () => this.togglePanels()),
         iconButton("theme", "Light or dark", "T", () => this.toggleTheme()),
         h("button", { type: "button", class: "icon", "aria-label": "Keyboard shortcuts", title: "Keyboard shortcuts (?)", onclick: () => this.help.showModal() }, "?")),
@@ -205,7 +213,15 @@ export class App {
   }
 
   picture(): void {
-    savePicture(this.view);
+    savePicture(this.view).catch((error: Error) => this.notices.show(error.message));
+  }
+
+  frames(): void {
+    if (this.client.status.state !== "connected" || !this.model.frame) return this.notices.show("There is no session whose frames could be saved.");
+    if (this.film_.running) this.film();
+    this.tools.release();
+    this.player.pause();
+    this.framesDialog.open();
   }
 
   film(): void {

@@ -1,7 +1,7 @@
 /** Between the transport and the model: reads messages, gives credit, matches answers to questions. */
 import { Emitter } from "./emitter";
 import type { Layer, Model } from "./model";
-import { countsOf, MessageError, readMessage, type FailureMessage, type SceneCounts } from "./protocol/messages";
+import { countsOf, MessageError, readMessage, type FailureMessage, type FrameText, type SceneCounts } from "./protocol/messages";
 import type { EndReason, Transport, TransportEvents } from "./transport/transport";
 
 export type Status =
@@ -64,6 +64,30 @@ export class Client extends Emitter<ClientEvents> {
     return new Promise((resolve, reject) => {
       this.questions.set(id, { resolve, reject });
       this.send({ ...command, id });
+    });
+  }
+
+  /**
+   * The first frame from now on that is as wanted, with those in between let through. Rejects, with a sentence, when the
+   * session fails or ends before that, or with the reason of `signal`.
+   */
+  frameThat(isWanted: (frame: FrameText) => boolean, signal: AbortSignal): Promise<FrameText> {
+    return new Promise<FrameText>((resolve, reject) => {
+      const end = (settle: () => void) => {
+        for (const stop of stops) stop();
+        signal.removeEventListener("abort", giveUp);
+        settle();
+      };
+      const giveUp = () => end(() => reject(signal.reason as Error));
+      const stops = [
+        this.model.on("frame", ({ text }) => (isWanted(text) ? end(() => resolve(text)) : this.giveCredit())),
+        this.on("failure", ({ text }) => end(() => reject(new Error(`The session has failed: ${text}.`)))),
+        this.on("status", ({ state }) => state === "ended" && end(() => reject(new Error("The session has ended.")))),
+      ];
+      signal.addEventListener("abort", giveUp);
+      if (signal.aborted) giveUp();
+      else if (this.status.state === "ended") end(() => reject(new Error("The session has ended.")));
+      this.giveCredit();  // the page may be out of sight, where nothing is drawn
     });
   }
 
