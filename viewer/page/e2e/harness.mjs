@@ -107,7 +107,7 @@ export const camera = (page) => page.evaluate(() => supple.camera());
 export async function pause(page) {
   const button = page.getByRole("button", { name: "Pause" });
   // A recording may end by itself meanwhile: then there is no such button any more.
-  if (await button.count()) await button.click({ timeout: 5000 }).catch(() => {});
+  if (await button.count()) await button.click({ timeout: 20_000 }).catch(() => {});
   await until(page, () => !supple.model.frame.text.playing);
   await settled(page);
 }
