@@ -1,7 +1,5 @@
 #include "build_simulation.hpp"
 
-#include <fmt/core.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -10,7 +8,6 @@
 #include <vector>
 
 #include "frame_files.hpp"
-#include "text.hpp"
 
 namespace supple::cli {
 namespace {
@@ -78,30 +75,6 @@ Simulation build_simulation(const Input& input, const DetectionOptions& options)
       simulation.add(object.mesh, object_options);
   }
   return simulation;
-}
-
-void warn_of_long_steps(const Simulation& simulation, const std::string& scene_file) {
-  const double time_step = simulation.options().time_step;
-  double shortest = time_step;
-  ObjectId worst;
-  std::uint64_t count = 0;
-  for (const ObjectId object : simulation.scene().objects()) {
-    const MassSpringBody* const body = simulation.body(object);
-    if (!body || body->stable_step() >= time_step) continue;
-    ++count;
-    if (body->stable_step() >= shortest) continue;
-    shortest = body->stable_step();
-    worst = object;
-  }
-  if (count == 0) return;
-  const std::uint32_t substeps = simulation.body(worst)->options().substeps;
-  fmt::print(
-      stderr,
-      "supple: warning: {}: time_step {} is too long for {}{}: its motion is stable up to {:.3g}; give it "
-      "substeps = {}, a lower stiffness or integrator = \"backward_euler\", or shorten time_step\n",
-      one_line(scene_file), time_step, one_line(simulation.scene().name(worst)),
-      count > 1 ? fmt::format(" and {}", counted(count - 1, "other object")) : "", shortest,
-      std::ceil(time_step / shortest * substeps));
 }
 
 }  // namespace supple::cli

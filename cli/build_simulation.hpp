@@ -1,7 +1,5 @@
 #pragma once
 
-#include <string>
-
 #include "inputs.hpp"
 #include "options.hpp"
 #include "supple/simulation.hpp"
@@ -14,9 +12,5 @@ ObjectOptions options_of(const InputObject& object, const MethodOptions& options
 /// A simulation of the objects of an input, in their order, each where it is at the start. Throws `Error` as
 /// `Simulation::add` does, or when a frame of a sequence is not what it should be.
 Simulation build_simulation(const Input& input, const DetectionOptions& options);
-
-/// Tells people of objects that will blow up because the steps are too long for them, in one line on standard
-/// error.
-void warn_of_long_steps(const Simulation& simulation, const std::string& scene_file);
 
 }  // namespace supple::cli

@@ -17,6 +17,7 @@
 #include "interruption.hpp"
 #include "progress.hpp"
 #include "reports.hpp"
+#include "session/long_steps.hpp"
 #include "supple/error.hpp"
 #include "text.hpp"
 
@@ -74,7 +75,8 @@ class Run {
 };
 
 int Run::go() {
-  warn_of_long_steps(simulation_, options_.input);
+  if (const auto warning = viewer::warning_of_long_steps(simulation_))
+    fmt::print(stderr, "supple: warning: {}: {}\n", one_line(options_.input), one_line(*warning));
   const Interruption interruption;
   const Clock::time_point start = Clock::now();
   add_frame(simulation_.detect());

@@ -147,6 +147,13 @@ class Serve(ViewTest):
         self.assertEqual(page.receive(), 4002)
         self.assertEqual((process.communicate(), process.returncode), (("", ""), 0))
 
+    def test_warnings_are_those_of_simulate(self):
+        self.write("stiff.toml", BODY.replace("random_speed", "stiffness = 1e7, random_speed"))
+        _, url = self.start("stiff.toml", "--no-open")
+        (warning,) = self.connect(url).receive_text(SCENE)["warnings"]
+        done = self.run_here("simulate", "stiff.toml", "--steps", "1", "--quiet")
+        self.assertEqual(done.error.splitlines()[0], f"supple: warning: stiff.toml: {warning}")
+
     def test_token(self):
         self.write("a.obj", TRIANGLE)
         _, url = self.start("a.obj")

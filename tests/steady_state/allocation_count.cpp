@@ -1,19 +1,22 @@
-// The program's operators new and delete. In a file of their own: inlined into the code under test, compilers
-// take the pairs of new and free for a mismatch.
+// The program's operators new and delete, which count and refuse. In a file of their own: inlined into the
+// code under test, compilers take the pairs of new and free for a mismatch.
 
 #include "allocation_count.hpp"
 
 #include <atomic>
 #include <cstddef>
 #include <cstdlib>
+#include <limits>
 #include <new>
 
 namespace {
 
 std::atomic<std::uint64_t> allocations = 0;
+std::atomic<std::size_t> refused_size = std::numeric_limits<std::size_t>::max();
 
 void* counted_allocation(std::size_t size, std::size_t alignment) {
   allocations.fetch_add(1, std::memory_order_relaxed);
+  if (size >= refused_size.load(std::memory_order_relaxed)) throw std::bad_alloc();
   void* const memory = alignment <= alignof(std::max_align_t)
                            ? std::malloc(size)
                            : std::aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment);
@@ -64,6 +67,10 @@ namespace supple {
 
 std::uint64_t allocation_count() {
   return allocations.load();
+}
+
+void refuse_allocations_from(std::size_t bytes) {
+  refused_size = bytes;
 }
 
 }  // namespace supple

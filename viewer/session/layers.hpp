@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace supple::viewer {
@@ -13,8 +14,16 @@ struct Layers {
   bool colliding_vertices = false;
   std::vector<std::uint32_t> octree_objects{};  ///< whose octrees, ascending
   std::optional<std::uint32_t> octree_level{};  ///< nothing: the leaves
-
-  bool operator==(const Layers&) const = default;
 };
+
+/// Those that are asked for, as the protocol calls them.
+inline std::vector<std::string> layer_names(const Layers& layers) {
+  std::vector<std::string> names;
+  if (layers.candidates) names.emplace_back("candidates");
+  if (layers.scene_regions) names.emplace_back("scene_regions");
+  if (layers.colliding_vertices) names.emplace_back("colliding_vertices");
+  if (!layers.octree_objects.empty()) names.emplace_back("octree");
+  return names;
+}
 
 }  // namespace supple::viewer

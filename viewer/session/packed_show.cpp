@@ -62,7 +62,7 @@ void check_header(const Header& header, std::span<const std::byte> content) {
 std::vector<std::byte> pack(const Show& show) {
   Packer packer;
   const bool has_frames = show.frames != nullptr;
-  packer(show.title, show.simulation, show.objects, show.warnings, has_frames);
+  packer(show.title, show.simulation, show.objects, has_frames);
   if (has_frames) packer(PackedFrames(*show.frames, show.objects, extent_of(show).center()));
   const std::vector<std::byte> content = packer.take();
   const Header header{.version = own_version(), .checksum = checksum_of(content)};
@@ -82,7 +82,7 @@ Show unpack(std::span<const std::byte> bytes) {
   Unpacker unpacker(content);
   Show show;
   bool has_frames = false;
-  unpacker(show.title, show.simulation, show.objects, show.warnings, has_frames);
+  unpacker(show.title, show.simulation, show.objects, has_frames);
   if (has_frames) {
     auto frames = std::make_shared<PackedFrames>();
     unpacker(*frames);

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "extent.hpp"
+#include "long_steps.hpp"
 #include "names.hpp"
 #include "statistics.hpp"
 #include "supple/version.hpp"
@@ -89,6 +91,15 @@ void add_column_names(Stage& stage, JsonText& json) {
               std::span<const std::string>(stage.recording() ? stage.show().frames->series().names : none));
 }
 
+void add_warnings(Stage& stage, JsonText& json) {
+  std::vector<std::string> warnings;
+  if (SimulationSource* const simulation = stage.simulation()) {
+    if (auto warning = warning_of_long_steps(simulation->simulation()))
+      warnings.push_back(std::move(*warning));
+  }
+  json.member("warnings", std::span<const std::string>(warnings));
+}
+
 void add_events(Tag tag, const std::vector<Series::Event>& events, MessageWriter& message) {
   const auto rows = message.add<std::array<std::uint32_t, 3>>(tag, events.size());
   std::transform(events.begin(), events.end(), rows.begin(), [](const Series::Event& event) {
@@ -110,7 +121,7 @@ void pack_scene(Stage& stage, std::uint64_t generation, JsonText& json, MessageW
   add_objects(stage, json);
   add_options(stage, json);
   add_column_names(stage, json);
-  json.member("warnings", std::span<const std::string>(show.warnings));
+  add_warnings(stage, json);
   json.end_object();
   message.begin(MessageKind::scene);
   message.add_text(json.text());

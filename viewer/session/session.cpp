@@ -6,8 +6,10 @@
 #include <deque>
 #include <limits>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "answers.hpp"
 #include "arguments.hpp"
@@ -88,7 +90,7 @@ class Session::Implementation {
   bool has_triangle(std::array<std::uint32_t, 2> triangle, Arguments& arguments) const;
   bool has_vertex(std::uint32_t object, std::uint32_t vertex, Arguments& arguments) const;
 
-  void fail(const std::string& message, bool fatal = false);
+  void fail(const std::string& message, bool fatal = false, std::span<const std::string> layers = {});
   void add_reply(MessageKind kind);
   void begin_reply();
   bool pack_frame();
@@ -166,8 +168,8 @@ std::span<const std::byte> Session::Implementation::next_message() {
     replies_.pop_front();
   } else if (has_news_ && credit_ > 0 && !has_ended_) {
     has_news_ = false;
-    --credit_;
     if (!pack_frame()) return next_message();
+    --credit_;
   } else {
     return {};
   }
@@ -182,10 +184,10 @@ bool Session::Implementation::pack_frame() {
   if (!failure) return true;
   id_.reset();
   packer_.forget();
-  const bool is_fatal = layers_ == Layers{};
+  const std::vector<std::string> dropped = layer_names(layers_);
   layers_ = {};
   has_news_ = true;
-  fail(failure->message, is_fatal);
+  fail(failure->message, dropped.empty(), dropped);
   return false;
 }
 
@@ -473,11 +475,14 @@ void Session::Implementation::add_reply(MessageKind kind) {
   replies_.push_back({kind, std::string(json_.text())});
 }
 
-void Session::Implementation::fail(const std::string& message, bool fatal) {
+/// `layers` are those that frames do not have any more.
+void Session::Implementation::fail(const std::string& message, bool fatal,
+                                   std::span<const std::string> layers) {
   has_ended_ = fatal;
   begin_reply();
   json_.member("message", message);
   json_.member("fatal", fatal);
+  if (!layers.empty()) json_.member("layers", layers);
   json_.end_object();
   add_reply(MessageKind::failure);
 }

@@ -51,7 +51,6 @@ struct Show {
   SimulationOptions simulation{};
   std::vector<ShowObject> objects{};
   std::shared_ptr<const Frames> frames{};  ///< null of a simulation
-  std::vector<std::string> warnings{};
 };
 
 }  // namespace supple::viewer

@@ -26,6 +26,7 @@ class SimulationSource final : public Source {
   std::uint64_t step() const override { return simulation_.step_count(); }
   double time() const override { return simulation_.time(); }
   double motion_seconds() const override { return motion_seconds_; }
+  const Simulation& simulation() const { return simulation_; }
 
   /// Moves everything on by one step. Throws `Error`, everything being as before.
   void take_step();

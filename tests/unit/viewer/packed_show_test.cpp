@@ -16,7 +16,6 @@ namespace {
 Show rich_show() {
   Show show;
   show.title = "rich";
-  show.warnings = {"one", "two"};
   show.simulation.border = Border{{{-5, -6, -7}, {8, 9, 10}}};
   show.simulation.seed = 77;
   show.simulation.time_step = 0.004;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "../../support/viewer_page.hpp"
+#include "session/long_steps.hpp"
 
 namespace supple::viewer {
 namespace {
@@ -502,6 +503,28 @@ TEST(ViewerSession, ABodyThatBlowsUpPausesTheSession) {
   EXPECT_FALSE(page.session.ended());
   EXPECT_NO_THROW(page.ask({{"do", "set"}, {"integrator", "backward_euler"}}));
   page.frame_after_steps(20);
+}
+
+TEST(ViewerSession, WarnsOfStepsThatAreTooLongForAsLongAsTheyAre) {
+  Show show = three_balls();
+  EXPECT_EQ(TestPage(show).scene().json["warnings"], Json::array());
+  show.objects[1].motion = MassSpringMotion{.springs = {.vertex_mass = 1e-3, .stiffness = 1e4}};
+  TestPage page(show);
+  const Json warnings = page.scene().json["warnings"];
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_EQ(warnings[0], warning_of_long_steps(simulation_of(show)));
+  EXPECT_TRUE(warnings[0].get<std::string>().starts_with("time_step 0.01 is too long for soft: "))
+      << warnings;
+
+  const auto warnings_after = [&](const Json& command) {
+    page.say(command);
+    return page.drain().at(0).json["warnings"];
+  };
+  EXPECT_EQ(warnings_after({{"do", "reset"}}), warnings);
+  const Json both = warnings_after({{"do", "set"}, {"objects", 6}});
+  EXPECT_NE(both.at(0).get<std::string>().find("soft and 1 other object: "), std::string::npos) << both;
+  EXPECT_EQ(warnings_after({{"do", "set"}, {"integrator", "backward_euler"}}), Json::array());
+  EXPECT_EQ(warnings_after({{"do", "set"}, {"integrator", "verlet"}, {"time_step", 1e-6}}), Json::array());
 }
 
 TEST(ViewerSession, EmptyShowsObjectsAndMeshesAreFine) {

@@ -127,7 +127,7 @@ export const camera = (page) => page.evaluate(() => supple.camera());
 export async function pause(page) {
   const button = page.getByRole("button", { name: "Pause" });
   // A recording may end by itself meanwhile: then there is no such button any more.
-  if (await button.count()) await button.click({ timeout: 5000 }).catch(() => {});
+  if (await button.count()) await button.click({ timeout: 20_000 }).catch(() => {});
   await until(page, () => !supple.model.frame.text.playing);
   await settled(page);
 }
@@ -163,6 +163,41 @@ export const seenTriangle = (page, object, least = -Infinity) =>
     }
     throw new Error(`no triangle of object ${object} is seen`);
   }, [object, least]);
+
+/**
+ * A page that shows a file, whose session says what the test says instead of the program: `alter` gets each message, how to send
+ * one, and the socket; `command` each command, and how to hand it on.
+ */
+export async function pageWithMessages(stage, file, alter, command = (text, send) => send(text)) {
+  const program = await stage.program(file);
+  const page = await stage.page();
+  await page.routeWebSocket(/\/session/, (socket) => {
+    const server = socket.connectToServer();
+    const send = (bytes) => socket.send(bytes);
+    socket.onMessage((text) => command(text, (altered) => server.send(altered), send));
+    server.onMessage((message) => alter(Buffer.from(message), send, socket));
+  });
+  await page.goto(program.address);
+  return page;
+}
+
+/** A message of kind and text, as docs/protocol.md has it. */
+export function textMessage(kind, json) {
+  const text = Buffer.from(JSON.stringify(json));
+  const length = 32 + Math.ceil(text.length / 16) * 16;
+  const message = Buffer.alloc(length);
+  message.writeUInt32LE(0x4c505553, 0);
+  message.writeUInt16LE(1, 4);
+  message.writeUInt16LE(kind, 6);
+  message.writeUInt32LE(length, 8);
+  message.writeUInt32LE(1, 12);
+  message.writeUInt32LE(1, 16);
+  message.writeUInt32LE(0xffffffff, 20);
+  message.writeUInt32LE(text.length, 24);
+  message.writeUInt32LE(text.length, 28);
+  text.copy(message, 32);
+  return message;
+}
 
 /** Two balls that stand apart and do not move by themselves. */
 export const TWO_BALLS = `

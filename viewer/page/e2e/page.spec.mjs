@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { statSync } from "node:fs";
 import { join } from "node:path";
-import { camera, hasFrame, pause, picture, scenes, settled, step, TWO_BALLS, until } from "./harness.mjs";
+import { camera, hasFrame, pageWithMessages, pause, picture, scenes, settled, step, textMessage, TWO_BALLS, until } from "./harness.mjs";
 
 const nine = join(scenes, "nine.toml");
 const balls = (stage) => stage.file("balls.toml", TWO_BALLS);
@@ -187,22 +187,9 @@ async function secondPage(stage) {
   await until(page, (before) => supple.model.framesSeen > before, await page.evaluate(() => supple.model.framesSeen));
 }
 
-/** A page whose session answers with what the test says instead of the program. */
-async function pageWithMessages(stage, alter) {
-  const program = await stage.program(balls(stage));
-  const page = await stage.page();
-  await page.routeWebSocket(/\/session/, (socket) => {
-    const server = socket.connectToServer();
-    socket.onMessage((command) => server.send(command));
-    server.onMessage((message) => alter(Buffer.from(message), (bytes) => socket.send(bytes), socket));
-  });
-  await page.goto(program.address);
-  return page;
-}
-
 async function malformedMessage(stage) {
   let frames = 0;
-  const page = await pageWithMessages(stage, (message, send) => {
+  const page = await pageWithMessages(stage, balls(stage), (message, send) => {
     if (message.readUInt16LE(6) === 2 && ++frames === 2) message.writeUInt32LE(0x7fffffff, 20);
     send(message);
   });
@@ -213,7 +200,7 @@ async function malformedMessage(stage) {
 }
 
 async function laterVersion(stage) {
-  const page = await pageWithMessages(stage, (message, send) => {
+  const page = await pageWithMessages(stage, balls(stage), (message, send) => {
     message.writeUInt16LE(2, 4);
     send(message);
   });
@@ -221,26 +208,8 @@ async function laterVersion(stage) {
   await page.getByText("version 2").waitFor();
 }
 
-/** A message of kind and text, as docs/protocol.md has it. */
-function textMessage(kind, json) {
-  const text = Buffer.from(JSON.stringify(json));
-  const length = 32 + Math.ceil(text.length / 16) * 16;
-  const message = Buffer.alloc(length);
-  message.writeUInt32LE(0x4c505553, 0);
-  message.writeUInt16LE(1, 4);
-  message.writeUInt16LE(kind, 6);
-  message.writeUInt32LE(length, 8);
-  message.writeUInt32LE(1, 12);
-  message.writeUInt32LE(1, 16);
-  message.writeUInt32LE(0xffffffff, 20);
-  message.writeUInt32LE(text.length, 24);
-  message.writeUInt32LE(text.length, 28);
-  text.copy(message, 32);
-  return message;
-}
-
 async function hugeScene(stage) {
-  const page = await pageWithMessages(stage, (message, send) => {
+  const page = await pageWithMessages(stage, balls(stage), (message, send) => {
     if (message.readUInt16LE(6) !== 1) return;
     const text = JSON.parse(message.subarray(32, 32 + message.readUInt32LE(28)).toString());
     text.objects = [{ ...text.objects[0], name: "city", vertices: 900_000_000, triangles: 0 }];
@@ -251,7 +220,7 @@ async function hugeScene(stage) {
 }
 
 async function failedSession(stage) {
-  const page = await pageWithMessages(stage, (message, send) => {
+  const page = await pageWithMessages(stage, balls(stage), (message, send) => {
     if (message.readUInt16LE(6) === 1) send(textMessage(4, { message: "there is no memory left for the octree", fatal: true }));
   });
   await says(page, "The session has failed");

@@ -1,16 +1,19 @@
 /** Puts the page together. */
 import { Client, type Status } from "./client";
-import { Film, savePicture } from "./capture";
+import { Film } from "./capture/film";
+import { FramesRun } from "./capture/frames";
+import { savePicture } from "./capture/picture";
 import { listenToKeys } from "./keyboard";
-import { Model, TOOLS, type Tool } from "./model";
+import { Model, TOOLS, type Layer, type Tool } from "./model";
 import { ContactTable } from "./panels/contact_table";
-import { h, icon, iconButton, setIcon } from "./panels/dom";
+import { colourOf, h, icon, iconButton, setIcon } from "./panels/dom";
+import { FramesDialog } from "./panels/frames_dialog";
 import { helpSheet } from "./panels/help";
 import { Inspector } from "./panels/inspector";
 import { Card, Notices } from "./panels/notices";
 import { Player } from "./panels/player";
 import { Plots } from "./panels/plots";
-import { ScenePanel } from "./panels/scene_panel";
+import { LAYER_ROWS, ScenePanel } from "./panels/scene_panel";
 import { Settings } from "./panels/settings";
 import { Tools } from "./tools";
 import { openSocket } from "./transport/socket";
@@ -24,6 +27,12 @@ const TOOL_LABELS: Record<Tool, [label: string, key: string]> = {
   explain: ["Why no contact?", "W"],
 };
 const THEME = "supple-theme";
+
+/** What the session could not do; its own line first. */
+function sayFailure({ text, layers }: { text: string; layers: Layer[] }): string {
+  const labels = LAYER_ROWS.filter(({ layer }) => layers.includes(layer)).map(({ label }) => label);
+  return labels.length > 0 ? `${text}. Switched off: ${labels.join(", ")}.` : text;
+}
 
 function cannotDraw(error: unknown): string {
   const why = error instanceof Error ? error.message : String(error);
@@ -42,6 +51,7 @@ export class App {
   readonly card = new Card(() => this.client.connect(), this.carriesLibrary);
   private scenePanel!: ScenePanel;
   private plots!: Plots;
+  private framesDialog!: FramesDialog;
   private readonly film_ = new Film();
   private readonly canvas = h("canvas", { class: "view", tabindex: 0, role: "img", "aria-label": "3D view" });
   private readonly title = h("span", { class: "title" });
@@ -79,13 +89,16 @@ export class App {
     this.player = new Player(model, this.client);
     this.tools = new Tools(model, this.client, view, inspector);
     this.plots = new Plots(model, (frame) => this.player.seek(frame));
+    this.framesDialog = new FramesDialog(
+      model, view, (plan, signal, progress) => new FramesRun(model, this.client, view, plan, signal, progress).go(), (text) => this.notices.show(text),
+    );
     const tabs = this.tabs({
       Inspect: inspector.element,
       Contacts: new ContactTable(model, fly).element,
       Plots: this.plots.element,
       Settings: new Settings(model, this.client).element,
     });
-    this.body.append(this.header(), this.scenePanel.element, tabs, this.player.element, this.help);
+    this.body.append(this.header(), this.scenePanel.element, tabs, this.player.element, this.help, this.framesDialog.element);
     listenToKeys(this);
   }
 
@@ -108,6 +121,7 @@ export class App {
       h("div", { class: "group" },
         iconButton("frame", "Frame all", "F", () => this.view.frameAll()), views, this.orthoButton,
         iconButton("camera", "Save a picture", "Shift+S", () => this.picture()), this.filmButton,
+        iconButton("frames", "Save frames as pictures…", "Shift+P", () => this.frames()),
         iconButton("panels", "Hide or show the panels", "H", () => this.togglePanels()),
         iconButton("theme", "Light or dark", "T", () => this.toggleTheme()),
         h("button", { type: "button", class: "icon", "aria-label": "Keyboard shortcuts", title: "Keyboard shortcuts (?)", onclick: () => this.help.showModal() }, "?")),
@@ -151,10 +165,12 @@ export class App {
     const { model, view, client } = this;
     client.on("status", (status) => this.showStatus(status));
     client.on("notice", (text) => this.notices.show(text));
+    client.on("failure", (failure) => this.notices.show(sayFailure(failure)));
     model.on("scene", (scene) => {
       this.title.textContent = scene.title;
       document.title = `${scene.title} · Supple`;
       this.card.showStatus({ state: "connected" });
+      this.notices.warn(scene.warnings);
       if (scene.objects.length === 0) this.notices.show("This scene has no objects.");
     });
     model.on("frame", () => {
@@ -197,7 +213,15 @@ export class App {
   }
 
   picture(): void {
-    savePicture(this.view);
+    savePicture(this.view).catch((error: Error) => this.notices.show(error.message));
+  }
+
+  frames(): void {
+    if (this.client.status.state !== "connected" || !this.model.frame) return this.notices.show("There is no session whose frames could be saved.");
+    if (this.film_.running) this.film();
+    this.tools.release();
+    this.player.pause();
+    this.framesDialog.open();
   }
 
   film(): void {
@@ -249,9 +273,8 @@ export class App {
 
   /** Takes the theme's colours over to what style sheets do not reach. */
   private paint(): void {
-    const style = getComputedStyle(document.documentElement);
-    this.view.setBackground(style.getPropertyValue("--ground").trim());
-    this.view.setInk(style.getPropertyValue("--ink").trim());
+    this.view.setBackground(colourOf("--ground"));
+    this.view.setInk(colourOf("--ink"));
     this.plots.rebuild();
   }
 

@@ -1,7 +1,7 @@
 /** Between the transport and the model: reads messages, gives credit, matches answers to questions. */
 import { Emitter } from "./emitter";
-import type { Model } from "./model";
-import { countsOf, MessageError, readMessage, type SceneCounts } from "./protocol/messages";
+import type { Layer, Model } from "./model";
+import { countsOf, MessageError, readMessage, type FailureMessage, type FrameText, type SceneCounts } from "./protocol/messages";
 import type { EndReason, Transport, TransportEvents } from "./transport/transport";
 
 export type Status =
@@ -11,8 +11,10 @@ export type Status =
 
 interface ClientEvents {
   status: Status;
-  /** A command that failed, or a warning: one line. */
+  /** What the page has to say about what was wanted of it: one line. */
   notice: string;
+  /** What the session says that it cannot do, when nobody waits for an answer, and the layers that are switched off by that. */
+  failure: { text: string; layers: Layer[] };
 }
 
 /** Frames that may be under way: one that is drawn, and one behind it. */
@@ -65,6 +67,30 @@ export class Client extends Emitter<ClientEvents> {
     });
   }
 
+  /**
+   * The first frame from now on that is as wanted, with those in between let through. Rejects, with a sentence, when the
+   * session fails or ends before that, or with the reason of `signal`.
+   */
+  frameThat(isWanted: (frame: FrameText) => boolean, signal: AbortSignal): Promise<FrameText> {
+    return new Promise<FrameText>((resolve, reject) => {
+      const end = (settle: () => void) => {
+        for (const stop of stops) stop();
+        signal.removeEventListener("abort", giveUp);
+        settle();
+      };
+      const giveUp = () => end(() => reject(signal.reason as Error));
+      const stops = [
+        this.model.on("frame", ({ text }) => (isWanted(text) ? end(() => resolve(text)) : this.giveCredit())),
+        this.on("failure", ({ text }) => end(() => reject(new Error(`The session has failed: ${text}.`)))),
+        this.on("status", ({ state }) => state === "ended" && end(() => reject(new Error("The session has ended.")))),
+      ];
+      signal.addEventListener("abort", giveUp);
+      if (signal.aborted) giveUp();
+      else if (this.status.state === "ended") end(() => reject(new Error("The session has ended.")));
+      this.giveCredit();  // the page may be out of sight, where nothing is drawn
+    });
+  }
+
   /** Called when a frame can be drawn: lets the session send the next ones. */
   giveCredit(): void {
     if (!this.scene || this.credit >= CREDIT || this.status.state !== "connected") return;
@@ -92,7 +118,6 @@ export class Client extends Emitter<ClientEvents> {
         this.credit = 0;
         this.model.takeScene(message);
         this.send(this.model.request());
-        for (const warning of message.text.warnings) this.emit("notice", warning);
         return;
       }
       case "frame":
@@ -104,17 +129,19 @@ export class Client extends Emitter<ClientEvents> {
         this.questions.get(message.text.id)?.resolve(message.text);
         this.questions.delete(message.text.id);
         return;
-      case "failure": {
-        const { message: text, fatal, id } = message.text;
-        if (fatal) return this.end("failed", text);
-        if (id !== undefined && this.questions.has(id)) {
-          this.questions.get(id)!.reject(new Error(text));
-          this.questions.delete(id);
-        } else {
-          this.emit("notice", text);
-        }
-      }
+      case "failure":
+        return this.takeFailure(message.text);
     }
+  }
+
+  private takeFailure({ message: text, fatal, id, layers }: FailureMessage["text"]): void {
+    if (fatal) return this.end("failed", text);
+    const question = id === undefined ? undefined : this.questions.get(id);
+    if (question) {
+      this.questions.delete(id!);
+      return question.reject(new Error(text));
+    }
+    this.emit("failure", { text, layers: layers ? this.model.dropLayers(layers) : [] });
   }
 
   private end(reason: EndReason | "malformed" | "too-large", detail: string): void {

@@ -35,6 +35,7 @@ function onShifted(app: App, key: string): boolean {
     f: () => app.view.frameSelection(),
     s: () => app.picture(),
     v: () => app.film(),
+    p: () => app.frames(),
   };
   actions[key]?.();
   return key in actions;

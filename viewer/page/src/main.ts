@@ -1,4 +1,9 @@
-import "./style.css";
+import "./styles/page.css";
+import "./styles/controls.css";
+import "./styles/bars.css";
+import "./styles/scene.css";
+import "./styles/details.css";
+import "./styles/messages.css";
 import { App } from "./app";
 import { h } from "./panels/dom";
 

@@ -26,6 +26,9 @@ export const LAYERS = [
 ] as const;
 export type Layer = (typeof LAYERS)[number];
 
+/** Layers that the session makes, by their names in its protocol. */
+const MADE_BY_SESSION: Record<string, Layer> = { candidates: "candidates", scene_regions: "regions", colliding_vertices: "vertices", octree: "octree" };
+
 export const TOOLS = ["select", "grab", "explain"] as const;
 export type Tool = (typeof TOOLS)[number];
 
@@ -233,8 +236,20 @@ export class Model extends Emitter<ModelEvents> {
 
   setLayer(layer: Layer, on: boolean): void {
     this.layers[layer] = on;
-    if (["regions", "octree", "candidates", "vertices"].includes(layer)) this.emit("request", null);
+    if (Object.values(MADE_BY_SESSION).includes(layer)) this.emit("request", null);
     this.emit("display", null);
+  }
+
+  /**
+   * The session makes these no more, by its names: switches them off, and gives those that were on. Then asks anew for the others, as
+   * it may just have been asked for more.
+   */
+  dropLayers(names: string[]): Layer[] {
+    const dropped = names.flatMap((name) => MADE_BY_SESSION[name] ?? []).filter((layer) => this.layers[layer]);
+    for (const layer of dropped) this.layers[layer] = false;
+    this.emit("request", null);
+    this.emit("display", null);
+    return dropped;
   }
 
   /** The `layers` command for what is switched on. */

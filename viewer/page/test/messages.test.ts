@@ -36,6 +36,10 @@ test("series, answers and failures are read", () => {
   assert.ok(answer.kind === "answer" && answer.text.id === 7);
   const failure = readMessage(message(KIND.failure, text({ message: "no", fatal: true })), null);
   assert.ok(failure.kind === "failure" && failure.text.fatal);
+  const dropped = readMessage(message(KIND.failure, text({ message: "no", fatal: false, layers: ["octree"] })), counts);
+  assert.ok(dropped.kind === "failure");
+  assert.deepEqual(dropped.text.layers, ["octree"]);
+  reject(message(KIND.failure, text({ message: "no", fatal: false, layers: "octree" })), /valid “layers”/);
 });
 
 test("unknown tags are passed over, unknown kinds are not", () => {

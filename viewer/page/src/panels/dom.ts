@@ -31,6 +31,7 @@ const ICONS: Record<string, string> = {
   reset: '<path d="M3 8a5 5 0 1 0 1.6-3.6L3 6M3 2.6V6h3.4"/>',
   frame: '<path d="M2.5 6V2.5H6M10 2.5h3.5V6M13.5 10v3.5H10M6 13.5H2.5V10"/><circle cx="8" cy="8" r="1.8"/>',
   camera: '<path d="M2 5h3l1.2-1.8h3.6L11 5h3v8H2z"/><circle cx="8" cy="8.8" r="2.2"/>',
+  frames: '<path d="M2.5 3.5h11v9h-11zM5.2 3.5v9M10.8 3.5v9M2.5 8h11"/>',
   film: '<circle cx="8" cy="8" r="5.5"/><circle cx="8" cy="8" r="2.2" fill="currentColor"/>',
   theme: '<circle cx="8" cy="8" r="5.5"/><path d="M8 2.5a5.5 5.5 0 0 1 0 11z" fill="currentColor"/>',
   select: '<path d="M4 2.2l8.3 6.2-3.7.6 2 4-1.7.8-2-4L4.4 12z"/>',
@@ -60,6 +61,25 @@ export function setIcon(button: HTMLButtonElement, name: string, label: string, 
   button.title = key ? `${label} (${key})` : label;
 }
 
+/** A dialog with a title and a button that closes it. */
+export function sheet(title: string, kind: string, ...children: Child[]): HTMLDialogElement {
+  const dialog = h(
+    "dialog", { class: kind, "aria-label": title },
+    h("header", {}, h("h2", {}, title), h("button", { type: "button", class: "text-button", onclick: () => dialog.close() }, "Close")),
+    ...children,
+  );
+  return dialog;
+}
+
+/** A colour of the style sheet, as `rgb(…)`: of the theme that holds now. */
+export function colourOf(name: string): string {
+  const probe = h("span", { style: `color: var(${name})` });
+  document.body.append(probe);
+  const { color } = getComputedStyle(probe);
+  probe.remove();
+  return color;
+}
+
 /** A number as people read it. */
 export function readable(x: number): string {
   if (!Number.isFinite(x)) return String(x);
@@ -67,6 +87,9 @@ export function readable(x: number): string {
   const size = Math.abs(x);
   return size >= 1e-4 && size < 1e6 ? String(Number(x.toPrecision(6))) : x.toExponential(4);
 }
+
+/** The time, as part of a file's name. */
+export const stamp = (): string => new Date().toISOString().slice(0, 19).replace(/[:T]/g, "-");
 
 export function download(blob: Blob, name: string): void {
   const url = URL.createObjectURL(blob);

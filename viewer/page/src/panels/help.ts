@@ -1,4 +1,4 @@
-import { h } from "./dom";
+import { h, sheet } from "./dom";
 
 const GROUPS: [string, [string, string][]][] = [
   ["Play", [
@@ -18,7 +18,7 @@ const GROUPS: [string, [string, string][]][] = [
     ["I D", "intersecting triangles, contact points"], ["Y U J", "normals, curves, vertices"],
   ]],
   ["Page", [
-    ["Shift S", "save a picture"], ["Shift V", "record a video, or end it"], ["T", "light or dark"], ["H", "hide or show the panels"], ["?", "this sheet"],
+    ["Shift S", "save a picture"], ["Shift V", "record a video, or end it"], ["Shift P", "save frames as pictures, each of them, at any size"], ["T", "light or dark"], ["H", "hide or show the panels"], ["?", "this sheet"],
   ]],
 ];
 
@@ -26,11 +26,7 @@ export function helpSheet(): HTMLDialogElement {
   const groups = GROUPS.map(([title, rows]) =>
     h("section", {}, h("h3", {}, title), h("dl", {}, ...rows.flatMap(([keys, does]) => [h("dt", {}, ...keys.split(" ").map((key) => h("kbd", {}, key))), h("dd", {}, does)]))),
   );
-  const dialog = h(
-    "dialog", { class: "help", "aria-label": "Keyboard shortcuts" },
-    h("header", {}, h("h2", {}, "Keys"), h("button", { type: "button", class: "text-button", onclick: () => dialog.close() }, "Close")),
-    h("div", { class: "groups" }, ...groups),
-  );
+  const dialog = sheet("Keyboard shortcuts", "help", h("div", { class: "groups" }, ...groups));
   dialog.addEventListener("click", (event) => {
     if (event.target === dialog) dialog.close();
   });

@@ -1,20 +1,43 @@
-/** Short notices, and the card that takes the middle of the page when there is nothing to show any more. */
+/** Notices that go by themselves, warnings that stay, and the card that takes the middle of the page when there is nothing to show any more. */
 import type { Status } from "../client";
 import { h } from "./dom";
 
 const NOTICE_MILLISECONDS = 9000;
 
+const MOST_NOTICES = 4;
+
 export class Notices {
-  readonly element = h("div", { class: "notices", role: "log", "aria-live": "polite", "aria-label": "Messages" });
+  readonly element: HTMLElement;
+  private readonly lasting = h("div");
+  private readonly passing = h("div");
+  /** What the scene warns of, and the element of it until it is dismissed. */
+  private warnings = new Map<string, HTMLElement>();
+
+  constructor() {
+    this.element = h("div", { class: "notices", role: "log", "aria-live": "polite", "aria-label": "Messages" }, this.lasting, this.passing);
+  }
 
   show(text: string): void {
-    const shown = [...this.element.children].find((child) => child.firstChild?.textContent === text);
+    const shown = [...this.passing.children].find((child) => child.firstChild?.textContent === text);
     if (shown) return;
+    const notice = this.notice(text);
+    this.passing.append(notice);
+    while (this.passing.children.length > MOST_NOTICES) this.passing.firstChild!.remove();
+    setTimeout(() => notice.remove(), NOTICE_MILLISECONDS);
+  }
+
+  /** What the scene warns of now: each stays until it is dismissed or holds no more, and does not come again while it holds. */
+  warn(texts: string[]): void {
+    const now = new Map(texts.map((text) => [text, this.warnings.get(text) ?? this.notice(text)]));
+    for (const [text, element] of now) if (!this.warnings.has(text)) this.lasting.append(element);
+    for (const [text, element] of this.warnings) if (!now.has(text)) element.remove();
+    this.warnings = now;
+  }
+
+  private notice(text: string): HTMLElement {
     const notice = h("div", { class: "notice" }, h("span", {}, text));
     notice.append(h("button", { type: "button", class: "text-button", "aria-label": "Dismiss", onclick: () => notice.remove() }, "×"));
-    this.element.append(notice);
-    while (this.element.children.length > 4) this.element.firstChild!.remove();
-    setTimeout(() => notice.remove(), NOTICE_MILLISECONDS);
+    return notice;
   }
 }
 

@@ -3,7 +3,7 @@ import uPlot from "uplot";
 import "uplot/dist/uPlot.min.css";
 import { OKABE_ITO } from "../colours";
 import type { Model } from "../model";
-import { h } from "./dom";
+import { colourOf, h } from "./dom";
 
 const HEIGHT = 132;
 const REDRAW_MILLISECONDS = 150;
@@ -53,9 +53,8 @@ export class Plots {
 
   private add(title: string, columns: string[], scale: number): void {
     if (columns.length === 0) return;
-    const style = getComputedStyle(document.documentElement);
-    const ink = style.getPropertyValue("--ink-soft").trim();
-    const grid = style.getPropertyValue("--line").trim();
+    const ink = colourOf("--ink-soft");
+    const grid = colourOf("--line");
     const axis = { stroke: ink, grid: { stroke: grid, width: 1 }, ticks: { stroke: grid, width: 1 }, font: "11px system-ui" };
     const holder = h("figure", { "aria-label": title }, h("figcaption", {}, title));
     const options: uPlot.Options = {

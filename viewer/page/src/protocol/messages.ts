@@ -89,7 +89,7 @@ export interface AnswerMessage {
 
 export interface FailureMessage {
   kind: "failure";
-  text: { message: string; fatal: boolean; id?: number };
+  text: { message: string; fatal: boolean; id?: number; layers?: string[] };
 }
 
 export interface SeriesMessage {
@@ -382,6 +382,7 @@ function readFailure(sections: Sections): FailureMessage {
   const text = sections.json() as FailureMessage["text"];
   need(isText(text.message), "message");
   need(typeof text.fatal === "boolean", "fatal");
+  need(text.layers === undefined || isTexts(text.layers), "layers");
   return { kind: "failure", text };
 }
 

@@ -179,6 +179,14 @@ export class CameraRig {
     this.moved();
   }
 
+  /** What a picture was seen from, for who wants to draw it again; places as the camera has them. */
+  description(): Record<string, unknown> {
+    const { position, up, zoom } = this.camera;
+    const target = this.controls.target.toArray();
+    const kind = this.isOrthographic ? { orthographic: true, height: (2 * this.halfHeight) / zoom } : { orthographic: false, vertical_degrees: FIELD_OF_VIEW };
+    return { position: position.toArray(), target, up: up.toArray(), ...kind };
+  }
+
   private save(): void {
     const short = (x: number) => String(Number(x.toPrecision(6)));
     const numbers = [...this.camera.position, ...this.controls.target, this.camera.zoom].map(short);

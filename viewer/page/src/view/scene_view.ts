@@ -13,6 +13,12 @@ interface Drawn {
   wireframe: THREE.Mesh<THREE.BufferGeometry, THREE.MeshBasicMaterial>;
 }
 
+/** In pixels. */
+export interface PictureSize {
+  width: number;
+  height: number;
+}
+
 /** More than any graphics card takes in one buffer. */
 const LARGEST_BUFFER = 0x80000000;
 
@@ -39,9 +45,12 @@ export class SceneView {
   private filled = false;
   private checkMemory = false;
   private hasFramed = false;
+  /** Nothing is drawn but by `draw`, at a size that is not the window's. */
+  private takesPictures = false;
 
   constructor(readonly canvas: HTMLCanvasElement, private readonly model: Model) {
-    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, powerPreference: "high-performance" });
+    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, alpha: true, powerPreference: "high-performance" });
+    this.renderer.setClearAlpha(1);
     this.rig = new CameraRig(canvas, () => this.invalidate());
     this.layers = new Layers(model);
     this.scene.add(new THREE.HemisphereLight(0xffffff, 0x8890a0, 1.4), this.light, this.light.target, this.layers.group);
@@ -75,7 +84,7 @@ export class SceneView {
   }
 
   setBackground(colour: string): void {
-    this.renderer.setClearColor(new THREE.Color(colour));
+    this.renderer.setClearColor(new THREE.Color(colour), this.renderer.getClearAlpha());
     this.invalidate();
   }
 
@@ -100,13 +109,56 @@ export class SceneView {
     this.dirty = true;
   }
 
-  private resize(): void {
-    const { clientWidth: width, clientHeight: height } = this.canvas;
-    if (width === 0 || height === 0) return;
+  /** As large as the window shows it. */
+  get windowSize(): PictureSize {
     const ratio = Math.min(devicePixelRatio, 2);
-    this.renderer.setPixelRatio(ratio);
-    this.renderer.setSize(width, height, false);
-    shared.resolution.value.set(width, height);
+    return { width: Math.floor(ratio * this.canvas.clientWidth), height: Math.floor(ratio * this.canvas.clientHeight) };
+  }
+
+  /** No picture can be wider or higher. */
+  get largestSide(): number {
+    const gl = this.renderer.getContext();
+    const [width, height] = gl.getParameter(gl.MAX_VIEWPORT_DIMS) as Int32Array;
+    return Math.min(width!, height!, gl.getParameter(gl.MAX_RENDERBUFFER_SIZE) as number);
+  }
+
+  /**
+   * From now on `draw` alone draws, at that size, whatever becomes of the window, and without the ground where that
+   * is asked for; null is the window's picture again. Throws, with a sentence, where WebGL has none so large.
+   */
+  setPicture(size: PictureSize | null, transparent = false): void {
+    this.takesPictures = false;
+    this.renderer.setClearAlpha(size && transparent ? 0 : 1);
+    if (!size) return this.resize();
+    const { width, height } = size;
+    const most = this.largestSide;
+    if (Math.max(width, height) > most) throw new Error(`WebGL draws no picture of ${width} × ${height} here: ${most} pixels a side are the most. Choose a smaller size.`);
+    this.rig.advance(Infinity);  // lands
+    this.setSize(size, height / (this.canvas.clientHeight || height));
+    this.takesPictures = true;
+    const gl = this.renderer.getContext();
+    if (gl.drawingBufferWidth !== width || gl.drawingBufferHeight !== height)
+      throw new Error(`WebGL has no memory for a picture of ${width} × ${height}. Choose a smaller size.`);
+  }
+
+  /** A sentence about why what was drawn last is no picture, or null. */
+  get fault(): string | null {
+    const gl = this.renderer.getContext();
+    const error = gl.getError();
+    if (gl.isContextLost() || error === gl.CONTEXT_LOST_WEBGL) return "The graphics card has given up.";
+    return error === gl.OUT_OF_MEMORY ? "The graphics card has not enough memory for pictures of this size. Choose a smaller one." : null;
+  }
+
+  private resize(): void {
+    const size = this.windowSize;
+    if (this.takesPictures || size.width === 0 || size.height === 0) return;
+    this.setSize(size, Math.min(devicePixelRatio, 2));
+  }
+
+  /** Marks are `ratio` times as large as their sizes in pixels say. */
+  private setSize({ width, height }: PictureSize, ratio: number): void {
+    this.renderer.setDrawingBufferSize(width, height, 1);
+    shared.resolution.value.set(width / ratio, height / ratio);
     shared.pixelRatio.value = ratio;
     this.rig.resize(width, height);
   }
@@ -363,7 +415,7 @@ export class SceneView {
     requestAnimationFrame((next) => this.turn(next));
     this.rig.advance(now);
     this.onTurn();
-    if (!this.dirty) return;
+    if (!this.dirty || this.takesPictures) return;
     this.draw();
     this.times.push(now);
     if (this.times.length > 600) this.times.splice(0, 300);

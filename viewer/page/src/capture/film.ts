@@ -1,15 +1,7 @@
-/** Pictures and videos of the 3D view. */
-import { download } from "./panels/dom";
-import type { SceneView } from "./view/scene_view";
+import { download, stamp } from "../panels/dom";
+import type { SceneView } from "../view/scene_view";
 
-const stamp = (): string => new Date().toISOString().slice(0, 19).replace(/[:T]/g, "-");
-
-export function savePicture(view: SceneView): void {
-  view.draw();  // the browser keeps the canvas only until the end of this turn
-  view.canvas.toBlob((blob) => blob && download(blob, `supple-${stamp()}.png`), "image/png");
-}
-
-/** A WebM film of what is drawn, until it is stopped. */
+/** A WebM film of what is drawn while it runs, in its own time: what comes too late is left out. */
 export class Film {
   private recorder: MediaRecorder | null = null;
 

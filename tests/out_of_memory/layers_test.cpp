@@ -1,0 +1,87 @@
+// A layer for which there is no memory: the session says so, says which layers it gave up, and goes on.
+
+#include <gtest/gtest.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+
+#include "steady_state/allocation_count.hpp"
+#include "support/viewer_page.hpp"
+
+namespace supple::viewer {
+namespace {
+
+using Json = nlohmann::json;
+using Message = ViewerMessage;
+
+constexpr std::size_t large = 1'000'000;
+
+/// Memory in pieces of `large` bytes and more is refused as long as it lives.
+class Scarcity {
+ public:
+  Scarcity() { refuse_allocations_from(large); }
+  ~Scarcity() { refuse_allocations_from(std::size_t(-1)); }
+  Scarcity(const Scarcity&) = delete;
+  Scarcity& operator=(const Scarcity&) = delete;
+};
+
+/// Triangles on one another, which make 90,000 candidate pairs.
+Show two_heaps() {
+  Show show;
+  for (const char* name : {"heap", "other heap"}) {
+    ShowObject heap;
+    heap.mesh.name = name;
+    for (std::uint32_t i = 0; i < 300; ++i) {
+      heap.mesh.positions.insert(heap.mesh.positions.end(), {{0, 0, 0}, {1, 0, 0}, {0, 1, 0.001 * i}});
+      heap.mesh.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+    }
+    show.objects.push_back(std::move(heap));
+  }
+  return show;
+}
+
+TEST(OutOfMemory, ALayerThatFailsIsGivenUpWithTheOthersAndTheyAreNamed) {
+  TestPage page(two_heaps());
+  page.scene();
+  page.frame();
+  page.ask({{"do", "layers"}, {"candidates", true}, {"octree", {{"objects", {0}}, {"level", 0}}}});
+  page.say({{"do", "credit"}, {"frames", 1}});
+  Json failure;
+  std::span<const std::byte> next;
+  {
+    const Scarcity scarcity;
+    const Message message(page.session.next_message());
+    EXPECT_EQ(message.kind, Message::failure);
+    failure = message.json;
+    next = page.session.next_message();
+  }
+  const Message without(next);  // against the credit that the failure has not used
+  EXPECT_EQ(failure["fatal"], false);
+  EXPECT_FALSE(failure.contains("id"));
+  EXPECT_EQ(failure["layers"], (Json{"candidates", "octree"}));
+  EXPECT_NE(failure["message"].get<std::string>().find("memory"), std::string::npos);
+  EXPECT_EQ(without.kind, Message::frame);
+  EXPECT_FALSE(without.has(38) || without.has(40, 0));
+
+  // Asked for anew they come: they were given up, not forbidden.
+  page.ask({{"do", "layers"}, {"candidates", true}});
+  const Message frame = page.frame();
+  EXPECT_EQ(frame.section(38).count, 90'000u);
+  EXPECT_FALSE(frame.has(40, 0));
+}
+
+TEST(OutOfMemory, AFrameWithoutLayersThatFailsEndsTheSession) {
+  TestPage page(two_heaps());
+  page.scene();
+  page.say({{"do", "credit"}, {"frames", 1}});
+  const Scarcity scarcity;
+  const Json failure = page.only(Message::failure).json;
+  EXPECT_EQ(failure["fatal"], true);
+  EXPECT_FALSE(failure.contains("layers"));
+  EXPECT_TRUE(page.session.ended());
+}
+
+}  // namespace
+}  // namespace supple::viewer
