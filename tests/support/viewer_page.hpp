@@ -27,11 +27,12 @@ class TestPage {
 
   explicit TestPage(Show show) : session(std::move(show)) { session.greet(); }
 
+  /// The next message as it is sent, or nothing; until the next call.
+  std::span<const std::byte> next_bytes() { return session.next_message(message_); }
   /// All messages that wait.
   std::vector<ViewerMessage> drain() {
     std::vector<ViewerMessage> messages;
-    for (auto bytes = session.next_message(); !bytes.empty(); bytes = session.next_message())
-      messages.emplace_back(bytes);
+    for (auto bytes = next_bytes(); !bytes.empty(); bytes = next_bytes()) messages.emplace_back(bytes);
     return messages;
   }
   /// The one message that waits.
@@ -85,6 +86,7 @@ class TestPage {
   Session session;
 
  private:
+  MessageWriter message_;
   int last_id_ = 0;
 };
 

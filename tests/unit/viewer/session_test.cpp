@@ -38,9 +38,10 @@ Show touching_balls() {
 
 TEST(ViewerSession, TellsTheSceneAndThenFramesAgainstCredit) {
   Session unseen(three_balls());
-  EXPECT_TRUE(unseen.next_message().empty());  // nobody was greeted
+  MessageWriter message;
+  EXPECT_TRUE(unseen.next_message(message).empty());  // nobody was greeted
   unseen.advance(1);
-  EXPECT_TRUE(unseen.next_message().empty());
+  EXPECT_TRUE(unseen.next_message(message).empty());
 
   TestPage page(three_balls());
   const Message scene = page.scene();
