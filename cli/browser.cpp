@@ -1,13 +1,21 @@
 #include "browser.hpp"
 
 #include <fcntl.h>
+#include <fmt/core.h>
 #include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <array>
+#include <cerrno>
+#include <cstdio>
 #include <cstdlib>
+#include <cstring>
+#include <string_view>
+#include <system_error>
 #include <thread>
+
+#include "text.hpp"
 
 extern char** environ;
 
@@ -32,10 +40,50 @@ bool has_screen() {
 }
 #endif
 
-}  // namespace
+namespace fs = std::filesystem;
 
-void open_browser(const std::string& url) {
-  if (!has_screen()) return;
+/// Where programs of this user keep what lasts no longer than they, else where those of all users do.
+fs::path folder_of_pages() {
+  const char* const runtime = std::getenv("XDG_RUNTIME_DIR");
+  if (runtime && *runtime == '/' && access(runtime, W_OK) == 0) return runtime;
+  std::error_code error;
+  const fs::path temporary = fs::temp_directory_path(error);
+  return error ? "/tmp" : temporary;
+}
+
+bool write_text(int file, const std::string& text) {
+  std::FILE* const stream = fdopen(file, "w");
+  if (!stream) {
+    close(file);
+    return false;
+  }
+  const bool written = std::fputs(text.c_str(), stream) >= 0;
+  return std::fclose(stream) == 0 && written;
+}
+
+/// A page that leads to an address: a new file of mode 0600. Gives no path when it cannot be written.
+fs::path write_page(const std::string& url) {
+  const std::string text = fmt::format(
+      "<!doctype html>\n<html lang=\"en\"><meta charset=\"utf-8\"><title>Supple</title>\n"
+      "<meta name=\"referrer\" content=\"no-referrer\">\n"
+      "<meta http-equiv=\"refresh\" content=\"0; url={0}\">\n"
+      "<p><a href=\"{0}\">To the page of supple view</a></p>\n</html>\n",
+      url);
+  constexpr std::string_view ending = ".html";
+  std::string name = folder_of_pages() / "supple-XXXXXX";
+  name += ending;
+  const int file = mkostemps(name.data(), static_cast<int>(ending.size()), O_CLOEXEC);
+  if (file >= 0 && write_text(file, text)) return name;
+  fmt::print(stderr,
+             "supple: warning: {}: cannot write the page that leads the browser to the address: {}; open it "
+             "yourself\n",
+             one_line(name), std::strerror(errno));
+  if (file >= 0) unlink(name.c_str());
+  return {};
+}
+
+/// Does nothing when there is no program to open it.
+void open_in_browser(const fs::path& page) {
   // What browsers say on the terminal is for nobody.
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
@@ -46,13 +94,25 @@ void open_browser(const std::string& url) {
   posix_spawnattr_t attributes;
   posix_spawnattr_init(&attributes);
   posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
-  std::string program = opener, argument = url;
+  std::string program = opener, argument = page;
   const std::array<char*, 3> arguments{program.data(), argument.data(), nullptr};
   pid_t child = 0;
   if (posix_spawnp(&child, opener, &actions, &attributes, arguments.data(), environ) == 0)
     std::thread([child] { waitpid(child, nullptr, 0); }).detach();
   posix_spawnattr_destroy(&attributes);
   posix_spawn_file_actions_destroy(&actions);
+}
+
+}  // namespace
+
+BrowserVisit::BrowserVisit(const std::string& url) {
+  if (!has_screen()) return;
+  page_ = write_page(url);
+  if (!page_.empty()) open_in_browser(page_);
+}
+
+BrowserVisit::~BrowserVisit() {
+  if (!page_.empty()) unlink(page_.c_str());
 }
 
 }  // namespace supple::cli

@@ -14,6 +14,7 @@
 #include "frame_files.hpp"
 #include "progress.hpp"
 #include "session/statistics.hpp"
+#include "session/utf8.hpp"
 #include "supple/error.hpp"
 #include "text.hpp"
 
@@ -135,7 +136,7 @@ viewer::ShowObject object_of(const InputObject& object, const ViewOptions& optio
 }
 
 std::string title_of(const std::vector<std::string>& inputs) {
-  const std::string first = valid_utf8(std::filesystem::path(inputs.front()).filename().string());
+  const std::string first = viewer::valid_utf8(std::filesystem::path(inputs.front()).filename().string());
   return inputs.size() == 1 ? first : fmt::format("{} and {} more", first, inputs.size() - 1);
 }
 

@@ -102,7 +102,9 @@ constexpr const char* view_footer = R"(Examples:
   supple view scenes/nine.toml --export nine.html
       One file to send: whoever opens it can do the same, without supple and without a server.
 
-The address has a token, another one each time, which keeps others out. Ctrl-C ends the program; the page says so.)";
+The address has a token, another one each time, which keeps others out. The browser is led there by a file that only you can
+read, which goes when the program ends; a browser from a Snap or a Flatpak may not see that file: open the address itself
+there. Ctrl-C ends the program; the page says so.)";
 
 constexpr const char* info_footer = R"(Examples:
   supple info rabbit.obj

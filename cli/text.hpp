@@ -3,7 +3,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
-#include <string_view>
 
 #include "supple/scene.hpp"
 
@@ -12,9 +11,6 @@ namespace supple::cli {
 /// The text with each line break, tab or other control character made a blank: error messages are one line,
 /// whatever a file is called.
 std::string one_line(std::string text);
-
-/// The text with every byte that is not part of valid UTF-8 made U+FFFD: file names need not be text at all.
-std::string valid_utf8(std::string_view text);
 
 /// A table of more rows says how many it leaves out.
 inline constexpr std::size_t most_rows = 40;

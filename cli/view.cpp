@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <cstdio>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -93,7 +94,8 @@ int serve(viewer::Show show, const ViewOptions& options) {
   const Interruption interruption;
   fmt::print("Open {}\n", server.url());
   std::fflush(stdout);
-  if (options.open_browser) open_browser(server.url());
+  std::optional<BrowserVisit> visit;
+  if (options.open_browser) visit.emplace(server.url());
   server.run([&] { return interruption.signal() != 0; });
   return exit_done;
 }

@@ -9,6 +9,7 @@ import random
 import re
 import resource
 import signal
+import struct
 import subprocess
 import sys
 import time
@@ -39,6 +40,11 @@ def datasets(file):
     return found
 
 
+def datasets_of(path):
+    with h5py.File(path, "r") as file:
+        return datasets(file)
+
+
 def rows_in(path, values, frame_count):
     """How many rows of a dataset belong to so many frames."""
     if path == "scene_file" or path.endswith(("/rest_positions", "/triangles")):
@@ -61,8 +67,7 @@ class RecordingTest(ProgramTest):
 
     def assert_first_frames(self, path, whole, at_least):
         """The file opens, and its frames are the first ones of `whole`, values of datasets."""
-        with h5py.File(path, "r") as file:
-            values = datasets(file)
+        values = datasets_of(path)
         frame_count = len(values["time"])
         self.assertGreaterEqual(frame_count, at_least)
         self.assertEqual(values.keys(), whole.keys())
@@ -83,12 +88,13 @@ class Killed(RecordingTest):
 
     FLUSHES = ("--frames-between-flushes", 5)
 
+    FRAMES = 600
+
     def setUp(self):
         super().setUp()
-        self.record("whole.h5", 600)
+        self.record("whole.h5", self.FRAMES)
         if h5py:
-            with h5py.File(self.folder / "whole.h5", "r") as file:
-                self.whole = datasets(file)
+            self.whole = datasets_of(self.folder / "whole.h5")
 
     def check(self, output):
         flushed = [int(line) for line in output.split("\n")[:-1] if line.isdigit()]
@@ -102,46 +108,20 @@ class Killed(RecordingTest):
         self.assertEqual((done.status, done.error), (1, ""))
         result = json.loads(done.out)
         self.assertGreaterEqual(result["frames"][1], max(flushed, default=0))
-        self.assertEqual(result["what"], "number of frames: 600 and {}".format(result["frames"][1]))
+        self.assertEqual(result["what"], "number of frames: {} and {}".format(self.FRAMES, result["frames"][1]))
         path.unlink()
 
     def test_at_random_moments(self):
+        # Fewer frames than there are to compare with: on a busy machine a moment can be long.
+        frames = self.FRAMES - 1
         moments = random.Random(7)
         for _ in range(30):
-            with subprocess.Popen([RECORD, "killed.h5", "100000", *map(str, self.FLUSHES), "--pause", "200"],
+            with subprocess.Popen([RECORD, "killed.h5", str(frames), *map(str, self.FLUSHES), "--pause", "200"],
                                   cwd=self.folder, stdout=subprocess.PIPE, text=True) as process:
                 time.sleep(moments.uniform(0.005, 0.12))
                 process.send_signal(signal.SIGKILL)
                 output = process.stdout.read()
             self.check(output)
-
-    def test_at_single_writes(self):
-        """The places are chosen so that each kind of write is among them: prime steps through all writes of 20 frames."""
-        writes = int(self.record("count.h5", 20, *self.FLUSHES).stdout.split()[-1])
-        self.assertGreater(writes, 300)
-        for option, step in (("--kill-at", 31), ("--tear-at", 29)):
-            for number in range(0, writes, step):
-                done = self.record("killed.h5", 20, *self.FLUSHES, option, number, check=False)
-                self.assertEqual(done.returncode, -signal.SIGKILL)
-                self.check(done.stdout)
-
-    def test_when_chunk_indexes_split(self):
-        """A node of an index has 64 entries, a frame each."""
-        arguments = (150, "--contacts", "none", "--frames-between-flushes", 10)
-        self.record("whole.h5", 150, "--contacts", "none")
-        writes = int(self.record("count.h5", *arguments).stdout.split()[-1])
-        whole = Killed.whole_of(self.folder / "whole.h5") if h5py else None
-        for number in range(writes // 2 - 80, writes // 2 + 80, 11):
-            done = self.record("killed.h5", *arguments, "--tear-at", number, check=False)
-            self.assertEqual(done.returncode, -signal.SIGKILL)
-            flushed = int(done.stdout.split()[-1])
-            if h5py:
-                self.assert_first_frames(self.folder / "killed.h5", whole, flushed)
-
-    @staticmethod
-    def whole_of(path):
-        with h5py.File(path, "r") as file:
-            return datasets(file)
 
     def test_disk_full(self):
         for number in (0, 100, 400, 1000):
@@ -164,6 +144,77 @@ class Killed(RecordingTest):
         self.assertEqual(done.returncode, 2)
         self.assertRegex(done.stderr, r"^killed\.h5: writing failed: .* the recording ends after its first \d+ frames")
         self.check(done.stdout)
+
+
+class Stopped(RecordingTest):
+    """What a recorder does to its file is done again, up to each single write and into it."""
+
+    PAGE = 4096  # a kill stops a write only where a page of memory ends
+
+    def log_of(self, *arguments):
+        """What is done to files in the course of a recording: the entries that tests/recording/record_motion.cpp describes."""
+        self.record("logged.h5", *arguments, "--log", "log")
+        log = (self.folder / "log").read_bytes()
+        place = 0
+        while place < len(log):
+            kind, first, second, size = struct.unpack_from("=4q", log, place)
+            place += 32
+            yield kind, first, second, log[place : place + size]
+            place += size
+
+    def ends_of(self, address, size):
+        """Where a write may end: in full, and at some of the pages that it crosses."""
+        crossed = range((address // self.PAGE + 1) * self.PAGE, address + size, self.PAGE)
+        cuts = {crossed[0], crossed[len(crossed) // 2], crossed[-1]} if crossed else set()
+        return [*sorted(cuts), address + size]
+
+    def states(self, log):
+        """Makes a file go through all its states, named or not, and yields in each how many frames were flushed (None while
+        the recording has no name)."""
+        entries = list(log)
+        recording = next(file for kind, file, _, data in entries if kind == 0 and data.startswith(b"\x89HDF"))
+        flushed = None
+        with open(self.folder / "stopped.h5", "w+b", buffering=0) as file:
+            for kind, number, address, data in entries:
+                if kind == 2:
+                    flushed = number
+                elif number == recording and kind == 1:
+                    file.truncate(address)
+                    yield flushed
+                elif number == recording:
+                    done = address
+                    for end in self.ends_of(address, len(data)):
+                        os.pwrite(file.fileno(), data[done - address : end - address], done)
+                        done = end
+                        yield flushed
+
+    def check_each_state(self, frames, *arguments, from_frame=0, least):
+        """All states since so many frames were flushed, which are at least so many."""
+        self.record("whole.h5", frames, *arguments)
+        whole = datasets_of(self.folder / "whole.h5")
+        checked = 0
+        for flushed in self.states(self.log_of(frames, *arguments, "--frames-between-flushes", 5)):
+            if flushed is None or flushed < from_frame:
+                continue
+            with self.subTest(state=checked, flushed=flushed):
+                self.assert_first_frames(self.folder / "stopped.h5", whole, flushed)
+            checked += 1
+        self.assertGreater(checked, least)
+        self.assertEqual(self.assert_first_frames(self.folder / "stopped.h5", whole, frames), frames)
+
+    @with_h5py
+    def test_at_each_write(self):
+        self.check_each_state(10, least=400)
+
+    @with_h5py
+    def test_when_chunk_indexes_split(self):
+        """A node of an index has 64 entries, a frame each."""
+        self.check_each_state(65, "--contacts", "none", from_frame=60, least=100)
+
+    @with_h5py
+    def test_when_columns_get_another_chunk(self):
+        """Chunks have 1024 frames."""
+        self.check_each_state(1025, "--contacts", "none", from_frame=1020, least=100)
 
 
 class Document(RecordingTest):

@@ -246,28 +246,61 @@ class Serve(ViewTest):
         for part in ("warning", "--host 0.0.0.0", "look and steer"):
             self.assertIn(part, error)
 
-    def test_browser(self):
-        self.write("a.obj", TRIANGLE)
-        opener = self.write("bin/xdg-open", '#!/bin/sh\nprintf "%s" "$*" > opened.part\nmv opened.part opened\necho noise\n')
+    def visit(self, *arguments, opens=True, **environment):
+        """Starts and ends it with an opener of browsers that notes what it is given. Gives the address, what was noted (its
+        arguments, and mode and text of the file that they name), and what the program said of errors."""
+        opener = self.write("bin/xdg-open", """#!/bin/sh
+            printf '%s\\n' "$*" "$(stat -c %a "$1")" "$(cat "$1")" > opened.part
+            mv opened.part opened
+            echo noise
+            """)
         opener.chmod(0o755)
-        environment = {"PATH": f"{opener.parent}:{os.environ['PATH']}"}
+        noted = self.folder / "opened"
+        noted.unlink(missing_ok=True)
+        process, url = self.start("a.obj", *arguments, PATH=f"{opener.parent}:{os.environ['PATH']}", **environment)
+        for _ in range(600 if opens else 5):
+            if noted.exists():
+                break
+            select.select([], [], [], 0.1)
+        process.send_signal(signal.SIGINT)
+        output, error = process.communicate()
+        self.assertEqual((output, process.returncode), ("", 0))
+        return url, noted.read_text().split("\n", 2) if noted.exists() else None, error
 
-        def opened(*arguments, **more):
-            (self.folder / "opened").unlink(missing_ok=True)
-            process, url = self.start("a.obj", *arguments, **environment, **more)
-            for _ in range(100):
-                if (self.folder / "opened").exists() or "DISPLAY" not in more or arguments:
-                    break
-                select.select([], [], [], 0.1)
-            process.send_signal(signal.SIGINT)
-            self.assertEqual(process.communicate(), ("", ""))
-            text = (self.folder / "opened").read_text() if (self.folder / "opened").exists() else None
-            return text, url
+    def test_browser_is_led_by_a_file_that_others_cannot_read(self):
+        self.write("a.obj", TRIANGLE)
+        runtime, temporary = self.folder / "runtime", self.folder / "temporary"
+        runtime.mkdir()
+        temporary.mkdir()
+        for folder, environment in (
+            (runtime, {"DISPLAY": ":0", "XDG_RUNTIME_DIR": str(runtime)}),
+            (runtime, {"WAYLAND_DISPLAY": "wayland-0", "DISPLAY": ":0", "XDG_RUNTIME_DIR": str(runtime)}),
+            (temporary, {"DISPLAY": ":0", "XDG_RUNTIME_DIR": ""}),
+            (temporary, {"DISPLAY": ":0", "XDG_RUNTIME_DIR": str(self.folder / "none")}),
+        ):
+            with self.subTest(environment=environment):
+                url, (arguments, mode, page), error = self.visit(TMPDIR=str(temporary), **environment)
+                self.assertEqual(error, "")
+                self.assertRegex(arguments, "^" + re.escape(f"{folder}/supple-") + r"\w{6}\.html$")
+                self.assertEqual(mode, "600")
+                self.assertIn(f'<meta http-equiv="refresh" content="0; url={url}">', page)
+                self.assertEqual(list(folder.iterdir()), [], "the file stays after the end")
 
-        text, url = opened(DISPLAY=":0")
-        self.assertEqual(text, url)
-        self.assertIsNone(opened("--no-open", DISPLAY=":0")[0])
-        self.assertIsNone(opened()[0])
+    def test_no_browser(self):
+        self.write("a.obj", TRIANGLE)
+        temporary = self.folder / "temporary"
+        temporary.mkdir()
+        here = {"TMPDIR": str(temporary), "XDG_RUNTIME_DIR": ""}
+        for arguments, environment in ((("--no-open",), {"DISPLAY": ":0"}), ((), {}), ((), {"DISPLAY": ""})):
+            self.assertEqual(self.visit(*arguments, opens=False, **here, **environment)[1:], (None, ""))
+            self.assertEqual(list(temporary.iterdir()), [])
+
+    @unittest.skipUnless(os.path.isdir("/proc/self"), "needs a folder where nobody can write, not even root")
+    def test_where_no_file_for_the_browser_can_be_written(self):
+        self.write("a.obj", TRIANGLE)
+        _, opened, error = self.visit(opens=False, DISPLAY=":0", TMPDIR="/proc/self", XDG_RUNTIME_DIR="")
+        self.assertIsNone(opened)
+        self.assertRegex(error, r"^supple: warning: /proc/self/supple-\w*\.html: cannot write .*; open it yourself\n$")
 
 
 @needs_viewer

@@ -7,23 +7,27 @@
 //   --frames-between-flushes N  0 (default): the recorder flushes as it sees fit
 //   --copies N                  objects of each kind, 1
 //   --pause MICROSECONDS        after each frame
-//   --kill-at N                 the process ends itself, as kill -9 does, in place of its Nth write to a file
-//   --tear-at N                 the same, after the part of that write that lies in its first page
-//   --fail-at N                 that write and all after it fail as on a full disk
+//   --log FILE                  notes all that is done to files, for a script to do it again and stop
+//   anywhere
+//   --fail-at N                 the Nth write to a file and all after it fail as on a full disk
 //
-// It prints the number of frames after each flush, and at the end the number of writes.
+// It prints the number of frames after each flush.
+//
+// Of the log each entry is four 64-bit integers, in the machine's order, and what follows them:
+//
+//   0 FILE OFFSET SIZE          SIZE bytes, which are written there; FILE is the number of a file that is
+//   open 1 FILE SIZE 0               the file is given this size 2 FRAMES 0 0                that many frames
+//   have been flushed; before the first, the recording has no name yet
 
-#include <fcntl.h>
-#include <signal.h>
 #include <sys/syscall.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <cerrno>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -34,30 +38,45 @@
 
 namespace {
 
-std::int64_t writes = 0, kill_at = -1, tear_at = -1, fail_at = -1;
+std::int64_t writes = 0, fail_at = -1;
+std::FILE* log_file = nullptr;
 
-ssize_t counted_write(int file, const void* bytes, std::size_t size, off_t offset) {
+void note(std::int64_t kind, std::int64_t a, std::int64_t b, std::int64_t c, const void* bytes = nullptr) {
+  if (!log_file) return;
+  const std::int64_t entry[] = {kind, a, b, c};
+  std::fwrite(entry, sizeof entry, 1, log_file);
+  if (bytes) std::fwrite(bytes, 1, static_cast<std::size_t>(c), log_file);
+}
+
+ssize_t noted_write(int file, const void* bytes, std::size_t size, off_t offset) {
   const std::int64_t number = writes++;
-  if (number == tear_at) {
-    const std::size_t in_page = 4096 - static_cast<std::size_t>(offset) % 4096;
-    syscall(SYS_pwrite64, file, bytes, std::min(size, in_page), offset);
-  }
-  if (number == tear_at || number == kill_at) kill(getpid(), SIGKILL);
   if (fail_at >= 0 && number >= fail_at) {
     errno = ENOSPC;
     return -1;
   }
+  note(0, file, offset, static_cast<std::int64_t>(size), bytes);
   return syscall(SYS_pwrite64, file, bytes, size, offset);
+}
+
+int noted_truncation(int file, off_t size) {
+  note(1, file, size, 0);
+  return static_cast<int>(syscall(SYS_ftruncate, file, size));
 }
 
 }  // namespace
 
-// Takes the place of the C library's in this program.
+// Take the place of the C library's in this program.
 extern "C" ssize_t pwrite(int file, const void* bytes, std::size_t size, off_t offset) {
-  return counted_write(file, bytes, size, offset);
+  return noted_write(file, bytes, size, offset);
 }
 extern "C" ssize_t pwrite64(int file, const void* bytes, std::size_t size, off_t offset) {
-  return counted_write(file, bytes, size, offset);
+  return noted_write(file, bytes, size, offset);
+}
+extern "C" int ftruncate(int file, off_t size) noexcept {
+  return noted_truncation(file, size);
+}
+extern "C" int ftruncate64(int file, off_t size) noexcept {
+  return noted_truncation(file, size);
 }
 
 namespace {
@@ -69,6 +88,12 @@ struct Arguments {
   std::uint64_t frames = 0, frames_between_flushes = 0, copies = 1, pause = 0;
   ContactMode contacts = ContactMode::intersection;
 };
+
+std::FILE* open_log(const char* name) {
+  std::FILE* const file = std::fopen(name, "wb");
+  if (!file) std::exit(2);
+  return file;
+}
 
 Arguments parse(int count, char** words) {
   Arguments arguments;
@@ -88,10 +113,8 @@ Arguments parse(int count, char** words) {
       arguments.copies = static_cast<std::uint64_t>(number);
     else if (option == "--pause")
       arguments.pause = static_cast<std::uint64_t>(number);
-    else if (option == "--kill-at")
-      kill_at = number;
-    else if (option == "--tear-at")
-      tear_at = number;
+    else if (option == "--log")
+      log_file = open_log(words[i + 1]);
     else if (option == "--fail-at")
       fail_at = number;
     else
@@ -154,19 +177,21 @@ class Motion {
 void run(const Arguments& arguments) {
   Motion motion(arguments);
   Recorder recorder(arguments.path, motion.header());
+  note(2, 0, 0, 0);
   for (std::uint64_t frame = 0; frame < arguments.frames; ++frame) {
     const DetectResult& result = motion.step(frame);
     const auto positions = motion.positions();
     recorder.add(static_cast<double>(frame) * motion.header().time_step, positions, result);
     if (arguments.frames_between_flushes > 0 && (frame + 1) % arguments.frames_between_flushes == 0) {
       recorder.flush();
+      note(2, static_cast<std::int64_t>(frame + 1), 0, 0);
       std::printf("%llu\n", static_cast<unsigned long long>(frame + 1));
       std::fflush(stdout);
     }
     if (arguments.pause > 0) usleep(static_cast<useconds_t>(arguments.pause));
   }
   recorder.close();
-  std::printf("writes %lld\n", static_cast<long long>(writes));
+  if (log_file && std::fclose(log_file) != 0) throw std::runtime_error("the log cannot be written");
 }
 
 }  // namespace

@@ -20,18 +20,23 @@
 
 namespace supple::viewer {
 
+using Json = nlohmann::json;
+/// Elements of sections.
+using Pair = std::array<std::uint32_t, 2>;
+using Ids = std::array<std::uint32_t, 8>;
+using Row = std::array<float, 8>;
+
 /// A page without a network: what it is told and what it says.
 class TestPage {
  public:
-  using Json = nlohmann::json;
-
   explicit TestPage(Show show) : session(std::move(show)) { session.greet(); }
 
+  /// The next message as it is sent, or nothing; until the next call.
+  std::span<const std::byte> next_bytes() { return session.next_message(message_); }
   /// All messages that wait.
   std::vector<ViewerMessage> drain() {
     std::vector<ViewerMessage> messages;
-    for (auto bytes = session.next_message(); !bytes.empty(); bytes = session.next_message())
-      messages.emplace_back(bytes);
+    for (auto bytes = next_bytes(); !bytes.empty(); bytes = next_bytes()) messages.emplace_back(bytes);
     return messages;
   }
   /// The one message that waits.
@@ -85,6 +90,7 @@ class TestPage {
   Session session;
 
  private:
+  MessageWriter message_;
   int last_id_ = 0;
 };
 
@@ -102,6 +108,14 @@ inline Show three_balls() {
   show.objects = {test_ball("waves", {}), test_ball("soft", {3, 0, 0}), test_ball("rest", {0, 0, 2.2})};
   show.objects[0].motion = Sway{.amplitude = 0.05};
   show.objects[1].motion = MassSpringMotion{.velocity = {-1, 0, 0}};
+  return show;
+}
+
+/// Two balls that cut through each other, and one in waves a little further on.
+inline Show touching_balls() {
+  Show show;
+  show.objects = {test_ball("left", {}), test_ball("right", {1.5, 0, 0}), test_ball("waves", {4, 0, 0})};
+  show.objects[2].motion = Sway{.velocity = {-1, 0.1, 0}, .amplitude = 0.05};
   return show;
 }
 
@@ -142,8 +156,6 @@ inline std::vector<Vec3f> as_floats(std::span<const Vec3d> positions, Vec3d cent
 
 /// The contacts of a frame are those of the library, and so are their points.
 inline void expect_contacts(const ViewerMessage& frame, const DetectResult& result, Vec3d center) {
-  using Ids = std::array<std::uint32_t, 8>;
-  using Row = std::array<float, 8>;
   std::vector<Ids> contacts;
   for (const Contact& c : result.contacts)
     contacts.push_back({c.object_a.index, c.triangle_a, c.object_b.index, c.triangle_b,
@@ -156,7 +168,6 @@ inline void expect_contacts(const ViewerMessage& frame, const DetectResult& resu
   ASSERT_EQ(sent.size(), expected.size());
   for (std::size_t i = 0; i < sent.size(); ++i)
     EXPECT_EQ((Vec3f{sent[i][0], sent[i][1], sent[i][2]}), expected[i]);
-  using Pair = std::array<std::uint32_t, 2>;
   std::vector<Pair> pairs;
   for (const ObjectPair& pair : result.object_pairs) pairs.push_back({pair.a.index, pair.b.index});
   EXPECT_EQ(frame.values<Pair>(33), pairs);

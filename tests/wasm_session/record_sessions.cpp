@@ -160,8 +160,9 @@ nlohmann::json play(const Script& script, std::span<const std::byte> packed) {
   session.greet();
   MessageHash hash;
   std::uint64_t messages = 0, frames = 0, contacts = 0;
+  supple::viewer::MessageWriter writer;
   const auto drain = [&] {
-    for (auto bytes = session.next_message(); !bytes.empty(); bytes = session.next_message()) {
+    for (auto bytes = session.next_message(writer); !bytes.empty(); bytes = session.next_message(writer)) {
       hash.add(bytes);
       const supple::ViewerMessage message(bytes);
       ++messages;

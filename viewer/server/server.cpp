@@ -84,7 +84,7 @@ class Page : public std::enable_shared_from_this<Page> {
 
   void send(Message message) {
     if (is_closing_) return;
-    const asio::const_buffer bytes(message->data(), message->size());
+    const asio::const_buffer bytes(message.bytes.data(), message.bytes.size());
     socket_.async_write(
         bytes, [self = shared_from_this(), message](error_code, std::size_t) { self->listener_.sent(); });
   }

@@ -105,8 +105,8 @@ void SessionThread::take_commands() {
   if (taken_.page) {
     greeted_ = *taken_.page;
     session_.greet();
-    // The page before may still be reading from the old one.
-    buffer_ = std::make_shared<std::vector<std::byte>>();
+    // What was written last may still be on its way to the page before.
+    message_ = std::make_shared<MessageWriter>();
     last_ = Clock::now();
   }
   for (const std::string& text : taken_.commands) session_.command(text);
@@ -131,18 +131,17 @@ void SessionThread::offer_message() {
     // A page that came just now is greeted first.
     if (page_ == 0 || page_ != greeted_ || in_delivery_) return;
   }
-  const std::span<const std::byte> message = session_.next_message();
+  const std::span<const std::byte> message = session_.next_message(*message_);
   if (message.empty()) {
     ended_ = session_.ended();
     return;
   }
-  buffer_->assign(message.begin(), message.end());
   {
     const std::lock_guard lock(mutex_);
     if (page_ != greeted_) return;
     in_delivery_ = true;
   }
-  listener_.message(greeted_, buffer_);
+  listener_.message(greeted_, {message, message_});
 }
 
 }  // namespace supple::viewer

@@ -9,17 +9,23 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <span>
 #include <string>
 #include <thread>
 #include <vector>
 
+#include "session/message.hpp"
 #include "session/session.hpp"
 
 namespace supple::viewer {
 
 /// Pages are numbered in the order in which they come.
 using PageNumber = std::uint64_t;
-using Message = std::shared_ptr<const std::vector<std::byte>>;
+/// What is sent, and the memory that it lies in.
+struct Message {
+  std::span<const std::byte> bytes;
+  std::shared_ptr<const MessageWriter> memory;
+};
 
 /// Runs a session on a thread of its own, so that a simulation waits for no socket and a socket for no
 /// simulation. Commands are taken between two steps; messages are handed over one at a time, each made when
@@ -75,7 +81,7 @@ class SessionThread {
   Inbox taken_;
   PageNumber greeted_ = 0;
   bool ended_ = false;
-  std::shared_ptr<std::vector<std::byte>> buffer_;
+  std::shared_ptr<MessageWriter> message_;
 
   std::mutex mutex_;
   std::condition_variable work_;

@@ -8,7 +8,7 @@
 
 namespace supple::viewer {
 
-std::optional<Failure> failure_of(const std::function<void()>& action) {
+std::optional<Failure> failure_of_function(const std::function<void()>& action) {
   try {
     action();
   } catch (const Error& error) {
@@ -34,7 +34,7 @@ namespace supple {
 
 namespace supple::viewer {
 
-std::optional<Failure> failure_of(const std::function<void()>& action) {
+std::optional<Failure> failure_of_function(const std::function<void()>& action) {
   action();
   return std::nullopt;
 }

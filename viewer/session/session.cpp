@@ -45,7 +45,7 @@ class Session::Implementation {
   void greet();
   void command(std::string_view json);
   double advance(double seconds);
-  std::span<const std::byte> next_message();
+  std::span<const std::byte> next_message(MessageWriter& message);
   bool ended() const { return has_ended_; }
 
  private:
@@ -93,7 +93,7 @@ class Session::Implementation {
   void fail(const std::string& message, bool fatal = false, std::span<const std::string> layers = {});
   void add_reply(MessageKind kind);
   void begin_reply();
-  bool pack_frame();
+  bool pack_frame(MessageWriter& message);
 
   Show show_;
   Settings settings_;
@@ -109,7 +109,6 @@ class Session::Implementation {
   std::deque<Reply> replies_;
   std::optional<double> id_;  // of the command under way
   FramePacker packer_;
-  MessageWriter message_;
   JsonText json_;
 };
 
@@ -151,36 +150,36 @@ double Session::Implementation::advance(double seconds) {
   return outcome.wait;
 }
 
-std::span<const std::byte> Session::Implementation::next_message() {
+std::span<const std::byte> Session::Implementation::next_message(MessageWriter& message) {
   if (!is_greeted_) return {};
   if (owes_scene_) {
     owes_scene_ = false;
     owes_series_ = stage_->recording() != nullptr;
     has_news_ = true;
     packer_.forget();
-    pack_scene(*stage_, ++generation_, json_, message_);
+    pack_scene(*stage_, ++generation_, json_, message);
   } else if (owes_series_) {
     owes_series_ = false;
-    pack_series(*stage_->show().frames, message_);
+    pack_series(*stage_->show().frames, message);
   } else if (!replies_.empty()) {
-    message_.begin(replies_.front().kind);
-    message_.add_text(replies_.front().text);
+    message.begin(replies_.front().kind);
+    message.add_text(replies_.front().text);
     replies_.pop_front();
   } else if (has_news_ && credit_ > 0 && !has_ended_) {
     has_news_ = false;
-    if (!pack_frame()) return next_message();
+    if (!pack_frame(message)) return next_message(message);
     --credit_;
   } else {
     return {};
   }
-  return message_.finish();
+  return message.finish();
 }
 
 /// False when that failed; what was asked for besides the usual is then left out from now on.
-bool Session::Implementation::pack_frame() {
+bool Session::Implementation::pack_frame(MessageWriter& message) {
   const FrameView frame{stage_->show(), stage_->source(),  layers_,         stage_->center(),
                         generation_,    player_.playing(), player_.speed(), player_.loop()};
-  const auto failure = failure_of([&] { packer_.pack(frame, message_); });
+  const auto failure = failure_of([&] { packer_.pack(frame, message); });
   if (!failure) return true;
   id_.reset();
   packer_.forget();
@@ -501,8 +500,8 @@ void Session::command(std::string_view json) {
 double Session::advance(double seconds) {
   return implementation_->advance(seconds);
 }
-std::span<const std::byte> Session::next_message() {
-  return implementation_->next_message();
+std::span<const std::byte> Session::next_message(MessageWriter& message) {
+  return implementation_->next_message(message);
 }
 bool Session::ended() const {
   return implementation_->ended();

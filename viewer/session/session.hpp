@@ -5,6 +5,7 @@
 #include <span>
 #include <string_view>
 
+#include "message.hpp"
 #include "show.hpp"
 
 namespace supple::viewer {
@@ -26,8 +27,9 @@ class Session {
   /// Lets that much time pass: takes at most one step or frame. Gives how long nothing will be to do unless
   /// a command comes, in seconds: 0 when there is more to do at once.
   double advance(double seconds);
-  /// The next message to send, or nothing; it lasts until the next call on the session.
-  std::span<const std::byte> next_message();
+  /// Writes the next message to send, when there is one, and gives it or nothing. It lasts until something
+  /// else is written to `message`, so that it need not be copied to be sent while the session goes on.
+  std::span<const std::byte> next_message(MessageWriter& message);
   /// After a fatal failure message.
   bool ended() const;
 

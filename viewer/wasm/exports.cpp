@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "message.hpp"
 #include "packed_show.hpp"
 #include "page.hpp"
 #include "session.hpp"
@@ -37,6 +38,7 @@ namespace {
 
 std::vector<std::byte> given;  // what the page wrote last
 std::optional<supple::viewer::Session> session;
+supple::viewer::MessageWriter message_writer;
 
 }  // namespace
 
@@ -65,6 +67,6 @@ double session_advance(double milliseconds) {
 
 SUPPLE_EXPORT(session_message) const std::byte* session_message();
 const std::byte* session_message() {
-  const std::span<const std::byte> message = session->next_message();
+  const std::span<const std::byte> message = session->next_message(message_writer);
   return message.empty() ? nullptr : message.data();
 }

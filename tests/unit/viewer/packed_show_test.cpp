@@ -49,7 +49,7 @@ std::vector<std::vector<std::byte>> frames_of(const Show& show, int count) {
   TestPage page(show);
   std::vector<std::vector<std::byte>> frames;
   const auto keep = [&] {
-    for (auto bytes = page.session.next_message(); !bytes.empty(); bytes = page.session.next_message())
+    for (auto bytes = page.next_bytes(); !bytes.empty(); bytes = page.next_bytes())
       frames.emplace_back(bytes.begin(), bytes.end());
   };
   for (int i = 0; i < count; ++i) {

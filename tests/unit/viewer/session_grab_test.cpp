@@ -10,10 +10,6 @@
 namespace supple::viewer {
 namespace {
 
-using Json = nlohmann::json;
-using Message = ViewerMessage;
-using Pair = std::array<std::uint32_t, 2>;
-
 /// Of a mesh, the vertex furthest along x.
 std::uint32_t foremost(const TriangleMesh& mesh) {
   const auto less = [](const Vec3d& a, const Vec3d& b) { return a.x < b.x; };
@@ -21,7 +17,7 @@ std::uint32_t foremost(const TriangleMesh& mesh) {
                                     mesh.positions.begin());
 }
 
-std::vector<Vec3f> positions(const Message& frame, std::uint32_t object) {
+std::vector<Vec3f> positions(const ViewerMessage& frame, std::uint32_t object) {
   return frame.values<Vec3f>(32, object);
 }
 
@@ -34,7 +30,7 @@ Show apart(decltype(ShowObject::motion) motion = {}, std::uint32_t frequency = 8
 }
 
 /// A place in the right ball, in the page's coordinates.
-Json inside_right(const Message& scene, double further = 0) {
+Json inside_right(const ViewerMessage& scene, double further = 0) {
   const Vec3d p = Vec3d{1.8 + further, 0, 0} - center_of(scene);
   return {p.x, p.y, p.z};
 }
@@ -46,15 +42,15 @@ double distance(Vec3f a, Vec3f b) {
 TEST(ViewerGrab, AnObjectWithoutMotionIsBentSmoothlyAndTouchesAtOnce) {
   const Show show = apart();
   TestPage page(show);
-  const Message scene = page.scene();
-  const Message before = page.frame();
+  const ViewerMessage scene = page.scene();
+  const ViewerMessage before = page.frame();
   EXPECT_EQ(before.section(34).count, 0u);
   const std::uint32_t vertex = foremost(show.objects[0].mesh);
   page.ask({{"do", "grab"}, {"object", 0}, {"vertex", vertex}, {"radius", 0.6}});
   page.ask({{"do", "drag"}, {"to", inside_right(scene, 0.1)}});
   page.ask({{"do", "drag"}, {"to", inside_right(scene)}});
   page.session.advance(0);
-  const Message bent = page.frame();
+  const ViewerMessage bent = page.frame();
   EXPECT_EQ(bent.json["playing"], false);
   EXPECT_EQ(bent.json["step"], 0);
   EXPECT_GT(bent.section(34).count, 0u);
@@ -73,7 +69,7 @@ TEST(ViewerGrab, AnObjectWithoutMotionIsBentSmoothlyAndTouchesAtOnce) {
 
   page.ask({{"do", "release"}});
   page.session.advance(0);
-  const Message released = page.frame();
+  const ViewerMessage released = page.frame();
   EXPECT_FALSE(released.has(32, 0)) << "it stays bent";
   EXPECT_EQ(released.section(34).count, bent.section(34).count);
   EXPECT_EQ(page.frame_after_steps(2).section(34).count, bent.section(34).count);
@@ -90,12 +86,12 @@ TEST(ViewerGrab, AnObjectWithoutMotionIsBentSmoothlyAndTouchesAtOnce) {
 TEST(ViewerGrab, ABentObjectIsExplainedWhereItIs) {
   const Show show = apart();
   TestPage page(show);
-  const Message scene = page.scene();
+  const ViewerMessage scene = page.scene();
   page.ask({{"do", "grab"}, {"object", 0}, {"vertex", foremost(show.objects[0].mesh)}});
   page.ask({{"do", "drag"}, {"to", inside_right(scene)}});
   EXPECT_NE(page.ask({{"do", "explain"}, {"a", {0, 0}}, {"b", {1, 0}}})["stage"], "contact");
   page.session.advance(0);
-  const auto contacts = page.frame().values<std::array<std::uint32_t, 8>>(34);
+  const auto contacts = page.frame().values<Ids>(34);
   ASSERT_FALSE(contacts.empty());
   for (const auto& c : contacts)
     EXPECT_EQ(page.ask({{"do", "explain"}, {"a", {c[0], c[1]}}, {"b", {c[2], c[3]}}})["stage"], "contact");
@@ -104,7 +100,7 @@ TEST(ViewerGrab, ABentObjectIsExplainedWhereItIs) {
 TEST(ViewerGrab, AnObjectInWavesIsBentOnTopOfThem) {
   const Show show = apart(Sway{.amplitude = 0.02});
   TestPage page(show);
-  const Message scene = page.scene();
+  const ViewerMessage scene = page.scene();
   page.ask({{"do", "pause"}});
   page.frame();
   const std::uint32_t vertex = foremost(show.objects[0].mesh);
@@ -115,7 +111,7 @@ TEST(ViewerGrab, AnObjectInWavesIsBentOnTopOfThem) {
   const Vec3f target = as_floats(std::array{Vec3d{1.8, 0, 0}}, center_of(scene))[0];
   for (int step = 1; step <= 5; ++step) {
     page.session.advance(0.01);  // paused, but only steps show where it goes
-    const Message frame = page.frame();
+    const ViewerMessage frame = page.frame();
     EXPECT_EQ(frame.json["step"], step);
     EXPECT_LT(distance(positions(frame, 0)[vertex], target), 1e-6);
     EXPECT_GT(frame.section(34).count, 0u);
@@ -171,7 +167,7 @@ TEST(ViewerGrab, ABodyIsPulledIntoContactAndHeldThere) {
     SCOPED_TRACE(std::to_string(static_cast<int>(motion.springs.integrator)) + " " +
                  std::to_string(motion.springs.stiffness));
     TestPage page(show);
-    const Message scene = page.scene();
+    const ViewerMessage scene = page.scene();
     page.ask({{"do", "pause"}});
     page.frame();
     const std::uint32_t vertex = foremost(show.objects[0].mesh);
@@ -186,7 +182,7 @@ TEST(ViewerGrab, ABodyIsPulledIntoContactAndHeldThere) {
       if (i % 10 == 0) contacts = std::max(contacts, page.frame().section(34).count);
     }
     page.session.advance(0.01);
-    const Message pulled = page.frame();
+    const ViewerMessage pulled = page.frame();
     EXPECT_EQ(pulled.json["step"], 241);
     EXPECT_GT(contacts, 0u);
     EXPECT_LT(distance(positions(pulled, 0)[vertex], target), 0.1);
@@ -214,7 +210,7 @@ TEST(ViewerGrab, NoDragMakesABodyExplode) {
     }
     page.ask({{"do", "release"}});
     for (int i = 0; i < 100; ++i) page.session.advance(0.01);
-    const Message frame = page.frame();
+    const ViewerMessage frame = page.frame();
     EXPECT_EQ(frame.json["playing"], true);
     EXPECT_EQ(frame.json["step"], 300);
     for (const Vec3f& p : positions(frame, 0)) ASSERT_LT(std::hypot(p.x, p.y, p.z), 1e3);
@@ -251,7 +247,7 @@ TEST(ViewerGrab, FixedVerticesStayWhereTheyAreHeld) {
   const TriangleMesh& mesh = show.objects[0].mesh;
   const auto& motion = std::get<MassSpringMotion>(show.objects[0].motion);
   TestPage page(show);
-  const Message scene = page.scene();
+  const ViewerMessage scene = page.scene();
   for (const std::uint32_t fixed : {motion.springs.fixed_vertices[0], motion.handles[0].vertices[0]}) {
     EXPECT_EQ(page.failure("{\"do\": \"grab\", \"object\": 0, \"vertex\": " + std::to_string(fixed) + "}"),
               "grab: vertex " + std::to_string(fixed) + " of block is a fixed one; take another one");
@@ -260,7 +256,7 @@ TEST(ViewerGrab, FixedVerticesStayWhereTheyAreHeld) {
   std::uint32_t corner = vertex;
   for (std::uint32_t i = 0; i < mesh.positions.size(); ++i)
     if (mesh.positions[i].x == 1 && mesh.positions[i].y == 0.5) corner = i;
-  const Message before = page.frame();
+  const ViewerMessage before = page.frame();
   page.ask({{"do", "grab"}, {"object", 0}, {"vertex", corner}});
   const Vec3d to = mesh.positions[corner] + Vec3d{0.6, 0.4, 0} - center_of(scene);
   page.ask({{"do", "drag"}, {"to", {to.x, to.y, to.z}}});
@@ -271,7 +267,7 @@ TEST(ViewerGrab, FixedVerticesStayWhereTheyAreHeld) {
     if (i % 25 == 24) contacts = std::max<std::size_t>(contacts, page.frame().section(34).count);
   }
   EXPECT_GT(contacts, 0u) << "its corner is pulled into the tool";
-  const Message frame = page.frame_after_steps(1);
+  const ViewerMessage frame = page.frame_after_steps(1);
   for (const std::uint32_t fixed : motion.springs.fixed_vertices)
     EXPECT_EQ(positions(frame, 0)[fixed], positions(before, 0)[fixed]);
   for (const std::uint32_t held : motion.handles[0].vertices) {
@@ -305,11 +301,11 @@ TEST(ViewerGrab, ContinuousContactsSeeWhereAThingWasBentTo) {
   Show show = apart();
   show.simulation.scene.contacts = ContactMode::continuous;
   TestPage page(show);
-  const Message scene = page.scene();
+  const ViewerMessage scene = page.scene();
   page.ask({{"do", "grab"}, {"object", 0}, {"vertex", foremost(show.objects[0].mesh)}});
   page.ask({{"do", "drag"}, {"to", inside_right(scene)}});
   page.session.advance(0);
-  const Message frame = page.frame();
+  const ViewerMessage frame = page.frame();
   EXPECT_TRUE(frame.has(36) && frame.has(37));
   EXPECT_TRUE(frame.has(32, 0));
 }

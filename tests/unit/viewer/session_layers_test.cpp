@@ -10,10 +10,6 @@
 namespace supple::viewer {
 namespace {
 
-using Json = nlohmann::json;
-using Message = ViewerMessage;
-using Row = std::array<float, 8>;
-
 /// Balls that touch or nearly do, of which one waves and one is tested against itself.
 Show crowd(BoundingVolume volume = BoundingVolume::aabb) {
   Show show;
@@ -42,7 +38,7 @@ Vec3f narrow(Vec3f p, Vec3d center) {
 TEST(ViewerLayers, AreLeftOutUntilAskedForAndAgainAfterwards) {
   TestPage page(crowd());
   page.scene();
-  const auto has_layers = [](const Message& frame) {
+  const auto has_layers = [](const ViewerMessage& frame) {
     return frame.has(38) || frame.has(39) || frame.has(40, 0) || frame.has(41, 0) || frame.has(42, 0);
   };
   EXPECT_FALSE(has_layers(page.frame()));
@@ -51,11 +47,11 @@ TEST(ViewerLayers, AreLeftOutUntilAskedForAndAgainAfterwards) {
             {"scene_regions", true},
             {"colliding_vertices", true},
             {"octree", {{"objects", {3, 0, 3}}, {"level", 1}}}});
-  const Message frame = page.frame();
+  const ViewerMessage frame = page.frame();
   EXPECT_TRUE(frame.has(38) && frame.has(39) && frame.has(40, 0) && frame.has(40, 3) && frame.has(42, 0));
   EXPECT_FALSE(frame.has(40, 1));
   page.ask({{"do", "layers"}, {"candidates", false}});  // what is not named stays
-  const Message fewer = page.frame();
+  const ViewerMessage fewer = page.frame();
   EXPECT_FALSE(fewer.has(38));
   EXPECT_TRUE(fewer.has(39) && fewer.has(40, 3));
   page.ask({{"do", "layers"}, {"scene_regions", false}, {"colliding_vertices", false}, {"octree", nullptr}});
@@ -76,7 +72,7 @@ TEST(ViewerLayers, AreWhatTheLibrarySays) {
                 {"candidates", true},
                 {"scene_regions", true},
                 {"octree", {{"objects", {0, 1, 2, 3, 4, 5}}, {"level", level}}}});
-      const Message frame = step == 0 ? page.frame() : page.frame_after_steps(1);
+      const ViewerMessage frame = step == 0 ? page.frame() : page.frame_after_steps(1);
 
       std::vector<std::array<std::uint32_t, 4>> candidates;
       for (const CandidatePair& c : scene.candidates(1'000'000))
@@ -124,7 +120,7 @@ TEST(ViewerLayers, CollidingVerticesAreThoseOfASceneThatGivesThem) {
     page.scene();
     page.ask({{"do", "layers"}, {"colliding_vertices", true}});
     for (int step = 0; step < 10; ++step) {
-      const Message frame = step == 0 ? page.frame() : page.frame_after_steps(1);
+      const ViewerMessage frame = step == 0 ? page.frame() : page.frame_after_steps(1);
       const DetectResult& result = step == 0 ? simulation.detect() : simulation.step();
       std::vector<std::set<std::uint32_t>> expected(show.objects.size());
       for (const CollidingVertices& group : result.colliding_vertex_groups) {
@@ -156,11 +152,11 @@ TEST(ViewerLayers, WhatIsTooLargeIsCutAndSaid) {
   TestPage page(show);
   page.scene();
   page.ask({{"do", "layers"}, {"candidates", true}});
-  const Message frame = page.frame();
+  const ViewerMessage frame = page.frame();
   EXPECT_EQ(frame.section(38).count, 1'000'000u);
   EXPECT_EQ(frame.section(34).count, 1'000'000u);
   EXPECT_EQ(frame.json["omitted"], (Json{{"contacts", 1'440'000}, {"candidates", 1'440'000}}));
-  const auto last = frame.values<std::array<std::uint32_t, 8>>(34).back();
+  const auto last = frame.values<Ids>(34).back();
   EXPECT_EQ(frame.section(35).count, last[5] + last[6]);
 }
 

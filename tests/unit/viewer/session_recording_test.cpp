@@ -12,10 +12,6 @@
 namespace supple::viewer {
 namespace {
 
-using Json = nlohmann::json;
-using Message = ViewerMessage;
-using Pair = std::array<std::uint32_t, 2>;
-
 /// Frames in memory; some of them may be damaged.
 struct StoredFrames final : Frames {
   std::vector<std::vector<std::vector<Vec3d>>> positions;  // by frame and object
@@ -79,29 +75,29 @@ Recorded record(int frames, ContactMode contacts = ContactMode::intersection) {
   return recorded;
 }
 
-std::size_t contact_count(const Message& frame) {
+std::size_t contact_count(const ViewerMessage& frame) {
   return frame.section(34).count;
 }
 
 /// The scene and the series.
-std::vector<Message> opening(TestPage& page) {
-  std::vector<Message> messages = page.drain();
+std::vector<ViewerMessage> opening(TestPage& page) {
+  std::vector<ViewerMessage> messages = page.drain();
   EXPECT_EQ(messages.size(), 2u);
-  EXPECT_EQ(messages.at(0).kind, Message::scene);
-  EXPECT_EQ(messages.at(1).kind, Message::series);
+  EXPECT_EQ(messages.at(0).kind, ViewerMessage::scene);
+  EXPECT_EQ(messages.at(1).kind, ViewerMessage::series);
   return messages;
 }
 
 TEST(ViewerRecording, TellsSceneAndSeries) {
   const Recorded recorded = record(60);
   TestPage page(recorded.show);
-  const std::vector<Message> messages = opening(page);
+  const std::vector<ViewerMessage> messages = opening(page);
   const Json& scene = messages[0].json;
   EXPECT_EQ(scene["source"], "recording");
   EXPECT_EQ(scene["frames"], 60);
   EXPECT_EQ(scene["can"], (Json{"play", "seek", "set"}));
   EXPECT_EQ(scene["series"], (Json{"time", "contacts"}));
-  const Message& series = messages[1];
+  const ViewerMessage& series = messages[1];
   EXPECT_EQ(series.section(64).count, 60u);
   EXPECT_EQ(series.values<double>(64), recorded.frames->rows.values);
   using Event = std::array<std::uint32_t, 3>;
@@ -123,7 +119,7 @@ TEST(ViewerRecording, EachFrameIsDetectedAsItWas) {
   for (const std::uint32_t number : order) {
     page.ask({{"do", "seek"}, {"frame", number}});
     page.session.advance(0);
-    const Message frame = page.frame();
+    const ViewerMessage frame = page.frame();
     ASSERT_EQ(frame.json["step"], number);
     EXPECT_DOUBLE_EQ(frame.json["time"], 0.01 * number);
     EXPECT_EQ(contact_count(frame), recorded.contacts[number].size());
@@ -159,7 +155,7 @@ TEST(ViewerRecording, ContinuousContactsAreThoseOfTheWayFromTheFrameBefore) {
     const std::uint32_t number = i < 30 ? i * 2 : (89 - i) * 2 - 59;
     page.ask({{"do", "seek"}, {"frame", number}});
     page.session.advance(0);
-    const Message frame = page.frame();
+    const ViewerMessage frame = page.frame();
     ASSERT_EQ(frame.json["step"], number);
     ASSERT_EQ(frame.section(36).count, recorded.impacts[number].size()) << number;
     const auto points = frame.values<std::array<float, 8>>(37);
@@ -189,12 +185,12 @@ TEST(ViewerRecording, PlaysInItsOwnTimeAndLeavesOutWhatIsLate) {
   EXPECT_EQ(page.frame().json["step"], 22);
   page.ask({{"do", "speed"}, {"factor", 1}});
   for (int i = 0; i < 10; ++i) session.advance(0.2);
-  const Message end = page.frame();
+  const ViewerMessage end = page.frame();
   EXPECT_EQ(end.json["step"], 59);
   EXPECT_EQ(end.json["playing"], false);
   page.ask({{"do", "play"}});  // from the beginning
   session.advance(0);
-  const Message again = page.frame();
+  const ViewerMessage again = page.frame();
   EXPECT_EQ(again.json["step"], 0);
   EXPECT_EQ(again.json["playing"], true);
 }
@@ -257,22 +253,22 @@ TEST(ViewerRecording, AFrameThatCannotBeReadLeavesAllAsItWas) {
   page.ask({{"do", "pause"}});
   page.ask({{"do", "seek"}, {"frame", 40}});
   page.session.advance(0);
-  const Message before = page.frame();
+  const ViewerMessage before = page.frame();
   EXPECT_GT(contact_count(before), 0u);
   recorded.frames->damaged = {41};
   page.ask({{"do", "seek"}, {"frame", 41}});
   page.session.advance(0);
-  const Message failure = page.only(Message::failure);
+  const ViewerMessage failure = page.only(ViewerMessage::failure);
   EXPECT_EQ(failure.json["message"], "run.h5: frame 41 is damaged");
   EXPECT_EQ(failure.json["fatal"], false);
   page.session.advance(0);
-  const Message after = page.frame();
+  const ViewerMessage after = page.frame();
   EXPECT_EQ(after.json["step"], 40);
   EXPECT_EQ(contact_count(after), contact_count(before));
   EXPECT_FALSE(after.has(32, 1));
   page.ask({{"do", "play"}});  // stops before it
   for (int i = 0; i < 5; ++i) page.session.advance(0.01);
-  EXPECT_EQ(page.only(Message::failure).json["message"], "run.h5: frame 41 is damaged");
+  EXPECT_EQ(page.only(ViewerMessage::failure).json["message"], "run.h5: frame 41 is damaged");
   EXPECT_EQ(page.frame().json["playing"], false);
   page.ask({{"do", "seek"}, {"frame", 42}});
   page.session.advance(0);
@@ -288,7 +284,7 @@ TEST(ViewerRecording, SetDetectsTheSameFrameAnew) {
   page.session.advance(0);
   page.say({{"do", "set"}, {"bounding_volume", "sphere"}, {"max_level", 3}, {"broad_phase", "sweep"}});
   EXPECT_EQ(opening(page)[0].json["bounding_volume"], "sphere");
-  const Message frame = page.frame();
+  const ViewerMessage frame = page.frame();
   EXPECT_EQ(frame.json["step"], 45);
   EXPECT_EQ(contact_count(frame), recorded.contacts[45].size());
   page.say({{"do", "set"}, {"contacts", "continuous"}});
@@ -300,7 +296,7 @@ TEST(ViewerRecording, WithoutSeriesOrWithoutFramesItIsFine) {
   Recorded recorded = record(5);
   recorded.frames->rows = {};
   TestPage page(recorded.show);
-  const std::vector<Message> messages = opening(page);
+  const std::vector<ViewerMessage> messages = opening(page);
   EXPECT_EQ(messages[0].json["series"], Json::array());
   EXPECT_EQ(messages[1].section(64).count, 0u);
   page.ask({{"do", "seek"}, {"frame", 4}});

@@ -12,10 +12,12 @@ const START_MILLISECONDS = 60_000;
 
 /** `supple view`, until it is stopped. */
 export class Program {
-  static async start(supple, args) {
+  /** It opens no browser, unless it is given an environment to find one in. */
+  static async start(supple, args, env) {
     const program = new Program();
     program.output = "";
-    program.child = spawn(supple, ["view", "--no-open", ...args], { stdio: ["ignore", "pipe", "pipe"] });
+    const options = env ? args : ["--no-open", ...args];
+    program.child = spawn(supple, ["view", ...options], { stdio: ["ignore", "pipe", "pipe"], env: { ...process.env, ...env } });
     program.ended = new Promise((done) => program.child.on("exit", (code, signal) => done({ code, signal })));
     for (const stream of [program.child.stdout, program.child.stderr]) stream.on("data", (data) => (program.output += data));
     const before = Date.now();
@@ -86,7 +88,11 @@ export class Stage {
   }
 
   async program(...args) {
-    const program = await Program.start(this.supple, args);
+    return this.programIn(undefined, ...args);
+  }
+
+  async programIn(env, ...args) {
+    const program = await Program.start(this.supple, args, env);
     this.programs.push(program);
     return program;
   }

@@ -1,0 +1,121 @@
+// A viewer's session that plays: once everything has been seen once, neither steps nor frames ask for memory.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "allocation_count.hpp"
+#include "session/session.hpp"
+#include "supple/models.hpp"
+#include "supple/sway.hpp"
+
+namespace supple::viewer {
+namespace {
+
+constexpr int period = 50;  // steps after which all waves are as they were
+constexpr double time_step = 0.02;
+
+ShowObject ball(Vec3d at, std::uint64_t seed) {
+  ShowObject object{make_icosphere(6)};
+  for (Vec3d& p : object.mesh.positions) p = p + at;
+  object.motion = Sway{.amplitude = 0.15, .period = period * time_step, .seed = seed};
+  return object;
+}
+
+/// Balls in waves that begin and stop to touch, and a cloth that hangs still, of masses and springs.
+Show waves() {
+  Show show;
+  show.simulation.time_step = time_step;
+  show.simulation.scene.threads = 1;
+  for (std::uint64_t i = 0; i < 6; ++i) {
+    const double x = 1.95 * static_cast<double>(i % 3), z = 1.95 * static_cast<double>(i / 3);
+    show.objects.push_back(ball({x, 0, z}, i));
+  }
+  show.objects.push_back({make_cloth(12, 12)});
+  show.objects.back().motion = MassSpringMotion{};
+  return show;
+}
+
+/// The same as frames in memory, a period of them.
+class WaveFrames final : public Frames {
+ public:
+  explicit WaveFrames(const Show& show) : objects_(show.objects) {}
+  std::uint64_t count() const override { return period + 1; }
+  void read(std::uint64_t frame, std::size_t object, std::span<Vec3d> positions) const override {
+    const ShowObject& moving = objects_[object];
+    if (const Sway* const motion = std::get_if<Sway>(&moving.motion))
+      sway(*motion, {}, moving.mesh.positions, static_cast<double>(frame) * time_step, positions);
+    else
+      std::copy(moving.mesh.positions.begin(), moving.mesh.positions.end(), positions.begin());
+  }
+  const Series& series() const override { return series_; }
+
+ private:
+  std::vector<ShowObject> objects_;
+  Series series_;
+};
+
+struct Seen {
+  std::uint64_t allocations = 0, frames = 0, least_bytes = ~std::uint64_t{0}, most_bytes = 0;
+};
+
+/// Lets it play, a step and a frame at a time; counts from the third period on.
+Seen play(Show show, std::initializer_list<std::string_view> commands = {}) {
+  Session session(std::move(show));
+  MessageWriter message;
+  session.greet();
+  for (const std::string_view command : commands) session.command(command);
+  session.command(R"({"do": "speed", "factor": 0})");
+  while (!session.next_message(message).empty()) {
+  }
+  Seen seen;
+  for (int step = 0; step < 4 * period; ++step) {
+    session.command(R"({"do": "credit", "frames": 1})");
+    const std::uint64_t before = allocation_count();
+    session.advance(time_step);
+    const std::uint64_t bytes = session.next_message(message).size();
+    if (step < 2 * period) continue;
+    seen.allocations += allocation_count() - before;
+    if (bytes > 0) ++seen.frames;
+    seen.least_bytes = std::min(seen.least_bytes, bytes);
+    seen.most_bytes = std::max(seen.most_bytes, bytes);
+  }
+  return seen;
+}
+
+void expect_no_allocations(const Seen& seen) {
+  EXPECT_EQ(seen.allocations, 0u);
+  EXPECT_EQ(seen.frames, 2u * period);
+  EXPECT_LT(seen.least_bytes + 1000, seen.most_bytes) << "contacts come and go";
+}
+
+TEST(SteadyStateSession, NoAllocationsInStepsOfASimulation) {
+  expect_no_allocations(play(waves()));
+}
+
+TEST(SteadyStateSession, NoAllocationsWithContinuousContacts) {
+  Show show = waves();
+  show.simulation.scene.contacts = ContactMode::continuous;
+  expect_no_allocations(play(std::move(show)));
+}
+
+TEST(SteadyStateSession, NoAllocationsWithCollidingVertices) {
+  expect_no_allocations(play(waves(), {R"({"do": "layers", "colliding_vertices": true})"}));
+}
+
+TEST(SteadyStateSession, NoAllocationsInFramesOfARecording) {
+  for (const ContactMode contacts : {ContactMode::intersection, ContactMode::continuous}) {
+    Show show = waves();
+    show.simulation.scene.contacts = contacts;
+    show.frames = std::make_shared<WaveFrames>(show);
+    expect_no_allocations(play(std::move(show), {R"({"do": "loop", "on": true})"}));
+  }
+}
+
+}  // namespace
+}  // namespace supple::viewer

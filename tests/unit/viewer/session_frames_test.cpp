@@ -1,0 +1,164 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "../../support/viewer_page.hpp"
+
+namespace supple::viewer {
+namespace {
+
+/// A number of the frame's statistics by its name.
+double statistic(const ViewerMessage& scene, const ViewerMessage& frame, const std::string& name) {
+  const auto names = scene.json["statistics"].get<std::vector<std::string>>();
+  const auto found = std::find(names.begin(), names.end(), name);
+  EXPECT_NE(found, names.end()) << name;
+  const std::vector<double> values = frame.values<double>(43);
+  EXPECT_EQ(values.size(), names.size());
+  return values[static_cast<std::size_t>(found - names.begin())];
+}
+
+TEST(ViewerFrames, ShowsWhatTheLibraryFinds) {
+  Show show = touching_balls();
+  Simulation simulation = simulation_of(show);
+  TestPage page(show);
+  const ViewerMessage scene = page.scene();
+  const Vec3d center = center_of(scene);
+  std::size_t contacts = 0, last = 0;
+  for (std::uint32_t step = 0; step < 80; ++step) {
+    if (step > 0) simulation.step();
+    const ViewerMessage frame = step == 0 ? page.frame() : page.frame_after_steps(1);
+    ASSERT_EQ(frame.json["step"], step);
+    const DetectResult& result = simulation.scene().result();
+    expect_contacts(frame, result, center);
+    EXPECT_EQ(frame.values<Vec3f>(32, 2), as_floats(simulation.positions({2, 0}), center));
+    EXPECT_EQ(statistic(scene, frame, "contacts"), static_cast<double>(result.contacts.size()));
+    EXPECT_EQ(statistic(scene, frame, "object_pairs"), static_cast<double>(result.object_pairs.size()));
+    if (step == 0) contacts = result.contacts.size();
+    last = result.contacts.size();
+  }
+  EXPECT_GT(contacts, 0u);
+  EXPECT_GT(last, contacts) << "the third ball has arrived";
+}
+
+TEST(ViewerFrames, NormalsAreThoseOfTriangleBOrOfAWhereBHasNone) {
+  TestPage page(touching_balls());
+  page.scene();
+  const ViewerMessage frame = page.frame();
+  const TriangleMesh ball = test_ball("", {1.5, 0, 0}).mesh;
+  for (const auto& contact : frame.values<Ids>(34)) {
+    ASSERT_EQ(contact[2], 1u);
+    const Triangle& t = ball.triangles[contact[3]];
+    const Vec3d ab = ball.positions[t[1]] - ball.positions[t[0]],
+                ac = ball.positions[t[2]] - ball.positions[t[0]];
+    const Row point = frame.values<Row>(35)[contact[6]];
+    const Vec3d n{point[4], point[5], point[6]};
+    EXPECT_NEAR(n.x * n.x + n.y * n.y + n.z * n.z, 1, 1e-6);
+    EXPECT_NEAR(n.x * ab.x + n.y * ab.y + n.z * ab.z, 0, 1e-6);
+    EXPECT_NEAR(n.x * ac.x + n.y * ac.y + n.z * ac.z, 0, 1e-6);
+  }
+
+  // A needle without area through a face: the face's normal, whichever comes first.
+  Show needle;
+  needle.objects.push_back({TriangleMesh{"face", {{-1, -1, 0}, {1, -1, 0}, {0, 1, 0}}, {{0, 1, 2}}}});
+  needle.objects.push_back({TriangleMesh{"needle", {{0, 0, -1}, {0, 0, 1}, {0, 0, 1}}, {{0, 1, 2}}}});
+  TestPage second(needle);
+  second.scene();
+  const Row point = second.frame().values<Row>(35).at(0);
+  EXPECT_EQ((Vec3f{point[4], point[5], point[6]}), (Vec3f{0, 0, 1}));
+}
+
+TEST(ViewerFrames, EventsAreThoseSinceTheLastFrame) {
+  TestPage page(touching_balls());
+  page.scene();
+  const ViewerMessage first = page.frame();
+  EXPECT_EQ(first.values<Pair>(44), (std::vector<Pair>{{0, 1}}));
+  EXPECT_TRUE(first.values<Pair>(45).empty());
+  // Ball 2 drifts into 1 within many steps, of which none is sent.
+  for (int i = 0; i < 100; ++i) page.session.advance(0.01);
+  const ViewerMessage later = page.frame();
+  EXPECT_EQ(later.values<Pair>(44), (std::vector<Pair>{{1, 2}}));
+  EXPECT_TRUE(page.frame_after_steps(1).values<Pair>(44).empty());
+  page.ask({{"do", "reset"}});
+  page.drain();
+  EXPECT_EQ(page.frame_after_steps(1).values<Pair>(44), (std::vector<Pair>{{0, 1}}))
+      << "the page knows of none";
+}
+
+TEST(ViewerFrames, ContinuousContactsAreThoseOfTheLibrary) {
+  Show show = touching_balls();
+  show.simulation.scene.contacts = ContactMode::continuous;
+  Simulation simulation = simulation_of(show);
+  TestPage page(show);
+  const Vec3d center = center_of(page.scene());
+  std::size_t most = 0;
+  for (int step = 1; step <= 60; ++step) {
+    const auto expected = simulation.step().continuous_contacts;
+    const ViewerMessage frame = page.frame_after_steps(1);
+    const auto ids = frame.values<Ids>(36);
+    const auto points = frame.values<Row>(37);
+    ASSERT_EQ(ids.size(), expected.size());
+    ASSERT_EQ(points.size(), expected.size());
+    most = std::max(most, ids.size());
+    for (std::size_t i = 0; i < ids.size(); ++i) {
+      const ContinuousContact& c = expected[i];
+      const Ids row{c.object_a.index,
+                    c.element_a[0],
+                    c.element_a[1],
+                    c.object_b.index,
+                    c.element_b[0],
+                    c.element_b[1],
+                    static_cast<std::uint32_t>(c.kind),
+                    static_cast<std::uint32_t>(c.certainty)};
+      ASSERT_EQ(ids[i], row);
+      EXPECT_EQ((Vec3f{points[i][0], points[i][1], points[i][2]}), as_floats(std::array{c.point}, center)[0]);
+      EXPECT_EQ(points[i][3], static_cast<float>(c.time));
+      EXPECT_EQ((Vec3f{points[i][4], points[i][5], points[i][6]}), as_floats(std::array{c.normal}, {})[0]);
+    }
+    EXPECT_TRUE(frame.values<std::byte>(34).empty());
+  }
+  EXPECT_GT(most, 0u);
+}
+
+TEST(ViewerFrames, WhatIsNoNumberIsNaN) {
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN(),
+                   infinity = std::numeric_limits<double>::infinity();
+  Show show;
+  show.objects = {test_ball("whole", {}), test_ball("broken", {1.5, 0, 0})};
+  show.objects[1].mesh.positions[4] = {1, nan, -infinity};
+  show.objects[1].mesh.positions[7] = {1e300, 0, 0};
+  TestPage page(show);
+  const ViewerMessage scene = page.scene();
+  const auto sent = page.frame().values<Vec3f>(32, 1);
+  EXPECT_TRUE(std::isnan(sent[4].y) && std::isnan(sent[4].z));
+  // The middle of the bounds is at 5e299: nothing near the others is left, but it is said.
+  EXPECT_EQ(scene.json["center"][0], 5e299);
+  EXPECT_TRUE(std::isnan(sent[7].x) && std::isnan(sent[0].x));
+  EXPECT_EQ(page.ask({{"do", "read"}, {"object", 1}, {"vertex", 4}})["position"],
+            (Json{1.0, nullptr, nullptr}));
+  EXPECT_FALSE(page.failure(R"({"do": "grab", "object": 1, "vertex": 4})").empty());
+}
+
+TEST(ViewerFrames, FarAwayFloatsStayPrecise) {
+  const Vec3d far{1e7, -2e7, 3e7};
+  Show show = touching_balls();
+  for (ShowObject& object : show.objects)
+    for (Vec3d& p : object.mesh.positions) p = p + far;
+  TestPage page(show);
+  const ViewerMessage scene = page.scene();
+  const Vec3d center = center_of(scene);
+  const auto sent = page.frame().values<Vec3f>(32, 1);
+  for (std::size_t i = 0; i < sent.size(); ++i) {
+    const Vec3d p = show.objects[1].mesh.positions[i];
+    for (int axis = 0; axis < 3; ++axis) EXPECT_NEAR(center[axis] + sent[i][axis], p[axis], 1e-7);
+  }
+  for (const auto& corner : scene.json["bounds"])
+    for (const double x : corner) EXPECT_LT(std::fabs(x), 4);
+}
+
+}  // namespace
+}  // namespace supple::viewer

@@ -1,0 +1,112 @@
+#include <gtest/gtest.h>
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "../../support/viewer_page.hpp"
+
+namespace supple::viewer {
+namespace {
+
+TEST(ViewerSettings, SetChangesEachOptionAndStartsAnew) {
+  TestPage page(three_balls());
+  page.scene();
+  page.ask({{"do", "pause"}});
+  page.frame_after_steps(5);
+  const std::vector<std::pair<std::string, Json>> options{{"bounding_volume", "sphere"},
+                                                          {"max_level", 2},
+                                                          {"leaf_size", 8},
+                                                          {"integrator", "backward_euler"},
+                                                          {"integrator", "symplectic_euler"},
+                                                          {"broad_phase", "sweep"},
+                                                          {"broad_phase", "brute"},
+                                                          {"contacts", "continuous"},
+                                                          {"contacts", "none"},
+                                                          {"time_step", 0.005}};
+  int generation = 1;
+  for (const auto& [name, value] : options) {
+    page.say({{"do", "set"}, {name, value}, {"id", 1}});
+    const std::vector<ViewerMessage> messages = page.drain();
+    ASSERT_EQ(messages.size(), 2u) << name;
+    const ViewerMessage& scene = messages.front();
+    ASSERT_EQ(scene.kind, ViewerMessage::scene);
+    EXPECT_EQ(scene.json[name], value);
+    EXPECT_EQ(scene.json["generation"], ++generation);
+    EXPECT_EQ(messages.back().kind, ViewerMessage::answer);
+    const ViewerMessage frame = page.frame();
+    EXPECT_EQ(frame.json["step"], 0);
+    EXPECT_EQ(frame.json["playing"], false);
+    for (std::uint32_t i = 0; i < 3; ++i) EXPECT_TRUE(frame.has(32, i));
+    EXPECT_EQ(page.frame_after_steps(2).json["step"], 2);
+  }
+  page.say({{"do", "set"}});  // all of them stay
+  const ViewerMessage scene = page.scene();
+  EXPECT_EQ(scene.json["bounding_volume"], "sphere");
+  EXPECT_EQ(scene.json["leaf_size"], 8);
+  EXPECT_EQ(scene.json["time_step"], 0.005);
+}
+
+TEST(ViewerSettings, RepeatsObjectsApartAndCutsTheList) {
+  Show show = three_balls();
+  show.simulation.border = Border{{{-2, -2, -2}, {5, 2, 4}}};
+  TestPage page(show);
+  page.scene();
+  page.say({{"do", "set"}, {"objects", 14}});
+  ViewerMessage scene = page.scene();
+  ASSERT_EQ(scene.json["objects"].size(), 14u);
+  EXPECT_EQ(scene.json["objects"][3]["name"], "waves #2");
+  EXPECT_EQ(scene.json["objects"][13]["name"], "soft #5");
+  EXPECT_EQ(scene.json["objects"][13]["body"], true);
+  EXPECT_TRUE(page.frame().values<Pair>(33).empty()) << "they are apart, as the three are";
+  EXPECT_NO_THROW(page.frame_after_steps(20));
+  page.say({{"do", "set"}, {"objects", 2}});
+  scene = page.scene();
+  ASSERT_EQ(scene.json["objects"].size(), 2u);
+  page.say({{"do", "set"}, {"objects", 3}});
+  EXPECT_EQ(page.scene().json["objects"][2]["name"], "rest");
+}
+
+TEST(ViewerSettings, ResetStartsAnewWithTheSeed) {
+  Show show = three_balls();
+  show.objects[1].motion = MassSpringMotion{.random_speed = 1};
+  TestPage page(show);
+  page.scene();
+  page.ask({{"do", "pause"}});
+  const auto positions = [&] { return page.frame_after_steps(10).values<Vec3f>(32, 1); };
+  const auto reset = [&](Json command) {
+    command["do"] = "reset";
+    page.say(command);
+    return page.scene();
+  };
+  const auto first = positions();
+  EXPECT_EQ(reset({}).json["seed"], 0);
+  EXPECT_EQ(positions(), first);
+  EXPECT_EQ(reset({{"seed", 5}}).json["seed"], 5);
+  const auto other = positions();
+  EXPECT_NE(other, first);
+  EXPECT_EQ(reset({}).json["seed"], 5);
+  EXPECT_EQ(positions(), other);
+}
+
+TEST(ViewerSettings, AFailedSetLeavesAllAsItWas) {
+  Show show = three_balls();
+  show.objects[2] = test_ball("fine", {0, 0, 2.2}, 30);
+  TestPage page(show);
+  page.scene();
+  page.ask({{"do", "pause"}});
+  page.frame_after_steps(3);
+  const std::string failure =
+      page.failure(R"({"do": "set", "objects": 100000, "bounding_volume": "sphere"})");
+  EXPECT_EQ(failure.substr(0, 25), "set: 100000 objects have ");
+  const ViewerMessage frame = page.frame_after_steps(1);
+  EXPECT_EQ(frame.json["step"], 4);
+  EXPECT_EQ(frame.json["generation"], 1);
+  page.say({{"do", "set"}});
+  const ViewerMessage scene = page.scene();
+  EXPECT_EQ(scene.json["objects"].size(), 3u);
+  EXPECT_EQ(scene.json["bounding_volume"], "aabb");
+}
+
+}  // namespace
+}  // namespace supple::viewer

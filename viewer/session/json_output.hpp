@@ -1,0 +1,76 @@
+#pragma once
+
+#include <rapidjson/rapidjson.h>
+#include <rapidjson/writer.h>
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "supple/types.hpp"
+#include "utf8.hpp"
+
+namespace supple::viewer {
+
+/// Writes JSON to a stream of RapidJSON's: what all JSON of the program has in common. What is no UTF-8 in a
+/// text becomes U+FFFD. `Doubles::write(writer, number)` says how doubles are written, and what stands for
+/// those that JSON has no number for.
+template <class Stream, class Doubles>
+class JsonOutput {
+ public:
+  void begin_object() { writer_.StartObject(); }
+  void end_object() { writer_.EndObject(); }
+  void begin_array() { writer_.StartArray(); }
+  void end_array() { writer_.EndArray(); }
+  void key(const char* name) { writer_.Key(name); }
+
+  void value(std::uint64_t number) { writer_.Uint64(number); }
+  void value(std::uint32_t number) { writer_.Uint(number); }
+  void value(std::int64_t number) { writer_.Int64(number); }
+  void value(double number) { Doubles::write(writer_, number); }
+  void value(bool truth) { writer_.Bool(truth); }
+  void value(std::string_view text) {
+    const std::string valid = valid_utf8(text);
+    writer_.String(valid.data(), static_cast<rapidjson::SizeType>(valid.size()));
+  }
+  void value(const std::string& text) { value(std::string_view(text)); }
+  void value(const char* text) { value(std::string_view(text)); }
+  void value(Vec3d point) {
+    begin_array();
+    value(point.x);
+    value(point.y);
+    value(point.z);
+    end_array();
+  }
+  void value(std::span<const std::string> texts) {
+    begin_array();
+    for (const std::string& text : texts) value(text);
+    end_array();
+  }
+  void null() { writer_.Null(); }
+  /// Two numbers, `[a,b]`.
+  void pair(std::uint64_t a, std::uint64_t b) {
+    begin_array();
+    value(a);
+    value(b);
+    end_array();
+  }
+
+  template <class Value>
+  void member(const char* name, const Value& v) {
+    key(name);
+    value(v);
+  }
+
+ protected:
+  using Writer = rapidjson::Writer<Stream>;
+
+  /// Starts a text, with the memory there is from the last one.
+  void begin(Stream& stream) { writer_.Reset(stream); }
+
+ private:
+  Writer writer_;
+};
+
+}  // namespace supple::viewer
