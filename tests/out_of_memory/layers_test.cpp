@@ -14,7 +14,6 @@ namespace supple::viewer {
 namespace {
 
 using Json = nlohmann::json;
-using Message = ViewerMessage;
 
 constexpr std::size_t large = 1'000'000;
 
@@ -52,22 +51,22 @@ TEST(OutOfMemory, ALayerThatFailsIsGivenUpWithTheOthersAndTheyAreNamed) {
   std::span<const std::byte> next;
   {
     const Scarcity scarcity;
-    const Message message(page.session.next_message());
-    EXPECT_EQ(message.kind, Message::failure);
+    const ViewerMessage message(page.next_bytes());
+    EXPECT_EQ(message.kind, ViewerMessage::failure);
     failure = message.json;
-    next = page.session.next_message();
+    next = page.next_bytes();
   }
-  const Message without(next);  // against the credit that the failure has not used
+  const ViewerMessage without(next);  // against the credit that the failure has not used
   EXPECT_EQ(failure["fatal"], false);
   EXPECT_FALSE(failure.contains("id"));
   EXPECT_EQ(failure["layers"], (Json{"candidates", "octree"}));
   EXPECT_NE(failure["message"].get<std::string>().find("memory"), std::string::npos);
-  EXPECT_EQ(without.kind, Message::frame);
+  EXPECT_EQ(without.kind, ViewerMessage::frame);
   EXPECT_FALSE(without.has(38) || without.has(40, 0));
 
   // Asked for anew they come: they were given up, not forbidden.
   page.ask({{"do", "layers"}, {"candidates", true}});
-  const Message frame = page.frame();
+  const ViewerMessage frame = page.frame();
   EXPECT_EQ(frame.section(38).count, 90'000u);
   EXPECT_FALSE(frame.has(40, 0));
 }
@@ -77,7 +76,7 @@ TEST(OutOfMemory, AFrameWithoutLayersThatFailsEndsTheSession) {
   page.scene();
   page.say({{"do", "credit"}, {"frames", 1}});
   const Scarcity scarcity;
-  const Json failure = page.only(Message::failure).json;
+  const Json failure = page.only(ViewerMessage::failure).json;
   EXPECT_EQ(failure["fatal"], true);
   EXPECT_FALSE(failure.contains("layers"));
   EXPECT_TRUE(page.session.ended());
