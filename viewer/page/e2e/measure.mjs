@@ -19,6 +19,19 @@ motion = { kind = "sway", amplitude = 0.1, wavelength = 1.5, period = 1, seed = 
   return `[scene]\ntime_step = 0.01\n${balls.join("\n")}\n`;
 }
 
+/** Thousands of small balls in a grid, 42 vertices and 80 triangles each. */
+const CROWD = `
+[scene]
+time_step = 0.01
+[[object]]
+name = "ball"
+model = "icosphere"
+frequency = 2
+repeat = [20, 25, 10]
+spacing = [3, 3, 3]
+motion = { kind = "sway", amplitude = 0.1, wavelength = 1.5, period = 1 }
+`;
+
 /** A small window: where pixels are made in software, they must not be all that is measured. */
 async function open(stage, scene) {
   const program = await stage.program(stage.file("balls.toml", scene));
@@ -29,12 +42,12 @@ async function open(stage, scene) {
 }
 
 /** Frames that arrive in a second, with what is drawn or without. */
-async function stream(stage, count, frequency, draws) {
-  const page = await open(stage, ballScene(count, frequency));
+async function stream(stage, scene, draws) {
+  const page = await open(stage, scene);
   await page.getByRole("combobox", { name: "Speed" }).selectOption("0");
   await page.getByRole("checkbox", { name: "Surfaces" }).setChecked(draws);
   await page.waitForTimeout(1500);
-  const { frames, steps, turns, reading, seconds, vertices } = await page.evaluate(async (wanted) => {
+  const { frames, steps, turns, reading, seconds, objects, vertices } = await page.evaluate(async (wanted) => {
     const begin = performance.now();
     const [frames, steps] = [supple.model.framesSeen, supple.model.frame.text.step];
     let turns = 0;
@@ -53,23 +66,23 @@ async function stream(stage, count, frequency, draws) {
     await new Promise((done) => setTimeout(done, 1000 * wanted));
     const vertices = supple.model.objects.reduce((sum, object) => sum + object.vertices, 0);
     return {
-      frames: supple.model.framesSeen - frames, steps: supple.model.frame.text.step - steps, turns, reading, vertices,
+      frames: supple.model.framesSeen - frames, steps: supple.model.frame.text.step - steps, turns, reading, vertices, objects: supple.model.objects.length,
       seconds: (performance.now() - begin) / 1000,
     };
   }, SECONDS);
   const how = draws ? "drawn" : "surfaces not drawn";
   console.log(
-    `${vertices.toLocaleString("en")} vertices, ${how}: ${(frames / seconds).toFixed(1)} frames/s, ${(steps / seconds).toFixed(1)} steps/s, ` +
+    `${vertices.toLocaleString("en")} vertices of ${objects.toLocaleString("en")} objects, ${how}: ${(frames / seconds).toFixed(1)} frames/s, ${(steps / seconds).toFixed(1)} steps/s, ` +
       `${(turns / seconds).toFixed(1)} turns of the browser/s, ${(reading / frames).toFixed(2)} ms a frame to read and take over`,
   );
 }
 
 /** Of a picture with all vertices new: until the script is done, and until the pixels are. */
-async function picture(stage, frequency) {
-  const page = await open(stage, ballScene(1, frequency));
+async function picture(stage, scene) {
+  const page = await open(stage, scene);
   await pause(page);
   await until(page, () => supple.model.frame.contacts.length === 0);
-  const { script, pixels, triangles } = await page.evaluate(() => {
+  const { script, pixels, objects, triangles, calls } = await page.evaluate(() => {
     const gl = document.querySelector("canvas.view").getContext("webgl2");
     const pixel = new Uint8Array(4);
     const times = [];
@@ -82,9 +95,14 @@ async function picture(stage, frequency) {
       times.push([drawn - begin, performance.now() - begin]);
     }
     const median = (at) => times.map((pair) => pair[at]).sort((a, b) => a - b)[15];
-    return { script: median(0), pixels: median(1), triangles: supple.model.objects[0].triangles };
+    const { objects } = supple.model;
+    const triangles = objects.reduce((sum, object) => sum + object.triangles, 0);
+    return { script: median(0), pixels: median(1), objects: objects.length, triangles, calls: supple.drawn().calls };
   });
-  console.log(`${triangles.toLocaleString("en")} triangles: ${script.toFixed(2)} ms of script a picture, ${pixels.toFixed(1)} ms with its pixels`);
+  console.log(
+    `${triangles.toLocaleString("en")} triangles of ${objects.toLocaleString("en")} objects: ${script.toFixed(2)} ms of script a picture in ${calls} draw calls, ` +
+      `${pixels.toFixed(1)} ms with its pixels`,
+  );
 }
 
 const [program] = process.argv.slice(2);
@@ -95,7 +113,12 @@ if (!program || !existsSync(program)) {
 const flags = process.env.SUPPLE_GPU ? ["--no-sandbox"] : CHROMIUM_FLAGS;
 const browser = await chromium.launch({ executablePath: process.env.SUPPLE_CHROMIUM ?? "/usr/bin/chromium", headless: true, args: flags });
 try {
-  const measures = [(s) => stream(s, 10, 32, false), (s) => stream(s, 10, 32, true), (s) => stream(s, 1, 100, false), (s) => stream(s, 1, 100, true), (s) => picture(s, 22), (s) => picture(s, 71)];
+  const moving = [ballScene(10, 32), ballScene(1, 100), CROWD];
+  const still = [ballScene(1, 22), ballScene(1, 71), CROWD];
+  const measures = [
+    ...moving.flatMap((scene) => [false, true].map((draws) => (stage) => stream(stage, scene, draws))),
+    ...still.map((scene) => (stage) => picture(stage, scene)),
+  ];
   for (const measure of measures) {
     const stage = new Stage(resolve(program), browser);
     try {
