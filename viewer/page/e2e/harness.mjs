@@ -70,6 +70,19 @@ motion = { kind = "sway", amplitude = 0.1, wavelength = 1.5, period = 1, seed = 
   return `[scene]\ntime_step = 0.01\n${balls.join("\n")}\n`;
 }
 
+/** Thousands of small balls in a grid, 42 vertices and 80 triangles each. */
+export const SWAYING_CROWD = `
+[scene]
+time_step = 0.01
+[[object]]
+name = "ball"
+model = "icosphere"
+frequency = 2
+repeat = [20, 25, 10]
+spacing = [3, 3, 3]
+motion = { kind = "sway", amplitude = 0.1, wavelength = 1.5, period = 1 }
+`;
+
 /** All that one test needs, and cleans up after it. */
 export class Stage {
   constructor(supple, browser) {

@@ -195,15 +195,17 @@ async function saysThatAContactIsOne(stage) {
   await until(page, () => supple.model.frame.contacts.length > 0);
   await pause(page);
   const [a, triangleA, b, triangleB] = await page.evaluate(() => [...supple.model.frame.contacts.subarray(0, 4)]);
-  await page.getByLabel("Object A").selectOption(String(a));
+  await page.getByLabel("Object A", { exact: true }).fill(String(a));
   await page.getByLabel("Triangle A").fill(String(triangleA));
-  await page.getByLabel("Object B").selectOption(String(b));
+  await page.getByLabel("Object B", { exact: true }).fill(String(b));
   await page.getByLabel("Triangle B").fill(String(triangleB));
   await page.getByRole("button", { name: "Explain" }).click();
   await until(page, () => supple.model.explanation?.stage === "contact");
   await page.getByLabel("Triangle B").fill("999999");
   await page.getByRole("button", { name: "Explain" }).click();
   await page.getByText("There is no triangle 999999").waitFor();
+  await page.getByLabel("Object B", { exact: true }).fill("77");
+  assert.ok(await page.getByLabel("Object B", { exact: true }).evaluate((field) => field.validity.rangeOverflow));
 }
 
 /** A vertex of one ball is pulled into the other; contacts begin. */

@@ -1,9 +1,8 @@
-// How fast the viewer is on this machine: node e2e/measure.mjs PATH/TO/supple
-// Frames a second that come from the program into the page, and the time of a picture.
+// The time of a picture on this machine: node e2e/measure.mjs PATH/TO/supple
 import { existsSync } from "node:fs";
 import { resolve } from "node:path";
 import { chromium } from "playwright-core";
-import { CHROMIUM_FLAGS, chromiumPath, hasFrame, pause, Stage, swayingBalls, until } from "./harness.mjs";
+import { CHROMIUM_FLAGS, chromiumPath, hasFrame, pause, Stage, SWAYING_CROWD, swayingBalls, until } from "./harness.mjs";
 
 /** A small window: where pixels are made in software, they must not be all that is measured. */
 async function open(stage, scene) {
@@ -15,11 +14,11 @@ async function open(stage, scene) {
 }
 
 /** Of a picture with all vertices new: until the script is done, and until the pixels are. */
-async function picture(stage, frequency) {
-  const page = await open(stage, swayingBalls(1, frequency));
+async function picture(stage, scene) {
+  const page = await open(stage, scene);
   await pause(page);
   await until(page, () => supple.model.frame.contacts.length === 0);
-  const { script, pixels, triangles } = await page.evaluate(() => {
+  const { script, pixels, objects, triangles, calls } = await page.evaluate(() => {
     const gl = document.querySelector("canvas.view").getContext("webgl2");
     const pixel = new Uint8Array(4);
     const times = [];
@@ -32,9 +31,14 @@ async function picture(stage, frequency) {
       times.push([drawn - begin, performance.now() - begin]);
     }
     const median = (at) => times.map((pair) => pair[at]).sort((a, b) => a - b)[15];
-    return { script: median(0), pixels: median(1), triangles: supple.model.objects[0].triangles };
+    const { objects } = supple.model;
+    const triangles = objects.reduce((sum, object) => sum + object.triangles, 0);
+    return { script: median(0), pixels: median(1), objects: objects.length, triangles, calls: supple.drawn().calls };
   });
-  console.log(`${triangles.toLocaleString("en")} triangles: ${script.toFixed(2)} ms of script a picture, ${pixels.toFixed(1)} ms with its pixels`);
+  console.log(
+    `${triangles.toLocaleString("en")} triangles of ${objects.toLocaleString("en")} objects: ${script.toFixed(2)} ms of script a picture in ${calls} draw calls, ` +
+      `${pixels.toFixed(1)} ms with its pixels`,
+  );
 }
 
 const [program] = process.argv.slice(2);
@@ -44,10 +48,10 @@ if (!program || !existsSync(program)) {
 }
 const browser = await chromium.launch({ executablePath: chromiumPath(), headless: true, args: CHROMIUM_FLAGS });
 try {
-  for (const frequency of [22, 71]) {
+  for (const scene of [swayingBalls(1, 22), swayingBalls(1, 71), SWAYING_CROWD]) {
     const stage = new Stage(resolve(program), browser);
     try {
-      await picture(stage, frequency);
+      await picture(stage, scene);
     } finally {
       await stage.cleanUp();
     }

@@ -216,7 +216,7 @@ async function hugeScene(stage) {
     send(textMessage(1, text));
   });
   await says(page, "This scene is too large for the page");
-  await page.getByText("city has 900,000,000 vertices").waitFor();
+  await page.getByText("The largest is city, with 900,000,000 vertices").waitFor();
 }
 
 async function failedSession(stage) {

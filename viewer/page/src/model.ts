@@ -13,12 +13,19 @@ export interface ObjectState {
   isBody: boolean;
   /** How it moves, in a word or two. */
   kind: string;
-  /** Where it is now, minus the scene's centre; written in place. */
+  /** Where it is now, minus the scene's centre: its part of the model's `positions`, written in place. */
   positions: Float32Array;
   corners: Uint32Array;
   visible: boolean;
   colour: string;
   opacity: number;
+  /** Of where it is now; what `boundsOf` has found, if it was asked. */
+  bounds?: Bounds | null | undefined;
+}
+
+export interface Bounds {
+  lower: [number, number, number];
+  upper: [number, number, number];
 }
 
 export const LAYERS = [
@@ -110,6 +117,8 @@ function kindOf(object: SceneObject, source: SceneText["source"]): string {
 export class Model extends Emitter<ModelEvents> {
   scene: SceneText | null = null;
   objects: ObjectState[] = [];
+  /** Of all objects, one after the other. */
+  positions = new Float32Array(0);
   frame: FrameMessage | null = null;
   framesSeen = 0;
   readonly history = new History();
@@ -134,6 +143,8 @@ export class Model extends Emitter<ModelEvents> {
     const old = this.objects;
     this.scene = message.text;
     this.frame = null;
+    this.positions = new Float32Array(3 * message.text.objects.reduce((sum, object) => sum + object.vertices, 0));
+    let first = 0;
     this.objects = message.text.objects.map((object, index) => {
       const kept = old[index]?.name === object.name ? old[index] : undefined;
       return {
@@ -144,7 +155,7 @@ export class Model extends Emitter<ModelEvents> {
         isStatic: object.static,
         isBody: object.body,
         kind: kindOf(object, message.text.source),
-        positions: new Float32Array(3 * object.vertices),
+        positions: this.positions.subarray(first, (first += 3 * object.vertices)),
         corners: message.triangles.get(index) ?? new Uint32Array(0),
         visible: kept?.visible ?? true,
         colour: kept?.colour ?? objectColour(index),
@@ -166,7 +177,11 @@ export class Model extends Emitter<ModelEvents> {
 
   takeFrame(message: FrameMessage): void {
     if (!this.scene || message.text.generation !== this.scene.generation) return;
-    for (const [object, positions] of message.positions) this.objects[object]!.positions.set(positions);
+    for (const [index, positions] of message.positions) {
+      const object = this.objects[index]!;
+      object.positions.set(positions);
+      object.bounds = undefined;
+    }
     this.frame = message;
     this.framesSeen += 1;
     if (this.scene.source === "simulation") this.remember(message);
@@ -268,16 +283,35 @@ export class Model extends Emitter<ModelEvents> {
   }
 }
 
-/** The bounds of vertices, of those that are numbers; null when there are none. */
-export function boundsOf(objects: Iterable<ObjectState>): { lower: number[]; upper: number[] } | null {
-  const lower = [Infinity, Infinity, Infinity];
-  const upper = [-Infinity, -Infinity, -Infinity];
-  for (const { positions } of objects)
-    for (let i = 0; i < positions.length; i += 3)
-      for (let axis = 0; axis < 3; ++axis) {
-        const x = positions[i + axis]!;
-        if (x < lower[axis]!) lower[axis] = x;
-        if (x > upper[axis]!) upper[axis] = x;
-      }
-  return lower.every((x, axis) => Number.isFinite(x) && Number.isFinite(upper[axis]!)) ? { lower, upper } : null;
+/** The bounds of an object's vertices, of those that are numbers; null when there are none. Found once in each place. */
+export function boundsOf(object: ObjectState): Bounds | null {
+  if (object.bounds === undefined) object.bounds = findBounds(object.positions);
+  return object.bounds;
+}
+
+function findBounds(positions: Float32Array): Bounds | null {
+  const lower: Bounds["lower"] = [Infinity, Infinity, Infinity];
+  const upper: Bounds["upper"] = [-Infinity, -Infinity, -Infinity];
+  for (let i = 0; i < positions.length; i += 3)
+    for (let axis = 0; axis < 3; ++axis) {
+      const x = positions[i + axis]!;
+      if (x < lower[axis]!) lower[axis] = x;
+      if (x > upper[axis]!) upper[axis] = x;
+    }
+  return lower.every((x, axis) => x <= upper[axis]!) ? { lower, upper } : null;
+}
+
+/** The bounds of several objects together; null when there are none. */
+export function boundsOfAll(objects: ObjectState[]): Bounds | null {
+  let all: Bounds | null = null;
+  for (const object of objects) {
+    const bounds = boundsOf(object);
+    if (!bounds) continue;
+    all ??= { lower: [...bounds.lower], upper: [...bounds.upper] };
+    for (let axis = 0; axis < 3; ++axis) {
+      all.lower[axis] = Math.min(all.lower[axis]!, bounds.lower[axis]!);
+      all.upper[axis] = Math.max(all.upper[axis]!, bounds.upper[axis]!);
+    }
+  }
+  return all;
 }

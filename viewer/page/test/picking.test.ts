@@ -28,3 +28,15 @@ test("what is hidden, behind or not a number is not hit", () => {
   assert.equal(pick(down(2, 2), [square(0, 0)]), null);
   assert.equal(pick({ origin: [0.5, 0.25, -1], direction: [0, 0, -1] }, [square(0, 0)]), null);
 });
+
+test("objects whose bounds the ray passes are not looked through, those that it grazes are", () => {
+  const far = square(0, 0);
+  const looked: number[] = [];
+  const watched = [square(0, 0), object(1, [5, 5, 1, 6, 5, 1, 6, 6, 1], [0, 1, 2])].map((of) =>
+    Object.defineProperty({ ...of }, "corners", { get: () => (looked.push(of.index), of.corners) }),
+  );
+  assert.equal(pick(down(0.5, 0.25), watched)?.object, 0);
+  assert.ok(looked.includes(0) && !looked.includes(1));
+  assert.equal(pick(down(0, 0), [far])?.triangle, 0);  // along two sides of its bounds
+  assert.equal(pick({ origin: [-1, 0.5, 0], direction: [1, 0, 0] }, [far]), null);  // in its plane
+});

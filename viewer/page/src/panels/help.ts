@@ -11,7 +11,7 @@ const GROUPS: [string, [string, string][]][] = [
   ]],
   ["Work", [
     ["V", "select: click an object, triangle, contact"], ["G", "grab: drag a vertex, or select one and use Enter and the arrows"], ["W", "why no contact: click two triangles"],
-    ["Esc", "let go, clear the selection, close"],
+    ["↑ ↓", "in a list: from row to row"], ["Esc", "let go, clear the selection, close"],
   ]],
   ["Layers", [
     ["S X", "surfaces, wireframe"], ["N B", "scene octree, object octrees"], ["P C", "object pairs, candidates"],

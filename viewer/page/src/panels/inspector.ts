@@ -47,15 +47,18 @@ export class Inspector {
   readonly element = h("div", { class: "inspector" });
   private readonly details = h("div", { class: "details", "aria-label": "Selection", role: "region" });
   private readonly verdict = h("div", { class: "verdict", role: "status", "aria-label": "Explanation" });
-  private readonly fields: { object: HTMLSelectElement; triangle: HTMLInputElement }[];
+  private readonly fields: { object: HTMLInputElement; name: HTMLElement; triangle: HTMLInputElement }[];
   private answers = new Map<string, Record<string, unknown> | string>();
   private due: ReturnType<typeof setTimeout> | undefined;
   private round = 0;
 
   constructor(private readonly model: Model, private readonly client: Client, private readonly fly: () => void) {
+    const field = (label: string, title: string) =>
+      h("input", { type: "number", min: 0, step: 1, value: 0, "aria-label": label, title, oninput: () => this.showNames() });
     this.fields = ["A", "B"].map((side) => ({
-      object: h("select", { "aria-label": `Object ${side}` }),
-      triangle: h("input", { type: "number", min: 0, step: 1, value: 0, "aria-label": `Triangle ${side}` }),
+      object: field(`Object ${side}`, "Number of the object"),
+      name: h("output", { class: "text", "aria-label": `Name of object ${side}` }),
+      triangle: field(`Triangle ${side}`, "Number of the triangle"),
     }));
     this.element.append(this.details, this.explainForm());
     model.on("scene", () => this.reset());
@@ -65,18 +68,22 @@ export class Inspector {
     this.draw();
   }
 
+  private showNames(): void {
+    for (const { object, name } of this.fields) name.textContent = this.model.objects[object.valueAsNumber]?.name ?? "none";
+  }
+
   private explainForm(): HTMLElement {
-    const rows = this.fields.map(({ object, triangle }, i) =>
-      h("div", { class: "field" }, h("span", { class: "side", style: `background:${i === 0 ? OKABE_ITO.orange : OKABE_ITO.sky}` }, "AB"[i]!), object, triangle),
+    const rows = this.fields.map(({ object, name, triangle }, i) =>
+      h("div", { class: "field" }, h("span", { class: "side", style: `background:${i === 0 ? OKABE_ITO.orange : OKABE_ITO.sky}` }, "AB"[i]!), object, name, triangle),
     );
     const submit = (event: Event) => {
       event.preventDefault();
-      void this.explain(this.fields.map((field) => ({ object: Number(field.object.value), triangle: field.triangle.valueAsNumber || 0 })));
+      void this.explain(this.fields.map((field) => ({ object: field.object.valueAsNumber || 0, triangle: field.triangle.valueAsNumber || 0 })));
     };
     return h(
       "form", { class: "explain", onsubmit: submit },
       h("h3", {}, "Why no contact?"),
-      h("p", { class: "hint" }, "Pick two triangles with the tool ", h("kbd", {}, "W"), ", or name them."),
+      h("p", { class: "hint" }, "Pick two triangles with the tool ", h("kbd", {}, "W"), ", or give the numbers of object and triangle."),
       ...rows,
       h("button", { type: "submit" }, "Explain"),
       this.verdict,
@@ -89,6 +96,7 @@ export class Inspector {
       this.fields[i]!.object.value = String(object);
       this.fields[i]!.triangle.value = String(triangle);
     });
+    this.showNames();
     const [a, b] = pair;
     const missing = pair.find(({ object, triangle }) => !(triangle < (this.model.objects[object]?.triangles ?? 0)));
     if (missing) return this.complain(`There is no triangle ${missing.triangle} in ${this.model.objects[missing.object]?.name ?? "that object"}.`);
@@ -126,9 +134,12 @@ export class Inspector {
   }
 
   private reset(): void {
-    for (const { object } of this.fields)
-      object.replaceChildren(...this.model.objects.map(({ index, name }) => h("option", { value: index }, name)));
-    if (this.model.objects.length > 1) this.fields[1]!.object.value = "1";
+    const last = Math.max(0, this.model.objects.length - 1);
+    this.fields.forEach(({ object }, side) => {
+      object.max = String(last);
+      object.value = String(Math.min(side, last));
+    });
+    this.showNames();
     this.changed();
   }
 

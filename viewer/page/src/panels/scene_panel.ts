@@ -1,7 +1,8 @@
 /** The objects of the scene and the layers that are drawn over them. */
 import { levelColour, LEVELS, OKABE_ITO } from "../colours";
-import type { Layer, Model, ObjectState } from "../model";
+import type { Layer, Model } from "../model";
 import { h, readable } from "./dom";
+import { ObjectList } from "./object_list";
 
 interface LayerRow {
   layer: Layer;
@@ -33,7 +34,6 @@ function swatch(colour: string): HTMLElement {
 
 export class ScenePanel {
   readonly element: HTMLElement;
-  private readonly list = h("ul", { class: "objects", "aria-label": "Objects" });
   private readonly counts = new Map<Layer, HTMLElement>();
   private readonly boxes = new Map<Layer, HTMLInputElement>();
   private readonly levels = h("select", { "aria-label": "Octree level" });
@@ -42,87 +42,22 @@ export class ScenePanel {
     ...LEVELS.map((_, level) => h("span", { style: `--level:${levelColour(level)}` }, String(level))),
   );
   private readonly omitted = h("p", { class: "hint", role: "status", hidden: true });
-  private rows: HTMLLIElement[] = [];
   private deepest = -1;
 
-  constructor(private readonly model: Model, private readonly frameObject: () => void) {
+  constructor(private readonly model: Model, frameObject: () => void) {
     this.element = h(
       "aside",
       { class: "panel left", "aria-label": "Scene" },
-      h("section", { class: "grow" }, h("h2", {}, "Objects", this.allButton()), this.list),
+      new ObjectList(model, frameObject).element,
       h("section", {}, h("h2", {}, "Layers"), this.layerList(), this.octreeOptions(), this.legend, this.omitted),
     );
     model.on("scene", () => this.build());
-    model.on("selection", () => this.markSelected());
     model.on("display", () => this.refresh());
   }
 
-  private allButton(): HTMLElement {
-    const toggle = () => {
-      const show = this.model.objects.some((object) => !object.visible);
-      for (const object of this.model.objects) object.visible = show;
-      this.build();
-      this.changed();
-    };
-    return h("button", { type: "button", class: "link", title: "Show or hide all objects", onclick: toggle }, "all");
-  }
-
-  private changed(): void {
-    this.model.emit("display", null);
-    if (this.model.layers.octree) this.model.emit("request", null);
-  }
-
   private build(): void {
-    this.rows = this.model.objects.map((object) => this.objectRow(object));
-    this.list.replaceChildren(...this.rows);
-    this.markSelected();
     this.deepest = -1;
     this.fitLevels(0);
-  }
-
-  private objectRow(object: ObjectState): HTMLLIElement {
-    const visible = h("input", {
-      type: "checkbox", "aria-label": `Show ${object.name}`, title: "Show or hide",
-      onchange: () => {
-        object.visible = visible.checked;
-        this.changed();
-      },
-    });
-    visible.checked = object.visible;
-    const colour = h("input", {
-      type: "color", value: object.colour, "aria-label": `Colour of ${object.name}`, title: "Colour",
-      oninput: () => {
-        object.colour = colour.value;
-        this.model.emit("display", null);
-      },
-    });
-    const opacity = h("input", {
-      type: "range", min: 0, max: 1, step: 0.05, value: object.opacity, class: "opacity", "aria-label": `Opacity of ${object.name}`, title: "Opacity",
-      oninput: () => {
-        object.opacity = opacity.valueAsNumber;
-        this.model.emit("display", null);
-      },
-    });
-    const name = h(
-      "button",
-      {
-        type: "button", class: "name", title: `${object.name}: ${object.kind}, ${readable(object.vertices)} vertices, ${readable(object.triangles)} triangles. Double click frames it.`,
-        onclick: () => this.model.select({ object: object.index, triangle: null, vertex: null }),
-        ondblclick: () => this.frameObject(),
-      },
-      h("span", { class: "text" }, object.name),
-      h("span", { class: "count" }, readable(object.triangles)),
-    );
-    return h("li", { "data-object": object.index }, visible, colour, name, opacity);
-  }
-
-  private markSelected(): void {
-    const selected = this.model.selection?.object;
-    this.rows.forEach((row, i) => {
-      row.classList.toggle("selected", i === selected);
-      row.querySelector(".name")!.setAttribute("aria-pressed", String(i === selected));
-    });
-    if (selected !== undefined) this.rows[selected]?.scrollIntoView({ block: "nearest" });
   }
 
   private layerList(): HTMLElement {
@@ -182,7 +117,7 @@ export class ScenePanel {
       if (element.textContent !== text) element.textContent = text;
     }
     if (!frame) return;
-    this.fitLevels(Math.max(0, ...frame.text.octree_levels.map((level) => level ?? 0)));
+    this.fitLevels(frame.text.octree_levels.reduce((deepest: number, level) => Math.max(deepest, level ?? 0), 0));
     const cut = Object.entries(frame.text.omitted);
     this.omitted.hidden = cut.length === 0;
     const text = cut.map(([name, count]) => `${name.replace(/_/g, " ")}: ${readable(count)} in all, the first are shown`).join("; ");

@@ -165,8 +165,9 @@ class Sections {
   add(form: Form, object: number, data: Data): void {
     let objects = this.found.get(form.name);
     if (!objects) this.found.set(form.name, (objects = new Map()));
-    if (objects.has(object)) fail(`its section ${form.name} comes twice`);
+    const before = objects.size;
     objects.set(object, data);
+    if (objects.size === before) fail(`its section ${form.name} comes twice`);
   }
 
   one<T extends Data>(name: string, empty: T): T {

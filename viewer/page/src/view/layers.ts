@@ -27,6 +27,14 @@ function writeCentroid(into: Float32Array, at: number, object: ObjectState, tria
   return at;
 }
 
+/** Writes the middle of an object's bounds; false when it has none. */
+function writeCentre(into: Float32Array, at: number, object: ObjectState): boolean {
+  const bounds = boundsOf(object);
+  if (!bounds) return false;
+  for (let axis = 0; axis < 3; ++axis) into[at + axis] = (bounds.lower[axis]! + bounds.upper[axis]!) / 2;
+  return true;
+}
+
 /** Triangles that were seen in this round, without clearing anything between rounds. */
 class Marks {
   private round = 0;
@@ -117,19 +125,12 @@ export class Layers {
   private fillPairs(on: boolean): void {
     const pairs = this.model.frame?.objectPairs;
     if (!on || !pairs) return this.pairs.fill(0, () => 0);
-    const centres = this.model.objects.map((object) => {
-      const bounds = boundsOf([object]);
-      return bounds ? bounds.lower.map((x, axis) => (x + bounds.upper[axis]!) / 2) : null;
-    });
     this.pairs.fill(pairs.length / 2, (into) => {
       let at = 0;
       for (let i = 0; i < pairs.length; i += 2) {
-        const a = centres[pairs[i]!];
-        const b = centres[pairs[i + 1]!];
-        if (!a || !b || !this.shown(pairs[i]!) || !this.shown(pairs[i + 1]!)) continue;
-        into.set(a, at);
-        into.set(b, at + 3);
-        at += 6;
+        const a = this.model.objects[pairs[i]!]!;
+        const b = this.model.objects[pairs[i + 1]!]!;
+        if (a.visible && b.visible && writeCentre(into, at, a) && writeCentre(into, at + 3, b)) at += 6;
       }
       return at / 6;
     });

@@ -1,5 +1,8 @@
-/** What a ray hits. Looked for when a person clicks, over flat arrays, so that nothing has to be kept up to date. */
-import type { ObjectState } from "../model";
+/**
+ * What a ray hits. Looked for when a person clicks, over flat arrays, so that nothing has to be kept up to date: among the
+ * triangles of those objects whose bounds the ray meets.
+ */
+import { boundsOf, type Bounds, type ObjectState } from "../model";
 
 export interface Hit {
   object: number;
@@ -8,6 +11,9 @@ export interface Hit {
   distance: number;
   point: [number, number, number];
 }
+
+/** Of distances along a ray, which are rounded. */
+const ROUNDING = 1e-9;
 
 interface Ray {
   origin: ArrayLike<number>;
@@ -54,12 +60,28 @@ export function pickTriangle(ray: Ray, object: ObjectState, farthest: number): H
   };
 }
 
+/** Whether a ray comes near bounds before `farthest`; false only when it surely does not. */
+function meets(ray: Ray, { lower, upper }: Bounds, farthest: number): boolean {
+  let enters = 0;
+  let leaves = farthest;
+  for (let axis = 0; axis < 3; ++axis) {
+    // Along a side, 0 / 0 gives NaN, which narrows nothing down.
+    const one = (lower[axis]! - ray.origin[axis]!) / ray.direction[axis]!;
+    const other = (upper[axis]! - ray.origin[axis]!) / ray.direction[axis]!;
+    if (Math.min(one, other) > enters) enters = Math.min(one, other);
+    if (Math.max(one, other) < leaves) leaves = Math.max(one, other);
+  }
+  return enters <= leaves + ROUNDING * Math.abs(leaves);
+}
+
 /** The first triangle of all that are shown. */
 export function pick(ray: Ray, objects: ObjectState[]): Hit | null {
   let first: Hit | null = null;
   let farthest = Infinity;
   for (const object of objects) {
     if (!object.visible || object.opacity < 0.05) continue;
+    const bounds = boundsOf(object);
+    if (!bounds || !meets(ray, bounds, farthest)) continue;
     const hit = pickTriangle(ray, object, farthest);
     if (!hit) continue;
     first = hit;

@@ -2,25 +2,18 @@
 import * as THREE from "three";
 import { OKABE_ITO } from "../colours";
 import { contactCount, findContact, pointsAt } from "../contacts";
-import { boundsOf, type Model, type ObjectState } from "../model";
+import { boundsOfAll, type Model, type ObjectState } from "../model";
 import { CameraRig } from "./camera";
 import { Layers } from "./layers";
 import { pick, type Hit } from "./picking";
 import { Dots, Faces, Lines, shared } from "./primitives";
-
-interface Drawn {
-  surface: THREE.Mesh<THREE.BufferGeometry, THREE.MeshStandardMaterial>;
-  wireframe: THREE.Mesh<THREE.BufferGeometry, THREE.MeshBasicMaterial>;
-}
+import { obstacleOf, Surfaces } from "./surfaces";
 
 /** In pixels. */
 export interface PictureSize {
   width: number;
   height: number;
 }
-
-/** More than any graphics card takes in one buffer. */
-const LARGEST_BUFFER = 0x80000000;
 
 export class SceneView {
   readonly rig: CameraRig;
@@ -32,8 +25,7 @@ export class SceneView {
   readonly times: number[] = [];
   private readonly renderer: THREE.WebGLRenderer;
   private readonly scene = new THREE.Scene();
-  private readonly light = new THREE.DirectionalLight(0xffffff, 2.2);
-  private drawn: Drawn[] = [];
+  private readonly surfaces = new Surfaces();
   private readonly selected = new Faces({ colour: OKABE_ITO.yellow, opacity: 0.9, order: 3 });
   private readonly vertex = new Dots({ colour: OKABE_ITO.yellow, size: 11, depthTest: false, order: 8 });
   private readonly contactDot = new Dots({ colour: OKABE_ITO.vermillion, size: 12, depthTest: false, order: 9 });
@@ -53,7 +45,7 @@ export class SceneView {
     this.renderer.setClearAlpha(1);
     this.rig = new CameraRig(canvas, () => this.invalidate());
     this.layers = new Layers(model);
-    this.scene.add(new THREE.HemisphereLight(0xffffff, 0x8890a0, 1.4), this.light, this.light.target, this.layers.group);
+    this.scene.add(this.surfaces.group, this.layers.group);
     for (const extra of [this.selected, this.vertex, this.contactDot, ...this.outlines, ...this.picked, this.gap, this.pull])
       this.scene.add(extra.shape);
     canvas.addEventListener("webglcontextlost", (event) => {
@@ -65,9 +57,9 @@ export class SceneView {
       this.touch(frame.positions.keys());
       if (!this.hasFramed) this.firstFrame();
     });
-    model.on("display", () => this.refresh());
-    model.on("selection", () => this.refresh());
-    model.on("explanation", () => this.refresh());
+    model.on("display", () => this.paint());
+    model.on("selection", () => this.select());
+    model.on("explanation", () => this.refill());
     new ResizeObserver(() => this.resize()).observe(canvas);
     this.resize();
     requestAnimationFrame((now) => this.turn(now));
@@ -75,12 +67,7 @@ export class SceneView {
 
   /** A sentence about why a scene cannot be shown on this machine, or null. */
   obstacle(objects: { name: string; vertices: number; triangles: number }[]): string | null {
-    const gl = this.renderer.getContext() as WebGL2RenderingContext;
-    const most = gl.getParameter(gl.MAX_ELEMENT_INDEX) as number;
-    for (const { name, vertices, triangles } of objects)
-      if (12 * Math.max(vertices, triangles) > LARGEST_BUFFER || vertices > most)
-        return `${name} has ${vertices.toLocaleString("en")} vertices and ${triangles.toLocaleString("en")} triangles, more than this browser can draw. Show a part of the scene, or a coarser mesh.`;
-    return null;
+    return obstacleOf(this.renderer.getContext() as WebGL2RenderingContext, objects);
   }
 
   setBackground(colour: string): void {
@@ -99,8 +86,8 @@ export class SceneView {
   }
 
   /** These objects have new positions. */
-  touch(objects: Iterable<number> = this.drawn.keys()): void {
-    for (const object of objects) this.drawn[object]!.surface.geometry.getAttribute("position").needsUpdate = true;
+  touch(objects: Iterable<number> = this.model.objects.keys()): void {
+    this.surfaces.touch(objects);
     this.refill();
   }
 
@@ -164,64 +151,23 @@ export class SceneView {
   }
 
   private build(): void {
-    for (const { surface, wireframe } of this.drawn) {
-      this.scene.remove(surface, wireframe);
-      surface.geometry.dispose();
-      surface.material.dispose();
-      wireframe.material.dispose();
-    }
-    this.drawn = this.model.objects.map((object) => this.makeObject(object));
+    this.surfaces.build(this.model.objects, this.model.positions);
     const bounds = this.model.scene!.bounds;
     this.rig.setExtent(Math.hypot(...bounds[0], ...bounds[1]));
     this.checkMemory = true;
     this.pull.fill(0, () => 0);
-    this.refresh();
+    this.select();
+    this.paint();
   }
 
-  private makeObject(object: ObjectState): Drawn {
-    const geometry = new THREE.BufferGeometry();
-    const positions = new THREE.BufferAttribute(object.positions, 3);
-    positions.setUsage(THREE.DynamicDrawUsage);
-    geometry.setAttribute("position", positions);
-    geometry.setIndex(new THREE.BufferAttribute(object.corners, 1));
-    // Flat shading takes normals from derivatives on the card: nothing to compute as objects bend.
-    const surface = new THREE.Mesh(
-      geometry,
-      new THREE.MeshStandardMaterial({
-        flatShading: true, side: THREE.DoubleSide, roughness: 0.75, metalness: 0,
-        polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1,
-      }),
-    );
-    const wireframe = new THREE.Mesh(geometry, new THREE.MeshBasicMaterial({ wireframe: true, transparent: true }));
-    for (const mesh of [surface, wireframe]) {
-      mesh.frustumCulled = false;  // bounds would have to follow each frame
-      this.scene.add(mesh);
-    }
-    return { surface, wireframe };
+  /** Takes over what objects look like. */
+  private paint(): void {
+    this.surfaces.paint(this.model.layers);
+    this.refill();
   }
 
-  /** Takes over what objects look like and what is selected. */
-  refresh(): void {
-    const { layers, selection } = this.model;
-    this.model.objects.forEach((object, i) => {
-      const { surface, wireframe } = this.drawn[i]!;
-      const material = surface.material;
-      surface.visible = object.visible && layers.surface;
-      wireframe.visible = object.visible && layers.wireframe;
-      material.color.set(object.colour);
-      material.opacity = object.opacity;
-      const transparent = object.opacity < 1;
-      if (material.transparent !== transparent) {
-        material.transparent = transparent;
-        material.depthWrite = !transparent;
-        material.needsUpdate = true;
-      }
-      const isSelected = selection?.object === i;
-      material.emissive.set(isSelected ? object.colour : "#000000");
-      material.emissiveIntensity = isSelected ? 0.25 : 0;
-      wireframe.material.color.set(layers.surface ? "#101418" : object.colour);
-      wireframe.material.opacity = layers.surface ? 0.35 : 1;
-    });
+  private select(): void {
+    this.surfaces.select(this.model.selection?.object ?? null);
     this.refill();
   }
 
@@ -350,7 +296,7 @@ export class SceneView {
   }
 
   private frameObjects(objects: ObjectState[], direction?: THREE.Vector3, fly = true): void {
-    const bounds = boundsOf(objects);
+    const bounds = boundsOfAll(objects);
     if (!bounds) return;
     const lower = new THREE.Vector3().fromArray(bounds.lower);
     const upper = new THREE.Vector3().fromArray(bounds.upper);
@@ -425,8 +371,6 @@ export class SceneView {
   draw(): void {
     this.dirty = false;
     if (!this.filled) this.fill();
-    this.light.position.copy(this.rig.camera.position);
-    this.light.target.position.copy(this.rig.controls.target);
     this.renderer.render(this.scene, this.rig.camera);
     if (this.checkMemory && this.model.frame) {
       this.checkMemory = false;

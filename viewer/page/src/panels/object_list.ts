@@ -1,0 +1,134 @@
+/** The objects of the scene, as many as there are: to show and hide, colour, select and find by name. */
+import type { Model, ObjectState } from "../model";
+import { h, readable } from "./dom";
+import { RowWindow, type Row } from "./row_window";
+
+const ROW_HEIGHT = 27;
+/** With fewer objects there is nothing to find. */
+const FEWEST_TO_FILTER = 13;
+
+/** The controls of one object, then of another. */
+class ObjectRow implements Row {
+  readonly element: HTMLLIElement;
+  readonly name: HTMLButtonElement;
+  private object!: ObjectState;
+  private readonly visible = h("input", { type: "checkbox", title: "Show or hide" });
+  private readonly colour = h("input", { type: "color", title: "Colour" });
+  private readonly opacity = h("input", { type: "range", min: 0, max: 1, step: 0.05, class: "opacity", title: "Opacity" });
+  private readonly text = h("span", { class: "text" });
+  private readonly count = h("span", { class: "count" });
+
+  constructor(private readonly model: Model, private readonly listed: () => ObjectState[], shown: () => void, frame: () => void) {
+    this.name = h("button", { type: "button", class: "name", ondblclick: frame }, this.text, this.count);
+    this.element = h("li", {}, this.visible, this.colour, this.name, this.opacity);
+    this.name.addEventListener("click", () => model.select({ object: this.object.index, triangle: null, vertex: null }));
+    this.visible.addEventListener("change", () => {
+      this.object.visible = this.visible.checked;
+      shown();
+    });
+    this.colour.addEventListener("input", () => {
+      this.object.colour = this.colour.value;
+      model.emit("display", null);
+    });
+    this.opacity.addEventListener("input", () => {
+      this.object.opacity = this.opacity.valueAsNumber;
+      model.emit("display", null);
+    });
+  }
+
+  show(index: number): void {
+    const listed = this.listed();
+    const object = listed[index]!;
+    if (this.object !== object) this.take(object);
+    const selected = this.model.selection?.object === object.index;
+    this.element.setAttribute("aria-posinset", String(index + 1));
+    this.element.setAttribute("aria-setsize", String(listed.length));
+    this.element.classList.toggle("selected", selected);
+    this.name.setAttribute("aria-pressed", String(selected));
+    this.visible.checked = object.visible;
+    if (this.colour.value !== object.colour) this.colour.value = object.colour;
+    if (this.opacity.valueAsNumber !== object.opacity) this.opacity.valueAsNumber = object.opacity;
+  }
+
+  private take(object: ObjectState): void {
+    this.object = object;
+    const { index, name, kind, vertices, triangles } = object;
+    this.visible.setAttribute("aria-label", `Show ${name}`);
+    this.colour.setAttribute("aria-label", `Colour of ${name}`);
+    this.opacity.setAttribute("aria-label", `Opacity of ${name}`);
+    this.name.title = `${name}: object ${index}, ${kind}, ${readable(vertices)} vertices, ${readable(triangles)} triangles. Double click frames it.`;
+    this.text.textContent = name;
+    this.count.textContent = readable(triangles);
+  }
+}
+
+export class ObjectList {
+  readonly element: HTMLElement;
+  private readonly list = h("ul", { "aria-label": "Objects" });
+  private readonly window: RowWindow<ObjectRow>;
+  private readonly filter = h("input", { type: "search", placeholder: "Filter objects", "aria-label": "Filter objects", hidden: true, oninput: () => this.update() });
+  private readonly nothing = h("p", { class: "hint", role: "status", hidden: true });
+  private listed: ObjectState[] = [];
+
+  constructor(private readonly model: Model, frameObject: () => void) {
+    this.window = new RowWindow(
+      { class: "objects", tabindex: -1, onkeydown: (event: KeyboardEvent) => this.key(event) }, this.list, ROW_HEIGHT,
+      () => new ObjectRow(model, () => this.listed, () => this.shown(), frameObject),
+    );
+    const all = h("button", { type: "button", class: "link", title: "Show or hide all objects of this list", onclick: () => this.toggleAll() }, "all");
+    this.element = h("section", { class: "grow" }, h("h2", {}, "Objects", all), this.filter, this.nothing, this.window.element);
+    model.on("scene", () => this.build());
+    model.on("selection", () => this.showSelected());
+    model.on("display", () => this.window.draw());
+  }
+
+  private build(): void {
+    this.filter.hidden = this.model.objects.length < FEWEST_TO_FILTER;
+    if (this.filter.hidden) this.filter.value = "";
+    this.update();
+  }
+
+  /** Lists the objects whose names have what is looked for. */
+  private update(): void {
+    const wanted = this.filter.value.trim().toLowerCase();
+    this.listed = this.model.objects.filter(({ name }) => name.toLowerCase().includes(wanted));
+    this.nothing.hidden = this.listed.length > 0 || wanted === "";
+    this.nothing.textContent = this.nothing.hidden ? "" : `No object has “${this.filter.value.trim()}” in its name.`;
+    this.window.setCount(this.listed.length);
+    this.showSelected();
+  }
+
+  private shown(): void {
+    this.model.emit("display", null);
+    if (this.model.layers.octree) this.model.emit("request", null);
+  }
+
+  private toggleAll(): void {
+    const show = this.listed.some((object) => !object.visible);
+    for (const object of this.listed) object.visible = show;
+    this.shown();
+  }
+
+  private get selectedRow(): number {
+    const selected = this.model.selection?.object;
+    return selected === undefined ? -1 : this.listed.findIndex(({ index }) => index === selected);
+  }
+
+  private showSelected(): void {
+    const row = this.selectedRow;
+    if (row >= 0) this.window.reveal(row);
+    this.window.draw();
+  }
+
+  /** Arrows go from object to object. */
+  private key(event: KeyboardEvent): void {
+    const isPlain = !event.shiftKey && !event.altKey && !event.ctrlKey && !event.metaKey;
+    if (!isPlain || event.target instanceof HTMLInputElement || event.key === "Home" || event.key === "End") return;
+    const next = this.window.rowAfter(event.key, this.selectedRow);
+    if (next === null) return;
+    event.preventDefault();
+    event.stopPropagation();
+    this.model.select({ object: this.listed[next]!.index, triangle: null, vertex: null });
+    this.window.rowOf(next)?.name.focus();
+  }
+}
