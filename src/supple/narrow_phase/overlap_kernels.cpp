@@ -191,9 +191,12 @@ HWY_INLINE void look_up(const LeafVertexTables& tables, const std::uint8_t* corn
 
 #endif
 
+/// Called rather than inlined: Highway's portable vectors are loops over lanes, and of hundreds of loops in
+/// one function compilers take time that grows with their square. A call is little beside a leaf.
 template <class Box, class Scalar>
-HWY_INLINE void load_leaf_boxes(LeafBoxes& leaf, VertexArray<Scalar> positions, const LeafArrays& object,
-                                [[maybe_unused]] std::uint32_t lane, std::uint32_t begin, std::uint32_t end) {
+HWY_NOINLINE void load_leaf_boxes(LeafBoxes& leaf, VertexArray<Scalar> positions, const LeafArrays& object,
+                                  [[maybe_unused]] std::uint32_t lane, std::uint32_t begin,
+                                  std::uint32_t end) {
 #if HWY_TARGET != HWY_SCALAR
   const LeafVertexArrays leaves = object.vertices;
   const std::size_t first = leaves.first[lane], count = leaves.first[lane + 1] - first;
