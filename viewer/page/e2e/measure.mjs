@@ -36,7 +36,7 @@ async function picture(stage, scene) {
     return { script: median(0), pixels: median(1), objects: objects.length, triangles, calls: supple.drawn().calls };
   });
   console.log(
-    `${triangles.toLocaleString("en")} triangles of ${objects.toLocaleString("en")} objects: ${script.toFixed(2)} ms of script a picture in ${calls} draw calls, ` +
+    `${triangles.toLocaleString("en")} triangles, objects: ${objects.toLocaleString("en")}; ${script.toFixed(2)} ms of script a picture in ${calls} draw calls, ` +
       `${pixels.toFixed(1)} ms with its pixels`,
   );
 }

@@ -92,7 +92,7 @@ async function measure(supple, scene) {
   try {
     const { address } = await stage.program(stage.file("balls.toml", scene));
     const bare = await bareClient(address);
-    console.log(`${bare.vertices.toLocaleString("en")} vertices of ${bare.objects.toLocaleString("en")} objects`);
+    console.log(`${bare.vertices.toLocaleString("en")} vertices, objects: ${bare.objects.toLocaleString("en")}`);
     console.log(`  a client that only reads: ${bare.rate.toFixed(0)} frames/s of ${bare.megabytes.toFixed(2)} MB`);
     for (const draws of [false, true]) {
       const { rate, turns, steps, reading } = await inPage(address, draws);
