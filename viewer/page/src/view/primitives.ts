@@ -52,10 +52,6 @@ abstract class Primitive<Shape extends THREE.Object3D & { material: THREE.Shader
     (this.shape.material.uniforms["colour"]!.value as THREE.Color).set(colour);
   }
 
-  set size(size: number) {
-    this.shape.material.uniforms["size"]!.value = size;
-  }
-
   protected show(count: number): void {
     this.count = count;
     this.shape.visible = count > 0;
@@ -64,10 +60,16 @@ abstract class Primitive<Shape extends THREE.Object3D & { material: THREE.Shader
 
 const FLAT = "void main() { result = linearToOutputTexel(vec4(colour, opacity)); }";
 
-/** Points as round dots with a dark rim; an element is x, y, z. */
+/** Of the picture, what all dots of a layer may cover. */
+const DOTS_COVER = 0.15;
+const SMALLEST_DOT = 1.5;
+
+/** Points as round dots with a dark rim, smaller where there are so many that they would hide all else; an element is x, y, z. */
 export class Dots extends Primitive<THREE.Points<THREE.BufferGeometry, THREE.ShaderMaterial>> {
   readonly shape;
   private readonly stream: Stream;
+  /** In pixels of the page, of few dots. */
+  size: number;
 
   constructor(style: Style) {
     super();
@@ -80,14 +82,21 @@ export class Dots extends Primitive<THREE.Points<THREE.BufferGeometry, THREE.Sha
          gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
          gl_PointSize = size * pixelRatio;
        }`,
-      `void main() {
+      `uniform float size;
+       void main() {
          float r = length(gl_PointCoord - 0.5) * 2.0;
          if (r > 1.0) discard;
-         vec3 c = r > 0.72 ? vec3(0.02) : colour;
+         vec3 c = r > 0.72 && size > 4.0 ? vec3(0.02) : colour;
          result = linearToOutputTexel(vec4(c, opacity));
        }`,
     );
     this.shape = new THREE.Points(geometry, material);
+    this.size = style.size ?? 1;
+    this.shape.onBeforeRender = () => {
+      const { x: width, y: height } = shared.resolution.value;
+      const fitting = Math.max(SMALLEST_DOT, Math.sqrt((DOTS_COVER * width * height) / this.count));
+      material.uniforms["size"]!.value = Math.min(this.size, fitting);
+    };
     this.prepare(style);
   }
 
