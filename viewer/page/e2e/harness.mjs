@@ -155,8 +155,8 @@ export async function pause(page) {
 export async function settled(page) {
   let last;
   for (let same = 0; same < 3; ) {
-    const now = await page.evaluate(() => `${supple.model.framesSeen} ${supple.drawTimes().at(-1)}`);
-    same = now === last ? same + 1 : 0;
+    const now = await page.evaluate(() => supple.isUpToDate && `${supple.model.framesSeen} ${supple.drawTimes().at(-1)}`);
+    same = now !== false && now === last ? same + 1 : 0;
     last = now;
     await page.waitForTimeout(120);
   }

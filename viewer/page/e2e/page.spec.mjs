@@ -65,7 +65,8 @@ async function savesAPicture(stage) {
 async function recordsAVideo(stage) {
   const { page } = await stage.view(nine);
   await page.getByRole("button", { name: "Record a video" }).click();
-  await page.waitForTimeout(1500);
+  const begin = await page.evaluate(() => performance.now());
+  await until(page, (begin) => performance.now() > begin + 1500 && supple.drawTimes().filter((time) => time > begin).length >= 10, begin);
   const [download] = await Promise.all([page.waitForEvent("download"), page.getByRole("button", { name: "End the video" }).click()]);
   const path = stage.file("film.webm");
   await download.saveAs(path);

@@ -294,6 +294,7 @@ export class App {
         camera: () => ({ position: view.rig.camera.position.toArray(), target: view.rig.controls.target.toArray(), zoom: view.rig.camera.zoom, orthographic: view.rig.isOrthographic }),
         drawTimes: () => [...view.times],
         drawn: () => view.statistics(),
+        get isUpToDate() { return view.isUpToDate; },
         draw: () => view.draw(),
         /** As if a frame had brought all positions anew. */
         touch: () => view.touch(),

@@ -85,6 +85,11 @@ export class SceneView {
     this.dirty = true;
   }
 
+  /** Whether all that has changed is drawn. */
+  get isUpToDate(): boolean {
+    return !this.dirty;
+  }
+
   /** These objects have new positions. */
   touch(objects: Iterable<number> = this.model.objects.keys()): void {
     this.surfaces.touch(objects);
