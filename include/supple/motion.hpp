@@ -3,7 +3,9 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "supple/mesh.hpp"
@@ -121,6 +123,9 @@ class MassSpringBody {
   /// a sparse linear system up to six times, of stiff bodies by factors. Spans that were returned before are
   /// no longer valid.
   void step(double seconds);
+  /// As `step`, but gives the message instead of throwing it when the body cannot be carried on; nothing when
+  /// it was. For builds without exceptions.
+  [[nodiscard]] std::optional<std::string> try_step(double seconds);
   /// Puts the body back to what it was before the last `step`, whatever positions and velocities it was given
   /// since; external forces, drift and the direction of the air stay. Throws `Error` when there is no such
   /// step, or it was undone or failed. O(1), or O(n) when the body flows.

@@ -132,6 +132,9 @@ class Simulation {
   /// which is straight. Throws `MotionError` when a body blows up; whatever the user's motion throws comes
   /// through. Either way everything is as before the call. Objects without motion cost nothing.
   const DetectResult& step();
+  /// As `step`, but gives the error instead of throwing it when a body blows up; nothing when the step was
+  /// taken: `scene().result()` then has what was detected. For builds without exceptions.
+  [[nodiscard]] std::optional<MotionError> try_step();
 
   std::uint64_t step_count() const;  ///< steps taken
   double time() const;               ///< s: step_count() · time_step

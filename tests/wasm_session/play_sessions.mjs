@@ -94,6 +94,8 @@ for (const session of sessions) {
 }
 assert.ok(contacts > 1000, 'the sessions must have contacts to be compared');
 assert.equal(different, 0, 'sessions differ from those of the native build');
+const exploding = sessions.find(({name}) => name === 'exploding');
+assert.ok(exploding.failures > 0 && exploding.frames > 5, 'a body must blow up, and the session go on');
 
 // A damaged show fails in the page, by a message that says so.
 const damaged = readFileSync(join(folder, 'nine.show'));

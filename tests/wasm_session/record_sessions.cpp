@@ -130,6 +130,21 @@ Script nine() {
   return script;
 }
 
+/// A body that blows up, in steps far too long for it, and goes on by another integrator.
+Script exploding() {
+  Script script{"exploding", {}};
+  script.show.title = script.name;
+  script.show.objects = {placed("rabbit", "soft", {}), placed("pawn", "hard", {0.3, 0, 0})};
+  script.show.objects.front().motion = supple::MassSpringMotion{
+      .springs = {.vertex_mass = 1e-6, .stiffness = 1e4}, .random_force = 1, .deform_seconds = 1};
+  script.command(R"({"do": "speed", "factor": 0})");
+  script.steps(30, 20);
+  script.command(R"({"do": "set", "integrator": "backward_euler"})");
+  script.command(R"({"do": "play"})");
+  script.steps(5, 20);
+  return script;
+}
+
 /// One that is hard in one way, in waves and against itself.
 Script hard(const supple::Family& family, bool continuous) {
   Script script{std::string(family.name) + (continuous ? "_continuous" : ""), {}};
@@ -159,13 +174,14 @@ nlohmann::json play(const Script& script, std::span<const std::byte> packed) {
   supple::viewer::Session session(supple::viewer::unpack(packed));
   session.greet();
   MessageHash hash;
-  std::uint64_t messages = 0, frames = 0, contacts = 0;
+  std::uint64_t messages = 0, frames = 0, contacts = 0, failures = 0;
   supple::viewer::MessageWriter writer;
   const auto drain = [&] {
     for (auto bytes = session.next_message(writer); !bytes.empty(); bytes = session.next_message(writer)) {
       hash.add(bytes);
       const supple::ViewerMessage message(bytes);
       ++messages;
+      if (message.kind == supple::ViewerMessage::failure) ++failures;
       if (message.kind != supple::ViewerMessage::frame) continue;
       ++frames;
       contacts += message.section(34).count;
@@ -180,8 +196,8 @@ nlohmann::json play(const Script& script, std::span<const std::byte> packed) {
       session.advance(entry.get<double>() / 1000);
     drain();
   }
-  return {{"name", script.name}, {"entries", script.entries}, {"messages", messages},
-          {"frames", frames},    {"contacts", contacts},      {"sha256", hash.hex()}};
+  return {{"name", script.name},  {"entries", script.entries}, {"messages", messages}, {"frames", frames},
+          {"contacts", contacts}, {"failures", failures},      {"sha256", hash.hex()}};
 }
 
 void write(const std::filesystem::path& path, const char* data, std::size_t size) {
@@ -196,7 +212,7 @@ int main(int argc, char** argv) {
   if (argc != 2) return std::fprintf(stderr, "usage: %s FOLDER\n", argv[0]), 2;
   const std::filesystem::path folder = argv[1];
   std::filesystem::create_directories(folder);
-  std::vector<Script> scripts{nine()};
+  std::vector<Script> scripts{nine(), exploding()};
   for (const supple::Family& family : supple::hard_families()) {
     scripts.push_back(hard(family, false));
     scripts.push_back(hard(family, true));

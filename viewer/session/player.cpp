@@ -1,6 +1,7 @@
 #include "player.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace supple::viewer {
 namespace {
@@ -63,14 +64,15 @@ Player::Outcome Player::advance_simulation(SimulationSource& simulation, double 
   const bool moves = playing_ || simulation.needs_steps();
   if (steps_ > 0) {
     --steps_;
-    simulation.take_step();
-    return {true, steps_ > 0 ? 0 : idle_seconds};
+    auto failure = simulation.take_step();
+    return {true, steps_ > 0 ? 0 : idle_seconds, std::move(failure)};
   }
   const bool is_due = moves && take_due_step(time_step, seconds);
   const bool changed = is_due || simulation.settle();
-  if (is_due) simulation.take_step();
   if (!moves) return {changed};
-  return {changed, speed_ > 0 ? std::max(time_step - due_, 0.0) / speed_ : 0};
+  std::optional<std::string> failure;
+  if (is_due) failure = simulation.take_step();
+  return {changed, speed_ > 0 ? std::max(time_step - due_, 0.0) / speed_ : 0, std::move(failure)};
 }
 
 /// Keeps up with time while it can; what it cannot catch up with by the next step is given up.

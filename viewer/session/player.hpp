@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
+#include <string>
 
 #include "stage.hpp"
 
@@ -30,8 +32,9 @@ class Player {
   struct Outcome {
     bool changed = false;  ///< there is something new to see
     double wait = idle_seconds;
+    std::optional<std::string> failure{};  ///< why a step could not be taken
   };
-  /// Lets time pass: one step or frame at most. Throws `Error` when that fails.
+  /// Lets time pass: one step or frame at most. Throws `Error` when a frame cannot be read.
   Outcome advance(Stage& stage, double seconds);
 
  private:

@@ -136,7 +136,8 @@ void Session::Implementation::greet() {
 double Session::Implementation::advance(double seconds) {
   if (!is_greeted_ || has_ended_) return Player::idle_seconds;
   Player::Outcome outcome;
-  const auto failure = failure_of([&] { outcome = player_.advance(*stage_, seconds); });
+  auto failure = failure_of([&] { outcome = player_.advance(*stage_, seconds); });
+  if (outcome.failure) failure = Failure{*outcome.failure};
   if (failure) {
     id_.reset();
     player_.pause();

@@ -45,17 +45,18 @@ void SimulationSource::move_swaying(std::size_t object, double seconds, std::spa
   }
 }
 
-void SimulationSource::take_step() {
+std::optional<std::string> SimulationSource::take_step() {
   if (grip_ && grip_->target) {
     pull_held();
     bend_held();
   }
-  simulation_.step();
+  if (const auto error = simulation_.try_step()) return error->what();
   is_detected_ = true;
   motion_seconds_ = simulation_.motion_seconds();
   for (std::size_t i = 0; i < versions_.size(); ++i) {
     if (moves_by_itself(i)) ++versions_[i];
   }
+  return std::nullopt;
 }
 
 std::optional<std::string> SimulationSource::grab(std::size_t object, std::uint32_t vertex,

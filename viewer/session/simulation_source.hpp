@@ -28,8 +28,9 @@ class SimulationSource final : public Source {
   double motion_seconds() const override { return motion_seconds_; }
   const Simulation& simulation() const { return simulation_; }
 
-  /// Moves everything on by one step. Throws `Error`, everything being as before.
-  void take_step();
+  /// Moves everything on by one step. Gives why a body could not be moved on, everything being as before; or
+  /// nothing.
+  std::optional<std::string> take_step();
 
   /// Holds a vertex; says why it cannot, or nothing. The numbers exist.
   std::optional<std::string> grab(std::size_t object, std::uint32_t vertex, std::optional<double> radius);

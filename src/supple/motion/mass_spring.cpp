@@ -119,7 +119,7 @@ MassSpring::MassSpring(const TriangleMesh& rest, const MassSpringOptions& option
   }
 }
 
-void MassSpring::step(double seconds, const Parallel& parallel) {
+std::optional<std::string> MassSpring::try_step(double seconds, const Parallel& parallel) {
   if (!(seconds > 0) || !std::isfinite(seconds)) {
     fail("masses and springs of mesh '" + name_ + "': a step of " + in_digits(seconds) +
          " s; it must be finite and above 0");
@@ -138,12 +138,13 @@ void MassSpring::step(double seconds, const Parallel& parallel) {
     carry_on(*from, to, substep, parallel);
     if (const std::uint32_t bad = first_bad_vertex(); bad != none) {
       restore_rest_shape();
-      fail_at(bad, seconds);
+      return why_bad(bad, seconds);
     }
     from = &to;
   }
   before_ = from == &next_ ? &MassSpring::next_ : &MassSpring::after_next_;
   std::swap(now_, this->*before_);
+  return std::nullopt;
 }
 
 void MassSpring::undo_step() {
@@ -290,16 +291,15 @@ std::uint32_t MassSpring::first_bad_vertex() const {
   return none;
 }
 
-void MassSpring::fail_at(std::uint32_t vertex, double seconds) const {
+std::string MassSpring::why_bad(std::uint32_t vertex, double seconds) const {
   const std::string where = "masses and springs of mesh '" + name_ + "': vertex " + std::to_string(vertex);
-  if (!is_finite(now_.positions[vertex]) || !is_finite(now_.velocities[vertex])) {
-    fail(where + " was given a position or velocity that is not finite");
-  }
+  if (!is_finite(now_.positions[vertex]) || !is_finite(now_.velocities[vertex]))
+    return where + " was given a position or velocity that is not finite";
   const std::string what = where + " flies off in a step of " + in_digits(seconds) + " s";
   if (!(seconds > stable_step()))
-    fail(what + "; velocities, forces or stretch must be smaller than those given");
-  fail(what + "; steps below " + rounded(stable_step()) +
-       " s are stable, more substeps or backward_euler make them longer");
+    return what + "; velocities, forces or stretch must be smaller than those given";
+  return what + "; steps below " + rounded(stable_step()) +
+         " s are stable, more substeps or backward_euler make them longer";
 }
 
 void MassSpring::check_size(std::size_t size, const char* what) const {

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -21,7 +22,7 @@ class MassSpring {
  public:
   MassSpring(const TriangleMesh& rest, const MassSpringOptions& options);
 
-  void step(double seconds, const Parallel& parallel);
+  std::optional<std::string> try_step(double seconds, const Parallel& parallel);
   void undo_step();
 
   std::span<const Vec3d> positions() const { return now_.positions; }
@@ -70,7 +71,7 @@ class MassSpring {
   void for_blocks(const Parallel& parallel, Visit visit);
   void check_vertices(const State& from, const State& to, std::uint32_t first, std::uint32_t last);
   std::uint32_t first_bad_vertex() const;
-  [[noreturn]] void fail_at(std::uint32_t vertex, double seconds) const;
+  std::string why_bad(std::uint32_t vertex, double seconds) const;
 
   MassSpringOptions options_;
   std::string name_;

@@ -1,3 +1,4 @@
+#include "core/error.hpp"
 #include "core/parallel.hpp"
 #include "motion/mass_spring.hpp"
 #include "motion/worth_threads.hpp"
@@ -9,12 +10,12 @@ class MassSpringBody::Implementation {
  public:
   Implementation(const TriangleMesh& rest, const MassSpringOptions& options) : masses(rest, options) {}
 
-  void step(double seconds) {
+  std::optional<std::string> try_step(double seconds) {
     if (!has_threads && is_worth_threads(masses.positions().size(), masses.options().integrator)) {
       parallel = Parallel(masses.options().threads);
       has_threads = true;
     }
-    masses.step(seconds, parallel);
+    return masses.try_step(seconds, parallel);
   }
 
   MassSpring masses;
@@ -29,7 +30,10 @@ MassSpringBody::MassSpringBody(MassSpringBody&&) noexcept = default;
 MassSpringBody& MassSpringBody::operator=(MassSpringBody&&) noexcept = default;
 
 void MassSpringBody::step(double seconds) {
-  implementation_->step(seconds);
+  if (const auto failure = try_step(seconds)) fail(*failure);
+}
+std::optional<std::string> MassSpringBody::try_step(double seconds) {
+  return implementation_->try_step(seconds);
 }
 void MassSpringBody::undo_step() {
   implementation_->masses.undo_step();

@@ -41,32 +41,26 @@ const SimulationOptions& checked(const SimulationOptions& options) {
   return options;
 }
 
-/// What `body` throws, or nothing.
-template <class Body>
-std::exception_ptr failure_of(Body&& body) {
+/// What `action` throws, or nothing.
+template <class Action>
+std::exception_ptr exception_of(Action&& action) {
 #if defined(__cpp_exceptions)
   try {
-    body();
+    action();
   } catch (...) {
     return std::current_exception();
   }
 #else
-  body();
+  action();
 #endif
   return nullptr;
 }
 
-[[noreturn]] void throw_as_motion_error(const std::exception_ptr& failure, const std::string& name,
-                                        std::uint64_t step) {
+[[noreturn]] void raise(const MotionError& error) {
 #if defined(__cpp_exceptions)
-  try {
-    std::rethrow_exception(failure);
-  } catch (const Error& error) {
-    throw MotionError(name + " in step " + std::to_string(step) + ": " + error.what(), name, step);
-  }
+  throw error;
 #else
-  (void)failure;
-  fail(name + " in step " + std::to_string(step));
+  fail(error.what());
 #endif
 }
 
@@ -158,18 +152,19 @@ const DetectResult& Simulation::Implementation::detect() {
 }
 
 /// Nothing that may fail comes after the bodies, and nothing that lasts before them.
-const DetectResult& Simulation::Implementation::step() {
+std::optional<MotionError> Simulation::Implementation::try_step() {
   Timer timer;
   call_functions(static_cast<double>(steps + 1) * options.time_step);
   remember_positions();
-  step_bodies();
+  if (auto error = step_bodies()) return error;
   if (response_) respond_to_contacts();
   ++steps;
   accept_written_positions();
   place_in_scene();
   prepare_next_step();
   motion_seconds = timer.lap();
-  return scene.detect();
+  scene.detect();
+  return std::nullopt;
 }
 
 void Simulation::Implementation::call_functions(double seconds) {
@@ -190,35 +185,42 @@ void Simulation::Implementation::remember_positions() {
 }
 
 /// Large bodies take all threads one after the other; small ones go side by side.
-void Simulation::Implementation::step_bodies() {
+std::optional<MotionError> Simulation::Implementation::step_bodies() {
   small_bodies_.clear();
   for (const auto& object : objects_) {
     if (object == nullptr || object->moving_body == nullptr) continue;
-    object->failure = nullptr;
     if (object->moving_body->body.options().threads == 1) {
       small_bodies_.push_back(object.get());
     } else {
-      object->failure = failure_of([&] { object->moving_body->body.step(options.time_step); });
+      step_body(*object);
     }
   }
   parallel_.for_ranges(small_bodies_.size(), 1, [&](std::size_t begin, std::size_t end, std::uint32_t) {
-    for (std::size_t i = begin; i < end; ++i) {
-      SimulatedObject& object = *small_bodies_[i];
-      object.failure = failure_of([&] { object.moving_body->body.step(options.time_step); });
-    }
+    for (std::size_t i = begin; i < end; ++i) step_body(*small_bodies_[i]);
   });
   for (const auto& object : objects_) {
-    if (object != nullptr && object->failure != nullptr) undo_step_because_of(*object);
+    if (object == nullptr || object->moving_body == nullptr || !object->has_failed()) continue;
+    undo_step_of_bodies();
+    if (object->exception != nullptr) std::rethrow_exception(object->exception);
+    const std::string& name = scene.name(object->id);
+    const std::uint64_t step = steps + 1;
+    return MotionError(name + " in step " + std::to_string(step) + ": " + *object->failure, name, step);
   }
+  return std::nullopt;
 }
 
-/// A body that fails has put itself back.
-void Simulation::Implementation::undo_step_because_of(const SimulatedObject& failed) {
+void Simulation::Implementation::step_body(SimulatedObject& object) {
+  object.failure.reset();
+  object.exception =
+      exception_of([&] { object.failure = object.moving_body->body.try_step(options.time_step); });
+}
+
+/// Bodies that failed have put themselves back.
+void Simulation::Implementation::undo_step_of_bodies() {
   for (const auto& object : objects_) {
-    if (object != nullptr && object->moving_body != nullptr && object->failure == nullptr)
+    if (object != nullptr && object->moving_body != nullptr && !object->has_failed())
       object->moving_body->body.undo_step();
   }
-  throw_as_motion_error(failed.failure, scene.name(failed.id), steps + 1);
 }
 
 void Simulation::Implementation::respond_to_contacts() {
@@ -294,7 +296,11 @@ const DetectResult& Simulation::detect() {
   return implementation_->detect();
 }
 const DetectResult& Simulation::step() {
-  return implementation_->step();
+  if (const auto error = try_step()) raise(*error);
+  return scene().result();
+}
+std::optional<MotionError> Simulation::try_step() {
+  return implementation_->try_step();
 }
 
 std::uint64_t Simulation::step_count() const {

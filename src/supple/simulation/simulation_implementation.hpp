@@ -19,12 +19,14 @@ struct SimulatedObject {
   ObjectId id;
   std::unique_ptr<MovingBody> moving_body;
   MotionFunction function;
-  std::vector<Vec3d> own_positions;  // of objects without a body
-  std::vector<Vec3d> next;           // what the function wrote, until the step is sure
-  std::vector<Vec3d> before;         // where the last step began; only where the way there is looked at
-  bool is_on_path = false;           // in the scene, by the last step
-  std::exception_ptr failure;        // of the body, in this step
+  std::vector<Vec3d> own_positions;    // of objects without a body
+  std::vector<Vec3d> next;             // what the function wrote, until the step is sure
+  std::vector<Vec3d> before;           // where the last step began; only where the way there is looked at
+  bool is_on_path = false;             // in the scene, by the last step
+  std::optional<std::string> failure;  // of the body, in this step, and so
+  std::exception_ptr exception;        // as where there is no memory
 
+  bool has_failed() const { return failure.has_value() || exception != nullptr; }
   bool moves() const { return moving_body != nullptr || function != nullptr; }
   std::span<const Vec3d> positions() const {
     return moving_body ? moving_body->body.positions() : std::span<const Vec3d>(own_positions);
@@ -39,7 +41,7 @@ class Simulation::Implementation {
                MotionFunction function);
   void remove(ObjectId id);
   const DetectResult& detect();
-  const DetectResult& step();
+  std::optional<MotionError> try_step();
   void set_positions(ObjectId id, std::span<const Vec3d> positions);
   SimulatedObject& object(ObjectId id, const char* call) const;
 
@@ -53,8 +55,9 @@ class Simulation::Implementation {
                        const SimulatedObject& object);
   void call_functions(double seconds);
   void remember_positions();
-  void step_bodies();
-  [[noreturn]] void undo_step_because_of(const SimulatedObject& failed);
+  std::optional<MotionError> step_bodies();
+  void step_body(SimulatedObject& object);
+  void undo_step_of_bodies();
   void respond_to_contacts();
   void accept_written_positions();
   void place_in_scene();

@@ -39,7 +39,7 @@ TEST(BackwardEulerSteps, AreTheSameForAnyNumberOfThreads) {
       const Parallel parallel(threads);
       MassSpring body(cloth, implicit_options(stiffness));
       body.set_positions(deformed(cloth, 0.05, 0.002, 31));
-      for (int i = 0; i < 2; ++i) body.step(0.01, parallel);
+      for (int i = 0; i < 2; ++i) ASSERT_EQ(body.try_step(0.01, parallel), std::nullopt);
       if (threads == 1) expected = state_of(body);
       EXPECT_EQ(state_of(body), expected) << threads << " threads, stiffness " << stiffness;
     }

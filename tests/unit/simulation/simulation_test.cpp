@@ -253,6 +253,13 @@ TEST(Simulation, ABodyThatBlowsUpLeavesAllAsBefore) {
     ASSERT_TRUE(has_failed);
     EXPECT_EQ(state_of(simulation), before);
 
+    // Without exceptions the same is told.
+    const auto error = simulation.try_step();
+    ASSERT_TRUE(error);
+    EXPECT_EQ(error->object, "firework");
+    EXPECT_EQ(error->step, before.steps + 1);
+    EXPECT_EQ(state_of(simulation), before);
+
     // Without the body all goes on as if there never had been one.
     simulation.remove(bad);
     Simulation undisturbed = room_of_bodies(options);
@@ -262,7 +269,7 @@ TEST(Simulation, ABodyThatBlowsUpLeavesAllAsBefore) {
     undisturbed.add(placed(make_icosphere(2), 0.3, {0, 0, 0}), {}, plastic);
     while (undisturbed.step_count() < before.steps) undisturbed.step();
     for (int step = 0; step < 10; ++step) {
-      simulation.step();
+      ASSERT_FALSE(simulation.try_step());
       undisturbed.step();
     }
     EXPECT_EQ(state_of(simulation), state_of(undisturbed));

@@ -85,6 +85,20 @@ async function playsARecording(stage) {
   );
 }
 
+/** In the module nothing can be caught, and yet it goes on. */
+async function survivesABodyThatBlowsUp(stage) {
+  const page = await open(stage, join(scenes, "soft_block.toml"));
+  await page.getByRole("tab", { name: "Settings" }).click();
+  const integrator = page.getByRole("combobox", { name: "Integrator" });
+  await integrator.selectOption("verlet");
+  await page.getByText("is too long for block").waitFor();
+  await page.getByText("flies off").waitFor();
+  await until(page, () => !supple.model.frame.text.playing);
+  await integrator.selectOption("backward_euler");
+  await page.getByRole("button", { name: "Play", exact: true }).click();
+  await until(page, () => supple.model.frame.text.step > 10);
+}
+
 async function saysWhatIsBroken(stage) {
   const file = stage.file("page.html");
   await runProgram(stage.supple, ["view", join(scenes, "nine.toml"), "--export", file]);
@@ -105,5 +119,6 @@ export const tests = [
   ["agrees with the program to the bit", agreesWithTheProgram],
   ["a vertex is pulled", isPulled],
   ["plays a recording", playsARecording],
+  ["survives a body that blows up", survivesABodyThatBlowsUp],
   ["says that what it carries is broken", saysWhatIsBroken],
 ];
