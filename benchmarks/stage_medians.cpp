@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "supple/models.hpp"
 #include "supple/supple.hpp"
 #include "workloads/cloth_steps.hpp"
 #include "workloads/deforming_copies.hpp"

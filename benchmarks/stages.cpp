@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "supple/models.hpp"
 #include "supple/supple.hpp"
 
 namespace {

@@ -1,6 +1,7 @@
 // Who may touch whom: groups and masks decide cheaply, a function decides the rest.
 #include <cstdio>
 
+#include "supple/models.hpp"
 #include "supple/supple.hpp"
 
 int main() {

@@ -1,6 +1,7 @@
 #include <cstdio>
 #include <vector>
 
+#include "supple/models.hpp"
 #include "supple/supple.hpp"
 
 int main() {

@@ -3,6 +3,8 @@
 #include <cstdio>
 #include <vector>
 
+#include "supple/simulation.hpp"
+#include "supple/models.hpp"
 #include "supple/supple.hpp"
 
 namespace {

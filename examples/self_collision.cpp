@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <vector>
 
+#include "supple/models.hpp"
 #include "supple/supple.hpp"
 
 namespace {

@@ -1,8 +1,8 @@
 #include <array>
 #include <utility>
 
-#include "mesh/models/mesh_builder.hpp"
-#include "mesh/models/models.hpp"
+#include "mesh_builder.hpp"
+#include "built_in.hpp"
 
 namespace supple::models {
 

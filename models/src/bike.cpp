@@ -2,8 +2,8 @@
 #include <utility>
 #include <vector>
 
-#include "mesh/models/mesh_builder.hpp"
-#include "mesh/models/models.hpp"
+#include "mesh_builder.hpp"
+#include "built_in.hpp"
 #include "supple/trigonometry.hpp"
 
 // A racing bicycle, drawn in metres and scaled at the end: x forward, y up, the chain on the right at +z.

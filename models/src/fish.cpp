@@ -3,8 +3,8 @@
 #include <utility>
 #include <vector>
 
-#include "mesh/models/mesh_builder.hpp"
-#include "mesh/models/models.hpp"
+#include "mesh_builder.hpp"
+#include "built_in.hpp"
 
 namespace supple::models {
 namespace {

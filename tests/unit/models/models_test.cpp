@@ -13,7 +13,7 @@
 #include <tuple>
 #include <vector>
 
-#include "mesh/models/vectors.hpp"
+#include "model_vectors.hpp"
 #include "supple/error.hpp"
 
 namespace supple {

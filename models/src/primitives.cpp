@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/error.hpp"
-#include "mesh/models/vectors.hpp"
+#include "model_vectors.hpp"
 #include "supple/models.hpp"
 #include "supple/trigonometry.hpp"
 

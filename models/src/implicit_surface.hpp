@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "mesh/models/vectors.hpp"
+#include "model_vectors.hpp"
 #include "supple/mesh.hpp"
 
 namespace supple::models {

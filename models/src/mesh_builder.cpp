@@ -1,4 +1,4 @@
-#include "mesh/models/mesh_builder.hpp"
+#include "mesh_builder.hpp"
 
 #include <algorithm>
 #include <cassert>

@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "mesh/models/implicit_surface.hpp"
+#include "implicit_surface.hpp"
 #include "supple/mesh.hpp"
 
 namespace supple::models {

@@ -1,4 +1,4 @@
-#include "mesh/models/remesh.hpp"
+#include "remesh.hpp"
 
 #include <algorithm>
 #include <array>

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "mesh/models/vectors.hpp"
+#include "model_vectors.hpp"
 #include "supple/mesh.hpp"
 
 namespace supple::models {

@@ -1,4 +1,4 @@
-#include "mesh/models/models.hpp"
+#include "built_in.hpp"
 
 #include <array>
 #include <string>

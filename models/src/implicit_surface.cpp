@@ -1,4 +1,4 @@
-#include "mesh/models/implicit_surface.hpp"
+#include "implicit_surface.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,9 +1,9 @@
 #include <utility>
 
-#include "mesh/models/implicit_surface.hpp"
-#include "mesh/models/mesh_builder.hpp"
-#include "mesh/models/models.hpp"
-#include "mesh/models/remesh.hpp"
+#include "implicit_surface.hpp"
+#include "mesh_builder.hpp"
+#include "built_in.hpp"
+#include "remesh.hpp"
 
 namespace supple::models {
 namespace {
