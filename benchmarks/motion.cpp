@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "supple/motion.hpp"
 #include "supple/models.hpp"
+#include "supple/motion.hpp"
 #include "supple/supple.hpp"
 
 namespace {

@@ -42,8 +42,8 @@ double median(std::vector<double> values) {
 class StageTimes {
  public:
   void add(const StepStats& stats, double set_milliseconds, double cpu) {
-    const double seconds[] = {stats.refit_seconds, stats.broad_phase_seconds, stats.traversal_seconds,
-                              stats.exact_seconds, stats.finish_seconds,      stats.total_seconds};
+    const double seconds[] = {stats.refit_seconds, stats.broad_phase_seconds,     stats.traversal_seconds,
+                              stats.exact_seconds, stats.sort_and_events_seconds, stats.total_seconds};
     rows_[0].push_back(set_milliseconds);
     for (std::size_t i = 0; i < std::size(seconds); ++i) rows_[i + 1].push_back(1e3 * seconds[i]);
     rows_[7].push_back(cpu);

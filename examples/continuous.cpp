@@ -31,7 +31,7 @@ int main() {
       continue;
     }
     std::printf("step %d: %s and %s touch at %.6f, and %zu pairs would by the end\n", step,
-                scene.name(impact->object_a).c_str(), scene.name(impact->object_b).c_str(), impact->time,
+                scene.name(impact->object_a).c_str(), scene.name(impact->object_b).c_str(), impact->toi,
                 scene.detect().continuous_contacts.size());
     // Your own response goes here; this one only stops short of it.
     const double part = 0.9 * scene.max_step();

@@ -1,8 +1,8 @@
 // A cloth of masses and springs falls over a ball, which it does not pass through, and comes to rest there.
 #include <cstdio>
 
-#include "supple/simulation.hpp"
 #include "supple/models.hpp"
+#include "supple/simulation.hpp"
 #include "supple/supple.hpp"
 
 int main() {

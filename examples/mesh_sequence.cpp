@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "supple/simulation.hpp"
 #include "supple/models.hpp"
+#include "supple/simulation.hpp"
 #include "supple/supple.hpp"
 
 namespace {

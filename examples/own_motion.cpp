@@ -1,8 +1,8 @@
 // A motion of your own: a function writes where the vertices are; the simulation calls it each step.
 #include <cstdio>
 
-#include "supple/simulation.hpp"
 #include "supple/models.hpp"
+#include "supple/simulation.hpp"
 #include "supple/supple.hpp"
 
 int main() {

@@ -3,8 +3,8 @@
 #include <cstdio>
 #include <vector>
 
-#include "supple/simulation.hpp"
 #include "supple/models.hpp"
+#include "supple/simulation.hpp"
 #include "supple/supple.hpp"
 
 namespace {

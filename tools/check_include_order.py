@@ -19,7 +19,7 @@ LAYERS = [
 # Libraries of their own, and the last layer of the core of which they include internal headers; recording includes none.
 COMPONENTS = {"models": "mesh", "simulation": "mesh", "formats": "mesh", "recording": None}
 PROGRAMS = ["viewer/session", "viewer/export", "viewer/server", "cli", "examples", "benchmarks"]
-# What is not public and yet included from elsewhere, by its folder: "session/show.hpp".
+# What is not public and yet included from elsewhere, by its folder: "session/scene_view.hpp".
 SHARED = {"viewer/server": ["session"], "cli": ["session", "export", "server"]}
 PUBLIC = ["include"] + [f"{name}/include" for name in COMPONENTS]
 SOURCES = {".cpp", ".hpp", ".h", ".cc"}

@@ -32,10 +32,6 @@ std::array<Vec3d, 3> random_rotation(RandomNumbers& random) {
            {s * (x * z - w * y), s * (y * z + w * x), 1 - s * (x * x + y * y)}}};
 }
 
-double dot(Vec3d a, Vec3d b) {
-  return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-
 Vec3f rounded(Vec3d p) {
   return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
 }

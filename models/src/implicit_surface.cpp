@@ -14,7 +14,7 @@ void ImplicitSurface::set_style(double blend, double edge_length) {
 }
 
 void ImplicitSurface::add_bone(Vec3d start, Vec3d end, double start_radius, double end_radius) {
-  const double reach = length(end - start) / 2 + std::max(start_radius, end_radius);
+  const double reach = norm(end - start) / 2 + std::max(start_radius, end_radius);
   parts_.push_back({Kind::bone,
                     start,
                     end,
@@ -48,13 +48,13 @@ double ImplicitSurface::distance_to(const Part& part, Vec3d point) {
   if (part.kind == Kind::bone) {
     const Vec3d axis = part.end - part.start;
     const double t = std::clamp(dot(d, axis) / dot(axis, axis), 0.0, 1.0);
-    return length(d - axis * t) - (part.start_radius + (part.end_radius - part.start_radius) * t);
+    return norm(d - axis * t) - (part.start_radius + (part.end_radius - part.start_radius) * t);
   }
   // First-order distance to an ellipsoid: |p/r| (|p/r| - 1) / |p/r²|.
   const Vec3d scaled{dot(d, part.side) / part.radii.x, dot(d, part.up) / part.radii.y,
                      dot(d, part.front) / part.radii.z};
-  const double norm = length(scaled);
-  const double slope = length({scaled.x / part.radii.x, scaled.y / part.radii.y, scaled.z / part.radii.z});
+  const double norm = norm(scaled);
+  const double slope = norm({scaled.x / part.radii.x, scaled.y / part.radii.y, scaled.z / part.radii.z});
   if (slope == 0) return -std::min({part.radii.x, part.radii.y, part.radii.z});
   return norm * (norm - 1) / slope;
 }

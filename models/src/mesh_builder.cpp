@@ -179,18 +179,18 @@ std::vector<Vec3d> smooth_curve(std::span<const Vec3d> control_points, std::uint
 std::vector<Vec3d> resample(std::span<const Vec3d> polyline, std::uint32_t count) {
   assert(polyline.size() >= 2 && count >= 2);
   double total = 0;
-  for (std::size_t i = 0; i + 1 < polyline.size(); ++i) total += length(polyline[i + 1] - polyline[i]);
+  for (std::size_t i = 0; i + 1 < polyline.size(); ++i) total += norm(polyline[i + 1] - polyline[i]);
 
   std::vector<Vec3d> points{polyline.front()};
   std::size_t piece = 0;
   double walked = 0;
-  double piece_length = length(polyline[1] - polyline[0]);
+  double piece_length = norm(polyline[1] - polyline[0]);
   while (points.size() + 1 < count) {
     const double target = total * static_cast<double>(points.size()) / (count - 1);
     while (walked + piece_length < target && piece + 2 < polyline.size()) {
       walked += piece_length;
       ++piece;
-      piece_length = length(polyline[piece + 1] - polyline[piece]);
+      piece_length = norm(polyline[piece + 1] - polyline[piece]);
     }
     points.push_back(lerp(polyline[piece], polyline[piece + 1], (target - walked) / piece_length));
   }

@@ -7,7 +7,7 @@ namespace supple::models {
 
 /// The direction of `a`, which must not be zero.
 inline Vec3d unit(Vec3d a) {
-  return a * (1 / length(a));
+  return a * (1 / norm(a));
 }
 
 inline Vec3d lerp(Vec3d a, Vec3d b, double t) {

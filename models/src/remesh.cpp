@@ -98,7 +98,7 @@ class EdgeCollapser {
       const Vec3d c = mesh_.positions[corners[2]];
       const Vec3d before = normal_of(mesh_.positions[moved], b, c);
       const Vec3d after = normal_of(target, b, c);
-      if (dot(before, after) <= 0.3 * length(before) * length(after)) return false;
+      if (dot(before, after) <= 0.3 * norm(before) * norm(after)) return false;
     }
     return true;
   }
@@ -171,7 +171,7 @@ std::vector<HalfEdge> sorted_half_edges(const TriangleMesh& mesh) {
 double cotangent_at(Vec3d corner, Vec3d a, Vec3d b) {
   const Vec3d u = a - corner;
   const Vec3d v = b - corner;
-  return dot(u, v) / length(cross(u, v));
+  return dot(u, v) / norm(cross(u, v));
 }
 
 /// Flips each edge whose two opposite angles make more than half a turn, where the surface is nearly flat
@@ -221,7 +221,7 @@ void center_vertices(TriangleMesh& mesh, const ImplicitSurface& surface) {
     const auto& p = mesh.positions;
     const Vec3d middle = (p[t[0]] + p[t[1]] + p[t[2]]) * (1.0 / 3);
     const double wanted = surface.sample(middle).edge_length;
-    const double weight = length(normal_of(p[t[0]], p[t[1]], p[t[2]])) / (wanted * wanted);
+    const double weight = norm(normal_of(p[t[0]], p[t[1]], p[t[2]])) / (wanted * wanted);
     for (const std::uint32_t v : t) {
       sums[v] = sums[v] + middle * weight;
       weights[v] += weight;

@@ -11,7 +11,7 @@ namespace {
 
 /// Two objects and what their scene says of one triangle of each.
 struct Pair {
-  const ShowObject &a, &b;
+  const ViewedObject &a, &b;
   const std::string &name_a, &name_b;
   PairExplanation why;
 
@@ -94,7 +94,7 @@ void add_spheres(const PairExplanation& why, const Center& center, JsonText& jso
 
 }  // namespace
 
-void answer_explain(const Show& show, const Source& source, const Center& center, ObjectTriangle a,
+void answer_explain(const SceneView& show, const Source& source, const Center& center, ObjectTriangle a,
                     ObjectTriangle b, JsonText& json) {
   const Scene& scene = source.scene();
   const ObjectId id_a = source.id(a[0]), id_b = source.id(b[0]);

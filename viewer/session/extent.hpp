@@ -7,7 +7,7 @@
 #include <optional>
 #include <span>
 
-#include "show.hpp"
+#include "scene_view.hpp"
 #include "start.hpp"
 #include "supple/simulation.hpp"
 #include "supple/types.hpp"
@@ -41,9 +41,9 @@ struct Extent {
 };
 
 /// Of all objects at the start, and of the border when it is finite.
-inline Extent extent_of(const Show& show) {
+inline Extent extent_of(const SceneView& show) {
   Extent extent;
-  for (const ShowObject& object : show.objects) extent.add(start_of(show, object).positions);
+  for (const ViewedObject& object : show.objects) extent.add(start_of(show, object).positions);
   const std::optional<Border>& border = show.simulation.border;
   if (border && is_finite((*border)[0]) && is_finite((*border)[1])) extent.add(*border);
   return extent;

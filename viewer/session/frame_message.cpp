@@ -135,7 +135,7 @@ void FramePacker::add_impacts(const FrameView& frame) {
   const auto points = message_->add<Row>(Tag::impact_points, count);
   for (std::size_t i = 0; i < count; ++i) {
     const ContinuousContact& c = contacts[i];
-    points[i] = row_of(frame.center(c.point), static_cast<float>(c.time), floats(c.normal), 0);
+    points[i] = row_of(frame.center(c.point), static_cast<float>(c.toi), floats(c.normal), 0);
   }
 }
 

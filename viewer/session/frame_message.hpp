@@ -11,14 +11,14 @@
 #include "layers.hpp"
 #include "message.hpp"
 #include "paper_vertices.hpp"
-#include "show.hpp"
+#include "scene_view.hpp"
 #include "source.hpp"
 
 namespace supple::viewer {
 
 /// What a frame is made from.
 struct FrameView {
-  const Show& show;
+  const SceneView& show;
   const Source& source;
   const Layers& layers;
   Center center{};

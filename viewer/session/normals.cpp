@@ -6,15 +6,6 @@
 namespace supple::viewer {
 namespace {
 
-Vec3d cross(const Vec3d& a, const Vec3d& b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-
-/// Not `std::hypot`, which is not the same bits in every library.
-double length(const Vec3d& v) {
-  return std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z);
-}
-
 double largest(const Vec3d& v) {
   return std::max({std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)});
 }
@@ -34,14 +25,14 @@ Vec3d scaled_normal(const Vec3d& a, const Vec3d& b, const Vec3d& c, double& size
 Vec3d unit_normal(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
   double size = 0;
   const Vec3d normal = scaled_normal(a, b, c, size);
-  const double sine = length(normal);
+  const double sine = norm(normal);
   return sine > 0 && std::isfinite(sine) ? normal * (1 / sine) : Vec3d{};
 }
 
 double area(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
   double size = 0;
   const Vec3d normal = scaled_normal(a, b, c, size);
-  return size > 0 ? 0.5 * length(normal) * size * size : size;
+  return size > 0 ? 0.5 * norm(normal) * size * size : size;
 }
 
 }  // namespace supple::viewer

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "center.hpp"
-#include "show.hpp"
+#include "scene_view.hpp"
 
 namespace supple::viewer {
 
@@ -20,14 +20,14 @@ class PackedFrames final : public Frames {
 
   PackedFrames() = default;
   /// Reads all of them. Throws `Error` when one cannot be read.
-  PackedFrames(const Frames& frames, std::span<const ShowObject> objects, const Vec3d& center);
+  PackedFrames(const Frames& frames, std::span<const ViewedObject> objects, const Vec3d& center);
 
   std::uint64_t count() const override { return count_; }
   void read(std::uint64_t frame, std::size_t object, std::span<Vec3d> positions) const override;
   const Series& series() const override { return series_; }
 
   /// After unpacking: where objects rest. False when the tracks do not fit to them.
-  bool fit_to(std::span<const ShowObject> objects);
+  bool fit_to(std::span<const ViewedObject> objects);
 
   friend void fields(auto& archive, PackedFrames& frames) {
     archive(frames.count_, frames.center_, frames.tracks_, frames.series_);

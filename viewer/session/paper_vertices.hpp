@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "show.hpp"
+#include "scene_view.hpp"
 #include "source.hpp"
 
 namespace supple::viewer {
@@ -16,7 +16,7 @@ class PaperVertices {
  public:
   /// By object, ascending, each vertex once. They last until the next call. The show is always the same until
   /// `forget`.
-  const std::vector<std::vector<std::uint32_t>>& find(const Show& show, const Source& source);
+  const std::vector<std::vector<std::uint32_t>>& find(const SceneView& show, const Source& source);
   void forget();
 
  private:

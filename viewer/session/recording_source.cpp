@@ -30,9 +30,9 @@ std::vector<double> times_of(const Frames& frames) {
 
 }  // namespace
 
-RecordingSource::RecordingSource(const Show& show)
+RecordingSource::RecordingSource(const SceneView& show)
     : show_(show), scene_(show.simulation.scene), times_(times_of(*show.frames)) {
-  for (const ShowObject& object : show.objects) {
+  for (const ViewedObject& object : show.objects) {
     ids_.push_back(scene_.add(object.mesh, object.options));
     objects_.emplace_back().now = object.mesh.positions;
   }

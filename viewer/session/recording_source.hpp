@@ -3,7 +3,7 @@
 #include <memory>
 #include <vector>
 
-#include "show.hpp"
+#include "scene_view.hpp"
 #include "source.hpp"
 
 namespace supple::viewer {
@@ -14,7 +14,7 @@ class RecordingSource final : public Source {
  public:
   /// At frame 0, or an empty recording's rest. The show must outlive it. Throws `Error` as `Scene` does, or
   /// when a frame cannot be read.
-  explicit RecordingSource(const Show& show);
+  explicit RecordingSource(const SceneView& show);
 
   const Scene& scene() const override { return scene_; }
   ObjectId id(std::size_t object) const override { return ids_[object]; }
@@ -43,7 +43,7 @@ class RecordingSource final : public Source {
   void read(std::uint64_t frame);
   void place(std::size_t object, bool has_path);
 
-  const Show& show_;
+  const SceneView& show_;
   Scene scene_;
   std::vector<ObjectId> ids_;
   std::vector<Object> objects_;

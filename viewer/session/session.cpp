@@ -37,7 +37,7 @@ constexpr std::int64_t largest_count = std::numeric_limits<std::int64_t>::max();
 
 class Session::Implementation {
  public:
-  explicit Implementation(Show show)
+  explicit Implementation(SceneView show)
       : show_(std::move(show)), stage_(std::make_unique<Stage>(show_, settings_)) {
     if (stage_->has_motion()) player_.play(*stage_);
   }
@@ -95,7 +95,7 @@ class Session::Implementation {
   void begin_reply();
   bool pack_frame(MessageWriter& message);
 
-  Show show_;
+  SceneView show_;
   Settings settings_;
   std::unique_ptr<Stage> stage_;
   Player player_;
@@ -487,7 +487,7 @@ void Session::Implementation::fail(const std::string& message, bool fatal,
   add_reply(MessageKind::failure);
 }
 
-Session::Session(Show show) : implementation_(std::make_unique<Implementation>(std::move(show))) {}
+Session::Session(SceneView show) : implementation_(std::make_unique<Implementation>(std::move(show))) {}
 Session::~Session() = default;
 Session::Session(Session&&) noexcept = default;
 Session& Session::operator=(Session&&) noexcept = default;

@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "message.hpp"
-#include "show.hpp"
+#include "scene_view.hpp"
 
 namespace supple::viewer {
 
@@ -15,7 +15,7 @@ namespace supple::viewer {
 class Session {
  public:
   /// Throws `Error` when an object or an option is not what it should be.
-  explicit Session(Show show);
+  explicit Session(SceneView show);
   ~Session();
   Session(Session&&) noexcept;
   Session& operator=(Session&&) noexcept;

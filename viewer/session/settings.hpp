@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "show.hpp"
+#include "scene_view.hpp"
 #include "supple/motion.hpp"
 #include "supple/options.hpp"
 
@@ -24,6 +24,6 @@ struct Settings {
 /// The show with these settings. More objects than it has are copies, set out in a grid beside it, in a
 /// border that grows with them. Throws `Error` that names the object and the value when an object of the show
 /// is not what it should be, or when there is more than messages can hold.
-Show arranged(const Show& show, const Settings& settings);
+SceneView arranged(const SceneView& show, const Settings& settings);
 
 }  // namespace supple::viewer

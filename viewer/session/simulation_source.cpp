@@ -8,19 +8,19 @@
 
 namespace supple::viewer {
 
-SimulationSource::SimulationSource(const Show& show)
+SimulationSource::SimulationSource(const SceneView& show)
     : show_(show),
       simulation_(show.simulation),
       versions_(show.objects.size(), 1),
       bends_(show.objects.size()) {
-  for (const ShowObject& object : show.objects) add(object);
+  for (const ViewedObject& object : show.objects) add(object);
   simulation_.detect();
 }
 
-void SimulationSource::add(const ShowObject& object) {
+void SimulationSource::add(const ViewedObject& object) {
   if (const auto* const springs = std::get_if<MassSpringMotion>(&object.motion)) {
     ids_.push_back(simulation_.add(object.mesh, object.options, *springs));
-  } else if (std::holds_alternative<Sway>(object.motion)) {
+  } else if (std::holds_alternative<WaveMotion>(object.motion)) {
     const std::size_t number = ids_.size();
     ids_.push_back(simulation_.add(start_of(show_, object), object.options,
                                    [this, number](double seconds, std::span<Vec3d> positions) {
@@ -33,8 +33,9 @@ void SimulationSource::add(const ShowObject& object) {
 
 /// The waves, on top of them what it was bent by before, and what is held where it is dragged to.
 void SimulationSource::move_swaying(std::size_t object, double seconds, std::span<Vec3d> positions) {
-  const ShowObject& shown = show_.objects[object];
-  sway(std::get<Sway>(shown.motion), show_.simulation.border, shown.mesh.positions, seconds, positions);
+  const ViewedObject& shown = show_.objects[object];
+  apply_wave_motion(std::get<WaveMotion>(shown.motion), show_.simulation.border, shown.mesh.positions,
+                    seconds, positions);
   const std::vector<Vec3d>& bend = bends_[object];
   for (std::size_t i = 0; i < bend.size(); ++i) positions[i] = positions[i] + bend[i];
   if (!grip_ || grip_->object != object || !grip_->target) return;
@@ -62,7 +63,7 @@ std::optional<std::string> SimulationSource::take_step() {
 std::optional<std::string> SimulationSource::grab(std::size_t object, std::uint32_t vertex,
                                                   std::optional<double> radius) {
   release();
-  const ShowObject& shown = show_.objects[object];
+  const ViewedObject& shown = show_.objects[object];
   const std::string& name = scene().name(ids_[object]);
   if (shown.options.is_static) return name + " is static: it neither moves nor bends";
   const auto about_vertex = [&] { return "vertex " + std::to_string(vertex) + " of " + name; };
@@ -87,7 +88,7 @@ void SimulationSource::drag(const Vec3d& target) {
 void SimulationSource::release() {
   if (!grip_) return;
   settle();
-  if (grip_->target && std::holds_alternative<Sway>(show_.objects[grip_->object].motion)) {
+  if (grip_->target && std::holds_alternative<WaveMotion>(show_.objects[grip_->object].motion)) {
     std::vector<Vec3d>& bend = bends_[grip_->object];
     bend.resize(show_.objects[grip_->object].mesh.positions.size());
     for (std::size_t i = 0; i < grip_->vertices.size(); ++i)

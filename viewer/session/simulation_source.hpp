@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "grip.hpp"
-#include "show.hpp"
+#include "scene_view.hpp"
 #include "source.hpp"
 #include "supple/simulation.hpp"
 
@@ -15,7 +15,7 @@ namespace supple::viewer {
 class SimulationSource final : public Source {
  public:
   /// The show must outlive it. Detects at the start. Throws `Error` as `Simulation` does.
-  explicit SimulationSource(const Show& show);
+  explicit SimulationSource(const SceneView& show);
 
   const Scene& scene() const override { return simulation_.scene(); }
   ObjectId id(std::size_t object) const override { return ids_[object]; }
@@ -45,13 +45,13 @@ class SimulationSource final : public Source {
   bool settle();
 
  private:
-  void add(const ShowObject& object);
+  void add(const ViewedObject& object);
   void move_swaying(std::size_t object, double seconds, std::span<Vec3d> positions);
   void bend_held();
   void pull_held();
   bool moves_by_itself(std::size_t object) const { return show_.objects[object].motion.index() != 0; }
 
-  const Show& show_;
+  const SceneView& show_;
   Simulation simulation_;
   std::vector<ObjectId> ids_;
   std::vector<std::uint64_t> versions_;

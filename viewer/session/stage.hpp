@@ -5,8 +5,8 @@
 
 #include "center.hpp"
 #include "recording_source.hpp"
+#include "scene_view.hpp"
 #include "settings.hpp"
-#include "show.hpp"
 #include "simulation_source.hpp"
 
 namespace supple::viewer {
@@ -15,11 +15,11 @@ namespace supple::viewer {
 class Stage {
  public:
   /// A recording begins at `frame`. Throws `Error` when an object or an option is not what it should be.
-  Stage(const Show& show, const Settings& settings, std::uint64_t frame = 0);
+  Stage(const SceneView& show, const Settings& settings, std::uint64_t frame = 0);
   Stage(const Stage&) = delete;
   Stage& operator=(const Stage&) = delete;
 
-  const Show& show() const { return show_; }
+  const SceneView& show() const { return show_; }
   const Center& center() const { return center_; }
   const Source& source() const;
   SimulationSource* simulation() { return simulation_.get(); }  ///< null of a recording
@@ -28,7 +28,7 @@ class Stage {
   bool has_motion() const;
 
  private:
-  Show show_;
+  SceneView show_;
   Center center_;
   std::unique_ptr<SimulationSource> simulation_;
   std::unique_ptr<RecordingSource> recording_;

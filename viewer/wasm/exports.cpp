@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "message.hpp"
-#include "packed_show.hpp"
+#include "packed_scene.hpp"
 #include "page.hpp"
 #include "session.hpp"
 #include "supple/error.hpp"

@@ -61,7 +61,7 @@ double inverse_scale(std::span<const VolumeElement> elements, double volume,
                      std::span<const Vec3d> positions) {
   double area = 0;
   for (const VolumeElement& e : elements) {
-    area += length(area_vector(positions[e.corners[0]], positions[e.corners[1]], positions[e.corners[2]]));
+    area += norm(area_vector(positions[e.corners[0]], positions[e.corners[1]], positions[e.corners[2]]));
   }
   constexpr double six_roots_of_pi = 10.634723105433096;
   const double sphere = area * std::sqrt(area) / six_roots_of_pi, inverse = 1 / std::abs(volume);

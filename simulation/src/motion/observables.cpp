@@ -13,7 +13,7 @@ double elastic_energy(std::span<const SpringElement> springs, double stiffness,
                       std::span<const Vec3d> positions) {
   double sum = 0;
   for (const SpringElement& spring : springs) {
-    const double stretch = length(positions[spring.b] - positions[spring.a]) - spring.rest_length;
+    const double stretch = norm(positions[spring.b] - positions[spring.a]) - spring.rest_length;
     sum += 0.5 * stiffness * stretch * stretch;
   }
   return sum;

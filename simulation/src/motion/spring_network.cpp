@@ -60,7 +60,7 @@ std::vector<SpringElement> springs_between(std::span<const Ends> pairs, std::spa
   std::vector<SpringElement> springs;
   springs.reserve(pairs.size());
   for (const auto& [a, b] : pairs) {
-    const double rest_length = length(positions[b] - positions[a]);
+    const double rest_length = norm(positions[b] - positions[a]);
     if (std::isfinite(rest_length)) springs.push_back({a, b, rest_length});
   }
   return springs;
@@ -177,7 +177,7 @@ SpringNetwork build_spring_network(const TriangleMesh& rest, bool with_bending, 
 }
 
 double triangle_area(Vec3d a, Vec3d b, Vec3d c) {
-  return 0.5 * length(cross(b - a, c - a));
+  return 0.5 * norm(cross(b - a, c - a));
 }
 
 }  // namespace supple

@@ -27,12 +27,12 @@ void add_volumes(const SpringNetwork& network, std::span<const VertexKind> kinds
   }
   std::vector<double> sums(network.parts.size());
   for (std::size_t v = 0; v < kinds.size(); ++v) {
-    if (part_of[v] != none && kinds[v] == VertexKind::free) sums[part_of[v]] += length(gradient[v]);
+    if (part_of[v] != none && kinds[v] == VertexKind::free) sums[part_of[v]] += norm(gradient[v]);
   }
   for (std::size_t v = 0; v < kinds.size(); ++v) {
     if (part_of[v] == none) continue;
     stiffness[v] +=
-        volume_stiffness * network.parts[part_of[v]].inverse_scale * length(gradient[v]) * sums[part_of[v]];
+        volume_stiffness * network.parts[part_of[v]].inverse_scale * norm(gradient[v]) * sums[part_of[v]];
   }
 }
 
@@ -59,11 +59,11 @@ double stable_explicit_step(const SpringNetwork& network, std::span<const Vertex
     const AreaGradient gradient = area_gradient(rest[t[0]], rest[t[1]], rest[t[2]]);
     double sum = 0;
     for (int corner = 0; corner < 3; ++corner) {
-      if (is_free(t[corner])) sum += length(gradient.of_corner[corner]);
+      if (is_free(t[corner])) sum += norm(gradient.of_corner[corner]);
     }
     for (int corner = 0; corner < 3; ++corner) {
       stiffness[t[corner]] +=
-          options.area_stiffness * area.inverse_scale * length(gradient.of_corner[corner]) * sum;
+          options.area_stiffness * area.inverse_scale * norm(gradient.of_corner[corner]) * sum;
     }
   }
   add_volumes(network, kinds, options.volume_stiffness, rest, stiffness);

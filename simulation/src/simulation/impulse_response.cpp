@@ -105,13 +105,13 @@ void ImpulseResponse::show_paths() {
 
 bool ImpulseResponse::respond(const ContinuousContact& contact) {
   const ElementPoint a = point_of(contact.object_a, contact.element_a,
-                                  contact.kind == ElementPairKind::face_vertex, contact.weights_a);
+                                  contact.kind == ElementPairKind::face_vertex, contact.barycentric_a);
   const ElementPoint b = point_of(contact.object_b, contact.element_b,
-                                  contact.kind == ElementPairKind::vertex_face, contact.weights_b);
+                                  contact.kind == ElementPairKind::vertex_face, contact.barycentric_b);
   Vec3d normal = contact.normal;
   double parting = 0;
   double restitution = options_.restitution;
-  if (contact.time == 0) {
+  if (contact.toi == 0) {
     // The contact's normal may go by the velocity, which an earlier round has turned round.
     const Vec3d between = start(a) - start(b);
     const double distance = std::sqrt(dot(between, between));

@@ -128,8 +128,8 @@ double roundness(const TriangleMesh& mesh, const Triangle& t) {
   const Vec3d a = mesh.positions[t[0]];
   const Vec3d b = mesh.positions[t[1]];
   const Vec3d c = mesh.positions[t[2]];
-  const double longest = std::max({length(b - a), length(c - b), length(a - c)});
-  return length(cross(b - a, c - a)) / (longest * longest) * (2 / std::numbers::sqrt3);
+  const double longest = std::max({norm(b - a), norm(c - b), norm(a - c)});
+  return norm(cross(b - a, c - a)) / (longest * longest) * (2 / std::numbers::sqrt3);
 }
 
 void expect_clean(const TriangleMesh& mesh, double least_roundness) {
@@ -274,7 +274,7 @@ TEST(Icosphere, HasItsCountsAndIsClosed) {
     EXPECT_EQ(mesh.name, "icosphere");
     EXPECT_EQ(mesh.triangles.size(), 20u * frequency * frequency);
     EXPECT_EQ(mesh.positions.size(), 10u * frequency * frequency + 2);
-    for (const Vec3d& p : mesh.positions) ASSERT_NEAR(length(p), 1, 1e-15);
+    for (const Vec3d& p : mesh.positions) ASSERT_NEAR(norm(p), 1, 1e-15);
     expect_oriented_manifold(mesh);
     expect_clean(mesh, 0.6);
   }

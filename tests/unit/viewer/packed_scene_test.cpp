@@ -1,4 +1,4 @@
-#include "session/packed_show.hpp"
+#include "session/packed_scene.hpp"
 
 #include <gtest/gtest.h>
 
@@ -13,8 +13,8 @@ namespace supple::viewer {
 namespace {
 
 /// Something of everything that a show can have, nothing being what it is by default.
-Show rich_show() {
-  Show show;
+SceneView rich_show() {
+  SceneView show;
   show.title = "rich";
   show.simulation.border = Border{{{-5, -6, -7}, {8, 9, 10}}};
   show.simulation.seed = 77;
@@ -25,7 +25,7 @@ Show rich_show() {
   show.simulation.scene.scene_octree = {.max_level = 5, .expand_at = 3};
   show.objects = {test_ball("waves", {}, 2), test_ball("soft", {3, 0, 0}, 2),
                   test_ball("wall", {0, 3, 0}, 1)};
-  show.objects[0].motion = Sway{{0.1, 0.2, 0.3}, 0.05, 0.9, 1.5, 12};
+  show.objects[0].motion = WaveMotion{{0.1, 0.2, 0.3}, 0.05, 0.9, 1.5, 12};
   MassSpringMotion motion;
   motion.springs = {.integrator = Integrator::symplectic_euler,
                     .substeps = 2,
@@ -45,7 +45,7 @@ Show rich_show() {
   return show;
 }
 
-std::vector<std::vector<std::byte>> frames_of(const Show& show, int count) {
+std::vector<std::vector<std::byte>> frames_of(const SceneView& show, int count) {
   TestPage page(show);
   std::vector<std::vector<std::byte>> frames;
   const auto keep = [&] {
@@ -82,13 +82,13 @@ void expect_equal_frames(const std::vector<std::vector<std::byte>>& a,
   }
 }
 
-TEST(PackedShow, PlaysAsTheShowDoes) {
-  const Show show = rich_show();
+TEST(PackedScene, PlaysAsTheShowDoes) {
+  const SceneView show = rich_show();
   const auto bytes = pack(show);
-  const Show again = unpack(bytes);
+  const SceneView again = unpack(bytes);
   EXPECT_EQ(pack(again), bytes);
   expect_equal_frames(frames_of(show, 30), frames_of(again, 30));
-  EXPECT_EQ(unpack(pack(Show{})).objects.size(), 0u);
+  EXPECT_EQ(unpack(pack(SceneView{})).objects.size(), 0u);
 }
 
 std::string failure(std::span<const std::byte> bytes) {
@@ -100,7 +100,7 @@ std::string failure(std::span<const std::byte> bytes) {
   return {};
 }
 
-TEST(PackedShow, WhatItIsNotIsSaid) {
+TEST(PackedScene, WhatItIsNotIsSaid) {
   const auto bytes = pack(rich_show());
   EXPECT_EQ(failure({}), "this is no packed show; export the page again");
   for (std::size_t length = 0; length < bytes.size(); length += 1 + length / 50)
@@ -131,22 +131,22 @@ struct TwoFrames final : Frames {
   Series rows{{"time"}, {0, 0.1}, {{1, 0, 1}}, {}};
   std::uint64_t count() const override { return 2; }
   void read(std::uint64_t frame, std::size_t object, std::span<Vec3d> positions) const override {
-    const ShowObject ball = test_ball("", {object == 1 ? static_cast<double>(frame) : 0.0, 0, 0}, 1);
+    const ViewedObject ball = test_ball("", {object == 1 ? static_cast<double>(frame) : 0.0, 0, 0}, 1);
     std::copy(ball.mesh.positions.begin(), ball.mesh.positions.end(), positions.begin());
   }
   const Series& series() const override { return rows; }
 };
 
-Show recorded_show() {
-  Show show;
+SceneView recorded_show() {
+  SceneView show;
   show.objects = {test_ball("a", {}, 1), test_ball("b", {}, 1)};
   show.frames = std::make_shared<TwoFrames>();
   return show;
 }
 
-TEST(PackedShow, DamagedBytesNeverDoHarm) {
+TEST(PackedScene, DamagedBytesNeverDoHarm) {
   RandomNumbers random(4);
-  for (const Show& show : {rich_show(), recorded_show()}) {
+  for (const SceneView& show : {rich_show(), recorded_show()}) {
     const auto bytes = pack(show);
     int refused = 0, taken = 0;
     for (int round = 0; round < 1500; ++round) {
@@ -163,7 +163,7 @@ TEST(PackedShow, DamagedBytesNeverDoHarm) {
       if (changed.size() < 32) continue;
       std::memcpy(changed.data(), bytes.data(), 24);
       mend_checksum(changed);
-      Show read;
+      SceneView read;
       try {
         read = unpack(changed);
       } catch (const Error&) {

@@ -1,7 +1,7 @@
 // Lanes said not to touch themselves are checked exactly: all coordinates are multiples of small powers of
 // two, so that positions at eighths of the step are not rounded.
 
-#include "octree/unfolded_lanes.hpp"
+#include "octree/self_collision_culling.hpp"
 
 #include <gtest/gtest.h>
 
@@ -63,7 +63,7 @@ struct Unfolded {
     }
   }
   MovingObject object;
-  UnfoldedLanes lanes;
+  SelfCollisionCulling lanes;
 };
 
 /// Whether a mesh, all of it one lane, is said not to touch itself; checked when it is.
@@ -119,11 +119,11 @@ TriangleMesh fan(std::uint32_t parts, double angle, double climb) {
   return mesh;
 }
 
-TEST(UnfoldedLanes, OfNothing) {
+TEST(SelfCollisionCulling, OfNothing) {
   EXPECT_EQ(Unfolded({}, {}).count(), 0u);
 }
 
-TEST(UnfoldedLanes, SmoothSheets) {
+TEST(SelfCollisionCulling, SmoothSheets) {
   const auto wavy = [](const Vec3d& p) {
     return Vec3d{p.x, 0.1 * std::sin(5 * p.x) * std::cos(4 * p.z), p.z};
   };
@@ -135,7 +135,7 @@ TEST(UnfoldedLanes, SmoothSheets) {
   EXPECT_TRUE(is_unfolded(fan(7, 2 * pi * 0.4, 0.1)));
 }
 
-TEST(UnfoldedLanes, MostLanesOfALargeSmoothSheet) {
+TEST(SelfCollisionCulling, MostLanesOfALargeSmoothSheet) {
   const auto bent = [](const Vec3d& p) { return Vec3d{p.x, 0.3 * p.x * p.x + 0.1 * p.z * p.x, p.z}; };
   for (const bool floats : {false, true}) {
     const Unfolded large(sheet(40, 40), mapped(sheet(40, 40), bent), {}, floats);
@@ -150,7 +150,7 @@ TEST(UnfoldedLanes, MostLanesOfALargeSmoothSheet) {
   }
 }
 
-TEST(UnfoldedLanes, ABalloonWithinALargeSheet) {
+TEST(SelfCollisionCulling, ABalloonWithinALargeSheet) {
   // Its small lanes are smooth, and the sheet around it is flat: it is for the large lanes to find.
   const auto balloon = [](const Vec3d& p) {
     const double x = p.x - 0.25, z = p.z - 0.25, distance = std::sqrt(x * x + z * z);
@@ -171,7 +171,7 @@ TEST(UnfoldedLanes, ABalloonWithinALargeSheet) {
   EXPECT_EQ(root_lanes({sheet(40, 40), mapped(sheet(40, 40), balloon), quarters}), 0xe);
 }
 
-TEST(UnfoldedLanes, SurfacesThatCloseOrOverlap) {
+TEST(SelfCollisionCulling, SurfacesThatCloseOrOverlap) {
   const TriangleMesh tetrahedron{
       "", {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}}};
   EXPECT_FALSE(is_unfolded(tetrahedron));
@@ -194,7 +194,7 @@ TEST(UnfoldedLanes, SurfacesThatCloseOrOverlap) {
   EXPECT_FALSE(is_unfolded(sheet(4, 20, twist)));
 }
 
-TEST(UnfoldedLanes, SeamsThatTouch) {
+TEST(SelfCollisionCulling, SeamsThatTouch) {
   // A disc cut along a ray, the vertices of the cut doubled.
   TriangleMesh cut_disc = fan(12, 2 * pi, 0);
   cut_disc.positions[13] = cut_disc.positions[1];
@@ -215,7 +215,7 @@ TEST(UnfoldedLanes, SeamsThatTouch) {
   EXPECT_FALSE(is_unfolded(bow));
 }
 
-TEST(UnfoldedLanes, MotionsThatFoldOnTheWay) {
+TEST(SelfCollisionCulling, MotionsThatFoldOnTheWay) {
   // Flat at both ends, all in one point half-way.
   EXPECT_FALSE(is_unfolded(sheet(4, 4), mapped(sheet(4, 4), turned(pi))));
   EXPECT_FALSE(is_unfolded(sheet(4, 4), mapped(sheet(4, 4), turned(pi / 2))));
@@ -230,7 +230,7 @@ TEST(UnfoldedLanes, MotionsThatFoldOnTheWay) {
                            })));
 }
 
-TEST(UnfoldedLanes, DegenerateTriangles) {
+TEST(SelfCollisionCulling, DegenerateTriangles) {
   TriangleMesh repeated = sheet(3, 3);
   repeated.triangles.push_back({0, 0, 1});
   EXPECT_FALSE(is_unfolded(repeated));
@@ -255,7 +255,7 @@ TEST(UnfoldedLanes, DegenerateTriangles) {
 }
 
 /// Few vertices on a coarse grid touch in every way there is.
-TEST(UnfoldedLanes, SmallMeshesOnAGrid) {
+TEST(SelfCollisionCulling, SmallMeshesOnAGrid) {
   const std::vector<std::vector<Triangle>> shapes = {
       {{0, 1, 2}, {0, 2, 3}, {0, 3, 4}, {0, 4, 5}, {0, 5, 1}},             // a disc
       {{0, 1, 2}, {0, 2, 3}, {0, 3, 4}, {0, 4, 5}},                        // a fan
@@ -290,7 +290,7 @@ TEST(UnfoldedLanes, SmallMeshesOnAGrid) {
   EXPECT_GT(unfolded, 2000u);
 }
 
-TEST(UnfoldedLanes, CrumpledSheets) {
+TEST(SelfCollisionCulling, CrumpledSheets) {
   std::size_t unfolded = 0, lanes = 0;
   for (int round = 0; round < 12; ++round) {
     TriangleMesh mesh = crumpled_sheet(24, 20, 0.004 * round, static_cast<std::uint64_t>(round));

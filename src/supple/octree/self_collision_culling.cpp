@@ -1,4 +1,4 @@
-#include "octree/unfolded_lanes.hpp"
+#include "octree/self_collision_culling.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -51,7 +51,7 @@ void cancel_opposite(std::vector<Edge>& edges) {
 
 }  // namespace
 
-UnfoldedLanes::UnfoldedLanes(const ObjectOctree& octree)
+SelfCollisionCulling::SelfCollisionCulling(const ObjectOctree& octree)
     : boundaries_(octree.nodes().size() * node_width),
       node_normals_(octree.nodes().size()),
       masks_(octree.nodes().size(), 0) {
@@ -92,8 +92,8 @@ UnfoldedLanes::UnfoldedLanes(const ObjectOctree& octree)
   boundary_edges_.shrink_to_fit();
 }
 
-void UnfoldedLanes::refit(const ObjectOctree& octree, const VertexBuffer& start, const VertexBuffer& end,
-                          const Parallel& parallel) {
+void SelfCollisionCulling::refit(const ObjectOctree& octree, const VertexBuffer& start,
+                                 const VertexBuffer& end, const Parallel& parallel) {
   const auto level_begin = octree.level_begin();
   for (std::size_t level = level_begin.size() - 1; level-- > 0;) {
     const std::uint32_t first = level_begin[level];
@@ -112,8 +112,8 @@ void UnfoldedLanes::refit(const ObjectOctree& octree, const VertexBuffer& start,
 }
 
 template <class Scalar>
-void UnfoldedLanes::refit_node(const ObjectOctree& octree, const VertexArray<Scalar>& start,
-                               const VertexArray<Scalar>& end, std::uint32_t n) {
+void SelfCollisionCulling::refit_node(const ObjectOctree& octree, const VertexArray<Scalar>& start,
+                                      const VertexArray<Scalar>& end, std::uint32_t n) {
   const OctreeNode& node = octree.nodes()[n];
   if (!has_moving_boxes(node)) return;
   Normals all;
@@ -145,9 +145,9 @@ void UnfoldedLanes::refit_node(const ObjectOctree& octree, const VertexArray<Sca
 /// of its sides at either end, each is wrong by less than 16 roundings of E F, and its greatest coordinate m
 /// is compared with E F so that this is below 2^-21 m.
 template <class Scalar>
-UnfoldedLanes::Normals UnfoldedLanes::normals_of(std::span<const Triangle> triangles,
-                                                 const VertexArray<Scalar>& start,
-                                                 const VertexArray<Scalar>& end) {
+SelfCollisionCulling::Normals SelfCollisionCulling::normals_of(std::span<const Triangle> triangles,
+                                                               const VertexArray<Scalar>& start,
+                                                               const VertexArray<Scalar>& end) {
   constexpr Normals hopeless{{}, {-1, -1, -1}, {1, 1, 1}};
   static_assert(16 * rounding <= 0x1p-21 * 0x1p-28);
   const bool at_rest = start.data == end.data;
@@ -180,8 +180,9 @@ UnfoldedLanes::Normals UnfoldedLanes::normals_of(std::span<const Triangle> trian
 /// coordinate of any u, a coefficient is wrong by less than 32 roundings of |n| R², |n| being the sum of
 /// sizes.
 template <class Scalar>
-bool UnfoldedLanes::goes_round_once(const Boundary& boundary, const Vec3d& n,
-                                    const VertexArray<Scalar>& start, const VertexArray<Scalar>& end) const {
+bool SelfCollisionCulling::goes_round_once(const Boundary& boundary, const Vec3d& n,
+                                           const VertexArray<Scalar>& start,
+                                           const VertexArray<Scalar>& end) const {
   if (boundary.begin == boundary.end) return false;
   const auto edges =
       std::span<const Edge>(boundary_edges_).subspan(boundary.begin, boundary.end - boundary.begin);
@@ -225,7 +226,7 @@ bool UnfoldedLanes::goes_round_once(const Boundary& boundary, const Vec3d& n,
          least_side > 64 * rounding * size * reach + underflow && times_round == 1;
 }
 
-std::size_t UnfoldedLanes::bytes() const {
+std::size_t SelfCollisionCulling::bytes() const {
   return boundary_edges_.capacity() * sizeof(Edge) + boundaries_.capacity() * sizeof(Boundary) +
          node_normals_.capacity() * sizeof(Normals) + masks_.capacity();
 }

@@ -1,4 +1,4 @@
-#include "build_show.hpp"
+#include "build_scene_view.hpp"
 
 #include <fmt/core.h>
 
@@ -58,10 +58,10 @@ class FileFrames : public viewer::Frames {
       return [files](std::uint64_t frame, std::span<Vec3d> positions) { files->read(frame, positions); };
     }
     const auto rest = std::make_shared<const std::vector<Vec3d>>(object.mesh.positions);
-    if (const auto* motion = motion_of<Sway>(object)) {
+    if (const auto* motion = motion_of<WaveMotion>(object)) {
       return [this, motion = *motion, rest](std::uint64_t frame, std::span<Vec3d> positions) {
-        sway(motion, simulation_.border, *rest, static_cast<double>(frame) * simulation_.time_step,
-             positions);
+        apply_wave_motion(motion, simulation_.border, *rest,
+                          static_cast<double>(frame) * simulation_.time_step, positions);
       };
     }
     return [rest](std::uint64_t, std::span<Vec3d> positions) {
@@ -128,9 +128,9 @@ std::shared_ptr<const viewer::Frames> frames_of(const Input& input, const ViewOp
   return std::make_shared<const FileFrames>(input);
 }
 
-viewer::ShowObject object_of(const InputObject& object, const ViewOptions& options) {
-  viewer::ShowObject shown{object.mesh, options_of(object, options), {}};
-  if (const auto* motion = motion_of<Sway>(object)) shown.motion = *motion;
+viewer::ViewedObject object_of(const InputObject& object, const ViewOptions& options) {
+  viewer::ViewedObject shown{object.mesh, options_of(object, options), {}};
+  if (const auto* motion = motion_of<WaveMotion>(object)) shown.motion = *motion;
   if (const auto* motion = motion_of<MassSpringMotion>(object)) shown.motion = *motion;
   return shown;
 }
@@ -142,8 +142,8 @@ std::string title_of(const std::vector<std::string>& inputs) {
 
 }  // namespace
 
-viewer::Show build_show(const Input& input, const ViewOptions& options) {
-  viewer::Show show;
+viewer::SceneView build_scene_view(const Input& input, const ViewOptions& options) {
+  viewer::SceneView show;
   show.title = title_of(options.inputs);
   show.simulation = input.simulation;
   show.simulation.scene = options.scene;

@@ -1,4 +1,4 @@
-#include "packed_show.hpp"
+#include "packed_scene.hpp"
 
 #include <algorithm>
 #include <array>
@@ -59,7 +59,7 @@ void check_header(const Header& header, std::span<const std::byte> content) {
 
 }  // namespace
 
-std::vector<std::byte> pack(const Show& show) {
+std::vector<std::byte> pack(const SceneView& show) {
   Packer packer;
   const bool has_frames = show.frames != nullptr;
   packer(show.title, show.simulation, show.objects, has_frames);
@@ -72,7 +72,7 @@ std::vector<std::byte> pack(const Show& show) {
   return bytes;
 }
 
-Show unpack(std::span<const std::byte> bytes) {
+SceneView unpack(std::span<const std::byte> bytes) {
   Header header;
   if (bytes.size() < sizeof(header)) fail("this is no packed show; export the page again");
   std::memcpy(&header, bytes.data(), sizeof(header));
@@ -80,7 +80,7 @@ Show unpack(std::span<const std::byte> bytes) {
   check_header(header, content);
 
   Unpacker unpacker(content);
-  Show show;
+  SceneView show;
   bool has_frames = false;
   unpacker(show.title, show.simulation, show.objects, has_frames);
   if (has_frames) {

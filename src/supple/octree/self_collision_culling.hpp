@@ -39,11 +39,11 @@ namespace supple {
 /// positions that are translated afterwards and thereby rounded, nor when a vertex is not finite.
 ///
 /// Memory: 8 bytes a boundary edge, 12 a lane and 80 a node.
-class UnfoldedLanes {
+class SelfCollisionCulling {
  public:
-  UnfoldedLanes() = default;
+  SelfCollisionCulling() = default;
   /// Finds the boundaries, which depend on the triangles alone; O(n log n).
-  explicit UnfoldedLanes(const ObjectOctree& octree);
+  explicit SelfCollisionCulling(const ObjectOctree& octree);
 
   /// For the step from `start` to `end`, the same object when at rest; O(n). Takes no memory.
   void refit(const ObjectOctree& octree, const VertexBuffer& start, const VertexBuffer& end,

@@ -11,16 +11,16 @@
 #include "supple/mesh.hpp"
 #include "supple/options.hpp"
 #include "supple/simulation.hpp"
-#include "supple/sway.hpp"
 #include "supple/types.hpp"
+#include "supple/wave_motion.hpp"
 
 namespace supple::viewer {
 
 /// An object of a show, where it is at the start, and what moves it: nothing, waves, or masses and springs.
-struct ShowObject {
+struct ViewedObject {
   TriangleMesh mesh;
   ObjectOptions options{};
-  std::variant<std::monostate, Sway, MassSpringMotion> motion{};
+  std::variant<std::monostate, WaveMotion, MassSpringMotion> motion{};
 };
 
 /// What a recording says of its frames besides positions: rows of numbers, and pairs that begin and end.
@@ -46,10 +46,10 @@ class Frames {
 };
 
 /// What there is to see: objects that move by themselves, or that were recorded.
-struct Show {
+struct SceneView {
   std::string title{};
   SimulationOptions simulation{};
-  std::vector<ShowObject> objects{};
+  std::vector<ViewedObject> objects{};
   std::shared_ptr<const Frames> frames{};  ///< null of a simulation
 };
 

@@ -1,4 +1,4 @@
-#include "supple/sway.hpp"
+#include "supple/wave_motion.hpp"
 
 #include <algorithm>
 #include <array>
@@ -24,7 +24,7 @@ double reflect(double distance, double lowest, double highest) {
   return lowest + (there_and_back <= room ? there_and_back : 2 * room - there_and_back);
 }
 
-double drift(const Sway& motion, const std::optional<Border>& border, std::span<const Vec3d> rest, int axis,
+double drift(const WaveMotion& motion, const std::optional<Border>& border, std::span<const Vec3d> rest, int axis,
              double seconds) {
   const double distance = motion.velocity[axis] * seconds;
   if (!border) return distance;
@@ -44,7 +44,7 @@ double drift(const Sway& motion, const std::optional<Border>& border, std::span<
 
 }  // namespace
 
-void sway(const Sway& motion, const std::optional<Border>& border, std::span<const Vec3d> rest,
+void apply_wave_motion(const WaveMotion& motion, const std::optional<Border>& border, std::span<const Vec3d> rest,
           double seconds, std::span<Vec3d> positions) {
   Vec3d offset;
   std::array<double, 3> phase;

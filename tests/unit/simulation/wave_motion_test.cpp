@@ -1,4 +1,4 @@
-#include "supple/sway.hpp"
+#include "supple/wave_motion.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,16 +10,16 @@
 namespace supple {
 namespace {
 
-const Sway motion{{0.3, -0.2, 0.1}, 0.05, 0.7, 2.5, 42};
+const WaveMotion motion{{0.3, -0.2, 0.1}, 0.05, 0.7, 2.5, 42};
 const std::vector<Vec3d> rest{{0, 0, 0}, {0.25, -0.5, 0.125}, {-0.75, 0.3, 0.9}};
 
-std::vector<Vec3d> swayed(const Sway& how, const std::optional<Border>& border, double seconds) {
+std::vector<Vec3d> swayed(const WaveMotion& how, const std::optional<Border>& border, double seconds) {
   std::vector<Vec3d> positions(rest.size());
-  sway(how, border, rest, seconds, positions);
+  apply_wave_motion(how, border, rest, seconds, positions);
   return positions;
 }
 
-TEST(Sway, GivesTheSameBitsEverywhere) {
+TEST(WaveMotion, GivesTheSameBitsEverywhere) {
   const Border border{{{-1, -1, -1}, {1.5, 1.5, 1.5}}};
   const std::vector<Vec3d> at_first{{0x1.4a9258c690fa5p-6, 0x1.6cf9c5d78c2f8p-6, -0x1.d112c894d2f3fp-6},
                                     {0x1.9b762c331eae3p-3, -0x1.cccde6c13a388p-2, 0x1.c4ada08f5e6bap-4},
@@ -35,7 +35,7 @@ TEST(Sway, GivesTheSameBitsEverywhere) {
   EXPECT_EQ(swayed(motion, border, 40), turned_back);
 }
 
-TEST(Sway, StaysWithinTheBorder) {
+TEST(WaveMotion, StaysWithinTheBorder) {
   const Border border{{{-1, -1, -1}, {1.5, 1.5, 1.5}}};
   for (int i = 0; i < 500; ++i) {
     for (const Vec3d& p : swayed(motion, border, 0.37 * i)) {
@@ -47,9 +47,9 @@ TEST(Sway, StaysWithinTheBorder) {
   }
 }
 
-TEST(Sway, DoesNotDriftWhereThereIsNoRoom) {
+TEST(WaveMotion, DoesNotDriftWhereThereIsNoRoom) {
   const Border narrow{{{-0.1, -100, -100}, {0.1, 100, 100}}};
-  const Sway still{motion.velocity, 0, 1, 1, 0};
+  const WaveMotion still{motion.velocity, 0, 1, 1, 0};
   const auto positions = swayed(still, narrow, 10);
   for (std::size_t i = 0; i < rest.size(); ++i) {
     EXPECT_EQ(positions[i].x, rest[i].x);
@@ -57,10 +57,10 @@ TEST(Sway, DoesNotDriftWhereThereIsNoRoom) {
   }
 }
 
-TEST(Sway, ABadVertexMovesNothingElse) {
+TEST(WaveMotion, ABadVertexMovesNothingElse) {
   std::vector<Vec3d> spoilt = rest, positions(rest.size());
   spoilt[1].x = std::numeric_limits<double>::quiet_NaN();
-  sway({motion.velocity, 0.05, 0.7, 2.5, 42}, {}, spoilt, 1.3, positions);
+  apply_wave_motion({motion.velocity, 0.05, 0.7, 2.5, 42}, {}, spoilt, 1.3, positions);
   EXPECT_TRUE(std::isnan(positions[1].x));
   EXPECT_EQ(positions[0], swayed(motion, {}, 1.3)[0]);
   EXPECT_EQ(positions[2], swayed(motion, {}, 1.3)[2]);
