@@ -103,7 +103,7 @@ bool run_cloth(const std::string& cell, const Choice& choice) {
   if (!step) return false;
   SceneOptions options;
   options.threads = choice.threads;
-  options.contacts = ContactMode::continuous;
+  options.contacts = ContactKinds::continuous;
   Scene scene(options);
   const ObjectId cloth =
       scene.add(PositionsView<double>(step->start), step->triangles, {.self_collision = true});

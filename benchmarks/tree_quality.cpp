@@ -43,7 +43,7 @@ struct Contestant {
     SceneOptions options;
     options.threads = choice.threads;
     options.contact_points = false;
-    if (choice.continuous) options.contacts = ContactMode::continuous;
+    if (choice.continuous) options.contacts = ContactKinds::continuous;
     return options;
   }
 

@@ -43,7 +43,7 @@ class SuppleBoxesTold : public BoxContestant {
   std::span<const IndexPair> pairs_;
 };
 
-SceneOptions options_of(std::uint32_t threads, ContactMode contacts) {
+SceneOptions options_of(std::uint32_t threads, ContactKinds contacts) {
   SceneOptions options;
   options.threads = threads;
   options.contacts = contacts;
@@ -63,7 +63,7 @@ std::vector<StageTime> stages_of(const StepStats& stats, double handing_over, do
 
 class SuppleCopies : public CopiesContestant {
  public:
-  explicit SuppleCopies(std::uint32_t threads) : scene_(options_of(threads, ContactMode::intersection)) {}
+  explicit SuppleCopies(std::uint32_t threads) : scene_(options_of(threads, ContactKinds::intersection)) {}
 
   void prepare(const DeformingCopies& copies) override {
     for (std::size_t i = 0; i < copies.copies(); ++i)
@@ -99,7 +99,7 @@ class SuppleCopies : public CopiesContestant {
 
 class SuppleCloth : public Contestant<ClothStep> {
  public:
-  explicit SuppleCloth(std::uint32_t threads) : scene_(options_of(threads, ContactMode::continuous)) {}
+  explicit SuppleCloth(std::uint32_t threads) : scene_(options_of(threads, ContactKinds::continuous)) {}
 
   void prepare(const ClothStep& step) override {
     cloth_ = scene_.add(PositionsView<double>(step.start), step.triangles, {.self_collision = true});

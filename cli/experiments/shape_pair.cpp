@@ -28,7 +28,7 @@ PairCost cost_of_pair(const TriangleMesh& a, const TriangleMesh& b, const Object
                       int frames, std::uint32_t threads, BoundingVolume volume) {
   SceneOptions options;
   options.bounding_volume = volume;
-  options.contacts = ContactMode::none;
+  options.contacts = ContactKinds::none;
   options.threads = threads;
   Scene scene(options);
   ObjectOptions object;

@@ -38,7 +38,7 @@ enum class PairStage : std::uint8_t {
   contact,         ///< they are not apart: a contact
 };
 
-/// Why two triangles are, or are not, a contact (`Scene::explain`); with `ContactMode::none`, whether they
+/// Why two triangles are, or are not, a contact (`Scene::explain`); with `ContactKinds::none`, whether they
 /// would be.
 struct PairExplanation {
   PairStage stage = PairStage::contact;

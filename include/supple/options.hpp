@@ -2,7 +2,13 @@
 
 #include <cstdint>
 #include <functional>
+#include <limits>
+#include <optional>
 #include <string>
+#include <version>
+#ifdef __cpp_lib_jthread
+#include <stop_token>
+#endif
 
 #include "supple/continuous.hpp"
 #include "supple/types.hpp"
@@ -32,12 +38,22 @@ enum class RegionSphereTest : std::uint8_t {
   grown_box,  ///< the paper's: the centre in the region grown by the radius; over-reports near corners
 };
 
-/// Which exact stage follows the candidates.
-enum class ContactMode : std::uint8_t {
-  none,          ///< object pairs and candidate counts only
-  intersection,  ///< every intersecting pair of triangles, with its points
-  continuous,    ///< every pair of vertex and face, and of two edges, that touches within the step
+/// Kinds of contacts, a set: `ContactKinds::intersection | ContactKinds::continuous`.
+enum class ContactKinds : std::uint8_t {
+  none = 0,          ///< object pairs and candidate counts only
+  intersection = 1,  ///< every intersecting pair of triangles, with its points
+  continuous = 2,    ///< every pair of vertex and face, and of two edges, that touches within the step
 };
+constexpr ContactKinds operator|(ContactKinds p, ContactKinds q) {
+  return static_cast<ContactKinds>(static_cast<unsigned>(p) | static_cast<unsigned>(q));
+}
+constexpr ContactKinds& operator|=(ContactKinds& p, ContactKinds q) {
+  return p = p | q;
+}
+/// Whether all of `kinds` are in the set.
+constexpr bool contains(ContactKinds set, ContactKinds kinds) {
+  return (set | kinds) == set;
+}
 
 /// Shape of the octree of one object.
 struct ObjectOctreeOptions {
@@ -46,8 +62,7 @@ struct ObjectOctreeOptions {
   /// one of arity 2 three times as many, so that no cell is smaller.
   std::uint32_t max_level = 16;
   /// A node with at most this many triangles is not split, ≥ 1. The triangles of two leaves that meet are
-  /// tested in vectors, so that small leaves are slower; and they take more memory. With continuous contacts
-  /// half as many, unless `regular`.
+  /// tested in vectors, so that small leaves are slower; and they take more memory.
   std::uint32_t leaf_size = 64;
   /// Children of a node: 8, 4 or 2. A level then halves a node's cell along three axes, two or one, which
   /// take turns. Contacts are the same for all, the paper's colliding vertices are not: the leaves differ.
@@ -99,7 +114,8 @@ struct SceneOptions {
   SphereFit sphere_fit = SphereFit::vertices;
   BroadPhaseMethod broad_phase = BroadPhaseMethod::octree;
   SceneOctreeOptions scene_octree{};
-  ContactMode contacts = ContactMode::intersection;
+  /// What `detect` looks for unless its request says otherwise.
+  ContactKinds contacts = ContactKinds::intersection;
   /// Also give the points of each contact (`DetectResult::contact_points`). Off saves a little time.
   bool contact_points = true;
   /// Of continuous contacts: how near elements come before they touch, and whether exact arithmetic decides
@@ -110,6 +126,24 @@ struct SceneOptions {
   bool colliding_vertices = false;
   /// Worker threads, 0 for one a core. The results are the same for any number.
   std::uint32_t threads = 0;
+};
+
+/// What one `Scene::detect` looks for, and how far it goes.
+struct DetectRequest {
+  /// Nothing: as `SceneOptions` say.
+  std::optional<ContactKinds> contacts{};
+  std::optional<ImpactOptions> impact{};
+  /// Contacts of each kind that are listed at most: the first ones in canonical order, the same for any
+  /// number of threads; `DetectResult::truncated` says that there are more. It bounds the memory and the
+  /// exact tests. Of the rest of the search it saves the pairs of objects after the last one listed; a single
+  /// pair is searched to its end.
+  std::uint64_t max_contacts = std::numeric_limits<std::uint64_t>::max();
+#ifdef __cpp_lib_jthread
+  /// Ends the search early when it is requested to stop, from any thread: some milliseconds later, or what
+  /// bringing the octrees up to date takes. The result is then empty and says `stopped`; the scene goes on as
+  /// if `detect` had not been called.
+  std::stop_token stop{};
+#endif
 };
 
 /// Says whether a pair may be tested; called from one thread, in ascending order, for pairs whose groups and

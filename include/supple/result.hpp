@@ -12,8 +12,8 @@
 namespace supple {
 
 /// The contacts of one pair of objects, or of one object with itself (`a == b`): a range of
-/// `DetectResult::contacts`, or of `continuous_contacts` in that mode. A pair is listed only when it has
-/// contacts.
+/// `DetectResult::contacts`, or of `continuous_contacts`. A pair is listed only when it has contacts of that
+/// kind.
 struct ContactGroup {
   ObjectId a, b;
   std::uint32_t first_contact = 0;
@@ -38,8 +38,9 @@ struct NonFiniteVertex {
   Vec3d position;
 };
 
-/// Changes of a set of pairs since the step before. Each pair that begins ends exactly once, be it by
-/// parting, by removal of an object or by a filter. Sorted; `end` may name objects that are no longer there.
+/// Changes of a set of pairs since the step before, whatever that was asked for. Each pair that begins ends
+/// exactly once, be it by parting, by removal of an object or by a filter. Sorted; `end` may name objects
+/// that are no longer there.
 struct PairEvents {
   std::span<const ObjectPair> begin, stay, end;
 };
@@ -47,7 +48,7 @@ struct PairEvents {
 /// Seconds by the wall clock and counts of what was done in one step: contacts of two objects that both are
 /// where they were are known from the step before, and what led to them is not counted again. Traversal and
 /// exact tests run interleaved on several threads: their times are the time of both together, split as the
-/// threads' own clocks say.
+/// threads' own clocks say. When a result is truncated or stopped, the counts depend on the threads.
 struct StepStats {
   double refit_seconds = 0;            ///< new positions into octrees
   double broad_phase_seconds = 0;      ///< object volumes into object pairs
@@ -66,30 +67,33 @@ struct StepStats {
   std::uint64_t node_pairs_visited = 0;  ///< eight-wide node against eight-wide node
   /// Volume against volume inside them and at the leaves; lanes of a node that have no child do not count.
   std::uint64_t boxes_tested = 0;
-  /// Triangle pairs whose boxes overlap and that share no vertex; of continuous contacts 0.
+  /// Triangle pairs whose boxes overlap and that share no vertex.
   std::uint64_t candidate_pairs = 0;
-  /// Likewise vertex-face and edge-edge pairs whose moving boxes meet, of continuous contacts.
+  /// Likewise vertex-face and edge-edge pairs whose moving boxes meet.
   std::uint64_t vertex_face_candidates = 0, edge_edge_candidates = 0;
   std::uint64_t exact_fallbacks = 0;  ///< candidates that floating-point filters could not decide
-  std::uint64_t contacts = 0;
+  std::uint64_t contacts = 0;         ///< of all kinds
 };
 
 /// What `Scene::detect` found. The spans look into buffers of the scene and last until its next call that is
-/// not const. Everything is in one canonical order: by object a, object b, triangle a, triangle b.
+/// not const, `earliest_impact` and `max_step` left aside. Everything is in one canonical order: by object a,
+/// object b, triangle a, triangle b. Lists of kinds that were not asked for are empty.
 struct DetectResult {
-  std::uint64_t step = 0;                    ///< 0 for the first call
+  std::uint64_t step = 0;  ///< 0 for the first call; one that was stopped does not count
+  bool truncated = false;  ///< there are more contacts of a kind than `DetectRequest::max_contacts`
+  bool stopped = false;    ///< all lists are empty: `DetectRequest::stop` was requested
   std::span<const ObjectPair> object_pairs;  ///< the broad phase's: volumes overlap and filters agree
-  std::span<const ContactGroup> groups;
+  std::span<const ContactGroup> groups;      ///< of `contacts`
   std::span<const Contact> contacts;
   std::span<const ContactPoint> contact_points;
-  /// Of `ContactMode::continuous`, which leaves the two above empty. By object a, object b, kind, element a,
-  /// element b.
+  std::span<const ContactGroup> continuous_groups;  ///< of `continuous_contacts`
+  /// By object a, object b, kind, element a, element b.
   std::span<const ContinuousContact> continuous_contacts;
   std::span<const CollidingVertices> colliding_vertex_groups;
   std::span<const std::uint32_t> colliding_vertices;
   std::span<const NonFiniteVertex> non_finite_vertices;
   PairEvents volume_events;   ///< of `object_pairs`
-  PairEvents contact_events;  ///< of the pairs of different objects that have contacts
+  PairEvents contact_events;  ///< of the pairs of different objects that have contacts of any kind
   StepStats stats;
 
   std::span<const Contact> contacts_of(const ContactGroup& group) const {

@@ -37,7 +37,8 @@ struct RigidTransform {
 ///
 /// Moving an object is one call; its octree, its bounds and the scene follow at the next `detect`. The scene
 /// keeps one copy of each object's positions, in the precision they were last given in (none of those it
-/// shares), and a second copy only of objects moved by `set_transform`. Calls on one scene must not overlap;
+/// shares), a second copy of objects moved by `set_transform` or `set_motion`, and one or two more once
+/// continuous contacts are asked for. Calls on one scene must not overlap;
 /// different scenes are independent. Every call that takes an `ObjectId` throws `Error` when the object is
 /// not in the scene.
 class Scene {
@@ -73,8 +74,8 @@ class Scene {
   /// As `set_positions`, but nothing is copied: the scene reads the positions where they are, from now on
   /// until the object is given others or removed. They must stay there that long, and keep their values until
   /// they are to move: then change them between calls on the scene and call this again (what reads them in
-  /// between sees half of the change). Copied all the same, as by `set_positions`, when the contacts of the
-  /// scene are continuous, or the stride is not a multiple of the scalar's size. O(1).
+  /// between sees half of the change). Copied all the same, as by `set_positions`, when the stride is not a
+  /// multiple of the scalar's size. O(1). A search for continuous contacts makes a copy of its own.
   void share_positions(ObjectId object, PositionsView<double> positions);
   void share_positions(ObjectId object, PositionsView<float> positions);
   /// Moves the object as it is by `offset`, in O(1): the vertices are not read. Each coordinate becomes
@@ -104,20 +105,23 @@ class Scene {
   /// An empty function removes the filter.
   void set_pair_filter(PairFilter filter);
 
-  /// Every contact at the current positions, or within the step when contacts are continuous.
-  const DetectResult& detect();
-  /// The first of all continuous contacts, of those at the same time the first in order; nothing when nothing
-  /// touches within the step. Whatever can only touch later than what was found is passed over, so that it
-  /// takes a part of the time of `detect` where much touches. Throws `Error` unless `SceneOptions::contacts`
-  /// is continuous.
+  /// Every contact at the current positions, within the step, or both, as the scene's options or the request
+  /// ask for. Throws `Error` when the request is out of range.
+  const DetectResult& detect(const DetectRequest& request = {});
+  /// The first of all continuous contacts by `SceneOptions::impact`, of those at the same time the first in
+  /// order; nothing when nothing touches within the step. Whatever can only touch later than what was found
+  /// is passed over, so that it takes a part of the time of `detect` where much touches. `result` and
+  /// `verify` stay what they were.
   std::optional<ContinuousContact> earliest_impact();
   /// The part of the step, 0 to 1, that can be taken without passing through anything: the time of
   /// `earliest_impact`, 1 when there is none. Never later than the true first contact.
   double max_step();
   /// What the last `detect` returned.
   const DetectResult& result() const;
-  /// Recomputes the last `detect` by exact arithmetic alone over all pairs of triangles, without octrees or
-  /// filters, and lists every difference. Quadratic, but under a second for two meshes of 70,000 triangles.
+  /// Recomputes the last `detect`, all kinds that it was asked for, by exact arithmetic alone over all pairs
+  /// of triangles or elements, without octrees or filters, and lists every difference. Quadratic, but under a
+  /// second for two meshes of 70,000 triangles. It reads the positions where they are: throws `Error` when
+  /// anything was changed since, and when the last `detect` was stopped, truncated or asked for no contacts.
   VerifyReport verify() const;
   /// Checks every invariant of every octree and of the broad phase; the empty string, or what is wrong.
   std::string validate() const;

@@ -43,7 +43,7 @@ void check_format(const InputFile& file) {
 
 SceneOptions read_scene_options(const InputFile& file) {
   SceneOptions scene;
-  scene.contacts = static_cast<ContactMode>(read_choice(file, "contact_mode", choice_names::contacts));
+  scene.contacts = static_cast<ContactKinds>(read_choice(file, "contact_mode", choice_names::contacts));
   scene.contact_points = file.count("/", "contact_points", 1) == 1;
   scene.colliding_vertices = file.count("/", "colliding_vertices", 1) == 1;
   scene.impact.min_separation = file.number("/", "min_separation");

@@ -97,7 +97,7 @@ TEST(SteadyStateContinuous, NoAllocationsAfterWarmUp) {
 #endif
   constexpr int period = 12;
   SceneOptions options;
-  options.contacts = ContactMode::continuous;
+  options.contacts = ContactKinds::continuous;
   options.threads = 1;
   Scene scene(options);
   const TriangleMesh cloth_mesh = make_cloth(24, 24), ball_mesh = make_icosphere(6);

@@ -44,7 +44,7 @@ inline std::uint64_t continuous_hash_of_all_families(std::uint32_t threads) {
     const std::vector<TriangleMesh> to = family.make(7);
     for (TriangleMesh& mesh : from) mesh.triangles.resize(std::min(mesh.triangles.size(), std::size_t{12}));
     SceneOptions options;
-    options.contacts = ContactMode::continuous;
+    options.contacts = ContactKinds::continuous;
     options.threads = threads;
     Scene scene = scene_of(from, options);
     const std::vector<ObjectId> objects = scene.objects();

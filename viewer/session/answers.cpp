@@ -61,8 +61,10 @@ void add_octree(const OctreeStatistics& octree, JsonText& json) {
 
 std::uint64_t contact_count(const DetectResult& result, std::uint32_t object) {
   std::uint64_t count = 0;
-  for (const ContactGroup& group : result.groups) {
-    if (group.a.index == object || group.b.index == object) count += group.contact_count;
+  for (const auto groups : {result.groups, result.continuous_groups}) {
+    for (const ContactGroup& group : groups) {
+      if (group.a.index == object || group.b.index == object) count += group.contact_count;
+    }
   }
   return count;
 }

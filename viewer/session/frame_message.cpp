@@ -118,7 +118,7 @@ void FramePacker::add_contact_points(const FrameView& frame, std::size_t contact
 
 void FramePacker::add_impacts(const FrameView& frame) {
   const auto contacts = frame.source.scene().result().continuous_contacts;
-  if (frame.source.scene().options().contacts != ContactMode::continuous) return;
+  if (!contains(frame.source.scene().options().contacts, ContactKinds::continuous)) return;
   const std::size_t count = limited("impacts", contacts.size());
   const auto rows = message_->add<Ids>(Tag::impacts, count);
   for (std::size_t i = 0; i < count; ++i) {
@@ -142,9 +142,13 @@ void FramePacker::add_impacts(const FrameView& frame) {
 /// Since the frame that was sent last, which may be some steps ago.
 void FramePacker::add_events(const DetectResult& result) {
   now_touching_.clear();
-  for (const ContactGroup& group : result.groups) {
-    if (group.a != group.b) now_touching_.emplace_back(group.a.index, group.b.index);
+  for (const auto groups : {result.groups, result.continuous_groups}) {
+    for (const ContactGroup& group : groups) {
+      if (group.a != group.b) now_touching_.emplace_back(group.a.index, group.b.index);
+    }
   }
+  std::sort(now_touching_.begin(), now_touching_.end());
+  now_touching_.erase(std::unique(now_touching_.begin(), now_touching_.end()), now_touching_.end());
   const auto add_missing = [&](Tag tag, const ObjectPairs& pairs, const ObjectPairs& from) {
     changed_.clear();
     std::set_difference(pairs.begin(), pairs.end(), from.begin(), from.end(), std::back_inserter(changed_));

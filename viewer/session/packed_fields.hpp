@@ -18,7 +18,7 @@ inline constexpr std::uint8_t count_of<BroadPhaseMethod> = 3;
 template <>
 inline constexpr std::uint8_t count_of<RegionSphereTest> = 2;
 template <>
-inline constexpr std::uint8_t count_of<ContactMode> = 3;
+inline constexpr std::uint8_t count_of<ContactKinds> = 4;
 template <>
 inline constexpr std::uint8_t count_of<Integrator> = 3;
 

@@ -10,7 +10,7 @@ const std::vector<std::vector<std::uint32_t>>& PaperVertices::find(const SceneVi
                                                                    const Source& source) {
   if (!scene_) {
     SceneOptions options = show.simulation.scene;
-    options.contacts = ContactMode::none;
+    options.contacts = ContactKinds::none;
     options.colliding_vertices = true;
     scene_.emplace(options);
     for (const ViewedObject& object : show.objects)

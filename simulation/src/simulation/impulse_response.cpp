@@ -14,7 +14,7 @@ constexpr double repulsion_part = 0.1;
 
 SceneOptions scene_options(const ContactResponse& response, std::uint32_t threads) {
   SceneOptions options;
-  options.contacts = ContactMode::continuous;
+  options.contacts = ContactKinds::continuous;
   options.impact.min_separation = response.thickness;
   // Resting elements lie at the very border of touching; whether they do does not matter here.
   options.impact.exact = false;

@@ -20,8 +20,8 @@ struct VertexArray {
   const Scalar* operator[](std::size_t vertex) const { return data + vertex * stride; }
 };
 
-/// The positions of an object in the numbering of its octree, in the precision they were given in: a copy,
-/// or where they lie in the user's memory.
+/// The positions of an object, in the precision they were given in: a copy, or where they lie in the user's
+/// memory.
 class VertexBuffer {
  public:
   std::size_t size() const { return count_; }
@@ -39,10 +39,11 @@ class VertexBuffer {
     return {p[0], p[1], p[2]};
   }
 
-  /// Vertex `numbers[i]` of the buffer becomes `positions[i]`, or vertex i when `numbers` is empty.
   template <class Scalar>
-  void assign(const PositionsView<Scalar>& positions, std::span<const std::uint32_t> numbers,
-              const Parallel& parallel);
+  void assign(const PositionsView<Scalar>& positions, const Parallel& parallel);
+
+  /// Vertex v becomes vertex `ids[v]` of the other buffer, in its precision.
+  void gather(const VertexBuffer& source, std::span<const std::uint32_t> ids, const Parallel& parallel);
 
   /// The buffer becomes these positions where they are; their stride is a multiple of the scalar's size. A
   /// copy made before is given back.
@@ -52,9 +53,6 @@ class VertexBuffer {
   /// Each vertex becomes `function(vertex)` of `source`, in double.
   template <class Function>
   void transform(const VertexBuffer& source, const Parallel& parallel, const Function& function);
-
-  /// A copy in which vertex v is vertex `numbers[v]`; not of borrowed positions.
-  VertexBuffer renumbered(std::span<const std::uint32_t> numbers) const;
 
   std::size_t bytes() const {
     return floats_.capacity() * sizeof(float) + doubles_.capacity() * sizeof(double);

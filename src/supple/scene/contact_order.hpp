@@ -20,6 +20,10 @@ struct FoundContact {
 };
 static_assert(sizeof(FoundContact) == 16);
 
+inline bool in_order_of_triangles(const FoundContact& p, const FoundContact& q) {
+  return p.triangle_a != q.triangle_a ? p.triangle_a < q.triangle_a : p.triangle_b < q.triangle_b;
+}
+
 /// Puts the contacts of one job at a time into the order of the result: by triangle a, then by triangle b.
 /// Keeps its memory between jobs.
 ///

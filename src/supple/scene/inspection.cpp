@@ -5,6 +5,7 @@
 #include "core/error.hpp"
 #include "geometry/aabb.hpp"
 #include "geometry/sphere.hpp"
+#include "mesh/share_vertex.hpp"
 #include "scene/scene_implementation.hpp"
 #include "scene/searched_volumes.hpp"
 
@@ -18,16 +19,14 @@ class CellReader {
 
   /// Whether the object is one leaf: the root itself then, not an octant of it.
   bool is_one_leaf() const {
-    return view_.nodes.size() > 0 && view_.nodes[0].lane_count == 1 && !goes_on(view_, view_.nodes[0], 0);
+    return view_.nodes.size() > 0 && view_.nodes[0].lane_count == 1 && !view_.nodes[0].is_inner(0);
   }
 
   /// Calls `visit(node, lane, is_leaf)` for every lane that the search knows; shallow ones first.
   template <class Visit>
   void for_each_lane(Visit&& visit) const {
     for (const OctreeNode& node : view_.nodes) {
-      // Below the leaves of objects in motion there are nodes without boxes.
-      if (view_.moving.start != nullptr && !has_moving_boxes(node)) continue;
-      for (int lane = 0; lane < node.lane_count; ++lane) visit(node, lane, !goes_on(view_, node, lane));
+      for (int lane = 0; lane < node.lane_count; ++lane) visit(node, lane, !node.is_inner(lane));
     }
   }
 
@@ -119,7 +118,7 @@ void for_each_candidate(Traversal& traversal, const ObjectPairView& pair, Visit&
 std::vector<OctreeCell> Scene::Implementation::octree_cells(ObjectId id,
                                                             std::optional<std::uint32_t> level) const {
   const SceneObject& asked = object(id, "octree_cells");
-  if (asked.is_stale()) {
+  if (asked.has_moved() || asked.needs_refit(question_.shapes())) {
     fail("octree_cells: " + asked.options.name + " was moved since anything was detected; call detect first");
   }
   std::vector<OctreeCell> cells;
@@ -145,9 +144,9 @@ std::uint32_t Scene::Implementation::octree_depth(ObjectId id) const {
 ObjectPairView Scene::Implementation::search_view(const ContactJob& job) const {
   OctreeView a = search_view(*slots_[job.a].object), b = search_view(*slots_[job.b].object);
   a.unfolded = b.unfolded = nullptr;
-  const double separation = options.impact.min_separation;
-  if (job.a == job.b) return is_continuous() ? moving_self_pair_of(a, separation) : self_pair_of(a);
-  return is_continuous() ? moving_pair_of(a, b, separation) : pair_of(a, b);
+  const double separation = question_.impact.min_separation;
+  if (question_.searches_at_rest()) return job.a == job.b ? self_pair_of(a) : pair_of(a, b);
+  return job.a == job.b ? moving_self_pair_of(a, separation) : moving_pair_of(a, b, separation);
 }
 
 /// Jobs are in order already.
@@ -156,7 +155,7 @@ std::vector<CandidatePair> Scene::Implementation::candidates(std::size_t limit, 
   std::vector<CandidatePair> all;
   std::uint64_t count = 0;
   const auto traversal = std::make_unique<Traversal>();
-  for (const ContactJob& job : jobs_) {
+  for (const ContactJob& job : jobs_.jobs) {
     const std::span<const std::uint32_t> ids_a = slots_[job.a].object->octree().triangle_ids();
     const std::span<const std::uint32_t> ids_b = slots_[job.b].object->octree().triangle_ids();
     FirstPairs pairs(limit - all.size());

@@ -89,7 +89,7 @@ ObjectId Scene::Implementation::add(const PositionsView<double>& positions,
   check_arity("ObjectOctreeOptions::arity", named.octree.arity);
   check_triangles(named.name, positions.count, triangles);
   auto object = std::make_unique<SceneObject>(positions, triangles, named, options);
-  object->set_positions(positions, parallel);
+  object->move().set_positions(positions, parallel);
   object->set_rest_quality(parallel);
   if (free_slots_.empty()) {
     slots_.emplace_back();
@@ -139,7 +139,7 @@ template <class Scalar>
 void Scene::Implementation::set_positions(ObjectId id, const PositionsView<Scalar>& positions) {
   SceneObject& found = movable_object(id, "set_positions");
   check_count(found, positions.count, "set_positions");
-  found.set_positions(positions, parallel);
+  found.move().set_positions(positions, parallel);
   mark_changed();
 }
 
@@ -147,7 +147,11 @@ template <class Scalar>
 void Scene::Implementation::share_positions(ObjectId id, const PositionsView<Scalar>& positions) {
   SceneObject& found = movable_object(id, "share_positions");
   check_count(found, positions.count, "share_positions");
-  found.share_positions(positions, parallel);
+  if (positions.stride % sizeof(Scalar) == 0) {
+    found.move().share_positions(positions);
+  } else {
+    found.move().set_positions(positions, parallel);
+  }
   mark_changed();
 }
 
@@ -157,7 +161,7 @@ void Scene::Implementation::set_motion(ObjectId id, const PositionsView<Scalar>&
   SceneObject& found = movable_object(id, "set_motion");
   check_count(found, from.count, "set_motion");
   check_count(found, to.count, "set_motion");
-  found.set_motion(from, to, parallel);
+  found.move().set_motion(from, to, parallel);
   mark_changed();
 }
 
@@ -172,7 +176,6 @@ std::vector<ObjectId> Scene::Implementation::objects() const {
 std::string Scene::Implementation::validate() const {
   for (const ObjectId id : objects()) {
     const SceneObject& object = *slots_[id.index].object;
-    if (object.is_stale()) continue;
     if (const std::string wrong = object.validate(); !wrong.empty())
       return object.options.name + ": " + wrong;
   }
@@ -200,7 +203,7 @@ ObjectId Scene::add(PositionsView<float> positions, std::span<const Triangle> tr
   for (std::size_t i = 0; i < positions.count; ++i)
     widened.push_back({positions[i].x, positions[i].y, positions[i].z});
   const ObjectId id = implementation_->add(PositionsView<double>(widened), triangles, options, "");
-  implementation_->object(id, "add").set_positions(positions, implementation_->parallel);
+  implementation_->object(id, "add").move().set_positions(positions, implementation_->parallel);
   return id;
 }
 
@@ -243,7 +246,7 @@ void Scene::set_motion(ObjectId object, std::span<const float> from, std::span<c
 
 void Scene::translate(ObjectId object, Vec3d offset) {
   check_finite(offset, "translate", "offset");
-  implementation_->movable_object(object, "translate").translate(offset, implementation_->parallel);
+  implementation_->movable_object(object, "translate").move().translate(offset, implementation_->parallel);
   implementation_->mark_changed();
 }
 
@@ -254,6 +257,7 @@ void Scene::set_transform(ObjectId object, const RigidTransform& transform) {
     check_finite({r[0], r[1], r[2]}, "set_transform", "rotation's rows");
   }
   implementation_->movable_object(object, "set_transform")
+      .move()
       .set_transform(transform, implementation_->parallel);
   implementation_->mark_changed();
 }
@@ -280,14 +284,14 @@ void Scene::set_pair_filter(PairFilter filter) {
   implementation_->mark_changed();
 }
 
-const DetectResult& Scene::detect() {
-  return implementation_->detect();
+const DetectResult& Scene::detect(const DetectRequest& request) {
+  return implementation_->detect(request);
 }
 std::optional<ContinuousContact> Scene::earliest_impact() {
-  return implementation_->earliest_impact("earliest_impact");
+  return implementation_->earliest_impact();
 }
 double Scene::max_step() {
-  const auto earliest = implementation_->earliest_impact("max_step");
+  const auto earliest = implementation_->earliest_impact();
   return earliest ? earliest->toi : 1;
 }
 const DetectResult& Scene::result() const {
@@ -340,7 +344,7 @@ Vec3d Scene::position(ObjectId object, std::uint32_t vertex) const {
     fail("position: " + found.options.name + " has no vertex " + std::to_string(vertex) + "; it has " +
          std::to_string(count) + ", numbered from 0");
   }
-  return found.position(found.octree().octree_vertex(vertex));
+  return found.placement().position(vertex);
 }
 
 Aabb Scene::bounds(ObjectId object) const {

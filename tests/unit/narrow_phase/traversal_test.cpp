@@ -17,7 +17,7 @@ struct Object {
       : mesh(mesh_in),
         octree(PositionsView<double>(mesh.positions), mesh.triangles, options, volume, SphereFit::vertices) {
     const Parallel parallel(1);
-    vertices.assign(PositionsView<double>(mesh.positions), octree.vertex_order(), parallel);
+    vertices.assign(PositionsView<double>(mesh.positions), parallel);
     octree.refit(vertices, {}, parallel);
   }
   OctreeView view() const { return view_of(octree, vertices, {}, translation); }

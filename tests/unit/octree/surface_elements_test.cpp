@@ -34,7 +34,7 @@ TEST(SurfaceElements, EdgesAreTheDistinctPairsOfVertices) {
   EXPECT_EQ(elements.vertex_count(), 7u);
   std::set<Edge> found;
   for (const Edge& edge : elements.edges()) {
-    const auto [p, q] = std::minmax(octree.vertex_ids()[edge[0]], octree.vertex_ids()[edge[1]]);
+    const auto [p, q] = std::minmax(elements.vertex_ids()[edge[0]], elements.vertex_ids()[edge[1]]);
     found.insert({p, q});
   }
   EXPECT_EQ(found, (std::set<Edge>{{0, 1}, {1, 2}, {0, 2}, {2, 3}, {1, 3}, {4, 5}}));

@@ -21,7 +21,7 @@ class DamagedRecording : public testing::Test {
     scene.threads = 1;
     simulate({random_soup(30, 1, 0.6, 4), random_soup(20, 1, 0.6, 5)}, {}, scene, 4)
         .write(folder_ / "run.h5");
-    scene.contacts = ContactMode::continuous;
+    scene.contacts = ContactKinds::continuous;
     simulate({random_soup(30, 1, 0.6, 4), random_soup(20, 1, 0.6, 5)}, {}, scene, 4)
         .write(folder_ / "moving.h5");
   }

@@ -41,7 +41,7 @@ std::vector<Moving> moving(const Family& family, std::uint64_t seed) {
 
 SceneOptions continuous(double separation = 0, std::uint32_t threads = 1) {
   SceneOptions options;
-  options.contacts = ContactMode::continuous;
+  options.contacts = ContactKinds::continuous;
   options.impact.min_separation = separation;
   options.threads = threads;
   return options;
@@ -163,8 +163,8 @@ struct Falling {
 TEST(ContinuousContacts, ATriangleFallsOnAnother) {
   Falling falling(2);
   const DetectResult& result = falling.scene.detect();
-  ASSERT_EQ(result.groups.size(), 1u);
-  const auto contacts = result.continuous_contacts_of(result.groups[0]);
+  ASSERT_EQ(result.continuous_groups.size(), 1u);
+  const auto contacts = result.continuous_contacts_of(result.continuous_groups[0]);
   ASSERT_EQ(contacts.size(), 3u);  // the corner at 1/2, the others as late as 1
   const ContinuousContact& contact = contacts[0];
   EXPECT_EQ(contact.kind, ElementPairKind::face_vertex);
@@ -181,7 +181,7 @@ TEST(ContinuousContacts, ATriangleFallsOnAnother) {
   EXPECT_NEAR(contact.point.z, 0, 1e-9);
   EXPECT_EQ(contact.normal, (Vec3d{0, 0, -1}));  // from the stone to the floor, which is a
   EXPECT_EQ(result.contact_events.begin.size(), 1u);
-  EXPECT_TRUE(result.contacts.empty());
+  EXPECT_TRUE(result.groups.empty() && result.contacts.empty());
 }
 
 TEST(ContinuousContacts, NothingTouchesThatStopsShort) {
@@ -328,7 +328,10 @@ std::string message_of(const std::function<void()>& call) {
 
 TEST(ContinuousErrors, SayWhatToDo) {
   Scene discrete;
-  EXPECT_NE(message_of([&] { discrete.max_step(); }).find("SceneOptions::contacts"), std::string::npos);
+  EXPECT_NE(message_of([&] {
+              discrete.detect({.impact = ImpactOptions{.min_separation = -1}});
+            }).find("DetectRequest::impact"),
+            std::string::npos);
   EXPECT_NE(message_of([] { Scene scene(continuous(-1)); }).find("min_separation is -1"), std::string::npos);
   EXPECT_NE(message_of([] {
               Scene scene(continuous(std::numeric_limits<double>::infinity()));

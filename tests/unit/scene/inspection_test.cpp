@@ -274,7 +274,7 @@ void check_cells(const Known& known, ObjectId id, std::optional<std::uint32_t> l
       EXPECT_TRUE(cell.is_leaf);
     }
     const bool is_sphere = known.scene.options().bounding_volume == BoundingVolume::sphere &&
-                           known.scene.options().contacts != ContactMode::continuous;
+                           known.scene.options().contacts != ContactKinds::continuous;
     EXPECT_EQ(cell.sphere.empty(), cell.box.empty() || !is_sphere);
     std::size_t inside = 0;
     for (std::uint32_t t = 0; t < triangles.size(); ++t) {
@@ -386,7 +386,7 @@ TEST_P(Inspection, FollowsTranslatedAndStaticObjects) {
 TEST_P(Inspection, ExplanationsAgreeWithContinuousDetect) {
   for (const double separation : {0.0, 0.01}) {
     SceneOptions continuous = options();
-    continuous.contacts = ContactMode::continuous;
+    continuous.contacts = ContactKinds::continuous;
     continuous.impact.min_separation = separation;
     // What exact arithmetic decides of such scenes with a separation takes minutes.
     continuous.impact.exact = separation == 0;

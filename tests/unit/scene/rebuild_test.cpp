@@ -82,7 +82,7 @@ struct Living {
   std::vector<ObjectId> ids;
 };
 
-SceneOptions with_threads(std::uint32_t threads, ContactMode mode = ContactMode::intersection) {
+SceneOptions with_threads(std::uint32_t threads, ContactKinds mode = ContactKinds::intersection) {
   SceneOptions options;
   options.contacts = mode;
   options.threads = threads;
@@ -131,8 +131,8 @@ TEST(SceneRebuild, ContactsAreThoseOfTheTreeThatWasKeptAndOfBruteForce) {
 TEST(SceneRebuild, ContinuousContactsAreThoseOfTheTreeThatWasKept) {
   for (const bool doubles : {false, true}) {
     Drift drift = soups(400, 0.05);
-    Living built(drift, with_threads(2, ContactMode::continuous), true);
-    Living kept(drift, with_threads(1, ContactMode::continuous), false);
+    Living built(drift, with_threads(2, ContactKinds::continuous), true);
+    Living kept(drift, with_threads(1, ContactKinds::continuous), false);
     std::uint64_t contacts = 0;
     for (int step = 0; step < 30; ++step) {
       SCOPED_TRACE(step);
@@ -174,7 +174,7 @@ TEST(SceneRebuild, ContinuousContactsAreThoseOfTheTreeThatWasKept) {
 }
 
 TEST(SceneRebuild, ObjectsThatAreTurnedAndMovedAfterwardsKeepTheirShape) {
-  for (const ContactMode mode : {ContactMode::intersection, ContactMode::continuous}) {
+  for (const ContactKinds mode : {ContactKinds::intersection, ContactKinds::continuous}) {
     Drift drift = soups(400, 0.05);
     Living built(drift, with_threads(1, mode), true), kept(drift, with_threads(1, mode), false);
     int turned_and_rebuilt = 0;
@@ -207,9 +207,9 @@ TEST(SceneRebuild, ObjectsThatAreTurnedAndMovedAfterwardsKeepTheirShape) {
 TEST(SceneRebuild, SurvivesPositionsOfAllKinds) {
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   for (const std::uint32_t triangles : {1u, 2u, 5u, 9u, 33u, 70u}) {
-    for (const ContactMode mode : {ContactMode::intersection, ContactMode::continuous}) {
+    for (const ContactKinds mode : {ContactKinds::intersection, ContactKinds::continuous}) {
       // Elements that touch in a point, a plane or far away are decided one by one: fewer of them.
-      const bool self_collision = mode == ContactMode::intersection;
+      const bool self_collision = mode == ContactKinds::intersection;
       if (!self_collision && triangles > 33) continue;
       const double huge = self_collision ? 1e40 : 1e12;
       Drift drift = soups(triangles, 0.3);
@@ -251,7 +251,7 @@ TEST(SceneRebuild, SurvivesPositionsOfAllKinds) {
         expect_same(result, kept.scene.detect());
         ASSERT_EQ(result.non_finite_vertices.size(), kept.scene.result().non_finite_vertices.size());
         ASSERT_EQ(built.scene.validate(), "");
-        if (mode == ContactMode::intersection && step % 10 == 0) {
+        if (mode == ContactKinds::intersection && step % 10 == 0) {
           ASSERT_EQ(differences(built.scene), "");
         }
       }

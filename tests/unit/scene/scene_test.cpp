@@ -280,7 +280,7 @@ TEST(Scene, VerifySeesWhatThePapersSpheresMiss) {
 }
 
 TEST(Scene, ContactsSwitchedOffLeaveCandidates) {
-  Scene scene({.contacts = ContactMode::none});
+  Scene scene({.contacts = ContactKinds::none});
   scene.add(one_triangle(0));
   scene.add(upright_triangle());
   EXPECT_TRUE(scene.detect().contacts.empty());

@@ -154,20 +154,22 @@ TYPED_TEST(SharePositions, NonFiniteVerticesAreFoundWhenTheyAreRead) {
   EXPECT_TRUE(scene.verify().agrees());
 }
 
-TYPED_TEST(SharePositions, CopiesForContinuousContacts) {
+TYPED_TEST(SharePositions, AreReadForContinuousContactsToo) {
   const TriangleMesh ball = make_icosphere(4);
   std::vector<Vec3<TypeParam>> points;
   for (const Vec3d& p : ball.positions)
     points.push_back(
         {static_cast<TypeParam>(p.x + 0.5), static_cast<TypeParam>(p.y), static_cast<TypeParam>(p.z)});
   SceneOptions options;
-  options.contacts = ContactMode::continuous;
+  options.contacts = ContactKinds::continuous;
   Scene scene(options);
   const ObjectId id = scene.add(ball);
   scene.add(ball);
   scene.share_positions(id, PositionsView<TypeParam>(points));
-  points.assign(points.size(), {100, 100, 100});
   EXPECT_FALSE(scene.detect().continuous_contacts.empty());
+  points.assign(points.size(), {100, 100, 100});
+  scene.share_positions(id, PositionsView<TypeParam>(points));
+  EXPECT_TRUE(scene.detect().continuous_contacts.empty());
 }
 
 TEST(SharePositions, ChecksWhatItIsGiven) {

@@ -164,7 +164,7 @@ TEST_F(Truth, StepsTouchWhereAndWhenExactArithmeticSays) {
     SCOPED_TRACE(expected["name"].get<std::string>());
     const TriangleMesh from = load(expected["frame0"]), to = load(expected["frame1"]);
     SceneOptions options;
-    options.contacts = ContactMode::continuous;
+    options.contacts = ContactKinds::continuous;
     Scene scene(options);
     scene.set_motion(scene.add(from, {.self_collision = true}), from.positions, to.positions);
     const auto numbers = edge_numbers(from);

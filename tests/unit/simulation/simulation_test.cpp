@@ -49,7 +49,7 @@ MassSpringMotion exploding() {
   return motion;
 }
 
-SimulationOptions in_a_room(double half, ContactMode contacts = ContactMode::intersection) {
+SimulationOptions in_a_room(double half, ContactKinds contacts = ContactKinds::intersection) {
   SimulationOptions options;
   options.scene.contacts = contacts;
   options.scene.threads = 1;
@@ -334,7 +334,7 @@ TEST(Simulation, SeedsRepeatAndObjectsDiffer) {
 }
 
 TEST(Simulation, TheBorderTurnsBackAndTakesNoSpeed) {
-  const SimulationOptions options = in_a_room(1.2, ContactMode::none);
+  const SimulationOptions options = in_a_room(1.2, ContactKinds::none);
   Simulation simulation = room_of_bodies(options);
   const double overshoot = 1.0 * options.time_step;
   int turns = 0;
@@ -361,7 +361,7 @@ TEST(Simulation, TheBorderTurnsBackAndTakesNoSpeed) {
 }
 
 TEST(Simulation, ObjectsOutsideTheBorderComeBackAndLargeOnesStay) {
-  SimulationOptions options = in_a_room(0.5, ContactMode::none);
+  SimulationOptions options = in_a_room(0.5, ContactKinds::none);
   Simulation simulation(options);
   MassSpringMotion motion = springy();
   motion.velocity = {1, 0, 0};
@@ -378,7 +378,7 @@ TEST(Simulation, ObjectsOutsideTheBorderComeBackAndLargeOnesStay) {
 TEST(Simulation, GravityDoesNotPressThroughTheBorder) {
   for (const Integrator integrator : {Integrator::verlet, Integrator::symplectic_euler}) {
     for (const double air_friction : {0.0, 0.05}) {
-      Simulation simulation(in_a_room(1, ContactMode::none));
+      Simulation simulation(in_a_room(1, ContactKinds::none));
       MassSpringMotion motion = springy();
       motion.springs.integrator = integrator;
       motion.springs.gravity = {0, 0, 9.81};
@@ -446,7 +446,7 @@ TEST(Simulation, ObjectsAtRestCostNothing) {
 
 TEST(Simulation, ContinuousContactsSeeTheWholeWay) {
   SimulationOptions options;
-  options.scene.contacts = ContactMode::continuous;
+  options.scene.contacts = ContactKinds::continuous;
   options.time_step = 1;
   Simulation simulation(options);
   const ObjectId wall = simulation.add(make_icosphere(1), {.name = "wall"});

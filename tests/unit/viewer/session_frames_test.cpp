@@ -91,7 +91,7 @@ TEST(ViewerFrames, EventsAreThoseSinceTheLastFrame) {
 
 TEST(ViewerFrames, ContinuousContactsAreThoseOfTheLibrary) {
   SceneView show = touching_balls();
-  show.simulation.scene.contacts = ContactMode::continuous;
+  show.simulation.scene.contacts = ContactKinds::continuous;
   Simulation simulation = simulation_of(show);
   TestPage page(show);
   const Vec3d center = center_of(page.scene());

@@ -109,11 +109,12 @@ TEST(ViewerLayers, AreWhatTheLibrarySays) {
 
 /// The paper's output is that of a scene which was made to give it.
 TEST(ViewerLayers, CollidingVerticesAreThoseOfASceneThatGivesThem) {
-  for (const ContactMode contacts : {ContactMode::intersection, ContactMode::none, ContactMode::continuous}) {
+  for (const ContactKinds contacts :
+       {ContactKinds::intersection, ContactKinds::none, ContactKinds::continuous}) {
     SceneView show = crowd();
     show.simulation.scene.contacts = contacts;
     SceneView giving = show;
-    giving.simulation.scene.contacts = ContactMode::intersection;
+    giving.simulation.scene.contacts = ContactKinds::intersection;
     giving.simulation.scene.colliding_vertices = true;
     Simulation simulation = simulation_of(giving);
     TestPage page(show);
