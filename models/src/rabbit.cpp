@@ -7,7 +7,7 @@
 
 namespace supple::models {
 
-// A sitting rabbit that looks towards +x, as one closed surface without a handle: 453 vertices, 902 faces.
+// A sitting rabbit that looks towards +x: one closed surface of genus 0, 453 vertices, 902 faces.
 TriangleMesh make_rabbit() {
   ImplicitSurface surface;
   surface.set_style(0.10, 1.35);
