@@ -2,8 +2,8 @@
 #include <utility>
 #include <vector>
 
-#include "mesh_builder.hpp"
 #include "built_in.hpp"
+#include "mesh_builder.hpp"
 #include "supple/trigonometry.hpp"
 
 // A racing bicycle, modelled in metres and scaled at the end. x points forward, y up; the chain is on the

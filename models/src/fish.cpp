@@ -3,8 +3,8 @@
 #include <utility>
 #include <vector>
 
-#include "mesh_builder.hpp"
 #include "built_in.hpp"
+#include "mesh_builder.hpp"
 
 namespace supple::models {
 namespace {

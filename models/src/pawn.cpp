@@ -1,8 +1,8 @@
 #include <array>
 #include <utility>
 
-#include "mesh_builder.hpp"
 #include "built_in.hpp"
+#include "mesh_builder.hpp"
 
 namespace supple::models {
 

@@ -1,8 +1,8 @@
 #include <utility>
 
+#include "built_in.hpp"
 #include "implicit_surface.hpp"
 #include "mesh_builder.hpp"
-#include "built_in.hpp"
 #include "remesh.hpp"
 
 namespace supple::models {
