@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Formats every C++ file of the repository in place; with --check only names those that differ, and fails.
+# Formats every C++ file of the repository in place. With --check it only lists files that differ, and fails.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 

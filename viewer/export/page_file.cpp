@@ -15,7 +15,7 @@
 namespace supple::viewer {
 namespace {
 
-/// zlib counts in 32 bits, so that large inputs are handed over in parts.
+/// zlib counts in 32 bits, so large inputs are compressed in parts.
 constexpr std::size_t largest_part = std::size_t{1} << 30;
 
 std::vector<unsigned char> gzip(std::span<const std::byte> bytes) {
@@ -73,7 +73,7 @@ void append_element(std::string& page, std::string_view id, std::span<const std:
   throw Error(message);
 }
 
-/// A file beside the one to be replaced, removed unless it takes its place.
+/// A temporary file next to the target; removed unless it replaces the target.
 class TemporaryFile {
  public:
   explicit TemporaryFile(const std::filesystem::path& target)
@@ -98,7 +98,7 @@ class TemporaryFile {
   }
 
   void put_in_place() {
-    // As any other new file: readable for those whom the user's mask lets.
+    // Set the permissions of an ordinary new file, according to the umask.
     const mode_t mask = umask(0);
     umask(mask);
     if (fchmod(file_, 0666 & ~mask) != 0 || fsync(file_) != 0) fail_to_write(target_, errno);
@@ -128,7 +128,7 @@ std::string page_with_cargo(std::string_view page, std::span<const std::byte> sh
 }
 
 void replace_file(const std::filesystem::path& path, std::string_view content) {
-  // A device or a pipe is written to; to put a file in its place would remove it.
+  // Write into a device or a pipe; replacing it would remove it.
   std::error_code ignored;
   if (std::filesystem::exists(path, ignored) && !std::filesystem::is_regular_file(path, ignored))
     fail_to_write(path, std::filesystem::is_directory(path, ignored) ? EISDIR : EINVAL);

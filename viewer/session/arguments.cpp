@@ -20,7 +20,7 @@ std::string number_text(double value) {
   return text;
 }
 
-/// The value as it was written, cut when it is long.
+/// The JSON text of the value, shortened when it is long.
 std::string text_of(const JsonValue& value) {
   constexpr std::size_t longest = 40;
   switch (value.kind) {

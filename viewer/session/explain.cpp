@@ -9,7 +9,7 @@
 namespace supple::viewer {
 namespace {
 
-/// Two objects and what their scene says of one triangle of each.
+/// Two triangles and the scene's explanation of the pair.
 struct Pair {
   const ViewedObject &a, &b;
   const std::string &name_a, &name_b;

@@ -18,11 +18,11 @@
 namespace supple::viewer {
 namespace {
 
-/// Before what is packed.
+/// Precedes the packed data.
 struct Header {
   std::array<char, 8> magic{'S', 'U', 'P', 'L', 'S', 'H', 'O', 'W'};
-  std::array<char, 16> version{};  // of the library, zeros behind it
-  std::uint64_t checksum = 0;      // of all behind the header
+  std::array<char, 16> version{};  // of the library, padded with zeros
+  std::uint64_t checksum = 0;      // of everything after the header
 
   constexpr bool operator==(const Header&) const = default;
 };
@@ -34,7 +34,7 @@ std::array<char, 16> own_version() {
   return version;
 }
 
-/// FNV-1a of words of eight bytes, what is missing of the last being zeros.
+/// FNV-1a over words of eight bytes; the last word is padded with zeros.
 std::uint64_t checksum_of(std::span<const std::byte> bytes) {
   std::uint64_t hash = 0xcbf29ce484222325u ^ bytes.size();
   for (std::size_t i = 0; i < bytes.size(); i += 8) {

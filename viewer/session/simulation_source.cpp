@@ -31,7 +31,7 @@ void SimulationSource::add(const ViewedObject& object) {
   }
 }
 
-/// The waves, on top of them what it was bent by before, and what is held where it is dragged to.
+/// Adds up the waves, earlier bends, and the current drag of the held vertices.
 void SimulationSource::move_swaying(std::size_t object, double seconds, std::span<Vec3d> positions) {
   const ViewedObject& shown = show_.objects[object];
   apply_wave_motion(std::get<WaveMotion>(shown.motion), show_.simulation.border, shown.mesh.positions,
