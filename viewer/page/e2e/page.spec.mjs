@@ -1,4 +1,4 @@
-// The page by itself: camera, keys, pictures, videos, looks, and what it says when something is wrong.
+// The page alone: camera, keys, pictures, videos, appearance, and error messages.
 import assert from "node:assert/strict";
 import { statSync } from "node:fs";
 import { join } from "node:path";
@@ -25,7 +25,7 @@ async function cameraMoves(stage) {
   await page.mouse.up({ button: "right" });
   assert.notDeepEqual((await camera(page)).target, orbited.target);
 
-  // What is below the cursor stays there while the wheel turns.
+  // The point below the cursor stays there while the wheel turns.
   const seen = await page.evaluate(() => supple.project(supple.positionOf(0, 0)));
   await page.mouse.move(seen.x, seen.y);
   await page.mouse.wheel(0, -300);
@@ -73,7 +73,7 @@ async function recordsAVideo(stage) {
   assert.ok(statSync(path).size > 5000);
 }
 
-/** Nothing but keys, from the first look to a contact that is read. */
+/** Uses the keyboard only, from opening the page to reading a contact. */
 async function keyboardAlone(stage) {
   const { page } = await stage.view(nine);
   const key = (name) => page.keyboard.press(name);
@@ -116,7 +116,7 @@ async function keyboardAlone(stage) {
   await key("ArrowDown");
   await until(page, () => supple.model.contact !== null);
 
-  // Pulls a vertex: selects an object, holds its first vertex, moves it, lets go.
+  // Pull a vertex: select an object, grab its first vertex, move it, release it.
   await tabTo(/^fish 1/);
   await key("Enter");
   const object = await page.evaluate(() => supple.model.selection.object);
@@ -195,7 +195,7 @@ async function malformedMessage(stage) {
     send(message);
   });
   await hasFrame(page);
-  await page.getByRole("checkbox", { name: "Object octrees" }).check();  // asks for another frame
+  await page.getByRole("checkbox", { name: "Object octrees" }).check();  // requests another frame
   await says(page, "The page does not understand the program");
   assert.equal(await page.locator("canvas.view").isVisible(), true);
 }

@@ -1,4 +1,4 @@
-// A recording: play, scrub, step, loop, jump from event to event.
+// A recording: play, seek, step, loop, jump between events.
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { pause, runProgram, scenes, settled, step, until } from "./harness.mjs";

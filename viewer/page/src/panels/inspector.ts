@@ -1,11 +1,11 @@
-/** Ids and values of what was picked, and why two triangles are, or are not, a contact. */
+/** Ids and values of the picked elements, and the explanation why two triangles are or are not a contact. */
 import type { Client } from "../client";
 import { OKABE_ITO } from "../colours";
 import { findContact, hasImpacts, kindAt, pointsAt, sidesOf } from "../contacts";
 import type { Explanation, Model } from "../model";
 import { h, readable } from "./dom";
 
-/** While things move, values are read anew so often. */
+/** Interval between updates of the values while things move. */
 const REFRESH_MILLISECONDS = 250;
 
 const STAGES: Record<string, string> = {
@@ -25,12 +25,12 @@ function show(value: unknown): string {
   return value === null ? "none" : String(value);
 }
 
-/** Numbers in full: what a person copies. */
+/** Formats numbers in full, for copying. */
 function showExactly(value: unknown): string {
   return Array.isArray(value) ? value.map(showExactly).join("\n") : String(value);
 }
 
-/** Members of an object, and of the objects within it. */
+/** Flattens nested objects into rows. */
 function rowsOf(value: Record<string, unknown>): [string, unknown][] {
   return Object.entries(value).flatMap(([name, inner]) =>
     inner !== null && typeof inner === "object" && !Array.isArray(inner) ? rowsOf(inner as Record<string, unknown>) : [[name, inner] as [string, unknown]],
@@ -90,7 +90,7 @@ export class Inspector {
     );
   }
 
-  /** Asks which stage told two triangles apart. */
+  /** Asks which stage separated two triangles. */
   async explain(pair: { object: number; triangle: number }[]): Promise<void> {
     pair.forEach(({ object, triangle }, i) => {
       this.fields[i]!.object.value = String(object);
@@ -157,7 +157,7 @@ export class Inspector {
     }, REFRESH_MILLISECONDS);
   }
 
-  /** Asks the session for exact values of what is selected. */
+  /** Requests exact values of the selection. */
   private async read(): Promise<void> {
     const { selection } = this.model;
     const round = ++this.round;

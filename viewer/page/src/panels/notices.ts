@@ -1,4 +1,7 @@
-/** Notices that go by themselves, warnings that stay, and the card that takes the middle of the page when there is nothing to show any more. */
+/**
+ * Notices that disappear, warnings that stay, and the card that replaces the view when there is nothing to
+ * show.
+ */
 import type { Status } from "../client";
 import { h } from "./dom";
 
@@ -10,7 +13,7 @@ export class Notices {
   readonly element: HTMLElement;
   private readonly lasting = h("div");
   private readonly passing = h("div");
-  /** What the scene warns of, and the element of it until it is dismissed. */
+  /** Current warnings of the scene and their elements, until dismissed. */
   private warnings = new Map<string, HTMLElement>();
 
   constructor() {
@@ -26,7 +29,10 @@ export class Notices {
     setTimeout(() => notice.remove(), NOTICE_MILLISECONDS);
   }
 
-  /** What the scene warns of now: each stays until it is dismissed or holds no more, and does not come again while it holds. */
+  /**
+   * Sets the current warnings. Each stays until it is dismissed or no longer applies, and does not reappear
+   * meanwhile.
+   */
   warn(texts: string[]): void {
     const now = new Map(texts.map((text) => [text, this.warnings.get(text) ?? this.notice(text)]));
     for (const [text, element] of now) if (!this.warnings.has(text)) this.lasting.append(element);
@@ -85,7 +91,7 @@ export class Card {
     }
   }
 
-  /** For what no connection mends. */
+  /** For failures that a new connection does not solve. */
   fail(title: string, text: string): void {
     this.fill("alertdialog", title, text, h("button", { type: "button", class: "primary", onclick: () => location.reload() }, "Reload"));
     this.isFinal = true;

@@ -1,13 +1,13 @@
-/** The objects of the scene, as many as there are: to show and hide, colour, select and find by name. */
+/** The list of objects: show, hide, colour, select, and find by name. */
 import type { Model, ObjectState } from "../model";
 import { h, readable } from "./dom";
 import { RowWindow, type Row } from "./row_window";
 
 const ROW_HEIGHT = 27;
-/** With fewer objects there is nothing to find. */
+/** The filter appears from this many objects on. */
 const FEWEST_TO_FILTER = 13;
 
-/** The controls of one object, then of another. */
+/** A row of controls that can be reused for another object. */
 class ObjectRow implements Row {
   readonly element: HTMLLIElement;
   readonly name: HTMLButtonElement;
@@ -88,7 +88,7 @@ export class ObjectList {
     this.update();
   }
 
-  /** Lists the objects whose names have what is looked for. */
+  /** Lists the objects whose names match the filter. */
   private update(): void {
     const wanted = this.filter.value.trim().toLowerCase();
     this.listed = this.model.objects.filter(({ name }) => name.toLowerCase().includes(wanted));
@@ -120,7 +120,7 @@ export class ObjectList {
     this.window.draw();
   }
 
-  /** Arrows go from object to object. */
+  /** Arrow keys move between objects. */
   private key(event: KeyboardEvent): void {
     const isPlain = !event.shiftKey && !event.altKey && !event.ctrlKey && !event.metaKey;
     if (!isPlain || event.target instanceof HTMLInputElement || event.key === "Home" || event.key === "End") return;

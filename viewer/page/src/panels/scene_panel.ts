@@ -1,4 +1,4 @@
-/** The objects of the scene and the layers that are drawn over them. */
+/** The objects of the scene and the layers drawn over them. */
 import { levelColour, LEVELS, OKABE_ITO } from "../colours";
 import type { Layer, Model } from "../model";
 import { h, readable } from "./dom";
@@ -86,7 +86,7 @@ export class ScenePanel {
     );
   }
 
-  /** Levels to choose from, up to the deepest that a frame told of. */
+  /** Offers levels up to the deepest level seen so far. */
   private fitLevels(deepest: number): void {
     if (deepest <= this.deepest) return;
     this.deepest = deepest;
@@ -104,7 +104,7 @@ export class ScenePanel {
     this.legend.hidden = !layers.octree && !layers.regions;
   }
 
-  /** Counts beside the layers, of the newest frame. */
+  /** Shows the number of drawn elements beside each layer. */
   showCounts(drawn: Record<string, number>): void {
     const { frame, layers } = this.model;
     const of: Partial<Record<Layer, number>> = {

@@ -1,6 +1,6 @@
 /**
- * Reader of the session's binary messages (docs/protocol.md). It checks everything it relies on and gives
- * typed arrays that look straight into the message: nothing is copied.
+ * Reads the binary messages of the session (docs/protocol.md). It validates everything it relies on and
+ * returns typed arrays that view the message; nothing is copied.
  */
 
 export const NONE = 0xffffffff;
@@ -62,7 +62,7 @@ export interface SceneMessage {
   triangles: Map<number, Uint32Array>;
 }
 
-/** What has no section is empty; positions are there of the objects that moved. */
+/** Missing sections are empty. Positions are present for objects that moved. */
 export interface FrameMessage {
   kind: "frame";
   text: FrameText;
@@ -106,7 +106,7 @@ const KINDS = ["", "scene", "frame", "answer", "failure", "series"] as const;
 interface Form {
   name: string;
   array: Uint8ArrayConstructor | Uint32ArrayConstructor | Float32ArrayConstructor | Float64ArrayConstructor;
-  /** Numbers an element; 0 where the scene says how many. */
+  /** Numbers per element; 0 when the scene determines it. */
   width: number;
   kinds: readonly string[];
   perObject?: boolean;
@@ -136,7 +136,7 @@ const FORMS: Record<number, Form> = {
 
 type Data = Uint8Array | Uint32Array | Float32Array | Float64Array;
 
-/** What a frame is checked against: the scene it belongs to. */
+/** Sizes of the scene, against which frames are validated. */
 export interface SceneCounts {
   generation: number;
   vertices: number[];
@@ -206,7 +206,7 @@ function readSections(buffer: ArrayBuffer, kind: string, count: number, seriesWi
     at = start + Math.ceil(bytes / ALIGNMENT) * ALIGNMENT;
     if (at > buffer.byteLength) fail("a section reaches past its end");
     const form = FORMS[tag];
-    if (!form) continue;  // of a later version
+    if (!form) continue;  // a section of a later version
     if (!form.kinds.includes(kind)) fail(`a message of kind ${kind} has a section ${form.name}`);
     if ((form.perObject ?? false) !== (object !== NONE)) fail(`its section ${form.name} has a wrong object`);
     const width = form.width || seriesWidth;
@@ -283,7 +283,7 @@ function frameText(json: Record<string, unknown>): FrameText {
   return f;
 }
 
-/** Every `stride` numbers hold an object and a number below `limits` of it, at two places. */
+/** Every `stride` numbers contain an object and a number below its limit, at the two offsets in `at`. */
 function checkIds(name: string, data: Uint32Array, stride: number, at: [number, number], limits: number[]): void {
   for (let i = 0; i < data.length; i += stride)
     for (const place of at) {
@@ -339,7 +339,7 @@ function readFrame(sections: Sections, scene: SceneCounts): FrameMessage {
     begin: sections.one("contact_begin", words),
     end: sections.one("contact_end", words),
   };
-  if (text.generation !== scene.generation) return frame;  // of a scene that is gone; nobody looks into it
+  if (text.generation !== scene.generation) return frame;  // belongs to an earlier scene and will be ignored
   for (const [object, positions] of frame.positions)
     if (positions.length !== 3 * (scene.vertices[object] ?? -1)) fail(`it has not all positions of object ${object}`);
   for (const [object, vertices] of frame.collidingVertices) {
@@ -390,8 +390,8 @@ function readFailure(sections: Sections): FailureMessage {
 const NO_SCENE: SceneCounts = { generation: -1, vertices: [], triangles: [], statistics: 0, series: 0 };
 
 /**
- * Reads one message. `scene` is what the last scene message said, null before the first one.
- * Throws `MessageError`, one sentence, for what is no message of this version.
+ * Reads one message. `scene` has the sizes from the last scene message, or is null before the first one.
+ * Throws `MessageError` with one sentence when the data is not a message of this version.
  */
 export function readMessage(buffer: ArrayBuffer, scene: SceneCounts | null): Message {
   if (buffer.byteLength < ALIGNMENT) fail("it is shorter than a header");
