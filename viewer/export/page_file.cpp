@@ -22,7 +22,7 @@ std::vector<unsigned char> gzip(std::span<const std::byte> bytes) {
   z_stream stream{};
   constexpr int as_gzip = 15 + 16;
   if (deflateInit2(&stream, Z_BEST_COMPRESSION, Z_DEFLATED, as_gzip, 9, Z_DEFAULT_STRATEGY) != Z_OK)
-    throw Error("zlib cannot start; is there memory left?");
+    throw Error("zlib cannot start; there may be too little memory");
   std::vector<unsigned char> packed;
   std::vector<unsigned char> part(std::size_t{1} << 20);
   std::size_t taken = 0;
@@ -40,7 +40,7 @@ std::vector<unsigned char> gzip(std::span<const std::byte> bytes) {
     packed.insert(packed.end(), part.data(), stream.next_out);
   } while (status == Z_OK || status == Z_BUF_ERROR);
   deflateEnd(&stream);
-  if (status != Z_STREAM_END) throw Error("zlib cannot compress the show");
+  if (status != Z_STREAM_END) throw Error("zlib cannot compress the scene");
   return packed;
 }
 
@@ -69,7 +69,7 @@ void append_element(std::string& page, std::string_view id, std::span<const std:
   std::string message = path.string();
   message += ": cannot write: ";
   message += std::strerror(error);
-  message += "; choose a file in a folder that exists and is yours, on a disk with room";
+  message += "; choose a writable folder on a disk with free space";
   throw Error(message);
 }
 
@@ -119,7 +119,7 @@ std::string page_with_cargo(std::string_view page, std::span<const std::byte> sh
                             std::span<const std::byte> module) {
   constexpr std::string_view place = "<!--supple-cargo-->";
   const std::size_t at = page.rfind(place);
-  if (at == std::string_view::npos) throw Error("the page of this build has no place for cargo");
+  if (at == std::string_view::npos) throw Error("the page of this build has no place for a scene");
   std::string whole(page.substr(0, at));
   append_element(whole, "supple-wasm", module);
   append_element(whole, "supple-show", show);

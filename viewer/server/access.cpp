@@ -41,7 +41,7 @@ bool is_address(std::string_view name) {
 std::string make_token() {
   std::array<unsigned char, 16> bytes{};
   if (getentropy(bytes.data(), bytes.size()) != 0) {
-    std::string message = "the system gives no random numbers for a token: ";
+    std::string message = "cannot get random numbers for a token from the system: ";
     message += std::strerror(errno);
     throw Error(message);
   }

@@ -48,7 +48,7 @@ asio::ip::address parse_address(const std::string& text) {
   const auto address = asio::ip::make_address(text, error);
   if (!error) return address;
   std::string message = text;
-  message += ": is no IP address; give one of this machine, such as 127.0.0.1, or 0.0.0.0 for all";
+  message += ": it is not an IP address; give one of this machine, such as 127.0.0.1, or 0.0.0.0 for all";
   throw Error(message);
 }
 
@@ -182,7 +182,7 @@ class Request : public std::enable_shared_from_this<Request> {
         return self->refuse(http::status::payload_too_large, "The request is too large.\n");
       if (error.category() == make_error_code(http::error::end_of_stream).category() &&
           error != http::error::end_of_stream && error != http::error::partial_message)
-        self->refuse(http::status::bad_request, "This is no request of HTTP.\n");
+        self->refuse(http::status::bad_request, "This is not an HTTP request.\n");
     });
   }
 
@@ -191,7 +191,7 @@ class Request : public std::enable_shared_from_this<Request> {
     const auto& request = parser_.get();
     const std::string_view host = text(request[http::field::host]);
     if (!context_.access.knows_host(host)) {
-      std::string message = "This server does not go by that name or port; ask it as http://";
+      std::string message = "This server does not have that name or port; use http://";
       message += context_.access.host();
       message += '\n';
       return refuse(http::status::forbidden, message);
@@ -200,7 +200,7 @@ class Request : public std::enable_shared_from_this<Request> {
     if (target.path == "/session" && websocket::is_upgrade(request)) return connect(host, target.token);
     if (target.path != "/") return refuse(http::status::not_found, "There is nothing here.\n");
     if (request.method() != http::verb::get && request.method() != http::verb::head)
-      return refuse(http::status::method_not_allowed, "Only GET and HEAD are understood.\n");
+      return refuse(http::status::method_not_allowed, "Only GET and HEAD are supported.\n");
     if (!context_.access.knows_token(target.token)) {
       respond(http::status::forbidden, "text/html; charset=utf-8", no_token_page);
     } else {
@@ -293,7 +293,7 @@ class Server::Implementation {
     watch(should_end);
     sockets_.run();
     if (failure_) std::rethrow_exception(failure_);
-    if (has_failed_) throw Error("the session has failed for good; the page says why");
+    if (has_failed_) throw Error("the session has failed; the page shows the reason");
   }
 
  private:
@@ -312,7 +312,7 @@ class Server::Implementation {
       message += std::to_string(options.port);
       message += ": cannot listen: ";
       message += error.code().message();
-      message += "; choose another port, or 0 for any that is free, and an address of this machine";
+      message += "; choose another port, or 0 for any free port, and an address of this machine";
       throw Error(message);
     }
   }

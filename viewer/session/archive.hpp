@@ -18,7 +18,7 @@
 
 namespace supple::viewer {
 
-static_assert(std::endian::native == std::endian::little, "packed shows are little-endian");
+static_assert(std::endian::native == std::endian::little, "packed scenes are little-endian");
 
 /// Values that are stored as their raw bytes.
 template <class Value>

@@ -126,7 +126,7 @@ bool Arguments::check() {
     std::string list;
     for (const std::string_view known : known_) list += (list.empty() ? "" : ", ") + std::string(known);
     fail("it has no \"" + name.substr(0, 40) + "\"; " +
-         (known_.empty() ? "it takes nothing more" : "it takes " + list));
+         (known_.empty() ? "it takes no other members" : "it takes " + list));
   }
   return error_.empty();
 }

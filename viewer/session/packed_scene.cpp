@@ -47,14 +47,14 @@ std::uint64_t checksum_of(std::span<const std::byte> bytes) {
 }
 
 void check_header(const Header& header, std::span<const std::byte> content) {
-  if (header.magic != Header{}.magic) fail("this is no packed show; export the page again");
+  if (header.magic != Header{}.magic) fail("this is not a packed scene; export the page again");
   if (header.version != own_version()) {
     const std::string version(header.version.begin(),
                               std::find(header.version.begin(), header.version.end(), '\0'));
-    fail("this show was packed by version " + version + " of Supple, and this is " + SUPPLE_VERSION +
+    fail("this scene was packed by version " + version + " of Supple, and this is " + SUPPLE_VERSION +
          "; export the page again");
   }
-  if (header.checksum != checksum_of(content)) fail("the packed show is damaged; export the page again");
+  if (header.checksum != checksum_of(content)) fail("the packed scene is damaged; export the page again");
 }
 
 }  // namespace
@@ -74,7 +74,7 @@ std::vector<std::byte> pack(const SceneView& show) {
 
 SceneView unpack(std::span<const std::byte> bytes) {
   Header header;
-  if (bytes.size() < sizeof(header)) fail("this is no packed show; export the page again");
+  if (bytes.size() < sizeof(header)) fail("this is not a packed scene; export the page again");
   std::memcpy(&header, bytes.data(), sizeof(header));
   const auto content = bytes.subspan(sizeof(header));
   check_header(header, content);
@@ -89,7 +89,7 @@ SceneView unpack(std::span<const std::byte> bytes) {
     if (!frames->fit_to(show.objects)) unpacker.fail();
     show.frames = std::move(frames);
   }
-  if (!unpacker.good() || !unpacker.at_end()) fail("the packed show is damaged; export the page again");
+  if (!unpacker.good() || !unpacker.at_end()) fail("the packed scene is damaged; export the page again");
   return show;
 }
 

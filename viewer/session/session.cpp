@@ -199,13 +199,13 @@ void Session::Implementation::command(std::string_view json) {
   if (replies_.size() >= most_replies) {
     // A page that does not read its replies gets no unbounded number of them.
     replies_.pop_back();
-    fail("more than " + std::to_string(most_replies) + " answers wait; some commands were passed over");
+    fail("more than " + std::to_string(most_replies) + " answers are waiting; some commands were ignored");
     return;
   }
   std::size_t error = 0;
   const auto text = parse_json(json, error);
   if (!text || text->kind != JsonValue::Kind::object) {
-    fail("a command must be a JSON object, as {\"do\": \"play\"}; this is none, from byte " +
+    fail("a command must be a JSON object, as {\"do\": \"play\"}; this is not one, from byte " +
          std::to_string(error) + " on");
     return;
   }
@@ -425,13 +425,13 @@ std::uint32_t Session::Implementation::id_of(const char* name, Arguments& argume
 
 bool Session::Implementation::is_of_recording(Arguments& arguments) const {
   if (stage_->recording()) return true;
-  arguments.fail("this is a simulation; only recordings do that");
+  arguments.fail("this is a simulation; only a recording can do that");
   return false;
 }
 
 bool Session::Implementation::is_of_simulation(Arguments& arguments) const {
   if (stage_->simulation()) return true;
-  arguments.fail("this is a recording; only simulations do that");
+  arguments.fail("this is a recording; only a simulation can do that");
   return false;
 }
 

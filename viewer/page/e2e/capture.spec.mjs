@@ -216,7 +216,7 @@ async function endOfTheProgramKeepsWhatIsThere(stage) {
   assert.equal(told.ended, "The session has ended.");
   await page.getByRole("alertdialog", { name: "The program has ended" }).waitFor();
   await page.getByRole("button", { name: "Save frames as pictures…" }).click();
-  await page.getByRole("log").getByText("no session whose frames").waitFor();
+  await page.getByRole("log").getByText("no frames to save").waitFor();
 }
 
 const STIFF = (stiffness, motion = "random_force = 1, deform_seconds = 1") => `
@@ -254,7 +254,7 @@ async function tooLargeIsSaid(stage) {
   });
   await chooseSize(dialog, 3000, 2000);
   await dialog.getByRole("button", { name: "Save", exact: true }).click();
-  await page.getByRole("log").getByText("No picture was taken. WebGL has no memory for a picture of 3000 × 2000.").waitFor();
+  await page.getByRole("log").getByText("No picture was taken. WebGL does not have enough memory for a picture of 3000 × 2000.").waitFor();
 }
 
 async function keysAlone(stage) {

@@ -87,9 +87,9 @@ async function isHiddenAfterScrolling(stage) {
   const name = await page.evaluate((i) => supple.model.objects[i].name, wanted);
   const seen = await picture(page);
   assert.ok(!isNear(await colourOf(page, wanted), await ground(page)));
-  assert.equal(await page.getByRole("checkbox", { name: `SceneView ${name}`, exact: true }).count(), 0);
+  assert.equal(await page.getByRole("checkbox", { name: `Show ${name}`, exact: true }).count(), 0);
   await page.locator(".objects").evaluate((box, part) => box.scrollTo(0, part * box.scrollHeight), wanted / (COLUMNS * ROWS));
-  const box = page.getByRole("checkbox", { name: `SceneView ${name}`, exact: true });
+  const box = page.getByRole("checkbox", { name: `Show ${name}`, exact: true });
   await box.uncheck();
   await settled(page);
   assert.ok(isNear(await colourOf(page, wanted), await ground(page)), "it is still seen");
@@ -109,7 +109,7 @@ async function isFoundByName(stage) {
   await page.getByRole("searchbox", { name: "Filter objects" }).fill("BALL 1234");
   assert.equal(await list(page).getByRole("listitem").count(), 1);
   const seen = await picture(page);
-  await page.getByRole("checkbox", { name: "SceneView ball 1234" }).uncheck();
+  await page.getByRole("checkbox", { name: "Show ball 1234" }).uncheck();
   await settled(page);
   assert.ok(isNear(await colourOf(page, wanted), await ground(page)));
   await page.getByRole("button", { name: "all", exact: true }).click();

@@ -102,11 +102,11 @@ async function hidesAndColoursObjects(stage) {
   const { page } = await stage.view(stage.file("balls.toml", TWO_BALLS));
   await settled(page);
   const both = await picture(page);
-  await page.getByRole("checkbox", { name: "SceneView left" }).uncheck();
+  await page.getByRole("checkbox", { name: "Show left" }).uncheck();
   await settled(page);
   const one = await picture(page);
   assert.notEqual(one, both);
-  await page.getByRole("checkbox", { name: "SceneView left" }).check();
+  await page.getByRole("checkbox", { name: "Show left" }).check();
   await settled(page);
   assert.equal(await picture(page), both);
   await page.getByLabel("Colour of left").fill("#ff00ff");
@@ -257,7 +257,7 @@ async function staticObjectsAreNotPulled(stage) {
   await pause(page);
   const ball = await page.evaluate(() => supple.model.objects.findIndex((object) => object.isStatic));
   const cloth = await page.evaluate(() => supple.model.objects.findIndex((object) => !object.isStatic));
-  await page.getByRole("checkbox", { name: `SceneView ${await page.evaluate((i) => supple.model.objects[i].name, cloth)}` }).uncheck();
+  await page.getByRole("checkbox", { name: `Show ${await page.evaluate((i) => supple.model.objects[i].name, cloth)}` }).uncheck();
   const seen = await seenTriangle(page, ball);
   await page.getByRole("radio", { name: "Grab and pull" }).click();
   await page.mouse.click(seen.x, seen.y);
@@ -277,7 +277,7 @@ async function settingsStartAnew(stage) {
   await objects.fill("12");
   await objects.press("Enter");
   await until(page, () => supple.model.scene.objects.length === 12 && supple.model.frame);
-  await page.getByRole("checkbox", { name: /^SceneView .*#2$/ }).first().waitFor();
+  await page.getByRole("checkbox", { name: /^Show .*#2$/ }).first().waitFor();
   await page.getByLabel("Contacts", { exact: true }).and(page.locator("select")).selectOption("continuous");
   await until(page, () => supple.model.scene.contacts === "continuous");
   await until(page, () => supple.model.frame?.impacts.length > 0);

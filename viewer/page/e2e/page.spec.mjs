@@ -67,7 +67,7 @@ async function recordsAVideo(stage) {
   await page.getByRole("button", { name: "Record a video" }).click();
   const begin = await page.evaluate(() => performance.now());
   await until(page, (begin) => performance.now() > begin + 1500 && supple.drawTimes().filter((time) => time > begin).length >= 10, begin);
-  const [download] = await Promise.all([page.waitForEvent("download"), page.getByRole("button", { name: "End the video" }).click()]);
+  const [download] = await Promise.all([page.waitForEvent("download"), page.getByRole("button", { name: "Stop the video" }).click()]);
   const path = stage.file("film.webm");
   await download.saveAs(path);
   assert.ok(statSync(path).size > 5000);
@@ -164,9 +164,9 @@ const says = (page, title) => page.getByRole("alertdialog", { name: title }).wai
 async function killedProgram(stage) {
   const { page, program } = await stage.view(nine);
   await program.stop("SIGKILL");
-  await says(page, "The connection is lost");
+  await says(page, "Connection lost");
   await page.getByRole("button", { name: "Reconnect" }).click();
-  await says(page, "The connection is lost");
+  await says(page, "Connection lost");
 }
 
 async function endedProgram(stage) {
@@ -196,7 +196,7 @@ async function malformedMessage(stage) {
   });
   await hasFrame(page);
   await page.getByRole("checkbox", { name: "Object octrees" }).check();  // requests another frame
-  await says(page, "The page does not understand the program");
+  await says(page, "The page cannot read a message of the program");
   assert.equal(await page.locator("canvas.view").isVisible(), true);
 }
 
@@ -205,7 +205,7 @@ async function laterVersion(stage) {
     message.writeUInt16LE(2, 4);
     send(message);
   });
-  await says(page, "The page does not understand the program");
+  await says(page, "The page cannot read a message of the program");
   await page.getByText("version 2").waitFor();
 }
 
@@ -244,7 +244,7 @@ async function noWebGl(stage) {
 async function lostContext(stage) {
   const { page } = await stage.view(balls(stage));
   await page.evaluate(() => supple.loseContext());
-  await says(page, "The picture is lost");
+  await says(page, "Drawing has failed");
 }
 
 async function wrongToken(stage) {

@@ -101,7 +101,7 @@ async function isNotPulled(stage) {
     }
   });
   await page.mouse.click(at.x, at.y);
-  await page.getByRole("log").getByText("A recording cannot be pulled").waitFor();
+  await page.getByRole("log").getByText("Objects of a recording cannot be pulled").waitFor();
 }
 
 export const tests = [

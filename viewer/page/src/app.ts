@@ -36,7 +36,7 @@ function sayFailure({ text, layers }: { text: string; layers: Layer[] }): string
 
 function cannotDraw(error: unknown): string {
   const why = error instanceof Error ? error.message : String(error);
-  return `This browser gives the page no WebGL 2 (${why}). Switch on hardware acceleration, or try another browser.`;
+  return `WebGL 2 is not available (${why}). Enable hardware acceleration, or use another browser.`;
 }
 
 export class App {
@@ -185,7 +185,7 @@ export class App {
     model.on("explanation", () => model.explanation && this.openTab("Inspect"));
     view.onLost = (why) => {
       client.send({ do: "pause" });
-      this.card.fail("The picture is lost", why);
+      this.card.fail("Drawing has failed", why);
     };
     view.onTurn = () => {
       this.player.turn();
@@ -217,7 +217,7 @@ export class App {
   }
 
   frames(): void {
-    if (this.client.status.state !== "connected" || !this.model.frame) return this.notices.show("There is no session whose frames could be saved.");
+    if (this.client.status.state !== "connected" || !this.model.frame) return this.notices.show("There are no frames to save: no session is connected.");
     if (this.film_.running) this.film();
     this.tools.release();
     this.player.pause();
@@ -234,7 +234,7 @@ export class App {
       }
     }
     const on = this.film_.running;
-    setIcon(this.filmButton, "film", on ? "End the video" : "Record a video", "Shift+V");
+    setIcon(this.filmButton, "film", on ? "Stop the video" : "Record a video", "Shift+V");
     this.filmButton.classList.toggle("recording", on);
   }
 

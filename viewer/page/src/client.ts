@@ -102,7 +102,7 @@ export class Client extends Emitter<ClientEvents> {
     try {
       this.take(buffer);
     } catch (error) {
-      if (error instanceof RangeError) this.end("too-large", "The browser has not enough memory for this scene.");
+      if (error instanceof RangeError) this.end("too-large", "The browser does not have enough memory for this scene.");
       else if (error instanceof MessageError) this.end("malformed", `A message cannot be read: ${error.message}.`);
       else throw error;
     }

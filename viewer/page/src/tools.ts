@@ -92,7 +92,7 @@ export class Tools {
 
   private grab(object: number, vertex: number): void {
     if (!this.model.can("grab")) {
-      this.client.emit("notice", "A recording cannot be pulled; open the scene itself.");
+      this.client.emit("notice", "Objects of a recording cannot be pulled; open the scene file instead.");
       return;
     }
     const start = this.view.positionOf(object, vertex);

@@ -19,7 +19,7 @@ export class Archive {
 
   /** Throws when the archive is full. */
   async add(name: string, content: Blob): Promise<void> {
-    if (this.size + content.size > LARGEST) throw new Error("A ZIP holds 4 GB and is full. Save the rest, from here on, in another one.");
+    if (this.size + content.size > LARGEST) throw new Error("The ZIP has reached its limit of 4 GB. Save the remaining frames in another one.");
     const data = new Uint8Array(await content.arrayBuffer());
     const file = new ZipPassThrough(name);
     this.zip.add(file);

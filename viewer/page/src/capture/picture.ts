@@ -11,7 +11,7 @@ export function takePicture(view: SceneView): Promise<Blob> {
     const { fault, canvas } = view;
     if (fault) return reject(new Error(fault));
     canvas.toBlob(
-      (blob) => (blob ? resolve(blob) : reject(new Error(`The browser has no memory for a picture of ${canvas.width} × ${canvas.height}. Choose a smaller size.`))),
+      (blob) => (blob ? resolve(blob) : reject(new Error(`The browser does not have enough memory for a picture of ${canvas.width} × ${canvas.height}. Choose a smaller size.`))),
       "image/png",
     );
   });

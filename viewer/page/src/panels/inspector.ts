@@ -11,7 +11,7 @@ const REFRESH_MILLISECONDS = 250;
 const STAGES: Record<string, string> = {
   not_tested: "Not tested",
   shared_vertex: "They share a vertex",
-  inert: "A corner is not a finite number",
+  inert: "A corner is not finite",
   object_volumes: "Broad phase: the objects are apart",
   octree_volumes: "Narrow phase: octree cells are apart",
   triangle_boxes: "Leaves: the boxes of the triangles are apart",
@@ -83,7 +83,7 @@ export class Inspector {
     return h(
       "form", { class: "explain", onsubmit: submit },
       h("h3", {}, "Why no contact?"),
-      h("p", { class: "hint" }, "Pick two triangles with the tool ", h("kbd", {}, "W"), ", or give the numbers of object and triangle."),
+      h("p", { class: "hint" }, "Pick two triangles with the tool ", h("kbd", {}, "W"), ", or enter the numbers of objects and triangles."),
       ...rows,
       h("button", { type: "submit" }, "Explain"),
       this.verdict,
@@ -120,7 +120,7 @@ export class Inspector {
   private showVerdict(): void {
     const { explained, explanation } = this.model;
     if (!explanation) {
-      const text = explained.length === 1 ? "Now the second triangle." : "";
+      const text = explained.length === 1 ? "Now pick the second triangle." : "";
       this.verdict.replaceChildren(...(text ? [h("p", {}, text)] : []));
       return;
     }

@@ -57,17 +57,17 @@ function wordsOf(status: Extract<Status, { state: "ended" }>, carriesLibrary: bo
   const { reason, detail } = status;
   switch (reason) {
     case "lost":
-      return { title: "The connection is lost", text: "The program may have ended, or the network between has failed. What you see is the last frame.", again: "Reconnect" };
+      return { title: "Connection lost", text: "The program has ended or the network has failed. The page shows the last frame.", again: "Reconnect" };
     case "taken-over":
-      return { title: "Open in another page", text: "Another page has taken over this session. It shows one page at a time.", again: "Take it back" };
+      return { title: "Open in another page", text: "Another page has taken over this session. A session shows in one page at a time.", again: "Take it back" };
     case "program-ended":
-      return { title: "The program has ended", text: "Start supple view again, then open the address that it prints.", again: "Reconnect" };
+      return { title: "The program has ended", text: "Start supple view again, then open the address it prints.", again: "Reconnect" };
     case "refused":
-      return { title: "The program refused what this page sent", text: detail || "Page and program may be of different versions. Reload the page.", again: "Reconnect" };
+      return { title: "The program rejected a command of this page", text: detail || "Page and program may have different versions. Reload the page.", again: "Reconnect" };
     case "failed":
-      return { title: "The session has failed", text: detail || "The program says more where it runs.", again: carriesLibrary ? "Start again" : "Reconnect" };
+      return { title: "The session has failed", text: detail || "The program prints details in its terminal.", again: carriesLibrary ? "Start again" : "Reconnect" };
     case "malformed":
-      return { title: "The page does not understand the program", text: `${detail} Page and program may be of different versions. Reload the page.`, again: "Reconnect" };
+      return { title: "The page cannot read a message of the program", text: `${detail} Page and program may have different versions. Reload the page.`, again: "Reconnect" };
     case "too-large":
       return { title: "This scene is too large for the page", text: detail, again: "Try again" };
   }
@@ -82,7 +82,7 @@ export class Card {
   showStatus(status: Status): void {
     if (this.isFinal) return;
     if (status.state === "connecting") {
-      this.fill("status", "Connecting…", this.carriesLibrary ? "The library is being unpacked." : "Waiting for the program.", null);
+      this.fill("status", "Connecting…", this.carriesLibrary ? "Unpacking the library." : "Waiting for the program.", null);
     } else if (status.state === "connected") {
       this.fill("status", "Connected", "Waiting for the scene.", null);
     } else {

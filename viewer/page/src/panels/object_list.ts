@@ -12,7 +12,7 @@ class ObjectRow implements Row {
   readonly element: HTMLLIElement;
   readonly name: HTMLButtonElement;
   private object!: ObjectState;
-  private readonly visible = h("input", { type: "checkbox", title: "SceneView or hide" });
+  private readonly visible = h("input", { type: "checkbox", title: "Show or hide" });
   private readonly colour = h("input", { type: "color", title: "Colour" });
   private readonly opacity = h("input", { type: "range", min: 0, max: 1, step: 0.05, class: "opacity", title: "Opacity" });
   private readonly text = h("span", { class: "text" });
@@ -53,10 +53,10 @@ class ObjectRow implements Row {
   private take(object: ObjectState): void {
     this.object = object;
     const { index, name, kind, vertices, triangles } = object;
-    this.visible.setAttribute("aria-label", `SceneView ${name}`);
+    this.visible.setAttribute("aria-label", `Show ${name}`);
     this.colour.setAttribute("aria-label", `Colour of ${name}`);
     this.opacity.setAttribute("aria-label", `Opacity of ${name}`);
-    this.name.title = `${name}: object ${index}, ${kind}, ${readable(vertices)} vertices, ${readable(triangles)} triangles. Double click frames it.`;
+    this.name.title = `${name}: object ${index}, ${kind}, ${readable(vertices)} vertices, ${readable(triangles)} triangles. Double-click to frame it.`;
     this.text.textContent = name;
     this.count.textContent = readable(triangles);
   }
@@ -75,7 +75,7 @@ export class ObjectList {
       { class: "objects", tabindex: -1, onkeydown: (event: KeyboardEvent) => this.key(event) }, this.list, ROW_HEIGHT,
       () => new ObjectRow(model, () => this.listed, () => this.shown(), frameObject),
     );
-    const all = h("button", { type: "button", class: "link", title: "SceneView or hide all objects of this list", onclick: () => this.toggleAll() }, "all");
+    const all = h("button", { type: "button", class: "link", title: "Show or hide all listed objects", onclick: () => this.toggleAll() }, "all");
     this.element = h("section", { class: "grow" }, h("h2", {}, "Objects", all), this.filter, this.nothing, this.window.element);
     model.on("scene", () => this.build());
     model.on("selection", () => this.showSelected());

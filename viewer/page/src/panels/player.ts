@@ -18,7 +18,7 @@ export class Player {
   private readonly slider = h("input", { type: "range", min: 0, max: 0, step: 1, value: 0, "aria-label": "Timeline", oninput: () => this.scrub() });
   private readonly marks = h("canvas", { class: "marks", "aria-hidden": "true" });
   private readonly place = h("output", { class: "place", "aria-label": "Place" });
-  private readonly rate = h("output", { class: "rate", "aria-label": "Frames a second", title: "Frames a second that arrive" });
+  private readonly rate = h("output", { class: "rate", "aria-label": "Frames per second", title: "Frames per second received" });
   private readonly recordingOnly: HTMLElement[];
   private readonly simulationOnly: HTMLElement[];
   private wanted: number | null = null;

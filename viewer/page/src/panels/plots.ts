@@ -47,7 +47,7 @@ export class Plots {
     this.add("Object pairs", has(["object_pairs"]), 1);
     this.add("Contacts and candidates", has(["contacts", "candidate_pairs"]), 1);
     this.add("Time per stage, milliseconds", stages, 1000);
-    if (this.plots.length === 0) this.element.append(h("p", { class: "hint empty" }, "This recording says nothing of its frames."));
+    if (this.plots.length === 0) this.element.append(h("p", { class: "hint empty" }, "This recording has no time series."));
     this.update();
   }
 

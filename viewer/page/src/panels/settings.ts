@@ -33,7 +33,7 @@ export class Settings {
     if (this.model.can("set")) {
       this.choice("bounding_volume", "Bounding volume");
       this.number("max_level", "Octree levels", 0, 32, 1);
-      this.number("leaf_size", "Triangles a leaf", 1, null, 1);
+      this.number("leaf_size", "Triangles per leaf", 1, null, 1);
       this.choice("broad_phase", "Broad phase");
       this.choice("contacts", "Contacts");
       if (scene.source === "simulation") this.ofSimulation();

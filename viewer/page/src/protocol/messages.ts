@@ -167,7 +167,7 @@ class Sections {
     if (!objects) this.found.set(form.name, (objects = new Map()));
     const before = objects.size;
     objects.set(object, data);
-    if (objects.size === before) fail(`its section ${form.name} comes twice`);
+    if (objects.size === before) fail(`its section ${form.name} occurs twice`);
   }
 
   one<T extends Data>(name: string, empty: T): T {
@@ -211,7 +211,7 @@ function readSections(buffer: ArrayBuffer, kind: string, count: number, seriesWi
     if ((form.perObject ?? false) !== (object !== NONE)) fail(`its section ${form.name} has a wrong object`);
     const width = form.width || seriesWidth;
     const numbers = elements * width;
-    if (numbers * form.array.BYTES_PER_ELEMENT !== bytes) fail(`the length of its section ${form.name} does not fit`);
+    if (numbers * form.array.BYTES_PER_ELEMENT !== bytes) fail(`its section ${form.name} has a wrong length`);
     sections.add(form, object, new form.array(buffer, start, numbers));
   }
   if (at !== buffer.byteLength) fail("it is longer than its sections");
@@ -259,9 +259,9 @@ function readScene(sections: Sections): SceneMessage {
   for (const [object, corners] of triangles) {
     const of = text.objects[object];
     if (!of) fail("it has triangles of an object that is not there");
-    if (corners.length !== 3 * of.triangles) fail(`it has not all triangles of ${of.name}`);
+    if (corners.length !== 3 * of.triangles) fail(`it lacks triangles of ${of.name}`);
     for (let i = 0; i < corners.length; ++i)
-      if (corners[i]! >= of.vertices) fail(`triangle ${Math.floor(i / 3)} of ${of.name} has a vertex that is not there`);
+      if (corners[i]! >= of.vertices) fail(`triangle ${Math.floor(i / 3)} of ${of.name} has a vertex that does not exist`);
   }
   text.objects.forEach((object, i) => {
     if (object.triangles > 0 && !triangles.has(i)) fail(`it has no triangles of ${object.name}`);
@@ -288,13 +288,13 @@ function checkIds(name: string, data: Uint32Array, stride: number, at: [number, 
   for (let i = 0; i < data.length; i += stride)
     for (const place of at) {
       const limit = limits[data[i + place]!];
-      if (limit === undefined || data[i + place + 1]! >= limit) fail(`its section ${name} names what is not there`);
+      if (limit === undefined || data[i + place + 1]! >= limit) fail(`its section ${name} names something that does not exist`);
     }
 }
 
 function checkPairs(name: string, data: Uint32Array, stride: number, at: number, objects: number): void {
   for (let i = 0; i < data.length; i += stride)
-    if (data[i + at]! >= objects || data[i + at + 1]! >= objects) fail(`its section ${name} names an object that is not there`);
+    if (data[i + at]! >= objects || data[i + at + 1]! >= objects) fail(`its section ${name} names an object that does not exist`);
 }
 
 function checkContacts(contacts: Uint32Array, points: number): void {
@@ -341,7 +341,7 @@ function readFrame(sections: Sections, scene: SceneCounts): FrameMessage {
   };
   if (text.generation !== scene.generation) return frame;  // belongs to an earlier scene and will be ignored
   for (const [object, positions] of frame.positions)
-    if (positions.length !== 3 * (scene.vertices[object] ?? -1)) fail(`it has not all positions of object ${object}`);
+    if (positions.length !== 3 * (scene.vertices[object] ?? -1)) fail(`it lacks positions of object ${object}`);
   for (const [object, vertices] of frame.collidingVertices) {
     const limit = scene.vertices[object] ?? 0;
     if (vertices.some((vertex) => vertex >= limit)) fail("its section colliding_vertices names what is not there");
@@ -398,7 +398,7 @@ export function readMessage(buffer: ArrayBuffer, scene: SceneCounts | null): Mes
   const view = new DataView(buffer);
   if (view.getUint32(0, true) !== MAGIC) fail("it does not begin as a message of Supple does");
   const version = view.getUint16(4, true);
-  if (version !== VERSION) fail(`it is of version ${version}, and this page reads version ${VERSION}`);
+  if (version !== VERSION) fail(`it has version ${version}, and this page reads version ${VERSION}`);
   if (view.getUint32(8, true) !== buffer.byteLength || buffer.byteLength % ALIGNMENT !== 0) fail("its length is not what it says");
   const kind = KINDS[view.getUint16(6, true)];
   if (!kind) fail("it is of an unknown kind");

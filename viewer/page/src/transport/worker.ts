@@ -43,7 +43,7 @@ export function openWorker(events: TransportEvents): Transport {
     };
     worker.postMessage({ module, show }, [module, show]);
   };
-  start().catch((error: unknown) => end(`what this page carries cannot be unpacked: ${String(error)}`));
+  start().catch((error: unknown) => end(`the contents of this page cannot be unpacked: ${String(error)}`));
   return {
     send: (command) => worker?.postMessage(JSON.stringify(command)),
     close() {

@@ -50,7 +50,7 @@ export class SceneView {
       this.scene.add(extra.shape);
     canvas.addEventListener("webglcontextlost", (event) => {
       event.preventDefault();
-      this.onLost("The graphics card has given up on this scene, which may be too large for it.");
+      this.onLost("The graphics card stopped drawing. The scene may be too large for it.");
     });
     model.on("scene", () => this.build());
     model.on("frame", (frame) => {
@@ -130,15 +130,15 @@ export class SceneView {
     this.takesPictures = true;
     const gl = this.renderer.getContext();
     if (gl.drawingBufferWidth !== width || gl.drawingBufferHeight !== height)
-      throw new Error(`WebGL has no memory for a picture of ${width} × ${height}. Choose a smaller size.`);
+      throw new Error(`WebGL does not have enough memory for a picture of ${width} × ${height}. Choose a smaller size.`);
   }
 
   /** A sentence about why the last drawing is not a valid picture, or null. */
   get fault(): string | null {
     const gl = this.renderer.getContext();
     const error = gl.getError();
-    if (gl.isContextLost() || error === gl.CONTEXT_LOST_WEBGL) return "The graphics card has given up.";
-    return error === gl.OUT_OF_MEMORY ? "The graphics card has not enough memory for pictures of this size. Choose a smaller one." : null;
+    if (gl.isContextLost() || error === gl.CONTEXT_LOST_WEBGL) return "The graphics card stopped drawing.";
+    return error === gl.OUT_OF_MEMORY ? "The graphics card does not have enough memory for pictures of this size. Choose a smaller size." : null;
   }
 
   private resize(): void {
@@ -383,7 +383,7 @@ export class SceneView {
     if (this.checkMemory && this.model.frame) {
       this.checkMemory = false;
       const gl = this.renderer.getContext();
-      if (gl.getError() === gl.OUT_OF_MEMORY) this.onLost("The graphics card has not enough memory for this scene.");
+      if (gl.getError() === gl.OUT_OF_MEMORY) this.onLost("The graphics card does not have enough memory for this scene.");
     }
   }
 

@@ -63,7 +63,7 @@ export function obstacleOf(gl: WebGL2RenderingContext, objects: { name: string; 
   const largest = objects.reduce((a, b) => (b.vertices + b.triangles > a.vertices + a.triangles ? b : a));
   return (
     `The scene has ${count(objects.length, objects.length === 1 ? "object" : "objects")} with ${size({ vertices, triangles })}, more than this browser can draw. ` +
-    `The largest is ${largest.name}, with ${size(largest)}. SceneView a part of the scene, or coarser meshes.`
+    `The largest is ${largest.name}, with ${size(largest)}. Show a part of the scene, or coarser meshes.`
   );
 }
 
