@@ -53,10 +53,10 @@ double ImplicitSurface::distance_to(const Part& part, Vec3d point) {
   // First-order distance to an ellipsoid: |p/r| (|p/r| - 1) / |p/r²|.
   const Vec3d scaled{dot(d, part.side) / part.radii.x, dot(d, part.up) / part.radii.y,
                      dot(d, part.front) / part.radii.z};
-  const double norm = norm(scaled);
-  const double slope = norm({scaled.x / part.radii.x, scaled.y / part.radii.y, scaled.z / part.radii.z});
+  const double length = norm(scaled);
+  const double slope = norm(Vec3d{scaled.x / part.radii.x, scaled.y / part.radii.y, scaled.z / part.radii.z});
   if (slope == 0) return -std::min({part.radii.x, part.radii.y, part.radii.z});
-  return norm * (norm - 1) / slope;
+  return length * (length - 1) / slope;
 }
 
 SurfaceSample ImplicitSurface::sample(Vec3d point) const {

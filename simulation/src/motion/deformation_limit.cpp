@@ -123,7 +123,7 @@ bool DeformationLimit::correct(const SpringElement& edge, double seconds, std::s
                                std::span<Vec3d> velocities) const {
   const double weight_a = inverse_masses_[edge.a], weight_b = inverse_masses_[edge.b];
   const Vec3d d = positions[edge.b] - positions[edge.a];
-  const double length = supple::norm(d);
+  const double length = norm(d);
   const Bounds bounds(edge, max_strain_);
   const double wanted = std::clamp(length, bounds.shortest, bounds.longest);
   const Vec3d before = d - (velocities[edge.b] - velocities[edge.a]) * seconds;

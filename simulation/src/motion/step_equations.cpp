@@ -103,7 +103,7 @@ void StepEquations::begin(const ImplicitStep& step, const Parallel& parallel) {
   for_chunks(spring_ends_.size(), parallel, [&](std::size_t begin, std::size_t end) {
     for (std::size_t s = begin; s < end; ++s) {
       const Vec3d d = step.positions[spring_ends_[s][1]] - step.positions[spring_ends_[s][0]];
-      const double length = supple::norm(d);
+      const double length = norm(d);
       directions_[s] = length > 0 ? d * (1 / length) : Vec3d{};
     }
   });
@@ -151,7 +151,7 @@ double StepEquations::visit_springs(const std::vector<SpringElement>& springs, s
     for (std::size_t i = begin; i < end; ++i) {
       const auto& [a, b, rest_length] = springs[i];
       const Vec3d d = positions_[b] - positions_[a], direction = directions_[first_state + i];
-      const double length = supple::norm(d), inverse = length > 0 ? 1 / length : 0;
+      const double length = norm(d), inverse = length > 0 ? 1 / length : 0;
       const double stretch = length - rest_length, rate = dot(velocities[b] - velocities[a], direction);
       sum += 0.5 * stiffness * stretch * stretch + 0.5 * of_rate * rate * rate;
       const Vec3d n = d * inverse;
