@@ -3,31 +3,27 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <random>
 #include <string>
 #include <vector>
 
 #include "supple/types.hpp"
+#include "support/random.hpp"
 
 namespace supple::test {
 
 inline constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-/// Uniform numbers that are the same with every standard library.
-class Random {
+/// Random numbers in single precision.
+class Random : public RandomNumbers {
  public:
-  explicit Random(std::uint64_t seed) : generator_(seed) {}
+  using RandomNumbers::RandomNumbers;
   float uniform(float low, float high) {
-    return low + (high - low) * static_cast<float>(generator_() >> 40) * 0x1p-24f;
+    return low + (high - low) * static_cast<float>(bits() >> 40) * 0x1p-24f;
   }
-  std::uint32_t below(std::uint32_t count) { return static_cast<std::uint32_t>(generator_() % count); }
   Vec3f point(float low, float high) {
     const float x = uniform(low, high), y = uniform(low, high);
     return {x, y, uniform(low, high)};
   }
-
- private:
-  std::mt19937_64 generator_;
 };
 
 inline Aabb box_around(Vec3f center, Vec3f half) {

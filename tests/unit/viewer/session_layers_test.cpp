@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "../../support/random.hpp"
 #include "../../support/viewer_page.hpp"
 
 namespace supple::viewer {
@@ -169,12 +170,10 @@ TEST(ViewerLayers, ExplainsWhatTheLibraryExplains) {
     const char* const names[] = {"not_tested",     "shared_vertex",  "inert",      "object_volumes",
                                  "octree_volumes", "triangle_boxes", "exact_test", "contact"};
     std::set<std::string> stages, texts;
-    std::uint32_t random = 12345;
-    const auto below = [&](std::uint32_t count) {
-      return (random = random * 1664525 + 1013904223) / 65536 % count;
-    };
+    RandomNumbers random(12345);
     for (int i = 0; i < 3000; ++i) {
-      const std::uint32_t a = below(6), b = below(6), s = below(720), t = below(720);
+      const std::uint32_t a = random.below(6), b = random.below(6), s = random.below(720),
+                          t = random.below(720);
       const PairExplanation why = simulation.scene().explain({a, 0}, s, {b, 0}, t);
       const Json answer = page.ask({{"do", "explain"}, {"a", {a, s}}, {"b", {b, t}}});
       ASSERT_EQ(answer["stage"], names[static_cast<int>(why.stage)]);
