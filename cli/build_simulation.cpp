@@ -18,10 +18,10 @@ struct Adder {
   TriangleMesh mesh;
   const ObjectOptions& options;
 
-  void operator()(const Sway& motion) {
+  void operator()(const WaveMotion& motion) {
     const auto swayed = [motion, border = simulation.options().border, rest = mesh.positions](
                             double seconds, std::span<Vec3d> positions) {
-      sway(motion, border, rest, seconds, positions);
+      apply_wave_motion(motion, border, rest, seconds, positions);
     };
     swayed(0, mesh.positions);
     simulation.add(mesh, options, swayed);

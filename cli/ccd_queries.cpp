@@ -70,8 +70,8 @@ std::optional<ContinuousDifference::Fault> fault_of(const std::optional<Impact>&
   if (!impact) return truth ? std::optional(Fault::missed) : std::nullopt;
   if (!truth)
     return impact->certainty == ImpactCertainty::certain ? std::optional(Fault::added) : std::nullopt;
-  if (impact->time > truth->low) return Fault::late;
-  if (impact->time < truth->low - impact_time_tolerance) return Fault::early;
+  if (impact->toi > truth->low) return Fault::late;
+  if (impact->toi < truth->low - toi_tolerance) return Fault::early;
   return std::nullopt;
 }
 
@@ -111,7 +111,7 @@ template <class Motion>
 void Run::answer(const std::vector<Motion>& queries, const QueryPaths& paths, QueryFileResult& result) {
   for (std::size_t i = 0; i < queries.size(); ++i) {
     const std::optional<Impact> impact = first_impact(queries[i], options_.impact);
-    result.times.push_back(impact ? std::optional(impact->time) : std::nullopt);
+    result.times.push_back(impact ? std::optional(impact->toi) : std::nullopt);
     result.touching += impact ? 1 : 0;
     result.within_tolerance += impact && impact->certainty == ImpactCertainty::within_tolerance ? 1 : 0;
     if (options_.verify) {

@@ -41,7 +41,7 @@ void write_rows(JsonWriter& json, Contacts contacts) {
     json.begin_array();
     write_ids(json, contact.element_a, contact.kind);
     write_ids(json, contact.element_b, contact.kind);
-    json.value(contact.time);
+    json.value(contact.toi);
     json.end_array();
   }
   json.end_array();
@@ -58,12 +58,12 @@ void write_uncertain_rows(JsonWriter& json, Contacts contacts) {
 
 void write_earliest(JsonWriter& json, Contacts contacts) {
   const auto first = std::min_element(contacts.begin(), contacts.end(),
-                                      [](const auto& x, const auto& y) { return x.time < y.time; });
+                                      [](const auto& x, const auto& y) { return x.toi < y.toi; });
   json.key("earliest");
   if (first == contacts.end())
     json.null();
   else
-    json.value(first->time);
+    json.value(first->toi);
 }
 
 void write_element(JsonWriter& json, const Element& element, Kind kind) {
@@ -164,10 +164,10 @@ void write_continuous_contacts(JsonWriter& json, const DetectResult& result) {
     json.begin_object();
     write_objects(json, contact.object_a, contact.object_b);
     write_elements(json, contact.element_a, contact.element_b, contact.kind);
-    json.member("time", contact.time);
+    json.member("toi", contact.toi);
     json.member("certain", contact.certainty == ImpactCertainty::certain);
-    write_weights(json, "weights_a", contact.weights_a, size_a);
-    write_weights(json, "weights_b", contact.weights_b, size_b);
+    write_weights(json, "barycentric_a", contact.barycentric_a, size_a);
+    write_weights(json, "barycentric_b", contact.barycentric_b, size_b);
     json.member("point", contact.point);
     json.member("normal", contact.normal);
     json.end_object();

@@ -21,7 +21,7 @@ std::string ids_of(const std::array<std::uint32_t, 2>& element, ElementPairKind 
 
 CsvReport::CsvReport(const std::string& file_name, ContactMode contacts) : file_(file_name) {
   const bool continuous = contacts == ContactMode::continuous;
-  std::fputs(continuous ? "frame,a,b,kind,a0,a1,b0,b1,time,certainty\n" : "frame,a,b,i,j\n", file_.stream());
+  std::fputs(continuous ? "frame,a,b,kind,a0,a1,b0,b1,toi,certainty\n" : "frame,a,b,i,j\n", file_.stream());
 }
 
 void CsvReport::add(const Frame& frame) {
@@ -33,7 +33,7 @@ void CsvReport::add(const Frame& frame) {
   for (const ContinuousContact& c : frame.result.continuous_contacts) {
     fmt::format_to(fmt::appender(rows), "{},{},{},{},{},{},{},{}\n", frame.number, c.object_a.index,
                    c.object_b.index, name_of(c.kind), ids_of(c.element_a, c.kind),
-                   ids_of(c.element_b, c.kind), c.time,
+                   ids_of(c.element_b, c.kind), c.toi,
                    c.certainty == ImpactCertainty::certain ? "certain" : "within_tolerance");
   }
   std::fwrite(rows.data(), 1, rows.size(), file_.stream());

@@ -25,7 +25,7 @@ void ImpactTables::add(const Frame& step) {
   Step row{step.number, {}, 1};
   for (const ContinuousContact& contact : result.continuous_contacts) {
     row.counts.add(contact);
-    row.earliest = std::min(row.earliest, contact.time);
+    row.earliest = std::min(row.earliest, contact.toi);
     if (contact.certainty == ImpactCertainty::within_tolerance) ++within_tolerance_;
   }
   if (steps_.size() < most_rows) steps_.push_back(row);

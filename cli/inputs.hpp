@@ -14,7 +14,7 @@
 #include "supple/options.hpp"
 #include "supple/recording.hpp"
 #include "supple/simulation.hpp"
-#include "supple/sway.hpp"
+#include "supple/wave_motion.hpp"
 
 namespace supple::cli {
 
@@ -25,7 +25,7 @@ struct RecordedMotion {
 };
 
 /// What moves an object from frame to frame.
-using Motion = std::variant<Sway, MassSpringMotion, FrameSequence, RecordedMotion>;
+using Motion = std::variant<WaveMotion, MassSpringMotion, FrameSequence, RecordedMotion>;
 
 /// An object to add to the scene, placed.
 struct InputObject {

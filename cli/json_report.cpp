@@ -112,7 +112,7 @@ void write_stats(JsonWriter& json, const Frame& frame) {
   json.member("rebuild_seconds", stats.rebuild_seconds);
   json.member("traversal_seconds", stats.traversal_seconds);
   json.member("exact_seconds", stats.exact_seconds);
-  json.member("finish_seconds", stats.finish_seconds);
+  json.member("sort_and_events_seconds", stats.sort_and_events_seconds);
   json.member("total_seconds", stats.total_seconds);
   json.member("objects_refitted", stats.objects_refitted);
   json.member("triangles_refitted", stats.triangles_refitted);

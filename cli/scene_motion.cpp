@@ -11,8 +11,8 @@
 namespace supple::cli {
 namespace {
 
-Sway read_sway(TomlReader& reader) {
-  Sway motion;
+WaveMotion read_sway(TomlReader& reader) {
+  WaveMotion motion;
   reader.read("velocity", motion.velocity);
   reader.read("amplitude", motion.amplitude);
   reader.read_positive("wavelength", motion.wavelength);
@@ -134,7 +134,7 @@ std::optional<Motion> SceneMotion::of_copy(std::uint64_t copy, const Placement& 
                                            const std::vector<Vec3d>& positions) {
   if (!motion_) return std::nullopt;
   Motion motion = *motion_;
-  if (auto* sway = std::get_if<Sway>(&motion)) sway->seed += copy;
+  if (auto* sway = std::get_if<WaveMotion>(&motion)) sway->seed += copy;
   if (auto* frames = std::get_if<FrameSequence>(&motion)) frames->placement = placement;
   if (auto* springs = std::get_if<MassSpringMotion>(&motion)) {
     if (springs->seed) *springs->seed += copy;

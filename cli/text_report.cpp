@@ -18,7 +18,7 @@ void add_to(StepStats& sum, const StepStats& stats) {
   sum.rebuild_seconds += stats.rebuild_seconds;
   sum.traversal_seconds += stats.traversal_seconds;
   sum.exact_seconds += stats.exact_seconds;
-  sum.finish_seconds += stats.finish_seconds;
+  sum.sort_and_events_seconds += stats.sort_and_events_seconds;
   sum.total_seconds += stats.total_seconds;
   sum.triangles_refitted += stats.triangles_refitted;
   sum.subtrees_rebuilt += stats.subtrees_rebuilt;
@@ -137,7 +137,7 @@ void TextReport::print_stages() const {
   row("exact", sum_.exact_seconds,
       fmt::format("{}, {} decided by exact arithmetic", counted(sum_.contacts, "contact"),
                   grouped(sum_.exact_fallbacks)));
-  row("finish", sum_.finish_seconds, "");
+  row("finish", sum_.sort_and_events_seconds, "");
   row("total", total_seconds, "");
 }
 

@@ -9,14 +9,14 @@
 #include <vector>
 
 #include "browser.hpp"
-#include "build_show.hpp"
+#include "build_scene_view.hpp"
 #include "exit_status.hpp"
 #include "export/embedded.hpp"
 #include "export/page_file.hpp"
 #include "inputs.hpp"
 #include "interruption.hpp"
 #include "server/server.hpp"
-#include "session/packed_show.hpp"
+#include "session/packed_scene.hpp"
 #include "session/session.hpp"
 #include "supple/error.hpp"
 #include "text.hpp"
@@ -45,10 +45,10 @@ Input read_input(const ViewOptions& options) {
 }
 
 /// What a page of a recording holds before it is compressed, in bytes: positions as floats.
-double size_of_frames(const viewer::Show& show) {
+double size_of_frames(const viewer::SceneView& show) {
   if (!show.frames) return 0;
   double vertices = 0;
-  for (const viewer::ShowObject& object : show.objects) {
+  for (const viewer::ViewedObject& object : show.objects) {
     if (!object.options.is_static) vertices += static_cast<double>(object.mesh.positions.size());
   }
   return 12 * vertices * static_cast<double>(show.frames->count());
@@ -63,7 +63,7 @@ void check_page_size(const std::string& file, double bytes, double most) {
       viewer::largest_page / 1'000'000));
 }
 
-int write_page(const viewer::Show& show, const ViewOptions& options) {
+int write_page(const viewer::SceneView& show, const ViewOptions& options) {
   // Positions do not compress by more than this.
   constexpr double most_compression = 10;
   const auto most = static_cast<double>(viewer::largest_page);
@@ -87,7 +87,7 @@ void warn_of_others(const ViewOptions& options) {
              one_line(options.address));
 }
 
-int serve(viewer::Show show, const ViewOptions& options) {
+int serve(viewer::SceneView show, const ViewOptions& options) {
   viewer::Server server(viewer::Session(std::move(show)),
                         {options.address, options.port, viewer::embedded_page()});
   warn_of_others(options);
@@ -104,7 +104,7 @@ int serve(viewer::Show show, const ViewOptions& options) {
 
 int run_view(const ViewOptions& options) {
   check_build();
-  viewer::Show show = build_show(read_input(options), options);
+  viewer::SceneView show = build_scene_view(read_input(options), options);
   if (!options.page_file.empty()) return write_page(show, options);
   return serve(std::move(show), options);
 }

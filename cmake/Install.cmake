@@ -6,21 +6,16 @@ install(TARGETS supple EXPORT suppleTargets
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/supple DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 install(EXPORT suppleTargets NAMESPACE supple:: DESTINATION ${package_dir})
 
-# Its own file of targets, read only on request: who links the library alone needs no Assimp.
-if(TARGET supple_formats)
-  install(TARGETS supple_formats EXPORT suppleFormatsTargets
-    ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
-  install(DIRECTORY ${PROJECT_SOURCE_DIR}/formats/include/supple DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
-  install(EXPORT suppleFormatsTargets NAMESPACE supple:: DESTINATION ${package_dir})
-endif()
-
-# Likewise without HDF5.
-if(TARGET supple_recording)
-  install(TARGETS supple_recording EXPORT suppleRecordingTargets
-    ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
-  install(DIRECTORY ${PROJECT_SOURCE_DIR}/recording/include/supple DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
-  install(EXPORT suppleRecordingTargets NAMESPACE supple:: DESTINATION ${package_dir})
-endif()
+# Each component has its own file of targets, which find_package reads only on request: a program that links the core
+# needs neither Assimp nor HDF5.
+foreach(component IN ITEMS models simulation formats recording)
+  if(TARGET supple_${component})
+    install(TARGETS supple_${component} EXPORT supple_${component}_targets
+      ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
+    install(DIRECTORY ${PROJECT_SOURCE_DIR}/${component}/include/supple DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+    install(EXPORT supple_${component}_targets NAMESPACE supple:: DESTINATION ${package_dir})
+  endif()
+endforeach()
 
 configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/suppleConfig.cmake.in
   ${PROJECT_BINARY_DIR}/suppleConfig.cmake INSTALL_DESTINATION ${package_dir})

@@ -4,9 +4,8 @@
 usage: check_include_order.py [ROOT]
 
 A folder of src/supple includes only from itself and the folders before it in LAYERS, and names an internal header by
-its folder ("core/parallel.hpp"). formats/ is a library of its own that builds on mesh/, recording/
-one that knows only public headers. Public headers include only
-public headers and the standard library. recording/ and the programs around the library include only public headers and
+its folder ("core/parallel.hpp"). COMPONENTS says the same of the libraries around the core. Public headers include only
+public headers and the standard library. The programs around the library include only public headers and
 files of their own folder, and those of the viewer that SHARED names. Threads have one door, so only core/ may include oneTBB.
 """
 
@@ -15,12 +14,14 @@ import re
 import sys
 
 LAYERS = [
-    "core", "geometry", "mesh", "octree", "motion", "broad_phase", "narrow_phase", "contact", "scene", "simulation",
+    "core", "geometry", "mesh", "octree", "broad_phase", "narrow_phase", "contact", "scene",
 ]
-PROGRAMS = ["recording/src", "viewer/session", "viewer/export", "viewer/server", "cli", "examples", "benchmarks"]
-# What is not public and yet included from elsewhere, by its folder: "session/show.hpp".
+# Libraries of their own, and the last layer of the core of which they include internal headers; recording includes none.
+COMPONENTS = {"models": "mesh", "simulation": "mesh", "formats": "mesh", "recording": None}
+PROGRAMS = ["viewer/session", "viewer/export", "viewer/server", "cli", "examples", "benchmarks"]
+# What is not public and yet included from elsewhere, by its folder: "session/scene_view.hpp".
 SHARED = {"viewer/server": ["session"], "cli": ["session", "export", "server"]}
-PUBLIC = ["include", "formats/include", "recording/include"]
+PUBLIC = ["include"] + [f"{name}/include" for name in COMPONENTS]
 SOURCES = {".cpp", ".hpp", ".h", ".cc"}
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
 
@@ -56,6 +57,14 @@ def problem_in_library(root, layer, bracket, name):
     return None
 
 
+def problem_in_component(root, layer, bracket, name):
+    if layer is not None:
+        return problem_in_library(root, layer, bracket, name)
+    if bracket == "<" or is_public(root, name):
+        return None
+    return "include only public headers (supple/...) and files of the same folder"
+
+
 def problem_in_public_header(root, bracket, name):
     if bracket == "<":
         return "a public header needs no third party; move this into src/" if "/" in name else None
@@ -83,10 +92,14 @@ def problems(root):
         for number, bracket, name in includes(path):
             if what := problem_in_library(root, layer, bracket, name):
                 yield path, number, name, what
-    for path in sources(root / "formats/src"):
-        for number, bracket, name in includes(path):
-            if what := problem_in_library(root, "mesh", bracket, name):
-                yield path, number, name, what
+    for component, layer in COMPONENTS.items():
+        own = root / component / "src"
+        for path in sources(own):
+            for number, bracket, name in includes(path):
+                if bracket == '"' and (own / name).is_file():
+                    continue
+                if what := problem_in_component(root, layer, bracket, name):
+                    yield path, number, name, what
     for folder in PUBLIC:
         for path in sources(root / folder):
             for number, bracket, name in includes(path):

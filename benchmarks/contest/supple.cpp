@@ -57,7 +57,7 @@ std::vector<StageTime> stages_of(const StepStats& stats, double handing_over, do
   return {{"update", handing_over + stats.refit_seconds * scale},
           {"traversal", (stats.broad_phase_seconds + stats.traversal_seconds) * scale},
           {"triangle tests", stats.exact_seconds * scale},
-          {"order and events", stats.finish_seconds * scale},
+          {"order and events", stats.sort_and_events_seconds * scale},
           {"refit alone", stats.refit_seconds * scale}};
 }
 

@@ -57,11 +57,11 @@ struct ContinuousContact {
   /// face, t being the triangle.
   std::array<std::uint32_t, 2> element_a{}, element_b{};
   ImpactCertainty certainty = ImpactCertainty::certain;
-  /// When they first touch: in [0, 1], never late, early by `impact_time_tolerance` at most.
-  double time = 0;
+  /// When they first touch: in [0, 1], never late, early by `toi_tolerance` at most.
+  double toi = 0;
   /// Where on each element: 1, 0, 0 of a vertex; 1 - s, s, 0 along an edge; barycentric in a face.
-  std::array<double, 3> weights_a{}, weights_b{};
-  Vec3d point;   ///< midway between the two points, at `time`
+  std::array<double, 3> barycentric_a{}, barycentric_b{};
+  Vec3d point;   ///< midway between the two points, at `toi`
   Vec3d normal;  ///< unit vector, towards the side of element a before the impact; see `Impact`
 
   constexpr bool operator==(const ContinuousContact&) const = default;

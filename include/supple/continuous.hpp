@@ -23,7 +23,7 @@ struct EdgeEdgeMotion {
 
 /// A reported time is never later than the true first contact, and at most this much earlier, the step being
 /// 1. Mostly it is some units in the last place early.
-inline constexpr double impact_time_tolerance = 0x1p-30;
+inline constexpr double toi_tolerance = 0x1p-30;
 
 struct ImpactOptions {
   /// The elements touch when their distance is at most this, finite and ≥ 0.
@@ -40,13 +40,13 @@ enum class ImpactCertainty : std::uint8_t {
 
 /// The first moment at which two elements touch.
 struct Impact {
-  /// In [0, 1]; see `impact_time_tolerance`. Exactly 0 when they touch from the start.
-  double time = 0;
+  /// In [0, 1]; see `toi_tolerance`. Exactly 0 when they touch from the start.
+  double toi = 0;
   ImpactCertainty certainty = ImpactCertainty::certain;
   /// Where on the elements, as weights of the four vertices: 1 and the barycentric coordinates in the face,
   /// or 1 - s, s, 1 - r, r along the two edges. Rounded.
-  std::array<double, 4> weights{};
-  /// Midway between the two points, at `time`. Rounded.
+  std::array<double, 4> barycentric{};
+  /// Midway between the two points, at `toi`. Rounded.
   Vec3d point;
   /// Unit vector that points from the face to the side of the vertex before the impact, or from edge b to the
   /// side of edge a: pushing the vertex, or edge a, along it parts them. Zero only where nothing tells a

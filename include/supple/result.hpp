@@ -50,12 +50,12 @@ struct PairEvents {
 /// exact tests run interleaved on several threads: their times are the time of both together, split as the
 /// threads' own clocks say.
 struct StepStats {
-  double refit_seconds = 0;        ///< new positions into octrees
-  double broad_phase_seconds = 0;  ///< object volumes into object pairs
-  double rebuild_seconds = 0;      ///< degraded parts of octrees anew
-  double traversal_seconds = 0;    ///< object pairs into candidate triangle pairs
-  double exact_seconds = 0;        ///< candidates into contacts
-  double finish_seconds = 0;       ///< canonical order and events
+  double refit_seconds = 0;            ///< new positions into octrees
+  double broad_phase_seconds = 0;      ///< object volumes into object pairs
+  double rebuild_seconds = 0;          ///< degraded parts of octrees anew
+  double traversal_seconds = 0;        ///< object pairs into candidate triangle pairs
+  double exact_seconds = 0;            ///< candidates into contacts
+  double sort_and_events_seconds = 0;  ///< canonical order and events
   double total_seconds = 0;
 
   /// The method of the broad phase that ran last: octree or grid when the scene has `automatic`.
@@ -123,7 +123,7 @@ struct ContinuousDifference {
     missed,  ///< it touches and was not reported
     added,   ///< reported as certain, and does not touch
     late,    ///< reported with a time after the first contact
-    early,   ///< reported with a time before the first contact by more than `impact_time_tolerance`
+    early,   ///< reported with a time before the first contact by more than `toi_tolerance`
   };
   ObjectId object_a, object_b;
   ElementPairKind kind = ElementPairKind::vertex_face;

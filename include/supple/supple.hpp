@@ -1,19 +1,15 @@
 #pragma once
 
-/// Everything at once.
+/// The whole core, without the components: models, simulation, formats, recording.
 #include "supple/broad_phase.hpp"
 #include "supple/contact.hpp"
 #include "supple/continuous.hpp"
 #include "supple/error.hpp"
 #include "supple/inspection.hpp"
 #include "supple/mesh.hpp"
-#include "supple/models.hpp"
-#include "supple/motion.hpp"
 #include "supple/options.hpp"
 #include "supple/result.hpp"
 #include "supple/scene.hpp"
-#include "supple/simulation.hpp"
-#include "supple/sway.hpp"
 #include "supple/topology.hpp"
 #include "supple/triangle_intersection.hpp"
 #include "supple/trigonometry.hpp"

@@ -292,9 +292,9 @@ Line Comparison::continuous_contacts(const RecordedFrame& a, const RecordedFrame
   };
   const auto compare_rows = [this](const ContinuousContact& p, const ContinuousContact& q) {
     return first_of([&] { return compare_exactly("certainty", p.certainty, q.certainty); },
-                    [&] { return compare("time", p.time, q.time); },
-                    [&] { return compare("weights_a", p.weights_a, q.weights_a); },
-                    [&] { return compare("weights_b", p.weights_b, q.weights_b); },
+                    [&] { return compare("toi", p.toi, q.toi); },
+                    [&] { return compare("barycentric_a", p.barycentric_a, q.barycentric_a); },
+                    [&] { return compare("barycentric_b", p.barycentric_b, q.barycentric_b); },
                     [&] { return compare("point", p.point, q.point); },
                     [&] { return compare("normal", p.normal, q.normal); });
   };

@@ -68,11 +68,11 @@ const std::vector<ColumnOf<ContinuousContact>>& columns_of() {
       column<Row>(
           "certainty", [](auto& row) -> auto& { return row.certainty; }),
       column<Row>(
-          "time", [](auto& row) -> auto& { return row.time; }),
+          "toi", [](auto& row) -> auto& { return row.toi; }),
       column<Row>(
-          "weights_a", [](auto& row) -> auto& { return row.weights_a; }),
+          "barycentric_a", [](auto& row) -> auto& { return row.barycentric_a; }),
       column<Row>(
-          "weights_b", [](auto& row) -> auto& { return row.weights_b; }),
+          "barycentric_b", [](auto& row) -> auto& { return row.barycentric_b; }),
       column<Row>(
           "point", [](auto& row) -> auto& { return row.point; }),
       column<Row>(
@@ -96,7 +96,7 @@ const std::vector<ColumnOf<StepStats>>& columns_of() {
       column<Row>(
           "exact_seconds", [](auto& row) -> auto& { return row.exact_seconds; }),
       column<Row>(
-          "finish_seconds", [](auto& row) -> auto& { return row.finish_seconds; }),
+          "sort_and_events_seconds", [](auto& row) -> auto& { return row.sort_and_events_seconds; }),
       column<Row>(
           "total_seconds", [](auto& row) -> auto& { return row.total_seconds; }),
       column<Row>(

@@ -115,17 +115,17 @@ class Json(ContinuousTest):
         self.write_scene(("floor", FLOOR, None), ("spike", SPIKE, [0, 0, -2]))
         (step,) = self.steps("scene.toml", "--contact-details")
         (contact,) = step["contacts"]
-        time, weights, point = contact.pop("time"), contact.pop("weights_a"), contact.pop("point")
+        time, weights, point = contact.pop("time"), contact.pop("barycentric_a"), contact.pop("point")
         self.assertEqual(time, step["earliest"])
         for given, expected in zip(weights + point, [0.5, 0.25, 0.25, 1, 1, 0]):
             self.assertAlmostEqual(given, expected, delta=1e-8)
         normal = [0.0, 0.0, -1.0]
-        expected = {"a": 0, "b": 1, "kind": "fv", "elements": [0, 0], "certain": True, "weights_b": [1.0], "normal": normal}
+        expected = {"a": 0, "b": 1, "kind": "fv", "elements": [0, 0], "certain": True, "barycentric_b": [1.0], "normal": normal}
         self.assertEqual(contact, expected)
         self.write_scene(("blade", BLADE, [0, 0, -4]), ("upper", UPPER_EDGE, None))
         (contact,) = self.steps("scene.toml", "--contact-details")[0]["contacts"]
         self.assertEqual((contact["kind"], contact["elements"]), ("ee", [[0, 1], [0, 1]]))
-        self.assertEqual((len(contact["weights_a"]), len(contact["weights_b"])), (2, 2))
+        self.assertEqual((len(contact["barycentric_a"]), len(contact["barycentric_b"])), (2, 2))
 
     def test_min_separation(self):
         self.write_scene(("floor", FLOOR, None), ("spike", SPIKE, [0, 0, -0.5]))

@@ -27,10 +27,10 @@ class Scarcity {
 };
 
 /// Triangles on one another, which make 90,000 candidate pairs.
-Show two_heaps() {
-  Show show;
+SceneView two_heaps() {
+  SceneView show;
   for (const char* name : {"heap", "other heap"}) {
-    ShowObject heap;
+    ViewedObject heap;
     heap.mesh.name = name;
     for (std::uint32_t i = 0; i < 300; ++i) {
       heap.mesh.positions.insert(heap.mesh.positions.end(), {{0, 0, 0}, {1, 0, 0}, {0, 1, 0.001 * i}});

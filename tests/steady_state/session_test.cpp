@@ -12,7 +12,7 @@
 #include "allocation_count.hpp"
 #include "session/session.hpp"
 #include "supple/models.hpp"
-#include "supple/sway.hpp"
+#include "supple/wave_motion.hpp"
 
 namespace supple::viewer {
 namespace {
@@ -20,16 +20,16 @@ namespace {
 constexpr int period = 50;  // steps after which all waves are as they were
 constexpr double time_step = 0.02;
 
-ShowObject ball(Vec3d at, std::uint64_t seed) {
-  ShowObject object{make_icosphere(6)};
+ViewedObject ball(Vec3d at, std::uint64_t seed) {
+  ViewedObject object{make_icosphere(6)};
   for (Vec3d& p : object.mesh.positions) p = p + at;
-  object.motion = Sway{.amplitude = 0.15, .period = period * time_step, .seed = seed};
+  object.motion = WaveMotion{.amplitude = 0.15, .period = period * time_step, .seed = seed};
   return object;
 }
 
 /// Balls in waves that begin and stop to touch, and a cloth that hangs still, of masses and springs.
-Show waves() {
-  Show show;
+SceneView waves() {
+  SceneView show;
   show.simulation.time_step = time_step;
   show.simulation.scene.threads = 1;
   for (std::uint64_t i = 0; i < 6; ++i) {
@@ -44,19 +44,20 @@ Show waves() {
 /// The same as frames in memory, a period of them.
 class WaveFrames final : public Frames {
  public:
-  explicit WaveFrames(const Show& show) : objects_(show.objects) {}
+  explicit WaveFrames(const SceneView& show) : objects_(show.objects) {}
   std::uint64_t count() const override { return period + 1; }
   void read(std::uint64_t frame, std::size_t object, std::span<Vec3d> positions) const override {
-    const ShowObject& moving = objects_[object];
-    if (const Sway* const motion = std::get_if<Sway>(&moving.motion))
-      sway(*motion, {}, moving.mesh.positions, static_cast<double>(frame) * time_step, positions);
+    const ViewedObject& moving = objects_[object];
+    if (const WaveMotion* const motion = std::get_if<WaveMotion>(&moving.motion))
+      apply_wave_motion(*motion, {}, moving.mesh.positions, static_cast<double>(frame) * time_step,
+                        positions);
     else
       std::copy(moving.mesh.positions.begin(), moving.mesh.positions.end(), positions.begin());
   }
   const Series& series() const override { return series_; }
 
  private:
-  std::vector<ShowObject> objects_;
+  std::vector<ViewedObject> objects_;
   Series series_;
 };
 
@@ -65,7 +66,7 @@ struct Seen {
 };
 
 /// Lets it play, a step and a frame at a time; counts from the third period on.
-Seen play(Show show, std::initializer_list<std::string_view> commands = {}) {
+Seen play(SceneView show, std::initializer_list<std::string_view> commands = {}) {
   Session session(std::move(show));
   MessageWriter message;
   session.greet();
@@ -99,7 +100,7 @@ TEST(SteadyStateSession, NoAllocationsInStepsOfASimulation) {
 }
 
 TEST(SteadyStateSession, NoAllocationsWithContinuousContacts) {
-  Show show = waves();
+  SceneView show = waves();
   show.simulation.scene.contacts = ContactMode::continuous;
   expect_no_allocations(play(std::move(show)));
 }
@@ -110,7 +111,7 @@ TEST(SteadyStateSession, NoAllocationsWithCollidingVertices) {
 
 TEST(SteadyStateSession, NoAllocationsInFramesOfARecording) {
   for (const ContactMode contacts : {ContactMode::intersection, ContactMode::continuous}) {
-    Show show = waves();
+    SceneView show = waves();
     show.simulation.scene.contacts = contacts;
     show.frames = std::make_shared<WaveFrames>(show);
     expect_no_allocations(play(std::move(show), {R"({"do": "loop", "on": true})"}));

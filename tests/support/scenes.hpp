@@ -40,8 +40,8 @@ inline std::uint64_t hash_of(const DetectResult& result, std::uint64_t hash = 0x
     add(contact.kind);
     for (const auto& element : {contact.element_a, contact.element_b}) add(element);
     add(contact.certainty);
-    add(contact.time);
-    for (const auto& weights : {contact.weights_a, contact.weights_b}) add(weights);
+    add(contact.toi);
+    for (const auto& weights : {contact.barycentric_a, contact.barycentric_b}) add(weights);
     add(contact.point);
     add(contact.normal);
   }

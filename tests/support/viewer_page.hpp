@@ -11,11 +11,11 @@
 #include <utility>
 #include <vector>
 
+#include "session/scene_view.hpp"
 #include "session/session.hpp"
-#include "session/show.hpp"
 #include "supple/models.hpp"
 #include "supple/simulation.hpp"
-#include "supple/sway.hpp"
+#include "supple/wave_motion.hpp"
 #include "viewer_messages.hpp"
 
 namespace supple::viewer {
@@ -29,7 +29,7 @@ using Row = std::array<float, 8>;
 /// A page without a network: what it is told and what it says.
 class TestPage {
  public:
-  explicit TestPage(Show show) : session(std::move(show)) { session.greet(); }
+  explicit TestPage(SceneView show) : session(std::move(show)) { session.greet(); }
 
   /// The next message as it is sent, or nothing; until the next call.
   std::span<const std::byte> next_bytes() { return session.next_message(message_); }
@@ -94,41 +94,41 @@ class TestPage {
   int last_id_ = 0;
 };
 
-inline ShowObject test_ball(const char* name, Vec3d at, std::uint32_t frequency = 3) {
-  ShowObject object{make_icosphere(frequency)};
+inline ViewedObject test_ball(const char* name, Vec3d at, std::uint32_t frequency = 3) {
+  ViewedObject object{make_icosphere(frequency)};
   object.options.name = name;
   for (Vec3d& p : object.mesh.positions) p = p + at;
   return object;
 }
 
 /// A ball in waves, a soft one that flies towards it, and one that rests.
-inline Show three_balls() {
-  Show show;
+inline SceneView three_balls() {
+  SceneView show;
   show.title = "balls";
   show.objects = {test_ball("waves", {}), test_ball("soft", {3, 0, 0}), test_ball("rest", {0, 0, 2.2})};
-  show.objects[0].motion = Sway{.amplitude = 0.05};
+  show.objects[0].motion = WaveMotion{.amplitude = 0.05};
   show.objects[1].motion = MassSpringMotion{.velocity = {-1, 0, 0}};
   return show;
 }
 
 /// Two balls that cut through each other, and one in waves a little further on.
-inline Show touching_balls() {
-  Show show;
+inline SceneView touching_balls() {
+  SceneView show;
   show.objects = {test_ball("left", {}), test_ball("right", {1.5, 0, 0}), test_ball("waves", {4, 0, 0})};
-  show.objects[2].motion = Sway{.velocity = {-1, 0.1, 0}, .amplitude = 0.05};
+  show.objects[2].motion = WaveMotion{.velocity = {-1, 0.1, 0}, .amplitude = 0.05};
   return show;
 }
 
 /// What a show's simulation is by the library alone.
-inline Simulation simulation_of(const Show& show) {
+inline Simulation simulation_of(const SceneView& show) {
   Simulation simulation(show.simulation);
-  for (const ShowObject& object : show.objects) {
+  for (const ViewedObject& object : show.objects) {
     if (const auto* const springs = std::get_if<MassSpringMotion>(&object.motion)) {
       simulation.add(object.mesh, object.options, *springs);
-    } else if (const auto* const waves = std::get_if<Sway>(&object.motion)) {
+    } else if (const auto* const waves = std::get_if<WaveMotion>(&object.motion)) {
       const auto move = [waves = *waves, border = show.simulation.border, rest = object.mesh.positions](
                             double seconds, std::span<Vec3d> positions) {
-        sway(waves, border, rest, seconds, positions);
+        apply_wave_motion(waves, border, rest, seconds, positions);
       };
       TriangleMesh start = object.mesh;
       move(0, start.positions);

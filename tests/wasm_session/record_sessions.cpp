@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "packed_show.hpp"
+#include "packed_scene.hpp"
 #include "session.hpp"
 #include "supple/models.hpp"
 #include "support/hard_scenes.hpp"
@@ -21,15 +21,15 @@
 
 namespace {
 
-using supple::viewer::Show;
-using supple::viewer::ShowObject;
+using supple::viewer::SceneView;
+using supple::viewer::ViewedObject;
 
 constexpr std::uint32_t statistics_tag = 43;
 
 /// What is done to a session: each entry a command as JSON text, or milliseconds that pass.
 struct Script {
   std::string name;
-  Show show;
+  SceneView show;
   nlohmann::json entries = nlohmann::json::array();
 
   void command(const std::string& text) { entries.push_back(text); }
@@ -80,8 +80,8 @@ class MessageHash {
   std::unique_ptr<EVP_MD_CTX, decltype(&EVP_MD_CTX_free)> context_;
 };
 
-ShowObject placed(const char* model, const std::string& name, supple::Vec3d at) {
-  ShowObject object{supple::make_model(model)};
+ViewedObject placed(const char* model, const std::string& name, supple::Vec3d at) {
+  ViewedObject object{supple::make_model(model)};
   object.options.name = name;
   for (supple::Vec3d& p : object.mesh.positions) p = p + at;
   return object;
@@ -155,11 +155,11 @@ Script hard(const supple::Family& family, bool continuous) {
   for (supple::TriangleMesh& mesh : family.make(3)) {
     // What exact arithmetic decides of all of them would take minutes.
     if (continuous) mesh.triangles.resize(std::min<std::size_t>(mesh.triangles.size(), 12));
-    ShowObject object{std::move(mesh)};
+    ViewedObject object{std::move(mesh)};
     object.options.name = "object " + std::to_string(seed);
     object.options.self_collision = true;
     object.options.octree.leaf_size = 3;
-    if (seed != 1) object.motion = supple::Sway{{0.2, 0.1, 0}, 0.05, 0.7, 1, seed};
+    if (seed != 1) object.motion = supple::WaveMotion{{0.2, 0.1, 0}, 0.05, 0.7, 1, seed};
     ++seed;
     script.show.objects.push_back(std::move(object));
   }

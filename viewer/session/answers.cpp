@@ -18,7 +18,7 @@ void add_pair(std::uint32_t a, std::uint32_t b, JsonText& json) {
   json.end_array();
 }
 
-/// Up to `most` of the triangles that one meets.
+/// Adds at most `most` of the triangles that a triangle touches.
 void add_contacts_of(const DetectResult& result, std::uint32_t object, std::uint32_t triangle,
                      JsonText& json) {
   constexpr std::uint64_t most = 1000;
@@ -75,7 +75,7 @@ void answer_read_vertex(const Source& source, std::uint32_t object, std::uint32_
   json.member("position", source.positions(object)[vertex]);
 }
 
-void answer_read_triangle(const Show& show, const Source& source, std::uint32_t object,
+void answer_read_triangle(const SceneView& show, const Source& source, std::uint32_t object,
                           std::uint32_t triangle, JsonText& json) {
   const Triangle& corners = show.objects[object].mesh.triangles[triangle];
   const std::span<const Vec3d> positions = source.positions(object);
@@ -91,7 +91,7 @@ void answer_read_triangle(const Show& show, const Source& source, std::uint32_t 
   add_contacts_of(source.scene().result(), object, triangle, json);
 }
 
-void answer_read_object(const Show& show, const Source& source, std::uint32_t object, JsonText& json) {
+void answer_read_object(const SceneView& show, const Source& source, std::uint32_t object, JsonText& json) {
   const TriangleMesh& mesh = show.objects[object].mesh;
   Extent extent;
   extent.add(source.positions(object));

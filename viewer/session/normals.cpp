@@ -6,22 +6,12 @@
 namespace supple::viewer {
 namespace {
 
-Vec3d cross(const Vec3d& a, const Vec3d& b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-
-/// Not `std::hypot`, which is not the same bits in every library.
-double length(const Vec3d& v) {
-  return std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z);
-}
-
 double largest(const Vec3d& v) {
   return std::max({std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)});
 }
 
-/// Twice the vector of a triangle's area, of sides that are divided by `size`, the largest coordinate of two
-/// of them: products of small or large ones would leave the range of numbers. Zero where there is no size to
-/// tell.
+/// Twice the area vector of a triangle whose sides are divided by `size`, the largest coordinate of two of
+/// them. The division avoids overflow and underflow of products. Zero when `size` is 0.
 Vec3d scaled_normal(const Vec3d& a, const Vec3d& b, const Vec3d& c, double& size) {
   const Vec3d ab = b - a, ac = c - a;
   size = std::max(largest(ab), largest(ac));
@@ -34,14 +24,14 @@ Vec3d scaled_normal(const Vec3d& a, const Vec3d& b, const Vec3d& c, double& size
 Vec3d unit_normal(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
   double size = 0;
   const Vec3d normal = scaled_normal(a, b, c, size);
-  const double sine = length(normal);
+  const double sine = norm(normal);
   return sine > 0 && std::isfinite(sine) ? normal * (1 / sine) : Vec3d{};
 }
 
 double area(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
   double size = 0;
   const Vec3d normal = scaled_normal(a, b, c, size);
-  return size > 0 ? 0.5 * length(normal) * size * size : size;
+  return size > 0 ? 0.5 * norm(normal) * size * size : size;
 }
 
 }  // namespace supple::viewer

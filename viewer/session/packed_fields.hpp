@@ -1,7 +1,7 @@
 #pragma once
 
 #include "archive.hpp"
-#include "show.hpp"
+#include "scene_view.hpp"
 #include "supple/simulation.hpp"
 
 namespace supple::viewer {
@@ -63,7 +63,7 @@ void fields(auto& archive, Of<TriangleMesh> auto& mesh) {
   archive(mesh.name, mesh.positions, mesh.triangles);
 }
 
-void fields(auto& archive, Of<Sway> auto& sway) {
+void fields(auto& archive, Of<WaveMotion> auto& sway) {
   archive(sway.velocity, sway.amplitude, sway.wavelength, sway.period, sway.seed);
 }
 
@@ -90,13 +90,13 @@ void fields(auto& archive, Of<Series> auto& series) {
   archive(series.names, series.values, series.begin, series.end);
 }
 
-inline void fields(Packer& archive, const ShowObject& object) {
+inline void fields(Packer& archive, const ViewedObject& object) {
   archive(object.mesh, object.options, static_cast<std::uint8_t>(object.motion.index()));
-  if (const auto* const sway = std::get_if<Sway>(&object.motion)) archive(*sway);
+  if (const auto* const sway = std::get_if<WaveMotion>(&object.motion)) archive(*sway);
   if (const auto* const springs = std::get_if<MassSpringMotion>(&object.motion)) archive(*springs);
 }
 
-inline void fields(Unpacker& archive, ShowObject& object) {
+inline void fields(Unpacker& archive, ViewedObject& object) {
   std::uint8_t kind = 0;
   archive(object.mesh, object.options, kind);
   switch (kind) {
@@ -104,7 +104,7 @@ inline void fields(Unpacker& archive, ShowObject& object) {
       object.motion.emplace<std::monostate>();
       break;
     case 1:
-      archive(object.motion.emplace<Sway>());
+      archive(object.motion.emplace<WaveMotion>());
       break;
     case 2:
       archive(object.motion.emplace<MassSpringMotion>());

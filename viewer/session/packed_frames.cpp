@@ -16,14 +16,14 @@ void append(std::vector<float>& coordinates, std::span<const Vec3d> positions, c
   }
 }
 
-/// Bit by bit.
+/// Compares bits, so that NaN equals itself.
 bool same(std::span<const Vec3d> a, std::span<const Vec3d> b) {
   return a.empty() || std::memcmp(a.data(), b.data(), a.size_bytes()) == 0;
 }
 
 }  // namespace
 
-PackedFrames::PackedFrames(const Frames& frames, std::span<const ShowObject> objects, const Vec3d& center)
+PackedFrames::PackedFrames(const Frames& frames, std::span<const ViewedObject> objects, const Vec3d& center)
     : count_(frames.count()), center_(center), tracks_(objects.size()), series_(frames.series()) {
   std::vector<Vec3d> positions;
   for (std::size_t i = 0; i < objects.size(); ++i) {
@@ -57,7 +57,7 @@ void PackedFrames::read(std::uint64_t frame, std::size_t object, std::span<Vec3d
   }
 }
 
-bool PackedFrames::fit_to(std::span<const ShowObject> objects) {
+bool PackedFrames::fit_to(std::span<const ViewedObject> objects) {
   if (tracks_.size() != objects.size()) return false;
   rest_.resize(objects.size());
   for (std::size_t i = 0; i < objects.size(); ++i) {

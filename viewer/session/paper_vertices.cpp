@@ -6,13 +6,14 @@
 
 namespace supple::viewer {
 
-const std::vector<std::vector<std::uint32_t>>& PaperVertices::find(const Show& show, const Source& source) {
+const std::vector<std::vector<std::uint32_t>>& PaperVertices::find(const SceneView& show,
+                                                                   const Source& source) {
   if (!scene_) {
     SceneOptions options = show.simulation.scene;
     options.contacts = ContactMode::none;
     options.colliding_vertices = true;
     scene_.emplace(options);
-    for (const ShowObject& object : show.objects)
+    for (const ViewedObject& object : show.objects)
       ids_.push_back(scene_->add(start_of(show, object), object.options));
     versions_.assign(ids_.size(), 0);
   }

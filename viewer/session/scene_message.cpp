@@ -15,7 +15,7 @@
 namespace supple::viewer {
 namespace {
 
-const MassSpringMotion* body_of(const ShowObject& object) {
+const MassSpringMotion* body_of(const ViewedObject& object) {
   return std::get_if<MassSpringMotion>(&object.motion);
 }
 
@@ -23,14 +23,14 @@ void add_objects(const Stage& stage, JsonText& json) {
   json.key("objects");
   json.begin_array();
   for (std::size_t i = 0; i < stage.show().objects.size(); ++i) {
-    const ShowObject& object = stage.show().objects[i];
+    const ViewedObject& object = stage.show().objects[i];
     json.begin_object();
     json.member("name", stage.source().scene().name(stage.source().id(i)));
     json.member("vertices", std::uint64_t{object.mesh.positions.size()});
     json.member("triangles", std::uint64_t{object.mesh.triangles.size()});
     json.member("static", object.options.is_static);
     json.member("body", body_of(object) != nullptr);
-    json.member("waves", std::holds_alternative<Sway>(object.motion));
+    json.member("waves", std::holds_alternative<WaveMotion>(object.motion));
     json.member("self_collision", object.options.self_collision);
     json.end_object();
   }
@@ -49,7 +49,7 @@ void add_place(const Stage& stage, JsonText& json) {
 }
 
 void add_options(const Stage& stage, JsonText& json) {
-  const Show& show = stage.show();
+  const SceneView& show = stage.show();
   const SceneOptions& scene = show.simulation.scene;
   const ObjectOctreeOptions octree =
       show.objects.empty() ? ObjectOctreeOptions{} : show.objects.front().options.octree;
@@ -62,7 +62,7 @@ void add_options(const Stage& stage, JsonText& json) {
   json.member("leaf_size", octree.leaf_size);
   json.key("integrator");
   const auto first_body = std::find_if(show.objects.begin(), show.objects.end(),
-                                       [](const ShowObject& object) { return body_of(object) != nullptr; });
+                                       [](const ViewedObject& object) { return body_of(object) != nullptr; });
   if (first_body == show.objects.end())
     json.null();
   else
@@ -110,7 +110,7 @@ void add_events(Tag tag, const std::vector<Series::Event>& events, MessageWriter
 }  // namespace
 
 void pack_scene(Stage& stage, std::uint64_t generation, JsonText& json, MessageWriter& message) {
-  const Show& show = stage.show();
+  const SceneView& show = stage.show();
   json.clear();
   json.begin_object();
   json.member("version", SUPPLE_VERSION);
@@ -137,7 +137,7 @@ void pack_series(const Frames& frames, MessageWriter& message) {
   const std::size_t columns = series.names.size();
   const std::size_t rows = columns == 0 ? 0 : series.values.size() / columns;
   message.begin(MessageKind::series);
-  // Rows are the elements, columns their parts.
+  // One row per element, one column per component.
   const auto values = message.add_rows<double>(Tag::series, rows, columns);
   std::copy_n(series.values.begin(), values.size(), values.begin());
   add_events(Tag::series_begin, series.begin, message);

@@ -13,15 +13,15 @@
 namespace supple::viewer {
 namespace {
 
-/// A grid of so many cells a side, in x and z, holds this many copies of all objects.
+/// The side of a square grid in x and z that holds `copies` copies of all objects.
 std::size_t grid_side(std::size_t copies) {
   std::size_t side = 1;
   while (side * side < copies) ++side;
   return side;
 }
 
-/// How far copies are apart: a border's room, or a tenth more than what the objects take.
-Vec3d cell_size(const Show& show) {
+/// The distance between copies: the size of the border, or the size of the objects plus a tenth.
+Vec3d cell_size(const SceneView& show) {
   Vec3d size = 1.1 * extent_of(show).size();
   const std::optional<Border>& border = show.simulation.border;
   for (const int axis : {0, 2}) {
@@ -32,19 +32,19 @@ Vec3d cell_size(const Show& show) {
   return size;
 }
 
-void set_apart(ShowObject& object, std::size_t copy, const Vec3d& offset) {
+void set_apart(ViewedObject& object, std::size_t copy, const Vec3d& offset) {
   if (object.options.name.empty()) object.options.name = object.mesh.name;
   object.options.name += " #";
   object.options.name += std::to_string(copy + 1);
   for (Vec3d& p : object.mesh.positions) p = p + offset;
-  // The same waves and random numbers would let copies move alike.
-  if (auto* const sway = std::get_if<Sway>(&object.motion)) sway->seed += copy * 1'000'003;
+  // With equal waves and random numbers all copies would move alike.
+  if (auto* const sway = std::get_if<WaveMotion>(&object.motion)) sway->seed += copy * 1'000'003;
   if (auto* const springs = std::get_if<MassSpringMotion>(&object.motion); springs && springs->seed)
     *springs->seed += copy * 1'000'003;
 }
 
-/// Of so many objects, the list repeated.
-void check_size(const Show& show, std::size_t count) {
+/// Checks the total size when the list of objects is repeated up to `count`.
+void check_size(const SceneView& show, std::size_t count) {
   constexpr std::uint64_t most_elements = 100'000'000;
   std::uint64_t vertices = 0, triangles = 0;
   for (std::size_t i = 0; i < count && !show.objects.empty(); ++i) {
@@ -58,8 +58,8 @@ void check_size(const Show& show, std::size_t count) {
        " of each at most");
 }
 
-void repeat_objects(Show& show, std::size_t count) {
-  std::vector<ShowObject>& objects = show.objects;
+void repeat_objects(SceneView& show, std::size_t count) {
+  std::vector<ViewedObject>& objects = show.objects;
   const std::size_t given = objects.size();
   if (count <= given || given == 0) {
     objects.resize(std::min(count, given));
@@ -84,7 +84,7 @@ void repeat_objects(Show& show, std::size_t count) {
   }
 }
 
-[[noreturn]] void fail_about(const ShowObject& object, const char* what, double value, const char* range) {
+[[noreturn]] void fail_about(const ViewedObject& object, const char* what, double value, const char* range) {
   std::string message = object.options.name.empty() ? object.mesh.name : object.options.name;
   message += std::string(": ") + what;
   message += " is " + std::to_string(value);
@@ -92,41 +92,41 @@ void repeat_objects(Show& show, std::size_t count) {
   fail(message);
 }
 
-void check_sway(const ShowObject& object, const Sway& sway) {
+void check_sway(const ViewedObject& object, const WaveMotion& sway) {
   const auto positive = [](double value) { return std::isfinite(value) && value > 0; };
   if (!positive(sway.wavelength))
-    fail_about(object, "Sway::wavelength", sway.wavelength, "finite and more than 0");
-  if (!positive(sway.period)) fail_about(object, "Sway::period", sway.period, "finite and more than 0");
-  if (!std::isfinite(sway.amplitude)) fail_about(object, "Sway::amplitude", sway.amplitude, "finite");
+    fail_about(object, "WaveMotion::wavelength", sway.wavelength, "finite and more than 0");
+  if (!positive(sway.period)) fail_about(object, "WaveMotion::period", sway.period, "finite and more than 0");
+  if (!std::isfinite(sway.amplitude)) fail_about(object, "WaveMotion::amplitude", sway.amplitude, "finite");
   for (int axis = 0; axis < 3; ++axis) {
     if (!std::isfinite(sway.velocity[axis]))
-      fail_about(object, "Sway::velocity", sway.velocity[axis], "finite");
+      fail_about(object, "WaveMotion::velocity", sway.velocity[axis], "finite");
   }
 }
 
-void check_show(const Show& show) {
-  for (const ShowObject& object : show.objects) {
+void check_show(const SceneView& show) {
+  for (const ViewedObject& object : show.objects) {
     check_mesh(object.mesh);
-    if (const auto* const sway = std::get_if<Sway>(&object.motion)) check_sway(object, *sway);
+    if (const auto* const sway = std::get_if<WaveMotion>(&object.motion)) check_sway(object, *sway);
   }
   check_size(show, show.objects.size());
 }
 
 }  // namespace
 
-Show arranged(const Show& show, const Settings& settings) {
+SceneView arranged(const SceneView& show, const Settings& settings) {
   check_show(show);
-  Show arranged = show;
+  SceneView arranged = show;
   if (settings.objects) repeat_objects(arranged, *settings.objects);
   SimulationOptions& simulation = arranged.simulation;
   simulation.scene.bounding_volume = settings.bounding_volume.value_or(simulation.scene.bounding_volume);
   simulation.scene.broad_phase = settings.broad_phase.value_or(simulation.scene.broad_phase);
   simulation.scene.contacts = settings.contacts.value_or(simulation.scene.contacts);
-  // A scene of its own gives these (FramePacker), and only when they are asked for.
+  // `PaperVertices` computes these, and only on request.
   simulation.scene.colliding_vertices = false;
   simulation.time_step = settings.time_step.value_or(simulation.time_step);
   simulation.seed = settings.seed.value_or(simulation.seed);
-  for (ShowObject& object : arranged.objects) {
+  for (ViewedObject& object : arranged.objects) {
     ObjectOctreeOptions& octree = object.options.octree;
     octree.max_level = settings.max_level.value_or(octree.max_level);
     octree.leaf_size = settings.leaf_size.value_or(octree.leaf_size);

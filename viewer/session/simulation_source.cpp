@@ -8,19 +8,19 @@
 
 namespace supple::viewer {
 
-SimulationSource::SimulationSource(const Show& show)
+SimulationSource::SimulationSource(const SceneView& show)
     : show_(show),
       simulation_(show.simulation),
       versions_(show.objects.size(), 1),
       bends_(show.objects.size()) {
-  for (const ShowObject& object : show.objects) add(object);
+  for (const ViewedObject& object : show.objects) add(object);
   simulation_.detect();
 }
 
-void SimulationSource::add(const ShowObject& object) {
+void SimulationSource::add(const ViewedObject& object) {
   if (const auto* const springs = std::get_if<MassSpringMotion>(&object.motion)) {
     ids_.push_back(simulation_.add(object.mesh, object.options, *springs));
-  } else if (std::holds_alternative<Sway>(object.motion)) {
+  } else if (std::holds_alternative<WaveMotion>(object.motion)) {
     const std::size_t number = ids_.size();
     ids_.push_back(simulation_.add(start_of(show_, object), object.options,
                                    [this, number](double seconds, std::span<Vec3d> positions) {
@@ -31,10 +31,11 @@ void SimulationSource::add(const ShowObject& object) {
   }
 }
 
-/// The waves, on top of them what it was bent by before, and what is held where it is dragged to.
+/// Adds up the waves, earlier bends, and the current drag of the held vertices.
 void SimulationSource::move_swaying(std::size_t object, double seconds, std::span<Vec3d> positions) {
-  const ShowObject& shown = show_.objects[object];
-  sway(std::get<Sway>(shown.motion), show_.simulation.border, shown.mesh.positions, seconds, positions);
+  const ViewedObject& shown = show_.objects[object];
+  apply_wave_motion(std::get<WaveMotion>(shown.motion), show_.simulation.border, shown.mesh.positions,
+                    seconds, positions);
   const std::vector<Vec3d>& bend = bends_[object];
   for (std::size_t i = 0; i < bend.size(); ++i) positions[i] = positions[i] + bend[i];
   if (!grip_ || grip_->object != object || !grip_->target) return;
@@ -62,17 +63,17 @@ std::optional<std::string> SimulationSource::take_step() {
 std::optional<std::string> SimulationSource::grab(std::size_t object, std::uint32_t vertex,
                                                   std::optional<double> radius) {
   release();
-  const ShowObject& shown = show_.objects[object];
+  const ViewedObject& shown = show_.objects[object];
   const std::string& name = scene().name(ids_[object]);
-  if (shown.options.is_static) return name + " is static: it neither moves nor bends";
+  if (shown.options.is_static) return name + " is static: it cannot be moved or bent";
   const auto about_vertex = [&] { return "vertex " + std::to_string(vertex) + " of " + name; };
   if (!is_finite(shown.mesh.positions[vertex]) || !is_finite(positions(object)[vertex]))
-    return about_vertex() + " is at no finite place; take another one";
+    return about_vertex() + " is not at a finite position; choose another one";
   is_fixed_.clear();
   if (const MassSpringBody* const body = simulation_.body(ids_[object])) {
     is_fixed_.resize(shown.mesh.positions.size());
     for (const std::uint32_t fixed : body->options().fixed_vertices) is_fixed_[fixed] = true;
-    if (is_fixed_[vertex]) return about_vertex() + " is a fixed one; take another one";
+    if (is_fixed_[vertex]) return about_vertex() + " is fixed; choose another one";
   }
   grip_ = take_hold(shown.mesh, positions(object), vertex, radius);
   grip_->object = object;
@@ -87,7 +88,7 @@ void SimulationSource::drag(const Vec3d& target) {
 void SimulationSource::release() {
   if (!grip_) return;
   settle();
-  if (grip_->target && std::holds_alternative<Sway>(show_.objects[grip_->object].motion)) {
+  if (grip_->target && std::holds_alternative<WaveMotion>(show_.objects[grip_->object].motion)) {
     std::vector<Vec3d>& bend = bends_[grip_->object];
     bend.resize(show_.objects[grip_->object].mesh.positions.size());
     for (std::size_t i = 0; i < grip_->vertices.size(); ++i)

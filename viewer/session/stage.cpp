@@ -6,7 +6,7 @@
 
 namespace supple::viewer {
 
-Stage::Stage(const Show& show, const Settings& settings, std::uint64_t frame)
+Stage::Stage(const SceneView& show, const Settings& settings, std::uint64_t frame)
     : show_(arranged(show, settings)), center_{extent_of(show_).center()} {
   if (show_.frames == nullptr) {
     simulation_ = std::make_unique<SimulationSource>(show_);
@@ -23,7 +23,7 @@ const Source& Stage::source() const {
 bool Stage::has_motion() const {
   if (recording_) return recording_->frame_count() > 1;
   return std::any_of(show_.objects.begin(), show_.objects.end(),
-                     [](const ShowObject& object) { return object.motion.index() != 0; });
+                     [](const ViewedObject& object) { return object.motion.index() != 0; });
 }
 
 }  // namespace supple::viewer

@@ -2,16 +2,16 @@
 
 #include <variant>
 
-#include "show.hpp"
-#include "supple/sway.hpp"
+#include "scene_view.hpp"
+#include "supple/wave_motion.hpp"
 
 namespace supple::viewer {
 
-/// Where an object of a show is at the start: in waves it is not at rest.
-inline TriangleMesh start_of(const Show& show, const ShowObject& object) {
+/// The mesh of an object at the start. With waves it differs from the rest pose.
+inline TriangleMesh start_of(const SceneView& show, const ViewedObject& object) {
   TriangleMesh mesh = object.mesh;
-  if (const auto* const waves = std::get_if<Sway>(&object.motion))
-    sway(*waves, show.simulation.border, object.mesh.positions, 0, mesh.positions);
+  if (const auto* const waves = std::get_if<WaveMotion>(&object.motion))
+    apply_wave_motion(*waves, show.simulation.border, object.mesh.positions, 0, mesh.positions);
   return mesh;
 }
 

@@ -21,7 +21,7 @@ inline constexpr Statistic statistics[] = {
     {"rebuild_seconds", &StepStats::rebuild_seconds, nullptr},
     {"traversal_seconds", &StepStats::traversal_seconds, nullptr},
     {"exact_seconds", &StepStats::exact_seconds, nullptr},
-    {"finish_seconds", &StepStats::finish_seconds, nullptr},
+    {"sort_and_events_seconds", &StepStats::sort_and_events_seconds, nullptr},
     {"total_seconds", &StepStats::total_seconds, nullptr},
     {"objects_refitted", nullptr, &StepStats::objects_refitted},
     {"triangles_refitted", nullptr, &StepStats::triangles_refitted},

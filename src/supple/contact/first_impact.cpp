@@ -61,15 +61,15 @@ Impact impact_at(const Motion& motion, const RelativeMotion& relative, double ti
   const Scaled places(places_at(relative, time));
   const ClosestPoints at = closest_points(places.places, relative.is_square);
   Impact impact;
-  impact.time = time;
+  impact.toi = time;
   std::array<Vec3d, 4> p;
   for (std::size_t i = 0; i < 4; ++i) p[i] = mix(motion.start[i], motion.end[i], time);
   if (relative.is_square) {
-    impact.weights = {1 - at.alpha, at.alpha, 1 - at.beta, at.beta};
+    impact.barycentric = {1 - at.alpha, at.alpha, 1 - at.beta, at.beta};
     impact.point = 0.5 * (mix(p[0], p[1], at.alpha) + mix(p[2], p[3], at.beta));
   } else {
-    impact.weights = {1, std::max(0.0, 1 - at.alpha - at.beta), at.alpha, at.beta};
-    impact.point = 0.5 * (p[0] + (impact.weights[1] * p[1] + at.alpha * p[2] + at.beta * p[3]));
+    impact.barycentric = {1, std::max(0.0, 1 - at.alpha - at.beta), at.alpha, at.beta};
+    impact.point = 0.5 * (p[0] + (impact.barycentric[1] * p[1] + at.alpha * p[2] + at.beta * p[3]));
   }
   // Where the elements are kept apart, the vector between them is known well; where they touch, it is not.
   const bool apart = separation > 0 && std::sqrt(at.squared_distance) > 0.5 * places.factor * separation;

@@ -71,7 +71,7 @@ Place place_in_domain(const RelativeMotion& motion, double low, double high) {
 
 /// By the times at which the four vertices lie in one plane.
 Outcome search_coplanar_times(const RelativeMotion& motion, double& time) {
-  constexpr double longest = impact_time_tolerance / 2;
+  constexpr double longest = toi_tolerance / 2;
   const VolumePolynomial volume(motion);
   if (!volume.in_range()) return Outcome::unsure;
   if (volume.never_zero(0, 1)) return Outcome::apart;
@@ -159,7 +159,7 @@ double expected_time(const Moment& moment, const RelativeMotion& motion, double 
 /// direction that turns with them. Closes in quadratically on the moment at which they touch.
 Outcome advance(const RelativeMotion& motion, double separation, double& time) {
   constexpr int most_steps = 200;  // some microseconds, where algebra takes hundreds
-  constexpr double closing = impact_time_tolerance / 4;
+  constexpr double closing = toi_tolerance / 4;
   const Vec3d reach = reach_of(motion);
   time = 0;
   Moment here(motion, 0);

@@ -10,7 +10,7 @@ namespace supple {
 struct ImpactSearch {
   enum class Outcome : std::uint8_t {
     apart,     ///< they do not touch within the step
-    touching,  ///< they do, first within `impact_time_tolerance` after `time`
+    touching,  ///< they do, first within `toi_tolerance` after `time`
     unsure,    ///< only exact arithmetic can tell; they do not touch before `time`
   };
   Outcome outcome = Outcome::unsure;

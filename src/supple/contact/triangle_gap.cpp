@@ -38,7 +38,7 @@ class WidestGap {
   WidestGap(const TrianglePoints& a, const TrianglePoints& b) : a_(a), b_(b) {}
 
   void consider(const Vec3d& direction) {
-    const double size = length(direction);
+    const double size = norm(direction);
     if (!(size > 0)) return;
     const Vec3d axis = direction * (1 / size);
     const auto [low_a, high_a] = range(a_, axis);

@@ -28,7 +28,7 @@ HWY_INLINE hwy::HWY_NAMESPACE::Vec<Words> packed_lanes(Words lanes, hwy::HWY_NAM
   std::array<std::uint8_t, 8> bits{};
   hn::StoreMaskBits(lanes, set, bits.data());
   const hn::Rebind<std::uint8_t, Words> bytes;
-  const auto from = hn::PromoteTo(lanes, hn::LoadU(bytes, kPackedLanes[bits[0]].data()));
+  const auto from = hn::PromoteTo(lanes, hn::LoadU(bytes, packed_lane_tables[bits[0]].data()));
   return hn::TableLookupLanes(words, hn::IndicesFromVec(lanes, from));
 #else
   static_cast<void>(lanes);

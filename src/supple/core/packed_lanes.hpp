@@ -7,7 +7,7 @@
 namespace supple {
 
 /// For each set of eight lanes, bit by bit, the numbers of those in it, ascending; zeros behind them.
-inline constexpr std::array<std::array<std::uint8_t, 8>, 256> kPackedLanes = [] {
+inline constexpr std::array<std::array<std::uint8_t, 8>, 256> packed_lane_tables = [] {
   std::array<std::array<std::uint8_t, 8>, 256> table{};
   for (std::size_t set = 0; set < table.size(); ++set) {
     std::size_t count = 0;

@@ -7,18 +7,6 @@
 
 namespace supple {
 
-// Sums from left to right, each operation rounded once: error bounds elsewhere rely on it.
-
-inline double dot(const Vec3d& a, const Vec3d& b) {
-  return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-inline Vec3d cross(const Vec3d& a, const Vec3d& b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-inline double length(const Vec3d& v) {
-  return std::sqrt(dot(v, v));
-}
-
 inline bool is_finite(const Vec3d& v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }

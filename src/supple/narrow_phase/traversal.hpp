@@ -24,8 +24,8 @@ struct OctreeView {
   Aabb box;           ///< of all positions
   Vec3d translation;  ///< added to each position
   MovingView moving;  ///< of objects in motion, of which `nodes`, this and the next are read only
-  /// Masks of an `UnfoldedLanes` of these very positions, or null: an object against itself is then not
-  /// looked for in lanes that cannot touch themselves. Candidates are lost thereby, contacts are not.
+  /// Masks of an `SelfCollisionCulling` of these very positions, or null: an object against itself is then
+  /// not looked for in lanes that cannot touch themselves. Candidates are lost thereby, contacts are not.
   const std::uint8_t* unfolded = nullptr;
 };
 /// Whether the descent goes on below the lane.

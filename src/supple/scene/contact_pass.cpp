@@ -72,7 +72,7 @@ void ContactPass::run(std::span<const ContactJob> jobs, std::span<const ContactO
   gather_contacts();
   gather_colliding_vertices();
   stats.contacts = contacts_.size();
-  stats.finish_seconds += timer.lap();
+  stats.sort_and_events_seconds += timer.lap();
 }
 
 /// Splits the jobs into those to be done and those whose outcome is known. Both lists ascend.

@@ -91,7 +91,7 @@ void set_gap(PairExplanation& explanation, const Corners& a, const Corners& b) {
 /// The direction from one centre to the other, and the way between the balls. Balls that do not hold what
 /// they are fitted to may also be empty.
 void set_gap(PairExplanation& explanation, const Vec3d& between_centers) {
-  const double distance = length(between_centers);
+  const double distance = norm(between_centers);
   if (!(distance > 0)) return;
   explanation.axis = between_centers * (1 / distance);
   explanation.distance = distance - explanation.sphere_a.radius - explanation.sphere_b.radius;

@@ -162,24 +162,24 @@ void fill(const MovingObject& a, const MovingObject& b, float latest, ElementPai
 
 /// What the impact says of the elements of a and b.
 void set_impact(ContinuousContact& contact, const Impact& impact) {
-  const auto& w = impact.weights;
+  const auto& w = impact.barycentric;
   contact.certainty = impact.certainty;
-  contact.time = impact.time;
+  contact.toi = impact.toi;
   contact.point = impact.point;
   contact.normal = impact.normal;
   switch (contact.kind) {
     case ElementPairKind::vertex_face:
-      contact.weights_a = {1, 0, 0};
-      contact.weights_b = {w[1], w[2], w[3]};
+      contact.barycentric_a = {1, 0, 0};
+      contact.barycentric_b = {w[1], w[2], w[3]};
       break;
     case ElementPairKind::face_vertex:
-      contact.weights_a = {w[1], w[2], w[3]};
-      contact.weights_b = {1, 0, 0};
+      contact.barycentric_a = {w[1], w[2], w[3]};
+      contact.barycentric_b = {1, 0, 0};
       contact.normal = -1.0 * impact.normal;
       break;
     case ElementPairKind::edge_edge:
-      contact.weights_a = {w[0], w[1], 0};
-      contact.weights_b = {w[2], w[3], 0};
+      contact.barycentric_a = {w[0], w[1], 0};
+      contact.barycentric_b = {w[2], w[3], 0};
       break;
   }
 }
@@ -193,7 +193,7 @@ void ImpactPass::run(std::span<const ContactJob> jobs, std::span<const MovingObj
   add_stats(workers_, timer.lap(), stats);
   gather_contacts();
   stats.contacts = contacts_.size();
-  stats.finish_seconds += timer.lap();
+  stats.sort_and_events_seconds += timer.lap();
 }
 
 std::optional<ContinuousContact> ImpactPass::find_earliest(std::span<const ContactJob> jobs,
@@ -204,8 +204,8 @@ std::optional<ContinuousContact> ImpactPass::find_earliest(std::span<const Conta
   const Worker* best = nullptr;
   for (const Worker& worker : workers_) {
     if (!worker.earliest) continue;
-    if (best == nullptr || std::tie(worker.earliest->time, worker.earliest_key) <
-                               std::tie(best->earliest->time, best->earliest_key)) {
+    if (best == nullptr || std::tie(worker.earliest->toi, worker.earliest_key) <
+                               std::tie(best->earliest->toi, best->earliest_key)) {
       best = &worker;
     }
   }
@@ -314,14 +314,14 @@ void ImpactPass::keep(Key key, const ContinuousContact& contact, Worker& worker)
     worker.found.push_back(contact);
     return;
   }
-  if (worker.earliest && std::tie(worker.earliest->time, worker.earliest_key) < std::tie(contact.time, key)) {
+  if (worker.earliest && std::tie(worker.earliest->toi, worker.earliest_key) < std::tie(contact.toi, key)) {
     return;
   }
   worker.earliest = contact;
   worker.earliest_key = key;
   // Reported times may be early by the tolerance, so that the first of them can be of a pair that touches
   // after the first touch.
-  const float until = round_up(contact.time + impact_time_tolerance);
+  const float until = round_up(contact.toi + toi_tolerance);
   float latest = latest_.load(std::memory_order_relaxed);
   while (until < latest && !latest_.compare_exchange_weak(latest, until, std::memory_order_relaxed)) {
   }

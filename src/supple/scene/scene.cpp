@@ -287,7 +287,7 @@ std::optional<ContinuousContact> Scene::earliest_impact() {
 }
 double Scene::max_step() {
   const auto earliest = implementation_->earliest_impact("max_step");
-  return earliest ? earliest->time : 1;
+  return earliest ? earliest->toi : 1;
 }
 const DetectResult& Scene::result() const {
   return implementation_->result;

@@ -229,7 +229,7 @@ void SceneObject::update_unfolded(const Parallel& parallel) {
     --steps_without_unfolded_;
     return;
   }
-  if (unfolded_.masks().empty()) unfolded_ = UnfoldedLanes(octree_);
+  if (unfolded_.masks().empty()) unfolded_ = SelfCollisionCulling(octree_);
   unfolded_.refit(octree_, start(), end(), parallel);
   has_unfolded_ = true;
   std::size_t lanes = 0, unfolded = 0;

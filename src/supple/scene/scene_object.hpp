@@ -9,8 +9,8 @@
 #include "octree/moving_boxes.hpp"
 #include "octree/object_octree.hpp"
 #include "octree/quality.hpp"
+#include "octree/self_collision_culling.hpp"
 #include "octree/surface_elements.hpp"
-#include "octree/unfolded_lanes.hpp"
 #include "supple/options.hpp"
 #include "supple/result.hpp"
 #include "supple/scene.hpp"
@@ -118,7 +118,7 @@ class SceneObject {
   MovingBoxes moving_boxes_;
   // For objects that are tested against themselves.
   bool passes_over_unfolded_;
-  UnfoldedLanes unfolded_;
+  SelfCollisionCulling unfolded_;
   bool has_unfolded_ = false;                 // of the present positions
   bool was_unfolded_ = false;                 // enough of it to be worth the search, at some time
   std::uint32_t steps_without_unfolded_ = 1;  // finding the boundaries is for objects that go on moving

@@ -61,9 +61,9 @@ void compare(const ObjectPair& pair, std::span<const ContinuousContact> reported
       note(expected, Fault::missed);
       continue;
     }
-    if (found->time > expected.time.low) note(expected, Fault::late);
+    if (found->toi > expected.time.low) note(expected, Fault::late);
     const bool is_certain = found->certainty == ImpactCertainty::certain;
-    if (is_certain && found->time < expected.time.high - impact_time_tolerance) note(expected, Fault::early);
+    if (is_certain && found->toi < expected.time.high - toi_tolerance) note(expected, Fault::early);
     ++found;
   }
   for (; found != reported.end(); ++found) {

@@ -1,5 +1,6 @@
 #include <cstdio>
 
+#include "supple/models.hpp"
 #include "supple/supple.hpp"
 
 int main() {

@@ -202,14 +202,14 @@ void expect_first_impact(const Motion& motion, double separation, int& touching)
   ++touching;
   expect_filter_keeps(relative_motion(motion), separation);
   EXPECT_EQ(impact->certainty, ImpactCertainty::certain);
-  EXPECT_LE(impact->time, truth->low);
-  EXPECT_GE(impact->time, truth->high - impact_time_tolerance);
-  EXPECT_GE(impact->time, 0);
-  for (const double weight : impact->weights) {
+  EXPECT_LE(impact->toi, truth->low);
+  EXPECT_GE(impact->toi, truth->high - toi_tolerance);
+  EXPECT_GE(impact->toi, 0);
+  for (const double weight : impact->barycentric) {
     EXPECT_GE(weight, 0);
     EXPECT_LE(weight, 1);
   }
-  EXPECT_NEAR(std::accumulate(impact->weights.begin(), impact->weights.end(), 0.0), 2, 1e-12);
+  EXPECT_NEAR(std::accumulate(impact->barycentric.begin(), impact->barycentric.end(), 0.0), 2, 1e-12);
   const Vec3d n = impact->normal;
   const double length = std::hypot(n.x, n.y, n.z);
   EXPECT_TRUE(length == 0 || std::abs(length - 1) < 1e-12) << length;
@@ -283,13 +283,13 @@ TEST(FirstImpactDetails, OfAVertexThatFallsOnAFace) {
                                 {{{1, 1, -1}, {0, 0, 0}, {4, 0, 0}, {0, 4, 0}}}};
   const std::optional<Impact> impact = first_impact(motion);
   ASSERT_TRUE(impact);
-  EXPECT_NEAR(impact->time, 0.5, 1e-12);
+  EXPECT_NEAR(impact->toi, 0.5, 1e-12);
   EXPECT_EQ(impact->normal, (Vec3d{0, 0, 1}));
-  EXPECT_NEAR(impact->weights[1], 0.5, 1e-12);
+  EXPECT_NEAR(impact->barycentric[1], 0.5, 1e-12);
   const std::optional<Impact> sooner = first_impact(motion, {.min_separation = 0.5});
   ASSERT_TRUE(sooner);
-  EXPECT_NEAR(sooner->time, 0.25, 1e-9);
-  EXPECT_LE(sooner->time, 0.25);
+  EXPECT_NEAR(sooner->toi, 0.25, 1e-9);
+  EXPECT_LE(sooner->toi, 0.25);
   EXPECT_NEAR(sooner->point.z, 0.25, 1e-9);
   EXPECT_EQ(sooner->normal, (Vec3d{0, 0, 1}));
 }
@@ -301,13 +301,13 @@ TEST(FirstImpactDetails, NormalsPointToWhereTheFirstElementCameFrom) {
     const Paths paths = random_paths(random, 1, 1);
     const EdgeEdgeMotion motion{paths.start, paths.end};
     const std::optional<Impact> impact = first_impact(motion);
-    if (!impact || impact->time < 1e-3) continue;
+    if (!impact || impact->toi < 1e-3) continue;
     // Just before the impact, the two points are apart along the normal.
-    const double t = impact->time - 1e-4;
+    const double t = impact->toi - 1e-4;
     Vec3d gap;
     for (std::size_t i = 0; i < 4; ++i) {
       const Vec3d p = (1 - t) * paths.start[i] + t * paths.end[i];
-      gap = gap + (i < 2 ? 1.0 : -1.0) * impact->weights[i] * p;
+      gap = gap + (i < 2 ? 1.0 : -1.0) * impact->barycentric[i] * p;
     }
     EXPECT_GT(gap.x * impact->normal.x + gap.y * impact->normal.y + gap.z * impact->normal.z, 0) << query;
     ++checked;
@@ -325,7 +325,7 @@ TEST(FirstImpactDetails, DoNotDependOnTheOrderOfTheElements) {
         first_impact(EdgeEdgeMotion{swapped(paths.start), swapped(paths.end)});
     ASSERT_EQ(one.has_value(), other.has_value());
     if (one) {
-      EXPECT_NEAR(one->time, other->time, impact_time_tolerance);
+      EXPECT_NEAR(one->toi, other->toi, toi_tolerance);
     }
   }
 }

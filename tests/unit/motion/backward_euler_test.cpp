@@ -308,8 +308,8 @@ TEST(SymmetricBlock, InverseUndoesIt) {
     block += SymmetricBlock::outer(n[i + 1], 10);
     block.add_diagonal(0.5);
     const Vec3d x = n[i + 2];
-    EXPECT_LT(length(block.inverse(0.5) * (block * x) - x), 1e-11);
-    EXPECT_LT(length(block * (block.inverse(0.5) * x) - x), 1e-11);
+    EXPECT_LT(norm(block.inverse(0.5) * (block * x) - x), 1e-11);
+    EXPECT_LT(norm(block * (block.inverse(0.5) * x) - x), 1e-11);
   }
 }
 

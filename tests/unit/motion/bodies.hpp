@@ -54,7 +54,7 @@ inline std::vector<Vec3d> deformed(const TriangleMesh& mesh, double stretch, dou
 
 inline double largest_difference(std::span<const Vec3d> a, std::span<const Vec3d> b) {
   double largest = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) largest = std::max(largest, length(a[i] - b[i]));
+  for (std::size_t i = 0; i < a.size(); ++i) largest = std::max(largest, norm(a[i] - b[i]));
   return largest;
 }
 

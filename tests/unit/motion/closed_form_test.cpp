@@ -10,7 +10,7 @@ namespace {
 constexpr double pi = 3.14159265358979323846;
 
 double length_of(const MassSpringBody& body) {
-  return length(body.positions()[1] - body.positions()[0]);
+  return norm(body.positions()[1] - body.positions()[0]);
 }
 double rate_of(const MassSpringBody& body) {
   return body.velocities()[1].x - body.velocities()[0].x;
@@ -69,7 +69,7 @@ TEST(FreeFlight, IsExact) {
     body.set_velocities(std::vector<Vec3d>(box.positions.size(), velocity));
     run(body, 2, 128);
     for (std::size_t v = 0; v < box.positions.size(); ++v) {
-      EXPECT_LE(length(body.positions()[v] - (box.positions[v] + 2.0 * velocity)),
+      EXPECT_LE(norm(body.positions()[v] - (box.positions[v] + 2.0 * velocity)),
                 integrator == Integrator::backward_euler ? 1e-13 : 0);
     }
   }
@@ -132,7 +132,7 @@ TEST(HangingChain, EachSpringBearsTheWeightBelow) {
     run(body, 30, 1500);
     for (std::uint32_t v = 0; v + 1 < masses; ++v) {
       const double below = m * g * (masses - 1 - v);
-      EXPECT_NEAR(length(body.positions()[v + 1] - body.positions()[v]), 0.5 + below / k, 1e-9) << v;
+      EXPECT_NEAR(norm(body.positions()[v + 1] - body.positions()[v]), 0.5 + below / k, 1e-9) << v;
     }
     EXPECT_EQ(body.positions()[0], (Vec3d{0, 0, 0}));
     EXPECT_LT(body.energy().kinetic, 1e-18);

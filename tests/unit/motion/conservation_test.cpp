@@ -99,11 +99,11 @@ TEST_P(Momentum, IsKeptToRounding) {
   const double mass = options.vertex_mass * static_cast<double>(body.vertex_count());
   run(body, 2, options.integrator == Integrator::backward_euler ? 40 : 400);
   const double scale = mass;  // of velocities and distances of about 1
-  EXPECT_LT(length(body.momentum() - momentum), 1e-13 * scale);
+  EXPECT_LT(norm(body.momentum() - momentum), 1e-13 * scale);
   if (options.integrator != Integrator::backward_euler) {
-    EXPECT_LT(length(body.angular_momentum() - angular), 1e-12 * scale);
+    EXPECT_LT(norm(body.angular_momentum() - angular), 1e-12 * scale);
   }
-  EXPECT_LT(length(body.center_of_mass() - (start + momentum * (2 / mass))), 1e-12);
+  EXPECT_LT(norm(body.center_of_mass() - (start + momentum * (2 / mass))), 1e-12);
 }
 
 INSTANTIATE_TEST_SUITE_P(

@@ -102,14 +102,14 @@ TEST(AreaForces, AreTheNegativeGradientOfTheirEnergy) {
         EXPECT_NEAR(forces[corner][axis], -(above - below) / (2 * step), 1e-6);
       }
     }
-    EXPECT_LT(length(forces[0] + forces[1] + forces[2]), 1e-15 * length(forces[0]) + 1e-16);
+    EXPECT_LT(norm(forces[0] + forces[1] + forces[2]), 1e-15 * norm(forces[0]) + 1e-16);
   }
 }
 
 TEST(SpringForce, PullsAlongTheSpring) {
   const Vec3d d{3, 4, 0};
-  EXPECT_LT(length(spring_force(d, {}, 2, 0, 4) - Vec3d{2 * 0.6, 2 * 0.8, 0}), 1e-15);
-  EXPECT_LT(length(spring_force(d, {6, 8, 0}, 0, 3, 4) - Vec3d{30 * 0.6, 30 * 0.8, 0}), 1e-14);
+  EXPECT_LT(norm(spring_force(d, {}, 2, 0, 4) - Vec3d{2 * 0.6, 2 * 0.8, 0}), 1e-15);
+  EXPECT_LT(norm(spring_force(d, {6, 8, 0}, 0, 3, 4) - Vec3d{30 * 0.6, 30 * 0.8, 0}), 1e-14);
   EXPECT_EQ(spring_force({}, {1, 1, 1}, 2, 3, 4), (Vec3d{0, 0, 0}));
 }
 

@@ -17,7 +17,7 @@ Strains strains_of(const MassSpringBody& body) {
   Strains strains;
   for (const auto& spring : body.springs()) {
     const double strain =
-        length(body.positions()[spring.b] - body.positions()[spring.a]) / spring.rest_length - 1;
+        norm(body.positions()[spring.b] - body.positions()[spring.a]) / spring.rest_length - 1;
     strains.largest = std::max(strains.largest, strain);
     strains.smallest = std::min(strains.smallest, strain);
   }
@@ -103,7 +103,7 @@ double length_at_rest_after_stretch(double stretch, const MassSpringOptions& opt
   body.set_positions(one_spring(1 + stretch).positions);
   run(body, 20, 2000);
   EXPECT_LT(body.energy().kinetic, 1e-9);
-  EXPECT_NEAR(length(body.positions()[1] - body.positions()[0]), body.springs()[0].rest_length, 1e-5);
+  EXPECT_NEAR(norm(body.positions()[1] - body.positions()[0]), body.springs()[0].rest_length, 1e-5);
   return body.springs()[0].rest_length;
 }
 

@@ -105,7 +105,7 @@ TEST(VolumeForce, BalancesPressureOnAnIcosahedron) {
       body.set_external_forces(scaled(mesh.positions, -inward));
       run(body, 20, 2000);
       EXPECT_LT(s, 0.97);
-      for (const Vec3d& p : body.positions()) EXPECT_NEAR(length(p), s, 1e-9);
+      for (const Vec3d& p : body.positions()) EXPECT_NEAR(norm(p), s, 1e-9);
       EXPECT_NEAR(body.volume(), (is_turned ? -1 : 1) * volume * s * s * s, 1e-8);
       EXPECT_NEAR(body.energy().volume, 0.5 * modulus * volume * std::pow(1 - s * s * s, 2), 1e-7);
     }
@@ -121,10 +121,10 @@ TEST(VolumeForce, LetsAnIcosahedronBreatheAtItsFrequency) {
   body.set_positions(scaled(mesh.positions, 1 + 1e-5));
   run(body, 2 * std::numbers::pi / frequency, 4000);
   for (std::size_t v = 0; v < mesh.positions.size(); ++v)
-    EXPECT_LT(length(body.positions()[v] - mesh.positions[v] * (1 + 1e-5)), 1e-9);
+    EXPECT_LT(norm(body.positions()[v] - mesh.positions[v] * (1 + 1e-5)), 1e-9);
   run(body, std::numbers::pi / frequency, 2000);
   for (std::size_t v = 0; v < mesh.positions.size(); ++v)
-    EXPECT_LT(length(body.positions()[v] - mesh.positions[v] * (1 - 1e-5)), 1e-9);
+    EXPECT_LT(norm(body.positions()[v] - mesh.positions[v] * (1 - 1e-5)), 1e-9);
 }
 
 TEST(VolumeForce, IsTheNegativeGradientOfItsEnergy) {
@@ -163,7 +163,7 @@ TEST(VolumeForce, KeepsEachPartForItself) {
       if (v < 42) {
         EXPECT_GT(dot(body.velocities()[v], mesh.positions[v]), 1e-3);
       } else {
-        EXPECT_LT(length(body.velocities()[v]), 1e-9);
+        EXPECT_LT(norm(body.velocities()[v]), 1e-9);
       }
     }
   }
@@ -214,7 +214,7 @@ TEST(VolumeForce, LeavesFlatPartsAlone) {
       }
       for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
         if (is_finite(mesh.positions[v])) {
-          EXPECT_LT(length(body.positions()[v] - without.positions()[v]), 1e-12);
+          EXPECT_LT(norm(body.positions()[v] - without.positions()[v]), 1e-12);
         }
       }
       EXPECT_TRUE(std::isfinite(body.volume()));

@@ -11,7 +11,7 @@
 #include <set>
 #include <tuple>
 
-#include "octree/unfolded_lanes.hpp"
+#include "octree/self_collision_culling.hpp"
 #include "support/instruction_sets.hpp"
 #include "support/moving_objects.hpp"
 #include "unit/mesh/shared_meshes.hpp"
@@ -365,7 +365,7 @@ void expect_known_contacts(const std::string& name, const std::string& frame_0, 
     }
   }
   ASSERT_FALSE(touching.empty());
-  UnfoldedLanes unfolded(object.octree);
+  SelfCollisionCulling unfolded(object.octree);
   unfolded.refit(object.octree, object.start, object.end, Parallel(1));
   for (const bool skip_unfolded : {false, true}) {
     OctreeView view = object.view();
@@ -392,7 +392,7 @@ void expect_known_contacts(const std::string& name, const std::string& frame_0, 
 TEST(ElementCandidates, LeaveOutWhatUnfoldedLanesCannotTouch) {
   const TriangleMesh mesh = crumpled_sheet(40, 30, 0.004, 5);
   const MovingObject object(mesh, displaced(mesh, 0.004, 6));
-  UnfoldedLanes unfolded(object.octree);
+  SelfCollisionCulling unfolded(object.octree);
   unfolded.refit(object.octree, object.start, object.end, Parallel(1));
   const auto candidates = [&](bool skip_unfolded, double separation) {
     OctreeView view = object.view();

@@ -57,7 +57,7 @@ TEST_P(InEveryMode, NotWhatIsMeasuredOrOfTheFile) {
     c.header.scene_file = "other";
     StepStats& stats = c.frames[1].stats;
     stats.refit_seconds = stats.broad_phase_seconds = stats.traversal_seconds = stats.exact_seconds =
-        stats.finish_seconds = stats.total_seconds = 9;
+        stats.sort_and_events_seconds = stats.total_seconds = 9;
     stats.node_pairs_visited += 1;
     stats.boxes_tested += 1;
   }));
@@ -171,9 +171,9 @@ TEST_P(OfContinuousContacts, EveryField) {
     EXPECT_NE(difference->what.find(std::string(", ") + field + ": "), std::string::npos) << difference->what;
   };
   change("certainty", [](ContinuousContact& c) { c.certainty = ImpactCertainty::within_tolerance; });
-  change("time", [](ContinuousContact& c) { c.time += 1e-3; });
-  change("weights_a", [](ContinuousContact& c) { c.weights_a[1] += 1e-3; });
-  change("weights_b", [](ContinuousContact& c) { c.weights_b[2] += 1e-3; });
+  change("time", [](ContinuousContact& c) { c.toi += 1e-3; });
+  change("barycentric_a", [](ContinuousContact& c) { c.barycentric_a[1] += 1e-3; });
+  change("barycentric_b", [](ContinuousContact& c) { c.barycentric_b[2] += 1e-3; });
   change("point", [](ContinuousContact& c) { c.point.y += 1e-3; });
   change("normal", [](ContinuousContact& c) { c.normal.z += 1e-3; });
   expect(2, "continuous contact 0: ", [](Contents& c) {

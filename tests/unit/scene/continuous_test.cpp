@@ -113,10 +113,10 @@ TEST_P(ContinuousScenes, FindTheEarliestOfAll) {
       Scene scene = scene_of(objects, continuous(0, threads));
       const std::vector<ContinuousContact> all = contacts_of(scene);
       const auto first = std::min_element(all.begin(), all.end(),
-                                          [](const auto& p, const auto& q) { return p.time < q.time; });
+                                          [](const auto& p, const auto& q) { return p.toi < q.toi; });
       ASSERT_NE(first, all.end());
       EXPECT_EQ(scene.earliest_impact(), *first) << seed;
-      EXPECT_EQ(scene.max_step(), first->time);
+      EXPECT_EQ(scene.max_step(), first->toi);
     }
   }
 }
@@ -171,13 +171,13 @@ TEST(ContinuousContacts, ATriangleFallsOnAnother) {
   EXPECT_EQ(contact.kind, ElementPairKind::face_vertex);
   EXPECT_EQ(contact.element_a, (std::array{0u, 0u}));
   EXPECT_EQ(contact.element_b, (std::array{0u, 0u}));
-  EXPECT_LE(contact.time, 0.5);
-  EXPECT_NEAR(contact.time, 0.5, 1e-9);
+  EXPECT_LE(contact.toi, 0.5);
+  EXPECT_NEAR(contact.toi, 0.5, 1e-9);
   EXPECT_EQ(contact.certainty, ImpactCertainty::certain);
-  EXPECT_NEAR(contact.weights_a[0], 0.5, 1e-9);
-  EXPECT_NEAR(contact.weights_a[1], 0.25, 1e-9);
-  EXPECT_NEAR(contact.weights_a[2], 0.25, 1e-9);
-  EXPECT_EQ(contact.weights_b, (std::array{1.0, 0.0, 0.0}));
+  EXPECT_NEAR(contact.barycentric_a[0], 0.5, 1e-9);
+  EXPECT_NEAR(contact.barycentric_a[1], 0.25, 1e-9);
+  EXPECT_NEAR(contact.barycentric_a[2], 0.25, 1e-9);
+  EXPECT_EQ(contact.barycentric_b, (std::array{1.0, 0.0, 0.0}));
   EXPECT_NEAR(contact.point.x, 1, 1e-9);
   EXPECT_NEAR(contact.point.z, 0, 1e-9);
   EXPECT_EQ(contact.normal, (Vec3d{0, 0, -1}));  // from the stone to the floor, which is a
@@ -218,7 +218,7 @@ TEST(ContinuousContacts, OfAnObjectAtRestAreAtTheStart) {
   const ObjectId other = scene.add({"upright", {{1, 1, 0}, {1, 1, 1}, {2, 1, 1}}, {{0, 1, 2}}});
   const std::vector<ContinuousContact> at_rest = contacts_of(scene);
   ASSERT_FALSE(at_rest.empty());
-  for (const ContinuousContact& contact : at_rest) EXPECT_EQ(contact.time, 0);
+  for (const ContinuousContact& contact : at_rest) EXPECT_EQ(contact.toi, 0);
   scene.translate(other, {0, 0, 10});
   EXPECT_TRUE(contacts_of(scene).empty());
   scene.set_transform(other, {.translation = {0, 0, 0}});

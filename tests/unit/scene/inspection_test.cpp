@@ -114,7 +114,7 @@ bool holds(const Aabb& box, const std::array<Vec3d, 3>& points) {
 bool holds(const BoundingSphere& sphere, const std::array<Vec3d, 3>& points) {
   return std::all_of(points.begin(), points.end(), [&](const Vec3d& p) {
     const Vec3d from{p.x - sphere.center.x, p.y - sphere.center.y, p.z - sphere.center.z};
-    return length(from) <= sphere.radius * (1 + 1e-12) || std::isinf(sphere.radius);
+    return norm(from) <= sphere.radius * (1 + 1e-12) || std::isinf(sphere.radius);
   });
 }
 
@@ -169,7 +169,7 @@ void check_explanation(const Known& known, const Named& p, const Named& q, bool 
     expect_apart(e, a, b);
   } else {
     EXPECT_GE(e.distance, 0);
-    EXPECT_NEAR(length(e.axis), 1, 1e-12);
+    EXPECT_NEAR(norm(e.axis), 1, 1e-12);
     // Closest points are as good as rounding lets them be: of slivers, within a small part of their size.
     EXPECT_GE(gap_along(e.axis, a, b), e.distance - 1e-6 * size_of(a, b) - smallest);
   }

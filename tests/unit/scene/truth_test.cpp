@@ -175,9 +175,9 @@ TEST_F(Truth, StepsTouchWhereAndWhenExactArithmeticSays) {
     for (const ContinuousContact& contact : scene.detect().continuous_contacts) {
       if (contact.kind == ElementPairKind::edge_edge) {
         const std::uint32_t a = number(contact.element_a), b = number(contact.element_b);
-        found["ee"][std::minmax(a, b)] = contact.time;
+        found["ee"][std::minmax(a, b)] = contact.toi;
       } else {
-        found["vf"][{contact.element_a[0], contact.element_b[0]}] = contact.time;
+        found["vf"][{contact.element_a[0], contact.element_b[0]}] = contact.toi;
       }
     }
     expect_touching(found["vf"], expected["touching_vf"]);
@@ -193,9 +193,8 @@ TEST_F(Truth, StepsTouchWhereAndWhenExactArithmeticSays) {
       const auto contact = found[kind].find({first, second});
       ASSERT_NE(contact, found[kind].end()) << kind << ' ' << first << ' ' << second;
       EXPECT_LE(contact->second, time + printed) << kind << ' ' << first << ' ' << second;
-      EXPECT_GE(contact->second, time - impact_time_tolerance - printed)
-          << kind << ' ' << first << ' ' << second;
-      EXPECT_LE(earliest->time, time + printed);
+      EXPECT_GE(contact->second, time - toi_tolerance - printed) << kind << ' ' << first << ' ' << second;
+      EXPECT_LE(earliest->toi, time + printed);
     }
   }
 }

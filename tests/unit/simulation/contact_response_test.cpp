@@ -57,7 +57,7 @@ TEST(ContactResponse, IsOffByDefault) {
   const ObjectId id = simulation.add(placed(make_icosphere(2), 0.2, {-0.5, 0, 0}), {}, motion);
   simulation.add(placed(make_icosphere(2), 0.2, {0, 0, 0}));
   for (int step = 0; step < 100; ++step) simulation.step();
-  EXPECT_LT(length(simulation.body(id)->mean_velocity() - Vec3d{2, 0, 0}), 1e-12);
+  EXPECT_LT(norm(simulation.body(id)->mean_velocity() - Vec3d{2, 0, 0}), 1e-12);
   EXPECT_GT(simulation.detect().contacts.size(), 0u);
 }
 
@@ -78,7 +78,7 @@ TEST(ContactResponse, BallsBounceAndKeepTheirMomentum) {
     std::size_t intersections = 0;
     for (int step = 0; step < 400; ++step) {
       intersections += simulation.step().contacts.size();
-      ASSERT_LT(length(momentum_of(simulation).linear - before.linear), 1e-13);
+      ASSERT_LT(norm(momentum_of(simulation).linear - before.linear), 1e-13);
     }
     EXPECT_EQ(intersections, 0u);
     const double left_speed = simulation.body(left)->mean_velocity().x;
@@ -107,7 +107,7 @@ TEST(ContactResponse, ClothLiesOnABall) {
   EXPECT_EQ(intersections, 0u);
   double highest = -1, lowest = 1;
   for (const Vec3d& p : simulation.positions(cloth)) {
-    EXPECT_GT(length(p), 0.28);
+    EXPECT_GT(norm(p), 0.28);
     highest = std::max(highest, p.y);
     lowest = std::min(lowest, p.y);
   }
@@ -133,11 +133,11 @@ TEST(ContactResponse, RestitutionReturnsSpeedAndFrictionTakesIt) {
     simulation.step();
     return simulation.body(id)->mean_velocity();
   };
-  EXPECT_LT(length(velocity_after(0, 0) - Vec3d{1, 0, 0}), 1e-9);
-  EXPECT_LT(length(velocity_after(1, 0) - Vec3d{1, 4, 0}), 1e-9);
-  EXPECT_LT(length(velocity_after(0.5, 0) - Vec3d{1, 2, 0}), 1e-9);
-  EXPECT_LT(length(velocity_after(0, 0.125) - Vec3d{0.5, 0, 0}), 1e-9);
-  EXPECT_LT(length(velocity_after(0, 1) - Vec3d{0, 0, 0}), 1e-9);
+  EXPECT_LT(norm(velocity_after(0, 0) - Vec3d{1, 0, 0}), 1e-9);
+  EXPECT_LT(norm(velocity_after(1, 0) - Vec3d{1, 4, 0}), 1e-9);
+  EXPECT_LT(norm(velocity_after(0.5, 0) - Vec3d{1, 2, 0}), 1e-9);
+  EXPECT_LT(norm(velocity_after(0, 0.125) - Vec3d{0.5, 0, 0}), 1e-9);
+  EXPECT_LT(norm(velocity_after(0, 1) - Vec3d{0, 0, 0}), 1e-9);
 }
 
 TEST(ContactResponse, PushesApartWhatIsTooNear) {
@@ -243,7 +243,7 @@ TEST(ContactResponse, FeedsNoEnergyToBallsThatMeetAtLongSteps) {
   for (int step = 0; step < 200; ++step) {
     simulation.step();
     ASSERT_LT(energy_of(simulation), 1.02 * energy_before) << "step " << step;
-    ASSERT_LT(length(momentum_of(simulation).linear - before.linear), 1e-12);
+    ASSERT_LT(norm(momentum_of(simulation).linear - before.linear), 1e-12);
   }
   EXPECT_LT(energy_of(simulation), 0.8 * energy_before);
 }
@@ -283,7 +283,7 @@ TEST(ContactResponse, SurvivesRemovalAndTeleports) {
   EXPECT_EQ(second.index, first.index);
   simulation.set_positions(still, placed(make_icosphere(2), 0.2, {0, 5, 0}).positions);
   for (int step = 0; step < 300; ++step) simulation.step();
-  EXPECT_LT(length(simulation.body(second)->mean_velocity() - Vec3d{1, 0, 0}), 1e-12);
+  EXPECT_LT(norm(simulation.body(second)->mean_velocity() - Vec3d{1, 0, 0}), 1e-12);
 }
 
 }  // namespace

@@ -25,10 +25,10 @@ TEST(DeformingForces, SumToZeroAndTurnNothing) {
   for (std::size_t i = 0; i < forces.size(); ++i) {
     sum = sum + forces[i];
     torque = torque + cross(mesh.positions[i], forces[i]);
-    squares += length(forces[i]) * length(forces[i]);
+    squares += norm(forces[i]) * norm(forces[i]);
   }
-  EXPECT_LT(length(sum), 1e-10);
-  EXPECT_LT(length(torque), 1e-10);
+  EXPECT_LT(norm(sum), 1e-10);
+  EXPECT_LT(norm(torque), 1e-10);
   EXPECT_NEAR(std::sqrt(squares / static_cast<double>(forces.size())), 2, 1e-12);
 }
 
@@ -51,11 +51,11 @@ TEST(DeformingForces, LeaveEachPieceInPlace) {
     torque[piece] = torque[piece] + cross(mesh.positions[i], forces[i]);
   }
   for (std::size_t piece = 0; piece < 2; ++piece) {
-    EXPECT_LT(length(sum[piece]), 1e-10);
-    EXPECT_LT(length(torque[piece]), 1e-10);
+    EXPECT_LT(norm(sum[piece]), 1e-10);
+    EXPECT_LT(norm(torque[piece]), 1e-10);
   }
-  EXPECT_GT(length(forces[0]), 0.01);
-  EXPECT_GT(length(forces[first]), 0.01);
+  EXPECT_GT(norm(forces[0]), 0.01);
+  EXPECT_GT(norm(forces[first]), 0.01);
 }
 
 TEST(DeformingForces, PullAlikeAtNeighbours) {
@@ -64,8 +64,8 @@ TEST(DeformingForces, PullAlikeAtNeighbours) {
   const std::vector<Vec3d> forces =
       deforming_forces(mesh.positions, MassSpringBody(mesh).springs(), 1, random);
   for (const Triangle& t : mesh.triangles) {
-    const double edge = length(mesh.positions[t[0]] - mesh.positions[t[1]]);
-    EXPECT_LT(length(forces[t[0]] - forces[t[1]]), 6 * edge);
+    const double edge = norm(mesh.positions[t[0]] - mesh.positions[t[1]]);
+    EXPECT_LT(norm(forces[t[0]] - forces[t[1]]), 6 * edge);
   }
 }
 
@@ -77,8 +77,8 @@ TEST(DeformingForces, OfNothingPointsAndLines) {
   const std::vector<Vec3d> line{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}};
   const std::vector<MassSpringBody::Spring> line_springs{{0, 1, 1}, {1, 2, 1}};
   const std::vector<Vec3d> forces = deforming_forces(line, line_springs, 1, random);
-  EXPECT_LT(length(forces[0] + forces[1] + forces[2]), 1e-15);
-  EXPECT_GT(length(forces[0]), 0.1);
+  EXPECT_LT(norm(forces[0] + forces[1] + forces[2]), 1e-15);
+  EXPECT_GT(norm(forces[0]), 0.1);
 }
 
 TEST(DeformingForces, LeaveOutWhatIsNotFinite) {
@@ -90,7 +90,7 @@ TEST(DeformingForces, LeaveOutWhatIsNotFinite) {
   EXPECT_EQ(forces[4], Vec3d{});
   Vec3d sum;
   for (const Vec3d& force : forces) sum = sum + force;
-  EXPECT_LT(length(sum), 1e-12);
+  EXPECT_LT(norm(sum), 1e-12);
 }
 
 }  // namespace

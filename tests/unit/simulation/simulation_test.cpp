@@ -292,20 +292,20 @@ TEST(Simulation, DeformsInPlaceAndThenSendsOff) {
   const Vec3d centre = body.center_of_mass();
   double deformation = 0;
   for (int step = 0; step < 30; ++step) {
-    EXPECT_LT(length(body.mean_velocity()), 1e-12);
+    EXPECT_LT(norm(body.mean_velocity()), 1e-12);
     simulation.step();
     for (std::size_t i = 0; i < ball.positions.size(); ++i)
-      deformation = std::max(deformation, length(simulation.positions(id)[i] - ball.positions[i]));
+      deformation = std::max(deformation, norm(simulation.positions(id)[i] - ball.positions[i]));
   }
-  EXPECT_LT(length(body.center_of_mass() - centre), 1e-12);
+  EXPECT_LT(norm(body.center_of_mass() - centre), 1e-12);
   EXPECT_GT(deformation, 0.05);
   EXPECT_LT(deformation, 1);
 
   const Vec3d sent = body.mean_velocity();
-  EXPECT_NEAR(length(sent - Vec3d{1, 0, 0}), 0.5, 1e-12);
+  EXPECT_NEAR(norm(sent - Vec3d{1, 0, 0}), 0.5, 1e-12);
   for (int step = 0; step < 20; ++step) simulation.step();
-  EXPECT_LT(length(body.mean_velocity() - sent), 1e-12);
-  EXPECT_LT(length(body.center_of_mass() - centre - sent * 0.2), 1e-12);
+  EXPECT_LT(norm(body.mean_velocity() - sent), 1e-12);
+  EXPECT_LT(norm(body.center_of_mass() - centre - sent * 0.2), 1e-12);
 }
 
 TEST(Simulation, SeedsRepeatAndObjectsDiffer) {
@@ -326,7 +326,7 @@ TEST(Simulation, SeedsRepeatAndObjectsDiffer) {
   const std::vector<Vec3d> first = velocities(1, std::nullopt);
   EXPECT_EQ(first, velocities(1, std::nullopt));
   for (std::size_t i = 0; i < first.size(); ++i) {
-    EXPECT_NEAR(length(first[i]), 1, 1e-14);
+    EXPECT_NEAR(norm(first[i]), 1, 1e-14);
     for (std::size_t j = 0; j < i; ++j) EXPECT_NE(first[i], first[j]);
     EXPECT_NE(first[i], velocities(2, std::nullopt)[i]);
   }
@@ -345,7 +345,7 @@ TEST(Simulation, TheBorderTurnsBackAndTakesNoSpeed) {
     for (std::size_t i = 0; i < ids.size(); ++i) {
       const MassSpringBody& body = *simulation.body(ids[i]);
       const Vec3d velocity = body.mean_velocity();
-      ASSERT_NEAR(length(velocity), simulation.time() > 0.201 ? 1 : length(velocity), 1e-9);
+      ASSERT_NEAR(norm(velocity), simulation.time() > 0.201 ? 1 : norm(velocity), 1e-9);
       // A shape that quivers may reach a little further.
       const Aabb box = simulation.scene().bounds(ids[i]);
       for (int axis = 0; axis < 3; ++axis) {
@@ -547,13 +547,13 @@ TEST(Simulation, HandlesPullAndThenHold) {
     const double part = std::min(step * 0.01 / 0.105, 1.0), other = std::min(step * 0.01 / 0.033, 1.0);
     for (const std::uint32_t v : {23u, 24u}) {
       const Vec3d expected = cloth.positions[v] + part * Vec3d{0.5, 0, 0.25};
-      EXPECT_LT(length(simulation.positions(id)[v] - expected), 1e-12);
+      EXPECT_LT(norm(simulation.positions(id)[v] - expected), 1e-12);
     }
-    EXPECT_LT(length(simulation.positions(id)[4] - cloth.positions[4] - other * Vec3d{0, 1, 0}), 1e-12);
+    EXPECT_LT(norm(simulation.positions(id)[4] - cloth.positions[4] - other * Vec3d{0, 1, 0}), 1e-12);
     EXPECT_EQ(simulation.positions(id)[0], cloth.positions[0]);
   }
   EXPECT_EQ(simulation.body(id)->velocities()[24], Vec3d{});
-  EXPECT_GT(length(simulation.positions(id)[18] - cloth.positions[18]), 0.01);
+  EXPECT_GT(norm(simulation.positions(id)[18] - cloth.positions[18]), 0.01);
 }
 
 TEST(Simulation, ReportsWhatTheUserWroteThatIsNotFinite) {

@@ -13,7 +13,7 @@
 #include <thread>
 #include <utility>
 
-#include "session/show.hpp"
+#include "session/scene_view.hpp"
 #include "supple/error.hpp"
 #include "supple/models.hpp"
 #include "unit/viewer/page_client.hpp"
@@ -28,8 +28,8 @@ using Kind = ViewerMessage::Kind;
 constexpr std::string_view page = "<!doctype html><title>The page</title>";
 
 /// Two boxes that bend.
-Show small_show() {
-  Show show;
+SceneView small_show() {
+  SceneView show;
   show.title = "small";
   show.simulation.scene.threads = 1;
   for (int i = 0; i < 2; ++i) {
@@ -48,7 +48,7 @@ class ViewerServer : public testing::Test {
     alarm(0);
   }
 
-  void start(Show show = small_show(), std::chrono::milliseconds patience = 30s) {
+  void start(SceneView show = small_show(), std::chrono::milliseconds patience = 30s) {
     server_.emplace(Session(std::move(show)), ServerOptions{"127.0.0.1", 0, page, patience});
     thread_ = std::thread([this] {
       try {
@@ -220,8 +220,8 @@ TEST_F(ViewerServer, ASecondPageTakesOver) {
 }
 
 TEST_F(ViewerServer, APageThatDoesNotReadIsTakenOverToo) {
-  Show show = small_show();
-  show.objects.push_back({make_cloth(300, 300), {}, Sway{{}, 0.1}});
+  SceneView show = small_show();
+  show.objects.push_back({make_cloth(300, 300), {}, WaveMotion{{}, 0.1}});
   start(std::move(show));
   PageClient first = connect();
   first.send(R"({"do": "speed", "factor": 0})");
@@ -355,7 +355,7 @@ class BrokenFrames : public Frames {
 };
 
 TEST_F(ViewerServer, AnUnforeseenFailureEndsItWithTheReason) {
-  Show show;
+  SceneView show;
   show.objects.push_back({make_box({1, 1, 1}, 1), {}, {}});
   show.frames = std::make_shared<const BrokenFrames>();
   start(std::move(show));
@@ -368,9 +368,9 @@ TEST_F(ViewerServer, AnUnforeseenFailureEndsItWithTheReason) {
 }
 
 TEST_F(ViewerServer, LargeFramesArriveWhole) {
-  Show show;
+  SceneView show;
   show.simulation.scene.threads = 1;
-  show.objects.push_back({make_cloth(320, 320), {}, Sway{{}, 0.1}});
+  show.objects.push_back({make_cloth(320, 320), {}, WaveMotion{{}, 0.1}});
   const std::size_t vertices = show.objects[0].mesh.positions.size();
   EXPECT_GT(vertices, 100'000u);
   start(std::move(show));
@@ -400,7 +400,7 @@ TEST(ViewerServerOptions, SaysWhatIsWrongWithAnAddress) {
   };
   const Server first(Session(small_show()), {"127.0.0.1", 0, page});
   EXPECT_NE(error_of("127.0.0.1", first.port()).find("Address already in use"), std::string::npos);
-  EXPECT_NE(error_of("somewhere", 0).find("somewhere: is no IP address"), std::string::npos);
+  EXPECT_NE(error_of("somewhere", 0).find("somewhere: it is not an IP address"), std::string::npos);
   EXPECT_NE(error_of("203.0.113.1", 0).find("203.0.113.1, port 0: cannot listen"), std::string::npos);
   EXPECT_TRUE(is_loopback("127.0.0.1"));
   EXPECT_TRUE(is_loopback("::1"));

@@ -23,7 +23,7 @@ double statistic(const ViewerMessage& scene, const ViewerMessage& frame, const s
 }
 
 TEST(ViewerFrames, ShowsWhatTheLibraryFinds) {
-  Show show = touching_balls();
+  SceneView show = touching_balls();
   Simulation simulation = simulation_of(show);
   TestPage page(show);
   const ViewerMessage scene = page.scene();
@@ -63,7 +63,7 @@ TEST(ViewerFrames, NormalsAreThoseOfTriangleBOrOfAWhereBHasNone) {
   }
 
   // A needle without area through a face: the face's normal, whichever comes first.
-  Show needle;
+  SceneView needle;
   needle.objects.push_back({TriangleMesh{"face", {{-1, -1, 0}, {1, -1, 0}, {0, 1, 0}}, {{0, 1, 2}}}});
   needle.objects.push_back({TriangleMesh{"needle", {{0, 0, -1}, {0, 0, 1}, {0, 0, 1}}, {{0, 1, 2}}}});
   TestPage second(needle);
@@ -90,7 +90,7 @@ TEST(ViewerFrames, EventsAreThoseSinceTheLastFrame) {
 }
 
 TEST(ViewerFrames, ContinuousContactsAreThoseOfTheLibrary) {
-  Show show = touching_balls();
+  SceneView show = touching_balls();
   show.simulation.scene.contacts = ContactMode::continuous;
   Simulation simulation = simulation_of(show);
   TestPage page(show);
@@ -116,7 +116,7 @@ TEST(ViewerFrames, ContinuousContactsAreThoseOfTheLibrary) {
                     static_cast<std::uint32_t>(c.certainty)};
       ASSERT_EQ(ids[i], row);
       EXPECT_EQ((Vec3f{points[i][0], points[i][1], points[i][2]}), as_floats(std::array{c.point}, center)[0]);
-      EXPECT_EQ(points[i][3], static_cast<float>(c.time));
+      EXPECT_EQ(points[i][3], static_cast<float>(c.toi));
       EXPECT_EQ((Vec3f{points[i][4], points[i][5], points[i][6]}), as_floats(std::array{c.normal}, {})[0]);
     }
     EXPECT_TRUE(frame.values<std::byte>(34).empty());
@@ -127,7 +127,7 @@ TEST(ViewerFrames, ContinuousContactsAreThoseOfTheLibrary) {
 TEST(ViewerFrames, WhatIsNoNumberIsNaN) {
   constexpr double nan = std::numeric_limits<double>::quiet_NaN(),
                    infinity = std::numeric_limits<double>::infinity();
-  Show show;
+  SceneView show;
   show.objects = {test_ball("whole", {}), test_ball("broken", {1.5, 0, 0})};
   show.objects[1].mesh.positions[4] = {1, nan, -infinity};
   show.objects[1].mesh.positions[7] = {1e300, 0, 0};
@@ -145,8 +145,8 @@ TEST(ViewerFrames, WhatIsNoNumberIsNaN) {
 
 TEST(ViewerFrames, FarAwayFloatsStayPrecise) {
   const Vec3d far{1e7, -2e7, 3e7};
-  Show show = touching_balls();
-  for (ShowObject& object : show.objects)
+  SceneView show = touching_balls();
+  for (ViewedObject& object : show.objects)
     for (Vec3d& p : object.mesh.positions) p = p + far;
   TestPage page(show);
   const ViewerMessage scene = page.scene();

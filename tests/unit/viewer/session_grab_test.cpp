@@ -22,8 +22,8 @@ std::vector<Vec3f> positions(const ViewerMessage& frame, std::uint32_t object) {
 }
 
 /// Two balls of radius 1 that are 0.5 apart; the left one moves, or not.
-Show apart(decltype(ShowObject::motion) motion = {}, std::uint32_t frequency = 8) {
-  Show show;
+SceneView apart(decltype(ViewedObject::motion) motion = {}, std::uint32_t frequency = 8) {
+  SceneView show;
   show.objects = {test_ball("left", {}, frequency), test_ball("right", {2.5, 0, 0}, frequency)};
   show.objects[0].motion = std::move(motion);
   return show;
@@ -40,7 +40,7 @@ double distance(Vec3f a, Vec3f b) {
 }
 
 TEST(ViewerGrab, AnObjectWithoutMotionIsBentSmoothlyAndTouchesAtOnce) {
-  const Show show = apart();
+  const SceneView show = apart();
   TestPage page(show);
   const ViewerMessage scene = page.scene();
   const ViewerMessage before = page.frame();
@@ -84,7 +84,7 @@ TEST(ViewerGrab, AnObjectWithoutMotionIsBentSmoothlyAndTouchesAtOnce) {
 }
 
 TEST(ViewerGrab, ABentObjectIsExplainedWhereItIs) {
-  const Show show = apart();
+  const SceneView show = apart();
   TestPage page(show);
   const ViewerMessage scene = page.scene();
   page.ask({{"do", "grab"}, {"object", 0}, {"vertex", foremost(show.objects[0].mesh)}});
@@ -98,7 +98,7 @@ TEST(ViewerGrab, ABentObjectIsExplainedWhereItIs) {
 }
 
 TEST(ViewerGrab, AnObjectInWavesIsBentOnTopOfThem) {
-  const Show show = apart(Sway{.amplitude = 0.02});
+  const SceneView show = apart(WaveMotion{.amplitude = 0.02});
   TestPage page(show);
   const ViewerMessage scene = page.scene();
   page.ask({{"do", "pause"}});
@@ -163,7 +163,7 @@ std::vector<MassSpringMotion> materials() {
 
 TEST(ViewerGrab, ABodyIsPulledIntoContactAndHeldThere) {
   for (const MassSpringMotion& motion : materials()) {
-    const Show show = apart(motion, 4);
+    const SceneView show = apart(motion, 4);
     SCOPED_TRACE(std::to_string(static_cast<int>(motion.springs.integrator)) + " " +
                  std::to_string(motion.springs.stiffness));
     TestPage page(show);
@@ -197,7 +197,7 @@ TEST(ViewerGrab, NoDragMakesABodyExplode) {
   for (const MassSpringMotion& motion : materials()) {
     SCOPED_TRACE(std::to_string(static_cast<int>(motion.springs.integrator)) + " " +
                  std::to_string(motion.springs.stiffness));
-    const Show show = apart(motion, 4);
+    const SceneView show = apart(motion, 4);
     TestPage page(show);
     page.scene();
     page.ask({{"do", "speed"}, {"factor", 0}});
@@ -218,9 +218,9 @@ TEST(ViewerGrab, NoDragMakesABodyExplode) {
 }
 
 /// The block of `scenes/soft_block.toml`: its bottom is held, and pulled at its top.
-Show soft_block() {
-  Show show;
-  ShowObject block{make_box({2, 1, 2}, 8), {.name = "block", .self_collision = true}};
+SceneView soft_block() {
+  SceneView show;
+  ViewedObject block{make_box({2, 1, 2}, 8), {.name = "block", .self_collision = true}};
   MassSpringMotion motion;
   motion.springs = {.integrator = Integrator::backward_euler,
                     .vertex_mass = 0.01,
@@ -243,14 +243,14 @@ Show soft_block() {
 }
 
 TEST(ViewerGrab, FixedVerticesStayWhereTheyAreHeld) {
-  const Show show = soft_block();
+  const SceneView show = soft_block();
   const TriangleMesh& mesh = show.objects[0].mesh;
   const auto& motion = std::get<MassSpringMotion>(show.objects[0].motion);
   TestPage page(show);
   const ViewerMessage scene = page.scene();
   for (const std::uint32_t fixed : {motion.springs.fixed_vertices[0], motion.handles[0].vertices[0]}) {
     EXPECT_EQ(page.failure("{\"do\": \"grab\", \"object\": 0, \"vertex\": " + std::to_string(fixed) + "}"),
-              "grab: vertex " + std::to_string(fixed) + " of block is a fixed one; take another one");
+              "grab: vertex " + std::to_string(fixed) + " of block is fixed; choose another one");
   }
   const std::uint32_t vertex = foremost(mesh) + 0;
   std::uint32_t corner = vertex;
@@ -277,12 +277,12 @@ TEST(ViewerGrab, FixedVerticesStayWhereTheyAreHeld) {
 }
 
 TEST(ViewerGrab, StaticObjectsAndRecordingsAreRefusedInWords) {
-  Show show = apart();
+  SceneView show = apart();
   show.objects[0].options.is_static = true;
   TestPage page(show);
   page.scene();
   EXPECT_EQ(page.failure(R"({"do": "grab", "object": 0, "vertex": 0})"),
-            "grab: left is static: it neither moves nor bends");
+            "grab: left is static: it cannot be moved or bent");
   page.ask({{"do", "grab"}, {"object", 1}, {"vertex", 0}});
   EXPECT_FALSE(page.failure(R"({"do": "grab", "object": 0, "vertex": 0})").empty());
   EXPECT_FALSE(page.failure(R"({"do": "drag", "to": [0, 0, 0]})").empty()) << "the other one was let go";
@@ -298,7 +298,7 @@ TEST(ViewerGrab, ReleasedByItselfWhenThePageGoes) {
 }
 
 TEST(ViewerGrab, ContinuousContactsSeeWhereAThingWasBentTo) {
-  Show show = apart();
+  SceneView show = apart();
   show.simulation.scene.contacts = ContactMode::continuous;
   TestPage page(show);
   const ViewerMessage scene = page.scene();

@@ -11,14 +11,14 @@ namespace supple::viewer {
 namespace {
 
 /// Balls that touch or nearly do, of which one waves and one is tested against itself.
-Show crowd(BoundingVolume volume = BoundingVolume::aabb) {
-  Show show;
+SceneView crowd(BoundingVolume volume = BoundingVolume::aabb) {
+  SceneView show;
   show.simulation.scene.bounding_volume = volume;
   show.simulation.scene.broad_phase = BroadPhaseMethod::octree;  // which has regions
   for (int i = 0; i < 6; ++i)
     show.objects.push_back(
         test_ball(("ball " + std::to_string(i)).c_str(), {1.7 * (i % 3), 1.8 * (i / 3), 0.1 * i}, 6));
-  show.objects[1].motion = Sway{.velocity = {0.2, -0.1, 0.3}, .amplitude = 0.1};
+  show.objects[1].motion = WaveMotion{.velocity = {0.2, -0.1, 0.3}, .amplitude = 0.1};
   show.objects[2].options.self_collision = true;
   show.objects[4].options.is_static = show.objects[5].options.is_static = true;
   return show;
@@ -72,7 +72,7 @@ TEST(ViewerLayers, HaveNoRegionsUnlessTheOctreeRan) {
 
 TEST(ViewerLayers, AreWhatTheLibrarySays) {
   for (const BoundingVolume volume : {BoundingVolume::aabb, BoundingVolume::sphere}) {
-    const Show show = crowd(volume);
+    const SceneView show = crowd(volume);
     Simulation simulation = simulation_of(show);
     TestPage page(show);
     const Vec3d center = center_of(page.scene());
@@ -123,9 +123,9 @@ TEST(ViewerLayers, AreWhatTheLibrarySays) {
 /// The paper's output is that of a scene which was made to give it.
 TEST(ViewerLayers, CollidingVerticesAreThoseOfASceneThatGivesThem) {
   for (const ContactMode contacts : {ContactMode::intersection, ContactMode::none, ContactMode::continuous}) {
-    Show show = crowd();
+    SceneView show = crowd();
     show.simulation.scene.contacts = contacts;
-    Show giving = show;
+    SceneView giving = show;
     giving.simulation.scene.contacts = ContactMode::intersection;
     giving.simulation.scene.colliding_vertices = true;
     Simulation simulation = simulation_of(giving);
@@ -152,9 +152,9 @@ TEST(ViewerLayers, CollidingVerticesAreThoseOfASceneThatGivesThem) {
 
 TEST(ViewerLayers, WhatIsTooLargeIsCutAndSaid) {
   // 1200 triangles on one another, twice: 1,440,000 pairs, all of which touch.
-  Show show;
+  SceneView show;
   for (const char* name : {"heap", "other heap"}) {
-    ShowObject heap;
+    ViewedObject heap;
     heap.mesh.name = name;
     for (std::uint32_t i = 0; i < 1200; ++i) {
       heap.mesh.positions.insert(heap.mesh.positions.end(), {{0, 0, 0}, {1, 0, 0}, {0, 1, 0.001 * i}});
@@ -175,7 +175,7 @@ TEST(ViewerLayers, WhatIsTooLargeIsCutAndSaid) {
 
 TEST(ViewerLayers, ExplainsWhatTheLibraryExplains) {
   for (const BoundingVolume volume : {BoundingVolume::aabb, BoundingVolume::sphere}) {
-    const Show show = crowd(volume);
+    const SceneView show = crowd(volume);
     Simulation simulation = simulation_of(show);
     TestPage page(show);
     const Vec3d center = center_of(page.scene());

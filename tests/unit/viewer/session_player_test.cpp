@@ -44,7 +44,7 @@ TEST(ViewerPlayer, KeepsUpWithTimeAndGivesUpWhatItCannotCatchUpWith) {
 }
 
 TEST(ViewerPlayer, ObjectsWithoutMotionArePaused) {
-  Show show;
+  SceneView show;
   show.objects = {test_ball("a", {}), test_ball("b", {1.5, 0, 0})};
   TestPage page(show);
   page.scene();

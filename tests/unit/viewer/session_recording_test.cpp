@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "../../support/viewer_page.hpp"
-#include "session/packed_show.hpp"
+#include "session/packed_scene.hpp"
 
 namespace supple::viewer {
 namespace {
@@ -30,23 +30,23 @@ struct StoredFrames final : Frames {
 /// What a simulation did, and its contacts frame by frame.
 struct Recorded {
   std::shared_ptr<StoredFrames> frames = std::make_shared<StoredFrames>();
-  Show show;
+  SceneView show;
   std::vector<std::vector<Contact>> contacts;
   std::vector<std::vector<ContinuousContact>> impacts;
 
   std::size_t frame_count() const { return contacts.size(); }
 };
 
-Show flight() {
-  Show show;
+SceneView flight() {
+  SceneView show;
   show.objects = {test_ball("ball", {}), test_ball("flying", {2.6, 0, 0}), test_ball("wall", {-2.5, 0, 0})};
-  show.objects[1].motion = Sway{.velocity = {-3, 0, 0}, .amplitude = 0.05};
+  show.objects[1].motion = WaveMotion{.velocity = {-3, 0, 0}, .amplitude = 0.05};
   show.objects[2].options.is_static = true;
   return show;
 }
 
 Recorded record(int frames, ContactMode contacts = ContactMode::intersection) {
-  Show live = flight();
+  SceneView live = flight();
   live.simulation.scene.contacts = contacts;
   Simulation simulation = simulation_of(live);
   Recorded recorded;
@@ -160,7 +160,7 @@ TEST(ViewerRecording, ContinuousContactsAreThoseOfTheWayFromTheFrameBefore) {
     ASSERT_EQ(frame.section(36).count, recorded.impacts[number].size()) << number;
     const auto points = frame.values<std::array<float, 8>>(37);
     for (std::size_t c = 0; c < points.size(); ++c)
-      EXPECT_EQ(points[c][3], static_cast<float>(recorded.impacts[number][c].time));
+      EXPECT_EQ(points[c][3], static_cast<float>(recorded.impacts[number][c].toi));
     most = std::max(most, points.size());
   }
   EXPECT_GT(most, 0u);
@@ -316,7 +316,7 @@ TEST(ViewerRecording, WithoutSeriesOrWithoutFramesItIsFine) {
 
 TEST(ViewerRecording, PackedFramesAreThoseOfTheRecordingAsFloats) {
   const Recorded recorded = record(60);
-  const Show packed = unpack(pack(recorded.show));
+  const SceneView packed = unpack(pack(recorded.show));
   TestPage page(packed), original(recorded.show);
   const auto told = opening(page), told_there = opening(original);
   EXPECT_EQ(told[0].json, told_there[0].json);

@@ -48,7 +48,7 @@ TEST(ViewerSettings, SetChangesEachOptionAndStartsAnew) {
 }
 
 TEST(ViewerSettings, RepeatsObjectsApartAndCutsTheList) {
-  Show show = three_balls();
+  SceneView show = three_balls();
   show.simulation.border = Border{{{-2, -2, -2}, {5, 2, 4}}};
   TestPage page(show);
   page.scene();
@@ -68,7 +68,7 @@ TEST(ViewerSettings, RepeatsObjectsApartAndCutsTheList) {
 }
 
 TEST(ViewerSettings, ResetStartsAnewWithTheSeed) {
-  Show show = three_balls();
+  SceneView show = three_balls();
   show.objects[1].motion = MassSpringMotion{.random_speed = 1};
   TestPage page(show);
   page.scene();
@@ -90,7 +90,7 @@ TEST(ViewerSettings, ResetStartsAnewWithTheSeed) {
 }
 
 TEST(ViewerSettings, AFailedSetLeavesAllAsItWas) {
-  Show show = three_balls();
+  SceneView show = three_balls();
   show.objects[2] = test_ball("fine", {0, 0, 2.2}, 30);
   TestPage page(show);
   page.scene();

@@ -85,7 +85,7 @@ TEST(ViewerSession, APageThatComesAgainGetsAllAfresh) {
 }
 
 TEST(ViewerSession, ABodyThatBlowsUpPausesTheSession) {
-  Show show = three_balls();
+  SceneView show = three_balls();
   show.objects[1].motion =
       MassSpringMotion{.springs = {.vertex_mass = 1e-6, .stiffness = 1e4}, .velocity = {-1, 0, 0}};
   // Out of balance from the start.
@@ -112,7 +112,7 @@ TEST(ViewerSession, ABodyThatBlowsUpPausesTheSession) {
 }
 
 TEST(ViewerSession, WarnsOfStepsThatAreTooLongForAsLongAsTheyAre) {
-  Show show = three_balls();
+  SceneView show = three_balls();
   EXPECT_EQ(TestPage(show).scene().json["warnings"], Json::array());
   show.objects[1].motion = MassSpringMotion{.springs = {.vertex_mass = 1e-3, .stiffness = 1e4}};
   TestPage page(show);
@@ -134,19 +134,19 @@ TEST(ViewerSession, WarnsOfStepsThatAreTooLongForAsLongAsTheyAre) {
 }
 
 TEST(ViewerSession, EmptyShowsObjectsAndMeshesAreFine) {
-  TestPage nothing(Show{});
+  TestPage nothing(SceneView{});
   EXPECT_EQ(nothing.scene().json["objects"].size(), 0u);
   EXPECT_EQ(nothing.frame().json["step"], 0);
   EXPECT_EQ(nothing.frame_after_steps(2).json["step"], 2);
   nothing.say({{"do", "set"}, {"objects", 5}});
   EXPECT_EQ(nothing.scene().json["objects"].size(), 0u);
 
-  Show show;
+  SceneView show;
   show.objects.emplace_back().mesh.name = "no vertices";
   show.objects.push_back({TriangleMesh{"points", {{0, 0, 0}, {1, 1, 1}}, {}}});
   show.objects.push_back(test_ball("ball", {}));
-  show.objects[0].motion = Sway{.amplitude = 1};
-  show.objects[1].motion = Sway{.amplitude = 1};
+  show.objects[0].motion = WaveMotion{.amplitude = 1};
+  show.objects[1].motion = WaveMotion{.amplitude = 1};
   TestPage page(show);
   page.scene();
   page.ask({{"do", "layers"},
@@ -163,7 +163,7 @@ TEST(ViewerSession, EmptyShowsObjectsAndMeshesAreFine) {
 }
 
 TEST(ViewerSession, NamesThatAreNoUtf8AreMended) {
-  Show show;
+  SceneView show;
   show.title = "caf\xc3\xa9 \xff";
   show.objects = {test_ball("\xc3(\x80", {})};
   TestPage page(show);
@@ -173,8 +173,8 @@ TEST(ViewerSession, NamesThatAreNoUtf8AreMended) {
 }
 
 TEST(ViewerSession, RefusesWhatAnObjectMustNotBe) {
-  Show show = three_balls();
-  show.objects[0].motion = Sway{.wavelength = 0};
+  SceneView show = three_balls();
+  show.objects[0].motion = WaveMotion{.wavelength = 0};
   EXPECT_THROW(TestPage{show}, Error);
   show = three_balls();
   show.objects[0].mesh.triangles[5][1] = 92;

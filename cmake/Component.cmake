@@ -1,0 +1,12 @@
+# supple_add_component(NAME SOURCE...) adds the library supple::NAME, which lies in a folder of its own, has its public
+# headers in include/ and builds on supple::supple. Components may use internal headers of the core.
+function(supple_add_component name)
+  add_library(supple_${name} ${ARGN})
+  add_library(supple::${name} ALIAS supple_${name})
+  target_include_directories(supple_${name}
+    PUBLIC $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/include> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>
+    PRIVATE ${CMAKE_CURRENT_SOURCE_DIR}/src ${PROJECT_SOURCE_DIR}/src/supple)
+  target_link_libraries(supple_${name} PUBLIC supple PRIVATE $<BUILD_INTERFACE:supple_compile_options>)
+  set_target_properties(supple_${name} PROPERTIES
+    EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON VERSION ${PROJECT_VERSION} SOVERSION 0)
+endfunction()

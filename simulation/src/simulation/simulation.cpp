@@ -1,0 +1,338 @@
+#include "supple/simulation.hpp"
+
+#include <cassert>
+#include <cmath>
+#include <utility>
+
+#include "core/error.hpp"
+#include "core/timer.hpp"
+#include "motion/worth_threads.hpp"
+#include "simulation/simulation_implementation.hpp"
+
+namespace supple {
+namespace {
+
+void check(bool is_in_range, const char* option, double value, const char* range) {
+  if (!is_in_range) fail(std::string(option) + " is " + std::to_string(value) + "; it must be " + range);
+}
+
+void check_border(const Border& border) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const double low = border[0][axis], high = border[1][axis];
+    if (low < high) continue;
+    fail(std::string("SimulationOptions::border: along ") + "xyz"[axis] + " it goes from " +
+         std::to_string(low) + " to " + std::to_string(high) + "; the first corner must be the lower one");
+  }
+}
+
+const SimulationOptions& checked(const SimulationOptions& options) {
+  const auto finite = [](double value) { return std::isfinite(value); };
+  const double step = options.time_step;
+  check(finite(step) && step > 0, "SimulationOptions::time_step", step, "finite and more than 0");
+  if (options.border) check_border(*options.border);
+  const ContactResponse& response = options.response;
+  check(finite(response.thickness) && response.thickness > 0, "ContactResponse::thickness",
+        response.thickness, "finite and more than 0");
+  check(response.restitution >= 0 && response.restitution <= 1, "ContactResponse::restitution",
+        response.restitution, "from 0 to 1");
+  check(finite(response.friction) && response.friction >= 0, "ContactResponse::friction", response.friction,
+        "finite and not negative");
+  check(response.iterations >= 1, "ContactResponse::iterations", response.iterations, "at least 1");
+  return options;
+}
+
+/// The exception that `action` throws, or none.
+template <class Action>
+std::exception_ptr exception_of(Action&& action) {
+#if defined(__cpp_exceptions)
+  try {
+    action();
+  } catch (...) {
+    return std::current_exception();
+  }
+#else
+  action();
+#endif
+  return nullptr;
+}
+
+[[noreturn]] void raise(const MotionError& error) {
+#if defined(__cpp_exceptions)
+  throw error;
+#else
+  fail(error.what());
+#endif
+}
+
+}  // namespace
+
+Simulation::Implementation::Implementation(const SimulationOptions& simulation_options)
+    : options(checked(simulation_options)),
+      scene(simulation_options.scene),
+      parallel_(simulation_options.scene.threads) {
+  if (options.response.enabled) response_.emplace(options.response, options.time_step, options.scene.threads);
+}
+
+/// Everything that may throw comes first.
+ObjectId Simulation::Implementation::add(const TriangleMesh& mesh, const ObjectOptions& object_options,
+                                         const MassSpringMotion* motion, MotionFunction function) {
+  check_mesh(mesh);
+  if ((motion != nullptr || function != nullptr) && object_options.is_static) {
+    fail((object_options.name.empty() ? mesh.name : object_options.name) +
+         " is static and has a motion; leave one of them out");
+  }
+  auto added = std::make_unique<SimulatedObject>();
+  added->function = std::move(function);
+  if (motion == nullptr) {
+    added->own_positions = mesh.positions;
+    added->id = scene.add(mesh, object_options);
+  } else {
+    // A body too small for threads is stepped in parallel with others.
+    const bool has_threads = is_worth_threads(mesh.positions.size(), motion->springs.integrator);
+    const std::uint32_t threads = has_threads ? options.scene.threads : 1;
+    MassSpringBody body = make_body(mesh, *motion, threads);
+    added->id = scene.add(mesh, object_options);
+    const std::uint64_t number = added->id.index | std::uint64_t{added->id.generation} << 32;
+    added->moving_body = std::make_unique<MovingBody>(std::move(body), *motion, options.time_step,
+                                                      Random(options.seed, motion->seed.value_or(number)));
+  }
+  if (response_) add_to_response(mesh, object_options, *added);
+  const ObjectId id = added->id;
+  if (objects_.size() <= id.index) objects_.resize(id.index + 1);
+  objects_[id.index] = std::move(added);
+  return id;
+}
+
+void Simulation::Implementation::add_to_response(const TriangleMesh& mesh,
+                                                 const ObjectOptions& object_options,
+                                                 const SimulatedObject& object) {
+  const MovingBody* const moving = object.moving_body.get();
+  const MassSpringOptions* const springs = moving != nullptr ? &moving->body.options() : nullptr;
+  [[maybe_unused]] const ObjectId id = response_->add(mesh, object_options, springs);
+  assert(id == object.id);
+}
+
+void Simulation::Implementation::remove(ObjectId id) {
+  scene.remove(id);
+  if (response_) response_->remove(id);
+  objects_[id.index].reset();
+}
+
+SimulatedObject& Simulation::Implementation::object(ObjectId id, const char* call) const {
+  if (id.index < objects_.size() && objects_[id.index] != nullptr && objects_[id.index]->id == id)
+    return *objects_[id.index];
+  fail(std::string(call) + ": object " + std::to_string(id.index) + " (generation " +
+       std::to_string(id.generation) +
+       ") is not in the simulation; it was removed or belongs to another simulation");
+}
+
+void Simulation::Implementation::set_positions(ObjectId id, std::span<const Vec3d> positions) {
+  SimulatedObject& found = object(id, "set_positions");
+  if (found.function != nullptr) {
+    fail("set_positions: " + scene.name(id) +
+         " is moved by a function and cannot be put elsewhere; let the function write other positions");
+  }
+  scene.set_positions(id, positions);
+  if (response_) response_->set_positions(id, positions);
+  found.is_on_path = false;
+  if (found.moving_body != nullptr) {
+    found.moving_body->body.set_positions(positions);
+  } else {
+    found.own_positions.assign(positions.begin(), positions.end());
+  }
+}
+
+const DetectResult& Simulation::Implementation::detect() {
+  for (const auto& object : objects_) {
+    if (object == nullptr || !object->is_on_path) continue;
+    scene.set_positions(object->id, object->positions());
+    object->is_on_path = false;
+  }
+  return scene.detect();
+}
+
+/// Nothing may fail after the bodies are stepped, and nothing before them may have a lasting effect.
+std::optional<MotionError> Simulation::Implementation::try_step() {
+  Timer timer;
+  call_functions(static_cast<double>(steps + 1) * options.time_step);
+  remember_positions();
+  if (auto error = step_bodies()) return error;
+  if (response_) respond_to_contacts();
+  ++steps;
+  accept_written_positions();
+  place_in_scene();
+  prepare_next_step();
+  motion_seconds = timer.lap();
+  scene.detect();
+  return std::nullopt;
+}
+
+void Simulation::Implementation::call_functions(double seconds) {
+  for (const auto& object : objects_) {
+    if (object == nullptr || object->function == nullptr) continue;
+    object->next = object->own_positions;
+    object->function(seconds, object->next);
+  }
+}
+
+void Simulation::Implementation::remember_positions() {
+  if (!is_continuous() && !response_) return;
+  for (const auto& object : objects_) {
+    if (object == nullptr || object->moving_body == nullptr) continue;
+    const std::span<const Vec3d> positions = object->positions();
+    object->before.assign(positions.begin(), positions.end());
+  }
+}
+
+/// Large bodies run one after the other with all threads; small bodies run in parallel with each other.
+std::optional<MotionError> Simulation::Implementation::step_bodies() {
+  small_bodies_.clear();
+  for (const auto& object : objects_) {
+    if (object == nullptr || object->moving_body == nullptr) continue;
+    if (object->moving_body->body.options().threads == 1) {
+      small_bodies_.push_back(object.get());
+    } else {
+      step_body(*object);
+    }
+  }
+  parallel_.for_ranges(small_bodies_.size(), 1, [&](std::size_t begin, std::size_t end, std::uint32_t) {
+    for (std::size_t i = begin; i < end; ++i) step_body(*small_bodies_[i]);
+  });
+  for (const auto& object : objects_) {
+    if (object == nullptr || object->moving_body == nullptr || !object->has_failed()) continue;
+    undo_step_of_bodies();
+    if (object->exception != nullptr) std::rethrow_exception(object->exception);
+    const std::string& name = scene.name(object->id);
+    const std::uint64_t step = steps + 1;
+    return MotionError(name + " in step " + std::to_string(step) + ": " + *object->failure, name, step);
+  }
+  return std::nullopt;
+}
+
+void Simulation::Implementation::step_body(SimulatedObject& object) {
+  object.failure.reset();
+  object.exception =
+      exception_of([&] { object.failure = object.moving_body->body.try_step(options.time_step); });
+}
+
+/// Bodies that failed have already restored their state.
+void Simulation::Implementation::undo_step_of_bodies() {
+  for (const auto& object : objects_) {
+    if (object != nullptr && object->moving_body != nullptr && !object->has_failed())
+      object->moving_body->body.undo_step();
+  }
+}
+
+void Simulation::Implementation::respond_to_contacts() {
+  responding_.clear();
+  for (const auto& object : objects_) {
+    if (object == nullptr) continue;
+    if (object->moving_body != nullptr) {
+      const MassSpringBody& body = object->moving_body->body;
+      responding_.push_back(
+          {object->id, object->before, body.positions(), body.velocities(), 1 / body.options().vertex_mass});
+    } else if (object->function != nullptr) {
+      responding_.push_back({object->id, object->own_positions, object->next, {}});
+    } else {
+      responding_.push_back({object->id, object->own_positions, object->own_positions, {}});
+    }
+  }
+  response_->resolve(responding_);
+  for (const auto& object : objects_) {
+    if (object == nullptr || object->moving_body == nullptr) continue;
+    if (const auto change = response_->change(object->id))
+      object->moving_body->change_velocities(change->of_average_velocity, change->of_velocity);
+  }
+}
+
+void Simulation::Implementation::accept_written_positions() {
+  for (const auto& object : objects_) {
+    if (object == nullptr || object->function == nullptr) continue;
+    object->before.swap(object->own_positions);
+    object->own_positions.swap(object->next);
+  }
+}
+
+void Simulation::Implementation::place_in_scene() {
+  for (const auto& object : objects_) {
+    if (object == nullptr || !object->moves()) continue;
+    if (is_continuous()) {
+      scene.set_motion(object->id, object->before, object->positions());
+      object->is_on_path = true;
+    } else {
+      scene.set_positions(object->id, object->positions());
+    }
+  }
+}
+
+void Simulation::Implementation::prepare_next_step() {
+  for (const auto& object : objects_) {
+    if (object != nullptr && object->moving_body != nullptr) object->moving_body->end_step(options.border);
+  }
+}
+
+Simulation::Simulation(const SimulationOptions& options)
+    : implementation_(std::make_unique<Implementation>(options)) {}
+Simulation::~Simulation() = default;
+Simulation::Simulation(Simulation&&) noexcept = default;
+Simulation& Simulation::operator=(Simulation&&) noexcept = default;
+
+ObjectId Simulation::add(const TriangleMesh& mesh, const ObjectOptions& object) {
+  return implementation_->add(mesh, object, nullptr, nullptr);
+}
+ObjectId Simulation::add(const TriangleMesh& mesh, const ObjectOptions& object,
+                         const MassSpringMotion& motion) {
+  return implementation_->add(mesh, object, &motion, nullptr);
+}
+ObjectId Simulation::add(const TriangleMesh& mesh, const ObjectOptions& object, MotionFunction motion) {
+  if (motion == nullptr) fail("add: the motion of " + mesh.name + " is an empty function");
+  return implementation_->add(mesh, object, nullptr, std::move(motion));
+}
+void Simulation::remove(ObjectId object) {
+  implementation_->remove(object);
+}
+
+const DetectResult& Simulation::detect() {
+  return implementation_->detect();
+}
+const DetectResult& Simulation::step() {
+  if (const auto error = try_step()) raise(*error);
+  return scene().result();
+}
+std::optional<MotionError> Simulation::try_step() {
+  return implementation_->try_step();
+}
+
+std::uint64_t Simulation::step_count() const {
+  return implementation_->steps;
+}
+double Simulation::time() const {
+  return static_cast<double>(implementation_->steps) * implementation_->options.time_step;
+}
+double Simulation::motion_seconds() const {
+  return implementation_->motion_seconds;
+}
+const SimulationOptions& Simulation::options() const {
+  return implementation_->options;
+}
+const Scene& Simulation::scene() const {
+  return implementation_->scene;
+}
+
+std::span<const Vec3d> Simulation::positions(ObjectId object) const {
+  return implementation_->object(object, "positions").positions();
+}
+void Simulation::set_positions(ObjectId object, std::span<const Vec3d> positions) {
+  implementation_->set_positions(object, positions);
+}
+
+MassSpringBody* Simulation::body(ObjectId object) {
+  MovingBody* const moving = implementation_->object(object, "body").moving_body.get();
+  return moving != nullptr ? &moving->body : nullptr;
+}
+const MassSpringBody* Simulation::body(ObjectId object) const {
+  const MovingBody* const moving = implementation_->object(object, "body").moving_body.get();
+  return moving != nullptr ? &moving->body : nullptr;
+}
+
+}  // namespace supple

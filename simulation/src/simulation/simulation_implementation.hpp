@@ -1,0 +1,74 @@
+#pragma once
+
+#include <exception>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/parallel.hpp"
+#include "simulation/impulse_response.hpp"
+#include "simulation/moving_body.hpp"
+#include "supple/simulation.hpp"
+
+namespace supple {
+
+/// One object, moved by a body, by a function, or not at all.
+struct SimulatedObject {
+  ObjectId id;
+  std::unique_ptr<MovingBody> moving_body;
+  MotionFunction function;
+  std::vector<Vec3d> own_positions;    // for objects without a body
+  std::vector<Vec3d> next;             // the output of the function, until the step succeeds
+  std::vector<Vec3d> before;           // positions before the last step, kept only when paths are needed
+  bool is_on_path = false;             // the scene has the path of the last step
+  std::optional<std::string> failure;  // why the body failed in this step, as text
+  std::exception_ptr exception;        // and as the exception, when there was memory for it
+
+  bool has_failed() const { return failure.has_value() || exception != nullptr; }
+  bool moves() const { return moving_body != nullptr || function != nullptr; }
+  std::span<const Vec3d> positions() const {
+    return moving_body ? moving_body->body.positions() : std::span<const Vec3d>(own_positions);
+  }
+};
+
+class Simulation::Implementation {
+ public:
+  explicit Implementation(const SimulationOptions& options);
+
+  ObjectId add(const TriangleMesh& mesh, const ObjectOptions& object_options, const MassSpringMotion* motion,
+               MotionFunction function);
+  void remove(ObjectId id);
+  const DetectResult& detect();
+  std::optional<MotionError> try_step();
+  void set_positions(ObjectId id, std::span<const Vec3d> positions);
+  SimulatedObject& object(ObjectId id, const char* call) const;
+
+  SimulationOptions options;
+  Scene scene;
+  std::uint64_t steps = 0;
+  double motion_seconds = 0;
+
+ private:
+  void add_to_response(const TriangleMesh& mesh, const ObjectOptions& object_options,
+                       const SimulatedObject& object);
+  void call_functions(double seconds);
+  void remember_positions();
+  std::optional<MotionError> step_bodies();
+  void step_body(SimulatedObject& object);
+  void undo_step_of_bodies();
+  void respond_to_contacts();
+  void accept_written_positions();
+  void place_in_scene();
+  void prepare_next_step();
+  bool is_continuous() const { return options.scene.contacts == ContactMode::continuous; }
+
+  Parallel parallel_;
+  std::optional<ImpulseResponse> response_;
+  std::vector<std::unique_ptr<SimulatedObject>> objects_;  // indexed by object
+  std::vector<SimulatedObject*> small_bodies_;             // scratch memory of a step
+  std::vector<RespondingObject> responding_;
+};
+
+}  // namespace supple

@@ -1,0 +1,234 @@
+#include "octree/self_collision_culling.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "geometry/vector.hpp"
+
+namespace supple {
+namespace {
+
+/// Half an ulp of 1: the relative error of one rounding.
+constexpr double rounding = 0x1p-53;
+/// Products below the range of double lose at most some denormals; no coordinate of use is near this.
+constexpr double underflow = 1e-290;
+
+double sum_of_sizes(const Vec3d& v) {
+  return std::abs(v.x) + std::abs(v.y) + std::abs(v.z);
+}
+
+template <class Scalar>
+Vec3d position(const VertexArray<Scalar>& vertices, std::uint32_t vertex) {
+  const Scalar* const p = vertices[vertex];
+  return {p[0], p[1], p[2]};
+}
+
+/// The boundary of a smooth patch is about as long as the root of its size. The limit keeps all boundaries
+/// together linear, and gives up what could not be unfolded anyway.
+std::size_t longest_boundary(std::uint32_t triangles) {
+  return 16 + 8 * static_cast<std::size_t>(std::sqrt(triangles));
+}
+
+/// Leaves of directed edges those that no reverse one cancels.
+void cancel_opposite(std::vector<Edge>& edges) {
+  const auto undirected = [](const Edge& e) { return Edge{std::min(e[0], e[1]), std::max(e[0], e[1])}; };
+  std::sort(edges.begin(), edges.end(), [&](const Edge& p, const Edge& q) {
+    const Edge u = undirected(p), v = undirected(q);
+    return u != v ? u < v : p < q;
+  });
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < edges.size();) {
+    const Edge edge = undirected(edges[i]);
+    std::size_t forth = 0, back = 0;
+    for (; i < edges.size() && undirected(edges[i]) == edge; ++i) ++(edges[i] == edge ? forth : back);
+    const Edge left = forth > back ? edge : Edge{edge[1], edge[0]};
+    // As many as were read at least: nothing unread is overwritten.
+    for (std::size_t k = std::min(forth, back); k < std::max(forth, back); ++k) edges[kept++] = left;
+  }
+  edges.resize(kept);
+}
+
+}  // namespace
+
+SelfCollisionCulling::SelfCollisionCulling(const ObjectOctree& octree)
+    : boundaries_(octree.nodes().size() * node_width),
+      node_normals_(octree.nodes().size()),
+      masks_(octree.nodes().size(), 0) {
+  std::vector<Edge> edges;
+  for (std::uint32_t n = static_cast<std::uint32_t>(octree.nodes().size()); n-- > 0;) {
+    const OctreeNode& node = octree.nodes()[n];
+    if (!has_moving_boxes(node)) continue;
+    for (int lane = 0; lane < node.lane_count; ++lane) {
+      edges.clear();
+      if (is_moving_leaf(node, lane)) {
+        for (std::uint32_t t = node.first_triangle[lane]; t < node.first_triangle[lane + 1]; ++t) {
+          const Triangle& triangle = octree.triangles()[t];
+          for (std::size_t corner = 0; corner < 3; ++corner) {
+            edges.push_back({triangle[corner], triangle[(corner + 1) % 3]});
+          }
+        }
+      } else {
+        // A part without a boundary of use makes a whole of none: a smooth surface hardly has such parts.
+        const OctreeNode& child = octree.nodes()[node.child(lane)];
+        const Boundary* const parts = &boundaries_[std::size_t{node.child(lane)} * node_width];
+        if (std::any_of(parts, parts + child.lane_count,
+                        [](const Boundary& b) { return b.begin == b.end; })) {
+          continue;
+        }
+        for (int part = 0; part < child.lane_count; ++part) {
+          edges.insert(edges.end(), boundary_edges_.begin() + parts[part].begin,
+                       boundary_edges_.begin() + parts[part].end);
+        }
+      }
+      cancel_opposite(edges);
+      if (edges.size() > longest_boundary(node.size(lane))) continue;
+      const auto begin = static_cast<std::uint32_t>(boundary_edges_.size());
+      boundary_edges_.insert(boundary_edges_.end(), edges.begin(), edges.end());
+      boundaries_[std::size_t{n} * node_width + static_cast<std::size_t>(lane)] = {
+          begin, static_cast<std::uint32_t>(boundary_edges_.size())};
+    }
+  }
+  boundary_edges_.shrink_to_fit();
+}
+
+void SelfCollisionCulling::refit(const ObjectOctree& octree, const VertexBuffer& start,
+                                 const VertexBuffer& end, const Parallel& parallel) {
+  const auto level_begin = octree.level_begin();
+  for (std::size_t level = level_begin.size() - 1; level-- > 0;) {
+    const std::uint32_t first = level_begin[level];
+    parallel.for_ranges(level_begin[level + 1] - first, 64,
+                        [&](std::size_t node_begin, std::size_t node_end, std::uint32_t) {
+                          for (std::size_t i = node_begin; i < node_end; ++i) {
+                            const auto n = static_cast<std::uint32_t>(first + i);
+                            if (start.is_double()) {
+                              refit_node(octree, start.doubles(), end.doubles(), n);
+                            } else {
+                              refit_node(octree, start.floats(), end.floats(), n);
+                            }
+                          }
+                        });
+  }
+}
+
+template <class Scalar>
+void SelfCollisionCulling::refit_node(const ObjectOctree& octree, const VertexArray<Scalar>& start,
+                                      const VertexArray<Scalar>& end, std::uint32_t n) {
+  const OctreeNode& node = octree.nodes()[n];
+  if (!has_moving_boxes(node)) return;
+  Normals all;
+  std::uint32_t mask = 0;
+  for (int lane = 0; lane < node.lane_count; ++lane) {
+    const Normals normals =
+        is_moving_leaf(node, lane)
+            ? normals_of(octree.triangles().subspan(node.first_triangle[lane], node.size(lane)), start, end)
+            : node_normals_[node.child(lane)];
+    double least = 0, size = 0;
+    const Vec3d direction = normals.sum * (1 / largest_magnitude(normals.sum));
+    for (int axis = 0; axis < 3; ++axis) {
+      all.sum[axis] += normals.sum[axis];
+      all.low[axis] = std::min(all.low[axis], normals.low[axis]);
+      all.high[axis] = std::max(all.high[axis], normals.high[axis]);
+      least += std::min(direction[axis] * normals.low[axis], direction[axis] * normals.high[axis]);
+      size += std::abs(direction[axis]);
+    }
+    // The bounds are 2^-21 wrong at most (`normals_of`), this sum far less. Not true of NaN.
+    const bool all_face = least > size * 0x1p-20;
+    const Boundary& boundary = boundaries_[std::size_t{n} * node_width + static_cast<std::size_t>(lane)];
+    if (all_face && goes_round_once(boundary, direction, start, end)) mask |= 1u << lane;
+  }
+  node_normals_[n] = all;
+  masks_[n] = static_cast<std::uint8_t>(mask);
+}
+
+/// The three Bernstein coefficients of each triangle's normal, scaled. With E and F the greatest coordinates
+/// of its sides at either end, each is wrong by less than 16 roundings of E F, and its greatest coordinate m
+/// is compared with E F so that this is below 2^-21 m.
+template <class Scalar>
+SelfCollisionCulling::Normals SelfCollisionCulling::normals_of(std::span<const Triangle> triangles,
+                                                               const VertexArray<Scalar>& start,
+                                                               const VertexArray<Scalar>& end) {
+  constexpr Normals hopeless{{}, {-1, -1, -1}, {1, 1, 1}};
+  static_assert(16 * rounding <= 0x1p-21 * 0x1p-28);
+  const bool at_rest = start.data == end.data;
+  Normals normals;
+  for (const Triangle& triangle : triangles) {
+    const Vec3d a0 = position(start, triangle[0]), a1 = position(end, triangle[0]);
+    const Vec3d e0 = position(start, triangle[1]) - a0, e1 = position(end, triangle[1]) - a1;
+    const Vec3d f0 = position(start, triangle[2]) - a0, f1 = position(end, triangle[2]) - a1;
+    const double least_size = std::max(largest_magnitude(e0), largest_magnitude(e1)) *
+                                  std::max(largest_magnitude(f0), largest_magnitude(f1)) * 0x1p-28 +
+                              underflow;
+    const Vec3d coefficients[3] = {cross(e0, f0), (cross(e0, f1) + cross(e1, f0)) * 0.5, cross(e1, f1)};
+    for (const Vec3d& coefficient : std::span(coefficients).first(at_rest ? 1 : 3)) {
+      const double size = largest_magnitude(coefficient);
+      const Vec3d normal = coefficient * (1 / size);
+      // Written so that NaN and overflow are without hope; so is what turns away from the others.
+      const bool reliable = size > least_size && std::isfinite(dot(normal, {1, 1, 1}));
+      if (!reliable || dot(normal, normals.sum) < 0) return hopeless;
+      normals.sum = normals.sum + normal;
+      for (int axis = 0; axis < 3; ++axis) {
+        normals.low[axis] = std::min(normals.low[axis], normal[axis]);
+        normals.high[axis] = std::max(normals.high[axis], normal[axis]);
+      }
+    }
+  }
+  return normals;
+}
+
+/// The turn of an edge from u to v about the centre is n · (u × v), quadratic in time. With R the greatest
+/// coordinate of any u, a coefficient is wrong by less than 32 roundings of |n| R², |n| being the sum of
+/// sizes.
+template <class Scalar>
+bool SelfCollisionCulling::goes_round_once(const Boundary& boundary, const Vec3d& n,
+                                           const VertexArray<Scalar>& start,
+                                           const VertexArray<Scalar>& end) const {
+  if (boundary.begin == boundary.end) return false;
+  const auto edges =
+      std::span<const Edge>(boundary_edges_).subspan(boundary.begin, boundary.end - boundary.begin);
+  // Any centre will do that all can see: the mean of the vertices for want of a better.
+  Vec3d center_0, center_1;
+  for (const Edge& edge : edges) {
+    center_0 = center_0 + position(start, edge[0]);
+    center_1 = center_1 + position(end, edge[0]);
+  }
+  center_0 = center_0 * (1 / static_cast<double>(edges.size()));
+  center_1 = center_1 * (1 / static_cast<double>(edges.size()));
+  // Which side of a line through the centre a vertex is on at the start is told from the sign of its product
+  // with a direction across n; in no relation to n, as regular meshes have vertices on lines that are. That
+  // direction is across n but for some roundings, and those of the product come to it: 64 are ample.
+  const Vec3d sizes{std::abs(n.x), std::abs(n.y), std::abs(n.z)};
+  const int flat = sizes.x <= sizes.y ? (sizes.x <= sizes.z ? 0 : 2) : (sizes.y <= sizes.z ? 1 : 2);
+  Vec3d slanted;
+  slanted[flat] = 1;
+  slanted[(flat + 1) % 3] = 0.37;
+  slanted[(flat + 2) % 3] = 0.23;
+  const Vec3d across = cross(n, slanted);
+
+  double reach = 0, least_turn = std::numeric_limits<double>::infinity(), least_side = least_turn;
+  int times_round = 0;
+  for (const Edge& edge : edges) {
+    const Vec3d u0 = position(start, edge[0]) - center_0, v0 = position(start, edge[1]) - center_0;
+    const Vec3d u1 = position(end, edge[0]) - center_1, v1 = position(end, edge[1]) - center_1;
+    const double turns[3] = {dot(n, cross(u0, v0)), (dot(n, cross(u0, v1)) + dot(n, cross(u1, v0))) * 0.5,
+                             dot(n, cross(u1, v1))};
+    for (const double turn : turns) {
+      if (!(turn > 0)) return false;
+      least_turn = std::min(least_turn, turn);
+    }
+    reach = std::max(
+        {reach, largest_magnitude(u0), largest_magnitude(u1), largest_magnitude(v0), largest_magnitude(v1)});
+    least_side = std::min(least_side, std::abs(dot(across, u0)));
+    times_round += dot(across, u0) < 0 && dot(across, v0) >= 0 ? 1 : 0;
+  }
+  const double size = sum_of_sizes(n);
+  return least_turn > 32 * rounding * size * reach * reach + underflow &&
+         least_side > 64 * rounding * size * reach + underflow && times_round == 1;
+}
+
+std::size_t SelfCollisionCulling::bytes() const {
+  return boundary_edges_.capacity() * sizeof(Edge) + boundaries_.capacity() * sizeof(Boundary) +
+         node_normals_.capacity() * sizeof(Normals) + masks_.capacity();
+}
+
+}  // namespace supple

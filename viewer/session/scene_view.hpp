@@ -1,0 +1,56 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "supple/mesh.hpp"
+#include "supple/options.hpp"
+#include "supple/simulation.hpp"
+#include "supple/types.hpp"
+#include "supple/wave_motion.hpp"
+
+namespace supple::viewer {
+
+/// An object, its start position, and its motion: none, waves, or masses and springs.
+struct ViewedObject {
+  TriangleMesh mesh;
+  ObjectOptions options{};
+  std::variant<std::monostate, WaveMotion, MassSpringMotion> motion{};
+};
+
+/// Time series of a recording: rows of numbers, and begin and end events of pairs.
+struct Series {
+  struct Event {
+    std::uint32_t frame = 0, a = 0, b = 0;  ///< object ids, a < b
+    constexpr bool operator==(const Event&) const = default;
+  };
+  std::vector<std::string> names{};  ///< of the columns; the first is "time"
+  std::vector<double> values{};      ///< row by row, one row per frame
+  std::vector<Event> begin{}, end{};
+};
+
+/// The frames of a recording, or of a sequence of files with one frame each.
+class Frames {
+ public:
+  virtual ~Frames() = default;
+  virtual std::uint64_t count() const = 0;
+  /// Reads the positions of one object. Throws `Error` when the frame cannot be read.
+  virtual void read(std::uint64_t frame, std::size_t object, std::span<Vec3d> positions) const = 0;
+  /// May have no rows; the page then plots the frames it has received.
+  virtual const Series& series() const = 0;
+};
+
+/// Everything a session shows: objects that a simulation moves, or that were recorded.
+struct SceneView {
+  std::string title{};
+  SimulationOptions simulation{};
+  std::vector<ViewedObject> objects{};
+  std::shared_ptr<const Frames> frames{};  ///< null for a simulation
+};
+
+}  // namespace supple::viewer
