@@ -133,7 +133,7 @@ TEST(Recording, RoundTripOfEveryOption) {
   SceneOptions& scene = contents.header.scene;
   scene.bounding_volume = BoundingVolume::sphere;
   scene.sphere_fit = SphereFit::box;
-  scene.broad_phase = BroadPhaseMethod::sweep;
+  scene.broad_phase = BroadPhaseMethod::octree;
   scene.scene_octree = {7, 3, RegionSphereTest::grown_box};
   scene.contact_points = false;
   scene.impact = {0.125, false};

@@ -15,6 +15,7 @@ namespace {
 SceneView crowd(BoundingVolume volume = BoundingVolume::aabb) {
   SceneView show;
   show.simulation.scene.bounding_volume = volume;
+  show.simulation.scene.broad_phase = BroadPhaseMethod::octree;  // which has regions
   for (int i = 0; i < 6; ++i)
     show.objects.push_back(
         test_ball(("ball " + std::to_string(i)).c_str(), {1.7 * (i % 3), 1.8 * (i / 3), 0.1 * i}, 6));
@@ -59,6 +60,17 @@ TEST(ViewerLayers, AreLeftOutUntilAskedForAndAgainAfterwards) {
   EXPECT_FALSE(has_layers(page.frame()));
 }
 
+TEST(ViewerLayers, HaveNoRegionsUnlessTheOctreeRan) {
+  Show show = crowd();
+  show.simulation.scene.broad_phase = BroadPhaseMethod::grid;
+  TestPage page(show);
+  page.scene();
+  page.ask({{"do", "layers"}, {"scene_regions", true}});
+  const ViewerMessage frame = page.frame();
+  EXPECT_EQ(frame.json["broad_phase_method"], "grid");
+  EXPECT_TRUE(frame.values<Row>(39).empty());
+}
+
 TEST(ViewerLayers, AreWhatTheLibrarySays) {
   for (const BoundingVolume volume : {BoundingVolume::aabb, BoundingVolume::sphere}) {
     const SceneView show = crowd(volume);
@@ -86,6 +98,7 @@ TEST(ViewerLayers, AreWhatTheLibrarySays) {
         regions.push_back(row({narrow(r.box.min, center)}, static_cast<float>(r.level),
                               narrow(r.box.max, center),
                               r.is_leaf ? static_cast<float>(r.object_count) : -1));
+      EXPECT_FALSE(regions.empty());
       EXPECT_EQ(frame.values<Row>(39), regions);
 
       for (const ObjectId id : scene.objects()) {

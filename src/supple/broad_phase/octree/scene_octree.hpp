@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "broad_phase/object_volume.hpp"
-#include "broad_phase/scene_cube.hpp"
-#include "broad_phase/slot_lists.hpp"
+#include "broad_phase/octree/scene_cube.hpp"
+#include "broad_phase/octree/slot_lists.hpp"
+#include "broad_phase/volume_store.hpp"
 #include "supple/options.hpp"
 #include "supple/result.hpp"
 
@@ -50,47 +50,37 @@ class SceneOctree {
 
   SceneOctree(BoundingVolume bounding_volume, const SceneOctreeOptions& options);
 
-  /// Makes room for this many slots; new ones are empty.
-  void resize(std::size_t slot_count);
-  std::size_t slot_count() const { return boxes_.size(); }
-  std::span<const Aabb> boxes() const { return boxes_; }
-  std::span<const BoundingSphere> spheres() const { return spheres_; }
   const SceneCube& cube() const { return cube_; }
-  /// Balls are placed by Arvo's test: two that overlap share a region, but perhaps not the one in which the
+  /// Spheres are placed by Arvo's test: two that overlap share a region, but perhaps not the one in which the
   /// intersection of their boxes begins.
   bool placed_by_sphere() const { return by_sphere_; }
 
-  bool same_volume(std::uint32_t slot, const ObjectVolume& now) const;
-  /// True only when the new volume touches the same leaves as the present one and is divided by the same
-  /// regions; false when that is not sure without a walk down the regions. O(1).
-  bool stays(std::uint32_t slot, const ObjectVolume& now) const;
-  /// Takes over a new volume and leaves the regions as they are.
-  void set_volume(std::uint32_t slot, const ObjectVolume& now);
-  /// The volumes themselves; when some are changed `build` must follow before the regions are used.
-  std::span<Aabb> mutable_boxes() { return boxes_; }
-  std::span<BoundingSphere> mutable_spheres() { return spheres_; }
-  /// Takes over all volumes; `build` must follow before the regions are used.
-  void set_volumes(const ObjectVolumes& volumes);
-  /// Takes an object out of the regions it left and puts it into those it entered, in one walk down the
-  /// regions of both. `settle` must follow when all objects have moved.
-  void move(std::uint32_t slot, const ObjectVolume& now);
-  /// Expands and reduces the regions that `move` left due for it.
-  void settle();
+  // Each of these reads the volumes that it is given; what is said of a slot's present volume is that one.
+
   /// Makes all regions anew, top down, O(objects · levels).
-  void build(const SceneCube& cube);
+  void build(const VolumeStore& volumes, const SceneCube& cube);
+  /// True when the object's leaves and the regions that it divides are the same for the volume `now`; false
+  /// when a walk down the regions has to find out. O(1). The object's previous volume was not empty.
+  bool stays(std::uint32_t slot, const ObjectVolume& now) const;
+  /// Moves an object from the regions of its volume `from` to those of its present one, in one walk down the
+  /// regions of both. `settle` must follow when all objects have moved.
+  void move(const VolumeStore& volumes, std::uint32_t slot, const ObjectVolume& from);
+  /// Expands and reduces the regions that `move` left due for it.
+  void settle(const VolumeStore& volumes);
 
   std::span<const Region> regions() const { return regions_; }
   std::span<const std::uint32_t> objects(const Region& region) const { return lists_.view(region.objects); }
   /// Calls `visit(region)` for each leaf that the object is in.
   template <class Visit>
-  void visit_leaves(std::uint32_t slot, Visit&& visit) const {
-    if (!boxes_[slot].empty()) visit_leaves_below(regions_[0], slot, visit);
+  void visit_leaves(const ObjectVolume& volume, Visit&& visit) const {
+    if (!volume.box.empty()) visit_leaves_below(regions_[0], volume, visit);
   }
 
+  std::size_t object_count() const { return object_count_; }        ///< that are not empty
   std::uint64_t expanded_count() const { return expanded_count_; }  ///< since construction
   std::uint64_t reduced_count() const { return reduced_count_; }
   std::vector<SceneRegion> describe() const;
-  std::string validate() const;
+  std::string validate(const VolumeStore& volumes) const;
 
  private:
   /// Within which the ends of a box may move while every comparison with the regions' planes comes out the
@@ -111,42 +101,40 @@ class SceneOctree {
   bool divides(std::uint32_t level, std::uint8_t finest_level) const {
     return finest_level >= halvings(0, level + 1);
   }
-  ObjectVolume volume(std::uint32_t slot) const;
   std::uint8_t finest_level(const Aabb& box) const;
-  std::uint32_t children_touched(const Region& region, const Aabb& box, const BoundingSphere* sphere) const;
-  std::uint32_t children_touched(const Region& region, std::uint32_t slot) const {
-    return children_touched(region, boxes_[slot], by_sphere_ ? &spheres_[slot] : nullptr);
-  }
+  std::uint32_t children_touched(const Region& region, const ObjectVolume& volume) const;
   std::uint32_t children_of_box(const Region& region, const Aabb& box) const;
   std::uint32_t children_of_sphere(const Region& region, const BoundingSphere& sphere) const;
+  void resize(std::size_t slot_count);
   bool should_expand(const Region& region) const;
   void make_root();
   std::uint32_t make_children(std::uint32_t parent);
   void free_children(std::uint32_t parent);
-  void expand(std::uint32_t index);
+  void expand(const VolumeStore& volumes, std::uint32_t index);
   void reduce(std::uint32_t index);
   void collect(std::uint32_t index);
   struct Journey;
   void move_below(std::uint32_t index, const Journey& journey, bool was_here, bool is_here);
   void open_stay_range(std::uint32_t slot);
-  void narrow_stay_range(std::uint32_t slot, const Region& region);
-  void set_sphere_stay_range(std::uint32_t slot, const Region& leaf);
+  void narrow_stay_range(std::uint32_t slot, const Aabb& box, const Region& region);
+  void set_sphere_stay_range(std::uint32_t slot, const Aabb& box, const Region& leaf);
 
   template <class Visit>
-  void visit_leaves_below(const Region& region, std::uint32_t slot, Visit& visit) const {
+  void visit_leaves_below(const Region& region, const ObjectVolume& volume, Visit& visit) const {
     if (region.is_leaf()) {
       visit(region);
       return;
     }
-    for (std::uint32_t mask = children_touched(region, slot); mask != 0; mask &= mask - 1)
+    for (std::uint32_t mask = children_touched(region, volume); mask != 0; mask &= mask - 1)
       visit_leaves_below(regions_[region.first_child + static_cast<std::uint32_t>(std::countr_zero(mask))],
-                         slot, visit);
+                         volume, visit);
   }
 
   struct Census;
-  std::string validate_below(std::uint32_t index, std::span<const std::uint32_t> slots, Census& census) const;
+  std::string validate_below(const VolumeStore& volumes, std::uint32_t index,
+                             std::span<const std::uint32_t> slots, Census& census) const;
 
-  bool has_spheres_, by_sphere_;
+  bool by_sphere_;
   std::uint32_t expand_at_;
   std::uint32_t arity_;
   int axes_per_level_;
@@ -157,11 +145,10 @@ class SceneOctree {
   std::vector<std::uint32_t> free_groups_;
   SlotLists lists_;
   std::vector<std::uint32_t> due_;  // regions to expand or reduce, perhaps several times
+  std::size_t object_count_ = 0;
   std::uint64_t expanded_count_ = 0, reduced_count_ = 0;
 
-  // Per slot, of the volumes that the regions hold.
-  std::vector<Aabb> boxes_;
-  std::vector<BoundingSphere> spheres_;
+  // Per slot.
   std::vector<StayRange> stay_;
   std::vector<std::uint8_t> finest_level_;  // in levels of eight: regions whose children are above divide it
 
@@ -169,15 +156,6 @@ class SceneOctree {
   std::vector<std::uint32_t> collected_;    // scratch of `reduce`
   std::vector<std::uint8_t> is_collected_;  // scratch of `reduce`, per slot
 };
-
-inline ObjectVolume SceneOctree::volume(std::uint32_t slot) const {
-  return {boxes_[slot], has_spheres_ ? spheres_[slot] : BoundingSphere{}};
-}
-
-inline bool SceneOctree::same_volume(std::uint32_t slot, const ObjectVolume& now) const {
-  if (boxes_[slot].empty() && now.empty()) return true;
-  return boxes_[slot] == now.box && (!has_spheres_ || spheres_[slot] == now.sphere);
-}
 
 /// Level of the smallest regions whose edge is no shorter than the box, by powers of two.
 inline std::uint8_t SceneOctree::finest_level(const Aabb& box) const {
@@ -190,7 +168,7 @@ inline std::uint8_t SceneOctree::finest_level(const Aabb& box) const {
 }
 
 inline bool SceneOctree::stays(std::uint32_t slot, const ObjectVolume& now) const {
-  if (now.empty() || boxes_[slot].empty()) return false;
+  if (now.box.empty()) return false;
   const StayRange& range = stay_[slot];
   for (int axis = 0; axis < 3; ++axis) {
     const std::size_t k = static_cast<std::size_t>(axis);
@@ -198,12 +176,6 @@ inline bool SceneOctree::stays(std::uint32_t slot, const ObjectVolume& now) cons
     if (!(range.low[k + 3] <= now.box.max[axis] && now.box.max[axis] < range.high[k + 3])) return false;
   }
   return finest_level(now.box) == finest_level_[slot];
-}
-
-inline void SceneOctree::set_volume(std::uint32_t slot, const ObjectVolume& now) {
-  boxes_[slot] = now.box;
-  if (has_spheres_) spheres_[slot] = now.sphere;
-  finest_level_[slot] = finest_level(now.box);
 }
 
 }  // namespace supple

@@ -1,4 +1,4 @@
-#include "broad_phase/scene_cube.hpp"
+#include "broad_phase/octree/scene_cube.hpp"
 
 #include <algorithm>
 #include <array>

@@ -17,7 +17,7 @@ class SlotLists {
   struct List {
     std::size_t first = 0;
     std::uint32_t count = 0;
-    std::uint8_t capacity_log2 = kNoRun;
+    std::uint8_t capacity_log2 = no_run;
   };
 
   std::span<const std::uint32_t> view(const List& list) const {
@@ -28,7 +28,7 @@ class SlotLists {
   void reserve(List& list, std::uint32_t count) {
     release(list);
     if (count == 0) return;
-    list.capacity_log2 = std::max(kSmallestRun, static_cast<std::uint8_t>(std::bit_width(count - 1)));
+    list.capacity_log2 = std::max(smallest_run, static_cast<std::uint8_t>(std::bit_width(count - 1)));
     std::vector<std::size_t>& free = free_[list.capacity_log2];
     if (free.empty()) {
       list.first = slots_.size();
@@ -40,7 +40,7 @@ class SlotLists {
   }
 
   void push(List& list, std::uint32_t slot) {
-    if (list.capacity_log2 == kNoRun || list.count >> list.capacity_log2 != 0) grow(list);
+    if (list.capacity_log2 == no_run || list.count >> list.capacity_log2 != 0) grow(list);
     slots_[list.first + list.count++] = slot;
   }
 
@@ -53,7 +53,7 @@ class SlotLists {
   }
 
   void release(List& list) {
-    if (list.capacity_log2 != kNoRun) free_[list.capacity_log2].push_back(list.first);
+    if (list.capacity_log2 != no_run) free_[list.capacity_log2].push_back(list.first);
     list = {};
   }
 
@@ -64,7 +64,7 @@ class SlotLists {
 
   /// Slots in runs of lists and in free ones; equal to `size` when no run is lost.
   std::size_t capacity(const List& list) const {
-    return list.capacity_log2 == kNoRun ? 0 : std::size_t{1} << list.capacity_log2;
+    return list.capacity_log2 == no_run ? 0 : std::size_t{1} << list.capacity_log2;
   }
   std::size_t free_capacity() const {
     std::size_t total = 0;
@@ -74,8 +74,8 @@ class SlotLists {
   std::size_t size() const { return slots_.size(); }
 
  private:
-  static constexpr std::uint8_t kNoRun = 255;
-  static constexpr std::uint8_t kSmallestRun = 2;
+  static constexpr std::uint8_t no_run = 255;
+  static constexpr std::uint8_t smallest_run = 2;
 
   void grow(List& list) {
     List larger;

@@ -1,4 +1,4 @@
-#include "broad_phase/scene_octree.hpp"
+#include "broad_phase/octree/scene_octree.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -8,11 +8,11 @@
 namespace supple {
 namespace {
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr std::uint32_t kMostChildren = 8;
+constexpr float infinity = std::numeric_limits<float>::infinity();
+constexpr std::uint32_t most_children = 8;
 
 /// Children in the upper half along the axis of each bit; the others are in the lower.
-constexpr std::array<std::uint32_t, 3> kUpperHalf{0xaa, 0xcc, 0xf0};
+constexpr std::array<std::uint32_t, 3> upper_half{0xaa, 0xcc, 0xf0};
 
 /// Children that do not hold part of the box, by the plane of one bit.
 std::uint32_t missed_across(float middle, float min, float max, std::uint32_t upper) {
@@ -26,13 +26,13 @@ std::uint32_t octants_of_box(const Vec3f& middle, const Aabb& box) {
   std::uint32_t missed = 0;
   for (int axis = 0; axis < 3; ++axis)
     missed |=
-        missed_across(middle[axis], box.min[axis], box.max[axis], kUpperHalf[static_cast<std::size_t>(axis)]);
+        missed_across(middle[axis], box.min[axis], box.max[axis], upper_half[static_cast<std::size_t>(axis)]);
   return ~missed & 0xff;
 }
 
-/// Children whose closest point to the centre lies within the ball (Arvo 1990), all when it is not finite.
+/// Children whose closest point to the centre lies within the sphere (Arvo 1990), all when it is not finite.
 ///
-/// Two balls that `overlap` reports share a leaf. With d <= (r1 + r2)(1 + 2^-48) between the centres, the
+/// Two spheres that `overlap` reports share a leaf. With d <= (r1 + r2)(1 + 2^-48) between the centres, the
 /// point p that parts the segment between them as r1 : r2 is within r (1 + 2^-48) of each centre. p is in one
 /// leaf, and in each region above it; the distance from a centre to any of these is no more than to p.
 /// Distances are differences of floats taken in double: each has a relative error of 2^-53 (none of the
@@ -48,7 +48,7 @@ std::uint32_t octants_of_sphere(const SceneOctree::Region& region, const Boundin
     squared[static_cast<std::size_t>(axis)] = {below > 0 ? below * below : 0, above > 0 ? above * above : 0};
   }
   std::uint32_t touched = 0;
-  for (std::uint32_t child = 0; child < kMostChildren; ++child) {
+  for (std::uint32_t child = 0; child < most_children; ++child) {
     const double distance = squared[0][child & 1] + squared[1][child >> 1 & 1] + squared[2][child >> 2 & 1];
     touched |= static_cast<std::uint32_t>(!(distance > limit)) << child;
   }
@@ -58,46 +58,37 @@ std::uint32_t octants_of_sphere(const SceneOctree::Region& region, const Boundin
 }  // namespace
 
 SceneOctree::SceneOctree(BoundingVolume bounding_volume, const SceneOctreeOptions& options)
-    : has_spheres_(bounding_volume == BoundingVolume::sphere),
-      // The paper's grown box holds the centre exactly when the region touches the box around the ball.
-      by_sphere_(has_spheres_ && options.region_sphere_test == RegionSphereTest::arvo),
+    // The paper's grown box holds the centre exactly when the region touches the box around the sphere.
+    : by_sphere_(bounding_volume == BoundingVolume::sphere &&
+                 options.region_sphere_test == RegionSphereTest::arvo),
       expand_at_(options.expand_at),
       arity_(options.arity),
       axes_per_level_(static_cast<int>(std::bit_width(options.arity)) - 1) {
   make_root();
 }
 
-void SceneOctree::resize(std::size_t slot_count) {
-  boxes_.resize(slot_count);
-  if (has_spheres_) spheres_.resize(slot_count);
-  stay_.resize(slot_count);
-  finest_level_.resize(slot_count, 0);
-  is_collected_.resize(slot_count, 0);
-}
-
-std::uint32_t SceneOctree::children_touched(const Region& region, const Aabb& box,
-                                            const BoundingSphere* sphere) const {
-  // The box of a ball that is not finite is all of space, and so are its regions.
-  return sphere == nullptr || box.min.x == -kInfinity ? children_of_box(region, box)
-                                                      : children_of_sphere(region, *sphere);
+std::uint32_t SceneOctree::children_touched(const Region& region, const ObjectVolume& volume) const {
+  // The box of a sphere that is not finite is all of space, and so are its regions.
+  return by_sphere_ && volume.box.min.x != -infinity ? children_of_sphere(region, volume.sphere)
+                                                     : children_of_box(region, volume.box);
 }
 
 std::uint32_t SceneOctree::children_of_box(const Region& region, const Aabb& box) const {
-  if (arity_ == kMostChildren) return octants_of_box(region.middle, box);
+  if (arity_ == most_children) return octants_of_box(region.middle, box);
   std::uint32_t missed = 0;
   for (int turn = 0; turn < axes_per_level_; ++turn) {
     const int axis = split_axis(region.level, turn);
     missed |= missed_across(region.middle[axis], box.min[axis], box.max[axis],
-                            kUpperHalf[static_cast<std::size_t>(turn)]);
+                            upper_half[static_cast<std::size_t>(turn)]);
   }
   return ~missed & ((1u << arity_) - 1);
 }
 
 /// Two children that differ only along axes that are not halved are one: of the eight octants, those that
-/// make up a child. A ball touches the child when it touches one of them.
+/// make up a child. A sphere touches the child when it touches one of them.
 std::uint32_t SceneOctree::children_of_sphere(const Region& region, const BoundingSphere& sphere) const {
   const std::uint32_t octants = octants_of_sphere(region, sphere);
-  if (arity_ == kMostChildren) return octants;
+  if (arity_ == most_children) return octants;
   std::uint32_t touched = 0;
   for (std::uint32_t rest = octants; rest != 0; rest &= rest - 1) {
     const auto octant = static_cast<std::uint32_t>(std::countr_zero(rest));
@@ -120,8 +111,8 @@ void SceneOctree::make_root() {
   due_.clear();
   regions_.resize(arity_);
   Region& root = regions_[0];
-  root.lower = {-kInfinity, -kInfinity, -kInfinity};
-  root.upper = {kInfinity, kInfinity, kInfinity};
+  root.lower = {-infinity, -infinity, -infinity};
+  root.upper = {infinity, infinity, infinity};
   root.middle = cube_.center;
   root.in_use = true;
 }
@@ -148,12 +139,12 @@ std::uint32_t SceneOctree::make_children(std::uint32_t parent_index) {
     for (int turn = 0; turn < axes_per_level_; ++turn) {
       const int axis = split_axis(parent.level, turn);
       const float quarter = std::ldexp(cube_.edge, -halvings(axis, parent.level) - 2);
-      const bool upper_half = (k >> turn & 1) != 0;
-      if (upper_half)
+      const bool is_upper = (k >> turn & 1) != 0;
+      if (is_upper)
         child.lower[axis] = std::max(parent.lower[axis], parent.middle[axis]);
       else
         child.upper[axis] = std::min(parent.upper[axis], parent.middle[axis]);
-      child.middle[axis] = parent.middle[axis] + (upper_half ? quarter : -quarter);
+      child.middle[axis] = parent.middle[axis] + (is_upper ? quarter : -quarter);
     }
   }
   return first;
@@ -170,93 +161,84 @@ void SceneOctree::free_children(std::uint32_t parent_index) {
 }
 
 void SceneOctree::open_stay_range(std::uint32_t slot) {
-  // Balls have no range until they are found in a single leaf.
-  stay_[slot].low.fill(by_sphere_ ? kInfinity : -kInfinity);
-  stay_[slot].high.fill(by_sphere_ ? -kInfinity : kInfinity);
+  // Spheres have no range until they are found in a single leaf.
+  stay_[slot].low.fill(by_sphere_ ? infinity : -infinity);
+  stay_[slot].high.fill(by_sphere_ ? -infinity : infinity);
 }
 
-void SceneOctree::narrow_stay_range(std::uint32_t slot, const Region& region) {
+void SceneOctree::narrow_stay_range(std::uint32_t slot, const Aabb& box, const Region& region) {
   StayRange& range = stay_[slot];
-  const Aabb& box = boxes_[slot];
   const Vec3f& plane = region.middle;
   const std::array<float, 6> ends{box.min.x, box.min.y, box.min.z, box.max.x, box.max.y, box.max.z};
   const std::array<float, 6> planes{plane.x, plane.y, plane.z, plane.x, plane.y, plane.z};
   // Selections in place of branches: which side an end is on is anyone's guess.
   for (std::size_t k = 0; k < 6; ++k) {
     const bool below = ends[k] < planes[k];
-    range.low[k] = std::max(range.low[k], below ? -kInfinity : planes[k]);
-    range.high[k] = std::min(range.high[k], below ? planes[k] : kInfinity);
+    range.low[k] = std::max(range.low[k], below ? -infinity : planes[k]);
+    range.high[k] = std::min(range.high[k], below ? planes[k] : infinity);
   }
 }
 
-/// A ball whose box is inside a leaf, and not too close to its sides, is in no other leaf. The distance from
-/// the centre to a side is then at least the radius and 2^-20 of an edge or, as the radius is at most an
+/// A sphere whose box is inside a leaf, and not too close to its sides, is in no other leaf. The distance
+/// from the centre to a side is then at least the radius and 2^-20 of an edge or, as the radius is at most an
 /// edge, 2^-20 of the radius, which is far more than the 2^-40 that `children_of_sphere` adds and all
 /// roundings.
-void SceneOctree::set_sphere_stay_range(std::uint32_t slot, const Region& leaf) {
+void SceneOctree::set_sphere_stay_range(std::uint32_t slot, const Aabb& box, const Region& leaf) {
   const float edge = shortest_edge(leaf.level);
   StayRange range;
   for (int axis = 0; axis < 3; ++axis) {
     const std::size_t k = static_cast<std::size_t>(axis);
     const auto inside = [&](float side) { return 0x1p-20f * (edge + std::fabs(side)); };
-    const float low = leaf.lower[axis] == -kInfinity ? -std::numeric_limits<float>::max()
-                                                     : leaf.lower[axis] + inside(leaf.lower[axis]);
-    const float high =
-        leaf.upper[axis] == kInfinity ? kInfinity : leaf.upper[axis] - inside(leaf.upper[axis]);
+    const float low = leaf.lower[axis] == -infinity ? -std::numeric_limits<float>::max()
+                                                    : leaf.lower[axis] + inside(leaf.lower[axis]);
+    const float high = leaf.upper[axis] == infinity ? infinity : leaf.upper[axis] - inside(leaf.upper[axis]);
     range.low[k] = range.low[k + 3] = low;
     range.high[k] = range.high[k + 3] = high;
-    const Aabb& box = boxes_[slot];
     if (!(low <= box.min[axis] && box.max[axis] < high && box.max[axis] - box.min[axis] <= edge)) return;
   }
   stay_[slot] = range;
 }
 
-void SceneOctree::build(const SceneCube& cube) {
+void SceneOctree::build(const VolumeStore& volumes, const SceneCube& cube) {
   cube_ = cube;
   inverse_edge_ = 1.0 / cube.edge;
   deepest_level_ = cube.max_level * 3 / static_cast<std::uint32_t>(axes_per_level_);
   make_root();
-  std::uint32_t live = 0;
-  for (const Aabb& box : boxes_) live += !box.empty();
-  lists_.reserve(regions_[0].objects, live);
-  for (std::uint32_t slot = 0; slot < boxes_.size(); ++slot) {
-    if (boxes_[slot].empty()) continue;
-    finest_level_[slot] = finest_level(boxes_[slot]);
+  object_count_ = 0;
+  const auto boxes = volumes.boxes();
+  resize(boxes.size());
+  for (std::uint32_t slot = 0; slot < boxes.size(); ++slot) {
+    finest_level_[slot] = finest_level(boxes[slot]);
+    if (boxes[slot].empty()) continue;
+    ++object_count_;
     open_stay_range(slot);
     lists_.push(regions_[0].objects, slot);
     regions_[0].divided += divides(0, finest_level_[slot]);
   }
-  if (should_expand(regions_[0])) expand(0);
+  if (should_expand(regions_[0])) expand(volumes, 0);
 }
 
-void SceneOctree::set_volumes(const ObjectVolumes& volumes) {
-  if (!has_spheres_) {
-    const auto rest = std::copy(volumes.boxes.begin(), volumes.boxes.end(), boxes_.begin());
-    std::fill(rest, boxes_.end(), Aabb{});
-    return;
-  }
-  for (std::size_t slot = 0; slot < boxes_.size(); ++slot) {
-    const ObjectVolume now = volume_at(volumes, BoundingVolume::sphere, slot);
-    boxes_[slot] = now.box;
-    spheres_[slot] = now.sphere;
-  }
+void SceneOctree::resize(std::size_t slot_count) {
+  stay_.resize(slot_count);
+  finest_level_.resize(slot_count, 0);
+  is_collected_.resize(slot_count, 0);
 }
 
-void SceneOctree::expand(std::uint32_t index) {
+void SceneOctree::expand(const VolumeStore& volumes, std::uint32_t index) {
   ++expanded_count_;
   const std::uint32_t first = make_children(index);
   const Region region = regions_[index];
   std::span<const std::uint32_t> slots = lists_.view(region.objects);
   child_masks_.resize(slots.size());
-  std::array<std::uint32_t, kMostChildren> counts{};
+  std::array<std::uint32_t, most_children> counts{};
   for (std::size_t i = 0; i < slots.size(); ++i) {
     const std::uint32_t slot = slots[i];
-    std::uint32_t mask = children_touched(region, slot);
+    std::uint32_t mask = children_touched(region, volumes.volume(slot));
     child_masks_[i] = static_cast<std::uint8_t>(mask);
     if (by_sphere_)
       open_stay_range(slot);
     else
-      narrow_stay_range(slot, region);
+      narrow_stay_range(slot, volumes.boxes()[slot], region);
     for (; mask != 0; mask &= mask - 1) ++counts[static_cast<std::size_t>(std::countr_zero(mask))];
   }
   for (std::uint32_t k = 0; k < arity_; ++k) lists_.reserve(regions_[first + k].objects, counts[k]);
@@ -273,9 +255,10 @@ void SceneOctree::expand(std::uint32_t index) {
   lists_.release(regions_[index].objects);
   for (std::uint32_t child = first; child < first + arity_; ++child) {
     if (should_expand(regions_[child])) {
-      expand(child);
+      expand(volumes, child);
     } else if (by_sphere_) {
-      for (const std::uint32_t slot : objects(regions_[child])) set_sphere_stay_range(slot, regions_[child]);
+      for (const std::uint32_t slot : objects(regions_[child]))
+        set_sphere_stay_range(slot, volumes.boxes()[slot], regions_[child]);
     }
   }
 }
@@ -314,12 +297,15 @@ struct SceneOctree::Journey {
   std::uint8_t finest_from, finest_to;
 };
 
-void SceneOctree::move(std::uint32_t slot, const ObjectVolume& now) {
-  Journey journey{slot, volume(slot), now, finest_level_[slot], 0};
-  set_volume(slot, now);
-  journey.finest_to = finest_level_[slot];
+void SceneOctree::move(const VolumeStore& volumes, std::uint32_t slot, const ObjectVolume& from) {
+  if (slot >= stay_.size()) resize(volumes.slot_count());
+  const ObjectVolume to = volumes.volume(slot);
+  const Journey journey{slot, from, to, finest_level_[slot], finest_level(to.box)};
+  finest_level_[slot] = journey.finest_to;
+  object_count_ += !to.box.empty();
+  object_count_ -= !from.box.empty();
   open_stay_range(slot);
-  if (!journey.from.empty() || !now.empty()) move_below(0, journey, !journey.from.empty(), !now.empty());
+  if (!from.box.empty() || !to.box.empty()) move_below(0, journey, !from.box.empty(), !to.box.empty());
 }
 
 void SceneOctree::move_below(std::uint32_t index, const Journey& journey, bool was_here, bool is_here) {
@@ -330,14 +316,14 @@ void SceneOctree::move_below(std::uint32_t index, const Journey& journey, bool w
   if (region.is_leaf()) {
     if (was_here && !is_here) lists_.erase(region.objects, journey.slot);
     if (!was_here && is_here) lists_.push(region.objects, journey.slot);
-    if (is_here && by_sphere_) set_sphere_stay_range(journey.slot, region);
+    if (is_here && by_sphere_) set_sphere_stay_range(journey.slot, journey.to.box, region);
     return;
   }
   const auto touched = [&](bool here, const ObjectVolume& volume) -> std::uint32_t {
-    return here ? children_touched(region, volume.box, by_sphere_ ? &volume.sphere : nullptr) : 0;
+    return here ? children_touched(region, volume) : 0;
   };
   const std::uint32_t were = touched(was_here, journey.from), are = touched(is_here, journey.to);
-  if (is_here && !by_sphere_) narrow_stay_range(journey.slot, region);
+  if (is_here && !by_sphere_) narrow_stay_range(journey.slot, journey.to.box, region);
   const std::uint32_t first = region.first_child;
   for (std::uint32_t mask = were | are; mask != 0; mask &= mask - 1) {
     const auto k = static_cast<std::uint32_t>(std::countr_zero(mask));
@@ -345,13 +331,13 @@ void SceneOctree::move_below(std::uint32_t index, const Journey& journey, bool w
   }
 }
 
-void SceneOctree::settle() {
+void SceneOctree::settle(const VolumeStore& volumes) {
   for (const std::uint32_t index : due_) {
     // An earlier entry may have settled this region, or reduced one above it.
     const Region& region = regions_[index];
     if (!region.in_use || should_expand(region) != region.is_leaf()) continue;
     if (region.is_leaf())
-      expand(index);
+      expand(volumes, index);
     else
       reduce(index);
   }
@@ -382,20 +368,21 @@ struct SceneOctree::Census {
   std::size_t list_capacity = 0;
 };
 
-std::string SceneOctree::validate() const {
+std::string SceneOctree::validate(const VolumeStore& volumes) const {
+  const auto boxes = volumes.boxes();
   if (!due_.empty()) return "scene octree: regions are left to expand or reduce";
   std::vector<std::uint32_t> live;
-  for (std::uint32_t slot = 0; slot < boxes_.size(); ++slot) {
-    if (boxes_[slot].empty()) continue;
+  for (std::uint32_t slot = 0; slot < boxes.size(); ++slot) {
+    if (boxes[slot].empty()) continue;
     live.push_back(slot);
-    if (finest_level_[slot] != finest_level(boxes_[slot]))
+    if (finest_level_[slot] != finest_level(boxes[slot]))
       return "scene octree: slot " + std::to_string(slot) + " has a stale finest level";
   }
   if (std::count(is_collected_.begin(), is_collected_.end(), 0) !=
       static_cast<std::ptrdiff_t>(is_collected_.size()))
     return "scene octree: scratch of reduce is not clean";
   Census census;
-  if (std::string wrong = validate_below(0, live, census); !wrong.empty()) return wrong;
+  if (std::string wrong = validate_below(volumes, 0, live, census); !wrong.empty()) return wrong;
   const std::size_t pool = 1 + regions_.size() - arity_;
   if (census.regions + arity_ * free_groups_.size() != pool)
     return "scene octree: " + std::to_string(pool) + " regions in the pool, but " +
@@ -407,8 +394,8 @@ std::string SceneOctree::validate() const {
 }
 
 /// `slots` are the objects that touch the region.
-std::string SceneOctree::validate_below(std::uint32_t index, std::span<const std::uint32_t> slots,
-                                        Census& census) const {
+std::string SceneOctree::validate_below(const VolumeStore& volumes, std::uint32_t index,
+                                        std::span<const std::uint32_t> slots, Census& census) const {
   const Region& region = regions_[index];
   const std::string name = "scene octree: region " + std::to_string(region.number) + ": ";
   ++census.regions;
@@ -430,7 +417,7 @@ std::string SceneOctree::validate_below(std::uint32_t index, std::span<const std
     return {};
   }
   if (region.objects.count != 0) return name + "is expanded, but holds objects";
-  std::array<std::vector<std::uint32_t>, kMostChildren> inside;
+  std::array<std::vector<std::uint32_t>, most_children> inside;
   for (const std::uint32_t slot : slots) {
     if (!by_sphere_) {
       const StayRange& range = stay_[slot];
@@ -443,7 +430,7 @@ std::string SceneOctree::validate_below(std::uint32_t index, std::span<const std
           return name + "slot " + std::to_string(slot) + " may cross the middle unnoticed";
       }
     }
-    const std::uint32_t mask = children_touched(region, slot);
+    const std::uint32_t mask = children_touched(region, volumes.volume(slot));
     for (std::size_t k = 0; k < arity_; ++k)
       if ((mask >> k & 1) != 0) inside[k].push_back(slot);
   }
@@ -451,7 +438,8 @@ std::string SceneOctree::validate_below(std::uint32_t index, std::span<const std
     const Region& child = regions_[region.first_child + k];
     if (child.number != arity_ * region.number + 1 + k || child.level != region.level + 1)
       return name + "child " + std::to_string(k) + " has number " + std::to_string(child.number);
-    if (std::string wrong = validate_below(region.first_child + k, inside[k], census); !wrong.empty())
+    if (std::string wrong = validate_below(volumes, region.first_child + k, inside[k], census);
+        !wrong.empty())
       return wrong;
   }
   return {};

@@ -1,4 +1,4 @@
-#include "broad_phase/pair_cache.hpp"
+#include "scene/pair_cache.hpp"
 
 #include <algorithm>
 #include <cassert>
