@@ -13,14 +13,22 @@ namespace supple {
 /// is then the point or the segment that they span.
 using TrianglePoints = std::array<Vec3d, 3>;
 
-/// What two closed triangles share, by its extreme points.
+/// The unit normal by the right-hand rule; zero when the triangle has no area or a corner is not finite.
+/// Rounded.
+Vec3d unit_normal(const TrianglePoints& triangle);
+/// The area, rounded; not finite when a corner is not finite.
+double area(const TrianglePoints& triangle);
+
+/// What two closed triangles share: the extreme points of their intersection.
 struct TriangleIntersection {
   bool intersects = false;
-  /// True when floating-point filters could not decide and integers did.
+  /// True when integers decided because floating-point filters could not.
   bool used_exact_fallback = false;
   IntersectionKind kind = IntersectionKind::point;  ///< meaningful when `intersects`
   std::uint8_t point_count = 0;                     ///< 0 to 6
-  std::array<ContactPoint, 6> points;               ///< the first `point_count`
+  std::array<ContactPoint, 6> points;               ///< the first `point_count` are valid
+  /// Unit vector from b to a; zero when the triangles are apart. See `intersect_triangles`.
+  Vec3d normal{};
 
   std::span<const ContactPoint> extreme_points() const { return {points.data(), point_count}; }
 };
@@ -43,13 +51,27 @@ bool triangles_intersect(const TrianglePoints& a, const TrianglePoints& b);
 /// segment is listed in ascending order of (on_a, on_b); a polygon goes round in convex order, starting from
 /// the smallest (on_a, on_b) towards the smaller of its two neighbours.
 ///
-/// Takes about 100 ns more than the decision for each point that is not a vertex.
+/// Cost: about 100 ns more than the decision for each point that is not a vertex.
 ///
 /// Positions: a vertex is given bit for bit (that of a where both are vertices). Any other point lies on an
 /// edge; it is off the exact one by at most 2^-44 of the edge's extent along each axis plus half a unit in
 /// the last place, and never outside the box of either triangle. It depends on that edge and the opposite
 /// edge or face alone, not on the order of corners or triangles, so triangles that share an edge report the
 /// same bits there.
+///
+/// Normal: the direction of the shortest translation of triangle a that separates the triangles: afterwards a
+/// plane perpendicular to the normal has each triangle on one of its closed sides, a on the side to which the
+/// normal points.
+/// - Triangles that cross in a segment: the direction of least penetration among the normals of both triangles
+///   and the cross products of an edge of each, with either sign.
+/// - Triangles that touch, in a point or a segment: no translation is needed; the normal is the one of those
+///   directions whose plane separates the triangles. For a vertex on a face that is the normal of the face.
+/// - Coplanar triangles: the common normal with the sign of the normal of b (counter-clockwise corners).
+/// - A triangle without area, or with an angle below 2^-20, acts as the segment or the point that it spans. When both lie on one line, the
+///   normal is perpendicular to it; when both are one point, the normal is the x axis.
+/// The normal is rounded: computed in double, in a fixed order of operations, with the same bits on every
+/// machine. Two edges at an angle below 2^-20 count as parallel, and triangles within 2^-32 of their size from
+/// a common plane count as coplanar.
 TriangleIntersection intersect_triangles(const TrianglePoints& a, const TrianglePoints& b);
 
 /// The same decision as `triangles_intersect`, by integers of unlimited size and separating axes: unrelated

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "contact/meeting_point.hpp"
+#include "contact/separating_normal.hpp"
 #include "geometry/exact_predicates.hpp"
 #include "geometry/plane_filter.hpp"
 
@@ -427,6 +428,7 @@ TriangleIntersection intersect_triangles(const TrianglePoints& a, const Triangle
     const auto [on_a, on_b] = meetings.items[i];
     result.points[i] = {meeting_point(a, on_a, b, on_b), on_a, on_b};
   }
+  if (result.intersects) result.normal = separating_normal(a, b);
   return result;
 }
 

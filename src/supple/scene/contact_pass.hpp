@@ -46,10 +46,16 @@ class ContactPass {
     std::uint32_t job = 0;
     LeafPair leaves;
   };
+  /// Kept apart from `FoundContact`, which is sorted.
+  struct ContactDetails {
+    Vec3d normal;
+    std::uint32_t first_point = 0;  // in the worker's points
+  };
   struct Worker {
     std::uint16_t number = 0;
     Traversal traversal;
     std::vector<FoundContact> found;  // of its tasks, one after the other
+    std::vector<ContactDetails> details;
     std::vector<ContactPoint> points;
     std::vector<CollidingLeaves> leaves;
     TaskStats stats;

@@ -10,7 +10,7 @@ namespace supple {
 namespace {
 
 ObjectOctree octree_of(const TriangleMesh& mesh, std::uint32_t leaf_size = 8) {
-  return {PositionsView<double>(mesh.positions),
+  return {mesh.positions,
           mesh.triangles,
           {.leaf_size = leaf_size},
           BoundingVolume::aabb,
