@@ -1,5 +1,5 @@
-// One cell of the contest: all contestants on one workload, frame by frame in turn, and their times as JSON.
-// benchmarks/contest.py runs the cells and makes tables of them.
+// Runs one cell of the contest: all contestants on one workload, frame by frame in turn. Prints their times
+// as JSON. benchmarks/contest.py runs the cells and makes the tables.
 
 #include <cstdio>
 #include <cstdlib>
@@ -90,7 +90,7 @@ Choice choice_of(const std::vector<std::string>& words) {
 }  // namespace
 }  // namespace supple::benchmarks
 
-/// 0; 1 for wrong use; 3 when contestants disagree.
+/// Returns 0 on success, 1 for wrong usage, 3 when contestants disagree.
 int main(int argument_count, char** arguments) {
   using namespace supple::benchmarks;
   const std::vector<std::string> words(arguments + 1, arguments + argument_count);

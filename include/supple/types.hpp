@@ -26,15 +26,26 @@ struct Vec3 {
   friend constexpr Vec3 operator*(Vec3 a, Scalar s) { return {a.x * s, a.y * s, a.z * s}; }
   friend constexpr Vec3 operator*(Scalar s, Vec3 a) { return a * s; }
   friend constexpr Vec3 operator/(Vec3 a, Scalar s) { return {a.x / s, a.y / s, a.z / s}; }
-
-  // Sums run from left to right and each operation rounds once: error bounds in the library rely on it.
-  friend constexpr Scalar dot(Vec3 a, Vec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-  friend constexpr Vec3 cross(Vec3 a, Vec3 b) {
-    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-  }
-  friend constexpr Scalar squared_norm(Vec3 a) { return dot(a, a); }
-  friend Scalar norm(Vec3 a) { return std::sqrt(dot(a, a)); }
 };
+
+// Sums run from left to right and each operation rounds once: error bounds in the library rely on it.
+template <class Scalar>
+constexpr Scalar dot(Vec3<Scalar> a, Vec3<Scalar> b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+template <class Scalar>
+constexpr Vec3<Scalar> cross(Vec3<Scalar> a, Vec3<Scalar> b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+template <class Scalar>
+constexpr Scalar squared_norm(Vec3<Scalar> a) {
+  return dot(a, a);
+}
+template <class Scalar>
+Scalar norm(Vec3<Scalar> a) {
+  return std::sqrt(dot(a, a));
+}
+
 using Vec3d = Vec3<double>;
 using Vec3f = Vec3<float>;
 

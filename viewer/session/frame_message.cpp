@@ -89,7 +89,7 @@ void FramePacker::add_contacts(const FrameView& frame) {
   if (has_points) add_contact_points(frame, count);
 }
 
-/// Those of the contacts that are sent. They stand in the order of contacts.
+/// Adds the points of the contacts that are sent, in the order of the contacts.
 void FramePacker::add_contact_points(const FrameView& frame, std::size_t contact_count) {
   const DetectResult& result = frame.source.scene().result();
   const Contact* const last = contact_count == 0 ? nullptr : &result.contacts[contact_count - 1];
@@ -127,7 +127,7 @@ void FramePacker::add_impacts(const FrameView& frame) {
   }
 }
 
-/// Since the frame that was sent last, which may be some steps ago.
+/// Adds the events since the last frame that was sent, which may be several steps ago.
 void FramePacker::add_events(const DetectResult& result) {
   now_touching_.clear();
   for (const ContactGroup& group : result.groups) {
@@ -165,7 +165,7 @@ void FramePacker::add_candidates(const FrameView& frame) {
   });
 }
 
-/// Spheres when cells have them, else boxes. Cells without a finite triangle have neither.
+/// Adds spheres when the cells have them, else boxes. Cells without a finite triangle have neither.
 void FramePacker::add_octree(const FrameView& frame, std::uint32_t object) {
   const ObjectId id = frame.source.id(object);
   const SceneInspector inspector(frame.source.scene());
@@ -227,7 +227,7 @@ void FramePacker::add_text(const FrameView& frame) {
   message_->add_text(json_.text());
 }
 
-/// How many of the elements are sent; the rest is noted, one object's after the other's added up.
+/// The number of elements to send. Counts the omitted ones, summed over objects.
 std::size_t FramePacker::limited(const char* layer, std::uint64_t count) {
   if (count <= most_elements) return static_cast<std::size_t>(count);
   omissions_.push_back({layer, count});

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t springs_at_a_time = 2048;
 
-/// Heron's formula as Kahan orders it, which loses nothing on needles.
+/// Heron's formula in Kahan's order, which is accurate for needle-shaped triangles.
 double area_of_sides(double a, double b, double c) {
   if (a < b) std::swap(a, b);
   if (b < c) std::swap(b, c);
@@ -32,7 +32,7 @@ bool flow(std::span<SpringElement> springs, double yield_strain, double rate, do
       springs.size(), springs_at_a_time, [&](std::size_t begin, std::size_t end, std::uint32_t) {
         bool changed = false;
         for (SpringElement& spring : springs.subspan(begin, end - begin)) {
-          const double length = supple::norm(positions[spring.b] - positions[spring.a]);
+          const double length = norm(positions[spring.b] - positions[spring.a]);
           const double longest = length / (1 + yield_strain);
           const double shortest = yield_strain < 1 ? length / (1 - yield_strain) : spring.rest_length;
           const double yielded = std::clamp(spring.rest_length, longest, std::max(longest, shortest));

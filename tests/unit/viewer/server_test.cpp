@@ -400,7 +400,7 @@ TEST(ViewerServerOptions, SaysWhatIsWrongWithAnAddress) {
   };
   const Server first(Session(small_show()), {"127.0.0.1", 0, page});
   EXPECT_NE(error_of("127.0.0.1", first.port()).find("Address already in use"), std::string::npos);
-  EXPECT_NE(error_of("somewhere", 0).find("somewhere: is no IP address"), std::string::npos);
+  EXPECT_NE(error_of("somewhere", 0).find("somewhere: it is not an IP address"), std::string::npos);
   EXPECT_NE(error_of("203.0.113.1", 0).find("203.0.113.1, port 0: cannot listen"), std::string::npos);
   EXPECT_TRUE(is_loopback("127.0.0.1"));
   EXPECT_TRUE(is_loopback("::1"));
