@@ -106,8 +106,7 @@ bool run_cloth(const std::string& cell, const Choice& choice) {
   options.threads = choice.threads;
   options.contacts = ContactMode::continuous;
   Scene scene(options);
-  const ObjectId cloth =
-      scene.add(step->start, step->triangles, {.self_collision = true});
+  const ObjectId cloth = scene.add(step->start, step->triangles, {.self_collision = true});
   time_frames(cell, choice, scene, [&] {
     const double before = cpu_milliseconds();
     scene.set_motion(cloth, step->start, step->end);

@@ -29,7 +29,8 @@ class Ideal : public Contestant<DeformingCopies> {
 std::size_t leaf_width(const DeformingCopies& copies) {
   Scene scene;
   const ObjectId object = scene.add(copies.positions(0), copies.triangles());
-  return static_cast<std::size_t>(std::lround(SceneInspector(scene).octree_statistics(object).mean_leaf_size));
+  return static_cast<std::size_t>(
+      std::lround(SceneInspector(scene).octree_statistics(object).mean_leaf_size));
 }
 
 double heap_bytes() {

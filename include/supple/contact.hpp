@@ -12,8 +12,8 @@ namespace supple {
 /// Part of a triangle on which a point of an intersection lies: the smallest such part.
 enum class FeatureKind : std::uint8_t { vertex, edge, face };
 
-/// `index` of a vertex is its corner (0, 1, 2). `index` of an edge is the corner where it starts: edge i joins
-/// corners i and (i + 1) mod 3. `index` of the face is 0.
+/// `index` of a vertex is its corner (0, 1, 2). `index` of an edge is the corner where it starts: edge i
+/// joins corners i and (i + 1) mod 3. `index` of the face is 0.
 struct Feature {
   FeatureKind kind = FeatureKind::face;
   std::uint8_t index = 0;
@@ -23,7 +23,7 @@ struct Feature {
 
 /// An extreme point of the intersection of two triangles: feature a meets feature b there.
 struct ContactPoint {
-  Vec3d position;  ///< rounded from the exact point; `intersect_triangles` states the error
+  Vec3d position;      ///< rounded from the exact point; `intersect_triangles` states the error
   Feature on_a, on_b;  ///< exact
 
   constexpr bool operator==(const ContactPoint&) const = default;
@@ -69,8 +69,8 @@ struct ContinuousContact {
   ImpactCertainty certainty = ImpactCertainty::certain;
   /// Time of impact, when they first touch: in [0, 1], never late, early by at most `toi_tolerance`.
   double toi = 0;
-  /// The point of each element that touches, in barycentric coordinates of the element's vertices: 1, 0, 0 for
-  /// a vertex; 1 - s, s, 0 for an edge; one coordinate for each corner of a face.
+  /// The point of each element that touches, in barycentric coordinates of the element's vertices: 1, 0, 0
+  /// for a vertex; 1 - s, s, 0 for an edge; one coordinate for each corner of a face.
   std::array<double, 3> barycentric_a{}, barycentric_b{};
   Vec3d point;   ///< midpoint of the two points at `toi`
   Vec3d normal;  ///< unit vector, towards the side of element a before the impact; see `Impact`

@@ -8,8 +8,8 @@
 
 namespace supple {
 
-// Continuous collision: vertices move on straight paths from `start` (t = 0) to `end` (t = 1). Edges and faces
-// move with their vertices. Elements are closed sets. Edges and faces may degenerate at any time.
+// Continuous collision: vertices move on straight paths from `start` (t = 0) to `end` (t = 1). Edges and
+// faces move with their vertices. Elements are closed sets. Edges and faces may degenerate at any time.
 
 /// A vertex v and a face (f0, f1, f2), in this order, at both ends of the step.
 struct VertexFaceMotion {
@@ -48,19 +48,19 @@ struct Impact {
   std::array<double, 4> barycentric{};
   /// Midpoint of the two points at `toi`.
   Vec3d point;
-  /// Unit vector from the face to the side of the vertex before the impact, or from edge b to the side of edge
-  /// a. Pushing the vertex, or edge a, along it separates them. Zero only when no direction is defined.
+  /// Unit vector from the face to the side of the vertex before the impact, or from edge b to the side of
+  /// edge a. Pushing the vertex, or edge a, along it separates them. Zero only when no direction is defined.
   Vec3d normal;
 };
 
-/// The first impact within the step, or nothing, as exact arithmetic decides on the given coordinates. They may
-/// be any finite numbers, and the motion may be any: within one plane, with parallel edges or degenerate faces,
-/// or none. Elements with a coordinate that is not finite touch nothing.
+/// The first impact within the step, or nothing, as exact arithmetic decides on the given coordinates. They
+/// may be any finite numbers, and the motion may be any: within one plane, with parallel edges or degenerate
+/// faces, or none. Elements with a coordinate that is not finite touch nothing.
 ///
 /// Throws `Error` when `min_separation` is negative or not finite. Takes about 0.1 µs for elements that stay
 /// apart and 0.3 µs for others. When only exact arithmetic can decide, it takes a few microseconds, or a few
-/// hundred with a separation, and allocates memory. Coordinates that differ by more than 2^100 in size can then
-/// take milliseconds, tenths of a second at worst.
+/// hundred with a separation, and allocates memory. Coordinates that differ by more than 2^100 in size can
+/// then take milliseconds, tenths of a second at worst.
 std::optional<Impact> first_impact(const VertexFaceMotion& motion, const ImpactOptions& options = {});
 std::optional<Impact> first_impact(const EdgeEdgeMotion& motion, const ImpactOptions& options = {});
 
@@ -70,11 +70,11 @@ struct TimeBracket {
   constexpr bool operator==(const TimeBracket&) const = default;
 };
 
-/// Answers the same question by algebra alone, for checking: it isolates the roots of polynomials with integer
-/// coefficients of unlimited size and evaluates the signs of the conditions at the roots. It shares no code with
-/// `first_impact` and uses no floating-point arithmetic. Takes a fraction of a microsecond for most elements
-/// that stay apart, tens of microseconds for others, hundreds with a separation, and tenths of a second at
-/// worst when coordinates range from 1e-300 to 1e300.
+/// Answers the same question by algebra alone, for checking: it isolates the roots of polynomials with
+/// integer coefficients of unlimited size and evaluates the signs of the conditions at the roots. It shares
+/// no code with `first_impact` and uses no floating-point arithmetic. Takes a fraction of a microsecond for
+/// most elements that stay apart, tens of microseconds for others, hundreds with a separation, and tenths of
+/// a second at worst when coordinates range from 1e-300 to 1e300.
 std::optional<TimeBracket> first_contact_by_algebra(const VertexFaceMotion& motion,
                                                     double min_separation = 0);
 std::optional<TimeBracket> first_contact_by_algebra(const EdgeEdgeMotion& motion, double min_separation = 0);

@@ -37,8 +37,8 @@ struct CandidateList {
 };
 
 /// The stage that separated two triangles, in the order of the flow. With continuous contacts, a stage
-/// separates the triangles for the whole step; their elements are tested on their own, so `contact` then takes
-/// precedence over every stage but the first.
+/// separates the triangles for the whole step; their elements are tested on their own, so `contact` then
+/// takes precedence over every stage but the first.
 enum class PairStage : std::uint8_t {
   not_tested,  ///< the scene does not test these objects: static, group and mask, filter, no self-collision
   shared_vertex,   ///< both in one object, with a common vertex (or the same triangle): never a contact
@@ -83,8 +83,9 @@ struct OctreeStatistics {
   std::uint64_t bytes = 0;         ///< all memory of the octree: nodes, ids and maps, without the positions
   double bytes_per_triangle = 0;
   std::vector<std::uint64_t> leaves_by_level;
-  /// Expected visits of a query whose box meets the object's, by the surface-area heuristic: one visit a child
-  /// and an eighth for each triangle of a leaf. For the boxes of the last refit; 0 when they have no surface.
+  /// Expected visits of a query whose box meets the object's, by the surface-area heuristic: one visit a
+  /// child and an eighth for each triangle of a leaf. For the boxes of the last refit; 0 when they have no
+  /// surface.
   double cost = 0;
   /// The cost relative to the cost when built: 1 as built, 2 when queries cost twice as much.
   double degradation = 1;
@@ -103,8 +104,8 @@ class SceneInspector {
 
   /// The cells of an object's octree at `level`, and leaves above it, so that together they cover the object;
   /// without a level, all leaves. Ordered by level. Cell volumes enclose the triangles at their present
-  /// positions, rounded outward; cells without a finite triangle are empty. With continuous contacts the cells
-  /// enclose the positions at the end of the step, and small cells are reported as leaves.
+  /// positions, rounded outward; cells without a finite triangle are empty. With continuous contacts the
+  /// cells enclose the positions at the end of the step, and small cells are reported as leaves.
   std::vector<OctreeCell> cells(ObjectId object, std::optional<std::uint32_t> level = {}) const;
   /// The deepest level that has cells. 0 for an object without triangles, which has no cell.
   std::uint32_t octree_depth(ObjectId object) const;

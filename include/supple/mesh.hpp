@@ -24,17 +24,19 @@ struct TriangleMesh {
 /// Reads an OBJ, OFF, PLY (ASCII, little or big endian, float or double) or STL (ASCII or binary) file. The
 /// extension, in either case, selects the format.
 ///
-/// Coordinates keep the precision of the file, and ids keep its order: vertex i is the i-th vertex of the file.
-/// Polygons become fans around their first corner, in file order. Texture and normal ids are ignored. Unused
-/// vertices stay. STL has no ids: corners with equal coordinates become one vertex, numbered by first use.
-/// Throws `Error` naming file, line or byte, the value and what is allowed.
+/// Coordinates keep the precision of the file, and ids keep its order: vertex i is the i-th vertex of the
+/// file. Polygons become fans around their first corner, in file order. Texture and normal ids are ignored.
+/// Unused vertices stay. STL has no ids: corners with equal coordinates become one vertex, numbered by first
+/// use. Throws `Error` naming file, line or byte, the value and what is allowed.
 TriangleMesh load_mesh(const std::filesystem::path& path);
 
-/// Writes a file in the format of its extension: .obj, .off, .ply (binary little endian, double), .stl (binary, single precision).
-/// Text formats print the shortest digits that read back to the same double. Throws `Error`.
+/// Writes a file in the format of its extension: .obj, .off, .ply (binary little endian, double), .stl
+/// (binary, single precision). Text formats print the shortest digits that read back to the same double.
+/// Throws `Error`.
 void save_mesh(const TriangleMesh& mesh, const std::filesystem::path& path);
 
-/// Throws `Error` when a triangle uses a vertex that does not exist; the message names mesh, triangle and value.
+/// Throws `Error` when a triangle uses a vertex that does not exist; the message names mesh, triangle and
+/// value.
 void check_mesh(const TriangleMesh& mesh);
 
 }  // namespace supple

@@ -29,8 +29,8 @@ struct CollidingVertices {
   std::uint32_t count_b = 0;
 };
 
-/// A vertex with a coordinate that is not a finite number. The triangles that use it are inert: they are in no
-/// box and in no contact until the vertex has a finite position.
+/// A vertex with a coordinate that is not a finite number. The triangles that use it are inert: they are in
+/// no box and in no contact until the vertex has a finite position.
 struct NonFiniteVertex {
   ObjectId object;
   std::uint32_t vertex = 0;
@@ -43,9 +43,10 @@ struct PairEvents {
   std::span<const ObjectPair> begin, stay, end;
 };
 
-/// Wall-clock seconds and work counts of one step. When two objects both have not moved, the step reuses their
-/// contacts, and the counts do not include the work that found them. Traversal and exact tests run interleaved
-/// on several threads: their wall-clock time is measured together and split by the threads' own clocks.
+/// Wall-clock seconds and work counts of one step. When two objects both have not moved, the step reuses
+/// their contacts, and the counts do not include the work that found them. Traversal and exact tests run
+/// interleaved on several threads: their wall-clock time is measured together and split by the threads' own
+/// clocks.
 struct StepStats {
   double refit_seconds = 0;            ///< new positions into octrees
   double broad_phase_seconds = 0;      ///< object volumes into object pairs
@@ -57,8 +58,8 @@ struct StepStats {
 
   std::uint64_t objects_refitted = 0;
   std::uint64_t triangles_refitted = 0;
-  std::uint64_t subtrees_rebuilt = 0;   ///< degraded parts of octrees
-  std::uint64_t triangles_rebuilt = 0;  ///< triangles in them
+  std::uint64_t subtrees_rebuilt = 0;     ///< degraded parts of octrees
+  std::uint64_t triangles_rebuilt = 0;    ///< triangles in them
   std::uint64_t object_pairs_tested = 0;  ///< volume against volume in the broad phase
   std::uint64_t object_pairs = 0;
   std::uint64_t node_pairs_visited = 0;  ///< eight-wide node against eight-wide node

@@ -62,9 +62,9 @@ class Scene {
   /// valid until the object gets other positions or is removed. Its values must not change, except between
   /// calls on the scene and followed by this call again.
   ///
-  /// The scene copies the positions when it cannot read them in place: with continuous contacts; when x, y and
-  /// z of a point are not adjacent (a column-major n x 3 matrix); and when the point stride or the address is
-  /// not a multiple of the scalar's size.
+  /// The scene copies the positions when it cannot read them in place: with continuous contacts; when x, y
+  /// and z of a point are not adjacent (a column-major n x 3 matrix); and when the point stride or the
+  /// address is not a multiple of the scalar's size.
   void share_positions(ObjectId object, PositionsView positions);
   /// Moves the object by `offset` in O(1), without reading its vertices. Each coordinate becomes
   /// fl(position + D) in double; D is the sum of the offsets since the last `set_positions`.
@@ -95,9 +95,9 @@ class Scene {
   double max_step();
   /// The result of the last `detect`.
   const DetectResult& result() const;
-  /// Recomputes the last `detect` by exact arithmetic over all pairs of triangles, without octrees or filters,
-  /// and lists every difference. Quadratic: under a second for two meshes of 70,000 triangles. Throws `Error`
-  /// when an object or option changed since the last `detect`.
+  /// Recomputes the last `detect` by exact arithmetic over all pairs of triangles, without octrees or
+  /// filters, and lists every difference. Quadratic: under a second for two meshes of 70,000 triangles.
+  /// Throws `Error` when an object or option changed since the last `detect`.
   VerifyReport verify() const;
 
   std::vector<ObjectId> objects() const;  ///< ascending

@@ -41,36 +41,40 @@ struct TriangleIntersection {
 /// when coordinates differ by more than 2^100 in size. Allocates memory only in that last case.
 bool triangles_intersect(const TrianglePoints& a, const TrianglePoints& b);
 
-/// Makes the same decision and finds the extreme points of what the triangles share. Each point has the feature
-/// of a and the feature of b whose relative interiors meet there. The list is complete and has no duplicates.
+/// Makes the same decision and finds the extreme points of what the triangles share. Each point has the
+/// feature of a and the feature of b whose relative interiors meet there. The list is complete and has no
+/// duplicates.
 ///
-/// When corners of a triangle coincide, the smaller index names the point. When corners are collinear, the edge
-/// between the two outer corners names the segment.
+/// When corners of a triangle coincide, the smaller index names the point. When corners are collinear, the
+/// edge between the two outer corners names the segment.
 ///
-/// A point has one extreme point, a segment two, a polygon (of coplanar triangles) three to six. The points of
-/// a segment are in ascending order of (on_a, on_b). A polygon is in convex order; it starts at the smallest
-/// (on_a, on_b) and continues with the smaller of its two neighbours.
+/// A point has one extreme point, a segment two, a polygon (of coplanar triangles) three to six. The points
+/// of a segment are in ascending order of (on_a, on_b). A polygon is in convex order; it starts at the
+/// smallest (on_a, on_b) and continues with the smaller of its two neighbours.
 ///
 /// Cost: about 100 ns more than the decision for each point that is not a vertex.
 ///
-/// Positions: a vertex has its own bits (those of a where two vertices meet). Any other point lies on an edge.
-/// Its error along each axis is at most 2^-44 of the edge's extent plus half a unit in the last place, and it is
-/// never outside the box of either triangle. It depends on that edge and the opposite edge or face alone, not
-/// on the order of corners or triangles, so triangles that share an edge report the same bits there.
+/// Positions: a vertex has its own bits (those of a where two vertices meet). Any other point lies on an
+/// edge. Its error along each axis is at most 2^-44 of the edge's extent plus half a unit in the last place,
+/// and it is never outside the box of either triangle. It depends on that edge and the opposite edge or face
+/// alone, not on the order of corners or triangles, so triangles that share an edge report the same bits
+/// there.
 ///
 /// Normal: the direction of the shortest translation of triangle a that separates the triangles: afterwards a
 /// plane perpendicular to the normal has each triangle on one of its closed sides, a on the side to which the
 /// normal points.
-/// - Triangles that cross in a segment: the direction of least penetration among the normals of both triangles
+/// - Triangles that cross in a segment: the direction of least penetration among the normals of both
+/// triangles
 ///   and the cross products of an edge of each, with either sign.
 /// - Triangles that touch, in a point or a segment: no translation is needed; the normal is the one of those
 ///   directions whose plane separates the triangles. For a vertex on a face that is the normal of the face.
 /// - Coplanar triangles: the common normal with the sign of the normal of b (counter-clockwise corners).
-/// - A triangle without area, or with an angle below 2^-20, acts as the segment or the point that it spans. When both lie on one line, the
+/// - A triangle without area, or with an angle below 2^-20, acts as the segment or the point that it spans.
+/// When both lie on one line, the
 ///   normal is perpendicular to it; when both are one point, the normal is the x axis.
 /// The normal is rounded: computed in double, in a fixed order of operations, with the same bits on every
-/// machine. Two edges at an angle below 2^-20 count as parallel, and triangles within 2^-32 of their size from
-/// a common plane count as coplanar.
+/// machine. Two edges at an angle below 2^-20 count as parallel, and triangles within 2^-32 of their size
+/// from a common plane count as coplanar.
 TriangleIntersection intersect_triangles(const TrianglePoints& a, const TrianglePoints& b);
 
 /// Makes the same decision as `triangles_intersect` by separating axes and integers of unlimited size, for

@@ -17,8 +17,8 @@ namespace supple {
 /// Which lines of a matrix are the items: points or triangles.
 enum class MatrixItems : std::uint8_t { rows, columns, automatic };
 
-/// A dense matrix with the interface of Eigen: `Eigen::Matrix`, `Array`, `Map`, `Ref`, `Block` and others. The
-/// library only calls these members; it does not include Eigen.
+/// A dense matrix with the interface of Eigen: `Eigen::Matrix`, `Array`, `Map`, `Ref`, `Block` and others.
+/// The library only calls these members; it does not include Eigen.
 template <class Matrix>
 concept DenseMatrix = requires(const Matrix& m) {
   typename Matrix::Scalar;
@@ -78,8 +78,7 @@ struct TripleElement<std::array<S, 3>> {
   using Scalar = S;
 };
 template <DenseMatrix Element>
-  requires(sizeof(Element) == 3 * sizeof(typename Element::Scalar))
-struct TripleElement<Element> {
+requires(sizeof(Element) == 3 * sizeof(typename Element::Scalar)) struct TripleElement<Element> {
   using Scalar = typename Element::Scalar;
 };
 
@@ -89,7 +88,9 @@ concept PlainRange = !DenseMatrix<Range> && std::ranges::contiguous_range<const 
 template <class Range>
 using Element = std::ranges::range_value_t<const Range>;
 template <class Range>
-concept TripleRange = PlainRange<Range> && requires { typename TripleElement<Element<Range>>::Scalar; };
+concept TripleRange = PlainRange<Range> && requires {
+  typename TripleElement<Element<Range>>::Scalar;
+};
 
 template <TripleRange Range>
 Triples triples_in(const Range& range) {
@@ -136,18 +137,18 @@ class PositionsView {
   template <Coordinate Scalar>
   PositionsView(const Scalar* first, std::size_t count, std::ptrdiff_t point_stride = 3 * sizeof(Scalar),
                 std::ptrdiff_t coordinate_stride = sizeof(Scalar))
-      : triples_{first, count, point_stride, coordinate_stride}, is_double_(sizeof(Scalar) == sizeof(double)) {}
+      : triples_{first, count, point_stride, coordinate_stride},
+        is_double_(sizeof(Scalar) == sizeof(double)) {}
 
   template <detail::TripleRange Points>
-    requires Coordinate<typename detail::TripleElement<detail::Element<Points>>::Scalar>
-  PositionsView(const Points& points)
+  requires Coordinate<typename detail::TripleElement<detail::Element<Points>>::Scalar> PositionsView(
+      const Points& points)
       : triples_(detail::triples_in(points)),
         is_double_(sizeof(detail::Element<Points>) == 3 * sizeof(double)) {}
 
   /// Packed x y z. Throws `Error` when the number of coordinates is not a multiple of 3.
   template <detail::PlainRange Coordinates>
-    requires Coordinate<detail::Element<Coordinates>>
-  PositionsView(const Coordinates& xyz)
+  requires Coordinate<detail::Element<Coordinates>> PositionsView(const Coordinates& xyz)
       : triples_(detail::packed_triples(std::ranges::data(xyz), std::ranges::size(xyz),
                                         sizeof(detail::Element<Coordinates>))),
         is_double_(sizeof(detail::Element<Coordinates>) == sizeof(double)) {}
@@ -156,8 +157,8 @@ class PositionsView {
   /// `Error` when it has neither, and for a 3 x 3 matrix whose type does not fix one dimension: use
   /// `Eigen::MatrixX3d`, or pass `MatrixItems::rows`.
   template <DenseMatrix Matrix>
-    requires Coordinate<typename Matrix::Scalar>
-  PositionsView(const Matrix& matrix, MatrixItems points_in = MatrixItems::automatic)
+  requires Coordinate<typename Matrix::Scalar> PositionsView(const Matrix& matrix,
+                                                             MatrixItems points_in = MatrixItems::automatic)
       : triples_(detail::triples_of(matrix, points_in)),
         is_double_(sizeof(typename Matrix::Scalar) == sizeof(double)) {}
 
@@ -186,11 +187,11 @@ class PositionsView {
 
 template <class Integer>
 concept VertexIndex = std::same_as<Integer, std::uint32_t> || std::same_as<Integer, std::int32_t> ||
-                      std::same_as<Integer, std::uint16_t> || std::same_as<Integer, std::int64_t>;
+    std::same_as<Integer, std::uint16_t> || std::same_as<Integer, std::int64_t>;
 
-/// Triangles in the user's memory as three vertex ids each: `uint32_t`, `int32_t`, `uint16_t` or `int64_t`, in
-/// any layout. It converts from the same ranges, matrices, and pointers with strides as `PositionsView`, with
-/// ids instead of coordinates: `std::vector<Triangle>`, packed ids, `Eigen::MatrixX3i`.
+/// Triangles in the user's memory as three vertex ids each: `uint32_t`, `int32_t`, `uint16_t` or `int64_t`,
+/// in any layout. It converts from the same ranges, matrices, and pointers with strides as `PositionsView`,
+/// with ids instead of coordinates: `std::vector<Triangle>`, packed ids, `Eigen::MatrixX3i`.
 class TrianglesView {
  public:
   TrianglesView() = default;
@@ -200,32 +201,35 @@ class TrianglesView {
       : triples_{first, count, triangle_stride, corner_stride}, index_(index_of<Integer>()) {}
 
   template <detail::TripleRange Triangles>
-    requires VertexIndex<typename detail::TripleElement<detail::Element<Triangles>>::Scalar>
-  TrianglesView(const Triangles& triangles)
+  requires VertexIndex<typename detail::TripleElement<detail::Element<Triangles>>::Scalar> TrianglesView(
+      const Triangles& triangles)
       : triples_(detail::triples_in(triangles)),
         index_(index_of<typename detail::TripleElement<detail::Element<Triangles>>::Scalar>()) {}
 
   /// Packed ids. Throws `Error` when their number is not a multiple of 3.
   template <detail::PlainRange Ids>
-    requires VertexIndex<detail::Element<Ids>>
-  TrianglesView(const Ids& ids)
+  requires VertexIndex<detail::Element<Ids>> TrianglesView(const Ids& ids)
       : triples_(detail::packed_triples(std::ranges::data(ids), std::ranges::size(ids),
                                         sizeof(detail::Element<Ids>))),
         index_(index_of<detail::Element<Ids>>()) {}
 
   template <DenseMatrix Matrix>
-    requires VertexIndex<typename Matrix::Scalar>
-  TrianglesView(const Matrix& matrix, MatrixItems triangles_in = MatrixItems::automatic)
+  requires VertexIndex<typename Matrix::Scalar> TrianglesView(
+      const Matrix& matrix, MatrixItems triangles_in = MatrixItems::automatic)
       : triples_(detail::triples_of(matrix, triangles_in)), index_(index_of<typename Matrix::Scalar>()) {}
 
   std::size_t size() const { return triples_.count; }
   /// The vertex ids of triangle t as they are, also when they are negative.
   std::array<std::int64_t, 3> operator[](std::size_t t) const {
     switch (index_) {
-      case Index::uint16: return get<std::uint16_t>(t);
-      case Index::int32: return get<std::int32_t>(t);
-      case Index::int64: return get<std::int64_t>(t);
-      case Index::uint32: break;
+      case Index::uint16:
+        return get<std::uint16_t>(t);
+      case Index::int32:
+        return get<std::int32_t>(t);
+      case Index::int64:
+        return get<std::int64_t>(t);
+      case Index::uint32:
+        break;
     }
     return get<std::uint32_t>(t);
   }

@@ -50,7 +50,8 @@ SceneOptions read_scene_options(const InputFile& file) {
   scene.impact.exact = file.count("/", "exact_impacts", 1) == 1;
   scene.bounding_volume =
       static_cast<BoundingVolume>(read_choice(file, "bounding_volume", choice_names::bounding_volume));
-  scene.comparison.sphere_fit = static_cast<SphereFit>(read_choice(file, "sphere_fit", choice_names::sphere_fit));
+  scene.comparison.sphere_fit =
+      static_cast<SphereFit>(read_choice(file, "sphere_fit", choice_names::sphere_fit));
   scene.broad_phase =
       static_cast<BroadPhaseMethod>(read_choice(file, "broad_phase", choice_names::broad_phase));
   scene.scene_octree.region_sphere_test = static_cast<RegionSphereTest>(

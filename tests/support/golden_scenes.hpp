@@ -22,8 +22,9 @@ inline Scene scene_of(const std::vector<TriangleMesh>& meshes, const SceneOption
   Scene scene(options);
   for (const TriangleMesh& mesh : meshes) {
     // Colliding vertices are those of whole leaves: the hash is of a regular octree's.
-    scene.add(mesh, {.self_collision = true,
-                     .octree = {.leaf_size = 3, .arity = arity, .regular = options.comparison.colliding_vertices}});
+    scene.add(mesh,
+              {.self_collision = true,
+               .octree = {.leaf_size = 3, .arity = arity, .regular = options.comparison.colliding_vertices}});
   }
   return scene;
 }

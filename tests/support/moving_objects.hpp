@@ -15,8 +15,7 @@ struct MovingObject {
   MovingObject(const TriangleMesh& mesh_in, const std::vector<Vec3d>& end_in,
                const ObjectOctreeOptions& options = {}, bool floats = true, std::uint32_t threads = 1)
       : mesh(mesh_in),
-        octree(mesh.positions, mesh.triangles, options, BoundingVolume::aabb,
-               SphereFit::vertices),
+        octree(mesh.positions, mesh.triangles, options, BoundingVolume::aabb, SphereFit::vertices),
         elements(octree),
         at_rest(end_in.empty()) {
     const Parallel parallel(threads);

@@ -93,8 +93,8 @@ Vec3d perpendicular(const RelativeTriangle& a, const RelativeTriangle& b) {
   return direction / norm(direction);
 }
 
-/// Directions from the normal of a triangle: that triangle is flat, the other one reaches from the least to the
-/// largest of three heights above it.
+/// Directions from the normal of a triangle: that triangle is flat, the other one reaches from the least to
+/// the largest of three heights above it.
 struct Heights {
   double least, most;
 
@@ -117,8 +117,8 @@ Vec3d normal_in_range(const RelativeTriangle& a, const RelativeTriangle& b, doub
     const Heights of_b(a, b);
     best.consider(a.normal, a.squared_normal, of_b.most, -of_b.least);
   }
-  // Along edge_a × edge_b each edge is flat. The third corner of a lies -edge_b · normal_a from edge_a, for all
-  // three edges of a, and the third corner of b lies edge_a · normal_b from edge_b.
+  // Along edge_a × edge_b each edge is flat. The third corner of a lies -edge_b · normal_a from edge_a, for
+  // all three edges of a, and the third corner of b lies edge_a · normal_b from edge_b.
   for (std::size_t j = 0; j < 3 && !best.is_flat(); ++j) {
     const double third_a = -dot(b.edges[j], a.normal);
     for (std::size_t i = 0; i < 3; ++i) {

@@ -10,8 +10,8 @@ double largest_component(const Vec3d& v) {
   return std::max({std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)});
 }
 
-/// Twice the area vector of a triangle whose sides are divided by `size`, the largest component of two of them:
-/// products of very small or large sides would leave the range of numbers. Zero when `size` is no help.
+/// Twice the area vector of a triangle whose sides are divided by `size`, the largest component of two of
+/// them: products of very small or large sides would leave the range of numbers. Zero when `size` is no help.
 Vec3d scaled_normal(const TrianglePoints& triangle, double& size) {
   const Vec3d ab = triangle[1] - triangle[0], ac = triangle[2] - triangle[0];
   size = std::max(largest_component(ab), largest_component(ac));

@@ -10,9 +10,9 @@
 #include "octree/octree_node.hpp"
 #include "octree/rebuild.hpp"
 #include "octree/vertex_buffer.hpp"
+#include "supple/inspection.hpp"
 #include "supple/mesh.hpp"
 #include "supple/options.hpp"
-#include "supple/inspection.hpp"
 #include "supple/types.hpp"
 
 namespace supple {

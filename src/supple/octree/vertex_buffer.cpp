@@ -47,7 +47,8 @@ void VertexBuffer::assign(const PositionsView& positions, std::span<const std::u
 bool VertexBuffer::borrow(const PositionsView& positions) {
   const std::size_t size = positions.is_double() ? sizeof(double) : sizeof(float);
   const auto stride = static_cast<std::size_t>(positions.point_stride());
-  const bool is_aligned = stride % size == 0 && reinterpret_cast<std::uintptr_t>(positions.data()) % size == 0;
+  const bool is_aligned =
+      stride % size == 0 && reinterpret_cast<std::uintptr_t>(positions.data()) % size == 0;
   if (positions.point_stride() < 0 || positions.coordinate_stride() != std::ptrdiff_t(size) || !is_aligned)
     return false;
   std::vector<float>().swap(floats_);

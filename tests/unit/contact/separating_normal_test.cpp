@@ -196,12 +196,18 @@ const std::vector<Case> cases{
     {"PointOnFace", {{{1, 1, 0}, {1, 1, 0}, {1, 1, 0}}}, floor_upside_down, {0, 0, -1}},
     {"FaceUnderPoint", floor_upside_down, {{{1, 1, 0}, {1, 1, 0}, {1, 1, 0}}}, {0, 0, -1}},
     {"SegmentsCross", {{{-1, 0, 0}, {1, 0, 0}, {1, 0, 0}}}, {{{0, -1, 0}, {0, 1, 0}, {0, 0, 0}}}, {0, 0, 1}},
-    {"SegmentsOnOneLine", {{{0, 0, 0}, {3, 3, 0}, {1, 1, 0}}}, {{{2, 2, 0}, {5, 5, 0}, {5, 5, 0}}},
+    {"SegmentsOnOneLine",
+     {{{0, 0, 0}, {3, 3, 0}, {1, 1, 0}}},
+     {{{2, 2, 0}, {5, 5, 0}, {5, 5, 0}}},
      {half_root, -half_root, 0}},
     {"SamePoint", {{{1, 1, 0}, {1, 1, 0}, {1, 1, 0}}}, {{{1, 1, 0}, {1, 1, 0}, {1, 1, 0}}}, {1, 0, 0}},
-    {"LargestNumbers", {{{0, 0, -huge / 4}, {0, 0, huge}, {0, 0, huge}}},
-     {{{-huge, -huge, 0}, {huge, -huge, 0}, {0, huge, 0}}}, {0, 0, 1}},
-    {"SmallestNumbers", {{{0, 0, 0}, {0, 0, tiny}, {0, tiny, tiny}}}, {{{0, 0, 0}, {tiny, 0, 0}, {0, tiny, 0}}},
+    {"LargestNumbers",
+     {{{0, 0, -huge / 4}, {0, 0, huge}, {0, 0, huge}}},
+     {{{-huge, -huge, 0}, {huge, -huge, 0}, {0, huge, 0}}},
+     {0, 0, 1}},
+    {"SmallestNumbers",
+     {{{0, 0, 0}, {0, 0, tiny}, {0, tiny, tiny}}},
+     {{{0, 0, 0}, {tiny, 0, 0}, {0, tiny, 0}}},
      {0, 0, 1}},
 };
 
@@ -212,7 +218,8 @@ INSTANTIATE_TEST_SUITE_P(All, NamedNormals, ::testing::ValuesIn(cases),
 TEST_P(NamedNormals, AreAsDocumented) {
   const TriangleIntersection shared = intersect_triangles(GetParam().a, GetParam().b);
   ASSERT_TRUE(shared.intersects);
-  for (int axis = 0; axis < 3; ++axis) EXPECT_NEAR(shared.normal[axis], GetParam().normal[axis], 1e-15) << axis;
+  for (int axis = 0; axis < 3; ++axis)
+    EXPECT_NEAR(shared.normal[axis], GetParam().normal[axis], 1e-15) << axis;
 }
 
 TEST(UnitNormal, IsThatOfTheCornersInOrder) {

@@ -252,8 +252,7 @@ TEST(ObjectOctree, TellsOfANonFiniteVertexWhereverItIs) {
           if (single) {
             built.vertices.assign(singles, built.octree.vertex_order(), Parallel(1));
           } else {
-            built.vertices.assign(broken.positions, built.octree.vertex_order(),
-                                  Parallel(1));
+            built.vertices.assign(broken.positions, built.octree.vertex_order(), Parallel(1));
           }
           EXPECT_FALSE(built.octree.refit(built.vertices, {}, Parallel(1))) << vertex << ' ' << axis;
         }

@@ -16,8 +16,8 @@ namespace {
 struct Measured {
   explicit Measured(const TriangleMesh& mesh_in, bool regular = false)
       : mesh(mesh_in),
-        octree(mesh.positions, mesh.triangles, {.regular = regular},
-               BoundingVolume::aabb, SphereFit::vertices, VertexNumbering::given) {
+        octree(mesh.positions, mesh.triangles, {.regular = regular}, BoundingVolume::aabb,
+               SphereFit::vertices, VertexNumbering::given) {
     refit(mesh.positions);
     quality.set_references(boxes());
   }

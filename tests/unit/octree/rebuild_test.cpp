@@ -20,8 +20,7 @@ struct Tree {
   Tree(const TriangleMesh& mesh_in, const ObjectOctreeOptions& options, BoundingVolume volume,
        VertexNumbering numbering)
       : mesh(mesh_in),
-        octree(mesh.positions, mesh.triangles, options, volume, SphereFit::vertices,
-               numbering) {
+        octree(mesh.positions, mesh.triangles, options, volume, SphereFit::vertices, numbering) {
     place(mesh.positions);
   }
 

@@ -17,8 +17,7 @@ struct World {
   explicit World(const SceneOptions& options) : scene(options) {
     for (int i = 0; i < 8; ++i) {
       centers.push_back({1.7 * (i & 1), 1.7 * (i >> 1 & 1), 1.7 * (i >> 2)});
-      ids.push_back(
-          scene.add(positions_of(i), mesh.triangles, {.self_collision = i == 3}));
+      ids.push_back(scene.add(positions_of(i), mesh.triangles, {.self_collision = i == 3}));
     }
   }
   std::vector<Vec3d> positions_of(int i) const {

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "supple/inspection.hpp"
 #include "supple/error.hpp"
+#include "supple/inspection.hpp"
 #include "supple/models.hpp"
 #include "supple/trigonometry.hpp"
 #include "support/hard_scenes.hpp"

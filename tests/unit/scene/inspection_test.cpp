@@ -173,7 +173,8 @@ void check_explanation(const Known& known, const Named& p, const Named& q, bool 
     // Closest points are as good as rounding lets them be: of slivers, within a small part of their size.
     EXPECT_GE(gap_along(e.axis, a, b), e.distance - 1e-6 * size_of(a, b) - smallest);
   }
-  const PairExplanation back = SceneInspector(known.scene).explain(q.object, q.triangle, p.object, p.triangle);
+  const PairExplanation back =
+      SceneInspector(known.scene).explain(q.object, q.triangle, p.object, p.triangle);
   EXPECT_EQ(back.stage, e.stage);
   EXPECT_EQ(back.box_a, e.box_b);
   EXPECT_EQ(back.sphere_a, e.sphere_b);
@@ -419,7 +420,8 @@ TEST_P(Inspection, ExplanationsAgreeWithContinuousDetect) {
     for (std::size_t i = 0; i < all.size(); ++i) {
       for (std::size_t j = i; j < all.size(); ++j) {
         const PairExplanation e =
-            SceneInspector(known.scene).explain(all[i].object, all[i].triangle, all[j].object, all[j].triangle);
+            SceneInspector(known.scene)
+                .explain(all[i].object, all[i].triangle, all[j].object, all[j].triangle);
         ASSERT_EQ(e.stage == PairStage::contact, touching.count({all[i], all[j]}) != 0);
         if (e.stage == PairStage::octree_volumes || e.stage == PairStage::triangle_boxes)
           expect_apart(e, known.points(all[i]), known.points(all[j]));
@@ -451,7 +453,8 @@ TEST(InspectionOfScenes, SmoothPartsThatAreNotLookedAtHaveCandidatesToo) {
     known.scene.detect();
   }
   check_candidates(known, true);
-  EXPECT_LT(known.scene.result().stats.candidate_pairs, SceneInspector(known.scene).candidates(no_limit).total);
+  EXPECT_LT(known.scene.result().stats.candidate_pairs,
+            SceneInspector(known.scene).candidates(no_limit).total);
 }
 
 TEST(InspectionOfScenes, SeesOctreesThatWereBuiltAnew) {

@@ -70,8 +70,7 @@ struct Living {
   }
   /// They are not to change before the next step has its own.
   void share(Drift& drift) {
-    for (std::size_t i = 0; i < ids.size(); ++i)
-      scene.share_positions(ids[i], drift.positions(i));
+    for (std::size_t i = 0; i < ids.size(); ++i) scene.share_positions(ids[i], drift.positions(i));
   }
   std::uint64_t rebuilt() const {
     std::uint64_t triangles = 0;
@@ -336,7 +335,8 @@ TEST(SceneRebuild, ObjectsAtRestAreBuiltAnewForThoseThatMeetThem) {
   living.place(drift);
   // Measured once, and at rest from then on: the other one moves about.
   std::uint64_t hash = 0;
-  for (int step = 0; step < 200 && SceneInspector(living.scene).octree_statistics(living.ids[0]).triangles_rebuilt == 0;
+  for (int step = 0;
+       step < 200 && SceneInspector(living.scene).octree_statistics(living.ids[0]).triangles_rebuilt == 0;
        ++step) {
     living.scene.translate(living.ids[1], {step % 2 == 0 ? 0.01 : -0.01, 0, 0});
     const DetectResult& result = living.scene.detect();

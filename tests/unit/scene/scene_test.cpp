@@ -6,8 +6,8 @@
 #include <limits>
 #include <vector>
 
-#include "supple/inspection.hpp"
 #include "supple/error.hpp"
+#include "supple/inspection.hpp"
 #include "supple/models.hpp"
 #include "support/scenes.hpp"
 #include "support/soups.hpp"
@@ -273,7 +273,8 @@ TEST(Scene, VerifySeesWhatThePapersSpheresMiss) {
   EXPECT_TRUE(scene.detect().contacts.empty());
   EXPECT_EQ(differences(scene), "missed 0:0 1:0\n");
 
-  Scene enclosing({.bounding_volume = BoundingVolume::sphere, .comparison = {.sphere_fit = SphereFit::vertices}});
+  Scene enclosing(
+      {.bounding_volume = BoundingVolume::sphere, .comparison = {.sphere_fit = SphereFit::vertices}});
   enclosing.add(one_triangle(0));
   enclosing.add(
       TriangleMesh{"near a corner", {{0.05, 0.05, -0.1}, {0.05, 0.05, 0.1}, {0.06, 0.05, 0.1}}, {{0, 1, 2}}});

@@ -11,8 +11,8 @@
 #include <tuple>
 #include <vector>
 
-#include "supple/inspection.hpp"
 #include "supple/error.hpp"
+#include "supple/inspection.hpp"
 #include "supple/models.hpp"
 #include "supple/scene.hpp"
 #include "support/instruction_sets.hpp"
