@@ -407,6 +407,15 @@ bool triangles_intersect(const TrianglePoints& a, const TrianglePoints& b) {
 }
 
 TriangleIntersection intersect_triangles(const TrianglePoints& a, const TrianglePoints& b) {
+  TriangleIntersection result = intersect_triangles_without_normal(a, b);
+  if (!result.intersects) return result;
+  IntersectingPairs pair;
+  pair.add(a, b);
+  separating_normals(pair, &result.normal);
+  return result;
+}
+
+TriangleIntersection intersect_triangles_without_normal(const TrianglePoints& a, const TrianglePoints& b) {
   TriangleIntersection result;
   Sides sides;
   const Placement placement = classify(a, b, sides, result.used_exact_fallback);
@@ -428,7 +437,6 @@ TriangleIntersection intersect_triangles(const TrianglePoints& a, const Triangle
     const auto [on_a, on_b] = meetings.items[i];
     result.points[i] = {meeting_point(a, on_a, b, on_b), on_a, on_b};
   }
-  if (result.intersects) result.normal = separating_normal(a, b);
   return result;
 }
 
