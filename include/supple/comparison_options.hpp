@@ -46,23 +46,23 @@ struct ObjectOctreeOptions {
   bool rebuild_degraded = true;
 };
 
-/// Shape of the octree of the scene.
+/// Shape of the octree of the scene. The pairs found are the same for all values. Any value but the default
+/// is an `Error` when the broad phase is grid, sweep or brute.
 struct SceneOctreeOptions {
-  /// Depth at which regions no longer expand, 1 to 20; 0 chooses it from the number, the places and the sizes
-  /// of the objects. Less far from the origin, where floats cannot tell finer regions apart. It counts levels
-  /// of eight children whatever the arity, as `ObjectOctreeOptions::max_level` does.
+  /// Depth at which regions no longer expand, 1 to 20; 0 chooses it from the number, the positions and the
+  /// sizes of the objects. It is smaller far from the origin, where floats cannot represent finer regions. It
+  /// counts levels of eight children for every arity, as `ObjectOctreeOptions::max_level` does.
   std::uint32_t max_level = 0;
-  /// A region expands when this many of its objects fit into regions half its edge, ≥ 2 (the paper: 2).
+  /// A region expands when this many of its objects fit into regions of half its edge, ≥ 2 (the paper: 2).
   std::uint32_t expand_at = 2;
   RegionSphereTest region_sphere_test = RegionSphereTest::arvo;
-  /// Children of a region: 8, 4 or 2. The pairs found are the same; for comparison.
+  /// Children of a region: 8, 4 or 2.
   std::uint32_t arity = 8;
-  /// Search the regions in every step. Otherwise they are left to scenes with many objects in one place:
-  /// elsewhere a search without them costs less. The pairs found are the same; for comparison.
-  bool always_regions = false;
+
+  constexpr bool operator==(const SceneOctreeOptions&) const = default;
 };
 
-/// Of a scene.
+/// Options of a scene for comparison.
 struct ComparisonOptions {
   SphereFit sphere_fit = SphereFit::vertices;
   /// Also report the paper's output: the vertices in the colliding leaves of both octrees

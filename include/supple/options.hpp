@@ -14,8 +14,20 @@ namespace supple {
 /// continuous contacts, only the objects have this shape; nodes have boxes.
 enum class BoundingVolume : std::uint8_t { aabb, sphere };
 
-/// How object pairs are found. All report the same pairs in the same order.
-enum class BroadPhaseMethod : std::uint8_t { octree, sweep, brute };
+/// How object pairs are found. All methods report the same pairs in the same order.
+enum class BroadPhaseMethod : std::uint8_t {
+  /// Picks octree or grid in each step. The octree runs when fewer than one object in 24 changed in this step
+  /// and in each of the three before; otherwise the grid runs. A scene in which more than 256 other objects
+  /// share the grid cell of an average object runs the octree, and tries the grid again after 64 steps.
+  automatic,
+  /// The paper's incremental octree of regions. Best when few objects change, or when objects crowd in few
+  /// places. It has regions to look at.
+  octree,
+  /// A hierarchical grid that is made anew in each step with changes. Best when many objects change.
+  grid,
+  sweep,  ///< sweep and prune along one axis
+  brute,  ///< every object against every other
+};
 
 /// The exact stage that decides the candidates.
 enum class ContactMode : std::uint8_t {
@@ -41,7 +53,7 @@ struct ObjectOptions {
 /// Options of a scene, fixed at its construction.
 struct SceneOptions {
   BoundingVolume bounding_volume = BoundingVolume::aabb;
-  BroadPhaseMethod broad_phase = BroadPhaseMethod::octree;
+  BroadPhaseMethod broad_phase = BroadPhaseMethod::automatic;
   SceneOctreeOptions scene_octree{};  ///< for comparison
   ContactMode contacts = ContactMode::intersection;
   /// Also report the normal and the points of each contact (`Contact::normal`,

@@ -178,7 +178,7 @@ std::string Scene::Implementation::validate() const {
     if (const std::string wrong = object.validate(); !wrong.empty())
       return object.options.name + ": " + wrong;
   }
-  return pair_finder->validate();
+  return pair_finder.validate();
 }
 
 std::vector<OctreeCell> SceneInspector::cells(ObjectId object, std::optional<std::uint32_t> level) const {
@@ -194,7 +194,7 @@ Aabb SceneInspector::bounds(ObjectId object) const {
   return scene_->implementation_->object(object, "bounds").box();
 }
 std::vector<SceneRegion> SceneInspector::regions() const {
-  return scene_->implementation_->pair_finder->regions();
+  return scene_->implementation_->pair_finder.regions();
 }
 CandidateList SceneInspector::candidates(std::size_t limit) const {
   return scene_->implementation_->candidates(limit);

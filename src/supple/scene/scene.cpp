@@ -77,8 +77,7 @@ void check_triangle(const SceneObject& object, std::uint32_t triangle, const cha
 Scene::Implementation::Implementation(const SceneOptions& scene_options)
     : options(checked(scene_options)),
       parallel(scene_options.threads),
-      pair_finder(make_pair_finder(scene_options.broad_phase, scene_options.bounding_volume,
-                                   scene_options.scene_octree)) {}
+      pair_finder(scene_options.broad_phase, scene_options.bounding_volume, scene_options.scene_octree) {}
 
 ObjectId Scene::Implementation::add(const PositionsView& positions, const TrianglesView& triangles,
                                     const ObjectOptions& object_options, const std::string& fallback_name) {
