@@ -12,11 +12,7 @@ namespace {
 std::vector<Triangle> user_triangles(const SceneObject& object) {
   const ObjectOctree& octree = object.octree();
   std::vector<Triangle> triangles(octree.triangles().size());
-  for (std::uint32_t t = 0; t < triangles.size(); ++t) {
-    Triangle& triangle = triangles[octree.triangle_ids()[t]] = octree.triangles()[t];
-    if (octree.vertex_ids().empty()) continue;
-    for (std::uint32_t& vertex : triangle) vertex = octree.vertex_ids()[vertex];
-  }
+  for (std::uint32_t t = 0; t < triangles.size(); ++t) triangles[t] = octree.user_triangle(t);
   return triangles;
 }
 
