@@ -9,7 +9,7 @@ namespace {
 class SuppleBoxes : public BoxContestant {
  public:
   explicit SuppleBoxes(std::uint32_t threads)
-      : broad_phase_({.method = BroadPhaseMethod::octree, .scene_octree = {}, .threads = threads}) {}
+      : broad_phase_({.method = BroadPhaseMethod::automatic, .scene_octree = {}, .threads = threads}) {}
   void prepare(const MovingBoxes& field) override { frame(field); }
   void frame(const MovingBoxes& field) override { pairs_ = broad_phase_.find_object_pairs(field.boxes()); }
   PairDigest pairs() const override {
@@ -38,7 +38,7 @@ class SuppleBoxesTold : public BoxContestant {
   }
 
  private:
-  BroadPhase broad_phase_{{.method = BroadPhaseMethod::octree, .scene_octree = {}, .threads = 1}};
+  BroadPhase broad_phase_{{.method = BroadPhaseMethod::automatic, .scene_octree = {}, .threads = 1}};
   std::vector<std::uint32_t> moving_;
   std::span<const IndexPair> pairs_;
 };

@@ -100,6 +100,8 @@ const std::vector<ColumnOf<StepStats>>& columns_of() {
       column<Row>(
           "total_seconds", [](auto& row) -> auto& { return row.total_seconds; }),
       column<Row>(
+          "broad_phase_method", [](auto& row) -> auto& { return row.broad_phase_method; }),
+      column<Row>(
           "objects_refitted", [](auto& row) -> auto& { return row.objects_refitted; }),
       column<Row>(
           "triangles_refitted", [](auto& row) -> auto& { return row.triangles_refitted; }),

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <iterator>
 
+#include "names.hpp"
 #include "normals.hpp"
 #include "statistics.hpp"
 
@@ -225,6 +226,7 @@ void FramePacker::add_text(const FrameView& frame) {
   json_.member("generation", frame.generation);
   json_.member("step", frame.source.step());
   json_.member("time", frame.source.time());
+  json_.member("broad_phase_method", name_of(frame.source.scene().result().stats.broad_phase_method));
   json_.member("playing", frame.playing);
   json_.member("speed", frame.speed);
   json_.member("loop", frame.loop);
