@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
-# Writes docs/supple.1 and docs/cli.md from the program's own definitions of its options.
+# Generates docs/supple.1 and docs/cli.md from the option definitions of the program.
 #
 # usage: generate_docs.sh [--check] PROGRAM
 #
-# With --check nothing is written: it fails when a document differs from what would be.
+# With --check it writes nothing and fails when a document is out of date.
 set -euo pipefail
 docs="$(cd "$(dirname "$0")/.." && pwd)/docs"
 

@@ -16,8 +16,7 @@ struct MovingObject {
   MovingObject(const TriangleMesh& mesh_in, const std::vector<Vec3d>& end_in,
                const ObjectOctreeOptions& options = {}, bool floats = true, std::uint32_t threads = 1)
       : mesh(mesh_in),
-        octree(PositionsView<double>(mesh.positions), mesh.triangles, options, BoundingVolume::aabb,
-               SphereFit::vertices),
+        octree(mesh.positions, mesh.triangles, options, BoundingVolume::aabb, SphereFit::vertices),
         elements(octree),
         at_rest(end_in.empty()) {
     const Parallel parallel(threads);
@@ -35,8 +34,8 @@ struct MovingObject {
     for (const Vec3d& p : positions) {
       rounded.push_back({static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)});
     }
-    if (floats) given.assign(PositionsView<float>(rounded), parallel);
-    if (!floats) given.assign(PositionsView<double>(positions), parallel);
+    if (floats) given.assign(rounded, parallel);
+    if (!floats) given.assign(positions, parallel);
     buffer.gather(given, elements.vertex_ids(), parallel);
   }
   std::string validate() const {

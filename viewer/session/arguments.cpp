@@ -20,7 +20,7 @@ std::string number_text(double value) {
   return text;
 }
 
-/// The value as it was written, cut when it is long.
+/// The JSON text of the value, shortened when it is long.
 std::string text_of(const JsonValue& value) {
   constexpr std::size_t longest = 40;
   switch (value.kind) {
@@ -126,7 +126,7 @@ bool Arguments::check() {
     std::string list;
     for (const std::string_view known : known_) list += (list.empty() ? "" : ", ") + std::string(known);
     fail("it has no \"" + name.substr(0, 40) + "\"; " +
-         (known_.empty() ? "it takes nothing more" : "it takes " + list));
+         (known_.empty() ? "it takes no other members" : "it takes " + list));
   }
   return error_.empty();
 }

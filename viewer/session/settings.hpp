@@ -9,11 +9,11 @@
 
 namespace supple::viewer {
 
-/// What the commands `set` and `reset` say instead of the show.
+/// The values that the commands `set` and `reset` change.
 struct Settings {
   std::optional<BoundingVolume> bounding_volume{};
   std::optional<std::uint32_t> max_level{}, leaf_size{};
-  std::optional<std::uint32_t> objects{};  ///< how many
+  std::optional<std::uint32_t> objects{};  ///< number of objects
   std::optional<Integrator> integrator{};
   std::optional<BroadPhaseMethod> broad_phase{};
   std::optional<ContactKinds> contacts{};
@@ -21,9 +21,9 @@ struct Settings {
   std::optional<std::uint64_t> seed{};
 };
 
-/// The show with these settings. More objects than it has are copies, set out in a grid beside it, in a
-/// border that grows with them. Throws `Error` that names the object and the value when an object of the show
-/// is not what it should be, or when there is more than messages can hold.
+/// Applies the settings to a scene view. Additional objects are copies, placed in a grid beside the
+/// originals; the border grows with the grid. Throws `Error` with the object and the value when an object is
+/// invalid, or when the result exceeds the limits of messages.
 SceneView arranged(const SceneView& show, const Settings& settings);
 
 }  // namespace supple::viewer

@@ -98,35 +98,36 @@ void MovingBody::change_velocities(std::span<const Vec3d> of_average, std::span<
 
 void MovingBody::end_step(const std::optional<Border>& border) {
   ++steps_;
-  if (border) turn_back_at(*border);
+  if (border) reflect_at(*border);
   send_off_in_time();
   pull_handles();
 }
 
-void MovingBody::turn_back_at(const Border& border) {
+void MovingBody::reflect_at(const Border& border) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   Vec3d low{infinity, infinity, infinity}, high = -1.0 * low;
   for (const Vec3d& p : body.positions()) {
     for (int axis = 0; axis < 3; ++axis) {
-      // Comparisons with what is not a number are false.
+      // Comparisons with NaN are false.
       if (p[axis] < low[axis]) low[axis] = p[axis];
       if (p[axis] > high[axis]) high[axis] = p[axis];
     }
   }
   const Vec3d velocity = body.mean_velocity();
   for (int axis = 0; axis < 3; ++axis) {
-    if (low[axis] < border[0][axis]) turn_back_from_side(axis, -1, velocity[axis]);
-    if (high[axis] > border[1][axis]) turn_back_from_side(axis, 1, velocity[axis]);
+    if (low[axis] < border[0][axis]) reflect_from_side(axis, -1, velocity[axis]);
+    if (high[axis] > border[1][axis]) reflect_from_side(axis, 1, velocity[axis]);
   }
 }
 
-/// `outward` is the sign of the way out. The least speed of the way back is what gravity takes off it in a
-/// step, and a little more for friction: less, and a body that lies on a side would sink into it bit by bit.
-void MovingBody::turn_back_from_side(int axis, double outward, double velocity) {
+/// `outward` is the sign of the outward direction. The speed of the way back is at least what gravity
+/// removes in a step, plus a margin for friction. Otherwise a body that lies on a side would slowly sink
+/// into it.
+void MovingBody::reflect_from_side(int axis, double outward, double velocity) {
   const double pull = std::max(outward * body.options().gravity[axis] * time_step_, 0.0);
   const double speed = outward * velocity;
   if (!(speed + pull > 0)) return;
-  if (speed > 0) body.turn_back(axis);
+  if (speed > 0) body.reflect(axis);
   const double missing = 1.25 * pull - std::fabs(speed);
   if (!(missing > 0)) return;
   const std::span<const Vec3d> before = body.velocities();
@@ -144,8 +145,8 @@ void MovingBody::send_off_in_time() {
   if (drift_ != Vec3d{}) body.add_drift(drift_);
 }
 
-/// Fixed vertices keep the velocity they are given: that which brings them, at the end of the next step, to
-/// where their handle is by then.
+/// Fixed vertices keep the velocity they are given. This sets the velocity that brings each to the position
+/// of its handle at the end of the next step.
 void MovingBody::pull_handles() {
   if (handles_.empty() || handles_rest_) return;
   velocities_.assign(body.velocities().begin(), body.velocities().end());

@@ -10,9 +10,9 @@
 #include "octree/octree_node.hpp"
 #include "octree/rebuild.hpp"
 #include "octree/vertex_buffer.hpp"
+#include "supple/inspection.hpp"
 #include "supple/mesh.hpp"
 #include "supple/options.hpp"
-#include "supple/result.hpp"
 #include "supple/types.hpp"
 
 namespace supple {
@@ -33,13 +33,13 @@ TriangleArrays arrays_of(std::span<const Triangle> triangles, const VertexBuffer
 /// order. Leaves are large: testing dozens of triangles in vectors costs less than nodes that would tell them
 /// apart, and only the triangles of leaves that a query meets are looked at.
 ///
-/// Memory besides the positions: 272 bytes a node, 19 a triangle, 4 for each vertex of each leaf; 128 a node
+/// Memory besides the positions: 272 bytes a node, 23 a triangle, 4 for each vertex of each leaf; 128 a node
 /// more with spheres.
 class ObjectOctree {
  public:
   /// O(n log n). Non-finite vertices are allowed; their triangles count as lying in the lower
   /// corner.
-  ObjectOctree(const PositionsView<double>& rest_positions, std::span<const Triangle> triangles,
+  ObjectOctree(const PositionsView& rest_positions, std::span<const Triangle> triangles,
                const ObjectOctreeOptions& options, BoundingVolume bounding_volume, SphereFit sphere_fit);
 
   std::span<const OctreeNode> nodes() const { return nodes_; }
@@ -57,6 +57,11 @@ class ObjectOctree {
   std::span<const Triangle> triangles() const { return triangles_; }
   /// Octree triangle to the user's.
   std::span<const std::uint32_t> triangle_ids() const { return triangle_ids_; }
+  /// And back.
+  std::uint32_t octree_triangle(std::uint32_t user_triangle) const { return triangle_order_[user_triangle]; }
+  const Triangle& user_triangle(std::uint32_t triangle) const {
+    return triangles_[octree_triangle(triangle)];
+  }
   std::size_t vertex_count() const { return vertex_count_; }
 
   /// Recomputes all volumes, bottom-up, in O(n); spheres fitted to vertices take O(n · levels).
@@ -80,6 +85,7 @@ class ObjectOctree {
   OctreeStatistics statistics() const;
 
  private:
+  void invert_triangle_ids();
   NewSubtree build_subtree(std::uint32_t node, const VertexBuffer& vertices);
   void list_leaf_vertices();
   bool refit_level(std::uint32_t level, const VertexBuffer& vertices, std::span<const std::uint8_t> inert,
@@ -92,7 +98,7 @@ class ObjectOctree {
   std::vector<SphereLanes> spheres_;
   std::vector<std::uint32_t> level_begin_;
   std::vector<Triangle> triangles_;
-  std::vector<std::uint32_t> triangle_ids_;
+  std::vector<std::uint32_t> triangle_ids_, triangle_order_;
   std::size_t vertex_count_;
   // As `LeafVertexArrays`, and the vertices of no triangle.
   std::vector<std::uint32_t> first_leaf_vertex_, leaf_vertices_, unused_vertices_;

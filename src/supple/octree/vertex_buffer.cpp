@@ -25,17 +25,22 @@ void VertexBuffer::resize(std::size_t count, bool is_double) {
 }
 
 template <class Scalar>
-void VertexBuffer::assign(const PositionsView<Scalar>& positions, const Parallel& parallel) {
-  resize(positions.count, sizeof(Scalar) == sizeof(double));
+void VertexBuffer::copy(const PositionsView& positions, const Parallel& parallel) {
   Scalar* const target = storage(Scalar{}).data();
-  parallel.for_ranges(positions.count, grain, [&](std::size_t begin, std::size_t end, std::uint32_t) {
+  parallel.for_ranges(count_, grain, [&](std::size_t begin, std::size_t end, std::uint32_t) {
     for (std::size_t i = begin; i < end; ++i) {
-      const Vec3<Scalar> p = positions[i];
+      const Vec3<Scalar> p = positions.get<Scalar>(i);
       target[3 * i] = p.x;
       target[3 * i + 1] = p.y;
       target[3 * i + 2] = p.z;
     }
   });
+}
+
+void VertexBuffer::assign(const PositionsView& positions, const Parallel& parallel) {
+  resize(positions.size(), positions.is_double());
+  if (is_double_) copy<double>(positions, parallel);
+  if (!is_double_) copy<float>(positions, parallel);
 }
 
 void VertexBuffer::gather(const VertexBuffer& source, std::span<const std::uint32_t> ids,
@@ -54,20 +59,20 @@ void VertexBuffer::gather(const VertexBuffer& source, std::span<const std::uint3
   }
 }
 
-template <class Scalar>
-void VertexBuffer::borrow(const PositionsView<Scalar>& positions) {
-  assert(positions.stride % sizeof(Scalar) == 0);
+bool VertexBuffer::borrow(const PositionsView& positions) {
+  const std::size_t size = positions.is_double() ? sizeof(double) : sizeof(float);
+  const auto stride = static_cast<std::size_t>(positions.point_stride());
+  const bool is_aligned =
+      stride % size == 0 && reinterpret_cast<std::uintptr_t>(positions.data()) % size == 0;
+  if (positions.point_stride() < 0 || positions.coordinate_stride() != std::ptrdiff_t(size) || !is_aligned)
+    return false;
   std::vector<float>().swap(floats_);
   std::vector<double>().swap(doubles_);
-  borrowed_ = positions.data;
-  borrowed_stride_ = positions.stride / sizeof(Scalar);
-  count_ = positions.count;
-  is_double_ = sizeof(Scalar) == sizeof(double);
+  borrowed_ = positions.data();
+  borrowed_stride_ = stride / size;
+  count_ = positions.size();
+  is_double_ = positions.is_double();
+  return true;
 }
-
-template void VertexBuffer::assign(const PositionsView<float>&, const Parallel&);
-template void VertexBuffer::assign(const PositionsView<double>&, const Parallel&);
-template void VertexBuffer::borrow(const PositionsView<float>&);
-template void VertexBuffer::borrow(const PositionsView<double>&);
 
 }  // namespace supple

@@ -7,7 +7,7 @@
 #include <bit>
 #include <utility>
 
-#include "supple/triangle_intersection.hpp"
+#include "contact/triangle_intersection.hpp"
 
 namespace supple {
 
@@ -59,6 +59,8 @@ bool ContactPass::run(std::span<const ContactJob> jobs, std::span<const ContactO
     worker.number = static_cast<std::uint16_t>(w);
     worker.traversal.set_stop(stop);
     worker.found.clear();
+    worker.details.clear();
+    worker.unfinished.clear();
     worker.points.clear();
     worker.leaves.clear();
     worker.stats = {};
@@ -156,17 +158,29 @@ void ContactPass::test_candidates(std::uint32_t job, const ObjectPairView& pair,
     const std::uint64_t asked = ~std::uint64_t{0} >> (pair_filter_capacity - part.size());
     for_each_bit(asked & ~(verdicts.apart | crossing),
                  [&](std::size_t k) { test_candidate(pair, part[k], worker); });
+    add_normals(worker);
   }
 }
 
+void ContactPass::add_normals(Worker& worker) {
+  if (worker.unfinished.size() == 0) return;
+  std::array<Vec3d, IntersectingPairs::capacity> normals;
+  separating_normals(worker.unfinished, normals.data());
+  ContactDetails* const first = worker.details.data() + worker.details.size() - worker.unfinished.size();
+  for (std::size_t i = 0; i < worker.unfinished.size(); ++i) first[i].normal = normals[i];
+  worker.unfinished.clear();
+}
+
 void ContactPass::test_candidate(const ObjectPairView& pair, TrianglePair candidate, Worker& worker) const {
-  const TriangleIntersection shared =
-      intersect_triangles(points_of(pair.a, candidate.a), points_of(pair.b, candidate.b));
+  const TrianglePoints a = points_of(pair.a, candidate.a), b = points_of(pair.b, candidate.b);
+  const TriangleIntersection shared = intersect_triangles_without_normal(a, b);
   worker.stats.exact_fallbacks += shared.used_exact_fallback ? 1 : 0;
   if (!shared.intersects) return;
-  worker.found.push_back({candidate.a, candidate.b, static_cast<std::uint32_t>(worker.points.size()),
+  worker.found.push_back({candidate.a, candidate.b, static_cast<std::uint32_t>(worker.details.size()),
                           worker.number, shared.kind, shared.point_count});
   if (search_.contact_points) {
+    worker.unfinished.add(a, b);
+    worker.details.push_back({{}, static_cast<std::uint32_t>(worker.points.size())});
     const auto points = shared.extreme_points();
     worker.points.insert(worker.points.end(), points.begin(), points.end());
   }
@@ -230,11 +244,15 @@ void ContactPass::gather_found(std::size_t job, Worker& worker) {
   Contact* contact = contacts_.data() + outcomes_.ranges(job)[of_contacts].first;
   std::uint32_t point = outcomes_.ranges(job)[of_points].first;
   for (const FoundContact& found : worker.order.sort(found_of(job, worker))) {
-    *contact++ = {a, b, found.triangle_a, found.triangle_b, found.kind, found.point_count, point};
-    if (!search_.contact_points) continue;
-    std::copy_n(workers_[found.worker].points.begin() + found.first_point, found.point_count,
-                points_.begin() + point);
-    point += found.point_count;
+    *contact = {a, b, found.triangle_a, found.triangle_b, found.kind, found.point_count, point, {}};
+    if (search_.contact_points) {
+      const Worker& finder = workers_[found.worker];
+      const ContactDetails& details = finder.details[found.details];
+      contact->normal = details.normal;
+      std::copy_n(finder.points.begin() + details.first_point, found.point_count, points_.begin() + point);
+      point += found.point_count;
+    }
+    ++contact;
   }
 }
 

@@ -53,7 +53,7 @@ SearchedShapes Question::shapes() const {
 const DetectResult& Scene::Implementation::detect(const DetectRequest& request) {
   if (request.impact) check_impact_options(*request.impact, "DetectRequest::impact");
   question_ = {request.contacts.value_or(options.contacts), request.impact.value_or(options.impact),
-               options.colliding_vertices};
+               options.comparison.colliding_vertices};
   const StopSignal stop = stop_signal(request);
   result = {};
   result.step = step_;
@@ -63,7 +63,8 @@ const DetectResult& Scene::Implementation::detect(const DetectRequest& request) 
   refit_objects(question_);
   result.stats.refit_seconds = stage.lap();
   find_object_pairs(jobs_);
-  result.stats.object_pairs_tested = pair_finder->stats().object_pairs_tested;
+  result.stats.broad_phase_method = pair_finder.stats().method;
+  result.stats.object_pairs_tested = pair_finder.stats().object_pairs_tested;
   result.stats.object_pairs = jobs_.pairs.size();
   result.stats.broad_phase_seconds = stage.lap();
   if (stop.stop_requested()) return result;
@@ -151,13 +152,13 @@ void Scene::Implementation::refit_objects(const Question& question) {
 
 void Scene::Implementation::find_object_pairs(Jobs& found) {
   ObjectVolumes volumes;
-  volumes.changed = changed_slots_;
+  volumes.dirty = changed_slots_;
   if (options.bounding_volume == BoundingVolume::sphere) {
     volumes.spheres = spheres_;
   } else {
     volumes.boxes = boxes_;
   }
-  const std::span<const IndexPair> overlapping = pair_finder->find_pairs(volumes, parallel);
+  const std::span<const IndexPair> overlapping = pair_finder.find_pairs(volumes, parallel);
   std::fill(changed_.begin(), changed_.end(), std::uint8_t{0});
   found.pairs.clear();
   for (const IndexPair& pair : overlapping) {
@@ -240,8 +241,8 @@ bool Scene::Implementation::find_contacts(const DetectRequest& request, const St
     contact_objects_.back() = {id_of(index), object->resting_view(), object->octree().triangle_ids(),
                                object->octree().vertex_count()};
   }
-  const ContactSearch search{supple::contains(question_.contacts, ContactKinds::intersection),
-                             options.contact_points, options.colliding_vertices};
+  const ContactSearch search{question_.has_intersections(), options.contact_points,
+                             options.comparison.colliding_vertices};
   return contact_pass_.run(jobs_.jobs, contact_objects_, versions_, search, request.max_contacts, stop,
                            parallel, result.stats);
 }

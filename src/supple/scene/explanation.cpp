@@ -16,12 +16,8 @@ namespace supple {
 namespace {
 
 std::uint32_t octree_triangle(const SceneObject& object, std::uint32_t triangle) {
-  const std::span<const std::uint32_t> ids = object.octree().triangle_ids();
-  if (triangle >= ids.size()) {
-    fail("explain: " + object.options.name + " has no triangle " + std::to_string(triangle) + "; it has " +
-         std::to_string(ids.size()) + ", numbered from 0");
-  }
-  return static_cast<std::uint32_t>(std::find(ids.begin(), ids.end(), triangle) - ids.begin());
+  check_triangle(object, triangle, "explain");
+  return object.octree().octree_triangle(triangle);
 }
 
 TrianglePoints points_of(const SceneObject& object, std::uint32_t triangle) {

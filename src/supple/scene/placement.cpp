@@ -14,21 +14,17 @@ constexpr double largest_lazy_size = 1e30;
 
 }  // namespace
 
-template <class Scalar>
-void Placement::set_positions(const PositionsView<Scalar>& positions, const Parallel& parallel) {
+void Placement::set_positions(const PositionsView& positions, const Parallel& parallel) {
   place_afresh();
   end_.assign(positions, parallel);
 }
 
-template <class Scalar>
-void Placement::share_positions(const PositionsView<Scalar>& positions) {
+void Placement::share_positions(const PositionsView& positions, const Parallel& parallel) {
   place_afresh();
-  end_.borrow(positions);
+  if (!end_.borrow(positions)) end_.assign(positions, parallel);
 }
 
-template <class Scalar>
-void Placement::set_motion(const PositionsView<Scalar>& from, const PositionsView<Scalar>& to,
-                           const Parallel& parallel) {
+void Placement::set_motion(const PositionsView& from, const PositionsView& to, const Parallel& parallel) {
   set_positions(to, parallel);
   start_.assign(from, parallel);
   has_motion_ = true;
@@ -95,14 +91,5 @@ Vec3d Placement::placed(const Vec3d& p) const {
   const Vec3d offset = translation();
   return offset == Vec3d{} ? p : p + offset;
 }
-
-template void Placement::set_positions(const PositionsView<float>&, const Parallel&);
-template void Placement::set_positions(const PositionsView<double>&, const Parallel&);
-template void Placement::share_positions(const PositionsView<float>&);
-template void Placement::share_positions(const PositionsView<double>&);
-template void Placement::set_motion(const PositionsView<float>&, const PositionsView<float>&,
-                                    const Parallel&);
-template void Placement::set_motion(const PositionsView<double>&, const PositionsView<double>&,
-                                    const Parallel&);
 
 }  // namespace supple

@@ -17,14 +17,10 @@ namespace supple {
 /// has no T.
 class Placement {
  public:
-  template <class Scalar>
-  void set_positions(const PositionsView<Scalar>& positions, const Parallel& parallel);
-  /// The same without a copy; the stride is of whole scalars.
-  template <class Scalar>
-  void share_positions(const PositionsView<Scalar>& positions);
-  template <class Scalar>
-  void set_motion(const PositionsView<Scalar>& from, const PositionsView<Scalar>& to,
-                  const Parallel& parallel);
+  void set_positions(const PositionsView& positions, const Parallel& parallel);
+  /// The same without a copy when the layout allows it.
+  void share_positions(const PositionsView& positions, const Parallel& parallel);
+  void set_motion(const PositionsView& from, const PositionsView& to, const Parallel& parallel);
   void translate(Vec3d offset, const Parallel& parallel);
   void set_transform(const RigidTransform& transform, const Parallel& parallel);
 

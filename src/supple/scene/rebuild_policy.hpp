@@ -5,6 +5,7 @@
 
 #include "octree/object_octree.hpp"
 #include "octree/quality.hpp"
+#include "supple/inspection.hpp"
 
 namespace supple {
 

@@ -29,14 +29,15 @@ BoundingSphere sphere_around(const Aabb& box) {
 
 }  // namespace
 
-SceneObject::SceneObject(const PositionsView<double>& positions, std::span<const Triangle> triangles,
+SceneObject::SceneObject(const PositionsView& positions, std::span<const Triangle> triangles,
                          const ObjectOptions& object_options, const SceneOptions& scene_options)
     : options(object_options),
       octree_(positions, triangles, object_options.octree, scene_options.bounding_volume,
-              scene_options.sphere_fit),
+              scene_options.comparison.sphere_fit),
       // The paper's results depend on leaves: they stay those of the rest pose.
-      rebuild_policy_(object_options.octree.rebuild_degraded && !scene_options.colliding_vertices &&
-                      scene_options.sphere_fit == SphereFit::vertices) {}
+      rebuild_policy_(object_options.octree.rebuild_degraded &&
+                      !scene_options.comparison.colliding_vertices &&
+                      scene_options.comparison.sphere_fit == SphereFit::vertices) {}
 
 bool SceneObject::is_stale(const SearchedShapes& shapes) const {
   return has_moved_ || shapes != updated_ || needs_refit(shapes);

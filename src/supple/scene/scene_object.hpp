@@ -10,8 +10,8 @@
 #include "scene/placement.hpp"
 #include "scene/rebuild_policy.hpp"
 #include "scene/resting_shape.hpp"
+#include "supple/inspection.hpp"
 #include "supple/options.hpp"
-#include "supple/result.hpp"
 
 namespace supple {
 
@@ -27,7 +27,7 @@ struct SearchedShapes {
 /// One object of a scene: its octree, where it is, and the shapes that searches read.
 class SceneObject {
  public:
-  SceneObject(const PositionsView<double>& positions, std::span<const Triangle> triangles,
+  SceneObject(const PositionsView& positions, std::span<const Triangle> triangles,
               const ObjectOptions& object_options, const SceneOptions& scene_options);
 
   /// Whoever moves the object calls this.

@@ -5,7 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <random>
+
+#include "support/random.hpp"
 
 namespace supple {
 namespace {
@@ -17,14 +18,13 @@ struct Soup {
 
 /// Small triangles scattered over a sphere of the given radius about `center`.
 Soup scattered_soup(std::uint32_t count, double radius, Vec3d center, std::uint32_t seed) {
-  std::mt19937 random(seed);
-  std::normal_distribution<double> normal;
+  RandomNumbers random(seed);
   Soup soup;
   for (std::uint32_t t = 0; t < count; ++t) {
-    Vec3d p{normal(random), normal(random), normal(random)};
+    Vec3d p = random.vector(1);
     p = p * (radius / std::sqrt(p.x * p.x + p.y * p.y + p.z * p.z + 1e-30)) + center;
     for (int corner = 0; corner < 3; ++corner) {
-      soup.positions.push_back(p + Vec3d{normal(random), normal(random), normal(random)} * (0.02 * radius));
+      soup.positions.push_back(p + random.vector(0.03 * radius));
     }
     soup.triangles.push_back({3 * t, 3 * t + 1, 3 * t + 2});
   }
@@ -34,11 +34,11 @@ Soup scattered_soup(std::uint32_t count, double radius, Vec3d center, std::uint3
 struct Built {
   explicit Built(const Soup& soup, const ObjectOctreeOptions& options = {},
                  BoundingVolume volume = BoundingVolume::aabb)
-      : octree(PositionsView<double>(soup.positions), soup.triangles, options, volume, SphereFit::vertices) {}
+      : octree(soup.positions, soup.triangles, options, volume, SphereFit::vertices) {}
 
   std::string refit(const Soup& soup, std::uint32_t threads = 1) {
     const Parallel parallel(threads);
-    vertices.assign(PositionsView<double>(soup.positions), parallel);
+    vertices.assign(soup.positions, parallel);
     octree.refit(vertices, {}, parallel);
     return octree.validate(vertices, {});
   }
@@ -124,10 +124,9 @@ TEST(ObjectOctree, LevelsOfAnyArityAreCountedInEights) {
 TEST(ObjectOctree, RefitFollowsDeformation) {
   Soup soup = scattered_soup(3000, 1, {}, 7);
   Built built(soup);
-  std::mt19937 random(3);
-  std::normal_distribution<double> normal;
+  RandomNumbers random(3);
   for (int step = 0; step < 5; ++step) {
-    for (Vec3d& p : soup.positions) p = p + Vec3d{normal(random), normal(random), normal(random)} * 0.1;
+    for (Vec3d& p : soup.positions) p = p + random.vector(0.2);
     EXPECT_EQ(built.refit(soup, step % 2 == 0 ? 1 : 4), "");
   }
 }
@@ -144,7 +143,7 @@ TEST(ObjectOctree, FloatAndDoublePositionsGiveTheSameBoxesForFloatValues) {
   const Aabb box = built.octree.box();
   const Parallel parallel(1);
   VertexBuffer vertices;
-  vertices.assign(PositionsView<float>(singles), parallel);
+  vertices.assign(singles, parallel);
   EXPECT_FALSE(vertices.is_double());
   EXPECT_TRUE(built.octree.refit(vertices, {}, parallel));
   EXPECT_EQ(built.octree.validate(vertices, {}), "");
@@ -198,7 +197,7 @@ TEST(ObjectOctree, InertTrianglesAreInNoBox) {
   soup.positions[61] = {0, std::numeric_limits<double>::infinity(), 0};
   Built built(soup);
   const Parallel parallel(1);
-  built.vertices.assign(PositionsView<double>(soup.positions), parallel);
+  built.vertices.assign(soup.positions, parallel);
   EXPECT_FALSE(built.octree.refit(built.vertices, {}, parallel));
   std::vector<std::uint8_t> inert(200, 0);
   for (std::uint32_t t = 0; t < 200; ++t) {
@@ -218,7 +217,7 @@ TEST(ObjectOctree, BorrowedPositionsGiveTheSameVolumes) {
     ASSERT_EQ(built.refit(soup), "");
     const Aabb box = built.octree.box();
     VertexBuffer borrowed;
-    borrowed.borrow(PositionsView<double>(soup.positions));
+    borrowed.borrow(soup.positions);
     EXPECT_EQ(borrowed.bytes(), 0u);
     EXPECT_TRUE(built.octree.refit(borrowed, {}, Parallel(2)));
     EXPECT_EQ(built.octree.validate(borrowed, {}), "");
@@ -244,9 +243,9 @@ TEST(ObjectOctree, TellsOfANonFiniteVertexWhereverItIs) {
             singles.push_back({static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)});
           Built built(soup);
           if (single) {
-            built.vertices.assign(PositionsView<float>(singles), Parallel(1));
+            built.vertices.assign(singles, Parallel(1));
           } else {
-            built.vertices.assign(PositionsView<double>(broken.positions), Parallel(1));
+            built.vertices.assign(broken.positions, Parallel(1));
           }
           EXPECT_FALSE(built.octree.refit(built.vertices, {}, Parallel(1))) << vertex << ' ' << axis;
         }
@@ -260,7 +259,7 @@ TEST(ObjectOctree, ValidateFindsAStaleBox) {
   Built built(soup);
   EXPECT_EQ(built.refit(soup), "");
   soup.positions[17].x += 5;  // out of any leaf
-  built.vertices.assign(PositionsView<double>(soup.positions), Parallel(1));
+  built.vertices.assign(soup.positions, Parallel(1));
   EXPECT_NE(built.octree.validate(built.vertices, {}), "");
 }
 
@@ -276,7 +275,7 @@ TEST(ObjectOctree, StridedPositions) {
     particles.push_back({1, {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)}, 0});
   }
   Built built(soup);
-  built.vertices.assign(PositionsView<float>(particles[0].position, particles.size(), sizeof(Particle)),
+  built.vertices.assign(PositionsView(particles[0].position, particles.size(), sizeof(Particle)),
                         Parallel(1));
   for (std::uint32_t user = 0; user < particles.size(); ++user) {
     EXPECT_EQ(built.vertices[user].y, particles[user].position[1]);

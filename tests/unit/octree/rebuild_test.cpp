@@ -18,14 +18,13 @@ namespace {
 /// An octree and the positions of its object, which come in the user's numbers.
 struct Tree {
   Tree(const TriangleMesh& mesh_in, const ObjectOctreeOptions& options, BoundingVolume volume)
-      : mesh(mesh_in),
-        octree(PositionsView<double>(mesh.positions), mesh.triangles, options, volume, SphereFit::vertices) {
+      : mesh(mesh_in), octree(mesh.positions, mesh.triangles, options, volume, SphereFit::vertices) {
     place(mesh.positions);
   }
 
   void place(const std::vector<Vec3d>& positions) {
     mesh.positions = positions;
-    vertices.assign(PositionsView<double>(positions), parallel);
+    vertices.assign(positions, parallel);
     refit();
   }
   void refit() {

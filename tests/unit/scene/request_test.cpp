@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "supple/error.hpp"
+#include "supple/inspection.hpp"
 #include "supple/models.hpp"
 #include "support/hard_scenes.hpp"
 #include "support/scenes.hpp"
@@ -152,7 +153,7 @@ TEST_P(OneScene, AnswersWhatTwoWouldInAnyOrder) {
             ASSERT_TRUE(answer.continuous_contacts.empty() && answer.continuous_groups.empty());
           }
           ASSERT_TRUE(one.verify().agrees()) << step;
-          ASSERT_EQ(one.validate(), "") << step;
+          ASSERT_EQ(SceneInspector(one).validate(), "") << step;
         }
         if (HasFatalFailure()) return;
       }
@@ -173,8 +174,8 @@ TEST_P(OneScene, TheEarliestImpactLeavesTheResultAsItWas) {
     EXPECT_EQ(hash_of(scene.result()), before);
     EXPECT_EQ(scene.result().step, number);
     EXPECT_TRUE(scene.verify().agrees());
-    EXPECT_NO_THROW(scene.candidates(10));
-    EXPECT_EQ(scene.validate(), "");
+    EXPECT_NO_THROW(SceneInspector(scene).candidates(10));
+    EXPECT_EQ(SceneInspector(scene).validate(), "");
   }
 }
 
@@ -268,7 +269,7 @@ TEST(Stop, BeforeAnythingIsFoundLeavesTheSceneAsItWas) {
               stopped.continuous_groups.empty() && stopped.continuous_contacts.empty() &&
               stopped.volume_events.begin.empty() && stopped.contact_events.end.empty());
   EXPECT_THROW(scene.verify(), Error);
-  EXPECT_EQ(scene.validate(), "");
+  EXPECT_EQ(SceneInspector(scene).validate(), "");
   const DetectResult& result = scene.detect();
   EXPECT_FALSE(result.stopped);
   const DetectResult& expected = other.detect();
@@ -352,7 +353,7 @@ TEST(Translation, GivesTheContinuousContactsOfTheSamePositions) {
         expect_equal_contacts(lists, expected);
         ASSERT_EQ(lists.continuous, expected.continuous) << step;
         ASSERT_TRUE(moved.verify().agrees()) << step;
-        ASSERT_EQ(moved.validate(), "") << step;
+        ASSERT_EQ(SceneInspector(moved).validate(), "") << step;
         found += lists.continuous.size();
       }
       EXPECT_GT(found, 1000u);

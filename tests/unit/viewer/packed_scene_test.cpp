@@ -21,7 +21,7 @@ SceneView rich_show() {
   show.simulation.time_step = 0.004;
   show.simulation.response = {
       .enabled = true, .thickness = 2e-3, .restitution = 0.1, .friction = 0.2, .iterations = 3};
-  show.simulation.scene.broad_phase = BroadPhaseMethod::sweep;
+  show.simulation.scene.broad_phase = BroadPhaseMethod::octree;
   show.simulation.scene.scene_octree = {.max_level = 5, .expand_at = 3};
   show.objects = {test_ball("waves", {}, 2), test_ball("soft", {3, 0, 0}, 2),
                   test_ball("wall", {0, 3, 0}, 1)};
@@ -102,7 +102,7 @@ std::string failure(std::span<const std::byte> bytes) {
 
 TEST(PackedScene, WhatItIsNotIsSaid) {
   const auto bytes = pack(rich_show());
-  EXPECT_EQ(failure({}), "this is no packed show; export the page again");
+  EXPECT_EQ(failure({}), "this is not a packed scene; export the page again");
   for (std::size_t length = 0; length < bytes.size(); length += 1 + length / 50)
     EXPECT_FALSE(failure(std::span(bytes).first(length)).empty()) << length;
   auto longer = bytes;

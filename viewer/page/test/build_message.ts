@@ -1,4 +1,4 @@
-/** Writes messages as the session does, for tests of the reader. */
+/** Writes messages as the session does, to test the reader. */
 import { NONE } from "../src/protocol/messages";
 
 type Numbers = Uint8Array | Uint32Array | Float32Array | Float64Array;
@@ -56,7 +56,7 @@ export const floats = (tag: number, width: number, numbers: number[], object = N
 
 export const sceneMessage = (): ArrayBuffer => message(KIND.scene, text(SCENE), words(16, 3, [0, 1, 2], 0), words(16, 3, [0, 1, 2, 0, 2, 3], 1));
 
-/** A frame with a section of every tag. */
+/** A frame with one section per tag. */
 export const frameMessage = (): ArrayBuffer =>
   message(
     KIND.frame, text(FRAME),
