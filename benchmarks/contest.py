@@ -252,8 +252,8 @@ def judged(cells):
     for cell in judge.matching("A/.*/one-percent"):
         judge.add_faster("A with 1 % of the boxes moving", cell, ["Supple, all move"], 10, 30,
                          "Supple, one percent moves")
-        judge.add_faster("A with 1 % of the boxes moving, told which", cell, ["Supple, all move"], 10, 30,
-                         "Supple, one percent moves, told")
+        judge.add_faster("A with 1 % of the boxes moving, dirty list", cell, ["Supple, all move"], 10, 30,
+                         "Supple, one percent moves, dirty list")
     for cell in judge.matching("C/.*"):
         judge.add_faster("C, candidates and verdicts, against Embree's candidates", cell, ["Embree"], 1, 2)
     for cell in judge.matching("process/.*"):
@@ -457,11 +457,11 @@ def run_all(arguments, cells):
             failed = True
             continue
         results.append(result)
-        told = ", ".join(f"{c['name']} {statistics.median(c['cpu_ms']):.3g}" for c in result["contestants"])
-        if result["values"] and not told:
-            told = ", ".join(f"{name} {value:.3g}" for name, value in result["values"].items())
+        summary = ", ".join(f"{c['name']} {statistics.median(c['cpu_ms']):.3g}" for c in result["contestants"])
+        if result["values"] and not summary:
+            summary = ", ".join(f"{name} {value:.3g}" for name, value in result["values"].items())
         print(f"[{number}/{len(cells)}, {time.perf_counter() - start:.0f} s] {cell}: "
-              f"{'left out: ' + result['skipped'] if result['skipped'] else told}", flush=True)
+              f"{'left out: ' + result['skipped'] if result['skipped'] else summary}", flush=True)
     return results, failed, disagree
 
 

@@ -192,12 +192,12 @@ def stage_bars(cell):
     """By stage, for contestants that measure their stages."""
     bars = []
     for c in cell["contestants"]:
-        median, told = statistics.median(c["cpu_ms"]), c["mean_stage_ms"]
-        stages = [(name, color, told.get(name, 0)) for name, color in STAGES.items()]
-        if cell["cell"].startswith("limits/") and told:
-            refit = told["refit alone"]
+        median, measured = statistics.median(c["cpu_ms"]), c["mean_stage_ms"]
+        stages = [(name, color, measured.get(name, 0)) for name, color in STAGES.items()]
+        if cell["cell"].startswith("limits/") and measured:
+            refit = measured["refit alone"]
             stages = [(name, color, value) for (name, color), value in
-                      zip(REFIT.items(), (told["update"] - refit, refit))]
+                      zip(REFIT.items(), (measured["update"] - refit, refit))]
         total = sum(value for _, _, value in stages)
         bars.append((c["name"], [(name, color, value / total * median) for name, color, value in stages if value]
                      if total else [("", OTHER_COLOR, median)]))

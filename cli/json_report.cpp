@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <array>
 #include <string>
 
 #include "continuous_json.hpp"
@@ -71,7 +72,10 @@ void write_contacts(JsonWriter& json, const DetectResult& result, bool with_poin
     json.key("triangles");
     json.pair(contact.triangle_a, contact.triangle_b);
     json.member("kind", name_of(contact.kind));
-    if (with_points) write_points(json, result.points_of(contact));
+    if (with_points) {
+      json.member("normal", contact.normal);
+      write_points(json, result.points_of(contact));
+    }
     json.end_object();
   }
   json.end_array();
@@ -104,6 +108,8 @@ void write_stats(JsonWriter& json, const Frame& frame) {
   json.key("stats");
   json.begin_object();
   if (frame.simulated) json.member("motion_seconds", frame.simulated->motion_seconds);
+  constexpr std::array methods{"automatic", "octree", "grid", "sweep", "brute"};
+  json.member("broad_phase_method", methods[static_cast<std::size_t>(stats.broad_phase_method)]);
   json.member("refit_seconds", stats.refit_seconds);
   json.member("broad_phase_seconds", stats.broad_phase_seconds);
   json.member("rebuild_seconds", stats.rebuild_seconds);

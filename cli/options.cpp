@@ -216,6 +216,10 @@ void add_report_options(CLI::App& app, DetectionOptions& options, Dependences& d
        [&] { return scene.contacts != ContactMode::none; }, "--contacts intersection or continuous"});
 }
 
+bool may_run_octree(BroadPhaseMethod method) {
+  return method == BroadPhaseMethod::octree || method == BroadPhaseMethod::automatic;
+}
+
 void add_method_options(CLI::App& app, MethodOptions& options, Dependences& dependences) {
   SceneOptions& scene = options.scene;
   const auto group = [](CLI::Option* option) { return option->group("Method"); };
@@ -225,28 +229,30 @@ void add_method_options(CLI::App& app, MethodOptions& options, Dependences& depe
                                    "Shape that encloses objects and the nodes of their octrees"));
   dependences.push_back(
       {group(add_choice<SphereFit>(
-           app, "--sphere-fit", scene.sphere_fit,
+           app, "--sphere-fit", scene.comparison.sphere_fit,
            {{"vertices", SphereFit::vertices}, {"box", SphereFit::box}},
            "Spheres about the vertices, or as the paper's eq. 3 and 4, which miss contacts")),
        with_spheres, "--bounding-volume sphere"});
   group(add_choice<BroadPhaseMethod>(app, "--broad-phase", scene.broad_phase,
-                                     {{"octree", BroadPhaseMethod::octree},
+                                     {{"automatic", BroadPhaseMethod::automatic},
+                                      {"octree", BroadPhaseMethod::octree},
+                                      {"grid", BroadPhaseMethod::grid},
                                       {"sweep", BroadPhaseMethod::sweep},
                                       {"brute", BroadPhaseMethod::brute}},
                                      "How object pairs are found; all find the same"));
-  dependences.push_back(
-      {group(add_choice<RegionSphereTest>(
-           app, "--region-test", scene.scene_octree.region_sphere_test,
-           {{"arvo", RegionSphereTest::arvo}, {"grown-box", RegionSphereTest::grown_box}},
-           "Region of the scene octree against a sphere: Arvo's test or the paper's")),
-       [&, with_spheres] { return with_spheres() && scene.broad_phase == BroadPhaseMethod::octree; },
-       "--bounding-volume sphere and --broad-phase octree"});
+  dependences.push_back({group(add_choice<RegionSphereTest>(
+                             app, "--region-test", scene.scene_octree.region_sphere_test,
+                             {{"arvo", RegionSphereTest::arvo}, {"grown-box", RegionSphereTest::grown_box}},
+                             "Region of the scene octree against a sphere: Arvo's test or the paper's")),
+                         [&, with_spheres] { return with_spheres() && may_run_octree(scene.broad_phase); },
+                         "--bounding-volume sphere and --broad-phase octree or automatic"});
   for (CLI::Option* option : add_octree_options(app, options.max_level, options.leaf_size)) group(option);
   const auto parse_arity = [&options](const std::string& given) {
     if (given != "2" && given != "4" && given != "8")
       throw CLI::ValidationError("--tree-arity", fmt::format("'{}' is not one of 8, 4, 2", given));
-    options.scene.scene_octree.arity = static_cast<std::uint32_t>(given.front() - '0');
-    options.tree_arity = options.scene.scene_octree.arity;
+    options.tree_arity = static_cast<std::uint32_t>(given.front() - '0');
+    // Callbacks run in the order of definition, so the broad phase is known here.
+    if (may_run_octree(options.scene.broad_phase)) options.scene.scene_octree.arity = *options.tree_arity;
   };
   group(app.add_option_function<std::string>(
                "--tree-arity", parse_arity,

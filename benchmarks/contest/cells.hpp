@@ -16,6 +16,8 @@ void run_boxes(const Choice& choice, const std::string& cell, Output& output);
 void run_copies(const Choice& choice, const std::string& cell, bool two_threads, Output& output);
 /// A cloth of `make_cloth_step`.
 void run_cloth(const Choice& choice, const std::string& cell, bool two_threads, Output& output);
+/// The longest safe step of a cloth (`Scene::max_step`) and its median time; ipc_toolkit.py compares.
+void run_safe_step(const Choice& choice, const std::string& cell, Output& output);
 /// The read bandwidth of each cache level and of memory.
 void run_bandwidth(Output& output);
 /// SHAPE: Supple's refit of one object against the ideal refit.

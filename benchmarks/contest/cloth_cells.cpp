@@ -3,6 +3,7 @@
 
 #include "contest/cells.hpp"
 #include "supple/continuous.hpp"
+#include "supple/scene.hpp"
 
 namespace supple::benchmarks {
 namespace {
@@ -88,6 +89,30 @@ void run_cloth(const Choice& choice, const std::string& name, bool two_threads, 
         }
       });
   output.records(turns.records());
+}
+
+void run_safe_step(const Choice& choice, const std::string& name, Output& output) {
+  auto step = make_cloth_step(name);
+  if (!step) return output.skip("the frames of " + name + " are not there; set SUPPLE_DATA");
+  SceneOptions options;
+  options.threads = 1;
+  options.contacts = ContactMode::continuous;
+  Scene scene(options);
+  const ObjectId cloth =
+      scene.add(PositionsView(step->start), step->triangles, {.self_collision = true});
+  scene.set_motion(cloth, step->start, step->end);
+  output.value("safe step", scene.max_step());
+  std::vector<double> times;
+  const double begin = cpu_milliseconds();
+  while (times.size() < 3 ||
+         (times.size() < choice.rounds && cpu_milliseconds() - begin < 1e3 * choice.seconds)) {
+    const double start = cpu_milliseconds();
+    scene.set_motion(cloth, step->start, step->end);
+    scene.max_step();
+    times.push_back(cpu_milliseconds() - start);
+  }
+  std::nth_element(times.begin(), times.begin() + static_cast<std::ptrdiff_t>(times.size() / 2), times.end());
+  output.value("milliseconds", times[times.size() / 2]);
 }
 
 }  // namespace supple::benchmarks

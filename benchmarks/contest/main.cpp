@@ -17,7 +17,8 @@ constexpr const char* usage =
     "--missing\n"
     "CELL: A/FIELD/N  A/FIELD/N/drift  A/FIELD/N/one-percent  A/FIELD/N/one-in-K\n"
     "      B/SHAPExCOPIES[-rest]  C/CLOTH\n"
-    "      growth/SHAPExCOPIES  threads/B/...  threads/C/...  limits/bandwidth  limits/refit/TRIANGLES  "
+    "      step/CLOTH  growth/SHAPExCOPIES  threads/B/...  threads/C/...  limits/bandwidth  "
+    "limits/refit/TRIANGLES  "
     "memory/SHAPE\n"
     "FIELD: u1 u8 clu cl8   SHAPE: 980, 18000, 69620, ... or bunny   CLOTH: cloth-ball cloth-funnel "
     "crumpled\n";
@@ -41,6 +42,8 @@ void run(const Choice& choice) {
     run_copies(alone, after("growth/"), false, output);
   } else if (cell.starts_with("C/")) {
     run_cloth(choice, after("C/"), false, output);
+  } else if (cell.starts_with("step/")) {
+    run_safe_step(choice, after("step/"), output);
   } else if (cell.starts_with("threads/B/")) {
     run_copies(choice, after("threads/B/"), true, output);
   } else if (cell.starts_with("threads/C/")) {

@@ -30,6 +30,8 @@ const std::vector<ColumnOf<Contact>>& columns_of() {
           "point_count", [](auto& row) -> auto& { return row.point_count; }),
       column<Contact>(
           "first_point", [](auto& row) -> auto& { return row.first_point; }),
+      column<Contact>(
+          "normal", [](auto& row) -> auto& { return row.normal; }),
   };
   return columns;
 }
@@ -99,6 +101,8 @@ const std::vector<ColumnOf<StepStats>>& columns_of() {
           "sort_and_events_seconds", [](auto& row) -> auto& { return row.sort_and_events_seconds; }),
       column<Row>(
           "total_seconds", [](auto& row) -> auto& { return row.total_seconds; }),
+      column<Row>(
+          "broad_phase_method", [](auto& row) -> auto& { return row.broad_phase_method; }),
       column<Row>(
           "objects_refitted", [](auto& row) -> auto& { return row.objects_refitted; }),
       column<Row>(

@@ -106,7 +106,7 @@ namespace choice_names {
 inline constexpr std::array contacts{"none", "intersection", "continuous"};
 inline constexpr std::array bounding_volume{"aabb", "sphere"};
 inline constexpr std::array sphere_fit{"vertices", "box"};
-inline constexpr std::array broad_phase{"octree", "sweep", "brute"};
+inline constexpr std::array broad_phase{"automatic", "octree", "grid", "sweep", "brute"};
 inline constexpr std::array region_sphere_test{"arvo", "grown_box"};
 }  // namespace choice_names
 

@@ -19,7 +19,7 @@ inline constexpr std::array<const char*, 0> names_of{};
 template <>
 inline constexpr std::array names_of<BoundingVolume>{"aabb", "sphere"};
 template <>
-inline constexpr std::array names_of<BroadPhaseMethod>{"octree", "sweep", "brute"};
+inline constexpr std::array names_of<BroadPhaseMethod>{"automatic", "octree", "grid", "sweep", "brute"};
 template <>
 inline constexpr std::array names_of<ContactMode>{"none", "intersection", "continuous"};
 template <>

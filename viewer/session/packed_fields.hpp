@@ -14,7 +14,7 @@ inline constexpr std::uint8_t count_of<BoundingVolume> = 2;
 template <>
 inline constexpr std::uint8_t count_of<SphereFit> = 2;
 template <>
-inline constexpr std::uint8_t count_of<BroadPhaseMethod> = 3;
+inline constexpr std::uint8_t count_of<BroadPhaseMethod> = 5;
 template <>
 inline constexpr std::uint8_t count_of<RegionSphereTest> = 2;
 template <>
@@ -35,7 +35,7 @@ void fields(auto& archive, Of<ObjectOptions> auto& o) {
 }
 
 void fields(auto& archive, Of<SceneOctreeOptions> auto& o) {
-  archive(o.max_level, o.expand_at, o.region_sphere_test, o.arity, o.always_regions);
+  archive(o.max_level, o.expand_at, o.region_sphere_test, o.arity);
 }
 
 void fields(auto& archive, Of<ImpactOptions> auto& o) {
@@ -43,8 +43,8 @@ void fields(auto& archive, Of<ImpactOptions> auto& o) {
 }
 
 void fields(auto& archive, Of<SceneOptions> auto& o) {
-  archive(o.bounding_volume, o.sphere_fit, o.broad_phase, o.scene_octree, o.contacts, o.contact_points,
-          o.impact, o.colliding_vertices);
+  archive(o.bounding_volume, o.comparison.sphere_fit, o.broad_phase, o.scene_octree, o.contacts,
+          o.contact_points, o.impact, o.comparison.colliding_vertices);
 }
 
 void fields(auto& archive, Of<Border> auto& border) {

@@ -1,34 +1,78 @@
 #include "broad_phase/pair_finder.hpp"
 
-#include <string>
+#include <algorithm>
 
-#include "broad_phase/brute_force.hpp"
-#include "broad_phase/octree_broad_phase.hpp"
-#include "broad_phase/sweep_and_prune.hpp"
+#include "broad_phase/automatic_search.hpp"
+#include "broad_phase/brute/brute_search.hpp"
+#include "broad_phase/grid/grid_search.hpp"
+#include "broad_phase/octree/octree_search.hpp"
+#include "broad_phase/sweep/sweep_search.hpp"
 #include "core/error.hpp"
 
 namespace supple {
+namespace {
 
-std::unique_ptr<PairFinder> make_pair_finder(BroadPhaseMethod method, BoundingVolume bounding_volume,
-                                             const SceneOctreeOptions& octree_options) {
-  constexpr std::uint32_t kDeepestLevel = 20;  // 8^20 regions are as many as a 64-bit number can tell apart
-  if (octree_options.max_level > kDeepestLevel)
-    fail("scene octree: max_level is " + std::to_string(octree_options.max_level) +
+void check(const SceneOctreeOptions& options) {
+  constexpr std::uint32_t deepest_level = 20;  // 64 bits number 8^20 regions
+  if (options.max_level > deepest_level)
+    fail("scene octree: max_level is " + std::to_string(options.max_level) +
          "; it must be 1 to 20, or 0 to have it chosen");
-  if (octree_options.expand_at < 2)
-    fail("scene octree: expand_at is " + std::to_string(octree_options.expand_at) + "; it must be 2 or more");
-  if (octree_options.arity != 2 && octree_options.arity != 4 && octree_options.arity != 8)
-    fail("scene octree: arity is " + std::to_string(octree_options.arity) + "; it must be 2, 4 or 8");
+  if (options.expand_at < 2)
+    fail("scene octree: expand_at is " + std::to_string(options.expand_at) + "; it must be 2 or more");
+  if (options.arity != 2 && options.arity != 4 && options.arity != 8)
+    fail("scene octree: arity is " + std::to_string(options.arity) + "; it must be 2, 4 or 8");
+}
+
+void refuse(const SceneOctreeOptions& options, const char* method) {
+  if (options != SceneOctreeOptions{})
+    fail(std::string("broad phase: options of the scene octree have no effect with the method ") + method +
+         "; leave them at their defaults, or choose octree or automatic");
+}
+
+std::unique_ptr<PairSearch> make_search(BroadPhaseMethod method, BoundingVolume bounding_volume,
+                                        const SceneOctreeOptions& options) {
+  check(options);
   switch (method) {
+    case BroadPhaseMethod::automatic:
+      return std::make_unique<AutomaticSearch>(bounding_volume, options);
     case BroadPhaseMethod::octree:
-      return std::make_unique<OctreeBroadPhase>(bounding_volume, octree_options);
+      return std::make_unique<OctreeSearch>(bounding_volume, options);
+    case BroadPhaseMethod::grid:
+      refuse(options, "grid");
+      return std::make_unique<GridSearch>();
     case BroadPhaseMethod::sweep:
-      return std::make_unique<SweepAndPrune>(bounding_volume);
+      refuse(options, "sweep");
+      return std::make_unique<SweepSearch>();
     case BroadPhaseMethod::brute:
-      return std::make_unique<BruteForce>(bounding_volume);
+      refuse(options, "brute");
+      return std::make_unique<BruteSearch>();
   }
   fail("broad phase: method " + std::to_string(static_cast<int>(method)) +
-       " is unknown; use octree, sweep or brute");
+       " is unknown; use automatic, octree, grid, sweep or brute");
+}
+
+}  // namespace
+
+PairFinder::PairFinder(BroadPhaseMethod method, BoundingVolume bounding_volume,
+                       const SceneOctreeOptions& octree_options)
+    : volumes_(bounding_volume), search_(make_search(method, bounding_volume, octree_options)) {
+  found_.stats.method = method == BroadPhaseMethod::automatic ? BroadPhaseMethod::grid : method;
+}
+
+std::span<const IndexPair> PairFinder::find_pairs(const ObjectVolumes& given, const Parallel& parallel) {
+  found_.stats = {.method = found_.stats.method};
+  volumes_.update(given, search_->needs_previous(volumes_), parallel);
+  found_.stats.objects_changed = volumes_.changed().size();
+  if (found_.stats.objects_changed != 0) search_->search(volumes_, parallel, found_);
+  return found_.pairs;
+}
+
+std::string PairFinder::validate() const {
+  const auto& pairs = found_.pairs;
+  if (!std::is_sorted(pairs.begin(), pairs.end()) ||
+      std::adjacent_find(pairs.begin(), pairs.end()) != pairs.end())
+    return "broad phase: the pairs are not in order, or one is there twice";
+  return search_->validate(volumes_);
 }
 
 }  // namespace supple

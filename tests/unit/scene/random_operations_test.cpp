@@ -5,12 +5,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <set>
 #include <string>
 #include <tuple>
 #include <vector>
 
+#include "supple/inspection.hpp"
 #include "support/scenes.hpp"
 #include "support/soups.hpp"
 
@@ -114,7 +116,7 @@ void live(const SceneOptions& options, std::uint64_t seed) {
     const DetectResult& result = life.scene.detect();
     total += result.contacts.size();
     ASSERT_EQ(differences(life.scene), "");
-    ASSERT_EQ(life.scene.validate(), "");
+    ASSERT_EQ(SceneInspector(life.scene).validate(), "");
     volumes.apply(result.volume_events);
     contacts.apply(result.contact_events);
     expect_pairs(volumes.alive(), result.object_pairs);
@@ -137,21 +139,15 @@ TEST_P(RandomOperations, EveryStepEqualsBruteForce) {
 
 std::string configuration_name(const testing::TestParamInfo<RandomOperations::ParamType>& info) {
   const std::string volume = std::get<0>(info.param) == BoundingVolume::aabb ? "Boxes" : "Spheres";
-  switch (std::get<1>(info.param)) {
-    case BroadPhaseMethod::octree:
-      return volume + "Octree";
-    case BroadPhaseMethod::sweep:
-      return volume + "Sweep";
-    case BroadPhaseMethod::brute:
-      return volume + "Brute";
-  }
-  return volume;
+  constexpr std::array methods{"Automatic", "Octree", "Grid", "Sweep", "Brute"};
+  return volume + methods[static_cast<std::size_t>(std::get<1>(info.param))];
 }
 
 INSTANTIATE_TEST_SUITE_P(Configurations, RandomOperations,
                          testing::Combine(testing::Values(BoundingVolume::aabb, BoundingVolume::sphere),
-                                          testing::Values(BroadPhaseMethod::octree, BroadPhaseMethod::sweep,
-                                                          BroadPhaseMethod::brute)),
+                                          testing::Values(BroadPhaseMethod::automatic,
+                                                          BroadPhaseMethod::octree, BroadPhaseMethod::grid,
+                                                          BroadPhaseMethod::sweep, BroadPhaseMethod::brute)),
                          configuration_name);
 
 }  // namespace

@@ -21,7 +21,7 @@ SceneView rich_show() {
   show.simulation.time_step = 0.004;
   show.simulation.response = {
       .enabled = true, .thickness = 2e-3, .restitution = 0.1, .friction = 0.2, .iterations = 3};
-  show.simulation.scene.broad_phase = BroadPhaseMethod::sweep;
+  show.simulation.scene.broad_phase = BroadPhaseMethod::octree;
   show.simulation.scene.scene_octree = {.max_level = 5, .expand_at = 3};
   show.objects = {test_ball("waves", {}, 2), test_ball("soft", {3, 0, 0}, 2),
                   test_ball("wall", {0, 3, 0}, 1)};

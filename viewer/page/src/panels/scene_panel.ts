@@ -15,7 +15,7 @@ interface LayerRow {
 export const LAYER_ROWS: LayerRow[] = [
   { layer: "surface", label: "Surfaces", key: "S", colour: "", hint: "The objects" },
   { layer: "wireframe", label: "Wireframe", key: "X", colour: "", hint: "The edges of all triangles" },
-  { layer: "regions", label: "Scene octree", key: "N", colour: "levels", hint: "Regions of the broad phase, coloured by level" },
+  { layer: "regions", label: "Scene octree", key: "N", colour: "levels", hint: "Regions that the broad phase used in this frame, coloured by level; none unless the octree ran" },
   { layer: "octree", label: "Object octrees", key: "B", colour: "levels", hint: "Cells of the objects' octrees, coloured by level" },
   { layer: "pairs", label: "Object pairs", key: "P", colour: OKABE_ITO.green, hint: "Objects whose volumes overlap" },
   { layer: "candidates", label: "Candidate pairs", key: "C", colour: OKABE_ITO.blue, hint: "Pairs of triangles that the exact stage decides" },

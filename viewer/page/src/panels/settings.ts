@@ -6,7 +6,7 @@ import { h } from "./dom";
 
 const CHOICES = {
   bounding_volume: ["aabb", "sphere"],
-  broad_phase: ["octree", "sweep", "brute"],
+  broad_phase: ["automatic", "octree", "grid", "sweep", "brute"],
   contacts: ["intersection", "continuous", "none"],
   integrator: ["verlet", "symplectic_euler", "backward_euler"],
 } as const;
