@@ -87,12 +87,12 @@ bool run_copies(const std::string& cell, const Choice& choice) {
   Scene scene(options);
   std::vector<ObjectId> objects;
   for (std::size_t i = 0; i < copies->copies(); ++i)
-    objects.push_back(scene.add(PositionsView<float>(copies->positions(i)), copies->triangles()));
+    objects.push_back(scene.add(copies->positions(i), copies->triangles()));
   time_frames(cell, choice, scene, [&] {
     copies->advance();
     const double before = cpu_milliseconds();
     for (std::size_t i = 0; i < objects.size(); ++i) {
-      if (copies->moves(i)) scene.share_positions(objects[i], PositionsView<float>(copies->positions(i)));
+      if (copies->moves(i)) scene.share_positions(objects[i], copies->positions(i));
     }
     return cpu_milliseconds() - before;
   });
@@ -106,8 +106,7 @@ bool run_cloth(const std::string& cell, const Choice& choice) {
   options.threads = choice.threads;
   options.contacts = ContactMode::continuous;
   Scene scene(options);
-  const ObjectId cloth =
-      scene.add(PositionsView<double>(step->start), step->triangles, {.self_collision = true});
+  const ObjectId cloth = scene.add(step->start, step->triangles, {.self_collision = true});
   time_frames(cell, choice, scene, [&] {
     const double before = cpu_milliseconds();
     scene.set_motion(cloth, step->start, step->end);

@@ -72,7 +72,10 @@ void write_contacts(JsonWriter& json, const DetectResult& result, bool with_poin
     json.key("triangles");
     json.pair(contact.triangle_a, contact.triangle_b);
     json.member("kind", name_of(contact.kind));
-    if (with_points) write_points(json, result.points_of(contact));
+    if (with_points) {
+      json.member("normal", contact.normal);
+      write_points(json, result.points_of(contact));
+    }
     json.end_object();
   }
   json.end_array();

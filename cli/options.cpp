@@ -229,7 +229,7 @@ void add_method_options(CLI::App& app, MethodOptions& options, Dependences& depe
                                    "Shape that encloses objects and the nodes of their octrees"));
   dependences.push_back(
       {group(add_choice<SphereFit>(
-           app, "--sphere-fit", scene.sphere_fit,
+           app, "--sphere-fit", scene.comparison.sphere_fit,
            {{"vertices", SphereFit::vertices}, {"box", SphereFit::box}},
            "Spheres about the vertices, or as the paper's eq. 3 and 4, which miss contacts")),
        with_spheres, "--bounding-volume sphere"});

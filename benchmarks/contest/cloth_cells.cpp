@@ -99,7 +99,7 @@ void run_safe_step(const Choice& choice, const std::string& name, Output& output
   options.contacts = ContactMode::continuous;
   Scene scene(options);
   const ObjectId cloth =
-      scene.add(PositionsView<double>(step->start), step->triangles, {.self_collision = true});
+      scene.add(PositionsView(step->start), step->triangles, {.self_collision = true});
   scene.set_motion(cloth, step->start, step->end);
   output.value("safe step", scene.max_step());
   std::vector<double> times;

@@ -68,14 +68,14 @@ class SuppleCopies : public CopiesContestant {
 
   void prepare(const DeformingCopies& copies) override {
     for (std::size_t i = 0; i < copies.copies(); ++i)
-      objects_.push_back(scene_.add(PositionsView<float>(copies.positions(i)), copies.triangles()));
+      objects_.push_back(scene_.add(copies.positions(i), copies.triangles()));
     scene_.detect();
   }
   void frame(const DeformingCopies& copies) override {
     const double start = cpu_milliseconds();
     for (std::size_t i = 0; i < objects_.size(); ++i) {
       if (copies.moves(i)) {
-        scene_.share_positions(objects_[i], PositionsView<float>(copies.positions(i)));
+        scene_.share_positions(objects_[i], copies.positions(i));
       }
     }
     const double handed_over = cpu_milliseconds();
@@ -103,7 +103,7 @@ class SuppleCloth : public Contestant<ClothStep> {
   explicit SuppleCloth(std::uint32_t threads) : scene_(options_of(threads, ContactMode::continuous)) {}
 
   void prepare(const ClothStep& step) override {
-    cloth_ = scene_.add(PositionsView<double>(step.start), step.triangles, {.self_collision = true});
+    cloth_ = scene_.add(step.start, step.triangles, {.self_collision = true});
     edges_ = edges_of(step.triangles);
     frame(step);
   }

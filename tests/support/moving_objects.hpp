@@ -15,8 +15,7 @@ struct MovingObject {
   MovingObject(const TriangleMesh& mesh_in, const std::vector<Vec3d>& end_in,
                const ObjectOctreeOptions& options = {}, bool floats = true, std::uint32_t threads = 1)
       : mesh(mesh_in),
-        octree(PositionsView<double>(mesh.positions), mesh.triangles, options, BoundingVolume::aabb,
-               SphereFit::vertices),
+        octree(mesh.positions, mesh.triangles, options, BoundingVolume::aabb, SphereFit::vertices),
         elements(octree),
         at_rest(end_in.empty()) {
     const Parallel parallel(threads);
@@ -46,14 +45,14 @@ struct MovingObject {
   void assign(VertexBuffer& buffer, const std::vector<Vec3d>& positions, bool floats,
               const Parallel& parallel) {
     if (!floats) {
-      buffer.assign(PositionsView<double>(positions), octree.vertex_order(), parallel);
+      buffer.assign(positions, octree.vertex_order(), parallel);
       return;
     }
     std::vector<Vec3f> rounded;
     for (const Vec3d& p : positions) {
       rounded.push_back({static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)});
     }
-    buffer.assign(PositionsView<float>(rounded), octree.vertex_order(), parallel);
+    buffer.assign(rounded, octree.vertex_order(), parallel);
   }
 };
 

@@ -39,11 +39,10 @@ std::vector<Vec3d> box_centers(const Positions& positions, std::span<const Trian
 /// Balanced trees are of eight children.
 template <class Positions>
 OctreeTopology build_topology(const Positions& positions, std::span<const Triangle> triangles,
-                              std::size_t vertex_count, const ObjectOctreeOptions& options,
-                              std::uint32_t first_level) {
+                              const ObjectOctreeOptions& options, std::uint32_t first_level) {
   const std::vector<Vec3d> centers = box_centers(positions, triangles);
   if (options.regular || options.arity != 8) return build_octree(centers, options, first_level);
-  return build_balanced_octree(centers, triangles, vertex_count, options, first_level);
+  return build_balanced_octree(centers, options, first_level);
 }
 
 Aabb lane_box(const AabbLanes& lanes, int lane) {
@@ -99,11 +98,11 @@ TriangleArrays arrays_of(std::span<const Triangle> triangles, const VertexBuffer
   return {triangles.data(), vertices.floats(), vertices.doubles(), inert.empty() ? nullptr : inert.data()};
 }
 
-ObjectOctree::ObjectOctree(const PositionsView<double>& rest_positions, std::span<const Triangle> triangles,
+ObjectOctree::ObjectOctree(const PositionsView& rest_positions, std::span<const Triangle> triangles,
                            const ObjectOctreeOptions& options, BoundingVolume bounding_volume,
                            SphereFit sphere_fit, VertexNumbering numbering)
-    : vertex_count_(rest_positions.count), options_(options), sphere_fit_(sphere_fit) {
-  OctreeTopology topology = build_topology(rest_positions, triangles, vertex_count_, options, 0);
+    : vertex_count_(rest_positions.size()), options_(options), sphere_fit_(sphere_fit) {
+  OctreeTopology topology = build_topology(rest_positions, triangles, options, 0);
   nodes_ = std::move(topology.nodes);
   nodes_.shrink_to_fit();
   level_begin_ = std::move(topology.level_begin);
@@ -112,12 +111,25 @@ ObjectOctree::ObjectOctree(const PositionsView<double>& rest_positions, std::spa
   if (bounding_volume == BoundingVolume::sphere) spheres_.resize(nodes_.size());
   triangles_.reserve(triangles.size());
   for (const std::uint32_t id : triangle_ids_) triangles_.push_back(triangles[id]);
+  triangle_order_.resize(triangle_ids_.size());
+  invert_triangle_ids();
   if (numbering == VertexNumbering::by_first_use) {
     vertex_ids_.resize(vertex_count_);
     vertex_order_ = number_by_first_use();
     for (std::uint32_t user = 0; user < vertex_count_; ++user) vertex_ids_[vertex_order_[user]] = user;
   }
   list_leaf_vertices();
+}
+
+void ObjectOctree::invert_triangle_ids() {
+  for (std::uint32_t t = 0; t < triangle_ids_.size(); ++t) triangle_order_[triangle_ids_[t]] = t;
+}
+
+Triangle ObjectOctree::user_triangle(std::uint32_t user_triangle) const {
+  Triangle corners = triangles_[octree_triangle(user_triangle)];
+  if (vertex_ids_.empty()) return corners;
+  for (std::uint32_t& vertex : corners) vertex = vertex_ids_[vertex];
+  return corners;
 }
 
 /// Renumbers the corners of all triangles; gives the new number of each vertex.
@@ -139,6 +151,7 @@ OctreeRebuild ObjectOctree::rebuild(std::span<const std::uint32_t> subtrees, con
   std::vector<NewSubtree> built;
   built.reserve(subtrees.size());
   for (const std::uint32_t node : subtrees) built.push_back(build_subtree(node, vertices));
+  invert_triangle_ids();
   RelinkedNodes relinked = relink(nodes_, built);
   nodes_ = std::move(relinked.nodes);
   nodes_.shrink_to_fit();
@@ -165,7 +178,7 @@ NewSubtree ObjectOctree::build_subtree(std::uint32_t node, const VertexBuffer& v
   std::sort(given.begin(), given.end(), [](auto& p, auto& q) { return p.first < q.first; });
   for (std::size_t i = 0; i < count; ++i) triangles_[first + i] = given[i].second;
   const auto triangles = std::span<const Triangle>(triangles_).subspan(first, count);
-  NewSubtree subtree{node, build_topology(vertices, triangles, vertex_count_, options_, nodes_[node].level)};
+  NewSubtree subtree{node, build_topology(vertices, triangles, options_, nodes_[node].level)};
   for (std::size_t i = 0; i < count; ++i) {
     std::tie(triangle_ids_[first + i], triangles_[first + i]) = given[subtree.topology.order[i]];
   }

@@ -10,9 +10,9 @@
 #include "octree/octree_node.hpp"
 #include "octree/rebuild.hpp"
 #include "octree/vertex_buffer.hpp"
+#include "supple/inspection.hpp"
 #include "supple/mesh.hpp"
 #include "supple/options.hpp"
-#include "supple/result.hpp"
 #include "supple/types.hpp"
 
 namespace supple {
@@ -43,13 +43,13 @@ struct OctreeRebuild {
 /// order. Leaves are large: testing dozens of triangles in vectors costs less than nodes that would tell them
 /// apart, and only the triangles of leaves that a query meets are looked at.
 ///
-/// Memory besides the positions: 272 bytes a node, 19 a triangle, 4 for each vertex of each leaf; 8 a vertex
+/// Memory besides the positions: 272 bytes a node, 23 a triangle, 4 for each vertex of each leaf; 8 a vertex
 /// when numbered by first use, 128 a node more with spheres.
 class ObjectOctree {
  public:
   /// O(n log n). Non-finite vertices are allowed; their triangles count as lying in the lower
   /// corner.
-  ObjectOctree(const PositionsView<double>& rest_positions, std::span<const Triangle> triangles,
+  ObjectOctree(const PositionsView& rest_positions, std::span<const Triangle> triangles,
                const ObjectOctreeOptions& options, BoundingVolume bounding_volume, SphereFit sphere_fit,
                VertexNumbering numbering = VertexNumbering::by_first_use);
 
@@ -68,6 +68,10 @@ class ObjectOctree {
   std::span<const Triangle> triangles() const { return triangles_; }
   /// Octree triangle to the user's.
   std::span<const std::uint32_t> triangle_ids() const { return triangle_ids_; }
+  /// And back.
+  std::uint32_t octree_triangle(std::uint32_t user_triangle) const { return triangle_order_[user_triangle]; }
+  /// The corners of a triangle of the user's as the user's vertices.
+  Triangle user_triangle(std::uint32_t user_triangle) const;
   std::size_t vertex_count() const { return vertex_count_; }
   /// Octree vertex to the user's, and back; both empty when the numbers are the same.
   std::span<const std::uint32_t> vertex_ids() const { return vertex_ids_; }
@@ -97,6 +101,7 @@ class ObjectOctree {
 
  private:
   std::vector<std::uint32_t> number_by_first_use();
+  void invert_triangle_ids();
   NewSubtree build_subtree(std::uint32_t node, const VertexBuffer& vertices);
   void list_leaf_vertices();
   bool refit_level(std::uint32_t level, const VertexBuffer& vertices, std::span<const std::uint8_t> inert,
@@ -109,7 +114,7 @@ class ObjectOctree {
   std::vector<SphereLanes> spheres_;
   std::vector<std::uint32_t> level_begin_;
   std::vector<Triangle> triangles_;
-  std::vector<std::uint32_t> triangle_ids_, vertex_ids_, vertex_order_;
+  std::vector<std::uint32_t> triangle_ids_, triangle_order_, vertex_ids_, vertex_order_;
   std::size_t vertex_count_;
   // As `LeafVertexArrays`, and the vertices of no triangle.
   std::vector<std::uint32_t> first_leaf_vertex_, leaf_vertices_, unused_vertices_;

@@ -154,9 +154,9 @@ OctreeStatistics ObjectOctree::statistics() const {
   }
   result.bytes = nodes_.capacity() * sizeof(OctreeNode) + boxes_.capacity() * sizeof(AabbLanes) +
                  spheres_.capacity() * sizeof(SphereLanes) + triangles_.capacity() * sizeof(Triangle) +
-                 (triangle_ids_.capacity() + vertex_ids_.capacity() + vertex_order_.capacity() +
-                  level_begin_.capacity() + first_leaf_vertex_.capacity() + leaf_vertices_.capacity() +
-                  unused_vertices_.capacity()) *
+                 (triangle_ids_.capacity() + triangle_order_.capacity() + vertex_ids_.capacity() +
+                  vertex_order_.capacity() + level_begin_.capacity() + first_leaf_vertex_.capacity() +
+                  leaf_vertices_.capacity() + unused_vertices_.capacity()) *
                      sizeof(std::uint32_t) +
                  leaf_corners_.capacity();
   if (result.triangles > 0) {

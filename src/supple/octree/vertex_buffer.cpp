@@ -19,34 +19,45 @@ void VertexBuffer::resize(std::size_t count, bool is_double) {
 }
 
 template <class Scalar>
-void VertexBuffer::assign(const PositionsView<Scalar>& positions, std::span<const std::uint32_t> numbers,
-                          const Parallel& parallel) {
-  resize(positions.count, sizeof(Scalar) == sizeof(double));
+void VertexBuffer::copy(const PositionsView& positions, std::span<const std::uint32_t> numbers,
+                        const Parallel& parallel) {
   Scalar* const target = storage(Scalar{}).data();
-  const auto copy = [&](std::size_t from, std::size_t to) {
-    const Vec3<Scalar> p = positions[from];
+  const auto copy_one = [&](std::size_t from, std::size_t to) {
+    const Vec3<Scalar> p = positions.get<Scalar>(from);
     target[3 * to] = p.x;
     target[3 * to + 1] = p.y;
     target[3 * to + 2] = p.z;
   };
-  parallel.for_ranges(positions.count, 16384, [&](std::size_t begin, std::size_t end, std::uint32_t) {
+  parallel.for_ranges(count_, 16384, [&](std::size_t begin, std::size_t end, std::uint32_t) {
     if (numbers.empty()) {
-      for (std::size_t i = begin; i < end; ++i) copy(i, i);
+      for (std::size_t i = begin; i < end; ++i) copy_one(i, i);
     } else {
-      for (std::size_t i = begin; i < end; ++i) copy(i, numbers[i]);
+      for (std::size_t i = begin; i < end; ++i) copy_one(i, numbers[i]);
     }
   });
 }
 
-template <class Scalar>
-void VertexBuffer::borrow(const PositionsView<Scalar>& positions) {
-  assert(positions.stride % sizeof(Scalar) == 0);
+void VertexBuffer::assign(const PositionsView& positions, std::span<const std::uint32_t> numbers,
+                          const Parallel& parallel) {
+  resize(positions.size(), positions.is_double());
+  if (is_double_) copy<double>(positions, numbers, parallel);
+  if (!is_double_) copy<float>(positions, numbers, parallel);
+}
+
+bool VertexBuffer::borrow(const PositionsView& positions) {
+  const std::size_t size = positions.is_double() ? sizeof(double) : sizeof(float);
+  const auto stride = static_cast<std::size_t>(positions.point_stride());
+  const bool is_aligned =
+      stride % size == 0 && reinterpret_cast<std::uintptr_t>(positions.data()) % size == 0;
+  if (positions.point_stride() < 0 || positions.coordinate_stride() != std::ptrdiff_t(size) || !is_aligned)
+    return false;
   std::vector<float>().swap(floats_);
   std::vector<double>().swap(doubles_);
-  borrowed_ = positions.data;
-  borrowed_stride_ = positions.stride / sizeof(Scalar);
-  count_ = positions.count;
-  is_double_ = sizeof(Scalar) == sizeof(double);
+  borrowed_ = positions.data();
+  borrowed_stride_ = stride / size;
+  count_ = positions.size();
+  is_double_ = positions.is_double();
+  return true;
 }
 
 VertexBuffer VertexBuffer::renumbered(std::span<const std::uint32_t> numbers) const {
@@ -61,12 +72,5 @@ VertexBuffer VertexBuffer::renumbered(std::span<const std::uint32_t> numbers) co
   }
   return result;
 }
-
-template void VertexBuffer::assign(const PositionsView<float>&, std::span<const std::uint32_t>,
-                                   const Parallel&);
-template void VertexBuffer::assign(const PositionsView<double>&, std::span<const std::uint32_t>,
-                                   const Parallel&);
-template void VertexBuffer::borrow(const PositionsView<float>&);
-template void VertexBuffer::borrow(const PositionsView<double>&);
 
 }  // namespace supple

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/parallel.hpp"
-#include "supple/types.hpp"
+#include "supple/views.hpp"
 
 namespace supple {
 
@@ -40,14 +40,12 @@ class VertexBuffer {
   }
 
   /// Vertex `numbers[i]` of the buffer becomes `positions[i]`, or vertex i when `numbers` is empty.
-  template <class Scalar>
-  void assign(const PositionsView<Scalar>& positions, std::span<const std::uint32_t> numbers,
+  void assign(const PositionsView& positions, std::span<const std::uint32_t> numbers,
               const Parallel& parallel);
 
-  /// The buffer becomes these positions where they are; their stride is a multiple of the scalar's size. A
-  /// copy made before is given back.
-  template <class Scalar>
-  void borrow(const PositionsView<Scalar>& positions);
+  /// The buffer refers to these positions in the user's memory and frees its copy. Returns false, and changes
+  /// nothing, when the layout does not allow that: x, y, z must be adjacent and aligned.
+  bool borrow(const PositionsView& positions);
 
   /// Each vertex becomes `function(vertex)` of `source`, in double.
   template <class Function>
@@ -62,6 +60,8 @@ class VertexBuffer {
 
  private:
   void resize(std::size_t count, bool is_double);
+  template <class Scalar>
+  void copy(const PositionsView& positions, std::span<const std::uint32_t> numbers, const Parallel& parallel);
   std::vector<float>& storage(float) { return floats_; }
   std::vector<double>& storage(double) { return doubles_; }
 

@@ -9,7 +9,7 @@
 #include <type_traits>
 #include <utility>
 
-#include "supple/triangle_intersection.hpp"
+#include "contact/triangle_intersection.hpp"
 
 namespace supple {
 
@@ -58,6 +58,8 @@ void ContactPass::run(std::span<const ContactJob> jobs, std::span<const ContactO
     Worker& worker = workers_[w];
     worker.number = static_cast<std::uint16_t>(w);
     worker.found.clear();
+    worker.details.clear();
+    worker.unfinished.clear();
     worker.points.clear();
     worker.leaves.clear();
     worker.stats = {};
@@ -92,7 +94,7 @@ void ContactPass::plan_outcomes(std::span<const ContactJob> jobs) {
     const Outcome outcome{job, objects_[job.a].version, objects_[job.b].version, {}, {}};
     outcomes_.push_back(outcome);
     // The vertices of colliding leaves are not kept.
-    const bool is_known = !options_.colliding_vertices && last < last_outcomes_.size() &&
+    const bool is_known = !options_.comparison.colliding_vertices && last < last_outcomes_.size() &&
                           last_outcomes_[last].job.a == job.a && last_outcomes_[last].job.b == job.b &&
                           last_outcomes_[last].version_a == outcome.version_a &&
                           last_outcomes_[last].version_b == outcome.version_b;
@@ -112,7 +114,7 @@ void ContactPass::run_task(const ContactTask& task, Worker& worker) {
   const std::span<const std::uint32_t> ids_a = objects_[jobs_[task.job].a].triangle_ids;
   const std::span<const std::uint32_t> ids_b = objects_[jobs_[task.job].b].triangle_ids;
   const auto on_leaves = [&](std::span<const LeafPair> leaf_pairs) {
-    if (!options_.colliding_vertices) return;
+    if (!options_.comparison.colliding_vertices) return;
     for (const LeafPair& leaves : leaf_pairs) worker.leaves.push_back({task.job, leaves});
   };
   const auto on_candidates = [&](std::span<const TrianglePair> candidates) {
@@ -156,17 +158,29 @@ void ContactPass::test_candidates(const ObjectPairView& pair, std::span<const st
     const std::uint64_t asked = ~std::uint64_t{0} >> (pair_filter_capacity - part.size());
     for_each_bit(asked & ~(verdicts.apart | crossing),
                  [&](std::size_t k) { test_candidate(pair, part[k], worker); });
+    add_normals(worker);
   }
 }
 
+void ContactPass::add_normals(Worker& worker) {
+  if (worker.unfinished.size() == 0) return;
+  std::array<Vec3d, IntersectingPairs::capacity> normals;
+  separating_normals(worker.unfinished, normals.data());
+  ContactDetails* const first = worker.details.data() + worker.details.size() - worker.unfinished.size();
+  for (std::size_t i = 0; i < worker.unfinished.size(); ++i) first[i].normal = normals[i];
+  worker.unfinished.clear();
+}
+
 void ContactPass::test_candidate(const ObjectPairView& pair, TrianglePair candidate, Worker& worker) const {
-  const TriangleIntersection shared =
-      intersect_triangles(points_of(pair.a, candidate.a), points_of(pair.b, candidate.b));
+  const TrianglePoints a = points_of(pair.a, candidate.a), b = points_of(pair.b, candidate.b);
+  const TriangleIntersection shared = intersect_triangles_without_normal(a, b);
   worker.stats.exact_fallbacks += shared.used_exact_fallback ? 1 : 0;
   if (!shared.intersects) return;
-  worker.found.push_back({candidate.a, candidate.b, static_cast<std::uint32_t>(worker.points.size()),
+  worker.found.push_back({candidate.a, candidate.b, static_cast<std::uint32_t>(worker.details.size()),
                           worker.number, shared.kind, shared.point_count});
   if (options_.contact_points) {
+    worker.unfinished.add(a, b);
+    worker.details.push_back({{}, static_cast<std::uint32_t>(worker.points.size())});
     const auto points = shared.extreme_points();
     worker.points.insert(worker.points.end(), points.begin(), points.end());
   }
@@ -260,11 +274,15 @@ void ContactPass::gather_found(const Source& source, const Outcome& outcome, Wor
   Contact* contact = contacts_.data() + outcome.contacts.first;
   std::uint32_t point = outcome.points.first;
   for (const FoundContact& found : worker.order.sort(found_of(source, worker))) {
-    *contact++ = {a, b, found.triangle_a, found.triangle_b, found.kind, found.point_count, point};
-    if (!options_.contact_points) continue;
-    std::copy_n(workers_[found.worker].points.begin() + found.first_point, found.point_count,
-                points_.begin() + point);
-    point += found.point_count;
+    *contact = {a, b, found.triangle_a, found.triangle_b, found.kind, found.point_count, point, {}};
+    if (options_.contact_points) {
+      const Worker& finder = workers_[found.worker];
+      const ContactDetails& details = finder.details[found.details];
+      contact->normal = details.normal;
+      std::copy_n(finder.points.begin() + details.first_point, found.point_count, points_.begin() + point);
+      point += found.point_count;
+    }
+    ++contact;
   }
 }
 
@@ -280,7 +298,7 @@ void ContactPass::list_groups() {
 void ContactPass::gather_colliding_vertices() {
   vertex_groups_.clear();
   vertices_.clear();
-  if (!options_.colliding_vertices) return;
+  if (!options_.comparison.colliding_vertices) return;
   leaves_.clear();
   for (const Worker& worker : workers_)
     leaves_.insert(leaves_.end(), worker.leaves.begin(), worker.leaves.end());

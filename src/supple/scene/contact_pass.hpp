@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "contact/pair_filter.hpp"
+#include "contact/separating_normal.hpp"
 #include "core/parallel.hpp"
 #include "core/timer.hpp"
 #include "narrow_phase/traversal.hpp"
@@ -46,11 +47,18 @@ class ContactPass {
     std::uint32_t job = 0;
     LeafPair leaves;
   };
+  /// Kept apart from `FoundContact`, which is sorted.
+  struct ContactDetails {
+    Vec3d normal;
+    std::uint32_t first_point = 0;  // in the worker's points
+  };
   struct Worker {
     std::uint16_t number = 0;
     Traversal traversal;
     std::vector<FoundContact> found;  // of its tasks, one after the other
+    std::vector<ContactDetails> details;
     std::vector<ContactPoint> points;
+    IntersectingPairs unfinished;  // the last of `details` still lack their normals
     std::vector<CollidingLeaves> leaves;
     TaskStats stats;
     // For putting the contacts of one job at a time into order.
@@ -88,6 +96,7 @@ class ContactPass {
                        std::span<const std::uint32_t> ids_b, std::span<const TrianglePair> candidates,
                        Worker& worker) const;
   void test_candidate(const ObjectPairView& pair, TrianglePair candidate, Worker& worker) const;
+  static void add_normals(Worker& worker);
   void gather_contacts();
   void place_outcomes();
   template <class Item>

@@ -15,12 +15,8 @@ namespace supple {
 namespace {
 
 std::uint32_t octree_triangle(const SceneObject& object, std::uint32_t triangle) {
-  const std::span<const std::uint32_t> ids = object.octree().triangle_ids();
-  if (triangle >= ids.size()) {
-    fail("explain: " + object.options.name + " has no triangle " + std::to_string(triangle) + "; it has " +
-         std::to_string(ids.size()) + ", numbered from 0");
-  }
-  return static_cast<std::uint32_t>(std::find(ids.begin(), ids.end(), triangle) - ids.begin());
+  check_triangle(object, triangle, "explain");
+  return object.octree().octree_triangle(triangle);
 }
 
 TrianglePoints points_of(const SceneObject& object, std::uint32_t triangle) {
@@ -167,9 +163,8 @@ PairExplanation triangles_apart(const TrianglePoints& a, const TrianglePoints& b
 bool Scene::Implementation::touch_on_the_way(const ContactJob& job, TrianglePair triangles) const {
   const auto corners = [&](std::uint32_t slot, std::uint32_t triangle) {
     const ObjectOctree& octree = slots_[slot].object->octree();
-    Triangle ids = octree.triangles()[triangle];
-    for (std::uint32_t& vertex : ids) vertex = octree.vertex_ids()[vertex];
-    return std::pair(octree.triangle_ids()[triangle], ids);
+    const std::uint32_t id = octree.triangle_ids()[triangle];
+    return std::pair(id, octree.user_triangle(id));
   };
   const auto [id_a, corners_a] = corners(job.a, triangles.a);
   const auto [id_b, corners_b] = corners(job.b, triangles.b);

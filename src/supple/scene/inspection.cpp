@@ -118,9 +118,9 @@ void for_each_candidate(Traversal& traversal, const ObjectPairView& pair, Visit&
 
 std::vector<OctreeCell> Scene::Implementation::octree_cells(ObjectId id,
                                                             std::optional<std::uint32_t> level) const {
-  const SceneObject& asked = object(id, "octree_cells");
+  const SceneObject& asked = object(id, "cells");
   if (asked.is_stale()) {
-    fail("octree_cells: " + asked.options.name + " was moved since anything was detected; call detect first");
+    fail("cells: " + asked.options.name + " was moved since anything was detected; call detect first");
   }
   std::vector<OctreeCell> cells;
   if (asked.octree().nodes().empty()) return cells;
@@ -151,26 +151,60 @@ ObjectPairView Scene::Implementation::search_view(const ContactJob& job) const {
 }
 
 /// Jobs are in order already.
-std::vector<CandidatePair> Scene::Implementation::candidates(std::size_t limit, std::uint64_t* total) const {
+CandidateList Scene::Implementation::candidates(std::size_t limit) const {
   if (!detected_) fail("candidates: nothing was detected at the present positions; call detect first");
-  std::vector<CandidatePair> all;
-  std::uint64_t count = 0;
+  CandidateList list;
   const auto traversal = std::make_unique<Traversal>();
   for (const ContactJob& job : jobs_) {
     const std::span<const std::uint32_t> ids_a = slots_[job.a].object->octree().triangle_ids();
     const std::span<const std::uint32_t> ids_b = slots_[job.b].object->octree().triangle_ids();
-    FirstPairs pairs(limit - all.size());
+    FirstPairs pairs(limit - list.pairs.size());
     for_each_candidate(*traversal, search_view(job), [&](const TrianglePair& pair) {
       TrianglePair named{ids_a[pair.a], ids_b[pair.b]};
       if (job.a == job.b && named.a > named.b) std::swap(named.a, named.b);
       pairs.add(named);
     });
-    count += pairs.count();
+    list.total += pairs.count();
     for (const TrianglePair& pair : pairs.sorted())
-      all.push_back({id_of(job.a), id_of(job.b), pair.a, pair.b});
+      list.pairs.push_back({id_of(job.a), id_of(job.b), pair.a, pair.b});
   }
-  if (total != nullptr) *total = count;
-  return all;
+  return list;
+}
+
+std::string Scene::Implementation::validate() const {
+  for (const ObjectId id : objects()) {
+    const SceneObject& object = *slots_[id.index].object;
+    if (object.is_stale()) continue;
+    if (const std::string wrong = object.validate(); !wrong.empty())
+      return object.options.name + ": " + wrong;
+  }
+  return pair_finder.validate();
+}
+
+std::vector<OctreeCell> SceneInspector::cells(ObjectId object, std::optional<std::uint32_t> level) const {
+  return scene_->implementation_->octree_cells(object, level);
+}
+std::uint32_t SceneInspector::octree_depth(ObjectId object) const {
+  return scene_->implementation_->octree_depth(object);
+}
+OctreeStatistics SceneInspector::octree_statistics(ObjectId object) const {
+  return scene_->implementation_->object(object, "octree_statistics").octree_statistics();
+}
+Aabb SceneInspector::bounds(ObjectId object) const {
+  return scene_->implementation_->object(object, "bounds").box();
+}
+std::vector<SceneRegion> SceneInspector::regions() const {
+  return scene_->implementation_->pair_finder.regions();
+}
+CandidateList SceneInspector::candidates(std::size_t limit) const {
+  return scene_->implementation_->candidates(limit);
+}
+PairExplanation SceneInspector::explain(ObjectId object_a, std::uint32_t triangle_a, ObjectId object_b,
+                                        std::uint32_t triangle_b) const {
+  return scene_->implementation_->explain(object_a, triangle_a, object_b, triangle_b);
+}
+std::string SceneInspector::validate() const {
+  return scene_->implementation_->validate();
 }
 
 }  // namespace supple

@@ -13,16 +13,20 @@
 #include "scene/impact_pass.hpp"
 #include "scene/pair_cache.hpp"
 #include "scene/scene_object.hpp"
+#include "supple/inspection.hpp"
 #include "supple/scene.hpp"
 
 namespace supple {
+
+/// Throws naming `call` when the object has no such triangle.
+void check_triangle(const SceneObject& object, std::uint32_t triangle, const char* call);
 
 /// The objects and the step; `detect` reads as the list of stages.
 class Scene::Implementation {
  public:
   explicit Implementation(const SceneOptions& scene_options);
 
-  ObjectId add(const PositionsView<double>& positions, std::span<const Triangle> triangles,
+  ObjectId add(const PositionsView& positions, const TrianglesView& triangles,
                const ObjectOptions& object_options, const std::string& fallback_name);
   void remove(ObjectId id);
 
@@ -30,13 +34,9 @@ class Scene::Implementation {
   SceneObject& object(ObjectId id, const char* call) const;
   /// Likewise, and when the object is static.
   SceneObject& movable_object(ObjectId id, const char* call) const;
-  template <class Scalar>
-  void set_positions(ObjectId id, const PositionsView<Scalar>& positions);
-  template <class Scalar>
-  void share_positions(ObjectId id, const PositionsView<Scalar>& positions);
-
-  template <class Scalar>
-  void set_motion(ObjectId id, const PositionsView<Scalar>& from, const PositionsView<Scalar>& to);
+  void set_positions(ObjectId id, const PositionsView& positions);
+  void share_positions(ObjectId id, const PositionsView& positions);
+  void set_motion(ObjectId id, const PositionsView& from, const PositionsView& to);
 
   const DetectResult& detect();
   std::optional<ContinuousContact> earliest_impact(const char* call);
@@ -45,10 +45,11 @@ class Scene::Implementation {
 
   std::vector<OctreeCell> octree_cells(ObjectId id, std::optional<std::uint32_t> level) const;
   std::uint32_t octree_depth(ObjectId id) const;
-  std::vector<CandidatePair> candidates(std::size_t limit, std::uint64_t* total) const;
+  CandidateList candidates(std::size_t limit) const;
   PairExplanation explain(ObjectId id_a, std::uint32_t triangle_a, ObjectId id_b,
                           std::uint32_t triangle_b) const;
 
+  ElementVertices triangle_vertices(ObjectId id, std::uint32_t triangle) const;
   bool contains(ObjectId id) const;
   std::vector<ObjectId> objects() const;
   /// Anything that changes what `detect` would find.

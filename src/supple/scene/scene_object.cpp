@@ -67,51 +67,38 @@ void mark_inert(const ObjectOctree& octree, const VertexBuffer& vertices, std::v
 
 }  // namespace
 
-SceneObject::SceneObject(const PositionsView<double>& positions, std::span<const Triangle> triangles,
+SceneObject::SceneObject(const PositionsView& positions, std::span<const Triangle> triangles,
                          const ObjectOptions& object_options, const SceneOptions& scene_options)
     : options(object_options),
       octree_(positions, triangles, octree_options(object_options, scene_options),
-              scene_options.bounding_volume, scene_options.sphere_fit,
+              scene_options.bounding_volume, scene_options.comparison.sphere_fit,
               scene_options.contacts == ContactMode::continuous ? VertexNumbering::by_first_use
                                                                 : VertexNumbering::given),
       is_continuous_(scene_options.contacts == ContactMode::continuous),
       // Neighbours come within a separation; and the paper's output is of all leaves whose volumes overlap.
       passes_over_unfolded_(is_continuous_ ? scene_options.impact.min_separation == 0
-                                           : !scene_options.colliding_vertices),
-      may_rebuild_(object_options.octree.rebuild_degraded && !scene_options.colliding_vertices &&
-                   scene_options.sphere_fit == SphereFit::vertices) {
+                                           : !scene_options.comparison.colliding_vertices),
+      may_rebuild_(object_options.octree.rebuild_degraded && !scene_options.comparison.colliding_vertices &&
+                   scene_options.comparison.sphere_fit == SphereFit::vertices) {
   if (is_continuous_) elements_ = SurfaceElements(octree_);
 }
 
-template <class Scalar>
-void SceneObject::set_positions(const PositionsView<Scalar>& positions, const Parallel& parallel) {
+void SceneObject::set_positions(const PositionsView& positions, const Parallel& parallel) {
   place_afresh();
   vertices_.assign(positions, octree_.vertex_order(), parallel);
 }
-template void SceneObject::set_positions(const PositionsView<float>&, const Parallel&);
-template void SceneObject::set_positions(const PositionsView<double>&, const Parallel&);
 
-template <class Scalar>
-void SceneObject::share_positions(const PositionsView<Scalar>& positions, const Parallel& parallel) {
-  if (is_continuous_ || positions.stride % sizeof(Scalar) != 0) return set_positions(positions, parallel);
+void SceneObject::share_positions(const PositionsView& positions, const Parallel& parallel) {
+  if (is_continuous_ || !vertices_.borrow(positions)) return set_positions(positions, parallel);
   place_afresh();
-  vertices_.borrow(positions);
 }
-template void SceneObject::share_positions(const PositionsView<float>&, const Parallel&);
-template void SceneObject::share_positions(const PositionsView<double>&, const Parallel&);
 
-template <class Scalar>
-void SceneObject::set_motion(const PositionsView<Scalar>& from, const PositionsView<Scalar>& to,
-                             const Parallel& parallel) {
+void SceneObject::set_motion(const PositionsView& from, const PositionsView& to, const Parallel& parallel) {
   set_positions(to, parallel);
   if (!is_continuous_) return;
   has_motion_ = true;
   start_.assign(from, octree_.vertex_order(), parallel);
 }
-template void SceneObject::set_motion(const PositionsView<float>&, const PositionsView<float>&,
-                                      const Parallel&);
-template void SceneObject::set_motion(const PositionsView<double>&, const PositionsView<double>&,
-                                      const Parallel&);
 
 /// Positions given anew replace all that was done to those before.
 void SceneObject::place_afresh() {

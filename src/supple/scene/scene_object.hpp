@@ -24,17 +24,13 @@ namespace supple {
 /// this could lose bits or overflow in single precision, T is settled into the positions instead.
 class SceneObject {
  public:
-  SceneObject(const PositionsView<double>& positions, std::span<const Triangle> triangles,
+  SceneObject(const PositionsView& positions, std::span<const Triangle> triangles,
               const ObjectOptions& options, const SceneOptions& scene_options);
 
-  template <class Scalar>
-  void set_positions(const PositionsView<Scalar>& positions, const Parallel& parallel);
-  /// The same without a copy, where that can be: of discrete contacts, and strides of whole scalars.
-  template <class Scalar>
-  void share_positions(const PositionsView<Scalar>& positions, const Parallel& parallel);
-  template <class Scalar>
-  void set_motion(const PositionsView<Scalar>& from, const PositionsView<Scalar>& to,
-                  const Parallel& parallel);
+  void set_positions(const PositionsView& positions, const Parallel& parallel);
+  /// The same without a copy when contacts are discrete and the layout allows it.
+  void share_positions(const PositionsView& positions, const Parallel& parallel);
+  void set_motion(const PositionsView& from, const PositionsView& to, const Parallel& parallel);
   void translate(Vec3d offset, const Parallel& parallel);
   void set_transform(const RigidTransform& transform, const Parallel& parallel);
 

@@ -20,14 +20,13 @@ struct Tree {
   Tree(const TriangleMesh& mesh_in, const ObjectOctreeOptions& options, BoundingVolume volume,
        VertexNumbering numbering)
       : mesh(mesh_in),
-        octree(PositionsView<double>(mesh.positions), mesh.triangles, options, volume, SphereFit::vertices,
-               numbering) {
+        octree(mesh.positions, mesh.triangles, options, volume, SphereFit::vertices, numbering) {
     place(mesh.positions);
   }
 
   void place(const std::vector<Vec3d>& positions) {
     mesh.positions = positions;
-    vertices.assign(PositionsView<double>(positions), octree.vertex_order(), parallel);
+    vertices.assign(positions, octree.vertex_order(), parallel);
     refit();
   }
   void refit() {

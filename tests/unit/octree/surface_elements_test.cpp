@@ -10,11 +10,8 @@ namespace supple {
 namespace {
 
 ObjectOctree octree_of(const TriangleMesh& mesh, std::uint32_t leaf_size = 8) {
-  return {PositionsView<double>(mesh.positions),
-          mesh.triangles,
-          {.leaf_size = leaf_size},
-          BoundingVolume::aabb,
-          SphereFit::vertices};
+  return {
+      mesh.positions, mesh.triangles, {.leaf_size = leaf_size}, BoundingVolume::aabb, SphereFit::vertices};
 }
 
 TEST(SurfaceElements, OfNothing) {

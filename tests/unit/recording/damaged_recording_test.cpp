@@ -141,7 +141,7 @@ TEST_F(DamagedRecording, MissingDatasets) {
   for (const char* path :
        {"time", "scene_file", "objects", "objects/0", "objects/0/positions", "objects/1/rest_positions",
         "objects/1/triangles", "object_pairs/end", "object_pairs/object_a", "contacts/end", "contacts/kind",
-        "contact_points/position", "continuous_contacts/normal", "continuous_contacts",
+        "contacts/normal", "contact_points/position", "continuous_contacts/normal", "continuous_contacts",
         "events/volume_begin/end", "events/contact_end/object_b", "statistics/exact_seconds"})
     expect("missing", without(path));
 }

@@ -146,6 +146,8 @@ TEST_P(OfIntersections, Contacts) {
     contact.kind =
         contact.kind == IntersectionKind::point ? IntersectionKind::segment : IntersectionKind::point;
   });
+  expect(1, "normal: (", [](Contents& c) { c.frames[1].contacts[2].normal.x += 1e-9; });
+  EXPECT_FALSE(after([](Contents& c) { c.frames[1].contacts[2].normal.x += 1e-9; }, 1e-8));
   const std::optional<RecordingDifference> missing =
       after([](Contents& c) { c.frames[1].contacts.erase(c.frames[1].contacts.begin() + 2); });
   EXPECT_NE(missing->what.find("only in the first"), std::string::npos) << missing->what;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "supple/error.hpp"
+#include "supple/inspection.hpp"
 #include "supple/models.hpp"
 #include "supple/trigonometry.hpp"
 #include "support/hard_scenes.hpp"
@@ -85,7 +86,7 @@ TEST_P(ContinuousScenes, EqualAlgebraInEveryConfiguration) {
   const std::vector<ContinuousContact> expected = contacts_of(reference);
   ASSERT_GT(expected.size(), 0u);
   ASSERT_EQ(faults(reference), "");
-  ASSERT_EQ(reference.validate(), "");
+  ASSERT_EQ(SceneInspector(reference).validate(), "");
   for (const BoundingVolume volume : {BoundingVolume::aabb, BoundingVolume::sphere}) {
     for (const BroadPhaseMethod method :
          {BroadPhaseMethod::automatic, BroadPhaseMethod::octree, BroadPhaseMethod::grid,
@@ -96,7 +97,7 @@ TEST_P(ContinuousScenes, EqualAlgebraInEveryConfiguration) {
         options.broad_phase = method;
         Scene scene = scene_of(objects, options, threads, threads == 1 ? 8 : threads == 2 ? 4 : 2);
         ASSERT_EQ(contacts_of(scene), expected) << threads;
-        ASSERT_EQ(scene.validate(), "");
+        ASSERT_EQ(SceneInspector(scene).validate(), "");
       }
     }
   }
@@ -223,7 +224,7 @@ TEST(ContinuousContacts, OfAnObjectAtRestAreAtTheStart) {
   EXPECT_TRUE(contacts_of(scene).empty());
   scene.set_transform(other, {.translation = {0, 0, 0}});
   EXPECT_EQ(contacts_of(scene), at_rest);
-  EXPECT_EQ(scene.validate(), "");
+  EXPECT_EQ(SceneInspector(scene).validate(), "");
 }
 
 TEST(ContinuousContacts, HoldUntilTheObjectIsMovedOtherwise) {
@@ -313,7 +314,7 @@ TEST(ContinuousContacts, RandomLivesEqualAlgebra) {
     if (step == 6) scene.set_pair_filter([](ObjectId a, ObjectId b) { return (a.index + b.index) % 2 == 1; });
     found += scene.detect().continuous_contacts.size();
     ASSERT_EQ(faults(scene), "") << step;
-    ASSERT_EQ(scene.validate(), "") << step;
+    ASSERT_EQ(SceneInspector(scene).validate(), "") << step;
   }
   EXPECT_GT(found, 100u);
 }

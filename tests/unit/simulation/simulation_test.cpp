@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "supple/inspection.hpp"
 #include "supple/models.hpp"
 #include "supple/trigonometry.hpp"
 
@@ -347,7 +348,7 @@ TEST(Simulation, TheBorderTurnsBackAndTakesNoSpeed) {
       const Vec3d velocity = body.mean_velocity();
       ASSERT_NEAR(norm(velocity), simulation.time() > 0.201 ? 1 : norm(velocity), 1e-9);
       // A shape that quivers may reach a little further.
-      const Aabb box = simulation.scene().bounds(ids[i]);
+      const Aabb box = SceneInspector(simulation.scene()).bounds(ids[i]);
       for (int axis = 0; axis < 3; ++axis) {
         ASSERT_GT(box.min[axis], -1.2 - overshoot - 0.05);
         ASSERT_LT(box.max[axis], 1.2 + overshoot + 0.05);
@@ -506,7 +507,7 @@ TEST(Simulation, ObjectsComeAndGoBetweenSteps) {
   EXPECT_NE(second.generation, first.generation);
   EXPECT_THROW(simulation.body(first), Error);
   for (int step = 0; step < 10; ++step) simulation.step();
-  EXPECT_EQ(simulation.scene().validate(), "");
+  EXPECT_EQ(SceneInspector(simulation.scene()).validate(), "");
   EXPECT_TRUE(simulation.scene().verify().agrees());
 }
 
