@@ -23,10 +23,10 @@ class SuppleBoxes : public BoxContestant {
   std::span<const IndexPair> pairs_;
 };
 
-/// Knows which boxes may have moved.
-class SuppleBoxesTold : public BoxContestant {
+/// Passes a dirty list to each search.
+class SuppleBoxesWithDirtyList : public BoxContestant {
  public:
-  explicit SuppleBoxesTold(std::vector<std::uint32_t> moving) : moving_(std::move(moving)) {}
+  explicit SuppleBoxesWithDirtyList(std::vector<std::uint32_t> moving) : moving_(std::move(moving)) {}
   void prepare(const MovingBoxes& field) override { pairs_ = broad_phase_.find_object_pairs(field.boxes()); }
   void frame(const MovingBoxes& field) override {
     pairs_ = broad_phase_.find_object_pairs(field.boxes(), moving_);
@@ -144,8 +144,8 @@ std::unique_ptr<BoxContestant> make_supple_boxes(std::uint32_t threads) {
   return std::make_unique<SuppleBoxes>(threads);
 }
 
-std::unique_ptr<BoxContestant> make_supple_boxes_told(std::vector<std::uint32_t> moving) {
-  return std::make_unique<SuppleBoxesTold>(std::move(moving));
+std::unique_ptr<BoxContestant> make_supple_boxes_with_dirty_list(std::vector<std::uint32_t> moving) {
+  return std::make_unique<SuppleBoxesWithDirtyList>(std::move(moving));
 }
 
 std::unique_ptr<CopiesContestant> make_supple_copies(std::uint32_t threads, bool contact_points) {

@@ -39,11 +39,10 @@ std::vector<Vec3d> box_centers(const Positions& positions, std::span<const Trian
 /// Balanced trees are of eight children.
 template <class Positions>
 OctreeTopology build_topology(const Positions& positions, std::span<const Triangle> triangles,
-                              std::size_t vertex_count, const ObjectOctreeOptions& options,
-                              std::uint32_t first_level) {
+                              const ObjectOctreeOptions& options, std::uint32_t first_level) {
   const std::vector<Vec3d> centers = box_centers(positions, triangles);
   if (options.regular || options.arity != 8) return build_octree(centers, options, first_level);
-  return build_balanced_octree(centers, triangles, vertex_count, options, first_level);
+  return build_balanced_octree(centers, options, first_level);
 }
 
 Aabb lane_box(const AabbLanes& lanes, int lane) {
@@ -103,7 +102,7 @@ ObjectOctree::ObjectOctree(const PositionsView& rest_positions, std::span<const 
                            const ObjectOctreeOptions& options, BoundingVolume bounding_volume,
                            SphereFit sphere_fit, VertexNumbering numbering)
     : vertex_count_(rest_positions.size()), options_(options), sphere_fit_(sphere_fit) {
-  OctreeTopology topology = build_topology(rest_positions, triangles, vertex_count_, options, 0);
+  OctreeTopology topology = build_topology(rest_positions, triangles, options, 0);
   nodes_ = std::move(topology.nodes);
   nodes_.shrink_to_fit();
   level_begin_ = std::move(topology.level_begin);
@@ -179,7 +178,7 @@ NewSubtree ObjectOctree::build_subtree(std::uint32_t node, const VertexBuffer& v
   std::sort(given.begin(), given.end(), [](auto& p, auto& q) { return p.first < q.first; });
   for (std::size_t i = 0; i < count; ++i) triangles_[first + i] = given[i].second;
   const auto triangles = std::span<const Triangle>(triangles_).subspan(first, count);
-  NewSubtree subtree{node, build_topology(vertices, triangles, vertex_count_, options_, nodes_[node].level)};
+  NewSubtree subtree{node, build_topology(vertices, triangles, options_, nodes_[node].level)};
   for (std::size_t i = 0; i < count; ++i) {
     std::tie(triangle_ids_[first + i], triangles_[first + i]) = given[subtree.topology.order[i]];
   }

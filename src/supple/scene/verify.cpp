@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <iterator>
-#include <tuple>
 
 #include "core/error.hpp"
 #include "scene/brute_force_contacts.hpp"
@@ -32,39 +31,6 @@ PlainMovingObject plain_moving_object(const SceneObject& object) {
     plain.end.push_back(object.end()[vertex]);
   }
   return plain;
-}
-
-auto place_of(const ContinuousContact& contact) {
-  return std::tie(contact.kind, contact.element_a, contact.element_b);
-}
-auto place_of(const TouchingElements& touching) {
-  return std::tie(touching.kind, touching.element_a, touching.element_b);
-}
-
-/// Both lists in canonical order.
-void compare(const ObjectPair& pair, std::span<const ContinuousContact> reported,
-             std::span<const TouchingElements> truth, std::vector<ContinuousDifference>& differences) {
-  using Fault = ContinuousDifference::Fault;
-  const auto note = [&](const auto& elements, Fault fault) {
-    differences.push_back({pair.a, pair.b, elements.kind, elements.element_a, elements.element_b, fault});
-  };
-  auto found = reported.begin();
-  for (const TouchingElements& expected : truth) {
-    for (; found != reported.end() && place_of(*found) < place_of(expected); ++found) {
-      if (found->certainty == ImpactCertainty::certain) note(*found, Fault::added);
-    }
-    if (found == reported.end() || place_of(*found) != place_of(expected)) {
-      note(expected, Fault::missed);
-      continue;
-    }
-    if (found->toi > expected.time.low) note(expected, Fault::late);
-    const bool is_certain = found->certainty == ImpactCertainty::certain;
-    if (is_certain && found->toi < expected.time.high - toi_tolerance) note(expected, Fault::early);
-    ++found;
-  }
-  for (; found != reported.end(); ++found) {
-    if (found->certainty == ImpactCertainty::certain) note(*found, Fault::added);
-  }
 }
 
 }  // namespace
@@ -116,9 +82,9 @@ void Scene::Implementation::verify_impacts(const ObjectPair& pair, const Contact
       find_impacts_by_brute_force(a, b, same_object, options.impact.min_separation, parallel);
   report.element_pairs_checked += truth.pairs_checked;
   report.touching_element_pairs += truth.touching.size();
-  compare(pair,
-          group != nullptr ? result.continuous_contacts_of(*group) : std::span<const ContinuousContact>{},
-          truth.touching, report.continuous_differences);
+  const auto reported =
+      group != nullptr ? result.continuous_contacts_of(*group) : std::span<const ContinuousContact>{};
+  compare_impacts(pair, reported, truth.touching, report.continuous_differences);
 }
 
 VerifyReport Scene::Implementation::verify() const {
