@@ -156,7 +156,7 @@ void ContactPass::test_candidates(const ObjectPairView& pair, std::span<const st
     const std::uint64_t crossing = options_.contact_points ? 0 : verdicts.crossing;
     for_each_bit(crossing, [&](std::size_t k) {
       worker.found.push_back({part[k].a, part[k].b, 0, worker.number, IntersectionKind::segment, 2});
-      // They are asked for once the whole batch is done.
+      // The end of the batch reads them.
       hwy::Prefetch(&ids_a[part[k].a]);
       hwy::Prefetch(&ids_b[part[k].b]);
     });
