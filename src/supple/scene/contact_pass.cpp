@@ -133,6 +133,11 @@ void ContactPass::run_task(const ContactTask& task, Worker& worker) {
              {static_cast<std::uint32_t>(worker.found.size()), 0},
              {static_cast<std::uint32_t>(worker.points.size()), 0}};
   worker.traversal.find_triangle_pairs(pair, task.root, worker.stats.traversal, on_leaves, on_candidates);
+  if (worker.unfinished.size() > 0) {
+    Timer timer;
+    add_normals(worker);
+    worker.stats.exact_seconds += timer.lap();
+  }
   outcome.contacts.count = static_cast<std::uint32_t>(worker.found.size()) - outcome.contacts.first;
   outcome.points.count = static_cast<std::uint32_t>(worker.points.size()) - outcome.points.first;
 }
@@ -151,19 +156,17 @@ void ContactPass::test_candidates(const ObjectPairView& pair, std::span<const st
     const std::uint64_t crossing = options_.contact_points ? 0 : verdicts.crossing;
     for_each_bit(crossing, [&](std::size_t k) {
       worker.found.push_back({part[k].a, part[k].b, 0, worker.number, IntersectionKind::segment, 2});
-      // They are asked for once the whole batch is done.
+      // The end of the batch reads them.
       hwy::Prefetch(&ids_a[part[k].a]);
       hwy::Prefetch(&ids_b[part[k].b]);
     });
     const std::uint64_t asked = ~std::uint64_t{0} >> (pair_filter_capacity - part.size());
     for_each_bit(asked & ~(verdicts.apart | crossing),
                  [&](std::size_t k) { test_candidate(pair, part[k], worker); });
-    add_normals(worker);
   }
 }
 
 void ContactPass::add_normals(Worker& worker) {
-  if (worker.unfinished.size() == 0) return;
   std::array<Vec3d, IntersectingPairs::capacity> normals;
   separating_normals(worker.unfinished, normals.data());
   ContactDetails* const first = worker.details.data() + worker.details.size() - worker.unfinished.size();
@@ -179,6 +182,7 @@ void ContactPass::test_candidate(const ObjectPairView& pair, TrianglePair candid
   worker.found.push_back({candidate.a, candidate.b, static_cast<std::uint32_t>(worker.details.size()),
                           worker.number, shared.kind, shared.point_count});
   if (options_.contact_points) {
+    if (worker.unfinished.size() == IntersectingPairs::capacity) add_normals(worker);
     worker.unfinished.add(a, b);
     worker.details.push_back({{}, static_cast<std::uint32_t>(worker.points.size())});
     const auto points = shared.extreme_points();
