@@ -1,4 +1,5 @@
-// Tutorial, page 2: a soft ball falls onto a floor. The simulator is this file; Supple only finds the contacts.
+// Tutorial, page 2: a soft ball falls onto a floor. The simulator is this file; Supple only finds the
+// contacts.
 #include <cstdio>
 #include <vector>
 

@@ -43,7 +43,8 @@ int main() {
       forces[s.b] -= pull;
     }
     for (std::size_t i = 0; i < now.size(); ++i)
-      velocities[i] = velocities[i] * (1 - damping * time_step) + (forces[i] + Vec3d{0, gravity, 0}) * time_step;
+      velocities[i] =
+          velocities[i] * (1 - damping * time_step) + (forces[i] + Vec3d{0, gravity, 0}) * time_step;
 
     // 2. Find what would touch on the way, stop its approach, and look again.
     std::size_t found = 0, left = 0;
@@ -62,7 +63,8 @@ int main() {
             const auto& barycentric = side == supple::ContactSide::a ? c.barycentric_a : c.barycentric_b;
             const supple::ElementVertices vertices = scene.vertices_of(c, side);
             for (std::size_t i = 0; i < vertices.size(); ++i)
-              visit(velocities[vertices[i]], side == supple::ContactSide::a ? barycentric[i] : -barycentric[i]);
+              visit(velocities[vertices[i]],
+                    side == supple::ContactSide::a ? barycentric[i] : -barycentric[i]);
           }
         };
         for_each_cloth_vertex([&](const Vec3d& v, double w) {
@@ -80,12 +82,13 @@ int main() {
     if (step % 20 != 0) continue;
     double lowest = now[0].y;
     for (const Vec3d& p : now) lowest = std::min(lowest, p.y);
-    std::printf("step %3d: %zu contacts, %zu after the response; lowest point at %.2f\n", step, found, left, lowest);
+    std::printf("step %3d: %zu contacts, %zu after the response; lowest point at %.2f\n", step, found, left,
+                lowest);
   }
 
   // The proof: no triangle of the cloth intersects the ball or the cloth.
   supple::Scene check;
   check.add(supple::make_icosphere(10));
-  check.add(supple::TriangleMesh{.positions = now, .triangles = shape.triangles}, {.self_collision = true});
+  check.add({.name = "cloth", .positions = now, .triangles = shape.triangles}, {.self_collision = true});
   std::printf("%zu triangles intersect\n", check.detect().contacts.size());
 }
