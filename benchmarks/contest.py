@@ -300,7 +300,7 @@ def description(build, arguments, missing):
         "cores": str(os.cpu_count()),
         "system": f"{platform.system()} {platform.release()}",
         "compiler": f"{version}, {cache_entry(build, 'CMAKE_BUILD_TYPE')}",
-        "load when it began": f"{os.getloadavg()[0]:.1f} processes",
+        "load at the start": f"{os.getloadavg()[0]:.1f} processes",
         "run": "quick" if arguments.quick else "chosen cells" if arguments.only else "full",
         "left out": ", ".join(missing) or "nothing",
     }
@@ -364,7 +364,7 @@ def times_by_cell(cells):
 def markdown_of(about, cells, judge):
     parts = ["# Supple against others, " + about["date"][:10],
              "\n".join(f"- {name}: {value}" for name, value in about.items()),
-             "## What is asked and what is reached", markdown_table(summary_of(judge)),
+             "## Targets and results", markdown_table(summary_of(judge)),
              "## Cell by cell", markdown_table(table_of(judge)),
              "## Median milliseconds of processor time"]
     parts += [markdown_table(lines) for lines in times_by_cell(cells)]

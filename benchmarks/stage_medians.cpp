@@ -151,7 +151,7 @@ void run(const Choice& choice) {
 std::size_t number_of(std::string_view text) {
   std::size_t number = 0;
   std::from_chars(text.data(), text.data() + text.size(), number);
-  if (number == 0) throw Error("'" + std::string(text) + "' is no number above 0");
+  if (number == 0) throw Error("'" + std::string(text) + "' is not a number above 0");
   return number;
 }
 

@@ -15,7 +15,7 @@ namespace supple {
 /// another.
 constexpr std::uint64_t golden_hash = 2342057126839866175u;
 constexpr std::uint64_t golden_continuous_hash = 14350918484739907705u;
-constexpr std::uint64_t golden_normal_hash = 0;
+constexpr std::uint64_t golden_normal_hash = 4176784545402189687u;
 
 inline Scene scene_of(const std::vector<TriangleMesh>& meshes, const SceneOptions& options,
                       std::uint32_t arity = 8) {

@@ -19,6 +19,8 @@ namespace {
 constexpr double parallel_squared_sine = 0x1p-40;
 /// Squared distance from a plane, relative to the squared size, below which triangles count as coplanar.
 constexpr double flat_squared_distance = 0x1p-64;
+/// Directions of a smaller squared length have lost bits to underflow.
+constexpr double least_squared_length = 0x1p-900;
 /// Within this range the tenth power of a size, the largest product below, neither overflows nor vanishes.
 constexpr double least_size = 0x1p-80, most_size = 0x1p80;
 
@@ -53,6 +55,7 @@ HWY_INLINE Doubles most_of(Doubles p, Doubles q, Doubles r) {
 struct Triangles {
   Corners<Tag> corners, edges;  // edge i goes from corner i to the next one
   Doubles squared_lengths[3];
+  Mask is_long[3];  // short edges of segments point anywhere
   Vector normal;
   Doubles squared_normal;
   Mask has_area;  // the others count as segments or points
@@ -71,6 +74,8 @@ struct Triangles {
     normal = cross<Tag>(edges[0], edges[1]);
     squared_normal = squared_norm(normal);
     const auto& [s, t, u] = squared_lengths;
+    const Doubles least_long = hn::Mul(hn::Set(Tag(), parallel_squared_sine), most_of(s, t, u));
+    for (std::size_t i = 0; i < 3; ++i) is_long[i] = hn::Gt(squared_lengths[i], least_long);
     has_area = hn::Gt(squared_normal, hn::Mul(hn::Set(Tag(), parallel_squared_sine),
                                               most_of(hn::Mul(s, t), hn::Mul(t, u), hn::Mul(u, s))));
   }
@@ -115,7 +120,8 @@ struct LeastPenetration {
     const Doubles most = hn::Max(forward, backward);
     const Doubles squared = hn::Mul(depth, depth);
     const Mask is_less = hn::Lt(hn::Mul(squared, squared_length), hn::Mul(squared_depth, squared_candidate));
-    const Mask is_better = hn::And(hn::And(is_valid, is_less), hn::Not(is_flat));
+    const Mask is_exact = hn::Ge(squared_candidate, hn::Set(Tag(), least_squared_length));
+    const Mask is_better = hn::And(hn::And(is_valid, is_exact), hn::And(is_less, hn::Not(is_flat)));
     const Mask makes_flat = hn::Le(hn::Mul(most, most), hn::Mul(flat, squared_candidate));
     const Mask is_forward = hn::Or(hn::Le(forward, backward), makes_flat);
     const Vector opposite{hn::Neg(candidate.x), hn::Neg(candidate.y), hn::Neg(candidate.z)};
@@ -150,8 +156,9 @@ HWY_INLINE std::uint64_t find_normals_from(const IntersectingPairs& pairs, std::
       const Vector direction = cross<Tag>(a.edges[i], b.edges[j]);
       const Doubles squared_length = squared_norm(direction);
       const Doubles squared_product = hn::Mul(a.squared_lengths[i], b.squared_lengths[j]);
-      const Mask is_valid =
+      const Mask is_crossing =
           hn::Gt(squared_length, hn::Mul(hn::Set(Tag(), parallel_squared_sine), squared_product));
+      const Mask is_valid = hn::And(is_crossing, hn::And(a.is_long[i], b.is_long[j]));
       const Doubles third_b = dot<Tag>(a.edges[i], b.normal);
       const Doubles offset = dot<Tag>(direction, subtract<Tag>(b.corners[j], a.corners[i]));
       best.consider(is_valid, direction, squared_length,

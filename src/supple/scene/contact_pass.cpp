@@ -118,6 +118,11 @@ void ContactPass::run_task(std::size_t task, Worker& worker) {
     worker.stats.exact_seconds += timer.lap();
   };
   worker.traversal.find_triangle_pairs(pair, root, worker.stats.traversal, on_leaves, on_candidates);
+  if (worker.unfinished.size() > 0) {
+    Timer timer;
+    add_normals(worker);
+    worker.stats.exact_seconds += timer.lap();
+  }
   outcome.ranges[of_contacts].count = static_cast<std::uint32_t>(worker.found.size() - first);
   outcome.ranges[of_points].count = static_cast<std::uint32_t>(worker.points.size() - first_point);
   if (!limit_.is_set()) return;
@@ -151,19 +156,17 @@ void ContactPass::test_candidates(std::uint32_t job, const ObjectPairView& pair,
     const std::uint64_t crossing = search_.contact_points ? 0 : verdicts.crossing;
     for_each_bit(crossing, [&](std::size_t k) {
       worker.found.push_back({part[k].a, part[k].b, 0, worker.number, IntersectionKind::segment, 2});
-      // They are asked for once the whole batch is done.
+      // The end of the batch reads them.
       hwy::Prefetch(&ids_a[part[k].a]);
       hwy::Prefetch(&ids_b[part[k].b]);
     });
     const std::uint64_t asked = ~std::uint64_t{0} >> (pair_filter_capacity - part.size());
     for_each_bit(asked & ~(verdicts.apart | crossing),
                  [&](std::size_t k) { test_candidate(pair, part[k], worker); });
-    add_normals(worker);
   }
 }
 
 void ContactPass::add_normals(Worker& worker) {
-  if (worker.unfinished.size() == 0) return;
   std::array<Vec3d, IntersectingPairs::capacity> normals;
   separating_normals(worker.unfinished, normals.data());
   ContactDetails* const first = worker.details.data() + worker.details.size() - worker.unfinished.size();
@@ -178,7 +181,12 @@ void ContactPass::test_candidate(const ObjectPairView& pair, TrianglePair candid
   if (!shared.intersects) return;
   worker.found.push_back({candidate.a, candidate.b, static_cast<std::uint32_t>(worker.details.size()),
                           worker.number, shared.kind, shared.point_count});
+<<<<<<< HEAD
   if (search_.contact_points) {
+=======
+  if (options_.contact_points) {
+    if (worker.unfinished.size() == IntersectingPairs::capacity) add_normals(worker);
+>>>>>>> main
     worker.unfinished.add(a, b);
     worker.details.push_back({{}, static_cast<std::uint32_t>(worker.points.size())});
     const auto points = shared.extreme_points();

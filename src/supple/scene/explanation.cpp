@@ -151,7 +151,7 @@ PairExplanation triangle_boxes_apart(const TrianglePoints& a, const TrianglePoin
 
 PairExplanation triangles_apart(const TrianglePoints& a, const TrianglePoints& b) {
   PairExplanation explanation{.stage = PairStage::exact_test};
-  // Of continuous contacts they may meet all the same: when they did from the start, no element touching
+  // With continuous contacts they may still intersect: when they did so from the start and no element touches
   // another.
   if (triangles_intersect(a, b)) return explanation;
   const TriangleGap gap = triangle_gap(a, b);

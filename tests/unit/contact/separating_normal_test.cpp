@@ -5,11 +5,11 @@
 #include <cmath>
 #include <limits>
 #include <ostream>
-#include <random>
 #include <string>
 #include <vector>
 
 #include "supple/triangle_intersection.hpp"
+#include "support/random.hpp"
 #include "unit/contact/triangle_pairs.hpp"
 
 namespace supple {
@@ -17,7 +17,6 @@ namespace {
 
 using testing::pair_families;
 using testing::PairFamily;
-using testing::Random;
 using testing::scaled_count;
 using testing::TrianglePair3d;
 
@@ -60,11 +59,10 @@ Vec3l unit(const Vec3l& v) {
   return v / norm(v);
 }
 
-Vec3l random_direction(Random& random) {
-  std::normal_distribution<double> normal;
+Vec3l random_direction(RandomNumbers& random) {
   for (;;) {
-    const Vec3l v{normal(random), normal(random), normal(random)};
-    if (norm(v) > 0.01L) return unit(v);
+    const Vec3l v = wide(random.vector(1));
+    if (norm(v) > 0.01L && norm(v) < 1) return unit(v);
   }
 }
 
@@ -91,7 +89,7 @@ INSTANTIATE_TEST_SUITE_P(All, SeparatingNormals, ::testing::ValuesIn(pair_famili
                          [](const auto& family) { return family.param.name; });
 
 TEST_P(SeparatingNormals, AreUnitVectorsOfLeastDepth) {
-  Random random(7);
+  RandomNumbers random(7);
   int intersecting = 0;
   for (int i = 0; i < scaled_count(1000); ++i) {
     const TrianglePair3d pair = GetParam().draw(random);
@@ -117,17 +115,16 @@ TEST_P(SeparatingNormals, AreUnitVectorsOfLeastDepth) {
   EXPECT_GT(intersecting, 0);
 }
 
-TrianglePair3d random_pair(Random& random) {
-  std::uniform_real_distribution<double> number(-1, 1);
+TrianglePair3d random_pair(RandomNumbers& random) {
   TrianglePair3d pair;
   for (TrianglePoints* const triangle : {&pair.a, &pair.b}) {
-    for (Vec3d& p : *triangle) p = {number(random), number(random), number(random)};
+    for (Vec3d& p : *triangle) p = random.vector(1);
   }
   return pair;
 }
 
 TEST(SeparatingNormal, SeparatesByTheShortestWay) {
-  Random random(3);
+  RandomNumbers random(3);
   int intersecting = 0;
   for (int i = 0; i < scaled_count(2000); ++i) {
     const TrianglePair3d pair = random_pair(random);
@@ -150,7 +147,7 @@ TEST(SeparatingNormal, SeparatesByTheShortestWay) {
 }
 
 TEST(SeparatingNormal, HasTheSameBitsAtAnyScale) {
-  Random random(5);
+  RandomNumbers random(5);
   for (int i = 0; i < scaled_count(200); ++i) {
     const TrianglePair3d pair = random_pair(random);
     const Vec3d normal = intersect_triangles(pair.a, pair.b).normal;

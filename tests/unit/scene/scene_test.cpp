@@ -320,7 +320,7 @@ TEST(Scene, ErrorsSayWhatWhereAndHowToMend) {
   EXPECT_EQ(error_of([&] { scene.set_positions(a, std::vector<Vec3d>(5)); }),
             "set_positions: 5 positions for sheet, which has 3 vertices; give one for each vertex");
   EXPECT_EQ(error_of([&] { scene.set_positions(a, std::vector<double>(10)); }),
-            "set_positions: 10 coordinates are no whole number of points; give x y z of each");
+            "10 packed numbers are not a whole number of points or triangles; give three for each");
   EXPECT_EQ(error_of([&] {
               scene.translate(a, {0, nan, 0});
             }),

@@ -47,7 +47,7 @@ TEST(PositionsViews, ReadRangesOfPoints) {
   EXPECT_EQ(points_of(packed), (std::vector<Vec3d>{{1, 2, 3}}));
   EXPECT_EQ(points_of(std::vector<double>{}), std::vector<Vec3d>{});
   EXPECT_EQ(points_of(PositionsView()), std::vector<Vec3d>{});
-  EXPECT_THROW(std::vector<double>(10), Error);
+  EXPECT_THROW(PositionsView(std::vector<double>(10)), Error);
   static_assert(!std::is_convertible_v<std::deque<Vec3d>, PositionsView>);
   static_assert(!std::is_convertible_v<std::vector<int>, PositionsView>);
   static_assert(!std::is_convertible_v<std::vector<Triangle>, PositionsView>);
@@ -58,13 +58,13 @@ TEST(PositionsViews, ReadMatricesOfAnyLayout) {
   using RowMajor = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   const auto columns = in_rows<Eigen::MatrixXd>();
   EXPECT_EQ(points_of(columns), four_points);
-  EXPECT_EQ(columns.coordinate_stride(), std::ptrdiff_t{4 * sizeof(double)});
+  EXPECT_EQ(PositionsView(columns).coordinate_stride(), std::ptrdiff_t{4 * sizeof(double)});
   EXPECT_EQ(points_of(in_rows<Eigen::MatrixX3d>()), four_points);
   EXPECT_EQ(points_of(in_rows<RowMajor>()), four_points);
   EXPECT_EQ(points_of(in_rows<Eigen::ArrayXXf>()), four_points);
   const Eigen::MatrixXd transposed = columns.transpose();
   EXPECT_EQ(points_of(transposed), four_points);
-  EXPECT_EQ(transposed.data(), transposed.data());
+  EXPECT_EQ(PositionsView(transposed).data(), transposed.data());
   EXPECT_EQ(points_of(Eigen::Matrix3Xd(transposed)), four_points);
   EXPECT_EQ(points_of(columns.transpose()), four_points);
   // Parts of a larger matrix.

@@ -62,7 +62,7 @@ TEST(ViewerLayers, AreLeftOutUntilAskedForAndAgainAfterwards) {
 }
 
 TEST(ViewerLayers, HaveNoRegionsUnlessTheOctreeRan) {
-  Show show = crowd();
+  SceneView show = crowd();
   show.simulation.scene.broad_phase = BroadPhaseMethod::grid;
   TestPage page(show);
   page.scene();
