@@ -181,12 +181,8 @@ void ContactPass::test_candidate(const ObjectPairView& pair, TrianglePair candid
   if (!shared.intersects) return;
   worker.found.push_back({candidate.a, candidate.b, static_cast<std::uint32_t>(worker.details.size()),
                           worker.number, shared.kind, shared.point_count});
-<<<<<<< HEAD
   if (search_.contact_points) {
-=======
-  if (options_.contact_points) {
     if (worker.unfinished.size() == IntersectingPairs::capacity) add_normals(worker);
->>>>>>> main
     worker.unfinished.add(a, b);
     worker.details.push_back({{}, static_cast<std::uint32_t>(worker.points.size())});
     const auto points = shared.extreme_points();
