@@ -8,8 +8,8 @@ namespace {
 
 class SuppleBoxes : public BoxContestant {
  public:
-  explicit SuppleBoxes(std::uint32_t threads)
-      : broad_phase_({.method = BroadPhaseMethod::automatic, .scene_octree = {}, .threads = threads}) {}
+  SuppleBoxes(std::uint32_t threads, BroadPhaseMethod method)
+      : broad_phase_({.method = method, .scene_octree = {}, .threads = threads}) {}
   void prepare(const MovingBoxes& field) override { frame(field); }
   void frame(const MovingBoxes& field) override { pairs_ = broad_phase_.find_object_pairs(field.boxes()); }
   PairDigest pairs() const override {
@@ -23,10 +23,10 @@ class SuppleBoxes : public BoxContestant {
   std::span<const IndexPair> pairs_;
 };
 
-/// Knows which boxes may have moved.
-class SuppleBoxesTold : public BoxContestant {
+/// Gives a dirty list: the boxes that may have moved.
+class SuppleBoxesWithList : public BoxContestant {
  public:
-  explicit SuppleBoxesTold(std::vector<std::uint32_t> moving) : moving_(std::move(moving)) {}
+  explicit SuppleBoxesWithList(std::vector<std::uint32_t> moving) : moving_(std::move(moving)) {}
   void prepare(const MovingBoxes& field) override { pairs_ = broad_phase_.find_object_pairs(field.boxes()); }
   void frame(const MovingBoxes& field) override {
     pairs_ = broad_phase_.find_object_pairs(field.boxes(), moving_);
@@ -139,12 +139,12 @@ class SuppleCloth : public Contestant<ClothStep> {
 
 }  // namespace
 
-std::unique_ptr<BoxContestant> make_supple_boxes(std::uint32_t threads) {
-  return std::make_unique<SuppleBoxes>(threads);
+std::unique_ptr<BoxContestant> make_supple_boxes(std::uint32_t threads, BroadPhaseMethod method) {
+  return std::make_unique<SuppleBoxes>(threads, method);
 }
 
-std::unique_ptr<BoxContestant> make_supple_boxes_told(std::vector<std::uint32_t> moving) {
-  return std::make_unique<SuppleBoxesTold>(std::move(moving));
+std::unique_ptr<BoxContestant> make_supple_boxes_with_list(std::vector<std::uint32_t> moving) {
+  return std::make_unique<SuppleBoxesWithList>(std::move(moving));
 }
 
 std::unique_ptr<CopiesContestant> make_supple_copies(std::uint32_t threads) {
