@@ -23,7 +23,7 @@ Input read_input(const DetectOptions& options) {
 /// How often contacts are looked for: in each frame, or from each frame to the next.
 std::uint64_t count_steps(const Input& input, const DetectOptions& options) {
   if (!input.frames) return options.steps;
-  if (options.scene.contacts != ContactMode::continuous) return input.frames->count;
+  if (!contains(options.scene.contacts, ContactKinds::continuous)) return input.frames->count;
   if (input.frames->count < 2)
     throw Error(fmt::format("{}: one frame is no motion; continuous contacts need two frames or more",
                             input.frames->name));
@@ -37,7 +37,7 @@ int run_detect(const DetectOptions& options) {
   const std::uint64_t steps = count_steps(input, options);
   Simulation simulation = build_simulation(input, options);
 
-  const bool continuous = options.scene.contacts == ContactMode::continuous;
+  const bool continuous = contains(options.scene.contacts, ContactKinds::continuous);
   const char* const noun = continuous ? "step" : "frame";
   Reports reports(options, simulation.scene(), noun);
   Progress progress(steps, !options.quiet, noun);

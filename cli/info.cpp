@@ -12,6 +12,7 @@
 #include "exit_status.hpp"
 #include "inputs.hpp"
 #include "json_writer.hpp"
+#include "supple/inspection.hpp"
 #include "supple/scene.hpp"
 #include "supple/topology.hpp"
 #include "supple/version.hpp"
@@ -54,7 +55,7 @@ MeshInfo measure(const InputObject& object, const InfoOptions& options) {
   chosen.octree.max_level = options.max_level.value_or(chosen.octree.max_level);
   chosen.octree.leaf_size = options.leaf_size.value_or(chosen.octree.leaf_size);
   Scene scene({.threads = 1});
-  info.octree = scene.octree_statistics(scene.add(object.mesh, chosen));
+  info.octree = SceneInspector(scene).octree_statistics(scene.add(object.mesh, chosen));
   return info;
 }
 

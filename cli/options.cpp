@@ -181,17 +181,18 @@ CLI::Option* group_of_detection(CLI::Option* option) {
 
 void add_stage_options(CLI::App& app, MethodOptions& options, Dependences& dependences) {
   SceneOptions& scene = options.scene;
-  group_of_detection(add_choice<ContactMode>(
+  group_of_detection(add_choice<ContactKinds>(
       app, "--contacts", scene.contacts,
-      {{"intersection", ContactMode::intersection},
-       {"continuous", ContactMode::continuous},
-       {"none", ContactMode::none}},
+      {{"intersection", ContactKinds::intersection},
+       {"continuous", ContactKinds::continuous},
+       {"intersection,continuous", ContactKinds::intersection | ContactKinds::continuous},
+       {"none", ContactKinds::none}},
       "Exact stage: every intersecting pair of triangles; every vertex and face and every two "
-      "edges that touch between a frame and the next, and when; or object pairs only"));
+      "edges that touch between a frame and the next, and when; both; or object pairs only"));
   group_of_detection(app.add_flag("--self", options.self, "Also test every object against itself"));
   for (CLI::Option* option : add_impact_options(app, scene.impact))
     dependences.push_back({group_of_detection(option),
-                           [&] { return scene.contacts == ContactMode::continuous; },
+                           [&] { return contains(scene.contacts, ContactKinds::continuous); },
                            "--contacts continuous"});
   group_of_detection(
       add_number(app, "--threads", scene.threads, 0, 1024, "Worker threads, 0 for one a core (default: 0)"));
@@ -203,17 +204,17 @@ void add_report_options(CLI::App& app, DetectionOptions& options, Dependences& d
   dependences.push_back({group_of_detection(app.add_flag_callback(
                              "--no-contact-points", [&] { scene.contact_points = false; },
                              "Leave out the points of each contact")),
-                         [&] { return scene.contacts != ContactMode::continuous; },
+                         [&] { return scene.contacts != ContactKinds::continuous; },
                          "--contacts intersection"});
   dependences.push_back({group_of_detection(app.add_flag("--fail-on-contact", options.fail_on_contact,
                                                          "Exit with status 1 when anything touches")),
-                         [&] { return scene.contacts != ContactMode::none; },
+                         [&] { return scene.contacts != ContactKinds::none; },
                          "--contacts intersection or continuous"});
   dependences.push_back(
       {group_of_detection(app.add_flag("--verify", options.verify,
                                        "Check each frame against exact brute force over all pairs of "
                                        "triangles, or of elements; differences exit with status 3")),
-       [&] { return scene.contacts != ContactMode::none; }, "--contacts intersection or continuous"});
+       [&] { return scene.contacts != ContactKinds::none; }, "--contacts intersection or continuous"});
 }
 
 bool may_run_octree(BroadPhaseMethod method) {
@@ -229,7 +230,7 @@ void add_method_options(CLI::App& app, MethodOptions& options, Dependences& depe
                                    "Shape that encloses objects and the nodes of their octrees"));
   dependences.push_back(
       {group(add_choice<SphereFit>(
-           app, "--sphere-fit", scene.sphere_fit,
+           app, "--sphere-fit", scene.comparison.sphere_fit,
            {{"vertices", SphereFit::vertices}, {"box", SphereFit::box}},
            "Spheres about the vertices, or as the paper's eq. 3 and 4, which miss contacts")),
        with_spheres, "--bounding-volume sphere"});
@@ -264,10 +265,12 @@ void add_output_options(CLI::App& app, DetectionOptions& options, Dependences& d
   const auto group = [](CLI::Option* option) { return option->group("Output"); };
   group(
       add_file(app, "--json", options.json, "Write the whole result, frame by frame; - is standard output"));
-  group(add_file(
-      app, "--csv", options.csv,
-      "Write a row a contact: frame,a,b,i,j of triangles, or frame,a,b,kind,a0,a1,b0,b1,time,certainty; - is "
-      "standard output"));
+  dependences.push_back(
+      {group(add_file(app, "--csv", options.csv,
+                      "Write a row a contact: frame,a,b,i,j of triangles, or "
+                      "frame,a,b,kind,a0,a1,b0,b1,time,certainty; - is standard output")),
+       [&] { return options.scene.contacts != (ContactKinds::intersection | ContactKinds::continuous); },
+       "contacts of one kind"});
   dependences.push_back({group(app.add_flag_callback(
                              "--no-stats", [&] { options.json_content.stats = false; },
                              "Leave times and counts out of the JSON, so that equal results are "
@@ -277,7 +280,7 @@ void add_output_options(CLI::App& app, DetectionOptions& options, Dependences& d
       {group(app.add_flag(
            "--contact-details", options.json_content.contact_details,
            "Also write of each continuous contact the weights, the point and the normal to the JSON")),
-       [&] { return !options.json.empty() && options.scene.contacts == ContactMode::continuous; },
+       [&] { return !options.json.empty() && contains(options.scene.contacts, ContactKinds::continuous); },
        "--json and --contacts continuous"});
   group(app.add_flag("--quiet", options.quiet, "No tables and no progress"));
 }

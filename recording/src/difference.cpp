@@ -188,11 +188,11 @@ Line Comparison::headers() const {
       compare_exactly("time_step", a.time_step, b.time_step),
       choice("contact_mode", choice_names::contacts, p.contacts, q.contacts),
       compare_exactly("contact_points", p.contact_points, q.contact_points),
-      compare_exactly("colliding_vertices", p.colliding_vertices, q.colliding_vertices),
+      compare_exactly("colliding_vertices", p.comparison.colliding_vertices, q.comparison.colliding_vertices),
       compare_exactly("min_separation", p.impact.min_separation, q.impact.min_separation),
       compare_exactly("exact_impacts", p.impact.exact, q.impact.exact),
       choice("bounding_volume", choice_names::bounding_volume, p.bounding_volume, q.bounding_volume),
-      choice("sphere_fit", choice_names::sphere_fit, p.sphere_fit, q.sphere_fit),
+      choice("sphere_fit", choice_names::sphere_fit, p.comparison.sphere_fit, q.comparison.sphere_fit),
       choice("broad_phase", choice_names::broad_phase, p.broad_phase, q.broad_phase),
       choice("region_sphere_test", choice_names::region_sphere_test, p.scene_octree.region_sphere_test,
              q.scene_octree.region_sphere_test),
@@ -261,10 +261,11 @@ Line Comparison::contacts(const RecordedFrame& a, const RecordedFrame& b) const 
   const auto key = [](const Contact& c) {
     return std::tuple(c.object_a, c.object_b, c.triangle_a, c.triangle_b);
   };
-  return lists("contact", a.contacts, b.contacts, key, [](const Contact& p, const Contact& q) {
+  return lists("contact", a.contacts, b.contacts, key, [this](const Contact& p, const Contact& q) {
     return first_of([&] { return compare_exactly("kind", p.kind, q.kind); },
                     [&] { return compare_exactly("point_count", p.point_count, q.point_count); },
-                    [&] { return compare_exactly("first_point", p.first_point, q.first_point); });
+                    [&] { return compare_exactly("first_point", p.first_point, q.first_point); },
+                    [&] { return compare("normal", p.normal, q.normal); });
   });
 }
 

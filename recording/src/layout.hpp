@@ -103,7 +103,7 @@ inline constexpr const char* statistics = "statistics";  // one row a frame
 
 /// Words for the choices that a recording names, in the order of their values.
 namespace choice_names {
-inline constexpr std::array contacts{"none", "intersection", "continuous"};
+inline constexpr std::array contacts{"none", "intersection", "continuous", "intersection,continuous"};
 inline constexpr std::array bounding_volume{"aabb", "sphere"};
 inline constexpr std::array sphere_fit{"vertices", "box"};
 inline constexpr std::array broad_phase{"automatic", "octree", "grid", "sweep", "brute"};

@@ -131,11 +131,11 @@ void write_header(hid_t file, const RecordingHeader& header) {
   const SceneOptions& scene = header.scene;
   choice("contact_mode", choice_names::contacts, scene.contacts);
   attribute("contact_points", scene.contact_points);
-  attribute("colliding_vertices", scene.colliding_vertices);
+  attribute("colliding_vertices", scene.comparison.colliding_vertices);
   attribute("min_separation", scene.impact.min_separation);
   attribute("exact_impacts", scene.impact.exact);
   choice("bounding_volume", choice_names::bounding_volume, scene.bounding_volume);
-  choice("sphere_fit", choice_names::sphere_fit, scene.sphere_fit);
+  choice("sphere_fit", choice_names::sphere_fit, scene.comparison.sphere_fit);
   choice("broad_phase", choice_names::broad_phase, scene.broad_phase);
   choice("region_sphere_test", choice_names::region_sphere_test, scene.scene_octree.region_sphere_test);
   attribute("scene_octree_max_level", scene.scene_octree.max_level);

@@ -43,14 +43,15 @@ void check_format(const InputFile& file) {
 
 SceneOptions read_scene_options(const InputFile& file) {
   SceneOptions scene;
-  scene.contacts = static_cast<ContactMode>(read_choice(file, "contact_mode", choice_names::contacts));
+  scene.contacts = static_cast<ContactKinds>(read_choice(file, "contact_mode", choice_names::contacts));
   scene.contact_points = file.count("/", "contact_points", 1) == 1;
-  scene.colliding_vertices = file.count("/", "colliding_vertices", 1) == 1;
+  scene.comparison.colliding_vertices = file.count("/", "colliding_vertices", 1) == 1;
   scene.impact.min_separation = file.number("/", "min_separation");
   scene.impact.exact = file.count("/", "exact_impacts", 1) == 1;
   scene.bounding_volume =
       static_cast<BoundingVolume>(read_choice(file, "bounding_volume", choice_names::bounding_volume));
-  scene.sphere_fit = static_cast<SphereFit>(read_choice(file, "sphere_fit", choice_names::sphere_fit));
+  scene.comparison.sphere_fit =
+      static_cast<SphereFit>(read_choice(file, "sphere_fit", choice_names::sphere_fit));
   scene.broad_phase =
       static_cast<BroadPhaseMethod>(read_choice(file, "broad_phase", choice_names::broad_phase));
   scene.scene_octree.region_sphere_test = static_cast<RegionSphereTest>(

@@ -21,7 +21,8 @@ inline constexpr std::array names_of<BoundingVolume>{"aabb", "sphere"};
 template <>
 inline constexpr std::array names_of<BroadPhaseMethod>{"automatic", "octree", "grid", "sweep", "brute"};
 template <>
-inline constexpr std::array names_of<ContactMode>{"none", "intersection", "continuous"};
+inline constexpr std::array names_of<ContactKinds>{"none", "intersection", "continuous",
+                                                   "intersection,continuous"};
 template <>
 inline constexpr std::array names_of<Integrator>{"verlet", "symplectic_euler", "backward_euler"};
 template <>

@@ -18,7 +18,7 @@ inline constexpr std::uint8_t count_of<BroadPhaseMethod> = 5;
 template <>
 inline constexpr std::uint8_t count_of<RegionSphereTest> = 2;
 template <>
-inline constexpr std::uint8_t count_of<ContactMode> = 3;
+inline constexpr std::uint8_t count_of<ContactKinds> = 4;
 template <>
 inline constexpr std::uint8_t count_of<Integrator> = 3;
 
@@ -43,8 +43,8 @@ void fields(auto& archive, Of<ImpactOptions> auto& o) {
 }
 
 void fields(auto& archive, Of<SceneOptions> auto& o) {
-  archive(o.bounding_volume, o.sphere_fit, o.broad_phase, o.scene_octree, o.contacts, o.contact_points,
-          o.impact, o.colliding_vertices);
+  archive(o.bounding_volume, o.comparison.sphere_fit, o.broad_phase, o.scene_octree, o.contacts,
+          o.contact_points, o.impact, o.comparison.colliding_vertices);
 }
 
 void fields(auto& archive, Of<Border> auto& border) {

@@ -350,7 +350,7 @@ void Session::Implementation::set(Arguments& arguments) {
   keep(settings.max_level, arguments.integer("max_level", 0, 32));
   keep(settings.leaf_size, arguments.integer("leaf_size", 1, 1'000'000));
   keep(settings.broad_phase, arguments.one_of<BroadPhaseMethod>("broad_phase"));
-  keep(settings.contacts, arguments.one_of<ContactMode>("contacts"));
+  keep(settings.contacts, arguments.one_of<ContactKinds>("contacts"));
   if (stage_->simulation()) {
     keep(settings.objects, arguments.integer("objects", 1, 100'000));
     keep(settings.integrator, arguments.one_of<Integrator>("integrator"));

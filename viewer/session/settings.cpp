@@ -123,7 +123,7 @@ SceneView arranged(const SceneView& show, const Settings& settings) {
   simulation.scene.broad_phase = settings.broad_phase.value_or(simulation.scene.broad_phase);
   simulation.scene.contacts = settings.contacts.value_or(simulation.scene.contacts);
   // `PaperVertices` computes these, and only on request.
-  simulation.scene.colliding_vertices = false;
+  simulation.scene.comparison.colliding_vertices = false;
   simulation.time_step = settings.time_step.value_or(simulation.time_step);
   simulation.seed = settings.seed.value_or(simulation.seed);
   for (ViewedObject& object : arranged.objects) {

@@ -16,7 +16,7 @@ struct Settings {
   std::optional<std::uint32_t> objects{};  ///< number of objects
   std::optional<Integrator> integrator{};
   std::optional<BroadPhaseMethod> broad_phase{};
-  std::optional<ContactMode> contacts{};
+  std::optional<ContactKinds> contacts{};
   std::optional<double> time_step{};
   std::optional<std::uint64_t> seed{};
 };

@@ -72,7 +72,8 @@ class Elements {
            double separation) {
     int lowest = lowest_bit(separation);
     for (const auto* moment : {&start, &end}) {
-      for (const Vec3d& p : *moment) lowest = std::min({lowest, lowest_bit(p.x), lowest_bit(p.y), lowest_bit(p.z)});
+      for (const Vec3d& p : *moment)
+        lowest = std::min({lowest, lowest_bit(p.x), lowest_bit(p.y), lowest_bit(p.z)});
     }
     if (lowest == std::numeric_limits<int>::max()) lowest = 0;
     std::array<Path, 4> vertices;
@@ -107,9 +108,7 @@ class Elements {
 
  private:
   /// `x` is the vector from the corner.
-  void add_corner(const Path& x) {
-    parts_.push_back({{squared_separation_ - dot(x, x)}, {}});
-  }
+  void add_corner(const Path& x) { parts_.push_back({{squared_separation_ - dot(x, x)}, {}}); }
   void add_side(const Path& x, const Path& side) {
     const Polynomial along = dot(x, side), whole = dot(side, side);
     const Path moment = cross(x, side);
@@ -154,7 +153,8 @@ std::optional<TimeBracket> first_contact(const Elements& elements, bool separate
         return touches(part, [&](const Polynomial& q) { return root.sign_of(q); });
       };
       if (!std::ranges::any_of(parts, touches_at_root)) continue;
-      first = first ? TimeBracket{std::min(low, first->low), std::min(high, first->high)} : TimeBracket{low, high};
+      first = first ? TimeBracket{std::min(low, first->low), std::min(high, first->high)}
+                    : TimeBracket{low, high};
       return;
     }
   };

@@ -17,8 +17,9 @@ namespace supple {
 std::optional<TimeBracket> exact_first_contact(const VertexFaceMotion& motion);
 std::optional<TimeBracket> exact_first_contact(const EdgeEdgeMotion& motion);
 
-/// The first time at which two elements are at a distance of at most `separation` > 0. All numbers are finite.
-/// Takes tens to hundreds of microseconds, and some milliseconds where coordinates range from 1e-300 to 1e300.
+/// The first time at which two elements are at a distance of at most `separation` > 0. All numbers are
+/// finite. Takes tens to hundreds of microseconds, and some milliseconds where coordinates range from 1e-300
+/// to 1e300.
 std::optional<TimeBracket> exact_first_contact(const VertexFaceMotion& motion, double separation);
 std::optional<TimeBracket> exact_first_contact(const EdgeEdgeMotion& motion, double separation);
 

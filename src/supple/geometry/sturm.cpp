@@ -183,8 +183,7 @@ int Root::sign_of(const Polynomial& q) const {
   if (value_at(positive, low) > value_at(negative, high)) return 1;
   if (value_at(positive, high) < value_at(negative, low)) return -1;
   // Sylvester: the signs of q at the roots of p, added up, are the change of variations of this chain.
-  const auto chain =
-      signed_remainders(polynomial_, remainder(derivative(polynomial_) * q, polynomial_));
+  const auto chain = signed_remainders(polynomial_, remainder(derivative(polynomial_) * q, polynomial_));
   return variations(chain, low_) - variations(chain, high_);
 }
 

@@ -8,8 +8,8 @@
 
 namespace supple::sturm {
 
-using Integer = boost::multiprecision::number<boost::multiprecision::cpp_int_backend<>,
-                                              boost::multiprecision::et_off>;
+using Integer =
+    boost::multiprecision::number<boost::multiprecision::cpp_int_backend<>, boost::multiprecision::et_off>;
 
 /// c[0] + c[1] t + c[2] t² + … The last coefficient is not 0; the polynomial 0 has no coefficients.
 struct Polynomial : std::vector<Integer> {

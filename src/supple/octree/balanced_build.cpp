@@ -159,8 +159,8 @@ class BalancedBuilder {
   }
 
   /// Puts the points of the first `lower` of `count` children first and returns how many these are. Cuts
-  /// across the longest axis where the coordinate changes, as near to the wanted number as possible. Where too
-  /// many points have the same coordinate, these are cut in the order in which they are.
+  /// across the longest axis where the coordinate changes, as near to the wanted number as possible. Where
+  /// too many points have the same coordinate, these are cut in the order in which they are.
   std::uint32_t cut(const Range& range, std::uint32_t lower, std::uint32_t count) {
     const std::span<Point> points = points_of(range);
     PointBox box(points);
@@ -177,7 +177,8 @@ class BalancedBuilder {
     const auto is_allowed = [&](std::uint64_t n) { return n >= least && n <= most; };
     const auto error = [&](std::uint64_t n) { return n < wanted ? wanted - n : n - wanted; };
     for (std::size_t stride = 1 + points.size() / most_samples;; stride = 1) {
-      const float border = coordinate_at(points, axis, stride, static_cast<double>(wanted) / static_cast<double>(size));
+      const float border =
+          coordinate_at(points, axis, stride, static_cast<double>(wanted) / static_cast<double>(size));
       std::uint64_t less = 0, not_greater = 0;
       for (const Point& point : points) {
         less += point.at[axis] < border;
@@ -245,9 +246,9 @@ class BalancedBuilder {
     for (std::size_t i = 0; i < points.size(); ++i) points[next[leaf_cells_[i]]++] = leaf_points_[i];
   }
 
-  /// Sets coordinates in units of the longest side of the points' box, relative to a point among them, so that
-  /// floats can tell the points apart whatever their place and size. One point far away does not cost the
-  /// others their precision.
+  /// Sets coordinates in units of the longest side of the points' box, relative to a point among them, so
+  /// that floats can tell the points apart whatever their place and size. One point far away does not cost
+  /// the others their precision.
   void set_coordinates(const Range& range) {
     constexpr double inf = std::numeric_limits<double>::infinity();
     // Scaled down so that the difference of two coordinates cannot overflow.

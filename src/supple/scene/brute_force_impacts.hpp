@@ -43,7 +43,6 @@ BruteForceImpacts find_impacts_by_brute_force(const PlainMovingObject& a, const 
 /// Appends the differences between reported contacts and the truth, both in canonical order: contacts that
 /// are missed or added, and times that are later than the truth or more than `toi_tolerance` earlier.
 void compare_impacts(const ObjectPair& pair, std::span<const ContinuousContact> reported,
-                     std::span<const TouchingElements> truth,
-                     std::vector<ContinuousDifference>& differences);
+                     std::span<const TouchingElements> truth, std::vector<ContinuousDifference>& differences);
 
 }  // namespace supple

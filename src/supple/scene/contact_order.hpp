@@ -11,7 +11,7 @@ namespace supple {
 /// A contact on its way into the result; of which two objects is known elsewhere.
 struct FoundContact {
   std::uint32_t triangle_a = 0, triangle_b = 0;
-  std::uint32_t first_point = 0;  ///< of those of the worker that found it
+  std::uint32_t details = 0;  ///< index in the details of the worker that found it
   std::uint16_t worker = 0;
   IntersectionKind kind = IntersectionKind::segment;
   std::uint8_t point_count = 0;

@@ -12,27 +12,22 @@ namespace {
 std::vector<Triangle> user_triangles(const SceneObject& object) {
   const ObjectOctree& octree = object.octree();
   std::vector<Triangle> triangles(octree.triangles().size());
-  for (std::uint32_t t = 0; t < triangles.size(); ++t) {
-    Triangle& triangle = triangles[octree.triangle_ids()[t]] = octree.triangles()[t];
-    if (octree.vertex_ids().empty()) continue;
-    for (std::uint32_t& vertex : triangle) vertex = octree.vertex_ids()[vertex];
-  }
+  for (std::uint32_t t = 0; t < triangles.size(); ++t) triangles[t] = octree.user_triangle(t);
   return triangles;
 }
 
 PlainObject plain_object(const SceneObject& object) {
   PlainObject plain{{}, user_triangles(object)};
-  const ObjectOctree& octree = object.octree();
-  for (std::uint32_t vertex = 0; vertex < octree.vertex_count(); ++vertex)
-    plain.positions.push_back(object.position(octree.octree_vertex(vertex)));
+  for (std::uint32_t vertex = 0; vertex < object.octree().vertex_count(); ++vertex)
+    plain.positions.push_back(object.placement().position(vertex));
   return plain;
 }
 
 PlainMovingObject plain_moving_object(const SceneObject& object) {
   PlainMovingObject plain{{}, {}, user_triangles(object)};
-  for (const std::uint32_t vertex : object.octree().vertex_order()) {
-    plain.start.push_back(object.start()[vertex]);
-    plain.end.push_back(object.end()[vertex]);
+  for (std::uint32_t vertex = 0; vertex < object.octree().vertex_count(); ++vertex) {
+    plain.start.push_back(object.placement().start_position(vertex));
+    plain.end.push_back(object.placement().position(vertex));
   }
   return plain;
 }
@@ -83,7 +78,7 @@ void Scene::Implementation::verify_impacts(const ObjectPair& pair, const Contact
   const PlainMovingObject a = plain_moving_object(*slots_[pair.a.index].object);
   const PlainMovingObject b = same_object ? a : plain_moving_object(*slots_[pair.b.index].object);
   const BruteForceImpacts truth =
-      find_impacts_by_brute_force(a, b, same_object, options.impact.min_separation, parallel);
+      find_impacts_by_brute_force(a, b, same_object, question_.impact.min_separation, parallel);
   report.element_pairs_checked += truth.pairs_checked;
   report.touching_element_pairs += truth.touching.size();
   const auto reported =
@@ -93,18 +88,21 @@ void Scene::Implementation::verify_impacts(const ObjectPair& pair, const Contact
 
 VerifyReport Scene::Implementation::verify() const {
   if (!detected_) fail("verify: nothing was detected at the present positions; call detect first");
-  if (options.contacts == ContactMode::none)
-    fail("verify: the scene has contacts switched off; there is nothing to compare");
+  if (result.truncated) fail("verify: the last detect left contacts out; ask for more by max_contacts");
+  if (question_.contacts == ContactKinds::none)
+    fail("verify: the last detect was asked for no contacts; there is nothing to compare");
   VerifyReport report;
-  auto next = result.groups.begin();
+  auto contacts = result.groups.begin();
+  auto impacts = result.continuous_groups.begin();
+  const auto next_of = [](auto& next, const auto& groups, const ObjectPair& pair) {
+    const bool reported = next != groups.end() && next->a == pair.a && next->b == pair.b;
+    return reported ? &*next++ : nullptr;
+  };
   for (const ObjectPair& pair : pairs_to_verify()) {
-    const bool reported = next != result.groups.end() && next->a == pair.a && next->b == pair.b;
-    const ContactGroup* const group = reported ? &*next++ : nullptr;
-    if (is_continuous()) {
-      verify_impacts(pair, group, report);
-    } else {
-      verify_contacts(pair, group, report);
-    }
+    const ContactGroup* const of_contacts = next_of(contacts, result.groups, pair);
+    const ContactGroup* const of_impacts = next_of(impacts, result.continuous_groups, pair);
+    if (question_.has_intersections()) verify_contacts(pair, of_contacts, report);
+    if (question_.is_continuous()) verify_impacts(pair, of_impacts, report);
   }
   return report;
 }

@@ -30,7 +30,7 @@ struct Step {
     for (Vec3d& p : b.start) p.y += 0.4;
     for (Vec3d& p : b.end) p.y -= 0.3;
     SceneOptions options;
-    options.contacts = ContactMode::continuous;
+    options.contacts = ContactKinds::continuous;
     options.impact.min_separation = separation;
     Scene scene(options);
     for (const PlainMovingObject* object : {&a, &b}) {
