@@ -84,13 +84,13 @@ class RecordedFrames : public viewer::Frames {
       places.emplace(object.id, static_cast<std::uint32_t>(places.size()));
     // As frames name them, so that a page plots both alike.
     series_.names.emplace_back("time");
-    for (const viewer::Statistic& statistic : viewer::statistics) series_.names.emplace_back(statistic.name);
+    viewer::for_each_statistic({}, [&](const char* name, double) { series_.names.emplace_back(name); });
     Progress progress(count(), true);
     for (std::uint64_t number = 0; number < count(); ++number) {
       const RecordedFrame frame = recording_->summary(number);
       series_.values.push_back(frame.time);
-      for (const viewer::Statistic& statistic : viewer::statistics)
-        series_.values.push_back(viewer::value_of(statistic, frame.stats));
+      viewer::for_each_statistic(frame.stats,
+                                 [&](const char*, double value) { series_.values.push_back(value); });
       const auto add = [&](const std::vector<ObjectPair>& pairs, std::vector<viewer::Series::Event>& events) {
         for (const ObjectPair& pair : pairs)
           events.push_back({static_cast<std::uint32_t>(number), places.at(pair.a), places.at(pair.b)});

@@ -56,10 +56,7 @@ struct Adder {
 
 ObjectOptions options_of(const InputObject& object, const MethodOptions& options) {
   ObjectOptions chosen = object.options;
-  chosen.self_collision = chosen.self_collision || options.self;
-  chosen.octree.max_level = options.max_level.value_or(chosen.octree.max_level);
-  chosen.octree.leaf_size = options.leaf_size.value_or(chosen.octree.leaf_size);
-  chosen.octree.arity = options.tree_arity.value_or(chosen.octree.arity);
+  options.given_objects.apply_to(chosen);
   return chosen;
 }
 

@@ -5,6 +5,8 @@
 #include <string>
 
 #include "continuous_json.hpp"
+#include "session/described_json.hpp"
+#include "supple/result_descriptions.hpp"
 #include "supple/version.hpp"
 
 namespace supple::cli {
@@ -14,12 +16,6 @@ namespace {
 std::string name_of(Feature feature) {
   if (feature.kind == FeatureKind::face) return "f";
   return fmt::format("{}{}", feature.kind == FeatureKind::vertex ? 'v' : 'e', feature.index);
-}
-
-const char* name_of(IntersectionKind kind) {
-  return kind == IntersectionKind::point     ? "point"
-         : kind == IntersectionKind::segment ? "segment"
-                                             : "polygon";
 }
 
 void write_object_pairs(JsonWriter& json, const char* name, std::span<const ObjectPair> pairs) {
@@ -70,7 +66,7 @@ void write_contacts(JsonWriter& json, const DetectResult& result, bool with_poin
     json.member("b", std::uint64_t{contact.object_b.index});
     json.key("triangles");
     json.pair(contact.triangle_a, contact.triangle_b);
-    json.member("kind", name_of(contact.kind));
+    json.member("kind", word_of(contact.kind));
     if (with_points) write_points(json, result.points_of(contact));
     json.end_object();
   }
@@ -100,30 +96,10 @@ void write_non_finite(JsonWriter& json, std::span<const NonFiniteVertex> vertice
 }
 
 void write_stats(JsonWriter& json, const Frame& frame) {
-  const StepStats& stats = frame.result.stats;
   json.key("stats");
   json.begin_object();
   if (frame.simulated) json.member("motion_seconds", frame.simulated->motion_seconds);
-  json.member("refit_seconds", stats.refit_seconds);
-  json.member("broad_phase_seconds", stats.broad_phase_seconds);
-  json.member("rebuild_seconds", stats.rebuild_seconds);
-  json.member("traversal_seconds", stats.traversal_seconds);
-  json.member("exact_seconds", stats.exact_seconds);
-  json.member("sort_and_events_seconds", stats.sort_and_events_seconds);
-  json.member("total_seconds", stats.total_seconds);
-  json.member("objects_refitted", stats.objects_refitted);
-  json.member("triangles_refitted", stats.triangles_refitted);
-  json.member("subtrees_rebuilt", stats.subtrees_rebuilt);
-  json.member("triangles_rebuilt", stats.triangles_rebuilt);
-  json.member("object_pairs_tested", stats.object_pairs_tested);
-  json.member("object_pairs", stats.object_pairs);
-  json.member("node_pairs_visited", stats.node_pairs_visited);
-  json.member("boxes_tested", stats.boxes_tested);
-  json.member("candidate_pairs", stats.candidate_pairs);
-  json.member("vertex_face_candidates", stats.vertex_face_candidates);
-  json.member("edge_edge_candidates", stats.edge_edge_candidates);
-  json.member("exact_fallbacks", stats.exact_fallbacks);
-  json.member("contacts", stats.contacts);
+  viewer::write_members(json, frame.result.stats);
   json.end_object();
 }
 

@@ -3,18 +3,20 @@
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
-#include <array>
 #include <limits>
-#include <map>
 #include <optional>
 #include <string>
-#include <utility>
+#include <string_view>
+#include <type_traits>
 #include <vector>
 
 #include "documents.hpp"
 #include "exit_status.hpp"
 #include "experiments/experiment_options.hpp"
 #include "option_kinds.hpp"
+#include "recorded_input.hpp"
+#include "supple/recording.hpp"
+#include "supple/simulation_descriptions.hpp"
 #include "supple/version.hpp"
 #include "text.hpp"
 
@@ -130,37 +132,32 @@ A query is eight rows: the vertices v, f0, f1, f2 of a vertex and a face, or a0,
 of the step, and the same at its end. A row is numerator,denominator of x, y and z, whole numbers of any size, and
 perhaps the answer, 0 or 1, the same in all eight. Each coordinate must be exactly a double.)";
 
-std::array<CLI::Option*, 2> add_octree_options(CLI::App& app, std::optional<std::uint32_t>& max_level,
-                                               std::optional<std::uint32_t>& leaf_size) {
-  const ObjectOctreeOptions defaults;
-  return {
-      add_number(app, "--max-level", max_level, 0, 32,
-                 fmt::format("Deepest level of an object's octree (default: {})", defaults.max_level)),
-      add_number(app, "--leaf-size", leaf_size, 1, 1'000'000'000,
-                 fmt::format("Triangles up to which a node is not split (default: {})", defaults.leaf_size))};
+/// The octree of each object, and `--self` where objects are tested.
+void add_object_options(CLI::App& app, viewer::Overrides<ObjectOptions>& objects, bool are_tested) {
+  objects.for_each_setter([&]<class Struct, class Value>(const Field<Struct, Value>& field,
+                                                         const Value& default_value, auto set) {
+    if constexpr (std::is_same_v<Struct, ObjectOctreeOptions>) {
+      add_field(app, field, default_value, set)->group(are_tested ? "Method" : "Options");
+    } else if constexpr (std::is_same_v<Value, bool>) {
+      if (are_tested && std::string_view(field.key) == "self")
+        add_field(app, field, default_value, set)->group("Detection");
+    }
+  });
 }
 
-std::array<CLI::Option*, 2> add_impact_options(CLI::App& app, ImpactOptions& impact) {
-  return {add_length(app, "--min-separation", impact.min_separation,
-                     "Continuous contacts begin when elements come this close, in the unit of the "
-                     "coordinates (default: 0)"),
-          add_choice<bool>(app, "--undecided", impact.exact, {{"exact", true}, {"report", false}},
-                           "Continuous contacts that floating point cannot tell: decided by exact "
-                           "arithmetic, or reported as within tolerance")};
+void add_impact_options(CLI::App& app, ImpactOptions& impact) {
+  for_each_leaf(
+      [&](const auto& field, auto& value) {
+        add_field(app, field, value, [&value](const auto& given) { value = given; });
+      },
+      impact);
 }
 
 void add_kind(CLI::App& app, std::optional<QueryKind>& kind) {
-  const std::map<std::string, QueryKind> kinds{{"vertex-face", QueryKind::vertex_face},
-                                               {"edge-edge", QueryKind::edge_edge}};
-  const auto parse = [&kind, kinds](const std::string& given) {
-    const auto found = kinds.find(given);
-    if (found == kinds.end())
-      throw CLI::ValidationError("--kind", fmt::format("'{}' is not one of vertex-face, edge-edge", given));
-    kind = found->second;
-  };
-  app.add_option_function<std::string>("--kind", parse,
-                                       "What the queries are about (default: told by the paths)")
-      ->type_name("vertex-face|edge-edge");
+  add_words(
+      app, "--kind", {words<QueryKind>.begin(), words<QueryKind>.end()},
+      [&kind](std::size_t place) { kind = static_cast<QueryKind>(place); },
+      "What the queries are about (default: by the names of folders and files)");
 }
 
 /// Meshes, a scene file, a recording, or frames.
@@ -175,83 +172,65 @@ void add_input_options(CLI::App& app, std::vector<std::string>& inputs, bool& se
       ->group("Input");
 }
 
-CLI::Option* group_of_detection(CLI::Option* option) {
-  return option->group("Detection");
+bool is_continuous(const SceneOptions& scene) {
+  return scene.contacts == ContactMode::continuous;
+}
+bool has_spheres(const SceneOptions& scene) {
+  return scene.bounding_volume == BoundingVolume::sphere;
+}
+bool has_scene_octree(const SceneOptions& scene) {
+  return scene.broad_phase == BroadPhaseMethod::octree;
 }
 
-void add_stage_options(CLI::App& app, MethodOptions& options, Dependences& dependences) {
-  SceneOptions& scene = options.scene;
-  group_of_detection(add_choice<ContactMode>(
-      app, "--contacts", scene.contacts,
-      {{"intersection", ContactMode::intersection},
-       {"continuous", ContactMode::continuous},
-       {"none", ContactMode::none}},
-      "Exact stage: every intersecting pair of triangles; every vertex and face and every two "
-      "edges that touch between a frame and the next, and when; or object pairs only"));
-  group_of_detection(app.add_flag("--self", options.self, "Also test every object against itself"));
-  for (CLI::Option* option : add_impact_options(app, scene.impact))
-    dependences.push_back({group_of_detection(option),
-                           [&] { return scene.contacts == ContactMode::continuous; },
-                           "--contacts continuous"});
-  group_of_detection(
-      add_number(app, "--threads", scene.threads, 0, 1024, "Worker threads, 0 for one a core (default: 0)"));
+/// What an option of the scene needs to have an effect.
+struct Need {
+  const char* key;
+  bool (*is_met)(const SceneOptions& scene);
+  const char* text;
+};
+constexpr Need needs_of_options[] = {
+    {"sphere_fit", has_spheres, "--bounding-volume sphere"},
+    {"region_test", [](const SceneOptions& scene) { return has_spheres(scene) && has_scene_octree(scene); },
+     "--bounding-volume sphere and --broad-phase octree"},
+    {"scene_octree_max_level", has_scene_octree, "--broad-phase octree"},
+    {"scene_octree_expand_at", has_scene_octree, "--broad-phase octree"},
+    {"scene_octree_arity", has_scene_octree, "--broad-phase octree"},
+    {"always_regions", has_scene_octree, "--broad-phase octree"},
+    {"min_separation", is_continuous, "--contacts continuous"},
+    {"undecided", is_continuous, "--contacts continuous"},
+    {"contact_points", [](const SceneOptions& scene) { return !is_continuous(scene); },
+     "--contacts intersection"},
+    {"colliding_vertices", [](const SceneOptions& scene) { return !is_continuous(scene); },
+     "--contacts intersection or none"},
+};
+
+/// Every option of the detection.
+void add_detection_options(CLI::App& app, MethodOptions& options, Dependences& dependences) {
+  options.given_scene.for_each_setter([&]<class Struct, class Value>(const Field<Struct, Value>& field,
+                                                                     const Value& default_value, auto set) {
+    const bool is_method = std::is_same_v<Struct, SceneOctreeOptions> ||
+                           std::is_same_v<Value, BoundingVolume> || std::is_same_v<Value, SphereFit> ||
+                           std::is_same_v<Value, BroadPhaseMethod>;
+    CLI::Option* const option =
+        add_field(app, field, default_value, set)->group(is_method ? "Method" : "Detection");
+    for (const Need& need : needs_of_options) {
+      if (std::string_view(field.key) == need.key)
+        dependences.push_back({option, [&options, need] { return need.is_met(options.scene); }, need.text});
+    }
+  });
+  add_object_options(app, options.given_objects, true);
 }
 
-/// What reports of contacts have, and how they are checked.
 void add_report_options(CLI::App& app, DetectionOptions& options, Dependences& dependences) {
-  SceneOptions& scene = options.scene;
-  dependences.push_back({group_of_detection(app.add_flag_callback(
-                             "--no-contact-points", [&] { scene.contact_points = false; },
-                             "Leave out the points of each contact")),
-                         [&] { return scene.contacts != ContactMode::continuous; },
-                         "--contacts intersection"});
-  dependences.push_back({group_of_detection(app.add_flag("--fail-on-contact", options.fail_on_contact,
-                                                         "Exit with status 1 when anything touches")),
-                         [&] { return scene.contacts != ContactMode::none; },
-                         "--contacts intersection or continuous"});
-  dependences.push_back(
-      {group_of_detection(app.add_flag("--verify", options.verify,
-                                       "Check each frame against exact brute force over all pairs of "
-                                       "triangles, or of elements; differences exit with status 3")),
-       [&] { return scene.contacts != ContactMode::none; }, "--contacts intersection or continuous"});
-}
-
-void add_method_options(CLI::App& app, MethodOptions& options, Dependences& dependences) {
-  SceneOptions& scene = options.scene;
-  const auto group = [](CLI::Option* option) { return option->group("Method"); };
-  const auto with_spheres = [&] { return scene.bounding_volume == BoundingVolume::sphere; };
-  group(add_choice<BoundingVolume>(app, "--bounding-volume", scene.bounding_volume,
-                                   {{"aabb", BoundingVolume::aabb}, {"sphere", BoundingVolume::sphere}},
-                                   "Shape that encloses objects and the nodes of their octrees"));
-  dependences.push_back(
-      {group(add_choice<SphereFit>(
-           app, "--sphere-fit", scene.sphere_fit,
-           {{"vertices", SphereFit::vertices}, {"box", SphereFit::box}},
-           "Spheres about the vertices, or as the paper's eq. 3 and 4, which miss contacts")),
-       with_spheres, "--bounding-volume sphere"});
-  group(add_choice<BroadPhaseMethod>(app, "--broad-phase", scene.broad_phase,
-                                     {{"octree", BroadPhaseMethod::octree},
-                                      {"sweep", BroadPhaseMethod::sweep},
-                                      {"brute", BroadPhaseMethod::brute}},
-                                     "How object pairs are found; all find the same"));
-  dependences.push_back(
-      {group(add_choice<RegionSphereTest>(
-           app, "--region-test", scene.scene_octree.region_sphere_test,
-           {{"arvo", RegionSphereTest::arvo}, {"grown-box", RegionSphereTest::grown_box}},
-           "Region of the scene octree against a sphere: Arvo's test or the paper's")),
-       [&, with_spheres] { return with_spheres() && scene.broad_phase == BroadPhaseMethod::octree; },
-       "--bounding-volume sphere and --broad-phase octree"});
-  for (CLI::Option* option : add_octree_options(app, options.max_level, options.leaf_size)) group(option);
-  const auto parse_arity = [&options](const std::string& given) {
-    if (given != "2" && given != "4" && given != "8")
-      throw CLI::ValidationError("--tree-arity", fmt::format("'{}' is not one of 8, 4, 2", given));
-    options.scene.scene_octree.arity = static_cast<std::uint32_t>(given.front() - '0');
-    options.tree_arity = options.scene.scene_octree.arity;
+  const auto add = [&](const char* name, bool& value, const char* description) {
+    dependences.push_back({app.add_flag(name, value, description)->group("Detection"),
+                           [&options] { return options.scene.contacts != ContactMode::none; },
+                           "--contacts intersection or continuous"});
   };
-  group(app.add_option_function<std::string>(
-               "--tree-arity", parse_arity,
-               "Children of a node, in the trees of objects and of the scene (default: 8)")
-            ->type_name("8|4|2"));
+  add("--fail-on-contact", options.fail_on_contact, "Exit with status 1 when anything touches");
+  add("--verify", options.verify,
+      "Check each frame against exact brute force over all pairs of triangles, or of elements; differences "
+      "exit with status 3");
 }
 
 void add_output_options(CLI::App& app, DetectionOptions& options, Dependences& dependences) {
@@ -285,20 +264,24 @@ CLI::App* add_detect(CLI::App& program, DetectOptions& options, Dependences& dep
              "Frames of a scene file to go through, or steps from frame to frame of continuous contacts "
              "(default: 1)")
       ->group("Input");
-  add_stage_options(*app, options, dependences);
+  add_detection_options(*app, options, dependences);
   add_report_options(*app, options, dependences);
-  add_method_options(*app, options, dependences);
   add_output_options(*app, options, dependences);
   return app;
 }
 
+/// What is given instead of the scene file's.
 void add_scene_overrides(CLI::App& app, std::optional<std::uint64_t>& seed,
                          std::optional<double>& time_step) {
-  add_seconds(app, "--time-step", time_step, "H", "Seconds of a step, instead of the scene's")
-      ->group("Simulation");
-  add_number(app, "--seed", seed, 0, std::numeric_limits<std::uint32_t>::max(),
-             "Chooses what is random, instead of the scene's")
-      ->group("Simulation");
+  for_each_field<SimulationOptions>([&]<class Value>(const Field<SimulationOptions, Value>& field) {
+    const auto add = [&](auto& given) {
+      add_field(app, field, Value{}, [&given](const Value& value) { given = value; })
+          ->group("Simulation")
+          ->description(std::string(field.doc) + "; instead of the scene file's");
+    };
+    if constexpr (std::is_same_v<Value, double>) add(time_step);
+    if constexpr (std::is_same_v<Value, std::uint64_t>) add(seed);
+  });
 }
 
 void add_simulation_options(CLI::App& app, SimulateOptions& options) {
@@ -306,7 +289,9 @@ void add_simulation_options(CLI::App& app, SimulateOptions& options) {
   const auto group = [](CLI::Option* option) { return option->group("Simulation"); };
   CLI::Option* const steps = group(add_number(app, "--steps", options.steps, 1, 1'000'000'000,
                                               "Steps to take (default: 300, without --seconds)"));
-  group(add_seconds(app, "--seconds", options.seconds, "S", "Simulated time, instead of steps"))
+  group(add_real(
+            app, "--seconds", Range::above(0), "s", [&](double seconds) { options.seconds = seconds; },
+            "Simulated time, instead of steps"))
       ->excludes(steps);
   add_scene_overrides(app, options.seed, options.time_step);
 }
@@ -316,9 +301,8 @@ CLI::App* add_simulate(CLI::App& program, SimulateOptions& options, Dependences&
       "simulate", "Let the objects of a scene move by themselves, and find every contact on the way");
   app->footer(simulate_footer);
   add_simulation_options(*app, options);
-  add_stage_options(*app, options, dependences);
+  add_detection_options(*app, options, dependences);
   add_report_options(*app, options, dependences);
-  add_method_options(*app, options, dependences);
   app->add_option("--record", options.record,
                   "Write positions, contacts, events and statistics of each frame as HDF5, and an XDMF file "
                   "beside it that ParaView opens")
@@ -334,14 +318,15 @@ CLI::App* add_view(CLI::App& program, ViewOptions& options, Dependences& depende
   app->footer(view_footer);
   add_input_options(*app, options.inputs, options.sequence);
   add_scene_overrides(*app, options.seed, options.time_step);
-  add_stage_options(*app, options, dependences);
-  add_method_options(*app, options, dependences);
+  add_detection_options(*app, options, dependences);
 
   const auto group = [](CLI::Option* option) { return option->group("Page"); };
   const auto is_served = [&] { return options.page_file.empty(); };
   const char* const no_export = "a page that is served, not written by --export";
-  dependences.push_back({group(add_number(*app, "--port", options.port, 0, 65535,
-                                          "Where to listen, 0 for any port that is free (default: 0)")),
+  dependences.push_back({group(add_whole(
+                             *app, "--port", Range::from(0, 65535),
+                             [&](std::uint64_t port) { options.port = static_cast<std::uint16_t>(port); },
+                             "Where to listen, 0 for any port that is free (default: 0)")),
                          is_served, no_export});
   dependences.push_back(
       {group(app->add_option("--host", options.address,
@@ -364,7 +349,7 @@ CLI::App* add_info(CLI::App& program, InfoOptions& options) {
   CLI::App* app = program.add_subcommand("info", "Say what meshes are like, and the octrees built from them");
   app->footer(info_footer);
   app->add_option("MESH|SCENE.toml", options.inputs, "Meshes, or one scene file")->required()->type_name("");
-  add_octree_options(*app, options.max_level, options.leaf_size);
+  add_object_options(*app, options.given_objects, false);
   add_file(*app, "--json", options.json, "Write the same as JSON; - is standard output");
   return app;
 }
@@ -407,10 +392,18 @@ void add_diff(CLI::App& program, DiffOptions& options) {
       ->required()
       ->expected(2)
       ->type_name("");
-  add_length(*app, "--tolerance", options.tolerance,
-             "Coordinates may differ by so much, in their unit (default: 0, the same bits)");
+  add_real(
+      *app, "--tolerance", Range::from(0), "length", [&](double tolerance) { options.tolerance = tolerance; },
+      "Coordinates may differ by so much, in their unit (default: 0, the same bits)");
   add_file(*app, "--json", options.json, "Write the same as JSON; - is standard output");
   app->add_flag("--quiet", options.quiet, "Only the exit status");
+}
+
+/// The options of the detection: those of a recording, or the defaults, with those given in their place.
+void resolve(MethodOptions& options, const std::vector<std::string>& inputs) {
+  if (!inputs.empty() && is_recording(inputs.front()))
+    options.scene = Recording(inputs.front()).header().scene;
+  options.given_scene.apply_to(options.scene);
 }
 
 void check_outputs(const DetectionOptions& options) {
@@ -452,6 +445,9 @@ CommandLine parse_command_line(int argument_count, const char* const* arguments)
       return result;
     }
     if (program.get_subcommands().empty()) throw CLI::RequiredError::Subcommand(1);
+    resolve(result.detect, result.detect.inputs);
+    resolve(result.simulate, {});
+    resolve(result.view, result.view.inputs);
     check(dependences);
     check_outputs(result.detect);
     check_outputs(result.simulate);

@@ -4,34 +4,22 @@
 
 #include <algorithm>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
+#include "supple/result_descriptions.hpp"
 #include "text.hpp"
 
 namespace supple::cli {
 namespace {
 
 void add_to(StepStats& sum, const StepStats& stats) {
-  sum.refit_seconds += stats.refit_seconds;
-  sum.broad_phase_seconds += stats.broad_phase_seconds;
-  sum.rebuild_seconds += stats.rebuild_seconds;
-  sum.traversal_seconds += stats.traversal_seconds;
-  sum.exact_seconds += stats.exact_seconds;
-  sum.sort_and_events_seconds += stats.sort_and_events_seconds;
-  sum.total_seconds += stats.total_seconds;
-  sum.triangles_refitted += stats.triangles_refitted;
-  sum.subtrees_rebuilt += stats.subtrees_rebuilt;
-  sum.triangles_rebuilt += stats.triangles_rebuilt;
-  sum.object_pairs_tested += stats.object_pairs_tested;
-  sum.object_pairs += stats.object_pairs;
-  sum.node_pairs_visited += stats.node_pairs_visited;
-  sum.boxes_tested += stats.boxes_tested;
-  sum.candidate_pairs += stats.candidate_pairs;
-  sum.vertex_face_candidates += stats.vertex_face_candidates;
-  sum.edge_edge_candidates += stats.edge_edge_candidates;
-  sum.exact_fallbacks += stats.exact_fallbacks;
-  sum.contacts += stats.contacts;
+  for_each_leaf(
+      [](const auto&, auto& total, const auto& value) {
+        if constexpr (std::is_arithmetic_v<std::remove_cvref_t<decltype(value)>>) total += value;
+      },
+      sum, stats);
 }
 
 }  // namespace

@@ -161,11 +161,11 @@ void FramePacker::add_pairs(Tag tag, const ObjectPairs& pairs) {
 }
 
 void FramePacker::add_statistics(const FrameView& frame) {
-  const StepStats& stats = frame.source.scene().result().stats;
-  const auto values = message_->add<double>(Tag::statistics, 1 + std::size(statistics));
+  const auto values = message_->add<double>(Tag::statistics, 1 + statistic_count);
   values[0] = frame.source.motion_seconds();
-  std::transform(std::begin(statistics), std::end(statistics), values.begin() + 1,
-                 [&](const Statistic& statistic) { return value_of(statistic, stats); });
+  std::size_t place = 0;
+  for_each_statistic(frame.source.scene().result().stats,
+                     [&](const char*, double value) { values[++place] = value; });
 }
 
 void FramePacker::add_candidates(const FrameView& frame) {
