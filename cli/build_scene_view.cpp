@@ -10,7 +10,6 @@
 #include <string>
 #include <utility>
 
-#include "build_simulation.hpp"
 #include "frame_files.hpp"
 #include "progress.hpp"
 #include "session/statistics.hpp"
@@ -128,8 +127,8 @@ std::shared_ptr<const viewer::Frames> frames_of(const Input& input, const ViewOp
   return std::make_shared<const FileFrames>(input);
 }
 
-viewer::ViewedObject object_of(const InputObject& object, const ViewOptions& options) {
-  viewer::ViewedObject shown{object.mesh, options_of(object, options), {}};
+viewer::ViewedObject object_of(const InputObject& object) {
+  viewer::ViewedObject shown{object.mesh, object.options, {}};
   if (const auto* motion = motion_of<WaveMotion>(object)) shown.motion = *motion;
   if (const auto* motion = motion_of<MassSpringMotion>(object)) shown.motion = *motion;
   return shown;
@@ -146,8 +145,7 @@ viewer::SceneView build_scene_view(const Input& input, const ViewOptions& option
   viewer::SceneView show;
   show.title = title_of(options.inputs);
   show.simulation = input.simulation;
-  show.simulation.scene = options.scene;
-  for (const InputObject& object : input.objects) show.objects.push_back(object_of(object, options));
+  for (const InputObject& object : input.objects) show.objects.push_back(object_of(object));
   show.frames = frames_of(input, options);
   return show;
 }

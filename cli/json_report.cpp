@@ -3,9 +3,14 @@
 #include <fmt/core.h>
 
 #include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
 
 #include "continuous_json.hpp"
 #include "session/described_json.hpp"
+#include "supple/option_descriptions.hpp"
 #include "supple/result_descriptions.hpp"
 #include "supple/version.hpp"
 
@@ -16,6 +21,32 @@ namespace {
 std::string name_of(Feature feature) {
   if (feature.kind == FeatureKind::face) return "f";
   return fmt::format("{}{}", feature.kind == FeatureKind::vertex ? 'v' : 'e', feature.index);
+}
+
+/// All but those of the machine.
+template <class Options>
+void write_options(JsonWriter& json, const Options& options) {
+  json.key("options");
+  json.begin_object();
+  for_each_leaf(
+      [&](const auto& field, const auto& value) {
+        if (field.is_of_machine || std::string_view(field.key) == "name") return;
+        json.key(field.key);
+        viewer::write_value(json, field, value);
+      },
+      options);
+  json.end_object();
+}
+
+void write_faces(JsonWriter& json, const std::vector<Triangle>& triangles) {
+  json.key("faces");
+  json.begin_array();
+  for (const Triangle& triangle : triangles) {
+    json.begin_array();
+    for (const std::uint32_t vertex : triangle) json.value(vertex);
+    json.end_array();
+  }
+  json.end_array();
 }
 
 void write_object_pairs(JsonWriter& json, const char* name, std::span<const ObjectPair> pairs) {
@@ -73,6 +104,27 @@ void write_contacts(JsonWriter& json, const DetectResult& result, bool with_poin
   json.end_array();
 }
 
+/// The paper's output: vertices in the leaves that collide.
+void write_colliding_vertices(JsonWriter& json, const DetectResult& result) {
+  json.key("colliding_vertices");
+  json.begin_array();
+  for (const CollidingVertices& group : result.colliding_vertex_groups) {
+    const auto write = [&](const char* name, std::size_t first, std::size_t count) {
+      json.key(name);
+      json.begin_array();
+      for (const std::uint32_t vertex : result.colliding_vertices.subspan(first, count)) json.value(vertex);
+      json.end_array();
+    };
+    json.begin_object();
+    json.member("a", std::uint64_t{group.a.index});
+    json.member("b", std::uint64_t{group.b.index});
+    write("vertices_a", group.first_vertex, group.count_a);
+    write("vertices_b", group.first_vertex + group.count_a, group.count_b);
+    json.end_object();
+  }
+  json.end_array();
+}
+
 /// `stay` follows from the frames before, and would repeat every lasting pair in every frame.
 void write_events(JsonWriter& json, const char* name, const PairEvents& events) {
   json.key(name);
@@ -125,17 +177,22 @@ void write_verify(JsonWriter& json, const VerifyReport& report) {
 
 }  // namespace
 
-JsonReport::JsonReport(const std::string& file_name, const Scene& scene, const JsonContent& content)
-    : json_(file_name), options_(scene.options()), content_(content) {
+JsonReport::JsonReport(const std::string& file_name, const Input& input, const Scene& scene,
+                       const JsonContent& content)
+    : json_(file_name), input_(input), content_(content) {
   json_.begin_object();
   json_.member("supple", std::string(SUPPLE_VERSION));
+  if (content_.stats) write_options(json_, input_.simulation.scene);
   json_.key("objects");
   json_.begin_array();
-  for (const ObjectId object : scene.objects()) {
+  const std::vector<ObjectId> objects = scene.objects();
+  for (std::size_t i = 0; i < objects.size(); ++i) {
     json_.begin_object();
-    json_.member("name", scene.name(object));
-    json_.member("vertices", std::uint64_t{scene.vertex_count(object)});
-    json_.member("triangles", std::uint64_t{scene.triangle_count(object)});
+    json_.member("name", scene.name(objects[i]));
+    json_.member("vertices", std::uint64_t{scene.vertex_count(objects[i])});
+    json_.member("triangles", std::uint64_t{scene.triangle_count(objects[i])});
+    if (content_.stats) write_options(json_, input_.objects[i].options);
+    if (content_.faces) write_faces(json_, input_.objects[i].mesh.triangles);
     json_.end_object();
   }
   json_.end_array();
@@ -143,20 +200,42 @@ JsonReport::JsonReport(const std::string& file_name, const Scene& scene, const J
   json_.begin_array();
 }
 
+/// The files that a frame is from.
+void JsonReport::add_files(std::uint64_t frame) {
+  bool is_first = true;
+  for (std::size_t i = 0; i < input_.objects.size(); ++i) {
+    const auto& motion = input_.objects[i].motion;
+    const auto* const sequence = motion ? std::get_if<FrameSequence>(&*motion) : nullptr;
+    if (!sequence) continue;
+    if (std::exchange(is_first, false)) {
+      json_.key("files");
+      json_.begin_array();
+    }
+    json_.begin_object();
+    json_.member("object", std::uint64_t{i});
+    json_.member("file", sequence->file_at(frame).string());
+    json_.end_object();
+  }
+  if (!is_first) json_.end_array();
+}
+
 void JsonReport::add(const Frame& frame) {
   const DetectResult& result = frame.result;
+  const SceneOptions& options = input_.simulation.scene;
   json_.begin_object();
   json_.member("frame", frame.number);
   if (frame.simulated) json_.member("time", frame.simulated->time);
+  add_files(frame.number);
   write_object_pairs(json_, "object_pairs", result.object_pairs);
-  if (options_.contacts == ContactMode::continuous) {
-    write_continuous_groups(json_, result, !options_.impact.exact);
+  if (options.contacts == ContactMode::continuous) {
+    write_continuous_groups(json_, result, !options.impact.exact);
     if (content_.contact_details) write_continuous_contacts(json_, result);
   } else {
     write_groups(json_, "triangle_pairs", result, false);
     write_groups(json_, "self", result, true);
-    write_contacts(json_, result, options_.contact_points);
+    if (content_.contact_details) write_contacts(json_, result, options.contact_points);
   }
+  if (options.colliding_vertices) write_colliding_vertices(json_, result);
   json_.key("events");
   json_.begin_object();
   write_events(json_, "volumes", result.volume_events);
@@ -164,7 +243,7 @@ void JsonReport::add(const Frame& frame) {
   json_.end_object();
   write_non_finite(json_, result.non_finite_vertices);
   if (frame.verify) {
-    if (options_.contacts == ContactMode::continuous)
+    if (options.contacts == ContactMode::continuous)
       write_continuous_verify(json_, *frame.verify);
     else
       write_verify(json_, *frame.verify);

@@ -15,6 +15,7 @@
 #include "experiments/experiment_options.hpp"
 #include "option_kinds.hpp"
 #include "recorded_input.hpp"
+#include "session/settings.hpp"
 #include "supple/recording.hpp"
 #include "supple/simulation_descriptions.hpp"
 #include "supple/version.hpp"
@@ -153,6 +154,10 @@ void add_impact_options(CLI::App& app, ImpactOptions& impact) {
       impact);
 }
 
+CLI::Option* add_frames(CLI::App& app, std::optional<std::uint64_t>& frames, const char* description) {
+  return add_number(app, "--frames,--steps", frames, 1, 1'000'000'000, description);
+}
+
 void add_kind(CLI::App& app, std::optional<QueryKind>& kind) {
   add_words(
       app, "--kind", {words<QueryKind>.begin(), words<QueryKind>.end()},
@@ -204,10 +209,11 @@ constexpr Need needs_of_options[] = {
      "--contacts intersection or none"},
 };
 
-/// Every option of the detection.
-void add_detection_options(CLI::App& app, MethodOptions& options, Dependences& dependences) {
+/// Every option of the detection; a page has a layer instead of `--colliding-vertices`.
+void add_detection_options(CLI::App& app, MethodOptions& options, Dependences& dependences, bool of_page = false) {
   options.given_scene.for_each_setter([&]<class Struct, class Value>(const Field<Struct, Value>& field,
                                                                      const Value& default_value, auto set) {
+    if (of_page && !viewer::is_setting(field) && !field.is_of_machine) return;
     const bool is_method = std::is_same_v<Struct, SceneOctreeOptions> ||
                            std::is_same_v<Value, BoundingVolume> || std::is_same_v<Value, SphereFit> ||
                            std::is_same_v<Value, BroadPhaseMethod>;
@@ -243,15 +249,19 @@ void add_output_options(CLI::App& app, DetectionOptions& options, Dependences& d
       "standard output"));
   dependences.push_back({group(app.add_flag_callback(
                              "--no-stats", [&] { options.json_content.stats = false; },
-                             "Leave times and counts out of the JSON, so that equal results are "
+                             "Leave options, times and counts out of the JSON, so that equal results are "
                              "equal files")),
                          [&] { return !options.json.empty(); }, "--json"});
   dependences.push_back(
-      {group(app.add_flag(
-           "--contact-details", options.json_content.contact_details,
-           "Also write of each continuous contact the weights, the point and the normal to the JSON")),
-       [&] { return !options.json.empty() && options.scene.contacts == ContactMode::continuous; },
-       "--json and --contacts continuous"});
+      {group(app.add_flag("--contact-details", options.json_content.contact_details,
+                          "Also write each contact to the JSON: of triangles the kind and the points, of "
+                          "elements the barycentric coordinates, the point and the normal")),
+       [&] { return !options.json.empty() && options.scene.contacts != ContactMode::none; },
+       "--json and contacts"});
+  dependences.push_back({group(app.add_flag("--faces", options.json_content.faces,
+                                            "Also write the three vertices of each triangle to the JSON; a "
+                                            "polygon is a fan of triangles around its first corner")),
+                         [&] { return !options.json.empty(); }, "--json"});
   group(app.add_flag("--quiet", options.quiet, "No tables and no progress"));
 }
 
@@ -260,9 +270,9 @@ CLI::App* add_detect(CLI::App& program, DetectOptions& options, Dependences& dep
       program.add_subcommand("detect", "Find every contact of static meshes, a sequence or a scene");
   app->footer(detect_footer);
   add_input_options(*app, options.inputs, options.sequence);
-  add_number(*app, "--steps", options.steps, 1, 1'000'000'000,
-             "Frames of a scene file to go through, or steps from frame to frame of continuous contacts "
-             "(default: 1)")
+  add_frames(*app, options.frames,
+             "Number of frames (default: all of a sequence, a recording or the files of a scene; of another "
+             "scene the first, or the first two with continuous contacts)")
       ->group("Input");
   add_detection_options(*app, options, dependences);
   add_report_options(*app, options, dependences);
@@ -287,12 +297,12 @@ void add_scene_overrides(CLI::App& app, std::optional<std::uint64_t>& seed,
 void add_simulation_options(CLI::App& app, SimulateOptions& options) {
   app.add_option("SCENE.toml", options.input, "A scene file")->required()->type_name("");
   const auto group = [](CLI::Option* option) { return option->group("Simulation"); };
-  CLI::Option* const steps = group(add_number(app, "--steps", options.steps, 1, 1'000'000'000,
-                                              "Steps to take (default: 300, without --seconds)"));
+  CLI::Option* const frames = group(
+      add_frames(app, options.frames, "Number of frames; the first is the start (default: 301, which are 300 steps)"));
   group(add_real(
             app, "--seconds", Range::above(0), "s", [&](double seconds) { options.seconds = seconds; },
-            "Simulated time, instead of steps"))
-      ->excludes(steps);
+            "Simulated time, instead of a number of frames"))
+      ->excludes(frames);
   add_scene_overrides(app, options.seed, options.time_step);
 }
 
@@ -318,7 +328,7 @@ CLI::App* add_view(CLI::App& program, ViewOptions& options, Dependences& depende
   app->footer(view_footer);
   add_input_options(*app, options.inputs, options.sequence);
   add_scene_overrides(*app, options.seed, options.time_step);
-  add_detection_options(*app, options, dependences);
+  add_detection_options(*app, options, dependences, true);
 
   const auto group = [](CLI::Option* option) { return option->group("Page"); };
   const auto is_served = [&] { return options.page_file.empty(); };
@@ -407,14 +417,41 @@ void resolve(MethodOptions& options, const std::vector<std::string>& inputs) {
 }
 
 void check_outputs(const DetectionOptions& options) {
+  if (options.scene.colliding_vertices && options.json.empty())
+    throw CLI::ValidationError("--colliding-vertices", "has no effect without --json");
   if (options.json == "-" && options.csv == "-")
     throw CLI::ValidationError("--csv", "--json already writes to standard output; give one of them a file");
 }
 
+/// The commands of a program, or the options of a command.
+std::vector<std::string> names_in(const CLI::App& app, bool of_options) {
+  std::vector<std::string> names;
+  if (of_options) {
+    for (const CLI::Option* option : app.get_options()) {
+      for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+    }
+  } else {
+    for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
+      names.push_back(command->get_name());
+  }
+  return names;
+}
+
 int print_usage_error(const CLI::App& program, const CLI::ParseError& error) {
   const auto used = program.get_subcommands();
-  const std::string command = used.empty() ? "supple" : "supple " + used.front()->get_name();
-  fmt::print(stderr, "{}: {}; see {} --help\n", command, one_line(error.what()), command);
+  const CLI::App& app = used.empty() ? program : *used.front();
+  const std::string command = used.empty() ? "supple" : "supple " + app.get_name();
+  std::string message = one_line(error.what());
+  // The first word that was not expected; `--flag=value` is one.
+  if (const std::vector<std::string> unknown = app.remaining(true);
+      dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr && !unknown.empty()) {
+    const std::string word = one_line(unknown.front().substr(0, unknown.front().find('=')));
+    const bool is_option = word.starts_with('-');
+    message = fmt::format("{} {} is unknown", is_option ? "option" : used.empty() ? "command" : "argument", word);
+    if (const auto nearest = nearest_of(word, names_in(app, is_option)))
+      message += fmt::format("; did you mean {}?", *nearest);
+  }
+  fmt::print(stderr, "{}: {}; see {} --help\n", command, message, command);
   return exit_unusable;
 }
 
@@ -427,7 +464,7 @@ CommandLine parse_command_line(int argument_count, const char* const* arguments)
   program.set_version_flag("--version", "supple " SUPPLE_VERSION, "Print the version and exit");
   program.require_subcommand(0, 1);
   std::string document;
-  program.add_option("--generate", document, "Print a document made from these options: man or markdown")
+  program.add_option("--generate", document, "Print a document made from these options: man, markdown or tables")
       ->group("");
 
   Dependences dependences;

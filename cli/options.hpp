@@ -33,13 +33,13 @@ struct DetectionOptions : MethodOptions {
 struct DetectOptions : DetectionOptions {
   std::vector<std::string> inputs;  ///< meshes, patterns, or one scene file or recording
   bool sequence = false;            ///< the inputs are frames of one object
-  std::uint64_t steps = 1;          ///< of a scene file
+  std::optional<std::uint64_t> frames;
 };
 
 /// Of `supple simulate`.
 struct SimulateOptions : DetectionOptions {
   std::string input;  ///< a scene file
-  std::optional<std::uint64_t> steps;
+  std::optional<std::uint64_t> frames;
   std::optional<double> seconds;  ///< simulated; only one of the two is given
   std::optional<std::uint64_t> seed;
   std::optional<double> time_step;

@@ -6,6 +6,7 @@
 
 #include "continuous_json.hpp"
 #include "supple/version.hpp"
+#include "supple/result_descriptions.hpp"
 #include "text.hpp"
 
 namespace supple::cli {

@@ -204,8 +204,9 @@ ContactResponse read_response(const toml::table& table, const fs::path& path) {
   TomlReader reader(path, table, "[scene]: response");
   ContactResponse response;
   response.enabled = true;
-  for_each_field<ContactResponse>([&](const auto& field) {
-    if (field.member != &ContactResponse::enabled) reader.read(field, response.*field.member);
+  // The table itself enables it.
+  for_each_field<ContactResponse>([&]<class Value>(const Field<ContactResponse, Value>& field) {
+    if constexpr (!std::is_same_v<Value, bool>) reader.read(field, response.*field.member);
   });
   reader.finish();
   return response;

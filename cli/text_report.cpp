@@ -31,7 +31,9 @@ void TextReport::add(const Frame& frame) {
     PairSummary& pair = pairs_[{group.a, group.b}];
     ++pair.frames;
     pair.triangle_pairs += group.contact_count;
-    pair.most = std::max(pair.most, std::uint64_t{group.contact_count});
+    if (group.contact_count <= pair.most) continue;
+    pair.most = group.contact_count;
+    pair.frame_of_most = frame.number;
   }
   impacts_.add(frame);
   add_to(sum_, result.stats);
@@ -83,12 +85,12 @@ void TextReport::print_pairs(const Scene& scene) const {
   const std::size_t left_out = rows.size() - std::min(rows.size(), most_rows);
   rows.resize(rows.size() - left_out);
 
-  fmt::print("{:<20} {:<20} {:>8} {:>16} {:>16}\n", "object", "touches", "frames", "triangle pairs",
-             "most in a frame");
+  fmt::print("{:<20} {:<20} {:>8} {:>16} {:>16} {:>12}\n", "object", "touches", "frames", "triangle pairs",
+             "most in a frame", "in frame");
   for (const auto& [pair, summary] : rows) {
-    fmt::print("{:<20} {:<20} {:>8} {:>16} {:>16}\n", name_of(scene, pair.a),
+    fmt::print("{:<20} {:<20} {:>8} {:>16} {:>16} {:>12}\n", name_of(scene, pair.a),
                pair.a == pair.b ? "itself" : name_of(scene, pair.b), grouped(summary.frames),
-               grouped(summary.triangle_pairs), grouped(summary.most));
+               grouped(summary.triangle_pairs), grouped(summary.most), summary.frame_of_most);
   }
   if (left_out > 0) fmt::print("and {} with fewer; --csv lists all\n", counted(left_out, "pair"));
   fmt::print("\n{} that intersect; pairs of objects began to touch {} and parted {}\n\n",

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "supple/error.hpp"
+#include "text.hpp"
 
 namespace supple::cli {
 
@@ -154,9 +155,11 @@ std::vector<const toml::table*> TomlReader::tables(const std::string& key, const
 
 void TomlReader::finish() const {
   for (const auto& [key, value] : table_) {
-    if (std::find(known_.begin(), known_.end(), key.str()) == known_.end())
-      fail_at(key.source(), std::string(key.str()),
-              fmt::format("unknown key; allowed here: {}", fmt::join(known_, ", ")));
+    if (std::find(known_.begin(), known_.end(), key.str()) != known_.end()) continue;
+    const auto nearest = nearest_of(std::string(key.str()), known_);
+    fail_at(key.source(), std::string(key.str()),
+            fmt::format("unknown key{}; allowed here: {}",
+                        nearest ? fmt::format(", did you mean {}?", *nearest) : "", fmt::join(known_, ", ")));
   }
 }
 

@@ -266,8 +266,8 @@ class Document(RecordingTest):
         done = subprocess.run([sys.executable, "-c", example], cwd=self.folder, capture_output=True, text=True)
         self.assertEqual((done.returncode, done.stderr), (0, ""))
         lines = done.stdout.splitlines()
-        self.assertEqual(lines[0], "supple recording 1 intersection")
-        contacts = [len(f["contacts"]) for f in self.detect("run.h5")["frames"]]
+        self.assertEqual(lines[0], "supple recording 2 intersection")
+        contacts = [len(f["contacts"]) for f in self.detect("run.h5", "--contact-details")["frames"]]
         told = [int(line.split(" s: ")[1].split(" contacts")[0]) for line in lines[1:]]
         self.assertEqual(told, [count for count in contacts if count > 0])
         self.assertGreater(sum(told), 0)
@@ -300,7 +300,7 @@ class Detect(RecordingTest):
     @with_h5py
     def test_intersections(self):
         self.record("run.h5", 70)
-        frames = self.detect("run.h5", "--verify")["frames"]
+        frames = self.detect("run.h5", "--verify", "--contact-details")["frames"]
         self.assertEqual(len(frames), 70)
         total = 0
         with h5py.File(self.folder / "run.h5", "r") as file:
@@ -325,16 +325,16 @@ class Detect(RecordingTest):
     @with_h5py
     def test_continuous_contacts(self):
         self.record("run.h5", 70, "--contacts", "continuous")
-        steps = self.detect("run.h5", "--contacts", "continuous", "--contact-details", "--verify")["frames"]
+        steps = self.detect("run.h5", "--contact-details", "--verify")["frames"]
         self.assertEqual(len(steps), 69)
         total = 0
         with h5py.File(self.folder / "run.h5", "r") as file:
             for number, step in enumerate(steps):
                 self.assertEqual(step["verify"]["differences"], [])
-                columns = ("object_a", "object_b", "kind", "element_a", "element_b", "time", "point", "normal")
+                columns = ("object_a", "object_b", "kind", "element_a", "element_b", "toi", "point", "normal")
                 stored = self.recorded(file, number + 1, "continuous_contacts", *columns)
                 self.assertEqual([s[5:] for s in stored],
-                                 [(c["time"], c["point"], c["normal"]) for c in step["contacts"]])
+                                 [(c["toi"], c["point"], c["normal"]) for c in step["contacts"]])
                 total += len(stored)
         self.assertGreater(total, 1000)
 
@@ -360,7 +360,7 @@ class Detect(RecordingTest):
             (["one.h5", "--contacts", "continuous"], ["one.h5: one frame is no motion"]),
             (["one.h5", "a.obj"], ["one.h5: a recording stands alone"]),
             (["one.h5", "--sequence"], ["one.h5: a recording has its own frames; leave out --sequence"]),
-            (["one.h5", "--steps", "2"], ["--steps"]),
+            (["one.h5", "--frames", "2"], ["--frames", "one.h5 has 1 frame"]),
             (["missing.h5"], ["missing.h5: there is no such file"]),
         ):
             with self.subTest(arguments=arguments):
