@@ -31,10 +31,9 @@ std::string allowed_values(const Field<Struct, Value>& field) {
   } else if constexpr (std::is_same_v<Value, Vec3d>) {
     return "three finite numbers";
   } else if constexpr (std::is_same_v<Value, std::optional<std::uint64_t>>) {
-    return text_of(Range::from(0), true);
+    return text_of(field.range, true);
   } else {
     Range range = field.range;
-    if (std::is_integral_v<Value> && range.lowest < 0) range.lowest = 0;
     range.includes_infinity = false;  // left out for none
     return text_of(range, std::is_integral_v<Value>);
   }

@@ -22,10 +22,11 @@ std::string text_of(const Range& range, bool is_whole) {
     return list;
   }
   std::string text = is_whole ? "a whole number" : range.highest < infinity ? "a number" : "a finite number";
+  const double lowest = is_whole && range.lowest < 0 ? 0 : range.lowest;
   if (range.excludes_lowest)
-    text += " above " + text_of(range.lowest);
-  else if (range.lowest > -infinity)
-    text += " from " + text_of(range.lowest) + (range.highest < infinity ? "" : " up");
+    text += " above " + text_of(lowest);
+  else if (lowest > -infinity)
+    text += " from " + text_of(lowest) + (range.highest < infinity ? "" : " up");
   if (range.highest < infinity) {
     text += " to ";
     // Not 4.294967295e+09.
