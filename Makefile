@@ -3,7 +3,7 @@ JOBS ?= $(shell nproc)
 
 BASE ?= HEAD
 
-.PHONY: help demo test build bench bench-quick bench-kernels bench-compare contest check format docs clean dependencies
+.PHONY: help demo test build bench bench-quick bench-kernels bench-compare contest check format docs figures clean dependencies
 
 help:
 	@echo 'make demo     build, then a cloth that falls over a ball, and nine objects that collide'
@@ -15,16 +15,17 @@ help:
 	@echo 'make check    format, include order, changelog, generated documents'
 	@echo 'make format   format the C++ sources'
 	@echo 'make docs     write the documents that are generated from the command line'
+	@echo 'make figures  draw docs/figures/*.svg from their text (needs graphviz)'
 	@echo 'make clean    remove build/'
 
 demo: build
-	build/release/bin/supple simulate scenes/table1_9.toml --steps 1000
+	build/release/bin/supple simulate scenes/table1_9.toml --frames 1000
 	@echo
-	build/release/bin/supple simulate scenes/cloth_over_ball.toml --steps 200 --record build/cloth.h5
+	build/release/bin/supple simulate scenes/cloth_over_ball.toml --frames 200 --record build/cloth.h5
 	@echo
 	@echo 'ParaView opens build/cloth.xdmf.'
 	@echo 'Try next: build/release/bin/supple view scenes/nine.toml'
-	@echo '          build/release/bin/supple detect scenes/nine.toml --steps 3 --verify --json -'
+	@echo '          build/release/bin/supple detect scenes/nine.toml --frames 3 --verify --json -'
 
 test: build
 	ctest --preset release
@@ -63,6 +64,12 @@ check: build
 format:
 	tools/install_dependencies.sh --ci
 	tools/format.sh
+
+# The figures of the documents, from text (needs graphviz).
+figures: $(patsubst %.dot,%.svg,$(wildcard docs/figures/*.dot))
+
+docs/figures/%.svg: docs/figures/%.dot
+	dot -Tsvg $< -o $@
 
 docs: build
 	tools/generate_docs.sh build/release/bin/supple

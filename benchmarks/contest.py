@@ -1,19 +1,19 @@
 #!/usr/bin/env python3
-"""Supple against Embree, CGAL, FCL, Bullet, ODE and two short baselines on the workloads of docs/performance.md.
+"""Compares Supple with Embree, CGAL, FCL, Bullet, ODE and two short baselines on the workloads of docs/performance.md.
 
 usage: contest.py [--build DIR] [--quick] [--only CELL]... [--seconds S] [--output DIR] [--save] [--list]
 
     --build DIR    the build with supple_contest in its bin/ (default: build/release)
-    --quick        a cell of each kind, about a minute; otherwise all, up to 25 minutes
-    --only CELL    only this cell, or all whose names match a pattern such as 'A/u1/*'; may be repeated
-    --seconds S    processor time for each cell
-    --output DIR   where results.json, results.csv and results.html go (default: build/contest)
-    --save         also keep the results in benchmarks/results/, named by date and machine
-    --list         print the cells
+    --quick        one cell of each kind, about a minute; otherwise all cells, up to 25 minutes
+    --only CELL    a cell, or a pattern of cell names such as 'A/u1/*'; may be repeated
+    --seconds S    processor time per cell
+    --output DIR   the folder for results.json, results.csv and results.html (default: build/contest)
+    --save         also store the results in benchmarks/results/, named by date and machine
+    --list         print the names of all cells
 
-Each cell is a process of its own, in which all contestants take their frames in turn. Ratios are of medians of
-processor time on one thread, of wall time where two threads are compared with one. Exit status 3 when contestants
-disagree on the pairs, 1 when a cell fails otherwise.
+Each cell runs in a process of its own, in which the contestants run frame by frame in turn. Ratios compare medians of
+processor time on one thread; cells with two threads compare wall time. Exit status: 3 when contestants find different
+pairs, 1 when a cell fails in another way.
 """
 
 import argparse
@@ -61,14 +61,14 @@ QUICK = (
 
 
 class Disagreement(Exception):
-    """Contestants that find different pairs."""
+    """Raised when contestants find different pairs."""
 
 
 # --- running ---
 
 
 def run_cell(build, cell, seconds):
-    """The cell's JSON from supple_contest."""
+    """Runs supple_contest on one cell and returns its JSON."""
     command = [build / "bin/supple_contest", cell, "--seconds", str(seconds)]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     if done.returncode == 3:
@@ -83,7 +83,7 @@ def shared_data():
 
 
 def shifted_copy(mesh, folder):
-    """The OBJ file with 0.025 added to every x, written once."""
+    """Returns an OBJ file with 0.025 added to every x; writes it on first use."""
     copy = folder / f"{mesh.stem}-shifted.obj"
     if not copy.exists():
         lines = []
@@ -110,7 +110,7 @@ def time_process(command):
 
 
 def pairs_in(path):
-    """Of what either program wrote."""
+    """The number of pairs in the output of either program."""
     result = json.loads(path.read_text(encoding="utf-8"))
     if "pairs" in result:
         return result["pairs"]
@@ -119,7 +119,7 @@ def pairs_in(path):
 
 
 def run_process_cell(build, cell, seconds, folder):
-    """Whole processes in turn: reading, detecting, writing JSON."""
+    """Times whole processes in turn: read, detect, write JSON."""
     data = shared_data()
     if cell == "process/cloth-ball":
         meshes, options = [data / "scalable-ccd/cloth-ball/frames/cloth_ball92.ply"], ["--self"]
@@ -159,7 +159,7 @@ def run_process_cell(build, cell, seconds, folder):
 
 
 class Judge:
-    """Rows of the table: what each cell reaches of what is asked."""
+    """Rows of the table: the result of each cell and its target."""
 
     def __init__(self, cells):
         self.cells = {cell["cell"]: cell for cell in cells if not cell["skipped"]}
@@ -172,7 +172,7 @@ class Judge:
         return None
 
     def best(self, cell, names):
-        """The fastest of those that are there, and its name."""
+        """The fastest contestant present, and its name."""
         times = [(self.median(cell, name), name) for name in names]
         return min((pair for pair in times if pair[0] is not None), default=(None, None))
 
@@ -185,7 +185,7 @@ class Judge:
                           "smaller_is_better": smaller_is_better, "met": met})
 
     def add_faster(self, row, cell, names, reach, aim, supple="Supple"):
-        """How many times as fast as the best of the others."""
+        """How many times faster than the best of the others."""
         best, name = self.best(cell, names)
         own = self.median(cell, supple)
         if best is not None and own:
@@ -200,7 +200,7 @@ class Judge:
 
 
 def exponent(points):
-    """Of the power law closest to the points, by least squares of logarithms."""
+    """The exponent of a power law, fitted by least squares of logarithms."""
     xs, ys = [math.log(x) for x, _ in points], [math.log(y) for _, y in points]
     x_mean, y_mean = statistics.mean(xs), statistics.mean(ys)
     return (sum((x - x_mean) * (y - y_mean) for x, y in zip(xs, ys))
@@ -208,7 +208,7 @@ def exponent(points):
 
 
 def growth_points(judge):
-    """Name and (size, milliseconds) of each series that shows growth."""
+    """The name and the (size, milliseconds) of each series that shows growth."""
     series = []
     for field in FIELDS:
         points = [(int(cell.split("/")[2]), judge.median(cell, "Supple"))
@@ -221,8 +221,7 @@ def growth_points(judge):
 
 
 def judge_refit(judge, cell):
-    """Against an ideal that writes as many boxes of leaves, so that a shallower tree cannot buy the ratio, and one of
-    four triangles a box."""
+    """Two ideals: as many leaf boxes as ours, so that a shallower tree gains nothing; four triangles per box."""
     own = next((c for c in judge.cells[cell]["contestants"] if c["name"] == "Supple"), None)
     for row, ideal in (("refit alone, leaves as wide", "ideal, leaves as wide"),
                        ("refit alone, 4 triangles a box", "ideal, 4 per slot")):
@@ -323,7 +322,7 @@ def print_table(lines):
 
 
 def summary_of(judge):
-    """A line for each row: the range over its cells, and how many meet what."""
+    """One line per row of targets: the range over its cells, and how many cells meet the target."""
     lines = [["workload", "against", "lowest", "highest", "reach", "aim", "cells that reach the aim, reach, miss"]]
     groups = {}
     for row in judge.rows:
@@ -344,7 +343,7 @@ def markdown_table(lines):
 
 
 def times_by_cell(cells):
-    """Median processor milliseconds, a row a cell and a column a contestant, of each workload."""
+    """Median processor milliseconds of each workload: one row per cell, one column per contestant."""
     groups = {}
     for cell in cells:
         groups.setdefault(cell["cell"].split("/")[0], []).append(cell)
@@ -394,7 +393,7 @@ def file_name_of(about):
 
 
 def compact(cells):
-    """Of samples only what the tables need: results are kept for years."""
+    """Keeps only what the tables need, because results are stored for years."""
     kept = []
     for cell in cells:
         contestants = [{key: value for key, value in c.items() if key not in ("cpu_ms", "wall_ms")}
@@ -407,7 +406,7 @@ def compact(cells):
 def keep(about, cells, judge):
     path = ROOT / "benchmarks/results" / file_name_of(about)
     result = {"about": about, "judgement": judge.rows, "cells": compact(cells)}
-    # The name has dots: an ending is added, not replaced.
+    # The name contains dots, so append the extension instead of replacing one.
     path.with_name(path.name + ".json").write_text(json.dumps(result, indent=1) + "\n", encoding="utf-8")
     path.with_name(path.name + ".md").write_text(markdown_of(about, cells, judge), encoding="utf-8")
     print(f"Kept: {path}.json and .md")
@@ -440,7 +439,7 @@ def chosen_cells(arguments):
 
 
 def run_all(arguments, cells):
-    """Results, and whether any cell failed and contestants disagreed."""
+    """Results, whether any cell failed, and whether contestants disagreed."""
     results, failed, disagree = [], False, False
     for number, cell in enumerate(cells, 1):
         start = time.perf_counter()

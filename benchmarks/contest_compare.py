@@ -1,15 +1,15 @@
 #!/usr/bin/env python3
-"""This working tree against a commit: Supple alone, both built the same way, in turn.
+"""Compares this working tree with a commit: Supple alone, both built the same way, run in turn.
 
 usage: contest_compare.py BASE [--only CELL]... [--rounds N] [--seconds S]
 
     BASE           a commit, such as main or HEAD~3
-    --only CELL    a cell as `contest.py --list` names it, or a pattern; may be repeated (default: some of each kind)
-    --rounds N     processes of each, which take turns (default: 5)
-    --seconds S    of frames in each process (default: 1)
+    --only CELL    a cell of `contest.py --list`, or a pattern; may be repeated (default: some of each kind)
+    --rounds N     processes per version, run in turn (default: 5)
+    --seconds S    processor time per process (default: 1)
 
-The base is checked out into build/compare, with the benchmarks of this tree: both are measured by the same program.
-Exit status 3 when the two find different pairs.
+The base is checked out into build/compare with the benchmarks of this tree, so the same program measures both.
+Exit status 3 when the two versions find different pairs.
 """
 
 import argparse
@@ -31,7 +31,7 @@ CELLS = ["A/u1/10000", "A/u1/100000", "A/u8/100000", "A/clu/100000", "A/cl8/1000
 
 
 def check_out(base):
-    """The base's sources with this tree's benchmarks, in a worktree of git's."""
+    """The sources of the base commit with the benchmarks of this tree, in a git worktree."""
     sources = FOLDER / "base-sources"
     if (sources / ".git").exists():
         subprocess.run(["git", "-C", sources, "checkout", "--quiet", "--force", "--detach", base], check=True)
@@ -45,7 +45,7 @@ def check_out(base):
 
 
 def build(sources, name):
-    """The program; optimised as the release preset, and nothing but what it needs."""
+    """Builds the program with the options of the release preset and nothing it does not need."""
     folder = FOLDER / name
     options = ["FORMATS", "RECORDING", "TOOLS", "TESTS", "EXAMPLES"]
     subprocess.run(["cmake", "-S", sources, "-B", folder, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release",
@@ -57,7 +57,7 @@ def build(sources, name):
 
 
 def measure(program, cell, seconds):
-    # The base's sources lie elsewhere, its data do not.
+    # The sources of the base lie elsewhere, but use the same data.
     environment = {"SUPPLE_DATA": str(ROOT.parent / "shared/data")} | os.environ
     done = subprocess.run([program, cell, "--only-supple", "--seconds", str(seconds)], capture_output=True, text=True,
                           env=environment, check=False)
@@ -67,7 +67,7 @@ def measure(program, cell, seconds):
 
 
 def compare(programs, cell, arguments):
-    """A line of the table for each contestant of the cell, and whether both found the same."""
+    """One line of the table per contestant, and whether both versions found the same pairs."""
     medians, pairs = {}, {}
     for turn in range(arguments.rounds):
         for name in sorted(programs, reverse=turn % 2 == 1):

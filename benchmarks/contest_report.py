@@ -4,7 +4,7 @@ import html
 import math
 import statistics
 
-# Told apart on white and on black, and by most of those who see few colours.
+# Distinguishable on white and on black, and for most people with colour vision deficiency.
 COLORS = {"Supple": "#0077bb", "Embree": "#ee7733", "CGAL": "#009988", "FCL": "#cc3311", "Bullet": "#9467bd",
           "ODE": "#b8860b", "baseline sweep": "#888888", "baseline grid": "#555577"}
 STAGES = {"update": "#0077bb", "traversal": "#33aa77", "triangle tests": "#ee7733", "order and events": "#999999"}
@@ -29,7 +29,7 @@ svg text { font: 12px system-ui, sans-serif; fill: currentColor; } svg .title { 
 
 
 def quartiles(values):
-    """First quartile, median, third."""
+    """The three quartiles."""
     if len(values) < 2:
         return [values[0]] * 3
     return statistics.quantiles(values, n=4, method="inclusive")
@@ -40,7 +40,7 @@ def color_of(name):
 
 
 def rounded(value):
-    """Three significant digits, thousands grouped."""
+    """Three significant digits with grouped thousands."""
     if value == 0:
         return "0"
     digits = 2 - math.floor(math.log10(abs(value)))
@@ -64,7 +64,7 @@ def text(x, y, words, anchor="start"):
 
 
 def log_ticks(low, high):
-    """Powers of ten within, or 1, 2, 5 of each when they are few."""
+    """Powers of ten in the range, or 1, 2, 5 times each when there are few."""
     first, last = math.floor(math.log10(low)), math.ceil(math.log10(high))
     steps = (1,) if last - first > 3 else (1, 2, 5)
     ticks = [step * 10.0**power for power in range(first, last + 1) for step in steps]
@@ -79,7 +79,7 @@ def short(value):
 
 
 def line_plot(title, x_label, y_label, series):
-    """Both axes logarithmic; series are (name, color, dashed, [(x, y)...])."""
+    """Logarithmic axes; series are (name, color, dashed, [(x, y)...])."""
     width, height, left, top, right, bottom = 800, 390, 62, 46, 210, 44
     xs = [x for _, _, _, points in series for x, _ in points]
     ys = [y for _, _, _, points in series for _, y in points]
@@ -189,7 +189,7 @@ def box_plots(cells):
 
 
 def stage_bars(cell):
-    """By stage where a contestant tells its stages."""
+    """By stage, for contestants that measure their stages."""
     bars = []
     for c in cell["contestants"]:
         median, told = statistics.median(c["cpu_ms"]), c["mean_stage_ms"]
@@ -218,7 +218,7 @@ def bars_of(cells, prefix, title):
 
 
 def html_of(about, cells, rows, growth):
-    """The whole page."""
+    """The complete page."""
     parts = ["<h1>Supple against others</h1>", table(["this run", ""], list(about.items()), 2)]
     parts += ["<h2>What is asked and what is reached</h2>",
               "<p>Ratios of medians in this run. Where the bound is ≥ it tells how many times as fast Supple is as the "

@@ -1,5 +1,5 @@
-// Steps of masses and springs. Items are springs on edges, so that the inverse of items per second is the
-// time a spring takes.
+// Steps of mass-spring bodies. One item is one spring on an edge, so the inverse of items per second is the
+// time per spring.
 
 #include <benchmark/benchmark.h>
 
@@ -15,7 +15,7 @@ namespace {
 
 using namespace supple;
 
-/// A sheet that is stretched, so that all springs pull, and moved as a whole.
+/// A sheet that is stretched, so that all springs are under tension, and moves as a whole.
 void time_steps(benchmark::State& state, const TriangleMesh& mesh, const MassSpringOptions& options,
                 double seconds) {
   MassSpringBody body(mesh, options);
@@ -27,7 +27,7 @@ void time_steps(benchmark::State& state, const TriangleMesh& mesh, const MassSpr
   state.SetItemsProcessed(springs * state.iterations());
 }
 
-/// 100,489 vertices, 300,000 edges. Arguments: threads; what acts besides springs on edges.
+/// 100,489 vertices, 300,000 edges. Arguments: threads; the forces in addition to springs on edges.
 void verlet(benchmark::State& state) {
   MassSpringOptions options;
   options.threads = static_cast<std::uint32_t>(state.range(0));
@@ -42,7 +42,7 @@ BENCHMARK(verlet)
     ->UseRealTime()
     ->Unit(benchmark::kMillisecond);
 
-/// The same in an order of vertices without any locality.
+/// The same with vertices in random order, so without locality.
 void verlet_shuffled(benchmark::State& state) {
   TriangleMesh mesh = make_cloth(316, 316, 31.6, 31.6);
   const auto count = static_cast<std::uint32_t>(mesh.positions.size());
@@ -60,7 +60,8 @@ void verlet_shuffled(benchmark::State& state) {
 }
 BENCHMARK(verlet_shuffled)->ArgName("threads")->Arg(1)->Arg(2)->UseRealTime()->Unit(benchmark::kMillisecond);
 
-/// A square sheet of that many vertices a side that hangs from two corners, k h² / m, and threads.
+/// A square sheet with that many vertices per side, hanging from two corners. Arguments: size, k h² / m,
+/// threads.
 void backward_euler(benchmark::State& state) {
   const auto side = static_cast<std::uint32_t>(state.range(0));
   MassSpringOptions options;
@@ -78,7 +79,7 @@ BENCHMARK(backward_euler)
     ->MeasureProcessCPUTime()
     ->Unit(benchmark::kMillisecond);
 
-/// The block of scenes/soft_block.toml, pulled at all of its top.
+/// The block of scenes/soft_block.toml, pulled at its whole top.
 void soft_block(benchmark::State& state) {
   const TriangleMesh mesh = make_box({2, 1, 2}, 20);
   MassSpringOptions options{.integrator = Integrator::backward_euler,

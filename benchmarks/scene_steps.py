@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Where the time of `supple simulate` goes on the scenes of scenes/: means over the frames, as a Markdown table.
+"""Measures the stages of `supple simulate` on scene files: means over the frames, as a Markdown table.
 
 usage: scene_steps.py [--supple PROGRAM] [--steps N] [--threads N] [SCENE.toml...]
 
-Motion is all but detection: forces, integration and, where a scene asks for it, response to contacts. Without scenes
-it takes all of them.
+Motion is everything except detection: forces, integration and, if the scene enables it, contact response. Without
+arguments it measures all scenes in scenes/.
 """
 
 import argparse
@@ -18,7 +18,7 @@ from stage_shares import STAGES, processor
 
 
 def simulate(program, scene, steps, threads):
-    """Mean milliseconds of each stage, by its name, and what the scene is."""
+    """Mean milliseconds of each stage by name, and a description of the scene."""
     command = [program, "simulate", str(scene), "--steps", str(steps), "--threads", str(threads), "--json", "-", "--quiet"]
     process = subprocess.Popen(command, stdout=subprocess.PIPE)
     document = json.load(process.stdout)

@@ -1,5 +1,6 @@
-// Supple alone on the cells of workloads A, B and C, with the median of each stage: what to look at while a
-// stage is made faster. `supple_stage_medians 18000x64 bunnyx9 cloth-ball u1/100000 --frames 20 --threads 1`
+// Supple alone on the cells of workloads A, B and C; prints the median of each stage. For work on one stage.
+//
+//     supple_stage_medians 18000x64 bunnyx9 cloth-ball u1/100000 --frames 20 --threads 1
 
 #include <algorithm>
 #include <charconv>
@@ -25,7 +26,7 @@ struct Choice {
   std::uint32_t threads = 1;
 };
 
-/// Of the calling process by the processor's clock, in milliseconds.
+/// Processor time of the calling process in milliseconds.
 double cpu_milliseconds() {
   timespec time{};
   clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
@@ -38,7 +39,7 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-/// Milliseconds of each stage, a row a frame.
+/// Milliseconds of each stage, one row per frame.
 class StageTimes {
  public:
   void add(const StepStats& stats, double set_milliseconds, double cpu) {
@@ -72,7 +73,7 @@ void time_frames(const std::string& cell, const Choice& choice, Scene& scene, Mo
     const double before = cpu_milliseconds();
     const StepStats& stats = scene.detect().stats;
     const double cpu = cpu_milliseconds() - before + set;
-    if (frame >= 2) times.add(stats, set, cpu);  // buffers have grown by then
+    if (frame >= 2) times.add(stats, set, cpu);  // by then buffers have reached their size
   }
   times.print(cell, scene.result().stats);
 }

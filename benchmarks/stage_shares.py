@@ -1,14 +1,14 @@
 #!/usr/bin/env python3
-"""Where the time of `supple detect` goes: medians over several runs, as a Markdown table.
+"""Measures the stages of `supple detect`: medians over several runs, as a Markdown table.
 
 usage: stage_shares.py [--supple PROGRAM] [--runs N] NAME ARGUMENT... [-- NAME ARGUMENT...]...
 
-Each group is a name and what follows `supple detect`, for example
+Each group is a name and the arguments of `supple detect`, for example
 
     stage_shares.py cloth-ball --self --threads 1 cloth_ball92.ply -- bunnies --threads 1 two_bunnies.toml
 
-Each run is a process of its own, so the first step is measured, with cold memory: the octrees are built before
-it, and growing buffers are part of it.
+Each run is a process of its own, so this measures the first step with cold memory. The octrees are built before it;
+the growth of buffers is part of it.
 """
 
 import json
@@ -24,7 +24,7 @@ CANDIDATES = ["candidate_pairs", "vertex_face_candidates", "edge_edge_candidates
 
 
 def run(program, arguments):
-    """Milliseconds of the last frame and of the whole process, its peak memory, and the frame's stats."""
+    """Milliseconds of the last frame and of the whole process, its peak memory, and the statistics of the frame."""
     start = time.perf_counter()
     process = subprocess.Popen([program, "detect", *arguments, "--json", "-", "--quiet"], stdout=subprocess.PIPE)
     text = process.stdout.read()

@@ -1,5 +1,5 @@
-// Each stage by itself, through the public headers, on models that need no files. One thread unless the name
-// says so.
+// Benchmarks of single stages through the public headers, on models that need no files. One thread unless
+// the name says otherwise.
 
 #include <benchmark/benchmark.h>
 
@@ -15,7 +15,7 @@ namespace {
 
 using namespace supple;
 
-/// A sphere that breathes: the same at any step on every machine.
+/// A sphere whose radius oscillates; the same at each step on every machine.
 std::vector<Vec3d> deformed(const TriangleMesh& mesh, Vec3d center, double turns) {
   std::vector<Vec3d> positions;
   positions.reserve(mesh.positions.size());
@@ -39,7 +39,7 @@ void count_items(benchmark::State& state, std::uint64_t items_per_step) {
   state.SetItemsProcessed(static_cast<std::int64_t>(items_per_step) * state.iterations());
 }
 
-/// Octree of one object from nothing; items are triangles.
+/// Builds the octree of one object. Items are triangles.
 void build_octree(benchmark::State& state) {
   const TriangleMesh mesh = make_icosphere(static_cast<std::uint32_t>(state.range(0)));
   for (auto _ : state) {
@@ -50,7 +50,7 @@ void build_octree(benchmark::State& state) {
 }
 BENCHMARK(build_octree)->Arg(7)->Arg(30)->Arg(59)->Unit(benchmark::kMillisecond);
 
-/// New positions into the octree: the copy and the refit; items are triangles.
+/// Writes new positions into the octree: copy and refit. Items are triangles.
 template <class Scalar>
 void refit(benchmark::State& state) {
   const TriangleMesh mesh = make_icosphere(static_cast<std::uint32_t>(state.range(0)));
@@ -66,8 +66,8 @@ void refit(benchmark::State& state) {
 BENCHMARK(refit<float>)->Arg(7)->Arg(30)->Arg(59)->Unit(benchmark::kMicrosecond);
 BENCHMARK(refit<double>)->Arg(7)->Arg(30)->Arg(59)->Unit(benchmark::kMicrosecond);
 
-/// A whole step: spheres on a lattice that deform and overlap their neighbours. Arguments: frequency, objects
-/// a side, threads; counters give the milliseconds of each stage.
+/// A whole step: spheres on a lattice that deform and overlap their neighbours. Arguments: frequency,
+/// objects per side, threads. Counters are the milliseconds of each stage.
 void step(benchmark::State& state) {
   const TriangleMesh mesh = make_icosphere(static_cast<std::uint32_t>(state.range(0)));
   const auto side = static_cast<int>(state.range(1));
@@ -115,7 +115,7 @@ BENCHMARK(step)
     ->Unit(benchmark::kMillisecond)
     ->UseRealTime();
 
-/// Moving unit cubes in a cube of side 2 n^(1/3), every one in every step. Arguments: n, method.
+/// Unit cubes in a cube of side 2 n^(1/3); all move in every step. Arguments: n, method.
 void broad_phase(benchmark::State& state) {
   const auto count = static_cast<std::size_t>(state.range(0));
   const double side = 2 * std::cbrt(static_cast<double>(count));
@@ -152,11 +152,12 @@ void broad_phase(benchmark::State& state) {
 }
 BENCHMARK(broad_phase)
     ->ArgsProduct({{1000, 10000, 100000},
-                   {static_cast<int>(BroadPhaseMethod::octree), static_cast<int>(BroadPhaseMethod::sweep)}})
+                   {static_cast<int>(BroadPhaseMethod::octree), static_cast<int>(BroadPhaseMethod::grid),
+                    static_cast<int>(BroadPhaseMethod::sweep)}})
     ->Args({10000, static_cast<int>(BroadPhaseMethod::brute)})
     ->Unit(benchmark::kMillisecond);
 
-/// Exact triangle tests: apart across a plane, crossing, and touching in one plane.
+/// Exact triangle tests: separated by a plane, crossing, and touching within one plane.
 void triangle_pair(benchmark::State& state) {
   const TrianglePoints a{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}};
   const TrianglePoints others[] = {{{{0.1, 0.1, 0.2}, {0.9, 0.1, 0.3}, {0.2, 0.8, 0.1}}},
@@ -167,8 +168,8 @@ void triangle_pair(benchmark::State& state) {
 }
 BENCHMARK(triangle_pair)->DenseRange(0, 2);
 
-/// One continuous query: elements far apart, apart for want of a common time, touching, sliding within one
-/// plane until they touch at a corner, and touching as their distance becomes 0.05.
+/// One continuous query for edges: far apart, apart because their coplanar times do not match, touching,
+/// sliding in one plane until they touch at a corner, and reaching the distance 0.05.
 void first_impact_of_edges(benchmark::State& state) {
   const std::array<Vec3d, 2> a0{{{0, 0, 0}, {1, 0.1, 0}}};
   struct Query {
@@ -188,8 +189,8 @@ void first_impact_of_edges(benchmark::State& state) {
 }
 BENCHMARK(first_impact_of_edges)->DenseRange(0, 4);
 
-/// A cloth with itself, crumpled at both ends of the step. Arguments: squares a side, threads, whether only
-/// the earliest impact is wanted; items are triangles.
+/// A cloth against itself, crumpled at both ends of the step. Arguments: squares per side, threads, whether
+/// only the earliest impact is needed. Items are triangles.
 void continuous_step(benchmark::State& state) {
   const auto squares = static_cast<std::uint32_t>(state.range(0));
   const TriangleMesh cloth = make_cloth(squares, squares);

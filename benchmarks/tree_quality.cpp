@@ -1,5 +1,5 @@
-// What it is worth to build degraded parts of octrees anew: each cell is one scene that does and one that
-// does not, a frame of each in turn, in one run. `supple_tree_quality soup roll --frames 400 --continuous`
+// The benefit of rebuilding degraded octrees: each cell has a scene with rebuilds and one without, which run
+// frame by frame in turn. `supple_tree_quality soup roll --frames 400 --continuous`
 
 #include <algorithm>
 #include <cstdio>
@@ -21,14 +21,14 @@ struct Choice {
   bool continuous = false;
 };
 
-/// Of the calling process by the processor's clock, in milliseconds.
+/// Processor time of the calling process in milliseconds.
 double cpu_milliseconds() {
   timespec time{};
   clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
   return 1e3 * static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_nsec);
 }
 
-/// A scene and what its steps took.
+/// A scene and the times of its steps.
 struct Contestant {
   Contestant(const DegradingShapes& shapes, const Choice& choice, bool rebuilds) : scene(options_of(choice)) {
     for (const auto& shape : shapes.shapes()) {
@@ -64,7 +64,7 @@ struct Contestant {
     candidates += stats.candidate_pairs + stats.vertex_face_candidates + stats.edge_edge_candidates;
   }
 
-  /// Of all octrees: visits of a query by the surface-area heuristic.
+  /// The sum over all octrees of the visits of a query, by the surface area heuristic.
   void add_costs() {
     for (const ObjectId object : objects) visits += scene.octree_statistics(object).cost;
   }

@@ -68,9 +68,9 @@ const char* stored_type(const Field<Struct, Value>& field) {
 }
 
 template <class Value>
-constexpr bool is_in_tables = Worded<Value> || std::is_arithmetic_v<Value> ||
-                              std::is_same_v<Value, std::string> || std::is_same_v<Value, Vec3d> ||
-                              std::is_same_v<Value, std::optional<std::uint64_t>>;
+constexpr bool is_in_tables =
+    Worded<Value> || std::is_arithmetic_v<Value> || std::is_same_v<Value, std::string> ||
+    std::is_same_v<Value, Vec3d> || std::is_same_v<Value, std::optional<std::uint64_t>>;
 
 /// Calls `row(field, default_value)` for the options of a structure but those of the machine.
 template <class Struct, class Row>
@@ -113,8 +113,9 @@ template <class Struct>
 void attribute_table(const char* name) {
   table(name, "| Attribute | Type | Unit | Allowed | Meaning |", [] {
     for_each_row<Struct>([](const auto& field, const auto&) {
-      fmt::print("| `{}` | {} | {} | {} | {} |\n", field.key, stored_type(field), field.unit,
-                 allowed_values(field), field.doc);
+      const std::string_view type = stored_type(field);
+      fmt::print("| `{}` | {} | {} | {} | {} |\n", field.key, type, field.unit,
+                 type == "uint8" ? "0, 1" : allowed_values(field), field.doc);
     });
   });
 }
@@ -136,11 +137,9 @@ void statistics_tables() {
         stats);
   });
   table("json_stats", "| Key | Unit | Meaning |", [&] {
-    for_each_leaf(
-        [&](const auto& field, const auto&) {
-          fmt::print("| `{}` | {} | {} |\n", field.key, field.unit, field.doc);
-        },
-        stats);
+    for_each_leaf([&](const auto& field,
+                      const auto&) { fmt::print("| `{}` | {} | {} |\n", field.key, field.unit, field.doc); },
+                  stats);
   });
 }
 
@@ -161,9 +160,10 @@ void print_description_tables() {
   option_table<WaveMotion>("scene_wave_options");
   option_table<MassSpringMotion>("scene_mass_spring_options");
   table("scene_response_options", option_header, [] {
-    for_each_row<ContactResponse>([]<class Value>(const Field<ContactResponse, Value>& field, const Value& value) {
-      if constexpr (!std::is_same_v<Value, bool>) print_option(field, value);
-    });
+    for_each_row<ContactResponse>(
+        []<class Value>(const Field<ContactResponse, Value>& field, const Value& value) {
+          if constexpr (!std::is_same_v<Value, bool>) print_option(field, value);
+        });
   });
   table("protocol_settings", option_header, [] {
     const auto row = [](const auto& field, const auto& value) {

@@ -60,8 +60,8 @@ int run_detect(const DetectOptions& options) {
   const std::uint64_t frames = count_frames(input, options);
   Simulation simulation = build_simulation(input);
 
-  // Continuous contacts of a frame are those of the way from the frame before: the first frame of a motion has
-  // none.
+  // Continuous contacts of a frame are those of the way from the frame before: the first frame of a motion
+  // has none.
   const bool continuous = options.scene.contacts == ContactMode::continuous;
   const std::uint64_t first = continuous && frames > 1 ? 1 : 0;
   const char* const noun = continuous ? "step" : "frame";

@@ -26,7 +26,8 @@ FrameFiles::FrameFiles(FrameSequence sequence, const TriangleMesh& mesh)
 
 void FrameFiles::read(std::uint64_t step, std::span<Vec3d> positions) const {
   constexpr const char* advice =
-      "frames of a sequence are one object that only bends; for several objects write a scene file, each with "
+      "frames of a sequence are one object that only bends; for several objects write a scene file, each "
+      "with "
       "motion = { kind = \"frames\", files = \"...\" }";
   const std::filesystem::path& file = sequence_.file_at(step);
   const std::string name = file.string();
@@ -34,8 +35,7 @@ void FrameFiles::read(std::uint64_t step, std::span<Vec3d> positions) const {
   TriangleMesh mesh = read_mesh(file);
   const auto check_count = [&](const char* what, std::size_t given, std::size_t expected) {
     if (given == expected) return;
-    throw Error(
-        fmt::format("{}: has {} {}, but {} has {}; {}", name, given, what, first, expected, advice));
+    throw Error(fmt::format("{}: has {} {}, but {} has {}; {}", name, given, what, first, expected, advice));
   };
   check_count("vertices", mesh.positions.size(), vertex_count_);
   check_count("triangles", mesh.triangles.size(), triangles_.size());

@@ -48,8 +48,7 @@ CLI::Option* add_words(CLI::App& app, const std::string& name, std::vector<const
     for (std::size_t i = 0; i < choices.size(); ++i) {
       if (is_word(given, choices[i])) return set(i);
     }
-    throw CLI::ValidationError(name,
-                               fmt::format("'{}' is not one of {}", given, fmt::join(spellings, ", ")));
+    throw CLI::ValidationError(name, fmt::format("'{}' is not one of {}", given, fmt::join(spellings, ", ")));
   };
   return app.add_option_function<std::string>(name, parse, description)
       ->type_name(fmt::format("{}", fmt::join(spellings, "|")));

@@ -39,7 +39,8 @@ std::string help_of(const char* doc, const std::string& unit, const std::string&
 /// An option of a structure, as its description says it. `set` gets the value. A truth value without words is
 /// a flag that turns it to what it is not by default.
 template <class Struct, class Value, class Set>
-CLI::Option* add_field(CLI::App& app, const Field<Struct, Value>& field, const Value& default_value, Set set) {
+CLI::Option* add_field(CLI::App& app, const Field<Struct, Value>& field, const Value& default_value,
+                       Set set) {
   const std::string name = flag_of(field.key);
   if constexpr (Worded<Value>) {
     return add_words(
@@ -52,10 +53,13 @@ CLI::Option* add_field(CLI::App& app, const Field<Struct, Value>& field, const V
           app, name, {field.truth_words.begin(), field.truth_words.end()},
           [set](std::size_t place) { set(place == 1); },
           help_of(field.doc, field.unit, spelled(field.truth_words[default_value ? 1 : 0])));
-    if (!default_value) return app.add_flag_callback(name, [set] { set(true); }, field.doc);
+    if (!default_value)
+      return app.add_flag_callback(
+          name, [set] { set(true); }, field.doc);
     std::string negated = std::string("Do not ") + field.doc;
     negated[7] = static_cast<char>(std::tolower(static_cast<unsigned char>(negated[7])));
-    return app.add_flag_callback("--no-" + name.substr(2), [set] { set(false); }, negated);
+    return app.add_flag_callback(
+        "--no-" + name.substr(2), [set] { set(false); }, negated);
   } else if constexpr (std::is_same_v<Value, double>) {
     return add_real(app, name, field.range, field.unit, set,
                     help_of(field.doc, field.unit, fmt::format("{}", default_value)));

@@ -29,7 +29,7 @@ constexpr const char* program_footer = R"(Examples:
   supple detect --contacts continuous --self --sequence 'frame_*.obj'
                                             what passes through something between two frames, and when?
   supple detect --help                      every option, with examples
-  supple simulate scene.toml --steps 300 --record run.h5
+  supple simulate scene.toml --frames 300 --record run.h5
                                             objects that move by themselves, and what touches on the way
   supple view run.h5                        the same in a browser, live or recorded
   supple info rabbit.obj                    counts, bounds, holes, octree statistics
@@ -45,19 +45,19 @@ view ends by that, with 0.)";
 constexpr const char* detect_footer = R"(Examples:
   supple detect rabbit.obj fish.ply
       Two static meshes, an object each: which of their triangles intersect?
-  supple detect --self cloth.obj --json result.json
-      Where does a cloth cut through itself? Each contact with its points, as JSON.
+  supple detect --self cloth.obj --json result.json --contact-details
+      Where does a cloth intersect itself? Each contact with its points, as JSON.
   supple detect --sequence 'frame_*.ply' --self --csv pairs.csv
       Frames of one object. Quote the pattern: frame_10 then comes after frame_9, not after frame_1.
-  supple detect scene.toml --steps 300
+  supple detect scene.toml --frames 300
       A scene file: objects with placement, options and motion.
   supple detect run.h5 --verify
-      A recording: each of its frames anew, the objects with the options that they were recorded with.
+      A recording: each of its frames again, with the recorded options. Options given here come first.
   supple detect a.stl b.stl --fail-on-contact --quiet && echo apart
       For scripts: the exit status is 1 when anything touches.
   supple detect --contacts continuous --self --sequence 'frame_*.ply' --json impacts.json
       What passes through something between two frames: each vertex and face, each two edges, and when they first meet.
-  supple detect --contacts continuous --min-separation 0.001 scene.toml --steps 300
+  supple detect --contacts continuous --min-separation 0.001 scene.toml --frames 300
       Elements already touch when they come within 0.001.
   supple detect rabbit.obj fish.ply --verify
       Check the result against exact brute force over all pairs of triangles.
@@ -68,7 +68,8 @@ constexpr const char* diff_footer = R"(Examples:
   supple diff a.h5 b.h5
       The first frame and item in which two recordings differ, with both values; the exit status is 1 when they do.
   supple diff a.h5 b.h5 --tolerance 1e-9
-      Positions, points of contacts, and times, weights and normals of continuous ones may differ by so much.
+      Positions and points of contacts, and the times, barycentric coordinates and normals of continuous contacts,
+      may differ by 1e-9.
   supple diff a.h5 b.h5 --quiet && echo equal
       For scripts.
   supple diff a.h5 b.h5 --json -
@@ -81,15 +82,15 @@ constexpr const char* simulate_footer = R"(Examples:
       Rabbits fall on each other: what touched, how fast it went, and where the time was spent.
   supple simulate scenes/fish_tank.toml --seconds 10 --record run.h5
       Every frame and contact in an HDF5 file; ParaView opens the run.xdmf beside it.
-  supple simulate scenes/table1_9.toml --steps 1000 --seed 7 --json - --no-stats
+  supple simulate scenes/table1_9.toml --frames 1000 --seed 7 --json - --no-stats
       Another seed sends objects off in other directions; the same seed gives the same bytes everywhere.
   supple simulate scenes/cloth_over_ball.toml --contacts continuous --self
       Also what passes through something between two frames, and through itself.
   supple simulate scenes/soft_block.toml --time-step 0.001
       Shorter steps than the scene file's.
 
-N steps give N + 1 frames: frame 0 is the start, frame k what is there after k steps. Continuous contacts of frame k are
-those of the way from frame k - 1. Ctrl-C ends the run after the step that is under way, with its files and tables complete.)";
+Frame 0 is the start, and frame k is the state after k steps. The continuous contacts of frame k are those of the way
+from frame k - 1 to frame k. Ctrl-C ends the run after the step that is under way, with its files and tables complete.)";
 
 constexpr const char* view_footer = R"(Examples:
   supple view scenes/nine.toml
@@ -184,7 +185,7 @@ bool has_spheres(const SceneOptions& scene) {
   return scene.bounding_volume == BoundingVolume::sphere;
 }
 bool has_scene_octree(const SceneOptions& scene) {
-  return scene.broad_phase == BroadPhaseMethod::octree;
+  return viewer::uses_scene_octree(scene.broad_phase);
 }
 
 /// What an option of the scene needs to have an effect.
@@ -196,11 +197,10 @@ struct Need {
 constexpr Need needs_of_options[] = {
     {"sphere_fit", has_spheres, "--bounding-volume sphere"},
     {"region_test", [](const SceneOptions& scene) { return has_spheres(scene) && has_scene_octree(scene); },
-     "--bounding-volume sphere and --broad-phase octree"},
-    {"scene_octree_max_level", has_scene_octree, "--broad-phase octree"},
-    {"scene_octree_expand_at", has_scene_octree, "--broad-phase octree"},
-    {"scene_octree_arity", has_scene_octree, "--broad-phase octree"},
-    {"always_regions", has_scene_octree, "--broad-phase octree"},
+     "--bounding-volume sphere and --broad-phase octree or automatic"},
+    {"scene_octree_max_level", has_scene_octree, "--broad-phase octree or automatic"},
+    {"scene_octree_expand_at", has_scene_octree, "--broad-phase octree or automatic"},
+    {"scene_octree_arity", has_scene_octree, "--broad-phase octree or automatic"},
     {"min_separation", is_continuous, "--contacts continuous"},
     {"undecided", is_continuous, "--contacts continuous"},
     {"contact_points", [](const SceneOptions& scene) { return !is_continuous(scene); },
@@ -210,7 +210,8 @@ constexpr Need needs_of_options[] = {
 };
 
 /// Every option of the detection; a page has a layer instead of `--colliding-vertices`.
-void add_detection_options(CLI::App& app, MethodOptions& options, Dependences& dependences, bool of_page = false) {
+void add_detection_options(CLI::App& app, MethodOptions& options, Dependences& dependences,
+                           bool of_page = false) {
   options.given_scene.for_each_setter([&]<class Struct, class Value>(const Field<Struct, Value>& field,
                                                                      const Value& default_value, auto set) {
     if (of_page && !viewer::is_setting(field) && !field.is_of_machine) return;
@@ -297,8 +298,8 @@ void add_scene_overrides(CLI::App& app, std::optional<std::uint64_t>& seed,
 void add_simulation_options(CLI::App& app, SimulateOptions& options) {
   app.add_option("SCENE.toml", options.input, "A scene file")->required()->type_name("");
   const auto group = [](CLI::Option* option) { return option->group("Simulation"); };
-  CLI::Option* const frames = group(
-      add_frames(app, options.frames, "Number of frames; the first is the start (default: 301, which are 300 steps)"));
+  CLI::Option* const frames = group(add_frames(
+      app, options.frames, "Number of frames; the first is the start (default: 301, which are 300 steps)"));
   group(add_real(
             app, "--seconds", Range::above(0), "s", [&](double seconds) { options.seconds = seconds; },
             "Simulated time, instead of a number of frames"))
@@ -413,6 +414,10 @@ void add_diff(CLI::App& program, DiffOptions& options) {
 void resolve(MethodOptions& options, const std::vector<std::string>& inputs) {
   if (!inputs.empty() && is_recording(inputs.front()))
     options.scene = Recording(inputs.front()).header().scene;
+  SceneOptions chosen = options.scene;
+  options.given_scene.apply_to(chosen);
+  // Recorded options of the scene octree go with a recorded method.
+  if (!has_scene_octree(chosen)) options.scene.scene_octree = {};
   options.given_scene.apply_to(options.scene);
 }
 
@@ -447,7 +452,11 @@ int print_usage_error(const CLI::App& program, const CLI::ParseError& error) {
       dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr && !unknown.empty()) {
     const std::string word = one_line(unknown.front().substr(0, unknown.front().find('=')));
     const bool is_option = word.starts_with('-');
-    message = fmt::format("{} {} is unknown", is_option ? "option" : used.empty() ? "command" : "argument", word);
+    message = fmt::format("{} {} is unknown",
+                          is_option      ? "option"
+                          : used.empty() ? "command"
+                                         : "argument",
+                          word);
     if (const auto nearest = nearest_of(word, names_in(app, is_option)))
       message += fmt::format("; did you mean {}?", *nearest);
   }
@@ -464,7 +473,8 @@ CommandLine parse_command_line(int argument_count, const char* const* arguments)
   program.set_version_flag("--version", "supple " SUPPLE_VERSION, "Print the version and exit");
   program.require_subcommand(0, 1);
   std::string document;
-  program.add_option("--generate", document, "Print a document made from these options: man, markdown or tables")
+  program
+      .add_option("--generate", document, "Print a document made from these options: man, markdown or tables")
       ->group("");
 
   Dependences dependences;

@@ -5,8 +5,8 @@
 #include <algorithm>
 
 #include "continuous_json.hpp"
-#include "supple/version.hpp"
 #include "supple/result_descriptions.hpp"
+#include "supple/version.hpp"
 #include "text.hpp"
 
 namespace supple::cli {

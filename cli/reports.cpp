@@ -59,8 +59,7 @@ void print_difference(const Scene& scene, std::uint64_t frame, const VerifyRepor
 
 }  // namespace
 
-Reports::Reports(const DetectionOptions& options, const Input& input, const Scene& scene,
-                 std::string noun)
+Reports::Reports(const DetectionOptions& options, const Input& input, const Scene& scene, std::string noun)
     : options_(options), scene_(scene) {
   if (!options.json.empty()) json_.emplace(options.json, input, scene, options.json_content);
   if (!options.csv.empty()) csv_.emplace(options.csv, options.scene.contacts);

@@ -5,7 +5,10 @@ target_compile_options(supple_compile_options INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Wnon-virtual-dtor
   # One result on every machine: no multiply-add that the source does not spell out.
   -ffp-contract=off)
-if(NOT CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
+if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
+  # Each instruction set compiles the kernels once more. Processors since 2008 have SSE4, and older ones run portable code.
+  target_compile_definitions(supple_compile_options INTERFACE HWY_DISABLED_TARGETS=HWY_SSSE3)
+else()
   # Kernels keep vectors in structures, which SVE's and RVV's cannot be in. Highway 1.0 has no vectors of doubles for
   # WebAssembly: there its portable ones are taken, which the compiler turns into the same instructions.
   target_compile_definitions(supple_compile_options INTERFACE
@@ -22,4 +25,18 @@ if(SUPPLE_SANITIZE)
   # Reaches the targets that link the library as well: a sanitizer works only when all of a program has it.
   add_compile_options(-fsanitize=${SUPPLE_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
   add_link_options(-fsanitize=${SUPPLE_SANITIZE})
+  if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
+    # Kernels for SSE4, AVX2 and AVX-512 alone: clang takes minutes to compile the portable ones with sanitizers.
+    add_compile_options(-march=x86-64-v2 -maes -mpclmul)
+  endif()
 endif()
+
+# Compiles the headers that most sources of a target include once instead of once for each source. A compiler cache
+# does not store the results of such compilations, so builds with a cache do without. So does the debug preset, which
+# thereby finds sources that miss an include.
+function(supple_precompile_headers target)
+  if(NOT CMAKE_CXX_COMPILER_LAUNCHER)
+    target_precompile_headers(${target} PRIVATE <algorithm> <array> <cmath> <cstdint> <filesystem> <functional> <limits>
+      <map> <memory> <optional> <span> <string> <utility> <vector> ${ARGN})
+  endif()
+endfunction()

@@ -1,5 +1,5 @@
-// A cloth falls so fast that it would be through a ball between two steps; each step is cut where it first
-// touches.
+// A cloth falls so fast that it would pass through a ball within one step. Each step stops short of the
+// first contact.
 #include <cstdio>
 #include <vector>
 
@@ -11,14 +11,14 @@ int main() {
 
   supple::SceneOptions options;
   options.contacts = supple::ContactMode::continuous;
-  options.impact.min_separation = 1e-3;  // of the cloth's thickness
+  options.impact.min_separation = 1e-3;  // the thickness of the cloth
   supple::Scene scene(options);
   scene.add(supple::make_icosphere(12), {.name = "ball", .is_static = true});
   const supple::ObjectId cloth = scene.add(cloth_mesh, {.name = "cloth", .self_collision = true});
 
   std::vector<supple::Vec3d> now = cloth_mesh.positions;
   for (supple::Vec3d& p : now) p.y += 3;
-  const supple::Vec3d velocity{0, -4, 0};  // a step is 1
+  const supple::Vec3d velocity{0, -4, 0};  // per step
   for (int step = 0; step < 2; ++step) {
     std::vector<supple::Vec3d> next = now;
     for (supple::Vec3d& p : next) p = p + velocity;
@@ -33,7 +33,7 @@ int main() {
     std::printf("step %d: %s and %s touch at %.6f, and %zu pairs would by the end\n", step,
                 scene.name(impact->object_a).c_str(), scene.name(impact->object_b).c_str(), impact->toi,
                 scene.detect().continuous_contacts.size());
-    // Your own response goes here; this one only stops short of it.
+    // Your own response goes here. This one stops before the contact.
     const double part = 0.9 * scene.max_step();
     for (std::size_t i = 0; i < now.size(); ++i) now[i] = now[i] + part * velocity;
   }

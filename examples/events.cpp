@@ -1,5 +1,5 @@
-// Which objects begin to touch, and which part: two spheres pass through each other and react only to
-// changes.
+// Events: two spheres pass through each other, and the program reacts only when they begin or cease to
+// touch.
 #include <cstdio>
 #include <string>
 
@@ -15,7 +15,7 @@ int main() {
   const supple::ObjectId passing = scene.add(ball);
 
   for (int frame = 0; frame <= 12; ++frame) {
-    // Without deformation, moving is O(1): no vertex is read.
+    // Moving an object without deforming it is O(1): no vertex is read.
     scene.set_transform(passing, {.translation = {-3.0 + 0.5 * frame, 0.25, 0.125}});
     const supple::PairEvents& events = scene.detect().contact_events;
     for (const supple::ObjectPair& pair : events.begin)

@@ -1,4 +1,4 @@
-// Who may touch whom: groups and masks decide cheaply, a function decides the rest.
+// Which objects may touch: groups and masks decide cheaply, a function decides the rest.
 #include <cstdio>
 
 #include "supple/models.hpp"
@@ -12,7 +12,7 @@ int main() {
   const supple::TriangleMesh floor = supple::make_box({8, 0.5, 8}, 4);
   const supple::ObjectId left = scene.add(ball, {.name = "left", .group = body});
   const supple::ObjectId right = scene.add(ball, {.name = "right", .group = body});
-  // The ghost is cloth that only scenery may touch.
+  // The ghost is in the group of cloth, and only scenery may touch it.
   const supple::ObjectId ghost = scene.add(ball, {.name = "ghost", .group = cloth, .mask = scenery});
   scene.add(floor, {.name = "floor", .is_static = true, .group = scenery});
   scene.translate(left, {-0.5, 1, 0});

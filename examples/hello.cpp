@@ -12,7 +12,7 @@ int main() {
   const supple::ObjectId fish = scene.add(fish_mesh);
 
   for (int frame = 0; frame < 5; ++frame) {
-    // Your own simulation goes here; this one lets the fish swim closer and bend.
+    // Your own simulation goes here. This one moves the fish closer and bends it.
     std::vector<supple::Vec3d> positions = fish_mesh.positions;
     for (supple::Vec3d& p : positions) {
       p.z += 0.1 * frame * p.x * p.x;

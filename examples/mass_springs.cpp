@@ -1,4 +1,4 @@
-// A cloth of masses and springs falls over a ball, which it does not pass through, and comes to rest there.
+// A cloth of masses and springs falls onto a ball, does not pass through it, and comes to rest there.
 #include <cstdio>
 
 #include "supple/models.hpp"
@@ -30,7 +30,7 @@ int main() {
     try {
       intersecting = simulation.step().contacts.size();
     } catch (const supple::MotionError& error) {
-      // Too stiff for the step: the message says what would do, and all is as after the step before.
+      // The springs are too stiff for the step. The message names a stable step, and the state is unchanged.
       std::fprintf(stderr, "%s\n", error.what());
       return 1;
     }

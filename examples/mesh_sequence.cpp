@@ -1,6 +1,6 @@
-// A recorded motion, one mesh file a frame, played among other objects:
+// A recorded motion, one mesh file per frame, plays among other objects:
 //   example_mesh_sequence frame_0.ply frame_1.ply ...
-// Without files it first writes some of its own.
+// Without arguments the program first writes some files itself.
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
@@ -15,7 +15,7 @@ namespace {
 
 constexpr double seconds_per_frame = 0.1;
 
-/// A torus that is squeezed and comes back.
+/// A torus that is squeezed and returns to its shape.
 std::vector<std::filesystem::path> written_frames() {
   const std::filesystem::path folder = std::filesystem::temp_directory_path() / "supple_mesh_sequence";
   std::filesystem::create_directories(folder);
@@ -30,7 +30,7 @@ std::vector<std::filesystem::path> written_frames() {
   return files;
 }
 
-/// Frames, and between them straight lines; the last one stays.
+/// Frames with linear interpolation between them; the last frame stays.
 class Playback {
  public:
   explicit Playback(const std::vector<std::filesystem::path>& files) {

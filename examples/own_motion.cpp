@@ -1,4 +1,4 @@
-// A motion of your own: a function writes where the vertices are; the simulation calls it each step.
+// A motion of your own: the simulation calls your function in each step, and it writes the positions.
 #include <cstdio>
 
 #include "supple/models.hpp"
@@ -11,7 +11,7 @@ int main() {
   supple::Simulation simulation(options);
   simulation.add(supple::make_model("rabbit"), {.is_static = true});
 
-  // The fish swims past and wags its tail; its path is a function of time alone.
+  // The fish swims past and wags its tail. Its path depends on time only.
   const supple::TriangleMesh fish = supple::make_model("fish");
   simulation.add(fish, {}, [rest = fish.positions](double seconds, std::span<supple::Vec3d> positions) {
     for (std::size_t i = 0; i < rest.size(); ++i) {
@@ -20,7 +20,7 @@ int main() {
     }
   });
 
-  // This one goes on from where it was: `positions` hold the step before.
+  // The ball continues from its last position: `positions` contains the step before.
   const supple::TriangleMesh ball = supple::make_icosphere(4);
   const supple::ObjectId shrinking =
       simulation.add(ball, {.name = "ball"}, [](double, std::span<supple::Vec3d> positions) {

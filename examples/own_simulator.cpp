@@ -1,5 +1,5 @@
-// Positions handed in from a simulator of your own, here of a skin on which waves run; a body of masses and
-// springs of the library's falls through it.
+// Positions from your own simulator, here a drum skin with waves. A mass-spring body of the library falls
+// through it.
 #include <cstdio>
 #include <vector>
 
@@ -9,14 +9,14 @@
 
 namespace {
 
-/// A drum skin: the wave equation for the heights of a grid, held at its rim.
+/// A drum skin: the wave equation for the heights of a grid that is fixed at its rim.
 class DrumSkin {
  public:
   static constexpr std::uint32_t squares = 24;
 
   DrumSkin() : mesh_(supple::make_cloth(squares, squares)), speeds_(mesh_.positions.size()) {
     mesh_.name = "skin";
-    mesh_.positions[vertex(8, 8)].y = 0.3;  // plucked
+    mesh_.positions[vertex(8, 8)].y = 0.3;  // pluck it
   }
 
   void advance(double seconds) {

@@ -1,4 +1,4 @@
-// A sheet of single-precision positions, inside the user's own vertex type, rolls up until it meets itself.
+// A sheet rolls up until it touches itself. Its positions are floats inside the user's own vertex type.
 #include <cmath>
 #include <cstdio>
 #include <vector>
@@ -13,7 +13,8 @@ struct SimulationVertex {
   float velocity[3];
 };
 
-/// The sheet lies in the xz plane; `turns` says how far it is rolled into a spiral about the z axis.
+/// The sheet lies in the xz plane. `turns` is the length of the spiral about the z axis into which it is
+/// rolled.
 void roll_up(const supple::TriangleMesh& sheet, double turns, std::vector<SimulationVertex>& vertices) {
   for (std::size_t i = 0; i < vertices.size(); ++i) {
     const supple::Vec3d p = sheet.positions[i];
@@ -22,7 +23,7 @@ void roll_up(const supple::TriangleMesh& sheet, double turns, std::vector<Simula
     const double radius = 0.3 - 0.1 * along;
     vertices[i].position[0] = static_cast<float>(radius * std::cos(angle));
     vertices[i].position[1] = static_cast<float>(radius * std::sin(angle));
-    // The far end leans over, so that it meets the first turn.
+    // The far end leans inward, so that it meets the first turn.
     vertices[i].position[2] = static_cast<float>(p.z);
     vertices[i].position[0] += static_cast<float>(0.4 * along * p.z);
   }

@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# Fails when something that users can notice changed and CHANGELOG.md did not.
+# Fails when a user-visible file changed but CHANGELOG.md did not.
 #
 # usage: check_changelog.sh [BASE]
 #
-# BASE is a commit; by default where this branch left the main branch, or, on the main branch itself, the last
-# release tag. Changes that are not committed yet count as well.
+# BASE is a commit. The default is the point where this branch left the main branch or, on the main branch,
+# the last release tag. Uncommitted changes count too.
 set -euo pipefail
 cd "$(git rev-parse --show-toplevel)"
 

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# Compiles the kernels for each instruction set by itself, all warnings being errors, and runs them on the hard scenes:
-# scalar, SSE4, AVX2 and AVX-512 on this machine, NEON under qemu, WebAssembly under node. All must give the results of
-# tests/support/golden_scenes.hpp. What this machine lacks a compiler for is skipped, and said to be;
-# tools/install_dependencies.sh --instruction-sets installs all on Debian 12.
+# Compiles the kernels once per instruction set, with all warnings as errors, and runs them on the difficult
+# scenes: scalar, SSE4, AVX2 and AVX-512 natively, NEON under qemu, WebAssembly under node. All must give the
+# results in tests/support/golden_scenes.hpp. A target without a compiler on this machine is skipped with a
+# message; tools/install_dependencies.sh --instruction-sets installs all of them on Debian 12.
 #
 #   tools/check_instruction_sets.sh [x86_64] [aarch64] [wasm32]    all when none is named
 set -euo pipefail
@@ -18,7 +18,7 @@ check() {
   for tool in $tools; do
     command -v "$tool" >/dev/null || { echo "$machine: skipped, for there is no $tool"; return; }
   done
-  # Optimised no more than the time that the exact arithmetic takes is worth.
+  # Low optimisation for the exact arithmetic: compile time matters more here.
   cmake -G Ninja -S tests/instruction_sets -B "$folder" -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_FLAGS_RELEASE=-O1 \
     -DCMAKE_SYSTEM_PROCESSOR="$machine" "$@" >"$folder.log" 2>&1 || { cat "$folder.log"; return 1; }
   cmake --build "$folder" -j "$jobs" >"$folder.log" 2>&1 || { cat "$folder.log"; return 1; }
@@ -35,7 +35,7 @@ if [ "$(uname -m)" = x86_64 ]; then
 fi
 check aarch64 "aarch64-linux-gnu-g++ qemu-aarch64" neon "qemu-aarch64 -L /usr/aarch64-linux-gnu" \
   -DCMAKE_SYSTEM_NAME=Linux -DCMAKE_CXX_COMPILER=aarch64-linux-gnu-g++
-# An older Boost asks the C++ library for what it no longer has, unless told.
+# Older versions of Boost use a class that libc++ has removed, unless this macro is set.
 check wasm32 "clang++-19 wasm-ld-19 node" simd128 "node --no-warnings tests/instruction_sets/run_wasm.mjs" \
   -DCMAKE_SYSTEM_NAME=Generic -DCMAKE_CXX_COMPILER=clang++-19 -DCMAKE_CXX_COMPILER_TARGET=wasm32-wasi \
   -DCMAKE_CXX_FLAGS="-fignore-exceptions -DBOOST_NO_CXX98_FUNCTION_BASE" \

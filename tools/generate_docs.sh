@@ -4,7 +4,7 @@
 #
 # usage: generate_docs.sh [--check] PROGRAM
 #
-# With --check nothing is written: it fails when a document differs from what would be.
+# With --check it writes nothing and fails when a document is out of date.
 set -euo pipefail
 docs="$(cd "$(dirname "$0")/.." && pwd)/docs"
 

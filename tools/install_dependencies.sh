@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
-# Installs the Debian 12 packages that a build, the tests and the demo need; with --ci also those of the checks,
-# clang and the sanitizers, with --bench the libraries that benchmarks compare with, with --instruction-sets the compilers
-# and emulators of tools/check_instruction_sets.sh. Does nothing, quickly, when all are there.
+# Installs the Debian 12 packages for a build, the tests and the demo. --ci adds the packages of the checks,
+# clang and the sanitizers; --bench adds the libraries that benchmarks compare with; --instruction-sets adds
+# the compilers and emulators of tools/check_instruction_sets.sh. Returns quickly when everything is
+# installed.
 set -euo pipefail
 
 packages=(
@@ -14,7 +15,7 @@ packages=(
   clang-19 lld-19 wasi-libc libc++-19-dev-wasm32 libc++abi-19-dev-wasm32 libclang-rt-19-dev-wasm32
   libgtest-dev nlohmann-json3-dev libssl-dev libbenchmark-dev
 )
-# Node.js from elsewhere has its own npm, and does not go together with Debian's.
+# Node.js from another source has its own npm, which conflicts with Debian's.
 if ! command -v npm >/dev/null; then
   packages+=(nodejs npm)
 fi

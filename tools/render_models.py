@@ -97,7 +97,7 @@ def fill(image, depth, triangle, color, line_width):
     seen = (wa >= 0) & (wb >= 0) & (wc >= 0) & (z > depth[y0:y1, x0:x1])
     if not seen.any():
         return
-    # A barycentric coordinate times the height over its side is the distance to that side in pixels.
+    # Barycentric coordinate times height over the side = distance to that side in pixels.
     heights = abs(twice_area) / np.array(
         [np.hypot(cx - bx, cy - by), np.hypot(ax - cx, ay - cy), np.hypot(bx - ax, by - ay)]
     )

@@ -52,7 +52,7 @@ class BulletBoxes : public BoxContestant {
   Keep keep_;
 };
 
-/// GImpact compares boxes by centre and half extent, both rounded; a hair more makes up for it.
+/// GImpact compares boxes by rounded centres and half extents. This factor compensates the rounding.
 constexpr float widened = 0x1p-18f;
 
 class MeshBoxes : public btPrimitiveManagerBase {

@@ -7,20 +7,22 @@
 
 namespace supple::benchmarks {
 
-// What each kind of cell runs; `cell` is its name without the kind in front. All throw `Error` for a name
-// that is none, and `Disagreement`.
+// The kinds of cells. `cell` is the name without the kind. All functions throw `Error` for an unknown name,
+// and `Disagreement`.
 
 /// FIELD/N, FIELD/N/drift, FIELD/N/one-percent, FIELD/N/one-in-K.
 void run_boxes(const Choice& choice, const std::string& cell, Output& output);
-/// SHAPExCOPIES, with -rest; with two threads, Supple on one and on two.
+/// SHAPExCOPIES, optionally with -rest. With two threads: Supple on one thread and on two.
 void run_copies(const Choice& choice, const std::string& cell, bool two_threads, Output& output);
 /// A cloth of `make_cloth_step`.
 void run_cloth(const Choice& choice, const std::string& cell, bool two_threads, Output& output);
-/// How fast memory is read, from each level of caches.
+/// The longest safe step of a cloth (`Scene::max_step`) and its median time; ipc_toolkit.py compares.
+void run_safe_step(const Choice& choice, const std::string& cell, Output& output);
+/// The read bandwidth of each cache level and of memory.
 void run_bandwidth(Output& output);
-/// SHAPE: Supple's refit of one object against the ideal one.
+/// SHAPE: Supple's refit of one object against the ideal refit.
 void run_refit(const Choice& choice, const std::string& cell, Output& output);
-/// SHAPE: all that a scene of two copies holds on the heap after some steps, and of it the octrees.
+/// SHAPE: the heap memory of a scene of two copies after some steps, and the part of its octrees.
 void run_memory(const std::string& cell, Output& output);
 
 }  // namespace supple::benchmarks

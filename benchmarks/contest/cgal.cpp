@@ -9,11 +9,11 @@
 namespace supple::benchmarks {
 namespace {
 
-/// Below this many boxes CGAL compares all with all.
+/// CGAL compares all boxes with each other below this count.
 constexpr std::ptrdiff_t cutoff = 200;
 
-/// A box with a number; CGAL moves them about. It takes boxes of equal `id` for the same one, also when they
-/// are in different lists: those of the second list have the highest bit set.
+/// A box with a number, because CGAL reorders boxes. CGAL takes boxes with equal `id` for the same box, even
+/// in different lists, so boxes of the second list have the highest bit set.
 class NumberedBox : public CGAL::Box_intersection_d::Box_d<float, 3, CGAL::Box_intersection_d::ID_NONE> {
  public:
   NumberedBox() = default;
@@ -57,7 +57,7 @@ class CgalBoxes : public BoxContestant {
   std::vector<IndexPair> pairs_;
 };
 
-/// The boxes of all triangles, and for each pair of copies those that reach into both.
+/// The boxes of all triangles; for each pair of copies, the boxes that overlap both copies.
 class CgalCopies : public CandidateContestant {
  public:
   void prepare(const DeformingCopies& copies) override {

@@ -1,6 +1,6 @@
-// The job of `supple detect` as it is done with CGAL: read meshes, find the pairs of triangles that
-// intersect, and write them as JSON. One mesh against itself (without triangles that share a vertex), or two
-// with each other.
+// The task of `supple detect` implemented with CGAL: read meshes, find intersecting triangles, write them as
+// JSON. One mesh is tested against itself, without triangles that share a vertex; two meshes are tested
+// against each other.
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/IO/polygon_soup_io.h>

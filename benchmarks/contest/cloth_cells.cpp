@@ -3,11 +3,12 @@
 
 #include "contest/cells.hpp"
 #include "supple/continuous.hpp"
+#include "supple/scene.hpp"
 
 namespace supple::benchmarks {
 namespace {
 
-/// What exact verdicts, one by one, leave of the candidates.
+/// The candidates that the exact test, one by one, confirms.
 PairDigest touching(const ClothStep& step, std::span<const ElementPair> candidates) {
   const auto edges = edges_of(step.triangles);
   PairDigest digest;
@@ -34,7 +35,7 @@ struct KnownCounts {
   const char* cloth;
   std::size_t vertex_face, edge_edge;
 };
-/// Of the real frames: pairs whose boxes overlap.
+/// Known counts for the real frames: pairs whose boxes overlap.
 constexpr KnownCounts known_candidates[] = {{"cloth-funnel", 7319, 33770}, {"cloth-ball", 1655541, 5197332}};
 
 void check_known(const Choice& choice, const std::string& cloth, std::span<const ElementPair> candidates) {
@@ -49,7 +50,7 @@ void check_known(const Choice& choice, const std::string& cloth, std::span<const
   }
 }
 
-/// The same step there and back: every frame has new coordinates, and the same pairs.
+/// Reverses the step, so that every frame has new coordinates and the same pairs.
 void turn_round(ClothStep& step) {
   step.start.swap(step.end);
 }
@@ -81,13 +82,37 @@ void run_cloth(const Choice& choice, const std::string& name, bool two_threads, 
         if (expected && records[0].pairs != *expected)
           throw Disagreement(choice.cell + ": Supple finds " + text_of(records[0].pairs) +
                              " that touch, exact verdicts on all candidates " + text_of(*expected));
-        // Contacts are compared with contacts, candidates with candidates.
+        // Compare contacts with contacts, candidates with candidates.
         const std::size_t first = two_threads || records.size() < 2 ? 0 : 1;
         for (const std::size_t i : ran) {
           if (i >= first) check_equal(choice.cell, records[first], records[i]);
         }
       });
   output.records(turns.records());
+}
+
+void run_safe_step(const Choice& choice, const std::string& name, Output& output) {
+  auto step = make_cloth_step(name);
+  if (!step) return output.skip("the frames of " + name + " are not there; set SUPPLE_DATA");
+  SceneOptions options;
+  options.threads = 1;
+  options.contacts = ContactMode::continuous;
+  Scene scene(options);
+  const ObjectId cloth =
+      scene.add(PositionsView<double>(step->start), step->triangles, {.self_collision = true});
+  scene.set_motion(cloth, step->start, step->end);
+  output.value("safe step", scene.max_step());
+  std::vector<double> times;
+  const double begin = cpu_milliseconds();
+  while (times.size() < 3 ||
+         (times.size() < choice.rounds && cpu_milliseconds() - begin < 1e3 * choice.seconds)) {
+    const double start = cpu_milliseconds();
+    scene.set_motion(cloth, step->start, step->end);
+    scene.max_step();
+    times.push_back(cpu_milliseconds() - start);
+  }
+  std::nth_element(times.begin(), times.begin() + static_cast<std::ptrdiff_t>(times.size() / 2), times.end());
+  output.value("milliseconds", times[times.size() / 2]);
 }
 
 }  // namespace supple::benchmarks

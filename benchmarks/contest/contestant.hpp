@@ -15,12 +15,12 @@
 
 namespace supple::benchmarks {
 
-/// A set of pairs in a form that does not depend on their order.
+/// A digest of a set of pairs that does not depend on their order.
 struct PairDigest {
   std::uint64_t count = 0;
   std::uint64_t hash = 0;
 
-  /// Both numbers of 64 bits name one side each; the order of the sides does not matter.
+  /// Each 64-bit number names one side; the order of the sides does not matter.
   void add(std::uint64_t a, std::uint64_t b);
   bool operator==(const PairDigest&) const = default;
 };
@@ -31,16 +31,16 @@ struct StageTime {
   double cpu_milliseconds = 0;
 };
 
-/// A library, or a method without one, on one workload.
+/// A library, or a baseline, on one workload.
 template <class Workload>
 class Contestant {
  public:
   virtual ~Contestant() = default;
-  /// Whatever is done once and not timed: structures from the workload as it is.
+  /// Builds data structures from the initial state. Not timed.
   virtual void prepare(const Workload& workload) = 0;
-  /// What is timed: the workload's new state in, all pairs into an array, each once.
+  /// Timed: takes the new state of the workload and writes each pair once into an array.
   virtual void frame(const Workload& workload) = 0;
-  /// Of the last frame; not timed.
+  /// The pairs of the last frame. Not timed.
   virtual PairDigest pairs() const = 0;
   virtual std::vector<StageTime> stages() const { return {}; }
 };
@@ -49,7 +49,7 @@ using BoxContestant = Contestant<MovingBoxes>;
 using CopiesContestant = Contestant<DeformingCopies>;
 
 /// Two elements of one mesh by vertices: a vertex and a face {v, v, v}, {f0, f1, f2}, or two edges. Pairs
-/// that share a vertex are no candidates.
+/// that share a vertex are not candidates.
 struct ElementPair {
   bool is_edge_edge = false;
   std::uint32_t a = 0, b = 0;  ///< vertex and triangle, or indices of two edges as `MeshEdges` numbers them
@@ -58,15 +58,15 @@ struct ElementPair {
 /// The distinct edges of a mesh, smaller vertex first, in ascending order.
 std::vector<std::array<std::uint32_t, 2>> edges_of(const std::vector<Triangle>& triangles);
 
-/// Finds candidates only: all pairs of `ElementPair`s whose boxes around both ends of the step overlap.
+/// Finds candidates only: all `ElementPair`s whose boxes around both ends of the step overlap.
 class ClothContestant : public Contestant<ClothStep> {
  public:
   PairDigest pairs() const override;
-  /// Of the last frame, when it lists them.
+  /// The candidates of the last frame, when the contestant lists them.
   virtual std::span<const ElementPair> candidates() const = 0;
 };
 
-/// How to make a contestant, and for which sizes it is worth waiting.
+/// How to make a contestant, and the largest size for which it is fast enough to run.
 template <class Contestant>
 struct Entry {
   std::string name;
@@ -74,21 +74,21 @@ struct Entry {
   std::size_t largest = std::numeric_limits<std::size_t>::max();  ///< boxes or triangles
 };
 
-/// All but Supple, as far as their libraries were there when this was built.
+/// All contestants except Supple whose libraries were found at build time.
 std::vector<Entry<BoxContestant>> other_box_contestants();
 std::vector<Entry<CopiesContestant>> other_copies_contestants();
 std::vector<Entry<ClothContestant>> other_cloth_contestants();
-/// Libraries that were not there.
+/// Libraries that were not found.
 std::vector<std::string> missing_libraries();
 
 std::unique_ptr<BoxContestant> make_supple_boxes(std::uint32_t threads);
 /// One thread; told that of the boxes no others than these move.
 std::unique_ptr<BoxContestant> make_supple_boxes_told(std::vector<std::uint32_t> moving);
-std::unique_ptr<CopiesContestant> make_supple_copies(std::uint32_t threads);
-/// Its pairs are those that touch, its stages include what it had for candidates.
+std::unique_ptr<CopiesContestant> make_supple_copies(std::uint32_t threads, bool contact_points = false);
+/// `pairs` are the contacts; the stages include the number of candidates.
 std::unique_ptr<Contestant<ClothStep>> make_supple_cloth(std::uint32_t threads);
 
-/// Of the calling process by the processor's clock.
+/// Processor time of the calling process.
 double cpu_milliseconds();
 double wall_milliseconds();
 

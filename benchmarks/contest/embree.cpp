@@ -10,7 +10,7 @@
 namespace supple::benchmarks {
 namespace {
 
-/// One thread; the peers are compared on one.
+/// A device with one thread, as for all contestants.
 class Device {
  public:
   Device() : device_(rtcNewDevice("threads=1,set_affinity=0")) {
@@ -25,12 +25,12 @@ class Device {
   RTCDevice device_;
 };
 
-/// Boxes that a callback gives, as one geometry in one scene: `rtcCollide` takes no triangles.
+/// User geometry whose boxes come from a callback, because `rtcCollide` does not accept triangles.
 class BoxScene {
  public:
   BoxScene(RTCDevice device, std::size_t count, RTCBoundsFunction bounds, void* user, RTCBuildQuality quality)
       : scene_(rtcNewScene(device)), geometry_(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER)) {
-    // Only dynamic scenes of low quality refit, or build by Morton codes; compact ones refit faster.
+    // Only dynamic scenes of low quality refit or build by Morton codes. Compact scenes refit faster.
     rtcSetSceneBuildQuality(scene_, RTC_BUILD_QUALITY_LOW);
     rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_DYNAMIC | RTC_SCENE_FLAG_COMPACT);
     rtcSetGeometryUserPrimitiveCount(geometry_, static_cast<unsigned>(count));
@@ -93,7 +93,7 @@ class EmbreeBoxes : public BoxContestant {
   }
 
  private:
-  /// Leaves that overlap, in both orders.
+  /// Receives overlapping leaves, in both orders.
   static void keep(void* user, RTCCollision* collisions, unsigned count) {
     auto& self = *static_cast<EmbreeBoxes*>(user);
     for (unsigned i = 0; i < count; ++i) {

@@ -1,4 +1,4 @@
-// Which contestants there are; a library that was not found leaves its own out.
+// The list of contestants. A library that was not found defines none.
 
 #include "contest/peers.hpp"
 

@@ -60,7 +60,7 @@ class FclBoxes : public BoxContestant {
   std::vector<IndexPair> pairs_;
 };
 
-/// Lists the leaves that meet; what follows is the same for all contestants.
+/// Lists overlapping leaves; the exact test that follows is the same for all contestants.
 class LeafPairs : public fcl::detail::BVHCollisionTraversalNode<Box> {
  public:
   LeafPairs(const fcl::BVHModel<Box>& a, const fcl::BVHModel<Box>& b, IndexPair objects,

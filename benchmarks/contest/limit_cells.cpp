@@ -23,7 +23,8 @@ class Ideal : public Contestant<DeformingCopies> {
   std::unique_ptr<IdealRefit> refit_;
 };
 
-/// Triangles in a leaf of Supple's octree, so that the ideal does not write more boxes than Supple does.
+/// The number of triangles per leaf of Supple's octree, so that the ideal refit writes as many boxes as
+/// Supple.
 std::size_t leaf_width(const DeformingCopies& copies) {
   Scene scene;
   const ObjectId object = scene.add(PositionsView<float>(copies.positions(0)), copies.triangles());

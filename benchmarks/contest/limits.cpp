@@ -29,7 +29,7 @@ std::uint64_t sum_of(const std::vector<std::uint64_t>& words) {
   return hn::GetLane(hn::SumOfLanes(d, hn::Add(hn::Add(a, b), hn::Add(c, e))));
 }
 
-/// Bits of a coordinate, two places between each.
+/// Inserts two zero bits between each two bits of a coordinate.
 std::uint64_t spread_bits(std::uint64_t x) {
   std::uint64_t result = 0;
   for (int bit = 0; bit < 20; ++bit) result |= (x >> bit & 1) << (3 * bit);
@@ -63,7 +63,7 @@ std::vector<std::uint32_t> morton_order(const TriangleMesh& mesh) {
 
 }  // namespace
 
-/// The fourth coordinate means nothing.
+/// The fourth coordinate is unused.
 struct IdealRefit::Corners {
   hn::Vec<hn::Full128<float>> low, high;
 };
@@ -84,7 +84,7 @@ double read_bandwidth(std::size_t bytes, unsigned threads) {
       std::uint64_t sum = 0;
       for (std::size_t i = 0; i < repetitions; ++i) {
         sum += sum_of(arrays[thread]);
-        std::atomic_signal_fence(std::memory_order_seq_cst);  // or it would be read only once
+        std::atomic_signal_fence(std::memory_order_seq_cst);  // or memory is read once only
       }
       total += sum;
     };
@@ -122,7 +122,7 @@ IdealRefit::IdealRefit(const TriangleMesh& mesh, std::size_t per_slot) : per_slo
   }
 }
 
-/// Eight boxes as the lanes of a node; the box around them all goes on to the level above.
+/// Writes eight boxes as the children of a node; `around` receives their union for the level above.
 void IdealRefit::write_node(const Corners (&boxes)[8], Node& node, Bounds& around) {
   const hn::Full128<float> d;
   Corners all = boxes[0];

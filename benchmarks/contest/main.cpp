@@ -1,5 +1,5 @@
-// One cell of the contest: all contestants on one workload, frame by frame in turn, and their times as JSON.
-// benchmarks/contest.py runs the cells and makes tables of them.
+// Runs one cell of the contest: all contestants on one workload, frame by frame in turn. Prints their times
+// as JSON. benchmarks/contest.py runs the cells and makes the tables.
 
 #include <cstdio>
 #include <cstdlib>
@@ -17,7 +17,8 @@ constexpr const char* usage =
     "--missing\n"
     "CELL: A/FIELD/N  A/FIELD/N/drift  A/FIELD/N/one-percent  A/FIELD/N/one-in-K\n"
     "      B/SHAPExCOPIES[-rest]  C/CLOTH\n"
-    "      growth/SHAPExCOPIES  threads/B/...  threads/C/...  limits/bandwidth  limits/refit/TRIANGLES  "
+    "      step/CLOTH  growth/SHAPExCOPIES  threads/B/...  threads/C/...  limits/bandwidth  "
+    "limits/refit/TRIANGLES  "
     "memory/SHAPE\n"
     "FIELD: u1 u8 clu cl8   SHAPE: 980, 18000, 69620, ... or bunny   CLOTH: cloth-ball cloth-funnel "
     "crumpled\n";
@@ -41,6 +42,8 @@ void run(const Choice& choice) {
     run_copies(alone, after("growth/"), false, output);
   } else if (cell.starts_with("C/")) {
     run_cloth(choice, after("C/"), false, output);
+  } else if (cell.starts_with("step/")) {
+    run_safe_step(choice, after("step/"), output);
   } else if (cell.starts_with("threads/B/")) {
     run_copies(choice, after("threads/B/"), true, output);
   } else if (cell.starts_with("threads/C/")) {
@@ -90,7 +93,7 @@ Choice choice_of(const std::vector<std::string>& words) {
 }  // namespace
 }  // namespace supple::benchmarks
 
-/// 0; 1 for wrong use; 3 when contestants disagree.
+/// Returns 0 on success, 1 for wrong usage, 3 when contestants disagree.
 int main(int argument_count, char** arguments) {
   using namespace supple::benchmarks;
   const std::vector<std::string> words(arguments + 1, arguments + argument_count);

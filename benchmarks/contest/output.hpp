@@ -8,19 +8,19 @@
 
 namespace supple::benchmarks {
 
-/// One contestant's frames.
+/// The frames of one contestant.
 struct Record {
   std::string name;
   unsigned threads = 1;
   std::vector<double> cpu, wall;
   std::vector<StageTime> stage_sums;
-  PairDigest pairs;        ///< of the last frame it ran
-  PairDigest first_pairs;  ///< of the first that counts, which is the same for all
+  PairDigest pairs;        ///< of its last frame
+  PairDigest first_pairs;  ///< of the first counted frame, which is the same for all
 };
 
 void add_stages(Record& record, const std::vector<StageTime>& stages);
 
-/// What a cell writes as JSON: contestants, values, or why there is neither.
+/// The JSON output of a cell: contestants, values, or the reason for neither.
 class Output {
  public:
   explicit Output(std::string cell) : cell_(std::move(cell)) {}

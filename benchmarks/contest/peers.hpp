@@ -6,28 +6,28 @@
 
 namespace supple::benchmarks {
 
-/// Sorts by radix along the axis on which the boxes are spread most, and sweeps with vector lanes.
+/// Radix sort along the axis of largest spread, then a sweep with vector instructions.
 std::unique_ptr<BoxContestant> make_baseline_sweep();
-/// Sorts by radix along that axis, deals the boxes out to columns of the other two, and sweeps each column.
+/// Radix sort along that axis, distribution into columns of the other two axes, and a sweep of each column.
 std::unique_ptr<BoxContestant> make_baseline_grid();
 
-/// Embree 3: built anew with low quality for boxes, refitted for meshes, `rtcCollide`.
+/// Embree 3 with `rtcCollide`: a low-quality rebuild for boxes, a refit for meshes.
 std::unique_ptr<BoxContestant> make_embree_boxes();
 std::unique_ptr<CopiesContestant> make_embree_copies();
 std::unique_ptr<ClothContestant> make_embree_cloth();
 
-/// CGAL's `box_intersection_d`, which keeps nothing from frame to frame.
+/// CGAL's `box_intersection_d`, which keeps no state between frames.
 std::unique_ptr<BoxContestant> make_cgal_boxes();
 std::unique_ptr<CopiesContestant> make_cgal_copies();
 std::unique_ptr<ClothContestant> make_cgal_cloth();
 
-/// FCL: a dynamic AABB tree built anew each frame (left to drift, it takes many times as long); for meshes a
-/// tree of boxes, refitted.
+/// FCL: for boxes a dynamic AABB tree, rebuilt in each frame (otherwise it slows down many times); for
+/// meshes a tree of boxes with refit.
 std::unique_ptr<BoxContestant> make_fcl_boxes();
 std::unique_ptr<CopiesContestant> make_fcl_copies();
 
-/// Bullet: `btDbvt` with every leaf updated and one pass of incremental optimisation; for meshes the box tree
-/// of GImpact, refitted.
+/// Bullet: for boxes `btDbvt` with every leaf updated and one pass of incremental optimisation; for meshes
+/// the box tree of GImpact with refit.
 std::unique_ptr<BoxContestant> make_bullet_boxes();
 std::unique_ptr<CopiesContestant> make_bullet_copies();
 

@@ -7,7 +7,7 @@
 namespace supple::benchmarks {
 namespace {
 
-/// Ascending as the float is.
+/// A key whose unsigned order is the order of the floats.
 std::uint32_t key_of(float x) {
   const auto bits = std::bit_cast<std::uint32_t>(x);
   return (bits & 0x80000000u) != 0 ? ~bits : bits | 0x80000000u;
@@ -43,7 +43,7 @@ std::span<const std::uint32_t> RadixSorter::sort(std::span<const Aabb> boxes, in
 
 BoxSpread spread_of(std::span<const Aabb> boxes) {
   BoxSpread spread;
-  // Some thousand boxes tell enough.
+  // A sample of some thousand boxes is enough.
   const std::size_t stride = boxes.size() / 4096 + 1;
   Vec3d sum, squares;
   std::size_t count = 0;

@@ -9,7 +9,7 @@
 
 namespace supple::benchmarks {
 
-/// Boxes as a structure of arrays, and room for one vector of lanes past the last.
+/// Boxes as a structure of arrays, padded by one vector.
 struct BoxArrays {
   std::array<std::vector<float>, 3> low, high;
   std::vector<std::uint32_t> number;
@@ -23,10 +23,10 @@ struct BoxArrays {
   }
 };
 
-/// Radix sort of boxes by their lower faces along one axis.
+/// Sorts boxes by their lower faces along one axis.
 class RadixSorter {
  public:
-  /// Numbers of the boxes in ascending order; lasts until the next call.
+  /// Box ids in ascending order; valid until the next call.
   std::span<const std::uint32_t> sort(std::span<const Aabb> boxes, int axis);
 
  private:
@@ -37,10 +37,10 @@ class RadixSorter {
   std::vector<std::uint32_t> order_;
 };
 
-/// What a method may decide by: bounds of the boxes' centres and their mean extents.
+/// Statistics to choose a method by: bounds of the centres, and mean extents.
 struct BoxSpread {
   Vec3d low, high, mean_extent, variance;
-  int widest_axis = 0;  ///< of the largest variance in mean extents
+  int widest_axis = 0;  ///< axis with the largest variance relative to the mean extent
 };
 BoxSpread spread_of(std::span<const Aabb> boxes);
 

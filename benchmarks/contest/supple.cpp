@@ -9,7 +9,7 @@ namespace {
 class SuppleBoxes : public BoxContestant {
  public:
   explicit SuppleBoxes(std::uint32_t threads)
-      : broad_phase_({.method = BroadPhaseMethod::octree, .scene_octree = {}, .threads = threads}) {}
+      : broad_phase_({.method = BroadPhaseMethod::automatic, .scene_octree = {}, .threads = threads}) {}
   void prepare(const MovingBoxes& field) override { frame(field); }
   void frame(const MovingBoxes& field) override { pairs_ = broad_phase_.find_object_pairs(field.boxes()); }
   PairDigest pairs() const override {
@@ -38,16 +38,16 @@ class SuppleBoxesTold : public BoxContestant {
   }
 
  private:
-  BroadPhase broad_phase_{{.method = BroadPhaseMethod::octree, .scene_octree = {}, .threads = 1}};
+  BroadPhase broad_phase_{{.method = BroadPhaseMethod::automatic, .scene_octree = {}, .threads = 1}};
   std::vector<std::uint32_t> moving_;
   std::span<const IndexPair> pairs_;
 };
 
-SceneOptions options_of(std::uint32_t threads, ContactMode contacts) {
+SceneOptions options_of(std::uint32_t threads, ContactMode contacts, bool contact_points = false) {
   SceneOptions options;
   options.threads = threads;
   options.contacts = contacts;
-  options.contact_points = false;  // pairs are all that the others give
+  options.contact_points = contact_points;  // the others give pairs only
   return options;
 }
 
@@ -63,7 +63,8 @@ std::vector<StageTime> stages_of(const StepStats& stats, double handing_over, do
 
 class SuppleCopies : public CopiesContestant {
  public:
-  explicit SuppleCopies(std::uint32_t threads) : scene_(options_of(threads, ContactMode::intersection)) {}
+  SuppleCopies(std::uint32_t threads, bool contact_points)
+      : scene_(options_of(threads, ContactMode::intersection, contact_points)) {}
 
   void prepare(const DeformingCopies& copies) override {
     for (std::size_t i = 0; i < copies.copies(); ++i)
@@ -147,8 +148,8 @@ std::unique_ptr<BoxContestant> make_supple_boxes_told(std::vector<std::uint32_t>
   return std::make_unique<SuppleBoxesTold>(std::move(moving));
 }
 
-std::unique_ptr<CopiesContestant> make_supple_copies(std::uint32_t threads) {
-  return std::make_unique<SuppleCopies>(threads);
+std::unique_ptr<CopiesContestant> make_supple_copies(std::uint32_t threads, bool contact_points) {
+  return std::make_unique<SuppleCopies>(threads, contact_points);
 }
 
 std::unique_ptr<Contestant<ClothStep>> make_supple_cloth(std::uint32_t threads) {

@@ -6,7 +6,8 @@
 
 namespace supple::benchmarks {
 
-/// Boxes in single precision around both ends of the step. The coordinates are floats: nothing is rounded.
+/// The box around both ends of the step, in single precision. The coordinates are floats, so nothing is
+/// rounded.
 Aabb swept_box(const ClothStep& step, std::span<const std::uint32_t> vertices);
 
 inline bool boxes_overlap(const Aabb& a, const Aabb& b) {
@@ -14,11 +15,11 @@ inline bool boxes_overlap(const Aabb& a, const Aabb& b) {
          a.min.z <= b.max.z && b.min.z <= a.max.z;
 }
 
-/// The elements of a cloth, and their boxes in every frame.
+/// The elements of a cloth and their boxes in the current frame.
 struct ClothBoxes {
   std::vector<std::array<std::uint32_t, 2>> edges;
-  std::vector<std::uint32_t> used_vertices;                ///< of some triangle; the others are no elements
-  std::vector<Aabb> vertex_boxes, edge_boxes, face_boxes;  ///< of vertices: by place in `used_vertices`
+  std::vector<std::uint32_t> used_vertices;                ///< only vertices used by a triangle
+  std::vector<Aabb> vertex_boxes, edge_boxes, face_boxes;  ///< vertex_boxes: indexed as `used_vertices`
 
   void prepare(const ClothStep& step);
   void update(const ClothStep& step);

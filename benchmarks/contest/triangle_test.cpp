@@ -15,7 +15,8 @@ using Values = hn::Vec<Lanes>;
 using Row = hn::Full128<float>;
 constexpr std::size_t batch = 16;
 
-/// Lowest and highest corner; reads one float past the last coordinate, which `DeformingCopies` has.
+/// The bounding box of a triangle. Reads one float past the last coordinate, which `DeformingCopies`
+/// provides.
 struct Box {
   hn::Vec<Row> low, high;
 };
@@ -67,7 +68,7 @@ struct Batch {
   }
 };
 
-/// A bit a lane.
+/// One bit per pair.
 struct Decisions {
   std::uint32_t apart = 0, meet = 0;
 };
@@ -79,9 +80,9 @@ std::uint32_t bits_of(const Mask& mask) {
   return bytes[0] + 256u * bytes[1];
 }
 
-/// Two triangles in general position meet exactly when an edge of one passes through the other: its ends lie
-/// on two sides of the plane, and it goes round the three edges in one direction. All of it are signs of
-/// volumes: six of a corner over a triangle, nine of an edge with an edge.
+/// Two triangles in general position intersect exactly when an edge of one passes through the other: the
+/// ends of the edge lie on different sides of the plane, and it passes the three edges on the same side. All
+/// conditions are signs of volumes: six of a corner and a triangle, nine of an edge and an edge.
 Decisions decide(const Batch& input, std::size_t first) {
   const Lanes d;
   Vectors p[6];
@@ -95,8 +96,8 @@ Decisions decide(const Batch& input, std::size_t first) {
     corner = corner - origin;
     largest = larger_entry(largest, corner);
   }
-  // Entries are at most 2 m, m being the largest, each off by 2^-23 m or less. Six products of three entries
-  // and their sums are then off by less than 6 * 8 m^3 * 8 * 2^-23 < 2^9 * 2^-23 m^3.
+  // Entries are at most 2 m, where m is the largest coordinate, with an error of at most 2^-23 m. The error
+  // of six products of three entries and their sums is below 6 * 8 m^3 * 8 * 2^-23 < 2^9 * 2^-23 m^3.
   const Values bound = hn::Add(hn::Mul(hn::Mul(hn::Mul(largest, largest), largest), hn::Set(d, 0x1p-14f)),
                                hn::Set(d, 0x1p-100f));
   const Values below = hn::Neg(bound);

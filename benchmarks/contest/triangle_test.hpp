@@ -13,18 +13,19 @@ struct CopyPair {
   std::uint32_t object_a = 0, object_b = 0, triangle_a = 0, triangle_b = 0;
 };
 
-/// Objects whose boxes overlap, each pair once.
+/// Pairs of copies whose boxes overlap, each once.
 std::vector<IndexPair> overlapping_copies(const DeformingCopies& copies, std::vector<Aabb>& boxes);
 
-/// The candidates whose triangles intersect: boxes first, then sixteen pairs at a time by the signs of
-/// volumes in single precision. What these cannot tell beyond their error is decided by
-/// `supple::triangles_intersect`, so that the outcome is exact for everyone who hands candidates in.
+/// Keeps the candidates whose triangles intersect: compares boxes first, then the signs of volumes of
+/// sixteen pairs at a time in single precision. `supple::triangles_intersect` decides pairs within the error
+/// bound, so the result is exact for every contestant.
 void keep_intersecting(const DeformingCopies& copies, std::span<const CopyPair> candidates,
                        std::vector<CopyPair>& intersecting);
 
 PairDigest digest_of(std::span<const CopyPair> pairs);
 
-/// What the contestants on deforming copies share: candidates, their test, and the three stages' times.
+/// The common part of all contestants on deforming copies: candidates, the triangle test, and times of the
+/// three stages.
 class CandidateContestant : public CopiesContestant {
  public:
   void frame(const DeformingCopies& copies) final;
@@ -32,9 +33,9 @@ class CandidateContestant : public CopiesContestant {
   std::vector<StageTime> stages() const final { return stages_; }
 
  protected:
-  /// New positions into whatever is kept.
+  /// Updates the data structures with the new positions.
   virtual void update(const DeformingCopies& copies) = 0;
-  /// Pairs that may intersect, among them all whose boxes overlap, into `candidates_`.
+  /// Writes pairs that may intersect into `candidates_`, including all pairs whose boxes overlap.
   virtual void find_candidates(const DeformingCopies& copies) = 0;
 
   std::vector<CopyPair> candidates_;

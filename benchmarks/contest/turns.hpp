@@ -13,25 +13,25 @@ namespace supple::benchmarks {
 
 struct Choice {
   std::string cell;
-  double seconds = 3;       ///< that rounds begin in, at least three of them
-  std::size_t rounds = 60;  ///< at most
-  int cpu = 0;              ///< to which one thread is pinned
+  double seconds = 3;       ///< rounds start within this time, but at least three
+  std::size_t rounds = 60;  ///< maximum
+  int cpu = 0;              ///< the first CPU to pin threads to
   bool only_supple = false;
-  std::string spoiled{};  ///< contestant of whose pairs one is lost, to see that it is noticed
+  std::string spoiled{};  ///< drops one pair of this contestant, to test that the check notices
 };
 
-/// Wrong pairs, not wrong use.
+/// Contestants found different pairs.
 struct Disagreement : Error {
   using Error::Error;
 };
 
-/// Keeps the calling thread, and those that it starts, on `count` processors from `first` on.
+/// Pins the calling thread, and threads it starts, to `count` processors from `first` on.
 void pin_to(int first, int count);
-/// Throws `Disagreement` that names the cell, both contestants and what they found.
+/// Throws `Disagreement` with the cell, both contestants and their results.
 void check_equal(const std::string& cell, const Record& a, const Record& b);
 std::string text_of(const PairDigest& pairs);
 
-/// Frames in turn: the first contestant first, in the next round the second, and so on round.
+/// Runs frames in turn. The contestant that starts changes from round to round.
 template <class Workload, class AnyContestant>
 class Turns {
  public:
@@ -45,19 +45,19 @@ class Turns {
     records_.push_back(std::move(record));
   }
 
-  /// `advance` makes the next frame; `check` sees each round's contestants that ran.
+  /// `advance` makes the next frame; `check` receives the contestants that ran in the round.
   template <class Advance, class Check>
   void run(const Choice& choice, const Workload& workload, Advance advance, Check check) {
     const double start = wall_milliseconds(), budget = 1e3 * choice.seconds;
     const std::size_t count = contestants_.size();
     std::vector<double> spent(count, 0);
-    // Who takes more than its share of the time has only the first few frames.
+    // A contestant that exceeds its share of the time runs only the first few frames.
     const auto has_share = [&](std::size_t i) {
       return records_[i].cpu.size() < fewest || spent[i] < budget / static_cast<double>(count);
     };
     for (std::size_t round = 0; round < warm_up + choice.rounds; ++round) {
       const bool is_measured = round >= warm_up;
-      const bool is_late = wall_milliseconds() - start > 3 * budget;  // the frames take time to make, too
+      const bool is_late = wall_milliseconds() - start > 3 * budget;  // making the frames takes time too
       std::vector<std::size_t> running;
       for (std::size_t turn = 0; turn < count; ++turn) {
         const std::size_t i = (turn + round) % count;
@@ -94,7 +94,7 @@ class Turns {
   std::vector<Record> records_;
 };
 
-/// All that ran in a round found the same.
+/// Checks that all contestants of a round found the same pairs.
 inline auto same_pairs(const std::string& cell) {
   return [cell](const std::vector<std::size_t>& ran, const auto&, const std::vector<Record>& records) {
     for (const std::size_t i : ran) check_equal(cell, records[ran.front()], records[i]);

@@ -16,12 +16,12 @@ std::optional<ClothStep> load_step(const std::string& first, const std::string& 
   return ClothStep{std::move(start->positions), std::move(end->positions), std::move(start->triangles)};
 }
 
-/// As the real frames have it: boxes in single precision are then the same as in double.
+/// Rounds as in the real frames, so that boxes in single precision equal boxes in double precision.
 Vec3d in_single(Vec3d p) {
   return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
 }
 
-/// Pushed together to a third of its width, so that it lies in folds, and dented along the other axis.
+/// A sheet compressed to a third of its width, so that it lies in folds, and dented along the other axis.
 ClothStep crumpled(std::uint32_t columns, std::uint32_t rows) {
   const TriangleMesh sheet = make_cloth(columns, rows, 2, 1);
   ClothStep step{{}, {}, sheet.triangles};

@@ -9,14 +9,15 @@
 
 namespace supple::benchmarks {
 
-/// Workload C: one mesh that is tested against itself while its vertices go straight from `start` to `end`.
+/// Workload C: one mesh against itself while its vertices move on straight lines from `start` to `end`.
 struct ClothStep {
   std::vector<Vec3d> start, end;
   std::vector<Triangle> triangles;
 };
 
-/// `cloth-ball` and `cloth-funnel` are real frames, and nothing when they are not there; `crumpled` is made:
-/// a sheet of 90,000 triangles whose folds pass through each other. Throws `Error` for other names.
+/// `cloth-ball` and `cloth-funnel` are real frames; returns nothing when their files are missing. `crumpled`
+/// is generated: a sheet of 90,000 triangles whose folds pass through each other. Throws `Error` for other
+/// names.
 std::optional<ClothStep> make_cloth_step(const std::string& name);
 
 }  // namespace supple::benchmarks

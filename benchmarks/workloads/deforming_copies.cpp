@@ -16,7 +16,8 @@ namespace {
 
 constexpr double turns_of_radian = 0.15915494309189533577;
 
-/// Rows of a rotation, all alike: a unit quaternion from a point of the four-dimensional ball.
+/// The rows of a uniformly distributed rotation: a unit quaternion from a point in the four-dimensional
+/// ball.
 std::array<Vec3d, 3> random_rotation(RandomNumbers& random) {
   double w = 0, x = 0, y = 0, z = 0, squared = 0;
   do {
@@ -36,7 +37,7 @@ Vec3f rounded(Vec3d p) {
   return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
 }
 
-/// Centred on the origin, longest half extent 1.
+/// Centres the mesh on the origin and scales its longest half extent to 1.
 void normalize(TriangleMesh& mesh) {
   Vec3d low = mesh.positions.front(), high = low;
   for (const Vec3d& p : mesh.positions) {

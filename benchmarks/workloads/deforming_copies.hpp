@@ -11,12 +11,12 @@
 
 namespace supple::benchmarks {
 
-/// Workload B: copies of one mesh, each rotated at random, on a cubic lattice so that neighbours overlap. At
-/// time t, which grows by 0.1 a frame, vertex b of the copy at c with phase p is at
-/// c + 0.03 sin(t + p) + b (1 + 0.04 sin(3 b.x + 4 b.y + t + p) + 0.015 sin(9 b.z - 7 b.x + 1.7 t + p)).
+/// Workload B: copies of one mesh, each rotated at random, on a cubic lattice on which neighbours overlap.
+/// Time t grows by 0.1 per frame. Vertex b of the copy at c with phase p is at c + 0.03 sin(t + p) + b (1 +
+/// 0.04 sin(3 b.x + 4 b.y + t + p) + 0.015 sin(9 b.z - 7 b.x + 1.7 t + p)).
 class DeformingCopies {
  public:
-  /// `spacing` is the lattice's. Only every `one_in`-th copy moves in `advance`.
+  /// `spacing` is the lattice constant. Only every `one_in`-th copy moves in `advance`.
   DeformingCopies(TriangleMesh mesh, std::size_t copies, double spacing, std::size_t one_in = 1,
                   std::uint64_t seed = 1);
 
@@ -24,14 +24,14 @@ class DeformingCopies {
   std::size_t triangle_count() const { return mesh_.triangles.size() * copies_.size(); }
   const std::vector<Triangle>& triangles() const { return mesh_.triangles; }
   const TriangleMesh& mesh() const { return mesh_; }
-  /// Of one copy at present. One coordinate past the last may be read: for those who load four at a time.
+  /// The current positions of one copy. One float past the last may be read, for loads of four floats.
   std::span<const Vec3f> positions(std::size_t copy) const {
     return std::span(copies_[copy].positions).first(copies_[copy].rest.size());
   }
   const Aabb& bounds(std::size_t copy) const { return copies_[copy].bounds; }
-  /// Whether the last `advance` moved it.
+  /// Whether the last `advance` moved the copy.
   bool moves(std::size_t copy) const { return copy % one_in_ == 0; }
-  /// One frame on.
+  /// Advances by one frame.
   void advance();
 
  private:
@@ -49,9 +49,9 @@ class DeformingCopies {
   std::vector<Copy> copies_;
 };
 
-/// A cell of workload B by name: SHAPExCOPIES, SHAPE being the triangles of a geodesic sphere of radius 1,
-/// such as 980, 18000, 69620 (20 times a square), or bunny; an ending `-rest` leaves nine copies of ten at
-/// rest. Nothing when the bunny is not there; throws `Error` for other names.
+/// Makes a cell of workload B: SHAPExCOPIES. SHAPE is `bunny` or the number of triangles of a geodesic
+/// sphere of radius 1, such as 980, 18000, 69620 (20 times a square). With the suffix `-rest`, nine of ten
+/// copies are at rest. Returns nothing when the bunny's file is missing. Throws `Error` for other names.
 std::optional<DeformingCopies> make_deforming_copies(const std::string& name);
 
 }  // namespace supple::benchmarks

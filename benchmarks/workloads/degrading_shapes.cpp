@@ -19,7 +19,7 @@ using Shape = DegradingShapes::Shape;
 
 constexpr std::array names_of_cells = {"soup", "parts", "stir", "roll", "crumple", "swing", "wave"};
 
-/// From 0 over 1 back to 0 as x goes from 0 to 2.
+/// Rises from 0 to 1 and falls back to 0 as x goes from 0 to 2.
 double there_and_back(double x) {
   const double phase = x - 2 * std::floor(x / 2);
   return phase < 1 ? phase : 2 - phase;
@@ -38,7 +38,7 @@ TriangleMesh placed(TriangleMesh mesh, double size, Vec3d center) {
   return mesh;
 }
 
-/// Triangles in the unit cube about the origin; velocities are of each triangle, a frame.
+/// Triangles in the unit cube around the origin, each with its own velocity per frame.
 Shape drifting_soup(std::uint32_t triangles, double size, Vec3d center, std::uint64_t seed) {
   RandomNumbers random(seed);
   Shape shape;
@@ -52,7 +52,7 @@ Shape drifting_soup(std::uint32_t triangles, double size, Vec3d center, std::uin
     velocities->push_back(random.direction() * 0.004);
   }
   shape.move = [velocities, center](std::uint32_t vertex, Vec3d p, double time) {
-    // Between walls of the cube.
+    // Reflect at the walls of the cube.
     const Vec3d drift = (*velocities)[vertex / 3] * time;
     const Vec3d end = p + drift;
     return center + Vec3d{there_and_back(end.x + 0.5) - 0.5, there_and_back(end.y + 0.5) - 0.5,
@@ -61,7 +61,7 @@ Shape drifting_soup(std::uint32_t triangles, double size, Vec3d center, std::uin
   return shape;
 }
 
-/// Sheets of 320 triangles at the cells of a cube, each on its way to another's cell.
+/// Sheets of 320 triangles in the cells of a cube; each moves to the cell of another one.
 Shape exchanging_parts(double frames_to_go, Vec3d center, std::uint64_t seed) {
   RandomNumbers random(seed);
   std::vector<std::uint32_t> cells(64);
@@ -106,7 +106,8 @@ Shape ball(std::uint32_t frequency, double radius, Vec3d center) {
   return shape;
 }
 
-/// 8 long, about as in the end a spiral of six turns; its direction turns evenly with time.
+/// A strip of length 8, about the length of the final spiral of six turns. Its direction changes linearly
+/// with time.
 Shape rolling_strip() {
   constexpr std::uint32_t columns = 1200;
   constexpr double length = 8, radius = 0.1, pitch = 0.005;

@@ -11,28 +11,28 @@
 
 namespace supple::benchmarks {
 
-/// Workload D: objects that deform so far that an octree of their rest pose tells their triangles apart
-/// badly, and two in which it does not matter.
+/// Workload D: objects that deform so far that an octree built for the rest pose becomes slow, and two
+/// shapes for which it does not.
 class DegradingShapes {
  public:
   struct Shape {
     TriangleMesh rest;
     bool self_collision = false;
-    std::vector<Vec3f> positions;  ///< at present
-    /// Where a vertex, at rest at p, is at a time.
+    std::vector<Vec3f> positions;  ///< current positions
+    /// The position at `time` of a vertex with rest position p.
     std::function<Vec3d(std::uint32_t vertex, Vec3d p, double time)> move;
   };
 
-  /// `soup`: the triangles of two soups drift apart, each its own way. `parts`: two bodies of 64 sheets which
-  /// exchange places. `stir`: two spheres, each in one object with a soup that drifts inside. `roll`: a strip
-  /// of cloth rolls up, tested against itself and a ball. `crumple`: a sheet of cloth is pushed together, a
-  /// ball inside. `swing`: as `parts`, there and back within four frames. `wave`: two spheres whose surfaces
-  /// wave. Throws `Error` for other names.
+  /// `soup`: the triangles of two soups drift apart, each in its own direction. `parts`: two bodies of 64
+  /// sheets that exchange places. `stir`: two objects, each a sphere with a drifting soup inside. `roll`: a
+  /// strip of cloth rolls up, tested against itself and a ball. `crumple`: a sheet of cloth is compressed,
+  /// with a ball inside. `swing`: as `parts`, back and forth within four frames. `wave`: two spheres with
+  /// waves on their surfaces. Throws `Error` for other names.
   explicit DegradingShapes(const std::string& name);
   static std::span<const char* const> names();
 
   std::span<const Shape> shapes() const { return shapes_; }
-  /// One frame on.
+  /// Advances by one frame.
   void advance();
 
  private:

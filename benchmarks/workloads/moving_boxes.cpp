@@ -22,7 +22,7 @@ double side_of(std::string_view name, std::size_t count) {
   throw Error("no box field is named '" + std::string(name) + "'; choose one of u1, u8, clu, cl8");
 }
 
-/// Back into [0, side], as often as the walls are in the way.
+/// Reflects a coordinate into [0, side], several times if necessary.
 void reflect(double& x, double& velocity, double side) {
   while (x < 0 || x > side) {
     x = x < 0 ? -x : 2 * side - x;

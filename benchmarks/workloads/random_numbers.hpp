@@ -8,8 +8,8 @@
 
 namespace supple::benchmarks {
 
-/// Random numbers, the same bits on every machine: the SplitMix64 generator by Steele, Lea and Flood (2014),
-/// and distributions that use nothing but arithmetic, square roots and the library's own sine.
+/// Random numbers with the same bits on every machine: the SplitMix64 generator of Steele, Lea and Flood
+/// (2014), and distributions that use only arithmetic, square roots and the library's own sine.
 class RandomNumbers {
  public:
   explicit RandomNumbers(std::uint64_t seed) : state_(seed) {}
@@ -20,14 +20,14 @@ class RandomNumbers {
     z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
     return z ^ (z >> 31);
   }
-  /// Of [0, 1).
+  /// Uniform in [0, 1).
   double uniform() { return static_cast<double>(next() >> 11) * 0x1p-53; }
   double uniform(double low, double high) { return low + (high - low) * uniform(); }
   Vec3d point_in_cube(double side) {
     const double x = uniform() * side, y = uniform() * side;
     return {x, y, uniform() * side};
   }
-  /// Of length 1, all directions alike.
+  /// A unit vector, uniformly distributed.
   Vec3d direction() {
     for (;;) {
       const double x = uniform(-1, 1), y = uniform(-1, 1), z = uniform(-1, 1);
@@ -35,20 +35,20 @@ class RandomNumbers {
       if (squared <= 1 && squared >= 0x1p-20) return Vec3d{x, y, z} * (1 / std::sqrt(squared));
     }
   }
-  /// Of mean 0 and variance 1 (Box and Muller).
+  /// Normal distribution with mean 0 and variance 1 (Box and Muller).
   double gaussian() {
     const double radius = std::sqrt(-2 * logarithm(1 - uniform()));
     return radius * sin_turns(uniform());
   }
-  /// Density ~ x^-3 on [low, high]: Pareto's of alpha 2, cut off.
+  /// Pareto distribution with alpha 2, bounded to [low, high]: density ~ x^-3.
   double bounded_pareto(double low, double high) {
     const double ratio = low / high;
     return low / std::sqrt(1 - uniform() * (1 - ratio * ratio));
   }
 
  private:
-  /// Of (0, 1]: the series of the inverse hyperbolic tangent, which the standard library need not round alike
-  /// everywhere.
+  /// For x in (0, 1], by the series of the inverse hyperbolic tangent, because standard libraries round
+  /// differently.
   static double logarithm(double x) {
     int exponent = 0;
     const double mantissa = std::frexp(x, &exponent);
@@ -61,7 +61,7 @@ class RandomNumbers {
   std::uint64_t state_;
 };
 
-/// By Newton's iteration: the same bits everywhere. For x ≥ 1.
+/// Newton's iteration, for x ≥ 1; the same bits everywhere.
 inline double cube_root(double x) {
   double root = x;
   for (int i = 0; i < 80; ++i) root -= (root - x / (root * root)) / 3;

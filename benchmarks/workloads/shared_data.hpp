@@ -7,11 +7,11 @@
 
 namespace supple::benchmarks {
 
-/// The folder of real meshes that is not part of the project: SUPPLE_DATA of the environment, else
-/// ../shared/data beside the source tree. It need not exist.
+/// The folder of real meshes, which are not part of the project: the environment variable SUPPLE_DATA, or
+/// ../shared/data beside the source tree. It may not exist.
 std::filesystem::path shared_data();
 
-/// Nothing when the folder has no such file.
+/// Returns nothing when the folder does not contain the file.
 std::optional<TriangleMesh> load_shared(const std::filesystem::path& relative);
 
 }  // namespace supple::benchmarks

@@ -118,7 +118,7 @@ SceneCost cost_of_scene_tree(std::uint32_t arity, std::size_t count, const Arity
   BoxField field(count, options.seed);
   BroadPhaseOptions broad_phase_options;
   broad_phase_options.scene_octree.arity = arity;
-  broad_phase_options.scene_octree.always_regions = true;
+  broad_phase_options.method = BroadPhaseMethod::octree;
   broad_phase_options.threads = options.threads;
   BroadPhase broad_phase(broad_phase_options);
   SceneCost cost;

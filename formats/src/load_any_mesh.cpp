@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::array<std::string_view, 4> native_extensions = {".obj", ".off", ".ply", ".stl"};
 
-// The upper three rows of a matrix that maps a node's points to the scene's.
+// The upper three rows of the matrix that maps points of a node to the scene.
 using Transform = std::array<std::array<double, 4>, 3>;
 constexpr Transform identity = {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
 
@@ -71,7 +71,7 @@ class NodeReader {
     const std::size_t first_triangle = mesh_.triangles.size();
     for (unsigned i = 0; i < node.mNumMeshes; ++i) append(*scene.mMeshes[node.mMeshes[i]]);
 
-    // An identity would change infinities and the sign of zero.
+    // Multiplying by an identity would change infinities and the sign of zero.
     const bool moves = to_scene != identity;
     for (const Vec3d& point : welder_.take_points()) {
       mesh_.positions.push_back(moves ? to_scene * point : point);
@@ -110,7 +110,7 @@ class NodeReader {
   VertexWelder welder_;
 };
 
-// A node comes before its children, these in their order.
+// Depth first: a node comes before its children, and the children keep their order.
 TriangleMesh fuse(const aiScene& scene, const std::string& file) {
   struct Visit {
     const aiNode* node;
@@ -130,7 +130,7 @@ TriangleMesh fuse(const aiScene& scene, const std::string& file) {
   return mesh;
 }
 
-// From Assimp's own list, which reads "*.3d;*.3ds;...".
+// Parses Assimp's own list, which has the form "*.3d;*.3ds;...".
 std::vector<std::string> list_extensions() {
   std::vector<std::string> result(native_extensions.begin(), native_extensions.end());
   aiString list;

@@ -19,33 +19,36 @@ struct IndexPair {
   constexpr auto operator<=>(const IndexPair&) const = default;
 };
 
-/// What the last call of `BroadPhase::find_object_pairs` did.
+/// What the last call of `BroadPhase::find_object_pairs` did. All counts are 0 when no volume changed.
 struct BroadPhaseStats {
+  /// The method that ran last: octree or grid when `automatic` was chosen.
+  BroadPhaseMethod method = BroadPhaseMethod::automatic;
   std::uint64_t object_pairs_tested = 0;  ///< volume against volume
-  std::uint64_t objects_changed = 0;      ///< volumes that differ from the call before, new ones included
-  // Of the scene octree; 0 for other methods, and in a call that searches without regions.
+  std::uint64_t objects_changed = 0;      ///< volumes that differ from the call before, new and gone ones too
+  std::uint64_t objects_paired = 0;  ///< objects whose pairs were searched; the pairs of others were kept
+  // Of the octree; 0 for other methods.
   std::uint64_t objects_placed = 0;    ///< taken out of regions or put into others
   std::uint64_t regions_expanded = 0;  ///< groups of eight made
   std::uint64_t regions_reduced = 0;   ///< regions that became leaves again
   std::uint64_t regions_rebuilt = 0;   ///< 1 when all regions were made anew
-  std::uint64_t objects_paired = 0;    ///< whose pairs were searched; those of the others were kept
 };
 
 struct BroadPhaseOptions {
-  BroadPhaseMethod method = BroadPhaseMethod::octree;
-  SceneOctreeOptions scene_octree;
+  BroadPhaseMethod method = BroadPhaseMethod::automatic;
+  /// For the methods automatic and octree.
+  SceneOctreeOptions scene_octree{};
   /// Worker threads, 0 for one a core. The pairs are the same for any number.
   std::uint32_t threads = 0;
 };
 
-/// The broad phase by itself: volumes in, overlapping pairs out, for programs that have boxes or balls of
-/// their own and want no meshes.
+/// The broad phase by itself: volumes in, overlapping pairs out, for programs that have boxes or spheres of
+/// their own and need no meshes.
 ///
-/// It keeps what the last call found: volume i is taken to be the same object from call to call, and what did
-/// not change costs close to nothing. Calls on one object must not overlap.
+/// It keeps the volumes and the pairs of the last call: volume i is the same object from call to call. Calls
+/// on one object must not overlap.
 class BroadPhase {
  public:
-  /// Throws `Error` when an option is out of its range.
+  /// Throws `Error` when an option is out of its range, or has no effect with the method.
   explicit BroadPhase(const BroadPhaseOptions& options = {});
   ~BroadPhase();
   BroadPhase(BroadPhase&&) noexcept;
@@ -54,33 +57,34 @@ class BroadPhase {
   /// All pairs whose closed volumes overlap, each once, sorted by (a, b). The span lasts until the next call.
   ///
   /// The number of volumes may differ from call to call: those past the end are gone. Empty volumes are in no
-  /// pair. Coordinates may be infinite. A box with a NaN is empty, a ball with a NaN overlaps everything but
-  /// empty balls. Balls are compared in double and may be reported when apart by rounding, never the reverse.
-  /// A call with balls after one with boxes, or the reverse, starts afresh.
+  /// pair. Coordinates may be infinite. A box with a NaN is empty, a sphere with a NaN overlaps everything
+  /// but empty spheres. Spheres are compared in double and may be reported when apart by rounding, never the
+  /// reverse. A call with spheres after one with boxes, or the reverse, forgets all volumes of the call
+  /// before.
   ///
-  /// Cost for n volumes and k pairs: octree O(n + k), with c of them changed O(c), besides comparing volumes
-  /// and moving pairs in memory, or all anew, whichever costs less; sweep O(n log n + pairs that overlap
-  /// along one axis); brute O(n²). No allocation once the buffers are as large as the scene needs.
+  /// Cost for n volumes, k pairs and c changed volumes: comparing volumes is O(n). When none changed that is
+  /// all; otherwise octree O(c + k), or O(n + k) when c is large or the regions are rebuilt; grid O(n + k)
+  /// unless many volumes share cells; sweep O(n log n + pairs that overlap along one axis); brute O(n²).
+  /// No allocation once the buffers are as large as the scene needs.
   std::span<const IndexPair> find_object_pairs(std::span<const Aabb> boxes);
   std::span<const IndexPair> find_object_pairs(std::span<const BoundingSphere> spheres);
 
-  /// The same, told which volumes may differ from the call before: `changed` has the indices of all that do,
-  /// in any order; one that does not differ, or is there twice, does no harm. Volumes past the end of those
-  /// of the call before are found without. The octree looks at no others, in O(c) instead of O(n): one that
-  /// changed and is not in the list is taken to be as it was last seen, until a list has it or a call comes
-  /// without one. The other methods look at all.
+  /// The same with a dirty list, which saves comparing all volumes: `dirty` has the indices of all volumes
+  /// that may differ from the call before, in any order; repeats and unchanged volumes are allowed. Volumes
+  /// past the end of the call before need not be listed. A volume that changed and is not listed keeps the
+  /// value that was last seen, until a list has it or a call comes without a list.
   /// Throws `Error` when an index is not below the number of volumes.
   std::span<const IndexPair> find_object_pairs(std::span<const Aabb> boxes,
-                                               std::span<const std::uint32_t> changed);
+                                               std::span<const std::uint32_t> dirty);
   std::span<const IndexPair> find_object_pairs(std::span<const BoundingSphere> spheres,
-                                               std::span<const std::uint32_t> changed);
+                                               std::span<const std::uint32_t> dirty);
 
   /// Of the last call.
   const BroadPhaseStats& stats() const;
-  /// Regions of the scene octree, root first, ascending by number; empty for other methods. Made for this
-  /// call, O(n log n), when the last search did without.
+  /// The regions that the last search used, root first, ascending by number; empty unless that was the
+  /// octree. O(regions log regions).
   std::vector<SceneRegion> regions() const;
-  /// Checks every invariant; the empty string, or what is wrong.
+  /// Checks every invariant; the empty string, or what is wrong. For tests.
   std::string validate() const;
 
  private:

@@ -23,7 +23,7 @@ template <class Enum>
 inline constexpr std::array<const char*, 0> words{};
 
 template <class Enum>
-concept Worded = std::is_enum_v<Enum> && (words<Enum>.size() > 0);
+concept Worded = std::is_enum_v<Enum> &&(words<Enum>.size() > 0);
 
 /// Null when the value is none of the enumeration.
 template <Worded Enum>
@@ -112,7 +112,9 @@ template <class Struct>
 struct Description;
 
 template <class Struct>
-concept Described = requires { Description<std::remove_const_t<Struct>>::name; };
+concept Described = requires {
+  Description<std::remove_const_t<Struct>>::name;
+};
 
 template <Described Struct, class Visitor>
 constexpr void for_each_field(Visitor&& visitor) {

@@ -14,7 +14,7 @@ inline constexpr std::array words<BoundingVolume>{"aabb", "sphere"};
 template <>
 inline constexpr std::array words<SphereFit>{"vertices", "box"};
 template <>
-inline constexpr std::array words<BroadPhaseMethod>{"octree", "sweep", "brute"};
+inline constexpr std::array words<BroadPhaseMethod>{"automatic", "octree", "grid", "sweep", "brute"};
 template <>
 inline constexpr std::array words<RegionSphereTest>{"arvo", "grown_box"};
 template <>
@@ -34,8 +34,9 @@ struct Description<ImpactOptions> {
     visitor(Field<Options, bool>{
         .name = "exact",
         .member = &Options::exact,
-        .doc = "Continuous contacts that floating point cannot decide: exact arithmetic decides them, or they "
-               "are reported as within tolerance",
+        .doc =
+            "Continuous contacts that floating point cannot decide: exact arithmetic decides them, or they "
+            "are reported as within tolerance",
         .key = "undecided",
         .truth_words = {"report", "exact"}});
   }
@@ -64,8 +65,9 @@ struct Description<ObjectOctreeOptions> {
                                           .key = "tree_arity"});
     visitor(Field<Options, bool>{.name = "regular",
                                  .member = &Options::regular,
-                                 .doc = "How the object's octree is built: equally full leaves, or the octants "
-                                        "of each node's cell as in the paper",
+                                 .doc =
+                                     "How the object's octree is built: equally full leaves, or the octants "
+                                     "of each node's cell as in the paper",
                                  .key = "object_octree",
                                  .truth_words = {"balanced", "regular"}});
     visitor(Field<Options, bool>{
@@ -98,17 +100,14 @@ struct Description<SceneOctreeOptions> {
     visitor(Field<Options, RegionSphereTest>{
         .name = "region_sphere_test",
         .member = &Options::region_sphere_test,
-        .doc = "How a region of the scene octree is tested against a sphere: by Arvo's test or by the paper's",
+        .doc =
+            "How a region of the scene octree is tested against a sphere: by Arvo's test or by the paper's",
         .key = "region_test"});
     visitor(Field<Options, std::uint32_t>{.name = "arity",
                                           .member = &Options::arity,
                                           .doc = "Children of a region of the scene octree",
                                           .range = Range::from(2, 8).only_powers_of_two(),
                                           .key = "scene_octree_arity"});
-    visitor(Field<Options, bool>{
-        .name = "always_regions",
-        .member = &Options::always_regions,
-        .doc = "Search the regions of the scene octree in every step, also where that costs more"});
   }
 };
 
@@ -118,8 +117,9 @@ struct Description<ObjectOptions> {
   template <class Visitor>
   static constexpr void visit(Visitor&& visitor) {
     using Options = ObjectOptions;
-    visitor(Field<Options, std::string>{
-        .name = "name", .member = &Options::name, .doc = "Name of the object in tables, messages and results"});
+    visitor(Field<Options, std::string>{.name = "name",
+                                        .member = &Options::name,
+                                        .doc = "Name of the object in tables, messages and results"});
     visitor(Field<Options, bool>{.name = "self_collision",
                                  .member = &Options::self_collision,
                                  .doc = "Also test the object against itself",

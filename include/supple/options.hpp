@@ -23,8 +23,20 @@ enum class SphereFit : std::uint8_t {
   box,
 };
 
-/// How object pairs are found. All report the same pairs in the same order.
-enum class BroadPhaseMethod : std::uint8_t { octree, sweep, brute };
+/// How object pairs are found. All methods report the same pairs in the same order.
+enum class BroadPhaseMethod : std::uint8_t {
+  /// Picks octree or grid in each step. The octree runs when fewer than one object in 24 changed in this step
+  /// and in each of the three before; otherwise the grid runs. A scene in which more than 256 other objects
+  /// share the grid cell of an average object runs the octree, and tries the grid again after 64 steps.
+  automatic,
+  /// The paper's incremental octree of regions. Best when few objects change, or when objects crowd in few
+  /// places. It has regions to look at.
+  octree,
+  /// A hierarchical grid that is made anew in each step with changes. Best when many objects change.
+  grid,
+  sweep,  ///< sweep and prune along one axis
+  brute,  ///< every object against every other
+};
 
 /// How a region of the scene octree is tested against a sphere.
 enum class RegionSphereTest : std::uint8_t {
@@ -63,7 +75,8 @@ struct ObjectOctreeOptions {
   bool rebuild_degraded = true;
 };
 
-/// Shape of the octree of the scene.
+/// Shape of the octree of the scene. Any value but the default is an `Error` when the broad phase is grid,
+/// sweep or brute.
 struct SceneOctreeOptions {
   /// Depth at which regions no longer expand, 1 to 20; 0 chooses it from the number, the places and the sizes
   /// of the objects. Less far from the origin, where floats cannot tell finer regions apart. It counts levels
@@ -74,9 +87,8 @@ struct SceneOctreeOptions {
   RegionSphereTest region_sphere_test = RegionSphereTest::arvo;
   /// Children of a region: 8, 4 or 2. The pairs found are the same; for comparison.
   std::uint32_t arity = 8;
-  /// Search the regions in every step. Otherwise they are left to scenes with many objects in one place:
-  /// elsewhere a search without them costs less. The pairs found are the same; for comparison.
-  bool always_regions = false;
+
+  constexpr bool operator==(const SceneOctreeOptions&) const = default;
 };
 
 /// Of one object, given when it is added.
@@ -97,7 +109,7 @@ struct ObjectOptions {
 struct SceneOptions {
   BoundingVolume bounding_volume = BoundingVolume::aabb;
   SphereFit sphere_fit = SphereFit::vertices;
-  BroadPhaseMethod broad_phase = BroadPhaseMethod::octree;
+  BroadPhaseMethod broad_phase = BroadPhaseMethod::automatic;
   SceneOctreeOptions scene_octree{};
   ContactMode contacts = ContactMode::intersection;
   /// Also give the points of each contact (`DetectResult::contact_points`). Off saves a little time.

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "supple/contact.hpp"
+#include "supple/options.hpp"
 #include "supple/types.hpp"
 
 namespace supple {
@@ -57,6 +58,8 @@ struct StepStats {
   double sort_and_events_seconds = 0;  ///< canonical order and events
   double total_seconds = 0;
 
+  /// The method of the broad phase that ran last: octree or grid when the scene has `automatic`.
+  BroadPhaseMethod broad_phase_method = BroadPhaseMethod::automatic;
   std::uint64_t objects_refitted = 0;
   std::uint64_t triangles_refitted = 0;
   std::uint64_t subtrees_rebuilt = 0;  ///< parts of octrees that had degraded, and their triangles

@@ -5,6 +5,7 @@
 #include "supple/continuous.hpp"
 #include "supple/description.hpp"
 #include "supple/inspection.hpp"
+#include "supple/option_descriptions.hpp"
 #include "supple/result.hpp"
 
 // Descriptions of what the core gives: the words for kinds, and the statistics (description.hpp).
@@ -35,7 +36,8 @@ struct Description<StepStats> {
       visitor(Field<Stats, double>{
           .name = field, .member = member, .doc = doc, .unit = "s", .is_of_machine = true});
     };
-    const auto count = [&](const char* field, std::uint64_t Stats::*member, const char* unit, const char* doc) {
+    const auto count = [&](const char* field, std::uint64_t Stats::*member, const char* unit,
+                           const char* doc) {
       visitor(Field<Stats, std::uint64_t>{.name = field, .member = member, .doc = doc, .unit = unit});
     };
     const auto work = [&](const char* field, std::uint64_t Stats::*member, const char* doc) {
@@ -50,6 +52,9 @@ struct Description<StepStats> {
     seconds("sort_and_events_seconds", &Stats::sort_and_events_seconds,
             "Contacts are put in order, and events are found");
     seconds("total_seconds", &Stats::total_seconds, "The whole detection");
+    visitor(Field<Stats, BroadPhaseMethod>{.name = "broad_phase_method",
+                                           .member = &Stats::broad_phase_method,
+                                           .doc = "Method of the broad phase that ran"});
     count("objects_refitted", &Stats::objects_refitted, "objects", "Objects with new positions");
     count("triangles_refitted", &Stats::triangles_refitted, "triangles", "Triangles of these objects");
     count("subtrees_rebuilt", &Stats::subtrees_rebuilt, "subtrees", "Parts of octrees that were rebuilt");
@@ -79,18 +84,21 @@ struct Description<BroadPhaseStats> {
   template <class Visitor>
   static constexpr void visit(Visitor&& visitor) {
     using Stats = BroadPhaseStats;
-    const auto count = [&](const char* field, std::uint64_t Stats::*member, const char* unit, const char* doc) {
+    const auto count = [&](const char* field, std::uint64_t Stats::*member, const char* unit,
+                           const char* doc) {
       visitor(Field<Stats, std::uint64_t>{.name = field, .member = member, .doc = doc, .unit = unit});
     };
+    visitor(
+        Field<Stats, BroadPhaseMethod>{.name = "method", .member = &Stats::method, .doc = "Method that ran"});
     count("object_pairs_tested", &Stats::object_pairs_tested, "pairs", "Tests of two volumes");
     count("objects_changed", &Stats::objects_changed, "objects", "Volumes that differ from the call before");
+    count("objects_paired", &Stats::objects_paired, "objects",
+          "Objects whose pairs were searched; the pairs of the others were kept");
     count("objects_placed", &Stats::objects_placed, "objects",
           "Objects that were taken out of regions or put into others");
     count("regions_expanded", &Stats::regions_expanded, "groups", "Groups of regions that were made");
     count("regions_reduced", &Stats::regions_reduced, "regions", "Regions that became leaves again");
     count("regions_rebuilt", &Stats::regions_rebuilt, "times", "All regions were rebuilt");
-    count("objects_paired", &Stats::objects_paired, "objects",
-          "Objects whose pairs were searched; the pairs of the others were kept");
   }
 };
 

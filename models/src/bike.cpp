@@ -2,14 +2,15 @@
 #include <utility>
 #include <vector>
 
-#include "mesh_builder.hpp"
 #include "built_in.hpp"
+#include "mesh_builder.hpp"
 #include "supple/trigonometry.hpp"
 
-// A racing bicycle, drawn in metres and scaled at the end: x forward, y up, the chain on the right at +z.
+// A racing bicycle, modelled in metres and scaled at the end. x points forward, y up; the chain is on the
+// right, at +z.
 //
-// 2 · 9543 vertices − 18238 faces = 848 = 4 · 212, so the surface needs exactly 212 closed parts without a
-// handle, besides any number of rings: 64 spokes, 112 chain links and the 36 that `make_bike` lists.
+// 2 · 9543 vertices − 18238 faces = 848 = 4 · 212. So the surface needs exactly 212 closed parts of genus 0,
+// and any number of rings: 64 spokes, 112 chain links, and the 36 parts that `make_bike` lists.
 
 namespace supple::models {
 namespace {
@@ -50,7 +51,7 @@ void add_spokes(MeshBuilder& builder, Vec3d hub) {
   for (int spoke = 0; spoke < count; ++spoke) {
     const double turns = (spoke + 0.5) / count;
     const double side = spoke % 2 == 0 ? 1 : -1;
-    // Each pair leaves the flange forward and backward, so that spokes cross as on a real wheel.
+    // Spokes leave the flange in pairs, one forward and one backward, so that they cross as on a real wheel.
     const double lean = (spoke / 2) % 2 == 0 ? 0.17 : -0.17;
     const Vec3d start = hub + direction_at(turns + lean) * 0.024 + sideways * (0.030 * side);
     const Vec3d end = hub + direction_at(turns) * (rim_radius - 0.006) + sideways * (0.003 * side);
@@ -76,7 +77,7 @@ void add_wheel(MeshBuilder& builder, Vec3d hub) {
   builder.add_lathe(hub, sideways, profile, 12, hub - sideways * 0.064, hub + sideways * 0.064);
 }
 
-/// A toothed ring: two sections a tooth.
+/// A toothed ring with two sections per tooth.
 void add_gear(MeshBuilder& builder, Vec3d center, double radius, double ring_height, std::uint32_t teeth) {
   constexpr double tooth_height = 0.005;
   std::vector<Section> sections;
@@ -90,13 +91,13 @@ void add_gear(MeshBuilder& builder, Vec3d center, double radius, double ring_hei
   builder.add_loop(sections, 4);
 }
 
-/// The line that the chain follows around both gears, closed.
+/// The closed line that the chain follows around both gears.
 std::vector<Vec3d> chain_path() {
   const Vec3d to_front = bottom_bracket - rear_hub;
   constexpr int steps = 2048;
   std::vector<Vec3d> path;
   for (int i = 0; i <= steps; ++i) {
-    // The outline of the hull of two discs: in each direction, the disc that reaches further.
+    // The outline of the convex hull of two discs: in each direction, take the disc that extends further.
     const Vec3d normal = direction_at(static_cast<double>(i % steps) / steps);
     const bool front = dot(to_front, normal) + chainring_radius > sprocket_radius;
     path.push_back(
@@ -106,7 +107,7 @@ std::vector<Vec3d> chain_path() {
   return path;
 }
 
-/// Links are blocks of 8 vertices, by turns a wide and a narrow one, that overlap at the pins.
+/// Links are blocks of 8 vertices, alternately wide and narrow, that overlap at the pins.
 void add_chain(MeshBuilder& builder) {
   constexpr std::uint32_t links = 112;
   const std::vector<Vec3d> pins = resample(chain_path(), links + 1);
@@ -123,7 +124,7 @@ void add_chain(MeshBuilder& builder) {
   }
 }
 
-/// Eight closed parts.
+/// Adds eight closed parts.
 void add_frame(MeshBuilder& builder) {
   const Vec3d head_axis = unit(head_high - head_low);
   const Vec3d seat_axis = unit(seat_cluster - bottom_bracket);
@@ -145,7 +146,7 @@ void add_frame(MeshBuilder& builder) {
   }
 }
 
-/// Two blades and a crown.
+/// Adds two blades and a crown.
 void add_fork(MeshBuilder& builder) {
   const Vec3d head_axis = unit(head_high - head_low);
   const Vec3d crown = head_low - head_axis * 0.012;
@@ -159,7 +160,7 @@ void add_fork(MeshBuilder& builder) {
   builder.add_bar(crown - sideways * 0.044, crown + sideways * 0.044, 0.0165, 0.0165, 6, 10);
 }
 
-/// Stem, drop bar and two brake levers.
+/// Adds the stem, the drop bar and two brake levers.
 void add_handlebar(MeshBuilder& builder) {
   const Vec3d head_axis = unit(head_high - head_low);
   const Vec3d stem_top = head_high + head_axis * 0.050;
@@ -193,7 +194,7 @@ void add_handlebar(MeshBuilder& builder) {
   }
 }
 
-/// Post, saddle and two rails.
+/// Adds the post, the saddle and two rails.
 void add_seat(MeshBuilder& builder) {
   const Vec3d seat_axis = unit(seat_cluster - bottom_bracket);
   const Vec3d post_top = seat_cluster + seat_axis * 0.155;
@@ -227,7 +228,8 @@ void add_seat(MeshBuilder& builder) {
   }
 }
 
-/// Bottom bracket shell, two cranks, two pedals and their axles, five spider arms: twelve closed parts.
+/// Adds twelve closed parts: the bottom bracket shell, two cranks, two pedals, their two axles, five spider
+/// arms.
 void add_drive(MeshBuilder& builder) {
   builder.add_bar(bottom_bracket - sideways * 0.036, bottom_bracket + sideways * 0.036, 0.022, 0.022, 4, 12);
   const Vec3d front{0.94, -0.34, 0};
@@ -271,7 +273,7 @@ void add_drive(MeshBuilder& builder) {
   add_chain(builder);
 }
 
-/// A closed part: two arms around the tyre, as one bent tube.
+/// Adds one closed part: two arms around the tyre, modelled as one bent tube.
 void add_brake(MeshBuilder& builder, Vec3d mount, Vec3d toward_rim) {
   const std::array<Vec3d, 7> arc{
       mount + toward_rim * 0.066 - sideways * 0.020, mount + toward_rim * 0.046 - sideways * 0.030,

@@ -4,7 +4,7 @@
 
 namespace supple::models {
 
-/// The built-in models, as `make_model` gives them. Each costs well below a second.
+/// The built-in models that `make_model` returns. Building one takes well below a second.
 TriangleMesh make_pawn();
 TriangleMesh make_fish();
 TriangleMesh make_rabbit();

@@ -3,8 +3,8 @@
 #include <utility>
 #include <vector>
 
-#include "mesh_builder.hpp"
 #include "built_in.hpp"
+#include "mesh_builder.hpp"
 
 namespace supple::models {
 namespace {
@@ -13,7 +13,7 @@ struct BodySection {
   double x, y, half_height, half_width;
 };
 
-/// 12 rings of 10 and two poles, nose towards +x: 122 vertices.
+/// 12 rings of 10 vertices and two poles, nose towards +x: 122 vertices.
 void add_body(MeshBuilder& builder) {
   constexpr std::array<BodySection, 12> rings{{
       {-0.315, 0.012, 0.046, 0.014},
@@ -35,7 +35,7 @@ void add_body(MeshBuilder& builder) {
   builder.add_loft(sections, 10, Vec3d{-0.33, 0.012, 0}, Vec3d{0.485, -0.024, 0});
 }
 
-/// A low dome whose flat side is inside the head: 13 vertices.
+/// A low dome whose flat side lies inside the head: 13 vertices.
 void add_eye(MeshBuilder& builder, double side) {
   const Vec3d center{0.375, 0.035, 0.060 * side};
   const Vec3d outward = unit({0.25, 0.15, side});
@@ -43,7 +43,7 @@ void add_eye(MeshBuilder& builder, double side) {
   builder.add_lathe(center, outward, profile, 6, {}, center + outward * 0.022);
 }
 
-/// A fin that is given for the right side, +z.
+/// Adds a fin and its mirror image. The arguments describe the fin on the right side, at +z.
 void add_paired_fin(MeshBuilder& builder, std::span<const Vec3d> root, std::span<const Vec3d> edge,
                     bool left) {
   if (!left) return builder.add_strip(root, edge);
@@ -56,14 +56,14 @@ void add_paired_fin(MeshBuilder& builder, std::span<const Vec3d> root, std::span
 
 }  // namespace
 
-// Swims towards +x. 338 faces from 216 vertices: three closed parts and seven fins.
+// The fish swims towards +x. It has 338 faces and 216 vertices: three closed parts and seven fins.
 TriangleMesh make_fish() {
   MeshBuilder builder;
   add_body(builder);
   add_eye(builder, 1);
   add_eye(builder, -1);
 
-  // The fins are open sheets all of whose vertices are on the border: 68 vertices, 54 faces.
+  // The fins are open sheets with every vertex on the border: 68 vertices, 54 faces.
   constexpr std::array<Vec3d, 8> tail_root{{{-0.430, 0.230, 0},
                                             {-0.375, 0.165, 0},
                                             {-0.325, 0.095, 0},

@@ -1,14 +1,14 @@
 #include <utility>
 
+#include "built_in.hpp"
 #include "implicit_surface.hpp"
 #include "mesh_builder.hpp"
-#include "built_in.hpp"
 #include "remesh.hpp"
 
 namespace supple::models {
 namespace {
 
-// Metres, for a grown-up of 1.75 m who looks towards +z; the left side is at +x.
+// Metres; an adult of 1.75 m who looks towards +z. The left side is at +x.
 void add_head(ImplicitSurface& surface) {
   surface.set_style(0.05, 0.80);
   surface.add_bone({0, 1.44, -0.018}, {0, 1.56, -0.004}, 0.062, 0.054);  // neck
@@ -63,7 +63,7 @@ void add_arm(ImplicitSurface& surface, Vec3d shoulder, Vec3d elbow, Vec3d wrist)
   surface.add_ellipsoid(lerp(elbow, wrist, 0.28), {0.042, 0.085, 0.042}, {0, 0, 1}, wrist - elbow);
 }
 
-/// A mitten: palm, fingers as one, thumb. `palm` is the way the palm faces.
+/// A mitten: a palm, one block for all fingers, a thumb. The palm faces the direction `palm`.
 void add_hand(ImplicitSurface& surface, Vec3d wrist, Vec3d along, Vec3d palm, Vec3d thumb) {
   const Vec3d forward = unit(along);
   const Vec3d inward = unit(palm);
@@ -78,8 +78,8 @@ void add_hand(ImplicitSurface& surface, Vec3d wrist, Vec3d along, Vec3d palm, Ve
 
 }  // namespace
 
-// One closed surface whose right hand rests on the hip. The arm makes a handle, so that there are twice as
-// many faces as vertices: 1250 and 2500.
+// One closed surface whose right hand rests on the hip. The arm makes a handle, so the surface has genus 1
+// and twice as many faces as vertices: 2500 and 1250.
 TriangleMesh make_human() {
   ImplicitSurface surface;
   add_torso(surface);

@@ -63,13 +63,14 @@ SurfaceSample ImplicitSurface::sample(Vec3d point) const {
   assert(!parts_.empty());
   SurfaceSample result{std::numeric_limits<double>::max(), parts_.front().edge_length};
   for (const Part& part : parts_) {
-    // Parts too far away to count need no distance. Twice what is needed, for an ellipsoid's is approximate.
+    // Skip parts that are too far away to contribute. The factor 2 covers the approximate distance of
+    // ellipsoids.
     const double range = part.reach + 2 * (std::abs(result.distance) + part.blend);
     const Vec3d from_middle = point - part.middle;
     if (dot(from_middle, from_middle) > range * range) continue;
 
     const double d = distance_to(part, point);
-    // Quadratic smooth minimum, after Quilez: within `blend` of equal distances both count.
+    // Quadratic smooth minimum (Quilez): both distances contribute while they differ by less than `blend`.
     if (part.kind == Kind::carved_ellipsoid) {
       const double overlap = std::max(part.blend - std::abs(result.distance + d), 0.0);
       const double share = std::clamp(0.5 - 0.5 * (result.distance + d) / part.blend, 0.0, 1.0);
@@ -86,7 +87,7 @@ SurfaceSample ImplicitSurface::sample(Vec3d point) const {
 }
 
 Vec3d ImplicitSurface::project(Vec3d point) const {
-  // Slope and value from the corners of a small tetrahedron.
+  // Estimate value and gradient from the corners of a small tetrahedron.
   constexpr double step = 1e-4;
   constexpr std::array<Vec3d, 4> corners{{{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}}};
   Vec3d slope;
@@ -96,13 +97,13 @@ Vec3d ImplicitSurface::project(Vec3d point) const {
     slope = slope + corner * (d / (4 * step));
     distance += d / 4;
   }
-  // In creases between parts the slope is small; a floor keeps the step from shooting off.
+  // The gradient is small in creases between parts; the floor bounds the step.
   return point - slope * (distance / std::max(dot(slope, slope), 0.25));
 }
 
 namespace {
 
-/// Values at the corners of a grid of cubes, and the surface's vertices, at most one on each edge.
+/// Samples the corners of a grid of cubes and makes the vertices of the surface, at most one per edge.
 class TetrahedraMarcher {
  public:
   TetrahedraMarcher(const ImplicitSurface& surface, Vec3d low, Vec3d high, double cell)
@@ -129,11 +130,11 @@ class TetrahedraMarcher {
   static constexpr std::uint32_t block = 4;
   using Node = std::array<std::uint32_t, 3>;
 
-  /// Values of block³ nodes: one value for all where the surface is far from them.
+  /// Samples block³ nodes, or writes one value for all when the surface is far from them.
   void sample_block(const ImplicitSurface& surface, const Node& first) {
     const double half_side = cell_ * (block - 1) / 2;
     const double middle = surface.sample(position(first) + Vec3d{1, 1, 1} * half_side).distance;
-    // Twice the half diagonal, because the distance is approximate.
+    // The distance is approximate, so compare with twice the half diagonal.
     const bool far = std::abs(middle) > 2 * std::sqrt(3.0) * half_side;
     for (std::uint32_t z = first[2]; z < std::min(first[2] + block, counts_[2]); ++z)
       for (std::uint32_t y = first[1]; y < std::min(first[1] + block, counts_[1]); ++y)
@@ -154,7 +155,7 @@ class TetrahedraMarcher {
   bool inside(const Node& node) const { return values_[index(node)] < 0; }
 
   void march_cube(const Node& corner) {
-    // Kuhn's six tetrahedra: from the low corner to the high one, the axes in each order.
+    // Kuhn's six tetrahedra: paths from the low corner to the high corner, one for each order of the axes.
     static constexpr int orders[6][3] = {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}};
     for (const auto& order : orders) {
       std::array<Node, 4> nodes{corner, corner, corner, corner};
@@ -188,7 +189,7 @@ class TetrahedraMarcher {
     }
   }
 
-  /// The vertex on the edge between two nodes of one tetrahedron, `low` being the nearer to the origin.
+  /// The vertex on the edge between two nodes of one tetrahedron. `low` is the node nearer to the origin.
   std::uint32_t edge_vertex(const Node& low, const Node& high) {
     const std::size_t way = (high[0] - low[0]) + 2 * (high[1] - low[1]) + 4 * (high[2] - low[2]);
     std::uint32_t& vertex = edge_vertices_[index(low) * 7 + way - 1];
@@ -196,7 +197,7 @@ class TetrahedraMarcher {
       vertex = static_cast<std::uint32_t>(mesh_.positions.size());
       const double a = values_[index(low)];
       const double b = values_[index(high)];
-      // Away from the ends, so that no two vertices around a node fall together.
+      // Keep away from the ends, so that no two vertices around a node coincide.
       mesh_.positions.push_back(lerp(position(low), position(high), std::clamp(a / (a - b), 0.1, 0.9)));
     }
     return vertex;
@@ -213,7 +214,7 @@ class TetrahedraMarcher {
   double cell_;
   std::array<std::uint32_t, 3> counts_{};
   std::vector<double> values_;
-  std::vector<std::uint32_t> edge_vertices_;  // seven ways lead up from each node
+  std::vector<std::uint32_t> edge_vertices_;  // seven edges lead up from each node
   TriangleMesh mesh_;
 };
 

@@ -94,7 +94,7 @@ void MeshBuilder::add_tube(std::span<const Vec3d> path, std::span<const double> 
   Vec3d u = any_perpendicular(path[1] - path[0]);
   for (std::size_t i = 0; i < path.size(); ++i) {
     const Vec3d forward = unit(path[std::min(i + 1, path.size() - 1)] - path[i == 0 ? 0 : i - 1]);
-    // Carrying the frame along keeps the tube from twisting.
+    // Transport the frame along the path, so that the tube does not twist.
     u = unit(u - forward * dot(u, forward));
     sections.push_back({path[i], u * radii[i], cross(forward, u) * radii[i]});
   }
@@ -200,7 +200,7 @@ std::vector<Vec3d> resample(std::span<const Vec3d> polyline, std::uint32_t count
 
 Vec3d any_perpendicular(Vec3d direction) {
   const Vec3d d = unit(direction);
-  // z, across the plane that most parts lie in, gives rings that are symmetric to that plane.
+  // The z axis is perpendicular to the plane of most parts, so rings are symmetric to that plane.
   const Vec3d helper = d.z * d.z < 0.8 ? Vec3d{0, 0, 1} : Vec3d{1, 0, 0};
   return unit(helper - d * dot(helper, d));
 }
@@ -219,7 +219,7 @@ void normalize(TriangleMesh& mesh) {
   const Vec3d size = high - low;
   const int longest = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
   for (Vec3d& p : mesh.positions) {
-    // The ends are set, not computed: rounding would leave the side an ulp off 1.
+    // Assign the ends instead of computing them: rounding would leave the side one ulp off 1.
     const double end = p[longest] == low[longest] ? -0.5 : p[longest] == high[longest] ? 0.5 : 0;
     p = (p - center) * (1 / size[longest]);
     if (end != 0) p[longest] = end;

@@ -5,7 +5,7 @@
 
 namespace supple::models {
 
-/// The direction of `a`, which must not be zero.
+/// `a` must not be zero.
 inline Vec3d unit(Vec3d a) {
   return a * (1 / norm(a));
 }
@@ -14,7 +14,7 @@ inline Vec3d lerp(Vec3d a, Vec3d b, double t) {
   return a + (b - a) * t;
 }
 
-/// Mirrored at the plane z = 0, which divides every model that has a left and a right.
+/// Reflects at the plane z = 0, the symmetry plane of every model that has a left and a right side.
 inline Vec3d mirrored(Vec3d a) {
   return {a.x, a.y, -a.z};
 }

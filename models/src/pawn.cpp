@@ -1,13 +1,13 @@
 #include <array>
 #include <utility>
 
-#include "mesh_builder.hpp"
 #include "built_in.hpp"
+#include "mesh_builder.hpp"
 
 namespace supple::models {
 
 TriangleMesh make_pawn() {
-  // 19 rings of 8 and two poles: 154 vertices, 304 faces.
+  // 19 rings of 8 vertices and two poles: 154 vertices, 304 faces.
   constexpr std::array<LathePoint, 19> profile{{
       {0.285, 0.000}, {0.315, 0.035}, {0.315, 0.090}, {0.270, 0.135},  // foot
       {0.225, 0.155}, {0.200, 0.205},                                  // step

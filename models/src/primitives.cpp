@@ -12,7 +12,7 @@
 namespace supple {
 namespace {
 
-/// Vertex ids must fit 32 bits, and so must the ids of three corners for each triangle.
+/// Vertex ids fit 32 bits, and so does three times the number of triangles.
 constexpr std::uint64_t max_triangles = 1'000'000'000;
 
 void check_count(const char* shape, const char* what, std::uint64_t value, std::uint64_t least) {
@@ -27,14 +27,15 @@ void check_size(const char* shape, const char* what, double value) {
          "; give a finite number above 0");
 }
 
-/// `triangles` may be too large for any integer, so it comes as a double.
+/// `triangles` is a double because the number may exceed any integer type.
 void check_triangles(const char* shape, double triangles) {
   if (triangles > static_cast<double>(max_triangles))
     fail(std::string(shape) + ": so fine a mesh would have more than " + std::to_string(max_triangles) +
          " triangles; give smaller counts");
 }
 
-/// Ids of the vertices on one edge of a coarse triangle, both ends included, from its lower end to its upper.
+/// Ids of the vertices on one edge of a coarse triangle, both ends included, from the lower end to the
+/// higher.
 using EdgeVertices = std::vector<std::uint32_t>;
 
 class Icosphere {
@@ -62,7 +63,7 @@ class Icosphere {
         }
       }
     }
-    // Corners at distance 2 are neighbours, the next nearest are at 2 golden.
+    // Neighbouring corners have the distance 2; the next nearest have 2 · golden.
     const auto near = [&](std::uint32_t a, std::uint32_t b) {
       const Vec3d d = mesh_.positions[b] - mesh_.positions[a];
       return dot(d, d) < 5;
@@ -79,7 +80,7 @@ class Icosphere {
     }
   }
 
-  /// The vertices from corner a to corner b, made when the first of the two faces asks.
+  /// The vertices from corner a to corner b. The first of the two faces creates them.
   EdgeVertices edge(std::uint32_t a, std::uint32_t b) {
     EdgeVertices& ids = edges_[std::min(a, b)][std::max(a, b)];
     if (ids.empty()) {
@@ -125,14 +126,14 @@ class Icosphere {
   EdgeVertices edges_[12][12];
 };
 
-/// The box's surface, found on a lattice of (resolution + 1)³ points of which only the outer ones get ids.
+/// The surface of a box on a lattice of (resolution + 1)³ points. Only points on the surface get ids.
 class Box {
  public:
   Box(Vec3d size, std::uint32_t resolution) : size_(size), resolution_(resolution) {}
 
   TriangleMesh make() {
     mesh_.name = "box";
-    // Layers of z: the first and last are full grids, those between are rings.
+    // Layers in z: the first and the last are full grids, the layers between are rings.
     layers_.resize(resolution_ + 1);
     for (std::uint32_t z = 0; z <= resolution_; ++z) add_layer(z);
     for (int axis = 0; axis < 3; ++axis)
@@ -144,7 +145,7 @@ class Box {
   using Lattice = std::array<std::uint32_t, 3>;
 
   double coordinate(int axis, std::uint32_t i) const {
-    // Written so that both ends are exact and the box is symmetric.
+    // This order of operations makes both ends exact and the box symmetric.
     return size_[axis] * ((2.0 * i - resolution_) / (2.0 * resolution_));
   }
 

@@ -1,13 +1,13 @@
 #include <utility>
 
+#include "built_in.hpp"
 #include "implicit_surface.hpp"
 #include "mesh_builder.hpp"
-#include "built_in.hpp"
 #include "remesh.hpp"
 
 namespace supple::models {
 
-// A sitting rabbit that looks towards +x, as one closed surface without a handle: 453 vertices, 902 faces.
+// A sitting rabbit that looks towards +x: one closed surface of genus 0, 453 vertices, 902 faces.
 TriangleMesh make_rabbit() {
   ImplicitSurface surface;
   surface.set_style(0.10, 1.35);

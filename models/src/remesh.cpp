@@ -17,7 +17,7 @@ Vec3d normal_of(Vec3d a, Vec3d b, Vec3d c) {
   return cross(b - a, c - a);
 }
 
-/// Collapses edges one at a time, the relatively shortest first.
+/// Collapses one edge at a time, the relatively shortest first.
 class EdgeCollapser {
  public:
   EdgeCollapser(TriangleMesh& mesh, const ImplicitSurface& surface)
@@ -49,7 +49,8 @@ class EdgeCollapser {
     double cost;
     std::uint32_t a, b;
     std::uint32_t stamp_a, stamp_b;
-    /// The queue gives its greatest first, so that the cheapest and lowest must be the greatest.
+    /// `std::priority_queue` pops the greatest, so the order is reversed: the cheapest and lowest comes
+    /// first.
     bool operator<(const Candidate& other) const {
       return std::tie(other.cost, other.a, other.b) < std::tie(cost, a, b);
     }
@@ -88,7 +89,8 @@ class EdgeCollapser {
     return keeps_facing(a, b, target) && keeps_facing(b, a, target);
   }
 
-  /// True when no triangle of `moved` without `other` turns far or flattens as `moved` goes to `target`.
+  /// True when no triangle of `moved` without `other` rotates too far or degenerates as `moved` goes to
+  /// `target`.
   bool keeps_facing(std::uint32_t moved, std::uint32_t other, Vec3d target) const {
     for (const std::uint32_t t : around_[moved]) {
       Triangle corners = mesh_.triangles[t];
@@ -140,11 +142,11 @@ class EdgeCollapser {
   TriangleMesh& mesh_;
   std::vector<double> wanted_;                      // edge length at each vertex
   std::vector<std::vector<std::uint32_t>> around_;  // triangles around each vertex
-  std::vector<std::uint32_t> stamps_;               // counts a vertex's moves: older candidates are stale
+  std::vector<std::uint32_t> stamps_;               // number of moves of a vertex; older candidates are stale
   std::priority_queue<Candidate> queue_;
 };
 
-/// An edge as one of its two triangles sees it.
+/// An edge as seen from one of its two triangles.
 struct HalfEdge {
   std::uint32_t low, high;  // vertex ids
   std::uint32_t triangle;
@@ -174,8 +176,8 @@ double cotangent_at(Vec3d corner, Vec3d a, Vec3d b) {
   return dot(u, v) / norm(cross(u, v));
 }
 
-/// Flips each edge whose two opposite angles make more than half a turn, where the surface is nearly flat
-/// across it. Two flips of one pass share no vertex.
+/// Flips each edge whose opposite angles sum to more than 180 degrees and where the surface is nearly flat.
+/// Two flips of one pass share no vertex.
 void flip_edges(TriangleMesh& mesh) {
   const std::vector<HalfEdge> edges = sorted_half_edges(mesh);
   std::vector<std::uint32_t> valence(mesh.positions.size());
@@ -213,7 +215,8 @@ void flip_edges(TriangleMesh& mesh) {
   }
 }
 
-/// Moves each vertex half the way to the middle of its triangles, counted by area in wanted edge lengths.
+/// Moves each vertex halfway to the centroid of its triangles, weighted by area in units of the wanted edge
+/// length.
 void center_vertices(TriangleMesh& mesh, const ImplicitSurface& surface) {
   std::vector<Vec3d> sums(mesh.positions.size());
   std::vector<double> weights(mesh.positions.size());

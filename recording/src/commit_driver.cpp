@@ -22,19 +22,19 @@ namespace {
 
 constexpr haddr_t page_size = 4096;
 
-/// A block of metadata that waits for the flush.
+/// A block of metadata that is held back until the flush.
 struct HeldBlock {
   H5FD_mem_t type = H5FD_MEM_DEFAULT;
   std::vector<unsigned char> bytes;
 };
 
-/// HDF5 knows it by its first member.
+/// HDF5 accesses it through its first member.
 struct CommittedFile {
   H5FD_t base{};
   int descriptor = -1;
   haddr_t end_of_allocation = 0;
   haddr_t end_of_file = 0;
-  haddr_t committed_end = 0;  ///< where the file ended, for HDF5, at the last flush
+  haddr_t committed_end = 0;  ///< end of the file as HDF5 knew it at the last flush
   std::map<haddr_t, HeldBlock> held;
   int error = 0;
   bool discarding = false;
@@ -47,15 +47,15 @@ const CommittedFile* committed(const H5FD_t* file) {
   return reinterpret_cast<const CommittedFile*>(file);
 }
 
-/// After a write that failed nothing reaches the file any more, so that it stays as the last flush left it.
-/// HDF5 is told of no failure, for which it is not prepared everywhere, and finds its metadata in memory
-/// until it closes.
+/// After a failed write nothing is written any more, so the file stays as the last flush left it. HDF5 does
+/// not learn of the failure, because it does not handle write errors everywhere; it reads its metadata from
+/// the held blocks until it closes.
 void fail_with(CommittedFile& file, int error) {
   if (file.error == 0) file.error = error;
   file.discarding = true;
 }
 
-/// False when it failed.
+/// Returns false on failure.
 bool write_now(CommittedFile& file, haddr_t address, const unsigned char* bytes, std::size_t size) {
   while (size > 0) {
     const ssize_t written = pwrite(file.descriptor, bytes, size, static_cast<off_t>(address));
@@ -72,16 +72,16 @@ bool write_now(CommittedFile& file, haddr_t address, const unsigned char* bytes,
   return true;
 }
 
-/// The place of a block in the order of a flush.
+/// The sort key of a block in the order of a flush.
 struct Turn {
   int stage = 0;
-  int minus_level = 0;  ///< of B-tree nodes
+  int minus_level = 0;  ///< of B-tree nodes, negated
   haddr_t address = 0;
   auto operator<=>(const Turn&) const = default;
 };
 
 Turn turn_of(haddr_t address, const HeldBlock& block) {
-  constexpr std::size_t level_at = 5;  // after "TREE" and the node's type
+  constexpr std::size_t level_at = 5;  // after "TREE" and the node type
   if (block.type == H5FD_MEM_SUPER) return {0, 0, address};
   if (block.bytes.size() > level_at && std::memcmp(block.bytes.data(), "TREE", 4) == 0)
     return {1, -block.bytes[level_at], address};
@@ -95,14 +95,14 @@ void commit(CommittedFile& file) {
   for (const auto& [turn, block] : order) {
     assert(turn.address / page_size == (turn.address + block->bytes.size() - 1) / page_size);
     if (!write_now(file, turn.address, block->bytes.data(), block->bytes.size())) return;
-    // It says where the file ends: whatever fails after it, the file may not end before.
+    // The superblock stores the end of the file. Whatever fails later, the file must not end before it.
     if (block->type == H5FD_MEM_SUPER) file.committed_end = file.end_of_allocation;
   }
   file.held.clear();
   file.committed_end = file.end_of_allocation;
 }
 
-// What HDF5 calls. Nothing may throw through it.
+// Callbacks of HDF5. They must not throw.
 
 H5FD_t* open_file(const char* name, unsigned, hid_t, haddr_t) {
   const int descriptor = open(name, O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
@@ -118,7 +118,7 @@ H5FD_t* open_file(const char* name, unsigned, hid_t, haddr_t) {
 
 herr_t close_file(H5FD_t* base) {
   CommittedFile* file = committed(base);
-  // What a failed flush left beyond the end is of no use to anyone; if it stays it does no harm either.
+  // A failed flush may leave bytes beyond the end. Removing them is optional, so a failure here is ignored.
   if (file->discarding && file->committed_end > 0 &&
       ftruncate(file->descriptor, static_cast<off_t>(file->committed_end)) != 0)
     errno = 0;
@@ -159,7 +159,7 @@ herr_t handle_of(H5FD_t* base, hid_t, void** handle) {
   return 0;
 }
 
-/// Lays over what was read what is held of the same addresses.
+/// Overwrites bytes that were read with the held blocks of the same addresses.
 void lay_held_blocks_over(const CommittedFile& file, haddr_t address, std::size_t size,
                           unsigned char* bytes) {
   auto block = file.held.upper_bound(address);
@@ -184,7 +184,7 @@ herr_t read_file(H5FD_t* base, H5FD_mem_t, hid_t, haddr_t address, std::size_t s
     if (got == 0) break;
     done += static_cast<std::size_t>(got);
   }
-  std::memset(bytes + done, 0, size - done);  // allocated and not written yet
+  std::memset(bytes + done, 0, size - done);  // allocated but not yet written
   lay_held_blocks_over(*file, address, size, bytes);
   return 0;
 }
@@ -193,7 +193,8 @@ herr_t write_file(H5FD_t* base, H5FD_mem_t type, hid_t, haddr_t address, std::si
                   const void* buffer) {
   CommittedFile* file = committed(base);
   const auto* bytes = static_cast<const unsigned char*>(buffer);
-  // Of raw data only rows are new that no header counts yet; the others in the same chunk stay what they are.
+  // Raw data is never held: new rows are not counted by any header yet, and other rows of the chunk do not
+  // change.
   const bool is_held = type != H5FD_MEM_DRAW && address < file->committed_end;
   if (!file->discarding && !is_held && write_now(*file, address, bytes, size)) return 0;
   if (type == H5FD_MEM_DRAW) return 0;
@@ -235,7 +236,7 @@ H5FD_class_t driver_class() {
   H5FD_class_t driver{};
 #if H5_VERSION_GE(1, 14, 0)
   driver.version = H5FD_CLASS_VERSION;
-  driver.value = static_cast<H5FD_class_value_t>(600);  // of those left to anyone's own use
+  driver.value = static_cast<H5FD_class_value_t>(600);  // in the range reserved for private use
 #endif
   driver.name = "supple_commit";
   driver.maxaddr = (haddr_t{1} << 62) - 1;
@@ -269,10 +270,10 @@ FileHandle create_committed_file(const std::filesystem::path& path) {
   const PropertyListHandle access(H5Pcreate(H5P_FILE_ACCESS));
   errno = 0;
   if (driver_id < 0 || H5Pset_driver(access.id(), driver_id, nullptr) < 0) return {};
-  // The format of HDF5 1.8: everyone reads it, and it has no marks of a file open for writing, which would
-  // stay after a kill and turn readers away.
+  // The format of HDF5 1.8: all readers support it. It also has no mark for files open for writing, which
+  // would remain after a kill and make readers refuse the file.
   if (H5Pset_libver_bounds(access.id(), H5F_LIBVER_V18, H5F_LIBVER_V18) < 0) return {};
-  // The root is an object like others: equal recordings are equal files only without its times.
+  // Object times would make equal recordings differ.
   const PropertyListHandle creation(H5Pcreate(H5P_FILE_CREATE));
   if (H5Pset_obj_track_times(creation.id(), false) < 0) return {};
   return FileHandle(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation.id(), access.id()));

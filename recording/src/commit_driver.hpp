@@ -6,34 +6,33 @@
 
 #include "hdf5_handles.hpp"
 
-// A file driver of HDF5 under which a file is whole at any moment.
+// An HDF5 file driver that keeps a file valid at any moment.
 //
-// HDF5 appends to a file by writing new blocks at its end and by changing blocks that are there already: the
-// sizes of datasets and the nodes of the B-trees that find their chunks. A process that is killed between two
-// of these leaves a file that no one reads. This driver holds back every change of metadata that the last
-// flush left in the file, and at the next flush makes the changes in such an order that the file is valid
-// after each single one:
+// HDF5 appends to a file in two ways: it writes new blocks at the end, and it changes existing blocks,
+// namely the sizes of datasets and the nodes of the B-trees that index their chunks. A process killed
+// between two such writes leaves a file that nobody can read. This driver holds back every change to
+// metadata of the last flush. At the next flush it writes the changes in an order in which each single write
+// leaves a valid file:
 //
-//   1. everything new is in the file already, beyond what the old metadata know of;
-//   2. the superblock, so that the file's end is beyond all of it;
-//   3. B-tree nodes, parents first: a node that was split holds more than its parent says until its turn
-//   comes, and
-//      whatever is looked for is in the child that either parent names;
-//   4. headers of datasets, by address: only now rows exist. The dataset created last grows last.
+//   1. All new blocks are already in the file, where old metadata does not refer to them.
+//   2. The superblock, so that the end of the file is after all new blocks.
+//   3. B-tree nodes, parents first. A split node contains more than its parent says until it is
+//      written; each key is in the child that either version of the parent names.
+//   4. Headers of datasets, by address. Rows exist only from now on. The dataset created last grows last.
 //
-// No block of metadata crosses a page of memory, so that the kernel does not stop in the middle of one when
-// it ends the process. Nothing is promised about a machine that loses power: nothing waits for the disk.
+// No block of metadata crosses a page of memory, so the kernel does not stop within a block when it ends the
+// process. The driver does not protect against power loss: it does not wait for the disk.
 
 namespace supple {
 
-/// Creates the file, or empties it. The handle is invalid when that fails; `errno` says why.
+/// Creates or truncates the file. On failure the handle is invalid and `errno` has the reason.
 FileHandle create_committed_file(const std::filesystem::path& path);
 
-/// The `errno` of the first write that failed, 0 when none has. HDF5 itself is not told: ask after each call
-/// that may write. Nothing written from then on reaches the file.
+/// The `errno` of the first failed write, or 0. HDF5 does not learn of failures, so check after each call
+/// that may write. After a failure nothing more is written to the file.
 int write_error(hid_t file);
 
-/// Nothing reaches the file any more: it stays as the last flush left it.
+/// Nothing more is written to the file; it stays as the last flush left it.
 void discard_writes(hid_t file);
 
 }  // namespace supple

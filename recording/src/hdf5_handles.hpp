@@ -6,7 +6,7 @@
 
 namespace supple {
 
-/// Owns an identifier of HDF5 and closes it by the function that its kind asks for.
+/// Owns an HDF5 identifier and closes it with the function for its kind.
 template <herr_t (*Close)(hid_t)>
 class Hdf5Handle {
  public:
@@ -24,7 +24,7 @@ class Hdf5Handle {
 
   explicit operator bool() const { return id_ >= 0; }
   hid_t id() const { return id_; }
-  /// False when closing failed.
+  /// Returns false when closing fails.
   bool reset() { return id_ < 0 || Close(std::exchange(id_, H5I_INVALID_HID)) >= 0; }
 
  private:
@@ -39,7 +39,7 @@ using DatatypeHandle = Hdf5Handle<H5Tclose>;
 using AttributeHandle = Hdf5Handle<H5Aclose>;
 using PropertyListHandle = Hdf5Handle<H5Pclose>;
 
-/// While it lives HDF5 does not print its stack of errors; the caller's own setting comes back after.
+/// Stops HDF5 from printing its error stack while this object lives, then restores the previous setting.
 class QuietErrors {
  public:
   QuietErrors() {

@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::size_t block_bytes = std::size_t{1} << 16;
 
-/// The text of an attribute or a dataset of one string; `read` fills memory of the given type.
+/// Reads the text of an attribute or of a dataset with one string. `read` fills memory of the given type.
 template <class Read>
 std::string read_text(hid_t type, hid_t space, std::uint64_t file_size, Read read) {
   if (H5Tget_class(type) != H5T_STRING || H5Tis_variable_str(type) != 0 ||
@@ -52,7 +52,7 @@ FileHandle open_for_reading(const std::string& path) {
                 "; check who may read it");
   const PropertyListHandle access(check(H5Pcreate(H5P_FILE_ACCESS)));
   check(H5Pset_fclose_degree(access.id(), H5F_CLOSE_STRONG));
-  check(H5Pset_file_locking(access.id(), false, true));  // it may be read while it is recorded
+  check(H5Pset_file_locking(access.id(), false, true));  // the file may still be recorded
   FileHandle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access.id()));
   if (file) return file;
   if (H5Fis_hdf5(path.c_str()) > 0)
@@ -169,7 +169,7 @@ ColumnReader::ColumnReader(const InputFile& file, std::string path, ScalarType t
     file.fail(path_, "does not hold numbers of the shape " + shape_text(row_shape_) + "; record again");
   rows_ = size[0];
   for (const hsize_t n : row_shape_) row_bytes_ *= n;
-  // What is missing would be read as zeros, and a damaged number of rows would ask for any amount of memory.
+  // HDF5 reads missing data as zeros, and a damaged row count could request any amount of memory.
   const std::uint64_t stored_row_bytes = row_bytes_ / size_of(type_) * H5Tget_size(stored.id());
   const std::uint64_t storage = H5Dget_storage_size(dataset_.id());
   if (storage > file.size() || (stored_row_bytes > 0 && rows_ > storage / stored_row_bytes))
@@ -188,7 +188,7 @@ void ColumnReader::read(std::uint64_t first, std::size_t count, std::byte* to) {
   }
   if (first < block_first_ || first + count > block_first_ + block_count_) {
     block_first_ = first;
-    block_count_ = 0;  // until it is read
+    block_count_ = 0;  // invalid until the block is read
     const std::uint64_t rows = std::min(block_rows, rows_ - first);
     block_.resize(rows * row_bytes_);
     read_from_file(first, rows, block_.data());

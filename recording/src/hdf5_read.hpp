@@ -10,11 +10,11 @@
 
 namespace supple {
 
-/// A file that is read, with its name for messages. Everything throws `Error` when an item is missing, of
-/// another type or shape, or cannot be read.
+/// An open file, with its name for messages. All members throw `Error` when an item is missing, has another
+/// type or shape, or cannot be read.
 class InputFile {
  public:
-  /// Says what is wrong with a file that HDF5 cannot open.
+  /// Throws an `Error` with the reason when HDF5 cannot open the file.
   explicit InputFile(const std::string& path);
 
   hid_t id() const { return file_.id(); }
@@ -26,7 +26,7 @@ class InputFile {
   bool has_text(const std::string& group, const char* name) const;
   std::size_t count_links(const std::string& group) const;
   double number(const std::string& group, const char* name) const;
-  /// A whole number from 0 to `largest`.
+  /// Reads a whole number from 0 to `largest`.
   std::uint32_t count(const std::string& group, const char* name,
                       std::uint32_t largest = ~std::uint32_t{0}) const;
   std::string text(const std::string& group, const char* name) const;
@@ -42,17 +42,17 @@ class InputFile {
   std::uint64_t size_ = 0;
 };
 
-/// A dataset of numbers, read by rows.
+/// Reads rows of a numeric dataset.
 class ColumnReader {
  public:
-  /// `row_shape` is that of one row: nothing for a single number, {3} for a point, {n, 3} for n points. The
-  /// file must outlive it.
+  /// `row_shape` is the shape of one row: {} for a number, {3} for a point, {n, 3} for n points. `file` must
+  /// outlive this object.
   ColumnReader(const InputFile& file, std::string path, ScalarType type, std::vector<hsize_t> row_shape);
 
   std::uint64_t rows() const { return rows_; }
   const std::string& path() const { return path_; }
-  /// Copies rows that exist. Few rows come out of a block that is kept, so that frames in a row are read
-  /// quickly.
+  /// Copies rows, which must exist. Small reads come from a cached block, so reading consecutive frames is
+  /// fast.
   void read(std::uint64_t first, std::size_t count, std::byte* to);
 
  private:

@@ -6,7 +6,7 @@
 namespace supple {
 namespace {
 
-/// Without the time of creation: equal recordings are equal files.
+/// Omits the creation time, so that equal recordings are equal files.
 PropertyListHandle timeless(hid_t kind) {
   PropertyListHandle properties(check(H5Pcreate(kind)));
   check(H5Pset_obj_track_times(properties.id(), false));
@@ -23,14 +23,15 @@ DataspaceHandle space_of(std::span<const hsize_t> size, const hsize_t* largest =
   return DataspaceHandle(check(H5Screate_simple(static_cast<int>(size.size()), size.data(), largest)));
 }
 
-/// The chunk that is being filled stays in memory, and no other.
+/// Caches exactly one chunk, the one that is being filled.
 PropertyListHandle one_chunk_in_memory(std::size_t bytes) {
   PropertyListHandle properties(check(H5Pcreate(H5P_DATASET_ACCESS)));
   check(H5Pset_chunk_cache(properties.id(), 5, bytes, 1.0));
   return properties;
 }
 
-/// Of fixed size: HDF5 does not check the heap of texts of any size, and so may crash on a damaged file.
+/// Text of fixed size. HDF5 does not validate its heap for variable-size text and may crash on a damaged
+/// file.
 DatatypeHandle text_type(const std::string& text) {
   DatatypeHandle type(check(H5Tcopy(H5T_C_S1)));
   check(H5Tset_size(type.id(), std::max<std::size_t>(text.size(), 1)));

@@ -12,7 +12,7 @@
 
 namespace supple {
 
-/// A call of HDF5 that failed; who catches it knows the file and says what to do.
+/// A failed HDF5 call. The code that catches it knows the file and writes the message.
 struct Hdf5Failure : std::exception {
   const char* what() const noexcept override { return "HDF5 failed"; }
 };
@@ -31,17 +31,17 @@ void write_attribute(hid_t file, const std::string& group, const char* name, std
 void write_attribute(hid_t file, const std::string& group, const char* name, bool value);  // 0 or 1, uint8
 void write_attribute(hid_t file, const std::string& group, const char* name, const std::string& value);
 void write_text(hid_t file, const std::string& path, const std::string& text);
-/// A dataset of fixed size; `width` 0 makes it of rank 1.
+/// Writes a dataset of fixed size; with `width` 0 it has rank 1.
 void write_rows(hid_t file, const std::string& path, ScalarType type, std::size_t rows, std::size_t width,
                 const void* values);
 
-/// A dataset to which rows are appended: kept in memory until `write_pending`.
+/// A dataset with appended rows, which stay in memory until `write_pending`.
 class ColumnWriter {
  public:
   ColumnWriter(hid_t file, const std::string& path, ScalarType type, std::size_t width,
                std::size_t rows_in_chunk);
 
-  /// Room for more rows, to be filled at once.
+  /// Returns memory for more rows, which the caller must fill immediately.
   std::byte* append(std::size_t rows);
   void append_value(const void* value) { std::memcpy(append(1), value, row_bytes_); }
   std::size_t pending_bytes() const { return pending_.size(); }
@@ -56,7 +56,7 @@ class ColumnWriter {
   std::vector<std::byte> pending_;
 };
 
-/// Where the vertices of an object are, a chunk a frame, written as they come.
+/// The vertex positions of an object, one chunk per frame, written immediately.
 class PositionsWriter {
  public:
   PositionsWriter(hid_t file, const std::string& path, std::size_t vertices);

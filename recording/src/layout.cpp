@@ -115,8 +115,12 @@ std::string old_name(const std::string& name, std::uint32_t version, std::span<c
 
 std::string attribute_in_version(const std::string& name, std::uint32_t version) {
   static constexpr Renamed renamed[] = {
-      {"contacts", "contact_mode"},  {"undecided", "exact_impacts"},  {"region_test", "region_sphere_test"},
-      {"self", "self_collision"},    {"static", "is_static"},         {"max_level", "octree_max_level"},
+      {"contacts", "contact_mode"},
+      {"undecided", "exact_impacts"},
+      {"region_test", "region_sphere_test"},
+      {"self", "self_collision"},
+      {"static", "is_static"},
+      {"max_level", "octree_max_level"},
       {"leaf_size", "octree_leaf_size"},
   };
   return old_name(name, version, renamed);

@@ -57,7 +57,8 @@ void read_options(const InputFile& file, const std::string& group, std::uint32_t
       [&](const auto& field, auto& value) {
         using Value = std::remove_cvref_t<decltype(value)>;
         const std::string name = attribute_in_version(field.key, version);
-        if (field.is_of_machine || (version < format_version && !file.has_attribute(group, name.c_str()))) return;
+        if (field.is_of_machine || (version < format_version && !file.has_attribute(group, name.c_str())))
+          return;
         if constexpr (std::is_same_v<Value, bool>) {
           read_option(file, group, name, value, field.truth_words, version);
         } else if constexpr (Worded<Value>) {
@@ -123,7 +124,8 @@ RecordingHeader read_header(const InputFile& file, std::uint32_t version) {
   read_options(file, "/", version, header.scene);
   header.scene_file = file.text_dataset("scene_file");
   const std::size_t count = file.count_links("objects");
-  for (std::size_t place = 0; place < count; ++place) header.objects.push_back(read_object(file, version, place));
+  for (std::size_t place = 0; place < count; ++place)
+    header.objects.push_back(read_object(file, version, place));
   return header;
 }
 
@@ -136,8 +138,8 @@ class RaggedReader {
     for (const ColumnOf<Row>& column : columns_of<Row>()) {
       std::vector<hsize_t> row_shape;
       if (column.width > 1) row_shape.push_back(column.width);
-      columns_.emplace_back(file, std::string(group) + "/" + column_in_version(column.name, version), column.type,
-                            std::move(row_shape));
+      columns_.emplace_back(file, std::string(group) + "/" + column_in_version(column.name, version),
+                            column.type, std::move(row_shape));
     }
     check_ends(frames);
   }
@@ -379,9 +381,9 @@ StepStats Recording::Implementation::stats(std::uint64_t frame) {
         if constexpr (Worded<std::remove_cvref_t<decltype(value)>>) {
           if (word_of(value) == nullptr)
             file_.fail(std::string(group_names::statistics) + "/" + field.key,
-                       "row " + std::to_string(frame) + " is " + std::to_string(static_cast<unsigned>(value)) +
-                           ", not below " + std::to_string(words<std::remove_cvref_t<decltype(value)>>.size()) +
-                           damaged);
+                       "row " + std::to_string(frame) + " is " +
+                           std::to_string(static_cast<unsigned>(value)) + ", not below " +
+                           std::to_string(words<std::remove_cvref_t<decltype(value)>>.size()) + damaged);
         }
       },
       stats);

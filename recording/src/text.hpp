@@ -7,7 +7,7 @@
 
 namespace supple {
 
-/// The fewest digits that read back to the same double.
+/// The fewest digits that identify the double.
 inline std::string to_text(double value) {
   char digits[32];
   return {digits, std::to_chars(digits, digits + sizeof digits, value).ptr};

@@ -20,7 +20,7 @@ constexpr std::string_view opening_tags =
     "<Grid Name=\"recording\" GridType=\"Collection\" CollectionType=\"Temporal\">\n";
 constexpr std::string_view closing_tags = "</Grid>\n</Domain>\n</Xdmf>\n";
 
-/// Bytes of the character of UTF-8 that the text starts with, 0 when it starts with none that XML allows.
+/// The number of bytes of the first UTF-8 character, or 0 when it is invalid or not allowed in XML.
 std::size_t character_length(std::string_view text) {
   const auto lead = static_cast<unsigned char>(text[0]);
   if (lead < 0x80) return lead >= 0x20 && lead != 0x7f ? 1 : 0;
@@ -36,7 +36,7 @@ std::size_t character_length(std::string_view text) {
   return allowed ? length : 0;
 }
 
-/// As XML has it within quotes; what XML cannot hold becomes a question mark.
+/// Escapes text for use within XML quotes. Characters that XML cannot contain become question marks.
 std::string escaped(std::string_view text) {
   std::string result;
   while (!text.empty()) {

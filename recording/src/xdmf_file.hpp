@@ -9,9 +9,9 @@
 
 namespace supple {
 
-/// The XDMF file beside a recording: a grid an object for each frame, which names its numbers in the HDF5
-/// file. It is XML that is closed after every `write`, made longer by one call of the system over the closing
-/// tags.
+/// The XDMF file beside a recording: one grid per object and frame, which refers to the numbers in the HDF5
+/// file. It is complete XML after every `write`: one system call overwrites the closing tags with the new
+/// frames.
 class XdmfFile {
  public:
   /// Replaces the file. Throws `Error` when it cannot be written.
@@ -22,13 +22,13 @@ class XdmfFile {
   XdmfFile& operator=(const XdmfFile&) = delete;
 
   void add_frame(double time);
-  /// Adds the frames since the last call; throws `Error`.
+  /// Adds the frames since the last call. Throws `Error`.
   void write();
   std::size_t pending_bytes() const { return pending_.size(); }
 
  private:
   struct Grid {
-    std::string before_frame, before_frame_count, rest;  ///< the text of a frame's grid, cut where numbers go
+    std::string before_frame, before_frame_count, rest;  ///< the text of a grid, split where numbers go
     bool moves = true;
   };
 
@@ -36,7 +36,7 @@ class XdmfFile {
   int descriptor_ = -1;
   std::vector<Grid> grids_;
   std::uint64_t frames_ = 0;
-  std::uint64_t end_ = 0;  ///< where the closing tags start
+  std::uint64_t end_ = 0;  ///< position of the closing tags
   std::string pending_;
 };
 

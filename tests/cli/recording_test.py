@@ -1,6 +1,7 @@
 """Recordings as others see them: a process that is killed leaves a whole file, h5py reads what docs/recording.md says,
 `supple detect` finds again what was recorded, `supple diff` tells what differs."""
 
+import gzip
 import importlib.util
 import json
 import os
@@ -365,6 +366,57 @@ class Detect(RecordingTest):
         ):
             with self.subTest(arguments=arguments):
                 self.assert_one_line_error(self.run_here("detect", *arguments), *parts)
+
+
+class Version1(ProgramTest):
+    """A recording of `SCENE`, made by the last program that wrote version 1 of the format:
+    `simulate --steps 2 --contacts continuous --bounding-volume sphere --region-test grown-box --min-separation 0.001`."""
+
+    SCENE = """[scene]
+time_step = 0.25
+[[object]]
+name = "ball"
+model = "icosphere"
+frequency = 1
+max_level = 3
+leaf_size = 5
+motion = { kind = "wave", velocity = [2, 0, 0] }
+[[object]]
+name = "plate"
+model = "box"
+size = [0.5, 2, 2]
+translate = [1.75, 0, 0]
+static = true
+"""
+
+    def setUp(self):
+        super().setUp()
+        packed = (pathlib.Path(__file__).parent / "version_1.h5.gz").read_bytes()
+        (self.folder / "then.h5").write_bytes(gzip.decompress(packed))
+
+    def test_options_and_defaults(self):
+        result = self.detect("then.h5")
+        options = {"contacts": "continuous", "bounding_volume": "sphere", "region_test": "grown_box", "min_separation": 0.001,
+                   "undecided": "exact", "broad_phase": "octree", "scene_octree_arity": 8}
+        self.assertEqual({key: result["options"][key] for key in options}, options)
+        ball, plate = (each["options"] for each in result["objects"])
+        self.assertEqual((ball["max_level"], ball["leaf_size"], ball["object_octree"], ball["static"]), (3, 5, "balanced", False))
+        self.assertEqual((plate["max_level"], plate["leaf_size"], plate["tree_arity"], plate["static"]), (16, 64, 8, True))
+
+    def test_contacts(self):
+        self.write("scene.toml", self.SCENE)
+        done = self.run_here("simulate", "scene.toml", "--frames", "3", "--contacts", "continuous", "--min-separation", "0.001",
+                             "--bounding-volume", "sphere", "--broad-phase", "octree", "--region-test", "grown-box",
+                             "--quiet", "--record", "now.h5", "--json", "now.json", "--contact-details")
+        self.assertEqual((done.status, done.error), (0, ""))
+        frames = json.loads((self.folder / "now.json").read_text())["frames"]
+        again = self.detect("then.h5", "--contact-details")["frames"]
+        self.assertGreater(len(again[0]["contacts"]), 0)
+        self.assertEqual([f["contacts"] for f in again], [f["contacts"] for f in frames[1:]])
+        # Counts of work may change from one version of the program to the next.
+        done = self.run_here("diff", "then.h5", "now.h5", "--json", "-", "--quiet")
+        difference = json.loads(done.out)
+        self.assertTrue(difference["what"] is None or difference["what"].startswith("statistics"), difference)
 
 
 class Diff(RecordingTest):

@@ -362,7 +362,7 @@ class Errors(ProgramTest):
             (("nothing.obj",), ["nothing.obj", "no such file"]),
             (("scene.toml", "a.obj"), ["scene.toml", "alone"]),
             (("none.h5",), ["none.h5"]),
-            (("a.obj", "--host", "somewhere"), ["somewhere", "no IP address"]),
+            (("a.obj", "--host", "somewhere"), ["somewhere", "not an IP address"]),
             (("a.obj", "--host", "203.0.113.1"), ["203.0.113.1", "cannot listen"]),
             (("a.obj", "--port", "70000"), ["--port", "'70000'", "65535"]),
             (("a.obj", "--seed", "1"), ["--seed", "scene file"]),

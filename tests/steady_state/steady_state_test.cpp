@@ -83,7 +83,9 @@ TEST_P(SteadyState, NoAllocationsAfterWarmUpAndValidOctreesThroughout) {
 
 INSTANTIATE_TEST_SUITE_P(
     Configurations, SteadyState,
-    testing::Values(Configuration{"BoxesOctree", BoundingVolume::aabb, BroadPhaseMethod::octree, 10000},
+    testing::Values(Configuration{"BoxesAutomatic", BoundingVolume::aabb, BroadPhaseMethod::automatic, 10000},
+                    Configuration{"BoxesGrid", BoundingVolume::aabb, BroadPhaseMethod::grid, 2000},
+                    Configuration{"BoxesOctree", BoundingVolume::aabb, BroadPhaseMethod::octree, 2000},
                     Configuration{"BoxesSweep", BoundingVolume::aabb, BroadPhaseMethod::sweep, 2000},
                     Configuration{"SpheresOctree", BoundingVolume::sphere, BroadPhaseMethod::octree, 2000}),
     [](const auto& configuration) { return configuration.param.name; });

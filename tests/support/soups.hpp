@@ -2,28 +2,11 @@
 
 #include <cmath>
 #include <cstdint>
-#include <random>
 
 #include "supple/mesh.hpp"
+#include "support/random.hpp"
 
 namespace supple {
-
-/// Numbers for tests: the standard's engines are the same everywhere, its distributions are not.
-class RandomNumbers {
- public:
-  explicit RandomNumbers(std::uint64_t seed) : engine_(seed) {}
-
-  /// Uniform in [low, high).
-  double uniform(double low, double high) {
-    return low + (high - low) * (static_cast<double>(engine_() >> 11) * 0x1p-53);
-  }
-  /// Uniform in [0, count).
-  std::uint32_t below(std::uint32_t count) { return static_cast<std::uint32_t>(engine_() % count); }
-  Vec3d vector(double size) { return {uniform(-size, size), uniform(-size, size), uniform(-size, size)}; }
-
- private:
-  std::mt19937_64 engine_;
-};
 
 /// Separate triangles of about `size` in a cube of half side `extent` about `center`.
 inline TriangleMesh random_soup(std::uint32_t count, double extent, double size, std::uint64_t seed,

@@ -22,7 +22,7 @@ std::string_view text_of(std::span<const std::byte> bytes) {
 #define SUPPLE_SYMBOL(name) name
 #endif
 
-// The assembler reads a file of megabytes at once; as an array of numbers the compiler would take minutes.
+// The assembler includes a file of megabytes at once; compiling an array of numbers would take minutes.
 #define SUPPLE_EMBED(name, file)                                                     \
   asm(SUPPLE_READ_ONLY ".balign 16\n.globl " SUPPLE_SYMBOL(name) "\n" SUPPLE_SYMBOL( \
       name) ":\n.incbin \"" file                                                     \

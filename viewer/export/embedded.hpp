@@ -6,8 +6,8 @@
 
 namespace supple::viewer {
 
-// The page, one file of HTML, and the library with its sessions as a module of WebAssembly, both part of the
-// program; empty in a build without SUPPLE_BUILD_VIEWER.
+// The page (one HTML file) and the WebAssembly module with the library and its sessions. Both are part of
+// the program, and empty in a build without SUPPLE_BUILD_VIEWER.
 std::string_view embedded_page();
 std::span<const std::byte> embedded_module();
 

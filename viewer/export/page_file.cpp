@@ -15,14 +15,14 @@
 namespace supple::viewer {
 namespace {
 
-/// zlib counts in 32 bits, so that large inputs are handed over in parts.
+/// zlib counts in 32 bits, so large inputs are compressed in parts.
 constexpr std::size_t largest_part = std::size_t{1} << 30;
 
 std::vector<unsigned char> gzip(std::span<const std::byte> bytes) {
   z_stream stream{};
   constexpr int as_gzip = 15 + 16;
   if (deflateInit2(&stream, Z_BEST_COMPRESSION, Z_DEFLATED, as_gzip, 9, Z_DEFAULT_STRATEGY) != Z_OK)
-    throw Error("zlib cannot start; is there memory left?");
+    throw Error("zlib cannot start; there may be too little memory");
   std::vector<unsigned char> packed;
   std::vector<unsigned char> part(std::size_t{1} << 20);
   std::size_t taken = 0;
@@ -40,7 +40,7 @@ std::vector<unsigned char> gzip(std::span<const std::byte> bytes) {
     packed.insert(packed.end(), part.data(), stream.next_out);
   } while (status == Z_OK || status == Z_BUF_ERROR);
   deflateEnd(&stream);
-  if (status != Z_STREAM_END) throw Error("zlib cannot compress the show");
+  if (status != Z_STREAM_END) throw Error("zlib cannot compress the scene");
   return packed;
 }
 
@@ -69,11 +69,11 @@ void append_element(std::string& page, std::string_view id, std::span<const std:
   std::string message = path.string();
   message += ": cannot write: ";
   message += std::strerror(error);
-  message += "; choose a file in a folder that exists and is yours, on a disk with room";
+  message += "; choose a writable folder on a disk with free space";
   throw Error(message);
 }
 
-/// A file beside the one to be replaced, removed unless it takes its place.
+/// A temporary file next to the target; removed unless it replaces the target.
 class TemporaryFile {
  public:
   explicit TemporaryFile(const std::filesystem::path& target)
@@ -98,7 +98,7 @@ class TemporaryFile {
   }
 
   void put_in_place() {
-    // As any other new file: readable for those whom the user's mask lets.
+    // Set the permissions of an ordinary new file, according to the umask.
     const mode_t mask = umask(0);
     umask(mask);
     if (fchmod(file_, 0666 & ~mask) != 0 || fsync(file_) != 0) fail_to_write(target_, errno);
@@ -119,7 +119,7 @@ std::string page_with_cargo(std::string_view page, std::span<const std::byte> sh
                             std::span<const std::byte> module) {
   constexpr std::string_view place = "<!--supple-cargo-->";
   const std::size_t at = page.rfind(place);
-  if (at == std::string_view::npos) throw Error("the page of this build has no place for cargo");
+  if (at == std::string_view::npos) throw Error("the page of this build has no place for a scene");
   std::string whole(page.substr(0, at));
   append_element(whole, "supple-wasm", module);
   append_element(whole, "supple-show", show);
@@ -128,7 +128,7 @@ std::string page_with_cargo(std::string_view page, std::span<const std::byte> sh
 }
 
 void replace_file(const std::filesystem::path& path, std::string_view content) {
-  // A device or a pipe is written to; to put a file in its place would remove it.
+  // Write into a device or a pipe; replacing it would remove it.
   std::error_code ignored;
   if (std::filesystem::exists(path, ignored) && !std::filesystem::is_regular_file(path, ignored))
     fail_to_write(path, std::filesystem::is_directory(path, ignored) ? EISDIR : EINVAL);

@@ -9,17 +9,17 @@
 
 namespace supple::viewer {
 
-/// Browsers read larger pages slowly or not at all, and mail does not carry them.
+/// Browsers open larger pages slowly or not at all, and mail does not carry them.
 inline constexpr std::uint64_t largest_page = 200'000'000;
 
-/// A page that needs no server: the page with a packed show and the module that runs it inside, each
-/// compressed by gzip, as base64 in an element `<script type="application/octet-stream;base64">` with the id
-/// `supple-show` or `supple-wasm`. They take the place of the comment `<!--supple-cargo-->`. Throws `Error`
-/// when the page has none.
+/// Makes a page that needs no server. A packed scene view and the module are compressed with gzip and
+/// embedded as base64 in elements `<script type="application/octet-stream;base64">` with the ids
+/// `supple-show` and `supple-wasm`. They replace the comment `<!--supple-cargo-->`. Throws `Error` when the
+/// page has no such comment.
 std::string page_with_cargo(std::string_view page, std::span<const std::byte> show,
                             std::span<const std::byte> module);
 
-/// Replaces the file when all is written; until then the old one stays. Throws `Error` when it cannot be.
+/// Replaces the file once all content is written; until then the old file stays. Throws `Error` on failure.
 void replace_file(const std::filesystem::path& path, std::string_view content);
 
 }  // namespace supple::viewer

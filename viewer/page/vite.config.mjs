@@ -1,11 +1,11 @@
 import { defineConfig } from "vite";
 import { viteSingleFile } from "vite-plugin-singlefile";
 
-// One HTML file with everything in it: the program embeds it, and `--export` adds cargo to it. The program
-// puts the cargo in place of a comment, which vite must therefore leave alone.
+// The build is one self-contained HTML file. The program embeds it, and `--export` inserts data into it. The
+// program replaces a comment with the data, so vite must keep that comment.
 //
-// For work on the page: `SUPPLE_VIEW=http://127.0.0.1:PORT/?token=TOKEN npm run dev`, with an address that
-// `supple view` printed; open what vite prints with the same `?token=TOKEN`.
+// To work on the page, run `SUPPLE_VIEW=http://127.0.0.1:PORT/?token=TOKEN npm run dev` with an address that
+// `supple view` printed, and open the address that vite prints with the same `?token=TOKEN`.
 const program = process.env.SUPPLE_VIEW && new URL(process.env.SUPPLE_VIEW).origin;
 
 export default defineConfig({

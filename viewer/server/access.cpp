@@ -29,7 +29,7 @@ bool is_digit(char c) {
   return c >= '0' && c <= '9';
 }
 
-/// Four numbers, or anything in brackets: names cannot look like that.
+/// Four numbers, or anything in brackets. A DNS name cannot have either form.
 bool is_address(std::string_view name) {
   if (name.size() > 2 && name.front() == '[') return name.back() == ']';
   return !name.empty() && is_digit(name.back()) &&
@@ -41,7 +41,7 @@ bool is_address(std::string_view name) {
 std::string make_token() {
   std::array<unsigned char, 16> bytes{};
   if (getentropy(bytes.data(), bytes.size()) != 0) {
-    std::string message = "the system gives no random numbers for a token: ";
+    std::string message = "cannot get random numbers for a token from the system: ";
     message += std::strerror(errno);
     throw Error(message);
   }
@@ -68,7 +68,7 @@ Target parse_target(std::string_view target) {
 
 Access::Access(const std::string& address, std::uint16_t port, std::string token)
     : any_address_(address == "0.0.0.0" || address == "::"), token_(std::move(token)) {
-  if (port != 80) {  // browsers leave it out
+  if (port != 80) {  // browsers omit the default port
     port_ += ':';
     port_ += std::to_string(port);
   }

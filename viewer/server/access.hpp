@@ -7,31 +7,32 @@
 
 namespace supple::viewer {
 
-/// 128 bits from the system's random device, as 32 hexadecimal digits.
+/// 128 bits from the random device of the system, as 32 hexadecimal digits.
 std::string make_token();
 
-/// What a request of HTTP asks for.
+/// The parts of the target of an HTTP request.
 struct Target {
-  std::string_view path, token;  ///< the token is empty when there is none
+  std::string_view path, token;  ///< token: empty when there is none
 };
 Target parse_target(std::string_view target);
 
-/// Who may ask for the page and its session.
+/// Decides who may load the page and use its session.
 class Access {
  public:
-  /// `address` is an IP address without brackets, of an interface or of all (0.0.0.0, ::).
+  /// `address` is an IP address without brackets: of one interface, or of all (0.0.0.0, ::).
   Access(const std::string& address, std::uint16_t port, std::string token);
 
   const std::string& token() const { return token_; }
-  /// `127.0.0.1:8080` or `[::1]:8080`; of all interfaces that of this machine.
+  /// `127.0.0.1:8080` or `[::1]:8080`. When the server listens on all interfaces: the loopback address.
   const std::string& host() const { return hosts_.front(); }
 
-  /// Whether a `Host` names this server: by an address, or as localhost. Pages of other sites can make names
-  /// of their own lead here; these are refused.
+  /// Whether the `Host` header names this server, by IP address or as localhost. Other names are refused,
+  /// because a foreign site can point its own name to this machine (DNS rebinding).
   bool knows_host(std::string_view host) const;
-  /// Whether an `Origin` is the page of that host. None at all is fine: browsers always send one.
+  /// Whether the `Origin` header is the page of that host. A missing header is accepted: browsers always
+  /// send it.
   static bool is_own_origin(std::string_view origin, std::string_view host);
-  /// Takes as long for any text of the same length.
+  /// Takes constant time for texts of the same length.
   bool knows_token(std::string_view token) const;
 
  private:

@@ -31,9 +31,9 @@ using boost::system::error_code;
 using namespace std::chrono_literals;
 
 constexpr std::size_t largest_command = std::size_t{1} << 20;
-/// As many bytes of commands may wait for a step to end before no more are read.
+/// Stop reading when this many bytes of commands wait for the current step to end.
 constexpr std::size_t most_waiting = std::size_t{4} << 20;
-/// Of requests that are being read or answered.
+/// Requests that are being read or answered.
 constexpr int most_requests = 64;
 
 enum CloseCode : std::uint16_t {
@@ -48,28 +48,28 @@ asio::ip::address parse_address(const std::string& text) {
   const auto address = asio::ip::make_address(text, error);
   if (!error) return address;
   std::string message = text;
-  message += ": is no IP address; give one of this machine, such as 127.0.0.1, or 0.0.0.0 for all";
+  message += ": it is not an IP address; give one of this machine, such as 127.0.0.1, or 0.0.0.0 for all";
   throw Error(message);
 }
 
-/// A page that is connected: a WebSocket.
+/// A connected page, that is, a WebSocket.
 class Page : public std::enable_shared_from_this<Page> {
  public:
-  /// What becomes of it, on the thread of the sockets.
+  /// Callbacks on the network thread.
   struct Listener {
     std::function<void()> came, left, sent;
-    /// Says whether more should be read now.
+    /// Returns whether to continue reading now.
     std::function<bool(std::string)> command;
   };
 
   Page(beast::tcp_stream stream, std::chrono::milliseconds patience) : socket_(std::move(stream)) {
-    beast::get_lowest_layer(socket_).expires_never();  // the WebSocket has its own clock
+    beast::get_lowest_layer(socket_).expires_never();  // the WebSocket has its own timeout
     websocket::stream_base::timeout times{};
     times.handshake_timeout = std::min<std::chrono::milliseconds>(patience, 5s);
     times.idle_timeout = patience;
     times.keep_alive_pings = true;
     socket_.set_option(times);
-    socket_.auto_fragment(false);  // a message at once, not in pieces of 4 KiB
+    socket_.auto_fragment(false);  // send a message in one piece instead of 4 KiB fragments
     socket_.binary(true);
   }
 
@@ -89,7 +89,7 @@ class Page : public std::enable_shared_from_this<Page> {
         bytes, [self = shared_from_this(), message](error_code, std::size_t) { self->listener_.sent(); });
   }
 
-  /// After `Listener::command` said no.
+  /// Call after `Listener::command` returned false.
   void read_on() {
     if (std::exchange(is_paused_, false)) read();
   }
@@ -113,7 +113,7 @@ class Page : public std::enable_shared_from_this<Page> {
       is_closing_ = true;
       return listener_.left();
     }
-    // What comes after the close is not looked at, but must be read for the page's own close to be found.
+    // After a close command, messages are ignored, but must be read to receive the page's own close.
     if (is_closing_) {
       text_.consume(text_.size());
       return read();
@@ -137,7 +137,7 @@ class Page : public std::enable_shared_from_this<Page> {
   bool is_paused_ = false, is_closing_ = false;
 };
 
-/// What a page of this server may load: itself, and its session.
+/// The resources that a page of this server may load: itself and its session.
 std::string content_policy(std::string_view host) {
   std::string policy =
       "default-src 'none'; script-src 'unsafe-inline' 'wasm-unsafe-eval' blob:; worker-src blob:; style-src "
@@ -157,14 +157,14 @@ another one each time the program starts.</p>
 </html>
 )";
 
-/// A connection until it has been answered, or has become a page's.
+/// A connection until it is answered or becomes a `Page`.
 class Request : public std::enable_shared_from_this<Request> {
  public:
   struct Context {
     const Access& access;
     std::string_view page;
     std::function<void(beast::tcp_stream, const http::request<http::empty_body>&)> connect;
-    int& count;  ///< of these
+    int& count;  ///< number of requests
   };
 
   Request(tcp::socket socket, const Context& context) : stream_(std::move(socket)), context_(context) {
@@ -182,7 +182,7 @@ class Request : public std::enable_shared_from_this<Request> {
         return self->refuse(http::status::payload_too_large, "The request is too large.\n");
       if (error.category() == make_error_code(http::error::end_of_stream).category() &&
           error != http::error::end_of_stream && error != http::error::partial_message)
-        self->refuse(http::status::bad_request, "This is no request of HTTP.\n");
+        self->refuse(http::status::bad_request, "This is not an HTTP request.\n");
     });
   }
 
@@ -191,7 +191,7 @@ class Request : public std::enable_shared_from_this<Request> {
     const auto& request = parser_.get();
     const std::string_view host = text(request[http::field::host]);
     if (!context_.access.knows_host(host)) {
-      std::string message = "This server does not go by that name or port; ask it as http://";
+      std::string message = "This server does not have that name or port; use http://";
       message += context_.access.host();
       message += '\n';
       return refuse(http::status::forbidden, message);
@@ -200,7 +200,7 @@ class Request : public std::enable_shared_from_this<Request> {
     if (target.path == "/session" && websocket::is_upgrade(request)) return connect(host, target.token);
     if (target.path != "/") return refuse(http::status::not_found, "There is nothing here.\n");
     if (request.method() != http::verb::get && request.method() != http::verb::head)
-      return refuse(http::status::method_not_allowed, "Only GET and HEAD are understood.\n");
+      return refuse(http::status::method_not_allowed, "Only GET and HEAD are supported.\n");
     if (!context_.access.knows_token(target.token)) {
       respond(http::status::forbidden, "text/html; charset=utf-8", no_token_page);
     } else {
@@ -227,7 +227,7 @@ class Request : public std::enable_shared_from_this<Request> {
     response.set(http::field::server, "supple " SUPPLE_VERSION);
     response.set(http::field::content_type, type);
     response.set(http::field::cache_control, "no-store");
-    response.set("Referrer-Policy", "no-referrer");  // the address has the token
+    response.set("Referrer-Policy", "no-referrer");  // the address contains the token
     response.set("X-Content-Type-Options", "nosniff");
     response.set("Cross-Origin-Opener-Policy", "same-origin");
     response.set("Cross-Origin-Resource-Policy", "same-origin");
@@ -247,7 +247,7 @@ class Request : public std::enable_shared_from_this<Request> {
     });
   }
 
-  /// What is closed with something unread is reset, and the answer may be lost with it.
+  /// Closing a socket with unread data resets it, and the peer may lose the answer.
   void drain() {
     buffer_.clear();
     stream_.async_read_some(buffer_.prepare(buffer_.max_size()),
@@ -293,7 +293,7 @@ class Server::Implementation {
     watch(should_end);
     sockets_.run();
     if (failure_) std::rethrow_exception(failure_);
-    if (has_failed_) throw Error("the session has failed for good; the page says why");
+    if (has_failed_) throw Error("the session has failed; the page shows the reason");
   }
 
  private:
@@ -312,7 +312,7 @@ class Server::Implementation {
       message += std::to_string(options.port);
       message += ": cannot listen: ";
       message += error.code().message();
-      message += "; choose another port, or 0 for any that is free, and an address of this machine";
+      message += "; choose another port, or 0 for any free port, and an address of this machine";
       throw Error(message);
     }
   }
@@ -322,7 +322,8 @@ class Server::Implementation {
       if (!acceptor_.is_open()) return;
       if (!error) {
         socket.set_option(tcp::no_delay(true), error);
-        // More than a few are none of people's doing. Out of file descriptors, there is nothing to be done.
+        // More requests than a person makes are dropped, and so are errors such as a lack of file
+        // descriptors.
         if (request_count_ < most_requests) std::make_shared<Request>(std::move(socket), requests_)->read();
         return accept();
       }
@@ -341,7 +342,7 @@ class Server::Implementation {
     });
   }
 
-  /// No more is accepted; what is connected is told, and waited for no longer than a second.
+  /// Stops accepting, notifies the connected page, and waits for it at most one second.
   void end(CloseCode code, const char* reason) {
     if (std::exchange(is_ending_, true)) return;
     error_code ignored;
@@ -376,7 +377,7 @@ class Server::Implementation {
     page->accept(request, std::move(listener));
   }
 
-  /// Called on the session's thread, goes on on the thread of the sockets.
+  /// Called on the session thread; continues on the network thread.
   SessionThread::Listener listener() {
     return {[this](PageNumber number, Message message) {
               asio::post(sockets_, [this, number, message] {
@@ -409,7 +410,7 @@ class Server::Implementation {
   PageNumber page_count_ = 0, page_number_ = 0;
   bool is_ending_ = false, has_failed_ = false;
   std::exception_ptr failure_;
-  SessionThread session_;  ///< the last member: its thread posts to the others
+  SessionThread session_;  ///< last member: its thread posts to the others
 };
 
 Server::Server(Session session, const ServerOptions& options)

@@ -13,21 +13,20 @@ namespace supple::viewer {
 
 struct ServerOptions {
   std::string address = "127.0.0.1";  ///< an IP address; see `is_loopback`
-  std::uint16_t port = 0;             ///< 0: any that is free
-  std::string_view page{};            ///< HTML, which outlives the server
-  /// A page that has not been heard of for so long is given up; it is asked for a sign of life by then.
+  std::uint16_t port = 0;             ///< 0: any free port
+  std::string_view page{};            ///< HTML; must outlive the server
+  /// A page that is silent for this long is disconnected. It gets a ping before that.
   std::chrono::milliseconds patience{30'000};
 };
 
-/// Whether only programs on this machine reach the address. Throws `Error` when it is no IP address.
+/// Whether only programs on this machine can reach the address. Throws `Error` for an invalid IP address.
 bool is_loopback(const std::string& address);
 
-/// Serves a session to one page at a time, as docs/protocol.md says. What it serves and takes commands from
-/// must name it by its own address (so that no other site's page gets in by a name of its own) and know a
-/// random token.
+/// Serves a session to one page at a time (docs/protocol.md). A client must address the server by its own
+/// address, which excludes pages of other sites, and must know a random token.
 class Server {
  public:
-  /// Listens from here on. Throws `Error` when the address cannot be had.
+  /// Starts listening. Throws `Error` when the address is not available.
   Server(Session session, const ServerOptions& options);
   ~Server();
   Server(const Server&) = delete;
@@ -35,11 +34,11 @@ class Server {
 
   std::uint16_t port() const;
   const std::string& token() const;
-  /// What a person opens.
+  /// The address to open in a browser.
   std::string url() const;
 
-  /// Serves until `should_end`, which is asked ten times a second, says so; the page is told. Throws `Error`
-  /// when the session fails for good.
+  /// Serves until `should_end`, which is called ten times a second, returns true; then notifies the page.
+  /// Throws `Error` when the session fails permanently.
   void run(const std::function<bool()>& should_end);
 
  private:

@@ -84,7 +84,7 @@ void SessionThread::run_until_stopped() {
   if (ended_) listener_.ended(nullptr);
 }
 
-/// Takes what has come into `taken_`; false when the thread is to end.
+/// Moves new input to `taken_`. Returns false when the thread must end.
 bool SessionThread::wait_for_work(double seconds) {
   std::unique_lock lock(mutex_);
   const auto is_awake = [this] { return has_work_ || stopping_; };
@@ -105,7 +105,7 @@ void SessionThread::take_commands() {
   if (taken_.page) {
     greeted_ = *taken_.page;
     session_.greet();
-    // What was written last may still be on its way to the page before.
+    // The last message may still be in transit to the previous page, so its memory is not reused.
     message_ = std::make_shared<MessageWriter>();
     last_ = Clock::now();
   }
@@ -113,7 +113,7 @@ void SessionThread::take_commands() {
   if (!taken_.commands.empty()) listener_.commands_taken();
 }
 
-/// Gives how long nothing will be to do.
+/// Returns how many seconds nothing will happen.
 double SessionThread::let_time_pass() {
   const Clock::time_point now = Clock::now();
   const double seconds = std::chrono::duration<double>(now - last_).count();
@@ -128,7 +128,7 @@ double SessionThread::let_time_pass() {
 void SessionThread::offer_message() {
   {
     const std::lock_guard lock(mutex_);
-    // A page that came just now is greeted first.
+    // A new page must be greeted first.
     if (page_ == 0 || page_ != greeted_ || in_delivery_) return;
   }
   const std::span<const std::byte> message = session_.next_message(*message_);

@@ -19,49 +19,49 @@
 
 namespace supple::viewer {
 
-/// Pages are numbered in the order in which they come.
+/// Pages are numbered in the order of connection.
 using PageNumber = std::uint64_t;
-/// What is sent, and the memory that it lies in.
+/// A message and the memory that holds it.
 struct Message {
   std::span<const std::byte> bytes;
   std::shared_ptr<const MessageWriter> memory;
 };
 
-/// Runs a session on a thread of its own, so that a simulation waits for no socket and a socket for no
-/// simulation. Commands are taken between two steps; messages are handed over one at a time, each made when
-/// the one before is on its way, so that a slow page gets the newest state and nothing queues. While no page
-/// is there, time stands still.
+/// Runs a session on its own thread, so that the simulation does not wait for sockets nor sockets for the
+/// simulation. Commands are executed between two steps. Messages are handed over one at a time; each is made
+/// when the one before has been sent. So a slow page gets the newest state, and nothing queues. Time does
+/// not pass while no page is connected.
 class SessionThread {
  public:
-  /// What becomes of the session; called on its thread.
+  /// Callbacks on the session thread.
   struct Listener {
     std::function<void(PageNumber, Message)> message;
-    /// The commands of `command` have been carried out.
+    /// All commands passed to `command` have been executed.
     std::function<void()> commands_taken;
-    /// The session has failed for good and has handed over its last message, or something was thrown. It is
-    /// the last call.
+    /// The session failed permanently and its last message was handed over, or an exception was thrown. This
+    /// is the last callback.
     std::function<void(std::exception_ptr)> ended;
   };
 
   SessionThread(Session session, Listener listener);
-  /// Waits for the step under way.
+  /// Waits for the current step to end.
   ~SessionThread();
   SessionThread(const SessionThread&) = delete;
   SessionThread& operator=(const SessionThread&) = delete;
 
-  // From any thread, at once.
+  // Callable from any thread; these functions do not block.
   void page_came(PageNumber page);
   void page_left(PageNumber page);
-  /// Gives how many bytes of commands wait.
+  /// Returns how many bytes of commands wait.
   std::size_t command(PageNumber page, std::string text);
-  /// The last message handed over for this page is on its way, or lost.
+  /// The last message for this page has been sent or lost.
   void message_sent(PageNumber page);
 
  private:
   using Clock = std::chrono::steady_clock;
 
   struct Inbox {
-    std::optional<PageNumber> page;  ///< came since; the commands are of this page
+    std::optional<PageNumber> page;  ///< connected since the last take; the commands are from this page
     std::vector<std::string> commands;
     std::size_t bytes = 0;
   };
@@ -76,7 +76,7 @@ class SessionThread {
   Session session_;
   Listener listener_;
 
-  // Of the session's thread.
+  // Used by the session thread only.
   Clock::time_point last_;
   Inbox taken_;
   PageNumber greeted_ = 0;
@@ -87,12 +87,12 @@ class SessionThread {
   std::condition_variable work_;
   // Guarded by the mutex.
   Inbox inbox_;
-  PageNumber page_ = 0;  ///< the one that is there; 0 for none
+  PageNumber page_ = 0;  ///< the connected page; 0 for none
   bool in_delivery_ = false;
   bool has_work_ = false;
   bool stopping_ = false;
 
-  std::thread thread_;  ///< the last member: it uses all others
+  std::thread thread_;  ///< last member: it uses all others
 };
 
 }  // namespace supple::viewer

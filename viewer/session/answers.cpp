@@ -19,7 +19,7 @@ void add_pair(std::uint32_t a, std::uint32_t b, JsonText& json) {
   json.end_array();
 }
 
-/// Up to `most` of the triangles that one meets.
+/// Adds at most `most` of the triangles that a triangle touches.
 void add_contacts_of(const DetectResult& result, std::uint32_t object, std::uint32_t triangle,
                      JsonText& json) {
   constexpr std::uint64_t most = 1000;

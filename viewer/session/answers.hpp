@@ -12,8 +12,8 @@
 
 namespace supple::viewer {
 
-/// The members of the answers to `explain` and `read`, written into an object that is begun. Numbers must
-/// exist. An object and one of its triangles:
+/// These functions write the members of the answers to `explain` and `read` into an open JSON object. All
+/// ids must exist. `ObjectTriangle` is an object and one of its triangles.
 using ObjectTriangle = std::array<std::uint32_t, 2>;
 void answer_explain(const SceneView& show, const Source& source, const Center& center, ObjectTriangle a,
                     ObjectTriangle b, JsonText& json);

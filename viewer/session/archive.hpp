@@ -19,15 +19,15 @@
 
 namespace supple::viewer {
 
-static_assert(std::endian::native == std::endian::little, "packed shows are little-endian");
+static_assert(std::endian::native == std::endian::little, "packed scenes are little-endian");
 
-/// Values that are packed as their bytes.
+/// Values that are stored as their raw bytes.
 template <class Value>
 concept Plain = std::is_same_v<Value, std::uint8_t> || std::is_same_v<Value, std::uint32_t> ||
     std::is_same_v<Value, std::uint64_t> || std::is_same_v<Value, float> || std::is_same_v<Value, double> ||
     std::is_same_v<Value, Vec3d> || std::is_same_v<Value, Triangle> || std::is_same_v<Value, char>;
 
-/// Writes values one after the other. `fields(archive, value)` lists the members of a structure, for both
+/// Writes values one after the other. `fields(archive, value)` lists the members of a structure for both
 /// archives.
 class Packer {
  public:
@@ -78,8 +78,8 @@ class Packer {
   std::vector<std::byte> bytes_;
 };
 
-/// Reads what `Packer` wrote. After the first thing that cannot be, all values are left as they are; no count
-/// makes it take more memory than the bytes account for.
+/// Reads the output of `Packer`. After the first invalid value all further values are left unchanged. A
+/// count never allocates more memory than the remaining bytes can fill.
 class Unpacker {
  public:
   explicit Unpacker(std::span<const std::byte> bytes) : rest_(bytes) {}
@@ -120,7 +120,7 @@ class Unpacker {
   }
   template <class Value>
   void get(std::vector<Value>& values) {
-    // Each element takes a byte at least.
+    // Each element takes at least one byte.
     const std::size_t count = get_count(1);
     values.clear();
     while (good() && values.size() < count) get(values.emplace_back());

@@ -20,7 +20,7 @@ std::string number_text(double value) {
   return text;
 }
 
-/// The value as it was written, cut when it is long.
+/// The JSON text of the value, shortened when it is long.
 std::string text_of(const JsonValue& value) {
   constexpr std::size_t longest = 40;
   switch (value.kind) {
@@ -99,7 +99,8 @@ std::optional<double> Arguments::number(const char* name, const Range& range) {
   return std::nullopt;
 }
 
-std::optional<bool> Arguments::one_of_two(const char* name, const std::array<const char*, 2>& words_of_truth) {
+std::optional<bool> Arguments::one_of_two(const char* name,
+                                          const std::array<const char*, 2>& words_of_truth) {
   const JsonValue* const value = find(name);
   if (value == nullptr) return std::nullopt;
   if (value->kind == JsonValue::Kind::text) {
@@ -155,7 +156,7 @@ bool Arguments::check() {
     std::string list;
     for (const std::string_view known : known_) list += (list.empty() ? "" : ", ") + std::string(known);
     fail("it has no \"" + name.substr(0, 40) + "\"; " +
-         (known_.empty() ? "it takes nothing more" : "it takes " + list));
+         (known_.empty() ? "it takes no other members" : "it takes " + list));
   }
   return error_.empty();
 }

@@ -14,8 +14,8 @@
 
 namespace supple::viewer {
 
-/// Reads what a command says. The first thing that is wrong is kept, in words for people; what is then given
-/// means nothing. An optional member that is not there is nothing and no error.
+/// Reads the members of a command. Keeps the first error as a message for people; values returned after an
+/// error have no meaning. A missing optional member is not an error.
 class Arguments {
  public:
   Arguments(const JsonValue& object, std::string command) : object_(object), command_(std::move(command)) {}
@@ -28,7 +28,7 @@ class Arguments {
   std::optional<double> number(const char* name, const Range& range);
   std::optional<bool> one_of_two(const char* name, const std::array<const char*, 2>& words_of_truth);
   std::optional<Vec3d> point(const char* name);
-  /// An object's number and one of its triangles; only that they are two whole numbers is checked.
+  /// An object and one of its triangles. Checks only that both are whole numbers.
   std::optional<std::array<std::uint32_t, 2>> pair(const char* name);
   std::optional<std::vector<std::uint32_t>> numbers(const char* name);
   /// One of the words of the enumeration.
@@ -58,10 +58,10 @@ class Arguments {
     if (given) value = *given;
     return given.has_value();
   }
-  /// What the member holds, to be read by other arguments; null when it is not there.
+  /// The value of a member that has members of its own; null when it is missing.
   const JsonValue* member(const char* name) { return find(name); }
 
-  /// The member that must be there.
+  /// Reports an error when the member is missing.
   template <class Value>
   Value required(const char* name, std::optional<Value> value) {
     if (!value && error_.empty()) error_ = command_ + ": " + name + " is missing";
@@ -70,9 +70,9 @@ class Arguments {
   void must_be(const char* name, const std::string& what);
   void fail(std::string error);
 
-  /// False when something is wrong, also with members that nobody asked for.
+  /// False after an error, and when the command has members that were not read.
   bool check();
-  const std::string& error() const { return error_; }  ///< empty when nothing is wrong
+  const std::string& error() const { return error_; }  ///< empty without an error
 
  private:
   const JsonValue* find(const char* name);

@@ -8,11 +8,11 @@
 
 namespace supple::viewer {
 
-/// What is subtracted from positions in double, so that floats are precise also far from the origin.
+/// A point that is subtracted from positions in double, so that floats are precise far from the origin.
 struct Center {
   Vec3d at{};
 
-  /// NaN for what no float can hold.
+  /// NaN where the result does not fit a float.
   std::array<float, 3> operator()(const Vec3d& p) const {
     return {narrow(p.x - at.x), narrow(p.y - at.y), narrow(p.z - at.z)};
   }

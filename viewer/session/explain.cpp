@@ -9,7 +9,7 @@
 namespace supple::viewer {
 namespace {
 
-/// Two objects and what their scene says of one triangle of each.
+/// Two triangles and the scene's explanation of the pair.
 struct Pair {
   const ViewedObject &a, &b;
   const std::string &name_a, &name_b;
@@ -37,7 +37,7 @@ std::string why_not_tested(const Pair& pair) {
   if (pair.is_one_object()) return pair.name_a + " is not tested against itself: its self-collision is off";
   std::string text = pair.name_a + " and " + pair.name_b + " are not tested against each other: ";
   if (pair.a.options.is_static && pair.b.options.is_static) return text + "both are static";
-  return text + "their groups and masks keep them apart";
+  return text + "their groups and masks exclude each other";
 }
 
 std::string sentence_of(const Pair& pair) {
@@ -47,9 +47,9 @@ std::string sentence_of(const Pair& pair) {
     case PairStage::not_tested:
       return why_not_tested(pair);
     case PairStage::shared_vertex:
-      return "they share a vertex: of one object, such triangles are never a contact";
+      return "they share a vertex; such triangles of one object are never a contact";
     case PairStage::inert:
-      return "a corner of them is at no finite place, so they touch nothing";
+      return "a corner is not finite, so they touch nothing";
     case PairStage::object_volumes:
       return "broad phase: the " + shapes + " of " + pair.name_a + " and " + pair.name_b + gap_of(pair.why);
     case PairStage::octree_volumes:

@@ -18,7 +18,7 @@ inline bool is_finite(const Vec3d& p) {
   return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
 }
 
-/// A box in double. Empty until a finite point comes.
+/// A box in double; empty until a finite point is added.
 struct Extent {
   Vec3d low{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity(),
             std::numeric_limits<double>::infinity()};
@@ -40,7 +40,7 @@ struct Extent {
   double longest_side() const { return std::max({size().x, size().y, size().z}); }
 };
 
-/// Of all objects at the start, and of the border when it is finite.
+/// The box around all objects at the start, and around the border when it is finite.
 inline Extent extent_of(const SceneView& show) {
   Extent extent;
   for (const ViewedObject& object : show.objects) extent.add(start_of(show, object).positions);

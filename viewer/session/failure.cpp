@@ -28,7 +28,7 @@ void fail(const std::string& message) {
 #else
 
 namespace supple {
-/// The library's own door (core/error.hpp), which leads to the failure handler.
+/// Defined in core/error.hpp; calls the failure handler where exceptions are compiled out.
 [[noreturn]] void fail(const std::string& message);
 }  // namespace supple
 

@@ -11,16 +11,16 @@ struct Failure {
   bool out_of_memory = false;
 };
 
-/// What `action` fails with: the message of the `Error` that it throws, or that there is no memory left, or
-/// nothing when it succeeds. Where exceptions are compiled out, what fails does not return: the library's
-/// failure handler ends the session.
+/// Runs `action` and returns how it failed: with the message of an `Error`, or for lack of memory. Returns
+/// nothing on success. Where exceptions are compiled out, a failure does not return: the failure handler of
+/// the library ends the session.
 std::optional<Failure> failure_of_function(const std::function<void()>& action);
 template <class Action>
 std::optional<Failure> failure_of(const Action& action) {
-  return failure_of_function(std::cref(action));  // without a copy, which may ask for memory
+  return failure_of_function(std::cref(action));  // std::cref avoids a copy, which might allocate
 }
 
-/// Reports unusable input, as the library does.
+/// Reports unusable input in the way of the library.
 [[noreturn]] void fail(const std::string& message);
 
 }  // namespace supple::viewer

@@ -30,7 +30,7 @@ Vec3d normal_of(const FrameView& frame, std::uint32_t object, std::uint32_t tria
   return unit_normal(positions[corners[0]], positions[corners[1]], positions[corners[2]]);
 }
 
-/// That of triangle b, or of a where b has no area.
+/// The normal of triangle b, or of triangle a when b has no area.
 Vec3d normal_of(const FrameView& frame, const Contact& contact) {
   const Vec3d normal = normal_of(frame, contact.object_b.index, contact.triangle_b);
   return normal != Vec3d{} ? normal : normal_of(frame, contact.object_a.index, contact.triangle_a);
@@ -101,7 +101,7 @@ void FramePacker::add_contacts(const FrameView& frame) {
   if (has_points) add_contact_points(frame, count);
 }
 
-/// Those of the contacts that are sent. They stand in the order of contacts.
+/// Adds the points of the contacts that are sent, in the order of the contacts.
 void FramePacker::add_contact_points(const FrameView& frame, std::size_t contact_count) {
   const DetectResult& result = frame.source.scene().result();
   const Contact* const last = contact_count == 0 ? nullptr : &result.contacts[contact_count - 1];
@@ -139,7 +139,7 @@ void FramePacker::add_impacts(const FrameView& frame) {
   }
 }
 
-/// Since the frame that was sent last, which may be some steps ago.
+/// Adds the events since the last frame that was sent, which may be several steps ago.
 void FramePacker::add_events(const DetectResult& result) {
   now_touching_.clear();
   for (const ContactGroup& group : result.groups) {
@@ -178,7 +178,7 @@ void FramePacker::add_candidates(const FrameView& frame) {
   });
 }
 
-/// Spheres when cells have them, else boxes. Cells without a finite triangle have neither.
+/// Adds spheres when the cells have them, else boxes. Cells without a finite triangle have neither.
 void FramePacker::add_octree(const FrameView& frame, std::uint32_t object) {
   const Scene& scene = frame.source.scene();
   const ObjectId id = frame.source.id(object);
@@ -225,6 +225,7 @@ void FramePacker::add_text(const FrameView& frame) {
   json_.member("generation", frame.generation);
   json_.member("step", frame.source.step());
   json_.member("time", frame.source.time());
+  json_.member("broad_phase_method", word_of(frame.source.scene().result().stats.broad_phase_method));
   json_.member("playing", frame.playing);
   json_.member("speed", frame.speed);
   json_.member("loop", frame.loop);
@@ -240,7 +241,7 @@ void FramePacker::add_text(const FrameView& frame) {
   message_->add_text(json_.text());
 }
 
-/// How many of the elements are sent; the rest is noted, one object's after the other's added up.
+/// The number of elements to send. Counts the omitted ones, summed over objects.
 std::size_t FramePacker::limited(const char* layer, std::uint64_t count) {
   if (count <= most_elements) return static_cast<std::size_t>(count);
   omissions_.push_back({layer, count});

@@ -16,7 +16,7 @@
 
 namespace supple::viewer {
 
-/// What a frame is made from.
+/// The input of one frame message.
 struct FrameView {
   const SceneView& show;
   const Source& source;
@@ -28,16 +28,16 @@ struct FrameView {
   bool loop = false;
 };
 
-/// Writes frames, and remembers what the page has already.
+/// Writes frame messages and tracks what the page already has.
 class FramePacker {
  public:
-  /// The page has nothing, or there is another scene.
+  /// Call when the page has nothing yet or the scene changed.
   void forget();
   void pack(const FrameView& frame, MessageWriter& message);
 
  private:
   using ObjectPairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
-  /// Elements of a layer that is too large, and how many there truly are.
+  /// A layer that is too large to send, and its full number of elements.
   struct Omission {
     const char* layer;
     std::uint64_t count;
@@ -58,7 +58,7 @@ class FramePacker {
   std::size_t limited(const char* layer, std::uint64_t count);
 
   MessageWriter* message_ = nullptr;
-  std::vector<std::uint64_t> versions_;  // of the positions that were sent; 0 for none
+  std::vector<std::uint64_t> versions_;  // one per object, of the positions last sent; 0 for none
   ObjectPairs touching_, now_touching_, changed_;
   std::vector<Omission> omissions_;
   std::vector<std::uint32_t> octree_levels_;

@@ -9,10 +9,10 @@
 namespace supple::viewer {
 namespace {
 
-/// The spring's frequency times the step.
+/// Spring frequency times time step.
 constexpr double stiffness = 0.5;
 
-/// What the springs of a vertex with this weight divide its velocity by in a step.
+/// The factor by which the springs divide the velocity of a vertex with this weight in one step.
 double slowing(double weight, double damping) {
   return 1 + weight * stiffness * (2 * damping + stiffness);
 }
@@ -53,7 +53,7 @@ Grip take_hold(const TriangleMesh& rest, std::span<const Vec3d> now, std::uint32
   grip.vertex = vertex;
   grip.anchor = now[vertex];
   for (std::size_t i = 0; i < rest.positions.size(); ++i) {
-    // Of what is not finite the comparison is false.
+    // Comparisons with NaN are false.
     const double squares = squared_length(rest.positions[i] - rest.positions[vertex]) / (reach * reach);
     if (i != vertex && !(squares < 1)) continue;
     if (!is_finite(now[i])) continue;

@@ -12,35 +12,34 @@
 
 namespace supple::viewer {
 
-/// A vertex that is held, and those about it that come along, the less the further away they are at rest.
+/// A held vertex and the vertices around it, which follow it less the farther away they are at rest.
 struct Grip {
   std::size_t object = 0;
   std::uint32_t vertex = 0;
-  std::vector<std::uint32_t> vertices{};  ///< with `vertex`
-  /// From 1 at the vertex to 0 at the radius, smoothly at both: (1 - r²)², the slope being 0 at 0 and at 1.
+  std::vector<std::uint32_t> vertices{};  ///< including `vertex`
+  /// Fall smoothly from 1 at the vertex to 0 at the radius: (1 - r²)², with slope 0 at both ends.
   std::vector<double> weights{};
-  std::vector<Vec3d> from{};  ///< where these vertices were when it was taken
-  Vec3d anchor{};             ///< and where the vertex was
-  /// Of the springs that pull: times the critical damping of the masses they hold, so that it is that of the
-  /// whole body, which hangs on them.
+  std::vector<Vec3d> from{};  ///< their positions when the grip started
+  Vec3d anchor{};             ///< the position of `vertex` then
+  /// Damping of the pulling springs, as a multiple of the critical damping of the held masses, chosen so
+  /// that the whole body is critically damped.
   double damping = 1;
-  /// How far from its target a vertex pulls at most.
+  /// maximum distance from the target at which the pull still grows
   double reach = 0;
-  std::optional<Vec3d> target{};  ///< of the vertex, once it is dragged
+  std::optional<Vec3d> target{};  ///< of `vertex`, once it is dragged
 };
 
-/// Without `radius`, a fifth of the longest side of the mesh.
+/// The default `radius` is a fifth of the longest side of the mesh.
 Grip take_hold(const TriangleMesh& rest, std::span<const Vec3d> now, std::uint32_t vertex,
                std::optional<double> radius);
 
-/// Moves the vertices of the grip with its target, from where they were when it was taken.
+/// Moves the held vertices with the target, relative to their positions when the grip started.
 void bend(const Grip& grip, std::span<Vec3d> positions);
 
-/// Gives the vertices of the grip velocities that bring them nearer to the target in a step of that length,
-/// as damped springs would that a step of backward Euler carries on: a body that moves as a whole gets there
-/// without swinging. Each is stable by itself, and weak beside the inertia of the mass, so that it does not
-/// disturb what an integrator bears; none moves a vertex by more than the mesh's mean edge in a step.
-/// `is_fixed` may be empty.
+/// Gives the held vertices velocities that bring them closer to the target in a step of length `seconds`, as
+/// damped springs integrated by backward Euler would: a rigid body arrives without oscillation. Each pull is
+/// stable by itself and weak compared with inertia, so it does not reduce the stable step of the integrator.
+/// No vertex moves more than the mean edge length in a step. `is_fixed` may be empty.
 void pull(const Grip& grip, const std::vector<bool>& is_fixed, MassSpringBody& body, double seconds,
           std::vector<Vec3d>& velocities);
 

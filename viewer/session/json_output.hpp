@@ -13,9 +13,8 @@
 
 namespace supple::viewer {
 
-/// Writes JSON to a stream of RapidJSON's: what all JSON of the program has in common. What is no UTF-8 in a
-/// text becomes U+FFFD. `Doubles::write(writer, number)` says how doubles are written, and what stands for
-/// those that JSON has no number for.
+/// Writes JSON to a RapidJSON stream. All JSON of the program uses it. Bytes that are not valid UTF-8 become
+/// U+FFFD. `Doubles::write(writer, number)` formats doubles and replaces those that JSON cannot express.
 template <class Stream, class Doubles>
 class JsonOutput {
  public:
@@ -49,7 +48,7 @@ class JsonOutput {
     end_array();
   }
   void null() { writer_.Null(); }
-  /// Two numbers, `[a,b]`.
+  /// Writes an array of two numbers, `[a,b]`.
   void pair(std::uint64_t a, std::uint64_t b) {
     begin_array();
     value(a);
@@ -66,7 +65,7 @@ class JsonOutput {
  protected:
   using Writer = rapidjson::Writer<Stream>;
 
-  /// Starts a text, with the memory there is from the last one.
+  /// Starts a new text and keeps the allocated memory.
   void begin(Stream& stream) { writer_.Reset(stream); }
 
  private:

@@ -9,7 +9,7 @@
 
 namespace supple::viewer {
 
-/// What JSON has no number for becomes null.
+/// Writes null for NaN and infinity.
 struct DoublesOrNull {
   template <class Writer>
   static void write(Writer& writer, double number) {
@@ -20,12 +20,12 @@ struct DoublesOrNull {
   }
 };
 
-/// Writes a JSON object as a text.
+/// Writes one JSON object to a string.
 class JsonText : public JsonOutput<rapidjson::StringBuffer, DoublesOrNull> {
  public:
   JsonText() { begin(buffer_); }
 
-  /// Starts anew, with the memory it has.
+  /// Starts again and keeps the allocated memory.
   void clear() {
     buffer_.Clear();
     begin(buffer_);

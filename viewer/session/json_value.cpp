@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t deepest = 16;
 
-/// Takes what the reader finds. Each of its functions says whether to go on.
+/// Receives the events of the RapidJSON reader. Each function returns whether to continue.
 class Builder : public rapidjson::BaseReaderHandler<rapidjson::UTF8<>, Builder> {
  public:
   using Kind = JsonValue::Kind;
@@ -57,7 +57,7 @@ class Builder : public rapidjson::BaseReaderHandler<rapidjson::UTF8<>, Builder> 
   }
 
   JsonValue root_;
-  // Lists and objects that have not ended, each the last element of the one before: nothing moves them.
+  // Open arrays and objects, each the last element of the one before, so none of them moves.
   std::vector<JsonValue*> open_;
 };
 
@@ -72,7 +72,7 @@ std::optional<JsonValue> parse_json(std::string_view text, std::size_t& error) {
   rapidjson::MemoryStream stream(text.data(), text.size());
   rapidjson::Reader reader;
   Builder builder;
-  // Iterative: what is nested takes no stack.
+  // An iterative parser, so that deep nesting cannot overflow the stack.
   constexpr unsigned flags = rapidjson::kParseIterativeFlag | rapidjson::kParseValidateEncodingFlag |
                              rapidjson::kParseFullPrecisionFlag;
   if (reader.Parse<flags>(stream, builder)) return builder.take();

@@ -7,16 +7,16 @@
 
 namespace supple::viewer {
 
-/// What a page asked frames to have besides positions, pairs, contacts and statistics.
+/// What the page asked for in addition to positions, pairs, contacts and statistics.
 struct Layers {
   bool candidates = false;
   bool scene_regions = false;
   bool colliding_vertices = false;
-  std::vector<std::uint32_t> octree_objects{};  ///< whose octrees, ascending
-  std::optional<std::uint32_t> octree_level{};  ///< nothing: the leaves
+  std::vector<std::uint32_t> octree_objects{};  ///< objects whose octrees are sent, ascending
+  std::optional<std::uint32_t> octree_level{};  ///< empty: the leaves
 };
 
-/// Those that are asked for, as the protocol calls them.
+/// The requested layers by their names in the protocol.
 inline std::vector<std::string> layer_names(const Layers& layers) {
   std::vector<std::string> names;
   if (layers.candidates) names.emplace_back("candidates");

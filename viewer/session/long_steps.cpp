@@ -8,9 +8,9 @@
 namespace supple::viewer {
 namespace {
 
-/// Digits as `std::to_chars` gives them in a format: the fewest that mean the number when none is said.
+/// Formats with `std::to_chars`. Without a format: the fewest digits that identify the number.
 std::string digits_of(double value, auto... format) {
-  std::array<char, 400> text;  // whatever the exponent
+  std::array<char, 400> text;  // large enough for any exponent
   return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value, format...).ptr};
 }
 

@@ -7,8 +7,8 @@
 
 namespace supple::viewer {
 
-/// A sentence about bodies that will blow up because the steps are too long for them, which names the worst
-/// one and what mends it; nothing when there are none.
+/// A warning about bodies whose time step exceeds their stable step: names the worst body and the remedy.
+/// Empty when all steps are stable.
 std::optional<std::string> warning_of_long_steps(const Simulation& simulation);
 
 }  // namespace supple::viewer

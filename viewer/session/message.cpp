@@ -42,11 +42,11 @@ std::byte* MessageWriter::add_section(Tag tag, std::uint32_t object, std::size_t
   return append(length);
 }
 
-/// Room for so many bytes, and zeros up to the next block.
+/// Reserves `length` bytes and adds zeros up to the next block.
 std::byte* MessageWriter::append(std::size_t length) {
   const std::size_t first = used_;
   used_ += (length + alignment - 1) / alignment;
-  // One more, so that there is an address also behind the last one.
+  // One extra block, so that the end has a valid address.
   if (blocks_.size() <= used_) blocks_.resize(std::max(used_ + 1, blocks_.size() + blocks_.size() / 2));
   std::byte* const data = blocks_[first].bytes;
   std::memset(data + length, 0, (used_ - first) * alignment - length);

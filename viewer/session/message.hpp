@@ -10,7 +10,7 @@
 
 namespace supple::viewer {
 
-// The numbers of docs/protocol.md.
+// The numbers are those of docs/protocol.md.
 
 enum class MessageKind : std::uint16_t { scene = 1, frame = 2, answer = 3, failure = 4, series = 5 };
 
@@ -36,15 +36,15 @@ enum class Tag : std::uint32_t {
   series_end = 66,
 };
 
-/// In a section that belongs to no object.
+/// The object id of sections that belong to no object.
 inline constexpr std::uint32_t no_object = ~std::uint32_t{0};
 
-/// Writes one message after the other into the same memory, which only grows.
+/// Writes messages one after the other into the same memory, which only grows.
 class MessageWriter {
  public:
   void begin(MessageKind kind);
   void add_text(std::string_view json);
-  /// A section of so many elements, for the caller to write before anything else is added.
+  /// Adds a section of `count` elements. The caller must write them before it adds anything else.
   template <class Element>
   std::span<Element> add(Tag tag, std::uint32_t object, std::size_t count) {
     static_assert(std::is_trivially_copyable_v<Element> && alignof(Element) <= alignment);
@@ -55,13 +55,13 @@ class MessageWriter {
   std::span<Element> add(Tag tag, std::size_t count) {
     return add<Element>(tag, no_object, count);
   }
-  /// A section whose elements are so many values each.
+  /// Adds a section of `rows` elements with `columns` values each.
   template <class Value>
   std::span<Value> add_rows(Tag tag, std::size_t count, std::size_t values) {
     std::byte* const data = add_section(tag, no_object, count, count * values * sizeof(Value));
     return {reinterpret_cast<Value*>(data), count * values};
   }
-  /// The whole message; it lasts until the next `begin`.
+  /// The complete message, valid until the next `begin`.
   std::span<const std::byte> finish();
 
  private:
@@ -74,8 +74,8 @@ class MessageWriter {
   std::byte* add_section(Tag tag, std::uint32_t object, std::size_t count, std::size_t length);
   std::byte* append(std::size_t length);
 
-  std::vector<Block> blocks_;  // as long as the longest message so far
-  std::size_t used_ = 0;       // of them
+  std::vector<Block> blocks_;  // sized for the longest message so far
+  std::size_t used_ = 0;       // blocks in use
   MessageKind kind_{};
   std::uint32_t section_count_ = 0;
 };

@@ -10,9 +10,8 @@ double largest(const Vec3d& v) {
   return std::max({std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)});
 }
 
-/// Twice the vector of a triangle's area, of sides that are divided by `size`, the largest coordinate of two
-/// of them: products of small or large ones would leave the range of numbers. Zero where there is no size to
-/// tell.
+/// Twice the area vector of a triangle whose sides are divided by `size`, the largest coordinate of two of
+/// them. The division avoids overflow and underflow of products. Zero when `size` is 0.
 Vec3d scaled_normal(const Vec3d& a, const Vec3d& b, const Vec3d& c, double& size) {
   const Vec3d ab = b - a, ac = c - a;
   size = std::max(largest(ab), largest(ac));

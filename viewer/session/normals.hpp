@@ -5,7 +5,7 @@
 
 namespace supple::viewer {
 
-/// Of unit length; zero when the corners span no area or are not finite.
+/// Has length 1; zero when the corners have no area or are not finite.
 Vec3d unit_normal(const Vec3d& a, const Vec3d& b, const Vec3d& c);
 double area(const Vec3d& a, const Vec3d& b, const Vec3d& c);
 

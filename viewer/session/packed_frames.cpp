@@ -16,7 +16,7 @@ void append(std::vector<float>& coordinates, std::span<const Vec3d> positions, c
   }
 }
 
-/// Bit by bit.
+/// Compares bits, so that NaN equals itself.
 bool same(std::span<const Vec3d> a, std::span<const Vec3d> b) {
   return a.empty() || std::memcmp(a.data(), b.data(), a.size_bytes()) == 0;
 }

@@ -9,24 +9,25 @@
 
 namespace supple::viewer {
 
-/// Frames in memory, as floats; of what never moves only the first.
+/// Frames in memory as floats. Objects that never move have only their first frame.
 class PackedFrames final : public Frames {
  public:
-  /// What is packed of an object: its frames one after the other, minus a center, or nothing when it rests
-  /// where its mesh is.
+  /// The frames of one object one after the other, minus a center. Empty when the object rests at the
+  /// positions of its mesh.
   struct Track {
     std::vector<float> coordinates{};
   };
 
   PackedFrames() = default;
-  /// Reads all of them. Throws `Error` when one cannot be read.
+  /// Reads all frames. Throws `Error` when one cannot be read.
   PackedFrames(const Frames& frames, std::span<const ViewedObject> objects, const Vec3d& center);
 
   std::uint64_t count() const override { return count_; }
   void read(std::uint64_t frame, std::size_t object, std::span<Vec3d> positions) const override;
   const Series& series() const override { return series_; }
 
-  /// After unpacking: where objects rest. False when the tracks do not fit to them.
+  /// Call after unpacking; it sets the positions of objects at rest. False when the tracks do not match the
+  /// objects.
   bool fit_to(std::span<const ViewedObject> objects);
 
   friend void fields(auto& archive, PackedFrames& frames) {
@@ -41,7 +42,7 @@ class PackedFrames final : public Frames {
   Vec3d center_{};
   std::vector<Track> tracks_;
   Series series_;
-  std::vector<std::vector<Vec3d>> rest_;  // of what does not move
+  std::vector<std::vector<Vec3d>> rest_;  // positions of objects that do not move
 };
 
 void fields(auto& archive, PackedFrames::Track& track) {

@@ -18,11 +18,11 @@
 namespace supple::viewer {
 namespace {
 
-/// Before what is packed.
+/// Precedes the packed data.
 struct Header {
   std::array<char, 8> magic{'S', 'U', 'P', 'L', 'S', 'H', 'O', 'W'};
-  std::array<char, 16> version{};  // of the library, zeros behind it
-  std::uint64_t checksum = 0;      // of all behind the header
+  std::array<char, 16> version{};  // of the library, padded with zeros
+  std::uint64_t checksum = 0;      // of everything after the header
 
   constexpr bool operator==(const Header&) const = default;
 };
@@ -34,7 +34,7 @@ std::array<char, 16> own_version() {
   return version;
 }
 
-/// FNV-1a of words of eight bytes, what is missing of the last being zeros.
+/// FNV-1a over words of eight bytes; the last word is padded with zeros.
 std::uint64_t checksum_of(std::span<const std::byte> bytes) {
   std::uint64_t hash = 0xcbf29ce484222325u ^ bytes.size();
   for (std::size_t i = 0; i < bytes.size(); i += 8) {
@@ -47,14 +47,14 @@ std::uint64_t checksum_of(std::span<const std::byte> bytes) {
 }
 
 void check_header(const Header& header, std::span<const std::byte> content) {
-  if (header.magic != Header{}.magic) fail("this is no packed show; export the page again");
+  if (header.magic != Header{}.magic) fail("this is not a packed scene; export the page again");
   if (header.version != own_version()) {
     const std::string version(header.version.begin(),
                               std::find(header.version.begin(), header.version.end(), '\0'));
-    fail("this show was packed by version " + version + " of Supple, and this is " + SUPPLE_VERSION +
+    fail("this scene was packed by version " + version + " of Supple, and this is " + SUPPLE_VERSION +
          "; export the page again");
   }
-  if (header.checksum != checksum_of(content)) fail("the packed show is damaged; export the page again");
+  if (header.checksum != checksum_of(content)) fail("the packed scene is damaged; export the page again");
 }
 
 }  // namespace
@@ -74,7 +74,7 @@ std::vector<std::byte> pack(const SceneView& show) {
 
 SceneView unpack(std::span<const std::byte> bytes) {
   Header header;
-  if (bytes.size() < sizeof(header)) fail("this is no packed show; export the page again");
+  if (bytes.size() < sizeof(header)) fail("this is not a packed scene; export the page again");
   std::memcpy(&header, bytes.data(), sizeof(header));
   const auto content = bytes.subspan(sizeof(header));
   check_header(header, content);
@@ -89,7 +89,7 @@ SceneView unpack(std::span<const std::byte> bytes) {
     if (!frames->fit_to(show.objects)) unpacker.fail();
     show.frames = std::move(frames);
   }
-  if (!unpacker.good() || !unpacker.at_end()) fail("the packed show is damaged; export the page again");
+  if (!unpacker.good() || !unpacker.at_end()) fail("the packed scene is damaged; export the page again");
   return show;
 }
 

@@ -8,10 +8,11 @@
 
 namespace supple::viewer {
 
-/// A show as bytes, for a page that has no server: read by the same version that wrote it. Frames of a
-/// recording are packed as floats. Throws `Error` when an object moves in a way that cannot be packed.
+/// Packs a scene view for a page without a server. Only the version of the library that wrote the bytes
+/// reads them. Frames of a recording are packed as floats. Throws `Error` when the motion of an object
+/// cannot be packed.
 std::vector<std::byte> pack(const SceneView& show);
-/// Throws `Error` for bytes that `pack` did not write, or another version did.
+/// Throws `Error` when `pack` of this version did not write the bytes.
 SceneView unpack(std::span<const std::byte> bytes);
 
 }  // namespace supple::viewer

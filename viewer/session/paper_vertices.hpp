@@ -9,13 +9,13 @@
 
 namespace supple::viewer {
 
-/// The paper's output: of each object the vertices in the leaves that collide with another's. Only a scene
-/// made for them gives these, so they have one of their own, which costs another detection while they are
-/// asked for and nothing otherwise.
+/// The output defined by the paper: for each object, the vertices in leaves that collide with leaves of
+/// another object. Only a scene with `colliding_vertices` computes it, so this class owns such a scene. It
+/// costs one more detection per frame, but only while the page requests it.
 class PaperVertices {
  public:
-  /// By object, ascending, each vertex once. They last until the next call. The show is always the same until
-  /// `forget`.
+  /// Indexed by object; vertices ascend, each occurs once. Valid until the next call. `show` must not change
+  /// until `forget`.
   const std::vector<std::vector<std::uint32_t>>& find(const SceneView& show, const Source& source);
   void forget();
 

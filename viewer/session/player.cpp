@@ -6,7 +6,7 @@
 namespace supple::viewer {
 namespace {
 
-/// Longer pauses than this, as when a machine slept, do not count.
+/// Limits how much time one call can add, for example after the machine slept.
 constexpr double longest_pause = 0.25;
 
 std::uint64_t last_frame(const RecordingSource& recording) {
@@ -75,7 +75,7 @@ Player::Outcome Player::advance_simulation(SimulationSource& simulation, double 
   return {changed, speed_ > 0 ? std::max(time_step - due_, 0.0) / speed_ : 0, std::move(failure)};
 }
 
-/// Keeps up with time while it can; what it cannot catch up with by the next step is given up.
+/// Takes a step when it is due. Drops time that the steps cannot catch up with.
 bool Player::take_due_step(double time_step, double seconds) {
   if (speed_ == 0) return true;
   due_ += seconds * speed_;
@@ -88,7 +88,7 @@ Player::Outcome Player::advance_recording(RecordingSource& recording, double sec
   const bool was_playing = playing_;
   const std::uint64_t frame = due_frame(recording, seconds);
   Outcome outcome{frame != recording.step() || was_playing != playing_};
-  // Forgotten first: a frame that cannot be read is not tried again and again.
+  // Reset first, so that a frame that cannot be read is tried only once.
   target_.reset();
   if (frame != recording.step()) recording.seek(frame);
   if (playing_) outcome.wait = wait_for_frame(recording);
@@ -110,12 +110,12 @@ std::uint64_t Player::due_frame(RecordingSource& recording, double seconds) {
   return frame_in_time(recording, seconds);
 }
 
-/// Of a recording that plays and has not ended.
+/// For a recording that plays and has not ended.
 std::uint64_t Player::frame_in_time(RecordingSource& recording, double seconds) {
   const std::uint64_t now = recording.step(), last = last_frame(recording);
   if (speed_ == 0) return now == last ? 0 : now + 1;
   clock_ = clock_.value_or(recording.time()) + seconds * speed_;
-  // The last frame lasts as long as the one before it.
+  // The last frame has the duration of the frame before it.
   const double length = last > 0 ? recording.time_of(last) - recording.time_of(last - 1) : 0;
   const double end = recording.time_of(last) + length;
   if (now == last || (loop_ && *clock_ >= end)) {

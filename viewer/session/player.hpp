@@ -8,21 +8,21 @@
 
 namespace supple::viewer {
 
-/// Whether time passes on the stage, and how fast.
+/// Decides whether and how fast time passes.
 class Player {
  public:
-  /// How long there is nothing to do when nothing moves. Not for ever, as timers do not know that.
+  /// How long `advance` may sleep when nothing moves. Finite, because timers need a finite number.
   static constexpr double idle_seconds = 1;
 
   void play(Stage& stage);
   void pause();
-  /// Pauses, and goes on by so many steps, or frames, which may be less than 0.
+  /// Pauses, then goes `count` steps or frames forward, or backward when negative.
   void step(std::int64_t count);
-  void set_speed(double factor);  ///< 0: as fast as can be
+  void set_speed(double factor);  ///< 0: as fast as possible
   void set_loop(bool on) { loop_ = on; }
-  /// To this frame, which exists.
+  /// Goes to a frame, which must exist.
   void seek(std::uint64_t frame);
-  /// The stage was set anew.
+  /// Call after the stage has been replaced.
   void restart();
 
   bool playing() const { return playing_; }
@@ -30,11 +30,11 @@ class Player {
   bool loop() const { return loop_; }
 
   struct Outcome {
-    bool changed = false;  ///< there is something new to see
+    bool changed = false;  ///< there is a new state to show
     double wait = idle_seconds;
-    std::optional<std::string> failure{};  ///< why a step could not be taken
+    std::optional<std::string> failure{};  ///< why a step failed
   };
-  /// Lets time pass: one step or frame at most. Throws `Error` when a frame cannot be read.
+  /// Lets time pass; takes at most one step or frame. Throws `Error` when a frame cannot be read.
   Outcome advance(Stage& stage, double seconds);
 
  private:
@@ -48,10 +48,10 @@ class Player {
   bool playing_ = false;
   double speed_ = 1;
   bool loop_ = false;
-  std::int64_t steps_ = 0;                 // that were asked for
-  double due_ = 0;                         // of a simulation, seconds it is behind
-  std::optional<double> clock_{};          // of a recording while it plays, its time
-  std::optional<std::uint64_t> target_{};  // of a recording, the frame that was asked for
+  std::int64_t steps_ = 0;                 // requested and not yet taken
+  double due_ = 0;                         // simulation: seconds behind
+  std::optional<double> clock_{};          // recording that plays: its time
+  std::optional<std::uint64_t> target_{};  // recording: the requested frame
 };
 
 }  // namespace supple::viewer

@@ -8,13 +8,13 @@
 namespace supple::viewer {
 namespace {
 
-/// Bit by bit: what is not a number is equal to itself.
+/// Compares bits, so that NaN equals itself.
 bool same(const std::vector<Vec3d>& a, const std::vector<Vec3d>& b) {
   return a.size() == b.size() &&
          (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(Vec3d)) == 0);
 }
 
-/// The first column of the series, when it has a row a frame and never falls.
+/// The first column of the series, when it has one row per frame and never decreases.
 std::vector<double> times_of(const Frames& frames) {
   const Series& series = frames.series();
   const std::size_t columns = series.names.size();
@@ -53,7 +53,7 @@ std::uint64_t RecordingSource::frame_at(double seconds) const {
     const auto after = std::upper_bound(times_.begin(), times_.end(), seconds);
     return after == times_.begin() ? 0 : static_cast<std::uint64_t>(after - times_.begin()) - 1;
   }
-  // A frame's own time is not to fall short of it by a rounding.
+  // The factor keeps rounding from selecting the frame before.
   const double frame = std::floor(seconds / show_.simulation.time_step * (1 + 1e-12));
   return frame > 0 ? static_cast<std::uint64_t>(std::min(frame, static_cast<double>(last))) : 0;
 }
@@ -69,7 +69,7 @@ void RecordingSource::seek(std::uint64_t frame) {
   scene_.detect();
 }
 
-/// All that may fail.
+/// Does everything that may fail.
 void RecordingSource::read(std::uint64_t frame) {
   for (std::size_t i = 0; i < objects_.size(); ++i) {
     if (show_.objects[i].options.is_static) continue;

@@ -8,12 +8,13 @@
 
 namespace supple::viewer {
 
-/// The frames of a recording. Each is detected anew, so that it can be looked into as a simulation can: the
-/// contacts of a frame depend on it alone, or, when they are continuous, on it and the frame before.
+/// The frames of a recording. Each frame is detected again, so that octrees and candidates can be shown as
+/// in a simulation. The contacts of a frame depend on that frame only; continuous contacts also on the frame
+/// before.
 class RecordingSource final : public Source {
  public:
-  /// At frame 0, or an empty recording's rest. The show must outlive it. Throws `Error` as `Scene` does, or
-  /// when a frame cannot be read.
+  /// Starts at frame 0, or in the rest pose when the recording is empty. `show` must outlive this object.
+  /// Throws `Error` as `Scene` does, or when a frame cannot be read.
   explicit RecordingSource(const SceneView& show);
 
   const Scene& scene() const override { return scene_; }
@@ -25,17 +26,17 @@ class RecordingSource final : public Source {
   double motion_seconds() const override { return read_seconds_; }
 
   std::uint64_t frame_count() const { return show_.frames->count(); }
-  /// Seconds; never falls.
+  /// The time of a frame in seconds; never decreases.
   double time_of(std::uint64_t frame) const;
-  /// The last frame that is not later than `seconds`; 0 before the first.
+  /// The last frame not later than `seconds`; 0 before the first frame.
   std::uint64_t frame_at(double seconds) const;
-  /// Throws `Error` when the frame cannot be read; all is then as it was.
+  /// Throws `Error` when the frame cannot be read; the state is then unchanged.
   void seek(std::uint64_t frame);
 
  private:
   struct Object {
     std::vector<Vec3d> now, before, next_now, next_before;
-    bool is_on_path = false;  // in the scene, from the frame before
+    bool is_on_path = false;  // the scene has the path from the frame before
     std::uint64_t version = 1;
   };
 
@@ -47,7 +48,7 @@ class RecordingSource final : public Source {
   Scene scene_;
   std::vector<ObjectId> ids_;
   std::vector<Object> objects_;
-  std::vector<double> times_;  // of the frames, when the recording says them
+  std::vector<double> times_;  // one per frame, when the recording has them
   std::uint64_t frame_ = 0;
   double read_seconds_ = 0;
 };

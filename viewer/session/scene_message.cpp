@@ -176,7 +176,7 @@ void pack_series(const Frames& frames, MessageWriter& message) {
   const std::size_t columns = series.names.size();
   const std::size_t rows = columns == 0 ? 0 : series.values.size() / columns;
   message.begin(MessageKind::series);
-  // Rows are the elements, columns their parts.
+  // One row per element, one column per component.
   const auto values = message.add_rows<double>(Tag::series, rows, columns);
   std::copy_n(series.values.begin(), values.size(), values.begin());
   add_events(Tag::series_begin, series.begin, message);

@@ -8,9 +8,9 @@
 
 namespace supple::viewer {
 
-/// The message that tells a page what there is: objects, topology and settings.
+/// Writes the message that describes the scene: objects, topology and settings.
 void pack_scene(Stage& stage, std::uint64_t generation, JsonText& json, MessageWriter& message);
-/// What a recording says of all its frames.
+/// Writes the time series of a recording.
 void pack_series(const Frames& frames, MessageWriter& message);
 
 }  // namespace supple::viewer

@@ -16,41 +16,41 @@
 
 namespace supple::viewer {
 
-/// An object of a show, where it is at the start, and what moves it: nothing, waves, or masses and springs.
+/// An object, its start position, and its motion: none, waves, or masses and springs.
 struct ViewedObject {
   TriangleMesh mesh;
   ObjectOptions options{};
   std::variant<std::monostate, WaveMotion, MassSpringMotion> motion{};
 };
 
-/// What a recording says of its frames besides positions: rows of numbers, and pairs that begin and end.
+/// Time series of a recording: rows of numbers, and begin and end events of pairs.
 struct Series {
   struct Event {
-    std::uint32_t frame = 0, a = 0, b = 0;  ///< objects by their place in the show, a < b
+    std::uint32_t frame = 0, a = 0, b = 0;  ///< object ids, a < b
     constexpr bool operator==(const Event&) const = default;
   };
-  std::vector<std::string> names{};  ///< of the columns; the first one is "time"
-  std::vector<double> values{};      ///< row by row, a row a frame
+  std::vector<std::string> names{};  ///< of the columns; the first is "time"
+  std::vector<double> values{};      ///< row by row, one row per frame
   std::vector<Event> begin{}, end{};
 };
 
-/// The frames of a recording, or of files that are a frame each.
+/// The frames of a recording, or of a sequence of files with one frame each.
 class Frames {
  public:
   virtual ~Frames() = default;
   virtual std::uint64_t count() const = 0;
-  /// Of one object, by its place in the show. Throws `Error` when the frame cannot be read.
+  /// Reads the positions of one object. Throws `Error` when the frame cannot be read.
   virtual void read(std::uint64_t frame, std::size_t object, std::span<Vec3d> positions) const = 0;
-  /// May be without rows: the page then plots what it has seen.
+  /// May have no rows; the page then plots the frames it has received.
   virtual const Series& series() const = 0;
 };
 
-/// What there is to see: objects that move by themselves, or that were recorded.
+/// Everything a session shows: objects that a simulation moves, or that were recorded.
 struct SceneView {
   std::string title{};
   SimulationOptions simulation{};
   std::vector<ViewedObject> objects{};
-  std::shared_ptr<const Frames> frames{};  ///< null of a simulation
+  std::shared_ptr<const Frames> frames{};  ///< null for a simulation
 };
 
 }  // namespace supple::viewer

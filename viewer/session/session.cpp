@@ -57,7 +57,7 @@ class Session::Implementation {
   struct Command {
     const char* name;
     Handler handle;
-    bool has_answer = false;  // of its own: it needs an id
+    bool has_answer = false;  // the command has an answer, so it needs an id
   };
   static const Command commands_[];
 
@@ -107,7 +107,7 @@ class Session::Implementation {
   bool owes_scene_ = false, owes_series_ = false, has_news_ = false;
   std::int64_t credit_ = 0;
   std::deque<Reply> replies_;
-  std::optional<double> id_;  // of the command under way
+  std::optional<double> id_;  // of the current command
   FramePacker packer_;
   JsonText json_;
 };
@@ -176,7 +176,7 @@ std::span<const std::byte> Session::Implementation::next_message(MessageWriter& 
   return message.finish();
 }
 
-/// False when that failed; what was asked for besides the usual is then left out from now on.
+/// Returns false on failure, and then drops the optional layers from now on.
 bool Session::Implementation::pack_frame(MessageWriter& message) {
   const FrameView frame{stage_->show(), stage_->source(),  layers_,         stage_->center(),
                         generation_,    player_.playing(), player_.speed(), player_.loop()};
@@ -191,21 +191,21 @@ bool Session::Implementation::pack_frame(MessageWriter& message) {
   return false;
 }
 
-// Commands: all is read and checked before anything is done.
+// Commands. Each reads and checks everything before it changes anything.
 
 void Session::Implementation::command(std::string_view json) {
   if (has_ended_) return;
   id_.reset();
   if (replies_.size() >= most_replies) {
-    // Who does not listen is not answered without end.
+    // A page that does not read its replies gets no unbounded number of them.
     replies_.pop_back();
-    fail("more than " + std::to_string(most_replies) + " answers wait; some commands were passed over");
+    fail("more than " + std::to_string(most_replies) + " answers are waiting; some commands were ignored");
     return;
   }
   std::size_t error = 0;
   const auto text = parse_json(json, error);
   if (!text || text->kind != JsonValue::Kind::object) {
-    fail("a command must be a JSON object, as {\"do\": \"play\"}; this is none, from byte " +
+    fail("a command must be a JSON object, as {\"do\": \"play\"}; this is not one, from byte " +
          std::to_string(error) + " on");
     return;
   }
@@ -229,7 +229,7 @@ void Session::Implementation::obey(const JsonValue& text) {
   fail("there is no command " + wanted.substr(0, 40) + "; there are " + list);
 }
 
-/// Goes to the frame that was sought last, so that answers are of that one.
+/// Goes to the last requested frame, so that answers refer to it.
 void Session::Implementation::catch_up() {
   if (!stage_->recording()) return;
   const auto id = id_;
@@ -360,7 +360,7 @@ void Session::Implementation::set(Arguments& arguments) {
   set_stage(settings);
 }
 
-/// All stays as it was when that fails.
+/// On failure nothing changes.
 void Session::Implementation::set_stage(const Settings& settings) {
   const std::uint64_t frame = stage_->recording() ? stage_->recording()->step() : 0;
   auto stage = std::make_unique<Stage>(show_, settings, frame);
@@ -425,13 +425,13 @@ std::uint32_t Session::Implementation::id_of(const char* name, Arguments& argume
 
 bool Session::Implementation::is_of_recording(Arguments& arguments) const {
   if (stage_->recording()) return true;
-  arguments.fail("this is a simulation; only recordings do that");
+  arguments.fail("this is a simulation; only a recording can do that");
   return false;
 }
 
 bool Session::Implementation::is_of_simulation(Arguments& arguments) const {
   if (stage_->simulation()) return true;
-  arguments.fail("this is a recording; only simulations do that");
+  arguments.fail("this is a recording; only a simulation can do that");
   return false;
 }
 
@@ -475,7 +475,7 @@ void Session::Implementation::add_reply(MessageKind kind) {
   replies_.push_back({kind, std::string(json_.text())});
 }
 
-/// `layers` are those that frames do not have any more.
+/// `layers` are the layers that frames no longer contain.
 void Session::Implementation::fail(const std::string& message, bool fatal,
                                    std::span<const std::string> layers) {
   has_ended_ = fatal;

@@ -13,14 +13,14 @@
 namespace supple::viewer {
 namespace {
 
-/// A grid of so many cells a side, in x and z, holds this many copies of all objects.
+/// The side of a square grid in x and z that holds `copies` copies of all objects.
 std::size_t grid_side(std::size_t copies) {
   std::size_t side = 1;
   while (side * side < copies) ++side;
   return side;
 }
 
-/// How far copies are apart: a border's room, or a tenth more than what the objects take.
+/// The distance between copies: the size of the border, or the size of the objects plus a tenth.
 Vec3d cell_size(const SceneView& show) {
   Vec3d size = 1.1 * extent_of(show).size();
   const std::optional<Border>& border = show.simulation.border;
@@ -37,13 +37,13 @@ void set_apart(ViewedObject& object, std::size_t copy, const Vec3d& offset) {
   object.options.name += " #";
   object.options.name += std::to_string(copy + 1);
   for (Vec3d& p : object.mesh.positions) p = p + offset;
-  // The same waves and random numbers would let copies move alike.
+  // With equal waves and random numbers all copies would move alike.
   if (auto* const sway = std::get_if<WaveMotion>(&object.motion)) sway->seed += copy * 1'000'003;
   if (auto* const springs = std::get_if<MassSpringMotion>(&object.motion); springs && springs->seed)
     *springs->seed += copy * 1'000'003;
 }
 
-/// Of so many objects, the list repeated.
+/// Checks the total size when the list of objects is repeated up to `count`.
 void check_size(const SceneView& show, std::size_t count) {
   constexpr std::uint64_t most_elements = 100'000'000;
   std::uint64_t vertices = 0, triangles = 0;
@@ -101,7 +101,8 @@ SceneView arranged(const SceneView& show, const Settings& settings) {
   if (settings.objects) repeat_objects(arranged, *settings.objects);
   SimulationOptions& simulation = arranged.simulation;
   settings.scene.apply_to(simulation.scene);
-  // A scene of its own gives these (FramePacker), and only when they are asked for.
+  if (!uses_scene_octree(simulation.scene.broad_phase)) simulation.scene.scene_octree = {};
+  // `PaperVertices` computes these, and only on request.
   simulation.scene.colliding_vertices = false;
   simulation.time_step = settings.time_step.value_or(simulation.time_step);
   simulation.seed = settings.seed.value_or(simulation.seed);

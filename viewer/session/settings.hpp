@@ -11,11 +11,11 @@
 
 namespace supple::viewer {
 
-/// What the commands `set` and `reset` say instead of the show.
+/// The values that the commands `set` and `reset` change.
 struct Settings {
   Overrides<SceneOptions> scene{};
   Overrides<ObjectOctreeOptions> octree{};  ///< of all objects
-  std::optional<std::uint32_t> objects{};   ///< how many
+  std::optional<std::uint32_t> objects{};   ///< number of objects
   std::optional<Integrator> integrator{};
   std::optional<double> time_step{};
   std::optional<std::uint64_t> seed{};
@@ -31,9 +31,14 @@ constexpr bool is_setting(const Field<Struct, Value>& field) {
   return !field.is_of_machine;
 }
 
-/// The show with these settings. More objects than it has are copies, set out in a grid beside it, in a
-/// border that grows with them. Throws `Error` that names the object and the value when an object of the show
-/// is not what it should be, or when there is more than messages can hold.
+/// Other methods refuse options of the scene octree.
+constexpr bool uses_scene_octree(BroadPhaseMethod method) {
+  return method == BroadPhaseMethod::automatic || method == BroadPhaseMethod::octree;
+}
+
+/// Applies the settings to a scene view. Additional objects are copies, placed in a grid beside the
+/// originals; the border grows with the grid. Throws `Error` with the object and the value when an object is
+/// invalid, or when the result exceeds the limits of messages.
 SceneView arranged(const SceneView& show, const Settings& settings);
 
 }  // namespace supple::viewer

@@ -31,7 +31,7 @@ void SimulationSource::add(const ViewedObject& object) {
   }
 }
 
-/// The waves, on top of them what it was bent by before, and what is held where it is dragged to.
+/// Adds up the waves, earlier bends, and the current drag of the held vertices.
 void SimulationSource::move_swaying(std::size_t object, double seconds, std::span<Vec3d> positions) {
   const ViewedObject& shown = show_.objects[object];
   apply_wave_motion(std::get<WaveMotion>(shown.motion), show_.simulation.border, shown.mesh.positions,
@@ -65,15 +65,15 @@ std::optional<std::string> SimulationSource::grab(std::size_t object, std::uint3
   release();
   const ViewedObject& shown = show_.objects[object];
   const std::string& name = scene().name(ids_[object]);
-  if (shown.options.is_static) return name + " is static: it neither moves nor bends";
+  if (shown.options.is_static) return name + " is static: it cannot be moved or bent";
   const auto about_vertex = [&] { return "vertex " + std::to_string(vertex) + " of " + name; };
   if (!is_finite(shown.mesh.positions[vertex]) || !is_finite(positions(object)[vertex]))
-    return about_vertex() + " is at no finite place; take another one";
+    return about_vertex() + " is not at a finite position; choose another one";
   is_fixed_.clear();
   if (const MassSpringBody* const body = simulation_.body(ids_[object])) {
     is_fixed_.resize(shown.mesh.positions.size());
     for (const std::uint32_t fixed : body->options().fixed_vertices) is_fixed_[fixed] = true;
-    if (is_fixed_[vertex]) return about_vertex() + " is a fixed one; take another one";
+    if (is_fixed_[vertex]) return about_vertex() + " is fixed; choose another one";
   }
   grip_ = take_hold(shown.mesh, positions(object), vertex, radius);
   grip_->object = object;

@@ -11,10 +11,10 @@
 
 namespace supple::viewer {
 
-/// Objects that move by themselves, and that a person can take hold of.
+/// Objects that a simulation moves and that the user can grab and drag.
 class SimulationSource final : public Source {
  public:
-  /// The show must outlive it. Detects at the start. Throws `Error` as `Simulation` does.
+  /// `show` must outlive this object. Detects at the start. Throws `Error` as `Simulation` does.
   explicit SimulationSource(const SceneView& show);
 
   const Scene& scene() const override { return simulation_.scene(); }
@@ -28,20 +28,18 @@ class SimulationSource final : public Source {
   double motion_seconds() const override { return motion_seconds_; }
   const Simulation& simulation() const { return simulation_; }
 
-  /// Moves everything on by one step. Gives why a body could not be moved on, everything being as before; or
-  /// nothing.
+  /// Takes one step. If a body cannot move, returns the reason and leaves everything unchanged.
   std::optional<std::string> take_step();
 
-  /// Holds a vertex; says why it cannot, or nothing. The numbers exist.
+  /// Grabs a vertex. Returns the reason when that is impossible. The ids must exist.
   std::optional<std::string> grab(std::size_t object, std::uint32_t vertex, std::optional<double> radius);
   bool holds() const { return grip_.has_value(); }
-  /// To where the vertex that is held shall go. An object without motion is bent by the next `settle` or
-  /// step.
+  /// Sets the target of the held vertex. An object without motion is bent in the next `settle` or step.
   void drag(const Vec3d& target);
   void release();
-  /// What is held moves by itself and was dragged: only steps can show where it goes.
+  /// True when the held object moves by itself and was dragged, so that only steps can show the effect.
   bool needs_steps() const;
-  /// Bends what is held and detects again; false when there was nothing to do.
+  /// Bends the held object and detects again; false when nothing changed.
   bool settle();
 
  private:
@@ -59,10 +57,10 @@ class SimulationSource final : public Source {
 
   std::optional<Grip> grip_;
   bool is_dragged_ = false;  // since it was last bent
-  bool is_detected_ = true;  // everything where it is now
+  bool is_detected_ = true;  // contacts match the current positions
   std::vector<bool> is_fixed_;
-  std::vector<std::vector<Vec3d>> bends_;  // by object, added to waves; empty until bent
-  Vec3d held_offset_;                      // of the swaying vertex that is held
+  std::vector<std::vector<Vec3d>> bends_;  // one per object, added to the waves; empty until bent
+  Vec3d held_offset_;                      // of the held vertex of an object that waves move
   std::vector<Vec3d> scratch_;
 };
 

@@ -9,7 +9,7 @@
 
 namespace supple::viewer {
 
-/// Where the objects of a show are, and what touches there. Objects are named by their place in the show.
+/// Positions and contacts of the objects of a scene view. Objects are named by their index in it.
 class Source {
  public:
   Source() = default;
@@ -17,16 +17,16 @@ class Source {
   Source& operator=(const Source&) = delete;
   virtual ~Source() = default;
 
-  /// In which everything was detected where it is. Objects have the index that is their place.
+  /// The scene of the last detection. Object indices equal those of the scene view.
   virtual const Scene& scene() const = 0;
   virtual ObjectId id(std::size_t object) const = 0;
   virtual std::span<const Vec3d> positions(std::size_t object) const = 0;
-  /// Another number each time the object moves.
+  /// Changes each time the object moves.
   virtual std::uint64_t version(std::size_t object) const = 0;
-  /// Steps taken, or the number of the frame.
+  /// Number of steps taken, or the frame number.
   virtual std::uint64_t step() const = 0;
   virtual double time() const = 0;
-  /// What moving everything took, or reading it.
+  /// Time spent moving objects, or reading their positions.
   virtual double motion_seconds() const = 0;
 };
 

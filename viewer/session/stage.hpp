@@ -11,10 +11,10 @@
 
 namespace supple::viewer {
 
-/// A show as the settings have it, and where its objects come from: a simulation or a recording.
+/// A scene view with settings applied, and the source of its positions: a simulation or a recording.
 class Stage {
  public:
-  /// A recording begins at `frame`. Throws `Error` when an object or an option is not what it should be.
+  /// A recording starts at `frame`. Throws `Error` when an object or an option is invalid.
   Stage(const SceneView& show, const Settings& settings, std::uint64_t frame = 0);
   Stage(const Stage&) = delete;
   Stage& operator=(const Stage&) = delete;
@@ -22,9 +22,9 @@ class Stage {
   const SceneView& show() const { return show_; }
   const Center& center() const { return center_; }
   const Source& source() const;
-  SimulationSource* simulation() { return simulation_.get(); }  ///< null of a recording
-  RecordingSource* recording() { return recording_.get(); }     ///< null of a simulation
-  /// False when playing would change nothing.
+  SimulationSource* simulation() { return simulation_.get(); }  ///< null for a recording
+  RecordingSource* recording() { return recording_.get(); }     ///< null for a simulation
+  /// False when time changes nothing.
   bool has_motion() const;
 
  private:

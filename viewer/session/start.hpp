@@ -7,7 +7,7 @@
 
 namespace supple::viewer {
 
-/// Where an object of a show is at the start: in waves it is not at rest.
+/// The mesh of an object at the start. With waves it differs from the rest pose.
 inline TriangleMesh start_of(const SceneView& show, const ViewedObject& object) {
   TriangleMesh mesh = object.mesh;
   if (const auto* const waves = std::get_if<WaveMotion>(&object.motion))

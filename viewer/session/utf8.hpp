@@ -5,7 +5,7 @@
 
 namespace supple::viewer {
 
-/// The text with every byte that is not part of valid UTF-8 made U+FFFD: file names need not be text at all.
+/// Replaces every byte that is not part of valid UTF-8 by U+FFFD, because file names may be any bytes.
 std::string valid_utf8(std::string_view text);
 
 }  // namespace supple::viewer

@@ -1,4 +1,4 @@
-// What a page calls (docs/protocol.md), one session a module.
+// The functions that a page calls (docs/protocol.md). Each module has one session.
 
 #include <cstddef>
 #include <cstdint>
@@ -36,7 +36,7 @@ namespace {
   return true;
 }();
 
-std::vector<std::byte> given;  // what the page wrote last
+std::vector<std::byte> given;  // the last input from the page
 std::optional<supple::viewer::Session> session;
 supple::viewer::MessageWriter message_writer;
 

@@ -4,7 +4,7 @@
 
 namespace supple::viewer {
 
-/// Tells the page what is wrong, which throws there: the module is of no use from then on. Takes no memory.
+/// Reports an error to the page, where it throws. The module is unusable afterwards. Allocates no memory.
 [[noreturn]] void fail_in_page(std::string_view message);
 
 }  // namespace supple::viewer

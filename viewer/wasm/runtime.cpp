@@ -1,4 +1,4 @@
-// What Debian's libraries for WebAssembly leave to the program, which has no exceptions.
+// Runtime functions that Debian's WebAssembly libraries leave to the program, which has no exceptions.
 
 #include <cstddef>
 #include <cstdint>
@@ -8,7 +8,7 @@
 
 #include "page.hpp"
 
-// The stack guard that the compiler's own functions ask for.
+// The stack protector that compiled library functions use.
 extern "C" {
 extern std::uintptr_t __stack_chk_guard;
 std::uintptr_t __stack_chk_guard = 1;

@@ -8,18 +8,21 @@
 
 namespace supple {
 
-/// Reads a mesh of any format: OBJ, OFF, PLY and STL by `load_mesh`, all others (glTF and GLB, FBX, COLLADA,
-/// 3DS, X3D, ...) by Assimp, told by the extension whatever the case.
+/// Reads a mesh file. `load_mesh` reads OBJ, OFF, PLY and STL; Assimp reads all other formats (glTF and GLB,
+/// FBX, COLLADA, 3DS, X3D, ...). The extension selects the reader; its case does not matter.
 ///
-/// Of these, all meshes of the scene become one, in the order of its tree of nodes, in the scene's own units
-/// and axes, rest pose; the nodes' transforms are applied in double, a mirrored node's triangles turned
-/// around. Assimp keeps coordinates as float. Points and lines are dropped, polygons cut into triangles.
-/// Vertices with equal coordinates in one node become one vertex, numbered by first use, since these formats
-/// repeat a vertex wherever its normal, texture or material changes; those of different nodes stay apart.
+/// With Assimp, all meshes of the file become one mesh, in the order of the node tree, in the file's own
+/// units and axes, in the rest pose. The transforms of the nodes are applied in double; the triangles of a
+/// mirrored node are reversed. Assimp stores coordinates as float. Points and lines are dropped, polygons
+/// are triangulated. These formats repeat a vertex wherever its normal, texture or material changes; so
+/// vertices of one node with equal coordinates become one vertex, numbered by first use. Vertices of
+/// different nodes stay separate.
+///
 /// Throws `Error` with the reason when the file cannot be read.
 TriangleMesh load_any_mesh(const std::filesystem::path& path);
 
-/// What `load_any_mesh` reads: extensions in lower case with their dot, sorted. Lasts as long as the program.
+/// The extensions that `load_any_mesh` reads: lower case, with their dot, sorted. Valid until the program
+/// ends.
 std::span<const std::string_view> supported_extensions();
 
 }  // namespace supple

@@ -21,8 +21,8 @@ struct Description<MassSpringOptions> {
     using Options = MassSpringOptions;
     const auto number = [&](const char* field, double Options::*member, const char* unit, Range range,
                             const char* doc) {
-      visitor(Field<Options, double>{
-          .name = field, .member = member, .doc = doc, .range = range, .unit = unit});
+      visitor(
+          Field<Options, double>{.name = field, .member = member, .doc = doc, .range = range, .unit = unit});
     };
     visitor(Field<Options, Integrator>{
         .name = "integrator",
@@ -60,11 +60,10 @@ struct Description<MassSpringOptions> {
            "Edges with a larger strain flow: the shape does not come back");
     number("plastic_rate", &Options::plastic_rate, "1/s", Range::above(0),
            "How fast they flow: this part of the strain beyond yield_strain in a second");
-    visitor(Field<Options, std::vector<std::uint32_t>>{
-        .name = "fixed_vertices",
-        .member = &Options::fixed_vertices,
-        .doc = "Vertices that forces do not move",
-        .key = "fixed"});
+    visitor(Field<Options, std::vector<std::uint32_t>>{.name = "fixed_vertices",
+                                                       .member = &Options::fixed_vertices,
+                                                       .doc = "Vertices that forces do not move",
+                                                       .key = "fixed"});
     visitor(Field<Options, std::uint32_t>{.name = "threads",
                                           .member = &Options::threads,
                                           .doc = "Worker threads, 0 for one a core",
@@ -136,14 +135,10 @@ struct Description<WaveMotion> {
   template <class Visitor>
   static constexpr void visit(Visitor&& visitor) {
     using Motion = WaveMotion;
-    visitor(Field<Motion, Vec3d>{.name = "velocity",
-                                 .member = &Motion::velocity,
-                                 .doc = "Velocity of the drift",
-                                 .unit = "units/s"});
-    visitor(Field<Motion, double>{.name = "amplitude",
-                                  .member = &Motion::amplitude,
-                                  .doc = "Amplitude of the waves",
-                                  .unit = "units"});
+    visitor(Field<Motion, Vec3d>{
+        .name = "velocity", .member = &Motion::velocity, .doc = "Velocity of the drift", .unit = "units/s"});
+    visitor(Field<Motion, double>{
+        .name = "amplitude", .member = &Motion::amplitude, .doc = "Amplitude of the waves", .unit = "units"});
     visitor(Field<Motion, double>{.name = "wavelength",
                                   .member = &Motion::wavelength,
                                   .doc = "Length of the waves",
@@ -167,9 +162,8 @@ struct Description<ContactResponse> {
   template <class Visitor>
   static constexpr void visit(Visitor&& visitor) {
     using Options = ContactResponse;
-    visitor(Field<Options, bool>{.name = "enabled",
-                                 .member = &Options::enabled,
-                                 .doc = "Contacts push masses and springs apart"});
+    visitor(Field<Options, bool>{
+        .name = "enabled", .member = &Options::enabled, .doc = "Contacts push masses and springs apart"});
     visitor(Field<Options, double>{.name = "thickness",
                                    .member = &Options::thickness,
                                    .doc = "Distance that elements keep",
@@ -208,10 +202,10 @@ struct Description<SimulationOptions> {
         .member = &Options::border,
         .doc = "Lowest and highest corner of the box that objects turn back at",
         .key = "bounds"});
-    visitor(Field<Options, std::uint64_t>{
-        .name = "seed",
-        .member = &Options::seed,
-        .doc = "Chooses all that is random: velocities, forces and rotations"});
+    visitor(
+        Field<Options, std::uint64_t>{.name = "seed",
+                                      .member = &Options::seed,
+                                      .doc = "Chooses all that is random: velocities, forces and rotations"});
     visitor(Field<Options, ContactResponse>{
         .name = "response", .member = &Options::response, .doc = "Response to contacts"});
   }

@@ -23,7 +23,7 @@ struct WaveMotion {
 /// are as long. Without a border the drift goes on for ever; within one smaller than the object it stays in
 /// place along that axis. O(n); a vertex whose rest position is not finite stays not finite and moves nothing
 /// else.
-void apply_wave_motion(const WaveMotion& motion, const std::optional<Border>& border, std::span<const Vec3d> rest,
-          double seconds, std::span<Vec3d> positions);
+void apply_wave_motion(const WaveMotion& motion, const std::optional<Border>& border,
+                       std::span<const Vec3d> rest, double seconds, std::span<Vec3d> positions);
 
 }  // namespace supple

@@ -10,11 +10,11 @@
 namespace supple {
 namespace {
 
-/// Newton's method ends at a change this much smaller than its first.
+/// Newton's method stops when the change falls to this fraction of the first change.
 constexpr double tolerance = 1e-3;
 
-/// Conjugate gradients end at a residual this much smaller than their first. What they leave is less than
-/// what Newton's method leaves whose second derivative lacks what may be negative.
+/// Conjugate gradients stop when the residual falls to this fraction of the first one. The error left is
+/// smaller than the error of Newton's method itself, whose Hessian omits terms that may be negative.
 constexpr double forcing = 0.02;
 
 }  // namespace
@@ -27,7 +27,7 @@ BackwardEuler::BackwardEuler(const SpringNetwork& network, std::span<const Verte
   diagonal_.resize(kinds.size());
   inverse_diagonal_.resize(kinds.size());
   of_rows_.resize(equations_.free_count());
-  // Measured on sheets, where a factorisation takes longer still; but it is sure to end.
+  // Measured on sheets. A factorisation may take longer, but it always ends.
   factor_worth_ = 30 + 6 * std::sqrt(static_cast<double>(equations_.free_count()));
   chunk_sums_.resize(chunk_count(kinds.size()));
 }
@@ -43,7 +43,7 @@ void BackwardEuler::solve(const ImplicitStep& step, std::span<Vec3d> velocities,
   double first_change = 0;
   for (int iteration = 0; iteration < max_newton_iterations; ++iteration) {
     equations_.gather(velocities, descent_, diagonal_, parallel);
-    // The matrix is at least the masses, so that this bounds the change.
+    // The matrix is at least the mass matrix, so this norm bounds the change.
     const double norm = std::sqrt(product_of(descent_, descent_, parallel));
     if (norm <= tolerance * options_.vertex_mass * first_change) break;
     solve_linear(parallel);
@@ -56,7 +56,7 @@ void BackwardEuler::solve(const ImplicitStep& step, std::span<Vec3d> velocities,
   keep_momentum(step, velocities);
 }
 
-/// Newton's method starts from what would fly on or from what would keep its shape, whichever is lower.
+/// Newton's method starts from constant velocity or from rigid motion, whichever has the lower potential.
 double BackwardEuler::choose_start(const ImplicitStep& step, std::span<Vec3d> velocities,
                                    const Parallel& parallel) {
   const Vec3d mean = mean_of_free(step.velocities);
@@ -70,7 +70,8 @@ double BackwardEuler::choose_start(const ImplicitStep& step, std::span<Vec3d> ve
   return flying_on;
 }
 
-/// Forces or stretch that are not finite show in the velocities, so that the step is refused.
+/// Forces or stretch that are not finite make the velocities not finite, so that the caller rejects the
+/// step.
 void BackwardEuler::give_up(const ImplicitStep& step, std::span<Vec3d> velocities) const {
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   bool any = false;
@@ -102,8 +103,8 @@ void BackwardEuler::solve_linear(const Parallel& parallel) {
   solve_by_factor();
 }
 
-/// Of conjugate gradients, from what bounds the eigenvalues of the matrix with ones for blocks on the
-/// diagonal.
+/// Conjugate gradient iterations, estimated from a bound on the eigenvalues of the matrix after the diagonal
+/// blocks are scaled to identities.
 double BackwardEuler::expected_iterations() const {
   double largest = 0;
   for (std::size_t v = 0; v < kinds_.size(); ++v) {
@@ -113,7 +114,7 @@ double BackwardEuler::expected_iterations() const {
   return 0.5 * std::log(2 / forcing) * std::sqrt(largest / equations_.smallest_diagonal());
 }
 
-/// What conjugate gradients have come to is of no use to it.
+/// Starts again from zero; the result of conjugate gradients so far does not help a direct solver.
 void BackwardEuler::solve_by_factor() {
   if (!factor_) factor_.emplace(equations_.make_factor());
   equations_.fill(diagonal_, *factor_);
@@ -136,7 +137,7 @@ void BackwardEuler::solve_factored(std::span<const Vec3d> right, std::span<Vec3d
   }
 }
 
-/// False when it has taken longer than a factorisation, in all of this step.
+/// Returns false when all solves of this step together take longer than a factorisation.
 bool BackwardEuler::conjugate_gradients(const Parallel& parallel) {
   double square = precondition(parallel);
   const double enough = forcing * forcing * square;
@@ -182,8 +183,8 @@ double BackwardEuler::product_of(std::span<const Vec3d> p, std::span<const Vec3d
   });
 }
 
-/// Goes along the change as far as the potential becomes lower by a part of what its slope promises (Armijo's
-/// rule).
+/// Line search along the change until the potential decreases by a fraction of what the slope predicts
+/// (Armijo's rule).
 bool BackwardEuler::go_down(std::span<Vec3d> velocities, double& lowest, const Parallel& parallel) {
   const double slope = product_of(change_, descent_, parallel), rounding = 1e-13 * std::abs(lowest);
   double part = 1;
@@ -206,8 +207,8 @@ Vec3d BackwardEuler::mean_of_free(std::span<const Vec3d> values) const {
   return sum * (1.0 / std::max(1u, equations_.free_count()));
 }
 
-/// What springs pull sums to zero. So the mean velocity is known, and takes out what rounding and the
-/// tolerance of Newton's method, times stiffness, have left in it.
+/// Spring forces sum to zero, so the mean velocity is known. This sets it, and so removes the error of
+/// rounding and of Newton's tolerance, which stiffness amplifies.
 void BackwardEuler::keep_momentum(const ImplicitStep& step, std::span<Vec3d> velocities) const {
   for (const VertexKind kind : kinds_) {
     if (kind == VertexKind::fixed) return;

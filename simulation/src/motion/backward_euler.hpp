@@ -15,14 +15,13 @@
 
 namespace supple {
 
-/// Velocities at the end of a step of backward Euler, m (v1 - v0) = h f(x0 + h v1, v1): Newton's method, each
-/// of whose iterations must lower the potential of `StepEquations`, so that energy stays bounded at any
-/// stiffness and step.
+/// Computes the velocities at the end of a step of backward Euler, m (v1 - v0) = h f(x0 + h v1, v1), by
+/// Newton's method. Each iteration must lower the potential of `StepEquations`, so energy stays bounded for
+/// any stiffness and step.
 ///
-/// Its linear systems are solved by conjugate gradients, no further than Newton's method has use for. They
-/// are preconditioned by the blocks on the diagonal; where that takes longer than a factorisation would, the
-/// systems are solved by Cholesky's factors. What a step gives depends on what it
-/// is given alone, on no step before.
+/// Conjugate gradients solve the linear systems, only as far as Newton's method benefits. The preconditioner
+/// is the block diagonal. When they take longer than a factorisation would, sparse Cholesky factors solve
+/// the systems. The result of a step depends only on its arguments, not on earlier steps.
 class BackwardEuler {
  public:
   static constexpr int max_newton_iterations = 6;
@@ -49,14 +48,14 @@ class BackwardEuler {
   MassSpringOptions options_;
   std::vector<VertexKind> kinds_;
   StepEquations equations_;
-  std::optional<SparseFactor> factor_;  // once it was needed
-  double factor_worth_ = 0;             // iterations of conjugate gradients that take as long
-  bool needs_factor_ = false;           // from here on in this step
-  int iterations_ = 0;                  // of conjugate gradients, in this step
+  std::optional<SparseFactor> factor_;  // created on first use
+  double factor_worth_ = 0;    // number of conjugate gradient iterations that take as long as a factorisation
+  bool needs_factor_ = false;  // conjugate gradient iterations that a factorisation is worth
+  int iterations_ = 0;         // conjugate gradient iterations in this step
   std::vector<Vec3d> descent_, change_, tried_;
   std::vector<SymmetricBlock> diagonal_, inverse_diagonal_;
   std::vector<Vec3d> residual_, conditioned_, direction_, product_;
-  std::vector<Vec3d> of_rows_;  // of free vertices alone
+  std::vector<Vec3d> of_rows_;  // one entry per free vertex
   std::vector<double> chunk_sums_;
 };
 

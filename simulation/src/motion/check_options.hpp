@@ -5,7 +5,7 @@
 
 namespace supple {
 
-/// Throws `Error` naming mesh, option, value and range when an option is out of its range.
+/// Throws `Error` with the mesh, the option, its value and its range when an option is out of range.
 void check_options(const MassSpringOptions& options, const TriangleMesh& mesh);
 
 }  // namespace supple

@@ -12,7 +12,7 @@ bool spans_nothing(const Triangle& t) {
   return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
 }
 
-/// The lowest vertex that each vertex hangs together with.
+/// For each vertex, the lowest vertex id of its connected component.
 std::vector<std::uint32_t> lowest_of_piece(const TriangleMesh& mesh) {
   std::vector<std::uint32_t> parent(mesh.positions.size());
   std::iota(parent.begin(), parent.end(), 0u);
@@ -31,7 +31,7 @@ std::vector<std::uint32_t> lowest_of_piece(const TriangleMesh& mesh) {
   return parent;
 }
 
-/// Of each piece, by its lowest vertex: whether no side is left over once opposite directions cancel.
+/// For each component, named by its lowest vertex: whether its oriented edges cancel out.
 std::vector<std::uint8_t> closed_pieces(const TriangleMesh& mesh, std::span<const std::uint32_t> piece) {
   struct Side {
     std::array<std::uint32_t, 2> ends;

@@ -14,7 +14,7 @@ constexpr std::size_t edges_at_a_time = 512;
 struct Bounds {
   double shortest, longest;
 
-  /// An edge of no length at rest has no strain, and no bounds.
+  /// An edge with rest length 0 has no strain and no bounds.
   Bounds(const SpringElement& edge, double max_strain)
       : shortest(std::max(0.0, 1 - max_strain) * edge.rest_length),
         longest(edge.rest_length > 0 ? (1 + max_strain) * edge.rest_length
@@ -25,7 +25,7 @@ struct Bounds {
   }
 };
 
-/// What to add to x_b - x_a so that it is `wanted` long, along x - h v where that is possible.
+/// The change of x_b - x_a that makes it `wanted` long, along the direction of x - h v where possible.
 Vec3d correction(Vec3d d, Vec3d before, double wanted) {
   const double squared_length = dot(d, d), length = std::sqrt(squared_length);
   const double squared_before = dot(before, before);
@@ -41,7 +41,7 @@ Vec3d correction(Vec3d d, Vec3d before, double wanted) {
   return length > 0 ? d * ((wanted - length) / length) : Vec3d{};
 }
 
-/// Each edge gets the first color that neither end has yet.
+/// Greedy edge colouring: each edge gets the first color that neither end uses yet.
 std::vector<std::uint32_t> edge_colors(std::span<const SpringElement> edges, std::uint32_t vertex_count) {
   struct Colors {
     std::vector<bool> taken;
@@ -118,7 +118,7 @@ bool DeformationLimit::apply(std::span<const SpringElement> edges, double second
   return true;
 }
 
-/// True when the edge was within the tolerance before.
+/// Returns true when the edge was already within the tolerance.
 bool DeformationLimit::correct(const SpringElement& edge, double seconds, std::span<Vec3d> positions,
                                std::span<Vec3d> velocities) const {
   const double weight_a = inverse_masses_[edge.a], weight_b = inverse_masses_[edge.b];

@@ -9,25 +9,27 @@
 
 namespace supple {
 
-/// Keeps the lengths of edges between (1 - max_strain) and (1 + max_strain) of that at rest, after Provot
-/// 1995, by moving their ends after a step.
+/// Keeps edge lengths between (1 - max_strain) and (1 + max_strain) times the rest length (Provot 1995) by
+/// moving vertices after a step.
 ///
-/// An end moves against its mass. What it moves in a step of h seconds is added to its velocity over h, so
-/// that x - h v stays what it was; ends move along the direction that x - h v have, in which case the sum of
-/// x × m v stays as well. So momentum and angular momentum are those of before, unless vertices are fixed.
+/// The two ends move in inverse proportion to their masses. The displacement in a step of h seconds, divided
+/// by h, is added to the velocity, so x - h v does not change. Ends move along the edge direction of x - h
+/// v, so the sum of x × m v does not change either. Momentum and angular momentum are therefore conserved
+/// unless vertices are fixed.
 ///
-/// Edges of one color share no vertex: those move at once, color after color, so that the order of threads
-/// does not matter. Rounds go on until no edge is further out than `tolerance` of its rest length, or
+/// Edges of one color share no vertex and move in parallel, color after color, so the order of threads does
+/// not matter. Rounds repeat until every edge is within `tolerance` times its rest length of its bounds, or
+/// `max_rounds` is reached.
 /// `max_rounds`.
 class DeformationLimit {
  public:
   static constexpr int max_rounds = 50;
   static constexpr double tolerance = 1e-4;
 
-  /// `inverse_masses` of each vertex; 0 where it does not move.
+  /// `inverse_masses` has one entry per vertex; 0 means that the vertex does not move.
   DeformationLimit(const SpringNetwork& network, std::span<const double> inverse_masses, double max_strain);
 
-  /// True when anything moved.
+  /// Returns true when a vertex moved.
   bool apply(std::span<const SpringElement> edges, double seconds, std::span<Vec3d> positions,
              std::span<Vec3d> velocities, const Parallel& parallel) const;
 
@@ -41,8 +43,8 @@ class DeformationLimit {
 
   std::vector<double> inverse_masses_;
   double max_strain_;
-  std::vector<std::uint32_t> by_color_;     // edges
-  std::vector<std::uint32_t> first_color_;  // in by_color_; one more at the end
+  std::vector<std::uint32_t> by_color_;     // edges, sorted by color
+  std::vector<std::uint32_t> first_color_;  // offset of each color in by_color_, and the end
 };
 
 }  // namespace supple

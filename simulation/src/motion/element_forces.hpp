@@ -9,10 +9,10 @@
 
 namespace supple {
 
-/// Force on end a of a spring; on b it is the opposite. `d` = x_b - x_a, `velocity` = v_b - v_a.
+/// The force on end a of a spring; the force on b is the opposite. `d` = x_b - x_a, `velocity` = v_b - v_a.
 ///
-/// Eq. 2 of the paper, (k_s (|d| - s) + k_d |d|˙) d/|d|, with |d|˙ = velocity·d / |d|: damping along the
-/// spring (Teschner et al. 2004). A spring of no length has no direction and does not pull.
+/// Eq. 2 of the paper, (k_s (|d| - s) + k_d |d|˙) d/|d|, with |d|˙ = velocity·d / |d|: damping acts along
+/// the spring (Teschner et al. 2004). A spring of length 0 has no direction and exerts no force.
 inline Vec3d spring_force(Vec3d d, Vec3d velocity, double stiffness, double damping, double rest_length) {
   const double length = std::sqrt(dot(d, d));
   if (!(length > 0)) return {};
@@ -20,13 +20,13 @@ inline Vec3d spring_force(Vec3d d, Vec3d velocity, double stiffness, double damp
   return d * ((stiffness * (length - rest_length) + damping * dot(velocity, d) * inverse) * inverse);
 }
 
-/// How the area of a triangle changes as its corners move, and the area.
+/// The area of a triangle and its gradient with respect to the corners.
 struct AreaGradient {
   double area = 0;
-  std::array<Vec3d, 3> of_corner{};  ///< ∂A/∂x: half the side opposite, turned by a right angle outward
+  std::array<Vec3d, 3> of_corner{};  ///< ∂A/∂x: half the opposite side, rotated outward by 90 degrees
 };
 
-/// A triangle of no area has no normal: its gradient is 0.
+/// A triangle of area 0 has no normal; its gradient is 0.
 inline AreaGradient area_gradient(Vec3d p0, Vec3d p1, Vec3d p2) {
   const Vec3d normal = cross(p1 - p0, p2 - p0);
   const double twice = std::sqrt(dot(normal, normal));
@@ -35,12 +35,13 @@ inline AreaGradient area_gradient(Vec3d p0, Vec3d p1, Vec3d p2) {
   AreaGradient result{0.5 * twice, {}};
   result.of_corner[1] = cross(p2 - p0, half);
   result.of_corner[2] = cross(half, p1 - p0);
-  // The three sum to zero, in rounded numbers too: momentum depends on it.
+  // The sum must be exactly zero after rounding, because momentum depends on it.
   result.of_corner[0] = Vec3d{} - (result.of_corner[1] + result.of_corner[2]);
   return result;
 }
 
-/// Forces of the energy k (A - A0)² / 2 S on the three corners, after Teschner et al. 2004, whose S is A0².
+/// Forces of the energy k (A - A0)² / 2 S on the three corners (Teschner et al. 2004, with S instead of
+/// A0²).
 inline std::array<Vec3d, 3> area_forces(const AreaElement& element, double stiffness, Vec3d p0, Vec3d p1,
                                         Vec3d p2) {
   const AreaGradient gradient = area_gradient(p0, p1, p2);

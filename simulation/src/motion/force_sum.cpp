@@ -53,7 +53,7 @@ void add_areas(const ElementBlocks<AreaElement>& areas, std::uint32_t block, dou
   }
 }
 
-/// Pressure pushes each corner with a third of what it does to the triangle.
+/// A third of the pressure force on a triangle acts on each corner.
 void add_volumes(const ElementBlocks<VolumeElement>& volumes, std::uint32_t block,
                  std::span<const double> pressures, const Vec3d* positions, Vec3d* in_block,
                  Vec3d* crossing) {

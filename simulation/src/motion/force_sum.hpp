@@ -11,7 +11,7 @@
 
 namespace supple {
 
-/// The volumes of closed parts, added up run by run, in one order for any number of threads.
+/// Sums the volumes of closed parts run by run, in one order for any number of threads.
 class VolumeSum {
  public:
   explicit VolumeSum(const SpringNetwork& network);
@@ -19,7 +19,7 @@ class VolumeSum {
   void compute(const SpringNetwork& network, std::span<const Vec3d> positions, const Parallel& parallel);
 
   double of_part(std::size_t part) const { return of_parts_[part]; }
-  /// V - V0
+  /// V - V0, in cubic metres
   double growth(const SpringNetwork& network, std::size_t part) const {
     return of_parts_[part] - network.parts[part].rest_volume;
   }
@@ -28,7 +28,7 @@ class VolumeSum {
   std::vector<double> of_runs_, of_parts_;
 };
 
-/// Adds up what elements pull at vertices, in one order for any number of threads.
+/// Sums the forces of all elements at each vertex, in one order for any number of threads.
 class ForceSum {
  public:
   explicit ForceSum(const SpringNetwork& network);
@@ -36,7 +36,7 @@ class ForceSum {
   void compute(const SpringNetwork& network, const MassSpringOptions& options,
                std::span<const Vec3d> positions, std::span<const Vec3d> velocities, const Parallel& parallel);
 
-  /// Newtons, of all elements, as last computed.
+  /// The last computed sum at a vertex, in newtons.
   Vec3d on_vertex(const SpringNetwork& network, std::uint32_t vertex) const {
     Vec3d sum = in_block_[vertex];
     for (std::uint32_t s = network.first_slot[vertex]; s < network.first_slot[vertex + 1]; ++s) {
@@ -46,10 +46,10 @@ class ForceSum {
   }
 
  private:
-  std::vector<Vec3d> in_block_;  // of each vertex, by elements within its block
-  std::vector<Vec3d> crossing_;  // of each slot
+  std::vector<Vec3d> in_block_;  // for each vertex, the sum over elements inside its block
+  std::vector<Vec3d> crossing_;  // one force per slot
   VolumeSum volumes_;
-  std::vector<double> pressures_;  // of each closed part
+  std::vector<double> pressures_;  // one per closed part
 };
 
 }  // namespace supple

@@ -23,7 +23,7 @@ std::string in_digits(double value) {
   return text;
 }
 
-/// To three digits: a bound that has been estimated deserves no more.
+/// Three digits are enough for an estimated bound.
 std::string rounded(double value) {
   std::array<char, 32> text{};
   const auto [end, error] =
@@ -47,7 +47,7 @@ std::vector<double> inverse_masses(std::span<const VertexKind> kinds, double mas
   return inverse;
 }
 
-/// A hundred times the size of the body; without limit for a single point.
+/// A hundred times the size of the body, squared; infinite for a single point.
 double longest_way_squared(std::span<const Vec3d> positions) {
   constexpr double largest = std::numeric_limits<double>::max();
   Vec3d low{largest, largest, largest}, high = low * -1.0;
@@ -69,7 +69,7 @@ MassSpringOptions checked(const MassSpringOptions& options, const TriangleMesh& 
   return options;
 }
 
-/// Those whose volume is kept: all, or none.
+/// The closed parts that keep their volume: all of them or none.
 ClosedParts parts_to_keep(const ClosedParts& closed, const MassSpringOptions& options,
                           const TriangleMesh& rest) {
   if (!(options.volume_stiffness > 0)) return {};
@@ -188,9 +188,9 @@ void MassSpring::carry_on(State& from, State& to, double seconds, const Parallel
   }
 }
 
-/// Velocity Verlet, after Teschner et al. 2004. Forces that depend on velocity see that predicted for the end
-/// of the step; the difference to the velocity there is of second order in the time step, that which it makes
-/// to the result of third.
+/// Velocity Verlet (Teschner et al. 2004). Forces that depend on velocity use a prediction for the end of
+/// the step. The prediction has an error of second order in the time step, which changes the result in third
+/// order.
 void MassSpring::verlet(State& from, State& to, double seconds, const Parallel& parallel) {
   if (!from.accelerations_known) find_accelerations(from, parallel);
   for_blocks(parallel, [&](std::uint32_t first, std::uint32_t last) {
@@ -254,8 +254,8 @@ void MassSpring::flow_plastically(State& state, double seconds, const Parallel& 
   if (edges_flowed || bending_flowed) state.accelerations_known = false;
 }
 
-/// Eq. 1 of the paper, solved for the acceleration: m a = f_ext - k_d v - f_s, the friction that of still air
-/// or of air that drifts along.
+/// Eq. 1 of the paper, solved for the acceleration: m a = f_ext - k_d v - f_s. Friction is relative to the
+/// air, which is at rest or drifts with the body.
 Vec3d MassSpring::acceleration(std::uint32_t vertex, Vec3d velocity) const {
   if (kinds_[vertex] != VertexKind::free) return {};
   Vec3d force = forces_.on_vertex(network_, vertex) - (velocity - air_velocity_) * options_.air_friction;

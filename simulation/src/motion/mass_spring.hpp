@@ -17,7 +17,7 @@
 
 namespace supple {
 
-/// What `MassSpringBody` promises, without threads of its own.
+/// Implements `MassSpringBody` without threads of its own.
 class MassSpring {
  public:
   MassSpring(const TriangleMesh& rest, const MassSpringOptions& options);
@@ -49,7 +49,7 @@ class MassSpring {
  private:
   struct State {
     std::vector<Vec3d> positions, velocities;
-    std::vector<Vec3d> accelerations;  // of Verlet's
+    std::vector<Vec3d> accelerations;  // used by Verlet only
     bool accelerations_known = false;
   };
   struct RestShape {
@@ -66,7 +66,7 @@ class MassSpring {
   void find_accelerations(State& state, const Parallel& parallel);
   Vec3d acceleration(std::uint32_t vertex, Vec3d velocity) const;
   void flow_plastically(State& state, double seconds, const Parallel& parallel);
-  /// Calls `visit(first, last)` with the vertices of each block.
+  /// Calls `visit(first, last)` with the range of vertices of each block.
   template <class Visit>
   void for_blocks(const Parallel& parallel, Visit visit);
   void check_vertices(const State& from, const State& to, std::uint32_t first, std::uint32_t last);
@@ -79,21 +79,21 @@ class MassSpring {
   std::vector<double> rest_areas_;
   ClosedParts closed_;
   SpringNetwork network_;
-  std::vector<Triangle> edge_numbers_;  // of each element of an area; empty when nothing flows
+  std::vector<Triangle> edge_numbers_;  // the three edges of each area element; empty without plastic flow
   std::vector<VertexKind> kinds_;
-  std::vector<double> inverse_masses_;  // 0: fixed or inert
-  std::vector<Vec3d> external_forces_;  // empty: none
+  std::vector<double> inverse_masses_;  // 0 for fixed and inert vertices
+  std::vector<Vec3d> external_forces_;  // empty when there are none
   Vec3d air_velocity_;
   double longest_way_squared_;
   double stable_substep_;
 
-  // Substeps go from one to another and leave the first as it was, until all have gone well.
+  // Substeps alternate between the other two states, so that the state before the step survives a failure.
   State now_, next_, after_next_;
-  State MassSpring::*before_ = nullptr;  // which of these the last step began from
+  State MassSpring::*before_ = nullptr;  // the state in which the last step began
   RestShape rest_before_;
   ForceSum forces_;
   std::vector<Vec3d> predicted_;
-  std::vector<std::uint32_t> bad_vertices_;  // the first of each block
+  std::vector<std::uint32_t> bad_vertices_;  // the first invalid vertex of each block
   std::unique_ptr<DeformationLimit> limit_;
   std::unique_ptr<BackwardEuler> backward_euler_;
 };

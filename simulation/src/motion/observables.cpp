@@ -1,4 +1,4 @@
-// What a body of masses and springs tells about itself.
+// Energy, momentum, volume and other observables of `MassSpringBody`.
 
 #include <algorithm>
 #include <cmath>

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t springs_at_a_time = 2048;
 
-/// Heron's formula as Kahan orders it, which loses nothing on needles.
+/// Heron's formula in Kahan's order, which is accurate for needle-shaped triangles.
 double area_of_sides(double a, double b, double c) {
   if (a < b) std::swap(a, b);
   if (b < c) std::swap(b, c);

@@ -8,17 +8,18 @@
 
 namespace supple {
 
-/// Rest lengths follow where strain is beyond `yield_strain`: for `seconds`, by implicit relaxation towards
-/// the length at which the strain would be just that, so that no step is too long. True when any changed.
+/// Plastic flow: where strain exceeds `yield_strain`, the rest length relaxes for `seconds` towards the
+/// length at which the strain equals `yield_strain`. The relaxation is implicit, so any step is stable.
+/// Returns true when a rest length changed.
 bool flow(std::span<SpringElement> springs, double yield_strain, double rate, double seconds,
           std::span<const Vec3d> positions, const Parallel& parallel);
 
-/// The three edges of each area: those from corner 0 to 1, 1 to 2 and 2 to 0, as places in `edges`.
+/// For each area element, its edges from corner 0 to 1, 1 to 2 and 2 to 0, as indices into `edges`.
 std::vector<Triangle> sides_of_areas(std::span<const AreaElement> areas,
                                      std::span<const SpringElement> edges);
 
-/// Rest areas become those of triangles whose sides have the rest lengths of the edges; 0 where there is no
-/// such triangle.
+/// Sets each rest area to that of a triangle with the rest lengths of its edges, or to 0 when no such
+/// triangle exists.
 void follow_rest_lengths(std::span<AreaElement> areas, std::span<const Triangle> sides,
                          std::span<const SpringElement> edges);
 

@@ -1,6 +1,6 @@
 #include "motion/sparse_factor.hpp"
 
-// The same operations in the same order on every machine.
+// Without vector instructions Eigen does the same operations in the same order on every machine.
 #define EIGEN_DONT_VECTORIZE
 #define EIGEN_DONT_PARALLELIZE
 #include <Eigen/SparseCholesky>
@@ -14,12 +14,12 @@ namespace {
 
 using Matrix = Eigen::SparseMatrix<double, Eigen::ColMajor, int>;
 
-/// Where the columns of a block begin among the values of the matrix.
+/// For each column of a block, its first position among the values of the matrix.
 using Place = std::array<int, 3>;
 
 }  // namespace
 
-/// The lower triangle: each column of blocks is three columns, which begin with the block on the diagonal.
+/// The lower triangle. Each block column is three scalar columns, which begin with the diagonal block.
 struct SparseFactor::Implementation {
   Matrix matrix;
   std::vector<Place> pairs;

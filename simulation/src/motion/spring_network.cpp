@@ -17,7 +17,8 @@ struct Side {
   auto operator<=>(const Side&) const = default;
 };
 
-/// Of triangles of three different vertices, by their ends; among equals in the order of the triangles.
+/// The sides of all triangles with three different vertices, sorted by ends; equal sides keep the order of
+/// their triangles.
 std::vector<Side> sorted_sides(std::span<const Triangle> triangles) {
   std::vector<Side> sides;
   sides.reserve(3 * triangles.size());
@@ -45,7 +46,7 @@ std::vector<Ends> pairs_across_edges(std::span<const Side> sides, std::span<cons
   for (std::size_t i = 1; i < sides.size(); ++i) {
     const std::uint32_t p = sides[i - 1].opposite, q = sides[i].opposite;
     if (sides[i].ends != sides[i - 1].ends || p == q) continue;
-    // A side of a triangle with a repeated id has one of its own ends opposite.
+    // For a triangle with a repeated id, the opposite vertex is one of the side's own ends.
     const auto is_end = [&](std::uint32_t v) { return v == sides[i].ends[0] || v == sides[i].ends[1]; };
     if (!is_end(p) && !is_end(q)) pairs.push_back({std::min(p, q), std::max(p, q)});
   }
@@ -94,7 +95,7 @@ bool crosses(const Element& element) {
 
 template <class Element>
 ElementBlocks<Element> in_blocks(const std::vector<Element>& elements, std::uint32_t block_count) {
-  // Two groups a block, in which elements keep their order.
+  // Two groups per block; elements keep their order within a group.
   const auto group_of = [](const Element& e) {
     return 2 * std::size_t{e.vertices()[0] / vertex_block_size} + (crosses(e) ? 1 : 0);
   };
@@ -118,7 +119,7 @@ ElementBlocks<Element> in_blocks(const std::vector<Element>& elements, std::uint
   return blocks;
 }
 
-/// Calls `visit(vertex, slot)` for each vertex of each element that crosses, in order.
+/// Calls `visit(vertex, slot)` for each vertex of each crossing element, in order.
 template <class Element, class Visit>
 void for_each_slot(ElementBlocks<Element>& blocks, Visit visit) {
   std::size_t slot = 0;

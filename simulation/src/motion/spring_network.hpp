@@ -10,7 +10,7 @@
 
 namespace supple {
 
-/// Pulls at its two ends. a < b
+/// A spring between vertices a < b.
 struct SpringElement {
   std::uint32_t a = 0, b = 0;
   double rest_length = 0;
@@ -18,8 +18,8 @@ struct SpringElement {
   std::array<std::uint32_t, 2> vertices() const { return {a, b}; }
 };
 
-/// Pulls at the corners of a triangle. `inverse_scale` is one over the area of the equilateral triangle on
-/// its longest side: over the area itself slivers would be stiff without bound.
+/// Preserves the area of a triangle. `inverse_scale` is one over the area of the equilateral triangle on its
+/// longest side. With the area itself, the stiffness of slivers would be unbounded.
 struct AreaElement {
   Triangle corners{};
   double rest_area = 0;
@@ -28,46 +28,45 @@ struct AreaElement {
   const Triangle& vertices() const { return corners; }
 };
 
-/// Vertices that share a block of forces. Fixed, so that sums have one order for any number of threads; a
-/// block's positions, velocities and forces stay in the second level of cache.
+/// Vertices per block of forces. A constant, so that the order of sums does not depend on the number of
+/// threads. The positions, velocities and forces of a block fit the second level of cache.
 constexpr std::uint32_t vertex_block_size = 2048;
 
-/// Elements by the block of their first vertex; within a block, first those that stay inside it, then those
-/// that cross into others. Blocks add up the forces of the former in place. The latter hand theirs in at
-/// slots, one for each vertex of each, which lie vertex by vertex, so that nobody waits for anybody.
+/// Elements grouped by the block of their first vertex. Within a block, the elements inside it come first,
+/// then those that cross into other blocks. Blocks add the forces of inside elements in place. Crossing
+/// elements write to slots, one per vertex and element, grouped by vertex, so that threads need no locks.
 template <class Element>
 struct ElementBlocks {
   std::vector<Element> elements;
-  std::vector<std::uint32_t> first;           ///< of a block; one more at the end
-  std::vector<std::uint32_t> first_crossing;  ///< of a block
-  std::vector<std::uint32_t> slots;           ///< of all that cross, in order, one a vertex
-  std::vector<std::uint32_t> first_slot;      ///< of a block, in `slots`
+  std::vector<std::uint32_t> first;           ///< first element of each block, and the end
+  std::vector<std::uint32_t> first_crossing;  ///< first crossing element of each block
+  std::vector<std::uint32_t> slots;           ///< slots of all crossing elements in order, one per vertex
+  std::vector<std::uint32_t> first_slot;      ///< first entry of each block in `slots`
 };
 
-/// Elements of one part that follow each other: [first, last).
+/// A range [first, last) of consecutive elements of one part.
 struct VolumeRun {
   std::uint32_t first = 0, last = 0;
   std::uint32_t part = 0;
 };
 
-/// What pulls at the vertices of a mesh, and where forces are gathered.
+/// The elements that act on the vertices of a mesh, and the slots for their forces.
 struct SpringNetwork {
   std::uint32_t vertex_count = 0;
-  ElementBlocks<SpringElement> edges;    ///< one for each pair of different vertices of a triangle
-  ElementBlocks<SpringElement> bending;  ///< one across each edge, where that is no edge itself
-  ElementBlocks<AreaElement> areas;      ///< triangles with an area
+  ElementBlocks<SpringElement> edges;    ///< one per pair of different vertices of a triangle
+  ElementBlocks<SpringElement> bending;  ///< one across each edge, unless it is itself an edge
+  ElementBlocks<AreaElement> areas;      ///< triangles with positive area
   ElementBlocks<VolumeElement> volumes;  ///< triangles of `parts`
   std::vector<ClosedPart> parts;
-  std::vector<VolumeRun> runs;  ///< of `volumes`, all of them in order; none goes from a block into the next
-  /// Slots of vertex v: [first_slot[v], first_slot[v + 1]).
+  std::vector<VolumeRun> runs;  ///< cover `volumes` in order; no run crosses a block boundary
+  /// The slots of vertex v are [first_slot[v], first_slot[v + 1]).
   std::vector<std::uint32_t> first_slot;
 
   std::uint32_t block_count() const { return (vertex_count + vertex_block_size - 1) / vertex_block_size; }
 };
 
-/// Elements of vertices that are not finite are left out, and those whose size is beyond the range of double.
-/// An edge of many triangles has a bending spring for each two that follow each other in the mesh. O(n log
-/// n).
+/// Omits elements with a vertex that is not finite, and elements whose size overflows double. An edge of
+/// more than two triangles has one bending spring for each two that are consecutive in the mesh. O(n log n).
 SpringNetwork build_spring_network(const TriangleMesh& rest, bool with_bending, bool with_areas,
                                    const ClosedParts& closed = {});
 

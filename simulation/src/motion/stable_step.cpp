@@ -10,7 +10,7 @@
 namespace supple {
 namespace {
 
-/// At rest there is no pressure, and a part's stiffness is k / V0 ∂V/∂x ∂V/∂xᵀ.
+/// At rest the pressure is 0, and the stiffness of a part is k / V0 ∂V/∂x ∂V/∂xᵀ.
 void add_volumes(const SpringNetwork& network, std::span<const VertexKind> kinds, double volume_stiffness,
                  std::span<const Vec3d> rest, std::vector<double>& stiffness) {
   std::vector<Vec3d> gradient(kinds.size());
@@ -19,7 +19,7 @@ void add_volumes(const SpringNetwork& network, std::span<const VertexKind> kinds
     const Vec3d third = area_vector(rest[t[0]], rest[t[1]], rest[t[2]]) * (1.0 / 3);
     for (const std::uint32_t v : t) gradient[v] = gradient[v] + third;
   }
-  // A vertex belongs to one part at most.
+  // A vertex belongs to at most one part.
   constexpr std::uint32_t none = ~std::uint32_t{0};
   std::vector<std::uint32_t> part_of(kinds.size(), none);
   for (const VolumeElement& element : network.volumes.elements) {
@@ -45,7 +45,8 @@ double stable_explicit_step(const SpringNetwork& network, std::span<const Vertex
   std::vector<double> stiffness(kinds.size()), damping(kinds.size(), options.air_friction);
   const auto is_free = [&](std::uint32_t v) { return kinds[v] == VertexKind::free; };
   const auto add_spring = [&](const SpringElement& spring, double k) {
-    // A row has the spring's block once on the diagonal and, unless the other end is fixed, once off it.
+    // A row contains the block of the spring once on the diagonal and, unless the other end is fixed, once
+    // off it.
     for (const std::uint32_t v : spring.vertices()) {
       const double blocks = is_free(v == spring.a ? spring.b : spring.a) ? 2 : 1;
       stiffness[v] += blocks * k;

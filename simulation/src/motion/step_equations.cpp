@@ -69,7 +69,7 @@ void StepEquations::connect(const SpringNetwork& network) {
     for (std::uint32_t c = 0; c < 3; ++c) corners_[next[triangles_[t][c]]++] = {t, c};
   }
 
-  // Which rows have a block with each other.
+  // The rows of two vertices, the lower row first. `none` is the largest number.
   const auto rows_of = [&](std::uint32_t p, std::uint32_t q) {
     const std::uint32_t i = row_of_[p], j = row_of_[q];
     return std::array{std::min(i, j), std::max(i, j)};
@@ -155,7 +155,8 @@ double StepEquations::visit_springs(const std::vector<SpringElement>& springs, s
       const double stretch = length - rest_length, rate = dot(velocities[b] - velocities[a], direction);
       sum += 0.5 * stiffness * stretch * stretch + 0.5 * of_rate * rate * rate;
       const Vec3d n = d * inverse;
-      // A spring that is compressed would push its ends out of line; that is what may be negative.
+      // A compressed spring has negative stiffness across its direction, which would make the system
+      // indefinite.
       const double across = length > 0 ? std::max(0.0, stretch * inverse) : 1;
       pulls_[first_state + i] = n * (h * stiffness * stretch) + direction * (of_rate * rate);
       SymmetricBlock block = SymmetricBlock::outer(n, of_stretch * (1 - across));
@@ -212,7 +213,7 @@ double StepEquations::volume_stiffness(std::size_t part) const {
          step_->network.parts[part].inverse_scale;
 }
 
-/// g·x of each closed part.
+/// g·x for each closed part.
 void StepEquations::sum_of_parts(std::span<const Vec3d> x, std::span<double> along) const {
   std::fill(along.begin(), along.end(), 0.0);
   for (std::size_t v = 0; v < part_of_.size(); ++v) {

@@ -16,11 +16,11 @@
 
 namespace supple {
 
-/// Where a step starts, and what acts during it.
+/// The state at the start of a step and the forces during it.
 struct ImplicitStep {
   const SpringNetwork& network;
   std::span<const Vec3d> positions, velocities;
-  std::span<const Vec3d> external_forces;  ///< empty: none
+  std::span<const Vec3d> external_forces;  ///< empty when there are none
   Vec3d air_velocity;
   double seconds = 0;
 };
@@ -29,14 +29,14 @@ struct ImplicitStep {
 ///
 ///     m |v - v0|² / 2 + energy(x0 + h v) + dissipation,
 ///
-/// its slope, and its second derivative without what may be negative (Baraff & Witkin 1998).
+/// its gradient, and its Hessian without the terms that may be negative (Baraff & Witkin 1998).
 ///
-/// Vectors have an entry for each vertex; those of vertices that are not free are 0. Elements are visited one
-/// by one, then each vertex adds up what its elements say in their order, so that the bits are the same for
-/// any number of threads. No allocation after construction.
+/// Vectors have one entry per vertex; entries of vertices that are not free are 0. Each element is evaluated
+/// once; then each vertex sums the results of its elements in their order. So the bits are the same for any
+/// number of threads. No allocation after construction.
 ///
-/// The volume of a closed part adds κ g gᵀ to the second derivative, g being ∂V/∂x and κ = h² k / |V0|: that
-/// is dense, so factors are of the rest, the sparse part.
+/// The volume of a closed part adds κ g gᵀ to the Hessian, with g = ∂V/∂x and κ = h² k / |V0|. This term is
+/// dense, so only the rest, the sparse part, is factorised.
 class StepEquations {
  public:
   StepEquations(const SpringNetwork& network, std::span<const VertexKind> kinds,
@@ -45,25 +45,25 @@ class StepEquations {
   std::uint32_t free_count() const { return free_count_; }
   double smallest_diagonal() const { return diagonal_of_mass_; }
 
-  /// Directions of damping are those at the start of the step. `step` must outlive all that follows.
+  /// Damping directions are those at the start of the step. `step` must outlive the calls that follow.
   void begin(const ImplicitStep& step, const Parallel& parallel);
-  /// The potential there, and what elements say to it.
+  /// Evaluates all elements at `velocities` and returns the potential.
   double visit(std::span<const Vec3d> velocities, const Parallel& parallel);
-  /// The negative slope, and the blocks on the diagonal of the sparse part, where `visit` was last.
+  /// The negative gradient, and the diagonal blocks of the sparse part, at the point of the last `visit`.
   void gather(std::span<const Vec3d> velocities, std::span<Vec3d> descent, std::span<SymmetricBlock> diagonal,
               const Parallel& parallel);
-  /// The second derivative where `visit` was last, times x; returns xᵀ times that.
+  /// The Hessian at the point of the last `visit`, times x. Returns xᵀ times the product.
   double multiply(std::span<const Vec3d> x, std::span<Vec3d> product, const Parallel& parallel);
 
-  /// For the pattern of the sparse part; rows are free vertices in the order of the mesh.
+  /// Has the pattern of the sparse part. Rows are free vertices in the order of the mesh.
   SparseFactor make_factor() const;
   void fill(std::span<const SymmetricBlock> diagonal, SparseFactor& factor) const;
   bool has_volumes() const { return !part_of_.empty(); }
-  /// g, of the part that a vertex belongs to, where `gather` was last.
+  /// For each vertex, g of its part at the point of the last `gather`.
   std::span<const Vec3d> volume_gradient() const { return volume_gradient_; }
-  /// Makes of what solves the system of the sparse part what solves all of it, by the formula of Sherman and
-  /// Morrison. `response` solves the sparse part for `volume_gradient`: nothing else joins two closed parts,
-  /// so that one solution serves all of them.
+  /// Turns a solution of the sparse system into a solution of the full system by the Sherman-Morrison
+  /// formula. `response` is the solution of the sparse system for `volume_gradient`. Only this term couples
+  /// closed parts, so one response serves all of them.
   void keep_volumes(std::span<const Vec3d> response, std::span<Vec3d> solution);
 
  private:
@@ -98,24 +98,24 @@ class StepEquations {
   const ImplicitStep* step_ = nullptr;
   double diagonal_of_mass_ = 0;
   std::vector<End> ends_;
-  std::vector<std::uint32_t> first_end_;  // of each vertex; one more at the end
+  std::vector<std::uint32_t> first_end_;  // offset of each vertex, and the end
   std::vector<Corner> corners_;
   std::vector<std::uint32_t> first_corner_;
-  std::vector<Triangle> triangles_;  // of areas
+  std::vector<Triangle> triangles_;  // the corners of each area element
   std::vector<std::array<std::uint32_t, 2>> spring_ends_;
 
   std::vector<Vec3d> positions_;
-  std::vector<Vec3d> directions_;       // of springs
-  std::vector<Vec3d> pulls_;            // of springs at their first ends, over h
-  std::vector<SymmetricBlock> blocks_;  // of springs
+  std::vector<Vec3d> directions_;       // one per spring
+  std::vector<Vec3d> pulls_;            // force of each spring on its first end, divided by h
+  std::vector<SymmetricBlock> blocks_;  // one per spring
   std::vector<AreaState> areas_;
   std::vector<double> along_areas_;
   VolumeSum volumes_;
-  std::vector<std::uint32_t> part_of_;  // of each vertex; empty without volumes
+  std::vector<std::uint32_t> part_of_;  // the part of each vertex; empty without volumes
   std::vector<Vec3d> volume_gradient_;
   std::vector<double> along_parts_, along_response_;
   mutable std::vector<double> chunk_sums_;
-  std::vector<std::array<std::uint32_t, 2>> pairs_;  // rows with a block
+  std::vector<std::array<std::uint32_t, 2>> pairs_;  // pairs of rows that share a block
   std::vector<std::uint32_t> pair_of_spring_;
   std::vector<std::array<std::uint32_t, 3>> pairs_of_area_;
   std::vector<std::uint32_t> row_of_;

@@ -9,15 +9,15 @@
 
 namespace supple {
 
-/// Sums are of chunks of this size, and then of these in order, so that they are the same for any number of
-/// threads.
+/// Sums are computed over chunks of this size, and the chunk sums are added in order. So they are the same
+/// for any number of threads.
 constexpr std::size_t chunk_size = 512;
 
 constexpr std::size_t chunk_count(std::size_t count) {
   return (count + chunk_size - 1) / chunk_size;
 }
 
-/// Calls `visit(begin, end)` with each chunk of [0, count).
+/// Calls `visit(begin, end)` for each chunk of [0, count).
 template <class Visit>
 void for_chunks(std::size_t count, const Parallel& parallel, Visit visit) {
   parallel.for_ranges(chunk_count(count), 1, [&](std::size_t first, std::size_t last, std::uint32_t) {
@@ -27,7 +27,7 @@ void for_chunks(std::size_t count, const Parallel& parallel, Visit visit) {
   });
 }
 
-/// The sum of `sum(begin, end)` of the chunks of [0, count); `of_chunks` has room for one number each.
+/// Adds `sum(begin, end)` over all chunks of [0, count). `of_chunks` has room for one number per chunk.
 template <class Sum>
 double sum_of_chunks(std::size_t count, const Parallel& parallel, std::span<double> of_chunks, Sum sum) {
   for_chunks(count, parallel,

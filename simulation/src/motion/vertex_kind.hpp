@@ -6,7 +6,7 @@ namespace supple {
 
 enum class VertexKind : std::uint8_t {
   free,
-  fixed,  ///< of infinite mass: it keeps its velocity
+  fixed,  ///< infinite mass: it keeps its velocity
   inert,  ///< not finite at rest: it has no velocity, no mass and no springs
 };
 

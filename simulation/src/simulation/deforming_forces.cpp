@@ -13,11 +13,11 @@
 namespace supple {
 namespace {
 
-/// The vertices that forces may pull at.
+/// The vertices that receive forces.
 struct Cloud {
   std::vector<std::size_t> vertices;
   std::vector<Vec3d> from_centre;
-  double size = 0;  // longest side of the box
+  double size = 0;  // longest side of the bounding box
 };
 
 Cloud cloud_of(std::span<const Vec3d> rest) {
@@ -62,8 +62,8 @@ void remove_sum(std::vector<Vec3d>& forces) {
   for (Vec3d& force : forces) force = force - mean;
 }
 
-/// Takes a × r off each force, where J a is the torque of all and J the inertia of unit masses. Points on a
-/// line have no inertia about it: they keep their torque.
+/// Subtracts a × r from each force, where J a is the total torque and J the inertia of unit masses. Points
+/// on a line have no inertia about it, so that part of the torque remains.
 void remove_torque(std::vector<Vec3d>& forces, const std::vector<Vec3d>& arms) {
   Vec3d torque;
   std::array<Vec3d, 3> inertia{};  // rows
@@ -85,7 +85,7 @@ void remove_torque(std::vector<Vec3d>& forces, const std::vector<Vec3d>& arms) {
   for (std::size_t i = 0; i < forces.size(); ++i) forces[i] = forces[i] - cross(turn, arms[i]);
 }
 
-/// Vertices that springs join, directly or by way of others; numbers into the cloud.
+/// Connected components of the spring graph, as indices into the cloud.
 std::vector<std::vector<std::size_t>> pieces_of(const Cloud& cloud, std::size_t vertex_count,
                                                 std::span<const MassSpringBody::Spring> springs) {
   std::vector<std::size_t> parents(vertex_count);
@@ -102,7 +102,7 @@ std::vector<std::vector<std::size_t>> pieces_of(const Cloud& cloud, std::size_t 
   return pieces;
 }
 
-/// Takes off what would move or turn a piece as a whole.
+/// Removes the total force and torque of one piece.
 void keep_in_place(const std::vector<std::size_t>& piece, const Cloud& cloud, std::vector<Vec3d>& forces) {
   std::vector<Vec3d> its_forces, arms;
   for (const std::size_t i : piece) {

@@ -9,14 +9,14 @@
 namespace supple {
 namespace {
 
-/// Of the depth by which elements are too near, the part that a step may make up for (Bridson et al.: 0.1).
+/// The fraction of the overlap that one step corrects (Bridson et al. use 0.1).
 constexpr double repulsion_part = 0.1;
 
 SceneOptions scene_options(const ContactResponse& response, std::uint32_t threads) {
   SceneOptions options;
   options.contacts = ContactMode::continuous;
   options.impact.min_separation = response.thickness;
-  // Resting elements lie at the very border of touching; whether they do does not matter here.
+  // Resting elements lie exactly on the border of touching; here it does not matter on which side.
   options.impact.exact = false;
   options.threads = threads;
   return options;
@@ -112,19 +112,19 @@ bool ImpulseResponse::respond(const ContinuousContact& contact) {
   double parting = 0;
   double restitution = options_.restitution;
   if (contact.toi == 0) {
-    // The contact's normal may go by the velocity, which an earlier round has turned round.
+    // The contact normal may follow the relative velocity, which an earlier round may have reversed.
     const Vec3d between = start(a) - start(b);
     const double distance = std::sqrt(dot(between, between));
     if (distance > 1e-6 * options_.thickness) normal = between * (1 / distance);
     parting = repulsion_part * std::max(options_.thickness - distance, 0.0) / seconds_;
-    restitution = 0;  // what lies on something does not hop
+    restitution = 0;  // resting contact does not bounce
   }
   const bool moved = push_apart(a, b, normal, parting, 0, Velocity::average);
   return push_apart(a, b, normal, 0, restitution, Velocity::end) || moved;
 }
 
-/// Raises the speed along the normal to at least `least_speed`, and to what restitution asks for; slows what
-/// slides by at most `friction` times as much. False when nothing had to be done.
+/// Raises the normal speed to at least `least_speed` and to the speed that restitution demands; reduces the
+/// sliding speed by at most `friction` times that change. Returns false when nothing had to change.
 bool ImpulseResponse::push_apart(const ElementPoint& a, const ElementPoint& b, Vec3d normal,
                                  double least_speed, double restitution, Velocity kind) {
   const double mobility = mobility_of_both(a, b);
@@ -183,7 +183,7 @@ Vec3d ImpulseResponse::velocity(const ElementPoint& point, Velocity kind) const 
   return sum;
 }
 
-/// By how much an impulse of 1 on the first point changes the velocity of the second.
+/// The change of velocity of the second point per unit impulse on the first point.
 double ImpulseResponse::mobility(const ElementPoint& a, const ElementPoint& b) const {
   if (a.object != b.object || !a.object->has_mass) return 0;
   double sum = 0;
@@ -194,7 +194,7 @@ double ImpulseResponse::mobility(const ElementPoint& a, const ElementPoint& b) c
   return sum * a.object->now.inverse_mass;
 }
 
-/// By how much an impulse of 1 on one point and its opposite on the other change their relative velocity.
+/// The change of relative velocity per unit impulse on one point and its opposite on the other.
 double ImpulseResponse::mobility_of_both(const ElementPoint& a, const ElementPoint& b) const {
   return mobility(a, a) + mobility(b, b) - mobility(a, b) - mobility(b, a);
 }

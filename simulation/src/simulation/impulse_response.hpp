@@ -13,60 +13,60 @@
 
 namespace supple {
 
-/// One object's part in a step: where its vertices go, and what may be done about it.
+/// One object in a step: the motion of its vertices and how impulses may change it.
 struct RespondingObject {
   ObjectId id;
-  std::span<const Vec3d> from, to;    // the same when it rests
-  std::span<const Vec3d> velocities;  // at the end of the step, of what has mass
-  double inverse_mass = 0;            // of each vertex; 0 when impulses do not move the object
+  std::span<const Vec3d> from, to;    // equal for an object at rest
+  std::span<const Vec3d> velocities;  // at the end of the step, for objects with mass
+  double inverse_mass = 0;            // per vertex; 0 when impulses do not move the object
 };
 
-/// Impulses at contacts by Bridson, Fedkiw and Anderson, "Robust treatment of collisions, contact and
-/// friction for cloth animation", 2002: those at collisions within the step, and the gentle push apart of
-/// what is near from the start. The paper's order of both, and its velocities, average over the step, are
-/// kept; impulses are applied one after the other in the canonical order of contacts, so that each conserves
-/// momentum and all machines agree.
+/// Contact impulses of Bridson, Fedkiw and Anderson, "Robust treatment of collisions, contact and friction
+/// for cloth animation", 2002: impulses for collisions within the step, and repulsion between elements that
+/// are close at the start. The order of the two and the use of average velocities follow the paper. Impulses
+/// are applied one at a time in the canonical order of contacts, so each conserves momentum and all machines
+/// agree.
 ///
-/// Unlike theirs, an impulse moves not only the vertices of its elements, but also what their springs would
-/// drag along within the step: see `ImpulseSpread`. With M = m + h² L for mass it is an inelastic one, which
-/// takes motion from a body and strains its springs by less than that.
+/// Unlike in the paper, an impulse also moves the vertices that springs drag along within the step; see
+/// `ImpulseSpread`. With the effective mass M = m + h² L the impulse is inelastic: it removes more kinetic
+/// energy from a body than it adds strain energy to its springs.
 class ImpulseResponse {
  public:
-  /// `seconds` is the length of each step.
+  /// `seconds` is the duration of a step.
   ImpulseResponse(const ContactResponse& options, double seconds, std::uint32_t threads);
   ImpulseResponse(const ImpulseResponse&) = delete;
   ImpulseResponse& operator=(const ImpulseResponse&) = delete;
 
-  /// The calls of a scene, which then gives the same ids. `springs` of what has mass, else null; vertices
-  /// that are fixed in them are moved by no impulse.
+  /// The same calls as for the scene give the same ids. `springs` is null for objects without mass. Impulses
+  /// do not move vertices that are fixed in it.
   ObjectId add(const TriangleMesh& mesh, const ObjectOptions& options, const MassSpringOptions* springs);
   void remove(ObjectId object);
   void set_positions(ObjectId object, std::span<const Vec3d> positions);
 
-  /// Finds which impulses are needed on the way of a step. Objects that rest must be listed too.
+  /// Computes the impulses for a step. `objects` must include objects at rest.
   void resolve(std::span<const RespondingObject> objects);
-  /// What impulses do to the vertices of an object.
+  /// The effect of the impulses on the vertices of one object.
   struct Change {
-    std::span<const Vec3d> of_average_velocity;  // times the step's seconds, to be added to `to`
+    std::span<const Vec3d> of_average_velocity;  // times the duration of the step, this is added to `to`
     std::span<const Vec3d> of_velocity;
   };
-  /// Nothing when no impulse was given to it.
+  /// Empty when the object received no impulse.
   std::optional<Change> change(ObjectId object) const;
 
  private:
   struct Participant {
     std::vector<Triangle> triangles;
     bool has_mass = false;
-    std::optional<ImpulseSpread> spread;  // of what has mass
+    std::optional<ImpulseSpread> spread;  // for objects with mass
     bool is_resting = true;
     RespondingObject now;
-    std::array<std::vector<Vec3d>, 2> changes;  // by `Velocity`
+    std::array<std::vector<Vec3d>, 2> changes;  // indexed by `Velocity`
     bool is_changed = false;                    // in this step
-    bool is_stale = false;                      // the scene does not know the path yet
+    bool is_stale = false;                      // the scene still has an older path
   };
-  /// Which of a vertex's velocities is meant.
+  /// Selects one of the two velocities of a vertex.
   enum class Velocity : std::uint8_t { average, end };
-  /// A point of an element: a vertex, a point of an edge or of a face.
+  /// A vertex, a point on an edge, or a point on a face.
   struct ElementPoint {
     Participant* object = nullptr;
     std::array<std::uint32_t, 3> vertices{};
@@ -90,7 +90,7 @@ class ImpulseResponse {
   ContactResponse options_;
   double seconds_;
   Scene scene_;
-  std::vector<Participant> participants_;  // by index
+  std::vector<Participant> participants_;  // indexed by object
   std::vector<ObjectId> moving_;
   std::vector<Vec3d> to_;  // scratch
 };

@@ -15,7 +15,8 @@ struct Link {
   double stiffness;
 };
 
-/// Springs as they are; a triangle's area is no stiffer than springs of k / √3 on its sides.
+/// The springs, and for each triangle with area stiffness k, springs of k / √3 on its sides, which are at
+/// least as stiff.
 std::vector<Link> links_of(const TriangleMesh& rest, const MassSpringOptions& springs) {
   const SpringNetwork network =
       build_spring_network(rest, springs.bending_stiffness > 0, springs.area_stiffness > 0);
@@ -88,7 +89,7 @@ double ImpulseSpread::share(std::uint32_t vertex, std::uint32_t other) {
   return found != shares.end() && found->vertex == other ? found->part : 0;
 }
 
-/// Breadth first, from the vertex on.
+/// Breadth-first search from the vertex.
 void ImpulseSpread::gather_patch(std::uint32_t vertex) {
   patch_.assign(1, vertex);
   place_[vertex] = 0;
@@ -102,7 +103,7 @@ void ImpulseSpread::gather_patch(std::uint32_t vertex) {
   }
 }
 
-/// By 1 + h²/m L, as if springs to what is outside of the patch were cut.
+/// Multiplies by 1 + h²/m L, with springs that leave the patch cut.
 void ImpulseSpread::multiply(std::span<const double> parts, std::span<double> product) const {
   for (std::size_t i = 0; i < patch_.size(); ++i) {
     double sum = parts[i];
@@ -117,7 +118,7 @@ void ImpulseSpread::multiply(std::span<const double> parts, std::span<double> pr
   }
 }
 
-/// Conjugate gradients from the impulse as it is: where nothing is fixed each iteration keeps the sum.
+/// Conjugate gradients from the unspread impulse. Without fixed vertices each iteration preserves the sum.
 void ImpulseSpread::solve() {
   const std::size_t size = patch_.size();
   for (auto* vector : {&parts_, &residual_, &direction_, &product_}) vector->assign(size, 0.0);
@@ -139,7 +140,7 @@ void ImpulseSpread::solve() {
   }
 }
 
-/// Without those below a thousandth of the first, which the rest make up for.
+/// Drops shares below a thousandth of the largest and rescales the rest.
 std::vector<ImpulseSpread::Share> ImpulseSpread::largest_shares() const {
   std::vector<Share> shares;
   double all = 0, kept = 0;

@@ -9,12 +9,12 @@
 
 namespace supple {
 
-/// How an impulse on one vertex of a body of masses and springs is shared out to those about it within a
-/// step: by (1 + h²/m L)⁻¹, as a step of backward Euler would, with the Laplacian L of the springs, which is
-/// at least as stiff as they are. Without that springs would be strained by what the vertex alone moves in a
-/// step, which takes more energy than the impulse does when h² k / m is large.
+/// Distributes an impulse on one vertex of a mass-spring body over the vertices around it within a step, by
+/// (1 + h²/m L)⁻¹ as a step of backward Euler would. L is the Laplacian of springs that are at least as
+/// stiff as those of the body. An impulse on the vertex alone would strain its springs; for large h² k / m
+/// that adds more energy than the impulse removes.
 ///
-/// Shares sum to 1, but for what goes into fixed vertices. Only the nearest `patch_size` vertices share.
+/// Shares sum to 1, minus the part of fixed vertices. Only the nearest `patch_size` vertices get a share.
 class ImpulseSpread {
  public:
   static constexpr std::size_t patch_size = 1024;
@@ -26,11 +26,11 @@ class ImpulseSpread {
 
   ImpulseSpread(const TriangleMesh& rest, const MassSpringOptions& springs, double seconds);
 
-  /// Forgets shares when those kept take more than 64 MB; they come out the same again.
+  /// Drops cached shares when they take more than 64 MB. Recomputed shares are equal.
   void begin_step();
-  /// By vertex. Nothing of fixed vertices. Computed when first asked for, valid until the step's end.
+  /// One share per vertex, none for fixed vertices. Computed on first use, valid until the end of the step.
   std::span<const Share> from(std::uint32_t vertex);
-  /// Of `from(vertex)` that of `other`, 0 when it has none.
+  /// The share of `other` in `from(vertex)`, or 0 when it has none.
   double share(std::uint32_t vertex, std::uint32_t other);
 
  private:
@@ -48,13 +48,13 @@ class ImpulseSpread {
   std::vector<Share> largest_shares() const;
 
   std::vector<std::uint8_t> is_fixed_;
-  std::vector<std::uint32_t> first_;  // in neighbors_, of each vertex; one more at the end
+  std::vector<std::uint32_t> first_;  // offset of each vertex in neighbors_, and the end
   std::vector<Neighbor> neighbors_;
-  std::vector<std::vector<Share>> shares_;  // by vertex; empty until asked for
+  std::vector<std::vector<Share>> shares_;  // one list per vertex; empty until first used
   std::size_t share_count_ = 0;
 
-  // Scratch of one patch.
-  std::vector<std::uint32_t> patch_, place_;  // vertices, and of each vertex its place among them
+  // Scratch memory for one patch.
+  std::vector<std::uint32_t> patch_, place_;  // the vertices, and the index of each vertex among them
   std::vector<double> parts_, residual_, direction_, product_;
 };
 

@@ -92,7 +92,7 @@ void MovingBody::turn_back_at(const Border& border) {
   Vec3d low{infinity, infinity, infinity}, high = -1.0 * low;
   for (const Vec3d& p : body.positions()) {
     for (int axis = 0; axis < 3; ++axis) {
-      // Comparisons with what is not a number are false.
+      // Comparisons with NaN are false.
       if (p[axis] < low[axis]) low[axis] = p[axis];
       if (p[axis] > high[axis]) high[axis] = p[axis];
     }
@@ -104,8 +104,9 @@ void MovingBody::turn_back_at(const Border& border) {
   }
 }
 
-/// `outward` is the sign of the way out. The least speed of the way back is what gravity takes off it in a
-/// step, and a little more for friction: less, and a body that lies on a side would sink into it bit by bit.
+/// `outward` is the sign of the outward direction. The speed of the way back is at least what gravity
+/// removes in a step, plus a margin for friction. Otherwise a body that lies on a side would slowly sink
+/// into it.
 void MovingBody::turn_back_from_side(int axis, double outward, double velocity) {
   const double pull = std::max(outward * body.options().gravity[axis] * time_step_, 0.0);
   const double speed = outward * velocity;
@@ -128,8 +129,8 @@ void MovingBody::send_off_in_time() {
   if (drift_ != Vec3d{}) body.add_drift(drift_);
 }
 
-/// Fixed vertices keep the velocity they are given: that which brings them, at the end of the next step, to
-/// where their handle is by then.
+/// Fixed vertices keep the velocity they are given. This sets the velocity that brings each to the position
+/// of its handle at the end of the next step.
 void MovingBody::pull_handles() {
   if (handles_.empty() || handles_rest_) return;
   velocities_.assign(body.velocities().begin(), body.velocities().end());

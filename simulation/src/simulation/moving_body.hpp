@@ -10,22 +10,23 @@
 
 namespace supple {
 
-/// The masses and springs of a motion, those that handles hold fixed. `threads` is for a body whose options
-/// leave it open. Throws `Error` naming the member that is out of its range.
+/// Makes the mass-spring body of a motion; vertices held by handles are fixed. `threads` applies when the
+/// options leave it open. Throws `Error` with the name of a member that is out of range.
 MassSpringBody make_body(const TriangleMesh& rest, const MassSpringMotion& motion, std::uint32_t threads);
 
-/// A body of masses and springs, and what happens to it from step to step besides its own forces: deforming
-/// forces, the drift that sends it off, handles that pull, and the border.
+/// A mass-spring body with everything that acts on it besides its own forces: deforming forces, the initial
+/// drift, handles, and the border.
 class MovingBody {
  public:
-  /// `rest` is what `make_body` made of the same motion.
+  /// `rest` is the result of `make_body` for the same motion.
   MovingBody(MassSpringBody rest, const MassSpringMotion& motion, double time_step, Random random);
 
   MassSpringBody body;
 
-  /// Changes of the average velocity over the step just taken, and of the velocity after it, of each vertex.
+  /// Adds changes to the average velocity over the step just taken, and to the velocity after it; one entry
+  /// per vertex.
   void change_velocities(std::span<const Vec3d> of_average, std::span<const Vec3d> after);
-  /// After a step that will not be undone: all that changes velocities and forces for the next one.
+  /// Call after a step that will not be undone. Updates velocities and forces for the next step.
   void end_step(const std::optional<Border>& border);
 
  private:
@@ -42,7 +43,7 @@ class MovingBody {
   bool is_deforming_ = true;
   std::vector<MassSpringMotion::Handle> handles_;
   bool handles_rest_ = false;
-  std::vector<Vec3d> positions_, velocities_;  // scratch
+  std::vector<Vec3d> positions_, velocities_;  // scratch memory
 };
 
 }  // namespace supple

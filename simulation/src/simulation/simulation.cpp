@@ -28,7 +28,7 @@ const SimulationOptions& checked(const SimulationOptions& options) {
   return options;
 }
 
-/// What `action` throws, or nothing.
+/// The exception that `action` throws, or none.
 template <class Action>
 std::exception_ptr exception_of(Action&& action) {
 #if defined(__cpp_exceptions)
@@ -60,7 +60,7 @@ Simulation::Implementation::Implementation(const SimulationOptions& simulation_o
   if (options.response.enabled) response_.emplace(options.response, options.time_step, options.scene.threads);
 }
 
-/// Whatever may throw comes first.
+/// Everything that may throw comes first.
 ObjectId Simulation::Implementation::add(const TriangleMesh& mesh, const ObjectOptions& object_options,
                                          const MassSpringMotion* motion, MotionFunction function) {
   check_mesh(mesh);
@@ -74,7 +74,7 @@ ObjectId Simulation::Implementation::add(const TriangleMesh& mesh, const ObjectO
     added->own_positions = mesh.positions;
     added->id = scene.add(mesh, object_options);
   } else {
-    // A body that would not use threads goes beside others.
+    // A body too small for threads is stepped in parallel with others.
     const bool has_threads = is_worth_threads(mesh.positions.size(), motion->springs.integrator);
     const std::uint32_t threads = has_threads ? options.scene.threads : 1;
     MassSpringBody body = make_body(mesh, *motion, threads);
@@ -138,7 +138,7 @@ const DetectResult& Simulation::Implementation::detect() {
   return scene.detect();
 }
 
-/// Nothing that may fail comes after the bodies, and nothing that lasts before them.
+/// Nothing may fail after the bodies are stepped, and nothing before them may have a lasting effect.
 std::optional<MotionError> Simulation::Implementation::try_step() {
   Timer timer;
   call_functions(static_cast<double>(steps + 1) * options.time_step);
@@ -171,7 +171,7 @@ void Simulation::Implementation::remember_positions() {
   }
 }
 
-/// Large bodies take all threads one after the other; small ones go side by side.
+/// Large bodies run one after the other with all threads; small bodies run in parallel with each other.
 std::optional<MotionError> Simulation::Implementation::step_bodies() {
   small_bodies_.clear();
   for (const auto& object : objects_) {
@@ -202,7 +202,7 @@ void Simulation::Implementation::step_body(SimulatedObject& object) {
       exception_of([&] { object.failure = object.moving_body->body.try_step(options.time_step); });
 }
 
-/// Bodies that failed have put themselves back.
+/// Bodies that failed have already restored their state.
 void Simulation::Implementation::undo_step_of_bodies() {
   for (const auto& object : objects_) {
     if (object != nullptr && object->moving_body != nullptr && !object->has_failed())

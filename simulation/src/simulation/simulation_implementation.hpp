@@ -14,17 +14,17 @@
 
 namespace supple {
 
-/// One object: moved by a body, by a function, or by nothing.
+/// One object, moved by a body, by a function, or not at all.
 struct SimulatedObject {
   ObjectId id;
   std::unique_ptr<MovingBody> moving_body;
   MotionFunction function;
-  std::vector<Vec3d> own_positions;    // of objects without a body
-  std::vector<Vec3d> next;             // what the function wrote, until the step is sure
-  std::vector<Vec3d> before;           // where the last step began; only where the way there is looked at
-  bool is_on_path = false;             // in the scene, by the last step
-  std::optional<std::string> failure;  // of the body, in this step, and so
-  std::exception_ptr exception;        // as where there is no memory
+  std::vector<Vec3d> own_positions;    // for objects without a body
+  std::vector<Vec3d> next;             // the output of the function, until the step succeeds
+  std::vector<Vec3d> before;           // positions before the last step, kept only when paths are needed
+  bool is_on_path = false;             // the scene has the path of the last step
+  std::optional<std::string> failure;  // why the body failed in this step, as text
+  std::exception_ptr exception;        // and as the exception, when there was memory for it
 
   bool has_failed() const { return failure.has_value() || exception != nullptr; }
   bool moves() const { return moving_body != nullptr || function != nullptr; }
@@ -66,8 +66,8 @@ class Simulation::Implementation {
 
   Parallel parallel_;
   std::optional<ImpulseResponse> response_;
-  std::vector<std::unique_ptr<SimulatedObject>> objects_;  // by index
-  std::vector<SimulatedObject*> small_bodies_;             // scratch of a step, and so
+  std::vector<std::unique_ptr<SimulatedObject>> objects_;  // indexed by object
+  std::vector<SimulatedObject*> small_bodies_;             // scratch memory of a step
   std::vector<RespondingObject> responding_;
 };
 

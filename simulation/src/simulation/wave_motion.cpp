@@ -15,7 +15,8 @@ double random_phase(std::uint64_t seed, std::uint64_t axis) {
   return random_unit(seed * 3 + axis + 1);
 }
 
-/// Where a point that started at 0 is after `distance`, thrown back at `lowest` ≤ 0 and `highest` ≥ 0.
+/// The position after `distance` of a point that starts at 0 and is reflected at `lowest` ≤ 0 and `highest`
+/// ≥ 0.
 double reflect(double distance, double lowest, double highest) {
   const double room = highest - lowest;
   if (!(room > 0)) return 0;
@@ -24,8 +25,8 @@ double reflect(double distance, double lowest, double highest) {
   return lowest + (there_and_back <= room ? there_and_back : 2 * room - there_and_back);
 }
 
-double drift(const WaveMotion& motion, const std::optional<Border>& border, std::span<const Vec3d> rest, int axis,
-             double seconds) {
+double drift(const WaveMotion& motion, const std::optional<Border>& border, std::span<const Vec3d> rest,
+             int axis, double seconds) {
   const double distance = motion.velocity[axis] * seconds;
   if (!border) return distance;
   double lowest = std::numeric_limits<double>::infinity(), highest = -lowest;
@@ -37,15 +38,15 @@ double drift(const WaveMotion& motion, const std::optional<Border>& border, std:
   const double room_below = (*border)[0][axis] - (lowest - motion.amplitude);
   const double room_above = (*border)[1][axis] - (highest + motion.amplitude);
   if (!(room_below < room_above)) return 0;
-  // An object that starts beyond the border is first brought to it.
+  // An object that starts beyond the border is first moved to it.
   const double start = std::clamp(0.0, room_below, room_above);
   return start + reflect(distance, room_below - start, room_above - start);
 }
 
 }  // namespace
 
-void apply_wave_motion(const WaveMotion& motion, const std::optional<Border>& border, std::span<const Vec3d> rest,
-          double seconds, std::span<Vec3d> positions) {
+void apply_wave_motion(const WaveMotion& motion, const std::optional<Border>& border,
+                       std::span<const Vec3d> rest, double seconds, std::span<Vec3d> positions) {
   Vec3d offset;
   std::array<double, 3> phase;
   for (int axis = 0; axis < 3; ++axis) {
@@ -55,7 +56,8 @@ void apply_wave_motion(const WaveMotion& motion, const std::optional<Border>& bo
   }
   for (std::size_t i = 0; i < rest.size(); ++i) {
     const Vec3d p = rest[i];
-    // Each wave moves points along one axis and runs along another, so that the object bends and shears.
+    // Each wave displaces points along one axis and travels along another, so that the object bends and
+    // shears.
     const Vec3d wave{sin_turns(p.y / motion.wavelength + phase[0]),
                      sin_turns(p.z / motion.wavelength + phase[1]),
                      sin_turns(p.x / motion.wavelength + phase[2])};

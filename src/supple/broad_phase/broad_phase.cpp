@@ -1,6 +1,5 @@
 #include "supple/broad_phase.hpp"
 
-#include "broad_phase/object_volume.hpp"
 #include "broad_phase/pair_finder.hpp"
 #include "core/error.hpp"
 #include "core/parallel.hpp"
@@ -15,32 +14,27 @@ class BroadPhase::Implementation {
         parallel_(options.threads),
         finder_(make(BoundingVolume::aabb)) {}
 
-  std::span<const IndexPair> find(BoundingVolume kind, const ObjectVolumes& volumes) {
-    if (kind != kind_) {
-      finder_ = make(kind);
-      kind_ = kind;
-    }
-    return finder_->find_pairs(volumes, parallel_);
-  }
-
-  /// Told of changes.
-  std::span<const IndexPair> find(BoundingVolume kind, ObjectVolumes volumes,
-                                  std::span<const std::uint32_t> changed) {
-    const std::size_t count = slot_count(volumes, kind);
-    for (const std::uint32_t index : changed)
-      if (index >= count)
-        fail("broad phase: the list of changed volumes has " + std::to_string(index) + ", but there are " +
-             std::to_string(count) + " volumes; list indices into them");
-    // After volumes of the other kind there is nothing to which changes could be told.
-    if (kind == kind_) volumes.changed = changed;
-    return find(kind, volumes);
+  template <class Volume>
+  std::span<const IndexPair> find(ObjectVolumes given, std::span<const Volume> volumes,
+                                  std::optional<std::span<const std::uint32_t>> dirty) {
+    for (const std::uint32_t index : dirty.value_or(std::span<const std::uint32_t>()))
+      if (index >= volumes.size())
+        fail("broad phase: the dirty list has index " + std::to_string(index) + ", but there are " +
+             std::to_string(volumes.size()) + " volumes; list indices of volumes");
+    constexpr bool boxes = std::is_same_v<Volume, Aabb>;
+    constexpr BoundingVolume kind = boxes ? BoundingVolume::aabb : BoundingVolume::sphere;
+    // After volumes of the other kind all are new.
+    if (kind == kind_) given.dirty = dirty;
+    if (kind != kind_) finder_ = make(kind);
+    kind_ = kind;
+    return finder_->find_pairs(given, parallel_);
   }
 
   const PairFinder& finder() const { return *finder_; }
 
  private:
   std::unique_ptr<PairFinder> make(BoundingVolume kind) const {
-    return make_pair_finder(options_.method, kind, options_.scene_octree);
+    return std::make_unique<PairFinder>(options_.method, kind, options_.scene_octree);
   }
 
   BroadPhaseOptions options_;
@@ -56,21 +50,21 @@ BroadPhase::BroadPhase(BroadPhase&&) noexcept = default;
 BroadPhase& BroadPhase::operator=(BroadPhase&&) noexcept = default;
 
 std::span<const IndexPair> BroadPhase::find_object_pairs(std::span<const Aabb> boxes) {
-  return implementation_->find(BoundingVolume::aabb, {.boxes = boxes, .spheres = {}});
+  return implementation_->find<Aabb>({.boxes = boxes}, boxes, {});
 }
 
 std::span<const IndexPair> BroadPhase::find_object_pairs(std::span<const BoundingSphere> spheres) {
-  return implementation_->find(BoundingVolume::sphere, {.boxes = {}, .spheres = spheres});
+  return implementation_->find<BoundingSphere>({.spheres = spheres}, spheres, {});
 }
 
 std::span<const IndexPair> BroadPhase::find_object_pairs(std::span<const Aabb> boxes,
-                                                         std::span<const std::uint32_t> changed) {
-  return implementation_->find(BoundingVolume::aabb, {.boxes = boxes, .spheres = {}}, changed);
+                                                         std::span<const std::uint32_t> dirty) {
+  return implementation_->find<Aabb>({.boxes = boxes}, boxes, dirty);
 }
 
 std::span<const IndexPair> BroadPhase::find_object_pairs(std::span<const BoundingSphere> spheres,
-                                                         std::span<const std::uint32_t> changed) {
-  return implementation_->find(BoundingVolume::sphere, {.boxes = {}, .spheres = spheres}, changed);
+                                                         std::span<const std::uint32_t> dirty) {
+  return implementation_->find<BoundingSphere>({.spheres = spheres}, spheres, dirty);
 }
 
 const BroadPhaseStats& BroadPhase::stats() const {

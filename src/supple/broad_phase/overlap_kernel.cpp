@@ -1,5 +1,6 @@
 #include "broad_phase/overlap_kernel.hpp"
 
+#include <algorithm>
 #include <array>
 #include <limits>
 
@@ -20,29 +21,27 @@ namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-using Floats = hn::CappedTag<float, kMaxLanes>;
+using Floats = hn::CappedTag<float, max_lanes>;
 using Integers = hn::RebindToUnsigned<Floats>;
 
-/// Appends the pairs of a row and those of the boxes at `column` whose lanes are hit and that begin here.
+/// Adds the pairs of a row and those of the boxes at `column` whose lanes are hit and that begin here to the
+/// batch. Returns how many pairs the batch has then.
 template <class Mask>
-HWY_INLINE void append(const BoxLanes& boxes, std::size_t row, std::size_t column, Mask hit,
-                       PairBuffer& pairs) {
+HWY_INLINE std::size_t append(const BoxLanes& boxes, std::size_t row, std::size_t column, Mask hit,
+                              std::size_t count, PairBins& pairs) {
   const Integers lanes;
   const auto begins =
       hn::Or(hn::Set(lanes, boxes.begins[row]), hn::LoadU(lanes, boxes.begins.data() + column));
   const auto reported = hn::And(hn::RebindMask(lanes, hit), hn::Eq(begins, hn::Set(lanes, 7)));
-  const auto slot = hn::Set(lanes, boxes.slots[row]);
-  const auto others = hn::LoadU(lanes, boxes.slots.data() + column);
-  static_assert(sizeof(IndexPair) == 2 * sizeof(std::uint32_t));
-  hn::StoreInterleaved2(packed_lanes(lanes, hn::Min(slot, others), reported),
-                        packed_lanes(lanes, hn::Max(slot, others), reported), lanes,
-                        &pairs.room(kMaxLanes)->a);
-  pairs.commit(hn::CountTrue(lanes, reported));
+  hn::StoreU(hn::Set(lanes, boxes.slots[row]), lanes, pairs.first.data() + count);
+  hn::StoreU(packed_lanes(lanes, hn::LoadU(lanes, boxes.slots.data() + column), reported), lanes,
+             pairs.second.data() + count);
+  return count + hn::CountTrue(lanes, reported);
 }
 
 template <bool sorted>
 HWY_INLINE std::uint64_t find_rows(const BoxLanes& boxes, std::size_t begin, std::size_t end,
-                                   PairBuffer& pairs) {
+                                   std::span<const BoundingSphere> spheres, PairBins& pairs) {
   const Floats lanes;
   const float* const min_x = boxes.min[0].data();
   const float* const min_y = boxes.min[1].data();
@@ -51,6 +50,7 @@ HWY_INLINE std::uint64_t find_rows(const BoxLanes& boxes, std::size_t begin, std
   const float* const max_y = boxes.max[1].data();
   const float* const max_z = boxes.max[2].data();
   std::uint64_t tests = 0;
+  std::size_t count = 0;
   for (std::size_t row = begin; row < end; ++row) {
     const auto row_min_x = hn::Set(lanes, min_x[row]), row_max_x = hn::Set(lanes, max_x[row]);
     const auto row_min_y = hn::Set(lanes, min_y[row]), row_max_y = hn::Set(lanes, max_y[row]);
@@ -62,7 +62,11 @@ HWY_INLINE std::uint64_t find_rows(const BoxLanes& boxes, std::size_t begin, std
       hit = hn::And(hit, hn::And(hn::Le(hn::LoadU(lanes, min_z + j), row_max_z),
                                  hn::Ge(hn::LoadU(lanes, max_z + j), row_min_z)));
       if constexpr (!sorted) hit = hn::And(hit, hn::Ge(hn::LoadU(lanes, max_x + j), row_min_x));
-      if (!hn::AllFalse(lanes, hit)) append(boxes, row, j, hit, pairs);
+      if (!hn::AllFalse(lanes, hit)) count = append(boxes, row, j, hit, count, pairs);
+      if (HWY_UNLIKELY(count > PairBins::batch_size)) {
+        pairs.flush(count, spheres);
+        count = 0;
+      }
       if constexpr (sorted) {
         tests += hn::CountTrue(lanes, begin_before);
         if (!hn::AllTrue(lanes, begin_before)) break;
@@ -70,15 +74,18 @@ HWY_INLINE std::uint64_t find_rows(const BoxLanes& boxes, std::size_t begin, std
     }
     if constexpr (!sorted) tests += boxes.count - row - 1;
   }
+  pairs.flush(count, spheres);
   return tests;
 }
 
-std::uint64_t find_all(const BoxLanes& boxes, std::size_t begin, std::size_t end, PairBuffer& pairs) {
-  return find_rows<false>(boxes, begin, end, pairs);
+std::uint64_t find_all(const BoxLanes& boxes, std::size_t begin, std::size_t end,
+                       std::span<const BoundingSphere> spheres, PairBins& pairs) {
+  return find_rows<false>(boxes, begin, end, spheres, pairs);
 }
 
-std::uint64_t find_sorted(const BoxLanes& boxes, std::size_t begin, std::size_t end, PairBuffer& pairs) {
-  return find_rows<true>(boxes, begin, end, pairs);
+std::uint64_t find_sorted(const BoxLanes& boxes, std::size_t begin, std::size_t end,
+                          std::span<const BoundingSphere> spheres, PairBins& pairs) {
+  return find_rows<true>(boxes, begin, end, spheres, pairs);
 }
 
 /// A box is loaded as its first four and its last four numbers; a bound that always holds stands where they
@@ -89,7 +96,7 @@ std::size_t find_of(const Aabb& box, std::span<const Aabb> boxes, std::span<cons
   constexpr float infinity = std::numeric_limits<float>::infinity();
   alignas(16) const std::array<float, 4> upper{box.max.x, box.max.y, box.max.z, infinity};
   alignas(16) const std::array<float, 4> lower{-infinity, box.min.x, box.min.y, box.min.z};
-  // The boxes lie apart in memory: all are asked for before the first is needed.
+  // The boxes are apart in memory: prefetch all before the first is needed.
   for (const std::uint32_t slot : slots) hwy::Prefetch(&boxes[slot]);
   std::size_t count = 0;
   for (const std::uint32_t slot : slots) {
@@ -100,7 +107,7 @@ std::size_t find_of(const Aabb& box, std::span<const Aabb> boxes, std::span<cons
       const auto stops = hn::Ge(hn::LoadU(lanes, ends + 2 + i), hn::Load(lanes, lower.data() + i));
       overlaps = overlaps && hn::AllTrue(lanes, hn::And(starts, stops));
     }
-    // No branch: which of them overlap is anyone's guess.
+    // No branch: which of them overlap is unpredictable.
     found[count] = slot;
     count += static_cast<std::size_t>(overlaps);
   }
@@ -119,13 +126,27 @@ HWY_EXPORT(find_all);
 HWY_EXPORT(find_sorted);
 HWY_EXPORT(find_of);
 
-std::uint64_t find_overlaps(const BoxLanes& boxes, std::size_t begin, std::size_t end, PairBuffer& pairs) {
-  return HWY_DYNAMIC_DISPATCH(find_all)(boxes, begin, end, pairs);
+void BoxLanes::resize(std::size_t new_count) {
+  count = new_count;
+  if (slots.size() < count + max_lanes) {
+    const std::size_t size = count + count / 2 + max_lanes;
+    for (std::vector<float>& ends : min) ends.resize(size);
+    for (std::vector<float>& ends : max) ends.resize(size);
+    slots.resize(size);
+    begins.resize(size);
+  }
+  std::fill_n(min[0].begin() + static_cast<std::ptrdiff_t>(count), max_lanes,
+              std::numeric_limits<float>::quiet_NaN());
+}
+
+std::uint64_t find_overlaps(const BoxLanes& boxes, std::size_t begin, std::size_t end,
+                            std::span<const BoundingSphere> spheres, PairBins& pairs) {
+  return HWY_DYNAMIC_DISPATCH(find_all)(boxes, begin, end, spheres, pairs);
 }
 
 std::uint64_t find_overlaps_sorted(const BoxLanes& boxes, std::size_t begin, std::size_t end,
-                                   PairBuffer& pairs) {
-  return HWY_DYNAMIC_DISPATCH(find_sorted)(boxes, begin, end, pairs);
+                                   std::span<const BoundingSphere> spheres, PairBins& pairs) {
+  return HWY_DYNAMIC_DISPATCH(find_sorted)(boxes, begin, end, spheres, pairs);
 }
 
 void find_overlaps_of(const Aabb& box, std::span<const Aabb> boxes, std::span<const std::uint32_t> slots,

@@ -1,21 +1,50 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
 
-#include "broad_phase/box_lanes.hpp"
+#include "broad_phase/pair_sorter.hpp"
+#include "supple/types.hpp"
 
 namespace supple {
 
-/// Tests each box of rows [begin, end) against all boxes behind it and appends the overlapping pairs that
-/// begin here. Returns the number of tests, which is the same for every instruction set.
-std::uint64_t find_overlaps(const BoxLanes& boxes, std::size_t begin, std::size_t end, PairBuffer& pairs);
+/// Boxes as structure of arrays, for a kernel that tests one against many.
+struct BoxLanes {
+  std::array<std::vector<float>, 3> min, max;
+  std::vector<std::uint32_t> slots;  ///< object of each lane
+  /// Per lane, bit per axis: the box begins in this part of space. A pair is reported where it begins along
+  /// all three axes; 7 everywhere when there is but one part.
+  std::vector<std::uint32_t> begins;
+  std::size_t count = 0;
+
+  /// Room for `new_count` boxes, all to be set. The lanes behind them hold NaN, which overlaps nothing.
+  void resize(std::size_t new_count);
+  /// `first_axis` becomes axis 0 of the lanes, the others follow in turn.
+  void set(std::size_t lane, std::uint32_t slot, const Aabb& box, std::uint32_t begins_here = 7,
+           int first_axis = 0) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const int axis = first_axis + static_cast<int>(k) < 3 ? first_axis + static_cast<int>(k)
+                                                            : first_axis + static_cast<int>(k) - 3;
+      min[k][lane] = box.min[axis];
+      max[k][lane] = box.max[axis];
+    }
+    slots[lane] = slot;
+    begins[lane] = begins_here;
+  }
+};
+
+/// Tests each of the lanes [begin, end) against all lanes behind it and adds the pairs that overlap and begin
+/// here to `pairs`; with spheres, which are per slot, only those whose spheres overlap. Returns the number of
+/// tests, which is the same for every instruction set.
+std::uint64_t find_overlaps(const BoxLanes& boxes, std::size_t begin, std::size_t end,
+                            std::span<const BoundingSphere> spheres, PairBins& pairs);
 
 /// The same for boxes sorted by ascending lower end along axis 0: a row ends where the boxes begin behind it.
 std::uint64_t find_overlaps_sorted(const BoxLanes& boxes, std::size_t begin, std::size_t end,
-                                   PairBuffer& pairs);
+                                   std::span<const BoundingSphere> spheres, PairBins& pairs);
 
 /// Replaces `found` by those of the slots whose boxes overlap this one.
 void find_overlaps_of(const Aabb& box, std::span<const Aabb> boxes, std::span<const std::uint32_t> slots,

@@ -1,28 +1,68 @@
 #include "broad_phase/pair_finder.hpp"
 
-#include <string>
+#include <algorithm>
 
-#include "broad_phase/brute_force.hpp"
-#include "broad_phase/octree_broad_phase.hpp"
-#include "broad_phase/sweep_and_prune.hpp"
+#include "broad_phase/automatic_search.hpp"
+#include "broad_phase/brute/brute_search.hpp"
+#include "broad_phase/grid/grid_search.hpp"
+#include "broad_phase/octree/octree_search.hpp"
+#include "broad_phase/sweep/sweep_search.hpp"
 #include "core/error.hpp"
 #include "supple/option_descriptions.hpp"
 
 namespace supple {
+namespace {
 
-std::unique_ptr<PairFinder> make_pair_finder(BroadPhaseMethod method, BoundingVolume bounding_volume,
-                                             const SceneOctreeOptions& octree_options) {
-  check(octree_options);
+void refuse(const SceneOctreeOptions& options, const char* method) {
+  if (options != SceneOctreeOptions{})
+    fail(std::string("broad phase: options of the scene octree have no effect with the method ") + method +
+         "; leave them at their defaults, or choose octree or automatic");
+}
+
+std::unique_ptr<PairSearch> make_search(BroadPhaseMethod method, BoundingVolume bounding_volume,
+                                        const SceneOctreeOptions& options) {
+  check(options);
   switch (method) {
+    case BroadPhaseMethod::automatic:
+      return std::make_unique<AutomaticSearch>(bounding_volume, options);
     case BroadPhaseMethod::octree:
-      return std::make_unique<OctreeBroadPhase>(bounding_volume, octree_options);
+      return std::make_unique<OctreeSearch>(bounding_volume, options);
+    case BroadPhaseMethod::grid:
+      refuse(options, "grid");
+      return std::make_unique<GridSearch>();
     case BroadPhaseMethod::sweep:
-      return std::make_unique<SweepAndPrune>(bounding_volume);
+      refuse(options, "sweep");
+      return std::make_unique<SweepSearch>();
     case BroadPhaseMethod::brute:
-      return std::make_unique<BruteForce>(bounding_volume);
+      refuse(options, "brute");
+      return std::make_unique<BruteSearch>();
   }
   fail("broad phase: method " + std::to_string(static_cast<int>(method)) +
-       " is unknown; use octree, sweep or brute");
+       " is unknown; use automatic, octree, grid, sweep or brute");
+}
+
+}  // namespace
+
+PairFinder::PairFinder(BroadPhaseMethod method, BoundingVolume bounding_volume,
+                       const SceneOctreeOptions& octree_options)
+    : volumes_(bounding_volume), search_(make_search(method, bounding_volume, octree_options)) {
+  found_.stats.method = method == BroadPhaseMethod::automatic ? BroadPhaseMethod::grid : method;
+}
+
+std::span<const IndexPair> PairFinder::find_pairs(const ObjectVolumes& given, const Parallel& parallel) {
+  found_.stats = {.method = found_.stats.method};
+  volumes_.update(given, search_->needs_previous(volumes_), parallel);
+  found_.stats.objects_changed = volumes_.changed().size();
+  if (found_.stats.objects_changed != 0) search_->search(volumes_, parallel, found_);
+  return found_.pairs;
+}
+
+std::string PairFinder::validate() const {
+  const auto& pairs = found_.pairs;
+  if (!std::is_sorted(pairs.begin(), pairs.end()) ||
+      std::adjacent_find(pairs.begin(), pairs.end()) != pairs.end())
+    return "broad phase: the pairs are not in order, or one is there twice";
+  return search_->validate(volumes_);
 }
 
 }  // namespace supple

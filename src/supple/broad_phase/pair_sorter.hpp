@@ -2,88 +2,85 @@
 
 #include <hwy/cache_control.h>
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
 
-#include "broad_phase/box_lanes.hpp"
 #include "core/parallel.hpp"
+#include "supple/broad_phase.hpp"
 
 namespace supple {
 
-/// Pairs of one worker by the upper bits of a, in chunks.
+/// Most lanes that a kernel takes at once; arrays are readable this far past their last item.
+inline constexpr std::size_t max_lanes = 16;
+
+/// Pairs of one worker, binned by the upper bits of a. A bin is a list of chunks.
 class PairBins {
  public:
-  /// Empty again. The bin of a pair is `a >> shift`, less than `bin_count`.
+  /// Kernels write pairs here, in any order of the two slots, and `flush` moves them into the bins.
+  static constexpr std::size_t batch_size = 2048;
+  std::array<std::uint32_t, batch_size + 2 * max_lanes> first, second;
+
+  /// Empties all bins. The bin of a pair is `a >> shift`, less than `bin_count`.
   void reset(int shift, std::size_t bin_count);
-  void push(IndexPair pair) {
-    std::size_t& next = next_[pair.a >> shift_];
-    pool_[next] = pair;
-    if (++next % kChunk == 0) next = chunk_after(next / kChunk - 1);
-  }
-  /// All pairs (first[i], second[i]), the smaller index first.
-  void push_all(const std::uint32_t* first, const std::uint32_t* second, std::size_t count);
+  /// Adds the first `count` pairs of the batch; with spheres only those whose spheres overlap.
+  void flush(std::size_t count, std::span<const BoundingSphere> spheres);
   std::size_t count(std::size_t bin) const;
   /// Calls `visit(pairs)` for parts of a bin, in no order.
   template <class Visit>
   void for_each_chunk(std::size_t bin, Visit&& visit) const {
-    std::size_t chunk = next_[bin] / kChunk, size = next_[bin] % kChunk;
+    std::size_t chunk = next_[bin] / chunk_size, size = next_[bin] % chunk_size;
     while (true) {
-      if (chunk != bin) fetch(before_[chunk]);
-      visit(std::span<const IndexPair>(pool_.data() + chunk * kChunk, size));
+      if (chunk != bin) prefetch(before_[chunk]);
+      visit(std::span<const IndexPair>(pool_.data() + chunk * chunk_size, size));
       if (chunk == bin) return;
       chunk = before_[chunk];
-      size = kChunk;
+      size = chunk_size;
     }
   }
 
  private:
-  static constexpr std::size_t kChunk = 128, kPairsPerLine = 8;
+  static constexpr std::size_t chunk_size = 128, pairs_per_cache_line = 8;
   /// Where a further chunk of the same bin begins.
   std::size_t chunk_after(std::size_t chunk);
-  /// Chunks of a bin lie apart in memory: the processor does not guess which comes next.
-  void fetch(std::size_t chunk) const {
-    const IndexPair* const first = pool_.data() + chunk * kChunk;
-    for (std::size_t i = 0; i < kChunk; i += kPairsPerLine) hwy::Prefetch(first + i);
+  /// Chunks of a bin are apart in memory, so the hardware does not prefetch the next one.
+  void prefetch(std::size_t chunk) const {
+    const IndexPair* const begin = pool_.data() + chunk * chunk_size;
+    for (std::size_t i = 0; i < chunk_size; i += pairs_per_cache_line) hwy::Prefetch(begin + i);
   }
 
   int shift_ = 0;
   std::size_t chunk_count_ = 0;
   std::vector<std::size_t> next_;      // per bin, where its next pair goes; chunk i is the first of bin i
-  std::vector<std::uint32_t> before_;  // per chunk, the one that was filled before it
+  std::vector<std::uint32_t> before_;  // per chunk, the previous chunk of its bin
   std::vector<IndexPair> pool_;
 };
 
-/// Puts the pairs that workers found into the canonical order, by a and then b: bins by the upper bits of a,
-/// in each a counting sort by a, then each run by b. O(pairs + slots) while no object has very many pairs.
+/// Sorts the pairs of all workers by (a, b): bins by the upper bits of a, a counting sort by a in each bin,
+/// then each run of equal a by b. O(pairs + slots) while no object has very many pairs.
 class PairSorter {
  public:
-  /// Empty bins for so many workers. Every a is to be below `slot_count`.
+  /// Empty bins, one set for each worker. Every slot of a pair is less than `slot_count`.
   std::span<PairBins> start(std::size_t workers, std::size_t slot_count);
-  /// Replaces `sorted` by the pairs in the bins. Duplicates are dropped when there may be some.
-  void finish(bool may_repeat, const Parallel& parallel, std::vector<IndexPair>& sorted);
-  /// Both, for pairs that were found elsewhere.
-  void sort(std::span<const PairBuffer> parts, std::size_t slot_count, bool may_repeat,
-            const Parallel& parallel, std::vector<IndexPair>& sorted);
+  /// Replaces `sorted` by the pairs in the bins, each once.
+  void finish(const Parallel& parallel, std::vector<IndexPair>& sorted);
 
  private:
   /// Memory of one worker.
-  struct Runs {
-    std::vector<std::uint32_t> end;  // per slot of a bin
-    std::vector<std::uint32_t> a, b;
-    std::vector<std::uint64_t> marks;  // bit per slot, all 0 between bins
+  struct Scratch {
+    std::vector<std::uint32_t> ends;   // of runs, per slot of a bin
+    std::vector<std::uint32_t> a, b;   // of the pairs of a bin, runs one behind the other
+    std::vector<std::uint64_t> marks;  // bit per slot, all 0 between runs
   };
-  void sort_bin(std::size_t bin, bool may_repeat, Runs& runs, std::span<IndexPair> sorted) const;
+  void sort_bin(std::size_t bin, Scratch& scratch, std::span<IndexPair> sorted) const;
 
   std::size_t slot_count_ = 0;
   int shift_ = 0;
   std::vector<PairBins> bins_;           // per worker
   std::vector<std::size_t> bin_begins_;  // and one more
-  std::vector<Runs> runs_;               // per worker
+  std::vector<Scratch> scratch_;         // per worker
 };
-
-/// Drops the pairs from `first` on whose balls do not overlap.
-void keep_overlapping_spheres(std::span<const BoundingSphere> spheres, std::size_t first, PairBuffer& pairs);
 
 }  // namespace supple

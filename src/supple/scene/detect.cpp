@@ -120,15 +120,16 @@ void Scene::Implementation::refit_objects() {
 
 void Scene::Implementation::find_object_pairs() {
   ObjectVolumes volumes;
-  volumes.changed = changed_slots_;
+  volumes.dirty = changed_slots_;
   if (options.bounding_volume == BoundingVolume::sphere) {
     volumes.spheres = spheres_;
   } else {
     volumes.boxes = boxes_;
   }
-  const std::span<const IndexPair> overlapping = pair_finder->find_pairs(volumes, parallel);
+  const std::span<const IndexPair> overlapping = pair_finder.find_pairs(volumes, parallel);
   std::fill(changed_.begin(), changed_.end(), std::uint8_t{0});
-  result.stats.object_pairs_tested = pair_finder->stats().object_pairs_tested;
+  result.stats.broad_phase_method = pair_finder.stats().method;
+  result.stats.object_pairs_tested = pair_finder.stats().object_pairs_tested;
   object_pairs_.clear();
   for (const IndexPair& pair : overlapping) {
     if (may_pair(pair)) object_pairs_.push_back({id_of(pair.a), id_of(pair.b)});

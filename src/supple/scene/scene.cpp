@@ -63,8 +63,7 @@ void check_count(const SceneObject& object, std::size_t count, const char* call)
 Scene::Implementation::Implementation(const SceneOptions& scene_options)
     : options(checked(scene_options)),
       parallel(scene_options.threads),
-      pair_finder(make_pair_finder(scene_options.broad_phase, scene_options.bounding_volume,
-                                   scene_options.scene_octree)) {}
+      pair_finder(scene_options.broad_phase, scene_options.bounding_volume, scene_options.scene_octree) {}
 
 ObjectId Scene::Implementation::add(const PositionsView<double>& positions,
                                     std::span<const Triangle> triangles, const ObjectOptions& object_options,
@@ -162,7 +161,7 @@ std::string Scene::Implementation::validate() const {
     if (const std::string wrong = object.validate(); !wrong.empty())
       return object.options.name + ": " + wrong;
   }
-  return pair_finder->validate();
+  return pair_finder.validate();
 }
 
 Scene::Scene(const SceneOptions& options) : implementation_(std::make_unique<Implementation>(options)) {}
@@ -338,7 +337,7 @@ OctreeStatistics Scene::octree_statistics(ObjectId object) const {
 }
 
 std::vector<SceneRegion> Scene::scene_regions() const {
-  return implementation_->pair_finder->regions();
+  return implementation_->pair_finder.regions();
 }
 const SceneOptions& Scene::options() const {
   return implementation_->options;

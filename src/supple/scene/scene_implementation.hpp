@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
-#include "broad_phase/pair_cache.hpp"
 #include "broad_phase/pair_finder.hpp"
 #include "core/parallel.hpp"
 #include "scene/contact_pass.hpp"
 #include "scene/impact_pass.hpp"
+#include "scene/pair_cache.hpp"
 #include "scene/scene_object.hpp"
 #include "supple/scene.hpp"
 
@@ -58,7 +58,7 @@ class Scene::Implementation {
   Parallel parallel;
   Parallel serial{1};
   PairFilter filter;
-  std::unique_ptr<PairFinder> pair_finder;
+  PairFinder pair_finder;
   DetectResult result;
 
  private:

@@ -6,7 +6,7 @@
 #include <array>
 #include <vector>
 
-#include "broad_phase/object_volume.hpp"
+#include "broad_phase/volume_store.hpp"
 #include "geometry/aabb.hpp"
 #include "geometry/sphere.hpp"
 #include "supple/error.hpp"
@@ -16,24 +16,13 @@ namespace supple {
 namespace {
 
 using test::box_around;
-using test::kInfinity;
+using test::double_loop;
+using test::infinity;
 using test::Random;
 
-constexpr std::array kMethods{BroadPhaseMethod::octree, BroadPhaseMethod::sweep, BroadPhaseMethod::brute};
 const char* name_of(BroadPhaseMethod method) {
-  return method == BroadPhaseMethod::octree  ? "octree"
-         : method == BroadPhaseMethod::sweep ? "sweep"
-                                             : "brute";
-}
-
-template <class Volume>
-std::vector<IndexPair> double_loop(const std::vector<Volume>& volumes) {
-  std::vector<IndexPair> pairs;
-  for (std::uint32_t a = 0; a < volumes.size(); ++a)
-    for (std::uint32_t b = a + 1; b < volumes.size(); ++b)
-      if (!volumes[a].empty() && !volumes[b].empty() && overlap(volumes[a], volumes[b]))
-        pairs.push_back({a, b});
-  return pairs;
+  constexpr std::array names{"automatic", "octree", "grid", "sweep", "brute"};
+  return names[static_cast<std::size_t>(method)];
 }
 
 template <class Volume>
@@ -45,16 +34,16 @@ std::vector<IndexPair> find(BroadPhase& broad_phase, const std::vector<Volume>& 
 /// One of each method, the octree in all its variants.
 std::vector<BroadPhaseOptions> all_options() {
   std::vector<BroadPhaseOptions> all;
-  for (const BroadPhaseMethod method : kMethods)
+  for (const BroadPhaseMethod method : test::all_methods)
     all.push_back({.method = method, .scene_octree = {}, .threads = 1});
   for (const RegionSphereTest test : {RegionSphereTest::arvo, RegionSphereTest::grown_box})
     for (const std::uint32_t max_level : {0u, 1u, 4u, 20u})
       for (const std::uint32_t expand_at : {2u, 9u})
-        all.push_back({BroadPhaseMethod::octree, {max_level, expand_at, test, 8, true}, 1});
+        all.push_back({BroadPhaseMethod::octree, {max_level, expand_at, test, 8}, 1});
   for (const RegionSphereTest test : {RegionSphereTest::arvo, RegionSphereTest::grown_box})
     for (const std::uint32_t max_level : {0u, 1u, 20u})
       for (const std::uint32_t arity : {2u, 4u})
-        all.push_back({BroadPhaseMethod::octree, {max_level, 2, test, arity, true}, 1});
+        all.push_back({BroadPhaseMethod::octree, {max_level, 2, test, arity}, 1});
   return all;
 }
 
@@ -136,13 +125,13 @@ TEST(BroadPhase, TouchingSpheresOfAnySizeShareARegion) {
 }
 
 TEST(BroadPhase, SpheresThatAreNotFiniteFollowTheSphereTest) {
-  constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+  constexpr float nan = std::numeric_limits<float>::quiet_NaN();
   std::vector<BoundingSphere> spheres = test::spheres_in(test::random_boxes(60, 8, 0.6f, 12));
-  spheres[2] = {{kInfinity, 0, 0}, 1};
-  spheres[9] = {{kInfinity, 5, 5}, 2};
-  spheres[17] = {{0, 0, 0}, kInfinity};
-  spheres[23] = {{-kInfinity, kInfinity, 0}, 1};
-  spheres[31] = {{kNaN, 0, 0}, 1};
+  spheres[2] = {{infinity, 0, 0}, 1};
+  spheres[9] = {{infinity, 5, 5}, 2};
+  spheres[17] = {{0, 0, 0}, infinity};
+  spheres[23] = {{-infinity, infinity, 0}, 1};
+  spheres[31] = {{nan, 0, 0}, 1};
   spheres[40] = {{1e30f, 1e30f, 1e30f}, 3e38f};
   spheres[41] = {{0, 0, 0}, -1};
   const std::vector<IndexPair> expected = double_loop(spheres);
@@ -241,7 +230,7 @@ TEST(BroadPhase, AnyNumberOfThreadsGivesTheSamePairs) {
   const std::vector<IndexPair> box_pairs = find(reference_boxes, boxes);
   const std::vector<IndexPair> sphere_pairs = find(reference_boxes, spheres);
   ASSERT_GT(box_pairs.size(), 2'000u);
-  for (const BroadPhaseMethod method : kMethods) {
+  for (const BroadPhaseMethod method : test::all_methods) {
     for (const std::uint32_t threads : {1u, 2u, 3u, 8u}) {
       BroadPhase broad_phase({.method = method, .scene_octree = {}, .threads = threads});
       EXPECT_TRUE(find(broad_phase, boxes) == box_pairs) << name_of(method) << " with " << threads;
@@ -252,23 +241,25 @@ TEST(BroadPhase, AnyNumberOfThreadsGivesTheSamePairs) {
 
 TEST(BroadPhase, AnyNumberOfThreadsDoesTheSameWork) {
   std::vector<BroadPhase> kept;
-  for (const std::uint32_t threads : {1u, 2u, 8u})
-    kept.emplace_back(BroadPhaseOptions{BroadPhaseMethod::octree, {}, threads});
+  for (const BroadPhaseMethod method : test::all_methods)
+    for (const std::uint32_t threads : {1u, 2u, 8u})
+      kept.emplace_back(BroadPhaseOptions{method, {}, threads});
   Random random(32);
-  std::vector<Aabb> boxes = test::random_boxes(20'000, 60, 0.6f, 33);
+  std::vector<Aabb> boxes = test::random_boxes(8'000, 40, 0.6f, 33);
   for (int step = 0; step < 6; ++step) {
     for (Aabb& box : boxes) {
       if (step % 2 == 1 && random.below(50) != 0) continue;
       const Vec3f by = random.point(-0.2f, 0.2f);
       box = {box.min + by, box.max + by};
     }
-    const std::vector<IndexPair> expected = find(kept[0], boxes);
-    const std::uint64_t tested = kept[0].stats().object_pairs_tested;
-    for (BroadPhase& broad_phase : kept) {
-      EXPECT_TRUE(find(broad_phase, boxes) == expected) << "step " << step;
-      if (&broad_phase != &kept[0]) {
-        EXPECT_EQ(broad_phase.stats().object_pairs_tested, tested) << "step " << step;
-      }
+    std::vector<IndexPair> expected;
+    for (std::size_t i = 0; i < kept.size(); ++i) {
+      const std::vector<IndexPair> found = find(kept[i], boxes);
+      if (i == 0) expected = found;
+      EXPECT_TRUE(found == expected) << "step " << step;
+      const BroadPhase& one_thread = kept[i / 3 * 3];
+      EXPECT_EQ(kept[i].stats().object_pairs_tested, one_thread.stats().object_pairs_tested)
+          << "step " << step << ", contestant " << i;
     }
   }
 }
@@ -295,6 +286,41 @@ TEST(BroadPhase, RefusesOptionsOutOfRange) {
   EXPECT_NO_THROW(BroadPhase{options});
   options.scene_octree.arity = 6;
   EXPECT_THROW(BroadPhase{options}, Error);
+  options.scene_octree.arity = 8;
+  options.method = static_cast<BroadPhaseMethod>(9);
+  EXPECT_THROW(BroadPhase{options}, Error);
+}
+
+TEST(BroadPhase, RefusesOptionsThatHaveNoEffectWithTheMethod) {
+  const std::vector<SceneOctreeOptions> not_default{
+      {.max_level = 3}, {.expand_at = 4}, {.region_sphere_test = RegionSphereTest::grown_box}, {.arity = 2}};
+  for (const BroadPhaseMethod method : test::all_methods) {
+    const bool has_octree = method == BroadPhaseMethod::automatic || method == BroadPhaseMethod::octree;
+    EXPECT_NO_THROW(BroadPhase({.method = method}));
+    for (const SceneOctreeOptions& octree : not_default) {
+      try {
+        BroadPhase broad_phase({.method = method, .scene_octree = octree});
+        EXPECT_TRUE(has_octree) << name_of(method);
+      } catch (const Error& error) {
+        EXPECT_FALSE(has_octree) << name_of(method);
+        EXPECT_NE(std::string(error.what()).find(name_of(method)), std::string::npos) << error.what();
+      }
+    }
+  }
+}
+
+TEST(BroadPhase, SaysWhichMethodRan) {
+  const std::vector<Aabb> boxes = test::random_boxes(200, 8, 0.5f, 61);
+  for (const BroadPhaseMethod method : test::all_methods) {
+    BroadPhase broad_phase({.method = method});
+    broad_phase.find_object_pairs(boxes);
+    const auto expected = method == BroadPhaseMethod::automatic ? BroadPhaseMethod::grid : method;
+    EXPECT_EQ(broad_phase.stats().method, expected);
+    EXPECT_EQ(broad_phase.regions().empty(), method != BroadPhaseMethod::octree);
+    broad_phase.find_object_pairs(boxes);
+    EXPECT_EQ(broad_phase.stats().method, expected) << "nothing changed, so that no method ran since";
+    EXPECT_EQ(broad_phase.stats().objects_changed, 0u);
+  }
 }
 
 TEST(BoundingBox, OfTouchingSpheresTouch) {

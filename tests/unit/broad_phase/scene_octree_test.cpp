@@ -1,4 +1,4 @@
-#include "broad_phase/scene_octree.hpp"
+#include "broad_phase/octree/scene_octree.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "broad_phase/octree_broad_phase.hpp"
+#include "broad_phase/pair_finder.hpp"
 #include "unit/broad_phase/volume_scenes.hpp"
 
 namespace supple {
@@ -17,15 +17,15 @@ namespace {
 using test::box_around;
 using test::Random;
 
-/// The octree broad phase by itself, always by regions, so that counters and lists of change can be seen.
+/// The octree by itself, so that counters can be seen.
 class Octree {
  public:
   explicit Octree(SceneOctreeOptions options = {})
-      : finder_(BoundingVolume::aabb, (options.always_regions = true, options)) {}
+      : finder_(BroadPhaseMethod::octree, BoundingVolume::aabb, options) {}
 
   const BroadPhaseStats& step(const std::vector<Aabb>& boxes,
                               std::optional<std::span<const std::uint32_t>> changed = {}) {
-    const auto pairs = finder_.find_pairs({.boxes = boxes, .spheres = {}, .changed = changed}, parallel_);
+    const auto pairs = finder_.find_pairs({.boxes = boxes, .spheres = {}, .dirty = changed}, parallel_);
     pairs_.assign(pairs.begin(), pairs.end());
     EXPECT_EQ(finder_.validate(), "");
     return finder_.stats();
@@ -34,7 +34,7 @@ class Octree {
   std::vector<SceneRegion> regions() const { return finder_.regions(); }
 
  private:
-  OctreeBroadPhase finder_;
+  PairFinder finder_;
   Parallel parallel_{1};
   std::vector<IndexPair> pairs_;
 };
@@ -174,27 +174,27 @@ TEST_P(SceneOctreeArity, IsTheSameHoweverItCameAbout) {
   const SceneOctreeOptions options{
       .max_level = 5, .expand_at = 3, .region_sphere_test = {}, .arity = GetParam()};
   const SceneCube cube = chooser.choose(boxes, 5);
+  const Parallel parallel(1);
+  VolumeStore volumes(BoundingVolume::aabb);
+  volumes.update({.boxes = boxes}, false, parallel);
   SceneOctree kept(BoundingVolume::aabb, options);
-  kept.resize(boxes.size());
-  for (std::uint32_t slot = 0; slot < boxes.size(); ++slot) kept.set_volume(slot, {boxes[slot], {}});
-  kept.build(cube);
+  kept.build(volumes, cube);
   for (int step = 0; step < 30; ++step) {
-    for (std::uint32_t slot = 0; slot < boxes.size(); ++slot) {
+    for (Aabb& box : boxes) {
       if (random.below(3) != 0) continue;
-      boxes[slot] =
-          random.below(20) == 0 ? Aabb{} : box_around(random.point(-3, 23), random.point(0.01f, 0.8f));
-      const ObjectVolume volume{boxes[slot], {}};
-      if (kept.stays(slot, volume))
-        kept.set_volume(slot, volume);
-      else
-        kept.move(slot, volume);
+      box = random.below(20) == 0 ? Aabb{} : box_around(random.point(-3, 23), random.point(0.01f, 0.8f));
     }
-    kept.settle();
-    ASSERT_EQ(kept.validate(), "") << "step " << step;
+    volumes.update({.boxes = boxes}, true, parallel);
+    for (const std::uint32_t slot : volumes.changed()) {
+      const ObjectVolume before = volumes.volume(slot);
+      const bool stays = !before.box.empty() && kept.stays(slot, volumes.incoming(slot));
+      volumes.take(slot);
+      if (!stays) kept.move(volumes, slot, before);
+    }
+    kept.settle(volumes);
+    ASSERT_EQ(kept.validate(volumes), "") << "step " << step;
     SceneOctree fresh(BoundingVolume::aabb, options);
-    fresh.resize(boxes.size());
-    for (std::uint32_t slot = 0; slot < boxes.size(); ++slot) fresh.set_volume(slot, {boxes[slot], {}});
-    fresh.build(cube);
+    fresh.build(volumes, cube);
     const std::vector<SceneRegion> a = kept.describe(), b = fresh.describe();
     ASSERT_EQ(a.size(), b.size()) << "step " << step;
     for (std::size_t i = 0; i < a.size(); ++i) {

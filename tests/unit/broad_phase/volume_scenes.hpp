@@ -1,34 +1,49 @@
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <random>
 #include <string>
 #include <vector>
 
+#include "geometry/aabb.hpp"
+#include "geometry/sphere.hpp"
+#include "supple/broad_phase.hpp"
 #include "supple/types.hpp"
+#include "support/random.hpp"
 
 namespace supple::test {
 
-inline constexpr float kInfinity = std::numeric_limits<float>::infinity();
+inline constexpr float infinity = std::numeric_limits<float>::infinity();
 
-/// Uniform numbers that are the same with every standard library.
-class Random {
+/// Random numbers in single precision.
+class Random : public RandomNumbers {
  public:
-  explicit Random(std::uint64_t seed) : generator_(seed) {}
+  using RandomNumbers::RandomNumbers;
   float uniform(float low, float high) {
-    return low + (high - low) * static_cast<float>(generator_() >> 40) * 0x1p-24f;
+    return low + (high - low) * static_cast<float>(bits() >> 40) * 0x1p-24f;
   }
-  std::uint32_t below(std::uint32_t count) { return static_cast<std::uint32_t>(generator_() % count); }
   Vec3f point(float low, float high) {
     const float x = uniform(low, high), y = uniform(low, high);
     return {x, y, uniform(low, high)};
   }
-
- private:
-  std::mt19937_64 generator_;
 };
+
+inline constexpr std::array all_methods{BroadPhaseMethod::automatic, BroadPhaseMethod::octree,
+                                        BroadPhaseMethod::grid, BroadPhaseMethod::sweep,
+                                        BroadPhaseMethod::brute};
+
+/// The independent reference: every volume against every other.
+template <class Volume>
+std::vector<IndexPair> double_loop(const std::vector<Volume>& volumes) {
+  std::vector<IndexPair> pairs;
+  for (std::uint32_t a = 0; a < volumes.size(); ++a)
+    for (std::uint32_t b = a + 1; b < volumes.size(); ++b)
+      if (!volumes[a].empty() && !volumes[b].empty() && overlap(volumes[a], volumes[b]))
+        pairs.push_back({a, b});
+  return pairs;
+}
 
 inline Aabb box_around(Vec3f center, Vec3f half) {
   return {{center.x - half.x, center.y - half.y, center.z - half.z},
@@ -103,16 +118,16 @@ inline std::vector<NamedBoxes> box_scenes() {
     flat.boxes.push_back(box_around({random.uniform(0, 10), 3, random.uniform(0, 10)}, {0.3f, 0, 0.3f}));
   scenes.push_back(flat);
 
-  NamedBoxes infinite{"infinite", random_boxes(200, 10, 0.5f, 6)};
-  infinite.boxes[3] = {{-kInfinity, -kInfinity, -kInfinity}, {kInfinity, kInfinity, kInfinity}};
-  infinite.boxes[10] = {{5, -kInfinity, 5}, {6, kInfinity, 6}};
-  infinite.boxes[20] = {{kInfinity, kInfinity, kInfinity}, {kInfinity, kInfinity, kInfinity}};
-  infinite.boxes[30] = {{kInfinity, 1, 1}, {kInfinity, 9, 9}};
-  infinite.boxes[40] = {{-kInfinity, -kInfinity, -kInfinity}, {0, 0, 0}};
-  infinite.boxes[50] = {{3, 3, 3}, {kInfinity, kInfinity, kInfinity}};
-  infinite.boxes[60] = Aabb{};
-  infinite.boxes[61] = {{0, 0, 1}, {1, 1, 0}};
-  scenes.push_back(infinite);
+  NamedBoxes unbounded{"infinite", random_boxes(200, 10, 0.5f, 6)};
+  unbounded.boxes[3] = {{-infinity, -infinity, -infinity}, {infinity, infinity, infinity}};
+  unbounded.boxes[10] = {{5, -infinity, 5}, {6, infinity, 6}};
+  unbounded.boxes[20] = {{infinity, infinity, infinity}, {infinity, infinity, infinity}};
+  unbounded.boxes[30] = {{infinity, 1, 1}, {infinity, 9, 9}};
+  unbounded.boxes[40] = {{-infinity, -infinity, -infinity}, {0, 0, 0}};
+  unbounded.boxes[50] = {{3, 3, 3}, {infinity, infinity, infinity}};
+  unbounded.boxes[60] = Aabb{};
+  unbounded.boxes[61] = {{0, 0, 1}, {1, 1, 0}};
+  scenes.push_back(unbounded);
 
   NamedBoxes huge{"scale_mixture", {}};
   for (int i = 0; i < 240; ++i) {
@@ -133,7 +148,7 @@ inline std::vector<NamedBoxes> box_scenes() {
   return scenes;
 }
 
-/// Balls in place of boxes: half as wide as the boxes' longest side. Empty boxes give empty balls.
+/// Spheres in place of boxes: half as wide as the boxes' longest side. Empty boxes give empty spheres.
 inline std::vector<BoundingSphere> spheres_in(const std::vector<Aabb>& boxes) {
   std::vector<BoundingSphere> spheres;
   for (const Aabb& box : boxes) {

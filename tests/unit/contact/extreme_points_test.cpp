@@ -13,7 +13,6 @@ namespace {
 using testing::exact;
 using testing::pair_families;
 using testing::PairFamily;
-using testing::Random;
 using testing::Rational;
 using testing::RationalPoint;
 using testing::scaled_count;
@@ -120,7 +119,7 @@ void check(const TrianglePair3d& pair) {
 }
 
 TEST_P(ExtremePoints, AreThoseOfRationalClipping) {
-  Random random(11);
+  RandomNumbers random(11);
   for (int i = 0; i < scaled_count(25); ++i) {
     const TrianglePair3d pair = GetParam().draw(random);
     check(pair);
@@ -153,7 +152,7 @@ std::vector<Named> named_points(const TrianglePoints& a, const TrianglePoints& b
 }
 
 TEST_P(ExtremePoints, DoNotDependOnTheOrderOfCornersOrTriangles) {
-  Random random(12);
+  RandomNumbers random(12);
   for (int i = 0; i < scaled_count(100); ++i) {
     const TrianglePair3d pair = GetParam().draw(random);
     const std::vector<Named> expected = named_points(pair.a, pair.b, false);
@@ -170,7 +169,7 @@ TEST_P(ExtremePoints, DoNotDependOnTheOrderOfCornersOrTriangles) {
 }
 
 TEST(SharedEdges, ReportTheSameBitsInBothTriangles) {
-  Random random(13);
+  RandomNumbers random(13);
   int compared = 0;
   for (int i = 0; i < 20000; ++i) {
     const TrianglePair3d pair = pair_families()[0].draw(random);

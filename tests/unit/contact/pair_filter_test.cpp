@@ -19,7 +19,6 @@ namespace {
 
 using testing::pair_families;
 using testing::PairFamily;
-using testing::Random;
 using testing::TrianglePair3d;
 
 /// The filter for one pair by plain arithmetic, operation by operation: its meaning.
@@ -172,7 +171,7 @@ INSTANTIATE_TEST_SUITE_P(All, PairFilterTest, ::testing::ValuesIn(pair_families(
 
 template <class Scalar>
 void expect_true_verdicts(const PairFamily& family) {
-  Random random(31);
+  RandomNumbers random(31);
   for (int round = 0; round < 20; ++round) {
     PairList<Scalar> block(pair_filter_capacity);
     PairVerdicts expected;
@@ -218,7 +217,7 @@ TEST_P(PairFilterTest, NeverWrongInSinglePrecision) {
 /// Objects whose positions are of different precisions and translated: filtered as doubles, where they are.
 template <class ScalarA, class ScalarB>
 void expect_verdicts_where_they_are() {
-  Random random(34);
+  RandomNumbers random(34);
   for (const PairFamily& family : pair_families()) {
     const Vec3d shift_a{0.375, -1e-3, 7}, shift_b{0.1, 0.2, 7.25};
     PairList<ScalarA, ScalarB> block(pair_filter_capacity);
@@ -257,7 +256,7 @@ TEST(PairFilterPlaces, TranslatedObjectsOfEitherPrecision) {
 }
 
 TEST(PairFilterRate, MostSeparatedPairsAreRejected) {
-  Random random(32);
+  RandomNumbers random(32);
   int rejected = 0;
   for (int round = 0; round < 20; ++round) {
     PairList<double> block(pair_filter_capacity);
@@ -273,7 +272,7 @@ TEST(PairFilterRate, MostSeparatedPairsAreRejected) {
 
 template <class Scalar>
 int undecided_in_general_position() {
-  Random random(33);
+  RandomNumbers random(33);
   int undecided = 0;
   for (int round = 0; round < 20; ++round) {
     PairList<Scalar> block(pair_filter_capacity);

@@ -10,7 +10,6 @@ namespace {
 
 using testing::pair_families;
 using testing::PairFamily;
-using testing::Random;
 using testing::scaled_count;
 using testing::TrianglePair3d;
 
@@ -64,7 +63,7 @@ INSTANTIATE_TEST_SUITE_P(All, Decision, ::testing::ValuesIn(pair_families()),
                          [](const auto& family) { return family.param.name; });
 
 TEST_P(Decision, EqualsThatOfSeparatingAxes) {
-  Random random(21);
+  RandomNumbers random(21);
   int hits = 0;
   const int count = scaled_count(GetParam().name == "grid3" ? 20000 : 1500);
   for (int i = 0; i < count; ++i) {

@@ -1,16 +1,14 @@
 #pragma once
 
 #include <ostream>
-#include <random>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "supple/triangle_intersection.hpp"
+#include "support/random.hpp"
 
 namespace supple::testing {
-
-using Random = std::mt19937_64;
 
 struct TrianglePair3d {
   TrianglePoints a, b;
@@ -19,7 +17,7 @@ struct TrianglePair3d {
 /// A way to draw pairs that stresses one kind of trouble.
 struct PairFamily {
   std::string name;
-  TrianglePair3d (*draw)(Random&);
+  TrianglePair3d (*draw)(RandomNumbers&);
 };
 /// Found by GoogleTest, and so in the names of ctest.
 inline void PrintTo(const PairFamily& family, std::ostream* out) {

@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
-#include <random>
+#include <cmath>
+#include <limits>
+
+#include "support/random.hpp"
 
 namespace supple {
 namespace {
@@ -10,11 +13,9 @@ namespace {
 constexpr float inf = std::numeric_limits<float>::infinity();
 
 TEST(FloatRounding, EnclosesAndIsTight) {
-  std::mt19937_64 random(1);
-  std::uniform_real_distribution<double> mantissa(-2, 2);
-  std::uniform_int_distribution<int> exponent(-160, 126);
+  RandomNumbers random(1);
   for (int i = 0; i < 100000; ++i) {
-    const double value = std::ldexp(mantissa(random), exponent(random));
+    const double value = std::ldexp(random.uniform(-2, 2), random.between(-160, 126));
     const float below = round_down(value), above = round_up(value);
     ASSERT_LE(below, value);
     ASSERT_GE(above, value);

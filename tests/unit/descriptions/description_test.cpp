@@ -17,11 +17,10 @@ namespace {
 
 template <class Struct>
 class EachStructure : public testing::Test {};
-using Structures =
-    testing::Types<ImpactOptions, ObjectOctreeOptions, SceneOctreeOptions, ObjectOptions, SceneOptions,
-                   BroadPhaseOptions, MassSpringOptions, MassSpringMotion::Handle, MassSpringMotion,
-                   WaveMotion, ContactResponse, SimulationOptions, StepStats, BroadPhaseStats,
-                   OctreeStatistics>;
+using Structures = testing::Types<ImpactOptions, ObjectOctreeOptions, SceneOctreeOptions, ObjectOptions,
+                                  SceneOptions, BroadPhaseOptions, MassSpringOptions,
+                                  MassSpringMotion::Handle, MassSpringMotion, WaveMotion, ContactResponse,
+                                  SimulationOptions, StepStats, BroadPhaseStats, OctreeStatistics>;
 TYPED_TEST_SUITE(EachStructure, Structures);
 
 TYPED_TEST(EachStructure, DescribesEveryMemberInOrder) {
@@ -102,7 +101,8 @@ constexpr std::string_view spelling() {
   const std::size_t start = function.find("value = ") + 8;
   const std::string_view name = function.substr(start, function.find_first_of(";]", start) - start);
   const std::size_t colon = name.rfind("::");
-  return name.find('(') != std::string_view::npos || colon == std::string_view::npos ? "" : name.substr(colon + 2);
+  return name.find('(') != std::string_view::npos || colon == std::string_view::npos ? ""
+                                                                                     : name.substr(colon + 2);
 }
 
 template <class Enum, std::size_t... Values>

@@ -21,8 +21,8 @@ inline auto members_of(ObjectOctreeOptions& o) {
   return std::tie(a, b, c, d, e);
 }
 inline auto members_of(SceneOctreeOptions& o) {
-  auto& [a, b, c, d, e] = o;
-  return std::tie(a, b, c, d, e);
+  auto& [a, b, c, d] = o;
+  return std::tie(a, b, c, d);
 }
 inline auto members_of(ObjectOptions& o) {
   auto& [a, b, c, d, e, f] = o;
@@ -61,12 +61,12 @@ inline auto members_of(SimulationOptions& o) {
   return std::tie(a, b, c, d, e);
 }
 inline auto members_of(StepStats& o) {
-  auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, p, q, r, s, t, u] = o;
-  return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m, n, p, q, r, s, t, u);
+  auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, p, q, r, s, t, u, v] = o;
+  return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m, n, p, q, r, s, t, u, v);
 }
 inline auto members_of(BroadPhaseStats& o) {
-  auto& [a, b, c, d, e, f, g] = o;
-  return std::tie(a, b, c, d, e, f, g);
+  auto& [a, b, c, d, e, f, g, h] = o;
+  return std::tie(a, b, c, d, e, f, g, h);
 }
 inline auto members_of(OctreeStatistics& o) {
   auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, p] = o;

@@ -4,10 +4,10 @@
 
 #include <cmath>
 #include <limits>
-#include <random>
 
 #include "geometry/integer_points.hpp"
 #include "geometry/plane_filter.hpp"
+#include "support/random.hpp"
 
 namespace supple {
 namespace {
@@ -50,16 +50,16 @@ int orient2d(const Vec3d& a, const Vec3d& b, const Vec3d& c, int axis) {
 class Coordinates {
  public:
   double draw() {
-    const double base = static_cast<double>(static_cast<int>(random_() % 9) - 4);
-    switch (random_() % 8) {
+    const double base = random_.between(-4, 4);
+    switch (random_.below(8)) {
       case 0:
         return base * 0.1;
       case 1:
-        return std::nextafter(base * 0.1, random_() % 2 ? 1e308 : -1e308);
+        return std::nextafter(base * 0.1, random_.below(2) ? 1e308 : -1e308);
       case 2:
-        return base + std::ldexp(1, -static_cast<int>(random_() % 60));
+        return base + std::ldexp(1, -random_.between(0, 59));
       case 3:
-        return std::ldexp(base, static_cast<int>(random_() % 2000) - 1000);
+        return std::ldexp(base, random_.between(-1000, 999));
       case 4:
         return base * smallest;
       case 5:
@@ -69,13 +69,13 @@ class Coordinates {
     }
   }
   Vec3d point() {
-    if (random_() % 2) return {draw(), draw(), draw()};
-    return {double(random_() % 4), double(random_() % 4), double(random_() % 4)};
+    if (random_.below(2)) return {draw(), draw(), draw()};
+    return {double(random_.below(4)), double(random_.below(4)), double(random_.below(4))};
   }
-  std::uint64_t bits() { return random_(); }
+  std::uint64_t bits() { return random_.bits(); }
 
  private:
-  std::mt19937_64 random_{5};
+  RandomNumbers random_{5};
 };
 
 TEST(Orient3d, SignConvention) {

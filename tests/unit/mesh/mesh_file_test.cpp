@@ -5,10 +5,10 @@
 #include <cstring>
 #include <filesystem>
 #include <limits>
-#include <random>
 #include <string>
 
 #include "supple/mesh.hpp"
+#include "support/random.hpp"
 #include "unit/mesh/mesh_files.hpp"
 
 namespace supple {
@@ -26,10 +26,10 @@ TriangleMesh awkward_mesh() {
                     {-limits::quiet_NaN(), limits::max(), limits::min()},
                     {123456789.123456789, 1e-310, -5e-324}};
   mesh.triangles = {{0, 1, 2}, {4, 4, 4}, {3, 0, 1}, {0, 1, 2}};
-  std::mt19937_64 random(7);
+  RandomNumbers random(7);
   while (mesh.positions.size() < 1000) {
-    const Vec3d point{std::bit_cast<double>(random()), std::bit_cast<double>(random()),
-                      std::bit_cast<double>(random())};
+    const Vec3d point{std::bit_cast<double>(random.bits()), std::bit_cast<double>(random.bits()),
+                      std::bit_cast<double>(random.bits())};
     // The payload of a NaN is more than text can tell.
     if (point == point) mesh.positions.push_back(point);
   }

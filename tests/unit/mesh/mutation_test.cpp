@@ -3,11 +3,11 @@
 
 #include <gtest/gtest.h>
 
-#include <random>
 #include <string>
 #include <vector>
 
 #include "mesh/mesh_formats.hpp"
+#include "support/random.hpp"
 #include "unit/mesh/mesh_files.hpp"
 
 namespace supple {
@@ -105,10 +105,9 @@ class Damage {
         break;
     }
   }
-  // Not a distribution of the standard library: those differ from one to the next.
-  std::size_t below(std::size_t bound) { return static_cast<std::size_t>(random_() % bound); }
+  std::size_t below(std::size_t bound) { return random_.below(static_cast<std::uint32_t>(bound)); }
 
-  std::mt19937_64 random_;
+  RandomNumbers random_;
 };
 
 // True when the bytes gave a mesh.

@@ -5,8 +5,9 @@
 #include <bit>
 #include <cmath>
 #include <cstdlib>
-#include <random>
 #include <string>
+
+#include "support/random.hpp"
 
 namespace supple {
 namespace {
@@ -99,9 +100,9 @@ TEST(ParseDouble, StopsWhereTheNumberEnds) {
 }
 
 TEST(AppendDouble, ReadsBackToTheSameBits) {
-  std::mt19937_64 random(1);
+  RandomNumbers random(1);
   for (int i = 0; i < 100000; ++i) {
-    const double value = std::bit_cast<double>(random());
+    const double value = std::bit_cast<double>(random.bits());
     if (std::isnan(value)) continue;
     std::string text;
     append_double(text, value);

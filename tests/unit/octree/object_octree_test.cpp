@@ -5,7 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <random>
+
+#include "support/random.hpp"
 
 namespace supple {
 namespace {
@@ -17,14 +18,13 @@ struct Soup {
 
 /// Small triangles scattered over a sphere of the given radius about `center`.
 Soup scattered_soup(std::uint32_t count, double radius, Vec3d center, std::uint32_t seed) {
-  std::mt19937 random(seed);
-  std::normal_distribution<double> normal;
+  RandomNumbers random(seed);
   Soup soup;
   for (std::uint32_t t = 0; t < count; ++t) {
-    Vec3d p{normal(random), normal(random), normal(random)};
+    Vec3d p = random.vector(1);
     p = p * (radius / std::sqrt(p.x * p.x + p.y * p.y + p.z * p.z + 1e-30)) + center;
     for (int corner = 0; corner < 3; ++corner) {
-      soup.positions.push_back(p + Vec3d{normal(random), normal(random), normal(random)} * (0.02 * radius));
+      soup.positions.push_back(p + random.vector(0.03 * radius));
     }
     soup.triangles.push_back({3 * t, 3 * t + 1, 3 * t + 2});
   }
@@ -124,10 +124,9 @@ TEST(ObjectOctree, LevelsOfAnyArityAreCountedInEights) {
 TEST(ObjectOctree, RefitFollowsDeformation) {
   Soup soup = scattered_soup(3000, 1, {}, 7);
   Built built(soup);
-  std::mt19937 random(3);
-  std::normal_distribution<double> normal;
+  RandomNumbers random(3);
   for (int step = 0; step < 5; ++step) {
-    for (Vec3d& p : soup.positions) p = p + Vec3d{normal(random), normal(random), normal(random)} * 0.1;
+    for (Vec3d& p : soup.positions) p = p + random.vector(0.2);
     EXPECT_EQ(built.refit(soup, step % 2 == 0 ? 1 : 4), "");
   }
 }

@@ -123,13 +123,12 @@ TEST_F(DamagedRecording, OtherFormatsAndVersions) {
   expect("version 3, supple", with_attribute("version", 3));
   expect("or a newer one", with_attribute("version", 3));
   expect("version 0, supple", with_attribute("version", 0));
-  expect("attribute leaf_size is 0, not a whole number from 1 to 4294967295",
-         [](hid_t file) {
-           const hid_t object = H5Gopen2(file, "objects/0", H5P_DEFAULT);
-           const std::uint32_t none = 0;
-           replace_attribute(object, "leaf_size", H5T_NATIVE_UINT32, &none);
-           H5Gclose(object);
-         });
+  expect("attribute leaf_size is 0, not a whole number from 1 to 4294967295", [](hid_t file) {
+    const hid_t object = H5Gopen2(file, "objects/0", H5P_DEFAULT);
+    const std::uint32_t none = 0;
+    replace_attribute(object, "leaf_size", H5T_NATIVE_UINT32, &none);
+    H5Gclose(object);
+  });
   expect("attribute object_octree is missing", [](hid_t file) {
     const hid_t object = H5Gopen2(file, "objects/0", H5P_DEFAULT);
     H5Adelete(object, "object_octree");

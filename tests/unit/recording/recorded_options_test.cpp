@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "support/soups.hpp"
 #include "supple/recording.hpp"
+#include "support/soups.hpp"
 #include "unit/descriptions/other_values.hpp"
 #include "unit/recording/recorded_scenes.hpp"
 
@@ -62,7 +62,8 @@ TEST(RecordedOptions, DiffNamesEachThatDiffers) {
     ASSERT_TRUE(difference) << key;
     EXPECT_EQ(difference->what.rfind(key, 0), 0u) << difference->what;
   };
-  change_each<SceneOptions>([&](const std::string& key, const SceneOptions& scene) { expect(key, scene, {}); });
+  change_each<SceneOptions>(
+      [&](const std::string& key, const SceneOptions& scene) { expect(key, scene, {}); });
   change_each<ObjectOptions>(
       [&](const std::string& key, const ObjectOptions& object) { expect(key, {}, object); });
 }
@@ -118,8 +119,8 @@ TEST(RecordedOptions, Version1IsRead) {
   ObjectOptions object;
   object.self_collision = true;
   object.octree = {.max_level = 3, .leaf_size = 5};
-  const Contents contents =
-      simulate({random_soup(30, 1, 0.6, 4), random_soup(20, 1, 0.6, 5)}, {object, {.is_static = true}}, scene, 4);
+  const Contents contents = simulate({random_soup(30, 1, 0.6, 4), random_soup(20, 1, 0.6, 5)},
+                                     {object, {.is_static = true}}, scene, 4);
   ASSERT_GT(contents.frames.back().continuous_contacts.size(), 5u);
   const TemporaryFolder folder;
   contents.write(folder / "now.h5");

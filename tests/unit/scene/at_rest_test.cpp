@@ -1,12 +1,12 @@
 #include <gtest/gtest.h>
 
-#include <random>
 #include <stdexcept>
 #include <tuple>
 #include <vector>
 
 #include "supple/models.hpp"
 #include "supple/scene.hpp"
+#include "support/random.hpp"
 
 namespace supple {
 namespace {
@@ -73,12 +73,12 @@ TEST_P(AtRest, ContactsAreThoseOfASceneWithoutAPast) {
   SceneOptions options;
   std::tie(options.bounding_volume, options.threads, options.contact_points) = GetParam();
   World world(options);
-  std::mt19937 random(5);
+  RandomNumbers random(5);
   for (int step = 0; step < 12; ++step) {
     for (int i = 0; i < 8; ++i) {
-      if (random() % 3 != 0) continue;
+      if (random.below(3) != 0) continue;
       const auto at = static_cast<std::size_t>(i);
-      world.centers[at].x += (static_cast<double>(random() % 64) - 32) / 128;
+      world.centers[at].x += random.between(-32, 31) / 128.0;
       world.scene.set_positions(world.ids[at], world.positions_of(i));
     }
     expect_as_new(world, world.scene.detect(), options);

@@ -3,27 +3,27 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <random>
 #include <set>
 #include <tuple>
 #include <utility>
 #include <vector>
 
 #include "support/instruction_sets.hpp"
+#include "support/random.hpp"
 
 namespace supple {
 namespace {
 
 /// Contacts of different triangles, whose other members tell them apart.
 std::vector<FoundContact> contacts_of(const std::set<std::pair<std::uint32_t, std::uint32_t>>& triangles,
-                                      std::mt19937& random) {
+                                      RandomNumbers& random) {
   std::vector<FoundContact> found;
   for (const auto& [a, b] : triangles) {
     const auto i = static_cast<std::uint32_t>(found.size());
     found.push_back({a, b, i, static_cast<std::uint16_t>(i % 5), static_cast<IntersectionKind>(i % 3),
                      static_cast<std::uint8_t>(i % 7)});
   }
-  std::shuffle(found.begin(), found.end(), random);
+  random.shuffle(found);
   return found;
 }
 
@@ -39,15 +39,14 @@ void expect_sorted(const std::vector<FoundContact>& found, ContactOrder& order) 
 }
 
 TEST(ContactOrder, RandomContactsOfAnyNumberAndSpread) {
-  std::mt19937 random(17);
+  RandomNumbers random(17);
   ContactOrder order;  // with what the sort before left in its memory
   for (const std::size_t count : {0u, 1u, 2u, 12u, 25u, 100u, 3000u}) {
     for (const std::uint32_t spread : {1u, 2u, 60u, 511u, 512u, 70000u, 0xffffffffu}) {
       std::set<std::pair<std::uint32_t, std::uint32_t>> triangles;
-      const std::uint32_t least = spread < 0x7fffffff ? static_cast<std::uint32_t>(random() % 0x7fffffff) : 0;
+      const std::uint32_t least = spread < 0x7fffffff ? random.below(0x7fffffff) : 0;
       while (triangles.size() < count) {
-        triangles.insert({least + static_cast<std::uint32_t>(random()) % spread,
-                          static_cast<std::uint32_t>(random()) % 5000});
+        triangles.insert({least + random.below(spread), random.below(5000)});
       }
       expect_sorted(contacts_of(triangles, random), order);
     }
@@ -56,7 +55,7 @@ TEST(ContactOrder, RandomContactsOfAnyNumberAndSpread) {
 
 /// Keys of 31 bits just hold what is left of the triangles' numbers, or just do not.
 TEST(ContactOrder, NumbersOfAnyWidth) {
-  std::mt19937 random(19);
+  RandomNumbers random(19);
   ContactOrder order;
   for (const int bits_a : {1, 15, 21, 22, 31}) {
     for (const int bits_b : {1, 16, 21, 22, 30, 31, 32}) {
@@ -64,15 +63,15 @@ TEST(ContactOrder, NumbersOfAnyWidth) {
       const auto most = [](int bits) { return ~std::uint32_t{0} >> (32 - bits); };
       triangles.insert({most(bits_a), most(bits_b)});
       for (int i = 0; i < 200; ++i)
-        triangles.insert({static_cast<std::uint32_t>(random()) & most(bits_a),
-                          static_cast<std::uint32_t>(random()) & most(bits_b)});
+        triangles.insert({static_cast<std::uint32_t>(random.bits()) & most(bits_a),
+                          static_cast<std::uint32_t>(random.bits()) & most(bits_b)});
       expect_sorted(contacts_of(triangles, random), order);
     }
   }
 }
 
 TEST(ContactOrder, OneTriangleAgainstVeryMany) {
-  std::mt19937 random(18);
+  RandomNumbers random(18);
   ContactOrder order;
   std::set<std::pair<std::uint32_t, std::uint32_t>> triangles;
   for (std::uint32_t b = 0; b < 2000; ++b) triangles.insert({7, b * 3});

@@ -88,7 +88,8 @@ TEST_P(ContinuousScenes, EqualAlgebraInEveryConfiguration) {
   ASSERT_EQ(reference.validate(), "");
   for (const BoundingVolume volume : {BoundingVolume::aabb, BoundingVolume::sphere}) {
     for (const BroadPhaseMethod method :
-         {BroadPhaseMethod::octree, BroadPhaseMethod::sweep, BroadPhaseMethod::brute}) {
+         {BroadPhaseMethod::automatic, BroadPhaseMethod::octree, BroadPhaseMethod::grid,
+          BroadPhaseMethod::sweep, BroadPhaseMethod::brute}) {
       for (const std::uint32_t threads : {1u, 2u, 5u}) {
         SceneOptions options = continuous(0, threads);
         options.bounding_volume = volume;

@@ -20,7 +20,8 @@ TEST_P(SceneProperties, DetectEqualsExactBruteForceInEveryConfiguration) {
     ASSERT_EQ(reference.validate(), "");
     for (const BoundingVolume volume : {BoundingVolume::aabb, BoundingVolume::sphere}) {
       for (const BroadPhaseMethod method :
-           {BroadPhaseMethod::octree, BroadPhaseMethod::sweep, BroadPhaseMethod::brute}) {
+           {BroadPhaseMethod::automatic, BroadPhaseMethod::octree, BroadPhaseMethod::grid,
+            BroadPhaseMethod::sweep, BroadPhaseMethod::brute}) {
         for (const std::uint32_t threads : {1u, 2u, 3u, 8u}) {
           Scene scene =
               scene_of(meshes, {.bounding_volume = volume, .broad_phase = method, .threads = threads});

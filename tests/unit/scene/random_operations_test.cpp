@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <set>
 #include <string>
@@ -137,21 +138,15 @@ TEST_P(RandomOperations, EveryStepEqualsBruteForce) {
 
 std::string configuration_name(const testing::TestParamInfo<RandomOperations::ParamType>& info) {
   const std::string volume = std::get<0>(info.param) == BoundingVolume::aabb ? "Boxes" : "Spheres";
-  switch (std::get<1>(info.param)) {
-    case BroadPhaseMethod::octree:
-      return volume + "Octree";
-    case BroadPhaseMethod::sweep:
-      return volume + "Sweep";
-    case BroadPhaseMethod::brute:
-      return volume + "Brute";
-  }
-  return volume;
+  constexpr std::array methods{"Automatic", "Octree", "Grid", "Sweep", "Brute"};
+  return volume + methods[static_cast<std::size_t>(std::get<1>(info.param))];
 }
 
 INSTANTIATE_TEST_SUITE_P(Configurations, RandomOperations,
                          testing::Combine(testing::Values(BoundingVolume::aabb, BoundingVolume::sphere),
-                                          testing::Values(BroadPhaseMethod::octree, BroadPhaseMethod::sweep,
-                                                          BroadPhaseMethod::brute)),
+                                          testing::Values(BroadPhaseMethod::automatic,
+                                                          BroadPhaseMethod::octree, BroadPhaseMethod::grid,
+                                                          BroadPhaseMethod::sweep, BroadPhaseMethod::brute)),
                          configuration_name);
 
 }  // namespace

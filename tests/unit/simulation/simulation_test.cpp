@@ -427,6 +427,8 @@ TEST(Simulation, GivesTheSameContactsByAnyBroadPhase) {
   const auto expected = run(BroadPhaseMethod::brute, BoundingVolume::aabb);
   EXPECT_GT(expected.size(), 100u);
   EXPECT_EQ(run(BroadPhaseMethod::octree, BoundingVolume::aabb), expected);
+  EXPECT_EQ(run(BroadPhaseMethod::automatic, BoundingVolume::aabb), expected);
+  EXPECT_EQ(run(BroadPhaseMethod::grid, BoundingVolume::aabb), expected);
   EXPECT_EQ(run(BroadPhaseMethod::sweep, BoundingVolume::aabb), expected);
   EXPECT_EQ(run(BroadPhaseMethod::octree, BoundingVolume::sphere), expected);
 }

@@ -14,6 +14,7 @@
 
 #include "export/embedded.hpp"
 #include "supple/error.hpp"
+#include "support/random.hpp"
 
 namespace supple::viewer {
 namespace {
@@ -23,10 +24,8 @@ namespace fs = std::filesystem;
 /// Bytes of every value, with repetitions and without.
 std::vector<std::byte> noise(std::size_t count, unsigned seed) {
   std::vector<std::byte> bytes(count);
-  for (std::byte& byte : bytes) {
-    seed = seed * 1664525 + 1013904223;
-    byte = static_cast<std::byte>(seed >> 24);
-  }
+  RandomNumbers random(seed);
+  for (std::byte& byte : bytes) byte = static_cast<std::byte>(random.below(256));
   return bytes;
 }
 

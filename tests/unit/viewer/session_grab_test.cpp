@@ -250,7 +250,7 @@ TEST(ViewerGrab, FixedVerticesStayWhereTheyAreHeld) {
   const ViewerMessage scene = page.scene();
   for (const std::uint32_t fixed : {motion.springs.fixed_vertices[0], motion.handles[0].vertices[0]}) {
     EXPECT_EQ(page.failure("{\"do\": \"grab\", \"object\": 0, \"vertex\": " + std::to_string(fixed) + "}"),
-              "grab: vertex " + std::to_string(fixed) + " of block is a fixed one; take another one");
+              "grab: vertex " + std::to_string(fixed) + " of block is fixed; choose another one");
   }
   const std::uint32_t vertex = foremost(mesh) + 0;
   std::uint32_t corner = vertex;
@@ -282,7 +282,7 @@ TEST(ViewerGrab, StaticObjectsAndRecordingsAreRefusedInWords) {
   TestPage page(show);
   page.scene();
   EXPECT_EQ(page.failure(R"({"do": "grab", "object": 0, "vertex": 0})"),
-            "grab: left is static: it neither moves nor bends");
+            "grab: left is static: it cannot be moved or bent");
   page.ask({{"do", "grab"}, {"object", 1}, {"vertex", 0}});
   EXPECT_FALSE(page.failure(R"({"do": "grab", "object": 0, "vertex": 0})").empty());
   EXPECT_FALSE(page.failure(R"({"do": "drag", "to": [0, 0, 0]})").empty()) << "the other one was let go";

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "../../support/random.hpp"
 #include "../../support/viewer_page.hpp"
 
 namespace supple::viewer {
@@ -14,6 +15,7 @@ namespace {
 SceneView crowd(BoundingVolume volume = BoundingVolume::aabb) {
   SceneView show;
   show.simulation.scene.bounding_volume = volume;
+  show.simulation.scene.broad_phase = BroadPhaseMethod::octree;  // which has regions
   for (int i = 0; i < 6; ++i)
     show.objects.push_back(
         test_ball(("ball " + std::to_string(i)).c_str(), {1.7 * (i % 3), 1.8 * (i / 3), 0.1 * i}, 6));
@@ -58,6 +60,17 @@ TEST(ViewerLayers, AreLeftOutUntilAskedForAndAgainAfterwards) {
   EXPECT_FALSE(has_layers(page.frame()));
 }
 
+TEST(ViewerLayers, HaveNoRegionsUnlessTheOctreeRan) {
+  Show show = crowd();
+  show.simulation.scene.broad_phase = BroadPhaseMethod::grid;
+  TestPage page(show);
+  page.scene();
+  page.ask({{"do", "layers"}, {"scene_regions", true}});
+  const ViewerMessage frame = page.frame();
+  EXPECT_EQ(frame.json["broad_phase_method"], "grid");
+  EXPECT_TRUE(frame.values<Row>(39).empty());
+}
+
 TEST(ViewerLayers, AreWhatTheLibrarySays) {
   for (const BoundingVolume volume : {BoundingVolume::aabb, BoundingVolume::sphere}) {
     const SceneView show = crowd(volume);
@@ -85,6 +98,7 @@ TEST(ViewerLayers, AreWhatTheLibrarySays) {
         regions.push_back(row({narrow(r.box.min, center)}, static_cast<float>(r.level),
                               narrow(r.box.max, center),
                               r.is_leaf ? static_cast<float>(r.object_count) : -1));
+      EXPECT_FALSE(regions.empty());
       EXPECT_EQ(frame.values<Row>(39), regions);
 
       for (const ObjectId id : scene.objects()) {
@@ -169,12 +183,10 @@ TEST(ViewerLayers, ExplainsWhatTheLibraryExplains) {
     const char* const names[] = {"not_tested",     "shared_vertex",  "inert",      "object_volumes",
                                  "octree_volumes", "triangle_boxes", "exact_test", "contact"};
     std::set<std::string> stages, texts;
-    std::uint32_t random = 12345;
-    const auto below = [&](std::uint32_t count) {
-      return (random = random * 1664525 + 1013904223) / 65536 % count;
-    };
+    RandomNumbers random(12345);
     for (int i = 0; i < 3000; ++i) {
-      const std::uint32_t a = below(6), b = below(6), s = below(720), t = below(720);
+      const std::uint32_t a = random.below(6), b = random.below(6), s = random.below(720),
+                          t = random.below(720);
       const PairExplanation why = simulation.scene().explain({a, 0}, s, {b, 0}, t);
       const Json answer = page.ask({{"do", "explain"}, {"a", {a, s}}, {"b", {b, t}}});
       ASSERT_EQ(answer["stage"], names[static_cast<int>(why.stage)]);

@@ -1,5 +1,6 @@
-// A Chromium as a person starts it: no automation library, whose inspector has a copy made of every WebSocket message. What the page has
-// to say is asked for over the browser's own pipe; while it works, nothing is attached to it.
+// Starts Chromium as a user does, without an automation library, whose inspector would copy every WebSocket
+// message. The script talks to the page through the browser's own pipe; nothing is attached to the page
+// while it works.
 import { spawn } from "node:child_process";
 import { mkdtempSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
@@ -8,7 +9,7 @@ import { join } from "node:path";
 const ANSWER_MILLISECONDS = 30_000;
 const FIND_MILLISECONDS = 50;
 
-/** A page that is just being opened has nothing to evaluate in. */
+/** A page that is still opening has no execution context. */
 function noContextYet(error) {
   if (!error.message.includes("execution context")) throw error;
   return false;
@@ -62,7 +63,10 @@ export class BareChromium {
     throw new Error("Chromium does not open the page");
   }
 
-  /** What a function gives in the page. Attached for this alone, and without any domain that would watch the network. */
+  /**
+   * Runs a function in the page and returns its result. Attaches only for this call, without observing the
+   * network.
+   */
   async evaluate(body, argument) {
     const { sessionId } = await this.call("Target.attachToTarget", { targetId: await this.target(), flatten: true });
     const expression = `(${body})(${JSON.stringify(argument)})`;
@@ -72,7 +76,7 @@ export class BareChromium {
     return result.value;
   }
 
-  /** Waits until a function gives something true in the page. */
+  /** Waits until a function returns a true value in the page. */
   async until(body, argument) {
     for (let tries = 0; tries < ANSWER_MILLISECONDS / FIND_MILLISECONDS; ++tries) {
       if (await this.evaluate(body, argument).catch(noContextYet)) return;
@@ -84,6 +88,6 @@ export class BareChromium {
   async close() {
     this.call("Browser.close").catch(() => this.child.kill());
     await this.ended;
-    rmSync(this.profile, { recursive: true, force: true, maxRetries: 10, retryDelay: 200 });  // its children end a little later
+    rmSync(this.profile, { recursive: true, force: true, maxRetries: 10, retryDelay: 200 });  // child processes may exit a little later
   }
 }

@@ -1,10 +1,13 @@
-// The browser that the program opens by itself.
+// The browser that the program opens itself.
 import assert from "node:assert/strict";
 import { chmodSync, existsSync, readFileSync } from "node:fs";
 import { pathToFileURL } from "node:url";
 import { hasFrame, TWO_BALLS } from "./harness.mjs";
 
-/** The file that it is given instead of the address leads to the page, and hands the token on to nobody else. */
+/**
+ * The browser gets a file instead of the address. The file leads to the page and does not reveal the token
+ * to others.
+ */
 async function isLedToThePage(stage) {
   const opener = stage.file("xdg-open", `#!/bin/sh\nprintf '%s' "$*" > "$0.part"; mv "$0.part" "$0.asked"\n`);
   chmodSync(opener, 0o755);

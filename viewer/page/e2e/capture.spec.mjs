@@ -1,4 +1,4 @@
-// What is saved and what is said: frames as pictures, layers that the session gives up, warnings.
+// Saving frames as pictures, layers that the session drops, and warnings.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
@@ -22,7 +22,7 @@ async function chooseSize(dialog, width, height) {
   await dialog.getByRole("spinbutton", { name: "Height" }).fill(String(height));
 }
 
-/** What a click saves; gives its name and its bytes. */
+/** The file that a click saves: its name and its bytes. */
 async function savedBy(stage, page, click) {
   const [download] = await Promise.all([page.waitForEvent("download"), click()]);
   const path = stage.file(download.suggestedFilename());
@@ -39,7 +39,7 @@ function sizeOf(png) {
   return [bytes.readUInt32BE(16), bytes.readUInt32BE(20)];
 }
 
-/** A ZIP's pictures in their order, each of the given size, and what it says of them. */
+/** The pictures of a ZIP in order, checked for their size, and its description. */
 function readZip({ name, bytes }, size) {
   assert.match(name, /^supple-.*\.zip$/);
   const files = unzipSync(bytes);
@@ -122,7 +122,7 @@ async function recordingUpToAFrame(stage) {
   assert.deepEqual(some.steps, stepsFrom(3, 6, 1));
 }
 
-/** As a page from a file, whose session is in a worker. */
+/** A page opened from a file, with its session in a worker. */
 async function savesWithoutAProgram(stage) {
   const file = stage.file("page.html");
   await runProgram(stage.supple, ["view", nine, "--export", file]);
@@ -138,7 +138,7 @@ async function savesWithoutAProgram(stage) {
   assertAllDiffer(pictures);
 }
 
-/** What the browser itself reads out of a PNG: the colour at some places. */
+/** The colours at some places of a PNG, as decoded by the browser. */
 const colours = (page, png, places) =>
   page.evaluate(async ([base64, places]) => {
     const bytes = Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0));
@@ -187,7 +187,7 @@ async function cancelKeepsWhatIsThere(stage) {
   await dialog.getByRole("button", { name: "Save", exact: true }).click();
   await until(page, () => document.querySelector(".frames progress").value >= 5);
   assert.match(await dialog.getByLabel("Progress").textContent(), /^\d+ of 5,000$/);
-  await page.setViewportSize({ width: 1000, height: 700 });  // nothing that a picture minds
+  await page.setViewportSize({ width: 1000, height: 700 });  // must not affect pictures
   await until(page, () => document.querySelector(".frames progress").value >= 10);
   const { steps, told, pictures } = readZip(await savedBy(stage, page, () => page.keyboard.press("Escape")), [320, 240]);
   assert.ok(steps.length >= 10 && steps.length < 5000);
@@ -216,7 +216,7 @@ async function endOfTheProgramKeepsWhatIsThere(stage) {
   assert.equal(told.ended, "The session has ended.");
   await page.getByRole("alertdialog", { name: "The program has ended" }).waitFor();
   await page.getByRole("button", { name: "Save frames as pictures…" }).click();
-  await page.getByRole("log").getByText("no session whose frames").waitFor();
+  await page.getByRole("log").getByText("no frames to save").waitFor();
 }
 
 const STIFF = (stiffness, motion = "random_force = 1, deform_seconds = 1") => `
@@ -230,7 +230,7 @@ motion = { kind = "mass_spring", stiffness = ${stiffness}, ${motion} }
 
 async function blowUpKeepsWhatIsThere(stage) {
   const { page } = await stage.view(stage.file("stiff.toml", STIFF(3e4)));
-  await until(page, () => supple.model.frame.text.step > 0 && !supple.model.frame.text.playing);  // it has blown up, and plays no more
+  await until(page, () => supple.model.frame.text.step > 0 && !supple.model.frame.text.playing);  // it has blown up and stopped
   await page.getByRole("button", { name: "Reset" }).click();
   await until(page, () => supple.model.frame?.text.step === 0);
   const dialog = await openDialog(page);
@@ -248,13 +248,13 @@ async function tooLargeIsSaid(stage) {
   await dialog.getByRole("button", { name: "Save", exact: true }).click();
   assert.equal(await dialog.getByRole("spinbutton", { name: "Width" }).evaluate((input) => input.validity.rangeOverflow), true);
   assert.ok(await dialog.isVisible());
-  // A card that promises more than it gives.
+  // A graphics card that reports more than it can do.
   await page.evaluate(() => {
     for (const name of ["drawingBufferWidth", "drawingBufferHeight"]) Object.defineProperty(document.querySelector("canvas.view").getContext("webgl2"), name, { get: () => 100 });
   });
   await chooseSize(dialog, 3000, 2000);
   await dialog.getByRole("button", { name: "Save", exact: true }).click();
-  await page.getByRole("log").getByText("No picture was taken. WebGL has no memory for a picture of 3000 × 2000.").waitFor();
+  await page.getByRole("log").getByText("No picture was taken. WebGL does not have enough memory for a picture of 3000 × 2000.").waitFor();
 }
 
 async function keysAlone(stage) {
@@ -276,7 +276,7 @@ async function keysAlone(stage) {
   assert.equal(await dialogOf(page).isVisible(), false);
 }
 
-/** The session gives up what it had been asked for; what was asked for meanwhile stays. */
+/** The session drops layers that the page requested; layers requested meanwhile stay. */
 async function layersThatFail(stage) {
   const asked = [];
   const page = await pageWithMessages(stage, nine, (message, send) => send(message), (text, handOn, send) => {
@@ -285,7 +285,7 @@ async function layersThatFail(stage) {
     asked.push(command);
     const { octree, candidates, scene_regions } = command;
     if (!octree || !candidates) return handOn(text);
-    // These two fail, after so long that a third one is asked for meanwhile.
+    // These two fail, after a delay in which a third layer is requested.
     if (scene_regions) send(textMessage(4, { message: "there is not enough memory for that", fatal: false, layers: ["candidates", "octree"] }));
   });
   await hasFrame(page);

@@ -1,10 +1,11 @@
-// Thousands of objects: drawn in a few calls, listed by a few rows, each of them found, shown, hidden, coloured and picked.
+// Thousands of objects: few draw calls, few list rows; each object can be found, shown, hidden, coloured and
+// picked.
 import assert from "node:assert/strict";
 import { picture, settled, until } from "./harness.mjs";
 
 const [COLUMNS, ROWS] = [60, 40];
 
-/** Balls in a wall that stand apart and do not move; seen from the front none hides another. */
+/** Balls in a wall, apart and at rest; seen from the front, none hides another. */
 const WALL = `
 [[object]]
 name = "ball"
@@ -17,7 +18,7 @@ spacing = [1.2, 1.2, 0]
 
 async function open(stage) {
   const { page } = await stage.view(stage.file("wall.toml", WALL));
-  await page.emulateMedia({ colorScheme: "dark", reducedMotion: "reduce" });  // the camera is there at once
+  await page.emulateMedia({ colorScheme: "dark", reducedMotion: "reduce" });  // the camera moves without animation
   await page.getByRole("combobox", { name: "Axis view" }).selectOption("front");
   await page.getByRole("button", { name: "Frame all" }).click();
   await settled(page);
@@ -25,10 +26,10 @@ async function open(stage) {
   return page;
 }
 
-/** Where the middle of an object is in the window, and its colour there: red, green, blue. */
+/** The position of the middle of an object in the window, and the colour there: red, green, blue. */
 const look = (page, object) =>
   page.evaluate((object) => {
-    supple.draw();  // the canvas keeps its picture until the end of this turn only
+    supple.draw();  // the canvas keeps its content only until the end of this task
     const view = document.querySelector("canvas.view");
     const copy = Object.assign(document.createElement("canvas"), { width: view.width, height: view.height });
     const context = copy.getContext("2d");
@@ -46,7 +47,7 @@ const ground = (page) => page.evaluate(() => getComputedStyle(document.body).bac
 const isNear = (a, b) => a.every((value, i) => Math.abs(value - b[i]) <= 3);
 const list = (page) => page.getByRole("list", { name: "Objects" });
 
-/** Whether the row of an object is in sight, and marked as the selected one. */
+/** Whether the row of an object is visible and marked as selected. */
 const isShownAsSelected = (page, name) =>
   until(page, (name) => {
     const row = [...document.querySelectorAll(".objects li:not([hidden])")].find((row) => row.querySelector(".text").textContent === name);
@@ -86,9 +87,9 @@ async function isHiddenAfterScrolling(stage) {
   const name = await page.evaluate((i) => supple.model.objects[i].name, wanted);
   const seen = await picture(page);
   assert.ok(!isNear(await colourOf(page, wanted), await ground(page)));
-  assert.equal(await page.getByRole("checkbox", { name: `SceneView ${name}`, exact: true }).count(), 0);
+  assert.equal(await page.getByRole("checkbox", { name: `Show ${name}`, exact: true }).count(), 0);
   await page.locator(".objects").evaluate((box, part) => box.scrollTo(0, part * box.scrollHeight), wanted / (COLUMNS * ROWS));
-  const box = page.getByRole("checkbox", { name: `SceneView ${name}`, exact: true });
+  const box = page.getByRole("checkbox", { name: `Show ${name}`, exact: true });
   await box.uncheck();
   await settled(page);
   assert.ok(isNear(await colourOf(page, wanted), await ground(page)), "it is still seen");
@@ -108,7 +109,7 @@ async function isFoundByName(stage) {
   await page.getByRole("searchbox", { name: "Filter objects" }).fill("BALL 1234");
   assert.equal(await list(page).getByRole("listitem").count(), 1);
   const seen = await picture(page);
-  await page.getByRole("checkbox", { name: "SceneView ball 1234" }).uncheck();
+  await page.getByRole("checkbox", { name: "Show ball 1234" }).uncheck();
   await settled(page);
   assert.ok(isNear(await colourOf(page, wanted), await ground(page)));
   await page.getByRole("button", { name: "all", exact: true }).click();
@@ -154,7 +155,7 @@ async function isPickedAndListed(stage) {
   assert.equal(await page.evaluate(() => supple.model.selection?.object), wanted);
   await isShownAsSelected(page, name);
   assert.notDeepEqual(await colourOf(page, wanted), before, "it does not glow");
-  // From there by keys, further than what is in sight.
+  // Continue with keys, beyond the visible rows.
   await page.locator(".objects li.selected button.name").focus();
   const next = await page.evaluate((i) => supple.model.objects.slice(i + 1, i + 60).map(({ name }) => name), wanted);
   for (const name of next.slice(0, 40)) {

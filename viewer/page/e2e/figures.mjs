@@ -6,10 +6,10 @@ import { CHROMIUM_FLAGS, chromiumPath, pause, repository, scenes, settled, Stage
 
 const images = join(repository, "docs/images");
 
-/** Only the 3D view, without panels. */
+/** Saves the 3D view only, without panels. */
 async function saveView(page, name, keys = []) {
   await page.keyboard.press("h");
-  await page.waitForTimeout(300);  // the view grows first
+  await page.waitForTimeout(300);  // the view first takes up the free space
   await page.keyboard.press("f");
   await settled(page);
   for (const key of keys) await page.keyboard.press(key);
@@ -19,13 +19,13 @@ async function saveView(page, name, keys = []) {
 
 const check = (page, label, on = true) => page.getByRole("checkbox", { name: label, exact: true }).setChecked(on);
 
-/** Stops at a frame that shows something, and frames it. */
+/** Pauses at a frame that fulfils the condition, and frames the view. */
 async function stopWhen(page, condition) {
   await until(page, condition);
   await pause(page);
 }
 
-/** The paper's Figure 3: the octree of the broad phase, with spheres round the objects. */
+/** The paper's Figure 3: the octree of the broad phase with bounding spheres. */
 async function broadPhase(stage) {
   const program = await stage.program(join(scenes, "nine.toml"), "--bounding-volume", "sphere");
   const page = await stage.page({ colorScheme: "light", viewport: { width: 1100, height: 720 } });
@@ -54,7 +54,7 @@ translate = [0.2, 0.05, 0.05]
 rotate_xyz_degrees = [0, 200, 8]
 `;
 
-/** The paper's Figure 5: a collision in the narrow phase, with boxes. */
+/** The paper's Figure 5: a collision in the narrow phase with bounding boxes. */
 async function narrowPhase(stage) {
   const program = await stage.program(stage.file("rabbits.toml", TWO_RABBITS));
   const page = await stage.page({ colorScheme: "light", viewport: { width: 1100, height: 720 } });

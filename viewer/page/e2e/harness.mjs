@@ -1,4 +1,4 @@
-// What the tests are written with: a program, a page that shows it, and a few ways to look and to wait.
+// The test harness: starts programs and pages, inspects them and waits for them.
 import { spawn } from "node:child_process";
 import { existsSync, mkdtempSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
@@ -10,9 +10,9 @@ export const scenes = join(repository, "scenes");
 
 const START_MILLISECONDS = 60_000;
 
-/** `supple view`, until it is stopped. */
+/** A running `supple view`. */
 export class Program {
-  /** It opens no browser, unless it is given an environment to find one in. */
+  /** Opens no browser, unless `env` names one. */
   static async start(supple, args, env) {
     const program = new Program();
     program.output = "";
@@ -37,7 +37,7 @@ export class Program {
   }
 }
 
-/** Runs the program to its end and gives what it printed. */
+/** Runs the program to its end and returns its output. */
 export function runProgram(supple, args, options = {}) {
   return new Promise((done, fail) => {
     const child = spawn(supple, args, { stdio: ["ignore", "pipe", "pipe"], ...options });
@@ -48,17 +48,17 @@ export function runProgram(supple, args, options = {}) {
   });
 }
 
-/** WebGL in software, or by the graphics card where SUPPLE_GPU is set. */
+/** WebGL in software, or on the graphics card when SUPPLE_GPU is set. */
 const SOFTWARE_FLAGS = ["--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist", "--disable-gpu-compositing"];
 export const CHROMIUM_FLAGS = ["--no-sandbox", ...(process.env.SUPPLE_GPU ? [] : SOFTWARE_FLAGS)];
 
-/** The browser to use; undefined where there is none. */
+/** The path of the browser; undefined when there is none. */
 export function chromiumPath() {
   const places = [process.env.SUPPLE_CHROMIUM, "/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome"];
   return places.find((path) => path && existsSync(path));
 }
 
-/** Balls that sway far from one another; a ball of frequency f has 10 f² + 2 vertices and 20 f² triangles. */
+/** Balls in wave motion, far apart. A ball of frequency f has 10 f² + 2 vertices and 20 f² triangles. */
 export function swayingBalls(count, frequency) {
   const balls = Array.from({ length: count }, (_, i) => `
 [[object]]
@@ -70,7 +70,7 @@ motion = { kind = "sway", amplitude = 0.1, wavelength = 1.5, period = 1, seed = 
   return `[scene]\ntime_step = 0.01\n${balls.join("\n")}\n`;
 }
 
-/** Thousands of small balls in a grid, 42 vertices and 80 triangles each. */
+/** Thousands of small balls in a grid, with 42 vertices and 80 triangles each. */
 export const SWAYING_CROWD = `
 [scene]
 time_step = 0.01
@@ -83,7 +83,7 @@ spacing = [3, 3, 3]
 motion = { kind = "sway", amplitude = 0.1, wavelength = 1.5, period = 1 }
 `;
 
-/** All that one test needs, and cleans up after it. */
+/** Everything that one test needs; cleans up after it. */
 export class Stage {
   constructor(supple, browser) {
     this.supple = supple;
@@ -110,7 +110,7 @@ export class Stage {
     return program;
   }
 
-  /** A page without anything in it. Errors that nobody catches fail the test. */
+  /** An empty page. Uncaught errors fail the test. */
   async page(options = {}) {
     const context = await this.browser.newContext({ viewport: { width: 1280, height: 800 }, acceptDownloads: true, colorScheme: "dark", ...options });
     this.contexts.push(context);
@@ -120,7 +120,7 @@ export class Stage {
     return page;
   }
 
-  /** A program, and a page that shows it and has got a frame. */
+  /** Starts a program and a page that shows it, and waits for a frame. */
   async view(...args) {
     const program = await this.program(...args);
     const page = await this.page();
@@ -142,16 +142,16 @@ export const step = (page) => page.evaluate(() => supple.model.frame.text.step);
 export const counts = (page) => page.evaluate(() => supple.counts());
 export const camera = (page) => page.evaluate(() => supple.camera());
 
-/** Pauses and waits until the last frame is there. */
+/** Pauses and waits for the last frame. */
 export async function pause(page) {
   const button = page.getByRole("button", { name: "Pause" });
-  // A recording may end by itself meanwhile: then there is no such button any more.
+  // A recording may end meanwhile; then there is no such button.
   if (await button.count()) await button.click({ timeout: 20_000 }).catch(() => {});
   await until(page, () => !supple.model.frame.text.playing);
   await settled(page);
 }
 
-/** Waits until nothing has come or been drawn for a while. */
+/** Waits until nothing has arrived or been drawn for a while. */
 export async function settled(page) {
   let last;
   for (let same = 0; same < 3; ) {
@@ -162,14 +162,14 @@ export async function settled(page) {
   }
 }
 
-/** What the canvas shows, as a text to compare. */
+/** The content of the canvas, as a text to compare. */
 export const picture = (page) =>
   page.evaluate(() => {
-    supple.draw();  // the canvas keeps its picture until the end of this turn only
+    supple.draw();  // the canvas keeps its content only until the end of this task
     return document.querySelector("canvas.view").toDataURL();
   });
 
-/** Where to click for a triangle that is seen: one that a ray through its middle meets first, and that is not lower than `least`. */
+/** Where to click to hit a visible triangle that is not lower than `least`. */
 export const seenTriangle = (page, object, least = -Infinity) =>
   page.evaluate(([object, least]) => {
     const { triangles } = supple.model.objects[object];
@@ -184,8 +184,8 @@ export const seenTriangle = (page, object, least = -Infinity) =>
   }, [object, least]);
 
 /**
- * A page that shows a file, whose session says what the test says instead of the program: `alter` gets each message, how to send
- * one, and the socket; `command` each command, and how to hand it on.
+ * Opens a file whose session is under control of the test. `alter` receives each message, a function to send
+ * a message, and the socket; `command` receives each command and a function to forward it.
  */
 export async function pageWithMessages(stage, file, alter, command = (text, send) => send(text)) {
   const program = await stage.program(file);
@@ -200,7 +200,7 @@ export async function pageWithMessages(stage, file, alter, command = (text, send
   return page;
 }
 
-/** A message of kind and text, as docs/protocol.md has it. */
+/** A message of the given kind with the given text (docs/protocol.md). */
 export function textMessage(kind, json) {
   const text = Buffer.from(JSON.stringify(json));
   const length = 32 + Math.ceil(text.length / 16) * 16;
@@ -218,7 +218,7 @@ export function textMessage(kind, json) {
   return message;
 }
 
-/** Two balls that stand apart and do not move by themselves. */
+/** Two balls that are apart and at rest. */
 export const TWO_BALLS = `
 [[object]]
 name = "left"

@@ -1,4 +1,4 @@
-// A simulation in the program, seen and steered in a page.
+// A simulation in the program, shown and controlled in a page.
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { camera, counts, pause, picture, scenes, seenTriangle, settled, step, TWO_BALLS, until } from "./harness.mjs";
@@ -37,7 +37,7 @@ async function resetsWithASeedAndSpeed(stage) {
   await until(page, () => supple.model.frame?.text.step === 0);
 }
 
-/** Each layer that has something to show changes the picture, and shows as much as the session says. */
+/** Each layer with content changes the picture, and draws as many elements as the session reports. */
 async function eachLayerShows(stage) {
   const { page } = await stage.view(nine);
   await until(page, () => supple.model.frame.contacts.length > 200 && supple.model.frame.objectPairs.length > 8);
@@ -102,11 +102,11 @@ async function hidesAndColoursObjects(stage) {
   const { page } = await stage.view(stage.file("balls.toml", TWO_BALLS));
   await settled(page);
   const both = await picture(page);
-  await page.getByRole("checkbox", { name: "SceneView left" }).uncheck();
+  await page.getByRole("checkbox", { name: "Show left" }).uncheck();
   await settled(page);
   const one = await picture(page);
   assert.notEqual(one, both);
-  await page.getByRole("checkbox", { name: "SceneView left" }).check();
+  await page.getByRole("checkbox", { name: "Show left" }).check();
   await settled(page);
   assert.equal(await picture(page), both);
   await page.getByLabel("Colour of left").fill("#ff00ff");
@@ -208,12 +208,13 @@ async function saysThatAContactIsOne(stage) {
   assert.ok(await page.getByLabel("Object B", { exact: true }).evaluate((field) => field.validity.rangeOverflow));
 }
 
-/** A vertex of one ball is pulled into the other; contacts begin. */
+/** Pulls a vertex of one ball into the other ball until contacts begin. */
 async function pullingMakesContacts(stage) {
   const { page } = await stage.view(stage.file("balls.toml", TWO_BALLS));
   await settled(page);
   assert.equal(await page.evaluate(() => supple.model.frame.contacts.length), 0);
-  // From the front, the side of the left ball that looks at the right one, to the middle of that one.
+  // In the front view, drag from the side of the left ball that faces the right one to the middle of the
+  // right one.
   await page.getByRole("combobox", { name: "Axis view" }).selectOption("front");
   await settled(page);
   const left = await page.evaluate(() => supple.project([-0.13, 0, 0.1]));
@@ -235,7 +236,7 @@ async function pullsASoftBody(stage) {
   const { page } = await stage.view(join(scenes, "soft_block.toml"));
   await pause(page);
   const body = await page.evaluate(() => supple.model.objects.findIndex((object) => object.isBody));
-  const seen = await seenTriangle(page, body, 0.2);  // its bottom is held
+  const seen = await seenTriangle(page, body, 0.2);  // its bottom is fixed
   await page.getByRole("radio", { name: "Grab and pull" }).click();
   await page.mouse.move(seen.x, seen.y);
   await page.mouse.down();
@@ -256,7 +257,7 @@ async function staticObjectsAreNotPulled(stage) {
   await pause(page);
   const ball = await page.evaluate(() => supple.model.objects.findIndex((object) => object.isStatic));
   const cloth = await page.evaluate(() => supple.model.objects.findIndex((object) => !object.isStatic));
-  await page.getByRole("checkbox", { name: `SceneView ${await page.evaluate((i) => supple.model.objects[i].name, cloth)}` }).uncheck();
+  await page.getByRole("checkbox", { name: `Show ${await page.evaluate((i) => supple.model.objects[i].name, cloth)}` }).uncheck();
   const seen = await seenTriangle(page, ball);
   await page.getByRole("radio", { name: "Grab and pull" }).click();
   await page.mouse.click(seen.x, seen.y);
@@ -276,7 +277,7 @@ async function settingsStartAnew(stage) {
   await objects.fill("12");
   await objects.press("Enter");
   await until(page, () => supple.model.scene.objects.length === 12 && supple.model.frame);
-  await page.getByRole("checkbox", { name: /^SceneView .*#2$/ }).first().waitFor();
+  await page.getByRole("checkbox", { name: /^Show .*#2$/ }).first().waitFor();
   await page.getByLabel("Contacts", { exact: true }).and(page.locator("select")).selectOption("continuous");
   await until(page, () => supple.model.scene.contacts === "continuous");
   await until(page, () => supple.model.frame?.impacts.length > 0);

@@ -1,10 +1,10 @@
-// The time of a picture on this machine: node e2e/measure.mjs PATH/TO/supple
+// Measures the time to draw on this machine: node e2e/measure.mjs PATH/TO/supple
 import { existsSync } from "node:fs";
 import { resolve } from "node:path";
 import { chromium } from "playwright-core";
 import { CHROMIUM_FLAGS, chromiumPath, hasFrame, pause, Stage, SWAYING_CROWD, swayingBalls, until } from "./harness.mjs";
 
-/** A small window: where pixels are made in software, they must not be all that is measured. */
+/** A small window, so that rasterisation in software does not dominate. */
 async function open(stage, scene) {
   const program = await stage.program(stage.file("balls.toml", scene));
   const page = await stage.page({ viewport: { width: 900, height: 400 } });
@@ -13,7 +13,7 @@ async function open(stage, scene) {
   return page;
 }
 
-/** Of a picture with all vertices new: until the script is done, and until the pixels are. */
+/** Draws with all vertices new: the time until the script is done, and until the pixels are. */
 async function picture(stage, scene) {
   const page = await open(stage, scene);
   await pause(page);

@@ -1,10 +1,10 @@
-// A page that carries the library and what it shows, opened as a file: no program, no server.
+// An exported page, opened as a file, without a program or a server.
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { pathToFileURL } from "node:url";
 import { hasFrame, pause, runProgram, scenes, seenTriangle, settled, step, TWO_BALLS, until } from "./harness.mjs";
 
-/** Exports a page and opens it; every request for anything else fails the test. */
+/** Exports a page and opens it. Any other request fails the test. */
 async function open(stage, ...input) {
   const file = stage.file("page.html");
   await runProgram(stage.supple, ["view", ...input, "--export", file]);
@@ -28,7 +28,7 @@ async function movesAndCollides(stage) {
   await until(page, () => supple.counts().boxes > 0);
 }
 
-/** The same step has the same contacts as in the program, with the same bits. */
+/** Each step has the same contacts as in the program, bit by bit. */
 async function agreesWithTheProgram(stage) {
   const scene = join(scenes, "nine.toml");
   const at = async (page) => {
@@ -42,7 +42,7 @@ async function agreesWithTheProgram(stage) {
     return page.evaluate(async () => {
       const { contacts, contactPoints } = supple.model.frame;
       const all = new Blob([contacts, contactPoints, ...supple.model.objects.map(({ positions }) => positions)]);
-      let hash = 0x811c9dc5;  // FNV-1a: a page from a file has no crypto.subtle
+      let hash = 0x811c9dc5;  // FNV-1a, because a page from a file has no crypto.subtle
       for (const byte of new Uint8Array(await all.arrayBuffer())) hash = Math.imul(hash ^ byte, 0x01000193) >>> 0;
       return { contacts: contacts.length / 8, hash };
     });
@@ -85,7 +85,7 @@ async function playsARecording(stage) {
   );
 }
 
-/** In the module nothing can be caught, and yet it goes on. */
+/** The module has no exceptions, and yet it survives. */
 async function survivesABodyThatBlowsUp(stage) {
   const page = await open(stage, join(scenes, "soft_block.toml"));
   await page.getByRole("tab", { name: "Settings" }).click();

@@ -1,4 +1,4 @@
-// The page by itself: camera, keys, pictures, videos, looks, and what it says when something is wrong.
+// The page alone: camera, keys, pictures, videos, appearance, and error messages.
 import assert from "node:assert/strict";
 import { statSync } from "node:fs";
 import { join } from "node:path";
@@ -25,7 +25,7 @@ async function cameraMoves(stage) {
   await page.mouse.up({ button: "right" });
   assert.notDeepEqual((await camera(page)).target, orbited.target);
 
-  // What is below the cursor stays there while the wheel turns.
+  // The point below the cursor stays there while the wheel turns.
   const seen = await page.evaluate(() => supple.project(supple.positionOf(0, 0)));
   await page.mouse.move(seen.x, seen.y);
   await page.mouse.wheel(0, -300);
@@ -67,13 +67,13 @@ async function recordsAVideo(stage) {
   await page.getByRole("button", { name: "Record a video" }).click();
   const begin = await page.evaluate(() => performance.now());
   await until(page, (begin) => performance.now() > begin + 1500 && supple.drawTimes().filter((time) => time > begin).length >= 10, begin);
-  const [download] = await Promise.all([page.waitForEvent("download"), page.getByRole("button", { name: "End the video" }).click()]);
+  const [download] = await Promise.all([page.waitForEvent("download"), page.getByRole("button", { name: "Stop the video" }).click()]);
   const path = stage.file("film.webm");
   await download.saveAs(path);
   assert.ok(statSync(path).size > 5000);
 }
 
-/** Nothing but keys, from the first look to a contact that is read. */
+/** Uses the keyboard only, from opening the page to reading a contact. */
 async function keyboardAlone(stage) {
   const { page } = await stage.view(nine);
   const key = (name) => page.keyboard.press(name);
@@ -116,7 +116,7 @@ async function keyboardAlone(stage) {
   await key("ArrowDown");
   await until(page, () => supple.model.contact !== null);
 
-  // Pulls a vertex: selects an object, holds its first vertex, moves it, lets go.
+  // Pull a vertex: select an object, grab its first vertex, move it, release it.
   await tabTo(/^fish 1/);
   await key("Enter");
   const object = await page.evaluate(() => supple.model.selection.object);
@@ -164,9 +164,9 @@ const says = (page, title) => page.getByRole("alertdialog", { name: title }).wai
 async function killedProgram(stage) {
   const { page, program } = await stage.view(nine);
   await program.stop("SIGKILL");
-  await says(page, "The connection is lost");
+  await says(page, "Connection lost");
   await page.getByRole("button", { name: "Reconnect" }).click();
-  await says(page, "The connection is lost");
+  await says(page, "Connection lost");
 }
 
 async function endedProgram(stage) {
@@ -195,8 +195,8 @@ async function malformedMessage(stage) {
     send(message);
   });
   await hasFrame(page);
-  await page.getByRole("checkbox", { name: "Object octrees" }).check();  // asks for another frame
-  await says(page, "The page does not understand the program");
+  await page.getByRole("checkbox", { name: "Object octrees" }).check();  // requests another frame
+  await says(page, "The page cannot read a message of the program");
   assert.equal(await page.locator("canvas.view").isVisible(), true);
 }
 
@@ -205,7 +205,7 @@ async function laterVersion(stage) {
     message.writeUInt16LE(2, 4);
     send(message);
   });
-  await says(page, "The page does not understand the program");
+  await says(page, "The page cannot read a message of the program");
   await page.getByText("version 2").waitFor();
 }
 
@@ -244,7 +244,7 @@ async function noWebGl(stage) {
 async function lostContext(stage) {
   const { page } = await stage.view(balls(stage));
   await page.evaluate(() => supple.loseContext());
-  await says(page, "The picture is lost");
+  await says(page, "Drawing has failed");
 }
 
 async function wrongToken(stage) {

@@ -1,4 +1,4 @@
-// A recording: play, scrub, step, loop, jump from event to event.
+// A recording: play, seek, step, loop, jump between events.
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { pause, runProgram, scenes, settled, step, until } from "./harness.mjs";
@@ -101,7 +101,7 @@ async function isNotPulled(stage) {
     }
   });
   await page.mouse.click(at.x, at.y);
-  await page.getByRole("log").getByText("A recording cannot be pulled").waitFor();
+  await page.getByRole("log").getByText("Objects of a recording cannot be pulled").waitFor();
 }
 
 export const tests = [

@@ -1,6 +1,8 @@
-// End-to-end tests of the viewer: the program itself, and a page in Chromium that is clicked, dragged and typed on.
-//   node e2e/run.mjs PATH/TO/supple [WORDS OF A TEST'S NAME]
-// Exits 77, which CTest takes as skipped, where there is no Chromium.
+// End-to-end tests of the viewer: the program and a page in Chromium that is clicked, dragged and typed on.
+//
+// usage: node e2e/run.mjs PATH/TO/supple [WORDS OF A TEST'S NAME]
+//
+// Exits with 77, which CTest reports as skipped, when there is no Chromium.
 import { existsSync, mkdirSync, readdirSync } from "node:fs";
 import { dirname, join, resolve } from "node:path";
 import { fileURLToPath, pathToFileURL } from "node:url";

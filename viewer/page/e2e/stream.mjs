@@ -1,5 +1,7 @@
-// How many frames a second come from the program to a page, in a Chromium that nothing else watches, beside a client that only reads.
-//   node e2e/stream.mjs PATH/TO/supple
+// Measures frames per second from the program to a page in an unobserved Chromium, and to a client that only
+// reads.
+//
+// usage: node e2e/stream.mjs PATH/TO/supple
 import { existsSync } from "node:fs";
 import { resolve } from "node:path";
 import WebSocket from "ws";
@@ -8,19 +10,19 @@ import { CHROMIUM_FLAGS, chromiumPath, Stage, SWAYING_CROWD, swayingBalls } from
 
 const SECONDS = 6;
 const WARM_UP_SECONDS = 2;
-/** Frames that a client lets be under way, as the page does. */
+/** Frames that may be in transit, as in the page. */
 const CREDIT = 2;
 const KIND_SCENE = 1;
 const KIND_FRAME = 2;
-/** Where the first section of a message begins. */
+/** Offset of the first section of a message. */
 const SECTION = 16;
 
 const wait = (seconds) => new Promise((done) => setTimeout(done, 1000 * seconds));
 
-/** What a message's first section, its text, says. */
+/** The text of a message, which is its first section. */
 const textOf = (message) => JSON.parse(message.subarray(SECTION + 16, SECTION + 16 + message.readUInt32LE(SECTION + 12)));
 
-/** A client that reads a message's header and nothing more: what program and socket can do. */
+/** A client that reads only message headers: the limit of program and socket. */
 async function bareClient(address) {
   const { host, search } = new URL(address);
   const socket = new WebSocket(`ws://${host}/session${search}`, { origin: `http://${host}`, perMessageDeflate: false });
@@ -51,7 +53,7 @@ async function bareClient(address) {
   return { rate: frames / seconds, megabytes: bytes / frames / 1e6, objects: objects.length, vertices };
 }
 
-/** Counts what comes and what it costs; runs in the page. */
+/** Counts messages and measures their cost; runs in the page. */
 function count(draws) {
   supple.model.setLayer("surface", draws);
   supple.client.send({ do: "speed", factor: 0 });

@@ -1,4 +1,4 @@
-/** Puts the page together. */
+/** Assembles the page. */
 import { Client, type Status } from "./client";
 import { Film } from "./capture/film";
 import { FramesRun } from "./capture/frames";
@@ -28,7 +28,7 @@ const TOOL_LABELS: Record<Tool, [label: string, key: string]> = {
 };
 const THEME = "supple-theme";
 
-/** What the session could not do; its own line first. */
+/** The sentence for a failure of the session, with its own line first. */
 function sayFailure({ text, layers }: { text: string; layers: Layer[] }): string {
   const labels = LAYER_ROWS.filter(({ layer }) => layers.includes(layer)).map(({ label }) => label);
   return labels.length > 0 ? `${text}. Switched off: ${labels.join(", ")}.` : text;
@@ -36,7 +36,7 @@ function sayFailure({ text, layers }: { text: string; layers: Layer[] }): string
 
 function cannotDraw(error: unknown): string {
   const why = error instanceof Error ? error.message : String(error);
-  return `This browser gives the page no WebGL 2 (${why}). Switch on hardware acceleration, or try another browser.`;
+  return `WebGL 2 is not available (${why}). Enable hardware acceleration, or use another browser.`;
 }
 
 export class App {
@@ -185,7 +185,7 @@ export class App {
     model.on("explanation", () => model.explanation && this.openTab("Inspect"));
     view.onLost = (why) => {
       client.send({ do: "pause" });
-      this.card.fail("The picture is lost", why);
+      this.card.fail("Drawing has failed", why);
     };
     view.onTurn = () => {
       this.player.turn();
@@ -196,7 +196,7 @@ export class App {
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.paint());
   }
 
-  /** What need not be said in each frame. */
+  /** Updates that are not needed in every frame. */
   private tick(): void {
     const now = performance.now();
     this.arrivals = this.arrivals.filter((time) => time > now - 1000);
@@ -217,7 +217,7 @@ export class App {
   }
 
   frames(): void {
-    if (this.client.status.state !== "connected" || !this.model.frame) return this.notices.show("There is no session whose frames could be saved.");
+    if (this.client.status.state !== "connected" || !this.model.frame) return this.notices.show("There are no frames to save: no session is connected.");
     if (this.film_.running) this.film();
     this.tools.release();
     this.player.pause();
@@ -234,7 +234,7 @@ export class App {
       }
     }
     const on = this.film_.running;
-    setIcon(this.filmButton, "film", on ? "End the video" : "Record a video", "Shift+V");
+    setIcon(this.filmButton, "film", on ? "Stop the video" : "Record a video", "Shift+V");
     this.filmButton.classList.toggle("recording", on);
   }
 
@@ -271,14 +271,14 @@ export class App {
     if (theme === "light" || theme === "dark") document.documentElement.dataset["theme"] = theme;
   }
 
-  /** Takes the theme's colours over to what style sheets do not reach. */
+  /** Copies the colours of the theme to elements that style sheets do not reach. */
   private paint(): void {
     this.view.setBackground(colourOf("--ground"));
     this.view.setInk(colourOf("--ink"));
     this.plots.rebuild();
   }
 
-  /** What the end-to-end tests look at; not an interface for anyone else. */
+  /** For the end-to-end tests only. */
   private exposeForTests(): void {
     const { model, view, client, player } = this;
     Object.assign(window, {
@@ -296,7 +296,7 @@ export class App {
         drawn: () => view.statistics(),
         get isUpToDate() { return view.isUpToDate; },
         draw: () => view.draw(),
-        /** As if a frame had brought all positions anew. */
+        /** Acts as if a frame had brought new positions of all objects. */
         touch: () => view.touch(),
         loseContext: () => (view.canvas.getContext("webgl2") as WebGL2RenderingContext).getExtension("WEBGL_lose_context")?.loseContext(),
       },
@@ -310,7 +310,7 @@ function logo(): SVGSVGElement {
   return mark;
 }
 
-/** What this browser remembers; nothing where it remembers nothing. */
+/** Reads or writes the browser's local storage; null when it is not available. */
 function localStore(name: string, value?: string): string | null {
   try {
     if (value !== undefined) localStorage.setItem(name, value);

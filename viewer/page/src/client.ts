@@ -1,4 +1,4 @@
-/** Between the transport and the model: reads messages, gives credit, matches answers to questions. */
+/** Connects transport and model: reads messages, gives credit, matches answers to requests. */
 import { Emitter } from "./emitter";
 import type { Layer, Model } from "./model";
 import { countsOf, MessageError, readMessage, type FailureMessage, type FrameText, type SceneCounts } from "./protocol/messages";
@@ -11,13 +11,13 @@ export type Status =
 
 interface ClientEvents {
   status: Status;
-  /** What the page has to say about what was wanted of it: one line. */
+  /** One line about a request of the user. */
   notice: string;
-  /** What the session says that it cannot do, when nobody waits for an answer, and the layers that are switched off by that. */
+  /** A failure that answers no request, and the layers that it switches off. */
   failure: { text: string; layers: Layer[] };
 }
 
-/** Frames that may be under way: one that is drawn, and one behind it. */
+/** Frames that may be in transit: one that is drawn, and the next. */
 const CREDIT = 2;
 
 export class Client extends Emitter<ClientEvents> {
@@ -31,7 +31,7 @@ export class Client extends Emitter<ClientEvents> {
   constructor(
     private readonly model: Model,
     private readonly open: (events: TransportEvents) => Transport,
-    /** Looks whether a scene can be shown before anything is made of it: a sentence, or null. */
+    /** Checks whether the scene can be displayed. Returns a sentence about the obstacle, or null. */
     private readonly obstacle: (objects: { name: string; vertices: number; triangles: number }[]) => string | null,
   ) {
     super();
@@ -57,7 +57,7 @@ export class Client extends Emitter<ClientEvents> {
     if (this.status.state !== "ended") this.transport?.send(command);
   }
 
-  /** Sends a command that is answered. */
+  /** Sends a command that has an answer. */
   ask(command: Record<string, unknown>): Promise<Record<string, unknown>> {
     if (this.status.state === "ended") return Promise.reject(new Error("there is no session"));
     const id = this.nextId++;
@@ -68,8 +68,8 @@ export class Client extends Emitter<ClientEvents> {
   }
 
   /**
-   * The first frame from now on that is as wanted, with those in between let through. Rejects, with a sentence, when the
-   * session fails or ends before that, or with the reason of `signal`.
+   * Resolves with the first frame from now on that fulfils the condition; gives credit for the frames before
+   * it. Rejects with a sentence when the session fails or ends first, or with the reason of `signal`.
    */
   frameThat(isWanted: (frame: FrameText) => boolean, signal: AbortSignal): Promise<FrameText> {
     return new Promise<FrameText>((resolve, reject) => {
@@ -87,11 +87,11 @@ export class Client extends Emitter<ClientEvents> {
       signal.addEventListener("abort", giveUp);
       if (signal.aborted) giveUp();
       else if (this.status.state === "ended") end(() => reject(new Error("The session has ended.")));
-      this.giveCredit();  // the page may be out of sight, where nothing is drawn
+      this.giveCredit();  // a hidden page does not draw
     });
   }
 
-  /** Called when a frame can be drawn: lets the session send the next ones. */
+  /** Call when a frame can be drawn. Allows the session to send the next frames. */
   giveCredit(): void {
     if (!this.scene || this.credit >= CREDIT || this.status.state !== "connected") return;
     this.send({ do: "credit", frames: CREDIT - this.credit });
@@ -102,7 +102,7 @@ export class Client extends Emitter<ClientEvents> {
     try {
       this.take(buffer);
     } catch (error) {
-      if (error instanceof RangeError) this.end("too-large", "The browser has not enough memory for this scene.");
+      if (error instanceof RangeError) this.end("too-large", "The browser does not have enough memory for this scene.");
       else if (error instanceof MessageError) this.end("malformed", `A message cannot be read: ${error.message}.`);
       else throw error;
     }
@@ -145,7 +145,7 @@ export class Client extends Emitter<ClientEvents> {
   }
 
   private end(reason: EndReason | "malformed" | "too-large", detail: string): void {
-    if (this.status.state === "ended") return;  // the first reason is the one that says most
+    if (this.status.state === "ended") return;  // the first reason is the most precise
     this.transport?.close();
     for (const question of this.questions.values()) question.reject(new Error("the session has ended"));
     this.questions.clear();

@@ -1,4 +1,4 @@
-/** Okabe and Ito's colours, which people with any kind of colour vision can tell apart. */
+/** The palette of Okabe and Ito, which people with any type of colour vision can distinguish. */
 export const OKABE_ITO = {
   orange: "#e69f00",
   sky: "#56b4e9",
@@ -9,10 +9,10 @@ export const OKABE_ITO = {
   purple: "#cc79a7",
 } as const;
 
-/** Of objects; vermillion is left to contacts and yellow to what is selected. */
+/** Colours of objects. Vermillion is reserved for contacts, yellow for the selection. */
 const OBJECTS = ["#56b4e9", "#e6b450", "#3fae8f", "#cc9bb9", "#4f8fc0", "#a9b4bd", "#8fb87a", "#b79a86"];
 export const objectColour = (index: number): string => OBJECTS[index % OBJECTS.length]!;
 
-/** Of octree levels and regions. */
+/** Colours of octree levels and regions. */
 export const LEVELS = [OKABE_ITO.blue, OKABE_ITO.orange, OKABE_ITO.green, OKABE_ITO.purple, OKABE_ITO.sky, OKABE_ITO.vermillion];
 export const levelColour = (level: number): string => LEVELS[level % LEVELS.length]!;

@@ -1,17 +1,17 @@
-/** Contacts of a frame, of either kind: triangles that intersect, or elements that meet on their way. */
+/** Contacts of both kinds: triangles that intersect, or elements that collide during the step. */
 import type { FrameMessage } from "./protocol/messages";
 
 type ContactData = Pick<FrameMessage, "contacts" | "impacts">;
 
 /**
- * A contact by what touches, so that it stays selected from frame to frame: object and triangle of both
- * sides; of an impact object and two elements of both sides, and its kind.
+ * Identifies a contact by what touches, so that it stays selected from frame to frame. Triangles: object and
+ * triangle of both sides. Elements: object and two numbers of both sides, and the kind.
  */
 export type ContactKey = readonly number[];
 
 export interface ContactSide {
   object: number;
-  /** A triangle or a vertex, or the two vertices of an edge. */
+  /** A triangle, a vertex, or the two vertices of an edge. */
   elements: number[];
   isFace: boolean;
 }
@@ -31,7 +31,7 @@ export function keyAt(frame: ContactData, place: number): ContactKey {
   return Array.from(hasImpacts(frame) ? frame.impacts.subarray(from, from + 7) : frame.contacts.subarray(from, from + 4));
 }
 
-/** The place of a contact in a frame, or −1. */
+/** The index of a contact in a frame, or −1. */
 export function findContact(frame: ContactData, key: ContactKey): number {
   const data = hasImpacts(frame) ? frame.impacts : frame.contacts;
   if (key.length !== (hasImpacts(frame) ? 7 : 4)) return -1;
@@ -56,7 +56,7 @@ export function kindAt(frame: ContactData, place: number): string {
   return hasImpacts(frame) ? IMPACT_KINDS[frame.impacts[STRIDE * place + 6]!]! : KINDS[frame.contacts[STRIDE * place + 4]!]!;
 }
 
-/** Whether the contact at a place has an object on one of its sides. */
+/** Whether one side of a contact is the given object. */
 export function involves(frame: ContactData, place: number, object: number): boolean {
   const from = STRIDE * place;
   return hasImpacts(frame)
@@ -64,7 +64,7 @@ export function involves(frame: ContactData, place: number, object: number): boo
     : frame.contacts[from] === object || frame.contacts[from + 2] === object;
 }
 
-/** Where the points of a contact are: in which data, from which row on, and how many. */
+/** The array that has the points of a contact, the first row, and the number of rows. */
 export function pointsAt(frame: FrameMessage, place: number): { data: Float32Array; first: number; count: number } {
   if (hasImpacts(frame)) return { data: frame.impactPoints, first: place, count: 1 };
   return { data: frame.contactPoints, first: frame.contacts[STRIDE * place + 6]!, count: frame.contacts[STRIDE * place + 5]! };

@@ -1,4 +1,4 @@
-/** Listeners by name of event; `Events` maps a name to what is told. */
+/** Event listeners. `Events` maps the name of an event to the type of its argument. */
 export class Emitter<Events extends object> {
   private readonly listeners = new Map<keyof Events, Set<(value: never) => void>>();
 

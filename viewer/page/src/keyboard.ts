@@ -1,4 +1,4 @@
-/** Keys of the page; the sheet of `panels/help.ts` lists them. */
+/** Keyboard shortcuts; `panels/help.ts` lists them. */
 import { LAYER_ROWS } from "./panels/scene_panel";
 import type { App } from "./app";
 import type { AxisView } from "./view/camera";
@@ -6,7 +6,7 @@ import type { AxisView } from "./view/camera";
 const VIEWS: AxisView[] = ["front", "back", "right", "left", "top", "bottom"];
 const ARROWS: Record<string, [number, number]> = { ArrowRight: [1, 0], ArrowLeft: [-1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
 
-/** Elements that need keys for themselves. */
+/** Elements that handle these keys themselves. */
 function takesKeys(target: EventTarget | null, key: string): boolean {
   if (!(target instanceof HTMLElement)) return false;
   if (target.closest("dialog")) return true;

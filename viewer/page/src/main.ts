@@ -7,7 +7,7 @@ import "./styles/messages.css";
 import { App } from "./app";
 import { h } from "./panels/dom";
 
-/** Whatever goes wrong here is said, never a blank page. */
+/** Shows any error, so that the page is never blank. */
 function fail(error: unknown): void {
   const text = error instanceof Error ? error.message : String(error);
   const card = h("div", { class: "card", role: "alertdialog", "aria-label": "The page has failed" }, h("h2", {}, "The page has failed"), h("p", {}, text));
@@ -23,7 +23,7 @@ function failOnce(error: unknown): void {
 }
 
 addEventListener("error", (event) => {
-  if (event.error) failOnce(event.error);  // without one it is a remark of the browser's, as of layout that settles late
+  if (event.error) failOnce(event.error);  // without `error` it is only a notice of the browser, for example about layout
 });
 addEventListener("unhandledrejection", (event) => failOnce(event.reason));
 

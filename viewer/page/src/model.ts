@@ -1,4 +1,4 @@
-/** What the page knows: the scene as the session told it, the newest frame, and what the person chose. */
+/** The state of the page: the scene, the newest frame, and the user's choices. */
 import { objectColour } from "./colours";
 import { sidesOf, type ContactKey } from "./contacts";
 import { Emitter } from "./emitter";
@@ -11,15 +11,15 @@ export interface ObjectState {
   triangles: number;
   isStatic: boolean;
   isBody: boolean;
-  /** How it moves, in a word or two. */
+  /** Its kind of motion, in a word or two. */
   kind: string;
-  /** Where it is now, minus the scene's centre: its part of the model's `positions`, written in place. */
+  /** Current positions minus the scene's centre: a view into the model's `positions`. */
   positions: Float32Array;
   corners: Uint32Array;
   visible: boolean;
   colour: string;
   opacity: number;
-  /** Of where it is now; what `boundsOf` has found, if it was asked. */
+  /** A cache for `boundsOf`, valid for the current positions. */
   bounds?: Bounds | null | undefined;
 }
 
@@ -33,7 +33,7 @@ export const LAYERS = [
 ] as const;
 export type Layer = (typeof LAYERS)[number];
 
-/** Layers that the session makes, by their names in its protocol. */
+/** Layers that the session computes, by their names in the protocol. */
 const MADE_BY_SESSION: Record<string, Layer> = { candidates: "candidates", scene_regions: "regions", colliding_vertices: "vertices", octree: "octree" };
 
 export const TOOLS = ["select", "grab", "explain"] as const;
@@ -63,9 +63,9 @@ export interface Events {
 interface ModelEvents {
   scene: SceneText;
   frame: FrameMessage;
-  /** Visibility, colour or opacity of objects, layers, the theme: what is drawn, not what is there. */
+  /** The appearance changed: visibility, colour, opacity, layers or theme. */
   display: null;
-  /** Layers that the session has to send. */
+  /** The set of layers that the session must send changed. */
   request: null;
   selection: null;
   tool: Tool;
@@ -75,7 +75,7 @@ interface ModelEvents {
 
 const LIVE_ROWS = 4000;
 
-/** Rows of numbers, a row a frame: of a recording all of them, of a simulation those that were seen. */
+/** Rows of numbers, one per frame: all frames of a recording, the received frames of a simulation. */
 export class History {
   names: string[] = [];
   columns: number[][] = [];
@@ -93,7 +93,7 @@ export class History {
     this.frames.push(frame);
     for (let i = 0; i < this.columns.length; ++i) this.columns[i]!.push(row[i] ?? NaN);
     if (this.frames.length <= LIVE_ROWS) return;
-    const surplus = LIVE_ROWS / 4;  // in bulk, so that it costs little a frame
+    const surplus = LIVE_ROWS / 4;  // remove many rows at once, so that the cost per frame is small
     this.frames.splice(0, surplus);
     for (const column of this.columns) column.splice(0, surplus);
     const first = this.frames[0]!;
@@ -117,7 +117,7 @@ function kindOf(object: SceneObject, source: SceneText["source"]): string {
 export class Model extends Emitter<ModelEvents> {
   scene: SceneText | null = null;
   objects: ObjectState[] = [];
-  /** Of all objects, one after the other. */
+  /** All objects, one after the other. */
   positions = new Float32Array(0);
   frame: FrameMessage | null = null;
   framesSeen = 0;
@@ -130,7 +130,7 @@ export class Model extends Emitter<ModelEvents> {
   octree: { onlySelected: boolean; level: number } = { onlySelected: false, level: -1 };
   throughSurfaces = true;
   pointSize = 5;
-  normalLength = 0.015;  // of the scene's size
+  normalLength = 0.015;  // relative to the size of the scene
 
   tool: Tool = "select";
   selection: Selection | null = null;
@@ -207,7 +207,7 @@ export class Model extends Emitter<ModelEvents> {
   private remember(message: FrameMessage): void {
     const { step, time } = message.text;
     const frames = this.history.frames;
-    if (frames.length > 0 && frames[frames.length - 1]! >= step) return;  // the same step again, layers changed
+    if (frames.length > 0 && frames[frames.length - 1]! >= step) return;  // the same step again, with other layers
     this.history.push(step, [time, ...message.statistics]);
     for (const [events, data] of [[this.history.events.begin, message.begin], [this.history.events.end, message.end]] as const)
       for (let i = 0; i < data.length; i += 2) events.push({ frame: step, a: data[i]!, b: data[i + 1]! });
@@ -225,7 +225,7 @@ export class Model extends Emitter<ModelEvents> {
     if (this.layers.octree && this.octree.onlySelected) this.emit("request", null);
   }
 
-  /** Selects a contact, and what of object a touches in it. */
+  /** Selects a contact, and the touching part of object a. */
   selectContact(key: ContactKey): void {
     const [a] = sidesOf(key);
     this.select({ object: a.object, triangle: a.isFace ? a.elements[0]! : null, vertex: null }, key);
@@ -256,8 +256,8 @@ export class Model extends Emitter<ModelEvents> {
   }
 
   /**
-   * The session makes these no more, by its names: switches them off, and gives those that were on. Then asks anew for the others, as
-   * it may just have been asked for more.
+   * Switches off layers that the session can no longer compute, by their names in the protocol; returns
+   * those that were on. Then requests the others again, because a request may have been in transit.
    */
   dropLayers(names: string[]): Layer[] {
     const dropped = names.flatMap((name) => MADE_BY_SESSION[name] ?? []).filter((layer) => this.layers[layer]);
@@ -267,7 +267,7 @@ export class Model extends Emitter<ModelEvents> {
     return dropped;
   }
 
-  /** The `layers` command for what is switched on. */
+  /** The `layers` command for the layers that are switched on. */
   request(): Record<string, unknown> {
     const objects =
       this.octree.onlySelected && this.selection
@@ -283,7 +283,9 @@ export class Model extends Emitter<ModelEvents> {
   }
 }
 
-/** The bounds of an object's vertices, of those that are numbers; null when there are none. Found once in each place. */
+/**
+ * The bounds of all finite vertices of an object; null when there are none. Cached until the object moves.
+ */
 export function boundsOf(object: ObjectState): Bounds | null {
   if (object.bounds === undefined) object.bounds = findBounds(object.positions);
   return object.bounds;
@@ -301,7 +303,7 @@ function findBounds(positions: Float32Array): Bounds | null {
   return lower.every((x, axis) => x <= upper[axis]!) ? { lower, upper } : null;
 }
 
-/** The bounds of several objects together; null when there are none. */
+/** The common bounds of several objects; null when there are none. */
 export function boundsOfAll(objects: ObjectState[]): Bounds | null {
   let all: Bounds | null = null;
   for (const object of objects) {

@@ -1,4 +1,4 @@
-/** What the mouse does to objects: select, grab and pull, or ask why two triangles do not touch. */
+/** Mouse tools: select, grab and pull, or explain why two triangles do not touch. */
 import type { Client } from "./client";
 import { keyAt } from "./contacts";
 import type { Model } from "./model";
@@ -7,7 +7,7 @@ import type { SceneView } from "./view/scene_view";
 
 /** A press that moves less than this is a click. */
 const CLICK_PIXELS = 4;
-/** How far an arrow key pulls, of the view's height. */
+/** The distance that an arrow key pulls, relative to the height of the view. */
 const KEY_PULL = 0.02;
 
 interface Grip {
@@ -15,7 +15,7 @@ interface Grip {
   vertex: number;
   start: [number, number, number];
   to: [number, number, number];
-  /** Set when the target has moved since it was sent. */
+  /** The target has moved since it was sent. */
   moved: boolean;
 }
 
@@ -27,7 +27,7 @@ export class Tools {
     private readonly model: Model, private readonly client: Client, private readonly view: SceneView, private readonly inspector: Inspector,
   ) {
     const { canvas } = view;
-    // Before the camera's controls, which must not orbit while a vertex is pulled.
+    // Handled before the camera controls, which must not orbit while a vertex is pulled.
     canvas.addEventListener("pointerdown", (event) => this.press(event), { capture: true });
     canvas.addEventListener("pointermove", (event) => this.move(event));
     canvas.addEventListener("pointerup", (event) => this.lift(event));
@@ -92,7 +92,7 @@ export class Tools {
 
   private grab(object: number, vertex: number): void {
     if (!this.model.can("grab")) {
-      this.client.emit("notice", "A recording cannot be pulled; open the scene itself.");
+      this.client.emit("notice", "Objects of a recording cannot be pulled; open the scene file instead.");
       return;
     }
     const start = this.view.positionOf(object, vertex);
@@ -103,7 +103,7 @@ export class Tools {
     });
   }
 
-  /** With the keyboard: holds the selected vertex, or lets go. */
+  /** Keyboard: grabs or releases the selected vertex. */
   toggleGrip(): void {
     if (this.grip) return this.release();
     const { selection } = this.model;
@@ -115,7 +115,7 @@ export class Tools {
     this.showPull();
   }
 
-  /** With the keyboard: pulls across the view. */
+  /** Keyboard: pulls in the plane of the view. */
   nudge(right: number, up: number): void {
     if (!this.grip) return;
     const { camera, controls } = this.view.rig;
@@ -135,7 +135,7 @@ export class Tools {
     this.view.showPull(this.view.positionOf(this.grip!.object, this.grip!.vertex), this.grip!.to);
   }
 
-  /** At most one command a picture, however often the mouse moves. */
+  /** Sends at most one command per drawn frame, however often the mouse moves. */
   turn(): void {
     if (!this.grip?.moved) return;
     this.grip.moved = false;

@@ -1,4 +1,4 @@
-/** Writes messages as the session does, for tests of the reader. */
+/** Writes messages as the session does, to test the reader. */
 import { NONE } from "../src/protocol/messages";
 
 type Numbers = Uint8Array | Uint32Array | Float32Array | Float64Array;
@@ -43,7 +43,7 @@ export const SCENE = {
     { name: "other", vertices: 4, triangles: 2, static: true, body: false, self_collision: false },
   ],
   frames: null, time_step: 0.01, seed: 0, bounding_volume: "aabb", contacts: "intersection", broad_phase: "octree",
-  max_level: 16, leaf_size: 64, integrator: "verlet", can: ["play", "reset", "grab", "set"], statistics: ["total_seconds", "contacts"],
+  max_level: 16, leaf_size: 64, integrator: "verlet", choices: { contacts: ["none", "intersection"] }, can: ["play", "reset", "grab", "set"], statistics: ["total_seconds", "contacts"],
   series: ["time", "contacts"], warnings: [],
 };
 
@@ -56,7 +56,7 @@ export const floats = (tag: number, width: number, numbers: number[], object = N
 
 export const sceneMessage = (): ArrayBuffer => message(KIND.scene, text(SCENE), words(16, 3, [0, 1, 2], 0), words(16, 3, [0, 1, 2, 0, 2, 3], 1));
 
-/** A frame with a section of every tag. */
+/** A frame with one section per tag. */
 export const frameMessage = (): ArrayBuffer =>
   message(
     KIND.frame, text(FRAME),

@@ -114,14 +114,14 @@ test("every part of a message that is cut off is refused", () => {
     for (let length = 0; length < whole.byteLength; ++length) {
       assert.throws(() => readMessage(whole.slice(0, length), counts), MessageError);
       if (length < 16) continue;
-      const cut = whole.slice(0, length);  // one that says its own length
+      const cut = whole.slice(0, length);  // a message that states its own length
       new DataView(cut).setUint32(8, length, true);
       assert.throws(() => readMessage(cut, counts), MessageError);
     }
   }
 });
 
-/** A small generator of numbers that are the same in each run. */
+/** A small random number generator with reproducible numbers. */
 function numbersFrom(seed: number): () => number {
   let state = seed;
   return () => {
@@ -130,7 +130,7 @@ function numbersFrom(seed: number): () => number {
   };
 }
 
-/** Everything that layers do with a frame stays within its arrays. */
+/** Layers access a frame only within its arrays. */
 function useFrame(frame: FrameMessage): void {
   if (frame.text.generation !== counts.generation) return;
   for (let i = 0; i < frame.contacts.length; i += 8) {

@@ -1,4 +1,4 @@
-// As much of node as the tests use; the page itself must not see node's types.
+// The part of node's types that the tests use. The page itself must not see node's types.
 declare module "node:test" {
   export function test(name: string, body: () => void | Promise<void>): void;
 }

@@ -38,5 +38,5 @@ test("objects whose bounds the ray passes are not looked through, those that it 
   assert.equal(pick(down(0.5, 0.25), watched)?.object, 0);
   assert.ok(looked.includes(0) && !looked.includes(1));
   assert.equal(pick(down(0, 0), [far])?.triangle, 0);  // along two sides of its bounds
-  assert.equal(pick({ origin: [-1, 0.5, 0], direction: [1, 0, 0] }, [far]), null);  // in its plane
+  assert.equal(pick({ origin: [-1, 0.5, 0], direction: [1, 0, 0] }, [far]), null);  // in the plane of the triangle
 });

@@ -13,7 +13,7 @@ test("few rows are where the scroll bar says", () => {
 test("fewer rows than there is room, and none", () => {
   assert.deepEqual(new RowScale(3, 24, 250).inSight(0), { first: 0, shown: 3, top: 0 });
   assert.deepEqual(new RowScale(0, 24, 250).inSight(0), { first: 0, shown: 0, top: 0 });
-  assert.deepEqual(new RowScale(3, 24, 250).inSight(-40).first, 0);  // pulled beyond the end, as on touch screens
+  assert.deepEqual(new RowScale(3, 24, 250).inSight(-40).first, 0);  // scrolled beyond the end, as on touch screens
 });
 
 test("scrolls as little as is needed", () => {

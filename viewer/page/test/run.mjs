@@ -1,4 +1,4 @@
-// Runs the unit tests: esbuild makes them plain JavaScript, node's own runner runs them.
+// Runs the unit tests: esbuild translates them to JavaScript, node's test runner executes them.
 import { spawnSync } from "node:child_process";
 import { mkdtempSync, readdirSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";

@@ -3,7 +3,7 @@ import { test } from "node:test";
 import type { Model, ObjectState } from "../src/model";
 import { addRange, obstacleOf, Surfaces } from "../src/view/surfaces";
 
-/** A graphics card with the least that WebGL 2 asks for, but for the number of vertices. */
+/** A graphics card with the minimum of WebGL 2, except for the number of vertices. */
 const card = { MAX_ELEMENT_INDEX: 1, MAX_TEXTURE_SIZE: 2, getParameter: (name: number) => (name === 1 ? 2 ** 32 - 1 : 2048) } as unknown as WebGL2RenderingContext;
 
 test("ranges that are near are uploaded together", () => {
@@ -13,7 +13,7 @@ test("ranges that are near are uploaded together", () => {
   addRange(ranges, 200, 100);
   assert.deepEqual(ranges, [{ start: 30, count: 270 }]);
   addRange(ranges, 100_000, 6);
-  addRange(ranges, 0, 30);  // of a frame after that one
+  addRange(ranges, 0, 30);  // of the frame after that
   assert.deepEqual(ranges, [{ start: 30, count: 270 }, { start: 100_000, count: 6 }, { start: 0, count: 30 }]);
 });
 
@@ -28,7 +28,7 @@ test("only what has moved is uploaded, and at most everything", () => {
   const ranges = () => (surfaces as unknown as { positions: { updateRanges: { start: number; count: number }[] } }).positions.updateRanges;
   surfaces.touch([7, 8, 500]);
   assert.deepEqual(ranges(), [{ start: 21_000, count: 6000 }, { start: 1_500_000, count: 3000 }]);
-  for (let frame = 0; frame < 1000; ++frame) surfaces.touch([frame % count]);  // nothing is drawn meanwhile
+  for (let frame = 0; frame < 1000; ++frame) surfaces.touch([frame % count]);  // without drawing meanwhile
   assert.ok(ranges().length < 600 && ranges().reduce((sum, range) => sum + range.count, 0) < 2 * positions.length);
   surfaces.touch(objects.keys());
   assert.deepEqual(ranges(), [{ start: 0, count: positions.length }]);

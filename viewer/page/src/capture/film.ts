@@ -1,7 +1,7 @@
 import { download, stamp } from "../panels/dom";
 import type { SceneView } from "../view/scene_view";
 
-/** A WebM film of what is drawn while it runs, in its own time: what comes too late is left out. */
+/** Records what is drawn as a WebM video in real time; late frames are dropped. */
 export class Film {
   private recorder: MediaRecorder | null = null;
 

@@ -1,4 +1,4 @@
-/** Frames as pictures: each step is waited for, drawn once and kept, however long that takes. */
+/** Saves frames as pictures: waits for each step, draws it once and stores it, however long that takes. */
 import type { Client } from "../client";
 import type { Model } from "../model";
 import { download, readable, stamp } from "../panels/dom";
@@ -8,12 +8,12 @@ import { Archive } from "./archive";
 import { takePicture } from "./picture";
 
 export interface FramesPlan {
-  /** Pictures, ≥ 1, the first one being of the present step. */
+  /** Number of pictures, ≥ 1. The first shows the current step. */
   count: number;
-  /** Steps from one picture to the next, ≥ 1. */
+  /** Steps between two pictures, ≥ 1. */
   every: number;
   size: PictureSize;
-  /** Leaves out the ground. */
+  /** Omits the ground and makes the background transparent. */
   transparent: boolean;
 }
 
@@ -26,9 +26,9 @@ interface Taken {
 const nameOf = (step: number): string => `frame_${String(step).padStart(6, "0")}.png`;
 
 /**
- * Takes the pictures of a plan and saves them: one as PNG, more as one ZIP with `frames.json`. The session is
- * paused before and stays at the last step. What ends it early, as the session's end or `signal`, leaves what
- * was taken until then.
+ * Takes the pictures of a plan and saves them: one picture as PNG, more as a ZIP with `frames.json`. The
+ * session is paused first and stays at the last step. If the session ends or `signal` aborts, the pictures
+ * taken so far are saved.
  */
 export class FramesRun {
   private readonly taken: Taken[] = [];
@@ -40,7 +40,7 @@ export class FramesRun {
     private readonly plan: FramesPlan, private readonly signal: AbortSignal, private readonly progress: (taken: number) => void,
   ) {}
 
-  /** Gives a sentence about what was saved. */
+  /** Returns a sentence about what was saved. */
   async go(): Promise<string> {
     let fault: string | null = null;
     try {
@@ -50,7 +50,7 @@ export class FramesRun {
       fault = this.client.status.state === "ended" ? "The session has ended." : (error as Error).message;
     } finally {
       this.view.setPicture(null);
-      this.client.send({ do: "pause" });  // gives up steps that nobody waits for any more
+      this.client.send({ do: "pause" });  // drops steps that are no longer needed
     }
     return this.save(fault);
   }
@@ -60,8 +60,8 @@ export class FramesRun {
     let at = await this.client.frameThat((frame) => !frame.playing, this.signal);
     for (;;) {
       const picture = takePicture(this.view);
-      const next = this.hasMore(at) ? this.advance(at) : null;  // while this one is encoded
-      next?.catch(() => {});  // the picture comes first
+      const next = this.hasMore(at) ? this.advance(at) : null;  // runs while this picture is encoded
+      next?.catch(() => {});  // the error is reported after the picture is stored
       await this.keep(await picture, at);
       if (!next) return;
       at = await next;
@@ -98,7 +98,7 @@ export class FramesRun {
     return fault ? `${fault} ${readable(count)} of ${readable(this.plan.count)} pictures are saved: ${name}.` : all;
   }
 
-  /** What `frames.json` says. Places are minus the scene's `center`, as in all that the session sends. */
+  /** The content of `frames.json`. Positions are relative to the scene's `center`, as in all messages. */
   private description(fault: string | null): Record<string, unknown> {
     const { title, version, source, center } = this.model.scene!;
     const { size, transparent, count } = this.plan;

@@ -1,4 +1,4 @@
-/** All contacts of the frame, as many as there are. */
+/** A table of all contacts of the frame. */
 import { contactCount, findContact, involves, keyAt, kindAt, sidesOf } from "../contacts";
 import type { Model } from "../model";
 import { h, readable } from "./dom";
@@ -11,7 +11,7 @@ export class ContactTable {
   private readonly summary = h("p", { class: "hint", "aria-live": "off" });
   private readonly window: RowWindow<Row>;
   private readonly only = h("input", { type: "checkbox" });
-  /** Places of the contacts that are listed; null for all of them. */
+  /** Indices of the listed contacts; null for all. */
   private listed: number[] | null = null;
 
   constructor(private readonly model: Model, private readonly fly: () => void) {
@@ -76,7 +76,7 @@ export class ContactTable {
   }
 
   private choose(index: number): void {
-    if (index >= this.count) return;  // it has gone meanwhile
+    if (index >= this.count) return;  // it has disappeared meanwhile
     const place = this.listed ? this.listed[index]! : index;
     this.model.selectContact(keyAt(this.model.frame!, place));
     this.window.reveal(index);

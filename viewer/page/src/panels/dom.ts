@@ -1,11 +1,11 @@
-/** Small helpers for elements. */
+/** Helpers to create elements. */
 
 type Child = Node | string | null;
 interface Attributes {
   [name: string]: string | number | boolean | null | undefined | ((event: never) => void);
 }
 
-/** An element with attributes, listeners (`onclick`, …) and children. */
+/** Creates an element with attributes, listeners (`onclick`, …) and children. */
 export function h<Tag extends keyof HTMLElementTagNameMap>(
   tag: Tag, attributes: Attributes = {}, ...children: Child[]
 ): HTMLElementTagNameMap[Tag] {
@@ -19,7 +19,7 @@ export function h<Tag extends keyof HTMLElementTagNameMap>(
   return element;
 }
 
-/** Icons are drawn on 16 by 16 with a pen of 1.5. */
+/** Icons are 16 × 16 with a line width of 1.5. */
 const ICONS: Record<string, string> = {
   play: '<path d="M4.5 2.8v10.4L13 8z" fill="currentColor"/>',
   pause: '<path d="M5 3v10M11 3v10" stroke-width="2.6"/>',
@@ -50,7 +50,7 @@ export function icon(name: string): SVGSVGElement {
   return holder.content.firstElementChild as SVGSVGElement;
 }
 
-/** A button with an icon; its name is said by its label, its key in the tooltip. */
+/** A button with an icon. The label is its accessible name; the tooltip shows its key. */
 export function iconButton(name: string, label: string, key: string, press: () => void): HTMLButtonElement {
   return h("button", { type: "button", class: "icon", "aria-label": label, title: key ? `${label} (${key})` : label, onclick: press }, icon(name));
 }
@@ -61,7 +61,7 @@ export function setIcon(button: HTMLButtonElement, name: string, label: string, 
   button.title = key ? `${label} (${key})` : label;
 }
 
-/** A dialog with a title and a button that closes it. */
+/** A dialog with a title and a close button. */
 export function sheet(title: string, kind: string, ...children: Child[]): HTMLDialogElement {
   const dialog = h(
     "dialog", { class: kind, "aria-label": title },
@@ -71,7 +71,7 @@ export function sheet(title: string, kind: string, ...children: Child[]): HTMLDi
   return dialog;
 }
 
-/** A colour of the style sheet, as `rgb(…)`: of the theme that holds now. */
+/** A colour of the current theme as `rgb(…)`. */
 export function colourOf(name: string): string {
   const probe = h("span", { style: `color: var(${name})` });
   document.body.append(probe);
@@ -80,7 +80,7 @@ export function colourOf(name: string): string {
   return color;
 }
 
-/** A number as people read it. */
+/** Formats a number for display. */
 export function readable(x: number): string {
   if (!Number.isFinite(x)) return String(x);
   if (Number.isInteger(x)) return x.toLocaleString("en");
@@ -88,7 +88,7 @@ export function readable(x: number): string {
   return size >= 1e-4 && size < 1e6 ? String(Number(x.toPrecision(6))) : x.toExponential(4);
 }
 
-/** The time, as part of a file's name. */
+/** The current time, for file names. */
 export const stamp = (): string => new Date().toISOString().slice(0, 19).replace(/[:T]/g, "-");
 
 export function download(blob: Blob, name: string): void {

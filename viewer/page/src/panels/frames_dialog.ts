@@ -1,4 +1,4 @@
-/** Asks which frames to save as pictures, and how large; then shows how far that is. */
+/** Asks which frames to save and at which size, then shows the progress. */
 import { MOST_FILES } from "../capture/archive";
 import type { FramesPlan } from "../capture/frames";
 import type { Model } from "../model";
@@ -10,7 +10,7 @@ const USUAL_COUNT = 300;
 const USUAL_SIZES: PictureSize[] = [{ width: 1920, height: 1080 }, { width: 3840, height: 2160 }];
 
 const words = ({ width, height }: PictureSize): string => `${width} × ${height}`;
-/** Encoders of films want even numbers. */
+/** Video encoders require even numbers. */
 const even = (x: number): number => Math.max(2, 2 * Math.floor(x / 2));
 
 type Save = (plan: FramesPlan, signal: AbortSignal, progress: (taken: number) => void) => Promise<string>;
@@ -66,7 +66,7 @@ export class FramesDialog {
     return this.model.frame?.text.step ?? 0;
   }
 
-  /** Where there is a frame to begin with. */
+  /** Call when there is a frame. */
   open(): void {
     const { frames } = this;
     this.offerSizes();
@@ -103,7 +103,7 @@ export class FramesDialog {
     return h("option", { value: `${width} ${height}`, disabled: Math.max(width, height) > most }, label);
   }
 
-  /** What is chosen; numbers that are not there are NaN. */
+  /** The chosen values; missing numbers are NaN. */
   private plan(): FramesPlan {
     const [width, height] = this.size.value.split(" ").map(Number);
     const size = height === undefined ? { width: this.width.valueAsNumber, height: this.height.valueAsNumber } : { width: width!, height };
@@ -112,7 +112,7 @@ export class FramesDialog {
     return { count: Math.min(count, MOST_FILES), every, size, transparent: this.transparent.checked };
   }
 
-  /** Shows what belongs to the choice, and says what it comes to. */
+  /** Shows the fields that match the choice, and a summary of it. */
   private fit(): void {
     this.until.min = String(this.step);
     this.own.hidden = this.width.disabled = this.height.disabled = this.size.value !== "";
@@ -147,7 +147,7 @@ export class FramesDialog {
     this.place.textContent = `${readable(taken)} of ${readable(count)}`;
   }
 
-  /** What was taken until now is still saved. */
+  /** Stops. Pictures taken so far are still saved. */
   private giveUp(): void {
     this.running?.abort(new Error("Cancelled."));
   }

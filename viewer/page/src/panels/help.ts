@@ -2,8 +2,8 @@ import { h, sheet } from "./dom";
 
 const GROUPS: [string, [string, string][]][] = [
   ["Play", [
-    ["Space", "play or pause"], ["→ ←", "a step on, or back in a recording"], ["Home End", "first, last frame"],
-    [". ,", "next, previous event"], ["[ ]", "slower, faster"], ["L", "loop a recording"], ["R", "reset with the seed"],
+    ["Space", "play or pause"], ["→ ←", "one step forward; in a recording also back"], ["Home End", "first, last frame"],
+    [". ,", "next, previous event"], ["[ ]", "slower, faster"], ["L", "loop a recording"], ["R", "restart with the seed"],
   ]],
   ["Look", [
     ["drag", "orbit; right button or Shift: pan"], ["wheel", "zoom to the cursor"], ["Shift arrows", "orbit"], ["Alt arrows", "pan"], ["+ −", "zoom"],
@@ -11,14 +11,14 @@ const GROUPS: [string, [string, string][]][] = [
   ]],
   ["Work", [
     ["V", "select: click an object, triangle, contact"], ["G", "grab: drag a vertex, or select one and use Enter and the arrows"], ["W", "why no contact: click two triangles"],
-    ["↑ ↓", "in a list: from row to row"], ["Esc", "let go, clear the selection, close"],
+    ["↑ ↓", "in a list: next or previous row"], ["Esc", "release, clear the selection, close"],
   ]],
   ["Layers", [
     ["S X", "surfaces, wireframe"], ["N B", "scene octree, object octrees"], ["P C", "object pairs, candidates"],
     ["I D", "intersecting triangles, contact points"], ["Y U J", "normals, curves, vertices"],
   ]],
   ["Page", [
-    ["Shift S", "save a picture"], ["Shift V", "record a video, or end it"], ["Shift P", "save frames as pictures, each of them, at any size"], ["T", "light or dark"], ["H", "hide or show the panels"], ["?", "this sheet"],
+    ["Shift S", "save a picture"], ["Shift V", "start or stop recording a video"], ["Shift P", "save every frame as a picture of any size"], ["T", "light or dark"], ["H", "hide or show the panels"], ["?", "this list"],
   ]],
 ];
 

@@ -1,17 +1,17 @@
-/** Ids and values of what was picked, and why two triangles are, or are not, a contact. */
+/** Ids and values of the picked elements, and the explanation why two triangles are or are not a contact. */
 import type { Client } from "../client";
 import { OKABE_ITO } from "../colours";
 import { findContact, hasImpacts, kindAt, pointsAt, sidesOf } from "../contacts";
 import type { Explanation, Model } from "../model";
 import { h, readable } from "./dom";
 
-/** While things move, values are read anew so often. */
+/** Interval between updates of the values while things move. */
 const REFRESH_MILLISECONDS = 250;
 
 const STAGES: Record<string, string> = {
   not_tested: "Not tested",
   shared_vertex: "They share a vertex",
-  inert: "A corner is not a finite number",
+  inert: "A corner is not finite",
   object_volumes: "Broad phase: the objects are apart",
   octree_volumes: "Narrow phase: octree cells are apart",
   triangle_boxes: "Leaves: the boxes of the triangles are apart",
@@ -25,12 +25,12 @@ function show(value: unknown): string {
   return value === null ? "none" : String(value);
 }
 
-/** Numbers in full: what a person copies. */
+/** Formats numbers in full, for copying. */
 function showExactly(value: unknown): string {
   return Array.isArray(value) ? value.map(showExactly).join("\n") : String(value);
 }
 
-/** Members of an object, and of the objects within it. */
+/** Flattens nested objects into rows. */
 function rowsOf(value: Record<string, unknown>): [string, unknown][] {
   return Object.entries(value).flatMap(([name, inner]) =>
     inner !== null && typeof inner === "object" && !Array.isArray(inner) ? rowsOf(inner as Record<string, unknown>) : [[name, inner] as [string, unknown]],
@@ -83,14 +83,14 @@ export class Inspector {
     return h(
       "form", { class: "explain", onsubmit: submit },
       h("h3", {}, "Why no contact?"),
-      h("p", { class: "hint" }, "Pick two triangles with the tool ", h("kbd", {}, "W"), ", or give the numbers of object and triangle."),
+      h("p", { class: "hint" }, "Pick two triangles with the tool ", h("kbd", {}, "W"), ", or enter the numbers of objects and triangles."),
       ...rows,
       h("button", { type: "submit" }, "Explain"),
       this.verdict,
     );
   }
 
-  /** Asks which stage told two triangles apart. */
+  /** Asks which stage separated two triangles. */
   async explain(pair: { object: number; triangle: number }[]): Promise<void> {
     pair.forEach(({ object, triangle }, i) => {
       this.fields[i]!.object.value = String(object);
@@ -120,7 +120,7 @@ export class Inspector {
   private showVerdict(): void {
     const { explained, explanation } = this.model;
     if (!explanation) {
-      const text = explained.length === 1 ? "Now the second triangle." : "";
+      const text = explained.length === 1 ? "Now pick the second triangle." : "";
       this.verdict.replaceChildren(...(text ? [h("p", {}, text)] : []));
       return;
     }
@@ -157,7 +157,7 @@ export class Inspector {
     }, REFRESH_MILLISECONDS);
   }
 
-  /** Asks the session for exact values of what is selected. */
+  /** Requests exact values of the selection. */
   private async read(): Promise<void> {
     const { selection } = this.model;
     const round = ++this.round;

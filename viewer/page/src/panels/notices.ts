@@ -1,4 +1,7 @@
-/** Notices that go by themselves, warnings that stay, and the card that takes the middle of the page when there is nothing to show any more. */
+/**
+ * Notices that disappear, warnings that stay, and the card that replaces the view when there is nothing to
+ * show.
+ */
 import type { Status } from "../client";
 import { h } from "./dom";
 
@@ -10,7 +13,7 @@ export class Notices {
   readonly element: HTMLElement;
   private readonly lasting = h("div");
   private readonly passing = h("div");
-  /** What the scene warns of, and the element of it until it is dismissed. */
+  /** Current warnings of the scene and their elements, until dismissed. */
   private warnings = new Map<string, HTMLElement>();
 
   constructor() {
@@ -26,7 +29,10 @@ export class Notices {
     setTimeout(() => notice.remove(), NOTICE_MILLISECONDS);
   }
 
-  /** What the scene warns of now: each stays until it is dismissed or holds no more, and does not come again while it holds. */
+  /**
+   * Sets the current warnings. Each stays until it is dismissed or no longer applies, and does not reappear
+   * meanwhile.
+   */
   warn(texts: string[]): void {
     const now = new Map(texts.map((text) => [text, this.warnings.get(text) ?? this.notice(text)]));
     for (const [text, element] of now) if (!this.warnings.has(text)) this.lasting.append(element);
@@ -51,17 +57,17 @@ function wordsOf(status: Extract<Status, { state: "ended" }>, carriesLibrary: bo
   const { reason, detail } = status;
   switch (reason) {
     case "lost":
-      return { title: "The connection is lost", text: "The program may have ended, or the network between has failed. What you see is the last frame.", again: "Reconnect" };
+      return { title: "Connection lost", text: "The program has ended or the network has failed. The page shows the last frame.", again: "Reconnect" };
     case "taken-over":
-      return { title: "Open in another page", text: "Another page has taken over this session. It shows one page at a time.", again: "Take it back" };
+      return { title: "Open in another page", text: "Another page has taken over this session. A session shows in one page at a time.", again: "Take it back" };
     case "program-ended":
-      return { title: "The program has ended", text: "Start supple view again, then open the address that it prints.", again: "Reconnect" };
+      return { title: "The program has ended", text: "Start supple view again, then open the address it prints.", again: "Reconnect" };
     case "refused":
-      return { title: "The program refused what this page sent", text: detail || "Page and program may be of different versions. Reload the page.", again: "Reconnect" };
+      return { title: "The program rejected a command of this page", text: detail || "Page and program may have different versions. Reload the page.", again: "Reconnect" };
     case "failed":
-      return { title: "The session has failed", text: detail || "The program says more where it runs.", again: carriesLibrary ? "Start again" : "Reconnect" };
+      return { title: "The session has failed", text: detail || "The program prints details in its terminal.", again: carriesLibrary ? "Start again" : "Reconnect" };
     case "malformed":
-      return { title: "The page does not understand the program", text: `${detail} Page and program may be of different versions. Reload the page.`, again: "Reconnect" };
+      return { title: "The page cannot read a message of the program", text: `${detail} Page and program may have different versions. Reload the page.`, again: "Reconnect" };
     case "too-large":
       return { title: "This scene is too large for the page", text: detail, again: "Try again" };
   }
@@ -76,7 +82,7 @@ export class Card {
   showStatus(status: Status): void {
     if (this.isFinal) return;
     if (status.state === "connecting") {
-      this.fill("status", "Connecting…", this.carriesLibrary ? "The library is being unpacked." : "Waiting for the program.", null);
+      this.fill("status", "Connecting…", this.carriesLibrary ? "Unpacking the library." : "Waiting for the program.", null);
     } else if (status.state === "connected") {
       this.fill("status", "Connected", "Waiting for the scene.", null);
     } else {
@@ -85,7 +91,7 @@ export class Card {
     }
   }
 
-  /** For what no connection mends. */
+  /** For failures that a new connection does not solve. */
   fail(title: string, text: string): void {
     this.fill("alertdialog", title, text, h("button", { type: "button", class: "primary", onclick: () => location.reload() }, "Reload"));
     this.isFinal = true;

@@ -1,18 +1,18 @@
-/** The objects of the scene, as many as there are: to show and hide, colour, select and find by name. */
+/** The list of objects: show, hide, colour, select, and find by name. */
 import type { Model, ObjectState } from "../model";
 import { h, readable } from "./dom";
 import { RowWindow, type Row } from "./row_window";
 
 const ROW_HEIGHT = 27;
-/** With fewer objects there is nothing to find. */
+/** The filter appears from this many objects on. */
 const FEWEST_TO_FILTER = 13;
 
-/** The controls of one object, then of another. */
+/** A row of controls that can be reused for another object. */
 class ObjectRow implements Row {
   readonly element: HTMLLIElement;
   readonly name: HTMLButtonElement;
   private object!: ObjectState;
-  private readonly visible = h("input", { type: "checkbox", title: "SceneView or hide" });
+  private readonly visible = h("input", { type: "checkbox", title: "Show or hide" });
   private readonly colour = h("input", { type: "color", title: "Colour" });
   private readonly opacity = h("input", { type: "range", min: 0, max: 1, step: 0.05, class: "opacity", title: "Opacity" });
   private readonly text = h("span", { class: "text" });
@@ -53,10 +53,10 @@ class ObjectRow implements Row {
   private take(object: ObjectState): void {
     this.object = object;
     const { index, name, kind, vertices, triangles } = object;
-    this.visible.setAttribute("aria-label", `SceneView ${name}`);
+    this.visible.setAttribute("aria-label", `Show ${name}`);
     this.colour.setAttribute("aria-label", `Colour of ${name}`);
     this.opacity.setAttribute("aria-label", `Opacity of ${name}`);
-    this.name.title = `${name}: object ${index}, ${kind}, ${readable(vertices)} vertices, ${readable(triangles)} triangles. Double click frames it.`;
+    this.name.title = `${name}: object ${index}, ${kind}, ${readable(vertices)} vertices, ${readable(triangles)} triangles. Double-click to frame it.`;
     this.text.textContent = name;
     this.count.textContent = readable(triangles);
   }
@@ -75,7 +75,7 @@ export class ObjectList {
       { class: "objects", tabindex: -1, onkeydown: (event: KeyboardEvent) => this.key(event) }, this.list, ROW_HEIGHT,
       () => new ObjectRow(model, () => this.listed, () => this.shown(), frameObject),
     );
-    const all = h("button", { type: "button", class: "link", title: "SceneView or hide all objects of this list", onclick: () => this.toggleAll() }, "all");
+    const all = h("button", { type: "button", class: "link", title: "Show or hide all listed objects", onclick: () => this.toggleAll() }, "all");
     this.element = h("section", { class: "grow" }, h("h2", {}, "Objects", all), this.filter, this.nothing, this.window.element);
     model.on("scene", () => this.build());
     model.on("selection", () => this.showSelected());
@@ -88,7 +88,7 @@ export class ObjectList {
     this.update();
   }
 
-  /** Lists the objects whose names have what is looked for. */
+  /** Lists the objects whose names match the filter. */
   private update(): void {
     const wanted = this.filter.value.trim().toLowerCase();
     this.listed = this.model.objects.filter(({ name }) => name.toLowerCase().includes(wanted));
@@ -120,7 +120,7 @@ export class ObjectList {
     this.window.draw();
   }
 
-  /** Arrows go from object to object. */
+  /** Arrow keys move between objects. */
   private key(event: KeyboardEvent): void {
     const isPlain = !event.shiftKey && !event.altKey && !event.ctrlKey && !event.metaKey;
     if (!isPlain || event.target instanceof HTMLInputElement || event.key === "Home" || event.key === "End") return;

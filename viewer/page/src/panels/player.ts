@@ -1,4 +1,4 @@
-/** Play, step, speed, reset and, of a recording, the timeline with its events. */
+/** Play, step, speed and reset; for a recording also the timeline with its events. */
 import type { Client } from "../client";
 import { OKABE_ITO } from "../colours";
 import type { Model } from "../model";
@@ -18,7 +18,7 @@ export class Player {
   private readonly slider = h("input", { type: "range", min: 0, max: 0, step: 1, value: 0, "aria-label": "Timeline", oninput: () => this.scrub() });
   private readonly marks = h("canvas", { class: "marks", "aria-hidden": "true" });
   private readonly place = h("output", { class: "place", "aria-label": "Place" });
-  private readonly rate = h("output", { class: "rate", "aria-label": "Frames a second", title: "Frames a second that arrive" });
+  private readonly rate = h("output", { class: "rate", "aria-label": "Frames per second", title: "Frames per second received" });
   private readonly recordingOnly: HTMLElement[];
   private readonly simulationOnly: HTMLElement[];
   private wanted: number | null = null;
@@ -144,7 +144,7 @@ export class Player {
     this.seek(this.slider.valueAsNumber);
   }
 
-  /** At most one seek a picture, however fast the slider moves. */
+  /** Sends at most one seek per drawn frame, however fast the slider moves. */
   turn(): void {
     if (this.wanted === null) return;
     if (this.wanted !== this.model.frame?.text.step) {
@@ -154,7 +154,7 @@ export class Player {
     this.wanted = null;
   }
 
-  /** To the next or previous frame in which objects begin or cease to touch. */
+  /** Goes to the next or previous frame in which objects begin or cease to touch. */
   jump(direction: 1 | -1): void {
     if (!this.model.can("seek")) return;
     const now = this.wanted ?? this.asked ?? this.model.frame?.text.step ?? 0;
@@ -167,7 +167,7 @@ export class Player {
     this.seek(best);
   }
 
-  /** Begin events above the timeline, end events below it. */
+  /** Draws begin events above the timeline and end events below it. */
   private drawMarks(): void {
     const { marks, frames } = this;
     const ratio = devicePixelRatio;
@@ -177,7 +177,7 @@ export class Player {
     marks.height = height * ratio;
     const context = marks.getContext("2d")!;
     context.scale(ratio, ratio);
-    const inset = 8;  // half of the slider's handle
+    const inset = 8;  // half the width of the slider's handle
     const place = (frame: number) => inset + ((width - 2 * inset) * frame) / Math.max(1, frames - 1);
     const { begin, end } = this.model.history.events;
     for (const [events, colour, top] of [[begin, OKABE_ITO.vermillion, 0], [end, OKABE_ITO.blue, height - 6]] as const) {

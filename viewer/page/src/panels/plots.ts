@@ -1,4 +1,4 @@
-/** Numbers over frames: pairs, contacts, time of each stage; the cursor is the frame that is shown. */
+/** Plots of pairs, contacts and stage times over frames. The cursor marks the current frame. */
 import uPlot from "uplot";
 import "uplot/dist/uPlot.min.css";
 import { OKABE_ITO } from "../colours";
@@ -31,7 +31,7 @@ export class Plots {
     new ResizeObserver(() => requestAnimationFrame(() => this.resize())).observe(this.element);
   }
 
-  /** Colours come from the page's theme. */
+  /** Creates the plots again with the colours of the theme. */
   rebuild(): void {
     this.build();
   }
@@ -47,7 +47,7 @@ export class Plots {
     this.add("Object pairs", has(["object_pairs"]), 1);
     this.add("Contacts and candidates", has(["contacts", "candidate_pairs"]), 1);
     this.add("Time per stage, milliseconds", stages, 1000);
-    if (this.plots.length === 0) this.element.append(h("p", { class: "hint empty" }, "This recording says nothing of its frames."));
+    if (this.plots.length === 0) this.element.append(h("p", { class: "hint empty" }, "This recording has no time series."));
     this.update();
   }
 
@@ -101,7 +101,7 @@ export class Plots {
   }
 
   update(): void {
-    if (this.element.clientWidth === 0) return;  // another tab is shown
+    if (this.element.clientWidth === 0) return;  // another tab is visible
     const { frames } = this.model.history;
     for (const { columns, scale, plot } of this.plots) {
       const lines = columns.map((name) => {

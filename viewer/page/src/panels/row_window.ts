@@ -1,12 +1,15 @@
-/** Rows in a box that scrolls, as many as there are: only those in sight have elements. */
+/** A virtual list: only visible rows have elements. */
 import { h } from "./dom";
 
-/** Browsers give up on elements that are higher than this. */
+/** Browsers do not lay out elements higher than this. */
 const HIGHEST = 8_000_000;
 
-/** Which rows are in sight. Of more rows than fit a scroll bar, it moves more than a pixel a pixel. All lengths in pixels. */
+/**
+ * Maps scroll positions to rows. When the rows exceed the maximum height, one pixel of scrolling moves more
+ * than one pixel of rows. All lengths are in pixels.
+ */
 export class RowScale {
-  /** Of what scrolls within the box. */
+  /** The height of the scrolled content. */
   readonly scrollHeight: number;
   private readonly ratio: number;
 
@@ -16,7 +19,7 @@ export class RowScale {
     this.ratio = high > HIGHEST ? (high - boxHeight) / (HIGHEST - boxHeight) : 1;
   }
 
-  /** The first row in sight, how many there are from it on, and where the first one stands in what scrolls. */
+  /** The first visible row, the number of visible rows, and the position of the first one in the content. */
   inSight(scrollTop: number): { first: number; shown: number; top: number } {
     const above = Math.max(0, scrollTop) * this.ratio;
     const first = Math.max(0, Math.min(Math.floor(above / this.rowHeight), this.count - 1));
@@ -24,10 +27,10 @@ export class RowScale {
     return { first, shown, top: scrollTop - (above - first * this.rowHeight) };
   }
 
-  /** Where to scroll to so that a row is in sight, which is as little as is needed. */
+  /** The scroll position that makes a row visible with the least movement. */
   scrollTo(row: number, scrollTop: number): number {
     const above = scrollTop * this.ratio;
-    const slack = Math.ceil(this.ratio) - 1;  // scroll bars stand at whole pixels
+    const slack = Math.ceil(this.ratio) - 1;  // scroll positions are whole pixels
     const top = row * this.rowHeight;
     const bottom = top + this.rowHeight - this.boxHeight;
     if (top < above) return Math.max(0, top - slack) / this.ratio;
@@ -35,14 +38,14 @@ export class RowScale {
   }
 }
 
-/** An element that shows one row, then another. */
+/** An element that shows one row and can be reused for another. */
 export interface Row {
   readonly element: HTMLElement;
   show(index: number): void;
 }
 
 export class RowWindow<Kind extends Row> {
-  /** The box that scrolls. */
+  /** The scrolling box. */
   readonly element: HTMLElement;
   private readonly spacer: HTMLElement;
   private rows: Kind[] = [];
@@ -67,10 +70,10 @@ export class RowWindow<Kind extends Row> {
     this.draw();
   }
 
-  /** Shows the rows in sight anew. */
+  /** Updates the visible rows. */
   draw(): void {
     const { scale } = this;
-    if (scale.boxHeight === 0) return;  // it is not shown
+    if (scale.boxHeight === 0) return;  // the list is hidden
     const { first, shown, top } = scale.inSight(this.element.scrollTop);
     this.moveTo(first);
     while (this.rows.length < shown) {
@@ -85,7 +88,7 @@ export class RowWindow<Kind extends Row> {
     });
   }
 
-  /** Rows that stay in sight keep their elements, so that who types or drags in one of them is not disturbed. */
+  /** Rows that stay visible keep their elements, so that typing or dragging in them continues. */
   private moveTo(first: number): void {
     const by = first - this.first;
     if (by === 0) return;
@@ -102,7 +105,7 @@ export class RowWindow<Kind extends Row> {
     }
   }
 
-  /** What shows a row that is in sight. */
+  /** The element of a visible row. */
   rowOf(index: number): Kind | undefined {
     return index < this.count ? this.rows[index - this.first] : undefined;
   }
@@ -115,7 +118,7 @@ export class RowWindow<Kind extends Row> {
     this.draw();
   }
 
-  /** The row that a key leads to from another one, −1 for none; null where it leads nowhere. */
+  /** The row that a key leads to from the row `now` (−1 for none); null for other keys. */
   rowAfter(key: string, now: number): number | null {
     const page = Math.max(1, Math.floor(this.element.clientHeight / this.rowHeight) - 1);
     const steps: Record<string, number> = { ArrowDown: 1, ArrowUp: -1, PageDown: page, PageUp: -page, Home: -Infinity, End: Infinity };

@@ -1,4 +1,4 @@
-/** The objects of the scene and the layers that are drawn over them. */
+/** The objects of the scene and the layers drawn over them. */
 import { levelColour, LEVELS, OKABE_ITO } from "../colours";
 import type { Layer, Model } from "../model";
 import { h, readable } from "./dom";
@@ -15,15 +15,15 @@ interface LayerRow {
 export const LAYER_ROWS: LayerRow[] = [
   { layer: "surface", label: "Surfaces", key: "S", colour: "", hint: "The objects" },
   { layer: "wireframe", label: "Wireframe", key: "X", colour: "", hint: "The edges of all triangles" },
-  { layer: "regions", label: "Scene octree", key: "N", colour: "levels", hint: "Regions of the broad phase, coloured by level" },
+  { layer: "regions", label: "Scene octree", key: "N", colour: "levels", hint: "Regions that the broad phase used in this frame, coloured by level; none unless the octree ran" },
   { layer: "octree", label: "Object octrees", key: "B", colour: "levels", hint: "Cells of the objects' octrees, coloured by level" },
   { layer: "pairs", label: "Object pairs", key: "P", colour: OKABE_ITO.green, hint: "Objects whose volumes overlap" },
   { layer: "candidates", label: "Candidate pairs", key: "C", colour: OKABE_ITO.blue, hint: "Pairs of triangles that the exact stage decides" },
   { layer: "triangles", label: "Intersecting triangles", key: "I", colour: OKABE_ITO.vermillion, hint: "Triangles that have a contact" },
-  { layer: "points", label: "Contact points", key: "D", colour: OKABE_ITO.yellow, hint: "The extreme points of what two triangles share" },
+  { layer: "points", label: "Contact points", key: "D", colour: OKABE_ITO.yellow, hint: "Extreme points of the intersection of two triangles" },
   { layer: "normals", label: "Contact normals", key: "Y", colour: OKABE_ITO.sky, hint: "The normal at each contact point" },
-  { layer: "curves", label: "Intersection curves", key: "U", colour: "ink", hint: "Where surfaces cut through one another" },
-  { layer: "vertices", label: "Colliding vertices", key: "J", colour: OKABE_ITO.purple, hint: "What the paper gives out: vertices of colliding octree nodes" },
+  { layer: "curves", label: "Intersection curves", key: "U", colour: "ink", hint: "Where surfaces cross" },
+  { layer: "vertices", label: "Colliding vertices", key: "J", colour: OKABE_ITO.purple, hint: "The output of the paper: vertices of colliding octree nodes" },
 ];
 
 function swatch(colour: string): HTMLElement {
@@ -38,7 +38,7 @@ export class ScenePanel {
   private readonly boxes = new Map<Layer, HTMLInputElement>();
   private readonly levels = h("select", { "aria-label": "Octree level" });
   private readonly legend = h(
-    "div", { class: "legend", hidden: true, title: "Colours of levels; they begin again after the last" },
+    "div", { class: "legend", hidden: true, title: "Colours of levels; they repeat after the last" },
     ...LEVELS.map((_, level) => h("span", { style: `--level:${levelColour(level)}` }, String(level))),
   );
   private readonly omitted = h("p", { class: "hint", role: "status", hidden: true });
@@ -86,7 +86,7 @@ export class ScenePanel {
     );
   }
 
-  /** Levels to choose from, up to the deepest that a frame told of. */
+  /** Offers levels up to the deepest level seen so far. */
   private fitLevels(deepest: number): void {
     if (deepest <= this.deepest) return;
     this.deepest = deepest;
@@ -104,7 +104,7 @@ export class ScenePanel {
     this.legend.hidden = !layers.octree && !layers.regions;
   }
 
-  /** Counts beside the layers, of the newest frame. */
+  /** Shows the number of drawn elements beside each layer. */
   showCounts(drawn: Record<string, number>): void {
     const { frame, layers } = this.model;
     const of: Partial<Record<Layer, number>> = {

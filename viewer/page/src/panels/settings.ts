@@ -1,15 +1,8 @@
-/** What can be changed while running: the session starts anew with it. */
+/** Settings that restart the session when they change. */
 import GUI, { type Controller } from "lil-gui";
 import type { Client } from "../client";
 import type { Model } from "../model";
 import { h } from "./dom";
-
-const CHOICES = {
-  bounding_volume: ["aabb", "sphere"],
-  broad_phase: ["octree", "sweep", "brute"],
-  contacts: ["intersection", "continuous", "none"],
-  integrator: ["verlet", "symplectic_euler", "backward_euler"],
-} as const;
 
 export class Settings {
   readonly element = h("div", { class: "settings" });
@@ -33,7 +26,7 @@ export class Settings {
     if (this.model.can("set")) {
       this.choice("bounding_volume", "Bounding volume");
       this.number("max_level", "Octree levels", 0, 32, 1);
-      this.number("leaf_size", "Triangles a leaf", 1, null, 1);
+      this.number("leaf_size", "Triangles per leaf", 1, null, 1);
       this.choice("broad_phase", "Broad phase");
       this.choice("contacts", "Contacts");
       if (scene.source === "simulation") this.ofSimulation();
@@ -48,14 +41,14 @@ export class Settings {
     this.number("time_step", "Time step", 1e-6, null, null);
   }
 
-  private choice(name: keyof typeof CHOICES, label: string): void {
-    const choices: string[] = [...CHOICES[name]];
+  private choice(name: string, label: string): void {
+    const choices: string[] = [...(this.model.scene?.choices[name] ?? [])];
     const now = String(this.values[name]);
-    if (!choices.includes(now)) choices.push(now);  // of a later session
+    if (!choices.includes(now)) choices.push(now);  // a value of a later version
     this.tie(this.gui!.add(this.values, name, choices), name, label);
   }
 
-  /** With both limits it gets a slider, else a field. */
+  /** A slider when both limits are given, else a field. */
   private number(name: string, label: string, least: number, most: number | null, step: number | null): void {
     const controller = this.gui!.add(this.values, name).min(least);
     if (most !== null) controller.max(most);
@@ -73,7 +66,7 @@ export class Settings {
         .then(() => undefined)
         .catch((error: Error) => {
           this.client.emit("notice", error.message);
-          this.build();  // shows what still holds
+          this.build();  // shows the values that still apply
         });
     });
   }

@@ -1,6 +1,6 @@
 /**
- * Reader of the session's binary messages (docs/protocol.md). It checks everything it relies on and gives
- * typed arrays that look straight into the message: nothing is copied.
+ * Reads the binary messages of the session (docs/protocol.md). It validates everything it relies on and
+ * returns typed arrays that view the message; nothing is copied.
  */
 
 export const NONE = 0xffffffff;
@@ -39,6 +39,8 @@ export interface SceneText {
   max_level: number;
   leaf_size: number;
   integrator: string | null;
+  /** The words of each option that has words. */
+  choices: Record<string, string[]>;
   can: string[];
   statistics: string[];
   series: string[];
@@ -62,7 +64,7 @@ export interface SceneMessage {
   triangles: Map<number, Uint32Array>;
 }
 
-/** What has no section is empty; positions are there of the objects that moved. */
+/** Missing sections are empty. Positions are present for objects that moved. */
 export interface FrameMessage {
   kind: "frame";
   text: FrameText;
@@ -106,7 +108,7 @@ const KINDS = ["", "scene", "frame", "answer", "failure", "series"] as const;
 interface Form {
   name: string;
   array: Uint8ArrayConstructor | Uint32ArrayConstructor | Float32ArrayConstructor | Float64ArrayConstructor;
-  /** Numbers an element; 0 where the scene says how many. */
+  /** Numbers per element; 0 when the scene determines it. */
   width: number;
   kinds: readonly string[];
   perObject?: boolean;
@@ -136,7 +138,7 @@ const FORMS: Record<number, Form> = {
 
 type Data = Uint8Array | Uint32Array | Float32Array | Float64Array;
 
-/** What a frame is checked against: the scene it belongs to. */
+/** Sizes of the scene, against which frames are validated. */
 export interface SceneCounts {
   generation: number;
   vertices: number[];
@@ -167,7 +169,7 @@ class Sections {
     if (!objects) this.found.set(form.name, (objects = new Map()));
     const before = objects.size;
     objects.set(object, data);
-    if (objects.size === before) fail(`its section ${form.name} comes twice`);
+    if (objects.size === before) fail(`its section ${form.name} occurs twice`);
   }
 
   one<T extends Data>(name: string, empty: T): T {
@@ -206,12 +208,12 @@ function readSections(buffer: ArrayBuffer, kind: string, count: number, seriesWi
     at = start + Math.ceil(bytes / ALIGNMENT) * ALIGNMENT;
     if (at > buffer.byteLength) fail("a section reaches past its end");
     const form = FORMS[tag];
-    if (!form) continue;  // of a later version
+    if (!form) continue;  // a section of a later version
     if (!form.kinds.includes(kind)) fail(`a message of kind ${kind} has a section ${form.name}`);
     if ((form.perObject ?? false) !== (object !== NONE)) fail(`its section ${form.name} has a wrong object`);
     const width = form.width || seriesWidth;
     const numbers = elements * width;
-    if (numbers * form.array.BYTES_PER_ELEMENT !== bytes) fail(`the length of its section ${form.name} does not fit`);
+    if (numbers * form.array.BYTES_PER_ELEMENT !== bytes) fail(`its section ${form.name} has a wrong length`);
     sections.add(form, object, new form.array(buffer, start, numbers));
   }
   if (at !== buffer.byteLength) fail("it is longer than its sections");
@@ -243,6 +245,7 @@ function sceneText(json: Record<string, unknown>): SceneText {
   need(isCount(s.max_level), "max_level");
   need(isCount(s.leaf_size), "leaf_size");
   need(s.integrator === null || isText(s.integrator), "integrator");
+  need(typeof s.choices === "object" && s.choices !== null && Object.values(s.choices).every(isTexts), "choices");
   for (const name of ["can", "statistics", "series", "warnings"] as const) need(isTexts(s[name]), name);
   need(Array.isArray(s.objects), "objects");
   for (const object of s.objects as unknown[]) {
@@ -259,9 +262,9 @@ function readScene(sections: Sections): SceneMessage {
   for (const [object, corners] of triangles) {
     const of = text.objects[object];
     if (!of) fail("it has triangles of an object that is not there");
-    if (corners.length !== 3 * of.triangles) fail(`it has not all triangles of ${of.name}`);
+    if (corners.length !== 3 * of.triangles) fail(`it lacks triangles of ${of.name}`);
     for (let i = 0; i < corners.length; ++i)
-      if (corners[i]! >= of.vertices) fail(`triangle ${Math.floor(i / 3)} of ${of.name} has a vertex that is not there`);
+      if (corners[i]! >= of.vertices) fail(`triangle ${Math.floor(i / 3)} of ${of.name} has a vertex that does not exist`);
   }
   text.objects.forEach((object, i) => {
     if (object.triangles > 0 && !triangles.has(i)) fail(`it has no triangles of ${object.name}`);
@@ -283,18 +286,18 @@ function frameText(json: Record<string, unknown>): FrameText {
   return f;
 }
 
-/** Every `stride` numbers hold an object and a number below `limits` of it, at two places. */
+/** Every `stride` numbers contain an object and a number below its limit, at the two offsets in `at`. */
 function checkIds(name: string, data: Uint32Array, stride: number, at: [number, number], limits: number[]): void {
   for (let i = 0; i < data.length; i += stride)
     for (const place of at) {
       const limit = limits[data[i + place]!];
-      if (limit === undefined || data[i + place + 1]! >= limit) fail(`its section ${name} names what is not there`);
+      if (limit === undefined || data[i + place + 1]! >= limit) fail(`its section ${name} names something that does not exist`);
     }
 }
 
 function checkPairs(name: string, data: Uint32Array, stride: number, at: number, objects: number): void {
   for (let i = 0; i < data.length; i += stride)
-    if (data[i + at]! >= objects || data[i + at + 1]! >= objects) fail(`its section ${name} names an object that is not there`);
+    if (data[i + at]! >= objects || data[i + at + 1]! >= objects) fail(`its section ${name} names an object that does not exist`);
 }
 
 function checkContacts(contacts: Uint32Array, points: number): void {
@@ -339,9 +342,9 @@ function readFrame(sections: Sections, scene: SceneCounts): FrameMessage {
     begin: sections.one("contact_begin", words),
     end: sections.one("contact_end", words),
   };
-  if (text.generation !== scene.generation) return frame;  // of a scene that is gone; nobody looks into it
+  if (text.generation !== scene.generation) return frame;  // belongs to an earlier scene and will be ignored
   for (const [object, positions] of frame.positions)
-    if (positions.length !== 3 * (scene.vertices[object] ?? -1)) fail(`it has not all positions of object ${object}`);
+    if (positions.length !== 3 * (scene.vertices[object] ?? -1)) fail(`it lacks positions of object ${object}`);
   for (const [object, vertices] of frame.collidingVertices) {
     const limit = scene.vertices[object] ?? 0;
     if (vertices.some((vertex) => vertex >= limit)) fail("its section colliding_vertices names what is not there");
@@ -390,15 +393,15 @@ function readFailure(sections: Sections): FailureMessage {
 const NO_SCENE: SceneCounts = { generation: -1, vertices: [], triangles: [], statistics: 0, series: 0 };
 
 /**
- * Reads one message. `scene` is what the last scene message said, null before the first one.
- * Throws `MessageError`, one sentence, for what is no message of this version.
+ * Reads one message. `scene` has the sizes from the last scene message, or is null before the first one.
+ * Throws `MessageError` with one sentence when the data is not a message of this version.
  */
 export function readMessage(buffer: ArrayBuffer, scene: SceneCounts | null): Message {
   if (buffer.byteLength < ALIGNMENT) fail("it is shorter than a header");
   const view = new DataView(buffer);
   if (view.getUint32(0, true) !== MAGIC) fail("it does not begin as a message of Supple does");
   const version = view.getUint16(4, true);
-  if (version !== VERSION) fail(`it is of version ${version}, and this page reads version ${VERSION}`);
+  if (version !== VERSION) fail(`it has version ${version}, and this page reads version ${VERSION}`);
   if (view.getUint32(8, true) !== buffer.byteLength || buffer.byteLength % ALIGNMENT !== 0) fail("its length is not what it says");
   const kind = KINDS[view.getUint16(6, true)];
   if (!kind) fail("it is of an unknown kind");

@@ -1,6 +1,6 @@
 /**
- * The session in a worker: the library itself as WebAssembly. Commands come as strings, messages go as
- * array buffers that are handed over, not copied.
+ * The session in a worker, from the WebAssembly module of the library. Commands arrive as strings; messages
+ * leave as array buffers that are transferred, not copied.
  */
 
 interface Exports {
@@ -13,7 +13,7 @@ interface Exports {
   session_message(): number;
 }
 
-/** A failure that the module cannot go on after. */
+/** A failure after which the module is unusable. */
 class ModuleFailure extends Error {}
 
 const scope = self as unknown as {
@@ -24,7 +24,7 @@ const scope = self as unknown as {
 let exports: Exports | null = null;
 let timer: ReturnType<typeof setTimeout> | undefined;
 let last = 0;
-/** A turn without delay: `setTimeout` would wait four milliseconds. */
+/** Schedules a task without delay; `setTimeout` would wait four milliseconds. */
 const soon = new MessageChannel();
 let turnIsDue = false;
 soon.port1.onmessage = () => {
@@ -35,7 +35,7 @@ soon.port1.onmessage = () => {
 const ERRNO_NOSYS = 52;
 const ERRNO_SUCCESS = 0;
 
-/** The little of WASI that a module without files asks for; anything else is answered with “no such call”. */
+/** The few WASI functions that a module without files needs. All others return “not supported”. */
 function wasiCall(name: string): (...args: number[]) => number {
   const view = () => new DataView(exports!.memory.buffer);
   switch (name) {
@@ -94,7 +94,7 @@ function importsOf(module: WebAssembly.Module): WebAssembly.Imports {
   return imports;
 }
 
-/** Calls with bytes that are copied into the module's memory. */
+/** Calls a function of the module with bytes that are copied into its memory. */
 function give(bytes: Uint8Array, call: (pointer: number, length: number) => void): void {
   const pointer = exports!.session_memory(bytes.length);
   new Uint8Array(exports!.memory.buffer, pointer, bytes.length).set(bytes);

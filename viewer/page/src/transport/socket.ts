@@ -12,7 +12,7 @@ export function openSocket(events: TransportEvents): Transport {
   socket.onopen = () => events.open();
   socket.onmessage = (event: MessageEvent) => {
     if (event.data instanceof ArrayBuffer) events.message(event.data);
-    else events.message(new ArrayBuffer(0));  // a text is no message either, and the reader says so
+    else events.message(new ArrayBuffer(0));  // text is not a valid message, and the reader reports that
   };
   socket.onclose = (event) => {
     if (closed) return;

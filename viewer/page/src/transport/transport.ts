@@ -1,4 +1,4 @@
-/** Why there is no session any more. */
+/** Why the session ended. */
 export type EndReason = "lost" | "taken-over" | "program-ended" | "refused" | "failed";
 
 export interface TransportEvents {
@@ -7,7 +7,7 @@ export interface TransportEvents {
   end(reason: EndReason, detail: string): void;
 }
 
-/** Commands go out, messages come in; a transport that has ended stays so. */
+/** Sends commands, receives messages. A transport that has ended does not restart. */
 export interface Transport {
   send(command: Record<string, unknown>): void;
   close(): void;

@@ -4,7 +4,7 @@ import SessionWorker from "./session_worker?worker&inline";
 const MODULE_ID = "supple-wasm";
 const SHOW_ID = "supple-show";
 
-/** Whether this page carries the library and what it shows with it. */
+/** Whether this page contains the library and a scene. */
 export function hasCargo(): boolean {
   return document.getElementById(MODULE_ID) !== null && document.getElementById(SHOW_ID) !== null;
 }
@@ -21,7 +21,7 @@ async function unpackCargo(id: string): Promise<ArrayBuffer> {
   return new Response(packed.stream().pipeThrough(new DecompressionStream("gzip"))).arrayBuffer();
 }
 
-/** The session that this page carries, in a worker. */
+/** Starts the session of this page in a worker. */
 export function openWorker(events: TransportEvents): Transport {
   let worker: Worker | null = null;
   let closed = false;
@@ -43,7 +43,7 @@ export function openWorker(events: TransportEvents): Transport {
     };
     worker.postMessage({ module, show }, [module, show]);
   };
-  start().catch((error: unknown) => end(`what this page carries cannot be unpacked: ${String(error)}`));
+  start().catch((error: unknown) => end(`the contents of this page cannot be unpacked: ${String(error)}`));
   return {
     send: (command) => worker?.postMessage(JSON.stringify(command)),
     close() {

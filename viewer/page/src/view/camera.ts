@@ -5,7 +5,7 @@ const FIELD_OF_VIEW = 40;
 const FLIGHT_MILLISECONDS = 350;
 const FRAME_MARGIN = 1.1;
 
-/** From where an axis view looks. */
+/** The directions of the axis views. */
 export const AXIS_VIEWS = {
   front: [0, 0, 1], back: [0, 0, -1], right: [1, 0, 0], left: [-1, 0, 0], top: [0, 1, 0], bottom: [0, -1, 0],
 } as const;
@@ -18,8 +18,8 @@ interface Flight {
 }
 
 /**
- * The camera, perspective or orthographic: orbits, pans, zooms to the cursor, flies, and is kept in the
- * address so that a view can be sent.
+ * A perspective or orthographic camera that orbits, pans, zooms to the cursor and flies. Its state is kept
+ * in the address of the page, so that a view can be shared.
  */
 export class CameraRig {
   camera: THREE.PerspectiveCamera | THREE.OrthographicCamera;
@@ -51,7 +51,7 @@ export class CameraRig {
     this.changed();
   }
 
-  /** How far the scene reaches, for the clipping planes. */
+  /** Sets the extent of the scene, for the clipping planes. */
   setExtent(radius: number): void {
     this.radius = Math.max(radius, 1e-30);
     this.fit();
@@ -61,7 +61,7 @@ export class CameraRig {
     return this.camera.position.distanceTo(this.controls.target);
   }
 
-  /** Half of what an orthographic view shows in height at zoom 1. */
+  /** Half the visible height of an orthographic view at zoom 1. */
   private get halfHeight(): number {
     return this.distance * Math.tan((FIELD_OF_VIEW * Math.PI) / 360);
   }
@@ -93,7 +93,7 @@ export class CameraRig {
     if (on) {
       this.orthographic.zoom = 1;
     } else {
-      // A zoom has no place in perspective: come as much closer instead.
+      // A perspective camera has no zoom; move closer by the same factor instead.
       next.position.sub(this.controls.target).divideScalar(this.orthographic.zoom).add(this.controls.target);
     }
     this.camera = next;
@@ -102,7 +102,7 @@ export class CameraRig {
     this.moved();
   }
 
-  /** Looks at a place so that all points are seen, from where the camera is or from a direction; those that are no numbers are passed over. */
+  /** Moves the camera so that all finite points are visible, from the current or the given direction. */
   frame(center: THREE.Vector3, points: Iterable<ArrayLike<number>>, direction?: THREE.Vector3, fly = true): void {
     const back = direction?.clone() ?? this.camera.position.clone().sub(this.controls.target);
     if (back.lengthSq() === 0) back.set(0, 0, 1);
@@ -125,7 +125,7 @@ export class CameraRig {
 
   lookAlong(view: AxisView, fly = true): void {
     const direction = new THREE.Vector3(...AXIS_VIEWS[view]);
-    if (view === "top" || view === "bottom") direction.z += 1e-4;  // straight down has no upright
+    if (view === "top" || view === "bottom") direction.z += 1e-4;  // exactly vertical has no up direction
     const to = this.controls.target.clone().add(direction.normalize().multiplyScalar(this.distance));
     this.go(to, this.controls.target.clone(), fly, this.camera.zoom);
   }
@@ -138,11 +138,11 @@ export class CameraRig {
     if (!fly || still) this.advance(performance.now());
   }
 
-  /** Goes on with a flight; true while there is one. */
+  /** Continues an animated flight; true while it lasts. */
   advance(now: number): boolean {
     if (!this.flight) return false;
     const { begin, from, to } = this.flight;
-    const t = Math.max(0, Math.min(1, (now - begin) / FLIGHT_MILLISECONDS));  // a picture may be of before the key
+    const t = Math.max(0, Math.min(1, (now - begin) / FLIGHT_MILLISECONDS));  // the frame may have begun before the key press
     const part = t * t * (3 - 2 * t);
     this.controls.target.lerpVectors(from.target, to.target, part);
     this.camera.position.lerpVectors(from.position, to.position, part);
@@ -153,7 +153,7 @@ export class CameraRig {
     return this.flight !== null;
   }
 
-  /** By keys: turns by angles, moves by parts of the view, or zooms. */
+  /** Keyboard: orbits by angles, moves by fractions of the view, or zooms. */
   orbit(right: number, up: number): void {
     const offset = new THREE.Spherical().setFromVector3(this.camera.position.clone().sub(this.controls.target));
     offset.theta -= right;
@@ -179,7 +179,7 @@ export class CameraRig {
     this.moved();
   }
 
-  /** What a picture was seen from, for who wants to draw it again; places as the camera has them. */
+  /** The camera of a picture, for drawing it again; positions in the camera's coordinates. */
   description(): Record<string, unknown> {
     const { position, up, zoom } = this.camera;
     const target = this.controls.target.toArray();
@@ -194,11 +194,11 @@ export class CameraRig {
     try {
       history.replaceState(null, "", location.pathname + location.search + hash);
     } catch {
-      // A browser that does not let a file's address change; the view just is not in it.
+      // Some browsers do not let a file change its address; the view is then not stored.
     }
   }
 
-  /** Takes the view from the address; false when there is none. */
+  /** Restores the view from the address; false when it has none. */
   restore(): boolean {
     const match = /[#&]camera=([^&]*)/.exec(location.hash);
     if (!match) return false;

@@ -1,4 +1,4 @@
-/** Layers over the surfaces: each is filled from the model's newest frame when it is switched on. */
+/** Layers over the surfaces, filled from the newest frame while switched on. */
 import * as THREE from "three";
 import { OKABE_ITO } from "../colours";
 import { boundsOf, type Model, type ObjectState } from "../model";
@@ -6,7 +6,7 @@ import { Cells, Dots, Faces, Lines } from "./primitives";
 
 const CONTACT = OKABE_ITO.vermillion;
 
-/** Writes the three corners of a triangle and gives the place after them. */
+/** Writes the three corners of a triangle and returns the offset after them. */
 function writeTriangle(into: Float32Array, at: number, object: ObjectState, triangle: number): number {
   for (let corner = 0; corner < 3; ++corner) {
     const from = 3 * object.corners[3 * triangle + corner]!;
@@ -27,7 +27,7 @@ function writeCentroid(into: Float32Array, at: number, object: ObjectState, tria
   return at;
 }
 
-/** Writes the middle of an object's bounds; false when it has none. */
+/** Writes the centre of an object's bounds; false when it has none. */
 function writeCentre(into: Float32Array, at: number, object: ObjectState): boolean {
   const bounds = boundsOf(object);
   if (!bounds) return false;
@@ -35,7 +35,7 @@ function writeCentre(into: Float32Array, at: number, object: ObjectState): boole
   return true;
 }
 
-/** Triangles that were seen in this round, without clearing anything between rounds. */
+/** A set of triangles that can be cleared in constant time. */
 class Marks {
   private round = 0;
   private stamps: Uint32Array[] = [];
@@ -49,7 +49,7 @@ class Marks {
     this.round += 1;
   }
 
-  /** True the first time in a round. */
+  /** Returns true for the first call with these arguments since the last clear. */
   mark(object: number, triangle: number): boolean {
     const stamps = this.stamps[object]!;
     if (stamps[triangle] === this.round) return false;
@@ -85,7 +85,7 @@ export class Layers {
     ];
   }
 
-  /** How many elements each layer draws; tests read it. */
+  /** The number of elements that each layer draws. */
   counts(): Record<string, number> {
     const { regions, boxes, balls, pairs, candidates, candidateFaces, triangles, points, normals, curves, vertices } = this;
     return Object.fromEntries(
@@ -152,7 +152,7 @@ export class Layers {
     this.fillFaces(this.candidateFaces, pairs ?? new Uint32Array(0), 4, [0, 2], () => true);
   }
 
-  /** The triangles that are named at two places of each `stride` numbers, each once. */
+  /** Fills the triangles named at two offsets of every `stride` numbers, each once. */
   private fillFaces(
     faces: Faces, data: Uint32Array, stride: number, places: [number, number], isFace: (i: number, side: number) => boolean,
   ): void {
@@ -178,7 +178,7 @@ export class Layers {
     else this.fillFaces(this.triangles, on && frame ? frame.contacts : none, 8, [0, 2], () => true);
   }
 
-  /** The points of contacts or impacts whose objects are both shown: calls with the place of each. */
+  /** Calls `visit` with the offset of each point of contacts or impacts whose objects are both visible. */
   private eachPoint(visit: (data: Float32Array, at: number) => void): void {
     const { frame } = this.model;
     if (!frame) return;

@@ -1,18 +1,18 @@
 /**
- * What a ray hits. Looked for when a person clicks, over flat arrays, so that nothing has to be kept up to date: among the
- * triangles of those objects whose bounds the ray meets.
+ * Ray picking. It runs on a click over flat arrays, so no data structure must be kept up to date; it tests
+ * the triangles of objects whose bounds the ray meets.
  */
 import { boundsOf, type Bounds, type ObjectState } from "../model";
 
 export interface Hit {
   object: number;
   triangle: number;
-  vertex: number;  // the corner closest to where the ray hits
+  vertex: number;  // the corner closest to the hit
   distance: number;
   point: [number, number, number];
 }
 
-/** Of distances along a ray, which are rounded. */
+/** Relative rounding error of distances along a ray. */
 const ROUNDING = 1e-9;
 
 interface Ray {
@@ -20,7 +20,7 @@ interface Ray {
   direction: ArrayLike<number>;
 }
 
-/** The first triangle along the ray within one object, or null. Both sides count. */
+/** The first triangle of one object along the ray, or null. Both faces of a triangle count. */
 export function pickTriangle(ray: Ray, object: ObjectState, farthest: number): Hit | null {
   const [ox, oy, oz] = [ray.origin[0]!, ray.origin[1]!, ray.origin[2]!];
   const [dx, dy, dz] = [ray.direction[0]!, ray.direction[1]!, ray.direction[2]!];
@@ -60,12 +60,12 @@ export function pickTriangle(ray: Ray, object: ObjectState, farthest: number): H
   };
 }
 
-/** Whether a ray comes near bounds before `farthest`; false only when it surely does not. */
+/** Whether a ray may meet bounds before `farthest`; conservative. */
 function meets(ray: Ray, { lower, upper }: Bounds, farthest: number): boolean {
   let enters = 0;
   let leaves = farthest;
   for (let axis = 0; axis < 3; ++axis) {
-    // Along a side, 0 / 0 gives NaN, which narrows nothing down.
+    // 0 / 0 gives NaN when the ray lies in a side; the comparisons below then change nothing.
     const one = (lower[axis]! - ray.origin[axis]!) / ray.direction[axis]!;
     const other = (upper[axis]! - ray.origin[axis]!) / ray.direction[axis]!;
     if (Math.min(one, other) > enters) enters = Math.min(one, other);
@@ -74,7 +74,7 @@ function meets(ray: Ray, { lower, upper }: Bounds, farthest: number): boolean {
   return enters <= leaves + ROUNDING * Math.abs(leaves);
 }
 
-/** The first triangle of all that are shown. */
+/** The first triangle of all visible objects. */
 export function pick(ray: Ray, objects: ObjectState[]): Hit | null {
   let first: Hit | null = null;
   let farthest = Infinity;

@@ -1,4 +1,4 @@
-/** What layers are drawn with: dots, thick lines, faces, boxes and balls, each in one draw call. */
+/** What layers are made of: dots, thick lines, faces, boxes and spheres, each drawn in one call. */
 import * as THREE from "three";
 import { LEVELS } from "../colours";
 import { Stream } from "./stream";
@@ -6,13 +6,13 @@ import { Stream } from "./stream";
 interface Style {
   colour: string;
   opacity?: number;
-  /** In pixels of the page. */
+  /** In CSS pixels. */
   size?: number;
   depthTest?: boolean;
   order?: number;
 }
 
-/** Uniforms that all primitives share; the view keeps them up to date. */
+/** Uniforms shared by all primitives; the view updates them. */
 export const shared = { resolution: { value: new THREE.Vector2(1, 1) }, pixelRatio: { value: 1 } };
 
 function materialOf(style: Style, vertexShader: string, fragmentShader: string): THREE.ShaderMaterial {
@@ -60,15 +60,18 @@ abstract class Primitive<Shape extends THREE.Object3D & { material: THREE.Shader
 
 const FLAT = "void main() { result = linearToOutputTexel(vec4(colour, opacity)); }";
 
-/** Of the picture, what all dots of a layer may cover. */
+/** The fraction of the picture that all dots of a layer may cover. */
 const DOTS_COVER = 0.15;
 const SMALLEST_DOT = 1.5;
 
-/** Points as round dots with a dark rim, smaller where there are so many that they would hide all else; an element is x, y, z. */
+/**
+ * Round dots with a dark rim. They shrink when there are so many that they would hide everything else. An
+ * element is x, y, z.
+ */
 export class Dots extends Primitive<THREE.Points<THREE.BufferGeometry, THREE.ShaderMaterial>> {
   readonly shape;
   private readonly stream: Stream;
-  /** In pixels of the page, of few dots. */
+  /** In CSS pixels, for few dots. */
   size: number;
 
   constructor(style: Style) {
@@ -107,7 +110,7 @@ export class Dots extends Primitive<THREE.Points<THREE.BufferGeometry, THREE.Sha
   }
 }
 
-/** Lines of a width in pixels; an element is from x, y, z to x, y, z. */
+/** Lines with a width in pixels. An element is two points. */
 export class Lines extends Primitive<THREE.Mesh<THREE.InstancedBufferGeometry, THREE.ShaderMaterial>> {
   readonly shape;
   private readonly stream: Stream;
@@ -120,7 +123,7 @@ export class Lines extends Primitive<THREE.Mesh<THREE.InstancedBufferGeometry, T
     this.stream = new Stream(geometry, 6, { start: [3, 0], finish: [3, 3] }, true);
     const material = materialOf(
       style,
-      // A line that begins behind the eye is cut where it comes into view, or its direction on the screen is wrong.
+      // Clip a line that begins behind the camera; otherwise its direction on the screen is wrong.
       `uniform float size; uniform vec2 resolution; in vec3 start; in vec3 finish;
        void main() {
          vec4 a = modelViewMatrix * vec4(start, 1.0), b = modelViewMatrix * vec4(finish, 1.0);
@@ -150,7 +153,7 @@ export class Lines extends Primitive<THREE.Mesh<THREE.InstancedBufferGeometry, T
   }
 }
 
-/** Triangles laid over surfaces; an element is a corner, x, y, z. */
+/** Triangles drawn over surfaces. An element is a corner: x, y, z. */
 export class Faces extends Primitive<THREE.Mesh<THREE.BufferGeometry, THREE.ShaderMaterial>> {
   readonly shape;
   private readonly stream: Stream;
@@ -180,7 +183,7 @@ export class Faces extends Primitive<THREE.Mesh<THREE.BufferGeometry, THREE.Shad
     this.prepare(style);
   }
 
-  /** `count` triangles at most; `write` gives how many it wrote. */
+  /** Reserves `count` triangles; `write` returns how many it wrote. */
   fill(count: number, write: (into: Float32Array) => number): void {
     const written = count > 0 ? write(this.stream.reserve(3 * count)) : 0;
     this.stream.commit(3 * written);
@@ -223,8 +226,8 @@ const LEVEL_SHADER = `
   }`;
 
 /**
- * Octree cells as the protocol has them, eight numbers each, in the colours of their levels: boxes (lower
- * corner, level, upper corner, contents) or balls (centre, radius, level, contents).
+ * Octree cells in the format of the protocol, eight numbers each, coloured by level: boxes (lower corner,
+ * level, upper corner, contents) or spheres (centre, radius, level, contents).
  */
 export class Cells extends Primitive<THREE.LineSegments<THREE.InstancedBufferGeometry, THREE.ShaderMaterial>> {
   readonly shape;

@@ -1,4 +1,4 @@
-/** Draws the model: surfaces, layers, what is selected. Only when something has changed. */
+/** Draws surfaces, layers and the selection, only when something has changed. */
 import * as THREE from "three";
 import { OKABE_ITO } from "../colours";
 import { contactCount, findContact, pointsAt } from "../contacts";
@@ -18,9 +18,9 @@ export interface PictureSize {
 export class SceneView {
   readonly rig: CameraRig;
   readonly layers: Layers;
-  /** Called before a picture is drawn; tells the session that it may send the next frame. */
+  /** Called before each drawing; allows the session to send the next frame. */
   onTurn: () => void = () => {};
-  /** Called when the graphics card has given up. */
+  /** Called when the WebGL context is lost. */
   onLost: (why: string) => void = () => {};
   readonly times: number[] = [];
   private readonly renderer: THREE.WebGLRenderer;
@@ -37,7 +37,7 @@ export class SceneView {
   private filled = false;
   private checkMemory = false;
   private hasFramed = false;
-  /** Nothing is drawn but by `draw`, at a size that is not the window's. */
+  /** True while only `draw` draws, at a fixed size. */
   private takesPictures = false;
 
   constructor(readonly canvas: HTMLCanvasElement, private readonly model: Model) {
@@ -50,7 +50,7 @@ export class SceneView {
       this.scene.add(extra.shape);
     canvas.addEventListener("webglcontextlost", (event) => {
       event.preventDefault();
-      this.onLost("The graphics card has given up on this scene, which may be too large for it.");
+      this.onLost("The graphics card stopped drawing. The scene may be too large for it.");
     });
     model.on("scene", () => this.build());
     model.on("frame", (frame) => {
@@ -65,7 +65,7 @@ export class SceneView {
     requestAnimationFrame((now) => this.turn(now));
   }
 
-  /** A sentence about why a scene cannot be shown on this machine, or null. */
+  /** A sentence about why this machine cannot display the scene, or null. */
   obstacle(objects: { name: string; vertices: number; triangles: number }[]): string | null {
     return obstacleOf(this.renderer.getContext() as WebGL2RenderingContext, objects);
   }
@@ -85,12 +85,12 @@ export class SceneView {
     this.dirty = true;
   }
 
-  /** Whether all that has changed is drawn. */
+  /** Whether everything that changed has been drawn. */
   get isUpToDate(): boolean {
     return !this.dirty;
   }
 
-  /** These objects have new positions. */
+  /** Marks the positions of these objects as changed. */
   touch(objects: Iterable<number> = this.model.objects.keys()): void {
     this.surfaces.touch(objects);
     this.refill();
@@ -101,13 +101,13 @@ export class SceneView {
     this.dirty = true;
   }
 
-  /** As large as the window shows it. */
+  /** The size in the window. */
   get windowSize(): PictureSize {
     const ratio = Math.min(devicePixelRatio, 2);
     return { width: Math.floor(ratio * this.canvas.clientWidth), height: Math.floor(ratio * this.canvas.clientHeight) };
   }
 
-  /** No picture can be wider or higher. */
+  /** The maximum width and height of a picture. */
   get largestSide(): number {
     const gl = this.renderer.getContext();
     const [width, height] = gl.getParameter(gl.MAX_VIEWPORT_DIMS) as Int32Array;
@@ -115,8 +115,8 @@ export class SceneView {
   }
 
   /**
-   * From now on `draw` alone draws, at that size, whatever becomes of the window, and without the ground where that
-   * is asked for; null is the window's picture again. Throws, with a sentence, where WebGL has none so large.
+   * From now on only `draw` draws, at the given size, independent of the window, and without the ground when
+   * `transparent`. Null returns to the window. Throws with a sentence when WebGL cannot draw that size.
    */
   setPicture(size: PictureSize | null, transparent = false): void {
     this.takesPictures = false;
@@ -125,20 +125,20 @@ export class SceneView {
     const { width, height } = size;
     const most = this.largestSide;
     if (Math.max(width, height) > most) throw new Error(`WebGL draws no picture of ${width} × ${height} here: ${most} pixels a side are the most. Choose a smaller size.`);
-    this.rig.advance(Infinity);  // lands
+    this.rig.advance(Infinity);  // end the flight
     this.setSize(size, height / (this.canvas.clientHeight || height));
     this.takesPictures = true;
     const gl = this.renderer.getContext();
     if (gl.drawingBufferWidth !== width || gl.drawingBufferHeight !== height)
-      throw new Error(`WebGL has no memory for a picture of ${width} × ${height}. Choose a smaller size.`);
+      throw new Error(`WebGL does not have enough memory for a picture of ${width} × ${height}. Choose a smaller size.`);
   }
 
-  /** A sentence about why what was drawn last is no picture, or null. */
+  /** A sentence about why the last drawing is not a valid picture, or null. */
   get fault(): string | null {
     const gl = this.renderer.getContext();
     const error = gl.getError();
-    if (gl.isContextLost() || error === gl.CONTEXT_LOST_WEBGL) return "The graphics card has given up.";
-    return error === gl.OUT_OF_MEMORY ? "The graphics card has not enough memory for pictures of this size. Choose a smaller one." : null;
+    if (gl.isContextLost() || error === gl.CONTEXT_LOST_WEBGL) return "The graphics card stopped drawing.";
+    return error === gl.OUT_OF_MEMORY ? "The graphics card does not have enough memory for pictures of this size. Choose a smaller size." : null;
   }
 
   private resize(): void {
@@ -147,7 +147,7 @@ export class SceneView {
     this.setSize(size, Math.min(devicePixelRatio, 2));
   }
 
-  /** Marks are `ratio` times as large as their sizes in pixels say. */
+  /** Marks are drawn `ratio` times larger than their size in pixels. */
   private setSize({ width, height }: PictureSize, ratio: number): void {
     this.renderer.setDrawingBufferSize(width, height, 1);
     shared.resolution.value.set(width / ratio, height / ratio);
@@ -165,7 +165,7 @@ export class SceneView {
     this.paint();
   }
 
-  /** Takes over what objects look like. */
+  /** Applies the appearance of the objects. */
   private paint(): void {
     this.surfaces.paint(this.model.layers);
     this.refill();
@@ -207,7 +207,7 @@ export class SceneView {
     });
   }
 
-  /** Where the selected contact is now, if it still is one. */
+  /** The current position of the selected contact, or null when it has ended. */
   contactPoint(): number[] | null {
     const { contact, frame } = this.model;
     if (!contact || !frame) return null;
@@ -241,7 +241,7 @@ export class SceneView {
     });
   }
 
-  /** A line of the length of the distance, between what is apart. */
+  /** A line as long as the distance between two separated triangles. */
   private gapSpan(axis: number[], distance: number): number[] | null {
     const { explained, explanation } = this.model;
     const boxes = explanation?.boxes;
@@ -264,7 +264,7 @@ export class SceneView {
     return [positions[3 * vertex]!, positions[3 * vertex + 1]!, positions[3 * vertex + 2]!];
   }
 
-  /** Shows which vertex is pulled where, or nothing. */
+  /** Shows the pulled vertex and its target, or nothing. */
   showPull(from: ArrayLike<number> | null, to: ArrayLike<number> | null): void {
     this.pull.fill(from && to ? 1 : 0, (into) => {
       into.set(from!, 0);
@@ -283,7 +283,7 @@ export class SceneView {
     this.frameObjects(this.model.objects.filter((object) => object.visible), direction, fly);
   }
 
-  /** Frames what is selected: a contact, a triangle or vertex, an object; else all. */
+  /** Frames the selection: a contact, a triangle or vertex, or an object; otherwise everything. */
   frameSelection(): void {
     const { selection } = this.model;
     const point = this.contactPoint();
@@ -323,14 +323,14 @@ export class SceneView {
     return pick({ origin: origin.toArray(), direction: direction.toArray() }, this.model.objects);
   }
 
-  /** The point below the cursor in the plane through a point that faces the camera. */
+  /** The point below the cursor, in the plane through `through` that faces the camera. */
   pointAt(x: number, y: number, through: ArrayLike<number>): THREE.Vector3 | null {
     const normal = this.rig.camera.getWorldDirection(new THREE.Vector3());
     const plane = new THREE.Plane().setFromNormalAndCoplanarPoint(normal, new THREE.Vector3(through[0], through[1], through[2]));
     return this.rayAt(x, y).intersectPlane(plane, new THREE.Vector3());
   }
 
-  /** Where a point is in the window, in pixels. */
+  /** The position of a point in the window, in pixels. */
   project(point: ArrayLike<number>): { x: number; y: number } {
     const box = this.canvas.getBoundingClientRect();
     this.rig.camera.updateMatrixWorld();
@@ -338,7 +338,10 @@ export class SceneView {
     return { x: box.left + ((at.x + 1) / 2) * box.width, y: box.top + ((1 - at.y) / 2) * box.height };
   }
 
-  /** The contact whose point is closest to the cursor, within so many pixels; its place in the frame, or −1. */
+  /**
+   * The index of the contact whose point is closest to the cursor, within `reach` pixels; −1 when there is
+   * none.
+   */
   contactAt(x: number, y: number, reach = 8): number {
     const { frame } = this.model;
     if (!frame || !this.model.layers.points) return -1;
@@ -372,7 +375,7 @@ export class SceneView {
     if (this.times.length > 600) this.times.splice(0, 300);
   }
 
-  /** Draws at once, so that the canvas can be read in the same turn. */
+  /** Draws immediately, so that the canvas can be read in the same task. */
   draw(): void {
     this.dirty = false;
     if (!this.filled) this.fill();
@@ -380,7 +383,7 @@ export class SceneView {
     if (this.checkMemory && this.model.frame) {
       this.checkMemory = false;
       const gl = this.renderer.getContext();
-      if (gl.getError() === gl.OUT_OF_MEMORY) this.onLost("The graphics card has not enough memory for this scene.");
+      if (gl.getError() === gl.OUT_OF_MEMORY) this.onLost("The graphics card does not have enough memory for this scene.");
     }
   }
 
@@ -405,7 +408,7 @@ function writeBox(into: Float32Array, box: number[][]): number {
   return 12;
 }
 
-/** Three rings; a ball is its centre and its radius. */
+/** Writes three circles; a sphere is its centre and radius. */
 function writeBall(into: Float32Array, ball: number[]): number {
   const sides = 48;
   let at = 0;

@@ -1,8 +1,8 @@
 import * as THREE from "three";
 
 /**
- * An interleaved vertex buffer that is filled anew each frame: its array grows by doubling and is written in
- * place. `parts` are the attributes that look into it, by name: how many numbers from which place.
+ * An interleaved vertex buffer that is refilled each frame. Its array grows by doubling and is written in
+ * place. `parts` maps the names of its attributes to their size and offset.
  */
 export class Stream {
   array: Float32Array;
@@ -18,7 +18,7 @@ export class Stream {
     this.makeBuffer();
   }
 
-  /** Room for so many elements; what was there may be lost. */
+  /** Makes room for `count` elements. The previous content may be lost. */
   reserve(count: number): Float32Array {
     const needed = count * this.stride;
     if (this.array.length < needed) {
@@ -28,7 +28,7 @@ export class Stream {
     return this.array;
   }
 
-  /** So many elements of the array are to be drawn. */
+  /** Draws the first `count` elements. */
   commit(count: number): void {
     this.buffer.clearUpdateRanges();
     this.buffer.addUpdateRange(0, count * this.stride);
@@ -38,7 +38,7 @@ export class Stream {
   }
 
   private makeBuffer(): void {
-    this.geometry.dispose();  // lets go of the smaller buffer on the GPU
+    this.geometry.dispose();  // frees the smaller buffer on the GPU
     this.buffer = this.instanced
       ? new THREE.InstancedInterleavedBuffer(this.array, this.stride)
       : new THREE.InterleavedBuffer(this.array, this.stride);

@@ -1,22 +1,22 @@
-/** All objects' surfaces and wireframes, in a few draw calls however many objects there are. */
+/** The surfaces and wireframes of all objects, in a constant number of draw calls. */
 import * as THREE from "three";
 import type { Layer, ObjectState } from "../model";
 
-/** More than any graphics card takes in one buffer. */
+/** Exceeds the buffer size of any graphics card. */
 const LARGEST_BUFFER = 0x80000000;
-/** Texels a row of the texture of looks; half of what every WebGL 2 takes. */
+/** Texels per row of the texture of colours; half the minimum that WebGL 2 guarantees. */
 const LOOKS_WIDTH = 1024;
-/** In place of the opacity of what is not shown. */
+/** Stands for the opacity of hidden objects. */
 const HIDDEN = -1;
-/** Numbers that are rather uploaded once more than left out by another call. */
+/** Gaps up to this size are uploaded again rather than split into another call. */
 const GAP = 1024;
 
-/** Opacities of the objects that a mesh draws: from the first to below the second. */
+/** The range of opacities that a mesh draws: from the first to below the second. */
 const OPAQUE = new THREE.Vector2(1, 2);
 const TRANSPARENT = new THREE.Vector2(0, 1);
 const ALL = new THREE.Vector2(0, 2);
 
-// An object that a mesh does not draw has its vertices put where nothing is seen.
+// Vertices of objects that a mesh does not draw are moved out of view.
 const VERTEX_SHADER = `
   uniform sampler2D looks; uniform vec2 drawn; uniform int selected; in uint object;
   flat out vec4 look; flat out float glow; out vec3 seen;
@@ -29,8 +29,8 @@ const VERTEX_SHADER = `
     gl_Position = look.a >= drawn.x && look.a < drawn.y ? projectionMatrix * at : vec4(2.0, 2.0, 2.0, 1.0);
   }`;
 
-// Flat shading takes normals from derivatives: nothing to compute as objects bend. Light comes from the sky, from the ground, which
-// is bluish, and from the eye; what faces the eye shines a little.
+// Flat shading derives normals from screen-space derivatives, so deformation costs nothing. Light comes from
+// the sky, from the ground (bluish) and from the camera; surfaces that face the camera shine a little.
 const SURFACE_SHADER = `
   flat in vec4 look; flat in float glow; in vec3 seen; out vec4 result;
   const vec3 ground = vec3(0.246, 0.279, 0.352);
@@ -46,7 +46,7 @@ const WIREFRAME_SHADER = `
   uniform vec4 ink; flat in vec4 look; out vec4 result;
   void main() { result = linearToOutputTexel(ink.a > 0.0 ? ink : vec4(look.rgb, 1.0)); }`;
 
-/** Of the wireframe over surfaces; by itself it has the objects' colours. */
+/** The colour of the wireframe over surfaces. Without surfaces it has the colours of the objects. */
 const WIREFRAME_COLOUR = new THREE.Color("#101418");
 const WIREFRAME_OPACITY = 0.35;
 
@@ -55,7 +55,7 @@ export function obstacleOf(gl: WebGL2RenderingContext, objects: { name: string; 
   const vertices = objects.reduce((sum, object) => sum + object.vertices, 0);
   const triangles = objects.reduce((sum, object) => sum + object.triangles, 0);
   const mostVertices = Math.min(gl.getParameter(gl.MAX_ELEMENT_INDEX) as number, LARGEST_BUFFER / 12);
-  const mostTriangles = LARGEST_BUFFER / 24;  // of both ends of their edges
+  const mostTriangles = LARGEST_BUFFER / 24;  // two ends per edge
   const mostObjects = LOOKS_WIDTH * (gl.getParameter(gl.MAX_TEXTURE_SIZE) as number);
   if (vertices <= mostVertices && triangles <= mostTriangles && objects.length <= mostObjects) return null;
   const count = (number: number, what: string) => `${number.toLocaleString("en")} ${what}`;
@@ -63,7 +63,7 @@ export function obstacleOf(gl: WebGL2RenderingContext, objects: { name: string; 
   const largest = objects.reduce((a, b) => (b.vertices + b.triangles > a.vertices + a.triangles ? b : a));
   return (
     `The scene has ${count(objects.length, objects.length === 1 ? "object" : "objects")} with ${size({ vertices, triangles })}, more than this browser can draw. ` +
-    `The largest is ${largest.name}, with ${size(largest)}. SceneView a part of the scene, or coarser meshes.`
+    `The largest is ${largest.name}, with ${size(largest)}. Show a part of the scene, or coarser meshes.`
   );
 }
 
@@ -72,7 +72,7 @@ interface Range {
   count: number;
 }
 
-/** Adds numbers to those that are to be uploaded: to the last range where that is near, or as another one. */
+/** Adds a range to upload: extends the last range when it is near, otherwise appends. */
 export function addRange(ranges: Range[], start: number, count: number): void {
   const last = ranges[ranges.length - 1];
   const gap = last ? start - (last.start + last.count) : -1;
@@ -80,7 +80,7 @@ export function addRange(ranges: Range[], start: number, count: number): void {
   else ranges.push({ start, count });
 }
 
-/** The corners of all triangles, as vertices of all objects one after the other. */
+/** The vertex ids of the corners of all triangles, in the numbering of all objects together. */
 function cornersOf(objects: ObjectState[]): Uint32Array {
   const all = new Uint32Array(objects.reduce((sum, object) => sum + object.corners.length, 0));
   let at = 0;
@@ -104,13 +104,13 @@ function edgesOf(corners: Uint32Array): Uint32Array {
   return ends;
 }
 
-/** An attribute whose numbers are let go of once the graphics card has them. */
+/** An attribute whose array is freed after the upload. */
 function sentOnce(array: Uint32Array): THREE.BufferAttribute {
   const attribute = new THREE.BufferAttribute(array, 1);
   return attribute.onUpload(() => (attribute.array = new Uint32Array(0)));
 }
 
-/** A texel an object: its colour, and its opacity. */
+/** One texel per object: colour and opacity. */
 function makeLooks(objects: number): THREE.DataTexture {
   const rows = Math.max(1, Math.ceil(objects / LOOKS_WIDTH));
   return new THREE.DataTexture(new Float32Array(4 * LOOKS_WIDTH * rows), LOOKS_WIDTH, rows, THREE.RGBAFormat, THREE.FloatType);
@@ -126,14 +126,14 @@ export class Surfaces {
   private readonly wireframe = new THREE.LineSegments(new THREE.BufferGeometry(), this.material(ALL, WIREFRAME_SHADER));
 
   constructor() {
-    // Wireframes and layers lie on surfaces, and win.
+    // Wireframes and layers lie on surfaces and must win the depth test.
     for (const { material } of [this.opaque, this.transparent])
       Object.assign(material, { polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 });
     for (const { material } of [this.transparent, this.wireframe]) material.transparent = true;
     this.transparent.material.depthWrite = false;
-    this.transparent.material.forceSinglePass = false;  // what is behind first: insides are seen through outsides
+    this.transparent.material.forceSinglePass = false;  // back faces first: the inside is visible through the outside
     this.group.add(this.opaque, this.transparent, this.wireframe);
-    for (const shape of this.group.children) shape.frustumCulled = false;  // bounds would have to follow each frame
+    for (const shape of this.group.children) shape.frustumCulled = false;  // bounds would need an update in each frame
   }
 
   private material(drawn: THREE.Vector2, fragmentShader: string): THREE.ShaderMaterial {
@@ -143,7 +143,10 @@ export class Surfaces {
     });
   }
 
-  /** Another scene. `positions` has those of all objects, one object after the other; they look into it. */
+  /**
+   * Replaces the scene. `positions` contains all objects one after the other; each object has a view into
+   * it.
+   */
   build(objects: ObjectState[], positions: Float32Array): void {
     for (const { geometry } of [this.opaque, this.wireframe]) geometry.dispose();
     this.uniforms.looks.value.dispose();
@@ -157,12 +160,12 @@ export class Surfaces {
     const number = sentOnce(numbers);
     for (const shape of [this.opaque, this.wireframe]) {
       shape.geometry = new THREE.BufferGeometry().setAttribute("position", attribute).setAttribute("object", number);
-      shape.geometry.boundingSphere = new THREE.Sphere();  // three.js sorts by it, and would look for it among all vertices
+      shape.geometry.boundingSphere = new THREE.Sphere();  // three.js sorts by it and would otherwise visit all vertices
     }
     this.transparent.geometry = this.opaque.geometry.setIndex(sentOnce(cornersOf(objects)));
   }
 
-  /** These objects have new positions. Only what is drawn is uploaded, so that ranges may have to wait. */
+  /** Marks positions as changed. Only visible objects are uploaded; the others wait. */
   touch(objects: Iterable<number>): void {
     const { array, updateRanges: ranges } = this.positions;
     for (const object of objects) {
@@ -174,11 +177,11 @@ export class Surfaces {
     this.positions.needsUpdate = true;
   }
 
-  /** What objects look like, or which of them are drawn, has changed. */
+  /** The appearance or the visibility of objects changed. */
   paint(layers: Record<Layer, boolean>): void {
     const looks = this.uniforms.looks.value;
     const data = looks.image.data as Float32Array;
-    const colours = new Map<string, THREE.Color>();  // the same few, mostly
+    const colours = new Map<string, THREE.Color>();  // most objects share a few colours
     let [opaque, transparent] = [false, false];
     for (const { index, colour, opacity, visible } of this.objects) {
       let linear = colours.get(colour);
@@ -197,7 +200,7 @@ export class Surfaces {
     this.uniforms.ink.value.set(r, g, b, layers.surface ? WIREFRAME_OPACITY : 0);
   }
 
-  /** Lets one object glow, or none. */
+  /** Highlights one object, or none. */
   select(object: number | null): void {
     this.uniforms.selected.value = object ?? -1;
   }

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "broad_phase/grid/grid_kernel.hpp"
+
+namespace supple {
+
+/// Chooses bounds, axes, levels and cells of a grid from a sample of the boxes. The same boxes give the same
+/// grid.
+class GridPlanner {
+ public:
+  /// O(sample). `max_extent` of the levels is 0.
+  void plan(std::span<const Aabb> boxes, Grid& grid);
+
+ private:
+  using Lengths = std::array<double, 3>;  // by x, y, z
+  struct Sample {
+    std::array<float, 3> low, high;
+    double size;  // the largest extent, in mean extents
+  };
+  void take_sample(std::span<const Aabb> boxes);
+  void choose_bounds(Grid& grid);
+  void choose_axes(Grid& grid);
+  double density_of_clusters() const;
+  void choose_levels(Grid& grid);
+  void add_level(Grid& grid, const Lengths& limit, const Lengths& cell) const;
+
+  std::vector<Sample> samples_;
+  std::vector<float> scratch_;
+  std::size_t count_ = 0;   // of all boxes
+  Lengths low_{}, high_{};  // where nearly all boxes are
+  Lengths mean_extent_{}, width_in_extents_{};
+};
+
+}  // namespace supple

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "broad_phase/grid/grid_kernel.hpp"
+#include "broad_phase/grid/grid_plan.hpp"
+#include "broad_phase/pair_search.hpp"
+
+namespace supple {
+
+/// A hierarchical grid that is made anew in each step: the boxes are quantized and sorted by size, row and
+/// cell, and each is tested against those that follow it in its row and in the rows beside, 16 at a time.
+/// Larger boxes also search the levels of smaller ones. Each box is in one cell, so each pair is found once.
+class GridSearch final : public PairSearch {
+ public:
+  void search(VolumeStore& volumes, const Parallel& parallel, FoundPairs& found) override;
+  /// Returns false without having searched when so many boxes share cells that an octree will do better.
+  bool search_unless_crowded(VolumeStore& volumes, const Parallel& parallel, FoundPairs& found);
+
+ private:
+  /// A range of boxes that one worker quantizes.
+  struct Chunk {
+    std::size_t begin = 0, end = 0, count = 0;  // `count` boxes of the range are not empty
+    std::vector<std::uint32_t> places;          // by block: how many of its boxes are here, then their place
+    std::vector<std::array<std::uint32_t, 3>> max_extent;  // by level, x, y, z
+  };
+
+  std::uint64_t bin(const VolumeStore& volumes, const Parallel& parallel);
+  void quantize(std::span<const Aabb> boxes, Chunk& chunk);
+  std::uint64_t sort_block(const GridLevel& level, std::size_t block);
+  void search_cells(const Parallel& parallel, FoundPairs& found);
+  std::size_t box_count() const { return block_begins_.back(); }
+
+  GridPlanner planner_;
+  Grid grid_;
+  std::vector<Chunk> chunks_;
+  std::vector<QuantizedBox> quantized_, by_block_;
+  std::vector<std::uint32_t> blocks_;        // per quantized box
+  std::vector<std::uint32_t> block_begins_;  // and one more
+  BinnedBoxes binned_;
+  PairSorter sorter_;
+};
+
+}  // namespace supple

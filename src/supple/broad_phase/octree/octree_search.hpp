@@ -1,0 +1,55 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "broad_phase/octree/scene_octree.hpp"
+#include "broad_phase/overlap_kernel.hpp"
+#include "broad_phase/pair_search.hpp"
+
+namespace supple {
+
+/// The paper's broad phase: an object is tested against those that share a leaf of the scene octree with it.
+/// The regions follow the objects that changed. When these are few, only their pairs are searched, and the
+/// pairs of all others stay. The regions are built anew when most objects left theirs, when the cube no
+/// longer suits the scene, and when another search ran in between.
+class OctreeSearch final : public PairSearch {
+ public:
+  OctreeSearch(BoundingVolume bounding_volume, const SceneOctreeOptions& options)
+      : max_level_(options.max_level), tree_(bounding_volume, options) {}
+
+  void search(VolumeStore& volumes, const Parallel& parallel, FoundPairs& found) override;
+  bool needs_previous(const VolumeStore& volumes) const override { return revision_ == volumes.revision(); }
+  std::vector<SceneRegion> regions() const override { return tree_.describe(); }
+  std::string validate(const VolumeStore& volumes) const override { return tree_.validate(volumes); }
+
+ private:
+  /// Scratch memory of one worker.
+  struct Worker {
+    BoxLanes lanes;
+    std::vector<std::uint64_t> order;
+    std::vector<std::uint32_t> others;
+    std::uint64_t tests = 0;
+  };
+
+  void follow_changes(VolumeStore& volumes, BroadPhaseStats& stats);
+  void build(const VolumeStore& volumes, const SceneCube& cube, BroadPhaseStats& stats);
+  void find_in_leaf(const VolumeStore& volumes, const SceneOctree::Region& leaf, Worker& worker,
+                    PairBins& pairs) const;
+  void find_of_object(const VolumeStore& volumes, std::uint32_t slot, Worker& worker, PairBins& pairs) const;
+  void merge_kept(std::vector<IndexPair>& pairs);
+
+  std::uint32_t max_level_;
+  SceneOctree tree_;
+  SceneCubeChooser cube_chooser_;
+  std::uint64_t revision_ = ~std::uint64_t{0};  // of the volumes that the regions hold; none at first
+  std::size_t placed_since_choice_ = 0;         // objects placed since the cube was last chosen
+  std::vector<std::uint32_t> crossing_;         // changed objects that may have left their regions
+  std::vector<ObjectVolume> previous_;          // of these
+  std::vector<std::uint8_t> is_changed_;        // per slot, while few are searched
+  std::vector<Worker> workers_;
+  PairSorter sorter_;
+  std::vector<IndexPair> fresh_, kept_;
+};
+
+}  // namespace supple

@@ -1,0 +1,448 @@
+#include "broad_phase/octree/scene_octree.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+
+namespace supple {
+namespace {
+
+constexpr float infinity = std::numeric_limits<float>::infinity();
+constexpr std::uint32_t most_children = 8;
+
+/// Children in the upper half along the axis of each bit; the others are in the lower.
+constexpr std::array<std::uint32_t, 3> upper_half{0xaa, 0xcc, 0xf0};
+
+/// Children that do not hold part of the box, by the plane of one bit.
+std::uint32_t missed_across(float middle, float min, float max, std::uint32_t upper) {
+  // All bits or none, in place of a branch.
+  return (~upper & -static_cast<std::uint32_t>(!(min < middle))) |
+         (upper & -static_cast<std::uint32_t>(!(max >= middle)));
+}
+
+/// Children of eight that hold part of the box. It is known to touch the region itself.
+std::uint32_t octants_of_box(const Vec3f& middle, const Aabb& box) {
+  std::uint32_t missed = 0;
+  for (int axis = 0; axis < 3; ++axis)
+    missed |=
+        missed_across(middle[axis], box.min[axis], box.max[axis], upper_half[static_cast<std::size_t>(axis)]);
+  return ~missed & 0xff;
+}
+
+/// Children whose closest point to the centre lies within the sphere (Arvo 1990), all when it is not finite.
+///
+/// Two spheres that `overlap` reports share a leaf. With d <= (r1 + r2)(1 + 2^-48) between the centres, the
+/// point p that parts the segment between them as r1 : r2 is within r (1 + 2^-48) of each centre. p is in one
+/// leaf, and in each region above it; the distance from a centre to any of these is no more than to p.
+/// Distances are differences of floats taken in double: each has a relative error of 2^-53 (none of the
+/// squares can underflow), their sum one below 2^-50, so that it passes against r² (1 + 2^-40) at every
+/// level.
+std::uint32_t octants_of_sphere(const SceneOctree::Region& region, const BoundingSphere& sphere) {
+  const double limit = double{sphere.radius} * sphere.radius * (1 + 0x1p-40);
+  std::array<std::array<double, 2>, 3> squared{};
+  for (int axis = 0; axis < 3; ++axis) {
+    const double center = sphere.center[axis], middle = region.middle[axis];
+    const double below = std::max(region.lower[axis] - center, center - middle);
+    const double above = std::max(middle - center, center - region.upper[axis]);
+    squared[static_cast<std::size_t>(axis)] = {below > 0 ? below * below : 0, above > 0 ? above * above : 0};
+  }
+  std::uint32_t touched = 0;
+  for (std::uint32_t child = 0; child < most_children; ++child) {
+    const double distance = squared[0][child & 1] + squared[1][child >> 1 & 1] + squared[2][child >> 2 & 1];
+    touched |= static_cast<std::uint32_t>(!(distance > limit)) << child;
+  }
+  return touched;
+}
+
+}  // namespace
+
+SceneOctree::SceneOctree(BoundingVolume bounding_volume, const SceneOctreeOptions& options)
+    // The paper's grown box holds the centre exactly when the region touches the box around the sphere.
+    : by_sphere_(bounding_volume == BoundingVolume::sphere &&
+                 options.region_sphere_test == RegionSphereTest::arvo),
+      expand_at_(options.expand_at),
+      arity_(options.arity),
+      axes_per_level_(static_cast<int>(std::bit_width(options.arity)) - 1) {
+  make_root();
+}
+
+std::uint32_t SceneOctree::children_touched(const Region& region, const ObjectVolume& volume) const {
+  // The box of a sphere that is not finite is all of space, and so are its regions.
+  return by_sphere_ && volume.box.min.x != -infinity ? children_of_sphere(region, volume.sphere)
+                                                     : children_of_box(region, volume.box);
+}
+
+std::uint32_t SceneOctree::children_of_box(const Region& region, const Aabb& box) const {
+  if (arity_ == most_children) return octants_of_box(region.middle, box);
+  std::uint32_t missed = 0;
+  for (int turn = 0; turn < axes_per_level_; ++turn) {
+    const int axis = split_axis(region.level, turn);
+    missed |= missed_across(region.middle[axis], box.min[axis], box.max[axis],
+                            upper_half[static_cast<std::size_t>(turn)]);
+  }
+  return ~missed & ((1u << arity_) - 1);
+}
+
+/// Two children that differ only along axes that are not halved are one: of the eight octants, those that
+/// make up a child. A sphere touches the child when it touches one of them.
+std::uint32_t SceneOctree::children_of_sphere(const Region& region, const BoundingSphere& sphere) const {
+  const std::uint32_t octants = octants_of_sphere(region, sphere);
+  if (arity_ == most_children) return octants;
+  std::uint32_t touched = 0;
+  for (std::uint32_t rest = octants; rest != 0; rest &= rest - 1) {
+    const auto octant = static_cast<std::uint32_t>(std::countr_zero(rest));
+    std::uint32_t child = 0;
+    for (int turn = 0; turn < axes_per_level_; ++turn)
+      child |= (octant >> split_axis(region.level, turn) & 1) << turn;
+    touched |= 1u << child;
+  }
+  return touched;
+}
+
+bool SceneOctree::should_expand(const Region& region) const {
+  return region.divided >= expand_at_ && region.level < deepest_level_;
+}
+
+void SceneOctree::make_root() {
+  regions_.clear();
+  free_groups_.clear();
+  lists_.clear();
+  due_.clear();
+  regions_.resize(arity_);
+  Region& root = regions_[0];
+  root.lower = {-infinity, -infinity, -infinity};
+  root.upper = {infinity, infinity, infinity};
+  root.middle = cube_.center;
+  root.in_use = true;
+}
+
+std::uint32_t SceneOctree::make_children(std::uint32_t parent_index) {
+  std::uint32_t first = static_cast<std::uint32_t>(regions_.size());
+  if (free_groups_.empty()) {
+    regions_.resize(regions_.size() + arity_);
+  } else {
+    first = free_groups_.back();
+    free_groups_.pop_back();
+  }
+  Region& parent = regions_[parent_index];
+  parent.first_child = first;
+  for (std::uint32_t k = 0; k < arity_; ++k) {
+    Region& child = regions_[first + k];
+    child = {};
+    child.in_use = true;
+    child.number = arity_ * parent.number + 1 + k;
+    child.level = static_cast<std::uint8_t>(parent.level + 1);
+    child.lower = parent.lower;
+    child.upper = parent.upper;
+    child.middle = parent.middle;
+    for (int turn = 0; turn < axes_per_level_; ++turn) {
+      const int axis = split_axis(parent.level, turn);
+      const float quarter = std::ldexp(cube_.edge, -halvings(axis, parent.level) - 2);
+      const bool is_upper = (k >> turn & 1) != 0;
+      if (is_upper)
+        child.lower[axis] = std::max(parent.lower[axis], parent.middle[axis]);
+      else
+        child.upper[axis] = std::min(parent.upper[axis], parent.middle[axis]);
+      child.middle[axis] = parent.middle[axis] + (is_upper ? quarter : -quarter);
+    }
+  }
+  return first;
+}
+
+void SceneOctree::free_children(std::uint32_t parent_index) {
+  const std::uint32_t first = regions_[parent_index].first_child;
+  for (std::uint32_t k = 0; k < arity_; ++k) {
+    lists_.release(regions_[first + k].objects);
+    regions_[first + k].in_use = false;
+  }
+  free_groups_.push_back(first);
+  regions_[parent_index].first_child = 0;
+}
+
+void SceneOctree::open_stay_range(std::uint32_t slot) {
+  // Spheres have no range until they are found in a single leaf.
+  stay_[slot].low.fill(by_sphere_ ? infinity : -infinity);
+  stay_[slot].high.fill(by_sphere_ ? -infinity : infinity);
+}
+
+void SceneOctree::narrow_stay_range(std::uint32_t slot, const Aabb& box, const Region& region) {
+  StayRange& range = stay_[slot];
+  const Vec3f& plane = region.middle;
+  const std::array<float, 6> ends{box.min.x, box.min.y, box.min.z, box.max.x, box.max.y, box.max.z};
+  const std::array<float, 6> planes{plane.x, plane.y, plane.z, plane.x, plane.y, plane.z};
+  // Selections in place of branches: which side an end is on is anyone's guess.
+  for (std::size_t k = 0; k < 6; ++k) {
+    const bool below = ends[k] < planes[k];
+    range.low[k] = std::max(range.low[k], below ? -infinity : planes[k]);
+    range.high[k] = std::min(range.high[k], below ? planes[k] : infinity);
+  }
+}
+
+/// A sphere whose box is inside a leaf, and not too close to its sides, is in no other leaf. The distance
+/// from the centre to a side is then at least the radius and 2^-20 of an edge or, as the radius is at most an
+/// edge, 2^-20 of the radius, which is far more than the 2^-40 that `children_of_sphere` adds and all
+/// roundings.
+void SceneOctree::set_sphere_stay_range(std::uint32_t slot, const Aabb& box, const Region& leaf) {
+  const float edge = shortest_edge(leaf.level);
+  StayRange range;
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::size_t k = static_cast<std::size_t>(axis);
+    const auto inside = [&](float side) { return 0x1p-20f * (edge + std::fabs(side)); };
+    const float low = leaf.lower[axis] == -infinity ? -std::numeric_limits<float>::max()
+                                                    : leaf.lower[axis] + inside(leaf.lower[axis]);
+    const float high = leaf.upper[axis] == infinity ? infinity : leaf.upper[axis] - inside(leaf.upper[axis]);
+    range.low[k] = range.low[k + 3] = low;
+    range.high[k] = range.high[k + 3] = high;
+    if (!(low <= box.min[axis] && box.max[axis] < high && box.max[axis] - box.min[axis] <= edge)) return;
+  }
+  stay_[slot] = range;
+}
+
+void SceneOctree::build(const VolumeStore& volumes, const SceneCube& cube) {
+  cube_ = cube;
+  inverse_edge_ = 1.0 / cube.edge;
+  deepest_level_ = cube.max_level * 3 / static_cast<std::uint32_t>(axes_per_level_);
+  make_root();
+  object_count_ = 0;
+  const auto boxes = volumes.boxes();
+  resize(boxes.size());
+  for (std::uint32_t slot = 0; slot < boxes.size(); ++slot) {
+    finest_level_[slot] = finest_level(boxes[slot]);
+    if (boxes[slot].empty()) continue;
+    ++object_count_;
+    open_stay_range(slot);
+    lists_.push(regions_[0].objects, slot);
+    regions_[0].divided += divides(0, finest_level_[slot]);
+  }
+  if (should_expand(regions_[0])) expand(volumes, 0);
+}
+
+void SceneOctree::resize(std::size_t slot_count) {
+  stay_.resize(slot_count);
+  finest_level_.resize(slot_count, 0);
+  is_collected_.resize(slot_count, 0);
+}
+
+void SceneOctree::expand(const VolumeStore& volumes, std::uint32_t index) {
+  ++expanded_count_;
+  const std::uint32_t first = make_children(index);
+  const Region region = regions_[index];
+  std::span<const std::uint32_t> slots = lists_.view(region.objects);
+  child_masks_.resize(slots.size());
+  std::array<std::uint32_t, most_children> counts{};
+  for (std::size_t i = 0; i < slots.size(); ++i) {
+    const std::uint32_t slot = slots[i];
+    std::uint32_t mask = children_touched(region, volumes.volume(slot));
+    child_masks_[i] = static_cast<std::uint8_t>(mask);
+    if (by_sphere_)
+      open_stay_range(slot);
+    else
+      narrow_stay_range(slot, volumes.boxes()[slot], region);
+    for (; mask != 0; mask &= mask - 1) ++counts[static_cast<std::size_t>(std::countr_zero(mask))];
+  }
+  for (std::uint32_t k = 0; k < arity_; ++k) lists_.reserve(regions_[first + k].objects, counts[k]);
+  slots = lists_.view(region.objects);
+  for (std::size_t i = 0; i < slots.size(); ++i) {
+    const std::uint32_t slot = slots[i];
+    const bool divided_below = divides(region.level + 1u, finest_level_[slot]);
+    for (std::uint32_t mask = child_masks_[i]; mask != 0; mask &= mask - 1) {
+      Region& child = regions_[first + static_cast<std::uint32_t>(std::countr_zero(mask))];
+      lists_.push(child.objects, slot);
+      child.divided += divided_below;
+    }
+  }
+  lists_.release(regions_[index].objects);
+  for (std::uint32_t child = first; child < first + arity_; ++child) {
+    if (should_expand(regions_[child])) {
+      expand(volumes, child);
+    } else if (by_sphere_) {
+      for (const std::uint32_t slot : objects(regions_[child]))
+        set_sphere_stay_range(slot, volumes.boxes()[slot], regions_[child]);
+    }
+  }
+}
+
+void SceneOctree::collect(std::uint32_t index) {
+  const std::uint32_t first = regions_[index].first_child;
+  for (std::uint32_t child = first; child < first + arity_; ++child) {
+    if (!regions_[child].is_leaf()) {
+      collect(child);
+      continue;
+    }
+    for (const std::uint32_t slot : objects(regions_[child])) {
+      if (is_collected_[slot] == 0) collected_.push_back(slot);
+      is_collected_[slot] = 1;
+    }
+  }
+  free_children(index);
+}
+
+void SceneOctree::reduce(std::uint32_t index) {
+  ++reduced_count_;
+  collected_.clear();
+  collect(index);
+  Region& region = regions_[index];
+  lists_.reserve(region.objects, static_cast<std::uint32_t>(collected_.size()));
+  for (const std::uint32_t slot : collected_) {
+    lists_.push(region.objects, slot);
+    is_collected_[slot] = 0;
+  }
+}
+
+/// An object between its old and its new volume.
+struct SceneOctree::Journey {
+  std::uint32_t slot;
+  ObjectVolume from, to;
+  std::uint8_t finest_from, finest_to;
+};
+
+void SceneOctree::move(const VolumeStore& volumes, std::uint32_t slot, const ObjectVolume& from) {
+  if (slot >= stay_.size()) resize(volumes.slot_count());
+  const ObjectVolume to = volumes.volume(slot);
+  const Journey journey{slot, from, to, finest_level_[slot], finest_level(to.box)};
+  finest_level_[slot] = journey.finest_to;
+  object_count_ += !to.box.empty();
+  object_count_ -= !from.box.empty();
+  open_stay_range(slot);
+  if (!from.box.empty() || !to.box.empty()) move_below(0, journey, !from.box.empty(), !to.box.empty());
+}
+
+void SceneOctree::move_below(std::uint32_t index, const Journey& journey, bool was_here, bool is_here) {
+  Region& region = regions_[index];
+  region.divided -= was_here && divides(region.level, journey.finest_from);
+  region.divided += is_here && divides(region.level, journey.finest_to);
+  if (should_expand(region) == region.is_leaf()) due_.push_back(index);
+  if (region.is_leaf()) {
+    if (was_here && !is_here) lists_.erase(region.objects, journey.slot);
+    if (!was_here && is_here) lists_.push(region.objects, journey.slot);
+    if (is_here && by_sphere_) set_sphere_stay_range(journey.slot, journey.to.box, region);
+    return;
+  }
+  const auto touched = [&](bool here, const ObjectVolume& volume) -> std::uint32_t {
+    return here ? children_touched(region, volume) : 0;
+  };
+  const std::uint32_t were = touched(was_here, journey.from), are = touched(is_here, journey.to);
+  if (is_here && !by_sphere_) narrow_stay_range(journey.slot, journey.to.box, region);
+  const std::uint32_t first = region.first_child;
+  for (std::uint32_t mask = were | are; mask != 0; mask &= mask - 1) {
+    const auto k = static_cast<std::uint32_t>(std::countr_zero(mask));
+    move_below(first + k, journey, (were >> k & 1) != 0, (are >> k & 1) != 0);
+  }
+}
+
+void SceneOctree::settle(const VolumeStore& volumes) {
+  for (const std::uint32_t index : due_) {
+    // An earlier entry may have settled this region, or reduced one above it.
+    const Region& region = regions_[index];
+    if (!region.in_use || should_expand(region) != region.is_leaf()) continue;
+    if (region.is_leaf())
+      expand(volumes, index);
+    else
+      reduce(index);
+  }
+  due_.clear();
+}
+
+std::vector<SceneRegion> SceneOctree::describe() const {
+  std::vector<SceneRegion> described;
+  for (const Region& region : regions_) {
+    if (!region.in_use) continue;
+    SceneRegion entry{region.number, region.level, {}, region.is_leaf(), region.objects.count};
+    for (int axis = 0; axis < 3; ++axis) {
+      const float half = std::ldexp(cube_.edge, -halvings(axis, region.level) - 1);
+      entry.box.min[axis] = region.middle[axis] - half;
+      entry.box.max[axis] = region.middle[axis] + half;
+    }
+    described.push_back(entry);
+  }
+  // Numbers grow from level to level, so this puts the root first.
+  std::sort(described.begin(), described.end(),
+            [](const SceneRegion& a, const SceneRegion& b) { return a.number < b.number; });
+  return described;
+}
+
+/// What `validate` has come across.
+struct SceneOctree::Census {
+  std::size_t regions = 0;
+  std::size_t list_capacity = 0;
+};
+
+std::string SceneOctree::validate(const VolumeStore& volumes) const {
+  const auto boxes = volumes.boxes();
+  if (!due_.empty()) return "scene octree: regions are left to expand or reduce";
+  std::vector<std::uint32_t> live;
+  for (std::uint32_t slot = 0; slot < boxes.size(); ++slot) {
+    if (boxes[slot].empty()) continue;
+    live.push_back(slot);
+    if (finest_level_[slot] != finest_level(boxes[slot]))
+      return "scene octree: slot " + std::to_string(slot) + " has a stale finest level";
+  }
+  if (std::count(is_collected_.begin(), is_collected_.end(), 0) !=
+      static_cast<std::ptrdiff_t>(is_collected_.size()))
+    return "scene octree: scratch of reduce is not clean";
+  Census census;
+  if (std::string wrong = validate_below(volumes, 0, live, census); !wrong.empty()) return wrong;
+  const std::size_t pool = 1 + regions_.size() - arity_;
+  if (census.regions + arity_ * free_groups_.size() != pool)
+    return "scene octree: " + std::to_string(pool) + " regions in the pool, but " +
+           std::to_string(census.regions) + " in use and " + std::to_string(arity_ * free_groups_.size()) +
+           " free";
+  if (census.list_capacity + lists_.free_capacity() != lists_.size())
+    return "scene octree: runs of object lists are lost or used twice";
+  return {};
+}
+
+/// `slots` are the objects that touch the region.
+std::string SceneOctree::validate_below(const VolumeStore& volumes, std::uint32_t index,
+                                        std::span<const std::uint32_t> slots, Census& census) const {
+  const Region& region = regions_[index];
+  const std::string name = "scene octree: region " + std::to_string(region.number) + ": ";
+  ++census.regions;
+  census.list_capacity += lists_.capacity(region.objects);
+  if (!region.in_use) return name + "is on the free list";
+  std::uint32_t divided = 0;
+  for (const std::uint32_t slot : slots) divided += divides(region.level, finest_level_[slot]);
+  if (divided != region.divided)
+    return name + "counts " + std::to_string(region.divided) + " objects it divides, but there are " +
+           std::to_string(divided);
+  if (should_expand(region) == region.is_leaf())
+    return name + (region.is_leaf() ? "should be expanded" : "should be reduced");
+  if (region.is_leaf()) {
+    const auto held = objects(region);
+    std::vector<std::uint32_t> sorted(held.begin(), held.end());
+    std::sort(sorted.begin(), sorted.end());
+    if (!std::equal(sorted.begin(), sorted.end(), slots.begin(), slots.end()))
+      return name + "does not hold exactly the objects that touch it";
+    return {};
+  }
+  if (region.objects.count != 0) return name + "is expanded, but holds objects";
+  std::array<std::vector<std::uint32_t>, most_children> inside;
+  for (const std::uint32_t slot : slots) {
+    if (!by_sphere_) {
+      const StayRange& range = stay_[slot];
+      for (int turn = 0; turn < axes_per_level_; ++turn) {
+        const int axis = split_axis(region.level, turn);
+        const std::size_t k = static_cast<std::size_t>(axis);
+        const float plane = region.middle[axis];
+        if ((range.low[k] < plane && plane < range.high[k]) ||
+            (range.low[k + 3] < plane && plane < range.high[k + 3]))
+          return name + "slot " + std::to_string(slot) + " may cross the middle unnoticed";
+      }
+    }
+    const std::uint32_t mask = children_touched(region, volumes.volume(slot));
+    for (std::size_t k = 0; k < arity_; ++k)
+      if ((mask >> k & 1) != 0) inside[k].push_back(slot);
+  }
+  for (std::uint32_t k = 0; k < arity_; ++k) {
+    const Region& child = regions_[region.first_child + k];
+    if (child.number != arity_ * region.number + 1 + k || child.level != region.level + 1)
+      return name + "child " + std::to_string(k) + " has number " + std::to_string(child.number);
+    if (std::string wrong = validate_below(volumes, region.first_child + k, inside[k], census);
+        !wrong.empty())
+      return wrong;
+  }
+  return {};
+}
+
+}  // namespace supple
