@@ -3,10 +3,10 @@ JOBS ?= $(shell nproc)
 
 BASE ?= HEAD
 
-.PHONY: help demo test build bench bench-quick bench-kernels bench-compare contest check format docs figures clean dependencies
+.PHONY: help demo program test build bench bench-quick bench-kernels bench-compare contest check format docs figures clean dependencies
 
 help:
-	@echo 'make demo     build, then a cloth that falls over a ball, and nine objects that collide'
+	@echo 'make demo     build the program, drop a cloth over a ball, collide nine objects, write a page that shows them'
 	@echo 'make test     build, then every test'
 	@echo 'make build    the release build: build/release/bin/supple'
 	@echo 'make bench    Supple against Embree, CGAL, FCL, Bullet and ODE: up to 25 minutes; bench-quick takes one'
@@ -18,14 +18,22 @@ help:
 	@echo 'make figures  draw docs/figures/*.svg from their text (needs graphviz)'
 	@echo 'make clean    remove build/'
 
-demo: build
-	build/release/bin/supple simulate scenes/table1_9.toml --frames 1000
-	@echo
+demo: program
 	build/release/bin/supple simulate scenes/cloth_over_ball.toml --frames 200 --record build/cloth.h5
 	@echo
+	build/release/bin/supple simulate scenes/nine.toml --steps 200
+	@echo
+	build/release/bin/supple view scenes/nine.toml --export build/nine.html
+	@echo
+	@echo 'Open build/nine.html in a browser: it is one file, needs no server, and shows the nine objects collide.'
 	@echo 'ParaView opens build/cloth.xdmf.'
-	@echo 'Try next: build/release/bin/supple view scenes/nine.toml'
+	@echo 'Try next: build/release/bin/supple view scenes/cloth_over_ball.toml'
 	@echo '          build/release/bin/supple detect scenes/nine.toml --frames 3 --verify --json -'
+
+# The command line and its viewer, without tests and examples.
+program: dependencies
+	cmake --preset release
+	cmake --build --preset release -j $(JOBS) --target supple_cli
 
 test: build
 	ctest --preset release
@@ -54,7 +62,7 @@ bench-kernels: dependencies
 bench-compare: dependencies
 	benchmarks/contest_compare.py $(BASE) $(CONTEST)
 
-check: build
+check: program
 	tools/install_dependencies.sh --ci
 	tools/format.sh --check
 	tools/check_include_order.py
@@ -71,7 +79,7 @@ figures: $(patsubst %.dot,%.svg,$(wildcard docs/figures/*.dot))
 docs/figures/%.svg: docs/figures/%.dot
 	dot -Tsvg $< -o $@
 
-docs: build
+docs: program
 	tools/generate_docs.sh build/release/bin/supple
 
 clean:

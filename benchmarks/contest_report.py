@@ -192,12 +192,12 @@ def stage_bars(cell):
     """By stage, for contestants that measure their stages."""
     bars = []
     for c in cell["contestants"]:
-        median, told = statistics.median(c["cpu_ms"]), c["mean_stage_ms"]
-        stages = [(name, color, told.get(name, 0)) for name, color in STAGES.items()]
-        if cell["cell"].startswith("limits/") and told:
-            refit = told["refit alone"]
+        median, measured = statistics.median(c["cpu_ms"]), c["mean_stage_ms"]
+        stages = [(name, color, measured.get(name, 0)) for name, color in STAGES.items()]
+        if cell["cell"].startswith("limits/") and measured:
+            refit = measured["refit alone"]
             stages = [(name, color, value) for (name, color), value in
-                      zip(REFIT.items(), (told["update"] - refit, refit))]
+                      zip(REFIT.items(), (measured["update"] - refit, refit))]
         total = sum(value for _, _, value in stages)
         bars.append((c["name"], [(name, color, value / total * median) for name, color, value in stages if value]
                      if total else [("", OTHER_COLOR, median)]))
@@ -213,20 +213,20 @@ def growth_plot(series):
 
 
 def bars_of(cells, prefix, title):
-    return [bar_plot(f"{title}{cell['cell'].removeprefix(prefix)}: ms of processor time a frame", stage_bars(cell))
+    return [bar_plot(f"{title}{cell['cell'].removeprefix(prefix)}: ms of processor time per frame", stage_bars(cell))
             for cell in cells if cell["cell"].startswith(prefix) and cell["contestants"]]
 
 
 def html_of(about, cells, rows, growth):
     """The complete page."""
     parts = ["<h1>Supple against others</h1>", table(["this run", ""], list(about.items()), 2)]
-    parts += ["<h2>What is asked and what is reached</h2>",
-              "<p>Ratios of medians in this run. Where the bound is ≥ it tells how many times as fast Supple is as the "
-              "best of the others in that cell. docs/performance.md has the workloads and what the words mean.</p>",
+    parts += ["<h2>Targets and results</h2>",
+              "<p>Ratios of medians in this run. Where the bound is ≥, the ratio is how many times faster Supple is than "
+              "the best other contestant of the cell. docs/performance.md explains the workloads and the words.</p>",
               judgement_table(rows)]
     parts += ["<h2>Boxes</h2>", *box_plots(cells)]
     parts += ["<h2>Deforming objects</h2>", *bars_of(cells, "B/", "B, ")]
-    parts += ["<h2>Cloth</h2><p>Supple's time has the exact verdicts in it, that of the others candidates only.</p>",
+    parts += ["<h2>Cloth</h2><p>Supple's time includes exact verdicts, that of the others only candidates.</p>",
               *bars_of(cells, "C/", "C, ")]
     if growth:
         parts += ["<h2>Growth</h2>", growth_plot(growth)]

@@ -23,11 +23,12 @@ STEPS = {"cloth-ball": ("cloth_ball92.ply", "cloth_ball93.ply"), "cloth-funnel":
 
 
 def read_ply(path):
-    """Positions and triangles of a binary PLY file of triangles whose vertices begin with float coordinates."""
+    """Positions and triangles of a binary PLY file of triangles whose vertices begin with their coordinates."""
     data = path.read_bytes()
     header, body = data.split(b"end_header\n", 1)
     sizes = {"float": 4, "float32": 4, "double": 8, "uchar": 1, "uint8": 1, "int": 4, "int32": 4, "uint": 4, "uint32": 4}
     order = ">" if b"big_endian" in header else "<"
+    kind = "f8" if b"property double x" in header else "f4"
     counts, stride, element = {}, 0, ""
     for line in header.decode().splitlines():
         words = line.split()
@@ -35,7 +36,8 @@ def read_ply(path):
             element, counts[words[1]] = words[1], int(words[2])
         elif words[0] == "property" and element == "vertex":
             stride += sizes[words[1]]
-    vertices = np.ndarray((counts["vertex"], 3), f"{order}f4", body, 0, (stride, 4)).astype(float)
+    vertices = np.ndarray((counts["vertex"], 3), order + kind, body, 0,
+                          (stride, int(kind[1]))).astype(float)
     faces = np.frombuffer(body, np.dtype([("n", "u1"), ("v", f"{order}i4", 3)]), counts["face"], stride * counts["vertex"])
     assert (faces["n"] == 3).all(), path
     return vertices, faces["v"].copy()
@@ -57,6 +59,7 @@ def main():
     parser.add_argument("cloth", nargs="+", choices=STEPS)
     arguments = parser.parse_args()
     ipctk.set_num_threads(1)
+    ipctk.set_logger_level(ipctk.LoggerLevel.error)
     data = pathlib.Path(os.environ.get("SUPPLE_DATA", ROOT.parent / "shared/data")) / "scalable-ccd"
     print(f"| cloth | Supple: step | ms | IPC Toolkit {ipctk.__version__}: step | ms | ratio |\n|---|---|---|---|---|---|")
     for cloth in arguments.cloth:

@@ -87,12 +87,12 @@ bool run_copies(const std::string& cell, const Choice& choice) {
   Scene scene(options);
   std::vector<ObjectId> objects;
   for (std::size_t i = 0; i < copies->copies(); ++i)
-    objects.push_back(scene.add(PositionsView<float>(copies->positions(i)), copies->triangles()));
+    objects.push_back(scene.add(copies->positions(i), copies->triangles()));
   time_frames(cell, choice, scene, [&] {
     copies->advance();
     const double before = cpu_milliseconds();
     for (std::size_t i = 0; i < objects.size(); ++i) {
-      if (copies->moves(i)) scene.share_positions(objects[i], PositionsView<float>(copies->positions(i)));
+      if (copies->moves(i)) scene.share_positions(objects[i], copies->positions(i));
     }
     return cpu_milliseconds() - before;
   });
@@ -104,10 +104,9 @@ bool run_cloth(const std::string& cell, const Choice& choice) {
   if (!step) return false;
   SceneOptions options;
   options.threads = choice.threads;
-  options.contacts = ContactMode::continuous;
+  options.contacts = ContactKinds::continuous;
   Scene scene(options);
-  const ObjectId cloth =
-      scene.add(PositionsView<double>(step->start), step->triangles, {.self_collision = true});
+  const ObjectId cloth = scene.add(step->start, step->triangles, {.self_collision = true});
   time_frames(cell, choice, scene, [&] {
     const double before = cpu_milliseconds();
     scene.set_motion(cloth, step->start, step->end);
@@ -152,7 +151,7 @@ void run(const Choice& choice) {
 std::size_t number_of(std::string_view text) {
   std::size_t number = 0;
   std::from_chars(text.data(), text.data() + text.size(), number);
-  if (number == 0) throw Error("'" + std::string(text) + "' is no number above 0");
+  if (number == 0) throw Error("'" + std::string(text) + "' is not a number above 0");
   return number;
 }
 

@@ -195,7 +195,7 @@ void continuous_step(benchmark::State& state) {
   const auto squares = static_cast<std::uint32_t>(state.range(0));
   const TriangleMesh cloth = make_cloth(squares, squares);
   SceneOptions options;
-  options.contacts = ContactMode::continuous;
+  options.contacts = ContactKinds::continuous;
   options.threads = static_cast<std::uint32_t>(state.range(1));
   Scene scene(options);
   const ObjectId id = scene.add(cloth, {.self_collision = true});

@@ -43,14 +43,14 @@ struct Contestant {
     SceneOptions options;
     options.threads = choice.threads;
     options.contact_points = false;
-    if (choice.continuous) options.contacts = ContactMode::continuous;
+    if (choice.continuous) options.contacts = ContactKinds::continuous;
     return options;
   }
 
   void step(const DegradingShapes& shapes) {
     const double before = cpu_milliseconds();
     for (std::size_t i = 0; i < objects.size(); ++i) {
-      scene.set_positions(objects[i], PositionsView<float>(shapes.shapes()[i].positions));
+      scene.set_positions(objects[i], shapes.shapes()[i].positions);
     }
     const StepStats& stats = scene.detect().stats;
     const double taken = cpu_milliseconds() - before;
@@ -66,7 +66,7 @@ struct Contestant {
 
   /// The sum over all octrees of the visits of a query, by the surface area heuristic.
   void add_costs() {
-    for (const ObjectId object : objects) visits += scene.octree_statistics(object).cost;
+    for (const ObjectId object : objects) visits += SceneInspector(scene).octree_statistics(object).cost;
   }
 
   Scene scene;

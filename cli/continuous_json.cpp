@@ -116,7 +116,7 @@ void write_objects(JsonWriter& json, ObjectId a, ObjectId b) {
 void write_continuous_groups(JsonWriter& json, const DetectResult& result, bool with_certainty) {
   json.key("continuous");
   json.begin_array();
-  for (const ContactGroup& group : result.groups) {
+  for (const ContactGroup& group : result.continuous_groups) {
     const Contacts contacts = result.continuous_contacts_of(group);
     const std::vector<Kind> kinds = kinds_of(group);
     json.begin_object();
@@ -140,8 +140,8 @@ void write_continuous_groups(JsonWriter& json, const DetectResult& result, bool 
   write_earliest(json, result.continuous_contacts);
 }
 
-void write_continuous_contacts(JsonWriter& json, const DetectResult& result) {
-  json.key("contacts");
+void write_continuous_contacts(JsonWriter& json, const char* name, const DetectResult& result) {
+  json.key(name);
   json.begin_array();
   for (const ContinuousContact& contact : result.continuous_contacts) {
     const auto [size_a, size_b] = sizes_of_elements(contact.kind);
@@ -159,8 +159,8 @@ void write_continuous_contacts(JsonWriter& json, const DetectResult& result) {
   json.end_array();
 }
 
-void write_continuous_verify(JsonWriter& json, const VerifyReport& report) {
-  json.key("verify");
+void write_continuous_verify(JsonWriter& json, const char* name, const VerifyReport& report) {
+  json.key(name);
   json.begin_object();
   json.member("element_pairs_checked", report.element_pairs_checked);
   json.member("touching_element_pairs", report.touching_element_pairs);

@@ -9,9 +9,8 @@ namespace supple::cli {
 
 /// `continuous` and `earliest`. `with_certainty` lists what is within tolerance only.
 void write_continuous_groups(JsonWriter& json, const DetectResult& result, bool with_certainty);
-/// `contacts`, each with where it is.
-void write_continuous_contacts(JsonWriter& json, const DetectResult& result);
-/// `verify`.
-void write_continuous_verify(JsonWriter& json, const VerifyReport& report);
+/// The contacts, each with where it is.
+void write_continuous_contacts(JsonWriter& json, const char* name, const DetectResult& result);
+void write_continuous_verify(JsonWriter& json, const char* name, const VerifyReport& report);
 
 }  // namespace supple::cli

@@ -19,8 +19,8 @@ std::string ids_of(const std::array<std::uint32_t, 2>& element, ElementPairKind 
 
 }  // namespace
 
-CsvReport::CsvReport(const std::string& file_name, ContactMode contacts) : file_(file_name) {
-  const bool continuous = contacts == ContactMode::continuous;
+CsvReport::CsvReport(const std::string& file_name, ContactKinds contacts) : file_(file_name) {
+  const bool continuous = contains(contacts, ContactKinds::continuous);
   std::fputs(continuous ? "frame,a,b,kind,a0,a1,b0,b1,toi,certainty\n" : "frame,a,b,i,j\n", file_.stream());
 }
 

@@ -11,7 +11,7 @@ namespace supple::cli {
 /// A row a contact, as docs/json.md describes them: the frame, the objects, and their triangles or elements.
 class CsvReport {
  public:
-  CsvReport(const std::string& file_name, ContactMode contacts);
+  CsvReport(const std::string& file_name, ContactKinds contacts);
 
   void add(const Frame& frame);
   void finish() { file_.close(); }

@@ -32,7 +32,7 @@ bool moves(const Input& input) {
 }
 
 std::uint64_t count_frames(const Input& input, const DetectOptions& options) {
-  const bool continuous = options.scene.contacts == ContactMode::continuous;
+  const bool continuous = contains(options.scene.contacts, ContactKinds::continuous);
   const bool is_scene = is_scene_file(options.inputs.front());
   std::uint64_t frames = 1;
   if (input.frames)
@@ -62,14 +62,15 @@ int run_detect(const DetectOptions& options) {
 
   // Continuous contacts of a frame are those of the way from the frame before: the first frame of a motion
   // has none.
-  const bool continuous = options.scene.contacts == ContactMode::continuous;
-  const std::uint64_t first = continuous && frames > 1 ? 1 : 0;
+  const bool continuous = contains(options.scene.contacts, ContactKinds::continuous);
+  const std::uint64_t first = options.scene.contacts == ContactKinds::continuous && frames > 1 ? 1 : 0;
   const char* const noun = continuous ? "step" : "frame";
   Reports reports(options, input, simulation.scene(), noun);
   Progress progress(frames - first, !options.quiet, noun);
   for (std::uint64_t number = first; number < frames; ++number) {
-    Frame frame{number, continuous || number > 0 ? simulation.step() : simulation.detect()};
-    if (options.verify) frame.verify = simulation.scene().verify();
+    const bool is_start = number == 0 && !(continuous && frames == 1);
+    Frame frame{number, is_start ? simulation.detect() : simulation.step()};
+    if (options.verify && !(is_start && continuous)) frame.verify = simulation.scene().verify();
     reports.add(frame);
     const std::uint64_t done = number - first + 1;
     progress.update(done, fmt::format("{} {} of {}", noun, done, frames - first));

@@ -16,7 +16,7 @@ void ImpactTables::Counts::add(const ContinuousContact& contact) {
 void ImpactTables::add(const Frame& step) {
   const DetectResult& result = step.result;
   if (result.continuous_contacts.empty()) return;
-  for (const ContactGroup& group : result.groups) {
+  for (const ContactGroup& group : result.continuous_groups) {
     Pair& pair = pairs_[{group.a, group.b}];
     ++pair.steps;
     for (const ContinuousContact& contact : result.continuous_contacts_of(group)) pair.counts.add(contact);

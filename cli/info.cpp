@@ -13,6 +13,7 @@
 #include "inputs.hpp"
 #include "json_writer.hpp"
 #include "session/described_json.hpp"
+#include "supple/inspection.hpp"
 #include "supple/result_descriptions.hpp"
 #include "supple/scene.hpp"
 #include "supple/topology.hpp"
@@ -55,7 +56,7 @@ MeshInfo measure(const InputObject& object, const InfoOptions& options) {
   ObjectOptions chosen = object.options;
   options.given_objects.apply_to(chosen);
   Scene scene({.threads = 1});
-  info.octree = scene.octree_statistics(scene.add(object.mesh, chosen));
+  info.octree = SceneInspector(scene).octree_statistics(scene.add(object.mesh, chosen));
   return info;
 }
 

@@ -99,7 +99,10 @@ void write_contacts(JsonWriter& json, const DetectResult& result, bool with_poin
     json.key("triangles");
     json.pair(contact.triangle_a, contact.triangle_b);
     json.member("kind", word_of(contact.kind));
-    if (with_points) write_points(json, result.points_of(contact));
+    if (with_points) {
+      json.member("normal", contact.normal);
+      write_points(json, result.points_of(contact));
+    }
     json.end_object();
   }
   json.end_array();
@@ -228,15 +231,19 @@ void JsonReport::add(const Frame& frame) {
   if (frame.simulated) json_.member("time", frame.simulated->time);
   add_files(frame.number);
   write_object_pairs(json_, "object_pairs", result.object_pairs);
-  if (options.contacts == ContactMode::continuous) {
+  const bool continuous = contains(options.contacts, ContactKinds::continuous);
+  const bool both = continuous && contains(options.contacts, ContactKinds::intersection);
+  if (continuous) {
     write_continuous_groups(json_, result, !options.impact.exact);
-    if (content_.contact_details) write_continuous_contacts(json_, result);
-  } else {
+    if (content_.contact_details)
+      write_continuous_contacts(json_, both ? "continuous_contacts" : "contacts", result);
+  }
+  if (both || !continuous) {
     write_groups(json_, "triangle_pairs", result, false);
     write_groups(json_, "self", result, true);
     if (content_.contact_details) write_contacts(json_, result, options.contact_points);
   }
-  if (options.colliding_vertices) write_colliding_vertices(json_, result);
+  if (options.comparison.colliding_vertices) write_colliding_vertices(json_, result);
   json_.key("events");
   json_.begin_object();
   write_events(json_, "volumes", result.volume_events);
@@ -244,10 +251,8 @@ void JsonReport::add(const Frame& frame) {
   json_.end_object();
   write_non_finite(json_, result.non_finite_vertices);
   if (frame.verify) {
-    if (options.contacts == ContactMode::continuous)
-      write_continuous_verify(json_, *frame.verify);
-    else
-      write_verify(json_, *frame.verify);
+    if (continuous) write_continuous_verify(json_, both ? "continuous_verify" : "verify", *frame.verify);
+    if (both || !continuous) write_verify(json_, *frame.verify);
   }
   if (content_.stats) write_stats(json_, frame);
   json_.end_object();

@@ -179,7 +179,7 @@ void add_input_options(CLI::App& app, std::vector<std::string>& inputs, bool& se
 }
 
 bool is_continuous(const SceneOptions& scene) {
-  return scene.contacts == ContactMode::continuous;
+  return contains(scene.contacts, ContactKinds::continuous);
 }
 bool has_spheres(const SceneOptions& scene) {
   return scene.bounding_volume == BoundingVolume::sphere;
@@ -203,9 +203,10 @@ constexpr Need needs_of_options[] = {
     {"scene_octree_arity", has_scene_octree, "--broad-phase octree or automatic"},
     {"min_separation", is_continuous, "--contacts continuous"},
     {"undecided", is_continuous, "--contacts continuous"},
-    {"contact_points", [](const SceneOptions& scene) { return !is_continuous(scene); },
+    {"contact_points", [](const SceneOptions& scene) { return scene.contacts != ContactKinds::continuous; },
      "--contacts intersection"},
-    {"colliding_vertices", [](const SceneOptions& scene) { return !is_continuous(scene); },
+    {"colliding_vertices",
+     [](const SceneOptions& scene) { return scene.contacts != ContactKinds::continuous; },
      "--contacts intersection or none"},
 };
 
@@ -231,7 +232,7 @@ void add_detection_options(CLI::App& app, MethodOptions& options, Dependences& d
 void add_report_options(CLI::App& app, DetectionOptions& options, Dependences& dependences) {
   const auto add = [&](const char* name, bool& value, const char* description) {
     dependences.push_back({app.add_flag(name, value, description)->group("Detection"),
-                           [&options] { return options.scene.contacts != ContactMode::none; },
+                           [&options] { return options.scene.contacts != ContactKinds::none; },
                            "--contacts intersection or continuous"});
   };
   add("--fail-on-contact", options.fail_on_contact, "Exit with status 1 when anything touches");
@@ -244,10 +245,12 @@ void add_output_options(CLI::App& app, DetectionOptions& options, Dependences& d
   const auto group = [](CLI::Option* option) { return option->group("Output"); };
   group(
       add_file(app, "--json", options.json, "Write the whole result, frame by frame; - is standard output"));
-  group(add_file(
-      app, "--csv", options.csv,
-      "Write a row a contact: frame,a,b,i,j of triangles, or frame,a,b,kind,a0,a1,b0,b1,time,certainty; - is "
-      "standard output"));
+  dependences.push_back(
+      {group(add_file(app, "--csv", options.csv,
+                      "Write a row a contact: frame,a,b,i,j of triangles, or "
+                      "frame,a,b,kind,a0,a1,b0,b1,time,certainty; - is standard output")),
+       [&] { return options.scene.contacts != (ContactKinds::intersection | ContactKinds::continuous); },
+       "contacts of one kind"});
   dependences.push_back({group(app.add_flag_callback(
                              "--no-stats", [&] { options.json_content.stats = false; },
                              "Leave options, times and counts out of the JSON, so that equal results are "
@@ -257,7 +260,7 @@ void add_output_options(CLI::App& app, DetectionOptions& options, Dependences& d
       {group(app.add_flag("--contact-details", options.json_content.contact_details,
                           "Also write each contact to the JSON: of triangles the kind and the points, of "
                           "elements the barycentric coordinates, the point and the normal")),
-       [&] { return !options.json.empty() && options.scene.contacts != ContactMode::none; },
+       [&] { return !options.json.empty() && options.scene.contacts != ContactKinds::none; },
        "--json and contacts"});
   dependences.push_back({group(app.add_flag("--faces", options.json_content.faces,
                                             "Also write the three vertices of each triangle to the JSON; a "
@@ -422,7 +425,7 @@ void resolve(MethodOptions& options, const std::vector<std::string>& inputs) {
 }
 
 void check_outputs(const DetectionOptions& options) {
-  if (options.scene.colliding_vertices && options.json.empty())
+  if (options.scene.comparison.colliding_vertices && options.json.empty())
     throw CLI::ValidationError("--colliding-vertices", "has no effect without --json");
   if (options.json == "-" && options.csv == "-")
     throw CLI::ValidationError("--csv", "--json already writes to standard output; give one of them a file");

@@ -70,7 +70,7 @@ void Reports::add(const Frame& frame) {
   if (json_) json_->add(frame);
   if (csv_) csv_->add(frame);
   if (text_) text_->add(frame);
-  touched_ = touched_ || !frame.result.groups.empty();
+  touched_ = touched_ || !frame.result.groups.empty() || !frame.result.continuous_groups.empty();
   if (frame.verify && !frame.verify->agrees() && !std::exchange(differed_, true))
     print_difference(scene_, frame.number, *frame.verify);
 }

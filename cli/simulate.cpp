@@ -108,7 +108,8 @@ void Run::add_frame(const DetectResult& result) {
   const std::uint64_t number = simulation_.step_count();
   Frame frame{number, result};
   frame.simulated = {simulation_.time(), number == 0 ? 0 : simulation_.motion_seconds()};
-  const bool is_start_of_continuous = number == 0 && options_.scene.contacts == ContactMode::continuous;
+  const bool is_start_of_continuous =
+      number == 0 && contains(options_.scene.contacts, ContactKinds::continuous);
   if (options_.verify && !is_start_of_continuous) frame.verify = simulation_.scene().verify();
   recorder_.add(result);
   reports_.add(frame);

@@ -35,6 +35,7 @@ void TextReport::add(const Frame& frame) {
     pair.most = group.contact_count;
     pair.frame_of_most = frame.number;
   }
+  triangle_pairs_ += result.contacts.size();
   impacts_.add(frame);
   add_to(sum_, result.stats);
   if (frame.simulated) {
@@ -67,8 +68,8 @@ void TextReport::print(const Scene& scene) const {
 }
 
 void TextReport::print_contacts(const Scene& scene) const {
-  if (scene.options().contacts == ContactMode::intersection) print_pairs(scene);
-  if (scene.options().contacts == ContactMode::continuous) impacts_.print(scene);
+  if (contains(scene.options().contacts, ContactKinds::intersection)) print_pairs(scene);
+  if (contains(scene.options().contacts, ContactKinds::continuous)) impacts_.print(scene);
 }
 
 void TextReport::print_pairs(const Scene& scene) const {
@@ -94,7 +95,7 @@ void TextReport::print_pairs(const Scene& scene) const {
   }
   if (left_out > 0) fmt::print("and {} with fewer; --csv lists all\n", counted(left_out, "pair"));
   fmt::print("\n{} that intersect; pairs of objects began to touch {} and parted {}\n\n",
-             counted(sum_.contacts, "triangle pair"), counted(begun_, "time"), counted(ended_, "time"));
+             counted(triangle_pairs_, "triangle pair"), counted(begun_, "time"), counted(ended_, "time"));
 }
 
 void TextReport::print_collisions() const {
@@ -132,9 +133,11 @@ void TextReport::print_stages() const {
 }
 
 void TextReport::print_verify(const Scene& scene) const {
-  const bool continuous = scene.options().contacts == ContactMode::continuous;
-  fmt::print("\nverified: {} checked by brute force, {}\n",
-             counted(checked_, continuous ? "element pair" : "triangle pair"),
+  const char* const noun = scene.options().contacts == ContactKinds::intersection ? "triangle pair"
+                           : scene.options().contacts == ContactKinds::continuous
+                               ? "element pair"
+                               : "triangle and element pair";
+  fmt::print("\nverified: {} checked by brute force, {}\n", counted(checked_, noun),
              differences_ == 0 ? "no difference" : counted(differences_, "difference"));
 }
 

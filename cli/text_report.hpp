@@ -36,6 +36,7 @@ class TextReport {
   void print_verify(const Scene& scene) const;
 
   std::string noun_;
+  std::uint64_t triangle_pairs_ = 0;
   std::uint64_t frames_ = 0;
   std::map<ObjectPair, PairSummary> pairs_;
   ImpactTables impacts_;  ///< of continuous contacts

@@ -10,7 +10,7 @@ int main() {
   const supple::TriangleMesh cloth_mesh = supple::make_cloth(40, 40);
 
   supple::SceneOptions options;
-  options.contacts = supple::ContactMode::continuous;
+  options.contacts = supple::ContactKinds::continuous;
   options.impact.min_separation = 1e-3;  // the thickness of the cloth
   supple::Scene scene(options);
   scene.add(supple::make_icosphere(12), {.name = "ball", .is_static = true});

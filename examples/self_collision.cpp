@@ -39,8 +39,8 @@ int main() {
   const supple::ObjectId cloth = scene.add(sheet, {.self_collision = true});
   for (const double turns : {0.5, 0.75, 1.0, 1.25, 1.5}) {
     roll_up(sheet, turns, vertices);
-    scene.set_positions(cloth, supple::PositionsView<float>(vertices.front().position, vertices.size(),
-                                                            sizeof(SimulationVertex)));
+    scene.set_positions(
+        cloth, supple::PositionsView(vertices.front().position, vertices.size(), sizeof(SimulationVertex)));
     std::printf("%.2f turns: %zu triangle pairs of the sheet intersect\n", turns,
                 scene.detect().contacts.size());
   }

@@ -14,7 +14,7 @@ import re
 import sys
 
 LAYERS = [
-    "core", "geometry", "mesh", "octree", "broad_phase", "narrow_phase", "contact", "scene",
+    "core", "geometry", "mesh", "contact", "octree", "broad_phase", "narrow_phase", "scene",
 ]
 # Libraries of their own, and the last layer of the core of which they include internal headers; recording includes none.
 COMPONENTS = {"models": "mesh", "simulation": "mesh", "formats": "mesh", "recording": None}

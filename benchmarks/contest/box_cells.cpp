@@ -33,6 +33,7 @@ void run_all(const Choice& choice, const BoxCell& cell, Output& output) {
   MovingBoxes field(cell.field, cell.count);
   Turns<MovingBoxes, BoxContestant> turns;
   turns.add("Supple", 1, make_supple_boxes(1), field);
+  turns.add("Supple octree", 1, make_supple_boxes(1, BroadPhaseMethod::octree), field);
   if (!choice.only_supple) {
     for (const auto& entry : other_box_contestants()) {
       if (cell.count <= entry.largest) turns.add(entry.name, 1, entry.make(), field);
@@ -61,8 +62,8 @@ void run_drift(const Choice& choice, const BoxCell& cell, Output& output) {
   output.records(turns.records());
 }
 
-/// A frame in which one box of some moves, found by comparing or told, against one in which all do. Two
-/// fields: contestants have their own.
+/// A frame in which one box in some moves, with and without a dirty list, against a frame in which all move.
+/// Each contestant has its own field.
 class OnField : public BoxContestant {
  public:
   OnField(std::unique_ptr<BoxContestant> contestant, const MovingBoxes& field)
@@ -84,8 +85,8 @@ void run_few(const Choice& choice, const BoxCell& cell, Output& output) {
   Turns<MovingBoxes, BoxContestant> turns;
   turns.add("Supple, all move", 1, std::make_unique<OnField>(make_supple_boxes(1), all), all);
   turns.add("Supple, " + share + " moves", 1, std::make_unique<OnField>(make_supple_boxes(1), few), all);
-  turns.add("Supple, " + share + " moves, told", 1,
-            std::make_unique<OnField>(make_supple_boxes_told(moving), few), all);
+  turns.add("Supple, " + share + " moves, dirty list", 1,
+            std::make_unique<OnField>(make_supple_boxes_with_dirty_list(moving), few), all);
   turns.run(
       choice, all,
       [&] {

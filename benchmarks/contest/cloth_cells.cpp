@@ -96,10 +96,9 @@ void run_safe_step(const Choice& choice, const std::string& name, Output& output
   if (!step) return output.skip("the frames of " + name + " are not there; set SUPPLE_DATA");
   SceneOptions options;
   options.threads = 1;
-  options.contacts = ContactMode::continuous;
+  options.contacts = ContactKinds::continuous;
   Scene scene(options);
-  const ObjectId cloth =
-      scene.add(PositionsView<double>(step->start), step->triangles, {.self_collision = true});
+  const ObjectId cloth = scene.add(PositionsView(step->start), step->triangles, {.self_collision = true});
   scene.set_motion(cloth, step->start, step->end);
   output.value("safe step", scene.max_step());
   std::vector<double> times;

@@ -14,7 +14,7 @@ namespace {
 class Device {
  public:
   Device() : device_(rtcNewDevice("threads=1,set_affinity=0")) {
-    if (device_ == nullptr) throw std::runtime_error("Embree makes no device");
+    if (device_ == nullptr) throw std::runtime_error("Embree cannot create a device");
   }
   ~Device() { rtcReleaseDevice(device_); }
   Device(const Device&) = delete;

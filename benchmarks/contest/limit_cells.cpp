@@ -4,6 +4,7 @@
 
 #include "contest/cells.hpp"
 #include "contest/limits.hpp"
+#include "supple/inspection.hpp"
 #include "supple/scene.hpp"
 
 namespace supple::benchmarks {
@@ -27,8 +28,9 @@ class Ideal : public Contestant<DeformingCopies> {
 /// Supple.
 std::size_t leaf_width(const DeformingCopies& copies) {
   Scene scene;
-  const ObjectId object = scene.add(PositionsView<float>(copies.positions(0)), copies.triangles());
-  return static_cast<std::size_t>(std::lround(scene.octree_statistics(object).mean_leaf_size));
+  const ObjectId object = scene.add(copies.positions(0), copies.triangles());
+  return static_cast<std::size_t>(
+      std::lround(SceneInspector(scene).octree_statistics(object).mean_leaf_size));
 }
 
 double heap_bytes() {
@@ -77,7 +79,7 @@ void run_memory(const std::string& shape, Output& output) {
   Scene scene(options);
   std::vector<ObjectId> objects;
   for (std::size_t i = 0; i < copies->copies(); ++i)
-    objects.push_back(scene.add(PositionsView<float>(copies->positions(i)), copies->triangles()));
+    objects.push_back(scene.add(copies->positions(i), copies->triangles()));
   for (int frame = 0; frame < 3; ++frame) {
     copies->advance();
     for (std::size_t i = 0; i < objects.size(); ++i) scene.set_positions(objects[i], copies->positions(i));
@@ -87,7 +89,7 @@ void run_memory(const std::string& shape, Output& output) {
   const double held = heap_bytes() - before;
   double octrees = 0, positions = 0;
   for (const ObjectId object : objects) {
-    octrees += static_cast<double>(scene.octree_statistics(object).bytes);
+    octrees += static_cast<double>(SceneInspector(scene).octree_statistics(object).bytes);
     positions += static_cast<double>(scene.vertex_count(object) * sizeof(Vec3f));
   }
   const auto triangles = static_cast<double>(copies->triangle_count());

@@ -63,7 +63,7 @@ void run(const Choice& choice) {
 double number_of(const std::string& text) {
   char* end = nullptr;
   const double number = std::strtod(text.c_str(), &end);
-  if (text.empty() || *end != '\0' || !(number >= 0)) throw Error("'" + text + "' is no number\n" + usage);
+  if (text.empty() || *end != '\0' || !(number >= 0)) throw Error("'" + text + "' is not a number\n" + usage);
   return number;
 }
 

@@ -8,8 +8,8 @@ namespace {
 
 class SuppleBoxes : public BoxContestant {
  public:
-  explicit SuppleBoxes(std::uint32_t threads)
-      : broad_phase_({.method = BroadPhaseMethod::automatic, .scene_octree = {}, .threads = threads}) {}
+  SuppleBoxes(std::uint32_t threads, BroadPhaseMethod method)
+      : broad_phase_({.method = method, .scene_octree = {}, .threads = threads}) {}
   void prepare(const MovingBoxes& field) override { frame(field); }
   void frame(const MovingBoxes& field) override { pairs_ = broad_phase_.find_object_pairs(field.boxes()); }
   PairDigest pairs() const override {
@@ -23,10 +23,10 @@ class SuppleBoxes : public BoxContestant {
   std::span<const IndexPair> pairs_;
 };
 
-/// Knows which boxes may have moved.
-class SuppleBoxesTold : public BoxContestant {
+/// Passes a dirty list to each search.
+class SuppleBoxesWithDirtyList : public BoxContestant {
  public:
-  explicit SuppleBoxesTold(std::vector<std::uint32_t> moving) : moving_(std::move(moving)) {}
+  explicit SuppleBoxesWithDirtyList(std::vector<std::uint32_t> moving) : moving_(std::move(moving)) {}
   void prepare(const MovingBoxes& field) override { pairs_ = broad_phase_.find_object_pairs(field.boxes()); }
   void frame(const MovingBoxes& field) override {
     pairs_ = broad_phase_.find_object_pairs(field.boxes(), moving_);
@@ -43,7 +43,7 @@ class SuppleBoxesTold : public BoxContestant {
   std::span<const IndexPair> pairs_;
 };
 
-SceneOptions options_of(std::uint32_t threads, ContactMode contacts, bool contact_points = false) {
+SceneOptions options_of(std::uint32_t threads, ContactKinds contacts, bool contact_points = false) {
   SceneOptions options;
   options.threads = threads;
   options.contacts = contacts;
@@ -64,18 +64,18 @@ std::vector<StageTime> stages_of(const StepStats& stats, double handing_over, do
 class SuppleCopies : public CopiesContestant {
  public:
   SuppleCopies(std::uint32_t threads, bool contact_points)
-      : scene_(options_of(threads, ContactMode::intersection, contact_points)) {}
+      : scene_(options_of(threads, ContactKinds::intersection, contact_points)) {}
 
   void prepare(const DeformingCopies& copies) override {
     for (std::size_t i = 0; i < copies.copies(); ++i)
-      objects_.push_back(scene_.add(PositionsView<float>(copies.positions(i)), copies.triangles()));
+      objects_.push_back(scene_.add(copies.positions(i), copies.triangles()));
     scene_.detect();
   }
   void frame(const DeformingCopies& copies) override {
     const double start = cpu_milliseconds();
     for (std::size_t i = 0; i < objects_.size(); ++i) {
       if (copies.moves(i)) {
-        scene_.share_positions(objects_[i], PositionsView<float>(copies.positions(i)));
+        scene_.share_positions(objects_[i], copies.positions(i));
       }
     }
     const double handed_over = cpu_milliseconds();
@@ -100,10 +100,10 @@ class SuppleCopies : public CopiesContestant {
 
 class SuppleCloth : public Contestant<ClothStep> {
  public:
-  explicit SuppleCloth(std::uint32_t threads) : scene_(options_of(threads, ContactMode::continuous)) {}
+  explicit SuppleCloth(std::uint32_t threads) : scene_(options_of(threads, ContactKinds::continuous)) {}
 
   void prepare(const ClothStep& step) override {
-    cloth_ = scene_.add(PositionsView<double>(step.start), step.triangles, {.self_collision = true});
+    cloth_ = scene_.add(step.start, step.triangles, {.self_collision = true});
     edges_ = edges_of(step.triangles);
     frame(step);
   }
@@ -140,12 +140,12 @@ class SuppleCloth : public Contestant<ClothStep> {
 
 }  // namespace
 
-std::unique_ptr<BoxContestant> make_supple_boxes(std::uint32_t threads) {
-  return std::make_unique<SuppleBoxes>(threads);
+std::unique_ptr<BoxContestant> make_supple_boxes(std::uint32_t threads, BroadPhaseMethod method) {
+  return std::make_unique<SuppleBoxes>(threads, method);
 }
 
-std::unique_ptr<BoxContestant> make_supple_boxes_told(std::vector<std::uint32_t> moving) {
-  return std::make_unique<SuppleBoxesTold>(std::move(moving));
+std::unique_ptr<BoxContestant> make_supple_boxes_with_dirty_list(std::vector<std::uint32_t> moving) {
+  return std::make_unique<SuppleBoxesWithDirtyList>(std::move(moving));
 }
 
 std::unique_ptr<CopiesContestant> make_supple_copies(std::uint32_t threads, bool contact_points) {

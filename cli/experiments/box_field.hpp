@@ -10,7 +10,7 @@ namespace supple::experiments {
 
 /// Boxes in motion at a density that does not depend on their number: one in every eight units of volume,
 /// sides of 0.5 to 1, so that each overlaps 0.4 others on average. They move straight by up to 0.05 a step
-/// along each axis and are turned back at the sides of the cube they are in. The same on every machine.
+/// along each axis and are reflected at the sides of the cube they are in. The same on every machine.
 class BoxField {
  public:
   BoxField(std::size_t count, std::uint64_t seed);

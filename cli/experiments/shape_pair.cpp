@@ -3,6 +3,7 @@
 #include <array>
 
 #include "experiments/work.hpp"
+#include "supple/inspection.hpp"
 #include "supple/scene.hpp"
 
 namespace supple::experiments {
@@ -28,7 +29,7 @@ PairCost cost_of_pair(const TriangleMesh& a, const TriangleMesh& b, const Object
                       int frames, std::uint32_t threads, BoundingVolume volume) {
   SceneOptions options;
   options.bounding_volume = volume;
-  options.contacts = ContactMode::none;
+  options.contacts = ContactKinds::none;
   options.threads = threads;
   Scene scene(options);
   ObjectOptions object;
@@ -48,8 +49,8 @@ PairCost cost_of_pair(const TriangleMesh& a, const TriangleMesh& b, const Object
     }));
   } while (builds.size() < 3 && builds.back() < 0.1);
   cost.build_seconds = least(builds);
-  cost.octree_a = scene.octree_statistics(id_a);
-  cost.octree_b = scene.octree_statistics(id_b);
+  cost.octree_a = SceneInspector(scene).octree_statistics(id_a);
+  cost.octree_b = SceneInspector(scene).octree_statistics(id_b);
   std::vector<double> refits, traversals;
   std::array<std::vector<Vec3d>, 2> places_a{a.positions, moved(a, {0x1p-30, 0, 0}).positions},
       places_b{b.positions, moved(b, {0, 0x1p-30, 0}).positions};

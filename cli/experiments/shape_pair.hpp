@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "supple/inspection.hpp"
 #include "supple/mesh.hpp"
 #include "supple/options.hpp"
 #include "supple/result.hpp"

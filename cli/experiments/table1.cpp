@@ -119,7 +119,7 @@ Report run_table1(const Table1Options& options, bool show_progress) {
   report.name = "table1";
   report.title = "The paper's Table 1: collisions of 3, 6 and 9 objects";
   report.summary =
-      "Objects of masses and springs move through a cube and are turned back at its border. A collision is "
+      "Objects of masses and springs move through a cube and are reflected at its border. A collision is "
       "counted when a pair of objects begins to collide: in the broad phase when their volumes begin to "
       "overlap; in the narrow phase, as the paper has it, when leaves of both octrees begin to overlap; and "
       "exactly, when triangles begin to intersect.";

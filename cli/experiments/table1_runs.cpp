@@ -23,9 +23,9 @@ SimulationOptions simulation_options(const cli::Input& input, BoundingVolume vol
   SimulationOptions options = input.simulation;
   options.seed = seed;
   options.scene.bounding_volume = volume;
-  options.scene.sphere_fit = SphereFit::vertices;
+  options.scene.comparison.sphere_fit = SphereFit::vertices;
   options.scene.contact_points = false;
-  options.scene.colliding_vertices = true;
+  options.scene.comparison.colliding_vertices = true;
   options.scene.threads = threads;
   return options;
 }

@@ -58,9 +58,11 @@ struct Range {
   bool excludes_lowest = false;
   bool includes_infinity = false;  ///< positive infinity, which stands for "none"
   bool powers_of_two = false;      ///< no other whole numbers
+  bool includes_zero = false;      ///< below the lowest value, where 0 stands for "chosen"
 
   constexpr bool allows(double value) const {
     if (value == std::numeric_limits<double>::infinity()) return includes_infinity;
+    if (value == 0 && includes_zero) return true;
     return value >= lowest && value <= highest && value > -std::numeric_limits<double>::infinity() &&
            !(excludes_lowest && value == lowest);
   }
@@ -74,6 +76,11 @@ struct Range {
   constexpr Range or_infinity() const {
     Range range = *this;
     range.includes_infinity = true;
+    return range;
+  }
+  constexpr Range or_zero() const {
+    Range range = *this;
+    range.includes_zero = true;
     return range;
   }
   constexpr Range only_powers_of_two() const {

@@ -1,22 +1,28 @@
 #pragma once
 
-#include <array>
+#include <cstddef>
 #include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
 
+#include "supple/result.hpp"
 #include "supple/types.hpp"
 
 namespace supple {
 
-/// A cell of an object's octree: a lane of a node, to draw or to study. `Scene::octree_cells` gives them.
+class Scene;
+
+/// A cell of an object's octree: one child of a node.
 struct OctreeCell {
   std::uint32_t level = 0;  ///< the root is 0
   bool is_leaf = true;
   std::uint32_t triangle_count = 0;
-  Aabb box{};               ///< round the triangles where they are now
+  Aabb box{};               ///< encloses the triangles where they are now
   BoundingSphere sphere{};  ///< empty unless the scene's bounding volume is the sphere
 };
 
-/// Two triangles that the narrow phase hands to the exact stage, the user's numbers. Within one object
+/// Two triangles that the narrow phase passes to the exact stage, as the user's numbers. Within one object,
 /// `object_a == object_b` and `triangle_a < triangle_b`.
 struct CandidatePair {
   ObjectId object_a, object_b;
@@ -24,38 +30,111 @@ struct CandidatePair {
   constexpr auto operator<=>(const CandidatePair&) const = default;
 };
 
-/// The stage that told two triangles apart, in the order of the flow. Of continuous contacts: told them apart
-/// all the way; elements that two triangles own touch on their own account, so that `contact` comes before
-/// all but the first.
-enum class PairStage : std::uint8_t {
-  not_tested,  ///< the scene does not test these objects: static, group and mask, filter, no self-collision
-  shared_vertex,   ///< of one object, with a common vertex (or one and the same): never a contact
-  inert,           ///< a corner is not a finite number
-  object_volumes,  ///< the volumes of the objects are apart: the broad phase
-  octree_volumes,  ///< volumes of two octree cells are apart: the narrow phase
-  triangle_boxes,  ///< the boxes of the triangles are apart: the leaves
-  exact_test,      ///< the triangles themselves are apart
-  contact,         ///< they are not apart: a contact
+/// The first candidates of a step, and the number of all.
+struct CandidateList {
+  std::vector<CandidatePair> pairs;  ///< sorted
+  std::uint64_t total = 0;
 };
 
-/// Why two triangles are, or are not, a contact (`Scene::explain`); with `ContactMode::none`, whether they
-/// would be.
+/// The stage that separated two triangles, in the order of the flow. With continuous contacts, a stage
+/// separates the triangles for the whole step; their elements are tested on their own, so `contact` then
+/// takes precedence over every stage but the first.
+enum class PairStage : std::uint8_t {
+  not_tested,  ///< the scene does not test these objects: static, group and mask, filter, no self-collision
+  shared_vertex,   ///< both in one object, with a common vertex (or the same triangle): never a contact
+  inert,           ///< a corner is not a finite number
+  object_volumes,  ///< the volumes of the objects are apart: the broad phase
+  octree_volumes,  ///< the volumes of two octree cells are apart: the narrow phase
+  triangle_boxes,  ///< the boxes of the triangles are apart: the leaves
+  exact_test,      ///< the triangles are apart: the exact stage
+  contact,         ///< the triangles intersect: a contact
+};
+
+/// Why two triangles are, or are not, a contact. With `ContactKinds::none`: whether they would be.
 struct PairExplanation {
   PairStage stage = PairStage::contact;
-  /// The two volumes that are apart: of the objects, of octree cells, of the triangles; empty for other
-  /// stages. They are of the present positions; of continuous contacts those of objects hold the whole way.
-  /// Rounded outward to floats, so that far from the origin they may seem to meet.
+  /// The two volumes that are apart: of the objects, of octree cells or of the triangles. Empty for the other
+  /// stages. They enclose the present positions; with continuous contacts, the volumes of objects enclose the
+  /// whole path. They are rounded outward to floats, so they may seem to overlap far from the origin.
   Aabb box_a{}, box_b{};
-  BoundingSphere sphere_a{}, sphere_b{};   ///< not empty when spheres, not boxes, told them apart
-  std::uint32_t level_a = 0, level_b = 0;  ///< of those cells
-  /// At `exact_test` the direction from a to b, of unit length, between the points where the triangles are
-  /// closest, and their distance: rounded; where rounding leaves none it is 0, and the direction one that
-  /// separates them as well as rounding lets it. At `object_volumes`, `octree_volumes` and `triangle_boxes`
-  /// the coordinate axis from a to b along which the boxes are furthest apart, or the direction between the
-  /// centres of spheres, and by how much. Of continuous contacts, where these are at the end of the step;
-  /// both zero for triangles that meet there: they did so all the time.
+  BoundingSphere sphere_a{}, sphere_b{};   ///< not empty when spheres, not boxes, are apart
+  std::uint32_t level_a = 0, level_b = 0;  ///< levels of those cells
+  /// At `exact_test`: the unit direction from a to b between the closest points of the triangles, and their
+  /// distance, both rounded. When rounding leaves no distance, it is 0 and the axis is a direction that
+  /// separates the triangles except for rounding.
+  /// At `object_volumes`, `octree_volumes` and `triangle_boxes`: the coordinate axis from a to b along which
+  /// the boxes are furthest apart, or the direction between the centers of the spheres, and the gap along it.
+  /// With continuous contacts both are taken at the end of the step, and both are zero for triangles that
+  /// intersect there because they did so from the start.
   Vec3d axis{};
   double distance = 0;
+};
+
+/// Numbers of an object's octree.
+struct OctreeStatistics {
+  std::uint64_t triangles = 0;
+  std::uint64_t vertices = 0;
+  std::uint64_t nodes = 0;  ///< eight-wide
+  std::uint64_t leaves = 0;
+  std::uint32_t depth = 0;         ///< of the deepest leaf; the root is 0
+  std::uint32_t largest_leaf = 0;  ///< triangles
+  double mean_leaf_size = 0;       ///< triangles
+  double mean_node_width = 0;      ///< children a node, of eight
+  std::uint64_t bytes = 0;         ///< all memory of the octree: nodes, ids and maps, without the positions
+  double bytes_per_triangle = 0;
+  std::vector<std::uint64_t> leaves_by_level;
+  /// Expected visits of a query whose box meets the object's, by the surface-area heuristic: one visit a
+  /// child and an eighth for each triangle of a leaf. For the boxes of the last refit; 0 when they have no
+  /// surface.
+  double cost = 0;
+  /// The cost relative to the cost when built: 1 as built, 2 when queries cost twice as much.
+  double degradation = 1;
+  std::uint64_t subtrees_rebuilt = 0;   ///< since the object was added
+  std::uint64_t triangles_rebuilt = 0;  ///< triangles in them
+};
+
+/// Looks into a scene and its last `detect`: to draw, to study and to test. When that found both kinds of
+/// contacts, cells and candidates are those of the search for intersections. Refers to the scene, which must
+/// outlive it and must not be moved. Needs no memory of its own; each call takes memory and one thread.
+///
+/// `cells`, `candidates` and `explain` throw `Error` when something changed since the last `detect` (for
+/// `cells`: when the object moved).
+class SceneInspector {
+ public:
+  explicit SceneInspector(const Scene& scene) : scene_(&scene) {}
+
+  /// The cells of an object's octree at `level`, and leaves above it, so that together they cover the object;
+  /// without a level, all leaves. Ordered by level. Cell volumes enclose the triangles at their present
+  /// positions, rounded outward; cells without a finite triangle are empty. With continuous contacts the
+  /// cells enclose the positions at the end of the step.
+  std::vector<OctreeCell> cells(ObjectId object, std::optional<std::uint32_t> level = {}) const;
+  /// The deepest level that has cells. 0 for an object without triangles, which has no cell.
+  std::uint32_t octree_depth(ObjectId object) const;
+  OctreeStatistics octree_statistics(ObjectId object) const;
+  /// Bounds as of the last `detect`; empty when nothing finite is there.
+  Aabb bounds(ObjectId object) const;
+  /// Regions of the scene octree, root first; empty for other broad phases.
+  std::vector<SceneRegion> regions() const;
+
+  /// All pairs of triangles that the narrow phase passes to the exact stage: the first `limit` of them and
+  /// their total number. They include pairs that `detect` skips: of two objects that both have not moved, and
+  /// in parts of an object that self-collision culling skips. With continuous contacts, they are triangles
+  /// whose moving boxes meet within `ImpactOptions::min_separation` or slightly more; pairs that share a
+  /// vertex are left out there too, though their elements are tested. As fast as `detect` with one thread;
+  /// memory is of the order of `limit`.
+  CandidateList candidates(std::size_t limit) const;
+  /// Why two triangles are a contact of the last `detect`, or which stage separated them. Calls the pair
+  /// filter. O(octree depth), and for continuous contacts O(contacts of the two objects). Throws `Error` when
+  /// a triangle is out of range.
+  PairExplanation explain(ObjectId object_a, std::uint32_t triangle_a, ObjectId object_b,
+                          std::uint32_t triangle_b) const;
+
+  /// Checks every invariant of every octree and of the broad phase. Returns the empty string, or what is
+  /// wrong.
+  std::string validate() const;
+
+ private:
+  const Scene* scene_;
 };
 
 }  // namespace supple

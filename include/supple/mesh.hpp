@@ -13,28 +13,30 @@ namespace supple {
 /// Three vertex ids, counter-clockwise seen from outside.
 using Triangle = std::array<std::uint32_t, 3>;
 
-/// A triangle soup with shared vertices. No manifoldness is asked for: holes, flaps, duplicate and zero-area
-/// triangles, triangles with a repeated id and vertices that no triangle uses are all fine.
+/// A triangle soup with shared vertices. It need not be a manifold: holes, flaps, duplicate and zero-area
+/// triangles, triangles with a repeated id and unused vertices are all allowed.
 struct TriangleMesh {
-  std::string name;                 ///< shown in messages and results; the file's stem when loaded
+  std::string name;                 ///< for messages and results; the file's stem when loaded
   std::vector<Vec3d> positions;     ///< any doubles; non-finite ones make their triangles inert
   std::vector<Triangle> triangles;  ///< each id must be below positions.size()
 };
 
-/// Reads an OBJ, OFF, PLY (ASCII, little or big endian, float or double) or STL (ASCII or binary) file, told
-/// by its extension whatever the case.
+/// Reads an OBJ, OFF, PLY (ASCII, little or big endian, float or double) or STL (ASCII or binary) file. The
+/// extension, in either case, selects the format.
 ///
-/// Coordinates keep the file's precision, ids its order: vertex i is the file's i-th vertex, polygons become
-/// fans around their first corner in file order, texture and normal ids are ignored, unused vertices stay.
-/// STL has no ids: corners with equal coordinates become one vertex, numbered by first use.
-/// Throws `Error` naming file, line or byte, the value and what is allowed.
+/// Coordinates keep the precision of the file, and ids keep its order: vertex i is the i-th vertex of the
+/// file. Polygons become fans around their first corner, in file order. Texture and normal ids are ignored.
+/// Unused vertices stay. STL has no ids: corners with equal coordinates become one vertex, numbered by first
+/// use. Throws `Error` naming file, line or byte, the value and what is allowed.
 TriangleMesh load_mesh(const std::filesystem::path& path);
 
-/// Writes by extension: .obj, .off, .ply (binary little endian, double), .stl (binary, single precision).
-/// Text formats print the shortest digits that read back to the same double. Throws `Error`.
+/// Writes a file in the format of its extension: .obj, .off, .ply (binary little endian, double), .stl
+/// (binary, single precision). Text formats print the shortest digits that read back to the same double.
+/// Throws `Error`.
 void save_mesh(const TriangleMesh& mesh, const std::filesystem::path& path);
 
-/// Throws `Error` naming mesh, triangle and value when a triangle uses a vertex that does not exist.
+/// Throws `Error` when a triangle uses a vertex that does not exist; the message names mesh, triangle and
+/// value.
 void check_mesh(const TriangleMesh& mesh);
 
 }  // namespace supple

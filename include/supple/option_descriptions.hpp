@@ -18,7 +18,8 @@ inline constexpr std::array words<BroadPhaseMethod>{"automatic", "octree", "grid
 template <>
 inline constexpr std::array words<RegionSphereTest>{"arvo", "grown_box"};
 template <>
-inline constexpr std::array words<ContactMode>{"none", "intersection", "continuous"};
+inline constexpr std::array words<ContactKinds>{"none", "intersection", "continuous",
+                                                "intersection,continuous"};
 
 template <>
 struct Description<ImpactOptions> {
@@ -83,18 +84,19 @@ struct Description<SceneOctreeOptions> {
   template <class Visitor>
   static constexpr void visit(Visitor&& visitor) {
     using Options = SceneOctreeOptions;
-    visitor(Field<Options, std::uint32_t>{.name = "max_level",
-                                          .member = &Options::max_level,
-                                          .doc = "Deepest level of the scene octree, 0 to choose it from the "
-                                                 "number, the places and the sizes of the objects",
-                                          // 8^20 regions are as many as a 64-bit number can tell apart.
-                                          .range = Range::from(0, 20),
-                                          .key = "scene_octree_max_level"});
+    visitor(Field<Options, std::uint32_t>{
+        .name = "max_level",
+        .member = &Options::max_level,
+        .doc = "Deepest level of the scene octree, 0 for no other limit than 20",
+        // 8^20 regions are as many as a 64-bit number can tell apart.
+        .range = Range::from(0, 20),
+        .key = "scene_octree_max_level"});
     visitor(Field<Options, std::uint32_t>{
         .name = "expand_at",
         .member = &Options::expand_at,
-        .doc = "A region of the scene octree expands when this many of its objects fit into half its edge",
-        .range = Range::from(2, 0xffffffff),
+        .doc = "A region of the scene octree expands when this many of its objects fit into half its edge; 0 "
+               "chooses 2 for up to 64 objects and otherwise 64",
+        .range = Range::from(2, 0xffffffff).or_zero(),
         .unit = "objects",
         .key = "scene_octree_expand_at"});
     visitor(Field<Options, RegionSphereTest>{
@@ -144,6 +146,23 @@ struct Description<ObjectOptions> {
 };
 
 template <>
+struct Description<ComparisonOptions> {
+  static constexpr const char* name = "ComparisonOptions";
+  template <class Visitor>
+  static constexpr void visit(Visitor&& visitor) {
+    using Options = ComparisonOptions;
+    visitor(Field<Options, SphereFit>{.name = "sphere_fit",
+                                      .member = &Options::sphere_fit,
+                                      .doc = "How spheres are fitted: about the vertices, or from the box as "
+                                             "in the paper's eq. 3 and 4, which miss contacts"});
+    visitor(Field<Options, bool>{
+        .name = "colliding_vertices",
+        .member = &Options::colliding_vertices,
+        .doc = "Also give the paper's output: the vertices in the leaves of both octrees that collide"});
+  }
+};
+
+template <>
 struct Description<SceneOptions> {
   static constexpr const char* name = "SceneOptions";
   template <class Visitor>
@@ -153,16 +172,12 @@ struct Description<SceneOptions> {
         .name = "bounding_volume",
         .member = &Options::bounding_volume,
         .doc = "Shape that encloses the objects and the nodes of their octrees"});
-    visitor(Field<Options, SphereFit>{.name = "sphere_fit",
-                                      .member = &Options::sphere_fit,
-                                      .doc = "How spheres are fitted: about the vertices, or from the box as "
-                                             "in the paper's eq. 3 and 4, which miss contacts"});
     visitor(Field<Options, BroadPhaseMethod>{.name = "broad_phase",
                                              .member = &Options::broad_phase,
                                              .doc = "How object pairs are found; all methods find the same"});
     visitor(Field<Options, SceneOctreeOptions>{
         .name = "scene_octree", .member = &Options::scene_octree, .doc = "Shape of the scene octree"});
-    visitor(Field<Options, ContactMode>{
+    visitor(Field<Options, ContactKinds>{
         .name = "contacts",
         .member = &Options::contacts,
         .doc = "Exact stage: no contacts, every pair of triangles that intersects, or every vertex and face "
@@ -172,15 +187,13 @@ struct Description<SceneOptions> {
                                  .doc = "Compute the points of each contact of triangles"});
     visitor(Field<Options, ImpactOptions>{
         .name = "impact", .member = &Options::impact, .doc = "Options of continuous contacts"});
-    visitor(Field<Options, bool>{
-        .name = "colliding_vertices",
-        .member = &Options::colliding_vertices,
-        .doc = "Also give the paper's output: the vertices in the leaves of both octrees that collide"});
     visitor(Field<Options, std::uint32_t>{.name = "threads",
                                           .member = &Options::threads,
                                           .doc = "Worker threads, 0 for one a core",
                                           .range = Range::from(0, 1024),
                                           .is_of_machine = true});
+    visitor(Field<Options, ComparisonOptions>{
+        .name = "comparison", .member = &Options::comparison, .doc = "Options for comparison"});
   }
 };
 

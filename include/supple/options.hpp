@@ -2,26 +2,23 @@
 
 #include <cstdint>
 #include <functional>
+#include <limits>
+#include <optional>
 #include <string>
+#include <version>
+#ifdef __cpp_lib_jthread
+#include <stop_token>
+#endif
 
+#include "supple/comparison_options.hpp"
 #include "supple/continuous.hpp"
 #include "supple/types.hpp"
 
 namespace supple {
 
-/// Shape that encloses the nodes of an object's octree, and the object itself in the broad phase. Of
-/// continuous contacts it is that of the objects alone: nodes in motion have boxes.
+/// Shape that encloses the nodes of an object's octree, and the object itself in the broad phase. With
+/// continuous contacts, only the objects have this shape; nodes have boxes.
 enum class BoundingVolume : std::uint8_t { aabb, sphere };
-
-/// How a sphere is fitted to a node.
-enum class SphereFit : std::uint8_t {
-  /// Centre of the node's box, radius to the farthest vertex (the paper's eq. 5). Conservative.
-  vertices,
-  /// Centre and radius from the box's longest side L (the paper's eq. 3 and 4). It does not enclose the
-  /// corners
-  /// of the box, so collisions are missed: for repeating the paper's experiment only.
-  box,
-};
 
 /// How object pairs are found. All methods report the same pairs in the same order.
 enum class BroadPhaseMethod : std::uint8_t {
@@ -38,95 +35,76 @@ enum class BroadPhaseMethod : std::uint8_t {
   brute,  ///< every object against every other
 };
 
-/// How a region of the scene octree is tested against a sphere.
-enum class RegionSphereTest : std::uint8_t {
-  arvo,       ///< closest point of the region (Arvo 1990)
-  grown_box,  ///< the paper's: the centre in the region grown by the radius; over-reports near corners
+/// Kinds of contacts, a set: `ContactKinds::intersection | ContactKinds::continuous`.
+enum class ContactKinds : std::uint8_t {
+  none = 0,          ///< object pairs and candidate counts only
+  intersection = 1,  ///< every pair of triangles that intersects, with normal and points
+  continuous = 2,    ///< every pair of vertex and face, and of two edges, that touches within the step
 };
+constexpr ContactKinds operator|(ContactKinds p, ContactKinds q) {
+  return static_cast<ContactKinds>(static_cast<unsigned>(p) | static_cast<unsigned>(q));
+}
+constexpr ContactKinds& operator|=(ContactKinds& p, ContactKinds q) {
+  return p = p | q;
+}
+/// Whether all of `kinds` are in the set.
+constexpr bool contains(ContactKinds set, ContactKinds kinds) {
+  return (set | kinds) == set;
+}
 
-/// Which exact stage follows the candidates.
-enum class ContactMode : std::uint8_t {
-  none,          ///< object pairs and candidate counts only
-  intersection,  ///< every intersecting pair of triangles, with its points
-  continuous,    ///< every pair of vertex and face, and of two edges, that touches within the step
-};
-
-/// Shape of the octree of one object.
-struct ObjectOctreeOptions {
-  /// Depth below the root at which splitting ends, 0 to 32 (the paper's level-allowed). It counts levels of
-  /// eight children whatever the arity: a tree of arity 4 may have half as many levels more (rounded down),
-  /// one of arity 2 three times as many, so that no cell is smaller.
-  std::uint32_t max_level = 16;
-  /// A node with at most this many triangles is not split, ≥ 1. The triangles of two leaves that meet are
-  /// tested in vectors, so that small leaves are slower; and they take more memory. With continuous contacts
-  /// half as many, unless `regular`.
-  std::uint32_t leaf_size = 64;
-  /// Children of a node: 8, 4 or 2. A level then halves a node's cell along three axes, two or one, which
-  /// take turns. Contacts are the same for all, the paper's colliding vertices are not: the leaves differ.
-  /// Nodes are eight lanes wide in any case, so fewer children take more memory and time; for comparison.
-  std::uint32_t arity = 8;
-  /// Build the paper's regular octree: a node's children are the octants of its cell. Otherwise, and if the
-  /// arity is 8, triangles are shared out among children so that leaves are about equally full, which takes
-  /// fewer of them. Contacts are the same, the paper's colliding vertices are not: the leaves differ.
-  bool regular = false;
-  /// Build parts anew when the object has deformed so far from what they were built from that queries cost
-  /// too much, and a scene has paid for that often enough. Contacts are the same; for comparison. Never when
-  /// a scene gives the paper's colliding vertices or has its spheres, which depend on the leaves.
-  bool rebuild_degraded = true;
-};
-
-/// Shape of the octree of the scene. Any value but the default is an `Error` when the broad phase is grid,
-/// sweep or brute.
-struct SceneOctreeOptions {
-  /// Depth at which regions no longer expand, 1 to 20; 0 chooses it from the number, the places and the sizes
-  /// of the objects. Less far from the origin, where floats cannot tell finer regions apart. It counts levels
-  /// of eight children whatever the arity, as `ObjectOctreeOptions::max_level` does.
-  std::uint32_t max_level = 0;
-  /// A region expands when this many of its objects fit into regions half its edge, ≥ 2 (the paper: 2).
-  std::uint32_t expand_at = 2;
-  RegionSphereTest region_sphere_test = RegionSphereTest::arvo;
-  /// Children of a region: 8, 4 or 2. The pairs found are the same; for comparison.
-  std::uint32_t arity = 8;
-
-  constexpr bool operator==(const SceneOctreeOptions&) const = default;
-};
-
-/// Of one object, given when it is added.
+/// Options of one object, given when it is added.
 struct ObjectOptions {
-  /// Shown in messages and results; the mesh's name when empty.
+  /// Appears in messages and results; the mesh's name when empty.
   std::string name{};
-  /// Also test the object against itself; triangles that share a vertex id are not a contact.
+  /// Also test the object against itself. Triangles that share a vertex id are never a contact.
   bool self_collision = false;
-  /// Never moves: it is not tested against other static objects, and moving it is an error.
+  /// The object never moves: it is not tested against other static objects, and moving it is an error.
   bool is_static = false;
-  /// Two objects are tested when each one's `group` has a bit in common with the other's `mask`.
+  /// Two objects are tested when the `group` of each has a bit in common with the `mask` of the other.
   std::uint32_t group = 1;
   std::uint32_t mask = ~std::uint32_t{0};
-  ObjectOctreeOptions octree{};
+  ObjectOctreeOptions octree{};  ///< for comparison
 };
 
-/// Of a scene, fixed at its construction.
+/// Options of a scene, fixed at its construction.
 struct SceneOptions {
   BoundingVolume bounding_volume = BoundingVolume::aabb;
-  SphereFit sphere_fit = SphereFit::vertices;
   BroadPhaseMethod broad_phase = BroadPhaseMethod::automatic;
-  SceneOctreeOptions scene_octree{};
-  ContactMode contacts = ContactMode::intersection;
-  /// Also give the points of each contact (`DetectResult::contact_points`). Off saves a little time.
+  SceneOctreeOptions scene_octree{};  ///< for comparison
+  /// What `detect` finds unless its request says otherwise.
+  ContactKinds contacts = ContactKinds::intersection;
+  /// Also report the normal and the points of each contact (`Contact::normal`,
+  /// `DetectResult::contact_points`). Without them `detect` takes less time.
   bool contact_points = true;
-  /// Of continuous contacts: how near elements come before they touch, and whether exact arithmetic decides
-  /// what floating point cannot.
+  /// For continuous contacts: the distance at which elements touch, and whether exact arithmetic decides what
+  /// floating point cannot.
   ImpactOptions impact{};
-  /// Also give the paper's output: the vertices in the colliding leaves of both octrees. Not of continuous
-  /// contacts.
-  bool colliding_vertices = false;
-  /// Worker threads, 0 for one a core. The results are the same for any number.
+  /// Worker threads; 0 means one for each core. The results are the same for any number.
   std::uint32_t threads = 0;
+  ComparisonOptions comparison{};
 };
 
-/// Says whether a pair may be tested; called from one thread, in ascending order, for pairs whose groups and
-/// masks agree: by `detect` for those whose volumes overlap, by `verify` for all. It must answer the same
-/// within one step.
+/// What one call of `Scene::detect` finds, and how far it goes.
+struct DetectRequest {
+  /// Without a value: as `SceneOptions` say.
+  std::optional<ContactKinds> contacts{};
+  std::optional<ImpactOptions> impact{};
+  /// The largest number of contacts of each kind in the result: the first ones in canonical order, for any
+  /// number of threads. `DetectResult::truncated` says that there are more. The limit bounds the memory and
+  /// the number of exact tests. The search skips object pairs after the last reported contact, but it
+  /// searches one object pair to its end.
+  std::uint64_t max_contacts = std::numeric_limits<std::uint64_t>::max();
+#ifdef __cpp_lib_jthread
+  /// Stops the call when any thread requests it: within milliseconds during the search, otherwise after the
+  /// present stage. The result is then empty and has `stopped` set. The next `detect` reports what it would
+  /// report without the stopped call.
+  std::stop_token stop{};
+#endif
+};
+
+/// Returns whether a pair of objects may be tested. The scene calls it from one thread, in ascending order,
+/// for pairs whose groups and masks agree: `detect` for pairs whose volumes overlap, `verify` for all pairs.
+/// It must return the same answer within one step.
 using PairFilter = std::function<bool(ObjectId, ObjectId)>;
 
 }  // namespace supple

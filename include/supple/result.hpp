@@ -13,17 +13,16 @@
 namespace supple {
 
 /// The contacts of one pair of objects, or of one object with itself (`a == b`): a range of
-/// `DetectResult::contacts`, or of `continuous_contacts` in that mode. A pair is listed only when it has
-/// contacts.
+/// `DetectResult::contacts`, or of `continuous_contacts`. Only pairs with contacts of that kind are listed.
 struct ContactGroup {
   ObjectId a, b;
   std::uint32_t first_contact = 0;
   std::uint32_t contact_count = 0;
 };
 
-/// The paper's output for one pair of objects: the vertices of both in the leaves that collide, user's
-/// numbers, ascending. Ranges of `DetectResult::colliding_vertices`: those of a come first, those of b
-/// follow.
+/// The paper's output for one pair of objects: the vertices of both in the leaves that collide, as the user's
+/// numbers, ascending. They are a range of `DetectResult::colliding_vertices`: first the vertices of a, then
+/// the vertices of b.
 struct CollidingVertices {
   ObjectId a, b;
   std::uint32_t first_vertex = 0;
@@ -31,28 +30,29 @@ struct CollidingVertices {
   std::uint32_t count_b = 0;
 };
 
-/// A vertex with a coordinate that is not a finite number; the triangles that use it are inert: in no box and
-/// in no contact, until finite positions come.
+/// A vertex with a coordinate that is not a finite number. The triangles that use it are inert: they are in
+/// no box and in no contact until the vertex has a finite position.
 struct NonFiniteVertex {
   ObjectId object;
   std::uint32_t vertex = 0;
   Vec3d position;
 };
 
-/// Changes of a set of pairs since the step before. Each pair that begins ends exactly once, be it by
-/// parting, by removal of an object or by a filter. Sorted; `end` may name objects that are no longer there.
+/// Changes of a set of pairs since the last step, whatever its request. Each pair that begins ends exactly
+/// once: when the objects part, when one is removed, or when a filter excludes the pair. Sorted. `end` may
+/// name removed objects.
 struct PairEvents {
   std::span<const ObjectPair> begin, stay, end;
 };
 
-/// Seconds by the wall clock and counts of what was done in one step: contacts of two objects that both are
-/// where they were are known from the step before, and what led to them is not counted again. Traversal and
-/// exact tests run interleaved on several threads: their times are the time of both together, split as the
-/// threads' own clocks say.
+/// Wall-clock seconds and work counts of one step. When two objects both have not moved, the step reuses
+/// their contacts, and the counts do not include the work that found them. Traversal and exact tests run
+/// interleaved on several threads: their wall-clock time is measured together and split by the threads' own
+/// clocks. The counts of a truncated or stopped step depend on the threads.
 struct StepStats {
   double refit_seconds = 0;            ///< new positions into octrees
   double broad_phase_seconds = 0;      ///< object volumes into object pairs
-  double rebuild_seconds = 0;          ///< degraded parts of octrees anew
+  double rebuild_seconds = 0;          ///< rebuild of degraded parts of octrees
   double traversal_seconds = 0;        ///< object pairs into candidate triangle pairs
   double exact_seconds = 0;            ///< candidates into contacts
   double sort_and_events_seconds = 0;  ///< canonical order and events
@@ -62,37 +62,45 @@ struct StepStats {
   BroadPhaseMethod broad_phase_method = BroadPhaseMethod::automatic;
   std::uint64_t objects_refitted = 0;
   std::uint64_t triangles_refitted = 0;
-  std::uint64_t subtrees_rebuilt = 0;  ///< parts of octrees that had degraded, and their triangles
-  std::uint64_t triangles_rebuilt = 0;
+  std::uint64_t subtrees_rebuilt = 0;     ///< degraded parts of octrees
+  std::uint64_t triangles_rebuilt = 0;    ///< triangles in them
   std::uint64_t object_pairs_tested = 0;  ///< volume against volume in the broad phase
   std::uint64_t object_pairs = 0;
   std::uint64_t node_pairs_visited = 0;  ///< eight-wide node against eight-wide node
-  /// Volume against volume inside them and at the leaves; lanes of a node that have no child do not count.
+  /// Volume against volume, of children and at the leaves; empty children do not count.
   std::uint64_t boxes_tested = 0;
-  /// Triangle pairs whose boxes overlap and that share no vertex; of continuous contacts 0.
+  /// Triangle pairs whose boxes overlap and that share no vertex.
   std::uint64_t candidate_pairs = 0;
-  /// Likewise vertex-face and edge-edge pairs whose moving boxes meet, of continuous contacts.
+  /// For continuous contacts: vertex-face and edge-edge pairs whose moving boxes meet.
   std::uint64_t vertex_face_candidates = 0, edge_edge_candidates = 0;
   std::uint64_t exact_fallbacks = 0;  ///< candidates that floating-point filters could not decide
-  std::uint64_t contacts = 0;
+  std::uint64_t contacts = 0;         ///< reported contacts of all kinds
 };
 
-/// What `Scene::detect` found. The spans look into buffers of the scene and last until its next call that is
-/// not const. Everything is in one canonical order: by object a, object b, triangle a, triangle b.
+/// What `Scene::detect` found. The spans refer to buffers of the scene and are valid until the next call of a
+/// function of the scene that is not const, except `earliest_impact` and `max_step`. Everything is in one
+/// canonical order: by object a, object b, triangle a, triangle b. Lists of kinds that were not requested are
+/// empty.
+///
+/// Pairs, kinds, features and element ids are exact: they are the answer of exact arithmetic on the given
+/// coordinates. `object_pairs` and the candidates are conservative. Normals, points, barycentric coordinates
+/// and times of impact are rounded; `Contact` and `ContinuousContact` say how.
 struct DetectResult {
-  std::uint64_t step = 0;                    ///< 0 for the first call
-  std::span<const ObjectPair> object_pairs;  ///< the broad phase's: volumes overlap and filters agree
-  std::span<const ContactGroup> groups;
+  std::uint64_t step = 0;  ///< 0 for the first call; stopped calls do not count
+  bool truncated = false;  ///< there are more contacts of a kind than `DetectRequest::max_contacts`
+  bool stopped = false;    ///< `DetectRequest::stop` ended the call; all lists are empty
+  std::span<const ObjectPair> object_pairs;  ///< pairs whose volumes overlap and whose filters agree
+  std::span<const ContactGroup> groups;      ///< of `contacts`
   std::span<const Contact> contacts;
   std::span<const ContactPoint> contact_points;
-  /// Of `ContactMode::continuous`, which leaves the two above empty. By object a, object b, kind, element a,
-  /// element b.
+  std::span<const ContactGroup> continuous_groups;  ///< of `continuous_contacts`
+  /// Ordered by object a, object b, kind, element a, element b.
   std::span<const ContinuousContact> continuous_contacts;
   std::span<const CollidingVertices> colliding_vertex_groups;
   std::span<const std::uint32_t> colliding_vertices;
   std::span<const NonFiniteVertex> non_finite_vertices;
   PairEvents volume_events;   ///< of `object_pairs`
-  PairEvents contact_events;  ///< of the pairs of different objects that have contacts
+  PairEvents contact_events;  ///< of the pairs of different objects that have contacts of any kind
   StepStats stats;
 
   std::span<const Contact> contacts_of(const ContactGroup& group) const {
@@ -117,7 +125,7 @@ struct Difference {
   constexpr bool operator==(const Difference&) const = default;
 };
 
-/// The same of continuous contacts.
+/// A pair of elements on which `Scene::verify` and the last `Scene::detect` differ.
 struct ContinuousDifference {
   enum class Fault : std::uint8_t {
     missed,  ///< it touches and was not reported
@@ -133,8 +141,8 @@ struct ContinuousDifference {
   constexpr bool operator==(const ContinuousDifference&) const = default;
 };
 
-/// Outcome of the exact brute force over every triangle pair of the scene, or every vertex-face and edge-edge
-/// pair when contacts are continuous.
+/// Result of the exact brute force over every triangle pair of the scene, or over every vertex-face and
+/// edge-edge pair when contacts are continuous.
 struct VerifyReport {
   std::uint64_t triangle_pairs_checked = 0;
   std::uint64_t intersecting_pairs = 0;
@@ -143,29 +151,6 @@ struct VerifyReport {
   std::vector<Difference> differences;                       ///< sorted
   std::vector<ContinuousDifference> continuous_differences;  ///< sorted
   bool agrees() const { return differences.empty() && continuous_differences.empty(); }
-};
-
-/// Of an object's octree.
-struct OctreeStatistics {
-  std::uint64_t triangles = 0;
-  std::uint64_t vertices = 0;
-  std::uint64_t nodes = 0;  ///< eight-wide
-  std::uint64_t leaves = 0;
-  std::uint32_t depth = 0;         ///< of the deepest leaf, the root being 0
-  std::uint32_t largest_leaf = 0;  ///< triangles
-  double mean_leaf_size = 0;       ///< triangles
-  double mean_node_width = 0;      ///< occupied lanes of eight
-  std::uint64_t bytes = 0;         ///< all memory of the octree: nodes, ids and maps, without the positions
-  double bytes_per_triangle = 0;
-  std::vector<std::uint64_t> leaves_by_level;
-  /// What a query whose box meets the object's visits on average, by the surface-area heuristic: a visit a
-  /// lane, and an eighth for each triangle of a leaf. Of the boxes as last refitted; 0 when they have no
-  /// surface.
-  double cost = 0;
-  /// The cost over what it was when built: 1 as built, 2 when queries cost twice as much.
-  double degradation = 1;
-  std::uint64_t subtrees_rebuilt = 0;  ///< since the object was added, and their triangles
-  std::uint64_t triangles_rebuilt = 0;
 };
 
 /// One region of the scene octree, for inspection and drawing.

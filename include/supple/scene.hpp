@@ -3,20 +3,19 @@
 #include <array>
 #include <memory>
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
-#include "supple/inspection.hpp"
 #include "supple/mesh.hpp"
 #include "supple/options.hpp"
 #include "supple/result.hpp"
 #include "supple/types.hpp"
+#include "supple/views.hpp"
 
 namespace supple {
 
-/// Rigid placement: `rotation` (row-major, may also scale or shear) and then `translation`. A point p goes to
-/// fl(R p) + t, each row of R p summed from left to right in double without fused multiply-add.
+/// Rigid placement: `rotation` (row-major; it may also scale or shear), then `translation`. A point p becomes
+/// fl(R p) + t. Each row of R p is summed from left to right in double, without fused multiply-add.
 struct RigidTransform {
   std::array<double, 9> rotation{1, 0, 0, 0, 1, 0, 0, 0, 1};
   Vec3d translation{};
@@ -35,11 +34,12 @@ struct RigidTransform {
 /// }
 /// ```
 ///
-/// Moving an object is one call; its octree, its bounds and the scene follow at the next `detect`. The scene
-/// keeps one copy of each object's positions, in the precision they were last given in (none of those it
-/// shares), and a second copy only of objects moved by `set_transform`. Calls on one scene must not overlap;
-/// different scenes are independent. Every call that takes an `ObjectId` throws `Error` when the object is
-/// not in the scene.
+/// One call moves an object. `detect` then updates its octree, its bounds and the scene. The scene keeps one
+/// copy of each object's positions, in the precision of the last call, and none of shared positions. It keeps
+/// a second copy of objects moved by `set_transform` or `set_motion`, and of positions at both ends of the
+/// step once continuous contacts are requested. Calls on one scene must not overlap, except calls of const
+/// functions. Different scenes are independent. Every function that takes an `ObjectId` throws
+/// `Error` when the object is not in the scene. `SceneInspector` shows what happens inside a scene.
 class Scene {
  public:
   /// Throws `Error` when an option is out of its range.
@@ -48,55 +48,36 @@ class Scene {
   Scene(Scene&&) noexcept;
   Scene& operator=(Scene&&) noexcept;
 
-  /// Adds an object; the octree is built from these positions (the rest pose) in O(n). An empty mesh is an
-  /// object that touches nothing. Throws `Error` for a triangle that uses a vertex out of range.
+  /// Adds an object and builds its octree from these positions (the rest pose) in O(n log n). An object
+  /// without triangles touches nothing. Throws `Error` for a vertex id that is negative or too large; the
+  /// message names the triangle and the id.
   ObjectId add(const TriangleMesh& mesh, const ObjectOptions& options = {});
-  ObjectId add(PositionsView<double> positions, std::span<const Triangle> triangles,
-               const ObjectOptions& options = {});
-  ObjectId add(PositionsView<float> positions, std::span<const Triangle> triangles,
-               const ObjectOptions& options = {});
-  /// Its pairs end at the next `detect`.
+  ObjectId add(PositionsView positions, TrianglesView triangles, const ObjectOptions& options = {});
+  /// Removes an object. Its pairs end at the next `detect`.
   void remove(ObjectId object);
 
-  /// New positions of all vertices, the user's numbering: any stride, or packed x y z. They are copied, in
-  /// O(n). Throws `Error` when the count differs from the mesh's or the object is static.
-  void set_positions(ObjectId object, PositionsView<double> positions);
-  void set_positions(ObjectId object, PositionsView<float> positions);
-  void set_positions(ObjectId object, std::span<const double> xyz);
-  void set_positions(ObjectId object, std::span<const float> xyz);
-  void set_positions(ObjectId object, std::span<const Vec3d> positions) {
-    set_positions(object, PositionsView<double>(positions));
-  }
-  void set_positions(ObjectId object, std::span<const Vec3f> positions) {
-    set_positions(object, PositionsView<float>(positions));
-  }
-  /// As `set_positions`, but nothing is copied: the scene reads the positions where they are, from now on
-  /// until the object is given others or removed. They must stay there that long, and keep their values until
-  /// they are to move: then change them between calls on the scene and call this again (what reads them in
-  /// between sees half of the change). Copied all the same, as by `set_positions`, when the contacts of the
-  /// scene are continuous, or the stride is not a multiple of the scalar's size. O(1).
-  void share_positions(ObjectId object, PositionsView<double> positions);
-  void share_positions(ObjectId object, PositionsView<float> positions);
-  /// Moves the object as it is by `offset`, in O(1): the vertices are not read. Each coordinate becomes
-  /// fl(position + D) in double, D being the sum of the offsets since the last `set_positions`.
+  /// Sets the positions of all vertices, in the user's numbering. Copies them, O(n). Throws `Error` when the
+  /// count differs from the mesh's or the object is static.
+  void set_positions(ObjectId object, PositionsView positions);
+  /// As `set_positions`, but the scene reads the user's memory instead of a copy, O(1). The memory must stay
+  /// valid until the object gets other positions or is removed. Its values must not change, except between
+  /// calls on the scene and followed by this call again.
+  ///
+  /// The scene copies the positions when it cannot read them in place: when x, y and z of a point are not
+  /// adjacent (a column-major n x 3 matrix), and when the point stride or the address is not a multiple of
+  /// the scalar's size. `detect` also copies them when it searches for continuous contacts.
+  void share_positions(ObjectId object, PositionsView positions);
+  /// Moves the object by `offset` in O(1), without reading its vertices. Each coordinate becomes
+  /// fl(position + D) in double; D is the sum of the offsets since the last `set_positions`.
   void translate(ObjectId object, Vec3d offset);
-  /// Places the positions last given by `add` or `set_positions`; replaces earlier transforms and
+  /// Places the positions that were last given by `add` or `set_positions`. Replaces earlier transforms and
   /// translations. O(1) when only the translation changes, O(n) otherwise.
   void set_transform(ObjectId object, const RigidTransform& transform);
-  /// Gives the object a path for continuous contacts: every vertex goes straight from its place in `from`
-  /// (t = 0) to its place in `to` (t = 1). Any stride, or packed x y z; both are copied, in O(n). It holds
-  /// until the object is moved otherwise: all other calls place it at rest. Everything but continuous
-  /// contacts sees the object where the path ends. Throws `Error` as `set_positions` does.
-  void set_motion(ObjectId object, PositionsView<double> from, PositionsView<double> to);
-  void set_motion(ObjectId object, PositionsView<float> from, PositionsView<float> to);
-  void set_motion(ObjectId object, std::span<const double> from, std::span<const double> to);
-  void set_motion(ObjectId object, std::span<const float> from, std::span<const float> to);
-  void set_motion(ObjectId object, std::span<const Vec3d> from, std::span<const Vec3d> to) {
-    set_motion(object, PositionsView<double>(from), PositionsView<double>(to));
-  }
-  void set_motion(ObjectId object, std::span<const Vec3f> from, std::span<const Vec3f> to) {
-    set_motion(object, PositionsView<float>(from), PositionsView<float>(to));
-  }
+  /// Sets a path for continuous contacts: every vertex moves straight from its position in `from` (t = 0) to
+  /// its position in `to` (t = 1). Copies both, O(n). The path holds until the object is moved otherwise; all
+  /// other calls place it at rest. Everything except continuous contacts uses the end of the path. Throws
+  /// `Error` as `set_positions` does, and when one view is `float` and the other `double`.
+  void set_motion(ObjectId object, PositionsView from, PositionsView to);
   void set_static(ObjectId object, bool is_static);
 
   void set_group(ObjectId object, std::uint32_t group, std::uint32_t mask);
@@ -104,61 +85,39 @@ class Scene {
   /// An empty function removes the filter.
   void set_pair_filter(PairFilter filter);
 
-  /// Every contact at the current positions, or within the step when contacts are continuous.
-  const DetectResult& detect();
-  /// The first of all continuous contacts, of those at the same time the first in order; nothing when nothing
-  /// touches within the step. Whatever can only touch later than what was found is passed over, so that it
-  /// takes a part of the time of `detect` where much touches. Throws `Error` unless `SceneOptions::contacts`
-  /// is continuous.
+  /// Finds every contact at the current positions, within the step, or both, as the options of the scene or
+  /// the request say. Throws `Error` when the request is out of range.
+  const DetectResult& detect(const DetectRequest& request = {});
+  /// The first continuous contact with `SceneOptions::impact`; of those with the same time, the first in
+  /// canonical order; nothing when nothing touches within the step. It skips what can only touch later, so it
+  /// takes a part of the time of `detect` where much touches. Does not change `result` and `verify`.
   std::optional<ContinuousContact> earliest_impact();
-  /// The part of the step, 0 to 1, that can be taken without passing through anything: the time of
-  /// `earliest_impact`, 1 when there is none. Never later than the true first contact.
+  /// The part of the step, 0 to 1, that can be taken before the first impact: the time of `earliest_impact`,
+  /// or 1. Never later than the true first contact.
   double max_step();
-  /// What the last `detect` returned.
+  /// The result of the last `detect`.
   const DetectResult& result() const;
-  /// Recomputes the last `detect` by exact arithmetic alone over all pairs of triangles, without octrees or
-  /// filters, and lists every difference. Quadratic, but under a second for two meshes of 70,000 triangles.
+  /// Recomputes the last `detect`, all kinds of contacts that it found, by exact arithmetic over all pairs of
+  /// triangles or elements, without octrees or filters, and lists every difference. Quadratic: under a second
+  /// for two meshes of 70,000 triangles. Throws `Error` when an object or option changed since the last
+  /// `detect`, and when that was stopped, truncated, or asked for no contacts.
   VerifyReport verify() const;
-  /// Checks every invariant of every octree and of the broad phase; the empty string, or what is wrong.
-  std::string validate() const;
-
-  /// To look into the last `detect`: each of the next three throws `Error` when something was changed since
-  /// (of `octree_cells`, the object was moved), or an id is out of range. They take memory and one thread.
-  ///
-  /// The cells of an object's octree at `level`, and shallower leaves too, so that together they cover the
-  /// object; without a level all leaves. Shallow ones first. Their volumes hold the triangles where they are
-  /// now, rounded outward; those without a finite triangle are empty. Of continuous contacts they are those
-  /// at the end of the step, and cells of few triangles count as leaves, as the search takes them.
-  std::vector<OctreeCell> octree_cells(ObjectId object, std::optional<std::uint32_t> level) const;
-  /// The deepest level that has cells; 0 of an object without triangles, which has no cell.
-  std::uint32_t octree_depth(ObjectId object) const;
-  /// All pairs of triangles that the narrow phase hands to the exact stage, sorted; the first `limit` of
-  /// them, and in `total`, when it is not null, how many there are. Also those that `detect` need not look
-  /// at: of two objects that both are where they were, and in the smooth parts of an object that cannot touch
-  /// themselves. Of continuous contacts, triangles whose boxes meet on the way, by a bound that is not below
-  /// `ImpactOptions::min_separation`; pairs that share a vertex are left out there too, though elements of
-  /// them are tested. As fast as a `detect` by one thread; memory is of the order of `limit`.
-  std::vector<CandidatePair> candidates(std::size_t limit, std::uint64_t* total = nullptr) const;
-  /// Why two triangles are a contact of the last `detect`, or which stage told them apart. Calls the pair
-  /// filter. O(n) of the objects' triangles; of continuous contacts also of the contacts of the two.
-  PairExplanation explain(ObjectId object_a, std::uint32_t triangle_a, ObjectId object_b,
-                          std::uint32_t triangle_b) const;
 
   std::vector<ObjectId> objects() const;  ///< ascending
   bool contains(ObjectId object) const;
   const std::string& name(ObjectId object) const;
   std::size_t vertex_count(ObjectId object) const;
   std::size_t triangle_count(ObjectId object) const;
-  /// As the exact tests see it: transforms and translations applied.
+  /// As the exact tests see it: with transforms and translations.
   Vec3d position(ObjectId object, std::uint32_t vertex) const;
-  /// Bounds as of the last `detect`; empty when nothing finite is there.
-  Aabb bounds(ObjectId object) const;
-  OctreeStatistics octree_statistics(ObjectId object) const;
-  /// Regions of the scene octree, root first; empty for other broad phases.
-  std::vector<SceneRegion> scene_regions() const;
+  /// The vertex ids of the element or triangle of a contact, O(1). The order is that of the barycentric
+  /// coordinates: an edge as in `element_a` or `element_b`, a triangle in the order of its corners.
+  ElementVertices vertices_of(const ContinuousContact& contact, ContactSide side) const;
+  ElementVertices vertices_of(const Contact& contact, ContactSide side) const;
   const SceneOptions& options() const;
 
  private:
+  friend class SceneInspector;
   class Implementation;
   std::unique_ptr<Implementation> implementation_;
 };

@@ -2,6 +2,7 @@
 
 /// The whole core, without the components: models, simulation, formats, recording.
 #include "supple/broad_phase.hpp"
+#include "supple/comparison_options.hpp"
 #include "supple/contact.hpp"
 #include "supple/continuous.hpp"
 #include "supple/error.hpp"
@@ -15,3 +16,4 @@
 #include "supple/trigonometry.hpp"
 #include "supple/types.hpp"
 #include "supple/version.hpp"
+#include "supple/views.hpp"

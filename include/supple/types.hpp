@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <span>
 
 namespace supple {
 
@@ -63,7 +62,7 @@ struct Aabb {
   constexpr bool empty() const { return !(min.x <= max.x && min.y <= max.y && min.z <= max.z); }
 };
 
-/// Closed ball in single precision. A negative radius is the empty ball.
+/// Closed sphere (a solid ball) in single precision. A negative radius is the empty sphere.
 struct BoundingSphere {
   Vec3f center;
   float radius = -1;
@@ -72,8 +71,8 @@ struct BoundingSphere {
   constexpr bool empty() const { return radius < 0; }
 };
 
-/// Names an object of one scene. `index` is small and used again after a removal, `generation` then differs,
-/// so that an id kept too long is recognised as such. Ordered by index.
+/// Identifies an object of one scene. A scene reuses the `index` of a removed object and raises its
+/// `generation`, so that it recognizes an outdated id. Ordered by index.
 struct ObjectId {
   std::uint32_t index = 0;
   std::uint32_t generation = 0;
@@ -87,32 +86,10 @@ struct ObjectPair {
   constexpr auto operator<=>(const ObjectPair&) const = default;
 };
 
-/// A triangle of object a and one of object b, as indices into each object's own list of triangles.
+/// A triangle of object a and a triangle of object b, as indices into each object's own list of triangles.
 struct TrianglePair {
   std::uint32_t a = 0, b = 0;
   constexpr auto operator<=>(const TrianglePair&) const = default;
-};
-
-/// Positions as they lie in the user's memory: `count` points, `stride` bytes from one to the next, three
-/// consecutive scalars each. Not owned; read only during the call it is handed to.
-template <class Scalar>
-struct PositionsView {
-  const Scalar* data = nullptr;
-  std::size_t count = 0;
-  std::size_t stride = 3 * sizeof(Scalar);
-
-  PositionsView() = default;
-  PositionsView(const Scalar* first, std::size_t point_count, std::size_t stride_bytes = 3 * sizeof(Scalar))
-      : data(first), count(point_count), stride(stride_bytes) {}
-  PositionsView(std::span<const Vec3<Scalar>> points)
-      : data(points.empty() ? nullptr : &points.front().x),
-        count(points.size()),
-        stride(sizeof(Vec3<Scalar>)) {}
-
-  Vec3<Scalar> operator[](std::size_t i) const {
-    const auto* p = reinterpret_cast<const Scalar*>(reinterpret_cast<const std::byte*>(data) + i * stride);
-    return {p[0], p[1], p[2]};
-  }
 };
 
 }  // namespace supple

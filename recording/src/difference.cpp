@@ -249,10 +249,11 @@ Line Comparison::contacts(const RecordedFrame& a, const RecordedFrame& b) const 
   const auto key = [](const Contact& c) {
     return std::tuple(c.object_a, c.object_b, c.triangle_a, c.triangle_b);
   };
-  return lists("contact", a.contacts, b.contacts, key, [](const Contact& p, const Contact& q) {
+  return lists("contact", a.contacts, b.contacts, key, [this](const Contact& p, const Contact& q) {
     return first_of([&] { return compare_exactly("kind", p.kind, q.kind); },
                     [&] { return compare_exactly("point_count", p.point_count, q.point_count); },
-                    [&] { return compare_exactly("first_point", p.first_point, q.first_point); });
+                    [&] { return compare_exactly("first_point", p.first_point, q.first_point); },
+                    [&] { return compare("normal", p.normal, q.normal); });
   });
 }
 

@@ -32,6 +32,8 @@ const std::vector<ColumnOf<Contact>>& columns_of() {
           "point_count", [](auto& row) -> auto& { return row.point_count; }),
       column<Contact>(
           "first_point", [](auto& row) -> auto& { return row.first_point; }),
+      column<Contact>(
+          "normal", [](auto& row) -> auto& { return row.normal; }),
   };
   return columns;
 }

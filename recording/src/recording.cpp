@@ -138,8 +138,9 @@ class RaggedReader {
     for (const ColumnOf<Row>& column : columns_of<Row>()) {
       std::vector<hsize_t> row_shape;
       if (column.width > 1) row_shape.push_back(column.width);
-      columns_.emplace_back(file, std::string(group) + "/" + column_in_version(column.name, version),
-                            column.type, std::move(row_shape));
+      const std::string path = std::string(group) + "/" + column_in_version(column.name, version);
+      if (version < format_version && !file.has_dataset(path)) continue;
+      columns_.push_back({column, ColumnReader(file, path, column.type, std::move(row_shape))});
     }
     check_ends(frames);
   }
@@ -147,10 +148,9 @@ class RaggedReader {
   std::vector<Row> rows(std::uint64_t frame) {
     const std::uint64_t first = frame == 0 ? 0 : end_of(frame - 1);
     std::vector<Row> rows(end_of(frame) - first);
-    for (std::size_t c = 0; c < columns_.size(); ++c) {
-      const ColumnOf<Row>& column = columns_of<Row>()[c];
+    for (auto& [column, reader] : columns_) {
       bytes_.resize(rows.size() * column.bytes());
-      columns_[c].read(first, rows.size(), bytes_.data());
+      reader.read(first, rows.size(), bytes_.data());
       for (std::size_t i = 0; i < rows.size(); ++i) column.load(rows[i], bytes_.data() + i * column.bytes());
     }
     return rows;
@@ -159,7 +159,7 @@ class RaggedReader {
   /// Of a row of the frame.
   [[noreturn]] void fail(std::uint64_t frame, std::size_t row, const char* column, std::uint64_t value,
                          std::uint64_t allowed) {
-    for (const ColumnReader& reader : columns_) {
+    for (const auto& [of, reader] : columns_) {
       if (!reader.path().ends_with(std::string("/") + column)) continue;
       file_->fail(reader.path(), "row " + std::to_string(row) + " of frame " + std::to_string(frame) +
                                      " is " + std::to_string(value) + ", not below " +
@@ -185,16 +185,20 @@ class RaggedReader {
                                      damaged);
       last = end;
     }
-    for (const ColumnReader& column : columns_) {
-      if (column.rows() < last)
-        file_->fail(column.path(), "has " + std::to_string(column.rows()) + " rows, the frames name " +
+    for (const auto& [of, reader] : columns_) {
+      if (reader.rows() < last)
+        file_->fail(reader.path(), "has " + std::to_string(reader.rows()) + " rows, the frames name " +
                                        std::to_string(last) + damaged);
     }
   }
 
   const InputFile* file_;
   ColumnReader end_;
-  std::vector<ColumnReader> columns_;
+  struct Column {
+    ColumnOf<Row> of;
+    ColumnReader reader;
+  };
+  std::vector<Column> columns_;  ///< those that the file has
   std::vector<std::byte> bytes_;
 };
 

@@ -42,7 +42,7 @@ class Json(ProgramTest):
         ]
         (contact,) = frame.pop("contacts")
         self.assertCountEqual(contact.pop("points"), points)
-        self.assertEqual(contact, {"a": 0, "b": 1, "triangles": [0, 0], "kind": "segment"})
+        self.assertEqual(contact, {"a": 0, "b": 1, "triangles": [0, 0], "kind": "segment", "normal": [0.0, 1.0, 0.0]})
         self.assertEqual(
             frame,
             {

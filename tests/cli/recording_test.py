@@ -315,6 +315,8 @@ class Detect(RecordingTest):
                 self.assertEqual(contacts, self.recorded(file, number, "contacts", *columns))
                 points = [p["position"] for c in frame["contacts"] for p in c["points"]]
                 self.assertEqual(points, [p for (p,) in self.recorded(file, number, "contact_points", "position")])
+                normals = [c["normal"] for c in frame["contacts"]]
+                self.assertEqual(normals, [n for (n,) in self.recorded(file, number, "contacts", "normal")])
                 for kind in ("volume", "contact"):
                     for event in ("begin", "end"):
                         pairs = [tuple(pair) for pair in frame["events"][f"{kind}s"][event]]

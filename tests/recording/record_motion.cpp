@@ -86,7 +86,7 @@ using namespace supple;
 struct Arguments {
   std::string path;
   std::uint64_t frames = 0, frames_between_flushes = 0, copies = 1, pause = 0;
-  ContactMode contacts = ContactMode::intersection;
+  ContactKinds contacts = ContactKinds::intersection;
 };
 
 std::FILE* open_log(const char* name) {
@@ -104,9 +104,9 @@ Arguments parse(int count, char** words) {
     const std::string_view option = words[i], value = words[i + 1];
     const std::int64_t number = std::strtoll(words[i + 1], nullptr, 10);
     if (option == "--contacts")
-      arguments.contacts = value == "none"         ? ContactMode::none
-                           : value == "continuous" ? ContactMode::continuous
-                                                   : ContactMode::intersection;
+      arguments.contacts = value == "none"         ? ContactKinds::none
+                           : value == "continuous" ? ContactKinds::continuous
+                                                   : ContactKinds::intersection;
     else if (option == "--frames-between-flushes")
       arguments.frames_between_flushes = static_cast<std::uint64_t>(number);
     else if (option == "--copies")
@@ -148,7 +148,7 @@ class Motion {
       if (object.options.is_static) continue;
       const std::vector<Vec3d> from = positions_[i];
       for (std::size_t v = 0; v < from.size(); ++v) positions_[i][v] = moved(object.rest_positions[v], frame);
-      if (scene_.options().contacts == ContactMode::continuous)
+      if (scene_.options().contacts == ContactKinds::continuous)
         scene_.set_motion(object.id, from, positions_[i]);
       else
         scene_.set_positions(object.id, positions_[i]);

@@ -28,7 +28,7 @@ TEST(SteadyStateMotion, NoAllocationsInStepsOfExplicitIntegrators) {
     const std::uint64_t before = allocation_count();
     for (int i = 0; i < 20; ++i) {
       body.add_drift({0.1, 0, 0});
-      body.turn_back(1);
+      body.reflect(1);
       body.step(0.01);
     }
     EXPECT_EQ(allocation_count(), before);

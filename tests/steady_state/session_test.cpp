@@ -101,7 +101,7 @@ TEST(SteadyStateSession, NoAllocationsInStepsOfASimulation) {
 
 TEST(SteadyStateSession, NoAllocationsWithContinuousContacts) {
   SceneView show = waves();
-  show.simulation.scene.contacts = ContactMode::continuous;
+  show.simulation.scene.contacts = ContactKinds::continuous;
   expect_no_allocations(play(std::move(show)));
 }
 
@@ -110,7 +110,7 @@ TEST(SteadyStateSession, NoAllocationsWithCollidingVertices) {
 }
 
 TEST(SteadyStateSession, NoAllocationsInFramesOfARecording) {
-  for (const ContactMode contacts : {ContactMode::intersection, ContactMode::continuous}) {
+  for (const ContactKinds contacts : {ContactKinds::intersection, ContactKinds::continuous}) {
     SceneView show = waves();
     show.simulation.scene.contacts = contacts;
     show.frames = std::make_shared<WaveFrames>(show);

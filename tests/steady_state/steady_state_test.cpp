@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "allocation_count.hpp"
+#include "supple/inspection.hpp"
 #include "supple/models.hpp"
 #include "supple/scene.hpp"
 #include "supple/trigonometry.hpp"
@@ -71,7 +72,7 @@ TEST_P(SteadyState, NoAllocationsAfterWarmUpAndValidOctreesThroughout) {
     if (step >= warm_up) allocated_in_steps += allocation_count() - before;
     if (step == warm_up) heap_after_warm_up = mallinfo2().uordblks;
     if (step % validate_every == 0) {
-      ASSERT_EQ(scene.validate(), "") << "step " << step;
+      ASSERT_EQ(SceneInspector(scene).validate(), "") << "step " << step;
     }
   }
   EXPECT_EQ(allocated_in_steps, 0u);
@@ -99,7 +100,7 @@ TEST(SteadyStateContinuous, NoAllocationsAfterWarmUp) {
 #endif
   constexpr int period = 12;
   SceneOptions options;
-  options.contacts = ContactMode::continuous;
+  options.contacts = ContactKinds::continuous;
   options.threads = 1;
   Scene scene(options);
   const TriangleMesh cloth_mesh = make_cloth(24, 24), ball_mesh = make_icosphere(6);
@@ -132,11 +133,95 @@ TEST(SteadyStateContinuous, NoAllocationsAfterWarmUp) {
     contacts += scene.earliest_impact().has_value() ? 1 : 0;
     contacts += scene.detect().continuous_contacts.size();
     if (step >= 2 * period) allocated_in_steps += allocation_count() - before;
-    ASSERT_EQ(scene.validate(), "") << "step " << step;
+    ASSERT_EQ(SceneInspector(scene).validate(), "") << "step " << step;
   }
   EXPECT_EQ(allocated_in_steps, 0u);
   EXPECT_GT(contacts, static_cast<std::uint64_t>(steps));
 }
+
+/// Balls that move in every way, a period of them again and again.
+class MovingBalls {
+ public:
+  static constexpr int period = 20;
+
+  MovingBalls(ContactKinds contacts, std::uint32_t threads)
+      : scene_({.contacts = contacts, .threads = threads}) {
+    for (std::size_t i = 0; i < 8; ++i) {
+      ids_.push_back(scene_.add(ball_, {.self_collision = i == 0}));
+      scene_.set_positions(ids_[i], ball_.positions);
+      scene_.translate(ids_[i], center(i));
+    }
+  }
+  /// Returns how often memory was allocated.
+  std::uint64_t step(int step) {
+    const double turns = static_cast<double>(step % period) / period;
+    for (std::size_t v = 0; v < from_.size(); ++v) {
+      from_[v] = ball_.positions[v] * (1 + 0.1 * sin_turns(2 * ball_.positions[v].x + turns)) + center(2);
+      to_[v] = from_[v] + Vec3d{0.05, 0.1 * cos_turns(turns), 0};
+    }
+    const std::uint64_t before = allocation_count();
+    // There and back: sums of offsets are to be the same after each period.
+    scene_.translate(ids_[0], {step % 2 == 0 ? 0.25 : -0.25, 0, 0});
+    scene_.set_transform(ids_[1], {.rotation = {cos_turns(turns), 0, sin_turns(turns), 0, 1, 0,
+                                                -sin_turns(turns), 0, cos_turns(turns)},
+                                   .translation = center(1)});
+    scene_.set_transform(ids_[4], {.translation = center(4) + Vec3d{0, 0.25 * sin_turns(turns), 0}});
+    scene_.set_motion(ids_[2], from_, to_);
+    scene_.set_positions(ids_[3], from_);
+    scene_.translate(ids_[3], {0.5, 0, 0});
+    const DetectResult& result = scene_.detect();
+    contacts_ += result.contacts.size() + result.continuous_contacts.size();
+    contacts_ += scene_.detect({.max_contacts = 50}).contacts.size();
+    return allocation_count() - before;
+  }
+  std::uint64_t contacts() const { return contacts_; }
+
+ private:
+  static Vec3d center(std::size_t i) {
+    return {1.7 * static_cast<double>(i & 1), 1.7 * static_cast<double>(i >> 1 & 1),
+            1.7 * static_cast<double>(i >> 2)};
+  }
+
+  Scene scene_;
+  TriangleMesh ball_ = make_icosphere(6);
+  std::vector<ObjectId> ids_;
+  std::vector<Vec3d> from_ = ball_.positions, to_ = from_;
+  std::uint64_t contacts_ = 0;
+};
+
+class SteadyStateMoves : public testing::TestWithParam<ContactKinds> {};
+
+TEST_P(SteadyStateMoves, NoAllocationsAfterWarmUp) {
+  MovingBalls balls(GetParam(), 1);
+  std::uint64_t allocations = 0;
+  for (int step = 0; step < 6 * MovingBalls::period; ++step) {
+    const std::uint64_t in_step = balls.step(step);
+    if (step >= 3 * MovingBalls::period) allocations += in_step;
+  }
+  EXPECT_EQ(allocations, 0u);
+  EXPECT_GT(balls.contacts(), 1000u);
+}
+
+/// How tasks are split differs from step to step: a worker's lists may grow long after the first steps, each
+/// time to twice the size, and that less and less often.
+TEST_P(SteadyStateMoves, HardlyAnyAllocationsWithThreads) {
+  MovingBalls balls(GetParam(), 3);
+  std::uint64_t allocations = 0;
+  constexpr int counted = 20 * MovingBalls::period;
+  for (int step = 0; step < 2 * counted; ++step) {
+    const std::uint64_t in_step = balls.step(step);
+    if (step >= counted) allocations += in_step;
+  }
+  EXPECT_LT(allocations, counted / 10u);
+}
+
+INSTANTIATE_TEST_SUITE_P(Kinds, SteadyStateMoves,
+                         testing::Values(ContactKinds::intersection, ContactKinds::continuous,
+                                         ContactKinds::intersection | ContactKinds::continuous),
+                         [](const auto& kinds) {
+                           const char* const names[] = {"None", "Intersection", "Continuous", "Both"};
+                           return names[static_cast<int>(kinds.param)];
+                         });
 
 }  // namespace
 }  // namespace supple

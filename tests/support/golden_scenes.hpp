@@ -15,14 +15,16 @@ namespace supple {
 /// another.
 constexpr std::uint64_t golden_hash = 2342057126839866175u;
 constexpr std::uint64_t golden_continuous_hash = 14350918484739907705u;
+constexpr std::uint64_t golden_normal_hash = 4176784545402189687u;
 
 inline Scene scene_of(const std::vector<TriangleMesh>& meshes, const SceneOptions& options,
                       std::uint32_t arity = 8) {
   Scene scene(options);
   for (const TriangleMesh& mesh : meshes) {
     // Colliding vertices are those of whole leaves: the hash is of a regular octree's.
-    scene.add(mesh, {.self_collision = true,
-                     .octree = {.leaf_size = 3, .arity = arity, .regular = options.colliding_vertices}});
+    scene.add(mesh,
+              {.self_collision = true,
+               .octree = {.leaf_size = 3, .arity = arity, .regular = options.comparison.colliding_vertices}});
   }
   return scene;
 }
@@ -30,8 +32,17 @@ inline Scene scene_of(const std::vector<TriangleMesh>& meshes, const SceneOption
 inline std::uint64_t hash_of_all_families(std::uint32_t threads) {
   std::uint64_t hash = 0xcbf29ce484222325u;
   for (const Family& family : hard_families()) {
-    Scene scene = scene_of(family.make(3), {.colliding_vertices = true, .threads = threads});
+    Scene scene = scene_of(family.make(3), {.threads = threads, .comparison = {.colliding_vertices = true}});
     hash = hash_of(scene.detect(), hash);
+  }
+  return hash;
+}
+
+inline std::uint64_t normal_hash_of_all_families(std::uint32_t threads) {
+  std::uint64_t hash = 0xcbf29ce484222325u;
+  for (const Family& family : hard_families()) {
+    Scene scene = scene_of(family.make(3), {.threads = threads});
+    hash = hash_of_normals(scene.detect(), hash);
   }
   return hash;
 }
@@ -44,7 +55,7 @@ inline std::uint64_t continuous_hash_of_all_families(std::uint32_t threads) {
     const std::vector<TriangleMesh> to = family.make(7);
     for (TriangleMesh& mesh : from) mesh.triangles.resize(std::min(mesh.triangles.size(), std::size_t{12}));
     SceneOptions options;
-    options.contacts = ContactMode::continuous;
+    options.contacts = ContactKinds::continuous;
     options.threads = threads;
     Scene scene = scene_of(from, options);
     const std::vector<ObjectId> objects = scene.objects();

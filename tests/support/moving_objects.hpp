@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <vector>
@@ -15,8 +16,7 @@ struct MovingObject {
   MovingObject(const TriangleMesh& mesh_in, const std::vector<Vec3d>& end_in,
                const ObjectOctreeOptions& options = {}, bool floats = true, std::uint32_t threads = 1)
       : mesh(mesh_in),
-        octree(PositionsView<double>(mesh.positions), mesh.triangles, options, BoundingVolume::aabb,
-               SphereFit::vertices),
+        octree(mesh.positions, mesh.triangles, options, BoundingVolume::aabb, SphereFit::vertices),
         elements(octree),
         at_rest(end_in.empty()) {
     const Parallel parallel(threads);
@@ -25,14 +25,28 @@ struct MovingObject {
     boxes.refit(octree, elements, start, end_positions(), parallel);
   }
   const VertexBuffer& end_positions() const { return at_rest ? start : end; }
-  OctreeView view() const { return moving_view_of(octree, elements, boxes); }
+  OctreeView view() const { return moving_view_of(octree, elements, boxes, translation); }
+  /// Positions in the user's order into a buffer in that of the elements.
+  void assign(VertexBuffer& buffer, const std::vector<Vec3d>& positions, bool floats,
+              const Parallel& parallel) {
+    VertexBuffer given;
+    std::vector<Vec3f> rounded;
+    for (const Vec3d& p : positions) {
+      rounded.push_back({static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)});
+    }
+    if (floats) given.assign(rounded, parallel);
+    if (!floats) given.assign(positions, parallel);
+    buffer.gather(given, elements.vertex_ids(), parallel);
+  }
   std::string validate() const {
     const std::string wrong = elements.validate(octree);
     return wrong.empty() ? boxes.validate(octree, elements, start, end_positions()) : wrong;
   }
   /// As stored, the user's numbers.
   Vec3d position(std::uint32_t vertex, bool at_end) const {
-    return (at_end ? end_positions() : start)[octree.vertex_order()[vertex]];
+    const auto ids = elements.vertex_ids();
+    const auto number = std::find(ids.begin(), ids.end(), vertex) - ids.begin();
+    return (at_end ? end_positions() : start)[static_cast<std::uint32_t>(number)];
   }
 
   TriangleMesh mesh;
@@ -41,20 +55,7 @@ struct MovingObject {
   VertexBuffer start, end;
   bool at_rest;
   MovingBoxes boxes;
-
- private:
-  void assign(VertexBuffer& buffer, const std::vector<Vec3d>& positions, bool floats,
-              const Parallel& parallel) {
-    if (!floats) {
-      buffer.assign(PositionsView<double>(positions), octree.vertex_order(), parallel);
-      return;
-    }
-    std::vector<Vec3f> rounded;
-    for (const Vec3d& p : positions) {
-      rounded.push_back({static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)});
-    }
-    buffer.assign(PositionsView<float>(rounded), octree.vertex_order(), parallel);
-  }
+  Vec3d translation;
 };
 
 /// Each vertex somewhere within `distance` of where it was, after all of them went by `common`.

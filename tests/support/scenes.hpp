@@ -1,5 +1,6 @@
 #pragma once
 
+#include <bit>
 #include <cstdint>
 #include <cstring>
 #include <string>
@@ -51,6 +52,16 @@ inline std::uint64_t hash_of(const DetectResult& result, std::uint64_t hash = 0x
     for (const ObjectPair& pair : pairs) {
       add(pair.a.index);
       add(pair.b.index);
+    }
+  }
+  return hash;
+}
+
+/// Apart from `hash_of`, whose value is older.
+inline std::uint64_t hash_of_normals(const DetectResult& result, std::uint64_t hash) {
+  for (const Contact& contact : result.contacts) {
+    for (int axis = 0; axis < 3; ++axis) {
+      hash = (hash ^ std::bit_cast<std::uint64_t>(contact.normal[axis])) * 0x100000001b3u;
     }
   }
   return hash;

@@ -150,7 +150,7 @@ Script hard(const supple::Family& family, bool continuous) {
   Script script{std::string(family.name) + (continuous ? "_continuous" : ""), {}};
   script.show.title = script.name;
   script.show.simulation.scene.contacts =
-      continuous ? supple::ContactMode::continuous : supple::ContactMode::intersection;
+      continuous ? supple::ContactKinds::continuous : supple::ContactKinds::intersection;
   std::uint64_t seed = 0;
   for (supple::TriangleMesh& mesh : family.make(3)) {
     // What exact arithmetic decides of all of them would take minutes.

@@ -6,8 +6,9 @@
 
 #include "described_json.hpp"
 #include "extent.hpp"
-#include "normals.hpp"
+#include "supple/inspection.hpp"
 #include "supple/result_descriptions.hpp"
+#include "supple/triangle_intersection.hpp"
 
 namespace supple::viewer {
 namespace {
@@ -49,8 +50,10 @@ void add_octree(const OctreeStatistics& octree, JsonText& json) {
 
 std::uint64_t contact_count(const DetectResult& result, std::uint32_t object) {
   std::uint64_t count = 0;
-  for (const ContactGroup& group : result.groups) {
-    if (group.a.index == object || group.b.index == object) count += group.contact_count;
+  for (const auto groups : {result.groups, result.continuous_groups}) {
+    for (const ContactGroup& group : groups) {
+      if (group.a.index == object || group.b.index == object) count += group.contact_count;
+    }
   }
   return count;
 }
@@ -67,15 +70,15 @@ void answer_read_triangle(const SceneView& show, const Source& source, std::uint
                           std::uint32_t triangle, JsonText& json) {
   const Triangle& corners = show.objects[object].mesh.triangles[triangle];
   const std::span<const Vec3d> positions = source.positions(object);
-  const Vec3d a = positions[corners[0]], b = positions[corners[1]], c = positions[corners[2]];
+  const TrianglePoints points{positions[corners[0]], positions[corners[1]], positions[corners[2]]};
   json.member("object", object);
   json.member("triangle", triangle);
   json.key("vertices");
   json.begin_array();
   for (const std::uint32_t corner : corners) json.value(corner);
   json.end_array();
-  json.member("area", area(a, b, c));
-  json.member("normal", unit_normal(a, b, c));
+  json.member("area", area(points));
+  json.member("normal", unit_normal(points));
   add_contacts_of(source.scene().result(), object, triangle, json);
 }
 
@@ -97,7 +100,7 @@ void answer_read_object(const SceneView& show, const Source& source, std::uint32
     json.end_array();
   }
   json.member("contact_count", contact_count(source.scene().result(), object));
-  add_octree(source.scene().octree_statistics(source.id(object)), json);
+  add_octree(SceneInspector(source.scene()).octree_statistics(source.id(object)), json);
 }
 
 }  // namespace supple::viewer

@@ -5,8 +5,8 @@
 #include <cstring>
 #include <iterator>
 
-#include "normals.hpp"
 #include "statistics.hpp"
+#include "supple/inspection.hpp"
 
 namespace supple::viewer {
 namespace {
@@ -22,18 +22,6 @@ Row row_of(const std::array<float, 3>& first, float w, const std::array<float, 3
 
 std::array<float, 3> floats(const Vec3d& v) {
   return Center{}(v);
-}
-
-Vec3d normal_of(const FrameView& frame, std::uint32_t object, std::uint32_t triangle) {
-  const std::span<const Vec3d> positions = frame.source.positions(object);
-  const Triangle& corners = frame.show.objects[object].mesh.triangles[triangle];
-  return unit_normal(positions[corners[0]], positions[corners[1]], positions[corners[2]]);
-}
-
-/// The normal of triangle b, or of triangle a when b has no area.
-Vec3d normal_of(const FrameView& frame, const Contact& contact) {
-  const Vec3d normal = normal_of(frame, contact.object_b.index, contact.triangle_b);
-  return normal != Vec3d{} ? normal : normal_of(frame, contact.object_a.index, contact.triangle_a);
 }
 
 }  // namespace
@@ -108,7 +96,7 @@ void FramePacker::add_contact_points(const FrameView& frame, std::size_t contact
   const std::size_t count = last == nullptr ? 0 : last->first_point + last->point_count;
   const auto rows = message_->add<Row>(Tag::contact_points, count);
   for (const Contact& contact : result.contacts.first(contact_count)) {
-    const std::array<float, 3> normal = floats(normal_of(frame, contact));
+    const std::array<float, 3> normal = floats(contact.normal);
     for (std::size_t i = 0; i < contact.point_count; ++i) {
       const std::size_t point = contact.first_point + i;
       rows[point] = row_of(frame.center(result.contact_points[point].position), 0, normal, 0);
@@ -118,7 +106,7 @@ void FramePacker::add_contact_points(const FrameView& frame, std::size_t contact
 
 void FramePacker::add_impacts(const FrameView& frame) {
   const auto contacts = frame.source.scene().result().continuous_contacts;
-  if (frame.source.scene().options().contacts != ContactMode::continuous) return;
+  if (!contains(frame.source.scene().options().contacts, ContactKinds::continuous)) return;
   const std::size_t count = limited("impacts", contacts.size());
   const auto rows = message_->add<Ids>(Tag::impacts, count);
   for (std::size_t i = 0; i < count; ++i) {
@@ -142,9 +130,13 @@ void FramePacker::add_impacts(const FrameView& frame) {
 /// Adds the events since the last frame that was sent, which may be several steps ago.
 void FramePacker::add_events(const DetectResult& result) {
   now_touching_.clear();
-  for (const ContactGroup& group : result.groups) {
-    if (group.a != group.b) now_touching_.emplace_back(group.a.index, group.b.index);
+  for (const auto groups : {result.groups, result.continuous_groups}) {
+    for (const ContactGroup& group : groups) {
+      if (group.a != group.b) now_touching_.emplace_back(group.a.index, group.b.index);
+    }
   }
+  std::sort(now_touching_.begin(), now_touching_.end());
+  now_touching_.erase(std::unique(now_touching_.begin(), now_touching_.end()), now_touching_.end());
   const auto add_missing = [&](Tag tag, const ObjectPairs& pairs, const ObjectPairs& from) {
     changed_.clear();
     std::set_difference(pairs.begin(), pairs.end(), from.begin(), from.end(), std::back_inserter(changed_));
@@ -169,8 +161,7 @@ void FramePacker::add_statistics(const FrameView& frame) {
 }
 
 void FramePacker::add_candidates(const FrameView& frame) {
-  std::uint64_t total = 0;
-  const std::vector<CandidatePair> candidates = frame.source.scene().candidates(most_elements, &total);
+  const auto [candidates, total] = SceneInspector(frame.source.scene()).candidates(most_elements);
   limited("candidates", total);
   const auto rows = message_->add<std::array<std::uint32_t, 4>>(Tag::candidates, candidates.size());
   std::transform(candidates.begin(), candidates.end(), rows.begin(), [](const CandidatePair& pair) {
@@ -180,10 +171,10 @@ void FramePacker::add_candidates(const FrameView& frame) {
 
 /// Adds spheres when the cells have them, else boxes. Cells without a finite triangle have neither.
 void FramePacker::add_octree(const FrameView& frame, std::uint32_t object) {
-  const Scene& scene = frame.source.scene();
   const ObjectId id = frame.source.id(object);
-  octree_levels_.push_back(scene.octree_depth(id));
-  std::vector<OctreeCell> cells = scene.octree_cells(id, frame.layers.octree_level);
+  const SceneInspector inspector(frame.source.scene());
+  octree_levels_.push_back(inspector.octree_depth(id));
+  std::vector<OctreeCell> cells = inspector.cells(id, frame.layers.octree_level);
   std::erase_if(cells, [](const OctreeCell& cell) { return cell.box.empty() && cell.sphere.empty(); });
   const bool has_spheres = !cells.empty() && !cells.front().sphere.empty();
   const std::size_t count = limited("octree", cells.size());
@@ -199,7 +190,7 @@ void FramePacker::add_octree(const FrameView& frame, std::uint32_t object) {
 }
 
 void FramePacker::add_scene_regions(const FrameView& frame) {
-  const std::vector<SceneRegion> regions = frame.source.scene().scene_regions();
+  const std::vector<SceneRegion> regions = SceneInspector(frame.source.scene()).regions();
   const auto rows = message_->add<Row>(Tag::scene_regions, limited("scene_regions", regions.size()));
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const SceneRegion& region = regions[i];

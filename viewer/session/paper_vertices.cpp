@@ -10,8 +10,8 @@ const std::vector<std::vector<std::uint32_t>>& PaperVertices::find(const SceneVi
                                                                    const Source& source) {
   if (!scene_) {
     SceneOptions options = show.simulation.scene;
-    options.contacts = ContactMode::none;
-    options.colliding_vertices = true;
+    options.contacts = ContactKinds::none;
+    options.comparison.colliding_vertices = true;
     scene_.emplace(options);
     for (const ViewedObject& object : show.objects)
       ids_.push_back(scene_->add(start_of(show, object), object.options));

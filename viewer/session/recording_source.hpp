@@ -40,7 +40,7 @@ class RecordingSource final : public Source {
     std::uint64_t version = 1;
   };
 
-  bool has_paths() const { return scene_.options().contacts == ContactMode::continuous; }
+  bool has_paths() const { return contains(scene_.options().contacts, ContactKinds::continuous); }
   void read(std::uint64_t frame);
   void place(std::size_t object, bool has_path);
 

@@ -103,7 +103,7 @@ SceneView arranged(const SceneView& show, const Settings& settings) {
   settings.scene.apply_to(simulation.scene);
   if (!uses_scene_octree(simulation.scene.broad_phase)) simulation.scene.scene_octree = {};
   // `PaperVertices` computes these, and only on request.
-  simulation.scene.colliding_vertices = false;
+  simulation.scene.comparison.colliding_vertices = false;
   simulation.time_step = settings.time_step.value_or(simulation.time_step);
   simulation.seed = settings.seed.value_or(simulation.seed);
   for (ViewedObject& object : arranged.objects) {

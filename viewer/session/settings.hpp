@@ -25,7 +25,7 @@ struct Settings {
 /// frames instead.
 template <class Struct, class Value>
 constexpr bool is_setting(const Field<Struct, Value>& field) {
-  if constexpr (std::is_same_v<Struct, SceneOptions>) {
+  if constexpr (std::is_same_v<Struct, ComparisonOptions>) {
     if (std::string_view(field.name) == "colliding_vertices") return false;
   }
   return !field.is_of_machine;

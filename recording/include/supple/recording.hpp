@@ -15,23 +15,23 @@
 
 namespace supple {
 
-/// What a recording says of an object once. An object with `is_static` must not move while it is recorded.
+/// The constant data of an object. An object with `is_static` must not move while it is recorded.
 struct RecordedObject {
-  ObjectId id;  ///< by which results name it
+  ObjectId id;  ///< its id in the results
   ObjectOptions options{};
   std::vector<Vec3d> rest_positions{};
   std::vector<Triangle> triangles{};
 };
 
-/// What a recording says once.
+/// The constant data of a recording.
 struct RecordingHeader {
   std::vector<RecordedObject> objects{};
   double time_step = 0.01;   ///< s
-  SceneOptions scene{};      ///< threads are not kept
-  std::string scene_file{};  ///< text of the scene file that was simulated; empty when there is none
+  SceneOptions scene{};      ///< without the number of threads
+  std::string scene_file{};  ///< text of the simulated scene file; empty when there is none
 };
 
-/// Everything of one frame, as `DetectResult` has it.
+/// All data of one frame, as in `DetectResult`.
 struct RecordedFrame {
   double time = 0;
   std::vector<ObjectPair> object_pairs{};
@@ -42,24 +42,23 @@ struct RecordedFrame {
   StepStats stats{};
 };
 
-/// Writes a recording (docs/recording.md), an HDF5 file, and beside it an XDMF file of the same stem that
-/// ParaView opens.
+/// Writes a recording (docs/recording.md): an HDF5 file, and an XDMF file with the same stem for ParaView.
 ///
-/// The file is readable at any time up to the last flush, also after the process is killed: between flushes
-/// nothing is written over what the file already refers to. `add` flushes once a second, the destructor at
+/// The file is readable at any time up to the last flush, also after the process was killed: between flushes,
+/// the recorder never overwrites data that the file refers to. `add` flushes once a second, the destructor at
 /// the end.
 class Recorder {
  public:
-  /// Replaces the files; the old recording stays until the new one has its header. Throws `Error` when they
-  /// cannot be written, or the header does not fit together.
+  /// Replaces existing files once the new recording has its header. Throws `Error` when the files cannot be
+  /// written, or the header is inconsistent.
   Recorder(const std::filesystem::path& path, const RecordingHeader& header);
-  /// Closes without throwing; call `close` to know of errors.
+  /// Closes without throwing. Call `close` to see errors.
   ~Recorder();
   Recorder(Recorder&&) noexcept;
   Recorder& operator=(Recorder&&) noexcept;
 
-  /// A frame: positions of each object in the header's order. Throws `Error` when a size differs, or the disk
-  /// is full: what was flushed stays readable.
+  /// Adds a frame: the positions of each object, in the order of the header. Throws `Error` when a size
+  /// differs, or when the disk is full; flushed frames stay readable.
   void add(double time, std::span<const std::span<const Vec3d>> positions, const DetectResult& result);
   void flush();
   void close();
@@ -69,12 +68,12 @@ class Recorder {
   std::unique_ptr<Implementation> implementation_;
 };
 
-/// Reads a recording, also one that is being written: the frames that were flushed when it was opened. Calls
-/// on one recording must not overlap, constant or not, nor with any other use of HDF5 unless that was built
-/// for threads.
+/// Reads a recording. While it is being written, these are the frames that were flushed when it was opened.
+/// Calls on one recording must not overlap, not even calls of const functions, nor overlap other uses of HDF5
+/// unless HDF5 was built for threads.
 class Recording {
  public:
-  /// Throws `Error` when it is no recording, of a version not known, or damaged; it says which.
+  /// Throws `Error` when the file is not a recording, has an unknown version, or is damaged.
   explicit Recording(const std::filesystem::path& path);
   ~Recording();
   Recording(Recording&&) noexcept;
@@ -82,12 +81,12 @@ class Recording {
 
   const RecordingHeader& header() const;
   std::uint64_t frame_count() const;
-  /// Throws `Error` when there is no such frame, or what is stored of it names what does not exist. Frames in
-  /// a row are read fastest.
+  /// Throws `Error` when there is no such frame, or its data refer to objects, triangles or vertices that do
+  /// not exist. Sequential reading is fastest.
   RecordedFrame frame(std::uint64_t number) const;
-  /// Likewise, without pairs and contacts: time, events and statistics, which take a fraction of the time.
+  /// As `frame`, but only time, events and statistics, in a fraction of the time.
   RecordedFrame summary(std::uint64_t number) const;
-  /// Of one object, by its place in the header.
+  /// The positions of one object, by its index in the header.
   std::vector<Vec3d> positions(std::uint64_t frame, std::size_t object) const;
 
  private:
@@ -97,12 +96,12 @@ class Recording {
 
 /// The first place in which two recordings differ.
 struct RecordingDifference {
-  std::optional<std::uint64_t> frame;  ///< none: in what they say once, or in their number of frames
-  std::string what;                    ///< one line: the item, its number and both values
+  std::optional<std::uint64_t> frame;  ///< empty: the headers or the numbers of frames differ
+  std::string what;                    ///< one line: the item, its index and both values
 };
 
-/// Compares all but times measured and file-specific text; nothing when they are equal. Positions and other
-/// lengths may differ by `tolerance` ≥ 0 in each coordinate; 0 compares bits.
+/// Compares two recordings, without measured times and file-specific text. Returns nothing when they are
+/// equal. Positions and other lengths may differ by `tolerance` ≥ 0 in each coordinate; 0 compares bits.
 std::optional<RecordingDifference> find_first_difference(const Recording& a, const Recording& b,
                                                          double tolerance = 0);
 

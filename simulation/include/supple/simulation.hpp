@@ -23,86 +23,85 @@ namespace supple {
 /// The border of a scene's motion: lowest and highest corner.
 using Border = std::array<Vec3d, 2>;
 
-/// A body of masses and springs, and how it is set in motion: first deformed in place by random forces, then
-/// sent off with a velocity (section 4 of the paper: v_i = v_i + v_d). Times count from when the object is
-/// added. Random numbers come from the simulation's seed and the object's number: the same on every machine.
+/// A body of masses and springs and its initial motion: random forces deform it in place, then it gets a
+/// velocity (section 4 of the paper: v_i = v_i + v_d). Times count from when the object is added. Random
+/// numbers depend on the simulation's seed and the object's index and are the same on every machine.
 struct MassSpringMotion {
-  /// `threads` = 0 leaves it to the simulation: many small bodies are stepped side by side, large ones by all
-  /// threads.
+  /// With `threads` = 0 the simulation decides: it advances many small bodies in parallel, and each large
+  /// body with all threads.
   MassSpringOptions springs{};
-  Vec3d velocity{};         ///< m/s, from `deform_seconds` on
-  double random_speed = 0;  ///< m/s, ≥ 0, in a random direction, added to it
-  /// N, ≥ 0, root mean square of the random forces on the vertices. They are waves about as long as the
-  /// object, so that neighbours are pulled alike, and stay the same all the while; they sum to zero and turn
-  /// nothing.
+  Vec3d velocity{};         ///< from `deform_seconds` on, m/s
+  double random_speed = 0;  ///< speed in a random direction, added to `velocity`, m/s, ≥ 0
+  /// Root mean square of the random forces on the vertices, N, ≥ 0. The forces are constant waves about as
+  /// long as the object, so neighbours get similar forces. Their sum and their torque are zero.
   double random_force = 0;
-  double deform_seconds = 0;            ///< ≥ 0, for how long these act, before the object is sent off
-  std::optional<std::uint64_t> seed{};  ///< instead of the object's number
+  double deform_seconds = 0;            ///< how long the random forces act, s, ≥ 0
+  std::optional<std::uint64_t> seed{};  ///< replaces the object's index
 
-  /// Vertices that are pulled along.
+  /// Vertices that move at constant velocity and then stop.
   struct Handle {
     std::vector<std::uint32_t> vertices{};
-    Vec3d by{};          ///< m, where they are moved
-    double seconds = 1;  ///< how long it takes, uniformly, > 0; then they hold
+    Vec3d by{};          ///< displacement, m
+    double seconds = 1;  ///< duration of the movement, s, > 0
   };
-  /// Their vertices become fixed ones of `springs`; a vertex belongs to one handle at most.
+  /// Their vertices become fixed vertices of `springs`. A vertex belongs to at most one handle.
   std::vector<Handle> handles{};
 };
 
-/// The user's own motion: writes where the vertices are at `seconds`, the simulation's time at the end of the
-/// step; `positions` holds where they were the step before (at first, at rest). Called once a step, from one
-/// thread, in the order of objects, and again for the same step when that fails and is repeated. It must not
-/// call the simulation.
+/// The user's own motion: writes the positions of the vertices at `seconds`, the time at the end of the step.
+/// On entry, `positions` holds the positions of the step before (at first, the rest positions). The
+/// simulation calls it once a step, from one thread, in the order of objects, and again for the same step
+/// when the step failed and is repeated. It must not call the simulation.
 using MotionFunction = std::function<void(double seconds, std::span<Vec3d> positions)>;
 
-/// Simple response to contacts, by impulses (Bridson, Fedkiw and Anderson 2002): vertices and faces, and
-/// edges, that would pass through each other in a step, or come nearer than `thickness`, get impulses along
-/// the contact's normal that stop the approach; what is too near already is moved apart gently, by a tenth of
-/// what is missing a step. An impulse also moves the vertices about, as far as springs carry it in a step, so
-/// that it does not strain them by more than it takes from the motion; energy grows by no more than what
-/// moving apart takes, a percent or so at long steps. Objects are tested against themselves where
-/// `self_collision` asks for it, and groups and masks hold. Momentum is conserved between bodies of masses
-/// and springs; fixed vertices, and whatever moves otherwise or rests, are not moved.
+/// Simple contact response by impulses (Bridson, Fedkiw and Anderson 2002). A vertex and a face, or two
+/// edges, that would pass through each other in a step or come nearer than `thickness` get impulses along the
+/// normal of the contact, which stop the approach. Elements that are already too near are moved apart by a
+/// tenth of the missing distance in each step. An impulse also moves the surrounding vertices, as far as
+/// springs transmit it in a step, so that it strains the springs by no more energy than it takes from the
+/// motion. The energy grows only by what moving apart takes, about a percent at long steps. `self_collision`,
+/// groups and masks apply. Momentum is conserved between bodies of masses and springs. Fixed vertices and all
+/// other objects do not react.
 ///
-/// It makes no promise; the contacts reported are those of the scene. It works as long as objects do not
-/// intersect at first and steps are short: nothing moves further than about an edge in one. `time_step` may
-/// be several times as long as springs bear without substeps; impulses go no further than 1024 vertices, so
-/// springs that carry them further, h² stiffness / mass above 100 or so, may gain energy.
-/// `thickness` should be well below the shortest edge.
+/// The response does not guarantee that objects stay apart; the scene reports the contacts that remain. It
+/// works when objects do not intersect at first and steps are short, so that nothing moves further than about
+/// an edge in one. `time_step` may be several times the stable step of springs without substeps. Impulses
+/// reach at most 1024 vertices, so springs that transmit them further (h² stiffness / mass above 100 or so)
+/// may gain energy. `thickness` should be well below the length of the shortest edge.
 ///
-/// Costs up to `iterations` continuous detections a step, and memory for a second scene and, for each vertex
-/// that touched something, 16 bytes a vertex that its impulses move.
+/// Costs up to `iterations` continuous detections a step, and memory for a second scene. For each vertex that
+/// touched something, it also takes 16 bytes for each vertex that its impulses move.
 struct ContactResponse {
   bool enabled = false;
   double thickness = 1e-3;       ///< m, > 0
-  double restitution = 0;        ///< from 0, which stops the approach, to 1, which returns it
+  double restitution = 0;        ///< 0 stops the approach, 1 reverses it
   double friction = 0;           ///< Coulomb's coefficient, ≥ 0
-  std::uint32_t iterations = 4;  ///< rounds of detection and impulses a step at most, ≥ 1
+  std::uint32_t iterations = 4;  ///< most rounds of detection and impulses in a step, ≥ 1
 };
 
 struct SimulationOptions {
   SceneOptions scene{};
   double time_step = 0.01;  ///< s, > 0
-  /// Turns bodies of masses and springs back (section 5.2 of the paper): one that reaches beyond a side after
-  /// a step, and whose mean velocity points outward, has that velocity reversed along the axis. So it may
-  /// reach out by the way of a step, comes back from wherever it is, and loses no speed; gravity does not
-  /// press it out. One that is larger than the room is turned back at every step, and so stays where it is.
-  /// Fixed vertices are not turned. A side may be infinite.
+  /// Reflects bodies of masses and springs (section 5.2 of the paper): when a body reaches beyond a side
+  /// after a step and its mean velocity points outward, that velocity is reversed along the axis. A body may
+  /// therefore reach outside by the way of a step. It returns from any position, keeps its speed, and gravity
+  /// does not press it out. A body larger than the border is reflected in every step and so stays where it
+  /// is. Fixed vertices are not reflected. A side may be infinite.
   std::optional<Border> border{};
   std::uint64_t seed = 0;
   ContactResponse response{};
 };
 
-/// A body that could not be carried on: a number stopped being finite, or a vertex flew off. The message
-/// names the object and the step, and says which time step would do.
+/// A step of a body failed: a number was no longer finite, or a vertex moved too far. The message names the
+/// object, the step and a stable time step.
 struct MotionError : Error {
   MotionError(const std::string& message, std::string object_name, std::uint64_t at_step)
       : Error(message), object(std::move(object_name)), step(at_step) {}
   std::string object;
-  std::uint64_t step = 0;  ///< the one that failed: all objects are as after the step before
+  std::uint64_t step = 0;  ///< the step that failed; all objects are as after the step before
 };
 
-/// Objects that move by themselves, and the collisions between them, step by step.
+/// Moves objects by their own motion, step by step, and finds the collisions between them.
 ///
 /// ```cpp
 /// supple::Simulation simulation({.border = supple::Border{{{-1, -1, -1}, {1, 1, 1}}}, .seed = 1});
@@ -119,38 +118,38 @@ class Simulation {
   Simulation(Simulation&&) noexcept;
   Simulation& operator=(Simulation&&) noexcept;
 
-  /// An object that stays, until `set_positions`. Each throws `Error` as `Scene::add` and `MassSpringBody`
-  /// do.
+  /// Adds an object that only `set_positions` moves, a body of masses and springs, or an object with the
+  /// user's motion. Throws `Error` as `Scene::add` and `MassSpringBody` do.
   ObjectId add(const TriangleMesh& mesh, const ObjectOptions& object = {});
   ObjectId add(const TriangleMesh& mesh, const ObjectOptions& object, const MassSpringMotion& motion);
   ObjectId add(const TriangleMesh& mesh, const ObjectOptions& object, MotionFunction motion);
   void remove(ObjectId object);
 
-  /// What touches where everything is now. Nothing moves: continuous contacts are those at time 0.
+  /// Finds the contacts at the present positions. Nothing moves: continuous contacts are those at time 0.
   const DetectResult& detect();
-  /// Moves everything on by one time step, then detects: continuous contacts are those of the way there,
-  /// which is straight. Throws `MotionError` when a body blows up; whatever the user's motion throws comes
-  /// through. Either way everything is as before the call. Objects without motion cost nothing.
+  /// Advances all objects by one time step, then detects. Continuous contacts are those on the straight paths
+  /// of the step. Throws `MotionError` when a body fails, and rethrows what the user's motion throws; the
+  /// state is then as before the call. Objects without motion cost nothing.
   const DetectResult& step();
-  /// As `step`, but gives the error instead of throwing it when a body blows up; nothing when the step was
-  /// taken: `scene().result()` then has what was detected. For builds without exceptions.
+  /// As `step`, but returns the error instead of throwing it when a body fails. Returns nothing when the step
+  /// succeeded; `scene().result()` then has the result. For builds without exceptions.
   [[nodiscard]] std::optional<MotionError> try_step();
 
   std::uint64_t step_count() const;  ///< steps taken
-  double time() const;               ///< s: step_count() · time_step
-  double motion_seconds() const;     ///< by the wall clock, of the last step: all but detection
+  double time() const;               ///< step_count() · time_step, s
+  double motion_seconds() const;     ///< wall-clock time of the last step without detection
   const SimulationOptions& options() const;
 
-  /// The scene that detects; objects are moved by the simulation alone.
+  /// The scene of the simulation. Only the simulation moves its objects.
   const Scene& scene() const;
   std::span<const Vec3d> positions(ObjectId object) const;
-  /// Puts an object somewhere else: an object without motion, or a body, which keeps its velocities. It is
-  /// there at once: at the next step continuous contacts see the way from here. Throws `Error` as
-  /// `Scene::set_positions` does, or when the object is moved by a function.
+  /// Sets the positions of an object without motion, or of a body, which keeps its velocities. They hold at
+  /// once: the paths of the next step start there. Throws `Error` as `Scene::set_positions` does, and when
+  /// the user's motion moves the object.
   void set_positions(ObjectId object, std::span<const Vec3d> positions);
-  /// The masses and springs of an object, to look at or to push; null when it has none. Stays where it is
-  /// until the object is removed. Positions that are set here show after the next step; external forces are
-  /// those of the simulation until `deform_seconds` have passed.
+  /// The masses and springs of an object; null when it has none. The pointer is valid until the object is
+  /// removed. The scene sees positions that are set here after the next step. Until `deform_seconds` have
+  /// passed, the simulation sets the external forces.
   MassSpringBody* body(ObjectId object);
   const MassSpringBody* body(ObjectId object) const;
 

@@ -9,8 +9,9 @@
 
 namespace supple {
 
-/// An analytic deformation: an object drifts, turned back at the border of the scene, while waves run through
-/// it. A function of time alone, so that any frame can be had at once and is the same bits everywhere.
+/// An analytic deformation: an object drifts, is reflected at the border of the scene, and waves run through
+/// it. It is a function of time alone, with the same bits on every machine, so any frame can be computed
+/// alone.
 struct WaveMotion {
   Vec3d velocity{};        ///< of the drift, units a second
   double amplitude = 0;    ///< of the waves, units
@@ -19,10 +20,10 @@ struct WaveMotion {
   std::uint64_t seed = 0;  ///< chooses the phases of the waves
 };
 
-/// Writes the positions at `seconds` of the vertices that are at `rest` when nothing moves them; both spans
-/// are as long. Without a border the drift goes on for ever; within one smaller than the object it stays in
-/// place along that axis. O(n); a vertex whose rest position is not finite stays not finite and moves nothing
-/// else.
+/// Writes the positions at time `seconds` of vertices with the positions `rest`; both spans have the same
+/// length. Without a border the drift never ends. Along an axis where the border is smaller than the object,
+/// the object does not drift. O(n). A vertex whose rest position is not finite stays so and does not affect
+/// others.
 void apply_wave_motion(const WaveMotion& motion, const std::optional<Border>& border,
                        std::span<const Vec3d> rest, double seconds, std::span<Vec3d> positions);
 

@@ -336,7 +336,7 @@ void MassSpring::add_drift(Vec3d velocity) {
   now_.accelerations_known = false;
 }
 
-void MassSpring::turn_back(int axis) {
+void MassSpring::reflect(int axis) {
   if (axis < 0 || axis > 2) {
     fail("masses and springs of mesh '" + name_ + "': axis " + std::to_string(axis) + "; it is 0, 1 or 2");
   }

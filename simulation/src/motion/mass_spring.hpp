@@ -31,7 +31,7 @@ class MassSpring {
   void set_velocities(std::span<const Vec3d> velocities);
   void set_external_forces(std::span<const Vec3d> forces);
   void add_drift(Vec3d velocity);
-  void turn_back(int axis);
+  void reflect(int axis);
 
   const MassSpringOptions& options() const { return options_; }
   double stable_step() const { return stable_substep_ * options_.substeps; }

@@ -57,8 +57,8 @@ void MassSpringBody::set_external_forces(std::span<const Vec3d> forces) {
 void MassSpringBody::add_drift(Vec3d velocity) {
   implementation_->masses.add_drift(velocity);
 }
-void MassSpringBody::turn_back(int axis) {
-  implementation_->masses.turn_back(axis);
+void MassSpringBody::reflect(int axis) {
+  implementation_->masses.reflect(axis);
 }
 
 std::size_t MassSpringBody::vertex_count() const {

@@ -14,7 +14,7 @@ constexpr double repulsion_part = 0.1;
 
 SceneOptions scene_options(const ContactResponse& response, std::uint32_t threads) {
   SceneOptions options;
-  options.contacts = ContactMode::continuous;
+  options.contacts = ContactKinds::continuous;
   options.impact.min_separation = response.thickness;
   // Resting elements lie exactly on the border of touching; here it does not matter on which side.
   options.impact.exact = false;

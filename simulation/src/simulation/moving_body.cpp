@@ -82,12 +82,12 @@ void MovingBody::change_velocities(std::span<const Vec3d> of_average, std::span<
 
 void MovingBody::end_step(const std::optional<Border>& border) {
   ++steps_;
-  if (border) turn_back_at(*border);
+  if (border) reflect_at(*border);
   send_off_in_time();
   pull_handles();
 }
 
-void MovingBody::turn_back_at(const Border& border) {
+void MovingBody::reflect_at(const Border& border) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   Vec3d low{infinity, infinity, infinity}, high = -1.0 * low;
   for (const Vec3d& p : body.positions()) {
@@ -99,19 +99,19 @@ void MovingBody::turn_back_at(const Border& border) {
   }
   const Vec3d velocity = body.mean_velocity();
   for (int axis = 0; axis < 3; ++axis) {
-    if (low[axis] < border[0][axis]) turn_back_from_side(axis, -1, velocity[axis]);
-    if (high[axis] > border[1][axis]) turn_back_from_side(axis, 1, velocity[axis]);
+    if (low[axis] < border[0][axis]) reflect_from_side(axis, -1, velocity[axis]);
+    if (high[axis] > border[1][axis]) reflect_from_side(axis, 1, velocity[axis]);
   }
 }
 
 /// `outward` is the sign of the outward direction. The speed of the way back is at least what gravity
 /// removes in a step, plus a margin for friction. Otherwise a body that lies on a side would slowly sink
 /// into it.
-void MovingBody::turn_back_from_side(int axis, double outward, double velocity) {
+void MovingBody::reflect_from_side(int axis, double outward, double velocity) {
   const double pull = std::max(outward * body.options().gravity[axis] * time_step_, 0.0);
   const double speed = outward * velocity;
   if (!(speed + pull > 0)) return;
-  if (speed > 0) body.turn_back(axis);
+  if (speed > 0) body.reflect(axis);
   const double missing = 1.25 * pull - std::fabs(speed);
   if (!(missing > 0)) return;
   const std::span<const Vec3d> before = body.velocities();

@@ -31,8 +31,8 @@ class MovingBody {
 
  private:
   double seconds() const { return static_cast<double>(steps_) * time_step_; }
-  void turn_back_at(const Border& border);
-  void turn_back_from_side(int axis, double outward, double velocity);
+  void reflect_at(const Border& border);
+  void reflect_from_side(int axis, double outward, double velocity);
   void send_off_in_time();
   void pull_handles();
 

@@ -62,7 +62,7 @@ class Simulation::Implementation {
   void accept_written_positions();
   void place_in_scene();
   void prepare_next_step();
-  bool is_continuous() const { return options.scene.contacts == ContactMode::continuous; }
+  bool is_continuous() const { return contains(options.scene.contacts, ContactKinds::continuous); }
 
   Parallel parallel_;
   std::optional<ImpulseResponse> response_;

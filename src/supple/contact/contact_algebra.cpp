@@ -1,234 +1,232 @@
-// The first contact of moving elements by algebra.
+// The first contact of two moving elements, decided for `verify` by code that detection does not use.
 //
-// Two elements are as near as their features: two of {vertex, open edge, open face}, one of each element,
-// whose lines and planes have their nearest points within both. Which ones have them is told by strict
-// inequalities between polynomials in t, and their squared distance by a quotient of polynomials. All times
-// at which the distance is at most d are a closed set. At its first moment, unless that is 0, some features
-// are at distance d that were farther apart just before, so it is a root of their
-// |distance|² · divisor - d² · divisor, which is not the polynomial 0.
+// The points of one element differ from those of the other by x(t) - k, where k runs over a triangle (vertex
+// and face) or a parallelogram (two edges) K(t). The elements touch when K has a point at a distance of at
+// most d from x. K is the union of its corners, its open sides that have a length, and its interior where it
+// has an area, and for each of these the question is a conjunction of polynomial conditions p(t) >= 0 and
+// q(t) > 0. The first time of contact is therefore t = 0 or a root of one of the polynomials p, and it is
+// enough to decide the conditions at these times. Sturm's theorem isolates the roots, and Sylvester's form of
+// it gives the sign of a polynomial at a root. With d = 0 all times of contact are roots of the volume that
+// the four vertices span, unless that is 0 throughout.
 
 #include <algorithm>
 #include <array>
+#include <bit>
+#include <cmath>
+#include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
-#include "contact/fixed_point_rejection.hpp"
 #include "core/error.hpp"
-#include "geometry/integer_points.hpp"
-#include "geometry/polynomial.hpp"
+#include "geometry/sturm.hpp"
+#include "geometry/vector.hpp"
 #include "supple/continuous.hpp"
 
 namespace supple {
 namespace {
 
-MotionNumbers numbers_of(const std::array<Vec3d, 4>& start, const std::array<Vec3d, 4>& end,
-                         double min_separation) {
-  MotionNumbers numbers;
-  std::size_t i = 0;
-  for (const auto* moment : {&start, &end}) {
-    for (const Vec3d& p : *moment) {
-      for (int axis = 0; axis < 3; ++axis) numbers[i++] = p[axis];
-    }
-  }
-  numbers[i] = min_separation;
-  return numbers;
-}
-
-bool is_finite(double value) {
-  return Dyadic(value).exponent + 1075 < 0x7ff;
-}
-
-/// A vector that is linear in t, or a product of such.
+using sturm::Integer;
+using sturm::Polynomial;
+using sturm::Root;
 using Path = std::array<Polynomial, 3>;
 
-Polynomial dot(const Path& u, const Path& v) {
-  return u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
+Path difference(const Path& p, const Path& q) {
+  return {p[0] - q[0], p[1] - q[1], p[2] - q[2]};
 }
-Path cross(const Path& u, const Path& v) {
-  return {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
+Polynomial dot(const Path& p, const Path& q) {
+  return p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
+}
+Path cross(const Path& p, const Path& q) {
+  return {p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]};
 }
 
-/// Vertices of the first element, then of the second. A vertex and an edge stand in this order.
-struct FeaturePair {
-  enum Kind { interiors, vertex_edge, vertices } kind;
-  std::array<std::size_t, 3> vertex = {};
+/// Exact: all values are multiples of 2^lowest.
+Integer to_integer(double value, int lowest) {
+  int exponent = 0;
+  const auto mantissa = static_cast<std::int64_t>(std::ldexp(std::frexp(value, &exponent), 53));
+  const int shift = exponent - 53 - lowest;
+  // A factor of 2^53 keeps the shift positive: the mantissa has up to 53 zeros at its end.
+  return mantissa == 0 ? Integer(0) : Integer((Integer(mantissa) << (shift + 53)) >> 53);
+}
+
+/// The exponent of the lowest bit that is set.
+int lowest_bit(double value) {
+  if (value == 0) return std::numeric_limits<int>::max();
+  int exponent = 0;
+  const auto mantissa = static_cast<std::int64_t>(std::ldexp(std::frexp(value, &exponent), 53));
+  return exponent - 53 + std::countr_zero(static_cast<std::uint64_t>(mantissa));
+}
+
+/// A part of K and the conditions under which it has a point within the separation.
+struct Part {
+  std::vector<Polynomial> not_negative;  ///< the first tells whether its line or plane is near enough
+  std::optional<Polynomial> positive;
 };
-constexpr auto interiors = FeaturePair::interiors;
-constexpr auto vertex_edge = FeaturePair::vertex_edge;
-constexpr auto vertices = FeaturePair::vertices;
 
-constexpr std::array<FeaturePair, 7> vertex_face_features = {{{vertices, {0, 1}},
-                                                              {vertices, {0, 2}},
-                                                              {vertices, {0, 3}},
-                                                              {vertex_edge, {0, 1, 2}},
-                                                              {vertex_edge, {0, 2, 3}},
-                                                              {vertex_edge, {0, 3, 1}},
-                                                              {interiors}}};
-constexpr std::array<FeaturePair, 9> edge_edge_features = {{{vertices, {0, 2}},
-                                                            {vertices, {0, 3}},
-                                                            {vertices, {1, 2}},
-                                                            {vertices, {1, 3}},
-                                                            {vertex_edge, {0, 2, 3}},
-                                                            {vertex_edge, {1, 2, 3}},
-                                                            {vertex_edge, {2, 0, 1}},
-                                                            {vertex_edge, {3, 0, 1}},
-                                                            {interiors}}};
-
-/// Two moving elements in integer coordinates.
 class Elements {
  public:
-  Elements(const MotionNumbers& numbers, bool edges) : edges_(edges) {
-    const int lowest = BitRange(numbers).lowest;
-    for (std::size_t vertex = 0; vertex < 4; ++vertex) {
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        const auto start = to_integer<UnboundedInteger>(numbers[3 * vertex + axis], lowest);
-        const auto end = to_integer<UnboundedInteger>(numbers[12 + 3 * vertex + axis], lowest);
-        vertices_[vertex][axis] = Polynomial({start, end - start});
+  Elements(const std::array<Vec3d, 4>& start, const std::array<Vec3d, 4>& end, bool edges,
+           double separation) {
+    int lowest = lowest_bit(separation);
+    for (const auto* moment : {&start, &end}) {
+      for (const Vec3d& p : *moment)
+        lowest = std::min({lowest, lowest_bit(p.x), lowest_bit(p.y), lowest_bit(p.z)});
+    }
+    if (lowest == std::numeric_limits<int>::max()) lowest = 0;
+    std::array<Path, 4> vertices;
+    for (std::size_t i = 0; i < 4; ++i) {
+      for (int axis = 0; axis < 3; ++axis) {
+        const Integer from = to_integer(start[i][axis], lowest), to = to_integer(end[i][axis], lowest);
+        vertices[i][static_cast<std::size_t>(axis)] = Polynomial{from, to - from} + Polynomial{};
       }
     }
-    const auto separation = to_integer<UnboundedInteger>(numbers[24], lowest);
-    squared_separation_ = separation * separation;
-    u_ = path(edges ? 0 : 2, 1);
-    v_ = path(2, 3);
-    w_ = path(2, 0);
-    normal_ = cross(u_, v_);
-    volume_ = dot(normal_, w_);
+    const Integer d = to_integer(separation, lowest);
+    squared_separation_ = Polynomial{d * d} + Polynomial{};
+    const Path x = difference(vertices[0], vertices[edges ? 2 : 1]);
+    const Path u = difference(edges ? vertices[0] : vertices[2], vertices[1]);
+    const Path w = difference(vertices[3], vertices[edges ? 2 : 1]);
+    const Path u_to_w = difference(w, u);
+    const Path to_u = difference(x, u), to_w = difference(x, w);
+    for (const Path* corner : {&x, &to_u, &to_w}) add_corner(*corner);
+    add_side(x, u);
+    add_side(x, w);
+    if (edges) {
+      add_corner(difference(to_u, w));
+      add_side(to_u, w);
+      add_side(to_w, u);
+    } else {
+      add_side(to_u, u_to_w);
+    }
+    add_interior(x, u, w, edges);
   }
 
-  bool touching_only() const { return squared_separation_.is_zero(); }
-
-  std::span<const FeaturePair> features() const {
-    if (edges_) return edge_edge_features;
-    return vertex_face_features;
-  }
-
-  /// A multiple of the four vertices' determinant.
+  const std::vector<Part>& parts() const { return parts_; }
   const Polynomial& volume() const { return volume_; }
 
-  /// Positive, 0 or negative as the distance of the lines and planes of two features is above, equal to or
-  /// below the separation; 0 is told by 0 alone if the separation is 0. Without a meaning where the features
-  /// are not `within` reach.
-  Polynomial distance(const FeaturePair& pair) const {
-    if (pair.kind == FeaturePair::interiors) {
-      if (touching_only()) return volume_;
-      return volume_ * volume_ - dot(normal_, normal_) * squared_separation_;
-    }
-    const Path to_vertex = path(pair.vertex[1], pair.vertex[0]);
-    if (pair.kind == FeaturePair::vertices) {
-      if (touching_only()) return common_roots(to_vertex);
-      return dot(to_vertex, to_vertex) - Polynomial({squared_separation_});
-    }
-    const Path edge = path(pair.vertex[1], pair.vertex[2]);
-    const Path moment = cross(to_vertex, edge);
-    if (touching_only()) return common_roots(moment);
-    return dot(moment, moment) - dot(edge, edge) * squared_separation_;
-  }
-
-  /// Polynomials all of which are positive where the nearest points of the features' lines and planes exist
-  /// and lie within the features.
-  std::vector<Polynomial> within(const FeaturePair& pair) const {
-    if (pair.kind == FeaturePair::vertices) return {};
-    if (pair.kind == FeaturePair::vertex_edge) {
-      const Path to_vertex = path(pair.vertex[1], pair.vertex[0]);
-      const Path edge = path(pair.vertex[1], pair.vertex[2]);
-      Polynomial along = dot(to_vertex, edge);
-      Polynomial rest = dot(edge, edge) - along;
-      return {std::move(along), std::move(rest)};
-    }
-    // The foot of the vertex is s u + r v, or the feet of the edges are s u and r v: times |normal|².
-    const Polynomial whole = dot(normal_, normal_);
-    Polynomial s = dot(edges_ ? cross(v_, w_) : cross(w_, v_), normal_), r = dot(cross(u_, w_), normal_);
-    if (edges_) return {s, whole - s, r, whole - r};
-    return {s, r, whole - s - r};
-  }
-
  private:
-  Path path(std::size_t from, std::size_t to) const {
-    Path result;
-    for (std::size_t axis = 0; axis < 3; ++axis) result[axis] = vertices_[to][axis] - vertices_[from][axis];
-    return result;
+  /// `x` is the vector from the corner.
+  void add_corner(const Path& x) { parts_.push_back({{squared_separation_ - dot(x, x)}, {}}); }
+  void add_side(const Path& x, const Path& side) {
+    const Polynomial along = dot(x, side), whole = dot(side, side);
+    const Path moment = cross(x, side);
+    parts_.push_back({{squared_separation_ * whole - dot(moment, moment), along, whole - along}, whole});
+  }
+  void add_interior(const Path& x, const Path& u, const Path& w, bool parallelogram) {
+    const Path normal = cross(u, w);
+    volume_ = dot(x, normal);
+    const Polynomial whole = dot(normal, normal);
+    const Polynomial alpha = dot(cross(x, w), normal), beta = dot(cross(u, x), normal);
+    Part part{{squared_separation_ * whole - volume_ * volume_, alpha, beta}, whole};
+    const Polynomial rest = whole - alpha;
+    if (parallelogram) part.not_negative.push_back(rest);
+    part.not_negative.push_back((parallelogram ? whole : rest) - beta);
+    parts_.push_back(std::move(part));
   }
 
-  static Polynomial common_roots(const Path& path) { return gcd(gcd(path[0], path[1]), path[2]); }
-
-  bool edges_;
-  std::array<Path, 4> vertices_;
-  UnboundedInteger squared_separation_;
-  Path u_, v_, w_, normal_;
-  Polynomial volume_;
+  std::vector<Part> parts_;
+  Polynomial squared_separation_, volume_;
 };
 
-bool all_positive(const std::vector<Polynomial>& conditions, UnitRoot& time) {
-  return std::ranges::all_of(conditions, [&](const Polynomial& p) { return time.sign_of(p) > 0; });
+template <class SignOf>
+bool touches(const Part& part, SignOf&& sign_of) {
+  return (!part.positive || sign_of(*part.positive) > 0) &&
+         std::ranges::all_of(part.not_negative, [&](const Polynomial& p) { return sign_of(p) >= 0; });
 }
 
-TimeBracket bracket(UnitRoot& time) {
-  const auto [low, high] = time.neighbouring_doubles();
-  return {low, high};
-}
+std::optional<TimeBracket> first_contact(const Elements& elements, bool separated) {
+  const sturm::Time start(0, 0);
+  const auto touches_at_start = [&](const Part& part) {
+    return touches(part, [&](const Polynomial& p) { return sign_at(p, start); });
+  };
+  if (std::ranges::any_of(elements.parts(), touches_at_start)) return TimeBracket{0, 0};
 
-/// At a time when the four vertices are in one plane.
-bool coplanar_elements_touch(const Elements& elements, UnitRoot& time) {
-  int lowest_sign = 1;
-  for (const Polynomial& p : elements.within({interiors})) {
-    lowest_sign = std::min(lowest_sign, time.sign_of(p));
-    if (lowest_sign < 0) return false;  // And the element has a normal, or this were 0.
-  }
-  if (lowest_sign > 0) return true;
-  return std::ranges::any_of(elements.features(), [&](const FeaturePair& pair) {
-    return pair.kind != interiors && time.sign_of(elements.distance(pair)) == 0 &&
-           all_positive(elements.within(pair), time);
-  });
-}
-
-std::optional<TimeBracket> first_coplanar_contact(const Elements& elements) {
-  for (UnitRoot& time : roots_in_unit_interval(elements.volume())) {
-    if (coplanar_elements_touch(elements, time)) return bracket(time);
-  }
-  return std::nullopt;
-}
-
-std::optional<TimeBracket> first_contact_of_features(const Elements& elements) {
-  const std::span<const FeaturePair> features = elements.features();
-  std::vector<Polynomial> distances;
-  UnitRoot start(BinaryFraction{});
-  for (const FeaturePair& pair : features) {
-    distances.push_back(elements.distance(pair));
-    const int sign = start.sign_of(distances.back());
-    const bool near = elements.touching_only() ? sign == 0 : sign <= 0;
-    if (near && all_positive(elements.within(pair), start)) return TimeBracket{0, 0};
-  }
   std::optional<TimeBracket> first;
-  for (std::size_t i = 0; i < features.size(); ++i) {
-    if (distances[i].is_zero()) continue;
-    std::vector<UnitRoot> times = roots_in_unit_interval(distances[i]);
-    if (times.empty()) continue;
-    const std::vector<Polynomial> within = elements.within(features[i]);
-    for (UnitRoot& time : times) {
-      if (!all_positive(within, time)) continue;
-      const TimeBracket found = bracket(time);
-      first = first ? TimeBracket{std::min(first->low, found.low), std::min(first->high, found.high)} : found;
-      break;
+  const auto consider = [&](const Polynomial& p, const std::vector<Part>& parts) {
+    if (p.empty()) return;
+    for (Root& root : roots_in_step(p)) {
+      const auto [low, high] = root.neighbouring_doubles();
+      if (first && low >= first->high) return;
+      const auto touches_at_root = [&](const Part& part) {
+        return touches(part, [&](const Polynomial& q) { return root.sign_of(q); });
+      };
+      if (!std::ranges::any_of(parts, touches_at_root)) continue;
+      first = first ? TimeBracket{std::min(low, first->low), std::min(high, first->high)}
+                    : TimeBracket{low, high};
+      return;
+    }
+  };
+  if (!separated && !elements.volume().empty()) {
+    consider(elements.volume(), elements.parts());
+    return first;
+  }
+  for (const Part& part : elements.parts()) {
+    const Polynomial& near = part.not_negative.front();
+    for (const Polynomial& p : part.not_negative) {
+      if (near.empty() || &p == &near) consider(p, {part});
     }
   }
   return first;
 }
 
-std::optional<TimeBracket> first_contact(const std::array<Vec3d, 4>& start, const std::array<Vec3d, 4>& end,
-                                         std::size_t first_size, double min_separation) {
-  if (!is_finite(min_separation) || min_separation < 0) {
-    fail("min_separation is " + std::to_string(min_separation) +
-         "; give a finite number that is not negative");
+/// Whether the elements are farther apart than the separation along `direction` at both ends of the step,
+/// hence throughout. A dot product is off by less than 2^-51 of the sum of its terms' magnitudes.
+bool apart_along(Vec3d direction, const std::array<Vec3d, 4>& start, const std::array<Vec3d, 4>& end,
+                 std::size_t first_size, double separation) {
+  const double length = std::hypot(direction.x, direction.y, direction.z);
+  if (!(length > 0x1p-1000 && length < 0x1p1000)) return false;
+  direction = direction / length;
+  double above = std::numeric_limits<double>::infinity(), below = above, size = 0;
+  for (const auto* moment : {&start, &end}) {
+    std::array<double, 4> along;
+    for (std::size_t i = 0; i < 4; ++i) {
+      const Vec3d& p = (*moment)[i];
+      along[i] = dot(direction, p);
+      size = std::max(size, std::fabs(p.x) + std::fabs(p.y) + std::fabs(p.z));
+    }
+    for (std::size_t i = 0; i < first_size; ++i) {
+      for (std::size_t j = first_size; j < 4; ++j) {
+        above = std::min(above, along[i] - along[j]);
+        below = std::min(below, along[j] - along[i]);
+      }
+    }
   }
-  const MotionNumbers numbers = numbers_of(start, end, min_separation);
-  if (!std::ranges::all_of(numbers, is_finite)) return std::nullopt;
-  if (stay_apart_in_fixed_point(numbers, first_size)) return std::nullopt;
-  const Elements elements(numbers, first_size == 2);
-  const bool cubic_tells = elements.touching_only() && !elements.volume().is_zero();
-  return cubic_tells ? first_coplanar_contact(elements) : first_contact_of_features(elements);
+  return std::max(above, below) > separation * (1 + 0x1p-48) + size * 0x1p-48 + 0x1p-1000;
+}
+
+/// Tries the directions that separate most elements: normals to both elements, to one element and one edge,
+/// and lines between vertices, all in the middle of the step.
+bool stay_apart(const std::array<Vec3d, 4>& start, const std::array<Vec3d, 4>& end, std::size_t first_size,
+                double separation) {
+  const auto path = [&](std::size_t from, std::size_t to) {
+    return (start[to] - start[from]) + (end[to] - end[from]);
+  };
+  const auto apart = [&](const Vec3d& direction) {
+    return apart_along(direction, start, end, first_size, separation);
+  };
+  const Vec3d u = path(first_size == 1 ? 2 : 0, 1), w = path(2, 3), normal = cross(u, w);
+  if (apart(normal) || apart(cross(normal, u)) || apart(cross(normal, w))) return true;
+  if (first_size == 1 && apart(cross(normal, path(1, 3)))) return true;
+  for (std::size_t i = 0; i < first_size; ++i) {
+    for (std::size_t j = first_size; j < 4; ++j) {
+      if (apart(path(j, i))) return true;
+    }
+  }
+  return false;
+}
+
+std::optional<TimeBracket> first_contact(const std::array<Vec3d, 4>& start, const std::array<Vec3d, 4>& end,
+                                         std::size_t first_size, double separation) {
+  if (!std::isfinite(separation) || separation < 0) {
+    fail("min_separation is " + std::to_string(separation) + "; give a finite number that is not negative");
+  }
+  for (std::size_t i = 0; i < 4; ++i) {
+    if (!is_finite(start[i]) || !is_finite(end[i])) return std::nullopt;
+  }
+  if (stay_apart(start, end, first_size, separation)) return std::nullopt;
+  return first_contact(Elements(start, end, first_size == 2, separation), separation > 0);
 }
 
 }  // namespace

@@ -6,9 +6,9 @@
 
 namespace supple {
 
-/// When two elements first touch, their separation being 0, decided by integers: exact for all finite
-/// coordinates, whatever coincides, collapses or stays in one plane. Nothing when they do not touch within
-/// the step or a coordinate is not finite. What `first_impact` asks where floating point cannot tell.
+/// The first time at which two elements touch, by integer arithmetic: exact for all finite coordinates, also
+/// where elements coincide, collapse or stay in one plane. Nothing when they do not touch within the step or
+/// a coordinate is not finite. `first_impact` calls it where floating point cannot decide.
 ///
 /// Takes 1 to 10 µs while the coordinates of an axis span at most 124 bits, from the largest number to the
 /// last bit of the most precise one. Wider spans, and polynomials with a double root where the elements come
@@ -16,5 +16,11 @@ namespace supple {
 /// times as large as others.
 std::optional<TimeBracket> exact_first_contact(const VertexFaceMotion& motion);
 std::optional<TimeBracket> exact_first_contact(const EdgeEdgeMotion& motion);
+
+/// The first time at which two elements are at a distance of at most `separation` > 0. All numbers are
+/// finite. Takes tens to hundreds of microseconds, and some milliseconds where coordinates range from 1e-300
+/// to 1e300.
+std::optional<TimeBracket> exact_first_contact(const VertexFaceMotion& motion, double separation);
+std::optional<TimeBracket> exact_first_contact(const EdgeEdgeMotion& motion, double separation);
 
 }  // namespace supple

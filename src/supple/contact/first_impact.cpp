@@ -111,7 +111,7 @@ std::optional<Impact> first_impact_of_finite(const Motion& motion, const Relativ
   }
   const std::optional<TimeBracket> first = options.min_separation == 0
                                                ? exact_first_contact(motion)
-                                               : first_contact_by_algebra(motion, options.min_separation);
+                                               : exact_first_contact(motion, options.min_separation);
   if (!first) return std::nullopt;
   return impact_at(motion, relative, first->low, options.min_separation);
 }

@@ -9,7 +9,8 @@
 
 #include "contact/pair_filter.hpp"
 #include "geometry/plane_filter.hpp"
-#include "octree/vertex_loads-inl.hpp"
+#include "geometry/vector3-inl.hpp"
+#include "mesh/vertex_loads-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace supple::HWY_NAMESPACE {
@@ -25,35 +26,6 @@ template <class Scalar>
 constexpr Scalar volume_error_of = std::is_same_v<Scalar, float> ? 10 * 0x1p-24f : Scalar(volume_error);
 template <class Scalar>
 constexpr Scalar underflow_error_of = std::is_same_v<Scalar, float> ? 0x1p-110f : Scalar(underflow_error);
-
-template <class Tag>
-struct Vector3 {
-  hn::Vec<Tag> x, y, z;
-};
-template <class Tag>
-using Corners = Vector3<Tag>[3];
-
-template <class Tag>
-HWY_INLINE Vector3<Tag> subtract(const Vector3<Tag>& a, const Vector3<Tag>& b) {
-  return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)};
-}
-template <class Tag>
-HWY_INLINE hn::Vec<Tag> dot(const Vector3<Tag>& a, const Vector3<Tag>& b) {
-  return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z));
-}
-template <class Tag>
-HWY_INLINE Vector3<Tag> absolute(const Vector3<Tag>& v) {
-  return {hn::Abs(v.x), hn::Abs(v.y), hn::Abs(v.z)};
-}
-template <class Tag>
-HWY_INLINE Vector3<Tag> larger(const Vector3<Tag>& a, const Vector3<Tag>& b) {
-  return {hn::Max(a.x, b.x), hn::Max(a.y, b.y), hn::Max(a.z, b.z)};
-}
-template <class Tag>
-HWY_INLINE Vector3<Tag> select(hn::Mask<Tag> mask, const Vector3<Tag>& yes, const Vector3<Tag>& no) {
-  return {hn::IfThenElse(mask, yes.x, no.x), hn::IfThenElse(mask, yes.y, no.y),
-          hn::IfThenElse(mask, yes.z, no.z)};
-}
 
 /// u × v, and the sum of the magnitudes of its products.
 template <class Tag>

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <span>
 
-#include "octree/box_kernels.hpp"
+#include "mesh/vertex_arrays.hpp"
 #include "supple/types.hpp"
 
 namespace supple {

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "contact/meeting_point.hpp"
+#include "contact/separating_normal.hpp"
 #include "geometry/exact_predicates.hpp"
 #include "geometry/plane_filter.hpp"
 
@@ -406,6 +407,15 @@ bool triangles_intersect(const TrianglePoints& a, const TrianglePoints& b) {
 }
 
 TriangleIntersection intersect_triangles(const TrianglePoints& a, const TrianglePoints& b) {
+  TriangleIntersection result = intersect_triangles_without_normal(a, b);
+  if (!result.intersects) return result;
+  IntersectingPairs pair;
+  pair.add(a, b);
+  separating_normals(pair, &result.normal);
+  return result;
+}
+
+TriangleIntersection intersect_triangles_without_normal(const TrianglePoints& a, const TrianglePoints& b) {
   TriangleIntersection result;
   Sides sides;
   const Placement placement = classify(a, b, sides, result.used_exact_fallback);

@@ -32,6 +32,7 @@ std::string text_of(const Range& range, bool is_whole) {
     // Not 4.294967295e+09.
     text += is_whole ? std::to_string(static_cast<std::uint64_t>(range.highest)) : text_of(range.highest);
   }
+  if (range.includes_zero) text += ", or 0";
   if (range.includes_infinity) text += ", or infinity for none";
   return text;
 }

@@ -50,10 +50,26 @@ HWY_INLINE Vector between(Tag tag, Vector start, Vector end, float time, float o
   return hn::Min(hn::Max(moved, hn::Set(tag, -greatest)), hn::Set(tag, greatest));
 }
 
+/// Moves the box by the offset, or back. Inverted boxes stay inverted.
+HWY_INLINE void shift(float* box, const Vec3f& offset, float sign) {
+  for (int axis = 0; axis < 3; ++axis) {
+    box[axis] += sign * offset[axis];
+    box[axis + 3] += sign * offset[axis];
+  }
+}
+
+enum class Side { a, b };
+
+/// The box of an element of a as b's are stored, or the other way round.
+template <Side of>
 HWY_NOINLINE MovingBox moving_box(const MovingBoxArrays& arrays, std::size_t i, const PartOfStep& part) {
   MovingBox box;
   load_box(box.start, arrays.start, arrays.stride, i);
   load_box(box.end, arrays.end, arrays.stride, i);
+  if (!(part.offset == Vec3f{})) {
+    shift(box.start, part.offset, of == Side::a ? -1.0f : 1.0f);
+    shift(box.end, part.offset, of == Side::a ? -1.0f : 1.0f);
+  }
   if (part.separation > 0) {
     grow(box.start, part.separation);
     grow(box.end, part.separation);
@@ -126,7 +142,7 @@ void MovingOverlapMasks(const NodePair* pairs, std::size_t count, const MovingVi
     std::uint64_t mask = 0;
     for (std::uint32_t rest = pairs[k].lanes_a; rest != 0; rest &= rest - 1) {
       const auto i = static_cast<std::size_t>(std::countr_zero(rest));
-      const MovingBox box = moving_box(lanes_a, i, part);
+      const MovingBox box = moving_box<Side::a>(lanes_a, i, part);
       for (std::size_t j = 0; j < node_width; j += hn::Lanes(tag)) {
         mask |= meeting_bits(tag, box, lanes_b, j, part.latest) << (8 * i + j);
       }
@@ -144,8 +160,8 @@ class ElementTests {
 
   void test(const LeafPair& leaves) {
     same_leaf_ = same_object_ && leaves.begin_a == leaves.begin_b;
-    box_a_ = moving_box(lanes_of(a_, leaves.lane_a / node_width), leaves.lane_a % node_width, part_);
-    box_b_ = moving_box(lanes_of(b_, leaves.lane_b / node_width), leaves.lane_b % node_width, part_);
+    box_a_ = moving_box<Side::a>(lanes_of(a_, leaves.lane_a / node_width), leaves.lane_a % node_width, part_);
+    box_b_ = moving_box<Side::b>(lanes_of(b_, leaves.lane_b / node_width), leaves.lane_b % node_width, part_);
     const ElementRange vertices_a{a_.first_vertex[leaves.begin_a], a_.first_vertex[leaves.end_a]};
     const ElementRange vertices_b{b_.first_vertex[leaves.begin_b], b_.first_vertex[leaves.end_b]};
     const ElementRange faces_a{leaves.begin_a, leaves.end_a}, faces_b{leaves.begin_b, leaves.end_b};
@@ -198,14 +214,14 @@ class ElementTests {
       for (; some_a != 0; some_a &= some_a - 1) {
         if (one_block) some_b = some_a & (some_a - 1);
         const std::uint32_t a = range_a.begin + static_cast<std::uint32_t>(std::countr_zero(some_a));
-        const std::uint64_t hits = meeting(moving_box(boxes_a, a, part_), boxes_b, range_b);
+        const std::uint64_t hits = meeting(moving_box<Side::a>(boxes_a, a, part_), boxes_b, range_b);
         add<kind, false>(a, range_b.begin, hits & some_b);
       }
       return;
     }
     for (; some_b != 0; some_b &= some_b - 1) {
       const std::uint32_t b = range_b.begin + static_cast<std::uint32_t>(std::countr_zero(some_b));
-      const std::uint64_t hits = meeting(moving_box(boxes_b, b, part_), boxes_a, range_a);
+      const std::uint64_t hits = meeting(moving_box<Side::b>(boxes_b, b, part_), boxes_a, range_a);
       add<kind, true>(b, range_a.begin, hits & some_a);
     }
   }

@@ -63,10 +63,12 @@ class ElementPairBatches {
 };
 
 /// What boxes in motion are tested for: coming within `separation` of each other, not after `latest`, which
-/// is from 2^-20 to 1.
+/// is from 2^-20 to 1. The boxes of b lie `offset` from where they are stored; the separation covers the
+/// roundings of that.
 struct PartOfStep {
   float separation = 0;
   float latest = 1;
+  Vec3f offset{};
 };
 
 /// As `overlap_masks`, of nodes in motion: the bits of lanes that are not apart by more than the separation

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "core/packed_lanes-inl.hpp"
+#include "mesh/share_vertex.hpp"
 #include "octree/triangle_boxes-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -36,10 +37,6 @@ HWY_INLINE std::uint32_t overlap_mask(const AabbLanes& lanes, const Aabb& box) {
     bits |= std::uint32_t{part[0]} << j;
   }
   return bits;
-}
-
-HWY_INLINE Aabb lane_box(const AabbLanes& lanes, int i) {
-  return {{lanes.min_x[i], lanes.min_y[i], lanes.min_z[i]}, {lanes.max_x[i], lanes.max_y[i], lanes.max_z[i]}};
 }
 
 /// Moves and grows the boxes of six arrays.
@@ -303,14 +300,6 @@ HWY_INLINE std::size_t store_pairs(NumberVec triangles, BoxMask chosen, std::uin
 }
 
 #endif
-
-HWY_INLINE bool share_vertex(const Triangle& p, const Triangle& q) {
-  bool shared = false;
-  for (const std::uint32_t vertex : p) {
-    for (const std::uint32_t other : q) shared |= vertex == other;
-  }
-  return shared;
-}
 
 /// What `find_triangle_box_pairs` does, for one call.
 class LeafTests {

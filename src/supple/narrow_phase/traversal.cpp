@@ -75,17 +75,17 @@ double greatest_coordinate(const Aabb& box) {
 }
 
 /// The volumes are those of the untranslated positions. Seen from a, b's move by the difference of the
-/// translations. The slop covers the sums fl(position + translation) that the exact tests see (2^-53 of their
-/// size, in both objects), and where there is a difference, rounding it and the moved coordinates to float
-/// (2^-24 of their size each). Below an ulp it still works: rounding is monotonic, so a gap of at most the
-/// slop closes.
+/// translations, or a's the other way. The slop covers the sums fl(position + translation) that the exact
+/// tests see (2^-53 of their size, in both objects), and where there is a difference, rounding it and the
+/// moved coordinates to float (2^-24 of their size each). Below an ulp it still works: rounding is monotonic,
+/// so a gap of at most the slop closes.
 RelativePlacement place(const OctreeView& a, const OctreeView& b) {
   if (a.translation == Vec3d{} && b.translation == Vec3d{}) return {};
   const Vec3d offset = b.translation - a.translation;
   const auto largest = [](Vec3d v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); };
   const double size_a = greatest_coordinate(a.box), size_b = greatest_coordinate(b.box);
   const double world = std::max(size_a + largest(a.translation), size_b + largest(b.translation));
-  const double moved = offset == Vec3d{} ? 0 : size_b + largest(offset);
+  const double moved = offset == Vec3d{} ? 0 : std::max(size_a, size_b) + largest(offset);
   return {{static_cast<float>(offset.x), static_cast<float>(offset.y), static_cast<float>(offset.z)},
           round_up(0x1p-21 * moved + 0x1p-50 * world)};
 }
@@ -106,10 +106,12 @@ OctreeView view_of(const ObjectOctree& octree, const VertexBuffer& vertices,
 }
 
 OctreeView moving_view_of(const ObjectOctree& octree, const SurfaceElements& elements,
-                          const MovingBoxes& boxes) {
+                          const MovingBoxes& boxes, Vec3d translation) {
   OctreeView view;
   view.nodes = octree.nodes();
-  view.moving = boxes.view(octree, elements);
+  view.box = boxes.swept_box();
+  view.translation = translation;
+  view.moving = boxes.view(elements);
   return view;
 }
 
@@ -125,12 +127,14 @@ ObjectPairView self_pair_of(const OctreeView& object) {
 }
 
 ObjectPairView moving_pair_of(const OctreeView& a, const OctreeView& b, double separation) {
-  return {a, b, {}, false, round_up(separation), nullptr};
+  const RelativePlacement placement = place(a, b);
+  return {a, b, placement, false, round_up(separation + placement.slop), nullptr};
 }
 
 ObjectPairView moving_self_pair_of(const OctreeView& object, double separation) {
-  ObjectPairView pair{object, object, {}, true, round_up(separation), nullptr};
-  if (separation > 0) pair.a.unfolded = nullptr;
+  ObjectPairView pair = moving_pair_of(object, object, separation);
+  pair.same_object = true;
+  if (separation > 0 || !pair.placement.is_identity()) pair.a.unfolded = nullptr;
   return pair;
 }
 
@@ -145,7 +149,7 @@ LanePair last_lanes(const ObjectPairView& pair, TrianglePair triangles) {
     std::uint64_t mask = 0;
     test_lanes(pair, {&nodes, 1}, &mask);
     at.apart = (mask >> (node_width * at.lane_a + at.lane_b) & 1) == 0;
-    const bool inner_a = goes_on(pair.a, node_a, at.lane_a), inner_b = goes_on(pair.b, node_b, at.lane_b);
+    const bool inner_a = node_a.is_inner(at.lane_a), inner_b = node_b.is_inner(at.lane_b);
     if (at.apart || !(inner_a || inner_b)) return at;
     if (inner_a) at.node_a = node_a.child(at.lane_a);
     if (inner_b) at.node_b = node_b.child(at.lane_b);
@@ -180,7 +184,7 @@ void Traversal::expand_batch(const ObjectPairView& pair, TraversalStats& stats) 
     stats.volumes_tested += std::uint64_t{bit_count(node_pair.lanes_a & node_a.lane_mask())} *
                             bit_count(node_pair.lanes_b & node_b.lane_mask());
     for_each_lane_pair(pair, node_pair, masks_[k], [&](int i, int j) {
-      const bool inner_a = goes_on(pair.a, node_a, i), inner_b = goes_on(pair.b, node_b, j);
+      const bool inner_a = node_a.is_inner(i), inner_b = node_b.is_inner(j);
       if (inner_a && inner_b) {
         stack_.push_back({node_a.child(i), node_b.child(j)});
       } else if (inner_a) {
@@ -203,7 +207,7 @@ void Traversal::refine(const ObjectPairView& pair, NodePair node_pair, std::vect
   const OctreeNode& node_a = pair.a.nodes[node_pair.a];
   const OctreeNode& node_b = pair.b.nodes[node_pair.b];
   for_each_lane_pair(pair, node_pair, mask, [&](int i, int j) {
-    if (goes_on(pair.a, node_a, i) && goes_on(pair.b, node_b, j)) {
+    if (node_a.is_inner(i) && node_b.is_inner(j)) {
       finer.push_back({node_a.child(i), node_b.child(j)});
     } else {
       finer.push_back({node_pair.a, node_pair.b, lane_bit(i), lane_bit(j)});

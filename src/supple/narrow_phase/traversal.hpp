@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "core/stop_signal.hpp"
 #include "narrow_phase/element_kernels.hpp"
 #include "narrow_phase/overlap_kernels.hpp"
 #include "octree/moving_boxes.hpp"
@@ -23,27 +24,24 @@ struct OctreeView {
   LeafVertexArrays leaf_vertices;
   Aabb box;           ///< of all positions
   Vec3d translation;  ///< added to each position
-  MovingView moving;  ///< of objects in motion, of which `nodes`, this and the next are read only
+  MovingView moving;  ///< of objects in motion, of which `arrays` and `leaf_vertices` are not read
   /// Masks of an `SelfCollisionCulling` of these very positions, or null: an object against itself is then
   /// not looked for in lanes that cannot touch themselves. Candidates are lost thereby, contacts are not.
   const std::uint8_t* unfolded = nullptr;
 };
-/// Whether the descent goes on below the lane.
-inline bool goes_on(const OctreeView& view, const OctreeNode& node, int lane) {
-  return view.moving.start != nullptr ? !is_moving_leaf(node, lane) : node.is_inner(lane);
-}
 OctreeView view_of(const ObjectOctree& octree, const VertexBuffer& vertices,
                    std::span<const std::uint8_t> inert, Vec3d translation);
-/// Of an object in motion, at rest or not; `boxes` are refitted.
+/// Of an object in motion, at rest or not; `boxes` are refitted. Translated objects are at rest.
 OctreeView moving_view_of(const ObjectOctree& octree, const SurfaceElements& elements,
-                          const MovingBoxes& boxes);
+                          const MovingBoxes& boxes, Vec3d translation);
 
 /// Two objects, or one with itself (`same_object`, a and b being the same view).
 struct ObjectPairView {
   OctreeView a, b;
   RelativePlacement placement;
   bool same_object = false;
-  /// Of objects in motion: elements touch that come this near, not less than what was asked for.
+  /// Of objects in motion: elements touch whose boxes come this near, not less than what was asked for and
+  /// the placement's slop.
   float separation = 0;
   /// Null, or up to when in the step elements that touch are of interest; it may fall while they are looked
   /// for.
@@ -53,7 +51,7 @@ struct ObjectPairView {
   PartOfStep part_of_step() const {
     constexpr float least = 0x1p-20f, most = 0.125f;
     const float until = latest != nullptr ? latest->load(std::memory_order_relaxed) : 1;
-    return {separation, until < most ? std::max(until, least) : 1};
+    return {separation, until < most ? std::max(until, least) : 1, placement.offset};
   }
   bool is_moving() const { return a.moving.start != nullptr; }
 };
@@ -91,6 +89,9 @@ bool leaf_triangles_apart(const ObjectPairView& pair, const LanePair& leaves, Tr
 /// restricted to that lane against the other's node, and two leaves a leaf pair.
 class Traversal {
  public:
+  /// Searches end early, and find part of what there is, once a stop is requested.
+  void set_stop(const StopSignal& stop) { stop_ = stop; }
+
   /// Calls `sink(std::span<const TrianglePair>)` with batches of candidates in octree order's numbers: all
   /// triangle pairs whose boxes overlap, below `root` (all of them: a default `NodePair`). `on_leaves(leaf
   /// pairs)` sees the pairs of leaves they come from. Never misses a pair; memory does not grow with their
@@ -102,7 +103,7 @@ class Traversal {
     stack_.assign(1, root);
     leaf_pairs_.clear();
     leaf_boxes_.clear();
-    while (!stack_.empty()) {
+    while (!stack_.empty() && !stop_.stop_requested()) {
       expand_batch(pair, stats);
       if (leaf_pairs_.size() >= leaf_batch || stack_.empty()) {
         on_leaves(std::span<const LeafPair>(leaf_pairs_));
@@ -131,7 +132,7 @@ class Traversal {
         &count_and_sink);
     stack_.assign(1, root);
     leaf_pairs_.clear();
-    while (!stack_.empty()) {
+    while (!stack_.empty() && !stop_.stop_requested()) {
       expand_batch(pair, stats);
       if (leaf_pairs_.size() < leaf_batch && !stack_.empty()) continue;
       stats.volumes_tested += find_element_box_pairs(leaf_pairs_, pair.a.moving, pair.b.moving,
@@ -184,6 +185,7 @@ class Traversal {
     leaf_pairs_.clear();
   }
 
+  StopSignal stop_;
   std::vector<NodePair> stack_;
   std::array<std::uint64_t, node_batch> masks_;
   std::array<NodePair, node_batch> batch_;

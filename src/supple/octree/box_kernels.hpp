@@ -2,20 +2,10 @@
 
 #include <cstdint>
 
+#include "mesh/vertex_arrays.hpp"
 #include "octree/octree_node.hpp"
-#include "octree/vertex_buffer.hpp"
-#include "supple/mesh.hpp"
 
 namespace supple {
-
-/// What the box kernels read of an object: raw arrays, so that they compile for every instruction set alike.
-/// One of `floats` and `doubles` has data; `inert` has a byte a triangle or is null.
-struct TriangleArrays {
-  const Triangle* triangles = nullptr;
-  VertexArray<float> floats;
-  VertexArray<double> doubles;
-  const std::uint8_t* inert = nullptr;
-};
 
 /// The distinct vertices of each leaf: those of lane l of node n are `vertices[first[8 n + l]]` up to those
 /// of the next lane, the last one again and again up to a multiple of `leaf_vertices_step`. Inner and unused

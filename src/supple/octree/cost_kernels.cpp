@@ -39,14 +39,12 @@ HWY_INLINE void set_lane_costs(const OctreeNode& node, const AabbLanes& boxes, d
 /// Children come after their parents.
 void AddUpCosts(const TreeBoxes& tree, NodeCost* costs) {
   for (auto n = static_cast<std::uint32_t>(tree.nodes.size()); n-- > 0;) {
-    if (!tree.has_boxes(n)) continue;
     const OctreeNode& node = tree.nodes[n];
     double areas[node_width], lanes[node_width];
     set_lane_costs(node, tree.boxes[n], areas, lanes);
     std::uint32_t child = node.first_child;
     for (std::uint32_t inner = node.inner_mask; inner != 0; inner &= inner - 1, ++child) {
       const int lane = std::countr_zero(inner);
-      if (tree.is_leaf(node, lane)) continue;
       costs[child].area = areas[lane];
       lanes[lane] = areas[lane] + costs[child].cost;
     }

@@ -181,10 +181,9 @@ void RefitElementBoxes(const OctreeNode* nodes, AabbLanes* boxes, const LeafElem
                        std::uint32_t begin, std::uint32_t end) {
   for (std::uint32_t n = begin; n < end; ++n) {
     const OctreeNode& node = nodes[n];
-    if (!has_moving_boxes(node)) continue;
     AabbLanes& lanes = boxes[n];
     for (int lane = 0; lane < node.lane_count; ++lane) {
-      if (!is_moving_leaf(node, lane)) continue;
+      if (node.is_inner(lane)) continue;
       const std::uint32_t first = node.first_triangle[lane], last = node.first_triangle[lane + 1];
       ElementUnion all;
       all.extend(elements.faces, first, last);

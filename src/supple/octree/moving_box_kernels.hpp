@@ -40,18 +40,6 @@ void set_edge_boxes(const VertexCorners& corners, const Edge* edges, const BoxAr
 void set_face_boxes(const VertexCorners& corners, const Triangle* faces, const BoxArrays& boxes,
                     std::uint32_t begin, std::uint32_t end);
 
-/// Lanes of at most so many triangles are leaves for objects in motion, whatever is below them: their
-/// elements are tested faster in vectors than by descending further. Measured on cloth and on a walking
-/// figure; from 48 to 96 it makes little difference.
-constexpr std::uint32_t moving_leaf_size = 64;
-inline bool is_moving_leaf(const OctreeNode& node, int lane) {
-  return !node.is_inner(lane) || node.size(lane) <= moving_leaf_size;
-}
-/// Nodes below such leaves have no boxes in motion.
-inline bool has_moving_boxes(const OctreeNode& node) {
-  return node.level == 0 || node.size() > moving_leaf_size;
-}
-
 /// What the boxes of leaf lanes are made of.
 struct LeafElements {
   BoxArrays vertices, edges, faces;
@@ -61,7 +49,7 @@ struct LeafElements {
   bool faces_enclose = true;
 };
 
-/// Boxes of all moving leaves of the nodes [begin, end), and of each of these nodes in its parent's lane, as
+/// Boxes of all leaves of the nodes [begin, end), and of each of these nodes in its parent's lane, as
 /// `refit_boxes` does.
 void refit_element_boxes(const OctreeNode* nodes, AabbLanes* boxes, const LeafElements& elements,
                          std::uint32_t begin, std::uint32_t end);

@@ -53,8 +53,8 @@ bool MovingBoxes::refit(const ObjectOctree& octree, const SurfaceElements& eleme
   const bool some_inert = mark_inert(start, end, parallel);
   for (Moment* const moment : {&start_, &end_}) {
     if (moment == &end_ && at_rest_) continue;
-    set_boxes(*moment, moment == &start_ ? start : end, elements, octree.triangles(), parallel);
-    if (some_inert) invert_inert(*moment, elements, octree.triangles());
+    set_boxes(*moment, moment == &start_ ? start : end, elements, elements.faces(), parallel);
+    if (some_inert) invert_inert(*moment, elements, elements.faces());
     refit_nodes(*moment, octree, elements, !some_inert, parallel);
   }
   return !some_inert;
@@ -142,13 +142,13 @@ void MovingBoxes::refit_nodes(Moment& moment, const ObjectOctree& octree, const 
   }
 }
 
-MovingView MovingBoxes::view(const ObjectOctree& octree, const SurfaceElements& elements) const {
+MovingView MovingBoxes::view(const SurfaceElements& elements) const {
   return {start_.nodes.data(),
           last().nodes.data(),
           arrays_of(start_.vertices, last().vertices),
           arrays_of(start_.edges, last().edges),
           arrays_of(start_.faces, last().faces),
-          octree.triangles().data(),
+          elements.faces().data(),
           elements.edges().data(),
           elements.first_vertex(),
           elements.first_edge()};
@@ -210,11 +210,6 @@ class MomentValidation {
   std::span<const std::uint8_t> inert_;
 };
 
-Aabb lane_box(const AabbLanes& lanes, int lane) {
-  return {{lanes.min_x[lane], lanes.min_y[lane], lanes.min_z[lane]},
-          {lanes.max_x[lane], lanes.max_y[lane], lanes.max_z[lane]}};
-}
-
 /// Boxes of the elements and of all lanes, from the last node up.
 std::string check_moment(const ObjectOctree& octree, const SurfaceElements& elements, const MovingView& view,
                          bool at_end, const MomentValidation& validation) {
@@ -226,10 +221,9 @@ std::string check_moment(const ObjectOctree& octree, const SurfaceElements& elem
     return validation.check(at_end ? boxes.end : boxes.start, boxes.stride, i, corners, bounds);
   };
   for (std::size_t n = nodes.size(); n-- > 0;) {
-    if (!has_moving_boxes(nodes[n])) continue;
     for (int lane = 0; lane < node_width; ++lane) {
       Aabb bounds;
-      if (lane < nodes[n].lane_count && !is_moving_leaf(nodes[n], lane)) {
+      if (lane < nodes[n].lane_count && nodes[n].is_inner(lane)) {
         bounds = node_boxes[nodes[n].child(lane)];
       } else if (lane < nodes[n].lane_count) {
         const std::uint32_t first = nodes[n].first_triangle[lane], last = nodes[n].first_triangle[lane + 1];
@@ -243,7 +237,7 @@ std::string check_moment(const ObjectOctree& octree, const SurfaceElements& elem
             return wrong;
         }
         for (std::uint32_t f = first; f < last; ++f) {
-          if (std::string wrong = check(view.faces, f, octree.triangles()[f], bounds); !wrong.empty()) {
+          if (std::string wrong = check(view.faces, f, elements.faces()[f], bounds); !wrong.empty()) {
             return wrong;
           }
         }
@@ -261,7 +255,7 @@ std::string MovingBoxes::validate(const ObjectOctree& octree, const SurfaceEleme
                                   const VertexBuffer& start, const VertexBuffer& end) const {
   std::vector<std::uint8_t> inert(start.size());
   for (std::uint32_t v = 0; v < inert.size(); ++v) inert[v] = !is_finite(start[v]) || !is_finite(end[v]);
-  const MovingView shown = view(octree, elements);
+  const MovingView shown = view(elements);
   std::string wrong = check_moment(octree, elements, shown, false, {start, inert});
   if (wrong.empty()) wrong = check_moment(octree, elements, shown, true, {end, inert});
   return wrong;

@@ -32,10 +32,9 @@ struct MovingView {
 };
 
 /// Boxes of the vertices, edges and faces of an object and of its octree's nodes, at the start and at the end
-/// of a step in which every vertex goes straight, down to lanes of `moving_leaf_size` triangles. Bounds of
-/// such boxes lie on the straight lines between the two: two elements that are apart on one side of one axis
-/// at both ends are apart all the time. That tells far more elements apart than one box around the whole
-/// motion.
+/// of a step in which every vertex goes straight. Bounds of such boxes lie on the straight lines between the
+/// two: two elements that are apart on one side of one axis at both ends are apart all the time. That tells
+/// far more elements apart than one box around the whole motion.
 ///
 /// Rounded outward and kept within the range of float, so that an inverted box is apart from all others. An
 /// element with a coordinate that is not finite at either end is inert: its box is inverted. The other
@@ -51,7 +50,7 @@ class MovingBoxes {
              const VertexBuffer& end, const Parallel& parallel);
 
   /// Of what was last refitted.
-  MovingView view(const ObjectOctree& octree, const SurfaceElements& elements) const;
+  MovingView view(const SurfaceElements& elements) const;
   bool at_rest() const { return at_rest_; }
   /// Of the whole object; empty when nothing is finite.
   Aabb start_box() const;

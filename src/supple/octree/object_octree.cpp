@@ -39,16 +39,10 @@ std::vector<Vec3d> box_centers(const Positions& positions, std::span<const Trian
 /// Balanced trees are of eight children.
 template <class Positions>
 OctreeTopology build_topology(const Positions& positions, std::span<const Triangle> triangles,
-                              std::size_t vertex_count, const ObjectOctreeOptions& options,
-                              std::uint32_t first_level) {
+                              const ObjectOctreeOptions& options, std::uint32_t first_level) {
   const std::vector<Vec3d> centers = box_centers(positions, triangles);
   if (options.regular || options.arity != 8) return build_octree(centers, options, first_level);
-  return build_balanced_octree(centers, triangles, vertex_count, options, first_level);
-}
-
-Aabb lane_box(const AabbLanes& lanes, int lane) {
-  return {{lanes.min_x[lane], lanes.min_y[lane], lanes.min_z[lane]},
-          {lanes.max_x[lane], lanes.max_y[lane], lanes.max_z[lane]}};
+  return build_balanced_octree(centers, options, first_level);
 }
 
 void set_lane(SphereLanes& lanes, int lane, const BoundingSphere& sphere) {
@@ -99,11 +93,11 @@ TriangleArrays arrays_of(std::span<const Triangle> triangles, const VertexBuffer
   return {triangles.data(), vertices.floats(), vertices.doubles(), inert.empty() ? nullptr : inert.data()};
 }
 
-ObjectOctree::ObjectOctree(const PositionsView<double>& rest_positions, std::span<const Triangle> triangles,
+ObjectOctree::ObjectOctree(const PositionsView& rest_positions, std::span<const Triangle> triangles,
                            const ObjectOctreeOptions& options, BoundingVolume bounding_volume,
-                           SphereFit sphere_fit, VertexNumbering numbering)
-    : vertex_count_(rest_positions.count), options_(options), sphere_fit_(sphere_fit) {
-  OctreeTopology topology = build_topology(rest_positions, triangles, vertex_count_, options, 0);
+                           SphereFit sphere_fit)
+    : vertex_count_(rest_positions.size()), options_(options), sphere_fit_(sphere_fit) {
+  OctreeTopology topology = build_topology(rest_positions, triangles, options, 0);
   nodes_ = std::move(topology.nodes);
   nodes_.shrink_to_fit();
   level_begin_ = std::move(topology.level_begin);
@@ -112,47 +106,29 @@ ObjectOctree::ObjectOctree(const PositionsView<double>& rest_positions, std::spa
   if (bounding_volume == BoundingVolume::sphere) spheres_.resize(nodes_.size());
   triangles_.reserve(triangles.size());
   for (const std::uint32_t id : triangle_ids_) triangles_.push_back(triangles[id]);
-  if (numbering == VertexNumbering::by_first_use) {
-    vertex_ids_.resize(vertex_count_);
-    vertex_order_ = number_by_first_use();
-    for (std::uint32_t user = 0; user < vertex_count_; ++user) vertex_ids_[vertex_order_[user]] = user;
-  }
+  triangle_order_.resize(triangle_ids_.size());
+  invert_triangle_ids();
   list_leaf_vertices();
 }
 
-/// Renumbers the corners of all triangles; gives the new number of each vertex.
-std::vector<std::uint32_t> ObjectOctree::number_by_first_use() {
-  std::vector<std::uint32_t> numbers(vertex_count_, unnumbered);
-  std::uint32_t next = 0;
-  const auto number = [&](std::uint32_t vertex) {
-    if (numbers[vertex] == unnumbered) numbers[vertex] = next++;
-    return numbers[vertex];
-  };
-  for (Triangle& triangle : triangles_) {
-    for (std::uint32_t& vertex : triangle) vertex = number(vertex);
-  }
-  for (std::uint32_t vertex = 0; vertex < vertex_count_; ++vertex) number(vertex);
-  return numbers;
+void ObjectOctree::invert_triangle_ids() {
+  for (std::uint32_t t = 0; t < triangle_ids_.size(); ++t) triangle_order_[triangle_ids_[t]] = t;
 }
 
-OctreeRebuild ObjectOctree::rebuild(std::span<const std::uint32_t> subtrees, const VertexBuffer& vertices) {
+std::vector<std::uint32_t> ObjectOctree::rebuild(std::span<const std::uint32_t> subtrees,
+                                                 const VertexBuffer& vertices) {
   std::vector<NewSubtree> built;
   built.reserve(subtrees.size());
   for (const std::uint32_t node : subtrees) built.push_back(build_subtree(node, vertices));
+  invert_triangle_ids();
   RelinkedNodes relinked = relink(nodes_, built);
   nodes_ = std::move(relinked.nodes);
   nodes_.shrink_to_fit();
   level_begin_ = std::move(relinked.level_begin);
   boxes_.resize(nodes_.size());
   if (!spheres_.empty()) spheres_.resize(nodes_.size());
-  std::vector<std::uint32_t> numbers;
-  if (!vertex_order_.empty()) {
-    numbers = number_by_first_use();
-    for (std::uint32_t& vertex : vertex_order_) vertex = numbers[vertex];
-    for (std::uint32_t user = 0; user < vertex_count_; ++user) vertex_ids_[vertex_order_[user]] = user;
-  }
   list_leaf_vertices();
-  return {std::move(relinked.old_nodes), std::move(numbers)};
+  return std::move(relinked.old_nodes);
 }
 
 /// Its triangles come into their new order at once. They are built in the user's order, so that a subtree
@@ -165,7 +141,7 @@ NewSubtree ObjectOctree::build_subtree(std::uint32_t node, const VertexBuffer& v
   std::sort(given.begin(), given.end(), [](auto& p, auto& q) { return p.first < q.first; });
   for (std::size_t i = 0; i < count; ++i) triangles_[first + i] = given[i].second;
   const auto triangles = std::span<const Triangle>(triangles_).subspan(first, count);
-  NewSubtree subtree{node, build_topology(vertices, triangles, vertex_count_, options_, nodes_[node].level)};
+  NewSubtree subtree{node, build_topology(vertices, triangles, options_, nodes_[node].level)};
   for (std::size_t i = 0; i < count; ++i) {
     std::tie(triangle_ids_[first + i], triangles_[first + i]) = given[subtree.topology.order[i]];
   }
@@ -215,7 +191,6 @@ void ObjectOctree::list_leaf_vertices() {
 
 bool ObjectOctree::refit(const VertexBuffer& vertices, std::span<const std::uint8_t> inert,
                          const Parallel& parallel) {
-  box_ = Aabb{};
   sphere_ = BoundingSphere{};
   bool all_finite =
       !inert.empty() || std::all_of(unused_vertices_.begin(), unused_vertices_.end(),
@@ -225,10 +200,9 @@ bool ObjectOctree::refit(const VertexBuffer& vertices, std::span<const std::uint
     all_finite = refit_level(static_cast<std::uint32_t>(level), vertices, inert, parallel);
   }
   if (!all_finite) return false;
-  box_ = box_of_lanes(boxes_[0]);
   if (spheres_.empty()) return true;
-  sphere_ = sphere_fit_ == SphereFit::box ? sphere_from_box(box_)
-                                          : sphere_around(box_, triangles_, vertices, inert, 0);
+  sphere_ = sphere_fit_ == SphereFit::box ? sphere_from_box(box())
+                                          : sphere_around(box(), triangles_, vertices, inert, 0);
   return true;
 }
 

@@ -10,9 +10,9 @@
 #include "octree/octree_node.hpp"
 #include "octree/rebuild.hpp"
 #include "octree/vertex_buffer.hpp"
+#include "supple/inspection.hpp"
 #include "supple/mesh.hpp"
 #include "supple/options.hpp"
-#include "supple/result.hpp"
 #include "supple/types.hpp"
 
 namespace supple {
@@ -20,16 +20,6 @@ namespace supple {
 /// What the kernels read of the triangles and of their vertices; `inert` may be empty.
 TriangleArrays arrays_of(std::span<const Triangle> triangles, const VertexBuffer& vertices,
                          std::span<const std::uint8_t> inert);
-
-/// How an octree numbers vertices: as they are given, or by the first triangle that uses them, in octree
-/// order. By first use, what a run of triangles owns is contiguous, and positions are to be renumbered.
-enum class VertexNumbering { given, by_first_use };
-
-/// What a rebuild did: what each node was before (`RelinkedNodes::old_nodes`), and the new number of each
-/// octree vertex, or nothing when vertices keep theirs.
-struct OctreeRebuild {
-  std::vector<std::uint32_t> old_nodes, new_vertices;
-};
 
 /// Octree over the triangles of one object: built top-down from the rest pose; its volumes refitted whenever
 /// the object deforms, and subtrees that no longer fit built anew when asked for.
@@ -43,15 +33,14 @@ struct OctreeRebuild {
 /// order. Leaves are large: testing dozens of triangles in vectors costs less than nodes that would tell them
 /// apart, and only the triangles of leaves that a query meets are looked at.
 ///
-/// Memory besides the positions: 272 bytes a node, 19 a triangle, 4 for each vertex of each leaf; 8 a vertex
-/// when numbered by first use, 128 a node more with spheres.
+/// Memory besides the positions: 272 bytes a node, 23 a triangle, 4 for each vertex of each leaf; 128 a node
+/// more with spheres.
 class ObjectOctree {
  public:
   /// O(n log n). Non-finite vertices are allowed; their triangles count as lying in the lower
   /// corner.
-  ObjectOctree(const PositionsView<double>& rest_positions, std::span<const Triangle> triangles,
-               const ObjectOctreeOptions& options, BoundingVolume bounding_volume, SphereFit sphere_fit,
-               VertexNumbering numbering = VertexNumbering::by_first_use);
+  ObjectOctree(const PositionsView& rest_positions, std::span<const Triangle> triangles,
+               const ObjectOctreeOptions& options, BoundingVolume bounding_volume, SphereFit sphere_fit);
 
   std::span<const OctreeNode> nodes() const { return nodes_; }
   /// First node of each level, then the number of nodes.
@@ -64,17 +53,16 @@ class ObjectOctree {
     return {first_leaf_vertex_.data(), leaf_vertices_.data(), leaf_corners_.data(), leaf_corners_.size() / 3};
   }
 
-  /// Octree order; the ids are octree vertices.
+  /// Octree order; the ids are the user's vertices.
   std::span<const Triangle> triangles() const { return triangles_; }
   /// Octree triangle to the user's.
   std::span<const std::uint32_t> triangle_ids() const { return triangle_ids_; }
-  std::size_t vertex_count() const { return vertex_count_; }
-  /// Octree vertex to the user's, and back; both empty when the numbers are the same.
-  std::span<const std::uint32_t> vertex_ids() const { return vertex_ids_; }
-  std::span<const std::uint32_t> vertex_order() const { return vertex_order_; }
-  std::uint32_t octree_vertex(std::uint32_t user_vertex) const {
-    return vertex_order_.empty() ? user_vertex : vertex_order_[user_vertex];
+  /// And back.
+  std::uint32_t octree_triangle(std::uint32_t user_triangle) const { return triangle_order_[user_triangle]; }
+  const Triangle& user_triangle(std::uint32_t triangle) const {
+    return triangles_[octree_triangle(triangle)];
   }
+  std::size_t vertex_count() const { return vertex_count_; }
 
   /// Recomputes all volumes, bottom-up, in O(n); spheres fitted to vertices take O(n · levels).
   /// `inert` has a byte a triangle (octree order), or is empty: triangles to leave out. Returns false, and
@@ -82,12 +70,13 @@ class ObjectOctree {
   bool refit(const VertexBuffer& vertices, std::span<const std::uint8_t> inert, const Parallel& parallel);
 
   /// Builds the subtrees of these nodes, of which none is below another, anew from present positions. Volumes
-  /// are to be refitted then; all that goes by numbers of the octree's triangles, nodes or vertices is to be
-  /// made anew. O(n) and O(m log m) of m triangles in the subtrees.
-  OctreeRebuild rebuild(std::span<const std::uint32_t> subtrees, const VertexBuffer& vertices);
+  /// are to be refitted then; all that goes by numbers of the octree's triangles or nodes is to be made anew.
+  /// Returns what each node was before (`RelinkedNodes::old_nodes`). O(n) and O(m log m) of m triangles in
+  /// the subtrees.
+  std::vector<std::uint32_t> rebuild(std::span<const std::uint32_t> subtrees, const VertexBuffer& vertices);
 
   /// Volumes of the whole object after a refit; empty when it has no finite triangle.
-  const Aabb& box() const { return box_; }
+  Aabb box() const { return nodes_.empty() ? Aabb{} : box_of_lanes(boxes_[0]); }
   const BoundingSphere& sphere() const { return sphere_; }
 
   /// The empty string when every invariant holds and every volume encloses its triangles; else what is wrong.
@@ -96,7 +85,7 @@ class ObjectOctree {
   OctreeStatistics statistics() const;
 
  private:
-  std::vector<std::uint32_t> number_by_first_use();
+  void invert_triangle_ids();
   NewSubtree build_subtree(std::uint32_t node, const VertexBuffer& vertices);
   void list_leaf_vertices();
   bool refit_level(std::uint32_t level, const VertexBuffer& vertices, std::span<const std::uint8_t> inert,
@@ -109,14 +98,13 @@ class ObjectOctree {
   std::vector<SphereLanes> spheres_;
   std::vector<std::uint32_t> level_begin_;
   std::vector<Triangle> triangles_;
-  std::vector<std::uint32_t> triangle_ids_, vertex_ids_, vertex_order_;
+  std::vector<std::uint32_t> triangle_ids_, triangle_order_;
   std::size_t vertex_count_;
   // As `LeafVertexArrays`, and the vertices of no triangle.
   std::vector<std::uint32_t> first_leaf_vertex_, leaf_vertices_, unused_vertices_;
   std::vector<std::uint8_t> leaf_corners_;
   ObjectOctreeOptions options_;
   SphereFit sphere_fit_;
-  Aabb box_;
   BoundingSphere sphere_;
 };
 

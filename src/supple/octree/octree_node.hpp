@@ -2,6 +2,8 @@
 
 #include <cstdint>
 
+#include "supple/types.hpp"
+
 namespace supple {
 
 /// Lanes of a node: its children; those without triangles are left out.
@@ -20,6 +22,12 @@ struct alignas(64) AabbLanes {
   float min_x[node_width], min_y[node_width], min_z[node_width];
   float max_x[node_width], max_y[node_width], max_z[node_width];
 };
+
+/// Empty where the lane is unused.
+inline Aabb lane_box(const AabbLanes& lanes, int lane) {
+  return {{lanes.min_x[lane], lanes.min_y[lane], lanes.min_z[lane]},
+          {lanes.max_x[lane], lanes.max_y[lane], lanes.max_z[lane]}};
+}
 
 /// Balls of the lanes of a node; unused lanes, and lanes without a finite triangle, have a negative radius.
 struct alignas(64) SphereLanes {

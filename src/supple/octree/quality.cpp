@@ -71,7 +71,6 @@ void TreeQuality::measure(const TreeBoxes& tree) {
   if (!is_known()) return;
   for (NodeCost& node : nodes_) node.net_saving = 0;
   for (auto n = static_cast<std::uint32_t>(nodes_.size()); n-- > 0;) {
-    if (!tree.has_boxes(n)) continue;
     nodes_[n].net_saving = std::max(nodes_[n].net_saving, net_saving(tree, n));
     if (n > 0) nodes_[tree.nodes[n].parent].net_saving += nodes_[n].net_saving;
   }
@@ -101,7 +100,7 @@ void TreeQuality::choose(const TreeBoxes& tree) {
       continue;
     }
     for (int lane = 0; lane < node.lane_count; ++lane) {
-      if (!tree.is_leaf(node, lane) && nodes_[node.child(lane)].net_saving > 0) {
+      if (node.is_inner(lane) && nodes_[node.child(lane)].net_saving > 0) {
         degraded_.push_back(node.child(lane));
       }
     }

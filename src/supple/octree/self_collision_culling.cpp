@@ -51,19 +51,18 @@ void cancel_opposite(std::vector<Edge>& edges) {
 
 }  // namespace
 
-SelfCollisionCulling::SelfCollisionCulling(const ObjectOctree& octree)
+SelfCollisionCulling::SelfCollisionCulling(const ObjectOctree& octree, std::span<const Triangle> triangles)
     : boundaries_(octree.nodes().size() * node_width),
       node_normals_(octree.nodes().size()),
       masks_(octree.nodes().size(), 0) {
   std::vector<Edge> edges;
   for (std::uint32_t n = static_cast<std::uint32_t>(octree.nodes().size()); n-- > 0;) {
     const OctreeNode& node = octree.nodes()[n];
-    if (!has_moving_boxes(node)) continue;
     for (int lane = 0; lane < node.lane_count; ++lane) {
       edges.clear();
-      if (is_moving_leaf(node, lane)) {
+      if (!node.is_inner(lane)) {
         for (std::uint32_t t = node.first_triangle[lane]; t < node.first_triangle[lane + 1]; ++t) {
-          const Triangle& triangle = octree.triangles()[t];
+          const Triangle& triangle = triangles[t];
           for (std::size_t corner = 0; corner < 3; ++corner) {
             edges.push_back({triangle[corner], triangle[(corner + 1) % 3]});
           }
@@ -92,8 +91,9 @@ SelfCollisionCulling::SelfCollisionCulling(const ObjectOctree& octree)
   boundary_edges_.shrink_to_fit();
 }
 
-void SelfCollisionCulling::refit(const ObjectOctree& octree, const VertexBuffer& start,
-                                 const VertexBuffer& end, const Parallel& parallel) {
+void SelfCollisionCulling::refit(const ObjectOctree& octree, std::span<const Triangle> triangles,
+                                 const VertexBuffer& start, const VertexBuffer& end,
+                                 const Parallel& parallel) {
   const auto level_begin = octree.level_begin();
   for (std::size_t level = level_begin.size() - 1; level-- > 0;) {
     const std::uint32_t first = level_begin[level];
@@ -102,9 +102,9 @@ void SelfCollisionCulling::refit(const ObjectOctree& octree, const VertexBuffer&
                           for (std::size_t i = node_begin; i < node_end; ++i) {
                             const auto n = static_cast<std::uint32_t>(first + i);
                             if (start.is_double()) {
-                              refit_node(octree, start.doubles(), end.doubles(), n);
+                              refit_node(octree.nodes(), triangles, start.doubles(), end.doubles(), n);
                             } else {
-                              refit_node(octree, start.floats(), end.floats(), n);
+                              refit_node(octree.nodes(), triangles, start.floats(), end.floats(), n);
                             }
                           }
                         });
@@ -112,16 +112,16 @@ void SelfCollisionCulling::refit(const ObjectOctree& octree, const VertexBuffer&
 }
 
 template <class Scalar>
-void SelfCollisionCulling::refit_node(const ObjectOctree& octree, const VertexArray<Scalar>& start,
-                                      const VertexArray<Scalar>& end, std::uint32_t n) {
-  const OctreeNode& node = octree.nodes()[n];
-  if (!has_moving_boxes(node)) return;
+void SelfCollisionCulling::refit_node(std::span<const OctreeNode> nodes, std::span<const Triangle> triangles,
+                                      const VertexArray<Scalar>& start, const VertexArray<Scalar>& end,
+                                      std::uint32_t n) {
+  const OctreeNode& node = nodes[n];
   Normals all;
   std::uint32_t mask = 0;
   for (int lane = 0; lane < node.lane_count; ++lane) {
     const Normals normals =
-        is_moving_leaf(node, lane)
-            ? normals_of(octree.triangles().subspan(node.first_triangle[lane], node.size(lane)), start, end)
+        !node.is_inner(lane)
+            ? normals_of(triangles.subspan(node.first_triangle[lane], node.size(lane)), start, end)
             : node_normals_[node.child(lane)];
     double least = 0, size = 0;
     const Vec3d direction = normals.sum * (1 / largest_magnitude(normals.sum));

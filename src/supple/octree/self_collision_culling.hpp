@@ -12,12 +12,12 @@
 
 namespace supple {
 
-/// Which lanes of an octree, down to `moving_leaf_size` triangles, cannot touch themselves during a step in
-/// which every vertex goes straight: no two elements of the lane's triangles that share no vertex. Most of a
-/// smooth surface is such, so that a traversal against itself need not descend there. After Volino and
-/// Magnenat Thalmann, "Efficient self-collision detection on smoothly discretized surface animations using
-/// geometrical shape regularity" (1994), with a test of the contour in place of theirs, for moving surfaces
-/// of any topology, and with bounds of the rounding errors.
+/// Which lanes of an octree cannot touch themselves during a step in which every vertex goes straight: no two
+/// elements of the lane's triangles that share no vertex. Most of a smooth surface is such, so that a
+/// traversal against itself need not descend there. After Volino and Magnenat Thalmann, "Efficient
+/// self-collision detection on smoothly discretized surface animations using geometrical shape regularity"
+/// (1994), with a test of the contour in place of theirs, for moving surfaces of any topology, and with
+/// bounds of the rounding errors.
 ///
 /// A lane is unfolded when for one direction n, at all times,
 ///  1. all its triangles face n: n · ((b − a) × (c − a)) > 0, and
@@ -42,12 +42,14 @@ namespace supple {
 class SelfCollisionCulling {
  public:
   SelfCollisionCulling() = default;
-  /// Finds the boundaries, which depend on the triangles alone; O(n log n).
-  explicit SelfCollisionCulling(const ObjectOctree& octree);
+  /// Finds the boundaries, which depend on the triangles alone; O(n log n). `triangles` are the octree's, in
+  /// any numbering of the vertices.
+  SelfCollisionCulling(const ObjectOctree& octree, std::span<const Triangle> triangles);
 
-  /// For the step from `start` to `end`, the same object when at rest; O(n). Takes no memory.
-  void refit(const ObjectOctree& octree, const VertexBuffer& start, const VertexBuffer& end,
-             const Parallel& parallel);
+  /// For the step from `start` to `end`, the same object when at rest; O(n). Takes no memory. The triangles
+  /// are those given before.
+  void refit(const ObjectOctree& octree, std::span<const Triangle> triangles, const VertexBuffer& start,
+             const VertexBuffer& end, const Parallel& parallel);
 
   /// A byte a node: bit i says that lane i cannot touch itself.
   std::span<const std::uint8_t> masks() const { return masks_; }
@@ -65,8 +67,8 @@ class SelfCollisionCulling {
   };
 
   template <class Scalar>
-  void refit_node(const ObjectOctree& octree, const VertexArray<Scalar>& start,
-                  const VertexArray<Scalar>& end, std::uint32_t n);
+  void refit_node(std::span<const OctreeNode> nodes, std::span<const Triangle> triangles,
+                  const VertexArray<Scalar>& start, const VertexArray<Scalar>& end, std::uint32_t n);
   template <class Scalar>
   static Normals normals_of(std::span<const Triangle> triangles, const VertexArray<Scalar>& start,
                             const VertexArray<Scalar>& end);
@@ -74,7 +76,7 @@ class SelfCollisionCulling {
   bool goes_round_once(const Boundary& boundary, const Vec3d& n, const VertexArray<Scalar>& start,
                        const VertexArray<Scalar>& end) const;
 
-  std::vector<Edge> boundary_edges_;  // directed, octree vertices
+  std::vector<Edge> boundary_edges_;  // directed
   std::vector<Boundary> boundaries_;  // eight a node
   std::vector<Normals> node_normals_;
   std::vector<std::uint8_t> masks_;

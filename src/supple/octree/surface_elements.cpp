@@ -1,6 +1,7 @@
 #include "octree/surface_elements.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <set>
 
 namespace supple {
@@ -40,8 +41,27 @@ std::vector<Side> sorted_sides(std::span<const Triangle> triangles, std::uint32_
 
 }  // namespace
 
+void SurfaceElements::number_by_first_use(const ObjectOctree& octree) {
+  constexpr std::uint32_t unnumbered = std::numeric_limits<std::uint32_t>::max();
+  std::vector<std::uint32_t> numbers(octree.vertex_count(), unnumbered);
+  vertex_ids_.reserve(octree.vertex_count());
+  const auto number = [&](std::uint32_t vertex) {
+    if (numbers[vertex] == unnumbered) {
+      numbers[vertex] = static_cast<std::uint32_t>(vertex_ids_.size());
+      vertex_ids_.push_back(vertex);
+    }
+    return numbers[vertex];
+  };
+  faces_.assign(octree.triangles().begin(), octree.triangles().end());
+  for (Triangle& face : faces_) {
+    for (std::uint32_t& vertex : face) vertex = number(vertex);
+  }
+  for (std::uint32_t vertex = 0; vertex < octree.vertex_count(); ++vertex) number(vertex);
+}
+
 SurfaceElements::SurfaceElements(const ObjectOctree& octree) {
-  const auto triangles = octree.triangles();
+  number_by_first_use(octree);
+  const std::span<const Triangle> triangles = faces_;
   first_vertex_.reserve(triangles.size() + 1);
   for (const Triangle& triangle : triangles) {
     first_vertex_.push_back(
@@ -69,9 +89,16 @@ SurfaceElements::SurfaceElements(const ObjectOctree& octree) {
 }
 
 std::string SurfaceElements::validate(const ObjectOctree& octree) const {
-  const auto triangles = octree.triangles();
-  if (first_vertex_.size() != triangles.size() + 1 || first_edge_.size() != triangles.size() + 1) {
+  const std::span<const Triangle> triangles = faces_;
+  if (first_vertex_.size() != triangles.size() + 1 || first_edge_.size() != triangles.size() + 1 ||
+      octree.triangles().size() != triangles.size() || octree.vertex_count() != vertex_ids_.size()) {
     return "elements of another octree";
+  }
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    for (std::size_t corner = 0; corner < 3; ++corner) {
+      if (vertex_ids_[triangles[t][corner]] != octree.triangles()[t][corner])
+        return "faces are not the octree's triangles";
+    }
   }
   std::set<Edge> seen;
   std::uint32_t vertices = 0, edges = 0;

@@ -14,8 +14,8 @@
 #include <limits>
 
 #include "core/float_rounding.hpp"
+#include "mesh/vertex_loads-inl.hpp"
 #include "octree/box_kernels.hpp"
-#include "octree/vertex_loads-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace supple {

@@ -18,13 +18,7 @@ class Validation {
       : octree_(octree), vertices_(vertices), inert_(inert), check_spheres_(check_spheres), arity_(arity) {}
 
   std::string run() const {
-    if (std::string wrong = check_permutation(octree_.triangle_ids(), "triangle"); !wrong.empty())
-      return wrong;
-    if (std::string wrong = check_permutation(octree_.vertex_ids(), "vertex"); !wrong.empty()) return wrong;
-    if (octree_.vertex_ids().size() != octree_.vertex_order().size()) return "vertex maps are not inverse";
-    for (std::uint32_t user = 0; user < octree_.vertex_order().size(); ++user) {
-      if (octree_.vertex_ids()[octree_.vertex_order()[user]] != user) return "vertex maps are not inverse";
-    }
+    if (!is_permutation(octree_.triangle_ids())) return "triangle ids are not a permutation";
     const auto nodes = octree_.nodes();
     if (nodes.empty()) return octree_.triangles().empty() ? "" : "triangles without a node";
     std::vector<std::uint8_t> reached(nodes.size(), 0);
@@ -38,12 +32,10 @@ class Validation {
   }
 
  private:
-  static std::string check_permutation(std::span<const std::uint32_t> ids, const char* what) {
+  static bool is_permutation(std::span<const std::uint32_t> ids) {
     std::vector<std::uint8_t> seen(ids.size(), 0);
-    for (const std::uint32_t id : ids) {
-      if (id >= ids.size() || seen[id]++ != 0) return std::string(what) + " ids are not a permutation";
-    }
-    return "";
+    return std::all_of(ids.begin(), ids.end(),
+                       [&](std::uint32_t id) { return id < ids.size() && seen[id]++ == 0; });
   }
 
   std::string check_node(std::uint32_t n, std::vector<std::uint8_t>& reached, std::uint32_t& covered) const {
@@ -69,21 +61,16 @@ class Validation {
       }
     }
     for (int lane = node.lane_count; lane < node_width; ++lane) {
-      if (!lane_box(n, lane).empty() || node.is_inner(lane)) return here + "unused lane is not empty";
+      if (!lane_box(octree_.boxes()[n], lane).empty() || node.is_inner(lane))
+        return here + "unused lane is not empty";
     }
     return "";
-  }
-
-  Aabb lane_box(std::uint32_t n, int lane) const {
-    const AabbLanes& lanes = octree_.boxes()[n];
-    return {{lanes.min_x[lane], lanes.min_y[lane], lanes.min_z[lane]},
-            {lanes.max_x[lane], lanes.max_y[lane], lanes.max_z[lane]}};
   }
 
   /// Every vertex of the lane's triangles lies in its volumes, and the box is not larger than rounding
   /// explains.
   std::string check_bounds(std::uint32_t n, int lane, std::uint32_t begin, std::uint32_t end) const {
-    const Aabb box = lane_box(n, lane);
+    const Aabb box = lane_box(octree_.boxes()[n], lane);
     constexpr double inf = std::numeric_limits<double>::infinity();
     Vec3d lower{inf, inf, inf}, upper{-inf, -inf, -inf};
     for (std::uint32_t t = begin; t < end; ++t) {
@@ -154,9 +141,8 @@ OctreeStatistics ObjectOctree::statistics() const {
   }
   result.bytes = nodes_.capacity() * sizeof(OctreeNode) + boxes_.capacity() * sizeof(AabbLanes) +
                  spheres_.capacity() * sizeof(SphereLanes) + triangles_.capacity() * sizeof(Triangle) +
-                 (triangle_ids_.capacity() + vertex_ids_.capacity() + vertex_order_.capacity() +
-                  level_begin_.capacity() + first_leaf_vertex_.capacity() + leaf_vertices_.capacity() +
-                  unused_vertices_.capacity()) *
+                 (triangle_ids_.capacity() + triangle_order_.capacity() + level_begin_.capacity() +
+                  first_leaf_vertex_.capacity() + leaf_vertices_.capacity() + unused_vertices_.capacity()) *
                      sizeof(std::uint32_t) +
                  leaf_corners_.capacity();
   if (result.triangles > 0) {

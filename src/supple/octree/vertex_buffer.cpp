@@ -1,8 +1,14 @@
 #include "octree/vertex_buffer.hpp"
 
+#include <algorithm>
 #include <cassert>
 
 namespace supple {
+namespace {
+
+constexpr std::size_t grain = 16384;
+
+}  // namespace
 
 void VertexBuffer::resize(std::size_t count, bool is_double) {
   // Switching the precision gives the other storage back; that happens once, not in the steady state.
@@ -19,54 +25,54 @@ void VertexBuffer::resize(std::size_t count, bool is_double) {
 }
 
 template <class Scalar>
-void VertexBuffer::assign(const PositionsView<Scalar>& positions, std::span<const std::uint32_t> numbers,
-                          const Parallel& parallel) {
-  resize(positions.count, sizeof(Scalar) == sizeof(double));
+void VertexBuffer::copy(const PositionsView& positions, const Parallel& parallel) {
   Scalar* const target = storage(Scalar{}).data();
-  const auto copy = [&](std::size_t from, std::size_t to) {
-    const Vec3<Scalar> p = positions[from];
-    target[3 * to] = p.x;
-    target[3 * to + 1] = p.y;
-    target[3 * to + 2] = p.z;
-  };
-  parallel.for_ranges(positions.count, 16384, [&](std::size_t begin, std::size_t end, std::uint32_t) {
-    if (numbers.empty()) {
-      for (std::size_t i = begin; i < end; ++i) copy(i, i);
-    } else {
-      for (std::size_t i = begin; i < end; ++i) copy(i, numbers[i]);
+  parallel.for_ranges(count_, grain, [&](std::size_t begin, std::size_t end, std::uint32_t) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const Vec3<Scalar> p = positions.get<Scalar>(i);
+      target[3 * i] = p.x;
+      target[3 * i + 1] = p.y;
+      target[3 * i + 2] = p.z;
     }
   });
 }
 
-template <class Scalar>
-void VertexBuffer::borrow(const PositionsView<Scalar>& positions) {
-  assert(positions.stride % sizeof(Scalar) == 0);
+void VertexBuffer::assign(const PositionsView& positions, const Parallel& parallel) {
+  resize(positions.size(), positions.is_double());
+  if (is_double_) copy<double>(positions, parallel);
+  if (!is_double_) copy<float>(positions, parallel);
+}
+
+void VertexBuffer::gather(const VertexBuffer& source, std::span<const std::uint32_t> ids,
+                          const Parallel& parallel) {
+  assert(&source != this);
+  resize(ids.size(), source.is_double_);
+  const auto copy = [&](const auto& from, auto* to) {
+    parallel.for_ranges(ids.size(), grain, [&](std::size_t begin, std::size_t end, std::uint32_t) {
+      for (std::size_t v = begin; v < end; ++v) std::copy_n(from[ids[v]], 3, to + 3 * v);
+    });
+  };
+  if (is_double_) {
+    copy(source.doubles(), doubles_.data());
+  } else {
+    copy(source.floats(), floats_.data());
+  }
+}
+
+bool VertexBuffer::borrow(const PositionsView& positions) {
+  const std::size_t size = positions.is_double() ? sizeof(double) : sizeof(float);
+  const auto stride = static_cast<std::size_t>(positions.point_stride());
+  const bool is_aligned =
+      stride % size == 0 && reinterpret_cast<std::uintptr_t>(positions.data()) % size == 0;
+  if (positions.point_stride() < 0 || positions.coordinate_stride() != std::ptrdiff_t(size) || !is_aligned)
+    return false;
   std::vector<float>().swap(floats_);
   std::vector<double>().swap(doubles_);
-  borrowed_ = positions.data;
-  borrowed_stride_ = positions.stride / sizeof(Scalar);
-  count_ = positions.count;
-  is_double_ = sizeof(Scalar) == sizeof(double);
+  borrowed_ = positions.data();
+  borrowed_stride_ = stride / size;
+  count_ = positions.size();
+  is_double_ = positions.is_double();
+  return true;
 }
-
-VertexBuffer VertexBuffer::renumbered(std::span<const std::uint32_t> numbers) const {
-  assert(borrowed_ == nullptr && numbers.size() == count_);
-  VertexBuffer result = *this;
-  for (std::size_t vertex = 0; vertex < count_; ++vertex) {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const std::size_t from = 3 * vertex + axis, to = 3 * std::size_t{numbers[vertex]} + axis;
-      if (is_double_) result.doubles_[to] = doubles_[from];
-      if (!is_double_) result.floats_[to] = floats_[from];
-    }
-  }
-  return result;
-}
-
-template void VertexBuffer::assign(const PositionsView<float>&, std::span<const std::uint32_t>,
-                                   const Parallel&);
-template void VertexBuffer::assign(const PositionsView<double>&, std::span<const std::uint32_t>,
-                                   const Parallel&);
-template void VertexBuffer::borrow(const PositionsView<float>&);
-template void VertexBuffer::borrow(const PositionsView<double>&);
 
 }  // namespace supple

@@ -6,22 +6,13 @@
 #include <vector>
 
 #include "core/parallel.hpp"
-#include "supple/types.hpp"
+#include "mesh/vertex_arrays.hpp"
+#include "supple/views.hpp"
 
 namespace supple {
 
-/// Vertices in memory: x y z of vertex v are the three scalars from `(*this)[v]` on. What follows them need
-/// not be readable.
-template <class Scalar>
-struct VertexArray {
-  const Scalar* data = nullptr;
-  std::size_t stride = 3;  ///< scalars from one vertex to the next
-
-  const Scalar* operator[](std::size_t vertex) const { return data + vertex * stride; }
-};
-
-/// The positions of an object in the numbering of its octree, in the precision they were given in: a copy,
-/// or where they lie in the user's memory.
+/// The positions of an object, in the precision they were given in: a copy, or where they lie in the user's
+/// memory.
 class VertexBuffer {
  public:
   std::size_t size() const { return count_; }
@@ -39,22 +30,18 @@ class VertexBuffer {
     return {p[0], p[1], p[2]};
   }
 
-  /// Vertex `numbers[i]` of the buffer becomes `positions[i]`, or vertex i when `numbers` is empty.
-  template <class Scalar>
-  void assign(const PositionsView<Scalar>& positions, std::span<const std::uint32_t> numbers,
-              const Parallel& parallel);
+  void assign(const PositionsView& positions, const Parallel& parallel);
 
-  /// The buffer becomes these positions where they are; their stride is a multiple of the scalar's size. A
-  /// copy made before is given back.
-  template <class Scalar>
-  void borrow(const PositionsView<Scalar>& positions);
+  /// Vertex v becomes vertex `ids[v]` of the other buffer, in its precision.
+  void gather(const VertexBuffer& source, std::span<const std::uint32_t> ids, const Parallel& parallel);
+
+  /// The buffer refers to these positions in the user's memory and frees its copy. Returns false, and changes
+  /// nothing, when the layout does not allow that: x, y, z must be adjacent and aligned.
+  bool borrow(const PositionsView& positions);
 
   /// Each vertex becomes `function(vertex)` of `source`, in double.
   template <class Function>
   void transform(const VertexBuffer& source, const Parallel& parallel, const Function& function);
-
-  /// A copy in which vertex v is vertex `numbers[v]`; not of borrowed positions.
-  VertexBuffer renumbered(std::span<const std::uint32_t> numbers) const;
 
   std::size_t bytes() const {
     return floats_.capacity() * sizeof(float) + doubles_.capacity() * sizeof(double);
@@ -62,6 +49,8 @@ class VertexBuffer {
 
  private:
   void resize(std::size_t count, bool is_double);
+  template <class Scalar>
+  void copy(const PositionsView& positions, const Parallel& parallel);
   std::vector<float>& storage(float) { return floats_; }
   std::vector<double>& storage(double) { return doubles_; }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mesh/share_vertex.hpp"
 #include "supple/triangle_intersection.hpp"
 
 namespace supple {
@@ -41,11 +42,6 @@ bool boxes_overlap(const BoxedTriangle& p, const BoxedTriangle& q) {
     if (p.min[axis] > q.max[axis] || q.min[axis] > p.max[axis]) return false;
   }
   return true;
-}
-
-bool share_vertex(const Triangle& p, const Triangle& q) {
-  return std::any_of(p.begin(), p.end(),
-                     [&](std::uint32_t vertex) { return std::find(q.begin(), q.end(), vertex) != q.end(); });
 }
 
 }  // namespace

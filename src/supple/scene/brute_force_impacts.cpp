@@ -148,6 +148,13 @@ EdgeEdgeMotion edge_edge(const PlainMovingObject& a, const BoxedElement& p, cons
   return {{a.start[p0], a.start[p1], b.start[q0], b.start[q1]}, {a.end[p0], a.end[p1], b.end[q0], b.end[q1]}};
 }
 
+auto place_of(const ContinuousContact& contact) {
+  return std::tie(contact.kind, contact.element_a, contact.element_b);
+}
+auto place_of(const TouchingElements& touching) {
+  return std::tie(touching.kind, touching.element_a, touching.element_b);
+}
+
 }  // namespace
 
 BruteForceImpacts find_impacts_by_brute_force(const PlainMovingObject& a, const PlainMovingObject& b,
@@ -181,6 +188,32 @@ BruteForceImpacts find_impacts_by_brute_force(const PlainMovingObject& a, const 
       },
       result.touching);
   return result;
+}
+
+void compare_impacts(const ObjectPair& pair, std::span<const ContinuousContact> reported,
+                     std::span<const TouchingElements> truth,
+                     std::vector<ContinuousDifference>& differences) {
+  using Fault = ContinuousDifference::Fault;
+  const auto note = [&](const auto& elements, Fault fault) {
+    differences.push_back({pair.a, pair.b, elements.kind, elements.element_a, elements.element_b, fault});
+  };
+  auto found = reported.begin();
+  for (const TouchingElements& expected : truth) {
+    for (; found != reported.end() && place_of(*found) < place_of(expected); ++found) {
+      if (found->certainty == ImpactCertainty::certain) note(*found, Fault::added);
+    }
+    if (found == reported.end() || place_of(*found) != place_of(expected)) {
+      note(expected, Fault::missed);
+      continue;
+    }
+    if (found->toi > expected.time.low) note(expected, Fault::late);
+    const bool is_certain = found->certainty == ImpactCertainty::certain;
+    if (is_certain && found->toi < expected.time.high - toi_tolerance) note(expected, Fault::early);
+    ++found;
+  }
+  for (; found != reported.end(); ++found) {
+    if (found->certainty == ImpactCertainty::certain) note(*found, Fault::added);
+  }
 }
 
 }  // namespace supple

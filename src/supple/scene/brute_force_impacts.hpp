@@ -9,6 +9,7 @@
 #include "core/parallel.hpp"
 #include "supple/contact.hpp"
 #include "supple/mesh.hpp"
+#include "supple/result.hpp"
 
 namespace supple {
 
@@ -38,5 +39,10 @@ struct BruteForceImpacts {
 /// Every pair is decided, most of them many at a time: the boxes of b are sorted along x.
 BruteForceImpacts find_impacts_by_brute_force(const PlainMovingObject& a, const PlainMovingObject& b,
                                               bool same_object, double separation, const Parallel& parallel);
+
+/// Appends the differences between reported contacts and the truth, both in canonical order: contacts that
+/// are missed or added, and times that are later than the truth or more than `toi_tolerance` earlier.
+void compare_impacts(const ObjectPair& pair, std::span<const ContinuousContact> reported,
+                     std::span<const TouchingElements> truth, std::vector<ContinuousDifference>& differences);
 
 }  // namespace supple

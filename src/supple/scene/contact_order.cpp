@@ -60,10 +60,6 @@ constexpr std::size_t most_ranked = 256;
 constexpr int key_bits = 31;
 constexpr std::size_t padding = 16;
 
-bool precedes(const FoundContact& p, const FoundContact& q) {
-  return p.triangle_a != q.triangle_a ? p.triangle_a < q.triangle_a : p.triangle_b < q.triangle_b;
-}
-
 struct Bounds {
   std::uint32_t least = ~std::uint32_t{0}, most = 0;
 
@@ -114,7 +110,7 @@ std::span<const FoundContact> ContactOrder::sort(std::span<const FoundContact> f
     sort_by_buckets(found, keys, sorted);
   } else {
     std::copy(found.begin(), found.end(), sorted.begin());
-    std::sort(sorted.begin(), sorted.end(), precedes);
+    std::sort(sorted.begin(), sorted.end(), in_order_of_triangles);
   }
   return sorted;
 }
@@ -141,7 +137,7 @@ void ContactOrder::sort_by_buckets(std::span<const FoundContact> found, const Ke
   if (largest <= most_ranked) return;
   for (std::size_t bucket = 0, begin = 0; bucket < buckets; begin = ends[bucket++]) {
     const auto in_bucket = sorted.subspan(begin, ends[bucket] - begin);
-    if (in_bucket.size() > most_ranked) std::sort(in_bucket.begin(), in_bucket.end(), precedes);
+    if (in_bucket.size() > most_ranked) std::sort(in_bucket.begin(), in_bucket.end(), in_order_of_triangles);
   }
 }
 

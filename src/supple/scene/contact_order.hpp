@@ -11,7 +11,7 @@ namespace supple {
 /// A contact on its way into the result; of which two objects is known elsewhere.
 struct FoundContact {
   std::uint32_t triangle_a = 0, triangle_b = 0;
-  std::uint32_t first_point = 0;  ///< of those of the worker that found it
+  std::uint32_t details = 0;  ///< index in the details of the worker that found it
   std::uint16_t worker = 0;
   IntersectionKind kind = IntersectionKind::segment;
   std::uint8_t point_count = 0;
@@ -19,6 +19,10 @@ struct FoundContact {
   constexpr bool operator==(const FoundContact&) const = default;
 };
 static_assert(sizeof(FoundContact) == 16);
+
+inline bool in_order_of_triangles(const FoundContact& p, const FoundContact& q) {
+  return p.triangle_a != q.triangle_a ? p.triangle_a < q.triangle_a : p.triangle_b < q.triangle_b;
+}
 
 /// Puts the contacts of one job at a time into the order of the result: by triangle a, then by triangle b.
 /// Keeps its memory between jobs.

@@ -5,15 +5,11 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cstring>
-#include <type_traits>
 #include <utility>
 
-#include "supple/triangle_intersection.hpp"
+#include "contact/triangle_intersection.hpp"
 
 namespace supple {
-
-static_assert(std::is_trivially_copyable_v<Contact> && std::is_trivially_copyable_v<ContactPoint>);
 
 namespace {
 
@@ -48,108 +44,119 @@ std::span<const TrianglePair> in_order_of_results(std::span<const TrianglePair> 
 
 }  // namespace
 
-void ContactPass::run(std::span<const ContactJob> jobs, std::span<const ContactObject> objects,
-                      const SceneOptions& options, const Parallel& parallel, StepStats& stats) {
+bool ContactPass::run(std::span<const ContactJob> jobs, std::span<const ContactObject> objects,
+                      std::span<const std::uint64_t> versions, const ContactSearch& search,
+                      std::uint64_t max_contacts, const StopSignal& stop, const Parallel& parallel,
+                      StepStats& stats) {
   objects_ = objects;
-  options_ = options;
-  parallel_ = &parallel;
+  // The vertices of colliding leaves are not kept.
+  const bool is_same_search = search == search_ && !search.colliding_vertices;
+  search_ = search;
+  stop_ = stop;
   workers_.resize(parallel.worker_count());
   for (std::size_t w = 0; w < workers_.size(); ++w) {
     Worker& worker = workers_[w];
     worker.number = static_cast<std::uint16_t>(w);
+    worker.traversal.set_stop(stop);
     worker.found.clear();
+    worker.details.clear();
+    worker.unfinished.clear();
     worker.points.clear();
     worker.leaves.clear();
     worker.stats = {};
   }
   Timer timer;
-  plan_outcomes(jobs);
-  tasks_.plan(static_cast<std::uint32_t>(jobs_.size()), workers_.size(), workers_[0].traversal,
+  outcomes_.plan(jobs, versions, is_same_search);
+  limit_.start(max_contacts, jobs.size());
+  for (std::uint32_t job = 0; limit_.is_set() && job < jobs.size(); ++job)
+    limit_.add(job, outcomes_.ranges(job)[of_contacts].count);
+  tasks_.plan(outcomes_.open_jobs(), workers_.size(), workers_[0].traversal,
               [&](std::uint32_t job) { return view_of_job(job); });
-  task_outcomes_.resize(tasks_.tasks().size());
-  tasks_.run(parallel, workers_, [&](const ContactTask& task, Worker& worker) { run_task(task, worker); });
+  outcomes_.expect_tasks(tasks_.tasks().size());
+  tasks_.run(parallel, workers_, stop,
+             [&](std::size_t task, std::uint32_t w) { run_task(task, workers_[w]); });
   add_stats(workers_, timer.lap(), stats);
-  gather_contacts();
+  if (stop.stop_requested()) return false;
+  gather_contacts(parallel);
+  truncate(max_contacts);
+  outcomes_.list_groups(groups_, [&](std::uint32_t object) { return objects_[object].id; });
   gather_colliding_vertices();
-  stats.contacts = contacts_.size();
+  stats.contacts += contacts_.size();
   stats.sort_and_events_seconds += timer.lap();
-}
-
-/// Splits the jobs into those to be done and those whose outcome is known. Both lists ascend.
-void ContactPass::plan_outcomes(std::span<const ContactJob> jobs) {
-  outcomes_.swap(last_outcomes_);
-  if (!is_complete_) last_outcomes_.clear();
-  is_complete_ = false;
-  outcomes_.clear();
-  sources_.clear();
-  jobs_.clear();
-  std::uint32_t last = 0;
-  for (const ContactJob& job : jobs) {
-    const auto precedes = [&](const ContactJob& other) {
-      return other.a != job.a ? other.a < job.a : other.b < job.b;
-    };
-    while (last < last_outcomes_.size() && precedes(last_outcomes_[last].job)) ++last;
-    const Outcome outcome{job, objects_[job.a].version, objects_[job.b].version, {}, {}};
-    outcomes_.push_back(outcome);
-    // The vertices of colliding leaves are not kept.
-    const bool is_known = !options_.colliding_vertices && last < last_outcomes_.size() &&
-                          last_outcomes_[last].job.a == job.a && last_outcomes_[last].job.b == job.b &&
-                          last_outcomes_[last].version_a == outcome.version_a &&
-                          last_outcomes_[last].version_b == outcome.version_b;
-    sources_.push_back({is_known ? last : none, 0, 0});
-    if (!is_known) jobs_.push_back(job);
-  }
+  return true;
 }
 
 ObjectPairView ContactPass::view_of_job(std::uint32_t job) const {
-  const ContactObject& a = objects_[jobs_[job].a];
-  if (jobs_[job].a == jobs_[job].b) return self_pair_of(a.view);
-  return pair_of(a.view, objects_[jobs_[job].b].view);
+  const auto [a, b] = outcomes_.job(job);
+  return a == b ? self_pair_of(objects_[a].view) : pair_of(objects_[a].view, objects_[b].view);
 }
 
-void ContactPass::run_task(const ContactTask& task, Worker& worker) {
-  const ObjectPairView pair = view_of_job(task.job);
-  const std::span<const std::uint32_t> ids_a = objects_[jobs_[task.job].a].triangle_ids;
-  const std::span<const std::uint32_t> ids_b = objects_[jobs_[task.job].b].triangle_ids;
+void ContactPass::run_task(std::size_t task, Worker& worker) {
+  const auto [job, root] = tasks_.tasks()[task];
+  Outcomes::TaskOutcome& outcome = outcomes_.of_task(task);
+  const std::size_t first = worker.found.size(), first_point = worker.points.size();
+  outcome = {worker.number,
+             {{{static_cast<std::uint32_t>(first), 0}, {static_cast<std::uint32_t>(first_point), 0}}}};
+  if (limit_.excludes(ContactLimit::place(job, 0))) return;
+  const ObjectPairView pair = view_of_job(job);
   const auto on_leaves = [&](std::span<const LeafPair> leaf_pairs) {
-    if (!options_.colliding_vertices) return;
-    for (const LeafPair& leaves : leaf_pairs) worker.leaves.push_back({task.job, leaves});
+    if (!search_.colliding_vertices) return;
+    for (const LeafPair& leaves : leaf_pairs) worker.leaves.push_back({job, leaves});
   };
   const auto on_candidates = [&](std::span<const TrianglePair> candidates) {
-    if (options_.contacts == ContactMode::none) return;
+    if (!search_.contacts) return;
     Timer timer;
-    const std::size_t first = worker.found.size();
-    test_candidates(pair, ids_a, ids_b, candidates, worker);
-    for (FoundContact& found : std::span(worker.found).subspan(first)) {
+    const std::size_t first_of_batch = worker.found.size();
+    test_candidates(job, pair, candidates, worker);
+    const std::span<const std::uint32_t> ids_a = objects_[outcomes_.job(job).a].triangle_ids;
+    const std::span<const std::uint32_t> ids_b = objects_[outcomes_.job(job).b].triangle_ids;
+    for (FoundContact& found : std::span(worker.found).subspan(first_of_batch)) {
       found.triangle_a = ids_a[found.triangle_a];
       found.triangle_b = ids_b[found.triangle_b];
     }
+    if (limit_.is_set()) drop_excess(job, first, worker);
     worker.stats.exact_seconds += timer.lap();
   };
-  TaskOutcome& outcome = task_outcomes_[static_cast<std::size_t>(&task - tasks_.tasks().data())];
-  outcome = {worker.number,
-             {static_cast<std::uint32_t>(worker.found.size()), 0},
-             {static_cast<std::uint32_t>(worker.points.size()), 0}};
-  worker.traversal.find_triangle_pairs(pair, task.root, worker.stats.traversal, on_leaves, on_candidates);
-  outcome.contacts.count = static_cast<std::uint32_t>(worker.found.size()) - outcome.contacts.first;
-  outcome.points.count = static_cast<std::uint32_t>(worker.points.size()) - outcome.points.first;
+  worker.traversal.find_triangle_pairs(pair, root, worker.stats.traversal, on_leaves, on_candidates);
+  if (worker.unfinished.size() > 0) {
+    Timer timer;
+    add_normals(worker);
+    worker.stats.exact_seconds += timer.lap();
+  }
+  outcome.ranges[of_contacts].count = static_cast<std::uint32_t>(worker.found.size() - first);
+  outcome.ranges[of_points].count = static_cast<std::uint32_t>(worker.points.size() - first_point);
+  if (!limit_.is_set()) return;
+  limit_.add(job, outcome.ranges[of_contacts].count);
+  if (!search_.contact_points) return;
+  outcome.ranges[of_points].count = 0;  // without those of contacts that were dropped
+  for (const FoundContact& found : std::span(worker.found).subspan(first))
+    outcome.ranges[of_points].count += found.point_count;
 }
 
 /// Floating point decides all but few candidates, a block of them at a time in vector lanes.
-void ContactPass::test_candidates(const ObjectPairView& pair, std::span<const std::uint32_t> ids_a,
-                                  std::span<const std::uint32_t> ids_b,
+void ContactPass::test_candidates(std::uint32_t job, const ObjectPairView& pair,
                                   std::span<const TrianglePair> candidates, Worker& worker) const {
+  const std::span<const std::uint32_t> ids_a = objects_[outcomes_.job(job).a].triangle_ids;
+  const std::span<const std::uint32_t> ids_b = objects_[outcomes_.job(job).b].triangle_ids;
   const PlacedTriangles triangles_a{pair.a.arrays, pair.a.translation};
   const PlacedTriangles triangles_b{pair.b.arrays, pair.b.translation};
-  std::array<TrianglePair, pair_filter_capacity> ordered;
+  std::array<TrianglePair, pair_filter_capacity> ordered, wanted;
   for (std::size_t first = 0; first < candidates.size(); first += pair_filter_capacity) {
+    if (stop_.stop_requested()) return;
     auto part = candidates.subspan(first, std::min(pair_filter_capacity, candidates.size() - first));
     if (pair.same_object) part = in_order_of_results(part, ids_a, ordered);
+    if (limit_.excludes_some()) {
+      const auto end = std::copy_if(part.begin(), part.end(), wanted.begin(), [&](const TrianglePair& p) {
+        return !limit_.excludes(ContactLimit::place(job, ids_a[p.a]));
+      });
+      part = {wanted.begin(), end};
+      if (part.empty()) continue;
+    }
     const PairVerdicts verdicts = filter_pairs(triangles_a, triangles_b, part);
-    const std::uint64_t crossing = options_.contact_points ? 0 : verdicts.crossing;
+    const std::uint64_t crossing = search_.contact_points ? 0 : verdicts.crossing;
     for_each_bit(crossing, [&](std::size_t k) {
       worker.found.push_back({part[k].a, part[k].b, 0, worker.number, IntersectionKind::segment, 2});
-      // They are asked for once the whole batch is done.
+      // The end of the batch reads them.
       hwy::Prefetch(&ids_a[part[k].a]);
       hwy::Prefetch(&ids_b[part[k].b]);
     });
@@ -159,128 +166,112 @@ void ContactPass::test_candidates(const ObjectPairView& pair, std::span<const st
   }
 }
 
+void ContactPass::add_normals(Worker& worker) {
+  std::array<Vec3d, IntersectingPairs::capacity> normals;
+  separating_normals(worker.unfinished, normals.data());
+  ContactDetails* const first = worker.details.data() + worker.details.size() - worker.unfinished.size();
+  for (std::size_t i = 0; i < worker.unfinished.size(); ++i) first[i].normal = normals[i];
+  worker.unfinished.clear();
+}
+
 void ContactPass::test_candidate(const ObjectPairView& pair, TrianglePair candidate, Worker& worker) const {
-  const TriangleIntersection shared =
-      intersect_triangles(points_of(pair.a, candidate.a), points_of(pair.b, candidate.b));
+  const TrianglePoints a = points_of(pair.a, candidate.a), b = points_of(pair.b, candidate.b);
+  const TriangleIntersection shared = intersect_triangles_without_normal(a, b);
   worker.stats.exact_fallbacks += shared.used_exact_fallback ? 1 : 0;
   if (!shared.intersects) return;
-  worker.found.push_back({candidate.a, candidate.b, static_cast<std::uint32_t>(worker.points.size()),
+  worker.found.push_back({candidate.a, candidate.b, static_cast<std::uint32_t>(worker.details.size()),
                           worker.number, shared.kind, shared.point_count});
-  if (options_.contact_points) {
+  if (search_.contact_points) {
+    if (worker.unfinished.size() == IntersectingPairs::capacity) add_normals(worker);
+    worker.unfinished.add(a, b);
+    worker.details.push_back({{}, static_cast<std::uint32_t>(worker.points.size())});
     const auto points = shared.extreme_points();
     worker.points.insert(worker.points.end(), points.begin(), points.end());
   }
 }
 
+/// Of the contacts from `first` on, which are of one task, those that come after as many as are wanted.
+void ContactPass::drop_excess(std::uint32_t job, std::size_t first, Worker& worker) {
+  if (!limit_.drops_at(worker.found.size() - first)) return;
+  const auto begin = worker.found.begin() + static_cast<std::ptrdiff_t>(first);
+  const auto last = begin + static_cast<std::ptrdiff_t>(limit_.wanted() - 1);
+  std::nth_element(begin, last, worker.found.end(), in_order_of_triangles);
+  limit_.exclude_after(ContactLimit::place(job, last->triangle_a));
+  worker.found.erase(last + 1, worker.found.end());
+}
+
 /// Jobs are in order already: each gets its place, and is sorted within. What is known moves within the
 /// buffers, the rest is written around it.
-void ContactPass::gather_contacts() {
-  place_outcomes();
-  move_known(contacts_, &Outcome::contacts);
-  move_known(points_, &Outcome::points);
-  parallel_->for_ranges(outcomes_.size(), 8, [&](std::size_t begin, std::size_t end, std::uint32_t w) {
-    for (std::size_t i = begin; i < end; ++i) {
-      if (sources_[i].known == none) {
-        gather_found(sources_[i], outcomes_[i], workers_[w]);
+void ContactPass::gather_contacts(const Parallel& parallel) {
+  outcomes_.place(tasks_.tasks());
+  outcomes_.move_known<of_contacts>(contacts_);
+  outcomes_.move_known<of_points>(points_);
+  parallel.for_ranges(outcomes_.size(), 8, [&](std::size_t begin, std::size_t end, std::uint32_t w) {
+    for (std::size_t job = begin; job < end; ++job) {
+      if (outcomes_.is_known(job)) {
+        renumber_points(job);
       } else {
-        renumber_points(last_outcomes_[sources_[i].known], outcomes_[i]);
+        gather_found(job, workers_[w]);
       }
     }
   });
-  list_groups();
-  is_complete_ = true;
+  outcomes_.complete();
 }
 
-void ContactPass::place_outcomes() {
-  const std::span<const ContactTask> tasks = tasks_.tasks();
-  std::uint32_t job = 0, task = 0;
-  Range contacts, points;
-  for (std::size_t i = 0; i < outcomes_.size(); ++i) {
-    Outcome& outcome = outcomes_[i];
-    Source& source = sources_[i];
-    if (source.known != none) {
-      outcome.contacts.count = last_outcomes_[source.known].contacts.count;
-      outcome.points.count = last_outcomes_[source.known].points.count;
-    } else {
-      source.first_task = task;
-      for (; task < tasks.size() && tasks[task].job == job; ++task) {
-        outcome.contacts.count += task_outcomes_[task].contacts.count;
-        outcome.points.count += task_outcomes_[task].points.count;
-      }
-      source.task_count = task - source.first_task;
-      ++job;
-    }
-    contacts = outcome.contacts = {contacts.end(), outcome.contacts.count};
-    points = outcome.points = {points.end(), outcome.points.count};
-  }
-}
-
-/// Known outcomes are in the order that they had, so that none which moves down comes to lie on one which is
-/// yet to move up, nor the other way round.
-template <class Item>
-void ContactPass::move_known(std::vector<Item>& items, Range Outcome::*range) {
-  const std::size_t total = outcomes_.empty() ? 0 : (outcomes_.back().*range).end();
-  if (items.size() < total) items.resize(total);
-  const auto move = [&](std::size_t i, bool down) {
-    if (sources_[i].known == none) return;
-    const Range from = last_outcomes_[sources_[i].known].*range, to = outcomes_[i].*range;
-    if (to.first == from.first || (to.first < from.first) != down) return;
-    std::memmove(items.data() + to.first, items.data() + from.first, to.count * sizeof(Item));
-  };
-  for (std::size_t i = 0; i < outcomes_.size(); ++i) move(i, true);
-  for (std::size_t i = outcomes_.size(); i-- > 0;) move(i, false);
-  items.resize(total);
-}
-
-void ContactPass::renumber_points(const Outcome& known, const Outcome& outcome) {
-  const std::uint32_t change = outcome.points.first - known.points.first;
+void ContactPass::renumber_points(std::size_t job) {
+  const std::uint32_t change =
+      outcomes_.ranges(job)[of_points].first - outcomes_.last_ranges(job)[of_points].first;
   if (change == 0) return;
-  const auto first = contacts_.begin() + outcome.contacts.first;
-  std::for_each(first, first + outcome.contacts.count,
-                [&](Contact& contact) { contact.first_point += change; });
+  const Range contacts = outcomes_.ranges(job)[of_contacts];
+  for (Contact& contact : std::span(contacts_).subspan(contacts.first, contacts.count))
+    contact.first_point += change;
 }
 
 /// Those of one task are used where they are.
-std::span<const FoundContact> ContactPass::found_of(const Source& source, Worker& worker) const {
-  const auto tasks = std::span(task_outcomes_).subspan(source.first_task, source.task_count);
-  const auto found = [&](const TaskOutcome& task) {
-    return std::span(workers_[task.worker].found).subspan(task.contacts.first, task.contacts.count);
+std::span<const FoundContact> ContactPass::found_of(std::size_t job, Worker& worker) const {
+  const auto tasks = outcomes_.tasks_of(job);
+  const auto found = [&](const Outcomes::TaskOutcome& task) {
+    const Range contacts = task.ranges[of_contacts];
+    return std::span(workers_[task.worker].found).subspan(contacts.first, contacts.count);
   };
   if (tasks.size() == 1) return found(tasks.front());
   worker.of_job.clear();
-  for (const TaskOutcome& task : tasks) {
+  for (const Outcomes::TaskOutcome& task : tasks) {
     const auto part = found(task);
     worker.of_job.insert(worker.of_job.end(), part.begin(), part.end());
   }
   return worker.of_job;
 }
 
-void ContactPass::gather_found(const Source& source, const Outcome& outcome, Worker& worker) {
-  const ObjectId a = objects_[outcome.job.a].id, b = objects_[outcome.job.b].id;
-  Contact* contact = contacts_.data() + outcome.contacts.first;
-  std::uint32_t point = outcome.points.first;
-  for (const FoundContact& found : worker.order.sort(found_of(source, worker))) {
-    *contact++ = {a, b, found.triangle_a, found.triangle_b, found.kind, found.point_count, point};
-    if (!options_.contact_points) continue;
-    std::copy_n(workers_[found.worker].points.begin() + found.first_point, found.point_count,
-                points_.begin() + point);
-    point += found.point_count;
+void ContactPass::gather_found(std::size_t job, Worker& worker) {
+  const ObjectId a = objects_[outcomes_.job(job).a].id, b = objects_[outcomes_.job(job).b].id;
+  Contact* contact = contacts_.data() + outcomes_.ranges(job)[of_contacts].first;
+  std::uint32_t point = outcomes_.ranges(job)[of_points].first;
+  for (const FoundContact& found : worker.order.sort(found_of(job, worker))) {
+    *contact = {a, b, found.triangle_a, found.triangle_b, found.kind, found.point_count, point, {}};
+    if (search_.contact_points) {
+      const Worker& finder = workers_[found.worker];
+      const ContactDetails& details = finder.details[found.details];
+      contact->normal = details.normal;
+      std::copy_n(finder.points.begin() + details.first_point, found.point_count, points_.begin() + point);
+      point += found.point_count;
+    }
+    ++contact;
   }
 }
 
-void ContactPass::list_groups() {
-  groups_.clear();
-  for (const Outcome& outcome : outcomes_) {
-    if (outcome.contacts.count == 0) continue;
-    groups_.push_back({objects_[outcome.job.a].id, objects_[outcome.job.b].id, outcome.contacts.first,
-                       outcome.contacts.count});
-  }
+void ContactPass::truncate(std::uint64_t max_contacts) {
+  is_truncated_ = contacts_.size() > max_contacts;
+  if (!is_truncated_) return;
+  outcomes_.truncate(max_contacts);
+  points_.resize(contacts_[max_contacts].first_point);
+  contacts_.resize(max_contacts);
 }
 
 void ContactPass::gather_colliding_vertices() {
   vertex_groups_.clear();
   vertices_.clear();
-  if (!options_.colliding_vertices) return;
+  if (!search_.colliding_vertices) return;
   leaves_.clear();
   for (const Worker& worker : workers_)
     leaves_.insert(leaves_.end(), worker.leaves.begin(), worker.leaves.end());
@@ -291,11 +282,12 @@ void ContactPass::gather_colliding_vertices() {
     const std::uint32_t job = first->job;
     const auto last =
         std::find_if(first, leaves_.end(), [&](const auto& leaves) { return leaves.job != job; });
-    CollidingVertices group{objects_[jobs_[job].a].id, objects_[jobs_[job].b].id,
+    const ContactJob pair = outcomes_.job(job);
+    CollidingVertices group{objects_[pair.a].id, objects_[pair.b].id,
                             static_cast<std::uint32_t>(vertices_.size()), 0, 0};
-    append_marked_vertices(jobs_[job].a, {first, last}, false);
+    append_marked_vertices(pair.a, {first, last}, false);
     group.count_a = static_cast<std::uint32_t>(vertices_.size()) - group.first_vertex;
-    append_marked_vertices(jobs_[job].b, {first, last}, true);
+    append_marked_vertices(pair.b, {first, last}, true);
     group.count_b = static_cast<std::uint32_t>(vertices_.size()) - group.first_vertex - group.count_a;
     vertex_groups_.push_back(group);
     first = last;

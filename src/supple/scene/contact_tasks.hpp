@@ -1,12 +1,14 @@
 #pragma once
 
 #include <algorithm>
+#include <compare>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include "core/parallel.hpp"
+#include "core/stop_signal.hpp"
 #include "core/timer.hpp"
 #include "narrow_phase/traversal.hpp"
 #include "supple/result.hpp"
@@ -17,6 +19,8 @@ namespace supple {
 /// object against itself. `a <= b`.
 struct ContactJob {
   std::uint32_t a = 0, b = 0;
+
+  constexpr auto operator<=>(const ContactJob&) const = default;
 };
 
 /// Part of a job: what lies below a pair of nodes.
@@ -36,13 +40,13 @@ struct TaskStats {
 /// Splits jobs into tasks that load the workers evenly. Keeps its memory between steps.
 class ContactTasks {
  public:
-  /// One task a job; with several workers and few jobs, the first levels of the descent are done here to have
-  /// enough of them. `view_of_job(job)` gives an `ObjectPairView`.
+  /// One task for each of the numbers of jobs; with several workers and few jobs, the first levels of the
+  /// descent are done here to have enough of them. `view_of_job(job)` gives an `ObjectPairView`.
   template <class ViewOfJob>
-  void plan(std::uint32_t job_count, std::size_t worker_count, Traversal& traversal,
+  void plan(std::span<const std::uint32_t> jobs, std::size_t worker_count, Traversal& traversal,
             ViewOfJob&& view_of_job) {
     tasks_.clear();
-    for (std::uint32_t job = 0; job < job_count; ++job) tasks_.push_back({job, {}});
+    for (const std::uint32_t job : jobs) tasks_.push_back({job, {}});
     if (worker_count == 1) return;
     for (int round = 0; round < most_refinements && tasks_.size() < tasks_per_worker * worker_count;
          ++round) {
@@ -59,12 +63,14 @@ class ContactTasks {
   /// By job.
   std::span<const ContactTask> tasks() const { return tasks_; }
 
-  /// Calls `run_task(task, worker)` for all tasks, on all workers; each has `TaskStats stats`.
+  /// Calls `run_task(number of the task, worker number)` for all tasks, on all workers, until a stop is
+  /// requested; each worker has `TaskStats stats`.
   template <class Worker, class RunTask>
-  void run(const Parallel& parallel, std::vector<Worker>& workers, RunTask&& run_task) const {
+  void run(const Parallel& parallel, std::vector<Worker>& workers, const StopSignal& stop,
+           RunTask&& run_task) const {
     parallel.for_ranges(tasks_.size(), 1, [&](std::size_t begin, std::size_t end, std::uint32_t w) {
       Timer busy;
-      for (std::size_t i = begin; i < end; ++i) run_task(tasks_[i], workers[w]);
+      for (std::size_t i = begin; i < end && !stop.stop_requested(); ++i) run_task(i, w);
       workers[w].stats.busy_seconds += busy.lap();
     });
   }
@@ -77,8 +83,8 @@ class ContactTasks {
   std::vector<NodePair> finer_;
 };
 
-/// Adds up what the workers did. Traversal and exact stage took `wall_seconds` together, split as the
-/// workers' own clocks say.
+/// Adds what the workers did. Traversal and exact stage took `wall_seconds` together, split as the workers'
+/// own clocks say.
 template <class Worker>
 void add_stats(const std::vector<Worker>& workers, double wall_seconds, StepStats& stats) {
   double busy = 0, exact = 0;
@@ -93,8 +99,9 @@ void add_stats(const std::vector<Worker>& workers, double wall_seconds, StepStat
     stats.edge_edge_candidates += done.traversal.edge_edge_candidates;
     stats.exact_fallbacks += done.exact_fallbacks;
   }
-  stats.exact_seconds = wall_seconds * (busy > 0 ? std::min(1.0, exact / busy) : 0);
-  stats.traversal_seconds = wall_seconds - stats.exact_seconds;
+  const double exact_seconds = wall_seconds * (busy > 0 ? std::min(1.0, exact / busy) : 0);
+  stats.exact_seconds += exact_seconds;
+  stats.traversal_seconds += wall_seconds - exact_seconds;
 }
 
 }  // namespace supple

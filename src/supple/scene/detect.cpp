@@ -2,7 +2,7 @@
 #include <limits>
 #include <vector>
 
-#include "core/error.hpp"
+#include "contact/first_impact.hpp"
 #include "core/float_rounding.hpp"
 #include "core/timer.hpp"
 #include "geometry/aabb.hpp"
@@ -34,24 +34,44 @@ BoundingSphere grown(const BoundingSphere& sphere, double by) {
   return {sphere.center, round_up(sphere.radius + by)};
 }
 
+StopSignal stop_signal([[maybe_unused]] const DetectRequest& request) {
+#ifdef __cpp_lib_jthread
+  return request.stop;
+#else
+  return {};
+#endif
+}
+
 }  // namespace
 
-const DetectResult& Scene::Implementation::detect() {
-  result.stats = {};
+SearchedShapes Question::shapes() const {
+  return {searches_at_rest(), is_continuous(),
+          // The paper's output is of all leaves whose volumes overlap; neighbours come within a separation.
+          searches_at_rest() && !colliding_vertices, is_continuous() && impact.min_separation == 0};
+}
+
+const DetectResult& Scene::Implementation::detect(const DetectRequest& request) {
+  if (request.impact) check_impact_options(*request.impact, "DetectRequest::impact");
+  question_ = {request.contacts.value_or(options.contacts), request.impact.value_or(options.impact),
+               options.comparison.colliding_vertices};
+  const StopSignal stop = stop_signal(request);
+  result = {};
+  result.step = step_;
+  result.stopped = true;  // until it is published
+  mark_changed();
   Timer total, stage;
-  refit_objects();
+  refit_objects(question_);
   result.stats.refit_seconds = stage.lap();
-  find_object_pairs();
+  find_object_pairs(jobs_);
+  result.stats.broad_phase_method = pair_finder.stats().method;
+  result.stats.object_pairs_tested = pair_finder.stats().object_pairs_tested;
+  result.stats.object_pairs = jobs_.pairs.size();
   result.stats.broad_phase_seconds = stage.lap();
-  plan_jobs();
-  stage.lap();
-  rebuild_degraded();
+  if (stop.stop_requested()) return result;
+  rebuild_degraded(jobs_);
   result.stats.rebuild_seconds = stage.lap();
-  if (is_continuous()) {
-    find_impacts();
-  } else {
-    find_contacts();
-  }
+  if (question_.searches_at_rest() && !find_contacts(request, stop)) return result;
+  if (question_.is_continuous() && !find_impacts(request, stop)) return result;
   stage.lap();
   report_non_finite();
   publish();
@@ -85,8 +105,12 @@ void Scene::Implementation::for_each_object(std::span<const std::uint32_t> indic
   });
 }
 
-void Scene::Implementation::refit_objects() {
-  const double growth_of_volumes = is_continuous() ? growth(options.impact.min_separation) : 0;
+void Scene::Implementation::refit_objects(const Question& question) {
+  const SearchedShapes shapes = question.shapes();
+  const double growth_of_volumes = question.is_continuous() ? growth(question.impact.min_separation) : 0;
+  const bool is_another_search = searched_ != shapes || growth_ != growth_of_volumes;
+  searched_ = shapes;
+  growth_ = growth_of_volumes;
   boxes_.resize(slots_.size());
   spheres_.resize(slots_.size());
   versions_.resize(slots_.size(), 0);
@@ -95,30 +119,38 @@ void Scene::Implementation::refit_objects() {
   last_version_before_ = last_version_;
   for (std::uint32_t index = 0; index < slots_.size(); ++index) {
     const SceneObject* const object = slots_[index].object.get();
-    if (object == nullptr || !object->is_stale()) continue;
-    changed_[index] = 1;
-    versions_[index] = ++last_version_;
+    if (object == nullptr) continue;
+    if (object->has_moved()) {
+      versions_[index] = ++last_version_;
+      changed_[index] = 1;
+    }
+    if (!object->is_stale(shapes)) continue;
     stale_.push_back(index);
-    if (!object->needs_refit()) continue;
+    if (!object->needs_refit(shapes)) continue;
     ++result.stats.objects_refitted;
     result.stats.triangles_refitted += object->octree().triangles().size();
   }
-  const auto triangles_to_refit = [](const SceneObject& object) {
-    return object.needs_refit() ? object.octree().triangles().size() : std::size_t{0};
+  const auto triangles_to_refit = [&](const SceneObject& object) {
+    return object.needs_refit(shapes) ? object.octree().triangles().size() : std::size_t{0};
   };
   for_each_object(stale_, triangles_to_refit,
-                  [](SceneObject& object, const Parallel& workers) { object.update(workers); });
+                  [&](SceneObject& object, const Parallel& workers) { object.update(shapes, workers); });
   changed_slots_.clear();
   for (std::uint32_t index = 0; index < slots_.size(); ++index) {
-    if (changed_[index] == 0) continue;
-    changed_slots_.push_back(index);
+    if (changed_[index] == 0 && !is_another_search) continue;
     const SceneObject* const object = slots_[index].object.get();
-    boxes_[index] = object != nullptr ? grown(object->box(), growth_of_volumes) : Aabb{};
-    spheres_[index] = object != nullptr ? grown(object->sphere(), growth_of_volumes) : BoundingSphere{};
+    const Aabb box = object != nullptr ? grown(object->box(), growth_of_volumes) : Aabb{};
+    const BoundingSphere sphere =
+        object != nullptr ? grown(object->sphere(), growth_of_volumes) : BoundingSphere{};
+    if (changed_[index] == 0 && box == boxes_[index] && sphere == spheres_[index]) continue;
+    changed_[index] = 1;
+    changed_slots_.push_back(index);
+    boxes_[index] = box;
+    spheres_[index] = sphere;
   }
 }
 
-void Scene::Implementation::find_object_pairs() {
+void Scene::Implementation::find_object_pairs(Jobs& found) {
   ObjectVolumes volumes;
   volumes.dirty = changed_slots_;
   if (options.bounding_volume == BoundingVolume::sphere) {
@@ -128,13 +160,19 @@ void Scene::Implementation::find_object_pairs() {
   }
   const std::span<const IndexPair> overlapping = pair_finder.find_pairs(volumes, parallel);
   std::fill(changed_.begin(), changed_.end(), std::uint8_t{0});
-  result.stats.broad_phase_method = pair_finder.stats().method;
-  result.stats.object_pairs_tested = pair_finder.stats().object_pairs_tested;
-  object_pairs_.clear();
+  found.pairs.clear();
   for (const IndexPair& pair : overlapping) {
-    if (may_pair(pair)) object_pairs_.push_back({id_of(pair.a), id_of(pair.b)});
+    if (may_pair(pair)) found.pairs.push_back({id_of(pair.a), id_of(pair.b)});
   }
-  result.stats.object_pairs = object_pairs_.size();
+  found.jobs.clear();
+  auto pair = found.pairs.begin();
+  for (std::uint32_t index = 0; index < slots_.size(); ++index) {
+    const SceneObject* const object = slots_[index].object.get();
+    if (object == nullptr) continue;
+    if (object->options.self_collision) found.jobs.push_back({index, index});
+    for (; pair != found.pairs.end() && pair->a.index == index; ++pair)
+      found.jobs.push_back({index, pair->b.index});
+  }
 }
 
 bool Scene::Implementation::may_pair(const IndexPair& pair) const {
@@ -145,27 +183,14 @@ bool Scene::Implementation::may_pair(const IndexPair& pair) const {
   return !filter || filter(id_of(pair.a), id_of(pair.b));
 }
 
-/// Objects against themselves and each other, in canonical order.
-void Scene::Implementation::plan_jobs() {
-  jobs_.clear();
-  auto pair = object_pairs_.begin();
-  for (std::uint32_t index = 0; index < slots_.size(); ++index) {
-    const SceneObject* const object = slots_[index].object.get();
-    if (object == nullptr) continue;
-    if (object->options.self_collision) jobs_.push_back({index, index});
-    for (; pair != object_pairs_.end() && pair->a.index == index; ++pair)
-      jobs_.push_back({index, pair->b.index});
-  }
-}
-
 /// Of each octree, but those whose outcome is known as nothing moved. Another object asks for as much of an
 /// octree as the surface of what their boxes share.
-void Scene::Implementation::count_queries() {
+void Scene::Implementation::count_queries(const Jobs& jobs) {
   queries_.assign(slots_.size(), 0);
-  for (const ContactJob& job : jobs_) {
+  for (const ContactJob& job : jobs.jobs) {
     if (std::max(versions_[job.a], versions_[job.b]) <= last_version_before_) continue;
     if (job.a == job.b) {
-      queries_[job.a] += SceneObject::queries_of_self;
+      queries_[job.a] += RebuildPolicy::queries_of_self;
     } else {
       const double asked_for = half_surface(shared_box(boxes_[job.a], boxes_[job.b]));
       for (const std::uint32_t index : {job.a, job.b}) {
@@ -176,22 +201,23 @@ void Scene::Implementation::count_queries() {
 }
 
 /// Those for which it pays, some in a step: the others wait.
-void Scene::Implementation::rebuild_degraded() {
+void Scene::Implementation::rebuild_degraded(const Jobs& jobs) {
   constexpr std::uint64_t most_triangles = 65536;  // a step, but at least one object
   degraded_.clear();
   for (std::uint32_t index = 0; index < slots_.size(); ++index) {
     const SceneObject* const object = slots_[index].object.get();
-    if (object != nullptr && object->is_degraded()) degraded_.push_back(index);
+    if (object != nullptr && object->rebuild_policy().is_degraded()) degraded_.push_back(index);
   }
   if (degraded_.empty()) return;
-  count_queries();
+  count_queries(jobs);
   std::size_t chosen = 0;
   std::uint64_t triangles = 0;
   for (const std::uint32_t index : degraded_) {
     SceneObject& object = *slots_[index].object;
-    if (!(queries_[index] > 0) || !object.count_queries(queries_[index])) continue;
-    if (triangles > 0 && triangles + object.degraded_triangles() > most_triangles) continue;
-    triangles += object.degraded_triangles();
+    if (!(queries_[index] > 0) || !object.rebuild_policy().count_queries(queries_[index])) continue;
+    const std::uint64_t degraded = object.rebuild_policy().degraded_triangles(object.octree());
+    if (triangles > 0 && triangles + degraded > most_triangles) continue;
+    triangles += degraded;
     degraded_[chosen++] = index;
     result.stats.subtrees_rebuilt -= object.subtrees_rebuilt();
     result.stats.triangles_rebuilt -= object.triangles_rebuilt();
@@ -206,16 +232,19 @@ void Scene::Implementation::rebuild_degraded() {
   }
 }
 
-void Scene::Implementation::find_contacts() {
+bool Scene::Implementation::find_contacts(const DetectRequest& request, const StopSignal& stop) {
   contact_objects_.clear();
   for (std::uint32_t index = 0; index < slots_.size(); ++index) {
     const SceneObject* const object = slots_[index].object.get();
     contact_objects_.emplace_back();
     if (object == nullptr) continue;
-    contact_objects_.back() = {id_of(index), object->view(), object->octree().triangle_ids(),
-                               object->octree().vertex_count(), versions_[index]};
+    contact_objects_.back() = {id_of(index), object->resting_view(), object->octree().triangle_ids(),
+                               object->octree().vertex_count()};
   }
-  contact_pass_.run(jobs_, contact_objects_, options, parallel, result.stats);
+  const ContactSearch search{question_.has_intersections(), options.contact_points,
+                             options.comparison.colliding_vertices};
+  return contact_pass_.run(jobs_.jobs, contact_objects_, versions_, search, request.max_contacts, stop,
+                           parallel, result.stats);
 }
 
 void Scene::Implementation::list_moving_objects() {
@@ -224,31 +253,26 @@ void Scene::Implementation::list_moving_objects() {
     const SceneObject* const object = slots_[index].object.get();
     moving_objects_.emplace_back();
     if (object == nullptr) continue;
-    moving_objects_.back() = {id_of(index),   object->moving_view(),           &object->start(),
-                              &object->end(), object->octree().triangle_ids(), object->octree().vertex_ids()};
+    const MovingShape& shape = object->moving();
+    moving_objects_.back() = {id_of(index), object->moving_view(),           &shape.start(),
+                              &shape.end(), object->octree().triangle_ids(), shape.elements().vertex_ids()};
   }
 }
 
-void Scene::Implementation::find_impacts() {
+bool Scene::Implementation::find_impacts(const DetectRequest& request, const StopSignal& stop) {
   list_moving_objects();
-  impact_pass_.run(jobs_, moving_objects_, options.impact, parallel, result.stats);
+  return impact_pass_.run(jobs_.jobs, moving_objects_, versions_, question_.impact, request.max_contacts,
+                          stop, parallel, result.stats);
 }
 
-std::optional<ContinuousContact> Scene::Implementation::earliest_impact(const char* call) {
-  if (!is_continuous()) {
-    fail(std::string(call) +
-         ": the scene does not look for continuous contacts; make it with SceneOptions::contacts continuous");
-  }
+std::optional<ContinuousContact> Scene::Implementation::earliest_impact() {
   const StepStats stats = result.stats;
-  refit_objects();
-  find_object_pairs();
-  plan_jobs();
-  rebuild_degraded();
-  list_moving_objects();
+  refit_objects({ContactKinds::continuous, options.impact, false});
+  find_object_pairs(impact_jobs_);
+  rebuild_degraded(impact_jobs_);
   result.stats = stats;
-  result.object_pairs = {};  // they were of another call
-  mark_changed();
-  return impact_pass_.find_earliest(jobs_, moving_objects_, options.impact, parallel);
+  list_moving_objects();
+  return impact_pass_.find_earliest(impact_jobs_.jobs, moving_objects_, options.impact, parallel);
 }
 
 void Scene::Implementation::report_non_finite() {
@@ -256,32 +280,52 @@ void Scene::Implementation::report_non_finite() {
   for (std::uint32_t index = 0; index < slots_.size(); ++index) {
     const SceneObject* const object = slots_[index].object.get();
     if (object == nullptr) continue;
-    for (const std::uint32_t vertex : object->non_finite_vertices()) {
-      non_finite_.push_back(
-          {id_of(index), vertex, object->non_finite_position(object->octree().octree_vertex(vertex))});
-    }
+    for (const std::uint32_t vertex : object->non_finite_vertices(question_.shapes()))
+      non_finite_.push_back({id_of(index), vertex, object->non_finite_position(vertex)});
   }
 }
 
 void Scene::Implementation::publish() {
-  touching_pairs_.clear();
-  result.groups = is_continuous() ? impact_pass_.groups() : contact_pass_.groups();
-  for (const ContactGroup& group : result.groups) {
-    if (group.a != group.b) touching_pairs_.push_back({group.a, group.b});
+  result.stopped = false;
+  if (question_.searches_at_rest()) {
+    result.truncated = contact_pass_.is_truncated();
+    result.groups = contact_pass_.groups();
+    result.contacts = contact_pass_.contacts();
+    result.contact_points = contact_pass_.contact_points();
+    result.colliding_vertex_groups = contact_pass_.colliding_vertex_groups();
+    result.colliding_vertices = contact_pass_.colliding_vertices();
   }
-  volume_pairs_.update(object_pairs_);
+  if (question_.is_continuous()) {
+    result.truncated = result.truncated || impact_pass_.is_truncated();
+    result.continuous_groups = impact_pass_.groups();
+    result.continuous_contacts = impact_pass_.contacts();
+  }
+  list_touching_pairs();
+  volume_pairs_.update(jobs_.pairs);
   contact_pairs_.update(touching_pairs_);
-  result.step = step_++;
-  result.object_pairs = object_pairs_;
-  result.continuous_contacts = impact_pass_.contacts();
-  result.contacts = contact_pass_.contacts();
-  result.contact_points = contact_pass_.contact_points();
-  result.colliding_vertex_groups = contact_pass_.colliding_vertex_groups();
-  result.colliding_vertices = contact_pass_.colliding_vertices();
+  ++step_;
+  result.object_pairs = jobs_.pairs;
   result.non_finite_vertices = non_finite_;
   result.volume_events = volume_pairs_.events();
   result.contact_events = contact_pairs_.events();
   detected_ = true;
+}
+
+/// Of both kinds of contacts, each pair once.
+void Scene::Implementation::list_touching_pairs() {
+  touching_pairs_.clear();
+  auto other = result.continuous_groups.begin();
+  const auto add = [&](const ContactGroup& group) {
+    if (group.a != group.b) touching_pairs_.push_back({group.a, group.b});
+  };
+  for (const ContactGroup& group : result.groups) {
+    const ObjectPair pair{group.a, group.b};
+    for (; other != result.continuous_groups.end() && ObjectPair{other->a, other->b} < pair; ++other)
+      add(*other);
+    if (other != result.continuous_groups.end() && ObjectPair{other->a, other->b} == pair) ++other;
+    add(group);
+  }
+  for (; other != result.continuous_groups.end(); ++other) add(*other);
 }
 
 }  // namespace supple

@@ -7,6 +7,7 @@
 #include "geometry/aabb.hpp"
 #include "geometry/sphere.hpp"
 #include "geometry/vector.hpp"
+#include "mesh/share_vertex.hpp"
 #include "scene/scene_implementation.hpp"
 #include "scene/searched_volumes.hpp"
 #include "supple/triangle_intersection.hpp"
@@ -15,24 +16,22 @@ namespace supple {
 namespace {
 
 std::uint32_t octree_triangle(const SceneObject& object, std::uint32_t triangle) {
-  const std::span<const std::uint32_t> ids = object.octree().triangle_ids();
-  if (triangle >= ids.size()) {
-    fail("explain: " + object.options.name + " has no triangle " + std::to_string(triangle) + "; it has " +
-         std::to_string(ids.size()) + ", numbered from 0");
-  }
-  return static_cast<std::uint32_t>(std::find(ids.begin(), ids.end(), triangle) - ids.begin());
+  check_triangle(object, triangle, "explain");
+  return object.octree().octree_triangle(triangle);
 }
 
 TrianglePoints points_of(const SceneObject& object, std::uint32_t triangle) {
   const Triangle& corners = object.octree().triangles()[triangle];
-  return {object.position(corners[0]), object.position(corners[1]), object.position(corners[2])};
+  const Placement& placement = object.placement();
+  return {placement.position(corners[0]), placement.position(corners[1]), placement.position(corners[2])};
 }
 
 /// At either end of the step.
 bool is_inert(const SceneObject& object, std::uint32_t triangle) {
   const Triangle& corners = object.octree().triangles()[triangle];
   return std::any_of(corners.begin(), corners.end(), [&](std::uint32_t vertex) {
-    return !is_finite(object.position(vertex)) || !is_finite(object.start()[vertex]);
+    return !is_finite(object.placement().position(vertex)) ||
+           !is_finite(object.placement().start_position(vertex));
   });
 }
 
@@ -101,10 +100,10 @@ Vec3d center(const BoundingSphere& sphere, const Vec3d& translation) {
   return Vec3d{sphere.center.x, sphere.center.y, sphere.center.z} + translation;
 }
 
-PairExplanation objects_apart(const SceneObject& a, const SceneObject& b, const SceneOptions& options) {
-  const bool is_continuous = options.contacts == ContactMode::continuous;
+PairExplanation objects_apart(const SceneObject& a, const SceneObject& b, BoundingVolume bounding_volume,
+                              bool is_continuous) {
   PairExplanation explanation{.stage = PairStage::object_volumes};
-  if (options.bounding_volume == BoundingVolume::sphere) {
+  if (bounding_volume == BoundingVolume::sphere) {
     explanation.sphere_a = a.sphere();
     explanation.sphere_b = b.sphere();
     set_gap(explanation, center(b.sphere(), {}) - center(a.sphere(), {}));
@@ -152,7 +151,7 @@ PairExplanation triangle_boxes_apart(const TrianglePoints& a, const TrianglePoin
 
 PairExplanation triangles_apart(const TrianglePoints& a, const TrianglePoints& b) {
   PairExplanation explanation{.stage = PairStage::exact_test};
-  // Of continuous contacts they may meet all the same: when they did from the start, no element touching
+  // With continuous contacts they may still intersect: when they did so from the start and no element touches
   // another.
   if (triangles_intersect(a, b)) return explanation;
   const TriangleGap gap = triangle_gap(a, b);
@@ -167,9 +166,7 @@ PairExplanation triangles_apart(const TrianglePoints& a, const TrianglePoints& b
 bool Scene::Implementation::touch_on_the_way(const ContactJob& job, TrianglePair triangles) const {
   const auto corners = [&](std::uint32_t slot, std::uint32_t triangle) {
     const ObjectOctree& octree = slots_[slot].object->octree();
-    Triangle ids = octree.triangles()[triangle];
-    for (std::uint32_t& vertex : ids) vertex = octree.vertex_ids()[vertex];
-    return std::pair(octree.triangle_ids()[triangle], ids);
+    return std::pair(octree.triangle_ids()[triangle], octree.triangles()[triangle]);
   };
   const auto [id_a, corners_a] = corners(job.a, triangles.a);
   const auto [id_b, corners_b] = corners(job.b, triangles.b);
@@ -188,11 +185,12 @@ bool Scene::Implementation::touch_on_the_way(const ContactJob& job, TrianglePair
     return job.a == job.b && has(id_b, corners_b, face_a, contact.element_a) &&
            has(id_a, corners_a, face_b, contact.element_b);
   };
-  return std::any_of(result.groups.begin(), result.groups.end(), [&](const ContactGroup& group) {
-    if (group.a != id_of(job.a) || group.b != id_of(job.b)) return false;
-    const auto contacts = result.continuous_contacts_of(group);
-    return std::any_of(contacts.begin(), contacts.end(), touches);
-  });
+  return std::any_of(result.continuous_groups.begin(), result.continuous_groups.end(),
+                     [&](const ContactGroup& group) {
+                       if (group.a != id_of(job.a) || group.b != id_of(job.b)) return false;
+                       const auto contacts = result.continuous_contacts_of(group);
+                       return std::any_of(contacts.begin(), contacts.end(), touches);
+                     });
 }
 
 /// The stages of `detect`, one after the other; triangles in the order in which the descent takes them.
@@ -202,13 +200,13 @@ PairExplanation Scene::Implementation::explain_in_order(const ContactJob& job, T
   if (same_object ? !a.options.self_collision : !may_pair({job.a, job.b}))
     return {.stage = PairStage::not_tested};
   // Elements touch on their own account, whatever triangles they belong to.
-  if (is_continuous() && touch_on_the_way(job, triangles)) return {};
+  if (question_.is_continuous() && touch_on_the_way(job, triangles)) return {};
   if (same_object && share_vertex(a.octree().triangles()[triangles.a], b.octree().triangles()[triangles.b]))
     return {.stage = PairStage::shared_vertex};
   if (is_inert(a, triangles.a) || is_inert(b, triangles.b)) return {.stage = PairStage::inert};
   const ObjectPair ids{id_of(job.a), id_of(job.b)};
-  if (!same_object && !std::binary_search(object_pairs_.begin(), object_pairs_.end(), ids))
-    return objects_apart(a, b, options);
+  if (!same_object && !std::binary_search(jobs_.pairs.begin(), jobs_.pairs.end(), ids))
+    return objects_apart(a, b, options.bounding_volume, question_.is_continuous());
   const ObjectPairView pair = search_view(job);
   const LanePair at = last_lanes(pair, triangles);
   if (at.apart) return cells_apart(pair, at);
@@ -216,7 +214,7 @@ PairExplanation Scene::Implementation::explain_in_order(const ContactJob& job, T
   const bool boxes_apart =
       pair.is_moving() ? moving_faces_apart(pair, triangles) : leaf_triangles_apart(pair, at, triangles);
   if (boxes_apart) return triangle_boxes_apart(points_a, points_b);
-  if (!is_continuous() && triangles_intersect(points_a, points_b)) return {};
+  if (question_.searches_at_rest() && triangles_intersect(points_a, points_b)) return {};
   return triangles_apart(points_a, points_b);
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <numeric>
 #include <tuple>
 #include <type_traits>
 #include <utility>
@@ -42,12 +43,17 @@ std::array<VertexRef, 4> vertices_of(ElementPairKind kind, ElementPair pair, con
   }
 }
 
+Vec3d placed(const Vec3d& position, const MovingObject& object) {
+  return object.view.translation == Vec3d{} ? position : position + object.view.translation;
+}
+
 template <class Motion>
 Motion motion_of(const std::array<VertexRef, 4>& vertices) {
   Motion motion;
   for (std::size_t i = 0; i < 4; ++i) {
-    motion.start[i] = (*vertices[i].object->start)[vertices[i].vertex];
-    motion.end[i] = (*vertices[i].object->end)[vertices[i].vertex];
+    const MovingObject& object = *vertices[i].object;
+    motion.start[i] = placed((*object.start)[vertices[i].vertex], object);
+    motion.end[i] = placed((*object.end)[vertices[i].vertex], object);
   }
   return motion;
 }
@@ -70,29 +76,43 @@ void sort_edges(std::array<VertexRef, 4>& vertices) {
   }
 }
 
-/// Positions of an object in octree order at both ends of the step.
+/// Positions of an object at both ends of the step; not translated.
 template <class Scalar>
-struct Path {
-  VertexArray<Scalar> start, end;
-
+class Path {
+ public:
   explicit Path(const MovingObject& object) {
     if constexpr (std::is_same_v<Scalar, float>) {
-      start = object.start->floats(), end = object.end->floats();
+      start_ = object.start->floats(), end_ = object.end->floats();
     } else {
-      start = object.start->doubles(), end = object.end->doubles();
+      start_ = object.start->doubles(), end_ = object.end->doubles();
     }
   }
+  Vec3<Scalar> start(std::uint32_t vertex) const { return at(start_, vertex); }
+  Vec3<Scalar> end(std::uint32_t vertex) const { return at(end_, vertex); }
+
+ private:
+  static Vec3<Scalar> at(const VertexArray<Scalar>& positions, std::uint32_t vertex) {
+    const Scalar* const p = positions[vertex];
+    return {p[0], p[1], p[2]};
+  }
+
+  VertexArray<Scalar> start_, end_;
 };
 
-template <class Scalar>
-Vec3<Scalar> vertex(const VertexArray<Scalar>& positions, std::uint32_t index) {
-  const Scalar* const p = positions[index];
-  return {p[0], p[1], p[2]};
-}
+/// The same, translated or not.
+class PlacedPath {
+ public:
+  explicit PlacedPath(const MovingObject& object) : object_(object) {}
+  Vec3d start(std::uint32_t vertex) const { return placed((*object_.start)[vertex], object_); }
+  Vec3d end(std::uint32_t vertex) const { return placed((*object_.end)[vertex], object_); }
+
+ private:
+  const MovingObject& object_;
+};
 
 /// Fills a block with pairs as they are until `latest`. Differences of floats are rounded to float once, all
 /// others in double before.
-template <class ScalarA, class ScalarB>
+template <class PathA, class PathB>
 class BlockFill {
  public:
   BlockFill(const MovingObject& a, const MovingObject& b, float latest, RelativeMotionBlock& block)
@@ -111,21 +131,21 @@ class BlockFill {
  private:
   using Row = RelativeMotionBlock;
 
-  template <class ScalarV, class ScalarF>
-  void set_vertex_face(std::size_t k, const Path<ScalarV>& v, std::uint32_t index, const Path<ScalarF>& f,
+  template <class PathV, class PathF>
+  void set_vertex_face(std::size_t k, const PathV& v, std::uint32_t index, const PathF& f,
                        const Triangle& face) {
-    const Vec3<ScalarF> s0 = vertex(f.start, face[0]), e0 = vertex(f.end, face[0]);
-    set(k, Row::m, difference(vertex(v.start, index), s0), difference(vertex(v.end, index), e0));
-    set(k, Row::u, difference(vertex(f.start, face[1]), s0), difference(vertex(f.end, face[1]), e0));
-    set(k, Row::w, difference(vertex(f.start, face[2]), s0), difference(vertex(f.end, face[2]), e0));
+    const auto s0 = f.start(face[0]), e0 = f.end(face[0]);
+    set(k, Row::m, difference(v.start(index), s0), difference(v.end(index), e0));
+    set(k, Row::u, difference(f.start(face[1]), s0), difference(f.end(face[1]), e0));
+    set(k, Row::w, difference(f.start(face[2]), s0), difference(f.end(face[2]), e0));
   }
 
   void set_edge_edge(std::size_t k, const Edge& p, const Edge& q) {
-    const Vec3<ScalarA> sp = vertex(path_a_.start, p[0]), ep = vertex(path_a_.end, p[0]);
-    const Vec3<ScalarB> sq = vertex(path_b_.start, q[0]), eq = vertex(path_b_.end, q[0]);
+    const auto sp = path_a_.start(p[0]), ep = path_a_.end(p[0]);
+    const auto sq = path_b_.start(q[0]), eq = path_b_.end(q[0]);
     set(k, Row::m, difference(sp, sq), difference(ep, eq));
-    set(k, Row::u, difference(sp, vertex(path_a_.start, p[1])), difference(ep, vertex(path_a_.end, p[1])));
-    set(k, Row::w, difference(vertex(path_b_.start, q[1]), sq), difference(vertex(path_b_.end, q[1]), eq));
+    set(k, Row::u, difference(sp, path_a_.start(p[1])), difference(ep, path_a_.end(p[1])));
+    set(k, Row::w, difference(path_b_.start(q[1]), sq), difference(path_b_.end(q[1]), eq));
   }
 
   template <class P, class Q>
@@ -147,17 +167,33 @@ class BlockFill {
 
   const MovingObject& a_;
   const MovingObject& b_;
-  Path<ScalarA> path_a_;
-  Path<ScalarB> path_b_;
+  PathA path_a_;
+  PathB path_b_;
   float latest_;
   RelativeMotionBlock& block_;
 };
 
-template <class ScalarA, class ScalarB>
+template <class PathA, class PathB>
 void fill(const MovingObject& a, const MovingObject& b, float latest, ElementPairKind kind,
           std::span<const ElementPair> candidates, RelativeMotionBlock& block) {
-  BlockFill<ScalarA, ScalarB> filled(a, b, latest, block);
+  BlockFill<PathA, PathB> filled(a, b, latest, block);
   for (std::size_t k = 0; k < candidates.size(); ++k) filled.set(k, kind, candidates[k]);
+}
+
+/// Within a job.
+auto order_of(const ContinuousContact& contact) {
+  return std::tie(contact.kind, contact.element_a, contact.element_b);
+}
+
+/// In a search for the earliest.
+bool is_earlier(const ContinuousContact& p, std::uint32_t job_p, const ContinuousContact& q,
+                std::uint32_t job_q) {
+  if (p.toi != q.toi) return p.toi < q.toi;
+  return job_p != job_q ? job_p < job_q : order_of(p) < order_of(q);
+}
+
+std::uint64_t place_of(std::uint32_t job, ElementPairKind kind, std::uint32_t first_of_element_a) {
+  return ContactLimit::place(job, static_cast<std::uint32_t>(kind) << 30 | first_of_element_a >> 2);
 }
 
 /// What the impact says of the elements of a and b.
@@ -186,51 +222,74 @@ void set_impact(ContinuousContact& contact, const Impact& impact) {
 
 }  // namespace
 
-void ImpactPass::run(std::span<const ContactJob> jobs, std::span<const MovingObject> objects,
-                     const ImpactOptions& options, const Parallel& parallel, StepStats& stats) {
+bool ImpactPass::run(std::span<const ContactJob> jobs, std::span<const MovingObject> objects,
+                     std::span<const std::uint64_t> versions, const ImpactOptions& options,
+                     std::uint64_t max_contacts, const StopSignal& stop, const Parallel& parallel,
+                     StepStats& stats) {
   Timer timer;
-  search(Search::all, jobs, objects, options, parallel);
+  const bool is_same_search =
+      options.min_separation == last_options_.min_separation && options.exact == last_options_.exact;
+  last_options_ = options;
+  start(jobs, objects, options, stop);
+  outcomes_.plan(jobs, versions, is_same_search);
+  limit_.start(max_contacts, jobs.size());
+  for (std::uint32_t job = 0; limit_.is_set() && job < jobs.size(); ++job)
+    limit_.add(job, outcomes_.ranges(job)[0].count);
+  search(Search::all, outcomes_.open_jobs(), parallel);
   add_stats(workers_, timer.lap(), stats);
-  gather_contacts();
-  stats.contacts = contacts_.size();
+  if (stop.stop_requested()) return false;
+  gather_contacts(parallel);
+  is_truncated_ = contacts_.size() > max_contacts;
+  if (is_truncated_) {
+    outcomes_.truncate(max_contacts);
+    contacts_.resize(max_contacts);
+  }
+  outcomes_.list_groups(groups_, [&](std::uint32_t object) { return objects_[object].id; });
+  stats.contacts += contacts_.size();
   stats.sort_and_events_seconds += timer.lap();
+  return true;
 }
 
 std::optional<ContinuousContact> ImpactPass::find_earliest(std::span<const ContactJob> jobs,
                                                            std::span<const MovingObject> objects,
                                                            const ImpactOptions& options,
                                                            const Parallel& parallel) {
-  search(Search::earliest, jobs, objects, options, parallel);
-  const Worker* best = nullptr;
+  start(jobs, objects, options, {});
+  limit_.start(ContactLimit::unlimited, 0);
+  all_jobs_.resize(jobs.size());
+  std::iota(all_jobs_.begin(), all_jobs_.end(), 0u);
+  search(Search::earliest, all_jobs_, parallel);
+  const Earliest* best = nullptr;
   for (const Worker& worker : workers_) {
     if (!worker.earliest) continue;
-    if (best == nullptr || std::tie(worker.earliest->toi, worker.earliest_key) <
-                               std::tie(best->earliest->toi, best->earliest_key)) {
-      best = &worker;
-    }
+    const Earliest& found = *worker.earliest;
+    if (best == nullptr || is_earlier(found.contact, found.job, best->contact, best->job)) best = &found;
   }
-  return best != nullptr ? best->earliest : std::nullopt;
+  return best != nullptr ? std::optional(best->contact) : std::nullopt;
 }
 
-void ImpactPass::search(Search search, std::span<const ContactJob> jobs,
-                        std::span<const MovingObject> objects, const ImpactOptions& options,
-                        const Parallel& parallel) {
-  search_ = search;
+void ImpactPass::start(std::span<const ContactJob> jobs, std::span<const MovingObject> objects,
+                       const ImpactOptions& options, const StopSignal& stop) {
   jobs_ = jobs;
   objects_ = objects;
   options_ = options;
-  parallel_ = &parallel;
+  stop_ = stop;
+}
+
+void ImpactPass::search(Search search, std::span<const std::uint32_t> jobs, const Parallel& parallel) {
+  search_ = search;
   latest_ = 1;
   workers_.resize(parallel.worker_count());
   for (Worker& worker : workers_) {
+    worker.traversal.set_stop(stop_);
     worker.found.clear();
-    worker.keys.clear();
     worker.stats = {};
     worker.earliest.reset();
   }
-  tasks_.plan(static_cast<std::uint32_t>(jobs.size()), workers_.size(), workers_[0].traversal,
+  tasks_.plan(jobs, workers_.size(), workers_[0].traversal,
               [&](std::uint32_t job) { return view_of_job(job); });
-  tasks_.run(parallel, workers_, [&](const ContactTask& task, Worker& worker) { run_task(task, worker); });
+  if (search == Search::all) outcomes_.expect_tasks(tasks_.tasks().size());
+  tasks_.run(parallel, workers_, stop_, [&](std::size_t task, std::uint32_t w) { run_task(task, w); });
 }
 
 ObjectPairView ImpactPass::view_of_job(std::uint32_t job) const {
@@ -242,34 +301,67 @@ ObjectPairView ImpactPass::view_of_job(std::uint32_t job) const {
   return pair;
 }
 
-void ImpactPass::run_task(const ContactTask& task, Worker& worker) {
-  worker.traversal.find_element_pairs(
-      view_of_job(task.job), task.root, worker.stats.traversal,
-      [&](ElementPairKind kind, std::span<const ElementPair> candidates) {
-        Timer timer;
-        for (std::size_t first = 0; first < candidates.size(); first += block_size) {
-          const std::size_t count = std::min(block_size, candidates.size() - first);
-          test_candidates(task.job, kind, candidates.subspan(first, count), worker);
-        }
-        worker.stats.exact_seconds += timer.lap();
-      });
+void ImpactPass::run_task(std::size_t task, std::uint32_t w) {
+  const auto [job, root] = tasks_.tasks()[task];
+  Worker& worker = workers_[w];
+  const std::size_t first = worker.found.size();
+  const auto set_outcome = [&] {
+    const auto count = static_cast<std::uint32_t>(worker.found.size() - first);
+    if (search_ == Search::all) outcomes_.of_task(task) = {w, {{{static_cast<std::uint32_t>(first), count}}}};
+    limit_.add(job, count);
+  };
+  if (limit_.excludes(ContactLimit::place(job, 0))) return set_outcome();
+  worker.traversal.find_element_pairs(view_of_job(job), root, worker.stats.traversal,
+                                      [&](ElementPairKind kind, std::span<const ElementPair> candidates) {
+                                        Timer timer;
+                                        test_candidates(job, kind, candidates, worker);
+                                        if (limit_.is_set()) drop_excess(job, first, worker);
+                                        worker.stats.exact_seconds += timer.lap();
+                                      });
+  set_outcome();
 }
 
-/// Most candidates are far from touching: that is decided for a block at a time, in vector lanes.
 void ImpactPass::test_candidates(std::uint32_t job, ElementPairKind kind,
                                  std::span<const ElementPair> candidates, Worker& worker) {
   const MovingObject& a = objects_[jobs_[job].a];
   const MovingObject& b = objects_[jobs_[job].b];
-  const float latest = latest_.load(std::memory_order_relaxed);
-  const auto fill_block = a.end->is_double() ? b.end->is_double() ? fill<double, double> : fill<double, float>
-                          : b.end->is_double() ? fill<float, double>
-                                               : fill<float, float>;
-  fill_block(a, b, latest, kind, candidates, worker.block);
-  std::uint64_t left = may_touch(worker.block, candidates.size(), kind == ElementPairKind::edge_edge,
-                                 round_up(options_.min_separation));
-  for (; left != 0; left &= left - 1) {
-    test_candidate(job, kind, candidates[static_cast<std::size_t>(std::countr_zero(left))], worker);
+  const bool is_translated = a.view.translation != Vec3d{} || b.view.translation != Vec3d{};
+  const bool doubles_a = a.end->is_double(), doubles_b = b.end->is_double();
+  const auto fill_block = is_translated ? fill<PlacedPath, PlacedPath>
+                          : doubles_a
+                              ? doubles_b ? fill<Path<double>, Path<double>> : fill<Path<double>, Path<float>>
+                          : doubles_b ? fill<Path<float>, Path<double>>
+                                      : fill<Path<float>, Path<float>>;
+  const bool excludes = limit_.excludes_some();
+  for (; !candidates.empty() && !stop_.stop_requested();
+       candidates = candidates.subspan(std::min(block_size, candidates.size()))) {
+    const auto part = candidates.first(std::min(block_size, candidates.size()));
+    fill_block(a, b, latest_.load(std::memory_order_relaxed), kind, part, worker.block);
+    std::uint64_t left = may_touch(worker.block, part.size(), kind == ElementPairKind::edge_edge,
+                                   round_up(options_.min_separation));
+    for (; left != 0 && !stop_.stop_requested(); left &= left - 1) {
+      const ElementPair candidate = part[static_cast<std::size_t>(std::countr_zero(left))];
+      if (!excludes || !is_excluded(job, kind, candidate)) test_candidate(job, kind, candidate, worker);
+    }
   }
+}
+
+/// By the first number of element a, which is the user's smallest one.
+bool ImpactPass::is_excluded(std::uint32_t job, ElementPairKind kind, ElementPair candidate) const {
+  const MovingObject& a = objects_[jobs_[job].a];
+  const auto least = [](const MovingObject& object, const Edge& edge) {
+    return std::min(object.vertex_ids[edge[0]], object.vertex_ids[edge[1]]);
+  };
+  std::uint32_t first = 0;
+  if (kind == ElementPairKind::vertex_face) {
+    first = a.vertex_ids[candidate.a];
+  } else if (kind == ElementPairKind::face_vertex) {
+    first = a.triangle_ids[candidate.a];
+  } else {
+    first = least(a, a.view.moving.edge_ids[candidate.a]);
+    if (jobs_[job].a == jobs_[job].b) first = std::min(first, least(a, a.view.moving.edge_ids[candidate.b]));
+  }
+  return limit_.excludes(place_of(job, kind, first));
 }
 
 void ImpactPass::test_candidate(std::uint32_t job, ElementPairKind kind, ElementPair candidate,
@@ -303,22 +395,16 @@ void ImpactPass::test_candidate(std::uint32_t job, ElementPairKind kind, Element
   worker.stats.exact_fallbacks += used_exact ? 1 : 0;
   if (!impact) return;
   set_impact(contact, *impact);
-  keep({job, kind, contact.element_a, contact.element_b}, contact, worker);
+  if (search_ == Search::all) {
+    worker.found.push_back(contact);
+  } else {
+    keep_earlier(job, contact, worker);
+  }
 }
 
-void ImpactPass::keep(Key key, const ContinuousContact& contact, Worker& worker) {
-  if (search_ == Search::all) {
-    key.worker = static_cast<std::uint32_t>(&worker - workers_.data());
-    key.index = static_cast<std::uint32_t>(worker.found.size());
-    worker.keys.push_back(key);
-    worker.found.push_back(contact);
-    return;
-  }
-  if (worker.earliest && std::tie(worker.earliest->toi, worker.earliest_key) < std::tie(contact.toi, key)) {
-    return;
-  }
-  worker.earliest = contact;
-  worker.earliest_key = key;
+void ImpactPass::keep_earlier(std::uint32_t job, const ContinuousContact& contact, Worker& worker) {
+  if (worker.earliest && !is_earlier(contact, job, worker.earliest->contact, worker.earliest->job)) return;
+  worker.earliest = {contact, job};
   // Reported times may be early by the tolerance, so that the first of them can be of a pair that touches
   // after the first touch.
   const float until = round_up(contact.toi + toi_tolerance);
@@ -327,39 +413,41 @@ void ImpactPass::keep(Key key, const ContinuousContact& contact, Worker& worker)
   }
 }
 
-/// Sorts each worker's keys and merges them pair by pair, in parallel, into those of the first.
-void ImpactPass::merge_keys() {
-  parallel_->for_ranges(workers_.size(), 1, [&](std::size_t begin, std::size_t end, std::uint32_t) {
-    for (std::size_t w = begin; w < end; ++w) std::sort(workers_[w].keys.begin(), workers_[w].keys.end());
-  });
-  for (std::size_t step = 1; step < workers_.size(); step *= 2) {
-    const std::size_t merges = (workers_.size() - step + 2 * step - 1) / (2 * step);
-    parallel_->for_ranges(merges, 1, [&](std::size_t begin, std::size_t end, std::uint32_t) {
-      for (std::size_t i = begin; i < end; ++i) {
-        Worker& first = workers_[2 * step * i];
-        const Worker& second = workers_[2 * step * i + step];
-        first.merged_keys.resize(first.keys.size() + second.keys.size());
-        std::merge(first.keys.begin(), first.keys.end(), second.keys.begin(), second.keys.end(),
-                   first.merged_keys.begin());
-        first.keys.swap(first.merged_keys);
-      }
-    });
-  }
+/// Of the contacts from `first` on, which are of one task, those that come after as many as are wanted.
+void ImpactPass::drop_excess(std::uint32_t job, std::size_t first, Worker& worker) {
+  if (!limit_.drops_at(worker.found.size() - first)) return;
+  const auto begin = worker.found.begin() + static_cast<std::ptrdiff_t>(first);
+  const auto last = begin + static_cast<std::ptrdiff_t>(limit_.wanted() - 1);
+  std::nth_element(
+      begin, last, worker.found.end(),
+      [](const ContinuousContact& p, const ContinuousContact& q) { return order_of(p) < order_of(q); });
+  limit_.exclude_after(place_of(job, last->kind, last->element_a[0]));
+  worker.found.erase(last + 1, worker.found.end());
 }
 
-void ImpactPass::gather_contacts() {
-  merge_keys();
-  const std::vector<Key>& keys = workers_.front().keys;
-  contacts_.resize(keys.size());
-  parallel_->for_ranges(keys.size(), 4096, [&](std::size_t begin, std::size_t end, std::uint32_t) {
-    for (std::size_t i = begin; i < end; ++i) contacts_[i] = workers_[keys[i].worker].found[keys[i].index];
+/// Jobs are in order already: each gets its place, and is sorted within.
+void ImpactPass::gather_contacts(const Parallel& parallel) {
+  outcomes_.place(tasks_.tasks());
+  outcomes_.move_known<0>(contacts_);
+  parallel.for_ranges(outcomes_.size(), 8, [&](std::size_t begin, std::size_t end, std::uint32_t w) {
+    for (std::size_t job = begin; job < end; ++job) {
+      if (!outcomes_.is_known(job)) gather_found(job, workers_[w]);
+    }
   });
-  groups_.clear();
-  for (std::uint32_t i = 0; i < keys.size(); ++i) {
-    if (i == 0 || keys[i].job != keys[i - 1].job)
-      groups_.push_back({contacts_[i].object_a, contacts_[i].object_b, i, 0});
-    ++groups_.back().contact_count;
+  outcomes_.complete();
+}
+
+void ImpactPass::gather_found(std::size_t job, Worker& worker) {
+  worker.keys.clear();
+  for (const auto& task : outcomes_.tasks_of(job)) {
+    for (std::uint32_t i = task.ranges[0].first; i < task.ranges[0].end(); ++i) {
+      const ContinuousContact& contact = workers_[task.worker].found[i];
+      worker.keys.push_back({contact.kind, contact.element_a, contact.element_b, task.worker, i});
+    }
   }
+  std::sort(worker.keys.begin(), worker.keys.end());
+  ContinuousContact* contact = contacts_.data() + outcomes_.ranges(job)[0].first;
+  for (const Key& key : worker.keys) *contact++ = workers_[key.worker].found[key.index];
 }
 
 }  // namespace supple

@@ -2,7 +2,6 @@
 
 #include <array>
 #include <atomic>
-#include <compare>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -10,85 +9,103 @@
 
 #include "contact/impact_filter.hpp"
 #include "core/parallel.hpp"
+#include "core/stop_signal.hpp"
 #include "narrow_phase/traversal.hpp"
 #include "octree/vertex_buffer.hpp"
+#include "scene/contact_limit.hpp"
 #include "scene/contact_tasks.hpp"
+#include "scene/job_outcomes.hpp"
 #include "supple/contact.hpp"
 #include "supple/options.hpp"
 #include "supple/result.hpp"
 
 namespace supple {
 
-/// What the pass reads of an object in motion; `start` and `end` are the same at rest.
+/// What the pass reads of an object in motion, in the numbers of its `SurfaceElements`; `start` and `end` are
+/// the same at rest, and only then may the view have a translation.
 struct MovingObject {
   ObjectId id;
   OctreeView view;
   const VertexBuffer* start = nullptr;
   const VertexBuffer* end = nullptr;
-  std::span<const std::uint32_t> triangle_ids, vertex_ids;  ///< octree order to the user's
+  std::span<const std::uint32_t> triangle_ids, vertex_ids;  ///< to the user's
 };
 
 /// Narrow phase and exact stage of continuous contacts over all jobs of a step, on all workers. Candidates
 /// stream from one to the other in batches. Keeps its memory between steps.
 class ImpactPass {
  public:
-  /// All contacts, in canonical order whatever the threads. `jobs` ascending; `objects` are addressed by
-  /// them.
-  void run(std::span<const ContactJob> jobs, std::span<const MovingObject> objects,
-           const ImpactOptions& options, const Parallel& parallel, StepStats& stats);
-  /// The first contact in time, then in order.
+  /// `jobs` ascending; `objects` are addressed by them, and `versions` are of their positions. The first
+  /// `max_contacts`, in canonical order whatever the threads. Returns false, the lists being of no use, when
+  /// it was stopped.
+  bool run(std::span<const ContactJob> jobs, std::span<const MovingObject> objects,
+           std::span<const std::uint64_t> versions, const ImpactOptions& options, std::uint64_t max_contacts,
+           const StopSignal& stop, const Parallel& parallel, StepStats& stats);
+  /// The first contact in time, then in order. Leaves the lists as they are.
   std::optional<ContinuousContact> find_earliest(std::span<const ContactJob> jobs,
                                                  std::span<const MovingObject> objects,
                                                  const ImpactOptions& options, const Parallel& parallel);
 
   std::span<const ContactGroup> groups() const { return groups_; }
   std::span<const ContinuousContact> contacts() const { return contacts_; }
+  /// There are more contacts.
+  bool is_truncated() const { return is_truncated_; }
 
  private:
-  /// Where a contact stands in the canonical order, and where it is kept.
+  /// Where a contact of a job stands in the canonical order, and where it is kept.
   struct Key {
-    std::uint32_t job = 0;
     ElementPairKind kind = ElementPairKind::vertex_face;
     std::array<std::uint32_t, 2> element_a{}, element_b{};
     std::uint32_t worker = 0, index = 0;
 
     auto operator<=>(const Key&) const = default;
   };
+  struct Earliest {
+    ContinuousContact contact;
+    std::uint32_t job = 0;
+  };
   struct Worker {
     Traversal traversal;
     RelativeMotionBlock block;
-    std::vector<ContinuousContact> found;
-    std::vector<Key> keys, merged_keys;
+    std::vector<ContinuousContact> found;  // of its tasks, one after the other
     TaskStats stats;
-    /// Of `find_earliest`.
-    std::optional<ContinuousContact> earliest;
-    Key earliest_key;
+    std::optional<Earliest> earliest;
+    std::vector<Key> keys;  // of the contacts of one job at a time
   };
   enum class Search : std::uint8_t { all, earliest };
 
-  void search(Search search, std::span<const ContactJob> jobs, std::span<const MovingObject> objects,
-              const ImpactOptions& options, const Parallel& parallel);
+  /// The tasks are planned from `jobs`, numbers of those of `jobs_`.
+  void search(Search search, std::span<const std::uint32_t> jobs, const Parallel& parallel);
+  void start(std::span<const ContactJob> jobs, std::span<const MovingObject> objects,
+             const ImpactOptions& options, const StopSignal& stop);
   ObjectPairView view_of_job(std::uint32_t job) const;
-  void run_task(const ContactTask& task, Worker& worker);
+  void run_task(std::size_t task, std::uint32_t worker);
   void test_candidates(std::uint32_t job, ElementPairKind kind, std::span<const ElementPair> candidates,
                        Worker& worker);
+  bool is_excluded(std::uint32_t job, ElementPairKind kind, ElementPair candidate) const;
   void test_candidate(std::uint32_t job, ElementPairKind kind, ElementPair candidate, Worker& worker);
-  void keep(Key key, const ContinuousContact& contact, Worker& worker);
-  void merge_keys();
-  void gather_contacts();
+  void keep_earlier(std::uint32_t job, const ContinuousContact& contact, Worker& worker);
+  void drop_excess(std::uint32_t job, std::size_t first, Worker& worker);
+  void gather_contacts(const Parallel& parallel);
+  void gather_found(std::size_t job, Worker& worker);
 
   Search search_ = Search::all;
   std::span<const ContactJob> jobs_;
   std::span<const MovingObject> objects_;
   ImpactOptions options_;
-  const Parallel* parallel_ = nullptr;
+  StopSignal stop_;
   std::vector<Worker> workers_;
   ContactTasks tasks_;
+  ContactLimit limit_;
+  JobOutcomes<1> outcomes_;
+  ImpactOptions last_options_;           // of the last search for all
+  std::vector<std::uint32_t> all_jobs_;  // of a search for the earliest
   /// Nothing that touches only later than this is looked for.
   std::atomic<float> latest_ = 1;
 
   std::vector<ContactGroup> groups_;
   std::vector<ContinuousContact> contacts_;
+  bool is_truncated_ = false;
 };
 
 }  // namespace supple

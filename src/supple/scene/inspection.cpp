@@ -5,6 +5,7 @@
 #include "core/error.hpp"
 #include "geometry/aabb.hpp"
 #include "geometry/sphere.hpp"
+#include "mesh/share_vertex.hpp"
 #include "scene/scene_implementation.hpp"
 #include "scene/searched_volumes.hpp"
 
@@ -18,16 +19,14 @@ class CellReader {
 
   /// Whether the object is one leaf: the root itself then, not an octant of it.
   bool is_one_leaf() const {
-    return view_.nodes.size() > 0 && view_.nodes[0].lane_count == 1 && !goes_on(view_, view_.nodes[0], 0);
+    return view_.nodes.size() > 0 && view_.nodes[0].lane_count == 1 && !view_.nodes[0].is_inner(0);
   }
 
   /// Calls `visit(node, lane, is_leaf)` for every lane that the search knows; shallow ones first.
   template <class Visit>
   void for_each_lane(Visit&& visit) const {
     for (const OctreeNode& node : view_.nodes) {
-      // Below the leaves of objects in motion there are nodes without boxes.
-      if (view_.moving.start != nullptr && !has_moving_boxes(node)) continue;
-      for (int lane = 0; lane < node.lane_count; ++lane) visit(node, lane, !goes_on(view_, node, lane));
+      for (int lane = 0; lane < node.lane_count; ++lane) visit(node, lane, !node.is_inner(lane));
     }
   }
 
@@ -118,9 +117,9 @@ void for_each_candidate(Traversal& traversal, const ObjectPairView& pair, Visit&
 
 std::vector<OctreeCell> Scene::Implementation::octree_cells(ObjectId id,
                                                             std::optional<std::uint32_t> level) const {
-  const SceneObject& asked = object(id, "octree_cells");
-  if (asked.is_stale()) {
-    fail("octree_cells: " + asked.options.name + " was moved since anything was detected; call detect first");
+  const SceneObject& asked = object(id, "cells");
+  if (asked.has_moved() || asked.needs_refit(question_.shapes())) {
+    fail("cells: " + asked.options.name + " was moved since anything was detected; call detect first");
   }
   std::vector<OctreeCell> cells;
   if (asked.octree().nodes().empty()) return cells;
@@ -145,32 +144,65 @@ std::uint32_t Scene::Implementation::octree_depth(ObjectId id) const {
 ObjectPairView Scene::Implementation::search_view(const ContactJob& job) const {
   OctreeView a = search_view(*slots_[job.a].object), b = search_view(*slots_[job.b].object);
   a.unfolded = b.unfolded = nullptr;
-  const double separation = options.impact.min_separation;
-  if (job.a == job.b) return is_continuous() ? moving_self_pair_of(a, separation) : self_pair_of(a);
-  return is_continuous() ? moving_pair_of(a, b, separation) : pair_of(a, b);
+  const double separation = question_.impact.min_separation;
+  if (question_.searches_at_rest()) return job.a == job.b ? self_pair_of(a) : pair_of(a, b);
+  return job.a == job.b ? moving_self_pair_of(a, separation) : moving_pair_of(a, b, separation);
 }
 
 /// Jobs are in order already.
-std::vector<CandidatePair> Scene::Implementation::candidates(std::size_t limit, std::uint64_t* total) const {
+CandidateList Scene::Implementation::candidates(std::size_t limit) const {
   if (!detected_) fail("candidates: nothing was detected at the present positions; call detect first");
-  std::vector<CandidatePair> all;
-  std::uint64_t count = 0;
+  CandidateList list;
   const auto traversal = std::make_unique<Traversal>();
-  for (const ContactJob& job : jobs_) {
+  for (const ContactJob& job : jobs_.jobs) {
     const std::span<const std::uint32_t> ids_a = slots_[job.a].object->octree().triangle_ids();
     const std::span<const std::uint32_t> ids_b = slots_[job.b].object->octree().triangle_ids();
-    FirstPairs pairs(limit - all.size());
+    FirstPairs pairs(limit - list.pairs.size());
     for_each_candidate(*traversal, search_view(job), [&](const TrianglePair& pair) {
       TrianglePair named{ids_a[pair.a], ids_b[pair.b]};
       if (job.a == job.b && named.a > named.b) std::swap(named.a, named.b);
       pairs.add(named);
     });
-    count += pairs.count();
+    list.total += pairs.count();
     for (const TrianglePair& pair : pairs.sorted())
-      all.push_back({id_of(job.a), id_of(job.b), pair.a, pair.b});
+      list.pairs.push_back({id_of(job.a), id_of(job.b), pair.a, pair.b});
   }
-  if (total != nullptr) *total = count;
-  return all;
+  return list;
+}
+
+std::string Scene::Implementation::validate() const {
+  for (const ObjectId id : objects()) {
+    const SceneObject& object = *slots_[id.index].object;
+    if (const std::string wrong = object.validate(); !wrong.empty())
+      return object.options.name + ": " + wrong;
+  }
+  return pair_finder.validate();
+}
+
+std::vector<OctreeCell> SceneInspector::cells(ObjectId object, std::optional<std::uint32_t> level) const {
+  return scene_->implementation_->octree_cells(object, level);
+}
+std::uint32_t SceneInspector::octree_depth(ObjectId object) const {
+  return scene_->implementation_->octree_depth(object);
+}
+OctreeStatistics SceneInspector::octree_statistics(ObjectId object) const {
+  return scene_->implementation_->object(object, "octree_statistics").octree_statistics();
+}
+Aabb SceneInspector::bounds(ObjectId object) const {
+  return scene_->implementation_->object(object, "bounds").box();
+}
+std::vector<SceneRegion> SceneInspector::regions() const {
+  return scene_->implementation_->pair_finder.regions();
+}
+CandidateList SceneInspector::candidates(std::size_t limit) const {
+  return scene_->implementation_->candidates(limit);
+}
+PairExplanation SceneInspector::explain(ObjectId object_a, std::uint32_t triangle_a, ObjectId object_b,
+                                        std::uint32_t triangle_b) const {
+  return scene_->implementation_->explain(object_a, triangle_a, object_b, triangle_b);
+}
+std::string SceneInspector::validate() const {
+  return scene_->implementation_->validate();
 }
 
 }  // namespace supple

@@ -28,27 +28,22 @@ const SceneOptions& checked(const SceneOptions& options) {
   return options;
 }
 
-void check_triangles(const std::string& name, std::size_t vertex_count, std::span<const Triangle> triangles) {
+std::vector<Triangle> checked_triangles(const std::string& name, std::size_t vertex_count,
+                                        const TrianglesView& view) {
   constexpr std::size_t most = 0xffffffff;
-  if (vertex_count >= most || triangles.size() >= most)
-    fail(name + ": more than 2^32 - 2 vertices or triangles");
+  if (vertex_count >= most || view.size() >= most) fail(name + ": more than 2^32 - 2 vertices or triangles");
+  std::vector<Triangle> triangles(view.size());
   for (std::size_t t = 0; t < triangles.size(); ++t) {
-    for (const std::uint32_t vertex : triangles[t]) {
-      if (vertex < vertex_count) continue;
-      fail(name + ": triangle " + std::to_string(t) + " uses vertex " + std::to_string(vertex) +
-           ", but there are " + std::to_string(vertex_count) + " vertices, numbered from 0");
+    const std::array<std::int64_t, 3> ids = view[t];
+    for (std::size_t corner = 0; corner < 3; ++corner) {
+      if (ids[corner] < 0 || ids[corner] >= static_cast<std::int64_t>(vertex_count)) {
+        fail(name + ": triangle " + std::to_string(t) + " uses vertex " + std::to_string(ids[corner]) +
+             ", but there are " + std::to_string(vertex_count) + " vertices, numbered from 0");
+      }
+      triangles[t][corner] = static_cast<std::uint32_t>(ids[corner]);
     }
   }
-}
-
-/// Positions from packed coordinates.
-template <class Scalar>
-PositionsView<Scalar> packed(std::span<const Scalar> xyz, const char* call) {
-  if (xyz.size() % 3 != 0) {
-    fail(std::string(call) + ": " + std::to_string(xyz.size()) +
-         " coordinates are no whole number of points; give x y z of each");
-  }
-  return {xyz.data(), xyz.size() / 3};
+  return triangles;
 }
 
 void check_count(const SceneObject& object, std::size_t count, const char* call) {
@@ -60,21 +55,27 @@ void check_count(const SceneObject& object, std::size_t count, const char* call)
 
 }  // namespace
 
+void check_triangle(const SceneObject& object, std::uint32_t triangle, const char* call) {
+  const std::size_t count = object.octree().triangles().size();
+  if (triangle < count) return;
+  fail(std::string(call) + ": " + object.options.name + " has no triangle " + std::to_string(triangle) +
+       "; it has " + std::to_string(count) + ", numbered from 0");
+}
+
 Scene::Implementation::Implementation(const SceneOptions& scene_options)
     : options(checked(scene_options)),
       parallel(scene_options.threads),
       pair_finder(scene_options.broad_phase, scene_options.bounding_volume, scene_options.scene_octree) {}
 
-ObjectId Scene::Implementation::add(const PositionsView<double>& positions,
-                                    std::span<const Triangle> triangles, const ObjectOptions& object_options,
-                                    const std::string& fallback_name) {
+ObjectId Scene::Implementation::add(const PositionsView& positions, const TrianglesView& triangles,
+                                    const ObjectOptions& object_options, const std::string& fallback_name) {
   const auto index = free_slots_.empty() ? static_cast<std::uint32_t>(slots_.size()) : free_slots_.back();
   ObjectOptions named = object_options;
   if (named.name.empty()) named.name = fallback_name.empty() ? described({index, 0}) : fallback_name;
   check(named);
-  check_triangles(named.name, positions.count, triangles);
-  auto object = std::make_unique<SceneObject>(positions, triangles, named, options);
-  object->set_positions(positions, parallel);
+  auto object = std::make_unique<SceneObject>(
+      positions, checked_triangles(named.name, positions.size(), triangles), named, options);
+  object->move().set_positions(positions, parallel);
   object->set_rest_quality(parallel);
   if (free_slots_.empty()) {
     slots_.emplace_back();
@@ -120,29 +121,27 @@ SceneObject& Scene::Implementation::movable_object(ObjectId id, const char* call
   return found;
 }
 
-template <class Scalar>
-void Scene::Implementation::set_positions(ObjectId id, const PositionsView<Scalar>& positions) {
+void Scene::Implementation::set_positions(ObjectId id, const PositionsView& positions) {
   SceneObject& found = movable_object(id, "set_positions");
-  check_count(found, positions.count, "set_positions");
-  found.set_positions(positions, parallel);
+  check_count(found, positions.size(), "set_positions");
+  found.move().set_positions(positions, parallel);
   mark_changed();
 }
 
-template <class Scalar>
-void Scene::Implementation::share_positions(ObjectId id, const PositionsView<Scalar>& positions) {
+void Scene::Implementation::share_positions(ObjectId id, const PositionsView& positions) {
   SceneObject& found = movable_object(id, "share_positions");
-  check_count(found, positions.count, "share_positions");
-  found.share_positions(positions, parallel);
+  check_count(found, positions.size(), "share_positions");
+  found.move().share_positions(positions, parallel);
   mark_changed();
 }
 
-template <class Scalar>
-void Scene::Implementation::set_motion(ObjectId id, const PositionsView<Scalar>& from,
-                                       const PositionsView<Scalar>& to) {
+void Scene::Implementation::set_motion(ObjectId id, const PositionsView& from, const PositionsView& to) {
   SceneObject& found = movable_object(id, "set_motion");
-  check_count(found, from.count, "set_motion");
-  check_count(found, to.count, "set_motion");
-  found.set_motion(from, to, parallel);
+  check_count(found, from.size(), "set_motion");
+  check_count(found, to.size(), "set_motion");
+  if (from.is_double() != to.is_double())
+    fail("set_motion: one end of the path is float, the other double; give both in one precision");
+  found.move().set_motion(from, to, parallel);
   mark_changed();
 }
 
@@ -154,14 +153,10 @@ std::vector<ObjectId> Scene::Implementation::objects() const {
   return ids;
 }
 
-std::string Scene::Implementation::validate() const {
-  for (const ObjectId id : objects()) {
-    const SceneObject& object = *slots_[id.index].object;
-    if (object.is_stale()) continue;
-    if (const std::string wrong = object.validate(); !wrong.empty())
-      return object.options.name + ": " + wrong;
-  }
-  return pair_finder.validate();
+ElementVertices Scene::Implementation::triangle_vertices(ObjectId id, std::uint32_t triangle) const {
+  const SceneObject& found = object(id, "vertices_of");
+  check_triangle(found, triangle, "vertices_of");
+  return {found.octree().user_triangle(triangle), 3};
 }
 
 Scene::Scene(const SceneOptions& options) : implementation_(std::make_unique<Implementation>(options)) {}
@@ -170,65 +165,28 @@ Scene::Scene(Scene&&) noexcept = default;
 Scene& Scene::operator=(Scene&&) noexcept = default;
 
 ObjectId Scene::add(const TriangleMesh& mesh, const ObjectOptions& options) {
-  return implementation_->add(PositionsView<double>(mesh.positions), mesh.triangles, options, mesh.name);
+  return implementation_->add(mesh.positions, mesh.triangles, options, mesh.name);
 }
-
-ObjectId Scene::add(PositionsView<double> positions, std::span<const Triangle> triangles,
-                    const ObjectOptions& options) {
+ObjectId Scene::add(PositionsView positions, TrianglesView triangles, const ObjectOptions& options) {
   return implementation_->add(positions, triangles, options, "");
 }
-
-ObjectId Scene::add(PositionsView<float> positions, std::span<const Triangle> triangles,
-                    const ObjectOptions& options) {
-  std::vector<Vec3d> widened;
-  widened.reserve(positions.count);
-  for (std::size_t i = 0; i < positions.count; ++i)
-    widened.push_back({positions[i].x, positions[i].y, positions[i].z});
-  const ObjectId id = implementation_->add(PositionsView<double>(widened), triangles, options, "");
-  implementation_->object(id, "add").set_positions(positions, implementation_->parallel);
-  return id;
-}
-
 void Scene::remove(ObjectId object) {
   implementation_->remove(object);
 }
 
-void Scene::set_positions(ObjectId object, PositionsView<double> positions) {
+void Scene::set_positions(ObjectId object, PositionsView positions) {
   implementation_->set_positions(object, positions);
 }
-void Scene::set_positions(ObjectId object, PositionsView<float> positions) {
-  implementation_->set_positions(object, positions);
-}
-void Scene::set_positions(ObjectId object, std::span<const double> xyz) {
-  implementation_->set_positions(object, packed(xyz, "set_positions"));
-}
-void Scene::set_positions(ObjectId object, std::span<const float> xyz) {
-  implementation_->set_positions(object, packed(xyz, "set_positions"));
-}
-
-void Scene::share_positions(ObjectId object, PositionsView<double> positions) {
+void Scene::share_positions(ObjectId object, PositionsView positions) {
   implementation_->share_positions(object, positions);
 }
-void Scene::share_positions(ObjectId object, PositionsView<float> positions) {
-  implementation_->share_positions(object, positions);
-}
-
-void Scene::set_motion(ObjectId object, PositionsView<double> from, PositionsView<double> to) {
+void Scene::set_motion(ObjectId object, PositionsView from, PositionsView to) {
   implementation_->set_motion(object, from, to);
-}
-void Scene::set_motion(ObjectId object, PositionsView<float> from, PositionsView<float> to) {
-  implementation_->set_motion(object, from, to);
-}
-void Scene::set_motion(ObjectId object, std::span<const double> from, std::span<const double> to) {
-  implementation_->set_motion(object, packed(from, "set_motion"), packed(to, "set_motion"));
-}
-void Scene::set_motion(ObjectId object, std::span<const float> from, std::span<const float> to) {
-  implementation_->set_motion(object, packed(from, "set_motion"), packed(to, "set_motion"));
 }
 
 void Scene::translate(ObjectId object, Vec3d offset) {
   check_finite(offset, "translate", "offset");
-  implementation_->movable_object(object, "translate").translate(offset, implementation_->parallel);
+  implementation_->movable_object(object, "translate").move().translate(offset, implementation_->parallel);
   implementation_->mark_changed();
 }
 
@@ -239,6 +197,7 @@ void Scene::set_transform(ObjectId object, const RigidTransform& transform) {
     check_finite({r[0], r[1], r[2]}, "set_transform", "rotation's rows");
   }
   implementation_->movable_object(object, "set_transform")
+      .move()
       .set_transform(transform, implementation_->parallel);
   implementation_->mark_changed();
 }
@@ -265,14 +224,14 @@ void Scene::set_pair_filter(PairFilter filter) {
   implementation_->mark_changed();
 }
 
-const DetectResult& Scene::detect() {
-  return implementation_->detect();
+const DetectResult& Scene::detect(const DetectRequest& request) {
+  return implementation_->detect(request);
 }
 std::optional<ContinuousContact> Scene::earliest_impact() {
-  return implementation_->earliest_impact("earliest_impact");
+  return implementation_->earliest_impact();
 }
 double Scene::max_step() {
-  const auto earliest = implementation_->earliest_impact("max_step");
+  const auto earliest = implementation_->earliest_impact();
   return earliest ? earliest->toi : 1;
 }
 const DetectResult& Scene::result() const {
@@ -280,23 +239,6 @@ const DetectResult& Scene::result() const {
 }
 VerifyReport Scene::verify() const {
   return implementation_->verify();
-}
-std::string Scene::validate() const {
-  return implementation_->validate();
-}
-
-std::vector<OctreeCell> Scene::octree_cells(ObjectId object, std::optional<std::uint32_t> level) const {
-  return implementation_->octree_cells(object, level);
-}
-std::uint32_t Scene::octree_depth(ObjectId object) const {
-  return implementation_->octree_depth(object);
-}
-std::vector<CandidatePair> Scene::candidates(std::size_t limit, std::uint64_t* total) const {
-  return implementation_->candidates(limit, total);
-}
-PairExplanation Scene::explain(ObjectId object_a, std::uint32_t triangle_a, ObjectId object_b,
-                               std::uint32_t triangle_b) const {
-  return implementation_->explain(object_a, triangle_a, object_b, triangle_b);
 }
 
 std::vector<ObjectId> Scene::objects() const {
@@ -325,20 +267,24 @@ Vec3d Scene::position(ObjectId object, std::uint32_t vertex) const {
     fail("position: " + found.options.name + " has no vertex " + std::to_string(vertex) + "; it has " +
          std::to_string(count) + ", numbered from 0");
   }
-  return found.position(found.octree().octree_vertex(vertex));
+  return found.placement().position(vertex);
 }
 
-Aabb Scene::bounds(ObjectId object) const {
-  return implementation_->object(object, "bounds").box();
+ElementVertices Scene::vertices_of(const ContinuousContact& contact, ContactSide side) const {
+  const bool is_a = side == ContactSide::a;
+  const std::array<std::uint32_t, 2>& element = is_a ? contact.element_a : contact.element_b;
+  const auto face = is_a ? ElementPairKind::face_vertex : ElementPairKind::vertex_face;
+  if (contact.kind == face)
+    return implementation_->triangle_vertices(is_a ? contact.object_a : contact.object_b, element[0]);
+  if (contact.kind == ElementPairKind::edge_edge) return {{element[0], element[1]}, 2};
+  return {{element[0]}, 1};
+}
+ElementVertices Scene::vertices_of(const Contact& contact, ContactSide side) const {
+  const bool is_a = side == ContactSide::a;
+  return implementation_->triangle_vertices(is_a ? contact.object_a : contact.object_b,
+                                            is_a ? contact.triangle_a : contact.triangle_b);
 }
 
-OctreeStatistics Scene::octree_statistics(ObjectId object) const {
-  return implementation_->object(object, "octree_statistics").octree_statistics();
-}
-
-std::vector<SceneRegion> Scene::scene_regions() const {
-  return implementation_->pair_finder.regions();
-}
 const SceneOptions& Scene::options() const {
   return implementation_->options;
 }

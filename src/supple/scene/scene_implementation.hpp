@@ -9,20 +9,38 @@
 
 #include "broad_phase/pair_finder.hpp"
 #include "core/parallel.hpp"
+#include "core/stop_signal.hpp"
 #include "scene/contact_pass.hpp"
 #include "scene/impact_pass.hpp"
 #include "scene/pair_cache.hpp"
 #include "scene/scene_object.hpp"
+#include "supple/inspection.hpp"
 #include "supple/scene.hpp"
 
 namespace supple {
+
+/// Throws naming `call` when the object has no such triangle.
+void check_triangle(const SceneObject& object, std::uint32_t triangle, const char* call);
+
+/// What a step looks for.
+struct Question {
+  ContactKinds contacts = ContactKinds::none;
+  ImpactOptions impact;
+  bool colliding_vertices = false;
+
+  bool has_intersections() const { return contains(contacts, ContactKinds::intersection); }
+  bool is_continuous() const { return contains(contacts, ContactKinds::continuous); }
+  /// Intersections, or their candidates alone.
+  bool searches_at_rest() const { return contacts == ContactKinds::none || has_intersections(); }
+  SearchedShapes shapes() const;
+};
 
 /// The objects and the step; `detect` reads as the list of stages.
 class Scene::Implementation {
  public:
   explicit Implementation(const SceneOptions& scene_options);
 
-  ObjectId add(const PositionsView<double>& positions, std::span<const Triangle> triangles,
+  ObjectId add(const PositionsView& positions, const TrianglesView& triangles,
                const ObjectOptions& object_options, const std::string& fallback_name);
   void remove(ObjectId id);
 
@@ -30,25 +48,22 @@ class Scene::Implementation {
   SceneObject& object(ObjectId id, const char* call) const;
   /// Likewise, and when the object is static.
   SceneObject& movable_object(ObjectId id, const char* call) const;
-  template <class Scalar>
-  void set_positions(ObjectId id, const PositionsView<Scalar>& positions);
-  template <class Scalar>
-  void share_positions(ObjectId id, const PositionsView<Scalar>& positions);
+  void set_positions(ObjectId id, const PositionsView& positions);
+  void share_positions(ObjectId id, const PositionsView& positions);
+  void set_motion(ObjectId id, const PositionsView& from, const PositionsView& to);
 
-  template <class Scalar>
-  void set_motion(ObjectId id, const PositionsView<Scalar>& from, const PositionsView<Scalar>& to);
-
-  const DetectResult& detect();
-  std::optional<ContinuousContact> earliest_impact(const char* call);
+  const DetectResult& detect(const DetectRequest& request);
+  std::optional<ContinuousContact> earliest_impact();
   VerifyReport verify() const;
   std::string validate() const;
 
   std::vector<OctreeCell> octree_cells(ObjectId id, std::optional<std::uint32_t> level) const;
   std::uint32_t octree_depth(ObjectId id) const;
-  std::vector<CandidatePair> candidates(std::size_t limit, std::uint64_t* total) const;
+  CandidateList candidates(std::size_t limit) const;
   PairExplanation explain(ObjectId id_a, std::uint32_t triangle_a, ObjectId id_b,
                           std::uint32_t triangle_b) const;
 
+  ElementVertices triangle_vertices(ObjectId id, std::uint32_t triangle) const;
   bool contains(ObjectId id) const;
   std::vector<ObjectId> objects() const;
   /// Anything that changes what `detect` would find.
@@ -67,25 +82,32 @@ class Scene::Implementation {
     std::uint32_t generation = 0;
   };
 
-  void refit_objects();
+  /// What may touch: pairs of objects whose volumes overlap, and those and objects with themselves in
+  /// canonical order.
+  struct Jobs {
+    std::vector<ObjectPair> pairs;
+    std::vector<ContactJob> jobs;
+  };
+
+  void refit_objects(const Question& question);
   template <class Work, class Function>
   void for_each_object(std::span<const std::uint32_t> indices, const Work& work, const Function& function);
-  void find_object_pairs();
-  void plan_jobs();
-  void count_queries();
-  void rebuild_degraded();
-  void find_contacts();
+  void find_object_pairs(Jobs& found);
+  void count_queries(const Jobs& jobs);
+  void rebuild_degraded(const Jobs& jobs);
+  /// False when stopped.
+  bool find_contacts(const DetectRequest& request, const StopSignal& stop);
+  bool find_impacts(const DetectRequest& request, const StopSignal& stop);
   void list_moving_objects();
-  void find_impacts();
   /// `group` is what was reported of the pair, or null.
   void verify_contacts(const ObjectPair& pair, const ContactGroup* group, VerifyReport& report) const;
   void verify_impacts(const ObjectPair& pair, const ContactGroup* group, VerifyReport& report) const;
-  bool is_continuous() const { return options.contacts == ContactMode::continuous; }
   void report_non_finite();
   void publish();
+  void list_touching_pairs();
   bool may_pair(const IndexPair& pair) const;
   OctreeView search_view(const SceneObject& object) const {
-    return is_continuous() ? object.moving_view() : object.view();
+    return question_.searches_at_rest() ? object.resting_view() : object.moving_view();
   }
   /// As the narrow phase takes them, but for what it passes over because it cannot touch itself.
   ObjectPairView search_view(const ContactJob& job) const;
@@ -97,6 +119,7 @@ class Scene::Implementation {
   std::vector<Slot> slots_;
   std::vector<std::uint32_t> free_slots_;
   bool detected_ = false;
+  Question question_;  // of the last `detect`
   std::uint64_t step_ = 0;
 
   // Of the step, by slot; kept for their memory.
@@ -106,10 +129,12 @@ class Scene::Implementation {
   std::vector<std::uint32_t> changed_slots_;
   std::vector<std::uint64_t> versions_;                       // of positions: never the same twice
   std::uint64_t last_version_ = 0, last_version_before_ = 0;  // of all, and that of the step before
+  SearchedShapes searched_;                                   // by the last search, of whatever kind,
+  double growth_ = 0;  // for which boxes and spheres were grown by so much
   std::vector<std::uint32_t> stale_, degraded_, small_;
   std::vector<double> queries_;  // of degraded objects
-  std::vector<ObjectPair> object_pairs_, touching_pairs_;
-  std::vector<ContactJob> jobs_;
+  Jobs jobs_, impact_jobs_;      // of `detect`, and of searches for the earliest impact
+  std::vector<ObjectPair> touching_pairs_;
   std::vector<ContactObject> contact_objects_;
   std::vector<MovingObject> moving_objects_;
   std::vector<NonFiniteVertex> non_finite_;

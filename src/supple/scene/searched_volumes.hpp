@@ -5,7 +5,6 @@
 
 #include "narrow_phase/traversal.hpp"
 #include "octree/moving_boxes.hpp"
-#include "supple/mesh.hpp"
 #include "supple/types.hpp"
 
 namespace supple {
@@ -24,10 +23,7 @@ inline Aabb unclamped(const Aabb& box) {
 /// Of the lane's triangles where they are now, or at the end of the step, but for the view's translation.
 inline Aabb lane_box(const OctreeView& view, std::uint32_t node, int lane) {
   const bool is_moving = view.moving.start != nullptr;
-  const AabbLanes& lanes = (is_moving ? view.moving.end : view.boxes)[node];
-  const Aabb box{{lanes.min_x[lane], lanes.min_y[lane], lanes.min_z[lane]},
-                 {lanes.max_x[lane], lanes.max_y[lane], lanes.max_z[lane]}};
-  return is_moving ? unclamped(box) : box;
+  return is_moving ? unclamped(lane_box(view.moving.end[node], lane)) : lane_box(view.boxes[node], lane);
 }
 inline BoundingSphere lane_sphere(const OctreeView& view, std::uint32_t node, int lane) {
   const SphereLanes& lanes = view.spheres[node];
@@ -47,20 +43,14 @@ inline bool moving_faces_apart(const ObjectPairView& pair, TrianglePair faces) {
   const Aabb start_a = face_box(a, a.start, faces.a), end_a = face_box(a, a.end, faces.a);
   const Aabb start_b = face_box(b, b.start, faces.b), end_b = face_box(b, b.end, faces.b);
   const double separation = pair.separation;
-  const auto below = [&](const Aabb& low, const Aabb& high, int axis) {
-    return double{high.min[axis]} - low.max[axis] > separation;
-  };
   if (start_a.empty() || start_b.empty()) return true;
   for (int axis = 0; axis < 3; ++axis) {
-    if (below(start_a, start_b, axis) && below(end_a, end_b, axis)) return true;
-    if (below(start_b, start_a, axis) && below(end_b, end_a, axis)) return true;
-  }
-  return false;
-}
-
-inline bool share_vertex(const Triangle& p, const Triangle& q) {
-  for (const std::uint32_t vertex : p) {
-    if (vertex == q[0] || vertex == q[1] || vertex == q[2]) return true;
+    const double offset = pair.placement.offset[axis];
+    const auto below = [&](const Aabb& low, const Aabb& high, double offset_of_high) {
+      return double{high.min[axis]} + offset_of_high - low.max[axis] > separation;
+    };
+    if (below(start_a, start_b, offset) && below(end_a, end_b, offset)) return true;
+    if (below(start_b, start_a, -offset) && below(end_b, end_a, -offset)) return true;
   }
   return false;
 }

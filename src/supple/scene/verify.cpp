@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <iterator>
-#include <tuple>
 
 #include "core/error.hpp"
 #include "scene/brute_force_contacts.hpp"
@@ -13,62 +12,24 @@ namespace {
 std::vector<Triangle> user_triangles(const SceneObject& object) {
   const ObjectOctree& octree = object.octree();
   std::vector<Triangle> triangles(octree.triangles().size());
-  for (std::uint32_t t = 0; t < triangles.size(); ++t) {
-    Triangle& triangle = triangles[octree.triangle_ids()[t]] = octree.triangles()[t];
-    if (octree.vertex_ids().empty()) continue;
-    for (std::uint32_t& vertex : triangle) vertex = octree.vertex_ids()[vertex];
-  }
+  for (std::uint32_t t = 0; t < triangles.size(); ++t) triangles[t] = octree.user_triangle(t);
   return triangles;
 }
 
 PlainObject plain_object(const SceneObject& object) {
   PlainObject plain{{}, user_triangles(object)};
-  const ObjectOctree& octree = object.octree();
-  for (std::uint32_t vertex = 0; vertex < octree.vertex_count(); ++vertex)
-    plain.positions.push_back(object.position(octree.octree_vertex(vertex)));
+  for (std::uint32_t vertex = 0; vertex < object.octree().vertex_count(); ++vertex)
+    plain.positions.push_back(object.placement().position(vertex));
   return plain;
 }
 
 PlainMovingObject plain_moving_object(const SceneObject& object) {
   PlainMovingObject plain{{}, {}, user_triangles(object)};
-  for (const std::uint32_t vertex : object.octree().vertex_order()) {
-    plain.start.push_back(object.start()[vertex]);
-    plain.end.push_back(object.end()[vertex]);
+  for (std::uint32_t vertex = 0; vertex < object.octree().vertex_count(); ++vertex) {
+    plain.start.push_back(object.placement().start_position(vertex));
+    plain.end.push_back(object.placement().position(vertex));
   }
   return plain;
-}
-
-auto place_of(const ContinuousContact& contact) {
-  return std::tie(contact.kind, contact.element_a, contact.element_b);
-}
-auto place_of(const TouchingElements& touching) {
-  return std::tie(touching.kind, touching.element_a, touching.element_b);
-}
-
-/// Both lists in canonical order.
-void compare(const ObjectPair& pair, std::span<const ContinuousContact> reported,
-             std::span<const TouchingElements> truth, std::vector<ContinuousDifference>& differences) {
-  using Fault = ContinuousDifference::Fault;
-  const auto note = [&](const auto& elements, Fault fault) {
-    differences.push_back({pair.a, pair.b, elements.kind, elements.element_a, elements.element_b, fault});
-  };
-  auto found = reported.begin();
-  for (const TouchingElements& expected : truth) {
-    for (; found != reported.end() && place_of(*found) < place_of(expected); ++found) {
-      if (found->certainty == ImpactCertainty::certain) note(*found, Fault::added);
-    }
-    if (found == reported.end() || place_of(*found) != place_of(expected)) {
-      note(expected, Fault::missed);
-      continue;
-    }
-    if (found->toi > expected.time.low) note(expected, Fault::late);
-    const bool is_certain = found->certainty == ImpactCertainty::certain;
-    if (is_certain && found->toi < expected.time.high - toi_tolerance) note(expected, Fault::early);
-    ++found;
-  }
-  for (; found != reported.end(); ++found) {
-    if (found->certainty == ImpactCertainty::certain) note(*found, Fault::added);
-  }
 }
 
 }  // namespace
@@ -117,28 +78,31 @@ void Scene::Implementation::verify_impacts(const ObjectPair& pair, const Contact
   const PlainMovingObject a = plain_moving_object(*slots_[pair.a.index].object);
   const PlainMovingObject b = same_object ? a : plain_moving_object(*slots_[pair.b.index].object);
   const BruteForceImpacts truth =
-      find_impacts_by_brute_force(a, b, same_object, options.impact.min_separation, parallel);
+      find_impacts_by_brute_force(a, b, same_object, question_.impact.min_separation, parallel);
   report.element_pairs_checked += truth.pairs_checked;
   report.touching_element_pairs += truth.touching.size();
-  compare(pair,
-          group != nullptr ? result.continuous_contacts_of(*group) : std::span<const ContinuousContact>{},
-          truth.touching, report.continuous_differences);
+  const auto reported =
+      group != nullptr ? result.continuous_contacts_of(*group) : std::span<const ContinuousContact>{};
+  compare_impacts(pair, reported, truth.touching, report.continuous_differences);
 }
 
 VerifyReport Scene::Implementation::verify() const {
   if (!detected_) fail("verify: nothing was detected at the present positions; call detect first");
-  if (options.contacts == ContactMode::none)
-    fail("verify: the scene has contacts switched off; there is nothing to compare");
+  if (result.truncated) fail("verify: the last detect left contacts out; ask for more by max_contacts");
+  if (question_.contacts == ContactKinds::none)
+    fail("verify: the last detect was asked for no contacts; there is nothing to compare");
   VerifyReport report;
-  auto next = result.groups.begin();
+  auto contacts = result.groups.begin();
+  auto impacts = result.continuous_groups.begin();
+  const auto next_of = [](auto& next, const auto& groups, const ObjectPair& pair) {
+    const bool reported = next != groups.end() && next->a == pair.a && next->b == pair.b;
+    return reported ? &*next++ : nullptr;
+  };
   for (const ObjectPair& pair : pairs_to_verify()) {
-    const bool reported = next != result.groups.end() && next->a == pair.a && next->b == pair.b;
-    const ContactGroup* const group = reported ? &*next++ : nullptr;
-    if (is_continuous()) {
-      verify_impacts(pair, group, report);
-    } else {
-      verify_contacts(pair, group, report);
-    }
+    const ContactGroup* const of_contacts = next_of(contacts, result.groups, pair);
+    const ContactGroup* const of_impacts = next_of(impacts, result.continuous_groups, pair);
+    if (question_.has_intersections()) verify_contacts(pair, of_contacts, report);
+    if (question_.is_continuous()) verify_impacts(pair, of_impacts, report);
   }
   return report;
 }

@@ -28,9 +28,13 @@ inline auto members_of(ObjectOptions& o) {
   auto& [a, b, c, d, e, f] = o;
   return std::tie(a, b, c, d, e, f);
 }
+inline auto members_of(ComparisonOptions& o) {
+  auto& [a, b] = o;
+  return std::tie(a, b);
+}
 inline auto members_of(SceneOptions& o) {
-  auto& [a, b, c, d, e, f, g, h, i] = o;
-  return std::tie(a, b, c, d, e, f, g, h, i);
+  auto& [a, b, c, d, e, f, g, h] = o;
+  return std::tie(a, b, c, d, e, f, g, h);
 }
 inline auto members_of(BroadPhaseOptions& o) {
   auto& [a, b, c] = o;

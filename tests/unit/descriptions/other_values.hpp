@@ -20,7 +20,7 @@ void set_other(const Field<Struct, Value>& field, Value& value) {
     value = !value;
   } else if constexpr (std::is_unsigned_v<Value>) {
     const auto half = static_cast<Value>(value / 2), next = static_cast<Value>(value + 1);
-    value = value > 1 && field.range.allows(half) ? half : next;
+    value = value > 1 && field.range.allows(half) ? half : field.range.allows(next) ? next : Value{4};
   } else if constexpr (std::is_same_v<Value, double>) {
     value = value == 0 || std::isinf(value) ? 0.125 : value / 2;
   } else if constexpr (std::is_same_v<Value, Vec3d>) {

@@ -101,7 +101,7 @@ TEST(AirFriction, SlowsDownExponentiallyTowardsTheAir) {
   run(body, 20, 1000);
   EXPECT_NEAR(body.mean_velocity().x, 0, 1e-9);
   EXPECT_EQ(body.mean_velocity().y, 1) << "the air drifts along";
-  body.turn_back(1);
+  body.reflect(1);
   EXPECT_EQ(body.mean_velocity().y, -1);
   run(body, 1, 10);
   EXPECT_EQ(body.mean_velocity().y, -1);

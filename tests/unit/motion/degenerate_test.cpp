@@ -28,7 +28,7 @@ TEST(DegenerateBodies, OfNothingDoNothing) {
     MassSpringBody body({}, everything(integrator));
     body.step(0.1);
     body.add_drift({1, 0, 0});
-    body.turn_back(0);
+    body.reflect(0);
     EXPECT_EQ(body.vertex_count(), 0u);
     EXPECT_TRUE(body.springs().empty());
     EXPECT_EQ(body.energy().total(), 0);
@@ -148,8 +148,8 @@ TEST(MassSpringBody, TakesOnlyAsManyVectorsAsItHasVertices) {
   EXPECT_THROW(body.set_positions(eleven), Error);
   EXPECT_THROW(body.set_velocities(thirteen), Error);
   EXPECT_THROW(body.set_external_forces(eleven), Error);
-  EXPECT_THROW(body.turn_back(3), Error);
-  EXPECT_THROW(body.turn_back(-1), Error);
+  EXPECT_THROW(body.reflect(3), Error);
+  EXPECT_THROW(body.reflect(-1), Error);
 }
 
 TEST(MassSpringBody, TellsItsRestState) {

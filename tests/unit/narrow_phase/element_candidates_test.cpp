@@ -28,14 +28,15 @@ using Candidate = std::tuple<ElementPairKind, ElementId, ElementId>;
 using CandidateSet = std::set<Candidate>;
 
 ElementId vertex_id(const MovingObject& object, std::uint32_t v) {
-  return {object.octree.vertex_ids()[v], object.octree.vertex_ids()[v]};
+  return {object.elements.vertex_ids()[v], object.elements.vertex_ids()[v]};
 }
 ElementId face_id(const MovingObject& object, std::uint32_t f) {
   return {object.octree.triangle_ids()[f], object.octree.triangle_ids()[f]};
 }
 ElementId edge_id(const MovingObject& object, std::uint32_t e) {
   const Edge& edge = object.elements.edges()[e];
-  const auto [p, q] = std::minmax(object.octree.vertex_ids()[edge[0]], object.octree.vertex_ids()[edge[1]]);
+  const auto [p, q] =
+      std::minmax(object.elements.vertex_ids()[edge[0]], object.elements.vertex_ids()[edge[1]]);
   return {p, q};
 }
 
@@ -365,8 +366,8 @@ void expect_known_contacts(const std::string& name, const std::string& frame_0, 
     }
   }
   ASSERT_FALSE(touching.empty());
-  SelfCollisionCulling unfolded(object.octree);
-  unfolded.refit(object.octree, object.start, object.end, Parallel(1));
+  SelfCollisionCulling unfolded(object.octree, object.elements.faces());
+  unfolded.refit(object.octree, object.elements.faces(), object.start, object.end, Parallel(1));
   for (const bool skip_unfolded : {false, true}) {
     OctreeView view = object.view();
     if (skip_unfolded) view.unfolded = unfolded.masks().data();
@@ -392,8 +393,8 @@ void expect_known_contacts(const std::string& name, const std::string& frame_0, 
 TEST(ElementCandidates, LeaveOutWhatUnfoldedLanesCannotTouch) {
   const TriangleMesh mesh = crumpled_sheet(40, 30, 0.004, 5);
   const MovingObject object(mesh, displaced(mesh, 0.004, 6));
-  SelfCollisionCulling unfolded(object.octree);
-  unfolded.refit(object.octree, object.start, object.end, Parallel(1));
+  SelfCollisionCulling unfolded(object.octree, object.elements.faces());
+  unfolded.refit(object.octree, object.elements.faces(), object.start, object.end, Parallel(1));
   const auto candidates = [&](bool skip_unfolded, double separation) {
     OctreeView view = object.view();
     if (skip_unfolded) view.unfolded = unfolded.masks().data();

@@ -14,10 +14,9 @@ using PairSet = std::set<std::pair<std::uint32_t, std::uint32_t>>;
 
 struct Object {
   Object(const TriangleMesh& mesh_in, const ObjectOctreeOptions& options, BoundingVolume volume)
-      : mesh(mesh_in),
-        octree(PositionsView<double>(mesh.positions), mesh.triangles, options, volume, SphereFit::vertices) {
+      : mesh(mesh_in), octree(mesh.positions, mesh.triangles, options, volume, SphereFit::vertices) {
     const Parallel parallel(1);
-    vertices.assign(PositionsView<double>(mesh.positions), octree.vertex_order(), parallel);
+    vertices.assign(mesh.positions, parallel);
     octree.refit(vertices, {}, parallel);
   }
   OctreeView view() const { return view_of(octree, vertices, {}, translation); }

@@ -6,12 +6,9 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
-#include <set>
 #include <string>
 #include <vector>
 
-#include "octree/connected_parts.hpp"
-#include "octree/median_cut.hpp"
 #include "supple/models.hpp"
 #include "support/soups.hpp"
 
@@ -27,7 +24,7 @@ std::vector<Vec3d> centers_of(const TriangleMesh& mesh) {
 }
 
 OctreeTopology built(const TriangleMesh& mesh, const ObjectOctreeOptions& options = {}) {
-  return build_balanced_octree(centers_of(mesh), mesh.triangles, mesh.positions.size(), options);
+  return build_balanced_octree(centers_of(mesh), options);
 }
 
 /// The triangles of each leaf, in the order of the tree.
@@ -132,15 +129,15 @@ TEST(BalancedBuild, IsSoundForAnySizesOptionsAndPositions) {
 
 TEST(BalancedBuild, FillsLeavesAndNodesEvenly) {
   for (const std::uint32_t frequency : {7u, 13u, 20u, 30u, 44u, 59u}) {
-    const TriangleMesh ball = make_icosphere(frequency);
-    const OctreeTopology topology = built(ball);
-    std::size_t least = ball.triangles.size(), most = 0;
+    const TriangleMesh sphere = make_icosphere(frequency);
+    const OctreeTopology topology = built(sphere);
+    std::size_t least = sphere.triangles.size(), most = 0;
     const auto leaves = leaves_of(topology);
     for (const auto& leaf : leaves) {
       least = std::min(least, leaf.size());
       most = std::max(most, leaf.size());
     }
-    const double mean = static_cast<double>(ball.triangles.size()) / static_cast<double>(leaves.size());
+    const double mean = static_cast<double>(sphere.triangles.size()) / static_cast<double>(leaves.size());
     EXPECT_GE(mean, 24) << frequency;
     EXPECT_LE(mean, 48) << frequency;
     EXPECT_LE(static_cast<double>(most), 1.7 * mean) << frequency;
@@ -151,30 +148,7 @@ TEST(BalancedBuild, FillsLeavesAndNodesEvenly) {
   }
 }
 
-TEST(BalancedBuild, KeepsPartsWhole) {
-  // Small sheets of 30 triangles, one in each cell of a grid and crossing into their neighbours'.
-  RandomNumbers random(2);
-  TriangleMesh mesh;
-  constexpr std::uint32_t of_part = 30;
-  for (std::uint32_t part = 0; part < 200; ++part) {
-    const TriangleMesh sheet = crumpled_sheet(5, 3, 0.01, part);
-    const Vec3d place = Vec3d{double(part % 10), double(part / 10 % 10), double(part / 100)} * 0.7;
-    const auto first = static_cast<std::uint32_t>(mesh.positions.size());
-    for (const Vec3d& p : sheet.positions) mesh.positions.push_back(p + place + random.vector(0.05));
-    for (const Triangle& t : sheet.triangles) {
-      mesh.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
-    }
-  }
-  const auto leaves = leaves_of(built(mesh));
-  for (const auto& leaf : leaves) {
-    std::set<std::uint32_t> parts;
-    for (const std::uint32_t t : leaf) parts.insert(t / of_part);
-    EXPECT_EQ(leaf.size(), of_part * parts.size());
-  }
-  EXPECT_LE(leaves.size(), 200u);
-}
-
-TEST(BalancedBuild, CutsThroughPartsThatAreEntangled) {
+TEST(BalancedBuild, LeavesOfCrossingThreadsTileTheSquare) {
   // Threads that cross the whole square, half of them along x and half along z.
   TriangleMesh mesh;
   for (std::uint32_t thread = 0; thread < 64; ++thread) {
@@ -209,8 +183,7 @@ TEST(BalancedBuild, CutsGridsBetweenRows) {
     // Both triangles of a square have the same centre, as boxes of theirs would.
     std::vector<Vec3d> centers = centers_of(sheet);
     for (std::size_t t = 0; t < centers.size(); t += 2) centers[t] = centers[t + 1];
-    const OctreeTopology topology =
-        build_balanced_octree(centers, sheet.triangles, sheet.positions.size(), {});
+    const OctreeTopology topology = build_balanced_octree(centers, {});
     std::size_t straight = 0;
     const auto leaves = leaves_of(topology);
     for (const auto& leaf : leaves) {
@@ -228,7 +201,7 @@ TEST(BalancedBuild, CutsGridsBetweenRows) {
   }
 }
 
-TEST(BalancedBuild, EqualTrianglesAreSharedOutInTheirOrder) {
+TEST(BalancedBuild, SplitsEqualTrianglesInTheirOrder) {
   TriangleMesh mesh = random_soup(200, 1, 0.1, 3);
   std::fill(mesh.positions.begin(), mesh.positions.end(), Vec3d{1, 1, 1});
   const OctreeTopology topology = built(mesh, {.leaf_size = 16});
@@ -238,7 +211,7 @@ TEST(BalancedBuild, EqualTrianglesAreSharedOutInTheirOrder) {
   EXPECT_EQ(topology.nodes.size(), 5u);
 }
 
-TEST(BalancedBuild, OneFarVertexLeavesTheRestApart) {
+TEST(BalancedBuild, SeparatesTheRestWhenOneVertexIsFarAway) {
   for (const double far : {1e10, 1e30, 1e300}) {
     for (const std::size_t at : {0u, 500u, 1000u, 1999u}) {
       TriangleMesh mesh = random_soup(2000, 1, 0.01, 4);
@@ -261,94 +234,6 @@ TEST(BalancedBuild, OneFarVertexLeavesTheRestApart) {
       EXPECT_GE(small + 8, leaves.size()) << far << ' ' << at;
     }
   }
-}
-
-TEST(ConnectedParts, AreFoundByTheirVertices) {
-  EXPECT_EQ(connected_parts({}, 0).count(), 0u);
-  const std::vector<Triangle> triangles{{0, 1, 2}, {6, 7, 8}, {2, 3, 4}, {5, 5, 5}, {8, 9, 8}, {4, 10, 0}};
-  const ConnectedParts parts = connected_parts(triangles, 11);
-  ASSERT_EQ(parts.count(), 3u);
-  EXPECT_EQ(parts.triangles, (std::vector<std::uint32_t>{0, 2, 5, 1, 4, 3}));
-  EXPECT_EQ(parts.first, (std::vector<std::uint32_t>{0, 3, 5, 6}));
-}
-
-std::vector<CutPoint> points_at(const std::vector<float>& places) {
-  std::vector<CutPoint> points;
-  for (const float x : places) points.push_back({{x, 0, 0}, static_cast<std::uint32_t>(points.size())});
-  return points;
-}
-
-TEST(MedianCut, KeepsWithinItsLimitsAndTheOrder) {
-  RandomNumbers random(5);
-  MedianCut cut;
-  for (int round = 0; round < 3000; ++round) {
-    const std::uint32_t count = 2 + random.below(round % 10 == 0 ? 3000 : 60);
-    std::vector<float> places;
-    for (std::uint32_t i = 0; i < count; ++i) {
-      const auto x = static_cast<float>(random.uniform(-1, 1));
-      switch (round % 5) {
-        case 0:
-          places.push_back(x);
-          break;
-        case 1:
-          places.push_back(static_cast<float>(random.below(3)));
-          break;
-        case 2:
-          places.push_back(x * x * x * x * 1e-30f * (random.below(9) == 0 ? 1e37f : 1));
-          break;
-        case 3:
-          places.push_back(static_cast<float>(random.below(50)) * 0x1p-100f);
-          break;
-        default:
-          places.push_back(random.below(2) == 0 ? 0 : x);
-      }
-    }
-    std::vector<CutPoint> points = points_at(places);
-    const std::uint32_t least = 1 + random.below(count - 1), most = least + random.below(count - least);
-    const CutGoal goal{least + random.below(most - least + 1), least, most};
-    const std::size_t lower = cut.cut(points, 0, box_of(points), goal);
-    ASSERT_GE(lower, least);
-    ASSERT_LE(lower, most);
-    float highest = points[0].at[0], lowest = points[lower].at[0];
-    for (std::size_t i = 0; i < count; ++i) {
-      if (i < lower) highest = std::max(highest, points[i].at[0]);
-      if (i >= lower) lowest = std::min(lowest, points[i].at[0]);
-      if (i > 0 && i != lower) {
-        ASSERT_LT(points[i - 1].id, points[i].id);
-      }
-    }
-    ASSERT_LE(highest, lowest);
-  }
-}
-
-TEST(MedianCut, PrefersAGapNearTheTarget) {
-  std::vector<float> places;
-  for (int i = 0; i < 100; ++i) places.push_back(static_cast<float>(i) + (i < 53 ? 0.0f : 20.0f));
-  std::vector<CutPoint> points = points_at(places);
-  EXPECT_EQ(MedianCut().cut(points, 0, box_of(points), {50, 40, 60}), 53u);
-  // Beyond its reach the target counts.
-  EXPECT_NEAR(static_cast<double>(MedianCut().cut(points, 0, box_of(points), {30, 20, 60})), 30, 1);
-}
-
-TEST(MedianCut, WeighsWhatHasWeights) {
-  std::vector<CutPoint> points = points_at({5, 3, 4, 1, 2});
-  const std::vector<std::uint32_t> weights{2, 9, 3, 1, 5};
-  // In order: 1, 5, 9, 3, 2 of 20.
-  EXPECT_EQ(MedianCut(weights).cut(points, 0, box_of(points), {10, 1, 19}), 2u);
-  EXPECT_EQ(points[0].id, 3u);
-  EXPECT_EQ(points[1].id, 4u);
-  EXPECT_EQ(points[2].id, 0u);
-}
-
-TEST(MedianCut, BoxesEncloseTheirPointsAlone) {
-  std::vector<CutPoint> points = points_at({2, -1, 7});
-  points[1].id = 0x7fc00001;  // the bits of a NaN
-  const CutBox box = box_of(points);
-  EXPECT_EQ(box.low[0], -1);
-  EXPECT_EQ(box.high[0], 7);
-  EXPECT_EQ(box.longest_axis(), 0);
-  EXPECT_EQ(box.surface(), 0);
-  EXPECT_LT(box_of({}).extent(1), 0);
 }
 
 }  // namespace

@@ -70,7 +70,7 @@ TEST(MovingBoxes, RecoverWhenAllIsFiniteAgain) {
   sheet.positions[5].x = nan;
   MovingObject object(sheet, {});
   const Parallel parallel(1);
-  object.start.assign(PositionsView<double>(good), object.octree.vertex_order(), parallel);
+  object.assign(object.start, good, false, parallel);
   object.boxes.refit(object.octree, object.elements, object.start, object.start, parallel);
   EXPECT_EQ(object.validate(), "");
 }
@@ -99,7 +99,7 @@ TEST(MovingBoxes, ValidationFindsBoxesOfOtherPositions) {
   const TriangleMesh sheet = crumpled_sheet(12, 9, 0.02, 9);
   MovingObject object(sheet, displaced(sheet, 0.3, 4));
   EXPECT_EQ(object.validate(), "");
-  object.end.assign(PositionsView<double>(sheet.positions), object.octree.vertex_order(), Parallel(1));
+  object.assign(object.end, sheet.positions, false, Parallel(1));
   EXPECT_NE(object.validate(), "");
 }
 

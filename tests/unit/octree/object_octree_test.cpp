@@ -34,11 +34,11 @@ Soup scattered_soup(std::uint32_t count, double radius, Vec3d center, std::uint3
 struct Built {
   explicit Built(const Soup& soup, const ObjectOctreeOptions& options = {},
                  BoundingVolume volume = BoundingVolume::aabb)
-      : octree(PositionsView<double>(soup.positions), soup.triangles, options, volume, SphereFit::vertices) {}
+      : octree(soup.positions, soup.triangles, options, volume, SphereFit::vertices) {}
 
   std::string refit(const Soup& soup, std::uint32_t threads = 1) {
     const Parallel parallel(threads);
-    vertices.assign(PositionsView<double>(soup.positions), octree.vertex_order(), parallel);
+    vertices.assign(soup.positions, parallel);
     octree.refit(vertices, {}, parallel);
     return octree.validate(vertices, {});
   }
@@ -143,7 +143,7 @@ TEST(ObjectOctree, FloatAndDoublePositionsGiveTheSameBoxesForFloatValues) {
   const Aabb box = built.octree.box();
   const Parallel parallel(1);
   VertexBuffer vertices;
-  vertices.assign(PositionsView<float>(singles), built.octree.vertex_order(), parallel);
+  vertices.assign(singles, parallel);
   EXPECT_FALSE(vertices.is_double());
   EXPECT_TRUE(built.octree.refit(vertices, {}, parallel));
   EXPECT_EQ(built.octree.validate(vertices, {}), "");
@@ -197,7 +197,7 @@ TEST(ObjectOctree, InertTrianglesAreInNoBox) {
   soup.positions[61] = {0, std::numeric_limits<double>::infinity(), 0};
   Built built(soup);
   const Parallel parallel(1);
-  built.vertices.assign(PositionsView<double>(soup.positions), built.octree.vertex_order(), parallel);
+  built.vertices.assign(soup.positions, parallel);
   EXPECT_FALSE(built.octree.refit(built.vertices, {}, parallel));
   std::vector<std::uint8_t> inert(200, 0);
   for (std::uint32_t t = 0; t < 200; ++t) {
@@ -209,25 +209,19 @@ TEST(ObjectOctree, InertTrianglesAreInNoBox) {
   EXPECT_LT(built.octree.box().max.y, 2);
 }
 
-TEST(ObjectOctree, NumberingsGiveTheSameVolumes) {
+TEST(ObjectOctree, BorrowedPositionsGiveTheSameVolumes) {
   for (const std::uint32_t count : {1u, 9u, 200u, 5000u}) {
     Soup soup = scattered_soup(count, 2, {1, 2, 3}, count);
     soup.positions.push_back({100, 100, 100});  // of no triangle
-    const PositionsView<double> positions(soup.positions);
-    Built by_first_use(soup);
-    ASSERT_EQ(by_first_use.refit(soup), "");
-    ObjectOctree given(positions, soup.triangles, {}, BoundingVolume::aabb, SphereFit::vertices,
-                       VertexNumbering::given);
-    EXPECT_TRUE(given.vertex_order().empty() && given.vertex_ids().empty());
-    VertexBuffer copied, borrowed;
-    copied.assign(positions, {}, Parallel(1));
-    borrowed.borrow(positions);
+    Built built(soup);
+    ASSERT_EQ(built.refit(soup), "");
+    const Aabb box = built.octree.box();
+    VertexBuffer borrowed;
+    borrowed.borrow(soup.positions);
     EXPECT_EQ(borrowed.bytes(), 0u);
-    for (const VertexBuffer* const vertices : {&copied, &borrowed}) {
-      EXPECT_TRUE(given.refit(*vertices, {}, Parallel(2)));
-      EXPECT_EQ(given.validate(*vertices, {}), "");
-      EXPECT_EQ(given.box(), by_first_use.octree.box());
-    }
+    EXPECT_TRUE(built.octree.refit(borrowed, {}, Parallel(2)));
+    EXPECT_EQ(built.octree.validate(borrowed, {}), "");
+    EXPECT_EQ(built.octree.box(), box);
   }
 }
 
@@ -249,10 +243,9 @@ TEST(ObjectOctree, TellsOfANonFiniteVertexWhereverItIs) {
             singles.push_back({static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)});
           Built built(soup);
           if (single) {
-            built.vertices.assign(PositionsView<float>(singles), built.octree.vertex_order(), Parallel(1));
+            built.vertices.assign(singles, Parallel(1));
           } else {
-            built.vertices.assign(PositionsView<double>(broken.positions), built.octree.vertex_order(),
-                                  Parallel(1));
+            built.vertices.assign(broken.positions, Parallel(1));
           }
           EXPECT_FALSE(built.octree.refit(built.vertices, {}, Parallel(1))) << vertex << ' ' << axis;
         }
@@ -266,7 +259,7 @@ TEST(ObjectOctree, ValidateFindsAStaleBox) {
   Built built(soup);
   EXPECT_EQ(built.refit(soup), "");
   soup.positions[17].x += 5;  // out of any leaf
-  built.vertices.assign(PositionsView<double>(soup.positions), built.octree.vertex_order(), Parallel(1));
+  built.vertices.assign(soup.positions, Parallel(1));
   EXPECT_NE(built.octree.validate(built.vertices, {}), "");
 }
 
@@ -282,10 +275,10 @@ TEST(ObjectOctree, StridedPositions) {
     particles.push_back({1, {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)}, 0});
   }
   Built built(soup);
-  built.vertices.assign(PositionsView<float>(particles[0].position, particles.size(), sizeof(Particle)),
-                        built.octree.vertex_order(), Parallel(1));
+  built.vertices.assign(PositionsView(particles[0].position, particles.size(), sizeof(Particle)),
+                        Parallel(1));
   for (std::uint32_t user = 0; user < particles.size(); ++user) {
-    EXPECT_EQ(built.vertices[built.octree.vertex_order()[user]].y, particles[user].position[1]);
+    EXPECT_EQ(built.vertices[user].y, particles[user].position[1]);
   }
 }
 

@@ -16,13 +16,13 @@ namespace {
 struct Measured {
   explicit Measured(const TriangleMesh& mesh_in, bool regular = false)
       : mesh(mesh_in),
-        octree(PositionsView<double>(mesh.positions), mesh.triangles, {.regular = regular},
-               BoundingVolume::aabb, SphereFit::vertices, VertexNumbering::given) {
+        octree(mesh.positions, mesh.triangles, {.regular = regular}, BoundingVolume::aabb,
+               SphereFit::vertices) {
     refit(mesh.positions);
     quality.set_references(boxes());
   }
   void refit(const std::vector<Vec3d>& positions) {
-    vertices.assign(PositionsView<double>(positions), {}, parallel);
+    vertices.assign(positions, parallel);
     octree.refit(vertices, {}, parallel);
   }
   TreeBoxes boxes() const { return {octree.nodes(), octree.boxes()}; }
@@ -31,9 +31,9 @@ struct Measured {
     quality.measure(boxes());
   }
   void rebuild() {
-    const OctreeRebuild changes = octree.rebuild(quality.degraded(), vertices);
+    const std::vector<std::uint32_t> old_nodes = octree.rebuild(quality.degraded(), vertices);
     octree.refit(vertices, {}, parallel);
-    quality.update_references(boxes(), changes.old_nodes);
+    quality.update_references(boxes(), old_nodes);
   }
 
   TriangleMesh mesh;

@@ -17,17 +17,14 @@ namespace {
 
 /// An octree and the positions of its object, which come in the user's numbers.
 struct Tree {
-  Tree(const TriangleMesh& mesh_in, const ObjectOctreeOptions& options, BoundingVolume volume,
-       VertexNumbering numbering)
-      : mesh(mesh_in),
-        octree(PositionsView<double>(mesh.positions), mesh.triangles, options, volume, SphereFit::vertices,
-               numbering) {
+  Tree(const TriangleMesh& mesh_in, const ObjectOctreeOptions& options, BoundingVolume volume)
+      : mesh(mesh_in), octree(mesh.positions, mesh.triangles, options, volume, SphereFit::vertices) {
     place(mesh.positions);
   }
 
   void place(const std::vector<Vec3d>& positions) {
     mesh.positions = positions;
-    vertices.assign(PositionsView<double>(positions), octree.vertex_order(), parallel);
+    vertices.assign(positions, parallel);
     refit();
   }
   void refit() {
@@ -53,9 +50,8 @@ struct Tree {
     return chosen;
   }
   void rebuild(const std::vector<std::uint32_t>& nodes) {
-    const OctreeRebuild changes = octree.rebuild(nodes, vertices);
-    ASSERT_EQ(changes.old_nodes.size(), octree.nodes().size());
-    if (!changes.new_vertices.empty()) vertices = vertices.renumbered(changes.new_vertices);
+    const std::size_t count = octree.rebuild(nodes, vertices).size();
+    ASSERT_EQ(count, octree.nodes().size());
     refit();
   }
   void expect_valid() const {
@@ -63,17 +59,10 @@ struct Tree {
     for (std::size_t t = 0; t < octree.triangles().size(); ++t) {
       for (std::size_t corner = 0; corner < 3; ++corner) {
         const std::uint32_t user = mesh.triangles[octree.triangle_ids()[t]][corner];
-        ASSERT_EQ(octree.octree_vertex(user), octree.triangles()[t][corner]);
+        ASSERT_EQ(user, octree.triangles()[t][corner]);
       }
     }
-    for (std::uint32_t user = 0; user < mesh.positions.size(); ++user) {
-      const Vec3d found = vertices[octree.octree_vertex(user)];
-      const Vec3d& given = mesh.positions[user];
-      ASSERT_TRUE(found == given || (std::isnan(found.x) && std::isnan(given.x)));
-    }
-    if (!octree.vertex_order().empty()) {
-      EXPECT_EQ(SurfaceElements(octree).validate(octree), "");
-    }
+    EXPECT_EQ(SurfaceElements(octree).validate(octree), "");
   }
 
   TriangleMesh mesh;
@@ -113,7 +102,6 @@ std::vector<Vec3d> deformed(std::vector<Vec3d> positions, std::uint32_t way, Ran
 
 TEST(Rebuild, AnySubtreesOfAnyTreeStayValid) {
   RandomNumbers random(1);
-  std::uint32_t round = 0;
   for (std::uint32_t count = 1; count <= 70; count += 1 + count / 8) {
     const TriangleMesh mesh =
         count % 2 == 0 ? random_soup(count, 1, 0.3, count) : crumpled_sheet(count, 2, 0.1, count);
@@ -124,8 +112,7 @@ TEST(Rebuild, AnySubtreesOfAnyTreeStayValid) {
       options.arity = arity;
       options.max_level = random.below(4) == 0 ? 2 : 16;
       const auto volume = count % 3 == 0 ? BoundingVolume::sphere : BoundingVolume::aabb;
-      Tree tree(mesh, options, volume,
-                ++round % 2 == 0 ? VertexNumbering::given : VertexNumbering::by_first_use);
+      Tree tree(mesh, options, volume);
       for (std::uint32_t way = 0; way < 8; ++way) {
         tree.place(deformed(mesh.positions, way, random));
         tree.rebuild(tree.some_nodes(random));
@@ -141,15 +128,13 @@ TEST(Rebuild, AnySubtreesOfAnyTreeStayValid) {
 TEST(Rebuild, OfTheRootIsTheTreeBuiltFromPresentPositions) {
   RandomNumbers random(2);
   const TriangleMesh rest = random_soup(3000, 1, 0.05, 3);
-  for (const auto& [numbering, regular] : {std::pair{VertexNumbering::given, false},
-                                           {VertexNumbering::by_first_use, false},
-                                           {VertexNumbering::given, true}}) {
+  for (const bool regular : {false, true}) {
     const ObjectOctreeOptions options{.regular = regular};
-    Tree tree(rest, options, BoundingVolume::aabb, numbering);
+    Tree tree(rest, options, BoundingVolume::aabb);
     tree.place(deformed(rest.positions, 0, random));
     tree.rebuild({0});
     tree.expect_valid();
-    const Tree fresh(tree.mesh, options, BoundingVolume::aabb, numbering);
+    const Tree fresh(tree.mesh, options, BoundingVolume::aabb);
     ASSERT_EQ(tree.octree.nodes().size(), fresh.octree.nodes().size());
     EXPECT_TRUE(std::equal(tree.octree.triangle_ids().begin(), tree.octree.triangle_ids().end(),
                            fresh.octree.triangle_ids().begin()));
@@ -159,12 +144,13 @@ TEST(Rebuild, OfTheRootIsTheTreeBuiltFromPresentPositions) {
 
 TEST(Rebuild, KeepsWhatIsNotChosen) {
   const TriangleMesh rest = random_soup(5000, 1, 0.05, 4);
-  Tree tree(rest, {}, BoundingVolume::aabb, VertexNumbering::given);
+  Tree tree(rest, {}, BoundingVolume::aabb);
   const std::vector<std::uint32_t> ids(tree.octree.triangle_ids().begin(), tree.octree.triangle_ids().end());
   const OctreeNode chosen = tree.octree.nodes()[2];
   RandomNumbers random(5);
   tree.place(deformed(rest.positions, 0, random));
-  const OctreeRebuild changes = tree.octree.rebuild(std::vector<std::uint32_t>{2}, tree.vertices);
+  const std::vector<std::uint32_t> old_nodes =
+      tree.octree.rebuild(std::vector<std::uint32_t>{2}, tree.vertices);
   std::size_t others = 0;
   for (std::size_t t = 0; t < ids.size(); ++t) {
     if (t >= chosen.first_triangle[0] && t < chosen.first_triangle[node_width]) continue;
@@ -172,9 +158,9 @@ TEST(Rebuild, KeepsWhatIsNotChosen) {
     ++others;
   }
   EXPECT_GT(others, 1000u);
-  EXPECT_EQ(changes.old_nodes[0], 0u);
-  EXPECT_EQ(std::count(changes.old_nodes.begin(), changes.old_nodes.end(), 2u), 1);
-  EXPECT_GT(std::count(changes.old_nodes.begin(), changes.old_nodes.end(), no_node), 0);
+  EXPECT_EQ(old_nodes[0], 0u);
+  EXPECT_EQ(std::count(old_nodes.begin(), old_nodes.end(), 2u), 1);
+  EXPECT_GT(std::count(old_nodes.begin(), old_nodes.end(), no_node), 0);
   tree.refit();
   tree.expect_valid();
 }

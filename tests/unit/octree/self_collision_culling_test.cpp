@@ -22,8 +22,8 @@ struct Unfolded {
   /// `end` empty: at rest.
   Unfolded(const TriangleMesh& mesh, const std::vector<Vec3d>& end, const ObjectOctreeOptions& options = {},
            bool floats = false)
-      : object(mesh, end, options, floats), lanes(object.octree) {
-    lanes.refit(object.octree, object.start, object.end_positions(), Parallel(1));
+      : object(mesh, end, options, floats), lanes(object.octree, object.elements.faces()) {
+    lanes.refit(object.octree, object.elements.faces(), object.start, object.end_positions(), Parallel(1));
   }
   /// How many lanes are said not to touch themselves.
   std::size_t count() const {
@@ -34,13 +34,13 @@ struct Unfolded {
   TrianglePoints points(std::uint32_t triangle, double time) const {
     TrianglePoints result;
     for (std::size_t corner = 0; corner < 3; ++corner) {
-      const std::uint32_t vertex = object.octree.triangles()[triangle][corner];
+      const std::uint32_t vertex = object.elements.faces()[triangle][corner];
       result[corner] = object.start[vertex] * (1 - time) + object.end_positions()[vertex] * time;
     }
     return result;
   }
   bool touches_itself(std::uint32_t first, std::uint32_t last) const {
-    const auto triangles = object.octree.triangles();
+    const auto triangles = object.elements.faces();
     for (std::uint32_t s = first; s < last; ++s) {
       for (std::uint32_t t = s + 1; t < last; ++t) {
         const Triangle &p = triangles[s], &q = triangles[t];
@@ -141,7 +141,7 @@ TEST(SelfCollisionCulling, MostLanesOfALargeSmoothSheet) {
     const Unfolded large(sheet(40, 40), mapped(sheet(40, 40), bent), {}, floats);
     std::size_t lanes = 0;
     for (const OctreeNode& node : large.object.octree.nodes()) {
-      lanes += has_moving_boxes(node) ? node.lane_count : 0u;
+      lanes += node.lane_count;
     }
     EXPECT_GT(lanes, 20u);
     // Some have boundaries too jagged.
@@ -304,7 +304,7 @@ TEST(SelfCollisionCulling, CrumpledSheets) {
     sheet_lanes.expect_true_claims();
     unfolded += sheet_lanes.count();
     for (const OctreeNode& node : sheet_lanes.object.octree.nodes()) {
-      lanes += has_moving_boxes(node) ? node.lane_count : 0u;
+      lanes += node.lane_count;
     }
   }
   EXPECT_GT(unfolded, 20u);

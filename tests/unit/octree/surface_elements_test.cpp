@@ -10,11 +10,8 @@ namespace supple {
 namespace {
 
 ObjectOctree octree_of(const TriangleMesh& mesh, std::uint32_t leaf_size = 8) {
-  return {PositionsView<double>(mesh.positions),
-          mesh.triangles,
-          {.leaf_size = leaf_size},
-          BoundingVolume::aabb,
-          SphereFit::vertices};
+  return {
+      mesh.positions, mesh.triangles, {.leaf_size = leaf_size}, BoundingVolume::aabb, SphereFit::vertices};
 }
 
 TEST(SurfaceElements, OfNothing) {
@@ -34,7 +31,7 @@ TEST(SurfaceElements, EdgesAreTheDistinctPairsOfVertices) {
   EXPECT_EQ(elements.vertex_count(), 7u);
   std::set<Edge> found;
   for (const Edge& edge : elements.edges()) {
-    const auto [p, q] = std::minmax(octree.vertex_ids()[edge[0]], octree.vertex_ids()[edge[1]]);
+    const auto [p, q] = std::minmax(elements.vertex_ids()[edge[0]], elements.vertex_ids()[edge[1]]);
     found.insert({p, q});
   }
   EXPECT_EQ(found, (std::set<Edge>{{0, 1}, {1, 2}, {0, 2}, {2, 3}, {1, 3}, {4, 5}}));

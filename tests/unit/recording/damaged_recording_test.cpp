@@ -21,7 +21,7 @@ class DamagedRecording : public testing::Test {
     scene.threads = 1;
     simulate({random_soup(30, 1, 0.6, 4), random_soup(20, 1, 0.6, 5)}, {}, scene, 4)
         .write(folder_ / "run.h5");
-    scene.contacts = ContactMode::continuous;
+    scene.contacts = ContactKinds::continuous;
     simulate({random_soup(30, 1, 0.6, 4), random_soup(20, 1, 0.6, 5)}, {}, scene, 4)
         .write(folder_ / "moving.h5");
   }
@@ -153,7 +153,7 @@ TEST_F(DamagedRecording, MissingDatasets) {
   for (const char* path :
        {"time", "scene_file", "objects", "objects/0", "objects/0/positions", "objects/1/rest_positions",
         "objects/1/triangles", "object_pairs/end", "object_pairs/object_a", "contacts/end", "contacts/kind",
-        "contact_points/position", "continuous_contacts/normal", "continuous_contacts",
+        "contacts/normal", "contact_points/position", "continuous_contacts/normal", "continuous_contacts",
         "events/volume_begin/end", "events/contact_end/object_b", "statistics/exact_seconds"})
     expect("missing", without(path));
 }

@@ -11,7 +11,7 @@
 namespace supple {
 namespace {
 
-Contents touching(ContactMode mode) {
+Contents touching(ContactKinds mode) {
   ObjectOptions fixed;
   fixed.is_static = true;
   SceneOptions scene;
@@ -22,7 +22,7 @@ Contents touching(ContactMode mode) {
 }
 
 /// Compares `base` with what `change` makes of it.
-class FindFirstDifference : public testing::TestWithParam<ContactMode> {
+class FindFirstDifference : public testing::TestWithParam<ContactKinds> {
  protected:
   std::optional<RecordingDifference> after(const std::function<void(Contents&)>& change,
                                            double tolerance = 0) const {
@@ -135,7 +135,7 @@ TEST_P(InEveryMode, RefusesAToleranceThatIsNone) {
     EXPECT_THROW(after([](Contents&) {}, tolerance), Error);
 }
 
-INSTANTIATE_TEST_SUITE_P(, InEveryMode, testing::Values(ContactMode::intersection));
+INSTANTIATE_TEST_SUITE_P(, InEveryMode, testing::Values(ContactKinds::intersection));
 
 TEST_P(OfIntersections, Contacts) {
   ASSERT_GT(base_.frames[1].contacts.size(), 3u);
@@ -146,6 +146,8 @@ TEST_P(OfIntersections, Contacts) {
     contact.kind =
         contact.kind == IntersectionKind::point ? IntersectionKind::segment : IntersectionKind::point;
   });
+  expect(1, "normal: (", [](Contents& c) { c.frames[1].contacts[2].normal.x += 1e-9; });
+  EXPECT_FALSE(after([](Contents& c) { c.frames[1].contacts[2].normal.x += 1e-9; }, 1e-8));
   const std::optional<RecordingDifference> missing =
       after([](Contents& c) { c.frames[1].contacts.erase(c.frames[1].contacts.begin() + 2); });
   EXPECT_NE(missing->what.find("only in the first"), std::string::npos) << missing->what;
@@ -158,7 +160,7 @@ TEST_P(OfIntersections, Contacts) {
   expect(2, "number of contact points: ", [](Contents& c) { c.frames[2].contact_points.push_back({}); });
   EXPECT_FALSE(after([](Contents& c) { c.frames[2].contact_points[1].position.x += 1e-9; }, 1e-8));
 }
-INSTANTIATE_TEST_SUITE_P(, OfIntersections, testing::Values(ContactMode::intersection));
+INSTANTIATE_TEST_SUITE_P(, OfIntersections, testing::Values(ContactKinds::intersection));
 
 TEST_P(OfContinuousContacts, EveryField) {
   ASSERT_GT(base_.frames[2].continuous_contacts.size(), 1u);
@@ -180,7 +182,7 @@ TEST_P(OfContinuousContacts, EveryField) {
     c.frames[2].continuous_contacts.erase(c.frames[2].continuous_contacts.begin());
   });
 }
-INSTANTIATE_TEST_SUITE_P(, OfContinuousContacts, testing::Values(ContactMode::continuous));
+INSTANTIATE_TEST_SUITE_P(, OfContinuousContacts, testing::Values(ContactKinds::continuous));
 
 }  // namespace
 }  // namespace supple

@@ -104,6 +104,7 @@ void make_version_1(const std::filesystem::path& path, std::size_t objects) {
     for (const char* name : {"tree_arity", "object_octree", "rebuild_degraded"})
       ASSERT_GE(H5Adelete_by_name(file, group.c_str(), name, H5P_DEFAULT), 0) << name;
   }
+  ASSERT_GE(H5Ldelete(file, "contacts/normal", H5P_DEFAULT), 0);
   rename_dataset(file, "statistics/sort_and_events_seconds", "statistics/finish_seconds");
   rename_dataset(file, "continuous_contacts/toi", "continuous_contacts/time");
   rename_dataset(file, "continuous_contacts/barycentric_a", "continuous_contacts/weights_a");
@@ -113,7 +114,7 @@ void make_version_1(const std::filesystem::path& path, std::size_t objects) {
 
 TEST(RecordedOptions, Version1IsRead) {
   SceneOptions scene;
-  scene.contacts = ContactMode::continuous;
+  scene.contacts = ContactKinds::continuous;
   scene.bounding_volume = BoundingVolume::sphere;
   scene.scene_octree.region_sphere_test = RegionSphereTest::grown_box;
   ObjectOptions object;

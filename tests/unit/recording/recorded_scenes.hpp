@@ -94,7 +94,7 @@ inline Contents simulate(const std::vector<TriangleMesh>& meshes, std::vector<Ob
         const double x = static_cast<double>((f * 7 + v * 3 + i * 5) % 11) / 11 - 0.4;
         positions[i][v] = meshes[i].positions[v] + Vec3d{x, 0.3 * x, static_cast<double>(f % 5) / 8};
       }
-      if (scene_options.contacts == ContactMode::continuous)
+      if (scene_options.contacts == ContactKinds::continuous)
         scene.set_motion(contents.header.objects[i].id, from, positions[i]);
       else
         scene.set_positions(contents.header.objects[i].id, positions[i]);

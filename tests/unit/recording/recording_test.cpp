@@ -39,14 +39,14 @@ void expect_equal(const RecordingHeader& a, const RecordingHeader& b) {
   EXPECT_EQ(a.time_step, b.time_step);
   EXPECT_EQ(a.scene_file, b.scene_file);
   EXPECT_EQ(a.scene.bounding_volume, b.scene.bounding_volume);
-  EXPECT_EQ(a.scene.sphere_fit, b.scene.sphere_fit);
+  EXPECT_EQ(a.scene.comparison.sphere_fit, b.scene.comparison.sphere_fit);
   EXPECT_EQ(a.scene.broad_phase, b.scene.broad_phase);
   EXPECT_EQ(a.scene.scene_octree.max_level, b.scene.scene_octree.max_level);
   EXPECT_EQ(a.scene.scene_octree.expand_at, b.scene.scene_octree.expand_at);
   EXPECT_EQ(a.scene.scene_octree.region_sphere_test, b.scene.scene_octree.region_sphere_test);
   EXPECT_EQ(a.scene.contacts, b.scene.contacts);
   EXPECT_EQ(a.scene.contact_points, b.scene.contact_points);
-  EXPECT_EQ(a.scene.colliding_vertices, b.scene.colliding_vertices);
+  EXPECT_EQ(a.scene.comparison.colliding_vertices, b.scene.comparison.colliding_vertices);
   EXPECT_EQ(a.scene.impact.min_separation, b.scene.impact.min_separation);
   EXPECT_EQ(a.scene.impact.exact, b.scene.impact.exact);
   ASSERT_EQ(a.objects.size(), b.objects.size());
@@ -88,7 +88,7 @@ Contents round_trip(const Contents& contents) {
 }
 
 /// Two soups, one against itself as well, and one that stands.
-Contents soups(ContactMode mode, std::uint64_t frames = 12) {
+Contents soups(ContactKinds mode, std::uint64_t frames = 12) {
   ObjectOptions folding, fixed;
   folding.self_collision = true;
   fixed.is_static = true;
@@ -107,7 +107,7 @@ std::size_t count_all(const std::vector<RecordedFrame>& frames, Rows rows) {
 }
 
 TEST(Recording, RoundTripOfIntersections) {
-  const Contents read = round_trip(soups(ContactMode::intersection));
+  const Contents read = round_trip(soups(ContactKinds::intersection));
   EXPECT_GT(count_all(read.frames, &RecordedFrame::contacts), 100u);
   EXPECT_GT(count_all(read.frames, &RecordedFrame::contact_points), 100u);
   EXPECT_GT(count_all(read.frames, &RecordedFrame::volume_begin), 0u);
@@ -115,13 +115,13 @@ TEST(Recording, RoundTripOfIntersections) {
 }
 
 TEST(Recording, RoundTripOfContinuousContacts) {
-  const Contents read = round_trip(soups(ContactMode::continuous));
+  const Contents read = round_trip(soups(ContactKinds::continuous));
   EXPECT_GT(count_all(read.frames, &RecordedFrame::continuous_contacts), 100u);
   EXPECT_EQ(count_all(read.frames, &RecordedFrame::contacts), 0u);
 }
 
 TEST(Recording, RoundTripOfEndingPairs) {
-  Contents contents = soups(ContactMode::intersection, 3);
+  Contents contents = soups(ContactKinds::intersection, 3);
   const auto& objects = contents.header.objects;
   contents.frames[2].volume_end = {{objects[0].id, objects[2].id}};
   contents.frames[2].contact_end = {{objects[0].id, objects[1].id}, {objects[1].id, objects[2].id}};
@@ -129,15 +129,15 @@ TEST(Recording, RoundTripOfEndingPairs) {
 }
 
 TEST(Recording, RoundTripOfEveryOption) {
-  Contents contents = soups(ContactMode::none, 2);
+  Contents contents = soups(ContactKinds::none, 2);
   SceneOptions& scene = contents.header.scene;
   scene.bounding_volume = BoundingVolume::sphere;
-  scene.sphere_fit = SphereFit::box;
+  scene.comparison.sphere_fit = SphereFit::box;
   scene.broad_phase = BroadPhaseMethod::octree;
   scene.scene_octree = {7, 3, RegionSphereTest::grown_box};
   scene.contact_points = false;
   scene.impact = {0.125, false};
-  scene.colliding_vertices = true;
+  scene.comparison.colliding_vertices = true;
   contents.header.time_step = 0x1.8p-7;
   contents.header.scene_file = "[scene]\nname = \"\xe2\x88\x9e\"\n";
   ObjectOptions& options = contents.header.objects[1].options;
@@ -149,7 +149,7 @@ TEST(Recording, RoundTripOfEveryOption) {
 }
 
 TEST(Recording, RoundTripOfNumbersThatAreNotFinite) {
-  Contents contents = soups(ContactMode::intersection, 3);
+  Contents contents = soups(ContactKinds::intersection, 3);
   const double infinity = std::numeric_limits<double>::infinity();
   contents.positions[1][0][3] = {std::numeric_limits<double>::quiet_NaN(), -infinity, infinity};
   contents.positions[2][1][0] = {-0.0, std::numeric_limits<double>::denorm_min(), 1e308};
@@ -157,7 +157,7 @@ TEST(Recording, RoundTripOfNumbersThatAreNotFinite) {
 }
 
 TEST(Recording, RoundTripOfIdsThatWereUsedBefore) {
-  Contents contents = soups(ContactMode::intersection, 2);
+  Contents contents = soups(ContactKinds::intersection, 2);
   const auto rename = [&](ObjectId from, ObjectId to) {
     for (RecordedObject& object : contents.header.objects) object.id = object.id == from ? to : object.id;
     for (RecordedFrame& frame : contents.frames) {
@@ -181,7 +181,7 @@ TEST(Recording, SceneWithoutObjects) {
 }
 
 TEST(Recording, NoFrames) {
-  round_trip(soups(ContactMode::intersection, 0));
+  round_trip(soups(ContactKinds::intersection, 0));
   round_trip(Contents{});
 }
 
@@ -195,7 +195,7 @@ TEST(Recording, ObjectsWithoutVerticesAndTriangles) {
 
 TEST(Recording, TenThousandFrames) {
   SceneOptions scene;
-  scene.contacts = ContactMode::none;
+  scene.contacts = ContactKinds::none;
   scene.threads = 1;
   const Contents contents = simulate({make_box({1, 1, 1}), make_box({1, 1, 1})}, {}, scene, 10000);
   const TemporaryFolder folder;
@@ -210,16 +210,16 @@ TEST(Recording, TenThousandFrames) {
 
 TEST(Recording, OfStaticObjectsOneRow) {
   const TemporaryFolder folder;
-  soups(ContactMode::none, 5).write(folder / "run.h5");
+  soups(ContactKinds::none, 5).write(folder / "run.h5");
   const Recording recording(folder / "run.h5");
   expect_equal_bits(recording.positions(0, 2), recording.positions(4, 2));
-  Contents moving = soups(ContactMode::none, 5);
+  Contents moving = soups(ContactKinds::none, 5);
   moving.positions[3][2][7].y += 1;
   EXPECT_THROW(moving.write(folder / "run.h5"), Error);
 }
 
 TEST(Recording, ReadsWhatWasFlushedWhileItIsWritten) {
-  const Contents contents = soups(ContactMode::intersection, 6);
+  const Contents contents = soups(ContactKinds::intersection, 6);
   const TemporaryFolder folder;
   Recorder recorder(folder / "run.h5", contents.header);
   EXPECT_EQ(Recording(folder / "run.h5").frame_count(), 0u);
@@ -237,17 +237,17 @@ TEST(Recording, ReadsWhatWasFlushedWhileItIsWritten) {
 
 TEST(Recording, OldOneStaysUntilTheNewOneIsThere) {
   const TemporaryFolder folder;
-  soups(ContactMode::none, 3).write(folder / "run.h5");
-  RecordingHeader wrong = soups(ContactMode::none, 0).header;
+  soups(ContactKinds::none, 3).write(folder / "run.h5");
+  RecordingHeader wrong = soups(ContactKinds::none, 0).header;
   wrong.objects[0].triangles[2][1] = 100000;
   EXPECT_THROW(Recorder(folder / "run.h5", wrong), Error);
   EXPECT_EQ(Recording(folder / "run.h5").frame_count(), 3u);
-  soups(ContactMode::none, 1).write(folder / "run.h5");
+  soups(ContactKinds::none, 1).write(folder / "run.h5");
   EXPECT_EQ(Recording(folder / "run.h5").frame_count(), 1u);
 }
 
 TEST(Recording, EqualContentsAreEqualFiles) {
-  const Contents contents = soups(ContactMode::intersection, 20);
+  const Contents contents = soups(ContactKinds::intersection, 20);
   const TemporaryFolder folder;
   const auto bytes_of = [](const std::filesystem::path& path) {
     std::ifstream file(path, std::ios::binary);
@@ -262,7 +262,7 @@ TEST(Recording, EqualContentsAreEqualFiles) {
 }
 
 TEST(Recorder, RefusesWhatDoesNotFitTheHeaderAndGoesOn) {
-  const Contents contents = soups(ContactMode::intersection, 3);
+  const Contents contents = soups(ContactKinds::intersection, 3);
   const TemporaryFolder folder;
   Recorder recorder(folder / "run.h5", contents.header);
   std::vector<std::span<const Vec3d>> views(contents.positions[0].begin(), contents.positions[0].end());
@@ -287,7 +287,7 @@ TEST(Recorder, RefusesWhatDoesNotFitTheHeaderAndGoesOn) {
 }
 
 TEST(Recorder, RefusesIdsThatAreNotDistinct) {
-  RecordingHeader header = soups(ContactMode::none, 0).header;
+  RecordingHeader header = soups(ContactKinds::none, 0).header;
   header.objects[2].id = header.objects[0].id;
   const TemporaryFolder folder;
   EXPECT_NE(error_of([&] { Recorder(folder / "run.h5", header); }).find("same id"), std::string::npos);
@@ -310,14 +310,14 @@ TEST(Recorder, FollowsALink) {
   const TemporaryFolder folder;
   std::ofstream(folder / "target.h5") << "old";
   std::filesystem::create_symlink(folder / "target.h5", folder / "link.h5");
-  soups(ContactMode::none, 2).write(folder / "link.h5");
+  soups(ContactKinds::none, 2).write(folder / "link.h5");
   EXPECT_TRUE(std::filesystem::is_symlink(folder / "link.h5"));
   EXPECT_EQ(Recording(folder / "target.h5").frame_count(), 2u);
 }
 
 TEST(Recording, NoSuchFrameOrObject) {
   const TemporaryFolder folder;
-  soups(ContactMode::none, 2).write(folder / "run.h5");
+  soups(ContactKinds::none, 2).write(folder / "run.h5");
   const Recording recording(folder / "run.h5");
   EXPECT_NE(error_of([&] { recording.frame(2); }).find("no frame 2; the recording has 2"), std::string::npos);
   EXPECT_NE(error_of([&] { recording.summary(2); }).find("no frame 2"), std::string::npos);

@@ -4,6 +4,7 @@
 #include <tuple>
 #include <vector>
 
+#include "supple/inspection.hpp"
 #include "supple/models.hpp"
 #include "supple/scene.hpp"
 #include "support/random.hpp"
@@ -16,8 +17,7 @@ struct World {
   explicit World(const SceneOptions& options) : scene(options) {
     for (int i = 0; i < 8; ++i) {
       centers.push_back({1.7 * (i & 1), 1.7 * (i >> 1 & 1), 1.7 * (i >> 2)});
-      ids.push_back(
-          scene.add(PositionsView<double>(positions_of(i)), mesh.triangles, {.self_collision = i == 3}));
+      ids.push_back(scene.add(positions_of(i), mesh.triangles, {.self_collision = i == 3}));
     }
   }
   std::vector<Vec3d> positions_of(int i) const {
@@ -82,7 +82,7 @@ TEST_P(AtRest, ContactsAreThoseOfASceneWithoutAPast) {
       world.scene.set_positions(world.ids[at], world.positions_of(i));
     }
     expect_as_new(world, world.scene.detect(), options);
-    EXPECT_EQ(world.scene.validate(), "");
+    EXPECT_EQ(SceneInspector(world.scene).validate(), "");
   }
   EXPECT_TRUE(world.scene.verify().agrees());
 }
@@ -114,7 +114,7 @@ TEST(AtRestScene, AnotherObjectInTheSamePlaceIsAnother) {
   World world({.threads = 1});
   world.scene.detect();
   world.scene.remove(world.ids[7]);
-  world.ids[7] = world.scene.add(PositionsView<double>(world.positions_of(0)), world.mesh.triangles);
+  world.ids[7] = world.scene.add(world.positions_of(0), world.mesh.triangles);
   ASSERT_EQ(world.ids[7].index, 7u);
   world.scene.detect();
   EXPECT_TRUE(world.scene.verify().agrees());

@@ -151,7 +151,7 @@ void expect_apart(const PairExplanation& e, const std::array<Vec3d, 3>& a, const
 
 /// Checks what `explain` says of two triangles; `is_contact` is what detect said.
 void check_explanation(const Known& known, const Named& p, const Named& q, bool is_contact) {
-  const PairExplanation e = known.scene.explain(p.object, p.triangle, q.object, q.triangle);
+  const PairExplanation e = SceneInspector(known.scene).explain(p.object, p.triangle, q.object, q.triangle);
   const auto a = known.points(p), b = known.points(q);
   ASSERT_EQ(e.stage == PairStage::contact, is_contact)
       << p.object.index << ':' << p.triangle << ' ' << q.object.index << ':' << q.triangle << " stage "
@@ -173,7 +173,8 @@ void check_explanation(const Known& known, const Named& p, const Named& q, bool 
     // Closest points are as good as rounding lets them be: of slivers, within a small part of their size.
     EXPECT_GE(gap_along(e.axis, a, b), e.distance - 1e-6 * size_of(a, b) - smallest);
   }
-  const PairExplanation back = known.scene.explain(q.object, q.triangle, p.object, p.triangle);
+  const PairExplanation back =
+      SceneInspector(known.scene).explain(q.object, q.triangle, p.object, p.triangle);
   EXPECT_EQ(back.stage, e.stage);
   EXPECT_EQ(back.box_a, e.box_b);
   EXPECT_EQ(back.sphere_a, e.sphere_b);
@@ -233,8 +234,7 @@ std::vector<CandidatePair> candidates_by_brute_force(const Known& known) {
 constexpr std::size_t no_limit = std::size_t{1} << 40;
 
 void check_candidates(const Known& known, bool are_boxes) {
-  std::uint64_t total = 0;
-  const std::vector<CandidatePair> found = known.scene.candidates(no_limit, &total);
+  const auto [found, total] = SceneInspector(known.scene).candidates(no_limit);
   ASSERT_EQ(total, found.size());
   const std::vector<CandidatePair> expected = candidates_by_brute_force(known);
   if (are_boxes) {
@@ -248,16 +248,16 @@ void check_candidates(const Known& known, bool are_boxes) {
     EXPECT_TRUE(std::binary_search(found.begin(), found.end(), pair));
   }
   for (const std::size_t limit : {std::size_t{0}, std::size_t{1}, found.size() / 3, found.size()}) {
-    const std::vector<CandidatePair> first = known.scene.candidates(limit, &total);
-    EXPECT_EQ(total, found.size());
-    EXPECT_TRUE(std::equal(first.begin(), first.end(), found.begin(),
+    const CandidateList first = SceneInspector(known.scene).candidates(limit);
+    EXPECT_EQ(first.total, found.size());
+    EXPECT_TRUE(std::equal(first.pairs.begin(), first.pairs.end(), found.begin(),
                            found.begin() + static_cast<std::ptrdiff_t>(std::min(limit, found.size()))));
   }
 }
 
 void check_cells(const Known& known, ObjectId id, std::optional<std::uint32_t> level) {
-  const std::vector<OctreeCell> cells = known.scene.octree_cells(id, level);
-  const std::uint32_t depth = known.scene.octree_depth(id);
+  const std::vector<OctreeCell> cells = SceneInspector(known.scene).cells(id, level);
+  const std::uint32_t depth = SceneInspector(known.scene).octree_depth(id);
   const std::vector<Triangle>& triangles = known.triangles.at(id);
   std::size_t counted = 0;
   std::vector<bool> held(triangles.size(), false);
@@ -274,7 +274,7 @@ void check_cells(const Known& known, ObjectId id, std::optional<std::uint32_t> l
       EXPECT_TRUE(cell.is_leaf);
     }
     const bool is_sphere = known.scene.options().bounding_volume == BoundingVolume::sphere &&
-                           known.scene.options().contacts != ContactMode::continuous;
+                           known.scene.options().contacts != ContactKinds::continuous;
     EXPECT_EQ(cell.sphere.empty(), cell.box.empty() || !is_sphere);
     std::size_t inside = 0;
     for (std::uint32_t t = 0; t < triangles.size(); ++t) {
@@ -293,7 +293,7 @@ void check_cells(const Known& known, ObjectId id, std::optional<std::uint32_t> l
   // The root's box is as small as can be; the others are bounded by it.
   if (level == 0 && !cells.empty()) {
     ASSERT_EQ(cells.size(), 1u);
-    for (const OctreeCell& leaf : known.scene.octree_cells(id, {})) {
+    for (const OctreeCell& leaf : SceneInspector(known.scene).cells(id, {})) {
       if (leaf.box.empty()) continue;
       EXPECT_TRUE(overlap(leaf.box, cells[0].box));
       for (int axis = 0; axis < 3; ++axis) {
@@ -307,7 +307,7 @@ void check_cells(const Known& known, ObjectId id, std::optional<std::uint32_t> l
 void check_all_cells(const Known& known) {
   for (const auto& [id, triangles] : known.triangles) {
     check_cells(known, id, std::nullopt);
-    for (std::uint32_t level = 0; level <= known.scene.octree_depth(id) + 1; ++level)
+    for (std::uint32_t level = 0; level <= SceneInspector(known.scene).octree_depth(id) + 1; ++level)
       check_cells(known, id, level);
   }
 }
@@ -372,8 +372,7 @@ TEST_P(Inspection, FollowsTranslatedAndStaticObjects) {
   known.scene.detect();
   check_all_cells(known);
   check_all_explanations(known);
-  std::uint64_t total = 0;
-  const std::vector<CandidatePair> found = known.scene.candidates(no_limit, &total);
+  const auto [found, total] = SceneInspector(known.scene).candidates(no_limit);
   EXPECT_EQ(total, found.size());
   EXPECT_TRUE(std::is_sorted(found.begin(), found.end()));
   if (are_boxes()) {
@@ -386,7 +385,7 @@ TEST_P(Inspection, FollowsTranslatedAndStaticObjects) {
 TEST_P(Inspection, ExplanationsAgreeWithContinuousDetect) {
   for (const double separation : {0.0, 0.01}) {
     SceneOptions continuous = options();
-    continuous.contacts = ContactMode::continuous;
+    continuous.contacts = ContactKinds::continuous;
     continuous.impact.min_separation = separation;
     // What exact arithmetic decides of such scenes with a separation takes minutes.
     continuous.impact.exact = separation == 0;
@@ -421,7 +420,8 @@ TEST_P(Inspection, ExplanationsAgreeWithContinuousDetect) {
     for (std::size_t i = 0; i < all.size(); ++i) {
       for (std::size_t j = i; j < all.size(); ++j) {
         const PairExplanation e =
-            known.scene.explain(all[i].object, all[i].triangle, all[j].object, all[j].triangle);
+            SceneInspector(known.scene)
+                .explain(all[i].object, all[i].triangle, all[j].object, all[j].triangle);
         ASSERT_EQ(e.stage == PairStage::contact, touching.count({all[i], all[j]}) != 0);
         if (e.stage == PairStage::octree_volumes || e.stage == PairStage::triangle_boxes)
           expect_apart(e, known.points(all[i]), known.points(all[j]));
@@ -453,7 +453,8 @@ TEST(InspectionOfScenes, SmoothPartsThatAreNotLookedAtHaveCandidatesToo) {
     known.scene.detect();
   }
   check_candidates(known, true);
-  EXPECT_LT(known.scene.result().stats.candidate_pairs, known.scene.candidates(no_limit).size());
+  EXPECT_LT(known.scene.result().stats.candidate_pairs,
+            SceneInspector(known.scene).candidates(no_limit).total);
 }
 
 TEST(InspectionOfScenes, SeesOctreesThatWereBuiltAnew) {
@@ -472,7 +473,7 @@ TEST(InspectionOfScenes, SeesOctreesThatWereBuiltAnew) {
     known.scene.set_positions(id, positions);
     known.scene.detect();
   }
-  EXPECT_GT(known.scene.octree_statistics(id).subtrees_rebuilt, 0u);
+  EXPECT_GT(SceneInspector(known.scene).octree_statistics(id).subtrees_rebuilt, 0u);
   EXPECT_FALSE(known.scene.result().contacts.empty());
   check_all_cells(known);
   check_all_explanations(known);
@@ -486,48 +487,48 @@ TEST(InspectionOfScenes, FollowsFiltersGroupsAndRemovals) {
   known.scene.set_group(b, 2, 2);
   known.scene.set_pair_filter([&](ObjectId p, ObjectId q) { return !(p == a && q == c); });
   known.scene.detect();
-  EXPECT_EQ(known.scene.explain(a, 0, b, 0).stage, PairStage::not_tested);
-  EXPECT_EQ(known.scene.explain(a, 0, c, 0).stage, PairStage::not_tested);
-  EXPECT_EQ(known.scene.explain(a, 0, d, 0).stage, PairStage::contact);
-  EXPECT_EQ(known.scene.explain(a, 3, a, 3).stage, PairStage::shared_vertex);
+  EXPECT_EQ(SceneInspector(known.scene).explain(a, 0, b, 0).stage, PairStage::not_tested);
+  EXPECT_EQ(SceneInspector(known.scene).explain(a, 0, c, 0).stage, PairStage::not_tested);
+  EXPECT_EQ(SceneInspector(known.scene).explain(a, 0, d, 0).stage, PairStage::contact);
+  EXPECT_EQ(SceneInspector(known.scene).explain(a, 3, a, 3).stage, PairStage::shared_vertex);
   known.scene.set_self_collision(a, false);
   known.remove(c);
-  EXPECT_THROW(known.scene.explain(a, 0, d, 0), Error) << "something was changed since";
-  EXPECT_THROW(known.scene.candidates(1), Error);
+  EXPECT_THROW(SceneInspector(known.scene).explain(a, 0, d, 0), Error) << "something was changed since";
+  EXPECT_THROW(SceneInspector(known.scene).candidates(1), Error);
   known.scene.detect();
-  EXPECT_EQ(known.scene.explain(a, 3, a, 4).stage, PairStage::not_tested);
-  EXPECT_THROW(known.scene.explain(a, 0, c, 0), Error);
-  for (const CandidatePair& pair : known.scene.candidates(no_limit)) {
+  EXPECT_EQ(SceneInspector(known.scene).explain(a, 3, a, 4).stage, PairStage::not_tested);
+  EXPECT_THROW(SceneInspector(known.scene).explain(a, 0, c, 0), Error);
+  for (const CandidatePair& pair : SceneInspector(known.scene).candidates(no_limit).pairs) {
     EXPECT_NE(pair.object_a, c);
     EXPECT_NE(pair.object_b, c);
   }
   const ObjectId e = known.add(ball);
   EXPECT_EQ(e.index, c.index);
   known.scene.detect();
-  EXPECT_EQ(known.scene.explain(e, 0, d, 0).stage, PairStage::contact);
+  EXPECT_EQ(SceneInspector(known.scene).explain(e, 0, d, 0).stage, PairStage::contact);
 }
 
 TEST(InspectionOfScenes, SaysWhatCannotBeAsked) {
   Known known;
   const ObjectId ball = known.add(make_icosphere(2)), nothing = known.add(TriangleMesh{});
-  EXPECT_THROW(known.scene.octree_cells(ball, {}), Error) << "nothing was detected yet";
+  EXPECT_THROW(SceneInspector(known.scene).cells(ball, {}), Error) << "nothing was detected yet";
   known.scene.detect();
-  EXPECT_TRUE(known.scene.octree_cells(nothing, {}).empty());
-  EXPECT_TRUE(known.scene.octree_cells(nothing, 0).empty());
-  EXPECT_EQ(known.scene.octree_depth(nothing), 0u);
-  EXPECT_THROW(known.scene.octree_cells({7, 0}, {}), Error);
-  EXPECT_THROW(known.scene.octree_depth({7, 0}), Error);
-  EXPECT_THROW(known.scene.explain(ball, 0, nothing, 0), Error);
-  EXPECT_THROW(known.scene.explain(ball, 1u << 31, ball, 0), Error);
+  EXPECT_TRUE(SceneInspector(known.scene).cells(nothing, {}).empty());
+  EXPECT_TRUE(SceneInspector(known.scene).cells(nothing, 0).empty());
+  EXPECT_EQ(SceneInspector(known.scene).octree_depth(nothing), 0u);
+  EXPECT_THROW(SceneInspector(known.scene).cells({7, 0}, {}), Error);
+  EXPECT_THROW(SceneInspector(known.scene).octree_depth({7, 0}), Error);
+  EXPECT_THROW(SceneInspector(known.scene).explain(ball, 0, nothing, 0), Error);
+  EXPECT_THROW(SceneInspector(known.scene).explain(ball, 1u << 31, ball, 0), Error);
   try {
-    known.scene.explain(ball, 0, ball, 12345);
+    SceneInspector(known.scene).explain(ball, 0, ball, 12345);
     FAIL();
   } catch (const Error& error) {
     EXPECT_NE(std::string(error.what()).find("no triangle 12345; it has "), std::string::npos)
         << error.what();
   }
   known.scene.translate(ball, {1, 0, 0});
-  EXPECT_THROW(known.scene.octree_cells(ball, {}), Error) << "it was moved";
+  EXPECT_THROW(SceneInspector(known.scene).cells(ball, {}), Error) << "it was moved";
 }
 
 TEST(InspectionOfScenes, AnObjectOfOneLeafIsItsRoot) {
@@ -536,14 +537,14 @@ TEST(InspectionOfScenes, AnObjectOfOneLeafIsItsRoot) {
   two.triangles.resize(2);
   const ObjectId id = known.add(two);
   known.scene.detect();
-  EXPECT_EQ(known.scene.octree_depth(id), 0u);
+  EXPECT_EQ(SceneInspector(known.scene).octree_depth(id), 0u);
   for (const std::optional<std::uint32_t> level : {std::optional<std::uint32_t>{}, {0u}, {5u}}) {
-    const std::vector<OctreeCell> cells = known.scene.octree_cells(id, level);
+    const std::vector<OctreeCell> cells = SceneInspector(known.scene).cells(id, level);
     ASSERT_EQ(cells.size(), 1u);
     EXPECT_EQ(cells[0].level, 0u);
     EXPECT_TRUE(cells[0].is_leaf);
     EXPECT_EQ(cells[0].triangle_count, 2u);
-    EXPECT_EQ(cells[0].box, known.scene.bounds(id));
+    EXPECT_EQ(cells[0].box, SceneInspector(known.scene).bounds(id));
   }
 }
 
@@ -556,7 +557,7 @@ TEST(InspectionOfScenes, FarFromTheOriginDistancesStayTrue) {
   known.scene.detect();
   int told_by_cells = 0;
   for (std::uint32_t t = 0; t < ball.triangles.size(); t += 3) {
-    const PairExplanation e = known.scene.explain(a, t, b, 0);
+    const PairExplanation e = SceneInspector(known.scene).explain(a, t, b, 0);
     if (e.stage != PairStage::octree_volumes) continue;
     ++told_by_cells;
     EXPECT_GT(e.distance, 0);
@@ -579,7 +580,7 @@ TEST(InspectionOfScenes, InertTrianglesAreToldFromOthers) {
   check_candidates(known, true);
   bool some_inert = false;
   for (std::uint32_t t = 0; t < ball.triangles.size(); ++t)
-    some_inert = some_inert || known.scene.explain(a, 0, b, t).stage == PairStage::inert;
+    some_inert = some_inert || SceneInspector(known.scene).explain(a, 0, b, t).stage == PairStage::inert;
   EXPECT_TRUE(some_inert);
 }
 

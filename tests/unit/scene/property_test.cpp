@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "supple/inspection.hpp"
 #include "support/golden_scenes.hpp"
 #include "support/instruction_sets.hpp"
 
@@ -17,7 +18,7 @@ TEST_P(SceneProperties, DetectEqualsExactBruteForceInEveryConfiguration) {
     const std::uint64_t hash = hash_of(reference.detect());
     ASSERT_GT(reference.result().contacts.size(), 0u);
     ASSERT_EQ(differences(reference), "") << "seed " << seed;
-    ASSERT_EQ(reference.validate(), "");
+    ASSERT_EQ(SceneInspector(reference).validate(), "");
     for (const BoundingVolume volume : {BoundingVolume::aabb, BoundingVolume::sphere}) {
       for (const BroadPhaseMethod method :
            {BroadPhaseMethod::automatic, BroadPhaseMethod::octree, BroadPhaseMethod::grid,
@@ -28,7 +29,7 @@ TEST_P(SceneProperties, DetectEqualsExactBruteForceInEveryConfiguration) {
           const DetectResult& result = scene.detect();
           ASSERT_TRUE(std::equal(result.contacts.begin(), result.contacts.end(),
                                  reference.result().contacts.begin(), reference.result().contacts.end()));
-          ASSERT_EQ(scene.validate(), "");
+          ASSERT_EQ(SceneInspector(scene).validate(), "");
           if (volume == BoundingVolume::aabb) {
             ASSERT_EQ(hash_of(result), hash) << threads;
           }
@@ -53,7 +54,7 @@ TEST_P(SceneProperties, TreesOfAnyArityGiveTheSameContacts) {
       if (volume == BoundingVolume::aabb) {
         ASSERT_EQ(hash_of(result), hash) << arity;
       }
-      ASSERT_EQ(scene.validate(), "");
+      ASSERT_EQ(SceneInspector(scene).validate(), "");
     }
   }
 }
@@ -62,6 +63,7 @@ TEST(SceneGoldenHash, IsTheSameForAnyNumberOfThreads) {
   for (std::uint32_t threads = 1; threads <= 8; ++threads) {
     EXPECT_EQ(hash_of_all_families(threads), golden_hash) << threads;
     EXPECT_EQ(continuous_hash_of_all_families(threads), golden_continuous_hash) << threads;
+    EXPECT_EQ(normal_hash_of_all_families(threads), golden_normal_hash) << threads;
   }
 }
 
@@ -70,6 +72,7 @@ TEST(SceneGoldenHash, IsTheSameForEveryInstructionSet) {
   for_each_target([&](const char* target) {
     EXPECT_EQ(hash_of_all_families(1), golden_hash) << target;
     EXPECT_EQ(continuous_hash_of_all_families(1), golden_continuous_hash) << target;
+    EXPECT_EQ(normal_hash_of_all_families(1), golden_normal_hash) << target;
     ++targets;
   });
   EXPECT_GE(targets, 1);
@@ -87,7 +90,7 @@ TEST(SceneGoldenHash, EveryInstructionSetTestsTheSameVolumes) {
       EXPECT_EQ(stats.node_pairs_visited, expected.node_pairs_visited) << family.name << ' ' << target;
       EXPECT_EQ(stats.boxes_tested, expected.boxes_tested) << family.name << ' ' << target;
       EXPECT_EQ(stats.candidate_pairs, expected.candidate_pairs) << family.name << ' ' << target;
-      EXPECT_EQ(scene.validate(), "") << family.name << ' ' << target;
+      EXPECT_EQ(SceneInspector(scene).validate(), "") << family.name << ' ' << target;
     });
   }
 }

@@ -12,6 +12,7 @@
 #include <tuple>
 #include <vector>
 
+#include "supple/inspection.hpp"
 #include "support/scenes.hpp"
 #include "support/soups.hpp"
 
@@ -115,7 +116,7 @@ void live(const SceneOptions& options, std::uint64_t seed) {
     const DetectResult& result = life.scene.detect();
     total += result.contacts.size();
     ASSERT_EQ(differences(life.scene), "");
-    ASSERT_EQ(life.scene.validate(), "");
+    ASSERT_EQ(SceneInspector(life.scene).validate(), "");
     volumes.apply(result.volume_events);
     contacts.apply(result.contact_events);
     expect_pairs(volumes.alive(), result.object_pairs);

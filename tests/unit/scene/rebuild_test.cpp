@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "supple/inspection.hpp"
 #include "support/scenes.hpp"
 #include "support/soups.hpp"
 
@@ -69,12 +70,11 @@ struct Living {
   }
   /// They are not to change before the next step has its own.
   void share(Drift& drift) {
-    for (std::size_t i = 0; i < ids.size(); ++i)
-      scene.share_positions(ids[i], PositionsView<double>(drift.positions(i)));
+    for (std::size_t i = 0; i < ids.size(); ++i) scene.share_positions(ids[i], drift.positions(i));
   }
   std::uint64_t rebuilt() const {
     std::uint64_t triangles = 0;
-    for (const ObjectId id : ids) triangles += scene.octree_statistics(id).triangles_rebuilt;
+    for (const ObjectId id : ids) triangles += SceneInspector(scene).octree_statistics(id).triangles_rebuilt;
     return triangles;
   }
 
@@ -82,7 +82,7 @@ struct Living {
   std::vector<ObjectId> ids;
 };
 
-SceneOptions with_threads(std::uint32_t threads, ContactMode mode = ContactMode::intersection) {
+SceneOptions with_threads(std::uint32_t threads, ContactKinds mode = ContactKinds::intersection) {
   SceneOptions options;
   options.contacts = mode;
   options.threads = threads;
@@ -110,7 +110,7 @@ TEST(SceneRebuild, ContactsAreThoseOfTheTreeThatWasKeptAndOfBruteForce) {
       kept.place(drift);
       const DetectResult& result = built.scene.detect();
       expect_same(result, kept.scene.detect());
-      ASSERT_EQ(built.scene.validate(), "");
+      ASSERT_EQ(SceneInspector(built.scene).validate(), "");
       if (step % 5 == 0) {
         ASSERT_EQ(differences(built.scene), "");
       }
@@ -123,16 +123,16 @@ TEST(SceneRebuild, ContactsAreThoseOfTheTreeThatWasKeptAndOfBruteForce) {
     EXPECT_GT(rebuilt, 500u);
     EXPECT_EQ(rebuilt, built.rebuilt());
     EXPECT_EQ(kept.rebuilt(), 0u);
-    EXPECT_LT(built.scene.octree_statistics(built.ids[0]).degradation,
-              kept.scene.octree_statistics(kept.ids[0]).degradation);
+    EXPECT_LT(SceneInspector(built.scene).octree_statistics(built.ids[0]).degradation,
+              SceneInspector(kept.scene).octree_statistics(kept.ids[0]).degradation);
   }
 }
 
 TEST(SceneRebuild, ContinuousContactsAreThoseOfTheTreeThatWasKept) {
   for (const bool doubles : {false, true}) {
     Drift drift = soups(400, 0.05);
-    Living built(drift, with_threads(2, ContactMode::continuous), true);
-    Living kept(drift, with_threads(1, ContactMode::continuous), false);
+    Living built(drift, with_threads(2, ContactKinds::continuous), true);
+    Living kept(drift, with_threads(1, ContactKinds::continuous), false);
     std::uint64_t contacts = 0;
     for (int step = 0; step < 30; ++step) {
       SCOPED_TRACE(step);
@@ -163,7 +163,7 @@ TEST(SceneRebuild, ContinuousContactsAreThoseOfTheTreeThatWasKept) {
       const DetectResult& result = built.scene.detect();
       contacts += result.continuous_contacts.size();
       expect_same(result, kept.scene.detect());
-      ASSERT_EQ(built.scene.validate(), "");
+      ASSERT_EQ(SceneInspector(built.scene).validate(), "");
       for (std::uint32_t vertex = 0; vertex < 1200; vertex += 100) {
         ASSERT_EQ(built.scene.position(built.ids[0], vertex), kept.scene.position(kept.ids[0], vertex));
       }
@@ -174,7 +174,7 @@ TEST(SceneRebuild, ContinuousContactsAreThoseOfTheTreeThatWasKept) {
 }
 
 TEST(SceneRebuild, ObjectsThatAreTurnedAndMovedAfterwardsKeepTheirShape) {
-  for (const ContactMode mode : {ContactMode::intersection, ContactMode::continuous}) {
+  for (const ContactKinds mode : {ContactKinds::intersection, ContactKinds::continuous}) {
     Drift drift = soups(400, 0.05);
     Living built(drift, with_threads(1, mode), true), kept(drift, with_threads(1, mode), false);
     int turned_and_rebuilt = 0;
@@ -190,7 +190,7 @@ TEST(SceneRebuild, ObjectsThatAreTurnedAndMovedAfterwardsKeepTheirShape) {
       }
       const std::uint64_t rebuilt = built.scene.detect().stats.triangles_rebuilt;
       expect_same(built.scene.result(), kept.scene.detect());
-      ASSERT_EQ(built.scene.validate(), "");
+      ASSERT_EQ(SceneInspector(built.scene).validate(), "");
       turned_and_rebuilt += rebuilt > 0 ? 1 : 0;
       for (Living* const living : {&built, &kept}) {
         living->scene.set_transform(living->ids[0], {{c, s, 0, -s, c, 0, 0, 0, 1}, {}});
@@ -198,7 +198,7 @@ TEST(SceneRebuild, ObjectsThatAreTurnedAndMovedAfterwardsKeepTheirShape) {
       }
       built.scene.detect();
       expect_same(built.scene.result(), kept.scene.detect());
-      ASSERT_EQ(built.scene.validate(), "");
+      ASSERT_EQ(SceneInspector(built.scene).validate(), "");
     }
     EXPECT_GT(turned_and_rebuilt, 0);
   }
@@ -207,9 +207,9 @@ TEST(SceneRebuild, ObjectsThatAreTurnedAndMovedAfterwardsKeepTheirShape) {
 TEST(SceneRebuild, SurvivesPositionsOfAllKinds) {
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   for (const std::uint32_t triangles : {1u, 2u, 5u, 9u, 33u, 70u}) {
-    for (const ContactMode mode : {ContactMode::intersection, ContactMode::continuous}) {
+    for (const ContactKinds mode : {ContactKinds::intersection, ContactKinds::continuous}) {
       // Elements that touch in a point, a plane or far away are decided one by one: fewer of them.
-      const bool self_collision = mode == ContactMode::intersection;
+      const bool self_collision = mode == ContactKinds::intersection;
       if (!self_collision && triangles > 33) continue;
       const double huge = self_collision ? 1e40 : 1e12;
       Drift drift = soups(triangles, 0.3);
@@ -250,8 +250,8 @@ TEST(SceneRebuild, SurvivesPositionsOfAllKinds) {
         const DetectResult& result = built.scene.detect();
         expect_same(result, kept.scene.detect());
         ASSERT_EQ(result.non_finite_vertices.size(), kept.scene.result().non_finite_vertices.size());
-        ASSERT_EQ(built.scene.validate(), "");
-        if (mode == ContactMode::intersection && step % 10 == 0) {
+        ASSERT_EQ(SceneInspector(built.scene).validate(), "");
+        if (mode == ContactKinds::intersection && step % 10 == 0) {
           ASSERT_EQ(differences(built.scene), "");
         }
       }
@@ -292,7 +292,7 @@ TEST(SceneRebuild, CostsNothingWhereNothingIsAsked) {
     living.scene.detect();
     drift.advance();
   }
-  EXPECT_GT(living.scene.octree_statistics(living.ids[0]).degradation, 2);
+  EXPECT_GT(SceneInspector(living.scene).octree_statistics(living.ids[0]).degradation, 2);
   EXPECT_EQ(living.rebuilt(), 0u);
 }
 
@@ -315,8 +315,8 @@ TEST(SceneRebuild, LeavesTheTreesOfThePaperAlone) {
   for (const bool colliding_vertices : {false, true}) {
     SceneOptions options = with_threads(1);
     options.bounding_volume = BoundingVolume::sphere;
-    options.colliding_vertices = colliding_vertices;
-    if (!colliding_vertices) options.sphere_fit = SphereFit::box;
+    options.comparison.colliding_vertices = colliding_vertices;
+    if (!colliding_vertices) options.comparison.sphere_fit = SphereFit::box;
     Drift drift = soups(300);
     Living living(drift, options, true);
     for (int step = 0; step < 40; ++step) {
@@ -335,14 +335,15 @@ TEST(SceneRebuild, ObjectsAtRestAreBuiltAnewForThoseThatMeetThem) {
   living.place(drift);
   // Measured once, and at rest from then on: the other one moves about.
   std::uint64_t hash = 0;
-  for (int step = 0; step < 200 && living.scene.octree_statistics(living.ids[0]).triangles_rebuilt == 0;
+  for (int step = 0;
+       step < 200 && SceneInspector(living.scene).octree_statistics(living.ids[0]).triangles_rebuilt == 0;
        ++step) {
     living.scene.translate(living.ids[1], {step % 2 == 0 ? 0.01 : -0.01, 0, 0});
     const DetectResult& result = living.scene.detect();
-    ASSERT_EQ(living.scene.validate(), "");
+    ASSERT_EQ(SceneInspector(living.scene).validate(), "");
     if (step == 0) hash = hash_of(result);
   }
-  EXPECT_GT(living.scene.octree_statistics(living.ids[0]).triangles_rebuilt, 0u);
+  EXPECT_GT(SceneInspector(living.scene).octree_statistics(living.ids[0]).triangles_rebuilt, 0u);
   EXPECT_NE(hash, 0u);
   EXPECT_EQ(differences(living.scene), "");
   // Nothing moves: what is known of the step before is still told with the user's numbers.

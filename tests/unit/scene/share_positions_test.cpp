@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "supple/error.hpp"
+#include "supple/inspection.hpp"
 #include "supple/models.hpp"
 #include "supple/scene.hpp"
 #include "support/instruction_sets.hpp"
@@ -53,7 +54,9 @@ class PointsAtTheEnd {
             static_cast<Scalar>(points[i][axis] + offset[axis]);
     }
   }
-  PositionsView<Scalar> view() const { return {first_, count_, stride_ * sizeof(Scalar)}; }
+  PositionsView view() const {
+    return {first_, count_, static_cast<std::ptrdiff_t>(stride_ * sizeof(Scalar))};
+  }
 
  private:
   std::size_t count_, stride_, pages_ = 0;
@@ -90,7 +93,7 @@ TYPED_TEST(SharePositions, FindsWhatACopyFindsAndReadsNothingElse) {
           copied.set_positions(ids[1], b.view());
           const ContactKeys found = keys_of(shared.detect());
           EXPECT_EQ(found, keys_of(copied.detect()));
-          EXPECT_EQ(shared.validate(), "");
+          EXPECT_EQ(SceneInspector(shared).validate(), "");
           EXPECT_TRUE(shared.verify().agrees());
           contacts += found.size();
         }
@@ -154,30 +157,32 @@ TYPED_TEST(SharePositions, NonFiniteVerticesAreFoundWhenTheyAreRead) {
   EXPECT_TRUE(scene.verify().agrees());
 }
 
-TYPED_TEST(SharePositions, CopiesForContinuousContacts) {
+TYPED_TEST(SharePositions, AreReadForContinuousContactsToo) {
   const TriangleMesh ball = make_icosphere(4);
   std::vector<Vec3<TypeParam>> points;
   for (const Vec3d& p : ball.positions)
     points.push_back(
         {static_cast<TypeParam>(p.x + 0.5), static_cast<TypeParam>(p.y), static_cast<TypeParam>(p.z)});
   SceneOptions options;
-  options.contacts = ContactMode::continuous;
+  options.contacts = ContactKinds::continuous;
   Scene scene(options);
   const ObjectId id = scene.add(ball);
   scene.add(ball);
-  scene.share_positions(id, PositionsView<TypeParam>(points));
-  points.assign(points.size(), {100, 100, 100});
+  scene.share_positions(id, points);
   EXPECT_FALSE(scene.detect().continuous_contacts.empty());
+  points.assign(points.size(), {100, 100, 100});
+  scene.share_positions(id, points);
+  EXPECT_TRUE(scene.detect().continuous_contacts.empty());
 }
 
 TEST(SharePositions, ChecksWhatItIsGiven) {
   Scene scene;
   const ObjectId id = scene.add(make_icosphere(2));
   const std::vector<Vec3f> few(3);
-  EXPECT_THROW(scene.share_positions(id, PositionsView<float>(few)), Error);
+  EXPECT_THROW(scene.share_positions(id, few), Error);
   scene.set_static(id, true);
   const std::vector<Vec3f> enough(scene.vertex_count(id));
-  EXPECT_THROW(scene.share_positions(id, PositionsView<float>(enough)), Error);
+  EXPECT_THROW(scene.share_positions(id, enough), Error);
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include <string>
 #include <utility>
 
+#include "supple/inspection.hpp"
 #include "support/scenes.hpp"
 #include "unit/mesh/shared_meshes.hpp"
 
@@ -115,7 +116,7 @@ TEST_F(Truth, SequencesMoveOneObject) {
     SCOPED_TRACE(expected["name"].get<std::string>());
     scene.set_positions(figure, load(expected["mesh"]).positions);
     expect_pairs(scene.detect(), expected);
-    EXPECT_EQ(scene.validate(), "");
+    EXPECT_EQ(SceneInspector(scene).validate(), "");
   }
 }
 
@@ -164,7 +165,7 @@ TEST_F(Truth, StepsTouchWhereAndWhenExactArithmeticSays) {
     SCOPED_TRACE(expected["name"].get<std::string>());
     const TriangleMesh from = load(expected["frame0"]), to = load(expected["frame1"]);
     SceneOptions options;
-    options.contacts = ContactMode::continuous;
+    options.contacts = ContactKinds::continuous;
     Scene scene(options);
     scene.set_motion(scene.add(from, {.self_collision = true}), from.positions, to.positions);
     const auto numbers = edge_numbers(from);

@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "supple/inspection.hpp"
 #include "supple/models.hpp"
 #include "supple/trigonometry.hpp"
 
@@ -49,7 +50,7 @@ MassSpringMotion exploding() {
   return motion;
 }
 
-SimulationOptions in_a_room(double half, ContactMode contacts = ContactMode::intersection) {
+SimulationOptions in_a_room(double half, ContactKinds contacts = ContactKinds::intersection) {
   SimulationOptions options;
   options.scene.contacts = contacts;
   options.scene.threads = 1;
@@ -334,7 +335,7 @@ TEST(Simulation, SeedsRepeatAndObjectsDiffer) {
 }
 
 TEST(Simulation, TheBorderTurnsBackAndTakesNoSpeed) {
-  const SimulationOptions options = in_a_room(1.2, ContactMode::none);
+  const SimulationOptions options = in_a_room(1.2, ContactKinds::none);
   Simulation simulation = room_of_bodies(options);
   const double overshoot = 1.0 * options.time_step;
   int turns = 0;
@@ -347,7 +348,7 @@ TEST(Simulation, TheBorderTurnsBackAndTakesNoSpeed) {
       const Vec3d velocity = body.mean_velocity();
       ASSERT_NEAR(norm(velocity), simulation.time() > 0.201 ? 1 : norm(velocity), 1e-9);
       // A shape that quivers may reach a little further.
-      const Aabb box = simulation.scene().bounds(ids[i]);
+      const Aabb box = SceneInspector(simulation.scene()).bounds(ids[i]);
       for (int axis = 0; axis < 3; ++axis) {
         ASSERT_GT(box.min[axis], -1.2 - overshoot - 0.05);
         ASSERT_LT(box.max[axis], 1.2 + overshoot + 0.05);
@@ -361,7 +362,7 @@ TEST(Simulation, TheBorderTurnsBackAndTakesNoSpeed) {
 }
 
 TEST(Simulation, ObjectsOutsideTheBorderComeBackAndLargeOnesStay) {
-  SimulationOptions options = in_a_room(0.5, ContactMode::none);
+  SimulationOptions options = in_a_room(0.5, ContactKinds::none);
   Simulation simulation(options);
   MassSpringMotion motion = springy();
   motion.velocity = {1, 0, 0};
@@ -378,7 +379,7 @@ TEST(Simulation, ObjectsOutsideTheBorderComeBackAndLargeOnesStay) {
 TEST(Simulation, GravityDoesNotPressThroughTheBorder) {
   for (const Integrator integrator : {Integrator::verlet, Integrator::symplectic_euler}) {
     for (const double air_friction : {0.0, 0.05}) {
-      Simulation simulation(in_a_room(1, ContactMode::none));
+      Simulation simulation(in_a_room(1, ContactKinds::none));
       MassSpringMotion motion = springy();
       motion.springs.integrator = integrator;
       motion.springs.gravity = {0, 0, 9.81};
@@ -448,7 +449,7 @@ TEST(Simulation, ObjectsAtRestCostNothing) {
 
 TEST(Simulation, ContinuousContactsSeeTheWholeWay) {
   SimulationOptions options;
-  options.scene.contacts = ContactMode::continuous;
+  options.scene.contacts = ContactKinds::continuous;
   options.time_step = 1;
   Simulation simulation(options);
   const ObjectId wall = simulation.add(make_icosphere(1), {.name = "wall"});
@@ -506,7 +507,7 @@ TEST(Simulation, ObjectsComeAndGoBetweenSteps) {
   EXPECT_NE(second.generation, first.generation);
   EXPECT_THROW(simulation.body(first), Error);
   for (int step = 0; step < 10; ++step) simulation.step();
-  EXPECT_EQ(simulation.scene().validate(), "");
+  EXPECT_EQ(SceneInspector(simulation.scene()).validate(), "");
   EXPECT_TRUE(simulation.scene().verify().agrees());
 }
 

@@ -27,12 +27,12 @@ TEST(WaveMotion, GivesTheSameBitsEverywhere) {
   const std::vector<Vec3d> drifted{{0x1.80bbcc188dae3p-2, -0x1.269db8d513bccp-2, 0x1.4e7b2b13b4b71p-3},
                                    {0x1.6139b5765980cp-1, -0x1.9e7972d67c6cfp-1, 0x1.0db10866be975p-2},
                                    {-0x1.4e2c46e60b662p-2, 0x1.6e6dcc6754918p-8, 0x1.0b3983564a121p+0}};
-  const std::vector<Vec3d> turned_back{{0x1.a3ee2c5fce218p-1, 0x1.71ce349522c85p-1, 0x1.2554e77464dc2p-4},
-                                       {0x1.003b925330a29p+0, 0x1.fffdcc1725299p-3, 0x1.af239d147c02ap-3},
-                                       {0x1.884db4be1cfd8p-7, 0x1.09e7348349431p+0, 0x1.fc0cb48392fb9p-1}};
+  const std::vector<Vec3d> reflected{{0x1.a3ee2c5fce218p-1, 0x1.71ce349522c85p-1, 0x1.2554e77464dc2p-4},
+                                     {0x1.003b925330a29p+0, 0x1.fffdcc1725299p-3, 0x1.af239d147c02ap-3},
+                                     {0x1.884db4be1cfd8p-7, 0x1.09e7348349431p+0, 0x1.fc0cb48392fb9p-1}};
   EXPECT_EQ(swayed(motion, {}, 0), at_first);
   EXPECT_EQ(swayed(motion, border, 1.3), drifted);
-  EXPECT_EQ(swayed(motion, border, 40), turned_back);
+  EXPECT_EQ(swayed(motion, border, 40), reflected);
 }
 
 TEST(WaveMotion, StaysWithinTheBorder) {

@@ -299,7 +299,7 @@ TEST(ViewerGrab, ReleasedByItselfWhenThePageGoes) {
 
 TEST(ViewerGrab, ContinuousContactsSeeWhereAThingWasBentTo) {
   SceneView show = apart();
-  show.simulation.scene.contacts = ContactMode::continuous;
+  show.simulation.scene.contacts = ContactKinds::continuous;
   TestPage page(show);
   const ViewerMessage scene = page.scene();
   page.ask({{"do", "grab"}, {"object", 0}, {"vertex", foremost(show.objects[0].mesh)}});

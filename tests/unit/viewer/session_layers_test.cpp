@@ -7,6 +7,7 @@
 
 #include "../../support/random.hpp"
 #include "../../support/viewer_page.hpp"
+#include "supple/inspection.hpp"
 
 namespace supple::viewer {
 namespace {
@@ -61,7 +62,7 @@ TEST(ViewerLayers, AreLeftOutUntilAskedForAndAgainAfterwards) {
 }
 
 TEST(ViewerLayers, HaveNoRegionsUnlessTheOctreeRan) {
-  Show show = crowd();
+  SceneView show = crowd();
   show.simulation.scene.broad_phase = BroadPhaseMethod::grid;
   TestPage page(show);
   page.scene();
@@ -88,13 +89,13 @@ TEST(ViewerLayers, AreWhatTheLibrarySays) {
       const ViewerMessage frame = step == 0 ? page.frame() : page.frame_after_steps(1);
 
       std::vector<std::array<std::uint32_t, 4>> candidates;
-      for (const CandidatePair& c : scene.candidates(1'000'000))
+      for (const CandidatePair& c : SceneInspector(scene).candidates(1'000'000).pairs)
         candidates.push_back({c.object_a.index, c.triangle_a, c.object_b.index, c.triangle_b});
       EXPECT_GT(candidates.size(), 0u);
       EXPECT_EQ((frame.values<std::array<std::uint32_t, 4>>(38)), candidates);
 
       std::vector<Row> regions;
-      for (const SceneRegion& r : scene.scene_regions())
+      for (const SceneRegion& r : SceneInspector(scene).regions())
         regions.push_back(row({narrow(r.box.min, center)}, static_cast<float>(r.level),
                               narrow(r.box.max, center),
                               r.is_leaf ? static_cast<float>(r.object_count) : -1));
@@ -104,7 +105,7 @@ TEST(ViewerLayers, AreWhatTheLibrarySays) {
       for (const ObjectId id : scene.objects()) {
         std::vector<Row> cells;
         const auto wanted = level < 0 ? std::nullopt : std::optional<std::uint32_t>(level);
-        for (const OctreeCell& cell : scene.octree_cells(id, wanted)) {
+        for (const OctreeCell& cell : SceneInspector(scene).cells(id, wanted)) {
           const float triangles = cell.is_leaf ? static_cast<float>(cell.triangle_count) : -1;
           const float at = static_cast<float>(cell.level);
           if (volume == BoundingVolume::sphere)
@@ -115,7 +116,7 @@ TEST(ViewerLayers, AreWhatTheLibrarySays) {
         }
         EXPECT_GT(cells.size(), 0u);
         EXPECT_EQ(frame.values<Row>(volume == BoundingVolume::sphere ? 41 : 40, id.index), cells);
-        EXPECT_EQ(frame.json["octree_levels"][id.index], scene.octree_depth(id));
+        EXPECT_EQ(frame.json["octree_levels"][id.index], SceneInspector(scene).octree_depth(id));
       }
     }
   }
@@ -123,12 +124,13 @@ TEST(ViewerLayers, AreWhatTheLibrarySays) {
 
 /// The paper's output is that of a scene which was made to give it.
 TEST(ViewerLayers, CollidingVerticesAreThoseOfASceneThatGivesThem) {
-  for (const ContactMode contacts : {ContactMode::intersection, ContactMode::none, ContactMode::continuous}) {
+  for (const ContactKinds contacts :
+       {ContactKinds::intersection, ContactKinds::none, ContactKinds::continuous}) {
     SceneView show = crowd();
     show.simulation.scene.contacts = contacts;
     SceneView giving = show;
-    giving.simulation.scene.contacts = ContactMode::intersection;
-    giving.simulation.scene.colliding_vertices = true;
+    giving.simulation.scene.contacts = ContactKinds::intersection;
+    giving.simulation.scene.comparison.colliding_vertices = true;
     Simulation simulation = simulation_of(giving);
     TestPage page(show);
     page.scene();
@@ -187,7 +189,7 @@ TEST(ViewerLayers, ExplainsWhatTheLibraryExplains) {
     for (int i = 0; i < 3000; ++i) {
       const std::uint32_t a = random.below(6), b = random.below(6), s = random.below(720),
                           t = random.below(720);
-      const PairExplanation why = simulation.scene().explain({a, 0}, s, {b, 0}, t);
+      const PairExplanation why = SceneInspector(simulation.scene()).explain({a, 0}, s, {b, 0}, t);
       const Json answer = page.ask({{"do", "explain"}, {"a", {a, s}}, {"b", {b, t}}});
       ASSERT_EQ(answer["stage"], names[static_cast<int>(why.stage)]);
       EXPECT_EQ(answer["distance"], why.distance);

@@ -45,7 +45,7 @@ SceneView flight() {
   return show;
 }
 
-Recorded record(int frames, ContactMode contacts = ContactMode::intersection) {
+Recorded record(int frames, ContactKinds contacts = ContactKinds::intersection) {
   SceneView live = flight();
   live.simulation.scene.contacts = contacts;
   Simulation simulation = simulation_of(live);
@@ -146,7 +146,7 @@ TEST(ViewerRecording, WhatIsReadAfterASeekIsOfThatFrame) {
 }
 
 TEST(ViewerRecording, ContinuousContactsAreThoseOfTheWayFromTheFrameBefore) {
-  const Recorded recorded = record(60, ContactMode::continuous);
+  const Recorded recorded = record(60, ContactKinds::continuous);
   TestPage page(recorded.show);
   opening(page);
   page.ask({{"do", "pause"}});

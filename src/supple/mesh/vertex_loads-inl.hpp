@@ -1,10 +1,10 @@
 // Compiled once for each instruction set: include after hwy/highway.h, between HWY_BEFORE_NAMESPACE and
 // HWY_AFTER_NAMESPACE of the including file's own namespace.
-#if defined(SUPPLE_OCTREE_VERTEX_LOADS_INL_HPP) == defined(HWY_TARGET_TOGGLE)
-#ifdef SUPPLE_OCTREE_VERTEX_LOADS_INL_HPP
-#undef SUPPLE_OCTREE_VERTEX_LOADS_INL_HPP
+#if defined(SUPPLE_MESH_VERTEX_LOADS_INL_HPP) == defined(HWY_TARGET_TOGGLE)
+#ifdef SUPPLE_MESH_VERTEX_LOADS_INL_HPP
+#undef SUPPLE_MESH_VERTEX_LOADS_INL_HPP
 #else
-#define SUPPLE_OCTREE_VERTEX_LOADS_INL_HPP
+#define SUPPLE_MESH_VERTEX_LOADS_INL_HPP
 #endif
 
 #include <hwy/highway.h>

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <cstdint>
+
+namespace supple {
+
+// Options that exist to repeat the paper's experiments and to compare methods. No program needs them to find
+// contacts: the defaults are the fastest. They are parts of `ObjectOptions` and `SceneOptions`.
+
+/// How a sphere is fitted to a node.
+enum class SphereFit : std::uint8_t {
+  /// The center of the node's box; the radius reaches the farthest vertex (the paper's eq. 5). Conservative.
+  vertices,
+  /// Center and radius from the longest side L of the box (the paper's eq. 3 and 4). The sphere does not
+  /// enclose the corners of the box, so `detect` misses collisions. Only to repeat the paper's experiment.
+  box,
+};
+
+/// How a region of the scene octree is tested against a sphere.
+enum class RegionSphereTest : std::uint8_t {
+  arvo,       ///< closest point of the region (Arvo 1990)
+  grown_box,  ///< the paper's: center inside the region grown by the radius; over-reports near corners
+};
+
+/// Shape of the octree of one object. The contacts are the same for all values. The paper's colliding
+/// vertices (`ComparisonOptions::colliding_vertices`) depend on the leaves and therefore on these options.
+struct ObjectOctreeOptions {
+  /// Depth below the root at which splitting ends, 0 to 32 (the paper's level-allowed). It counts levels of
+  /// eight children for every arity: a tree of arity 4 may have half as many levels more (rounded down), a
+  /// tree of arity 2 three times as many, so that the smallest cell has the same size.
+  std::uint32_t max_level = 16;
+  /// A node with at most this many triangles is not split, ≥ 1. Vector kernels test the triangles of two
+  /// leaves that meet, so small leaves are slower, and they take more memory.
+  std::uint32_t leaf_size = 64;
+  /// Children of a node: 8, 4 or 2. A level halves a node's cell along three axes, two or one, which take
+  /// turns. Nodes have room for eight children in any case, so fewer children take more memory and time.
+  std::uint32_t arity = 8;
+  /// Build the paper's regular octree: the children of a node are the octants of its cell. Otherwise, and if
+  /// the arity is 8, the triangles are distributed among the children so that leaves are about equally full,
+  /// which takes fewer leaves.
+  bool regular = false;
+  /// Rebuild parts of the octree when the object has deformed so much that the accumulated extra query cost
+  /// exceeds the cost of a rebuild. Has no effect when the scene reports colliding vertices or uses
+  /// `SphereFit::box`, which depend on the leaves.
+  bool rebuild_degraded = true;
+};
+
+/// Shape of the octree of the scene. The pairs found are the same for all values. Any value but the default
+/// is an `Error` when the broad phase is grid, sweep or brute.
+struct SceneOctreeOptions {
+  /// Depth at which regions no longer expand, 1 to 20; 0 sets no other limit than 20. Far from the origin the
+  /// depth is less, because floats cannot represent finer regions there. It counts levels of eight children
+  /// for every arity, as `ObjectOctreeOptions::max_level` does.
+  std::uint32_t max_level = 0;
+  /// A region expands when this many of its objects fit into regions of half its edge, ≥ 2; 0 chooses 2, as
+  /// in the paper, for up to 64 objects in the scene, and otherwise 64, which is faster.
+  std::uint32_t expand_at = 0;
+  RegionSphereTest region_sphere_test = RegionSphereTest::arvo;
+  /// Children of a region: 8, 4 or 2.
+  std::uint32_t arity = 8;
+
+  constexpr bool operator==(const SceneOctreeOptions&) const = default;
+};
+
+/// Options of a scene for comparison.
+struct ComparisonOptions {
+  SphereFit sphere_fit = SphereFit::vertices;
+  /// Also report the paper's output: the vertices in the colliding leaves of both octrees
+  /// (`DetectResult::colliding_vertices`). Not when continuous contacts are the only kind.
+  bool colliding_vertices = false;
+};
+
+}  // namespace supple

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <version>
+
+#ifdef __cpp_lib_jthread
+#include <stop_token>
+#endif
+
+namespace supple {
+
+#ifdef __cpp_lib_jthread
+using StopSignal = std::stop_token;
+#else
+/// Where there are no threads, nobody can ask for a stop.
+struct StopSignal {
+  bool stop_requested() const { return false; }
+};
+#endif
+
+}  // namespace supple

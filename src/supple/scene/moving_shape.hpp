@@ -1,0 +1,62 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/parallel.hpp"
+#include "narrow_phase/traversal.hpp"
+#include "octree/moving_boxes.hpp"
+#include "octree/object_octree.hpp"
+#include "octree/surface_elements.hpp"
+#include "scene/placement.hpp"
+#include "scene/unfolded_lanes.hpp"
+
+namespace supple {
+
+/// What the search for continuous contacts reads of an object: its elements, their positions at both ends of
+/// the step and boxes around them. Takes memory only once it is asked for.
+class MovingShape {
+ public:
+  bool is_current(const Placement& placement) const { return version_ == placement.version(); }
+  /// Makes the boxes, and bakes the translation where it must be. O(n), O(n log n) the first time.
+  void update(const ObjectOctree& octree, Placement& placement, const Parallel& parallel);
+  void update_unfolded(const ObjectOctree& octree, const Parallel& parallel) {
+    unfolded_.update(version_, octree, elements_.faces(), start(), end_, parallel);
+  }
+
+  OctreeView view(const ObjectOctree& octree, const Placement& placement) const;
+  const SurfaceElements& elements() const { return elements_; }
+  /// Positions in the elements' numbering, without the placement's translation; the same buffer at rest.
+  const VertexBuffer& start() const { return boxes_.at_rest() ? end_ : start_; }
+  const VertexBuffer& end() const { return end_; }
+  /// Around the whole motion, without the placement's translation.
+  Aabb box() const { return boxes_.swept_box(); }
+  /// Boxes of the octree's nodes at the end of the step.
+  const AabbLanes* node_boxes() const { return boxes_.view(elements_).end; }
+  /// User's numbers, ascending: those not finite at one end of the step; as of the last update.
+  std::span<const std::uint32_t> non_finite_vertices() const { return non_finite_; }
+  const UnfoldedLanes& unfolded() const { return unfolded_; }
+  std::string validate(const ObjectOctree& octree) const;
+  std::size_t bytes() const;
+
+  /// The octree was built anew.
+  void forget_octree() {
+    version_ = 0;
+    elements_ = {};
+    unfolded_.forget_octree();
+  }
+
+ private:
+  void refit(const ObjectOctree& octree, const Placement& placement, const Parallel& parallel);
+
+  std::uint64_t version_ = 0;
+  SurfaceElements elements_;
+  VertexBuffer start_, end_;
+  MovingBoxes boxes_;
+  std::vector<std::uint32_t> non_finite_;
+  UnfoldedLanes unfolded_;
+};
+
+}  // namespace supple

@@ -1,0 +1,95 @@
+#include "scene/placement.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "geometry/vector.hpp"
+
+namespace supple {
+namespace {
+
+/// Beyond this size a translation is baked into the positions: single precision ends at 3e38, and the sums of
+/// volumes and translations stay far from it.
+constexpr double largest_lazy_size = 1e30;
+
+}  // namespace
+
+void Placement::set_positions(const PositionsView& positions, const Parallel& parallel) {
+  place_afresh();
+  end_.assign(positions, parallel);
+}
+
+void Placement::share_positions(const PositionsView& positions, const Parallel& parallel) {
+  place_afresh();
+  if (!end_.borrow(positions)) end_.assign(positions, parallel);
+}
+
+void Placement::set_motion(const PositionsView& from, const PositionsView& to, const Parallel& parallel) {
+  set_positions(to, parallel);
+  start_.assign(from, parallel);
+  has_motion_ = true;
+}
+
+/// Positions given anew replace all that was done to those before.
+void Placement::place_afresh() {
+  has_motion_ = has_shape_ = is_baked_ = false;
+  rotation_ = RigidTransform{}.rotation;
+  translation_ = {};
+  ++version_;
+}
+
+void Placement::translate(Vec3d offset, const Parallel& parallel) {
+  restore(parallel);
+  translation_ = translation_ + offset;
+}
+
+void Placement::set_transform(const RigidTransform& transform, const Parallel& parallel) {
+  restore(parallel);
+  translation_ = transform.translation;
+  if (transform.rotation == rotation_) return;
+  rotation_ = transform.rotation;
+  keep_shape();
+  apply({}, parallel);
+}
+
+/// At rest where the path ends, and without a baked translation.
+void Placement::restore(const Parallel& parallel) {
+  if (std::exchange(has_motion_, false)) ++version_;
+  if (std::exchange(is_baked_, false)) apply({}, parallel);
+}
+
+void Placement::keep_shape() {
+  if (!std::exchange(has_shape_, true)) std::swap(shape_, end_);
+}
+
+void Placement::apply(const Vec3d& translation, const Parallel& parallel) {
+  const auto& r = rotation_;
+  const bool translates = translation != Vec3d{};
+  end_.transform(shape_, parallel, [&](const Vec3d& p) {
+    const Vec3d rotated{r[0] * p.x + r[1] * p.y + r[2] * p.z, r[3] * p.x + r[4] * p.y + r[5] * p.z,
+                        r[6] * p.x + r[7] * p.y + r[8] * p.z};
+    return translates ? rotated + translation : rotated;
+  });
+  ++version_;
+}
+
+bool Placement::needs_baking(const Aabb& box) const {
+  if (translation() == Vec3d{}) return false;
+  const double size = box.empty() ? 0
+                                  : std::max(largest_magnitude({box.min.x, box.min.y, box.min.z}),
+                                             largest_magnitude({box.max.x, box.max.y, box.max.z}));
+  return size > largest_lazy_size || largest_magnitude(translation_) > largest_lazy_size;
+}
+
+void Placement::bake(const Parallel& parallel) {
+  keep_shape();
+  apply(translation_, parallel);
+  is_baked_ = true;
+}
+
+Vec3d Placement::placed(const Vec3d& p) const {
+  const Vec3d offset = translation();
+  return offset == Vec3d{} ? p : p + offset;
+}
+
+}  // namespace supple

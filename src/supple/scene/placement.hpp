@@ -1,0 +1,59 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "core/parallel.hpp"
+#include "octree/vertex_buffer.hpp"
+#include "supple/scene.hpp"
+
+namespace supple {
+
+/// Where an object is: the positions last given, and what was done to them since.
+///
+/// A position is fl(R p) + T of the position p last given. `end` holds fl(R p), the user's numbers; T is
+/// added where volumes and positions are read, so that translating is O(1). Where magnitudes are such that
+/// this could lose bits or overflow in single precision, T is baked into `end` instead. An object on a path
+/// has no T.
+class Placement {
+ public:
+  void set_positions(const PositionsView& positions, const Parallel& parallel);
+  /// The same without a copy when the layout allows it.
+  void share_positions(const PositionsView& positions, const Parallel& parallel);
+  void set_motion(const PositionsView& from, const PositionsView& to, const Parallel& parallel);
+  void translate(Vec3d offset, const Parallel& parallel);
+  void set_transform(const RigidTransform& transform, const Parallel& parallel);
+
+  /// The ends of the path, the same buffer at rest; without the translation.
+  const VertexBuffer& start() const { return has_motion_ ? start_ : end_; }
+  const VertexBuffer& end() const { return end_; }
+  bool has_motion() const { return has_motion_; }
+  Vec3d translation() const { return is_baked_ ? Vec3d{} : translation_; }
+  /// Where a vertex is, and where its path starts.
+  Vec3d position(std::uint32_t vertex) const { return placed(end_[vertex]); }
+  Vec3d start_position(std::uint32_t vertex) const { return placed(start()[vertex]); }
+
+  /// Whether the translation must be baked, the box being that of the positions without it.
+  bool needs_baking(const Aabb& box) const;
+  void bake(const Parallel& parallel);
+
+  /// Another number whenever `start` or `end` changes; not 0.
+  std::uint64_t version() const { return version_; }
+
+ private:
+  Vec3d placed(const Vec3d& p) const;
+  void place_afresh();
+  void restore(const Parallel& parallel);
+  void keep_shape();
+  void apply(const Vec3d& translation, const Parallel& parallel);
+
+  VertexBuffer end_;
+  VertexBuffer start_;  // when on a path
+  VertexBuffer shape_;  // p, once a transform made `end_` differ from it
+  bool has_motion_ = false, has_shape_ = false, is_baked_ = false;
+  std::array<double, 9> rotation_ = RigidTransform{}.rotation;
+  Vec3d translation_;
+  std::uint64_t version_ = 1;
+};
+
+}  // namespace supple
