@@ -33,7 +33,7 @@ std::string allowed_values(const Field<Struct, Value>& field) {
   } else if constexpr (std::is_same_v<Value, std::optional<std::uint64_t>>) {
     return text_of(field.range, true);
   } else {
-    Range range = field.range;
+    ValueRange range = field.range;
     range.includes_infinity = false;  // left out for none
     return text_of(range, std::is_integral_v<Value>);
   }

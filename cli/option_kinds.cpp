@@ -54,7 +54,7 @@ CLI::Option* add_words(CLI::App& app, const std::string& name, std::vector<const
       ->type_name(fmt::format("{}", fmt::join(spellings, "|")));
 }
 
-CLI::Option* add_whole(CLI::App& app, const std::string& name, const Range& range,
+CLI::Option* add_whole(CLI::App& app, const std::string& name, const ValueRange& range,
                        std::function<void(std::uint64_t)> set, const std::string& description) {
   const auto parse = [name, range, set](const std::string& given) {
     std::uint64_t number = 0;
@@ -67,7 +67,7 @@ CLI::Option* add_whole(CLI::App& app, const std::string& name, const Range& rang
   return app.add_option_function<std::string>(name, parse, description)->type_name("N");
 }
 
-CLI::Option* add_real(CLI::App& app, const std::string& name, const Range& range, const char* unit,
+CLI::Option* add_real(CLI::App& app, const std::string& name, const ValueRange& range, const char* unit,
                       std::function<void(double)> set, const std::string& description) {
   const auto parse = [name, range, set](const std::string& given) {
     const std::optional<double> number = parse_number(given);

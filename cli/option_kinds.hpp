@@ -28,9 +28,9 @@ bool is_word(const std::string& given, const char* word);
 CLI::Option* add_words(CLI::App& app, const std::string& name, std::vector<const char*> choices,
                        std::function<void(std::size_t)> set, const std::string& description);
 /// A whole number, or another one, that the range allows.
-CLI::Option* add_whole(CLI::App& app, const std::string& name, const Range& range,
+CLI::Option* add_whole(CLI::App& app, const std::string& name, const ValueRange& range,
                        std::function<void(std::uint64_t)> set, const std::string& description);
-CLI::Option* add_real(CLI::App& app, const std::string& name, const Range& range, const char* unit,
+CLI::Option* add_real(CLI::App& app, const std::string& name, const ValueRange& range, const char* unit,
                       std::function<void(double)> set, const std::string& description);
 
 /// `Shape of the octree (triangles; default: 64)`
@@ -64,7 +64,7 @@ CLI::Option* add_field(CLI::App& app, const Field<Struct, Value>& field, const V
     return add_real(app, name, field.range, field.unit, set,
                     help_of(field.doc, field.unit, fmt::format("{}", default_value)));
   } else {
-    Range range = field.range;
+    ValueRange range = field.range;
     range.highest = std::min(range.highest, static_cast<double>(std::numeric_limits<Value>::max()));
     return add_whole(
         app, name, range, [set](std::uint64_t value) { set(static_cast<Value>(value)); },
@@ -77,7 +77,7 @@ template <class Number>
 CLI::Option* add_number(CLI::App& app, const std::string& name, Number& value, std::uint32_t lowest,
                         std::uint32_t highest, const std::string& description) {
   return add_whole(
-      app, name, Range::from(lowest, highest),
+      app, name, ValueRange::from(lowest, highest),
       [&value](std::uint64_t number) { value = static_cast<std::uint32_t>(number); }, description);
 }
 

@@ -304,7 +304,7 @@ void add_simulation_options(CLI::App& app, SimulateOptions& options) {
   CLI::Option* const frames = group(add_frames(
       app, options.frames, "Number of frames; the first is the start (default: 301, which are 300 steps)"));
   group(add_real(
-            app, "--seconds", Range::above(0), "s", [&](double seconds) { options.seconds = seconds; },
+            app, "--seconds", ValueRange::above(0), "s", [&](double seconds) { options.seconds = seconds; },
             "Simulated time, instead of a number of frames"))
       ->excludes(frames);
   add_scene_overrides(app, options.seed, options.time_step);
@@ -338,7 +338,7 @@ CLI::App* add_view(CLI::App& program, ViewOptions& options, Dependences& depende
   const auto is_served = [&] { return options.page_file.empty(); };
   const char* const no_export = "a page that is served, not written by --export";
   dependences.push_back({group(add_whole(
-                             *app, "--port", Range::from(0, 65535),
+                             *app, "--port", ValueRange::from(0, 65535),
                              [&](std::uint64_t port) { options.port = static_cast<std::uint16_t>(port); },
                              "Where to listen, 0 for any port that is free (default: 0)")),
                          is_served, no_export});
@@ -407,7 +407,8 @@ void add_diff(CLI::App& program, DiffOptions& options) {
       ->expected(2)
       ->type_name("");
   add_real(
-      *app, "--tolerance", Range::from(0), "length", [&](double tolerance) { options.tolerance = tolerance; },
+      *app, "--tolerance", ValueRange::from(0), "length",
+      [&](double tolerance) { options.tolerance = tolerance; },
       "Coordinates may differ by so much, in their unit (default: 0, the same bits)");
   add_file(*app, "--json", options.json, "Write the same as JSON; - is standard output");
   app->add_flag("--quiet", options.quiet, "Only the exit status");

@@ -73,8 +73,8 @@ TriangleMesh read_parametrised_model(TomlReader& reader, const std::string& name
     double major_radius = 0.5, minor_radius = 0.2;
     reader.read("rings", rings, 3, 1 << 16);
     reader.read("sides", sides, 3, 1 << 12);
-    reader.read("major_radius", major_radius, Range::above(0));
-    reader.read("minor_radius", minor_radius, Range::above(0));
+    reader.read("major_radius", major_radius, ValueRange::above(0));
+    reader.read("minor_radius", minor_radius, ValueRange::above(0));
     return make_torus(rings, sides, major_radius, minor_radius);
   }
   if (name == "box") {
@@ -88,8 +88,8 @@ TriangleMesh read_parametrised_model(TomlReader& reader, const std::string& name
     double width = 1, depth = 1;
     reader.read("columns", columns, 1, 1 << 14);
     reader.read("rows", rows, 1, 1 << 14);
-    reader.read("width", width, Range::above(0));
-    reader.read("depth", depth, Range::above(0));
+    reader.read("width", width, ValueRange::above(0));
+    reader.read("depth", depth, ValueRange::above(0));
     return make_cloth(columns, rows, width, depth);
   }
   reader.fail("model", fmt::format("there is no model '{}'; choose one of {}", name, available_models()));

@@ -73,7 +73,7 @@ void SceneMotion::read_pulls(TomlReader& reader) {
     Pull& added = pulls_.emplace_back();
     pull.read_box("box", added.box, true);
     pull.read("by", added.by);
-    pull.read("seconds", added.seconds, Range::above(0));
+    pull.read("seconds", added.seconds, ValueRange::above(0));
     for (const char* key : {"box", "by"}) {
       if (!pull.has(key)) pull.fail(key, fmt::format("{} is missing; a pull is {{ box, by, seconds }}", key));
     }

@@ -41,7 +41,7 @@ Vec3d TomlReader::point(const toml::node& node, const std::string& key, const ch
           number((*array)[2], key, expected)};
 }
 
-std::int64_t TomlReader::integer(const std::string& key, const Range& range) {
+std::int64_t TomlReader::integer(const std::string& key, const ValueRange& range) {
   const toml::node& found = *node(key);
   const auto* value = found.as_integer();
   if (!value || value->get() < 0 || !range.allows(static_cast<std::uint64_t>(value->get())))
@@ -67,7 +67,7 @@ void TomlReader::read(const std::string& key, double& value) {
   if (const toml::node* found = node(key)) value = number(*found, key, "a finite number");
 }
 
-void TomlReader::read(const std::string& key, double& value, const Range& range) {
+void TomlReader::read(const std::string& key, double& value, const ValueRange& range) {
   const toml::node* found = node(key);
   if (!found) return;
   const std::string expected = text_of(range, false);
@@ -107,7 +107,7 @@ void TomlReader::read(const std::string& key, Vec3d& value) {
 
 void TomlReader::read(const std::string& key, std::uint32_t& value, std::uint32_t lowest,
                       std::uint32_t highest) {
-  read_whole(key, value, Range::from(lowest, highest));
+  read_whole(key, value, ValueRange::from(lowest, highest));
 }
 
 std::array<Vec3d, 2> TomlReader::corners(const toml::node& node, const std::string& key, const char* expected,

@@ -34,7 +34,7 @@ class TomlReader {
   void read(const std::string& key, double& value);
   void read(const std::string& key, Vec3d& value);
   void read(const std::string& key, std::uint32_t& value, std::uint32_t lowest, std::uint32_t highest);
-  void read(const std::string& key, double& value, const Range& range);
+  void read(const std::string& key, double& value, const ValueRange& range);
   /// Returns the place of the word.
   std::optional<std::size_t> read_word(const std::string& key, std::span<const char* const> choices);
   /// An option by its key, as its description allows it.
@@ -65,9 +65,9 @@ class TomlReader {
   const toml::node* node(const std::string& key);
   double number(const toml::node& node, const std::string& key, const char* expected) const;
   Vec3d point(const toml::node& node, const std::string& key, const char* expected) const;
-  std::int64_t integer(const std::string& key, const Range& range);
+  std::int64_t integer(const std::string& key, const ValueRange& range);
   template <class Whole>
-  void read_whole(const std::string& key, Whole& value, const Range& range) {
+  void read_whole(const std::string& key, Whole& value, const ValueRange& range) {
     if (has(key)) value = static_cast<Whole>(integer(key, range));
   }
   std::array<Vec3d, 2> corners(const toml::node& node, const std::string& key, const char* expected,

@@ -52,7 +52,7 @@ std::string list_of_words(std::string_view separator = ", ") {
 }
 
 /// The values that a number may have.
-struct Range {
+struct ValueRange {
   double lowest = -std::numeric_limits<double>::infinity();
   double highest = std::numeric_limits<double>::infinity();
   bool excludes_lowest = false;
@@ -70,28 +70,28 @@ struct Range {
   constexpr bool allows(Whole value) const {
     return allows(static_cast<double>(value)) && !(powers_of_two && (value & (value - 1)) != 0);
   }
-  static constexpr Range from(double lowest) { return {.lowest = lowest}; }
-  static constexpr Range from(double lowest, double highest) { return {lowest, highest}; }
-  static constexpr Range above(double lowest) { return {.lowest = lowest, .excludes_lowest = true}; }
-  constexpr Range or_infinity() const {
-    Range range = *this;
+  static constexpr ValueRange from(double lowest) { return {.lowest = lowest}; }
+  static constexpr ValueRange from(double lowest, double highest) { return {lowest, highest}; }
+  static constexpr ValueRange above(double lowest) { return {.lowest = lowest, .excludes_lowest = true}; }
+  constexpr ValueRange or_infinity() const {
+    ValueRange range = *this;
     range.includes_infinity = true;
     return range;
   }
-  constexpr Range or_zero() const {
-    Range range = *this;
+  constexpr ValueRange or_zero() const {
+    ValueRange range = *this;
     range.includes_zero = true;
     return range;
   }
-  constexpr Range only_powers_of_two() const {
-    Range range = *this;
+  constexpr ValueRange only_powers_of_two() const {
+    ValueRange range = *this;
     range.powers_of_two = true;
     return range;
   }
 };
 
 /// `a whole number from 0 to 32`, `a finite number above 0`, `2, 4 or 8`: what a number must be.
-std::string text_of(const Range& range, bool is_whole);
+std::string text_of(const ValueRange& range, bool is_whole);
 
 /// One member of a structure.
 template <class Struct, class Value>
@@ -99,7 +99,7 @@ struct Field {
   const char* name;  ///< of the member
   Value Struct::*member;
   const char* doc;  ///< one sentence, without a full stop
-  Range range{};
+  ValueRange range{};
   const char* unit = "";
   /// The word that people read and type: in scene files, recordings, JSON, the viewer, and, with dashes, on
   /// the command line. No two fields of the structures that occur together have the same.
@@ -155,9 +155,9 @@ std::string text_of(double value);
 
 // What `check` throws: `WHERE: STRUCTURE::NAME is VALUE; it must be WHAT`.
 [[noreturn]] void fail_range(std::string_view where, const char* structure, const char* name,
-                             std::uint64_t value, const Range& range);
+                             std::uint64_t value, const ValueRange& range);
 [[noreturn]] void fail_range(std::string_view where, const char* structure, const char* name, double value,
-                             const Range& range);
+                             const ValueRange& range);
 [[noreturn]] void fail_range(std::string_view where, const char* structure, const char* name, Vec3d value);
 [[noreturn]] void fail_range(std::string_view where, const char* structure, const char* name,
                              std::uint64_t value, const std::string& words);

@@ -30,7 +30,7 @@ struct Description<ImpactOptions> {
     visitor(Field<Options, double>{.name = "min_separation",
                                    .member = &Options::min_separation,
                                    .doc = "Distance at which two elements touch, for continuous contacts",
-                                   .range = Range::from(0),
+                                   .range = ValueRange::from(0),
                                    .unit = "length"});
     visitor(Field<Options, bool>{
         .name = "exact",
@@ -52,17 +52,17 @@ struct Description<ObjectOctreeOptions> {
     visitor(Field<Options, std::uint32_t>{.name = "max_level",
                                           .member = &Options::max_level,
                                           .doc = "Deepest level of the object's octree; the root is level 0",
-                                          .range = Range::from(0, 32)});
+                                          .range = ValueRange::from(0, 32)});
     visitor(Field<Options, std::uint32_t>{
         .name = "leaf_size",
         .member = &Options::leaf_size,
         .doc = "A node with at most this many triangles is not split; half as many with continuous contacts",
-        .range = Range::from(1, 0xffffffff),
+        .range = ValueRange::from(1, 0xffffffff),
         .unit = "triangles"});
     visitor(Field<Options, std::uint32_t>{.name = "arity",
                                           .member = &Options::arity,
                                           .doc = "Children of a node of the object's octree",
-                                          .range = Range::from(2, 8).only_powers_of_two(),
+                                          .range = ValueRange::from(2, 8).only_powers_of_two(),
                                           .key = "tree_arity"});
     visitor(Field<Options, bool>{.name = "regular",
                                  .member = &Options::regular,
@@ -89,14 +89,14 @@ struct Description<SceneOctreeOptions> {
         .member = &Options::max_level,
         .doc = "Deepest level of the scene octree, 0 for no other limit than 20",
         // 8^20 regions are as many as a 64-bit number can tell apart.
-        .range = Range::from(0, 20),
+        .range = ValueRange::from(0, 20),
         .key = "scene_octree_max_level"});
     visitor(Field<Options, std::uint32_t>{
         .name = "expand_at",
         .member = &Options::expand_at,
         .doc = "A region of the scene octree expands when this many of its objects fit into half its edge; 0 "
                "chooses 2 for up to 64 objects and otherwise 64",
-        .range = Range::from(2, 0xffffffff).or_zero(),
+        .range = ValueRange::from(2, 0xffffffff).or_zero(),
         .unit = "objects",
         .key = "scene_octree_expand_at"});
     visitor(Field<Options, RegionSphereTest>{
@@ -108,7 +108,7 @@ struct Description<SceneOctreeOptions> {
     visitor(Field<Options, std::uint32_t>{.name = "arity",
                                           .member = &Options::arity,
                                           .doc = "Children of a region of the scene octree",
-                                          .range = Range::from(2, 8).only_powers_of_two(),
+                                          .range = ValueRange::from(2, 8).only_powers_of_two(),
                                           .key = "scene_octree_arity"});
   }
 };
@@ -135,11 +135,11 @@ struct Description<ObjectOptions> {
                                           .member = &Options::group,
                                           .doc = "Two objects are tested when each one's group has a bit in "
                                                  "common with the other's mask",
-                                          .range = Range::from(0, 0xffffffff)});
+                                          .range = ValueRange::from(0, 0xffffffff)});
     visitor(Field<Options, std::uint32_t>{.name = "mask",
                                           .member = &Options::mask,
                                           .doc = "Bits of the groups that the object is tested with",
-                                          .range = Range::from(0, 0xffffffff)});
+                                          .range = ValueRange::from(0, 0xffffffff)});
     visitor(Field<Options, ObjectOctreeOptions>{
         .name = "octree", .member = &Options::octree, .doc = "Shape of the object's octree"});
   }
@@ -190,7 +190,7 @@ struct Description<SceneOptions> {
     visitor(Field<Options, std::uint32_t>{.name = "threads",
                                           .member = &Options::threads,
                                           .doc = "Worker threads, 0 for one a core",
-                                          .range = Range::from(0, 1024),
+                                          .range = ValueRange::from(0, 1024),
                                           .is_of_machine = true});
     visitor(Field<Options, ComparisonOptions>{
         .name = "comparison", .member = &Options::comparison, .doc = "Options for comparison"});
@@ -210,7 +210,7 @@ struct Description<BroadPhaseOptions> {
     visitor(Field<Options, std::uint32_t>{.name = "threads",
                                           .member = &Options::threads,
                                           .doc = "Worker threads, 0 for one a core",
-                                          .range = Range::from(0, 1024),
+                                          .range = ValueRange::from(0, 1024),
                                           .is_of_machine = true});
   }
 };

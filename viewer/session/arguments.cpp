@@ -81,7 +81,7 @@ std::optional<double> Arguments::number(const char* name, double low, double hig
   return std::nullopt;
 }
 
-std::optional<std::int64_t> Arguments::integer(const char* name, const Range& range) {
+std::optional<std::int64_t> Arguments::integer(const char* name, const ValueRange& range) {
   const JsonValue* const value = find(name);
   if (value == nullptr) return std::nullopt;
   if (value->kind == JsonValue::Kind::integer && value->integer >= 0 &&
@@ -91,7 +91,7 @@ std::optional<std::int64_t> Arguments::integer(const char* name, const Range& ra
   return std::nullopt;
 }
 
-std::optional<double> Arguments::number(const char* name, const Range& range) {
+std::optional<double> Arguments::number(const char* name, const ValueRange& range) {
   const JsonValue* const value = find(name);
   if (value == nullptr) return std::nullopt;
   if (value->is_number() && range.allows(value->number)) return value->number;

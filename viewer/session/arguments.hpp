@@ -24,8 +24,8 @@ class Arguments {
   std::optional<bool> boolean(const char* name);
   std::optional<std::int64_t> integer(const char* name, std::int64_t low, std::int64_t high);
   std::optional<double> number(const char* name, double low, double high);
-  std::optional<std::int64_t> integer(const char* name, const Range& range);
-  std::optional<double> number(const char* name, const Range& range);
+  std::optional<std::int64_t> integer(const char* name, const ValueRange& range);
+  std::optional<double> number(const char* name, const ValueRange& range);
   std::optional<bool> one_of_two(const char* name, const std::array<const char*, 2>& words_of_truth);
   std::optional<Vec3d> point(const char* name);
   /// An object and one of its triangles. Checks only that both are whole numbers.

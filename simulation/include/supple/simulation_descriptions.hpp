@@ -19,7 +19,7 @@ struct Description<MassSpringOptions> {
   template <class Visitor>
   static constexpr void visit(Visitor&& visitor) {
     using Options = MassSpringOptions;
-    const auto number = [&](const char* field, double Options::*member, const char* unit, Range range,
+    const auto number = [&](const char* field, double Options::*member, const char* unit, ValueRange range,
                             const char* doc) {
       visitor(
           Field<Options, double>{.name = field, .member = member, .doc = doc, .range = range, .unit = unit});
@@ -32,33 +32,34 @@ struct Description<MassSpringOptions> {
     visitor(Field<Options, std::uint32_t>{.name = "substeps",
                                           .member = &Options::substeps,
                                           .doc = "Equal parts of a step",
-                                          .range = Range::from(1, 1'000'000)});
+                                          .range = ValueRange::from(1, 1'000'000)});
     visitor(Field<Options, double>{.name = "vertex_mass",
                                    .member = &Options::vertex_mass,
                                    .doc = "Mass of each vertex",
-                                   .range = Range::above(0),
+                                   .range = ValueRange::above(0),
                                    .unit = "kg",
                                    .key = "mass"});
-    number("stiffness", &Options::stiffness, "N/m", Range::from(0), "Stiffness of the spring on each edge");
-    number("damping", &Options::damping, "N s/m", Range::from(0), "Damping along each spring");
-    number("air_friction", &Options::air_friction, "N s/m", Range::from(0),
+    number("stiffness", &Options::stiffness, "N/m", ValueRange::from(0),
+           "Stiffness of the spring on each edge");
+    number("damping", &Options::damping, "N s/m", ValueRange::from(0), "Damping along each spring");
+    number("air_friction", &Options::air_friction, "N s/m", ValueRange::from(0),
            "Friction of each vertex against the air");
-    number("bending_stiffness", &Options::bending_stiffness, "N/m", Range::from(0),
+    number("bending_stiffness", &Options::bending_stiffness, "N/m", ValueRange::from(0),
            "Stiffness of a spring across each edge, between the two opposite corners");
-    number("area_stiffness", &Options::area_stiffness, "N/m", Range::from(0),
+    number("area_stiffness", &Options::area_stiffness, "N/m", ValueRange::from(0),
            "Stiffness of a force that keeps the area of each triangle");
-    number("volume_stiffness", &Options::volume_stiffness, "Pa", Range::from(0),
+    number("volume_stiffness", &Options::volume_stiffness, "Pa", ValueRange::from(0),
            "Bulk modulus of the inside: a pressure keeps the volume of each closed part; an error when no "
            "part of the mesh is closed");
     visitor(Field<Options, Vec3d>{.name = "gravity",
                                   .member = &Options::gravity,
                                   .doc = "Acceleration of each vertex",
                                   .unit = "m/s²"});
-    number("max_strain", &Options::max_strain, "", Range::above(0).or_infinity(),
+    number("max_strain", &Options::max_strain, "", ValueRange::above(0).or_infinity(),
            "Edges stay within this part of their rest length");
-    number("yield_strain", &Options::yield_strain, "", Range::from(0).or_infinity(),
+    number("yield_strain", &Options::yield_strain, "", ValueRange::from(0).or_infinity(),
            "Edges with a larger strain flow: the shape does not come back");
-    number("plastic_rate", &Options::plastic_rate, "1/s", Range::above(0),
+    number("plastic_rate", &Options::plastic_rate, "1/s", ValueRange::above(0),
            "How fast they flow: this part of the strain beyond yield_strain in a second");
     visitor(Field<Options, std::vector<std::uint32_t>>{.name = "fixed_vertices",
                                                        .member = &Options::fixed_vertices,
@@ -67,7 +68,7 @@ struct Description<MassSpringOptions> {
     visitor(Field<Options, std::uint32_t>{.name = "threads",
                                           .member = &Options::threads,
                                           .doc = "Worker threads, 0 for one a core",
-                                          .range = Range::from(0, 1024),
+                                          .range = ValueRange::from(0, 1024),
                                           .is_of_machine = true});
   }
 };
@@ -85,7 +86,7 @@ struct Description<MassSpringMotion::Handle> {
     visitor(Field<Handle, double>{.name = "seconds",
                                   .member = &Handle::seconds,
                                   .doc = "How long that takes; then they stay",
-                                  .range = Range::above(0),
+                                  .range = ValueRange::above(0),
                                   .unit = "s"});
   }
 };
@@ -105,17 +106,17 @@ struct Description<MassSpringMotion> {
     visitor(Field<Motion, double>{.name = "random_speed",
                                   .member = &Motion::random_speed,
                                   .doc = "Speed in a random direction that is added to the velocity",
-                                  .range = Range::from(0),
+                                  .range = ValueRange::from(0),
                                   .unit = "m/s"});
     visitor(Field<Motion, double>{.name = "random_force",
                                   .member = &Motion::random_force,
                                   .doc = "Root mean square of random forces that deform the object in place",
-                                  .range = Range::from(0),
+                                  .range = ValueRange::from(0),
                                   .unit = "N"});
     visitor(Field<Motion, double>{.name = "deform_seconds",
                                   .member = &Motion::deform_seconds,
                                   .doc = "How long the random forces act before the object is sent off",
-                                  .range = Range::from(0),
+                                  .range = ValueRange::from(0),
                                   .unit = "s"});
     visitor(Field<Motion, std::optional<std::uint64_t>>{
         .name = "seed",
@@ -142,12 +143,12 @@ struct Description<WaveMotion> {
     visitor(Field<Motion, double>{.name = "wavelength",
                                   .member = &Motion::wavelength,
                                   .doc = "Length of the waves",
-                                  .range = Range::above(0),
+                                  .range = ValueRange::above(0),
                                   .unit = "units"});
     visitor(Field<Motion, double>{.name = "period",
                                   .member = &Motion::period,
                                   .doc = "Period of the waves",
-                                  .range = Range::above(0),
+                                  .range = ValueRange::above(0),
                                   .unit = "s"});
     visitor(Field<Motion, std::uint64_t>{
         .name = "seed",
@@ -167,20 +168,20 @@ struct Description<ContactResponse> {
     visitor(Field<Options, double>{.name = "thickness",
                                    .member = &Options::thickness,
                                    .doc = "Distance that elements keep",
-                                   .range = Range::above(0),
+                                   .range = ValueRange::above(0),
                                    .unit = "m"});
     visitor(Field<Options, double>{.name = "restitution",
                                    .member = &Options::restitution,
                                    .doc = "Part of the approaching velocity that is returned",
-                                   .range = Range::from(0, 1)});
+                                   .range = ValueRange::from(0, 1)});
     visitor(Field<Options, double>{.name = "friction",
                                    .member = &Options::friction,
                                    .doc = "Coulomb's coefficient of friction",
-                                   .range = Range::from(0)});
+                                   .range = ValueRange::from(0)});
     visitor(Field<Options, std::uint32_t>{.name = "iterations",
                                           .member = &Options::iterations,
                                           .doc = "Rounds of detection and impulses in a step at most",
-                                          .range = Range::from(1, 1000)});
+                                          .range = ValueRange::from(1, 1000)});
   }
 };
 
@@ -195,7 +196,7 @@ struct Description<SimulationOptions> {
     visitor(Field<Options, double>{.name = "time_step",
                                    .member = &Options::time_step,
                                    .doc = "Time from one frame to the next",
-                                   .range = Range::above(0),
+                                   .range = ValueRange::above(0),
                                    .unit = "s"});
     visitor(Field<Options, std::optional<Border>>{
         .name = "border",

@@ -11,7 +11,7 @@ std::string text_of(double value) {
   return {digits, std::to_chars(digits, digits + sizeof(digits), value).ptr};
 }
 
-std::string text_of(const Range& range, bool is_whole) {
+std::string text_of(const ValueRange& range, bool is_whole) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   if (range.powers_of_two) {
     std::string list;
@@ -54,12 +54,12 @@ namespace {
 }  // namespace
 
 void fail_range(std::string_view where, const char* structure, const char* name, std::uint64_t value,
-                const Range& range) {
+                const ValueRange& range) {
   fail_with(where, structure, name, std::to_string(value), text_of(range, true));
 }
 
 void fail_range(std::string_view where, const char* structure, const char* name, double value,
-                const Range& range) {
+                const ValueRange& range) {
   fail_with(where, structure, name, text_of(value), text_of(range, false));
 }
 

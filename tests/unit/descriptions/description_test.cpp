@@ -131,14 +131,15 @@ TEST(Descriptions, WordsAreTheNamesOfTheEnumerators) {
 }
 
 TEST(Descriptions, RangesSayWhatTheyAllow) {
-  EXPECT_EQ(text_of(Range::from(0, 32), true), "a whole number from 0 to 32");
-  EXPECT_EQ(text_of(Range::from(1, 0xffffffff), true), "a whole number from 1 to 4294967295");
-  EXPECT_EQ(text_of(Range::from(0), false), "a finite number from 0 up");
-  EXPECT_EQ(text_of(Range::above(0), false), "a finite number above 0");
-  EXPECT_EQ(text_of(Range::above(0).or_infinity(), false), "a finite number above 0, or infinity for none");
-  EXPECT_EQ(text_of(Range::from(0, 1), false), "a number from 0 to 1");
-  EXPECT_EQ(text_of(Range{}, false), "a finite number");
-  EXPECT_EQ(text_of(Range::from(2, 8).only_powers_of_two(), true), "2, 4 or 8");
+  EXPECT_EQ(text_of(ValueRange::from(0, 32), true), "a whole number from 0 to 32");
+  EXPECT_EQ(text_of(ValueRange::from(1, 0xffffffff), true), "a whole number from 1 to 4294967295");
+  EXPECT_EQ(text_of(ValueRange::from(0), false), "a finite number from 0 up");
+  EXPECT_EQ(text_of(ValueRange::above(0), false), "a finite number above 0");
+  EXPECT_EQ(text_of(ValueRange::above(0).or_infinity(), false),
+            "a finite number above 0, or infinity for none");
+  EXPECT_EQ(text_of(ValueRange::from(0, 1), false), "a number from 0 to 1");
+  EXPECT_EQ(text_of(ValueRange{}, false), "a finite number");
+  EXPECT_EQ(text_of(ValueRange::from(2, 8).only_powers_of_two(), true), "2, 4 or 8");
 }
 
 TEST(Descriptions, OtherValuesDifferFromTheDefaultsAndAreAllowed) {

@@ -161,7 +161,7 @@ std::string failure(std::span<const std::byte> bytes) {
 
 TEST(PackedScene, WhatItIsNotIsSaid) {
   const auto bytes = pack(rich_scene());
-  EXPECT_EQ(failure({}), "this is no packed show; export the page again");
+  EXPECT_EQ(failure({}), "this is not a packed scene; export the page again");
   for (std::size_t length = 0; length < bytes.size(); length += 1 + length / 50)
     EXPECT_FALSE(failure(std::span(bytes).first(length)).empty()) << length;
   auto longer = bytes;

@@ -116,7 +116,7 @@ TEST(ViewerCommands, FailuresNameTheCommandTheValueAndWhatIsAllowed) {
   EXPECT_EQ(page.failure(R"({"do": "grab", "object": 7, "vertex": 0})"),
             "grab: there is no object 7; there are 3, numbered from 0");
   EXPECT_EQ(page.failure(R"({"do": "pause", "now": true})"),
-            "pause: it has no \"now\"; it takes nothing more");
+            "pause: it has no \"now\"; it takes no other members");
 }
 
 TEST(ViewerCommands, WhoDoesNotListenIsNotAnsweredWithoutEnd) {
