@@ -19,7 +19,7 @@ help:
 	@echo 'make clean    remove build/'
 
 demo: program
-	build/release/bin/supple simulate scenes/cloth_over_ball.toml --steps 200 --record build/cloth.h5
+	build/release/bin/supple simulate scenes/cloth_over_ball.toml --frames 200 --record build/cloth.h5
 	@echo
 	build/release/bin/supple simulate scenes/nine.toml --steps 200
 	@echo
@@ -28,7 +28,7 @@ demo: program
 	@echo 'Open build/nine.html in a browser: it is one file, needs no server, and shows the nine objects collide.'
 	@echo 'ParaView opens build/cloth.xdmf.'
 	@echo 'Try next: build/release/bin/supple view scenes/cloth_over_ball.toml'
-	@echo '          build/release/bin/supple detect scenes/nine.toml --steps 3 --verify --json -'
+	@echo '          build/release/bin/supple detect scenes/nine.toml --frames 3 --verify --json -'
 
 # The command line and its viewer, without tests and examples.
 program: dependencies

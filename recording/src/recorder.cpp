@@ -13,6 +13,7 @@
 #include "hdf5_write.hpp"
 #include "layout.hpp"
 #include "supple/error.hpp"
+#include "supple/option_descriptions.hpp"
 #include "supple/recording.hpp"
 #include "supple/version.hpp"
 #include "xdmf_file.hpp"
@@ -119,27 +120,33 @@ class RaggedWriter {
   std::uint64_t rows_ = 0;
 };
 
+/// An attribute for each option but those of the machine.
+template <class Options>
+void write_options(hid_t file, const std::string& group, const Options& options) {
+  for_each_leaf(
+      [&](const auto& field, const auto& value) {
+        using Value = std::remove_cvref_t<decltype(value)>;
+        if (field.is_of_machine) return;
+        if constexpr (Worded<Value>) {
+          write_attribute(file, group, field.key, std::string(word_of(value)));
+        } else {
+          if constexpr (std::is_same_v<Value, bool>) {
+            if (field.has_truth_words())
+              return write_attribute(file, group, field.key, std::string(field.truth_words[value ? 1 : 0]));
+          }
+          write_attribute(file, group, field.key, value);
+        }
+      },
+      options);
+}
+
 void write_header(hid_t file, const RecordingHeader& header) {
   const auto attribute = [file](const char* name, auto value) { write_attribute(file, "/", name, value); };
-  const auto choice = [&](const char* name, const auto& words, auto value) {
-    attribute(name, std::string(words.at(static_cast<std::size_t>(value))));
-  };
   attribute("format", std::string(format_name));
   attribute("version", format_version);
   attribute("program_version", std::string(SUPPLE_VERSION));
   attribute("time_step", header.time_step);
-  const SceneOptions& scene = header.scene;
-  choice("contact_mode", choice_names::contacts, scene.contacts);
-  attribute("contact_points", scene.contact_points);
-  attribute("colliding_vertices", scene.comparison.colliding_vertices);
-  attribute("min_separation", scene.impact.min_separation);
-  attribute("exact_impacts", scene.impact.exact);
-  choice("bounding_volume", choice_names::bounding_volume, scene.bounding_volume);
-  choice("sphere_fit", choice_names::sphere_fit, scene.comparison.sphere_fit);
-  choice("broad_phase", choice_names::broad_phase, scene.broad_phase);
-  choice("region_sphere_test", choice_names::region_sphere_test, scene.scene_octree.region_sphere_test);
-  attribute("scene_octree_max_level", scene.scene_octree.max_level);
-  attribute("scene_octree_expand_at", scene.scene_octree.expand_at);
+  write_options(file, "/", header.scene);
   write_text(file, "scene_file", header.scene_file);
 }
 
@@ -147,16 +154,9 @@ PositionsWriter write_object(hid_t file, std::size_t place, const RecordedObject
   const std::string path = object_path(place);
   create_group(file, path);
   const auto attribute = [&](const char* name, auto value) { write_attribute(file, path, name, value); };
-  const ObjectOptions& options = object.options;
-  attribute("name", options.name);
   attribute("id_index", object.id.index);
   attribute("id_generation", object.id.generation);
-  attribute("self_collision", options.self_collision);
-  attribute("is_static", options.is_static);
-  attribute("group", options.group);
-  attribute("mask", options.mask);
-  attribute("octree_max_level", options.octree.max_level);
-  attribute("octree_leaf_size", options.octree.leaf_size);
+  write_options(file, path, object.options);
   write_rows(file, path + "/rest_positions", ScalarType::float64, object.rest_positions.size(), 3,
              object.rest_positions.data());
   write_rows(file, path + "/triangles", ScalarType::uint32, object.triangles.size(), 3,

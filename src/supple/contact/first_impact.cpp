@@ -2,13 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string>
 
 #include "contact/closest_points.hpp"
 #include "contact/exact_impact.hpp"
 #include "contact/impact_search.hpp"
-#include "core/error.hpp"
 #include "geometry/vector.hpp"
+#include "supple/option_descriptions.hpp"
 
 namespace supple {
 namespace {
@@ -89,19 +88,13 @@ bool is_finite(const Motion& motion) {
 
 template <class Motion>
 std::optional<Impact> checked_first_impact(const Motion& motion, const ImpactOptions& options) {
-  check_impact_options(options, "first_impact");
+  check(options, "first_impact");
   if (!is_finite(motion)) return std::nullopt;
   bool used_exact = false;
   return first_impact_of_finite(motion, relative_motion(motion), options, used_exact);
 }
 
 }  // namespace
-
-void check_impact_options(const ImpactOptions& options, const char* where) {
-  if (options.min_separation >= 0 && std::isfinite(options.min_separation)) return;
-  fail(std::string(where) + ": min_separation is " + std::to_string(options.min_separation) +
-       "; it must be a finite number, 0 or greater");
-}
 
 template <class Motion>
 std::optional<Impact> first_impact_of_finite(const Motion& motion, const RelativeMotion& relative,

@@ -13,7 +13,4 @@ template <class Motion>
 std::optional<Impact> first_impact_of_finite(const Motion& motion, const RelativeMotion& relative,
                                              const ImpactOptions& options, bool& used_exact);
 
-/// Throws `Error` naming the option.
-void check_impact_options(const ImpactOptions& options, const char* where);
-
 }  // namespace supple
