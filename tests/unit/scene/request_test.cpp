@@ -246,7 +246,10 @@ TEST(MaxContacts, SavesTheTestsOfWhatIsLeftOut) {
         ASSERT_EQ(result.contacts[i].triangle_b, lists.contacts[i].triangle_b);
         ASSERT_EQ(result.continuous_contacts[i], lists.continuous[i]);
       }
-      EXPECT_LT(result.stats.node_pairs_visited, all.node_pairs_visited);
+      // Several threads may be at later jobs before the first ones are through.
+      if (threads == 1) {
+        EXPECT_LT(result.stats.node_pairs_visited, all.node_pairs_visited);
+      }
     }
   }
 }
