@@ -30,7 +30,8 @@ struct ObjectOctreeOptions {
   /// tree of arity 2 three times as many, so that the smallest cell has the same size.
   std::uint32_t max_level = 16;
   /// A node with at most this many triangles is not split, ≥ 1. Vector kernels test the triangles of two
-  /// leaves that meet, so small leaves are slower, and they take more memory.
+  /// leaves that meet, so small leaves are slower, and they take more memory. The limit is half of this value
+  /// when `SceneOptions::contacts` has continuous contacts, unless `regular` is set.
   std::uint32_t leaf_size = 64;
   /// Children of a node: 8, 4 or 2. A level halves a node's cell along three axes, two or one, which take
   /// turns. Nodes have room for eight children in any case, so fewer children take more memory and time.
