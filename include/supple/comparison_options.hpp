@@ -53,7 +53,7 @@ struct SceneOctreeOptions {
   /// for every arity, as `ObjectOctreeOptions::max_level` does.
   std::uint32_t max_level = 0;
   /// A region expands when this many of its objects fit into regions of half its edge, ≥ 2; 0 chooses 2, as
-  /// in the paper, for up to 64 objects in the scene, and otherwise 64, which is faster.
+  /// in the paper, for up to 64 objects in the scene, and otherwise 96, which is faster.
   std::uint32_t expand_at = 0;
   RegionSphereTest region_sphere_test = RegionSphereTest::arvo;
   /// Children of a region: 8, 4 or 2.

@@ -95,7 +95,7 @@ struct Description<SceneOctreeOptions> {
         .name = "expand_at",
         .member = &Options::expand_at,
         .doc = "A region of the scene octree expands when this many of its objects fit into half its edge; 0 "
-               "chooses 2 for up to 64 objects and otherwise 64",
+               "chooses 2 for up to 64 objects and otherwise 96",
         .range = ValueRange::from(2, 0xffffffff).or_zero(),
         .unit = "objects",
         .key = "scene_octree_expand_at"});

@@ -14,7 +14,7 @@
 namespace supple {
 namespace {
 
-/// One line, or nothing when what was compared is equal.
+/// A sentence about a difference, or nothing when both are equal.
 using Line = std::optional<std::string>;
 
 std::string quoted(const std::string& text) {
@@ -74,7 +74,7 @@ Line compare_exactly(const std::string& item, const Value& a, const Value& b) {
   return equal ? Line() : both(item, a, b);
 }
 
-/// All options or statistics but those of the machine; items are `before + name + after`.
+/// Compares all options or statistics except those of the machine; an item is named `before + name + after`.
 template <Described Struct>
 Line compare_described(const std::string& before, const Struct& a, const Struct& b,
                        const std::string& after = {}) {
@@ -87,7 +87,7 @@ Line compare_described(const std::string& before, const Struct& a, const Struct&
   return line;
 }
 
-/// The first of the lines that says something.
+/// The first difference.
 template <class... Lines>
 Line first_of(Lines... compare) {
   Line line;
@@ -138,7 +138,7 @@ class Comparison {
   }
   std::string name(const ContinuousContact& c) const;
 
-  /// Lists in ascending order of `key`. `compare_rows` looks at two rows of equal keys.
+  /// Compares lists in ascending order of `key`. `compare_rows` compares two rows with equal keys.
   template <class Row, class Key, class CompareRows>
   Line lists(const std::string& item, const std::vector<Row>& a, const std::vector<Row>& b, Key key,
              CompareRows compare_rows) const;

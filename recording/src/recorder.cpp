@@ -25,12 +25,12 @@ namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
 constexpr auto flush_interval = std::chrono::seconds(1);
-/// So much may wait in memory for the flush.
+/// The maximum number of bytes that wait for a flush.
 constexpr std::size_t most_pending_bytes = std::size_t{32} << 20;
 constexpr std::size_t frames_in_chunk = 1024;
 constexpr std::size_t rows_in_chunk = 4096;
 
-/// From the ids by which results name objects to their places in the file.
+/// Maps object ids of results to indices in the file.
 class Places {
  public:
   explicit Places(const std::vector<RecordedObject>& objects) {
@@ -95,7 +95,7 @@ void append_rows(std::vector<ColumnWriter>& columns, std::span<const Row> rows) 
   }
 }
 
-/// Rows of which each frame has any number, and where those of each frame end.
+/// A group with any number of rows per frame, and the end of each frame.
 template <class Row>
 class RaggedWriter {
  public:
@@ -120,7 +120,7 @@ class RaggedWriter {
   std::uint64_t rows_ = 0;
 };
 
-/// An attribute for each option but those of the machine.
+/// One attribute per option, except the options of the machine.
 template <class Options>
 void write_options(hid_t file, const std::string& group, const Options& options) {
   for_each_leaf(
@@ -178,7 +178,7 @@ void check_header(const RecordingHeader& header) {
   }
 }
 
-/// The datasets of a file that grow, and what waits for them.
+/// The growing datasets of a file, and their unwritten rows.
 struct Datasets {
   Datasets(hid_t file, const RecordingHeader& header) {
     write_header(file, header);
@@ -194,7 +194,7 @@ struct Datasets {
                              group_names::contact_end})
       events.emplace_back(file, name);
     statistics = create_columns<StepStats>(file, group_names::statistics, frames_in_chunk);
-    // Created last and so made longer last: a frame is there when its time is.
+    // Created last, so it grows last: a frame exists when its time exists.
     time.emplace(file, "time", ScalarType::float64, 1, frames_in_chunk);
   }
 
@@ -234,7 +234,7 @@ void flush_file(hid_t file) {
               "; choose a file in a folder that exists and is yours");
 }
 
-/// Where the name leads: a link stays a link.
+/// Follows symbolic links, so that a link stays a link.
 fs::path final_path(const fs::path& path) {
   std::error_code error;
   if (!fs::exists(path, error)) return path;
@@ -297,7 +297,7 @@ class Recorder::Implementation {
   bool closed_ = false;
 };
 
-/// The rows of a frame, with places for ids.
+/// The rows of a frame, with indices instead of ids.
 struct Recorder::Implementation::Rows {
   Rows(const DetectResult& result, const Places& place_of)
       : object_pairs(with_places(result.object_pairs, place_of)),
@@ -330,8 +330,7 @@ Recorder::Implementation::Implementation(const fs::path& path, const RecordingHe
 }
 
 void Recorder::Implementation::create(const RecordingHeader& header) {
-  // Under another name until it says all that it says once: then it takes the place of the old one at a
-  // stroke.
+  // Written under another name until the header is complete; then it replaces the old file atomically.
   const fs::path draft = path_.string() + ".part";
   const int descriptor = open(draft.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
   if (descriptor < 0) fail_to_create(path_, errno);
@@ -424,7 +423,7 @@ void Recorder::Implementation::write_out() {
   flush_file(file_.id());
   flushed_frames_ = frames_;
   last_flush_ = Clock::now();
-  // After the numbers that it names.
+  // After the data that it refers to.
   xdmf_->write();
 }
 
@@ -459,7 +458,7 @@ void Recorder::Implementation::close() {
   closed_ = true;
   const QuietErrors quiet;
   datasets_.reset();
-  // All is flushed; this only says so.
+  // Everything is flushed already; this only reports errors of closing.
   if (!file_.reset()) throw Error(path_.string() + ": closing failed; check the disk and record again");
   xdmf_.reset();
 }

@@ -37,7 +37,7 @@ void read_option(const InputFile& file, const std::string& group, const std::str
   value = *found;
 }
 
-/// Version 1 has numbers for all truth values.
+/// Version 1 stores truth values as numbers.
 void read_option(const InputFile& file, const std::string& group, const std::string& name, bool& value,
                  const std::array<const char*, 2>& words, std::uint32_t version) {
   if (words[0] == nullptr || version < 2) {
@@ -129,7 +129,7 @@ RecordingHeader read_header(const InputFile& file, std::uint32_t version) {
   return header;
 }
 
-/// The rows of one frame, of a group that has any number of rows a frame.
+/// The rows of one frame in a group with any number of rows per frame.
 template <class Row>
 class RaggedReader {
  public:
@@ -156,7 +156,7 @@ class RaggedReader {
     return rows;
   }
 
-  /// Of a row of the frame.
+  /// Reports a bad value in a row of the frame.
   [[noreturn]] void fail(std::uint64_t frame, std::size_t row, const char* column, std::uint64_t value,
                          std::uint64_t allowed) {
     for (const auto& [of, reader] : columns_) {
@@ -198,11 +198,11 @@ class RaggedReader {
     ColumnOf<Row> of;
     ColumnReader reader;
   };
-  std::vector<Column> columns_;  ///< those that the file has
+  std::vector<Column> columns_;  ///< the columns that the file has
   std::vector<std::byte> bytes_;
 };
 
-/// What HDF5 or the machine refuses becomes an `Error` that names the file.
+/// Turns errors of HDF5 and of the system into an `Error` that names the file.
 template <class Function>
 auto with_errors_of(const std::string& path, Function function) {
   const QuietErrors quiet;
@@ -248,8 +248,7 @@ class Recording::Implementation {
     if (value >= allowed) rows.fail(frame, row, column, value, allowed);
   }
 
-  /// A file names objects by their places in the recording. `check(number, row)` sees these; then they become
-  /// ids.
+  /// Files name objects by index. `check(number, row)` sees the indices; then they become ids.
   template <class Row, class Check>
   std::vector<Row> rows_of_objects(RaggedReader<Row>& reader, std::uint64_t frame, ObjectId Row::*object_a,
                                    ObjectId Row::*object_b, Check check) const {
