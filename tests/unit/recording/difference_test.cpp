@@ -146,7 +146,7 @@ TEST_P(OfIntersections, Contacts) {
     contact.kind =
         contact.kind == IntersectionKind::point ? IntersectionKind::segment : IntersectionKind::point;
   });
-  expect(1, "normal: (", [](Contents& c) { c.frames[1].contacts[2].normal.x += 1e-9; });
+  expect(1, "contact 2, triangle ", [](Contents& c) { c.frames[1].contacts[2].normal.x += 1e-9; });
   EXPECT_FALSE(after([](Contents& c) { c.frames[1].contacts[2].normal.x += 1e-9; }, 1e-8));
   const std::optional<RecordingDifference> missing =
       after([](Contents& c) { c.frames[1].contacts.erase(c.frames[1].contacts.begin() + 2); });
