@@ -66,6 +66,7 @@ check: program
 	tools/install_dependencies.sh --ci
 	tools/format.sh --check
 	tools/check_include_order.py
+	tools/check_prose.py
 	tools/check_changelog.sh
 	tools/generate_docs.sh --check build/release/bin/supple
 
