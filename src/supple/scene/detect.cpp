@@ -109,8 +109,6 @@ void Scene::Implementation::refit_objects(const Question& question) {
   const SearchedShapes shapes = question.shapes();
   const double growth_of_volumes = question.is_continuous() ? growth(question.impact.min_separation) : 0;
   const bool is_another_search = searched_ != shapes || growth_ != growth_of_volumes;
-  searched_ = shapes;
-  growth_ = growth_of_volumes;
   boxes_.resize(slots_.size());
   spheres_.resize(slots_.size());
   versions_.resize(slots_.size(), 0);
@@ -148,6 +146,8 @@ void Scene::Implementation::refit_objects(const Question& question) {
     boxes_[index] = box;
     spheres_[index] = sphere;
   }
+  searched_ = shapes;
+  growth_ = growth_of_volumes;
 }
 
 void Scene::Implementation::find_object_pairs(Jobs& found) {
