@@ -21,7 +21,7 @@ help:
 demo: program
 	build/release/bin/supple simulate scenes/cloth_over_ball.toml --frames 200 --record build/cloth.h5
 	@echo
-	build/release/bin/supple simulate scenes/nine.toml --steps 200
+	build/release/bin/supple simulate scenes/nine.toml --frames 200
 	@echo
 	build/release/bin/supple view scenes/nine.toml --export build/nine.html
 	@echo
@@ -66,6 +66,7 @@ check: program
 	tools/install_dependencies.sh --ci
 	tools/format.sh --check
 	tools/check_include_order.py
+	tools/check_prose.py
 	tools/check_changelog.sh
 	tools/generate_docs.sh --check build/release/bin/supple
 

@@ -21,7 +21,7 @@ struct FrameSequence {
   const std::filesystem::path& file_at(std::uint64_t frame) const;
 };
 
-/// Reads the frames of a sequence when they are asked for.
+/// Reads the frames of a sequence on demand.
 class FrameFiles {
  public:
   /// Frames must have the vertex count and the triangles of this mesh.

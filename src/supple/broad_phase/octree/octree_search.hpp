@@ -10,9 +10,9 @@
 namespace supple {
 
 /// The paper's broad phase: an object is tested against those that share a leaf of the scene octree with it.
-/// The regions follow the objects that changed. When these are few, only their pairs are searched, and the
-/// pairs of all others stay. The regions are built anew when most objects left theirs, when the cube no
-/// longer suits the scene, and when another search ran in between.
+/// The regions follow the objects that changed. When few objects changed, only their pairs are searched and
+/// all other pairs stay. The regions are rebuilt when most objects left theirs, when the cube no longer
+/// suits the scene, and when another search ran in between.
 class OctreeSearch final : public PairSearch {
  public:
   OctreeSearch(BoundingVolume bounding_volume, const SceneOctreeOptions& options)
