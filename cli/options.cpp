@@ -248,7 +248,7 @@ void add_output_options(CLI::App& app, DetectionOptions& options, Dependences& d
   dependences.push_back(
       {group(add_file(app, "--csv", options.csv,
                       "Write a row a contact: frame,a,b,i,j of triangles, or "
-                      "frame,a,b,kind,a0,a1,b0,b1,time,certainty; - is standard output")),
+                      "frame,a,b,kind,a0,a1,b0,b1,toi,certainty; - is standard output")),
        [&] { return options.scene.contacts != (ContactKinds::intersection | ContactKinds::continuous); },
        "contacts of one kind"});
   dependences.push_back({group(app.add_flag_callback(
