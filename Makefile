@@ -19,16 +19,16 @@ help:
 	@echo 'make clean    remove build/'
 
 demo: program
-	build/release/bin/supple simulate scenes/cloth_over_ball.toml --steps 200 --record build/cloth.h5
+	build/release/bin/supple simulate scenes/cloth_over_ball.toml --frames 200 --record build/cloth.h5
 	@echo
-	build/release/bin/supple simulate scenes/nine.toml --steps 200
+	build/release/bin/supple simulate scenes/nine.toml --frames 200
 	@echo
 	build/release/bin/supple view scenes/nine.toml --export build/nine.html
 	@echo
 	@echo 'Open build/nine.html in a browser: it is one file, needs no server, and shows the nine objects collide.'
 	@echo 'ParaView opens build/cloth.xdmf.'
 	@echo 'Try next: build/release/bin/supple view scenes/cloth_over_ball.toml'
-	@echo '          build/release/bin/supple detect scenes/nine.toml --steps 3 --verify --json -'
+	@echo '          build/release/bin/supple detect scenes/nine.toml --frames 3 --verify --json -'
 
 # The command line and its viewer, without tests and examples.
 program: dependencies
@@ -66,6 +66,7 @@ check: program
 	tools/install_dependencies.sh --ci
 	tools/format.sh --check
 	tools/check_include_order.py
+	tools/check_prose.py
 	tools/check_changelog.sh
 	tools/generate_docs.sh --check build/release/bin/supple
 

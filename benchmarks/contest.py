@@ -243,16 +243,18 @@ def judged(cells):
         judge_refit(judge, cell)
     boxes = judge.matching("A/[a-z0-9]+/[0-9]+")
     for cell in boxes:
-        judge.add_faster("A, the best library", cell, judge.libraries(cell), 2.5, 4)
+        judge.add_faster("A, the best library", cell, judge.libraries(cell), 4, 6)
     for cell in boxes:
-        judge.add_faster("A, the baselines", cell, BASELINES, 1, 1.5)
+        judge.add_faster("A, the baselines", cell, BASELINES, 0.85, 1)
+    for cell in judge.matching("A/[a-z0-9]+/100000"):
+        judge.add_faster("A, the octree against Embree", cell, ["Embree"], 2.5, 3.8, "Supple octree")
     for cell in judge.matching("A/.*/drift"):
         drifted, fresh = judge.median(cell, "Supple, drifted"), judge.median(cell, "Supple, fresh")
         judge.add("A after 500 frames of drift", cell, "Supple, fresh", drifted / fresh, 1.1, 1, True)
     for cell in judge.matching("A/.*/one-percent"):
-        judge.add_faster("A with 1 % of the boxes moving", cell, ["Supple, all move"], 10, 30,
+        judge.add_faster("A with 1 % of the boxes moving", cell, ["Supple, all move"], 3, 6,
                          "Supple, one percent moves")
-        judge.add_faster("A with 1 % of the boxes moving, dirty list", cell, ["Supple, all move"], 10, 30,
+        judge.add_faster("A with 1 % of the boxes moving, dirty list", cell, ["Supple, all move"], 3, 6,
                          "Supple, one percent moves, dirty list")
     for cell in judge.matching("C/.*"):
         judge.add_faster("C, candidates and verdicts, against Embree's candidates", cell, ["Embree"], 1, 2)

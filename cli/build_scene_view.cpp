@@ -10,7 +10,6 @@
 #include <string>
 #include <utility>
 
-#include "build_simulation.hpp"
 #include "frame_files.hpp"
 #include "progress.hpp"
 #include "session/statistics.hpp"
@@ -84,13 +83,13 @@ class RecordedFrames : public viewer::Frames {
       places.emplace(object.id, static_cast<std::uint32_t>(places.size()));
     // As frames name them, so that a page plots both alike.
     series_.names.emplace_back("time");
-    for (const viewer::Statistic& statistic : viewer::statistics) series_.names.emplace_back(statistic.name);
+    viewer::for_each_statistic({}, [&](const char* name, double) { series_.names.emplace_back(name); });
     Progress progress(count(), true);
     for (std::uint64_t number = 0; number < count(); ++number) {
       const RecordedFrame frame = recording_->summary(number);
       series_.values.push_back(frame.time);
-      for (const viewer::Statistic& statistic : viewer::statistics)
-        series_.values.push_back(viewer::value_of(statistic, frame.stats));
+      viewer::for_each_statistic(frame.stats,
+                                 [&](const char*, double value) { series_.values.push_back(value); });
       const auto add = [&](const std::vector<ObjectPair>& pairs, std::vector<viewer::Series::Event>& events) {
         for (const ObjectPair& pair : pairs)
           events.push_back({static_cast<std::uint32_t>(number), places.at(pair.a), places.at(pair.b)});
@@ -128,8 +127,8 @@ std::shared_ptr<const viewer::Frames> frames_of(const Input& input, const ViewOp
   return std::make_shared<const FileFrames>(input);
 }
 
-viewer::ViewedObject object_of(const InputObject& object, const ViewOptions& options) {
-  viewer::ViewedObject shown{object.mesh, options_of(object, options), {}};
+viewer::ViewedObject object_of(const InputObject& object) {
+  viewer::ViewedObject shown{object.mesh, object.options, {}};
   if (const auto* motion = motion_of<WaveMotion>(object)) shown.motion = *motion;
   if (const auto* motion = motion_of<MassSpringMotion>(object)) shown.motion = *motion;
   return shown;
@@ -146,8 +145,7 @@ viewer::SceneView build_scene_view(const Input& input, const ViewOptions& option
   viewer::SceneView show;
   show.title = title_of(options.inputs);
   show.simulation = input.simulation;
-  show.simulation.scene = options.scene;
-  for (const InputObject& object : input.objects) show.objects.push_back(object_of(object, options));
+  for (const InputObject& object : input.objects) show.objects.push_back(object_of(object));
   show.frames = frames_of(input, options);
   return show;
 }

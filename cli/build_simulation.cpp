@@ -54,25 +54,18 @@ struct Adder {
 
 }  // namespace
 
-ObjectOptions options_of(const InputObject& object, const MethodOptions& options) {
-  ObjectOptions chosen = object.options;
-  chosen.self_collision = chosen.self_collision || options.self;
-  chosen.octree.max_level = options.max_level.value_or(chosen.octree.max_level);
-  chosen.octree.leaf_size = options.leaf_size.value_or(chosen.octree.leaf_size);
-  chosen.octree.arity = options.tree_arity.value_or(chosen.octree.arity);
-  return chosen;
+void apply(const MethodOptions& options, Input& input) {
+  input.simulation.scene = options.scene;
+  for (InputObject& object : input.objects) options.given_objects.apply_to(object.options);
 }
 
-Simulation build_simulation(const Input& input, const DetectionOptions& options) {
-  SimulationOptions chosen = input.simulation;
-  chosen.scene = options.scene;
-  Simulation simulation(chosen);
+Simulation build_simulation(const Input& input) {
+  Simulation simulation(input.simulation);
   for (const InputObject& object : input.objects) {
-    const ObjectOptions object_options = options_of(object, options);
     if (object.motion)
-      std::visit(Adder{simulation, object.mesh, object_options}, *object.motion);
+      std::visit(Adder{simulation, object.mesh, object.options}, *object.motion);
     else
-      simulation.add(object.mesh, object_options);
+      simulation.add(object.mesh, object.options);
   }
   return simulation;
 }

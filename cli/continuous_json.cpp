@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "supple/result_descriptions.hpp"
+
 namespace supple::cli {
 namespace {
 
@@ -74,7 +76,7 @@ void write_element(JsonWriter& json, const Element& element, Kind kind) {
 }
 
 void write_elements(JsonWriter& json, const Element& a, const Element& b, Kind kind) {
-  json.member("kind", std::string(name_of(kind)));
+  json.member("kind", word_of(kind));
   json.key("elements");
   json.begin_array();
   write_element(json, a, kind);
@@ -111,24 +113,6 @@ void write_objects(JsonWriter& json, ObjectId a, ObjectId b) {
 
 }  // namespace
 
-const char* name_of(ElementPairKind kind) {
-  return kind == Kind::vertex_face ? "vf" : kind == Kind::face_vertex ? "fv" : "ee";
-}
-
-const char* name_of(ContinuousDifference::Fault fault) {
-  switch (fault) {
-    case ContinuousDifference::Fault::missed:
-      return "missed";
-    case ContinuousDifference::Fault::added:
-      return "added";
-    case ContinuousDifference::Fault::late:
-      return "late";
-    case ContinuousDifference::Fault::early:
-      break;
-  }
-  return "early";
-}
-
 void write_continuous_groups(JsonWriter& json, const DetectResult& result, bool with_certainty) {
   json.key("continuous");
   json.begin_array();
@@ -138,14 +122,14 @@ void write_continuous_groups(JsonWriter& json, const DetectResult& result, bool 
     json.begin_object();
     write_objects(json, group.a, group.b);
     for (const Kind kind : kinds) {
-      json.key(name_of(kind));
+      json.key(word_of(kind));
       write_rows(json, of_kind(contacts, kind));
     }
     if (with_certainty) {
       json.key("within_tolerance");
       json.begin_object();
       for (const Kind kind : kinds) {
-        json.key(name_of(kind));
+        json.key(word_of(kind));
         write_uncertain_rows(json, of_kind(contacts, kind));
       }
       json.end_object();
@@ -186,7 +170,7 @@ void write_continuous_verify(JsonWriter& json, const char* name, const VerifyRep
     json.begin_object();
     write_objects(json, difference.object_a, difference.object_b);
     write_elements(json, difference.element_a, difference.element_b, difference.kind);
-    json.member("fault", std::string(name_of(difference.fault)));
+    json.member("fault", word_of(difference.fault));
     json.end_object();
   }
   json.end_array();

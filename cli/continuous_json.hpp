@@ -5,11 +5,6 @@
 
 namespace supple::cli {
 
-/// `vf`, `fv` or `ee`.
-const char* name_of(ElementPairKind kind);
-/// `missed`, `added`, `late` or `early`.
-const char* name_of(ContinuousDifference::Fault fault);
-
 // What docs/json.md describes of a step with continuous contacts.
 
 /// `continuous` and `earliest`. `with_certainty` lists what is within tolerance only.

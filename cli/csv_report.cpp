@@ -5,7 +5,7 @@
 
 #include <array>
 
-#include "continuous_json.hpp"
+#include "supple/result_descriptions.hpp"
 
 namespace supple::cli {
 
@@ -32,9 +32,8 @@ void CsvReport::add(const Frame& frame) {
   }
   for (const ContinuousContact& c : frame.result.continuous_contacts) {
     fmt::format_to(fmt::appender(rows), "{},{},{},{},{},{},{},{}\n", frame.number, c.object_a.index,
-                   c.object_b.index, name_of(c.kind), ids_of(c.element_a, c.kind),
-                   ids_of(c.element_b, c.kind), c.toi,
-                   c.certainty == ImpactCertainty::certain ? "certain" : "within_tolerance");
+                   c.object_b.index, word_of(c.kind), ids_of(c.element_a, c.kind),
+                   ids_of(c.element_b, c.kind), c.toi, word_of(c.certainty));
   }
   std::fwrite(rows.data(), 1, rows.size(), file_.stream());
   file_.check();

@@ -2,50 +2,78 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <string>
+#include <variant>
 
 #include "build_simulation.hpp"
 #include "inputs.hpp"
 #include "progress.hpp"
 #include "reports.hpp"
 #include "supple/error.hpp"
+#include "text.hpp"
 
 namespace supple::cli {
 namespace {
 
-Input read_input(const DetectOptions& options) {
-  Input input = options.sequence ? read_sequence(options.inputs) : read_objects(options.inputs);
-  if (options.steps > 1 && !is_scene_file(options.inputs.front()))
-    throw Error("--steps: only a scene file has steps; leave it out, or give frames with --sequence");
-  return input;
+/// The frames of the longest sequence of files that moves an object; 0 without one.
+std::uint64_t longest_sequence(const Input& input) {
+  std::uint64_t longest = 0;
+  for (const InputObject& object : input.objects) {
+    if (const auto* sequence = object.motion ? std::get_if<FrameSequence>(&*object.motion) : nullptr)
+      longest = std::max<std::uint64_t>(longest, sequence->files.size());
+  }
+  return longest;
 }
 
-/// How often contacts are looked for: in each frame, or from each frame to the next.
-std::uint64_t count_steps(const Input& input, const DetectOptions& options) {
-  if (!input.frames) return options.steps;
-  if (!contains(options.scene.contacts, ContactKinds::continuous)) return input.frames->count;
-  if (input.frames->count < 2)
+bool moves(const Input& input) {
+  return std::any_of(input.objects.begin(), input.objects.end(),
+                     [](const InputObject& object) { return object.motion.has_value(); });
+}
+
+std::uint64_t count_frames(const Input& input, const DetectOptions& options) {
+  const bool continuous = contains(options.scene.contacts, ContactKinds::continuous);
+  const bool is_scene = is_scene_file(options.inputs.front());
+  std::uint64_t frames = 1;
+  if (input.frames)
+    frames = input.frames->count;
+  else if (is_scene && moves(input))
+    frames = std::max<std::uint64_t>(longest_sequence(input), continuous ? 2 : 1);
+  if (options.frames) {
+    if (!is_scene && *options.frames > frames)
+      throw Error(fmt::format("--frames: {} has {}; give at most so many",
+                              input.frames ? input.frames->name : options.inputs.front(),
+                              counted(frames, "frame")));
+    frames = *options.frames;
+  }
+  if (continuous && frames == 1 && (input.frames || moves(input)))
     throw Error(fmt::format("{}: one frame is no motion; continuous contacts need two frames or more",
-                            input.frames->name));
-  return input.frames->count - 1;
+                            input.frames ? input.frames->name : options.inputs.front()));
+  return frames;
 }
 
 }  // namespace
 
 int run_detect(const DetectOptions& options) {
-  const Input input = read_input(options);
-  const std::uint64_t steps = count_steps(input, options);
-  Simulation simulation = build_simulation(input, options);
+  Input input = options.sequence ? read_sequence(options.inputs) : read_objects(options.inputs);
+  apply(options, input);
+  const std::uint64_t frames = count_frames(input, options);
+  Simulation simulation = build_simulation(input);
 
+  // Continuous contacts of a frame are those of the way from the frame before: the first frame of a motion
+  // has none.
   const bool continuous = contains(options.scene.contacts, ContactKinds::continuous);
+  const std::uint64_t first = options.scene.contacts == ContactKinds::continuous && frames > 1 ? 1 : 0;
   const char* const noun = continuous ? "step" : "frame";
-  Reports reports(options, simulation.scene(), noun);
-  Progress progress(steps, !options.quiet, noun);
-  for (std::uint64_t number = 0; number < steps; ++number) {
-    Frame frame{number, continuous || number > 0 ? simulation.step() : simulation.detect()};
-    if (options.verify) frame.verify = simulation.scene().verify();
+  Reports reports(options, input, simulation.scene(), noun);
+  Progress progress(frames - first, !options.quiet, noun);
+  for (std::uint64_t number = first; number < frames; ++number) {
+    const bool is_start = number == 0 && !(continuous && frames == 1);
+    Frame frame{number, is_start ? simulation.detect() : simulation.step()};
+    if (options.verify && !(is_start && continuous)) frame.verify = simulation.scene().verify();
     reports.add(frame);
-    progress.update(number + 1, fmt::format("{} {} of {}", noun, number + 1, steps));
+    const std::uint64_t done = number - first + 1;
+    progress.update(done, fmt::format("{} {} of {}", noun, done, frames - first));
   }
   reports.finish();
   return reports.exit_status();

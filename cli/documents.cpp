@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "description_tables.hpp"
 #include "supple/version.hpp"
 
 namespace supple::cli {
@@ -142,7 +143,8 @@ void print_man(const CLI::App& program) {
 void print_document(const CLI::App& program, const std::string& name) {
   if (name == "markdown") return print_markdown(program);
   if (name == "man") return print_man(program);
-  throw CLI::ValidationError("--generate", fmt::format("'{}' is not one of man, markdown", name));
+  if (name == "tables") return print_description_tables();
+  throw CLI::ValidationError("--generate", fmt::format("'{}' is not one of man, markdown, tables", name));
 }
 
 }  // namespace supple::cli

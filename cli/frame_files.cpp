@@ -16,30 +16,34 @@ TriangleMesh read_mesh(const std::filesystem::path& path) {
   return load_any_mesh(path);
 }
 
+const std::filesystem::path& FrameSequence::file_at(std::uint64_t frame) const {
+  const std::uint64_t count = files.size();
+  return files[loop ? frame % count : std::min(frame, count - 1)];
+}
+
 FrameFiles::FrameFiles(FrameSequence sequence, const TriangleMesh& mesh)
     : sequence_(std::move(sequence)), vertex_count_(mesh.positions.size()), triangles_(mesh.triangles) {}
 
 void FrameFiles::read(std::uint64_t step, std::span<Vec3d> positions) const {
-  const std::uint64_t count = sequence_.files.size();
-  const std::uint64_t frame = sequence_.loop ? step % count : std::min(step, count - 1);
-  const std::string name = sequence_.files[frame].string();
+  constexpr const char* advice =
+      "frames of a sequence are one object that only bends; for several objects write a scene file, each "
+      "with "
+      "motion = { kind = \"frames\", files = \"...\" }";
+  const std::filesystem::path& file = sequence_.file_at(step);
+  const std::string name = file.string();
   const std::string first = sequence_.files.front().string();
-  TriangleMesh mesh = read_mesh(sequence_.files[frame]);
+  TriangleMesh mesh = read_mesh(file);
   const auto check_count = [&](const char* what, std::size_t given, std::size_t expected) {
     if (given == expected) return;
-    throw Error(
-        fmt::format("{}: has {} {}, but {} has {}; frames of a sequence are one object that only bends", name,
-                    given, what, first, expected));
+    throw Error(fmt::format("{}: has {} {}, but {} has {}; {}", name, given, what, first, expected, advice));
   };
   check_count("vertices", mesh.positions.size(), vertex_count_);
   check_count("triangles", mesh.triangles.size(), triangles_.size());
   const auto difference =
       std::mismatch(mesh.triangles.begin(), mesh.triangles.end(), triangles_.begin()).first;
   if (difference != mesh.triangles.end())
-    throw Error(fmt::format(
-        "{}: triangle {} has other vertices than in {}; frames of a sequence are one object that only "
-        "bends",
-        name, difference - mesh.triangles.begin(), first));
+    throw Error(fmt::format("{}: triangle {} has other vertices than in {}; {}", name,
+                            difference - mesh.triangles.begin(), first, advice));
   if (sequence_.placement) place(mesh.positions, *sequence_.placement);
   std::copy(mesh.positions.begin(), mesh.positions.end(), positions.begin());
 }

@@ -17,9 +17,11 @@ struct FrameSequence {
   std::vector<std::filesystem::path> files;  ///< one or more
   bool loop = false;
   std::optional<Placement> placement;  ///< of each frame; none: coordinates as they stand in the files
+
+  const std::filesystem::path& file_at(std::uint64_t frame) const;
 };
 
-/// Reads the frames of a sequence when they are asked for.
+/// Reads the frames of a sequence on demand.
 class FrameFiles {
  public:
   /// Frames must have the vertex count and the triangles of this mesh.

@@ -44,7 +44,7 @@ void ImpactTables::print(const Scene& scene) const {
 }
 
 void ImpactTables::print_steps() const {
-  fmt::print("{:<20} {:>16} {:>16} {:>24}\n", "step", "vertex-face", "edge-edge", "earliest, 0 to 1");
+  fmt::print("{:<20} {:>16} {:>16} {:>24}\n", "to frame", "vertex-face", "edge-edge", "earliest, 0 to 1");
   for (const Step& step : steps_) {
     fmt::print("{:<20} {:>16} {:>16} {:>24}\n", step.number, grouped(step.counts.vertex_face),
                grouped(step.counts.edge_edge), step.earliest);

@@ -12,7 +12,9 @@
 #include "exit_status.hpp"
 #include "inputs.hpp"
 #include "json_writer.hpp"
+#include "session/described_json.hpp"
 #include "supple/inspection.hpp"
+#include "supple/result_descriptions.hpp"
 #include "supple/scene.hpp"
 #include "supple/topology.hpp"
 #include "supple/version.hpp"
@@ -52,8 +54,7 @@ MeshInfo measure(const InputObject& object, const InfoOptions& options) {
   info.topology = compute_topology(object.mesh);
   measure_positions(object.mesh, info);
   ObjectOptions chosen = object.options;
-  chosen.octree.max_level = options.max_level.value_or(chosen.octree.max_level);
-  chosen.octree.leaf_size = options.leaf_size.value_or(chosen.octree.leaf_size);
+  options.given_objects.apply_to(chosen);
   Scene scene({.threads = 1});
   info.octree = SceneInspector(scene).octree_statistics(scene.add(object.mesh, chosen));
   return info;
@@ -96,19 +97,7 @@ void print_text(const MeshInfo& info) {
 void write_octree(JsonWriter& json, const OctreeStatistics& octree) {
   json.key("octree");
   json.begin_object();
-  json.member("nodes", octree.nodes);
-  json.member("leaves", octree.leaves);
-  json.member("depth", std::uint64_t{octree.depth});
-  json.member("largest_leaf", std::uint64_t{octree.largest_leaf});
-  json.member("mean_leaf_size", octree.mean_leaf_size);
-  json.member("mean_node_width", octree.mean_node_width);
-  json.member("cost", octree.cost);
-  json.member("bytes", octree.bytes);
-  json.member("bytes_per_triangle", octree.bytes_per_triangle);
-  json.key("leaves_by_level");
-  json.begin_array();
-  for (const std::uint64_t leaves : octree.leaves_by_level) json.value(leaves);
-  json.end_array();
+  viewer::write_members(json, octree);
   json.end_object();
 }
 

@@ -37,7 +37,7 @@ struct InputObject {
 /// What a command works on: objects, and what moves them.
 struct Input {
   std::vector<InputObject> objects;
-  SimulationOptions simulation;  ///< all but its scene
+  SimulationOptions simulation;
   /// Of a sequence or a recording.
   struct Frames {
     std::string name{};  ///< in messages

@@ -4,8 +4,15 @@
 
 #include <array>
 #include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
 
 #include "continuous_json.hpp"
+#include "session/described_json.hpp"
+#include "supple/option_descriptions.hpp"
+#include "supple/result_descriptions.hpp"
 #include "supple/version.hpp"
 
 namespace supple::cli {
@@ -17,10 +24,30 @@ std::string name_of(Feature feature) {
   return fmt::format("{}{}", feature.kind == FeatureKind::vertex ? 'v' : 'e', feature.index);
 }
 
-const char* name_of(IntersectionKind kind) {
-  return kind == IntersectionKind::point     ? "point"
-         : kind == IntersectionKind::segment ? "segment"
-                                             : "polygon";
+/// All but those of the machine.
+template <class Options>
+void write_options(JsonWriter& json, const Options& options) {
+  json.key("options");
+  json.begin_object();
+  for_each_leaf(
+      [&](const auto& field, const auto& value) {
+        if (field.is_of_machine || std::string_view(field.key) == "name") return;
+        json.key(field.key);
+        viewer::write_value(json, field, value);
+      },
+      options);
+  json.end_object();
+}
+
+void write_faces(JsonWriter& json, const std::vector<Triangle>& triangles) {
+  json.key("faces");
+  json.begin_array();
+  for (const Triangle& triangle : triangles) {
+    json.begin_array();
+    for (const std::uint32_t vertex : triangle) json.value(vertex);
+    json.end_array();
+  }
+  json.end_array();
 }
 
 void write_object_pairs(JsonWriter& json, const char* name, std::span<const ObjectPair> pairs) {
@@ -71,11 +98,32 @@ void write_contacts(JsonWriter& json, const DetectResult& result, bool with_poin
     json.member("b", std::uint64_t{contact.object_b.index});
     json.key("triangles");
     json.pair(contact.triangle_a, contact.triangle_b);
-    json.member("kind", name_of(contact.kind));
+    json.member("kind", word_of(contact.kind));
     if (with_points) {
       json.member("normal", contact.normal);
       write_points(json, result.points_of(contact));
     }
+    json.end_object();
+  }
+  json.end_array();
+}
+
+/// The paper's output: vertices in the leaves that collide.
+void write_colliding_vertices(JsonWriter& json, const DetectResult& result) {
+  json.key("colliding_vertices");
+  json.begin_array();
+  for (const CollidingVertices& group : result.colliding_vertex_groups) {
+    const auto write = [&](const char* name, std::size_t first, std::size_t count) {
+      json.key(name);
+      json.begin_array();
+      for (const std::uint32_t vertex : result.colliding_vertices.subspan(first, count)) json.value(vertex);
+      json.end_array();
+    };
+    json.begin_object();
+    json.member("a", std::uint64_t{group.a.index});
+    json.member("b", std::uint64_t{group.b.index});
+    write("vertices_a", group.first_vertex, group.count_a);
+    write("vertices_b", group.first_vertex + group.count_a, group.count_b);
     json.end_object();
   }
   json.end_array();
@@ -104,32 +152,10 @@ void write_non_finite(JsonWriter& json, std::span<const NonFiniteVertex> vertice
 }
 
 void write_stats(JsonWriter& json, const Frame& frame) {
-  const StepStats& stats = frame.result.stats;
   json.key("stats");
   json.begin_object();
   if (frame.simulated) json.member("motion_seconds", frame.simulated->motion_seconds);
-  constexpr std::array methods{"automatic", "octree", "grid", "sweep", "brute"};
-  json.member("broad_phase_method", methods[static_cast<std::size_t>(stats.broad_phase_method)]);
-  json.member("refit_seconds", stats.refit_seconds);
-  json.member("broad_phase_seconds", stats.broad_phase_seconds);
-  json.member("rebuild_seconds", stats.rebuild_seconds);
-  json.member("traversal_seconds", stats.traversal_seconds);
-  json.member("exact_seconds", stats.exact_seconds);
-  json.member("sort_and_events_seconds", stats.sort_and_events_seconds);
-  json.member("total_seconds", stats.total_seconds);
-  json.member("objects_refitted", stats.objects_refitted);
-  json.member("triangles_refitted", stats.triangles_refitted);
-  json.member("subtrees_rebuilt", stats.subtrees_rebuilt);
-  json.member("triangles_rebuilt", stats.triangles_rebuilt);
-  json.member("object_pairs_tested", stats.object_pairs_tested);
-  json.member("object_pairs", stats.object_pairs);
-  json.member("node_pairs_visited", stats.node_pairs_visited);
-  json.member("boxes_tested", stats.boxes_tested);
-  json.member("candidate_pairs", stats.candidate_pairs);
-  json.member("vertex_face_candidates", stats.vertex_face_candidates);
-  json.member("edge_edge_candidates", stats.edge_edge_candidates);
-  json.member("exact_fallbacks", stats.exact_fallbacks);
-  json.member("contacts", stats.contacts);
+  viewer::write_members(json, frame.result.stats);
   json.end_object();
 }
 
@@ -155,17 +181,22 @@ void write_verify(JsonWriter& json, const VerifyReport& report) {
 
 }  // namespace
 
-JsonReport::JsonReport(const std::string& file_name, const Scene& scene, const JsonContent& content)
-    : json_(file_name), options_(scene.options()), content_(content) {
+JsonReport::JsonReport(const std::string& file_name, const Input& input, const Scene& scene,
+                       const JsonContent& content)
+    : json_(file_name), input_(input), content_(content) {
   json_.begin_object();
   json_.member("supple", std::string(SUPPLE_VERSION));
+  if (content_.stats) write_options(json_, input_.simulation.scene);
   json_.key("objects");
   json_.begin_array();
-  for (const ObjectId object : scene.objects()) {
+  const std::vector<ObjectId> objects = scene.objects();
+  for (std::size_t i = 0; i < objects.size(); ++i) {
     json_.begin_object();
-    json_.member("name", scene.name(object));
-    json_.member("vertices", std::uint64_t{scene.vertex_count(object)});
-    json_.member("triangles", std::uint64_t{scene.triangle_count(object)});
+    json_.member("name", scene.name(objects[i]));
+    json_.member("vertices", std::uint64_t{scene.vertex_count(objects[i])});
+    json_.member("triangles", std::uint64_t{scene.triangle_count(objects[i])});
+    if (content_.stats) write_options(json_, input_.objects[i].options);
+    if (content_.faces) write_faces(json_, input_.objects[i].mesh.triangles);
     json_.end_object();
   }
   json_.end_array();
@@ -173,24 +204,46 @@ JsonReport::JsonReport(const std::string& file_name, const Scene& scene, const J
   json_.begin_array();
 }
 
+/// The files that a frame is from.
+void JsonReport::add_files(std::uint64_t frame) {
+  bool is_first = true;
+  for (std::size_t i = 0; i < input_.objects.size(); ++i) {
+    const auto& motion = input_.objects[i].motion;
+    const auto* const sequence = motion ? std::get_if<FrameSequence>(&*motion) : nullptr;
+    if (!sequence) continue;
+    if (std::exchange(is_first, false)) {
+      json_.key("files");
+      json_.begin_array();
+    }
+    json_.begin_object();
+    json_.member("object", std::uint64_t{i});
+    json_.member("file", sequence->file_at(frame).string());
+    json_.end_object();
+  }
+  if (!is_first) json_.end_array();
+}
+
 void JsonReport::add(const Frame& frame) {
   const DetectResult& result = frame.result;
+  const SceneOptions& options = input_.simulation.scene;
   json_.begin_object();
   json_.member("frame", frame.number);
   if (frame.simulated) json_.member("time", frame.simulated->time);
+  add_files(frame.number);
   write_object_pairs(json_, "object_pairs", result.object_pairs);
-  const bool continuous = contains(options_.contacts, ContactKinds::continuous);
-  const bool both = continuous && contains(options_.contacts, ContactKinds::intersection);
+  const bool continuous = contains(options.contacts, ContactKinds::continuous);
+  const bool both = continuous && contains(options.contacts, ContactKinds::intersection);
   if (continuous) {
-    write_continuous_groups(json_, result, !options_.impact.exact);
+    write_continuous_groups(json_, result, !options.impact.exact);
     if (content_.contact_details)
       write_continuous_contacts(json_, both ? "continuous_contacts" : "contacts", result);
   }
   if (both || !continuous) {
     write_groups(json_, "triangle_pairs", result, false);
     write_groups(json_, "self", result, true);
-    write_contacts(json_, result, options_.contact_points);
+    if (content_.contact_details) write_contacts(json_, result, options.contact_points);
   }
+  if (options.comparison.colliding_vertices) write_colliding_vertices(json_, result);
   json_.key("events");
   json_.begin_object();
   write_events(json_, "volumes", result.volume_events);

@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "inputs.hpp"
 #include "json_writer.hpp"
 #include "report.hpp"
 #include "supple/scene.hpp"
@@ -10,21 +11,26 @@ namespace supple::cli {
 
 /// What is written and may be left out.
 struct JsonContent {
-  bool stats = true;             ///< times and counts of each frame: all that may differ between two runs
-  bool contact_details = false;  ///< where each continuous contact is
+  /// Options, and times and counts of each frame: all that may differ between two runs that find the same.
+  bool stats = true;
+  bool contact_details = false;  ///< where each contact is
+  bool faces = false;            ///< the triangles of each object
 };
 
 /// The result of `supple detect` as docs/json.md describes it, a frame at a time.
 class JsonReport {
  public:
-  JsonReport(const std::string& file_name, const Scene& scene, const JsonContent& content);
+  JsonReport(const std::string& file_name, const Input& input, const Scene& scene,
+             const JsonContent& content);
 
   void add(const Frame& frame);
   void finish();
 
  private:
   JsonWriter json_;
-  SceneOptions options_;
+  void add_files(std::uint64_t frame);
+
+  const Input& input_;
   JsonContent content_;
 };
 

@@ -3,61 +3,83 @@
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cctype>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <optional>
+#include <limits>
 #include <string>
-#include <utility>
+#include <type_traits>
 #include <vector>
+
+#include "supple/description.hpp"
 
 namespace supple::cli {
 
-/// An option that takes one of a few words. The first choice is the default.
-template <class Enum>
-CLI::Option* add_choice(CLI::App& app, const std::string& name, Enum& value,
-                        const std::vector<std::pair<std::string, Enum>>& choices,
-                        const std::string& description) {
-  std::string words, alternatives;
-  for (const auto& [word, meaning] : choices) {
-    words += (words.empty() ? "" : "|") + word;
-    alternatives += (alternatives.empty() ? "" : ", ") + word;
+/// `--scene-octree-arity` for the key `scene_octree_arity`.
+std::string flag_of(const char* key);
+
+/// The word for a choice as it is written on the command line: with dashes. Both spellings are read.
+std::string spelled(const char* word);
+bool is_word(const std::string& given, const char* word);
+
+/// An option that takes one of a few words; `set` gets the place of the word.
+CLI::Option* add_words(CLI::App& app, const std::string& name, std::vector<const char*> choices,
+                       std::function<void(std::size_t)> set, const std::string& description);
+/// A whole number, or another one, that the range allows.
+CLI::Option* add_whole(CLI::App& app, const std::string& name, const ValueRange& range,
+                       std::function<void(std::uint64_t)> set, const std::string& description);
+CLI::Option* add_real(CLI::App& app, const std::string& name, const ValueRange& range, const char* unit,
+                      std::function<void(double)> set, const std::string& description);
+
+/// `Shape of the octree (triangles; default: 64)`
+std::string help_of(const char* doc, const std::string& unit, const std::string& default_value);
+
+/// An option of a structure, as its description says it. `set` gets the value. A truth value without words is
+/// a flag that turns it to what it is not by default.
+template <class Struct, class Value, class Set>
+CLI::Option* add_field(CLI::App& app, const Field<Struct, Value>& field, const Value& default_value,
+                       Set set) {
+  const std::string name = flag_of(field.key);
+  if constexpr (Worded<Value>) {
+    return add_words(
+        app, name, {words<Value>.begin(), words<Value>.end()},
+        [set](std::size_t place) { set(static_cast<Value>(place)); },
+        help_of(field.doc, field.unit, spelled(word_of(default_value))));
+  } else if constexpr (std::is_same_v<Value, bool>) {
+    if (field.has_truth_words())
+      return add_words(
+          app, name, {field.truth_words.begin(), field.truth_words.end()},
+          [set](std::size_t place) { set(place == 1); },
+          help_of(field.doc, field.unit, spelled(field.truth_words[default_value ? 1 : 0])));
+    if (!default_value)
+      return app.add_flag_callback(
+          name, [set] { set(true); }, field.doc);
+    std::string negated = std::string("Do not ") + field.doc;
+    negated[7] = static_cast<char>(std::tolower(static_cast<unsigned char>(negated[7])));
+    return app.add_flag_callback(
+        "--no-" + name.substr(2), [set] { set(false); }, negated);
+  } else if constexpr (std::is_same_v<Value, double>) {
+    return add_real(app, name, field.range, field.unit, set,
+                    help_of(field.doc, field.unit, fmt::format("{}", default_value)));
+  } else {
+    ValueRange range = field.range;
+    range.highest = std::min(range.highest, static_cast<double>(std::numeric_limits<Value>::max()));
+    return add_whole(
+        app, name, range, [set](std::uint64_t value) { set(static_cast<Value>(value)); },
+        help_of(field.doc, field.unit, fmt::format("{}", default_value)));
   }
-  const auto parse = [&value, choices, alternatives, name](const std::string& given) {
-    for (const auto& [word, meaning] : choices) {
-      if (word != given) continue;
-      value = meaning;
-      return;
-    }
-    throw CLI::ValidationError(name, fmt::format("'{}' is not one of {}", given, alternatives));
-  };
-  return app
-      .add_option_function<std::string>(name, parse,
-                                        fmt::format("{} (default: {})", description, choices.front().first))
-      ->type_name(words);
 }
 
-/// A number from `lowest` to `highest`.
+/// A whole number from `lowest` to `highest`.
 template <class Number>
 CLI::Option* add_number(CLI::App& app, const std::string& name, Number& value, std::uint32_t lowest,
                         std::uint32_t highest, const std::string& description) {
-  const auto parse = [&value, lowest, highest, name](const std::string& given) {
-    std::uint32_t number = 0;
-    if (!CLI::detail::lexical_cast(given, number) || number < lowest || number > highest ||
-        given.find_first_not_of("0123456789") != std::string::npos)
-      throw CLI::ValidationError(
-          name, fmt::format("'{}' is not a whole number from {} to {}", given, lowest, highest));
-    value = static_cast<Number>(number);
-  };
-  return app.add_option_function<std::string>(name, parse, description)->type_name("N");
+  return add_whole(
+      app, name, ValueRange::from(lowest, highest),
+      [&value](std::uint64_t number) { value = static_cast<std::uint32_t>(number); }, description);
 }
-
-/// A finite number ≥ 0.
-CLI::Option* add_length(CLI::App& app, const std::string& name, double& value,
-                        const std::string& description);
-
-/// A finite number > 0; `unit` stands for it in the help.
-CLI::Option* add_seconds(CLI::App& app, const std::string& name, std::optional<double>& value,
-                         const std::string& unit, const std::string& description);
 
 /// A file to write, `-` being standard output.
 CLI::Option* add_file(CLI::App& app, const std::string& name, std::string& value,

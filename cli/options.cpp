@@ -3,18 +3,21 @@
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
-#include <array>
 #include <limits>
-#include <map>
 #include <optional>
 #include <string>
-#include <utility>
+#include <string_view>
+#include <type_traits>
 #include <vector>
 
 #include "documents.hpp"
 #include "exit_status.hpp"
 #include "experiments/experiment_options.hpp"
 #include "option_kinds.hpp"
+#include "recorded_input.hpp"
+#include "session/settings.hpp"
+#include "supple/recording.hpp"
+#include "supple/simulation_descriptions.hpp"
 #include "supple/version.hpp"
 #include "text.hpp"
 
@@ -26,7 +29,7 @@ constexpr const char* program_footer = R"(Examples:
   supple detect --contacts continuous --self --sequence 'frame_*.obj'
                                             what passes through something between two frames, and when?
   supple detect --help                      every option, with examples
-  supple simulate scene.toml --steps 300 --record run.h5
+  supple simulate scene.toml --frames 300 --record run.h5
                                             objects that move by themselves, and what touches on the way
   supple view run.h5                        the same in a browser, live or recorded
   supple info rabbit.obj                    counts, bounds, holes, octree statistics
@@ -42,19 +45,19 @@ view ends by that, with 0.)";
 constexpr const char* detect_footer = R"(Examples:
   supple detect rabbit.obj fish.ply
       Two static meshes, an object each: which of their triangles intersect?
-  supple detect --self cloth.obj --json result.json
-      Where does a cloth cut through itself? Each contact with its points, as JSON.
+  supple detect --self cloth.obj --json result.json --contact-details
+      Where does a cloth intersect itself? Each contact with its points, as JSON.
   supple detect --sequence 'frame_*.ply' --self --csv pairs.csv
       Frames of one object. Quote the pattern: frame_10 then comes after frame_9, not after frame_1.
-  supple detect scene.toml --steps 300
+  supple detect scene.toml --frames 300
       A scene file: objects with placement, options and motion.
   supple detect run.h5 --verify
-      A recording: each of its frames anew, the objects with the options that they were recorded with.
+      A recording: each of its frames again, with the recorded options. Options given here come first.
   supple detect a.stl b.stl --fail-on-contact --quiet && echo apart
       For scripts: the exit status is 1 when anything touches.
   supple detect --contacts continuous --self --sequence 'frame_*.ply' --json impacts.json
       What passes through something between two frames: each vertex and face, each two edges, and when they first meet.
-  supple detect --contacts continuous --min-separation 0.001 scene.toml --steps 300
+  supple detect --contacts continuous --min-separation 0.001 scene.toml --frames 300
       Elements already touch when they come within 0.001.
   supple detect rabbit.obj fish.ply --verify
       Check the result against exact brute force over all pairs of triangles.
@@ -65,7 +68,8 @@ constexpr const char* diff_footer = R"(Examples:
   supple diff a.h5 b.h5
       The first frame and item in which two recordings differ, with both values; the exit status is 1 when they do.
   supple diff a.h5 b.h5 --tolerance 1e-9
-      Positions, points of contacts, and times, weights and normals of continuous ones may differ by so much.
+      Positions and points of contacts, and the times, barycentric coordinates and normals of continuous contacts,
+      may differ by 1e-9.
   supple diff a.h5 b.h5 --quiet && echo equal
       For scripts.
   supple diff a.h5 b.h5 --json -
@@ -78,15 +82,15 @@ constexpr const char* simulate_footer = R"(Examples:
       Rabbits fall on each other: what touched, how fast it went, and where the time was spent.
   supple simulate scenes/fish_tank.toml --seconds 10 --record run.h5
       Every frame and contact in an HDF5 file; ParaView opens the run.xdmf beside it.
-  supple simulate scenes/table1_9.toml --steps 1000 --seed 7 --json - --no-stats
+  supple simulate scenes/table1_9.toml --frames 1000 --seed 7 --json - --no-stats
       Another seed sends objects off in other directions; the same seed gives the same bytes everywhere.
   supple simulate scenes/cloth_over_ball.toml --contacts continuous --self
       Also what passes through something between two frames, and through itself.
   supple simulate scenes/soft_block.toml --time-step 0.001
       Shorter steps than the scene file's.
 
-N steps give N + 1 frames: frame 0 is the start, frame k what is there after k steps. Continuous contacts of frame k are
-those of the way from frame k - 1. Ctrl-C ends the run after the step that is under way, with its files and tables complete.)";
+Frame 0 is the start, and frame k is the state after k steps. The continuous contacts of frame k are those of the way
+from frame k - 1 to frame k. Ctrl-C ends the run after the step that is under way, with its files and tables complete.)";
 
 constexpr const char* view_footer = R"(Examples:
   supple view scenes/nine.toml
@@ -130,37 +134,36 @@ A query is eight rows: the vertices v, f0, f1, f2 of a vertex and a face, or a0,
 of the step, and the same at its end. A row is numerator,denominator of x, y and z, whole numbers of any size, and
 perhaps the answer, 0 or 1, the same in all eight. Each coordinate must be exactly a double.)";
 
-std::array<CLI::Option*, 2> add_octree_options(CLI::App& app, std::optional<std::uint32_t>& max_level,
-                                               std::optional<std::uint32_t>& leaf_size) {
-  const ObjectOctreeOptions defaults;
-  return {
-      add_number(app, "--max-level", max_level, 0, 32,
-                 fmt::format("Deepest level of an object's octree (default: {})", defaults.max_level)),
-      add_number(app, "--leaf-size", leaf_size, 1, 1'000'000'000,
-                 fmt::format("Triangles up to which a node is not split (default: {})", defaults.leaf_size))};
+/// The octree of each object, and `--self` where objects are tested.
+void add_object_options(CLI::App& app, viewer::Overrides<ObjectOptions>& objects, bool are_tested) {
+  objects.for_each_setter([&]<class Struct, class Value>(const Field<Struct, Value>& field,
+                                                         const Value& default_value, auto set) {
+    if constexpr (std::is_same_v<Struct, ObjectOctreeOptions>) {
+      add_field(app, field, default_value, set)->group(are_tested ? "Method" : "Options");
+    } else if constexpr (std::is_same_v<Value, bool>) {
+      if (are_tested && std::string_view(field.key) == "self")
+        add_field(app, field, default_value, set)->group("Detection");
+    }
+  });
 }
 
-std::array<CLI::Option*, 2> add_impact_options(CLI::App& app, ImpactOptions& impact) {
-  return {add_length(app, "--min-separation", impact.min_separation,
-                     "Continuous contacts begin when elements come this close, in the unit of the "
-                     "coordinates (default: 0)"),
-          add_choice<bool>(app, "--undecided", impact.exact, {{"exact", true}, {"report", false}},
-                           "Continuous contacts that floating point cannot tell: decided by exact "
-                           "arithmetic, or reported as within tolerance")};
+void add_impact_options(CLI::App& app, ImpactOptions& impact) {
+  for_each_leaf(
+      [&](const auto& field, auto& value) {
+        add_field(app, field, value, [&value](const auto& given) { value = given; });
+      },
+      impact);
+}
+
+CLI::Option* add_frames(CLI::App& app, std::optional<std::uint64_t>& frames, const char* description) {
+  return add_number(app, "--frames,--steps", frames, 1, 1'000'000'000, description);
 }
 
 void add_kind(CLI::App& app, std::optional<QueryKind>& kind) {
-  const std::map<std::string, QueryKind> kinds{{"vertex-face", QueryKind::vertex_face},
-                                               {"edge-edge", QueryKind::edge_edge}};
-  const auto parse = [&kind, kinds](const std::string& given) {
-    const auto found = kinds.find(given);
-    if (found == kinds.end())
-      throw CLI::ValidationError("--kind", fmt::format("'{}' is not one of vertex-face, edge-edge", given));
-    kind = found->second;
-  };
-  app.add_option_function<std::string>("--kind", parse,
-                                       "What the queries are about (default: told by the paths)")
-      ->type_name("vertex-face|edge-edge");
+  add_words(
+      app, "--kind", {words<QueryKind>.begin(), words<QueryKind>.end()},
+      [&kind](std::size_t place) { kind = static_cast<QueryKind>(place); },
+      "What the queries are about (default: by the names of folders and files)");
 }
 
 /// Meshes, a scene file, a recording, or frames.
@@ -175,90 +178,67 @@ void add_input_options(CLI::App& app, std::vector<std::string>& inputs, bool& se
       ->group("Input");
 }
 
-CLI::Option* group_of_detection(CLI::Option* option) {
-  return option->group("Detection");
+bool is_continuous(const SceneOptions& scene) {
+  return contains(scene.contacts, ContactKinds::continuous);
+}
+bool has_spheres(const SceneOptions& scene) {
+  return scene.bounding_volume == BoundingVolume::sphere;
+}
+bool has_scene_octree(const SceneOptions& scene) {
+  return viewer::uses_scene_octree(scene.broad_phase);
 }
 
-void add_stage_options(CLI::App& app, MethodOptions& options, Dependences& dependences) {
-  SceneOptions& scene = options.scene;
-  group_of_detection(add_choice<ContactKinds>(
-      app, "--contacts", scene.contacts,
-      {{"intersection", ContactKinds::intersection},
-       {"continuous", ContactKinds::continuous},
-       {"intersection,continuous", ContactKinds::intersection | ContactKinds::continuous},
-       {"none", ContactKinds::none}},
-      "Exact stage: every intersecting pair of triangles; every vertex and face and every two "
-      "edges that touch between a frame and the next, and when; both; or object pairs only"));
-  group_of_detection(app.add_flag("--self", options.self, "Also test every object against itself"));
-  for (CLI::Option* option : add_impact_options(app, scene.impact))
-    dependences.push_back({group_of_detection(option),
-                           [&] { return contains(scene.contacts, ContactKinds::continuous); },
-                           "--contacts continuous"});
-  group_of_detection(
-      add_number(app, "--threads", scene.threads, 0, 1024, "Worker threads, 0 for one a core (default: 0)"));
+/// What an option of the scene needs to have an effect.
+struct Need {
+  const char* key;
+  bool (*is_met)(const SceneOptions& scene);
+  const char* text;
+};
+constexpr Need needs_of_options[] = {
+    {"sphere_fit", has_spheres, "--bounding-volume sphere"},
+    {"region_test", [](const SceneOptions& scene) { return has_spheres(scene) && has_scene_octree(scene); },
+     "--bounding-volume sphere and --broad-phase octree or automatic"},
+    {"scene_octree_max_level", has_scene_octree, "--broad-phase octree or automatic"},
+    {"scene_octree_expand_at", has_scene_octree, "--broad-phase octree or automatic"},
+    {"scene_octree_arity", has_scene_octree, "--broad-phase octree or automatic"},
+    {"min_separation", is_continuous, "--contacts continuous"},
+    {"undecided", is_continuous, "--contacts continuous"},
+    {"contact_points", [](const SceneOptions& scene) { return scene.contacts != ContactKinds::continuous; },
+     "--contacts intersection"},
+    {"colliding_vertices",
+     [](const SceneOptions& scene) { return scene.contacts != ContactKinds::continuous; },
+     "--contacts intersection or none"},
+};
+
+/// Every option of the detection; a page has a layer instead of `--colliding-vertices`.
+void add_detection_options(CLI::App& app, MethodOptions& options, Dependences& dependences,
+                           bool of_page = false) {
+  options.given_scene.for_each_setter([&]<class Struct, class Value>(const Field<Struct, Value>& field,
+                                                                     const Value& default_value, auto set) {
+    if (of_page && !viewer::is_setting(field) && !field.is_of_machine) return;
+    const bool is_method = std::is_same_v<Struct, SceneOctreeOptions> ||
+                           std::is_same_v<Value, BoundingVolume> || std::is_same_v<Value, SphereFit> ||
+                           std::is_same_v<Value, BroadPhaseMethod>;
+    CLI::Option* const option =
+        add_field(app, field, default_value, set)->group(is_method ? "Method" : "Detection");
+    for (const Need& need : needs_of_options) {
+      if (std::string_view(field.key) == need.key)
+        dependences.push_back({option, [&options, need] { return need.is_met(options.scene); }, need.text});
+    }
+  });
+  add_object_options(app, options.given_objects, true);
 }
 
-/// What reports of contacts have, and how they are checked.
 void add_report_options(CLI::App& app, DetectionOptions& options, Dependences& dependences) {
-  SceneOptions& scene = options.scene;
-  dependences.push_back({group_of_detection(app.add_flag_callback(
-                             "--no-contact-points", [&] { scene.contact_points = false; },
-                             "Leave out the points of each contact")),
-                         [&] { return scene.contacts != ContactKinds::continuous; },
-                         "--contacts intersection"});
-  dependences.push_back({group_of_detection(app.add_flag("--fail-on-contact", options.fail_on_contact,
-                                                         "Exit with status 1 when anything touches")),
-                         [&] { return scene.contacts != ContactKinds::none; },
-                         "--contacts intersection or continuous"});
-  dependences.push_back(
-      {group_of_detection(app.add_flag("--verify", options.verify,
-                                       "Check each frame against exact brute force over all pairs of "
-                                       "triangles, or of elements; differences exit with status 3")),
-       [&] { return scene.contacts != ContactKinds::none; }, "--contacts intersection or continuous"});
-}
-
-bool may_run_octree(BroadPhaseMethod method) {
-  return method == BroadPhaseMethod::octree || method == BroadPhaseMethod::automatic;
-}
-
-void add_method_options(CLI::App& app, MethodOptions& options, Dependences& dependences) {
-  SceneOptions& scene = options.scene;
-  const auto group = [](CLI::Option* option) { return option->group("Method"); };
-  const auto with_spheres = [&] { return scene.bounding_volume == BoundingVolume::sphere; };
-  group(add_choice<BoundingVolume>(app, "--bounding-volume", scene.bounding_volume,
-                                   {{"aabb", BoundingVolume::aabb}, {"sphere", BoundingVolume::sphere}},
-                                   "Shape that encloses objects and the nodes of their octrees"));
-  dependences.push_back(
-      {group(add_choice<SphereFit>(
-           app, "--sphere-fit", scene.comparison.sphere_fit,
-           {{"vertices", SphereFit::vertices}, {"box", SphereFit::box}},
-           "Spheres about the vertices, or as the paper's eq. 3 and 4, which miss contacts")),
-       with_spheres, "--bounding-volume sphere"});
-  group(add_choice<BroadPhaseMethod>(app, "--broad-phase", scene.broad_phase,
-                                     {{"automatic", BroadPhaseMethod::automatic},
-                                      {"octree", BroadPhaseMethod::octree},
-                                      {"grid", BroadPhaseMethod::grid},
-                                      {"sweep", BroadPhaseMethod::sweep},
-                                      {"brute", BroadPhaseMethod::brute}},
-                                     "How object pairs are found; all find the same"));
-  dependences.push_back({group(add_choice<RegionSphereTest>(
-                             app, "--region-test", scene.scene_octree.region_sphere_test,
-                             {{"arvo", RegionSphereTest::arvo}, {"grown-box", RegionSphereTest::grown_box}},
-                             "Region of the scene octree against a sphere: Arvo's test or the paper's")),
-                         [&, with_spheres] { return with_spheres() && may_run_octree(scene.broad_phase); },
-                         "--bounding-volume sphere and --broad-phase octree or automatic"});
-  for (CLI::Option* option : add_octree_options(app, options.max_level, options.leaf_size)) group(option);
-  const auto parse_arity = [&options](const std::string& given) {
-    if (given != "2" && given != "4" && given != "8")
-      throw CLI::ValidationError("--tree-arity", fmt::format("'{}' is not one of 8, 4, 2", given));
-    options.tree_arity = static_cast<std::uint32_t>(given.front() - '0');
-    // Callbacks run in the order of definition, so the broad phase is known here.
-    if (may_run_octree(options.scene.broad_phase)) options.scene.scene_octree.arity = *options.tree_arity;
+  const auto add = [&](const char* name, bool& value, const char* description) {
+    dependences.push_back({app.add_flag(name, value, description)->group("Detection"),
+                           [&options] { return options.scene.contacts != ContactKinds::none; },
+                           "--contacts intersection or continuous"});
   };
-  group(app.add_option_function<std::string>(
-               "--tree-arity", parse_arity,
-               "Children of a node, in the trees of objects and of the scene (default: 8)")
-            ->type_name("8|4|2"));
+  add("--fail-on-contact", options.fail_on_contact, "Exit with status 1 when anything touches");
+  add("--verify", options.verify,
+      "Check each frame against exact brute force over all pairs of triangles, or of elements; differences "
+      "exit with status 3");
 }
 
 void add_output_options(CLI::App& app, DetectionOptions& options, Dependences& dependences) {
@@ -273,15 +253,19 @@ void add_output_options(CLI::App& app, DetectionOptions& options, Dependences& d
        "contacts of one kind"});
   dependences.push_back({group(app.add_flag_callback(
                              "--no-stats", [&] { options.json_content.stats = false; },
-                             "Leave times and counts out of the JSON, so that equal results are "
+                             "Leave options, times and counts out of the JSON, so that equal results are "
                              "equal files")),
                          [&] { return !options.json.empty(); }, "--json"});
   dependences.push_back(
-      {group(app.add_flag(
-           "--contact-details", options.json_content.contact_details,
-           "Also write of each continuous contact the weights, the point and the normal to the JSON")),
-       [&] { return !options.json.empty() && contains(options.scene.contacts, ContactKinds::continuous); },
-       "--json and --contacts continuous"});
+      {group(app.add_flag("--contact-details", options.json_content.contact_details,
+                          "Also write each contact to the JSON: of triangles the kind and the points, of "
+                          "elements the barycentric coordinates, the point and the normal")),
+       [&] { return !options.json.empty() && options.scene.contacts != ContactKinds::none; },
+       "--json and contacts"});
+  dependences.push_back({group(app.add_flag("--faces", options.json_content.faces,
+                                            "Also write the three vertices of each triangle to the JSON; a "
+                                            "polygon is a fan of triangles around its first corner")),
+                         [&] { return !options.json.empty(); }, "--json"});
   group(app.add_flag("--quiet", options.quiet, "No tables and no progress"));
 }
 
@@ -290,33 +274,39 @@ CLI::App* add_detect(CLI::App& program, DetectOptions& options, Dependences& dep
       program.add_subcommand("detect", "Find every contact of static meshes, a sequence or a scene");
   app->footer(detect_footer);
   add_input_options(*app, options.inputs, options.sequence);
-  add_number(*app, "--steps", options.steps, 1, 1'000'000'000,
-             "Frames of a scene file to go through, or steps from frame to frame of continuous contacts "
-             "(default: 1)")
+  add_frames(*app, options.frames,
+             "Number of frames (default: all of a sequence, a recording or the files of a scene; of another "
+             "scene the first, or the first two with continuous contacts)")
       ->group("Input");
-  add_stage_options(*app, options, dependences);
+  add_detection_options(*app, options, dependences);
   add_report_options(*app, options, dependences);
-  add_method_options(*app, options, dependences);
   add_output_options(*app, options, dependences);
   return app;
 }
 
+/// What is given instead of the scene file's.
 void add_scene_overrides(CLI::App& app, std::optional<std::uint64_t>& seed,
                          std::optional<double>& time_step) {
-  add_seconds(app, "--time-step", time_step, "H", "Seconds of a step, instead of the scene's")
-      ->group("Simulation");
-  add_number(app, "--seed", seed, 0, std::numeric_limits<std::uint32_t>::max(),
-             "Chooses what is random, instead of the scene's")
-      ->group("Simulation");
+  for_each_field<SimulationOptions>([&]<class Value>(const Field<SimulationOptions, Value>& field) {
+    const auto add = [&](auto& given) {
+      add_field(app, field, Value{}, [&given](const Value& value) { given = value; })
+          ->group("Simulation")
+          ->description(std::string(field.doc) + "; instead of the scene file's");
+    };
+    if constexpr (std::is_same_v<Value, double>) add(time_step);
+    if constexpr (std::is_same_v<Value, std::uint64_t>) add(seed);
+  });
 }
 
 void add_simulation_options(CLI::App& app, SimulateOptions& options) {
   app.add_option("SCENE.toml", options.input, "A scene file")->required()->type_name("");
   const auto group = [](CLI::Option* option) { return option->group("Simulation"); };
-  CLI::Option* const steps = group(add_number(app, "--steps", options.steps, 1, 1'000'000'000,
-                                              "Steps to take (default: 300, without --seconds)"));
-  group(add_seconds(app, "--seconds", options.seconds, "S", "Simulated time, instead of steps"))
-      ->excludes(steps);
+  CLI::Option* const frames = group(add_frames(
+      app, options.frames, "Number of frames; the first is the start (default: 301, which are 300 steps)"));
+  group(add_real(
+            app, "--seconds", ValueRange::above(0), "s", [&](double seconds) { options.seconds = seconds; },
+            "Simulated time, instead of a number of frames"))
+      ->excludes(frames);
   add_scene_overrides(app, options.seed, options.time_step);
 }
 
@@ -325,9 +315,8 @@ CLI::App* add_simulate(CLI::App& program, SimulateOptions& options, Dependences&
       "simulate", "Let the objects of a scene move by themselves, and find every contact on the way");
   app->footer(simulate_footer);
   add_simulation_options(*app, options);
-  add_stage_options(*app, options, dependences);
+  add_detection_options(*app, options, dependences);
   add_report_options(*app, options, dependences);
-  add_method_options(*app, options, dependences);
   app->add_option("--record", options.record,
                   "Write positions, contacts, events and statistics of each frame as HDF5, and an XDMF file "
                   "beside it that ParaView opens")
@@ -343,14 +332,15 @@ CLI::App* add_view(CLI::App& program, ViewOptions& options, Dependences& depende
   app->footer(view_footer);
   add_input_options(*app, options.inputs, options.sequence);
   add_scene_overrides(*app, options.seed, options.time_step);
-  add_stage_options(*app, options, dependences);
-  add_method_options(*app, options, dependences);
+  add_detection_options(*app, options, dependences, true);
 
   const auto group = [](CLI::Option* option) { return option->group("Page"); };
   const auto is_served = [&] { return options.page_file.empty(); };
   const char* const no_export = "a page that is served, not written by --export";
-  dependences.push_back({group(add_number(*app, "--port", options.port, 0, 65535,
-                                          "Where to listen, 0 for any port that is free (default: 0)")),
+  dependences.push_back({group(add_whole(
+                             *app, "--port", ValueRange::from(0, 65535),
+                             [&](std::uint64_t port) { options.port = static_cast<std::uint16_t>(port); },
+                             "Where to listen, 0 for any port that is free (default: 0)")),
                          is_served, no_export});
   dependences.push_back(
       {group(app->add_option("--host", options.address,
@@ -373,7 +363,7 @@ CLI::App* add_info(CLI::App& program, InfoOptions& options) {
   CLI::App* app = program.add_subcommand("info", "Say what meshes are like, and the octrees built from them");
   app->footer(info_footer);
   app->add_option("MESH|SCENE.toml", options.inputs, "Meshes, or one scene file")->required()->type_name("");
-  add_octree_options(*app, options.max_level, options.leaf_size);
+  add_object_options(*app, options.given_objects, false);
   add_file(*app, "--json", options.json, "Write the same as JSON; - is standard output");
   return app;
 }
@@ -416,21 +406,65 @@ void add_diff(CLI::App& program, DiffOptions& options) {
       ->required()
       ->expected(2)
       ->type_name("");
-  add_length(*app, "--tolerance", options.tolerance,
-             "Coordinates may differ by so much, in their unit (default: 0, the same bits)");
+  add_real(
+      *app, "--tolerance", ValueRange::from(0), "length",
+      [&](double tolerance) { options.tolerance = tolerance; },
+      "Coordinates may differ by so much, in their unit (default: 0, the same bits)");
   add_file(*app, "--json", options.json, "Write the same as JSON; - is standard output");
   app->add_flag("--quiet", options.quiet, "Only the exit status");
 }
 
+/// The options of the detection: those of a recording, or the defaults, with those given in their place.
+void resolve(MethodOptions& options, const std::vector<std::string>& inputs) {
+  if (!inputs.empty() && is_recording(inputs.front()))
+    options.scene = Recording(inputs.front()).header().scene;
+  SceneOptions chosen = options.scene;
+  options.given_scene.apply_to(chosen);
+  // Recorded options of the scene octree go with a recorded method.
+  if (!has_scene_octree(chosen)) options.scene.scene_octree = {};
+  options.given_scene.apply_to(options.scene);
+}
+
 void check_outputs(const DetectionOptions& options) {
+  if (options.scene.comparison.colliding_vertices && options.json.empty())
+    throw CLI::ValidationError("--colliding-vertices", "has no effect without --json");
   if (options.json == "-" && options.csv == "-")
     throw CLI::ValidationError("--csv", "--json already writes to standard output; give one of them a file");
 }
 
+/// The commands of a program, or the options of a command.
+std::vector<std::string> names_in(const CLI::App& app, bool of_options) {
+  std::vector<std::string> names;
+  if (of_options) {
+    for (const CLI::Option* option : app.get_options()) {
+      for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+    }
+  } else {
+    for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
+      names.push_back(command->get_name());
+  }
+  return names;
+}
+
 int print_usage_error(const CLI::App& program, const CLI::ParseError& error) {
   const auto used = program.get_subcommands();
-  const std::string command = used.empty() ? "supple" : "supple " + used.front()->get_name();
-  fmt::print(stderr, "{}: {}; see {} --help\n", command, one_line(error.what()), command);
+  const CLI::App& app = used.empty() ? program : *used.front();
+  const std::string command = used.empty() ? "supple" : "supple " + app.get_name();
+  std::string message = one_line(error.what());
+  // The first word that was not expected; `--flag=value` is one.
+  if (const std::vector<std::string> unknown = app.remaining(true);
+      dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr && !unknown.empty()) {
+    const std::string word = one_line(unknown.front().substr(0, unknown.front().find('=')));
+    const bool is_option = word.starts_with('-');
+    message = fmt::format("{} {} is unknown",
+                          is_option      ? "option"
+                          : used.empty() ? "command"
+                                         : "argument",
+                          word);
+    if (const auto nearest = nearest_of(word, names_in(app, is_option)))
+      message += fmt::format("; did you mean {}?", *nearest);
+  }
+  fmt::print(stderr, "{}: {}; see {} --help\n", command, message, command);
   return exit_unusable;
 }
 
@@ -443,7 +477,8 @@ CommandLine parse_command_line(int argument_count, const char* const* arguments)
   program.set_version_flag("--version", "supple " SUPPLE_VERSION, "Print the version and exit");
   program.require_subcommand(0, 1);
   std::string document;
-  program.add_option("--generate", document, "Print a document made from these options: man or markdown")
+  program
+      .add_option("--generate", document, "Print a document made from these options: man, markdown or tables")
       ->group("");
 
   Dependences dependences;
@@ -461,6 +496,9 @@ CommandLine parse_command_line(int argument_count, const char* const* arguments)
       return result;
     }
     if (program.get_subcommands().empty()) throw CLI::RequiredError::Subcommand(1);
+    resolve(result.detect, result.detect.inputs);
+    resolve(result.simulate, {});
+    resolve(result.view, result.view.inputs);
     check(dependences);
     check_outputs(result.detect);
     check_outputs(result.simulate);

@@ -8,15 +8,16 @@
 #include "experiments/experiment.hpp"
 #include "json_report.hpp"
 #include "query_file.hpp"
-#include "supple/options.hpp"
+#include "session/overrides.hpp"
+#include "supple/option_descriptions.hpp"
 
 namespace supple::cli {
 
 /// What finds contacts, and how.
 struct MethodOptions {
-  SceneOptions scene;
-  bool self = false;
-  std::optional<std::uint32_t> max_level, leaf_size, tree_arity;
+  SceneOptions scene;  ///< those of the input, a recording, or the defaults, with those given in their place
+  viewer::Overrides<SceneOptions> given_scene;
+  viewer::Overrides<ObjectOptions> given_objects;  ///< of all objects
 };
 
 /// What finds contacts and reports them: of each command that does.
@@ -32,13 +33,13 @@ struct DetectionOptions : MethodOptions {
 struct DetectOptions : DetectionOptions {
   std::vector<std::string> inputs;  ///< meshes, patterns, or one scene file or recording
   bool sequence = false;            ///< the inputs are frames of one object
-  std::uint64_t steps = 1;          ///< of a scene file
+  std::optional<std::uint64_t> frames;
 };
 
 /// Of `supple simulate`.
 struct SimulateOptions : DetectionOptions {
   std::string input;  ///< a scene file
-  std::optional<std::uint64_t> steps;
+  std::optional<std::uint64_t> frames;
   std::optional<double> seconds;  ///< simulated; only one of the two is given
   std::optional<std::uint64_t> seed;
   std::optional<double> time_step;
@@ -60,7 +61,7 @@ struct ViewOptions : MethodOptions {
 /// Of `supple info`.
 struct InfoOptions {
   std::vector<std::string> inputs;
-  std::optional<std::uint32_t> max_level, leaf_size;
+  viewer::Overrides<ObjectOptions> given_objects;
   std::string json;
 };
 

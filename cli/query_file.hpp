@@ -8,10 +8,18 @@
 #include <vector>
 
 #include "supple/continuous.hpp"
+#include "supple/description.hpp"
 
 namespace supple::cli {
 
 enum class QueryKind : std::uint8_t { vertex_face, edge_edge };
+
+}  // namespace supple::cli
+
+template <>
+inline constexpr std::array supple::words<supple::cli::QueryKind>{"vertex-face", "edge-edge"};
+
+namespace supple::cli {
 
 /// Queries of one kind, and the answers to them where they are known.
 struct QueryFile {

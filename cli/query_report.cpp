@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "continuous_json.hpp"
+#include "supple/result_descriptions.hpp"
 #include "supple/version.hpp"
 #include "text.hpp"
 
@@ -55,7 +56,7 @@ void print_false(const QueryFileResult& file) {
 
 void print_differences(const QueryFileResult& file) {
   for (const QueryDifference& d : file.differences) {
-    fmt::print("{}: query {}: {}: {}, by algebra {}\n", one_line(file.path), d.query, name_of(d.fault),
+    fmt::print("{}: query {}: {}: {}, by algebra {}\n", one_line(file.path), d.query, word_of(d.fault),
                d.reported ? fmt::format("reported at {}", *d.reported) : "not reported",
                d.truth ? fmt::format("from {} to {}", d.truth->low, d.truth->high) : "no contact");
   }
@@ -96,7 +97,7 @@ void write_differences(JsonWriter& json, const std::vector<QueryDifference>& dif
   for (const QueryDifference& d : differences) {
     json.begin_object();
     json.member("query", d.query);
-    json.member("fault", std::string(name_of(d.fault)));
+    json.member("fault", word_of(d.fault));
     json.key("reported");
     write_time(json, d.reported);
     json.key("algebra");
@@ -112,10 +113,6 @@ void write_differences(JsonWriter& json, const std::vector<QueryDifference>& dif
 }
 
 }  // namespace
-
-const char* name_of(QueryKind kind) {
-  return kind == QueryKind::vertex_face ? "vertex-face" : "edge-edge";
-}
 
 void print_queries(const std::vector<QueryFileResult>& files, bool verified, bool list_false) {
   std::size_t width = 20;
@@ -156,7 +153,7 @@ QueryJsonReport::QueryJsonReport(const std::string& file_name, double min_separa
 void QueryJsonReport::add(const QueryFileResult& file) {
   json_.begin_object();
   json_.member("file", file.path);
-  json_.member("kind", std::string(name_of(file.kind)));
+  json_.member("kind", word_of(file.kind));
   json_.member("queries", std::uint64_t{file.times.size()});
   json_.member("touching", file.touching);
   json_.member("within_tolerance", file.within_tolerance);

@@ -34,8 +34,6 @@ struct QueryFileResult {
   std::uint64_t false_answers() const { return false_negatives.size() + false_positives.size(); }
 };
 
-const char* name_of(QueryKind kind);
-
 /// A table with a row a file and a row for all; then, with `list_false`, a line a query that was answered
 /// wrongly.
 void print_queries(const std::vector<QueryFileResult>& files, bool verified, bool list_false);

@@ -49,10 +49,9 @@ std::string describe(const Scene& scene, const ContinuousDifference& d) {
                      one_line(scene.name(d.object_b)), outcome_of(d.fault));
 }
 
-void print_difference(const Scene& scene, const std::string& noun, std::uint64_t frame,
-                      const VerifyReport& report) {
+void print_difference(const Scene& scene, std::uint64_t frame, const VerifyReport& report) {
   const bool continuous = !report.continuous_differences.empty();
-  fmt::print(stderr, "supple: verify: {} {} has {} from brute force; the first: {}\n", noun, frame,
+  fmt::print(stderr, "supple: verify: frame {} has {} from brute force; the first: {}\n", frame,
              counted(report.differences.size() + report.continuous_differences.size(), "difference"),
              continuous ? describe(scene, report.continuous_differences.front())
                         : describe(scene, report.differences.front()));
@@ -60,11 +59,11 @@ void print_difference(const Scene& scene, const std::string& noun, std::uint64_t
 
 }  // namespace
 
-Reports::Reports(const DetectionOptions& options, const Scene& scene, std::string noun)
-    : options_(options), scene_(scene), noun_(std::move(noun)) {
-  if (!options.json.empty()) json_.emplace(options.json, scene, options.json_content);
+Reports::Reports(const DetectionOptions& options, const Input& input, const Scene& scene, std::string noun)
+    : options_(options), scene_(scene) {
+  if (!options.json.empty()) json_.emplace(options.json, input, scene, options.json_content);
   if (!options.csv.empty()) csv_.emplace(options.csv, options.scene.contacts);
-  if (!options.quiet && options.json != "-" && options.csv != "-") text_.emplace(noun_);
+  if (!options.quiet && options.json != "-" && options.csv != "-") text_.emplace(std::move(noun));
 }
 
 void Reports::add(const Frame& frame) {
@@ -73,7 +72,7 @@ void Reports::add(const Frame& frame) {
   if (text_) text_->add(frame);
   touched_ = touched_ || !frame.result.groups.empty() || !frame.result.continuous_groups.empty();
   if (frame.verify && !frame.verify->agrees() && !std::exchange(differed_, true))
-    print_difference(scene_, noun_, frame.number, *frame.verify);
+    print_difference(scene_, frame.number, *frame.verify);
 }
 
 void Reports::finish() {

@@ -16,7 +16,7 @@ namespace supple::cli {
 class Reports {
  public:
   /// `noun` is what a frame is called in messages: `frame` or `step`.
-  Reports(const DetectionOptions& options, const Scene& scene, std::string noun);
+  Reports(const DetectionOptions& options, const Input& input, const Scene& scene, std::string noun);
 
   /// Tables may be left out: standard output belongs to something else, or --quiet.
   bool has_tables() const { return text_.has_value(); }
@@ -29,7 +29,6 @@ class Reports {
  private:
   const DetectionOptions& options_;
   const Scene& scene_;
-  std::string noun_;
   std::optional<JsonReport> json_;
   std::optional<CsvReport> csv_;
   std::optional<TextReport> text_;

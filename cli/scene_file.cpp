@@ -7,10 +7,10 @@
 #include <array>
 #include <fstream>
 #include <iterator>
-#include <limits>
 #include <map>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -19,6 +19,7 @@
 #include "supple/error.hpp"
 #include "supple/formats.hpp"
 #include "supple/models.hpp"
+#include "supple/simulation_descriptions.hpp"
 #include "text.hpp"
 #include "toml_reader.hpp"
 
@@ -26,8 +27,6 @@ namespace supple::cli {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr std::uint32_t most = std::numeric_limits<std::uint32_t>::max();
 
 std::string read_text(const fs::path& path) {
   std::ifstream stream(path, std::ios::binary);
@@ -74,8 +73,8 @@ TriangleMesh read_parametrised_model(TomlReader& reader, const std::string& name
     double major_radius = 0.5, minor_radius = 0.2;
     reader.read("rings", rings, 3, 1 << 16);
     reader.read("sides", sides, 3, 1 << 12);
-    reader.read_positive("major_radius", major_radius);
-    reader.read_positive("minor_radius", minor_radius);
+    reader.read("major_radius", major_radius, ValueRange::above(0));
+    reader.read("minor_radius", minor_radius, ValueRange::above(0));
     return make_torus(rings, sides, major_radius, minor_radius);
   }
   if (name == "box") {
@@ -89,8 +88,8 @@ TriangleMesh read_parametrised_model(TomlReader& reader, const std::string& name
     double width = 1, depth = 1;
     reader.read("columns", columns, 1, 1 << 14);
     reader.read("rows", rows, 1, 1 << 14);
-    reader.read_positive("width", width);
-    reader.read_positive("depth", depth);
+    reader.read("width", width, ValueRange::above(0));
+    reader.read("depth", depth, ValueRange::above(0));
     return make_cloth(columns, rows, width, depth);
   }
   reader.fail("model", fmt::format("there is no model '{}'; choose one of {}", name, available_models()));
@@ -133,13 +132,7 @@ Placement read_placement(TomlReader& reader) {
 
 ObjectOptions read_options(TomlReader& reader) {
   ObjectOptions options;
-  reader.read("name", options.name);
-  reader.read("self", options.self_collision);
-  reader.read("static", options.is_static);
-  reader.read("group", options.group, 0, most);
-  reader.read("mask", options.mask, 0, most);
-  reader.read("max_level", options.octree.max_level, 0, 32);
-  reader.read("leaf_size", options.octree.leaf_size, 1, most);
+  reader.read_options(options);
   return options;
 }
 
@@ -211,11 +204,10 @@ ContactResponse read_response(const toml::table& table, const fs::path& path) {
   TomlReader reader(path, table, "[scene]: response");
   ContactResponse response;
   response.enabled = true;
-  reader.read_positive("thickness", response.thickness);
-  reader.read_non_negative("restitution", response.restitution);
-  if (response.restitution > 1) reader.fail("restitution", "must be a number from 0 to 1");
-  reader.read_non_negative("friction", response.friction);
-  reader.read("iterations", response.iterations, 1, 1000);
+  // The table itself enables it.
+  for_each_field<ContactResponse>([&]<class Value>(const Field<ContactResponse, Value>& field) {
+    if constexpr (!std::is_same_v<Value, bool>) reader.read(field, response.*field.member);
+  });
   reader.finish();
   return response;
 }
@@ -224,8 +216,10 @@ ContactResponse read_response(const toml::table& table, const fs::path& path) {
 Vec3d read_scene(const toml::table& table, const fs::path& path, SimulationOptions& simulation) {
   TomlReader reader(path, table, "[scene]");
   if (reader.has("bounds")) reader.read_box("bounds", simulation.border.emplace(), false);
-  reader.read_positive("time_step", simulation.time_step);
-  reader.read("seed", simulation.seed);
+  for_each_field<SimulationOptions>([&](const auto& field) {
+    using Value = std::remove_cvref_t<decltype(simulation.*field.member)>;
+    if constexpr (!Described<Value>) reader.read(field, simulation.*field.member);
+  });
   Vec3d gravity;
   reader.read("gravity", gravity);
   if (const toml::table* response = reader.table("response"))

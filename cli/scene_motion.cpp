@@ -7,41 +7,10 @@
 #include <utility>
 
 #include "supple/error.hpp"
+#include "supple/simulation_descriptions.hpp"
 
 namespace supple::cli {
 namespace {
-
-WaveMotion read_sway(TomlReader& reader) {
-  WaveMotion motion;
-  reader.read("velocity", motion.velocity);
-  reader.read("amplitude", motion.amplitude);
-  reader.read_positive("wavelength", motion.wavelength);
-  reader.read_positive("period", motion.period);
-  reader.read("seed", motion.seed);
-  return motion;
-}
-
-MassSpringOptions read_springs(TomlReader& reader, Vec3d gravity) {
-  MassSpringOptions springs;
-  springs.gravity = gravity;
-  reader.read_choice<Integrator>("integrator", springs.integrator,
-                                 {{"verlet", Integrator::verlet},
-                                  {"symplectic_euler", Integrator::symplectic_euler},
-                                  {"backward_euler", Integrator::backward_euler}});
-  reader.read("substeps", springs.substeps, 1, 1'000'000);
-  reader.read_positive("mass", springs.vertex_mass);
-  reader.read_non_negative("stiffness", springs.stiffness);
-  reader.read_non_negative("damping", springs.damping);
-  reader.read_non_negative("air_friction", springs.air_friction);
-  reader.read_non_negative("bending_stiffness", springs.bending_stiffness);
-  reader.read_non_negative("area_stiffness", springs.area_stiffness);
-  reader.read_non_negative("volume_stiffness", springs.volume_stiffness);
-  reader.read("gravity", springs.gravity);
-  reader.read_positive("max_strain", springs.max_strain);
-  reader.read_non_negative("yield_strain", springs.yield_strain);
-  reader.read_positive("plastic_rate", springs.plastic_rate);
-  return springs;
-}
 
 bool holds(const Border& box, Vec3d p) {
   return p.x >= box[0].x && p.x <= box[1].x && p.y >= box[0].y && p.y <= box[1].y && p.z >= box[0].z &&
@@ -74,25 +43,24 @@ SceneMotion::SceneMotion(TomlReader& object, const std::filesystem::path& scene_
 }
 
 void SceneMotion::read_kind(TomlReader& reader, Vec3d gravity) {
-  enum class Kind { none, sway, mass_spring, frames };
-  Kind kind = Kind::none;
-  reader.read_choice<Kind>(
-      "kind", kind, {{"sway", Kind::sway}, {"mass_spring", Kind::mass_spring}, {"frames", Kind::frames}});
-  if (kind == Kind::none)
-    reader.fail("kind", "kind is missing; choose kind = \"sway\", \"mass_spring\" or \"frames\"");
-  if (kind == Kind::sway) motion_ = read_sway(reader);
-  if (kind == Kind::mass_spring) motion_ = read_mass_spring(reader, gravity);
-  if (kind == Kind::frames) motion_ = read_frames(reader);
+  std::string kind;
+  reader.read("kind", kind);
+  if (kind == "wave" || kind == "sway")  // the older word
+    reader.read_options(motion_.emplace().emplace<WaveMotion>());
+  else if (kind == "mass_spring")
+    motion_ = read_mass_spring(reader, gravity);
+  else if (kind == "frames")
+    motion_ = read_frames(reader);
+  else if (kind.empty())
+    reader.fail("kind", "kind is missing; choose kind = \"wave\", \"mass_spring\" or \"frames\"");
+  else
+    reader.fail("kind", fmt::format("'{}' is not one of wave, mass_spring, frames", kind));
 }
 
 MassSpringMotion SceneMotion::read_mass_spring(TomlReader& reader, Vec3d gravity) {
   MassSpringMotion motion;
-  motion.springs = read_springs(reader, gravity);
-  reader.read("velocity", motion.velocity);
-  reader.read_non_negative("random_speed", motion.random_speed);
-  reader.read_non_negative("random_force", motion.random_force);
-  reader.read_non_negative("deform_seconds", motion.deform_seconds);
-  if (reader.has("seed")) reader.read("seed", motion.seed.emplace());
+  motion.springs.gravity = gravity;
+  reader.read_options(motion);
   reader.read("fixed", fixed_);
   read_pulls(reader);
   return motion;
@@ -105,7 +73,7 @@ void SceneMotion::read_pulls(TomlReader& reader) {
     Pull& added = pulls_.emplace_back();
     pull.read_box("box", added.box, true);
     pull.read("by", added.by);
-    pull.read_positive("seconds", added.seconds);
+    pull.read("seconds", added.seconds, ValueRange::above(0));
     for (const char* key : {"box", "by"}) {
       if (!pull.has(key)) pull.fail(key, fmt::format("{} is missing; a pull is {{ box, by, seconds }}", key));
     }
@@ -134,7 +102,7 @@ std::optional<Motion> SceneMotion::of_copy(std::uint64_t copy, const Placement& 
                                            const std::vector<Vec3d>& positions) {
   if (!motion_) return std::nullopt;
   Motion motion = *motion_;
-  if (auto* sway = std::get_if<WaveMotion>(&motion)) sway->seed += copy;
+  if (auto* waves = std::get_if<WaveMotion>(&motion)) waves->seed += copy;
   if (auto* frames = std::get_if<FrameSequence>(&motion)) frames->placement = placement;
   if (auto* springs = std::get_if<MassSpringMotion>(&motion)) {
     if (springs->seed) *springs->seed += copy;

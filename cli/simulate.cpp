@@ -33,10 +33,10 @@ Input read_input(const SimulateOptions& options) {
   return read_objects({options.input}, {options.seed, options.time_step});
 }
 
-/// Steps that reach the time that was asked for, and end less than a step after it.
+/// Steps from the first frame to the last; they reach the given time and end less than a step after it.
 std::uint64_t count_steps(const SimulateOptions& options, double time_step) {
-  constexpr std::uint64_t default_steps = 300;
-  if (!options.seconds) return options.steps.value_or(default_steps);
+  constexpr std::uint64_t default_frames = 301;
+  if (!options.seconds) return options.frames.value_or(default_frames) - 1;
   const double steps = *options.seconds / time_step;
   if (steps > 1e9)
     throw Error(fmt::format("--seconds: {} are {:.3g} steps of {}; a thousand million are allowed",
@@ -52,8 +52,8 @@ class Run {
   Run(const SimulateOptions& options, const Input& input)
       : options_(options),
         steps_(count_steps(options, input.simulation.time_step)),
-        simulation_(build_simulation(input, options)),
-        reports_(options, simulation_.scene(), "frame"),
+        simulation_(build_simulation(input)),
+        reports_(options, input, simulation_.scene(), "frame"),
         recorder_(options.record, simulation_, input),
         energies_(simulation_) {}
 
@@ -139,7 +139,8 @@ int Run::status_of_interruption(int signal) const {
 }  // namespace
 
 int run_simulate(const SimulateOptions& options) {
-  const Input input = read_input(options);
+  Input input = read_input(options);
+  apply(options, input);
   return Run(options, input).go();
 }
 

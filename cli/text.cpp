@@ -2,7 +2,42 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
+#include <utility>
+
 namespace supple::cli {
+namespace {
+
+/// How many letters to insert, leave out, replace or swap with the next to make one word of the other.
+std::size_t edit_distance(const std::string& a, const std::string& b) {
+  std::vector<std::size_t> two_before, before, row(b.size() + 1);
+  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    two_before = std::exchange(before, row);
+    row[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      row[j] = std::min({before[j] + 1, row[j - 1] + 1, before[j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1)});
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
+        row[j] = std::min(row[j], two_before[j - 2] + 1);
+    }
+  }
+  return row.back();
+}
+
+}  // namespace
+
+std::optional<std::string> nearest_of(const std::string& mistyped, const std::vector<std::string>& words) {
+  std::optional<std::string> nearest;
+  std::size_t least = std::max<std::size_t>(2, mistyped.size() / 4) + 1;
+  for (const std::string& word : words) {
+    const std::size_t distance = edit_distance(mistyped, word);
+    if (distance >= least || distance >= word.size()) continue;
+    least = distance;
+    nearest = word;
+  }
+  return nearest;
+}
+
 std::string one_line(std::string text) {
   for (char& c : text) {
     if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = ' ';

@@ -2,7 +2,9 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "supple/scene.hpp"
 
@@ -17,6 +19,9 @@ inline constexpr std::size_t most_rows = 40;
 
 /// An object in a table: its number and name.
 std::string name_of(const Scene& scene, ObjectId object);
+
+/// The word that a mistyped one most likely stands for, or nothing when none is near.
+std::optional<std::string> nearest_of(const std::string& mistyped, const std::vector<std::string>& words);
 
 /// 1234567 as 1,234,567.
 std::string grouped(std::uint64_t number);

@@ -4,34 +4,22 @@
 
 #include <algorithm>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
+#include "supple/result_descriptions.hpp"
 #include "text.hpp"
 
 namespace supple::cli {
 namespace {
 
 void add_to(StepStats& sum, const StepStats& stats) {
-  sum.refit_seconds += stats.refit_seconds;
-  sum.broad_phase_seconds += stats.broad_phase_seconds;
-  sum.rebuild_seconds += stats.rebuild_seconds;
-  sum.traversal_seconds += stats.traversal_seconds;
-  sum.exact_seconds += stats.exact_seconds;
-  sum.sort_and_events_seconds += stats.sort_and_events_seconds;
-  sum.total_seconds += stats.total_seconds;
-  sum.triangles_refitted += stats.triangles_refitted;
-  sum.subtrees_rebuilt += stats.subtrees_rebuilt;
-  sum.triangles_rebuilt += stats.triangles_rebuilt;
-  sum.object_pairs_tested += stats.object_pairs_tested;
-  sum.object_pairs += stats.object_pairs;
-  sum.node_pairs_visited += stats.node_pairs_visited;
-  sum.boxes_tested += stats.boxes_tested;
-  sum.candidate_pairs += stats.candidate_pairs;
-  sum.vertex_face_candidates += stats.vertex_face_candidates;
-  sum.edge_edge_candidates += stats.edge_edge_candidates;
-  sum.exact_fallbacks += stats.exact_fallbacks;
-  sum.contacts += stats.contacts;
+  for_each_leaf(
+      [](const auto&, auto& total, const auto& value) {
+        if constexpr (std::is_arithmetic_v<std::remove_cvref_t<decltype(value)>>) total += value;
+      },
+      sum, stats);
 }
 
 }  // namespace
@@ -43,7 +31,9 @@ void TextReport::add(const Frame& frame) {
     PairSummary& pair = pairs_[{group.a, group.b}];
     ++pair.frames;
     pair.triangle_pairs += group.contact_count;
-    pair.most = std::max(pair.most, std::uint64_t{group.contact_count});
+    if (group.contact_count <= pair.most) continue;
+    pair.most = group.contact_count;
+    pair.frame_of_most = frame.number;
   }
   triangle_pairs_ += result.contacts.size();
   impacts_.add(frame);
@@ -96,12 +86,12 @@ void TextReport::print_pairs(const Scene& scene) const {
   const std::size_t left_out = rows.size() - std::min(rows.size(), most_rows);
   rows.resize(rows.size() - left_out);
 
-  fmt::print("{:<20} {:<20} {:>8} {:>16} {:>16}\n", "object", "touches", "frames", "triangle pairs",
-             "most in a frame");
+  fmt::print("{:<20} {:<20} {:>8} {:>16} {:>16} {:>12}\n", "object", "touches", "frames", "triangle pairs",
+             "most in a frame", "in frame");
   for (const auto& [pair, summary] : rows) {
-    fmt::print("{:<20} {:<20} {:>8} {:>16} {:>16}\n", name_of(scene, pair.a),
+    fmt::print("{:<20} {:<20} {:>8} {:>16} {:>16} {:>12}\n", name_of(scene, pair.a),
                pair.a == pair.b ? "itself" : name_of(scene, pair.b), grouped(summary.frames),
-               grouped(summary.triangle_pairs), grouped(summary.most));
+               grouped(summary.triangle_pairs), grouped(summary.most), summary.frame_of_most);
   }
   if (left_out > 0) fmt::print("and {} with fewer; --csv lists all\n", counted(left_out, "pair"));
   fmt::print("\n{} that intersect; pairs of objects began to touch {} and parted {}\n\n",

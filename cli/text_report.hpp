@@ -25,7 +25,8 @@ class TextReport {
   struct PairSummary {
     std::uint64_t frames = 0;
     std::uint64_t triangle_pairs = 0;
-    std::uint64_t most = 0;  ///< triangle pairs in one frame
+    std::uint64_t most = 0;           ///< triangle pairs in one frame
+    std::uint64_t frame_of_most = 0;  ///< the first frame with as many
   };
 
   void print_contacts(const Scene& scene) const;

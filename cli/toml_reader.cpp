@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "supple/error.hpp"
+#include "text.hpp"
 
 namespace supple::cli {
 
@@ -40,11 +41,11 @@ Vec3d TomlReader::point(const toml::node& node, const std::string& key, const ch
           number((*array)[2], key, expected)};
 }
 
-std::int64_t TomlReader::integer(const std::string& key, std::int64_t lowest, std::int64_t highest) {
+std::int64_t TomlReader::integer(const std::string& key, const ValueRange& range) {
   const toml::node& found = *node(key);
   const auto* value = found.as_integer();
-  if (!value || value->get() < lowest || value->get() > highest)
-    fail_at(found.source(), key, fmt::format("must be a whole number from {} to {}", lowest, highest));
+  if (!value || value->get() < 0 || !range.allows(static_cast<std::uint64_t>(value->get())))
+    fail_at(found.source(), key, "must be " + text_of(range, true));
   return value->get();
 }
 
@@ -66,23 +67,23 @@ void TomlReader::read(const std::string& key, double& value) {
   if (const toml::node* found = node(key)) value = number(*found, key, "a finite number");
 }
 
-void TomlReader::read_positive(const std::string& key, double& value) {
-  read(key, value);
-  if (has(key) && !(value > 0)) fail(key, "must be a number above 0");
+void TomlReader::read(const std::string& key, double& value, const ValueRange& range) {
+  const toml::node* found = node(key);
+  if (!found) return;
+  const std::string expected = text_of(range, false);
+  value = number(*found, key, expected.c_str());
+  if (!range.allows(value)) fail(key, "must be " + expected);
 }
 
-void TomlReader::read_non_negative(const std::string& key, double& value) {
-  read(key, value);
-  if (has(key) && !(value >= 0)) fail(key, "must be a number from 0 up");
-}
-
-std::size_t TomlReader::choice(const std::string& key, const std::vector<std::string>& words) {
-  if (!has(key)) return none_given;
+std::optional<std::size_t> TomlReader::read_word(const std::string& key,
+                                                 std::span<const char* const> choices) {
+  if (!has(key)) return std::nullopt;
   std::string given;
   read(key, given);
-  const auto found = std::find(words.begin(), words.end(), given);
-  if (found == words.end()) fail(key, fmt::format("'{}' is not one of {}", given, fmt::join(words, ", ")));
-  return static_cast<std::size_t>(found - words.begin());
+  const auto found = std::find(choices.begin(), choices.end(), given);
+  if (found == choices.end())
+    fail(key, fmt::format("'{}' is not one of {}", given, fmt::join(choices, ", ")));
+  return static_cast<std::size_t>(found - choices.begin());
 }
 
 void TomlReader::read(const std::string& key, std::array<std::uint32_t, 3>& value, std::uint32_t lowest,
@@ -106,11 +107,7 @@ void TomlReader::read(const std::string& key, Vec3d& value) {
 
 void TomlReader::read(const std::string& key, std::uint32_t& value, std::uint32_t lowest,
                       std::uint32_t highest) {
-  if (has(key)) value = static_cast<std::uint32_t>(integer(key, lowest, highest));
-}
-
-void TomlReader::read(const std::string& key, std::uint64_t& value) {
-  if (has(key)) value = static_cast<std::uint64_t>(integer(key, 0, std::numeric_limits<std::int64_t>::max()));
+  read_whole(key, value, ValueRange::from(lowest, highest));
 }
 
 std::array<Vec3d, 2> TomlReader::corners(const toml::node& node, const std::string& key, const char* expected,
@@ -158,9 +155,11 @@ std::vector<const toml::table*> TomlReader::tables(const std::string& key, const
 
 void TomlReader::finish() const {
   for (const auto& [key, value] : table_) {
-    if (std::find(known_.begin(), known_.end(), key.str()) == known_.end())
-      fail_at(key.source(), std::string(key.str()),
-              fmt::format("unknown key; allowed here: {}", fmt::join(known_, ", ")));
+    if (std::find(known_.begin(), known_.end(), key.str()) != known_.end()) continue;
+    const auto nearest = nearest_of(std::string(key.str()), known_);
+    fail_at(key.source(), std::string(key.str()),
+            fmt::format("unknown key{}; allowed here: {}",
+                        nearest ? fmt::format(", did you mean {}?", *nearest) : "", fmt::join(known_, ", ")));
   }
 }
 

@@ -3,12 +3,17 @@
 #include <toml++/toml.h>
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
+#include <span>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
+#include "supple/description.hpp"
 #include "supple/types.hpp"
 
 namespace supple::cli {
@@ -29,13 +34,16 @@ class TomlReader {
   void read(const std::string& key, double& value);
   void read(const std::string& key, Vec3d& value);
   void read(const std::string& key, std::uint32_t& value, std::uint32_t lowest, std::uint32_t highest);
-  void read(const std::string& key, std::uint64_t& value);
-  void read_positive(const std::string& key, double& value);
-  void read_non_negative(const std::string& key, double& value);
-  /// One of a few words.
-  template <class Value>
-  void read_choice(const std::string& key, Value& value,
-                   const std::vector<std::pair<std::string, Value>>& choices);
+  void read(const std::string& key, double& value, const ValueRange& range);
+  /// Returns the place of the word.
+  std::optional<std::size_t> read_word(const std::string& key, std::span<const char* const> choices);
+  /// An option by its key, as its description allows it.
+  template <class Struct, class Value>
+  void read(const Field<Struct, Value>& field, Value& value);
+  /// All options of a structure but those of the machine and those that are neither numbers, words, points
+  /// nor texts.
+  template <Described Options>
+  void read_options(Options& options);
   /// Three whole numbers.
   void read(const std::string& key, std::array<std::uint32_t, 3>& value, std::uint32_t lowest,
             std::uint32_t highest);
@@ -57,12 +65,13 @@ class TomlReader {
   const toml::node* node(const std::string& key);
   double number(const toml::node& node, const std::string& key, const char* expected) const;
   Vec3d point(const toml::node& node, const std::string& key, const char* expected) const;
-  std::int64_t integer(const std::string& key, std::int64_t lowest, std::int64_t highest);
+  std::int64_t integer(const std::string& key, const ValueRange& range);
+  template <class Whole>
+  void read_whole(const std::string& key, Whole& value, const ValueRange& range) {
+    if (has(key)) value = static_cast<Whole>(integer(key, range));
+  }
   std::array<Vec3d, 2> corners(const toml::node& node, const std::string& key, const char* expected,
                                bool may_be_flat) const;
-  /// Which of the words a key has; `none_given` when the key is absent.
-  std::size_t choice(const std::string& key, const std::vector<std::string>& words);
-  static constexpr std::size_t none_given = static_cast<std::size_t>(-1);
   [[noreturn]] void fail_at(const toml::source_region& place, const std::string& key,
                             const std::string& what) const;
 
@@ -72,12 +81,33 @@ class TomlReader {
   std::vector<std::string> known_;
 };
 
-template <class Value>
-void TomlReader::read_choice(const std::string& key, Value& value,
-                             const std::vector<std::pair<std::string, Value>>& choices) {
-  std::vector<std::string> words;
-  for (const auto& [word, meaning] : choices) words.push_back(word);
-  if (const std::size_t chosen = choice(key, words); chosen != none_given) value = choices[chosen].second;
+template <class Struct, class Value>
+void TomlReader::read(const Field<Struct, Value>& field, Value& value) {
+  if constexpr (Worded<Value>) {
+    if (const auto place = read_word(field.key, words<Value>)) value = static_cast<Value>(*place);
+  } else if constexpr (std::is_same_v<Value, bool>) {
+    if (!field.has_truth_words())
+      read(field.key, value);
+    else if (const auto place = read_word(field.key, field.truth_words))
+      value = *place == 1;
+  } else if constexpr (std::is_same_v<Value, double>) {
+    read(field.key, value, field.range);
+  } else if constexpr (std::is_unsigned_v<Value>) {
+    read_whole(field.key, value, field.range);
+  } else if constexpr (std::is_same_v<Value, std::optional<std::uint64_t>>) {
+    if (has(field.key)) read_whole(field.key, value.emplace(), field.range);
+  } else if constexpr (std::is_same_v<Value, Vec3d> || std::is_same_v<Value, std::string>) {
+    read(field.key, value);
+  }
+}
+
+template <Described Options>
+void TomlReader::read_options(Options& options) {
+  for_each_leaf(
+      [&](const auto& field, auto& value) {
+        if (!field.is_of_machine) read(field, value);
+      },
+      options);
 }
 
 }  // namespace supple::cli

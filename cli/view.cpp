@@ -10,6 +10,7 @@
 
 #include "browser.hpp"
 #include "build_scene_view.hpp"
+#include "build_simulation.hpp"
 #include "exit_status.hpp"
 #include "export/embedded.hpp"
 #include "export/page_file.hpp"
@@ -104,7 +105,9 @@ int serve(viewer::SceneView show, const ViewOptions& options) {
 
 int run_view(const ViewOptions& options) {
   check_build();
-  viewer::SceneView show = build_scene_view(read_input(options), options);
+  Input input = read_input(options);
+  apply(options, input);
+  viewer::SceneView show = build_scene_view(input, options);
   if (!options.page_file.empty()) return write_page(show, options);
   return serve(std::move(show), options);
 }

@@ -1,30 +1,25 @@
-// A simple response: each contact pushes the vertices of its two triangles apart along the contact normal,
-// until two soft spheres that overlap no longer touch.
+// A simple response: two spheres that overlap move apart along the mean normal of their contacts until they
+// no longer touch.
 #include <cstdio>
-#include <vector>
 
 #include "supple/models.hpp"
 #include "supple/supple.hpp"
 
 int main() {
   const supple::TriangleMesh sphere = supple::make_icosphere(8);
-  std::vector<supple::Vec3d> left = sphere.positions, right = sphere.positions;
-  for (supple::Vec3d& p : right) p += supple::Vec3d{1.95, 0.1, 0.05};
-
   supple::Scene scene;
-  const supple::ObjectId a = scene.add(left, sphere.triangles, {.name = "left"});
-  const supple::ObjectId b = scene.add(right, sphere.triangles, {.name = "right"});
+  const supple::ObjectId left = scene.add(sphere, {.name = "left"});
+  const supple::ObjectId right = scene.add(sphere, {.name = "right"});
+  scene.translate(right, {1.95, 0.1, 0.05});
 
   for (int round = 0; round < 100; ++round) {
-    scene.share_positions(a, left);
-    scene.share_positions(b, right);
     const supple::DetectResult& result = scene.detect();
-    if (round % 10 == 0 || result.contacts.empty())
-      std::printf("round %d: %zu contacts\n", round, result.contacts.size());
+    std::printf("round %d: %zu contacts\n", round, result.contacts.size());
     if (result.contacts.empty()) break;
-    for (const supple::Contact& c : result.contacts) {
-      for (const std::uint32_t v : scene.vertices_of(c, supple::ContactSide::a)) left[v] += 1e-3 * c.normal;
-      for (const std::uint32_t v : scene.vertices_of(c, supple::ContactSide::b)) right[v] -= 1e-3 * c.normal;
-    }
+    supple::Vec3d sum{};
+    for (const supple::Contact& c : result.contacts) sum += c.normal;
+    const supple::Vec3d normal = sum / norm(sum);
+    scene.translate(left, 0.005 * normal);
+    scene.translate(right, -0.005 * normal);
   }
 }

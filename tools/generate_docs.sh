@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Generates docs/supple.1 and docs/cli.md from the option definitions of the program.
+# Writes docs/supple.1, docs/cli.md and the tables of options and statistics in other documents (between lines
+# `<!-- begin NAME -->` and `<!-- end NAME -->`) from the program's own definitions.
 #
 # usage: generate_docs.sh [--check] PROGRAM
 #
@@ -18,7 +19,22 @@ fresh=$(mktemp -d)
 trap 'rm -rf "$fresh"' EXIT
 "$program" --generate man >"$fresh/supple.1"
 "$program" --generate markdown >"$fresh/cli.md"
-for document in supple.1 cli.md; do
+"$program" --generate tables >"$fresh/tables"
+# The lines of a document with those of each table in the place of the ones that are there.
+fill='
+  FILENAME == tables { if ($1 == "<!--" && $2 == "begin") name = $3; table[name] = table[name] $0 "\n"; next }
+  $1 == "<!--" && $2 == "begin" {
+    if (!($3 in table)) { print FILENAME ": there is no table " $3 > "/dev/stderr"; exit 1 }
+    printf "%s", table[$3]; inside = 1
+  }
+  !inside { print }
+  $1 == "<!--" && $2 == "end" { inside = 0 }
+'
+for document in $(grep -l '^<!-- begin ' "$docs"/*.md | xargs -r -n1 basename); do
+  awk -v tables="$fresh/tables" "$fill" "$fresh/tables" "$docs/$document" >"$fresh/$document"
+done
+rm "$fresh/tables"
+for document in $(ls "$fresh"); do
   if ! $check; then
     cp "$fresh/$document" "$docs/$document"
   elif ! diff -u "$docs/$document" "$fresh/$document" >&2; then

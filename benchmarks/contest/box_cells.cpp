@@ -33,6 +33,7 @@ void run_all(const Choice& choice, const BoxCell& cell, Output& output) {
   MovingBoxes field(cell.field, cell.count);
   Turns<MovingBoxes, BoxContestant> turns;
   turns.add("Supple", 1, make_supple_boxes(1), field);
+  turns.add("Supple octree", 1, make_supple_boxes(1, BroadPhaseMethod::octree), field);
   if (!choice.only_supple) {
     for (const auto& entry : other_box_contestants()) {
       if (cell.count <= entry.largest) turns.add(entry.name, 1, entry.make(), field);

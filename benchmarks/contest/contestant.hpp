@@ -81,7 +81,8 @@ std::vector<Entry<ClothContestant>> other_cloth_contestants();
 /// Libraries that were not found.
 std::vector<std::string> missing_libraries();
 
-std::unique_ptr<BoxContestant> make_supple_boxes(std::uint32_t threads);
+std::unique_ptr<BoxContestant> make_supple_boxes(std::uint32_t threads,
+                                                 BroadPhaseMethod method = BroadPhaseMethod::automatic);
 /// One thread; `moving` is the dirty list of every frame.
 std::unique_ptr<BoxContestant> make_supple_boxes_with_dirty_list(std::vector<std::uint32_t> moving);
 std::unique_ptr<CopiesContestant> make_supple_copies(std::uint32_t threads, bool contact_points = false);

@@ -8,8 +8,8 @@ namespace {
 
 class SuppleBoxes : public BoxContestant {
  public:
-  explicit SuppleBoxes(std::uint32_t threads)
-      : broad_phase_({.method = BroadPhaseMethod::automatic, .scene_octree = {}, .threads = threads}) {}
+  SuppleBoxes(std::uint32_t threads, BroadPhaseMethod method)
+      : broad_phase_({.method = method, .scene_octree = {}, .threads = threads}) {}
   void prepare(const MovingBoxes& field) override { frame(field); }
   void frame(const MovingBoxes& field) override { pairs_ = broad_phase_.find_object_pairs(field.boxes()); }
   PairDigest pairs() const override {
@@ -140,8 +140,8 @@ class SuppleCloth : public Contestant<ClothStep> {
 
 }  // namespace
 
-std::unique_ptr<BoxContestant> make_supple_boxes(std::uint32_t threads) {
-  return std::make_unique<SuppleBoxes>(threads);
+std::unique_ptr<BoxContestant> make_supple_boxes(std::uint32_t threads, BroadPhaseMethod method) {
+  return std::make_unique<SuppleBoxes>(threads, method);
 }
 
 std::unique_ptr<BoxContestant> make_supple_boxes_with_dirty_list(std::vector<std::uint32_t> moving) {

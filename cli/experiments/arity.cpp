@@ -51,7 +51,7 @@ std::vector<Case> cases(const ArityOptions& options) {
   return all;
 }
 
-/// Of one case with one arity: sums over its poses.
+/// Sums over the poses of one case with one arity.
 struct Sum {
   std::uint64_t nodes = 0, bytes = 0, tests = 0, node_pairs = 0;
   std::uint32_t depth = 0;

@@ -16,7 +16,7 @@ struct ExperimentOptions {
   /// Of `table1` none: one a core. Of the others none: one thread, so that times are work.
   std::optional<std::uint32_t> threads{};
   std::uint64_t seed = 1;
-  // Of table1; none: as --quick says.
+  // For table1; empty: as --quick says.
   std::optional<std::uint32_t> runs{};
   std::optional<std::uint32_t> simulated_seconds{};
   std::optional<std::uint32_t> wall_clock{};  ///< seconds a run; none: only by events

@@ -30,7 +30,7 @@ struct BroadPhaseStats {
   std::uint64_t objects_placed = 0;    ///< taken out of regions or put into others
   std::uint64_t regions_expanded = 0;  ///< groups of eight made
   std::uint64_t regions_reduced = 0;   ///< regions that became leaves again
-  std::uint64_t regions_rebuilt = 0;   ///< 1 when all regions were made anew
+  std::uint64_t regions_rebuilt = 0;   ///< 1 when all regions were rebuilt
 };
 
 struct BroadPhaseOptions {

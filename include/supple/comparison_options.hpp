@@ -49,12 +49,13 @@ struct ObjectOctreeOptions {
 /// Shape of the octree of the scene. The pairs found are the same for all values. Any value but the default
 /// is an `Error` when the broad phase is grid, sweep or brute.
 struct SceneOctreeOptions {
-  /// Depth at which regions no longer expand, 1 to 20; 0 chooses it from the number, the positions and the
-  /// sizes of the objects. It is smaller far from the origin, where floats cannot represent finer regions. It
-  /// counts levels of eight children for every arity, as `ObjectOctreeOptions::max_level` does.
+  /// Depth at which regions no longer expand, 1 to 20; 0 sets no other limit than 20. Far from the origin the
+  /// depth is less, because floats cannot represent finer regions there. It counts levels of eight children
+  /// for every arity, as `ObjectOctreeOptions::max_level` does.
   std::uint32_t max_level = 0;
-  /// A region expands when this many of its objects fit into regions of half its edge, ≥ 2 (the paper: 2).
-  std::uint32_t expand_at = 2;
+  /// A region expands when this many of its objects fit into regions of half its edge, ≥ 2; 0 chooses 2, as
+  /// in the paper, for up to 64 objects in the scene, and otherwise 96, which is faster.
+  std::uint32_t expand_at = 0;
   RegionSphereTest region_sphere_test = RegionSphereTest::arvo;
   /// Children of a region: 8, 4 or 2.
   std::uint32_t arity = 8;

@@ -74,7 +74,7 @@ struct TimeBracket {
 /// coefficients of any size. Shares no code with `first_impact` or `Scene::detect`, at any separation. Throws
 /// `Error` when `min_separation` is negative or not finite.
 ///
-/// Takes about 0.3 µs for most elements that stay apart, 0.1 to 1 ms for others, and seconds at worst when
+/// Takes about 0.5 µs for most elements that stay apart, 0.1 to 1 ms for others, and seconds or more when
 /// coordinates range from 1e-300 to 1e300. Always ends.
 std::optional<TimeBracket> first_contact_by_algebra(const VertexFaceMotion& motion,
                                                     double min_separation = 0);

@@ -29,7 +29,7 @@ enum class BroadPhaseMethod : std::uint8_t {
   /// The paper's incremental octree of regions. Best when few objects change, or when objects crowd in few
   /// places. It has regions to look at.
   octree,
-  /// A hierarchical grid that is made anew in each step with changes. Best when many objects change.
+  /// A hierarchical grid that is rebuilt in each step with changes. Best when many objects change.
   grid,
   sweep,  ///< sweep and prune along one axis
   brute,  ///< every object against every other

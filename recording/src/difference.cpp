@@ -2,19 +2,19 @@
 #include <cmath>
 #include <cstddef>
 #include <span>
-#include <string_view>
 #include <tuple>
 #include <type_traits>
 
-#include "layout.hpp"
 #include "supple/error.hpp"
+#include "supple/option_descriptions.hpp"
 #include "supple/recording.hpp"
+#include "supple/result_descriptions.hpp"
 #include "text.hpp"
 
 namespace supple {
 namespace {
 
-/// One line, or nothing when what was compared is equal.
+/// A sentence about a difference, or nothing when both are equal.
 using Line = std::optional<std::string>;
 
 std::string quoted(const std::string& text) {
@@ -38,7 +38,11 @@ requires std::is_integral_v<Value> std::string value_text(Value value) {
 }
 template <class Enum>
 requires std::is_enum_v<Enum> std::string value_text(Enum value) {
-  return std::to_string(static_cast<unsigned>(value));
+  if constexpr (Worded<Enum>) {
+    return quoted(word_of(value));
+  } else {
+    return std::to_string(static_cast<unsigned>(value));
+  }
 }
 template <class Scalar, std::size_t Count>
 std::string value_text(const std::array<Scalar, Count>& values) {
@@ -70,7 +74,20 @@ Line compare_exactly(const std::string& item, const Value& a, const Value& b) {
   return equal ? Line() : both(item, a, b);
 }
 
-/// The first of the lines that says something.
+/// Compares all options or statistics except those of the machine; an item is named `before + name + after`.
+template <Described Struct>
+Line compare_described(const std::string& before, const Struct& a, const Struct& b,
+                       const std::string& after = {}) {
+  Line line;
+  for_each_leaf(
+      [&](const auto& field, const auto& p, const auto& q) {
+        if (!line && !field.is_of_machine) line = compare_exactly(before + field.key + after, p, q);
+      },
+      a, b);
+  return line;
+}
+
+/// The first difference.
 template <class... Lines>
 Line first_of(Lines... compare) {
   Line line;
@@ -121,7 +138,7 @@ class Comparison {
   }
   std::string name(const ContinuousContact& c) const;
 
-  /// Lists in ascending order of `key`. `compare_rows` looks at two rows of equal keys.
+  /// Compares lists in ascending order of `key`. `compare_rows` compares two rows with equal keys.
   template <class Row, class Key, class CompareRows>
   Line lists(const std::string& item, const std::vector<Row>& a, const std::vector<Row>& b, Key key,
              CompareRows compare_rows) const;
@@ -178,31 +195,9 @@ std::string Comparison::name(const ContinuousContact& c) const {
 
 Line Comparison::headers() const {
   const RecordingHeader &a = a_.header(), &b = b_.header();
-  const SceneOptions &p = a.scene, &q = b.scene;
-  const auto choice = [](const char* item, const auto& words, auto x, auto y) {
-    return compare_exactly(item, std::string(words.at(static_cast<std::size_t>(x))),
-                           std::string(words.at(static_cast<std::size_t>(y))));
-  };
-  const std::array<Line, 13> lines{
-      objects(),
-      compare_exactly("time_step", a.time_step, b.time_step),
-      choice("contact_mode", choice_names::contacts, p.contacts, q.contacts),
-      compare_exactly("contact_points", p.contact_points, q.contact_points),
-      compare_exactly("colliding_vertices", p.comparison.colliding_vertices, q.comparison.colliding_vertices),
-      compare_exactly("min_separation", p.impact.min_separation, q.impact.min_separation),
-      compare_exactly("exact_impacts", p.impact.exact, q.impact.exact),
-      choice("bounding_volume", choice_names::bounding_volume, p.bounding_volume, q.bounding_volume),
-      choice("sphere_fit", choice_names::sphere_fit, p.comparison.sphere_fit, q.comparison.sphere_fit),
-      choice("broad_phase", choice_names::broad_phase, p.broad_phase, q.broad_phase),
-      choice("region_sphere_test", choice_names::region_sphere_test, p.scene_octree.region_sphere_test,
-             q.scene_octree.region_sphere_test),
-      compare_exactly("scene_octree_max_level", p.scene_octree.max_level, q.scene_octree.max_level),
-      compare_exactly("scene_octree_expand_at", p.scene_octree.expand_at, q.scene_octree.expand_at),
-  };
-  for (const Line& line : lines) {
-    if (line) return line;
-  }
-  return {};
+  return first_of([&] { return objects(); },
+                  [&] { return compare_exactly("time_step", a.time_step, b.time_step); },
+                  [&] { return compare_described("", a.scene, b.scene); });
 }
 
 Line Comparison::objects() const {
@@ -216,18 +211,11 @@ Line Comparison::objects() const {
 
 Line Comparison::object(std::size_t place) const {
   const RecordedObject &a = a_.header().objects[place], &b = b_.header().objects[place];
-  const ObjectOptions &p = a.options, &q = b.options;
   const std::string of = " of object " + std::to_string(place);
   const auto line = first_of(
-      [&] { return compare_exactly("name" + of, p.name, q.name); },
       [&] { return compare_exactly("id_index" + of, a.id.index, b.id.index); },
       [&] { return compare_exactly("id_generation" + of, a.id.generation, b.id.generation); },
-      [&] { return compare_exactly("self_collision" + of, p.self_collision, q.self_collision); },
-      [&] { return compare_exactly("is_static" + of, p.is_static, q.is_static); },
-      [&] { return compare_exactly("group" + of, p.group, q.group); },
-      [&] { return compare_exactly("mask" + of, p.mask, q.mask); },
-      [&] { return compare_exactly("octree_max_level" + of, p.octree.max_level, q.octree.max_level); },
-      [&] { return compare_exactly("octree_leaf_size" + of, p.octree.leaf_size, q.octree.leaf_size); },
+      [&] { return compare_described("", a.options, b.options, of); },
       [&] {
         return compare_exactly("number of vertices" + of, a.rest_positions.size(), b.rest_positions.size());
       },
@@ -302,19 +290,6 @@ Line Comparison::continuous_contacts(const RecordedFrame& a, const RecordedFrame
   return lists("continuous contact", a.continuous_contacts, b.continuous_contacts, key, compare_rows);
 }
 
-/// Counts of the work of a step, but for those that depend on the number of threads.
-Line compare_counts(const StepStats& a, const StepStats& b) {
-  for (const ColumnOf<StepStats>& column : columns_of<StepStats>()) {
-    const std::string_view name = column.name;
-    if (column.type != ScalarType::uint64 || name == "node_pairs_visited" || name == "boxes_tested") continue;
-    std::uint64_t p = 0, q = 0;
-    column.store(a, reinterpret_cast<std::byte*>(&p));
-    column.store(b, reinterpret_cast<std::byte*>(&q));
-    if (Line line = compare_exactly("statistics, " + std::string(name), p, q)) return line;
-  }
-  return {};
-}
-
 Line Comparison::frame(std::uint64_t number) const {
   const RecordedFrame a = a_.frame(number), b = b_.frame(number);
   if (Line line = compare_exactly("time", a.time, b.time)) return line;
@@ -332,7 +307,7 @@ Line Comparison::frame(std::uint64_t number) const {
                   [&] { return pairs("event volume_end", a.volume_end, b.volume_end); },
                   [&] { return pairs("event contact_begin", a.contact_begin, b.contact_begin); },
                   [&] { return pairs("event contact_end", a.contact_end, b.contact_end); },
-                  [&] { return compare_counts(a.stats, b.stats); });
+                  [&] { return compare_described("statistics, ", a.stats, b.stats); });
 }
 
 }  // namespace

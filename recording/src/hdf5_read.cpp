@@ -71,6 +71,14 @@ void InputFile::fail(const std::string& item, const std::string& what) const {
   throw Error(path_ + ": /" + item + ": " + what);
 }
 
+bool InputFile::has_attribute(const std::string& group, const char* name) const {
+  return H5Aexists_by_name(id(), group.c_str(), name, H5P_DEFAULT) > 0;
+}
+
+bool InputFile::has_dataset(const std::string& path) const {
+  return H5Lexists(id(), path.c_str(), H5P_DEFAULT) > 0;
+}
+
 bool InputFile::has_text(const std::string& group, const char* name) const {
   const AttributeHandle attribute(H5Aopen_by_name(id(), group.c_str(), name, H5P_DEFAULT, H5P_DEFAULT));
   if (!attribute) return false;

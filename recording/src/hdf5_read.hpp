@@ -21,6 +21,8 @@ class InputFile {
   const std::string& path() const { return path_; }
   std::uint64_t size() const { return size_; }
 
+  bool has_attribute(const std::string& group, const char* name) const;
+  bool has_dataset(const std::string& path) const;
   bool has_text(const std::string& group, const char* name) const;
   std::size_t count_links(const std::string& group) const;
   double number(const std::string& group, const char* name) const;

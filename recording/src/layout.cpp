@@ -1,5 +1,7 @@
 #include "layout.hpp"
 
+#include "supple/result_descriptions.hpp"
+
 namespace supple {
 
 template <>
@@ -85,52 +87,55 @@ const std::vector<ColumnOf<ContinuousContact>>& columns_of() {
 
 template <>
 const std::vector<ColumnOf<StepStats>>& columns_of() {
-  using Row = StepStats;
-  static const std::vector<ColumnOf<Row>> columns{
-      column<Row>(
-          "refit_seconds", [](auto& row) -> auto& { return row.refit_seconds; }),
-      column<Row>(
-          "broad_phase_seconds", [](auto& row) -> auto& { return row.broad_phase_seconds; }),
-      column<Row>(
-          "rebuild_seconds", [](auto& row) -> auto& { return row.rebuild_seconds; }),
-      column<Row>(
-          "traversal_seconds", [](auto& row) -> auto& { return row.traversal_seconds; }),
-      column<Row>(
-          "exact_seconds", [](auto& row) -> auto& { return row.exact_seconds; }),
-      column<Row>(
-          "sort_and_events_seconds", [](auto& row) -> auto& { return row.sort_and_events_seconds; }),
-      column<Row>(
-          "total_seconds", [](auto& row) -> auto& { return row.total_seconds; }),
-      column<Row>(
-          "broad_phase_method", [](auto& row) -> auto& { return row.broad_phase_method; }),
-      column<Row>(
-          "objects_refitted", [](auto& row) -> auto& { return row.objects_refitted; }),
-      column<Row>(
-          "triangles_refitted", [](auto& row) -> auto& { return row.triangles_refitted; }),
-      column<Row>(
-          "subtrees_rebuilt", [](auto& row) -> auto& { return row.subtrees_rebuilt; }),
-      column<Row>(
-          "triangles_rebuilt", [](auto& row) -> auto& { return row.triangles_rebuilt; }),
-      column<Row>(
-          "object_pairs_tested", [](auto& row) -> auto& { return row.object_pairs_tested; }),
-      column<Row>(
-          "object_pairs", [](auto& row) -> auto& { return row.object_pairs; }),
-      column<Row>(
-          "node_pairs_visited", [](auto& row) -> auto& { return row.node_pairs_visited; }),
-      column<Row>(
-          "boxes_tested", [](auto& row) -> auto& { return row.boxes_tested; }),
-      column<Row>(
-          "candidate_pairs", [](auto& row) -> auto& { return row.candidate_pairs; }),
-      column<Row>(
-          "vertex_face_candidates", [](auto& row) -> auto& { return row.vertex_face_candidates; }),
-      column<Row>(
-          "edge_edge_candidates", [](auto& row) -> auto& { return row.edge_edge_candidates; }),
-      column<Row>(
-          "exact_fallbacks", [](auto& row) -> auto& { return row.exact_fallbacks; }),
-      column<Row>(
-          "contacts", [](auto& row) -> auto& { return row.contacts; }),
-  };
+  static const std::vector<ColumnOf<StepStats>> columns = [] {
+    std::vector<ColumnOf<StepStats>> list;
+    for_each_field<StepStats>([&](const auto& field) {
+      list.push_back(column<StepStats>(
+          field.key, [&](auto& row) -> auto& { return row.*field.member; }));
+    });
+    return list;
+  }();
   return columns;
+}
+
+namespace {
+
+struct Renamed {
+  const char* now;
+  const char* in_version_1;
+};
+
+std::string old_name(const std::string& name, std::uint32_t version, std::span<const Renamed> renamed) {
+  if (version >= 2) return name;
+  for (const Renamed& one : renamed) {
+    if (name == one.now) return one.in_version_1;
+  }
+  return name;
+}
+
+}  // namespace
+
+std::string attribute_in_version(const std::string& name, std::uint32_t version) {
+  static constexpr Renamed renamed[] = {
+      {"contacts", "contact_mode"},
+      {"undecided", "exact_impacts"},
+      {"region_test", "region_sphere_test"},
+      {"self", "self_collision"},
+      {"static", "is_static"},
+      {"max_level", "octree_max_level"},
+      {"leaf_size", "octree_leaf_size"},
+  };
+  return old_name(name, version, renamed);
+}
+
+std::string column_in_version(const std::string& name, std::uint32_t version) {
+  static constexpr Renamed renamed[] = {
+      {"sort_and_events_seconds", "finish_seconds"},
+      {"toi", "time"},
+      {"barycentric_a", "weights_a"},
+      {"barycentric_b", "weights_b"},
+  };
+  return old_name(name, version, renamed);
 }
 
 }  // namespace supple

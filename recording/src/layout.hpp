@@ -19,7 +19,13 @@
 namespace supple {
 
 inline constexpr const char* format_name = "supple recording";
-inline constexpr std::uint32_t format_version = 1;
+inline constexpr std::uint32_t format_version = 2;
+/// The oldest version that is read. What it lacks has its default.
+inline constexpr std::uint32_t oldest_version = 1;
+
+// What an attribute or a column of this version is called in another one.
+std::string attribute_in_version(const std::string& name, std::uint32_t version);
+std::string column_in_version(const std::string& name, std::uint32_t version);
 
 enum class ScalarType : std::uint8_t { uint8, uint32, uint64, float64 };
 
@@ -68,21 +74,28 @@ struct ColumnOf {
   const char* name;
   ScalarType type;
   std::size_t width;
-  void (*store)(const Row& row, std::byte* to);
-  void (*load)(Row& row, const std::byte* from);
+  std::size_t offset;  ///< of the field in a row
 
   std::size_t bytes() const { return size_of(type) * width; }
+  void store(const Row& row, std::byte* to) const {
+    std::memcpy(to, reinterpret_cast<const std::byte*>(&row) + offset, bytes());
+  }
+  void load(Row& row, const std::byte* from) const {
+    std::memcpy(reinterpret_cast<std::byte*>(&row) + offset, from, bytes());
+  }
 };
 
-/// `Field` gives a reference to the field of a row.
+/// `field_of` gives a reference to the field of a row.
 template <class Row, class FieldOf>
-ColumnOf<Row> column(const char* name, FieldOf) {
+ColumnOf<Row> column(const char* name, FieldOf field_of) {
+  static_assert(std::is_trivially_copyable_v<Row>);
   using Field = std::remove_cvref_t<std::invoke_result_t<FieldOf, Row&>>;
   using Stored = Storage<Field>;
   static_assert(sizeof(Field) == size_of(Stored::type) * Stored::width);
+  Row row{};
+  const auto* const field = reinterpret_cast<const std::byte*>(&field_of(row));
   return {name, Stored::type, Stored::width,
-          [](const Row& row, std::byte* to) { std::memcpy(to, &FieldOf{}(row), sizeof(Field)); },
-          [](Row& row, const std::byte* from) { std::memcpy(&FieldOf{}(row), from, sizeof(Field)); }};
+          static_cast<std::size_t>(field - reinterpret_cast<const std::byte*>(&row))};
 }
 
 template <class Row>
@@ -100,15 +113,6 @@ inline constexpr const char* contact_begin = "events/contact_begin";
 inline constexpr const char* contact_end = "events/contact_end";
 inline constexpr const char* statistics = "statistics";  // one row a frame
 }  // namespace group_names
-
-/// Words for the choices that a recording names, in the order of their values.
-namespace choice_names {
-inline constexpr std::array contacts{"none", "intersection", "continuous", "intersection,continuous"};
-inline constexpr std::array bounding_volume{"aabb", "sphere"};
-inline constexpr std::array sphere_fit{"vertices", "box"};
-inline constexpr std::array broad_phase{"automatic", "octree", "grid", "sweep", "brute"};
-inline constexpr std::array region_sphere_test{"arvo", "grown_box"};
-}  // namespace choice_names
 
 inline std::string object_path(std::size_t place) {
   return "objects/" + std::to_string(place);

@@ -13,6 +13,7 @@
 #include "hdf5_write.hpp"
 #include "layout.hpp"
 #include "supple/error.hpp"
+#include "supple/option_descriptions.hpp"
 #include "supple/recording.hpp"
 #include "supple/version.hpp"
 #include "xdmf_file.hpp"
@@ -24,12 +25,12 @@ namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
 constexpr auto flush_interval = std::chrono::seconds(1);
-/// So much may wait in memory for the flush.
+/// The maximum number of bytes that wait for a flush.
 constexpr std::size_t most_pending_bytes = std::size_t{32} << 20;
 constexpr std::size_t frames_in_chunk = 1024;
 constexpr std::size_t rows_in_chunk = 4096;
 
-/// From the ids by which results name objects to their places in the file.
+/// Maps object ids of results to indices in the file.
 class Places {
  public:
   explicit Places(const std::vector<RecordedObject>& objects) {
@@ -94,7 +95,7 @@ void append_rows(std::vector<ColumnWriter>& columns, std::span<const Row> rows) 
   }
 }
 
-/// Rows of which each frame has any number, and where those of each frame end.
+/// A group with any number of rows per frame, and the end of each frame.
 template <class Row>
 class RaggedWriter {
  public:
@@ -119,27 +120,33 @@ class RaggedWriter {
   std::uint64_t rows_ = 0;
 };
 
+/// One attribute per option, except the options of the machine.
+template <class Options>
+void write_options(hid_t file, const std::string& group, const Options& options) {
+  for_each_leaf(
+      [&](const auto& field, const auto& value) {
+        using Value = std::remove_cvref_t<decltype(value)>;
+        if (field.is_of_machine) return;
+        if constexpr (Worded<Value>) {
+          write_attribute(file, group, field.key, std::string(word_of(value)));
+        } else {
+          if constexpr (std::is_same_v<Value, bool>) {
+            if (field.has_truth_words())
+              return write_attribute(file, group, field.key, std::string(field.truth_words[value ? 1 : 0]));
+          }
+          write_attribute(file, group, field.key, value);
+        }
+      },
+      options);
+}
+
 void write_header(hid_t file, const RecordingHeader& header) {
   const auto attribute = [file](const char* name, auto value) { write_attribute(file, "/", name, value); };
-  const auto choice = [&](const char* name, const auto& words, auto value) {
-    attribute(name, std::string(words.at(static_cast<std::size_t>(value))));
-  };
   attribute("format", std::string(format_name));
   attribute("version", format_version);
   attribute("program_version", std::string(SUPPLE_VERSION));
   attribute("time_step", header.time_step);
-  const SceneOptions& scene = header.scene;
-  choice("contact_mode", choice_names::contacts, scene.contacts);
-  attribute("contact_points", scene.contact_points);
-  attribute("colliding_vertices", scene.comparison.colliding_vertices);
-  attribute("min_separation", scene.impact.min_separation);
-  attribute("exact_impacts", scene.impact.exact);
-  choice("bounding_volume", choice_names::bounding_volume, scene.bounding_volume);
-  choice("sphere_fit", choice_names::sphere_fit, scene.comparison.sphere_fit);
-  choice("broad_phase", choice_names::broad_phase, scene.broad_phase);
-  choice("region_sphere_test", choice_names::region_sphere_test, scene.scene_octree.region_sphere_test);
-  attribute("scene_octree_max_level", scene.scene_octree.max_level);
-  attribute("scene_octree_expand_at", scene.scene_octree.expand_at);
+  write_options(file, "/", header.scene);
   write_text(file, "scene_file", header.scene_file);
 }
 
@@ -147,16 +154,9 @@ PositionsWriter write_object(hid_t file, std::size_t place, const RecordedObject
   const std::string path = object_path(place);
   create_group(file, path);
   const auto attribute = [&](const char* name, auto value) { write_attribute(file, path, name, value); };
-  const ObjectOptions& options = object.options;
-  attribute("name", options.name);
   attribute("id_index", object.id.index);
   attribute("id_generation", object.id.generation);
-  attribute("self_collision", options.self_collision);
-  attribute("is_static", options.is_static);
-  attribute("group", options.group);
-  attribute("mask", options.mask);
-  attribute("octree_max_level", options.octree.max_level);
-  attribute("octree_leaf_size", options.octree.leaf_size);
+  write_options(file, path, object.options);
   write_rows(file, path + "/rest_positions", ScalarType::float64, object.rest_positions.size(), 3,
              object.rest_positions.data());
   write_rows(file, path + "/triangles", ScalarType::uint32, object.triangles.size(), 3,
@@ -178,7 +178,7 @@ void check_header(const RecordingHeader& header) {
   }
 }
 
-/// The datasets of a file that grow, and what waits for them.
+/// The growing datasets of a file, and their unwritten rows.
 struct Datasets {
   Datasets(hid_t file, const RecordingHeader& header) {
     write_header(file, header);
@@ -194,7 +194,7 @@ struct Datasets {
                              group_names::contact_end})
       events.emplace_back(file, name);
     statistics = create_columns<StepStats>(file, group_names::statistics, frames_in_chunk);
-    // Created last and so made longer last: a frame is there when its time is.
+    // Created last, so it grows last: a frame exists when its time exists.
     time.emplace(file, "time", ScalarType::float64, 1, frames_in_chunk);
   }
 
@@ -234,7 +234,7 @@ void flush_file(hid_t file) {
               "; choose a file in a folder that exists and is yours");
 }
 
-/// Where the name leads: a link stays a link.
+/// Follows symbolic links, so that a link stays a link.
 fs::path final_path(const fs::path& path) {
   std::error_code error;
   if (!fs::exists(path, error)) return path;
@@ -297,7 +297,7 @@ class Recorder::Implementation {
   bool closed_ = false;
 };
 
-/// The rows of a frame, with places for ids.
+/// The rows of a frame, with indices instead of ids.
 struct Recorder::Implementation::Rows {
   Rows(const DetectResult& result, const Places& place_of)
       : object_pairs(with_places(result.object_pairs, place_of)),
@@ -330,8 +330,7 @@ Recorder::Implementation::Implementation(const fs::path& path, const RecordingHe
 }
 
 void Recorder::Implementation::create(const RecordingHeader& header) {
-  // Under another name until it says all that it says once: then it takes the place of the old one at a
-  // stroke.
+  // Written under another name until the header is complete; then it replaces the old file atomically.
   const fs::path draft = path_.string() + ".part";
   const int descriptor = open(draft.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
   if (descriptor < 0) fail_to_create(path_, errno);
@@ -424,7 +423,7 @@ void Recorder::Implementation::write_out() {
   flush_file(file_.id());
   flushed_frames_ = frames_;
   last_flush_ = Clock::now();
-  // After the numbers that it names.
+  // After the data that it refers to.
   xdmf_->write();
 }
 
@@ -459,7 +458,7 @@ void Recorder::Implementation::close() {
   closed_ = true;
   const QuietErrors quiet;
   datasets_.reset();
-  // All is flushed; this only says so.
+  // Everything is flushed already; this only reports errors of closing.
   if (!file_.reset()) throw Error(path_.string() + ": closing failed; check the disk and record again");
   xdmf_.reset();
 }

@@ -12,6 +12,8 @@
 #include "hdf5_write.hpp"
 #include "layout.hpp"
 #include "supple/error.hpp"
+#include "supple/option_descriptions.hpp"
+#include "supple/result_descriptions.hpp"
 #include "supple/version.hpp"
 #include "text.hpp"
 
@@ -20,45 +22,74 @@ namespace {
 
 constexpr const char* damaged = "; the file is damaged, record again";
 
-template <class Words>
-std::size_t read_choice(const InputFile& file, const char* name, const Words& words) {
-  const std::string word = file.text("/", name);
-  const auto found = std::find(words.begin(), words.end(), word);
-  if (found == words.end())
-    file.fail("", std::string("attribute ") + name + " is '" + word +
-                      "', which this program does not know; use the supple " + "that recorded it");
-  return static_cast<std::size_t>(found - words.begin());
+[[noreturn]] void fail_about(const InputFile& file, const std::string& group, const std::string& name,
+                             const std::string& value, const std::string& what) {
+  file.fail(group == "/" ? "" : group, "attribute " + name + " is " + value + what);
 }
 
-void check_format(const InputFile& file) {
+template <Worded Enum>
+void read_option(const InputFile& file, const std::string& group, const std::string& name, Enum& value) {
+  const std::string word = file.text(group, name.c_str());
+  const std::optional<Enum> found = value_of_word<Enum>(word);
+  if (!found)
+    fail_about(file, group, name, "'" + word + "'",
+               ", which this program does not know; use the supple that recorded it");
+  value = *found;
+}
+
+/// Version 1 stores truth values as numbers.
+void read_option(const InputFile& file, const std::string& group, const std::string& name, bool& value,
+                 const std::array<const char*, 2>& words, std::uint32_t version) {
+  if (words[0] == nullptr || version < 2) {
+    value = file.count(group, name.c_str(), 1) == 1;
+    return;
+  }
+  const std::string word = file.text(group, name.c_str());
+  if (word != words[0] && word != words[1])
+    fail_about(file, group, name, "'" + word + "'",
+               ", which this program does not know; use the supple that recorded it");
+  value = word == words[1];
+}
+
+template <class Options>
+void read_options(const InputFile& file, const std::string& group, std::uint32_t version, Options& options) {
+  for_each_leaf(
+      [&](const auto& field, auto& value) {
+        using Value = std::remove_cvref_t<decltype(value)>;
+        const std::string name = attribute_in_version(field.key, version);
+        if (field.is_of_machine || (version < format_version && !file.has_attribute(group, name.c_str())))
+          return;
+        if constexpr (std::is_same_v<Value, bool>) {
+          read_option(file, group, name, value, field.truth_words, version);
+        } else if constexpr (Worded<Value>) {
+          read_option(file, group, name, value);
+        } else if constexpr (std::is_same_v<Value, std::string>) {
+          value = file.text(group, name.c_str());
+        } else {
+          constexpr bool is_whole = std::is_integral_v<Value>;
+          if constexpr (is_whole)
+            value = file.count(group, name.c_str());
+          else
+            value = file.number(group, name.c_str());
+          if (!field.range.allows(value))
+            fail_about(file, group, name, to_text(static_cast<double>(value)),
+                       ", not " + text_of(field.range, is_whole) + "; record again");
+        }
+      },
+      options);
+}
+
+/// Returns the version.
+std::uint32_t check_format(const InputFile& file) {
   if (!file.has_text("/", "format") || file.text("/", "format") != format_name)
     throw Error(file.path() + ": is an HDF5 file, but no recording; make one with supple simulate --record");
   const std::uint32_t version = file.count("/", "version");
-  if (version != format_version)
+  if (version < oldest_version || version > format_version)
     throw Error(file.path() + ": is a recording of version " + std::to_string(version) +
-                ", supple " SUPPLE_VERSION " reads version " + std::to_string(format_version) +
-                "; read it with the supple that wrote it" +
+                ", supple " SUPPLE_VERSION " reads versions " + std::to_string(oldest_version) + " to " +
+                std::to_string(format_version) + "; read it with the supple that wrote it" +
                 (version > format_version ? ", or a newer one" : ""));
-}
-
-SceneOptions read_scene_options(const InputFile& file) {
-  SceneOptions scene;
-  scene.contacts = static_cast<ContactKinds>(read_choice(file, "contact_mode", choice_names::contacts));
-  scene.contact_points = file.count("/", "contact_points", 1) == 1;
-  scene.comparison.colliding_vertices = file.count("/", "colliding_vertices", 1) == 1;
-  scene.impact.min_separation = file.number("/", "min_separation");
-  scene.impact.exact = file.count("/", "exact_impacts", 1) == 1;
-  scene.bounding_volume =
-      static_cast<BoundingVolume>(read_choice(file, "bounding_volume", choice_names::bounding_volume));
-  scene.comparison.sphere_fit =
-      static_cast<SphereFit>(read_choice(file, "sphere_fit", choice_names::sphere_fit));
-  scene.broad_phase =
-      static_cast<BroadPhaseMethod>(read_choice(file, "broad_phase", choice_names::broad_phase));
-  scene.scene_octree.region_sphere_test = static_cast<RegionSphereTest>(
-      read_choice(file, "region_sphere_test", choice_names::region_sphere_test));
-  scene.scene_octree.max_level = file.count("/", "scene_octree_max_level");
-  scene.scene_octree.expand_at = file.count("/", "scene_octree_expand_at");
-  return scene;
+  return version;
 }
 
 template <class Element>
@@ -69,17 +100,11 @@ std::vector<Element> read_all(const InputFile& file, const std::string& path, Sc
   return elements;
 }
 
-RecordedObject read_object(const InputFile& file, std::size_t place) {
+RecordedObject read_object(const InputFile& file, std::uint32_t version, std::size_t place) {
   const std::string path = object_path(place);
   RecordedObject object{};
   object.id = {file.count(path, "id_index"), file.count(path, "id_generation")};
-  object.options.name = file.text(path, "name");
-  object.options.self_collision = file.count(path, "self_collision", 1) == 1;
-  object.options.is_static = file.count(path, "is_static", 1) == 1;
-  object.options.group = file.count(path, "group");
-  object.options.mask = file.count(path, "mask");
-  object.options.octree.max_level = file.count(path, "octree_max_level");
-  object.options.octree.leaf_size = file.count(path, "octree_leaf_size");
+  read_options(file, path, version, object.options);
   object.rest_positions = read_all<Vec3d>(file, path + "/rest_positions", ScalarType::float64);
   object.triangles = read_all<Triangle>(file, path + "/triangles", ScalarType::uint32);
   for (std::size_t t = 0; t < object.triangles.size(); ++t) {
@@ -93,27 +118,29 @@ RecordedObject read_object(const InputFile& file, std::size_t place) {
   return object;
 }
 
-RecordingHeader read_header(const InputFile& file) {
-  check_format(file);
+RecordingHeader read_header(const InputFile& file, std::uint32_t version) {
   RecordingHeader header;
   header.time_step = file.number("/", "time_step");
-  header.scene = read_scene_options(file);
+  read_options(file, "/", version, header.scene);
   header.scene_file = file.text_dataset("scene_file");
   const std::size_t count = file.count_links("objects");
-  for (std::size_t place = 0; place < count; ++place) header.objects.push_back(read_object(file, place));
+  for (std::size_t place = 0; place < count; ++place)
+    header.objects.push_back(read_object(file, version, place));
   return header;
 }
 
-/// The rows of one frame, of a group that has any number of rows a frame.
+/// The rows of one frame in a group with any number of rows per frame.
 template <class Row>
 class RaggedReader {
  public:
-  RaggedReader(const InputFile& file, const char* group, std::uint64_t frames)
+  RaggedReader(const InputFile& file, std::uint32_t version, const char* group, std::uint64_t frames)
       : file_(&file), end_(file, std::string(group) + "/end", ScalarType::uint64, {}) {
     for (const ColumnOf<Row>& column : columns_of<Row>()) {
       std::vector<hsize_t> row_shape;
       if (column.width > 1) row_shape.push_back(column.width);
-      columns_.emplace_back(file, std::string(group) + "/" + column.name, column.type, std::move(row_shape));
+      const std::string path = std::string(group) + "/" + column_in_version(column.name, version);
+      if (version < format_version && !file.has_dataset(path)) continue;
+      columns_.push_back({column, ColumnReader(file, path, column.type, std::move(row_shape))});
     }
     check_ends(frames);
   }
@@ -121,19 +148,18 @@ class RaggedReader {
   std::vector<Row> rows(std::uint64_t frame) {
     const std::uint64_t first = frame == 0 ? 0 : end_of(frame - 1);
     std::vector<Row> rows(end_of(frame) - first);
-    for (std::size_t c = 0; c < columns_.size(); ++c) {
-      const ColumnOf<Row>& column = columns_of<Row>()[c];
+    for (auto& [column, reader] : columns_) {
       bytes_.resize(rows.size() * column.bytes());
-      columns_[c].read(first, rows.size(), bytes_.data());
+      reader.read(first, rows.size(), bytes_.data());
       for (std::size_t i = 0; i < rows.size(); ++i) column.load(rows[i], bytes_.data() + i * column.bytes());
     }
     return rows;
   }
 
-  /// Of a row of the frame.
+  /// Reports a bad value in a row of the frame.
   [[noreturn]] void fail(std::uint64_t frame, std::size_t row, const char* column, std::uint64_t value,
                          std::uint64_t allowed) {
-    for (const ColumnReader& reader : columns_) {
+    for (const auto& [of, reader] : columns_) {
       if (!reader.path().ends_with(std::string("/") + column)) continue;
       file_->fail(reader.path(), "row " + std::to_string(row) + " of frame " + std::to_string(frame) +
                                      " is " + std::to_string(value) + ", not below " +
@@ -159,20 +185,24 @@ class RaggedReader {
                                      damaged);
       last = end;
     }
-    for (const ColumnReader& column : columns_) {
-      if (column.rows() < last)
-        file_->fail(column.path(), "has " + std::to_string(column.rows()) + " rows, the frames name " +
+    for (const auto& [of, reader] : columns_) {
+      if (reader.rows() < last)
+        file_->fail(reader.path(), "has " + std::to_string(reader.rows()) + " rows, the frames name " +
                                        std::to_string(last) + damaged);
     }
   }
 
   const InputFile* file_;
   ColumnReader end_;
-  std::vector<ColumnReader> columns_;
+  struct Column {
+    ColumnOf<Row> of;
+    ColumnReader reader;
+  };
+  std::vector<Column> columns_;  ///< the columns that the file has
   std::vector<std::byte> bytes_;
 };
 
-/// What HDF5 or the machine refuses becomes an `Error` that names the file.
+/// Turns errors of HDF5 and of the system into an `Error` that names the file.
 template <class Function>
 auto with_errors_of(const std::string& path, Function function) {
   const QuietErrors quiet;
@@ -218,8 +248,7 @@ class Recording::Implementation {
     if (value >= allowed) rows.fail(frame, row, column, value, allowed);
   }
 
-  /// A file names objects by their places in the recording. `check(number, row)` sees these; then they become
-  /// ids.
+  /// Files name objects by index. `check(number, row)` sees the indices; then they become ids.
   template <class Row, class Check>
   std::vector<Row> rows_of_objects(RaggedReader<Row>& reader, std::uint64_t frame, ObjectId Row::*object_a,
                                    ObjectId Row::*object_b, Check check) const {
@@ -237,6 +266,7 @@ class Recording::Implementation {
   }
 
   InputFile file_;
+  std::uint32_t version_;
   RecordingHeader header_;
   ColumnReader time_;
   RaggedReader<ObjectPair> object_pairs_;
@@ -244,31 +274,35 @@ class Recording::Implementation {
   RaggedReader<ContactPoint> contact_points_;
   RaggedReader<ContinuousContact> continuous_contacts_;
   RaggedReader<ObjectPair> volume_begin_, volume_end_, contact_begin_, contact_end_;
-  std::vector<ColumnReader> statistics_;
+  std::vector<std::optional<ColumnReader>> statistics_;  ///< in the order of `StepStats`
   std::vector<ColumnReader> positions_;
 };
 
 Recording::Implementation::Implementation(const std::string& path)
     : file_(path),
-      header_(read_header(file_)),
+      version_(check_format(file_)),
+      header_(read_header(file_, version_)),
       time_(file_, "time", ScalarType::float64, {}),
-      object_pairs_(file_, group_names::object_pairs, frame_count()),
-      contacts_(file_, group_names::contacts, frame_count()),
-      contact_points_(file_, group_names::contact_points, frame_count()),
-      continuous_contacts_(file_, group_names::continuous_contacts, frame_count()),
-      volume_begin_(file_, group_names::volume_begin, frame_count()),
-      volume_end_(file_, group_names::volume_end, frame_count()),
-      contact_begin_(file_, group_names::contact_begin, frame_count()),
-      contact_end_(file_, group_names::contact_end, frame_count()) {
+      object_pairs_(file_, version_, group_names::object_pairs, frame_count()),
+      contacts_(file_, version_, group_names::contacts, frame_count()),
+      contact_points_(file_, version_, group_names::contact_points, frame_count()),
+      continuous_contacts_(file_, version_, group_names::continuous_contacts, frame_count()),
+      volume_begin_(file_, version_, group_names::volume_begin, frame_count()),
+      volume_end_(file_, version_, group_names::volume_end, frame_count()),
+      contact_begin_(file_, version_, group_names::contact_begin, frame_count()),
+      contact_end_(file_, version_, group_names::contact_end, frame_count()) {
   const auto check_frames = [this](const ColumnReader& column, std::uint64_t needed) {
     if (column.rows() < needed)
       file_.fail(column.path(), "has " + std::to_string(column.rows()) + " frames, the recording has " +
                                     std::to_string(frame_count()) + damaged);
   };
   for (const ColumnOf<StepStats>& column : columns_of<StepStats>()) {
-    statistics_.emplace_back(file_, std::string(group_names::statistics) + "/" + column.name, column.type,
-                             std::vector<hsize_t>{});
-    check_frames(statistics_.back(), frame_count());
+    const std::string dataset =
+        std::string(group_names::statistics) + "/" + column_in_version(column.name, version_);
+    statistics_.emplace_back();
+    if (version_ < format_version && !file_.has_dataset(dataset)) continue;
+    statistics_.back().emplace(file_, dataset, column.type, std::vector<hsize_t>{});
+    check_frames(*statistics_.back(), frame_count());
   }
   for (std::size_t place = 0; place < header_.objects.size(); ++place) {
     const RecordedObject& object = header_.objects[place];
@@ -340,10 +374,22 @@ std::vector<ContinuousContact> Recording::Implementation::continuous_contacts(st
 StepStats Recording::Implementation::stats(std::uint64_t frame) {
   StepStats stats;
   for (std::size_t c = 0; c < statistics_.size(); ++c) {
+    if (!statistics_[c]) continue;
     std::array<std::byte, 8> bytes{};
-    statistics_[c].read(frame, 1, bytes.data());
+    statistics_[c]->read(frame, 1, bytes.data());
     columns_of<StepStats>()[c].load(stats, bytes.data());
   }
+  for_each_leaf(
+      [&](const auto& field, const auto& value) {
+        if constexpr (Worded<std::remove_cvref_t<decltype(value)>>) {
+          if (word_of(value) == nullptr)
+            file_.fail(std::string(group_names::statistics) + "/" + field.key,
+                       "row " + std::to_string(frame) + " is " +
+                           std::to_string(static_cast<unsigned>(value)) + ", not below " +
+                           std::to_string(words<std::remove_cvref_t<decltype(value)>>.size()) + damaged);
+        }
+      },
+      stats);
   return stats;
 }
 

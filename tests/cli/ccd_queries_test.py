@@ -242,7 +242,7 @@ class Format(Queries):
         self.expect(text, "--kind", "'face'", "vertex-face, edge-edge", arguments=("--kind", "face"))
         self.expect(text, "--min-separation", "'-1'", "finite number", arguments=("--min-separation", "-1"))
         self.expect(text, "--min-separation", "'nan'", arguments=("--min-separation", "nan"))
-        self.expect(text, "--undecided", "'maybe'", "exact, report", arguments=("--undecided", "maybe"))
+        self.expect(text, "--undecided", "'maybe'", "report, exact", arguments=("--undecided", "maybe"))
         self.expect(text, "--no-stats", "--json", arguments=("--no-stats",))
         self.expect(text, "--list-false", arguments=("--list-false", "--quiet"))
         self.expect(text, "/dev/full", "disk full", arguments=("--json", "/dev/full"))

@@ -32,7 +32,7 @@ class ContinuousTest(ProgramTest):
             self.write(f"{name}.obj", mesh)
             text += f'[[object]]\nmesh = "{name}.obj"\n'
             if velocity:
-                text += f'motion = {{ kind = "sway", velocity = {velocity}, amplitude = 0 }}\n'
+                text += f'motion = {{ kind = "wave", velocity = {velocity}, amplitude = 0 }}\n'
         self.write("scene.toml", text)
 
     def steps(self, *arguments):
@@ -52,9 +52,9 @@ class Json(ContinuousTest):
     def test_sequence(self):
         self.fall(FLOOR, SPIKE, 0, -2)
         result = self.detect("--sequence", "frame_?.obj", "--self", *CONTINUOUS)
-        self.assertEqual(result["objects"], [{"name": "frame_0", "vertices": 6, "triangles": 2}])
+        self.assertEqual([o["name"] for o in result["objects"]], ["frame_0"])
         (step,) = result["frames"]
-        keys = ["frame", "object_pairs", "continuous", "earliest", "events", "non_finite", "stats"]
+        keys = ["frame", "files", "object_pairs", "continuous", "earliest", "events", "non_finite", "stats"]
         self.assertEqual(list(step), keys)
         self.assert_groups(step, [{"a": 0, "b": 0, "vf": [[3, 0, 0.5]], "ee": []}])
         self.assertEqual(step["stats"]["contacts"], 1)
@@ -63,7 +63,8 @@ class Json(ContinuousTest):
     def test_sequence_is_tested_step_by_step(self):
         self.fall(FLOOR, SPIKE, 4, 1, -2, -30, -34)
         steps = self.steps("--sequence", "frame_?.obj", "--self")
-        self.assertEqual([s["frame"] for s in steps], [0, 1, 2, 3])
+        self.assertEqual([s["frame"] for s in steps], [1, 2, 3, 4])
+        self.assertEqual([s["files"][0]["file"] for s in steps], [f"frame_{k}.obj" for k in (1, 2, 3, 4)])
         self.assertEqual([len(s["continuous"]) for s in steps], [0, 1, 1, 0])
         self.assertEqual((steps[0]["earliest"], steps[3]["earliest"]), (None, None))
         for number, step in enumerate(steps):
@@ -92,13 +93,13 @@ class Json(ContinuousTest):
 
     def test_steps_of_a_scene_and_events(self):
         self.write_scene(("floor", FLOOR, None), ("spike", moved(SPIKE, 0, 0, 2), [0, 0, -2]))
-        steps = self.steps("scene.toml", "--steps", "6")
-        self.assertEqual([s["frame"] for s in steps], [0, 1, 2, 3, 4, 5])
+        steps = self.steps("scene.toml", "--frames", "7")
+        self.assertEqual([s["frame"] for s in steps], [1, 2, 3, 4, 5, 6])
         self.assert_groups(steps[1], [{"a": 0, "b": 1, "vf": [], "fv": [[0, 0, 0.5]], "ee": []}])
         touching = [s["frame"] for s in steps if s["continuous"]]
-        self.assertEqual(touching, [1, 3])  # the spike's upper vertices pass, at 3.5
-        self.assertEqual([s["frame"] for s in steps if s["events"]["contacts"]["begin"]], [1, 3])
-        self.assertEqual([s["frame"] for s in steps if s["events"]["contacts"]["end"]], [2, 4])
+        self.assertEqual(touching, [2, 4])  # the spike's upper vertices pass, at 3.5
+        self.assertEqual([s["frame"] for s in steps if s["events"]["contacts"]["begin"]], [2, 4])
+        self.assertEqual([s["frame"] for s in steps if s["events"]["contacts"]["end"]], [3, 5])
 
     def test_static_meshes_are_at_rest(self):
         self.write("a.obj", TRIANGLE)
@@ -115,7 +116,7 @@ class Json(ContinuousTest):
         self.write_scene(("floor", FLOOR, None), ("spike", SPIKE, [0, 0, -2]))
         (step,) = self.steps("scene.toml", "--contact-details")
         (contact,) = step["contacts"]
-        time, weights, point = contact.pop("time"), contact.pop("barycentric_a"), contact.pop("point")
+        time, weights, point = contact.pop("toi"), contact.pop("barycentric_a"), contact.pop("point")
         self.assertEqual(time, step["earliest"])
         for given, expected in zip(weights + point, [0.5, 0.25, 0.25, 1, 1, 0]):
             self.assertAlmostEqual(given, expected, delta=1e-8)
@@ -184,9 +185,9 @@ class Tables(ContinuousTest):
         done = self.run_here("detect", "scene.toml", *CONTINUOUS, "--csv", "-")
         self.assertEqual((done.status, done.error), (0, ""))
         header, *rows = done.out.splitlines()
-        self.assertEqual(header, "frame,a,b,kind,a0,a1,b0,b1,time,certainty")
+        self.assertEqual(header, "frame,a,b,kind,a0,a1,b0,b1,toi,certainty")
         columns = [row.split(",") for row in rows]
-        expected = ["0,0,1,fv,0,,0,,0.5,certain", "0,2,3,ee,0,1,0,1,0.25,certain"]
+        expected = ["1,0,1,fv,0,,0,,0.5,certain", "1,2,3,ee,0,1,0,1,0.25,certain"]
         self.assertEqual([",".join([*c[:8], str(round(float(c[8]) * 1024) / 1024), c[9]]) for c in columns], expected)
 
     def test_text(self):
@@ -194,7 +195,7 @@ class Tables(ContinuousTest):
         done = self.run_here("detect", "--sequence", "frame_?.obj", "--self", *CONTINUOUS)
         self.assertEqual((done.status, done.error), (0, ""))
         self.assertIn("1 object, 2 triangles, 2 steps\n", done.out)
-        self.assertRegex(done.out, r"(?m)^1 +1 +0 +0\.(5|49999999)\d*$")
+        self.assertRegex(done.out, r"(?m)^2 +1 +0 +0\.(5|49999999)\d*$")
         self.assertRegex(done.out, r"(?m)^0 frame_0 +itself +1 +1 +0$")
         done = self.run_here("detect", "--sequence", "frame_1.obj", "frame_1.obj", "--self", *CONTINUOUS)
         self.assertIn("Nothing touches.", done.out)
@@ -205,7 +206,7 @@ class SameBytes(ContinuousTest):
 
     def output(self, *arguments):
         scene = ROOT / "scenes/nine.toml"
-        done = self.run_here("detect", scene, "--steps", 12, "--self", "--json", "-", "--no-stats", *CONTINUOUS, *arguments)
+        done = self.run_here("detect", scene, "--frames", 13, "--self", "--json", "-", "--no-stats", *CONTINUOUS, *arguments)
         self.assertEqual((done.status, done.error), (0, ""))
         return done.out
 

@@ -8,10 +8,10 @@ import unittest
 
 from program import CROSSED, FAR, PROGRAM, ROOT, TRIANGLE, UPRIGHT, ProgramTest
 
-STATS = {
+STATS = {"broad_phase_method", 
     "refit_seconds", "broad_phase_seconds", "traversal_seconds", "exact_seconds", "sort_and_events_seconds", "total_seconds",
     "rebuild_seconds", "objects_refitted", "triangles_refitted", "subtrees_rebuilt", "triangles_rebuilt", "object_pairs_tested", "object_pairs", "node_pairs_visited",
-    "boxes_tested", "candidate_pairs", "vertex_face_candidates", "edge_edge_candidates", "exact_fallbacks", "contacts",
+    "broad_phase_method", "boxes_tested", "candidate_pairs", "vertex_face_candidates", "edge_edge_candidates", "exact_fallbacks", "contacts",
 }
 
 
@@ -24,8 +24,10 @@ class Json(ProgramTest):
             self.write(f"{name}.obj", mesh)
 
     def test_two_meshes(self):
-        result = self.detect("a.obj", "b.obj")
-        self.assertEqual(list(result), ["supple", "objects", "frames"])
+        result = self.detect("a.obj", "b.obj", "--contact-details")
+        self.assertEqual(list(result), ["supple", "options", "objects", "frames"])
+        for given in result["objects"]:
+            self.assertEqual(given.pop("options")["max_level"], 16)
         self.assertEqual(
             result["objects"],
             [{"name": "a", "vertices": 3, "triangles": 1}, {"name": "b", "vertices": 3, "triangles": 1}],
@@ -55,7 +57,7 @@ class Json(ProgramTest):
 
     def test_without_contact(self):
         (frame,) = self.detect("a.obj", "far.obj")["frames"]
-        for key in ("object_pairs", "triangle_pairs", "self", "contacts", "non_finite"):
+        for key in ("object_pairs", "triangle_pairs", "self", "non_finite"):
             self.assertEqual(frame[key], [], key)
 
     def test_self(self):
@@ -68,15 +70,30 @@ class Json(ProgramTest):
     def test_contacts_none_finds_object_pairs_only(self):
         (frame,) = self.detect("a.obj", "b.obj", "--contacts", "none")["frames"]
         self.assertEqual(frame["object_pairs"], [[0, 1]])
-        self.assertEqual((frame["triangle_pairs"], frame["contacts"]), ([], []))
+        self.assertEqual((frame["triangle_pairs"], frame["self"]), ([], []))
 
     def test_no_contact_points(self):
-        (frame,) = self.detect("a.obj", "b.obj", "--no-contact-points")["frames"]
+        (frame,) = self.detect("a.obj", "b.obj", "--no-contact-points", "--contact-details")["frames"]
         self.assertEqual(frame["contacts"], [{"a": 0, "b": 1, "triangles": [0, 0], "kind": "segment"}])
 
     def test_no_stats(self):
-        (frame,) = self.detect("a.obj", "b.obj", "--no-stats")["frames"]
-        self.assertNotIn("stats", frame)
+        result = self.detect("a.obj", "b.obj", "--no-stats")
+        self.assertNotIn("stats", result["frames"][0])
+        self.assertNotIn("options", result)
+        self.assertEqual(list(result["objects"][0]), ["name", "vertices", "triangles"])
+
+    def test_contacts_only_with_details(self):
+        (frame,) = self.detect("a.obj", "b.obj")["frames"]
+        self.assertNotIn("contacts", frame)
+
+    def test_faces(self):
+        self.write("quads.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nf 1 2 3 4\nf 2 1 5\n")
+        faces = self.detect("quads.obj", "--faces")["objects"][0]["faces"]
+        self.assertEqual(faces, [[0, 1, 2], [0, 2, 3], [1, 0, 4]])
+
+    def test_colliding_vertices(self):
+        (frame,) = self.detect("a.obj", "b.obj", "far.obj", "--colliding-vertices")["frames"]
+        self.assertEqual(frame["colliding_vertices"], [{"a": 0, "b": 1, "vertices_a": [0, 1, 2], "vertices_b": [0, 1, 2]}])
 
     def test_verify(self):
         (frame,) = self.detect("a.obj", "b.obj", "--verify")["frames"]
@@ -93,13 +110,13 @@ class Json(ProgramTest):
                 {"object": 0, "vertex": 2, "position": [0.0, 1.0, "-inf"]},
             ],
         )
-        self.assertEqual(frame["contacts"], [])
+        self.assertEqual(frame["triangle_pairs"], [])
 
     def test_numbers_read_back_to_the_same_bits(self):
         tip = (0.1, 1e-300, 123456789.12345679)
         self.write("tip.obj", ([tip, (1.0, 5.0, 123456789.5), (0.5, 5.0, 123456790.5)], [(0, 1, 2)]))
         self.write("other.obj", ([tip, (-1.0, -5.0, 0.0), (-1.0, -6.0, 0.5)], [(0, 1, 2)]))
-        (frame,) = self.detect("tip.obj", "other.obj")["frames"]
+        (frame,) = self.detect("tip.obj", "other.obj", "--contact-details")["frames"]
         (contact,) = frame["contacts"]
         self.assertEqual(contact["kind"], "point")
         self.assertEqual(contact["points"], [{"position": list(tip), "on_a": "v0", "on_b": "v0"}])
@@ -126,7 +143,7 @@ class Json(ProgramTest):
         arguments = ("a.obj", "b.obj", "crossed.obj", "--self")
         done = self.run_here("detect", *arguments, "--csv", "-")
         self.assertEqual((done.status, done.error), (0, ""))
-        (frame,) = self.detect(*arguments)["frames"]
+        (frame,) = self.detect(*arguments, "--contact-details")["frames"]
         rows = [f"0,{c['a']},{c['b']},{c['triangles'][0]},{c['triangles'][1]}" for c in frame["contacts"]]
         self.assertEqual(done.out.splitlines(), ["frame,a,b,i,j", *rows])
         self.assertIn("0,2,2,0,1", rows)
@@ -137,7 +154,7 @@ class SameBytes(ProgramTest):
 
     def output(self, *arguments):
         scene = ROOT / "scenes/nine.toml"
-        done = self.run_here("detect", scene, "--steps", 12, "--self", "--json", "-", "--no-stats", *arguments)
+        done = self.run_here("detect", scene, "--steps", 12, "--self", "--json", "-", "--no-stats", "--contact-details", *arguments)
         self.assertEqual((done.status, done.error), (0, ""))
         return done.out
 
@@ -169,25 +186,34 @@ class Sequence(ProgramTest):
             self.write(f"frame_{number}.obj", (CROSSED[0][:3] + moved, CROSSED[1]))
 
     def test_quoted_pattern_is_in_natural_order(self):
-        result = self.detect("--sequence", "frame_*.obj", "--self")
+        result = self.detect("--sequence", "frame_*.obj", "--self", "--contact-details")
         self.assertEqual([o["name"] for o in result["objects"]], ["frame_1"])
         self.assertEqual([f["frame"] for f in result["frames"]], [0, 1, 2, 3, 4])
-        singles = [self.detect(f"frame_{n}.obj", "--self")["frames"][0] for n in (1, 2, 9, 10, 11)]
+        singles = [self.detect(f"frame_{n}.obj", "--self", "--contact-details")["frames"][0] for n in (1, 2, 9, 10, 11)]
         for frame, single in zip(result["frames"], singles):
             for key in ("self", "contacts"):
                 self.assertEqual(frame[key], single[key])
+        files = [[f"frame_{n}.obj"] for n in (1, 2, 9, 10, 11)]
+        self.assertEqual([[o["file"] for o in frame["files"]] for frame in result["frames"]], files)
         self.assertNotEqual(result["frames"][0]["contacts"], result["frames"][2]["contacts"])
 
     def test_files_keep_their_order(self):
-        forward = self.detect("--sequence", "frame_1.obj", "frame_9.obj", "--self")["frames"]
-        backward = self.detect("--sequence", "frame_9.obj", "frame_1.obj", "--self")["frames"]
+        forward = self.detect("--sequence", "frame_1.obj", "frame_9.obj", "--self", "--contact-details")["frames"]
+        backward = self.detect("--sequence", "frame_9.obj", "frame_1.obj", "--self", "--contact-details")["frames"]
         self.assertEqual(forward[0]["contacts"], backward[1]["contacts"])
         self.assertEqual(forward[1]["contacts"], backward[0]["contacts"])
+
+    def test_number_of_frames(self):
+        for flag in ("--frames", "--steps"):
+            result = self.detect("--sequence", "frame_*.obj", flag, "3")
+            self.assertEqual([f["frame"] for f in result["frames"]], [0, 1, 2])
+        done = self.run_here("detect", "--sequence", "frame_*.obj", "--frames", "6")
+        self.assert_one_line_error(done, "--frames", "frame_1.obj has 5 frames")
 
     def test_other_counts_are_an_error(self):
         self.write("frame_12.obj", TRIANGLE)
         done = self.run_here("detect", "--quiet", "--sequence", "frame_*.obj")
-        self.assert_one_line_error(done, "frame_12.obj", "3 vertices", "6")
+        self.assert_one_line_error(done, "frame_12.obj", "3 vertices", "6", "scene file", 'kind = "frames"')
 
     def test_other_triangles_are_an_error(self):
         self.write("frame_12.obj", (CROSSED[0], [(0, 1, 2), (3, 5, 4)]))

@@ -31,7 +31,7 @@ class Documents(ProgramTest):
                 self.assertIn(flag, page)
 
     def test_unknown_document(self):
-        self.assert_one_line_error(run("--generate", "pdf"), "pdf", "man, markdown")
+        self.assert_one_line_error(run("--generate", "pdf"), "pdf", "man, markdown, tables")
 
     def test_example_of_the_scene_file_page_is_accepted(self):
         page = (ROOT / "docs/scene_file.md").read_text()
@@ -46,7 +46,7 @@ class Documents(ProgramTest):
             ("[scene]\nx = 1\n", r"allowed here: (.*?);? "),
             ("[[object]]\nmodel = 'box'\nx = 1\n", r"allowed here: (.*?)$"),
             ("[scene]\nresponse = {x = 1}\n", r"allowed here: (.*?)$"),
-            ("[[object]]\nmodel = 'box'\nmotion = {kind = 'sway', x = 1}\n", r"allowed here: (.*?)$"),
+            ("[[object]]\nmodel = 'box'\nmotion = {kind = 'wave', x = 1}\n", r"allowed here: (.*?)$"),
             ("[[object]]\nmodel = 'box'\nmotion = {kind = 'mass_spring', x = 1}\n", r"allowed here: (.*?)$"),
             ("[[object]]\nmotion = {kind = 'frames', files = 'x.toml', x = 1}\n", r"allowed here: (.*?)$"),
         ):

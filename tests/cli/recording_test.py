@@ -1,6 +1,7 @@
 """Recordings as others see them: a process that is killed leaves a whole file, h5py reads what docs/recording.md says,
 `supple detect` finds again what was recorded, `supple diff` tells what differs."""
 
+import gzip
 import importlib.util
 import json
 import os
@@ -266,8 +267,8 @@ class Document(RecordingTest):
         done = subprocess.run([sys.executable, "-c", example], cwd=self.folder, capture_output=True, text=True)
         self.assertEqual((done.returncode, done.stderr), (0, ""))
         lines = done.stdout.splitlines()
-        self.assertEqual(lines[0], "supple recording 1 intersection")
-        contacts = [len(f["contacts"]) for f in self.detect("run.h5")["frames"]]
+        self.assertEqual(lines[0], "supple recording 2 intersection")
+        contacts = [len(f["contacts"]) for f in self.detect("run.h5", "--contact-details")["frames"]]
         told = [int(line.split(" s: ")[1].split(" contacts")[0]) for line in lines[1:]]
         self.assertEqual(told, [count for count in contacts if count > 0])
         self.assertGreater(sum(told), 0)
@@ -300,7 +301,7 @@ class Detect(RecordingTest):
     @with_h5py
     def test_intersections(self):
         self.record("run.h5", 70)
-        frames = self.detect("run.h5", "--verify")["frames"]
+        frames = self.detect("run.h5", "--verify", "--contact-details")["frames"]
         self.assertEqual(len(frames), 70)
         total = 0
         with h5py.File(self.folder / "run.h5", "r") as file:
@@ -327,16 +328,16 @@ class Detect(RecordingTest):
     @with_h5py
     def test_continuous_contacts(self):
         self.record("run.h5", 70, "--contacts", "continuous")
-        steps = self.detect("run.h5", "--contacts", "continuous", "--contact-details", "--verify")["frames"]
+        steps = self.detect("run.h5", "--contact-details", "--verify")["frames"]
         self.assertEqual(len(steps), 69)
         total = 0
         with h5py.File(self.folder / "run.h5", "r") as file:
             for number, step in enumerate(steps):
                 self.assertEqual(step["verify"]["differences"], [])
-                columns = ("object_a", "object_b", "kind", "element_a", "element_b", "time", "point", "normal")
+                columns = ("object_a", "object_b", "kind", "element_a", "element_b", "toi", "point", "normal")
                 stored = self.recorded(file, number + 1, "continuous_contacts", *columns)
                 self.assertEqual([s[5:] for s in stored],
-                                 [(c["time"], c["point"], c["normal"]) for c in step["contacts"]])
+                                 [(c["toi"], c["point"], c["normal"]) for c in step["contacts"]])
                 total += len(stored)
         self.assertGreater(total, 1000)
 
@@ -362,11 +363,62 @@ class Detect(RecordingTest):
             (["one.h5", "--contacts", "continuous"], ["one.h5: one frame is no motion"]),
             (["one.h5", "a.obj"], ["one.h5: a recording stands alone"]),
             (["one.h5", "--sequence"], ["one.h5: a recording has its own frames; leave out --sequence"]),
-            (["one.h5", "--steps", "2"], ["--steps"]),
+            (["one.h5", "--frames", "2"], ["--frames", "one.h5 has 1 frame"]),
             (["missing.h5"], ["missing.h5: there is no such file"]),
         ):
             with self.subTest(arguments=arguments):
                 self.assert_one_line_error(self.run_here("detect", *arguments), *parts)
+
+
+class Version1(ProgramTest):
+    """A recording of `SCENE`, made by the last program that wrote version 1 of the format:
+    `simulate --steps 2 --contacts continuous --bounding-volume sphere --region-test grown-box --min-separation 0.001`."""
+
+    SCENE = """[scene]
+time_step = 0.25
+[[object]]
+name = "ball"
+model = "icosphere"
+frequency = 1
+max_level = 3
+leaf_size = 5
+motion = { kind = "wave", velocity = [2, 0, 0] }
+[[object]]
+name = "plate"
+model = "box"
+size = [0.5, 2, 2]
+translate = [1.75, 0, 0]
+static = true
+"""
+
+    def setUp(self):
+        super().setUp()
+        packed = (pathlib.Path(__file__).parent / "version_1.h5.gz").read_bytes()
+        (self.folder / "then.h5").write_bytes(gzip.decompress(packed))
+
+    def test_options_and_defaults(self):
+        result = self.detect("then.h5")
+        options = {"contacts": "continuous", "bounding_volume": "sphere", "region_test": "grown_box", "min_separation": 0.001,
+                   "undecided": "exact", "broad_phase": "octree", "scene_octree_arity": 8}
+        self.assertEqual({key: result["options"][key] for key in options}, options)
+        ball, plate = (each["options"] for each in result["objects"])
+        self.assertEqual((ball["max_level"], ball["leaf_size"], ball["object_octree"], ball["static"]), (3, 5, "balanced", False))
+        self.assertEqual((plate["max_level"], plate["leaf_size"], plate["tree_arity"], plate["static"]), (16, 64, 8, True))
+
+    def test_contacts(self):
+        self.write("scene.toml", self.SCENE)
+        done = self.run_here("simulate", "scene.toml", "--frames", "3", "--contacts", "continuous", "--min-separation", "0.001",
+                             "--bounding-volume", "sphere", "--broad-phase", "octree", "--region-test", "grown-box",
+                             "--quiet", "--record", "now.h5", "--json", "now.json", "--contact-details")
+        self.assertEqual((done.status, done.error), (0, ""))
+        frames = json.loads((self.folder / "now.json").read_text())["frames"]
+        again = self.detect("then.h5", "--contact-details")["frames"]
+        self.assertGreater(len(again[0]["contacts"]), 0)
+        self.assertEqual([f["contacts"] for f in again], [f["contacts"] for f in frames[1:]])
+        # Counts of work may change from one version of the program to the next.
+        done = self.run_here("diff", "then.h5", "now.h5", "--json", "-", "--quiet")
+        difference = json.loads(done.out)
+        self.assertTrue(difference["what"] is None or difference["what"].startswith("statistics"), difference)
 
 
 class Diff(RecordingTest):

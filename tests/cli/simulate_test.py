@@ -63,9 +63,10 @@ class Steps(SimulateTest):
         super().setUp()
         self.write("balls.toml", BALLS)
 
-    def test_steps_give_one_frame_more(self):
-        frames = self.simulate("balls.toml", "--steps", "7")["frames"]
+    def test_number_of_frames(self):
+        frames = self.simulate("balls.toml", "--frames", "8")["frames"]
         self.assertEqual([f["frame"] for f in frames], list(range(8)))
+        self.assertEqual(len(self.simulate("balls.toml", "--steps", "8")["frames"]), 8)
         for frame in frames:
             self.assertAlmostEqual(frame["time"], 0.02 * frame["frame"])
             self.assertIn("motion_seconds", frame["stats"])
@@ -79,27 +80,27 @@ class Steps(SimulateTest):
         self.assertEqual(len(frames), 21)
         self.assertAlmostEqual(frames[-1]["time"], 0.1)
 
-    def test_default_is_300_steps(self):
+    def test_default_is_301_frames(self):
         self.write("box.toml", f'[[object]]\nmodel = "box"\n{SPRINGS}')
         self.assertEqual(len(self.simulate("box.toml")["frames"]), 301)
 
     def test_frames_are_those_of_detect(self):
-        detected = self.detect("balls.toml", "--steps", "60")["frames"]
-        simulated = self.simulate("balls.toml", "--steps", "59")["frames"]
+        detected = self.detect("balls.toml", "--frames", "60", "--contact-details")["frames"]
+        simulated = self.simulate("balls.toml", "--frames", "60", "--contact-details")["frames"]
         self.assertTrue(any(f["contacts"] for f in detected))
         for a, b in zip(detected, simulated, strict=True):
             self.assertEqual((a["contacts"], a["events"]), (b["contacts"], b["events"]))
 
     def test_continuous_contacts_are_those_of_the_step_before(self):
-        detected = self.detect("balls.toml", "--steps", "60", "--contacts", "continuous")["frames"]
-        simulated = self.simulate("balls.toml", "--steps", "60", "--contacts", "continuous")["frames"]
+        detected = self.detect("balls.toml", "--frames", "61", "--contacts", "continuous")["frames"]
+        simulated = self.simulate("balls.toml", "--frames", "61", "--contacts", "continuous")["frames"]
         self.assertEqual(simulated[0]["continuous"], [])
         self.assertTrue(any(f["continuous"] for f in detected))
         for a, b in zip(detected, simulated[1:], strict=True):
             self.assertEqual(a["continuous"], b["continuous"])
 
     def test_tables(self):
-        done = self.run_here("simulate", "balls.toml", "--steps", "50")
+        done = self.run_here("simulate", "balls.toml", "--frames", "51")
         self.assertEqual((done.status, done.error), (0, ""))
         self.assertRegex(done.out, r"50 steps of 0.02 s: 1 s simulated in \S+ s, \S+ steps/s")
         self.assertRegex(done.out, r"collisions: [1-9]\d* times? .* volumes .*, [1-9]\d* times? .* touch")
@@ -113,18 +114,18 @@ class Steps(SimulateTest):
         self.assertLess(end, 60)
 
     def test_quiet(self):
-        done = self.run_here("simulate", "balls.toml", "--steps", "3", "--quiet")
+        done = self.run_here("simulate", "balls.toml", "--frames", "4", "--quiet")
         self.assertEqual((done.status, done.out, done.error), (0, "", ""))
 
     def test_fail_on_contact_and_verify(self):
-        self.assertEqual(self.run_here("simulate", "balls.toml", "--steps", "60", "--quiet", "--fail-on-contact").status, 1)
-        self.assertEqual(self.run_here("simulate", "balls.toml", "--steps", "3", "--quiet", "--fail-on-contact").status, 0)
+        self.assertEqual(self.run_here("simulate", "balls.toml", "--frames", "61", "--quiet", "--fail-on-contact").status, 1)
+        self.assertEqual(self.run_here("simulate", "balls.toml", "--frames", "4", "--quiet", "--fail-on-contact").status, 0)
         for contacts in ("intersection", "continuous"):
-            frames = self.simulate("balls.toml", "--steps", "45", "--verify", "--contacts", contacts)["frames"]
+            frames = self.simulate("balls.toml", "--frames", "46", "--verify", "--contacts", contacts)["frames"]
             self.assertEqual([f["verify"]["differences"] for f in frames[1:]], [[]] * 45)
 
     def test_csv(self):
-        done = self.run_here("simulate", "balls.toml", "--steps", "50", "--csv", "-")
+        done = self.run_here("simulate", "balls.toml", "--frames", "51", "--csv", "-")
         self.assertEqual((done.status, done.error), (0, ""))
         rows = done.out.splitlines()
         self.assertEqual(rows[0], "frame,a,b,i,j")
@@ -135,15 +136,15 @@ class SameBytes(SimulateTest):
     def setUp(self):
         super().setUp()
         self.write("balls.toml", BALLS)
-        self.expected = self.bytes_of("balls.toml", "--steps", "60", "--self")
+        self.expected = self.bytes_of("balls.toml", "--frames", "61", "--self", "--contact-details")
         self.assertIn('"segment"', self.expected)
 
     def test_again_and_on_any_number_of_threads(self):
         for arguments in ([], ["--threads", "1"], ["--threads", "2"], ["--threads", "5"], ["--seed", "3"]):
-            self.assertEqual(self.bytes_of("balls.toml", "--steps", "60", "--self", *arguments), self.expected)
+            self.assertEqual(self.bytes_of("balls.toml", "--frames", "61", "--self", "--contact-details", *arguments), self.expected)
 
     def test_another_seed_differs(self):
-        self.assertNotEqual(self.bytes_of("balls.toml", "--steps", "60", "--self", "--seed", "4"), self.expected)
+        self.assertNotEqual(self.bytes_of("balls.toml", "--frames", "61", "--self", "--seed", "4"), self.expected)
 
 
 class Recorded(SimulateTest):
@@ -175,24 +176,24 @@ class Recorded(SimulateTest):
         self.fail(done.error)
 
     def test_frames(self):
-        done = self.run_here("simulate", "balls.toml", "--steps", "12", "--record", "run.h5", "--quiet")
+        done = self.run_here("simulate", "balls.toml", "--frames", "13", "--record", "run.h5", "--quiet")
         self.assertEqual((done.status, done.out, done.error), (0, "", ""))
         self.assertEqual(self.frame_count(), 13)
         self.assertTrue((self.folder / "run.xdmf").exists())
 
     def test_redetecting_gives_the_same_contacts(self):
-        simulated = self.simulate("balls.toml", "--steps", "50", "--record", "run.h5")["frames"]
-        detected = self.detect("run.h5")["frames"]
+        simulated = self.simulate("balls.toml", "--frames", "51", "--record", "run.h5", "--contact-details")["frames"]
+        detected = self.detect("run.h5", "--contact-details")["frames"]
         self.assertTrue(any(f["contacts"] for f in simulated))
         self.assertEqual([f["contacts"] for f in detected], [f["contacts"] for f in simulated])
 
     def test_the_scene_file_is_in_it(self):
-        self.run_here("simulate", "balls.toml", "--steps", "1", "--record", "run.h5", "--quiet")
+        self.run_here("simulate", "balls.toml", "--frames", "2", "--record", "run.h5", "--quiet")
         self.assertIn(BALLS.encode(), (self.folder / "run.h5").read_bytes())
 
     def test_blow_up_keeps_the_last_good_state(self):
         self.write("stiff.toml", BLOWS_UP)
-        done = self.run_here("simulate", "stiff.toml", "--steps", "1000", "--record", "run.h5", "--quiet")
+        done = self.run_here("simulate", "stiff.toml", "--frames", "1001", "--record", "run.h5", "--quiet")
         self.assertEqual(done.status, 2)
         warning, error = done.error.splitlines()
         self.assertRegex(warning, r"^supple: warning: stiff\.toml: time_step 0\.05 .*stiff.*substeps = \d+.*backward_euler")
@@ -202,12 +203,12 @@ class Recorded(SimulateTest):
 
     def test_interrupted(self):
         for number, status in ((signal.SIGINT, 130), (signal.SIGTERM, 143)):
-            process = self.start("balls.toml", "--steps", "1000000000", "--record", "run.h5", "--json", "run.json")
+            process = self.start("balls.toml", "--frames", "1000000000", "--record", "run.h5", "--json", "run.json")
             self.wait_for_frames()
             process.send_signal(number)
             out, error = process.communicate()
             self.assertEqual(process.returncode, status, error)
-            step, frames = re.search(r"^supple: interrupted after step (\d+) of 1000000000, .* run\.h5 has ([\d,]+) frames\n$", error).groups()
+            step, frames = re.search(r"^supple: interrupted after step (\d+) of 999999999, .* run\.h5 has ([\d,]+) frames\n$", error).groups()
             self.assertEqual(int(frames.replace(",", "")), int(step) + 1)
             self.assertEqual(self.frame_count(), int(step) + 1)
             self.assertEqual(len(json.loads((self.folder / "run.json").read_text())["frames"]), int(step) + 1)
@@ -215,7 +216,7 @@ class Recorded(SimulateTest):
             (self.folder / "run.h5").unlink()
 
     def test_killed(self):
-        process = self.start("balls.toml", "--steps", "1000000000", "--record", "run.h5", "--quiet")
+        process = self.start("balls.toml", "--frames", "1000000000", "--record", "run.h5", "--quiet")
         self.wait_for_frames()
         process.kill()
         process.communicate()
@@ -228,7 +229,7 @@ class Recorded(SimulateTest):
 class Ends(SimulateTest):
     def test_blow_up(self):
         self.write("stiff.toml", BLOWS_UP)
-        done = self.run_here("simulate", "stiff.toml", "--steps", "1000", "--json", "run.json")
+        done = self.run_here("simulate", "stiff.toml", "--frames", "1001", "--json", "run.json")
         self.assertEqual(done.status, 2)
         self.assertIn("stiff in step", done.error)
         frames = json.loads((self.folder / "run.json").read_text())["frames"]
@@ -241,7 +242,7 @@ class Ends(SimulateTest):
 
     def test_implicit_needs_no_warning(self):
         self.write("stiff.toml", BLOWS_UP.replace("stiffness = 1e5", 'stiffness = 1e5, integrator = "backward_euler"'))
-        done = self.run_here("simulate", "stiff.toml", "--steps", "20", "--quiet")
+        done = self.run_here("simulate", "stiff.toml", "--frames", "21", "--quiet")
         self.assertEqual((done.status, done.error), (0, ""))
 
     def test_progress_on_a_terminal(self):
@@ -251,13 +252,13 @@ class Ends(SimulateTest):
             self.skipTest(f"no terminal to be had: {error}")
         self.addCleanup(os.close, terminal)
         self.write("balls.toml", BALLS)
-        process = subprocess.Popen([PROGRAM, "simulate", self.folder / "balls.toml", "--steps", "1000000000"],
+        process = subprocess.Popen([PROGRAM, "simulate", self.folder / "balls.toml", "--frames", "1000000000"],
                                    stdout=subprocess.DEVNULL, stderr=its_side)
         self.addCleanup(process.wait)
         self.addCleanup(process.kill)
         os.close(its_side)
         self.assertRegex(os.read(terminal, 200).decode(),
-                         r"^\r\[[#.]+\] step \d+ of 1000000000, [\d.]+ steps/s, (\d+:\d\d(:\d\d)?|\d+ days) left")
+                         r"^\r\[[#.]+\] step \d+ of 999999999, [\d.]+ steps/s, (\d+:\d\d(:\d\d)?|\d+ days) left")
 
     def test_usage(self):
         self.write("box.toml", '[[object]]\nmodel = "box"\n')
@@ -266,11 +267,11 @@ class Ends(SimulateTest):
             ([], ["required"]),
             (["a.obj"], ["a.obj", "scene file"]),
             (["none.toml"], ["none.toml", "cannot read"]),
-            (["box.toml", "--steps", "0"], ["--steps", "'0'"]),
+            (["box.toml", "--frames", "0"], ["--frames", "'0'"]),
             (["box.toml", "--seconds", "0"], ["--seconds", "'0'", "above 0"]),
             (["box.toml", "--seconds", "1e30"], ["--seconds", "allowed"]),
             (["box.toml", "--time-step", "-1"], ["--time-step", "'-1'", "above 0"]),
-            (["box.toml", "--steps", "2", "--seconds", "2"], ["--seconds", "--steps"]),
+            (["box.toml", "--frames", "3", "--seconds", "2"], ["--seconds", "--frames"]),
             (["box.toml", "--seed", "-1"], ["--seed", "'-1'"]),
             (["box.toml", "--json", "-", "--csv", "-"], ["--csv", "--json"]),
             (["box.toml", "--no-stats"], ["--no-stats", "--json"]),
@@ -290,7 +291,7 @@ class Scenes(SimulateTest):
             with self.subTest(scene=file.name):
                 self.assertRegex(file.read_text(), r"\A# \S")
                 self.assertIn(f"scenes/{file.name}", page)
-                done = run("simulate", file, "--steps", "2", "--contacts", "none", "--json", "-", "--no-stats")
+                done = run("simulate", file, "--frames", "3", "--contacts", "none", "--json", "-", "--no-stats")
                 self.assertEqual((done.status, done.error), (0, ""))
                 self.assertEqual(len(json.loads(done.out)["frames"]), 3)
 

@@ -43,7 +43,12 @@ class UsageErrors(ProgramTest):
 
     def test_command(self):
         self.expect(parts=["subcommand", "--help"])
-        self.expect("explode", parts=["explode"])
+        self.expect("explode", parts=["command explode is unknown; see"])
+        for mistyped, meant in (("detct", "detect"), ("simualte", "simulate"), ("ccd-querys", "ccd-queries")):
+            self.expect(mistyped, parts=[f"command {mistyped} is unknown; did you mean {meant}?"])
+        for mistyped, meant in (("--slef", "--self"), ("--bounding-volum", "--bounding-volume"), ("--no-stat", "--no-stats"), ("--frame=3", "--frames")):
+            self.expect("detect", "a.obj", mistyped, parts=[f"option {mistyped.split('=')[0]} is unknown; did you mean {meant}?"])
+        self.expect("detect", "a.obj", "--wibble", parts=["option --wibble is unknown; see"])
         self.expect("detect", parts=["required"])
         self.expect("info", parts=["required"])
         self.expect("ccd-queries", parts=["required"])
@@ -53,7 +58,7 @@ class UsageErrors(ProgramTest):
         self.expect("detect", "a.obj", "--distance", "1", parts=["--distance"])
         self.expect("detect", "a.obj", "--bounding-volume", "obb", parts=["--bounding-volume", "aabb, sphere"])
         self.expect("detect", "a.obj", "--bounding-volume", "kdop", parts=["--bounding-volume", "aabb, sphere"])
-        self.expect("detect", "a.obj", "--contacts", "proximity", parts=["--contacts", "intersection, continuous, none"])
+        self.expect("detect", "a.obj", "--contacts", "proximity", parts=["--contacts", "none, intersection, continuous"])
 
     def test_values(self):
         self.expect("detect", "a.obj", "--threads", "-1", parts=["--threads", "'-1'", "0 to 1024"])
@@ -61,21 +66,23 @@ class UsageErrors(ProgramTest):
         self.expect("detect", "a.obj", "--threads", "1.5", parts=["--threads", "'1.5'"])
         self.expect("detect", "a.obj", "--max-level", "33", parts=["--max-level", "'33'", "0 to 32"])
         self.expect("detect", "a.obj", "--leaf-size", "0", parts=["--leaf-size", "'0'"])
-        self.expect("detect", "scene.toml", "--steps", "0", parts=["--steps", "'0'"])
+        self.expect("detect", "scene.toml", "--frames", "0", parts=["--frames", "'0'"])
         for value in ("-1", "inf", "nan", "1e999", "1 ", "x", ""):
             self.expect("detect", "a.obj", "--contacts", "continuous", "--min-separation", value, parts=["--min-separation", f"'{value}'", "from 0 up"])
-        self.expect("detect", "a.obj", "--contacts", "continuous", "--undecided", "yes", parts=["--undecided", "exact, report"])
-        self.expect("detect", "a.obj", "--broad-phase", "", parts=["--broad-phase", "octree, sweep, brute"])
+        self.expect("detect", "a.obj", "--contacts", "continuous", "--undecided", "yes", parts=["--undecided", "report, exact"])
+        self.expect("detect", "a.obj", "--broad-phase", "", parts=["--broad-phase", "automatic, octree, grid, sweep, brute"])
         self.expect("detect", "a.obj", "--json", parts=["--json"])
 
     def test_options_that_would_have_no_effect(self):
         self.expect("detect", "a.obj", "--sphere-fit", "box", parts=["--sphere-fit", "--bounding-volume sphere"])
         self.expect("detect", "a.obj", "--region-test", "arvo", parts=["--region-test", "--bounding-volume sphere"])
         self.expect("detect", "a.obj", "--no-stats", parts=["--no-stats", "--json"])
-        self.expect("detect", "a.obj", "--steps", "3", parts=["--steps", "scene file"])
+        self.expect("detect", "a.obj", "--frames", "3", parts=["--frames", "a.obj has 1 frame"])
         for flag in ("--verify", "--fail-on-contact"):
             self.expect("detect", "a.obj", "--contacts", "none", flag, parts=[flag, "--contacts intersection"])
-        for flag in (("--min-separation", "0"), ("--undecided", "report"), ("--contact-details", "--json", "x")):
+        self.expect("detect", "a.obj", "--contacts", "none", "--contact-details", "--json", "x", parts=["--contact-details", "contacts"])
+        self.expect("detect", "a.obj", "--colliding-vertices", parts=["--colliding-vertices", "--json"])
+        for flag in (("--min-separation", "0"), ("--undecided", "report")):
             self.expect("detect", "a.obj", *flag, parts=[flag[0], "--contacts continuous"])
             self.expect("detect", "a.obj", "--contacts", "none", *flag, parts=[flag[0], "--contacts continuous"])
         self.expect("detect", "a.obj", "--contacts", "continuous", "--contact-details", parts=["--contact-details", "--json"])

@@ -219,7 +219,7 @@ class Serve(ViewTest):
         self.write("frame_0.obj", TRIANGLE)
         self.write("frame_1.obj", moved(TRIANGLE, 0, 0, 1))
         frames = '[[object]]\nmotion = { kind = "frames", files = "frame_*.obj" }\n'
-        self.write("both.toml", frames + '[[object]]\nmodel = "box"\nmotion = { kind = "sway", amplitude = 0.1, velocity = [1, 0, 0] }\n')
+        self.write("both.toml", frames + '[[object]]\nmodel = "box"\nmotion = { kind = "wave", amplitude = 0.1, velocity = [1, 0, 0] }\n')
         _, url = self.start("both.toml")
         page = self.connect(url)
         self.assertEqual(page.receive_text(SCENE)["frames"], 2)

@@ -47,7 +47,7 @@ inline std::uint64_t normal_hash_of_all_families(std::uint32_t threads) {
   return hash;
 }
 
-/// Of each object the first triangles only: nearly all of these pairs are left to exact arithmetic.
+/// Only the first triangles of each object: nearly all of these pairs need exact arithmetic.
 inline std::uint64_t continuous_hash_of_all_families(std::uint32_t threads) {
   std::uint64_t hash = 0xcbf29ce484222325u;
   for (const Family& family : hard_families()) {

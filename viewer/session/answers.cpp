@@ -4,9 +4,10 @@
 #include <span>
 #include <string>
 
+#include "described_json.hpp"
 #include "extent.hpp"
-#include "names.hpp"
 #include "supple/inspection.hpp"
+#include "supple/result_descriptions.hpp"
 #include "supple/triangle_intersection.hpp"
 
 namespace supple::viewer {
@@ -43,20 +44,7 @@ void add_contacts_of(const DetectResult& result, std::uint32_t object, std::uint
 void add_octree(const OctreeStatistics& octree, JsonText& json) {
   json.key("octree");
   json.begin_object();
-  json.member("nodes", octree.nodes);
-  json.member("leaves", octree.leaves);
-  json.member("depth", octree.depth);
-  json.member("largest_leaf", octree.largest_leaf);
-  json.member("mean_leaf_size", octree.mean_leaf_size);
-  json.member("mean_node_width", octree.mean_node_width);
-  json.member("bytes", octree.bytes);
-  json.member("cost", octree.cost);
-  json.member("degradation", octree.degradation);
-  json.member("subtrees_rebuilt", octree.subtrees_rebuilt);
-  json.key("leaves_by_level");
-  json.begin_array();
-  for (const std::uint64_t leaves : octree.leaves_by_level) json.value(leaves);
-  json.end_array();
+  write_members(json, octree);
   json.end_object();
 }
 

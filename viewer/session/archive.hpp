@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "supple/description.hpp"
 #include "supple/mesh.hpp"
 #include "supple/types.hpp"
 
@@ -25,10 +26,6 @@ template <class Value>
 concept Plain = std::is_same_v<Value, std::uint8_t> || std::is_same_v<Value, std::uint32_t> ||
     std::is_same_v<Value, std::uint64_t> || std::is_same_v<Value, float> || std::is_same_v<Value, double> ||
     std::is_same_v<Value, Vec3d> || std::is_same_v<Value, Triangle> || std::is_same_v<Value, char>;
-
-/// The number of values of an enumeration; they count from 0.
-template <class Enumeration>
-inline constexpr std::uint8_t count_of = 0;
 
 /// Writes values one after the other. `fields(archive, value)` lists the members of a structure for both
 /// archives.
@@ -110,10 +107,10 @@ class Unpacker {
   template <class Enumeration>
   requires std::is_enum_v<Enumeration>
   void get(Enumeration& value) {
-    static_assert(count_of<Enumeration> > 0);
+    static_assert(Worded<Enumeration>);
     std::uint8_t number = 0;
     get(number);
-    if (number >= count_of<Enumeration>) return fail();
+    if (number >= words<Enumeration>.size()) return fail();
     value = static_cast<Enumeration>(number);
   }
   template <Plain Value>

@@ -81,6 +81,36 @@ std::optional<double> Arguments::number(const char* name, double low, double hig
   return std::nullopt;
 }
 
+std::optional<std::int64_t> Arguments::integer(const char* name, const ValueRange& range) {
+  const JsonValue* const value = find(name);
+  if (value == nullptr) return std::nullopt;
+  if (value->kind == JsonValue::Kind::integer && value->integer >= 0 &&
+      range.allows(static_cast<std::uint64_t>(value->integer)))
+    return value->integer;
+  must_be(name, text_of(range, true));
+  return std::nullopt;
+}
+
+std::optional<double> Arguments::number(const char* name, const ValueRange& range) {
+  const JsonValue* const value = find(name);
+  if (value == nullptr) return std::nullopt;
+  if (value->is_number() && range.allows(value->number)) return value->number;
+  must_be(name, text_of(range, false));
+  return std::nullopt;
+}
+
+std::optional<bool> Arguments::one_of_two(const char* name,
+                                          const std::array<const char*, 2>& words_of_truth) {
+  const JsonValue* const value = find(name);
+  if (value == nullptr) return std::nullopt;
+  if (value->kind == JsonValue::Kind::text) {
+    if (value->text == words_of_truth[0]) return false;
+    if (value->text == words_of_truth[1]) return true;
+  }
+  must_be(name, std::string("one of ") + words_of_truth[0] + ", " + words_of_truth[1]);
+  return std::nullopt;
+}
+
 std::optional<Vec3d> Arguments::point(const char* name) {
   const JsonValue* const value = find(name);
   if (value == nullptr) return std::nullopt;

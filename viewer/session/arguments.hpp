@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "json_value.hpp"
-#include "names.hpp"
+#include "supple/description.hpp"
 #include "supple/types.hpp"
 
 namespace supple::viewer {
@@ -24,18 +24,39 @@ class Arguments {
   std::optional<bool> boolean(const char* name);
   std::optional<std::int64_t> integer(const char* name, std::int64_t low, std::int64_t high);
   std::optional<double> number(const char* name, double low, double high);
+  std::optional<std::int64_t> integer(const char* name, const ValueRange& range);
+  std::optional<double> number(const char* name, const ValueRange& range);
+  std::optional<bool> one_of_two(const char* name, const std::array<const char*, 2>& words_of_truth);
   std::optional<Vec3d> point(const char* name);
   /// An object and one of its triangles. Checks only that both are whole numbers.
   std::optional<std::array<std::uint32_t, 2>> pair(const char* name);
   std::optional<std::vector<std::uint32_t>> numbers(const char* name);
-  template <class Enumeration>
+  /// One of the words of the enumeration.
+  template <Worded Enumeration>
   std::optional<Enumeration> one_of(const char* name) {
     const JsonValue* const value = find(name);
     if (value == nullptr) return std::nullopt;
     std::optional<Enumeration> found;
-    if (value->kind == JsonValue::Kind::text) found = named<Enumeration>(value->text);
-    if (!found) must_be(name, "one of " + list_of_names<Enumeration>());
+    if (value->kind == JsonValue::Kind::text) found = value_of_word<Enumeration>(value->text);
+    if (!found) must_be(name, "one of " + list_of_words<Enumeration>());
     return found;
+  }
+  /// An option by its key, as its description allows it: of words, whole numbers or truth values. Returns
+  /// whether it is there; the value stays as it was when it is not, or is wrong.
+  template <class Struct, class Value>
+  bool option(const Field<Struct, Value>& field, Value& value) {
+    std::optional<Value> given;
+    if constexpr (Worded<Value>) {
+      given = one_of<Value>(field.key);
+    } else if constexpr (std::is_same_v<Value, bool>) {
+      given = field.has_truth_words() ? one_of_two(field.key, field.truth_words) : boolean(field.key);
+    } else if constexpr (std::is_same_v<Value, double>) {
+      given = number(field.key, field.range);
+    } else {
+      if (const auto whole = integer(field.key, field.range)) given = static_cast<Value>(*whole);
+    }
+    if (given) value = *given;
+    return given.has_value();
   }
   /// The value of a member that has members of its own; null when it is missing.
   const JsonValue* member(const char* name) { return find(name); }

@@ -3,8 +3,8 @@
 #include <string>
 
 #include "answers.hpp"
-#include "names.hpp"
 #include "supple/inspection.hpp"
+#include "supple/result_descriptions.hpp"
 
 namespace supple::viewer {
 namespace {
@@ -100,7 +100,7 @@ void answer_explain(const SceneView& show, const Source& source, const Center& c
   const ObjectId id_a = source.id(a[0]), id_b = source.id(b[0]);
   const Pair pair{show.objects[a[0]], show.objects[b[0]], scene.name(id_a), scene.name(id_b),
                   SceneInspector(scene).explain(id_a, a[1], id_b, b[1])};
-  json.member("stage", name_of(pair.why.stage));
+  json.member("stage", word_of(pair.why.stage));
   json.member("text", sentence_of(pair));
   add_boxes(pair.why, center, json);
   add_spheres(pair.why, center, json);

@@ -5,7 +5,6 @@
 #include <cstring>
 #include <iterator>
 
-#include "names.hpp"
 #include "statistics.hpp"
 #include "supple/inspection.hpp"
 
@@ -154,11 +153,11 @@ void FramePacker::add_pairs(Tag tag, const ObjectPairs& pairs) {
 }
 
 void FramePacker::add_statistics(const FrameView& frame) {
-  const StepStats& stats = frame.source.scene().result().stats;
-  const auto values = message_->add<double>(Tag::statistics, 1 + std::size(statistics));
+  const auto values = message_->add<double>(Tag::statistics, 1 + statistic_count);
   values[0] = frame.source.motion_seconds();
-  std::transform(std::begin(statistics), std::end(statistics), values.begin() + 1,
-                 [&](const Statistic& statistic) { return value_of(statistic, stats); });
+  std::size_t place = 0;
+  for_each_statistic(frame.source.scene().result().stats,
+                     [&](const char*, double value) { values[++place] = value; });
 }
 
 void FramePacker::add_candidates(const FrameView& frame) {
@@ -217,7 +216,7 @@ void FramePacker::add_text(const FrameView& frame) {
   json_.member("generation", frame.generation);
   json_.member("step", frame.source.step());
   json_.member("time", frame.source.time());
-  json_.member("broad_phase_method", name_of(frame.source.scene().result().stats.broad_phase_method));
+  json_.member("broad_phase_method", word_of(frame.source.scene().result().stats.broad_phase_method));
   json_.member("playing", frame.playing);
   json_.member("speed", frame.speed);
   json_.member("loop", frame.loop);

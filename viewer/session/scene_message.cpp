@@ -6,10 +6,11 @@
 #include <utility>
 #include <vector>
 
+#include "described_json.hpp"
 #include "extent.hpp"
 #include "long_steps.hpp"
-#include "names.hpp"
 #include "statistics.hpp"
+#include "supple/simulation_descriptions.hpp"
 #include "supple/version.hpp"
 
 namespace supple::viewer {
@@ -48,6 +49,37 @@ void add_place(const Stage& stage, JsonText& json) {
   json.end_array();
 }
 
+/// The options that `set` takes.
+template <class Options>
+void add_settings(const Options& options, JsonText& json) {
+  for_each_leaf(
+      [&](const auto& field, const auto& value) {
+        if (!is_setting(field)) return;
+        json.key(field.key);
+        write_value(json, field, value);
+      },
+      options);
+}
+
+/// The words that the options take which have words.
+template <class Options>
+void add_words(JsonText& json) {
+  Options options;
+  for_each_leaf(
+      [&](const auto& field, const auto& value) {
+        using Value = std::remove_cvref_t<decltype(value)>;
+        const auto add = [&](const auto& list) {
+          json.key(field.key);
+          json.begin_array();
+          for (const char* word : list) json.value(word);
+          json.end_array();
+        };
+        if (field.has_truth_words()) add(field.truth_words);
+        if constexpr (Worded<Value>) add(words<Value>);
+      },
+      options);
+}
+
 void add_options(const Stage& stage, JsonText& json) {
   const SceneView& show = stage.show();
   const SceneOptions& scene = show.simulation.scene;
@@ -55,18 +87,24 @@ void add_options(const Stage& stage, JsonText& json) {
       show.objects.empty() ? ObjectOctreeOptions{} : show.objects.front().options.octree;
   json.member("time_step", show.simulation.time_step);
   json.member("seed", show.simulation.seed);
-  json.member("bounding_volume", name_of(scene.bounding_volume));
-  json.member("contacts", name_of(scene.contacts));
-  json.member("broad_phase", name_of(scene.broad_phase));
-  json.member("max_level", octree.max_level);
-  json.member("leaf_size", octree.leaf_size);
+  add_settings(scene, json);
+  add_settings(octree, json);
   json.key("integrator");
   const auto first_body = std::find_if(show.objects.begin(), show.objects.end(),
                                        [](const ViewedObject& object) { return body_of(object) != nullptr; });
   if (first_body == show.objects.end())
     json.null();
   else
-    json.value(name_of(body_of(*first_body)->springs.integrator));
+    json.value(word_of(body_of(*first_body)->springs.integrator));
+}
+
+void add_choices(JsonText& json) {
+  json.key("choices");
+  json.begin_object();
+  add_words<SceneOptions>(json);
+  add_words<ObjectOctreeOptions>(json);
+  add_words<MassSpringOptions>(json);
+  json.end_object();
 }
 
 void add_abilities(Stage& stage, JsonText& json) {
@@ -84,7 +122,7 @@ void add_column_names(Stage& stage, JsonText& json) {
   json.key("statistics");
   json.begin_array();
   json.value("motion_seconds");
-  for (const Statistic& statistic : statistics) json.value(statistic.name);
+  for_each_statistic({}, [&](const char* name, double) { json.value(name); });
   json.end_array();
   static const std::vector<std::string> none;
   json.member("series",
@@ -120,6 +158,7 @@ void pack_scene(Stage& stage, std::uint64_t generation, JsonText& json, MessageW
   add_place(stage, json);
   add_objects(stage, json);
   add_options(stage, json);
+  add_choices(json);
   add_column_names(stage, json);
   add_warnings(stage, json);
   json.end_object();

@@ -346,11 +346,11 @@ void Session::Implementation::set(Arguments& arguments) {
   const auto keep = [](auto& setting, const auto& value) {
     if (value) setting = static_cast<typename std::remove_reference_t<decltype(setting)>::value_type>(*value);
   };
-  keep(settings.bounding_volume, arguments.one_of<BoundingVolume>("bounding_volume"));
-  keep(settings.max_level, arguments.integer("max_level", 0, 32));
-  keep(settings.leaf_size, arguments.integer("leaf_size", 1, 1'000'000));
-  keep(settings.broad_phase, arguments.one_of<BroadPhaseMethod>("broad_phase"));
-  keep(settings.contacts, arguments.one_of<ContactKinds>("contacts"));
+  const auto read = [&]<class Struct, class Value>(const Field<Struct, Value>& field, Value& value) {
+    return is_setting(field) && arguments.option(field, value);
+  };
+  settings.scene.read(read);
+  settings.octree.read(read);
   if (stage_->simulation()) {
     keep(settings.objects, arguments.integer("objects", 1, 100'000));
     keep(settings.integrator, arguments.one_of<Integrator>("integrator"));

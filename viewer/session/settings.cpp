@@ -84,30 +84,11 @@ void repeat_objects(SceneView& show, std::size_t count) {
   }
 }
 
-[[noreturn]] void fail_about(const ViewedObject& object, const char* what, double value, const char* range) {
-  std::string message = object.options.name.empty() ? object.mesh.name : object.options.name;
-  message += std::string(": ") + what;
-  message += " is " + std::to_string(value);
-  message += std::string("; it must be ") + range;
-  fail(message);
-}
-
-void check_sway(const ViewedObject& object, const WaveMotion& sway) {
-  const auto positive = [](double value) { return std::isfinite(value) && value > 0; };
-  if (!positive(sway.wavelength))
-    fail_about(object, "WaveMotion::wavelength", sway.wavelength, "finite and more than 0");
-  if (!positive(sway.period)) fail_about(object, "WaveMotion::period", sway.period, "finite and more than 0");
-  if (!std::isfinite(sway.amplitude)) fail_about(object, "WaveMotion::amplitude", sway.amplitude, "finite");
-  for (int axis = 0; axis < 3; ++axis) {
-    if (!std::isfinite(sway.velocity[axis]))
-      fail_about(object, "WaveMotion::velocity", sway.velocity[axis], "finite");
-  }
-}
-
 void check_show(const SceneView& show) {
   for (const ViewedObject& object : show.objects) {
     check_mesh(object.mesh);
-    if (const auto* const sway = std::get_if<WaveMotion>(&object.motion)) check_sway(object, *sway);
+    if (const auto* const waves = std::get_if<WaveMotion>(&object.motion))
+      check(*waves, object.options.name.empty() ? object.mesh.name : object.options.name);
   }
   check_size(show, show.objects.size());
 }
@@ -119,17 +100,14 @@ SceneView arranged(const SceneView& show, const Settings& settings) {
   SceneView arranged = show;
   if (settings.objects) repeat_objects(arranged, *settings.objects);
   SimulationOptions& simulation = arranged.simulation;
-  simulation.scene.bounding_volume = settings.bounding_volume.value_or(simulation.scene.bounding_volume);
-  simulation.scene.broad_phase = settings.broad_phase.value_or(simulation.scene.broad_phase);
-  simulation.scene.contacts = settings.contacts.value_or(simulation.scene.contacts);
+  settings.scene.apply_to(simulation.scene);
+  if (!uses_scene_octree(simulation.scene.broad_phase)) simulation.scene.scene_octree = {};
   // `PaperVertices` computes these, and only on request.
   simulation.scene.comparison.colliding_vertices = false;
   simulation.time_step = settings.time_step.value_or(simulation.time_step);
   simulation.seed = settings.seed.value_or(simulation.seed);
   for (ViewedObject& object : arranged.objects) {
-    ObjectOctreeOptions& octree = object.options.octree;
-    octree.max_level = settings.max_level.value_or(octree.max_level);
-    octree.leaf_size = settings.leaf_size.value_or(octree.leaf_size);
+    settings.octree.apply_to(object.options.octree);
     if (auto* const motion = std::get_if<MassSpringMotion>(&object.motion))
       motion->springs.integrator = settings.integrator.value_or(motion->springs.integrator);
   }

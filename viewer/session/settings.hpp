@@ -2,24 +2,39 @@
 
 #include <cstdint>
 #include <optional>
+#include <string_view>
+#include <type_traits>
 
+#include "overrides.hpp"
 #include "scene_view.hpp"
-#include "supple/motion.hpp"
-#include "supple/options.hpp"
+#include "supple/simulation_descriptions.hpp"
 
 namespace supple::viewer {
 
 /// The values that the commands `set` and `reset` change.
 struct Settings {
-  std::optional<BoundingVolume> bounding_volume{};
-  std::optional<std::uint32_t> max_level{}, leaf_size{};
-  std::optional<std::uint32_t> objects{};  ///< number of objects
+  Overrides<SceneOptions> scene{};
+  Overrides<ObjectOctreeOptions> octree{};  ///< of all objects
+  std::optional<std::uint32_t> objects{};   ///< number of objects
   std::optional<Integrator> integrator{};
-  std::optional<BroadPhaseMethod> broad_phase{};
-  std::optional<ContactKinds> contacts{};
   std::optional<double> time_step{};
   std::optional<std::uint64_t> seed{};
 };
+
+/// Whether the commands can set an option of the scene or of an octree. The colliding vertices are a layer of
+/// frames instead.
+template <class Struct, class Value>
+constexpr bool is_setting(const Field<Struct, Value>& field) {
+  if constexpr (std::is_same_v<Struct, ComparisonOptions>) {
+    if (std::string_view(field.name) == "colliding_vertices") return false;
+  }
+  return !field.is_of_machine;
+}
+
+/// Other methods refuse options of the scene octree.
+constexpr bool uses_scene_octree(BroadPhaseMethod method) {
+  return method == BroadPhaseMethod::automatic || method == BroadPhaseMethod::octree;
+}
 
 /// Applies the settings to a scene view. Additional objects are copies, placed in a grid beside the
 /// originals; the border grows with the grid. Throws `Error` with the object and the value when an object is

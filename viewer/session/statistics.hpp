@@ -1,46 +1,22 @@
 #pragma once
 
-#include <cstdint>
-#include <iterator>
+#include <cstddef>
+#include <type_traits>
 
 #include "supple/result.hpp"
+#include "supple/result_descriptions.hpp"
 
 namespace supple::viewer {
 
-/// A number that frames have of the step: a member of `StepStats`.
-struct Statistic {
-  const char* name;
-  double StepStats::*seconds;
-  std::uint64_t StepStats::*count;
-};
+// The numbers of a step that frames have: the members of `StepStats` in their order. `motion_seconds` comes
+// before them.
+inline constexpr std::size_t statistic_count = count_leaves<StepStats>();
 
-/// `motion_seconds` comes before them.
-inline constexpr Statistic statistics[] = {
-    {"refit_seconds", &StepStats::refit_seconds, nullptr},
-    {"broad_phase_seconds", &StepStats::broad_phase_seconds, nullptr},
-    {"rebuild_seconds", &StepStats::rebuild_seconds, nullptr},
-    {"traversal_seconds", &StepStats::traversal_seconds, nullptr},
-    {"exact_seconds", &StepStats::exact_seconds, nullptr},
-    {"sort_and_events_seconds", &StepStats::sort_and_events_seconds, nullptr},
-    {"total_seconds", &StepStats::total_seconds, nullptr},
-    {"objects_refitted", nullptr, &StepStats::objects_refitted},
-    {"triangles_refitted", nullptr, &StepStats::triangles_refitted},
-    {"subtrees_rebuilt", nullptr, &StepStats::subtrees_rebuilt},
-    {"triangles_rebuilt", nullptr, &StepStats::triangles_rebuilt},
-    {"object_pairs_tested", nullptr, &StepStats::object_pairs_tested},
-    {"object_pairs", nullptr, &StepStats::object_pairs},
-    {"node_pairs_visited", nullptr, &StepStats::node_pairs_visited},
-    {"boxes_tested", nullptr, &StepStats::boxes_tested},
-    {"candidate_pairs", nullptr, &StepStats::candidate_pairs},
-    {"vertex_face_candidates", nullptr, &StepStats::vertex_face_candidates},
-    {"edge_edge_candidates", nullptr, &StepStats::edge_edge_candidates},
-    {"exact_fallbacks", nullptr, &StepStats::exact_fallbacks},
-    {"contacts", nullptr, &StepStats::contacts},
-};
-
-inline double value_of(const Statistic& statistic, const StepStats& stats) {
-  return statistic.seconds != nullptr ? stats.*statistic.seconds
-                                      : static_cast<double>(stats.*statistic.count);
+/// Calls `function(name, value)` for each. A word is the number of its place in the enumeration.
+template <class Function>
+void for_each_statistic(const StepStats& stats, Function function) {
+  for_each_leaf(
+      [&](const auto& field, const auto& value) { function(field.key, static_cast<double>(value)); }, stats);
 }
 
 }  // namespace supple::viewer

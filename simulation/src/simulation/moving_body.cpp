@@ -7,30 +7,17 @@
 
 #include "core/error.hpp"
 #include "simulation/deforming_forces.hpp"
+#include "supple/simulation_descriptions.hpp"
 
 namespace supple {
 namespace {
-
-void check_finite(const Vec3d& v, const std::string& what) {
-  for (int axis = 0; axis < 3; ++axis) {
-    if (std::isfinite(v[axis])) continue;
-    fail(what + ": " + "xyz"[axis] + " is " + std::to_string(v[axis]) + "; it must be a finite number");
-  }
-}
-
-void check_not_negative(double value, const std::string& what) {
-  if (std::isfinite(value) && value >= 0) return;
-  fail(what + " is " + std::to_string(value) + "; it must be finite and not negative");
-}
 
 void check_handles(const MassSpringMotion& motion, const TriangleMesh& mesh) {
   std::vector<std::uint8_t> is_held(mesh.positions.size(), 0);
   for (std::size_t h = 0; h < motion.handles.size(); ++h) {
     const MassSpringMotion::Handle& handle = motion.handles[h];
     const std::string what = "MassSpringMotion::handles[" + std::to_string(h) + "] of " + mesh.name;
-    check_finite(handle.by, what + ", by");
-    if (!(std::isfinite(handle.seconds) && handle.seconds > 0))
-      fail(what + ": seconds is " + std::to_string(handle.seconds) + "; it must be finite and more than 0");
+    check(handle, what);
     for (const std::uint32_t vertex : handle.vertices) {
       if (vertex >= is_held.size()) {
         fail(what + ": vertex " + std::to_string(vertex) + " is out of range; there are " +
@@ -46,10 +33,7 @@ void check_handles(const MassSpringMotion& motion, const TriangleMesh& mesh) {
 }
 
 void check_motion(const MassSpringMotion& motion, const TriangleMesh& mesh) {
-  check_finite(motion.velocity, "MassSpringMotion::velocity");
-  check_not_negative(motion.random_speed, "MassSpringMotion::random_speed");
-  check_not_negative(motion.random_force, "MassSpringMotion::random_force");
-  check_not_negative(motion.deform_seconds, "MassSpringMotion::deform_seconds");
+  check(motion, "motion of " + mesh.name);
   check_handles(motion, mesh);
 }
 

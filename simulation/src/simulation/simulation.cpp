@@ -8,13 +8,10 @@
 #include "core/timer.hpp"
 #include "motion/worth_threads.hpp"
 #include "simulation/simulation_implementation.hpp"
+#include "supple/simulation_descriptions.hpp"
 
 namespace supple {
 namespace {
-
-void check(bool is_in_range, const char* option, double value, const char* range) {
-  if (!is_in_range) fail(std::string(option) + " is " + std::to_string(value) + "; it must be " + range);
-}
 
 void check_border(const Border& border) {
   for (int axis = 0; axis < 3; ++axis) {
@@ -26,18 +23,8 @@ void check_border(const Border& border) {
 }
 
 const SimulationOptions& checked(const SimulationOptions& options) {
-  const auto finite = [](double value) { return std::isfinite(value); };
-  const double step = options.time_step;
-  check(finite(step) && step > 0, "SimulationOptions::time_step", step, "finite and more than 0");
+  check(options);
   if (options.border) check_border(*options.border);
-  const ContactResponse& response = options.response;
-  check(finite(response.thickness) && response.thickness > 0, "ContactResponse::thickness",
-        response.thickness, "finite and more than 0");
-  check(response.restitution >= 0 && response.restitution <= 1, "ContactResponse::restitution",
-        response.restitution, "from 0 to 1");
-  check(finite(response.friction) && response.friction >= 0, "ContactResponse::friction", response.friction,
-        "finite and not negative");
-  check(response.iterations >= 1, "ContactResponse::iterations", response.iterations, "at least 1");
   return options;
 }
 

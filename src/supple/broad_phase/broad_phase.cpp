@@ -3,13 +3,16 @@
 #include "broad_phase/pair_finder.hpp"
 #include "core/error.hpp"
 #include "core/parallel.hpp"
+#include "supple/option_descriptions.hpp"
 
 namespace supple {
 
 class BroadPhase::Implementation {
  public:
   explicit Implementation(const BroadPhaseOptions& options)
-      : options_(options), parallel_(options.threads), finder_(make(BoundingVolume::aabb)) {}
+      : options_((check(options), options)),
+        parallel_(options.threads),
+        finder_(make(BoundingVolume::aabb)) {}
 
   template <class Volume>
   std::span<const IndexPair> find(ObjectVolumes given, std::span<const Volume> volumes,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -10,6 +11,12 @@
 #include "supple/types.hpp"
 
 namespace supple {
+
+/// Orders slots by the lower ends of their boxes. -0 goes before +0.
+inline std::uint64_t order_key(float low, std::uint32_t slot) {
+  const auto bits = std::bit_cast<std::uint32_t>(low);
+  return std::uint64_t{bits ^ ((bits >> 31) != 0 ? 0xffffffffu : 0x80000000u)} << 32 | slot;
+}
 
 /// Boxes as structure of arrays, for a kernel that tests one against many.
 struct BoxLanes {
@@ -25,11 +32,10 @@ struct BoxLanes {
   /// `first_axis` becomes axis 0 of the lanes, the others follow in turn.
   void set(std::size_t lane, std::uint32_t slot, const Aabb& box, std::uint32_t begins_here = 7,
            int first_axis = 0) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      const int axis = first_axis + static_cast<int>(k) < 3 ? first_axis + static_cast<int>(k)
-                                                            : first_axis + static_cast<int>(k) - 3;
-      min[k][lane] = box.min[axis];
-      max[k][lane] = box.max[axis];
+    for (int k = 0; k < 3; ++k) {
+      const auto axis = static_cast<std::size_t>((k + 3 - first_axis) % 3);
+      min[axis][lane] = box.min[k];
+      max[axis][lane] = box.max[k];
     }
     slots[lane] = slot;
     begins[lane] = begins_here;

@@ -8,20 +8,10 @@
 #include "broad_phase/octree/octree_search.hpp"
 #include "broad_phase/sweep/sweep_search.hpp"
 #include "core/error.hpp"
+#include "supple/option_descriptions.hpp"
 
 namespace supple {
 namespace {
-
-void check(const SceneOctreeOptions& options) {
-  constexpr std::uint32_t deepest_level = 20;  // 64 bits number 8^20 regions
-  if (options.max_level > deepest_level)
-    fail("scene octree: max_level is " + std::to_string(options.max_level) +
-         "; it must be 1 to 20, or 0 to have it chosen");
-  if (options.expand_at < 2)
-    fail("scene octree: expand_at is " + std::to_string(options.expand_at) + "; it must be 2 or more");
-  if (options.arity != 2 && options.arity != 4 && options.arity != 8)
-    fail("scene octree: arity is " + std::to_string(options.arity) + "; it must be 2, 4 or 8");
-}
 
 void refuse(const SceneOctreeOptions& options, const char* method) {
   if (options != SceneOctreeOptions{})

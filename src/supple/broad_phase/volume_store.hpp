@@ -78,6 +78,8 @@ class VolumeStore {
   }
   /// The volume that `take` will store.
   ObjectVolume incoming(std::uint32_t slot) const;
+  /// The changed volumes are not taken yet.
+  bool holds_previous() const { return !taken_; }
   /// Updates that found changes.
   std::uint64_t revision() const { return revision_; }
 

@@ -10,7 +10,7 @@ ClosestPoints at(const RelativePlaces<double>& places, double alpha, double beta
   return {alpha, beta, difference, dot(difference, difference)};
 }
 
-/// Of the point `from` from the segment from the origin along `edge`: the part of the edge, 0 to 1.
+/// Where the segment from the origin along `edge` is nearest to the point `from`: a part of the edge, 0 to 1.
 double nearest_part(const Vec3d& from, const Vec3d& edge) {
   const double squared_length = dot(edge, edge);
   return squared_length > 0 ? std::clamp(dot(from, edge) / squared_length, 0.0, 1.0) : 0;
@@ -31,7 +31,7 @@ ClosestPoints closest_points(const RelativePlaces<double>& places, bool is_squar
     const double alpha = (um * ww - wm * uw) / determinant, beta = (wm * uu - um * uw) / determinant;
     const bool inside = alpha >= 0 && beta >= 0 && (is_square ? alpha <= 1 && beta <= 1 : alpha + beta <= 1);
     if (inside) keep_closer(alpha, beta);
-    // Rounding aside there is nothing closer; elements that are nearly parallel are looked at on.
+    // Nothing is closer, up to rounding. Elements that are nearly parallel also need their borders.
     if (inside && determinant > 0x1p-20 * uu * ww) return best;
   }
   keep_closer(0, nearest_part(m, w));

@@ -12,8 +12,7 @@ struct ClosestPoints {
   double squared_distance = 0;
 };
 
-/// Where two elements are closest, in plain floating point: any place in the domain where they are as close
-/// as rounding can tell.
+/// A place in the domain where two elements are closest, up to rounding.
 ClosestPoints closest_points(const RelativePlaces<double>& places, bool is_square);
 
 }  // namespace supple

@@ -9,7 +9,7 @@
 namespace supple {
 namespace {
 
-/// All values on one side of zero by more than `error`.
+/// Whether all values are on one side of 0 by more than `error`.
 bool one_sign(const std::array<double, 4>& c, double error) {
   const double least = std::min(std::min(c[0], c[1]), std::min(c[2], c[3]));
   const double most = std::max(std::max(c[0], c[1]), std::max(c[2], c[3]));
@@ -32,13 +32,13 @@ bool part_has_one_sign(const std::array<double, 4>& c, double error, int halving
 
 }  // namespace
 
-// A determinant of differences is off by 9 · 2^-53 of the magnitudes of its six products (see
-// plane_filter.hpp); three of them summed and divided by 12 · 2^-53; the six splits of the way to a value
-// inside, or to the coefficients of a part, which takes two times three levels of 3 roundings, by 18 · 2^-53
-// more: 2^-48 in all, for the sum of magnitudes bounds every coefficient. Each halving adds 9 · 2^-53, and
-// three of them are in 2^-47.
+// Error bound, relative to the sum of the magnitudes, which bounds every coefficient:
+// - a determinant of differences: 9 · 2^-53 (see plane_filter.hpp);
+// - the sum of three determinants, divided by 3: 12 · 2^-53;
+// - a value, or the coefficients of a part: two times three levels of 3 roundings, 18 · 2^-53 more.
+// That is less than 2^-48 in all. Each of three halvings adds 9 · 2^-53, so 2^-47 covers everything.
 //
-// Coordinates up to 2^100 neither overflow nor lose more than 2^-970 by underflow.
+// Coordinates up to 2^100 do not overflow and lose at most 2^-970 by underflow.
 VolumePolynomial::VolumePolynomial(const RelativeMotion& motion) {
   const auto& [start, end, is_square] = motion;
   const Vec3d n0 = cross(start.u, start.w), n2 = cross(end.u, end.w);
@@ -102,7 +102,7 @@ double VolumePolynomial::zero_between(double low, double high, double at_low, do
 VolumePolynomial::Intervals VolumePolynomial::near_zeros() const {
   Intervals result;
   const auto add = [&](double t, double reach) {
-    // Of use only when short; NaN takes the whole step.
+    // Only short intervals are useful. NaN gives the whole step.
     const double half = reach < 1 ? reach + 0x1p-52 : 1;
     const Interval interval{std::max(t - half, 0.0), std::min(t + half, 1.0)};
     if (result.count != 0 && result.items[result.count - 1].high >= interval.low) {

@@ -7,23 +7,23 @@
 
 namespace supple {
 
-/// The volume m · (u × w) of the four vertices over the step: elements can touch only where it is zero.
-/// Bernstein coefficients of a cubic in [0, 1], and what they, and values between them, may be off by.
+/// The volume m · (u × w) of the four vertices over the step, a cubic polynomial. Elements can touch only
+/// where it is 0. Holds its Bernstein coefficients on [0, 1] and a bound of the error of all values.
 class VolumePolynomial {
  public:
   explicit VolumePolynomial(const RelativeMotion& motion);
 
-  /// False for coordinates so large that products may overflow: nothing here is then of use.
+  /// False when coordinates are so large that products may overflow. All other results are then undefined.
   bool in_range() const { return in_range_; }
 
   double value(double t) const;
-  /// Not zero anywhere in [low, high], without doubt.
+  /// Whether the volume is proven not to be 0 anywhere in [low, high].
   bool never_zero(double low, double high) const;
-  /// The values at both ends have different signs, without doubt.
+  /// Whether the values at both ends are proven to have different signs.
   bool changes_sign(double low, double high) const;
 
-  /// Short closed intervals of time, ascending, outside of which the volume has no zeros as far as floating
-  /// point can see; `never_zero` proves it for each gap.
+  /// Short closed intervals of time, ascending. Outside them the volume has no zeros up to rounding;
+  /// `never_zero` proves this for a gap.
   struct Interval {
     double low, high;
   };
@@ -35,12 +35,12 @@ class VolumePolynomial {
   Intervals near_zeros() const;
 
  private:
-  /// Plain values, and slopes, by the powers of t.
+  /// Values and slopes without error bounds.
   double estimate(double t) const {
     return ((powers_[3] * t + powers_[2]) * t + powers_[1]) * t + powers_[0];
   }
   double slope(double t) const { return (3 * powers_[3] * t + 2 * powers_[2]) * t + powers_[1]; }
-  /// The one zero of a stretch of time over which the value grows or falls and changes its sign.
+  /// The zero in an interval over which the value is monotonic and changes its sign.
   double zero_between(double low, double high, double at_low, double at_high) const;
   void add_turning_points(std::array<double, 4>& knots, std::size_t& count) const;
 

@@ -14,7 +14,7 @@ namespace {
 
 enum class Elements { vertex_and_face, two_edges };
 
-/// Numbers of the four vertices.
+/// Indices into the four vertices.
 struct PointAndSegment {
   std::size_t point, first, second;
 };
@@ -22,9 +22,9 @@ constexpr std::array<PointAndSegment, 3> face_segments{{{0, 1, 2}, {0, 2, 3}, {0
 constexpr std::array<PointAndSegment, 4> edge_segments{{{0, 2, 3}, {1, 2, 3}, {2, 0, 1}, {3, 0, 1}}};
 
 /// Elements touch when the vector m between two of their vertices is a sum α u + β w of their sides, with
-/// α ≥ 0, β ≥ 0 and α + β ≤ 1 for a vertex and a face, with 0 ≤ α ≤ 1 and 0 ≤ β ≤ 1 for two edges. With the
-/// normal n = u × w: m · n = 0, α n = m × w, β n = u × m, of which one component decides that is not zero
-/// in n. Where n = 0 everything is in one plane and the face or both edges on a line.
+/// α ≥ 0, β ≥ 0 and α + β ≤ 1 for a vertex and a face, and with 0 ≤ α ≤ 1 and 0 ≤ β ≤ 1 for two edges. The
+/// normal n = u × w gives m · n = 0, α n = m × w and β n = u × m. Any component in which n is not 0 decides.
+/// Where n = 0, the elements lie in one plane, and the face or both edges lie on a line.
 template <class Numbers>
 class FirstContact {
  public:
@@ -35,7 +35,7 @@ class FirstContact {
 
   FirstContact(Elements elements, const Vertices& vertices) : elements_(elements), vertices_(vertices) {}
 
-  /// False if the numbers do not suffice.
+  /// Returns false when the integers are too short.
   bool search();
   const std::optional<TimeBracket>& first() const { return first_; }
 
@@ -45,7 +45,7 @@ class FirstContact {
   };
   using AreaVector = std::array<Quadratic<Area>, 3>;
   using Root = StepRoot<Numbers>;
-  using Definition = CommonRoots<Numbers>;  ///< quadratic polynomials whose root a root also is
+  using Definition = CommonRoots<Numbers>;  ///< quadratic polynomials that share a root
 
   void set_conditions(const AreaVector& alpha, const AreaVector& beta);
   bool apart_throughout() const;
@@ -81,7 +81,7 @@ class FirstContact {
   Elements elements_;
   Vertices vertices_;
   AreaVector normal_;
-  std::array<AreaVector, 4> conditions_;  ///< not opposite to the normal where the elements touch
+  std::array<AreaVector, 4> conditions_;  ///< do not point against the normal where the elements touch
   std::size_t condition_count_ = 0;
   std::optional<TimeBracket> first_;
   bool exhausted_ = false;
@@ -159,7 +159,7 @@ bool FirstContact<Numbers>::apart_throughout() const {
   return false;
 }
 
-/// The first contact is at the start or where one of the signs changes that decide.
+/// The first contact is at the start, or where a sign that decides changes.
 template <class Numbers>
 void FirstContact<Numbers>::search_in_one_plane() {
   consider(Root{}, {});
@@ -173,7 +173,7 @@ void FirstContact<Numbers>::search_in_one_plane() {
   search_along_lines();
 }
 
-/// The face or both edges are on one line at all times, the others in it or not.
+/// For a face or two edges that lie on one line at all times.
 template <class Numbers>
 void FirstContact<Numbers>::search_along_lines() {
   for (const auto [point, a, b] : segments()) {
@@ -231,7 +231,7 @@ template <class Numbers>
 bool FirstContact<Numbers>::inside(Root& root, const Definition& definition, std::size_t axis,
                                    int normal_sign) const {
   for (const AreaVector& condition : conditions()) {
-    // α = 0 and the like make all components zero.
+    // A condition that is 0 has all components 0.
     if (sign_at(root, definition, condition[axis], condition) == -normal_sign) return false;
   }
   return true;
@@ -248,7 +248,7 @@ bool FirstContact<Numbers>::on_one_segment(Root& root, Definition definition) co
   return false;
 }
 
-/// Of three vertices on one line: the first is in the box of the others.
+/// For three vertices on one line: whether the first is in the box of the others.
 template <class Numbers>
 bool FirstContact<Numbers>::between_ends(Root& root, const Definition& definition,
                                          const PointAndSegment& vertices) const {
@@ -261,7 +261,7 @@ bool FirstContact<Numbers>::between_ends(Root& root, const Definition& definitio
   return true;
 }
 
-/// Of a polynomial that is zero at the root just when the others named are.
+/// The sign of a polynomial that is 0 at the root exactly when all of `zero_together` are.
 template <class Numbers>
 int FirstContact<Numbers>::sign_at(Root& root, const Definition& definition,
                                    const Quadratic<Area>& polynomial,
@@ -272,7 +272,7 @@ int FirstContact<Numbers>::sign_at(Root& root, const Definition& definition,
   return result;
 }
 
-/// All of the polynomials, at the root.
+/// Whether all polynomials are 0 at the root.
 template <class Numbers>
 bool FirstContact<Numbers>::vanish(const Root& root, Definition definition,
                                    std::span<const Quadratic<Area>> polynomials) const {

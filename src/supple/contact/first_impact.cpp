@@ -2,18 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string>
 
 #include "contact/closest_points.hpp"
 #include "contact/exact_impact.hpp"
 #include "contact/impact_search.hpp"
-#include "core/error.hpp"
 #include "geometry/vector.hpp"
+#include "supple/option_descriptions.hpp"
 
 namespace supple {
 namespace {
 
-/// Of length 1, or zero when there is no direction in it. Scaled first, so that squares do not underflow.
+/// A vector of length 1, or 0 when `v` has no direction. Scales first, so that squares do not underflow.
 Vec3d normalized(const Vec3d& v) {
   const double size = largest_magnitude(v);
   if (!(size > 0) || !std::isfinite(size)) return {};
@@ -21,11 +20,11 @@ Vec3d normalized(const Vec3d& v) {
   return (1 / std::sqrt(dot(scaled, scaled))) * scaled;
 }
 
-/// Less than this part of the magnitudes that went into a product counts as no direction.
+/// A product smaller than this fraction of the magnitudes of its terms has no reliable direction.
 constexpr double negligible = 0x1p-40;
 
-/// Across both elements, towards the side from which the first came: where it was before, if there was a
-/// before, else against its velocity.
+/// The unit vector across both elements, towards the side from which the first element came: against its
+/// velocity, or else towards its position at the start.
 Vec3d normal_across(const RelativeMotion& motion, const RelativePlaces<double>& places,
                     const ClosestPoints& at) {
   const Vec3d product = cross(normalized(places.u), normalized(places.w));
@@ -36,13 +35,14 @@ Vec3d normal_across(const RelativeMotion& motion, const RelativePlaces<double>& 
   const double side = dot(n, before), approach = dot(n, normalized(velocity));
   if (std::fabs(approach) > negligible) return approach < 0 ? n : -1.0 * n;
   if (std::fabs(side) > negligible) return side > 0 ? n : -1.0 * n;
-  // Within one plane, or along one line: back to where it came from, or the only direction that there is.
+  // The motion stays in one plane or on one line. Point back to where the element came from, or else against
+  // its velocity.
   if (before != Vec3d{}) return before;
   if (velocity != Vec3d{}) return -1.0 * normalized(velocity);
   return n;
 }
 
-/// Places times a power of two, so that products of coordinates neither overflow nor underflow.
+/// Places times a power of two, so that products of coordinates do not overflow or underflow.
 struct Scaled {
   double factor = 1;
   RelativePlaces<double> places;
@@ -71,7 +71,7 @@ Impact impact_at(const Motion& motion, const RelativeMotion& relative, double ti
     impact.barycentric = {1, std::max(0.0, 1 - at.alpha - at.beta), at.alpha, at.beta};
     impact.point = 0.5 * (p[0] + (impact.barycentric[1] * p[1] + at.alpha * p[2] + at.beta * p[3]));
   }
-  // Where the elements are kept apart, the vector between them is known well; where they touch, it is not.
+  // The vector between the elements is accurate when they are apart, but not when they touch.
   const bool apart = separation > 0 && std::sqrt(at.squared_distance) > 0.5 * places.factor * separation;
   impact.normal = apart ? normalized(at.difference) : normal_across(relative, places.places, at);
   return impact;
@@ -88,19 +88,13 @@ bool is_finite(const Motion& motion) {
 
 template <class Motion>
 std::optional<Impact> checked_first_impact(const Motion& motion, const ImpactOptions& options) {
-  check_impact_options(options, "first_impact");
+  check(options, "first_impact");
   if (!is_finite(motion)) return std::nullopt;
   bool used_exact = false;
   return first_impact_of_finite(motion, relative_motion(motion), options, used_exact);
 }
 
 }  // namespace
-
-void check_impact_options(const ImpactOptions& options, const char* where) {
-  if (options.min_separation >= 0 && std::isfinite(options.min_separation)) return;
-  fail(std::string(where) + ": min_separation is " + std::to_string(options.min_separation) +
-       "; it must be a finite number, 0 or greater");
-}
 
 template <class Motion>
 std::optional<Impact> first_impact_of_finite(const Motion& motion, const RelativeMotion& relative,

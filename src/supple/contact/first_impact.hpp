@@ -7,14 +7,10 @@
 
 namespace supple {
 
-/// `first_impact` for motions whose coordinates are known to be finite and options that are known to be
-/// valid. `relative` is `relative_motion(motion)`. `used_exact` is set when floating point could not decide,
-/// and otherwise left alone.
+/// `first_impact` for finite coordinates and valid options. `relative` is `relative_motion(motion)`. Sets
+/// `used_exact` when floating point could not decide, and leaves it unchanged otherwise.
 template <class Motion>
 std::optional<Impact> first_impact_of_finite(const Motion& motion, const RelativeMotion& relative,
                                              const ImpactOptions& options, bool& used_exact);
-
-/// Throws `Error` naming the option.
-void check_impact_options(const ImpactOptions& options, const char* where);
 
 }  // namespace supple

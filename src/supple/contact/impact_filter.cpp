@@ -55,7 +55,7 @@ struct Places {
   Vector3 m, u, w;
 };
 
-/// Tests of one group of lanes. Each proves for some lanes that the elements stay apart.
+/// Tests on one vector of pairs. Each test proves for some lanes that the elements stay apart.
 class Group {
  public:
   HWY_INLINE Group(const RelativeMotionBlock& block, std::size_t first, bool is_square, float separation)
@@ -70,19 +70,19 @@ class Group {
     reach_ = add(add(reach_m_, reach_u_), reach_w_);
   }
 
-  /// All differences lie strictly on one side of the plane through the origin across n, at both ends and so
-  /// always, by more than the separation.
+  /// Whether all differences lie on one side of the plane through the origin with normal n, by more than the
+  /// separation, at both ends of the step and so throughout.
   ///
   /// The three products of a dot product, the roundings of the coordinates (2^-24 each) and of the two sums
-  /// make an error below 6 · 2^-24 of the magnitudes' sum; the extent of the elements adds two more terms and
-  /// roundings. 2^-20 covers them all and the rounding of the bound, the constants cover underflow. What
-  /// overflows makes the bound infinite or NaN, and the comparison false.
+  /// make an error below 6 · 2^-24 of the magnitudes' sum. The extent of the elements adds two more terms and
+  /// roundings. 2^-20 covers all of these and the rounding of the bound; the constants cover underflow.
+  /// Overflow makes the bound infinite or NaN, and the comparison false.
   HWY_NOINLINE LaneMask separated_along(const Vector3& n) const {
     const Lanes d;
     const Vector size = sum(absolute(n));
     const Vector tiny = hn::Set(d, 0x1p-110f);
     Vector bound = hn::MulAdd(hn::Set(d, 0x1p-20f), dot(absolute(n), reach_), hn::MulAdd(tiny, size, tiny));
-    // The addend is more than squares that underflow make.
+    // The addend covers squares that underflow.
     const Vector length =
         hn::Mul(hn::Sqrt(hn::Add(dot(n, n), hn::Set(d, 0x1p-100f))), hn::Set(d, 1 + 0x1p-20f));
     bound = hn::MulAdd(separation_, length, bound);
@@ -95,10 +95,11 @@ class Group {
     return hn::Gt(hn::Max(above, hn::Neg(below)), bound);
   }
 
-  /// The tetrahedron of the four vertices never becomes flat: all Bernstein coefficients of its volume have
-  /// one sign. With a separation, it stays higher than that over the plane of u and w.
+  /// Whether the tetrahedron of the four vertices never becomes flat: all Bernstein coefficients of its
+  /// volume have one sign. With a separation, its height over the plane of u and w must stay above the
+  /// separation.
   ///
-  /// Coordinates, minors, products and sums take part in at most 12 roundings of 2^-24, 2^-19 is more than
+  /// Coordinates, minors, products and sums take part in at most 12 roundings of 2^-24; 2^-19 is more than
   /// twice that. Eight times the magnitudes overflow before any sum does.
   HWY_NOINLINE LaneMask never_coplanar() const {
     const Lanes d;
@@ -145,7 +146,7 @@ class Group {
   }
 
  private:
-  /// Of alpha su + beta sw, the greatest value over the domain.
+  /// The greatest value of alpha su + beta sw over the domain.
   HWY_INLINE Vector extent(Vector su, Vector sw) const {
     const Vector zero = hn::Zero(Lanes());
     const Vector positive_u = hn::Max(su, zero), positive_w = hn::Max(sw, zero);

@@ -7,8 +7,8 @@
 
 namespace supple {
 
-/// Up to 64 pairs of elements of one kind in structure-of-arrays, as `RelativeMotion` has them, each
-/// coordinate rounded to float once.
+/// Up to 64 relative motions of one kind of elements as structure of arrays, each coordinate rounded to float
+/// once.
 struct RelativeMotionBlock {
   static constexpr std::size_t capacity = 64;
   enum Row : std::size_t { m = 0, u = 3, w = 6, end = 9, row_count = 18 };
@@ -23,8 +23,8 @@ struct RelativeMotionBlock {
   void set(std::size_t pair, const RelativeMotion& motion);
 };
 
-/// Bit i: pair i may come within `separation` (≥ 0) during the step. Never misses one; most pairs whose boxes
-/// meet are told apart. In vector lanes, 5 to 10 ns a pair.
+/// Bit i is set when pair i may come within `separation` (≥ 0) during the step. Never misses a pair, and
+/// rejects most pairs whose boxes overlap. Takes 5 to 10 ns a pair.
 std::uint64_t may_touch(const RelativeMotionBlock& block, std::size_t count, bool is_square,
                         float separation);
 

@@ -15,7 +15,7 @@ namespace {
 
 using Outcome = ImpactSearch::Outcome;
 
-/// Greatest magnitudes over the step of a vector that goes straight, and of its change.
+/// Greatest magnitudes over the step of a vector that moves linearly, and of its change.
 struct Extent {
   double size, change;
 
@@ -26,12 +26,13 @@ struct Extent {
 
 enum class Place : std::uint8_t { inside, outside, unclear };
 
-/// Where the common point of the elements lies, were there one at any time within [low, high].
+/// Where a common point of the elements would lie at any time within [low, high].
 ///
-/// From m = alpha u + beta w follow (m × w) · n = alpha n² and (u × m) · n = beta n² with n = u × w, also
-/// where n is zero. Each of these and n² is a sum of twelve products of four coordinates. At the middle they
-/// are off by at most 20 roundings: three for each factor and eight for the rest; and change towards the ends
-/// by at most half the interval times twelve times the product with one factor replaced by its change.
+/// With n = u × w, m = alpha u + beta w implies (m × w) · n = alpha n² and (u × m) · n = beta n², also where
+/// n is 0. Each of these and n² is a sum of twelve products of four coordinates. At the middle of the
+/// interval at most 20 roundings take part: three for each factor and eight for the rest. Towards the ends a
+/// value changes by at most half the interval times twelve times the product with one factor replaced by its
+/// change.
 Place place_in_domain(const RelativeMotion& motion, double low, double high) {
   const Extent em(motion.start.m, motion.end.m), eu(motion.start.u, motion.end.u),
       ew(motion.start.w, motion.end.w);
@@ -51,7 +52,7 @@ Place place_in_domain(const RelativeMotion& motion, double low, double high) {
   const auto [m, u, w] = places_at(motion, low + (high - low) / 2);
   const Vec3d n = cross(u, w);
   const double alpha = dot(cross(m, w), n), beta = dot(cross(u, m), n), one = dot(n, n);
-  // Distances from the borders of the domain, and what they may be off by.
+  // Distances from the borders of the domain, with error bounds.
   const std::array<Filtered, 4> square{{{alpha, alpha_error},
                                         {beta, beta_error},
                                         {one - alpha, alpha_error + n_error},
@@ -69,7 +70,7 @@ Place place_in_domain(const RelativeMotion& motion, double low, double high) {
   return inside ? Place::inside : Place::unclear;
 }
 
-/// By the times at which the four vertices lie in one plane.
+/// Searches the times at which the four vertices lie in one plane.
 Outcome search_coplanar_times(const RelativeMotion& motion, double& time) {
   constexpr double longest = toi_tolerance / 2;
   const VolumePolynomial volume(motion);
@@ -90,7 +91,7 @@ Outcome search_coplanar_times(const RelativeMotion& motion, double& time) {
   return volume.never_zero(passed, 1) ? Outcome::apart : Outcome::unsure;
 }
 
-/// Differences of the elements as seen from a moment: where they are closest, and their corners.
+/// The elements at one time: their differences, and where they are closest.
 struct Moment {
   double time;
   RelativePlaces<double> places;
@@ -104,30 +105,32 @@ struct Moment {
         distance(std::sqrt(closest.squared_distance)) {}
 };
 
-/// Components along `direction` of the differences' corners; those of two edges are four.
+/// Components along `direction` of the corners of the differences. Two edges have four corners, a vertex and
+/// a face the first three.
 std::array<double, 4> corners_along(const Vec3d& direction, const RelativePlaces<double>& places) {
   const double m = dot(direction, places.m), u = dot(direction, places.u), w = dot(direction, places.w);
   return {m, m - u, m - w, m - u - w};
 }
 
-/// Greatest magnitudes over the step, by axis, of everything that makes up a difference.
+/// A bound of the magnitudes of all terms of a difference over the step, by axis.
 Vec3d reach_of(const RelativeMotion& motion) {
   const auto& [start, end, is_square] = motion;
   return larger(absolute(start.m), absolute(end.m)) + larger(absolute(start.u), absolute(end.u)) +
          larger(absolute(start.w), absolute(end.w));
 }
 
-/// Whether the elements are farther apart than the separation from one moment to the other, without doubt.
+/// Whether the elements are proven to be farther apart than the separation between two times.
 ///
-/// Let n go straight from the direction in which they are closest at first to that at last, and all corners
-/// as they do: along n, each is a quadratic in time, and |n| is convex. They are apart where the quadratics
-/// are above the separation times a bound of |n|: where Bernstein coefficients are. Each is off by at most 16
-/// roundings of the magnitudes' sum: three for places, six for components and sums, three for the mean.
+/// Let n move linearly from the closest direction at the first time to that at the last. The components of
+/// the corners along n are then quadratic in time, and |n| is convex. The elements are apart where these
+/// quadratics are above the separation times a bound of |n|, which their Bernstein coefficients prove. At
+/// most 16 roundings of the magnitudes' sum take part: three for places, six for components and sums, three
+/// for the mean.
 bool apart_between(const Moment& first, const Moment& last, const RelativeMotion& motion, const Vec3d& reach,
                    double separation) {
   const Vec3d &n0 = first.closest.difference, &n1 = last.closest.difference;
   const double slack = 0x1p-48 * dot(larger(absolute(n0), absolute(n1)), reach) + 0x1p-900;
-  // The addend is more than squares that underflow make.
+  // The addend covers squares that underflow.
   const auto bound = [&](const Vec3d& n) {
     return separation > 0 ? separation * std::sqrt(dot(n, n) + 0x1p-900) * (1 + 0x1p-49) : 0;
   };
@@ -140,13 +143,13 @@ bool apart_between(const Moment& first, const Moment& last, const RelativeMotion
   return true;
 }
 
-/// Within the separation, without doubt: places and closest points make not more than 12 roundings of each of
-/// three coordinates of the difference, its length 8.
+/// Whether the elements are proven to be within the separation. Each coordinate of the difference takes at
+/// most 12 roundings, its length 8.
 bool surely_touching(const Moment& moment, const Vec3d& reach, double separation) {
   return moment.distance * (1 + 0x1p-49) + 0x1p-46 * (reach.x + reach.y + reach.z) + 0x1p-500 < separation;
 }
 
-/// When the distance becomes the separation by its rate of change; beyond the step when it grows.
+/// When the distance reaches the separation at its present rate of change; after the step when it grows.
 double expected_time(const Moment& moment, const RelativeMotion& motion, double separation) {
   const auto& [start, end, is_square] = motion;
   const ClosestPoints& at = moment.closest;
@@ -155,8 +158,8 @@ double expected_time(const Moment& moment, const RelativeMotion& motion, double 
   return rate < 0 ? moment.time + (moment.distance - separation) / -rate : 2;
 }
 
-/// Goes forward in time as long as the elements are seen to be apart: conservative advancement along a
-/// direction that turns with them. Closes in quadratically on the moment at which they touch.
+/// Conservative advancement along a direction that turns with the elements. Converges quadratically to the
+/// time at which they touch.
 Outcome advance(const RelativeMotion& motion, double separation, double& time) {
   constexpr int most_steps = 200;  // some microseconds, where algebra takes hundreds
   constexpr double closing = toi_tolerance / 4;
@@ -166,10 +169,10 @@ Outcome advance(const RelativeMotion& motion, double separation, double& time) {
   if (!apart_between(here, here, motion, reach, separation)) {
     return surely_touching(here, reach, separation) ? Outcome::touching : Outcome::unsure;
   }
-  double farthest = 1;  // that is worth a try
+  double farthest = 1;  // time worth trying
   for (int step = 0; step < most_steps; ++step) {
     const double expected = expected_time(here, motion, separation);
-    // Rather short of it: beyond, the way there cannot be seen to be free.
+    // Stays short of the expected time, because nothing can be proven beyond it.
     double next = std::min(expected - (expected - time) / 16, farthest);
     const bool is_closing = !(next - time > closing);
     if (is_closing) next = std::min(time + closing, 1.0);

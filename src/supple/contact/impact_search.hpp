@@ -6,18 +6,18 @@
 
 namespace supple {
 
-/// What floating point can prove of the first impact of two elements.
+/// What floating point can prove about the first impact of two elements.
 struct ImpactSearch {
   enum class Outcome : std::uint8_t {
     apart,     ///< they do not touch within the step
-    touching,  ///< they do, first within `toi_tolerance` after `time`
-    unsure,    ///< only exact arithmetic can tell; they do not touch before `time`
+    touching,  ///< they touch, first at most `toi_tolerance` after `time`
+    unsure,    ///< only exact arithmetic can decide; they do not touch before `time`
   };
   Outcome outcome = Outcome::unsure;
   double time = 0;
 };
 
-/// Every outcome is proven by error bounds, for all finite coordinates. About 0.3 µs. `separation` ≥ 0.
+/// Error bounds prove every outcome, for all finite coordinates. `separation` ≥ 0. Takes about 0.3 µs.
 ImpactSearch search_impact(const RelativeMotion& motion, double separation);
 
 RelativePlaces<double> places_at(const RelativeMotion& motion, double time);

@@ -13,13 +13,13 @@
 namespace supple {
 namespace {
 
-/// Of the end points of an edge from the plane or line that it crosses, up to a common factor.
+/// Distances of an edge's end points from the plane or line that it crosses, up to a common factor.
 struct Distances {
   double first, second;
 };
 
-/// Floating point will do when both distances are known to this fraction of their sum: the parameter of the
-/// crossing is then off by twice as much at most.
+/// Floating point suffices when the errors of both distances are below this fraction of their sum. The error
+/// of the crossing's parameter is then at most twice as large.
 constexpr double accepted_error = 0x1p-46;
 
 struct Edge {
@@ -56,7 +56,7 @@ Distances distances_from_plane(const Edge& edge, const TrianglePoints& triangle)
   });
 }
 
-/// Seen along `axis`, of the ends of `edge` from the line of `other`.
+/// The signed distance of `point` from the line of `other` in the projection along `axis`, up to a factor.
 Filtered turn(const Edge& other, const Vec3d& point, int axis) {
   const int x = (axis + 1) % 3, y = (axis + 2) % 3;
   const double left = (other.second[x] - other.first[x]) * (point[y] - other.first[y]);
@@ -88,7 +88,7 @@ Distances distances_from_line(const Edge& edge, const Edge& other) {
   return best;
 }
 
-/// The point of the segment at `part`, 0 to 1/2, of the way.
+/// The point at the fraction `part`, 0 to 1/2, of the way.
 double interpolate(double from, double to, double part) {
   const double extent = to - from;
   if (std::isfinite(extent)) return from + part * extent;
@@ -103,7 +103,7 @@ Vec3d crossing(const Edge& edge, const Distances& distances) {
   return {interpolate(from.x, to.x, part), interpolate(from.y, to.y, part), interpolate(from.z, to.z, part)};
 }
 
-/// The exact point is in the box of `points`, so that moving a rounded one there brings it closer.
+/// The exact point is in the box of `points`, so clamping the rounded point cannot increase its error.
 template <std::size_t count>
 Vec3d clamp_to_box(Vec3d point, const std::array<Vec3d, count>& points) {
   for (int axis = 0; axis < 3; ++axis) {

@@ -7,9 +7,9 @@
 
 namespace supple {
 
-/// Two elements as one of them sees the other: their points differ by `m` - alpha `u` - beta `w`, where
-/// (alpha, beta) runs over the corner triangle alpha, beta >= 0, alpha + beta <= 1 for a vertex and a face,
-/// and over the unit square for two edges. All three vectors go straight from `start` to `end`.
+/// Two elements relative to each other. The differences of their points are `m` - alpha `u` - beta `w`, where
+/// (alpha, beta) runs over the triangle alpha, beta >= 0, alpha + beta <= 1 for a vertex and a face, and over
+/// the unit square for two edges. All three vectors move linearly from `start` to `end`.
 template <class Scalar>
 struct RelativePlaces {
   Vec3<Scalar> m, u, w;

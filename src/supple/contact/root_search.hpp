@@ -18,7 +18,7 @@ template <class Numbers>
 struct StepRoots {
   std::array<StepRoot<Numbers>, 3> roots{};
   std::size_t count = 0;
-  bool incomplete = false;  ///< the numbers do not suffice to tell them apart
+  bool incomplete = false;  ///< the integers are too short to separate all roots
 
   void add(const Cubic<typename Numbers::VolumeAtTime>& powers, int sign_before,
            const TimeInterval<Numbers>& interval) {
@@ -26,7 +26,7 @@ struct StepRoots {
   }
 };
 
-/// The polynomial's Hessian covariant, which is a square just where the polynomial has a repeated root.
+/// The polynomial's Hessian covariant. It is a square exactly when the polynomial has a repeated root.
 template <class Int>
 auto hessian(const Cubic<Int>& c) {
   const auto c02 = product(c[0], c[2]), c03 = product(c[0], c[3]), c13 = product(c[1], c[3]);
@@ -39,7 +39,7 @@ bool is_square(const Quadratic<Int>& q) {
   return sign(product(q[1], q[1]) - (product(q[0], q[2]) << 2)) == 0;
 }
 
-/// A polynomial with the roots of one that has a repeated root and changes of sign, all simple.
+/// A polynomial with the same roots, all simple. `polynomial` has a repeated root and changes its sign.
 inline Cubic<UnboundedInteger> without_repetition(const Cubic<UnboundedInteger>& c) {
   const Quadratic<UnboundedInteger> square = hessian(c);
   if (all_zero(square)) return raised(raised(std::array<UnboundedInteger, 2>{3 * c[0], c[1]}));
@@ -49,8 +49,7 @@ inline Cubic<UnboundedInteger> without_repetition(const Cubic<UnboundedInteger>&
   return raised(Quadratic<UnboundedInteger>{p * p * c[1] - q * rest, p * rest, p * p * c[3]});
 }
 
-/// All roots from 0 to 1 of a polynomial that is not zero, by bisection until Descartes' rule tells them
-/// apart.
+/// All roots in [0, 1] of a polynomial that is not 0, by bisection until Descartes' rule separates them.
 template <class Numbers>
 StepRoots<Numbers> find_roots(const Cubic<typename Numbers::Volume>& polynomial) {
   using Value = typename Numbers::VolumeAtTime;
@@ -82,7 +81,7 @@ StepRoots<Numbers> find_roots(const Cubic<typename Numbers::Volume>& polynomial)
     const Cubic<Value> left = first_half(piece), right = second_half(piece);
     const Time before = index << 1, middle = before + one;
     if (sign(right[0]) == 0) found.add(whole, 0, {middle, middle, exponent + 1});
-    // The halves together have no more changes of sign than the whole.
+    // The two halves together have at most as many changes of sign as the whole.
     const SignChanges left_changes = sign_changes(left), right_changes = sign_changes(right);
     const bool go_left = left_changes.count > 1;
     if (go_left && right_changes.count == 1) {
@@ -96,8 +95,8 @@ StepRoots<Numbers> find_roots(const Cubic<typename Numbers::Volume>& polynomial)
   }
 }
 
-/// Halves the interval, or finds the root to be its middle. False when it is a point already or the numbers
-/// end.
+/// Halves the interval, or sets it to the middle when that is the root. Returns false when the interval is a
+/// point already, or when the integers are too short.
 template <class Numbers>
 bool narrow(StepRoot<Numbers>& root) {
   TimeInterval<Numbers>& interval = root.interval;
@@ -121,8 +120,8 @@ double round_time(const Time& numerator, int exponent, bool up) {
   return std::ldexp(static_cast<double>(lowest_word(kept)) + (up && inexact ? 1 : 0), excess - exponent);
 }
 
-/// For 0 < time < 1: numerator / 2^exponent, after the interval was given that exponent. False when the
-/// numbers end.
+/// Writes `time`, 0 < time < 1, as numerator / 2^exponent with the interval's exponent, which grows if
+/// needed. Returns false when the integers are too short.
 template <class Numbers>
 bool to_numerator(double time, StepRoot<Numbers>& root, typename Numbers::Time& numerator) {
   const Dyadic dyadic(time);
@@ -137,7 +136,7 @@ bool to_numerator(double time, StepRoot<Numbers>& root, typename Numbers::Time& 
   return true;
 }
 
-/// The polynomial in floating point, to guess well where exact evaluation is worth while.
+/// The polynomial in floating point, to guess where to evaluate exactly.
 struct RoundedCubic {
   std::array<double, 4> powers;
   int exponent = 0;  ///< values are 2^exponent times those of the polynomial
@@ -166,13 +165,13 @@ struct RoundedCubic {
   }
 };
 
-/// The double nearest to the middle of two in the order of doubles, which reaches all magnitudes soon.
+/// The middle of two doubles in the order of doubles: bisection then reaches all magnitudes quickly.
 inline double middle_double(double low, double high) {
   const auto first = std::bit_cast<std::uint64_t>(low), last = std::bit_cast<std::uint64_t>(high);
   return std::bit_cast<double>(first + (last - first) / 2);
 }
 
-/// The doubles next to the root. The interval ends at most there afterwards.
+/// The doubles next to the root. Narrows the interval to at most these.
 template <class Numbers>
 TimeBracket neighbouring_doubles(StepRoot<Numbers>& root) {
   TimeInterval<Numbers>& interval = root.interval;
@@ -184,7 +183,7 @@ TimeBracket neighbouring_doubles(StepRoot<Numbers>& root) {
   const RoundedCubic rounded(root.powers);
   double t = rounded.guess(low, high, root.sign_before);
   for (int step = 1; next_above_low() < high; ++step) {
-    // Newton's steps from exact values nearly always end at once; these make sure that it does end.
+    // Newton steps from exact values nearly always end at once. The bisection guarantees that the loop ends.
     if (step % 4 == 0 || !(t > low && t < high))
       t = step < 64 ? low + (high - low) / 2 : middle_double(low, high);
     typename Numbers::Time numerator;

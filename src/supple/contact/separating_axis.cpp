@@ -19,7 +19,7 @@
 //    w across d, d × (w × d), separates; or it is on that line, and d separates if anything does.
 // 0: two points, different exactly when one of the coordinate axes separates them.
 //
-// An axis that is zero separates nothing, so triangles without area need no case of their own.
+// An axis that is 0 separates nothing, so triangles without area need no special case.
 
 namespace supple {
 namespace {

@@ -7,9 +7,9 @@
 
 namespace supple {
 
-// Polynomials over the step. The coefficients c of one of degree d mean the sum of c[i] t^i (1 - t)^(d-i), as
-// which they are also a form in x = t and y = 1 - t. Coefficients of one sign prove that sign for 0 < t < 1,
-// and roots there are at most as many as changes of sign, and as many up to an even number.
+// Polynomials over the step. Coefficients c of degree d stand for the sum of c[i] t^i (1 - t)^(d-i), which is
+// also a form in x = t and y = 1 - t. Coefficients of one sign prove that sign for 0 < t < 1. The number of
+// roots there is the number of changes of sign, or less by an even number (Descartes' rule).
 
 template <class Int>
 using Quadratic = std::array<Int, 3>;
@@ -24,7 +24,7 @@ bool all_zero(const std::array<Int, size>& polynomial) {
   return true;
 }
 
-/// That of all coefficients, or 0.
+/// The sign of all coefficients, or 0 when they differ.
 template <class Int, std::size_t size>
 int strict_sign(const std::array<Int, size>& polynomial) {
   const int first = sign(polynomial[0]);
@@ -35,7 +35,7 @@ int strict_sign(const std::array<Int, size>& polynomial) {
 }
 
 struct SignChanges {
-  int first = 0;  ///< sign of the first coefficient that is not zero: that of the polynomial after t = 0
+  int first = 0;  ///< sign of the first coefficient that is not 0: the polynomial's sign just after t = 0
   int count = 0;
 };
 
@@ -53,7 +53,7 @@ SignChanges sign_changes(const std::array<Int, size>& polynomial) {
   return changes;
 }
 
-/// The same polynomial, times t + (1 - t).
+/// The same polynomial, one degree higher: times t + (1 - t).
 template <class Int>
 Quadratic<Int> raised(const std::array<Int, 2>& linear) {
   return {linear[0], linear[0] + linear[1], linear[1]};
@@ -81,7 +81,7 @@ Cubic<Int> powers(const Cubic<Int>& c) {
   return {c[0], c[1] - tripled, tripled - c[1] - c[1] + c[2], c[3] - c[2] + c[1] - c[0]};
 }
 
-/// 8 times the polynomial over the first half of the step, taken as a step of its own: y becomes x + 2 y.
+/// 8 times the polynomial over the first half of the step, mapped to [0, 1]: y becomes x + 2 y.
 template <class Int>
 Cubic<Int> first_half(const Cubic<Int>& c) {
   const Int sum = c[0] + c[1], tripled = sum + c[0] + c[0];

@@ -12,8 +12,8 @@
 namespace supple {
 
 /// Integers for coordinates whose differences are below 2^(64 limbs - 3), and for times n / 2^k, k ≤ finest.
-/// Polynomials of the second degree then have coefficients below 2^(128 limbs - 2), of the third below
-/// 2^(192 limbs - 3); values at a time are taken 2^k times as large for each degree.
+/// Quadratic polynomials then have coefficients below 2^(128 limbs - 2), cubic ones below 2^(192 limbs - 3).
+/// Values at a time are multiplied by 2^k for each degree.
 template <std::size_t limbs>
 struct FixedNumbers {
   static constexpr int finest = 120;
@@ -34,7 +34,7 @@ struct UnboundedNumbers {
   using VolumeAtTime = UnboundedInteger;
 };
 
-/// From low / 2^exponent to high / 2^exponent, without its ends unless they are equal.
+/// The open interval from low / 2^exponent to high / 2^exponent, or that one point when both are equal.
 template <class Numbers>
 struct TimeInterval {
   typename Numbers::Time low{}, high{};
@@ -43,13 +43,13 @@ struct TimeInterval {
   bool is_point() const { return low == high; }
 };
 
-/// The only root of a cubic polynomial in an interval, or exactly that point. It is a simple root.
+/// A simple root of a cubic polynomial: the only one in the interval.
 template <class Numbers>
 struct StepRoot {
   TimeInterval<Numbers> interval;
-  int sign_before = 0;                             ///< of the polynomial in the interval before the root
+  int sign_before = 0;                             ///< sign of the polynomial in the interval before the root
   Cubic<typename Numbers::VolumeAtTime> powers{};  ///< coefficients of 1, t, t², t³
-  bool too_fine = false;                           ///< the numbers do not suffice to go on
+  bool too_fine = false;  ///< the integers are too short to narrow the interval further
 };
 
 /// 8^exponent times the value at time / 2^exponent.
@@ -60,8 +60,8 @@ Int value_at(const Cubic<Int>& powers, const Time& time, int exponent) {
   return scaled(value, time) + (powers[0] << 3 * exponent);
 }
 
-/// Signs of the coefficients of the polynomial over the interval, taken as a step of its own; of its value
-/// thrice if the interval is a point.
+/// Signs of the Bernstein coefficients of the polynomial over the interval. For a point, three times the sign
+/// of its value.
 template <class Numbers>
 std::array<int, 3> signs_over(const TimeInterval<Numbers>& interval,
                               const Quadratic<typename Numbers::Area>& quadratic) {
@@ -76,7 +76,7 @@ std::array<int, 3> signs_over(const TimeInterval<Numbers>& interval,
   return {sign(at_low), sign(between + between + slope + constant + constant), sign(at_high)};
 }
 
-/// The sign that the polynomial has in all of the interval, or 0 when that is not seen.
+/// The sign that the polynomial has throughout the interval, or 0 when the coefficients do not prove one.
 template <class Numbers>
 int sign_over(const TimeInterval<Numbers>& interval, const Quadratic<typename Numbers::Area>& quadratic) {
   if (interval.is_point() && interval.exponent == 0) {
@@ -112,7 +112,7 @@ class CommonRoots {
     }
   }
 
-  /// True if all polynomials added were zero.
+  /// Whether all polynomials have a common root in the interval. True if all are 0.
   bool any_in(const TimeInterval<Numbers>& interval) const {
     if (!exist_ || all_zero(first_)) return exist_;
     return unique_ ? unique_root_in(interval) : root_of_first_in(interval);
@@ -141,7 +141,7 @@ class CommonRoots {
 
   bool exist_ = true, unique_ = false;
   Quadratic<Area> first_{};
-  Quadratic<Square> squares_{};  ///< y², x y and x² of the unique root t = x / (x + y), times one factor
+  Quadratic<Square> squares_{};  ///< y², x y and x² of the unique root t = x / (x + y), up to a common factor
 };
 
 }  // namespace supple

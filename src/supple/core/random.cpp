@@ -36,7 +36,7 @@ double Random::uniform() {
   return unit(next());
 }
 
-/// Of points in a cube, those in the ball: without trigonometry.
+/// Draws points in a cube until one is in the sphere: needs no trigonometry.
 Vec3d Random::direction() {
   for (;;) {
     const double x = 2 * uniform() - 1, y = 2 * uniform() - 1, z = 2 * uniform() - 1;

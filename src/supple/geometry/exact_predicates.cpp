@@ -9,7 +9,7 @@
 namespace supple {
 namespace {
 
-/// Products of up to three such numbers are zero only if a factor is.
+/// Products of up to three such numbers are 0 only if a factor is 0.
 bool zero_or_large(double value) {
   return value == 0 || std::fabs(value) > 0x1p-300;
 }
@@ -17,7 +17,7 @@ bool zero_or_large(const Vec3d& v) {
   return zero_or_large(v.x) && zero_or_large(v.y) && zero_or_large(v.z);
 }
 
-/// Coordinates shared by the points, as in flat or touching parts, make each product zero by itself.
+/// Equal coordinates, as in flat or touching parts, make each product 0 by itself.
 bool plainly_coplanar(const FilteredPlane& plane, const Vec3d& b, const Vec3d& c, const Vec3d& d) {
   const Vec3d& a = plane.origin;
   return dot(plane.magnitude, absolute(d - a)) == 0 && zero_or_large(b - a) && zero_or_large(c - a) &&
@@ -65,7 +65,7 @@ int orient2d(const Vec3d& a, const Vec3d& b, const Vec3d& c, int axis, bool& use
 }
 
 Projection find_projection(const Vec3d& a, const Vec3d& b, const Vec3d& c, bool& used_exact) {
-  // The largest component first: it is the one that the filter is most likely to decide.
+  // The filter most probably decides the largest component, so that is tried first.
   const Vec3d normal = absolute(FilteredPlane(a, b, c).normal);
   const int first = normal.x >= normal.y && normal.x >= normal.z ? 0 : normal.y >= normal.z ? 1 : 2;
   for (int i = 0; i < 3; ++i) {

@@ -10,8 +10,8 @@
 
 namespace supple {
 
-// Doubles are integers times powers of two. Multiplying each axis by a power of two of its own makes all of
-// some points' coordinates integers, and changes neither the sign of a determinant of their differences nor
+// Doubles are integers times powers of two. Multiplying each axis by its own power of two makes all
+// coordinates of some points integers. It changes neither the sign of a determinant of their differences nor
 // the ratio of two such determinants.
 
 __extension__ typedef __int128 Int128;
@@ -146,10 +146,10 @@ Int to_integer(double value, int lowest) {
   return dyadic.negative ? Int(-result) : result;
 }
 
-/// `coordinates[axis][point]`, finite, two or three axes. Calls `compute(points)` with `points[point][axis]`,
-/// integers of the smallest type in which differences of the points and determinants of those fit. With two
-/// axes, a determinant of differences takes at most the sum of the axes' widths + 2 + 1 bits, with three + 3
-/// + 3.
+/// `coordinates[axis][point]` are finite, for two or three axes. Calls `compute(points)` with
+/// `points[point][axis]`, integers of the smallest type in which differences of the points and their
+/// determinants fit. A determinant of differences takes at most the sum of the axes' widths + 3 bits for two
+/// axes, + 6 bits for three.
 template <std::size_t axes, std::size_t count, class Compute>
 auto with_integers(const std::array<std::array<double, count>, axes>& coordinates, Compute compute) {
   std::array<int, axes> lowest;

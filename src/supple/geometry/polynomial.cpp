@@ -19,7 +19,7 @@ void shift_by_one(Coefficients& c) {
   }
 }
 
-/// 2^(n bits) q((x + k) / 2^bits), n being q's degree: q over one interval, moved to [0, 1].
+/// 2^(n bits) q((x + k) / 2^bits), where n is q's degree: q over one interval, mapped to [0, 1].
 Polynomial on_interval(const Polynomial& q, const BinaryFraction& left) {
   Coefficients c = q.coefficients();
   const std::size_t size = c.size();
@@ -48,8 +48,8 @@ Polynomial pseudo_remainder(const Polynomial& p, const Polynomial& q) {
   return Polynomial(std::move(rest));
 }
 
-/// Whether there is no common divisor in the integers modulo a prime, and hence none at all. Nearly always
-/// tells what the slow Euclidean algorithm with unbounded integers would.
+/// Whether p and q have no common divisor modulo a prime, and hence none at all. Nearly always saves the slow
+/// Euclidean algorithm with unbounded integers.
 bool coprime_modulo_prime(const Polynomial& p, const Polynomial& q) {
   static constexpr std::uint64_t prime = (std::uint64_t{1} << 61) - 1;
   const auto times = [](std::uint64_t a, std::uint64_t b) {
@@ -65,7 +65,7 @@ bool coprime_modulo_prime(const Polynomial& p, const Polynomial& q) {
     return result;
   };
   std::vector<std::uint64_t> a = residues(p), b = residues(q);
-  // With this leading coefficient, all divisors of p keep their degrees.
+  // The leading coefficient is not 0 modulo the prime, so all divisors of p keep their degrees.
   if (a.empty() || a.back() == 0) return false;
   while (true) {
     while (!b.empty() && b.back() == 0) b.pop_back();
@@ -79,7 +79,7 @@ bool coprime_modulo_prime(const Polynomial& p, const Polynomial& q) {
   }
 }
 
-/// p / q, where that has integer coefficients.
+/// p / q, where the quotient has integer coefficients.
 Polynomial exact_quotient(const Polynomial& p, const Polynomial& q) {
   Coefficients rest = p.coefficients();
   const Coefficients& divisor = q.coefficients();
@@ -105,8 +105,8 @@ void isolate(const Polynomial& p, Polynomial local, BinaryFraction left, std::ve
     roots.emplace_back(p, std::move(left));
     return;
   }
-  // With all variations in a part of the interval there are no roots in the rest. Long ways to the left come
-  // from numbers of very different size.
+  // When one part of the interval has all variations, the rest has no roots. Exponential steps to the left
+  // are fast when the roots have very different magnitudes.
   Polynomial half;
   for (int bits = 1; bits > 0;) {
     half = stretched(local, bits);
@@ -257,7 +257,7 @@ int UnitRoot::sign_of(const Polynomial& q) {
     const SignVariations variations = sign_variations(on_interval(q, left_));
     if (variations.count == 0) return variations.sign;
     if (may_be_zero && halvings > halvings_before_zero_is_likely) {
-      // A root of q here is one of the common divisor, which has no other here, and a simple one.
+      // A root of q here is a root of the common divisor, which has at most one root here, a simple one.
       if (sign_variations(on_interval(gcd(polynomial_, q), left_)).count % 2 == 1) return 0;
       may_be_zero = false;
     }
@@ -288,7 +288,7 @@ std::vector<UnitRoot> roots_in_unit_interval(const Polynomial& p) {
   if (variations == 1) {
     roots.emplace_back(p, BinaryFraction{});
   } else if (variations > 1) {
-    // Only simple roots can be told apart by halving intervals.
+    // Halving intervals separates only simple roots.
     const Polynomial simple = squarefree_part(p);
     isolate(simple, simple, {}, roots);
   }

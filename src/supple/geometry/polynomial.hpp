@@ -9,7 +9,7 @@
 namespace supple {
 
 /// A polynomial of one variable with integer coefficients of any size: c[0] + c[1] x + c[2] x² + …
-/// Without leading zeros, so that the polynomial 0 has no coefficients at all.
+/// The last coefficient is not 0; the polynomial 0 has no coefficients.
 class Polynomial {
  public:
   using Integer = UnboundedInteger;
@@ -34,7 +34,7 @@ class Polynomial {
 
 Polynomial derivative(const Polynomial& p);
 
-/// The coefficients divided by what they all have in common, the leading one made positive.
+/// The coefficients divided by their greatest common divisor, with a positive leading coefficient.
 Polynomial primitive_part(const Polynomial& p);
 
 /// The greatest common divisor, primitive. gcd(0, 0) = 0.
@@ -52,9 +52,9 @@ struct BinaryFraction {
 /// The sign of p(x), where x = numerator / 2^bits.
 int sign_at(const Polynomial& p, const BinaryFraction& x);
 
-/// What the signs of a polynomial's coefficients in the Bernstein basis of an interval tell of it.
+/// What the signs of a polynomial's Bernstein coefficients on an interval prove.
 struct SignVariations {
-  /// The roots in the open interval are as many, counted with multiplicity, or fewer by an even number
+  /// The number of roots in the open interval, counted with multiplicity, is this or less by an even number
   /// (Descartes' rule of signs).
   int count = 0;
   /// The sign throughout the open interval where `count` is 0; 0 for the polynomial 0.
@@ -66,13 +66,13 @@ SignVariations sign_variations(const Polynomial& p);
 
 /// The one root of a polynomial in some interval: an algebraic number in [0, 1].
 ///
-/// Keeps the open interval (k, k + 1) / 2^bits that holds it and no other root, or the number k / 2^bits
-/// that it is. The interval shrinks as questions ask for it, which changes none of the answers.
+/// Keeps an open interval (k, k + 1) / 2^bits that contains this root and no other, or the exact root
+/// k / 2^bits. Queries may narrow the interval, which does not change their results.
 class UnitRoot {
  public:
-  /// Exactly x.
+  /// The root is exactly x.
   explicit UnitRoot(BinaryFraction x);
-  /// In the open interval from x to x + 2^-x.bits, where p has one root, a simple one.
+  /// The root of p in the open interval from x to x + 2^-x.bits. p has exactly one root there, a simple one.
   UnitRoot(const Polynomial& p, BinaryFraction x);
 
   /// The sign that q has at the root.

@@ -7,23 +7,23 @@
 
 namespace supple {
 
-/// Closed balls, compared in double so that neither differences nor squares of floats overflow. May report
-/// balls as touching that are apart by rounding, never the reverse; symmetric in its arguments.
+/// Whether two closed spheres overlap. Compares in double, so that differences and squares of floats do not
+/// overflow. May report spheres as touching that rounding cannot separate, never the reverse. Symmetric.
 inline bool overlap(const BoundingSphere& a, const BoundingSphere& b) {
   if (a.empty() || b.empty()) return false;
   const double dx = double{a.center.x} - b.center.x;
   const double dy = double{a.center.y} - b.center.y;
   const double dz = double{a.center.z} - b.center.z;
   const double reach = double{a.radius} + b.radius;
-  // Six roundings of 2^-53 relative error are well inside the factor. Written so that NaN overlaps.
+  // The factor covers six roundings of 2^-53. The comparison makes NaN overlap.
   return !(dx * dx + dy * dy + dz * dz > reach * reach * (1 + 0x1p-49));
 }
 
-/// Encloses fl(p + offset) of every p in the ball.
+/// Encloses fl(p + offset) for every p in the sphere.
 inline BoundingSphere moved(const BoundingSphere& sphere, const Vec3d& offset) {
   if (offset == Vec3d{} || sphere.empty()) return sphere;
   BoundingSphere result;
-  double squared_shift = 0;  // of the centre, by rounding it to float
+  double squared_shift = 0;  // of the centre by rounding it to float
   double magnitude = sphere.radius;
   for (int axis = 0; axis < 3; ++axis) {
     const double center = double{sphere.center[axis]} + offset[axis];

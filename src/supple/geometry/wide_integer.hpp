@@ -13,9 +13,9 @@ namespace supple {
 
 __extension__ typedef unsigned __int128 UnsignedInt128;
 
-/// Integer of limbs · 64 bits, two's complement, wrapping. Its size is known when compiling, so that sums and
-/// products are straight runs of machine words: about ten times as fast as `FixedInteger`. Values too large
-/// for it wrap silently: who uses it proves that they do not occur.
+/// Integer of limbs · 64 bits in two's complement. The size is known at compile time, so sums and products
+/// compile to straight sequences of machine words, about ten times as fast as `FixedInteger`. Values that are
+/// too large wrap silently; callers prove that they do not occur.
 template <std::size_t limbs>
 struct WideInteger {
   std::array<std::uint64_t, limbs> words{};  ///< the least significant first
@@ -59,7 +59,7 @@ struct WideInteger {
     }
     return *this;
   }
-  /// Of values ≥ 0.
+  /// For values ≥ 0.
   WideInteger& operator>>=(int count) {
     const std::size_t whole = static_cast<std::size_t>(count) / 64;
     const int rest = count % 64;
@@ -87,7 +87,7 @@ int sign(const WideInteger<limbs>& value) {
   return any != 0;
 }
 
-/// The lowest `result` limbs of the product of two numbers that are taken as unsigned.
+/// The lowest `result` limbs of the product of two unsigned numbers.
 template <std::size_t result, std::size_t m, std::size_t n>
 WideInteger<result> unsigned_product(const WideInteger<m>& a, const WideInteger<n>& b) {
   WideInteger<result> product;
@@ -103,11 +103,11 @@ WideInteger<result> unsigned_product(const WideInteger<m>& a, const WideInteger<
   return product;
 }
 
-/// a · b, which always fits.
+/// a · b. The result always fits.
 template <std::size_t m, std::size_t n>
 WideInteger<m + n> product(const WideInteger<m>& a, const WideInteger<n>& b) {
   WideInteger<m + n> result = unsigned_product<m + n>(a, b);
-  // A negative number was taken as itself plus 2^(64 limbs).
+  // As an unsigned number, a negative one was larger by 2^(64 limbs).
   std::uint64_t borrow = 0;
   for (std::size_t i = 0; a.negative() && i < n; ++i) {
     const UnsignedInt128 rest = UnsignedInt128{result.words[m + i]} - b.words[i] - borrow;
@@ -132,7 +132,7 @@ inline UnboundedInteger product(const UnboundedInteger& a, const UnboundedIntege
   return a * b;
 }
 
-/// a · factor, which fits the type of a; factor ≥ 0.
+/// a · factor, where factor ≥ 0 and the product fits the type of a.
 template <std::size_t m, std::size_t n>
 WideInteger<m> scaled(const WideInteger<m>& a, const WideInteger<n>& factor) {
   return unsigned_product<m>(a, factor);
@@ -141,7 +141,7 @@ inline UnboundedInteger scaled(const UnboundedInteger& a, const UnboundedInteger
   return a * factor;
 }
 
-/// Of a value ≥ 0; 0 for 0.
+/// The number of bits of a value ≥ 0; 0 for 0.
 template <std::size_t limbs>
 int bit_length(const WideInteger<limbs>& value) {
   for (std::size_t i = limbs; i-- > 0;) {
@@ -161,7 +161,7 @@ inline std::uint64_t lowest_word(const UnboundedInteger& value) {
   return static_cast<std::uint64_t>(value & ~std::uint64_t{0});
 }
 
-/// value · 2^exponent with a relative error below 2^-50, or what overflow and underflow make of it.
+/// value · 2^exponent with a relative error below 2^-50, unless it overflows or underflows.
 template <class Int>
 double approximate(const Int& value, int exponent) {
   const bool negative = sign(value) < 0;

@@ -47,8 +47,8 @@ struct alignas(64) LeafBoxes {
   std::uint32_t size;       ///< triangles, inert ones included
 };
 
-/// The boxes of blocks looked at last: most are asked for again soon. Of two objects as they lie; to be
-/// cleared for others. 100 KB, for the second-level cache.
+/// A cache of the boxes of recent blocks, most of which are used again soon. Valid for one pair of objects
+/// in their positions; clear it for others. 100 KB, for the second-level cache.
 class LeafBoxCache {
  public:
   static constexpr std::size_t size = 32;

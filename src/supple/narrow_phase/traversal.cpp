@@ -27,8 +27,8 @@ std::uint64_t spread_to_bytes(std::uint32_t bits) {
   return ((ones + 0x7f7f7f7f7f7f7f7fu) >> 7 & 0x0101010101010101u) * 0xffu;
 }
 
-/// Calls `visit(i, j)` for each pair of lanes that overlap and are asked for; of a node with itself only
-/// those with i <= j. In one loop over all of them: a loop for each i would end unforeseen each time.
+/// Calls `visit(i, j)` for each pair of children that overlap and are in the mask; for a node with itself
+/// only pairs with i <= j. One loop over all pairs: a loop per i would end unpredictably each time.
 template <class Visit>
 void for_each_lane_pair(const ObjectPairView& pair, NodePair node_pair, std::uint64_t mask, Visit&& visit) {
   const OctreeNode& node_a = pair.a.nodes[node_pair.a];

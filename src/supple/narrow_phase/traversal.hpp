@@ -40,8 +40,8 @@ struct ObjectPairView {
   OctreeView a, b;
   RelativePlacement placement;
   bool same_object = false;
-  /// Of objects in motion: elements touch whose boxes come this near, not less than what was asked for and
-  /// the placement's slop.
+  /// For objects in motion: elements touch when their boxes come this close. At least the requested
+  /// separation and the slop of the placement.
   float separation = 0;
   /// Null, or up to when in the step elements that touch are of interest; it may fall while they are looked
   /// for.
@@ -84,9 +84,9 @@ bool leaf_triangles_apart(const ObjectPairView& pair, const LanePair& leaves, Tr
 
 /// Octree against octree, both descended at once. Holds the scratch memory of one worker, kept between calls.
 ///
-/// Work is a stack of node pairs of which a batch is tested at a time: eight lanes against eight, 64 bits a
-/// pair. A pair of inner lanes becomes a pair of nodes, a leaf against an inner lane the leaf's node
-/// restricted to that lane against the other's node, and two leaves a leaf pair.
+/// The work is a stack of node pairs, tested in batches: eight children against eight, 64 bits per pair. Two
+/// inner children become a pair of nodes; a leaf against an inner child becomes the leaf's node, restricted
+/// to that child, against the other's node; two leaves become a leaf pair.
 class Traversal {
  public:
   /// Searches end early, and find part of what there is, once a stop is requested.

@@ -54,7 +54,7 @@ HWY_INLINE Box box_of_leaf(const OctreeNode& node, int lane, VertexArray<Scalar>
   return box;
 }
 
-/// A node without inner lanes, as most are; gives its box.
+/// Refits a node whose children are all leaves, as for most nodes, and returns its box.
 template <class Box, class Scalar>
 HWY_INLINE Box refit_bottom_node(const OctreeNode& node, AabbLanes& lanes, VertexArray<Scalar> positions,
                                  const TriangleArrays& arrays, const std::uint32_t* first,

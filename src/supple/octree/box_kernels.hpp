@@ -32,7 +32,7 @@ struct LeafVertexArrays {
 bool refit_boxes(const OctreeNode* nodes, AabbLanes* boxes, const TriangleArrays& arrays,
                  const LeafVertexArrays& leaves, std::uint32_t begin, std::uint32_t end);
 
-/// Box of all lanes of a node.
+/// The box around all children of a node.
 Aabb box_of_lanes(const AabbLanes& lanes);
 
 }  // namespace supple

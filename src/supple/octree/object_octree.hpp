@@ -21,8 +21,8 @@ namespace supple {
 TriangleArrays arrays_of(std::span<const Triangle> triangles, const VertexBuffer& vertices,
                          std::span<const std::uint8_t> inert);
 
-/// Octree over the triangles of one object: built top-down from the rest pose; its volumes refitted whenever
-/// the object deforms, and subtrees that no longer fit built anew when asked for.
+/// Octree over the triangles of one object, built top-down from the rest pose. Its volumes are refitted when
+/// the object deforms, and degraded subtrees are rebuilt on request.
 ///
 /// It is balanced (`octree/balanced_build.hpp`) or, when asked for, the paper's regular one. In that every
 /// triangle is in the one octant that holds the centre of its box. An octant with all triangles of its parent
@@ -69,10 +69,10 @@ class ObjectOctree {
   /// the volumes are of no use, when it is empty and some vertex is not finite.
   bool refit(const VertexBuffer& vertices, std::span<const std::uint8_t> inert, const Parallel& parallel);
 
-  /// Builds the subtrees of these nodes, of which none is below another, anew from present positions. Volumes
-  /// are to be refitted then; all that goes by numbers of the octree's triangles or nodes is to be made anew.
-  /// Returns what each node was before (`RelinkedNodes::old_nodes`). O(n) and O(m log m) of m triangles in
-  /// the subtrees.
+  /// Rebuilds the subtrees of these nodes, none of which is below another, from the current positions.
+  /// Afterwards the volumes must be refitted, and everything that depends on numbers of triangles or nodes
+  /// must be updated. Returns what each node was before (`RelinkedNodes::old_nodes`). O(n) and O(m log m)
+  /// for m triangles in the subtrees.
   std::vector<std::uint32_t> rebuild(std::span<const std::uint32_t> subtrees, const VertexBuffer& vertices);
 
   /// Volumes of the whole object after a refit; empty when it has no finite triangle.

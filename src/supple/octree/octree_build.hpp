@@ -17,9 +17,10 @@ struct OctreeTopology {
   std::vector<std::uint32_t> level_begin;  ///< first node of each level, then the number of nodes
 };
 
-/// Regular top-down octree over points (the centres of triangles), in O(n log n). Non-finite points are taken
-/// as the lower corner of the rest. Equal points cannot be split and may leave a leaf larger than
-/// `leaf_size`. `first_level` is that of the root in the tree that it becomes a part of; nodes count from 0.
+/// Builds the paper's regular octree top-down over points (the centres of triangles), in O(n log n). A point
+/// that is not finite counts as the lower corner of the others. Equal points cannot be split and may leave a
+/// leaf larger than `leaf_size`. `first_level` is the level of the root in the tree that it becomes a part
+/// of; levels of nodes count from 0.
 OctreeTopology build_octree(std::span<const Vec3d> centers, const ObjectOctreeOptions& options,
                             std::uint32_t first_level = 0);
 

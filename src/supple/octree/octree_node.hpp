@@ -16,32 +16,34 @@ constexpr std::uint32_t bit_count(std::uint32_t bits) {
   return (bits + (bits >> 4)) & 0x0fu;
 }
 
-/// Boxes of the lanes of a node, one array an axis and side: a box against eight is six vector comparisons.
-/// Unused lanes hold inverted boxes. Rounded outward.
+/// The boxes of the children of a node, one array per axis and side: one box against eight takes six vector
+/// comparisons. Missing children have inverted boxes. Rounded outward.
 struct alignas(64) AabbLanes {
   float min_x[node_width], min_y[node_width], min_z[node_width];
   float max_x[node_width], max_y[node_width], max_z[node_width];
 };
 
-/// Empty where the lane is unused.
+/// Empty where the child is missing.
 inline Aabb lane_box(const AabbLanes& lanes, int lane) {
   return {{lanes.min_x[lane], lanes.min_y[lane], lanes.min_z[lane]},
           {lanes.max_x[lane], lanes.max_y[lane], lanes.max_z[lane]}};
 }
 
-/// Balls of the lanes of a node; unused lanes, and lanes without a finite triangle, have a negative radius.
+/// The spheres of the children of a node. Missing children, and children without a finite triangle, have a
+/// negative radius.
 struct alignas(64) SphereLanes {
   float x[node_width], y[node_width], z[node_width], radius[node_width];
 };
 
-/// Eight-wide node without its volumes. Lane i holds the triangles [first_triangle[i], first_triangle[i + 1])
-/// of the octree's order; its node, when it is an inner lane, comes after those of the inner lanes before it.
+/// A node with up to eight children, without its volumes. Child i has the triangles [first_triangle[i],
+/// first_triangle[i + 1]) in the octree's order. Nodes of inner children are consecutive, in the order of
+/// the children.
 struct OctreeNode {
   std::uint32_t first_triangle[node_width + 1];
-  std::uint32_t first_child;  ///< node of the first inner lane; its siblings follow
-  std::uint32_t parent;       ///< node; the root names itself
-  std::uint8_t inner_mask;    ///< bit i: lane i is a node of its own
-  std::uint8_t lane_count;    ///< 1 to 8; lanes from here on are unused
+  std::uint32_t first_child;  ///< node of the first inner child; its siblings follow
+  std::uint32_t parent;       ///< node; the root is its own parent
+  std::uint8_t inner_mask;    ///< bit i: child i is a node, not a leaf
+  std::uint8_t lane_count;    ///< 1 to 8; children from here on are missing
   std::uint8_t parent_lane;
   std::uint8_t level;  ///< the root is 0; its lanes are at level 1
 

@@ -84,7 +84,7 @@ double TreeQuality::net_saving(const TreeBoxes& tree, std::uint32_t n) const {
   return saved / reference_cost() - least_saving * share;
 }
 
-/// The topmost nodes that are better built anew than what is below them.
+/// Finds the topmost nodes whose rebuild is better than rebuilds below them.
 void TreeQuality::choose(const TreeBoxes& tree) {
   degraded_.push_back(0);
   std::size_t chosen = 0;

@@ -21,18 +21,19 @@ namespace supple {
 /// Sums are of doubles in one order: the same decisions everywhere. Memory: 32 bytes a node.
 class TreeQuality {
  public:
-  /// The tree was built from these positions: all references are the present costs. O(nodes), as are all.
+  /// Call after the tree was built from these positions: the references become the present costs. O(nodes),
+  /// as are all functions.
   void set_references(const TreeBoxes& tree);
-  /// After subtrees were built anew and boxes refitted: theirs are the references of what is new; what they
-  /// cost more or less than the reference of what was there is added to those above.
+  /// Call after subtrees were rebuilt and boxes refitted. The present costs become the references of the new
+  /// nodes; the difference to the former references is added to the nodes above.
   void update_references(const TreeBoxes& tree, std::span<const std::uint32_t> old_nodes);
-  /// Takes memory only for a tree of another number of nodes. Not known of a tree without a surface, or too
-  /// large for double.
+  /// Allocates memory only when the number of nodes changed. The result is unknown for a tree without a
+  /// surface or too large for double.
   void measure(const TreeBoxes& tree);
 
-  /// Of the last measurement: visits of a query that meets the object, 0 when not known.
+  /// The visits of a query that meets the object, at the last measurement; 0 when unknown.
   double cost() const { return is_known() ? nodes_[0].cost / nodes_[0].area : 0; }
-  /// The same over the reference: 1 for a tree just built, 2 when queries cost twice as much.
+  /// The cost relative to the reference: 1 after a build, 2 when queries cost twice as much.
   double degradation() const { return is_known() ? nodes_[0].cost / reference_cost() : 1; }
 
   /// Nodes that are worth building anew, with all below them: the choice that saves most, where a saving has

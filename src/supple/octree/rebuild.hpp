@@ -10,10 +10,10 @@
 
 namespace supple {
 
-/// A node that no node of the tree before became.
+/// A node of the new tree that was no node of the tree before.
 constexpr std::uint32_t no_node = std::numeric_limits<std::uint32_t>::max();
 
-/// A subtree built anew over the triangles of `node`, whose place it takes.
+/// A subtree rebuilt over the triangles of `node`, which it replaces.
 struct NewSubtree {
   std::uint32_t node = 0;
   OctreeTopology topology;

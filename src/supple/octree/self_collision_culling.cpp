@@ -24,8 +24,8 @@ Vec3d position(const VertexArray<Scalar>& vertices, std::uint32_t vertex) {
   return {p[0], p[1], p[2]};
 }
 
-/// The boundary of a smooth patch is about as long as the root of its size. The limit keeps all boundaries
-/// together linear, and gives up what could not be unfolded anyway.
+/// The boundary of a smooth patch is about as long as the square root of its size. The limit keeps the total
+/// length of all boundaries linear, and skips patches that would not pass the test anyway.
 std::size_t longest_boundary(std::uint32_t triangles) {
   return 16 + 8 * static_cast<std::size_t>(std::sqrt(triangles));
 }

@@ -19,7 +19,7 @@ namespace supple {
 /// (1994), with a test of the contour in place of theirs, for moving surfaces of any topology, and with
 /// bounds of the rounding errors.
 ///
-/// A lane is unfolded when for one direction n, at all times,
+/// A child is culled when for one direction n, at all times,
 ///  1. all its triangles face n: n · ((b − a) × (c − a)) > 0, and
 ///  2. seen along n, its boundary goes round a centre once: each edge strictly counter-clockwise.
 /// The boundary is that of the lane's triangles as a chain: an edge as often as triangles have it in one

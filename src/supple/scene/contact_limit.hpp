@@ -7,7 +7,7 @@
 
 namespace supple {
 
-/// Which part of a search cannot matter any more, because so many contacts as are asked for were found before
+/// The part of a search that cannot matter any more, because as many contacts as requested were found before
 /// it in canonical order.
 ///
 /// A place in that order is a number: the job, then 32 bits that the pass makes of the contact, ascending.
@@ -36,7 +36,7 @@ class ContactLimit {
   }
 
   bool is_set() const { return wanted_ != unlimited; }
-  /// One more than are asked for: it tells that there are more.
+  /// One more than requested, to learn whether there are more.
   std::uint64_t wanted() const { return wanted_; }
   /// Whether a list of so many contacts is to be cut to those that are wanted; not too often.
   bool drops_at(std::size_t count) const { return count / 2 >= wanted_ && count >= 1024; }

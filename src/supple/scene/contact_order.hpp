@@ -24,26 +24,15 @@ inline bool in_order_of_triangles(const FoundContact& p, const FoundContact& q) 
   return p.triangle_a != q.triangle_a ? p.triangle_a < q.triangle_a : p.triangle_b < q.triangle_b;
 }
 
-/// Puts the contacts of one job at a time into the order of the result: by triangle a, then by triangle b.
-/// Keeps its memory between jobs.
-///
-/// Contacts are counted into buckets of a range of triangles a each, a few to a bucket. Within a
-/// bucket the place of a contact is how many others come before it, which vectors of keys count without
-/// branches.
+/// Sorts the contacts of one job at a time by triangle a, then by triangle b. Counts them into buckets of a
+/// few contacts, by ranges of triangle a, and sorts each bucket. Keeps its memory between jobs.
 class ContactOrder {
  public:
-  /// `found` are of different pairs of triangles. What is returned lasts until the next call. O(n) while no
-  /// range of triangles has very many contacts, O(n log n) at worst.
+  /// `found` are contacts of different pairs of triangles. The result is valid until the next call. O(n)
+  /// while no range of triangles has very many contacts, O(n log n) at worst.
   std::span<const FoundContact> sort(std::span<const FoundContact> found);
 
  private:
-  struct Keys;
-  void sort_by_buckets(std::span<const FoundContact> found, const Keys& keys, std::span<FoundContact> sorted);
-
-  // Of one bucket after the other: what tells the order within it, which contact that is of, and where that
-  // belongs.
-  std::vector<std::int32_t> keys_, places_;
-  std::vector<std::uint32_t> numbers_;
   std::vector<FoundContact> sorted_;
 };
 

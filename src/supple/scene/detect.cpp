@@ -2,11 +2,11 @@
 #include <limits>
 #include <vector>
 
-#include "contact/first_impact.hpp"
 #include "core/float_rounding.hpp"
 #include "core/timer.hpp"
 #include "geometry/aabb.hpp"
 #include "scene/scene_implementation.hpp"
+#include "supple/option_descriptions.hpp"
 
 namespace supple {
 
@@ -51,7 +51,7 @@ SearchedShapes Question::shapes() const {
 }
 
 const DetectResult& Scene::Implementation::detect(const DetectRequest& request) {
-  if (request.impact) check_impact_options(*request.impact, "DetectRequest::impact");
+  if (request.impact) check(*request.impact, "DetectRequest::impact");
   question_ = {request.contacts.value_or(options.contacts), request.impact.value_or(options.impact),
                options.comparison.colliding_vertices};
   const StopSignal stop = stop_signal(request);

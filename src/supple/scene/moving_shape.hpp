@@ -15,8 +15,8 @@
 
 namespace supple {
 
-/// What the search for continuous contacts reads of an object: its elements, their positions at both ends of
-/// the step and boxes around them. Takes memory only once it is asked for.
+/// The data of an object for the search for continuous contacts: its elements, their positions at both ends
+/// of the step, and boxes around them. Takes memory only after the first request.
 class MovingShape {
  public:
   bool is_current(const Placement& placement) const { return version_ == placement.version(); }
@@ -41,7 +41,7 @@ class MovingShape {
   std::string validate(const ObjectOctree& octree) const;
   std::size_t bytes() const;
 
-  /// The octree was built anew.
+  /// Call after the octree was rebuilt.
   void forget_octree() {
     version_ = 0;
     elements_ = {};

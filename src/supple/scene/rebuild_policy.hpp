@@ -27,10 +27,10 @@ class RebuildPolicy {
   bool is_degraded() const { return quality_.share() > 0; }
   std::span<const std::uint32_t> degraded_nodes() const { return quality_.degraded(); }
   std::uint64_t degraded_triangles(const ObjectOctree& octree) const;
-  /// So many queries of the whole octree in a step. Returns whether it is time to rebuild.
+  /// Adds the number of queries of the whole octree in a step. Returns whether it is time to rebuild.
   bool count_queries(double queries);
-  /// The degraded parts were built anew, `old_nodes` as `ObjectOctree::rebuild` gives them: whether the
-  /// result is so much better than the present tree that it is to take its place.
+  /// Call after the degraded parts were rebuilt, with the `old_nodes` of `ObjectOctree::rebuild`. Returns
+  /// whether the result is so much better than the present tree that it should replace it.
   bool accept(const TreeBoxes& rebuilt, std::span<const std::uint32_t> old_nodes, const TreeBoxes& present,
               bool is_smooth);
 

@@ -33,7 +33,7 @@ class RestingShape {
   }
   std::size_t bytes() const { return inert_.capacity() + unfolded_.bytes(); }
 
-  /// The octree was built anew.
+  /// Call after the octree was rebuilt.
   void forget_octree() {
     version_ = 0;
     unfolded_.forget_octree();

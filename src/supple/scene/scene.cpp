@@ -4,21 +4,15 @@
 #include <cmath>
 #include <utility>
 
-#include "contact/first_impact.hpp"
 #include "core/error.hpp"
 #include "scene/scene_implementation.hpp"
+#include "supple/option_descriptions.hpp"
 
 namespace supple {
 namespace {
 
 std::string described(ObjectId id) {
   return "object " + std::to_string(id.index);
-}
-
-void check_range(const char* option, std::uint64_t value, std::uint64_t least, std::uint64_t most) {
-  if (value >= least && value <= most) return;
-  fail(std::string(option) + " is " + std::to_string(value) + "; it must be from " + std::to_string(least) +
-       " to " + std::to_string(most));
 }
 
 void check_finite(const Vec3d& v, const char* call, const char* what) {
@@ -29,14 +23,8 @@ void check_finite(const Vec3d& v, const char* call, const char* what) {
   }
 }
 
-void check_arity(const char* option, std::uint32_t arity) {
-  if (arity == 2 || arity == 4 || arity == 8) return;
-  fail(std::string(option) + " is " + std::to_string(arity) + "; it must be 2, 4 or 8");
-}
-
 const SceneOptions& checked(const SceneOptions& options) {
-  check_range("SceneOptions::threads", options.threads, 0, 1024);
-  check_impact_options(options.impact, "SceneOptions::impact");
+  check(options);
   return options;
 }
 
@@ -84,9 +72,7 @@ ObjectId Scene::Implementation::add(const PositionsView& positions, const Triang
   const auto index = free_slots_.empty() ? static_cast<std::uint32_t>(slots_.size()) : free_slots_.back();
   ObjectOptions named = object_options;
   if (named.name.empty()) named.name = fallback_name.empty() ? described({index, 0}) : fallback_name;
-  check_range("ObjectOctreeOptions::max_level", named.octree.max_level, 0, 32);
-  check_range("ObjectOctreeOptions::leaf_size", named.octree.leaf_size, 1, 0xffffffff);
-  check_arity("ObjectOctreeOptions::arity", named.octree.arity);
+  check(named);
   auto object = std::make_unique<SceneObject>(
       positions, checked_triangles(named.name, positions.size(), triangles), named, options);
   object->move().set_positions(positions, parallel);

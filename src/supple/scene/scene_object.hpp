@@ -57,8 +57,8 @@ class SceneObject {
   std::uint64_t subtrees_rebuilt() const { return subtrees_rebuilt_; }
   std::uint64_t triangles_rebuilt() const { return triangles_rebuilt_; }
 
-  /// Of the placed object, as of the last update: around all that was searched, the whole motion when that
-  /// was.
+  /// The box of the placed object at the last update: around everything that was searched, which may be the
+  /// whole motion.
   const Aabb& box() const { return box_; }
   const BoundingSphere& sphere() const { return sphere_; }
   const ObjectOctree& octree() const { return octree_; }

@@ -10,23 +10,23 @@
 
 namespace supple {
 
-/// Self-collision culling of an object that goes on moving. Where too few lanes are unfolded, as in crumpled
-/// cloth, looking for them costs more than it saves: it is then left for some steps.
+/// Self-collision culling of an object in motion. Where it culls too little, as in crumpled cloth, it costs
+/// more than it saves and pauses for some steps.
 class UnfoldedLanes {
  public:
-  /// For the positions of this version; O(n), and O(n log n) the first time. Does nothing when they were
-  /// there at the last call.
+  /// Updates for the positions of this version; O(n), and O(n log n) the first time. Does nothing when the
+  /// version did not change.
   void update(std::uint64_t version, const ObjectOctree& octree, std::span<const Triangle> triangles,
               const VertexBuffer& start, const VertexBuffer& end, const Parallel& parallel);
   /// Masks of a `SelfCollisionCulling`, or null when there are none for this version.
   const std::uint8_t* masks(std::uint64_t version) const {
     return version == culled_version_ ? culling_.masks().data() : nullptr;
   }
-  /// Enough of the object was unfolded, at some time, to be worth the search.
+  /// Whether enough of the object was culled, at some time, to be worth the search.
   bool has_paid() const { return has_paid_; }
   std::size_t bytes() const { return culling_.bytes(); }
 
-  /// The octree was built anew.
+  /// Call after the octree was rebuilt.
   void forget_octree() {
     culling_ = {};
     version_ = culled_version_ = 0;

@@ -38,7 +38,7 @@ std::vector<BroadPhaseOptions> all_options() {
     all.push_back({.method = method, .scene_octree = {}, .threads = 1});
   for (const RegionSphereTest test : {RegionSphereTest::arvo, RegionSphereTest::grown_box})
     for (const std::uint32_t max_level : {0u, 1u, 4u, 20u})
-      for (const std::uint32_t expand_at : {2u, 9u})
+      for (const std::uint32_t expand_at : {0u, 2u, 9u})
         all.push_back({BroadPhaseMethod::octree, {max_level, expand_at, test, 8}, 1});
   for (const RegionSphereTest test : {RegionSphereTest::arvo, RegionSphereTest::grown_box})
     for (const std::uint32_t max_level : {0u, 1u, 20u})

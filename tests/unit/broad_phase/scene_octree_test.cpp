@@ -173,7 +173,7 @@ TEST_P(SceneOctreeArity, IsTheSameHoweverItCameAbout) {
   SceneCubeChooser chooser;
   const SceneOctreeOptions options{
       .max_level = 5, .expand_at = 3, .region_sphere_test = {}, .arity = GetParam()};
-  const SceneCube cube = chooser.choose(boxes, 5);
+  const SceneCube cube = chooser.choose(boxes);
   const Parallel parallel(1);
   VolumeStore volumes(BoundingVolume::aabb);
   volumes.update({.boxes = boxes}, false, parallel);
@@ -257,34 +257,58 @@ TEST(SceneOctree, RebuildsWhenTheSceneOutgrowsTheCube) {
 TEST(SceneCube, IsNotLedAstrayByOutliers) {
   std::vector<Aabb> boxes = test::random_boxes(1000, 10, 0.2f, 8);
   SceneCubeChooser chooser;
-  const SceneCube clean = chooser.choose(boxes, 0);
+  const SceneCube clean = chooser.choose(boxes);
   for (std::size_t i = 0; i < 10; ++i) boxes[i * 90] = box_around({1e30f, -1e30f, 1e20f}, {1, 1, 1});
-  boxes[5] = {{-test::kInfinity, 0, 0}, {1, 1, test::kInfinity}};
-  const SceneCube cube = chooser.choose(boxes, 0);
+  boxes[5] = {{-test::infinity, 0, 0}, {1, 1, test::infinity}};
+  const SceneCube cube = chooser.choose(boxes);
   EXPECT_LT(cube.edge, 2 * clean.edge);
   EXPECT_GT(cube.edge, 8);
   EXPECT_FALSE(is_outdated(clean, cube));
 }
 
-TEST(SceneCube, ChoosesALevelThatKeepsRegionsLargerThanObjects) {
-  SceneCubeChooser chooser;
-  for (const float size : {0.001f, 0.05f, 0.4f, 3.0f}) {
+TEST(SceneOctree, DividesUntilLeavesAreSmallUnlessObjectsAreLarge) {
+  const auto largest_leaf = [](const Octree& octree) {
+    std::uint32_t largest = 0;
+    for (const SceneRegion& region : octree.regions()) largest = std::max(largest, region.object_count);
+    return largest;
+  };
+  for (const float size : {0.001f, 0.05f, 0.3f}) {
     const std::vector<Aabb> boxes = test::random_boxes(20'000, 20, size, 9);
-    const SceneCube cube = chooser.choose(boxes, 0);
-    EXPECT_GE(cube.max_level, 1u);
-    EXPECT_LE(cube.max_level, 20u);
-    if (cube.max_level == 1) continue;
-    EXPECT_GE(std::ldexp(cube.edge, -static_cast<int>(cube.max_level)), size);
+    Octree octree;
+    octree.step(boxes);
+    EXPECT_LT(largest_leaf(octree), 96u) << size;
+    EXPECT_LT(octree.regions().size(), 20'000u) << size;
   }
-  EXPECT_EQ(chooser.choose(test::random_boxes(100, 20, 1, 10), 7).max_level, 7u);
-  EXPECT_EQ(chooser.choose({}, 0).max_level, 1u);
-  // A crowd that cannot be parted does not keep the others from being parted.
-  std::vector<Aabb> crowd(4000, box_around({10, 10, 10}, {0, 0, 0}));
+  Octree large;
+  large.step(test::random_boxes(2'000, 20, 9.0f, 10));
+  EXPECT_LT(large.regions().size(), 300u) << "regions are no smaller than the objects in them";
+  // Few objects are divided until each is alone.
+  Octree few;
+  few.step(test::random_boxes(30, 20, 0.001f, 11));
+  EXPECT_EQ(largest_leaf(few), 1u);
+  // A crowd that cannot be divided does not keep the others from being divided.
+  std::vector<Aabb> crowd(500, box_around({10, 10, 10}, {0, 0, 0}));
   const std::vector<Aabb> rest = test::random_boxes(4000, 20, 0.01f, 12);
   crowd.insert(crowd.end(), rest.begin(), rest.end());
-  EXPECT_GE(chooser.choose(crowd, 0).max_level, 3u);
-  // All in one place: no level tells them apart.
-  EXPECT_EQ(chooser.choose(std::vector<Aabb>(5000, box_around({1, 1, 1}, {0, 0, 0})), 0).max_level, 1u);
+  Octree crowded;
+  crowded.step(crowd);
+  EXPECT_GT(crowded.regions().size(), 100u);
+}
+
+TEST(SceneOctree, ChoosesAnewWhenObjectsBecomeMany) {
+  Octree octree;
+  std::vector<Aabb> boxes = test::random_boxes(20, 10, 0.05f, 13);
+  octree.step(boxes);
+  std::uint64_t rebuilt = 0;
+  const std::vector<Aabb> all = test::random_boxes(800, 10, 0.05f, 14);
+  while (boxes.size() < all.size()) {
+    for (int i = 0; i < 3; ++i) boxes.push_back(all[boxes.size()]);
+    rebuilt += octree.step(boxes).regions_rebuilt;
+  }
+  EXPECT_GE(rebuilt, 1u);
+  Octree fresh;
+  fresh.step(boxes);
+  EXPECT_LT(octree.regions().size(), 2 * fresh.regions().size());
 }
 
 }  // namespace

@@ -4,9 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <random>
 #include <set>
 #include <vector>
+
+#include "support/random.hpp"
 
 namespace supple::sturm {
 namespace {
@@ -19,13 +20,14 @@ Polynomial with_root(const Integer& numerator, const Integer& denominator) {
 }
 
 TEST(Sturm, FindsRationalRootsOfAnyMultiplicity) {
-  std::mt19937 random(1);
+  RandomNumbers random(1);
   for (int round = 0; round < 300; ++round) {
     std::set<Rational> expected;
-    Polynomial p{Integer(random() % 2 == 0 ? 3 : -7)};
-    for (unsigned factor = random() % 4 + 1; factor > 0; --factor) {
-      const Integer denominator = 1 + random() % 20, numerator = Integer(random() % 40) - 10;
-      for (unsigned power = random() % 3 + 1; power > 0; --power) p = p * with_root(numerator, denominator);
+    Polynomial p{Integer(random.below(2) == 0 ? 3 : -7)};
+    for (std::uint32_t factor = random.below(4) + 1; factor > 0; --factor) {
+      const Integer denominator = 1 + random.below(20), numerator = Integer(random.below(40)) - 10;
+      for (std::uint32_t power = random.below(3) + 1; power > 0; --power)
+        p = p * with_root(numerator, denominator);
       const Rational root(numerator, denominator);
       if (root > 0 && root <= 1) expected.insert(root);
     }

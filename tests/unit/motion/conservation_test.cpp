@@ -7,8 +7,8 @@
 namespace supple {
 namespace {
 
-/// Of a sphere that swings freely: the largest relative error of the energy, and its drift: how the mean over
-/// the last quarter differs from that over the first.
+/// For a sphere that oscillates freely: the largest relative error of the energy, and its drift, the
+/// difference of its means over the last and the first quarter.
 struct EnergyError {
   double largest = 0, drift = 0;
 };

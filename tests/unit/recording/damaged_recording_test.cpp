@@ -120,19 +120,31 @@ TEST_F(DamagedRecording, UnchangedIsFine) {
 }
 
 TEST_F(DamagedRecording, OtherFormatsAndVersions) {
-  expect("version 2, supple", with_attribute("version", 2));
-  expect("or a newer one", with_attribute("version", 2));
+  expect("version 3, supple", with_attribute("version", 3));
+  expect("or a newer one", with_attribute("version", 3));
+  expect("version 0, supple", with_attribute("version", 0));
+  expect("attribute leaf_size is 0, not a whole number from 1 to 4294967295", [](hid_t file) {
+    const hid_t object = H5Gopen2(file, "objects/0", H5P_DEFAULT);
+    const std::uint32_t none = 0;
+    replace_attribute(object, "leaf_size", H5T_NATIVE_UINT32, &none);
+    H5Gclose(object);
+  });
+  expect("attribute object_octree is missing", [](hid_t file) {
+    const hid_t object = H5Gopen2(file, "objects/0", H5P_DEFAULT);
+    H5Adelete(object, "object_octree");
+    H5Gclose(object);
+  });
   expect("no recording", with_attribute("format", 1));
   expect("no recording", [](hid_t file) { H5Adelete(file, "format"); });
   expect("attribute version is missing", [](hid_t file) { H5Adelete(file, "version"); });
   expect("attribute time_step is missing", [](hid_t file) { H5Adelete(file, "time_step"); });
   expect("attribute contact_points is 7, not a whole number from 0 to 1",
          with_attribute("contact_points", 7));
-  expect("attribute contact_mode is no text", with_attribute("contact_mode", 7));
+  expect("attribute contacts is no text", with_attribute("contacts", 7));
   expect("'spheres', which this program does not know", [](hid_t file) {
     const hid_t type = H5Tcopy(H5T_C_S1);
     H5Tset_size(type, 8);
-    replace_attribute(file, "contact_mode", type, "spheres");
+    replace_attribute(file, "contacts", type, "spheres");
     H5Tclose(type);
   });
 }

@@ -65,7 +65,7 @@ TEST_P(InEveryMode, NotWhatIsMeasuredOrOfTheFile) {
 
 TEST_P(InEveryMode, WhatIsSaidOnce) {
   expect({}, "time_step: 0.1 and 0.2", [](Contents& c) { c.header.time_step = 0.2; });
-  expect({}, "broad_phase: 'octree' and 'brute'",
+  expect({}, "broad_phase: 'automatic' and 'brute'",
          [](Contents& c) { c.header.scene.broad_phase = BroadPhaseMethod::brute; });
   expect({}, "min_separation: 0 and 0.5", [](Contents& c) { c.header.scene.impact.min_separation = 0.5; });
   expect({}, "name of object 1: 'object 1' and 'fish'",
@@ -146,7 +146,7 @@ TEST_P(OfIntersections, Contacts) {
     contact.kind =
         contact.kind == IntersectionKind::point ? IntersectionKind::segment : IntersectionKind::point;
   });
-  expect(1, "normal: (", [](Contents& c) { c.frames[1].contacts[2].normal.x += 1e-9; });
+  expect(1, "contact 2, triangle ", [](Contents& c) { c.frames[1].contacts[2].normal.x += 1e-9; });
   EXPECT_FALSE(after([](Contents& c) { c.frames[1].contacts[2].normal.x += 1e-9; }, 1e-8));
   const std::optional<RecordingDifference> missing =
       after([](Contents& c) { c.frames[1].contacts.erase(c.frames[1].contacts.begin() + 2); });
@@ -173,7 +173,7 @@ TEST_P(OfContinuousContacts, EveryField) {
     EXPECT_NE(difference->what.find(std::string(", ") + field + ": "), std::string::npos) << difference->what;
   };
   change("certainty", [](ContinuousContact& c) { c.certainty = ImpactCertainty::within_tolerance; });
-  change("time", [](ContinuousContact& c) { c.toi += 1e-3; });
+  change("toi", [](ContinuousContact& c) { c.toi += 1e-3; });
   change("barycentric_a", [](ContinuousContact& c) { c.barycentric_a[1] += 1e-3; });
   change("barycentric_b", [](ContinuousContact& c) { c.barycentric_b[2] += 1e-3; });
   change("point", [](ContinuousContact& c) { c.point.y += 1e-3; });

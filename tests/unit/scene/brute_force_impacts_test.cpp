@@ -34,7 +34,10 @@ struct Step {
     options.impact.min_separation = separation;
     Scene scene(options);
     for (const PlainMovingObject* object : {&a, &b}) {
-      const ObjectId id = scene.add({object->start, object->triangles});
+      TriangleMesh mesh;
+      mesh.positions = object->start;
+      mesh.triangles = object->triangles;
+      const ObjectId id = scene.add(mesh);
       scene.set_motion(id, object->start, object->end);
     }
     const auto contacts = scene.detect().continuous_contacts;

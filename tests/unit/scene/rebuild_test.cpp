@@ -1,4 +1,4 @@
-// Scenes whose objects deform so far that their octrees are built anew: nothing of what is found changes.
+// Objects that deform so far that their octrees are rebuilt: the results do not change.
 
 #include <gtest/gtest.h>
 

@@ -330,7 +330,7 @@ TEST(Scene, ErrorsSayWhatWhereAndHowToMend) {
   EXPECT_EQ(error_of([&] { scene.verify(); }),
             "verify: nothing was detected at the present positions; call detect first");
   EXPECT_EQ(error_of([&] { scene.add(one_triangle(0), {.octree = {.leaf_size = 0}}); }),
-            "ObjectOctreeOptions::leaf_size is 0; it must be from 1 to 4294967295");
+            "ObjectOctreeOptions::leaf_size is 0; it must be a whole number from 1 to 4294967295");
   EXPECT_EQ(error_of([&] { scene.add(one_triangle(0), {.octree = {.arity = 3}}); }),
             "ObjectOctreeOptions::arity is 3; it must be 2, 4 or 8");
   scene.set_static(a, true);

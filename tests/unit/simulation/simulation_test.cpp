@@ -121,7 +121,7 @@ TEST(Simulation, RefusesOptionsOutOfTheirRange) {
     return message_of([&] { Simulation{options}; });
   };
   EXPECT_EQ(message([](auto& o) { o.time_step = 0; }),
-            "SimulationOptions::time_step is 0.000000; it must be finite and more than 0");
+            "SimulationOptions::time_step is 0; it must be a finite number above 0");
   EXPECT_NE(message([](auto& o) { o.time_step = not_a_number; }).find("time_step is nan"), std::string::npos);
   EXPECT_EQ(
       message([](auto& o) {
@@ -147,7 +147,7 @@ TEST(Simulation, RefusesMotionsOutOfTheirRange) {
     return message_of([&] { simulation.add(ball, {}, motion); });
   };
   EXPECT_EQ(message([](auto& m) { m.velocity.y = not_a_number; }),
-            "MassSpringMotion::velocity: y is nan; it must be a finite number");
+            "motion of ball: MassSpringMotion::velocity is (0, nan, 0); it must be three finite numbers");
   EXPECT_NE(message([](auto& m) { m.random_speed = -1; }), "");
   EXPECT_NE(message([](auto& m) { m.random_force = -1; }), "");
   EXPECT_NE(message([](auto& m) { m.deform_seconds = -1; }), "");

@@ -8,41 +8,100 @@
 
 #include "../../support/soups.hpp"
 #include "../../support/viewer_page.hpp"
+#include "session/described_json.hpp"
+#include "session/json_text.hpp"
+#include "session/settings.hpp"
+#include "unit/descriptions/other_values.hpp"
 
 namespace supple::viewer {
 namespace {
 
-/// Something of everything that a show can have, nothing being what it is by default.
-SceneView rich_show() {
-  SceneView show;
-  show.title = "rich";
-  show.simulation.border = Border{{{-5, -6, -7}, {8, 9, 10}}};
-  show.simulation.seed = 77;
-  show.simulation.time_step = 0.004;
-  show.simulation.response = {
-      .enabled = true, .thickness = 2e-3, .restitution = 0.1, .friction = 0.2, .iterations = 3};
-  show.simulation.scene.broad_phase = BroadPhaseMethod::octree;
-  show.simulation.scene.scene_octree = {.max_level = 5, .expand_at = 3};
-  show.objects = {test_ball("waves", {}, 2), test_ball("soft", {3, 0, 0}, 2),
-                  test_ball("wall", {0, 3, 0}, 1)};
-  show.objects[0].motion = WaveMotion{{0.1, 0.2, 0.3}, 0.05, 0.9, 1.5, 12};
-  MassSpringMotion motion;
-  motion.springs = {.integrator = Integrator::symplectic_euler,
-                    .substeps = 2,
-                    .stiffness = 40,
-                    .gravity = {0, -1, 0},
-                    .max_strain = 0.4,
-                    .fixed_vertices = {3}};
-  motion.random_speed = 0.5;
-  motion.random_force = 0.1;
-  motion.deform_seconds = 0.02;
-  motion.seed = 9;
-  motion.handles = {{.vertices = {1, 2}, .by = {0, 1, 0}, .seconds = 0.5}};
-  show.objects[1].motion = motion;
-  show.objects[1].options.octree = {.max_level = 6, .leaf_size = 12, .arity = 4};
-  show.objects[2].options.is_static = true;
-  show.objects[2].mesh.positions[0].x = std::numeric_limits<double>::quiet_NaN();
-  return show;
+/// A scene of which no option is what it is by default; objects in waves, of masses and springs, and static.
+SceneView rich_scene() {
+  SceneView scene;
+  scene.title = "rich";
+  scene.simulation = other_values<SimulationOptions>();
+  scene.simulation.time_step = 0.004;
+  scene.objects = {test_ball("waves", {}, 2), test_ball("soft", {3, 0, 0}, 2),
+                   test_ball("wall", {0, 3, 0}, 1)};
+  for (ViewedObject& object : scene.objects) {
+    object.options = other_values<ObjectOptions>();
+    object.options.is_static = false;
+  }
+  scene.objects[0].motion = other_values<WaveMotion>();
+  scene.objects[1].motion = other_values<MassSpringMotion>();
+  scene.objects[2].options.is_static = true;
+  scene.objects[2].mesh.positions[0].x = std::numeric_limits<double>::quiet_NaN();
+  return scene;
+}
+
+TEST(PackedScene, KeepsEveryOption) {
+  const SceneView scene = rich_scene();
+  const SceneView again = unpack(pack(scene));
+  using Keys = std::vector<std::string>;
+  EXPECT_EQ(differences_of(again.simulation, scene.simulation), keys_of_machine<SimulationOptions>());
+  ASSERT_EQ(again.objects.size(), scene.objects.size());
+  for (std::size_t i = 0; i < scene.objects.size(); ++i)
+    EXPECT_EQ(differences_of(again.objects[i].options, scene.objects[i].options), Keys{});
+  EXPECT_EQ(differences_of(std::get<WaveMotion>(again.objects[0].motion),
+                           std::get<WaveMotion>(scene.objects[0].motion)),
+            Keys{});
+  EXPECT_EQ(differences_of(std::get<MassSpringMotion>(again.objects[1].motion),
+                           std::get<MassSpringMotion>(scene.objects[1].motion)),
+            keys_of_machine<MassSpringMotion>());
+}
+
+/// The value of an option as the session says it.
+template <class Struct, class Value>
+Json json_of(const Field<Struct, Value>& field, const Value& value) {
+  JsonText json;
+  json.clear();
+  json.begin_array();
+  write_value(json, field, value);
+  json.end_array();
+  return Json::parse(json.text())[0];
+}
+
+template <class Options>
+void expect_options(const Json& message, const Options& options) {
+  for_each_leaf(
+      [&](const auto& field, const auto& value) {
+        if (is_setting(field)) {
+          EXPECT_EQ(message.at(field.key), json_of(field, value)) << field.key;
+        }
+      },
+      options);
+}
+
+TEST(PackedScene, ThePageSeesEveryOption) {
+  const SceneView scene = rich_scene();
+  TestPage page(unpack(pack(scene)));
+  const Json message = page.scene().json;
+  expect_options(message, scene.simulation.scene);
+  expect_options(message, scene.objects[0].options.octree);
+}
+
+TEST(PackedScene, ThePageSetsEveryOption) {
+  SceneView scene;
+  scene.objects = {test_ball("a", {}, 1)};
+  TestPage page(scene);
+  page.scene();
+  Json command{{"do", "set"}};
+  const auto add = [&](const auto& options) {
+    for_each_leaf(
+        [&](const auto& field, const auto& value) {
+          if (is_setting(field)) command[field.key] = json_of(field, value);
+        },
+        options);
+  };
+  const auto others = other_values<SceneOptions>();
+  const auto octree = other_values<ObjectOctreeOptions>();
+  add(others);
+  add(octree);
+  page.say(command);
+  const Json message = page.scene().json;
+  expect_options(message, others);
+  expect_options(message, octree);
 }
 
 std::vector<std::vector<std::byte>> frames_of(const SceneView& show, int count) {
@@ -83,7 +142,7 @@ void expect_equal_frames(const std::vector<std::vector<std::byte>>& a,
 }
 
 TEST(PackedScene, PlaysAsTheShowDoes) {
-  const SceneView show = rich_show();
+  const SceneView show = rich_scene();
   const auto bytes = pack(show);
   const SceneView again = unpack(bytes);
   EXPECT_EQ(pack(again), bytes);
@@ -101,7 +160,7 @@ std::string failure(std::span<const std::byte> bytes) {
 }
 
 TEST(PackedScene, WhatItIsNotIsSaid) {
-  const auto bytes = pack(rich_show());
+  const auto bytes = pack(rich_scene());
   EXPECT_EQ(failure({}), "this is not a packed scene; export the page again");
   for (std::size_t length = 0; length < bytes.size(); length += 1 + length / 50)
     EXPECT_FALSE(failure(std::span(bytes).first(length)).empty()) << length;
@@ -146,7 +205,7 @@ SceneView recorded_show() {
 
 TEST(PackedScene, DamagedBytesNeverDoHarm) {
   RandomNumbers random(4);
-  for (const SceneView& show : {rich_show(), recorded_show()}) {
+  for (const SceneView& show : {rich_scene(), recorded_show()}) {
     const auto bytes = pack(show);
     int refused = 0, taken = 0;
     for (int round = 0; round < 1500; ++round) {

@@ -112,11 +112,11 @@ TEST(ViewerCommands, FailuresNameTheCommandTheValueAndWhatIsAllowed) {
   EXPECT_EQ(failure.json["id"], 3);
   EXPECT_EQ(failure.json["message"], "speed: factor is 11; it must be a number from 0 to 10");
   EXPECT_EQ(page.failure(R"({"do": "set", "broad_phase": "fast"})"),
-            "set: broad_phase is \"fast\"; it must be one of octree, sweep, brute");
+            "set: broad_phase is \"fast\"; it must be one of automatic, octree, grid, sweep, brute");
   EXPECT_EQ(page.failure(R"({"do": "grab", "object": 7, "vertex": 0})"),
             "grab: there is no object 7; there are 3, numbered from 0");
   EXPECT_EQ(page.failure(R"({"do": "pause", "now": true})"),
-            "pause: it has no \"now\"; it takes nothing more");
+            "pause: it has no \"now\"; it takes no other members");
 }
 
 TEST(ViewerCommands, WhoDoesNotListenIsNotAnsweredWithoutEnd) {

@@ -287,7 +287,7 @@ async function layersThatFail(stage) {
     if (!octree || !candidates) return handOn(text);
     // These two fail, after a delay in which a third layer is requested.
     if (scene_regions) send(textMessage(4, { message: "there is not enough memory for that", fatal: false, layers: ["candidates", "octree"] }));
-  });
+  }, ["--broad-phase", "octree"]);
   await hasFrame(page);
   const box = (name) => page.getByRole("checkbox", { name, exact: true });
   await box("Object octrees").check();

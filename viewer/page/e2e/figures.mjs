@@ -27,7 +27,7 @@ async function stopWhen(page, condition) {
 
 /** The paper's Figure 3: the octree of the broad phase with bounding spheres. */
 async function broadPhase(stage) {
-  const program = await stage.program(join(scenes, "nine.toml"), "--bounding-volume", "sphere");
+  const program = await stage.program(join(scenes, "nine.toml"), "--bounding-volume", "sphere", "--broad-phase", "octree");
   const page = await stage.page({ colorScheme: "light", viewport: { width: 1100, height: 720 } });
   await page.goto(program.address);
   await stopWhen(page, () => supple.model.frame?.text.step > 60);

@@ -187,8 +187,8 @@ export const seenTriangle = (page, object, least = -Infinity) =>
  * Opens a file whose session is under control of the test. `alter` receives each message, a function to send
  * a message, and the socket; `command` receives each command and a function to forward it.
  */
-export async function pageWithMessages(stage, file, alter, command = (text, send) => send(text)) {
-  const program = await stage.program(file);
+export async function pageWithMessages(stage, file, alter, command = (text, send) => send(text), options = []) {
+  const program = await stage.program(file, ...options);
   const page = await stage.page();
   await page.routeWebSocket(/\/session/, (socket) => {
     const server = socket.connectToServer();

@@ -39,7 +39,7 @@ async function resetsWithASeedAndSpeed(stage) {
 
 /** Each layer with content changes the picture, and draws as many elements as the session reports. */
 async function eachLayerShows(stage) {
-  const { page } = await stage.view(nine);
+  const { page } = await stage.view(nine, "--broad-phase", "octree");
   await until(page, () => supple.model.frame.contacts.length > 200 && supple.model.frame.objectPairs.length > 8);
   await pause(page);
   const layers = [

@@ -9,9 +9,9 @@
 
 namespace supple {
 
-/// A hierarchical grid that is made anew in each step: the boxes are quantized and sorted by size, row and
-/// cell, and each is tested against those that follow it in its row and in the rows beside, 16 at a time.
-/// Larger boxes also search the levels of smaller ones. Each box is in one cell, so each pair is found once.
+/// A hierarchical grid, rebuilt in each step: the boxes are quantized and sorted by size, row and cell. Each
+/// box is tested against those that follow it in its row and in the rows beside it, 16 at a time. Larger
+/// boxes also search the levels of smaller ones. Each box is in one cell, so each pair is found once.
 class GridSearch final : public PairSearch {
  public:
   void search(VolumeStore& volumes, const Parallel& parallel, FoundPairs& found) override;

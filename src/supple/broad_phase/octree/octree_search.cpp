@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "broad_phase/float_order.hpp"
 #include "geometry/sphere.hpp"
 
 namespace supple {
@@ -31,11 +30,11 @@ std::uint32_t begins_in(const SceneOctree::Region& leaf, const Aabb& box) {
 
 void OctreeSearch::search(VolumeStore& volumes, const Parallel& parallel, FoundPairs& found) {
   const std::uint64_t expanded = tree_.expanded_count(), reduced = tree_.reduced_count();
-  if (revision_ + 1 == volumes.revision()) {
+  if (volumes.holds_previous()) {
     follow_changes(volumes, found.stats);
   } else {
     volumes.take_changed();
-    build(volumes, cube_chooser_.choose(volumes.boxes(), max_level_), found.stats);
+    build(volumes, cube_chooser_.choose(volumes.boxes()), found.stats);
     found.stats.objects_placed = tree_.object_count();
   }
   revision_ = volumes.revision();
@@ -86,7 +85,6 @@ void OctreeSearch::follow_changes(VolumeStore& volumes, BroadPhaseStats& stats) 
     previous_.push_back(previous);
   }
   stats.objects_placed = crossing_.size();
-  placed_since_choice_ += crossing_.size();
   // Moving an object costs a little more than its share of a build.
   const bool many = 4 * crossing_.size() > 3 * tree_.object_count();
   if (!many) {
@@ -94,18 +92,17 @@ void OctreeSearch::follow_changes(VolumeStore& volumes, BroadPhaseStats& stats) 
     tree_.settle(volumes);
   }
   // When all objects have moved once more, the scene may have another extent or number of objects.
-  constexpr std::size_t fewest_placements = 64;
-  if (!many && placed_since_choice_ < std::max(tree_.object_count(), fewest_placements)) return;
-  const SceneCube cube = cube_chooser_.choose(volumes.boxes(), max_level_);
-  if (many || is_outdated(tree_.cube(), cube))
-    build(volumes, cube, stats);
-  else
-    placed_since_choice_ = 0;
+  const bool is_due = crossing_.size() >= placements_before_choice_;
+  placements_before_choice_ -= is_due ? 0 : crossing_.size();
+  if (!many && !is_due) return;
+  const SceneCube cube = cube_chooser_.choose(volumes.boxes());
+  if (many || tree_.is_outdated(cube)) build(volumes, cube, stats);
+  placements_before_choice_ = std::max<std::size_t>(tree_.object_count(), 64);
 }
 
 void OctreeSearch::build(const VolumeStore& volumes, const SceneCube& cube, BroadPhaseStats& stats) {
   tree_.build(volumes, cube);
-  placed_since_choice_ = 0;
+  placements_before_choice_ = std::max<std::size_t>(tree_.object_count(), 64);
   stats.regions_rebuilt = 1;
 }
 
@@ -124,8 +121,7 @@ void OctreeSearch::find_in_leaf(const VolumeStore& volumes, const SceneOctree::R
     return;
   }
   worker.order.clear();
-  for (const std::uint32_t slot : slots)
-    worker.order.push_back(std::uint64_t{float_order(boxes[slot].min.x)} << 32 | slot);
+  for (const std::uint32_t slot : slots) worker.order.push_back(order_key(boxes[slot].min.x, slot));
   std::sort(worker.order.begin(), worker.order.end());
   for (std::size_t i = 0; i < slots.size(); ++i) {
     const auto slot = static_cast<std::uint32_t>(worker.order[i]);

@@ -10,13 +10,13 @@
 namespace supple {
 
 /// The paper's broad phase: an object is tested against those that share a leaf of the scene octree with it.
-/// The regions follow the objects that changed. When these are few, only their pairs are searched, and the
-/// pairs of all others stay. The regions are built anew when most objects left theirs, when the cube no
-/// longer suits the scene, and when another search ran in between.
+/// The regions follow the objects that changed. When few objects changed, only their pairs are searched and
+/// all other pairs stay. The regions are rebuilt when most objects left theirs, when the cube no longer
+/// suits the scene, and when another search ran in between.
 class OctreeSearch final : public PairSearch {
  public:
   OctreeSearch(BoundingVolume bounding_volume, const SceneOctreeOptions& options)
-      : max_level_(options.max_level), tree_(bounding_volume, options) {}
+      : tree_(bounding_volume, options) {}
 
   void search(VolumeStore& volumes, const Parallel& parallel, FoundPairs& found) override;
   bool needs_previous(const VolumeStore& volumes) const override { return revision_ == volumes.revision(); }
@@ -39,11 +39,10 @@ class OctreeSearch final : public PairSearch {
   void find_of_object(const VolumeStore& volumes, std::uint32_t slot, Worker& worker, PairBins& pairs) const;
   void merge_kept(std::vector<IndexPair>& pairs);
 
-  std::uint32_t max_level_;
   SceneOctree tree_;
   SceneCubeChooser cube_chooser_;
   std::uint64_t revision_ = ~std::uint64_t{0};  // of the volumes that the regions hold; none at first
-  std::size_t placed_since_choice_ = 0;         // objects placed since the cube was last chosen
+  std::size_t placements_before_choice_ = 0;    // before the cube is chosen again
   std::vector<std::uint32_t> crossing_;         // changed objects that may have left their regions
   std::vector<ObjectVolume> previous_;          // of these
   std::vector<std::uint8_t> is_changed_;        // per slot, while few are searched

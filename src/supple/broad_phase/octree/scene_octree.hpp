@@ -50,7 +50,10 @@ class SceneOctree {
 
   SceneOctree(BoundingVolume bounding_volume, const SceneOctreeOptions& options);
 
-  const SceneCube& cube() const { return cube_; }
+  /// A tree that is built in the best cube for the present objects would differ much.
+  bool is_outdated(const SceneCube& best) const {
+    return supple::is_outdated(cube_, best) || expand_at_ != chosen_expand_at();
+  }
   /// Spheres are placed by Arvo's test: two that overlap share a region, but perhaps not the one in which the
   /// intersection of their boxes begins.
   bool placed_by_sphere() const { return by_sphere_; }
@@ -130,12 +133,13 @@ class SceneOctree {
                          volume, visit);
   }
 
-  struct Census;
   std::string validate_below(const VolumeStore& volumes, std::uint32_t index,
-                             std::span<const std::uint32_t> slots, Census& census) const;
+                             std::span<const std::uint32_t> slots) const;
+  std::uint32_t chosen_expand_at() const;
 
   bool by_sphere_;
-  std::uint32_t expand_at_;
+  std::uint32_t max_level_, given_expand_at_;
+  std::uint32_t expand_at_ = 2;
   std::uint32_t arity_;
   int axes_per_level_;
   std::uint32_t deepest_level_ = 1;  // of this tree: levels of arity 4 and 2 are more than the cube's

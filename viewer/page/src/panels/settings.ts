@@ -4,13 +4,6 @@ import type { Client } from "../client";
 import type { Model } from "../model";
 import { h } from "./dom";
 
-const CHOICES = {
-  bounding_volume: ["aabb", "sphere"],
-  broad_phase: ["automatic", "octree", "grid", "sweep", "brute"],
-  contacts: ["intersection", "continuous", "none"],
-  integrator: ["verlet", "symplectic_euler", "backward_euler"],
-} as const;
-
 export class Settings {
   readonly element = h("div", { class: "settings" });
   private gui: GUI | null = null;
@@ -48,8 +41,8 @@ export class Settings {
     this.number("time_step", "Time step", 1e-6, null, null);
   }
 
-  private choice(name: keyof typeof CHOICES, label: string): void {
-    const choices: string[] = [...CHOICES[name]];
+  private choice(name: string, label: string): void {
+    const choices: string[] = [...(this.model.scene?.choices[name] ?? [])];
     const now = String(this.values[name]);
     if (!choices.includes(now)) choices.push(now);  // a value of a later version
     this.tie(this.gui!.add(this.values, name, choices), name, label);

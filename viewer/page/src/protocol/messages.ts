@@ -39,6 +39,8 @@ export interface SceneText {
   max_level: number;
   leaf_size: number;
   integrator: string | null;
+  /** The words of each option that has words. */
+  choices: Record<string, string[]>;
   can: string[];
   statistics: string[];
   series: string[];
@@ -243,6 +245,7 @@ function sceneText(json: Record<string, unknown>): SceneText {
   need(isCount(s.max_level), "max_level");
   need(isCount(s.leaf_size), "leaf_size");
   need(s.integrator === null || isText(s.integrator), "integrator");
+  need(typeof s.choices === "object" && s.choices !== null && Object.values(s.choices).every(isTexts), "choices");
   for (const name of ["can", "statistics", "series", "warnings"] as const) need(isTexts(s[name]), name);
   need(Array.isArray(s.objects), "objects");
   for (const object of s.objects as unknown[]) {

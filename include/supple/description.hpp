@@ -1,0 +1,190 @@
+#pragma once
+
+#include <array>
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <type_traits>
+
+#include "supple/types.hpp"
+
+// Options and statistics describe themselves: names, words, units, ranges and a sentence for each member. The
+// command line, scene files, recordings, JSON, the viewer and the documents are made from these descriptions.
+// `option_descriptions.hpp` and `result_descriptions.hpp` have those of the core.
+
+namespace supple {
+
+/// The words for the values of an enumeration, in the order of the values from 0 on.
+template <class Enum>
+inline constexpr std::array<const char*, 0> words{};
+
+template <class Enum>
+concept Worded = std::is_enum_v<Enum> &&(words<Enum>.size() > 0);
+
+/// Null when the value is none of the enumeration.
+template <Worded Enum>
+constexpr const char* word_of(Enum value) {
+  const auto index = static_cast<std::size_t>(value);
+  return index < words<Enum>.size() ? words<Enum>[index] : nullptr;
+}
+
+template <Worded Enum>
+constexpr std::optional<Enum> value_of_word(std::string_view word) {
+  for (std::size_t i = 0; i < words<Enum>.size(); ++i) {
+    if (word == words<Enum>[i]) return static_cast<Enum>(i);
+  }
+  return std::nullopt;
+}
+
+/// `aabb, sphere`
+template <Worded Enum>
+std::string list_of_words(std::string_view separator = ", ") {
+  std::string list;
+  for (const char* word : words<Enum>) {
+    if (!list.empty()) list += separator;
+    list += word;
+  }
+  return list;
+}
+
+/// The values that a number may have.
+struct ValueRange {
+  double lowest = -std::numeric_limits<double>::infinity();
+  double highest = std::numeric_limits<double>::infinity();
+  bool excludes_lowest = false;
+  bool includes_infinity = false;  ///< positive infinity, which stands for "none"
+  bool powers_of_two = false;      ///< no other whole numbers
+  bool includes_zero = false;      ///< below the lowest value, where 0 stands for "chosen"
+
+  constexpr bool allows(double value) const {
+    if (value == std::numeric_limits<double>::infinity()) return includes_infinity;
+    if (value == 0 && includes_zero) return true;
+    return value >= lowest && value <= highest && value > -std::numeric_limits<double>::infinity() &&
+           !(excludes_lowest && value == lowest);
+  }
+  template <std::unsigned_integral Whole>
+  constexpr bool allows(Whole value) const {
+    return allows(static_cast<double>(value)) && !(powers_of_two && (value & (value - 1)) != 0);
+  }
+  static constexpr ValueRange from(double lowest) { return {.lowest = lowest}; }
+  static constexpr ValueRange from(double lowest, double highest) { return {lowest, highest}; }
+  static constexpr ValueRange above(double lowest) { return {.lowest = lowest, .excludes_lowest = true}; }
+  constexpr ValueRange or_infinity() const {
+    ValueRange range = *this;
+    range.includes_infinity = true;
+    return range;
+  }
+  constexpr ValueRange or_zero() const {
+    ValueRange range = *this;
+    range.includes_zero = true;
+    return range;
+  }
+  constexpr ValueRange only_powers_of_two() const {
+    ValueRange range = *this;
+    range.powers_of_two = true;
+    return range;
+  }
+};
+
+/// `a whole number from 0 to 32`, `a finite number above 0`, `2, 4 or 8`: what a number must be.
+std::string text_of(const ValueRange& range, bool is_whole);
+
+/// One member of a structure.
+template <class Struct, class Value>
+struct Field {
+  const char* name;  ///< of the member
+  Value Struct::*member;
+  const char* doc;  ///< one sentence, without a full stop
+  ValueRange range{};
+  const char* unit = "";
+  /// The word that people read and type: in scene files, recordings, JSON, the viewer, and, with dashes, on
+  /// the command line. No two fields of the structures that occur together have the same.
+  const char* key = name;
+  /// For a truth value that is better said by two words: those for false and for true.
+  std::array<const char*, 2> truth_words{};
+  /// It belongs to the machine and not to the scene: a number of threads, a measured time, a count that
+  /// depends on the number of threads. It is not part of what two runs have in common.
+  bool is_of_machine = false;
+
+  constexpr bool has_truth_words() const { return truth_words[0] != nullptr; }
+};
+
+/// `name` says what the structure is called; `visit(visitor)` calls `visitor(field)` for each member in the
+/// order of the structure.
+template <class Struct>
+struct Description;
+
+template <class Struct>
+concept Described = requires {
+  Description<std::remove_const_t<Struct>>::name;
+};
+
+template <Described Struct, class Visitor>
+constexpr void for_each_field(Visitor&& visitor) {
+  Description<std::remove_const_t<Struct>>::visit(visitor);
+}
+
+/// Calls `visitor(field, values...)` for each member of the structures that is not described itself, and for
+/// each member of those that are, in order. The structures have one type, constant or not.
+template <class Visitor, Described First, class... Rest>
+constexpr void for_each_leaf(Visitor&& visitor, First& first, Rest&... rest) {
+  for_each_field<First>([&](const auto& field) {
+    if constexpr (Described<std::remove_reference_t<decltype(first.*field.member)>>) {
+      for_each_leaf(visitor, first.*field.member, (rest.*field.member)...);
+    } else {
+      visitor(field, first.*field.member, (rest.*field.member)...);
+    }
+  });
+}
+
+/// How many leaves `for_each_leaf` visits.
+template <Described Struct>
+constexpr std::size_t count_leaves() {
+  std::size_t count = 0;
+  Struct values{};
+  for_each_leaf([&](const auto&, const auto&) { ++count; }, values);
+  return count;
+}
+
+/// The fewest digits that read back to the same double.
+std::string text_of(double value);
+
+// What `check` throws: `WHERE: STRUCTURE::NAME is VALUE; it must be WHAT`.
+[[noreturn]] void fail_range(std::string_view where, const char* structure, const char* name,
+                             std::uint64_t value, const ValueRange& range);
+[[noreturn]] void fail_range(std::string_view where, const char* structure, const char* name, double value,
+                             const ValueRange& range);
+[[noreturn]] void fail_range(std::string_view where, const char* structure, const char* name, Vec3d value);
+[[noreturn]] void fail_range(std::string_view where, const char* structure, const char* name,
+                             std::uint64_t value, const std::string& words);
+
+/// Throws `Error` that names the first member that is out of its range. `where` says where the options are
+/// from; it may be empty.
+template <Described Struct>
+void check(const Struct& options, std::string_view where = {}) {
+  const char* const structure = Description<Struct>::name;
+  for_each_field<Struct>([&](const auto& field) {
+    const auto& value = options.*field.member;
+    using Value = std::remove_cvref_t<decltype(value)>;
+    if constexpr (Described<Value>) {
+      check(value, where);
+    } else if constexpr (Worded<Value>) {
+      if (word_of(value) == nullptr)
+        fail_range(where, structure, field.name, static_cast<std::uint64_t>(value), list_of_words<Value>());
+    } else if constexpr (std::unsigned_integral<Value> && !std::same_as<Value, bool>) {
+      if (!field.range.allows(value))
+        fail_range(where, structure, field.name, std::uint64_t{value}, field.range);
+    } else if constexpr (std::same_as<Value, double>) {
+      if (!field.range.allows(value)) fail_range(where, structure, field.name, value, field.range);
+    } else if constexpr (std::same_as<Value, Vec3d>) {
+      if (!field.range.allows(value.x) || !field.range.allows(value.y) || !field.range.allows(value.z))
+        fail_range(where, structure, field.name, value);
+    }
+  });
+}
+
+}  // namespace supple

@@ -1,0 +1,218 @@
+#pragma once
+
+#include "supple/broad_phase.hpp"
+#include "supple/continuous.hpp"
+#include "supple/description.hpp"
+#include "supple/options.hpp"
+
+// Descriptions of the options of the core (description.hpp).
+
+namespace supple {
+
+template <>
+inline constexpr std::array words<BoundingVolume>{"aabb", "sphere"};
+template <>
+inline constexpr std::array words<SphereFit>{"vertices", "box"};
+template <>
+inline constexpr std::array words<BroadPhaseMethod>{"automatic", "octree", "grid", "sweep", "brute"};
+template <>
+inline constexpr std::array words<RegionSphereTest>{"arvo", "grown_box"};
+template <>
+inline constexpr std::array words<ContactKinds>{"none", "intersection", "continuous",
+                                                "intersection,continuous"};
+
+template <>
+struct Description<ImpactOptions> {
+  static constexpr const char* name = "ImpactOptions";
+  template <class Visitor>
+  static constexpr void visit(Visitor&& visitor) {
+    using Options = ImpactOptions;
+    visitor(Field<Options, double>{.name = "min_separation",
+                                   .member = &Options::min_separation,
+                                   .doc = "Distance at which two elements touch, for continuous contacts",
+                                   .range = ValueRange::from(0),
+                                   .unit = "length"});
+    visitor(Field<Options, bool>{
+        .name = "exact",
+        .member = &Options::exact,
+        .doc =
+            "Continuous contacts that floating point cannot decide: exact arithmetic decides them, or they "
+            "are reported as within tolerance",
+        .key = "undecided",
+        .truth_words = {"report", "exact"}});
+  }
+};
+
+template <>
+struct Description<ObjectOctreeOptions> {
+  static constexpr const char* name = "ObjectOctreeOptions";
+  template <class Visitor>
+  static constexpr void visit(Visitor&& visitor) {
+    using Options = ObjectOctreeOptions;
+    visitor(Field<Options, std::uint32_t>{.name = "max_level",
+                                          .member = &Options::max_level,
+                                          .doc = "Deepest level of the object's octree; the root is level 0",
+                                          .range = ValueRange::from(0, 32)});
+    visitor(Field<Options, std::uint32_t>{
+        .name = "leaf_size",
+        .member = &Options::leaf_size,
+        .doc = "A node with at most this many triangles is not split; half as many with continuous contacts",
+        .range = ValueRange::from(1, 0xffffffff),
+        .unit = "triangles"});
+    visitor(Field<Options, std::uint32_t>{.name = "arity",
+                                          .member = &Options::arity,
+                                          .doc = "Children of a node of the object's octree",
+                                          .range = ValueRange::from(2, 8).only_powers_of_two(),
+                                          .key = "tree_arity"});
+    visitor(Field<Options, bool>{.name = "regular",
+                                 .member = &Options::regular,
+                                 .doc =
+                                     "How the object's octree is built: equally full leaves, or the octants "
+                                     "of each node's cell as in the paper",
+                                 .key = "object_octree",
+                                 .truth_words = {"balanced", "regular"}});
+    visitor(Field<Options, bool>{
+        .name = "rebuild_degraded",
+        .member = &Options::rebuild_degraded,
+        .doc = "Rebuild the parts of the object's octree that deformation has made slow to query"});
+  }
+};
+
+template <>
+struct Description<SceneOctreeOptions> {
+  static constexpr const char* name = "SceneOctreeOptions";
+  template <class Visitor>
+  static constexpr void visit(Visitor&& visitor) {
+    using Options = SceneOctreeOptions;
+    visitor(Field<Options, std::uint32_t>{
+        .name = "max_level",
+        .member = &Options::max_level,
+        .doc = "Deepest level of the scene octree, 0 for no other limit than 20",
+        // 8^20 regions are as many as a 64-bit number can tell apart.
+        .range = ValueRange::from(0, 20),
+        .key = "scene_octree_max_level"});
+    visitor(Field<Options, std::uint32_t>{
+        .name = "expand_at",
+        .member = &Options::expand_at,
+        .doc = "A region of the scene octree expands when this many of its objects fit into half its edge; 0 "
+               "chooses 2 for up to 64 objects and otherwise 96",
+        .range = ValueRange::from(2, 0xffffffff).or_zero(),
+        .unit = "objects",
+        .key = "scene_octree_expand_at"});
+    visitor(Field<Options, RegionSphereTest>{
+        .name = "region_sphere_test",
+        .member = &Options::region_sphere_test,
+        .doc =
+            "How a region of the scene octree is tested against a sphere: by Arvo's test or by the paper's",
+        .key = "region_test"});
+    visitor(Field<Options, std::uint32_t>{.name = "arity",
+                                          .member = &Options::arity,
+                                          .doc = "Children of a region of the scene octree",
+                                          .range = ValueRange::from(2, 8).only_powers_of_two(),
+                                          .key = "scene_octree_arity"});
+  }
+};
+
+template <>
+struct Description<ObjectOptions> {
+  static constexpr const char* name = "ObjectOptions";
+  template <class Visitor>
+  static constexpr void visit(Visitor&& visitor) {
+    using Options = ObjectOptions;
+    visitor(Field<Options, std::string>{.name = "name",
+                                        .member = &Options::name,
+                                        .doc = "Name of the object in tables, messages and results"});
+    visitor(Field<Options, bool>{.name = "self_collision",
+                                 .member = &Options::self_collision,
+                                 .doc = "Also test the object against itself",
+                                 .key = "self"});
+    visitor(Field<Options, bool>{
+        .name = "is_static",
+        .member = &Options::is_static,
+        .doc = "The object never moves; static objects are not tested against each other",
+        .key = "static"});
+    visitor(Field<Options, std::uint32_t>{.name = "group",
+                                          .member = &Options::group,
+                                          .doc = "Two objects are tested when each one's group has a bit in "
+                                                 "common with the other's mask",
+                                          .range = ValueRange::from(0, 0xffffffff)});
+    visitor(Field<Options, std::uint32_t>{.name = "mask",
+                                          .member = &Options::mask,
+                                          .doc = "Bits of the groups that the object is tested with",
+                                          .range = ValueRange::from(0, 0xffffffff)});
+    visitor(Field<Options, ObjectOctreeOptions>{
+        .name = "octree", .member = &Options::octree, .doc = "Shape of the object's octree"});
+  }
+};
+
+template <>
+struct Description<ComparisonOptions> {
+  static constexpr const char* name = "ComparisonOptions";
+  template <class Visitor>
+  static constexpr void visit(Visitor&& visitor) {
+    using Options = ComparisonOptions;
+    visitor(Field<Options, SphereFit>{.name = "sphere_fit",
+                                      .member = &Options::sphere_fit,
+                                      .doc = "How spheres are fitted: about the vertices, or from the box as "
+                                             "in the paper's eq. 3 and 4, which miss contacts"});
+    visitor(Field<Options, bool>{
+        .name = "colliding_vertices",
+        .member = &Options::colliding_vertices,
+        .doc = "Also give the paper's output: the vertices in the leaves of both octrees that collide"});
+  }
+};
+
+template <>
+struct Description<SceneOptions> {
+  static constexpr const char* name = "SceneOptions";
+  template <class Visitor>
+  static constexpr void visit(Visitor&& visitor) {
+    using Options = SceneOptions;
+    visitor(Field<Options, BoundingVolume>{
+        .name = "bounding_volume",
+        .member = &Options::bounding_volume,
+        .doc = "Shape that encloses the objects and the nodes of their octrees"});
+    visitor(Field<Options, BroadPhaseMethod>{.name = "broad_phase",
+                                             .member = &Options::broad_phase,
+                                             .doc = "How object pairs are found; all methods find the same"});
+    visitor(Field<Options, SceneOctreeOptions>{
+        .name = "scene_octree", .member = &Options::scene_octree, .doc = "Shape of the scene octree"});
+    visitor(Field<Options, ContactKinds>{
+        .name = "contacts",
+        .member = &Options::contacts,
+        .doc = "Exact stage: no contacts, every pair of triangles that intersects, or every vertex and face "
+               "and every two edges that touch on the way from the frame before"});
+    visitor(Field<Options, bool>{.name = "contact_points",
+                                 .member = &Options::contact_points,
+                                 .doc = "Compute the points of each contact of triangles"});
+    visitor(Field<Options, ImpactOptions>{
+        .name = "impact", .member = &Options::impact, .doc = "Options of continuous contacts"});
+    visitor(Field<Options, std::uint32_t>{.name = "threads",
+                                          .member = &Options::threads,
+                                          .doc = "Worker threads, 0 for one a core",
+                                          .range = ValueRange::from(0, 1024),
+                                          .is_of_machine = true});
+    visitor(Field<Options, ComparisonOptions>{
+        .name = "comparison", .member = &Options::comparison, .doc = "Options for comparison"});
+  }
+};
+
+template <>
+struct Description<BroadPhaseOptions> {
+  static constexpr const char* name = "BroadPhaseOptions";
+  template <class Visitor>
+  static constexpr void visit(Visitor&& visitor) {
+    using Options = BroadPhaseOptions;
+    visitor(Field<Options, BroadPhaseMethod>{
+        .name = "method", .member = &Options::method, .doc = "How overlapping pairs are found"});
+    visitor(Field<Options, SceneOctreeOptions>{
+        .name = "scene_octree", .member = &Options::scene_octree, .doc = "Shape of the scene octree"});
+    visitor(Field<Options, std::uint32_t>{.name = "threads",
+                                          .member = &Options::threads,
+                                          .doc = "Worker threads, 0 for one a core",
+                                          .range = ValueRange::from(0, 1024),
+                                          .is_of_machine = true});
+  }
+};
+
+}  // namespace supple

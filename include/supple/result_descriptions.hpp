@@ -1,0 +1,134 @@
+#pragma once
+
+#include "supple/broad_phase.hpp"
+#include "supple/contact.hpp"
+#include "supple/continuous.hpp"
+#include "supple/description.hpp"
+#include "supple/inspection.hpp"
+#include "supple/option_descriptions.hpp"
+#include "supple/result.hpp"
+
+// Descriptions of what the core gives: the words for kinds, and the statistics (description.hpp).
+
+namespace supple {
+
+template <>
+inline constexpr std::array words<IntersectionKind>{"point", "segment", "polygon"};
+template <>
+inline constexpr std::array words<ImpactCertainty>{"certain", "within_tolerance"};
+/// A vertex of a and a face of b, the reverse, and two edges.
+template <>
+inline constexpr std::array words<ElementPairKind>{"vf", "fv", "ee"};
+template <>
+inline constexpr std::array words<ContinuousDifference::Fault>{"missed", "added", "late", "early"};
+template <>
+inline constexpr std::array words<PairStage>{"not_tested",     "shared_vertex",  "inert",
+                                             "object_volumes", "octree_volumes", "triangle_boxes",
+                                             "exact_test",     "contact"};
+
+template <>
+struct Description<StepStats> {
+  static constexpr const char* name = "StepStats";
+  template <class Visitor>
+  static constexpr void visit(Visitor&& visitor) {
+    using Stats = StepStats;
+    const auto seconds = [&](const char* field, double Stats::*member, const char* doc) {
+      visitor(Field<Stats, double>{
+          .name = field, .member = member, .doc = doc, .unit = "s", .is_of_machine = true});
+    };
+    const auto count = [&](const char* field, std::uint64_t Stats::*member, const char* unit,
+                           const char* doc) {
+      visitor(Field<Stats, std::uint64_t>{.name = field, .member = member, .doc = doc, .unit = unit});
+    };
+    const auto work = [&](const char* field, std::uint64_t Stats::*member, const char* doc) {
+      visitor(Field<Stats, std::uint64_t>{
+          .name = field, .member = member, .doc = doc, .unit = "pairs", .is_of_machine = true});
+    };
+    seconds("refit_seconds", &Stats::refit_seconds, "Octrees take over new positions");
+    seconds("broad_phase_seconds", &Stats::broad_phase_seconds, "Object volumes become object pairs");
+    seconds("rebuild_seconds", &Stats::rebuild_seconds, "Degraded parts of octrees are rebuilt");
+    seconds("traversal_seconds", &Stats::traversal_seconds, "Object pairs become candidates");
+    seconds("exact_seconds", &Stats::exact_seconds, "Candidates become contacts");
+    seconds("sort_and_events_seconds", &Stats::sort_and_events_seconds,
+            "Contacts are put in order, and events are found");
+    seconds("total_seconds", &Stats::total_seconds, "The whole detection");
+    visitor(Field<Stats, BroadPhaseMethod>{.name = "broad_phase_method",
+                                           .member = &Stats::broad_phase_method,
+                                           .doc = "Method of the broad phase that ran"});
+    count("objects_refitted", &Stats::objects_refitted, "objects", "Objects with new positions");
+    count("triangles_refitted", &Stats::triangles_refitted, "triangles", "Triangles of these objects");
+    count("subtrees_rebuilt", &Stats::subtrees_rebuilt, "subtrees", "Parts of octrees that were rebuilt");
+    count("triangles_rebuilt", &Stats::triangles_rebuilt, "triangles", "Triangles of these parts");
+    count("object_pairs_tested", &Stats::object_pairs_tested, "pairs",
+          "Tests of two objects' volumes in the broad phase");
+    count("object_pairs", &Stats::object_pairs, "pairs", "Object pairs that the broad phase found");
+    work("node_pairs_visited", &Stats::node_pairs_visited,
+         "Pairs of octree nodes in the narrow phase; depends on the number of threads");
+    work("boxes_tested", &Stats::boxes_tested,
+         "Tests of two volumes in nodes and leaves; depends on the number of threads");
+    count("candidate_pairs", &Stats::candidate_pairs, "pairs",
+          "Pairs of triangles whose boxes overlap; 0 with continuous contacts");
+    count("vertex_face_candidates", &Stats::vertex_face_candidates, "pairs",
+          "Pairs of a vertex and a face whose moving boxes meet, with continuous contacts");
+    count("edge_edge_candidates", &Stats::edge_edge_candidates, "pairs",
+          "Pairs of edges whose moving boxes meet, with continuous contacts");
+    count("exact_fallbacks", &Stats::exact_fallbacks, "pairs",
+          "Candidates that floating point could not decide");
+    count("contacts", &Stats::contacts, "contacts", "Contacts that were found");
+  }
+};
+
+template <>
+struct Description<BroadPhaseStats> {
+  static constexpr const char* name = "BroadPhaseStats";
+  template <class Visitor>
+  static constexpr void visit(Visitor&& visitor) {
+    using Stats = BroadPhaseStats;
+    const auto count = [&](const char* field, std::uint64_t Stats::*member, const char* unit,
+                           const char* doc) {
+      visitor(Field<Stats, std::uint64_t>{.name = field, .member = member, .doc = doc, .unit = unit});
+    };
+    visitor(
+        Field<Stats, BroadPhaseMethod>{.name = "method", .member = &Stats::method, .doc = "Method that ran"});
+    count("object_pairs_tested", &Stats::object_pairs_tested, "pairs", "Tests of two volumes");
+    count("objects_changed", &Stats::objects_changed, "objects", "Volumes that differ from the call before");
+    count("objects_paired", &Stats::objects_paired, "objects",
+          "Objects whose pairs were searched; the pairs of the others were kept");
+    count("objects_placed", &Stats::objects_placed, "objects",
+          "Objects that were taken out of regions or put into others");
+    count("regions_expanded", &Stats::regions_expanded, "groups", "Groups of regions that were made");
+    count("regions_reduced", &Stats::regions_reduced, "regions", "Regions that became leaves again");
+    count("regions_rebuilt", &Stats::regions_rebuilt, "times", "All regions were rebuilt");
+  }
+};
+
+template <>
+struct Description<OctreeStatistics> {
+  static constexpr const char* name = "OctreeStatistics";
+  template <class Visitor>
+  static constexpr void visit(Visitor&& visitor) {
+    using Stats = OctreeStatistics;
+    const auto value = [&]<class Value>(const char* field, Value Stats::*member, const char* unit,
+                                        const char* doc) {
+      visitor(Field<Stats, Value>{.name = field, .member = member, .doc = doc, .unit = unit});
+    };
+    value("triangles", &Stats::triangles, "triangles", "Triangles in the octree");
+    value("vertices", &Stats::vertices, "vertices", "Vertices of these triangles");
+    value("nodes", &Stats::nodes, "nodes", "Nodes of eight children");
+    value("leaves", &Stats::leaves, "leaves", "Leaves");
+    value("depth", &Stats::depth, "levels", "Level of the deepest leaf; the root is level 0");
+    value("largest_leaf", &Stats::largest_leaf, "triangles", "Triangles of the largest leaf");
+    value("mean_leaf_size", &Stats::mean_leaf_size, "triangles", "Mean triangles of a leaf");
+    value("mean_node_width", &Stats::mean_node_width, "children", "Mean children of a node");
+    value("bytes", &Stats::bytes, "bytes", "Memory of the octree without the positions");
+    value("bytes_per_triangle", &Stats::bytes_per_triangle, "bytes", "The same per triangle");
+    value("leaves_by_level", &Stats::leaves_by_level, "leaves", "Leaves of each level from the root on");
+    value("cost", &Stats::cost, "visits", "Mean visits of a query by the surface-area heuristic");
+    value("degradation", &Stats::degradation, "", "The cost divided by the cost when the octree was built");
+    value("subtrees_rebuilt", &Stats::subtrees_rebuilt, "subtrees",
+          "Parts that were rebuilt since the object was added");
+    value("triangles_rebuilt", &Stats::triangles_rebuilt, "triangles", "Triangles of these parts");
+  }
+};
+
+}  // namespace supple

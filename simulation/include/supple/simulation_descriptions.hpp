@@ -1,0 +1,215 @@
+#pragma once
+
+#include "supple/description.hpp"
+#include "supple/motion.hpp"
+#include "supple/option_descriptions.hpp"
+#include "supple/simulation.hpp"
+#include "supple/wave_motion.hpp"
+
+// Descriptions of the options of simulations (description.hpp).
+
+namespace supple {
+
+template <>
+inline constexpr std::array words<Integrator>{"verlet", "symplectic_euler", "backward_euler"};
+
+template <>
+struct Description<MassSpringOptions> {
+  static constexpr const char* name = "MassSpringOptions";
+  template <class Visitor>
+  static constexpr void visit(Visitor&& visitor) {
+    using Options = MassSpringOptions;
+    const auto number = [&](const char* field, double Options::*member, const char* unit, ValueRange range,
+                            const char* doc) {
+      visitor(
+          Field<Options, double>{.name = field, .member = member, .doc = doc, .range = range, .unit = unit});
+    };
+    visitor(Field<Options, Integrator>{
+        .name = "integrator",
+        .member = &Options::integrator,
+        .doc = "How a step is integrated: verlet (second order) and symplectic_euler (first order) are fast "
+               "and need short steps, backward_euler is stable at any stiffness and slower"});
+    visitor(Field<Options, std::uint32_t>{.name = "substeps",
+                                          .member = &Options::substeps,
+                                          .doc = "Equal parts of a step",
+                                          .range = ValueRange::from(1, 1'000'000)});
+    visitor(Field<Options, double>{.name = "vertex_mass",
+                                   .member = &Options::vertex_mass,
+                                   .doc = "Mass of each vertex",
+                                   .range = ValueRange::above(0),
+                                   .unit = "kg",
+                                   .key = "mass"});
+    number("stiffness", &Options::stiffness, "N/m", ValueRange::from(0),
+           "Stiffness of the spring on each edge");
+    number("damping", &Options::damping, "N s/m", ValueRange::from(0), "Damping along each spring");
+    number("air_friction", &Options::air_friction, "N s/m", ValueRange::from(0),
+           "Friction of each vertex against the air");
+    number("bending_stiffness", &Options::bending_stiffness, "N/m", ValueRange::from(0),
+           "Stiffness of a spring across each edge, between the two opposite corners");
+    number("area_stiffness", &Options::area_stiffness, "N/m", ValueRange::from(0),
+           "Stiffness of a force that keeps the area of each triangle");
+    number("volume_stiffness", &Options::volume_stiffness, "Pa", ValueRange::from(0),
+           "Bulk modulus of the inside: a pressure keeps the volume of each closed part; an error when no "
+           "part of the mesh is closed");
+    visitor(Field<Options, Vec3d>{.name = "gravity",
+                                  .member = &Options::gravity,
+                                  .doc = "Acceleration of each vertex",
+                                  .unit = "m/s²"});
+    number("max_strain", &Options::max_strain, "", ValueRange::above(0).or_infinity(),
+           "Edges stay within this part of their rest length");
+    number("yield_strain", &Options::yield_strain, "", ValueRange::from(0).or_infinity(),
+           "Edges with a larger strain flow: the shape does not come back");
+    number("plastic_rate", &Options::plastic_rate, "1/s", ValueRange::above(0),
+           "How fast they flow: this part of the strain beyond yield_strain in a second");
+    visitor(Field<Options, std::vector<std::uint32_t>>{.name = "fixed_vertices",
+                                                       .member = &Options::fixed_vertices,
+                                                       .doc = "Vertices that forces do not move",
+                                                       .key = "fixed"});
+    visitor(Field<Options, std::uint32_t>{.name = "threads",
+                                          .member = &Options::threads,
+                                          .doc = "Worker threads, 0 for one a core",
+                                          .range = ValueRange::from(0, 1024),
+                                          .is_of_machine = true});
+  }
+};
+
+template <>
+struct Description<MassSpringMotion::Handle> {
+  static constexpr const char* name = "MassSpringMotion::Handle";
+  template <class Visitor>
+  static constexpr void visit(Visitor&& visitor) {
+    using Handle = MassSpringMotion::Handle;
+    visitor(Field<Handle, std::vector<std::uint32_t>>{
+        .name = "vertices", .member = &Handle::vertices, .doc = "Vertices that are moved"});
+    visitor(Field<Handle, Vec3d>{
+        .name = "by", .member = &Handle::by, .doc = "Vector by which they are moved", .unit = "m"});
+    visitor(Field<Handle, double>{.name = "seconds",
+                                  .member = &Handle::seconds,
+                                  .doc = "How long that takes; then they stay",
+                                  .range = ValueRange::above(0),
+                                  .unit = "s"});
+  }
+};
+
+template <>
+struct Description<MassSpringMotion> {
+  static constexpr const char* name = "MassSpringMotion";
+  template <class Visitor>
+  static constexpr void visit(Visitor&& visitor) {
+    using Motion = MassSpringMotion;
+    visitor(Field<Motion, MassSpringOptions>{
+        .name = "springs", .member = &Motion::springs, .doc = "Masses and springs of the object"});
+    visitor(Field<Motion, Vec3d>{.name = "velocity",
+                                 .member = &Motion::velocity,
+                                 .doc = "Velocity with which the object is sent off after deform_seconds",
+                                 .unit = "m/s"});
+    visitor(Field<Motion, double>{.name = "random_speed",
+                                  .member = &Motion::random_speed,
+                                  .doc = "Speed in a random direction that is added to the velocity",
+                                  .range = ValueRange::from(0),
+                                  .unit = "m/s"});
+    visitor(Field<Motion, double>{.name = "random_force",
+                                  .member = &Motion::random_force,
+                                  .doc = "Root mean square of random forces that deform the object in place",
+                                  .range = ValueRange::from(0),
+                                  .unit = "N"});
+    visitor(Field<Motion, double>{.name = "deform_seconds",
+                                  .member = &Motion::deform_seconds,
+                                  .doc = "How long the random forces act before the object is sent off",
+                                  .range = ValueRange::from(0),
+                                  .unit = "s"});
+    visitor(Field<Motion, std::optional<std::uint64_t>>{
+        .name = "seed",
+        .member = &Motion::seed,
+        .doc = "Chooses what is random instead of the object's number; a copy's number is added to it"});
+    visitor(Field<Motion, std::vector<MassSpringMotion::Handle>>{
+        .name = "handles",
+        .member = &Motion::handles,
+        .doc = "Vertices that are moved by a vector and then held",
+        .key = "pull"});
+  }
+};
+
+template <>
+struct Description<WaveMotion> {
+  static constexpr const char* name = "WaveMotion";
+  template <class Visitor>
+  static constexpr void visit(Visitor&& visitor) {
+    using Motion = WaveMotion;
+    visitor(Field<Motion, Vec3d>{
+        .name = "velocity", .member = &Motion::velocity, .doc = "Velocity of the drift", .unit = "units/s"});
+    visitor(Field<Motion, double>{
+        .name = "amplitude", .member = &Motion::amplitude, .doc = "Amplitude of the waves", .unit = "units"});
+    visitor(Field<Motion, double>{.name = "wavelength",
+                                  .member = &Motion::wavelength,
+                                  .doc = "Length of the waves",
+                                  .range = ValueRange::above(0),
+                                  .unit = "units"});
+    visitor(Field<Motion, double>{.name = "period",
+                                  .member = &Motion::period,
+                                  .doc = "Period of the waves",
+                                  .range = ValueRange::above(0),
+                                  .unit = "s"});
+    visitor(Field<Motion, std::uint64_t>{
+        .name = "seed",
+        .member = &Motion::seed,
+        .doc = "Chooses the phases of the waves; a copy's number is added to it"});
+  }
+};
+
+template <>
+struct Description<ContactResponse> {
+  static constexpr const char* name = "ContactResponse";
+  template <class Visitor>
+  static constexpr void visit(Visitor&& visitor) {
+    using Options = ContactResponse;
+    visitor(Field<Options, bool>{
+        .name = "enabled", .member = &Options::enabled, .doc = "Contacts push masses and springs apart"});
+    visitor(Field<Options, double>{.name = "thickness",
+                                   .member = &Options::thickness,
+                                   .doc = "Distance that elements keep",
+                                   .range = ValueRange::above(0),
+                                   .unit = "m"});
+    visitor(Field<Options, double>{.name = "restitution",
+                                   .member = &Options::restitution,
+                                   .doc = "Part of the approaching velocity that is returned",
+                                   .range = ValueRange::from(0, 1)});
+    visitor(Field<Options, double>{.name = "friction",
+                                   .member = &Options::friction,
+                                   .doc = "Coulomb's coefficient of friction",
+                                   .range = ValueRange::from(0)});
+    visitor(Field<Options, std::uint32_t>{.name = "iterations",
+                                          .member = &Options::iterations,
+                                          .doc = "Rounds of detection and impulses in a step at most",
+                                          .range = ValueRange::from(1, 1000)});
+  }
+};
+
+template <>
+struct Description<SimulationOptions> {
+  static constexpr const char* name = "SimulationOptions";
+  template <class Visitor>
+  static constexpr void visit(Visitor&& visitor) {
+    using Options = SimulationOptions;
+    visitor(Field<Options, SceneOptions>{
+        .name = "scene", .member = &Options::scene, .doc = "Options of the detection"});
+    visitor(Field<Options, double>{.name = "time_step",
+                                   .member = &Options::time_step,
+                                   .doc = "Time from one frame to the next",
+                                   .range = ValueRange::above(0),
+                                   .unit = "s"});
+    visitor(Field<Options, std::optional<Border>>{
+        .name = "border",
+        .member = &Options::border,
+        .doc = "Lowest and highest corner of the box that objects turn back at",
+        .key = "bounds"});
+    visitor(
+        Field<Options, std::uint64_t>{.name = "seed",
+                                      .member = &Options::seed,
+                                      .doc = "Chooses all that is random: velocities, forces and rotations"});
+    visitor(Field<Options, ContactResponse>{
+        .name = "response", .member = &Options::response, .doc = "Response to contacts"});
+  }
+};
+
+}  // namespace supple

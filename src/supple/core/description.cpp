@@ -1,0 +1,77 @@
+#include "supple/description.hpp"
+
+#include <charconv>
+
+#include "core/error.hpp"
+
+namespace supple {
+
+std::string text_of(double value) {
+  char digits[32];
+  return {digits, std::to_chars(digits, digits + sizeof(digits), value).ptr};
+}
+
+std::string text_of(const ValueRange& range, bool is_whole) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  if (range.powers_of_two) {
+    std::string list;
+    for (double value = range.lowest; value <= range.highest; value *= 2) {
+      if (!list.empty()) list += 2 * value > range.highest ? " or " : ", ";
+      list += text_of(value);
+    }
+    return list;
+  }
+  std::string text = is_whole ? "a whole number" : range.highest < infinity ? "a number" : "a finite number";
+  const double lowest = is_whole && range.lowest < 0 ? 0 : range.lowest;
+  if (range.excludes_lowest)
+    text += " above " + text_of(lowest);
+  else if (lowest > -infinity)
+    text += " from " + text_of(lowest) + (range.highest < infinity ? "" : " up");
+  if (range.highest < infinity) {
+    text += " to ";
+    // Not 4.294967295e+09.
+    text += is_whole ? std::to_string(static_cast<std::uint64_t>(range.highest)) : text_of(range.highest);
+  }
+  if (range.includes_zero) text += ", or 0";
+  if (range.includes_infinity) text += ", or infinity for none";
+  return text;
+}
+
+namespace {
+
+[[noreturn]] void fail_with(std::string_view where, const char* structure, const char* name,
+                            const std::string& value, const std::string& what) {
+  std::string message(where);
+  if (!message.empty()) message += ": ";
+  message += structure;
+  message += "::";
+  message += name;
+  message += " is " + value;
+  message += "; it must be " + what;
+  fail(message);
+}
+
+}  // namespace
+
+void fail_range(std::string_view where, const char* structure, const char* name, std::uint64_t value,
+                const ValueRange& range) {
+  fail_with(where, structure, name, std::to_string(value), text_of(range, true));
+}
+
+void fail_range(std::string_view where, const char* structure, const char* name, double value,
+                const ValueRange& range) {
+  fail_with(where, structure, name, text_of(value), text_of(range, false));
+}
+
+void fail_range(std::string_view where, const char* structure, const char* name, Vec3d value) {
+  fail_with(where, structure, name,
+            "(" + text_of(value.x) + ", " + text_of(value.y) + ", " + text_of(value.z) + ")",
+            "three finite numbers");
+}
+
+void fail_range(std::string_view where, const char* structure, const char* name, std::uint64_t value,
+                const std::string& words) {
+  fail_with(where, structure, name, std::to_string(value), "one of " + words);
+}
+
+}  // namespace supple

@@ -1,0 +1,80 @@
+#pragma once
+
+#include <tuple>
+
+#include "supple/option_descriptions.hpp"
+#include "supple/result_descriptions.hpp"
+#include "supple/simulation_descriptions.hpp"
+
+// The members of each described structure, by structured bindings: these no longer compile when a structure
+// gets another member. Describe the new member (supple/option_descriptions.hpp, result_descriptions.hpp or
+// simulation_descriptions.hpp), then add a name here.
+
+namespace supple {
+
+inline auto members_of(ImpactOptions& o) {
+  auto& [a, b] = o;
+  return std::tie(a, b);
+}
+inline auto members_of(ObjectOctreeOptions& o) {
+  auto& [a, b, c, d, e] = o;
+  return std::tie(a, b, c, d, e);
+}
+inline auto members_of(SceneOctreeOptions& o) {
+  auto& [a, b, c, d] = o;
+  return std::tie(a, b, c, d);
+}
+inline auto members_of(ObjectOptions& o) {
+  auto& [a, b, c, d, e, f] = o;
+  return std::tie(a, b, c, d, e, f);
+}
+inline auto members_of(ComparisonOptions& o) {
+  auto& [a, b] = o;
+  return std::tie(a, b);
+}
+inline auto members_of(SceneOptions& o) {
+  auto& [a, b, c, d, e, f, g, h] = o;
+  return std::tie(a, b, c, d, e, f, g, h);
+}
+inline auto members_of(BroadPhaseOptions& o) {
+  auto& [a, b, c] = o;
+  return std::tie(a, b, c);
+}
+inline auto members_of(MassSpringOptions& o) {
+  auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, p] = o;
+  return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m, n, p);
+}
+inline auto members_of(MassSpringMotion::Handle& o) {
+  auto& [a, b, c] = o;
+  return std::tie(a, b, c);
+}
+inline auto members_of(MassSpringMotion& o) {
+  auto& [a, b, c, d, e, f, g] = o;
+  return std::tie(a, b, c, d, e, f, g);
+}
+inline auto members_of(WaveMotion& o) {
+  auto& [a, b, c, d, e] = o;
+  return std::tie(a, b, c, d, e);
+}
+inline auto members_of(ContactResponse& o) {
+  auto& [a, b, c, d, e] = o;
+  return std::tie(a, b, c, d, e);
+}
+inline auto members_of(SimulationOptions& o) {
+  auto& [a, b, c, d, e] = o;
+  return std::tie(a, b, c, d, e);
+}
+inline auto members_of(StepStats& o) {
+  auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, p, q, r, s, t, u, v] = o;
+  return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m, n, p, q, r, s, t, u, v);
+}
+inline auto members_of(BroadPhaseStats& o) {
+  auto& [a, b, c, d, e, f, g, h] = o;
+  return std::tie(a, b, c, d, e, f, g, h);
+}
+inline auto members_of(OctreeStatistics& o) {
+  auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, p] = o;
+  return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m, n, p);
+}
+
+}  // namespace supple

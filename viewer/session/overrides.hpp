@@ -1,0 +1,58 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+
+#include "supple/description.hpp"
+
+namespace supple::viewer {
+
+/// Some options of a structure that were given, to be put in the place of those of another.
+template <Described Options>
+class Overrides {
+ public:
+  /// Calls `read(field, value)` for each option; it returns true when it wrote the value.
+  template <class Read>
+  void read(Read read) {
+    std::size_t place = 0;
+    for_each_leaf(
+        [&](const auto& field, auto& value) {
+          if (read(field, value)) given_ |= bit(place);
+          ++place;
+        },
+        values_);
+  }
+  /// Calls `add(field, default_value, set)` for each option, where `set(value)` gives it. The overrides must
+  /// stay where they are as long as `set` is called.
+  template <class Add>
+  void for_each_setter(Add add) {
+    std::size_t place = 0;
+    for_each_leaf(
+        [&](const auto& field, auto& value) {
+          add(field, std::as_const(value), [this, at = place, &value](const auto& chosen) {
+            value = chosen;
+            given_ |= bit(at);
+          });
+          ++place;
+        },
+        values_);
+  }
+  void apply_to(Options& options) const {
+    std::size_t place = 0;
+    for_each_leaf(
+        [&](const auto&, const auto& given, auto& value) {
+          if ((given_ & bit(place++)) != 0) value = given;
+        },
+        values_, options);
+  }
+
+ private:
+  static_assert(count_leaves<Options>() <= 64);
+  static constexpr std::uint64_t bit(std::size_t place) { return std::uint64_t{1} << place; }
+
+  Options values_{};
+  std::uint64_t given_ = 0;
+};
+
+}  // namespace supple::viewer
