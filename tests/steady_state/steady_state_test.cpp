@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <malloc.h>
 
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -215,13 +216,15 @@ TEST_P(SteadyStateMoves, HardlyAnyAllocationsWithThreads) {
   EXPECT_LT(allocations, counted / 10u);
 }
 
+std::string name_of_kinds(const testing::TestParamInfo<ContactKinds>& kinds) {
+  const char* const names[] = {"None", "Intersection", "Continuous", "Both"};
+  return names[static_cast<int>(kinds.param)];
+}
+
 INSTANTIATE_TEST_SUITE_P(Kinds, SteadyStateMoves,
                          testing::Values(ContactKinds::intersection, ContactKinds::continuous,
                                          ContactKinds::intersection | ContactKinds::continuous),
-                         [](const auto& kinds) {
-                           const char* const names[] = {"None", "Intersection", "Continuous", "Both"};
-                           return names[static_cast<int>(kinds.param)];
-                         });
+                         name_of_kinds);
 
 }  // namespace
 }  // namespace supple
