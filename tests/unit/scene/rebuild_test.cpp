@@ -60,7 +60,8 @@ struct Living {
     for (const TriangleMesh& mesh : drift.meshes()) {
       ObjectOptions of_object;
       of_object.self_collision = self_collision;
-      of_object.octree.leaf_size = 4;
+      // Leaves of one or two triangles always face one way, which is taken for a smooth surface.
+      of_object.octree.leaf_size = scene.options().contacts == ContactKinds::continuous ? 16 : 4;
       of_object.octree.rebuild_degraded = rebuilds;
       ids.push_back(scene.add(mesh, of_object));
     }

@@ -91,8 +91,11 @@ void GridPlanner::choose_axes(Grid& grid) {
     width_in_extents_[axis] = std::max(high_[axis] - low_[axis], mean) / mean;
   }
   grid.axes = {0, 1, 2};
-  std::stable_sort(grid.axes.begin(), grid.axes.end(),
-                   [&](std::size_t a, std::size_t b) { return width_in_extents_[a] > width_in_extents_[b]; });
+  // Not std::stable_sort, which allocates memory.
+  std::sort(grid.axes.begin(), grid.axes.end(), [&](std::size_t a, std::size_t b) {
+    if (width_in_extents_[a] != width_in_extents_[b]) return width_in_extents_[a] > width_in_extents_[b];
+    return a < b;
+  });
 }
 
 /// How many times as many boxes are around a box as if they were spread evenly.
