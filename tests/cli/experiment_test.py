@@ -90,7 +90,7 @@ class Experiment(ProgramTest):
         for arity in ("2", "4", "8"):
             done = self.run_here("detect", "--json", "-", "--no-stats", "--tree-arity", arity, *self.models())
             self.assertEqual((done.status, done.out), (0, expected))
-        self.assert_one_line_error(self.run_here("detect", "--tree-arity", "3", *self.models()), "--tree-arity", "8, 4, 2")
+        self.assert_one_line_error(self.run_here("detect", "--tree-arity", "3", *self.models()), "--tree-arity", "2, 4 or 8")
 
     def models(self):
         scene = "[[object]]\nmodel = 'rabbit'\n[[object]]\nmodel = 'fish'\n"

@@ -187,7 +187,7 @@ class Serve(ViewTest):
 
     def test_recording(self):
         self.write("scene.toml", BODY + '[[object]]\nmodel = "box"\ntranslate = [0.9, 0, 0]\n')
-        self.assertEqual(self.run_here("simulate", "scene.toml", "--steps", 5, "--record", "run.h5", "--quiet").status, 0)
+        self.assertEqual(self.run_here("simulate", "scene.toml", "--frames", 6, "--record", "run.h5", "--quiet").status, 0)
         _, url = self.start("run.h5")
         page = self.connect(url)
         scene = page.receive_text(SCENE)

@@ -3,6 +3,7 @@
 #include <rapidjson/rapidjson.h>
 #include <rapidjson/writer.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -30,8 +31,11 @@ class JsonOutput {
   void value(double number) { Doubles::write(writer_, number); }
   void value(bool truth) { writer_.Bool(truth); }
   void value(std::string_view text) {
-    const std::string valid = valid_utf8(text);
-    writer_.String(valid.data(), static_cast<rapidjson::SizeType>(valid.size()));
+    // ASCII is valid as it is, and frames must not allocate memory.
+    const bool is_ascii = std::all_of(text.begin(), text.end(), [](char c) { return (c & 0x80) == 0; });
+    const std::string valid = is_ascii ? std::string() : valid_utf8(text);
+    if (!is_ascii) text = valid;
+    writer_.String(text.data(), static_cast<rapidjson::SizeType>(text.size()));
   }
   void value(const std::string& text) { value(std::string_view(text)); }
   void value(const char* text) { value(std::string_view(text)); }

@@ -43,9 +43,9 @@ std::span<const FoundContact> ContactOrder::sort(std::span<const FoundContact> f
   const int bucket_bits =
       std::min({bits, most_bucket_bits, static_cast<int>(std::bit_width(found.size() / contacts_of_bucket))});
   const auto bucket_of = [&](const FoundContact& contact) {
-    return std::uint64_t{contact.triangle_a - least} >> (bits - bucket_bits);
+    return static_cast<std::size_t>(std::uint64_t{contact.triangle_a - least} >> (bits - bucket_bits));
   };
-  const std::size_t buckets = (std::uint64_t{most - least} >> (bits - bucket_bits)) + 1;
+  const auto buckets = static_cast<std::size_t>(std::uint64_t{most - least} >> (bits - bucket_bits)) + 1;
   std::array<std::uint32_t, (std::size_t{1} << most_bucket_bits) + 1> ends;
   std::fill_n(ends.begin(), buckets + 1, 0u);
   for (const FoundContact& contact : found) ++ends[bucket_of(contact) + 1];

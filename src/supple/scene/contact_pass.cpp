@@ -264,8 +264,9 @@ void ContactPass::truncate(std::uint64_t max_contacts) {
   is_truncated_ = contacts_.size() > max_contacts;
   if (!is_truncated_) return;
   outcomes_.truncate(max_contacts);
-  points_.resize(contacts_[max_contacts].first_point);
-  contacts_.resize(max_contacts);
+  const auto count = static_cast<std::size_t>(max_contacts);
+  points_.resize(contacts_[count].first_point);
+  contacts_.resize(count);
 }
 
 void ContactPass::gather_colliding_vertices() {

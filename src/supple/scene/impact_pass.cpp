@@ -242,7 +242,7 @@ bool ImpactPass::run(std::span<const ContactJob> jobs, std::span<const MovingObj
   is_truncated_ = contacts_.size() > max_contacts;
   if (is_truncated_) {
     outcomes_.truncate(max_contacts);
-    contacts_.resize(max_contacts);
+    contacts_.resize(static_cast<std::size_t>(max_contacts));
   }
   outcomes_.list_groups(groups_, [&](std::uint32_t object) { return objects_[object].id; });
   stats.contacts += contacts_.size();

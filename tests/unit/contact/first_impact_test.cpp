@@ -22,7 +22,7 @@ namespace supple {
 namespace {
 
 #if defined(NDEBUG) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-constexpr int queries_per_family = 32000;
+constexpr int queries_per_family = 8000;
 #else
 constexpr int queries_per_family = 320;
 #endif
