@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <cmath>
 #include <string_view>
 #include <thread>
 #include <vector>
@@ -84,6 +85,14 @@ class Lives {
  public:
   Lives(const Family& family, std::uint64_t seed) : random_(seed) {
     for (const TriangleMesh& mesh : family.make(seed)) meshes_.push_back(cropped(mesh));
+    double largest = 0;
+    for (const TriangleMesh& mesh : meshes_) {
+      for (const Vec3d& p : mesh.positions) {
+        for (int axis = 0; axis < 3; ++axis)
+          if (std::isfinite(p[axis])) largest = std::max(largest, std::fabs(p[axis]));
+      }
+    }
+    if (largest > 0) size_ = largest;
   }
   void add_to(Scene& scene) const {
     for (const TriangleMesh& mesh : meshes_)
@@ -94,8 +103,8 @@ class Lives {
     for (std::uint32_t i = 0; i < meshes_.size(); ++i) {
       const std::uint32_t way = random_.below(6);
       std::vector<Vec3d> from = meshes_[i].positions, to = from;
-      for (Vec3d& p : to) p = p + random_.vector(0.2);
-      const Vec3d offset = random_.vector(0.3);
+      for (Vec3d& p : to) p = p + random_.vector(0.2 * size_);
+      const Vec3d offset = random_.vector(0.3 * size_);
       for (Scene* const scene : scenes) {
         const ObjectId id = scene->objects()[i];
         if (way == 0) scene->set_positions(id, to);
@@ -109,6 +118,7 @@ class Lives {
 
  private:
   std::vector<TriangleMesh> meshes_;
+  double size_ = 1;  // moves are in proportion to the coordinates
   RandomNumbers random_;
 };
 
@@ -116,10 +126,9 @@ class OneScene : public testing::TestWithParam<Family> {};
 
 TEST_P(OneScene, AnswersWhatTwoWouldInAnyOrder) {
   const std::string_view family = GetParam().name;
-  // The exact check takes minutes for separations of other families, and where the moves are larger than the
-  // coordinates by 2^100 and more.
+  if (family == "MixedScales") GTEST_SKIP() << "exact decisions take minutes here; ContinuousScenes has them";
+  // The exact check takes minutes for separations of other families.
   const bool has_separation = family == "RandomSoups";
-  const bool is_checked = family != "BelowFloat" && family != "Denormal";
   for (const double separation : {0.0, has_separation ? 0.05 : 0.0}) {
     for (const std::uint32_t threads : {1u, 3u}) {
       const auto options = [&](ContactKinds contacts) {
@@ -141,7 +150,7 @@ TEST_P(OneScene, AnswersWhatTwoWouldInAnyOrder) {
         const Lists found(result);
         expect_equal_contacts(found, contacts);
         ASSERT_EQ(found.continuous, impacts.continuous) << step;
-        ASSERT_TRUE(!is_checked || two.verify().agrees()) << step;
+        ASSERT_TRUE(two.verify().agrees()) << step;
         // One kind after the other, not the same in each step.
         for (const int turn : {step, step + 1}) {
           const bool is_continuous = turn % 2 == 0;
@@ -155,7 +164,7 @@ TEST_P(OneScene, AnswersWhatTwoWouldInAnyOrder) {
             expect_equal_contacts(Lists(answer), contacts);
             ASSERT_TRUE(answer.continuous_contacts.empty() && answer.continuous_groups.empty());
           }
-          ASSERT_TRUE(!is_checked || one.verify().agrees()) << step;
+          ASSERT_TRUE(one.verify().agrees()) << step;
           ASSERT_EQ(SceneInspector(one).validate(), "") << step;
         }
         if (HasFatalFailure()) return;
