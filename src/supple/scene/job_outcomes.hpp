@@ -32,6 +32,8 @@ class JobOutcomes {
   /// are what they were. `is_same_search`: the step before looked for the same.
   void plan(std::span<const ContactJob> jobs, std::span<const std::uint64_t> versions, bool is_same_search) {
     outcomes_.swap(last_outcomes_);
+    // Otherwise each of the two would grow at a step of its own.
+    outcomes_.reserve(last_outcomes_.capacity());
     last_outcomes_.resize(is_same_search ? reusable_ : 0);
     reusable_ = 0;  // until this step is complete
     outcomes_.clear();

@@ -156,6 +156,7 @@ void OctreeSearch::find_of_object(const VolumeStore& volumes, std::uint32_t slot
 /// Puts the pairs of objects that did not change and those found now in order.
 void OctreeSearch::merge_kept(std::vector<IndexPair>& pairs) {
   kept_.swap(pairs);
+  pairs.reserve(kept_.capacity());
   std::erase_if(kept_, [&](IndexPair pair) { return is_changed_[pair.a] != 0 || is_changed_[pair.b] != 0; });
   pairs.resize(kept_.size() + fresh_.size());
   std::merge(kept_.begin(), kept_.end(), fresh_.begin(), fresh_.end(), pairs.begin());
