@@ -101,7 +101,7 @@ async function savesEveryThird(stage) {
 
 async function recordingUpToAFrame(stage) {
   const file = stage.file("run.h5");
-  await runProgram(stage.supple, ["simulate", nine, "--steps", "20", "--record", file, "--quiet"]);
+  await runProgram(stage.supple, ["simulate", nine, "--frames", "21", "--record", file, "--quiet"]);
   const { page } = await stage.view(file);
   await pause(page);
   await page.getByRole("slider", { name: "Timeline" }).fill("12");
