@@ -9,5 +9,7 @@ function(supple_add_component name)
   target_link_libraries(supple_${name} PUBLIC supple PRIVATE $<BUILD_INTERFACE:supple_compile_options>)
   supple_precompile_headers(supple_${name})
   set_target_properties(supple_${name} PROPERTIES
-    EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON VERSION ${PROJECT_VERSION} SOVERSION 0)
+    EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON VERSION ${PROJECT_VERSION} SOVERSION 0
+    # A shared component finds the core beside it.
+    INSTALL_RPATH "$ORIGIN")
 endfunction()
