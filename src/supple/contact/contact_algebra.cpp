@@ -11,10 +11,8 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
 #include <limits>
 #include <optional>
 #include <string>
@@ -29,8 +27,10 @@ namespace supple {
 namespace {
 
 using sturm::Integer;
+using sturm::lowest_bit;
 using sturm::Polynomial;
 using sturm::Root;
+using sturm::to_integer;
 using Path = std::array<Polynomial, 3>;
 
 Path difference(const Path& p, const Path& q) {
@@ -41,23 +41,6 @@ Polynomial dot(const Path& p, const Path& q) {
 }
 Path cross(const Path& p, const Path& q) {
   return {p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]};
-}
-
-/// Exact: all values are multiples of 2^lowest.
-Integer to_integer(double value, int lowest) {
-  int exponent = 0;
-  const auto mantissa = static_cast<std::int64_t>(std::ldexp(std::frexp(value, &exponent), 53));
-  const int shift = exponent - 53 - lowest;
-  // A factor of 2^53 keeps the shift positive: the mantissa has up to 53 zeros at its end.
-  return mantissa == 0 ? Integer(0) : Integer((Integer(mantissa) << (shift + 53)) >> 53);
-}
-
-/// The exponent of the lowest bit that is set.
-int lowest_bit(double value) {
-  if (value == 0) return std::numeric_limits<int>::max();
-  int exponent = 0;
-  const auto mantissa = static_cast<std::int64_t>(std::ldexp(std::frexp(value, &exponent), 53));
-  return exponent - 53 + std::countr_zero(static_cast<std::uint64_t>(mantissa));
 }
 
 /// A part of K and the conditions under which it has a point within the separation.
@@ -75,7 +58,6 @@ class Elements {
       for (const Vec3d& p : *moment)
         lowest = std::min({lowest, lowest_bit(p.x), lowest_bit(p.y), lowest_bit(p.z)});
     }
-    if (lowest == std::numeric_limits<int>::max()) lowest = 0;
     std::array<Path, 4> vertices;
     for (std::size_t i = 0; i < 4; ++i) {
       for (int axis = 0; axis < 3; ++axis) {

@@ -12,8 +12,6 @@
 namespace supple {
 namespace {
 
-enum class Elements { vertex_and_face, two_edges };
-
 /// Indices into the four vertices.
 struct PointAndSegment {
   std::size_t point, first, second;
@@ -33,7 +31,7 @@ class FirstContact {
   using Volume = typename Numbers::Volume;
   using Vertices = std::array<std::array<Length, 3>, 8>;  ///< at the start, and then at the end
 
-  FirstContact(Elements elements, const Vertices& vertices) : elements_(elements), vertices_(vertices) {}
+  FirstContact(bool are_edges, const Vertices& vertices) : are_edges_(are_edges), vertices_(vertices) {}
 
   /// Returns false when the integers are too short.
   bool search();
@@ -71,14 +69,14 @@ class FirstContact {
     return raised(std::array<Area, 2>{Area(start[axis]), Area(end[axis])});
   }
   std::span<const PointAndSegment> segments() const {
-    if (elements_ == Elements::two_edges) return edge_segments;
+    if (are_edges_) return edge_segments;
     return face_segments;
   }
   std::span<const AreaVector> conditions() const { return std::span(conditions_).first(condition_count_); }
   static AreaVector cross(const MovingVector& a, const MovingVector& b);
   static Cubic<Volume> dot(const MovingVector& a, const AreaVector& b);
 
-  Elements elements_;
+  bool are_edges_;
   Vertices vertices_;
   AreaVector normal_;
   std::array<AreaVector, 4> conditions_;  ///< do not point against the normal where the elements touch
@@ -114,10 +112,9 @@ auto FirstContact<Numbers>::dot(const MovingVector& a, const AreaVector& b) -> C
 
 template <class Numbers>
 bool FirstContact<Numbers>::search() {
-  const bool edges = elements_ == Elements::two_edges;
-  const MovingVector m = edges ? vector(2, 0) : vector(1, 0);
-  const MovingVector u = edges ? vector(1, 0) : vector(1, 2);
-  const MovingVector w = edges ? vector(2, 3) : vector(1, 3);
+  const MovingVector m = are_edges_ ? vector(2, 0) : vector(1, 0);
+  const MovingVector u = are_edges_ ? vector(1, 0) : vector(1, 2);
+  const MovingVector w = are_edges_ ? vector(2, 3) : vector(1, 3);
   normal_ = cross(u, w);
   const Cubic<Volume> volume = dot(m, normal_);
   if (strict_sign(volume) != 0) return true;
@@ -135,10 +132,10 @@ template <class Numbers>
 void FirstContact<Numbers>::set_conditions(const AreaVector& alpha, const AreaVector& beta) {
   conditions_[0] = alpha;
   conditions_[1] = beta;
-  condition_count_ = elements_ == Elements::two_edges ? 4 : 3;
+  condition_count_ = are_edges_ ? 4 : 3;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const Quadratic<Area> rest = difference(normal_[axis], alpha[axis]);
-    if (elements_ == Elements::two_edges) {
+    if (are_edges_) {
       conditions_[2][axis] = rest;
       conditions_[3][axis] = difference(normal_[axis], beta[axis]);
     } else {
@@ -283,50 +280,48 @@ bool FirstContact<Numbers>::vanish(const Root& root, Definition definition,
   return root.interval.is_point() || definition.any_in(root.interval);
 }
 
+using Coordinates = std::array<std::array<double, 8>, 3>;
+
+/// Returns false when the integers are too short.
 template <class Numbers>
-bool search_with(Elements elements, const std::array<std::array<double, 8>, 3>& coordinates,
-                 const std::array<int, 3>& lowest, std::optional<TimeBracket>& first) {
+bool search_with(bool are_edges, const Coordinates& coordinates, const std::array<int, 3>& lowest,
+                 std::optional<TimeBracket>& first) {
   typename FirstContact<Numbers>::Vertices vertices;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     for (std::size_t i = 0; i < 8; ++i) {
       vertices[i][axis] = to_integer<typename Numbers::Length>(coordinates[axis][i], lowest[axis]);
     }
   }
-  FirstContact<Numbers> contact(elements, vertices);
+  FirstContact<Numbers> contact(are_edges, vertices);
   const bool decided = contact.search();
   first = contact.first();
   return decided;
 }
 
-std::optional<TimeBracket> first_contact(Elements elements, const std::array<Vec3d, 4>& start,
-                                         const std::array<Vec3d, 4>& end) {
-  std::array<std::array<double, 8>, 3> coordinates;
+}  // namespace
+
+std::optional<TimeBracket> exact_first_contact(const ElementMotion& motion) {
+  Coordinates coordinates;
   std::array<int, 3> lowest;
   int widest = 0;
-  for (int axis = 0; axis < 3; ++axis) {
-    auto& row = coordinates[static_cast<std::size_t>(axis)];
-    for (std::size_t i = 0; i < 4; ++i) row[i] = start[i][axis], row[i + 4] = end[i][axis];
-    if (!std::all_of(row.begin(), row.end(), [](double x) { return std::isfinite(x); })) return {};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    auto& row = coordinates[axis];
+    for (std::size_t i = 0; i < 4; ++i) {
+      row[i] = motion.start[i][static_cast<int>(axis)];
+      row[i + 4] = motion.end[i][static_cast<int>(axis)];
+    }
+    if (!std::ranges::all_of(row, [](double x) { return std::isfinite(x); })) return {};
     const BitRange range(row);
-    lowest[static_cast<std::size_t>(axis)] = range.lowest;
+    lowest[axis] = range.lowest;
     widest = std::max(widest, range.width);
   }
   std::optional<TimeBracket> first;
-  const bool decided = widest <= 60    ? search_with<FixedNumbers<1>>(elements, coordinates, lowest, first)
-                       : widest <= 124 ? search_with<FixedNumbers<2>>(elements, coordinates, lowest, first)
-                                       : false;
-  if (!decided) search_with<UnboundedNumbers>(elements, coordinates, lowest, first);
+  const bool edges = motion.are_edges;
+  const bool decided = widest <= 60
+                           ? search_with<FixedNumbers<1>>(edges, coordinates, lowest, first)
+                           : widest <= 124 && search_with<FixedNumbers<2>>(edges, coordinates, lowest, first);
+  if (!decided) search_with<UnboundedNumbers>(edges, coordinates, lowest, first);
   return first;
-}
-
-}  // namespace
-
-std::optional<TimeBracket> exact_first_contact(const VertexFaceMotion& motion) {
-  return first_contact(Elements::vertex_and_face, motion.start, motion.end);
-}
-
-std::optional<TimeBracket> exact_first_contact(const EdgeEdgeMotion& motion) {
-  return first_contact(Elements::two_edges, motion.start, motion.end);
 }
 
 }  // namespace supple

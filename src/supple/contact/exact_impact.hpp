@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "supple/continuous.hpp"
+#include "contact/relative_motion.hpp"
 
 namespace supple {
 
@@ -14,13 +14,11 @@ namespace supple {
 /// last bit of the most precise one. Wider spans, and polynomials with a double root where the elements come
 /// near, take integers of any length: mostly below 100 µs, but milliseconds where some coordinates are 2^1000
 /// times as large as others.
-std::optional<TimeBracket> exact_first_contact(const VertexFaceMotion& motion);
-std::optional<TimeBracket> exact_first_contact(const EdgeEdgeMotion& motion);
+std::optional<TimeBracket> exact_first_contact(const ElementMotion& motion);
 
 /// The first time at which two elements are at a distance of at most `separation` > 0. All numbers are
 /// finite. Takes tens to hundreds of microseconds, and some milliseconds where coordinates range from 1e-300
 /// to 1e300.
-std::optional<TimeBracket> exact_first_contact(const VertexFaceMotion& motion, double separation);
-std::optional<TimeBracket> exact_first_contact(const EdgeEdgeMotion& motion, double separation);
+std::optional<TimeBracket> exact_first_contact(const ElementMotion& motion, double separation);
 
 }  // namespace supple

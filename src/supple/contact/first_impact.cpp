@@ -56,8 +56,8 @@ struct Scaled {
   }
 };
 
-template <class Motion>
-Impact impact_at(const Motion& motion, const RelativeMotion& relative, double time, double separation) {
+Impact impact_at(const ElementMotion& motion, const RelativeMotion& relative, double time,
+                 double separation) {
   const Scaled places(places_at(relative, time));
   const ClosestPoints at = closest_points(places.places, relative.is_square);
   Impact impact;
@@ -77,49 +77,35 @@ Impact impact_at(const Motion& motion, const RelativeMotion& relative, double ti
   return impact;
 }
 
-template <class Motion>
-bool is_finite(const Motion& motion) {
-  double sum = 0;  // NaN as soon as one coordinate is NaN or infinite
-  for (std::size_t i = 0; i < 4; ++i) {
-    for (int axis = 0; axis < 3; ++axis) sum += motion.start[i][axis] * 0 + motion.end[i][axis] * 0;
-  }
-  return sum == 0;
-}
-
-template <class Motion>
-std::optional<Impact> checked_first_impact(const Motion& motion, const ImpactOptions& options) {
+std::optional<Impact> checked_first_impact(const ElementMotion& motion, const ImpactOptions& options) {
   check(options, "first_impact");
-  if (!is_finite(motion)) return std::nullopt;
+  if (!std::ranges::all_of(motion.start, is_finite) || !std::ranges::all_of(motion.end, is_finite)) return {};
   bool used_exact = false;
-  return first_impact_of_finite(motion, relative_motion(motion), options, used_exact);
+  return first_impact_of_finite(motion, options, used_exact);
 }
 
 }  // namespace
 
-template <class Motion>
-std::optional<Impact> first_impact_of_finite(const Motion& motion, const RelativeMotion& relative,
-                                             const ImpactOptions& options, bool& used_exact) {
-  const ImpactSearch search = search_impact(relative, options.min_separation);
+std::optional<Impact> first_impact_of_finite(const ElementMotion& motion, const ImpactOptions& options,
+                                             bool& used_exact) {
+  const double separation = options.min_separation;
+  const RelativeMotion relative = relative_motion(motion);
+  const ImpactSearch search = search_impact(relative, separation);
   if (search.outcome == ImpactSearch::Outcome::apart) return std::nullopt;
   if (search.outcome == ImpactSearch::Outcome::touching) {
-    return impact_at(motion, relative, search.time, options.min_separation);
+    return impact_at(motion, relative, search.time, separation);
   }
   used_exact = true;
   if (!options.exact) {
-    Impact impact = impact_at(motion, relative, search.time, options.min_separation);
+    Impact impact = impact_at(motion, relative, search.time, separation);
     impact.certainty = ImpactCertainty::within_tolerance;
     return impact;
   }
-  const std::optional<TimeBracket> first = options.min_separation == 0
-                                               ? exact_first_contact(motion)
-                                               : exact_first_contact(motion, options.min_separation);
+  const std::optional<TimeBracket> first =
+      separation == 0 ? exact_first_contact(motion) : exact_first_contact(motion, separation);
   if (!first) return std::nullopt;
-  return impact_at(motion, relative, first->low, options.min_separation);
+  return impact_at(motion, relative, first->low, separation);
 }
-template std::optional<Impact> first_impact_of_finite(const VertexFaceMotion&, const RelativeMotion&,
-                                                      const ImpactOptions&, bool&);
-template std::optional<Impact> first_impact_of_finite(const EdgeEdgeMotion&, const RelativeMotion&,
-                                                      const ImpactOptions&, bool&);
 
 std::optional<Impact> first_impact(const VertexFaceMotion& motion, const ImpactOptions& options) {
   return checked_first_impact(motion, options);

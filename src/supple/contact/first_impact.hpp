@@ -7,10 +7,9 @@
 
 namespace supple {
 
-/// `first_impact` for finite coordinates and valid options. `relative` is `relative_motion(motion)`. Sets
-/// `used_exact` when floating point could not decide, and leaves it unchanged otherwise.
-template <class Motion>
-std::optional<Impact> first_impact_of_finite(const Motion& motion, const RelativeMotion& relative,
-                                             const ImpactOptions& options, bool& used_exact);
+/// `first_impact` for finite coordinates and valid options. Sets `used_exact` when floating point could not
+/// decide, and leaves it unchanged otherwise.
+std::optional<Impact> first_impact_of_finite(const ElementMotion& motion, const ImpactOptions& options,
+                                             bool& used_exact);
 
 }  // namespace supple

@@ -4,6 +4,8 @@
 #include <hwy/highway.h>
 
 #include "contact/impact_filter.hpp"
+#include "core/packed_lanes-inl.hpp"
+#include "geometry/vector3-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace supple::HWY_NAMESPACE {
@@ -13,46 +15,34 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 // At most sixteen lanes, so that their mask is two bytes.
 using Lanes = hn::CappedTag<float, 16>;
-using Vector = hn::Vec<Lanes>;
+using Floats = hn::Vec<Lanes>;
 using LaneMask = hn::Mask<Lanes>;
+using Vector = Vector3<Lanes>;
 
-struct Vector3 {
-  Vector x, y, z;
-};
-
-HWY_INLINE Vector3 load(const RelativeMotionBlock& block, std::size_t row, std::size_t first) {
+HWY_INLINE Vector load(const RelativeMotionBlock& block, std::size_t row, std::size_t first) {
   const Lanes d;
   return {hn::Load(d, block.rows[row] + first), hn::Load(d, block.rows[row + 1] + first),
           hn::Load(d, block.rows[row + 2] + first)};
 }
-HWY_INLINE Vector3 add(const Vector3& a, const Vector3& b) {
+HWY_INLINE Vector add(const Vector& a, const Vector& b) {
   return {hn::Add(a.x, b.x), hn::Add(a.y, b.y), hn::Add(a.z, b.z)};
 }
-HWY_INLINE Vector3 subtract(const Vector3& a, const Vector3& b) {
-  return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)};
-}
-HWY_INLINE Vector3 scaled(const Vector3& a, Vector s) {
+HWY_INLINE Vector scaled(const Vector& a, Floats s) {
   return {hn::Mul(a.x, s), hn::Mul(a.y, s), hn::Mul(a.z, s)};
 }
-HWY_INLINE Vector dot(const Vector3& a, const Vector3& b) {
+HWY_INLINE Floats fused_dot(const Vector& a, const Vector& b) {
   return hn::MulAdd(a.z, b.z, hn::MulAdd(a.y, b.y, hn::Mul(a.x, b.x)));
 }
-HWY_INLINE Vector3 cross(const Vector3& a, const Vector3& b) {
+HWY_INLINE Vector fused_cross(const Vector& a, const Vector& b) {
   return {hn::NegMulAdd(a.z, b.y, hn::Mul(a.y, b.z)), hn::NegMulAdd(a.x, b.z, hn::Mul(a.z, b.x)),
           hn::NegMulAdd(a.y, b.x, hn::Mul(a.x, b.y))};
 }
-HWY_INLINE Vector3 absolute(const Vector3& a) {
-  return {hn::Abs(a.x), hn::Abs(a.y), hn::Abs(a.z)};
-}
-HWY_INLINE Vector3 larger(const Vector3& a, const Vector3& b) {
-  return {hn::Max(a.x, b.x), hn::Max(a.y, b.y), hn::Max(a.z, b.z)};
-}
-HWY_INLINE Vector sum(const Vector3& a) {
+HWY_INLINE Floats sum(const Vector& a) {
   return hn::Add(hn::Add(a.x, a.y), a.z);
 }
 
 struct Places {
-  Vector3 m, u, w;
+  Vector m, u, w;
 };
 
 /// Tests on one vector of pairs. Each test proves for some lanes that the elements stay apart.
@@ -77,20 +67,21 @@ class Group {
   /// make an error below 6 · 2^-24 of the magnitudes' sum. The extent of the elements adds two more terms and
   /// roundings. 2^-20 covers all of these and the rounding of the bound; the constants cover underflow.
   /// Overflow makes the bound infinite or NaN, and the comparison false.
-  HWY_NOINLINE LaneMask separated_along(const Vector3& n) const {
+  HWY_NOINLINE LaneMask separated_along(const Vector& n) const {
     const Lanes d;
-    const Vector size = sum(absolute(n));
-    const Vector tiny = hn::Set(d, 0x1p-110f);
-    Vector bound = hn::MulAdd(hn::Set(d, 0x1p-20f), dot(absolute(n), reach_), hn::MulAdd(tiny, size, tiny));
+    const Floats size = sum(absolute(n));
+    const Floats tiny = hn::Set(d, 0x1p-110f);
+    Floats bound =
+        hn::MulAdd(hn::Set(d, 0x1p-20f), fused_dot(absolute(n), reach_), hn::MulAdd(tiny, size, tiny));
     // The addend covers squares that underflow.
-    const Vector length =
-        hn::Mul(hn::Sqrt(hn::Add(dot(n, n), hn::Set(d, 0x1p-100f))), hn::Set(d, 1 + 0x1p-20f));
+    const Floats length =
+        hn::Mul(hn::Sqrt(hn::Add(fused_dot(n, n), hn::Set(d, 0x1p-100f))), hn::Set(d, 1 + 0x1p-20f));
     bound = hn::MulAdd(separation_, length, bound);
-    const Vector sm0 = dot(n, start_.m), sm1 = dot(n, end_.m);
-    const Vector su0 = dot(n, start_.u), su1 = dot(n, end_.u);
-    const Vector sw0 = dot(n, start_.w), sw1 = dot(n, end_.w);
-    const Vector above = hn::Min(hn::Sub(sm0, extent(su0, sw0)), hn::Sub(sm1, extent(su1, sw1)));
-    const Vector below = hn::Max(hn::Add(sm0, extent(hn::Neg(su0), hn::Neg(sw0))),
+    const Floats sm0 = fused_dot(n, start_.m), sm1 = fused_dot(n, end_.m);
+    const Floats su0 = fused_dot(n, start_.u), su1 = fused_dot(n, end_.u);
+    const Floats sw0 = fused_dot(n, start_.w), sw1 = fused_dot(n, end_.w);
+    const Floats above = hn::Min(hn::Sub(sm0, extent(su0, sw0)), hn::Sub(sm1, extent(su1, sw1)));
+    const Floats below = hn::Max(hn::Add(sm0, extent(hn::Neg(su0), hn::Neg(sw0))),
                                  hn::Add(sm1, extent(hn::Neg(su1), hn::Neg(sw1))));
     return hn::Gt(hn::Max(above, hn::Neg(below)), bound);
   }
@@ -103,21 +94,21 @@ class Group {
   /// twice that. Eight times the magnitudes overflow before any sum does.
   HWY_NOINLINE LaneMask never_coplanar() const {
     const Lanes d;
-    const Vector third = hn::Set(d, 1.0f / 3.0f), half = hn::Set(d, 0.5f);
-    const Vector3 n0 = cross(start_.u, start_.w), n2 = cross(end_.u, end_.w);
-    const Vector3 twice_n1 = add(cross(start_.u, end_.w), cross(end_.u, start_.w));
-    const Vector c0 = dot(start_.m, n0), c3 = dot(end_.m, n2);
-    const Vector c1 = hn::Mul(third, hn::Add(dot(end_.m, n0), dot(start_.m, twice_n1)));
-    const Vector c2 = hn::Mul(third, hn::Add(dot(start_.m, n2), dot(end_.m, twice_n1)));
-    const Vector least = hn::Min(hn::Min(c0, c1), hn::Min(c2, c3));
-    const Vector most = hn::Max(hn::Max(c0, c1), hn::Max(c2, c3));
-    const Vector3 minors{hn::MulAdd(reach_u_.y, reach_w_.z, hn::Mul(reach_u_.z, reach_w_.y)),
-                         hn::MulAdd(reach_u_.z, reach_w_.x, hn::Mul(reach_u_.x, reach_w_.z)),
-                         hn::MulAdd(reach_u_.x, reach_w_.y, hn::Mul(reach_u_.y, reach_w_.x))};
-    const Vector tiny = hn::Set(d, 0x1p-100f);
-    const Vector magnitude = hn::Mul(hn::Set(d, 8.0f), dot(minors, reach_m_));
-    Vector bound = hn::MulAdd(hn::Set(d, 0x1p-22f), magnitude, hn::MulAdd(tiny, sum(reach_), tiny));
-    const Vector area =
+    const Floats third = hn::Set(d, 1.0f / 3.0f), half = hn::Set(d, 0.5f);
+    const Vector n0 = fused_cross(start_.u, start_.w), n2 = fused_cross(end_.u, end_.w);
+    const Vector twice_n1 = add(fused_cross(start_.u, end_.w), fused_cross(end_.u, start_.w));
+    const Floats c0 = fused_dot(start_.m, n0), c3 = fused_dot(end_.m, n2);
+    const Floats c1 = hn::Mul(third, hn::Add(fused_dot(end_.m, n0), fused_dot(start_.m, twice_n1)));
+    const Floats c2 = hn::Mul(third, hn::Add(fused_dot(start_.m, n2), fused_dot(end_.m, twice_n1)));
+    const Floats least = hn::Min(hn::Min(c0, c1), hn::Min(c2, c3));
+    const Floats most = hn::Max(hn::Max(c0, c1), hn::Max(c2, c3));
+    const Vector minors{hn::MulAdd(reach_u_.y, reach_w_.z, hn::Mul(reach_u_.z, reach_w_.y)),
+                        hn::MulAdd(reach_u_.z, reach_w_.x, hn::Mul(reach_u_.x, reach_w_.z)),
+                        hn::MulAdd(reach_u_.x, reach_w_.y, hn::Mul(reach_u_.y, reach_w_.x))};
+    const Floats tiny = hn::Set(d, 0x1p-100f);
+    const Floats magnitude = hn::Mul(hn::Set(d, 8.0f), fused_dot(minors, reach_m_));
+    Floats bound = hn::MulAdd(hn::Set(d, 0x1p-22f), magnitude, hn::MulAdd(tiny, sum(reach_), tiny));
+    const Floats area =
         hn::Max(sum(absolute(n0)), hn::Max(sum(absolute(n2)), hn::Mul(half, sum(absolute(twice_n1)))));
     bound =
         hn::MulAdd(separation_, hn::MulAdd(hn::Set(d, 0x1p-19f), sum(minors), hn::Add(area, tiny)), bound);
@@ -126,37 +117,39 @@ class Group {
 
   HWY_INLINE LaneMask apart() const {
     const Lanes d;
-    const Vector3 m = add(start_.m, end_.m), u = add(start_.u, end_.u), w = add(start_.w, end_.w);
-    const Vector3 n = cross(u, w);
+    const Vector m = add(start_.m, end_.m), u = add(start_.u, end_.u), w = add(start_.w, end_.w);
+    const Vector n = fused_cross(u, w);
     LaneMask result = separated_along(n);
     result = hn::Or(result, never_coplanar());
-    result = hn::Or(result, separated_along(cross(u, n)));
-    result = hn::Or(result, separated_along(cross(w, n)));
+    result = hn::Or(result, separated_along(fused_cross(u, n)));
+    result = hn::Or(result, separated_along(fused_cross(w, n)));
     if (hn::AllTrue(d, result)) return result;
-    if (!is_square_) result = hn::Or(result, separated_along(cross(subtract(w, u), n)));
+    if (!is_square_) result = hn::Or(result, separated_along(fused_cross(subtract(w, u), n)));
     result = hn::Or(result, separated_along(m));
-    result = hn::Or(result, separated_along(subtract(scaled(m, dot(u, u)), scaled(u, dot(m, u)))));
-    result = hn::Or(result, separated_along(subtract(scaled(m, dot(w, w)), scaled(w, dot(m, w)))));
+    result =
+        hn::Or(result, separated_along(subtract(scaled(m, fused_dot(u, u)), scaled(u, fused_dot(m, u)))));
+    result =
+        hn::Or(result, separated_along(subtract(scaled(m, fused_dot(w, w)), scaled(w, fused_dot(m, w)))));
     if (hn::AllTrue(d, result)) return result;
-    const Vector3 velocity = subtract(end_.m, start_.m);
-    result = hn::Or(result, separated_along(cross(velocity, u)));
-    result = hn::Or(result, separated_along(cross(velocity, w)));
-    result = hn::Or(result, separated_along(cross(start_.u, start_.w)));
-    return hn::Or(result, separated_along(cross(end_.u, end_.w)));
+    const Vector velocity = subtract(end_.m, start_.m);
+    result = hn::Or(result, separated_along(fused_cross(velocity, u)));
+    result = hn::Or(result, separated_along(fused_cross(velocity, w)));
+    result = hn::Or(result, separated_along(fused_cross(start_.u, start_.w)));
+    return hn::Or(result, separated_along(fused_cross(end_.u, end_.w)));
   }
 
  private:
   /// The greatest value of alpha su + beta sw over the domain.
-  HWY_INLINE Vector extent(Vector su, Vector sw) const {
-    const Vector zero = hn::Zero(Lanes());
-    const Vector positive_u = hn::Max(su, zero), positive_w = hn::Max(sw, zero);
+  HWY_INLINE Floats extent(Floats su, Floats sw) const {
+    const Floats zero = hn::Zero(Lanes());
+    const Floats positive_u = hn::Max(su, zero), positive_w = hn::Max(sw, zero);
     return is_square_ ? hn::Add(positive_u, positive_w) : hn::Max(positive_u, positive_w);
   }
 
   bool is_square_;
-  Vector separation_;
+  Floats separation_;
   Places start_, end_;
-  Vector3 reach_m_, reach_u_, reach_w_, reach_;  // greatest magnitudes in the step, by axis
+  Vector reach_m_, reach_u_, reach_w_, reach_;  // greatest magnitudes in the step, by axis
 };
 
 std::uint64_t MayTouch(const RelativeMotionBlock& block, std::size_t count, bool is_square,
@@ -164,9 +157,7 @@ std::uint64_t MayTouch(const RelativeMotionBlock& block, std::size_t count, bool
   const Lanes d;
   std::uint64_t apart = 0;
   for (std::size_t first = 0; first < count; first += hn::Lanes(d)) {
-    std::uint8_t bits[8] = {};
-    hn::StoreMaskBits(d, Group(block, first, is_square, separation).apart(), bits);
-    apart |= (std::uint64_t{bits[0]} | std::uint64_t{bits[1]} << 8) << first;
+    apart |= mask_bits(d, Group(block, first, is_square, separation).apart()) << first;
   }
   return ~apart & (count < 64 ? (std::uint64_t{1} << count) - 1 : ~std::uint64_t{0});
 }

@@ -45,10 +45,8 @@ Distances distances_from_plane(const Edge& edge, const TrianglePoints& triangle)
   if (std::max(first.bound, second.bound) < accepted_error * sum && std::isfinite(sum)) {
     return {std::fabs(first.value), std::fabs(second.value)};
   }
-  const Vec3d &p = edge.first, &q = edge.second;
-  const std::array<std::array<double, 5>, 3> coordinates{
-      {{r.x, s.x, t.x, p.x, q.x}, {r.y, s.y, t.y, p.y, q.y}, {r.z, s.z, t.z, p.z, q.z}}};
-  return with_integers(coordinates, [](const auto& i) {
+  const std::array points{r, s, t, edge.first, edge.second};
+  return with_integers(points, std::array{0, 1, 2}, [](const auto& i) {
     const auto u = difference(i[1], i[0]), v = difference(i[2], i[0]);
     const auto [p_distance, q_distance] = relative_magnitudes(determinant(u, v, difference(i[3], i[0])),
                                                               determinant(u, v, difference(i[4], i[0])));
@@ -56,29 +54,19 @@ Distances distances_from_plane(const Edge& edge, const TrianglePoints& triangle)
   });
 }
 
-/// The signed distance of `point` from the line of `other` in the projection along `axis`, up to a factor.
-Filtered turn(const Edge& other, const Vec3d& point, int axis) {
-  const int x = (axis + 1) % 3, y = (axis + 2) % 3;
-  const double left = (other.second[x] - other.first[x]) * (point[y] - other.first[y]);
-  const double right = (other.second[y] - other.first[y]) * (point[x] - other.first[x]);
-  return {left - right, area_error * (std::fabs(left) + std::fabs(right)) + underflow_error};
-}
-
 Distances distances_from_line(const Edge& edge, const Edge& other) {
   Distances best{0, 0};
   for (int axis = 0; axis < 3; ++axis) {
-    const Filtered first = turn(other, edge.first, axis), second = turn(other, edge.second, axis);
+    const Filtered first = filtered_turn(other.first, other.second, edge.first, axis);
+    const Filtered second = filtered_turn(other.first, other.second, edge.second, axis);
     const double sum = std::fabs(first.value) + std::fabs(second.value);
     const bool accurate = std::max(first.bound, second.bound) < accepted_error * sum && std::isfinite(sum);
     if (accurate && sum > best.first + best.second) best = {std::fabs(first.value), std::fabs(second.value)};
   }
   for (int axis = 0; best.first + best.second == 0; ++axis) {
     assert(axis < 3 && "the edges are not parallel");
-    const int x = (axis + 1) % 3, y = (axis + 2) % 3;
-    const Vec3d &p = edge.first, &q = edge.second, &r = other.first, &s = other.second;
-    const std::array<std::array<double, 4>, 2> coordinates{
-        {{p[x], q[x], r[x], s[x]}, {p[y], q[y], r[y], s[y]}}};
-    best = with_integers(coordinates, [](const auto& i) {
+    const std::array points{edge.first, edge.second, other.first, other.second};
+    best = with_integers(points, std::array{(axis + 1) % 3, (axis + 2) % 3}, [](const auto& i) {
       const auto u = difference(i[3], i[2]);
       const auto [p_distance, q_distance] =
           relative_magnitudes(determinant(u, difference(i[0], i[2])), determinant(u, difference(i[1], i[2])));

@@ -8,6 +8,7 @@
 #include <type_traits>
 
 #include "contact/pair_filter.hpp"
+#include "core/packed_lanes-inl.hpp"
 #include "geometry/plane_filter.hpp"
 #include "geometry/vector3-inl.hpp"
 #include "mesh/vertex_loads-inl.hpp"
@@ -121,13 +122,6 @@ struct Order {
   HWY_INLINE hn::Mask<Tag> positive() const { return hn::Gt(value, bound); }
   HWY_INLINE hn::Mask<Tag> negative() const { return hn::Gt(hn::Neg(value), bound); }
 };
-
-template <class Tag>
-HWY_INLINE std::uint64_t bits_of(hn::Mask<Tag> mask) {
-  std::uint8_t bytes[8] = {};
-  hn::StoreMaskBits(Tag(), mask, bytes);
-  return std::uint64_t{bytes[0]} | std::uint64_t{bytes[1]} << 8;
-}
 
 // Reading corners. A register has blocks of 16 bytes: four floats or two doubles. Corners are read into
 // blocks and transposed there, so that each register gets one coordinate of as many pairs as it has lanes.
@@ -266,9 +260,9 @@ HWY_INLINE void decide(const Corners<Tag>& a, const Corners<Tag>& b, std::size_t
     const auto beyond = hn::Or(b_start_to_a_end.positive(), b_end_to_a_start.negative());
     const auto overlap = hn::And(b_start_to_a_end.negative(), b_end_to_a_start.positive());
     apart = hn::Or(apart, hn::And(in_general_position, beyond));
-    verdicts.crossing |= bits_of<Tag>(hn::And(in_general_position, overlap)) << first;
+    verdicts.crossing |= mask_bits(d, hn::And(in_general_position, overlap)) << first;
   }
-  verdicts.apart |= bits_of<Tag>(apart) << first;
+  verdicts.apart |= mask_bits(d, apart) << first;
 }
 
 template <class Scalar, class SourceA, class SourceB>

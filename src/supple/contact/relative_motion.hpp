@@ -7,6 +7,16 @@
 
 namespace supple {
 
+/// A vertex and a face, or two edges: both public motions as one type.
+struct ElementMotion {
+  std::array<Vec3d, 4> start{}, end{};
+  bool are_edges = false;
+
+  ElementMotion() = default;
+  ElementMotion(const VertexFaceMotion& motion) : start(motion.start), end(motion.end) {}
+  ElementMotion(const EdgeEdgeMotion& motion) : start(motion.start), end(motion.end), are_edges(true) {}
+};
+
 /// Two elements relative to each other. The differences of their points are `m` - alpha `u` - beta `w`, where
 /// (alpha, beta) runs over the triangle alpha, beta >= 0, alpha + beta <= 1 for a vertex and a face, and over
 /// the unit square for two edges. All three vectors move linearly from `start` to `end`.
@@ -25,11 +35,9 @@ inline RelativePlaces<double> relative_vertex_face(const std::array<Vec3d, 4>& p
 inline RelativePlaces<double> relative_edge_edge(const std::array<Vec3d, 4>& p) {
   return {p[0] - p[2], p[0] - p[1], p[3] - p[2]};
 }
-inline RelativeMotion relative_motion(const VertexFaceMotion& motion) {
+inline RelativeMotion relative_motion(const ElementMotion& motion) {
+  if (motion.are_edges) return {relative_edge_edge(motion.start), relative_edge_edge(motion.end), true};
   return {relative_vertex_face(motion.start), relative_vertex_face(motion.end), false};
-}
-inline RelativeMotion relative_motion(const EdgeEdgeMotion& motion) {
-  return {relative_edge_edge(motion.start), relative_edge_edge(motion.end), true};
 }
 
 }  // namespace supple

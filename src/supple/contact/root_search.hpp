@@ -111,15 +111,6 @@ bool narrow(StepRoot<Numbers>& root) {
   return true;
 }
 
-/// The largest double ≤ numerator / 2^exponent, or the smallest that is ≥.
-template <class Time>
-double round_time(const Time& numerator, int exponent, bool up) {
-  const int excess = std::max({bit_length(numerator) - 53, exponent - 1074, 0});
-  const Time kept = numerator >> excess;
-  const bool inexact = (kept << excess) != numerator;
-  return std::ldexp(static_cast<double>(lowest_word(kept)) + (up && inexact ? 1 : 0), excess - exponent);
-}
-
 /// Writes `time`, 0 < time < 1, as numerator / 2^exponent with the interval's exponent, which grows if
 /// needed. Returns false when the integers are too short.
 template <class Numbers>

@@ -8,6 +8,8 @@
 #include <cstdint>
 
 #include "contact/separating_normal.hpp"
+#include "core/packed_lanes-inl.hpp"
+#include "geometry/vector.hpp"
 #include "geometry/vector3-inl.hpp"
 
 #ifndef SUPPLE_CONTACT_SEPARATING_NORMAL_CPP
@@ -173,9 +175,7 @@ HWY_INLINE std::uint64_t find_normals_from(const IntersectingPairs& pairs, std::
   const Mask in_range =
       hn::And(hn::Ge(size, hn::Set(Tag(), least_size)), hn::Le(size, hn::Set(Tag(), most_size)));
   const Mask has_normal = hn::And(in_range, hn::Gt(best.squared_length, zero));
-  std::uint8_t bytes[8] = {};
-  hn::StoreMaskBits(Tag(), hn::Not(has_normal), bytes);
-  return std::uint64_t{bytes[0]} & ((std::uint64_t{1} << hn::Lanes(Tag())) - 1);
+  return mask_bits(Tag(), hn::Not(has_normal)) & ((std::uint64_t{1} << hn::Lanes(Tag())) - 1);
 }
 
 std::uint64_t find_normals(const IntersectingPairs& pairs, double (*normals)[IntersectingPairs::capacity]) {
@@ -195,19 +195,6 @@ namespace supple {
 HWY_EXPORT(find_normals);
 
 namespace {
-
-double largest_component(const Vec3d& v) {
-  return std::max({std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)});
-}
-
-/// The triangle times a power of two.
-TrianglePoints scaled(const TrianglePoints& triangle, int exponent) {
-  TrianglePoints result;
-  for (std::size_t i = 0; i < 3; ++i) {
-    for (int axis = 0; axis < 3; ++axis) result[i][axis] = std::ldexp(triangle[i][axis], exponent);
-  }
-  return result;
-}
 
 /// A unit vector perpendicular to the longest edge.
 Vec3d perpendicular(const TrianglePoints& a, const TrianglePoints& b) {
@@ -234,7 +221,7 @@ Vec3d special_normal(const TrianglePoints& a, const TrianglePoints& b) {
   bool is_point = true;
   for (const TrianglePoints* const triangle : {&a, &b}) {
     for (const Vec3d& p : *triangle) {
-      half_extent = std::max(half_extent, largest_component(p * 0.5 - a[0] * 0.5));
+      half_extent = std::max(half_extent, largest_magnitude(p * 0.5 - a[0] * 0.5));
       is_point = is_point && p == a[0];
     }
   }
@@ -242,7 +229,8 @@ Vec3d special_normal(const TrianglePoints& a, const TrianglePoints& b) {
   // Half of the smallest number is 0.
   const int exponent = half_extent > 0 ? -std::ilogb(half_extent) - 1 : 1074;
   IntersectingPairs pair;
-  pair.add(scaled(a, exponent), scaled(b, exponent));
+  pair.add({scaled(a[0], exponent), scaled(a[1], exponent), scaled(a[2], exponent)},
+           {scaled(b[0], exponent), scaled(b[1], exponent), scaled(b[2], exponent)});
   pair.pad(most_lanes);
   double normals[3][IntersectingPairs::capacity];
   if ((HWY_DYNAMIC_DISPATCH(find_normals)(pair, normals) & 1) != 0)

@@ -58,11 +58,10 @@ constexpr std::array<FeaturePair, 9> edge_edge_features = {{{vertices, {0, 2}},
 /// Two moving elements in integer coordinates.
 class Elements {
  public:
-  Elements(const std::array<Vec3d, 4>& start, const std::array<Vec3d, 4>& end, bool edges, double separation)
-      : edges_(edges) {
+  Elements(const ElementMotion& motion, double separation) : edges_(motion.are_edges) {
     std::array<double, 25> numbers;
     std::size_t i = 0;
-    for (const auto* moment : {&start, &end}) {
+    for (const auto* moment : {&motion.start, &motion.end}) {
       for (const Vec3d& p : *moment) {
         for (int axis = 0; axis < 3; ++axis) numbers[i++] = p[axis];
       }
@@ -74,7 +73,7 @@ class Elements {
       vertices_[n / 3][n % 3] = Polynomial({integer(n), integer(n + 12) - integer(n)});
     }
     squared_separation_ = integer(24) * integer(24);
-    u_ = path(edges ? 0 : 2, 1);
+    u_ = path(edges_ ? 0 : 2, 1);
     v_ = path(2, 3);
     w_ = path(2, 0);
     normal_ = cross(u_, v_);
@@ -136,7 +135,10 @@ bool all_positive(const std::vector<Polynomial>& conditions, UnitRoot& time) {
   return std::ranges::all_of(conditions, [&](const Polynomial& p) { return time.sign_of(p) > 0; });
 }
 
-std::optional<TimeBracket> first_contact(const Elements& elements) {
+}  // namespace
+
+std::optional<TimeBracket> exact_first_contact(const ElementMotion& motion, double separation) {
+  const Elements elements(motion, separation);
   const std::span<const FeaturePair> features = elements.features();
   std::vector<Polynomial> distances;
   UnitRoot start(BinaryFraction{});
@@ -161,16 +163,6 @@ std::optional<TimeBracket> first_contact(const Elements& elements) {
     }
   }
   return first;
-}
-
-}  // namespace
-
-std::optional<TimeBracket> exact_first_contact(const VertexFaceMotion& motion, double separation) {
-  return first_contact(Elements(motion.start, motion.end, false, separation));
-}
-
-std::optional<TimeBracket> exact_first_contact(const EdgeEdgeMotion& motion, double separation) {
-  return first_contact(Elements(motion.start, motion.end, true, separation));
 }
 
 }  // namespace supple

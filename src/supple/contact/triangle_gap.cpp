@@ -1,6 +1,7 @@
 #include "contact/triangle_gap.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -15,13 +16,6 @@ TrianglePoints quarter(const TrianglePoints& points, const Vec3d& origin) {
   TrianglePoints result;
   for (std::size_t i = 0; i < 3; ++i) result[i] = 0.25 * points[i] - 0.25 * origin;
   return result;
-}
-
-TrianglePoints scaled(TrianglePoints points, int exponent) {
-  for (Vec3d& p : points) {
-    for (int axis = 0; axis < 3; ++axis) p[axis] = std::ldexp(p[axis], exponent);
-  }
-  return points;
 }
 
 int exponent_of(const TrianglePoints& a, const TrianglePoints& b) {
@@ -80,28 +74,25 @@ Vec3d shortest_way(const TrianglePoints& p, const TrianglePoints& q) {
 
 }  // namespace
 
-/// The shortest way, unless rounding is all that it is: then one of the axes that separate triangles,
-/// whatever these have collapsed to.
+/// Takes the shortest way, unless rounding hides it. Then one of the other axes separates the triangles, also
+/// where these have collapsed.
 TriangleGap triangle_gap(const TrianglePoints& a, const TrianglePoints& b) {
-  const TrianglePoints seen_a = quarter(a, a[0]), seen_b = quarter(b, a[0]);
-  // Of size 1, so that no square overflows and few underflow.
-  const int exponent = exponent_of(seen_a, seen_b);
-  const TrianglePoints p = scaled(seen_a, -exponent), q = scaled(seen_b, -exponent);
+  TrianglePoints p = quarter(a, a[0]), q = quarter(b, a[0]);
+  // A size of 1 lets no square overflow and few underflow.
+  const int exponent = exponent_of(p, q);
+  for (TrianglePoints* const triangle : {&p, &q}) {
+    for (Vec3d& corner : *triangle) corner = scaled(corner, -exponent);
+  }
   WidestGap widest(p, q);
   widest.consider(shortest_way(p, q));
-  for (std::size_t i = 0; i < 3; ++i) {
-    const Vec3d edge_p = p[(i + 1) % 3] - p[i];
-    for (std::size_t j = 0; j < 3; ++j) {
-      const Vec3d edge_q = q[(j + 1) % 3] - q[j], normal = cross(edge_p, edge_q);
-      for (const Vec3d& axis : {edge_p, edge_q, normal, cross(edge_p, normal), cross(edge_q, normal)})
-        widest.consider(axis);
+  const std::array edges{p[1] - p[0], p[2] - p[1], p[0] - p[2], q[1] - q[0], q[2] - q[1], q[0] - q[2]};
+  for (const Vec3d& edge : edges) {
+    widest.consider(edge);
+    for (const Vec3d& other : edges) {
+      const Vec3d normal = cross(edge, other);
+      widest.consider(normal);
+      widest.consider(cross(normal, edge));
     }
-  }
-  for (const TrianglePoints* const triangle : {&p, &q}) {
-    const auto& [r, s, t] = *triangle;
-    const Vec3d normal = cross(s - r, t - r);
-    for (const Vec3d& axis : {normal, cross(normal, s - r), cross(normal, t - s), cross(normal, r - t)})
-      widest.consider(axis);
   }
   const TriangleGap gap = widest.gap();
   return {gap.axis, std::ldexp(std::max(gap.distance, 0.0), exponent + 2)};

@@ -5,14 +5,14 @@
 
 namespace supple {
 
-/// How far apart two triangles are, and the direction from a to b in which they are: rounded. Where rounding
-/// leaves no distance, it is 0 and the direction the one that separates them best.
+/// The distance between two triangles and its direction from a to b, both rounded. Where rounding leaves no
+/// distance, it is 0, and the direction is the one that separates them best.
 struct TriangleGap {
-  Vec3d axis;  ///< unit vector; zero of two triangles that are one and the same point
+  Vec3d axis;  ///< unit vector; zero for two triangles that are the same point
   double distance = 0;
 };
 
-/// Of finite triangles, in plain floating point. Where they meet it is of no use.
+/// For finite triangles that do not meet; in plain floating point.
 TriangleGap triangle_gap(const TrianglePoints& a, const TrianglePoints& b);
 
 }  // namespace supple

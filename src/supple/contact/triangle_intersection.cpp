@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cassert>
-#include <cmath>
 #include <optional>
 #include <utility>
 
@@ -10,6 +9,7 @@
 #include "contact/separating_normal.hpp"
 #include "geometry/exact_predicates.hpp"
 #include "geometry/plane_filter.hpp"
+#include "geometry/vector.hpp"
 
 namespace supple {
 namespace {
@@ -334,13 +334,6 @@ void find_special_meetings(const TrianglePoints& a, const TrianglePoints& b, Mee
   }
 }
 
-bool all_finite(const TrianglePoints& triangle) {
-  for (const Vec3d& point : triangle) {
-    if (!std::isfinite(point.x) || !std::isfinite(point.y) || !std::isfinite(point.z)) return false;
-  }
-  return true;
-}
-
 /// Which corners lie where: all of one triangle in the plane of the other means that they share a plane or
 /// that the other has no area.
 enum class Placement : std::uint8_t { apart, crossing, special };
@@ -357,7 +350,7 @@ Placement classify(const TrianglePoints& a, const TrianglePoints& b, Sides& side
   const FilteredPlane plane_a(a);
   const FilteredSides filtered_b(plane_a, b);
   if (filtered_b.separated()) return Placement::apart;
-  if (!all_finite(a) || !all_finite(b)) return Placement::apart;
+  if (!std::ranges::all_of(a, is_finite) || !std::ranges::all_of(b, is_finite)) return Placement::apart;
   sides.of_a = sides_of_plane(plane_b, b, a, filtered_a, used_exact);
   if (separated(sides.of_a)) return Placement::apart;
   sides.of_b = sides_of_plane(plane_a, a, b, filtered_b, used_exact);

@@ -36,6 +36,14 @@ HWY_INLINE hwy::HWY_NAMESPACE::Vec<Words> packed_lanes(Words lanes, hwy::HWY_NAM
 #endif
 }
 
+/// Bit i: lane i of the mask is set. For at most 16 lanes.
+template <class Tag>
+HWY_INLINE std::uint64_t mask_bits(Tag tag, hwy::HWY_NAMESPACE::Mask<Tag> mask) {
+  std::uint8_t bytes[8] = {};
+  hwy::HWY_NAMESPACE::StoreMaskBits(tag, mask, bytes);
+  return bytes[0] + 256u * bytes[1];
+}
+
 }  // namespace HWY_NAMESPACE
 }  // namespace supple
 HWY_AFTER_NAMESPACE();

@@ -8,6 +8,8 @@
 #include <cstdint>
 #include <utility>
 
+#include "supple/types.hpp"
+
 namespace supple {
 
 // Doubles are integers times powers of two. Multiplying each axis by its own power of two makes all
@@ -146,28 +148,31 @@ Int to_integer(double value, int lowest) {
   return dyadic.negative ? Int(-result) : result;
 }
 
-/// `coordinates[axis][point]` are finite, for two or three axes. Calls `compute(points)` with
-/// `points[point][axis]`, integers of the smallest type in which differences of the points and their
+/// Calls `compute(integers)` with `integers[point][i]`, the coordinates of finite points along `axes[i]`, for
+/// two or three axes. The integers have the smallest type in which differences of the points and their
 /// determinants fit. A determinant of differences takes at most the sum of the axes' widths + 3 bits for two
 /// axes, + 6 bits for three.
-template <std::size_t axes, std::size_t count, class Compute>
-auto with_integers(const std::array<std::array<double, count>, axes>& coordinates, Compute compute) {
-  std::array<int, axes> lowest;
+template <std::size_t count, std::size_t dimension, class Compute>
+auto with_integers(const std::array<Vec3d, count>& points, const std::array<int, dimension>& axes,
+                   Compute compute) {
+  std::array<int, dimension> lowest;
   int widest = 0, total = 0;
-  for (std::size_t axis = 0; axis < axes; ++axis) {
-    const BitRange range(coordinates[axis]);
-    lowest[axis] = range.lowest;
+  for (std::size_t i = 0; i < dimension; ++i) {
+    std::array<double, count> coordinates;
+    for (std::size_t p = 0; p < count; ++p) coordinates[p] = points[p][axes[i]];
+    const BitRange range(coordinates);
+    lowest[i] = range.lowest;
     widest = std::max(widest, range.width);
     total += range.width;
   }
   const auto integers = [&]<class Int>(Int) {
-    std::array<std::array<Int, axes>, count> points;
-    for (std::size_t axis = 0; axis < axes; ++axis) {
-      for (std::size_t i = 0; i < count; ++i) {
-        points[i][axis] = to_integer<Int>(coordinates[axis][i], lowest[axis]);
+    std::array<std::array<Int, dimension>, count> result;
+    for (std::size_t p = 0; p < count; ++p) {
+      for (std::size_t i = 0; i < dimension; ++i) {
+        result[p][i] = to_integer<Int>(points[p][axes[i]], lowest[i]);
       }
     }
-    return points;
+    return result;
   };
   if (widest <= 60) return compute(integers(std::int64_t{}));
   if (total <= 506) return compute(integers(FixedInteger{}));

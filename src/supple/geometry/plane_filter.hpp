@@ -38,6 +38,13 @@ struct Filtered {
   int sign() const { return value > 0 ? 1 : -1; }
 };
 
+/// The component along `axis` of (b - a) × (c - a).
+inline Filtered filtered_turn(const Vec3d& a, const Vec3d& b, const Vec3d& c, int axis) {
+  const int x = (axis + 1) % 3, y = (axis + 2) % 3;
+  const double left = (b[x] - a[x]) * (c[y] - a[y]), right = (b[y] - a[y]) * (c[x] - a[x]);
+  return {left - right, area_error * (std::fabs(left) + std::fabs(right)) + underflow_error};
+}
+
 /// The plane through three points, rounded, with the sums that bound the rounding errors.
 struct FilteredPlane {
   Vec3d origin, normal, magnitude;

@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <cassert>
-#include <cmath>
 #include <cstdint>
+
+#include "geometry/wide_integer.hpp"
 
 namespace supple {
 
@@ -267,17 +268,9 @@ int UnitRoot::sign_of(const Polynomial& q) {
 
 std::pair<double, double> UnitRoot::neighbouring_doubles() {
   constexpr int digits = 53, finest = 1074;
-  const auto size = [this] {
-    return left_.numerator.is_zero() ? 0 : static_cast<int>(msb(left_.numerator)) + 1;
-  };
-  while (!exact_ && size() < digits && left_.bits < finest) halve();
-  const int excess = std::max({size() - digits, left_.bits - finest, 0});
-  const Integer low = left_.numerator >> excess;
-  const bool is_double = exact_ && (low << excess) == left_.numerator;
-  const auto value = [&](const Integer& k) {
-    return std::ldexp(k.convert_to<double>(), excess - left_.bits);
-  };
-  return {value(low), value(is_double ? low : Integer(low + 1))};
+  while (!exact_ && bit_length(left_.numerator) < digits && left_.bits < finest) halve();
+  const Integer right = exact_ ? left_.numerator : Integer(left_.numerator + 1);
+  return {round_time(left_.numerator, left_.bits, false), round_time(right, left_.bits, true)};
 }
 
 std::vector<UnitRoot> roots_in_unit_interval(const Polynomial& p) {

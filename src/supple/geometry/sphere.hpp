@@ -7,14 +7,16 @@
 
 namespace supple {
 
-/// Whether two closed spheres overlap. Compares in double, so that differences and squares of floats do not
-/// overflow. May report spheres as touching that rounding cannot separate, never the reverse. Symmetric.
-inline bool overlap(const BoundingSphere& a, const BoundingSphere& b) {
+/// Whether two closed spheres overlap, after b moved by `offset` and grew by `slop`. Compares in double, so
+/// that differences and squares of floats do not overflow. May report spheres as touching that rounding
+/// cannot separate, never the reverse. Symmetric.
+inline bool overlap(const BoundingSphere& a, const BoundingSphere& b, const Vec3f& offset = {},
+                    float slop = 0) {
   if (a.empty() || b.empty()) return false;
-  const double dx = double{a.center.x} - b.center.x;
-  const double dy = double{a.center.y} - b.center.y;
-  const double dz = double{a.center.z} - b.center.z;
-  const double reach = double{a.radius} + b.radius;
+  const double dx = double{b.center.x} + offset.x - a.center.x;
+  const double dy = double{b.center.y} + offset.y - a.center.y;
+  const double dz = double{b.center.z} + offset.z - a.center.z;
+  const double reach = double{a.radius} + b.radius + slop;
   // The factor covers six roundings of 2^-53. The comparison makes NaN overlap.
   return !(dx * dx + dy * dy + dz * dz > reach * reach * (1 + 0x1p-49));
 }

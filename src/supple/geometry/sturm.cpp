@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 
 namespace supple::sturm {
 namespace {
@@ -105,6 +106,19 @@ Time between(const Time& low, const Time& high) {
 
 }  // namespace
 
+int lowest_bit(double value) {
+  if (value == 0) return std::numeric_limits<int>::max();
+  int exponent = 0;
+  const auto mantissa = static_cast<std::int64_t>(std::ldexp(std::frexp(value, &exponent), 53));
+  return exponent - 53 + std::countr_zero(static_cast<std::uint64_t>(mantissa));
+}
+
+Integer to_integer(double value, int lowest) {
+  if (value == 0) return 0;
+  const int last = lowest_bit(value);
+  return Integer(static_cast<std::int64_t>(std::ldexp(value, -last))) << (last - lowest);
+}
+
 Polynomial operator+(const Polynomial& p, const Polynomial& q) {
   if (p.size() < q.size()) return q + p;
   Polynomial result = p;
@@ -127,12 +141,9 @@ Polynomial operator*(const Polynomial& p, const Polynomial& q) {
 }
 
 Time::Time(double value) {
-  int exponent = 0;
-  numerator = static_cast<std::int64_t>(std::ldexp(std::frexp(value, &exponent), 53));
-  if (numerator.is_zero()) return;
-  const int shift = std::min(static_cast<int>(lsb(numerator)), std::max(53 - exponent, 0));
-  numerator >>= shift;
-  bits = static_cast<unsigned>(53 - exponent - shift);
+  const int lowest = std::min(lowest_bit(value), 0);
+  numerator = to_integer(value, lowest);
+  bits = static_cast<unsigned>(-lowest);
 }
 
 int sign_at(const Polynomial& p, const Time& time) {

@@ -4,12 +4,18 @@
 #include <utility>
 #include <vector>
 
-// Exact real roots for checking, by Sturm's theorem. Nothing in the detection path uses this header.
+// Exact integers and real roots for checking; the roots by Sturm's theorem. Nothing in the detection path
+// uses this header.
 
 namespace supple::sturm {
 
 using Integer =
     boost::multiprecision::number<boost::multiprecision::cpp_int_backend<>, boost::multiprecision::et_off>;
+
+/// The exponent of the lowest bit of `value` that is set; the largest int for 0.
+int lowest_bit(double value);
+/// value / 2^lowest, for lowest ≤ lowest_bit(value).
+Integer to_integer(double value, int lowest);
 
 /// c[0] + c[1] t + c[2] t² + … The last coefficient is not 0; the polynomial 0 has no coefficients.
 struct Polynomial : std::vector<Integer> {

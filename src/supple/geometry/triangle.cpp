@@ -1,20 +1,17 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/vector.hpp"
 #include "supple/triangle_intersection.hpp"
 
 namespace supple {
 namespace {
 
-double largest_component(const Vec3d& v) {
-  return std::max({std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)});
-}
-
 /// Twice the area vector of a triangle whose sides are divided by `size`, the largest component of two of
 /// them: products of very small or large sides would leave the range of numbers. Zero when `size` is no help.
 Vec3d scaled_normal(const TrianglePoints& triangle, double& size) {
   const Vec3d ab = triangle[1] - triangle[0], ac = triangle[2] - triangle[0];
-  size = std::max(largest_component(ab), largest_component(ac));
+  size = std::max(largest_magnitude(ab), largest_magnitude(ac));
   if (!(size > 0) || !std::isfinite(size)) return {};
   return cross(ab * (1 / size), ac * (1 / size));
 }

@@ -21,6 +21,11 @@ inline double largest_magnitude(const Vec3d& v) {
   return std::max({std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)});
 }
 
+/// v · 2^exponent.
+inline Vec3d scaled(const Vec3d& v, int exponent) {
+  return {std::ldexp(v.x, exponent), std::ldexp(v.y, exponent), std::ldexp(v.z, exponent)};
+}
+
 /// a at t = 0, b at t = 1, exactly.
 inline double mix(double a, double b, double t) {
   return (1 - t) * a + t * b;

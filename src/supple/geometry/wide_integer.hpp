@@ -172,4 +172,13 @@ double approximate(const Int& value, int exponent) {
   return negative ? -top : top;
 }
 
+/// The largest double ≤ numerator / 2^exponent, or the smallest that is ≥. The numerator is ≥ 0.
+template <class Int>
+double round_time(const Int& numerator, int exponent, bool up) {
+  const int excess = std::max({bit_length(numerator) - 53, exponent - 1074, 0});
+  const Int kept = numerator >> excess;
+  const bool inexact = (kept << excess) != numerator;
+  return std::ldexp(static_cast<double>(lowest_word(kept)) + (up && inexact ? 1 : 0), excess - exponent);
+}
+
 }  // namespace supple

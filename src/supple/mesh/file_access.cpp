@@ -7,6 +7,7 @@
 #include <system_error>
 
 #include "core/error.hpp"
+#include "mesh/quotes.hpp"
 
 namespace supple {
 namespace {
@@ -30,12 +31,6 @@ File open_for_reading(const std::filesystem::path& path) {
 }
 
 }  // namespace
-
-std::string one_line(std::string text) {
-  std::replace_if(
-      text.begin(), text.end(), [](unsigned char c) { return c < 32 || c == 127; }, '?');
-  return text;
-}
 
 std::string shown(const std::filesystem::path& path) {
   return one_line(path.string());

@@ -5,9 +5,6 @@
 
 namespace supple {
 
-/// `text` with its control characters replaced: messages are one line, whatever a file or mesh is called.
-std::string one_line(std::string text);
-
 /// The path as messages show it.
 std::string shown(const std::filesystem::path& path);
 

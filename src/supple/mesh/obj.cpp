@@ -20,7 +20,7 @@ class ObjReader {
     for (; scanner_.skip_to_word(); scanner_.skip_line()) {
       const std::string_view keyword = scanner_.word();
       if (keyword == "v") {
-        read_vertex();
+        mesh_.positions.push_back(scanner_.point());
       } else if (keyword == "f") {
         read_face();
       } else if (keyword.find('\0') != std::string_view::npos) {
@@ -37,13 +37,6 @@ class ObjReader {
     std::int64_t index;
     std::size_t line;
   };
-
-  void read_vertex() {
-    const double x = scanner_.number("x");
-    const double y = scanner_.number("y");
-    const double z = scanner_.number("z");
-    mesh_.positions.push_back({x, y, z});
-  }
 
   void read_face() {
     std::uint32_t first = 0, previous = 0;

@@ -4,6 +4,7 @@
 
 #include "mesh/mesh_formats.hpp"
 #include "mesh/number_text.hpp"
+#include "mesh/polygon.hpp"
 #include "mesh/text_scanner.hpp"
 
 namespace supple {
@@ -65,38 +66,16 @@ class OffReader {
 
   void read_vertex(std::size_t i, std::size_t count) {
     if (!scanner_.skip_to_word()) fail_truncated("vertices", i, count);
-    const double x = scanner_.number("x");
-    const double y = scanner_.number("y");
-    const double z = scanner_.number("z");
-    mesh_.positions.push_back({x, y, z});
+    mesh_.positions.push_back(scanner_.point());
     scanner_.skip_line();
   }
 
   void read_face(std::size_t i, std::size_t count) {
     if (!scanner_.skip_to_word()) fail_truncated("faces", i, count);
     const std::int64_t corners = scanner_.integer("the number of corners");
-    if (corners < 3) {
-      scanner_.fail_here("face " + std::to_string(i) + " has " + std::to_string(corners) +
-                         " corners; it needs at least 3");
-    }
-    const std::uint32_t first = read_corner(i);
-    std::uint32_t previous = read_corner(i);
-    for (std::int64_t k = 2; k < corners; ++k) {
-      const std::uint32_t corner = read_corner(i);
-      mesh_.triangles.push_back({first, previous, corner});
-      previous = corner;
-    }
+    const auto next_index = [&] { return scanner_.integer("a vertex index"); };
+    add_polygon(mesh_, mesh_.positions.size(), i, corners, scanner_, next_index);
     scanner_.skip_line();
-  }
-
-  std::uint32_t read_corner(std::size_t face) {
-    const std::int64_t index = scanner_.integer("a vertex index");
-    if (index < 0 || static_cast<std::uint64_t>(index) >= mesh_.positions.size()) {
-      scanner_.fail_here("face " + std::to_string(face) + ": vertex index " + std::to_string(index) +
-                         " is out of range; the file has " + std::to_string(mesh_.positions.size()) +
-                         " vertices, counted from 0");
-    }
-    return static_cast<std::uint32_t>(index);
   }
 
   [[noreturn]] void fail_truncated(const char* what, std::size_t found, std::size_t announced) const {

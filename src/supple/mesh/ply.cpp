@@ -1,6 +1,6 @@
 // PLY, text or binary of either byte order: vertices with x, y, z and polygons, all else is stepped over.
 
-#include <array>
+#include <algorithm>
 #include <bit>
 #include <limits>
 #include <optional>
@@ -10,7 +10,7 @@
 #include "core/error.hpp"
 #include "mesh/byte_order.hpp"
 #include "mesh/mesh_formats.hpp"
-#include "mesh/number_text.hpp"
+#include "mesh/polygon.hpp"
 #include "mesh/text_scanner.hpp"
 
 namespace supple {
@@ -276,7 +276,9 @@ class BodyReader {
       } else if (element.name == "face") {
         read_faces(element);
       } else if (!element.properties.empty()) {
-        for (std::uint64_t i = 0; i < element.count; ++i) skip_properties(element);
+        for (std::uint64_t i = 0; i < element.count; ++i) {
+          for (const Property& property : element.properties) skip_property(property);
+        }
       }
     }
     body_.finish();
@@ -342,17 +344,14 @@ class BodyReader {
 
   void read_faces(const Element& element) {
     if (element.count == 0) return;
-    const Property* vertex_list = nullptr;
-    for (const Property& property : element.properties) {
-      if (is_vertex_list(property) && vertex_list == nullptr) vertex_list = &property;
-    }
-    if (vertex_list == nullptr) {
+    const auto vertex_list = std::ranges::find_if(element.properties, is_vertex_list);
+    if (vertex_list == element.properties.end()) {
       body_.fail_here("element 'face' has no list 'vertex_indices' or 'vertex_index'");
     }
     mesh_.triangles.reserve(element.count);
     for (std::uint64_t face = 0; face < element.count; ++face) {
       for (const Property& property : element.properties) {
-        if (&property == vertex_list) {
+        if (&property == &*vertex_list) {
           read_face(face, property);
         } else {
           skip_property(property);
@@ -363,31 +362,8 @@ class BodyReader {
 
   void read_face(std::uint64_t face, const Property& vertex_list) {
     const std::int64_t corners = body_.integer(*vertex_list.count_type);
-    if (corners < 3) {
-      body_.fail_here("face " + std::to_string(face) + " has " + std::to_string(corners) +
-                      " corners; it needs at least 3");
-    }
-    const std::uint32_t first = read_corner(face, vertex_list);
-    std::uint32_t previous = read_corner(face, vertex_list);
-    for (std::int64_t k = 2; k < corners; ++k) {
-      const std::uint32_t corner = read_corner(face, vertex_list);
-      mesh_.triangles.push_back({first, previous, corner});
-      previous = corner;
-    }
-  }
-
-  std::uint32_t read_corner(std::uint64_t face, const Property& vertex_list) {
-    const std::int64_t index = body_.integer(vertex_list.type);
-    if (index < 0 || static_cast<std::uint64_t>(index) >= vertex_count_) {
-      body_.fail_here("face " + std::to_string(face) + ": vertex index " + std::to_string(index) +
-                      " is out of range; the file has " + std::to_string(vertex_count_) +
-                      " vertices, counted from 0");
-    }
-    return static_cast<std::uint32_t>(index);
-  }
-
-  void skip_properties(const Element& element) {
-    for (const Property& property : element.properties) skip_property(property);
+    const auto next_index = [&] { return body_.integer(vertex_list.type); };
+    add_polygon(mesh_, vertex_count_, face, corners, body_, next_index);
   }
 
   void skip_property(const Property& property) {

@@ -25,9 +25,11 @@ bool equal_ignoring_case(std::string_view word, std::string_view lower_case) {
          });
 }
 
+std::uint32_t announced_facets(std::string_view bytes) {
+  return load_scalar<std::uint32_t>(bytes.data() + header_size, std::endian::little);
+}
 std::uint64_t announced_size(std::string_view bytes) {
-  const auto facets = load_scalar<std::uint32_t>(bytes.data() + header_size, std::endian::little);
-  return prologue_size + std::uint64_t{facet_size} * facets;
+  return prologue_size + std::uint64_t{facet_size} * announced_facets(bytes);
 }
 
 // Binary files may start with "solid" as well, so the size and zero bytes, which no text has, come first.
@@ -44,15 +46,14 @@ TriangleMesh read_binary(std::string_view bytes, const std::string& file) {
          std::to_string(prologue_size) + " bytes that a binary one has at least");
   }
   if (bytes.size() < announced_size(bytes)) {
-    const auto facets = load_scalar<std::uint32_t>(bytes.data() + header_size, std::endian::little);
-    fail(file + ": truncated, or no STL file: the header announces " + std::to_string(facets) +
-         " facets, which need " + std::to_string(announced_size(bytes)) + " bytes; the file has " +
-         std::to_string(bytes.size()));
+    fail(file + ": truncated, or no STL file: the header announces " +
+         std::to_string(announced_facets(bytes)) + " facets, which need " +
+         std::to_string(announced_size(bytes)) + " bytes; the file has " + std::to_string(bytes.size()));
   }
   VertexWelder welder;
   TriangleMesh mesh;
   const std::size_t size = announced_size(bytes);
-  mesh.triangles.reserve((size - prologue_size) / facet_size);
+  mesh.triangles.reserve(announced_facets(bytes));
   for (std::size_t facet = prologue_size; facet < size; facet += facet_size) {
     Triangle triangle;
     const char* place = bytes.data() + facet + normal_size;
@@ -107,11 +108,7 @@ class StlTextReader {
 
   std::uint32_t read_vertex() {
     expect("vertex");
-    Vec3d point;
-    point.x = scanner_.number("x");
-    point.y = scanner_.number("y");
-    point.z = scanner_.number("z");
-    return welder_.id_of(point);
+    return welder_.id_of(scanner_.point());
   }
 
   std::string_view next_word() {
@@ -129,13 +126,11 @@ class StlTextReader {
   VertexWelder welder_;
 };
 
-// Of length one, or zero where the corners give no direction.
+// Zero where the corners give no direction.
 Vec3d unit_normal(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
-  const Vec3d u = b - a, v = c - a;
-  const Vec3d normal{u.y * v.z - u.z * v.y, u.z * v.x - u.x * v.z, u.x * v.y - u.y * v.x};
-  const double length = std::sqrt(normal.x * normal.x + normal.y * normal.y + normal.z * normal.z);
-  if (!(length > 0 && std::isfinite(length))) return {};
-  return {normal.x / length, normal.y / length, normal.z / length};
+  const Vec3d normal = cross(b - a, c - a);
+  const double length = norm(normal);
+  return length > 0 && std::isfinite(length) ? normal / length : Vec3d{};
 }
 
 void append_point(std::string& bytes, const Vec3d& point) {

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "mesh/quotes.hpp"
+#include "supple/types.hpp"
 
 namespace supple {
 
@@ -34,6 +35,8 @@ class TextScanner {
 
   /// The next number of this line. Fails, with `what` in the message, when there is none.
   double number(const char* what);
+  /// The next three numbers of this line.
+  Vec3d point() { return {number("x"), number("y"), number("z")}; }
   /// The next integer of this line, with `word_may_go_on` also when a '/' follows, and then up to the next
   /// blank.
   std::int64_t integer(const char* what, bool word_may_go_on = false);

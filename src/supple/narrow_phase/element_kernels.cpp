@@ -10,6 +10,7 @@
 #include <limits>
 
 #include "core/float_rounding.hpp"
+#include "core/packed_lanes-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace supple {
@@ -116,9 +117,7 @@ HWY_INLINE std::uint64_t meeting_bits(Tag tag, const MovingBox& box, const Movin
   const auto apart = hn::Or(apart_along(tag, box, arrays, first, 0, latest),
                             hn::Or(apart_along(tag, box, arrays, first, 1, latest),
                                    apart_along(tag, box, arrays, first, 2, latest)));
-  std::uint8_t bytes[8] = {};
-  hn::StoreMaskBits(tag, hn::Not(apart), bytes);
-  return std::uint64_t{bytes[0]} | std::uint64_t{bytes[1]} << 8;
+  return mask_bits(tag, hn::Not(apart));
 }
 
 /// Bits of the boxes of a range of at most 64 elements that are not apart from `box`; bits past the range may

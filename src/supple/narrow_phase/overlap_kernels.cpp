@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "core/packed_lanes-inl.hpp"
+#include "geometry/sphere.hpp"
 #include "mesh/share_vertex.hpp"
 #include "octree/triangle_boxes-inl.hpp"
 
@@ -19,24 +20,16 @@ HWY_BEFORE_NAMESPACE();
 namespace supple {
 namespace HWY_NAMESPACE {
 
-using LanesTag = hn::CappedTag<float, node_width>;
-
-/// Bit j: the box overlaps lane j. Closed boxes, exact comparisons.
-HWY_INLINE std::uint32_t overlap_mask(const AabbLanes& lanes, const Aabb& box) {
-  const LanesTag tag;
-  std::uint32_t bits = 0;
-  for (std::size_t j = 0; j < node_width; j += hn::Lanes(tag)) {
-    const auto x = hn::And(hn::Le(hn::Load(tag, lanes.min_x + j), hn::Set(tag, box.max.x)),
-                           hn::Ge(hn::Load(tag, lanes.max_x + j), hn::Set(tag, box.min.x)));
-    const auto y = hn::And(hn::Le(hn::Load(tag, lanes.min_y + j), hn::Set(tag, box.max.y)),
-                           hn::Ge(hn::Load(tag, lanes.max_y + j), hn::Set(tag, box.min.y)));
-    const auto z = hn::And(hn::Le(hn::Load(tag, lanes.min_z + j), hn::Set(tag, box.max.z)),
-                           hn::Ge(hn::Load(tag, lanes.max_z + j), hn::Set(tag, box.min.z)));
-    std::uint8_t part[8] = {};
-    hn::StoreMaskBits(tag, hn::And(x, hn::And(y, z)), part);
-    bits |= std::uint32_t{part[0]} << j;
-  }
-  return bits;
+/// The boxes from `first` on, a vector of them, that overlap `box`. Closed boxes, exact comparisons.
+template <class Tag, class Boxes>
+HWY_INLINE hn::Mask<Tag> overlapping(Tag tag, const Boxes& boxes, std::size_t first, const Aabb& box) {
+  const auto x = hn::And(hn::Le(hn::Load(tag, boxes.min_x + first), hn::Set(tag, box.max.x)),
+                         hn::Ge(hn::Load(tag, boxes.max_x + first), hn::Set(tag, box.min.x)));
+  const auto y = hn::And(hn::Le(hn::Load(tag, boxes.min_y + first), hn::Set(tag, box.max.y)),
+                         hn::Ge(hn::Load(tag, boxes.max_y + first), hn::Set(tag, box.min.y)));
+  const auto z = hn::And(hn::Le(hn::Load(tag, boxes.min_z + first), hn::Set(tag, box.max.z)),
+                         hn::Ge(hn::Load(tag, boxes.max_z + first), hn::Set(tag, box.min.z)));
+  return hn::And(x, hn::And(y, z));
 }
 
 /// Moves and grows the boxes of six arrays.
@@ -54,6 +47,7 @@ HWY_INLINE void place(Arrays& boxes, const RelativePlacement& placement) {
 
 void BoxOverlapMasks(const NodePair* pairs, std::size_t count, const AabbLanes* a, const AabbLanes* b,
                      const RelativePlacement& placement, std::uint64_t* masks) {
+  const hn::CappedTag<float, node_width> tag;
   const bool in_place = placement.is_identity();
   for (std::size_t k = 0; k < count; ++k) {
     const AabbLanes& lanes_a = a[pairs[k].a];
@@ -67,7 +61,10 @@ void BoxOverlapMasks(const NodePair* pairs, std::size_t count, const AabbLanes* 
     std::uint64_t mask = 0;
     for (std::uint32_t rest = pairs[k].lanes_a; rest != 0; rest &= rest - 1) {
       const int i = std::countr_zero(rest);
-      mask |= std::uint64_t{overlap_mask(*lanes_b, lane_box(lanes_a, i))} << (8 * i);
+      const Aabb box = lane_box(lanes_a, i);
+      for (std::size_t j = 0; j < node_width; j += hn::Lanes(tag)) {
+        mask |= mask_bits(tag, overlapping(tag, *lanes_b, j, box)) << (node_width * i + j);
+      }
     }
     masks[k] = mask;
   }
@@ -225,29 +222,13 @@ HWY_INLINE void load_boxes(LeafBoxes& leaf, const LeafArrays& object, std::uint3
   }
 }
 
-HWY_INLINE std::uint64_t bits_of(BoxMask mask) {
-  std::uint8_t bytes[8] = {};
-  hn::StoreMaskBits(BoxTag(), mask, bytes);
-  return bytes[0] + 256u * bytes[1];
-}
-
-/// Which of the boxes from `first` on, a vector of them, meet `box`: closed boxes, exact comparisons.
-HWY_INLINE BoxMask meeting(const LeafBoxes& leaf, std::size_t first, const Aabb& box) {
+/// The triangles of a block whose boxes overlap `box`.
+HWY_INLINE std::uint64_t overlapping_triangles(const LeafBoxes& leaf, const Aabb& box) {
   const BoxTag tag;
-  const auto x = hn::And(hn::Le(hn::Load(tag, leaf.min_x + first), hn::Set(tag, box.max.x)),
-                         hn::Ge(hn::Load(tag, leaf.max_x + first), hn::Set(tag, box.min.x)));
-  const auto y = hn::And(hn::Le(hn::Load(tag, leaf.min_y + first), hn::Set(tag, box.max.y)),
-                         hn::Ge(hn::Load(tag, leaf.max_y + first), hn::Set(tag, box.min.y)));
-  const auto z = hn::And(hn::Le(hn::Load(tag, leaf.min_z + first), hn::Set(tag, box.max.z)),
-                         hn::Ge(hn::Load(tag, leaf.max_z + first), hn::Set(tag, box.min.z)));
-  return hn::And(x, hn::And(y, z));
-}
-
-/// The triangles of a block whose boxes meet `box`.
-HWY_INLINE std::uint64_t meeting(const LeafBoxes& leaf, const Aabb& box) {
   std::uint64_t bits = 0;
-  for (std::size_t i = 0; i < leaf.size; i += hn::Lanes(BoxTag()))
-    bits |= bits_of(meeting(leaf, i, box)) << i;
+  for (std::size_t i = 0; i < leaf.size; i += hn::Lanes(tag)) {
+    bits |= mask_bits(tag, overlapping(tag, leaf, i, box)) << i;
+  }
   return bits & leaf.triangles;
 }
 
@@ -291,7 +272,7 @@ HWY_INLINE std::size_t store_pairs(NumberVec triangles, BoxMask chosen, std::uin
                                    TrianglePair* pairs) {
   const std::uint32_t first = hn::GetLane(triangles);
   std::size_t count = 0;
-  for (std::uint64_t bits = bits_of(chosen); bits != 0; bits &= bits - 1) {
+  for (std::uint64_t bits = mask_bits(BoxTag(), chosen); bits != 0; bits &= bits - 1) {
     const auto place = static_cast<std::uint32_t>(std::countr_zero(bits));
     const std::uint32_t triangle = first + place;
     pairs[count++] = chosen_is_b ? TrianglePair{other, triangle} : TrianglePair{triangle, other};
@@ -312,12 +293,12 @@ class LeafTests {
     const bool same_leaf = same_object_ && leaves.begin_a == leaves.begin_b;
     const Aabb box_a = leaf_box(a_, leaves.lane_a), box_b = placed(leaf_box(b_, leaves.lane_b), placement_);
     for (std::uint32_t first_a = leaves.begin_a; first_a < leaves.end_a; first_a += leaf_block) {
-      const LeafBoxes& boxes_a = boxes_of_a(leaves.lane_a, first_a, leaves.end_a);
+      const LeafBoxes& boxes_a = boxes_of(a_, cache_.a, leaves.lane_a, first_a, leaves.end_a);
       const std::uint64_t some_a = near(boxes_a, box_b);
       if (some_a == 0) continue;
       for (std::uint32_t first_b = same_leaf ? first_a : leaves.begin_b; first_b < leaves.end_b;
            first_b += leaf_block) {
-        const LeafBoxes& boxes_b = boxes_of_b(leaves.lane_b, first_b, leaves.end_b);
+        const LeafBoxes& boxes_b = boxes_of(b_, cache_.b, leaves.lane_b, first_b, leaves.end_b);
         const std::uint64_t some_b = near(boxes_b, box_a);
         if (same_leaf && first_a == first_b) {
           match<true, true>(first_a, boxes_a, some_a, first_b, boxes_b, some_b);
@@ -341,27 +322,21 @@ class LeafTests {
     static_assert(LeafBoxCache::size == 32);
     return first * 0x9e3779b1u >> 27;
   }
-  HWY_INLINE const LeafBoxes& boxes_of_a(std::uint32_t lane, std::uint32_t first, std::uint32_t leaf_end) {
+  HWY_INLINE const LeafBoxes& boxes_of(const LeafArrays& object, LeafBoxCache::Side& side, std::uint32_t lane,
+                                       std::uint32_t first, std::uint32_t leaf_end) {
     const std::size_t place = place_of(first);
-    LeafBoxes& entry = cache_.a().boxes[place];
-    if (std::exchange(cache_.a().first_triangles[place], first) != first) {
-      load_boxes(entry, a_, lane, first, std::min(first + leaf_block, leaf_end));
-    }
-    return entry;
-  }
-  HWY_INLINE const LeafBoxes& boxes_of_b(std::uint32_t lane, std::uint32_t first, std::uint32_t leaf_end) {
-    const std::size_t place = place_of(first);
-    LeafBoxes& entry = cache_.b().boxes[place];
-    if (std::exchange(cache_.b().first_triangles[place], first) != first) {
-      load_boxes(entry, b_, lane, first, std::min(first + leaf_block, leaf_end));
-      if (!placement_.is_identity()) supple::HWY_NAMESPACE::place(entry, placement_);
+    LeafBoxes& entry = side.boxes[place];
+    if (std::exchange(side.first_triangles[place], first) != first) {
+      load_boxes(entry, object, lane, first, std::min(first + leaf_block, leaf_end));
+      const bool is_placed = &side == &cache_.b && !placement_.is_identity();
+      if (is_placed) supple::HWY_NAMESPACE::place(entry, placement_);
     }
     return entry;
   }
 
   HWY_INLINE std::uint64_t near(const LeafBoxes& boxes, const Aabb& leaf) {
     tests_ += boxes.size;
-    return meeting(boxes, leaf);
+    return overlapping_triangles(boxes, leaf);
   }
 
   /// One by one those of one side, against vectors of the other's; or in one block each with those after it.
@@ -381,7 +356,7 @@ class LeafTests {
       const NumberVec triangles = hn::Iota(NumberTag(), first_other + i);
       for (std::uint64_t rest = some_ones; rest != 0; rest &= rest - 1) {
         const auto one = static_cast<std::uint32_t>(std::countr_zero(rest));
-        BoxMask hits = hn::And(meeting(others, i, box_at(ones, one)), wanted);
+        BoxMask hits = hn::And(overlapping(BoxTag(), others, i, box_at(ones, one)), wanted);
         if constexpr (each_with_later) {
           const std::uint32_t not_later = one < i ? 0 : std::min(one - i + 1, lanes);
           hits = hn::And(hits, mask_of(all_lanes << not_later & all_lanes));
@@ -444,35 +419,18 @@ std::uint64_t find_triangle_box_pairs(std::span<const LeafPair> leaf_pairs, cons
                                                 same_object, cache, pairs);
 }
 
-namespace {
-
-/// Bit j: the ball may touch lane j. In double, where neither the differences nor the squares of floats
-/// overflow.
-std::uint64_t overlap_mask(const SphereLanes& a, int i, const SphereLanes& b,
-                           const RelativePlacement& placement) {
-  std::uint64_t bits = 0;
-  for (int j = 0; j < node_width; ++j) {
-    const double dx = double{b.x[j]} + placement.offset.x - a.x[i];
-    const double dy = double{b.y[j]} + placement.offset.y - a.y[i];
-    const double dz = double{b.z[j]} + placement.offset.z - a.z[i];
-    const double reach = double{a.radius[i]} + b.radius[j] + placement.slop;
-    // The roundings are well inside the factor; written so that NaN overlaps.
-    const bool apart = dx * dx + dy * dy + dz * dz > reach * reach * (1 + 0x1p-49);
-    const bool empty = a.radius[i] < 0 || b.radius[j] < 0;
-    bits |= std::uint64_t{!(apart || empty)} << j;
-  }
-  return bits;
-}
-
-}  // namespace
-
 void overlap_masks(std::span<const NodePair> pairs, const SphereLanes* a, const SphereLanes* b,
                    const RelativePlacement& placement, std::uint64_t* masks) {
   for (std::size_t k = 0; k < pairs.size(); ++k) {
     masks[k] = 0;
     for (std::uint32_t rest = pairs[k].lanes_a; rest != 0; rest &= rest - 1) {
       const int i = std::countr_zero(rest);
-      masks[k] |= overlap_mask(a[pairs[k].a], i, b[pairs[k].b], placement) << (8 * i);
+      const BoundingSphere sphere = lane_sphere(a[pairs[k].a], i);
+      for (int j = 0; j < node_width; ++j) {
+        const BoundingSphere other = lane_sphere(b[pairs[k].b], j);
+        const bool may_touch = overlap(sphere, other, placement.offset, placement.slop);
+        masks[k] |= std::uint64_t{may_touch} << (node_width * i + j);
+      }
     }
   }
 }

@@ -49,25 +49,20 @@ struct alignas(64) LeafBoxes {
 
 /// A cache of the boxes of recent blocks, most of which are used again soon. Valid for one pair of objects
 /// in their positions; clear it for others. 100 KB, for the second-level cache.
-class LeafBoxCache {
- public:
+struct LeafBoxCache {
   static constexpr std::size_t size = 32;
-
-  LeafBoxCache() { clear(); }
-  void clear() {
-    a_.first_triangles.fill(none);
-    b_.first_triangles.fill(none);
-  }
   struct Side {
     std::array<std::uint32_t, size> first_triangles;
     std::array<LeafBoxes, size> boxes;
   };
-  Side& a() { return a_; }
-  Side& b() { return b_; }
+  Side a, b;
 
- private:
-  static constexpr std::uint32_t none = ~std::uint32_t{0};
-  Side a_, b_;
+  LeafBoxCache() { clear(); }
+  void clear() {
+    constexpr std::uint32_t none = ~std::uint32_t{0};
+    a.first_triangles.fill(none);
+    b.first_triangles.fill(none);
+  }
 };
 
 /// Candidates on their way. Memory is taken only where there are more of them than ever before.

@@ -99,17 +99,11 @@ class Traversal {
   template <class OnLeaves, class Sink>
   void find_triangle_pairs(const ObjectPairView& pair, NodePair root, TraversalStats& stats,
                            OnLeaves&& on_leaves, Sink&& sink) {
-    if (pair.a.nodes.empty() || pair.b.nodes.empty()) return;
-    stack_.assign(1, root);
-    leaf_pairs_.clear();
     leaf_boxes_.clear();
-    while (!stack_.empty() && !stop_.stop_requested()) {
-      expand_batch(pair, stats);
-      if (leaf_pairs_.size() >= leaf_batch || stack_.empty()) {
-        on_leaves(std::span<const LeafPair>(leaf_pairs_));
-        flush_leaves(pair, stats, sink);
-      }
-    }
+    descend(pair, root, stats, [&](std::span<const LeafPair> leaves) {
+      on_leaves(leaves);
+      test_leaves(pair, leaves, stats, sink);
+    });
   }
 
   /// The same of objects in motion: calls `sink(ElementPairKind, std::span<const ElementPair>)` with batches
@@ -119,7 +113,6 @@ class Traversal {
   /// left out, and there is no `face_vertex`. Each pair comes once, over all the roots of a `refine`.
   template <class Sink>
   void find_element_pairs(const ObjectPairView& pair, NodePair root, TraversalStats& stats, Sink&& sink) {
-    if (pair.a.nodes.empty() || pair.b.nodes.empty()) return;
     auto count_and_sink = [&](ElementPairKind kind, std::span<const ElementPair> pairs) {
       (kind == ElementPairKind::edge_edge ? stats.edge_edge_candidates : stats.vertex_face_candidates) +=
           pairs.size();
@@ -130,15 +123,10 @@ class Traversal {
           (*static_cast<decltype(count_and_sink)*>(context))(kind, pairs);
         },
         &count_and_sink);
-    stack_.assign(1, root);
-    leaf_pairs_.clear();
-    while (!stack_.empty() && !stop_.stop_requested()) {
-      expand_batch(pair, stats);
-      if (leaf_pairs_.size() < leaf_batch && !stack_.empty()) continue;
-      stats.volumes_tested += find_element_box_pairs(leaf_pairs_, pair.a.moving, pair.b.moving,
+    descend(pair, root, stats, [&](std::span<const LeafPair> leaves) {
+      stats.volumes_tested += find_element_box_pairs(leaves, pair.a.moving, pair.b.moving,
                                                      pair.part_of_step(), pair.same_object, element_pairs_);
-      leaf_pairs_.clear();
-    }
+    });
     element_pairs_.flush();
   }
 
@@ -146,13 +134,7 @@ class Traversal {
   /// or not.
   template <class OnLeaves>
   void find_leaf_pairs(const ObjectPairView& pair, TraversalStats& stats, OnLeaves&& on_leaves) {
-    if (pair.a.nodes.empty() || pair.b.nodes.empty()) return;
-    stack_.assign(1, NodePair{});
-    while (!stack_.empty()) {
-      leaf_pairs_.clear();
-      expand_batch(pair, stats);
-      on_leaves(std::span<const LeafPair>(leaf_pairs_));
-    }
+    descend(pair, {}, stats, on_leaves);
   }
 
   /// One step of the descent for all of `pairs`, for spreading work over threads: what it appends to `finer`
@@ -166,23 +148,36 @@ class Traversal {
 
   void expand_batch(const ObjectPairView& pair, TraversalStats& stats);
 
+  /// Calls `on_leaves` with batches of the leaf pairs below `root`.
+  template <class OnLeaves>
+  void descend(const ObjectPairView& pair, NodePair root, TraversalStats& stats, OnLeaves&& on_leaves) {
+    if (pair.a.nodes.empty() || pair.b.nodes.empty()) return;
+    stack_.assign(1, root);
+    leaf_pairs_.clear();
+    while (!stack_.empty() && !stop_.stop_requested()) {
+      expand_batch(pair, stats);
+      if (leaf_pairs_.size() < leaf_batch && !stack_.empty()) continue;
+      on_leaves(std::span<const LeafPair>(leaf_pairs_));
+      leaf_pairs_.clear();
+    }
+  }
+
   template <class Sink>
-  void flush_leaves(const ObjectPairView& pair, TraversalStats& stats, Sink&& sink) {
+  void test_leaves(const ObjectPairView& pair, std::span<const LeafPair> leaves, TraversalStats& stats,
+                   Sink&& sink) {
     constexpr std::size_t step = 32;
     const LeafArrays a{pair.a.arrays, pair.a.boxes, pair.a.leaf_vertices},
         b{pair.b.arrays, pair.b.boxes, pair.b.leaf_vertices};
-    for (std::size_t i = 0; i < leaf_pairs_.size(); i += step) {
-      const auto part =
-          std::span<const LeafPair>(leaf_pairs_).subspan(i, std::min(step, leaf_pairs_.size() - i));
+    for (std::size_t i = 0; i < leaves.size(); i += step) {
+      const auto part = leaves.subspan(i, std::min(step, leaves.size() - i));
       stats.volumes_tested +=
           find_triangle_box_pairs(part, a, b, pair.placement, pair.same_object, leaf_boxes_, candidates_);
-      if (candidates_.size() >= candidate_batch || i + step >= leaf_pairs_.size()) {
+      if (candidates_.size() >= candidate_batch || i + step >= leaves.size()) {
         stats.candidate_pairs += candidates_.size();
         if (candidates_.size() > 0) sink(candidates_.pairs());
         candidates_.clear();
       }
     }
-    leaf_pairs_.clear();
   }
 
   StopSignal stop_;

@@ -35,6 +35,10 @@ struct alignas(64) SphereLanes {
   float x[node_width], y[node_width], z[node_width], radius[node_width];
 };
 
+inline BoundingSphere lane_sphere(const SphereLanes& lanes, int lane) {
+  return {{lanes.x[lane], lanes.y[lane], lanes.z[lane]}, lanes.radius[lane]};
+}
+
 /// A node with up to eight children, without its volumes. Child i has the triangles [first_triangle[i],
 /// first_triangle[i + 1]) in the octree's order. Nodes of inner children are consecutive, in the order of
 /// the children.

@@ -47,9 +47,9 @@ Vec3d placed(const Vec3d& position, const MovingObject& object) {
   return object.view.translation == Vec3d{} ? position : position + object.view.translation;
 }
 
-template <class Motion>
-Motion motion_of(const std::array<VertexRef, 4>& vertices) {
-  Motion motion;
+ElementMotion motion_of(ElementPairKind kind, const std::array<VertexRef, 4>& vertices) {
+  ElementMotion motion;
+  motion.are_edges = kind == ElementPairKind::edge_edge;
   for (std::size_t i = 0; i < 4; ++i) {
     const MovingObject& object = *vertices[i].object;
     motion.start[i] = placed((*object.start)[vertices[i].vertex], object);
@@ -369,29 +369,24 @@ void ImpactPass::test_candidate(std::uint32_t job, ElementPairKind kind, Element
   const MovingObject& a = objects_[jobs_[job].a];
   const MovingObject& b = objects_[jobs_[job].b];
   auto vertices = vertices_of(kind, candidate, a, b);
-  bool used_exact = false;
-  const auto first_impact_of = [&]<class Motion>(std::type_identity<Motion>) {
-    const Motion motion = motion_of<Motion>(vertices);
-    return first_impact_of_finite(motion, relative_motion(motion), options_, used_exact);
-  };
   ContinuousContact contact;
   contact.object_a = a.id;
   contact.object_b = b.id;
   contact.kind = kind;
-  std::optional<Impact> impact;
   if (kind == ElementPairKind::edge_edge) {
     sort_edges(vertices);
-    impact = first_impact_of(std::type_identity<EdgeEdgeMotion>());
     contact.element_a = {user_vertex(vertices[0]), user_vertex(vertices[1])};
     contact.element_b = {user_vertex(vertices[2]), user_vertex(vertices[3])};
   } else {
-    impact = first_impact_of(std::type_identity<VertexFaceMotion>());
     const bool vertex_first = kind == ElementPairKind::vertex_face;
     const std::uint32_t of_a = vertex_first ? a.vertex_ids[candidate.a] : a.triangle_ids[candidate.a];
     const std::uint32_t of_b = vertex_first ? b.triangle_ids[candidate.b] : b.vertex_ids[candidate.b];
     contact.element_a = {of_a, of_a};
     contact.element_b = {of_b, of_b};
   }
+  bool used_exact = false;
+  const std::optional<Impact> impact =
+      first_impact_of_finite(motion_of(kind, vertices), options_, used_exact);
   worker.stats.exact_fallbacks += used_exact ? 1 : 0;
   if (!impact) return;
   set_impact(contact, *impact);

@@ -26,8 +26,7 @@ inline Aabb lane_box(const OctreeView& view, std::uint32_t node, int lane) {
   return is_moving ? unclamped(lane_box(view.moving.end[node], lane)) : lane_box(view.boxes[node], lane);
 }
 inline BoundingSphere lane_sphere(const OctreeView& view, std::uint32_t node, int lane) {
-  const SphereLanes& lanes = view.spheres[node];
-  return {{lanes.x[lane], lanes.y[lane], lanes.z[lane]}, lanes.radius[lane]};
+  return lane_sphere(view.spheres[node], lane);
 }
 
 /// Box of a face in motion, at one end of the step; empty when the face is inert.
