@@ -145,8 +145,13 @@ constexpr void for_each_leaf(Visitor&& visitor, First& first, Rest&... rest) {
 template <Described Struct>
 constexpr std::size_t count_leaves() {
   std::size_t count = 0;
-  Struct values{};
-  for_each_leaf([&](const auto&, const auto&) { ++count; }, values);
+  for_each_field<Struct>([&]<class Value>(const Field<Struct, Value>&) {
+    if constexpr (Described<Value>) {
+      count += count_leaves<Value>();
+    } else {
+      ++count;
+    }
+  });
   return count;
 }
 
