@@ -67,9 +67,8 @@ void print_markdown_footer(const std::string& footer) {
 
 void print_markdown(const CLI::App& program) {
   fmt::print(
-      "# The command line\n\nMade from the program's own options by `make docs`; the same as `--help` and "
-      "as\n"
-      "the manual page.\n\n{}\n\n",
+      "# The command line\n\n`make docs` writes this page from the options of the program. `--help` and the "
+      "manual page have the same content.\n\n{}\n\n",
       program.get_description());
   print_markdown_footer(program.get_footer());
   for (const CLI::App* command : commands_of(program)) {
@@ -112,7 +111,7 @@ void print_roff_footer(const std::string& footer) {
 void print_man(const CLI::App& program) {
   fmt::print(".TH SUPPLE 1 \"\" \"supple {}\" \"User Commands\"\n", SUPPLE_VERSION);
   fmt::print(
-      ".SH NAME\nsupple \\- find every collision between triangle meshes that bend, exactly\n.SH SYNOPSIS\n");
+      ".SH NAME\nsupple \\- find every collision between deforming triangle meshes, exactly\n.SH SYNOPSIS\n");
   for (const CLI::App* command : commands_of(program))
     fmt::print(".B supple {}\n{}\n.br\n", command->get_name(), arguments_of(*command));
   fmt::print(
@@ -130,12 +129,13 @@ void print_man(const CLI::App& program) {
   }
   fmt::print(
       ".SH EXIT STATUS\n"
-      ".TP\n.B 0\nDone.\n"
-      ".TP\n.B 1\nWith \\-\\-fail\\-on\\-contact: something touches. Of diff: the recordings differ.\n"
-      ".TP\n.B 2\nUsage or input error, told in one line on standard error. Of simulate: the motion blew "
-      "up.\n"
-      ".TP\n.B 3\nWith \\-\\-verify: brute force disagrees. Of ccd\\-queries: an answer is false.\n"
-      ".TP\n.B 130, 143\nOf simulate: interrupted by SIGINT, SIGTERM; its files are complete up to there.\n");
+      ".TP\n.B 0\nSuccess.\n"
+      ".TP\n.B 1\n\\-\\-fail\\-on\\-contact: something touches. diff: the recordings differ.\n"
+      ".TP\n.B 2\nUsage or input error, reported in one line on standard error. simulate: the motion "
+      "blew up.\n"
+      ".TP\n.B 3\n\\-\\-verify: brute force gives a different result. ccd\\-queries: an answer is false.\n"
+      ".TP\n.B 130, 143\nsimulate was interrupted by SIGINT or SIGTERM; its files are complete up to that "
+      "frame.\n");
 }
 
 }  // namespace
