@@ -41,13 +41,13 @@ std::uint64_t count_frames(const Input& input, const DetectOptions& options) {
     frames = std::max<std::uint64_t>(longest_sequence(input), continuous ? 2 : 1);
   if (options.frames) {
     if (!is_scene && *options.frames > frames)
-      throw Error(fmt::format("--frames: {} has {}; give at most so many",
+      throw Error(fmt::format("--frames: {} has {}; give at most that number",
                               input.frames ? input.frames->name : options.inputs.front(),
                               counted(frames, "frame")));
     frames = *options.frames;
   }
   if (continuous && frames == 1 && (input.frames || moves(input)))
-    throw Error(fmt::format("{}: one frame is no motion; continuous contacts need two frames or more",
+    throw Error(fmt::format("{}: one frame has no motion; continuous contacts need at least two frames",
                             input.frames ? input.frames->name : options.inputs.front()));
   return frames;
 }

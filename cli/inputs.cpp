@@ -90,14 +90,15 @@ Input read_objects(const std::vector<std::string>& names, const SceneOverrides& 
   const auto scene = std::find_if(names.begin(), names.end(), is_scene_file);
   if (scene != names.end()) {
     if (names.size() > 1)
-      throw Error(
-          fmt::format("{}: a scene file stands alone; add the other meshes to it as objects", *scene));
+      throw Error(fmt::format(
+          "{}: a scene file must be the only input; add the other meshes to it as objects", *scene));
     return read_scene_file(*scene, overrides);
   }
   if (const auto recording = std::find_if(names.begin(), names.end(), is_recording);
       recording != names.end()) {
     if (names.size() > 1)
-      throw Error(fmt::format("{}: a recording stands alone; leave out the other inputs", *recording));
+      throw Error(
+          fmt::format("{}: a recording must be the only input; leave out the other inputs", *recording));
     return read_recording(*recording);
   }
   Input input;
@@ -108,7 +109,8 @@ Input read_objects(const std::vector<std::string>& names, const SceneOverrides& 
 Input read_sequence(const std::vector<std::string>& names) {
   const auto scene = std::find_if(names.begin(), names.end(), is_scene_file);
   if (scene != names.end())
-    throw Error(fmt::format("{}: a scene file is no frame of a sequence; leave out --sequence", *scene));
+    throw Error(
+        fmt::format("{}: a scene file cannot be a frame of a sequence; leave out --sequence", *scene));
   if (const auto recording = std::find_if(names.begin(), names.end(), is_recording); recording != names.end())
     throw Error(fmt::format("{}: a recording has its own frames; leave out --sequence", *recording));
   FrameSequence frames;

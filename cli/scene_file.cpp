@@ -166,7 +166,8 @@ Copies read_copies(TomlReader& reader) {
   if (reader.has("spacing") && !reader.has("repeat"))
     reader.fail("spacing", "has no effect without repeat = [nx, ny, nz]");
   if (copies.count() > most_copies)
-    reader.fail("repeat", fmt::format("these are {} copies; {} are allowed", copies.count(), most_copies));
+    reader.fail("repeat",
+                fmt::format("these are {} copies; at most {} are allowed", copies.count(), most_copies));
   for (std::size_t axis = 0; axis < 3; ++axis) {
     if (copies.repeat[axis] > 1 && copies.spacing[static_cast<int>(axis)] == 0)
       reader.fail("repeat", "needs spacing = [dx, dy, dz] along each axis with more than one copy");

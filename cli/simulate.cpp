@@ -28,8 +28,9 @@ using Clock = std::chrono::steady_clock;
 
 Input read_input(const SimulateOptions& options) {
   if (!is_scene_file(options.input))
-    throw Error(fmt::format("{}: is no scene file; write one, SCENE.toml, with this as mesh of an [[object]]",
-                            options.input));
+    throw Error(fmt::format(
+        "{}: is not a scene file; write a SCENE.toml with an [[object]] that has this file as its mesh",
+        options.input));
   return read_objects({options.input}, {options.seed, options.time_step});
 }
 
@@ -39,8 +40,8 @@ std::uint64_t count_steps(const SimulateOptions& options, double time_step) {
   if (!options.seconds) return options.frames.value_or(default_frames) - 1;
   const double steps = *options.seconds / time_step;
   if (steps > 1e9)
-    throw Error(fmt::format("--seconds: {} are {:.3g} steps of {}; a thousand million are allowed",
-                            *options.seconds, steps, time_step));
+    throw Error(fmt::format("--seconds: {} are {:.3g} steps of {}; at most 1e9 are allowed", *options.seconds,
+                            steps, time_step));
   const double whole = std::round(steps);
   const bool is_whole = std::abs(steps - whole) < 1e-9 * whole;  // but for the rounding of the division
   return static_cast<std::uint64_t>(is_whole ? whole : std::ceil(steps));
