@@ -88,7 +88,7 @@ struct Description<SceneOctreeOptions> {
         .name = "max_level",
         .member = &Options::max_level,
         .doc = "Deepest level of the scene octree; 0 means the largest possible level, 20",
-        // 8^20 regions are as many as a 64-bit number can tell apart.
+        // A 64-bit number can distinguish the regions of at most 20 levels.
         .range = ValueRange::from(0, 20),
         .key = "scene_octree_max_level"});
     visitor(Field<Options, std::uint32_t>{

@@ -8,7 +8,7 @@
 #include "supple/option_descriptions.hpp"
 #include "supple/result.hpp"
 
-// Descriptions of what the core gives: the words for kinds, and the statistics (description.hpp).
+// Descriptions of the results of the core: the words for kinds, and the statistics (description.hpp).
 
 namespace supple {
 
