@@ -16,7 +16,7 @@
 namespace supple::cli {
 namespace {
 
-/// The frames of the longest sequence of files that moves an object; 0 without one.
+/// The number of frames of the longest sequence of files of an object; 0 without such a sequence.
 std::uint64_t longest_sequence(const Input& input) {
   std::uint64_t longest = 0;
   for (const InputObject& object : input.objects) {
@@ -60,8 +60,8 @@ int run_detect(const DetectOptions& options) {
   const std::uint64_t frames = count_frames(input, options);
   Simulation simulation = build_simulation(input);
 
-  // Continuous contacts of a frame are those of the way from the frame before: the first frame of a motion
-  // has none.
+  // The continuous contacts of a frame are those on the way from the frame before, so the first frame has
+  // none.
   const bool continuous = contains(options.scene.contacts, ContactKinds::continuous);
   const std::uint64_t first = options.scene.contacts == ContactKinds::continuous && frames > 1 ? 1 : 0;
   const char* const noun = continuous ? "step" : "frame";

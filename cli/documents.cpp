@@ -23,7 +23,7 @@ bool is_documented(const CLI::Option* option) {
   return option->get_positional() || !option->get_group().empty();
 }
 
-/// Every `from` replaced.
+/// Replaces every `from`.
 std::string replaced(std::string text, std::string_view from, std::string_view to) {
   for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size())
     text.replace(at, from.size(), to);
@@ -57,7 +57,7 @@ void print_markdown_options(const CLI::App& app) {
   fmt::print("\n");
 }
 
-/// The footer is `Examples:` with indented lines, and perhaps a paragraph.
+/// The footer is `Examples:` with indented lines, optionally followed by a paragraph.
 void print_markdown_footer(const std::string& footer) {
   const std::size_t end_of_examples = footer.find("\n\n");
   const std::string_view examples = std::string_view(footer).substr(0, end_of_examples);
@@ -84,7 +84,7 @@ std::string upper_case(std::string text) {
   return text;
 }
 
-/// Text as roff shows it: a leading dot or quote is no request, a hyphen may be copied from an option.
+/// Escapes text for roff: a leading dot or quote is not a request, and hyphens of options stay hyphens.
 std::string roff(const std::string& text) {
   std::string escaped;
   bool line_start = true;

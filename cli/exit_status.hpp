@@ -2,7 +2,7 @@
 
 namespace supple::cli {
 
-/// Scripts rely on these.
+/// Scripts rely on these values.
 enum ExitStatus : int {
   exit_done = 0,
   exit_contact = 1,      ///< --fail-on-contact, and something touches

@@ -10,7 +10,7 @@
 
 namespace supple::cli {
 
-/// Tables of continuous contacts: what touches in each step and when, and which objects.
+/// Tables of continuous contacts: their number and earliest time per step, and the objects that touch.
 class ImpactTables {
  public:
   void add(const Frame& step);

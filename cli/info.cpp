@@ -23,7 +23,7 @@
 namespace supple::cli {
 namespace {
 
-/// All that is told about one object.
+/// All reported data of one object.
 struct MeshInfo {
   std::string name;
   MeshTopology topology;

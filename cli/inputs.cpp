@@ -21,7 +21,7 @@ bool is_digit(char c) {
   return c >= '0' && c <= '9';
 }
 
-/// Takes a run of digits, or of other characters, off the front.
+/// Removes a run of digits, or of other characters, from the front.
 std::string_view take_run(std::string_view& text) {
   std::size_t end = 1;
   while (end < text.size() && is_digit(text[end]) == is_digit(text[0])) ++end;
@@ -63,7 +63,7 @@ bool natural_less(const std::string& a, const std::string& b) {
     if (order != 0) return order < 0;
   }
   if (rest_a.empty() != rest_b.empty()) return rest_a.empty();
-  return a < b;  // frame_1 and frame_01
+  return a < b;  // equal numbers, such as frame_1 and frame_01
 }
 
 std::vector<fs::path> expand_patterns(const std::vector<std::string>& names) {

@@ -133,7 +133,7 @@ A query is eight rows: the vertices v, f0, f1, f2 of a vertex and a face, or a0,
 of the step, and then at its end. A row has numerator,denominator of x, y and z, as whole numbers of any size. It may
 also have the answer, 0 or 1, the same in all eight rows. Each coordinate must be representable as a double.)";
 
-/// The octree of each object, and `--self` where objects are tested.
+/// Adds the options of the octree of each object, and `--self` when objects are tested.
 void add_object_options(CLI::App& app, viewer::Overrides<ObjectOptions>& objects, bool are_tested) {
   objects.for_each_setter([&]<class Struct, class Value>(const Field<Struct, Value>& field,
                                                          const Value& default_value, auto set) {
@@ -165,7 +165,7 @@ void add_kind(CLI::App& app, std::optional<QueryKind>& kind) {
       "Kind of the queries (default: from the names of folders and files)");
 }
 
-/// Meshes, a scene file, a recording, or frames.
+/// Adds the inputs: meshes, a scene file, a recording, or frames.
 void add_input_options(CLI::App& app, std::vector<std::string>& inputs, bool& sequence) {
   app.add_option("MESH|SCENE.toml|RUN.h5", inputs,
                  "Meshes, one per object; or one scene file; or one recording")
@@ -187,7 +187,7 @@ bool has_scene_octree(const SceneOptions& scene) {
   return viewer::uses_scene_octree(scene.broad_phase);
 }
 
-/// What an option of the scene needs to have an effect.
+/// The condition under which an option of the scene has an effect.
 struct Need {
   const char* key;
   bool (*is_met)(const SceneOptions& scene);
@@ -209,7 +209,7 @@ constexpr Need needs_of_options[] = {
      "--contacts intersection or none"},
 };
 
-/// Every option of the detection; a page has a layer instead of `--colliding-vertices`.
+/// Adds every option of the detection. A page has a layer instead of `--colliding-vertices`.
 void add_detection_options(CLI::App& app, MethodOptions& options, Dependences& dependences,
                            bool of_page = false) {
   options.given_scene.for_each_setter([&]<class Struct, class Value>(const Field<Struct, Value>& field,
@@ -284,7 +284,7 @@ CLI::App* add_detect(CLI::App& program, DetectOptions& options, Dependences& dep
   return app;
 }
 
-/// What is given instead of the scene file's.
+/// Adds options that replace values of the scene file.
 void add_scene_overrides(CLI::App& app, std::optional<std::uint64_t>& seed,
                          std::optional<double>& time_step) {
   for_each_field<SimulationOptions>([&]<class Value>(const Field<SimulationOptions, Value>& field) {
@@ -417,13 +417,13 @@ void add_diff(CLI::App& program, DiffOptions& options) {
   app->add_flag("--quiet", options.quiet, "Print nothing; only set the exit status");
 }
 
-/// The options of the detection: those of a recording, or the defaults, with those given in their place.
+/// Sets the options of the detection: those of a recording, or the defaults, replaced by the given options.
 void resolve(MethodOptions& options, const std::vector<std::string>& inputs) {
   if (!inputs.empty() && is_recording(inputs.front()))
     options.scene = Recording(inputs.front()).header().scene;
   SceneOptions chosen = options.scene;
   options.given_scene.apply_to(chosen);
-  // Recorded options of the scene octree go with a recorded method.
+  // Recorded options of the scene octree apply only to the recorded method.
   if (!has_scene_octree(chosen)) options.scene.scene_octree = {};
   options.given_scene.apply_to(options.scene);
 }
@@ -454,7 +454,7 @@ int print_usage_error(const CLI::App& program, const CLI::ParseError& error) {
   const CLI::App& app = used.empty() ? program : *used.front();
   const std::string command = used.empty() ? "supple" : "supple " + app.get_name();
   std::string message = one_line(error.what());
-  // The first word that was not expected; `--flag=value` is one.
+  // The first unexpected word; `--flag=value` is one word.
   if (const std::vector<std::string> unknown = app.remaining(true);
       dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr && !unknown.empty()) {
     const std::string word = one_line(unknown.front().substr(0, unknown.front().find('=')));

@@ -48,16 +48,16 @@ std::vector<std::string_view> columns_of(std::string_view line) {
   }
 }
 
-/// Characters of a number in a message.
+/// Largest number of characters of a number in a message.
 constexpr std::size_t longest_shown = 60;
 
-/// Of numbers with hundreds of digits a message shows the first.
+/// A message shows only the first of hundreds of digits.
 std::string shortened(std::string_view text) {
   return text.size() <= longest_shown ? std::string(text)
                                       : fmt::format("{}...", text.substr(0, longest_shown));
 }
 
-/// How to mend a coordinate that is no double.
+/// Advice for a coordinate that is not a double.
 std::string advice_for(const Rational& value) {
   const double nearest = value.convert_to<double>();
   if (!std::isfinite(nearest)) return "it is beyond the largest of them, so scale the query down";
@@ -73,7 +73,7 @@ struct Row {
   std::optional<bool> answer;
 };
 
-/// Reads row by row; lines without anything are no rows.
+/// Reads row by row and skips empty lines.
 class RowReader {
  public:
   explicit RowReader(const fs::path& path) : path_(path), stream_(open(path)) {}

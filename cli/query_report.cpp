@@ -12,7 +12,7 @@
 namespace supple::cli {
 namespace {
 
-/// Of all files together.
+/// Sums over all files.
 struct Totals {
   std::uint64_t queries = 0, touching = 0, within_tolerance = 0, compared = 0;
   std::uint64_t false_negatives = 0, false_positives = 0, differences = 0;

@@ -19,7 +19,7 @@ struct QueryDifference {
   std::optional<TimeBracket> truth;  ///< none: it does not touch
 };
 
-/// What became of the queries of one file.
+/// The results of the queries of one file.
 struct QueryFileResult {
   std::string path;
   QueryKind kind = QueryKind::vertex_face;
@@ -34,11 +34,11 @@ struct QueryFileResult {
   std::uint64_t false_answers() const { return false_negatives.size() + false_positives.size(); }
 };
 
-/// A table with a row a file and a row for all; then, with `list_false`, a line a query that was answered
-/// wrongly.
+/// Prints a table with one row per file and a total. With `list_false`, it also prints one line per query
+/// whose result differs from the published answer.
 void print_queries(const std::vector<QueryFileResult>& files, bool verified, bool list_false);
 
-/// The JSON that docs/json.md describes, a file at a time.
+/// Writes the JSON that docs/json.md describes, file by file.
 class QueryJsonReport {
  public:
   QueryJsonReport(const std::string& file_name, double min_separation, bool with_stats, bool verified);

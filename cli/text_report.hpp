@@ -11,10 +11,10 @@
 
 namespace supple::cli {
 
-/// Tables of all frames together: which objects touch, what each stage did and how long it took.
+/// Tables of all frames together: the objects that touch, and the work and time of each stage.
 class TextReport {
  public:
-  /// `noun` is what a frame is called: `frame` or `step`.
+  /// `noun` is the word for a frame: `frame` or `step`.
   explicit TextReport(std::string noun) : noun_(std::move(noun)) {}
 
   void add(const Frame& frame);

@@ -39,13 +39,13 @@ Input read_input(const ViewOptions& options) {
     throw Error("--time-step: only a scene file and --sequence have steps of their own; leave it out");
   if (!options.sequence) return read_objects(options.inputs, {options.seed, options.time_step});
   Input input = read_sequence(options.inputs);
-  // Files say nothing of time; this is how fast films go.
+  // Files contain no time; this is the rate of films.
   constexpr double film_seconds = 0.04;
   input.simulation.time_step = options.time_step.value_or(film_seconds);
   return input;
 }
 
-/// What a page of a recording holds before it is compressed, in bytes: positions as floats.
+/// The size in bytes of the frames in a page before compression: positions as floats.
 double size_of_frames(const viewer::SceneView& show) {
   if (!show.frames) return 0;
   double vertices = 0;

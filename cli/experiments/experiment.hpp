@@ -6,7 +6,7 @@
 
 namespace supple::experiments {
 
-/// Of `supple experiment`.
+/// Options of `supple experiment`.
 struct ExperimentOptions {
   enum class Kind { table1, scaling, arity };
   Kind kind = Kind::table1;
