@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::array<std::uint32_t, 3> arities{2, 4, 8};
 
-/// Two objects in several places against each other.
+/// Two objects in several poses relative to each other.
 struct Case {
   std::string name;
   TriangleMesh a;
@@ -87,7 +87,7 @@ Sum measure(const Case& poses, std::uint32_t arity, std::uint32_t leaf_size, con
   return sum;
 }
 
-/// By case and arity.
+/// Results by case and arity.
 using Sums = std::vector<std::array<Sum, 3>>;
 
 Sums measure_objects(const std::vector<Case>& all, std::uint32_t leaf_size, const ArityOptions& options,
@@ -154,7 +154,7 @@ SceneCosts measure_scene_trees(const ArityOptions& options, Work& work, Table& t
   return costs;
 }
 
-/// The mean over the cases of a number, divided by that of eight children.
+/// The mean over the cases of a number divided by its value for eight children.
 template <class Number>
 std::array<double, 3> relative(const Sums& sums, Number&& number) {
   std::array<double, 3> mean{};
@@ -182,7 +182,7 @@ double seconds_of_sum(const Sum& sum) {
   return sum.seconds;
 }
 
-/// Volumes that a refit makes anew.
+/// Volumes that a refit computes.
 double volumes_of(const Sum& sum) {
   return static_cast<double>(sum.nodes) * sum.width;
 }
@@ -235,7 +235,8 @@ Claim judge_depth(const Sums& sums) {
   return claim;
 }
 
-/// If one pair of children collides at most, no more node pairs are compared than there are levels.
+/// If at most one pair of children collided, the traversal would compare at most as many node pairs as there
+/// are levels.
 Claim judge_binary_collisions(const Sums& sums) {
   Claim claim{"“In binary trees, the maximum number of nodes colliding is 1” (6).", Verdict::holds, {}};
   std::uint64_t visited = 0, levels = 0;
@@ -272,7 +273,7 @@ Claim judge_scene(const SceneCosts& costs) {
   return claim;
 }
 
-/// A line for each arity, a point for each case, relative to eight children.
+/// Plots one line per arity and one point per case, relative to eight children.
 template <class Number>
 Plot relative_plot(const std::string& title, const std::string& label, const std::vector<Case>& all,
                    const Sums& sums, Number&& number) {

@@ -30,7 +30,7 @@ double narrow_phase_formula(double n) {
   return std::pow(n, 2.0 / 3) * std::log(n);
 }
 
-/// Of one method; each against the number of objects.
+/// Curves of one method against the number of objects.
 struct BroadCurves {
   Points first_seconds, step_seconds, tests;
   bool stopped = false;  ///< because the next size would take too long
@@ -54,7 +54,7 @@ BroadCost cost_of_boxes(BroadPhaseMethod method, std::size_t count, const Scalin
     cost.first_seconds =
         std::min(cost.first_seconds, seconds_of([&] { again.find_object_pairs(field.boxes()); }));
   }
-  // A method of which one step takes long is not noisy.
+  // Long steps need no repetition, because they have little noise.
   const int frames = cost.first_seconds > 1 ? std::min(options.frames, 2) : options.frames;
   std::vector<double> steps;
   for (int frame = 0; frame < frames; ++frame) {
@@ -66,7 +66,7 @@ BroadCost cost_of_boxes(BroadPhaseMethod method, std::size_t count, const Scalin
   return cost;
 }
 
-/// The steps that all methods take are the same, so the pairs of the last must be.
+/// All methods take the same steps, so the pairs of the last step must be equal.
 bool measure_broad_phase(const ScalingOptions& options, Work& work, Table& table,
                          std::array<BroadCurves, 3>& curves) {
   bool same_pairs = true;
@@ -90,7 +90,7 @@ bool measure_broad_phase(const ScalingOptions& options, Work& work, Table& table
       curves[m].tests.emplace_back(n, static_cast<double>(cost.tests));
       table.add({std::string(method_names[m]), std::uint64_t{count}, cost.first_seconds * 1e3,
                  cost.step_seconds * 1e3, cost.tests, cost.pairs});
-      // A method of fewer steps is elsewhere in its motion.
+      // A method with fewer steps is at another time of the motion.
       if (cost.first_seconds > 1) continue;
       same_pairs = same_pairs && pairs.value_or(cost.pairs) == cost.pairs;
       pairs = cost.pairs;
@@ -122,7 +122,8 @@ struct ShapeCurves {
   Points build_seconds, refit_seconds, refit_reads, sphere_refit_seconds, sphere_refit_reads;
 };
 
-/// Corners of triangles read to fit a sphere to each node and to the object: a triangle's once a level.
+/// The number of triangle corners that are read to fit a sphere to each node and to the object: each triangle
+/// once per level.
 double sphere_reads(const OctreeStatistics& octree) {
   double levels = 0;
   for (std::size_t level = 0; level < octree.leaves_by_level.size(); ++level)
@@ -174,7 +175,7 @@ Points in_milliseconds(Points points) {
   return points;
 }
 
-/// Seconds of the other method over those of the octree, size by size.
+/// Seconds of the other method divided by seconds of the octree, by size.
 std::vector<double> ratios(const Points& octree, const Points& other) {
   std::vector<double> result;
   for (std::size_t i = 0; i < std::min(octree.size(), other.size()); ++i)
@@ -278,7 +279,7 @@ std::vector<Claim> judge_broad(const std::array<BroadCurves, 3>& curves, const s
   return claims;
 }
 
-/// A logarithm hides in an exponent; it shows in the number of times a vertex is read.
+/// A logarithm hardly changes an exponent; the number of reads per vertex shows it.
 Claim judge_sphere_refit(const Points& reads, const Points& seconds) {
   Claim claim{"Refitting spheres (eq. 5) takes O(V) (5.1).", Verdict::cannot_tell, {}};
   if (reads.size() < 2) return claim;

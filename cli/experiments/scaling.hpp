@@ -20,7 +20,7 @@ struct ScalingOptions {
 
 ScalingOptions scaling_options(bool quick);
 
-/// Time and tests against the number of objects and of vertices, and what power of it they grow with.
+/// Measures time and tests against the number of objects and of vertices, and fits powers.
 Report run_scaling(const ScalingOptions& options, bool show_progress);
 
 }  // namespace supple::experiments

@@ -7,7 +7,7 @@
 
 namespace supple::experiments {
 
-/// Nothing, a word, a count or a measured number.
+/// The value of a cell: nothing, a word, a count or a measured number.
 using Cell = std::variant<std::monostate, std::string, std::uint64_t, double>;
 
 struct Column {
@@ -27,11 +27,11 @@ struct Table {
   void add(std::vector<Cell> row);
 };
 
-/// As people read it: thousands grouped, a measured number with the column's digits.
+/// The text for people: with grouped thousands, and measured numbers with the digits of the column.
 std::string text_of(const Cell& cell, const Column& column);
 /// Aligned columns under the caption.
 std::string text_of(const Table& table);
-/// RFC 4180 with line feeds; measured numbers so that reading them gives the same number.
+/// CSV as in RFC 4180, with line feeds. Measured numbers have enough digits to read back the same number.
 std::string csv_of(const Table& table);
 std::string html_of(const Table& table);
 

@@ -37,7 +37,7 @@ Table counts_table(const std::string& name, const std::string& caption, const st
   return table;
 }
 
-/// The paper's row for a scene; of the scenes of other models it gives no numbers.
+/// The paper's row for a scene, if the paper has numbers for it.
 const PaperRow* paper_row_of(const Runs& runs) {
   return runs.scene.rfind("table1_", 0) == 0
              ? paper_row(static_cast<std::uint32_t>(runs.objects), runs.volume)
@@ -69,7 +69,7 @@ Table means_table(const std::string& name, const std::string& caption, const std
   return table;
 }
 
-/// Runs as points, ours beside the paper's, for 3, 6 and 9 objects.
+/// Plots runs as points, ours and the paper's, for 3, 6 and 9 objects.
 Plot counts_plot(const std::string& title, const std::vector<Runs>& all, std::uint64_t RunCounts::*member,
                  std::array<double, 5> PaperRow::*paper_member) {
   Plot plot{title, "objects", "collisions in ten minutes", false, true};

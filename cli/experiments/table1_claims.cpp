@@ -28,8 +28,8 @@ Estimate estimate_of(const std::vector<double>& values) {
   return result;
 }
 
-/// Spheres over boxes, run by run: the same seed is the same motion. Runs in which boxes count nothing are
-/// left out.
+/// The ratio of spheres to boxes, run by run: the same seed gives the same motion. Runs in which boxes count
+/// nothing are left out.
 std::vector<double> sphere_ratios(const std::vector<Runs>& all, const std::vector<std::string>& scenes,
                                   std::uint64_t RunCounts::*member) {
   std::vector<double> ratios;
@@ -203,7 +203,7 @@ Claim judge_complex_models(const std::vector<Runs>& events) {
   return claim;
 }
 
-/// Ours: exact contacts know nothing of volumes.
+/// Our own claim: exact contacts do not depend on volumes.
 Claim judge_exact_equal(const std::vector<Runs>& events) {
   Claim claim{"Exact contacts are the same with boxes and with spheres (ours).", Verdict::holds, {}};
   for (const Runs& runs : events) {
