@@ -18,7 +18,7 @@ class BrowserVisit {
   BrowserVisit& operator=(const BrowserVisit&) = delete;
 
  private:
-  std::filesystem::path page_;  ///< empty when there is none
+  std::filesystem::path page_;  ///< empty without a page
 };
 
 }  // namespace supple::cli

@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 
 struct QueryPaths {
   fs::path queries;
-  fs::path answers;  ///< empty: none but those in the file
+  fs::path answers;  ///< empty: the answers are in the query file
   std::uint64_t bytes = 0;
 };
 

@@ -16,7 +16,7 @@ namespace supple::cli {
 struct FrameSequence {
   std::vector<std::filesystem::path> files;  ///< one or more
   bool loop = false;
-  std::optional<Placement> placement;  ///< of each frame; none: coordinates as they stand in the files
+  std::optional<Placement> placement;  ///< of each frame; none: the coordinates of the files are used
 
   const std::filesystem::path& file_at(std::uint64_t frame) const;
 };

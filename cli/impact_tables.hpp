@@ -19,7 +19,7 @@ class ImpactTables {
 
  private:
   struct Counts {
-    std::uint64_t vertex_face = 0;  ///< the vertex being of either object
+    std::uint64_t vertex_face = 0;  ///< with the vertex in either object
     std::uint64_t edge_edge = 0;
 
     void add(const ContinuousContact& contact);

@@ -28,7 +28,7 @@ struct MeshInfo {
   std::string name;
   MeshTopology topology;
   std::uint64_t non_finite_vertices = 0;
-  std::optional<std::array<Vec3d, 2>> bounds;  ///< of the finite vertices, none without any
+  std::optional<std::array<Vec3d, 2>> bounds;  ///< of the finite vertices; none when no vertex is finite
   OctreeStatistics octree;
 };
 

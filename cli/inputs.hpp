@@ -21,7 +21,7 @@ namespace supple::cli {
 /// The positions of an object in each frame of a recording.
 struct RecordedMotion {
   std::shared_ptr<const Recording> recording;
-  std::size_t object = 0;  ///< its place in there
+  std::size_t object = 0;  ///< its index in the recording
 };
 
 /// The motion of an object from frame to frame.
@@ -40,7 +40,7 @@ struct Input {
   SimulationOptions simulation;
   /// The frames of a sequence or a recording.
   struct Frames {
-    std::string name{};  ///< in messages
+    std::string name{};  ///< name in messages
     std::uint64_t count = 0;
   };
   std::optional<Frames> frames{};

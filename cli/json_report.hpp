@@ -14,7 +14,7 @@ struct JsonContent {
   /// Options, and the times and counts of each frame: the parts that may differ between two runs with the
   /// same results.
   bool stats = true;
-  bool contact_details = false;  ///< where each contact is
+  bool contact_details = false;  ///< points, normals and barycentric coordinates of each contact
   bool faces = false;            ///< the triangles of each object
 };
 

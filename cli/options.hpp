@@ -15,7 +15,7 @@ namespace supple::cli {
 
 /// The method that finds contacts.
 struct MethodOptions {
-  SceneOptions scene;  ///< those of the input, a recording, or the defaults, with those given in their place
+  SceneOptions scene;  ///< the recorded options or the defaults, replaced by the given options
   viewer::Overrides<SceneOptions> given_scene;
   viewer::Overrides<ObjectOptions> given_objects;  ///< of all objects
 };
@@ -40,10 +40,10 @@ struct DetectOptions : DetectionOptions {
 struct SimulateOptions : DetectionOptions {
   std::string input;  ///< a scene file
   std::optional<std::uint64_t> frames;
-  std::optional<double> seconds;  ///< simulated; only one of the two is given
+  std::optional<double> seconds;  ///< simulated; excludes `frames`
   std::optional<std::uint64_t> seed;
   std::optional<double> time_step;
-  std::string record;  ///< a file, or empty
+  std::string record;  ///< a file; empty: none
 };
 
 /// Options of `supple view`.
@@ -53,9 +53,9 @@ struct ViewOptions : MethodOptions {
   std::optional<std::uint64_t> seed;
   std::optional<double> time_step;
   std::string address = "127.0.0.1";
-  std::uint16_t port = 0;  ///< 0: any that is free
+  std::uint16_t port = 0;  ///< 0: any free port
   bool open_browser = true;
-  std::string page_file;  ///< to write instead of serving, or empty
+  std::string page_file;  ///< file to write instead of serving; empty: serve
 };
 
 /// Options of `supple info`.
@@ -69,7 +69,7 @@ struct InfoOptions {
 struct CcdQueriesOptions {
   std::vector<std::string> inputs;   ///< query files or patterns
   std::vector<std::string> answers;  ///< none, or one for each query file
-  std::optional<QueryKind> kind;     ///< told by the paths when absent
+  std::optional<QueryKind> kind;     ///< without a value: from the paths
   ImpactOptions impact;
   bool verify = false;
   bool list_false = false;

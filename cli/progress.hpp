@@ -34,7 +34,7 @@ class Progress {
   Clock::time_point next_;
   Clock::time_point last_;  ///< when `last_done_` were done
   std::uint64_t last_done_ = 0;
-  double rate_ = 0;  ///< a second, of the last seconds; 0 when not known yet
+  double rate_ = 0;  ///< per second, over the last seconds; 0 when unknown
 };
 
 }  // namespace supple::cli

@@ -25,7 +25,7 @@ namespace supple::cli {
 struct QueryFile {
   std::filesystem::path path;
   std::variant<std::vector<VertexFaceMotion>, std::vector<EdgeEdgeMotion>> queries;
-  std::optional<std::vector<bool>> answers;  ///< one a query: do the elements touch?
+  std::optional<std::vector<bool>> answers;  ///< for each query: whether the elements touch
 
   std::size_t size() const {
     return std::visit([](const auto& motions) { return motions.size(); }, queries);

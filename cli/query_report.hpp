@@ -15,18 +15,18 @@ namespace supple::cli {
 struct QueryDifference {
   std::uint64_t query = 0;
   ContinuousDifference::Fault fault = ContinuousDifference::Fault::missed;
-  std::optional<double> reported;    ///< none: it was said not to touch
-  std::optional<TimeBracket> truth;  ///< none: it does not touch
+  std::optional<double> reported;    ///< none: reported as apart
+  std::optional<TimeBracket> truth;  ///< none: the elements stay apart
 };
 
 /// The results of the queries of one file.
 struct QueryFileResult {
   std::string path;
   QueryKind kind = QueryKind::vertex_face;
-  std::vector<std::optional<double>> times;  ///< of the first impact, one a query
+  std::vector<std::optional<double>> times;  ///< time of the first impact of each query
   std::uint64_t touching = 0;
-  std::uint64_t within_tolerance = 0;  ///< of those that touch
-  bool compared = false;               ///< with answers
+  std::uint64_t within_tolerance = 0;  ///< number of queries that are only within tolerance
+  bool compared = false;               ///< whether answers are known
   std::vector<std::uint64_t> false_negatives, false_positives;
   double seconds_per_query = 0;
   std::vector<QueryDifference> differences;  ///< only with --verify

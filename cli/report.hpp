@@ -15,7 +15,7 @@ struct Frame {
   /// Only for simulated frames.
   struct Simulated {
     double time = 0;            ///< s, since the start
-    double motion_seconds = 0;  ///< by the wall clock
+    double motion_seconds = 0;  ///< wall-clock time of the motion
   };
   std::optional<Simulated> simulated{};
 };

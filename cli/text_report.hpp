@@ -26,7 +26,7 @@ class TextReport {
     std::uint64_t frames = 0;
     std::uint64_t triangle_pairs = 0;
     std::uint64_t most = 0;           ///< triangle pairs in one frame
-    std::uint64_t frame_of_most = 0;  ///< the first frame with as many
+    std::uint64_t frame_of_most = 0;  ///< the first frame with this number
   };
 
   void print_contacts(const Scene& scene) const;

@@ -56,7 +56,7 @@ struct Sum {
   std::uint64_t nodes = 0, bytes = 0, tests = 0, node_pairs = 0;
   std::uint32_t depth = 0;
   double mean_depth = 0, width = 0, seconds = 0, refit_seconds = 0;
-  std::uint64_t deepest_path = 0;  ///< the longest way down both trees, added up over the poses
+  std::uint64_t deepest_path = 0;  ///< the sum of the depths of both trees over the poses
 };
 
 double mean_depth(const OctreeStatistics& octree) {

@@ -19,7 +19,7 @@ struct ExperimentOptions {
   // For table1; without a value, --quick decides.
   std::optional<std::uint32_t> runs{};
   std::optional<std::uint32_t> simulated_seconds{};
-  std::optional<std::uint32_t> wall_clock{};  ///< seconds a run; none: only by events
+  std::optional<std::uint32_t> wall_clock{};  ///< seconds of real time per run; none: count only by events
 };
 
 const char* name_of(ExperimentOptions::Kind kind);

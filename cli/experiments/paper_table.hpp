@@ -15,7 +15,7 @@ struct PaperRow {
   std::uint32_t objects;
   BoundingVolume volume;
   std::array<double, 5> broad, narrow;             ///< collisions of each run
-  double text_seconds_broad, text_seconds_narrow;  ///< seconds for a collision, as the text has them
+  double text_seconds_broad, text_seconds_narrow;  ///< seconds per collision in the text
 };
 
 std::span<const PaperRow> paper_rows();

@@ -14,7 +14,7 @@ struct Series {
   std::string label;
   Points points;
   Style style = Style::line_and_points;
-  int color = -1;  ///< of the palette; -1: the next one
+  int color = -1;  ///< index in the palette; -1: the next color
 };
 
 struct Plot {

@@ -15,7 +15,7 @@ namespace supple::experiments {
 enum class Verdict { holds, does_not_hold, cannot_tell };
 
 struct Claim {
-  std::string paper;  ///< the claim, with the paper's section
+  std::string paper;  ///< the claim and its section of the paper
   Verdict verdict = Verdict::cannot_tell;
   std::string reason;  ///< with the measured numbers
 };
@@ -30,7 +30,7 @@ struct Section {
 
 /// The report of one experiment.
 struct Report {
-  std::string name;  ///< of the files
+  std::string name;  ///< name of the files
   std::string title;
   std::string summary;
   std::vector<std::pair<std::string, std::string>> parameters{};

@@ -12,7 +12,7 @@ namespace supple::experiments {
 struct ScalingOptions {
   std::vector<std::size_t> object_counts;  ///< ascending
   std::vector<std::uint32_t> frequencies;  ///< of icospheres, ascending: 20 f² triangles
-  double brute_seconds = 5;                ///< a brute force step expected to take longer is not taken
+  double brute_seconds = 5;                ///< brute force skips steps that would take longer
   int frames = 5;                          ///< in motion, ≥ 1; the fastest counts
   std::uint32_t threads = 1;
   std::uint64_t seed = 1;

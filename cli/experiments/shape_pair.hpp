@@ -17,8 +17,8 @@ TriangleMesh moved(TriangleMesh mesh, Vec3d offset);
 
 /// The cost of one pair of objects by stage; each time is the minimum of several.
 struct PairCost {
-  double build_seconds = 0;  ///< of both octrees, with all that adding objects takes
-  double refit_seconds = 0;  ///< of both
+  double build_seconds = 0;  ///< time to add both objects, including their octrees
+  double refit_seconds = 0;  ///< of both octrees
   double traversal_seconds = 0;
   OctreeStatistics octree_a, octree_b;
   StepStats stats;  ///< of the last step

@@ -13,7 +13,7 @@ using Cell = std::variant<std::monostate, std::string, std::uint64_t, double>;
 struct Column {
   std::string name;     ///< in the CSV file: lower_case, with the unit
   std::string heading;  ///< for people
-  int digits = 3;       ///< significant ones of a measured number for people
+  int digits = 3;       ///< significant digits of measured numbers for people
 };
 
 /// One table for the terminal, the CSV file and the report.

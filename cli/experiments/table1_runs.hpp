@@ -16,8 +16,8 @@ struct Table1Options {
   std::vector<std::string> scenes;  ///< of `table1_scene_names`
   std::uint32_t runs = 5;           ///< ≥ 1; run k has the seed `seed` + k
   double simulated_seconds = 600;
-  std::optional<double> wall_clock{};  ///< seconds a run; none: by events only
-  std::uint32_t threads = 0;  ///< runs by events at a time, or threads of one by the clock; 0: one a core
+  std::optional<double> wall_clock{};  ///< seconds of real time per run; none: count only by events
+  std::uint32_t threads = 0;  ///< parallel runs by events, or threads of a run in real time; 0: one per core
   std::uint64_t seed = 1;
 };
 
@@ -26,10 +26,10 @@ inline constexpr std::array table1_volumes{BoundingVolume::aabb, BoundingVolume:
 /// Numbers of collisions that begin in one run.
 struct RunCounts {
   std::uint64_t broad = 0;   ///< pairs of objects whose volumes begin to overlap
-  std::uint64_t narrow = 0;  ///< pairs of which leaves of both octrees begin to overlap: the paper's output
+  std::uint64_t narrow = 0;  ///< pairs whose octrees' leaves begin to overlap: the paper's output
   std::uint64_t exact = 0;   ///< pairs whose triangles begin to intersect
   std::uint64_t steps = 0;
-  std::string failure{};  ///< why the motion broke off; empty: it did not
+  std::string failure{};  ///< why the motion failed; empty on success
 
   bool operator==(const RunCounts&) const = default;
 };
@@ -46,7 +46,7 @@ struct Runs {
   std::string models;
   BoundingVolume volume{};
   std::vector<RunCounts> counts;
-  double run_seconds = 0;  ///< of a run, simulated or by the clock
+  double run_seconds = 0;  ///< of a run, simulated or in real time
 
   std::vector<double> numbers(std::uint64_t RunCounts::*member) const {
     std::vector<double> result;
