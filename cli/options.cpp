@@ -121,7 +121,7 @@ constexpr const char* ccd_queries_footer = R"(Examples:
   supple ccd-queries sample-queries/*/vertex-face/*.csv
       How many queries touch, how many results differ from the published answers, and how long does a query take?
   supple ccd-queries --kind edge-edge queries.csv --list-false
-      The kind follows from a folder named vertex-face or edge-edge, or a file name that ends in vf or ee; else use --kind.
+      The kind follows from a folder vertex-face or edge-edge, or a file name that ends in vf or ee; else use --kind.
   supple ccd-queries 227vf.csv --answers 227vf_mma_bool.json
       The answers are in a JSON list of true and false.
   supple ccd-queries data.csv --kind vertex-face --min-separation 0.01 --verify
