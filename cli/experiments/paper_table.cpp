@@ -48,12 +48,12 @@ double seconds_per_collision(std::span<const double> counts) {
 
 Table paper_arithmetic() {
   Table table{"table1_paper",
-              "The paper's Table 1, averaged anew",
+              "The averages of the paper's Table 1, recomputed",
               {{"objects", "Objects"},
                {"volume", "Volume"},
                {"phase", "Phase"},
                {"mean", "Mean", 4},
-               {"seconds_per_collision", "Seconds a collision", 5},
+               {"seconds_per_collision", "Seconds per collision", 5},
                {"text_seconds", "in the text", 4},
                {"comparison", "Comparison"}}};
   for (const PaperRow& row : rows) {
