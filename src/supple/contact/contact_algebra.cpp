@@ -62,7 +62,7 @@ class Elements {
     for (std::size_t i = 0; i < 4; ++i) {
       for (int axis = 0; axis < 3; ++axis) {
         const Integer from = to_integer(start[i][axis], lowest), to = to_integer(end[i][axis], lowest);
-        vertices[i][static_cast<std::size_t>(axis)] = Polynomial{from, to - from} + Polynomial{};
+        vertices[i][axis] = Polynomial{from, to - from} + Polynomial{};
       }
     }
     const Integer d = to_integer(separation, lowest);

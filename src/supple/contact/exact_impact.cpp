@@ -304,11 +304,11 @@ std::optional<TimeBracket> exact_first_contact(const ElementMotion& motion) {
   Coordinates coordinates;
   std::array<int, 3> lowest;
   int widest = 0;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
+  for (int axis = 0; axis < 3; ++axis) {
     auto& row = coordinates[axis];
     for (std::size_t i = 0; i < 4; ++i) {
-      row[i] = motion.start[i][static_cast<int>(axis)];
-      row[i + 4] = motion.end[i][static_cast<int>(axis)];
+      row[i] = motion.start[i][axis];
+      row[i + 4] = motion.end[i][axis];
     }
     if (!std::ranges::all_of(row, [](double x) { return std::isfinite(x); })) return {};
     const BitRange range(row);

@@ -26,8 +26,7 @@ struct Edge {
   Vec3d first, second;  // in lexicographic order
 
   Edge(const TrianglePoints& triangle, int index)
-      : first(triangle[static_cast<std::size_t>(index)]),
-        second(triangle[static_cast<std::size_t>((index + 1) % 3)]) {
+      : first(triangle[index]), second(triangle[(index + 1) % 3]) {
     if (lexicographically_less(second, first)) std::swap(first, second);
   }
 };

@@ -19,10 +19,10 @@ namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-// The same steps as `classify` and `Chords` of triangle_intersection.cpp, for pairs in general position.
+// The steps are those of `classify` and `Chords` in triangle_intersection.cpp, for pairs in general position.
 
-/// The bounds of geometry/plane_filter.hpp, whose proofs hold for single precision likewise: e = 2^-24, and a
-/// product that underflows is off by 2^-150 at most.
+/// The bounds of geometry/plane_filter.hpp. The proofs there also hold for single precision, with e = 2^-24
+/// and an error of at most 2^-150 for a product that underflows.
 template <class Scalar>
 constexpr Scalar volume_error_of = std::is_same_v<Scalar, float> ? 10 * 0x1p-24f : Scalar(volume_error);
 template <class Scalar>
@@ -76,8 +76,8 @@ struct Sides {
   }
 };
 
-/// Where a triangle that crosses a plane with no corner in it meets the plane: from edge apex-start to edge
-/// apex-end.
+/// The chord in which a triangle meets a plane that contains none of its corners. It runs from the edge
+/// apex-start to the edge apex-end.
 template <class Tag>
 struct Chord {
   Vector3<Tag> apex, start, end;
@@ -92,7 +92,7 @@ struct Chord {
     };
     apex = pick(0, 1, 2);
     const Vector3<Tag> next = pick(1, 2, 0), last = pick(2, 0, 1);
-    // Masks, not numbers: a mask is not a vector on all machines.
+    // Selects numbers, because not all machines can select masks.
     const auto zero = hn::Zero(Tag());
     const auto one = hn::Set(Tag(), hn::TFromD<Tag>(1));
     const auto flag = [&](hn::Mask<Tag> mask) HWY_ATTR { return hn::IfThenElse(mask, one, zero); };
@@ -106,7 +106,7 @@ struct Chord {
   }
 };
 
-/// The volume of the corners, whose sign tells the order of two chords' ends, and what it may be off by.
+/// The volume of the corners and its error bound. The sign of the volume is the order of two ends of chords.
 template <class Tag>
 struct Order {
   hn::Vec<Tag> value, bound;
@@ -123,12 +123,13 @@ struct Order {
   HWY_INLINE hn::Mask<Tag> negative() const { return hn::Gt(hn::Neg(value), bound); }
 };
 
-// Reading corners. A register has blocks of 16 bytes: four floats or two doubles. Corners are read into
-// blocks and transposed there, so that each register gets one coordinate of as many pairs as it has lanes.
+// Reading corners. A register has blocks of 16 bytes: four floats or two doubles. The functions below read
+// corners into blocks and transpose them there, so that each register gets one coordinate of as many pairs as
+// it has lanes.
 
 #if HWY_TARGET == HWY_SCALAR
 
-/// The corners of one triangle: the meaning of the vector version below.
+/// The corners of one triangle. The vector version below does the same for several pairs.
 template <std::uint32_t TrianglePair::*side, class Tag, class Source>
 HWY_INLINE void read_corners(VertexArray<Source> vertices, const PlacedTriangles& source,
                              const TrianglePair* pairs, Corners<Tag>& corners) {
@@ -146,13 +147,13 @@ HWY_INLINE void read_corners(VertexArray<Source> vertices, const PlacedTriangles
 
 #else
 
-/// Three registers, one a corner.
+/// One register for each corner.
 template <class Tag>
 struct CornerBlocks {
   hn::Vec<Tag> corner[3];
 };
 
-/// Corners of every `step`th of the pairs, a block each: what `read` makes of the place of a position.
+/// Reads the corners of every `step`th pair, one block for each, by `read(position)`.
 template <std::uint32_t TrianglePair::*side, class Tag, std::size_t step, class Source, class Read>
 HWY_INLINE CornerBlocks<Tag> read_blocks(VertexArray<Source> vertices, const Triangle* triangles,
                                          const TrianglePair* pairs, const Read& read) {
@@ -171,12 +172,12 @@ HWY_INLINE CornerBlocks<Tag> read_blocks(VertexArray<Source> vertices, const Tri
   }
 }
 
-// Objects with inlined functions, which lambdas are not without optimisation.
+// These are not lambdas, because builds without optimisation do not inline lambdas.
 
 struct FourFloats {
   HWY_INLINE auto operator()(const float* position) const { return load_vertex(position); }
 };
-/// As doubles, x and y.
+/// Reads x and y as doubles.
 struct TwoDoubles {
   HWY_INLINE auto operator()(const double* position) const {
     return hn::LoadU(hn::FixedTag<double, 2>(), position);
@@ -185,7 +186,7 @@ struct TwoDoubles {
     return hn::PromoteTo(hn::FixedTag<double, 2>(), hn::LoadU(hn::FixedTag<float, 2>(), position));
   }
 };
-/// z twice.
+/// Reads z into both lanes.
 struct DoubleZ {
   template <class Source>
   HWY_INLINE auto operator()(const Source* position) const {
@@ -286,9 +287,9 @@ HWY_INLINE PairVerdicts filter(VertexArray<SourceA> vertices_a, VertexArray<Sour
     decide<Tag>(corners_a, corners_b, first, verdicts);
   }
   if (count < pair_filter_capacity) {
-    const std::uint64_t asked = (std::uint64_t{1} << count) - 1;
-    verdicts.apart &= asked;
-    verdicts.crossing &= asked;
+    const std::uint64_t in_use = (std::uint64_t{1} << count) - 1;
+    verdicts.apart &= in_use;
+    verdicts.crossing &= in_use;
   }
   return verdicts;
 }

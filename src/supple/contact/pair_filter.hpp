@@ -9,13 +9,14 @@
 
 namespace supple {
 
-/// Triangles of an object, and what is added to each position as it is read.
+/// Triangles of an object, and the translation of its positions.
 struct PlacedTriangles {
   TriangleArrays arrays;
   Vec3d translation;
 };
 
-/// What the floating-point filter proves, a bit a pair. Pairs with neither bit are for `intersect_triangles`.
+/// What the floating-point filter proves, one bit for each pair. `intersect_triangles` decides pairs with
+/// neither bit.
 struct PairVerdicts {
   std::uint64_t apart = 0;     ///< no common point
   std::uint64_t crossing = 0;  ///< triangles in different planes that share a segment, not just a point
@@ -23,13 +24,13 @@ struct PairVerdicts {
   constexpr bool operator==(const PairVerdicts&) const = default;
 };
 
-/// Pairs that are tested in one call.
+/// The greatest number of pairs in one call.
 constexpr std::size_t pair_filter_capacity = 64;
 
-/// Verdicts on pairs of a triangle of `a` and one of `b`, as many as the capacity or fewer. In lanes of
-/// floats where both objects have floats and are not translated, of doubles else. Of a triangle with a
-/// coordinate that is not finite the bit `apart` may be either, the bit `crossing` is clear. Equal on all
-/// instruction sets.
+/// Verdicts on at most `pair_filter_capacity` pairs of a triangle of `a` and one of `b`. Computes in floats
+/// where both objects have floats and are not translated, and in doubles otherwise. For a triangle with a
+/// coordinate that is not finite, the bit `apart` may be set or not, and the bit `crossing` is not set. The
+/// same bits on all instruction sets.
 PairVerdicts filter_pairs(const PlacedTriangles& a, const PlacedTriangles& b,
                           std::span<const TrianglePair> pairs);
 

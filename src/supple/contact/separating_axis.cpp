@@ -96,8 +96,8 @@ bool triangles_intersect_by_axes(const TrianglePoints& a, const TrianglePoints& 
   for (int axis = 0; axis < 3; ++axis) {
     const int lowest = lowest_bit_along(axis, a, b);
     for (std::size_t i = 0; i < 3; ++i) {
-      corners_a[i][static_cast<std::size_t>(axis)] = sturm::to_integer(a[i][axis], lowest);
-      corners_b[i][static_cast<std::size_t>(axis)] = sturm::to_integer(b[i][axis], lowest);
+      corners_a[i][axis] = sturm::to_integer(a[i][axis], lowest);
+      corners_b[i][axis] = sturm::to_integer(b[i][axis], lowest);
     }
   }
   return !AxisSearch(corners_a, corners_b).disjoint();

@@ -241,10 +241,10 @@ Vec3d special_normal(const TrianglePoints& a, const TrianglePoints& b) {
 }  // namespace
 
 void IntersectingPairs::add(const TrianglePoints& a, const TrianglePoints& b) {
-  for (std::size_t i = 0; i < 3; ++i) {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      values_[3 * i + axis][count_] = a[i][static_cast<int>(axis)];
-      values_[9 + 3 * i + axis][count_] = b[i][static_cast<int>(axis)];
+  for (int i = 0; i < 3; ++i) {
+    for (int axis = 0; axis < 3; ++axis) {
+      values_[3 * i + axis][count_] = a[i][axis];
+      values_[9 + 3 * i + axis][count_] = b[i][axis];
     }
   }
   ++count_;

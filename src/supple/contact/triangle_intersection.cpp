@@ -27,10 +27,6 @@ constexpr Feature edge_between(int i, int j) {
   return edge_from((i + 1) % 3 == j ? i : j);
 }
 
-const Vec3d& corner(const TrianglePoints& triangle, int i) {
-  return triangle[static_cast<std::size_t>(i)];
-}
-
 /// Where a feature of a and one of b meet in an extreme point of the intersection.
 struct Meeting {
   Feature on_a, on_b;
@@ -45,7 +41,7 @@ struct Meetings {
 
   void add(Feature on_a, Feature on_b) {
     assert(count < 6);
-    items[static_cast<std::size_t>(count++)] = {on_a, on_b};
+    items[count++] = {on_a, on_b};
   }
 };
 
@@ -81,24 +77,24 @@ struct Chord {
   Feature on_start, on_end, on_inside;
 };
 
-bool alone(const Signs& signs, std::size_t i) {
+bool alone(const Signs& signs, int i) {
   const int j = signs[(i + 1) % 3], k = signs[(i + 2) % 3];
   return signs[i] > 0 ? j <= 0 && k <= 0 : signs[i] < 0 ? j >= 0 && k >= 0 : j * k > 0;
 }
 
 Chord chord_in_plane(const Signs& signs, bool is_b) {
-  const std::size_t apex = alone(signs, 0) ? 0 : alone(signs, 1) ? 1 : 2;
-  const std::size_t next = (apex + 1) % 3, last = (apex + 2) % 3;
+  const int apex = alone(signs, 0) ? 0 : alone(signs, 1) ? 1 : 2;
+  const int next = (apex + 1) % 3, last = (apex + 2) % 3;
   const bool above = signs[apex] != 0 ? signs[apex] > 0 : signs[next] < 0;
   const bool forward = above == is_b;
   Chord chord;
-  chord.apex = static_cast<int>(apex);
-  chord.start = static_cast<int>(forward ? next : last);
-  chord.end = static_cast<int>(forward ? last : next);
+  chord.apex = apex;
+  chord.start = forward ? next : last;
+  chord.end = forward ? last : next;
   chord.apex_side = above ? 1 : -1;
   const auto on_edge_to = [&](int other) {
     if (signs[apex] == 0) return vertex(chord.apex);
-    return signs[static_cast<std::size_t>(other)] == 0 ? vertex(other) : edge_between(chord.apex, other);
+    return signs[other] == 0 ? vertex(other) : edge_between(chord.apex, other);
   };
   chord.on_start = on_edge_to(chord.start);
   chord.on_end = on_edge_to(chord.end);
@@ -135,8 +131,7 @@ class Chords {
   /// two factors have the sign opposite to the side of the apex.
   int compare(int corner_a, int corner_b) const {
     return chord_a_.apex_side * chord_b_.apex_side *
-           orient3d(corner(a_, chord_a_.apex), corner(a_, corner_a), corner(b_, chord_b_.apex),
-                    corner(b_, corner_b), used_exact_);
+           orient3d(a_[chord_a_.apex], a_[corner_a], b_[chord_b_.apex], b_[corner_b], used_exact_);
   }
 
   Meeting start() const {
@@ -167,15 +162,12 @@ struct Simplex {
   int size;
   Projection projection;  // of a triangle
 
-  const Vec3d& operator[](int i) const { return corner(*points, corners[static_cast<std::size_t>(i)]); }
-  Feature vertex_feature(int i) const { return vertex(corners[static_cast<std::size_t>(i)]); }
+  const Vec3d& operator[](int i) const { return (*points)[corners[i]]; }
+  Feature vertex_feature(int i) const { return vertex(corners[i]); }
   int edge_count() const { return size == 3 ? 3 : size - 1; }
-  /// Of the edge from the simplex's vertex i to the next one.
-  Feature edge_feature(int i) const {
-    return edge_between(corners[static_cast<std::size_t>(i)],
-                        corners[static_cast<std::size_t>((i + 1) % size)]);
-  }
-  Simplex only(int i) const { return {points, {corners[static_cast<std::size_t>(i)], 0, 0}, 1, {}}; }
+  /// The edge from the simplex's vertex i to the next one.
+  Feature edge_feature(int i) const { return edge_between(corners[i], corners[(i + 1) % size]); }
+  Simplex only(int i) const { return {points, {corners[i], 0, 0}, 1, {}}; }
 };
 
 Simplex reduce(const TrianglePoints& triangle, bool& used_exact) {
@@ -183,8 +175,8 @@ Simplex reduce(const TrianglePoints& triangle, bool& used_exact) {
   if (projection) return {&triangle, {0, 1, 2}, 3, projection};
   int lowest = 0, highest = 0;
   for (int i = 1; i < 3; ++i) {
-    if (lexicographically_less(corner(triangle, i), corner(triangle, lowest))) lowest = i;
-    if (lexicographically_less(corner(triangle, highest), corner(triangle, i))) highest = i;
+    if (lexicographically_less(triangle[i], triangle[lowest])) lowest = i;
+    if (lexicographically_less(triangle[highest], triangle[i])) highest = i;
   }
   return {&triangle, {lowest, highest, 0}, lowest == highest ? 1 : 2, {}};
 }
@@ -197,67 +189,62 @@ std::optional<Feature> locate_on_segment(const Vec3d& point, const Simplex& segm
   return inside ? std::optional(segment.edge_feature(0)) : std::nullopt;
 }
 
-/// The part of a triangle that the signs of a point against its three edges name; they are not all zero.
+/// The part of a triangle in which a point lies, by its signs against the three edges, which are not all
+/// zero.
 std::optional<Feature> locate_by_signs(const Signs& signs) {
   const bool positive = signs[0] > 0 || signs[1] > 0 || signs[2] > 0;
   const bool negative = signs[0] < 0 || signs[1] < 0 || signs[2] < 0;
   if (positive && negative) return std::nullopt;
   for (int i = 0; i < 3; ++i) {
-    if (signs[static_cast<std::size_t>(i)] != 0) continue;
-    if (signs[static_cast<std::size_t>((i + 1) % 3)] == 0) return vertex((i + 1) % 3);
-    if (signs[static_cast<std::size_t>((i + 2) % 3)] == 0) return vertex(i);
+    if (signs[i] != 0) continue;
+    if (signs[(i + 1) % 3] == 0) return vertex((i + 1) % 3);
+    if (signs[(i + 2) % 3] == 0) return vertex(i);
     return edge_from(i);
   }
   return face;
 }
 
-/// Turns of the points of one simplex against the edges of another, seen along an axis.
-struct Turns {
-  std::array<Signs, 3> of_edge;  // [edge][point]
+/// Turns of the points of one simplex against the edges of another, seen along an axis: [edge][point].
+using Turns = std::array<Signs, 3>;
 
-  Turns(const Simplex& edges, const Simplex& points, int axis, bool& used_exact) {
-    for (int i = 0; i < edges.edge_count(); ++i) {
-      for (int j = 0; j < points.size; ++j) {
-        at(i, j) = orient2d(edges[i], edges[(i + 1) % edges.size], points[j], axis, used_exact);
-      }
+Turns find_turns(const Simplex& edges, const Simplex& points, int axis, bool& used_exact) {
+  Turns turns{};
+  for (int i = 0; i < edges.edge_count(); ++i) {
+    for (int j = 0; j < points.size; ++j) {
+      turns[i][j] = orient2d(edges[i], edges[(i + 1) % edges.size], points[j], axis, used_exact);
     }
   }
-  int& at(int edge, int point) {
-    return of_edge[static_cast<std::size_t>(edge)][static_cast<std::size_t>(point)];
-  }
-  int at(int edge, int point) const {
-    return of_edge[static_cast<std::size_t>(edge)][static_cast<std::size_t>(point)];
-  }
-};
+  return turns;
+}
 
-/// The part of `simplex` on which a point of its plane lies, the point being the `index`-th of `turns`.
+/// The part of `simplex` on which a point of its plane lies. The point has the number `index` in `turns`.
 std::optional<Feature> locate(const Vec3d& point, int index, const Simplex& simplex, const Turns& turns) {
-  if (simplex.size == 3) return locate_by_signs({turns.at(0, index), turns.at(1, index), turns.at(2, index)});
-  if (simplex.size == 2) return turns.at(0, index) == 0 ? locate_on_segment(point, simplex) : std::nullopt;
+  if (simplex.size == 3) return locate_by_signs({turns[0][index], turns[1][index], turns[2][index]});
+  if (simplex.size == 2) return turns[0][index] == 0 ? locate_on_segment(point, simplex) : std::nullopt;
   return point == simplex[0] ? std::optional(simplex.vertex_feature(0)) : std::nullopt;
 }
 
-/// An edge of the triangle has all points strictly beyond it.
+/// Whether all points lie strictly beyond one edge of the triangle.
 bool edge_separates(const Simplex& triangle, const Turns& turns, int point_count) {
   for (int i = 0; i < 3; ++i) {
     bool all_beyond = true;
-    for (int j = 0; j < point_count; ++j) all_beyond &= turns.at(i, j) == -triangle.projection.turn;
+    for (int j = 0; j < point_count; ++j) all_beyond &= turns[i][j] == -triangle.projection.turn;
     if (all_beyond) return true;
   }
   return false;
 }
 
 bool opposite(const Turns& turns, int edge, int point, int next_point) {
-  return turns.at(edge, point) * turns.at(edge, next_point) < 0;
+  return turns[edge][point] * turns[edge][next_point] < 0;
 }
 
-/// Both in one plane, whose points `axis` sees apart, or on one line. An extreme point of the intersection is
-/// a vertex of one of the two, or two edges cross there. If a is a triangle, the axis is that of its
-/// projection.
+/// For two simplices on one line, or in one plane whose projection along `axis` keeps points apart. An
+/// extreme point of the intersection is a vertex of one of the two, or two edges cross there. If a is a
+/// triangle, the axis is that of its projection.
 void meet_in_plane(const Simplex& a, const Simplex& b, int axis, Meetings& meetings, bool& used_exact) {
-  const Turns of_b(a, b, axis, used_exact);
+  const Turns of_b = find_turns(a, b, axis, used_exact);
   if (a.size == 3 && edge_separates(a, of_b, b.size)) return;
-  const Turns of_a(b, a, axis, used_exact);
+  const Turns of_a = find_turns(b, a, axis, used_exact);
   for (int i = 0; i < a.size; ++i) {
     if (const auto on_b = locate(a[i], i, b, of_a)) meetings.add(a.vertex_feature(i), *on_b);
   }
@@ -274,12 +261,12 @@ void meet_in_plane(const Simplex& a, const Simplex& b, int axis, Meetings& meeti
   }
 }
 
-/// A segment whose ends lie on different sides of a triangle's plane.
+/// The part of a triangle that a segment pierces. The ends of the segment lie on different sides of its
+/// plane.
 std::optional<Feature> pierced_feature(const Simplex& segment, const Simplex& triangle, bool& used_exact) {
   Signs signs;
   for (int i = 0; i < 3; ++i) {
-    signs[static_cast<std::size_t>(i)] =
-        orient3d(segment[0], segment[1], triangle[i], triangle[(i + 1) % 3], used_exact);
+    signs[i] = orient3d(segment[0], segment[1], triangle[i], triangle[(i + 1) % 3], used_exact);
   }
   return locate_by_signs(signs);
 }
@@ -310,7 +297,7 @@ void meet_segments_or_points(const Simplex& a, const Simplex& b, Meetings& meeti
   } else if (b.size == 2) {
     projection = find_projection(b[0], b[1], a[0], used_exact);
   }
-  // Points of one line need no projection: any axis will do.
+  // For points of one line any axis is right.
   meet_in_plane(a, b, projection ? projection.axis : 0, meetings, used_exact);
 }
 
@@ -318,7 +305,7 @@ void swap_sides(Meetings& meetings) {
   for (Meeting& meeting : meetings.items) std::swap(meeting.on_a, meeting.on_b);
 }
 
-/// Triangles of which one has no area or both lie in one plane.
+/// For triangles in one plane, or with at least one triangle without area.
 void find_special_meetings(const TrianglePoints& a, const TrianglePoints& b, Meetings& meetings,
                            bool& used_exact) {
   const Simplex simplex_a = reduce(a, used_exact), simplex_b = reduce(b, used_exact);
@@ -334,11 +321,11 @@ void find_special_meetings(const TrianglePoints& a, const TrianglePoints& b, Mee
   }
 }
 
-/// Which corners lie where: all of one triangle in the plane of the other means that they share a plane or
-/// that the other has no area.
+/// `special`: all corners of one triangle lie in the plane of the other. So the two share a plane, or the
+/// other has no area.
 enum class Placement : std::uint8_t { apart, crossing, special };
 
-/// Of a's corners against the plane of b, and of b's against that of a.
+/// Signs of the corners of a against the plane of b, and of b against the plane of a.
 struct Sides {
   Signs of_a, of_b;
 };
@@ -358,7 +345,7 @@ Placement classify(const TrianglePoints& a, const TrianglePoints& b, Sides& side
   return all(sides.of_a, 0) || all(sides.of_b, 0) ? Placement::special : Placement::crossing;
 }
 
-/// By the closed edges of a and of b on which a point lies, one bit each.
+/// The closed edges of a and of b on which a point lies, one bit each.
 unsigned closed_edges(const Meeting& meeting) {
   const auto edges = [](Feature feature) -> unsigned {
     if (feature.kind == FeatureKind::face) return 0;
@@ -368,8 +355,8 @@ unsigned closed_edges(const Meeting& meeting) {
   return edges(meeting.on_a) | edges(meeting.on_b) << 3;
 }
 
-/// Each side of a polygon lies on an edge of a or of b, so neighbours are the points that have one in common;
-/// an edge holds no third point, for it would be between the two and not extreme.
+/// Each side of a polygon lies on an edge of a or of b. So two points are neighbours when they have an edge
+/// in common. No third point lies on this edge: it would be between the two and not extreme.
 void order_canonically(Meetings& meetings) {
   const auto first = meetings.items.begin(), last = first + meetings.count;
   for (auto at = first; at != last; ++at) std::rotate(std::upper_bound(first, at, *at), at, at + 1);

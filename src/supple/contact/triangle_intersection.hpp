@@ -4,7 +4,8 @@
 
 namespace supple {
 
-/// The public function of this name; `used_exact` is set when integers were needed, and otherwise left alone.
+/// The public function of this name. Sets `used_exact` when it needs integers, and leaves it unchanged
+/// otherwise.
 bool triangles_intersect(const TrianglePoints& a, const TrianglePoints& b, bool& used_exact);
 
 /// The public function of this name, except that the normal is zero.

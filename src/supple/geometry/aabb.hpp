@@ -7,7 +7,7 @@
 
 namespace supple {
 
-/// Closed boxes: touching counts. The test is exact, floats compare exactly.
+/// Whether two closed boxes overlap; touching counts. Exact.
 inline bool overlap(const Aabb& a, const Aabb& b) {
   return a.min.x <= b.max.x && b.min.x <= a.max.x && a.min.y <= b.max.y && b.min.y <= a.max.y &&
          a.min.z <= b.max.z && b.min.z <= a.max.z;
@@ -20,7 +20,7 @@ inline void extend(Aabb& box, const Aabb& other) {
   }
 }
 
-/// The smallest box of floats that holds the (finite) point.
+/// Adds a finite point to the box; bounds round outward.
 template <class Scalar>
 void extend(Aabb& box, const Vec3<Scalar>& point) {
   for (int axis = 0; axis < 3; ++axis) {
@@ -29,7 +29,7 @@ void extend(Aabb& box, const Vec3<Scalar>& point) {
   }
 }
 
-/// Encloses fl(p + offset) of every p in the box: the rounded sum is monotonic.
+/// Encloses fl(p + offset) for every p in the box, because the rounded sum is monotonic.
 inline Aabb moved(const Aabb& box, const Vec3d& offset) {
   if (offset == Vec3d{} || box.empty()) return box;
   Aabb result;
@@ -40,7 +40,7 @@ inline Aabb moved(const Aabb& box, const Vec3d& offset) {
   return result;
 }
 
-/// What two boxes share: empty, or inverted, when they are apart.
+/// The intersection of two boxes; `empty()` when they are apart.
 inline Aabb shared_box(const Aabb& a, const Aabb& b) {
   Aabb result;
   for (int axis = 0; axis < 3; ++axis) {
@@ -50,7 +50,7 @@ inline Aabb shared_box(const Aabb& a, const Aabb& b) {
   return result;
 }
 
-/// Half of the box's surface: 0 when it is empty.
+/// Half the surface area of the box; 0 when it is empty.
 inline double half_surface(const Aabb& box) {
   const auto extent = [&](int axis) { return std::max(0.0, double{box.max[axis]} - double{box.min[axis]}); };
   return extent(0) * extent(1) + extent(1) * extent(2) + extent(2) * extent(0);

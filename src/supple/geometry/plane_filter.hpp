@@ -10,7 +10,7 @@
 
 namespace supple {
 
-// Error bounds of the floating-point filters, e = 2^-53 being the rounding of one operation.
+// Error bounds of the floating-point filters. e = 2^-53 is the rounding error of one operation.
 //
 // The volume n·w of differences u, v, w with n = u × v is a sum of six products of three differences. Each
 // takes part in 8 roundings (3 differences, product, difference of products, product, 2 sums), so the
@@ -30,7 +30,7 @@ inline constexpr double volume_error = 10 * 0x1p-53;
 inline constexpr double area_error = 6 * 0x1p-53;
 inline constexpr double underflow_error = 0x1p-1000;
 
-/// A value, and what it may be off by: when |value| > bound, its sign is the exact one.
+/// A value and a bound of its error. When |value| > bound, the sign is exact.
 struct Filtered {
   double value, bound;
 
@@ -83,7 +83,7 @@ struct FilteredSides {
   }
 
   Filtered operator[](std::size_t i) const { return {value[i], bound}; }
-  /// All three strictly on one side of the plane, without doubt.
+  /// Whether all three are certainly on one side of the plane.
   bool separated() const {
     return std::max(std::min(std::min(value[0], value[1]), value[2]),
                     -std::max(std::max(value[0], value[1]), value[2])) > bound;

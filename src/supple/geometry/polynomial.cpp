@@ -93,7 +93,7 @@ Polynomial exact_quotient(const Polynomial& p, const Polynomial& q) {
   return Polynomial(std::move(quotient));
 }
 
-/// 2^(n bits) p(x / 2^bits), n being p's degree.
+/// 2^(n bits) p(x / 2^bits), where n is the degree of p.
 Polynomial stretched(const Polynomial& p, int bits) {
   return on_interval(p, {0, bits});
 }

@@ -1,58 +1,8 @@
 #include "mesh/number_text.hpp"
 
-#include <algorithm>
 #include <charconv>
-#include <limits>
-#include <string_view>
-#include <system_error>
 
 namespace supple {
-namespace {
-
-// A '+' is taken only before something that may follow it: "+-1" is no number.
-const char* skip_plus(const char* first, const char* last) {
-  const bool lone_plus = last - first >= 2 && first[0] == '+' && first[1] != '-' && first[1] != '+';
-  return lone_plus ? first + 1 : first;
-}
-
-// Whether a decimal number that double cannot hold is too large rather than too small.
-bool is_too_large(std::string_view number) {
-  const std::size_t exponent_mark = number.find_first_of("eE");
-  const std::string_view mantissa = number.substr(0, exponent_mark);
-  const std::size_t point = std::min(mantissa.find('.'), mantissa.size());
-  const std::size_t leading = mantissa.find_first_of("123456789");
-  std::int64_t exponent = 0;
-  if (exponent_mark != std::string_view::npos) {
-    const std::string_view digits = number.substr(exponent_mark + 1);
-    if (parse_integer(digits.data(), digits.data() + digits.size(), exponent) == nullptr) {
-      return digits[0] != '-';
-    }
-  }
-  return exponent > static_cast<std::int64_t>(leading) - static_cast<std::int64_t>(point);
-}
-
-double beyond_range(std::string_view number) {
-  const double magnitude = is_too_large(number) ? std::numeric_limits<double>::infinity() : 0.0;
-  return number[0] == '-' ? -magnitude : magnitude;
-}
-
-}  // namespace
-
-const char* parse_double(const char* first, const char* last, double& value) {
-  first = skip_plus(first, last);
-  const auto [end, error] = std::from_chars(first, last, value);
-  if (error == std::errc::invalid_argument) return nullptr;
-  if (error == std::errc::result_out_of_range) {
-    value = beyond_range({first, static_cast<std::size_t>(end - first)});
-  }
-  return end;
-}
-
-const char* parse_integer(const char* first, const char* last, std::int64_t& value) {
-  first = skip_plus(first, last);
-  const auto [end, error] = std::from_chars(first, last, value);
-  return error == std::errc() ? end : nullptr;
-}
 
 void append_double(std::string& text, double value) {
   char digits[32];

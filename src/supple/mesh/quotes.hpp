@@ -5,10 +5,10 @@
 
 namespace supple {
 
-/// `text` with its control characters replaced, so that a message stays on one line.
+/// Replaces the control characters of `text`, so that messages are one line for any name of a file or mesh.
 std::string one_line(std::string text);
 
-/// `text` between single quotes for a message: at most 40 bytes of it, control characters replaced.
+/// Quotes `text` for a message: at most 40 bytes, with control characters replaced.
 std::string in_quotes(std::string_view text);
 
 }  // namespace supple

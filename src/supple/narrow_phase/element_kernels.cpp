@@ -26,8 +26,8 @@ HWY_INLINE void load_box(float* box, const float* boxes, std::size_t stride, std
   for (std::size_t side = 0; side < 6; ++side) box[side] = boxes[side * stride + i];
 }
 
-/// Grows the box by at least the separation. Bounds stay within the range of float, and inverted boxes
-/// inverted, so that those are apart from all others still.
+/// Grows the box by at least the separation. Bounds stay within the range of float. Inverted boxes stay
+/// inverted, so that they overlap no other box.
 HWY_INLINE void grow(float* box, float separation) {
   constexpr float greatest = std::numeric_limits<float>::max();
   if (box[0] > greatest) return;
@@ -38,8 +38,8 @@ HWY_INLINE void grow(float* box, float separation) {
   }
 }
 
-/// Bounds at a time between the two ends, from those at both: farther out, to the side of `outward` (-1 or
-/// 1), than rounding can take them. Within the range of float, so that an inverted box stays inverted.
+/// Bounds at a time between the two ends of the step. They are farther out, in the direction `outward` (-1 or
+/// 1), than any rounding error. They stay within the range of float, so that an inverted box stays inverted.
 template <class Tag, class Vector = hn::Vec<Tag>>
 HWY_INLINE Vector between(Tag tag, Vector start, Vector end, float time, float outward) {
   constexpr float greatest = std::numeric_limits<float>::max();
@@ -61,7 +61,7 @@ HWY_INLINE void shift(float* box, const Vec3f& offset, float sign) {
 
 enum class Side { a, b };
 
-/// The box of an element of a as b's are stored, or the other way round.
+/// The box of an element of a, moved to where the boxes of b are stored, or the reverse.
 template <Side of>
 HWY_NOINLINE MovingBox moving_box(const MovingBoxArrays& arrays, std::size_t i, const PartOfStep& part) {
   MovingBox box;
@@ -89,8 +89,8 @@ HWY_INLINE MovingBoxArrays lanes_of(const MovingView& view, std::uint32_t node) 
   return {view.start[node].min_x, view.end[node].min_x, node_width};
 }
 
-/// Whether the boxes from `first` on, a vector of them, are apart from `box` along the axis: on the same side
-/// at both ends of the part of the step.
+/// Whether a vector of boxes, from `first` on, is apart from `box` along the axis: on the same side at both
+/// ends of the part of the step.
 template <class Tag>
 HWY_INLINE hn::Mask<Tag> apart_along(Tag tag, const MovingBox& box, const MovingBoxArrays& arrays,
                                      std::size_t first, std::size_t axis, float latest) {
@@ -110,7 +110,7 @@ HWY_INLINE hn::Mask<Tag> apart_along(Tag tag, const MovingBox& box, const Moving
   return hn::Or(above, below);
 }
 
-/// Bits of the boxes from `first` on, a vector of them, that are not apart from `box` along any axis.
+/// Bits of a vector of boxes, from `first` on, that are not apart from `box` along any axis.
 template <class Tag>
 HWY_INLINE std::uint64_t meeting_bits(Tag tag, const MovingBox& box, const MovingBoxArrays& arrays,
                                       std::size_t first, float latest) {
@@ -120,8 +120,8 @@ HWY_INLINE std::uint64_t meeting_bits(Tag tag, const MovingBox& box, const Movin
   return mask_bits(tag, hn::Not(apart));
 }
 
-/// Bits of the boxes of a range of at most 64 elements that are not apart from `box`; bits past the range may
-/// be any. A function of its own: inlined wherever it is used, it takes compilers minutes.
+/// Bits of the boxes of a range of at most 64 elements that are not apart from `box`; bits past the range are
+/// unspecified. Not inlined, because compilers would take minutes.
 HWY_NOINLINE std::uint64_t meeting_elements(const MovingBox& box, const MovingBoxArrays& boxes,
                                             ElementRange range, float latest) {
   const hn::CappedTag<float, 16> tag;
@@ -150,7 +150,7 @@ void MovingOverlapMasks(const NodePair* pairs, std::size_t count, const MovingVi
   }
 }
 
-/// What `find_element_box_pairs` does, for one call.
+/// One call of `find_element_box_pairs`.
 class ElementTests {
  public:
   ElementTests(const MovingView& a, const MovingView& b, const PartOfStep& part, bool same_object,
@@ -173,7 +173,7 @@ class ElementTests {
 
  private:
   using Kind = ElementPairKind;
-  /// Elements taken at a time: a bit each. The order of what is found does not depend on the instruction set.
+  /// Elements in one test, one bit for each. The same on all instruction sets, so the order of pairs is too.
   static constexpr std::uint32_t block = 64;
 
   template <Kind kind>
@@ -183,7 +183,7 @@ class ElementTests {
       const ElementRange part_a{a, std::min(a + block, range_a.end)};
       const std::uint64_t near_b = near_leaf(box_b_, boxes_a, part_a);
       if (near_b == 0) continue;
-      // Within one leaf each pair of edges would come twice.
+      // Avoids finding each pair of edges of one leaf twice.
       const bool half = kind == Kind::edge_edge && same_leaf_;
       for (std::uint32_t b = half ? a : range_b.begin; b < range_b.end; b += block) {
         const ElementRange part_b{b, std::min(b + block, range_b.end)};
@@ -193,7 +193,7 @@ class ElementTests {
     }
   }
 
-  /// Which elements may come near the other leaf.
+  /// Bits of the elements that may come near the other leaf.
   std::uint64_t near_leaf(const MovingBox& leaf, const MovingBoxArrays& boxes, ElementRange range) {
     const std::uint64_t all = ~std::uint64_t{0} >> (block - range.size());
     return same_leaf_ ? all : meeting(leaf, boxes, range) & all;
@@ -204,7 +204,7 @@ class ElementTests {
     return meeting_elements(box, boxes, range, part_.latest);
   }
 
-  /// One by one those of the side that has fewer, against the other side.
+  /// Tests each element of the side that has fewer against the other side.
   template <Kind kind>
   void match_blocks(const MovingBoxArrays& boxes_a, ElementRange range_a, std::uint64_t some_a,
                     const MovingBoxArrays& boxes_b, ElementRange range_b, std::uint64_t some_b) {
@@ -225,11 +225,12 @@ class ElementTests {
     }
   }
 
-  /// Element `one` of a, or of b when `of_b`, with those of the other that `hits` names from `first` on.
+  /// Adds pairs of the element `one` of a, or of b with `of_b`, and the elements of the other object in
+  /// `hits`, counted from `first`.
   template <Kind kind, bool of_b>
   void add(std::uint32_t one, std::uint32_t first, std::uint64_t hits) {
     if (hits == 0) return;
-    // Of one object the vertex comes first.
+    // In pairs within one object the vertex comes first.
     const bool turned = same_object_ && kind == Kind::face_vertex;
     const Kind reported = turned ? Kind::vertex_face : kind;
     ElementPair* const pairs = batches_.room_for(reported, block);
@@ -237,7 +238,7 @@ class ElementTests {
     for (; hits != 0; hits &= hits - 1) {
       const std::uint32_t other = first + static_cast<std::uint32_t>(std::countr_zero(hits));
       pairs[count] = turned != of_b ? ElementPair{other, one} : ElementPair{one, other};
-      // Added up rather than branched on: which pairs share a vertex is hard to foretell.
+      // Adds instead of branching, because this branch is hard to predict.
       count += same_object_ && share_vertex<kind, of_b>(one, other) ? 0u : 1u;
     }
     batches_.added(reported, count);

@@ -84,8 +84,8 @@ using BoxVec = hn::Vec<BoxTag>;
 using NumberVec = hn::Vec<NumberTag>;
 using BoxMask = hn::Mask<BoxTag>;
 
-/// The triangles [begin, end), a block at most. Four at a time, the last one again and again where there are
-/// no four.
+/// Loads the boxes of the triangles [begin, end), at most a block, four at a time. Repeats the last triangle
+/// to fill up the last four.
 template <class Box, class Scalar>
 HWY_INLINE void load_triangle_boxes(LeafBoxes& leaf, VertexArray<Scalar> positions, const Triangle* triangles,
                                     std::uint32_t begin, std::uint32_t end) {
@@ -100,11 +100,11 @@ HWY_INLINE void load_triangle_boxes(LeafBoxes& leaf, VertexArray<Scalar> positio
 
 #if HWY_TARGET != HWY_SCALAR
 
-/// Vertices of a leaf, from which the boxes of its triangles are looked up in registers: far less work than
-/// to read three vertices a triangle from memory. Of floats `high` is not used: it would be the same as
-/// `low`.
+/// The vertices of a leaf in tables from which the boxes of its triangles are looked up in registers. This is
+/// far less work than to read three vertices of each triangle from memory. Floats do not use `high`, which
+/// would equal `low`.
 struct LeafVertexTables {
-  /// Vertices that are looked up in so many vectors at most. More would take longer than reading them.
+  /// The greatest number of vectors in a table. Looking up vertices in more takes longer than reading them.
   static constexpr std::size_t most_vectors = 4, lanes = hn::MaxLanes(BoxTag());
   static constexpr std::size_t capacity = std::min<std::size_t>(64, most_vectors* lanes);
 
@@ -137,7 +137,7 @@ HWY_INLINE void load_vertices(LeafVertexTables& tables, VertexArray<double> posi
   tables.count = count;
 }
 
-/// One corner of each triangle of a vector.
+/// One corner of each triangle in a vector of triangles.
 class Corners {
  public:
   HWY_INLINE explicit Corners(const std::uint8_t* places)
@@ -161,7 +161,8 @@ class Corners {
   decltype(hn::IndicesFromVec(BoxTag(), NumberVec())) in_vector_;
 };
 
-/// Boxes of the triangles whose corners start at `corners`, a vector of them, to the place `to`.
+/// Looks up the boxes of a vector of triangles, whose corners start at `corners`, and stores them from `to`
+/// on.
 template <class Scalar>
 HWY_INLINE void look_up(const LeafVertexTables& tables, const std::uint8_t* corners, std::size_t stride,
                         LeafBoxes& boxes, std::size_t to) {
@@ -185,8 +186,8 @@ HWY_INLINE void look_up(const LeafVertexTables& tables, const std::uint8_t* corn
 
 #endif
 
-/// Called rather than inlined: Highway's portable vectors are loops over lanes, and of hundreds of loops in
-/// one function compilers take time that grows with their square. A call is little beside a leaf.
+/// Not inlined: Highway's portable vectors are loops over lanes, and the time to compile a function grows
+/// with the square of its number of loops. A call costs little compared to a leaf.
 template <class Box, class Scalar>
 HWY_NOINLINE void load_leaf_boxes(LeafBoxes& leaf, VertexArray<Scalar> positions, const LeafArrays& object,
                                   [[maybe_unused]] std::uint32_t lane, std::uint32_t begin,
@@ -206,7 +207,7 @@ HWY_NOINLINE void load_leaf_boxes(LeafBoxes& leaf, VertexArray<Scalar> positions
   load_triangle_boxes<Box>(leaf, positions, object.triangles.triangles, begin, end);
 }
 
-/// The triangles [begin, end) of a leaf, a block at most.
+/// Loads the boxes of the triangles [begin, end) of a leaf, at most a block.
 HWY_INLINE void load_boxes(LeafBoxes& leaf, const LeafArrays& object, std::uint32_t lane, std::uint32_t begin,
                            std::uint32_t end) {
   const TriangleArrays& arrays = object.triangles;
@@ -243,8 +244,8 @@ HWY_INLINE Aabb box_at(const LeafBoxes& leaf, std::uint32_t i) {
 
 #if HWY_TARGET <= HWY_AVX2
 
-/// The chosen triangles, each with `other`; returns how many. Writes a whole vector of pairs in any case, and
-/// does not branch on what is chosen. Only AVX-512 compresses vectors by an instruction.
+/// Writes a pair of each chosen triangle with `other`, and returns their number. Always writes a whole vector
+/// of pairs, so that no branch depends on the choice.
 template <bool chosen_is_b>
 HWY_INLINE std::size_t store_pairs(NumberVec triangles, BoxMask chosen, std::uint32_t other,
                                    TrianglePair* pairs) {
@@ -282,7 +283,7 @@ HWY_INLINE std::size_t store_pairs(NumberVec triangles, BoxMask chosen, std::uin
 
 #endif
 
-/// What `find_triangle_box_pairs` does, for one call.
+/// One call of `find_triangle_box_pairs`.
 class LeafTests {
  public:
   HWY_INLINE LeafTests(const LeafArrays& a, const LeafArrays& b, const RelativePlacement& placement,
@@ -317,7 +318,7 @@ class LeafTests {
     return lane_box(object.boxes[lane / node_width], static_cast<int>(lane % node_width));
   }
 
-  /// Blocks that follow each other in octree order fall into different places.
+  /// Maps consecutive blocks in octree order to different places.
   static HWY_INLINE std::size_t place_of(std::uint32_t first) {
     static_assert(LeafBoxCache::size == 32);
     return first * 0x9e3779b1u >> 27;
@@ -339,7 +340,7 @@ class LeafTests {
     return overlapping_triangles(boxes, leaf);
   }
 
-  /// One by one those of one side, against vectors of the other's; or in one block each with those after it.
+  /// Tests each of `ones` against vectors of `others`; in a block against itself, only with later triangles.
   template <bool others_are_b, bool each_with_later>
   HWY_INLINE void match(std::uint32_t first_one, const LeafBoxes& ones, std::uint64_t some_ones,
                         std::uint32_t first_other, const LeafBoxes& others, std::uint64_t some_others) {
@@ -367,8 +368,8 @@ class LeafTests {
     pairs_.added(same_object_ ? without_neighbours(room, count) : count);
   }
 
-  /// Leaves out the pairs that share a vertex; returns how many stay. Added up rather than branched on: which
-  /// ones do is hard to foretell.
+  /// Removes the pairs that share a vertex, and returns the number of those that stay. Adds instead of
+  /// branching, because these branches are hard to predict.
   HWY_INLINE std::size_t without_neighbours(TrianglePair* pairs, std::size_t count) const {
     const Triangle* const triangles = a_.triangles.triangles;
     std::size_t kept = 0;

@@ -12,15 +12,14 @@
 
 namespace supple {
 
-/// Two nodes whose lanes are to be tested against each other: those of a in `lanes_a` with those of b in
-/// `lanes_b`.
+/// Two nodes to test: the children of a in `lanes_a` against the children of b in `lanes_b`.
 struct NodePair {
   std::uint32_t a = 0, b = 0;
   std::uint8_t lanes_a = 0xff, lanes_b = 0xff;
 };
 
-/// Where object b lies against object a, when objects were translated: b's volumes move by `offset` and grow
-/// by `slop`, which covers every rounding on the way. Zero for objects at their own positions.
+/// The translation of object b relative to object a. The volumes of b move by `offset` and grow by `slop`,
+/// which covers all rounding errors. Zero for objects that are not translated.
 struct RelativePlacement {
   Vec3f offset;
   float slop = 0;
@@ -29,26 +28,27 @@ struct RelativePlacement {
 };
 
 /// Triangles of two leaves whose volumes overlap, in octree order: [begin_a, end_a) against [begin_b, end_b).
-/// Within one leaf of one object the ranges are equal. `lane_a` and `lane_b` are the leaves' places: eight
-/// times the node plus the lane.
+/// A leaf against itself has equal ranges. `lane_a` and `lane_b` are eight times the node plus the child.
 struct LeafPair {
   std::uint32_t begin_a = 0, end_a = 0, begin_b = 0, end_b = 0;
   std::uint32_t lane_a = 0, lane_b = 0;
 };
 
-/// Triangles of a leaf that are tested at a time: a bit each. Larger leaves are taken in such blocks.
+/// The greatest number of triangles of a leaf in one test, one bit for each. Larger leaves have several
+/// blocks.
 constexpr std::uint32_t leaf_block = 64;
 
-/// Boxes of the triangles of a block, one array an axis and side. Those past the last triangle hold anything.
+/// Boxes of the triangles of a block, one array for each axis and side. Entries past the last triangle are
+/// unspecified.
 struct alignas(64) LeafBoxes {
   float min_x[leaf_block], min_y[leaf_block], min_z[leaf_block];
   float max_x[leaf_block], max_y[leaf_block], max_z[leaf_block];
-  std::uint64_t triangles;  ///< bit i: there is a triangle i, and it is not inert
-  std::uint32_t size;       ///< triangles, inert ones included
+  std::uint64_t triangles;  ///< bit i: triangle i exists and is not inert
+  std::uint32_t size;       ///< number of triangles, with the inert ones
 };
 
-/// A cache of the boxes of recent blocks, most of which are used again soon. Valid for one pair of objects
-/// in their positions; clear it for others. 100 KB, for the second-level cache.
+/// A cache of the boxes of recent blocks; most are soon used again. Valid for one pair of objects at their
+/// positions; clear it for others. Its 100 KB fit into the second-level cache.
 struct LeafBoxCache {
   static constexpr std::size_t size = 32;
   struct Side {
@@ -65,10 +65,10 @@ struct LeafBoxCache {
   }
 };
 
-/// Candidates on their way. Memory is taken only where there are more of them than ever before.
+/// A list of candidates. Allocates memory only when it holds more candidates than ever before.
 class TrianglePairList {
  public:
-  /// Where `count` more pairs can be written; how many of them there are is then told by `added`.
+  /// Space for `count` more pairs. The caller writes pairs there and passes their number to `added`.
   TrianglePair* room_for(std::size_t count) {
     if (pairs_.size() < count_ + count) pairs_.resize(2 * (count_ + count));
     return pairs_.data() + count_;
@@ -83,26 +83,26 @@ class TrianglePairList {
   std::size_t count_ = 0;
 };
 
-/// Bit 8 i + j of `masks[k]`: lane i of node a and lane j of node b of `pairs[k]` may overlap. Lanes outside
-/// `lanes_a` give no bits; unused lanes of b may give any. Never misses an overlap.
+/// Bit 8 i + j of `masks[k]`: child i of node a and child j of node b of `pairs[k]` may overlap. Bits of
+/// children outside `lanes_a` are 0; bits of missing children of b are unspecified. Never misses an overlap.
 void overlap_masks(std::span<const NodePair> pairs, const AabbLanes* a, const AabbLanes* b,
                    const RelativePlacement& placement, std::uint64_t* masks);
 void overlap_masks(std::span<const NodePair> pairs, const SphereLanes* a, const SphereLanes* b,
                    const RelativePlacement& placement, std::uint64_t* masks);
 
-/// What the leaf tests read of an object: its triangles, and the boxes and vertices of its leaves.
+/// The data of an object for the leaf tests: its triangles, and the boxes and vertices of its leaves.
 struct LeafArrays {
   const TriangleArrays& triangles;
   const AabbLanes* boxes = nullptr;
   LeafVertexArrays vertices;
 };
 
-/// Appends all pairs of triangles of the leaf pairs whose boxes may overlap, in octree order's numbers; inert
-/// triangles are in none. With `same_object` pairs that share a vertex are left out and each pair comes once,
-/// a < b or b < a. Never misses an overlap. Returns the number of box tests.
+/// Appends all pairs of triangles of the leaf pairs whose boxes may overlap, numbered in octree order. Skips
+/// inert triangles. With `same_object`, skips pairs that share a vertex and appends each pair once, a < b or
+/// b < a. Never misses an overlap. Returns the number of box tests.
 ///
-/// Of each leaf, only triangles count that meet the box of the other; these are tested one by one, those of
-/// the side that has fewer, against vectors of the other side's.
+/// Only triangles that overlap the box of the other leaf are tested: one at a time from the side that has
+/// fewer, against vectors of triangles of the other side.
 std::uint64_t find_triangle_box_pairs(std::span<const LeafPair> leaf_pairs, const LeafArrays& a,
                                       const LeafArrays& b, const RelativePlacement& placement,
                                       bool same_object, LeafBoxCache& cache, TrianglePairList& pairs);

@@ -27,8 +27,8 @@ std::uint64_t spread_to_bytes(std::uint32_t bits) {
   return ((ones + 0x7f7f7f7f7f7f7f7fu) >> 7 & 0x0101010101010101u) * 0xffu;
 }
 
-/// Calls `visit(i, j)` for each pair of children that overlap and are in the mask; for a node with itself
-/// only pairs with i <= j. One loop over all pairs: a loop per i would end unpredictably each time.
+/// Calls `visit(i, j)` for each pair of children that is in the mask; for a node with itself only pairs with
+/// i <= j. This is one loop over all pairs, because the end of a loop for each i is hard to predict.
 template <class Visit>
 void for_each_lane_pair(const ObjectPairView& pair, NodePair node_pair, std::uint64_t mask, Visit&& visit) {
   const OctreeNode& node_a = pair.a.nodes[node_pair.a];
@@ -120,7 +120,7 @@ ObjectPairView pair_of(const OctreeView& a, const OctreeView& b) {
 }
 
 ObjectPairView self_pair_of(const OctreeView& object) {
-  // The translation is the same, and rounding may yet bring close positions together.
+  // Both translations are equal, but rounding may still make close positions touch.
   ObjectPairView pair{object, object, place(object, object), true, 0, nullptr};
   if (!pair.placement.is_identity()) pair.a.unfolded = nullptr;
   return pair;

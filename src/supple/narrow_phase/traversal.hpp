@@ -15,7 +15,7 @@
 
 namespace supple {
 
-/// What the narrow phase reads of one object; borrowed for the call.
+/// The data of one object for the narrow phase; borrowed for the call.
 struct OctreeView {
   std::span<const OctreeNode> nodes;
   const AabbLanes* boxes = nullptr;
@@ -24,30 +24,29 @@ struct OctreeView {
   LeafVertexArrays leaf_vertices;
   Aabb box;           ///< of all positions
   Vec3d translation;  ///< added to each position
-  MovingView moving;  ///< of objects in motion, of which `arrays` and `leaf_vertices` are not read
-  /// Masks of an `SelfCollisionCulling` of these very positions, or null: an object against itself is then
-  /// not looked for in lanes that cannot touch themselves. Candidates are lost thereby, contacts are not.
+  MovingView moving;  ///< for moving objects, which do not use `arrays` and `leaf_vertices`
+  /// Masks of a `SelfCollisionCulling` for these positions, or null. An object against itself then skips
+  /// children that cannot touch themselves. This loses candidates, but no contacts.
   const std::uint8_t* unfolded = nullptr;
 };
 OctreeView view_of(const ObjectOctree& octree, const VertexBuffer& vertices,
                    std::span<const std::uint8_t> inert, Vec3d translation);
-/// Of an object in motion, at rest or not; `boxes` are refitted. Translated objects are at rest.
+/// For continuous contacts, also of an object at rest; `boxes` are refitted. Translated objects are at rest.
 OctreeView moving_view_of(const ObjectOctree& octree, const SurfaceElements& elements,
                           const MovingBoxes& boxes, Vec3d translation);
 
-/// Two objects, or one with itself (`same_object`, a and b being the same view).
+/// Two objects, or one with itself: with `same_object`, a and b are the same view.
 struct ObjectPairView {
   OctreeView a, b;
   RelativePlacement placement;
   bool same_object = false;
-  /// For objects in motion: elements touch when their boxes come this close. At least the requested
+  /// For moving objects: the distance of boxes within which elements may touch. At least the requested
   /// separation and the slop of the placement.
   float separation = 0;
-  /// Null, or up to when in the step elements that touch are of interest; it may fall while they are looked
-  /// for.
+  /// Null, or the time in the step until which contacts are of interest. It may decrease during the search.
   const std::atomic<float>* latest = nullptr;
 
-  /// Bounds between the two ends cost more than those at the ends, and a large part of the step saves little.
+  /// Bounds at a time before the end cost more than those at the end, and for a late time they save little.
   PartOfStep part_of_step() const {
     constexpr float least = 0x1p-20f, most = 0.125f;
     const float until = latest != nullptr ? latest->load(std::memory_order_relaxed) : 1;
@@ -57,7 +56,7 @@ struct ObjectPairView {
 };
 ObjectPairView pair_of(const OctreeView& a, const OctreeView& b);
 ObjectPairView self_pair_of(const OctreeView& object);
-/// The same of moving views; `separation` ≥ 0, not NaN.
+/// The same for moving views; `separation` ≥ 0, not NaN.
 ObjectPairView moving_pair_of(const OctreeView& a, const OctreeView& b, double separation);
 ObjectPairView moving_self_pair_of(const OctreeView& object, double separation);
 
@@ -65,21 +64,20 @@ struct TraversalStats {
   std::uint64_t node_pairs_visited = 0;
   std::uint64_t volumes_tested = 0;
   std::uint64_t candidate_pairs = 0;
-  /// Of objects in motion, for which `candidate_pairs` stays.
+  /// For moving objects, which do not change `candidate_pairs`.
   std::uint64_t vertex_face_candidates = 0, edge_edge_candidates = 0;
 };
 
-/// Two lanes that the descent compares.
+/// Two children that the descent compares.
 struct LanePair {
   std::uint32_t node_a = 0, node_b = 0;
   int lane_a = 0, lane_b = 0;
-  bool apart = false;  ///< the volumes are: the descent ends here
+  bool apart = false;  ///< the volumes are apart, so the descent ends here
 };
-/// Where the descent from the roots to two triangles ends, octree order's numbers: at the first lanes on the
-/// way that are apart, or else at the two leaves. Of one object with itself, `triangles.a < triangles.b`.
+/// The end of the descent from the roots to two triangles, numbered in octree order: the first children on
+/// the way that are apart, or the two leaves. For one object with itself, `triangles.a < triangles.b`.
 LanePair last_lanes(const ObjectPairView& pair, TrianglePair triangles);
-/// Whether the narrow phase tells two triangles of two leaves apart by their boxes, as `find_triangle_pairs`
-/// would.
+/// Whether `find_triangle_pairs` excludes two triangles of two leaves by their boxes.
 bool leaf_triangles_apart(const ObjectPairView& pair, const LanePair& leaves, TrianglePair triangles);
 
 /// Octree against octree, both descended at once. Holds the scratch memory of one worker, kept between calls.
@@ -89,13 +87,13 @@ bool leaf_triangles_apart(const ObjectPairView& pair, const LanePair& leaves, Tr
 /// to that child, against the other's node; two leaves become a leaf pair.
 class Traversal {
  public:
-  /// Searches end early, and find part of what there is, once a stop is requested.
+  /// After a request to stop, searches end early with part of the results.
   void set_stop(const StopSignal& stop) { stop_ = stop; }
 
-  /// Calls `sink(std::span<const TrianglePair>)` with batches of candidates in octree order's numbers: all
-  /// triangle pairs whose boxes overlap, below `root` (all of them: a default `NodePair`). `on_leaves(leaf
-  /// pairs)` sees the pairs of leaves they come from. Never misses a pair; memory does not grow with their
-  /// number.
+  /// Calls `sink(std::span<const TrianglePair>)` with batches of candidates, numbered in octree order: all
+  /// triangle pairs below `root` whose boxes overlap. A default `NodePair` is the root of both trees. Calls
+  /// `on_leaves(leaf pairs)` with the pairs of leaves that contain them. Never misses a pair. Memory does not
+  /// grow with the number of pairs.
   template <class OnLeaves, class Sink>
   void find_triangle_pairs(const ObjectPairView& pair, NodePair root, TraversalStats& stats,
                            OnLeaves&& on_leaves, Sink&& sink) {
@@ -106,11 +104,11 @@ class Traversal {
     });
   }
 
-  /// The same of objects in motion: calls `sink(ElementPairKind, std::span<const ElementPair>)` with batches
-  /// of candidates, octree order's numbers, of at most `ElementPairBatches::capacity`. These are all
-  /// vertex-face, face-vertex and edge-edge pairs whose boxes are not apart by more than the separation, on
-  /// one side of one axis, at both ends of the step. Of one object with itself those that share a vertex are
-  /// left out, and there is no `face_vertex`. Each pair comes once, over all the roots of a `refine`.
+  /// The same for moving objects: calls `sink(ElementPairKind, std::span<const ElementPair>)` with batches of
+  /// at most `ElementPairBatches::capacity` candidates, numbered in octree order. These are all vertex-face,
+  /// face-vertex and edge-edge pairs, except those whose boxes are apart by more than the separation on the
+  /// same side of one axis at both ends of the step. For one object with itself, pairs that share a vertex
+  /// and the kind `face_vertex` do not occur. Each pair occurs once among all roots of a `refine`.
   template <class Sink>
   void find_element_pairs(const ObjectPairView& pair, NodePair root, TraversalStats& stats, Sink&& sink) {
     auto count_and_sink = [&](ElementPairKind kind, std::span<const ElementPair> pairs) {
@@ -130,15 +128,15 @@ class Traversal {
     element_pairs_.flush();
   }
 
-  /// Calls `on_leaves(std::span<const LeafPair>)` with all pairs of leaves whose volumes overlap, in motion
-  /// or not.
+  /// Calls `on_leaves(std::span<const LeafPair>)` with all pairs of leaves whose volumes overlap, for moving
+  /// and other objects.
   template <class OnLeaves>
   void find_leaf_pairs(const ObjectPairView& pair, TraversalStats& stats, OnLeaves&& on_leaves) {
     descend(pair, {}, stats, on_leaves);
   }
 
-  /// One step of the descent for all of `pairs`, for spreading work over threads: what it appends to `finer`
-  /// finds the same triangle pairs. Pairs that involve a leaf stay as they are, restricted to the two lanes.
+  /// One step of the descent, to divide work among threads. The node pairs that it appends to `finer` lead to
+  /// the same triangle pairs. Pairs that involve a leaf stay at their nodes, restricted to the two children.
   void refine(const ObjectPairView& pair, NodePair node_pair, std::vector<NodePair>& finer);
 
  private:
