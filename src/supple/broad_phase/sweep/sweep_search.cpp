@@ -29,8 +29,7 @@ int widest_axis(std::span<const Aabb> boxes) {
 
 }  // namespace
 
-void SweepSearch::search(VolumeStore& volumes, const Parallel& parallel, FoundPairs& found) {
-  volumes.take_changed();
+void SweepSearch::search(const VolumeStore& volumes, const Parallel& parallel, FoundPairs& found) {
   const auto boxes = volumes.boxes();
   const int axis = widest_axis(boxes);
   order_.clear();
@@ -43,11 +42,11 @@ void SweepSearch::search(VolumeStore& volumes, const Parallel& parallel, FoundPa
     lanes_.set(i, slot, boxes[slot], 7, axis);
   }
 
-  const auto bins = sorter_.start(parallel.worker_count(), boxes.size());
+  const auto lists = sorter_.start(parallel.worker_count(), boxes.size());
   std::atomic<std::uint64_t> tests = 0;
   constexpr std::size_t grain = 256;
   parallel.for_ranges(order_.size(), grain, [&](std::size_t begin, std::size_t end, std::uint32_t worker) {
-    tests += find_overlaps_sorted(lanes_, begin, end, volumes.spheres(), bins[worker]);
+    tests += find_overlaps_sorted(lanes_, begin, end, volumes.spheres(), lists[worker]);
   });
   sorter_.finish(parallel, found.pairs);
   found.stats.object_pairs_tested = tests;
