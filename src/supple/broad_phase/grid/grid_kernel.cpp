@@ -46,7 +46,7 @@ HWY_INLINE hn::Vec<Words> excess(const std::uint32_t* ends, Bounds bounds) {
 }
 #endif
 
-/// Copies of the pointers that the inner loop uses. Otherwise the compiler reloads them after each store.
+/// Copies of what the inner loop uses. Otherwise the compiler reloads it after each store.
 struct Arrays {
   const std::uint32_t* ends_0;
   const std::uint32_t* ends_1;
@@ -54,6 +54,7 @@ struct Arrays {
   const std::uint32_t* slots;
   std::uint32_t* first;
   std::uint32_t* second;
+  bool many_pairs;
   std::size_t count = 0;  // of pairs
   std::uint64_t tests = 0;
 };
@@ -109,8 +110,8 @@ HWY_INLINE void test(const Query& query, std::size_t begin, std::size_t end, con
         hn::Or(hn::Or(excess(arrays.ends_0 + j, query.bounds_0), excess(arrays.ends_1 + j, query.bounds_1)),
                excess(arrays.ends_2 + j, query.bounds_2));
     const auto apart = hn::And(over, hn::Set(lanes, 0xfffefffeu));
-    // When most vectors contain a pair, a branch on it would be unpredictable.
-    if (!boxes.has_many_pairs && hn::AllFalse(lanes, hn::Eq(apart, hn::Zero(lanes)))) continue;
+    // When most vectors contain a pair, this branch would be unpredictable.
+    if (HWY_LIKELY(!arrays.many_pairs && hn::AllFalse(lanes, hn::Eq(apart, hn::Zero(lanes))))) continue;
     const auto in_range = hn::FirstN(lanes, end - j);
     const auto sure = hn::And(in_range, hn::Eq(over, hn::Zero(lanes)));
     const auto undecided = hn::AndNot(sure, hn::And(in_range, hn::Eq(apart, hn::Zero(lanes))));
@@ -151,8 +152,8 @@ HWY_INLINE void for_rows(const std::uint32_t* cell_begins, const GridLevel& leve
 template <bool only_row>
 std::uint64_t search_level(const Grid& grid, const BinnedBoxes& boxes, std::size_t level_index,
                            std::size_t begin, std::size_t end, PairList& pairs) {
-  Arrays arrays{boxes.ends[0].data(), boxes.ends[1].data(), boxes.ends[2].data(),
-                boxes.slots.data(),   pairs.first.data(),   pairs.second.data()};
+  Arrays arrays{boxes.ends[0].data(), boxes.ends[1].data(), boxes.ends[2].data(), boxes.slots.data(),
+                pairs.first.data(),   pairs.second.data(),  boxes.has_many_pairs};
   const std::uint32_t* const cell_begins = boxes.cell_begins.data();
   const GridLevel level = grid.levels[level_index];
   for (std::size_t place = begin; place < end; ++place) {

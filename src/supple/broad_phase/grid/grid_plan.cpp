@@ -89,9 +89,9 @@ void GridPlanner::choose_axes(Grid& grid) {
 /// The first level takes the smallest 31/32 of the boxes, and somewhat larger ones. The next level takes the
 /// same share of the boxes that are left, and so on.
 ///
-/// Boxes that are much smaller than their level's limit are tested in vain against boxes that they would not
-/// meet in narrower rows. But then at least 1/32 of the boxes are about as large as the limit and do overlap
-/// what is around them, so these tests take no longer than reporting those pairs.
+/// Boxes that are much smaller than their level's limit are tested against boxes that they would not meet in
+/// narrower rows. But at least 1/32 of the level's boxes are half as large as the limit or larger, and these
+/// have about as many pairs as all boxes have tests in vain.
 void GridPlanner::choose_levels(Grid& grid) {
   for (Sample& sample : samples_) {
     sample.size = 0;

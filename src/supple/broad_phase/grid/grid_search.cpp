@@ -109,7 +109,8 @@ void GridSearch::quantize(std::span<const Aabb> boxes, Chunk& chunk) {
 }
 
 /// Sorts the boxes of a block of rows by cell: counts the boxes of each cell, then places them. Returns the
-/// sum of the squared counts. While boxes are placed, the begin of a cell is stored one place too far.
+/// sum of the squared counts. While boxes are placed, `next[cell]` grows from the begin of the cell to its
+/// end, which is the begin of the next cell.
 std::uint64_t GridSearch::sort_block(const GridLevel& level, std::size_t block_of_level) {
   const auto& [first, second, third] = grid_.axes;
   const std::size_t block = level.first_block + block_of_level;

@@ -26,12 +26,12 @@ std::uint32_t begins_in(const SceneOctree::Region& leaf, const Aabb& box) {
                                     (box.min.z >= leaf.lower.z) << 2);
 }
 
-/// Replaces `found` by the slots whose boxes overlap this one.
-void find_overlapping(const Aabb& box, std::span<const Aabb> boxes, std::span<const std::uint32_t> slots,
-                      std::vector<std::uint32_t>& found) {
+/// Writes the slots whose boxes overlap this one to `found`, which has room for one more than all, and
+/// returns their number.
+std::size_t find_overlapping(const Aabb& box, std::span<const Aabb> boxes,
+                             std::span<const std::uint32_t> slots, std::uint32_t* found) {
   // The boxes are far apart in memory, so all are prefetched before the first is needed.
   for (const std::uint32_t slot : slots) hwy::Prefetch(&boxes[slot]);
-  found.resize(slots.size() + 1);
   std::size_t count = 0;
   for (const std::uint32_t slot : slots) {
     const Aabb& other = boxes[slot];
@@ -41,7 +41,7 @@ void find_overlapping(const Aabb& box, std::span<const Aabb> boxes, std::span<co
                                       (other.min.z <= box.max.z) & (other.max.x >= box.min.x) &
                                       (other.max.y >= box.min.y) & (other.max.z >= box.min.z));
   }
-  found.resize(count);
+  return count;
 }
 
 }  // namespace
@@ -152,9 +152,11 @@ void OctreeSearch::find_of_object(const VolumeStore& volumes, std::uint32_t slot
   const ObjectVolume volume = volumes.volume(slot);
   tree_.visit_leaves(volume, [&](const SceneOctree::Region& leaf) {
     const std::uint32_t begins = tree_.placed_by_sphere() ? std::uint32_t{7} : begins_in(leaf, volume.box);
-    find_overlapping(volume.box, boxes, tree_.objects(leaf), worker.others);
+    const auto slots = tree_.objects(leaf);
+    if (worker.others.size() <= slots.size()) worker.others.resize(slots.size() + 1);
+    const std::size_t found = find_overlapping(volume.box, boxes, slots, worker.others.data());
     std::size_t count = 0;
-    for (const std::uint32_t other : worker.others) {
+    for (const std::uint32_t other : std::span(worker.others).first(found)) {
       // When both objects changed, the one with the smaller index finds the pair.
       if (other == slot || (other < slot && is_changed_[other] != 0)) continue;
       if ((begins | begins_in(leaf, boxes[other])) != 7) continue;
@@ -173,9 +175,19 @@ void OctreeSearch::find_of_object(const VolumeStore& volumes, std::uint32_t slot
 void OctreeSearch::merge_kept(std::vector<IndexPair>& pairs) {
   kept_.swap(pairs);
   pairs.reserve(kept_.capacity());
-  std::erase_if(kept_, [&](IndexPair pair) { return is_changed_[pair.a] != 0 || is_changed_[pair.b] != 0; });
   pairs.resize(kept_.size() + fresh_.size());
-  std::merge(kept_.begin(), kept_.end(), fresh_.begin(), fresh_.end(), pairs.begin());
+  IndexPair* next = pairs.data();
+  auto kept = kept_.begin();
+  const auto keep = [&] {
+    *next = *kept++;
+    next += static_cast<std::ptrdiff_t>((is_changed_[next->a] | is_changed_[next->b]) == 0);
+  };
+  for (const IndexPair pair : fresh_) {
+    while (kept != kept_.end() && *kept < pair) keep();
+    *next++ = pair;
+  }
+  while (kept != kept_.end()) keep();
+  pairs.resize(static_cast<std::size_t>(next - pairs.data()));
 }
 
 }  // namespace supple
