@@ -37,9 +37,8 @@ HWY_INLINE std::size_t append(const BoxLanes& boxes, std::size_t row, std::size_
   return count + hn::CountTrue(lanes, reported);
 }
 
-template <bool sorted>
-HWY_INLINE std::uint64_t find_rows(const BoxLanes& boxes, std::size_t begin, std::size_t end,
-                                   std::span<const BoundingSphere> spheres, PairList& pairs) {
+std::uint64_t find(const BoxLanes& boxes, std::size_t begin, std::size_t end,
+                   std::span<const BoundingSphere> spheres, PairList& pairs) {
   const Floats lanes;
   const float* const min_x = boxes.min[0].data();
   const float* const min_y = boxes.min[1].data();
@@ -47,6 +46,7 @@ HWY_INLINE std::uint64_t find_rows(const BoxLanes& boxes, std::size_t begin, std
   const float* const max_x = boxes.max[0].data();
   const float* const max_y = boxes.max[1].data();
   const float* const max_z = boxes.max[2].data();
+  const bool is_sorted = boxes.is_sorted;
   std::uint64_t tests = 0;
   std::size_t count = 0;
   for (std::size_t row = begin; row < end; ++row) {
@@ -55,35 +55,25 @@ HWY_INLINE std::uint64_t find_rows(const BoxLanes& boxes, std::size_t begin, std
     const auto row_min_z = hn::Set(lanes, min_z[row]), row_max_z = hn::Set(lanes, max_z[row]);
     for (std::size_t j = row + 1; j < boxes.count; j += hn::Lanes(lanes)) {
       const auto begin_before = hn::Le(hn::LoadU(lanes, min_x + j), row_max_x);
-      auto hit = hn::And(begin_before, hn::And(hn::Le(hn::LoadU(lanes, min_y + j), row_max_y),
-                                               hn::Ge(hn::LoadU(lanes, max_y + j), row_min_y)));
-      hit = hn::And(hit, hn::And(hn::Le(hn::LoadU(lanes, min_z + j), row_max_z),
-                                 hn::Ge(hn::LoadU(lanes, max_z + j), row_min_z)));
-      if constexpr (!sorted) hit = hn::And(hit, hn::Ge(hn::LoadU(lanes, max_x + j), row_min_x));
+      const auto in_x = hn::And(begin_before, hn::Ge(hn::LoadU(lanes, max_x + j), row_min_x));
+      const auto in_y = hn::And(hn::Le(hn::LoadU(lanes, min_y + j), row_max_y),
+                                hn::Ge(hn::LoadU(lanes, max_y + j), row_min_y));
+      const auto in_z = hn::And(hn::Le(hn::LoadU(lanes, min_z + j), row_max_z),
+                                hn::Ge(hn::LoadU(lanes, max_z + j), row_min_z));
+      const auto hit = hn::And(in_x, hn::And(in_y, in_z));
       if (!hn::AllFalse(lanes, hit)) count = append(boxes, row, j, hit, count, pairs);
       if (HWY_UNLIKELY(count > PairList::batch_size)) {
         pairs.flush(count, spheres);
         count = 0;
       }
-      if constexpr (sorted) {
-        tests += hn::CountTrue(lanes, begin_before);
-        if (!hn::AllTrue(lanes, begin_before)) break;
-      }
+      if (!is_sorted) continue;
+      tests += hn::CountTrue(lanes, begin_before);
+      if (!hn::AllTrue(lanes, begin_before)) break;
     }
-    if constexpr (!sorted) tests += boxes.count - row - 1;
+    if (!is_sorted) tests += boxes.count - row - 1;
   }
   pairs.flush(count, spheres);
   return tests;
-}
-
-std::uint64_t find_all(const BoxLanes& boxes, std::size_t begin, std::size_t end,
-                       std::span<const BoundingSphere> spheres, PairList& pairs) {
-  return find_rows<false>(boxes, begin, end, spheres, pairs);
-}
-
-std::uint64_t find_sorted(const BoxLanes& boxes, std::size_t begin, std::size_t end,
-                          std::span<const BoundingSphere> spheres, PairList& pairs) {
-  return find_rows<true>(boxes, begin, end, spheres, pairs);
 }
 
 }  // namespace
@@ -94,8 +84,7 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace supple {
 
-HWY_EXPORT(find_all);
-HWY_EXPORT(find_sorted);
+HWY_EXPORT(find);
 
 void BoxLanes::resize(std::size_t new_count) {
   count = new_count;
@@ -112,12 +101,7 @@ void BoxLanes::resize(std::size_t new_count) {
 
 std::uint64_t find_overlaps(const BoxLanes& boxes, std::size_t begin, std::size_t end,
                             std::span<const BoundingSphere> spheres, PairList& pairs) {
-  return HWY_DYNAMIC_DISPATCH(find_all)(boxes, begin, end, spheres, pairs);
-}
-
-std::uint64_t find_overlaps_sorted(const BoxLanes& boxes, std::size_t begin, std::size_t end,
-                                   std::span<const BoundingSphere> spheres, PairList& pairs) {
-  return HWY_DYNAMIC_DISPATCH(find_sorted)(boxes, begin, end, spheres, pairs);
+  return HWY_DYNAMIC_DISPATCH(find)(boxes, begin, end, spheres, pairs);
 }
 
 }  // namespace supple

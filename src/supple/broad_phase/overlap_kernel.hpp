@@ -26,6 +26,8 @@ struct BoxLanes {
   /// along each axis. All are 7 when space is not divided.
   std::vector<std::uint32_t> begins;
   std::size_t count = 0;
+  /// By ascending lower end along axis 0. The tests of a box then end at the first box that begins behind it.
+  bool is_sorted = false;
 
   /// Makes room for `new_count` boxes, all of which must be set. The lanes behind them get NaN, which
   /// overlaps nothing.
@@ -48,10 +50,5 @@ struct BoxLanes {
 /// which is the same for every instruction set.
 std::uint64_t find_overlaps(const BoxLanes& boxes, std::size_t begin, std::size_t end,
                             std::span<const BoundingSphere> spheres, PairList& pairs);
-
-/// The same for boxes that are sorted by ascending lower end along axis 0. The tests of a box end at the
-/// first box that begins behind it.
-std::uint64_t find_overlaps_sorted(const BoxLanes& boxes, std::size_t begin, std::size_t end,
-                                   std::span<const BoundingSphere> spheres, PairList& pairs);
 
 }  // namespace supple

@@ -129,21 +129,16 @@ void OctreeSearch::find_in_leaf(const VolumeStore& volumes, const SceneOctree::R
   const auto begins = [&](const Aabb& box) {
     return tree_.placed_by_sphere() ? std::uint32_t{7} : begins_in(leaf, box);
   };
-  worker.lanes.resize(slots.size());
-  if (slots.size() < sort_leaf_at) {
-    for (std::size_t i = 0; i < slots.size(); ++i)
-      worker.lanes.set(i, slots[i], boxes[slots[i]], begins(boxes[slots[i]]));
-    worker.tests += find_overlaps(worker.lanes, 0, slots.size(), volumes.spheres(), pairs);
-    return;
-  }
   worker.order.clear();
   for (const std::uint32_t slot : slots) worker.order.push_back(order_key(boxes[slot].min.x, slot));
-  std::sort(worker.order.begin(), worker.order.end());
+  worker.lanes.is_sorted = slots.size() >= sort_leaf_at;
+  if (worker.lanes.is_sorted) std::sort(worker.order.begin(), worker.order.end());
+  worker.lanes.resize(slots.size());
   for (std::size_t i = 0; i < slots.size(); ++i) {
     const auto slot = static_cast<std::uint32_t>(worker.order[i]);
     worker.lanes.set(i, slot, boxes[slot], begins(boxes[slot]));
   }
-  worker.tests += find_overlaps_sorted(worker.lanes, 0, slots.size(), volumes.spheres(), pairs);
+  worker.tests += find_overlaps(worker.lanes, 0, slots.size(), volumes.spheres(), pairs);
 }
 
 void OctreeSearch::find_of_object(const VolumeStore& volumes, std::uint32_t slot, Worker& worker,
