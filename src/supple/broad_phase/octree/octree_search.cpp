@@ -31,7 +31,10 @@ std::uint32_t begins_in(const SceneOctree::Region& leaf, const Aabb& box) {
 std::size_t find_overlapping(const Aabb& box, std::span<const Aabb> boxes,
                              std::span<const std::uint32_t> slots, std::uint32_t* found) {
   // The boxes are far apart in memory, so all are prefetched before the first is needed.
-  for (const std::uint32_t slot : slots) hwy::Prefetch(&boxes[slot]);
+  for (const std::uint32_t slot : slots) {
+    hwy::Prefetch(&boxes[slot].min);
+    hwy::Prefetch(&boxes[slot].max.z);  // perhaps in the next cache line
+  }
   std::size_t count = 0;
   for (const std::uint32_t slot : slots) {
     const Aabb& other = boxes[slot];
