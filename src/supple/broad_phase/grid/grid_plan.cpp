@@ -90,8 +90,8 @@ void GridPlanner::choose_axes(Grid& grid) {
 /// same share of the boxes that are left, and so on.
 ///
 /// Boxes that are much smaller than their level's limit are tested against boxes that they would not meet in
-/// narrower rows. But at least 1/32 of the level's boxes are half as large as the limit or larger, and these
-/// have about as many pairs as all boxes have tests in vain.
+/// narrower rows. But at least 1/32 of the level's boxes are half as large as the limit or larger, and
+/// overlap what surrounds them. With 16 tests at a time, the tests in vain take about as long as these pairs.
 void GridPlanner::choose_levels(Grid& grid) {
   for (Sample& sample : samples_) {
     sample.size = 0;
