@@ -7,6 +7,7 @@ A folder of src/supple includes only from itself and the folders before it in LA
 its folder ("core/parallel.hpp"). COMPONENTS says the same of the libraries around the core. Public headers include only
 public headers and the standard library. The programs around the library include only public headers and
 files of their own folder, and those of the viewer that SHARED names. Threads have one door, so only core/ may include oneTBB.
+LONGEST_CHAINS limits the chains of includes within a folder.
 """
 
 import pathlib
@@ -16,6 +17,8 @@ import sys
 LAYERS = [
     "core", "geometry", "mesh", "contact", "octree", "broad_phase", "narrow_phase", "scene",
 ]
+# The most files in a chain of includes within a layer.
+LONGEST_CHAINS = {"broad_phase": 4}
 # Libraries of their own, and the last layer of the core of which they include internal headers; recording includes none.
 COMPONENTS = {"models": "mesh", "simulation": "mesh", "formats": "mesh", "recording": None}
 PROGRAMS = ["viewer/session", "viewer/export", "viewer/server", "cli", "examples", "benchmarks"]
@@ -81,6 +84,13 @@ def problem_in_program(root, folder, path, bracket, name):
     return "include only public headers (supple/...) and files of the same folder"
 
 
+def longest_chain(library, layer, chain):
+    """The longest chain of includes within the layer that begins with this chain of files."""
+    own = [name for _, _, name in includes(library / chain[-1])
+           if name.startswith(f"{layer}/") and name not in chain and (library / name).is_file()]
+    return max((longest_chain(library, layer, chain + [name]) for name in own), key=len, default=chain)
+
+
 def problems(root):
     """Yields (path, line number, include, what is wrong)."""
     library = root / "src/supple"
@@ -92,6 +102,11 @@ def problems(root):
         for number, bracket, name in includes(path):
             if what := problem_in_library(root, layer, bracket, name):
                 yield path, number, name, what
+    for layer, most in LONGEST_CHAINS.items():
+        for path in sources(library / layer):
+            chain = longest_chain(library, layer, [path.relative_to(library).as_posix()])
+            if len(chain) > most:
+                yield path, 1, " includes ".join(chain), f"a chain of more than {most} files"
     for component, layer in COMPONENTS.items():
         own = root / component / "src"
         for path in sources(own):

@@ -52,6 +52,16 @@ class CheckIncludeOrder(unittest.TestCase):
     def test_good_tree(self):
         self.assertEqual(run_on(GOOD), (0, ""))
 
+    def test_long_chain(self):
+        files = [f"broad_phase/{name}.hpp" for name in "abcde"]
+        chain = {f"src/supple/{a}": f'#include "{b}"\n' for a, b in zip(files, files[1:])}
+        code, error = run_on({**GOOD, **chain, "src/supple/broad_phase/e.hpp": ""})
+        self.assertEqual(code, 1)
+        self.assertIn("src/supple/broad_phase/a.hpp:1: ", error)
+        self.assertIn("a chain of more than 4 files", error)
+        del chain["src/supple/broad_phase/a.hpp"]
+        self.assertEqual(run_on({**GOOD, **chain, "src/supple/broad_phase/e.hpp": ""}), (0, ""))
+
     def expect(self, name, text, message):
         code, error = run_on({**GOOD, name: text})
         self.assertEqual(code, 1)

@@ -6,12 +6,12 @@
 namespace supple {
 namespace {
 
-/// An object that changed costs the octree as much as so many objects cost the grid.
+/// The octree takes as long for one changed object as the grid takes for this number of objects.
 constexpr std::size_t cost_of_change = 24;
-/// A build of the octree costs as much as about two grid searches: so many steps in a row with few changes
-/// make it likely that more follow.
+/// Building the octree takes as long as about two grid searches. After this number of steps with few changes,
+/// more such steps are likely to follow.
 constexpr std::uint32_t steps_before_build = 4;
-/// The grid sorts all objects into cells before it can tell that the scene is too crowded.
+/// The grid sorts all objects into cells before it knows that the scene is too crowded.
 constexpr std::uint32_t steps_between_tries = 64;
 
 }  // namespace
@@ -22,7 +22,7 @@ AutomaticSearch::AutomaticSearch(BoundingVolume bounding_volume, const SceneOctr
 
 AutomaticSearch::~AutomaticSearch() = default;
 
-void AutomaticSearch::search(VolumeStore& volumes, const Parallel& parallel, FoundPairs& found) {
+void AutomaticSearch::search(const VolumeStore& volumes, const Parallel& parallel, FoundPairs& found) {
   const bool few_changes = cost_of_change * volumes.changed().size() < volumes.slot_count();
   steps_with_few_changes_ = few_changes ? steps_with_few_changes_ + 1 : 0;
   steps_to_grid_ -= steps_to_grid_ != 0;
@@ -32,10 +32,6 @@ void AutomaticSearch::search(VolumeStore& volumes, const Parallel& parallel, Fou
     steps_to_grid_ = steps_between_tries;
   }
   if (ran_octree_) octree_->search(volumes, parallel, found);
-}
-
-bool AutomaticSearch::needs_previous(const VolumeStore& volumes) const {
-  return octree_->needs_previous(volumes);
 }
 
 std::vector<SceneRegion> AutomaticSearch::regions() const {

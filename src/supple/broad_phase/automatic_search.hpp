@@ -16,8 +16,7 @@ class AutomaticSearch final : public PairSearch {
   AutomaticSearch(BoundingVolume bounding_volume, const SceneOctreeOptions& octree_options);
   ~AutomaticSearch() override;
 
-  void search(VolumeStore& volumes, const Parallel& parallel, FoundPairs& found) override;
-  bool needs_previous(const VolumeStore& volumes) const override;
+  void search(const VolumeStore& volumes, const Parallel& parallel, FoundPairs& found) override;
   std::vector<SceneRegion> regions() const override;
   std::string validate(const VolumeStore& volumes) const override;
 
@@ -25,8 +24,8 @@ class AutomaticSearch final : public PairSearch {
   std::unique_ptr<OctreeSearch> octree_;
   std::unique_ptr<GridSearch> grid_;
   bool ran_octree_ = false;
-  std::uint32_t steps_with_few_changes_ = 0;  // up to this one
-  std::uint32_t steps_to_grid_ = 0;           // before a crowded scene tries the grid again
+  std::uint32_t steps_with_few_changes_ = 0;  // in a row, until now
+  std::uint32_t steps_to_grid_ = 0;           // until a crowded scene tries the grid again
 };
 
 }  // namespace supple

@@ -23,7 +23,7 @@ class BroadPhase::Implementation {
              std::to_string(volumes.size()) + " volumes; list indices of volumes");
     constexpr bool boxes = std::is_same_v<Volume, Aabb>;
     constexpr BoundingVolume kind = boxes ? BoundingVolume::aabb : BoundingVolume::sphere;
-    // After volumes of the other kind all are new.
+    // When the kind of volume changes, all volumes are new.
     if (kind == kind_) given.dirty = dirty;
     if (kind != kind_) finder_ = make(kind);
     kind_ = kind;

@@ -1,7 +1,6 @@
 #include "broad_phase/overlap_kernel.hpp"
 
 #include <algorithm>
-#include <array>
 #include <limits>
 
 // Highway compiles the rest of this file once for each instruction set, and picks one when the program runs.
@@ -9,7 +8,6 @@
 #define HWY_TARGET_INCLUDE "broad_phase/overlap_kernel.cpp"
 #include <hwy/foreach_target.h>
 
-#include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
 #include "core/packed_lanes-inl.hpp"
@@ -24,11 +22,11 @@ namespace hn = hwy::HWY_NAMESPACE;
 using Floats = hn::CappedTag<float, max_lanes>;
 using Integers = hn::RebindToUnsigned<Floats>;
 
-/// Adds the pairs of a row and those of the boxes at `column` whose lanes are hit and that begin here to the
-/// batch. Returns how many pairs the batch has then.
+/// Adds the pairs of box `row` with the boxes of hit lanes, counted from `column`, that begin here. Returns
+/// the new number of pairs in the batch.
 template <class Mask>
 HWY_INLINE std::size_t append(const BoxLanes& boxes, std::size_t row, std::size_t column, Mask hit,
-                              std::size_t count, PairBins& pairs) {
+                              std::size_t count, PairList& pairs) {
   const Integers lanes;
   const auto begins =
       hn::Or(hn::Set(lanes, boxes.begins[row]), hn::LoadU(lanes, boxes.begins.data() + column));
@@ -39,9 +37,8 @@ HWY_INLINE std::size_t append(const BoxLanes& boxes, std::size_t row, std::size_
   return count + hn::CountTrue(lanes, reported);
 }
 
-template <bool sorted>
-HWY_INLINE std::uint64_t find_rows(const BoxLanes& boxes, std::size_t begin, std::size_t end,
-                                   std::span<const BoundingSphere> spheres, PairBins& pairs) {
+std::uint64_t find(const BoxLanes& boxes, std::size_t begin, std::size_t end,
+                   std::span<const BoundingSphere> spheres, PairList& pairs) {
   const Floats lanes;
   const float* const min_x = boxes.min[0].data();
   const float* const min_y = boxes.min[1].data();
@@ -49,6 +46,7 @@ HWY_INLINE std::uint64_t find_rows(const BoxLanes& boxes, std::size_t begin, std
   const float* const max_x = boxes.max[0].data();
   const float* const max_y = boxes.max[1].data();
   const float* const max_z = boxes.max[2].data();
+  const bool is_sorted = boxes.is_sorted;
   std::uint64_t tests = 0;
   std::size_t count = 0;
   for (std::size_t row = begin; row < end; ++row) {
@@ -57,61 +55,25 @@ HWY_INLINE std::uint64_t find_rows(const BoxLanes& boxes, std::size_t begin, std
     const auto row_min_z = hn::Set(lanes, min_z[row]), row_max_z = hn::Set(lanes, max_z[row]);
     for (std::size_t j = row + 1; j < boxes.count; j += hn::Lanes(lanes)) {
       const auto begin_before = hn::Le(hn::LoadU(lanes, min_x + j), row_max_x);
-      auto hit = hn::And(begin_before, hn::And(hn::Le(hn::LoadU(lanes, min_y + j), row_max_y),
-                                               hn::Ge(hn::LoadU(lanes, max_y + j), row_min_y)));
-      hit = hn::And(hit, hn::And(hn::Le(hn::LoadU(lanes, min_z + j), row_max_z),
-                                 hn::Ge(hn::LoadU(lanes, max_z + j), row_min_z)));
-      if constexpr (!sorted) hit = hn::And(hit, hn::Ge(hn::LoadU(lanes, max_x + j), row_min_x));
+      const auto in_x = hn::And(begin_before, hn::Ge(hn::LoadU(lanes, max_x + j), row_min_x));
+      const auto in_y = hn::And(hn::Le(hn::LoadU(lanes, min_y + j), row_max_y),
+                                hn::Ge(hn::LoadU(lanes, max_y + j), row_min_y));
+      const auto in_z = hn::And(hn::Le(hn::LoadU(lanes, min_z + j), row_max_z),
+                                hn::Ge(hn::LoadU(lanes, max_z + j), row_min_z));
+      const auto hit = hn::And(in_x, hn::And(in_y, in_z));
       if (!hn::AllFalse(lanes, hit)) count = append(boxes, row, j, hit, count, pairs);
-      if (HWY_UNLIKELY(count > PairBins::batch_size)) {
+      if (HWY_UNLIKELY(count > PairList::batch_size)) {
         pairs.flush(count, spheres);
         count = 0;
       }
-      if constexpr (sorted) {
-        tests += hn::CountTrue(lanes, begin_before);
-        if (!hn::AllTrue(lanes, begin_before)) break;
-      }
+      if (!is_sorted) continue;
+      tests += hn::CountTrue(lanes, begin_before);
+      if (!hn::AllTrue(lanes, begin_before)) break;
     }
-    if constexpr (!sorted) tests += boxes.count - row - 1;
+    if (!is_sorted) tests += boxes.count - row - 1;
   }
   pairs.flush(count, spheres);
   return tests;
-}
-
-std::uint64_t find_all(const BoxLanes& boxes, std::size_t begin, std::size_t end,
-                       std::span<const BoundingSphere> spheres, PairBins& pairs) {
-  return find_rows<false>(boxes, begin, end, spheres, pairs);
-}
-
-std::uint64_t find_sorted(const BoxLanes& boxes, std::size_t begin, std::size_t end,
-                          std::span<const BoundingSphere> spheres, PairBins& pairs) {
-  return find_rows<true>(boxes, begin, end, spheres, pairs);
-}
-
-/// A box is loaded as its first four and its last four numbers; a bound that always holds stands where they
-/// say the same or belong to the other end.
-std::size_t find_of(const Aabb& box, std::span<const Aabb> boxes, std::span<const std::uint32_t> slots,
-                    std::uint32_t* found) {
-  const hn::CappedTag<float, 4> lanes;  // four, but for the target without vectors
-  constexpr float infinity = std::numeric_limits<float>::infinity();
-  alignas(16) const std::array<float, 4> upper{box.max.x, box.max.y, box.max.z, infinity};
-  alignas(16) const std::array<float, 4> lower{-infinity, box.min.x, box.min.y, box.min.z};
-  // The boxes are apart in memory: prefetch all before the first is needed.
-  for (const std::uint32_t slot : slots) hwy::Prefetch(&boxes[slot]);
-  std::size_t count = 0;
-  for (const std::uint32_t slot : slots) {
-    const float* const ends = &boxes[slot].min.x;
-    bool overlaps = true;
-    for (std::size_t i = 0; i < 4; i += hn::Lanes(lanes)) {
-      const auto starts = hn::Le(hn::LoadU(lanes, ends + i), hn::Load(lanes, upper.data() + i));
-      const auto stops = hn::Ge(hn::LoadU(lanes, ends + 2 + i), hn::Load(lanes, lower.data() + i));
-      overlaps = overlaps && hn::AllTrue(lanes, hn::And(starts, stops));
-    }
-    // No branch: which of them overlap is unpredictable.
-    found[count] = slot;
-    count += static_cast<std::size_t>(overlaps);
-  }
-  return count;
 }
 
 }  // namespace
@@ -122,9 +84,7 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace supple {
 
-HWY_EXPORT(find_all);
-HWY_EXPORT(find_sorted);
-HWY_EXPORT(find_of);
+HWY_EXPORT(find);
 
 void BoxLanes::resize(std::size_t new_count) {
   count = new_count;
@@ -140,20 +100,8 @@ void BoxLanes::resize(std::size_t new_count) {
 }
 
 std::uint64_t find_overlaps(const BoxLanes& boxes, std::size_t begin, std::size_t end,
-                            std::span<const BoundingSphere> spheres, PairBins& pairs) {
-  return HWY_DYNAMIC_DISPATCH(find_all)(boxes, begin, end, spheres, pairs);
-}
-
-std::uint64_t find_overlaps_sorted(const BoxLanes& boxes, std::size_t begin, std::size_t end,
-                                   std::span<const BoundingSphere> spheres, PairBins& pairs) {
-  return HWY_DYNAMIC_DISPATCH(find_sorted)(boxes, begin, end, spheres, pairs);
-}
-
-void find_overlaps_of(const Aabb& box, std::span<const Aabb> boxes, std::span<const std::uint32_t> slots,
-                      std::vector<std::uint32_t>& found) {
-  static_assert(sizeof(Aabb) == 6 * sizeof(float));
-  found.resize(slots.size() + 1);
-  found.resize(HWY_DYNAMIC_DISPATCH(find_of)(box, boxes, slots, found.data()));
+                            std::span<const BoundingSphere> spheres, PairList& pairs) {
+  return HWY_DYNAMIC_DISPATCH(find)(boxes, begin, end, spheres, pairs);
 }
 
 }  // namespace supple

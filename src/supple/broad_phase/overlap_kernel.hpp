@@ -12,24 +12,27 @@
 
 namespace supple {
 
-/// Orders slots by the lower ends of their boxes. -0 goes before +0.
+/// A key that sorts slots by the lower ends of their boxes. -0 precedes +0.
 inline std::uint64_t order_key(float low, std::uint32_t slot) {
   const auto bits = std::bit_cast<std::uint32_t>(low);
   return std::uint64_t{bits ^ ((bits >> 31) != 0 ? 0xffffffffu : 0x80000000u)} << 32 | slot;
 }
 
-/// Boxes as structure of arrays, for a kernel that tests one against many.
+/// Boxes as a structure of arrays, for kernels that test one box against many.
 struct BoxLanes {
   std::array<std::vector<float>, 3> min, max;
-  std::vector<std::uint32_t> slots;  ///< object of each lane
-  /// Per lane, bit per axis: the box begins in this part of space. A pair is reported where it begins along
-  /// all three axes; 7 everywhere when there is but one part.
+  std::vector<std::uint32_t> slots;
+  /// A bit per axis: the box begins in this part of space. A pair is reported where one of its boxes begins
+  /// along each axis. All are 7 when space is not divided.
   std::vector<std::uint32_t> begins;
   std::size_t count = 0;
+  /// By ascending lower end along axis 0. The tests of a box then end at the first box that begins behind it.
+  bool is_sorted = false;
 
-  /// Room for `new_count` boxes, all to be set. The lanes behind them hold NaN, which overlaps nothing.
+  /// Makes room for `new_count` boxes, all of which must be set. The lanes behind them get NaN, which
+  /// overlaps nothing.
   void resize(std::size_t new_count);
-  /// `first_axis` becomes axis 0 of the lanes, the others follow in turn.
+  /// `first_axis` becomes axis 0 of the lanes. The others follow in cyclic order.
   void set(std::size_t lane, std::uint32_t slot, const Aabb& box, std::uint32_t begins_here = 7,
            int first_axis = 0) {
     for (int k = 0; k < 3; ++k) {
@@ -42,18 +45,10 @@ struct BoxLanes {
   }
 };
 
-/// Tests each of the lanes [begin, end) against all lanes behind it and adds the pairs that overlap and begin
-/// here to `pairs`; with spheres, which are per slot, only those whose spheres overlap. Returns the number of
-/// tests, which is the same for every instruction set.
+/// Tests each of the lanes [begin, end) against all lanes behind it. Adds the pairs that overlap and begin
+/// here to `pairs`. When spheres are given, per slot, their overlap decides. Returns the number of tests,
+/// which is the same for every instruction set.
 std::uint64_t find_overlaps(const BoxLanes& boxes, std::size_t begin, std::size_t end,
-                            std::span<const BoundingSphere> spheres, PairBins& pairs);
-
-/// The same for boxes sorted by ascending lower end along axis 0: a row ends where the boxes begin behind it.
-std::uint64_t find_overlaps_sorted(const BoxLanes& boxes, std::size_t begin, std::size_t end,
-                                   std::span<const BoundingSphere> spheres, PairBins& pairs);
-
-/// Replaces `found` by those of the slots whose boxes overlap this one.
-void find_overlaps_of(const Aabb& box, std::span<const Aabb> boxes, std::span<const std::uint32_t> slots,
-                      std::vector<std::uint32_t>& found);
+                            std::span<const BoundingSphere> spheres, PairList& pairs);
 
 }  // namespace supple

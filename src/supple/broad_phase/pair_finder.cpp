@@ -51,7 +51,7 @@ PairFinder::PairFinder(BroadPhaseMethod method, BoundingVolume bounding_volume,
 
 std::span<const IndexPair> PairFinder::find_pairs(const ObjectVolumes& given, const Parallel& parallel) {
   found_.stats = {.method = found_.stats.method};
-  volumes_.update(given, search_->needs_previous(volumes_), parallel);
+  volumes_.update(given, parallel);
   found_.stats.objects_changed = volumes_.changed().size();
   if (found_.stats.objects_changed != 0) search_->search(volumes_, parallel, found_);
   return found_.pairs;
@@ -61,7 +61,7 @@ std::string PairFinder::validate() const {
   const auto& pairs = found_.pairs;
   if (!std::is_sorted(pairs.begin(), pairs.end()) ||
       std::adjacent_find(pairs.begin(), pairs.end()) != pairs.end())
-    return "broad phase: the pairs are not in order, or one is there twice";
+    return "broad phase: the pairs are not sorted, or one appears twice";
   return search_->validate(volumes_);
 }
 

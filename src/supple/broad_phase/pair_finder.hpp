@@ -9,15 +9,15 @@
 
 namespace supple {
 
-/// The broad phase of a scene: the volumes as last seen, their pairs, and the method that finds them.
+/// The broad phase of a scene: the present volumes, their pairs, and the method that finds the pairs.
 class PairFinder {
  public:
   /// Throws `Error` when an option is out of its range or has no effect with the method.
   PairFinder(BroadPhaseMethod method, BoundingVolume bounding_volume,
              const SceneOctreeOptions& octree_options);
 
-  /// All overlapping pairs, sorted by (a, b), each once; they last until the next call. When no volume
-  /// changed these are the pairs of the call before.
+  /// All overlapping pairs, sorted by (a, b), each once. The span lasts until the next call. When no volume
+  /// changed, the method does not run and the pairs stay.
   std::span<const IndexPair> find_pairs(const ObjectVolumes& given, const Parallel& parallel);
   const BroadPhaseStats& stats() const { return found_.stats; }
   std::vector<SceneRegion> regions() const { return search_->regions(); }

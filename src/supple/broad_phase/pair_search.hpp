@@ -8,26 +8,24 @@
 
 namespace supple {
 
-/// What a search finds: it stays there for the next one.
+/// The pairs and the counters of a broad phase. They persist from search to search.
 struct FoundPairs {
   std::vector<IndexPair> pairs;  ///< sorted by (a, b), each once
   BroadPhaseStats stats;
 };
 
-/// One method of the broad phase. All methods find the same pairs: (a, b) exactly when `overlap` of geometry
-/// says so of the two volumes and neither is empty.
+/// One method of the broad phase. All methods find the same pairs: (a, b) exactly when neither volume is
+/// empty and `overlap` of geometry reports the two.
 class PairSearch {
  public:
   virtual ~PairSearch() = default;
 
-  /// Takes the changed volumes of the store and replaces the pairs, which are those of the volumes before, by
-  /// the pairs of the volumes now. The stats are zero but for `objects_changed`; at least one object changed.
-  virtual void search(VolumeStore& volumes, const Parallel& parallel, FoundPairs& found) = 0;
-  /// The next search follows each object from its previous volume.
-  virtual bool needs_previous(const VolumeStore&) const { return false; }
-  /// Regions that the last search used.
+  /// Replaces the pairs of the step before by the pairs of the present volumes. At least one volume changed.
+  /// All stats are zero except `objects_changed`.
+  virtual void search(const VolumeStore& volumes, const Parallel& parallel, FoundPairs& found) = 0;
+  /// The regions that the last search used.
   virtual std::vector<SceneRegion> regions() const { return {}; }
-  /// Checks every invariant; the empty string, or what is wrong.
+  /// Checks every invariant. Returns the empty string, or what is wrong.
   virtual std::string validate(const VolumeStore&) const { return {}; }
 };
 

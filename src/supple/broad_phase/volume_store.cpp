@@ -11,98 +11,72 @@ bool differs(const Volume& now, const Volume& before) {
   return std::memcmp(&now, &before, sizeof(Volume)) != 0 && !(now.empty() && before.empty());
 }
 
-Aabb box_of(const Aabb& box) {
-  return box;
-}
-Aabb box_of(const BoundingSphere& sphere) {
-  return bounding_box(sphere);
+template <class Volume>
+Volume volume_at(std::span<const Volume> given, std::size_t slot) {
+  return slot < given.size() ? given[slot] : Volume{};
 }
 
-/// Writes the slots of [begin, end) whose volumes changed to `out` and returns how many there are. Slots past
-/// the end of `now` are empty now. With `take` the volumes, and the boxes around them, become those of now.
+/// Whether the volumes of [begin, end) are certainly the same as before; quick for volumes at rest.
 template <class Volume>
-std::size_t compare(std::span<const Volume> now, std::vector<Volume>& known, std::vector<Aabb>& boxes,
-                    bool take, std::size_t begin, std::size_t end, std::uint32_t* out) {
-  constexpr std::size_t block_size = 8;
-  const Volume none{};
-  std::size_t count = 0;
-  for (std::size_t block = begin; block < end; block += block_size) {
-    const std::size_t block_end = std::min(block + block_size, end);
-    if (block_end <= now.size() &&
-        std::memcmp(&now[block], &known[block], (block_end - block) * sizeof(Volume)) == 0)
-      continue;
-    for (std::size_t i = block; i < block_end; ++i) {
-      const Volume& incoming = i < now.size() ? now[i] : none;
-      if (!differs(incoming, known[i])) continue;
-      out[count++] = static_cast<std::uint32_t>(i);
-      if (!take) continue;
-      boxes[i] = box_of(incoming);
-      known[i] = incoming;
-    }
-  }
-  return count;
+bool is_same_block(std::span<const Volume> given, const std::vector<Volume>& known, std::size_t begin,
+                   std::size_t end) {
+  return end <= given.size() &&
+         std::memcmp(&given[begin], &known[begin], (end - begin) * sizeof(Volume)) == 0;
 }
 
 }  // namespace
 
-void VolumeStore::update(const ObjectVolumes& given, bool keep_previous, const Parallel& parallel) {
+void VolumeStore::update(const ObjectVolumes& given, const Parallel& parallel) {
   const std::size_t known_count = given_count_;
-  given_ = given;
   given_count_ = has_spheres_ ? given.spheres.size() : given.boxes.size();
   boxes_.resize(std::max(given_count_, known_count));
   if (has_spheres_) spheres_.resize(boxes_.size());
-  taken_ = !keep_previous;
   if (!given.dirty) {
-    compare_all(parallel);
+    compare_all(given, parallel);
   } else {
     listed_.assign(given.dirty->begin(), given.dirty->end());
     const auto [fewer, more] = std::minmax(given_count_, known_count);
     for (std::size_t slot = fewer; slot < more; ++slot) listed_.push_back(static_cast<std::uint32_t>(slot));
     std::sort(listed_.begin(), listed_.end());
-    listed_.erase(std::unique(listed_.begin(), listed_.end()), listed_.end());
-    std::erase_if(listed_, [&](std::uint32_t slot) { return !is_changed(slot); });
+    std::erase_if(listed_, [&](std::uint32_t slot) { return !take_if_changed(given, slot); });
     changed_count_ = listed_.size();
-    if (taken_)
-      for (const std::uint32_t slot : listed_) take(slot);
   }
   revision_ += changed_count_ != 0;
 }
 
-void VolumeStore::take(std::uint32_t slot) {
-  const ObjectVolume now = incoming(slot);
-  boxes_[slot] = now.box;
-  if (has_spheres_) spheres_[slot] = now.sphere;
+bool VolumeStore::take_if_changed(const ObjectVolumes& given, std::uint32_t slot) {
+  if (has_spheres_) {
+    const BoundingSphere sphere = volume_at(given.spheres, slot);
+    if (!differs(sphere, spheres_[slot])) return false;
+    spheres_[slot] = sphere;
+    boxes_[slot] = bounding_box(sphere);
+  } else {
+    const Aabb box = volume_at(given.boxes, slot);
+    if (!differs(box, boxes_[slot])) return false;
+    boxes_[slot] = box;
+  }
+  return true;
 }
 
-void VolumeStore::take_changed() {
-  if (taken_) return;
-  for (const std::uint32_t slot : changed()) take(slot);
-  taken_ = true;
-}
-
-ObjectVolume VolumeStore::incoming(std::uint32_t slot) const {
-  if (slot >= given_count_) return {};
-  if (has_spheres_) return {bounding_box(given_.spheres[slot]), given_.spheres[slot]};
-  return {given_.boxes[slot], {}};
-}
-
-bool VolumeStore::is_changed(std::uint32_t slot) const {
-  const ObjectVolume now = incoming(slot);
-  return has_spheres_ ? differs(now.sphere, spheres_[slot]) : differs(now.box, boxes_[slot]);
-}
-
-void VolumeStore::compare_all(const Parallel& parallel) {
-  constexpr std::size_t chunk_size = 8192;
+void VolumeStore::compare_all(const ObjectVolumes& given, const Parallel& parallel) {
+  constexpr std::size_t chunk_size = 8192, block_size = 8;
   const std::size_t slots = slot_count(), chunk_count = (slots + chunk_size - 1) / chunk_size;
-  listed_.resize(slots + 1);
+  listed_.resize(slots);
   chunk_sizes_.resize(chunk_count);
   parallel.for_ranges(chunk_count, 1, [&](std::size_t first, std::size_t last, std::uint32_t) {
     for (std::size_t chunk = first; chunk < last; ++chunk) {
-      const std::size_t begin = chunk * chunk_size;
-      const std::size_t end = std::min(begin + chunk_size, slots);
-      std::uint32_t* const out = listed_.data() + begin;
-      chunk_sizes_[chunk] = has_spheres_ ? compare(given_.spheres, spheres_, boxes_, taken_, begin, end, out)
-                                         : compare(given_.boxes, boxes_, boxes_, taken_, begin, end, out);
+      std::size_t count = 0;
+      const std::size_t begin = chunk * chunk_size, end = std::min(begin + chunk_size, slots);
+      for (std::size_t block = begin; block < end; block += block_size) {
+        const std::size_t block_end = std::min(block + block_size, end);
+        if (has_spheres_ ? is_same_block(given.spheres, spheres_, block, block_end)
+                         : is_same_block(given.boxes, boxes_, block, block_end))
+          continue;
+        for (std::size_t slot = block; slot < block_end; ++slot)
+          if (take_if_changed(given, static_cast<std::uint32_t>(slot)))
+            listed_[begin + count++] = static_cast<std::uint32_t>(slot);
+      }
+      chunk_sizes_[chunk] = count;
     }
   });
   changed_count_ = 0;

@@ -26,7 +26,7 @@ class GridOnly {
       : parallel_(threads), volumes_(kind) {}
   const std::vector<IndexPair>& find(std::span<const Aabb> boxes,
                                      std::span<const BoundingSphere> spheres = {}) {
-    volumes_.update({.boxes = boxes, .spheres = spheres}, false, parallel_);
+    volumes_.update({.boxes = boxes, .spheres = spheres}, parallel_);
     grid_.search(volumes_, parallel_, found_);
     return found_.pairs;
   }
@@ -215,7 +215,7 @@ TEST(PairSorter, SortsRunsOfAnyLength) {
   for (const std::uint32_t slots : {70u, 3000u, 500'000u}) {
     Random random(slots);
     std::vector<IndexPair> expected, sorted;
-    const auto bins = sorter.start(2, slots);
+    const auto lists = sorter.start(2, slots);
     for (const std::uint32_t length : {0u, 1u, 2u, 15u, 16u, 17u, 63u, 64u, 65u, 66u, 300u, 2500u}) {
       const std::uint32_t a = random.below(slots / 2);
       for (std::uint32_t i = 0; i < length; ++i) expected.push_back({a, a + 1 + random.below(slots - a - 1)});
@@ -225,19 +225,19 @@ TEST(PairSorter, SortsRunsOfAnyLength) {
     std::vector<IndexPair> mixed = expected;
     for (std::size_t i = mixed.size(); i > 1; --i)
       std::swap(mixed[i - 1], mixed[random.below(static_cast<std::uint32_t>(i))]);
-    const auto put = [&](PairBins& bin, std::size_t first, std::size_t step) {
+    const auto put = [&](PairList& list, std::size_t first, std::size_t step) {
       std::size_t count = 0;
       for (std::size_t i = first; i < mixed.size(); i += step) {
-        bin.first[count] = i % 3 == 0 ? mixed[i].b : mixed[i].a;
-        bin.second[count++] = i % 3 == 0 ? mixed[i].a : mixed[i].b;
+        list.first[count] = i % 3 == 0 ? mixed[i].b : mixed[i].a;
+        list.second[count++] = i % 3 == 0 ? mixed[i].a : mixed[i].b;
         if (count < 100) continue;
-        bin.flush(count, {});
+        list.flush(count, {});
         count = 0;
       }
-      bin.flush(count, {});
+      list.flush(count, {});
     };
-    put(bins[0], 0, 2);
-    put(bins[1], 1, 2);
+    put(lists[0], 0, 2);
+    put(lists[1], 1, 2);
     sorter.finish(parallel, sorted);
     EXPECT_EQ(sorted, expected) << slots;
     const auto again = sorter.start(2, slots);
@@ -245,6 +245,9 @@ TEST(PairSorter, SortsRunsOfAnyLength) {
     put(again[1], 0, 1);
     put(again[1], 0, 3);
     sorter.finish(parallel, sorted);
+    EXPECT_TRUE(std::is_sorted(sorted.begin(), sorted.end()));
+    EXPECT_GT(sorted.size(), 2 * expected.size());
+    sorted.erase(std::unique(sorted.begin(), sorted.end()), sorted.end());
     EXPECT_EQ(sorted, expected) << slots << ", some twice and three times";
     for_each_target([&](const char* name) {
       put(sorter.start(1, slots)[0], 0, 1);

@@ -176,7 +176,7 @@ TEST_P(SceneOctreeArity, IsTheSameHoweverItCameAbout) {
   const SceneCube cube = chooser.choose(boxes);
   const Parallel parallel(1);
   VolumeStore volumes(BoundingVolume::aabb);
-  volumes.update({.boxes = boxes}, false, parallel);
+  volumes.update({.boxes = boxes}, parallel);
   SceneOctree kept(BoundingVolume::aabb, options);
   kept.build(volumes, cube);
   for (int step = 0; step < 30; ++step) {
@@ -184,13 +184,9 @@ TEST_P(SceneOctreeArity, IsTheSameHoweverItCameAbout) {
       if (random.below(3) != 0) continue;
       box = random.below(20) == 0 ? Aabb{} : box_around(random.point(-3, 23), random.point(0.01f, 0.8f));
     }
-    volumes.update({.boxes = boxes}, true, parallel);
-    for (const std::uint32_t slot : volumes.changed()) {
-      const ObjectVolume before = volumes.volume(slot);
-      const bool stays = !before.box.empty() && kept.stays(slot, volumes.incoming(slot));
-      volumes.take(slot);
-      if (!stays) kept.move(volumes, slot, before);
-    }
+    volumes.update({.boxes = boxes}, parallel);
+    for (const std::uint32_t slot : volumes.changed())
+      if (!kept.stays(slot, boxes[slot])) kept.move(volumes, slot);
     kept.settle(volumes);
     ASSERT_EQ(kept.validate(volumes), "") << "step " << step;
     SceneOctree fresh(BoundingVolume::aabb, options);

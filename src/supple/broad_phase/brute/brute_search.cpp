@@ -4,8 +4,7 @@
 
 namespace supple {
 
-void BruteSearch::search(VolumeStore& volumes, const Parallel& parallel, FoundPairs& found) {
-  volumes.take_changed();
+void BruteSearch::search(const VolumeStore& volumes, const Parallel& parallel, FoundPairs& found) {
   const auto boxes = volumes.boxes();
   lanes_.resize(boxes.size());
   std::size_t count = 0;
@@ -13,11 +12,11 @@ void BruteSearch::search(VolumeStore& volumes, const Parallel& parallel, FoundPa
     if (!boxes[slot].empty()) lanes_.set(count++, slot, boxes[slot]);
   lanes_.resize(count);
 
-  const auto bins = sorter_.start(parallel.worker_count(), boxes.size());
+  const auto lists = sorter_.start(parallel.worker_count(), boxes.size());
   std::atomic<std::uint64_t> tests = 0;
   constexpr std::size_t grain = 64;
   parallel.for_ranges(count, grain, [&](std::size_t begin, std::size_t end, std::uint32_t worker) {
-    tests += find_overlaps(lanes_, begin, end, volumes.spheres(), bins[worker]);
+    tests += find_overlaps(lanes_, begin, end, volumes.spheres(), lists[worker]);
   });
   sorter_.finish(parallel, found.pairs);
   found.stats.object_pairs_tested = tests;

@@ -8,7 +8,7 @@ namespace supple {
 /// Every volume against every other, O(n²). The reference for all other methods.
 class BruteSearch final : public PairSearch {
  public:
-  void search(VolumeStore& volumes, const Parallel& parallel, FoundPairs& found) override;
+  void search(const VolumeStore& volumes, const Parallel& parallel, FoundPairs& found) override;
 
  private:
   BoxLanes lanes_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 
+#include "broad_phase/pair_sorter.hpp"
 #include "geometry/aabb.hpp"
 
 // Highway compiles the rest of this file once for each instruction set, and picks one when the program runs.
@@ -27,7 +28,7 @@ using Words = hn::CappedTag<std::uint32_t, max_lanes>;
 using BoundLanes = Words;
 using Bounds = hn::Vec<BoundLanes>;
 
-/// How far the ends of boxes pass their bounds, for both halves of each word.
+/// By how many steps the ends of boxes exceed their bounds, for both halves of each word.
 HWY_INLINE hn::Vec<Words> excess(const std::uint32_t* ends, Bounds bounds) {
   const std::uint32_t end = *ends, bound = hn::GetLane(bounds);
   const std::uint32_t low = (end & 0xffff) - std::min(end & 0xffff, bound & 0xffff);
@@ -38,15 +39,14 @@ HWY_INLINE hn::Vec<Words> excess(const std::uint32_t* ends, Bounds bounds) {
 using BoundLanes = hn::Repartition<std::uint16_t, Words>;
 using Bounds = hn::Vec<BoundLanes>;
 
-/// How far the ends of boxes pass their bounds, for both halves of each word.
+/// By how many steps the ends of boxes exceed their bounds, for both halves of each word.
 HWY_INLINE hn::Vec<Words> excess(const std::uint32_t* ends, Bounds bounds) {
   const auto halves = hn::LoadU(BoundLanes(), reinterpret_cast<const std::uint16_t*>(ends));
   return hn::BitCast(Words(), hn::SaturatedSub(halves, bounds));
 }
 #endif
 
-/// The arrays that are read and written all the time, by value: the compiler takes each word that is written
-/// for a change of any other.
+/// Copies of what the inner loop uses. Otherwise the compiler reloads it after each store.
 struct Arrays {
   const std::uint32_t* ends_0;
   const std::uint32_t* ends_1;
@@ -54,11 +54,12 @@ struct Arrays {
   const std::uint32_t* slots;
   std::uint32_t* first;
   std::uint32_t* second;
+  bool many_pairs;
   std::size_t count = 0;  // of pairs
   std::uint64_t tests = 0;
 };
 
-/// One box: the bounds of the ends of others, less one in each half.
+/// One box: the bounds of the ends of other boxes, minus one in each half, and its steps by grid axis.
 struct Query {
   Bounds bounds_0, bounds_1, bounds_2;
   std::uint32_t slot;
@@ -79,9 +80,9 @@ HWY_INLINE Query query_of(const Arrays& arrays, std::size_t place) {
           {0xffff - (x >> 16), 0xffff - (y >> 16), 0xffff - (z >> 16)}};
 }
 
-/// Adds those of the boxes from `j` on whose lanes are set, and that overlap exactly.
+/// Adds the pairs of a box with the boxes of set lanes, counted from `j`, that overlap exactly.
 HWY_NOINLINE std::size_t decide(const BinnedBoxes& boxes, std::uint32_t slot, std::size_t j,
-                                std::uint32_t undecided, std::size_t count, PairBins& pairs) {
+                                std::uint32_t undecided, std::size_t count, PairList& pairs) {
   for (; undecided != 0; undecided &= undecided - 1) {
     const std::uint32_t other = boxes.slots[j + static_cast<std::size_t>(std::countr_zero(undecided))];
     pairs.first[count] = slot;
@@ -98,11 +99,10 @@ std::uint32_t bits_of(Mask mask) {
   return bytes[0] + 256u * bytes[1];
 }
 
-/// A box against boxes [begin, end). The excess of an end is 0 when it is surely within its bound, and 1 when
-/// both are in the same step. With `many_pairs` there is no branch on whether a vector has any.
-template <bool many_pairs>
+/// Tests a box against boxes [begin, end). The excess of an end is 0 when the end is surely within its bound,
+/// and 1 when both are in the same step.
 HWY_INLINE void test(const Query& query, std::size_t begin, std::size_t end, const BinnedBoxes& boxes,
-                     Arrays& arrays, PairBins& pairs) {
+                     Arrays& arrays, PairList& pairs) {
   const Words lanes;
   arrays.tests += end - begin;
   for (std::size_t j = begin; j < end; j += hn::Lanes(lanes)) {
@@ -110,9 +110,8 @@ HWY_INLINE void test(const Query& query, std::size_t begin, std::size_t end, con
         hn::Or(hn::Or(excess(arrays.ends_0 + j, query.bounds_0), excess(arrays.ends_1 + j, query.bounds_1)),
                excess(arrays.ends_2 + j, query.bounds_2));
     const auto apart = hn::And(over, hn::Set(lanes, 0xfffefffeu));
-    if constexpr (!many_pairs) {
-      if (HWY_LIKELY(hn::AllFalse(lanes, hn::Eq(apart, hn::Zero(lanes))))) continue;
-    }
+    // When most vectors contain a pair, this branch would be unpredictable.
+    if (HWY_LIKELY(!arrays.many_pairs && hn::AllFalse(lanes, hn::Eq(apart, hn::Zero(lanes))))) continue;
     const auto in_range = hn::FirstN(lanes, end - j);
     const auto sure = hn::And(in_range, hn::Eq(over, hn::Zero(lanes)));
     const auto undecided = hn::AndNot(sure, hn::And(in_range, hn::Eq(apart, hn::Zero(lanes))));
@@ -122,14 +121,14 @@ HWY_INLINE void test(const Query& query, std::size_t begin, std::size_t end, con
     arrays.count += hn::CountTrue(lanes, sure);
     if (HWY_UNLIKELY(!hn::AllFalse(lanes, undecided)))
       arrays.count = decide(boxes, query.slot, j, bits_of(undecided), arrays.count, pairs);
-    if (HWY_UNLIKELY(arrays.count > PairBins::batch_size)) {
+    if (HWY_UNLIKELY(arrays.count > PairList::batch_size)) {
       pairs.flush(arrays.count, boxes.spheres);
       arrays.count = 0;
     }
   }
 }
 
-/// Divisions of one axis where a box of the level may begin that overlaps the query.
+/// The divisions of one axis in which boxes may begin that overlap the query.
 struct Divisions {
   std::uint32_t first, last;
 };
@@ -138,7 +137,7 @@ HWY_INLINE Divisions divisions_of(const GridLevel& level, const Query& query, st
   return {level.division(axis, low - std::min(low, max_extent)), level.division(axis, query.high[axis])};
 }
 
-/// Calls `visit` for the range of places in each row.
+/// Calls `visit` for the range of boxes in each row.
 template <class Visit>
 HWY_INLINE void for_rows(const std::uint32_t* cell_begins, const GridLevel& level, Divisions cells,
                          Divisions second, Divisions third, const Visit& visit) {
@@ -150,17 +149,17 @@ HWY_INLINE void for_rows(const std::uint32_t* cell_begins, const GridLevel& leve
   }
 }
 
-template <bool many_pairs, bool only_row>
+template <bool only_row>
 std::uint64_t search_level(const Grid& grid, const BinnedBoxes& boxes, std::size_t level_index,
-                           std::size_t begin, std::size_t end, PairBins& pairs) {
-  Arrays arrays{boxes.ends[0].data(), boxes.ends[1].data(), boxes.ends[2].data(),
-                boxes.slots.data(),   pairs.first.data(),   pairs.second.data()};
+                           std::size_t begin, std::size_t end, PairList& pairs) {
+  Arrays arrays{boxes.ends[0].data(), boxes.ends[1].data(), boxes.ends[2].data(), boxes.slots.data(),
+                pairs.first.data(),   pairs.second.data(),  boxes.has_many_pairs};
   const std::uint32_t* const cell_begins = boxes.cell_begins.data();
   const GridLevel level = grid.levels[level_index];
   for (std::size_t place = begin; place < end; ++place) {
     const Query query = query_of(arrays, place);
     const auto visit = [&](std::size_t from, std::size_t to)
-                           HWY_ATTR { test<many_pairs>(query, from, to, boxes, arrays, pairs); };
+                           HWY_ATTR { test(query, from, to, boxes, arrays, pairs); };
     if constexpr (only_row) {
       visit(place + 1, cell_begins[level.division(0, query.high[0]) + 1]);
       continue;
@@ -183,18 +182,15 @@ std::uint64_t search_level(const Grid& grid, const BinnedBoxes& boxes, std::size
 }
 
 std::uint64_t search(const Grid& grid, const BinnedBoxes& boxes, std::size_t level, std::size_t begin,
-                     std::size_t end, PairBins& pairs) {
-  const auto function = grid.is_one_row()
-                            ? boxes.has_many_pairs ? search_level<true, true> : search_level<false, true>
-                        : boxes.has_many_pairs ? search_level<true, false>
-                                               : search_level<false, false>;
+                     std::size_t end, PairList& pairs) {
+  const auto function = grid.is_one_row() ? search_level<true> : search_level<false>;
   return function(grid, boxes, level, begin, end, pairs);
 }
 
-/// The steps of all coordinates of boxes, which are whole numbers in the bits that are left when 2^23 is
-/// added. `steps` has room for a vector past the last one. NaN, which only empty boxes have, may become any.
+/// Quantizes all coordinates of boxes. Adding 2^23 to a float leaves its whole number in the lower bits.
+/// `steps` has room for a vector past the last step. NaN, which only empty boxes have, may become any step.
 void steps_of(const Grid& grid, std::span<const float> coordinates, std::uint32_t* steps) {
-  constexpr std::size_t period = 3 * max_lanes;  // a vector of any length begins at some place of the pattern
+  constexpr std::size_t period = 3 * max_lanes;  // a multiple of 3 and of every vector length
   const hn::CappedTag<float, max_lanes> lanes;
   const Words words;
   std::array<float, period> low, scale;
@@ -253,7 +249,7 @@ std::size_t quantize_boxes(const Grid& grid, std::span<const Aabb> boxes, std::u
 }
 
 std::uint64_t search_cells(const Grid& grid, const BinnedBoxes& boxes, std::size_t level, std::size_t begin,
-                           std::size_t end, PairBins& pairs) {
+                           std::size_t end, PairList& pairs) {
   return HWY_DYNAMIC_DISPATCH(search)(grid, boxes, level, begin, end, pairs);
 }
 

@@ -6,16 +6,17 @@
 #include <span>
 #include <vector>
 
-#include "broad_phase/pair_sorter.hpp"
 #include "supple/types.hpp"
 
 namespace supple {
 
-/// Steps along each axis into which coordinates are quantized.
+class PairList;
+
+/// The number of steps along each axis to which coordinates are quantized.
 inline constexpr std::uint32_t quantization_steps = 1u << 16;
 
-/// A box in whole steps. Along each of x, y, z the lower half of a word is the step of the
-/// lower end, and the upper half is 65,535 less the step of the upper end; all steps are 1 to 65,534.
+/// A box in whole steps, from 1 to 65,534. For each of x, y, z, the lower half of a word is the step of the
+/// lower end, and the upper half is 65,535 minus the step of the upper end.
 struct QuantizedBox {
   std::array<std::uint32_t, 3> ends;
   std::uint32_t slot;
@@ -24,14 +25,14 @@ struct QuantizedBox {
   std::uint32_t extent(std::size_t axis) const { return 0xffff - (ends[axis] >> 16) - (ends[axis] & 0xffff); }
 };
 
-/// One level of the hierarchical grid: boxes of like size. Its cells form rows along the first axis; rows
-/// follow one another along the second axis and then the third. A box is in the cell of its lower corner.
+/// One level of the hierarchical grid: boxes of similar size. Its cells form rows along the first axis. Rows
+/// are in order of the third axis, then the second. A box is in the cell of its lower corner.
 struct GridLevel {
   std::array<std::uint32_t, 3> divisions{1, 1, 1};  ///< cells of a row, rows along the second and third axis
-  std::array<std::uint32_t, 3> max_extent{};        ///< of the boxes of this level, in steps
-  std::array<std::uint32_t, 3> limit{};  ///< extents that belong to this level, in steps, by x, y, z
+  std::array<std::uint32_t, 3> max_extent{};        ///< the largest of its boxes, in steps, by grid axis
+  std::array<std::uint32_t, 3> limit{};             ///< the largest allowed, in steps, by x, y, z
   std::uint32_t first_cell = 0;
-  std::uint32_t first_block = 0;  ///< a block is 2^rows_per_block_log2 rows, which are sorted at once
+  std::uint32_t first_block = 0;  ///< a block is 2^rows_per_block_log2 rows, which are sorted together
   std::uint8_t rows_per_block_log2 = 0;
 
   std::uint32_t division(std::size_t axis, std::uint32_t step) const {
@@ -47,11 +48,11 @@ struct GridLevel {
 
 struct Grid {
   std::array<float, 3> low{}, steps_per_unit{};  ///< by x, y, z
-  std::array<std::size_t, 3> axes{0, 1, 2};      ///< which of x, y, z is the first, second and third axis
+  std::array<std::size_t, 3> axes{0, 1, 2};      ///< the first, second and third axis: 0 is x, 1 is y, 2 is z
   std::vector<GridLevel> levels;                 ///< from the smallest boxes to the largest
 
   bool is_one_row() const { return levels.size() == 1 && levels[0].row_count() == 1; }
-  /// The first level whose limit the box keeps; the last level takes all that are left.
+  /// The first level whose limit is at least the box's extent. The last level has no limit.
   std::size_t level_of(const QuantizedBox& box) const {
     std::size_t level = 0;
     for (; level + 1 < levels.size(); ++level) {
@@ -62,24 +63,25 @@ struct Grid {
   }
 };
 
-/// All boxes by level, row and cell; ends along the grid's first, second and third axis.
+/// All boxes, sorted by level, row and cell.
 struct BinnedBoxes {
-  std::array<std::vector<std::uint32_t>, 3> ends;
+  std::array<std::vector<std::uint32_t>, 3> ends;  ///< as in `QuantizedBox`, by grid axis
   std::vector<std::uint32_t> slots;
-  std::vector<std::uint32_t> cell_begins;     ///< per cell and one more
-  bool has_many_pairs = false;                ///< a vector of lanes holds a pair more often than not
+  std::vector<std::uint32_t> cell_begins;     ///< one more than cells
+  bool has_many_pairs = false;                ///< most vectors of tested boxes contain a pair
   std::span<const Aabb> exact;                ///< per slot
-  std::span<const BoundingSphere> spheres{};  ///< per slot; where there are some, these decide
+  std::span<const BoundingSphere> spheres{};  ///< per slot, or empty; if given, spheres decide which overlap
 };
 
-/// Quantizes those of the boxes that are not empty to `out`, which has room for all; the first box has the
-/// number `slot`. Returns how many there are.
+/// Quantizes the boxes that are not empty to `out`, which has room for all boxes, and returns their number.
+/// The first of all boxes has the slot `slot`.
 std::size_t quantize_boxes(const Grid& grid, std::span<const Aabb> boxes, std::uint32_t slot,
                            QuantizedBox* out);
 
-/// Finds the pairs of boxes [begin, end), which belong to this level, with those behind them there and with
-/// all of the levels before. The exact boxes decide where steps cannot tell. Returns the number of tests.
+/// Finds the pairs of the boxes [begin, end), which belong to this level, with the boxes that follow them in
+/// the level and with all boxes of the levels before. The exact boxes decide pairs whose ends are in the same
+/// step. Returns the number of tests.
 std::uint64_t search_cells(const Grid& grid, const BinnedBoxes& boxes, std::size_t level, std::size_t begin,
-                           std::size_t end, PairBins& pairs);
+                           std::size_t end, PairList& pairs);
 
 }  // namespace supple

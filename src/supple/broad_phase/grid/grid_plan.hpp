@@ -17,23 +17,22 @@ class GridPlanner {
   void plan(std::span<const Aabb> boxes, Grid& grid);
 
  private:
-  using Lengths = std::array<double, 3>;  // by x, y, z
   struct Sample {
-    std::array<float, 3> low, high;
-    double size;  // the largest extent, in mean extents
+    std::array<float, 3> low{}, high{};
+    double size = 0;  // the largest extent, in mean extents
   };
   void take_sample(std::span<const Aabb> boxes);
   void choose_bounds(Grid& grid);
   void choose_axes(Grid& grid);
-  double density_of_clusters() const;
   void choose_levels(Grid& grid);
-  void add_level(Grid& grid, const Lengths& limit, const Lengths& cell) const;
+  void add_level(Grid& grid, double count, double size) const;
 
+  double count_ = 0;  // of all boxes
   std::vector<Sample> samples_;
   std::vector<float> scratch_;
-  std::size_t count_ = 0;   // of all boxes
-  Lengths low_{}, high_{};  // where nearly all boxes are
-  Lengths mean_extent_{}, width_in_extents_{};
+  // By x, y, z.
+  std::array<double, 3> low_{}, high_{};  // contain nearly all boxes
+  std::array<double, 3> mean_extent_{}, width_in_extents_{};
 };
 
 }  // namespace supple

@@ -7,21 +7,20 @@
 namespace supple {
 namespace {
 
-/// Boxes that share the cell of an average box; more take longer to search than an octree takes to build.
+/// When an average box shares its cell with more boxes, the search takes longer than building an octree.
 constexpr std::uint64_t crowded_cell = 256;
-/// With a pair among so many tests, a branch on whether there are any is mispredicted too often.
+/// When a pair needs fewer tests on average, most vectors of tested boxes contain a pair.
 constexpr std::uint64_t tests_per_pair = 48;
 
 }  // namespace
 
-void GridSearch::search(VolumeStore& volumes, const Parallel& parallel, FoundPairs& found) {
-  volumes.take_changed();
+void GridSearch::search(const VolumeStore& volumes, const Parallel& parallel, FoundPairs& found) {
   bin(volumes, parallel);
   search_cells(parallel, found);
 }
 
-bool GridSearch::search_unless_crowded(VolumeStore& volumes, const Parallel& parallel, FoundPairs& found) {
-  volumes.take_changed();
+bool GridSearch::search_unless_crowded(const VolumeStore& volumes, const Parallel& parallel,
+                                       FoundPairs& found) {
   if (bin(volumes, parallel) > crowded_cell * box_count()) return false;
   search_cells(parallel, found);
   return true;
@@ -35,7 +34,7 @@ std::uint64_t GridSearch::bin(const VolumeStore& volumes, const Parallel& parall
   planner_.plan(boxes, grid_);
   quantized_.resize(boxes.size());
   blocks_.resize(boxes.size());
-  // Several for each worker, so that none waits long for another.
+  // Several chunks for each worker balance the load.
   const std::size_t chunk_count = parallel.worker_count() == 1 ? 1 : 4 * parallel.worker_count();
   chunks_.resize(chunk_count);
   parallel.for_ranges(chunk_count, 1, [&](std::size_t first, std::size_t last, std::uint32_t) {
@@ -80,7 +79,7 @@ std::uint64_t GridSearch::bin(const VolumeStore& volumes, const Parallel& parall
 }
 
 void GridSearch::quantize(std::span<const Aabb> boxes, Chunk& chunk) {
-  constexpr std::size_t batch_size = 2048;  // which stays in the second-level cache
+  constexpr std::size_t batch_size = 2048;  // stays in the second-level cache
   const GridLevel& last_level = grid_.levels.back();
   chunk.places.assign(last_level.first_block + last_level.block_count(), 0);
   chunk.max_extent.assign(grid_.levels.size(), {});
@@ -109,8 +108,9 @@ void GridSearch::quantize(std::span<const Aabb> boxes, Chunk& chunk) {
   std::fill_n(blocks_.begin() + static_cast<std::ptrdiff_t>(chunk.begin), chunk.count, 0);
 }
 
-/// Sorts the boxes of a block of rows by cell: counts those of each cell, then places them. Meanwhile the
-/// begin of a cell is stored where the begin of the next one belongs.
+/// Sorts the boxes of a block of rows by cell: counts the boxes of each cell, then places them. Returns the
+/// sum of the squared counts. While boxes are placed, `next[cell]` grows from the begin of the cell to its
+/// end, which is the begin of the next cell.
 std::uint64_t GridSearch::sort_block(const GridLevel& level, std::size_t block_of_level) {
   const auto& [first, second, third] = grid_.axes;
   const std::size_t block = level.first_block + block_of_level;
@@ -145,7 +145,7 @@ std::uint64_t GridSearch::sort_block(const GridLevel& level, std::size_t block_o
 }
 
 void GridSearch::search_cells(const Parallel& parallel, FoundPairs& found) {
-  const auto bins = sorter_.start(parallel.worker_count(), binned_.exact.size());
+  const auto lists = sorter_.start(parallel.worker_count(), binned_.exact.size());
   std::atomic<std::uint64_t> tests = 0;
   constexpr std::size_t grain = 512;
   parallel.for_ranges(box_count(), grain, [&](std::size_t begin, std::size_t end, std::uint32_t worker) {
@@ -154,14 +154,14 @@ void GridSearch::search_cells(const Parallel& parallel, FoundPairs& found) {
       const std::size_t first = std::max<std::size_t>(begin, block_begins_[level.first_block]);
       const std::size_t last =
           std::min<std::size_t>(end, block_begins_[level.first_block + level.block_count()]);
-      if (first < last) tests += supple::search_cells(grid_, binned_, i, first, last, bins[worker]);
+      if (first < last) tests += supple::search_cells(grid_, binned_, i, first, last, lists[worker]);
     }
   });
   sorter_.finish(parallel, found.pairs);
   found.stats.method = BroadPhaseMethod::grid;
   found.stats.object_pairs_tested = tests;
   found.stats.objects_paired = box_count();
-  // The density of the next step is likely that of this one; a wrong guess costs little.
+  // The next step is likely similar. A wrong guess costs little time.
   binned_.has_many_pairs = tests_per_pair * found.pairs.size() >= tests;
 }
 

@@ -6,24 +6,26 @@
 #include "broad_phase/grid/grid_kernel.hpp"
 #include "broad_phase/grid/grid_plan.hpp"
 #include "broad_phase/pair_search.hpp"
+#include "broad_phase/pair_sorter.hpp"
 
 namespace supple {
 
-/// A hierarchical grid, rebuilt in each step: the boxes are quantized and sorted by size, row and cell. Each
-/// box is tested against those that follow it in its row and in the rows beside it, 16 at a time. Larger
-/// boxes also search the levels of smaller ones. Each box is in one cell, so each pair is found once.
+/// A hierarchical grid, rebuilt in each step. The boxes are quantized and sorted by size, row and cell. Each
+/// box is tested against the boxes that follow it in its row and in the rows beside it, up to 16 at a time,
+/// and against the boxes of all levels for smaller boxes. Each box is in one cell, so each pair is found
+/// once.
 class GridSearch final : public PairSearch {
  public:
-  void search(VolumeStore& volumes, const Parallel& parallel, FoundPairs& found) override;
-  /// Returns false without having searched when so many boxes share cells that an octree will do better.
-  bool search_unless_crowded(VolumeStore& volumes, const Parallel& parallel, FoundPairs& found);
+  void search(const VolumeStore& volumes, const Parallel& parallel, FoundPairs& found) override;
+  /// Returns false without a search when so many boxes share cells that an octree is faster.
+  bool search_unless_crowded(const VolumeStore& volumes, const Parallel& parallel, FoundPairs& found);
 
  private:
   /// A range of boxes that one worker quantizes.
   struct Chunk {
     std::size_t begin = 0, end = 0, count = 0;  // `count` boxes of the range are not empty
-    std::vector<std::uint32_t> places;          // by block: how many of its boxes are here, then their place
-    std::vector<std::array<std::uint32_t, 3>> max_extent;  // by level, x, y, z
+    std::vector<std::uint32_t> places;  // by block: its number of boxes in the range, then their place
+    std::vector<std::array<std::uint32_t, 3>> max_extent;  // by level and by x, y, z
   };
 
   std::uint64_t bin(const VolumeStore& volumes, const Parallel& parallel);
@@ -37,7 +39,7 @@ class GridSearch final : public PairSearch {
   std::vector<Chunk> chunks_;
   std::vector<QuantizedBox> quantized_, by_block_;
   std::vector<std::uint32_t> blocks_;        // per quantized box
-  std::vector<std::uint32_t> block_begins_;  // and one more
+  std::vector<std::uint32_t> block_begins_;  // one more than blocks
   BinnedBoxes binned_;
   PairSorter sorter_;
 };

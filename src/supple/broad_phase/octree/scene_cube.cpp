@@ -8,11 +8,12 @@ namespace supple {
 namespace {
 
 constexpr std::size_t sample_size = 4096;
-/// Room for objects to move before they leave the cube, relative to the spread of their centres.
+/// The edge of the cube relative to the core, so that objects can move before they leave the cube.
 constexpr double margin = 1.1;
-/// Beyond this, edges and sums of coordinates would leave the range of float.
-constexpr float farthest = 1e37f;
-/// The next larger number of six significant bits: halves of it lose few digits when added to a coordinate.
+/// Coordinates are clamped to this range, so that edges and sums of coordinates stay finite.
+constexpr double farthest = 1e37;
+
+/// The next larger number of six significant bits. Its halves lose few digits when added to a coordinate.
 float round_to_few_bits(double value) {
   int exponent = 0;
   const double fraction = std::frexp(value, &exponent);
@@ -34,27 +35,23 @@ SceneCube SceneCubeChooser::choose(std::span<const Aabb> boxes) {
   centers_.clear();
   std::vector<float>& extents = scratch_;
   extents.clear();
-  // Counted first, so that gaps left by removed objects do not thin the sample out.
-  std::size_t live = 0;
-  for (const Aabb& box : boxes) live += !box.empty();
+  // Counting the objects first keeps the sample large when most slots are empty.
+  const auto live = static_cast<std::size_t>(
+      std::count_if(boxes.begin(), boxes.end(), [](const Aabb& box) { return !box.empty(); }));
+  const std::size_t stride = (live + sample_size - 1) / sample_size;
   std::size_t seen = 0;
   for (const Aabb& box : boxes) {
-    if (box.empty()) continue;
-    const std::size_t place = seen * sample_size / std::max(live, sample_size);
-    const bool taken =
-        seen == 0 || live <= sample_size || place != (seen - 1) * sample_size / std::max(live, sample_size);
-    ++seen;
-    if (!taken) continue;
+    if (box.empty() || seen++ % stride != 0) continue;
     Vec3f center;
     double extent = 0;
     for (int axis = 0; axis < 3; ++axis) {
-      center[axis] = static_cast<float>(
-          std::clamp(0.5 * (double{box.min[axis]} + box.max[axis]), -double{farthest}, double{farthest}));
+      const double middle = 0.5 * (double{box.min[axis]} + box.max[axis]);
+      center[axis] = static_cast<float>(std::clamp(middle, -farthest, farthest));
       extent = std::max(extent, double{box.max[axis]} - box.min[axis]);
     }
     if (!std::isfinite(extent) || std::isnan(center.x + center.y + center.z)) continue;
     centers_.push_back(center);
-    extents.push_back(static_cast<float>(std::min(extent, double{farthest})));
+    extents.push_back(static_cast<float>(std::min(extent, farthest)));
   }
 
   SceneCube cube;
@@ -78,7 +75,7 @@ SceneCube SceneCubeChooser::choose(std::span<const Aabb> boxes) {
   const double distance =
       std::max({std::fabs(cube.center.x), std::fabs(cube.center.y), std::fabs(cube.center.z)});
   cube.edge = round_to_few_bits(std::max({edge, distance * 0x1p-18, 1e-30}));
-  // Planes closer than eight floats might be rounded onto one another, and would no longer divide anything.
+  // Planes that are closer than eight floats might round to the same float and divide nothing.
   cube.finest_edge = static_cast<float>((distance + 0.5 * cube.edge) * 0x1p-20);
   return cube;
 }

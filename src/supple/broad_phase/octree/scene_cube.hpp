@@ -11,18 +11,17 @@ namespace supple {
 struct SceneCube {
   Vec3f center;
   float edge = 2;
-  /// The shortest edge of regions that floats still tell apart here.
+  /// Regions with a shorter edge would have planes that floats cannot distinguish.
   float finest_edge = 0;
-  /// Bounds of the objects' centres, but for the outermost few; lies inside the cube.
+  /// The bounds of the objects' centres without the outermost 1/64 along each axis. They are inside the cube.
   Aabb core;
 };
 
-/// Whether objects for which `best` would be chosen are better off in it than in `present`: they outgrew the
-/// cube, or fill little of it.
+/// Whether the objects for which `best` was chosen have outgrown the present cube or fill little of it.
 bool is_outdated(const SceneCube& present, const SceneCube& best);
 
-/// Chooses the cube from a sample of the boxes: around their centres but for the outermost 1/64 along each
-/// axis, with a margin. O(sample), and the same for the same boxes.
+/// Chooses the cube around the core of a sample of the boxes, with a margin. The same boxes give the same
+/// cube.
 class SceneCubeChooser {
  public:
   SceneCube choose(std::span<const Aabb> boxes);

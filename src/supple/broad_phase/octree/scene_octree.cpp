@@ -10,14 +10,14 @@ namespace {
 
 constexpr float infinity = std::numeric_limits<float>::infinity();
 constexpr std::uint32_t most_children = 8;
-constexpr int deepest_level_allowed = 20;  // 64 bits number 8^20 regions
+constexpr int most_halvings_allowed = 20;  // 64 bits can number 8^20 regions
 
-/// Children in the upper half along the axis of each bit; the others are in the lower.
+/// By bit of a child's number: the children in the upper half along the axis of the bit.
 constexpr std::array<std::uint32_t, 3> upper_half{0xaa, 0xcc, 0xf0};
 
-/// Children that do not hold part of the box, by the plane of one bit.
+/// Children that lie on the side of one plane that the box does not reach.
 std::uint32_t missed_across(float middle, float min, float max, std::uint32_t upper) {
-  // All bits or none, in place of a branch.
+  // Masks of all bits or none, because a branch would be unpredictable.
   return (~upper & -static_cast<std::uint32_t>(!(min < middle))) |
          (upper & -static_cast<std::uint32_t>(!(max >= middle)));
 }
@@ -25,7 +25,7 @@ std::uint32_t missed_across(float middle, float min, float max, std::uint32_t up
 }  // namespace
 
 SceneOctree::SceneOctree(BoundingVolume bounding_volume, const SceneOctreeOptions& options)
-    // The paper's grown box holds the centre exactly when the region touches the box around the sphere.
+    // The paper's test (is the centre in the grown region?) is the test of the box around the sphere.
     : by_sphere_(bounding_volume == BoundingVolume::sphere &&
                  options.region_sphere_test == RegionSphereTest::arvo),
       max_level_(options.max_level),
@@ -36,12 +36,12 @@ SceneOctree::SceneOctree(BoundingVolume bounding_volume, const SceneOctreeOption
 }
 
 std::uint32_t SceneOctree::children_touched(const Region& region, const ObjectVolume& volume) const {
-  // The box of a sphere that is not finite is all of space, and so are its regions.
+  // The box of a sphere that is not finite is all of space, and touches all regions.
   return by_sphere_ && volume.box.min.x != -infinity ? children_of_sphere(region, volume.sphere)
                                                      : children_of_box(region, volume.box);
 }
 
-/// Children that hold part of the box. It is known to touch the region itself.
+/// Children that the box touches. The box touches the region.
 std::uint32_t SceneOctree::children_of_box(const Region& region, const Aabb& box) const {
   std::uint32_t missed = 0;
   for (int turn = 0; turn < axes_per_level_; ++turn) {
@@ -52,14 +52,14 @@ std::uint32_t SceneOctree::children_of_box(const Region& region, const Aabb& box
   return ~missed & ((1u << arity_) - 1);
 }
 
-/// Children whose closest point to the centre lies within the sphere (Arvo 1990), all when it is not finite.
+/// Children whose closest point to the centre lies within the sphere (Arvo 1990).
 ///
-/// Two spheres that `overlap` reports share a leaf. With d <= (r1 + r2)(1 + 2^-48) between the centres, the
-/// point p that parts the segment between them as r1 : r2 is within r (1 + 2^-48) of each centre. p is in one
-/// leaf, and in each region above it; the distance from a centre to any of these is no more than to p.
-/// Distances are differences of floats taken in double: each has a relative error of 2^-53 (none of the
-/// squares can underflow), their sum one below 2^-50, so that it passes against r² (1 + 2^-40) at every
-/// level.
+/// Two spheres that `overlap` reports share a leaf. Let d <= (r1 + r2)(1 + 2^-48) be the distance of their
+/// centres, and p the point that divides the segment between the centres as r1 : r2. Then p is within
+/// r (1 + 2^-48) of each centre. p is in one leaf and in each region above it, and each of these regions is
+/// no farther from a centre than p. Distances are differences of floats in double, with a relative error of
+/// 2^-53 (no square underflows), and their sum has an error below 2^-50. So each of these regions passes the
+/// test against r² (1 + 2^-40).
 std::uint32_t SceneOctree::children_of_sphere(const Region& region, const BoundingSphere& sphere) const {
   const double limit = double{sphere.radius} * sphere.radius * (1 + 0x1p-40);
   std::array<std::array<double, 2>, 3> squared{};  // by turn, of the lower and the upper half
@@ -81,9 +81,9 @@ std::uint32_t SceneOctree::children_of_sphere(const Region& region, const Boundi
   return touched;
 }
 
-/// Up to 64 objects are divided until each is alone, as in the paper, which takes microseconds. More than 96
-/// in a leaf take longer to test than to divide; at 64 dense scenes divide once too often (u8: 1.6 times the
-/// time).
+/// Up to 64 objects are divided until each is alone, as in the paper; this takes microseconds. A leaf of more
+/// than 96 objects takes longer to test than to divide. With 64 instead of 96, dense scenes divide once too
+/// often.
 std::uint32_t SceneOctree::chosen_expand_at() const {
   return given_expand_at_ != 0 ? given_expand_at_ : object_count_ <= 64 ? 2 : 96;
 }
@@ -148,18 +148,24 @@ void SceneOctree::free_children(std::uint32_t parent_index) {
   regions_[parent_index].first_child = 0;
 }
 
-void SceneOctree::open_stay_range(std::uint32_t slot) {
-  // Spheres have no range until they are found in a single leaf.
-  stay_[slot].low.fill(by_sphere_ ? infinity : -infinity);
-  stay_[slot].high.fill(by_sphere_ ? -infinity : infinity);
+/// Stores the volume, with a stay range that no plane limits yet. Spheres and empty boxes have no range.
+void SceneOctree::place(std::uint32_t slot, const ObjectVolume& volume) {
+  placed_[slot] = volume;
+  finest_level_[slot] = finest_level(volume.box);
+  stay_[slot] = {};
+  if (by_sphere_ || volume.box.empty()) return;
+  stay_[slot].low.fill(-infinity);
+  stay_[slot].high.fill(infinity);
 }
 
-void SceneOctree::narrow_stay_range(std::uint32_t slot, const Aabb& box, const Region& region) {
+void SceneOctree::narrow_stay_range(std::uint32_t slot, const Region& region) {
+  if (by_sphere_) return;
   StayRange& range = stay_[slot];
+  const Aabb& box = placed_[slot].box;
   const Vec3f& plane = region.middle;
   const std::array<float, 6> ends{box.min.x, box.min.y, box.min.z, box.max.x, box.max.y, box.max.z};
   const std::array<float, 6> planes{plane.x, plane.y, plane.z, plane.x, plane.y, plane.z};
-  // Selections in place of branches: which side an end is on is anyone's guess.
+  // Selections, because branches on the side of an end would be unpredictable.
   for (std::size_t k = 0; k < 6; ++k) {
     const bool below = ends[k] < planes[k];
     range.low[k] = std::max(range.low[k], below ? -infinity : planes[k]);
@@ -167,41 +173,21 @@ void SceneOctree::narrow_stay_range(std::uint32_t slot, const Aabb& box, const R
   }
 }
 
-/// A sphere whose box is inside a leaf, and not too close to its sides, is in no other leaf. The distance
-/// from the centre to a side is then at least the radius and 2^-20 of an edge or, as the radius is at most an
-/// edge, 2^-20 of the radius, which is far more than the 2^-40 that `children_of_sphere` adds and all
-/// roundings.
-void SceneOctree::set_sphere_stay_range(std::uint32_t slot, const Aabb& box, const Region& leaf) {
-  const float edge = shortest_edge(leaf.level);
-  StayRange range;
-  for (int axis = 0; axis < 3; ++axis) {
-    const std::size_t k = static_cast<std::size_t>(axis);
-    const auto inside = [&](float side) { return 0x1p-20f * (edge + std::fabs(side)); };
-    const float low = leaf.lower[axis] == -infinity ? -std::numeric_limits<float>::max()
-                                                    : leaf.lower[axis] + inside(leaf.lower[axis]);
-    const float high = leaf.upper[axis] == infinity ? infinity : leaf.upper[axis] - inside(leaf.upper[axis]);
-    range.low[k] = range.low[k + 3] = low;
-    range.high[k] = range.high[k + 3] = high;
-    if (!(low <= box.min[axis] && box.max[axis] < high && box.max[axis] - box.min[axis] <= edge)) return;
-  }
-  stay_[slot] = range;
-}
-
 void SceneOctree::build(const VolumeStore& volumes, const SceneCube& cube) {
   cube_ = cube;
   inverse_edge_ = 1.0 / cube.edge;
-  const int told_apart = cube.finest_edge > 0 ? std::ilogb(cube.edge / cube.finest_edge) : 1;
-  const int max_level = max_level_ != 0 ? static_cast<int>(max_level_) : deepest_level_allowed;
-  deepest_level_ = static_cast<std::uint32_t>(std::clamp(told_apart, 1, max_level) * 3 / axes_per_level_);
+  const int useful_halvings = cube.finest_edge > 0 ? std::ilogb(cube.edge / cube.finest_edge) : 1;
+  const int most_halvings = max_level_ != 0 ? static_cast<int>(max_level_) : most_halvings_allowed;
+  deepest_level_ =
+      static_cast<std::uint32_t>(std::clamp(useful_halvings, 1, most_halvings) * 3 / axes_per_level_);
   make_root();
   object_count_ = 0;
   const auto boxes = volumes.boxes();
   resize(boxes.size());
   for (std::uint32_t slot = 0; slot < boxes.size(); ++slot) {
-    finest_level_[slot] = finest_level(boxes[slot]);
+    place(slot, volumes.volume(slot));
     if (boxes[slot].empty()) continue;
     ++object_count_;
-    open_stay_range(slot);
     lists_.push(regions_[0].objects, slot);
     regions_[0].divided += divides(0, finest_level_[slot]);
   }
@@ -210,6 +196,7 @@ void SceneOctree::build(const VolumeStore& volumes, const SceneCube& cube) {
 }
 
 void SceneOctree::resize(std::size_t slot_count) {
+  placed_.resize(slot_count);
   stay_.resize(slot_count);
   finest_level_.resize(slot_count, 0);
   is_collected_.resize(slot_count, 0);
@@ -224,12 +211,10 @@ void SceneOctree::expand(const VolumeStore& volumes, std::uint32_t index) {
   std::array<std::uint32_t, most_children> counts{};
   for (std::size_t i = 0; i < slots.size(); ++i) {
     const std::uint32_t slot = slots[i];
-    std::uint32_t mask = children_touched(region, volumes.volume(slot));
+    placed_[slot] = volumes.volume(slot);
+    narrow_stay_range(slot, region);
+    std::uint32_t mask = children_touched(region, placed_[slot]);
     child_masks_[i] = static_cast<std::uint8_t>(mask);
-    if (by_sphere_)
-      open_stay_range(slot);
-    else
-      narrow_stay_range(slot, volumes.boxes()[slot], region);
     for (; mask != 0; mask &= mask - 1) ++counts[static_cast<std::size_t>(std::countr_zero(mask))];
   }
   for (std::uint32_t k = 0; k < arity_; ++k) lists_.reserve(regions_[first + k].objects, counts[k]);
@@ -244,14 +229,8 @@ void SceneOctree::expand(const VolumeStore& volumes, std::uint32_t index) {
     }
   }
   lists_.release(regions_[index].objects);
-  for (std::uint32_t child = first; child < first + arity_; ++child) {
-    if (should_expand(regions_[child])) {
-      expand(volumes, child);
-    } else if (by_sphere_) {
-      for (const std::uint32_t slot : objects(regions_[child]))
-        set_sphere_stay_range(slot, volumes.boxes()[slot], regions_[child]);
-    }
-  }
+  for (std::uint32_t child = first; child < first + arity_; ++child)
+    if (should_expand(regions_[child])) expand(volumes, child);
 }
 
 void SceneOctree::collect(std::uint32_t index) {
@@ -288,15 +267,15 @@ struct SceneOctree::Journey {
   std::uint8_t finest_from, finest_to;
 };
 
-void SceneOctree::move(const VolumeStore& volumes, std::uint32_t slot, const ObjectVolume& from) {
+void SceneOctree::move(const VolumeStore& volumes, std::uint32_t slot) {
   if (slot >= stay_.size()) resize(volumes.slot_count());
-  const ObjectVolume to = volumes.volume(slot);
-  const Journey journey{slot, from, to, finest_level_[slot], finest_level(to.box)};
-  finest_level_[slot] = journey.finest_to;
+  const ObjectVolume from = placed_[slot], to = volumes.volume(slot);
+  const std::uint8_t finest_from = finest_level_[slot];
+  place(slot, to);
   object_count_ += !to.box.empty();
   object_count_ -= !from.box.empty();
-  open_stay_range(slot);
-  if (!from.box.empty() || !to.box.empty()) move_below(0, journey, !from.box.empty(), !to.box.empty());
+  if (!from.box.empty() || !to.box.empty())
+    move_below(0, {slot, from, to, finest_from, finest_level_[slot]}, !from.box.empty(), !to.box.empty());
 }
 
 void SceneOctree::move_below(std::uint32_t index, const Journey& journey, bool was_here, bool is_here) {
@@ -307,14 +286,13 @@ void SceneOctree::move_below(std::uint32_t index, const Journey& journey, bool w
   if (region.is_leaf()) {
     if (was_here && !is_here) lists_.erase(region.objects, journey.slot);
     if (!was_here && is_here) lists_.push(region.objects, journey.slot);
-    if (is_here && by_sphere_) set_sphere_stay_range(journey.slot, journey.to.box, region);
     return;
   }
   const auto touched = [&](bool here, const ObjectVolume& volume) -> std::uint32_t {
     return here ? children_touched(region, volume) : 0;
   };
   const std::uint32_t were = touched(was_here, journey.from), are = touched(is_here, journey.to);
-  if (is_here && !by_sphere_) narrow_stay_range(journey.slot, journey.to.box, region);
+  if (is_here) narrow_stay_range(journey.slot, region);
   const std::uint32_t first = region.first_child;
   for (std::uint32_t mask = were | are; mask != 0; mask &= mask - 1) {
     const auto k = static_cast<std::uint32_t>(std::countr_zero(mask));
@@ -324,7 +302,7 @@ void SceneOctree::move_below(std::uint32_t index, const Journey& journey, bool w
 
 void SceneOctree::settle(const VolumeStore& volumes) {
   for (const std::uint32_t index : due_) {
-    // An earlier entry may have settled this region, or reduced one above it.
+    // An earlier entry may have settled this region or reduced a region above it.
     const Region& region = regions_[index];
     if (!region.in_use || should_expand(region) != region.is_leaf()) continue;
     if (region.is_leaf())
@@ -347,7 +325,7 @@ std::vector<SceneRegion> SceneOctree::describe() const {
     }
     described.push_back(entry);
   }
-  // Numbers grow from level to level, so this puts the root first.
+  // Numbers ascend from level to level, so the root is first.
   std::sort(described.begin(), described.end(),
             [](const SceneRegion& a, const SceneRegion& b) { return a.number < b.number; });
   return described;
@@ -355,7 +333,7 @@ std::vector<SceneRegion> SceneOctree::describe() const {
 
 std::string SceneOctree::validate(const VolumeStore& volumes) const {
   const auto boxes = volumes.boxes();
-  if (!due_.empty()) return "scene octree: regions are left to expand or reduce";
+  if (!due_.empty()) return "scene octree: regions wait to be expanded or reduced";
   std::vector<std::uint32_t> live;
   for (std::uint32_t slot = 0; slot < boxes.size(); ++slot) {
     if (boxes[slot].empty()) continue;
@@ -397,18 +375,18 @@ std::string SceneOctree::validate_below(const VolumeStore& volumes, std::uint32_
   if (region.objects.count != 0) return name + "is expanded, but holds objects";
   std::array<std::vector<std::uint32_t>, most_children> inside;
   for (const std::uint32_t slot : slots) {
-    if (!by_sphere_) {
-      const StayRange& range = stay_[slot];
-      for (int turn = 0; turn < axes_per_level_; ++turn) {
-        const int axis = split_axis(region.level, turn);
-        const std::size_t k = static_cast<std::size_t>(axis);
-        const float plane = region.middle[axis];
-        if ((range.low[k] < plane && plane < range.high[k]) ||
-            (range.low[k + 3] < plane && plane < range.high[k + 3]))
-          return name + "slot " + std::to_string(slot) + " may cross the middle unnoticed";
-      }
+    const StayRange& range = stay_[slot];
+    for (int turn = 0; turn < axes_per_level_; ++turn) {
+      const int axis = split_axis(region.level, turn);
+      const std::size_t k = static_cast<std::size_t>(axis);
+      const float plane = region.middle[axis];
+      if ((range.low[k] < plane && plane < range.high[k]) ||
+          (range.low[k + 3] < plane && plane < range.high[k + 3]))
+        return name + "slot " + std::to_string(slot) + " may cross the middle unnoticed";
     }
     const std::uint32_t mask = children_touched(region, volumes.volume(slot));
+    if (children_touched(region, placed_[slot]) != mask)
+      return name + "slot " + std::to_string(slot) + " was placed elsewhere";
     for (std::size_t k = 0; k < arity_; ++k)
       if ((mask >> k & 1) != 0) inside[k].push_back(slot);
   }

@@ -10,8 +10,8 @@
 
 namespace supple {
 
-/// Many short lists of object slots in one flat array. Each lies in a run whose capacity is a power of two;
-/// runs given back are handed out again, so that lists which change from step to step allocate nothing.
+/// Many short lists of object slots in one flat array. Each list is in a run whose capacity is a power of
+/// two. Released runs are reused, so lists that change from step to step allocate no memory.
 class SlotLists {
  public:
   struct List {
@@ -24,7 +24,7 @@ class SlotLists {
     return {slots_.data() + list.first, list.count};
   }
 
-  /// Makes an empty list able to take `count` slots without moving. Other views become invalid.
+  /// Gives an empty list a run for `count` slots. All views become invalid.
   void reserve(List& list, std::uint32_t count) {
     release(list);
     if (count == 0) return;
@@ -44,7 +44,7 @@ class SlotLists {
     slots_[list.first + list.count++] = slot;
   }
 
-  /// The last takes the place of the one that goes; O(count).
+  /// Replaces the slot by the last slot of the list. O(count).
   void erase(List& list, std::uint32_t slot) {
     const auto begin = slots_.begin() + static_cast<std::ptrdiff_t>(list.first);
     const auto last = begin + list.count - 1;
@@ -62,7 +62,7 @@ class SlotLists {
     for (std::vector<std::size_t>& free : free_) free.clear();
   }
 
-  /// Slots in runs of lists and in free ones; equal to `size` when no run is lost.
+  // For checks: the capacities of all lists and of free runs add up to `size`.
   std::size_t capacity(const List& list) const {
     return list.capacity_log2 == no_run ? 0 : std::size_t{1} << list.capacity_log2;
   }

@@ -29,8 +29,7 @@ int widest_axis(std::span<const Aabb> boxes) {
 
 }  // namespace
 
-void SweepSearch::search(VolumeStore& volumes, const Parallel& parallel, FoundPairs& found) {
-  volumes.take_changed();
+void SweepSearch::search(const VolumeStore& volumes, const Parallel& parallel, FoundPairs& found) {
   const auto boxes = volumes.boxes();
   const int axis = widest_axis(boxes);
   order_.clear();
@@ -38,16 +37,17 @@ void SweepSearch::search(VolumeStore& volumes, const Parallel& parallel, FoundPa
     if (!boxes[slot].empty()) order_.push_back(order_key(boxes[slot].min[axis], slot));
   std::sort(order_.begin(), order_.end());
   lanes_.resize(order_.size());
+  lanes_.is_sorted = true;
   for (std::size_t i = 0; i < order_.size(); ++i) {
     const auto slot = static_cast<std::uint32_t>(order_[i]);
     lanes_.set(i, slot, boxes[slot], 7, axis);
   }
 
-  const auto bins = sorter_.start(parallel.worker_count(), boxes.size());
+  const auto lists = sorter_.start(parallel.worker_count(), boxes.size());
   std::atomic<std::uint64_t> tests = 0;
   constexpr std::size_t grain = 256;
   parallel.for_ranges(order_.size(), grain, [&](std::size_t begin, std::size_t end, std::uint32_t worker) {
-    tests += find_overlaps_sorted(lanes_, begin, end, volumes.spheres(), bins[worker]);
+    tests += find_overlaps(lanes_, begin, end, volumes.spheres(), lists[worker]);
   });
   sorter_.finish(parallel, found.pairs);
   found.stats.object_pairs_tested = tests;

@@ -8,14 +8,14 @@
 
 namespace supple {
 
-/// Sweep and prune (Baraff 1992) along the axis on which the objects are spread widest.
+/// Sweep and prune (Baraff 1992) along the axis with the largest variance of the centres.
 class SweepSearch final : public PairSearch {
  public:
-  void search(VolumeStore& volumes, const Parallel& parallel, FoundPairs& found) override;
+  void search(const VolumeStore& volumes, const Parallel& parallel, FoundPairs& found) override;
 
  private:
   BoxLanes lanes_;
-  std::vector<std::uint64_t> order_;  // `order_key` of each box that is not empty
+  std::vector<std::uint64_t> order_;  // `order_key` of the boxes that are not empty
   PairSorter sorter_;
 };
 
