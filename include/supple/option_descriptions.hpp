@@ -74,7 +74,7 @@ struct Description<ObjectOctreeOptions> {
     visitor(Field<Options, bool>{
         .name = "rebuild_degraded",
         .member = &Options::rebuild_degraded,
-        .doc = "Rebuild the parts of the object's octree that deformation has made slow to query"});
+        .doc = "Rebuild the object's octree when deformation has made it slow to query"});
   }
 };
 

@@ -64,11 +64,9 @@ struct Range {
 
 class BalancedBuilder {
  public:
-  BalancedBuilder(std::span<const Vec3d> centers, const ObjectOctreeOptions& options,
-                  std::uint32_t first_level)
+  BalancedBuilder(std::span<const Vec3d> centers, const ObjectOctreeOptions& options)
       : centers_(centers),
         options_(options),
-        deepest_(options.max_level - std::min(options.max_level, first_level)),
         fill_(options.leaf_size / 2 + options.leaf_size % 2),
         points_(centers.size()) {}
 
@@ -88,7 +86,7 @@ class BalancedBuilder {
 
  private:
   bool should_split(const Range& range, std::uint32_t level) const {
-    return range.size() > options_.leaf_size && level < deepest_;
+    return range.size() > options_.leaf_size && level < options_.max_level;
   }
 
   void push_node(const Range& range, std::uint8_t level) {
@@ -144,7 +142,7 @@ class BalancedBuilder {
     } else {
       count = count <= 2 ? 2 : count <= 4 ? 4 : 8;
     }
-    if (level + levels > deepest_) count = node_width;
+    if (level + levels > options_.max_level) count = node_width;
     cut_into_children(range, static_cast<std::uint32_t>(std::clamp<std::uint64_t>(count, 2, node_width)));
   }
 
@@ -284,7 +282,6 @@ class BalancedBuilder {
 
   std::span<const Vec3d> centers_;
   ObjectOctreeOptions options_;
-  std::uint32_t deepest_;  ///< level
   std::uint32_t fill_;     ///< triangles of a usual leaf
   OctreeTopology topology_;
   std::vector<Range> ranges_;  ///< of the nodes
@@ -300,9 +297,8 @@ class BalancedBuilder {
 
 }  // namespace
 
-OctreeTopology build_balanced_octree(std::span<const Vec3d> centers, const ObjectOctreeOptions& options,
-                                     std::uint32_t first_level) {
-  return BalancedBuilder(centers, options, first_level).build();
+OctreeTopology build_balanced_octree(std::span<const Vec3d> centers, const ObjectOctreeOptions& options) {
+  return BalancedBuilder(centers, options).build();
 }
 
 }  // namespace supple

@@ -12,9 +12,7 @@ namespace supple {
 /// half of `leaf_size`. A regular octree has as many of both as the cells of space happen to cut out.
 ///
 /// No leaf above `max_level` has more than `leaf_size` triangles, also where centres are equal. A centre that
-/// is not finite counts as the lower corner of the others. `first_level` is as for `build_octree`.
-/// O(n log n). The result is the same on every machine.
-OctreeTopology build_balanced_octree(std::span<const Vec3d> centers, const ObjectOctreeOptions& options,
-                                     std::uint32_t first_level = 0);
+/// is not finite counts as the lower corner of the others. O(n log n). The result is the same on every machine.
+OctreeTopology build_balanced_octree(std::span<const Vec3d> centers, const ObjectOctreeOptions& options);
 
 }  // namespace supple

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <tuple>
 #include <utility>
 
 #include "geometry/aabb.hpp"
@@ -17,9 +16,7 @@ namespace {
 
 constexpr std::uint32_t unnumbered = std::numeric_limits<std::uint32_t>::max();
 
-/// `positions[v]` is vertex v.
-template <class Positions>
-std::vector<Vec3d> box_centers(const Positions& positions, std::span<const Triangle> triangles) {
+std::vector<Vec3d> box_centers(const PositionsView& positions, std::span<const Triangle> triangles) {
   std::vector<Vec3d> centers;
   centers.reserve(triangles.size());
   for (const Triangle& triangle : triangles) {
@@ -36,13 +33,12 @@ std::vector<Vec3d> box_centers(const Positions& positions, std::span<const Trian
   return centers;
 }
 
-/// Balanced trees are of eight children.
-template <class Positions>
-OctreeTopology build_topology(const Positions& positions, std::span<const Triangle> triangles,
-                              const ObjectOctreeOptions& options, std::uint32_t first_level) {
+/// Balanced octrees have eight children per node; other arities are regular.
+OctreeTopology build_topology(const PositionsView& positions, std::span<const Triangle> triangles,
+                              const ObjectOctreeOptions& options) {
   const std::vector<Vec3d> centers = box_centers(positions, triangles);
-  if (options.regular || options.arity != 8) return build_octree(centers, options, first_level);
-  return build_balanced_octree(centers, options, first_level);
+  return options.regular || options.arity != 8 ? build_octree(centers, options)
+                                               : build_balanced_octree(centers, options);
 }
 
 void set_lane(SphereLanes& lanes, int lane, const BoundingSphere& sphere) {
@@ -97,7 +93,7 @@ ObjectOctree::ObjectOctree(const PositionsView& rest_positions, std::span<const 
                            const ObjectOctreeOptions& options, BoundingVolume bounding_volume,
                            SphereFit sphere_fit)
     : vertex_count_(rest_positions.size()), options_(options), sphere_fit_(sphere_fit) {
-  OctreeTopology topology = build_topology(rest_positions, triangles, options, 0);
+  OctreeTopology topology = build_topology(rest_positions, triangles, options);
   nodes_ = std::move(topology.nodes);
   nodes_.shrink_to_fit();
   level_begin_ = std::move(topology.level_begin);
@@ -107,45 +103,16 @@ ObjectOctree::ObjectOctree(const PositionsView& rest_positions, std::span<const 
   triangles_.reserve(triangles.size());
   for (const std::uint32_t id : triangle_ids_) triangles_.push_back(triangles[id]);
   triangle_order_.resize(triangle_ids_.size());
-  invert_triangle_ids();
-  list_leaf_vertices();
-}
-
-void ObjectOctree::invert_triangle_ids() {
   for (std::uint32_t t = 0; t < triangle_ids_.size(); ++t) triangle_order_[triangle_ids_[t]] = t;
-}
-
-std::vector<std::uint32_t> ObjectOctree::rebuild(std::span<const std::uint32_t> subtrees,
-                                                 const VertexBuffer& vertices) {
-  std::vector<NewSubtree> built;
-  built.reserve(subtrees.size());
-  for (const std::uint32_t node : subtrees) built.push_back(build_subtree(node, vertices));
-  invert_triangle_ids();
-  RelinkedNodes relinked = relink(nodes_, built);
-  nodes_ = std::move(relinked.nodes);
-  nodes_.shrink_to_fit();
-  level_begin_ = std::move(relinked.level_begin);
-  boxes_.resize(nodes_.size());
-  if (!spheres_.empty()) spheres_.resize(nodes_.size());
   list_leaf_vertices();
-  return std::move(relinked.old_nodes);
 }
 
-/// Its triangles come into their new order at once. They are built in the user's order, so that a subtree
-/// does not depend on what was there before.
-NewSubtree ObjectOctree::build_subtree(std::uint32_t node, const VertexBuffer& vertices) {
-  const std::size_t first = nodes_[node].first_triangle[0], count = nodes_[node].size();
-  std::vector<std::pair<std::uint32_t, Triangle>> given;
-  given.reserve(count);
-  for (std::size_t t = first; t < first + count; ++t) given.emplace_back(triangle_ids_[t], triangles_[t]);
-  std::sort(given.begin(), given.end(), [](auto& p, auto& q) { return p.first < q.first; });
-  for (std::size_t i = 0; i < count; ++i) triangles_[first + i] = given[i].second;
-  const auto triangles = std::span<const Triangle>(triangles_).subspan(first, count);
-  NewSubtree subtree{node, build_topology(vertices, triangles, options_, nodes_[node].level)};
-  for (std::size_t i = 0; i < count; ++i) {
-    std::tie(triangle_ids_[first + i], triangles_[first + i]) = given[subtree.topology.order[i]];
-  }
-  return subtree;
+ObjectOctree ObjectOctree::rebuilt(const PositionsView& positions) const {
+  std::vector<Triangle> user_triangles;
+  user_triangles.reserve(triangles_.size());
+  for (const std::uint32_t t : triangle_order_) user_triangles.push_back(triangles_[t]);
+  const BoundingVolume volume = spheres_.empty() ? BoundingVolume::aabb : BoundingVolume::sphere;
+  return ObjectOctree(positions, user_triangles, options_, volume, sphere_fit_);
 }
 
 void ObjectOctree::list_leaf_vertices() {

@@ -8,7 +8,6 @@
 #include "core/parallel.hpp"
 #include "octree/box_kernels.hpp"
 #include "octree/octree_node.hpp"
-#include "octree/rebuild.hpp"
 #include "octree/vertex_buffer.hpp"
 #include "supple/inspection.hpp"
 #include "supple/mesh.hpp"
@@ -22,7 +21,7 @@ TriangleArrays arrays_of(std::span<const Triangle> triangles, const VertexBuffer
                          std::span<const std::uint8_t> inert);
 
 /// Octree over the triangles of one object, built top-down from the rest pose. Its volumes are refitted when
-/// the object deforms, and degraded subtrees are rebuilt on request.
+/// the object deforms.
 ///
 /// It is balanced (`octree/balanced_build.hpp`) or, when asked for, the paper's regular one. In that every
 /// triangle is in the one octant that holds the centre of its box. An octant with all triangles of its parent
@@ -69,11 +68,8 @@ class ObjectOctree {
   /// the volumes are of no use, when it is empty and some vertex is not finite.
   bool refit(const VertexBuffer& vertices, std::span<const std::uint8_t> inert, const Parallel& parallel);
 
-  /// Rebuilds the subtrees of these nodes, none of which is below another, from the current positions.
-  /// Afterwards the volumes must be refitted, and everything that depends on numbers of triangles or nodes
-  /// must be updated. Returns what each node was before (`RelinkedNodes::old_nodes`). O(n) and O(m log m)
-  /// for m triangles in the subtrees.
-  std::vector<std::uint32_t> rebuild(std::span<const std::uint32_t> subtrees, const VertexBuffer& vertices);
+  /// The octree of the same triangles and options, built from other positions. O(n log n).
+  ObjectOctree rebuilt(const PositionsView& positions) const;
 
   /// Volumes of the whole object after a refit; empty when it has no finite triangle.
   Aabb box() const { return nodes_.empty() ? Aabb{} : box_of_lanes(boxes_[0]); }
@@ -85,8 +81,6 @@ class ObjectOctree {
   OctreeStatistics statistics() const;
 
  private:
-  void invert_triangle_ids();
-  NewSubtree build_subtree(std::uint32_t node, const VertexBuffer& vertices);
   void list_leaf_vertices();
   bool refit_level(std::uint32_t level, const VertexBuffer& vertices, std::span<const std::uint8_t> inert,
                    const Parallel& parallel);

@@ -50,11 +50,11 @@ std::uint32_t deepest_level(const ObjectOctreeOptions& options) {
 
 class Builder {
  public:
-  Builder(std::span<const Vec3d> centers, const ObjectOctreeOptions& options, std::uint32_t first_level)
+  Builder(std::span<const Vec3d> centers, const ObjectOctreeOptions& options)
       : centers_(centers),
         options_(options),
         bits_per_level_(bits_per_level(options)),
-        deepest_(deepest_level(options) - std::min(deepest_level(options), first_level)),
+        deepest_(deepest_level(options)),
         coded_(centers.size()) {
     assert(options.arity == 2 || options.arity == 4 || options.arity == 8);
     for (std::uint32_t i = 0; i < coded_.size(); ++i) coded_[i] = {0, i};
@@ -180,9 +180,8 @@ class Builder {
 
 }  // namespace
 
-OctreeTopology build_octree(std::span<const Vec3d> centers, const ObjectOctreeOptions& options,
-                            std::uint32_t first_level) {
-  return Builder(centers, options, first_level).build();
+OctreeTopology build_octree(std::span<const Vec3d> centers, const ObjectOctreeOptions& options) {
+  return Builder(centers, options).build();
 }
 
 }  // namespace supple

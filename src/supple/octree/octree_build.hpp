@@ -19,9 +19,7 @@ struct OctreeTopology {
 
 /// Builds the paper's regular octree top-down over points (the centres of triangles), in O(n log n). A point
 /// that is not finite counts as the lower corner of the others. Equal points cannot be split and may leave a
-/// leaf larger than `leaf_size`. `first_level` is the level of the root in the tree that it becomes a part
-/// of; levels of nodes count from 0.
-OctreeTopology build_octree(std::span<const Vec3d> centers, const ObjectOctreeOptions& options,
-                            std::uint32_t first_level = 0);
+/// leaf larger than `leaf_size`.
+OctreeTopology build_octree(std::span<const Vec3d> centers, const ObjectOctreeOptions& options);
 
 }  // namespace supple

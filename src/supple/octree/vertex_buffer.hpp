@@ -30,6 +30,13 @@ class VertexBuffer {
     return {p[0], p[1], p[2]};
   }
 
+  PositionsView view() const {
+    const auto view_of = [&](const auto& array) {
+      return PositionsView(array.data, count_, static_cast<std::ptrdiff_t>(array.stride * sizeof *array.data));
+    };
+    return is_double_ ? view_of(doubles()) : view_of(floats());
+  }
+
   void assign(const PositionsView& positions, const Parallel& parallel);
 
   /// Vertex v becomes vertex `ids[v]` of the other buffer, in its precision.

@@ -8,6 +8,7 @@
 #include "geometry/aabb.hpp"
 #include "geometry/sphere.hpp"
 #include "geometry/vector.hpp"
+#include "octree/query_cost.hpp"
 
 namespace supple {
 namespace {
@@ -62,7 +63,7 @@ void SceneObject::update(const SearchedShapes& shapes, const Parallel& parallel)
   const bool was_behind = needs_refit(shapes);
   refit(shapes, parallel);
   update_volumes(shapes);
-  if (was_behind) rebuild_policy_.after_refit(tree_boxes());
+  if (was_behind) rebuild_policy_.set_cost(current_query_cost());
   has_moved_ = false;
   updated_ = shapes;
 }
@@ -94,40 +95,35 @@ void SceneObject::update_volumes(const SearchedShapes& shapes) {
   sphere_ = sphere_around(box_);
 }
 
-/// A shape that is up to date, if any is.
-TreeBoxes SceneObject::tree_boxes() const {
-  const bool of_moving = !resting_.is_current(placement_) && moving_.is_current(placement_);
-  return {octree_.nodes(), of_moving ? moving_.node_boxes() : octree_.boxes()};
+/// Of a shape that is up to date, if one is.
+double SceneObject::current_query_cost() const {
+  const bool moving = !resting_.is_current(placement_) && moving_.is_current(placement_);
+  return query_cost(octree_.nodes(), moving ? moving_.node_boxes() : octree_.boxes());
 }
 
-void SceneObject::set_rest_quality(const Parallel& parallel) {
+void SceneObject::measure_built_octree(const Parallel& parallel) {
   resting_.update(octree_, placement_, parallel);
-  rebuild_policy_.set_references(tree_boxes());
+  rebuild_policy_.set_cost_when_built(current_query_cost());
 }
 
-void SceneObject::rebuild(const Parallel& parallel) {
-  ObjectOctree octree = octree_;
-  const std::vector<std::uint32_t> old_nodes =
-      octree.rebuild(rebuild_policy_.degraded_nodes(), placement_.end());
+bool SceneObject::rebuild(const Parallel& parallel) {
+  ObjectOctree octree = octree_.rebuilt(placement_.end().view());
   if (!octree.refit(placement_.end(), {}, parallel)) {
     std::vector<std::uint8_t> inert;
     mark_inert(octree, placement_.end(), inert);
     octree.refit(placement_.end(), inert, parallel);
   }
-  const std::uint64_t subtrees = rebuild_policy_.degraded_nodes().size();
-  const std::uint64_t triangles = rebuild_policy_.degraded_triangles(octree_);
-  const bool is_smooth = resting_.unfolded().has_paid() || moving_.unfolded().has_paid();
-  if (!rebuild_policy_.accept({octree.nodes(), octree.boxes()}, old_nodes, tree_boxes(), is_smooth)) return;
-  subtrees_rebuilt_ += subtrees;
-  triangles_rebuilt_ += triangles;
+  if (!rebuild_policy_.accept(query_cost(octree.nodes(), octree.boxes()))) return false;
+  ++rebuilds_;
   SearchedShapes shapes = updated_;
   shapes.resting = shapes.resting || resting_.is_current(placement_);
   shapes.moving = shapes.moving || moving_.is_current(placement_);
   octree_ = std::move(octree);
   resting_.forget_octree();
   moving_.forget_octree();
-  // The memory for this may be lacking: then the next update makes good what is missing.
+  // If memory runs out here, the next update refits the shapes.
   refit(shapes, parallel);
+  return true;
 }
 
 std::string SceneObject::validate() const {
@@ -139,10 +135,10 @@ std::string SceneObject::validate() const {
 
 OctreeStatistics SceneObject::octree_statistics() const {
   OctreeStatistics statistics = octree_.statistics();
-  statistics.bytes += resting_.bytes() + moving_.bytes() + rebuild_policy_.bytes();
-  rebuild_policy_.report(tree_boxes(), statistics);
-  statistics.subtrees_rebuilt = subtrees_rebuilt_;
-  statistics.triangles_rebuilt = triangles_rebuilt_;
+  statistics.bytes += resting_.bytes() + moving_.bytes();
+  statistics.cost = rebuild_policy_.cost();
+  statistics.degradation = rebuild_policy_.degradation();
+  statistics.rebuilds = rebuilds_;
   if (statistics.triangles != 0) {
     statistics.bytes_per_triangle =
         static_cast<double>(statistics.bytes) / static_cast<double>(statistics.triangles);

@@ -45,17 +45,13 @@ class SceneObject {
   /// Brings the shapes and the volumes up to date.
   void update(const SearchedShapes& shapes, const Parallel& parallel);
 
-  /// The positions that the octree was built from are set.
-  void set_rest_quality(const Parallel& parallel);
+  /// Call when the placement has the positions that the octree was built from.
+  void measure_built_octree(const Parallel& parallel);
   const RebuildPolicy& rebuild_policy() const { return rebuild_policy_; }
   RebuildPolicy& rebuild_policy() { return rebuild_policy_; }
-  /// Builds the degraded parts anew from present positions; if these are much better than what is there, they
-  /// take its place, and the object is brought up to date again. Views are of no use then; what is found does
-  /// not change.
-  void rebuild(const Parallel& parallel);
-  /// Since the object was added, and their triangles.
-  std::uint64_t subtrees_rebuilt() const { return subtrees_rebuilt_; }
-  std::uint64_t triangles_rebuilt() const { return triangles_rebuilt_; }
+  /// Builds an octree from the current positions. Returns whether it is so much better that it replaced the
+  /// present one: then the shapes are up to date, but views are invalid. Contacts do not change.
+  bool rebuild(const Parallel& parallel);
 
   /// The box of the placed object at the last update: around everything that was searched, which may be the
   /// whole motion.
@@ -79,7 +75,7 @@ class SceneObject {
 
  private:
   void refit(const SearchedShapes& shapes, const Parallel& parallel);
-  TreeBoxes tree_boxes() const;
+  double current_query_cost() const;
   void update_volumes(const SearchedShapes& shapes);
 
   ObjectOctree octree_;
@@ -87,7 +83,7 @@ class SceneObject {
   RestingShape resting_;
   MovingShape moving_;
   RebuildPolicy rebuild_policy_;
-  std::uint64_t subtrees_rebuilt_ = 0, triangles_rebuilt_ = 0;
+  std::uint64_t rebuilds_ = 0;
   bool has_moved_ = true;
   SearchedShapes updated_;  // by the last update
   Aabb box_;
