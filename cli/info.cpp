@@ -87,7 +87,7 @@ void print_text(const MeshInfo& info) {
   }
   const OctreeStatistics& o = info.octree;
   fmt::print(
-      "  octree       {}, {}, depth {}, {:.1f} triangles a leaf (largest {}), {:.1f} of 8 lanes used\n",
+      "  octree       {}, {}, depth {}, {:.1f} triangles a leaf (largest {}), {:.1f} children a node\n",
       counted(o.nodes, "node"), o.leaves == 1 ? "1 leaf" : grouped(o.leaves) + " leaves", o.depth,
       o.mean_leaf_size, o.largest_leaf, o.mean_node_width);
   if (o.cost > 0) fmt::print("  quality      {:.1f} visits of a query\n", o.cost);

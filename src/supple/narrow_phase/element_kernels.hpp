@@ -71,8 +71,8 @@ struct PartOfStep {
   Vec3f offset{};
 };
 
-/// As `overlap_masks`, of nodes in motion: the bits of lanes that are not apart by more than the separation
-/// all the time.
+/// As `overlap_masks`, for nodes in motion: the bits of children that come within the separation at some
+/// time.
 void moving_overlap_masks(std::span<const NodePair> pairs, const MovingView& a, const MovingView& b,
                           const PartOfStep& part, std::uint64_t* masks);
 

@@ -21,17 +21,17 @@ namespace HWY_NAMESPACE {
 
 using LanesTag = hn::CappedTag<float, node_width>;
 
-/// Bit j: the box overlaps lane j. Closed boxes, exact comparisons.
-HWY_INLINE std::uint32_t overlap_mask(const AabbLanes& lanes, const Aabb& box) {
+/// Bit j: the box overlaps child j. Closed boxes, exact comparisons.
+HWY_INLINE std::uint32_t overlap_mask(const ChildBoxes& children, const Aabb& box) {
   const LanesTag tag;
   std::uint32_t bits = 0;
   for (std::size_t j = 0; j < node_width; j += hn::Lanes(tag)) {
-    const auto x = hn::And(hn::Le(hn::Load(tag, lanes.min_x + j), hn::Set(tag, box.max.x)),
-                           hn::Ge(hn::Load(tag, lanes.max_x + j), hn::Set(tag, box.min.x)));
-    const auto y = hn::And(hn::Le(hn::Load(tag, lanes.min_y + j), hn::Set(tag, box.max.y)),
-                           hn::Ge(hn::Load(tag, lanes.max_y + j), hn::Set(tag, box.min.y)));
-    const auto z = hn::And(hn::Le(hn::Load(tag, lanes.min_z + j), hn::Set(tag, box.max.z)),
-                           hn::Ge(hn::Load(tag, lanes.max_z + j), hn::Set(tag, box.min.z)));
+    const auto x = hn::And(hn::Le(hn::Load(tag, children.min_x + j), hn::Set(tag, box.max.x)),
+                           hn::Ge(hn::Load(tag, children.max_x + j), hn::Set(tag, box.min.x)));
+    const auto y = hn::And(hn::Le(hn::Load(tag, children.min_y + j), hn::Set(tag, box.max.y)),
+                           hn::Ge(hn::Load(tag, children.max_y + j), hn::Set(tag, box.min.y)));
+    const auto z = hn::And(hn::Le(hn::Load(tag, children.min_z + j), hn::Set(tag, box.max.z)),
+                           hn::Ge(hn::Load(tag, children.max_z + j), hn::Set(tag, box.min.z)));
     std::uint8_t part[8] = {};
     hn::StoreMaskBits(tag, hn::And(x, hn::And(y, z)), part);
     bits |= std::uint32_t{part[0]} << j;
@@ -52,22 +52,22 @@ HWY_INLINE void place(Arrays& boxes, const RelativePlacement& placement) {
   }
 }
 
-void BoxOverlapMasks(const NodePair* pairs, std::size_t count, const AabbLanes* a, const AabbLanes* b,
+void BoxOverlapMasks(const NodePair* pairs, std::size_t count, const ChildBoxes* a, const ChildBoxes* b,
                      const RelativePlacement& placement, std::uint64_t* masks) {
   const bool in_place = placement.is_identity();
   for (std::size_t k = 0; k < count; ++k) {
-    const AabbLanes& lanes_a = a[pairs[k].a];
-    const AabbLanes* lanes_b = &b[pairs[k].b];
-    AabbLanes placed;
+    const ChildBoxes& boxes_a = a[pairs[k].a];
+    const ChildBoxes* boxes_b = &b[pairs[k].b];
+    ChildBoxes placed;
     if (!in_place) {
-      placed = *lanes_b;
+      placed = *boxes_b;
       place(placed, placement);
-      lanes_b = &placed;
+      boxes_b = &placed;
     }
     std::uint64_t mask = 0;
-    for (std::uint32_t rest = pairs[k].lanes_a; rest != 0; rest &= rest - 1) {
+    for (std::uint32_t rest = pairs[k].children_a; rest != 0; rest &= rest - 1) {
       const int i = std::countr_zero(rest);
-      mask |= std::uint64_t{overlap_mask(*lanes_b, lane_box(lanes_a, i))} << (8 * i);
+      mask |= std::uint64_t{overlap_mask(*boxes_b, child_box(boxes_a, i))} << (8 * i);
     }
     masks[k] = mask;
   }
@@ -192,11 +192,11 @@ HWY_INLINE void look_up(const LeafVertexTables& tables, const std::uint8_t* corn
 /// one function compilers take time that grows with their square. A call is little beside a leaf.
 template <class Box, class Scalar>
 HWY_NOINLINE void load_leaf_boxes(LeafBoxes& leaf, VertexArray<Scalar> positions, const LeafArrays& object,
-                                  [[maybe_unused]] std::uint32_t lane, std::uint32_t begin,
+                                  [[maybe_unused]] std::uint32_t leaf_number, std::uint32_t begin,
                                   std::uint32_t end) {
 #if HWY_TARGET != HWY_SCALAR
   const LeafVertexArrays leaves = object.vertices;
-  const std::size_t first = leaves.first[lane], count = leaves.first[lane + 1] - first;
+  const std::size_t first = leaves.first[leaf_number], count = leaves.first[leaf_number + 1] - first;
   if (count <= LeafVertexTables::capacity) {
     LeafVertexTables tables;
     load_vertices(tables, positions, leaves.vertices + first, count);
@@ -210,13 +210,13 @@ HWY_NOINLINE void load_leaf_boxes(LeafBoxes& leaf, VertexArray<Scalar> positions
 }
 
 /// The triangles [begin, end) of a leaf, a block at most.
-HWY_INLINE void load_boxes(LeafBoxes& leaf, const LeafArrays& object, std::uint32_t lane, std::uint32_t begin,
-                           std::uint32_t end) {
+HWY_INLINE void load_boxes(LeafBoxes& leaf, const LeafArrays& object, std::uint32_t leaf_number,
+                           std::uint32_t begin, std::uint32_t end) {
   const TriangleArrays& arrays = object.triangles;
   if (arrays.doubles.data != nullptr) {
-    load_leaf_boxes<DoubleBox>(leaf, arrays.doubles, object, lane, begin, end);
+    load_leaf_boxes<DoubleBox>(leaf, arrays.doubles, object, leaf_number, begin, end);
   } else {
-    load_leaf_boxes<FloatBox>(leaf, arrays.floats, object, lane, begin, end);
+    load_leaf_boxes<FloatBox>(leaf, arrays.floats, object, leaf_number, begin, end);
   }
   leaf.size = end - begin;
   leaf.triangles = ~std::uint64_t{0} >> (leaf_block - leaf.size);
@@ -310,14 +310,14 @@ class LeafTests {
 
   HWY_INLINE void test(const LeafPair& leaves) {
     const bool same_leaf = same_object_ && leaves.begin_a == leaves.begin_b;
-    const Aabb box_a = leaf_box(a_, leaves.lane_a), box_b = placed(leaf_box(b_, leaves.lane_b), placement_);
+    const Aabb box_a = leaf_box(a_, leaves.leaf_a), box_b = placed(leaf_box(b_, leaves.leaf_b), placement_);
     for (std::uint32_t first_a = leaves.begin_a; first_a < leaves.end_a; first_a += leaf_block) {
-      const LeafBoxes& boxes_a = boxes_of_a(leaves.lane_a, first_a, leaves.end_a);
+      const LeafBoxes& boxes_a = boxes_of_a(leaves.leaf_a, first_a, leaves.end_a);
       const std::uint64_t some_a = near(boxes_a, box_b);
       if (some_a == 0) continue;
       for (std::uint32_t first_b = same_leaf ? first_a : leaves.begin_b; first_b < leaves.end_b;
            first_b += leaf_block) {
-        const LeafBoxes& boxes_b = boxes_of_b(leaves.lane_b, first_b, leaves.end_b);
+        const LeafBoxes& boxes_b = boxes_of_b(leaves.leaf_b, first_b, leaves.end_b);
         const std::uint64_t some_b = near(boxes_b, box_a);
         if (same_leaf && first_a == first_b) {
           match<true, true>(first_a, boxes_a, some_a, first_b, boxes_b, some_b);
@@ -332,8 +332,8 @@ class LeafTests {
   std::uint64_t box_tests() const { return tests_; }
 
  private:
-  static HWY_INLINE Aabb leaf_box(const LeafArrays& object, std::uint32_t lane) {
-    return lane_box(object.boxes[lane / node_width], static_cast<int>(lane % node_width));
+  static HWY_INLINE Aabb leaf_box(const LeafArrays& object, std::uint32_t leaf_number) {
+    return child_box(object.boxes[leaf_number / node_width], static_cast<int>(leaf_number % node_width));
   }
 
   /// Blocks that follow each other in octree order fall into different places.
@@ -341,19 +341,21 @@ class LeafTests {
     static_assert(LeafBoxCache::size == 32);
     return first * 0x9e3779b1u >> 27;
   }
-  HWY_INLINE const LeafBoxes& boxes_of_a(std::uint32_t lane, std::uint32_t first, std::uint32_t leaf_end) {
+  HWY_INLINE const LeafBoxes& boxes_of_a(std::uint32_t leaf_number, std::uint32_t first,
+                                         std::uint32_t leaf_end) {
     const std::size_t place = place_of(first);
     LeafBoxes& entry = cache_.a().boxes[place];
     if (std::exchange(cache_.a().first_triangles[place], first) != first) {
-      load_boxes(entry, a_, lane, first, std::min(first + leaf_block, leaf_end));
+      load_boxes(entry, a_, leaf_number, first, std::min(first + leaf_block, leaf_end));
     }
     return entry;
   }
-  HWY_INLINE const LeafBoxes& boxes_of_b(std::uint32_t lane, std::uint32_t first, std::uint32_t leaf_end) {
+  HWY_INLINE const LeafBoxes& boxes_of_b(std::uint32_t leaf_number, std::uint32_t first,
+                                         std::uint32_t leaf_end) {
     const std::size_t place = place_of(first);
     LeafBoxes& entry = cache_.b().boxes[place];
     if (std::exchange(cache_.b().first_triangles[place], first) != first) {
-      load_boxes(entry, b_, lane, first, std::min(first + leaf_block, leaf_end));
+      load_boxes(entry, b_, leaf_number, first, std::min(first + leaf_block, leaf_end));
       if (!placement_.is_identity()) supple::HWY_NAMESPACE::place(entry, placement_);
     }
     return entry;
@@ -432,7 +434,7 @@ namespace supple {
 HWY_EXPORT(BoxOverlapMasks);
 HWY_EXPORT(TriangleBoxPairs);
 
-void overlap_masks(std::span<const NodePair> pairs, const AabbLanes* a, const AabbLanes* b,
+void overlap_masks(std::span<const NodePair> pairs, const ChildBoxes* a, const ChildBoxes* b,
                    const RelativePlacement& placement, std::uint64_t* masks) {
   HWY_DYNAMIC_DISPATCH(BoxOverlapMasks)(pairs.data(), pairs.size(), a, b, placement, masks);
 }
@@ -446,9 +448,9 @@ std::uint64_t find_triangle_box_pairs(std::span<const LeafPair> leaf_pairs, cons
 
 namespace {
 
-/// Bit j: the ball may touch lane j. In double, where neither the differences nor the squares of floats
+/// Bit j: the sphere may touch child j. In double, where neither the differences nor the squares of floats
 /// overflow.
-std::uint64_t overlap_mask(const SphereLanes& a, int i, const SphereLanes& b,
+std::uint64_t overlap_mask(const ChildSpheres& a, int i, const ChildSpheres& b,
                            const RelativePlacement& placement) {
   std::uint64_t bits = 0;
   for (int j = 0; j < node_width; ++j) {
@@ -466,11 +468,11 @@ std::uint64_t overlap_mask(const SphereLanes& a, int i, const SphereLanes& b,
 
 }  // namespace
 
-void overlap_masks(std::span<const NodePair> pairs, const SphereLanes* a, const SphereLanes* b,
+void overlap_masks(std::span<const NodePair> pairs, const ChildSpheres* a, const ChildSpheres* b,
                    const RelativePlacement& placement, std::uint64_t* masks) {
   for (std::size_t k = 0; k < pairs.size(); ++k) {
     masks[k] = 0;
-    for (std::uint32_t rest = pairs[k].lanes_a; rest != 0; rest &= rest - 1) {
+    for (std::uint32_t rest = pairs[k].children_a; rest != 0; rest &= rest - 1) {
       const int i = std::countr_zero(rest);
       masks[k] |= overlap_mask(a[pairs[k].a], i, b[pairs[k].b], placement) << (8 * i);
     }

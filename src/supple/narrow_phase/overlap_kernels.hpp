@@ -12,11 +12,10 @@
 
 namespace supple {
 
-/// Two nodes whose lanes are to be tested against each other: those of a in `lanes_a` with those of b in
-/// `lanes_b`.
+/// Two nodes whose children are to be tested against each other: bit i of `children_a` is child i of a.
 struct NodePair {
   std::uint32_t a = 0, b = 0;
-  std::uint8_t lanes_a = 0xff, lanes_b = 0xff;
+  std::uint8_t children_a = 0xff, children_b = 0xff;
 };
 
 /// Where object b lies against object a, when objects were translated: b's volumes move by `offset` and grow
@@ -29,11 +28,11 @@ struct RelativePlacement {
 };
 
 /// Triangles of two leaves whose volumes overlap, in octree order: [begin_a, end_a) against [begin_b, end_b).
-/// Within one leaf of one object the ranges are equal. `lane_a` and `lane_b` are the leaves' places: eight
-/// times the node plus the lane.
+/// Within one leaf of one object the ranges are equal. `leaf_a` and `leaf_b` are the leaves: eight times
+/// the node plus the child.
 struct LeafPair {
   std::uint32_t begin_a = 0, end_a = 0, begin_b = 0, end_b = 0;
-  std::uint32_t lane_a = 0, lane_b = 0;
+  std::uint32_t leaf_a = 0, leaf_b = 0;
 };
 
 /// Triangles of a leaf that are tested at a time: a bit each. Larger leaves are taken in such blocks.
@@ -88,17 +87,17 @@ class TrianglePairList {
   std::size_t count_ = 0;
 };
 
-/// Bit 8 i + j of `masks[k]`: lane i of node a and lane j of node b of `pairs[k]` may overlap. Lanes outside
-/// `lanes_a` give no bits; unused lanes of b may give any. Never misses an overlap.
-void overlap_masks(std::span<const NodePair> pairs, const AabbLanes* a, const AabbLanes* b,
+/// Bit 8 i + j of `masks[k]`: child i of node a and child j of node b of `pairs[k]` may overlap. Children
+/// outside `children_a` give no bits; bits of missing children of b have any value. Never misses an overlap.
+void overlap_masks(std::span<const NodePair> pairs, const ChildBoxes* a, const ChildBoxes* b,
                    const RelativePlacement& placement, std::uint64_t* masks);
-void overlap_masks(std::span<const NodePair> pairs, const SphereLanes* a, const SphereLanes* b,
+void overlap_masks(std::span<const NodePair> pairs, const ChildSpheres* a, const ChildSpheres* b,
                    const RelativePlacement& placement, std::uint64_t* masks);
 
 /// What the leaf tests read of an object: its triangles, and the boxes and vertices of its leaves.
 struct LeafArrays {
   const TriangleArrays& triangles;
-  const AabbLanes* boxes = nullptr;
+  const ChildBoxes* boxes = nullptr;
   LeafVertexArrays vertices;
 };
 

@@ -18,16 +18,16 @@ namespace supple {
 /// What the narrow phase reads of one object; borrowed for the call.
 struct OctreeView {
   std::span<const OctreeNode> nodes;
-  const AabbLanes* boxes = nullptr;
-  const SphereLanes* spheres = nullptr;  ///< null: the boxes are the volumes
+  const ChildBoxes* boxes = nullptr;
+  const ChildSpheres* spheres = nullptr;  ///< null: the boxes are the volumes
   TriangleArrays arrays;
   LeafVertexArrays leaf_vertices;
   Aabb box;           ///< of all positions
   Vec3d translation;  ///< added to each position
   MovingView moving;  ///< of objects in motion, of which `arrays` and `leaf_vertices` are not read
-  /// Masks of an `SelfCollisionCulling` of these very positions, or null: an object against itself is then
-  /// not looked for in lanes that cannot touch themselves. Candidates are lost thereby, contacts are not.
-  const std::uint8_t* unfolded = nullptr;
+  /// Masks of a `SelfCollisionCulling` at these positions, or null: the search of an object against itself
+  /// skips children that cannot touch themselves. It finds fewer candidates, but all contacts.
+  const std::uint8_t* culled = nullptr;
 };
 OctreeView view_of(const ObjectOctree& octree, const VertexBuffer& vertices,
                    std::span<const std::uint8_t> inert, Vec3d translation);
@@ -69,18 +69,18 @@ struct TraversalStats {
   std::uint64_t vertex_face_candidates = 0, edge_edge_candidates = 0;
 };
 
-/// Two lanes that the descent compares.
-struct LanePair {
+/// Two children that the descent compares.
+struct ChildPair {
   std::uint32_t node_a = 0, node_b = 0;
-  int lane_a = 0, lane_b = 0;
+  int child_a = 0, child_b = 0;
   bool apart = false;  ///< the volumes are: the descent ends here
 };
-/// Where the descent from the roots to two triangles ends, octree order's numbers: at the first lanes on the
-/// way that are apart, or else at the two leaves. Of one object with itself, `triangles.a < triangles.b`.
-LanePair last_lanes(const ObjectPairView& pair, TrianglePair triangles);
+/// Where the descent from the roots to two triangles ends, octree order's numbers: at the first children on
+/// the way that are apart, or else at the two leaves. Of one object with itself, `triangles.a < triangles.b`.
+ChildPair last_children(const ObjectPairView& pair, TrianglePair triangles);
 /// Whether the narrow phase tells two triangles of two leaves apart by their boxes, as `find_triangle_pairs`
 /// would.
-bool leaf_triangles_apart(const ObjectPairView& pair, const LanePair& leaves, TrianglePair triangles);
+bool leaf_triangles_apart(const ObjectPairView& pair, const ChildPair& leaves, TrianglePair triangles);
 
 /// Octree against octree, both descended at once. Holds the scratch memory of one worker, kept between calls.
 ///
@@ -156,7 +156,8 @@ class Traversal {
   }
 
   /// One step of the descent for all of `pairs`, for spreading work over threads: what it appends to `finer`
-  /// finds the same triangle pairs. Pairs that involve a leaf stay as they are, restricted to the two lanes.
+  /// finds the same triangle pairs. Pairs that involve a leaf stay as they are, restricted to the two
+  /// children.
   void refine(const ObjectPairView& pair, NodePair node_pair, std::vector<NodePair>& finer);
 
  private:

@@ -1,6 +1,7 @@
 #include "octree/object_octree.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -9,7 +10,7 @@
 #include "geometry/vector.hpp"
 #include "octree/balanced_build.hpp"
 #include "octree/box_kernels.hpp"
-#include "octree/octree_build.hpp"
+#include "octree/regular_build.hpp"
 
 namespace supple {
 namespace {
@@ -37,18 +38,19 @@ std::vector<Vec3d> box_centers(const PositionsView& positions, std::span<const T
 OctreeTopology build_topology(const PositionsView& positions, std::span<const Triangle> triangles,
                               const ObjectOctreeOptions& options) {
   const std::vector<Vec3d> centers = box_centers(positions, triangles);
-  return options.regular || options.arity != 8 ? build_octree(centers, options)
+  return options.regular || options.arity != 8 ? build_regular_octree(centers, options)
                                                : build_balanced_octree(centers, options);
 }
 
-void set_lane(SphereLanes& lanes, int lane, const BoundingSphere& sphere) {
-  lanes.x[lane] = sphere.center.x;
-  lanes.y[lane] = sphere.center.y;
-  lanes.z[lane] = sphere.center.z;
-  lanes.radius[lane] = sphere.radius;
+void set_child(ChildSpheres& spheres, int child, const BoundingSphere& sphere) {
+  spheres.x[child] = sphere.center.x;
+  spheres.y[child] = sphere.center.y;
+  spheres.z[child] = sphere.center.z;
+  spheres.radius[child] = sphere.radius;
 }
 
-/// The paper's eq. 3 and 4: the ball in the cube over the box's lower corner with the box's longest side.
+/// The paper's equations 3 and 4: the sphere inside the cube that has the lower corner and the longest side
+/// of the box.
 BoundingSphere sphere_from_box(const Aabb& box) {
   if (box.empty()) return {};
   const double side =
@@ -57,7 +59,8 @@ BoundingSphere sphere_from_box(const Aabb& box) {
   return {{box.min.x + half, box.min.y + half, box.min.z + half}, half};
 }
 
-/// The paper's eq. 5: about the centre of the box, radius to the farthest vertex, rounded up.
+/// The paper's equation 5: around the centre of the box, with the distance of the farthest vertex as radius,
+/// rounded up.
 BoundingSphere sphere_around(const Aabb& box, std::span<const Triangle> triangles,
                              const VertexBuffer& vertices, std::span<const std::uint8_t> inert,
                              std::uint32_t first) {
@@ -78,7 +81,7 @@ BoundingSphere sphere_around(const Aabb& box, std::span<const Triangle> triangle
       squared_radius = std::max(squared_radius, dx * dx + dy * dy + dz * dz);
     }
   }
-  // The factor covers the roundings of the sum and of the root, the addend squares that underflow.
+  // The factor covers the rounding of the sum and the root; the addend covers squares that underflow.
   return {center, round_up(std::sqrt(squared_radius) * (1 + 0x1p-50) + std::numeric_limits<float>::min())};
 }
 
@@ -128,12 +131,12 @@ void ObjectOctree::list_leaf_vertices() {
   const std::size_t stride = triangles_.size() + corners_ahead;
   leaf_corners_.assign(3 * stride, 0);
   for (const OctreeNode& node : nodes_) {
-    for (int lane = 0; lane < node_width; ++lane) {
+    for (int child = 0; child < node_width; ++child) {
       const auto leaf = static_cast<std::uint32_t>(first_leaf_vertex_.size());
       const auto first = static_cast<std::uint32_t>(leaf_vertices_.size());
       first_leaf_vertex_.push_back(first);
-      if (lane >= node.lane_count || node.is_inner(lane)) continue;
-      for (std::uint32_t t = node.first_triangle[lane]; t < node.first_triangle[lane + 1]; ++t) {
+      if (child >= node.child_count || node.is_inner(child)) continue;
+      for (std::uint32_t t = node.first_triangle[child]; t < node.first_triangle[child + 1]; ++t) {
         for (std::size_t corner = 0; corner < 3; ++corner) {
           const std::uint32_t vertex = triangles_[t][corner];
           Place& last = last_places[vertex];
@@ -158,48 +161,36 @@ void ObjectOctree::list_leaf_vertices() {
 
 bool ObjectOctree::refit(const VertexBuffer& vertices, std::span<const std::uint8_t> inert,
                          const Parallel& parallel) {
-  sphere_ = BoundingSphere{};
-  bool all_finite =
+  std::atomic<bool> all_finite =
       !inert.empty() || std::all_of(unused_vertices_.begin(), unused_vertices_.end(),
                                     [&](std::uint32_t vertex) { return is_finite(vertices[vertex]); });
-  if (nodes_.empty()) return all_finite;
-  for (std::size_t level = level_begin_.size() - 1; level-- > 0 && all_finite;) {
-    all_finite = refit_level(static_cast<std::uint32_t>(level), vertices, inert, parallel);
-  }
-  if (!all_finite) return false;
-  if (spheres_.empty()) return true;
-  sphere_ = sphere_fit_ == SphereFit::box ? sphere_from_box(box())
-                                          : sphere_around(box(), triangles_, vertices, inert, 0);
-  return true;
-}
-
-bool ObjectOctree::refit_level(std::uint32_t level, const VertexBuffer& vertices,
-                               std::span<const std::uint8_t> inert, const Parallel& parallel) {
   const TriangleArrays arrays = arrays_of(triangles_, vertices, inert);
-  const std::uint32_t first = level_begin_[level];
-  return parallel.all_of_ranges(level_begin_[level + 1] - first, 64, [&](std::size_t begin, std::size_t end) {
-    const auto node_begin = static_cast<std::uint32_t>(first + begin);
-    const auto node_end = static_cast<std::uint32_t>(first + end);
-    if (!refit_boxes(nodes_.data(), boxes_.data(), arrays, leaf_vertices(), node_begin, node_end))
-      return false;
-    if (!spheres_.empty()) refit_spheres(node_begin, node_end, vertices, inert);
-    return true;
+  for_nodes_bottom_up(parallel, 64, [&](std::uint32_t begin, std::uint32_t end) {
+    if (!all_finite) return;
+    if (!refit_boxes(nodes_.data(), boxes_.data(), arrays, leaf_vertices(), begin, end)) all_finite = false;
+    if (all_finite && !spheres_.empty()) refit_spheres(begin, end, vertices, inert);
   });
+  sphere_ = BoundingSphere{};
+  if (all_finite && !spheres_.empty()) {
+    sphere_ = sphere_fit_ == SphereFit::box ? sphere_from_box(box())
+                                            : sphere_around(box(), triangles_, vertices, inert, 0);
+  }
+  return all_finite;
 }
 
 void ObjectOctree::refit_spheres(std::uint32_t node_begin, std::uint32_t node_end,
                                  const VertexBuffer& vertices, std::span<const std::uint8_t> inert) {
   for (std::uint32_t n = node_begin; n < node_end; ++n) {
     const OctreeNode& node = nodes_[n];
-    for (int lane = 0; lane < node_width; ++lane) {
-      const Aabb box = lane_box(boxes_[n], lane);
-      const std::uint32_t begin = node.first_triangle[lane];
-      const std::uint32_t count = lane < node.lane_count ? node.first_triangle[lane + 1] - begin : 0;
-      set_lane(spheres_[n], lane,
-               sphere_fit_ == SphereFit::box
-                   ? sphere_from_box(box)
-                   : sphere_around(box, std::span<const Triangle>(triangles_).subspan(begin, count), vertices,
-                                   inert, begin));
+    for (int child = 0; child < node_width; ++child) {
+      const Aabb box = child_box(boxes_[n], child);
+      const std::uint32_t begin = node.first_triangle[child];
+      const std::uint32_t count = child < node.child_count ? node.first_triangle[child + 1] - begin : 0;
+      set_child(spheres_[n], child,
+                sphere_fit_ == SphereFit::box
+                    ? sphere_from_box(box)
+                    : sphere_around(box, std::span<const Triangle>(triangles_).subspan(begin, count),
+                                    vertices, inert, begin));
     }
   }
 }

@@ -14,6 +14,6 @@ namespace supple {
 ///
 /// 0 when the boxes have no surface or one that is too large for double. O(nodes). The same number on every
 /// machine.
-double query_cost(std::span<const OctreeNode> nodes, const AabbLanes* boxes);
+double query_cost(std::span<const OctreeNode> nodes, const ChildBoxes* boxes);
 
 }  // namespace supple

@@ -13,7 +13,7 @@
 namespace supple {
 namespace {
 
-/// The ball around a box.
+/// The sphere around a box.
 BoundingSphere sphere_around(const Aabb& box) {
   if (box.empty()) return {};
   BoundingSphere sphere;
@@ -28,9 +28,9 @@ BoundingSphere sphere_around(const Aabb& box) {
   return sphere;
 }
 
-/// The rule for the size of leaves. All vertices, edges and faces of two leaves are tested for continuous
-/// contacts, most of them in vain: leaves half as large are faster. A regular octree stays what was asked
-/// for.
+/// The rule for the size of leaves. Continuous detection tests all vertices, edges and faces of two leaves,
+/// most of them in vain, so leaves half as large are faster. Regular octrees keep the size that the user
+/// chose.
 ObjectOctreeOptions octree_options(const ObjectOptions& options, const SceneOptions& scene_options) {
   ObjectOctreeOptions octree = options.octree;
   if (contains(scene_options.contacts, ContactKinds::continuous) && !octree.regular && octree.arity == 8)
@@ -45,7 +45,7 @@ SceneObject::SceneObject(const PositionsView& positions, std::span<const Triangl
     : options(object_options),
       octree_(positions, triangles, octree_options(object_options, scene_options),
               scene_options.bounding_volume, scene_options.comparison.sphere_fit),
-      // The paper's results depend on leaves: they stay those of the rest pose.
+      // The paper's results depend on the leaves of the rest pose.
       rebuild_policy_(object_options.octree.rebuild_degraded &&
                       !scene_options.comparison.colliding_vertices &&
                       scene_options.comparison.sphere_fit == SphereFit::vertices) {}
@@ -68,19 +68,19 @@ void SceneObject::update(const SearchedShapes& shapes, const Parallel& parallel)
   updated_ = shapes;
 }
 
-/// A shape that is up to date stays so.
+/// Updates the shapes for this search, and those that were up to date before.
 void SceneObject::refit(const SearchedShapes& shapes, const Parallel& parallel) {
   SearchedShapes wanted = shapes;
   wanted.resting = wanted.resting || resting_.is_current(placement_);
   wanted.moving = wanted.moving || moving_.is_current(placement_);
-  // A shape that bakes the translation leaves the other one behind.
+  // When one shape bakes the translation, the other one is out of date.
   do {
     if (wanted.resting) resting_.update(octree_, placement_, parallel);
     if (wanted.moving) moving_.update(octree_, placement_, parallel);
   } while (needs_refit(wanted));
   if (!options.self_collision) return;
-  if (wanted.unfolded_resting) resting_.update_unfolded(octree_, placement_, parallel);
-  if (wanted.unfolded_moving) moving_.update_unfolded(octree_, parallel);
+  if (wanted.cull_resting) resting_.update_culling(octree_, placement_, parallel);
+  if (wanted.cull_moving) moving_.update_culling(octree_, parallel);
 }
 
 void SceneObject::update_volumes(const SearchedShapes& shapes) {

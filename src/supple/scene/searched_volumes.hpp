@@ -20,14 +20,15 @@ inline Aabb unclamped(const Aabb& box) {
   return result;
 }
 
-/// Of the lane's triangles where they are now, or at the end of the step, but for the view's translation.
-inline Aabb lane_box(const OctreeView& view, std::uint32_t node, int lane) {
+/// The box of a child's triangles at the current positions, with continuous contacts at the end of the step,
+/// without the view's translation.
+inline Aabb child_box(const OctreeView& view, std::uint32_t node, int child) {
   const bool is_moving = view.moving.start != nullptr;
-  return is_moving ? unclamped(lane_box(view.moving.end[node], lane)) : lane_box(view.boxes[node], lane);
+  return is_moving ? unclamped(child_box(view.moving.end[node], child)) : child_box(view.boxes[node], child);
 }
-inline BoundingSphere lane_sphere(const OctreeView& view, std::uint32_t node, int lane) {
-  const SphereLanes& lanes = view.spheres[node];
-  return {{lanes.x[lane], lanes.y[lane], lanes.z[lane]}, lanes.radius[lane]};
+inline BoundingSphere child_sphere(const OctreeView& view, std::uint32_t node, int child) {
+  const ChildSpheres& spheres = view.spheres[node];
+  return {{spheres.x[child], spheres.y[child], spheres.z[child]}, spheres.radius[child]};
 }
 
 /// Box of a face in motion, at one end of the step; empty when the face is inert.

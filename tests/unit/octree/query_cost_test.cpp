@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <limits>
 #include <vector>
 
 #include "octree/object_octree.hpp"
@@ -95,6 +96,25 @@ TEST(QueryCost, IsUnknownWithoutASurfaceOrWithOneTooLarge) {
   EXPECT_EQ(query_cost({}, nullptr), 0);
 }
 
+TEST(QueryCost, IgnoresChildrenWithoutAFiniteTriangle) {
+  const TriangleMesh mesh = random_soup(1000, 1, 0.02, 3);
+  Tree tree(mesh);
+  const double all = tree.cost(mesh.positions);
+  std::vector<Vec3d> positions = mesh.positions;
+  std::vector<std::uint8_t> inert;
+  for (const std::uint32_t t : tree.octree.triangle_ids()) {
+    inert.push_back(mesh.positions[3 * t].x > 0);
+    if (inert.back() != 0) positions[3 * t].y = std::numeric_limits<double>::quiet_NaN();
+  }
+  const Parallel parallel{1};
+  VertexBuffer vertices;
+  vertices.assign(positions, parallel);
+  tree.octree.refit(vertices, inert, parallel);
+  const double half = query_cost(tree.octree.nodes(), tree.octree.boxes());
+  EXPECT_GT(half, all / 4);
+  EXPECT_LT(half, all);
+}
+
 TEST(QueryCost, IsHighForAnObjectBuiltWhileItWasAPoint) {
   TriangleMesh mesh = random_soup(1000, 1, 0.02, 7);
   const std::vector<Vec3d> spread = mesh.positions;
@@ -114,7 +134,8 @@ TEST(QueryCost, IsTheSameOnAllInstructionSetsAndThreads) {
   const std::vector<Vec3d> positions = mixed(mesh, 0.2);
   const double first = Tree(mesh).cost(positions);
   for_each_target([&](const char* target) {
-    for (const std::uint32_t threads : {1u, 3u}) EXPECT_EQ(Tree(mesh).cost(positions, threads), first) << target;
+    for (const std::uint32_t threads : {1u, 3u})
+      EXPECT_EQ(Tree(mesh).cost(positions, threads), first) << target;
   });
 }
 

@@ -338,8 +338,7 @@ TEST(SceneRebuild, ObjectsAtRestAreRebuiltForQueriesOfOthers) {
   // The first object stays at rest while the other one moves.
   std::uint64_t hash = 0;
   for (int step = 0;
-       step < 200 && SceneInspector(living.scene).octree_statistics(living.ids[0]).rebuilds == 0;
-       ++step) {
+       step < 200 && SceneInspector(living.scene).octree_statistics(living.ids[0]).rebuilds == 0; ++step) {
     living.scene.translate(living.ids[1], {step % 2 == 0 ? 0.01 : -0.01, 0, 0});
     const DetectResult& result = living.scene.detect();
     ASSERT_EQ(SceneInspector(living.scene).validate(), "");
