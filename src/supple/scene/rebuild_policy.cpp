@@ -12,6 +12,8 @@ constexpr double least_degradation = 1.25;
 /// of them cannot touch themselves. So the new octree must be much better.
 constexpr double most_remaining_cost = 0.5;
 constexpr double most_backoff = 1024;
+/// A prime, so that a motion that repeats after a few refits is measured in each of its phases.
+constexpr std::uint32_t refits_per_measurement = 7;
 /// Used when the cost at the built positions is unknown because they are one point.
 constexpr double usual_cost = 16;
 
@@ -22,12 +24,18 @@ void RebuildPolicy::set_cost_when_built(double cost) {
   cost_when_built_ = cost > 0 ? cost : usual_cost;
 }
 
+bool RebuildPolicy::should_measure() {
+  if (!is_enabled_ || (!is_degraded() && --refits_until_measured_ > 0)) return false;
+  refits_until_measured_ = refits_per_measurement;
+  return true;
+}
+
 bool RebuildPolicy::is_degraded() const {
-  return is_enabled_ && degradation() > least_degradation;
+  return is_enabled_ && degradation(cost_) > least_degradation;
 }
 
 bool RebuildPolicy::count_queries(double queries) {
-  accumulated_extra_cost_ += queries * (degradation() - 1);
+  accumulated_extra_cost_ += queries * (degradation(cost_) - 1);
   return accumulated_extra_cost_ >= backoff_ * rebuild_cost;
 }
 

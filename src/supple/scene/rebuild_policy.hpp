@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+
 namespace supple {
 
 /// Decides when to rebuild the octree of an object: when the accumulated extra query cost reaches the cost of
@@ -15,12 +17,13 @@ class RebuildPolicy {
 
   /// Call when the octree was built, with the cost at the positions that it was built from.
   void set_cost_when_built(double cost);
-  /// Call after each refit.
+  /// Call after each refit. Returns whether to measure the cost and to call `set_cost`: after each refit
+  /// while the octree is degraded, otherwise after one in seven, because measuring takes a tenth of a refit.
+  bool should_measure();
   void set_cost(double cost) { cost_ = cost; }
 
-  double cost() const { return cost_; }
-  /// The cost relative to the cost when built: 2 when queries cost twice as much; 1 when it is unknown.
-  double degradation() const { return cost_ > 0 ? cost_ / cost_when_built_ : 1; }
+  /// A cost relative to the cost when built: 2 when queries cost twice as much; 1 when it is unknown.
+  double degradation(double cost) const { return cost > 0 ? cost / cost_when_built_ : 1; }
   /// Whether queries cost so much more that a rebuild can pay.
   bool is_degraded() const;
   /// Adds the queries of a step to the accumulated extra cost. Returns whether it is time to rebuild.
@@ -32,6 +35,7 @@ class RebuildPolicy {
  private:
   bool is_enabled_;
   double cost_when_built_ = 1, cost_ = 0;
+  std::uint32_t refits_until_measured_ = 1;
   double accumulated_extra_cost_ = 0;
   double backoff_ = 2;  ///< attempt a rebuild at this multiple of its cost
 };

@@ -63,7 +63,7 @@ void SceneObject::update(const SearchedShapes& shapes, const Parallel& parallel)
   const bool was_behind = needs_refit(shapes);
   refit(shapes, parallel);
   update_volumes(shapes);
-  if (was_behind) rebuild_policy_.set_cost(current_query_cost());
+  if (was_behind && rebuild_policy_.should_measure()) rebuild_policy_.set_cost(current_query_cost());
   has_moved_ = false;
   updated_ = shapes;
 }
@@ -136,8 +136,8 @@ std::string SceneObject::validate() const {
 OctreeStatistics SceneObject::octree_statistics() const {
   OctreeStatistics statistics = octree_.statistics();
   statistics.bytes += resting_.bytes() + moving_.bytes();
-  statistics.cost = rebuild_policy_.cost();
-  statistics.degradation = rebuild_policy_.degradation();
+  statistics.cost = current_query_cost();
+  statistics.degradation = rebuild_policy_.degradation(statistics.cost);
   statistics.rebuilds = rebuilds_;
   if (statistics.triangles != 0) {
     statistics.bytes_per_triangle =

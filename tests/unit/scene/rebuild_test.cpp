@@ -218,7 +218,7 @@ TEST(SceneRebuild, SurvivesPositionsOfAllKinds) {
       Living built(drift, with_threads(1, mode), true, self_collision);
       Living kept(drift, with_threads(1, mode), false, self_collision);
       RandomNumbers random(triangles);
-      for (int step = 0; step < (self_collision ? 60 : 25); ++step) {
+      for (int step = 0; step < (self_collision ? 120 : 25); ++step) {
         SCOPED_TRACE(std::to_string(triangles) + " triangles, step " + std::to_string(step));
         drift.advance();
         Drift shown = drift;
