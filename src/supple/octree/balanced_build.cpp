@@ -116,12 +116,7 @@ class BalancedSplitter {
     for (std::size_t i = 0; i < points.size(); ++i) points[next[leaf_cells_[i]]++] = leaf_points_[i];
   }
 
-  std::vector<std::uint32_t> order() const {
-    std::vector<std::uint32_t> order;
-    order.reserve(points_.size());
-    for (const Point& point : points_) order.push_back(point.triangle);
-    return order;
-  }
+  std::span<const Point> items() const { return points_; }
 
  private:
   void cut_into_children(TriangleRange range, std::uint32_t count, std::vector<TriangleRange>& children) {
@@ -239,10 +234,7 @@ class BalancedSplitter {
 }  // namespace
 
 OctreeTopology build_balanced_octree(std::span<const Vec3d> centers, const ObjectOctreeOptions& options) {
-  BalancedSplitter splitter(centers, options);
-  OctreeTopology topology = build_nodes(static_cast<std::uint32_t>(centers.size()), splitter);
-  topology.order = splitter.order();
-  return topology;
+  return build_octree(BalancedSplitter(centers, options));
 }
 
 }  // namespace supple

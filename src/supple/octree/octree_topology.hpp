@@ -26,13 +26,14 @@ struct TriangleRange {
   std::uint32_t size() const { return end - begin; }
 };
 
-/// Makes all nodes from the root down, and leaves `order` to the splitter:
+/// Makes all nodes from the root down. The splitter decides the order of the triangles:
+/// - `items()` returns the triangles in their order, as items with a member `triangle`.
 /// - `should_split(range, level)` returns whether the range becomes a node, not a leaf. It may reorder the
 ///   range.
 /// - `split(range, level, children)` appends two to eight ranges that cover the range. It may reorder it.
 /// - `finish_leaf(range)` may reorder the triangles of a leaf.
 template <class Splitter>
-OctreeTopology build_nodes(std::uint32_t triangle_count, Splitter& splitter) {
+OctreeTopology build_octree(Splitter splitter) {
   OctreeTopology topology;
   std::vector<TriangleRange> ranges, children;
   const auto push_node = [&](TriangleRange range, std::size_t parent, std::uint32_t index,
@@ -47,6 +48,7 @@ OctreeTopology build_nodes(std::uint32_t triangle_count, Splitter& splitter) {
     topology.nodes.push_back(node);
     ranges.push_back(range);
   };
+  const auto triangle_count = static_cast<std::uint32_t>(splitter.items().size());
   if (triangle_count > 0) push_node({0, triangle_count}, 0, 0, 0);
   for (std::size_t n = 0; n < topology.nodes.size(); ++n) {
     const TriangleRange range = ranges[n];
@@ -72,6 +74,8 @@ OctreeTopology build_nodes(std::uint32_t triangle_count, Splitter& splitter) {
     topology.nodes[n] = node;
   }
   topology.level_begin.push_back(static_cast<std::uint32_t>(topology.nodes.size()));
+  topology.order.reserve(triangle_count);
+  for (const auto& item : splitter.items()) topology.order.push_back(item.triangle);
   return topology;
 }
 

@@ -79,13 +79,7 @@ class RegularSplitter {
   }
 
   void finish_leaf(TriangleRange) const {}
-
-  std::vector<std::uint32_t> order() const {
-    std::vector<std::uint32_t> order;
-    order.reserve(coded_.size());
-    for (const Coded& coded : coded_) order.push_back(coded.triangle);
-    return order;
-  }
+  std::span<const Coded> items() const { return coded_; }
 
  private:
   /// Codes the centres of the range in the cube around them and sorts the range.
@@ -119,10 +113,7 @@ class RegularSplitter {
 }  // namespace
 
 OctreeTopology build_regular_octree(std::span<const Vec3d> centers, const ObjectOctreeOptions& options) {
-  RegularSplitter splitter(centers, options);
-  OctreeTopology topology = build_nodes(static_cast<std::uint32_t>(centers.size()), splitter);
-  topology.order = splitter.order();
-  return topology;
+  return build_octree(RegularSplitter(centers, options));
 }
 
 }  // namespace supple
