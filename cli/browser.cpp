@@ -42,7 +42,7 @@ bool has_screen() {
 
 namespace fs = std::filesystem;
 
-/// Where programs of this user keep what lasts no longer than they, else where those of all users do.
+/// The folder for temporary files of this user, or else the folder for those of all users.
 fs::path folder_of_pages() {
   const char* const runtime = std::getenv("XDG_RUNTIME_DIR");
   if (runtime && *runtime == '/' && access(runtime, W_OK) == 0) return runtime;
@@ -61,7 +61,7 @@ bool write_text(int file, const std::string& text) {
   return std::fclose(stream) == 0 && written;
 }
 
-/// A page that leads to an address: a new file of mode 0600. Gives no path when it cannot be written.
+/// Writes a page that leads to an address, as a new file of mode 0600. Returns an empty path when that fails.
 fs::path write_page(const std::string& url) {
   const std::string text = fmt::format(
       "<!doctype html>\n<html lang=\"en\"><meta charset=\"utf-8\"><title>Supple</title>\n"
@@ -84,13 +84,13 @@ fs::path write_page(const std::string& url) {
 
 /// Does nothing when there is no program to open it.
 void open_in_browser(const fs::path& page) {
-  // What browsers say on the terminal is for nobody.
+  // Browsers write messages to the terminal that nobody needs.
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
   posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
   posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
-  // A group of its own: Ctrl-C ends this program, not the browser.
+  // A separate process group: Ctrl-C ends this program, not the browser.
   posix_spawnattr_t attributes;
   posix_spawnattr_init(&attributes);
   posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);

@@ -5,20 +5,20 @@
 
 namespace supple::cli {
 
-/// Leads the user's browser to an address that is a secret. The arguments of a program can be listed by
-/// everyone on the machine, so the browser is not given the address but a file that only the user may read,
-/// from which it goes there by itself. The file is there while this lives.
+/// Opens a secret address in the user's browser. Everyone on the machine can list the arguments of a program.
+/// So the browser gets a file that only the user can read and that leads to the address. The file exists as
+/// long as this object.
 class BrowserVisit {
  public:
-  /// Does nothing where there is no screen or no browser, and warns where no file can be written. The address
-  /// must be fit for HTML as it is.
+  /// Does nothing without a screen or a browser. Prints a warning when the file cannot be written. The
+  /// address must not need escaping in HTML.
   explicit BrowserVisit(const std::string& url);
   ~BrowserVisit();
   BrowserVisit(const BrowserVisit&) = delete;
   BrowserVisit& operator=(const BrowserVisit&) = delete;
 
  private:
-  std::filesystem::path page_;  ///< empty when there is none
+  std::filesystem::path page_;  ///< empty without a page
 };
 
 }  // namespace supple::cli

@@ -31,7 +31,7 @@ bool has_motion(const Input& input) {
                      [](const InputObject& object) { return motion_of<Kind>(object) != nullptr; });
 }
 
-/// Objects that are moved by files, and others by waves.
+/// A scene in which files move some objects and waves move others.
 class FileFrames : public viewer::Frames {
  public:
   explicit FileFrames(const Input& input) : simulation_(input.simulation) {
@@ -74,14 +74,14 @@ class FileFrames : public viewer::Frames {
   viewer::Series series_;
 };
 
-/// A recording; all of its objects move but the static ones.
+/// A recording. All objects move except static ones.
 class RecordedFrames : public viewer::Frames {
  public:
   explicit RecordedFrames(std::shared_ptr<const Recording> recording) : recording_(std::move(recording)) {
     std::map<ObjectId, std::uint32_t> places;
     for (const RecordedObject& object : recording_->header().objects)
       places.emplace(object.id, static_cast<std::uint32_t>(places.size()));
-    // As frames name them, so that a page plots both alike.
+    // The same names as in frames, so that a page plots both in the same way.
     series_.names.emplace_back("time");
     viewer::for_each_statistic({}, [&](const char* name, double) { series_.names.emplace_back(name); });
     Progress progress(count(), true);
@@ -112,7 +112,7 @@ class RecordedFrames : public viewer::Frames {
   viewer::Series series_;
 };
 
-/// Null of a simulation.
+/// Null for a simulation.
 std::shared_ptr<const viewer::Frames> frames_of(const Input& input, const ViewOptions& options) {
   for (const InputObject& object : input.objects) {
     if (const auto* motion = motion_of<RecordedMotion>(object))

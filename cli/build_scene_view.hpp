@@ -6,9 +6,9 @@
 
 namespace supple::cli {
 
-/// What the viewer shows of an input: a simulation; or, when objects are moved by a recording or by files,
-/// their frames. Reads all that a recording says of its frames besides positions and contacts. Throws `Error`
-/// when it cannot be read, or when some objects are moved by files and others by masses and springs.
+/// Makes the scene view of an input: a simulation, or frames when a recording or files move the objects.
+/// Reads all data of the frames of a recording except positions and contacts. Throws `Error` when the input
+/// cannot be read, or when files move some objects and masses and springs move others.
 viewer::SceneView build_scene_view(const Input& input, const ViewOptions& options);
 
 }  // namespace supple::cli

@@ -12,7 +12,7 @@
 namespace supple::cli {
 namespace {
 
-/// Adds an object, one `add` for each kind of motion.
+/// Adds an object; one overload per kind of motion.
 struct Adder {
   Simulation& simulation;
   TriangleMesh mesh;
@@ -29,7 +29,7 @@ struct Adder {
 
   void operator()(const MassSpringMotion& motion) { simulation.add(mesh, options, motion); }
 
-  /// Says which step ends at a time.
+  /// The step that ends at a time.
   auto step_at() const {
     return [time_step = simulation.options().time_step](double seconds) {
       return static_cast<std::uint64_t>(std::llround(seconds / time_step));

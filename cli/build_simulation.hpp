@@ -6,11 +6,11 @@
 
 namespace supple::cli {
 
-/// Puts the options that the command line gives in the place of the input's.
+/// Replaces options of the input by those of the command line.
 void apply(const MethodOptions& options, Input& input);
 
-/// A simulation of the objects of an input, in their order, each where it is at the start. Throws `Error` as
-/// `Simulation::add` does, or when a frame of a sequence is not what it should be.
+/// Makes a simulation of the objects of an input, in their order, at their start positions. Throws `Error` as
+/// `Simulation::add` does, or when a frame of a sequence does not fit the object.
 Simulation build_simulation(const Input& input);
 
 }  // namespace supple::cli

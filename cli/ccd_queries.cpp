@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 
 struct QueryPaths {
   fs::path queries;
-  fs::path answers;  ///< empty: none but those in the file
+  fs::path answers;  ///< empty: the answers are in the query file
   std::uint64_t bytes = 0;
 };
 
@@ -63,7 +63,7 @@ double measure_seconds_per_query(const std::vector<Motion>& queries, const Impac
   return taken.count() / (static_cast<double>(passes) * static_cast<double>(queries.size()));
 }
 
-/// The fault of an impact, the truth being known; nothing when it is as promised.
+/// Compares a reported impact with the true one; nothing when it is within the contract.
 std::optional<ContinuousDifference::Fault> fault_of(const std::optional<Impact>& impact,
                                                     const std::optional<TimeBracket>& truth) {
   using Fault = ContinuousDifference::Fault;
@@ -75,7 +75,7 @@ std::optional<ContinuousDifference::Fault> fault_of(const std::optional<Impact>&
   return std::nullopt;
 }
 
-/// Puts the queries of one file, and says how far it has come.
+/// Answers the queries of one file and shows the progress.
 class Run {
  public:
   Run(const CcdQueriesOptions& options, Progress& progress) : options_(options), progress_(progress) {}

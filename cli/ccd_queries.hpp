@@ -4,7 +4,7 @@
 
 namespace supple::cli {
 
-/// `supple ccd-queries`: returns the exit status, throws `Error` for input that cannot be used.
+/// Runs `supple ccd-queries`; returns the exit status. Throws `Error` for unusable input.
 int run_ccd_queries(const CcdQueriesOptions& options);
 
 }  // namespace supple::cli

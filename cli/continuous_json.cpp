@@ -16,13 +16,14 @@ using Contacts = std::span<const ContinuousContact>;
 using Kind = ElementPairKind;
 using Element = std::array<std::uint32_t, 2>;
 
-/// The kinds that a group can have: of one object with itself the vertex is always the element of a.
+/// The kinds that a group can have. In a group of an object with itself, the vertex is always the element of
+/// a.
 std::vector<Kind> kinds_of(const ContactGroup& group) {
   if (group.a == group.b) return {Kind::vertex_face, Kind::edge_edge};
   return {Kind::vertex_face, Kind::face_vertex, Kind::edge_edge};
 }
 
-/// Those of one kind stand together.
+/// The contacts of one kind are consecutive.
 Contacts of_kind(Contacts group, Kind kind) {
   const auto is_before = [&](const ContinuousContact& c) { return c.kind < kind; };
   const auto is_not_after = [&](const ContinuousContact& c) { return c.kind <= kind; };
@@ -30,13 +31,13 @@ Contacts of_kind(Contacts group, Kind kind) {
   return {first, std::partition_point(first, group.end(), is_not_after)};
 }
 
-/// One id of a vertex or a face, two of an edge.
+/// Writes one id for a vertex or a face, and two ids for an edge.
 void write_ids(JsonWriter& json, const Element& element, Kind kind) {
   json.value(std::uint64_t{element[0]});
   if (kind == Kind::edge_edge) json.value(std::uint64_t{element[1]});
 }
 
-/// A row a contact: the ids of both elements and the time.
+/// Writes one row per contact: the ids of both elements and the time.
 void write_rows(JsonWriter& json, Contacts contacts) {
   json.begin_array();
   for (const ContinuousContact& contact : contacts) {
@@ -49,7 +50,7 @@ void write_rows(JsonWriter& json, Contacts contacts) {
   json.end_array();
 }
 
-/// The rows, counted from 0, of those that are only within tolerance.
+/// Writes the rows, counted from 0, of contacts that are only within tolerance.
 void write_uncertain_rows(JsonWriter& json, Contacts contacts) {
   json.begin_array();
   for (std::size_t row = 0; row < contacts.size(); ++row) {
@@ -84,7 +85,7 @@ void write_elements(JsonWriter& json, const Element& a, const Element& b, Kind k
   json.end_array();
 }
 
-/// As many as the element has vertices.
+/// Writes one weight per vertex of the element.
 void write_weights(JsonWriter& json, const char* name, const std::array<double, 3>& weights,
                    std::size_t count) {
   json.key(name);
@@ -93,7 +94,7 @@ void write_weights(JsonWriter& json, const char* name, const std::array<double, 
   json.end_array();
 }
 
-/// Vertices of the elements of a and b.
+/// Numbers of vertices of the elements of a and b.
 std::array<std::size_t, 2> sizes_of_elements(Kind kind) {
   switch (kind) {
     case Kind::vertex_face:

@@ -11,7 +11,7 @@ namespace supple::cli {
 
 namespace {
 
-/// An edge has two ids, a vertex and a face one.
+/// An edge has two ids; a vertex or a face has one.
 std::string ids_of(const std::array<std::uint32_t, 2>& element, ElementPairKind kind) {
   if (kind == ElementPairKind::edge_edge) return fmt::format("{},{}", element[0], element[1]);
   return fmt::format("{},", element[0]);

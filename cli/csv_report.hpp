@@ -8,7 +8,8 @@
 
 namespace supple::cli {
 
-/// A row a contact, as docs/json.md describes them: the frame, the objects, and their triangles or elements.
+/// Writes one row per contact, as docs/json.md describes: the frame, the objects, and their triangles or
+/// elements.
 class CsvReport {
  public:
   CsvReport(const std::string& file_name, ContactKinds contacts);

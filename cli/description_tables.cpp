@@ -34,7 +34,7 @@ std::string allowed_values(const Field<Struct, Value>& field) {
     return text_of(field.range, true);
   } else {
     ValueRange range = field.range;
-    range.includes_infinity = false;  // left out for none
+    range.includes_infinity = false;  // infinity is written as none
     return text_of(range, std::is_integral_v<Value>);
   }
 }
@@ -57,7 +57,7 @@ std::string default_value(const Field<Struct, Value>& field, const Value& value)
   }
 }
 
-/// How a recording stores it.
+/// The type in a recording.
 template <class Struct, class Value>
 const char* stored_type(const Field<Struct, Value>& field) {
   if (std::is_same_v<Value, double>) return "float64";
@@ -72,7 +72,7 @@ constexpr bool is_in_tables =
     Worded<Value> || std::is_arithmetic_v<Value> || std::is_same_v<Value, std::string> ||
     std::is_same_v<Value, Vec3d> || std::is_same_v<Value, std::optional<std::uint64_t>>;
 
-/// Calls `row(field, default_value)` for the options of a structure but those of the machine.
+/// Calls `row(field, default_value)` for each option of a structure, except those of the machine.
 template <class Struct, class Row>
 void for_each_row(Row row) {
   const Struct defaults{};

@@ -2,8 +2,8 @@
 
 namespace supple::cli {
 
-/// Prints the tables of options and statistics that the documents contain, made from their descriptions: a
-/// line `<!-- begin NAME -->`, the table as Markdown, and `<!-- end NAME -->`, for each.
+/// Prints the tables of options and statistics for the documents, made from their descriptions. For each
+/// table it prints a line `<!-- begin NAME -->`, the table as Markdown, and `<!-- end NAME -->`.
 /// tools/generate_docs.sh puts them into the documents.
 void print_description_tables();
 

@@ -16,7 +16,7 @@
 namespace supple::cli {
 namespace {
 
-/// The frames of the longest sequence of files that moves an object; 0 without one.
+/// The number of frames of the longest sequence of files of an object; 0 without such a sequence.
 std::uint64_t longest_sequence(const Input& input) {
   std::uint64_t longest = 0;
   for (const InputObject& object : input.objects) {
@@ -41,13 +41,13 @@ std::uint64_t count_frames(const Input& input, const DetectOptions& options) {
     frames = std::max<std::uint64_t>(longest_sequence(input), continuous ? 2 : 1);
   if (options.frames) {
     if (!is_scene && *options.frames > frames)
-      throw Error(fmt::format("--frames: {} has {}; give at most so many",
+      throw Error(fmt::format("--frames: {} has {}; give at most that number",
                               input.frames ? input.frames->name : options.inputs.front(),
                               counted(frames, "frame")));
     frames = *options.frames;
   }
   if (continuous && frames == 1 && (input.frames || moves(input)))
-    throw Error(fmt::format("{}: one frame is no motion; continuous contacts need two frames or more",
+    throw Error(fmt::format("{}: one frame has no motion; continuous contacts need at least two frames",
                             input.frames ? input.frames->name : options.inputs.front()));
   return frames;
 }
@@ -60,8 +60,8 @@ int run_detect(const DetectOptions& options) {
   const std::uint64_t frames = count_frames(input, options);
   Simulation simulation = build_simulation(input);
 
-  // Continuous contacts of a frame are those of the way from the frame before: the first frame of a motion
-  // has none.
+  // The continuous contacts of a frame are those on the way from the frame before, so the first frame has
+  // none.
   const bool continuous = contains(options.scene.contacts, ContactKinds::continuous);
   const std::uint64_t first = options.scene.contacts == ContactKinds::continuous && frames > 1 ? 1 : 0;
   const char* const noun = continuous ? "step" : "frame";

@@ -4,7 +4,7 @@
 
 namespace supple::cli {
 
-/// `supple diff`: returns the exit status, throws `Error` for a file that is no recording.
+/// Runs `supple diff`; returns the exit status. Throws `Error` for a file that is not a recording.
 int run_diff(const DiffOptions& options);
 
 }  // namespace supple::cli

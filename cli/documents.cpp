@@ -23,7 +23,7 @@ bool is_documented(const CLI::Option* option) {
   return option->get_positional() || !option->get_group().empty();
 }
 
-/// Every `from` replaced.
+/// Replaces every `from`.
 std::string replaced(std::string text, std::string_view from, std::string_view to) {
   for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size())
     text.replace(at, from.size(), to);
@@ -57,7 +57,7 @@ void print_markdown_options(const CLI::App& app) {
   fmt::print("\n");
 }
 
-/// The footer is `Examples:` with indented lines, and perhaps a paragraph.
+/// The footer is `Examples:` with indented lines, optionally followed by a paragraph.
 void print_markdown_footer(const std::string& footer) {
   const std::size_t end_of_examples = footer.find("\n\n");
   const std::string_view examples = std::string_view(footer).substr(0, end_of_examples);
@@ -67,9 +67,8 @@ void print_markdown_footer(const std::string& footer) {
 
 void print_markdown(const CLI::App& program) {
   fmt::print(
-      "# The command line\n\nMade from the program's own options by `make docs`; the same as `--help` and "
-      "as\n"
-      "the manual page.\n\n{}\n\n",
+      "# The command line\n\n`make docs` writes this page from the options of the program. `--help` and the "
+      "manual page have the same content.\n\n{}\n\n",
       program.get_description());
   print_markdown_footer(program.get_footer());
   for (const CLI::App* command : commands_of(program)) {
@@ -85,7 +84,7 @@ std::string upper_case(std::string text) {
   return text;
 }
 
-/// Text as roff shows it: a leading dot or quote is no request, a hyphen may be copied from an option.
+/// Escapes text for roff: a leading dot or quote is not a request, and hyphens of options stay hyphens.
 std::string roff(const std::string& text) {
   std::string escaped;
   bool line_start = true;
@@ -112,7 +111,7 @@ void print_roff_footer(const std::string& footer) {
 void print_man(const CLI::App& program) {
   fmt::print(".TH SUPPLE 1 \"\" \"supple {}\" \"User Commands\"\n", SUPPLE_VERSION);
   fmt::print(
-      ".SH NAME\nsupple \\- find every collision between triangle meshes that bend, exactly\n.SH SYNOPSIS\n");
+      ".SH NAME\nsupple \\- find every collision between deforming triangle meshes, exactly\n.SH SYNOPSIS\n");
   for (const CLI::App* command : commands_of(program))
     fmt::print(".B supple {}\n{}\n.br\n", command->get_name(), arguments_of(*command));
   fmt::print(
@@ -130,12 +129,13 @@ void print_man(const CLI::App& program) {
   }
   fmt::print(
       ".SH EXIT STATUS\n"
-      ".TP\n.B 0\nDone.\n"
-      ".TP\n.B 1\nWith \\-\\-fail\\-on\\-contact: something touches. Of diff: the recordings differ.\n"
-      ".TP\n.B 2\nUsage or input error, told in one line on standard error. Of simulate: the motion blew "
-      "up.\n"
-      ".TP\n.B 3\nWith \\-\\-verify: brute force disagrees. Of ccd\\-queries: an answer is false.\n"
-      ".TP\n.B 130, 143\nOf simulate: interrupted by SIGINT, SIGTERM; its files are complete up to there.\n");
+      ".TP\n.B 0\nSuccess.\n"
+      ".TP\n.B 1\n\\-\\-fail\\-on\\-contact: something touches. diff: the recordings differ.\n"
+      ".TP\n.B 2\nUsage or input error, reported in one line on standard error. simulate: the motion "
+      "blew up.\n"
+      ".TP\n.B 3\n\\-\\-verify: brute force gives a different result. ccd\\-queries: an answer is false.\n"
+      ".TP\n.B 130, 143\nsimulate was interrupted by SIGINT or SIGTERM; its files are complete up to that "
+      "frame.\n");
 }
 
 }  // namespace

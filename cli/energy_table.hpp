@@ -6,12 +6,12 @@
 
 namespace supple::cli {
 
-/// The energy of each body of masses and springs, when the table is made and when it is printed.
+/// A table of the energy of each body of masses and springs, at its construction and when it is printed.
 class EnergyTable {
  public:
   explicit EnergyTable(const Simulation& simulation);
 
-  /// To standard output; nothing when there is no such body.
+  /// Prints to standard output; prints nothing when there is no such body.
   void print(const Simulation& simulation) const;
 
  private:

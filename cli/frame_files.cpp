@@ -26,9 +26,8 @@ FrameFiles::FrameFiles(FrameSequence sequence, const TriangleMesh& mesh)
 
 void FrameFiles::read(std::uint64_t step, std::span<Vec3d> positions) const {
   constexpr const char* advice =
-      "frames of a sequence are one object that only bends; for several objects write a scene file, each "
-      "with "
-      "motion = { kind = \"frames\", files = \"...\" }";
+      "all frames of a sequence must show the same object; for several objects, write a scene file in which "
+      "each has motion = { kind = \"frames\", files = \"...\" }";
   const std::filesystem::path& file = sequence_.file_at(step);
   const std::string name = file.string();
   const std::string first = sequence_.files.front().string();
@@ -42,7 +41,7 @@ void FrameFiles::read(std::uint64_t step, std::span<Vec3d> positions) const {
   const auto difference =
       std::mismatch(mesh.triangles.begin(), mesh.triangles.end(), triangles_.begin()).first;
   if (difference != mesh.triangles.end())
-    throw Error(fmt::format("{}: triangle {} has other vertices than in {}; {}", name,
+    throw Error(fmt::format("{}: triangle {} has different vertices than in {}; {}", name,
                             difference - mesh.triangles.begin(), first, advice));
   if (sequence_.placement) place(mesh.positions, *sequence_.placement);
   std::copy(mesh.positions.begin(), mesh.positions.end(), positions.begin());

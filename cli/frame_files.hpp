@@ -11,12 +11,12 @@
 
 namespace supple::cli {
 
-/// Frames of one object as mesh files, the first at step 0. After the last it stays, or the first comes
-/// again.
+/// Frames of one object as mesh files, starting at step 0. After the last file, the object stays or starts
+/// again with the first file.
 struct FrameSequence {
   std::vector<std::filesystem::path> files;  ///< one or more
   bool loop = false;
-  std::optional<Placement> placement;  ///< of each frame; none: coordinates as they stand in the files
+  std::optional<Placement> placement;  ///< of each frame; none: the coordinates of the files are used
 
   const std::filesystem::path& file_at(std::uint64_t frame) const;
 };
@@ -24,11 +24,11 @@ struct FrameSequence {
 /// Reads the frames of a sequence on demand.
 class FrameFiles {
  public:
-  /// Frames must have the vertex count and the triangles of this mesh.
+  /// Frames must have the number of vertices and the triangles of this mesh.
   FrameFiles(FrameSequence sequence, const TriangleMesh& mesh);
 
-  /// Where the vertices are at a step. Throws `Error` when the file cannot be read or is not the same object:
-  /// other counts or other triangles.
+  /// Reads the positions at a step. Throws `Error` when the file cannot be read, or when it has other counts
+  /// or other triangles.
   void read(std::uint64_t step, std::span<Vec3d> positions) const;
 
  private:
@@ -37,7 +37,7 @@ class FrameFiles {
   std::vector<Triangle> triangles_;
 };
 
-/// A mesh file of any format; throws `Error` when there is none.
+/// Reads a mesh file of any format. Throws `Error` when the file does not exist.
 TriangleMesh read_mesh(const std::filesystem::path& path);
 
 }  // namespace supple::cli

@@ -11,13 +11,13 @@
 
 namespace supple::cli {
 
-/// Records a simulation, a frame at a time.
+/// Records a simulation frame by frame.
 class FrameRecorder {
  public:
-  /// No file is written when its name is empty.
+  /// Writes no file when the name is empty.
   FrameRecorder(const std::string& file_name, const Simulation& simulation, const Input& input);
 
-  /// The state of the simulation and what was found there.
+  /// Adds a frame: the state of the simulation and the result of its detection.
   void add(const DetectResult& result);
   void close();
 

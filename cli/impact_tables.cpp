@@ -39,7 +39,7 @@ void ImpactTables::print(const Scene& scene) const {
   print_steps();
   print_pairs(scene);
   if (within_tolerance_ > 0)
-    fmt::print("{} of them within tolerance only, where floating point cannot tell\n\n",
+    fmt::print("{} of them within tolerance only: floating point cannot decide whether they touch\n\n",
                grouped(within_tolerance_));
 }
 

@@ -10,7 +10,7 @@
 
 namespace supple::cli {
 
-/// Tables of continuous contacts: what touches in each step and when, and which objects.
+/// Tables of continuous contacts: their number and earliest time per step, and the objects that touch.
 class ImpactTables {
  public:
   void add(const Frame& step);
@@ -19,7 +19,7 @@ class ImpactTables {
 
  private:
   struct Counts {
-    std::uint64_t vertex_face = 0;  ///< the vertex being of either object
+    std::uint64_t vertex_face = 0;  ///< with the vertex in either object
     std::uint64_t edge_edge = 0;
 
     void add(const ContinuousContact& contact);

@@ -23,12 +23,12 @@
 namespace supple::cli {
 namespace {
 
-/// All that is told about one object.
+/// All reported data of one object.
 struct MeshInfo {
   std::string name;
   MeshTopology topology;
   std::uint64_t non_finite_vertices = 0;
-  std::optional<std::array<Vec3d, 2>> bounds;  ///< of the finite vertices, none without any
+  std::optional<std::array<Vec3d, 2>> bounds;  ///< of the finite vertices; none when no vertex is finite
   OctreeStatistics octree;
 };
 
@@ -73,13 +73,13 @@ void print_text(const MeshInfo& info) {
   const MeshTopology& t = info.topology;
   fmt::print("{}\n", info.name);
   fmt::print("  vertices     {}", grouped(t.vertices));
-  if (t.unused_vertices > 0) fmt::print(", {} of no triangle", grouped(t.unused_vertices));
+  if (t.unused_vertices > 0) fmt::print(", {} in no triangle", grouped(t.unused_vertices));
   if (info.non_finite_vertices > 0) fmt::print(", {} not finite", grouped(info.non_finite_vertices));
   fmt::print("\n  triangles    {}", grouped(t.triangles));
-  if (t.degenerate_triangles > 0) fmt::print(", {} with a vertex twice", grouped(t.degenerate_triangles));
+  if (t.degenerate_triangles > 0) fmt::print(", {} with a repeated vertex", grouped(t.degenerate_triangles));
   fmt::print("\n  edges        {}\n", grouped(t.edges));
   fmt::print("  surface      {}\n", describe_surface(t));
-  fmt::print("  pieces       {}, Euler characteristic {}\n", grouped(t.components), t.euler_characteristic);
+  fmt::print("  components   {}, Euler characteristic {}\n", grouped(t.components), t.euler_characteristic);
   if (info.bounds) {
     const auto& [lowest, highest] = *info.bounds;
     fmt::print("  bounds       ({}, {}, {}) to ({}, {}, {})\n", lowest.x, lowest.y, lowest.z, highest.x,
@@ -87,11 +87,12 @@ void print_text(const MeshInfo& info) {
   }
   const OctreeStatistics& o = info.octree;
   fmt::print(
-      "  octree       {}, {}, depth {}, {:.1f} triangles a leaf (largest {}), {:.1f} children a node\n",
+      "  octree       {}, {}, depth {}, {:.1f} triangles per leaf (largest {}), {:.1f} of 8 children per "
+      "node\n",
       counted(o.nodes, "node"), o.leaves == 1 ? "1 leaf" : grouped(o.leaves) + " leaves", o.depth,
       o.mean_leaf_size, o.largest_leaf, o.mean_node_width);
-  if (o.cost > 0) fmt::print("  quality      {:.1f} visits of a query\n", o.cost);
-  fmt::print("  memory       {} bytes, {:.1f} a triangle\n\n", grouped(o.bytes), o.bytes_per_triangle);
+  if (o.cost > 0) fmt::print("  quality      {:.1f} visits per query\n", o.cost);
+  fmt::print("  memory       {} bytes, {:.1f} per triangle\n\n", grouped(o.bytes), o.bytes_per_triangle);
 }
 
 void write_octree(JsonWriter& json, const OctreeStatistics& octree) {

@@ -21,7 +21,7 @@ bool is_digit(char c) {
   return c >= '0' && c <= '9';
 }
 
-/// Takes a run of digits, or of other characters, off the front.
+/// Removes a run of digits, or of other characters, from the front.
 std::string_view take_run(std::string_view& text) {
   std::size_t end = 1;
   while (end < text.size() && is_digit(text[end]) == is_digit(text[0])) ++end;
@@ -63,7 +63,7 @@ bool natural_less(const std::string& a, const std::string& b) {
     if (order != 0) return order < 0;
   }
   if (rest_a.empty() != rest_b.empty()) return rest_a.empty();
-  return a < b;  // frame_1 and frame_01
+  return a < b;  // equal numbers, such as frame_1 and frame_01
 }
 
 std::vector<fs::path> expand_patterns(const std::vector<std::string>& names) {
@@ -90,14 +90,15 @@ Input read_objects(const std::vector<std::string>& names, const SceneOverrides& 
   const auto scene = std::find_if(names.begin(), names.end(), is_scene_file);
   if (scene != names.end()) {
     if (names.size() > 1)
-      throw Error(
-          fmt::format("{}: a scene file stands alone; add the other meshes to it as objects", *scene));
+      throw Error(fmt::format(
+          "{}: a scene file must be the only input; add the other meshes to it as objects", *scene));
     return read_scene_file(*scene, overrides);
   }
   if (const auto recording = std::find_if(names.begin(), names.end(), is_recording);
       recording != names.end()) {
     if (names.size() > 1)
-      throw Error(fmt::format("{}: a recording stands alone; leave out the other inputs", *recording));
+      throw Error(
+          fmt::format("{}: a recording must be the only input; leave out the other inputs", *recording));
     return read_recording(*recording);
   }
   Input input;
@@ -108,7 +109,8 @@ Input read_objects(const std::vector<std::string>& names, const SceneOverrides& 
 Input read_sequence(const std::vector<std::string>& names) {
   const auto scene = std::find_if(names.begin(), names.end(), is_scene_file);
   if (scene != names.end())
-    throw Error(fmt::format("{}: a scene file is no frame of a sequence; leave out --sequence", *scene));
+    throw Error(
+        fmt::format("{}: a scene file cannot be a frame of a sequence; leave out --sequence", *scene));
   if (const auto recording = std::find_if(names.begin(), names.end(), is_recording); recording != names.end())
     throw Error(fmt::format("{}: a recording has its own frames; leave out --sequence", *recording));
   FrameSequence frames;

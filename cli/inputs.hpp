@@ -18,36 +18,36 @@
 
 namespace supple::cli {
 
-/// Where an object was in each frame of a recording.
+/// The positions of an object in each frame of a recording.
 struct RecordedMotion {
   std::shared_ptr<const Recording> recording;
-  std::size_t object = 0;  ///< its place in there
+  std::size_t object = 0;  ///< its index in the recording
 };
 
-/// What moves an object from frame to frame.
+/// The motion of an object from frame to frame.
 using Motion = std::variant<WaveMotion, MassSpringMotion, FrameSequence, RecordedMotion>;
 
-/// An object to add to the scene, placed.
+/// A placed object to add to the scene.
 struct InputObject {
   TriangleMesh mesh;
   ObjectOptions options;
   std::optional<Motion> motion;
 };
 
-/// What a command works on: objects, and what moves them.
+/// The input of a command: objects and their motion.
 struct Input {
   std::vector<InputObject> objects;
   SimulationOptions simulation;
-  /// Of a sequence or a recording.
+  /// The frames of a sequence or a recording.
   struct Frames {
-    std::string name{};  ///< in messages
+    std::string name{};  ///< name in messages
     std::uint64_t count = 0;
   };
   std::optional<Frames> frames{};
   std::string scene_text;  ///< of the scene file; empty when there is none
 };
 
-/// What the command line says instead of the scene file.
+/// Values of the command line that replace those of the scene file.
 struct SceneOverrides {
   std::optional<std::uint64_t> seed{};
   std::optional<double> time_step{};
@@ -55,14 +55,14 @@ struct SceneOverrides {
 
 bool is_scene_file(const std::string& name);
 
-/// Meshes by name or quoted pattern (`part*.obj`, in natural number order), an object each; or one scene
-/// file; or one recording.
+/// Reads meshes, one object each, by name or quoted pattern (`part*.obj`, sorted by the numbers in the
+/// names); or one scene file; or one recording.
 Input read_objects(const std::vector<std::string>& names, const SceneOverrides& overrides = {});
-/// The object of the first frame, moved by all of them.
+/// Reads a sequence: the object of the first frame, moved by all frames.
 Input read_sequence(const std::vector<std::string>& names);
 
-/// Each pattern replaced by the files that match, in natural number order: frame_9 before frame_10. Throws
-/// `Error` when none does.
+/// Replaces each pattern by the matching files, sorted by the numbers in the names: frame_9 before frame_10.
+/// Throws `Error` when no file matches.
 std::vector<std::filesystem::path> expand_patterns(const std::vector<std::string>& names);
 bool natural_less(const std::string& a, const std::string& b);
 

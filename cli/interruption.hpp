@@ -2,8 +2,9 @@
 
 namespace supple::cli {
 
-/// While it lives, SIGINT and SIGTERM do not end the program but are remembered, so that the step under way
-/// can be finished and files closed. A second one of the same kind ends it at once.
+/// While this object exists, SIGINT and SIGTERM do not end the program but are remembered, so that the
+/// current step can finish and files are closed. A second signal of the same kind ends the program
+/// immediately.
 class Interruption {
  public:
   Interruption();
@@ -11,7 +12,7 @@ class Interruption {
   Interruption(const Interruption&) = delete;
   Interruption& operator=(const Interruption&) = delete;
 
-  /// The number of the signal that came, 0 when none did.
+  /// The number of the received signal, or 0.
   int signal() const;
 };
 

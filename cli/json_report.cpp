@@ -24,7 +24,7 @@ std::string name_of(Feature feature) {
   return fmt::format("{}{}", feature.kind == FeatureKind::vertex ? 'v' : 'e', feature.index);
 }
 
-/// All but those of the machine.
+/// Writes all options except those of the machine.
 template <class Options>
 void write_options(JsonWriter& json, const Options& options) {
   json.key("options");
@@ -57,7 +57,7 @@ void write_object_pairs(JsonWriter& json, const char* name, std::span<const Obje
   json.end_array();
 }
 
-/// The groups of different objects, or those of objects with themselves.
+/// Writes the groups of different objects, or the groups of objects with themselves.
 void write_groups(JsonWriter& json, const char* name, const DetectResult& result, bool self) {
   json.key(name);
   json.begin_array();
@@ -108,7 +108,7 @@ void write_contacts(JsonWriter& json, const DetectResult& result, bool with_poin
   json.end_array();
 }
 
-/// The paper's output: vertices in the leaves that collide.
+/// Writes the paper's output: the vertices in colliding leaves.
 void write_colliding_vertices(JsonWriter& json, const DetectResult& result) {
   json.key("colliding_vertices");
   json.begin_array();
@@ -129,7 +129,7 @@ void write_colliding_vertices(JsonWriter& json, const DetectResult& result) {
   json.end_array();
 }
 
-/// `stay` follows from the frames before, and would repeat every lasting pair in every frame.
+/// `stay` is left out: it follows from earlier frames and would repeat every lasting pair in every frame.
 void write_events(JsonWriter& json, const char* name, const PairEvents& events) {
   json.key(name);
   json.begin_object();
@@ -204,7 +204,7 @@ JsonReport::JsonReport(const std::string& file_name, const Input& input, const S
   json_.begin_array();
 }
 
-/// The files that a frame is from.
+/// Writes the files of a frame.
 void JsonReport::add_files(std::uint64_t frame) {
   bool is_first = true;
   for (std::size_t i = 0; i < input_.objects.size(); ++i) {

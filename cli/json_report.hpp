@@ -9,15 +9,16 @@
 
 namespace supple::cli {
 
-/// What is written and may be left out.
+/// Optional parts of the JSON.
 struct JsonContent {
-  /// Options, and times and counts of each frame: all that may differ between two runs that find the same.
+  /// Options, and the times and counts of each frame: the parts that may differ between two runs with the
+  /// same results.
   bool stats = true;
-  bool contact_details = false;  ///< where each contact is
+  bool contact_details = false;  ///< points, normals and barycentric coordinates of each contact
   bool faces = false;            ///< the triangles of each object
 };
 
-/// The result of `supple detect` as docs/json.md describes it, a frame at a time.
+/// Writes the result of `supple detect` as docs/json.md describes, frame by frame.
 class JsonReport {
  public:
   JsonReport(const std::string& file_name, const Input& input, const Scene& scene,

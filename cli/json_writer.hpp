@@ -10,18 +10,17 @@
 
 namespace supple::cli {
 
-/// With the fewest digits that read back to the same bits; what JSON has no number for becomes "nan", "inf"
-/// or "-inf".
+/// Writes the fewest digits that read back to the same bits, or "nan", "inf" or "-inf".
 struct DoublesOrWords {
   static void write(rapidjson::Writer<rapidjson::FileWriteStream>& writer, double number);
 };
 
-/// Writes JSON to a file as it comes, never holding it in memory.
+/// Streams JSON to a file without holding it in memory.
 class JsonWriter : public viewer::JsonOutput<rapidjson::FileWriteStream, DoublesOrWords> {
  public:
   explicit JsonWriter(const std::string& file_name);
 
-  /// Hands on what is buffered; throws `Error` when it could not be written.
+  /// Writes the buffer to the file. Throws `Error` when that fails.
   void flush();
   void close();
 

@@ -46,8 +46,8 @@ int run(const CommandLine& line) {
 
 int main(int argument_count, char** arguments) {
   using namespace supple::cli;
-  // All recordings are closed by then; what a damaged one left open inside HDF5 would be told on standard
-  // error.
+  // All recordings are closed by then. HDF5 would report handles that a damaged recording left open on
+  // standard error.
   H5dont_atexit();
   try {
     const int exit_status = run(parse_command_line(argument_count, arguments));

@@ -11,7 +11,7 @@ namespace supple::cli {
 
 namespace {
 
-/// Nothing when the text is not a finite number and nothing else.
+/// Returns nothing unless the whole text is a finite number.
 std::optional<double> parse_number(const std::string& text) {
   double number = 0;
   const char* const end = text.data() + text.size();

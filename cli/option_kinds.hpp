@@ -20,14 +20,14 @@ namespace supple::cli {
 /// `--scene-octree-arity` for the key `scene_octree_arity`.
 std::string flag_of(const char* key);
 
-/// The word for a choice as it is written on the command line: with dashes. Both spellings are read.
+/// The word for a choice on the command line, with dashes. Both spellings are accepted.
 std::string spelled(const char* word);
 bool is_word(const std::string& given, const char* word);
 
-/// An option that takes one of a few words; `set` gets the place of the word.
+/// An option whose value is one of some words; `set` gets the index of the word.
 CLI::Option* add_words(CLI::App& app, const std::string& name, std::vector<const char*> choices,
                        std::function<void(std::size_t)> set, const std::string& description);
-/// A whole number, or another one, that the range allows.
+/// Options for a whole number and for a real number in a range.
 CLI::Option* add_whole(CLI::App& app, const std::string& name, const ValueRange& range,
                        std::function<void(std::uint64_t)> set, const std::string& description);
 CLI::Option* add_real(CLI::App& app, const std::string& name, const ValueRange& range, const char* unit,
@@ -36,8 +36,8 @@ CLI::Option* add_real(CLI::App& app, const std::string& name, const ValueRange& 
 /// `Shape of the octree (triangles; default: 64)`
 std::string help_of(const char* doc, const std::string& unit, const std::string& default_value);
 
-/// An option of a structure, as its description says it. `set` gets the value. A truth value without words is
-/// a flag that turns it to what it is not by default.
+/// An option of a structure, made from its description. `set` gets the value. A truth value without words
+/// becomes a flag that negates the default.
 template <class Struct, class Value, class Set>
 CLI::Option* add_field(CLI::App& app, const Field<Struct, Value>& field, const Value& default_value,
                        Set set) {
@@ -81,11 +81,11 @@ CLI::Option* add_number(CLI::App& app, const std::string& name, Number& value, s
       [&value](std::uint64_t number) { value = static_cast<std::uint32_t>(number); }, description);
 }
 
-/// A file to write, `-` being standard output.
+/// A file to write; `-` is standard output.
 CLI::Option* add_file(CLI::App& app, const std::string& name, std::string& value,
                       const std::string& description);
 
-/// An option that means something only together with a certain choice of another.
+/// An option that has an effect only with a certain value of another option.
 struct Dependence {
   const CLI::Option* option;
   std::function<bool()> satisfied;
@@ -93,7 +93,7 @@ struct Dependence {
 };
 using Dependences = std::vector<Dependence>;
 
-/// Throws a usage error about the first option given whose dependence is not satisfied.
+/// Throws a usage error for the first given option whose dependence is not satisfied.
 void check(const Dependences& dependences);
 
 }  // namespace supple::cli

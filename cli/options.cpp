@@ -27,38 +27,38 @@ namespace {
 constexpr const char* program_footer = R"(Examples:
   supple detect rabbit.obj fish.ply         which triangles of the two intersect?
   supple detect --contacts continuous --self --sequence 'frame_*.obj'
-                                            what passes through something between two frames, and when?
+                                            what touches on the way between two frames, and when?
   supple detect --help                      every option, with examples
   supple simulate scene.toml --frames 300 --record run.h5
-                                            objects that move by themselves, and what touches on the way
-  supple view run.h5                        the same in a browser, live or recorded
+                                            simulate moving objects and record their contacts
+  supple view run.h5                        show a scene or a recording in a browser
   supple info rabbit.obj                    counts, bounds, holes, octree statistics
-  supple ccd-queries edge-edge/*.csv        single continuous queries, compared with the answers known
-  supple experiment scaling --quick         how does time grow with the number of objects, and does the paper say so?
+  supple ccd-queries edge-edge/*.csv        continuous queries, compared with published answers
+  supple experiment scaling --quick         how does the time grow with the number of objects?
   supple diff a.h5 b.h5                     where do two recordings differ first?
 
-Exit status: 0 done; 1 with --fail-on-contact when something touches, and of diff when recordings differ; 2 usage or
-input error, told in one line, and of simulate a motion that blows up; 3 with --verify when brute force disagrees, and of
-ccd-queries when an answer is false; 130 and 143 of simulate when it is interrupted, after it has closed its files.
-view ends by that, with 0.)";
+Exit status: 0 means success. 1 means that something touches (with --fail-on-contact) or that two recordings differ
+(diff). 2 means a usage or input error, which is reported in one line, or a motion that blew up (simulate). 3 means that
+brute force gives a different result (--verify) or that an answer is false (ccd-queries). 130 and 143 mean that simulate
+was interrupted; its files are complete up to that frame. view exits with 0 when it is interrupted.)";
 
 constexpr const char* detect_footer = R"(Examples:
   supple detect rabbit.obj fish.ply
-      Two static meshes, an object each: which of their triangles intersect?
+      Two static meshes, one object each: which of their triangles intersect?
   supple detect --self cloth.obj --json result.json --contact-details
       Where does a cloth intersect itself? Each contact with its points, as JSON.
   supple detect --sequence 'frame_*.ply' --self --csv pairs.csv
-      Frames of one object. Quote the pattern: frame_10 then comes after frame_9, not after frame_1.
+      Frames of one object. Quote the pattern, so that frame_10 comes after frame_9 and not after frame_1.
   supple detect scene.toml --frames 300
       A scene file: objects with placement, options and motion.
   supple detect run.h5 --verify
-      A recording: each of its frames again, with the recorded options. Options given here come first.
+      Detects the contacts of a recording again, with the recorded options. Options of the command line replace them.
   supple detect a.stl b.stl --fail-on-contact --quiet && echo apart
-      For scripts: the exit status is 1 when anything touches.
+      For scripts: the exit status is 1 when something touches.
   supple detect --contacts continuous --self --sequence 'frame_*.ply' --json impacts.json
-      What passes through something between two frames: each vertex and face, each two edges, and when they first meet.
+      Every vertex and face and every two edges that touch on the way between two frames, and the time when they do.
   supple detect --contacts continuous --min-separation 0.001 scene.toml --frames 300
-      Elements already touch when they come within 0.001.
+      Elements count as touching when they come within 0.001.
   supple detect rabbit.obj fish.ply --verify
       Check the result against exact brute force over all pairs of triangles.
   supple detect a.obj b.obj --json - --no-stats | sha256sum
@@ -66,75 +66,74 @@ constexpr const char* detect_footer = R"(Examples:
 
 constexpr const char* diff_footer = R"(Examples:
   supple diff a.h5 b.h5
-      The first frame and item in which two recordings differ, with both values; the exit status is 1 when they do.
+      The first frame and item in which two recordings differ, with both values. The exit status is 1 when they differ.
   supple diff a.h5 b.h5 --tolerance 1e-9
-      Positions and points of contacts, and the times, barycentric coordinates and normals of continuous contacts,
-      may differ by 1e-9.
+      Positions, points, times, barycentric coordinates and normals may differ by 1e-9.
   supple diff a.h5 b.h5 --quiet && echo equal
       For scripts.
   supple diff a.h5 b.h5 --json -
       The same as JSON on standard output.
 
-Seconds that were measured, and counts that depend on the number of threads, are not compared.)";
+Measured times, and counts that depend on the number of threads, are not compared.)";
 
 constexpr const char* simulate_footer = R"(Examples:
   supple simulate scenes/rabbit_pile.toml
-      Rabbits fall on each other: what touched, how fast it went, and where the time was spent.
+      Rabbits fall on each other. Prints the contacts, the speed, and the time of each stage.
   supple simulate scenes/fish_tank.toml --seconds 10 --record run.h5
-      Every frame and contact in an HDF5 file; ParaView opens the run.xdmf beside it.
+      Writes every frame and contact to an HDF5 file. ParaView opens run.xdmf next to it.
   supple simulate scenes/table1_9.toml --frames 1000 --seed 7 --json - --no-stats
-      Another seed sends objects off in other directions; the same seed gives the same bytes everywhere.
+      Another seed gives the objects other directions. The same seed gives the same bytes on every machine.
   supple simulate scenes/cloth_over_ball.toml --contacts continuous --self
-      Also what passes through something between two frames, and through itself.
+      Continuous contacts between two frames, including those of an object with itself.
   supple simulate scenes/soft_block.toml --time-step 0.001
-      Shorter steps than the scene file's.
+      Shorter steps than in the scene file.
 
-Frame 0 is the start, and frame k is the state after k steps. The continuous contacts of frame k are those of the way
-from frame k - 1 to frame k. Ctrl-C ends the run after the step that is under way, with its files and tables complete.)";
+Frame 0 is the start, and frame k is the state after k steps. The continuous contacts of frame k are those on the way
+from frame k - 1 to frame k. Ctrl-C ends the run after the current step; files and tables are complete up to that step.)";
 
 constexpr const char* view_footer = R"(Examples:
   supple view scenes/nine.toml
-      Objects that bend and meet: watch, pull at a vertex, look into the octrees.
+      Objects that deform and touch: watch them, pull a vertex, look into the octrees.
   supple view run.h5
-      A recording of supple simulate --record: play, go back, jump to where objects begin to touch.
+      A recording of supple simulate --record: play it, go back, jump to frames in which objects begin to touch.
   supple view rabbit.obj fish.ply
-      Meshes, an object each: where do they meet, and why not elsewhere?
+      Meshes, one object each: where do they touch, and why do two triangles not touch?
   supple view --sequence 'frame_*.ply' --self
-      Frames of one object, with what it does to itself.
+      Frames of one object, with its contacts with itself.
   supple view scenes/soft_block.toml --no-open --port 8080
-      On another machine: ssh -L 8080:127.0.0.1:8080 brings the page to yours.
+      On a remote machine: ssh -L 8080:127.0.0.1:8080 makes the page available on your machine.
   supple view scenes/nine.toml --export nine.html
-      One file to send: whoever opens it can do the same, without supple and without a server.
+      One file to send. It opens in any browser, without supple and without a server.
 
-The address has a token, another one each time, which keeps others out. The browser is led there by a file that only you can
-read, which goes when the program ends; a browser from a Snap or a Flatpak may not see that file: open the address itself
-there. Ctrl-C ends the program; the page says so.)";
+The address contains a new token in each run, so that nobody else can open the page. The program opens a temporary file
+in the browser, which leads to the address. Only you can read that file. A browser from a Snap or a Flatpak may not see
+it: open the printed address instead. Ctrl-C ends the program, and the page says that it has ended.)";
 
 constexpr const char* info_footer = R"(Examples:
   supple info rabbit.obj
-      Counts, bounds, closed or open, connected pieces, and how good its octree is.
+      Counts, bounds, open or closed, connected components, and the quality of its octree.
   supple info scans/*.ply --json -
-      The same of many meshes as JSON on standard output.
+      The same for many meshes, as JSON on standard output.
   supple info scene.toml
-      Every object of a scene, as placed.)";
+      Every object of a scene, as it is placed.)";
 
 constexpr const char* ccd_queries_footer = R"(Examples:
   supple ccd-queries sample-queries/*/vertex-face/*.csv
-      How many touch, how many of the answers in the files are missed, and the time a query takes?
+      How many queries touch, how many results differ from the published answers, and how long does a query take?
   supple ccd-queries --kind edge-edge queries.csv --list-false
-      The kind is told by a folder named vertex-face or edge-edge, or a file name that ends in vf or ee; else say it.
+      The kind follows from a folder vertex-face or edge-edge, or a file name that ends in vf or ee; else use --kind.
   supple ccd-queries 227vf.csv --answers 227vf_mma_bool.json
-      Answers from a JSON list of true and false.
+      The answers are in a JSON list of true and false.
   supple ccd-queries data.csv --kind vertex-face --min-separation 0.01 --verify
-      Elements touch that come within 0.01; algebra decides each query anew.
+      Elements within 0.01 count as touching. Algebra decides each query a second time.
   supple ccd-queries 227vf.csv --json - --no-stats
-      The time of every impact as JSON, the same bytes in every run.
+      Writes the time of every impact as JSON, the same bytes in every run.
 
 A query is eight rows: the vertices v, f0, f1, f2 of a vertex and a face, or a0, a1, b0, b1 of two edges, at the start
-of the step, and the same at its end. A row is numerator,denominator of x, y and z, whole numbers of any size, and
-perhaps the answer, 0 or 1, the same in all eight. Each coordinate must be exactly a double.)";
+of the step, and then at its end. A row has numerator,denominator of x, y and z, as whole numbers of any size. It may
+also have the answer, 0 or 1, the same in all eight rows. Each coordinate must be representable as a double.)";
 
-/// The octree of each object, and `--self` where objects are tested.
+/// Adds the options of the octree of each object, and `--self` when objects are tested.
 void add_object_options(CLI::App& app, viewer::Overrides<ObjectOptions>& objects, bool are_tested) {
   objects.for_each_setter([&]<class Struct, class Value>(const Field<Struct, Value>& field,
                                                          const Value& default_value, auto set) {
@@ -163,18 +162,18 @@ void add_kind(CLI::App& app, std::optional<QueryKind>& kind) {
   add_words(
       app, "--kind", {words<QueryKind>.begin(), words<QueryKind>.end()},
       [&kind](std::size_t place) { kind = static_cast<QueryKind>(place); },
-      "What the queries are about (default: by the names of folders and files)");
+      "Kind of the queries (default: from the names of folders and files)");
 }
 
-/// Meshes, a scene file, a recording, or frames.
+/// Adds the inputs: meshes, a scene file, a recording, or frames.
 void add_input_options(CLI::App& app, std::vector<std::string>& inputs, bool& sequence) {
-  app.add_option("MESH|SCENE.toml|RUN.h5", inputs, "Meshes, an object each; or one scene file or recording")
+  app.add_option("MESH|SCENE.toml|RUN.h5", inputs,
+                 "Meshes, one per object; or one scene file; or one recording")
       ->required()
       ->type_name("");
-  app.add_flag(
-         "--sequence", sequence,
-         "The meshes are frames of one object, in the order given; a quoted pattern such as 'frame_*.ply' "
-         "gives its files in natural number order")
+  app.add_flag("--sequence", sequence,
+               "The meshes are frames of one object, in the order of the command line; a quoted pattern such "
+               "as 'frame_*.ply' is sorted by the numbers in the names")
       ->group("Input");
 }
 
@@ -188,7 +187,7 @@ bool has_scene_octree(const SceneOptions& scene) {
   return viewer::uses_scene_octree(scene.broad_phase);
 }
 
-/// What an option of the scene needs to have an effect.
+/// The condition under which an option of the scene has an effect.
 struct Need {
   const char* key;
   bool (*is_met)(const SceneOptions& scene);
@@ -210,7 +209,7 @@ constexpr Need needs_of_options[] = {
      "--contacts intersection or none"},
 };
 
-/// Every option of the detection; a page has a layer instead of `--colliding-vertices`.
+/// Adds every option of the detection. A page has a layer instead of `--colliding-vertices`.
 void add_detection_options(CLI::App& app, MethodOptions& options, Dependences& dependences,
                            bool of_page = false) {
   options.given_scene.for_each_setter([&]<class Struct, class Value>(const Field<Struct, Value>& field,
@@ -237,36 +236,37 @@ void add_report_options(CLI::App& app, DetectionOptions& options, Dependences& d
   };
   add("--fail-on-contact", options.fail_on_contact, "Exit with status 1 when anything touches");
   add("--verify", options.verify,
-      "Check each frame against exact brute force over all pairs of triangles, or of elements; differences "
-      "exit with status 3");
+      "Check each frame by exact brute force over all pairs of triangles or elements; exit with status 3 "
+      "when the results differ");
 }
 
 void add_output_options(CLI::App& app, DetectionOptions& options, Dependences& dependences) {
   const auto group = [](CLI::Option* option) { return option->group("Output"); };
-  group(
-      add_file(app, "--json", options.json, "Write the whole result, frame by frame; - is standard output"));
+  group(add_file(app, "--json", options.json, "Write all results, frame by frame; - is standard output"));
   dependences.push_back(
-      {group(add_file(app, "--csv", options.csv,
-                      "Write a row a contact: frame,a,b,i,j of triangles, or "
-                      "frame,a,b,kind,a0,a1,b0,b1,toi,certainty; - is standard output")),
+      {group(add_file(
+           app, "--csv", options.csv,
+           "Write one row per contact: frame,a,b,i,j for triangles; frame,a,b,kind,a0,a1,b0,b1,toi,certainty "
+           "for continuous contacts; - is standard output")),
        [&] { return options.scene.contacts != (ContactKinds::intersection | ContactKinds::continuous); },
        "contacts of one kind"});
-  dependences.push_back({group(app.add_flag_callback(
-                             "--no-stats", [&] { options.json_content.stats = false; },
-                             "Leave options, times and counts out of the JSON, so that equal results are "
-                             "equal files")),
-                         [&] { return !options.json.empty(); }, "--json"});
   dependences.push_back(
-      {group(app.add_flag("--contact-details", options.json_content.contact_details,
-                          "Also write each contact to the JSON: of triangles the kind and the points, of "
-                          "elements the barycentric coordinates, the point and the normal")),
+      {group(app.add_flag_callback(
+           "--no-stats", [&] { options.json_content.stats = false; },
+           "Leave options, times and counts out of the JSON, so that equal results give equal files")),
+       [&] { return !options.json.empty(); }, "--json"});
+  dependences.push_back(
+      {group(app.add_flag(
+           "--contact-details", options.json_content.contact_details,
+           "Also write each contact to the JSON: for triangles the kind, the normal and the points; for "
+           "continuous contacts the barycentric coordinates, the point and the normal")),
        [&] { return !options.json.empty() && options.scene.contacts != ContactKinds::none; },
        "--json and contacts"});
   dependences.push_back({group(app.add_flag("--faces", options.json_content.faces,
                                             "Also write the three vertices of each triangle to the JSON; a "
                                             "polygon is a fan of triangles around its first corner")),
                          [&] { return !options.json.empty(); }, "--json"});
-  group(app.add_flag("--quiet", options.quiet, "No tables and no progress"));
+  group(app.add_flag("--quiet", options.quiet, "Print no tables and no progress"));
 }
 
 CLI::App* add_detect(CLI::App& program, DetectOptions& options, Dependences& dependences) {
@@ -275,8 +275,8 @@ CLI::App* add_detect(CLI::App& program, DetectOptions& options, Dependences& dep
   app->footer(detect_footer);
   add_input_options(*app, options.inputs, options.sequence);
   add_frames(*app, options.frames,
-             "Number of frames (default: all of a sequence, a recording or the files of a scene; of another "
-             "scene the first, or the first two with continuous contacts)")
+             "Number of frames (default: all frames of a sequence, a recording or a scene with mesh files as "
+             "frames; otherwise one frame, or two with continuous contacts)")
       ->group("Input");
   add_detection_options(*app, options, dependences);
   add_report_options(*app, options, dependences);
@@ -284,14 +284,14 @@ CLI::App* add_detect(CLI::App& program, DetectOptions& options, Dependences& dep
   return app;
 }
 
-/// What is given instead of the scene file's.
+/// Adds options that replace values of the scene file.
 void add_scene_overrides(CLI::App& app, std::optional<std::uint64_t>& seed,
                          std::optional<double>& time_step) {
   for_each_field<SimulationOptions>([&]<class Value>(const Field<SimulationOptions, Value>& field) {
     const auto add = [&](auto& given) {
       add_field(app, field, Value{}, [&given](const Value& value) { given = value; })
           ->group("Simulation")
-          ->description(std::string(field.doc) + "; instead of the scene file's");
+          ->description(std::string(field.doc) + "; replaces the value of the scene file");
     };
     if constexpr (std::is_same_v<Value, double>) add(time_step);
     if constexpr (std::is_same_v<Value, std::uint64_t>) add(seed);
@@ -301,25 +301,26 @@ void add_scene_overrides(CLI::App& app, std::optional<std::uint64_t>& seed,
 void add_simulation_options(CLI::App& app, SimulateOptions& options) {
   app.add_option("SCENE.toml", options.input, "A scene file")->required()->type_name("");
   const auto group = [](CLI::Option* option) { return option->group("Simulation"); };
-  CLI::Option* const frames = group(add_frames(
-      app, options.frames, "Number of frames; the first is the start (default: 301, which are 300 steps)"));
+  CLI::Option* const frames =
+      group(add_frames(app, options.frames,
+                       "Number of frames; frame 0 is the start (default: 301 frames, which are 300 steps)"));
   group(add_real(
             app, "--seconds", ValueRange::above(0), "s", [&](double seconds) { options.seconds = seconds; },
-            "Simulated time, instead of a number of frames"))
+            "Simulated time; instead of --frames"))
       ->excludes(frames);
   add_scene_overrides(app, options.seed, options.time_step);
 }
 
 CLI::App* add_simulate(CLI::App& program, SimulateOptions& options, Dependences& dependences) {
   CLI::App* app = program.add_subcommand(
-      "simulate", "Let the objects of a scene move by themselves, and find every contact on the way");
+      "simulate", "Simulate the motion of the objects of a scene and find their contacts in each frame");
   app->footer(simulate_footer);
   add_simulation_options(*app, options);
   add_detection_options(*app, options, dependences);
   add_report_options(*app, options, dependences);
   app->add_option("--record", options.record,
-                  "Write positions, contacts, events and statistics of each frame as HDF5, and an XDMF file "
-                  "beside it that ParaView opens")
+                  "Write positions, contacts, events and statistics of each frame to an HDF5 file, and an "
+                  "XDMF file for ParaView next to it")
       ->type_name("FILE.h5")
       ->group("Output");
   add_output_options(*app, options, dependences);
@@ -327,8 +328,9 @@ CLI::App* add_simulate(CLI::App& program, SimulateOptions& options, Dependences&
 }
 
 CLI::App* add_view(CLI::App& program, ViewOptions& options, Dependences& dependences) {
-  CLI::App* app = program.add_subcommand(
-      "view", "Watch objects move and collide in a browser, pull at them, and see what finds the contacts");
+  CLI::App* app = program.add_subcommand("view",
+                                         "Show moving objects in a browser with their contacts and the "
+                                         "stages that find them; objects can be pulled");
   app->footer(view_footer);
   add_input_options(*app, options.inputs, options.sequence);
   add_scene_overrides(*app, options.seed, options.time_step);
@@ -340,67 +342,68 @@ CLI::App* add_view(CLI::App& program, ViewOptions& options, Dependences& depende
   dependences.push_back({group(add_whole(
                              *app, "--port", ValueRange::from(0, 65535),
                              [&](std::uint64_t port) { options.port = static_cast<std::uint16_t>(port); },
-                             "Where to listen, 0 for any port that is free (default: 0)")),
+                             "Port of the server; 0 means any free port (default: 0)")),
                          is_served, no_export});
   dependences.push_back(
-      {group(app->add_option("--host", options.address,
-                             "IP address to listen at; with any but this machine's own others who reach "
-                             "it and know the address can look and steer (default: 127.0.0.1)")
+      {group(app->add_option(
+                    "--host", options.address,
+                    "IP address of the server. With an address other than 127.0.0.1, people on other "
+                    "machines who know the full address can see and control the page (default: 127.0.0.1)")
                  ->type_name("ADDRESS")),
        is_served, no_export});
-  dependences.push_back(
-      {group(app->add_flag_callback(
-           "--no-open", [&] { options.open_browser = false; }, "Print the address, but open no browser")),
-       is_served, no_export});
+  dependences.push_back({group(app->add_flag_callback(
+                             "--no-open", [&] { options.open_browser = false; },
+                             "Print the address without opening a browser")),
+                         is_served, no_export});
   group(app->add_option("--export", options.page_file,
-                        "Write one HTML file instead, which needs no server: any browser shows it, the "
+                        "Write one HTML file instead of starting a server: any browser can show it, and the "
                         "detection runs in the page")
             ->type_name("PAGE.html"));
   return app;
 }
 
 CLI::App* add_info(CLI::App& program, InfoOptions& options) {
-  CLI::App* app = program.add_subcommand("info", "Say what meshes are like, and the octrees built from them");
+  CLI::App* app = program.add_subcommand("info", "Print statistics of meshes and of their octrees");
   app->footer(info_footer);
   app->add_option("MESH|SCENE.toml", options.inputs, "Meshes, or one scene file")->required()->type_name("");
   add_object_options(*app, options.given_objects, false);
-  add_file(*app, "--json", options.json, "Write the same as JSON; - is standard output");
+  add_file(*app, "--json", options.json, "Write the result as JSON; - is standard output");
   return app;
 }
 
 CLI::App* add_ccd_queries(CLI::App& program, CcdQueriesOptions& options, Dependences& dependences) {
-  CLI::App* app = program.add_subcommand(
-      "ccd-queries",
-      "Put single vertex-face and edge-edge queries of continuous collision, as published with answers");
+  CLI::App* app = program.add_subcommand("ccd-queries",
+                                         "Answer published vertex-face and edge-edge queries of continuous "
+                                         "collision, and compare with their answers");
   app->footer(ccd_queries_footer);
   app->add_option("FILE.csv", options.inputs, "Files of queries")->required()->type_name("");
   add_kind(*app, options.kind);
   app->add_option("--answers", options.answers,
-                  "JSON list of true and false, one a query, for a file without a column of answers; once "
-                  "for each file, "
-                  "in the same order")
+                  "JSON list with true or false for each query, for files without a column of answers; give "
+                  "the option once per file, in the same order")
       ->type_name("FILE")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   add_impact_options(*app, options.impact);
-  app->add_flag(
-      "--verify", options.verify,
-      "Decide each query by algebra too, and compare outcome and time; differences exit with status 3");
-  dependences.push_back(
-      {app->add_flag("--list-false", options.list_false, "Name each query that was answered falsely"),
-       [&] { return !options.quiet && options.json != "-"; }, "tables on standard output"});
+  app->add_flag("--verify", options.verify,
+                "Also decide each query by algebra, and compare the result and the time; exit with status 3 "
+                "when they differ");
+  dependences.push_back({app->add_flag("--list-false", options.list_false,
+                                       "List each query whose result differs from its published answer"),
+                         [&] { return !options.quiet && options.json != "-"; }, "tables on standard output"});
   add_file(*app, "--json", options.json,
            "Write the time of every impact and all counts; - is standard output");
   dependences.push_back({app->add_flag_callback(
                              "--no-stats", [&] { options.json_stats = false; },
-                             "Leave measured times out of the JSON, so that equal results are equal files"),
+                             "Leave measured times out of the JSON, so that equal results give equal files"),
                          [&] { return !options.json.empty(); }, "--json"});
-  app->add_flag("--quiet", options.quiet, "No table and no progress");
+  app->add_flag("--quiet", options.quiet, "Print no table and no progress");
   return app;
 }
 
 void add_diff(CLI::App& program, DiffOptions& options) {
-  CLI::App* app = program.add_subcommand("diff", "Say in which frame and item two recordings differ first");
+  CLI::App* app =
+      program.add_subcommand("diff", "Find the first frame and item in which two recordings differ");
   app->footer(diff_footer);
   app->add_option("RECORDING.h5", options.recordings, "The two recordings")
       ->required()
@@ -409,18 +412,18 @@ void add_diff(CLI::App& program, DiffOptions& options) {
   add_real(
       *app, "--tolerance", ValueRange::from(0), "length",
       [&](double tolerance) { options.tolerance = tolerance; },
-      "Coordinates may differ by so much, in their unit (default: 0, the same bits)");
-  add_file(*app, "--json", options.json, "Write the same as JSON; - is standard output");
-  app->add_flag("--quiet", options.quiet, "Only the exit status");
+      "Largest difference of coordinates that counts as equal, in their unit (default: 0, the same bits)");
+  add_file(*app, "--json", options.json, "Write the result as JSON; - is standard output");
+  app->add_flag("--quiet", options.quiet, "Print nothing; only set the exit status");
 }
 
-/// The options of the detection: those of a recording, or the defaults, with those given in their place.
+/// Sets the options of the detection: those of a recording, or the defaults, replaced by the given options.
 void resolve(MethodOptions& options, const std::vector<std::string>& inputs) {
   if (!inputs.empty() && is_recording(inputs.front()))
     options.scene = Recording(inputs.front()).header().scene;
   SceneOptions chosen = options.scene;
   options.given_scene.apply_to(chosen);
-  // Recorded options of the scene octree go with a recorded method.
+  // Recorded options of the scene octree apply only to the recorded method.
   if (!has_scene_octree(chosen)) options.scene.scene_octree = {};
   options.given_scene.apply_to(options.scene);
 }
@@ -451,7 +454,7 @@ int print_usage_error(const CLI::App& program, const CLI::ParseError& error) {
   const CLI::App& app = used.empty() ? program : *used.front();
   const std::string command = used.empty() ? "supple" : "supple " + app.get_name();
   std::string message = one_line(error.what());
-  // The first word that was not expected; `--flag=value` is one.
+  // The first unexpected word; `--flag=value` is one word.
   if (const std::vector<std::string> unknown = app.remaining(true);
       dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr && !unknown.empty()) {
     const std::string word = one_line(unknown.front().substr(0, unknown.front().find('=')));
@@ -472,7 +475,7 @@ int print_usage_error(const CLI::App& program, const CLI::ParseError& error) {
 
 CommandLine parse_command_line(int argument_count, const char* const* arguments) {
   CommandLine result;
-  CLI::App program("Finds every collision between triangle meshes that bend, exactly.", "supple");
+  CLI::App program("Finds every collision between deforming triangle meshes, exactly.", "supple");
   program.footer(program_footer);
   program.set_version_flag("--version", "supple " SUPPLE_VERSION, "Print the version and exit");
   program.require_subcommand(0, 1);

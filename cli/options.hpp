@@ -13,14 +13,14 @@
 
 namespace supple::cli {
 
-/// What finds contacts, and how.
+/// The method that finds contacts.
 struct MethodOptions {
-  SceneOptions scene;  ///< those of the input, a recording, or the defaults, with those given in their place
+  SceneOptions scene;  ///< the recorded options or the defaults, replaced by the given options
   viewer::Overrides<SceneOptions> given_scene;
   viewer::Overrides<ObjectOptions> given_objects;  ///< of all objects
 };
 
-/// What finds contacts and reports them: of each command that does.
+/// The options of all commands that find and report contacts.
 struct DetectionOptions : MethodOptions {
   bool verify = false;
   bool fail_on_contact = false;
@@ -29,47 +29,47 @@ struct DetectionOptions : MethodOptions {
   std::string json, csv;  ///< empty: none; "-": standard output
 };
 
-/// Of `supple detect`.
+/// Options of `supple detect`.
 struct DetectOptions : DetectionOptions {
   std::vector<std::string> inputs;  ///< meshes, patterns, or one scene file or recording
   bool sequence = false;            ///< the inputs are frames of one object
   std::optional<std::uint64_t> frames;
 };
 
-/// Of `supple simulate`.
+/// Options of `supple simulate`.
 struct SimulateOptions : DetectionOptions {
   std::string input;  ///< a scene file
   std::optional<std::uint64_t> frames;
-  std::optional<double> seconds;  ///< simulated; only one of the two is given
+  std::optional<double> seconds;  ///< simulated; excludes `frames`
   std::optional<std::uint64_t> seed;
   std::optional<double> time_step;
-  std::string record;  ///< a file, or empty
+  std::string record;  ///< a file; empty: none
 };
 
-/// Of `supple view`.
+/// Options of `supple view`.
 struct ViewOptions : MethodOptions {
   std::vector<std::string> inputs;  ///< meshes, patterns, or one scene file or recording
   bool sequence = false;            ///< the inputs are frames of one object
   std::optional<std::uint64_t> seed;
   std::optional<double> time_step;
   std::string address = "127.0.0.1";
-  std::uint16_t port = 0;  ///< 0: any that is free
+  std::uint16_t port = 0;  ///< 0: any free port
   bool open_browser = true;
-  std::string page_file;  ///< to write instead of serving, or empty
+  std::string page_file;  ///< file to write instead of serving; empty: serve
 };
 
-/// Of `supple info`.
+/// Options of `supple info`.
 struct InfoOptions {
   std::vector<std::string> inputs;
   viewer::Overrides<ObjectOptions> given_objects;
   std::string json;
 };
 
-/// Of `supple ccd-queries`.
+/// Options of `supple ccd-queries`.
 struct CcdQueriesOptions {
   std::vector<std::string> inputs;   ///< query files or patterns
   std::vector<std::string> answers;  ///< none, or one for each query file
-  std::optional<QueryKind> kind;     ///< told by the paths when absent
+  std::optional<QueryKind> kind;     ///< without a value: from the paths
   ImpactOptions impact;
   bool verify = false;
   bool list_false = false;
@@ -78,7 +78,7 @@ struct CcdQueriesOptions {
   std::string json;
 };
 
-/// Of `supple diff`.
+/// Options of `supple diff`.
 struct DiffOptions {
   std::vector<std::string> recordings;  ///< two
   double tolerance = 0;
@@ -99,7 +99,7 @@ struct CommandLine {
   DiffOptions diff;
 };
 
-/// Prints help, version and generated documents to standard output, a usage error as one line to standard
+/// Prints help, version and generated documents to standard output, and a usage error as one line to standard
 /// error.
 CommandLine parse_command_line(int argument_count, const char* const* arguments);
 

@@ -5,7 +5,7 @@
 
 namespace supple::cli {
 
-/// A file that is written from start to end; `-` is standard output. Throws `Error` when it cannot be.
+/// A file that is written from start to end; `-` is standard output. Throws `Error` when it cannot be opened.
 class OutputFile {
  public:
   explicit OutputFile(const std::string& name);
@@ -14,9 +14,9 @@ class OutputFile {
   OutputFile& operator=(const OutputFile&) = delete;
 
   std::FILE* stream() const { return stream_; }
-  /// Throws when anything written so far was lost, e.g. because the disk is full.
+  /// Throws when data written so far was lost, for example because the disk is full.
   void check() const;
-  /// Everything is on its way to the disk afterwards.
+  /// Flushes and closes the file. Throws when that fails.
   void close();
 
  private:

@@ -16,7 +16,7 @@ Angle angle(double degrees) {
   return {sin_turns(degrees / 360), cos_turns(degrees / 360)};
 }
 
-/// Rz Ry Rx, its rows one after the other.
+/// The matrix Rz Ry Rx, row by row.
 Rotation rotation(Vec3d degrees) {
   const Angle x = angle(degrees.x), y = angle(degrees.y), z = angle(degrees.z);
   return {Vec3d{z.cosine * y.cosine, z.cosine * y.sine * x.sine - z.sine * x.cosine,
@@ -41,7 +41,7 @@ void place(std::vector<Vec3d>& positions, const Placement& placement) {
   const Rotation r = rotation(placement.rotate_xyz_degrees);
   for (Vec3d& p : positions) {
     p = p * placement.scale;
-    // A product with 0 would spread an infinite coordinate to the others.
+    // A product with 0 would make the other coordinates NaN when one is infinite.
     if (turned) p = rotated(r, p);
     if (placement.turn) p = rotated(*placement.turn, p);
     p = p + placement.translate;

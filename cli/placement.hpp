@@ -9,13 +9,13 @@
 
 namespace supple::cli {
 
-/// A matrix by its rows.
+/// The rows of a matrix.
 using Rotation = std::array<Vec3d, 3>;
 
-/// Where an object of a scene stands. Applied to each point in double, without fused multiply-add: each
-/// coordinate times `scale`; then the rotation about the fixed x, then y, then z axis, counter-clockwise seen
-/// from the axis' tip, each row of the matrix Rz Ry Rx summed from left to right; then `turn` in the same
-/// way; then `translate` is added. Multiples of 90 degrees are exact.
+/// The placement of an object in a scene. It applies to each point in double, without fused multiply-add, in
+/// this order: scale; rotation about the fixed x axis, then the y axis, then the z axis, counter-clockwise
+/// seen from the tip of the axis, with each row of the matrix Rz Ry Rx summed from left to right; `turn` in
+/// the same way; `translate`. Multiples of 90 degrees are exact.
 struct Placement {
   double scale = 1;
   Vec3d rotate_xyz_degrees;
@@ -25,8 +25,8 @@ struct Placement {
 
 void place(std::vector<Vec3d>& positions, const Placement& placement);
 
-/// One of all rotations, each as likely as any other, for each seed and number (Shoemake, Uniform Random
-/// Rotations, 1992).
+/// A random rotation for a seed and a number, with uniform distribution (Shoemake, Uniform Random Rotations,
+/// 1992).
 Rotation random_rotation(std::uint64_t seed, std::uint64_t number);
 
 }  // namespace supple::cli

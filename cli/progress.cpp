@@ -51,7 +51,7 @@ void Progress::update(std::uint64_t done, std::string_view what) {
 std::string Progress::pace(std::uint64_t done, Clock::time_point now) {
   const double seconds = std::chrono::duration<double>(now - last_).count();
   const double rate = static_cast<double>(done - last_done_) / seconds;
-  // Forgets what is more than some seconds past, so that it follows a run that becomes slower.
+  // Uses only the last seconds, so that the rate follows a run that becomes slower.
   const double forgotten = rate_ == 0 ? 1 : std::min(1.0, seconds / 3);
   rate_ += (rate - rate_) * forgotten;
   last_ = now;

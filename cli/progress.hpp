@@ -7,18 +7,18 @@
 
 namespace supple::cli {
 
-/// A line on the terminal that says how far a command has come, for whatever takes over a second. Silent when
-/// standard error is no terminal.
+/// A progress line on the terminal for commands that take longer than a second. Silent when standard error is
+/// not a terminal.
 class Progress {
  public:
-  /// What `total` counts, e.g. `step`: its rate is shown too. Empty when it is not for people's eyes.
+  /// `noun` is the unit of `total`, such as `step`; the line then also shows the rate. Empty: no rate.
   Progress(std::uint64_t total, bool enabled, std::string_view noun = {});
-  /// Removes the line, so that what follows starts clean.
+  /// Removes the line, so that later output starts on an empty line.
   ~Progress();
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  /// `what` says it in words: `frame 3 of 10`.
+  /// `what` is the progress in words: `frame 3 of 10`.
   void update(std::uint64_t done, std::string_view what);
 
  private:
@@ -34,7 +34,7 @@ class Progress {
   Clock::time_point next_;
   Clock::time_point last_;  ///< when `last_done_` were done
   std::uint64_t last_done_ = 0;
-  double rate_ = 0;  ///< a second, of the last seconds; 0 when not known yet
+  double rate_ = 0;  ///< per second, over the last seconds; 0 when unknown
 };
 
 }  // namespace supple::cli

@@ -48,16 +48,16 @@ std::vector<std::string_view> columns_of(std::string_view line) {
   }
 }
 
-/// Characters of a number in a message.
+/// Largest number of characters of a number in a message.
 constexpr std::size_t longest_shown = 60;
 
-/// Of numbers with hundreds of digits a message shows the first.
+/// A message shows only the first of hundreds of digits.
 std::string shortened(std::string_view text) {
   return text.size() <= longest_shown ? std::string(text)
                                       : fmt::format("{}...", text.substr(0, longest_shown));
 }
 
-/// How to mend a coordinate that is no double.
+/// Advice for a coordinate that is not a double.
 std::string advice_for(const Rational& value) {
   const double nearest = value.convert_to<double>();
   if (!std::isfinite(nearest)) return "it is beyond the largest of them, so scale the query down";
@@ -73,7 +73,7 @@ struct Row {
   std::optional<bool> answer;
 };
 
-/// Reads row by row; lines without anything are no rows.
+/// Reads row by row and skips empty lines.
 class RowReader {
  public:
   explicit RowReader(const fs::path& path) : path_(path), stream_(open(path)) {}
@@ -119,7 +119,7 @@ std::optional<Row> RowReader::next() {
 void RowReader::check_column_count(std::size_t count) {
   if (count != columns_of_point && count != columns_of_point + 1)
     fail(
-        fmt::format("has {} instead of 6 or 7: a row is numerator,denominator of x, y and z, and perhaps "
+        fmt::format("has {} instead of 6 or 7: a row is numerator,denominator of x, y and z, and optionally "
                     "the answer, 0 or 1",
                     counted(count, "column")));
   if (column_count_ == 0) column_count_ = count;
@@ -246,7 +246,7 @@ std::uint64_t line_of(const std::string& text, std::size_t offset) {
 QueryKind kind_of(const fs::path& path) {
   const std::optional<QueryKind> folder = kind_of_folder(path), stem = kind_of_stem(path);
   if (folder && stem && *folder != *stem)
-    throw Error(fmt::format("{}: the folder and the name tell different kinds of queries; give --kind",
+    throw Error(fmt::format("{}: the folder and the name give different kinds of queries; give --kind",
                             path.string()));
   if (!folder && !stem)
     throw Error(
@@ -276,11 +276,11 @@ void read_answers(const fs::path& path, QueryFile& file) {
   };
   if (parsed.Code() == rapidjson::kParseErrorTermination)
     fail(handler.in_list ? fmt::format("entry {} must be true or false", handler.answers.size())
-                         : "must be a list of true and false, one a query");
+                         : "must be a list of true and false, one per query");
   if (!parsed) fail(fmt::format("not valid JSON: {}", rapidjson::GetParseError_En(parsed.Code())));
   file.answers = std::move(handler.answers);
   if (file.answers->size() != file.size())
-    throw Error(fmt::format("{}: has {}, but {} has {}; it needs one a query", path.string(),
+    throw Error(fmt::format("{}: has {}, but {} has {}; it needs one per query", path.string(),
                             counted(file.answers->size(), "answer"), file.path.string(),
                             counted(file.size(), "query", "queries")));
 }

@@ -12,7 +12,7 @@
 namespace supple::cli {
 namespace {
 
-/// Of all files together.
+/// Sums over all files.
 struct Totals {
   std::uint64_t queries = 0, touching = 0, within_tolerance = 0, compared = 0;
   std::uint64_t false_negatives = 0, false_positives = 0, differences = 0;
@@ -118,7 +118,7 @@ void print_queries(const std::vector<QueryFileResult>& files, bool verified, boo
   std::size_t width = 20;
   for (const QueryFileResult& file : files) width = std::max(width, one_line(file.path).size());
   fmt::print("{:<{}} {:>11} {:>11} {:>15} {:>15} {:>10}\n", "file", width, "queries", "touching",
-             "false negatives", "false positives", "ns a query");
+             "false negatives", "false positives", "ns/query");
   for (const QueryFileResult& file : files)
     print_row(width, one_line(file.path), file.times.size(), file.touching, file.compared,
               file.false_negatives.size(), file.false_positives.size(), file.seconds_per_query);
@@ -129,7 +129,7 @@ void print_queries(const std::vector<QueryFileResult>& files, bool verified, boo
   fmt::print("\n");
   print_comparison(all);
   if (all.within_tolerance > 0)
-    fmt::print("{} said to touch within tolerance, where floating point cannot tell\n",
+    fmt::print("{} within tolerance only: floating point cannot decide whether they touch\n",
                counted(all.within_tolerance, "query is", "queries are"));
   if (verified)
     fmt::print("verified: {} by algebra, {}\n", counted(all.queries, "query", "queries"),

@@ -15,18 +15,18 @@ namespace supple::cli {
 struct QueryDifference {
   std::uint64_t query = 0;
   ContinuousDifference::Fault fault = ContinuousDifference::Fault::missed;
-  std::optional<double> reported;    ///< none: it was said not to touch
-  std::optional<TimeBracket> truth;  ///< none: it does not touch
+  std::optional<double> reported;    ///< none: reported as apart
+  std::optional<TimeBracket> truth;  ///< none: the elements stay apart
 };
 
-/// What became of the queries of one file.
+/// The results of the queries of one file.
 struct QueryFileResult {
   std::string path;
   QueryKind kind = QueryKind::vertex_face;
-  std::vector<std::optional<double>> times;  ///< of the first impact, one a query
+  std::vector<std::optional<double>> times;  ///< time of the first impact of each query
   std::uint64_t touching = 0;
-  std::uint64_t within_tolerance = 0;  ///< of those that touch
-  bool compared = false;               ///< with answers
+  std::uint64_t within_tolerance = 0;  ///< number of queries that are only within tolerance
+  bool compared = false;               ///< whether answers are known
   std::vector<std::uint64_t> false_negatives, false_positives;
   double seconds_per_query = 0;
   std::vector<QueryDifference> differences;  ///< only with --verify
@@ -34,11 +34,11 @@ struct QueryFileResult {
   std::uint64_t false_answers() const { return false_negatives.size() + false_positives.size(); }
 };
 
-/// A table with a row a file and a row for all; then, with `list_false`, a line a query that was answered
-/// wrongly.
+/// Prints a table with one row per file and a total. With `list_false`, it also prints one line per query
+/// whose result differs from the published answer.
 void print_queries(const std::vector<QueryFileResult>& files, bool verified, bool list_false);
 
-/// The JSON that docs/json.md describes, a file at a time.
+/// Writes the JSON that docs/json.md describes, file by file.
 class QueryJsonReport {
  public:
   QueryJsonReport(const std::string& file_name, double min_separation, bool with_stats, bool verified);

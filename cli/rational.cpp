@@ -16,7 +16,7 @@ std::optional<Integer> parse_integer(std::string_view text) {
   const bool negative = text.starts_with('-');
   if (negative || text.starts_with('+')) text.remove_prefix(1);
   if (text.empty() || text.find_first_not_of("0123456789") != std::string_view::npos) return std::nullopt;
-  // Digits after a zero would be read as an octal number.
+  // A leading zero would make it an octal number.
   text.remove_prefix(std::min(text.find_first_not_of('0'), text.size() - 1));
   Integer value{std::string(text)};
   if (negative) value = -value;
@@ -49,7 +49,7 @@ std::optional<double> exact_small_quotient(std::string_view numerator, std::stri
   if (!parse(numerator, top) || !parse(denominator, bottom) || bottom == 0) return std::nullopt;
   if (top == 0) return 0.0;
   const double n = static_cast<double>(top), d = static_cast<double>(bottom), quotient = n / d;
-  // What a division leaves is a double, so the fused product shows it whole.
+  // The remainder of a division is a double, so the fused product computes it exactly.
   if (std::fma(quotient, d, -n) != 0) return std::nullopt;
   return quotient;
 }

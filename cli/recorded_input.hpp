@@ -6,11 +6,11 @@
 
 namespace supple::cli {
 
-/// Told by the extension: .h5 or .hdf5.
+/// True for the extensions .h5 and .hdf5.
 bool is_recording(const std::string& name);
 
-/// The objects of a recording with their options, in its order, where its first frame has them. Throws
-/// `Error` when it cannot be read or has no frame.
+/// Reads the objects of a recording with their options, in the order of the recording, with the positions of
+/// the first frame. Throws `Error` when it cannot be read or has no frame.
 Input read_recording(const std::string& name);
 
 }  // namespace supple::cli

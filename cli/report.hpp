@@ -7,15 +7,15 @@
 
 namespace supple::cli {
 
-/// What every report is told about a frame.
+/// The data of a frame for all reports.
 struct Frame {
   std::uint64_t number = 0;
   const DetectResult& result;
   std::optional<VerifyReport> verify{};
-  /// Of frames that are simulated.
+  /// Only for simulated frames.
   struct Simulated {
     double time = 0;            ///< s, since the start
-    double motion_seconds = 0;  ///< by the wall clock
+    double motion_seconds = 0;  ///< wall-clock time of the motion
   };
   std::optional<Simulated> simulated{};
 };

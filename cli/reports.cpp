@@ -32,7 +32,7 @@ const char* outcome_of(ContinuousDifference::Fault fault) {
   return "were reported with a time too long before they touch";
 }
 
-/// What the elements of a and of b are.
+/// The elements of a and of b in words.
 std::array<const char*, 2> nouns_of(ElementPairKind kind) {
   if (kind == ElementPairKind::vertex_face) return {"vertex", "face"};
   if (kind == ElementPairKind::face_vertex) return {"face", "vertex"};

@@ -12,18 +12,18 @@
 
 namespace supple::cli {
 
-/// The reports that were asked for, and what decides the exit status.
+/// The requested reports, and the results that decide the exit status.
 class Reports {
  public:
-  /// `noun` is what a frame is called in messages: `frame` or `step`.
+  /// `noun` is the word for a frame in messages: `frame` or `step`.
   Reports(const DetectionOptions& options, const Input& input, const Scene& scene, std::string noun);
 
-  /// Tables may be left out: standard output belongs to something else, or --quiet.
+  /// No tables are printed with --quiet, or when standard output has other data.
   bool has_tables() const { return text_.has_value(); }
-  /// Tells people of the first difference of the run; the rest is in the JSON.
+  /// Prints the first difference of the run; the JSON has all of them.
   void add(const Frame& frame);
   void finish();
-  /// Of the frames so far.
+  /// The exit status for the frames so far.
   int exit_status() const;
 
  private:

@@ -62,7 +62,7 @@ TriangleMesh named(TriangleMesh mesh, const std::string& name) {
   return mesh;
 }
 
-/// These take keys of their own.
+/// These models have additional keys.
 TriangleMesh read_parametrised_model(TomlReader& reader, const std::string& name) {
   std::uint32_t frequency = 8, rings = 24, sides = 12, resolution = 1, columns = 16, rows = 16;
   if (name == "icosphere") {
@@ -95,10 +95,10 @@ TriangleMesh read_parametrised_model(TomlReader& reader, const std::string& name
   reader.fail("model", fmt::format("there is no model '{}'; choose one of {}", name, available_models()));
 }
 
-/// Meshes by file or model name: a scene often has the same one many times.
+/// Meshes by file or model name, because a scene often uses the same mesh many times.
 using Shapes = std::map<std::string, TriangleMesh>;
 
-/// `frames` has the meshes of an object that is moved by files; it may do without another.
+/// `frames` has the files of an object that is moved by files; such an object needs no other mesh.
 TriangleMesh read_shape(TomlReader& reader, const fs::path& folder, const FrameSequence* frames,
                         Shapes& shapes) {
   std::string mesh, model;
@@ -136,14 +136,14 @@ ObjectOptions read_options(TomlReader& reader) {
   return options;
 }
 
-/// Copies of an object on a grid.
+/// The copies of an object on a grid.
 struct Copies {
   std::array<std::uint32_t, 3> repeat{1, 1, 1};
   Vec3d spacing;
   bool random_rotation = false;
 
   std::uint64_t count() const { return std::uint64_t{repeat[0]} * repeat[1] * repeat[2]; }
-  /// Of a copy from the middle of the grid. Copies are counted along x first, then y, then z.
+  /// The offset of a copy from the middle of the grid. Copies are counted along x first, then y, then z.
   Vec3d offset(std::uint64_t copy) const;
 };
 
@@ -166,7 +166,8 @@ Copies read_copies(TomlReader& reader) {
   if (reader.has("spacing") && !reader.has("repeat"))
     reader.fail("spacing", "has no effect without repeat = [nx, ny, nz]");
   if (copies.count() > most_copies)
-    reader.fail("repeat", fmt::format("these are {} copies; {} are allowed", copies.count(), most_copies));
+    reader.fail("repeat",
+                fmt::format("these are {} copies; at most {} are allowed", copies.count(), most_copies));
   for (std::size_t axis = 0; axis < 3; ++axis) {
     if (copies.repeat[axis] > 1 && copies.spacing[static_cast<int>(axis)] == 0)
       reader.fail("repeat", "needs spacing = [dx, dy, dz] along each axis with more than one copy");
@@ -204,7 +205,7 @@ ContactResponse read_response(const toml::table& table, const fs::path& path) {
   TomlReader reader(path, table, "[scene]: response");
   ContactResponse response;
   response.enabled = true;
-  // The table itself enables it.
+  // The presence of the table enables the response.
   for_each_field<ContactResponse>([&]<class Value>(const Field<ContactResponse, Value>& field) {
     if constexpr (!std::is_same_v<Value, bool>) reader.read(field, response.*field.member);
   });
@@ -212,7 +213,7 @@ ContactResponse read_response(const toml::table& table, const fs::path& path) {
   return response;
 }
 
-/// Returns the gravity of its masses and springs.
+/// Returns the gravity of masses and springs.
 Vec3d read_scene(const toml::table& table, const fs::path& path, SimulationOptions& simulation) {
   TomlReader reader(path, table, "[scene]");
   if (reader.has("bounds")) reader.read_box("bounds", simulation.border.emplace(), false);

@@ -7,10 +7,10 @@
 
 namespace supple::cli {
 
-/// Reads a scene file (docs/scene_file.md). Throws `Error` that names file, line and key and says what is
-/// allowed; a key that means nothing there is an error too.
+/// Reads a scene file (docs/scene_file.md). Throws `Error`, also for an unknown key. The message names the
+/// file, the line and the key, and says what is allowed.
 Input read_scene_file(const std::filesystem::path& path, const SceneOverrides& overrides = {});
-/// The same of a text at hand, as if it were the contents of `path`.
+/// The same for a text in memory, as if it were the content of `path`.
 Input read_scene_text(std::string text, const std::filesystem::path& path,
                       const SceneOverrides& overrides = {});
 

@@ -11,21 +11,21 @@
 
 namespace supple::cli {
 
-/// The `motion` of one [[object]] of a scene file, which moves each of its copies.
+/// The `motion` of one [[object]] of a scene file. It applies to each copy of the object.
 class SceneMotion {
  public:
-  /// `object` is the reader of the [[object]], `where` its name in messages; gravity is the scene's. Throws
-  /// as `read_scene_file` does.
+  /// `object` is the reader of the [[object]], and `where` its name in messages. `gravity` is the gravity of
+  /// the scene. Throws as `read_scene_file` does.
   SceneMotion(TomlReader& object, const std::filesystem::path& scene_file, std::string where, Vec3d gravity);
 
   bool empty() const { return table_ == nullptr; }
   /// The mesh files of `kind = "frames"`; null for other kinds.
   const FrameSequence* frames() const { return motion_ ? std::get_if<FrameSequence>(&*motion_) : nullptr; }
 
-  /// The motion of a copy: its own seed, and the vertices that lie in the boxes.
+  /// The motion of one copy: with its own seed, and with the vertices that lie in the boxes.
   std::optional<Motion> of_copy(std::uint64_t copy, const Placement& placement,
                                 const std::vector<Vec3d>& positions);
-  /// Throws when a box held no vertex of any copy.
+  /// Throws when a box contains no vertex of any copy.
   void check_boxes() const;
 
  private:

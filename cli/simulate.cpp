@@ -28,25 +28,26 @@ using Clock = std::chrono::steady_clock;
 
 Input read_input(const SimulateOptions& options) {
   if (!is_scene_file(options.input))
-    throw Error(fmt::format("{}: is no scene file; write one, SCENE.toml, with this as mesh of an [[object]]",
-                            options.input));
+    throw Error(fmt::format(
+        "{}: is not a scene file; write a SCENE.toml with an [[object]] that has this file as its mesh",
+        options.input));
   return read_objects({options.input}, {options.seed, options.time_step});
 }
 
-/// Steps from the first frame to the last; they reach the given time and end less than a step after it.
+/// The number of steps: they reach the given time and end less than one step after it.
 std::uint64_t count_steps(const SimulateOptions& options, double time_step) {
   constexpr std::uint64_t default_frames = 301;
   if (!options.seconds) return options.frames.value_or(default_frames) - 1;
   const double steps = *options.seconds / time_step;
   if (steps > 1e9)
-    throw Error(fmt::format("--seconds: {} are {:.3g} steps of {}; a thousand million are allowed",
-                            *options.seconds, steps, time_step));
+    throw Error(fmt::format("--seconds: {} are {:.3g} steps of {}; at most 1e9 are allowed", *options.seconds,
+                            steps, time_step));
   const double whole = std::round(steps);
-  const bool is_whole = std::abs(steps - whole) < 1e-9 * whole;  // but for the rounding of the division
+  const bool is_whole = std::abs(steps - whole) < 1e-9 * whole;  // except for the rounding of the division
   return static_cast<std::uint64_t>(is_whole ? whole : std::ceil(steps));
 }
 
-/// A simulation under way, and all that is written about it.
+/// A running simulation and its reports.
 class Run {
  public:
   Run(const SimulateOptions& options, const Input& input)
@@ -57,7 +58,7 @@ class Run {
         recorder_(options.record, simulation_, input),
         energies_(simulation_) {}
 
-  /// Up to the last step, an interruption or a blow-up; returns the exit status.
+  /// Runs until the last step, an interruption or a blow-up. Returns the exit status.
   int go();
 
  private:

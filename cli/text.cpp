@@ -8,7 +8,8 @@
 namespace supple::cli {
 namespace {
 
-/// How many letters to insert, leave out, replace or swap with the next to make one word of the other.
+/// The number of letters to insert, remove, replace or swap with the next one to turn one word into the
+/// other.
 std::size_t edit_distance(const std::string& a, const std::string& b) {
   std::vector<std::size_t> two_before, before, row(b.size() + 1);
   for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;

@@ -10,17 +10,17 @@
 
 namespace supple::cli {
 
-/// The text with each line break, tab or other control character made a blank: error messages are one line,
-/// whatever a file is called.
+/// Replaces each line break, tab or other control character by a blank, so that error messages are one line
+/// for any file name.
 std::string one_line(std::string text);
 
-/// A table of more rows says how many it leaves out.
+/// A table prints at most this many rows, and then the number of omitted rows.
 inline constexpr std::size_t most_rows = 40;
 
-/// An object in a table: its number and name.
+/// The number and name of an object, for tables.
 std::string name_of(const Scene& scene, ObjectId object);
 
-/// The word that a mistyped one most likely stands for, or nothing when none is near.
+/// The most likely intended word for a mistyped word, or nothing when no word is similar.
 std::optional<std::string> nearest_of(const std::string& mistyped, const std::vector<std::string>& words);
 
 /// 1234567 as 1,234,567.

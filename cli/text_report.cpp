@@ -62,7 +62,7 @@ void TextReport::print(const Scene& scene) const {
   if (simulated_) print_collisions();
   print_stages();
   if (non_finite_ > 0)
-    fmt::print("\n{} not finite in the last frame: triangles that use such vertices touch nothing\n",
+    fmt::print("\n{} not finite in the last frame: the triangles that use these vertices touch nothing\n",
                counted(non_finite_, "position"));
   if (verified_) print_verify(scene);
 }
@@ -94,7 +94,7 @@ void TextReport::print_pairs(const Scene& scene) const {
                grouped(summary.triangle_pairs), grouped(summary.most), summary.frame_of_most);
   }
   if (left_out > 0) fmt::print("and {} with fewer; --csv lists all\n", counted(left_out, "pair"));
-  fmt::print("\n{} that intersect; pairs of objects began to touch {} and parted {}\n\n",
+  fmt::print("\n{} that intersect; pairs of objects began to touch {} and separated {}\n\n",
              counted(triangle_pairs_, "triangle pair"), counted(begun_, "time"), counted(ended_, "time"));
 }
 
@@ -111,7 +111,7 @@ void TextReport::print_stages() const {
     const double share = total_seconds > 0 ? 100 * seconds / total_seconds : 0;
     fmt::print("{:<12} {:>14.3f} {:>7.0f} %   {}\n", stage, 1e3 * seconds / frames, share, work);
   };
-  fmt::print("{:<12} {:>14} {:>9}   in all {}s\n", "stage", fmt::format("ms a {}", noun_), "share", noun_);
+  fmt::print("{:<12} {:>14} {:>9}   in all {}s\n", "stage", fmt::format("ms per {}", noun_), "share", noun_);
   if (simulated_) row("motion", motion_seconds_, "");
   row("refit", sum_.refit_seconds, counted(sum_.triangles_refitted, "triangle"));
   row("broad phase", sum_.broad_phase_seconds,
@@ -128,7 +128,7 @@ void TextReport::print_stages() const {
   row("exact", sum_.exact_seconds,
       fmt::format("{}, {} decided by exact arithmetic", counted(sum_.contacts, "contact"),
                   grouped(sum_.exact_fallbacks)));
-  row("finish", sum_.sort_and_events_seconds, "");
+  row("sort, events", sum_.sort_and_events_seconds, "");
   row("total", total_seconds, "");
 }
 

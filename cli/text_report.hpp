@@ -11,10 +11,10 @@
 
 namespace supple::cli {
 
-/// Tables of all frames together: which objects touch, what each stage did and how long it took.
+/// Tables of all frames together: the objects that touch, and the work and time of each stage.
 class TextReport {
  public:
-  /// `noun` is what a frame is called: `frame` or `step`.
+  /// `noun` is the word for a frame: `frame` or `step`.
   explicit TextReport(std::string noun) : noun_(std::move(noun)) {}
 
   void add(const Frame& frame);
@@ -26,7 +26,7 @@ class TextReport {
     std::uint64_t frames = 0;
     std::uint64_t triangle_pairs = 0;
     std::uint64_t most = 0;           ///< triangle pairs in one frame
-    std::uint64_t frame_of_most = 0;  ///< the first frame with as many
+    std::uint64_t frame_of_most = 0;  ///< the first frame with this number
   };
 
   void print_contacts(const Scene& scene) const;

@@ -18,47 +18,46 @@
 
 namespace supple::cli {
 
-/// Reads the values of one table of a TOML file and remembers which keys were asked for, so that `finish` can
-/// reject the others. Every error names file, line and key and says what is allowed.
+/// Reads the values of one table of a TOML file. It remembers the keys that were read, so that `finish` can
+/// reject all others. Every error names the file, the line and the key, and says what is allowed.
 class TomlReader {
  public:
-  /// `where` says what the table describes: `[scene]`, `[[object]] 2`.
+  /// `where` names the table in messages: `[scene]`, `[[object]] 2`.
   TomlReader(std::filesystem::path file, const toml::table& table, std::string where)
       : file_(std::move(file)), table_(table), where_(std::move(where)) {}
 
   bool has(const std::string& key) { return node(key) != nullptr; }
 
-  // Each leaves the value as it is when the key is absent.
+  // Each function leaves the value unchanged when the key is absent.
   void read(const std::string& key, std::string& value);
   void read(const std::string& key, bool& value);
   void read(const std::string& key, double& value);
   void read(const std::string& key, Vec3d& value);
   void read(const std::string& key, std::uint32_t& value, std::uint32_t lowest, std::uint32_t highest);
   void read(const std::string& key, double& value, const ValueRange& range);
-  /// Returns the place of the word.
+  /// Returns the index of the word.
   std::optional<std::size_t> read_word(const std::string& key, std::span<const char* const> choices);
-  /// An option by its key, as its description allows it.
+  /// Reads an option by its key, within the range of its description.
   template <class Struct, class Value>
   void read(const Field<Struct, Value>& field, Value& value);
-  /// All options of a structure but those of the machine and those that are neither numbers, words, points
-  /// nor texts.
+  /// Reads all options of a structure that are numbers, words, points or texts, except those of the machine.
   template <Described Options>
   void read_options(Options& options);
   /// Three whole numbers.
   void read(const std::string& key, std::array<std::uint32_t, 3>& value, std::uint32_t lowest,
             std::uint32_t highest);
-  /// Lowest and highest corner; along each axis the first is below the second.
+  /// Reads a lowest and a highest corner; along each axis the first must be below the second.
   void read_box(const std::string& key, std::array<Vec3d, 2>& box, bool may_be_flat);
-  /// An array of boxes, each [lowest corner, highest corner]; these may be flat.
+  /// Reads an array of boxes, each [lowest corner, highest corner]. They may be flat.
   void read(const std::string& key, std::vector<std::array<Vec3d, 2>>& boxes);
   /// The table under a key, or null.
   const toml::table* table(const std::string& key);
-  /// The tables of an array; `written` says how the array is written in a scene file.
+  /// The tables of an array. `written` shows for messages how the array is written in a scene file.
   std::vector<const toml::table*> tables(const std::string& key, const std::string& written);
 
-  /// Throws for a key that was never asked for.
+  /// Throws when the table has a key that was not read.
   void finish() const;
-  /// Throws an error about a key that is present, or about the table itself when it is not.
+  /// Throws an error about a key, or about the table when the key is absent.
   [[noreturn]] void fail(const std::string& key, const std::string& what) const;
 
  private:

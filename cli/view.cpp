@@ -39,13 +39,13 @@ Input read_input(const ViewOptions& options) {
     throw Error("--time-step: only a scene file and --sequence have steps of their own; leave it out");
   if (!options.sequence) return read_objects(options.inputs, {options.seed, options.time_step});
   Input input = read_sequence(options.inputs);
-  // Files say nothing of time; this is how fast films go.
+  // Files contain no time; this is the rate of films.
   constexpr double film_seconds = 0.04;
   input.simulation.time_step = options.time_step.value_or(film_seconds);
   return input;
 }
 
-/// What a page of a recording holds before it is compressed, in bytes: positions as floats.
+/// The size in bytes of the frames in a page before compression: positions as floats.
 double size_of_frames(const viewer::SceneView& show) {
   if (!show.frames) return 0;
   double vertices = 0;
@@ -57,11 +57,11 @@ double size_of_frames(const viewer::SceneView& show) {
 
 void check_page_size(const std::string& file, double bytes, double most) {
   if (bytes <= most) return;
-  throw Error(fmt::format(
-      "{}: would be a page of {:.0f} MB{}, more than the {} MB that browsers still open; record fewer frames "
-      "or coarser meshes, or send the recording itself",
-      file, bytes / 1e6, most > viewer::largest_page ? " before compression" : "",
-      viewer::largest_page / 1'000'000));
+  throw Error(
+      fmt::format("{}: the page would have {:.0f} MB{}, but browsers open at most {} MB; record fewer frames "
+                  "or coarser meshes, or send the recording itself",
+                  file, bytes / 1e6, most > viewer::largest_page ? " before compression" : "",
+                  viewer::largest_page / 1'000'000));
 }
 
 int write_page(const viewer::SceneView& show, const ViewOptions& options) {
@@ -83,8 +83,8 @@ int write_page(const viewer::SceneView& show, const ViewOptions& options) {
 void warn_of_others(const ViewOptions& options) {
   if (viewer::is_loopback(options.address)) return;
   fmt::print(stderr,
-             "supple: warning: --host {}: everyone who reaches this machine's network address and knows the "
-             "address below can look and steer, and it goes over the network unencrypted\n",
+             "supple: warning: --host {}: everyone who can reach this machine and knows the address below "
+             "can see and control the page; the connection is not encrypted\n",
              one_line(options.address));
 }
 

@@ -4,8 +4,8 @@
 
 namespace supple::cli {
 
-/// Runs `supple view`: serves until it is interrupted, or writes a page; returns the exit status. Throws
-/// `Error` for unusable input.
+/// Runs `supple view`: serves a page until it is interrupted, or writes a page to a file. Returns the exit
+/// status. Throws `Error` for unusable input.
 int run_view(const ViewOptions& options);
 
 }  // namespace supple::cli

@@ -8,6 +8,13 @@ target_compile_options(supple_compile_options INTERFACE
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
   # Each instruction set compiles the kernels once more. Processors since 2008 have SSE4, and older ones run portable code.
   target_compile_definitions(supple_compile_options INTERFACE HWY_DISABLED_TARGETS=HWY_SSSE3)
+  # Highway 1.0.3 refuses compilers that may use all of AVX-512, as -march=native allows on recent processors, without
+  # this definition.
+  include(CheckCXXSourceCompiles)
+  check_cxx_source_compiles("#include <hwy/detect_targets.h>\nint main() {}" supple_highway_accepts_flags)
+  if(NOT supple_highway_accepts_flags)
+    target_compile_definitions(supple_compile_options INTERFACE HWY_WANT_AVX3_DL)
+  endif()
 else()
   # Kernels keep vectors in structures, which SVE's and RVV's cannot be in. Highway 1.0 has no vectors of doubles for
   # WebAssembly: there its portable ones are taken, which the compiler turns into the same instructions.

@@ -1,5 +1,4 @@
-// Events: two spheres pass through each other, and the program reacts only when they begin or cease to
-// touch.
+// Events: two spheres pass through each other. The program reacts only when they begin or stop touching.
 #include <cstdio>
 #include <string>
 

@@ -25,6 +25,10 @@ PHRASES = {
     r"\b(is|are) asked for\b|\bwho asks for\b": "'request', or name who needs it",
     r"\b(built|built up|computed|made|begun|asked) anew\b": "'again', 'rebuild'",
     r"\bhow far that is\b|\bwhat becomes of\b|\bwhat comes of\b": "name the thing",
+    r"\b(a row|a line) a\b|\bone a (core|query|frame|step|file|row)\b|\ban object each\b": "'one per …'",
+    r"\ba (row|frame|file) at a time\b": "'row by row', 'one frame at a time'",
+    r"\bsent off\b|\bunder way\b|\bcease[sd]?\b|\bmend(s|ed)?\b": "'gets a velocity', 'current', 'stop', 'fix'",
+    r"\bfor people's eyes\b|\bfor nobody\b|\bthe one door\b": "say who reads it, or 'the only …'",
 }
 DOCUMENTS = ["*.md", ":!benchmarks/results", ":!docs/cli.md"]  # records, and what a program writes
 SOURCES = ["*.hpp", "*.cpp", "*.ts", "*.mjs", "*.py", "*.sh", "*.toml"]

@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::array<std::uint32_t, 3> arities{2, 4, 8};
 
-/// Two objects in several places against each other.
+/// Two objects in several poses relative to each other.
 struct Case {
   std::string name;
   TriangleMesh a;
@@ -56,7 +56,7 @@ struct Sum {
   std::uint64_t nodes = 0, bytes = 0, tests = 0, node_pairs = 0;
   std::uint32_t depth = 0;
   double mean_depth = 0, width = 0, seconds = 0, refit_seconds = 0;
-  std::uint64_t deepest_path = 0;  ///< the longest way down both trees, added up over the poses
+  std::uint64_t deepest_path = 0;  ///< the sum of the depths of both trees over the poses
 };
 
 double mean_depth(const OctreeStatistics& octree) {
@@ -87,7 +87,7 @@ Sum measure(const Case& poses, std::uint32_t arity, std::uint32_t leaf_size, con
   return sum;
 }
 
-/// By case and arity.
+/// Results by case and arity.
 using Sums = std::vector<std::array<Sum, 3>>;
 
 Sums measure_objects(const std::vector<Case>& all, std::uint32_t leaf_size, const ArityOptions& options,
@@ -154,7 +154,7 @@ SceneCosts measure_scene_trees(const ArityOptions& options, Work& work, Table& t
   return costs;
 }
 
-/// The mean over the cases of a number, divided by that of eight children.
+/// The mean over the cases of a number divided by its value for eight children.
 template <class Number>
 std::array<double, 3> relative(const Sums& sums, Number&& number) {
   std::array<double, 3> mean{};
@@ -182,7 +182,7 @@ double seconds_of_sum(const Sum& sum) {
   return sum.seconds;
 }
 
-/// Volumes that a refit makes anew.
+/// Volumes that a refit computes.
 double volumes_of(const Sum& sum) {
   return static_cast<double>(sum.nodes) * sum.width;
 }
@@ -203,12 +203,12 @@ Claim judge_better(const Sums& sums) {
   if (best < 0.95 * work[0]) claim.verdict = Verdict::holds;
   if (best > 1.05 * work[0]) claim.verdict = Verdict::does_not_hold;
   claim.reason = fmt::format(
-      "Eight children being 1: {:.2f} tests of a volume against a volume with four children, {:.2f} with "
-      "two; {:.2f} and {:.2f} volumes to refit; both together {:.2f} and {:.2f}. Of {} cases the fewest "
-      "tests are with two, four and eight children in {}, {} and {}. Times: {:.2f} and {:.2f} for the "
-      "descent, {:.2f} and {:.2f} for refitting; the descent is shortest with two, four and eight in {}, {} "
-      "and {} cases. But nodes are eight lanes wide here and tested at once, whatever they hold: that "
-      "favours eight children in time, and is no merit of the tree. Counts do not depend on it.",
+      "Relative to eight children, tests of two volumes: {:.2f} with four children, {:.2f} with two. Volumes "
+      "to refit: {:.2f} and {:.2f}. Both together: {:.2f} and {:.2f}. Of {} cases, two, four and eight "
+      "children have the fewest tests in {}, {} and {}. Times: {:.2f} and {:.2f} for the traversal, {:.2f} "
+      "and {:.2f} for the refit; two, four and eight children have the shortest traversal in {}, {} and {} "
+      "cases. In Supple, nodes have room for eight children, which are tested at once. This favours eight "
+      "children in time and is not a property of the tree. Counts do not depend on it.",
       tests[1], tests[0], volumes[1], volumes[0], work[1], work[0], sums.size(), fewest_tests[0],
       fewest_tests[1], fewest_tests[2], seconds[1], seconds[0], refit[1], refit[0], fastest[0], fastest[1],
       fastest[2]);
@@ -221,21 +221,23 @@ Claim judge_depth(const Sums& sums) {
   for (const auto& row : sums) octants += row[2].width / static_cast<double>(sums.size());
   Claim claim{
       "“This phase can be changed using k-ary trees …, so that the complexity would change in the log_k n” "
-      "(7): the depth with two children is three times that with eight, with four 1.5 times.",
+      "(7): the depth with two children is three times the depth with eight, and with four children 1.5 "
+      "times.",
       Verdict::cannot_tell,
       {}};
   const auto near = [](double value, double expected) { return std::abs(value / expected - 1) < 0.2; };
   claim.verdict = verdict_of(near(depth[0], 3) && near(depth[1], 1.5));
   claim.reason = fmt::format(
-      "With leaves of one triangle the mean depth with two children is {:.2f} times that with eight, with "
-      "four {:.2f} times. The nodes of eight have {:.1f} children on average, because a surface leaves "
-      "octants empty and small nodes hold few triangles: an octree of a surface is deeper than the logarithm "
-      "of base eight.",
+      "With leaves of one triangle, the mean depth with two children is {:.2f} times the depth with eight, "
+      "and with four children {:.2f} times. Nodes of up to eight children have {:.1f} children on average, "
+      "because a surface leaves octants empty and small nodes contain few triangles. So an octree of a "
+      "surface is deeper than the logarithm of base eight.",
       depth[0], depth[1], octants);
   return claim;
 }
 
-/// If one pair of children collides at most, no more node pairs are compared than there are levels.
+/// If at most one pair of children collided, the traversal would compare at most as many node pairs as there
+/// are levels.
 Claim judge_binary_collisions(const Sums& sums) {
   Claim claim{"“In binary trees, the maximum number of nodes colliding is 1” (6).", Verdict::holds, {}};
   std::uint64_t visited = 0, levels = 0;
@@ -245,8 +247,8 @@ Claim judge_binary_collisions(const Sums& sums) {
   }
   claim.verdict = verdict_of(visited <= levels);
   claim.reason = fmt::format(
-      "If no more than one pair of children collided, a descent would compare no more pairs of nodes than "
-      "both trees have levels, together {} in all cases; it compared {}.",
+      "If at most one pair of children collided, the traversal would compare at most as many pairs of nodes "
+      "as both trees have levels, {} over all cases; it compared {}.",
       cli::grouped(levels), cli::grouped(visited));
   return claim;
 }
@@ -262,9 +264,9 @@ Claim judge_scene(const SceneCosts& costs) {
   for (const auto& row : costs)
     if (row[0].pairs != row[2].pairs || row[1].pairs != row[2].pairs) claim.verdict = Verdict::does_not_hold;
   claim.reason = fmt::format(
-      "For the largest scene a step takes {:.2f} times as long with four children and {:.2f} times with two "
-      "as with eight; there are {:.2f} and {:.2f} times as many regions, {:.2f} and {:.2f} times as many "
-      "tests.",
+      "For the largest scene, relative to eight children, a step takes {:.2f} times as long with four "
+      "children and {:.2f} times with two; there are {:.2f} and {:.2f} times as many regions, and {:.2f} and "
+      "{:.2f} times as many tests.",
       ratio(1), ratio(0), static_cast<double>(largest[1].regions) / static_cast<double>(largest[2].regions),
       static_cast<double>(largest[0].regions) / static_cast<double>(largest[2].regions),
       static_cast<double>(largest[1].tests) / static_cast<double>(largest[2].tests),
@@ -272,7 +274,7 @@ Claim judge_scene(const SceneCosts& costs) {
   return claim;
 }
 
-/// A line for each arity, a point for each case, relative to eight children.
+/// Plots one line per arity and one point per case, relative to eight children.
 template <class Number>
 Plot relative_plot(const std::string& title, const std::string& label, const std::vector<Case>& all,
                    const Sums& sums, Number&& number) {
@@ -345,29 +347,29 @@ Report run_arity(const ArityOptions& options, bool show_progress) {
   report.name = "arity";
   report.title = "Trees of two, four and eight children";
   report.summary =
-      "The same objects, in the same poses, with trees that divide a cell in two, four or eight at each "
-      "level. With leaves of one triangle all three end in the same leaves and differ in the way down alone; "
-      "leaves of up to eight triangles are the usual ones. The contacts are the same for all.";
+      "The same objects in the same poses, with trees that divide a cell into two, four or eight at each "
+      "level. With leaves of one triangle, all three trees have the same leaves and differ only above them. "
+      "The other leaves have up to 64 triangles, as by default. The contacts are the same for all trees.";
   report.parameters = {
       {"seed", fmt::format("{}", options.seed)},
-      {"threads", options.threads == 0 ? "one a core" : fmt::format("{}", options.threads)},
+      {"threads", options.threads == 0 ? "one per core" : fmt::format("{}", options.threads)},
       {"poses of each case",
-       fmt::format("{}; node pairs, tests and times are sums over them", all.front().b.size())},
-      {"steps", fmt::format("times are the least of {}", options.frames)}};
+       fmt::format("{}; node pairs, tests and times are sums over the poses", all.front().b.size())},
+      {"steps", fmt::format("times are the minimum of {}", options.frames)}};
   report.claims = {judge_better(usual), judge_depth(single), judge_binary_collisions(single),
                    judge_scene(scene_costs)};
   Section of_objects{"Trees of objects", {}};
   of_objects.blocks.emplace_back(
       relative_plot("Tests, leaves of one triangle (eight children: 1)", "relative", all, single, tests_of));
-  of_objects.blocks.emplace_back(relative_plot("Tests, leaves of up to eight triangles (eight children: 1)",
+  of_objects.blocks.emplace_back(relative_plot("Tests, leaves of up to 64 triangles (eight children: 1)",
                                                "relative", all, usual, tests_of));
   of_objects.blocks.emplace_back(
-      relative_plot("Time of the descent, leaves of up to eight triangles (eight children: 1)", "relative",
+      relative_plot("Time of the traversal, leaves of up to 64 triangles (eight children: 1)", "relative",
                     all, usual, seconds_of_sum));
   of_objects.blocks.emplace_back(std::move(objects));
   Section of_scene{"Trees of the scene", {}};
   of_scene.blocks.emplace_back(
-      std::string("Boxes with sides of 0.5 to 1, one in every eight units of volume, all in motion."));
+      std::string("Boxes with sides of 0.5 to 1, one per eight units of volume, all in motion."));
   of_scene.blocks.emplace_back(std::move(scenes));
   report.sections = {std::move(of_objects), std::move(of_scene)};
   return report;

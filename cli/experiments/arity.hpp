@@ -10,7 +10,7 @@
 namespace supple::experiments {
 
 struct ArityOptions {
-  std::uint32_t frequency = 128;  ///< of the balls: 20 f² triangles
+  std::uint32_t frequency = 128;  ///< of the spheres: 20 f² triangles
   std::uint32_t rings = 512;      ///< of the tori: r² triangles
   bool with_bikes = true;
   std::vector<std::size_t> box_counts{1000, 10'000, 100'000};  ///< of scenes, ascending

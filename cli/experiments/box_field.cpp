@@ -8,7 +8,7 @@ namespace supple::experiments {
 BoxField::BoxField(std::size_t count, std::uint64_t seed)
     : side_(static_cast<float>(std::cbrt(8.0 * static_cast<double>(count)))) {
   std::mt19937_64 random(seed);
-  // The distributions of the standard library differ from one to the next.
+  // The distributions differ between standard libraries.
   const auto uniform = [&](double low, double high) {
     return static_cast<float>(low + (high - low) * static_cast<double>(random() >> 11) * 0x1p-53);
   };

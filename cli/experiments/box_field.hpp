@@ -8,9 +8,9 @@
 
 namespace supple::experiments {
 
-/// Boxes in motion at a density that does not depend on their number: one in every eight units of volume,
-/// sides of 0.5 to 1, so that each overlaps 0.4 others on average. They move straight by up to 0.05 a step
-/// along each axis and are reflected at the sides of the cube they are in. The same on every machine.
+/// Moving boxes with a density that does not depend on their number: one box per eight units of volume, with
+/// sides of 0.5 to 1, so that each overlaps 0.4 others on average. They move straight by up to 0.05 per step
+/// along each axis, and the sides of their cube reflect them. The boxes are the same on every machine.
 class BoxField {
  public:
   BoxField(std::size_t count, std::uint64_t seed);

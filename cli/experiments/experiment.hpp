@@ -6,25 +6,25 @@
 
 namespace supple::experiments {
 
-/// Of `supple experiment`.
+/// Options of `supple experiment`.
 struct ExperimentOptions {
   enum class Kind { table1, scaling, arity };
   Kind kind = Kind::table1;
   bool quick = false;
   bool quiet = false;
   std::string output;  ///< folder; empty: experiment_ and the kind
-  /// Of `table1` none: one a core. Of the others none: one thread, so that times are work.
+  /// Without a value: one per core for `table1`; one thread for the others, so that times measure work.
   std::optional<std::uint32_t> threads{};
   std::uint64_t seed = 1;
-  // For table1; empty: as --quick says.
+  // For table1; without a value, --quick decides.
   std::optional<std::uint32_t> runs{};
   std::optional<std::uint32_t> simulated_seconds{};
-  std::optional<std::uint32_t> wall_clock{};  ///< seconds a run; none: only by events
+  std::optional<std::uint32_t> wall_clock{};  ///< seconds of real time per run; none: count only by events
 };
 
 const char* name_of(ExperimentOptions::Kind kind);
 
-/// Runs one, writes its files and prints its tables. Returns the program's exit status.
+/// Runs an experiment, writes its files and prints its tables. Returns the exit status of the program.
 int run_experiment(const ExperimentOptions& options);
 
 }  // namespace supple::experiments

@@ -18,12 +18,12 @@ struct PowerLaw {
   std::size_t points = 0;
 };
 
-/// Least squares on the logarithms. Points with a coordinate that is not above 0 are left out; with fewer
-/// than two left, or all at one x, everything is NaN.
+/// Least squares on the logarithms, without points that have a coordinate ≤ 0. With fewer than two points
+/// left, or all at one x, all results are NaN.
 PowerLaw fit_power_law(const Points& points);
 
-/// The exponent that the same fit finds for a formula at the same x: n log n over a range is close to some
-/// power.
+/// The exponent that the same fit gives for a formula at the same x, because n log n over a range is close to
+/// some power.
 double exponent_of(const std::function<double(double)>& formula, const Points& points);
 
 /// `1.03 ± 0.02`

@@ -18,13 +18,13 @@ class Html {
   /// Closes the element opened last.
   void close();
   void text(std::string_view text) { html_ += escaped(text); }
-  /// An element with text and nothing else.
+  /// Writes an element that contains only text.
   void element(const std::string& tag, std::string_view text, const Attributes& attributes = {});
-  /// An element without content, such as `meta`.
+  /// Writes an element without content, such as `meta`.
   void empty_element(const std::string& tag, const Attributes& attributes);
-  /// What is HTML already.
+  /// Writes text that is already HTML.
   void raw(std::string_view html) { html_ += html; }
-  /// Closes what is open, and hands everything out.
+  /// Closes all open elements and returns the document.
   std::string finish();
 
  private:

@@ -19,7 +19,7 @@ Verdict judge(const Growth& growth) {
                                                                                       : Verdict::cannot_tell;
 }
 
-/// One that does not hold decides, then one that cannot be told.
+/// A claim that does not hold decides, then an undecided one.
 Verdict both(Verdict a, Verdict b) {
   if (a == Verdict::does_not_hold || b == Verdict::does_not_hold) return Verdict::does_not_hold;
   return a == Verdict::cannot_tell ? a : b;

@@ -9,7 +9,7 @@
 
 namespace supple::experiments {
 
-/// What was measured against the size, and the formula that the paper gives for it.
+/// A measured quantity by size, and the paper's formula for it.
 struct Growth {
   std::string quantity;  ///< `Brute force, step in motion`
   std::string unit;      ///< `tests`, or `time`
@@ -20,19 +20,19 @@ struct Growth {
   bool counts() const { return unit != "time"; }
 };
 
-/// An exponent above that of the formula by no more than this, or twice its standard error, is within a
-/// bound.
+/// A bound holds when the exponent exceeds that of the formula by at most this, or by twice its standard
+/// error.
 inline constexpr double exponent_tolerance = 0.1;
-/// A time above it by more than that but less than this says nothing: caches and the cost of starting bend
-/// times.
+/// A time whose exponent exceeds the formula by less than this decides nothing, because caches and fixed
+/// costs affect times.
 inline constexpr double time_tolerance = 0.25;
 
-/// Whether the measured exponents are within the formulas', a bound from above. Where tests were counted they
-/// decide and times stand beside them. Cannot be told from fewer than three points or from a standard error
-/// above 0.25.
+/// Whether the measured exponents are within the bounds of the formulas. Counts of tests decide where they
+/// exist, and times are shown beside them. Undecided with fewer than three points or a standard error above
+/// 0.25.
 Claim judge_bounds(const std::string& paper, const std::vector<Growth>& growths);
 
-/// Row by row: quantity, fitted power and the formula's over the same sizes.
+/// One row per quantity: the fitted power, and the power of the formula over the same sizes.
 Table exponents_table(const std::string& name, const std::string& caption, const std::string& size,
                       const std::vector<Growth>& growths);
 

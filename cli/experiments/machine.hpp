@@ -6,7 +6,7 @@
 
 namespace supple::experiments {
 
-/// What times depend on: processor, cores, compiler, version; name and value.
+/// Names and values of the things on which times depend: processor, cores, compiler, version.
 std::vector<std::pair<std::string, std::string>> describe_machine();
 
 }  // namespace supple::experiments

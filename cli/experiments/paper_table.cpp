@@ -8,7 +8,7 @@ namespace {
 
 constexpr double run_seconds = 600;
 
-// Text numbers are those of section 7: 12.4 collisions, one every 48.38 seconds, and so on.
+// The numbers of the text are in section 7: 12.4 collisions, one every 48.38 seconds, and so on.
 constexpr std::array<PaperRow, 6> rows{
     PaperRow{3, BoundingVolume::aabb, {18, 35, 32, 17, 21}, {14, 22, 18, 10, 9}, 24.39, 41.09},
     PaperRow{3, BoundingVolume::sphere, {12, 18, 10, 15, 7}, {7, 8, 7, 4, 5}, 48.38, 96.77},
@@ -17,7 +17,7 @@ constexpr std::array<PaperRow, 6> rows{
     PaperRow{9, BoundingVolume::aabb, {109, 78, 72, 66, 91}, {64, 42, 51, 45, 42}, 7.20, 12.29},
     PaperRow{9, BoundingVolume::sphere, {61, 84, 85, 86, 64}, {24, 37, 45, 44, 24}, 7.89, 17.24}};
 
-/// Whether the text's two decimals are those of the number.
+/// Whether the two decimals in the text are those of the number.
 std::string compared(double computed, double text) {
   if (std::fabs(std::round(computed * 100) / 100 - text) < 0.001) return "agrees";
   return std::fabs(std::floor(computed * 100) / 100 - text) < 0.001 ? "cut off, not rounded" : "differs";
@@ -48,12 +48,12 @@ double seconds_per_collision(std::span<const double> counts) {
 
 Table paper_arithmetic() {
   Table table{"table1_paper",
-              "The paper's Table 1, averaged anew",
+              "The averages of the paper's Table 1, recomputed",
               {{"objects", "Objects"},
                {"volume", "Volume"},
                {"phase", "Phase"},
                {"mean", "Mean", 4},
-               {"seconds_per_collision", "Seconds a collision", 5},
+               {"seconds_per_collision", "Seconds per collision", 5},
                {"text_seconds", "in the text", 4},
                {"comparison", "Comparison"}}};
   for (const PaperRow& row : rows) {

@@ -10,12 +10,12 @@
 
 namespace supple::experiments {
 
-/// A row of the paper's Table 1, and what section 7 says of it: five runs of ten minutes.
+/// A row of the paper's Table 1 (five runs of ten minutes) and its numbers in section 7.
 struct PaperRow {
   std::uint32_t objects;
   BoundingVolume volume;
   std::array<double, 5> broad, narrow;             ///< collisions of each run
-  double text_seconds_broad, text_seconds_narrow;  ///< seconds for a collision, as the text has them
+  double text_seconds_broad, text_seconds_narrow;  ///< seconds per collision in the text
 };
 
 std::span<const PaperRow> paper_rows();
@@ -23,10 +23,10 @@ std::span<const PaperRow> paper_rows();
 const PaperRow* paper_row(std::uint32_t objects, BoundingVolume volume);
 
 double mean(std::span<const double> values);
-/// Ten minutes over the mean number.
+/// Ten minutes divided by the mean number.
 double seconds_per_collision(std::span<const double> counts);
 
-/// The averages recomputed from the table, beside the text's, and where they disagree.
+/// The averages recomputed from the table, those of the text, and their differences.
 Table paper_arithmetic();
 
 const char* name_of(BoundingVolume volume);

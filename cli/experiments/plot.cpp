@@ -18,11 +18,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Told apart on white and on black, and by most of those who see few colours.
+/// Distinguishable on white and on black, also for most people with colour blindness.
 constexpr std::array<const char*, 6> palette{"#0077bb", "#ee7733", "#009988",
                                              "#cc3311", "#9467bd", "#888888"};
 
-/// A string of gnuplot's, in which nothing is special but the quote.
+/// A gnuplot string in single quotes, in which only the quote is special.
 std::string quoted(const std::string& text) {
   std::string result = "'";
   for (const char c : text) result += c == '\'' ? std::string("''") : std::string(1, c);
@@ -47,7 +47,7 @@ void replace_all(std::string& text, std::string_view from, std::string_view to) 
     text.replace(at, from.size(), to);
 }
 
-/// Every ` name="…"` or ` name='…'` taken out.
+/// Removes every ` name="…"` or ` name='…'`.
 void remove_attribute(std::string& text, const std::string& name) {
   for (std::size_t at = 0; (at = text.find(name + "=", at)) != std::string::npos;) {
     const std::size_t quote = at + name.size() + 1;
@@ -55,7 +55,7 @@ void remove_attribute(std::string& text, const std::string& name) {
   }
 }
 
-/// From a document of its own to an element of a page.
+/// Turns an SVG document into an element of a page.
 std::string inlined(std::string svg, int number) {
   svg.erase(0, svg.find("<svg"));
   replace_all(svg, "xlink:href", "href");
@@ -68,7 +68,7 @@ std::string inlined(std::string svg, int number) {
     replace_all(svg, fmt::format("href={}#", quote), fmt::format("href={}#{}", quote, prefix));
   }
   replace_all(svg, "url(#", "url(#" + prefix);
-  // Black becomes the page's text colour, for dark pages too.
+  // Black becomes the text colour of the page, so that dark pages work too.
   for (const char* const name : {"fill", "stroke", "color"}) {
     for (const char quote : {'"', '\''})
       for (const char* const black : {"black", "rgb(0,0,0)", "rgb(  0,   0,   0)", "#000000"})
@@ -85,7 +85,7 @@ std::string contents_of(const fs::path& path) {
   return text.str();
 }
 
-/// A folder of its own for the time of one drawing.
+/// A temporary folder for one drawing.
 class ScratchFolder {
  public:
   ScratchFolder() {
@@ -107,7 +107,7 @@ class ScratchFolder {
   fs::path path_;
 };
 
-/// Large numbers as 10 k, 100 k; along a logarithmic axis no more room than the points take.
+/// Writes large numbers as 10 k, 100 k. A logarithmic axis is only as long as the points need.
 std::string ranges_of(const Plot& plot) {
   double low = 0, high = 0, highest_y = 0;
   for (const Series& series : plot.series) {

@@ -14,7 +14,7 @@ struct Series {
   std::string label;
   Points points;
   Style style = Style::line_and_points;
-  int color = -1;  ///< of the palette; -1: the next one
+  int color = -1;  ///< index in the palette; -1: the next color
 };
 
 struct Plot {
@@ -22,20 +22,20 @@ struct Plot {
   std::string x_label, y_label;
   bool logarithmic_x = true, logarithmic_y = true;
   std::vector<Series> series{};
-  /// In place of numbers along x.
+  /// Labels instead of numbers along x.
   std::vector<std::pair<double, std::string>> x_names{};
 };
 
-/// There is no gnuplot to be run.
+/// gnuplot is not installed.
 struct GnuplotMissing : Error {
   GnuplotMissing();
 };
 
-/// The input that makes gnuplot draw the plot as SVG.
+/// The gnuplot input that draws the plot as SVG.
 std::string gnuplot_script(const Plot& plot);
-/// Draws by the program `gnuplot`, as an <svg> element to stand in HTML: no external names, the page's own
-/// text colour. `number` tells plots of one page apart. Throws `GnuplotMissing`, or `Error` when gnuplot
-/// fails.
+/// Draws a plot with the program `gnuplot`, as an <svg> element for HTML without external names and in the
+/// text colour of the page. `number` distinguishes the plots of one page. Throws `GnuplotMissing`, or `Error`
+/// when gnuplot fails.
 std::string svg_of(const Plot& plot, int number);
 
 }  // namespace supple::experiments

@@ -76,7 +76,7 @@ void write_parameters(Html& html, const Report& report) {
   html.close();
 }
 
-/// The report's plots as drawings; all empty, and why, when there is no gnuplot.
+/// Draws the plots of the report. Without gnuplot, all drawings are empty and the result has the reason.
 std::string draw(const Report& report, std::vector<std::string>& drawings) {
   std::string missing;
   for (const Section& section : report.sections) {

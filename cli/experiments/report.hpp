@@ -11,11 +11,11 @@
 
 namespace supple::experiments {
 
-/// What becomes of a sentence of the paper.
+/// The judgement of a claim of the paper.
 enum class Verdict { holds, does_not_hold, cannot_tell };
 
 struct Claim {
-  std::string paper;  ///< the claim, with the paper's section
+  std::string paper;  ///< the claim and its section of the paper
   Verdict verdict = Verdict::cannot_tell;
   std::string reason;  ///< with the measured numbers
 };
@@ -28,9 +28,9 @@ struct Section {
   std::vector<Block> blocks{};
 };
 
-/// Of one experiment.
+/// The report of one experiment.
 struct Report {
-  std::string name;  ///< of the files
+  std::string name;  ///< name of the files
   std::string title;
   std::string summary;
   std::vector<std::pair<std::string, std::string>> parameters{};
@@ -38,17 +38,17 @@ struct Report {
   std::vector<Section> sections{};
 };
 
-/// A `reason` that begins with the verdict.
+/// The verdict in words, for the start of a reason.
 const char* name_of(Verdict verdict);
-/// A number of words, `holds` when the condition does.
+/// The verdict `holds` when the condition is true, otherwise `does_not_hold`.
 Verdict verdict_of(bool holds);
 
 std::string text_of(const Report& report);
-/// One page without external resources. `drawings` are those of the report's plots, in order; an empty one is
-/// left out.
+/// Makes one page without external resources. `drawings` are the plots of the report, in order; empty
+/// drawings are left out.
 std::string html_of(const Report& report, const std::vector<std::string>& drawings);
-/// Writes a CSV file of each table and the page into the folder, made when it is not there. Without gnuplot
-/// the page has no plots; the message that says so is returned, else an empty one.
+/// Writes one CSV file per table and the page into the folder, which is created if necessary. Without
+/// gnuplot, the page has no plots and the function returns a message; otherwise it returns an empty text.
 std::string write_report(const Report& report, const std::filesystem::path& folder);
 
 }  // namespace supple::experiments

@@ -30,7 +30,7 @@ double narrow_phase_formula(double n) {
   return std::pow(n, 2.0 / 3) * std::log(n);
 }
 
-/// Of one method; each against the number of objects.
+/// Curves of one method against the number of objects.
 struct BroadCurves {
   Points first_seconds, step_seconds, tests;
   bool stopped = false;  ///< because the next size would take too long
@@ -54,7 +54,7 @@ BroadCost cost_of_boxes(BroadPhaseMethod method, std::size_t count, const Scalin
     cost.first_seconds =
         std::min(cost.first_seconds, seconds_of([&] { again.find_object_pairs(field.boxes()); }));
   }
-  // A method of which one step takes long is not noisy.
+  // Long steps need no repetition, because they have little noise.
   const int frames = cost.first_seconds > 1 ? std::min(options.frames, 2) : options.frames;
   std::vector<double> steps;
   for (int frame = 0; frame < frames; ++frame) {
@@ -66,7 +66,7 @@ BroadCost cost_of_boxes(BroadPhaseMethod method, std::size_t count, const Scalin
   return cost;
 }
 
-/// The steps that all methods take are the same, so the pairs of the last must be.
+/// All methods take the same steps, so the pairs of the last step must be equal.
 bool measure_broad_phase(const ScalingOptions& options, Work& work, Table& table,
                          std::array<BroadCurves, 3>& curves) {
   bool same_pairs = true;
@@ -90,7 +90,7 @@ bool measure_broad_phase(const ScalingOptions& options, Work& work, Table& table
       curves[m].tests.emplace_back(n, static_cast<double>(cost.tests));
       table.add({std::string(method_names[m]), std::uint64_t{count}, cost.first_seconds * 1e3,
                  cost.step_seconds * 1e3, cost.tests, cost.pairs});
-      // A method of fewer steps is elsewhere in its motion.
+      // A method with fewer steps is at another time of the motion.
       if (cost.first_seconds > 1) continue;
       same_pairs = same_pairs && pairs.value_or(cost.pairs) == cost.pairs;
       pairs = cost.pairs;
@@ -122,7 +122,8 @@ struct ShapeCurves {
   Points build_seconds, refit_seconds, refit_reads, sphere_refit_seconds, sphere_refit_reads;
 };
 
-/// Corners of triangles read to fit a sphere to each node and to the object: a triangle's once a level.
+/// The number of triangle corners that are read to fit a sphere to each node and to the object: each triangle
+/// once per level.
 double sphere_reads(const OctreeStatistics& octree) {
   double levels = 0;
   for (std::size_t level = 0; level < octree.leaves_by_level.size(); ++level)
@@ -174,7 +175,7 @@ Points in_milliseconds(Points points) {
   return points;
 }
 
-/// Seconds of the other method over those of the octree, size by size.
+/// Seconds of the other method divided by seconds of the octree, by size.
 std::vector<double> ratios(const Points& octree, const Points& other) {
   std::vector<double> result;
   for (std::size_t i = 0; i < std::min(octree.size(), other.size()); ++i)
@@ -194,10 +195,10 @@ Claim faster_than_brute(const std::array<BroadCurves, 3>& curves) {
       "“Our Broad Phase method is better than the brute force Broad Phase” (7).", Verdict::cannot_tell, {}};
   if (factors.empty()) return claim;
   claim.verdict = verdict_of(std::all_of(factors.begin(), factors.end(), [](double f) { return f > 1; }));
-  claim.reason = fmt::format("Brute force takes {} times the octree's time for a step, for {} objects.",
+  claim.reason = fmt::format("For a step, brute force takes {} times as long as the octree, for {} objects.",
                              listed(factors), sizes_of(curves[2].step_seconds));
   if (claim.verdict == Verdict::does_not_hold)
-    claim.reason += " For few objects testing each against each is less work than keeping a tree.";
+    claim.reason += " For few objects, testing all pairs is less work than maintaining a tree.";
   return claim;
 }
 
@@ -211,11 +212,12 @@ Claim comparable_with_sweep(const std::array<BroadCurves, 3>& curves) {
   if (factors.empty()) return claim;
   claim.verdict =
       verdict_of(std::all_of(factors.begin(), factors.end(), [](double f) { return f >= 0.5 && f <= 2; }));
-  claim.reason = fmt::format("Sweep and prune takes {} times the octree's time for a step, for {} objects.",
-                             listed(factors), sizes_of(curves[1].step_seconds));
+  claim.reason =
+      fmt::format("For a step, sweep and prune takes {} times as long as the octree, for {} objects.",
+                  listed(factors), sizes_of(curves[1].step_seconds));
   if (claim.verdict == Verdict::does_not_hold && factors.back() > 2)
     claim.reason +=
-        " Along the swept axis alone more and more boxes overlap as the scene grows in three directions.";
+        " As the scene grows in three directions, more and more boxes overlap along the swept axis.";
   return claim;
 }
 
@@ -227,9 +229,9 @@ Claim less_than_quadratic(const Points& seconds, const Points& tests) {
   if (!(time.standard_error <= 0.25)) return claim;
   claim.verdict = verdict_of(time.exponent + 2 * time.standard_error < 2 && count.exponent < 2);
   claim.reason = fmt::format(
-      "With objects of like size at constant density, a step of the octree grows with exponent {}, its tests "
-      "with {}. No method can do better than n² where all objects overlap: then there are n² pairs to "
-      "report.",
+      "With objects of similar size at constant density, the time of an octree step grows with exponent {}, "
+      "and its tests with {}. When all objects overlap, no method is better than n², because there are n² "
+      "pairs to report.",
       text_of(time), text_of(count));
   return claim;
 }
@@ -266,8 +268,8 @@ std::vector<Claim> judge_broad(const std::array<BroadCurves, 3>& curves, const s
   claims.push_back(judge_bounds("Sweep and prune is O(n log n) (5).", {growths[4], growths[5]}));
   if (claims.back().verdict == Verdict::does_not_hold)
     claims.back().reason +=
-        " Sorting is n log n; the pairs that overlap along the swept axis alone come on top, and at constant "
-        "density in three dimensions these grow as n^(5/3).";
+        " Sorting is n log n. The pairs that overlap along the swept axis add to this; at constant density "
+        "in three dimensions they grow as n^(5/3).";
   claims.push_back(
       judge_bounds("The region-BV test of all objects takes O(n log n) (7): placing all objects in regions, "
                    "the first step.",
@@ -278,7 +280,7 @@ std::vector<Claim> judge_broad(const std::array<BroadCurves, 3>& curves, const s
   return claims;
 }
 
-/// A logarithm hides in an exponent; it shows in the number of times a vertex is read.
+/// A logarithm hardly changes an exponent; the number of reads per vertex shows it.
 Claim judge_sphere_refit(const Points& reads, const Points& seconds) {
   Claim claim{"Refitting spheres (eq. 5) takes O(V) (5.1).", Verdict::cannot_tell, {}};
   if (reads.size() < 2) return claim;
@@ -286,9 +288,9 @@ Claim judge_sphere_refit(const Points& reads, const Points& seconds) {
                last = reads.back().second / reads.back().first;
   claim.verdict = verdict_of(last < 1.1 * first);
   claim.reason = fmt::format(
-      "True of the one sphere of an object, which the paper speaks of. With a sphere in each node every "
-      "level reads all triangles, a vertex {:.0f} times on average at {} vertices and {:.0f} times at {}: it "
-      "is O(V log V). Times grow with exponent {}.",
+      "This is true for the single sphere of an object, which the paper describes. With a sphere in each "
+      "node, every level reads all triangles. A vertex is read {:.0f} times on average at {} vertices and "
+      "{:.0f} times at {}, so the refit is O(V log V). Times grow with exponent {}.",
       first, cli::grouped(static_cast<std::uint64_t>(reads.front().first)), last,
       cli::grouped(static_cast<std::uint64_t>(reads.back().first)), text_of(fit_power_law(seconds)));
   return claim;
@@ -301,10 +303,10 @@ std::vector<Claim> judge_narrow(const std::vector<Growth>& growths, const Points
                    {growths[0], growths[2], growths[1], growths[3]}));
   if (claims.back().verdict == Verdict::does_not_hold)
     claims.back().reason +=
-        " Where surfaces cross, only nodes along a curve collide, about √n of them. Where they lie on each "
-        "other every leaf collides with some other, and no hierarchy can do with fewer than n tests: the "
-        "bound cannot hold. It takes each level to divide n by eight, but a surface passes through about "
-        "four of eight octants.";
+        " When surfaces cross, only the nodes along a curve collide, about √n of them. When surfaces "
+        "coincide, every leaf collides with another leaf, so every hierarchy needs at least n tests and the "
+        "bound cannot hold. The bound assumes that each level divides n by eight, but a surface passes "
+        "through about four of eight octants.";
   claims.push_back(judge_bounds("Refitting the boxes takes O(V) (5.1).", {growths[6], growths[5]}));
   claims.push_back(judge_sphere_refit(reads, growths[7].points));
   claims.push_back(judge_bounds("Building an object's octree takes O(n log n) (6).", {growths[4]}));
@@ -323,8 +325,8 @@ Section broad_section(const ScalingOptions& options, Table table, const std::arr
   tests.series.push_back(formula_line("n log n", c[0].tests, n_log_n, 5));
   Section section{"Number of objects", {}};
   section.blocks.emplace_back(fmt::format(
-      "Boxes with sides of 0.5 to 1, one in every eight units of volume, all in motion. A step is the "
-      "fastest of {} after the first. Brute force stops where a step would take longer than {} s.",
+      "Boxes with sides of 0.5 to 1, one per eight units of volume, all in motion. The time of a step is the "
+      "minimum of {} steps after the first. Brute force stops when a step would take longer than {} s.",
       options.frames, rounded(options.brute_seconds)));
   section.blocks.emplace_back(std::move(time));
   section.blocks.emplace_back(std::move(tests));
@@ -350,9 +352,9 @@ Section shape_section(Table table, const ShapeCurves& c, const std::vector<Growt
                    {"refit, spheres", in_milliseconds(c.sphere_refit_seconds)}};
   Section section{"Number of vertices", {}};
   section.blocks.emplace_back(std::string(
-      "Two balls (geodesic spheres) of the same resolution: crossing each other in a circle, or in one place "
-      "and turned against each other, so that the surfaces coincide everywhere. Times are of the descent to "
-      "candidate triangles, without exact tests; building and refitting are of one object."));
+      "Two geodesic spheres of the same resolution. They either cross in a circle, or have the same center "
+      "and different rotations, so that the surfaces coincide everywhere. Times are for the traversal to "
+      "candidate triangles, without exact tests. Build and refit are for one object."));
   section.blocks.emplace_back(std::move(tests));
   section.blocks.emplace_back(std::move(time));
   section.blocks.emplace_back(std::move(upkeep));
@@ -405,22 +407,22 @@ Report run_scaling(const ScalingOptions& options, bool show_progress) {
   const std::vector<Growth> of_objects = broad_growths(broad), of_vertices = shape_growths(narrow);
   Report report;
   report.name = "scaling";
-  report.title = "How time grows with objects and with vertices";
+  report.title = "Growth of time with objects and with vertices";
   report.summary =
-      "Times of the broad phase, the narrow phase, and of building and refitting octrees against the size of "
-      "the problem, and powers of it fitted by least squares on logarithms, beside the paper's formulas. "
-      "Numbers of tests depend on no machine; times do.";
+      "Times of the broad phase, of the narrow phase, and of building and refitting octrees, by the size of "
+      "the problem. Powers are fitted by least squares on logarithms and compared with the paper's formulas. "
+      "Numbers of tests do not depend on the machine; times do.";
   report.parameters = {
       {"seed", fmt::format("{}", options.seed)},
-      {"threads", options.threads == 0 ? "one a core" : fmt::format("{}", options.threads)},
-      {"octrees of objects", "8 children, leaves of up to 8 triangles"},
+      {"threads", options.threads == 0 ? "one per core" : fmt::format("{}", options.threads)},
+      {"octrees of objects", "8 children, leaves of up to 64 triangles"},
       {"exponent within a bound",
        fmt::format("no more than {} above it, or twice its standard error", exponent_tolerance)}};
   report.claims = judge_broad(broad, of_objects);
   for (Claim& claim : judge_narrow(of_vertices, narrow.sphere_refit_reads))
     report.claims.push_back(std::move(claim));
-  report.claims.push_back({"All broad phases report the same pairs (ours).", verdict_of(same_pairs),
-                           "Compared by number at every size at which they take the same steps."});
+  report.claims.push_back({"All broad phases report the same pairs (our own claim).", verdict_of(same_pairs),
+                           "Compared by their number, at every size at which they take the same steps."});
   report.sections.push_back(broad_section(options, std::move(boxes), broad, of_objects));
   report.sections.push_back(shape_section(std::move(shapes), narrow, of_vertices));
   return report;

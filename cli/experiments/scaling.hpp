@@ -12,7 +12,7 @@ namespace supple::experiments {
 struct ScalingOptions {
   std::vector<std::size_t> object_counts;  ///< ascending
   std::vector<std::uint32_t> frequencies;  ///< of icospheres, ascending: 20 f² triangles
-  double brute_seconds = 5;                ///< a brute force step expected to take longer is not taken
+  double brute_seconds = 5;                ///< brute force skips steps that would take longer
   int frames = 5;                          ///< in motion, ≥ 1; the fastest counts
   std::uint32_t threads = 1;
   std::uint64_t seed = 1;
@@ -20,7 +20,7 @@ struct ScalingOptions {
 
 ScalingOptions scaling_options(bool quick);
 
-/// Time and tests against the number of objects and of vertices, and what power of it they grow with.
+/// Measures time and tests against the number of objects and of vertices, and fits powers.
 Report run_scaling(const ScalingOptions& options, bool show_progress);
 
 }  // namespace supple::experiments

@@ -10,21 +10,22 @@
 
 namespace supple::experiments {
 
-/// Turns by 62 degrees about the diagonal (1, 2, 2), in rational numbers: the same bits everywhere.
+/// Rotates by 62 degrees around the diagonal (1, 2, 2), in rational numbers, with the same bits on every
+/// machine.
 TriangleMesh turned(TriangleMesh mesh);
 TriangleMesh moved(TriangleMesh mesh, Vec3d offset);
 
-/// What one pair of objects costs, step by step; times are the least of several.
+/// The cost of one pair of objects by stage; each time is the minimum of several.
 struct PairCost {
-  double build_seconds = 0;  ///< of both octrees, with all that adding objects takes
-  double refit_seconds = 0;  ///< of both
+  double build_seconds = 0;  ///< time to add both objects, including their octrees
+  double refit_seconds = 0;  ///< of both octrees
   double traversal_seconds = 0;
   OctreeStatistics octree_a, octree_b;
   StepStats stats;  ///< of the last step
 };
 
-/// Both objects get new positions at every step, 2^-30 aside, so that every octree is refitted. Stage by
-/// stage: no exact tests.
+/// Moves both objects by 2^-30 in every step, so that every octree is refitted. Runs the stages separately,
+/// without exact tests.
 PairCost cost_of_pair(const TriangleMesh& a, const TriangleMesh& b, const ObjectOctreeOptions& octree,
                       int frames, std::uint32_t threads, BoundingVolume volume = BoundingVolume::aabb);
 

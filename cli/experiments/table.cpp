@@ -17,7 +17,7 @@ bool is_number(const Cell& cell) {
   return std::holds_alternative<std::uint64_t>(cell) || std::holds_alternative<double>(cell);
 }
 
-/// Characters, not bytes: every byte of UTF-8 but those that continue a character.
+/// Counts characters, not bytes: all bytes of UTF-8 except continuation bytes.
 std::size_t width_of(const std::string& text) {
   return static_cast<std::size_t>(std::count_if(
       text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xc0) != 0x80; }));

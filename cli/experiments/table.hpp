@@ -7,13 +7,13 @@
 
 namespace supple::experiments {
 
-/// Nothing, a word, a count or a measured number.
+/// The value of a cell: nothing, a word, a count or a measured number.
 using Cell = std::variant<std::monostate, std::string, std::uint64_t, double>;
 
 struct Column {
   std::string name;     ///< in the CSV file: lower_case, with the unit
   std::string heading;  ///< for people
-  int digits = 3;       ///< significant ones of a measured number for people
+  int digits = 3;       ///< significant digits of measured numbers for people
 };
 
 /// One table for the terminal, the CSV file and the report.
@@ -27,11 +27,11 @@ struct Table {
   void add(std::vector<Cell> row);
 };
 
-/// As people read it: thousands grouped, a measured number with the column's digits.
+/// The text for people: with grouped thousands, and measured numbers with the digits of the column.
 std::string text_of(const Cell& cell, const Column& column);
 /// Aligned columns under the caption.
 std::string text_of(const Table& table);
-/// RFC 4180 with line feeds; measured numbers so that reading them gives the same number.
+/// CSV as in RFC 4180, with line feeds. Measured numbers have enough digits to read back the same number.
 std::string csv_of(const Table& table);
 std::string html_of(const Table& table);
 

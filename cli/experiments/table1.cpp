@@ -37,7 +37,7 @@ Table counts_table(const std::string& name, const std::string& caption, const st
   return table;
 }
 
-/// The paper's row for a scene; of the scenes of other models it gives no numbers.
+/// The paper's row for a scene, if the paper has numbers for it.
 const PaperRow* paper_row_of(const Runs& runs) {
   return runs.scene.rfind("table1_", 0) == 0
              ? paper_row(static_cast<std::uint32_t>(runs.objects), runs.volume)
@@ -69,7 +69,7 @@ Table means_table(const std::string& name, const std::string& caption, const std
   return table;
 }
 
-/// Runs as points, ours beside the paper's, for 3, 6 and 9 objects.
+/// Plots runs as points, ours and the paper's, for 3, 6 and 9 objects.
 Plot counts_plot(const std::string& title, const std::vector<Runs>& all, std::uint64_t RunCounts::*member,
                  std::array<double, 5> PaperRow::*paper_member) {
   Plot plot{title, "objects", "collisions in ten minutes", false, true};
@@ -119,27 +119,27 @@ Report run_table1(const Table1Options& options, bool show_progress) {
   report.name = "table1";
   report.title = "The paper's Table 1: collisions of 3, 6 and 9 objects";
   report.summary =
-      "Objects of masses and springs move through a cube and are reflected at its border. A collision is "
-      "counted when a pair of objects begins to collide: in the broad phase when their volumes begin to "
-      "overlap; in the narrow phase, as the paper has it, when leaves of both octrees begin to overlap; and "
-      "exactly, when triangles begin to intersect.";
+      "Objects of masses and springs move through a cube whose border reflects them. A collision is counted "
+      "when a pair of objects begins to collide: in the broad phase when their volumes begin to overlap; in "
+      "the narrow phase, as in the paper, when leaves of both octrees begin to overlap; and exactly when "
+      "triangles begin to intersect.";
   report.parameters = {
       {"runs", fmt::format("{} of each kind, seeds {} to {}", options.runs, options.seed,
                            options.seed + options.runs - 1)},
-      {"simulated time", fmt::format("{} s a run", rounded(options.simulated_seconds))},
+      {"simulated time", fmt::format("{} s per run", rounded(options.simulated_seconds))},
       {"by the clock",
-       options.wall_clock ? fmt::format("{} s a run", rounded(*options.wall_clock)) : "not run"},
-      {"spheres", "about the box's centre, to the farthest vertex (eq. 5)"},
+       options.wall_clock ? fmt::format("{} s per run", rounded(*options.wall_clock)) : "not run"},
+      {"spheres", "around the centre of the box, to the farthest vertex (eq. 5)"},
       {"octrees of objects", "leaves of one triangle"},
-      {"runs at a time", options.threads == 0 ? "one a core" : fmt::format("{}", options.threads)},
+      {"parallel runs", options.threads == 0 ? "one per core" : fmt::format("{}", options.threads)},
       {"scenes", "built in; the scene files of the same names hold their parameters"}};
   report.claims = judge_table1(events, clock);
 
   Section by_events{"Counted by events in simulated time", {}};
   by_events.blocks.emplace_back(
-      std::string("The same seeds give the same motion with boxes and with spheres. The paper does not say "
-                  "how large its scene and how fast its objects were, so that numbers compare from row to "
-                  "row, not with the paper's one by one. Its runs were of ten minutes by the clock."));
+      std::string("The same seeds give the same motion with boxes and with spheres. The paper does not give "
+                  "the size of its scene and the speed of its objects. So compare rows with each other, not "
+                  "single numbers with those of the paper. Its runs took ten minutes of real time."));
   by_events.blocks.emplace_back(counts_plot("Broad phase", events, &RunCounts::broad, &PaperRow::broad));
   by_events.blocks.emplace_back(counts_plot("Narrow phase", events, &RunCounts::narrow, &PaperRow::narrow));
   by_events.blocks.emplace_back(means_table("table1_means", "Averages over the runs", events));

@@ -13,7 +13,7 @@ std::vector<std::string> table1_scene_names();
 
 Table1Options table1_options(bool quick);
 
-/// Collisions of 3, 6 and 9 objects, and of more complex ones, by boxes and by spheres.
+/// Counts collisions of 3, 6 and 9 objects, and of more complex objects, with boxes and with spheres.
 Report run_table1(const Table1Options& options, bool show_progress);
 
 }  // namespace supple::experiments

@@ -28,8 +28,8 @@ Estimate estimate_of(const std::vector<double>& values) {
   return result;
 }
 
-/// Spheres over boxes, run by run: the same seed is the same motion. Runs in which boxes count nothing are
-/// left out.
+/// The ratio of spheres to boxes, run by run: the same seed gives the same motion. Runs in which boxes count
+/// nothing are left out.
 std::vector<double> sphere_ratios(const std::vector<Runs>& all, const std::vector<std::string>& scenes,
                                   std::uint64_t RunCounts::*member) {
   std::vector<double> ratios;
@@ -77,10 +77,10 @@ Claim judge_more_with_boxes(const std::vector<Runs>& events) {
   const Estimate broad = estimate_of(sphere_ratios(events, table_scenes(), &RunCounts::broad));
   return {"“AABB allows more collisions than spheres” (7), counted by events in the same simulated time.",
           more_with_boxes(broad),
-          fmt::format("In the broad phase spheres begin {} times as many collisions as boxes, all runs "
-                      "together {}; in the narrow phase {}. The motion is the same with both, so that the "
-                      "counts compare the volumes and nothing else. A larger volume meets others more often, "
-                      "but it also stays in touch for longer, and what was two collisions becomes one.",
+          fmt::format("In the broad phase, spheres begin {} times as many collisions as boxes; over all runs "
+                      "{}. In the narrow phase: {}. The motion is the same with both, so the counts compare "
+                      "only the volumes. A larger volume meets others more often, but it also touches them "
+                      "longer, so two collisions can become one.",
                       ratios_text(events, &RunCounts::broad), text_of(broad),
                       ratios_text(events, &RunCounts::narrow))};
 }
@@ -97,9 +97,9 @@ Claim judge_proof_of_cost(const std::vector<Runs>& events) {
       "More collisions with boxes “proves that the overlapping test is less expensive than the test for "
       "spheres” (7).",
       differing > 0 ? Verdict::does_not_hold : Verdict::cannot_tell,
-      fmt::format("Counted in simulated time no test has a price, and still the numbers of {} of {} runs "
-                  "differ between the volumes. A number of collisions depends on the shape of the volumes, "
-                  "and proves nothing about the cost of their test.",
+      fmt::format("In simulated time, the cost of a test has no influence. Still, {} of {} runs have "
+                  "different numbers with the two volumes. The number of collisions depends on the shape of "
+                  "the volumes and says nothing about the cost of their test.",
                   differing, total)};
 }
 
@@ -120,12 +120,13 @@ Claim judge_narrow_is_fewer(const std::vector<Runs>& events) {
   if (!(broad > 0)) return claim;
   claim.verdict = Verdict::does_not_hold;
   claim.reason = fmt::format(
-      "The numbers: over all scenes, for 100 collisions in the broad phase there are {:.0f} in the narrow "
-      "phase and {:.0f} exact ones{}. The explanation: these are counted in simulated time, in which nothing "
-      "takes longer. They are other numbers because volumes of objects overlap without their leaves doing "
-      "so, and leaves may part and meet again while the volumes overlap.",
+      "The numbers: over all scenes, 100 collisions in the broad phase correspond to {:.0f} in the narrow "
+      "phase and {:.0f} exact ones{}. The explanation: collisions are counted in simulated time, so the time "
+      "of the computation has no influence. The numbers differ because volumes of objects can overlap while "
+      "no leaves overlap, and because leaves can separate and meet again while the volumes overlap.",
       100 * narrow / broad, 100 * exact / broad,
-      fewer ? "; in every scene the narrow phase has no more" : "; but not in every scene are there fewer");
+      fewer ? "; the narrow phase has no more in any scene"
+            : "; but some scenes have more in the narrow phase");
   return claim;
 }
 
@@ -141,10 +142,10 @@ Claim judge_ratio_tends_to_one(const std::vector<Runs>& events) {
   const bool clear = std::fabs(nearer) > 2 * std::hypot(few.error, many.error);
   if (clear) claim.verdict = verdict_of(nearer > 0);
   claim.reason = fmt::format(
-      "Ours are {}; the paper's 0.50, 0.82 and 0.91. {} The volumes of a pair depend on the two objects "
-      "alone: the ratio has no reason to depend on how many others there are.",
+      "Our ratios are {}; the paper's are 0.50, 0.82 and 0.91. {} The volumes of a pair depend only on its "
+      "two objects, so the ratio has no reason to depend on the number of other objects.",
       ratios_text(events, &RunCounts::broad),
-      clear ? "What change there is comes from which models meet."
+      clear ? "The change comes from the models that meet."
             : "The change from 3 to 9 is within twice its standard error.");
   return claim;
 }
@@ -191,27 +192,27 @@ Claim judge_complex_models(const std::vector<Runs>& events) {
       estimate_of(sphere_ratios(events, {"three_humans", "three_bikes"}, &RunCounts::broad));
   const double nearer = std::fabs(simple.mean - 1) - std::fabs(complex.mean - 1);
   if (std::fabs(nearer) > 2 * std::hypot(simple.error, complex.error)) claim.verdict = verdict_of(nearer > 0);
-  claim.reason = "Spheres begin so many times as many collisions as boxes: ";
+  claim.reason = "The ratio of collisions with spheres to collisions with boxes: ";
   for (const char* const scene : {"three_humans", "three_bikes"}) {
     const Estimate ratio = estimate_of(sphere_ratios(events, {scene}, &RunCounts::broad));
     if (std::isfinite(ratio.mean)) claim.reason += fmt::format("{} {}, ", scene, text_of(ratio));
   }
   claim.reason += fmt::format(
-      "three simple objects {}. How far a sphere and a box of an object differ is a matter of its shape, not "
-      "of the number of its vertices.",
+      "three simple objects {}. The difference between a sphere and a box depends on the shape of the "
+      "object, not on the number of its vertices.",
       text_of(simple));
   return claim;
 }
 
-/// Ours: exact contacts know nothing of volumes.
+/// Our own claim: exact contacts do not depend on volumes.
 Claim judge_exact_equal(const std::vector<Runs>& events) {
-  Claim claim{"Exact contacts are the same with boxes and with spheres (ours).", Verdict::holds, {}};
+  Claim claim{"Exact contacts are the same with boxes and with spheres (our own claim).", Verdict::holds, {}};
   for (const Runs& runs : events) {
     const Runs* other = find(events, runs.scene, BoundingVolume::aabb);
     if (other != nullptr && runs.numbers(&RunCounts::exact) != other->numbers(&RunCounts::exact))
       claim.verdict = Verdict::does_not_hold;
   }
-  claim.reason = "Run by run, in all scenes.";
+  claim.reason = "Compared run by run, in all scenes.";
   return claim;
 }
 
@@ -219,8 +220,8 @@ Claim judge_clock(const std::vector<Runs>& clock) {
   const Estimate broad = estimate_of(sphere_ratios(clock, table_scenes(), &RunCounts::broad));
   return {"By the clock, as the paper counts: boxes allow more collisions than spheres (7).",
           more_with_boxes(broad),
-          fmt::format("Spheres begin {} times as many collisions as boxes in the same time by the clock, in "
-                      "which they take {} times as many steps.",
+          fmt::format("In the same real time, spheres begin {} times as many collisions as boxes and take {} "
+                      "times as many steps.",
                       ratios_text(clock, &RunCounts::broad), ratios_text(clock, &RunCounts::steps))};
 }
 
@@ -240,11 +241,12 @@ Claim judge_paper_arithmetic() {
     agreeing += comparison == "agrees";
   }
   if (!which.empty()) which += ')';
-  return {"The averages of section 7 are those of Table 1.", verdict_of(differing == 0),
-          fmt::format("{} of {} agree, {} were cut off after two decimals rather than rounded, {} not at "
-                      "all{}. The text gives 18, 35, 32, 17, 21 as the broad phase's results with spheres; "
-                      "in the table they are those of AABBs, and the averages fit the table.",
-                      agreeing, agreeing + cut + differing, cut, differing, which)};
+  return {
+      "The averages of section 7 are those of Table 1.", verdict_of(differing == 0),
+      fmt::format("{} of {} agree, {} were cut off after two decimals instead of rounded, and {} do not "
+                  "agree{}. The text gives 18, 35, 32, 17, 21 as the results of the broad phase with "
+                  "spheres. In the table these are the results with AABBs, and the averages fit the table.",
+                  agreeing, agreeing + cut + differing, cut, differing, which)};
 }
 
 }  // namespace

@@ -30,7 +30,7 @@ SimulationOptions simulation_options(const cli::Input& input, BoundingVolume vol
   return options;
 }
 
-/// Pairs that were not there before.
+/// Pairs that did not exist before.
 std::uint64_t count_new(const DetectResult& result, std::set<ObjectPair>& pairs) {
   std::set<ObjectPair> now;
   std::uint64_t fresh = 0;
@@ -59,13 +59,13 @@ std::uint64_t vertices_of(const cli::Input& input) {
   return vertices;
 }
 
-/// One run to be made: which of all runs, and how many steps.
+/// A planned run: its index among all runs, and its number of steps.
 struct Task {
   std::size_t runs, run;
   std::uint64_t steps, vertices;
 };
 
-/// Empty runs of every scene with both volumes, and the tasks that fill them.
+/// Empty results for every scene with both kinds of volumes, and the tasks that fill them.
 std::vector<Runs> plan(const Table1Options& options, std::vector<Task>& tasks) {
   std::vector<Runs> all;
   for (const std::string& scene : options.scenes) {
@@ -79,7 +79,7 @@ std::vector<Runs> plan(const Table1Options& options, std::vector<Task>& tasks) {
       all.back().counts.resize(options.runs);
     }
   }
-  // The longest first, so that no thread ends with one of them alone.
+  // The longest runs start first, so that no thread still has a long run at the end.
   std::sort(tasks.begin(), tasks.end(),
             [](const Task& a, const Task& b) { return a.steps * a.vertices > b.steps * b.vertices; });
   return all;

@@ -16,8 +16,8 @@ struct SceneText {
 /// Generated from scenes/ when the program is built.
 std::span<const SceneText> table1_scene_texts();
 
-/// A scene of section 7 by the name of its file in scenes/, read from the text built into the program. Throws
-/// `Error` when there is none of that name.
+/// Reads a scene of section 7 from the text built into the program, by the name of its file in scenes/.
+/// Throws `Error` when there is no such scene.
 cli::Input table1_scene(const std::string& name);
 
 }  // namespace supple::experiments

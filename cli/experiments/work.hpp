@@ -9,7 +9,7 @@
 
 namespace supple::experiments {
 
-/// How far an experiment is, in steps that take about equally long, and how long the rest will take.
+/// The progress of an experiment, in steps that take about the same time, and the remaining time.
 class Work {
  public:
   Work(std::uint64_t total, bool shown) : total_(total), progress_(total, shown) {}
@@ -22,7 +22,7 @@ class Work {
   cli::Progress progress_;
 };
 
-/// Seconds by the wall clock that a call takes.
+/// Wall-clock seconds of a call.
 template <class Call>
 double seconds_of(Call&& call) {
   const auto start = std::chrono::steady_clock::now();
@@ -30,7 +30,7 @@ double seconds_of(Call&& call) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-/// The least of the times of the same work, 0 of none: whatever else the machine does only adds.
+/// The minimum of several times of the same work, or 0 without any. Other work of the machine only adds time.
 double least(const std::vector<double>& seconds);
 
 /// `2 min 10 s`

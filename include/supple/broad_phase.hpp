@@ -23,12 +23,13 @@ struct IndexPair {
 struct BroadPhaseStats {
   /// The method that ran last: octree or grid when `automatic` was chosen.
   BroadPhaseMethod method = BroadPhaseMethod::automatic;
-  std::uint64_t object_pairs_tested = 0;  ///< volume against volume
-  std::uint64_t objects_changed = 0;      ///< volumes that differ from the call before, new and gone ones too
+  std::uint64_t object_pairs_tested = 0;  ///< tests of two volumes
+  /// Volumes that differ from the call before, including new and removed volumes.
+  std::uint64_t objects_changed = 0;
   std::uint64_t objects_paired = 0;  ///< objects whose pairs were searched; the pairs of others were kept
-  // Of the octree; 0 for other methods.
-  std::uint64_t objects_placed = 0;    ///< taken out of regions or put into others
-  std::uint64_t regions_expanded = 0;  ///< groups of eight made
+  // Counts of the octree; 0 for other methods.
+  std::uint64_t objects_placed = 0;    ///< objects that left or entered regions
+  std::uint64_t regions_expanded = 0;  ///< groups of child regions that were created
   std::uint64_t regions_reduced = 0;   ///< regions that became leaves again
   std::uint64_t regions_rebuilt = 0;   ///< 1 when all regions were rebuilt
 };
@@ -37,15 +38,15 @@ struct BroadPhaseOptions {
   BroadPhaseMethod method = BroadPhaseMethod::automatic;
   /// For the methods automatic and octree.
   SceneOctreeOptions scene_octree{};
-  /// Worker threads, 0 for one a core. The pairs are the same for any number.
+  /// Worker threads; 0 means one per core. The pairs are the same for any number of threads.
   std::uint32_t threads = 0;
 };
 
-/// The broad phase by itself: volumes in, overlapping pairs out, for programs that have boxes or spheres of
-/// their own and need no meshes.
+/// The broad phase alone: volumes in, overlapping pairs out. For programs that have boxes or spheres and no
+/// meshes.
 ///
-/// It keeps the volumes and the pairs of the last call: volume i is the same object from call to call. Calls
-/// on one object must not overlap.
+/// It keeps the volumes and the pairs of the last call: volume i is the same object in every call. Calls on
+/// one `BroadPhase` must not overlap.
 class BroadPhase {
  public:
   /// Throws `Error` when an option is out of its range, or has no effect with the method.
@@ -56,35 +57,38 @@ class BroadPhase {
 
   /// All pairs whose closed volumes overlap, each once, sorted by (a, b). The span lasts until the next call.
   ///
-  /// The number of volumes may differ from call to call: those past the end are gone. Empty volumes are in no
-  /// pair. Coordinates may be infinite. A box with a NaN is empty, a sphere with a NaN overlaps everything
-  /// but empty spheres. Spheres are compared in double and may be reported when apart by rounding, never the
-  /// reverse. A call with spheres after one with boxes, or the reverse, forgets all volumes of the call
-  /// before.
+  /// The number of volumes may change between calls: volumes past the end were removed. Empty volumes are in
+  /// no pair. Coordinates may be infinite. A box with a NaN is empty. A sphere with a NaN overlaps every
+  /// sphere that is not empty. Spheres are compared in double: rounding may add pairs of spheres that are
+  /// just apart, but never loses a pair. A call with spheres after a call with boxes, or the reverse, forgets
+  /// all volumes of the call before.
   ///
-  /// Cost for n volumes, k pairs and c changed volumes: comparing volumes is O(n). When none changed that is
-  /// all; otherwise octree O(c + k), or O(n + k) when c is large or the regions are rebuilt; grid O(n + k)
-  /// unless many volumes share cells; sweep O(n log n + pairs that overlap along one axis); brute O(n²).
-  /// No allocation once the buffers are as large as the scene needs.
+  /// Cost for n volumes, k pairs and c changed volumes: the comparison of volumes is O(n). When no volume
+  /// changed, this is the whole cost. Otherwise the search is
+  /// - octree: O(c + k), or O(n + k) when c is large or the regions are rebuilt,
+  /// - grid: O(n + k) unless many volumes share cells,
+  /// - sweep: O(n log n + pairs that overlap along one axis),
+  /// - brute: O(n²).
+  /// A call allocates no memory once the buffers are as large as the scene needs.
   std::span<const IndexPair> find_object_pairs(std::span<const Aabb> boxes);
   std::span<const IndexPair> find_object_pairs(std::span<const BoundingSphere> spheres);
 
-  /// The same with a dirty list, which saves comparing all volumes: `dirty` has the indices of all volumes
-  /// that may differ from the call before, in any order; repeats and unchanged volumes are allowed. Volumes
-  /// past the end of the call before need not be listed. A volume that changed and is not listed keeps the
-  /// value that was last seen, until a list has it or a call comes without a list.
+  /// The same with a dirty list, which avoids the comparison of all volumes. `dirty` has the indices of all
+  /// volumes that may differ from the call before, in any order. It may contain repeats and unchanged
+  /// volumes. New volumes at the end need not be listed. A volume that changed and is not listed keeps its
+  /// old value until a list contains it or a call has no list.
   /// Throws `Error` when an index is not below the number of volumes.
   std::span<const IndexPair> find_object_pairs(std::span<const Aabb> boxes,
                                                std::span<const std::uint32_t> dirty);
   std::span<const IndexPair> find_object_pairs(std::span<const BoundingSphere> spheres,
                                                std::span<const std::uint32_t> dirty);
 
-  /// Of the last call.
+  /// Statistics of the last call.
   const BroadPhaseStats& stats() const;
-  /// The regions that the last search used, root first, ascending by number; empty unless that was the
-  /// octree. O(regions log regions).
+  /// The regions that the last search used, root first, ascending by number. Empty unless the octree ran.
+  /// O(regions log regions).
   std::vector<SceneRegion> regions() const;
-  /// Checks every invariant; the empty string, or what is wrong. For tests.
+  /// Checks every invariant. Returns an empty string, or a description of the first error. For tests.
   std::string validate() const;
 
  private:

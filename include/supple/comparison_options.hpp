@@ -4,8 +4,8 @@
 
 namespace supple {
 
-// Options that exist to repeat the paper's experiments and to compare methods. No program needs them to find
-// contacts: the defaults are the fastest. They are parts of `ObjectOptions` and `SceneOptions`.
+// Options to repeat the paper's experiments and to compare methods. No program needs them to find contacts:
+// the defaults are the fastest. They are parts of `ObjectOptions` and `SceneOptions`.
 
 /// How a sphere is fitted to a node.
 enum class SphereFit : std::uint8_t {
@@ -19,7 +19,7 @@ enum class SphereFit : std::uint8_t {
 /// How a region of the scene octree is tested against a sphere.
 enum class RegionSphereTest : std::uint8_t {
   arvo,       ///< closest point of the region (Arvo 1990)
-  grown_box,  ///< the paper's: center inside the region grown by the radius; over-reports near corners
+  grown_box,  ///< the paper's: center inside the region grown by the radius; reports too much near corners
 };
 
 /// Shape of the octree of one object. The contacts are the same for all values. The paper's colliding
@@ -49,13 +49,14 @@ struct ObjectOctreeOptions {
 /// Shape of the octree of the scene. The pairs found are the same for all values. Any value but the default
 /// is an `Error` when the broad phase is grid, sweep or brute.
 struct SceneOctreeOptions {
-  /// Depth at which regions no longer expand, 1 to 20; 0 sets no other limit than 20. Far from the origin the
-  /// depth is less, because floats cannot represent finer regions there. It counts levels of eight children
-  /// for every arity, as `ObjectOctreeOptions::max_level` does.
+  /// Depth at which regions no longer expand, 1 to 20; 0 means 20. Far from the origin the depth is less,
+  /// because floats cannot represent finer regions there. It counts levels of eight children for every arity,
+  /// as `ObjectOctreeOptions::max_level` does.
   std::uint32_t max_level = 0;
   /// A region expands when this many of its objects fit into regions of half its edge, ≥ 2; 0 chooses 2, as
   /// in the paper, for up to 64 objects in the scene, and otherwise 96, which is faster.
   std::uint32_t expand_at = 0;
+  /// The pairs are the same for both tests.
   RegionSphereTest region_sphere_test = RegionSphereTest::arvo;
   /// Children of a region: 8, 4 or 2.
   std::uint32_t arity = 8;
@@ -65,9 +66,10 @@ struct SceneOctreeOptions {
 
 /// Options of a scene for comparison.
 struct ComparisonOptions {
+  /// How spheres are fitted to nodes, when the bounding volume is the sphere.
   SphereFit sphere_fit = SphereFit::vertices;
   /// Also report the paper's output: the vertices in the colliding leaves of both octrees
-  /// (`DetectResult::colliding_vertices`). Not when continuous contacts are the only kind.
+  /// (`DetectResult::colliding_vertices`). None are reported when continuous contacts are the only kind.
   bool colliding_vertices = false;
 };
 

@@ -9,7 +9,7 @@
 
 namespace supple {
 
-/// Part of a triangle on which a point of an intersection lies: the smallest such part.
+/// The smallest part of a triangle on which a point of an intersection lies.
 enum class FeatureKind : std::uint8_t { vertex, edge, face };
 
 /// `index` of a vertex is its corner (0, 1, 2). `index` of an edge is the corner where it starts: edge i
@@ -51,11 +51,13 @@ struct Contact {
   constexpr bool operator==(const Contact&) const = default;
 };
 
-/// The kinds of the two elements of a continuous contact: of object a, then of object b. A contact of an
-/// object with itself is never `face_vertex`: its vertex is the element of a.
+/// The kinds of the two elements of a continuous contact: first of object a, then of object b. A contact of
+/// an object with itself is never `face_vertex`: its element a is the vertex.
 enum class ElementPairKind : std::uint8_t { vertex_face, face_vertex, edge_edge };
 
-/// Two elements that touch within the step. Edges are the distinct pairs of vertices of the triangles. Within
+/// Two elements that touch on their way within the step. Bodies that already cut through each other at the
+/// start of the step have no continuous contact until two of their elements touch; `Contact` reports them.
+/// Edges are the distinct pairs of vertices of the triangles. Within
 /// one object, elements that share a vertex id are not a contact, and edge a is the smaller edge.
 ///
 /// With `ImpactCertainty::certain`, the pair is exact. `toi`, the barycentric coordinates, `point` and
@@ -67,7 +69,7 @@ struct ContinuousContact {
   /// triangle t. `Scene::vertices_of` gives the vertex ids.
   std::array<std::uint32_t, 2> element_a{}, element_b{};
   ImpactCertainty certainty = ImpactCertainty::certain;
-  /// Time of impact, when they first touch: in [0, 1], never late, early by at most `toi_tolerance`.
+  /// Time of impact, at which they first touch, in [0, 1]: never late, and early by at most `toi_tolerance`.
   double toi = 0;
   /// The point of each element that touches, in barycentric coordinates of the element's vertices: 1, 0, 0
   /// for a vertex; 1 - s, s, 0 for an edge; one coordinate for each corner of a face.

@@ -21,21 +21,22 @@ struct EdgeEdgeMotion {
   std::array<Vec3d, 4> start, end;
 };
 
-/// A reported time is never later than the true first contact, and earlier by at most this part of the step.
-/// Most times are early by a few units in the last place.
+/// A reported time is never later than the true first contact, and earlier by at most this fraction of the
+/// step. Most times are early by a few units in the last place.
 inline constexpr double toi_tolerance = 0x1p-30;
 
 struct ImpactOptions {
-  /// The elements touch when their distance is at most this value, finite and ≥ 0.
+  /// Elements count as touching when their distance is at most this value, finite and ≥ 0, in the unit of
+  /// the coordinates.
   double min_separation = 0;
-  /// Let exact arithmetic decide what floating point cannot. Otherwise such pairs are reported as touching
-  /// `within_tolerance`, which bounds the time for a pair.
+  /// Exact arithmetic decides pairs that floating point cannot decide. When this is off, such pairs are
+  /// reported as touching `within_tolerance`, which bounds the time per pair.
   bool exact = true;
 };
 
 enum class ImpactCertainty : std::uint8_t {
   certain,           ///< proven: the elements touch
-  within_tolerance,  ///< they come so close that floating point cannot decide; only when `exact` is off
+  within_tolerance,  ///< so close that floating point cannot decide; only when `exact` is off
 };
 
 /// The first contact of two elements. The certainty is exact; all numbers are rounded.
@@ -53,9 +54,10 @@ struct Impact {
   Vec3d normal;
 };
 
-/// The first impact within the step, or nothing, as exact arithmetic decides on the given coordinates. They
-/// may be any finite numbers, and the motion may be any: within one plane, with parallel edges or degenerate
-/// faces, or none. Elements with a coordinate that is not finite touch nothing.
+/// The first impact within the step, or nothing when the elements stay apart, as exact arithmetic decides on
+/// the given coordinates. All finite coordinates and all motions are allowed: also motions within one plane,
+/// parallel edges, degenerate faces, and no motion. Elements with a coordinate that is not finite touch
+/// nothing.
 ///
 /// Throws `Error` when `min_separation` is negative or not finite. Takes about 0.1 µs for elements that stay
 /// apart and 0.3 µs for others. When only exact arithmetic can decide, it takes a few microseconds, or a few
@@ -70,12 +72,12 @@ struct TimeBracket {
   constexpr bool operator==(const TimeBracket&) const = default;
 };
 
-/// The same question, decided for checking by exact algebra: Sturm sequences of polynomials with integer
-/// coefficients of any size. Shares no code with `first_impact` or `Scene::detect`, at any separation. Throws
-/// `Error` when `min_separation` is negative or not finite.
+/// Decides the same question by exact algebra, for checking: Sturm sequences of polynomials with integer
+/// coefficients of any size. It shares no code with `first_impact` or `Scene::detect`, at any separation.
+/// Throws `Error` when `min_separation` is negative or not finite.
 ///
 /// Takes about 0.5 µs for most elements that stay apart, 0.1 to 1 ms for others, and seconds or more when
-/// coordinates range from 1e-300 to 1e300. Always ends.
+/// coordinates range from 1e-300 to 1e300. It always ends.
 std::optional<TimeBracket> first_contact_by_algebra(const VertexFaceMotion& motion,
                                                     double min_separation = 0);
 std::optional<TimeBracket> first_contact_by_algebra(const EdgeEdgeMotion& motion, double min_separation = 0);

@@ -12,9 +12,9 @@
 
 #include "supple/types.hpp"
 
-// Options and statistics describe themselves: names, words, units, ranges and a sentence for each member. The
+// Descriptions of options and statistics: name, words, unit, range and one sentence for each member. The
 // command line, scene files, recordings, JSON, the viewer and the documents are made from these descriptions.
-// `option_descriptions.hpp` and `result_descriptions.hpp` have those of the core.
+// `option_descriptions.hpp` and `result_descriptions.hpp` have the descriptions of the core.
 
 namespace supple {
 
@@ -25,13 +25,14 @@ inline constexpr std::array<const char*, 0> words{};
 template <class Enum>
 concept Worded = std::is_enum_v<Enum> &&(words<Enum>.size() > 0);
 
-/// Null when the value is none of the enumeration.
+/// The word of a value; null when the value is not in the enumeration.
 template <Worded Enum>
 constexpr const char* word_of(Enum value) {
   const auto index = static_cast<std::size_t>(value);
   return index < words<Enum>.size() ? words<Enum>[index] : nullptr;
 }
 
+/// The value of a word; nothing when no value has this word.
 template <Worded Enum>
 constexpr std::optional<Enum> value_of_word(std::string_view word) {
   for (std::size_t i = 0; i < words<Enum>.size(); ++i) {
@@ -40,7 +41,7 @@ constexpr std::optional<Enum> value_of_word(std::string_view word) {
   return std::nullopt;
 }
 
-/// `aabb, sphere`
+/// All words of an enumeration in one text, such as `aabb, sphere`.
 template <Worded Enum>
 std::string list_of_words(std::string_view separator = ", ") {
   std::string list;
@@ -56,9 +57,9 @@ struct ValueRange {
   double lowest = -std::numeric_limits<double>::infinity();
   double highest = std::numeric_limits<double>::infinity();
   bool excludes_lowest = false;
-  bool includes_infinity = false;  ///< positive infinity, which stands for "none"
-  bool powers_of_two = false;      ///< no other whole numbers
-  bool includes_zero = false;      ///< below the lowest value, where 0 stands for "chosen"
+  bool includes_infinity = false;  ///< also allows positive infinity, which means "none"
+  bool powers_of_two = false;      ///< of whole numbers, allows only powers of two
+  bool includes_zero = false;      ///< also allows 0 below the lowest value; it means "chosen automatically"
 
   constexpr bool allows(double value) const {
     if (value == std::numeric_limits<double>::infinity()) return includes_infinity;
@@ -90,31 +91,31 @@ struct ValueRange {
   }
 };
 
-/// `a whole number from 0 to 32`, `a finite number above 0`, `2, 4 or 8`: what a number must be.
+/// The range in words: `a whole number from 0 to 32`, `a finite number above 0`, `2, 4 or 8`.
 std::string text_of(const ValueRange& range, bool is_whole);
 
 /// One member of a structure.
 template <class Struct, class Value>
 struct Field {
-  const char* name;  ///< of the member
+  const char* name;  ///< name of the member
   Value Struct::*member;
   const char* doc;  ///< one sentence, without a full stop
   ValueRange range{};
   const char* unit = "";
-  /// The word that people read and type: in scene files, recordings, JSON, the viewer, and, with dashes, on
-  /// the command line. No two fields of the structures that occur together have the same.
+  /// The name for users: in scene files, recordings, JSON and the viewer, and with dashes on the command
+  /// line. It is unique among the fields of structures that are used together.
   const char* key = name;
-  /// For a truth value that is better said by two words: those for false and for true.
+  /// For a truth value that users write as a word: the word for false and the word for true.
   std::array<const char*, 2> truth_words{};
-  /// It belongs to the machine and not to the scene: a number of threads, a measured time, a count that
-  /// depends on the number of threads. It is not part of what two runs have in common.
+  /// The value belongs to the machine and not to the scene: a number of threads, a measured time, or a count
+  /// that depends on the number of threads. Two runs of the same scene may differ in it.
   bool is_of_machine = false;
 
   constexpr bool has_truth_words() const { return truth_words[0] != nullptr; }
 };
 
-/// `name` says what the structure is called; `visit(visitor)` calls `visitor(field)` for each member in the
-/// order of the structure.
+/// `name` is the name of the structure. `visit(visitor)` calls `visitor(field)` for each member, in the order
+/// of the structure.
 template <class Struct>
 struct Description;
 
@@ -123,13 +124,15 @@ concept Described = requires {
   Description<std::remove_const_t<Struct>>::name;
 };
 
+/// Calls `visitor(field)` for each member, in the order of the structure.
 template <Described Struct, class Visitor>
 constexpr void for_each_field(Visitor&& visitor) {
   Description<std::remove_const_t<Struct>>::visit(visitor);
 }
 
-/// Calls `visitor(field, values...)` for each member of the structures that is not described itself, and for
-/// each member of those that are, in order. The structures have one type, constant or not.
+/// Calls `visitor(field, values...)` for each leaf, in order. A leaf is a member whose type has no
+/// description; members whose type has one are visited recursively. All structures have the same type,
+/// constant or not.
 template <class Visitor, Described First, class... Rest>
 constexpr void for_each_leaf(Visitor&& visitor, First& first, Rest&... rest) {
   for_each_field<First>([&](const auto& field) {
@@ -141,12 +144,17 @@ constexpr void for_each_leaf(Visitor&& visitor, First& first, Rest&... rest) {
   });
 }
 
-/// How many leaves `for_each_leaf` visits.
+/// The number of leaves that `for_each_leaf` visits.
 template <Described Struct>
 constexpr std::size_t count_leaves() {
   std::size_t count = 0;
-  Struct values{};
-  for_each_leaf([&](const auto&, const auto&) { ++count; }, values);
+  for_each_field<Struct>([&]<class Value>(const Field<Struct, Value>&) {
+    if constexpr (Described<Value>) {
+      count += count_leaves<Value>();
+    } else {
+      ++count;
+    }
+  });
   return count;
 }
 
@@ -162,8 +170,8 @@ std::string text_of(double value);
 [[noreturn]] void fail_range(std::string_view where, const char* structure, const char* name,
                              std::uint64_t value, const std::string& words);
 
-/// Throws `Error` that names the first member that is out of its range. `where` says where the options are
-/// from; it may be empty.
+/// Throws `Error` when a member is out of its range; the message names the first such member. `where` is the
+/// source of the options for the message; it may be empty.
 template <Described Struct>
 void check(const Struct& options, std::string_view where = {}) {
   const char* const structure = Description<Struct>::name;

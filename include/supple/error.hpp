@@ -7,7 +7,7 @@ namespace supple {
 
 /// Unusable input: an option out of range, an unknown object, a file that cannot be read.
 ///
-/// `what()` is one line without a trailing newline. It says what is wrong, where, and how to mend it:
+/// `what()` is one line without a trailing newline. It says what is wrong, where, and how to fix it:
 /// `rabbit.obj:17: face index 99 is out of range; the file has 12 vertices so far`.
 /// A broken invariant inside the library is never an `Error`; it asserts in debug builds.
 class Error : public std::runtime_error {

@@ -18,7 +18,7 @@ struct OctreeCell {
   std::uint32_t level = 0;  ///< the root is 0
   bool is_leaf = true;
   std::uint32_t triangle_count = 0;
-  Aabb box{};               ///< encloses the triangles where they are now
+  Aabb box{};               ///< encloses the triangles at their present positions
   BoundingSphere sphere{};  ///< empty unless the scene's bounding volume is the sphere
 };
 
@@ -36,9 +36,9 @@ struct CandidateList {
   std::uint64_t total = 0;
 };
 
-/// The stage that separated two triangles, in the order of the flow. With continuous contacts, a stage
-/// separates the triangles for the whole step; their elements are tested on their own, so `contact` then
-/// takes precedence over every stage but the first.
+/// The stage that separated two triangles, in the order of the stages. With continuous contacts, a stage
+/// separates the triangles for the whole step. Their elements are tested separately, so `contact` then takes
+/// precedence over every stage except the first.
 enum class PairStage : std::uint8_t {
   not_tested,  ///< the scene does not test these objects: static, group and mask, filter, no self-collision
   shared_vertex,   ///< both in one object, with a common vertex (or the same triangle): never a contact
@@ -50,7 +50,7 @@ enum class PairStage : std::uint8_t {
   contact,         ///< the triangles intersect: a contact
 };
 
-/// Why two triangles are, or are not, a contact. With `ContactKinds::none`: whether they would be.
+/// Why two triangles are a contact, or why not. With `ContactKinds::none`: whether they would be a contact.
 struct PairExplanation {
   PairStage stage = PairStage::contact;
   /// The two volumes that are apart: of the objects, of octree cells or of the triangles. Empty for the other
@@ -58,7 +58,7 @@ struct PairExplanation {
   /// whole path. They are rounded outward to floats, so they may seem to overlap far from the origin.
   Aabb box_a{}, box_b{};
   BoundingSphere sphere_a{}, sphere_b{};   ///< not empty when spheres, not boxes, are apart
-  std::uint32_t level_a = 0, level_b = 0;  ///< levels of those cells
+  std::uint32_t level_a = 0, level_b = 0;  ///< levels of the octree cells
   /// At `exact_test`: the unit direction from a to b between the closest points of the triangles, and their
   /// distance, both rounded. When rounding leaves no distance, it is 0 and the axis is a direction that
   /// separates the triangles except for rounding.
@@ -70,31 +70,32 @@ struct PairExplanation {
   double distance = 0;
 };
 
-/// Numbers of an object's octree.
+/// Statistics of an object's octree.
 struct OctreeStatistics {
   std::uint64_t triangles = 0;
   std::uint64_t vertices = 0;
-  std::uint64_t nodes = 0;  ///< eight-wide
+  std::uint64_t nodes = 0;  ///< nodes of up to eight children
   std::uint64_t leaves = 0;
   std::uint32_t depth = 0;         ///< of the deepest leaf; the root is 0
   std::uint32_t largest_leaf = 0;  ///< triangles
   double mean_leaf_size = 0;       ///< triangles
-  double mean_node_width = 0;      ///< children a node, of eight
+  double mean_node_width = 0;      ///< children per node, at most eight
   std::uint64_t bytes = 0;         ///< all memory of the octree: nodes, ids and maps, without the positions
   double bytes_per_triangle = 0;
   std::vector<std::uint64_t> leaves_by_level;
-  /// Expected visits of a query whose box meets the object's, by the surface-area heuristic: one visit a
-  /// child and an eighth for each triangle of a leaf. For the boxes of the last refit; 0 when they have no
-  /// surface.
+  /// Expected visits of a query whose box overlaps the object's box, by the surface-area heuristic: one visit
+  /// per child and an eighth per triangle of a leaf. Computed for the boxes of the last refit; 0 when they
+  /// have no surface.
   double cost = 0;
-  /// The cost relative to the cost when built: 1 as built, 2 when queries cost twice as much.
+  /// The cost divided by the cost when the octree was built: 2 when queries cost twice as much.
   double degradation = 1;
   std::uint64_t rebuilds = 0;  ///< since the object was added
 };
 
-/// Looks into a scene and its last `detect`: to draw, to study and to test. When that found both kinds of
-/// contacts, cells and candidates are those of the search for intersections. Refers to the scene, which must
-/// outlive it and must not be moved. Needs no memory of its own; each call takes memory and one thread.
+/// Looks into a scene and its last `detect`, for drawing, learning and tests. When that call found both kinds
+/// of contacts, cells and candidates are those of the search for intersections. The inspector refers to the
+/// scene, which must outlive it and must not be moved. It keeps no memory. Each call allocates memory and
+/// uses one thread.
 ///
 /// `cells`, `candidates` and `explain` throw `Error` when something changed since the last `detect` (for
 /// `cells`: when the object moved).
@@ -102,25 +103,26 @@ class SceneInspector {
  public:
   explicit SceneInspector(const Scene& scene) : scene_(&scene) {}
 
-  /// The cells of an object's octree at `level`, and leaves above it, so that together they cover the object;
-  /// without a level, all leaves. Ordered by level. Cell volumes enclose the triangles at their present
-  /// positions, rounded outward; cells without a finite triangle are empty. With continuous contacts the
-  /// cells enclose the positions at the end of the step.
+  /// The cells of an object's octree at `level` and the leaves above it, which together cover the object.
+  /// Without a level: all leaves. Ordered by level. Cells enclose the triangles at their present positions,
+  /// rounded outward. With continuous contacts, they enclose the positions at the end of the step. Cells
+  /// without a finite triangle are empty.
   std::vector<OctreeCell> cells(ObjectId object, std::optional<std::uint32_t> level = {}) const;
-  /// The deepest level that has cells. 0 for an object without triangles, which has no cell.
+  /// The deepest level with cells; 0 for an object without triangles, which has no cell.
   std::uint32_t octree_depth(ObjectId object) const;
+  /// Statistics of an object's octree, O(nodes).
   OctreeStatistics octree_statistics(ObjectId object) const;
-  /// Bounds as of the last `detect`; empty when nothing finite is there.
+  /// The box of the object in the last `detect`; empty when no vertex is finite.
   Aabb bounds(ObjectId object) const;
-  /// Regions of the scene octree, root first; empty for other broad phases.
+  /// Regions of the scene octree in the last step, root first; empty when another method ran.
   std::vector<SceneRegion> regions() const;
 
-  /// All pairs of triangles that the narrow phase passes to the exact stage: the first `limit` of them and
+  /// The pairs of triangles that the narrow phase passes to the exact stage: the first `limit` pairs and
   /// their total number. They include pairs that `detect` skips: of two objects that both have not moved, and
   /// in parts of an object that self-collision culling skips. With continuous contacts, they are triangles
-  /// whose moving boxes meet within `ImpactOptions::min_separation` or slightly more; pairs that share a
-  /// vertex are left out there too, though their elements are tested. As fast as `detect` with one thread;
-  /// memory is of the order of `limit`.
+  /// whose moving boxes come within `ImpactOptions::min_separation` or slightly more. Pairs that share a
+  /// vertex are left out, although their elements are tested. As fast as `detect` with one thread; O(limit)
+  /// memory.
   CandidateList candidates(std::size_t limit) const;
   /// Why two triangles are a contact of the last `detect`, or which stage separated them. Calls the pair
   /// filter. O(octree depth), and for continuous contacts O(contacts of the two objects). Throws `Error` when
@@ -128,8 +130,8 @@ class SceneInspector {
   PairExplanation explain(ObjectId object_a, std::uint32_t triangle_a, ObjectId object_b,
                           std::uint32_t triangle_b) const;
 
-  /// Checks every invariant of every octree and of the broad phase. Returns the empty string, or what is
-  /// wrong.
+  /// Checks every invariant of every octree and of the broad phase. Returns an empty string, or a description
+  /// of the first error.
   std::string validate() const;
 
  private:

@@ -16,7 +16,7 @@ using Triangle = std::array<std::uint32_t, 3>;
 /// A triangle soup with shared vertices. It need not be a manifold: holes, flaps, duplicate and zero-area
 /// triangles, triangles with a repeated id and unused vertices are all allowed.
 struct TriangleMesh {
-  std::string name;                 ///< for messages and results; the file's stem when loaded
+  std::string name;                 ///< for messages and results; the stem of the file name when loaded
   std::vector<Vec3d> positions;     ///< any doubles; non-finite ones make their triangles inert
   std::vector<Triangle> triangles;  ///< each id must be below positions.size()
 };
@@ -27,12 +27,12 @@ struct TriangleMesh {
 /// Coordinates keep the precision of the file, and ids keep its order: vertex i is the i-th vertex of the
 /// file. Polygons become fans around their first corner, in file order. Texture and normal ids are ignored.
 /// Unused vertices stay. STL has no ids: corners with equal coordinates become one vertex, numbered by first
-/// use. Throws `Error` naming file, line or byte, the value and what is allowed.
+/// use. Throws `Error`; the message names the file, the line or byte, the value, and the allowed values.
 TriangleMesh load_mesh(const std::filesystem::path& path);
 
 /// Writes a file in the format of its extension: .obj, .off, .ply (binary little endian, double), .stl
 /// (binary, single precision). Text formats print the shortest digits that read back to the same double.
-/// Throws `Error`.
+/// Throws `Error` when the extension is unknown or the file cannot be written.
 void save_mesh(const TriangleMesh& mesh, const std::filesystem::path& path);
 
 /// Throws `Error` when a triangle uses a vertex that does not exist; the message names mesh, triangle and

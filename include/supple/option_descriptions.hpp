@@ -27,19 +27,19 @@ struct Description<ImpactOptions> {
   template <class Visitor>
   static constexpr void visit(Visitor&& visitor) {
     using Options = ImpactOptions;
-    visitor(Field<Options, double>{.name = "min_separation",
-                                   .member = &Options::min_separation,
-                                   .doc = "Distance at which two elements touch, for continuous contacts",
-                                   .range = ValueRange::from(0),
-                                   .unit = "length"});
-    visitor(Field<Options, bool>{
-        .name = "exact",
-        .member = &Options::exact,
-        .doc =
-            "Continuous contacts that floating point cannot decide: exact arithmetic decides them, or they "
-            "are reported as within tolerance",
-        .key = "undecided",
-        .truth_words = {"report", "exact"}});
+    visitor(
+        Field<Options, double>{.name = "min_separation",
+                               .member = &Options::min_separation,
+                               .doc = "Continuous contacts: distance at which two elements count as touching",
+                               .range = ValueRange::from(0),
+                               .unit = "length"});
+    visitor(
+        Field<Options, bool>{.name = "exact",
+                             .member = &Options::exact,
+                             .doc = "Continuous contacts that floating point cannot decide: exact arithmetic "
+                                    "decides them (exact), or they are reported as within tolerance (report)",
+                             .key = "undecided",
+                             .truth_words = {"report", "exact"}});
   }
 };
 
@@ -67,14 +67,14 @@ struct Description<ObjectOctreeOptions> {
     visitor(Field<Options, bool>{.name = "regular",
                                  .member = &Options::regular,
                                  .doc =
-                                     "How the object's octree is built: equally full leaves, or the octants "
-                                     "of each node's cell as in the paper",
+                                     "How the object's octree is built: with equally full leaves (balanced), "
+                                     "or from the octants of each cell as in the paper (regular)",
                                  .key = "object_octree",
                                  .truth_words = {"balanced", "regular"}});
     visitor(Field<Options, bool>{
         .name = "rebuild_degraded",
         .member = &Options::rebuild_degraded,
-        .doc = "Rebuild the object's octree when deformation has made it slow to query"});
+        .doc = "Rebuild the object's octree when it has become slow because the object deformed"});
   }
 };
 
@@ -87,24 +87,23 @@ struct Description<SceneOctreeOptions> {
     visitor(Field<Options, std::uint32_t>{
         .name = "max_level",
         .member = &Options::max_level,
-        .doc = "Deepest level of the scene octree, 0 for no other limit than 20",
-        // 8^20 regions are as many as a 64-bit number can tell apart.
+        .doc = "Deepest level of the scene octree; 0 means the largest possible level, 20",
+        // A 64-bit number can distinguish the regions of at most 20 levels.
         .range = ValueRange::from(0, 20),
         .key = "scene_octree_max_level"});
     visitor(Field<Options, std::uint32_t>{
         .name = "expand_at",
         .member = &Options::expand_at,
-        .doc = "A region of the scene octree expands when this many of its objects fit into half its edge; 0 "
-               "chooses 2 for up to 64 objects and otherwise 96",
+        .doc = "A region of the scene octree expands when this many of its objects fit into regions of half "
+               "its edge; 0 means 2 for scenes of up to 64 objects, otherwise 96",
         .range = ValueRange::from(2, 0xffffffff).or_zero(),
         .unit = "objects",
         .key = "scene_octree_expand_at"});
-    visitor(Field<Options, RegionSphereTest>{
-        .name = "region_sphere_test",
-        .member = &Options::region_sphere_test,
-        .doc =
-            "How a region of the scene octree is tested against a sphere: by Arvo's test or by the paper's",
-        .key = "region_test"});
+    visitor(Field<Options, RegionSphereTest>{.name = "region_sphere_test",
+                                             .member = &Options::region_sphere_test,
+                                             .doc = "Test of a region of the scene octree against a sphere: "
+                                                    "Arvo's test, or the test of the paper (grown box)",
+                                             .key = "region_test"});
     visitor(Field<Options, std::uint32_t>{.name = "arity",
                                           .member = &Options::arity,
                                           .doc = "Children of a region of the scene octree",
@@ -131,14 +130,14 @@ struct Description<ObjectOptions> {
         .member = &Options::is_static,
         .doc = "The object never moves; static objects are not tested against each other",
         .key = "static"});
-    visitor(Field<Options, std::uint32_t>{.name = "group",
-                                          .member = &Options::group,
-                                          .doc = "Two objects are tested when each one's group has a bit in "
-                                                 "common with the other's mask",
-                                          .range = ValueRange::from(0, 0xffffffff)});
+    visitor(Field<Options, std::uint32_t>{
+        .name = "group",
+        .member = &Options::group,
+        .doc = "Two objects are tested when the group of each has a bit in common with the mask of the other",
+        .range = ValueRange::from(0, 0xffffffff)});
     visitor(Field<Options, std::uint32_t>{.name = "mask",
                                           .member = &Options::mask,
-                                          .doc = "Bits of the groups that the object is tested with",
+                                          .doc = "Groups, as bits, with which the object is tested",
                                           .range = ValueRange::from(0, 0xffffffff)});
     visitor(Field<Options, ObjectOctreeOptions>{
         .name = "octree", .member = &Options::octree, .doc = "Shape of the object's octree"});
@@ -153,12 +152,12 @@ struct Description<ComparisonOptions> {
     using Options = ComparisonOptions;
     visitor(Field<Options, SphereFit>{.name = "sphere_fit",
                                       .member = &Options::sphere_fit,
-                                      .doc = "How spheres are fitted: about the vertices, or from the box as "
-                                             "in the paper's eq. 3 and 4, which miss contacts"});
+                                      .doc = "How spheres are fitted: around the vertices, or from the box "
+                                             "by the paper's eq. 3 and 4, which misses contacts"});
     visitor(Field<Options, bool>{
         .name = "colliding_vertices",
         .member = &Options::colliding_vertices,
-        .doc = "Also give the paper's output: the vertices in the leaves of both octrees that collide"});
+        .doc = "Also report the paper's output: the vertices in the colliding leaves of both octrees"});
   }
 };
 
@@ -172,24 +171,27 @@ struct Description<SceneOptions> {
         .name = "bounding_volume",
         .member = &Options::bounding_volume,
         .doc = "Shape that encloses the objects and the nodes of their octrees"});
-    visitor(Field<Options, BroadPhaseMethod>{.name = "broad_phase",
-                                             .member = &Options::broad_phase,
-                                             .doc = "How object pairs are found; all methods find the same"});
+    visitor(Field<Options, BroadPhaseMethod>{
+        .name = "broad_phase",
+        .member = &Options::broad_phase,
+        .doc = "How object pairs are found; all methods find the same pairs"});
     visitor(Field<Options, SceneOctreeOptions>{
         .name = "scene_octree", .member = &Options::scene_octree, .doc = "Shape of the scene octree"});
     visitor(Field<Options, ContactKinds>{
         .name = "contacts",
         .member = &Options::contacts,
-        .doc = "Exact stage: no contacts, every pair of triangles that intersects, or every vertex and face "
-               "and every two edges that touch on the way from the frame before"});
+        .doc = "Contacts to find: pairs of triangles that intersect (intersection); vertices and faces, and "
+               "pairs of edges, that touch on the way from the frame before (continuous); both; or none. "
+               "Bodies that already cut through each other at the start of the way are found by "
+               "intersection, not by continuous"});
     visitor(Field<Options, bool>{.name = "contact_points",
                                  .member = &Options::contact_points,
-                                 .doc = "Compute the points of each contact of triangles"});
+                                 .doc = "Compute the normal and the points of each contact of triangles"});
     visitor(Field<Options, ImpactOptions>{
         .name = "impact", .member = &Options::impact, .doc = "Options of continuous contacts"});
     visitor(Field<Options, std::uint32_t>{.name = "threads",
                                           .member = &Options::threads,
-                                          .doc = "Worker threads, 0 for one a core",
+                                          .doc = "Worker threads; 0 means one per core",
                                           .range = ValueRange::from(0, 1024),
                                           .is_of_machine = true});
     visitor(Field<Options, ComparisonOptions>{
@@ -209,7 +211,7 @@ struct Description<BroadPhaseOptions> {
         .name = "scene_octree", .member = &Options::scene_octree, .doc = "Shape of the scene octree"});
     visitor(Field<Options, std::uint32_t>{.name = "threads",
                                           .member = &Options::threads,
-                                          .doc = "Worker threads, 0 for one a core",
+                                          .doc = "Worker threads; 0 means one per core",
                                           .range = ValueRange::from(0, 1024),
                                           .is_of_machine = true});
   }

@@ -17,7 +17,7 @@
 namespace supple {
 
 /// Shape that encloses the nodes of an object's octree, and the object itself in the broad phase. With
-/// continuous contacts, only the objects have this shape; nodes have boxes.
+/// continuous contacts, only objects have this shape; nodes have boxes.
 enum class BoundingVolume : std::uint8_t { aabb, sphere };
 
 /// How object pairs are found. All methods report the same pairs in the same order.
@@ -26,8 +26,8 @@ enum class BroadPhaseMethod : std::uint8_t {
   /// and in each of the three before; otherwise the grid runs. A scene in which more than 256 other objects
   /// share the grid cell of an average object runs the octree, and tries the grid again after 64 steps.
   automatic,
-  /// The paper's incremental octree of regions. Best when few objects change, or when objects crowd in few
-  /// places. It has regions to look at.
+  /// The paper's incremental octree of regions. Best when few objects change, or when many objects are in
+  /// few places. `SceneInspector::regions` returns its regions.
   octree,
   /// A hierarchical grid that is rebuilt in each step with changes. Best when many objects change.
   grid,
@@ -39,7 +39,9 @@ enum class BroadPhaseMethod : std::uint8_t {
 enum class ContactKinds : std::uint8_t {
   none = 0,          ///< object pairs and candidate counts only
   intersection = 1,  ///< every pair of triangles that intersects, with normal and points
-  continuous = 2,    ///< every pair of vertex and face, and of two edges, that touches within the step
+  /// Every vertex and face and every two edges that touch on their way within the step. Bodies that already
+  /// cut through each other at the start of the step are found by `intersection`, not by `continuous`.
+  continuous = 2,
 };
 constexpr ContactKinds operator|(ContactKinds p, ContactKinds q) {
   return static_cast<ContactKinds>(static_cast<unsigned>(p) | static_cast<unsigned>(q));
@@ -63,15 +65,15 @@ struct ObjectOptions {
   /// Two objects are tested when the `group` of each has a bit in common with the `mask` of the other.
   std::uint32_t group = 1;
   std::uint32_t mask = ~std::uint32_t{0};
-  ObjectOctreeOptions octree{};  ///< for comparison
+  ObjectOctreeOptions octree{};  ///< shape of the octree; only for comparison
 };
 
 /// Options of a scene, fixed at its construction.
 struct SceneOptions {
   BoundingVolume bounding_volume = BoundingVolume::aabb;
   BroadPhaseMethod broad_phase = BroadPhaseMethod::automatic;
-  SceneOctreeOptions scene_octree{};  ///< for comparison
-  /// What `detect` finds unless its request says otherwise.
+  SceneOctreeOptions scene_octree{};  ///< only for comparison
+  /// The contacts that `detect` finds, unless its request has other kinds.
   ContactKinds contacts = ContactKinds::intersection;
   /// Also report the normal and the points of each contact (`Contact::normal`,
   /// `DetectResult::contact_points`). Without them `detect` takes less time.
@@ -84,9 +86,9 @@ struct SceneOptions {
   ComparisonOptions comparison{};
 };
 
-/// What one call of `Scene::detect` finds, and how far it goes.
+/// The contacts that one call of `Scene::detect` finds, and limits of the call.
 struct DetectRequest {
-  /// Without a value: as `SceneOptions` say.
+  /// Without a value, `contacts` and `impact` are those of `SceneOptions`.
   std::optional<ContactKinds> contacts{};
   std::optional<ImpactOptions> impact{};
   /// The largest number of contacts of each kind in the result: the first ones in canonical order, for any
@@ -95,9 +97,9 @@ struct DetectRequest {
   /// searches one object pair to its end.
   std::uint64_t max_contacts = std::numeric_limits<std::uint64_t>::max();
 #ifdef __cpp_lib_jthread
-  /// Stops the call when any thread requests it: within milliseconds during the search, otherwise after the
-  /// present stage. The result is then empty and has `stopped` set. The next `detect` reports what it would
-  /// report without the stopped call.
+  /// Any thread can stop the call: it ends within milliseconds during the search, otherwise after the current
+  /// stage. The result is then empty and has `stopped` set. The next `detect` gives the same result as
+  /// without the stopped call.
   std::stop_token stop{};
 #endif
 };

@@ -38,9 +38,9 @@ struct NonFiniteVertex {
   Vec3d position;
 };
 
-/// Changes of a set of pairs since the last step, whatever its request. Each pair that begins ends exactly
-/// once: when the objects part, when one is removed, or when a filter excludes the pair. Sorted. `end` may
-/// name removed objects.
+/// Changes of a set of pairs since the last step, independent of the request of that step. Each pair that
+/// begins ends exactly once: when the objects part, when one is removed, or when a filter excludes the pair.
+/// Sorted. `end` may name removed objects.
 struct PairEvents {
   std::span<const ObjectPair> begin, stay, end;
 };
@@ -50,12 +50,12 @@ struct PairEvents {
 /// interleaved on several threads: their wall-clock time is measured together and split by the threads' own
 /// clocks. The counts of a truncated or stopped step depend on the threads.
 struct StepStats {
-  double refit_seconds = 0;            ///< new positions into octrees
-  double broad_phase_seconds = 0;      ///< object volumes into object pairs
+  double refit_seconds = 0;            ///< refit of octrees to new positions
+  double broad_phase_seconds = 0;      ///< search for object pairs
   double rebuild_seconds = 0;          ///< rebuild of degraded octrees
-  double traversal_seconds = 0;        ///< object pairs into candidate triangle pairs
-  double exact_seconds = 0;            ///< candidates into contacts
-  double sort_and_events_seconds = 0;  ///< canonical order and events
+  double traversal_seconds = 0;        ///< search for candidates in object pairs
+  double exact_seconds = 0;            ///< exact decision of candidates
+  double sort_and_events_seconds = 0;  ///< sorting of contacts, and events
   double total_seconds = 0;
 
   /// The method of the broad phase that ran last: octree or grid when the scene has `automatic`.
@@ -64,10 +64,10 @@ struct StepStats {
   std::uint64_t triangles_refitted = 0;
   std::uint64_t octrees_rebuilt = 0;      ///< degraded octrees
   std::uint64_t triangles_rebuilt = 0;    ///< triangles in them
-  std::uint64_t object_pairs_tested = 0;  ///< volume against volume in the broad phase
+  std::uint64_t object_pairs_tested = 0;  ///< tests of two volumes in the broad phase
   std::uint64_t object_pairs = 0;
-  std::uint64_t node_pairs_visited = 0;  ///< eight-wide node against eight-wide node
-  /// Volume against volume, of children and at the leaves; empty children do not count.
+  std::uint64_t node_pairs_visited = 0;  ///< pairs of octree nodes in the narrow phase
+  /// Tests of two volumes, of children and in leaves; empty children do not count.
   std::uint64_t boxes_tested = 0;
   /// Triangle pairs whose boxes overlap and that share no vertex.
   std::uint64_t candidate_pairs = 0;
@@ -86,9 +86,9 @@ struct StepStats {
 /// coordinates. `object_pairs` and the candidates are conservative. Normals, points, barycentric coordinates
 /// and times of impact are rounded; `Contact` and `ContinuousContact` say how.
 struct DetectResult {
-  std::uint64_t step = 0;  ///< 0 for the first call; stopped calls do not count
-  bool truncated = false;  ///< there are more contacts of a kind than `DetectRequest::max_contacts`
-  bool stopped = false;    ///< `DetectRequest::stop` ended the call; all lists are empty
+  std::uint64_t step = 0;                    ///< 0 for the first call; stopped calls do not count
+  bool truncated = false;                    ///< a kind has more contacts than `DetectRequest::max_contacts`
+  bool stopped = false;                      ///< `DetectRequest::stop` ended the call; all lists are empty
   std::span<const ObjectPair> object_pairs;  ///< pairs whose volumes overlap and whose filters agree
   std::span<const ContactGroup> groups;      ///< of `contacts`
   std::span<const Contact> contacts;
@@ -120,7 +120,8 @@ struct DetectResult {
 struct Difference {
   ObjectId object_a, object_b;
   std::uint32_t triangle_a = 0, triangle_b = 0;
-  bool missed = false;  ///< true: it intersects and was not reported; false: reported, and does not intersect
+  /// True: the pair intersects and was not reported. False: it was reported and does not intersect.
+  bool missed = false;
 
   constexpr bool operator==(const Difference&) const = default;
 };
@@ -128,8 +129,8 @@ struct Difference {
 /// A pair of elements on which `Scene::verify` and the last `Scene::detect` differ.
 struct ContinuousDifference {
   enum class Fault : std::uint8_t {
-    missed,  ///< it touches and was not reported
-    added,   ///< reported as certain, and does not touch
+    missed,  ///< the pair touches and was not reported
+    added,   ///< reported as certain, but does not touch
     late,    ///< reported with a time after the first contact
     early,   ///< reported with a time before the first contact by more than `toi_tolerance`
   };
@@ -141,8 +142,8 @@ struct ContinuousDifference {
   constexpr bool operator==(const ContinuousDifference&) const = default;
 };
 
-/// Result of the exact brute force over every triangle pair of the scene, or over every vertex-face and
-/// edge-edge pair when contacts are continuous.
+/// Result of `Scene::verify`: exact brute force over every triangle pair of the scene for intersections, and
+/// over every vertex-face and edge-edge pair for continuous contacts.
 struct VerifyReport {
   std::uint64_t triangle_pairs_checked = 0;
   std::uint64_t intersecting_pairs = 0;
@@ -155,7 +156,8 @@ struct VerifyReport {
 
 /// One region of the scene octree, for inspection and drawing.
 struct SceneRegion {
-  /// h of the paper's R(h, k): the root is 0, children of h are 8h + 1 … 8h + 8; of arity k, kh + 1 … kh + k.
+  /// h of the paper's R(h, k): the root is 0, and the children of h are 8h + 1 … 8h + 8. With arity m they
+  /// are mh + 1 … mh + m.
   std::uint64_t number = 0;
   std::uint32_t level = 0;  ///< k
   Aabb box;

@@ -8,7 +8,7 @@
 #include "supple/option_descriptions.hpp"
 #include "supple/result.hpp"
 
-// Descriptions of what the core gives: the words for kinds, and the statistics (description.hpp).
+// Descriptions of the results of the core: the words for kinds, and the statistics (description.hpp).
 
 namespace supple {
 
@@ -44,14 +44,16 @@ struct Description<StepStats> {
       visitor(Field<Stats, std::uint64_t>{
           .name = field, .member = member, .doc = doc, .unit = "pairs", .is_of_machine = true});
     };
-    seconds("refit_seconds", &Stats::refit_seconds, "Octrees take over new positions");
-    seconds("broad_phase_seconds", &Stats::broad_phase_seconds, "Object volumes become object pairs");
-    seconds("rebuild_seconds", &Stats::rebuild_seconds, "Degraded parts of octrees are rebuilt");
-    seconds("traversal_seconds", &Stats::traversal_seconds, "Object pairs become candidates");
-    seconds("exact_seconds", &Stats::exact_seconds, "Candidates become contacts");
+    seconds("refit_seconds", &Stats::refit_seconds, "Time to refit octrees to new positions");
+    seconds("broad_phase_seconds", &Stats::broad_phase_seconds,
+            "Time of the broad phase, which finds object pairs");
+    seconds("rebuild_seconds", &Stats::rebuild_seconds, "Time to rebuild degraded octrees");
+    seconds("traversal_seconds", &Stats::traversal_seconds,
+            "Time of the narrow phase, which finds candidates");
+    seconds("exact_seconds", &Stats::exact_seconds, "Time of the exact stage, which decides the candidates");
     seconds("sort_and_events_seconds", &Stats::sort_and_events_seconds,
-            "Contacts are put in order, and events are found");
-    seconds("total_seconds", &Stats::total_seconds, "The whole detection");
+            "Time to sort contacts and to find events");
+    seconds("total_seconds", &Stats::total_seconds, "Time of the whole detection");
     visitor(Field<Stats, BroadPhaseMethod>{.name = "broad_phase_method",
                                            .member = &Stats::broad_phase_method,
                                            .doc = "Method of the broad phase that ran"});
@@ -67,14 +69,14 @@ struct Description<StepStats> {
     work("boxes_tested", &Stats::boxes_tested,
          "Tests of two volumes in nodes and leaves; depends on the number of threads");
     count("candidate_pairs", &Stats::candidate_pairs, "pairs",
-          "Pairs of triangles whose boxes overlap; 0 with continuous contacts");
+          "Pairs of triangles whose boxes overlap; 0 when only continuous contacts are requested");
     count("vertex_face_candidates", &Stats::vertex_face_candidates, "pairs",
           "Pairs of a vertex and a face whose moving boxes meet, with continuous contacts");
     count("edge_edge_candidates", &Stats::edge_edge_candidates, "pairs",
           "Pairs of edges whose moving boxes meet, with continuous contacts");
     count("exact_fallbacks", &Stats::exact_fallbacks, "pairs",
           "Candidates that floating point could not decide");
-    count("contacts", &Stats::contacts, "contacts", "Contacts that were found");
+    count("contacts", &Stats::contacts, "contacts", "Contacts in the result");
   }
 };
 
@@ -94,9 +96,8 @@ struct Description<BroadPhaseStats> {
     count("objects_changed", &Stats::objects_changed, "objects", "Volumes that differ from the call before");
     count("objects_paired", &Stats::objects_paired, "objects",
           "Objects whose pairs were searched; the pairs of the others were kept");
-    count("objects_placed", &Stats::objects_placed, "objects",
-          "Objects that were taken out of regions or put into others");
-    count("regions_expanded", &Stats::regions_expanded, "groups", "Groups of regions that were made");
+    count("objects_placed", &Stats::objects_placed, "objects", "Objects that left or entered regions");
+    count("regions_expanded", &Stats::regions_expanded, "groups", "Groups of regions that were created");
     count("regions_reduced", &Stats::regions_reduced, "regions", "Regions that became leaves again");
     count("regions_rebuilt", &Stats::regions_rebuilt, "times", "All regions were rebuilt");
   }

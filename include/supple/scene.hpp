@@ -21,7 +21,7 @@ struct RigidTransform {
   Vec3d translation{};
 };
 
-/// Many deforming objects, and every contact between them.
+/// Deforming objects and all contacts between them.
 ///
 /// ```cpp
 /// supple::Scene scene;
@@ -34,12 +34,18 @@ struct RigidTransform {
 /// }
 /// ```
 ///
-/// One call moves an object. `detect` then updates its octree, its bounds and the scene. The scene keeps one
-/// copy of each object's positions, in the precision of the last call, and none of shared positions. It keeps
-/// a second copy of objects moved by `set_transform` or `set_motion`, and of positions at both ends of the
-/// step once continuous contacts are requested. Calls on one scene must not overlap, except calls of const
-/// functions. Different scenes are independent. Every function that takes an `ObjectId` throws
-/// `Error` when the object is not in the scene. `SceneInspector` shows what happens inside a scene.
+/// One call moves an object. `detect` then updates its octree, its bounds and the scene.
+///
+/// Memory: the scene keeps one copy of each object's positions, in the precision of the last call, and no
+/// copy of shared positions. It keeps a second copy for objects moved by `set_transform` or `set_motion`.
+/// Once continuous contacts are requested, it also keeps copies of the positions at both ends of the step.
+///
+/// Threads: calls on one scene must not overlap, except calls of const functions. Different scenes are
+/// independent.
+///
+/// Errors: every function that takes an `ObjectId` throws `Error` when the object is not in the scene.
+/// Functions that move an object throw `Error` when it is static, and when a number of a translation or
+/// rotation is not finite. `SceneInspector` shows the inside of a scene.
 class Scene {
  public:
   /// Throws `Error` when an option is out of its range.
@@ -56,51 +62,59 @@ class Scene {
   /// Removes an object. Its pairs end at the next `detect`.
   void remove(ObjectId object);
 
-  /// Sets the positions of all vertices, in the user's numbering. Copies them, O(n). Throws `Error` when the
-  /// count differs from the mesh's or the object is static.
+  /// Sets the positions of all vertices, in the user's numbering. Copies them, O(n). Replaces earlier
+  /// transforms, translations and paths. Throws `Error` when the number of positions differs from the mesh.
   void set_positions(ObjectId object, PositionsView positions);
   /// As `set_positions`, but the scene reads the user's memory instead of a copy, O(1). The memory must stay
-  /// valid until the object gets other positions or is removed. Its values must not change, except between
-  /// calls on the scene and followed by this call again.
+  /// valid until the object gets other positions or is removed. To change the values, write them between two
+  /// calls on the scene and then call this function again.
   ///
   /// The scene copies the positions when it cannot read them in place: when x, y and z of a point are not
   /// adjacent (a column-major n x 3 matrix), and when the point stride or the address is not a multiple of
   /// the scalar's size. `detect` also copies them when it searches for continuous contacts.
   void share_positions(ObjectId object, PositionsView positions);
   /// Moves the object by `offset` in O(1), without reading its vertices. Each coordinate becomes
-  /// fl(position + D) in double; D is the sum of the offsets since the last `set_positions`.
+  /// fl(position + D) in double. D is the translation of the last `set_transform` plus all offsets since it,
+  /// or since the positions were last set.
   void translate(ObjectId object, Vec3d offset);
-  /// Places the positions that were last given by `add` or `set_positions`. Replaces earlier transforms and
+  /// Places the positions that were last set, or those of `add`. Replaces earlier transforms and
   /// translations. O(1) when only the translation changes, O(n) otherwise.
   void set_transform(ObjectId object, const RigidTransform& transform);
   /// Sets a path for continuous contacts: every vertex moves straight from its position in `from` (t = 0) to
-  /// its position in `to` (t = 1). Copies both, O(n). The path holds until the object is moved otherwise; all
+  /// its position in `to` (t = 1). Copies both, O(n). The path stays until another call moves the object; all
   /// other calls place it at rest. Everything except continuous contacts uses the end of the path. Throws
   /// `Error` as `set_positions` does, and when one view is `float` and the other `double`.
   void set_motion(ObjectId object, PositionsView from, PositionsView to);
+  /// Changes `ObjectOptions::is_static`, O(1). Call it with false to move a static object.
   void set_static(ObjectId object, bool is_static);
 
+  /// Changes `ObjectOptions::group` and `mask`, O(1).
   void set_group(ObjectId object, std::uint32_t group, std::uint32_t mask);
+  /// Changes `ObjectOptions::self_collision`, O(1).
   void set_self_collision(ObjectId object, bool enabled);
-  /// An empty function removes the filter.
+  /// Sets a function that excludes pairs of objects; an empty function removes it. See `PairFilter`.
   void set_pair_filter(PairFilter filter);
 
-  /// Finds every contact at the current positions, within the step, or both, as the options of the scene or
-  /// the request say. Throws `Error` when the request is out of range.
+  /// Finds every contact of the requested kinds: intersections at the current positions, continuous contacts
+  /// within the step, or both. The request defaults to the options of the scene. Time depends on the objects
+  /// that moved and on the overlapping volumes; no memory is allocated after the largest step so far. Throws
+  /// `Error` when the request is out of range.
   const DetectResult& detect(const DetectRequest& request = {});
-  /// The first continuous contact with `SceneOptions::impact`; of those with the same time, the first in
-  /// canonical order; nothing when nothing touches within the step. It skips what can only touch later, so it
-  /// takes a part of the time of `detect` where much touches. Does not change `result` and `verify`.
+  /// The first continuous contact with `SceneOptions::impact`, or nothing when nothing touches within the
+  /// step. Of contacts with the same time, it is the first in canonical order. The search skips pairs that
+  /// can only touch later, so with many contacts it is faster than `detect`. Does not change `result` and
+  /// `verify`.
   std::optional<ContinuousContact> earliest_impact();
-  /// The part of the step, 0 to 1, that can be taken before the first impact: the time of `earliest_impact`,
-  /// or 1. Never later than the true first contact.
+  /// The largest safe part of the step, 0 to 1: the time of `earliest_impact`, or 1 without an impact. Never
+  /// later than the true first contact. Bodies that already cut through each other at the start do not
+  /// shorten it.
   double max_step();
   /// The result of the last `detect`.
   const DetectResult& result() const;
   /// Recomputes the last `detect`, all kinds of contacts that it found, by exact arithmetic over all pairs of
   /// triangles or elements, without octrees or filters, and lists every difference. Quadratic: under a second
   /// for two meshes of 70,000 triangles. Throws `Error` when an object or option changed since the last
-  /// `detect`, and when that was stopped, truncated, or asked for no contacts.
+  /// `detect`, and when that call was stopped, truncated, or found no kind of contacts.
   VerifyReport verify() const;
 
   std::vector<ObjectId> objects() const;  ///< ascending
@@ -108,10 +122,12 @@ class Scene {
   const std::string& name(ObjectId object) const;
   std::size_t vertex_count(ObjectId object) const;
   std::size_t triangle_count(ObjectId object) const;
-  /// As the exact tests see it: with transforms and translations.
+  /// The position that the exact tests use: with transforms and translations. Throws `Error` when there is no
+  /// such vertex.
   Vec3d position(ObjectId object, std::uint32_t vertex) const;
-  /// The vertex ids of the element or triangle of a contact, O(1). The order is that of the barycentric
-  /// coordinates: an edge as in `element_a` or `element_b`, a triangle in the order of its corners.
+  /// The vertex ids of the element or triangle of a contact, O(1), in the order of the barycentric
+  /// coordinates: an edge as in `element_a` or `element_b`, a triangle in the order of its corners. Throws
+  /// `Error` when the object of a triangle was removed.
   ElementVertices vertices_of(const ContinuousContact& contact, ContactSide side) const;
   ElementVertices vertices_of(const Contact& contact, ContactSide side) const;
   const SceneOptions& options() const;

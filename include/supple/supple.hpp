@@ -1,6 +1,6 @@
 #pragma once
 
-/// The whole core, without the components: models, simulation, formats, recording.
+/// All headers of the core, without the components models, simulation, formats and recording.
 #include "supple/broad_phase.hpp"
 #include "supple/comparison_options.hpp"
 #include "supple/contact.hpp"

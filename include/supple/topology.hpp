@@ -13,8 +13,8 @@ namespace supple {
 struct MeshTopology {
   std::uint64_t vertices = 0;              ///< all vertices, used or not
   std::uint64_t unused_vertices = 0;       ///< in no triangle
-  std::uint64_t triangles = 0;             ///< all triangles, with the degenerate ones
-  std::uint64_t degenerate_triangles = 0;  ///< they have an id twice or three times
+  std::uint64_t triangles = 0;             ///< all triangles, including degenerate ones
+  std::uint64_t degenerate_triangles = 0;  ///< with a repeated id
   std::uint64_t edges = 0;                 ///< distinct, undirected
   std::uint64_t boundary_edges = 0;        ///< in exactly one triangle
   std::uint64_t non_manifold_edges = 0;    ///< in more than two triangles

@@ -9,8 +9,8 @@
 
 namespace supple {
 
-/// The corners of a closed triangle, in the user's order. They may coincide or lie on one line: the triangle
-/// is then the point or the segment that they span.
+/// The corners of a closed triangle, in the user's order. When they coincide or lie on one line, the triangle
+/// is the point or the segment that they span.
 using TrianglePoints = std::array<Vec3d, 3>;
 
 /// The unit normal by the right-hand rule; zero when the triangle has no area or a corner is not finite.
@@ -34,11 +34,11 @@ struct TriangleIntersection {
 };
 
 /// Whether two closed triangles have a point in common, as exact arithmetic decides on the given coordinates.
-/// They may be any finite numbers. A triangle with a coordinate that is not finite touches nothing.
+/// All finite coordinates are allowed. A triangle with a coordinate that is not finite touches nothing.
 ///
-/// Symmetric, and independent of the order of the corners. Takes 20 to 40 ns for triangles that the plane of
-/// one of them separates, about 100 ns for others, and more when only integers can decide: a few microseconds
-/// when coordinates differ by more than 2^100 in size. Allocates memory only in that last case.
+/// The result is symmetric, and independent of the order of the corners. Takes 20 to 40 ns for triangles that
+/// the plane of one of them separates, about 100 ns for others, and more when only integers can decide: a few
+/// microseconds when coordinates differ by more than 2^100 in size. Allocates memory only in that last case.
 bool triangles_intersect(const TrianglePoints& a, const TrianglePoints& b);
 
 /// Makes the same decision and finds the extreme points of what the triangles share. Each point has the
@@ -63,23 +63,22 @@ bool triangles_intersect(const TrianglePoints& a, const TrianglePoints& b);
 /// Normal: the direction of the shortest translation of triangle a that separates the triangles: afterwards a
 /// plane perpendicular to the normal has each triangle on one of its closed sides, a on the side to which the
 /// normal points.
-/// - Triangles that cross in a segment: the direction of least penetration among the normals of both
-/// triangles
-///   and the cross products of an edge of each, with either sign.
+/// - Triangles that cross in a segment: the direction of least penetration among the normals of both and the
+///   cross products of an edge of each, with either sign.
 /// - Triangles that touch, in a point or a segment: no translation is needed; the normal is the one of those
 ///   directions whose plane separates the triangles. For a vertex on a face that is the normal of the face.
 /// - Coplanar triangles: the common normal with the sign of the normal of b (counter-clockwise corners).
-/// - A triangle without area, or with an angle below 2^-20, acts as the segment or the point that it spans.
-/// When both lie on one line, the
-///   normal is perpendicular to it; when both are one point, the normal is the x axis.
+/// - A triangle without area, or with an angle below 2^-20: it acts as the segment or the point that it
+///   spans. When both lie on one line, the normal is perpendicular to the line. When both are one point, the
+///   normal is the x axis.
 /// The normal is rounded: computed in double, in a fixed order of operations, with the same bits on every
 /// machine. Two edges at an angle below 2^-20 count as parallel, and triangles within 2^-32 of their size
 /// from a common plane count as coplanar.
 TriangleIntersection intersect_triangles(const TrianglePoints& a, const TrianglePoints& b);
 
 /// Makes the same decision as `triangles_intersect` by separating axes and integers of unlimited size, for
-/// checking. It shares no code with it and uses no floating-point arithmetic. Takes 2 to 12 microseconds for
-/// coordinates of ordinary size.
+/// checking. It shares no code with that function and uses no floating-point arithmetic. Takes 2 to 12
+/// microseconds for coordinates of ordinary size.
 bool triangles_intersect_by_axes(const TrianglePoints& a, const TrianglePoints& b);
 
 }  // namespace supple

@@ -50,7 +50,7 @@ using Vec3d = Vec3<double>;
 using Vec3f = Vec3<float>;
 
 /// Closed axis-aligned box in single precision, always rounded outward from the coordinates it bounds.
-/// The empty box is inverted (+inf, -inf): it grows to whatever is added to it.
+/// The empty box is inverted (+inf, -inf), so the union with a box is that box.
 struct Aabb {
   Vec3f min{std::numeric_limits<float>::infinity(), std::numeric_limits<float>::infinity(),
             std::numeric_limits<float>::infinity()};
@@ -58,7 +58,7 @@ struct Aabb {
             -std::numeric_limits<float>::infinity()};
 
   constexpr bool operator==(const Aabb&) const = default;
-  /// True when the box holds no point at all.
+  /// True when the box contains no point.
   constexpr bool empty() const { return !(min.x <= max.x && min.y <= max.y && min.z <= max.z); }
 };
 

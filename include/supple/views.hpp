@@ -133,7 +133,7 @@ class PositionsView {
  public:
   PositionsView() = default;
   /// Coordinate c of point i is at `first + i * point_stride + c * coordinate_stride`, the strides in bytes.
-  /// Strides may have any value, negative ones too; the memory need not be aligned.
+  /// Strides may have any value, also negative; the memory need not be aligned.
   template <Coordinate Scalar>
   PositionsView(const Scalar* first, std::size_t count, std::ptrdiff_t point_stride = 3 * sizeof(Scalar),
                 std::ptrdiff_t coordinate_stride = sizeof(Scalar))
@@ -168,7 +168,7 @@ class PositionsView {
   std::ptrdiff_t point_stride() const { return triples_.item_stride; }
   std::ptrdiff_t coordinate_stride() const { return triples_.scalar_stride; }
 
-  /// Point i as the numbers of the user; `Scalar` must be that of the view.
+  /// Point i in the precision of the user's numbers; `Scalar` must be the scalar of the view.
   template <Coordinate Scalar>
   Vec3<Scalar> get(std::size_t i) const {
     return {detail::read<Scalar>(triples_, i, 0), detail::read<Scalar>(triples_, i, 1),
@@ -219,7 +219,7 @@ class TrianglesView {
       : triples_(detail::triples_of(matrix, triangles_in)), index_(index_of<typename Matrix::Scalar>()) {}
 
   std::size_t size() const { return triples_.count; }
-  /// The vertex ids of triangle t as they are, also when they are negative.
+  /// The vertex ids of triangle t, unchecked: they may be negative.
   std::array<std::int64_t, 3> operator[](std::size_t t) const {
     switch (index_) {
       case Index::uint16:

@@ -13,17 +13,17 @@
 #include "supple/result.hpp"
 #include "supple/types.hpp"
 
-// What is in a recording and where: docs/recording.md says it in words. Rows name objects by their place in
-// the file, in `ObjectId::index`.
+// The content of a recording and its location in the file, as docs/recording.md describes. Rows refer to
+// objects by their index in the file, in `ObjectId::index`.
 
 namespace supple {
 
 inline constexpr const char* format_name = "supple recording";
 inline constexpr std::uint32_t format_version = 2;
-/// The oldest version that is read. What it lacks has its default.
+/// The oldest supported version. Values that it lacks get their defaults.
 inline constexpr std::uint32_t oldest_version = 1;
 
-// What an attribute or a column of this version is called in another one.
+// The names of attributes and columns of this version in another version.
 std::string attribute_in_version(const std::string& name, std::uint32_t version);
 std::string column_in_version(const std::string& name, std::uint32_t version);
 
@@ -85,7 +85,7 @@ struct ColumnOf {
   }
 };
 
-/// `field_of` gives a reference to the field of a row.
+/// `field_of` returns a reference to the field of a row.
 template <class Row, class FieldOf>
 ColumnOf<Row> column(const char* name, FieldOf field_of) {
   static_assert(std::is_trivially_copyable_v<Row>);
@@ -101,7 +101,7 @@ ColumnOf<Row> column(const char* name, FieldOf field_of) {
 template <class Row>
 const std::vector<ColumnOf<Row>>& columns_of();
 
-/// Names of the groups of rows of which a frame has any number.
+/// Names of the groups with any number of rows per frame.
 namespace group_names {
 inline constexpr const char* object_pairs = "object_pairs";
 inline constexpr const char* contacts = "contacts";

@@ -293,7 +293,7 @@ class Recorder::Implementation {
   std::optional<XdmfFile> xdmf_;
   std::uint64_t frames_ = 0, flushed_frames_ = 0;
   Clock::time_point last_flush_ = Clock::now();
-  std::string failure_;  ///< why it stopped
+  std::string failure_;  ///< why recording stopped; empty while it works
   bool closed_ = false;
 };
 

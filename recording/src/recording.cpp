@@ -248,7 +248,7 @@ class Recording::Implementation {
     if (value >= allowed) rows.fail(frame, row, column, value, allowed);
   }
 
-  /// Files name objects by index. `check(number, row)` sees the indices; then they become ids.
+  /// Files refer to objects by index. `check(number, row)` gets the indices; then they are replaced by ids.
   template <class Row, class Check>
   std::vector<Row> rows_of_objects(RaggedReader<Row>& reader, std::uint64_t frame, ObjectId Row::*object_a,
                                    ObjectId Row::*object_b, Check check) const {

@@ -9,9 +9,8 @@
 
 namespace supple {
 
-/// The XDMF file beside a recording: one grid per object and frame, which refers to the numbers in the HDF5
-/// file. It is complete XML after every `write`: one system call overwrites the closing tags with the new
-/// frames.
+/// The XDMF file of a recording: one grid per object and frame, which refers to the numbers in the HDF5 file.
+/// It is complete XML after every `write`: one system call overwrites the closing tags with the new frames.
 class XdmfFile {
  public:
   /// Replaces the file. Throws `Error` when it cannot be written.

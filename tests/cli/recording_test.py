@@ -360,8 +360,8 @@ class Detect(RecordingTest):
         self.write("a.obj", TRIANGLE)
         for arguments, parts in (
             (["none.h5"], ["none.h5: the recording has no frame"]),
-            (["one.h5", "--contacts", "continuous"], ["one.h5: one frame is no motion"]),
-            (["one.h5", "a.obj"], ["one.h5: a recording stands alone"]),
+            (["one.h5", "--contacts", "continuous"], ["one.h5: one frame has no motion"]),
+            (["one.h5", "a.obj"], ["one.h5: a recording must be the only input"]),
             (["one.h5", "--sequence"], ["one.h5: a recording has its own frames; leave out --sequence"]),
             (["one.h5", "--frames", "2"], ["--frames", "one.h5 has 1 frame"]),
             (["missing.h5"], ["missing.h5: there is no such file"]),

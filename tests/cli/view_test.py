@@ -243,7 +243,7 @@ class Serve(ViewTest):
         process.send_signal(signal.SIGINT)
         _, error = process.communicate()
         self.assertEqual(len(error.splitlines()), 1)
-        for part in ("warning", "--host 0.0.0.0", "look and steer"):
+        for part in ("warning", "--host 0.0.0.0", "see and control"):
             self.assertIn(part, error)
 
     def visit(self, *arguments, opens=True, **environment):

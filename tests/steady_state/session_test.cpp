@@ -65,7 +65,7 @@ struct Seen {
   std::uint64_t allocations = 0, frames = 0, least_bytes = ~std::uint64_t{0}, most_bytes = 0;
 };
 
-/// Lets it play, a step and a frame at a time; counts from the fifth period on.
+/// Plays the session step by step and takes each frame; counts allocations from the fifth period on.
 Seen play(SceneView show, std::initializer_list<std::string_view> commands = {}) {
   Session session(std::move(show));
   MessageWriter message;

@@ -87,8 +87,8 @@ ViewedObject placed(const char* model, const std::string& name, supple::Vec3d at
   return object;
 }
 
-/// The nine objects of the paper's experiment: deformed for a while, then sent off at random, in a room so
-/// small that they meet.
+/// The nine objects of the paper's experiment: they deform for a while and then get random velocities, in a
+/// room so small that they meet.
 Script nine() {
   Script script{"nine", {}};
   script.show.title = "nine";

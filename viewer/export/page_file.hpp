@@ -9,7 +9,7 @@
 
 namespace supple::viewer {
 
-/// Browsers open larger pages slowly or not at all, and mail does not carry them.
+/// Browsers open larger pages slowly or not at all.
 inline constexpr std::uint64_t largest_page = 200'000'000;
 
 /// Makes a page that needs no server. A packed scene view and the module are compressed with gzip and

@@ -28,9 +28,9 @@ struct Message {
 };
 
 /// Runs a session on its own thread, so that the simulation does not wait for sockets nor sockets for the
-/// simulation. Commands are executed between two steps. Messages are handed over one at a time; each is made
-/// when the one before has been sent. So a slow page gets the newest state, and nothing queues. Time does
-/// not pass while no page is connected.
+/// simulation. It executes commands between two steps and passes on one message at a time. It makes a message
+/// when the previous message has been sent. So a slow page gets the newest state, and nothing queues. Time
+/// does not pass while no page is connected.
 class SessionThread {
  public:
   /// Callbacks on the session thread.

@@ -41,8 +41,8 @@ class Arguments {
     if (!found) must_be(name, "one of " + list_of_words<Enumeration>());
     return found;
   }
-  /// An option by its key, as its description allows it: of words, whole numbers or truth values. Returns
-  /// whether it is there; the value stays as it was when it is not, or is wrong.
+  /// Reads an option by its key, within the range of its description: words, whole numbers or truth values.
+  /// Returns whether the option is given. The value stays unchanged when it is missing or invalid.
   template <class Struct, class Value>
   bool option(const Field<Struct, Value>& field, Value& value) {
     std::optional<Value> given;

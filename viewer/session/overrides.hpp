@@ -8,7 +8,7 @@
 
 namespace supple::viewer {
 
-/// Some options of a structure that were given, to be put in the place of those of another.
+/// Some given options of a structure, which replace the options of another structure.
 template <Described Options>
 class Overrides {
  public:
@@ -23,8 +23,8 @@ class Overrides {
         },
         values_);
   }
-  /// Calls `add(field, default_value, set)` for each option, where `set(value)` gives it. The overrides must
-  /// stay where they are as long as `set` is called.
+  /// Calls `add(field, default_value, set)` for each option; `set(value)` sets it. The overrides must not
+  /// move while `set` may be called.
   template <class Add>
   void for_each_setter(Add add) {
     std::size_t place = 0;

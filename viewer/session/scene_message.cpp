@@ -61,7 +61,7 @@ void add_settings(const Options& options, JsonText& json) {
       options);
 }
 
-/// The words that the options take which have words.
+/// The words of each option that has words.
 template <class Options>
 void add_words(JsonText& json) {
   Options options;

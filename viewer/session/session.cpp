@@ -176,7 +176,7 @@ std::span<const std::byte> Session::Implementation::next_message(MessageWriter& 
   return message.finish();
 }
 
-/// Returns false on failure, and then drops the optional layers from now on.
+/// Returns false on failure, and then drops the optional layers.
 bool Session::Implementation::pack_frame(MessageWriter& message) {
   const FrameView frame{stage_->show(), stage_->source(),  layers_,         stage_->center(),
                         generation_,    player_.playing(), player_.speed(), player_.loop()};
@@ -205,7 +205,7 @@ void Session::Implementation::command(std::string_view json) {
   std::size_t error = 0;
   const auto text = parse_json(json, error);
   if (!text || text->kind != JsonValue::Kind::object) {
-    fail("a command must be a JSON object, as {\"do\": \"play\"}; this is not one, from byte " +
+    fail("a command must be a JSON object such as {\"do\": \"play\"}; this text is not valid from byte " +
          std::to_string(error) + " on");
     return;
   }
@@ -219,7 +219,7 @@ void Session::Implementation::obey(const JsonValue& text) {
   }
   const JsonValue* const name = text.find("do");
   if (name == nullptr || name->kind != JsonValue::Kind::text)
-    return fail("a command must say what to do, as {\"do\": \"play\"}");
+    return fail("a command needs the member \"do\", such as {\"do\": \"play\"}");
   const std::string& wanted = name->text;
   for (const Command& command : commands_) {
     if (wanted == command.name) return run(command, text);

@@ -7,8 +7,8 @@
 
 namespace supple {
 
-/// Names of the built-in models, which replace the paper's models: pawn (154 vertices, 304 faces), fish (216,
-/// 338), rabbit (453, 902), human (1250, 2500), bike (9543, 18238).
+/// Names of the built-in models, which replace the models of the paper, with their numbers of vertices and
+/// faces: pawn (154, 304), fish (216, 338), rabbit (453, 902), human (1250, 2500), bike (9543, 18238).
 std::span<const std::string_view> model_names();
 
 /// Makes a built-in model: y up, centered on the origin, longest side 1, with the same bits on every machine.
@@ -24,7 +24,7 @@ TriangleMesh make_icosphere(std::uint32_t frequency);
 TriangleMesh make_torus(std::uint32_t rings, std::uint32_t sides, double major_radius = 0.5,
                         double minor_radius = 0.2);
 
-/// Axis-aligned box from -size/2 to size/2. Each face is a grid of `resolution` ≥ 1 squares a side; faces
+/// Axis-aligned box from -size/2 to size/2. Each face is a grid of `resolution` ≥ 1 squares per side. Faces
 /// share the vertices on edges; 12 resolution² triangles.
 TriangleMesh make_box(Vec3d size, std::uint32_t resolution = 1);
 

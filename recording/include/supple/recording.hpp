@@ -45,8 +45,8 @@ struct RecordedFrame {
 /// Writes a recording (docs/recording.md): an HDF5 file, and an XDMF file with the same stem for ParaView.
 ///
 /// The file is readable at any time up to the last flush, also after the process was killed: between flushes,
-/// the recorder never overwrites data that the file refers to. `add` flushes once a second, the destructor at
-/// the end.
+/// the recorder never overwrites data that the file refers to. `add` flushes once per second, and when 32 MiB
+/// wait in memory. The destructor flushes at the end.
 class Recorder {
  public:
   /// Replaces existing files once the new recording has its header. Throws `Error` when the files cannot be
@@ -60,7 +60,9 @@ class Recorder {
   /// Adds a frame: the positions of each object, in the order of the header. Throws `Error` when a size
   /// differs, or when the disk is full; flushed frames stay readable.
   void add(double time, std::span<const std::span<const Vec3d>> positions, const DetectResult& result);
+  /// Writes all frames to the file. Throws `Error` when the disk is full.
   void flush();
+  /// Flushes and closes both files. Throws `Error` when the disk is full.
   void close();
 
  private:
@@ -68,7 +70,8 @@ class Recorder {
   std::unique_ptr<Implementation> implementation_;
 };
 
-/// Reads a recording. While it is being written, these are the frames that were flushed when it was opened.
+/// Reads a recording. When the file is still being written, it has the frames that were flushed before it was
+/// opened.
 /// Calls on one recording must not overlap, not even calls of const functions, nor overlap other uses of HDF5
 /// unless HDF5 was built for threads.
 class Recording {

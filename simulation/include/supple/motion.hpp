@@ -15,9 +15,14 @@ namespace supple {
 
 /// How a time step advances positions and velocities.
 enum class Integrator : std::uint8_t {
-  verlet,            ///< velocity Verlet, damped as by Teschner et al. 2004; second order, one force a step
-  symplectic_euler,  ///< velocities first, positions with the new velocities; first order, one force a step
-  backward_euler,    ///< implicit: a sparse linear system a step; first order, stable at any stiffness
+  /// Velocity Verlet with the damping of Teschner et al. 2004. Second order, one evaluation of forces per
+  /// step.
+  verlet,
+  /// New velocities first, then positions with these velocities. First order, one evaluation of forces per
+  /// step.
+  symplectic_euler,
+  /// Implicit: up to six sparse linear systems per step. First order, stable at any stiffness.
+  backward_euler,
 };
 
 /// The material of a mesh of masses and springs. Units are the user's; the comments assume metres, kilograms
@@ -31,7 +36,7 @@ struct MassSpringOptions {
   double stiffness = 50;         ///< k_s of the spring on each edge, N/m, ≥ 0
   double damping = 0.5;          ///< k_d along each spring, also those across edges, N s/m, ≥ 0
   double air_friction = 0;       ///< k_d of eq. 1, of each vertex against the air around it, N s/m, ≥ 0
-  double bending_stiffness = 0;  ///< of a spring across each edge, between the two opposite corners, N/m, ≥ 0
+  double bending_stiffness = 0;  ///< of a spring across each edge, between the opposite corners, N/m, ≥ 0
   /// Stiffness of a force that preserves the area of each triangle, N/m, ≥ 0; see `MassSpringBody`.
   double area_stiffness = 0;
   /// Bulk modulus of the interior of closed surfaces, Pa, ≥ 0: the pressure at twice the volume. A force
@@ -49,8 +54,8 @@ struct MassSpringOptions {
   /// Rate of the flow, 1/s, > 0: the strain beyond `yield_strain` decays as e^(-plastic_rate t).
   double plastic_rate = 10;
 
-  /// Vertices of infinite mass, which forces do not move. They keep the velocity of `set_velocities`, 0 at
-  /// first. Handles are moved this way.
+  /// Vertices of infinite mass, which forces do not move. They keep the velocity of `set_velocities`, which
+  /// is 0 at first. Handles move this way.
   std::vector<std::uint32_t> fixed_vertices{};
   /// Worker threads; 0 means one for each core. They are used for more than 10,000 vertices, or more than
   /// 2,000 with `backward_euler`. The results are the same for any number.
@@ -131,12 +136,12 @@ class MassSpringBody {
   void undo_step();
 
   std::span<const Vec3d> positions() const;
-  std::span<const Vec3d> velocities() const;  ///< metres a second
-  // Both replace all values, and throw `Error` when the size differs from the mesh's.
+  std::span<const Vec3d> velocities() const;  ///< m/s
+  // Both replace all values. They throw `Error` when the size differs from the mesh.
   void set_positions(std::span<const Vec3d> positions);
   void set_velocities(std::span<const Vec3d> velocities);
-  /// Forces on each vertex besides gravity, in newtons. They stay until set again and do not act on fixed
-  /// vertices. Empty: none.
+  /// Forces on each vertex in addition to gravity, in newtons. They stay until they are set again and do not
+  /// act on fixed vertices. An empty span removes them. Throws `Error` when the size differs from the mesh.
   void set_external_forces(std::span<const Vec3d> forces);
   /// Adds a velocity to each mass that is not fixed, as the paper does (v_i = v_i + v_d), and to the air
   /// around it, so that friction does not stop the drift.
@@ -152,14 +157,14 @@ class MassSpringBody {
   /// are stable up to 1.4 times this value.
   double stable_step() const;
 
-  // Each O(n). Fixed vertices count for the center of mass only, not for momentum, velocity, kinetic energy
-  // or the energy of gravity.
+  // Each takes O(n). Fixed vertices count only for the center of mass, not for momentum, velocity, kinetic
+  // energy and the energy of gravity.
   MassSpringEnergy energy() const;
   Vec3d momentum() const;          ///< Σ m v, kg m/s
   Vec3d angular_momentum() const;  ///< Σ m x × v, about the origin
   Vec3d center_of_mass() const;
   Vec3d mean_velocity() const;
-  double area() const;  ///< of all triangles
+  double area() const;  ///< area of all triangles, m²
   /// The volume that closed parts enclose, m³, negative for parts wound inward; 0 when none is closed. Parts
   /// with a vertex that is not finite at rest do not count.
   double volume() const;
@@ -169,7 +174,7 @@ class MassSpringBody {
     std::uint32_t a = 0, b = 0;
     double rest_length = 0;
   };
-  std::vector<Spring> springs() const;  ///< by a, then b
+  std::vector<Spring> springs() const;  ///< sorted by a, then by b
 
  private:
   class Implementation;

@@ -49,9 +49,9 @@ struct MassSpringMotion {
 };
 
 /// The user's own motion: writes the positions of the vertices at `seconds`, the time at the end of the step.
-/// On entry, `positions` holds the positions of the step before (at first, the rest positions). The
-/// simulation calls it once a step, from one thread, in the order of objects, and again for the same step
-/// when the step failed and is repeated. It must not call the simulation.
+/// On entry, `positions` contains the positions of the step before, and the rest positions in the first step.
+/// The simulation calls the function once per step, from one thread, in the order of objects. It calls it
+/// again for the same step when the step failed and is repeated. The function must not call the simulation.
 using MotionFunction = std::function<void(double seconds, std::span<Vec3d> positions)>;
 
 /// Simple contact response by impulses (Bridson, Fedkiw and Anderson 2002). A vertex and a face, or two
@@ -59,9 +59,9 @@ using MotionFunction = std::function<void(double seconds, std::span<Vec3d> posit
 /// normal of the contact, which stop the approach. Elements that are already too near are moved apart by a
 /// tenth of the missing distance in each step. An impulse also moves the surrounding vertices, as far as
 /// springs transmit it in a step, so that it strains the springs by no more energy than it takes from the
-/// motion. The energy grows only by what moving apart takes, about a percent at long steps. `self_collision`,
-/// groups and masks apply. Momentum is conserved between bodies of masses and springs. Fixed vertices and all
-/// other objects do not react.
+/// motion. The energy grows only when elements that are too near are moved apart, by about a percent at long
+/// steps. `self_collision`, groups and masks apply. Momentum is conserved between bodies of masses and
+/// springs. Fixed vertices and all other objects do not react.
 ///
 /// The response does not guarantee that objects stay apart; the scene reports the contacts that remain. It
 /// works when objects do not intersect at first and steps are short, so that nothing moves further than about
@@ -69,26 +69,26 @@ using MotionFunction = std::function<void(double seconds, std::span<Vec3d> posit
 /// reach at most 1024 vertices, so springs that transmit them further (h² stiffness / mass above 100 or so)
 /// may gain energy. `thickness` should be well below the length of the shortest edge.
 ///
-/// Costs up to `iterations` continuous detections a step, and memory for a second scene. For each vertex that
-/// touched something, it also takes 16 bytes for each vertex that its impulses move.
+/// Cost: up to `iterations` continuous detections per step, and memory for a second scene. For each vertex
+/// that touched something, it also takes 16 bytes for each vertex that its impulses move.
 struct ContactResponse {
   bool enabled = false;
   double thickness = 1e-3;       ///< m, > 0
   double restitution = 0;        ///< 0 stops the approach, 1 reverses it
   double friction = 0;           ///< Coulomb's coefficient, ≥ 0
-  std::uint32_t iterations = 4;  ///< most rounds of detection and impulses in a step, ≥ 1
+  std::uint32_t iterations = 4;  ///< largest number of rounds of detection and impulses per step, ≥ 1
 };
 
 struct SimulationOptions {
   SceneOptions scene{};
   double time_step = 0.01;  ///< s, > 0
   /// Reflects bodies of masses and springs (section 5.2 of the paper): when a body reaches beyond a side
-  /// after a step and its mean velocity points outward, that velocity is reversed along the axis. A body may
-  /// therefore reach outside by the way of a step. It returns from any position, keeps its speed, and gravity
-  /// does not press it out. A body larger than the border is reflected in every step and so stays where it
-  /// is. Fixed vertices are not reflected. A side may be infinite.
+  /// after a step and its mean velocity points outward, that velocity is reversed along the axis. So a body
+  /// may reach outside by the length of one step. It returns from any position, keeps its speed, and gravity
+  /// does not push it out. A body larger than the border is reflected in every step and so stays at its
+  /// place. Fixed vertices are not reflected. A side may be infinite.
   std::optional<Border> border{};
-  std::uint64_t seed = 0;
+  std::uint64_t seed = 0;  ///< seed of all random numbers
   ContactResponse response{};
 };
 

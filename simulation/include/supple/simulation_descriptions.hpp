@@ -28,10 +28,10 @@ struct Description<MassSpringOptions> {
         .name = "integrator",
         .member = &Options::integrator,
         .doc = "How a step is integrated: verlet (second order) and symplectic_euler (first order) are fast "
-               "and need short steps, backward_euler is stable at any stiffness and slower"});
+               "and need short steps; backward_euler is slower and stable at any stiffness"});
     visitor(Field<Options, std::uint32_t>{.name = "substeps",
                                           .member = &Options::substeps,
-                                          .doc = "Equal parts of a step",
+                                          .doc = "Number of equal parts of a step",
                                           .range = ValueRange::from(1, 1'000'000)});
     visitor(Field<Options, double>{.name = "vertex_mass",
                                    .member = &Options::vertex_mass,
@@ -47,27 +47,27 @@ struct Description<MassSpringOptions> {
     number("bending_stiffness", &Options::bending_stiffness, "N/m", ValueRange::from(0),
            "Stiffness of a spring across each edge, between the two opposite corners");
     number("area_stiffness", &Options::area_stiffness, "N/m", ValueRange::from(0),
-           "Stiffness of a force that keeps the area of each triangle");
+           "Stiffness of a force that preserves the area of each triangle");
     number("volume_stiffness", &Options::volume_stiffness, "Pa", ValueRange::from(0),
-           "Bulk modulus of the inside: a pressure keeps the volume of each closed part; an error when no "
-           "part of the mesh is closed");
+           "Bulk modulus of the interior: a pressure preserves the volume of each closed part of the mesh; "
+           "it is an error when no part is closed");
     visitor(Field<Options, Vec3d>{.name = "gravity",
                                   .member = &Options::gravity,
                                   .doc = "Acceleration of each vertex",
                                   .unit = "m/s²"});
     number("max_strain", &Options::max_strain, "", ValueRange::above(0).or_infinity(),
-           "Edges stay within this part of their rest length");
+           "Limit of the strain: an edge changes by at most this fraction of its rest length");
     number("yield_strain", &Options::yield_strain, "", ValueRange::from(0).or_infinity(),
-           "Edges with a larger strain flow: the shape does not come back");
+           "Strain beyond which edges flow: they keep a part of the deformation");
     number("plastic_rate", &Options::plastic_rate, "1/s", ValueRange::above(0),
-           "How fast they flow: this part of the strain beyond yield_strain in a second");
+           "Rate of the flow: the strain beyond yield_strain decays as e^(-plastic_rate t)");
     visitor(Field<Options, std::vector<std::uint32_t>>{.name = "fixed_vertices",
                                                        .member = &Options::fixed_vertices,
                                                        .doc = "Vertices that forces do not move",
                                                        .key = "fixed"});
     visitor(Field<Options, std::uint32_t>{.name = "threads",
                                           .member = &Options::threads,
-                                          .doc = "Worker threads, 0 for one a core",
+                                          .doc = "Worker threads; 0 means one per core",
                                           .range = ValueRange::from(0, 1024),
                                           .is_of_machine = true});
   }
@@ -82,10 +82,10 @@ struct Description<MassSpringMotion::Handle> {
     visitor(Field<Handle, std::vector<std::uint32_t>>{
         .name = "vertices", .member = &Handle::vertices, .doc = "Vertices that are moved"});
     visitor(Field<Handle, Vec3d>{
-        .name = "by", .member = &Handle::by, .doc = "Vector by which they are moved", .unit = "m"});
+        .name = "by", .member = &Handle::by, .doc = "Displacement of the vertices", .unit = "m"});
     visitor(Field<Handle, double>{.name = "seconds",
                                   .member = &Handle::seconds,
-                                  .doc = "How long that takes; then they stay",
+                                  .doc = "Duration of the movement; afterwards the vertices stay",
                                   .range = ValueRange::above(0),
                                   .unit = "s"});
   }
@@ -101,7 +101,7 @@ struct Description<MassSpringMotion> {
         .name = "springs", .member = &Motion::springs, .doc = "Masses and springs of the object"});
     visitor(Field<Motion, Vec3d>{.name = "velocity",
                                  .member = &Motion::velocity,
-                                 .doc = "Velocity with which the object is sent off after deform_seconds",
+                                 .doc = "Velocity that the object gets after deform_seconds",
                                  .unit = "m/s"});
     visitor(Field<Motion, double>{.name = "random_speed",
                                   .member = &Motion::random_speed,
@@ -115,13 +115,14 @@ struct Description<MassSpringMotion> {
                                   .unit = "N"});
     visitor(Field<Motion, double>{.name = "deform_seconds",
                                   .member = &Motion::deform_seconds,
-                                  .doc = "How long the random forces act before the object is sent off",
+                                  .doc = "Duration of the random forces; then the object gets its velocity",
                                   .range = ValueRange::from(0),
                                   .unit = "s"});
     visitor(Field<Motion, std::optional<std::uint64_t>>{
         .name = "seed",
         .member = &Motion::seed,
-        .doc = "Chooses what is random instead of the object's number; a copy's number is added to it"});
+        .doc = "Seed of the random numbers, instead of the number of the object; each copy adds its own "
+               "number"});
     visitor(Field<Motion, std::vector<MassSpringMotion::Handle>>{
         .name = "handles",
         .member = &Motion::handles,
@@ -153,7 +154,7 @@ struct Description<WaveMotion> {
     visitor(Field<Motion, std::uint64_t>{
         .name = "seed",
         .member = &Motion::seed,
-        .doc = "Chooses the phases of the waves; a copy's number is added to it"});
+        .doc = "Seed of the phases of the waves; each copy adds its own number"});
   }
 };
 
@@ -167,21 +168,23 @@ struct Description<ContactResponse> {
         .name = "enabled", .member = &Options::enabled, .doc = "Contacts push masses and springs apart"});
     visitor(Field<Options, double>{.name = "thickness",
                                    .member = &Options::thickness,
-                                   .doc = "Distance that elements keep",
+                                   .doc = "Distance that the response keeps between elements",
                                    .range = ValueRange::above(0),
                                    .unit = "m"});
-    visitor(Field<Options, double>{.name = "restitution",
-                                   .member = &Options::restitution,
-                                   .doc = "Part of the approaching velocity that is returned",
-                                   .range = ValueRange::from(0, 1)});
+    visitor(Field<Options, double>{
+        .name = "restitution",
+        .member = &Options::restitution,
+        .doc = "Fraction of the approaching velocity that is reversed: 0 stops the approach, 1 reverses it",
+        .range = ValueRange::from(0, 1)});
     visitor(Field<Options, double>{.name = "friction",
                                    .member = &Options::friction,
                                    .doc = "Coulomb's coefficient of friction",
                                    .range = ValueRange::from(0)});
-    visitor(Field<Options, std::uint32_t>{.name = "iterations",
-                                          .member = &Options::iterations,
-                                          .doc = "Rounds of detection and impulses in a step at most",
-                                          .range = ValueRange::from(1, 1000)});
+    visitor(
+        Field<Options, std::uint32_t>{.name = "iterations",
+                                      .member = &Options::iterations,
+                                      .doc = "Largest number of rounds of detection and impulses per step",
+                                      .range = ValueRange::from(1, 1000)});
   }
 };
 
@@ -201,12 +204,12 @@ struct Description<SimulationOptions> {
     visitor(Field<Options, std::optional<Border>>{
         .name = "border",
         .member = &Options::border,
-        .doc = "Lowest and highest corner of the box that objects turn back at",
+        .doc = "Lowest and highest corner of the box that reflects objects",
         .key = "bounds"});
     visitor(
         Field<Options, std::uint64_t>{.name = "seed",
                                       .member = &Options::seed,
-                                      .doc = "Chooses all that is random: velocities, forces and rotations"});
+                                      .doc = "Seed of the random numbers: velocities, forces and rotations"});
     visitor(Field<Options, ContactResponse>{
         .name = "response", .member = &Options::response, .doc = "Response to contacts"});
   }

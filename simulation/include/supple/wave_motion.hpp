@@ -9,11 +9,11 @@
 
 namespace supple {
 
-/// An analytic deformation: an object drifts, is reflected at the border of the scene, and waves run through
-/// it. It is a function of time alone, with the same bits on every machine, so any frame can be computed
-/// alone.
+/// An analytic deformation: an object drifts, the border of the scene reflects it, and waves run through it.
+/// It depends only on the time and has the same bits on every machine, so any frame can be computed
+/// separately.
 struct WaveMotion {
-  Vec3d velocity{};        ///< of the drift, units a second
+  Vec3d velocity{};        ///< of the drift, units per second
   double amplitude = 0;    ///< of the waves, units
   double wavelength = 1;   ///< units, > 0
   double period = 1;       ///< of the waves, seconds, > 0

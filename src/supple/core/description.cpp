@@ -29,7 +29,7 @@ std::string text_of(const ValueRange& range, bool is_whole) {
     text += " from " + text_of(lowest) + (range.highest < infinity ? "" : " up");
   if (range.highest < infinity) {
     text += " to ";
-    // Not 4.294967295e+09.
+    // Whole numbers without an exponent, as 4294967295.
     text += is_whole ? std::to_string(static_cast<std::uint64_t>(range.highest)) : text_of(range.highest);
   }
   if (range.includes_zero) text += ", or 0";

@@ -18,13 +18,13 @@ HWY_BEFORE_NAMESPACE();
 namespace supple {
 namespace HWY_NAMESPACE {
 
-/// The words whose lanes are set, moved to the front; what is behind them is anything.
+/// Moves the words of the set lanes to the front. The words behind them are undefined.
 template <class Words>
 HWY_INLINE hwy::HWY_NAMESPACE::Vec<Words> packed_lanes(Words lanes, hwy::HWY_NAMESPACE::Vec<Words> words,
                                                        hwy::HWY_NAMESPACE::Mask<Words> set) {
   namespace hn = hwy::HWY_NAMESPACE;
 #if HWY_ARCH_X86 && HWY_TARGET > HWY_AVX3 && HWY_TARGET != HWY_SCALAR
-  // Highway's own table is copied to the stack each time by gcc 12.
+  // gcc 12 copies Highway's own table to the stack in each call.
   std::array<std::uint8_t, 8> bits{};
   hn::StoreMaskBits(lanes, set, bits.data());
   const hn::Rebind<std::uint8_t, Words> bytes;

@@ -6,7 +6,7 @@
 
 namespace supple {
 
-/// For each set of eight lanes, bit by bit, the numbers of those in it, ascending; zeros behind them.
+/// For each bit mask of eight lanes: the numbers of its lanes in ascending order, followed by zeros.
 inline constexpr std::array<std::array<std::uint8_t, 8>, 256> packed_lane_tables = [] {
   std::array<std::array<std::uint8_t, 8>, 256> table{};
   for (std::size_t set = 0; set < table.size(); ++set) {

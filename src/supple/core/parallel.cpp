@@ -9,10 +9,10 @@
 #include <optional>
 #include <vector>
 
-// oneTBB is not built with the thread sanitizer, which would take each hand-over of work for a race. So this
-// file is not instrumented either, and says itself what is ordered: all that the caller did before the
-// ranges, the ranges of one worker among each other, and the ranges before all that the caller does next.
-// Races between ranges show.
+// oneTBB is not built with the thread sanitizer, so the sanitizer would report each transfer of work as a
+// race. Therefore this file is not instrumented either. It tells the sanitizer the order: the caller's
+// earlier work comes before the ranges, the ranges of one worker follow each other, and all ranges come
+// before the caller's later work. Races between ranges are still reported.
 #if defined(SUPPLE_THREAD_SANITIZER)
 #include <sanitizer/tsan_interface.h>
 #define SUPPLE_HAPPENS_BEFORE(address) __tsan_release(address)
@@ -39,14 +39,15 @@ void Parallel::run(std::size_t count, std::size_t, void* callable, RangeFunction
 
 struct Parallel::Threads {
   explicit Threads(int count) : arena(count), worker_tokens(static_cast<std::size_t>(count)) {
-    // More threads than cores are unusual but legal; without this oneTBB warns on the standard error stream.
+    // More threads than cores are unusual but allowed. Without this, oneTBB prints a warning on standard
+    // error.
     if (count > tbb::this_task_arena::max_concurrency())
       more_than_cores.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(count));
   }
 
   std::optional<tbb::global_control> more_than_cores;
   tbb::task_arena arena;
-  // Only their addresses matter: they name the hand-overs for the thread sanitizer.
+  // Only their addresses matter: they identify the transfers of work for the thread sanitizer.
   char fork_token = 0, join_token = 0;
   std::vector<char> worker_tokens;
 };

@@ -8,21 +8,21 @@
 
 namespace supple {
 
-/// The one door to threads. Work handed in must not depend on how it is split or on which worker runs it.
-/// Compiled with SUPPLE_SERIAL it runs everything on the calling thread.
+/// The only use of threads in the library. The work must not depend on how it is split, nor on which worker
+/// runs it. With SUPPLE_SERIAL, everything runs on the calling thread.
 class Parallel {
  public:
-  /// `threads` = 0 takes one for each core.
+  /// `threads` = 0 means one per core.
   explicit Parallel(std::uint32_t threads);
   ~Parallel();
   Parallel(Parallel&&) noexcept;
   Parallel& operator=(Parallel&&) noexcept;
 
-  /// Workers that may run at once; `worker` below is less than this.
+  /// The number of workers that may run at the same time; `worker` below is less than this.
   std::uint32_t worker_count() const { return worker_count_; }
 
-  /// Calls `body(begin, end, worker)` on ranges that cover [0, count), each of at least about `grain` items.
-  /// Two calls with the same `worker` never run at the same time, so it may index scratch memory.
+  /// Calls `body(begin, end, worker)` for ranges that cover [0, count), each with about `grain` items or
+  /// more. Two calls with the same `worker` never run at the same time, so it may index scratch memory.
   template <class Body>
   void for_ranges(std::size_t count, std::size_t grain, Body&& body) const {
     if (count == 0) return;
@@ -37,7 +37,7 @@ class Parallel {
         });
   }
 
-  /// True when `body(begin, end)` is true for every range; all ranges are run.
+  /// Returns true when `body(begin, end)` is true for every range. Runs all ranges.
   template <class Body>
   bool all_of_ranges(std::size_t count, std::size_t grain, Body&& body) const {
     std::atomic<bool> all = true;

@@ -13,7 +13,7 @@ std::uint64_t mix(std::uint64_t z) {
   return z ^ (z >> 31);
 }
 
-/// All multiples of 2^-53 in [0, 1) alike.
+/// Each multiple of 2^-53 in [0, 1) is equally likely.
 double unit(std::uint64_t bits) {
   return static_cast<double>(bits >> 11) * 0x1p-53;
 }
@@ -36,7 +36,7 @@ double Random::uniform() {
   return unit(next());
 }
 
-/// Draws points in a cube until one is in the sphere: needs no trigonometry.
+/// Draws points in a cube until one is in the sphere, which needs no trigonometry.
 Vec3d Random::direction() {
   for (;;) {
     const double x = 2 * uniform() - 1, y = 2 * uniform() - 1, z = 2 * uniform() - 1;

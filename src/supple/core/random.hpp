@@ -6,21 +6,21 @@
 
 namespace supple {
 
-/// A number of [0, 1) that depends on all bits of `number`: for what has a number of its own and no
+/// A pseudo-random number in [0, 1) that depends on all bits of `number`, for items that have a number and no
 /// generator.
 double random_unit(std::uint64_t number);
 
-/// Random numbers, the same bits on every machine: the SplitMix64 generator by Steele, Lea and Flood ("Fast
-/// splittable pseudorandom number generators", 2014).
+/// Random numbers with the same bits on every machine: the SplitMix64 generator by Steele, Lea and Flood
+/// ("Fast splittable pseudorandom number generators", 2014).
 class Random {
  public:
-  /// Streams of one seed have nothing to do with one another.
+  /// Streams of one seed are independent of each other.
   explicit Random(std::uint64_t seed, std::uint64_t stream = 0);
 
   std::uint64_t next();
-  /// Of [0, 1), all multiples of 2^-53 alike.
+  /// Uniform in [0, 1): each multiple of 2^-53 is equally likely.
   double uniform();
-  /// Of length 1, all directions alike.
+  /// A unit vector; all directions are equally likely.
   Vec3d direction();
 
  private:

@@ -11,7 +11,7 @@ namespace supple {
 #ifdef __cpp_lib_jthread
 using StopSignal = std::stop_token;
 #else
-/// Where there are no threads, nobody can ask for a stop.
+/// Without threads, no call can be stopped.
 struct StopSignal {
   bool stop_requested() const { return false; }
 };

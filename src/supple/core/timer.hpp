@@ -4,7 +4,7 @@
 
 namespace supple {
 
-/// Seconds by the steady clock since it was made or last lapped.
+/// Measures seconds by the steady clock since construction or since the last lap.
 class Timer {
  public:
   double lap() {

@@ -8,7 +8,7 @@
 
 namespace supple {
 
-/// The scalar whose bytes lie at `place`, in the given order and at any alignment.
+/// Reads a scalar at `place`, in the given byte order and at any alignment.
 template <class Scalar>
 Scalar load_scalar(const char* place, std::endian order) {
   std::array<char, sizeof(Scalar)> bytes;

@@ -57,7 +57,7 @@ std::string read_file(const std::filesystem::path& path) {
   const File file = open_for_reading(path);
   std::error_code unknown_size;
   const auto expected_size = std::filesystem::file_size(path, unknown_size);
-  // One byte more than expected, so that the end is seen without growing.
+  // One byte more than expected, so that the end of the file shows without growing the buffer.
   std::size_t chunk = unknown_size ? 65536 : static_cast<std::size_t>(expected_size) + 1;
   std::string bytes;
   for (std::size_t size = 0;; chunk = std::max(chunk, size)) {
@@ -76,7 +76,7 @@ void write_file(const std::filesystem::path& path, const std::string& bytes) {
   File file(std::fopen(path.string().c_str(), "wb"));
   if (!file) fail("cannot write " + shown(path) + ": " + reason());
   const bool written = std::fwrite(bytes.data(), 1, bytes.size(), file.get()) == bytes.size();
-  // Closing may be what first finds the disk full.
+  // Closing may be the first call that notices a full disk.
   if (!written || std::fclose(file.release()) != 0) fail("cannot write " + shown(path) + ": " + reason());
 }
 

@@ -5,22 +5,22 @@
 
 namespace supple {
 
-/// `text` with its control characters replaced: messages are one line, whatever a file or mesh is called.
+/// Replaces the control characters of `text`, so that messages are one line for any name of a file or mesh.
 std::string one_line(std::string text);
 
-/// The path as messages show it.
+/// The path for messages.
 std::string shown(const std::filesystem::path& path);
 
-/// With its dot; empty when there is none.
+/// The extension with its dot, in lower case; empty when there is none.
 std::string lower_case_extension(const std::filesystem::path& path);
 
 /// Fails with "cannot open ..." and the system's reason when the file cannot be read or is a directory.
 void check_readable(const std::filesystem::path& path);
 
-/// All bytes of a file. Fails as `check_readable` does.
+/// Reads all bytes of a file. Fails as `check_readable` does.
 std::string read_file(const std::filesystem::path& path);
 
-/// Makes or replaces a file. Fails with "cannot write ..." when that is not allowed or the disk is full.
+/// Creates or replaces a file. Fails with "cannot write ..." when that is not allowed or the disk is full.
 void write_file(const std::filesystem::path& path, const std::string& bytes);
 
 }  // namespace supple

@@ -7,8 +7,8 @@
 
 namespace supple {
 
-// The readers take a whole file's bytes and, for messages, its name; they leave the mesh's name empty. The
-// writers give a whole file's bytes for a mesh that passed check_mesh.
+// Readers take the bytes of a whole file and its name for messages; they leave the name of the mesh empty.
+// Writers return the bytes of a whole file for a mesh that passed check_mesh.
 
 TriangleMesh read_obj(std::string_view bytes, const std::string& file);
 TriangleMesh read_off(std::string_view bytes, const std::string& file);

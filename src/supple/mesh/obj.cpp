@@ -1,5 +1,5 @@
-// Wavefront OBJ: polygons only; texture coordinates, normals, groups, materials, lines and curves are
-// ignored.
+// Wavefront OBJ: reads polygons and ignores texture coordinates, normals, groups, materials, lines and
+// curves.
 
 #include <limits>
 #include <vector>
@@ -32,7 +32,7 @@ class ObjReader {
   }
 
  private:
-  // Only those that name a later vertex than any reference before them: the first to fail is among them.
+  // Only references to a later vertex than all references before them: the first invalid one is among them.
   struct ForwardReference {
     std::int64_t index;
     std::size_t line;

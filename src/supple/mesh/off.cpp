@@ -1,4 +1,5 @@
-// Geomview's OFF in text, one vertex or face to a line: the variants whose vertices start with x, y and z.
+// Geomview's OFF as text, with one vertex or face per line: the variants whose vertices start with x, y and
+// z.
 
 #include <utility>
 
@@ -52,8 +53,8 @@ class OffReader {
     return static_cast<std::size_t>(count);
   }
 
-  // Before anything is allocated by them. The shortest vertex is "0 0 0", the shortest face "3 0 0 0", and
-  // all but the last are followed by a line end.
+  // Check the counts before they determine an allocation. The shortest vertex is "0 0 0", the shortest face
+  // is "3 0 0 0", and a line end follows all but the last.
   void check_counts(std::size_t vertices, std::size_t faces) const {
     const std::size_t available = scanner_.remaining() + 1;
     if (vertices > available / 6 || faces > (available - 6 * vertices) / 8) {

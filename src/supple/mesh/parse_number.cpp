@@ -9,13 +9,13 @@
 namespace supple {
 namespace {
 
-// A '+' is taken only before something that may follow it: "+-1" is no number.
+// Skips a '+' unless another sign follows it: "+-1" is not a number.
 const char* skip_plus(const char* first, const char* last) {
   const bool lone_plus = last - first >= 2 && first[0] == '+' && first[1] != '-' && first[1] != '+';
   return lone_plus ? first + 1 : first;
 }
 
-// Whether a decimal number that double cannot hold is too large rather than too small.
+// Whether a decimal number out of the range of double is too large; otherwise it is too small.
 bool is_too_large(std::string_view number) {
   const std::size_t exponent_mark = number.find_first_of("eE");
   const std::string_view mantissa = number.substr(0, exponent_mark);

@@ -1,4 +1,5 @@
-// PLY, text or binary of either byte order: vertices with x, y, z and polygons, all else is stepped over.
+// PLY, text or binary in either byte order: reads vertices with x, y, z and polygons, and skips everything
+// else.
 
 #include <array>
 #include <bit>
@@ -160,7 +161,7 @@ class HeaderReader {
   Header header_;
 };
 
-// The values of a text body, which may be spread over lines in any way.
+// The values of a text body, which may have any line breaks.
 class TextBody {
  public:
   explicit TextBody(TextScanner& scanner) : scanner_(scanner) {}
@@ -236,7 +237,7 @@ class BinaryBody {
     if (count > available() / size_of(type)) fail_truncated();
     position_ += count * size_of(type);
   }
-  // Some writers pad, so what follows the last element is no error.
+  // Some writers add padding, so data after the last element is allowed.
   void finish() {}
   [[noreturn]] void fail_here(const std::string& message) const {
     fail(file_ + ", byte " + std::to_string(last_value_ - begin_) + ": " + message);
@@ -257,7 +258,7 @@ class BinaryBody {
 
   const char* begin_;
   const char* position_;
-  const char* last_value_;  // for messages: where what was read last starts
+  const char* last_value_;  // for messages: the start of the value that was read last
   const char* end_;
   std::endian order_;
   const std::string& file_;
@@ -284,8 +285,8 @@ class BodyReader {
   }
 
  private:
-  // Before anything is allocated by them, or counted up to. Afterwards all counts that matter are below the
-  // size of the file.
+  // Check the counts before they determine an allocation or a loop. After this, all relevant counts are below
+  // the size of the file.
   void check_counts() {
     std::uint64_t available = body_.available();
     for (const Element& element : header_.elements) {
@@ -303,7 +304,7 @@ class BodyReader {
     std::uint64_t size = 0;
     for (const Property& property : element.properties) {
       size += Body::least_size(property.count_type.value_or(property.type));
-      // No polygon has fewer than three corners.
+      // Every polygon has at least three corners.
       if (element.name == "face" && is_vertex_list(property)) size += 3 * Body::least_size(property.type);
     }
     return size;
@@ -324,7 +325,7 @@ class BodyReader {
     }
   }
 
-  // For each property the coordinate that it is, or -1.
+  // For each property, its coordinate, or -1.
   std::vector<int> axes_of(const Element& element) const {
     std::vector<int> axes(element.properties.size(), -1);
     for (int axis = 0; axis < 3; ++axis) {

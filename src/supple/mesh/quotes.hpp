@@ -5,7 +5,7 @@
 
 namespace supple {
 
-/// `text` between single quotes for a message: at most 40 bytes of it, control characters replaced.
+/// Quotes `text` for a message: at most 40 bytes, with control characters replaced.
 std::string in_quotes(std::string_view text);
 
 }  // namespace supple

@@ -6,7 +6,8 @@
 
 namespace supple {
 
-/// Whether two triangles have a vertex id in common. Without branches: which pairs have is hard to foretell.
+/// Whether two triangles have a vertex id in common. It has no branches, because they would be hard to
+/// predict.
 inline bool share_vertex(const Triangle& p, const Triangle& q) {
   bool shared = false;
   for (const std::uint32_t vertex : p) {

@@ -1,4 +1,4 @@
-// STL, text or binary: triangles of three points each, which are joined where they are equal.
+// STL, text or binary: triangles of three points. Equal points become one vertex.
 
 #include <array>
 #include <bit>
@@ -14,8 +14,8 @@
 namespace supple {
 namespace {
 
-// A binary file: 80 bytes of anything, the number of facets, then for each facet a normal and three points of
-// three floats and two more bytes. All is little endian.
+// A binary file has 80 arbitrary bytes, the number of facets, and for each facet a normal and three points of
+// three floats, and two more bytes. All numbers are little endian.
 constexpr std::size_t header_size = 80, prologue_size = 84, facet_size = 50, normal_size = 12;
 
 bool equal_ignoring_case(std::string_view word, std::string_view lower_case) {
@@ -30,7 +30,7 @@ std::uint64_t announced_size(std::string_view bytes) {
   return prologue_size + std::uint64_t{facet_size} * facets;
 }
 
-// Binary files may start with "solid" as well, so the size and zero bytes, which no text has, come first.
+// Binary files may start with "solid" too. So first test the size, and zero bytes, which no text has.
 bool is_text(std::string_view bytes) {
   if (bytes.size() >= prologue_size && bytes.size() == announced_size(bytes)) return false;
   if (bytes.substr(0, 1024).find('\0') != std::string_view::npos) return false;
@@ -92,7 +92,7 @@ class StlTextReader {
     scanner_.skip_line();
   }
 
-  // The normal is neither needed nor always a number: it may be any three words.
+  // The normal is not needed and not always a number: it may be any three words.
   void read_facet() {
     expect("normal");
     for (int axis = 0; axis < 3; ++axis) next_word();
@@ -129,7 +129,7 @@ class StlTextReader {
   VertexWelder welder_;
 };
 
-// Of length one, or zero where the corners give no direction.
+// A unit vector, or zero when the corners give no direction.
 Vec3d unit_normal(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
   const Vec3d u = b - a, v = c - a;
   const Vec3d normal{u.y * v.z - u.z * v.y, u.z * v.x - u.x * v.z, u.x * v.y - u.y * v.x};

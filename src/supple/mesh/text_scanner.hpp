@@ -9,33 +9,33 @@
 
 namespace supple {
 
-/// What a text format has besides words, blanks and line ends.
+/// The syntax of a text format besides words, blanks and line ends.
 struct TextSyntax {
   bool hash_comments = false;        ///< '#' starts a comment that lasts to the end of its line
   bool backslash_continues = false;  ///< a backslash as the last character joins the next line to this one
 };
 
-/// Reads words and numbers, line by line, from a text file held in memory, and knows the line for messages.
-/// Lines end with LF, CR LF or CR; a byte order mark at the start is skipped. Keeps a view of the text.
+/// Reads words and numbers, line by line, from a text file in memory, and tracks the line for messages. Lines
+/// end with LF, CR LF or CR. Skips a byte order mark at the start. Keeps a view of the text.
 class TextScanner {
  public:
   TextScanner(std::string_view text, std::string file, TextSyntax syntax);
 
-  /// Skips blanks; true when nothing but perhaps a comment is left on this line.
+  /// Skips blanks. Returns true when only a comment, or nothing, is left on this line.
   bool at_line_end();
-  /// Moves past the end of this line, whatever is left on it.
+  /// Moves to the next line and ignores the rest of this line.
   void skip_line();
   /// Moves to the next word, on this line or a later one. False at the end of the file.
   bool skip_to_word();
-  /// Moves past `literal` if the text goes on with exactly it.
+  /// Moves past `literal` if it comes next.
   bool accept(std::string_view literal);
   /// The next word of this line; empty at its end.
   std::string_view word();
 
   /// The next number of this line. Fails, with `what` in the message, when there is none.
   double number(const char* what);
-  /// The next integer of this line, with `word_may_go_on` also when a '/' follows, and then up to the next
-  /// blank.
+  /// The next integer of this line. With `word_may_go_on`, a '/' may follow it; the scanner then skips the
+  /// rest of the word.
   std::int64_t integer(const char* what, bool word_may_go_on = false);
 
   std::size_t offset() const { return static_cast<std::size_t>(position_ - begin_); }
@@ -44,7 +44,7 @@ class TextScanner {
 
   [[noreturn]] void fail_here(const std::string& message) const { fail_at(line_, message); }
   [[noreturn]] void fail_at(std::size_t line, const std::string& message) const;
-  /// Fails saying that `what` was expected and that `found`, a word just read, stands there instead.
+  /// Fails with the message that `what` was expected instead of `found`, the word just read.
   [[noreturn]] void fail_expected(const std::string& what, std::string_view found);
 
  private:

@@ -12,7 +12,7 @@ bool is_degenerate(const Triangle& triangle) {
   return triangle[0] == triangle[1] || triangle[1] == triangle[2] || triangle[2] == triangle[0];
 }
 
-// Both ends in one number, the smaller first, so that equal edges are equal numbers.
+// Stores both ends in one number, the smaller first, so that equal edges are equal numbers.
 std::uint64_t edge_key(std::uint32_t a, std::uint32_t b) {
   return std::uint64_t{std::min(a, b)} << 32 | std::max(a, b);
 }

@@ -7,8 +7,8 @@
 
 namespace supple {
 
-/// Vertices in memory: x y z of vertex v are the three scalars from `(*this)[v]` on. What follows them need
-/// not be readable.
+/// Vertices in memory: x, y, z of vertex v are the three scalars that start at `(*this)[v]`. The memory after
+/// them may be unreadable.
 template <class Scalar>
 struct VertexArray {
   const Scalar* data = nullptr;
@@ -17,8 +17,9 @@ struct VertexArray {
   const Scalar* operator[](std::size_t vertex) const { return data + vertex * stride; }
 };
 
-/// What kernels read of the triangles of an object: raw arrays, so that they compile for every instruction
-/// set alike. One of `floats` and `doubles` has data; `inert` has a byte a triangle or is null.
+/// The data of an object's triangles that kernels read: raw arrays, so that kernels compile in the same way
+/// for every instruction set. Either `floats` or `doubles` has data. `inert` has one byte per triangle, or is
+/// null.
 struct TriangleArrays {
   const Triangle* triangles = nullptr;
   VertexArray<float> floats;

@@ -16,7 +16,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 #if HWY_TARGET != HWY_SCALAR
 
-/// x y z and one more, nothing past z being read.
+/// Loads x, y, z and one undefined number. It does not read memory after z.
 HWY_INLINE hn::Vec<hn::FixedTag<float, 4>> load_vertex(const float* vertex) {
 #if HWY_TARGET <= HWY_AVX3
   const hn::FixedTag<float, 4> tag;

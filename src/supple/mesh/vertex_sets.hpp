@@ -8,12 +8,12 @@
 
 namespace supple {
 
-/// Disjoint sets of vertices, as trees in a flat array; halving the paths keeps them short.
+/// Disjoint sets of vertices (union-find), as trees in a flat array with path halving.
 class VertexSets {
  public:
   explicit VertexSets(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0u); }
 
-  /// The least vertex of the set.
+  /// The smallest vertex of the set.
   std::uint32_t root(std::uint32_t vertex) {
     while (parent_[vertex] != vertex) vertex = parent_[vertex] = parent_[parent_[vertex]];
     return vertex;

@@ -11,8 +11,8 @@
 
 namespace supple {
 
-/// Gives equal points one id, numbered by first use: for meshes that repeat a vertex for each of its corners.
-/// -0 equals +0, a point with a NaN equals nothing, not even itself. The first of equal points is kept.
+/// Gives equal points one id, numbered by first use, for formats that repeat a vertex for each corner. The
+/// first of equal points is kept. -0 equals +0. A point with a NaN equals no point, not even itself.
 class VertexWelder {
  public:
   std::uint32_t id_of(const Vec3d& point) {
@@ -35,7 +35,8 @@ class VertexWelder {
  private:
   static constexpr std::uint32_t empty_slot = std::numeric_limits<std::uint32_t>::max();
 
-  // Where the point is, or else where it belongs: linear probing. Never iterated, so the hash orders nothing.
+  // The slot of the point, or the slot for it when it is new, by linear probing. The table is never iterated,
+  // so the hash does not affect any order.
   std::size_t slot_of(const Vec3d& point) const {
     const std::size_t mask = slots_.size() - 1;
     std::size_t slot = hash(point) & mask;
@@ -46,7 +47,7 @@ class VertexWelder {
   static std::size_t hash(const Vec3d& point) {
     std::uint64_t bits = 0;
     for (int axis = 0; axis < 3; ++axis) {
-      // Adding zero makes +0 of -0, which compare equal and so must hash alike.
+      // Adding zero turns -0 into +0: they compare equal, so they must have the same hash.
       bits = (bits ^ std::bit_cast<std::uint64_t>(point[axis] + 0.0)) * 0x9e3779b97f4a7c15u;
       bits ^= bits >> 32;
     }
@@ -62,7 +63,8 @@ class VertexWelder {
   }
 
   std::vector<Vec3d> points_;
-  std::vector<std::uint32_t> slots_;  // ids of points, a power of two of them, at most half in use
+  std::vector<std::uint32_t>
+      slots_;  // ids of points; the size is a power of two, and at most half of the slots are used
 };
 
 }  // namespace supple

@@ -53,8 +53,8 @@ std::vector<TrianglePair> intersecting_pairs_by_brute_force(const PlainObject& a
   std::sort(boxes_b.begin(), boxes_b.end(), [](const BoxedTriangle& p, const BoxedTriangle& q) {
     return p.min[0] != q.min[0] ? p.min[0] < q.min[0] : p.triangle < q.triangle;
   });
-  // Greatest max x of the boxes up to each: where it is less than a box's min x, none so far reaches that
-  // box.
+  // For each box, the largest max x of the boxes up to it. Where that is less than the min x of a box of a,
+  // none of the boxes up to here overlaps it.
   std::vector<double> reach;
   reach.reserve(boxes_b.size());
   for (const BoxedTriangle& q : boxes_b)

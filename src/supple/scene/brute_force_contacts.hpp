@@ -9,17 +9,18 @@
 
 namespace supple {
 
-/// An object as the brute force sees it: placed positions and triangles in the user's numbers.
+/// The input of the brute force: placed positions and triangles with the user's ids.
 struct PlainObject {
   std::vector<Vec3d> positions;
   std::vector<Triangle> triangles;
 };
 
-/// All intersecting pairs of triangles of two objects, sorted; of an object with itself (`same_object`) those
-/// with a < b that share no vertex id. Triangles with a coordinate that is not finite are in none.
+/// Returns all intersecting pairs of triangles of two objects, sorted. For an object with itself
+/// (`same_object`), these are pairs with a < b that share no vertex id. Triangles with a coordinate that is
+/// not finite intersect nothing.
 ///
-/// Brute force: every pair is decided by comparing the exact boxes of its triangles or by exact integers. The
-/// boxes of b are sorted along x so that most of them are decided many at a time.
+/// Each pair is decided by comparing the exact boxes of its triangles or by exact integer arithmetic. The
+/// boxes of b are sorted along x, so that one comparison decides many pairs.
 std::vector<TrianglePair> intersecting_pairs_by_brute_force(const PlainObject& a, const PlainObject& b,
                                                             bool same_object, const Parallel& parallel);
 

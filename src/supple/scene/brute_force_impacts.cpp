@@ -10,7 +10,7 @@
 namespace supple {
 namespace {
 
-/// A vertex, edge or face: up to three vertices, its name, and its exact boxes at both ends of the step.
+/// A vertex, edge or face: its vertices, its ids, and its exact boxes at both ends of the step.
 struct BoxedElement {
   std::array<std::uint32_t, 3> vertices;
   std::array<std::uint32_t, 2> name;
@@ -20,7 +20,7 @@ struct BoxedElement {
   double sweep_max() const { return std::max(start_max[0], end_max[0]); }
 };
 
-/// Appends the element unless it is inert.
+/// Appends the element unless a coordinate is not finite.
 void append(const PlainMovingObject& object, std::array<std::uint32_t, 3> vertices,
             std::array<std::uint32_t, 2> name, std::vector<BoxedElement>& elements) {
   BoxedElement element{vertices, name, {}, {}, {}, {}};
@@ -70,8 +70,8 @@ Elements elements_of(const PlainMovingObject& object) {
   return elements;
 }
 
-/// Farther from each other than the separation, on one side of one axis, at both ends. The factor is above
-/// the rounding of the differences.
+/// Whether p and q are farther apart than the separation along some axis, on the same side at both ends. The
+/// factor exceeds the rounding of the differences.
 bool stay_apart(const BoxedElement& p, const BoxedElement& q, double separation) {
   const double least = separation * (1 + 0x1p-50);
   for (int axis = 0; axis < 3; ++axis) {
@@ -89,8 +89,8 @@ bool share_vertex(const BoxedElement& p, const BoxedElement& q) {
   });
 }
 
-/// Elements of b along x. `reach` is the greatest x of those up to each: where it is less than another's
-/// least x, none so far comes near it.
+/// Elements of b sorted by their least x. `reach` is, for each, the greatest x of the elements up to it:
+/// where that is less than the least x of another element, none of the elements up to here comes near it.
 struct Sweep {
   std::vector<BoxedElement> elements;
   std::vector<double> reach;
@@ -104,7 +104,7 @@ struct Sweep {
   }
 };
 
-/// Calls `decide(p, q)` for all that do not stay apart and collects what it finds.
+/// Calls `decide(p, q)` for all pairs that may come near each other and collects the touching ones.
 template <class Decide>
 void test_all(const std::vector<BoxedElement>& a, const Sweep& b, bool same_object, double separation,
               const Parallel& parallel, ElementPairKind kind, Decide&& decide,
@@ -114,7 +114,7 @@ void test_all(const std::vector<BoxedElement>& a, const Sweep& b, bool same_obje
   parallel.for_ranges(a.size(), 64, [&](std::size_t begin, std::size_t end, std::uint32_t worker) {
     for (std::size_t i = begin; i < end; ++i) {
       const BoxedElement& p = a[i];
-      // Widened by more than the sums can lose, which holds for sizes of any kind as only signs count.
+      // Widened by more than the sums can lose.
       const double slack = (std::abs(p.sweep_min()) + std::abs(p.sweep_max()) + margin) * 0x1p-50;
       const double low = p.sweep_min() - margin - slack, high = p.sweep_max() + margin + slack;
       const auto first = std::lower_bound(b.reach.begin(), b.reach.end(), low) - b.reach.begin();

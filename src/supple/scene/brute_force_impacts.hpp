@@ -13,13 +13,13 @@
 
 namespace supple {
 
-/// An object in motion as the brute force sees it: positions and triangles in the user's numbers.
+/// The input of the brute force: positions at both ends of the step and triangles with the user's ids.
 struct PlainMovingObject {
   std::vector<Vec3d> start, end;
   std::vector<Triangle> triangles;
 };
 
-/// As `ContinuousContact` names them.
+/// Two elements, named as in `ContinuousContact`.
 struct TouchingElements {
   ElementPairKind kind = ElementPairKind::vertex_face;
   std::array<std::uint32_t, 2> element_a{}, element_b{};
@@ -31,12 +31,12 @@ struct BruteForceImpacts {
   std::uint64_t pairs_checked = 0;
 };
 
-/// All pairs of a vertex and a face and of two edges that touch within the step, decided by comparing the
-/// exact boxes of the elements at both ends or by algebra. Of an object with itself (`same_object`) without
-/// those that share a vertex id. Elements with a coordinate that is not finite are in none; vertices that no
-/// triangle uses are no elements.
+/// Returns all vertex-face and edge-edge pairs that touch within the step. Each pair is decided by comparing
+/// the exact boxes of the elements at both ends or by algebra. For an object with itself (`same_object`),
+/// pairs that share a vertex id are left out. Elements with a coordinate that is not finite touch nothing;
+/// vertices that no triangle uses are not elements.
 ///
-/// Every pair is decided, most of them many at a time: the boxes of b are sorted along x.
+/// The boxes of b are sorted along x, so that one comparison decides many pairs.
 BruteForceImpacts find_impacts_by_brute_force(const PlainMovingObject& a, const PlainMovingObject& b,
                                               bool same_object, double separation, const Parallel& parallel);
 

@@ -7,11 +7,11 @@
 
 namespace supple {
 
-/// The part of a search that cannot matter any more, because as many contacts as requested were found before
-/// it in canonical order.
+/// Tells workers which part of a search they can skip because enough contacts that come earlier in canonical
+/// order were found already.
 ///
-/// A place in that order is a number: the job, then 32 bits that the pass makes of the contact, ascending.
-/// All that is shared only ever shrinks, so workers may read it late.
+/// A place in that order is a number: the job, then 32 bits that the pass derives from the contact. The limit
+/// only ever decreases, so a worker that reads an old value does too much, never too little.
 class ContactLimit {
  public:
   static constexpr std::uint64_t unlimited = std::numeric_limits<std::uint64_t>::max();
@@ -20,7 +20,7 @@ class ContactLimit {
     return std::uint64_t{job} << 32 | within;
   }
 
-  /// Before a search that is to find the first `most` contacts of the jobs, and whether there are more.
+  /// Call before a search for the first `most` contacts.
   void start(std::uint64_t most, std::size_t job_count) {
     wanted_ = most == unlimited ? unlimited : most + 1;
     last_.store(unlimited, std::memory_order_relaxed);
@@ -36,27 +36,27 @@ class ContactLimit {
   }
 
   bool is_set() const { return wanted_ != unlimited; }
-  /// One more than requested, to learn whether there are more.
+  /// One more than requested, which shows whether there are more.
   std::uint64_t wanted() const { return wanted_; }
-  /// Whether a list of so many contacts is to be cut to those that are wanted; not too often.
+  /// Whether a list of `count` contacts is long enough to be worth cutting to `wanted()`.
   bool drops_at(std::size_t count) const { return count / 2 >= wanted_ && count >= 1024; }
   bool excludes(std::uint64_t place) const { return place > last_.load(std::memory_order_relaxed); }
   bool excludes_some() const { return last_.load(std::memory_order_relaxed) != unlimited; }
 
-  /// So many as are wanted were found up to this place.
+  /// `wanted()` contacts were found up to this place.
   void exclude_after(std::uint64_t place) {
     std::uint64_t last = last_.load(std::memory_order_relaxed);
     while (place < last && !last_.compare_exchange_weak(last, place, std::memory_order_relaxed)) {
     }
   }
 
-  /// So many more contacts of the job were found.
+  /// `count` more contacts of the job were found.
   void add(std::uint32_t job, std::uint64_t count) {
     if (!is_set() || count == 0) return;
     found_[job].fetch_add(count, std::memory_order_relaxed);
     const std::uint64_t total = total_.fetch_add(count, std::memory_order_relaxed) + count;
     std::uint64_t next = next_count_.load(std::memory_order_relaxed);
-    // Counted anew each time that the total has doubled.
+    // Sums up again each time the total has doubled.
     if (total < next || !next_count_.compare_exchange_strong(next, 2 * total)) return;
     std::uint64_t before = 0;
     for (std::size_t i = 0; i < job_count_; ++i) {

@@ -8,10 +8,10 @@
 
 namespace supple {
 
-/// A contact on its way into the result; of which two objects is known elsewhere.
+/// A contact before it enters the result. The job says which two objects it belongs to.
 struct FoundContact {
   std::uint32_t triangle_a = 0, triangle_b = 0;
-  std::uint32_t details = 0;  ///< index in the details of the worker that found it
+  std::uint32_t details = 0;  ///< index into the details of the worker that found it
   std::uint16_t worker = 0;
   IntersectionKind kind = IntersectionKind::segment;
   std::uint8_t point_count = 0;

@@ -31,7 +31,7 @@ void for_each_bit(std::uint64_t bits, Visit&& visit) {
   for (; bits != 0; bits &= bits - 1) visit(static_cast<std::size_t>(std::countr_zero(bits)));
 }
 
-/// The exact stage sees triangles in the order of the results, so that nothing depends on the octrees' shape.
+/// Orders each pair as in the result, so that the exact stage does not depend on the shape of the octrees.
 std::span<const TrianglePair> in_order_of_results(std::span<const TrianglePair> pairs,
                                                   std::span<const std::uint32_t> triangle_ids,
                                                   std::span<TrianglePair> ordered) {
@@ -49,7 +49,7 @@ bool ContactPass::run(std::span<const ContactJob> jobs, std::span<const ContactO
                       std::uint64_t max_contacts, const StopSignal& stop, const Parallel& parallel,
                       StepStats& stats) {
   objects_ = objects;
-  // The vertices of colliding leaves are not kept.
+  // Colliding vertices are not reused from the previous step.
   const bool is_same_search = search == search_ && !search.colliding_vertices;
   search_ = search;
   stop_ = stop;
@@ -128,12 +128,12 @@ void ContactPass::run_task(std::size_t task, Worker& worker) {
   if (!limit_.is_set()) return;
   limit_.add(job, outcome.ranges[of_contacts].count);
   if (!search_.contact_points) return;
-  outcome.ranges[of_points].count = 0;  // without those of contacts that were dropped
+  outcome.ranges[of_points].count = 0;  // counted again, because contacts were dropped
   for (const FoundContact& found : std::span(worker.found).subspan(first))
     outcome.ranges[of_points].count += found.point_count;
 }
 
-/// Floating point decides all but few candidates, a block of them at a time in vector lanes.
+/// A vector kernel decides a block of candidates at a time. The exact test decides the few that remain.
 void ContactPass::test_candidates(std::uint32_t job, const ObjectPairView& pair,
                                   std::span<const TrianglePair> candidates, Worker& worker) const {
   const std::span<const std::uint32_t> ids_a = objects_[outcomes_.job(job).a].triangle_ids;
@@ -156,7 +156,7 @@ void ContactPass::test_candidates(std::uint32_t job, const ObjectPairView& pair,
     const std::uint64_t crossing = search_.contact_points ? 0 : verdicts.crossing;
     for_each_bit(crossing, [&](std::size_t k) {
       worker.found.push_back({part[k].a, part[k].b, 0, worker.number, IntersectionKind::segment, 2});
-      // The end of the batch reads them.
+      // The caller reads these ids after the batch.
       hwy::Prefetch(&ids_a[part[k].a]);
       hwy::Prefetch(&ids_b[part[k].b]);
     });
@@ -190,7 +190,7 @@ void ContactPass::test_candidate(const ObjectPairView& pair, TrianglePair candid
   }
 }
 
-/// Of the contacts from `first` on, which are of one task, those that come after as many as are wanted.
+/// Drops the excess contacts of one task, which begin at `first`: those that follow the first `wanted()`.
 void ContactPass::drop_excess(std::uint32_t job, std::size_t first, Worker& worker) {
   if (!limit_.drops_at(worker.found.size() - first)) return;
   const auto begin = worker.found.begin() + static_cast<std::ptrdiff_t>(first);
@@ -200,8 +200,8 @@ void ContactPass::drop_excess(std::uint32_t job, std::size_t first, Worker& work
   worker.found.erase(last + 1, worker.found.end());
 }
 
-/// Jobs are in order already: each gets its place, and is sorted within. What is known moves within the
-/// buffers, the rest is written around it.
+/// Jobs are in canonical order. Reused contacts move within the lists; new contacts are sorted and written
+/// between them.
 void ContactPass::gather_contacts(const Parallel& parallel) {
   outcomes_.place(tasks_.tasks());
   outcomes_.move_known<of_contacts>(contacts_);
@@ -227,7 +227,7 @@ void ContactPass::renumber_points(std::size_t job) {
     contact.first_point += change;
 }
 
-/// Those of one task are used where they are.
+/// The contacts of a job. They are copied only when several tasks found them.
 std::span<const FoundContact> ContactPass::found_of(std::size_t job, Worker& worker) const {
   const auto tasks = outcomes_.tasks_of(job);
   const auto found = [&](const Outcomes::TaskOutcome& task) {
@@ -276,7 +276,7 @@ void ContactPass::gather_colliding_vertices() {
   leaves_.clear();
   for (const Worker& worker : workers_)
     leaves_.insert(leaves_.end(), worker.leaves.begin(), worker.leaves.end());
-  // The vertices of a job are a set: the order of its leaves does not matter.
+  // The result is a set of vertices, so the order of leaves within a job does not matter.
   std::sort(leaves_.begin(), leaves_.end(),
             [](const CollidingLeaves& p, const CollidingLeaves& q) { return p.job < q.job; });
   for (auto first = leaves_.begin(); first != leaves_.end();) {

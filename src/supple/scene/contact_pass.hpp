@@ -19,30 +19,30 @@
 
 namespace supple {
 
-/// What the pass reads of an object.
+/// The data of an object that the pass reads.
 struct ContactObject {
   ObjectId id;
   OctreeView view;
-  std::span<const std::uint32_t> triangle_ids;  ///< octree order to the user's
+  std::span<const std::uint32_t> triangle_ids;  ///< the user's id of each triangle in octree order
   std::size_t vertex_count = 0;
 };
 
-/// What the pass looks for.
+/// What the pass searches.
 struct ContactSearch {
-  bool contacts = true;            ///< or else candidates are counted only
-  bool contact_points = true;      ///< also the points of the contacts
-  bool colliding_vertices = true;  ///< also the vertices in leaves that collide
+  bool contacts = true;            ///< false: it only counts candidates
+  bool contact_points = true;      ///< also the points and the normals of contacts
+  bool colliding_vertices = true;  ///< also the vertices in colliding leaves
 
   constexpr bool operator==(const ContactSearch&) const = default;
 };
 
-/// Narrow phase and exact stage of intersections over all jobs of a step, on all workers. Candidates stream
-/// from one to the other in batches. Keeps its memory between steps.
+/// Narrow phase and exact stage of intersections for all jobs of a step, on all workers. The narrow phase
+/// hands its candidates to the exact stage in batches. The pass keeps its memory between steps.
 class ContactPass {
  public:
-  /// `jobs` ascending; `objects` are addressed by the jobs, and `versions` are of their positions. The first
-  /// `max_contacts`, in canonical order whatever the threads. Returns false, the lists being of no use, when
-  /// it was stopped.
+  /// Finds the first `max_contacts` contacts in canonical order, for any number of threads. `jobs` ascend and
+  /// contain indices of `objects`; `versions` are those of the objects' positions. Returns false when it was
+  /// stopped; the lists are then not valid.
   bool run(std::span<const ContactJob> jobs, std::span<const ContactObject> objects,
            std::span<const std::uint64_t> versions, const ContactSearch& search, std::uint64_t max_contacts,
            const StopSignal& stop, const Parallel& parallel, StepStats& stats);
@@ -52,7 +52,7 @@ class ContactPass {
   std::span<const ContactPoint> contact_points() const { return points_; }
   std::span<const CollidingVertices> colliding_vertex_groups() const { return vertex_groups_; }
   std::span<const std::uint32_t> colliding_vertices() const { return vertices_; }
-  /// There are more contacts.
+  /// There are more than `max_contacts` contacts.
   bool is_truncated() const { return is_truncated_; }
 
  private:
@@ -60,21 +60,21 @@ class ContactPass {
     std::uint32_t job = 0;
     LeafPair leaves;
   };
-  /// Kept apart from `FoundContact`, which is sorted.
+  /// The rest of a contact. `FoundContact`, which is sorted, stays small.
   struct ContactDetails {
     Vec3d normal;
-    std::uint32_t first_point = 0;  // in the worker's points
+    std::uint32_t first_point = 0;  // index into the points of the worker
   };
   struct Worker {
     std::uint16_t number = 0;
     Traversal traversal;
-    std::vector<FoundContact> found;  // of its tasks, one after the other
+    std::vector<FoundContact> found;  // by all tasks of the worker
     std::vector<ContactDetails> details;
     std::vector<ContactPoint> points;
-    IntersectingPairs unfinished;  // the last of `details` still lack their normals
+    IntersectingPairs unfinished;  // contacts whose `details` have no normal yet: the last ones
     std::vector<CollidingLeaves> leaves;
     TaskStats stats;
-    // For putting the contacts of one job at a time into order.
+    // Scratch: sorts the contacts of one job.
     std::vector<FoundContact> of_job;
     ContactOrder order;
   };
@@ -83,7 +83,7 @@ class ContactPass {
 
   ObjectPairView view_of_job(std::uint32_t job) const;
   void run_task(std::size_t task, Worker& worker);
-  /// Contacts come with the octrees' triangles.
+  /// Appends to `found` with triangles in octree order.
   void test_candidates(std::uint32_t job, const ObjectPairView& pair,
                        std::span<const TrianglePair> candidates, Worker& worker) const;
   void test_candidate(const ObjectPairView& pair, TrianglePair candidate, Worker& worker) const;

@@ -15,33 +15,33 @@
 
 namespace supple {
 
-/// Two objects to be tested against each other, as indices into the objects of a pass; the same twice for an
-/// object against itself. `a <= b`.
+/// Two objects to test against each other, as indices into the objects of a pass; a <= b. Both are equal for
+/// a self-collision test.
 struct ContactJob {
   std::uint32_t a = 0, b = 0;
 
   constexpr auto operator<=>(const ContactJob&) const = default;
 };
 
-/// Part of a job: what lies below a pair of nodes.
+/// Part of a job: a pair of nodes and everything below it.
 struct ContactTask {
   std::uint32_t job = 0;
   NodePair root;
 };
 
-/// What a worker did of the tasks of a step.
+/// The work of one worker in a step.
 struct TaskStats {
   TraversalStats traversal;
   std::uint64_t exact_fallbacks = 0;
   double busy_seconds = 0;
-  double exact_seconds = 0;  ///< of these, in the exact stage
+  double exact_seconds = 0;  ///< part of `busy_seconds`
 };
 
 /// Splits jobs into tasks that load the workers evenly. Keeps its memory between steps.
 class ContactTasks {
  public:
-  /// One task for each of the numbers of jobs; with several workers and few jobs, the first levels of the
-  /// descent are done here to have enough of them. `view_of_job(job)` gives an `ObjectPairView`.
+  /// Makes one task for each job. With several workers and few jobs, it splits tasks by descending the first
+  /// levels of the octrees. `view_of_job(job)` returns an `ObjectPairView`.
   template <class ViewOfJob>
   void plan(std::span<const std::uint32_t> jobs, std::size_t worker_count, Traversal& traversal,
             ViewOfJob&& view_of_job) {
@@ -60,11 +60,11 @@ class ContactTasks {
     }
   }
 
-  /// By job.
+  /// Ascending by job.
   std::span<const ContactTask> tasks() const { return tasks_; }
 
-  /// Calls `run_task(number of the task, worker number)` for all tasks, on all workers, until a stop is
-  /// requested; each worker has `TaskStats stats`.
+  /// Calls `run_task(index of the task, index of the worker)` for all tasks, on all workers, until a stop is
+  /// requested. Each worker has a member `TaskStats stats`.
   template <class Worker, class RunTask>
   void run(const Parallel& parallel, std::vector<Worker>& workers, const StopSignal& stop,
            RunTask&& run_task) const {
@@ -83,8 +83,8 @@ class ContactTasks {
   std::vector<NodePair> finer_;
 };
 
-/// Adds what the workers did. Traversal and exact stage took `wall_seconds` together, split as the workers'
-/// own clocks say.
+/// Adds the work of all workers to `stats`. `wall_seconds` is the time of traversal and exact stage together;
+/// the workers' own clocks say how it splits.
 template <class Worker>
 void add_stats(const std::vector<Worker>& workers, double wall_seconds, StepStats& stats) {
   double busy = 0, exact = 0;

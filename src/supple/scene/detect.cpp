@@ -13,8 +13,8 @@ namespace supple {
 
 namespace {
 
-// Volumes of two objects that come within the separation of each other overlap when each grows by half of it.
-// The growth and its sums are rounded up by more than they can lose.
+// When each volume grows by half the separation, the volumes of two objects overlap if the objects come
+// within the separation. The growth is rounded up by more than its sums can lose.
 
 double growth(double separation) {
   return separation > 0 ? separation * (0.5 + 0x1p-20) + std::numeric_limits<float>::min() : 0;
@@ -47,7 +47,7 @@ StopSignal stop_signal([[maybe_unused]] const DetectRequest& request) {
 
 SearchedShapes Question::shapes() const {
   return {searches_at_rest(), is_continuous(),
-          // The paper's output is of all leaves whose volumes overlap; neighbours come within a separation.
+          // Colliding vertices and separations need all overlapping leaves, so nothing may be culled.
           searches_at_rest() && !colliding_vertices, is_continuous() && impact.min_separation == 0};
 }
 
@@ -58,7 +58,7 @@ const DetectResult& Scene::Implementation::detect(const DetectRequest& request) 
   const StopSignal stop = stop_signal(request);
   result = {};
   result.step = step_;
-  result.stopped = true;  // until it is published
+  result.stopped = true;  // until `publish`
   mark_changed();
   Timer total, stage;
   refit_objects(question_);
@@ -81,13 +81,13 @@ const DetectResult& Scene::Implementation::detect(const DetectRequest& request) 
   return result;
 }
 
-/// Calls `function(object, parallel)`, side by side. An object that is a large part of the work would keep
-/// its worker while the others wait: such objects take all workers, one after the other. `work` says how many
-/// triangles an object takes.
+/// Calls `function(object, parallel)` for all objects. Small objects share the workers; an object that is a
+/// large part of the work gets all of them, one such object after the other. `work(object)` returns a number
+/// of triangles.
 template <class Work, class Function>
 void Scene::Implementation::for_each_object(std::span<const std::uint32_t> indices, const Work& work,
                                             const Function& function) {
-  constexpr std::size_t least_large = 16384;  // triangles; fewer are not worth splitting
+  constexpr std::size_t least_large = 16384;  // triangles
   constexpr std::size_t shares_of_worker = 8;
   std::size_t total = 0;
   for (const std::uint32_t index : indices) total += work(*slots_[index].object);
@@ -310,21 +310,17 @@ void Scene::Implementation::publish() {
   detected_ = true;
 }
 
-/// Of both kinds of contacts, each pair once.
+/// Pairs of objects with contacts of either kind, each once, ascending.
 void Scene::Implementation::list_touching_pairs() {
   touching_pairs_.clear();
-  auto other = result.continuous_groups.begin();
-  const auto add = [&](const ContactGroup& group) {
-    if (group.a != group.b) touching_pairs_.push_back({group.a, group.b});
-  };
-  for (const ContactGroup& group : result.groups) {
-    const ObjectPair pair{group.a, group.b};
-    for (; other != result.continuous_groups.end() && ObjectPair{other->a, other->b} < pair; ++other)
-      add(*other);
-    if (other != result.continuous_groups.end() && ObjectPair{other->a, other->b} == pair) ++other;
-    add(group);
+  for (const auto groups : {result.groups, result.continuous_groups}) {
+    for (const ContactGroup& group : groups) {
+      if (group.a != group.b) touching_pairs_.push_back({group.a, group.b});
+    }
   }
-  for (; other != result.continuous_groups.end(); ++other) add(*other);
+  if (result.groups.empty() || result.continuous_groups.empty()) return;
+  std::sort(touching_pairs_.begin(), touching_pairs_.end());
+  touching_pairs_.erase(std::unique(touching_pairs_.begin(), touching_pairs_.end()), touching_pairs_.end());
 }
 
 }  // namespace supple

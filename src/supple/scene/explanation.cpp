@@ -26,7 +26,7 @@ TrianglePoints points_of(const SceneObject& object, std::uint32_t triangle) {
   return {placement.position(corners[0]), placement.position(corners[1]), placement.position(corners[2])};
 }
 
-/// At either end of the step.
+/// Whether a corner is not finite at either end of the step.
 bool is_inert(const SceneObject& object, std::uint32_t triangle) {
   const Triangle& corners = object.octree().triangles()[triangle];
   return std::any_of(corners.begin(), corners.end(), [&](std::uint32_t vertex) {
@@ -35,7 +35,7 @@ bool is_inert(const SceneObject& object, std::uint32_t triangle) {
   });
 }
 
-/// The same with a and b in each other's place.
+/// Swaps a and b.
 PairExplanation mirrored(PairExplanation explanation) {
   std::swap(explanation.box_a, explanation.box_b);
   std::swap(explanation.sphere_a, explanation.sphere_b);
@@ -44,7 +44,7 @@ PairExplanation mirrored(PairExplanation explanation) {
   return explanation;
 }
 
-/// The corners of a box in double.
+/// A box in double precision.
 struct Corners {
   Vec3d low, high;
 };
@@ -72,7 +72,7 @@ Aabb box_of(const Corners& corners) {
   return box;
 }
 
-/// The axis along which boxes are furthest apart, from a to b, and by how much.
+/// Sets the axis along which the boxes are furthest apart, from a to b, and the distance along it.
 void set_gap(PairExplanation& explanation, const Corners& a, const Corners& b) {
   explanation.distance = -INFINITY;
   const auto consider = [&](int axis, double sign, double gap) {
@@ -87,8 +87,8 @@ void set_gap(PairExplanation& explanation, const Corners& a, const Corners& b) {
   }
 }
 
-/// The direction from one centre to the other, and the way between the balls. Balls that do not hold what
-/// they are fitted to may also be empty.
+/// Sets the direction from centre to centre and the distance between the spheres. Spheres that do not enclose
+/// their triangles (equations 3 and 4 of the paper) may also be empty.
 void set_gap(PairExplanation& explanation, const Vec3d& between_centers) {
   const double distance = norm(between_centers);
   if (!(distance > 0)) return;
@@ -151,8 +151,8 @@ PairExplanation triangle_boxes_apart(const TrianglePoints& a, const TrianglePoin
 
 PairExplanation triangles_apart(const TrianglePoints& a, const TrianglePoints& b) {
   PairExplanation explanation{.stage = PairStage::exact_test};
-  // With continuous contacts they may still intersect: when they did so from the start and no element touches
-  // another.
+  // Continuous contacts do not include triangles that intersect from the start when none of their elements
+  // touch.
   if (triangles_intersect(a, b)) return explanation;
   const TriangleGap gap = triangle_gap(a, b);
   explanation.axis = gap.axis;
@@ -162,7 +162,7 @@ PairExplanation triangles_apart(const TrianglePoints& a, const TrianglePoints& b
 
 }  // namespace
 
-/// Whether an element of one triangle touches one of the other.
+/// Whether a continuous contact of the result joins an element of one triangle to an element of the other.
 bool Scene::Implementation::touch_on_the_way(const ContactJob& job, TrianglePair triangles) const {
   const auto corners = [&](std::uint32_t slot, std::uint32_t triangle) {
     const ObjectOctree& octree = slots_[slot].object->octree();
@@ -193,13 +193,13 @@ bool Scene::Implementation::touch_on_the_way(const ContactJob& job, TrianglePair
                      });
 }
 
-/// The stages of `detect`, one after the other; triangles in the order in which the descent takes them.
+/// Follows the stages of `detect`. Triangles are in the order of the traversal.
 PairExplanation Scene::Implementation::explain_in_order(const ContactJob& job, TrianglePair triangles) const {
   const SceneObject &a = *slots_[job.a].object, &b = *slots_[job.b].object;
   const bool same_object = job.a == job.b;
   if (same_object ? !a.options.self_collision : !may_pair({job.a, job.b}))
     return {.stage = PairStage::not_tested};
-  // Elements touch on their own account, whatever triangles they belong to.
+  // Elements touch even when the pair of triangles they belong to is not tested.
   if (question_.is_continuous() && touch_on_the_way(job, triangles)) return {};
   if (same_object && share_vertex(a.octree().triangles()[triangles.a], b.octree().triangles()[triangles.b]))
     return {.stage = PairStage::shared_vertex};

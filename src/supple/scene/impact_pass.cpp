@@ -17,13 +17,13 @@ namespace {
 
 constexpr std::size_t block_size = RelativeMotionBlock::capacity;
 
-/// A vertex, in octree order, of one of the objects at hand.
+/// A vertex of an object, in octree order.
 struct VertexRef {
   const MovingObject* object;
   std::uint32_t vertex;
 };
 
-/// The four vertices of a pair of elements in the order in which motions have them.
+/// The four vertices of a pair of elements as `VertexFaceMotion` or `EdgeEdgeMotion` orders them.
 std::array<VertexRef, 4> vertices_of(ElementPairKind kind, ElementPair pair, const MovingObject& a,
                                      const MovingObject& b) {
   switch (kind) {
@@ -62,8 +62,8 @@ std::uint32_t user_vertex(const VertexRef& ref) {
   return ref.object->vertex_ids[ref.vertex];
 }
 
-/// Edges by their smaller vertex, and of one object with itself the smaller edge first, in the user's
-/// numbers: so that nothing in a contact depends on the octrees' shape.
+/// Orders the vertices of each edge, and the two edges of a self-collision, by the user's vertex ids. The
+/// contact then does not depend on the shape of the octrees.
 void sort_edges(std::array<VertexRef, 4>& vertices) {
   for (const std::size_t i : {0u, 2u}) {
     if (user_vertex(vertices[i + 1]) < user_vertex(vertices[i])) std::swap(vertices[i], vertices[i + 1]);
@@ -76,7 +76,7 @@ void sort_edges(std::array<VertexRef, 4>& vertices) {
   }
 }
 
-/// Positions of an object at both ends of the step; not translated.
+/// Positions of an object at both ends of the step, without its translation.
 template <class Scalar>
 class Path {
  public:
@@ -99,7 +99,7 @@ class Path {
   VertexArray<Scalar> start_, end_;
 };
 
-/// The same, translated or not.
+/// Positions of an object at both ends of the step, with its translation.
 class PlacedPath {
  public:
   explicit PlacedPath(const MovingObject& object) : object_(object) {}
@@ -110,8 +110,8 @@ class PlacedPath {
   const MovingObject& object_;
 };
 
-/// Fills a block with pairs as they are until `latest`. Differences of floats are rounded to float once, all
-/// others in double before.
+/// Fills a block with the motions of pairs from time 0 to `latest`. A difference of two floats is rounded
+/// once; any other difference is rounded to double and then to float.
 template <class PathA, class PathB>
 class BlockFill {
  public:
@@ -180,12 +180,12 @@ void fill(const MovingObject& a, const MovingObject& b, float latest, ElementPai
   for (std::size_t k = 0; k < candidates.size(); ++k) filled.set(k, kind, candidates[k]);
 }
 
-/// Within a job.
+/// The order of contacts within a job.
 auto order_of(const ContinuousContact& contact) {
   return std::tie(contact.kind, contact.element_a, contact.element_b);
 }
 
-/// In a search for the earliest.
+/// The order in which a search for the earliest contact prefers contacts.
 bool is_earlier(const ContinuousContact& p, std::uint32_t job_p, const ContinuousContact& q,
                 std::uint32_t job_q) {
   if (p.toi != q.toi) return p.toi < q.toi;
@@ -196,7 +196,7 @@ std::uint64_t place_of(std::uint32_t job, ElementPairKind kind, std::uint32_t fi
   return ContactLimit::place(job, static_cast<std::uint32_t>(kind) << 30 | first_of_element_a >> 2);
 }
 
-/// What the impact says of the elements of a and b.
+/// Copies the impact to the contact, with the weights and the normal in the order of a and b.
 void set_impact(ContinuousContact& contact, const Impact& impact) {
   const auto& w = impact.barycentric;
   contact.certainty = impact.certainty;
@@ -346,7 +346,7 @@ void ImpactPass::test_candidates(std::uint32_t job, ElementPairKind kind,
   }
 }
 
-/// By the first number of element a, which is the user's smallest one.
+/// Compares the first id of element a, the smallest of the element's ids, with the limit.
 bool ImpactPass::is_excluded(std::uint32_t job, ElementPairKind kind, ElementPair candidate) const {
   const MovingObject& a = objects_[jobs_[job].a];
   const auto least = [](const MovingObject& object, const Edge& edge) {
@@ -405,15 +405,15 @@ void ImpactPass::test_candidate(std::uint32_t job, ElementPairKind kind, Element
 void ImpactPass::keep_earlier(std::uint32_t job, const ContinuousContact& contact, Worker& worker) {
   if (worker.earliest && !is_earlier(contact, job, worker.earliest->contact, worker.earliest->job)) return;
   worker.earliest = {contact, job};
-  // Reported times may be early by the tolerance, so that the first of them can be of a pair that touches
-  // after the first touch.
+  // A reported time may be early by the tolerance. The pair with the earliest reported time may therefore
+  // touch later than another pair does.
   const float until = round_up(contact.toi + toi_tolerance);
   float latest = latest_.load(std::memory_order_relaxed);
   while (until < latest && !latest_.compare_exchange_weak(latest, until, std::memory_order_relaxed)) {
   }
 }
 
-/// Of the contacts from `first` on, which are of one task, those that come after as many as are wanted.
+/// Drops the excess contacts of one task, which begin at `first`: those that follow the first `wanted()`.
 void ImpactPass::drop_excess(std::uint32_t job, std::size_t first, Worker& worker) {
   if (!limit_.drops_at(worker.found.size() - first)) return;
   const auto begin = worker.found.begin() + static_cast<std::ptrdiff_t>(first);
@@ -425,7 +425,7 @@ void ImpactPass::drop_excess(std::uint32_t job, std::size_t first, Worker& worke
   worker.found.erase(last + 1, worker.found.end());
 }
 
-/// Jobs are in order already: each gets its place, and is sorted within.
+/// Jobs are in canonical order. Each job gets its range of the list; its contacts are sorted there.
 void ImpactPass::gather_contacts(const Parallel& parallel) {
   outcomes_.place(tasks_.tasks());
   outcomes_.move_known<0>(contacts_);

@@ -21,38 +21,39 @@
 
 namespace supple {
 
-/// What the pass reads of an object in motion, in the numbers of its `SurfaceElements`; `start` and `end` are
-/// the same at rest, and only then may the view have a translation.
+/// The data of a moving object that the pass reads, indexed as in its `SurfaceElements`. For an object at
+/// rest, `start` and `end` are equal. Only an object at rest has a translation in its view.
 struct MovingObject {
   ObjectId id;
   OctreeView view;
   const VertexBuffer* start = nullptr;
   const VertexBuffer* end = nullptr;
-  std::span<const std::uint32_t> triangle_ids, vertex_ids;  ///< to the user's
+  std::span<const std::uint32_t> triangle_ids, vertex_ids;  ///< the user's ids
 };
 
-/// Narrow phase and exact stage of continuous contacts over all jobs of a step, on all workers. Candidates
-/// stream from one to the other in batches. Keeps its memory between steps.
+/// Narrow phase and exact stage of continuous contacts for all jobs of a step, on all workers. The narrow
+/// phase hands its candidates to the exact stage in batches. The pass keeps its memory between steps.
 class ImpactPass {
  public:
-  /// `jobs` ascending; `objects` are addressed by them, and `versions` are of their positions. The first
-  /// `max_contacts`, in canonical order whatever the threads. Returns false, the lists being of no use, when
-  /// it was stopped.
+  /// Finds the first `max_contacts` contacts in canonical order, for any number of threads. `jobs` ascend and
+  /// contain indices of `objects`; `versions` are those of the objects' positions. Returns false when it was
+  /// stopped; the lists are then not valid.
   bool run(std::span<const ContactJob> jobs, std::span<const MovingObject> objects,
            std::span<const std::uint64_t> versions, const ImpactOptions& options, std::uint64_t max_contacts,
            const StopSignal& stop, const Parallel& parallel, StepStats& stats);
-  /// The first contact in time, then in order. Leaves the lists as they are.
+  /// The contact with the earliest time; the first in canonical order among equal times. Does not change the
+  /// lists.
   std::optional<ContinuousContact> find_earliest(std::span<const ContactJob> jobs,
                                                  std::span<const MovingObject> objects,
                                                  const ImpactOptions& options, const Parallel& parallel);
 
   std::span<const ContactGroup> groups() const { return groups_; }
   std::span<const ContinuousContact> contacts() const { return contacts_; }
-  /// There are more contacts.
+  /// There are more than `max_contacts` contacts.
   bool is_truncated() const { return is_truncated_; }
 
  private:
-  /// Where a contact of a job stands in the canonical order, and where it is kept.
+  /// Orders the contacts of a job canonically and says where each is stored.
   struct Key {
     ElementPairKind kind = ElementPairKind::vertex_face;
     std::array<std::uint32_t, 2> element_a{}, element_b{};
@@ -67,14 +68,14 @@ class ImpactPass {
   struct Worker {
     Traversal traversal;
     RelativeMotionBlock block;
-    std::vector<ContinuousContact> found;  // of its tasks, one after the other
+    std::vector<ContinuousContact> found;  // by all tasks of the worker
     TaskStats stats;
     std::optional<Earliest> earliest;
-    std::vector<Key> keys;  // of the contacts of one job at a time
+    std::vector<Key> keys;  // scratch: the contacts of one job
   };
   enum class Search : std::uint8_t { all, earliest };
 
-  /// The tasks are planned from `jobs`, numbers of those of `jobs_`.
+  /// Plans and runs the tasks of `jobs`, which are indices into `jobs_`.
   void search(Search search, std::span<const std::uint32_t> jobs, const Parallel& parallel);
   void start(std::span<const ContactJob> jobs, std::span<const MovingObject> objects,
              const ImpactOptions& options, const StopSignal& stop);
@@ -98,9 +99,9 @@ class ImpactPass {
   ContactTasks tasks_;
   ContactLimit limit_;
   JobOutcomes<1> outcomes_;
-  ImpactOptions last_options_;           // of the last search for all
-  std::vector<std::uint32_t> all_jobs_;  // of a search for the earliest
-  /// Nothing that touches only later than this is looked for.
+  ImpactOptions last_options_;           // of the last `run`
+  std::vector<std::uint32_t> all_jobs_;  // of `find_earliest`
+  /// `find_earliest` skips pairs that cannot touch before this time.
   std::atomic<float> latest_ = 1;
 
   std::vector<ContactGroup> groups_;

@@ -17,7 +17,7 @@ class CellReader {
  public:
   explicit CellReader(const OctreeView& view) : view_(view) {}
 
-  /// Whether the object is one leaf: the root itself then, not an octant of it.
+  /// Whether the octree is a single leaf, which is then the root cell.
   bool is_one_leaf() const {
     return view_.nodes.size() > 0 && view_.nodes[0].child_count == 1 && !view_.nodes[0].is_inner(0);
   }
@@ -41,7 +41,7 @@ class CellReader {
     return cell;
   }
 
-  /// The whole object; of one that has triangles.
+  /// The root cell of an object that has triangles.
   OctreeCell root(const BoundingSphere& sphere) const {
     OctreeCell cell{0, is_one_leaf(), view_.nodes[0].size(), {}, {}};
     for (int child = 0; child < view_.nodes[0].child_count; ++child)
@@ -55,7 +55,7 @@ class CellReader {
   OctreeView view_;
 };
 
-/// The first pairs of many, in order, without keeping all of them.
+/// Collects the first `limit` pairs in ascending order and counts all of them.
 class FirstPairs {
  public:
   explicit FirstPairs(std::size_t limit) : limit_(limit) {}
@@ -87,7 +87,7 @@ class FirstPairs {
   std::vector<TrianglePair> pairs_;
 };
 
-/// Of two leaves of objects in motion, the triangles whose boxes meet on the way.
+/// Visits the pairs of triangles of two leaves whose swept boxes overlap.
 template <class Visit>
 void for_each_moving_pair(const ObjectPairView& pair, const LeafPair& leaves, Visit&& visit) {
   const bool same_leaf = pair.same_object && leaves.begin_a == leaves.begin_b;
@@ -99,7 +99,7 @@ void for_each_moving_pair(const ObjectPairView& pair, const LeafPair& leaves, Vi
   }
 }
 
-/// All candidates of two objects, octree order's numbers.
+/// Visits all candidates of two objects, in octree order.
 template <class Visit>
 void for_each_candidate(Traversal& traversal, const ObjectPairView& pair, Visit&& visit) {
   TraversalStats stats;
@@ -150,7 +150,7 @@ ObjectPairView Scene::Implementation::search_view(const ContactJob& job) const {
   return job.a == job.b ? moving_self_pair_of(a, separation) : moving_pair_of(a, b, separation);
 }
 
-/// Jobs are in order already.
+/// Jobs are in canonical order.
 CandidateList Scene::Implementation::candidates(std::size_t limit) const {
   if (!detected_) fail("candidates: nothing was detected at the present positions; call detect first");
   CandidateList list;

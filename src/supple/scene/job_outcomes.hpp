@@ -20,19 +20,19 @@ struct Range {
   std::uint32_t end() const { return first + count; }
 };
 
-/// What each job of a step found, and where that belongs in the lists of the result, of which a pass has
-/// `lists`: contacts, and points for instance. Of two objects that are where they were, contacts are those of
-/// the step before: they only move within the lists. Keeps its memory between steps.
+/// The contacts that each job of a step found, as ranges of the lists of the result. `lists` is the number of
+/// lists, for example contacts and points. When neither object of a job has moved, the job reuses the
+/// contacts of the previous step; they only move within the lists. Keeps its memory between steps.
 template <std::size_t lists>
 class JobOutcomes {
  public:
   using Ranges = std::array<Range, lists>;
 
-  /// Starts a step. `versions` are of the objects that jobs address; the outcome of a job is known when both
-  /// are what they were. `is_same_search`: the step before looked for the same.
+  /// Starts a step. `versions` are those of the objects' positions. The outcome of a job is known when both
+  /// versions are those of the previous step and that step made the same search.
   void plan(std::span<const ContactJob> jobs, std::span<const std::uint64_t> versions, bool is_same_search) {
     outcomes_.swap(last_outcomes_);
-    // Otherwise each of the two would grow at a step of its own.
+    // The two lists take turns; both grow at once.
     outcomes_.reserve(last_outcomes_.capacity());
     last_outcomes_.resize(is_same_search ? reusable_ : 0);
     reusable_ = 0;  // until this step is complete
@@ -52,17 +52,17 @@ class JobOutcomes {
       outcomes_.push_back(outcome);
     }
   }
-  /// Numbers of the jobs to be searched, ascending.
+  /// Indices of the jobs whose outcome is not known, ascending.
   std::span<const std::uint32_t> open_jobs() const { return open_jobs_; }
 
   std::size_t size() const { return outcomes_.size(); }
   ContactJob job(std::size_t i) const { return outcomes_[i].job; }
   bool is_known(std::size_t i) const { return outcomes_[i].known != none; }
   const Ranges& ranges(std::size_t i) const { return outcomes_[i].ranges; }
-  /// Of a known job, those in the lists of the step before.
+  /// The ranges of a known job in the lists of the previous step.
   const Ranges& last_ranges(std::size_t i) const { return last_outcomes_[outcomes_[i].known].ranges; }
 
-  /// What a task found: ranges of its worker's lists. By task, for workers to write to.
+  /// The ranges that a task wrote in its worker's lists.
   struct TaskOutcome {
     std::uint32_t worker = 0;
     Ranges ranges;
@@ -73,7 +73,7 @@ class JobOutcomes {
     return std::span(task_outcomes_).subspan(outcomes_[i].first_task, outcomes_[i].task_count);
   }
 
-  /// Gives each job its ranges of the lists, in the order of the jobs.
+  /// Assigns each job its ranges of the lists, in the order of the jobs.
   void place(std::span<const ContactTask> tasks) {
     std::uint32_t task = 0;
     Ranges last{};
@@ -90,9 +90,9 @@ class JobOutcomes {
     }
   }
 
-  /// Moves what is known to its new place and gives the list the new size. Known outcomes are in the order
-  /// that they had, so that none which moves down comes to lie on one which is yet to move up, nor the other
-  /// way round.
+  /// Moves the items of known jobs to their new ranges and resizes the list. Known jobs keep their order.
+  /// Moving first those that go down, from the front, and then those that go up, from the back, overwrites
+  /// nothing that is still needed.
   template <std::size_t list, class Item>
   void move_known(std::vector<Item>& items) const {
     static_assert(std::is_trivially_copyable_v<Item>);
@@ -110,10 +110,9 @@ class JobOutcomes {
     items.resize(total);
   }
 
-  /// The lists are what the ranges say: the next step may know them.
+  /// The lists are complete; the next step may reuse them.
   void complete() { reusable_ = outcomes_.size(); }
-  /// Leaves out all but the first `most` contacts; the job that is cut and all after it the next step does
-  /// not know.
+  /// Keeps the first `most` contacts. The next step does not reuse the job that is cut, nor any after it.
   void truncate(std::uint64_t most) {
     for (reusable_ = 0; outcomes_[reusable_].ranges[0].end() <= most;) ++reusable_;
     outcomes_.resize(reusable_ + 1);
@@ -122,7 +121,7 @@ class JobOutcomes {
   }
   std::uint64_t contact_count() const { return outcomes_.empty() ? 0 : outcomes_.back().ranges[0].end(); }
 
-  /// Contacts of each job that has some, from the first list.
+  /// Lists the jobs that have contacts.
   template <class IdOf>
   void list_groups(std::vector<ContactGroup>& groups, const IdOf& id_of) const {
     groups.clear();
@@ -139,7 +138,7 @@ class JobOutcomes {
     ContactJob job;
     std::uint64_t version_a = 0, version_b = 0;
     Ranges ranges;
-    std::uint32_t known = none;  // number of the outcome of the step before
+    std::uint32_t known = none;  // index into `last_outcomes_`
     std::uint32_t first_task = 0, task_count = 0;
 
     bool is_of_same(const Outcome& other) const {
@@ -147,10 +146,10 @@ class JobOutcomes {
     }
   };
 
-  std::vector<Outcome> outcomes_, last_outcomes_;  // of all jobs
+  std::vector<Outcome> outcomes_, last_outcomes_;  // by job
   std::vector<std::uint32_t> open_jobs_;
   std::vector<TaskOutcome> task_outcomes_;
-  std::size_t reusable_ = 0;  // outcomes that the next step may know
+  std::size_t reusable_ = 0;  // how many outcomes the next step may reuse
 };
 
 }  // namespace supple

@@ -8,20 +8,21 @@
 
 namespace supple {
 
-/// Pairs kept while they last and released when they part (the paper's section 5.2), with the changes of each
-/// step. A pair that begins ends exactly once.
+/// The overlapping pairs of the last step and how they changed: pairs are kept while they overlap and
+/// released when they separate (the paper's section 5.2). A pair that begins ends exactly once.
 class PairCache {
  public:
-  /// The pairs of this step, ascending, each once. O(old + new), without allocation once it has held as many.
+  /// Takes the pairs of this step, ascending, each once. O(old + new); allocates only when there are more
+  /// pairs than ever before.
   void update(std::span<const ObjectPair> now);
 
-  /// An object is gone: its pairs end at the next `update`, even where that is handed them once more. They
-  /// then begin anew. An object that takes over the index with another generation is a different one.
+  /// The object was removed: its pairs end at the next `update`. A pair that this `update` contains again
+  /// ends and begins. Objects with the same index and another generation are different objects.
   void release(ObjectId object);
 
   /// Changes made by the last `update`, each list ascending. Valid until the next one.
   PairEvents events() const { return {begin_, stay_, end_}; }
-  /// The pairs handed to the last `update`.
+  /// The pairs of the last `update`.
   std::span<const ObjectPair> pairs() const { return pairs_; }
 
  private:

@@ -8,8 +8,8 @@
 namespace supple {
 namespace {
 
-/// Beyond this size a translation is baked into the positions: single precision ends at 3e38, and the sums of
-/// volumes and translations stay far from it.
+/// A larger translation is baked into the positions. Sums of volumes and translations thus stay far from
+/// 3e38, the end of single precision.
 constexpr double largest_lazy_size = 1e30;
 
 }  // namespace
@@ -30,7 +30,7 @@ void Placement::set_motion(const PositionsView& from, const PositionsView& to, c
   has_motion_ = true;
 }
 
-/// Positions given anew replace all that was done to those before.
+/// New positions discard all earlier transforms.
 void Placement::place_afresh() {
   has_motion_ = has_shape_ = is_baked_ = false;
   rotation_ = RigidTransform{}.rotation;
@@ -52,7 +52,7 @@ void Placement::set_transform(const RigidTransform& transform, const Parallel& p
   apply({}, parallel);
 }
 
-/// At rest where the path ends, and without a baked translation.
+/// The object comes to rest at the end of its path, and its translation is no longer baked.
 void Placement::restore(const Parallel& parallel) {
   if (std::exchange(has_motion_, false)) ++version_;
   if (std::exchange(is_baked_, false)) apply({}, parallel);

@@ -9,35 +9,34 @@
 
 namespace supple {
 
-/// Where an object is: the positions last given, and what was done to them since.
+/// Where an object is: the positions that the user gave last and the transforms applied since.
 ///
-/// A position is fl(R p) + T of the position p last given. `end` holds fl(R p), the user's numbers; T is
-/// added where volumes and positions are read, so that translating is O(1). Where magnitudes are such that
-/// this could lose bits or overflow in single precision, T is baked into `end` instead. An object on a path
-/// has no T.
+/// The position of a vertex is fl(R p) + T, where p is the position that the user gave last. `end` holds fl(R
+/// p); T is added when volumes and positions are read, so that a translation is O(1). Where that could lose
+/// bits or overflow in single precision, T is baked into `end` instead. An object on a path has no T.
 class Placement {
  public:
   void set_positions(const PositionsView& positions, const Parallel& parallel);
-  /// The same without a copy when the layout allows it.
+  /// Reads the positions in place when their layout allows it.
   void share_positions(const PositionsView& positions, const Parallel& parallel);
   void set_motion(const PositionsView& from, const PositionsView& to, const Parallel& parallel);
   void translate(Vec3d offset, const Parallel& parallel);
   void set_transform(const RigidTransform& transform, const Parallel& parallel);
 
-  /// The ends of the path, the same buffer at rest; without the translation.
+  /// The ends of the path without the translation. Both are the same buffer for an object at rest.
   const VertexBuffer& start() const { return has_motion_ ? start_ : end_; }
   const VertexBuffer& end() const { return end_; }
   bool has_motion() const { return has_motion_; }
   Vec3d translation() const { return is_baked_ ? Vec3d{} : translation_; }
-  /// Where a vertex is, and where its path starts.
+  /// The position of a vertex, and that at the start of its path.
   Vec3d position(std::uint32_t vertex) const { return placed(end_[vertex]); }
   Vec3d start_position(std::uint32_t vertex) const { return placed(start()[vertex]); }
 
-  /// Whether the translation must be baked, the box being that of the positions without it.
+  /// Whether the translation must be baked. `box` encloses the positions without it.
   bool needs_baking(const Aabb& box) const;
   void bake(const Parallel& parallel);
 
-  /// Another number whenever `start` or `end` changes; not 0.
+  /// Changes whenever `start` or `end` changes; never 0.
   std::uint64_t version() const { return version_; }
 
  private:
@@ -48,7 +47,7 @@ class Placement {
   void apply(const Vec3d& translation, const Parallel& parallel);
 
   VertexBuffer end_;
-  VertexBuffer start_;  // when on a path
+  VertexBuffer start_;  // of an object on a path
   VertexBuffer shape_;  // p, once a transform made `end_` differ from it
   bool has_motion_ = false, has_shape_ = false, is_baked_ = false;
   std::array<double, 9> rotation_ = RigidTransform{}.rotation;

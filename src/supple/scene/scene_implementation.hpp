@@ -19,10 +19,10 @@
 
 namespace supple {
 
-/// Throws naming `call` when the object has no such triangle.
+/// Throws an error that names `call` when the object has no such triangle.
 void check_triangle(const SceneObject& object, std::uint32_t triangle, const char* call);
 
-/// What a step looks for.
+/// What a step searches.
 struct Question {
   ContactKinds contacts = ContactKinds::none;
   ImpactOptions impact;
@@ -30,7 +30,7 @@ struct Question {
 
   bool has_intersections() const { return contains(contacts, ContactKinds::intersection); }
   bool is_continuous() const { return contains(contacts, ContactKinds::continuous); }
-  /// Intersections, or their candidates alone.
+  /// It searches intersections, or only counts their candidates.
   bool searches_at_rest() const { return contacts == ContactKinds::none || has_intersections(); }
   SearchedShapes shapes() const;
 };
@@ -44,9 +44,9 @@ class Scene::Implementation {
                const ObjectOptions& object_options, const std::string& fallback_name);
   void remove(ObjectId id);
 
-  /// Throws naming `call` when the object is not in the scene.
+  /// Throws an error that names `call` when the object is not in the scene.
   SceneObject& object(ObjectId id, const char* call) const;
-  /// Likewise, and when the object is static.
+  /// The same; also throws when the object is static.
   SceneObject& movable_object(ObjectId id, const char* call) const;
   void set_positions(ObjectId id, const PositionsView& positions);
   void share_positions(ObjectId id, const PositionsView& positions);
@@ -66,7 +66,7 @@ class Scene::Implementation {
   ElementVertices triangle_vertices(ObjectId id, std::uint32_t triangle) const;
   bool contains(ObjectId id) const;
   std::vector<ObjectId> objects() const;
-  /// Anything that changes what `detect` would find.
+  /// Call after any change to what `detect` would find.
   void mark_changed() { detected_ = false; }
 
   SceneOptions options;
@@ -82,8 +82,8 @@ class Scene::Implementation {
     std::uint32_t generation = 0;
   };
 
-  /// What may touch: pairs of objects whose volumes overlap, and those and objects with themselves in
-  /// canonical order.
+  /// The pairs of objects whose volumes overlap, and all jobs: these pairs and the objects with
+  /// self-collision, in canonical order.
   struct Jobs {
     std::vector<ObjectPair> pairs;
     std::vector<ContactJob> jobs;
@@ -95,11 +95,11 @@ class Scene::Implementation {
   void find_object_pairs(Jobs& found);
   void count_queries(const Jobs& jobs);
   void rebuild_degraded(const Jobs& jobs);
-  /// False when stopped.
+  /// These return false when they were stopped.
   bool find_contacts(const DetectRequest& request, const StopSignal& stop);
   bool find_impacts(const DetectRequest& request, const StopSignal& stop);
   void list_moving_objects();
-  /// `group` is what was reported of the pair, or null.
+  /// `group` holds the reported contacts of the pair; null when there are none.
   void verify_contacts(const ObjectPair& pair, const ContactGroup* group, VerifyReport& report) const;
   void verify_impacts(const ObjectPair& pair, const ContactGroup* group, VerifyReport& report) const;
   void report_non_finite();
@@ -109,7 +109,7 @@ class Scene::Implementation {
   OctreeView search_view(const SceneObject& object) const {
     return question_.searches_at_rest() ? object.resting_view() : object.moving_view();
   }
-  /// As the narrow phase takes them, but for what it passes over because it cannot touch itself.
+  /// The pair as the narrow phase sees it, without self-collision culling.
   ObjectPairView search_view(const ContactJob& job) const;
   PairExplanation explain_in_order(const ContactJob& job, TrianglePair triangles) const;
   bool touch_on_the_way(const ContactJob& job, TrianglePair triangles) const;
@@ -122,18 +122,19 @@ class Scene::Implementation {
   Question question_;  // of the last `detect`
   std::uint64_t step_ = 0;
 
-  // Of the step, by slot; kept for their memory.
+  // Scratch of a step, by slot.
   std::vector<Aabb> boxes_;
   std::vector<BoundingSphere> spheres_;
   std::vector<std::uint8_t> changed_;
   std::vector<std::uint32_t> changed_slots_;
-  std::vector<std::uint64_t> versions_;                       // of positions: never the same twice
-  std::uint64_t last_version_ = 0, last_version_before_ = 0;  // of all, and that of the step before
-  SearchedShapes searched_;                                   // by the last search, of whatever kind,
-  double growth_ = 0;  // for which boxes and spheres were grown by so much
+  std::vector<std::uint64_t> versions_;  // of positions; a version is never used twice
+  std::uint64_t last_version_ = 0,
+                last_version_before_ = 0;  // the newest, and the newest of the previous step
+  SearchedShapes searched_;                // by the last search
+  double growth_ = 0;                      // of boxes and spheres in the last search
   std::vector<std::uint32_t> stale_, degraded_, small_;
   std::vector<double> queries_;  // of degraded objects
-  Jobs jobs_, impact_jobs_;      // of `detect`, and of searches for the earliest impact
+  Jobs jobs_, impact_jobs_;      // of `detect`, and of `earliest_impact`
   std::vector<ObjectPair> touching_pairs_;
   std::vector<ContactObject> contact_objects_;
   std::vector<MovingObject> moving_objects_;

@@ -9,7 +9,7 @@
 
 namespace supple {
 
-/// Boxes in motion are kept within the range of float: what reaches to its end may reach beyond.
+/// Swept boxes are clamped to the range of float. A bound at the end of the range stands for infinity.
 inline Aabb unclamped(const Aabb& box) {
   constexpr float greatest = std::numeric_limits<float>::max(), inf = std::numeric_limits<float>::infinity();
   Aabb result = box;
@@ -31,14 +31,14 @@ inline BoundingSphere child_sphere(const OctreeView& view, std::uint32_t node, i
   return {{spheres.x[child], spheres.y[child], spheres.z[child]}, spheres.radius[child]};
 }
 
-/// Box of a face in motion, at one end of the step; empty when the face is inert.
+/// Box of a moving face at one end of the step; empty when the face is inert.
 inline Aabb face_box(const MovingBoxArrays& faces, const float* boxes, std::uint32_t face) {
   const auto at = [&](std::size_t side) { return boxes[side * faces.stride + face]; };
   return {{at(0), at(1), at(2)}, {at(3), at(4), at(5)}};
 }
 
-/// Whether two faces are apart by more than the separation, on one side of one axis, at both ends of the step
-/// and so all the time. Octree order's numbers.
+/// Whether one face stays on one side of the other along some axis, by more than the separation, at both ends
+/// of the step and therefore at all times. Faces are in octree order.
 inline bool moving_faces_apart(const ObjectPairView& pair, TrianglePair faces) {
   const MovingBoxArrays &a = pair.a.moving.faces, &b = pair.b.moving.faces;
   const Aabb start_a = face_box(a, a.start, faces.a), end_a = face_box(a, a.end, faces.a);

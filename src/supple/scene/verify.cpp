@@ -34,7 +34,7 @@ PlainMovingObject plain_moving_object(const SceneObject& object) {
 
 }  // namespace
 
-/// All pairs that `detect` must look at, found without volumes: those whose filters agree.
+/// All pairs of objects that may collide by their groups and filters, whatever their volumes.
 std::vector<ObjectPair> Scene::Implementation::pairs_to_verify() const {
   std::vector<ObjectPair> pairs;
   for (const ObjectId a : objects()) {
@@ -88,9 +88,10 @@ void Scene::Implementation::verify_impacts(const ObjectPair& pair, const Contact
 
 VerifyReport Scene::Implementation::verify() const {
   if (!detected_) fail("verify: nothing was detected at the present positions; call detect first");
-  if (result.truncated) fail("verify: the last detect left contacts out; ask for more by max_contacts");
+  if (result.truncated)
+    fail("verify: the last detect stopped at max_contacts; call detect with a larger max_contacts first");
   if (question_.contacts == ContactKinds::none)
-    fail("verify: the last detect was asked for no contacts; there is nothing to compare");
+    fail("verify: the last detect searched no contacts, so there is nothing to compare");
   VerifyReport report;
   auto contacts = result.groups.begin();
   auto impacts = result.continuous_groups.begin();

@@ -59,7 +59,7 @@ function wordsOf(status: Extract<Status, { state: "ended" }>, carriesLibrary: bo
     case "lost":
       return { title: "Connection lost", text: "The program has ended or the network has failed. The page shows the last frame.", again: "Reconnect" };
     case "taken-over":
-      return { title: "Open in another page", text: "Another page has taken over this session. A session shows in one page at a time.", again: "Take it back" };
+      return { title: "Open in another page", text: "Another page has taken over this session. Only one page at a time can show a session.", again: "Take it back" };
     case "program-ended":
       return { title: "The program has ended", text: "Start supple view again, then open the address it prints.", again: "Reconnect" };
     case "refused":

@@ -154,7 +154,7 @@ export class Player {
     this.wanted = null;
   }
 
-  /** Goes to the next or previous frame in which objects begin or cease to touch. */
+  /** Goes to the next or previous frame in which objects begin or stop touching. */
   jump(direction: 1 | -1): void {
     if (!this.model.can("seek")) return;
     const now = this.wanted ?? this.asked ?? this.model.frame?.text.step ?? 0;

@@ -22,7 +22,7 @@ export const LAYER_ROWS: LayerRow[] = [
   { layer: "triangles", label: "Intersecting triangles", key: "I", colour: OKABE_ITO.vermillion, hint: "Triangles that have a contact" },
   { layer: "points", label: "Contact points", key: "D", colour: OKABE_ITO.yellow, hint: "Extreme points of the intersection of two triangles" },
   { layer: "normals", label: "Contact normals", key: "Y", colour: OKABE_ITO.sky, hint: "The normal at each contact point" },
-  { layer: "curves", label: "Intersection curves", key: "U", colour: "ink", hint: "Where surfaces cross" },
+  { layer: "curves", label: "Intersection curves", key: "U", colour: "ink", hint: "Curves along which surfaces intersect" },
   { layer: "vertices", label: "Colliding vertices", key: "J", colour: OKABE_ITO.purple, hint: "The output of the paper: vertices of colliding octree nodes" },
 ];
 
@@ -38,7 +38,7 @@ export class ScenePanel {
   private readonly boxes = new Map<Layer, HTMLInputElement>();
   private readonly levels = h("select", { "aria-label": "Octree level" });
   private readonly legend = h(
-    "div", { class: "legend", hidden: true, title: "Colours of levels; they repeat after the last" },
+    "div", { class: "legend", hidden: true, title: "Colours of levels; they repeat after the last colour" },
     ...LEVELS.map((_, level) => h("span", { style: `--level:${levelColour(level)}` }, String(level))),
   );
   private readonly omitted = h("p", { class: "hint", role: "status", hidden: true });

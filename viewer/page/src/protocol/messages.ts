@@ -189,7 +189,7 @@ class Sections {
     } catch {
       fail("its text is not JSON");
     }
-    if (typeof value !== "object" || value === null || Array.isArray(value)) fail("its text is no JSON object");
+    if (typeof value !== "object" || value === null || Array.isArray(value)) fail("its text is not a JSON object");
     return value as Record<string, unknown>;
   }
 }
@@ -261,7 +261,7 @@ function readScene(sections: Sections): SceneMessage {
   const triangles = sections.each<Uint32Array>("triangles");
   for (const [object, corners] of triangles) {
     const of = text.objects[object];
-    if (!of) fail("it has triangles of an object that is not there");
+    if (!of) fail("it has triangles of an object that does not exist");
     if (corners.length !== 3 * of.triangles) fail(`it lacks triangles of ${of.name}`);
     for (let i = 0; i < corners.length; ++i)
       if (corners[i]! >= of.vertices) fail(`triangle ${Math.floor(i / 3)} of ${of.name} has a vertex that does not exist`);
@@ -302,20 +302,20 @@ function checkPairs(name: string, data: Uint32Array, stride: number, at: number,
 
 function checkContacts(contacts: Uint32Array, points: number): void {
   for (let i = 0; i < contacts.length; i += 8)
-    if (contacts[i + 4]! > 2 || contacts[i + 5]! + contacts[i + 6]! > points) fail("a contact has points that are not there");
+    if (contacts[i + 4]! > 2 || contacts[i + 5]! + contacts[i + 6]! > points) fail("a contact has points that do not exist");
 }
 
 function checkImpacts(impacts: Uint32Array, scene: SceneCounts): void {
   for (let i = 0; i < impacts.length; i += 8) {
     const kind = impacts[i + 6]!;
-    if (kind > 2) fail("an impact is of a kind that is not there");
+    if (kind > 2) fail("an impact has an unknown kind");
     for (const side of [0, 1]) {
       const object = impacts[i + 3 * side]!;
       const isFace = (kind === 0 && side === 1) || (kind === 1 && side === 0);
       const limit = (isFace ? scene.triangles : scene.vertices)[object];
       const first = impacts[i + 3 * side + 1]!;
       const second = impacts[i + 3 * side + 2]!;
-      if (limit === undefined || first >= limit || (kind === 2 && second >= limit)) fail("an impact is of what is not there");
+      if (limit === undefined || first >= limit || (kind === 2 && second >= limit)) fail("an impact names an element that does not exist");
     }
   }
 }
@@ -347,10 +347,10 @@ function readFrame(sections: Sections, scene: SceneCounts): FrameMessage {
     if (positions.length !== 3 * (scene.vertices[object] ?? -1)) fail(`it lacks positions of object ${object}`);
   for (const [object, vertices] of frame.collidingVertices) {
     const limit = scene.vertices[object] ?? 0;
-    if (vertices.some((vertex) => vertex >= limit)) fail("its section colliding_vertices names what is not there");
+    if (vertices.some((vertex) => vertex >= limit)) fail("its section colliding_vertices names a vertex that does not exist");
   }
   for (const shapes of [frame.octreeBoxes, frame.octreeSpheres])
-    for (const object of shapes.keys()) if (object >= scene.vertices.length) fail("it has an octree of an object that is not there");
+    for (const object of shapes.keys()) if (object >= scene.vertices.length) fail("it has an octree of an object that does not exist");
   checkPairs("object_pairs", frame.objectPairs, 2, 0, scene.vertices.length);
   checkPairs("contact_begin", frame.begin, 2, 0, scene.vertices.length);
   checkPairs("contact_end", frame.end, 2, 0, scene.vertices.length);
@@ -358,7 +358,7 @@ function readFrame(sections: Sections, scene: SceneCounts): FrameMessage {
   checkContacts(frame.contacts, frame.contactPoints.length / 8);
   checkIds("candidates", frame.candidates, 4, [0, 2], scene.triangles);
   checkImpacts(frame.impacts, scene);
-  if (frame.impactPoints.length !== frame.impacts.length) fail("impacts and their points are not as many");
+  if (frame.impactPoints.length !== frame.impacts.length) fail("the numbers of impacts and of their points differ");
   if (frame.statistics.length !== 0 && frame.statistics.length !== scene.statistics) fail("its statistics are not those of the scene");
   return frame;
 }
@@ -399,12 +399,12 @@ const NO_SCENE: SceneCounts = { generation: -1, vertices: [], triangles: [], sta
 export function readMessage(buffer: ArrayBuffer, scene: SceneCounts | null): Message {
   if (buffer.byteLength < ALIGNMENT) fail("it is shorter than a header");
   const view = new DataView(buffer);
-  if (view.getUint32(0, true) !== MAGIC) fail("it does not begin as a message of Supple does");
+  if (view.getUint32(0, true) !== MAGIC) fail("it does not begin like a message of Supple");
   const version = view.getUint16(4, true);
   if (version !== VERSION) fail(`it has version ${version}, and this page reads version ${VERSION}`);
-  if (view.getUint32(8, true) !== buffer.byteLength || buffer.byteLength % ALIGNMENT !== 0) fail("its length is not what it says");
+  if (view.getUint32(8, true) !== buffer.byteLength || buffer.byteLength % ALIGNMENT !== 0) fail("its length differs from its header");
   const kind = KINDS[view.getUint16(6, true)];
-  if (!kind) fail("it is of an unknown kind");
+  if (!kind) fail("it has an unknown kind");
   const counts = scene ?? NO_SCENE;
   if ((kind === "frame" || kind === "series") && !scene) fail(`a ${kind} came before the scene`);
   const sections = readSections(buffer, kind, view.getUint32(12, true), counts.series);
