@@ -59,7 +59,7 @@ struct Contestant {
     refit += 1e3 * stats.refit_seconds;
     rebuild += 1e3 * stats.rebuild_seconds;
     traversal += 1e3 * stats.traversal_seconds;
-    subtrees += stats.subtrees_rebuilt;
+    octrees += stats.octrees_rebuilt;
     triangles += stats.triangles_rebuilt;
     candidates += stats.candidate_pairs + stats.vertex_face_candidates + stats.edge_edge_candidates;
   }
@@ -72,7 +72,7 @@ struct Contestant {
   Scene scene;
   std::vector<ObjectId> objects;
   double milliseconds = 0, longest = 0, refit = 0, rebuild = 0, traversal = 0, visits = 0;
-  std::uint64_t subtrees = 0, triangles = 0, candidates = 0;
+  std::uint64_t octrees = 0, triangles = 0, candidates = 0;
 };
 
 void check_equal(const DetectResult& p, const DetectResult& q) {
@@ -100,7 +100,7 @@ void run_cell(const std::string& cell, const Choice& choice) {
     std::printf("%-8s %-6s %9.3f %9.3f %9.3f %9.3f %9.3f %9.0f %7llu %11llu %13llu %6.2f\n", cell.c_str(),
                 name, side.milliseconds / frames, side.refit / frames, side.rebuild / frames,
                 side.traversal / frames, side.longest, side.visits / frames,
-                static_cast<unsigned long long>(side.subtrees),
+                static_cast<unsigned long long>(side.octrees),
                 static_cast<unsigned long long>(side.triangles),
                 static_cast<unsigned long long>(side.candidates), side.milliseconds / kept.milliseconds);
   };
@@ -133,7 +133,7 @@ Choice choice_of(int argument_count, char** arguments) {
 
 void run(const Choice& choice) {
   std::printf("%-8s %-6s %9s %9s %9s %9s %9s %9s %7s %11s %13s %6s\n", "cell", "octree", "ms", "refit",
-              "rebuild", "traverse", "longest", "visits", "subtrees", "triangles", "candidates", "ratio");
+              "rebuild", "traverse", "longest", "visits", "octrees", "triangles", "candidates", "ratio");
   for (const std::string& cell : choice.cells) run_cell(cell, choice);
 }
 

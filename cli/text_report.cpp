@@ -119,7 +119,7 @@ void TextReport::print_stages() const {
                   grouped(sum_.object_pairs_tested)));
   row("rebuild", sum_.rebuild_seconds,
       fmt::format("{} in {}", counted(sum_.triangles_rebuilt, "triangle"),
-                  counted(sum_.subtrees_rebuilt, "part")));
+                  counted(sum_.octrees_rebuilt, "octree")));
   row("traversal", sum_.traversal_seconds,
       fmt::format("{} from {}",
                   counted(sum_.candidate_pairs + sum_.vertex_face_candidates + sum_.edge_edge_candidates,

@@ -40,9 +40,9 @@ struct ObjectOctreeOptions {
   /// the arity is 8, the triangles are distributed among the children so that leaves are about equally full,
   /// which takes fewer leaves.
   bool regular = false;
-  /// Rebuild parts of the octree when the object has deformed so much that the accumulated extra query cost
-  /// exceeds the cost of a rebuild. Has no effect when the scene reports colliding vertices or uses
-  /// `SphereFit::box`, which depend on the leaves.
+  /// Rebuild the octree when the object has deformed so much that the accumulated extra query cost exceeds
+  /// the cost of a rebuild. Has no effect when the scene reports colliding vertices or uses `SphereFit::box`,
+  /// which depend on the leaves.
   bool rebuild_degraded = true;
 };
 

@@ -89,8 +89,7 @@ struct OctreeStatistics {
   double cost = 0;
   /// The cost divided by the cost when the octree was built: 2 when queries cost twice as much.
   double degradation = 1;
-  std::uint64_t subtrees_rebuilt = 0;   ///< since the object was added
-  std::uint64_t triangles_rebuilt = 0;  ///< triangles in them
+  std::uint64_t rebuilds = 0;  ///< since the object was added
 };
 
 /// Looks into a scene and its last `detect`, for drawing, learning and tests. When that call found both kinds

@@ -74,7 +74,7 @@ struct Description<ObjectOctreeOptions> {
     visitor(Field<Options, bool>{
         .name = "rebuild_degraded",
         .member = &Options::rebuild_degraded,
-        .doc = "Rebuild the parts of the object's octree that became slow because the object deformed"});
+        .doc = "Rebuild the object's octree when it has become slow because the object deformed"});
   }
 };
 

@@ -52,7 +52,7 @@ struct PairEvents {
 struct StepStats {
   double refit_seconds = 0;            ///< refit of octrees to new positions
   double broad_phase_seconds = 0;      ///< search for object pairs
-  double rebuild_seconds = 0;          ///< rebuild of degraded parts of octrees
+  double rebuild_seconds = 0;          ///< rebuild of degraded octrees
   double traversal_seconds = 0;        ///< search for candidates in object pairs
   double exact_seconds = 0;            ///< exact decision of candidates
   double sort_and_events_seconds = 0;  ///< sorting of contacts, and events
@@ -62,7 +62,7 @@ struct StepStats {
   BroadPhaseMethod broad_phase_method = BroadPhaseMethod::automatic;
   std::uint64_t objects_refitted = 0;
   std::uint64_t triangles_refitted = 0;
-  std::uint64_t subtrees_rebuilt = 0;     ///< degraded parts of octrees
+  std::uint64_t octrees_rebuilt = 0;      ///< degraded octrees
   std::uint64_t triangles_rebuilt = 0;    ///< triangles in them
   std::uint64_t object_pairs_tested = 0;  ///< tests of two volumes in the broad phase
   std::uint64_t object_pairs = 0;

@@ -47,7 +47,7 @@ struct Description<StepStats> {
     seconds("refit_seconds", &Stats::refit_seconds, "Time to refit octrees to new positions");
     seconds("broad_phase_seconds", &Stats::broad_phase_seconds,
             "Time of the broad phase, which finds object pairs");
-    seconds("rebuild_seconds", &Stats::rebuild_seconds, "Time to rebuild degraded parts of octrees");
+    seconds("rebuild_seconds", &Stats::rebuild_seconds, "Time to rebuild degraded octrees");
     seconds("traversal_seconds", &Stats::traversal_seconds,
             "Time of the narrow phase, which finds candidates");
     seconds("exact_seconds", &Stats::exact_seconds, "Time of the exact stage, which decides the candidates");
@@ -59,8 +59,8 @@ struct Description<StepStats> {
                                            .doc = "Method of the broad phase that ran"});
     count("objects_refitted", &Stats::objects_refitted, "objects", "Objects with new positions");
     count("triangles_refitted", &Stats::triangles_refitted, "triangles", "Triangles of these objects");
-    count("subtrees_rebuilt", &Stats::subtrees_rebuilt, "subtrees", "Parts of octrees that were rebuilt");
-    count("triangles_rebuilt", &Stats::triangles_rebuilt, "triangles", "Triangles of these parts");
+    count("octrees_rebuilt", &Stats::octrees_rebuilt, "octrees", "Degraded octrees that were rebuilt");
+    count("triangles_rebuilt", &Stats::triangles_rebuilt, "triangles", "Triangles of these octrees");
     count("object_pairs_tested", &Stats::object_pairs_tested, "pairs",
           "Tests of two objects' volumes in the broad phase");
     count("object_pairs", &Stats::object_pairs, "pairs", "Object pairs that the broad phase found");
@@ -126,9 +126,7 @@ struct Description<OctreeStatistics> {
     value("leaves_by_level", &Stats::leaves_by_level, "leaves", "Leaves of each level from the root on");
     value("cost", &Stats::cost, "visits", "Mean visits of a query by the surface-area heuristic");
     value("degradation", &Stats::degradation, "", "The cost divided by the cost when the octree was built");
-    value("subtrees_rebuilt", &Stats::subtrees_rebuilt, "subtrees",
-          "Parts that were rebuilt since the object was added");
-    value("triangles_rebuilt", &Stats::triangles_rebuilt, "triangles", "Triangles of these parts");
+    value("rebuilds", &Stats::rebuilds, "rebuilds", "Rebuilds of the octree since the object was added");
   }
 };
 

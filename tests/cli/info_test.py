@@ -29,7 +29,7 @@ class Info(ProgramTest):
         self.assertEqual(
             set(octree),
             {"nodes", "leaves", "depth", "largest_leaf", "mean_leaf_size", "mean_node_width", "bytes",
-             "bytes_per_triangle", "leaves_by_level", "cost", "degradation", "subtrees_rebuilt", "triangles_rebuilt",
+             "bytes_per_triangle", "leaves_by_level", "cost", "degradation", "rebuilds",
              "triangles", "vertices"},
         )
 

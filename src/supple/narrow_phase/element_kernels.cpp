@@ -85,7 +85,7 @@ HWY_NOINLINE MovingBox moving_box(const MovingBoxArrays& arrays, std::size_t i, 
   return box;
 }
 
-HWY_INLINE MovingBoxArrays lanes_of(const MovingView& view, std::uint32_t node) {
+HWY_INLINE MovingBoxArrays child_boxes(const MovingView& view, std::uint32_t node) {
   return {view.start[node].min_x, view.end[node].min_x, node_width};
 }
 
@@ -137,13 +137,13 @@ void MovingOverlapMasks(const NodePair* pairs, std::size_t count, const MovingVi
                         const PartOfStep& part, std::uint64_t* masks) {
   const hn::CappedTag<float, node_width> tag;
   for (std::size_t k = 0; k < count; ++k) {
-    const MovingBoxArrays lanes_a = lanes_of(a, pairs[k].a), lanes_b = lanes_of(b, pairs[k].b);
+    const MovingBoxArrays boxes_a = child_boxes(a, pairs[k].a), boxes_b = child_boxes(b, pairs[k].b);
     std::uint64_t mask = 0;
-    for (std::uint32_t rest = pairs[k].lanes_a; rest != 0; rest &= rest - 1) {
+    for (std::uint32_t rest = pairs[k].children_a; rest != 0; rest &= rest - 1) {
       const auto i = static_cast<std::size_t>(std::countr_zero(rest));
-      const MovingBox box = moving_box<Side::a>(lanes_a, i, part);
+      const MovingBox box = moving_box<Side::a>(boxes_a, i, part);
       for (std::size_t j = 0; j < node_width; j += hn::Lanes(tag)) {
-        mask |= meeting_bits(tag, box, lanes_b, j, part.latest) << (8 * i + j);
+        mask |= meeting_bits(tag, box, boxes_b, j, part.latest) << (8 * i + j);
       }
     }
     masks[k] = mask;
@@ -159,8 +159,10 @@ class ElementTests {
 
   void test(const LeafPair& leaves) {
     same_leaf_ = same_object_ && leaves.begin_a == leaves.begin_b;
-    box_a_ = moving_box<Side::a>(lanes_of(a_, leaves.lane_a / node_width), leaves.lane_a % node_width, part_);
-    box_b_ = moving_box<Side::b>(lanes_of(b_, leaves.lane_b / node_width), leaves.lane_b % node_width, part_);
+    box_a_ =
+        moving_box<Side::a>(child_boxes(a_, leaves.leaf_a / node_width), leaves.leaf_a % node_width, part_);
+    box_b_ =
+        moving_box<Side::b>(child_boxes(b_, leaves.leaf_b / node_width), leaves.leaf_b % node_width, part_);
     const ElementRange vertices_a{a_.first_vertex[leaves.begin_a], a_.first_vertex[leaves.end_a]};
     const ElementRange vertices_b{b_.first_vertex[leaves.begin_b], b_.first_vertex[leaves.end_b]};
     const ElementRange faces_a{leaves.begin_a, leaves.end_a}, faces_b{leaves.begin_b, leaves.end_b};

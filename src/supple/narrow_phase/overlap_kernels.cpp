@@ -45,25 +45,25 @@ HWY_INLINE void place(Arrays& boxes, const RelativePlacement& placement) {
   }
 }
 
-void BoxOverlapMasks(const NodePair* pairs, std::size_t count, const AabbLanes* a, const AabbLanes* b,
+void BoxOverlapMasks(const NodePair* pairs, std::size_t count, const ChildBoxes* a, const ChildBoxes* b,
                      const RelativePlacement& placement, std::uint64_t* masks) {
   const hn::CappedTag<float, node_width> tag;
   const bool in_place = placement.is_identity();
   for (std::size_t k = 0; k < count; ++k) {
-    const AabbLanes& lanes_a = a[pairs[k].a];
-    const AabbLanes* lanes_b = &b[pairs[k].b];
-    AabbLanes placed;
+    const ChildBoxes& boxes_a = a[pairs[k].a];
+    const ChildBoxes* boxes_b = &b[pairs[k].b];
+    ChildBoxes placed;
     if (!in_place) {
-      placed = *lanes_b;
+      placed = *boxes_b;
       place(placed, placement);
-      lanes_b = &placed;
+      boxes_b = &placed;
     }
     std::uint64_t mask = 0;
-    for (std::uint32_t rest = pairs[k].lanes_a; rest != 0; rest &= rest - 1) {
+    for (std::uint32_t rest = pairs[k].children_a; rest != 0; rest &= rest - 1) {
       const int i = std::countr_zero(rest);
-      const Aabb box = lane_box(lanes_a, i);
+      const Aabb box = child_box(boxes_a, i);
       for (std::size_t j = 0; j < node_width; j += hn::Lanes(tag)) {
-        mask |= mask_bits(tag, overlapping(tag, *lanes_b, j, box)) << (node_width * i + j);
+        mask |= mask_bits(tag, overlapping(tag, *boxes_b, j, box)) << (node_width * i + j);
       }
     }
     masks[k] = mask;
@@ -190,11 +190,11 @@ HWY_INLINE void look_up(const LeafVertexTables& tables, const std::uint8_t* corn
 /// with the square of its number of loops. A call costs little compared to a leaf.
 template <class Box, class Scalar>
 HWY_NOINLINE void load_leaf_boxes(LeafBoxes& leaf, VertexArray<Scalar> positions, const LeafArrays& object,
-                                  [[maybe_unused]] std::uint32_t lane, std::uint32_t begin,
+                                  [[maybe_unused]] std::uint32_t leaf_number, std::uint32_t begin,
                                   std::uint32_t end) {
 #if HWY_TARGET != HWY_SCALAR
   const LeafVertexArrays leaves = object.vertices;
-  const std::size_t first = leaves.first[lane], count = leaves.first[lane + 1] - first;
+  const std::size_t first = leaves.first[leaf_number], count = leaves.first[leaf_number + 1] - first;
   if (count <= LeafVertexTables::capacity) {
     LeafVertexTables tables;
     load_vertices(tables, positions, leaves.vertices + first, count);
@@ -208,13 +208,13 @@ HWY_NOINLINE void load_leaf_boxes(LeafBoxes& leaf, VertexArray<Scalar> positions
 }
 
 /// Loads the boxes of the triangles [begin, end) of a leaf, at most a block.
-HWY_INLINE void load_boxes(LeafBoxes& leaf, const LeafArrays& object, std::uint32_t lane, std::uint32_t begin,
-                           std::uint32_t end) {
+HWY_INLINE void load_boxes(LeafBoxes& leaf, const LeafArrays& object, std::uint32_t leaf_number,
+                           std::uint32_t begin, std::uint32_t end) {
   const TriangleArrays& arrays = object.triangles;
   if (arrays.doubles.data != nullptr) {
-    load_leaf_boxes<DoubleBox>(leaf, arrays.doubles, object, lane, begin, end);
+    load_leaf_boxes<DoubleBox>(leaf, arrays.doubles, object, leaf_number, begin, end);
   } else {
-    load_leaf_boxes<FloatBox>(leaf, arrays.floats, object, lane, begin, end);
+    load_leaf_boxes<FloatBox>(leaf, arrays.floats, object, leaf_number, begin, end);
   }
   leaf.size = end - begin;
   leaf.triangles = ~std::uint64_t{0} >> (leaf_block - leaf.size);
@@ -292,14 +292,14 @@ class LeafTests {
 
   HWY_INLINE void test(const LeafPair& leaves) {
     const bool same_leaf = same_object_ && leaves.begin_a == leaves.begin_b;
-    const Aabb box_a = leaf_box(a_, leaves.lane_a), box_b = placed(leaf_box(b_, leaves.lane_b), placement_);
+    const Aabb box_a = leaf_box(a_, leaves.leaf_a), box_b = placed(leaf_box(b_, leaves.leaf_b), placement_);
     for (std::uint32_t first_a = leaves.begin_a; first_a < leaves.end_a; first_a += leaf_block) {
-      const LeafBoxes& boxes_a = boxes_of(a_, cache_.a, leaves.lane_a, first_a, leaves.end_a);
+      const LeafBoxes& boxes_a = boxes_of(a_, cache_.a, leaves.leaf_a, first_a, leaves.end_a);
       const std::uint64_t some_a = near(boxes_a, box_b);
       if (some_a == 0) continue;
       for (std::uint32_t first_b = same_leaf ? first_a : leaves.begin_b; first_b < leaves.end_b;
            first_b += leaf_block) {
-        const LeafBoxes& boxes_b = boxes_of(b_, cache_.b, leaves.lane_b, first_b, leaves.end_b);
+        const LeafBoxes& boxes_b = boxes_of(b_, cache_.b, leaves.leaf_b, first_b, leaves.end_b);
         const std::uint64_t some_b = near(boxes_b, box_a);
         if (same_leaf && first_a == first_b) {
           match<true, true>(first_a, boxes_a, some_a, first_b, boxes_b, some_b);
@@ -314,8 +314,8 @@ class LeafTests {
   std::uint64_t box_tests() const { return tests_; }
 
  private:
-  static HWY_INLINE Aabb leaf_box(const LeafArrays& object, std::uint32_t lane) {
-    return lane_box(object.boxes[lane / node_width], static_cast<int>(lane % node_width));
+  static HWY_INLINE Aabb leaf_box(const LeafArrays& object, std::uint32_t leaf_number) {
+    return child_box(object.boxes[leaf_number / node_width], static_cast<int>(leaf_number % node_width));
   }
 
   /// Maps consecutive blocks in octree order to different places.
@@ -323,12 +323,13 @@ class LeafTests {
     static_assert(LeafBoxCache::size == 32);
     return first * 0x9e3779b1u >> 27;
   }
-  HWY_INLINE const LeafBoxes& boxes_of(const LeafArrays& object, LeafBoxCache::Side& side, std::uint32_t lane,
-                                       std::uint32_t first, std::uint32_t leaf_end) {
+  HWY_INLINE const LeafBoxes& boxes_of(const LeafArrays& object, LeafBoxCache::Side& side,
+                                       std::uint32_t leaf_number, std::uint32_t first,
+                                       std::uint32_t leaf_end) {
     const std::size_t place = place_of(first);
     LeafBoxes& entry = side.boxes[place];
     if (std::exchange(side.first_triangles[place], first) != first) {
-      load_boxes(entry, object, lane, first, std::min(first + leaf_block, leaf_end));
+      load_boxes(entry, object, leaf_number, first, std::min(first + leaf_block, leaf_end));
       const bool is_placed = &side == &cache_.b && !placement_.is_identity();
       if (is_placed) supple::HWY_NAMESPACE::place(entry, placement_);
     }
@@ -408,7 +409,7 @@ namespace supple {
 HWY_EXPORT(BoxOverlapMasks);
 HWY_EXPORT(TriangleBoxPairs);
 
-void overlap_masks(std::span<const NodePair> pairs, const AabbLanes* a, const AabbLanes* b,
+void overlap_masks(std::span<const NodePair> pairs, const ChildBoxes* a, const ChildBoxes* b,
                    const RelativePlacement& placement, std::uint64_t* masks) {
   HWY_DYNAMIC_DISPATCH(BoxOverlapMasks)(pairs.data(), pairs.size(), a, b, placement, masks);
 }
@@ -420,15 +421,15 @@ std::uint64_t find_triangle_box_pairs(std::span<const LeafPair> leaf_pairs, cons
                                                 same_object, cache, pairs);
 }
 
-void overlap_masks(std::span<const NodePair> pairs, const SphereLanes* a, const SphereLanes* b,
+void overlap_masks(std::span<const NodePair> pairs, const ChildSpheres* a, const ChildSpheres* b,
                    const RelativePlacement& placement, std::uint64_t* masks) {
   for (std::size_t k = 0; k < pairs.size(); ++k) {
     masks[k] = 0;
-    for (std::uint32_t rest = pairs[k].lanes_a; rest != 0; rest &= rest - 1) {
+    for (std::uint32_t rest = pairs[k].children_a; rest != 0; rest &= rest - 1) {
       const int i = std::countr_zero(rest);
-      const BoundingSphere sphere = lane_sphere(a[pairs[k].a], i);
+      const BoundingSphere sphere = child_sphere(a[pairs[k].a], i);
       for (int j = 0; j < node_width; ++j) {
-        const BoundingSphere other = lane_sphere(b[pairs[k].b], j);
+        const BoundingSphere other = child_sphere(b[pairs[k].b], j);
         const bool may_touch = overlap(sphere, other, placement.offset, placement.slop);
         masks[k] |= std::uint64_t{may_touch} << (node_width * i + j);
       }

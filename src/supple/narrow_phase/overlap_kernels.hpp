@@ -12,10 +12,10 @@
 
 namespace supple {
 
-/// Two nodes to test: the children of a in `lanes_a` against the children of b in `lanes_b`.
+/// Two nodes to test: the children of a in `children_a` against the children of b in `children_b`.
 struct NodePair {
   std::uint32_t a = 0, b = 0;
-  std::uint8_t lanes_a = 0xff, lanes_b = 0xff;
+  std::uint8_t children_a = 0xff, children_b = 0xff;
 };
 
 /// The translation of object b relative to object a. The volumes of b move by `offset` and grow by `slop`,
@@ -28,10 +28,10 @@ struct RelativePlacement {
 };
 
 /// Triangles of two leaves whose volumes overlap, in octree order: [begin_a, end_a) against [begin_b, end_b).
-/// A leaf against itself has equal ranges. `lane_a` and `lane_b` are eight times the node plus the child.
+/// A leaf against itself has equal ranges. `leaf_a` and `leaf_b` are eight times the node plus the child.
 struct LeafPair {
   std::uint32_t begin_a = 0, end_a = 0, begin_b = 0, end_b = 0;
-  std::uint32_t lane_a = 0, lane_b = 0;
+  std::uint32_t leaf_a = 0, leaf_b = 0;
 };
 
 /// The greatest number of triangles of a leaf in one test, one bit for each. Larger leaves have several
@@ -84,16 +84,17 @@ class TrianglePairList {
 };
 
 /// Bit 8 i + j of `masks[k]`: child i of node a and child j of node b of `pairs[k]` may overlap. Bits of
-/// children outside `lanes_a` are 0; bits of missing children of b are unspecified. Never misses an overlap.
-void overlap_masks(std::span<const NodePair> pairs, const AabbLanes* a, const AabbLanes* b,
+/// children outside `children_a` are 0; bits of missing children of b are unspecified. Never misses an
+/// overlap.
+void overlap_masks(std::span<const NodePair> pairs, const ChildBoxes* a, const ChildBoxes* b,
                    const RelativePlacement& placement, std::uint64_t* masks);
-void overlap_masks(std::span<const NodePair> pairs, const SphereLanes* a, const SphereLanes* b,
+void overlap_masks(std::span<const NodePair> pairs, const ChildSpheres* a, const ChildSpheres* b,
                    const RelativePlacement& placement, std::uint64_t* masks);
 
 /// The data of an object for the leaf tests: its triangles, and the boxes and vertices of its leaves.
 struct LeafArrays {
   const TriangleArrays& triangles;
-  const AabbLanes* boxes = nullptr;
+  const ChildBoxes* boxes = nullptr;
   LeafVertexArrays vertices;
 };
 

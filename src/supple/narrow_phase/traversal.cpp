@@ -10,7 +10,7 @@
 namespace supple {
 namespace {
 
-void test_lanes(const ObjectPairView& pair, std::span<const NodePair> node_pairs, std::uint64_t* masks) {
+void test_children(const ObjectPairView& pair, std::span<const NodePair> node_pairs, std::uint64_t* masks) {
   if (pair.is_moving()) {
     moving_overlap_masks(node_pairs, pair.a.moving, pair.b.moving, pair.part_of_step(), masks);
   } else if (pair.a.spheres != nullptr) {
@@ -30,16 +30,16 @@ std::uint64_t spread_to_bytes(std::uint32_t bits) {
 /// Calls `visit(i, j)` for each pair of children that is in the mask; for a node with itself only pairs with
 /// i <= j. This is one loop over all pairs, because the end of a loop for each i is hard to predict.
 template <class Visit>
-void for_each_lane_pair(const ObjectPairView& pair, NodePair node_pair, std::uint64_t mask, Visit&& visit) {
+void for_each_child_pair(const ObjectPairView& pair, NodePair node_pair, std::uint64_t mask, Visit&& visit) {
   const OctreeNode& node_a = pair.a.nodes[node_pair.a];
   const OctreeNode& node_b = pair.b.nodes[node_pair.b];
-  mask &= spread_to_bytes(node_pair.lanes_a & node_a.lane_mask());
-  mask &= (node_pair.lanes_b & node_b.lane_mask()) * 0x0101010101010101u;
+  mask &= spread_to_bytes(node_pair.children_a & node_a.child_mask());
+  mask &= (node_pair.children_b & node_b.child_mask()) * 0x0101010101010101u;
   if (pair.same_object && node_pair.a == node_pair.b) {
     constexpr std::uint64_t upper_half = 0x80c0e0f0f8fcfeffu;
     mask &= upper_half;
-    const std::uint32_t unfolded = pair.a.unfolded != nullptr ? pair.a.unfolded[node_pair.a] : 0;
-    for (std::uint32_t rest = unfolded; rest != 0; rest &= rest - 1) {
+    const std::uint32_t culled = pair.a.culled != nullptr ? pair.a.culled[node_pair.a] : 0;
+    for (std::uint32_t rest = culled; rest != 0; rest &= rest - 1) {
       mask &= ~(std::uint64_t{1} << 9 * std::countr_zero(rest));
     }
   }
@@ -49,19 +49,19 @@ void for_each_lane_pair(const ObjectPairView& pair, NodePair node_pair, std::uin
   }
 }
 
-/// The lane that the triangle is in.
-int lane_of(const OctreeNode& node, std::uint32_t triangle) {
-  int lane = 0;
-  while (node.first_triangle[lane + 1] <= triangle) ++lane;
-  return lane;
+/// The child that contains the triangle.
+int child_with(const OctreeNode& node, std::uint32_t triangle) {
+  int child = 0;
+  while (node.first_triangle[child + 1] <= triangle) ++child;
+  return child;
 }
 
-std::uint32_t lane_number(std::uint32_t node, int lane) {
-  return node * node_width + static_cast<std::uint32_t>(lane);
+std::uint32_t leaf_number(std::uint32_t node, int child) {
+  return node * node_width + static_cast<std::uint32_t>(child);
 }
 
-std::uint8_t lane_bit(int lane) {
-  return static_cast<std::uint8_t>(1u << lane);
+std::uint8_t child_bit(int child) {
+  return static_cast<std::uint8_t>(1u << child);
 }
 
 /// Largest absolute coordinate of the box; 0 when it is empty.
@@ -122,7 +122,7 @@ ObjectPairView pair_of(const OctreeView& a, const OctreeView& b) {
 ObjectPairView self_pair_of(const OctreeView& object) {
   // Both translations are equal, but rounding may still make close positions touch.
   ObjectPairView pair{object, object, place(object, object), true, 0, nullptr};
-  if (!pair.placement.is_identity()) pair.a.unfolded = nullptr;
+  if (!pair.placement.is_identity()) pair.a.culled = nullptr;
   return pair;
 }
 
@@ -134,35 +134,35 @@ ObjectPairView moving_pair_of(const OctreeView& a, const OctreeView& b, double s
 ObjectPairView moving_self_pair_of(const OctreeView& object, double separation) {
   ObjectPairView pair = moving_pair_of(object, object, separation);
   pair.same_object = true;
-  if (separation > 0 || !pair.placement.is_identity()) pair.a.unfolded = nullptr;
+  if (separation > 0 || !pair.placement.is_identity()) pair.a.culled = nullptr;
   return pair;
 }
 
-LanePair last_lanes(const ObjectPairView& pair, TrianglePair triangles) {
-  LanePair at;
+ChildPair last_children(const ObjectPairView& pair, TrianglePair triangles) {
+  ChildPair at;
   for (;;) {
     const OctreeNode& node_a = pair.a.nodes[at.node_a];
     const OctreeNode& node_b = pair.b.nodes[at.node_b];
-    at.lane_a = lane_of(node_a, triangles.a);
-    at.lane_b = lane_of(node_b, triangles.b);
-    const NodePair nodes{at.node_a, at.node_b, lane_bit(at.lane_a), lane_bit(at.lane_b)};
+    at.child_a = child_with(node_a, triangles.a);
+    at.child_b = child_with(node_b, triangles.b);
+    const NodePair nodes{at.node_a, at.node_b, child_bit(at.child_a), child_bit(at.child_b)};
     std::uint64_t mask = 0;
-    test_lanes(pair, {&nodes, 1}, &mask);
-    at.apart = (mask >> (node_width * at.lane_a + at.lane_b) & 1) == 0;
-    const bool inner_a = node_a.is_inner(at.lane_a), inner_b = node_b.is_inner(at.lane_b);
+    test_children(pair, {&nodes, 1}, &mask);
+    at.apart = (mask >> (node_width * at.child_a + at.child_b) & 1) == 0;
+    const bool inner_a = node_a.is_inner(at.child_a), inner_b = node_b.is_inner(at.child_b);
     if (at.apart || !(inner_a || inner_b)) return at;
-    if (inner_a) at.node_a = node_a.child(at.lane_a);
-    if (inner_b) at.node_b = node_b.child(at.lane_b);
+    if (inner_a) at.node_a = node_a.child_node(at.child_a);
+    if (inner_b) at.node_b = node_b.child_node(at.child_b);
   }
 }
 
-bool leaf_triangles_apart(const ObjectPairView& pair, const LanePair& leaves, TrianglePair triangles) {
+bool leaf_triangles_apart(const ObjectPairView& pair, const ChildPair& leaves, TrianglePair triangles) {
   const LeafPair both{triangles.a,
                       triangles.a + 1,
                       triangles.b,
                       triangles.b + 1,
-                      lane_number(leaves.node_a, leaves.lane_a),
-                      lane_number(leaves.node_b, leaves.lane_b)};
+                      leaf_number(leaves.node_a, leaves.child_a),
+                      leaf_number(leaves.node_b, leaves.child_b)};
   const auto cache = std::make_unique<LeafBoxCache>();
   TrianglePairList found;
   find_triangle_box_pairs({&both, 1}, {pair.a.arrays, pair.a.boxes, pair.a.leaf_vertices},
@@ -175,26 +175,26 @@ void Traversal::expand_batch(const ObjectPairView& pair, TraversalStats& stats) 
   const std::size_t count = std::min(node_batch, stack_.size());
   std::copy(stack_.end() - static_cast<std::ptrdiff_t>(count), stack_.end(), batch_.begin());
   stack_.resize(stack_.size() - count);
-  test_lanes(pair, {batch_.data(), count}, masks_.data());
+  test_children(pair, {batch_.data(), count}, masks_.data());
   stats.node_pairs_visited += count;
   for (std::size_t k = 0; k < count; ++k) {
     const NodePair node_pair = batch_[k];
     const OctreeNode& node_a = pair.a.nodes[node_pair.a];
     const OctreeNode& node_b = pair.b.nodes[node_pair.b];
-    stats.volumes_tested += std::uint64_t{bit_count(node_pair.lanes_a & node_a.lane_mask())} *
-                            bit_count(node_pair.lanes_b & node_b.lane_mask());
-    for_each_lane_pair(pair, node_pair, masks_[k], [&](int i, int j) {
+    stats.volumes_tested += std::uint64_t{bit_count(node_pair.children_a & node_a.child_mask())} *
+                            bit_count(node_pair.children_b & node_b.child_mask());
+    for_each_child_pair(pair, node_pair, masks_[k], [&](int i, int j) {
       const bool inner_a = node_a.is_inner(i), inner_b = node_b.is_inner(j);
       if (inner_a && inner_b) {
-        stack_.push_back({node_a.child(i), node_b.child(j)});
+        stack_.push_back({node_a.child_node(i), node_b.child_node(j)});
       } else if (inner_a) {
-        stack_.push_back({node_a.child(i), node_pair.b, 0xff, lane_bit(j)});
+        stack_.push_back({node_a.child_node(i), node_pair.b, 0xff, child_bit(j)});
       } else if (inner_b) {
-        stack_.push_back({node_pair.a, node_b.child(j), lane_bit(i), 0xff});
+        stack_.push_back({node_pair.a, node_b.child_node(j), child_bit(i), 0xff});
       } else {
         leaf_pairs_.push_back({node_a.first_triangle[i], node_a.first_triangle[i + 1],
                                node_b.first_triangle[j], node_b.first_triangle[j + 1],
-                               lane_number(node_pair.a, i), lane_number(node_pair.b, j)});
+                               leaf_number(node_pair.a, i), leaf_number(node_pair.b, j)});
       }
     });
   }
@@ -203,14 +203,14 @@ void Traversal::expand_batch(const ObjectPairView& pair, TraversalStats& stats) 
 void Traversal::refine(const ObjectPairView& pair, NodePair node_pair, std::vector<NodePair>& finer) {
   if (pair.a.nodes.empty() || pair.b.nodes.empty()) return;
   std::uint64_t mask = 0;
-  test_lanes(pair, {&node_pair, 1}, &mask);
+  test_children(pair, {&node_pair, 1}, &mask);
   const OctreeNode& node_a = pair.a.nodes[node_pair.a];
   const OctreeNode& node_b = pair.b.nodes[node_pair.b];
-  for_each_lane_pair(pair, node_pair, mask, [&](int i, int j) {
+  for_each_child_pair(pair, node_pair, mask, [&](int i, int j) {
     if (node_a.is_inner(i) && node_b.is_inner(j)) {
-      finer.push_back({node_a.child(i), node_b.child(j)});
+      finer.push_back({node_a.child_node(i), node_b.child_node(j)});
     } else {
-      finer.push_back({node_pair.a, node_pair.b, lane_bit(i), lane_bit(j)});
+      finer.push_back({node_pair.a, node_pair.b, child_bit(i), child_bit(j)});
     }
   });
 }

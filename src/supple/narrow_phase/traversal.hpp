@@ -18,8 +18,8 @@ namespace supple {
 /// The data of one object for the narrow phase; borrowed for the call.
 struct OctreeView {
   std::span<const OctreeNode> nodes;
-  const AabbLanes* boxes = nullptr;
-  const SphereLanes* spheres = nullptr;  ///< null: the boxes are the volumes
+  const ChildBoxes* boxes = nullptr;
+  const ChildSpheres* spheres = nullptr;  ///< null: the boxes are the volumes
   TriangleArrays arrays;
   LeafVertexArrays leaf_vertices;
   Aabb box;           ///< of all positions
@@ -27,7 +27,7 @@ struct OctreeView {
   MovingView moving;  ///< for moving objects, which do not use `arrays` and `leaf_vertices`
   /// Masks of a `SelfCollisionCulling` for these positions, or null. An object against itself then skips
   /// children that cannot touch themselves. This loses candidates, but no contacts.
-  const std::uint8_t* unfolded = nullptr;
+  const std::uint8_t* culled = nullptr;
 };
 OctreeView view_of(const ObjectOctree& octree, const VertexBuffer& vertices,
                    std::span<const std::uint8_t> inert, Vec3d translation);
@@ -69,16 +69,16 @@ struct TraversalStats {
 };
 
 /// Two children that the descent compares.
-struct LanePair {
+struct ChildPair {
   std::uint32_t node_a = 0, node_b = 0;
-  int lane_a = 0, lane_b = 0;
+  int child_a = 0, child_b = 0;
   bool apart = false;  ///< the volumes are apart, so the descent ends here
 };
 /// The end of the descent from the roots to two triangles, numbered in octree order: the first children on
 /// the way that are apart, or the two leaves. For one object with itself, `triangles.a < triangles.b`.
-LanePair last_lanes(const ObjectPairView& pair, TrianglePair triangles);
+ChildPair last_children(const ObjectPairView& pair, TrianglePair triangles);
 /// Whether `find_triangle_pairs` excludes two triangles of two leaves by their boxes.
-bool leaf_triangles_apart(const ObjectPairView& pair, const LanePair& leaves, TrianglePair triangles);
+bool leaf_triangles_apart(const ObjectPairView& pair, const ChildPair& leaves, TrianglePair triangles);
 
 /// Octree against octree, both descended at once. Holds the scratch memory of one worker, kept between calls.
 ///

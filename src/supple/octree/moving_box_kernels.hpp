@@ -9,15 +9,16 @@
 
 namespace supple {
 
-/// Where the kernels read the box of each vertex: x y z of its lower corner at `lower + vertex * step`, of
-/// its upper corner likewise; a fourth float may be read. Both are the vertex itself where it is of floats.
+/// Where the kernels read the box of each vertex: x y z of the lower corner at `lower + vertex * step`, and
+/// of the upper corner at `upper + vertex * step`. They may read a fourth float. For float positions both
+/// corners are the vertex itself.
 struct VertexCorners {
   const float* lower = nullptr;
   const float* upper = nullptr;
   std::size_t step = 3;
 };
 
-/// Boxes of many elements: six arrays, `stride` floats apart, of min x, y, z and max x, y, z.
+/// Boxes of many elements: six arrays, `stride` floats apart, with min x, y, z and max x, y, z.
 struct BoxArrays {
   float* values = nullptr;
   std::size_t stride = 0;
@@ -27,8 +28,8 @@ struct BoxArrays {
   }
 };
 
-/// Rounds the vertices [begin, end), three doubles each, outward: eight floats each, the lower and the upper
-/// corner, within the range of float.
+/// Rounds the vertices [begin, end), three doubles each, outward to float boxes of eight floats each: four
+/// for the lower corner, four for the upper corner. Finite coordinates stay within the range of float.
 void round_corners(const double* vertices, float* corners, std::uint32_t begin, std::uint32_t end);
 
 /// Boxes of the elements [begin, end). All vertices count as finite. Each chooses the widest instruction set
@@ -40,7 +41,7 @@ void set_edge_boxes(const VertexCorners& corners, const Edge* edges, const BoxAr
 void set_face_boxes(const VertexCorners& corners, const Triangle* faces, const BoxArrays& boxes,
                     std::uint32_t begin, std::uint32_t end);
 
-/// What the boxes of leaf lanes are made of.
+/// The elements that the boxes of leaves enclose.
 struct LeafElements {
   BoxArrays vertices, edges, faces;
   const std::uint32_t* first_vertex = nullptr;
@@ -49,9 +50,9 @@ struct LeafElements {
   bool faces_enclose = true;
 };
 
-/// Boxes of all leaves of the nodes [begin, end), and of each of these nodes in its parent's lane, as
-/// `refit_boxes` does.
-void refit_element_boxes(const OctreeNode* nodes, AabbLanes* boxes, const LeafElements& elements,
+/// Computes the boxes of all leaves of the nodes [begin, end), and writes the box of each of these nodes into
+/// its parent, as `refit_boxes` does.
+void refit_element_boxes(const OctreeNode* nodes, ChildBoxes* boxes, const LeafElements& elements,
                          std::uint32_t begin, std::uint32_t end);
 
 }  // namespace supple

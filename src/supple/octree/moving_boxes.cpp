@@ -20,7 +20,7 @@ std::size_t stride_of(std::size_t count) {
   return count + padding;
 }
 
-/// Inverted boxes in the padding: no load finds anything there.
+/// Boxes in the padding are inverted, so that vector loads find no overlap there.
 BoxArrays sized(std::vector<float>& boxes, std::size_t count) {
   constexpr float inf = std::numeric_limits<float>::infinity();
   const std::size_t stride = stride_of(count);
@@ -41,8 +41,8 @@ void invert(std::vector<float>& boxes, std::size_t element) {
   for (std::size_t side = 0; side < 6; ++side) boxes[side * stride + element] = side < 3 ? inf : -inf;
 }
 
-Aabb root_box(const std::vector<AabbLanes>& nodes) {
-  return nodes.empty() ? Aabb{} : box_of_lanes(nodes[0]);
+Aabb root_box(const std::vector<ChildBoxes>& nodes) {
+  return nodes.empty() ? Aabb{} : enclosing_box(nodes[0]);
 }
 
 }  // namespace
@@ -88,7 +88,7 @@ void MovingBoxes::set_boxes(Moment& moment, const VertexBuffer& positions, const
   });
 }
 
-/// Whether a vertex is not finite at either end; then `inert_` tells which.
+/// Returns whether a vertex is not finite at either end; then `inert_` marks these vertices.
 bool MovingBoxes::mark_inert(const VertexBuffer& start, const VertexBuffer& end, const Parallel& parallel) {
   const auto all_finite = [&](const VertexBuffer& positions) {
     return parallel.all_of_ranges(positions.size(), grain, [&](std::size_t first, std::size_t last) {
@@ -126,20 +126,12 @@ void MovingBoxes::invert_inert(Moment& moment, const SurfaceElements& elements,
 void MovingBoxes::refit_nodes(Moment& moment, const ObjectOctree& octree, const SurfaceElements& elements,
                               bool faces_enclose, const Parallel& parallel) const {
   moment.nodes.resize(octree.nodes().size());
-  if (octree.nodes().empty()) return;
   const auto arrays = [](std::vector<float>& boxes) { return BoxArrays{boxes.data(), boxes.size() / 6}; };
   const LeafElements leaf_elements{arrays(moment.vertices), arrays(moment.edges),  arrays(moment.faces),
                                    elements.first_vertex(), elements.first_edge(), faces_enclose};
-  const auto level_begin = octree.level_begin();
-  for (std::size_t level = level_begin.size() - 1; level-- > 0;) {
-    const std::uint32_t first = level_begin[level];
-    parallel.for_ranges(level_begin[level + 1] - first, 512,
-                        [&](std::size_t begin, std::size_t end, std::uint32_t) {
-                          refit_element_boxes(octree.nodes().data(), moment.nodes.data(), leaf_elements,
-                                              static_cast<std::uint32_t>(first + begin),
-                                              static_cast<std::uint32_t>(first + end));
-                        });
-  }
+  octree.for_nodes_bottom_up(parallel, 512, [&](std::uint32_t begin, std::uint32_t end) {
+    refit_element_boxes(octree.nodes().data(), moment.nodes.data(), leaf_elements, begin, end);
+  });
 }
 
 MovingView MovingBoxes::view(const SurfaceElements& elements) const {
@@ -170,7 +162,7 @@ Aabb MovingBoxes::swept_box() const {
 
 std::size_t MovingBoxes::Moment::bytes() const {
   return (corners.capacity() + vertices.capacity() + edges.capacity() + faces.capacity()) * sizeof(float) +
-         nodes.capacity() * sizeof(AabbLanes);
+         nodes.capacity() * sizeof(ChildBoxes);
 }
 
 std::size_t MovingBoxes::bytes() const {
@@ -210,23 +202,23 @@ class MomentValidation {
   std::span<const std::uint8_t> inert_;
 };
 
-/// Boxes of the elements and of all lanes, from the last node up.
+/// Checks the boxes of the elements and of all children, from the last node up.
 std::string check_moment(const ObjectOctree& octree, const SurfaceElements& elements, const MovingView& view,
                          bool at_end, const MomentValidation& validation) {
   const auto nodes = octree.nodes();
   std::vector<Aabb> node_boxes(nodes.size());
-  const AabbLanes* const lanes = at_end ? view.end : view.start;
+  const ChildBoxes* const children = at_end ? view.end : view.start;
   const auto check = [&](const MovingBoxArrays& boxes, std::size_t i, std::span<const std::uint32_t> corners,
                          Aabb& bounds) {
     return validation.check(at_end ? boxes.end : boxes.start, boxes.stride, i, corners, bounds);
   };
   for (std::size_t n = nodes.size(); n-- > 0;) {
-    for (int lane = 0; lane < node_width; ++lane) {
+    for (int child = 0; child < node_width; ++child) {
       Aabb bounds;
-      if (lane < nodes[n].lane_count && nodes[n].is_inner(lane)) {
-        bounds = node_boxes[nodes[n].child(lane)];
-      } else if (lane < nodes[n].lane_count) {
-        const std::uint32_t first = nodes[n].first_triangle[lane], last = nodes[n].first_triangle[lane + 1];
+      if (child < nodes[n].child_count && nodes[n].is_inner(child)) {
+        bounds = node_boxes[nodes[n].child_node(child)];
+      } else if (child < nodes[n].child_count) {
+        const std::uint32_t first = nodes[n].first_triangle[child], last = nodes[n].first_triangle[child + 1];
         const ElementRange vertices = elements.vertices_of(first, last);
         for (std::uint32_t v = vertices.begin; v < vertices.end; ++v) {
           if (std::string wrong = check(view.vertices, v, {&v, 1}, bounds); !wrong.empty()) return wrong;
@@ -242,7 +234,7 @@ std::string check_moment(const ObjectOctree& octree, const SurfaceElements& elem
           }
         }
       }
-      if (lane_box(lanes[n], lane) != bounds) return "the box of a lane is not that of its elements";
+      if (child_box(children[n], child) != bounds) return "the box of a child is not that of its elements";
       extend(node_boxes[n], bounds);
     }
   }

@@ -13,17 +13,18 @@
 
 namespace supple {
 
-/// Boxes of elements at the start and at the end of a step; one set of arrays for both when at rest.
+/// Boxes of elements at the start and at the end of a step. At rest both are the same arrays.
 struct MovingBoxArrays {
   const float* start = nullptr;
   const float* end = nullptr;
   std::size_t stride = 0;  ///< between the six arrays of each: min x, y, z, max x, y, z
 };
 
-/// What the narrow phase reads of an object in motion; borrowed. Null `start`: not in motion.
+/// What the narrow phase reads of an object in motion; borrowed. `start` is null when the object has no
+/// moving boxes.
 struct MovingView {
-  const AabbLanes* start = nullptr;  ///< by node
-  const AabbLanes* end = nullptr;
+  const ChildBoxes* start = nullptr;  ///< by node
+  const ChildBoxes* end = nullptr;
   MovingBoxArrays vertices, edges, faces;
   const Triangle* face_ids = nullptr;
   const Edge* edge_ids = nullptr;
@@ -32,44 +33,44 @@ struct MovingView {
 };
 
 /// Boxes of the vertices, edges and faces of an object and of its octree's nodes, at the start and at the end
-/// of a step in which every vertex goes straight. Bounds of such boxes lie on the straight lines between the
-/// two: two elements that are apart on one side of one axis at both ends are apart all the time. That tells
-/// far more elements apart than one box around the whole motion.
+/// of a step in which every vertex moves on a straight line. At each time, the box between both encloses the
+/// element. So two elements that are separated on the same side of one axis at both ends are separated all
+/// the time. This excludes far more pairs than one box around the whole motion.
 ///
-/// Rounded outward and kept within the range of float, so that an inverted box is apart from all others. An
-/// element with a coordinate that is not finite at either end is inert: its box is inverted. The other
-/// elements of its triangles are not inert; the box of a lane encloses all elements that its triangles own.
+/// Boxes are rounded outward and stay within the range of float, so that an inverted box overlaps no other
+/// box. An element with a coordinate that is not finite at either end is inert: its box is inverted. The
+/// other elements of its triangles are not inert. The box of a child encloses all elements that its triangles
+/// own.
 ///
 /// Memory: 48 bytes a vertex, edge and face, twice 192 a node; half when at rest, and for positions in double
 /// precision 64 more a vertex.
 class MovingBoxes {
  public:
-  /// In O(n); bounds of nodes bottom-up. `start` and `end` are the same object when it is at rest. Takes no
-  /// memory after the first call. Returns whether all vertices are finite at both ends.
+  /// Computes all boxes in O(n). Pass the same buffer twice for an object at rest. Takes no memory after the
+  /// first call. Returns whether all vertices are finite at both ends.
   bool refit(const ObjectOctree& octree, const SurfaceElements& elements, const VertexBuffer& start,
              const VertexBuffer& end, const Parallel& parallel);
 
-  /// Of what was last refitted.
+  /// The boxes of the last refit.
   MovingView view(const SurfaceElements& elements) const;
   bool at_rest() const { return at_rest_; }
-  /// Of the whole object; empty when nothing is finite.
+  /// Boxes of the whole object; empty when it has no finite element.
   Aabb start_box() const;
   Aabb end_box() const;
   /// Encloses the whole motion.
   Aabb swept_box() const;
 
   std::size_t bytes() const;
-  /// The empty string when every box encloses what it must and is no larger than rounding explains; else what
-  /// is wrong.
+  /// The empty string when every box is that of its elements; otherwise what is wrong.
   std::string validate(const ObjectOctree& octree, const SurfaceElements& elements, const VertexBuffer& start,
                        const VertexBuffer& end) const;
 
  private:
   /// Boxes at one end of the step.
   struct Moment {
-    std::vector<float> corners;  // of vertices of doubles
+    std::vector<float> corners;  // `round_corners` of double positions
     std::vector<float> vertices, edges, faces;
-    std::vector<AabbLanes> nodes;
+    std::vector<ChildBoxes> nodes;
 
     std::size_t bytes() const;
   };
@@ -84,7 +85,7 @@ class MovingBoxes {
 
   Moment start_, end_;
   bool at_rest_ = true;
-  std::vector<std::uint8_t> inert_;  // a byte a vertex, when some are
+  std::vector<std::uint8_t> inert_;  // a byte per vertex; valid when some are inert
 };
 
 }  // namespace supple

@@ -1,25 +1,23 @@
 #include "octree/object_octree.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
-#include <tuple>
 #include <utility>
 
 #include "geometry/aabb.hpp"
 #include "geometry/vector.hpp"
 #include "octree/balanced_build.hpp"
 #include "octree/box_kernels.hpp"
-#include "octree/octree_build.hpp"
+#include "octree/regular_build.hpp"
 
 namespace supple {
 namespace {
 
 constexpr std::uint32_t unnumbered = std::numeric_limits<std::uint32_t>::max();
 
-/// `positions[v]` is vertex v.
-template <class Positions>
-std::vector<Vec3d> box_centers(const Positions& positions, std::span<const Triangle> triangles) {
+std::vector<Vec3d> box_centers(const PositionsView& positions, std::span<const Triangle> triangles) {
   std::vector<Vec3d> centers;
   centers.reserve(triangles.size());
   for (const Triangle& triangle : triangles) {
@@ -36,23 +34,23 @@ std::vector<Vec3d> box_centers(const Positions& positions, std::span<const Trian
   return centers;
 }
 
-/// Balanced trees are of eight children.
-template <class Positions>
-OctreeTopology build_topology(const Positions& positions, std::span<const Triangle> triangles,
-                              const ObjectOctreeOptions& options, std::uint32_t first_level) {
+/// Balanced octrees have eight children per node; other arities are regular.
+OctreeTopology build_topology(const PositionsView& positions, std::span<const Triangle> triangles,
+                              const ObjectOctreeOptions& options) {
   const std::vector<Vec3d> centers = box_centers(positions, triangles);
-  if (options.regular || options.arity != 8) return build_octree(centers, options, first_level);
-  return build_balanced_octree(centers, options, first_level);
+  return options.regular || options.arity != 8 ? build_regular_octree(centers, options)
+                                               : build_balanced_octree(centers, options);
 }
 
-void set_lane(SphereLanes& lanes, int lane, const BoundingSphere& sphere) {
-  lanes.x[lane] = sphere.center.x;
-  lanes.y[lane] = sphere.center.y;
-  lanes.z[lane] = sphere.center.z;
-  lanes.radius[lane] = sphere.radius;
+void set_child(ChildSpheres& spheres, int child, const BoundingSphere& sphere) {
+  spheres.x[child] = sphere.center.x;
+  spheres.y[child] = sphere.center.y;
+  spheres.z[child] = sphere.center.z;
+  spheres.radius[child] = sphere.radius;
 }
 
-/// The paper's eq. 3 and 4: the ball in the cube over the box's lower corner with the box's longest side.
+/// The paper's equations 3 and 4: the sphere inside the cube that has the lower corner and the longest side
+/// of the box.
 BoundingSphere sphere_from_box(const Aabb& box) {
   if (box.empty()) return {};
   const double side =
@@ -61,7 +59,8 @@ BoundingSphere sphere_from_box(const Aabb& box) {
   return {{box.min.x + half, box.min.y + half, box.min.z + half}, half};
 }
 
-/// The paper's eq. 5: about the centre of the box, radius to the farthest vertex, rounded up.
+/// The paper's equation 5: around the centre of the box, with the distance of the farthest vertex as radius,
+/// rounded up.
 BoundingSphere sphere_around(const Aabb& box, std::span<const Triangle> triangles,
                              const VertexBuffer& vertices, std::span<const std::uint8_t> inert,
                              std::uint32_t first) {
@@ -82,7 +81,7 @@ BoundingSphere sphere_around(const Aabb& box, std::span<const Triangle> triangle
       squared_radius = std::max(squared_radius, dx * dx + dy * dy + dz * dz);
     }
   }
-  // The factor covers the roundings of the sum and of the root, the addend squares that underflow.
+  // The factor covers the rounding of the sum and the root; the addend covers squares that underflow.
   return {center, round_up(std::sqrt(squared_radius) * (1 + 0x1p-50) + std::numeric_limits<float>::min())};
 }
 
@@ -97,7 +96,7 @@ ObjectOctree::ObjectOctree(const PositionsView& rest_positions, std::span<const 
                            const ObjectOctreeOptions& options, BoundingVolume bounding_volume,
                            SphereFit sphere_fit)
     : vertex_count_(rest_positions.size()), options_(options), sphere_fit_(sphere_fit) {
-  OctreeTopology topology = build_topology(rest_positions, triangles, options, 0);
+  OctreeTopology topology = build_topology(rest_positions, triangles, options);
   nodes_ = std::move(topology.nodes);
   nodes_.shrink_to_fit();
   level_begin_ = std::move(topology.level_begin);
@@ -107,45 +106,16 @@ ObjectOctree::ObjectOctree(const PositionsView& rest_positions, std::span<const 
   triangles_.reserve(triangles.size());
   for (const std::uint32_t id : triangle_ids_) triangles_.push_back(triangles[id]);
   triangle_order_.resize(triangle_ids_.size());
-  invert_triangle_ids();
-  list_leaf_vertices();
-}
-
-void ObjectOctree::invert_triangle_ids() {
   for (std::uint32_t t = 0; t < triangle_ids_.size(); ++t) triangle_order_[triangle_ids_[t]] = t;
-}
-
-std::vector<std::uint32_t> ObjectOctree::rebuild(std::span<const std::uint32_t> subtrees,
-                                                 const VertexBuffer& vertices) {
-  std::vector<NewSubtree> built;
-  built.reserve(subtrees.size());
-  for (const std::uint32_t node : subtrees) built.push_back(build_subtree(node, vertices));
-  invert_triangle_ids();
-  RelinkedNodes relinked = relink(nodes_, built);
-  nodes_ = std::move(relinked.nodes);
-  nodes_.shrink_to_fit();
-  level_begin_ = std::move(relinked.level_begin);
-  boxes_.resize(nodes_.size());
-  if (!spheres_.empty()) spheres_.resize(nodes_.size());
   list_leaf_vertices();
-  return std::move(relinked.old_nodes);
 }
 
-/// Its triangles come into their new order at once. They are built in the user's order, so that a subtree
-/// does not depend on what was there before.
-NewSubtree ObjectOctree::build_subtree(std::uint32_t node, const VertexBuffer& vertices) {
-  const std::size_t first = nodes_[node].first_triangle[0], count = nodes_[node].size();
-  std::vector<std::pair<std::uint32_t, Triangle>> given;
-  given.reserve(count);
-  for (std::size_t t = first; t < first + count; ++t) given.emplace_back(triangle_ids_[t], triangles_[t]);
-  std::sort(given.begin(), given.end(), [](auto& p, auto& q) { return p.first < q.first; });
-  for (std::size_t i = 0; i < count; ++i) triangles_[first + i] = given[i].second;
-  const auto triangles = std::span<const Triangle>(triangles_).subspan(first, count);
-  NewSubtree subtree{node, build_topology(vertices, triangles, options_, nodes_[node].level)};
-  for (std::size_t i = 0; i < count; ++i) {
-    std::tie(triangle_ids_[first + i], triangles_[first + i]) = given[subtree.topology.order[i]];
-  }
-  return subtree;
+ObjectOctree ObjectOctree::rebuilt(const PositionsView& positions) const {
+  std::vector<Triangle> user_triangles;
+  user_triangles.reserve(triangles_.size());
+  for (const std::uint32_t t : triangle_order_) user_triangles.push_back(triangles_[t]);
+  const BoundingVolume volume = spheres_.empty() ? BoundingVolume::aabb : BoundingVolume::sphere;
+  return ObjectOctree(positions, user_triangles, options_, volume, sphere_fit_);
 }
 
 void ObjectOctree::list_leaf_vertices() {
@@ -161,12 +131,12 @@ void ObjectOctree::list_leaf_vertices() {
   const std::size_t stride = triangles_.size() + corners_ahead;
   leaf_corners_.assign(3 * stride, 0);
   for (const OctreeNode& node : nodes_) {
-    for (int lane = 0; lane < node_width; ++lane) {
+    for (int child = 0; child < node_width; ++child) {
       const auto leaf = static_cast<std::uint32_t>(first_leaf_vertex_.size());
       const auto first = static_cast<std::uint32_t>(leaf_vertices_.size());
       first_leaf_vertex_.push_back(first);
-      if (lane >= node.lane_count || node.is_inner(lane)) continue;
-      for (std::uint32_t t = node.first_triangle[lane]; t < node.first_triangle[lane + 1]; ++t) {
+      if (child >= node.child_count || node.is_inner(child)) continue;
+      for (std::uint32_t t = node.first_triangle[child]; t < node.first_triangle[child + 1]; ++t) {
         for (std::size_t corner = 0; corner < 3; ++corner) {
           const std::uint32_t vertex = triangles_[t][corner];
           Place& last = last_places[vertex];
@@ -191,48 +161,36 @@ void ObjectOctree::list_leaf_vertices() {
 
 bool ObjectOctree::refit(const VertexBuffer& vertices, std::span<const std::uint8_t> inert,
                          const Parallel& parallel) {
-  sphere_ = BoundingSphere{};
-  bool all_finite =
+  std::atomic<bool> all_finite =
       !inert.empty() || std::all_of(unused_vertices_.begin(), unused_vertices_.end(),
                                     [&](std::uint32_t vertex) { return is_finite(vertices[vertex]); });
-  if (nodes_.empty()) return all_finite;
-  for (std::size_t level = level_begin_.size() - 1; level-- > 0 && all_finite;) {
-    all_finite = refit_level(static_cast<std::uint32_t>(level), vertices, inert, parallel);
-  }
-  if (!all_finite) return false;
-  if (spheres_.empty()) return true;
-  sphere_ = sphere_fit_ == SphereFit::box ? sphere_from_box(box())
-                                          : sphere_around(box(), triangles_, vertices, inert, 0);
-  return true;
-}
-
-bool ObjectOctree::refit_level(std::uint32_t level, const VertexBuffer& vertices,
-                               std::span<const std::uint8_t> inert, const Parallel& parallel) {
   const TriangleArrays arrays = arrays_of(triangles_, vertices, inert);
-  const std::uint32_t first = level_begin_[level];
-  return parallel.all_of_ranges(level_begin_[level + 1] - first, 64, [&](std::size_t begin, std::size_t end) {
-    const auto node_begin = static_cast<std::uint32_t>(first + begin);
-    const auto node_end = static_cast<std::uint32_t>(first + end);
-    if (!refit_boxes(nodes_.data(), boxes_.data(), arrays, leaf_vertices(), node_begin, node_end))
-      return false;
-    if (!spheres_.empty()) refit_spheres(node_begin, node_end, vertices, inert);
-    return true;
+  for_nodes_bottom_up(parallel, 64, [&](std::uint32_t begin, std::uint32_t end) {
+    if (!all_finite) return;
+    if (!refit_boxes(nodes_.data(), boxes_.data(), arrays, leaf_vertices(), begin, end)) all_finite = false;
+    if (all_finite && !spheres_.empty()) refit_spheres(begin, end, vertices, inert);
   });
+  sphere_ = BoundingSphere{};
+  if (all_finite && !spheres_.empty()) {
+    sphere_ = sphere_fit_ == SphereFit::box ? sphere_from_box(box())
+                                            : sphere_around(box(), triangles_, vertices, inert, 0);
+  }
+  return all_finite;
 }
 
 void ObjectOctree::refit_spheres(std::uint32_t node_begin, std::uint32_t node_end,
                                  const VertexBuffer& vertices, std::span<const std::uint8_t> inert) {
   for (std::uint32_t n = node_begin; n < node_end; ++n) {
     const OctreeNode& node = nodes_[n];
-    for (int lane = 0; lane < node_width; ++lane) {
-      const Aabb box = lane_box(boxes_[n], lane);
-      const std::uint32_t begin = node.first_triangle[lane];
-      const std::uint32_t count = lane < node.lane_count ? node.first_triangle[lane + 1] - begin : 0;
-      set_lane(spheres_[n], lane,
-               sphere_fit_ == SphereFit::box
-                   ? sphere_from_box(box)
-                   : sphere_around(box, std::span<const Triangle>(triangles_).subspan(begin, count), vertices,
-                                   inert, begin));
+    for (int child = 0; child < node_width; ++child) {
+      const Aabb box = child_box(boxes_[n], child);
+      const std::uint32_t begin = node.first_triangle[child];
+      const std::uint32_t count = child < node.child_count ? node.first_triangle[child + 1] - begin : 0;
+      set_child(spheres_[n], child,
+                sphere_fit_ == SphereFit::box
+                    ? sphere_from_box(box)
+                    : sphere_around(box, std::span<const Triangle>(triangles_).subspan(begin, count),
+                                    vertices, inert, begin));
     }
   }
 }

@@ -8,7 +8,6 @@
 #include "core/parallel.hpp"
 #include "octree/box_kernels.hpp"
 #include "octree/octree_node.hpp"
-#include "octree/rebuild.hpp"
 #include "octree/vertex_buffer.hpp"
 #include "supple/inspection.hpp"
 #include "supple/mesh.hpp"
@@ -17,90 +16,93 @@
 
 namespace supple {
 
-/// What the kernels read of the triangles and of their vertices; `inert` may be empty.
+/// Raw arrays for the kernels; `inert` may be empty.
 TriangleArrays arrays_of(std::span<const Triangle> triangles, const VertexBuffer& vertices,
                          std::span<const std::uint8_t> inert);
 
-/// Octree over the triangles of one object, built top-down from the rest pose. Its volumes are refitted when
-/// the object deforms, and degraded subtrees are rebuilt on request.
+/// Octree over the triangles of one object, built top-down from the rest pose. `refit` updates its volumes
+/// when the object deforms.
 ///
-/// It is balanced (`octree/balanced_build.hpp`) or, when asked for, the paper's regular one. In that every
-/// triangle is in the one octant that holds the centre of its box. An octant with all triangles of its parent
-/// is not a node of its own: the parent shrinks to it, so that a stray vertex far away costs one level. A
-/// regular tree of arity 4 or 2 has quarters or halves for octants and leaves lanes empty.
+/// It is balanced (`octree/balanced_build.hpp`) or regular as in the paper (`octree/regular_build.hpp`). In a
+/// regular octree, each triangle is in the octant that contains the centre of its box. A node whose triangles
+/// are all in one octant shrinks to that octant, so that a single vertex far away costs one level. With arity
+/// 4 or 2, nodes have quarters or halves instead of octants, and the other children are missing.
 ///
-/// Each inner node has two lanes at least. Nodes lie level by level. Triangles are renumbered in octree
-/// order. Leaves are large: testing dozens of triangles in vectors costs less than nodes that would tell them
-/// apart, and only the triangles of leaves that a query meets are looked at.
+/// Each node below the root has at least two children. Nodes are stored level by level. Triangles are
+/// renumbered in octree order. Leaves are large: testing dozens of triangles with vector instructions costs
+/// less than the nodes that would separate them.
 ///
-/// Memory besides the positions: 272 bytes a node, 23 a triangle, 4 for each vertex of each leaf; 128 a node
-/// more with spheres.
+/// Memory besides the positions: 272 bytes per node, 23 per triangle, 4 for each vertex of each leaf; with
+/// spheres 128 more per node.
 class ObjectOctree {
  public:
-  /// O(n log n). Non-finite vertices are allowed; their triangles count as lying in the lower
-  /// corner.
+  /// O(n log n). Triangles with a vertex that is not finite count as the lower corner of the others.
   ObjectOctree(const PositionsView& rest_positions, std::span<const Triangle> triangles,
                const ObjectOctreeOptions& options, BoundingVolume bounding_volume, SphereFit sphere_fit);
 
   std::span<const OctreeNode> nodes() const { return nodes_; }
-  /// First node of each level, then the number of nodes.
-  std::span<const std::uint32_t> level_begin() const { return level_begin_; }
-  const AabbLanes* boxes() const { return boxes_.data(); }
+  const ChildBoxes* boxes() const { return boxes_.data(); }
   /// Null unless the bounding volume is the sphere.
-  const SphereLanes* spheres() const { return spheres_.empty() ? nullptr : spheres_.data(); }
+  const ChildSpheres* spheres() const { return spheres_.empty() ? nullptr : spheres_.data(); }
 
   LeafVertexArrays leaf_vertices() const {
     return {first_leaf_vertex_.data(), leaf_vertices_.data(), leaf_corners_.data(), leaf_corners_.size() / 3};
   }
 
-  /// Octree order; the ids are the user's vertices.
+  /// The triangles in octree order, with the user's vertex ids.
   std::span<const Triangle> triangles() const { return triangles_; }
-  /// Octree triangle to the user's.
+  /// The user's id of each triangle in octree order.
   std::span<const std::uint32_t> triangle_ids() const { return triangle_ids_; }
-  /// And back.
+  /// The place of the user's triangle in octree order.
   std::uint32_t octree_triangle(std::uint32_t user_triangle) const { return triangle_order_[user_triangle]; }
   const Triangle& user_triangle(std::uint32_t triangle) const {
     return triangles_[octree_triangle(triangle)];
   }
   std::size_t vertex_count() const { return vertex_count_; }
 
-  /// Recomputes all volumes, bottom-up, in O(n); spheres fitted to vertices take O(n · levels).
-  /// `inert` has a byte a triangle (octree order), or is empty: triangles to leave out. Returns false, and
-  /// the volumes are of no use, when it is empty and some vertex is not finite.
+  /// Calls `body(begin, end)` with ranges of nodes of at least about `grain`: level by level, the deepest
+  /// first, in parallel within a level.
+  template <class Body>
+  void for_nodes_bottom_up(const Parallel& parallel, std::size_t grain, const Body& body) const {
+    for (std::size_t level = level_begin_.size() - 1; level-- > 0;) {
+      const std::uint32_t first = level_begin_[level];
+      parallel.for_ranges(
+          level_begin_[level + 1] - first, grain, [&](std::size_t begin, std::size_t end, std::uint32_t) {
+            body(static_cast<std::uint32_t>(first + begin), static_cast<std::uint32_t>(first + end));
+          });
+    }
+  }
+
+  /// Computes all volumes bottom-up in O(n); spheres fitted to vertices take O(n · levels). `inert` has a
+  /// byte per triangle in octree order, not 0 for triangles to leave out, or is empty. Returns false when it
+  /// is empty and a vertex is not finite; then the volumes are invalid.
   bool refit(const VertexBuffer& vertices, std::span<const std::uint8_t> inert, const Parallel& parallel);
 
-  /// Rebuilds the subtrees of these nodes, none of which is below another, from the current positions.
-  /// Afterwards the volumes must be refitted, and everything that depends on numbers of triangles or nodes
-  /// must be updated. Returns what each node was before (`RelinkedNodes::old_nodes`). O(n) and O(m log m)
-  /// for m triangles in the subtrees.
-  std::vector<std::uint32_t> rebuild(std::span<const std::uint32_t> subtrees, const VertexBuffer& vertices);
+  /// The octree of the same triangles and options, built from other positions. O(n log n).
+  ObjectOctree rebuilt(const PositionsView& positions) const;
 
-  /// Volumes of the whole object after a refit; empty when it has no finite triangle.
-  Aabb box() const { return nodes_.empty() ? Aabb{} : box_of_lanes(boxes_[0]); }
+  /// Volumes of the whole object at the last refit; empty when it has no finite triangle.
+  Aabb box() const { return nodes_.empty() ? Aabb{} : enclosing_box(boxes_[0]); }
   const BoundingSphere& sphere() const { return sphere_; }
 
-  /// The empty string when every invariant holds and every volume encloses its triangles; else what is wrong.
-  /// Spheres fitted to boxes do not enclose and are not checked for it.
+  /// The empty string when every invariant holds and every volume encloses its triangles; otherwise what is
+  /// wrong. Spheres fitted to boxes need not enclose and are not checked.
   std::string validate(const VertexBuffer& vertices, std::span<const std::uint8_t> inert) const;
   OctreeStatistics statistics() const;
 
  private:
-  void invert_triangle_ids();
-  NewSubtree build_subtree(std::uint32_t node, const VertexBuffer& vertices);
   void list_leaf_vertices();
-  bool refit_level(std::uint32_t level, const VertexBuffer& vertices, std::span<const std::uint8_t> inert,
-                   const Parallel& parallel);
   void refit_spheres(std::uint32_t node_begin, std::uint32_t node_end, const VertexBuffer& vertices,
                      std::span<const std::uint8_t> inert);
 
   std::vector<OctreeNode> nodes_;
-  std::vector<AabbLanes> boxes_;
-  std::vector<SphereLanes> spheres_;
-  std::vector<std::uint32_t> level_begin_;
+  std::vector<ChildBoxes> boxes_;
+  std::vector<ChildSpheres> spheres_;
+  std::vector<std::uint32_t> level_begin_;  // `OctreeTopology::level_begin`
   std::vector<Triangle> triangles_;
   std::vector<std::uint32_t> triangle_ids_, triangle_order_;
   std::size_t vertex_count_;
-  // As `LeafVertexArrays`, and the vertices of no triangle.
+  // `LeafVertexArrays`, and the vertices that no triangle uses.
   std::vector<std::uint32_t> first_leaf_vertex_, leaf_vertices_, unused_vertices_;
   std::vector<std::uint8_t> leaf_corners_;
   ObjectOctreeOptions options_;

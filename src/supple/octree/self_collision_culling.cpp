@@ -11,7 +11,7 @@ namespace {
 
 /// Half an ulp of 1: the relative error of one rounding.
 constexpr double rounding = 0x1p-53;
-/// Products below the range of double lose at most some denormals; no coordinate of use is near this.
+/// Covers what products lose below the range of double; useful coordinates are far larger.
 constexpr double underflow = 1e-290;
 
 double sum_of_sizes(const Vec3d& v) {
@@ -24,13 +24,13 @@ Vec3d position(const VertexArray<Scalar>& vertices, std::uint32_t vertex) {
   return {p[0], p[1], p[2]};
 }
 
-/// The boundary of a smooth patch is about as long as the square root of its size. The limit keeps the total
-/// length of all boundaries linear, and skips patches that would not pass the test anyway.
+/// The boundary of a smooth patch is about as long as the square root of its size. With this limit the total
+/// length of all boundaries is linear. Patches with longer boundaries would fail the test anyway.
 std::size_t longest_boundary(std::uint32_t triangles) {
   return 16 + 8 * static_cast<std::size_t>(std::sqrt(triangles));
 }
 
-/// Leaves of directed edges those that no reverse one cancels.
+/// Removes pairs of an edge and its reverse.
 void cancel_opposite(std::vector<Edge>& edges) {
   const auto undirected = [](const Edge& e) { return Edge{std::min(e[0], e[1]), std::max(e[0], e[1])}; };
   std::sort(edges.begin(), edges.end(), [&](const Edge& p, const Edge& q) {
@@ -43,7 +43,7 @@ void cancel_opposite(std::vector<Edge>& edges) {
     std::size_t forth = 0, back = 0;
     for (; i < edges.size() && undirected(edges[i]) == edge; ++i) ++(edges[i] == edge ? forth : back);
     const Edge left = forth > back ? edge : Edge{edge[1], edge[0]};
-    // As many as were read at least: nothing unread is overwritten.
+    // Writes at most as many edges as were read, so it overwrites no unread edge.
     for (std::size_t k = std::min(forth, back); k < std::max(forth, back); ++k) edges[kept++] = left;
   }
   edges.resize(kept);
@@ -58,33 +58,33 @@ SelfCollisionCulling::SelfCollisionCulling(const ObjectOctree& octree, std::span
   std::vector<Edge> edges;
   for (std::uint32_t n = static_cast<std::uint32_t>(octree.nodes().size()); n-- > 0;) {
     const OctreeNode& node = octree.nodes()[n];
-    for (int lane = 0; lane < node.lane_count; ++lane) {
+    for (int child = 0; child < node.child_count; ++child) {
       edges.clear();
-      if (!node.is_inner(lane)) {
-        for (std::uint32_t t = node.first_triangle[lane]; t < node.first_triangle[lane + 1]; ++t) {
+      if (!node.is_inner(child)) {
+        for (std::uint32_t t = node.first_triangle[child]; t < node.first_triangle[child + 1]; ++t) {
           const Triangle& triangle = triangles[t];
           for (std::size_t corner = 0; corner < 3; ++corner) {
             edges.push_back({triangle[corner], triangle[(corner + 1) % 3]});
           }
         }
       } else {
-        // A part without a boundary of use makes a whole of none: a smooth surface hardly has such parts.
-        const OctreeNode& child = octree.nodes()[node.child(lane)];
-        const Boundary* const parts = &boundaries_[std::size_t{node.child(lane)} * node_width];
-        if (std::any_of(parts, parts + child.lane_count,
+        // If a part has no boundary, neither has the whole: smooth surfaces rarely have such parts.
+        const OctreeNode& below = octree.nodes()[node.child_node(child)];
+        const Boundary* const parts = &boundaries_[std::size_t{node.child_node(child)} * node_width];
+        if (std::any_of(parts, parts + below.child_count,
                         [](const Boundary& b) { return b.begin == b.end; })) {
           continue;
         }
-        for (int part = 0; part < child.lane_count; ++part) {
+        for (int part = 0; part < below.child_count; ++part) {
           edges.insert(edges.end(), boundary_edges_.begin() + parts[part].begin,
                        boundary_edges_.begin() + parts[part].end);
         }
       }
       cancel_opposite(edges);
-      if (edges.size() > longest_boundary(node.size(lane))) continue;
+      if (edges.size() > longest_boundary(node.size(child))) continue;
       const auto begin = static_cast<std::uint32_t>(boundary_edges_.size());
       boundary_edges_.insert(boundary_edges_.end(), edges.begin(), edges.end());
-      boundaries_[std::size_t{n} * node_width + static_cast<std::size_t>(lane)] = {
+      boundaries_[std::size_t{n} * node_width + static_cast<std::size_t>(child)] = {
           begin, static_cast<std::uint32_t>(boundary_edges_.size())};
     }
   }
@@ -94,21 +94,15 @@ SelfCollisionCulling::SelfCollisionCulling(const ObjectOctree& octree, std::span
 void SelfCollisionCulling::refit(const ObjectOctree& octree, std::span<const Triangle> triangles,
                                  const VertexBuffer& start, const VertexBuffer& end,
                                  const Parallel& parallel) {
-  const auto level_begin = octree.level_begin();
-  for (std::size_t level = level_begin.size() - 1; level-- > 0;) {
-    const std::uint32_t first = level_begin[level];
-    parallel.for_ranges(level_begin[level + 1] - first, 64,
-                        [&](std::size_t node_begin, std::size_t node_end, std::uint32_t) {
-                          for (std::size_t i = node_begin; i < node_end; ++i) {
-                            const auto n = static_cast<std::uint32_t>(first + i);
-                            if (start.is_double()) {
-                              refit_node(octree.nodes(), triangles, start.doubles(), end.doubles(), n);
-                            } else {
-                              refit_node(octree.nodes(), triangles, start.floats(), end.floats(), n);
-                            }
-                          }
-                        });
-  }
+  octree.for_nodes_bottom_up(parallel, 64, [&](std::uint32_t node_begin, std::uint32_t node_end) {
+    for (std::uint32_t n = node_begin; n < node_end; ++n) {
+      if (start.is_double()) {
+        refit_node(octree.nodes(), triangles, start.doubles(), end.doubles(), n);
+      } else {
+        refit_node(octree.nodes(), triangles, start.floats(), end.floats(), n);
+      }
+    }
+  });
 }
 
 template <class Scalar>
@@ -118,11 +112,11 @@ void SelfCollisionCulling::refit_node(std::span<const OctreeNode> nodes, std::sp
   const OctreeNode& node = nodes[n];
   Normals all;
   std::uint32_t mask = 0;
-  for (int lane = 0; lane < node.lane_count; ++lane) {
+  for (int child = 0; child < node.child_count; ++child) {
     const Normals normals =
-        !node.is_inner(lane)
-            ? normals_of(triangles.subspan(node.first_triangle[lane], node.size(lane)), start, end)
-            : node_normals_[node.child(lane)];
+        !node.is_inner(child)
+            ? normals_of(triangles.subspan(node.first_triangle[child], node.size(child)), start, end)
+            : node_normals_[node.child_node(child)];
     double least = 0, size = 0;
     const Vec3d direction = normals.sum * (1 / largest_magnitude(normals.sum));
     for (int axis = 0; axis < 3; ++axis) {
@@ -132,18 +126,18 @@ void SelfCollisionCulling::refit_node(std::span<const OctreeNode> nodes, std::sp
       least += std::min(direction[axis] * normals.low[axis], direction[axis] * normals.high[axis]);
       size += std::abs(direction[axis]);
     }
-    // The bounds are 2^-21 wrong at most (`normals_of`), this sum far less. Not true of NaN.
+    // The error of the bounds is at most 2^-21 (`normals_of`), that of this sum far less. False for NaN.
     const bool all_face = least > size * 0x1p-20;
-    const Boundary& boundary = boundaries_[std::size_t{n} * node_width + static_cast<std::size_t>(lane)];
-    if (all_face && goes_round_once(boundary, direction, start, end)) mask |= 1u << lane;
+    const Boundary& boundary = boundaries_[std::size_t{n} * node_width + static_cast<std::size_t>(child)];
+    if (all_face && goes_round_once(boundary, direction, start, end)) mask |= 1u << child;
   }
   node_normals_[n] = all;
   masks_[n] = static_cast<std::uint8_t>(mask);
 }
 
-/// The three Bernstein coefficients of each triangle's normal, scaled. With E and F the greatest coordinates
-/// of its sides at either end, each is wrong by less than 16 roundings of E F, and its greatest coordinate m
-/// is compared with E F so that this is below 2^-21 m.
+/// Uses the three Bernstein coefficients of each triangle's normal, scaled. Let E and F be the largest
+/// coordinates of two sides at both ends. The error of a coefficient is less than 16 roundings of E F. Its
+/// largest coordinate m is compared with E F, so that the error is below 2^-21 m.
 template <class Scalar>
 SelfCollisionCulling::Normals SelfCollisionCulling::normals_of(std::span<const Triangle> triangles,
                                                                const VertexArray<Scalar>& start,
@@ -163,7 +157,7 @@ SelfCollisionCulling::Normals SelfCollisionCulling::normals_of(std::span<const T
     for (const Vec3d& coefficient : std::span(coefficients).first(at_rest ? 1 : 3)) {
       const double size = largest_magnitude(coefficient);
       const Vec3d normal = coefficient * (1 / size);
-      // Written so that NaN and overflow are without hope; so is what turns away from the others.
+      // NaN and overflow fail this test. So does a normal that turns away from the others.
       const bool reliable = size > least_size && std::isfinite(dot(normal, {1, 1, 1}));
       if (!reliable || dot(normal, normals.sum) < 0) return hopeless;
       normals.sum = normals.sum + normal;
@@ -176,9 +170,9 @@ SelfCollisionCulling::Normals SelfCollisionCulling::normals_of(std::span<const T
   return normals;
 }
 
-/// The turn of an edge from u to v about the centre is n · (u × v), quadratic in time. With R the greatest
-/// coordinate of any u, a coefficient is wrong by less than 32 roundings of |n| R², |n| being the sum of
-/// sizes.
+/// An edge from u to v turns around the centre by the sign of n · (u × v), which is quadratic in time. Let R
+/// be the largest coordinate of any u, and |n| the sum of the magnitudes of n. The error of a coefficient is
+/// less than 32 roundings of |n| R².
 template <class Scalar>
 bool SelfCollisionCulling::goes_round_once(const Boundary& boundary, const Vec3d& n,
                                            const VertexArray<Scalar>& start,
@@ -186,7 +180,7 @@ bool SelfCollisionCulling::goes_round_once(const Boundary& boundary, const Vec3d
   if (boundary.begin == boundary.end) return false;
   const auto edges =
       std::span<const Edge>(boundary_edges_).subspan(boundary.begin, boundary.end - boundary.begin);
-  // Any centre will do that all can see: the mean of the vertices for want of a better.
+  // The proof holds for any centre from which the boundary is star-shaped. The mean of the vertices often is.
   Vec3d center_0, center_1;
   for (const Edge& edge : edges) {
     center_0 = center_0 + position(start, edge[0]);
@@ -194,9 +188,10 @@ bool SelfCollisionCulling::goes_round_once(const Boundary& boundary, const Vec3d
   }
   center_0 = center_0 * (1 / static_cast<double>(edges.size()));
   center_1 = center_1 * (1 / static_cast<double>(edges.size()));
-  // Which side of a line through the centre a vertex is on at the start is told from the sign of its product
-  // with a direction across n; in no relation to n, as regular meshes have vertices on lines that are. That
-  // direction is across n but for some roundings, and those of the product come to it: 64 are ample.
+  // The boundary goes around once if it crosses a line through the centre once in each direction. The sign of
+  // the product with a direction across n tells the side of a vertex at the start. The direction is skewed,
+  // because regular meshes have vertices on lines along the axes. The error of the direction and of the
+  // product is less than 64 roundings.
   const Vec3d sizes{std::abs(n.x), std::abs(n.y), std::abs(n.z)};
   const int flat = sizes.x <= sizes.y ? (sizes.x <= sizes.z ? 0 : 2) : (sizes.y <= sizes.z ? 1 : 2);
   Vec3d slanted;

@@ -7,14 +7,13 @@
 namespace supple {
 namespace {
 
-/// A side of a triangle: three a triangle, in octree order.
+/// A side of a triangle. Each triangle has three, in octree order.
 struct Side {
   Edge edge;
   std::uint32_t place;
 };
 
-/// Vertices are numbered by first use, the smaller of an edge comes from few places: sorting them apart by it
-/// leaves short runs to sort.
+/// Sorts by counting on the smaller vertex, which leaves short runs to sort by the larger vertex.
 std::vector<Side> sorted_sides(std::span<const Triangle> triangles, std::uint32_t vertex_count) {
   const auto side = [&](std::uint32_t triangle, std::uint32_t corner) {
     const std::uint32_t p = triangles[triangle][corner], q = triangles[triangle][(corner + 1) % 3];

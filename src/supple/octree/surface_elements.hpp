@@ -11,25 +11,25 @@
 
 namespace supple {
 
-/// Two different vertices of a triangle, the smaller number first.
+/// Two different vertices of a triangle; the smaller number is first.
 using Edge = std::array<std::uint32_t, 2>;
 
-/// A range of elements of one kind, the numbers of `SurfaceElements`.
+/// A range of elements of one kind in the numbering of `SurfaceElements`.
 struct ElementRange {
   std::uint32_t begin = 0, end = 0;
 
   std::uint32_t size() const { return end - begin; }
 };
 
-/// Vertices, edges and faces of an object in octree order, each owned by one leaf: the leaf of the first
-/// triangle that uses it. So the elements of a leaf, or of any run of triangles, are contiguous, and a pair
-/// of elements belongs to exactly one pair of leaves.
+/// Vertices, edges and faces of an object in octree order. The first triangle that uses an element owns it,
+/// and so does the leaf of this triangle. So the elements of consecutive triangles are contiguous, and each
+/// pair of elements belongs to exactly one pair of leaves.
 ///
-/// Vertices and edges are numbered by first use. An edge is a pair of different vertices of a triangle,
-/// however many triangles share it. Faces are the triangles themselves, in the octree's order. Vertices that
-/// no triangle uses come last and belong to none.
+/// Vertices and edges are numbered by first use. An edge is a pair of different vertices of a triangle;
+/// several triangles can share it. Faces are the triangles in octree order. Vertices that no triangle uses
+/// are last and have no owner.
 ///
-/// Memory: 4 bytes a vertex, 8 an edge, 20 a triangle.
+/// Memory: 4 bytes per vertex, 8 per edge, 20 per triangle.
 class SurfaceElements {
  public:
   SurfaceElements() = default;
@@ -38,13 +38,13 @@ class SurfaceElements {
 
   std::span<const Edge> edges() const { return edges_; }
   std::span<const Triangle> faces() const { return faces_; }
-  /// Of all vertices, number to the user's.
+  /// The user's id of each vertex, also of unused ones.
   std::span<const std::uint32_t> vertex_ids() const { return vertex_ids_; }
-  /// Number of vertices that a triangle uses.
+  /// The number of vertices that triangles use.
   std::uint32_t vertex_count() const { return first_vertex_.back(); }
   std::uint32_t edge_count() const { return static_cast<std::uint32_t>(edges_.size()); }
 
-  /// Owned by the triangles [begin, end) of the octree's order.
+  /// The elements that the triangles [begin, end) in octree order own.
   ElementRange vertices_of(std::uint32_t begin, std::uint32_t end) const {
     return {first_vertex_[begin], first_vertex_[end]};
   }
@@ -60,7 +60,7 @@ class SurfaceElements {
            (vertex_ids_.capacity() + first_vertex_.capacity() + first_edge_.capacity()) *
                sizeof(std::uint32_t);
   }
-  /// The empty string when every invariant holds; else what is wrong. O(n log n).
+  /// The empty string when every invariant holds; otherwise what is wrong. O(n log n).
   std::string validate(const ObjectOctree& octree) const;
 
  private:

@@ -24,7 +24,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 #if HWY_TARGET == HWY_SCALAR
 
-/// The meaning of the vector versions below, for machines without them.
+/// The scalar version of the boxes below, for machines without vectors.
 template <class Scalar>
 struct ScalarBox {
   static constexpr Scalar inf = std::numeric_limits<Scalar>::infinity();
@@ -36,6 +36,12 @@ struct ScalarBox {
       lo[axis] = std::min(lo[axis], vertex[axis]);
       hi[axis] = std::max(hi[axis], vertex[axis]);
       sum += vertex[axis];
+    }
+  }
+  void extend(const Scalar* lower, const Scalar* upper) {
+    for (int axis = 0; axis < 3; ++axis) {
+      lo[axis] = std::min(lo[axis], lower[axis]);
+      hi[axis] = std::max(hi[axis], upper[axis]);
     }
   }
   void extend(const ScalarBox& other) {
@@ -58,12 +64,12 @@ using DoubleBox = ScalarBox<double>;
 
 #else
 
-/// A box that grows, x y z in the first three of four lanes.
+/// A box that grows; x y z are the first three of four vector lanes.
 struct FloatBox {
   using Tag = hn::FixedTag<float, 4>;
   hn::Vec<Tag> lo, hi, sum;
 
-  // Written out: an implicit constructor would be compiled without the instruction set around it.
+  // Explicit: compilers would not apply this function's instruction set to an implicit constructor.
   HWY_INLINE FloatBox()
       : lo(hn::Set(Tag(), std::numeric_limits<float>::infinity())),
         hi(hn::Set(Tag(), -std::numeric_limits<float>::infinity())),
@@ -74,6 +80,11 @@ struct FloatBox {
     lo = hn::Min(lo, v);
     hi = hn::Max(hi, v);
     sum = hn::Add(sum, v);
+  }
+  /// By a box. The float after each corner must be readable; `all_finite` ignores the box.
+  HWY_INLINE void extend(const float* lower, const float* upper) {
+    lo = hn::Min(lo, hn::LoadU(Tag(), lower));
+    hi = hn::Max(hi, hn::LoadU(Tag(), upper));
   }
   HWY_INLINE void extend(const FloatBox& other) {
     lo = hn::Min(lo, other.lo);
@@ -92,7 +103,7 @@ struct FloatBox {
   }
 };
 
-/// The same over doubles, rounded outward once at the end.
+/// The same for doubles, rounded outward once at the end.
 struct DoubleBox {
   using Tag = hn::FixedTag<double, 2>;
   using FloatTag = hn::FixedTag<float, 2>;
@@ -175,21 +186,21 @@ HWY_INLINE void extend_by_triangle(Box& box, VertexArray<Scalar> positions, cons
   box.extend(positions[triangle[2]]);
 }
 
-/// Lane `lane` of `lanes` becomes the given box.
-HWY_INLINE void set_lane(AabbLanes& lanes, int lane, const float* lower, const float* upper) {
-  lanes.min_x[lane] = lower[0];
-  lanes.min_y[lane] = lower[1];
-  lanes.min_z[lane] = lower[2];
-  lanes.max_x[lane] = upper[0];
-  lanes.max_y[lane] = upper[1];
-  lanes.max_z[lane] = upper[2];
+/// Sets the box of a child.
+HWY_INLINE void set_child(ChildBoxes& children, int child, const float* lower, const float* upper) {
+  children.min_x[child] = lower[0];
+  children.min_y[child] = lower[1];
+  children.min_z[child] = lower[2];
+  children.max_x[child] = upper[0];
+  children.max_y[child] = upper[1];
+  children.max_z[child] = upper[2];
 }
 
 template <class Box>
-HWY_INLINE void set_lane(AabbLanes& lanes, int lane, const Box& box) {
+HWY_INLINE void set_child(ChildBoxes& children, int child, const Box& box) {
   HWY_ALIGN float lower[4], upper[4];
   box.store(lower, upper);
-  set_lane(lanes, lane, lower, upper);
+  set_child(children, child, lower, upper);
 }
 
 #if HWY_TARGET == HWY_SCALAR
@@ -217,12 +228,12 @@ HWY_INLINE void store_transposed(hn::Vec<FloatBox::Tag> p, hn::Vec<FloatBox::Tag
   const FloatBox::Tag tag;
   const auto xy_pq = hn::InterleaveLower(tag, p, q), xy_rs = hn::InterleaveLower(tag, r, s);
   const auto z_pq = hn::InterleaveUpper(tag, p, q), z_rs = hn::InterleaveUpper(tag, r, s);
-  hn::Store(hn::ConcatLowerLower(tag, xy_rs, xy_pq), tag, x);
-  hn::Store(hn::ConcatUpperUpper(tag, xy_rs, xy_pq), tag, y);
-  hn::Store(hn::ConcatLowerLower(tag, z_rs, z_pq), tag, z);
+  hn::StoreU(hn::ConcatLowerLower(tag, xy_rs, xy_pq), tag, x);
+  hn::StoreU(hn::ConcatUpperUpper(tag, xy_rs, xy_pq), tag, y);
+  hn::StoreU(hn::ConcatLowerLower(tag, z_rs, z_pq), tag, z);
 }
 
-/// Boxes `first` to `first` + 3 of six arrays become the given ones; `first` is a multiple of four.
+/// Boxes `first` to `first` + 3 of six arrays become the given ones.
 template <class Arrays, class Box>
 HWY_INLINE void set_four_boxes(Arrays& arrays, std::size_t first, const Box (&boxes)[4]) {
   store_transposed(boxes[0].lower(), boxes[1].lower(), boxes[2].lower(), boxes[3].lower(),
@@ -233,11 +244,11 @@ HWY_INLINE void set_four_boxes(Arrays& arrays, std::size_t first, const Box (&bo
 
 #endif
 
-HWY_INLINE void invert_lanes_from(AabbLanes& lanes, int first) {
+HWY_INLINE void invert_children_from(ChildBoxes& children, int first) {
   constexpr float inf = std::numeric_limits<float>::infinity();
-  for (int lane = first; lane < node_width; ++lane) {
-    lanes.min_x[lane] = lanes.min_y[lane] = lanes.min_z[lane] = inf;
-    lanes.max_x[lane] = lanes.max_y[lane] = lanes.max_z[lane] = -inf;
+  for (int child = first; child < node_width; ++child) {
+    children.min_x[child] = children.min_y[child] = children.min_z[child] = inf;
+    children.max_x[child] = children.max_y[child] = children.max_z[child] = -inf;
   }
 }
 
@@ -259,9 +270,9 @@ HWY_INLINE float max_of_eight(const float* values) {
   return hn::GetLane(hn::MaxOfLanes(tag, greatest));
 }
 
-HWY_INLINE Aabb enclose_lanes(const AabbLanes& lanes) {
-  return {{min_of_eight(lanes.min_x), min_of_eight(lanes.min_y), min_of_eight(lanes.min_z)},
-          {max_of_eight(lanes.max_x), max_of_eight(lanes.max_y), max_of_eight(lanes.max_z)}};
+HWY_INLINE Aabb enclose_children(const ChildBoxes& children) {
+  return {{min_of_eight(children.min_x), min_of_eight(children.min_y), min_of_eight(children.min_z)},
+          {max_of_eight(children.max_x), max_of_eight(children.max_y), max_of_eight(children.max_z)}};
 }
 
 }  // namespace HWY_NAMESPACE

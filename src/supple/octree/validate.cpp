@@ -41,36 +41,36 @@ class Validation {
   std::string check_node(std::uint32_t n, std::vector<std::uint8_t>& reached, std::uint32_t& covered) const {
     const OctreeNode& node = octree_.nodes()[n];
     const std::string here = "node " + std::to_string(n) + ": ";
-    if (node.lane_count < 1 || node.lane_count > arity_) return here + "lane count out of range";
-    for (int lane = 0; lane < node.lane_count; ++lane) {
-      const std::uint32_t begin = node.first_triangle[lane], end = node.first_triangle[lane + 1];
-      if (begin >= end || end > octree_.triangles().size()) return here + "lane without triangles";
-      if (std::string wrong = check_bounds(n, lane, begin, end); !wrong.empty()) return here + wrong;
-      if (!node.is_inner(lane)) {
+    if (node.child_count < 1 || node.child_count > arity_) return here + "number of children out of range";
+    for (int child = 0; child < node.child_count; ++child) {
+      const std::uint32_t begin = node.first_triangle[child], end = node.first_triangle[child + 1];
+      if (begin >= end || end > octree_.triangles().size()) return here + "child without triangles";
+      if (std::string wrong = check_bounds(n, child, begin, end); !wrong.empty()) return here + wrong;
+      if (!node.is_inner(child)) {
         covered += end - begin;
         continue;
       }
-      const std::uint32_t child = node.child(lane);
-      if (child <= n || child >= octree_.nodes().size()) return here + "child out of range";
-      const OctreeNode& below = octree_.nodes()[child];
-      reached[child] = 1;
-      if (below.parent != n || below.parent_lane != lane || below.level != node.level + 1 ||
+      const std::uint32_t below_n = node.child_node(child);
+      if (below_n <= n || below_n >= octree_.nodes().size()) return here + "child out of range";
+      const OctreeNode& below = octree_.nodes()[below_n];
+      reached[below_n] = 1;
+      if (below.parent != n || below.index_in_parent != child || below.level != node.level + 1 ||
           below.first_triangle[0] != begin || below.first_triangle[node_width] != end ||
-          below.lane_count < 2) {
-        return here + "child does not fit its lane";
+          below.child_count < 2) {
+        return here + "child does not fit its parent";
       }
     }
-    for (int lane = node.lane_count; lane < node_width; ++lane) {
-      if (!lane_box(octree_.boxes()[n], lane).empty() || node.is_inner(lane))
-        return here + "unused lane is not empty";
+    for (int child = node.child_count; child < node_width; ++child) {
+      if (!child_box(octree_.boxes()[n], child).empty() || node.is_inner(child))
+        return here + "missing child is not empty";
     }
     return "";
   }
 
-  /// Every vertex of the lane's triangles lies in its volumes, and the box is not larger than rounding
+  /// Every vertex of the child's triangles lies in its volumes, and the box is not larger than rounding
   /// explains.
-  std::string check_bounds(std::uint32_t n, int lane, std::uint32_t begin, std::uint32_t end) const {
-    const Aabb box = lane_box(octree_.boxes()[n], lane);
+  std::string check_bounds(std::uint32_t n, int child, std::uint32_t begin, std::uint32_t end) const {
+    const Aabb box = child_box(octree_.boxes()[n], child);
     constexpr double inf = std::numeric_limits<double>::infinity();
     Vec3d lower{inf, inf, inf}, upper{-inf, -inf, -inf};
     for (std::uint32_t t = begin; t < end; ++t) {
@@ -82,7 +82,7 @@ class Validation {
           upper[axis] = std::max(upper[axis], p[axis]);
           if (!(box.min[axis] <= p[axis] && p[axis] <= box.max[axis])) return "box does not enclose a vertex";
         }
-        if (check_spheres_ && !in_sphere(n, lane, p)) return "sphere does not enclose a vertex";
+        if (check_spheres_ && !in_sphere(n, child, p)) return "sphere does not enclose a vertex";
       }
     }
     for (int axis = 0; axis < 3; ++axis) {
@@ -95,10 +95,11 @@ class Validation {
     return "";
   }
 
-  bool in_sphere(std::uint32_t n, int lane, Vec3d p) const {
-    const SphereLanes& lanes = octree_.spheres()[n];
-    const double distance = std::hypot(p.x - lanes.x[lane], p.y - lanes.y[lane], p.z - lanes.z[lane]);
-    return distance <= lanes.radius[lane] * (1 + 0x1p-40) || std::isinf(lanes.radius[lane]);
+  bool in_sphere(std::uint32_t n, int child, Vec3d p) const {
+    const ChildSpheres& spheres = octree_.spheres()[n];
+    const double distance =
+        std::hypot(p.x - spheres.x[child], p.y - spheres.y[child], p.z - spheres.z[child]);
+    return distance <= spheres.radius[child] * (1 + 0x1p-40) || std::isinf(spheres.radius[child]);
   }
 
   const ObjectOctree& octree_;
@@ -120,27 +121,27 @@ OctreeStatistics ObjectOctree::statistics() const {
   result.triangles = triangles_.size();
   result.vertices = vertex_count_;
   result.nodes = nodes_.size();
-  std::uint64_t lanes = 0;
+  std::uint64_t children = 0;
   for (const OctreeNode& node : nodes_) {
-    lanes += node.lane_count;
-    for (int lane = 0; lane < node.lane_count; ++lane) {
-      if (node.is_inner(lane)) continue;
+    children += node.child_count;
+    for (int child = 0; child < node.child_count; ++child) {
+      if (node.is_inner(child)) continue;
       // An object of one leaf is that leaf: the root itself, not an octant of it.
-      const std::uint32_t level = node.lane_count == 1 ? 0 : node.level + 1u;
+      const std::uint32_t level = node.child_count == 1 ? 0 : node.level + 1u;
       if (level >= result.leaves_by_level.size()) result.leaves_by_level.resize(level + 1);
       ++result.leaves_by_level[level];
       ++result.leaves;
       result.depth = std::max(result.depth, level);
       result.largest_leaf =
-          std::max(result.largest_leaf, node.first_triangle[lane + 1] - node.first_triangle[lane]);
+          std::max(result.largest_leaf, node.first_triangle[child + 1] - node.first_triangle[child]);
     }
   }
   if (result.leaves > 0) {
     result.mean_leaf_size = static_cast<double>(result.triangles) / static_cast<double>(result.leaves);
-    result.mean_node_width = static_cast<double>(lanes) / static_cast<double>(result.nodes);
+    result.mean_node_width = static_cast<double>(children) / static_cast<double>(result.nodes);
   }
-  result.bytes = nodes_.capacity() * sizeof(OctreeNode) + boxes_.capacity() * sizeof(AabbLanes) +
-                 spheres_.capacity() * sizeof(SphereLanes) + triangles_.capacity() * sizeof(Triangle) +
+  result.bytes = nodes_.capacity() * sizeof(OctreeNode) + boxes_.capacity() * sizeof(ChildBoxes) +
+                 spheres_.capacity() * sizeof(ChildSpheres) + triangles_.capacity() * sizeof(Triangle) +
                  (triangle_ids_.capacity() + triangle_order_.capacity() + level_begin_.capacity() +
                   first_leaf_vertex_.capacity() + leaf_vertices_.capacity() + unused_vertices_.capacity()) *
                      sizeof(std::uint32_t) +

@@ -11,12 +11,12 @@ constexpr std::size_t grain = 16384;
 }  // namespace
 
 void VertexBuffer::resize(std::size_t count, bool is_double) {
-  // Switching the precision gives the other storage back; that happens once, not in the steady state.
+  // A change of precision frees the other storage. This happens once, not in the steady state.
   if (is_double != is_double_ || count != count_) {
     if (is_double) std::vector<float>().swap(floats_);
     if (!is_double) std::vector<double>().swap(doubles_);
   }
-  // One scalar more than there are, so that four can be read from the last vertex on.
+  // One more scalar, so that kernels can read four scalars from the last vertex on.
   if (is_double) doubles_.resize(3 * count + 1);
   if (!is_double) floats_.resize(3 * count + 1);
   borrowed_ = nullptr;

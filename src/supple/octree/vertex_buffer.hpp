@@ -11,13 +11,12 @@
 
 namespace supple {
 
-/// The positions of an object, in the precision they were given in: a copy, or where they lie in the user's
-/// memory.
+/// The positions of an object in their original precision: a copy, or a reference to the user's memory.
 class VertexBuffer {
  public:
   std::size_t size() const { return count_; }
   bool is_double() const { return is_double_; }
-  /// Null data when they are doubles; and the reverse.
+  /// The data of the other precision are null.
   VertexArray<float> floats() const { return is_double_ ? VertexArray<float>{} : array(floats_); }
   VertexArray<double> doubles() const { return is_double_ ? array(doubles_) : VertexArray<double>{}; }
 
@@ -30,16 +29,24 @@ class VertexBuffer {
     return {p[0], p[1], p[2]};
   }
 
+  PositionsView view() const {
+    const auto view_of = [&](const auto& array) {
+      return PositionsView(array.data, count_,
+                           static_cast<std::ptrdiff_t>(array.stride * sizeof *array.data));
+    };
+    return is_double_ ? view_of(doubles()) : view_of(floats());
+  }
+
   void assign(const PositionsView& positions, const Parallel& parallel);
 
-  /// Vertex v becomes vertex `ids[v]` of the other buffer, in its precision.
+  /// Vertex v becomes vertex `ids[v]` of `source`, in the precision of `source`.
   void gather(const VertexBuffer& source, std::span<const std::uint32_t> ids, const Parallel& parallel);
 
-  /// The buffer refers to these positions in the user's memory and frees its copy. Returns false, and changes
-  /// nothing, when the layout does not allow that: x, y, z must be adjacent and aligned.
+  /// Refers to these positions in the user's memory and frees the copy. Returns false and changes nothing
+  /// when the layout does not allow that: x, y, z must be adjacent and aligned.
   bool borrow(const PositionsView& positions);
 
-  /// Each vertex becomes `function(vertex)` of `source`, in double.
+  /// Vertex v becomes `function(source[v])`, in double.
   template <class Function>
   void transform(const VertexBuffer& source, const Parallel& parallel, const Function& function);
 

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <atomic>
 #include <limits>
 #include <vector>
 
@@ -183,8 +184,8 @@ bool Scene::Implementation::may_pair(const IndexPair& pair) const {
   return !filter || filter(id_of(pair.a), id_of(pair.b));
 }
 
-/// Counts how often each octree is searched as a whole, except by jobs whose outcome is known because nothing
-/// moved. Another object searches the share of an octree that is the surface of the boxes' intersection.
+/// Counts the queries of each octree. Jobs of objects that did not move search nothing. A query of another
+/// object counts by the share of the octree that it meets: the surface of the box that both objects share.
 void Scene::Implementation::count_queries(const Jobs& jobs) {
   queries_.assign(slots_.size(), 0);
   for (const ContactJob& job : jobs.jobs) {
@@ -192,15 +193,15 @@ void Scene::Implementation::count_queries(const Jobs& jobs) {
     if (job.a == job.b) {
       queries_[job.a] += RebuildPolicy::queries_of_self;
     } else {
-      const double asked_for = half_surface(shared_box(boxes_[job.a], boxes_[job.b]));
+      const double shared_surface = half_surface(shared_box(boxes_[job.a], boxes_[job.b]));
       for (const std::uint32_t index : {job.a, job.b}) {
-        if (asked_for > 0) queries_[index] += asked_for / half_surface(boxes_[index]);
+        if (shared_surface > 0) queries_[index] += shared_surface / half_surface(boxes_[index]);
       }
     }
   }
 }
 
-/// Those for which it pays, some in a step: the others wait.
+/// Rebuilds degraded octrees where that pays, some in each step: the others wait.
 void Scene::Implementation::rebuild_degraded(const Jobs& jobs) {
   constexpr std::uint64_t most_triangles = 65536;  // a step, but at least one object
   degraded_.clear();
@@ -210,26 +211,24 @@ void Scene::Implementation::rebuild_degraded(const Jobs& jobs) {
   }
   if (degraded_.empty()) return;
   count_queries(jobs);
-  std::size_t chosen = 0;
-  std::uint64_t triangles = 0;
-  for (const std::uint32_t index : degraded_) {
+  std::size_t total = 0;
+  std::erase_if(degraded_, [&](std::uint32_t index) {
     SceneObject& object = *slots_[index].object;
-    if (!(queries_[index] > 0) || !object.rebuild_policy().count_queries(queries_[index])) continue;
-    const std::uint64_t degraded = object.rebuild_policy().degraded_triangles(object.octree());
-    if (triangles > 0 && triangles + degraded > most_triangles) continue;
-    triangles += degraded;
-    degraded_[chosen++] = index;
-    result.stats.subtrees_rebuilt -= object.subtrees_rebuilt();
-    result.stats.triangles_rebuilt -= object.triangles_rebuilt();
-  }
-  degraded_.resize(chosen);
-  const auto all_triangles = [](const SceneObject& object) { return object.octree().triangles().size(); };
-  for_each_object(degraded_, all_triangles,
-                  [](SceneObject& object, const Parallel& workers) { object.rebuild(workers); });
-  for (const std::uint32_t index : degraded_) {
-    result.stats.subtrees_rebuilt += slots_[index].object->subtrees_rebuilt();
-    result.stats.triangles_rebuilt += slots_[index].object->triangles_rebuilt();
-  }
+    if (!(queries_[index] > 0) || !object.rebuild_policy().count_queries(queries_[index])) return true;
+    const std::size_t triangles = object.octree().triangles().size();
+    if (total > 0 && total + triangles > most_triangles) return true;
+    total += triangles;
+    return false;
+  });
+  std::atomic<std::uint64_t> octrees = 0, triangles = 0;
+  const auto triangle_count = [](const SceneObject& object) { return object.octree().triangles().size(); };
+  for_each_object(degraded_, triangle_count, [&](SceneObject& object, const Parallel& workers) {
+    if (!object.rebuild(workers)) return;
+    ++octrees;
+    triangles += triangle_count(object);
+  });
+  result.stats.octrees_rebuilt = octrees;
+  result.stats.triangles_rebuilt = triangles;
 }
 
 bool Scene::Implementation::find_contacts(const DetectRequest& request, const StopSignal& stop) {

@@ -115,24 +115,24 @@ PairExplanation objects_apart(const SceneObject& a, const SceneObject& b, Boundi
   return explanation;
 }
 
-/// Lanes of the root are cells of level 1, unless it has only one, which then is the root.
+/// Children of the root are cells of level 1; an only child is the root itself.
 std::uint32_t cell_level(const OctreeView& view, std::uint32_t node) {
-  return view.nodes[node].lane_count == 1 ? 0 : view.nodes[node].level + 1u;
+  return view.nodes[node].child_count == 1 ? 0 : view.nodes[node].level + 1u;
 }
 
-PairExplanation cells_apart(const ObjectPairView& pair, const LanePair& at) {
+PairExplanation cells_apart(const ObjectPairView& pair, const ChildPair& at) {
   PairExplanation explanation{.stage = PairStage::octree_volumes};
   explanation.level_a = cell_level(pair.a, at.node_a);
   explanation.level_b = cell_level(pair.b, at.node_b);
   const Vec3d &to_a = pair.a.translation, &to_b = pair.b.translation;
   if (pair.a.spheres != nullptr) {
-    const BoundingSphere a = lane_sphere(pair.a, at.node_a, at.lane_a);
-    const BoundingSphere b = lane_sphere(pair.b, at.node_b, at.lane_b);
+    const BoundingSphere a = child_sphere(pair.a, at.node_a, at.child_a);
+    const BoundingSphere b = child_sphere(pair.b, at.node_b, at.child_b);
     explanation.sphere_a = moved(a, to_a);
     explanation.sphere_b = moved(b, to_b);
     set_gap(explanation, center(b, to_b) - center(a, to_a));
   } else {
-    const Aabb a = lane_box(pair.a, at.node_a, at.lane_a), b = lane_box(pair.b, at.node_b, at.lane_b);
+    const Aabb a = child_box(pair.a, at.node_a, at.child_a), b = child_box(pair.b, at.node_b, at.child_b);
     explanation.box_a = moved(a, to_a);
     explanation.box_b = moved(b, to_b);
     set_gap(explanation, corners_of(a, to_a), corners_of(b, to_b));
@@ -208,7 +208,7 @@ PairExplanation Scene::Implementation::explain_in_order(const ContactJob& job, T
   if (!same_object && !std::binary_search(jobs_.pairs.begin(), jobs_.pairs.end(), ids))
     return objects_apart(a, b, options.bounding_volume, question_.is_continuous());
   const ObjectPairView pair = search_view(job);
-  const LanePair at = last_lanes(pair, triangles);
+  const ChildPair at = last_children(pair, triangles);
   if (at.apart) return cells_apart(pair, at);
   const TrianglePoints points_a = points_of(a, triangles.a), points_b = points_of(b, triangles.b);
   const bool boxes_apart =

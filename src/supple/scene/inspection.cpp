@@ -12,39 +12,40 @@
 namespace supple {
 namespace {
 
-/// The lanes of an octree as cells, where the object is now.
+/// The children of an octree as cells, where the object is now.
 class CellReader {
  public:
   explicit CellReader(const OctreeView& view) : view_(view) {}
 
   /// Whether the octree is a single leaf, which is then the root cell.
   bool is_one_leaf() const {
-    return view_.nodes.size() > 0 && view_.nodes[0].lane_count == 1 && !view_.nodes[0].is_inner(0);
+    return view_.nodes.size() > 0 && view_.nodes[0].child_count == 1 && !view_.nodes[0].is_inner(0);
   }
 
-  /// Calls `visit(node, lane, is_leaf)` for every lane that the search knows; shallow ones first.
+  /// Calls `visit(node, child, is_leaf)` for every child that the search knows; shallow ones first.
   template <class Visit>
-  void for_each_lane(Visit&& visit) const {
+  void for_each_child(Visit&& visit) const {
     for (const OctreeNode& node : view_.nodes) {
-      for (int lane = 0; lane < node.lane_count; ++lane) visit(node, lane, !node.is_inner(lane));
+      for (int child = 0; child < node.child_count; ++child) visit(node, child, !node.is_inner(child));
     }
   }
 
-  OctreeCell cell(const OctreeNode& node, int lane, bool is_leaf) const {
+  OctreeCell cell(const OctreeNode& node, int child, bool is_leaf) const {
     OctreeCell cell;
     cell.level = is_one_leaf() ? 0 : node.level + 1u;
     cell.is_leaf = is_leaf;
-    cell.triangle_count = node.size(lane);
+    cell.triangle_count = node.size(child);
     const auto n = static_cast<std::uint32_t>(&node - view_.nodes.data());
-    cell.box = moved(lane_box(view_, n, lane), view_.translation);
-    if (view_.spheres != nullptr) cell.sphere = moved(lane_sphere(view_, n, lane), view_.translation);
+    cell.box = moved(child_box(view_, n, child), view_.translation);
+    if (view_.spheres != nullptr) cell.sphere = moved(child_sphere(view_, n, child), view_.translation);
     return cell;
   }
 
   /// The root cell of an object that has triangles.
   OctreeCell root(const BoundingSphere& sphere) const {
     OctreeCell cell{0, is_one_leaf(), view_.nodes[0].size(), {}, {}};
-    for (int lane = 0; lane < view_.nodes[0].lane_count; ++lane) extend(cell.box, lane_box(view_, 0, lane));
+    for (int child = 0; child < view_.nodes[0].child_count; ++child)
+      extend(cell.box, child_box(view_, 0, child));
     cell.box = moved(cell.box, view_.translation);
     if (view_.spheres != nullptr) cell.sphere = sphere;
     return cell;
@@ -125,10 +126,10 @@ std::vector<OctreeCell> Scene::Implementation::octree_cells(ObjectId id,
   if (asked.octree().nodes().empty()) return cells;
   const CellReader reader(search_view(asked));
   if (level == 0) return {reader.root(asked.sphere())};
-  reader.for_each_lane([&](const OctreeNode& node, int lane, bool is_leaf) {
+  reader.for_each_child([&](const OctreeNode& node, int child, bool is_leaf) {
     const std::uint32_t here = node.level + 1u;
     const bool is_asked_for = !level ? is_leaf : here == *level || (is_leaf && here < *level);
-    if (is_asked_for) cells.push_back(reader.cell(node, lane, is_leaf));
+    if (is_asked_for) cells.push_back(reader.cell(node, child, is_leaf));
   });
   return cells;
 }
@@ -137,13 +138,13 @@ std::uint32_t Scene::Implementation::octree_depth(ObjectId id) const {
   const CellReader reader(search_view(object(id, "octree_depth")));
   if (reader.is_one_leaf()) return 0;
   std::uint32_t depth = 0;
-  reader.for_each_lane([&](const OctreeNode& node, int, bool) { depth = std::max(depth, node.level + 1u); });
+  reader.for_each_child([&](const OctreeNode& node, int, bool) { depth = std::max(depth, node.level + 1u); });
   return depth;
 }
 
 ObjectPairView Scene::Implementation::search_view(const ContactJob& job) const {
   OctreeView a = search_view(*slots_[job.a].object), b = search_view(*slots_[job.b].object);
-  a.unfolded = b.unfolded = nullptr;
+  a.culled = b.culled = nullptr;
   const double separation = question_.impact.min_separation;
   if (question_.searches_at_rest()) return job.a == job.b ? self_pair_of(a) : pair_of(a, b);
   return job.a == job.b ? moving_self_pair_of(a, separation) : moving_pair_of(a, b, separation);

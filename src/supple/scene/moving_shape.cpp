@@ -27,7 +27,7 @@ void MovingShape::refit(const ObjectOctree& octree, const Placement& placement, 
 
 OctreeView MovingShape::view(const ObjectOctree& octree, const Placement& placement) const {
   OctreeView view = moving_view_of(octree, elements_, boxes_, placement.translation());
-  view.unfolded = unfolded_.masks(placement.version());
+  view.culled = culling_.masks(placement.version());
   return view;
 }
 
@@ -37,7 +37,7 @@ std::string MovingShape::validate(const ObjectOctree& octree) const {
 }
 
 std::size_t MovingShape::bytes() const {
-  return elements_.bytes() + start_.bytes() + end_.bytes() + boxes_.bytes() + unfolded_.bytes();
+  return elements_.bytes() + start_.bytes() + end_.bytes() + boxes_.bytes() + culling_.bytes();
 }
 
 }  // namespace supple

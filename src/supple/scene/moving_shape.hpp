@@ -10,8 +10,8 @@
 #include "octree/moving_boxes.hpp"
 #include "octree/object_octree.hpp"
 #include "octree/surface_elements.hpp"
+#include "scene/adaptive_culling.hpp"
 #include "scene/placement.hpp"
-#include "scene/unfolded_lanes.hpp"
 
 namespace supple {
 
@@ -20,24 +20,24 @@ namespace supple {
 class MovingShape {
  public:
   bool is_current(const Placement& placement) const { return version_ == placement.version(); }
-  /// Makes the boxes, and bakes the translation where it must be. O(n), O(n log n) the first time.
+  /// Computes the boxes, and bakes the translation if necessary. O(n), the first time O(n log n).
   void update(const ObjectOctree& octree, Placement& placement, const Parallel& parallel);
-  void update_unfolded(const ObjectOctree& octree, const Parallel& parallel) {
-    unfolded_.update(version_, octree, elements_.faces(), start(), end_, parallel);
+  void update_culling(const ObjectOctree& octree, const Parallel& parallel) {
+    culling_.update(version_, octree, elements_.faces(), start(), end_, parallel);
   }
 
   OctreeView view(const ObjectOctree& octree, const Placement& placement) const;
   const SurfaceElements& elements() const { return elements_; }
-  /// Positions in the elements' numbering, without the placement's translation; the same buffer at rest.
+  /// Positions in the elements' numbering, without the placement's translation. At rest, `start` and `end`
+  /// are the same buffer.
   const VertexBuffer& start() const { return boxes_.at_rest() ? end_ : start_; }
   const VertexBuffer& end() const { return end_; }
-  /// Around the whole motion, without the placement's translation.
+  /// The box around the whole motion, without the placement's translation.
   Aabb box() const { return boxes_.swept_box(); }
   /// Boxes of the octree's nodes at the end of the step.
-  const AabbLanes* node_boxes() const { return boxes_.view(elements_).end; }
-  /// User's numbers, ascending: those not finite at one end of the step; as of the last update.
+  const ChildBoxes* node_boxes() const { return boxes_.view(elements_).end; }
+  /// The user's ids of vertices that were not finite at one end of the step at the last update, ascending.
   std::span<const std::uint32_t> non_finite_vertices() const { return non_finite_; }
-  const UnfoldedLanes& unfolded() const { return unfolded_; }
   std::string validate(const ObjectOctree& octree) const;
   std::size_t bytes() const;
 
@@ -45,7 +45,7 @@ class MovingShape {
   void forget_octree() {
     version_ = 0;
     elements_ = {};
-    unfolded_.forget_octree();
+    culling_.forget_octree();
   }
 
  private:
@@ -56,7 +56,7 @@ class MovingShape {
   VertexBuffer start_, end_;
   MovingBoxes boxes_;
   std::vector<std::uint32_t> non_finite_;
-  UnfoldedLanes unfolded_;
+  AdaptiveCulling culling_;
 };
 
 }  // namespace supple

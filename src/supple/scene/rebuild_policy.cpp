@@ -1,76 +1,50 @@
 #include "scene/rebuild_policy.hpp"
 
 #include <algorithm>
-#include <utility>
 
 namespace supple {
 namespace {
 
-/// Refits in a row of which the quality is measured once the octree was found degraded.
-constexpr std::uint32_t refits_watched = 16;
-/// What is the same however small the degraded part, and sorting all of the octree.
-constexpr double price_of_relinking = 10, price_of_building = 50;
-/// Of what queries of the degraded parts cost, that a new tree must save: leaves that are patches of the
-/// surface stay good for longer than those that are parts of space. And where the surface is smooth, more of
-/// them cannot touch themselves.
-constexpr double least_saving = 0.5, least_saving_of_smooth = 0.75;
-constexpr double most_patience = 1024;
+/// In queries of the octree as built.
+constexpr double rebuild_cost = 60;
+constexpr double least_degradation = 1.25;
+/// Leaves that are patches of the surface stay good for longer than leaves that are parts of space, and more
+/// of them cannot touch themselves. So the new octree must be much better.
+constexpr double most_remaining_cost = 0.5;
+constexpr double most_backoff = 1024;
+/// A prime, so that a motion that repeats after a few refits is measured in each of its phases.
+constexpr std::uint32_t refits_per_measurement = 7;
+/// Used when the cost at the built positions is unknown because they are one point.
+constexpr double usual_cost = 16;
 
 }  // namespace
 
-/// A tree degrades over many steps, mostly: it is looked at now and then, not in time with a motion that
-/// repeats, and all the time when it has lately been found degraded.
-void RebuildPolicy::after_refit(const TreeBoxes& tree) {
-  if (!is_allowed_ || --refits_until_measured_ > 0) return;
-  quality_.measure(tree);
-  if (is_degraded()) refits_to_watch_ = refits_watched;
-  refits_until_measured_ = 1;
-  if (refits_to_watch_ > 0) {
-    --refits_to_watch_;
-  } else {
-    random_ = random_ * 1664525 + 1013904223;
-    refits_until_measured_ += random_ >> 28;
-  }
+void RebuildPolicy::set_cost_when_built(double cost) {
+  cost_ = cost;
+  cost_when_built_ = cost > 0 ? cost : usual_cost;
 }
 
-std::uint64_t RebuildPolicy::degraded_triangles(const ObjectOctree& octree) const {
-  std::uint64_t count = 0;
-  for (const std::uint32_t node : degraded_nodes()) count += octree.nodes()[node].size();
-  return count;
-}
-
-double RebuildPolicy::price() const {
-  return price_of_relinking + price_of_building * quality_.share();
-}
-
-bool RebuildPolicy::count_queries(double queries) {
-  waste_ += queries * quality_.saving();
-  return waste_ >= patience_ * price();
-}
-
-bool RebuildPolicy::accept(const TreeBoxes& rebuilt, std::span<const std::uint32_t> old_nodes,
-                           const TreeBoxes& present, bool is_smooth) {
-  waste_ = 0;
-  TreeQuality quality = quality_;
-  quality.update_references(rebuilt, old_nodes);
-  const double least = is_smooth ? least_saving_of_smooth : least_saving;
-  if (!(quality_.cost() - quality.cost() >= least * quality_.degraded_cost())) {
-    quality_.set_references(present);
-    patience_ = std::min(2 * patience_, most_patience);
-    return false;
-  }
-  quality_ = std::move(quality);
-  patience_ = std::max(patience_ / 2, 1.0);
-  refits_until_measured_ = 1;
-  refits_to_watch_ = refits_watched;
+bool RebuildPolicy::should_measure() {
+  if (!is_enabled_ || (!is_degraded() && --refits_until_measured_ > 0)) return false;
+  refits_until_measured_ = refits_per_measurement;
   return true;
 }
 
-void RebuildPolicy::report(const TreeBoxes& tree, OctreeStatistics& statistics) const {
-  TreeQuality quality = quality_;
-  quality.measure(tree);
-  statistics.cost = quality.cost();
-  statistics.degradation = quality.degradation();
+bool RebuildPolicy::is_degraded() const {
+  return is_enabled_ && degradation(cost_) > least_degradation;
+}
+
+bool RebuildPolicy::count_queries(double queries) {
+  accumulated_extra_cost_ += queries * (degradation(cost_) - 1);
+  return accumulated_extra_cost_ >= backoff_ * rebuild_cost;
+}
+
+bool RebuildPolicy::accept(double cost) {
+  accumulated_extra_cost_ = 0;
+  const bool is_better = cost <= most_remaining_cost * cost_;
+  backoff_ = is_better ? std::max(backoff_ / 2, 1.0) : std::min(2 * backoff_, most_backoff);
+  set_cost_when_built(is_better ? cost : cost_);
+  return is_better;
 }
 
 }  // namespace supple

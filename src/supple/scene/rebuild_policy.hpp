@@ -1,51 +1,43 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
-
-#include "octree/object_octree.hpp"
-#include "octree/quality.hpp"
-#include "supple/inspection.hpp"
 
 namespace supple {
 
-/// When to build degraded parts of an object's octree anew: once queries have cost as much too much as
-/// building costs, so that all together never cost more than twice what would have been best, whatever
-/// follows. The unit of `waste` and of prices is a query of the octree as built.
+/// Decides when to rebuild the octree of an object: when the accumulated extra query cost reaches the cost of
+/// a rebuild. So both together are at most twice the cost of the best choice, whatever the object does next.
+///
+/// Query costs are those of `query_cost`. Accumulated costs are in queries of the octree as built.
 class RebuildPolicy {
  public:
-  /// What the object against itself counts.
+  /// The queries of a test of the object against itself.
   static constexpr double queries_of_self = 8;
 
-  explicit RebuildPolicy(bool is_allowed) : is_allowed_(is_allowed) {}
+  explicit RebuildPolicy(bool is_enabled) : is_enabled_(is_enabled) {}
 
-  /// The boxes are those that the octree was built from: later ones are compared with them.
-  void set_references(const TreeBoxes& tree) { quality_.set_references(tree); }
-  /// The octree was refitted. Its quality is measured now and then.
-  void after_refit(const TreeBoxes& tree);
-  /// Parts of the octree, as of the last measurement, are worth building anew: if queries come often enough.
-  bool is_degraded() const { return quality_.share() > 0; }
-  std::span<const std::uint32_t> degraded_nodes() const { return quality_.degraded(); }
-  std::uint64_t degraded_triangles(const ObjectOctree& octree) const;
-  /// Adds the number of queries of the whole octree in a step. Returns whether it is time to rebuild.
+  /// Call when the octree was built, with the cost at the positions that it was built from.
+  void set_cost_when_built(double cost);
+  /// Call after each refit. Returns whether to measure the cost and to call `set_cost`: after each refit
+  /// while the octree is degraded, otherwise after one in seven, because measuring takes a tenth of a refit.
+  bool should_measure();
+  void set_cost(double cost) { cost_ = cost; }
+
+  /// A cost relative to the cost when built: 2 when queries cost twice as much; 1 when it is unknown.
+  double degradation(double cost) const { return cost > 0 ? cost / cost_when_built_ : 1; }
+  /// Whether queries cost so much more that a rebuild can pay.
+  bool is_degraded() const;
+  /// Adds the queries of a step to the accumulated extra cost. Returns whether it is time to rebuild.
   bool count_queries(double queries);
-  /// Call after the degraded parts were rebuilt, with the `old_nodes` of `ObjectOctree::rebuild`. Returns
-  /// whether the result is so much better than the present tree that it should replace it.
-  bool accept(const TreeBoxes& rebuilt, std::span<const std::uint32_t> old_nodes, const TreeBoxes& present,
-              bool is_smooth);
-
-  /// Cost and degradation of the tree as it is; see `OctreeStatistics`.
-  void report(const TreeBoxes& tree, OctreeStatistics& statistics) const;
-  std::size_t bytes() const { return quality_.bytes(); }
+  /// Returns whether a new octree with this cost should replace the present one. If not, the next attempt
+  /// waits for twice the extra cost.
+  bool accept(double cost);
 
  private:
-  double price() const;
-
-  bool is_allowed_;
-  TreeQuality quality_;
-  std::uint32_t refits_until_measured_ = 1, refits_to_watch_ = 0, random_ = 0;
-  double waste_ = 0;     // since the last try
-  double patience_ = 2;  // waste over price at which to build; doubled each time that it did not help
+  bool is_enabled_;
+  double cost_when_built_ = 1, cost_ = 0;
+  std::uint32_t refits_until_measured_ = 1;
+  double accumulated_extra_cost_ = 0;
+  double backoff_ = 2;  ///< attempt a rebuild at this multiple of its cost
 };
 
 }  // namespace supple

@@ -33,7 +33,7 @@ void RestingShape::refit(ObjectOctree& octree, const Placement& placement, const
 
 OctreeView RestingShape::view(const ObjectOctree& octree, const Placement& placement) const {
   OctreeView view = view_of(octree, placement.end(), inert_, placement.translation());
-  view.unfolded = unfolded_.masks(placement.version());
+  view.culled = culling_.masks(placement.version());
   return view;
 }
 

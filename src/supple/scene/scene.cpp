@@ -76,7 +76,7 @@ ObjectId Scene::Implementation::add(const PositionsView& positions, const Triang
   auto object = std::make_unique<SceneObject>(
       positions, checked_triangles(named.name, positions.size(), triangles), named, options);
   object->move().set_positions(positions, parallel);
-  object->set_rest_quality(parallel);
+  object->measure_built_octree(parallel);
   if (free_slots_.empty()) {
     slots_.emplace_back();
   } else {

@@ -8,11 +8,12 @@
 #include "geometry/aabb.hpp"
 #include "geometry/sphere.hpp"
 #include "geometry/vector.hpp"
+#include "octree/query_cost.hpp"
 
 namespace supple {
 namespace {
 
-/// The ball around a box.
+/// The sphere around a box.
 BoundingSphere sphere_around(const Aabb& box) {
   if (box.empty()) return {};
   BoundingSphere sphere;
@@ -27,9 +28,9 @@ BoundingSphere sphere_around(const Aabb& box) {
   return sphere;
 }
 
-/// The rule for the size of leaves. All vertices, edges and faces of two leaves are tested for continuous
-/// contacts, most of them in vain: leaves half as large are faster. A regular octree stays what was asked
-/// for.
+/// The rule for the size of leaves. Continuous detection tests all vertices, edges and faces of two leaves,
+/// most of them in vain, so leaves half as large are faster. Regular octrees keep the size that the user
+/// chose.
 ObjectOctreeOptions octree_options(const ObjectOptions& options, const SceneOptions& scene_options) {
   ObjectOctreeOptions octree = options.octree;
   if (contains(scene_options.contacts, ContactKinds::continuous) && !octree.regular && octree.arity == 8)
@@ -44,7 +45,7 @@ SceneObject::SceneObject(const PositionsView& positions, std::span<const Triangl
     : options(object_options),
       octree_(positions, triangles, octree_options(object_options, scene_options),
               scene_options.bounding_volume, scene_options.comparison.sphere_fit),
-      // The paper's results depend on leaves: they stay those of the rest pose.
+      // The paper's results depend on the leaves of the rest pose.
       rebuild_policy_(object_options.octree.rebuild_degraded &&
                       !scene_options.comparison.colliding_vertices &&
                       scene_options.comparison.sphere_fit == SphereFit::vertices) {}
@@ -62,24 +63,24 @@ void SceneObject::update(const SearchedShapes& shapes, const Parallel& parallel)
   const bool was_behind = needs_refit(shapes);
   refit(shapes, parallel);
   update_volumes(shapes);
-  if (was_behind) rebuild_policy_.after_refit(tree_boxes());
+  if (was_behind && rebuild_policy_.should_measure()) rebuild_policy_.set_cost(current_query_cost());
   has_moved_ = false;
   updated_ = shapes;
 }
 
-/// A shape that is up to date stays so.
+/// Updates the shapes for this search, and those that were up to date before.
 void SceneObject::refit(const SearchedShapes& shapes, const Parallel& parallel) {
   SearchedShapes wanted = shapes;
   wanted.resting = wanted.resting || resting_.is_current(placement_);
   wanted.moving = wanted.moving || moving_.is_current(placement_);
-  // A shape that bakes the translation leaves the other one behind.
+  // When one shape bakes the translation, the other one is out of date.
   do {
     if (wanted.resting) resting_.update(octree_, placement_, parallel);
     if (wanted.moving) moving_.update(octree_, placement_, parallel);
   } while (needs_refit(wanted));
   if (!options.self_collision) return;
-  if (wanted.unfolded_resting) resting_.update_unfolded(octree_, placement_, parallel);
-  if (wanted.unfolded_moving) moving_.update_unfolded(octree_, parallel);
+  if (wanted.cull_resting) resting_.update_culling(octree_, placement_, parallel);
+  if (wanted.cull_moving) moving_.update_culling(octree_, parallel);
 }
 
 void SceneObject::update_volumes(const SearchedShapes& shapes) {
@@ -94,40 +95,35 @@ void SceneObject::update_volumes(const SearchedShapes& shapes) {
   sphere_ = sphere_around(box_);
 }
 
-/// A shape that is up to date, if any is.
-TreeBoxes SceneObject::tree_boxes() const {
-  const bool of_moving = !resting_.is_current(placement_) && moving_.is_current(placement_);
-  return {octree_.nodes(), of_moving ? moving_.node_boxes() : octree_.boxes()};
+/// Of a shape that is up to date, if one is.
+double SceneObject::current_query_cost() const {
+  const bool moving = !resting_.is_current(placement_) && moving_.is_current(placement_);
+  return query_cost(octree_.nodes(), moving ? moving_.node_boxes() : octree_.boxes());
 }
 
-void SceneObject::set_rest_quality(const Parallel& parallel) {
+void SceneObject::measure_built_octree(const Parallel& parallel) {
   resting_.update(octree_, placement_, parallel);
-  rebuild_policy_.set_references(tree_boxes());
+  rebuild_policy_.set_cost_when_built(current_query_cost());
 }
 
-void SceneObject::rebuild(const Parallel& parallel) {
-  ObjectOctree octree = octree_;
-  const std::vector<std::uint32_t> old_nodes =
-      octree.rebuild(rebuild_policy_.degraded_nodes(), placement_.end());
+bool SceneObject::rebuild(const Parallel& parallel) {
+  ObjectOctree octree = octree_.rebuilt(placement_.end().view());
   if (!octree.refit(placement_.end(), {}, parallel)) {
     std::vector<std::uint8_t> inert;
     mark_inert(octree, placement_.end(), inert);
     octree.refit(placement_.end(), inert, parallel);
   }
-  const std::uint64_t subtrees = rebuild_policy_.degraded_nodes().size();
-  const std::uint64_t triangles = rebuild_policy_.degraded_triangles(octree_);
-  const bool is_smooth = resting_.unfolded().has_paid() || moving_.unfolded().has_paid();
-  if (!rebuild_policy_.accept({octree.nodes(), octree.boxes()}, old_nodes, tree_boxes(), is_smooth)) return;
-  subtrees_rebuilt_ += subtrees;
-  triangles_rebuilt_ += triangles;
+  if (!rebuild_policy_.accept(query_cost(octree.nodes(), octree.boxes()))) return false;
+  ++rebuilds_;
   SearchedShapes shapes = updated_;
   shapes.resting = shapes.resting || resting_.is_current(placement_);
   shapes.moving = shapes.moving || moving_.is_current(placement_);
   octree_ = std::move(octree);
   resting_.forget_octree();
   moving_.forget_octree();
-  // The memory for this may be lacking: then the next update makes good what is missing.
+  // If memory runs out here, the next update refits the shapes.
   refit(shapes, parallel);
+  return true;
 }
 
 std::string SceneObject::validate() const {
@@ -139,10 +135,10 @@ std::string SceneObject::validate() const {
 
 OctreeStatistics SceneObject::octree_statistics() const {
   OctreeStatistics statistics = octree_.statistics();
-  statistics.bytes += resting_.bytes() + moving_.bytes() + rebuild_policy_.bytes();
-  rebuild_policy_.report(tree_boxes(), statistics);
-  statistics.subtrees_rebuilt = subtrees_rebuilt_;
-  statistics.triangles_rebuilt = triangles_rebuilt_;
+  statistics.bytes += resting_.bytes() + moving_.bytes();
+  statistics.cost = current_query_cost();
+  statistics.degradation = rebuild_policy_.degradation(statistics.cost);
+  statistics.rebuilds = rebuilds_;
   if (statistics.triangles != 0) {
     statistics.bytes_per_triangle =
         static_cast<double>(statistics.bytes) / static_cast<double>(statistics.triangles);

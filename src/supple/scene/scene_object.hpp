@@ -15,63 +15,60 @@
 
 namespace supple {
 
-/// What a search needs of the objects.
+/// The data of objects that a search needs.
 struct SearchedShapes {
   bool resting = false, moving = false;
-  /// Also which of their lanes cannot touch themselves, of objects that are tested against themselves.
-  bool unfolded_resting = false, unfolded_moving = false;
+  /// Self-collision culling, for objects that are tested against themselves.
+  bool cull_resting = false, cull_moving = false;
 
   constexpr bool operator==(const SearchedShapes&) const = default;
 };
 
-/// One object of a scene: its octree, where it is, and the shapes that searches read.
+/// One object of a scene: its octree, its placement, and the shapes that searches read.
 class SceneObject {
  public:
   SceneObject(const PositionsView& positions, std::span<const Triangle> triangles,
               const ObjectOptions& object_options, const SceneOptions& scene_options);
 
-  /// Whoever moves the object calls this.
+  /// For changes of the placement; marks the object as moved.
   Placement& move() {
     has_moved_ = true;
     return placement_;
   }
   const Placement& placement() const { return placement_; }
-  /// Since the last update.
+  /// Whether the object has moved since the last update.
   bool has_moved() const { return has_moved_; }
-  /// Whether a shape or the volumes lag behind.
+  /// Whether a shape or the volumes are out of date.
   bool is_stale(const SearchedShapes& shapes) const;
-  /// Whether triangles are to be refitted, not the volumes alone.
+  /// Whether a shape is out of date, so that triangles must be refitted.
   bool needs_refit(const SearchedShapes& shapes) const;
-  /// Brings the shapes and the volumes up to date.
+  /// Updates the shapes and the volumes.
   void update(const SearchedShapes& shapes, const Parallel& parallel);
 
-  /// The positions that the octree was built from are set.
-  void set_rest_quality(const Parallel& parallel);
+  /// Call when the placement has the positions that the octree was built from.
+  void measure_built_octree(const Parallel& parallel);
   const RebuildPolicy& rebuild_policy() const { return rebuild_policy_; }
   RebuildPolicy& rebuild_policy() { return rebuild_policy_; }
-  /// Builds the degraded parts anew from present positions; if these are much better than what is there, they
-  /// take its place, and the object is brought up to date again. Views are of no use then; what is found does
-  /// not change.
-  void rebuild(const Parallel& parallel);
-  /// Since the object was added, and their triangles.
-  std::uint64_t subtrees_rebuilt() const { return subtrees_rebuilt_; }
-  std::uint64_t triangles_rebuilt() const { return triangles_rebuilt_; }
+  /// Builds an octree from the current positions. Returns whether it is so much better that it replaced the
+  /// present one: then the shapes are up to date, but views are invalid. Contacts do not change.
+  bool rebuild(const Parallel& parallel);
 
-  /// The box of the placed object at the last update: around everything that was searched, which may be the
-  /// whole motion.
+  /// The box of the placed object at the last update. It encloses all shapes, so it may enclose the whole
+  /// motion.
   const Aabb& box() const { return box_; }
   const BoundingSphere& sphere() const { return sphere_; }
   const ObjectOctree& octree() const { return octree_; }
   const MovingShape& moving() const { return moving_; }
   OctreeView resting_view() const { return resting_.view(octree_, placement_); }
   OctreeView moving_view() const { return moving_.view(octree_, placement_); }
-  /// User's numbers, ascending.
+  /// The user's ids, ascending.
   std::span<const std::uint32_t> non_finite_vertices(const SearchedShapes& shapes) const {
     return shapes.moving ? moving_.non_finite_vertices() : resting_.non_finite_vertices();
   }
-  /// The vertex, or where its path starts when the coordinates that are not finite are there.
+  /// The position of a vertex that is not finite: at the end of the step, or at its start if the end is
+  /// finite.
   Vec3d non_finite_position(std::uint32_t vertex) const;
-  /// Of those shapes that are up to date.
+  /// Checks the shapes that are up to date.
   std::string validate() const;
   OctreeStatistics octree_statistics() const;
 
@@ -79,7 +76,7 @@ class SceneObject {
 
  private:
   void refit(const SearchedShapes& shapes, const Parallel& parallel);
-  TreeBoxes tree_boxes() const;
+  double current_query_cost() const;
   void update_volumes(const SearchedShapes& shapes);
 
   ObjectOctree octree_;
@@ -87,7 +84,7 @@ class SceneObject {
   RestingShape resting_;
   MovingShape moving_;
   RebuildPolicy rebuild_policy_;
-  std::uint64_t subtrees_rebuilt_ = 0, triangles_rebuilt_ = 0;
+  std::uint64_t rebuilds_ = 0;
   bool has_moved_ = true;
   SearchedShapes updated_;  // by the last update
   Aabb box_;

@@ -20,13 +20,14 @@ inline Aabb unclamped(const Aabb& box) {
   return result;
 }
 
-/// Of the lane's triangles where they are now, or at the end of the step, but for the view's translation.
-inline Aabb lane_box(const OctreeView& view, std::uint32_t node, int lane) {
+/// The box of a child's triangles at the current positions, with continuous contacts at the end of the step,
+/// without the view's translation.
+inline Aabb child_box(const OctreeView& view, std::uint32_t node, int child) {
   const bool is_moving = view.moving.start != nullptr;
-  return is_moving ? unclamped(lane_box(view.moving.end[node], lane)) : lane_box(view.boxes[node], lane);
+  return is_moving ? unclamped(child_box(view.moving.end[node], child)) : child_box(view.boxes[node], child);
 }
-inline BoundingSphere lane_sphere(const OctreeView& view, std::uint32_t node, int lane) {
-  return lane_sphere(view.spheres[node], lane);
+inline BoundingSphere child_sphere(const OctreeView& view, std::uint32_t node, int child) {
+  return child_sphere(view.spheres[node], child);
 }
 
 /// Box of a moving face at one end of the step; empty when the face is inert.

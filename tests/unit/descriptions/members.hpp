@@ -73,8 +73,8 @@ inline auto members_of(BroadPhaseStats& o) {
   return std::tie(a, b, c, d, e, f, g, h);
 }
 inline auto members_of(OctreeStatistics& o) {
-  auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, p] = o;
-  return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m, n, p);
+  auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n] = o;
+  return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m, n);
 }
 
 }  // namespace supple

@@ -366,11 +366,11 @@ void expect_known_contacts(const std::string& name, const std::string& frame_0, 
     }
   }
   ASSERT_FALSE(touching.empty());
-  SelfCollisionCulling unfolded(object.octree, object.elements.faces());
-  unfolded.refit(object.octree, object.elements.faces(), object.start, object.end, Parallel(1));
-  for (const bool skip_unfolded : {false, true}) {
+  SelfCollisionCulling culled(object.octree, object.elements.faces());
+  culled.refit(object.octree, object.elements.faces(), object.start, object.end, Parallel(1));
+  for (const bool skip_culled : {false, true}) {
     OctreeView view = object.view();
-    if (skip_unfolded) view.unfolded = unfolded.masks().data();
+    if (skip_culled) view.culled = culled.masks().data();
     CandidateSet not_found = touching;
     Traversal traversal;
     TraversalStats stats;
@@ -380,7 +380,7 @@ void expect_known_contacts(const std::string& name, const std::string& frame_0, 
                                      not_found.erase(candidate(object, object, true, pair_kind, p));
                                  });
     EXPECT_TRUE(not_found.empty()) << not_found.size() << " contacts are not among the candidates";
-    if (skip_unfolded) {
+    if (skip_culled) {
       EXPECT_LT(stats.edge_edge_candidates, edge_edge);
     } else {
       EXPECT_EQ(stats.vertex_face_candidates, vertex_face);
@@ -389,15 +389,15 @@ void expect_known_contacts(const std::string& name, const std::string& frame_0, 
   }
 }
 
-/// Candidates that are left out have to be within one lane that is said not to touch itself.
-TEST(ElementCandidates, LeaveOutWhatUnfoldedLanesCannotTouch) {
+/// Candidates that are left out are within one child that is said not to touch itself.
+TEST(ElementCandidates, LeaveOutWhatCulledChildrenCannotTouch) {
   const TriangleMesh mesh = crumpled_sheet(40, 30, 0.004, 5);
   const MovingObject object(mesh, displaced(mesh, 0.004, 6));
-  SelfCollisionCulling unfolded(object.octree, object.elements.faces());
-  unfolded.refit(object.octree, object.elements.faces(), object.start, object.end, Parallel(1));
-  const auto candidates = [&](bool skip_unfolded, double separation) {
+  SelfCollisionCulling culled(object.octree, object.elements.faces());
+  culled.refit(object.octree, object.elements.faces(), object.start, object.end, Parallel(1));
+  const auto candidates = [&](bool skip_culled, double separation) {
     OctreeView view = object.view();
-    if (skip_unfolded) view.unfolded = unfolded.masks().data();
+    if (skip_culled) view.culled = culled.masks().data();
     CandidateSet found;
     Traversal traversal;
     TraversalStats stats;

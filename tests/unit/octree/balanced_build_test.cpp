@@ -31,10 +31,10 @@ OctreeTopology built(const TriangleMesh& mesh, const ObjectOctreeOptions& option
 std::vector<std::vector<std::uint32_t>> leaves_of(const OctreeTopology& topology) {
   std::vector<std::vector<std::uint32_t>> leaves;
   for (const OctreeNode& node : topology.nodes) {
-    for (int lane = 0; lane < node.lane_count; ++lane) {
-      if (node.is_inner(lane)) continue;
-      leaves.emplace_back(topology.order.begin() + node.first_triangle[lane],
-                          topology.order.begin() + node.first_triangle[lane + 1]);
+    for (int child = 0; child < node.child_count; ++child) {
+      if (node.is_inner(child)) continue;
+      leaves.emplace_back(topology.order.begin() + node.first_triangle[child],
+                          topology.order.begin() + node.first_triangle[child + 1]);
     }
   }
   return leaves;
@@ -52,22 +52,22 @@ void expect_sound(const OctreeTopology& topology, std::size_t count, const Objec
     const OctreeNode& node = topology.nodes[n];
     ASSERT_GE(n, topology.level_begin[node.level]);
     ASSERT_LT(n, topology.level_begin[node.level + 1u]);
-    ASSERT_TRUE(node.lane_count >= 2 || topology.nodes.size() == 1);
-    for (int lane = 0; lane < node.lane_count; ++lane) {
-      ASSERT_GT(node.size(lane), 0u);
-      if (!node.is_inner(lane)) {
-        in_leaves += node.size(lane);
+    ASSERT_TRUE(node.child_count >= 2 || topology.nodes.size() == 1);
+    for (int child = 0; child < node.child_count; ++child) {
+      ASSERT_GT(node.size(child), 0u);
+      if (!node.is_inner(child)) {
+        in_leaves += node.size(child);
         if (node.level + 1u < options.max_level) {
-          ASSERT_LE(node.size(lane), options.leaf_size);
+          ASSERT_LE(node.size(child), options.leaf_size);
         }
         continue;
       }
-      const OctreeNode& child = topology.nodes[node.child(lane)];
-      ASSERT_LT(child.level, options.max_level);
-      ASSERT_EQ(child.parent, n);
-      ASSERT_EQ(child.parent_lane, lane);
-      ASSERT_EQ(child.first_triangle[0], node.first_triangle[lane]);
-      ASSERT_EQ(child.first_triangle[node_width], node.first_triangle[lane + 1]);
+      const OctreeNode& below = topology.nodes[node.child_node(child)];
+      ASSERT_LT(below.level, options.max_level);
+      ASSERT_EQ(below.parent, n);
+      ASSERT_EQ(below.index_in_parent, child);
+      ASSERT_EQ(below.first_triangle[0], node.first_triangle[child]);
+      ASSERT_EQ(below.first_triangle[node_width], node.first_triangle[child + 1]);
     }
   }
   ASSERT_EQ(in_leaves, count);
@@ -142,9 +142,9 @@ TEST(BalancedBuild, FillsLeavesAndNodesEvenly) {
     EXPECT_LE(mean, 48) << frequency;
     EXPECT_LE(static_cast<double>(most), 1.7 * mean) << frequency;
     EXPECT_GE(static_cast<double>(least), 0.5 * mean) << frequency;
-    std::size_t lanes = 0;
-    for (const OctreeNode& node : topology.nodes) lanes += node.lane_count;
-    EXPECT_GE(static_cast<double>(lanes), 5.5 * static_cast<double>(topology.nodes.size())) << frequency;
+    std::size_t children = 0;
+    for (const OctreeNode& node : topology.nodes) children += node.child_count;
+    EXPECT_GE(static_cast<double>(children), 5.5 * static_cast<double>(topology.nodes.size())) << frequency;
   }
 }
 

@@ -1,4 +1,4 @@
-#include "octree/rebuild.hpp"
+// `ObjectOctree::rebuilt` from positions of all kinds.
 
 #include <gtest/gtest.h>
 
@@ -37,21 +37,8 @@ struct Tree {
     if (std::count(inert.begin(), inert.end(), 1) == 0) inert.clear();
     octree.refit(vertices, inert, parallel);
   }
-  /// Nodes none of which is below another, each other one about.
-  std::vector<std::uint32_t> some_nodes(RandomNumbers& random) const {
-    std::vector<std::uint32_t> chosen;
-    std::vector<std::uint8_t> taken(octree.nodes().size(), 0);
-    for (std::uint32_t n = 0; n < octree.nodes().size(); ++n) {
-      if (n > 0) taken[n] = taken[octree.nodes()[n].parent];
-      if (taken[n] != 0 || random.below(3) != 0) continue;
-      taken[n] = 1;
-      chosen.push_back(n);
-    }
-    return chosen;
-  }
-  void rebuild(const std::vector<std::uint32_t>& nodes) {
-    const std::size_t count = octree.rebuild(nodes, vertices).size();
-    ASSERT_EQ(count, octree.nodes().size());
+  void rebuild() {
+    octree = octree.rebuilt(vertices.view());
     refit();
   }
   void expect_valid() const {
@@ -100,7 +87,7 @@ std::vector<Vec3d> deformed(std::vector<Vec3d> positions, std::uint32_t way, Ran
   return positions;
 }
 
-TEST(Rebuild, AnySubtreesOfAnyTreeStayValid) {
+TEST(Rebuild, OfAnyTreeIsValid) {
   RandomNumbers random(1);
   for (std::uint32_t count = 1; count <= 70; count += 1 + count / 8) {
     const TriangleMesh mesh =
@@ -115,7 +102,7 @@ TEST(Rebuild, AnySubtreesOfAnyTreeStayValid) {
       Tree tree(mesh, options, volume);
       for (std::uint32_t way = 0; way < 8; ++way) {
         tree.place(deformed(mesh.positions, way, random));
-        tree.rebuild(tree.some_nodes(random));
+        tree.rebuild();
         tree.expect_valid();
         const OctreeStatistics statistics = tree.octree.statistics();
         EXPECT_LE(statistics.depth, options.max_level * 3 / (arity == 8 ? 3 : arity == 4 ? 2 : 1));
@@ -125,14 +112,14 @@ TEST(Rebuild, AnySubtreesOfAnyTreeStayValid) {
   }
 }
 
-TEST(Rebuild, OfTheRootIsTheTreeBuiltFromPresentPositions) {
+TEST(Rebuild, GivesTheTreeBuiltFromThePositions) {
   RandomNumbers random(2);
   const TriangleMesh rest = random_soup(3000, 1, 0.05, 3);
   for (const bool regular : {false, true}) {
     const ObjectOctreeOptions options{.regular = regular};
     Tree tree(rest, options, BoundingVolume::aabb);
     tree.place(deformed(rest.positions, 0, random));
-    tree.rebuild({0});
+    tree.rebuild();
     tree.expect_valid();
     const Tree fresh(tree.mesh, options, BoundingVolume::aabb);
     ASSERT_EQ(tree.octree.nodes().size(), fresh.octree.nodes().size());
@@ -140,29 +127,6 @@ TEST(Rebuild, OfTheRootIsTheTreeBuiltFromPresentPositions) {
                            fresh.octree.triangle_ids().begin()));
     EXPECT_EQ(tree.octree.statistics().leaves_by_level, fresh.octree.statistics().leaves_by_level);
   }
-}
-
-TEST(Rebuild, KeepsWhatIsNotChosen) {
-  const TriangleMesh rest = random_soup(5000, 1, 0.05, 4);
-  Tree tree(rest, {}, BoundingVolume::aabb);
-  const std::vector<std::uint32_t> ids(tree.octree.triangle_ids().begin(), tree.octree.triangle_ids().end());
-  const OctreeNode chosen = tree.octree.nodes()[2];
-  RandomNumbers random(5);
-  tree.place(deformed(rest.positions, 0, random));
-  const std::vector<std::uint32_t> old_nodes =
-      tree.octree.rebuild(std::vector<std::uint32_t>{2}, tree.vertices);
-  std::size_t others = 0;
-  for (std::size_t t = 0; t < ids.size(); ++t) {
-    if (t >= chosen.first_triangle[0] && t < chosen.first_triangle[node_width]) continue;
-    EXPECT_EQ(tree.octree.triangle_ids()[t], ids[t]);
-    ++others;
-  }
-  EXPECT_GT(others, 1000u);
-  EXPECT_EQ(old_nodes[0], 0u);
-  EXPECT_EQ(std::count(old_nodes.begin(), old_nodes.end(), 2u), 1);
-  EXPECT_GT(std::count(old_nodes.begin(), old_nodes.end(), no_node), 0);
-  tree.refit();
-  tree.expect_valid();
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Lanes said not to touch themselves are checked exactly: all coordinates are multiples of small powers of
+// Children said not to touch themselves are checked exactly: all coordinates are multiples of small powers of
 // two, so that positions at eighths of the step are not rounded.
 
 #include "octree/self_collision_culling.hpp"
@@ -18,17 +18,17 @@ namespace {
 
 constexpr double pi = 3.14159265358979323846;
 
-struct Unfolded {
+struct Culled {
   /// `end` empty: at rest.
-  Unfolded(const TriangleMesh& mesh, const std::vector<Vec3d>& end, const ObjectOctreeOptions& options = {},
-           bool floats = false)
-      : object(mesh, end, options, floats), lanes(object.octree, object.elements.faces()) {
-    lanes.refit(object.octree, object.elements.faces(), object.start, object.end_positions(), Parallel(1));
+  Culled(const TriangleMesh& mesh, const std::vector<Vec3d>& end, const ObjectOctreeOptions& options = {},
+         bool floats = false)
+      : object(mesh, end, options, floats), culling(object.octree, object.elements.faces()) {
+    culling.refit(object.octree, object.elements.faces(), object.start, object.end_positions(), Parallel(1));
   }
-  /// How many lanes are said not to touch themselves.
+  /// How many children are said not to touch themselves.
   std::size_t count() const {
     std::size_t result = 0;
-    for (const std::uint8_t mask : lanes.masks()) result += static_cast<std::size_t>(std::popcount(mask));
+    for (const std::uint8_t mask : culling.masks()) result += static_cast<std::size_t>(std::popcount(mask));
     return result;
   }
   TrianglePoints points(std::uint32_t triangle, double time) const {
@@ -55,22 +55,22 @@ struct Unfolded {
   void expect_true_claims() const {
     const auto nodes = object.octree.nodes();
     for (std::uint32_t n = 0; n < nodes.size(); ++n) {
-      for (int lane = 0; lane < node_width; ++lane) {
-        if ((lanes.masks()[n] >> lane & 1) == 0) continue;
-        ASSERT_LT(lane, nodes[n].lane_count);
-        EXPECT_FALSE(touches_itself(nodes[n].first_triangle[lane], nodes[n].first_triangle[lane + 1]));
+      for (int child = 0; child < node_width; ++child) {
+        if ((culling.masks()[n] >> child & 1) == 0) continue;
+        ASSERT_LT(child, nodes[n].child_count);
+        EXPECT_FALSE(touches_itself(nodes[n].first_triangle[child], nodes[n].first_triangle[child + 1]));
       }
     }
   }
   MovingObject object;
-  SelfCollisionCulling lanes;
+  SelfCollisionCulling culling;
 };
 
-/// Whether a mesh, all of it one lane, is said not to touch itself; checked when it is.
-bool is_unfolded(const TriangleMesh& mesh, const std::vector<Vec3d>& end = {}) {
-  const Unfolded one_lane(mesh, end, {.leaf_size = 100000});
-  one_lane.expect_true_claims();
-  return one_lane.count() == 1;
+/// Whether a mesh, all of it one leaf, is said not to touch itself; checked when it is.
+bool is_culled(const TriangleMesh& mesh, const std::vector<Vec3d>& end = {}) {
+  const Culled one_leaf(mesh, end, {.leaf_size = 100000});
+  one_leaf.expect_true_claims();
+  return one_leaf.count() == 1;
 }
 
 double on_grid(double value) {
@@ -120,38 +120,38 @@ TriangleMesh fan(std::uint32_t parts, double angle, double climb) {
 }
 
 TEST(SelfCollisionCulling, OfNothing) {
-  EXPECT_EQ(Unfolded({}, {}).count(), 0u);
+  EXPECT_EQ(Culled({}, {}).count(), 0u);
 }
 
 TEST(SelfCollisionCulling, SmoothSheets) {
   const auto wavy = [](const Vec3d& p) {
     return Vec3d{p.x, 0.1 * std::sin(5 * p.x) * std::cos(4 * p.z), p.z};
   };
-  EXPECT_TRUE(is_unfolded(TriangleMesh{"", {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}}));
-  EXPECT_TRUE(is_unfolded(sheet(7, 5)));
-  EXPECT_TRUE(is_unfolded(sheet(7, 5, wavy)));
-  EXPECT_TRUE(is_unfolded(sheet(7, 5), mapped(sheet(7, 5), wavy)));
-  EXPECT_TRUE(is_unfolded(sheet(7, 5), mapped(sheet(7, 5), turned(pi / 3))));
-  EXPECT_TRUE(is_unfolded(fan(7, 2 * pi * 0.4, 0.1)));
+  EXPECT_TRUE(is_culled(TriangleMesh{"", {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}}));
+  EXPECT_TRUE(is_culled(sheet(7, 5)));
+  EXPECT_TRUE(is_culled(sheet(7, 5, wavy)));
+  EXPECT_TRUE(is_culled(sheet(7, 5), mapped(sheet(7, 5), wavy)));
+  EXPECT_TRUE(is_culled(sheet(7, 5), mapped(sheet(7, 5), turned(pi / 3))));
+  EXPECT_TRUE(is_culled(fan(7, 2 * pi * 0.4, 0.1)));
 }
 
-TEST(SelfCollisionCulling, MostLanesOfALargeSmoothSheet) {
+TEST(SelfCollisionCulling, MostChildrenOfALargeSmoothSheet) {
   const auto bent = [](const Vec3d& p) { return Vec3d{p.x, 0.3 * p.x * p.x + 0.1 * p.z * p.x, p.z}; };
   for (const bool floats : {false, true}) {
-    const Unfolded large(sheet(40, 40), mapped(sheet(40, 40), bent), {}, floats);
-    std::size_t lanes = 0;
+    const Culled large(sheet(40, 40), mapped(sheet(40, 40), bent), {}, floats);
+    std::size_t children = 0;
     for (const OctreeNode& node : large.object.octree.nodes()) {
-      lanes += node.lane_count;
+      children += node.child_count;
     }
-    EXPECT_GT(lanes, 20u);
+    EXPECT_GT(children, 20u);
     // Some have boundaries too jagged.
-    EXPECT_GT(3 * large.count(), 2 * lanes);
+    EXPECT_GT(3 * large.count(), 2 * children);
     if (floats) large.expect_true_claims();
   }
 }
 
 TEST(SelfCollisionCulling, ABalloonWithinALargeSheet) {
-  // Its small lanes are smooth, and the sheet around it is flat: it is for the large lanes to find.
+  // Its small children are smooth, and the sheet around it is flat: the large children must not be culled.
   const auto balloon = [](const Vec3d& p) {
     const double x = p.x - 0.25, z = p.z - 0.25, distance = std::sqrt(x * x + z * z);
     if (distance >= 0.2) return p;
@@ -159,99 +159,99 @@ TEST(SelfCollisionCulling, ABalloonWithinALargeSheet) {
     const double out = distance > 0 ? radius * std::sin(angle) / distance : 0;
     return Vec3d{0.25 + x * out, radius * (std::cos(angle) - std::cos(2.6)), 0.25 + z * out};
   };
-  const auto root_lanes = [](const Unfolded& sheet_lanes) {
-    const OctreeNode& root = sheet_lanes.object.octree.nodes()[0];
-    EXPECT_EQ(root.lane_count, 4);
-    return sheet_lanes.lanes.masks()[0];
+  const auto root_children = [](const Culled& sheet_children) {
+    const OctreeNode& root = sheet_children.object.octree.nodes()[0];
+    EXPECT_EQ(root.child_count, 4);
+    return sheet_children.culling.masks()[0];
   };
-  // Its four lanes are the quarters of the sheet.
+  // The four children of the root are the quarters of the sheet.
   const ObjectOctreeOptions quarters{.regular = true};
-  EXPECT_EQ(root_lanes({sheet(40, 40), {}, quarters}), 0xf);
-  EXPECT_EQ(root_lanes({sheet(40, 40, balloon), {}, quarters}), 0xe);
-  EXPECT_EQ(root_lanes({sheet(40, 40), mapped(sheet(40, 40), balloon), quarters}), 0xe);
+  EXPECT_EQ(root_children({sheet(40, 40), {}, quarters}), 0xf);
+  EXPECT_EQ(root_children({sheet(40, 40, balloon), {}, quarters}), 0xe);
+  EXPECT_EQ(root_children({sheet(40, 40), mapped(sheet(40, 40), balloon), quarters}), 0xe);
 }
 
 TEST(SelfCollisionCulling, SurfacesThatCloseOrOverlap) {
   const TriangleMesh tetrahedron{
       "", {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}}};
-  EXPECT_FALSE(is_unfolded(tetrahedron));
+  EXPECT_FALSE(is_culled(tetrahedron));
   TriangleMesh twice = sheet(3, 3);
   twice.triangles.push_back(twice.triangles[4]);
-  EXPECT_FALSE(is_unfolded(twice));
+  EXPECT_FALSE(is_culled(twice));
   // A ramp: its triangles all face upwards, yet lie above one another.
-  EXPECT_FALSE(is_unfolded(fan(25, 2 * pi * 1.5, 1)));
-  EXPECT_FALSE(is_unfolded(fan(40, 2 * pi * 2.7, 0)));
+  EXPECT_FALSE(is_culled(fan(25, 2 * pi * 1.5, 1)));
+  EXPECT_FALSE(is_culled(fan(40, 2 * pi * 2.7, 0)));
   const auto ramp = [](const Vec3d& p) {
     return Vec3d{(1 + p.x) * std::cos(9 * p.z), (1 + p.x) * std::sin(9 * p.z), p.z};
   };
-  EXPECT_FALSE(is_unfolded(sheet(3, 40, ramp)));
+  EXPECT_FALSE(is_culled(sheet(3, 40, ramp)));
   // Rolled, and twisted by half a turn.
   const auto roll = [](const Vec3d& p) { return Vec3d{p.x, std::cos(7 * p.z), std::sin(7 * p.z)}; };
-  EXPECT_FALSE(is_unfolded(sheet(3, 30, roll)));
+  EXPECT_FALSE(is_culled(sheet(3, 30, roll)));
   const auto twist = [](const Vec3d& p) {
     return Vec3d{(p.x - 0.5) * std::cos(pi * p.z), (p.x - 0.5) * std::sin(pi * p.z), 3 * p.z};
   };
-  EXPECT_FALSE(is_unfolded(sheet(4, 20, twist)));
+  EXPECT_FALSE(is_culled(sheet(4, 20, twist)));
 }
 
 TEST(SelfCollisionCulling, SeamsThatTouch) {
   // A disc cut along a ray, the vertices of the cut doubled.
   TriangleMesh cut_disc = fan(12, 2 * pi, 0);
   cut_disc.positions[13] = cut_disc.positions[1];
-  EXPECT_FALSE(is_unfolded(cut_disc));
+  EXPECT_FALSE(is_culled(cut_disc));
   // Two sheets side by side, the common side doubled.
   TriangleMesh pair = sheet(2, 2);
   const TriangleMesh left = pair;
   for (const Vec3d& p : left.positions) pair.positions.push_back(p + Vec3d{1, 0, 0});
   for (const Triangle& t : left.triangles) pair.triangles.push_back({t[0] + 9, t[1] + 9, t[2] + 9});
-  EXPECT_FALSE(is_unfolded(pair));
+  EXPECT_FALSE(is_culled(pair));
   // A vertex on the middle of another triangle's side.
   const TriangleMesh junction{
       "", {{0, 0, 0}, {2, 0, 0}, {0, 2, 0}, {1, 0, 0}, {2, -1, 0}, {1, -1, 0}}, {{0, 1, 2}, {3, 5, 4}}};
-  EXPECT_FALSE(is_unfolded(junction));
+  EXPECT_FALSE(is_culled(junction));
   // Two triangles that share a vertex only.
   const TriangleMesh bow{
       "", {{0, 0, 0}, {1, 1, 0}, {1, -1, 0}, {-1, 1, 0}, {-1, -1, 0}}, {{0, 2, 1}, {0, 3, 4}}};
-  EXPECT_FALSE(is_unfolded(bow));
+  EXPECT_FALSE(is_culled(bow));
 }
 
 TEST(SelfCollisionCulling, MotionsThatFoldOnTheWay) {
   // Flat at both ends, all in one point half-way.
-  EXPECT_FALSE(is_unfolded(sheet(4, 4), mapped(sheet(4, 4), turned(pi))));
-  EXPECT_FALSE(is_unfolded(sheet(4, 4), mapped(sheet(4, 4), turned(pi / 2))));
+  EXPECT_FALSE(is_culled(sheet(4, 4), mapped(sheet(4, 4), turned(pi))));
+  EXPECT_FALSE(is_culled(sheet(4, 4), mapped(sheet(4, 4), turned(pi / 2))));
   // A fan that spreads until it lies over itself, and the reverse.
   const TriangleMesh open_fan = fan(12, 2 * pi * 0.9, 0), spread_fan = fan(12, 2 * pi * 1.1, 0);
-  EXPECT_TRUE(is_unfolded(open_fan));
-  EXPECT_FALSE(is_unfolded(open_fan, spread_fan.positions));
-  EXPECT_FALSE(is_unfolded(spread_fan, open_fan.positions));
+  EXPECT_TRUE(is_culled(open_fan));
+  EXPECT_FALSE(is_culled(open_fan, spread_fan.positions));
+  EXPECT_FALSE(is_culled(spread_fan, open_fan.positions));
   // Turned over.
-  EXPECT_FALSE(is_unfolded(sheet(4, 4), mapped(sheet(4, 4), [](const Vec3d& p) {
-                             return Vec3d{-p.x, p.y, p.z};
-                           })));
+  EXPECT_FALSE(is_culled(sheet(4, 4), mapped(sheet(4, 4), [](const Vec3d& p) {
+                           return Vec3d{-p.x, p.y, p.z};
+                         })));
 }
 
 TEST(SelfCollisionCulling, DegenerateTriangles) {
   TriangleMesh repeated = sheet(3, 3);
   repeated.triangles.push_back({0, 0, 1});
-  EXPECT_FALSE(is_unfolded(repeated));
+  EXPECT_FALSE(is_culled(repeated));
   TriangleMesh flat = sheet(3, 3);
   flat.positions.push_back(flat.positions[0]);
   flat.triangles.push_back({0, 1, 16});
-  EXPECT_FALSE(is_unfolded(flat));
+  EXPECT_FALSE(is_culled(flat));
   for (const double bad :
        {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
     for (int axis = 0; axis < 3; ++axis) {
       TriangleMesh lost = sheet(3, 3);
       lost.positions[5][axis] = bad;
-      EXPECT_EQ(Unfolded(lost, {}, {.leaf_size = 100}).count(), 0u);
-      EXPECT_EQ(Unfolded(sheet(3, 3), lost.positions, {.leaf_size = 100}).count(), 0u);
+      EXPECT_EQ(Culled(lost, {}, {.leaf_size = 100}).count(), 0u);
+      EXPECT_EQ(Culled(sheet(3, 3), lost.positions, {.leaf_size = 100}).count(), 0u);
     }
   }
   TriangleMesh huge = sheet(3, 3), tiny = sheet(3, 3);
   for (Vec3d& p : huge.positions) p = p * 1e200;
   for (Vec3d& p : tiny.positions) p = p * 1e-200;
-  EXPECT_EQ(Unfolded(huge, {}, {.leaf_size = 100}).count(), 0u);
-  EXPECT_EQ(Unfolded(tiny, {}, {.leaf_size = 100}).count(), 0u);
+  EXPECT_EQ(Culled(huge, {}, {.leaf_size = 100}).count(), 0u);
+  EXPECT_EQ(Culled(tiny, {}, {.leaf_size = 100}).count(), 0u);
 }
 
 /// Few vertices on a coarse grid touch in every way there is.
@@ -265,7 +265,7 @@ TEST(SelfCollisionCulling, SmallMeshesOnAGrid) {
       {{0, 1, 2}, {0, 2, 3}, {3, 4, 5}},
   };
   RandomNumbers random(21);
-  std::size_t unfolded = 0;
+  std::size_t culled = 0;
   for (int round = 0; round < 40000; ++round) {
     TriangleMesh mesh;
     std::vector<Vec3d> end;
@@ -285,13 +285,13 @@ TEST(SelfCollisionCulling, SmallMeshesOnAGrid) {
       end.push_back(p + shaken(1.6));
     }
     mesh.triangles = shape;
-    unfolded += is_unfolded(mesh, random.below(2) == 0 ? std::vector<Vec3d>{} : end) ? 1 : 0;
+    culled += is_culled(mesh, random.below(2) == 0 ? std::vector<Vec3d>{} : end) ? 1 : 0;
   }
-  EXPECT_GT(unfolded, 2000u);
+  EXPECT_GT(culled, 2000u);
 }
 
 TEST(SelfCollisionCulling, CrumpledSheets) {
-  std::size_t unfolded = 0, lanes = 0;
+  std::size_t culled = 0, children = 0;
   for (int round = 0; round < 12; ++round) {
     TriangleMesh mesh = crumpled_sheet(24, 20, 0.004 * round, static_cast<std::uint64_t>(round));
     const auto fold = [&](const Vec3d& p) {
@@ -300,15 +300,15 @@ TEST(SelfCollisionCulling, CrumpledSheets) {
     };
     const std::vector<Vec3d> end = mapped(mesh, fold);
     mesh.positions = mapped(mesh, [](const Vec3d& p) { return p; });
-    const Unfolded sheet_lanes(mesh, end, {.leaf_size = 6});
-    sheet_lanes.expect_true_claims();
-    unfolded += sheet_lanes.count();
-    for (const OctreeNode& node : sheet_lanes.object.octree.nodes()) {
-      lanes += node.lane_count;
+    const Culled sheet_children(mesh, end, {.leaf_size = 6});
+    sheet_children.expect_true_claims();
+    culled += sheet_children.count();
+    for (const OctreeNode& node : sheet_children.object.octree.nodes()) {
+      children += node.child_count;
     }
   }
-  EXPECT_GT(unfolded, 20u);
-  EXPECT_LT(unfolded, lanes);
+  EXPECT_GT(culled, 20u);
+  EXPECT_LT(culled, children);
 }
 
 }  // namespace

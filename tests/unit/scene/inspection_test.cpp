@@ -457,7 +457,7 @@ TEST(InspectionOfScenes, SmoothPartsThatAreNotLookedAtHaveCandidatesToo) {
             SceneInspector(known.scene).candidates(no_limit).total);
 }
 
-TEST(InspectionOfScenes, SeesOctreesThatWereBuiltAnew) {
+TEST(InspectionOfScenes, SeesRebuiltOctrees) {
   Known known;
   const TriangleMesh soup = random_soup(400, 1, 0.1, 1);
   const ObjectId id = known.add(soup);
@@ -473,7 +473,7 @@ TEST(InspectionOfScenes, SeesOctreesThatWereBuiltAnew) {
     known.scene.set_positions(id, positions);
     known.scene.detect();
   }
-  EXPECT_GT(SceneInspector(known.scene).octree_statistics(id).subtrees_rebuilt, 0u);
+  EXPECT_GT(SceneInspector(known.scene).octree_statistics(id).rebuilds, 0u);
   EXPECT_FALSE(known.scene.result().contacts.empty());
   check_all_cells(known);
   check_all_explanations(known);

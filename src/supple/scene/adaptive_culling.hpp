@@ -10,20 +10,18 @@
 
 namespace supple {
 
-/// Self-collision culling of an object in motion. Where it culls too little, as in crumpled cloth, it costs
-/// more than it saves and pauses for some steps.
-class UnfoldedLanes {
+/// Self-collision culling of an object that pauses for some steps when it culls too little. For crumpled
+/// cloth, for example, it costs more than it saves.
+class AdaptiveCulling {
  public:
-  /// Updates for the positions of this version; O(n), and O(n log n) the first time. Does nothing when the
+  /// Culls for the positions of this version, in O(n), the first time in O(n log n). Does nothing when the
   /// version did not change.
   void update(std::uint64_t version, const ObjectOctree& octree, std::span<const Triangle> triangles,
               const VertexBuffer& start, const VertexBuffer& end, const Parallel& parallel);
-  /// Masks of a `SelfCollisionCulling`, or null when there are none for this version.
+  /// The masks of `SelfCollisionCulling`, or null when there are none for this version.
   const std::uint8_t* masks(std::uint64_t version) const {
     return version == culled_version_ ? culling_.masks().data() : nullptr;
   }
-  /// Whether enough of the object was culled, at some time, to be worth the search.
-  bool has_paid() const { return has_paid_; }
   std::size_t bytes() const { return culling_.bytes(); }
 
   /// Call after the octree was rebuilt.
@@ -35,8 +33,8 @@ class UnfoldedLanes {
  private:
   SelfCollisionCulling culling_;
   std::uint64_t version_ = 0, culled_version_ = 0;
-  bool has_paid_ = false;
-  std::uint32_t steps_to_rest_ = 1;  // finding the boundaries is for objects that go on moving
+  std::uint32_t steps_to_pause_ =
+      1;  // skips the first step: boundaries pay only for objects that keep moving
 };
 
 }  // namespace supple

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <span>
+
+#include "octree/octree_node.hpp"
+
+namespace supple {
+
+/// The expected cost of a query whose box meets the object's, in visits of children, by the surface-area
+/// heuristic: a query that meets a box of surface R meets a box of surface S inside of it with probability
+/// S / R. (Goldsmith and Salmon, "Automatic creation of object hierarchies for ray tracing", 1987.) A leaf
+/// costs a visit, and an eighth for each of its triangles. Moving or scaling the object does not change the
+/// cost.
+///
+/// 0 when the boxes have no surface or one that is too large for double. O(nodes). The same number on every
+/// machine.
+double query_cost(std::span<const OctreeNode> nodes, const ChildBoxes* boxes);
+
+}  // namespace supple
