@@ -92,7 +92,7 @@ class UsageErrors(ProgramTest):
     def test_inputs(self):
         self.expect("detect", "nothing.obj", parts=["nothing.obj", "no such file"])
         self.expect("detect", "frame_*.ply", parts=["frame_*.ply", "no file matches"])
-        self.expect("detect", "scene.toml", "a.obj", parts=["scene.toml", "alone"])
+        self.expect("detect", "scene.toml", "a.obj", parts=["scene.toml", "only input"])
         self.expect("detect", "--sequence", "scene.toml", parts=["scene.toml", "--sequence"])
         self.expect("detect", "--sequence", "a.obj", "none.obj", parts=["none.obj", "no such file"])
         self.expect("detect", ".", parts=["."])

@@ -13,7 +13,7 @@
 
 #include "supple/continuous.hpp"
 #include "supple/mesh.hpp"
-#include "unit/mesh/shared_meshes.hpp"
+#include "support/shared_meshes.hpp"
 
 namespace supple {
 namespace {

@@ -14,7 +14,7 @@
 
 #include "contact/exact_impact.hpp"
 #include "supple/mesh.hpp"
-#include "unit/mesh/shared_meshes.hpp"
+#include "support/shared_meshes.hpp"
 
 namespace supple {
 namespace {

@@ -1,4 +1,4 @@
-#include "unit/mesh/shared_meshes.hpp"
+#include "support/shared_meshes.hpp"
 
 #include <gtest/gtest.h>
 

@@ -14,7 +14,7 @@
 #include "octree/self_collision_culling.hpp"
 #include "support/instruction_sets.hpp"
 #include "support/moving_objects.hpp"
-#include "unit/mesh/shared_meshes.hpp"
+#include "support/shared_meshes.hpp"
 
 namespace supple {
 namespace {

@@ -290,25 +290,37 @@ TEST(Stop, BeforeAnythingIsFoundLeavesTheSceneAsItWas) {
   EXPECT_EQ(result.step, expected.step);
 }
 
+/// Starts a search and requests a stop from another thread. Returns whether the search was stopped.
+bool stop_from_another_thread(Scene& scene) {
+  std::stop_source source;
+  std::atomic<bool> is_searching = false;
+  scene.set_pair_filter([&](ObjectId, ObjectId) {
+    is_searching = true;
+    return true;
+  });
+  std::thread stopper([&] {
+    while (!is_searching) std::this_thread::yield();
+    source.request_stop();
+  });
+  const bool stopped = scene.detect({.stop = source.get_token()}).stopped;
+  stopper.join();
+  scene.set_pair_filter({});
+  return stopped;
+}
+
 TEST(Stop, FromAnotherThreadEndsALongSearch) {
+  constexpr int most_attempts = 50;  // on a busy machine a search can end before the other thread runs
   for (const ContactKinds contacts : {ContactKinds::intersection, ContactKinds::continuous}) {
     for (const std::uint32_t threads : {1u, 2u}) {
-      Scene scene = crowded(contacts, threads);
-      std::stop_source source;
-      std::atomic<bool> is_searching = false;
-      scene.set_pair_filter([&](ObjectId, ObjectId) {
-        is_searching = true;
-        return true;
-      });
-      std::thread stopper([&] {
-        while (!is_searching) std::this_thread::yield();
-        source.request_stop();
-      });
-      EXPECT_TRUE(scene.detect({.stop = source.get_token()}).stopped);
-      stopper.join();
-      const std::uint64_t found = hash_of(scene.detect());
       Scene fresh = crowded(contacts, threads);
-      EXPECT_EQ(found, hash_of(fresh.detect()));
+      const std::uint64_t all = hash_of(fresh.detect());
+      bool stopped = false;
+      for (int attempt = 0; attempt < most_attempts && !stopped; ++attempt) {
+        Scene scene = crowded(contacts, threads);
+        stopped = stop_from_another_thread(scene);
+        EXPECT_EQ(hash_of(scene.detect()), all);
+      }
+      EXPECT_TRUE(stopped);
     }
   }
 }

@@ -14,7 +14,7 @@
 
 #include "supple/inspection.hpp"
 #include "support/scenes.hpp"
-#include "unit/mesh/shared_meshes.hpp"
+#include "support/shared_meshes.hpp"
 
 namespace supple {
 namespace {
