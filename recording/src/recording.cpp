@@ -274,7 +274,8 @@ class Recording::Implementation {
   RaggedReader<ContactPoint> contact_points_;
   RaggedReader<ContinuousContact> continuous_contacts_;
   RaggedReader<ObjectPair> volume_begin_, volume_end_, contact_begin_, contact_end_;
-  std::vector<std::optional<ColumnReader>> statistics_;  ///< in the order of `StepStats`
+  std::vector<std::optional<ColumnReader>>
+      statistics_;  ///< in the order of `StepStats`; empty if the file lacks it
   std::vector<ColumnReader> positions_;
 };
 
@@ -300,7 +301,7 @@ Recording::Implementation::Implementation(const std::string& path)
     const std::string dataset =
         std::string(group_names::statistics) + "/" + column_in_version(column.name, version_);
     statistics_.emplace_back();
-    if (version_ < format_version && !file_.has_dataset(dataset)) continue;
+    if (!file_.has_dataset(dataset)) continue;  // an earlier program did not know it
     statistics_.back().emplace(file_, dataset, column.type, std::vector<hsize_t>{});
     check_frames(*statistics_.back(), frame_count());
   }

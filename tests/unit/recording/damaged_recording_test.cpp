@@ -154,8 +154,13 @@ TEST_F(DamagedRecording, MissingDatasets) {
        {"time", "scene_file", "objects", "objects/0", "objects/0/positions", "objects/1/rest_positions",
         "objects/1/triangles", "object_pairs/end", "object_pairs/object_a", "contacts/end", "contacts/kind",
         "contacts/normal", "contact_points/position", "continuous_contacts/normal", "continuous_contacts",
-        "events/volume_begin/end", "events/contact_end/object_b", "statistics/exact_seconds"})
+        "events/volume_begin/end", "events/contact_end/object_b"})
     expect("missing", without(path));
+}
+
+TEST_F(DamagedRecording, AMissingStatisticIsNoDamage) {
+  EXPECT_EQ(error_after(without("statistics/exact_seconds")), "");
+  EXPECT_EQ(Recording(folder_ / "bad.h5").summary(0).stats.exact_seconds, 0);
 }
 
 TEST_F(DamagedRecording, NumbersOutOfRange) {
