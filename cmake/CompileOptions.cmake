@@ -32,6 +32,9 @@ if(SUPPLE_SANITIZE)
   # Reaches the targets that link the library as well: a sanitizer works only when all of a program has it.
   add_compile_options(-fsanitize=${SUPPLE_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
   add_link_options(-fsanitize=${SUPPLE_SANITIZE})
+  if(CMAKE_CXX_COMPILER_ID MATCHES "Clang")
+    add_compile_options(-fsanitize-ignorelist=${CMAKE_CURRENT_LIST_DIR}/SanitizerIgnoreList.txt)
+  endif()
   if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
     # Kernels for SSE4, AVX2 and AVX-512 alone: clang takes minutes to compile the portable ones with sanitizers.
     add_compile_options(-march=x86-64-v2 -maes -mpclmul)

@@ -64,7 +64,7 @@ void MovingBoxes::set_boxes(Moment& moment, const VertexBuffer& positions, const
                             std::span<const Triangle> faces, const Parallel& parallel) {
   const std::uint32_t vertex_count = elements.vertex_count();
   VertexCorners corners{positions.floats().data, positions.floats().data, positions.floats().stride};
-  if (positions.is_double()) {
+  if (positions.is_double() && vertex_count > 0) {
     moment.corners.resize(8 * std::size_t{vertex_count});
     corners = {moment.corners.data(), moment.corners.data() + 4, 8};
   }
