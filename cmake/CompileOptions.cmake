@@ -43,9 +43,9 @@ endif()
 
 # Compiles the headers that most sources of a target include once instead of once for each source. A compiler cache
 # does not store the results of such compilations, so builds with a cache do without. So does the debug preset, which
-# thereby finds sources that miss an include.
+# thereby finds sources that miss an include, and the thread sanitizer, with which GCC 12 then warns of strings in vain.
 function(supple_precompile_headers target)
-  if(NOT CMAKE_CXX_COMPILER_LAUNCHER)
+  if(NOT CMAKE_CXX_COMPILER_LAUNCHER AND NOT SUPPLE_SANITIZE MATCHES "thread")
     target_precompile_headers(${target} PRIVATE <algorithm> <array> <cmath> <cstdint> <filesystem> <functional> <limits>
       <map> <memory> <optional> <span> <string> <utility> <vector> ${ARGN})
   endif()
