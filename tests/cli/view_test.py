@@ -360,7 +360,7 @@ class Errors(ProgramTest):
         for arguments, parts in (
             ((), ["required"]),
             (("nothing.obj",), ["nothing.obj", "no such file"]),
-            (("scene.toml", "a.obj"), ["scene.toml", "alone"]),
+            (("scene.toml", "a.obj"), ["scene.toml", "only input"]),
             (("none.h5",), ["none.h5"]),
             (("a.obj", "--host", "somewhere"), ["somewhere", "not an IP address"]),
             (("a.obj", "--host", "203.0.113.1"), ["203.0.113.1", "cannot listen"]),
