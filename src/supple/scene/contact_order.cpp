@@ -10,22 +10,31 @@ namespace supple {
 namespace {
 
 constexpr int most_bucket_bits = 12;
-constexpr std::size_t contacts_of_bucket = 3;
-/// Insertion sorts buckets up to this size faster than `std::sort`.
-constexpr std::size_t most_inserted = 16;
+/// Counting ranks sorts buckets up to this size faster than `std::sort`.
+constexpr std::size_t most_ranked = 16;
 
+std::uint64_t key_of(const FoundContact& contact) {
+  return std::uint64_t{contact.triangle_a} << 32 | contact.triangle_b;
+}
+
+/// The rank of a contact is the number of smaller keys. Counting has no branches that could be mispredicted.
 void sort_bucket(std::span<FoundContact> bucket) {
-  if (bucket.size() > most_inserted) {
-    std::sort(bucket.begin(), bucket.end(), in_order_of_triangles);
+  const std::size_t size = bucket.size();
+  if (size < 2) return;
+  if (size > most_ranked) {
+    std::ranges::sort(bucket, {}, key_of);
     return;
   }
-  for (std::size_t i = 1; i < bucket.size(); ++i) {
-    const FoundContact contact = bucket[i];
-    std::size_t place = i;
-    for (; place > 0 && in_order_of_triangles(contact, bucket[place - 1]); --place) {
-      bucket[place] = bucket[place - 1];
-    }
-    bucket[place] = contact;
+  std::array<FoundContact, most_ranked> contacts;
+  std::array<std::uint64_t, most_ranked> keys;
+  for (std::size_t i = 0; i < size; ++i) {
+    contacts[i] = bucket[i];
+    keys[i] = key_of(bucket[i]);
+  }
+  for (std::size_t i = 0; i < size; ++i) {
+    std::size_t rank = 0;
+    for (std::size_t j = 0; j < size; ++j) rank += keys[j] < keys[i];
+    bucket[rank] = contacts[i];
   }
 }
 
@@ -40,8 +49,7 @@ std::span<const FoundContact> ContactOrder::sort(std::span<const FoundContact> f
     most = std::max(most, contact.triangle_a);
   }
   const int bits = static_cast<int>(std::bit_width(most - least));
-  const int bucket_bits =
-      std::min({bits, most_bucket_bits, static_cast<int>(std::bit_width(found.size() / contacts_of_bucket))});
+  const int bucket_bits = std::min({bits, most_bucket_bits, static_cast<int>(std::bit_width(found.size()))});
   const auto bucket_of = [&](const FoundContact& contact) {
     return static_cast<std::size_t>(std::uint64_t{contact.triangle_a - least} >> (bits - bucket_bits));
   };

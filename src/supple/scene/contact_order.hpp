@@ -24,8 +24,8 @@ inline bool in_order_of_triangles(const FoundContact& p, const FoundContact& q) 
   return p.triangle_a != q.triangle_a ? p.triangle_a < q.triangle_a : p.triangle_b < q.triangle_b;
 }
 
-/// Sorts the contacts of one job at a time by triangle a, then by triangle b. Counts them into buckets of a
-/// few contacts, by ranges of triangle a, and sorts each bucket. Keeps its memory between jobs.
+/// Sorts the contacts of one job at a time by triangle a, then by triangle b. Counts them into about as
+/// many buckets, by ranges of triangle a, and sorts each bucket. Keeps its memory between jobs.
 class ContactOrder {
  public:
   /// `found` are contacts of different pairs of triangles. The result is valid until the next call. O(n)
