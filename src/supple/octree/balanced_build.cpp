@@ -5,11 +5,14 @@
 #include <bit>
 #include <cmath>
 #include <cstddef>
+#include <functional>
 #include <limits>
 #include <utility>
 #include <vector>
 
+#include "geometry/aabb.hpp"
 #include "geometry/vector.hpp"
+#include "mesh/vertex_sets.hpp"
 
 namespace supple {
 namespace {
@@ -18,6 +21,10 @@ namespace {
 constexpr float least_extent = 0x1p-80f;
 /// The first attempt at a cut looks at this many coordinates.
 constexpr std::size_t most_samples = 1024;
+/// A cut between connected parts may cost this many times a cut in two halves, by the surface-area heuristic.
+constexpr double most_part_cost = 1.5;
+/// Smaller parts on average are treated as loose triangles.
+constexpr std::size_t least_part_size = 4;
 
 /// The median of three, which a single point far away does not move.
 double median_of(double p, double q, double r) {
@@ -55,14 +62,36 @@ struct PointBox {
   }
 };
 
+/// The connected part of each triangle: triangles that share vertex ids are connected. A part is named by its
+/// smallest vertex id. Empty when all triangles are connected.
+std::vector<std::uint32_t> connected_parts(std::span<const Triangle> triangles) {
+  std::size_t vertex_count = 0;
+  for (const Triangle& t : triangles)
+    vertex_count = std::max<std::size_t>(vertex_count, std::ranges::max(t) + 1);
+  VertexSets sets(vertex_count);
+  for (const Triangle& t : triangles) {
+    sets.join(t[0], t[1]);
+    sets.join(t[1], t[2]);
+  }
+  std::vector<std::uint32_t> parts;
+  parts.reserve(triangles.size());
+  for (const Triangle& t : triangles) parts.push_back(sets.root(t[0]));
+  const bool is_one_part = std::ranges::adjacent_find(parts, std::not_equal_to{}) == parts.end();
+  return is_one_part ? std::vector<std::uint32_t>() : parts;
+}
+
 class BalancedSplitter {
  public:
-  BalancedSplitter(std::span<const Vec3d> centers, const ObjectOctreeOptions& options)
+  BalancedSplitter(std::span<const Vec3d> centers, std::span<const Triangle> triangles,
+                   const ObjectOctreeOptions& options)
       : centers_(centers),
+        part_of_triangle_(connected_parts(triangles)),
         options_(options),
         fill_(options.leaf_size / 2 + options.leaf_size % 2),
         points_(centers.size()) {
     for (std::uint32_t t = 0; t < points_.size(); ++t) points_[t].triangle = t;
+    if (!part_of_triangle_.empty())
+      place_in_list_.assign(std::ranges::max(part_of_triangle_) + std::size_t{1}, none);
     if (!points_.empty()) set_coordinates({0, static_cast<std::uint32_t>(points_.size())});
   }
 
@@ -124,9 +153,90 @@ class BalancedSplitter {
       children.push_back(range);
       return;
     }
-    const std::uint32_t middle = range.begin + cut(range, count / 2, count);
-    cut_into_children({range.begin, middle}, count / 2, children);
-    cut_into_children({middle, range.end}, count - count / 2, children);
+    std::uint32_t lower_count = count / 2;
+    std::uint32_t lower = cut_between_parts(range);
+    if (lower > 0) {
+      const std::uint64_t size = range.size(), share = (2 * std::uint64_t{lower} * count + size) / (2 * size);
+      lower_count = static_cast<std::uint32_t>(std::clamp<std::uint64_t>(share, 1, count - 1));
+    } else {
+      lower = cut(range, lower_count, count);
+    }
+    const std::uint32_t middle = range.begin + lower;
+    cut_into_children({range.begin, middle}, lower_count, children);
+    cut_into_children({middle, range.end}, count - lower_count, children);
+  }
+
+  /// The triangles of a connected part in a range.
+  struct Part {
+    std::uint32_t name = 0, size = 0;
+    Aabb box{};
+    bool is_lower = false;
+
+    float center(int axis) const { return box.min[axis] + box.max[axis]; }
+  };
+
+  /// Puts the triangles of some connected parts first, about half of all, and returns their number. Parts
+  /// move apart when the object deforms, and a leaf of two parts is large and cannot be culled. Returns 0
+  /// when there is only one part, and when parts are so entangled that a cut through them is better.
+  std::uint32_t cut_between_parts(TriangleRange range) {
+    if (part_of_triangle_.empty()) return 0;
+    const std::span<Point> points = points_of(range);
+    list_parts(points);
+    if (parts_.size() < 2 || points.size() < least_part_size * parts_.size()) return 0;
+    Aabb all;
+    for (const Part& part : parts_) extend(all, part.box);
+    const std::uint32_t lower = choose_lower_parts(all, range.size());
+    Aabb lower_box, upper_box, half = all;
+    for (const Part& part : parts_) extend(part.is_lower ? lower_box : upper_box, part.box);
+    const int axis = longest_axis(all);
+    half.max[axis] = half.min[axis] + (half.max[axis] - half.min[axis]) / 2;
+    const double cost = half_surface(lower_box) * lower + half_surface(upper_box) * (range.size() - lower);
+    if (cost > most_part_cost * half_surface(half) * range.size()) return 0;
+    for (std::size_t i = 0; i < parts_.size(); ++i)
+      place_in_list_[parts_[i].name] = static_cast<std::uint32_t>(i);
+    std::stable_partition(points.begin(), points.end(), [&](const Point& point) {
+      return parts_[place_in_list_[part_of_triangle_[point.triangle]]].is_lower;
+    });
+    return lower;
+  }
+
+  void list_parts(std::span<const Point> points) {
+    for (const Part& part : parts_) place_in_list_[part.name] = none;
+    parts_.clear();
+    for (const Point& point : points) {
+      std::uint32_t& place = place_in_list_[part_of_triangle_[point.triangle]];
+      if (place == none) {
+        place = static_cast<std::uint32_t>(parts_.size());
+        parts_.push_back({.name = part_of_triangle_[point.triangle]});
+      }
+      const Vec3f at{point.at[0], point.at[1], point.at[2]};
+      extend(parts_[place].box, Aabb{at, at});
+      ++parts_[place].size;
+    }
+  }
+
+  /// Chooses a part that has more than half of the triangles, or else the first parts along the longest axis.
+  std::uint32_t choose_lower_parts(const Aabb& all, std::uint32_t size) {
+    const auto largest = std::ranges::max_element(parts_, {}, &Part::size);
+    if (largest->size > size / 2) {
+      largest->is_lower = true;
+      return largest->size;
+    }
+    const int axis = longest_axis(all);
+    std::ranges::sort(parts_, {}, [&](const Part& part) { return std::pair(part.center(axis), part.name); });
+    std::uint32_t lower = 0;
+    for (Part& part : parts_) {
+      if (lower > 0 && 2 * (lower + part.size) > size + part.size)
+        break;  // further from half than without it
+      part.is_lower = true;
+      lower += part.size;
+    }
+    return lower;
+  }
+
+  static int longest_axis(const Aabb& box) {
+    const Vec3f extent{box.max.x - box.min.x, box.max.y - box.min.y, box.max.z - box.min.z};
+    return extent.x >= extent.y && extent.x >= extent.z ? 0 : extent.y >= extent.z ? 1 : 2;
   }
 
   /// Puts the points of the first `lower` of `count` children first and returns their number. Cuts across the
@@ -219,12 +329,17 @@ class BalancedSplitter {
     return std::span(points_).subspan(range.begin, range.size());
   }
 
+  static constexpr std::uint32_t none = ~std::uint32_t{0};
+
   std::span<const Vec3d> centers_;
+  std::vector<std::uint32_t> part_of_triangle_;  ///< empty when the mesh is one part
   ObjectOctreeOptions options_;
   std::uint32_t fill_;             ///< triangles of a usual leaf
   std::vector<Point> points_;      ///< in the octree's order
   std::uint64_t child_limit_ = 0;  ///< triangles of a child of the node that is being split
   // Scratch memory.
+  std::vector<Part> parts_;                   ///< of one range
+  std::vector<std::uint32_t> place_in_list_;  ///< in `parts_`, by the name of the part
   std::vector<float> coordinates_;
   std::vector<Point> upper_;
   std::vector<std::uint8_t> leaf_cells_;
@@ -233,8 +348,9 @@ class BalancedSplitter {
 
 }  // namespace
 
-OctreeTopology build_balanced_octree(std::span<const Vec3d> centers, const ObjectOctreeOptions& options) {
-  return build_octree(BalancedSplitter(centers, options));
+OctreeTopology build_balanced_octree(std::span<const Vec3d> centers, std::span<const Triangle> triangles,
+                                     const ObjectOctreeOptions& options) {
+  return build_octree(BalancedSplitter(centers, triangles, options));
 }
 
 }  // namespace supple

@@ -39,7 +39,7 @@ OctreeTopology build_topology(const PositionsView& positions, std::span<const Tr
                               const ObjectOctreeOptions& options) {
   const std::vector<Vec3d> centers = box_centers(positions, triangles);
   return options.regular || options.arity != 8 ? build_regular_octree(centers, options)
-                                               : build_balanced_octree(centers, options);
+                                               : build_balanced_octree(centers, triangles, options);
 }
 
 void set_child(ChildSpheres& spheres, int child, const BoundingSphere& sphere) {

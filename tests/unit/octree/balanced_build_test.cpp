@@ -24,7 +24,7 @@ std::vector<Vec3d> centers_of(const TriangleMesh& mesh) {
 }
 
 OctreeTopology built(const TriangleMesh& mesh, const ObjectOctreeOptions& options = {}) {
-  return build_balanced_octree(centers_of(mesh), options);
+  return build_balanced_octree(centers_of(mesh), mesh.triangles, options);
 }
 
 /// The triangles of each leaf, in the order of the tree.
@@ -177,13 +177,31 @@ TEST(BalancedBuild, LeavesOfCrossingThreadsTileTheSquare) {
   EXPECT_LT(area, 1.5) << "leaves tile the square";
 }
 
+TEST(BalancedBuild, LeavesDoNotMixConnectedParts) {
+  TriangleMesh mesh = crumpled_sheet(40, 30, 0, 0);
+  const std::size_t part_size = mesh.triangles.size();
+  const auto vertices = static_cast<std::uint32_t>(mesh.positions.size());
+  for (int copy = 1; copy < 3; ++copy) {
+    const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+    for (std::uint32_t v = 0; v < vertices; ++v)
+      mesh.positions.push_back(mesh.positions[v] + Vec3d{0, 0.5 * copy, 0});
+    for (std::size_t t = 0; t < part_size; ++t) {
+      const Triangle original = mesh.triangles[t];
+      mesh.triangles.push_back({original[0] + first, original[1] + first, original[2] + first});
+    }
+  }
+  for (const auto& leaf : leaves_of(built(mesh))) {
+    for (const std::uint32_t t : leaf) EXPECT_EQ(t / part_size, leaf.front() / part_size);
+  }
+}
+
 TEST(BalancedBuild, CutsGridsBetweenRows) {
   for (const auto& [columns, rows] : {std::pair{40u, 30u}, {24u, 24u}, {100u, 50u}, {64u, 64u}}) {
     const TriangleMesh sheet = crumpled_sheet(columns, rows, 0, 0);
     // Both triangles of a square have the same centre, as boxes of theirs would.
     std::vector<Vec3d> centers = centers_of(sheet);
     for (std::size_t t = 0; t < centers.size(); t += 2) centers[t] = centers[t + 1];
-    const OctreeTopology topology = build_balanced_octree(centers, {});
+    const OctreeTopology topology = build_balanced_octree(centers, sheet.triangles, {});
     std::size_t straight = 0;
     const auto leaves = leaves_of(topology);
     for (const auto& leaf : leaves) {

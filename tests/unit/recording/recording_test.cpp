@@ -10,6 +10,7 @@
 
 #include "supple/error.hpp"
 #include "supple/models.hpp"
+#include "supple/result_descriptions.hpp"
 #include "support/eventually.hpp"
 #include "support/soups.hpp"
 #include "unit/recording/recorded_scenes.hpp"
@@ -32,7 +33,8 @@ void expect_equal(const RecordedFrame& a, const RecordedFrame& b) {
   EXPECT_EQ(a.volume_end, b.volume_end);
   EXPECT_EQ(a.contact_begin, b.contact_begin);
   EXPECT_EQ(a.contact_end, b.contact_end);
-  EXPECT_EQ(std::memcmp(&a.stats, &b.stats, sizeof a.stats), 0);
+  for_each_leaf([](const auto& field, const auto& p, const auto& q) { EXPECT_EQ(p, q) << field.name; },
+                a.stats, b.stats);
 }
 
 void expect_equal(const RecordingHeader& a, const RecordingHeader& b) {
