@@ -29,8 +29,10 @@ std::string text_of(const ValueRange& range, bool is_whole) {
     text += " from " + text_of(lowest) + (range.highest < infinity ? "" : " up");
   if (range.highest < infinity) {
     text += " to ";
-    // Whole numbers without an exponent, as 4294967295.
-    text += is_whole ? std::to_string(static_cast<std::uint64_t>(range.highest)) : text_of(range.highest);
+    // Whole numbers have no exponent: 4294967295. The greatest of 64 bits is no double; it rounds to 2^64.
+    const std::uint64_t whole = range.highest < 0x1p64 ? static_cast<std::uint64_t>(range.highest)
+                                                       : std::numeric_limits<std::uint64_t>::max();
+    text += is_whole ? std::to_string(whole) : text_of(range.highest);
   }
   if (range.includes_zero) text += ", or 0";
   if (range.includes_infinity) text += ", or infinity for none";

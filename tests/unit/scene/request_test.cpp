@@ -318,7 +318,9 @@ TEST(Stop, FromAnotherThreadEndsALongSearch) {
       for (int attempt = 0; attempt < most_attempts && !stopped; ++attempt) {
         Scene scene = crowded(contacts, threads);
         stopped = stop_from_another_thread(scene);
-        EXPECT_EQ(hash_of(scene.detect()), all);
+        if (stopped) {
+          EXPECT_EQ(hash_of(scene.detect()), all);
+        }
       }
       EXPECT_TRUE(stopped);
     }
