@@ -194,10 +194,9 @@ class BalancedSplitter {
     if (cost > most_part_cost * half_surface(half) * range.size()) return 0;
     for (std::size_t i = 0; i < parts_.size(); ++i)
       place_in_list_[parts_[i].name] = static_cast<std::uint32_t>(i);
-    std::stable_partition(points.begin(), points.end(), [&](const Point& point) {
+    return partition(points, [&](const Point& point) {
       return parts_[place_in_list_[part_of_triangle_[point.triangle]]].is_lower;
     });
-    return lower;
   }
 
   void list_parts(std::span<const Point> points) {
@@ -270,7 +269,12 @@ class BalancedSplitter {
       if (!is_allowed(taken)) taken = wanted;
       // A sample can miss the wanted number: then the next attempt looks at all coordinates.
       if (taken < less || taken > not_greater) continue;
-      return partition(points, axis, border, static_cast<std::uint32_t>(taken - less));
+      // The points below the border, and the first of those on it.
+      return partition(points, [&, room = taken - less](const Point& point) mutable {
+        const bool is_taken = point.at[axis] == border && room > 0;
+        room -= is_taken;
+        return point.at[axis] < border || is_taken;
+      });
     }
   }
 
@@ -283,18 +287,17 @@ class BalancedSplitter {
     return coordinates_[static_cast<std::size_t>(place)];
   }
 
-  /// Puts the points below the border first, and with them the first `room` points on it. Keeps the order of
-  /// both sides. Returns the number of points below the cut.
-  std::uint32_t partition(std::span<Point> points, std::size_t axis, float border, std::uint32_t room) {
+  /// Puts the points for which `is_lower(point)` is true first, keeps the order of both sides, and returns
+  /// the number of these points.
+  template <class IsLower>
+  std::uint32_t partition(std::span<Point> points, IsLower is_lower) {
     if (upper_.size() < points.size()) upper_.resize(points.size());
     // Writes to both sides and advances one of them: a branch would be mispredicted half of the time.
     Point* lower = points.data();
     Point* upper = upper_.data();
     for (const Point& point : points) {
       const Point copy = point;
-      const bool is_taken = copy.at[axis] == border && room > 0;
-      room -= is_taken;
-      const std::ptrdiff_t goes_down = copy.at[axis] < border || is_taken;
+      const std::ptrdiff_t goes_down = is_lower(copy);
       *lower = copy;
       *upper = copy;
       lower += goes_down;
