@@ -8,8 +8,8 @@ target_compile_options(supple_compile_options INTERFACE
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
   # Each instruction set compiles the kernels once more. Processors since 2008 have SSE4, and older ones run portable code.
   target_compile_definitions(supple_compile_options INTERFACE HWY_DISABLED_TARGETS=HWY_SSSE3)
-  # Highway 1.0.3 refuses compilers that may use all of AVX-512, as -march=native allows on recent processors, without
-  # this definition.
+  # Without this definition, Highway 1.0.3 refuses compilers that may use all of AVX-512, as -march=native
+  # allows on recent processors.
   include(CheckCXXSourceCompiles)
   check_cxx_source_compiles("#include <hwy/detect_targets.h>\nint main() {}" supple_highway_accepts_flags)
   if(NOT supple_highway_accepts_flags)
@@ -41,9 +41,10 @@ if(SUPPLE_SANITIZE)
   endif()
 endif()
 
-# Compiles the headers that most sources of a target include once instead of once for each source. A compiler cache
-# does not store the results of such compilations, so builds with a cache do without. So does the debug preset, which
-# thereby finds sources that miss an include, and the thread sanitizer, with which GCC 12 then warns of strings in vain.
+# Compiles the headers that most sources of a target include once instead of once for each source. A compiler
+# cache does not store the results of such compilations, so builds with a cache do not use it. The debug preset
+# does not use it either, which finds sources that miss an include. With the thread sanitizer and precompiled
+# headers, GCC 12 gives false warnings about strings.
 function(supple_precompile_headers target)
   if(NOT CMAKE_CXX_COMPILER_LAUNCHER AND NOT SUPPLE_SANITIZE MATCHES "thread")
     target_precompile_headers(${target} PRIVATE <algorithm> <array> <cmath> <cstdint> <filesystem> <functional> <limits>

@@ -95,7 +95,7 @@ void SceneObject::update_volumes(const SearchedShapes& shapes) {
   sphere_ = sphere_around(box_);
 }
 
-/// Of a shape that is up to date, if one is.
+/// The query cost at the positions of the shape that is up to date: the resting one if both are.
 double SceneObject::current_query_cost() const {
   const bool moving = !resting_.is_current(placement_) && moving_.is_current(placement_);
   return query_cost(octree_.nodes(), moving ? moving_.node_boxes() : octree_.boxes());
