@@ -21,6 +21,8 @@ namespace {
 constexpr float least_extent = 0x1p-80f;
 /// The first attempt at a cut looks at this many coordinates.
 constexpr std::size_t most_samples = 1024;
+/// A cut may leave its wanted place by this part of all points, to use a gap.
+constexpr std::size_t gap_reach = 16;
 /// A cut between connected parts may cost this many times a cut in two halves, by the surface-area heuristic.
 constexpr double most_part_cost = 1.5;
 /// Smaller parts on average are treated as loose triangles.
@@ -238,9 +240,16 @@ class BalancedSplitter {
     return extent.x >= extent.y && extent.x >= extent.z ? 0 : extent.y >= extent.z ? 1 : 2;
   }
 
+  /// How many points come before a cut: between `least` and `most`, at best `wanted`.
+  struct CutGoal {
+    std::uint64_t wanted, least, most;
+
+    bool allows(std::uint64_t lower) const { return lower >= least && lower <= most; }
+  };
+
   /// Puts the points of the first `lower` of `count` children first and returns their number. Cuts across the
-  /// longest axis where the coordinate changes, as near to the wanted number as possible. Points with the
-  /// same coordinate are divided only when there are too many of them, in their present order.
+  /// longest axis, in a gap near the wanted number. Points with the same coordinate are divided only when there
+  /// are too many of them, in their present order.
   std::uint32_t cut(TriangleRange range, std::uint32_t lower, std::uint32_t count) {
     const std::span<Point> points = points_of(range);
     PointBox box(points);
@@ -251,22 +260,17 @@ class BalancedSplitter {
     const std::size_t axis = box.longest_axis();
     const std::uint64_t size = range.size(), wanted = size * lower / count, slack = size / 8;
     // No child may get more triangles than it can hold, and no side an eighth more or less than wanted.
-    const std::uint64_t least =
-        std::max(size - std::min(size - 1, child_limit_ * (count - lower)), wanted - slack);
-    const std::uint64_t most = std::min({size - 1, child_limit_ * lower, wanted + slack});
-    const auto is_allowed = [&](std::uint64_t n) { return n >= least && n <= most; };
-    const auto error = [&](std::uint64_t n) { return n < wanted ? wanted - n : n - wanted; };
+    const CutGoal goal{wanted,
+                       std::max(size - std::min(size - 1, child_limit_ * (count - lower)), wanted - slack),
+                       std::min({size - 1, child_limit_ * lower, wanted + slack})};
     for (std::size_t stride = 1 + points.size() / most_samples;; stride = 1) {
-      const float border =
-          coordinate_at(points, axis, stride, static_cast<double>(wanted) / static_cast<double>(size));
+      const float border = choose_border(points, axis, stride, box.extent(axis), goal);
       std::uint64_t less = 0, not_greater = 0;
       for (const Point& point : points) {
         less += point.at[axis] < border;
         not_greater += point.at[axis] <= border;
       }
-      std::uint64_t taken = error(less) <= error(not_greater) ? less : not_greater;
-      if (!is_allowed(taken)) taken = less + not_greater - taken;
-      if (!is_allowed(taken)) taken = wanted;
+      const std::uint64_t taken = goal.allows(less) ? less : goal.allows(not_greater) ? not_greater : wanted;
       // A sample can miss the wanted number: then the next attempt looks at all coordinates.
       if (taken < less || taken > not_greater) continue;
       // The points below the border, and the first of those on it.
@@ -278,13 +282,30 @@ class BalancedSplitter {
     }
   }
 
-  /// The coordinate at which `share` of every `stride`-th point are smaller.
-  float coordinate_at(std::span<const Point> points, std::size_t axis, std::size_t stride, double share) {
+  /// Chooses the coordinate of a cut from every `stride`-th point: the upper end of a wide gap near the wanted
+  /// place, so that rows of a grid and things that lie apart stay whole. For each point further away, the gap
+  /// must be wider by the average distance between points.
+  float choose_border(std::span<const Point> points, std::size_t axis, std::size_t stride, float extent,
+                      const CutGoal& goal) {
     coordinates_.clear();
     for (std::size_t i = 0; i < points.size(); i += stride) coordinates_.push_back(points[i].at[axis]);
-    const auto place = static_cast<std::ptrdiff_t>(share * static_cast<double>(coordinates_.size()));
-    std::nth_element(coordinates_.begin(), coordinates_.begin() + place, coordinates_.end());
-    return coordinates_[static_cast<std::size_t>(place)];
+    const std::size_t size = coordinates_.size(), reach = 1 + size / gap_reach;
+    const auto place = static_cast<std::size_t>(goal.wanted / stride);
+    const std::size_t first = place - std::min(place, reach), end = std::min(place + reach, size);
+    const auto at = [&](std::size_t i) { return coordinates_.begin() + static_cast<std::ptrdiff_t>(i); };
+    std::nth_element(at(0), at(first), at(size));
+    std::partial_sort(at(first), at(end), at(size));
+    const float average = extent / static_cast<float>(size);
+    float border = coordinates_[place], most = -std::numeric_limits<float>::infinity();
+    for (std::size_t i = first + 1; i < end; ++i) {
+      const float gap = coordinates_[i] - coordinates_[i - 1];
+      const float merit = gap - average * static_cast<float>(i < place ? place - i : i - place);
+      if (gap > 0 && merit > most && goal.allows(i * stride)) {
+        most = merit;
+        border = coordinates_[i];
+      }
+    }
+    return border;
   }
 
   /// Puts the points for which `is_lower(point)` is true first, keeps the order of both sides, and returns

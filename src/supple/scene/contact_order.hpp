@@ -28,12 +28,17 @@ inline bool in_order_of_triangles(const FoundContact& p, const FoundContact& q) 
 /// many buckets, by ranges of triangle a, and sorts each bucket. Keeps its memory between jobs.
 class ContactOrder {
  public:
-  /// `found` are contacts of different pairs of triangles. The result is valid until the next call. O(n)
-  /// while no range of triangles has very many contacts, O(n log n) at worst.
-  std::span<const FoundContact> sort(std::span<const FoundContact> found);
+  /// Returns the indices of the contacts in order, valid until the next call. `found` are contacts of different
+  /// pairs of triangles. O(n) while no range of triangles has very many contacts, O(n log n) at worst.
+  std::span<const std::uint32_t> sort(std::span<const FoundContact> found);
 
  private:
-  std::vector<FoundContact> sorted_;
+  class Keys;
+  void sort_by_buckets(std::span<const FoundContact> found, const Keys& keys, std::span<std::uint32_t> order);
+
+  // Keys and indices of the contacts, bucket by bucket.
+  std::vector<std::int32_t> keys_;
+  std::vector<std::uint32_t> numbers_, order_;
 };
 
 }  // namespace supple

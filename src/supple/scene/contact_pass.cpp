@@ -247,7 +247,9 @@ void ContactPass::gather_found(std::size_t job, Worker& worker) {
   const ObjectId a = objects_[outcomes_.job(job).a].id, b = objects_[outcomes_.job(job).b].id;
   Contact* contact = contacts_.data() + outcomes_.ranges(job)[of_contacts].first;
   std::uint32_t point = outcomes_.ranges(job)[of_points].first;
-  for (const FoundContact& found : worker.order.sort(found_of(job, worker))) {
+  const std::span<const FoundContact> found_contacts = found_of(job, worker);
+  for (const std::uint32_t i : worker.order.sort(found_contacts)) {
+    const FoundContact& found = found_contacts[i];
     *contact = {a, b, found.triangle_a, found.triangle_b, found.kind, found.point_count, point, {}};
     if (search_.contact_points) {
       const Worker& finder = workers_[found.worker];

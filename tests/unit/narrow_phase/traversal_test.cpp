@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <set>
 
+#include "supple/triangle_intersection.hpp"
 #include "support/soups.hpp"
 
 namespace supple {
@@ -91,11 +92,22 @@ PairSet overlapping_boxes(const Object& a, const Object& b, bool same_object, do
   return pairs;
 }
 
-/// Nothing missed, and nothing reported that rounding does not explain.
+TrianglePoints points_of(const Object& object, std::uint32_t triangle) {
+  const Triangle& corners = object.mesh.triangles[triangle];
+  const auto at = [&](std::size_t i) { return object.mesh.positions[corners[i]] + object.translation; };
+  return {at(0), at(1), at(2)};
+}
+
+/// Nothing missed, and nothing reported that rounding does not explain. Spheres enclose the triangles, but not
+/// the corners of their boxes, so only intersections are certain to be found.
 void expect_candidates(const Object& a, const Object& b, bool same_object, double slack) {
   const ObjectPairView pair = same_object ? self_pair_of(a.view()) : pair_of(a.view(), b.view());
-  const PairSet must = overlapping_boxes(a, b, same_object, 0),
-                may = overlapping_boxes(a, b, same_object, slack);
+  PairSet must = overlapping_boxes(a, b, same_object, 0);
+  if (a.octree.spheres() != nullptr)
+    std::erase_if(must, [&](const auto& found) {
+      return !triangles_intersect_by_axes(points_of(a, found.first), points_of(b, found.second));
+    });
+  const PairSet may = overlapping_boxes(a, b, same_object, slack);
   ASSERT_FALSE(must.empty());
   for (const bool refined : {false, true}) {
     const PairSet found = candidates(a, b, pair, refined);

@@ -31,8 +31,9 @@ void expect_sorted(const std::vector<FoundContact>& found, ContactOrder& order) 
   std::sort(expected.begin(), expected.end(), [](const FoundContact& p, const FoundContact& q) {
     return std::tie(p.triangle_a, p.triangle_b) < std::tie(q.triangle_a, q.triangle_b);
   });
-  const auto sorted = order.sort(found);
-  EXPECT_EQ(std::vector<FoundContact>(sorted.begin(), sorted.end()), expected);
+  std::vector<FoundContact> sorted;
+  for (const std::uint32_t i : order.sort(found)) sorted.push_back(found[i]);
+  EXPECT_EQ(sorted, expected);
 }
 
 TEST(ContactOrder, RandomContactsOfAnyNumberAndSpread) {
