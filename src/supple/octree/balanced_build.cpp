@@ -19,8 +19,6 @@ namespace {
 
 /// A range with a smaller extent gets new coordinates, so that floats can distinguish its points.
 constexpr float least_extent = 0x1p-80f;
-/// The first attempt at a cut looks at this many coordinates.
-constexpr std::size_t most_samples = 1024;
 /// A cut may leave its wanted place by this part of all points, to use a gap.
 constexpr std::size_t gap_reach = 16;
 /// A cut between connected parts may cost this many times a cut in two halves, by the surface-area heuristic.
@@ -263,49 +261,66 @@ class BalancedSplitter {
     const CutGoal goal{wanted,
                        std::max(size - std::min(size - 1, child_limit_ * (count - lower)), wanted - slack),
                        std::min({size - 1, child_limit_ * lower, wanted + slack})};
-    for (std::size_t stride = 1 + points.size() / most_samples;; stride = 1) {
-      const float border = choose_border(points, axis, stride, box.extent(axis), goal);
-      std::uint64_t less = 0, not_greater = 0;
-      for (const Point& point : points) {
-        less += point.at[axis] < border;
-        not_greater += point.at[axis] <= border;
-      }
-      const std::uint64_t taken = goal.allows(less) ? less : goal.allows(not_greater) ? not_greater : wanted;
-      // A sample can miss the wanted number: then the next attempt looks at all coordinates.
-      if (taken < less || taken > not_greater) continue;
-      // The points below the border, and the first of those on it.
-      return partition(points, [&, room = taken - less](const Point& point) mutable {
-        const bool is_taken = point.at[axis] == border && room > 0;
-        room -= is_taken;
-        return point.at[axis] < border || is_taken;
-      });
-    }
+    const std::uint32_t in_gap = cut_in_gap(points, axis, box, goal);
+    return in_gap != 0 ? in_gap : cut_at(points, axis, goal);
   }
 
-  /// Chooses the coordinate of a cut from every `stride`-th point: the upper end of a wide gap near the wanted
-  /// place, so that rows of a grid and things that lie apart stay whole. For each point further away, the gap
-  /// must be wider by the average distance between points.
-  float choose_border(std::span<const Point> points, std::size_t axis, std::size_t stride, float extent,
-                      const CutGoal& goal) {
-    coordinates_.clear();
-    for (std::size_t i = 0; i < points.size(); i += stride) coordinates_.push_back(points[i].at[axis]);
-    const std::size_t size = coordinates_.size(), reach = 1 + size / gap_reach;
-    const auto place = static_cast<std::size_t>(goal.wanted / stride);
-    const std::size_t first = place - std::min(place, reach), end = std::min(place + reach, size);
-    const auto at = [&](std::size_t i) { return coordinates_.begin() + static_cast<std::ptrdiff_t>(i); };
-    std::nth_element(at(0), at(first), at(size));
-    std::partial_sort(at(first), at(end), at(size));
-    const float average = extent / static_cast<float>(size);
-    float border = coordinates_[place], most = -std::numeric_limits<float>::infinity();
-    for (std::size_t i = first + 1; i < end; ++i) {
-      const float gap = coordinates_[i] - coordinates_[i - 1];
-      const float merit = gap - average * static_cast<float>(i < place ? place - i : i - place);
-      if (gap > 0 && merit > most && goal.allows(i * stride)) {
-        most = merit;
-        border = coordinates_[i];
-      }
+  /// Cuts in a wide gap near the wanted number, so that rows of a grid and things that lie apart stay whole. For
+  /// each point further away, the gap must be wider by the average distance between points. Counts the points
+  /// in cells along the axis and takes gaps of whole cells. Returns 0 when too many points lie in one cell.
+  std::uint32_t cut_in_gap(std::span<Point> points, std::size_t axis, const PointBox& box,
+                           const CutGoal& goal) {
+    const std::size_t size = points.size(), cells = size < 256 ? 64 : size < 2048 ? 256 : 1024;
+    const float low = box.low[axis], scale = static_cast<float>(cells) / box.extent(axis);
+    if (!(scale < std::numeric_limits<float>::infinity())) return 0;
+    cell_counts_.assign(cells, 0);
+    for (const Point& point : points) {
+      ++cell_counts_[std::min(static_cast<std::size_t>((point.at[axis] - low) * scale), cells - 1)];
     }
-    return border;
+    const auto reach = static_cast<std::int64_t>(1 + size / gap_reach);
+    std::int64_t most = std::numeric_limits<std::int64_t>::min();
+    std::size_t border = 0;  // the first cell of the upper side
+    std::uint64_t lower = 0, empty_cells = 0;
+    for (std::size_t cell = 0; cell < cells; ++cell) {
+      if (cell_counts_[cell] == 0) {
+        ++empty_cells;
+        continue;
+      }
+      const std::int64_t distance = std::abs(static_cast<std::int64_t>(lower - goal.wanted));
+      const std::int64_t merit = static_cast<std::int64_t>(empty_cells * size) -
+                                 distance * static_cast<std::int64_t>(cells);
+      if (distance <= reach && goal.allows(lower) && merit > most) {
+        most = merit;
+        border = cell;
+      }
+      lower += cell_counts_[cell];
+      empty_cells = 0;
+    }
+    if (border == 0) return 0;
+    return partition(points, [=](const Point& point) {
+      return (point.at[axis] - low) * scale < static_cast<float>(border);
+    });
+  }
+
+  /// Cuts at the wanted number, or where the coordinate changes next to there if that is allowed.
+  std::uint32_t cut_at(std::span<Point> points, std::size_t axis, const CutGoal& goal) {
+    coordinates_.clear();
+    for (const Point& point : points) coordinates_.push_back(point.at[axis]);
+    const auto middle = coordinates_.begin() + static_cast<std::ptrdiff_t>(goal.wanted);
+    std::nth_element(coordinates_.begin(), middle, coordinates_.end());
+    const float border = *middle;
+    std::uint64_t less = 0, not_greater = 0;
+    for (const Point& point : points) {
+      less += point.at[axis] < border;
+      not_greater += point.at[axis] <= border;
+    }
+    const std::uint64_t lower = goal.allows(less) ? less : goal.allows(not_greater) ? not_greater : goal.wanted;
+    // The points below the border, and the first of those on it.
+    return partition(points, [&, room = lower - less](const Point& point) mutable {
+      const bool is_taken = point.at[axis] == border && room > 0;
+      room -= is_taken;
+      return point.at[axis] < border || is_taken;
+    });
   }
 
   /// Puts the points for which `is_lower(point)` is true first, keeps the order of both sides, and returns
@@ -364,6 +379,7 @@ class BalancedSplitter {
   // Scratch memory.
   std::vector<Part> parts_;                   ///< of one range
   std::vector<std::uint32_t> place_in_list_;  ///< in `parts_`, by the name of the part
+  std::vector<std::uint32_t> cell_counts_;
   std::vector<float> coordinates_;
   std::vector<Point> upper_;
   std::vector<std::uint8_t> leaf_cells_;
