@@ -68,7 +68,7 @@ void print_markdown_footer(const std::string& footer) {
 void print_markdown(const CLI::App& program) {
   fmt::print(
       "# The command line\n\n`make docs` writes this page from the options of the program. `--help` and the "
-      "manual page have the same content.\n\n{}\n\n",
+      "manual page have\nthe same content.\n\n{}\n\n",
       program.get_description());
   print_markdown_footer(program.get_footer());
   for (const CLI::App* command : commands_of(program)) {

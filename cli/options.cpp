@@ -37,10 +37,11 @@ constexpr const char* program_footer = R"(Examples:
   supple experiment scaling --quick         how does the time grow with the number of objects?
   supple diff a.h5 b.h5                     where do two recordings differ first?
 
-Exit status: 0 means success. 1 means that something touches (with --fail-on-contact) or that two recordings differ
-(diff). 2 means a usage or input error, which is reported in one line, or a motion that blew up (simulate). 3 means that
-brute force gives a different result (--verify) or that an answer is false (ccd-queries). 130 and 143 mean that simulate
-was interrupted; its files are complete up to that frame. view exits with 0 when it is interrupted.)";
+Exit status: 0 means success. 1 means that something touches (with --fail-on-contact) or that two
+recordings differ (diff). 2 means a usage or input error, which is reported in one line, or a motion that
+blew up (simulate). 3 means that brute force gives a different result (--verify) or that an answer is
+false (ccd-queries). 130 and 143 mean that simulate was interrupted; its files are complete up to that
+frame. view exits with 0 when it is interrupted.)";
 
 constexpr const char* detect_footer = R"(Examples:
   supple detect rabbit.obj fish.ply
@@ -48,15 +49,18 @@ constexpr const char* detect_footer = R"(Examples:
   supple detect --self cloth.obj --json result.json --contact-details
       Where does a cloth intersect itself? Each contact with its points, as JSON.
   supple detect --sequence 'frame_*.ply' --self --csv pairs.csv
-      Frames of one object. Quote the pattern, so that frame_10 comes after frame_9 and not after frame_1.
+      Frames of one object. Quote the pattern, so that frame_10 comes after frame_9 and not after
+      frame_1.
   supple detect scene.toml --frames 300
       A scene file: objects with placement, options and motion.
   supple detect run.h5 --verify
-      Detects the contacts of a recording again, with the recorded options. Options of the command line replace them.
+      Detects the contacts of a recording again, with the recorded options. Options of the command line
+      replace them.
   supple detect a.stl b.stl --fail-on-contact --quiet && echo apart
       For scripts: the exit status is 1 when something touches.
   supple detect --contacts continuous --self --sequence 'frame_*.ply' --json impacts.json
-      Every vertex and face and every two edges that touch on the way between two frames, and the time when they do.
+      Every vertex and face and every two edges that touch on the way between two frames, and the time
+      when they do.
   supple detect --contacts continuous --min-separation 0.001 scene.toml --frames 300
       Elements count as touching when they come within 0.001.
   supple detect rabbit.obj fish.ply --verify
@@ -66,7 +70,8 @@ constexpr const char* detect_footer = R"(Examples:
 
 constexpr const char* diff_footer = R"(Examples:
   supple diff a.h5 b.h5
-      The first frame and item in which two recordings differ, with both values. The exit status is 1 when they differ.
+      The first frame and item in which two recordings differ, with both values. The exit status is 1
+      when they differ.
   supple diff a.h5 b.h5 --tolerance 1e-9
       Positions, points, times, barycentric coordinates and normals may differ by 1e-9.
   supple diff a.h5 b.h5 --quiet && echo equal
@@ -82,20 +87,23 @@ constexpr const char* simulate_footer = R"(Examples:
   supple simulate scenes/fish_tank.toml --seconds 10 --record run.h5
       Writes every frame and contact to an HDF5 file. ParaView opens run.xdmf next to it.
   supple simulate scenes/table1_9.toml --frames 1000 --seed 7 --json - --no-stats
-      Another seed gives the objects other directions. The same seed gives the same bytes on every machine.
+      Another seed gives the objects other directions. The same seed gives the same bytes on every
+      machine.
   supple simulate scenes/cloth_over_ball.toml --contacts continuous --self
       Continuous contacts between two frames, including those of an object with itself.
   supple simulate scenes/soft_block.toml --time-step 0.001
       Shorter steps than in the scene file.
 
-Frame 0 is the start, and frame k is the state after k steps. The continuous contacts of frame k are those on the way
-from frame k - 1 to frame k. Ctrl-C ends the run after the current step; files and tables are complete up to that step.)";
+Frame 0 is the start, and frame k is the state after k steps. The continuous contacts of frame k are those
+on the way from frame k - 1 to frame k. Ctrl-C ends the run after the current step; files and tables are
+complete up to that step.)";
 
 constexpr const char* view_footer = R"(Examples:
   supple view scenes/nine.toml
       Objects that deform and touch: watch them, pull a vertex, look into the octrees.
   supple view run.h5
-      A recording of supple simulate --record: play it, go back, jump to frames in which objects begin to touch.
+      A recording of supple simulate --record: play it, go back, jump to frames in which objects begin
+      to touch.
   supple view rabbit.obj fish.ply
       Meshes, one object each: where do they touch, and why do two triangles not touch?
   supple view --sequence 'frame_*.ply' --self
@@ -105,9 +113,10 @@ constexpr const char* view_footer = R"(Examples:
   supple view scenes/nine.toml --export nine.html
       One file to send. It opens in any browser, without supple and without a server.
 
-The address contains a new token in each run, so that nobody else can open the page. The program opens a temporary file
-in the browser, which leads to the address. Only you can read that file. A browser from a Snap or a Flatpak may not see
-it: open the printed address instead. Ctrl-C ends the program, and the page says that it has ended.)";
+The address contains a new token in each run, so that nobody else can open the page. The program opens a
+temporary file in the browser, which leads to the address. Only you can read that file. A browser from a
+Snap or a Flatpak may not see it: open the printed address instead. Ctrl-C ends the program, and the page
+says that it has ended.)";
 
 constexpr const char* info_footer = R"(Examples:
   supple info rabbit.obj
@@ -119,9 +128,11 @@ constexpr const char* info_footer = R"(Examples:
 
 constexpr const char* ccd_queries_footer = R"(Examples:
   supple ccd-queries sample-queries/*/vertex-face/*.csv
-      How many queries touch, how many results differ from the published answers, and how long does a query take?
+      How many queries touch, how many results differ from the published answers, and how long does a
+      query take?
   supple ccd-queries --kind edge-edge queries.csv --list-false
-      The kind follows from a folder vertex-face or edge-edge, or a file name that ends in vf or ee; else use --kind.
+      The kind follows from a folder vertex-face or edge-edge, or a file name that ends in vf or ee;
+      else use --kind.
   supple ccd-queries 227vf.csv --answers 227vf_mma_bool.json
       The answers are in a JSON list of true and false.
   supple ccd-queries data.csv --kind vertex-face --min-separation 0.01 --verify
@@ -129,9 +140,10 @@ constexpr const char* ccd_queries_footer = R"(Examples:
   supple ccd-queries 227vf.csv --json - --no-stats
       Writes the time of every impact as JSON, the same bytes in every run.
 
-A query is eight rows: the vertices v, f0, f1, f2 of a vertex and a face, or a0, a1, b0, b1 of two edges, at the start
-of the step, and then at its end. A row has numerator,denominator of x, y and z, as whole numbers of any size. It may
-also have the answer, 0 or 1, the same in all eight rows. Each coordinate must be representable as a double.)";
+A query is eight rows: the vertices v, f0, f1, f2 of a vertex and a face, or a0, a1, b0, b1 of two edges,
+at the start of the step, and then at its end. A row has numerator,denominator of x, y and z, as whole
+numbers of any size. It may also have the answer, 0 or 1, the same in all eight rows. Each coordinate must
+be representable as a double.)";
 
 /// Adds the options of the octree of each object, and `--self` when objects are tested.
 void add_object_options(CLI::App& app, viewer::Overrides<ObjectOptions>& objects, bool are_tested) {

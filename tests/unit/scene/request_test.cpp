@@ -126,8 +126,9 @@ class OneScene : public testing::TestWithParam<Family> {};
 
 TEST_P(OneScene, AnswersWhatTwoWouldInAnyOrder) {
   const std::string_view family = GetParam().name;
-  if (family == "MixedScales") GTEST_SKIP() << "exact decisions take minutes here; ContinuousScenes has them";
-  // The exact check takes minutes for separations of other families.
+  // The exact check of continuous contacts takes minutes for mixed scales, and for separations of all families
+  // but one.
+  const bool is_slow_to_verify = family == "MixedScales";
   const bool has_separation = family == "RandomSoups";
   for (const double separation : {0.0, has_separation ? 0.05 : 0.0}) {
     for (const std::uint32_t threads : {1u, 3u}) {
@@ -142,7 +143,7 @@ TEST_P(OneScene, AnswersWhatTwoWouldInAnyOrder) {
       Scene at_rest(options(ContactKinds::intersection)), moving(options(ContactKinds::continuous));
       Lives lives(GetParam(), 3);
       for (Scene* scene : {&one, &two, &at_rest, &moving}) lives.add_to(*scene);
-      for (int step = 0; step < 8; ++step) {
+      for (int step = 0; step < (is_slow_to_verify ? 3 : 8); ++step) {
         if (step > 0) lives.step({&one, &two, &at_rest, &moving});
         const Lists contacts(at_rest.detect()), impacts(moving.detect());
         const DetectResult& result = two.detect();
@@ -150,7 +151,7 @@ TEST_P(OneScene, AnswersWhatTwoWouldInAnyOrder) {
         const Lists found(result);
         expect_equal_contacts(found, contacts);
         ASSERT_EQ(found.continuous, impacts.continuous) << step;
-        ASSERT_TRUE(two.verify().agrees()) << step;
+        ASSERT_TRUE(is_slow_to_verify || two.verify().agrees()) << step;
         // One kind after the other, not the same in each step.
         for (const int turn : {step, step + 1}) {
           const bool is_continuous = turn % 2 == 0;
@@ -164,7 +165,7 @@ TEST_P(OneScene, AnswersWhatTwoWouldInAnyOrder) {
             expect_equal_contacts(Lists(answer), contacts);
             ASSERT_TRUE(answer.continuous_contacts.empty() && answer.continuous_groups.empty());
           }
-          ASSERT_TRUE(one.verify().agrees()) << step;
+          ASSERT_TRUE((is_slow_to_verify && is_continuous) || one.verify().agrees()) << step;
           ASSERT_EQ(SceneInspector(one).validate(), "") << step;
         }
         if (HasFatalFailure()) return;
