@@ -246,8 +246,8 @@ class BalancedSplitter {
   };
 
   /// Puts the points of the first `lower` of `count` children first and returns their number. Cuts across the
-  /// longest axis, in a gap near the wanted number. Points with the same coordinate are divided only when there
-  /// are too many of them, in their present order.
+  /// longest axis, in a gap near the wanted number. Points with the same coordinate are divided only when
+  /// there are too many of them, in their present order.
   std::uint32_t cut(TriangleRange range, std::uint32_t lower, std::uint32_t count) {
     const std::span<Point> points = points_of(range);
     PointBox box(points);
@@ -265,9 +265,10 @@ class BalancedSplitter {
     return in_gap != 0 ? in_gap : cut_at(points, axis, goal);
   }
 
-  /// Cuts in a wide gap near the wanted number, so that rows of a grid and things that lie apart stay whole. For
-  /// each point further away, the gap must be wider by the average distance between points. Counts the points
-  /// in cells along the axis and takes gaps of whole cells. Returns 0 when too many points lie in one cell.
+  /// Cuts in a wide gap near the wanted number, so that rows of a grid and things that lie apart stay whole.
+  /// For each point further away, the gap must be wider by the average distance between points. Counts the
+  /// points in cells along the axis and takes gaps of whole cells. Returns 0 when too many points lie in one
+  /// cell.
   std::uint32_t cut_in_gap(std::span<Point> points, std::size_t axis, const PointBox& box,
                            const CutGoal& goal) {
     const std::size_t size = points.size(), cells = size < 256 ? 64 : size < 2048 ? 256 : 1024;
@@ -287,8 +288,8 @@ class BalancedSplitter {
         continue;
       }
       const std::int64_t distance = std::abs(static_cast<std::int64_t>(lower - goal.wanted));
-      const std::int64_t merit = static_cast<std::int64_t>(empty_cells * size) -
-                                 distance * static_cast<std::int64_t>(cells);
+      const std::int64_t merit =
+          static_cast<std::int64_t>(empty_cells * size) - distance * static_cast<std::int64_t>(cells);
       if (distance <= reach && goal.allows(lower) && merit > most) {
         most = merit;
         border = cell;
@@ -314,7 +315,9 @@ class BalancedSplitter {
       less += point.at[axis] < border;
       not_greater += point.at[axis] <= border;
     }
-    const std::uint64_t lower = goal.allows(less) ? less : goal.allows(not_greater) ? not_greater : goal.wanted;
+    const std::uint64_t lower = goal.allows(less)          ? less
+                                : goal.allows(not_greater) ? not_greater
+                                                           : goal.wanted;
     // The points below the border, and the first of those on it.
     return partition(points, [&, room = lower - less](const Point& point) mutable {
       const bool is_taken = point.at[axis] == border && room > 0;

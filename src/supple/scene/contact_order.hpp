@@ -28,8 +28,9 @@ inline bool in_order_of_triangles(const FoundContact& p, const FoundContact& q) 
 /// many buckets, by ranges of triangle a, and sorts each bucket. Keeps its memory between jobs.
 class ContactOrder {
  public:
-  /// Returns the indices of the contacts in order, valid until the next call. `found` are contacts of different
-  /// pairs of triangles. O(n) while no range of triangles has very many contacts, O(n log n) at worst.
+  /// Returns the indices of the contacts in order, valid until the next call. `found` are contacts of
+  /// different pairs of triangles. O(n) while no range of triangles has very many contacts, O(n log n) at
+  /// worst.
   std::span<const std::uint32_t> sort(std::span<const FoundContact> found);
 
  private:

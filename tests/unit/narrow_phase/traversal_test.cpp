@@ -98,8 +98,8 @@ TrianglePoints points_of(const Object& object, std::uint32_t triangle) {
   return {at(0), at(1), at(2)};
 }
 
-/// Nothing missed, and nothing reported that rounding does not explain. Spheres enclose the triangles, but not
-/// the corners of their boxes, so only intersections are certain to be found.
+/// Nothing missed, and nothing reported that rounding does not explain. Spheres enclose the triangles, but
+/// not the corners of their boxes, so only intersections are certain to be found.
 void expect_candidates(const Object& a, const Object& b, bool same_object, double slack) {
   const ObjectPairView pair = same_object ? self_pair_of(a.view()) : pair_of(a.view(), b.view());
   PairSet must = overlapping_boxes(a, b, same_object, 0);

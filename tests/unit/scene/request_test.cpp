@@ -126,8 +126,8 @@ class OneScene : public testing::TestWithParam<Family> {};
 
 TEST_P(OneScene, AnswersWhatTwoWouldInAnyOrder) {
   const std::string_view family = GetParam().name;
-  // The exact check of continuous contacts takes minutes for mixed scales, and for separations of all families
-  // but one.
+  // The exact check of continuous contacts takes minutes for mixed scales, and for separations of all
+  // families but one.
   const bool is_slow_to_verify = family == "MixedScales";
   const bool has_separation = family == "RandomSoups";
   for (const double separation : {0.0, has_separation ? 0.05 : 0.0}) {
