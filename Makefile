@@ -1,4 +1,4 @@
-# The short way to everything; CMakePresets.json holds the details.
+# Short commands for common tasks. CMakePresets.json contains the settings of the builds.
 JOBS ?= $(shell nproc)
 
 BASE ?= HEAD
@@ -10,9 +10,9 @@ help:
 	@echo 'make test     build, then every test'
 	@echo 'make build    the release build: build/release/bin/supple'
 	@echo 'make bench    Supple against Embree, CGAL, FCL, Bullet and ODE: up to 25 minutes; bench-quick takes one'
-	@echo 'make bench-kernels   stages and kernels of Supple by themselves'
+	@echo 'make bench-kernels   single stages and kernels of Supple'
 	@echo 'make bench-compare BASE=COMMIT   this working tree against a commit'
-	@echo 'make check    format, include order, changelog, generated documents'
+	@echo 'make check    format, include order, prose, changelog, generated documents'
 	@echo 'make format   format the C++ sources'
 	@echo 'make docs     write the documents that are generated from the command line'
 	@echo 'make figures  draw docs/figures/*.svg from their text (needs graphviz)'
@@ -42,7 +42,7 @@ build: dependencies
 	cmake --preset release
 	cmake --build --preset release -j $(JOBS)
 
-# CONTEST passes options on: make bench CONTEST="--only 'B/*' --save"
+# CONTEST contains options of the script: make bench CONTEST="--only 'B/*' --save"
 bench: contest
 	benchmarks/contest.py $(CONTEST)
 
@@ -74,7 +74,7 @@ format:
 	tools/install_dependencies.sh --ci
 	tools/format.sh
 
-# The figures of the documents, from text (needs graphviz).
+# Draws the figures of the documents from their text (needs graphviz).
 figures: $(patsubst %.dot,%.svg,$(wildcard docs/figures/*.dot))
 
 docs/figures/%.svg: docs/figures/%.dot

@@ -82,9 +82,9 @@ fs::path write_page(const std::string& url) {
   return {};
 }
 
-/// Does nothing when there is no program to open it.
+/// Does nothing when there is no program that opens the page.
 void open_in_browser(const fs::path& page) {
-  // Browsers write messages to the terminal that nobody needs.
+  // Discards the messages that browsers write to the terminal.
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);

@@ -34,7 +34,7 @@ std::vector<QueryPaths> paths_of(const CcdQueriesOptions& options) {
   if (!answers.empty() && answers.size() != queries.size())
     throw Error(fmt::format("--answers: {} for {}; give one for each, in the same order",
                             counted(answers.size(), "file"),
-                            counted(queries.size(), "file of queries", "files of queries")));
+                            counted(queries.size(), "query file", "query files")));
   std::vector<QueryPaths> paths;
   for (std::size_t i = 0; i < queries.size(); ++i) {
     if (!fs::exists(queries[i]))

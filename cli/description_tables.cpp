@@ -57,7 +57,7 @@ std::string default_value(const Field<Struct, Value>& field, const Value& value)
   }
 }
 
-/// The type in a recording.
+/// The type of a field in a recording.
 template <class Struct, class Value>
 const char* stored_type(const Field<Struct, Value>& field) {
   if (std::is_same_v<Value, double>) return "float64";

@@ -60,8 +60,7 @@ int run_detect(const DetectOptions& options) {
   const std::uint64_t frames = count_frames(input, options);
   Simulation simulation = build_simulation(input);
 
-  // The continuous contacts of a frame are those on the way from the frame before, so the first frame has
-  // none.
+  // Continuous contacts are found between the previous frame and this frame, so the first frame has none.
   const bool continuous = contains(options.scene.contacts, ContactKinds::continuous);
   const std::uint64_t first = options.scene.contacts == ContactKinds::continuous && frames > 1 ? 1 : 0;
   const char* const noun = continuous ? "step" : "frame";

@@ -46,8 +46,8 @@ int run(const CommandLine& line) {
 
 int main(int argument_count, char** arguments) {
   using namespace supple::cli;
-  // All recordings are closed by then. HDF5 would report handles that a damaged recording left open on
-  // standard error.
+  // The program closes all recordings before it exits. Without this call, HDF5 would report handles that a
+  // damaged recording left open to standard error.
   H5dont_atexit();
   try {
     const int exit_status = run(parse_command_line(argument_count, arguments));

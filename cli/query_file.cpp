@@ -51,7 +51,7 @@ std::vector<std::string_view> columns_of(std::string_view line) {
 /// Largest number of characters of a number in a message.
 constexpr std::size_t longest_shown = 60;
 
-/// A message shows only the first of hundreds of digits.
+/// Shortens numbers with hundreds of digits for messages.
 std::string shortened(std::string_view text) {
   return text.size() <= longest_shown ? std::string(text)
                                       : fmt::format("{}...", text.substr(0, longest_shown));
@@ -60,12 +60,12 @@ std::string shortened(std::string_view text) {
 /// Advice for a coordinate that is not a double.
 std::string advice_for(const Rational& value) {
   const double nearest = value.convert_to<double>();
-  if (!std::isfinite(nearest)) return "it is beyond the largest of them, so scale the query down";
+  if (!std::isfinite(nearest)) return "it is beyond the range of doubles, so scale the query down";
   const Rational exact(nearest);
   const std::string fraction = fmt::format("{}/{}", boost::multiprecision::numerator(exact).str(),
                                            boost::multiprecision::denominator(exact).str());
-  if (fraction.size() > longest_shown) return fmt::format("round it to the nearest, {}", nearest);
-  return fmt::format("round it to the nearest, {}", fraction);
+  if (fraction.size() > longest_shown) return fmt::format("round it to the nearest double, {}", nearest);
+  return fmt::format("round it to the nearest double, {}", fraction);
 }
 
 struct Row {
@@ -124,9 +124,9 @@ void RowReader::check_column_count(std::size_t count) {
                     counted(count, "column")));
   if (column_count_ == 0) column_count_ = count;
   if (count != column_count_)
-    fail(
-        fmt::format("has {} columns and the first row {}; the seventh, the answer, is in all rows or in none",
-                    count, column_count_));
+    fail(fmt::format(
+        "has {} columns, but the first row has {}; all rows or no row must have the answer as column 7",
+        count, column_count_));
 }
 
 Integer RowReader::integer(std::string_view text) const {
@@ -145,9 +145,7 @@ double RowReader::coordinate(char axis, std::string_view numerator, std::string_
   if (bottom == 0) fail_with("has the denominator 0; any other whole number is allowed");
   const Rational value(top, bottom);
   const std::optional<double> exact = exact_double(value);
-  if (!exact)
-    fail_with("is not exactly a double, and the library computes with doubles as they are; " +
-              advice_for(value));
+  if (!exact) fail_with("is not the exact value of a double; " + advice_for(value));
   return *exact;
 }
 
@@ -172,10 +170,10 @@ class QueryReader {
       if (!row) fail_incomplete(i);
       if (i == 0) first = row;
       if (row->answer != first->answer)
-        rows_.fail(fmt::format(
-            "the answer is {:d}, but {:d} in the rows of this query before; it is the same in all "
-            "eight",
-            *row->answer, *first->answer));
+        rows_.fail(
+            fmt::format("the answer is {:d}, but {:d} in the rows of this query before; all eight rows must "
+                        "have the same answer",
+                        *row->answer, *first->answer));
       (i < 4 ? motion.start : motion.end)[i % 4] = row->point;
     }
     motions.push_back(motion);
@@ -186,8 +184,8 @@ class QueryReader {
  private:
   [[noreturn]] void fail_incomplete(std::size_t rows) const {
     rows_.fail(fmt::format(
-        "the file ends after {} of a query; eight rows are one: four vertices at the start of the "
-        "step, and the same at its end",
+        "the file ends after {} of a query; a query has eight rows: four vertices at the start of the step, "
+        "then the same vertices at its end",
         counted(rows, "row")));
   }
 
@@ -263,7 +261,7 @@ QueryFile read_query_file(const fs::path& path, QueryKind kind) {
 
 void read_answers(const fs::path& path, QueryFile& file) {
   if (file.answers && file.size() > 0)
-    throw Error(fmt::format("{}: has a column of answers itself; leave out --answers {}", file.path.string(),
+    throw Error(fmt::format("{}: already has a column of answers; leave out --answers {}", file.path.string(),
                             path.string()));
   std::ifstream stream = open(path);
   const std::string text{std::istreambuf_iterator<char>(stream), {}};

@@ -62,7 +62,7 @@ TriangleMesh named(TriangleMesh mesh, const std::string& name) {
   return mesh;
 }
 
-/// These models have additional keys.
+/// Reads the models that have additional keys.
 TriangleMesh read_parametrised_model(TomlReader& reader, const std::string& name) {
   std::uint32_t frequency = 8, rings = 24, sides = 12, resolution = 1, columns = 16, rows = 16;
   if (name == "icosphere") {

@@ -45,7 +45,7 @@ SceneMotion::SceneMotion(TomlReader& object, const std::filesystem::path& scene_
 void SceneMotion::read_kind(TomlReader& reader, Vec3d gravity) {
   std::string kind;
   reader.read("kind", kind);
-  if (kind == "wave" || kind == "sway")  // the older word
+  if (kind == "wave" || kind == "sway")  // "sway" is the old name
     reader.read_options(motion_.emplace().emplace<WaveMotion>());
   else if (kind == "mass_spring")
     motion_ = read_mass_spring(reader, gravity);

@@ -43,7 +43,7 @@ std::uint64_t count_steps(const SimulateOptions& options, double time_step) {
     throw Error(fmt::format("--seconds: {} are {:.3g} steps of {}; at most 1e9 are allowed", *options.seconds,
                             steps, time_step));
   const double whole = std::round(steps);
-  const bool is_whole = std::abs(steps - whole) < 1e-9 * whole;  // except for the rounding of the division
+  const bool is_whole = std::abs(steps - whole) < 1e-9 * whole;  // up to rounding of the division
   return static_cast<std::uint64_t>(is_whole ? whole : std::ceil(steps));
 }
 

@@ -52,7 +52,7 @@ class TomlReader {
   void read(const std::string& key, std::vector<std::array<Vec3d, 2>>& boxes);
   /// The table under a key, or null.
   const toml::table* table(const std::string& key);
-  /// The tables of an array. `written` shows for messages how the array is written in a scene file.
+  /// The tables of an array. `written` is the notation of the array in a scene file, for messages.
   std::vector<const toml::table*> tables(const std::string& key, const std::string& written);
 
   /// Throws when the table has a key that was not read.

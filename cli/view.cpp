@@ -34,12 +34,12 @@ void check_build() {
 
 Input read_input(const ViewOptions& options) {
   const bool is_scene = is_scene_file(options.inputs.front());
-  if (options.seed && !is_scene) throw Error("--seed: only a scene file has something random; leave it out");
+  if (options.seed && !is_scene) throw Error("--seed: only a scene file uses random numbers; leave it out");
   if (options.time_step && !is_scene && !options.sequence)
-    throw Error("--time-step: only a scene file and --sequence have steps of their own; leave it out");
+    throw Error("--time-step: only a scene file or --sequence has time steps; leave it out");
   if (!options.sequence) return read_objects(options.inputs, {options.seed, options.time_step});
   Input input = read_sequence(options.inputs);
-  // Files contain no time; this is the rate of films.
+  // Mesh files contain no times, so play 25 frames per second.
   constexpr double film_seconds = 0.04;
   input.simulation.time_step = options.time_step.value_or(film_seconds);
   return input;
@@ -65,7 +65,7 @@ void check_page_size(const std::string& file, double bytes, double most) {
 }
 
 int write_page(const viewer::SceneView& show, const ViewOptions& options) {
-  // Positions do not compress by more than this.
+  // Positions do not compress by a larger factor.
   constexpr double most_compression = 10;
   const auto most = static_cast<double>(viewer::largest_page);
   check_page_size(options.page_file, size_of_frames(show), most_compression * most);

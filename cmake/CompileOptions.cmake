@@ -1,12 +1,13 @@
-# Options of every target of this project; none of them reaches a user of the installed library.
+# Options of every target of this project. They do not apply to users of the installed library.
 add_library(supple_compile_options INTERFACE)
 target_compile_features(supple_compile_options INTERFACE cxx_std_20)
 target_compile_options(supple_compile_options INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Wnon-virtual-dtor
-  # One result on every machine: no multiply-add that the source does not spell out.
+  # Results must be equal on all machines, so the compiler must not fuse multiplications and additions.
   -ffp-contract=off)
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
-  # Each instruction set compiles the kernels once more. Processors since 2008 have SSE4, and older ones run portable code.
+  # Kernels are compiled once per instruction set. SSSE3 is left out to save time: processors since 2008 have
+  # SSE4, and older ones run portable code.
   target_compile_definitions(supple_compile_options INTERFACE HWY_DISABLED_TARGETS=HWY_SSSE3)
   # Without this definition, Highway 1.0.3 refuses compilers that may use all of AVX-512, as -march=native
   # allows on recent processors.
@@ -16,12 +17,12 @@ if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
     target_compile_definitions(supple_compile_options INTERFACE HWY_WANT_AVX3_DL)
   endif()
 else()
-  # Kernels keep vectors in structures, which SVE's and RVV's cannot be in. Highway 1.0 has no vectors of doubles for
-  # WebAssembly: there its portable ones are taken, which the compiler turns into the same instructions.
+  # Kernels store vectors in structures, which SVE and RVV do not allow. Highway 1.0 has no vectors of doubles
+  # for WebAssembly. So kernels use its portable vectors, which the compiler turns into the same instructions.
   target_compile_definitions(supple_compile_options INTERFACE
     "HWY_DISABLED_TARGETS=(HWY_SVE|HWY_SVE2|HWY_SVE_256|HWY_SVE2_128|HWY_RVV|HWY_WASM|HWY_WASM_EMU256)")
   if(CMAKE_SYSTEM_PROCESSOR MATCHES "aarch64|arm64")
-    # All of these have NEON: nothing is left to be chosen at run time, which this name switches off.
+    # All these processors have NEON. This definition switches off the choice of instructions at run time.
     target_compile_definitions(supple_compile_options INTERFACE TOOLCHAIN_MISS_SYS_AUXV_H)
   endif()
 endif()
@@ -29,14 +30,14 @@ if(SUPPLE_WARNINGS_AS_ERRORS)
   target_compile_options(supple_compile_options INTERFACE -Werror)
 endif()
 if(SUPPLE_SANITIZE)
-  # Reaches the targets that link the library as well: a sanitizer works only when all of a program has it.
+  # These options also apply to targets that link the library: a sanitizer needs them in the whole program.
   add_compile_options(-fsanitize=${SUPPLE_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
   add_link_options(-fsanitize=${SUPPLE_SANITIZE})
   if(CMAKE_CXX_COMPILER_ID MATCHES "Clang")
     add_compile_options(-fsanitize-ignorelist=${CMAKE_CURRENT_LIST_DIR}/SanitizerIgnoreList.txt)
   endif()
   if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
-    # Kernels for SSE4, AVX2 and AVX-512 alone: clang takes minutes to compile the portable ones with sanitizers.
+    # Kernels for SSE4, AVX2 and AVX-512 only: with sanitizers, clang needs minutes for the portable kernels.
     add_compile_options(-march=x86-64-v2 -maes -mpclmul)
   endif()
 endif()

@@ -1,5 +1,5 @@
-# supple_add_component(NAME SOURCE...) adds the library supple::NAME, which lies in a folder of its own, has its public
-# headers in include/ and builds on supple::supple. Components may use internal headers of the core.
+# supple_add_component(NAME SOURCE...) adds the library supple::NAME, which links supple::supple. The library
+# has its own folder, with public headers in include/. Components may use internal headers of the core.
 function(supple_add_component name)
   add_library(supple_${name} ${ARGN})
   add_library(supple::${name} ALIAS supple_${name})

@@ -6,8 +6,8 @@ install(TARGETS supple EXPORT suppleTargets
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/supple DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 install(EXPORT suppleTargets NAMESPACE supple:: DESTINATION ${package_dir})
 
-# Each component has its own file of targets, which find_package reads only on request: a program that links the core
-# needs neither Assimp nor HDF5.
+# Each component has its own targets file, which find_package reads only on request. So a program that links
+# only the core needs neither Assimp nor HDF5.
 foreach(component IN ITEMS models simulation formats recording)
   if(TARGET supple_${component})
     install(TARGETS supple_${component} EXPORT supple_${component}_targets

@@ -3,11 +3,11 @@
 
 usage: check_include_order.py [ROOT]
 
-A folder of src/supple includes only from itself and the folders before it in LAYERS, and names an internal header by
-its folder ("core/parallel.hpp"). COMPONENTS says the same of the libraries around the core. Public headers include only
-public headers and the standard library. The programs around the library include only public headers and
-files of their own folder, and those of the viewer that SHARED names. Threads have one door, so only core/ may include oneTBB.
-LONGEST_CHAINS limits the chains of includes within a folder.
+A folder of src/supple includes only from itself and from the folders before it in LAYERS. An include of an
+internal header contains its folder ("core/parallel.hpp"). COMPONENTS has the limits of the libraries around
+the core. Public headers include only public headers and the standard library. The programs around the library
+include only public headers, files of their own folder, and files of the viewer folders in SHARED. Only core/
+starts threads, so only core/ may include oneTBB. LONGEST_CHAINS limits the chains of includes in a folder.
 """
 
 import pathlib
@@ -17,12 +17,12 @@ import sys
 LAYERS = [
     "core", "geometry", "mesh", "contact", "octree", "broad_phase", "narrow_phase", "scene",
 ]
-# The most files in a chain of includes within a layer.
+# Largest number of files in a chain of includes within a layer.
 LONGEST_CHAINS = {"broad_phase": 4}
-# Libraries of their own, and the last layer of the core of which they include internal headers; recording includes none.
+# Libraries around the core, each with the last layer whose internal headers it may include; recording: none.
 COMPONENTS = {"models": "mesh", "simulation": "mesh", "formats": "mesh", "recording": None}
 PROGRAMS = ["viewer/session", "viewer/export", "viewer/server", "cli", "examples", "benchmarks"]
-# What is not public and yet included from elsewhere, by its folder: "session/scene_view.hpp".
+# Folders of the viewer that others may include although they are not public: "session/scene_view.hpp".
 SHARED = {"viewer/server": ["session"], "cli": ["session", "export", "server"]}
 PUBLIC = ["include"] + [f"{name}/include" for name in COMPONENTS]
 SOURCES = {".cpp", ".hpp", ".h", ".cc"}

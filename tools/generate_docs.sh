@@ -20,7 +20,7 @@ trap 'rm -rf "$fresh"' EXIT
 "$program" --generate man >"$fresh/supple.1"
 "$program" --generate markdown >"$fresh/cli.md"
 "$program" --generate tables >"$fresh/tables"
-# The lines of a document with those of each table in the place of the ones that are there.
+# Prints a document with the lines of each table replaced by the new ones.
 fill='
   FILENAME == tables { if ($1 == "<!--" && $2 == "begin") name = $3; table[name] = table[name] $0 "\n"; next }
   $1 == "<!--" && $2 == "begin" {

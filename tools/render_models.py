@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Draws triangle meshes (OFF or OBJ) as one sheet: a row per view, a column per mesh, flat shading.
+"""Draws triangle meshes (OFF or OBJ) as one sheet with flat shading: one row per view, one column per mesh.
 
     tools/render_models.py --output sheet.png pawn.off fish.off ...
 

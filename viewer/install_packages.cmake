@@ -1,4 +1,4 @@
-# Installs the packages of FOLDER with NPM as package-lock.json says, unless they are there already.
+# Installs the packages of FOLDER/package-lock.json with NPM, unless they are already installed.
 set(installed ${FOLDER}/node_modules/.package-lock.json)
 if(EXISTS ${installed} AND NOT ${FOLDER}/package-lock.json IS_NEWER_THAN ${installed})
   return()
@@ -9,5 +9,5 @@ if(NOT status EQUAL 0)
   message(FATAL_ERROR "npm cannot get the packages of the viewer's page; is there a way to the npm registry? Without one "
     "configure with -DSUPPLE_BUILD_VIEWER=OFF.\n${complaint}")
 endif()
-# npm leaves the time of the file as it was when nothing changed.
+# npm does not update the time of this file when nothing changed.
 file(TOUCH ${installed})

@@ -22,8 +22,8 @@ struct PowerLaw {
 /// left, or all at one x, all results are NaN.
 PowerLaw fit_power_law(const Points& points);
 
-/// The exponent that the same fit gives for a formula at the same x, because n log n over a range is close to
-/// some power.
+/// The exponent that the same fit gives for a formula at the same x. For example, n log n over a range of
+/// sizes is close to a power of n.
 double exponent_of(const std::function<double(double)>& formula, const Points& points);
 
 /// `1.03 ± 0.02`

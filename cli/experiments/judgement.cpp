@@ -19,7 +19,7 @@ Verdict judge(const Growth& growth) {
                                                                                       : Verdict::cannot_tell;
 }
 
-/// A claim that does not hold decides, then an undecided one.
+/// `does_not_hold` if one of the two is, otherwise `cannot_tell` if one of the two is.
 Verdict both(Verdict a, Verdict b) {
   if (a == Verdict::does_not_hold || b == Verdict::does_not_hold) return Verdict::does_not_hold;
   return a == Verdict::cannot_tell ? a : b;

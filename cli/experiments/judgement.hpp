@@ -23,13 +23,13 @@ struct Growth {
 /// A bound holds when the exponent exceeds that of the formula by at most this, or by twice its standard
 /// error.
 inline constexpr double exponent_tolerance = 0.1;
-/// A time whose exponent exceeds the formula by less than this decides nothing, because caches and fixed
-/// costs affect times.
+/// If the exponent of a time exceeds the formula by less than this, the claim is undecided, because caches
+/// and fixed costs affect times.
 inline constexpr double time_tolerance = 0.25;
 
-/// Whether the measured exponents are within the bounds of the formulas. Counts of tests decide where they
-/// exist, and times are shown beside them. Undecided with fewer than three points or a standard error above
-/// 0.25.
+/// Whether the measured exponents are within the bounds of the formulas. If there are counts of tests, only
+/// they decide, and times are shown beside them. Undecided with fewer than three points or a standard error
+/// above 0.25.
 Claim judge_bounds(const std::string& paper, const std::vector<Growth>& growths);
 
 /// One row per quantity: the fitted power, and the power of the formula over the same sizes.

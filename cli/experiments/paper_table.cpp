@@ -17,7 +17,7 @@ constexpr std::array<PaperRow, 6> rows{
     PaperRow{9, BoundingVolume::aabb, {109, 78, 72, 66, 91}, {64, 42, 51, 45, 42}, 7.20, 12.29},
     PaperRow{9, BoundingVolume::sphere, {61, 84, 85, 86, 64}, {24, 37, 45, 44, 24}, 7.89, 17.24}};
 
-/// Whether the two decimals in the text are those of the number.
+/// Compares a number with the two decimals that the text gives.
 std::string compared(double computed, double text) {
   if (std::fabs(std::round(computed * 100) / 100 - text) < 0.001) return "agrees";
   return std::fabs(std::floor(computed * 100) / 100 - text) < 0.001 ? "cut off, not rounded" : "differs";

@@ -33,9 +33,9 @@ struct GnuplotMissing : Error {
 
 /// The gnuplot input that draws the plot as SVG.
 std::string gnuplot_script(const Plot& plot);
-/// Draws a plot with the program `gnuplot`, as an <svg> element for HTML without external names and in the
-/// text colour of the page. `number` distinguishes the plots of one page. Throws `GnuplotMissing`, or `Error`
-/// when gnuplot fails.
+/// Draws a plot with the program `gnuplot`. Returns an <svg> element for HTML, which uses no external
+/// resources and the text colour of the page. `number` distinguishes the plots of one page. Throws
+/// `GnuplotMissing`, or `Error` when gnuplot fails.
 std::string svg_of(const Plot& plot, int number);
 
 }  // namespace supple::experiments

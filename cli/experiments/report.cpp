@@ -106,7 +106,7 @@ void write_file(const fs::path& path, const std::string& text) {
 const char* name_of(Verdict verdict) {
   return verdict == Verdict::holds           ? "Holds. "
          : verdict == Verdict::does_not_hold ? "Does not hold. "
-                                             : "Cannot be told. ";
+                                             : "Undecided. ";
 }
 
 Verdict verdict_of(bool holds) {

@@ -280,7 +280,7 @@ std::vector<Claim> judge_broad(const std::array<BroadCurves, 3>& curves, const s
   return claims;
 }
 
-/// A logarithm hardly changes an exponent; the number of reads per vertex shows it.
+/// A logarithmic factor hardly changes an exponent, so this compares the numbers of reads per vertex.
 Claim judge_sphere_refit(const Points& reads, const Points& seconds) {
   Claim claim{"Refitting spheres (eq. 5) takes O(V) (5.1).", Verdict::cannot_tell, {}};
   if (reads.size() < 2) return claim;

@@ -12,8 +12,8 @@ using Cell = std::variant<std::monostate, std::string, std::uint64_t, double>;
 
 struct Column {
   std::string name;     ///< in the CSV file: lower_case, with the unit
-  std::string heading;  ///< for people
-  int digits = 3;       ///< significant digits of measured numbers for people
+  std::string heading;  ///< on the terminal and in the report
+  int digits = 3;       ///< significant digits of measured numbers, except in the CSV file
 };
 
 /// One table for the terminal, the CSV file and the report.
@@ -27,7 +27,8 @@ struct Table {
   void add(std::vector<Cell> row);
 };
 
-/// The text for people: with grouped thousands, and measured numbers with the digits of the column.
+/// The text for the terminal and the report: grouped thousands, and measured numbers with the digits of the
+/// column.
 std::string text_of(const Cell& cell, const Column& column);
 /// Aligned columns under the caption.
 std::string text_of(const Table& table);
@@ -35,7 +36,7 @@ std::string text_of(const Table& table);
 std::string csv_of(const Table& table);
 std::string html_of(const Table& table);
 
-/// `digits` significant digits, never in scientific notation unless far from 1.
+/// The value with `digits` significant digits. Only numbers far from 1 are in scientific notation.
 std::string rounded(double value, int digits = 3);
 
 }  // namespace supple::experiments

@@ -67,7 +67,7 @@ std::string ratios_text(const std::vector<Runs>& all, std::uint64_t RunCounts::*
   return text;
 }
 
-/// More with boxes when the mean ratio is below 1 by two standard errors.
+/// Holds when the mean ratio of spheres to boxes is below 1 by more than two standard errors.
 Verdict more_with_boxes(const Estimate& ratio) {
   if (ratio.mean + 2 * ratio.error < 1) return Verdict::holds;
   return ratio.mean - 2 * ratio.error > 1 ? Verdict::does_not_hold : Verdict::cannot_tell;

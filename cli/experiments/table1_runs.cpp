@@ -59,7 +59,7 @@ std::uint64_t vertices_of(const cli::Input& input) {
   return vertices;
 }
 
-/// A planned run: its index among all runs, and its number of steps.
+/// A planned run: the index of its `Runs`, its index in them, and its numbers of steps and vertices.
 struct Task {
   std::size_t runs, run;
   std::uint64_t steps, vertices;

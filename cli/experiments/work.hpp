@@ -30,7 +30,8 @@ double seconds_of(Call&& call) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-/// The minimum of several times of the same work, or 0 without any. Other work of the machine only adds time.
+/// The minimum of several times of the same work, because other work of the machine only adds time. 0 when
+/// there are no times.
 double least(const std::vector<double>& seconds);
 
 /// `2 min 10 s`

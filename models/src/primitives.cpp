@@ -30,7 +30,7 @@ void check_size(const char* shape, const char* what, double value) {
 /// `triangles` is a double because the number may exceed any integer type.
 void check_triangles(const char* shape, double triangles) {
   if (triangles > static_cast<double>(max_triangles))
-    fail(std::string(shape) + ": so fine a mesh would have more than " + std::to_string(max_triangles) +
+    fail(std::string(shape) + ": the mesh would have more than " + std::to_string(max_triangles) +
          " triangles; give smaller counts");
 }
 

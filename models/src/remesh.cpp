@@ -89,8 +89,8 @@ class EdgeCollapser {
     return keeps_facing(a, b, target) && keeps_facing(b, a, target);
   }
 
-  /// True when no triangle of `moved` without `other` rotates too far or degenerates as `moved` goes to
-  /// `target`.
+  /// True when no triangle of `moved` rotates too far or degenerates if `moved` is moved to `target`. Ignores
+  /// triangles that contain `other`.
   bool keeps_facing(std::uint32_t moved, std::uint32_t other, Vec3d target) const {
     for (const std::uint32_t t : around_[moved]) {
       Triangle corners = mesh_.triangles[t];

@@ -47,9 +47,9 @@ const CommittedFile* committed(const H5FD_t* file) {
   return reinterpret_cast<const CommittedFile*>(file);
 }
 
-/// After a failed write nothing is written any more, so the file stays as the last flush left it. HDF5 does
-/// not learn of the failure, because it does not handle write errors everywhere; it reads its metadata from
-/// the held blocks until it closes.
+/// Stops writing after a failed write, so the file stays as the last flush left it. HDF5 is not notified,
+/// because it does not handle write errors everywhere. Until it closes the file, it reads its metadata from
+/// the held blocks.
 void fail_with(CommittedFile& file, int error) {
   if (file.error == 0) file.error = error;
   file.discarding = true;
@@ -95,7 +95,7 @@ void commit(CommittedFile& file) {
   for (const auto& [turn, block] : order) {
     assert(turn.address / page_size == (turn.address + block->bytes.size() - 1) / page_size);
     if (!write_now(file, turn.address, block->bytes.data(), block->bytes.size())) return;
-    // The superblock stores the end of the file. Whatever fails later, the file must not end before it.
+    // The superblock stores the end of the file. If a later write fails, the file must not be cut before it.
     if (block->type == H5FD_MEM_SUPER) file.committed_end = file.end_of_allocation;
   }
   file.held.clear();
@@ -159,7 +159,7 @@ herr_t handle_of(H5FD_t* base, hid_t, void** handle) {
   return 0;
 }
 
-/// Overwrites bytes that were read with the held blocks of the same addresses.
+/// Overwrites `bytes`, which were read from the file, where held blocks have newer content.
 void lay_held_blocks_over(const CommittedFile& file, haddr_t address, std::size_t size,
                           unsigned char* bytes) {
   auto block = file.held.upper_bound(address);
@@ -193,8 +193,7 @@ herr_t write_file(H5FD_t* base, H5FD_mem_t type, hid_t, haddr_t address, std::si
                   const void* buffer) {
   CommittedFile* file = committed(base);
   const auto* bytes = static_cast<const unsigned char*>(buffer);
-  // Raw data is never held: new rows are not counted by any header yet, and other rows of the chunk do not
-  // change.
+  // Raw data is never held: no header counts the new rows yet, and other rows of the chunk do not change.
   const bool is_held = type != H5FD_MEM_DRAW && address < file->committed_end;
   if (!file->discarding && !is_held && write_now(*file, address, bytes, size)) return 0;
   if (type == H5FD_MEM_DRAW) return 0;

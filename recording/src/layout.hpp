@@ -111,7 +111,7 @@ inline constexpr const char* volume_begin = "events/volume_begin";
 inline constexpr const char* volume_end = "events/volume_end";
 inline constexpr const char* contact_begin = "events/contact_begin";
 inline constexpr const char* contact_end = "events/contact_end";
-inline constexpr const char* statistics = "statistics";  // one row a frame
+inline constexpr const char* statistics = "statistics";  // one row per frame
 }  // namespace group_names
 
 inline std::string object_path(std::size_t place) {

@@ -194,7 +194,7 @@ struct Datasets {
                              group_names::contact_end})
       events.emplace_back(file, name);
     statistics = create_columns<StepStats>(file, group_names::statistics, frames_in_chunk);
-    // Created last, so it grows last: a frame exists when its time exists.
+    // `time` is created last, so it grows last: a frame exists when its time exists.
     time.emplace(file, "time", ScalarType::float64, 1, frames_in_chunk);
   }
 
@@ -214,8 +214,7 @@ struct Datasets {
   std::optional<RaggedWriter<Contact>> contacts;
   std::optional<RaggedWriter<ContactPoint>> contact_points;
   std::optional<RaggedWriter<ContinuousContact>> continuous_contacts;
-  std::vector<RaggedWriter<ObjectPair>>
-      events;  ///< as in `DetectResult`: begin and end of volumes, of contacts
+  std::vector<RaggedWriter<ObjectPair>> events;  ///< begin and end of volume overlaps, then of contacts
   std::vector<ColumnWriter> statistics;
   std::optional<ColumnWriter> time;
 };
@@ -246,7 +245,8 @@ fs::path xdmf_path(const fs::path& path) {
   fs::path result = path;
   result.replace_extension(".xdmf");
   if (result == path)
-    throw Error(path.string() + ": the XDMF file beside the recording has this name; end it in .h5");
+    throw Error(path.string() +
+                ": the XDMF file of the recording would have the same name; use a name that ends in .h5");
   return result;
 }
 
@@ -330,7 +330,7 @@ Recorder::Implementation::Implementation(const fs::path& path, const RecordingHe
 }
 
 void Recorder::Implementation::create(const RecordingHeader& header) {
-  // Written under another name until the header is complete; then it replaces the old file atomically.
+  // The file has another name until its header is complete. Then it replaces the old file atomically.
   const fs::path draft = path_.string() + ".part";
   const int descriptor = open(draft.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
   if (descriptor < 0) fail_to_create(path_, errno);
@@ -369,7 +369,8 @@ void Recorder::Implementation::check_positions(std::span<const std::span<const V
     if (positions[place].size() != object.vertices)
       throw Error(path_.string() + ": frame " + std::to_string(frames_) + " has " +
                   std::to_string(positions[place].size()) + " positions of object " + std::to_string(place) +
-                  ", which has " + std::to_string(object.vertices) + " vertices; give one a vertex");
+                  ", which has " + std::to_string(object.vertices) +
+                  " vertices; give one position per vertex");
     if (object.is_static && frames_ > 0 && object.vertices > 0 &&
         std::memcmp(positions[place].data(), object.first_positions.data(), positions[place].size_bytes()) !=
             0)
@@ -423,7 +424,7 @@ void Recorder::Implementation::write_out() {
   flush_file(file_.id());
   flushed_frames_ = frames_;
   last_flush_ = Clock::now();
-  // After the data that it refers to.
+  // The XDMF file refers to the data, so it is written last.
   xdmf_->write();
 }
 

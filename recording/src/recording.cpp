@@ -248,7 +248,7 @@ class Recording::Implementation {
     if (value >= allowed) rows.fail(frame, row, column, value, allowed);
   }
 
-  /// Files refer to objects by index. `check(number, row)` gets the indices; then they are replaced by ids.
+  /// Reads rows that refer to objects by index. Calls `check(number, row)`, then replaces indices by ids.
   template <class Row, class Check>
   std::vector<Row> rows_of_objects(RaggedReader<Row>& reader, std::uint64_t frame, ObjectId Row::*object_a,
                                    ObjectId Row::*object_b, Check check) const {
@@ -301,7 +301,7 @@ Recording::Implementation::Implementation(const std::string& path)
     const std::string dataset =
         std::string(group_names::statistics) + "/" + column_in_version(column.name, version_);
     statistics_.emplace_back();
-    if (!file_.has_dataset(dataset)) continue;  // an earlier program did not know it
+    if (!file_.has_dataset(dataset)) continue;  // files of earlier programs lack it
     statistics_.back().emplace(file_, dataset, column.type, std::vector<hsize_t>{});
     check_frames(*statistics_.back(), frame_count());
   }

@@ -195,7 +195,7 @@ class Format(Queries):
         good = rows(FALLING)
         self.expect(good + "1,2,3\n", "vf.csv:9: ", "3 columns", "6 or 7", "numerator,denominator")
         self.expect(good + "1,1,1,1,1,1,0,0\n", "vf.csv:9: ", "8 columns")
-        self.expect(good + rows(BESIDE, 1), "vf.csv:9: ", "7 columns", "first row 6")
+        self.expect(good + rows(BESIDE, 1), "vf.csv:9: ", "7 columns", "first row has 6")
         self.expect("x,y,z,1,1,1\n" + good, "vf.csv:1: ", "'x'", "whole number")
         self.expect(good.replace("1,1", "1.5,1", 1), "vf.csv:1: ", "'1.5'", "whole number")
         self.expect(good.replace("1,1", ",1", 1), "vf.csv:1: ", "''", "whole number")

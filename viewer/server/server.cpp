@@ -33,7 +33,7 @@ using namespace std::chrono_literals;
 constexpr std::size_t largest_command = std::size_t{1} << 20;
 /// Stop reading when this many bytes of commands wait for the current step to end.
 constexpr std::size_t most_waiting = std::size_t{4} << 20;
-/// Requests that are being read or answered.
+/// Largest number of requests that are read or answered at the same time.
 constexpr int most_requests = 64;
 
 enum CloseCode : std::uint16_t {
@@ -322,8 +322,7 @@ class Server::Implementation {
       if (!acceptor_.is_open()) return;
       if (!error) {
         socket.set_option(tcp::no_delay(true), error);
-        // More requests than a person makes are dropped, and so are errors such as a lack of file
-        // descriptors.
+        // Drop connections beyond the limit, which no user of a browser reaches.
         if (request_count_ < most_requests) std::make_shared<Request>(std::move(socket), requests_)->read();
         return accept();
       }

@@ -113,7 +113,7 @@ void SessionThread::take_commands() {
   if (!taken_.commands.empty()) listener_.commands_taken();
 }
 
-/// Returns how many seconds nothing will happen.
+/// Returns the number of seconds until the next change if no command arrives.
 double SessionThread::let_time_pass() {
   const Clock::time_point now = Clock::now();
   const double seconds = std::chrono::duration<double>(now - last_).count();

@@ -14,7 +14,7 @@
 
 namespace supple::viewer {
 
-/// Reads the members of a command. Keeps the first error as a message for people; values returned after an
+/// Reads the members of a command. Keeps the first error as a message for the user; values returned after an
 /// error have no meaning. A missing optional member is not an error.
 class Arguments {
  public:

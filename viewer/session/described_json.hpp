@@ -9,7 +9,7 @@
 
 namespace supple::viewer {
 
-/// The value of an option or a statistic as JSON.
+/// Writes the value of an option or a statistic.
 template <class Json, class Struct, class Value>
 void write_value(Json& json, const Field<Struct, Value>& field, const Value& value) {
   if constexpr (Worded<Value>) {
@@ -26,7 +26,7 @@ void write_value(Json& json, const Field<Struct, Value>& field, const Value& val
   }
 }
 
-/// A member for each option or statistic, named by its key.
+/// Writes one member per option or statistic, named by its key.
 template <class Json, Described Struct>
 void write_members(Json& json, const Struct& described) {
   for_each_leaf(

@@ -12,19 +12,20 @@
 
 namespace supple::viewer {
 
-/// A held vertex and the vertices around it, which follow it less the farther away they are at rest.
+/// A held vertex and the vertices around it. Vertices that are farther away at rest follow it less.
 struct Grip {
   std::size_t object = 0;
   std::uint32_t vertex = 0;
   std::vector<std::uint32_t> vertices{};  ///< including `vertex`
-  /// Fall smoothly from 1 at the vertex to 0 at the radius: (1 - r²)², with slope 0 at both ends.
+  /// One per vertex: (1 - r²)², which falls from 1 at the vertex to 0 at the radius, with slope 0 at both
+  /// ends.
   std::vector<double> weights{};
   std::vector<Vec3d> from{};  ///< their positions when the grip started
   Vec3d anchor{};             ///< the position of `vertex` then
   /// Damping of the pulling springs, as a multiple of the critical damping of the held masses, chosen so
   /// that the whole body is critically damped.
   double damping = 1;
-  /// maximum distance from the target at which the pull still grows
+  /// The pull grows with the distance from the target up to this distance.
   double reach = 0;
   std::optional<Vec3d> target{};  ///< of `vertex`, once it is dragged
 };
@@ -38,7 +39,7 @@ void bend(const Grip& grip, std::span<Vec3d> positions);
 
 /// Gives the held vertices velocities that bring them closer to the target in a step of length `seconds`, as
 /// damped springs integrated by backward Euler would: a rigid body arrives without oscillation. Each pull is
-/// stable by itself and weak compared with inertia, so it does not reduce the stable step of the integrator.
+/// stable on its own and weak compared with inertia, so it does not reduce the stable step of the integrator.
 /// No vertex moves more than the mean edge length in a step. `is_fixed` may be empty.
 void pull(const Grip& grip, const std::vector<bool>& is_fixed, MassSpringBody& body, double seconds,
           std::vector<Vec3d>& velocities);

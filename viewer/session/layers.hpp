@@ -7,7 +7,7 @@
 
 namespace supple::viewer {
 
-/// What the page asked for in addition to positions, pairs, contacts and statistics.
+/// The data that the page requests in addition to positions, pairs, contacts and statistics.
 struct Layers {
   bool candidates = false;
   bool scene_regions = false;

@@ -55,7 +55,7 @@ class MessageWriter {
   std::span<Element> add(Tag tag, std::size_t count) {
     return add<Element>(tag, no_object, count);
   }
-  /// Adds a section of `rows` elements with `columns` values each.
+  /// Adds a section of `count` elements with `values` values each.
   template <class Value>
   std::span<Value> add_rows(Tag tag, std::size_t count, std::size_t values) {
     std::byte* const data = add_section(tag, no_object, count, count * values * sizeof(Value));

@@ -6,13 +6,14 @@
 
 namespace supple::viewer {
 
-// The members of all that a packed scene has, in order, for `Packer` and `Unpacker`.
+// `Packer` and `Unpacker` call these functions, which list the members of each structure of a packed scene.
 
-/// A structure, or the same constant.
+/// `Given` is `Structure` or `const Structure`.
 template <class Given, class Structure>
 concept Of = std::is_same_v<std::remove_const_t<Given>, Structure>;
 
-/// Options but those of the machine: numbers of threads belong to the machine that plays the scene.
+/// All options except those of the machine, such as numbers of threads, which the machine that plays the
+/// scene chooses.
 template <class Options>
 requires Described<Options>
 void fields(auto& archive, Options& options) {

@@ -26,8 +26,8 @@ class PackedFrames final : public Frames {
   void read(std::uint64_t frame, std::size_t object, std::span<Vec3d> positions) const override;
   const Series& series() const override { return series_; }
 
-  /// Call after unpacking; it sets the positions of objects at rest. False when the tracks do not match the
-  /// objects.
+  /// Call after unpacking: sets the positions of objects at rest. Returns false when the tracks do not match
+  /// the objects.
   bool fit_to(std::span<const ViewedObject> objects);
 
   friend void fields(auto& archive, PackedFrames& frames) {

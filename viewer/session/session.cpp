@@ -197,7 +197,7 @@ void Session::Implementation::command(std::string_view json) {
   if (has_ended_) return;
   id_.reset();
   if (replies_.size() >= most_replies) {
-    // A page that does not read its replies gets no unbounded number of them.
+    // Limit the replies that wait for a page that does not read them.
     replies_.pop_back();
     fail("more than " + std::to_string(most_replies) + " answers are waiting; some commands were ignored");
     return;
@@ -226,7 +226,7 @@ void Session::Implementation::obey(const JsonValue& text) {
   }
   std::string list;
   for (const Command& command : commands_) list += (list.empty() ? "" : ", ") + std::string(command.name);
-  fail("there is no command " + wanted.substr(0, 40) + "; there are " + list);
+  fail("there is no command " + wanted.substr(0, 40) + "; the commands are " + list);
 }
 
 /// Goes to the last requested frame, so that answers refer to it.
@@ -240,7 +240,7 @@ void Session::Implementation::catch_up() {
 void Session::Implementation::run(const Command& command, const JsonValue& text) {
   Arguments arguments(text, command.name);
   if (command.has_answer && !id_)
-    return fail(std::string(command.name) + " needs an id, a number, to answer to");
+    return fail(std::string(command.name) + " has an answer, so it needs an \"id\" that is a number");
   if (command.has_answer) catch_up();
   begin_reply();
   const auto failure = failure_of([&] { (this->*command.handle)(arguments); });

@@ -25,8 +25,8 @@ class Session {
   /// Executes a command in JSON. An invalid command produces a failure message; this function does not
   /// throw.
   void command(std::string_view json);
-  /// Lets `seconds` pass; takes at most one step or frame. Returns how many seconds nothing will happen
-  /// unless a command arrives; 0 when there is more to do.
+  /// Lets `seconds` pass; takes at most one step or frame. Returns the number of seconds until the next
+  /// change if no command arrives; 0 when there is more to do.
   double advance(double seconds);
   /// Writes the next message, if any, into `message` and returns it, else returns an empty span. The bytes
   /// stay valid until `message` is written again, so they can be sent without a copy while the session goes

@@ -37,7 +37,7 @@ void set_apart(ViewedObject& object, std::size_t copy, const Vec3d& offset) {
   object.options.name += " #";
   object.options.name += std::to_string(copy + 1);
   for (Vec3d& p : object.mesh.positions) p = p + offset;
-  // With equal waves and random numbers all copies would move alike.
+  // With equal waves and random numbers, all copies would move in the same way.
   if (auto* const sway = std::get_if<WaveMotion>(&object.motion)) sway->seed += copy * 1'000'003;
   if (auto* const springs = std::get_if<MassSpringMotion>(&object.motion); springs && springs->seed)
     *springs->seed += copy * 1'000'003;

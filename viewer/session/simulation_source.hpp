@@ -37,7 +37,7 @@ class SimulationSource final : public Source {
   /// Sets the target of the held vertex. An object without motion is bent in the next `settle` or step.
   void drag(const Vec3d& target);
   void release();
-  /// True when the held object moves by itself and was dragged, so that only steps can show the effect.
+  /// True when an object with a motion is held and was dragged, so that only steps show the effect.
   bool needs_steps() const;
   /// Bends the held object and detects again; false when nothing changed.
   bool settle();

@@ -8,11 +8,10 @@
 
 namespace supple::viewer {
 
-// The numbers of a step that frames have: the members of `StepStats` in their order. `motion_seconds` comes
-// before them.
+// Each frame contains `motion_seconds` and then the members of `StepStats` in their order.
 inline constexpr std::size_t statistic_count = count_leaves<StepStats>();
 
-/// Calls `function(name, value)` for each. A word is the number of its place in the enumeration.
+/// Calls `function(name, value)` for each member. The value of an enumeration is its number.
 template <class Function>
 void for_each_statistic(const StepStats& stats, Function function) {
   for_each_leaf(

@@ -85,7 +85,7 @@ struct SimulationOptions {
   /// Reflects bodies of masses and springs (section 5.2 of the paper): when a body reaches beyond a side
   /// after a step and its mean velocity points outward, that velocity is reversed along the axis. So a body
   /// may reach outside by the length of one step. It returns from any position, keeps its speed, and gravity
-  /// does not push it out. A body larger than the border is reflected in every step and so stays at its
+  /// does not push it out. A body larger than the border is reflected in every step and so stays in
   /// place. Fixed vertices are not reflected. A side may be infinite.
   std::optional<Border> border{};
   std::uint64_t seed = 0;  ///< seed of all random numbers
@@ -143,8 +143,8 @@ class Simulation {
   /// The scene of the simulation. Only the simulation moves its objects.
   const Scene& scene() const;
   std::span<const Vec3d> positions(ObjectId object) const;
-  /// Sets the positions of an object without motion, or of a body, which keeps its velocities. They hold at
-  /// once: the paths of the next step start there. Throws `Error` as `Scene::set_positions` does, and when
+  /// Sets the positions of an object without motion, or of a body, which keeps its velocities. They apply
+  /// at once: the paths of the next step start there. Throws `Error` as `Scene::set_positions` does, and when
   /// the user's motion moves the object.
   void set_positions(ObjectId object, std::span<const Vec3d> positions);
   /// The masses and springs of an object; null when it has none. The pointer is valid until the object is

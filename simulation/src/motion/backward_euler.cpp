@@ -13,8 +13,8 @@ namespace {
 /// Newton's method stops when the change falls to this fraction of the first change.
 constexpr double tolerance = 1e-3;
 
-/// Conjugate gradients stop when the residual falls to this fraction of the first one. The error left is
-/// smaller than the error of Newton's method itself, whose Hessian omits terms that may be negative.
+/// Conjugate gradients stop when the residual falls to this fraction of the first residual. The remaining
+/// error is smaller than that of Newton's method, whose Hessian omits terms that may be negative.
 constexpr double forcing = 0.02;
 
 }  // namespace
@@ -27,7 +27,7 @@ BackwardEuler::BackwardEuler(const SpringNetwork& network, std::span<const Verte
   diagonal_.resize(kinds.size());
   inverse_diagonal_.resize(kinds.size());
   of_rows_.resize(equations_.free_count());
-  // Measured on sheets. A factorisation may take longer, but it always ends.
+  // Measured on sheets. On other meshes a factorisation may take longer, but it always terminates.
   factor_worth_ = 30 + 6 * std::sqrt(static_cast<double>(equations_.free_count()));
   chunk_sums_.resize(chunk_count(kinds.size()));
 }
@@ -70,8 +70,8 @@ double BackwardEuler::choose_start(const ImplicitStep& step, std::span<Vec3d> ve
   return flying_on;
 }
 
-/// Forces or stretch that are not finite make the velocities not finite, so that the caller rejects the
-/// step.
+/// Sets velocities to NaN, so that the caller rejects the step: at free vertices whose external force is not
+/// finite, or at all free vertices when there are none.
 void BackwardEuler::give_up(const ImplicitStep& step, std::span<Vec3d> velocities) const {
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   bool any = false;
@@ -114,7 +114,7 @@ double BackwardEuler::expected_iterations() const {
   return 0.5 * std::log(2 / forcing) * std::sqrt(largest / equations_.smallest_diagonal());
 }
 
-/// Starts again from zero; the result of conjugate gradients so far does not help a direct solver.
+/// Solves from scratch, because a direct solver cannot use the partial result of conjugate gradients.
 void BackwardEuler::solve_by_factor() {
   if (!factor_) factor_.emplace(equations_.make_factor());
   equations_.fill(diagonal_, *factor_);
@@ -207,8 +207,8 @@ Vec3d BackwardEuler::mean_of_free(std::span<const Vec3d> values) const {
   return sum * (1.0 / std::max(1u, equations_.free_count()));
 }
 
-/// Spring forces sum to zero, so the mean velocity is known. This sets it, and so removes the error of
-/// rounding and of Newton's tolerance, which stiffness amplifies.
+/// Sets the mean velocity to its exact value, which is known because spring forces sum to zero. This removes
+/// the errors of rounding and of Newton's tolerance, which stiffness amplifies.
 void BackwardEuler::keep_momentum(const ImplicitStep& step, std::span<Vec3d> velocities) const {
   for (const VertexKind kind : kinds_) {
     if (kind == VertexKind::fixed) return;

@@ -19,9 +19,9 @@ namespace supple {
 /// Newton's method. Each iteration must lower the potential of `StepEquations`, so energy stays bounded for
 /// any stiffness and step.
 ///
-/// Conjugate gradients solve the linear systems, only as far as Newton's method benefits. The preconditioner
-/// is the block diagonal. When they take longer than a factorisation would, sparse Cholesky factors solve
-/// the systems. The result of a step depends only on its arguments, not on earlier steps.
+/// Conjugate gradients with a block diagonal preconditioner solve the linear systems, only as accurately as
+/// Newton's method needs. When they take longer than a factorisation would, sparse Cholesky factors solve the
+/// systems instead. The result of a step depends only on its arguments, not on earlier steps.
 class BackwardEuler {
  public:
   static constexpr int max_newton_iterations = 6;
@@ -50,7 +50,7 @@ class BackwardEuler {
   StepEquations equations_;
   std::optional<SparseFactor> factor_;  // created on first use
   double factor_worth_ = 0;    // number of conjugate gradient iterations that take as long as a factorisation
-  bool needs_factor_ = false;  // conjugate gradient iterations that a factorisation is worth
+  bool needs_factor_ = false;  // the rest of this step uses the factorisation
   int iterations_ = 0;         // conjugate gradient iterations in this step
   std::vector<Vec3d> descent_, change_, tried_;
   std::vector<SymmetricBlock> diagonal_, inverse_diagonal_;

@@ -31,7 +31,7 @@ std::vector<std::uint32_t> lowest_of_piece(const TriangleMesh& mesh) {
   return parent;
 }
 
-/// For each component, named by its lowest vertex: whether its oriented edges cancel out.
+/// Indexed by the lowest vertex of each component: 1 when each edge occurs equally often in both directions.
 std::vector<std::uint8_t> closed_pieces(const TriangleMesh& mesh, std::span<const std::uint32_t> piece) {
   struct Side {
     std::array<std::uint32_t, 2> ends;

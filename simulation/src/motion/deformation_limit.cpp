@@ -25,7 +25,8 @@ struct Bounds {
   }
 };
 
-/// The change of x_b - x_a that makes it `wanted` long, along the direction of x - h v where possible.
+/// The change of d = x_b - x_a that gives d the length `wanted`. It is parallel to `before`, the edge in
+/// x - h v, where possible.
 Vec3d correction(Vec3d d, Vec3d before, double wanted) {
   const double squared_length = dot(d, d), length = std::sqrt(squared_length);
   const double squared_before = dot(before, before);

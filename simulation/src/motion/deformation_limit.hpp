@@ -20,7 +20,6 @@ namespace supple {
 /// Edges of one color share no vertex and move in parallel, color after color, so the order of threads does
 /// not matter. Rounds repeat until every edge is within `tolerance` times its rest length of its bounds, or
 /// `max_rounds` is reached.
-/// `max_rounds`.
 class DeformationLimit {
  public:
   static constexpr int max_rounds = 50;

@@ -11,7 +11,7 @@
 
 namespace supple {
 
-/// Sums the volumes of closed parts run by run, in one order for any number of threads.
+/// Sums the volumes of closed parts run by run, in an order that does not depend on the number of threads.
 class VolumeSum {
  public:
   explicit VolumeSum(const SpringNetwork& network);
@@ -28,7 +28,7 @@ class VolumeSum {
   std::vector<double> of_runs_, of_parts_;
 };
 
-/// Sums the forces of all elements at each vertex, in one order for any number of threads.
+/// Sums the forces of all elements at each vertex, in an order that does not depend on the number of threads.
 class ForceSum {
  public:
   explicit ForceSum(const SpringNetwork& network);

@@ -69,7 +69,7 @@ MassSpringOptions checked(const MassSpringOptions& options, const TriangleMesh& 
   return options;
 }
 
-/// The closed parts that keep their volume: all of them or none.
+/// The closed parts that preserve their volume: all of them, or none without `volume_stiffness`.
 ClosedParts parts_to_keep(const ClosedParts& closed, const MassSpringOptions& options,
                           const TriangleMesh& rest) {
   if (!(options.volume_stiffness > 0)) return {};
@@ -296,8 +296,7 @@ std::string MassSpring::why_bad(std::uint32_t vertex, double seconds) const {
   if (!is_finite(now_.positions[vertex]) || !is_finite(now_.velocities[vertex]))
     return where + " was given a position or velocity that is not finite";
   const std::string what = where + " flies off in a step of " + in_digits(seconds) + " s";
-  if (!(seconds > stable_step()))
-    return what + "; velocities, forces or stretch must be smaller than those given";
+  if (!(seconds > stable_step())) return what + "; reduce its velocities, forces or stretch";
   return what + "; steps below " + rounded(stable_step()) +
          " s are stable, more substeps or backward_euler make them longer";
 }

@@ -16,7 +16,7 @@ SceneOptions scene_options(const ContactResponse& response, std::uint32_t thread
   SceneOptions options;
   options.contacts = ContactKinds::continuous;
   options.impact.min_separation = response.thickness;
-  // Resting elements lie exactly on the border of touching; here it does not matter on which side.
+  // Resting elements are exactly at the limit of touching. The response need not decide these cases exactly.
   options.impact.exact = false;
   options.threads = threads;
   return options;
@@ -112,7 +112,7 @@ bool ImpulseResponse::respond(const ContinuousContact& contact) {
   double parting = 0;
   double restitution = options_.restitution;
   if (contact.toi == 0) {
-    // The contact normal may follow the relative velocity, which an earlier round may have reversed.
+    // The contact normal may depend on the relative velocity, which an earlier round may have reversed.
     const Vec3d between = start(a) - start(b);
     const double distance = std::sqrt(dot(between, between));
     if (distance > 1e-6 * options_.thickness) normal = between * (1 / distance);

@@ -103,7 +103,7 @@ void ImpulseSpread::gather_patch(std::uint32_t vertex) {
   }
 }
 
-/// Multiplies by 1 + h²/m L, with springs that leave the patch cut.
+/// Multiplies by 1 + h²/m L. Ignores springs to free vertices outside the patch.
 void ImpulseSpread::multiply(std::span<const double> parts, std::span<double> product) const {
   for (std::size_t i = 0; i < patch_.size(); ++i) {
     double sum = parts[i];
@@ -118,7 +118,8 @@ void ImpulseSpread::multiply(std::span<const double> parts, std::span<double> pr
   }
 }
 
-/// Conjugate gradients from the unspread impulse. Without fixed vertices each iteration preserves the sum.
+/// Conjugate gradients, which start with the whole impulse on one vertex. Without fixed vertices each
+/// iteration preserves the sum.
 void ImpulseSpread::solve() {
   const std::size_t size = patch_.size();
   for (auto* vector : {&parts_, &residual_, &direction_, &product_}) vector->assign(size, 0.0);

@@ -104,7 +104,7 @@ void MovingBody::reflect_at(const Border& border) {
   }
 }
 
-/// `outward` is the sign of the outward direction. The speed of the way back is at least what gravity
+/// `outward` is the sign of the outward direction. The reflected speed is at least the speed that gravity
 /// removes in a step, plus a margin for friction. Otherwise a body that lies on a side would slowly sink
 /// into it.
 void MovingBody::reflect_from_side(int axis, double outward, double velocity) {

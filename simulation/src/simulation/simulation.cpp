@@ -117,7 +117,7 @@ void Simulation::Implementation::set_positions(ObjectId id, std::span<const Vec3
   SimulatedObject& found = object(id, "set_positions");
   if (found.function != nullptr) {
     fail("set_positions: " + scene.name(id) +
-         " is moved by a function and cannot be put elsewhere; let the function write other positions");
+         " is moved by a function, so its positions cannot be set; let the function write other positions");
   }
   scene.set_positions(id, positions);
   if (response_) response_->set_positions(id, positions);
@@ -138,7 +138,7 @@ const DetectResult& Simulation::Implementation::detect() {
   return scene.detect();
 }
 
-/// Nothing may fail after the bodies are stepped, and nothing before them may have a lasting effect.
+/// Operations after the step of the bodies must not fail; operations before it must have no lasting effect.
 std::optional<MotionError> Simulation::Implementation::try_step() {
   Timer timer;
   call_functions(static_cast<double>(steps + 1) * options.time_step);

@@ -8,14 +8,15 @@
 namespace supple {
 namespace {
 
-/// Whether each of the two products in the component along `axis` of u × v has a factor 0. Differences of
-/// doubles are 0 only for equal doubles, so this is exact.
+/// True when both products in the component of u × v along `axis` have a factor 0. A difference of doubles
+/// is 0 only for equal doubles, so this is exact.
 bool has_no_product(const Vec3d& u, const Vec3d& v, int axis) {
   const int x = (axis + 1) % 3, y = (axis + 2) % 3;
   return (u[x] == 0 || v[y] == 0) && (u[y] == 0 || v[x] == 0);
 }
 
-/// Equal coordinates, as in flat or touching parts, make each product 0 by itself.
+/// True when every product of the determinant has a factor 0, as for equal coordinates in flat or touching
+/// parts.
 bool plainly_coplanar(const Vec3d& u, const Vec3d& v, const Vec3d& w) {
   return (w.x == 0 || has_no_product(u, v, 0)) && (w.y == 0 || has_no_product(u, v, 1)) &&
          (w.z == 0 || has_no_product(u, v, 2));
@@ -50,7 +51,7 @@ int orient2d(const Vec3d& a, const Vec3d& b, const Vec3d& c, int axis, bool& use
 }
 
 Projection find_projection(const Vec3d& a, const Vec3d& b, const Vec3d& c, bool& used_exact) {
-  // The filter most probably decides the largest component, so that is tried first.
+  // Start with the largest component, because the filter most likely decides it.
   const Vec3d normal = absolute(FilteredPlane(a, b, c).normal);
   const int first = normal.x >= normal.y && normal.x >= normal.z ? 0 : normal.y >= normal.z ? 1 : 2;
   for (int i = 0; i < 3; ++i) {

@@ -5,14 +5,14 @@
 
 namespace supple {
 
-// Signs of determinants, exact for all finite coordinates. Floating point decides where an error bound proves
-// the sign, integers decide elsewhere and set `used_exact`, which is unchanged otherwise.
+// Signs of determinants, exact for all finite coordinates. Floating point decides when an error bound proves
+// the sign. Otherwise integers decide, and `used_exact` becomes true. It never becomes false.
 
 /// Sign of (b - a) × (c - a) · (d - a): 1 when d lies on the side of the plane from which a, b, c go
 /// counter-clockwise, 0 when the four points lie in one plane.
 int orient3d(const Vec3d& a, const Vec3d& b, const Vec3d& c, const Vec3d& d, bool& used_exact);
 
-/// The same where `plane`, the plane of a, b, c, is used repeatedly.
+/// The same, for repeated use of `plane`, the plane of a, b, c.
 int orient3d(const FilteredPlane& plane, const Vec3d& b, const Vec3d& c, const Vec3d& d, bool& used_exact);
 
 /// Sign of the component along `axis` of (b - a) × (c - a): the turn of a, b, c seen along that axis.

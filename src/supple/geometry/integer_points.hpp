@@ -46,12 +46,12 @@ Int determinant(const Vector3<Int>& u, const Vector3<Int>& v, const Vector3<Int>
          (u[0] * v[1] - u[1] * v[0]) * w[2];
 }
 
-/// Entries below 2^61.
+/// The entries must be below 2^61.
 inline Int128 determinant(const Vector2<std::int64_t>& u, const Vector2<std::int64_t>& v) {
   return Int128{u[0]} * v[1] - Int128{u[1]} * v[0];
 }
-/// Entries below 2^61: a minor is below 2^123, its lower half times an entry below 2^125 and three of those
-/// below 2^127.
+/// The entries must be below 2^61. Then a minor is below 2^123, its lower half times an entry is below 2^125,
+/// and the sum of three such products is below 2^127.
 inline Int192 determinant(const Vector3<std::int64_t>& u, const Vector3<std::int64_t>& v,
                           const Vector3<std::int64_t>& w) {
   Int128 high = 0, low = 0;

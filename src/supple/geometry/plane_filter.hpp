@@ -13,24 +13,25 @@ namespace supple {
 // Error bounds of the floating-point filters. e = 2^-53 is the rounding error of one operation.
 //
 // The volume n·w of differences u, v, w with n = u × v is a sum of six products of three differences. Each
-// takes part in 8 roundings (3 differences, product, difference of products, product, 2 sums), so the
-// computed value is off by at most ((1 + e)^8 - 1) times the sum of the products' magnitudes. That sum,
-// computed as m·|w| with m_x = |u_y v_z| + |u_z v_y| and so on, is itself too small by a factor of at most (1
-// - e)^8. Together less than 9 e; 10 e also covers the rounding of the bound.
+// product goes through 8 roundings (3 differences, product, difference of products, product, 2 sums). So the
+// error of the computed value is at most ((1 + e)^8 - 1) times the sum of the products' magnitudes. That sum
+// is computed as m·|w| with m_x = |u_y v_z| + |u_z v_y| and so on, which is too small by a factor of at most
+// (1 - e)^8. The total error is less than 9 e; 10 e also covers the rounding of the bound.
 //
-// Underflow: sums and differences underflow exactly, a product is off by at most 2^-1075 more. Two of those
-// in n_x are multiplied by |w_x|, one more stands alone: at most 2^-1074 (|w_x| + |w_y| + |w_z|) (1 + 8 e)
-// + 3 · 2^-1075 (1 + 2 e) in all, and 2^-1000 in place of both factors is far above that.
+// Underflow: sums and differences that underflow are exact. A product that underflows adds an error of at
+// most 2^-1075. Two such errors in n_x are multiplied by |w_x|, and a third is added to the result. The total
+// is at most 2^-1074 (|w_x| + |w_y| + |w_z|) (1 + 8 e) + 3 · 2^-1075 (1 + 2 e). The bound uses 2^-1000 in
+// place of both factors, which is much larger.
 //
-// Overflow: |n| <= m and |n·w| <= m·|w| hold for the rounded numbers, partial sum by partial sum, because
-// rounding is monotone. So an overflow anywhere makes the bound infinite or NaN, and no comparison
-// "|value| > bound" is then true. The same goes for coordinates that are infinite.
+// Overflow: |n| <= m and |n·w| <= m·|w| hold for the rounded numbers and for each partial sum, because
+// rounding is monotonic. So an overflow anywhere makes the bound infinite or NaN, and then no comparison
+// "|value| > bound" is true. The same holds for infinite coordinates.
 inline constexpr double volume_error = 10 * 0x1p-53;
-/// Likewise for u_x v_y - u_y v_x: 4 roundings.
+/// The bound of u_x v_y - u_y v_x, which has 4 roundings.
 inline constexpr double area_error = 6 * 0x1p-53;
 inline constexpr double underflow_error = 0x1p-1000;
 
-/// A value and a bound of its error. When |value| > bound, the sign is exact.
+/// A value and a bound of its error. When |value| > bound, the sign is correct.
 struct Filtered {
   double value, bound;
 
@@ -70,7 +71,7 @@ struct FilteredPlane {
   }
 };
 
-/// The sides of the three corners of a triangle, with one bound for all of them.
+/// `FilteredPlane::side` of the three corners of a triangle, with one bound for all of them.
 struct FilteredSides {
   std::array<double, 3> value;
   double bound;
@@ -83,7 +84,7 @@ struct FilteredSides {
   }
 
   Filtered operator[](std::size_t i) const { return {value[i], bound}; }
-  /// Whether all three are certainly on one side of the plane.
+  /// True when all three corners are certainly on one side of the plane.
   bool separated() const {
     return std::max(std::min(std::min(value[0], value[1]), value[2]),
                     -std::max(std::max(value[0], value[1]), value[2])) > bound;

@@ -49,8 +49,8 @@ Polynomial pseudo_remainder(const Polynomial& p, const Polynomial& q) {
   return Polynomial(std::move(rest));
 }
 
-/// Whether p and q have no common divisor modulo a prime, and hence none at all. Nearly always saves the slow
-/// Euclidean algorithm with unbounded integers.
+/// True when p and q have no common divisor modulo a prime, and therefore none at all. This test nearly
+/// always avoids the slow Euclidean algorithm with unbounded integers.
 bool coprime_modulo_prime(const Polynomial& p, const Polynomial& q) {
   static constexpr std::uint64_t prime = (std::uint64_t{1} << 61) - 1;
   const auto times = [](std::uint64_t a, std::uint64_t b) {
@@ -66,7 +66,7 @@ bool coprime_modulo_prime(const Polynomial& p, const Polynomial& q) {
     return result;
   };
   std::vector<std::uint64_t> a = residues(p), b = residues(q);
-  // The leading coefficient is not 0 modulo the prime, so all divisors of p keep their degrees.
+  // All divisors of p keep their degrees only if its leading coefficient is not 0 modulo the prime.
   if (a.empty() || a.back() == 0) return false;
   while (true) {
     while (!b.empty() && b.back() == 0) b.pop_back();
@@ -215,7 +215,7 @@ int sign_at(const Polynomial& p, const BinaryFraction& x) {
 }
 
 SignVariations sign_variations(const Polynomial& p) {
-  // (1 + x)^n p(1 / (1 + x)) has the Bernstein coefficients times positive numbers.
+  // The coefficients of (1 + x)^n p(1 / (1 + x)) are the Bernstein coefficients times positive numbers.
   Coefficients bernstein(p.coefficients().rbegin(), p.coefficients().rend());
   shift_by_one(bernstein);
   SignVariations result;
@@ -258,7 +258,7 @@ int UnitRoot::sign_of(const Polynomial& q) {
     const SignVariations variations = sign_variations(on_interval(q, left_));
     if (variations.count == 0) return variations.sign;
     if (may_be_zero && halvings > halvings_before_zero_is_likely) {
-      // A root of q here is a root of the common divisor, which has at most one root here, a simple one.
+      // The common divisor has at most one root in the interval, a simple one. If it has one, q is 0 there.
       if (sign_variations(on_interval(gcd(polynomial_, q), left_)).count % 2 == 1) return 0;
       may_be_zero = false;
     }

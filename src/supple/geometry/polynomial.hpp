@@ -52,19 +52,19 @@ struct BinaryFraction {
 /// The sign of p(x), where x = numerator / 2^bits.
 int sign_at(const Polynomial& p, const BinaryFraction& x);
 
-/// What the signs of a polynomial's Bernstein coefficients on an interval prove.
+/// The changes of sign between a polynomial's Bernstein coefficients on an interval.
 struct SignVariations {
-  /// The number of roots in the open interval, counted with multiplicity, is this or less by an even number
-  /// (Descartes' rule of signs).
+  /// A bound of the number of roots in the open interval, counted with multiplicity. It exceeds that number
+  /// by an even number (Descartes' rule of signs).
   int count = 0;
-  /// The sign throughout the open interval where `count` is 0; 0 for the polynomial 0.
+  /// The sign in the whole open interval when `count` is 0. The polynomial 0 has sign 0.
   int sign = 0;
 };
 
-/// In the open interval (0, 1).
+/// For the open interval (0, 1).
 SignVariations sign_variations(const Polynomial& p);
 
-/// The one root of a polynomial in some interval: an algebraic number in [0, 1].
+/// The only root of a polynomial in some interval: an algebraic number in [0, 1].
 ///
 /// Keeps an open interval (k, k + 1) / 2^bits that contains this root and no other, or the exact root
 /// k / 2^bits. Queries may narrow the interval, which does not change their results.
@@ -75,7 +75,7 @@ class UnitRoot {
   /// The root of p in the open interval from x to x + 2^-x.bits. p has exactly one root there, a simple one.
   UnitRoot(const Polynomial& p, BinaryFraction x);
 
-  /// The sign that q has at the root.
+  /// The sign of q at the root.
   int sign_of(const Polynomial& q);
 
   /// The largest double that is at most the root and the smallest that is at least the root.

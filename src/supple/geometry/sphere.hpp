@@ -7,9 +7,9 @@
 
 namespace supple {
 
-/// Whether two closed spheres overlap, after b moved by `offset` and grew by `slop`. Compares in double, so
-/// that differences and squares of floats do not overflow. May report spheres as touching that rounding
-/// cannot separate, never the reverse. Symmetric.
+/// Whether two closed spheres overlap after b is moved by `offset` and its radius grows by `slop`. Compares
+/// in double, so that differences and squares of floats do not overflow. Conservative: it may report an
+/// overlap when rounding cannot separate the spheres, but it never misses one. Symmetric.
 inline bool overlap(const BoundingSphere& a, const BoundingSphere& b, const Vec3f& offset = {},
                     float slop = 0) {
   if (a.empty() || b.empty()) return false;

@@ -29,7 +29,7 @@ void reduce(Polynomial& p) {
   }
 }
 
-/// The remainder of |c|^n p divided by q, where c leads q and n = max(deg p - deg q + 1, 0).
+/// The remainder of |c|^n p divided by q. c is the leading coefficient of q, n = max(deg p - deg q + 1, 0).
 Polynomial remainder(Polynomial p, const Polynomial& q) {
   const Integer scale = abs(q.back());
   while (p.size() >= q.size()) {
@@ -56,9 +56,10 @@ Polynomial quotient(Polynomial p, const Polynomial& q) {
   return result;
 }
 
-/// p, q and then positive multiples of the negative remainders of the two before, down to their greatest
-/// common divisor. deg q < deg p. The divisors are those of the subresultants, which keep coefficients short
-/// (Brown and Traub, On Euclid's algorithm and the theory of subresultants, 1971).
+/// The chain p, q, r, …: each further polynomial is a positive multiple of the negative remainder of the two
+/// before it. The last one is the greatest common divisor of p and q. deg q < deg p. Coefficients are divided
+/// as in subresultants, which keeps them short (Brown and Traub, On Euclid's algorithm and the theory of
+/// subresultants, 1971).
 std::vector<Polynomial> signed_remainders(const Polynomial& p, const Polynomial& q) {
   std::vector<Polynomial> chain = {p};
   Integer leading = 1, power = 1;
@@ -152,7 +153,7 @@ int sign_at(const Polynomial& p, const Time& time) {
 
 Root::Root(const Polynomial& p, Time low, Time high)
     : polynomial_(p), low_(std::move(low)), high_(std::move(high)), sign_at_high_(sign_at(p, high_)) {
-  // The start may be another root. `sign_of` needs a start that is none.
+  // The start may be another root, but `sign_of` needs a start that is not a root.
   while (sign_at_high_ != 0 && sign_at(polynomial_, low_) == 0) split(between(low_, high_));
 }
 
@@ -167,7 +168,7 @@ void Root::split(const Time& middle) {
 }
 
 std::pair<double, double> Root::neighbouring_doubles() {
-  // Positive doubles have the order of their bits.
+  // Positive doubles have the same order as their bits.
   auto low = std::bit_cast<std::uint64_t>(0.0), high = std::bit_cast<std::uint64_t>(1.0);
   while (high - low > 1) {
     const std::uint64_t middle = low + (high - low) / 2;
@@ -182,7 +183,7 @@ std::pair<double, double> Root::neighbouring_doubles() {
 
 int Root::sign_of(const Polynomial& q) const {
   if (sign_at_high_ == 0) return sign_at(q, high_);
-  // Sums of positive terms increase with time, which bounds q over the interval.
+  // Sums of positive terms increase with time, so their values at both ends bound q in the interval.
   Polynomial positive, negative;
   for (const Integer& c : q) {
     positive.push_back(c.sign() > 0 ? c : Integer(0));
@@ -193,7 +194,7 @@ int Root::sign_of(const Polynomial& q) const {
   const Time high(high_.numerator << (bits - high_.bits), bits);
   if (value_at(positive, low) > value_at(negative, high)) return 1;
   if (value_at(positive, high) < value_at(negative, low)) return -1;
-  // Sylvester: the signs of q at the roots of p, added up, are the change of variations of this chain.
+  // Sylvester: the sum of the signs of q at the roots of p is the change of variations of this chain.
   const auto chain = signed_remainders(polynomial_, remainder(derivative(polynomial_) * q, polynomial_));
   return variations(chain, low_) - variations(chain, high_);
 }

@@ -4,8 +4,7 @@
 #include <utility>
 #include <vector>
 
-// Exact integers and real roots for checking; the roots by Sturm's theorem. Nothing in the detection path
-// uses this header.
+// Exact integers, and real roots by Sturm's theorem. Only verification uses this header, never the detection.
 
 namespace supple::sturm {
 

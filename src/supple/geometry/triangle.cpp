@@ -7,8 +7,9 @@
 namespace supple {
 namespace {
 
-/// Twice the area vector of a triangle whose sides are divided by `size`, the largest component of two sides,
-/// because products of very small or large sides underflow or overflow. Zero when `size` is 0 or not finite.
+/// Twice the area vector of the triangle after its sides are divided by `size`, the largest component of two
+/// sides. Without the division, products of very small or large sides would underflow or overflow. Returns
+/// zero when `size` is 0 or not finite.
 Vec3d scaled_normal(const TrianglePoints& triangle, double& size) {
   const Vec3d ab = triangle[1] - triangle[0], ac = triangle[2] - triangle[0];
   size = std::max(largest_magnitude(ab), largest_magnitude(ac));

@@ -26,7 +26,7 @@ inline Vec3d scaled(const Vec3d& v, int exponent) {
   return {std::ldexp(v.x, exponent), std::ldexp(v.y, exponent), std::ldexp(v.z, exponent)};
 }
 
-/// a at t = 0, b at t = 1, exactly.
+/// Exactly a at t = 0, and exactly b at t = 1.
 inline double mix(double a, double b, double t) {
   return (1 - t) * a + t * b;
 }

@@ -14,7 +14,7 @@ namespace supple {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// One `Vec3` in each lane. The operations round as those of `Vec3`.
+/// One `Vec3` in each SIMD lane. The operations round like those of `Vec3`.
 template <class Tag>
 struct Vector3 {
   hn::Vec<Tag> x, y, z;

@@ -107,7 +107,7 @@ WideInteger<result> unsigned_product(const WideInteger<m>& a, const WideInteger<
 template <std::size_t m, std::size_t n>
 WideInteger<m + n> product(const WideInteger<m>& a, const WideInteger<n>& b) {
   WideInteger<m + n> result = unsigned_product<m + n>(a, b);
-  // As an unsigned number, a negative one was larger by 2^(64 limbs).
+  // The product treated a negative number as larger by 2^(64 limbs). Subtract this excess.
   std::uint64_t borrow = 0;
   for (std::size_t i = 0; a.negative() && i < n; ++i) {
     const UnsignedInt128 rest = UnsignedInt128{result.words[m + i]} - b.words[i] - borrow;
@@ -172,7 +172,7 @@ double approximate(const Int& value, int exponent) {
   return negative ? -top : top;
 }
 
-/// The largest double ≤ numerator / 2^exponent, or the smallest that is ≥. The numerator is ≥ 0.
+/// The largest double ≤ numerator / 2^exponent or, when `up`, the smallest double ≥ it. The numerator is ≥ 0.
 template <class Int>
 double round_time(const Int& numerator, int exponent, bool up) {
   const int excess = std::max({bit_length(numerator) - 53, exponent - 1074, 0});

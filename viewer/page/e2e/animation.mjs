@@ -1,4 +1,4 @@
-// Makes the moving picture of the README, docs/images/demo.webp, from frames of the viewer:
+// Makes the animation of the README, docs/images/demo.webp, from frames of the viewer:
 //   node e2e/animation.mjs PATH/TO/supple
 // tools/assemble_animation.py needs Debian's python3-pil.
 import { execFileSync } from "node:child_process";

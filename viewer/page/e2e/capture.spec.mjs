@@ -248,7 +248,7 @@ async function tooLargeIsSaid(stage) {
   await dialog.getByRole("button", { name: "Save", exact: true }).click();
   assert.equal(await dialog.getByRole("spinbutton", { name: "Width" }).evaluate((input) => input.validity.rangeOverflow), true);
   assert.ok(await dialog.isVisible());
-  // A graphics card that reports more than it can do.
+  // Imitates a graphics card that reports larger limits than it has.
   await page.evaluate(() => {
     for (const name of ["drawingBufferWidth", "drawingBufferHeight"]) Object.defineProperty(document.querySelector("canvas.view").getContext("webgl2"), name, { get: () => 100 });
   });

@@ -169,7 +169,7 @@ export const picture = (page) =>
     return document.querySelector("canvas.view").toDataURL();
   });
 
-/** Where to click to hit a visible triangle that is not lower than `least`. */
+/** A position to click that hits a visible triangle not lower than `least`. */
 export const seenTriangle = (page, object, least = -Infinity) =>
   page.evaluate(([object, least]) => {
     const { triangles } = supple.model.objects[object];

@@ -13,7 +13,7 @@ async function open(stage, scene) {
   return page;
 }
 
-/** Draws with all vertices new: the time until the script is done, and until the pixels are. */
+/** Draws after all vertices changed. Prints the time until the script ends and until the pixels are drawn. */
 async function picture(stage, scene) {
   const page = await open(stage, scene);
   await pause(page);
@@ -36,7 +36,7 @@ async function picture(stage, scene) {
     return { script: median(0), pixels: median(1), objects: objects.length, triangles, calls: supple.drawn().calls };
   });
   console.log(
-    `${triangles.toLocaleString("en")} triangles, objects: ${objects.toLocaleString("en")}; ${script.toFixed(2)} ms of script a picture in ${calls} draw calls, ` +
+    `${triangles.toLocaleString("en")} triangles, objects: ${objects.toLocaleString("en")}; ${script.toFixed(2)} ms of script per picture in ${calls} draw calls, ` +
       `${pixels.toFixed(1)} ms with its pixels`,
   );
 }

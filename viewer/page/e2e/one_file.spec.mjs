@@ -85,7 +85,7 @@ async function playsARecording(stage) {
   );
 }
 
-/** The module has no exceptions, and yet it survives. */
+/** The module is compiled without exceptions. A body that blows up must not end the session. */
 async function survivesABodyThatBlowsUp(stage) {
   const page = await open(stage, join(scenes, "soft_block.toml"));
   await page.getByRole("tab", { name: "Settings" }).click();

@@ -1,4 +1,4 @@
-// End-to-end tests of the viewer: the program and a page in Chromium that is clicked, dragged and typed on.
+// End-to-end tests of the viewer: they start the program and click, drag and type in a page in Chromium.
 //
 // usage: node e2e/run.mjs PATH/TO/supple [WORDS OF A TEST'S NAME]
 //

@@ -28,7 +28,7 @@ const TOOL_LABELS: Record<Tool, [label: string, key: string]> = {
 };
 const THEME = "supple-theme";
 
-/** The sentence for a failure of the session, with its own line first. */
+/** The text for a failure of the session: its message, and the layers that it switched off. */
 function sayFailure({ text, layers }: { text: string; layers: Layer[] }): string {
   const labels = LAYER_ROWS.filter(({ layer }) => layers.includes(layer)).map(({ label }) => label);
   return labels.length > 0 ? `${text}. Switched off: ${labels.join(", ")}.` : text;

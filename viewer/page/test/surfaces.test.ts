@@ -13,7 +13,7 @@ test("ranges that are near are uploaded together", () => {
   addRange(ranges, 200, 100);
   assert.deepEqual(ranges, [{ start: 30, count: 270 }]);
   addRange(ranges, 100_000, 6);
-  addRange(ranges, 0, 30);  // of the frame after that
+  addRange(ranges, 0, 30);  // a change of the next frame
   assert.deepEqual(ranges, [{ start: 30, count: 270 }, { start: 100_000, count: 6 }, { start: 0, count: 30 }]);
 });
 

@@ -5,8 +5,8 @@ export const MOST_FILES = 65_000;
 const LARGEST = 0xffffffff - 200 * MOST_FILES;
 
 /**
- * A ZIP that grows file by file. It does not compress, because pictures already are. Written data waits in
- * blobs, which the browser may keep on disk.
+ * A ZIP that grows file by file. It does not compress, because pictures are already compressed. Written
+ * data is kept in blobs, which the browser may keep on disk.
  */
 export class Archive {
   private readonly parts: Blob[] = [];

@@ -1,6 +1,6 @@
 /**
- * Reads the binary messages of the session (docs/protocol.md). It validates everything it relies on and
- * returns typed arrays that view the message; nothing is copied.
+ * Reads the binary messages of the session (docs/protocol.md). It validates all data that the page relies on
+ * and returns typed arrays that view the message; nothing is copied.
  */
 
 export const NONE = 0xffffffff;

@@ -1,4 +1,4 @@
-/** What layers are made of: dots, thick lines, faces, boxes and spheres, each drawn in one call. */
+/** The primitives of layers: dots, thick lines, faces, boxes and spheres, each drawn in one call. */
 import * as THREE from "three";
 import { LEVELS } from "../colours";
 import { Stream } from "./stream";

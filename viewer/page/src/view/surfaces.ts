@@ -6,7 +6,7 @@ import type { Layer, ObjectState } from "../model";
 const LARGEST_BUFFER = 0x80000000;
 /** Texels per row of the texture of colours; half the minimum that WebGL 2 guarantees. */
 const LOOKS_WIDTH = 1024;
-/** Stands for the opacity of hidden objects. */
+/** The opacity that marks hidden objects. */
 const HIDDEN = -1;
 /** Gaps up to this size are uploaded again rather than split into another call. */
 const GAP = 1024;
@@ -177,7 +177,7 @@ export class Surfaces {
     this.positions.needsUpdate = true;
   }
 
-  /** The appearance or the visibility of objects changed. */
+  /** Call when the appearance or the visibility of objects changed. */
   paint(layers: Record<Layer, boolean>): void {
     const looks = this.uniforms.looks.value;
     const data = looks.image.data as Float32Array;
