@@ -8,8 +8,8 @@
 
 namespace supple {
 
-/// Builds an octree over the centres of triangles, in O(n log n). Up to three rounds of median cuts across
-/// the longest axis divide each node into children, so that leaves and nodes are about equally full: most
+/// Builds an octree over the centres of triangles, in O(n log n). Up to three rounds of cuts near the median
+/// of the longest axis divide each node into children, so that leaves and nodes are about equally full: most
 /// leaves contain half of `leaf_size`. Connected parts of the mesh, by vertex ids, stay whole as far as
 /// possible.
 ///
