@@ -11,9 +11,9 @@ usage: contest.py [--build DIR] [--quick] [--only CELL]... [--seconds S] [--outp
     --save         also store the results in benchmarks/results/, named by date and machine
     --list         print the names of all cells
 
-Each cell runs in a process of its own, in which the contestants run frame by frame in turn. Ratios compare medians of
-processor time on one thread; cells with two threads compare wall time. Exit status: 3 when contestants find different
-pairs, 1 when a cell fails in another way.
+Each cell runs in a separate process, in which the contestants run frame by frame in turn. Ratios compare
+medians of processor time on one thread; cells with two threads compare wall time. Exit status: 3 when
+contestants find different pairs, 1 when a cell fails in another way.
 """
 
 import argparse
@@ -155,7 +155,7 @@ def run_process_cell(build, cell, seconds, folder):
     return result
 
 
-# --- judging ---
+# --- evaluation ---
 
 
 class Judge:
@@ -172,7 +172,7 @@ class Judge:
         return None
 
     def best(self, cell, names):
-        """The fastest contestant present, and its name."""
+        """The time and name of the fastest contestant that is present."""
         times = [(self.median(cell, name), name) for name in names]
         return min((pair for pair in times if pair[0] is not None), default=(None, None))
 
@@ -185,7 +185,7 @@ class Judge:
                           "smaller_is_better": smaller_is_better, "met": met})
 
     def add_faster(self, row, cell, names, reach, aim, supple="Supple"):
-        """How many times faster than the best of the others."""
+        """Adds the ratio of the best other contestant's time to Supple's time."""
         best, name = self.best(cell, names)
         own = self.median(cell, supple)
         if best is not None and own:
@@ -221,7 +221,8 @@ def growth_points(judge):
 
 
 def judge_refit(judge, cell):
-    """Two ideals: as many leaf boxes as ours, so that a shallower tree gains nothing; four triangles per box."""
+    """Compares the refit with two ideals: one with as many leaf boxes, so a shallower tree is no advantage,
+    and one with four triangles per box."""
     own = next((c for c in judge.cells[cell]["contestants"] if c["name"] == "Supple"), None)
     for row, ideal in (("refit alone, leaves as wide", "ideal, leaves as wide"),
                        ("refit alone, 4 triangles a box", "ideal, 4 per slot")):
@@ -271,7 +272,7 @@ def judged(cells):
     return judge
 
 
-# --- telling ---
+# --- output ---
 
 
 def processor():

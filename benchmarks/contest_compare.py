@@ -45,7 +45,7 @@ def check_out(base):
 
 
 def build(sources, name):
-    """Builds the program with the options of the release preset and nothing it does not need."""
+    """Builds only the contest program, with the options of the release preset."""
     folder = FOLDER / name
     options = ["FORMATS", "RECORDING", "TOOLS", "TESTS", "EXAMPLES"]
     subprocess.run(["cmake", "-S", sources, "-B", folder, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release",
@@ -57,7 +57,7 @@ def build(sources, name):
 
 
 def measure(program, cell, seconds):
-    # The sources of the base lie elsewhere, but use the same data.
+    # The sources of the base are in another folder, but use the same data.
     environment = {"SUPPLE_DATA": str(ROOT.parent / "shared/data")} | os.environ
     done = subprocess.run([program, cell, "--only-supple", "--seconds", str(seconds)], capture_output=True, text=True,
                           env=environment, check=False)

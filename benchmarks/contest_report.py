@@ -64,7 +64,7 @@ def text(x, y, words, anchor="start"):
 
 
 def log_ticks(low, high):
-    """Powers of ten in the range, or 1, 2, 5 times each when there are few."""
+    """Powers of ten in the range, also times 2 and 5 if the range is small."""
     first, last = math.floor(math.log10(low)), math.ceil(math.log10(high))
     steps = (1,) if last - first > 3 else (1, 2, 5)
     ticks = [step * 10.0**power for power in range(first, last + 1) for step in steps]
@@ -79,7 +79,7 @@ def short(value):
 
 
 def line_plot(title, x_label, y_label, series):
-    """Logarithmic axes; series are (name, color, dashed, [(x, y)...])."""
+    """Draws logarithmic axes; series are (name, color, dashed, [(x, y)...])."""
     width, height, left, top, right, bottom = 800, 390, 62, 46, 210, 44
     xs = [x for _, _, _, points in series for x, _ in points]
     ys = [y for _, _, _, points in series for _, y in points]
@@ -108,7 +108,7 @@ def line_plot(title, x_label, y_label, series):
 
 
 def bar_plot(title, bars):
-    """Bars are (name, [(part, color, value)...]); parts are stacked, and named below when there are several."""
+    """Draws bars (name, [(part, color, value)...]); parts are stacked, with a legend if there are several."""
     left, right, width = 150, 80, 760
     height = 30 + 22 * len(bars) + 26
     largest = max(sum(value for _, _, value in parts) for _, parts in bars)
@@ -135,7 +135,7 @@ def bar_plot(title, bars):
 
 
 def table(heading, rows, text_columns=1):
-    """Cells may be (text, class)."""
+    """Makes a table; cells may be (text, class)."""
     def cell(tag, value, column):
         words, name = value if isinstance(value, tuple) else (value, "")
         classes = " ".join(filter(None, [name, "text" if column < text_columns else ""]))
@@ -189,7 +189,7 @@ def box_plots(cells):
 
 
 def stage_bars(cell):
-    """By stage, for contestants that measure their stages."""
+    """The bars of the contestants that measure their stages."""
     bars = []
     for c in cell["contestants"]:
         median, measured = statistics.median(c["cpu_ms"]), c["mean_stage_ms"]

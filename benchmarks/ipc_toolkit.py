@@ -44,7 +44,7 @@ def read_ply(path):
 
 
 def toolkit_step(mesh, start, end):
-    """The safe step and its processor milliseconds."""
+    """The safe step and its processor time in milliseconds."""
     begin = time.process_time()
     candidates = ipctk.Candidates()
     candidates.build(mesh, start, end, 0, ipctk.LBVH())

@@ -1,4 +1,4 @@
-// Supple alone on the cells of workloads A, B and C; prints the median of each stage. For work on one stage.
+// Runs Supple alone on cells of workloads A, B and C and prints the median time of each stage.
 //
 //     supple_stage_medians 18000x64 bunnyx9 cloth-ball u1/100000 --frames 20 --threads 1
 
@@ -73,7 +73,7 @@ void time_frames(const std::string& cell, const Choice& choice, Scene& scene, Mo
     const double before = cpu_milliseconds();
     const StepStats& stats = scene.detect().stats;
     const double cpu = cpu_milliseconds() - before + set;
-    if (frame >= 2) times.add(stats, set, cpu);  // by then buffers have reached their size
+    if (frame >= 2) times.add(stats, set, cpu);  // the first frames still grow the buffers
   }
   times.print(cell, scene.result().stats);
 }

@@ -7,8 +7,8 @@ Each group is a name and the arguments of `supple detect`, for example
 
     stage_shares.py cloth-ball --self --threads 1 cloth_ball92.ply -- bunnies --threads 1 two_bunnies.toml
 
-Each run is a process of its own, so this measures the first step with cold memory. The octrees are built before it;
-the growth of buffers is part of it.
+Each run is a separate process, so this measures the first step with cold memory. The times exclude
+building the octrees and include the growth of buffers.
 """
 
 import json

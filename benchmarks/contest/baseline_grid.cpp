@@ -21,7 +21,7 @@ std::uint32_t bits_of(const Mask& mask) {
   return bytes[0] + 256u * bytes[1];
 }
 
-/// Columns of one axis.
+/// The columns along one axis.
 struct Division {
   double low = 0, columns_per_unit = 0;
   std::uint32_t count = 1;
@@ -56,8 +56,8 @@ class BaselineGrid : public BoxContestant {
   }
 
  private:
-  /// So many columns that a box meets about one vector of others along the sweep, but none much narrower than
-  /// the boxes, which would be in many.
+  /// Chooses columns so that the sweep compares each box with about one vector of others. A column is not
+  /// much narrower than the boxes, because narrow columns would put each box in many of them.
   void divide(const BoxSpread& spread, std::size_t count) {
     constexpr double others_wanted = 8, narrowest_in_extents = 1.5;
     const double length = std::max(spread.high[axis_] - spread.low[axis_], 1e-30);
@@ -73,13 +73,13 @@ class BaselineGrid : public BoxContestant {
     }
   }
 
-  /// A box in one of its columns. The flag's bits say along which axes it starts there.
+  /// A copy of a box in one of its columns. Bits of `flags` are the axes along which it starts there.
   struct alignas(32) Entry {
     Aabb box;
     std::uint32_t number = 0, flags = 0;
   };
 
-  /// Calls for each box in order and each of its columns.
+  /// Calls `visit` for each box in sorted order and each of its columns.
   template <class Visit>
   void for_each_column(Visit visit) {
     const int first = (axis_ + 1) % 3, second = (axis_ + 2) % 3;
@@ -124,8 +124,8 @@ class BaselineGrid : public BoxContestant {
     }
   }
 
-  /// A pair counts in the column where the lower corner of its intersection lies: there, along each axis, one
-  /// of the two starts.
+  /// A pair counts in the column that contains the lower corner of its intersection: there, along each axis,
+  /// one of the two boxes starts.
   void sweep(std::size_t count) {
     const Lanes d;
     const Flags of_flags;
@@ -157,9 +157,9 @@ class BaselineGrid : public BoxContestant {
   int axis_ = 0;
   std::array<Division, 2> divisions_;
   RadixSorter sorter_;
-  std::vector<Entry> sorted_, entries_;  // by lower face, and by column
+  std::vector<Entry> sorted_, entries_;  // sorted by lower face, and by column
   std::vector<std::uint32_t> starts_, places_;
-  BoxArrays column_;  // the one that is swept
+  BoxArrays column_;  // the column of the current sweep
   std::vector<std::uint32_t> flags_;
   std::vector<IndexPair> pairs_;
 };

@@ -8,10 +8,10 @@ namespace {
 
 struct BoxCell {
   std::string field, variant;
-  std::size_t count = 0, one_in = 0;  // of which moves, where few do
+  std::size_t count = 0, one_in = 0;  // every `one_in`-th box moves; 0: all of them
 };
 
-BoxCell box_cell_of(const std::string& text) {  // after "A/"
+BoxCell box_cell_of(const std::string& text) {  // `text` is the name without "A/"
   BoxCell cell;
   const std::size_t slash = text.find('/'), second = text.find('/', slash + 1);
   cell.field = text.substr(0, slash);
@@ -44,7 +44,7 @@ void run_all(const Choice& choice, const BoxCell& cell, Output& output) {
   output.records(turns.records());
 }
 
-/// One that has run for 500 frames against one that starts anew there.
+/// Compares an instance that has run for 500 frames with a new instance.
 void run_drift(const Choice& choice, const BoxCell& cell, Output& output) {
   constexpr int frames = 500;
   MovingBoxes field(cell.field, cell.count);
@@ -62,8 +62,8 @@ void run_drift(const Choice& choice, const BoxCell& cell, Output& output) {
   output.records(turns.records());
 }
 
-/// A frame in which one box in some moves, with and without a dirty list, against a frame in which all move.
-/// Each contestant has its own field.
+/// Runs a contestant on its own field. The cell compares frames in which every `one_in`-th box moves, with
+/// and without a dirty list, with frames in which all boxes move.
 class OnField : public BoxContestant {
  public:
   OnField(std::unique_ptr<BoxContestant> contestant, const MovingBoxes& field)

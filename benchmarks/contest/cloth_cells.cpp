@@ -8,7 +8,7 @@
 namespace supple::benchmarks {
 namespace {
 
-/// The candidates that the exact test, one by one, confirms.
+/// The candidates that the exact test confirms.
 PairDigest touching(const ClothStep& step, std::span<const ElementPair> candidates) {
   const auto edges = edges_of(step.triangles);
   PairDigest digest;

@@ -84,7 +84,7 @@ double read_bandwidth(std::size_t bytes, unsigned threads) {
       std::uint64_t sum = 0;
       for (std::size_t i = 0; i < repetitions; ++i) {
         sum += sum_of(arrays[thread]);
-        std::atomic_signal_fence(std::memory_order_seq_cst);  // or memory is read once only
+        std::atomic_signal_fence(std::memory_order_seq_cst);  // forces the compiler to read the memory again
       }
       total += sum;
     };

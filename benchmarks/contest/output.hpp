@@ -20,7 +20,7 @@ struct Record {
 
 void add_stages(Record& record, const std::vector<StageTime>& stages);
 
-/// The JSON output of a cell: contestants, values, or the reason for neither.
+/// The JSON output of a cell: contestants, values, or the reason why it was skipped.
 class Output {
  public:
   explicit Output(std::string cell) : cell_(std::move(cell)) {}

@@ -47,11 +47,11 @@ SceneOptions options_of(std::uint32_t threads, ContactKinds contacts, bool conta
   SceneOptions options;
   options.threads = threads;
   options.contacts = contacts;
-  options.contact_points = contact_points;  // the others give pairs only
+  options.contact_points = contact_points;  // the other contestants find only pairs
   return options;
 }
 
-/// The stages of `detect` share its processor time as they share its wall time.
+/// Divides the processor time of `detect` among its stages in proportion to their wall times.
 std::vector<StageTime> stages_of(const StepStats& stats, double handing_over, double detect) {
   const double scale = stats.total_seconds > 0 ? detect / stats.total_seconds : 0;
   return {{"update", handing_over + stats.refit_seconds * scale},

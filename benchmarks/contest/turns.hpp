@@ -13,11 +13,11 @@ namespace supple::benchmarks {
 
 struct Choice {
   std::string cell;
-  double seconds = 3;       ///< rounds start within this time, but at least three
+  double seconds = 3;       ///< rounds start within this time, but there are at least three
   std::size_t rounds = 60;  ///< maximum
   int cpu = 0;              ///< the first CPU to pin threads to
   bool only_supple = false;
-  std::string spoiled{};  ///< drops one pair of this contestant, to test that the check notices
+  std::string spoiled{};  ///< drops one pair of this contestant, to test the check
 };
 
 /// Contestants found different pairs.

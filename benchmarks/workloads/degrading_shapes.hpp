@@ -26,7 +26,7 @@ class DegradingShapes {
   /// `soup`: the triangles of two soups drift apart, each in its own direction. `parts`: two bodies of 64
   /// sheets that exchange places. `stir`: two objects, each a sphere with a drifting soup inside. `roll`: a
   /// strip of cloth rolls up, tested against itself and a ball. `crumple`: a sheet of cloth is compressed,
-  /// with a ball inside. `swing`: as `parts`, back and forth within four frames. `wave`: two spheres with
+  /// with a ball inside. `swing`: like `parts`, back and forth within four frames. `wave`: two spheres with
   /// waves on their surfaces. Throws `Error` for other names.
   explicit DegradingShapes(const std::string& name);
   static std::span<const char* const> names();

@@ -1,5 +1,5 @@
-"""The contest at sizes that take no time: contestants agree, a difference is noticed, generators give the same bits
-everywhere, and the driver writes what it says."""
+"""Tests the contest with small sizes: contestants agree, the check notices a difference, generators give the
+same bits everywhere, and the driver writes correct results."""
 
 import contextlib
 import csv
@@ -20,7 +20,7 @@ BUILD = pathlib.Path(sys.argv.pop(1)) if len(sys.argv) > 1 else ROOT / "build/re
 PROGRAM = BUILD / "bin/supple_contest"
 
 
-# The pairs of the third frame, on every machine: who changes a generator changes these.
+# The pairs of the third frame, equal on every machine. A change of a generator changes them.
 KNOWN = {
     "A/u1/300": (146, "bb31efa6c86c9ff2"),
     "A/u8/300": (972, "c085a2c958750839"),

@@ -1,4 +1,4 @@
-"""`supple ccd-queries`: published queries of continuous collision, their format, and what is said about a wrong file."""
+"""Tests `supple ccd-queries`: published queries of continuous collision, their format and error messages."""
 
 import json
 import os
@@ -10,16 +10,16 @@ from program import ROOT, ProgramTest, run
 
 DATA = pathlib.Path(os.environ.get("SUPPLE_DATA", ROOT.parent / "shared/data"))
 FACE = [(0, 0, 0), (4, 0, 0), (0, 4, 0)]
-# A vertex that falls through a face at half of the step, and one that passes beside it.
+# A vertex that falls through a face at half of the step, and one that misses the face.
 FALLING = [(1, 1, 1), *FACE, (1, 1, -1), *FACE]
 BESIDE = [(3, 3, 1), *FACE, (3, 3, -1), *FACE]
-# An edge that falls through another at a quarter of the step.
+# An edge that falls through another edge at a quarter of the step.
 CROSSING = [(-1, 0, 1), (1, 0, 1), (0, -1, 0), (0, 1, 0), (-1, 0, -3), (1, 0, -3), (0, -1, 0), (0, 1, 0)]
 TOLERANCE = 2.0**-30
 
 
 def rows(points, answer=None):
-    """The text of a query; coordinates are whole numbers, fractions, or already text."""
+    """The text of a query; coordinates are integers, fractions or text."""
     lines = []
     for point in points:
         columns = []
@@ -129,7 +129,7 @@ class Answers(Queries):
         self.assert_time(near["files"][0]["times"][1], 0.75 / (1 - 2.0**-20))
 
     def test_undecided(self):
-        # A vertex that moves within the plane of the face and just reaches its corner.
+        # A vertex that moves in the plane of the face and only just reaches its corner.
         self.write("vf.csv", rows([(-1, -1, 0), *FACE, (0, 0, 0), *FACE]))
         exact, reported = (self.queries("vf.csv", "--undecided", how)["files"][0] for how in ("exact", "report"))
         self.assertEqual((exact["touching"], exact["within_tolerance"]), (1, 0))

@@ -1,4 +1,4 @@
-"""`supple detect --contacts continuous`: what touches between two frames, and when."""
+"""Tests `supple detect --contacts continuous`: elements that touch between two frames, and their times."""
 
 import json
 import unittest
@@ -7,13 +7,14 @@ from program import FAR, FLOOR, ROOT, SPIKE, TRIANGLE, UPRIGHT, ProgramTest, joi
 
 CONTINUOUS = ("--contacts", "continuous")
 TOLERANCE = 2.0**-30
-# Two upright blades in planes that cross: the first falls, its lower edge 0-1 through the upper edge 0-1 of the second.
+# Two upright blades in crossing planes. The first falls; its lower edge 0-1 passes through the upper edge 0-1
+# of the second.
 BLADE = ([(-1.0, 0.0, 1.0), (1.0, 0.0, 1.0), (0.0, 0.0, 9.0)], [(0, 1, 2)])
 UPPER_EDGE = ([(0.0, -1.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, -9.0)], [(0, 1, 2)])
 
 
 def rounded(rows):
-    """Rows with their times as multiples of 1/1024, which the expected ones are; reported times may be a little early."""
+    """Rounds times to multiples of 1/1024, like the expected ones; reported times may be slightly early."""
     return [[*row[:-1], round(row[-1] * 1024) / 1024] for row in rows]
 
 
@@ -21,12 +22,12 @@ class ContinuousTest(ProgramTest):
     maxDiff = None
 
     def fall(self, mesh, falling, *heights):
-        """Frames frame_0.obj, … of one object: `mesh`, and `falling` moved up by each of the heights."""
+        """Writes frames frame_0.obj, … of one object: `mesh`, and `falling` raised by each of the heights."""
         for number, height in enumerate(heights):
             self.write(f"frame_{number}.obj", joined(mesh, moved(falling, 0, 0, height)))
 
     def write_scene(self, *objects):
-        """A scene of (name, mesh, velocity); a step takes a second."""
+        """Writes a scene of (name, mesh, velocity) with steps of one second."""
         text = "[scene]\ntime_step = 1\n"
         for name, mesh, velocity in objects:
             self.write(f"{name}.obj", mesh)
@@ -97,7 +98,7 @@ class Json(ContinuousTest):
         self.assertEqual([s["frame"] for s in steps], [1, 2, 3, 4, 5, 6])
         self.assert_groups(steps[1], [{"a": 0, "b": 1, "vf": [], "fv": [[0, 0, 0.5]], "ee": []}])
         touching = [s["frame"] for s in steps if s["continuous"]]
-        self.assertEqual(touching, [2, 4])  # the spike's upper vertices pass, at 3.5
+        self.assertEqual(touching, [2, 4])  # at 3.5 the upper vertices of the spike pass
         self.assertEqual([s["frame"] for s in steps if s["events"]["contacts"]["begin"]], [2, 4])
         self.assertEqual([s["frame"] for s in steps if s["events"]["contacts"]["end"]], [3, 5])
 
@@ -136,7 +137,7 @@ class Json(ContinuousTest):
         self.assertEqual(step["verify"]["differences"], [])
 
     def test_undecided(self):
-        # The spike slides within the floor's plane and just reaches its corner.
+        # The spike slides in the plane of the floor and only just reaches its corner.
         flat = ([(-1.0, -1.0, 0.0), (-3.0, -2.0, 0.0), (-2.0, -3.0, 0.0)], [(0, 1, 2)])
         self.write_scene(("floor", FLOOR, None), ("flat", flat, [1, 1, 0]))
         (exact,) = self.steps("scene.toml")
@@ -158,7 +159,7 @@ class Json(ContinuousTest):
         (step,) = self.steps("--sequence", "frame_?.obj", "--self", "--verify")
         touching = sum(len(group[kind]) for group in step["continuous"] for kind in ("vf", "ee"))
         checked = step["verify"].pop("element_pairs_checked")
-        self.assertEqual(checked, 12 * 4 + 12 * 11 // 2)  # 12 vertices and 4 faces, and 12 edges
+        self.assertEqual(checked, 12 * 4 + 12 * 11 // 2)  # 12 vertices with 4 faces, and pairs of 12 edges
         self.assertGreater(touching, 2)
         self.assertEqual(step["verify"], {"touching_element_pairs": touching, "differences": []})
         done = self.run_here("detect", "--sequence", "frame_?.obj", "--self", "--verify", *CONTINUOUS)
@@ -202,7 +203,7 @@ class Tables(ContinuousTest):
 
 
 class SameBytes(ContinuousTest):
-    """The same input gives the same bytes, whatever finds it and on however many threads."""
+    """The same input gives the same bytes with every broad phase and number of threads."""
 
     def output(self, *arguments):
         scene = ROOT / "scenes/nine.toml"

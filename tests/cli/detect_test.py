@@ -1,4 +1,4 @@
-"""The results of `supple detect`: JSON as docs/json.md describes it, CSV, tables, sequences."""
+"""Tests the results of `supple detect`: JSON as described in docs/json.md, CSV, tables, sequences."""
 
 import json
 import os
@@ -150,7 +150,7 @@ class Json(ProgramTest):
 
 
 class SameBytes(ProgramTest):
-    """The same input gives the same bytes, whatever finds it and on however many threads."""
+    """The same input gives the same bytes with every broad phase and number of threads."""
 
     def output(self, *arguments):
         scene = ROOT / "scenes/nine.toml"
@@ -226,7 +226,7 @@ class Sequence(ProgramTest):
 
 
 class Streaming(ProgramTest):
-    """A run of a thousand million frames shows its first results at once."""
+    """A run of a thousand million frames prints its first results immediately."""
 
     def start(self, *arguments, **streams):
         process = subprocess.Popen([PROGRAM, "detect", ROOT / "scenes/nine.toml", "--steps", "1000000000", *arguments], **streams)
@@ -244,7 +244,7 @@ class Streaming(ProgramTest):
         try:
             terminal, its_side = pty.openpty()
         except OSError as error:
-            self.skipTest(f"no terminal to be had: {error}")
+            self.skipTest(f"no terminal available: {error}")
         self.addCleanup(os.close, terminal)
         self.start(stdout=subprocess.DEVNULL, stderr=its_side)
         os.close(its_side)

@@ -1,4 +1,4 @@
-"""The generated documents are those of this program, and the written ones name what there is."""
+"""Checks that the generated documents are current and that the written ones cover all options and keys."""
 
 import pathlib
 import re

@@ -1,4 +1,4 @@
-"""The reports of `supple experiment`: files, CSV, and one HTML page that needs nothing else."""
+"""Tests the reports of `supple experiment`: files, CSV, and HTML pages without external resources."""
 
 import csv
 import os

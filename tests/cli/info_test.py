@@ -1,4 +1,4 @@
-"""`supple info`: the facts about a mesh, as text and as JSON."""
+"""Tests `supple info`: the properties of a mesh as text and as JSON."""
 
 import json
 import unittest

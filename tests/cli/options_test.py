@@ -1,5 +1,5 @@
-"""Every option that the program describes goes from the command line into a recording, and from there into a new
-detection; JSON says it at each stage."""
+"""Checks that every described option passes from the command line into a recording and from there into a new
+detection. JSON shows the option at each stage."""
 
 import re
 import unittest
@@ -20,7 +20,7 @@ resolution = 3
 
 
 def flags_of(command):
-    """The options in the help of a command: what takes a value with the word for it, a flag with nothing."""
+    """The options in the help of a command with their value names; flags have an empty value name."""
     flags = {}
     for name, value in re.findall(r"^  (?:-\w, ?)?(--[\w-]+)(?:,--[\w-]+)*(?: ([A-Z|a-z0-9-]+))?(?:  .*| \S.*)?$", run(command, "--help").out, re.M):
         flags[name] = value
@@ -28,7 +28,7 @@ def flags_of(command):
 
 
 def other_value(choices, default):
-    """A value that is not the default one, as it is written on the command line and as JSON says it."""
+    """A value other than the default, as command-line text and as JSON."""
     if "|" in choices:
         words = choices.split("|")
         word = words[(words.index(str(default).replace("_", "-")) + 1) % len(words)]
@@ -49,7 +49,7 @@ class Options(ProgramTest):
         self.defaults = result["options"] | result["objects"][1]["options"]
 
     def others(self):
-        """By key: the arguments that change an option, and what JSON says of it then."""
+        """Maps each key to the arguments that change the option, and to the resulting JSON value."""
         flags, others = flags_of("simulate"), {}
         for key, default in self.defaults.items():
             name = "--" + key.replace("_", "-")
@@ -66,7 +66,7 @@ class Options(ProgramTest):
         self.assertEqual(set(self.defaults) - set(self.others()), {"static", "group", "mask"})
 
     def runs(self):
-        """Some options mean something only with others: three runs change all of them."""
+        """Some options have an effect only with others; three runs change all of them."""
         octree = {"broad_phase": (["--broad-phase", "octree"], "octree")}
         intersection = {"contacts": (["--contacts", "intersection"], "intersection")}
         continuous = {"contacts": (["--contacts", "continuous"], "continuous")}
@@ -106,7 +106,7 @@ class Options(ProgramTest):
         self.assertEqual((done.status, done.error), (0, ""))
         result = self.detect("run.h5", "--leaf-size", "9", "--broad-phase", "sweep")
         self.expect(result, {"leaf_size": 9, "broad_phase": "sweep", "contacts": "continuous"})
-        # Whether an option has an effect follows from the recorded ones.
+        # Whether an option has an effect depends on the recorded options.
         self.expect(self.detect("run.h5", "--min-separation", "0.5"), {"min_separation": 0.5})
         self.assert_one_line_error(self.run_here("detect", "run.h5", "--no-contact-points"), "--contacts intersection")
 

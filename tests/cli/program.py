@@ -1,4 +1,4 @@
-"""Runs the program under test, and writes the meshes that the tests give it."""
+"""Runs the program under test and writes meshes for it."""
 
 import json
 import os
@@ -32,20 +32,21 @@ def run(*arguments, folder=None, **environment):
 
 
 def obj(vertices, triangles):
-    """The text of an OBJ file; triangles count from 0."""
+    """The text of an OBJ file. The triangles given here count vertices from 0."""
     lines = [f"v {x!r} {y!r} {z!r}" for x, y, z in vertices]
     lines += [f"f {a + 1} {b + 1} {c + 1}" for a, b, c in triangles]
     return "\n".join(lines) + "\n"
 
 
 TRIANGLE = ([(0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0)], [(0, 1, 2)])
-# Stands upright in TRIANGLE's plane: they share the segment from (0.25, 0.25, 0) to (0.75, 0.25, 0).
+# Perpendicular to TRIANGLE: they share the segment from (0.25, 0.25, 0) to (0.75, 0.25, 0).
 UPRIGHT = ([(0.25, 0.25, -1.0), (0.25, 0.25, 1.0), (0.75, 0.25, 0.0)], [(0, 1, 2)])
 FAR = ([(5.0, 0.0, 0.0), (6.0, 0.0, 0.0), (5.0, 1.0, 0.0)], [(0, 1, 2)])
-# Two triangles without a common vertex, crossing each other.
+# Two intersecting triangles without a common vertex.
 CROSSED = (TRIANGLE[0] + UPRIGHT[0], [(0, 1, 2), (3, 4, 5)])
 
-# A face, and another whose vertex 0 points down at it: moved down by 2, it goes through the face at half of the step.
+# A face, and a triangle whose vertex 0 points down at it. If moved down by 2, it passes through the face at
+# half of the step.
 FLOOR = ([(0.0, 0.0, 0.0), (4.0, 0.0, 0.0), (0.0, 4.0, 0.0)], [(0, 1, 2)])
 SPIKE = ([(1.0, 1.0, 1.0), (1.25, 1.0, 5.0), (1.0, 1.25, 5.0)], [(0, 1, 2)])
 
@@ -55,13 +56,13 @@ def moved(mesh, x, y, z):
 
 
 def joined(a, b):
-    """Both meshes as one, the vertices and triangles of the second after those of the first."""
+    """Joins two meshes; the vertices and triangles of the second follow those of the first."""
     first = len(a[0])
     return (a[0] + b[0], a[1] + [tuple(v + first for v in t) for t in b[1]])
 
 
 class ProgramTest(unittest.TestCase):
-    """A test with a folder of its own."""
+    """A test with a temporary folder."""
 
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
@@ -69,7 +70,7 @@ class ProgramTest(unittest.TestCase):
         self.folder = pathlib.Path(folder.name)
 
     def write(self, name, content):
-        """Writes a file, a mesh given as (vertices, triangles) as OBJ, and returns its path."""
+        """Writes a file and returns its path. A mesh (vertices, triangles) is written as OBJ."""
         path = self.folder / name
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(obj(*content) if isinstance(content, tuple) else content)
@@ -79,13 +80,13 @@ class ProgramTest(unittest.TestCase):
         return run(*arguments, folder=self.folder, **environment)
 
     def detect(self, *arguments):
-        """The JSON of a run that must succeed."""
+        """Returns the JSON of a run that must succeed."""
         done = self.run_here("detect", *arguments, "--json", "-")
         self.assertEqual((done.status, done.error), (0, ""))
         return json.loads(done.out)
 
     def assert_one_line_error(self, done, *parts):
-        """Status 2, nothing on standard output, one line on standard error that has each of the parts."""
+        """Expects status 2, no standard output, and one line of standard error with each of the parts."""
         self.assertEqual((done.status, done.out), (2, ""), done.error)
         self.assertTrue(done.error.endswith("\n"), done.error)
         self.assertEqual(len(done.error.splitlines()), 1, done.error)

@@ -1,5 +1,6 @@
-"""Recordings as others see them: a process that is killed leaves a whole file, h5py reads what docs/recording.md says,
-`supple detect` finds again what was recorded, `supple diff` tells what differs."""
+"""Tests recordings from outside: a killed process leaves a valid file, h5py reads the structure that
+docs/recording.md describes, `supple detect` reproduces the recorded results, and `supple diff` reports
+differences."""
 
 import gzip
 import importlib.util
@@ -19,7 +20,7 @@ import xml.etree.ElementTree
 
 if importlib.util.find_spec("h5py") is None and sys.executable != "/usr/bin/python3":
     found = subprocess.run(["/usr/bin/python3", "-c", "import h5py"], capture_output=True)
-    if found.returncode == 0:  # Debian's h5py belongs to Debian's Python
+    if found.returncode == 0:  # Debian's h5py works only with Debian's Python
         os.execv("/usr/bin/python3", ["/usr/bin/python3", *sys.argv])
 try:
     import h5py
@@ -35,7 +36,7 @@ with_h5py = unittest.skipUnless(h5py, "needs h5py")
 
 
 def datasets(file):
-    """Path and values of every dataset."""
+    """The path and values of every dataset."""
     found = {}
     file.visititems(lambda path, item: found.update({path: item[()]}) if isinstance(item, h5py.Dataset) else None)
     return found
@@ -47,7 +48,7 @@ def datasets_of(path):
 
 
 def rows_in(path, values, frame_count):
-    """How many rows of a dataset belong to so many frames."""
+    """The number of rows of a dataset for the first frames; None if it does not depend on frames."""
     if path == "scene_file" or path.endswith(("/rest_positions", "/triangles")):
         return None
     if path == "objects/1/positions":  # static
@@ -67,7 +68,7 @@ class RecordingTest(ProgramTest):
         return done
 
     def assert_first_frames(self, path, whole, at_least):
-        """The file opens, and its frames are the first ones of `whole`, values of datasets."""
+        """Expects that the file opens and has the first frames of `whole`, the values of datasets."""
         values = datasets_of(path)
         frame_count = len(values["time"])
         self.assertGreaterEqual(frame_count, at_least)
@@ -85,7 +86,7 @@ class RecordingTest(ProgramTest):
 
 
 class Killed(RecordingTest):
-    """Every frame of the last flush is there, in h5py and in this program."""
+    """After a kill, h5py and this program read every frame of the last flush."""
 
     FLUSHES = ("--frames-between-flushes", 5)
 
@@ -113,7 +114,7 @@ class Killed(RecordingTest):
         path.unlink()
 
     def test_at_random_moments(self):
-        # Fewer frames than there are to compare with: on a busy machine a moment can be long.
+        # Records fewer frames than the whole recording has: on a busy machine a pause can take long.
         frames = self.FRAMES - 1
         moments = random.Random(7)
         for _ in range(30):
@@ -148,12 +149,13 @@ class Killed(RecordingTest):
 
 
 class Stopped(RecordingTest):
-    """What a recorder does to its file is done again, up to each single write and into it."""
+    """Repeats the recorder's file operations and checks the file after each write and within writes."""
 
-    PAGE = 4096  # a kill stops a write only where a page of memory ends
+    PAGE = 4096  # a kill interrupts a write only at the end of a memory page
 
     def log_of(self, *arguments):
-        """What is done to files in the course of a recording: the entries that tests/recording/record_motion.cpp describes."""
+        """The log of the file operations of a recording, as described in
+        tests/recording/record_motion.cpp."""
         self.record("logged.h5", *arguments, "--log", "log")
         log = (self.folder / "log").read_bytes()
         place = 0
@@ -164,14 +166,14 @@ class Stopped(RecordingTest):
             place += size
 
     def ends_of(self, address, size):
-        """Where a write may end: in full, and at some of the pages that it crosses."""
+        """The positions where a write may end: at its end and at some of the pages that it crosses."""
         crossed = range((address // self.PAGE + 1) * self.PAGE, address + size, self.PAGE)
         cuts = {crossed[0], crossed[len(crossed) // 2], crossed[-1]} if crossed else set()
         return [*sorted(cuts), address + size]
 
     def states(self, log):
-        """Makes a file go through all its states, named or not, and yields in each how many frames were flushed (None while
-        the recording has no name)."""
+        """Applies the logged operations one by one. Yields the number of flushed frames after each of them,
+        or None while the recording has no name."""
         entries = list(log)
         recording = next(file for kind, file, _, data in entries if kind == 0 and data.startswith(b"\x89HDF"))
         flushed = None
@@ -190,7 +192,7 @@ class Stopped(RecordingTest):
                         yield flushed
 
     def check_each_state(self, frames, *arguments, from_frame=0, least):
-        """All states since so many frames were flushed, which are at least so many."""
+        """Checks all states after `from_frame` flushed frames; there must be more than `least`."""
         self.record("whole.h5", frames, *arguments)
         whole = datasets_of(self.folder / "whole.h5")
         checked = 0
@@ -209,7 +211,7 @@ class Stopped(RecordingTest):
 
     @with_h5py
     def test_when_chunk_indexes_split(self):
-        """A node of an index has 64 entries, a frame each."""
+        """A node of the chunk index has 64 entries, one per frame."""
         self.check_each_state(65, "--contacts", "none", from_frame=60, least=100)
 
     @with_h5py
@@ -219,7 +221,7 @@ class Stopped(RecordingTest):
 
 
 class Document(RecordingTest):
-    """docs/recording.md against a file, in both directions."""
+    """Compares docs/recording.md with a file, in both directions."""
 
     def setUp(self):
         super().setUp()
@@ -291,7 +293,7 @@ class Document(RecordingTest):
 
 
 class Detect(RecordingTest):
-    """What is detected on a recording is what was recorded."""
+    """Detection on a recording gives the recorded results."""
 
     def recorded(self, file, frame, group, *columns):
         end = file[f"{group}/end"]
@@ -371,8 +373,9 @@ class Detect(RecordingTest):
 
 
 class Version1(ProgramTest):
-    """A recording of `SCENE`, made by the last program that wrote version 1 of the format:
-    `simulate --steps 2 --contacts continuous --bounding-volume sphere --region-test grown-box --min-separation 0.001`."""
+    """A recording of `SCENE`, written by the last program that used version 1 of the format. Its command was
+    `simulate --steps 2 --contacts continuous --bounding-volume sphere
+    --region-test grown-box --min-separation 0.001`."""
 
     SCENE = """[scene]
 time_step = 0.25
@@ -415,7 +418,7 @@ static = true
         again = self.detect("then.h5", "--contact-details")["frames"]
         self.assertGreater(len(again[-1]["contacts"]), 0)
         self.assertEqual([f["contacts"] for f in again], [f["contacts"] for f in frames[1:]])
-        # Counts of work may change from one version of the program to the next.
+        # Statistics may differ between versions of the program.
         done = self.run_here("diff", "then.h5", "now.h5", "--json", "-", "--quiet")
         difference = json.loads(done.out)
         self.assertTrue(difference["what"] is None or difference["what"].startswith("statistics"), difference)

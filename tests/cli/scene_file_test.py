@@ -1,4 +1,4 @@
-"""Scene files: what they mean, bit for bit, and what is said about a wrong one."""
+"""Tests scene files: their exact meaning and the messages about errors."""
 
 import hashlib
 import json
@@ -7,12 +7,12 @@ import unittest
 
 from program import ROOT, TRIANGLE, UPRIGHT, ProgramTest
 
-# A mesh whose coordinates are not symmetric in any way, so that a wrong sign or order shows.
+# A mesh without any symmetry, so a wrong sign or order changes the result.
 SHAPE = (
     [(0.1, 0.7, -0.3), (1.3, -0.2, 0.45), (-0.6, 0.9, 1.1), (0.25, -1.7, 0.65), (0.9, 0.35, -1.2)],
     [(0, 1, 2), (1, 2, 3), (0, 3, 4)],
 )
-# Cuts through it.
+# A triangle that intersects it.
 CUTTER = ([(-3.0, 0.11, -3.0), (3.0, 0.13, -3.0), (0.0, 0.07, 4.0)], [(0, 1, 2)])
 
 
@@ -24,7 +24,7 @@ class Meaning(ProgramTest):
         return frame["contacts"]
 
     def expect_placement(self, keys, place):
-        """An object with these keys is the mesh whose points were placed here."""
+        """Expects that an object with these keys equals the mesh with its points transformed by `place`."""
         self.write("shape.obj", SHAPE)
         self.write("cutter.obj", CUTTER)
         self.write("placed.obj", ([place(*p) for p in SHAPE[0]], SHAPE[1]))
@@ -108,7 +108,7 @@ class Meaning(ProgramTest):
             f'[[object]]\nmodel = "box"\nmotion = {{ kind = "wave", {motion} }}\n'
             '[[object]]\nmodel = "box"\nsize = [0.001, 0.001, 0.001]\nscale = 0.5\ntranslate = [1.75, 0.5, 0]\n',
         )
-        # The box is at 0, 0.5, 1, 1.5, where its border is the scene's; it comes back, as far as -0.5, and again.
+        # The box is at 0, 0.5, 1, 1.5; the border reflects it there and again at -0.5.
         frames = self.detect("scene.toml", "--steps", "13")["frames"]
         touching = [f["frame"] for f in frames if f["triangle_pairs"]]
         self.assertEqual(touching, [3, 11])
@@ -141,13 +141,13 @@ SPRINGS = 'motion = {{ kind = "mass_spring", {} }}\n'
 
 class Copies(ProgramTest):
     def objects(self, text, steps=1, *arguments):
-        """Names, and which objects touch in each frame."""
+        """The names of the objects, and the pairs of objects that touch in each frame."""
         self.write("scene.toml", text)
         result = self.detect("scene.toml", "--steps", str(steps), *arguments)
         return [o["name"] for o in result["objects"]], [f["object_pairs"] for f in result["frames"]]
 
     def test_names_and_places(self):
-        # A grid of 2 x 1 x 3 about (1, 0, 0); the probe, which comes last, is where the copy in the far corner is.
+        # A grid of 2 x 1 x 3 around (1, 0, 0). The probe comes last and is at the place of one copy.
         grid = '[[object]]\nname = "fish"\nmodel = "box"\nsize = [0.1, 0.1, 0.1]\ntranslate = [1, 0, 0]\n' \
                "repeat = [2, 1, 3]\nspacing = [2, 0, 5]\n"
         for x, z, copy in ((0, -5, 1), (2, -5, 2), (0, 0, 3), (2, 5, 6)):
@@ -170,7 +170,7 @@ class Copies(ProgramTest):
                 center = [(a + b) / 2 for a, b in zip(low, high)]
                 for value, expected in zip(center, (10 * (copy - 1), 0, 0)):
                     self.assertAlmostEqual(value, expected)
-                # Of a turned box the squares of the half sides lie between the shortest and the diagonal.
+                # The half sides of a rotated box are between the shortest half side and the half diagonal.
                 for a, b in zip(low, high):
                     self.assertTrue(0.5 - 1e-9 <= (b - a) / 2 <= math.sqrt(21) / 2 + 1e-9)
         corners = [str(b) for b in bounds[1] + bounds[2]]
@@ -189,7 +189,7 @@ class Frames(ProgramTest):
         super().setUp()
         for number, shift in ((1, 0.0), (2, 1.0), (10, 2.0)):
             self.write(f"frames/f_{number}.obj", ([(x + shift, y, z) for x, y, z in TRIANGLE[0]], TRIANGLE[1]))
-        # Crosses the placed triangle only where the second frame has it.
+        # Intersects the placed triangle only at its position in the second frame.
         self.write("probe.obj", ([(12.2, 0.2, -1.0), (12.2, 0.2, 1.0), (12.21, 0.2, 0.0)], [(0, 1, 2)]))
 
     def touching(self, keys, steps):
@@ -213,7 +213,7 @@ class Frames(ProgramTest):
 
 class Springs(ProgramTest):
     def touching(self, scene, motion, steps=40):
-        """Frames in which the box that moves touches the plate, which stands across the x axis at 1."""
+        """The frames in which the moving box touches the plate, which is perpendicular to the x axis at 1."""
         self.write("scene.toml", f"[scene]\ntime_step = 0.1\n{scene}\n"
                    '[[object]]\nname = "plate"\nmodel = "box"\nsize = [0.01, 9, 9]\ntranslate = [1.005, 0, 0]\nstatic = true\n'
                    f'[[object]]\nmodel = "box"\n{SPRINGS.format(motion)}')
@@ -224,11 +224,11 @@ class Springs(ProgramTest):
         self.assertEqual(self.touching("", "stiffness = 50.0"), [])
 
     def test_velocity(self):
-        # From 0.5 to 1 at 0.25 m/s: 2 s, which are 20 steps, but for rounding.
+        # From 0.5 to 1 at 0.25 m/s takes 2 s, which are 20 steps up to rounding.
         self.assertIn(self.touching("", "velocity = [0.25, 0, 0]")[0], (20, 21))
 
     def test_gravity_of_the_scene_and_of_its_own(self):
-        # From 0.5 to 1 at 1 m/s²: 1 s.
+        # From 0.5 to 1 at 1 m/s² takes 1 s.
         for keys in ("", ", integrator = 'symplectic_euler'", ", integrator = 'backward_euler'", ", substeps = 4"):
             self.assertIn(self.touching("gravity = [1, 0, 0]", "damping = 0" + keys)[0], (9, 10, 11))
         self.assertEqual(self.touching("gravity = [1, 0, 0]", "gravity = [0, 0, 0]"), [])
@@ -243,7 +243,7 @@ class Springs(ProgramTest):
         self.assertEqual(self.touching("", motion + ", fixed = [[[-0.5, -1, -1], [-0.5, 1, 1]]]", 200), [])
 
     def test_pull_moves_in_its_time_and_holds(self):
-        # The side at 0.5 is pulled by 1 in 2 s: it reaches the plate after 1 s, and stays beyond it.
+        # The side at 0.5 is pulled by 1 in 2 s: it reaches the plate after 1 s and stays beyond it.
         touching = self.touching("", "pull = [{ box = [[0.5, -1, -1], [0.5, 1, 1]], by = [1, 0, 0], seconds = 2 }]")
         self.assertIn(touching[0], (10, 11))
         self.assertEqual(touching, list(range(touching[0], 40)))

@@ -1,4 +1,4 @@
-"""`supple simulate`: steps and frames, the same bytes again, recordings, and runs that end early."""
+"""Tests `supple simulate`: steps and frames, reproducible bytes, recordings, and runs that end early."""
 
 import json
 import os
@@ -13,7 +13,7 @@ from program import PROGRAM, ROOT, ProgramTest, run
 
 SCENES = ROOT / "scenes"
 SPRINGS = 'motion = { kind = "mass_spring", integrator = "verlet", stiffness = 50.0 }\n'
-# Two balls that fly into each other, wobbling.
+# Two wobbling balls that fly towards each other.
 BALLS = """[scene]
 time_step = 0.02
 seed = 3
@@ -30,7 +30,7 @@ scale = 0.4
 translate = [1, 0, 0]
 motion = { kind = "mass_spring", velocity = [-1, 0, 0], random_force = 2, deform_seconds = 0.2, random_speed = 0.1 }
 """
-# The first object is fine; the second's springs are far too stiff for the step.
+# The first object is stable; the springs of the second are far too stiff for the step.
 BLOWS_UP = """[scene]
 time_step = 0.05
 [[object]]
@@ -47,7 +47,7 @@ motion = { kind = "mass_spring", stiffness = 1e5, random_force = 1, deform_secon
 
 class SimulateTest(ProgramTest):
     def simulate(self, *arguments):
-        """The JSON of a run that must succeed."""
+        """Returns the JSON of a run that must succeed."""
         done = self.run_here("simulate", *arguments, "--json", "-")
         self.assertEqual((done.status, done.error), (0, ""))
         return json.loads(done.out)
@@ -110,7 +110,7 @@ class Steps(SimulateTest):
         start, end, *parts = (float(x) for x in rows[2][1].split())
         self.assertAlmostEqual(end, sum(parts), delta=0.01 * end)
         self.assertEqual(start, 0)
-        self.assertGreater(end, 20)  # 84 masses of 1 kg at 1 m/s, less what damping takes
+        self.assertGreater(end, 20)  # 84 masses of 1 kg at 1 m/s, minus the loss by damping
         self.assertLess(end, 60)
 
     def test_quiet(self):
@@ -153,7 +153,7 @@ class Recorded(SimulateTest):
         self.write("balls.toml", BALLS)
 
     def frame_count(self, name="run.h5"):
-        """Frames that can be read back."""
+        """The number of frames that can be read from the recording."""
         done = self.run_here("detect", name, "--json", "-", "--contacts", "none")
         self.assertEqual((done.status, done.error), (0, ""))
         return len(json.loads(done.out)["frames"])
@@ -166,7 +166,7 @@ class Recorded(SimulateTest):
         return process
 
     def wait_for_frames(self):
-        """The file is flushed once a second, and can be read while it grows."""
+        """Waits until the growing file can be read; it is flushed once per second."""
         deadline = time.monotonic() + 120
         while time.monotonic() < deadline:
             time.sleep(0.1)
@@ -198,7 +198,7 @@ class Recorded(SimulateTest):
         warning, error = done.error.splitlines()
         self.assertRegex(warning, r"^supple: warning: stiff\.toml: time_step 0\.05 .*stiff.*substeps = \d+.*backward_euler")
         step = int(re.search(r"stiff in step (\d+)", error)[1])
-        self.assertEqual(self.frame_count(), step)  # the start, and all steps before
+        self.assertEqual(self.frame_count(), step)  # the start and all previous steps
         self.assertTrue(all(not f["non_finite"] for f in self.detect("run.h5")["frames"]))
 
     def test_interrupted(self):
@@ -249,7 +249,7 @@ class Ends(SimulateTest):
         try:
             terminal, its_side = pty.openpty()
         except OSError as error:
-            self.skipTest(f"no terminal to be had: {error}")
+            self.skipTest(f"no terminal available: {error}")
         self.addCleanup(os.close, terminal)
         self.write("balls.toml", BALLS)
         process = subprocess.Popen([PROGRAM, "simulate", self.folder / "balls.toml", "--frames", "1000000000"],
@@ -281,7 +281,7 @@ class Ends(SimulateTest):
 
 
 class Scenes(SimulateTest):
-    """Each scene that comes with Supple runs, moves, and says what it shows."""
+    """Each scene that Supple includes runs, has a description and is documented."""
 
     def test_each(self):
         files = sorted(SCENES.glob("*.toml"))

@@ -1,5 +1,5 @@
-"""Large public meshes whose intersecting triangle pairs, and in motion whose touching elements, are known exactly: all of
-them must be found, and no other."""
+"""Checks large public meshes with exactly known results, namely intersecting triangle pairs, or touching
+elements during motion. The program must find all of them and no others."""
 
 import hashlib
 import json
@@ -13,7 +13,7 @@ import unittest
 from program import ROOT, ProgramTest
 
 DATA = pathlib.Path(os.environ.get("SUPPLE_DATA", ROOT.parent / "shared/data"))
-# The permutations of coordinates that the cases use, as quarter turns about x, then y, then z.
+# The coordinate permutations of the test cases, as quarter turns about x, then y, then z.
 TURNS = {"+x+y+z": [0, 0, 0], "-z+y+x": [0, -90, 0], "+x-z+y": [90, 0, 0], "+y+z+x": [-90, -90, 0]}
 
 
@@ -41,7 +41,7 @@ def read_obj_triangles(path):
 
 
 def read_ply_triangles(path):
-    """Of a binary PLY file of triangles: a count in a byte and three ids in four bytes each, to the end of the file."""
+    """Reads a binary PLY file of triangles, each with a count of one byte and three ids of four bytes."""
     content = path.read_bytes()
     header = content[: content.index(b"end_header")].decode()
     row = (">" if "big_endian" in header else "<") + "B3i"
@@ -51,14 +51,14 @@ def read_ply_triangles(path):
 
 
 def edge_numbers(path):
-    """The published numbers of edges (smaller id, larger id): ordered by the larger, then the smaller."""
+    """The published numbers of edges (smaller id, larger id): ordered by the larger, then by the smaller."""
     triangles = read_obj_triangles(path) if path.suffix == ".obj" else read_ply_triangles(path)
     edges = {(min(e), max(e)) for a, b, c in triangles for e in ((a, b), (b, c), (c, a))}
     return {edge: number for number, edge in enumerate(sorted(edges, key=lambda e: (e[1], e[0])))}
 
 
 def read_contacts(path):
-    """The time of each published contact (kind, first, second), as text."""
+    """The time of each published contact (kind, first, second) as text."""
     rows = (line.split() for line in path.read_text().splitlines())
     return {(kind, int(first), int(second)): time for kind, first, second, time in rows}
 
@@ -119,7 +119,7 @@ class Truth(ProgramTest):
     def expect_times(self, found, published):
         self.assertEqual(set(found), set(published))
         for contact, text in published.items():
-            # Fifteen digits: the truth is within half a unit of the last.
+            # Published times have fifteen digits; the exact time is within half a unit of the last one.
             early, late = float(text) * (1 - 1e-14) - 2.0**-30, float(text) * (1 + 1e-14)
             self.assertTrue(early <= found[contact] <= late, f"{contact}: {found[contact]}, published {text}")
 

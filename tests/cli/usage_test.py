@@ -1,4 +1,4 @@
-"""What scripts rely on: exit statuses, one-line errors, help that teaches by example."""
+"""Tests exit statuses, one-line errors and the help with its examples, on which scripts rely."""
 
 import re
 import subprocess
@@ -167,7 +167,7 @@ class ExitStatus(ProgramTest):
         self.assertEqual(self.status("a.obj", "b.obj", "--verify"), 0)
 
     def test_verify_differs(self):
-        # The paper's spheres do not enclose the corners of their boxes: two tips that touch there are missed.
+        # The paper's spheres do not enclose the corners of boxes and miss this contact of two tips.
         low = ([(0.0, 0.0, 0.0), (1.0, 0.0, 1.0), (1.0, 1.0, 1.0)], [(0, 1, 2)])
         high = ([(1.0, 1.0, 1.0), (2.0, 1.0, 2.0), (2.0, 2.0, 2.0)], [(0, 1, 2)])
         self.write("low.obj", low)

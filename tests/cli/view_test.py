@@ -1,4 +1,4 @@
-"""The viewer as scripts and browsers meet it: what is printed, who is let in, what a written page holds."""
+"""Tests the viewer as scripts and browsers use it: printed text, access control, exported pages."""
 
 import base64
 import gzip
@@ -31,7 +31,7 @@ motion = { kind = "mass_spring", random_speed = 0.5 }
 
 
 class WebSocket:
-    """A page's end: texts out, messages in."""
+    """The client end of a connection: sends texts, receives messages."""
 
     def __init__(self, url, path="/session"):
         host, query = re.fullmatch(r"http://([^/]*)/\?(.*)", url).groups()
@@ -52,11 +52,11 @@ class WebSocket:
     def send(self, **command):
         text = json.dumps(command).encode()
         assert len(text) < 126
-        # A mask of zeros leaves the text as it is.
+        # A mask of zeros does not change the text.
         self.socket.sendall(bytes([0x81, 0x80 | len(text), 0, 0, 0, 0]) + text)
 
     def receive(self):
-        """The bytes of a message, or the code by which the other end closes."""
+        """Returns the bytes of a message, or the code if the server closes."""
         first, length = self.file.read(2)
         if length == 126:
             (length,) = struct.unpack(">H", self.file.read(2))
@@ -66,7 +66,7 @@ class WebSocket:
         return struct.unpack(">H", data[:2])[0] if first & 15 == 8 else data
 
     def receive_text(self, kind):
-        """What the next message of a kind says of itself."""
+        """Returns the JSON of the next message of a kind."""
         while True:
             message = self.receive()
             assert not isinstance(message, int), f"closed with {message}"
@@ -84,7 +84,7 @@ SCENE, FRAME, ANSWER, FAILURE, SERIES = range(1, 6)
 
 class ViewTest(ProgramTest):
     def start(self, *arguments, **environment):
-        """Starts to serve; returns the process and its address."""
+        """Starts a server; returns the process and its address."""
         clean = {name: value for name, value in os.environ.items() if name not in ("DISPLAY", "WAYLAND_DISPLAY")}
         process = subprocess.Popen(
             [PROGRAM, "view", *map(str, arguments)],
@@ -112,7 +112,7 @@ class ViewTest(ProgramTest):
         return page
 
     def seek(self, page, frame):
-        """Stops a recording at a frame; returns what the frame says. Commands that follow find it there."""
+        """Stops a recording at a frame for later commands and returns the JSON of that frame."""
         page.send(do="pause")
         page.send(do="seek", frame=frame)
         while True:
@@ -213,7 +213,7 @@ class Serve(ViewTest):
         self.assertEqual((scene["frames"], scene["time_step"]), (12, 0.5))
         self.seek(page, 11)
         page.send(do="read", object=0, vertex=0, id=1)
-        self.assertAlmostEqual(page.receive_text(ANSWER)["position"][0], 1.1)  # of the last file, not of frame_9
+        self.assertAlmostEqual(page.receive_text(ANSWER)["position"][0], 1.1)  # the last file, not frame_9
 
     def test_files_and_waves_of_one_scene(self):
         self.write("frame_0.obj", TRIANGLE)
@@ -247,8 +247,8 @@ class Serve(ViewTest):
             self.assertIn(part, error)
 
     def visit(self, *arguments, opens=True, **environment):
-        """Starts and ends it with an opener of browsers that notes what it is given. Gives the address, what was noted (its
-        arguments, and mode and text of the file that they name), and what the program said of errors."""
+        """Runs the viewer with a fake browser opener that logs its calls. Returns the address, the log (the
+        arguments, and mode and text of the file that they name) and the standard error."""
         opener = self.write("bin/xdg-open", """#!/bin/sh
             printf '%s\\n' "$*" "$(stat -c %a "$1")" "$(cat "$1")" > opened.part
             mv opened.part opened
@@ -284,7 +284,7 @@ class Serve(ViewTest):
                 self.assertRegex(arguments, "^" + re.escape(f"{folder}/supple-") + r"\w{6}\.html$")
                 self.assertEqual(mode, "600")
                 self.assertIn(f'<meta http-equiv="refresh" content="0; url={url}">', page)
-                self.assertEqual(list(folder.iterdir()), [], "the file stays after the end")
+                self.assertEqual(list(folder.iterdir()), [], "the file remains after the end")
 
     def test_no_browser(self):
         self.write("a.obj", TRIANGLE)
@@ -295,7 +295,7 @@ class Serve(ViewTest):
             self.assertEqual(self.visit(*arguments, opens=False, **here, **environment)[1:], (None, ""))
             self.assertEqual(list(temporary.iterdir()), [])
 
-    @unittest.skipUnless(os.path.isdir("/proc/self"), "needs a folder where nobody can write, not even root")
+    @unittest.skipUnless(os.path.isdir("/proc/self"), "needs a folder in which even root cannot write")
     def test_where_no_file_for_the_browser_can_be_written(self):
         self.write("a.obj", TRIANGLE)
         _, opened, error = self.visit(opens=False, DISPLAY=":0", TMPDIR="/proc/self", XDG_RUNTIME_DIR="")
@@ -328,12 +328,12 @@ class Export(ViewTest):
     def test_show_holds_scene_or_frames(self):
         self.write("scene.toml", BODY)
         scene = self.cargo(self.export("scene.toml"), "supple-show")
-        self.assertEqual(scene, self.cargo(self.export("scene.toml"), "supple-show"), "another time, another page")
+        self.assertEqual(scene, self.cargo(self.export("scene.toml"), "supple-show"), "second export differs")
         self.assertNotEqual(scene, self.cargo(self.export("scene.toml", "--seed", 5), "supple-show"))
         for i in range(3):
             self.write(f"frame_{i}.obj", moved(TRIANGLE, 0.125 * i, 0, 0))
         frames = self.cargo(self.export("--sequence", "frame_*.obj"), "supple-show")
-        # The last frame's first vertex, as floats, from the middle of (0, 0, 0) and (1, 1, 0).
+        # The first vertex of the last frame as floats, relative to the centre of (0, 0, 0) and (1, 1, 0).
         self.assertIn(struct.pack("<3f", 0.25 - 0.5, -0.5, 0), frames)
 
     def test_pages_too_large_are_refused(self):

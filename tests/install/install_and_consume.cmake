@@ -1,4 +1,4 @@
-# LIBRARY is a build folder to install from; without it PROJECT is built with shared libraries first.
+# LIBRARY is a build folder to install from. If it is empty, PROJECT is first built with shared libraries.
 function(run)
   execute_process(COMMAND ${ARGN} COMMAND_ECHO STDOUT COMMAND_ERROR_IS_FATAL ANY)
 endfunction()
@@ -6,7 +6,7 @@ endfunction()
 file(REMOVE_RECURSE ${WORK}/prefix ${WORK}/consumer ${WORK}/recording_consumer)
 if(NOT LIBRARY)
   set(LIBRARY ${WORK}/library)
-  # What is tested is the linking, so the quickest build will do.
+  # The test checks only the linking, so it uses the fastest build.
   run(${CMAKE_COMMAND} -S ${PROJECT} -B ${LIBRARY} -G ${GENERATOR} -DCMAKE_CXX_COMPILER=${CXX_COMPILER}
     -DCMAKE_BUILD_TYPE= -DCMAKE_CXX_FLAGS=-O0 -DBUILD_SHARED_LIBS=ON -DSUPPLE_BUILD_TOOLS=OFF
     -DSUPPLE_BUILD_FORMATS=OFF -DSUPPLE_BUILD_SIMULATION=OFF

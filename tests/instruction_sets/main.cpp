@@ -1,6 +1,6 @@
-// The results of the hard scenes, compared with those that are equal everywhere: for machines and instruction
-// sets that the unit tests do not run on. Prints one line; exits with 1 when they differ, and with 77 when
-// this machine does not have the instruction set.
+// Compares the results of the degenerate scenes with the golden hashes, for machines and instruction sets on
+// which the unit tests do not run. Prints one line. Exits with 1 if they differ, and with 77 if this machine
+// does not support the instruction set.
 
 #include <hwy/targets.h>
 
@@ -13,8 +13,8 @@
 static_assert(HWY_TARGETS == SUPPLE_TARGET, "the options choose another instruction set, or several");
 
 #if defined(__wasm__)
-// Debian's C++ library for WebAssembly has no exceptions, and its C library not the stack guard that the
-// compiler's own functions ask for.
+// Debian's C++ library for WebAssembly has no exceptions, and its C library lacks the stack guard that
+// compiled functions need.
 extern "C" {
 extern std::uintptr_t __stack_chk_guard;
 std::uintptr_t __stack_chk_guard = 1;

@@ -1,4 +1,4 @@
-// Runs a WebAssembly program that uses nothing of the system but its standard streams.
+// Runs a WebAssembly program that uses only the standard streams of the system.
 import {readFileSync} from 'node:fs';
 import {argv, exit} from 'node:process';
 import {WASI} from 'node:wasi';

@@ -1,4 +1,4 @@
-// A layer for which there is no memory: the session says so, says which layers it gave up, and goes on.
+// When a layer does not fit in memory, the session reports it, names the disabled layers and continues.
 
 #include <gtest/gtest.h>
 
@@ -17,7 +17,7 @@ using Json = nlohmann::json;
 
 constexpr std::size_t large = 1'000'000;
 
-/// Memory in pieces of `large` bytes and more is refused as long as it lives.
+/// While this object exists, allocations of `large` bytes or more fail.
 class Scarcity {
  public:
   Scarcity() { refuse_allocations_from(large); }
@@ -26,7 +26,7 @@ class Scarcity {
   Scarcity& operator=(const Scarcity&) = delete;
 };
 
-/// Triangles on one another, which make 90,000 candidate pairs.
+/// Coincident triangles that give 90,000 candidate pairs.
 SceneView two_heaps() {
   SceneView show;
   for (const char* name : {"heap", "other heap"}) {
@@ -56,7 +56,7 @@ TEST(OutOfMemory, ALayerThatFailsIsGivenUpWithTheOthersAndTheyAreNamed) {
     failure = message.json;
     next = page.next_bytes();
   }
-  const ViewerMessage without(next);  // against the credit that the failure has not used
+  const ViewerMessage without(next);  // uses the credit that the failure did not consume
   EXPECT_EQ(failure["fatal"], false);
   EXPECT_FALSE(failure.contains("id"));
   EXPECT_EQ(failure["layers"], (Json{"candidates", "octree"}));
@@ -64,7 +64,7 @@ TEST(OutOfMemory, ALayerThatFailsIsGivenUpWithTheOthersAndTheyAreNamed) {
   EXPECT_EQ(without.kind, ViewerMessage::frame);
   EXPECT_FALSE(without.has(38) || without.has(40, 0));
 
-  // Asked for anew they come: they were given up, not forbidden.
+  // The layers return on request: they were disabled, not forbidden.
   page.ask({{"do", "layers"}, {"candidates", true}});
   const ViewerMessage frame = page.frame();
   EXPECT_EQ(frame.section(38).count, 90'000u);

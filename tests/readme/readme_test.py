@@ -1,4 +1,4 @@
-"""The README shows programs, their output and a CMake project; all are checked against the real thing."""
+"""Checks the programs, their output and the CMake project in the README."""
 
 import pathlib
 import re
@@ -11,7 +11,7 @@ PROGRAMS = [pathlib.Path(name) for name in sys.argv[2:]]
 
 
 def blocks(language):
-    """The README's blocks of code in this language."""
+    """The code blocks of the README in this language."""
     return re.findall(rf"^```{language}\n(.*?)^```$", (ROOT / "README.md").read_text(), re.M | re.S)
 
 

@@ -1,23 +1,21 @@
-// Writes a recording of objects whose place in each frame a script can compute: the program that the tests of
-// recordings stop in the middle, and whose output they read.
+// Writes a recording of objects whose positions in each frame a script can compute. The tests of recordings
+// stop this program at any moment and read its output.
 //
 // usage: record_motion OUT.h5 FRAMES [OPTION...]
 //
 //   --contacts none|intersection|continuous
-//   --frames-between-flushes N  0 (default): the recorder flushes as it sees fit
-//   --copies N                  objects of each kind, 1
-//   --pause MICROSECONDS        after each frame
-//   --log FILE                  notes all that is done to files, for a script to do it again and stop
-//   anywhere
-//   --fail-at N                 the Nth write to a file and all after it fail as on a full disk
+//   --frames-between-flushes N  0 (default): the recorder decides when to flush
+//   --copies N                  number of objects of each kind, default 1
+//   --pause MICROSECONDS        pause after each frame
+//   --log FILE                  log all file operations, so that a script can repeat any part of them
+//   --fail-at N                 the Nth write and all later writes fail as on a full disk
 //
 // It prints the number of frames after each flush.
 //
-// Of the log each entry is four 64-bit integers, in the machine's order, and what follows them:
-//
-//   0 FILE OFFSET SIZE          SIZE bytes, which are written there; FILE is the number of a file that is
-//   open 1 FILE SIZE 0               the file is given this size 2 FRAMES 0 0                that many frames
-//   have been flushed; before the first, the recording has no name yet
+// Each entry of the log has four 64-bit integers in native byte order, and possibly data:
+//   0 FILE OFFSET SIZE   a write of the SIZE bytes that follow; FILE is the number of an open file
+//   1 FILE SIZE 0        the file gets this size
+//   2 FRAMES 0 0         this many frames are flushed; the recording has no name before the first one
 
 #include <sys/syscall.h>
 #include <unistd.h>
@@ -65,7 +63,7 @@ int noted_truncation(int file, off_t size) {
 
 }  // namespace
 
-// Take the place of the C library's in this program.
+// These functions replace those of the C library in this program.
 extern "C" ssize_t pwrite(int file, const void* bytes, std::size_t size, off_t offset) {
   return noted_write(file, bytes, size, offset);
 }
@@ -123,7 +121,7 @@ Arguments parse(int count, char** words) {
   return arguments;
 }
 
-/// A sphere that goes up and down along x through a box that stands, and a cloth that folds into itself.
+/// A sphere that moves along x through a static box, and a cloth that folds into itself.
 class Motion {
  public:
   explicit Motion(const Arguments& arguments) : scene_({.contacts = arguments.contacts, .threads = 1}) {
@@ -141,7 +139,7 @@ class Motion {
   }
   const RecordingHeader& header() const { return header_; }
 
-  /// Moves everything to where it is in a frame and detects.
+  /// Moves all objects to their positions in a frame and detects.
   const DetectResult& step(std::uint64_t frame) {
     for (std::size_t i = 0; i < header_.objects.size(); ++i) {
       const RecordedObject& object = header_.objects[i];
@@ -158,7 +156,7 @@ class Motion {
   std::vector<std::span<const Vec3d>> positions() const { return {positions_.begin(), positions_.end()}; }
 
  private:
-  /// Exact in double: steps of 1/64, and a fold of y = |x| that opens and closes.
+  /// Exact in double precision, because offsets and scales are multiples of 1/64.
   static Vec3d moved(Vec3d rest, std::uint64_t frame) {
     const double place = static_cast<double>(frame % 64) / 64;
     return {rest.x + place, rest.y * (1 - place), rest.z};

@@ -1,4 +1,4 @@
-// Hands work to several threads as the library does; with an argument the ranges race for one variable.
+// Runs work on several threads like the library. With an argument, the threads race on one variable.
 #include <cstdio>
 #include <vector>
 

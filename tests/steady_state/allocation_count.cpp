@@ -1,5 +1,5 @@
-// The program's operators new and delete, which count and refuse. In a file of their own: inlined into the
-// code under test, compilers take the pairs of new and free for a mismatch.
+// Operators new and delete that count allocations and can refuse them. They are in a separate file: if they
+// were inlined into the code under test, compilers would warn about mismatched new and free.
 
 #include "allocation_count.hpp"
 

@@ -5,9 +5,9 @@
 
 namespace supple {
 
-/// Calls of any operator new in this program so far.
+/// The number of calls of any operator new in this program so far.
 std::uint64_t allocation_count();
-/// From now on any operator new throws `std::bad_alloc` for so many bytes and more.
+/// After this call, operator new throws `std::bad_alloc` for this many bytes or more.
 void refuse_allocations_from(std::size_t bytes);
 
 }  // namespace supple

@@ -1,4 +1,4 @@
-// Once they have their buffers, steps of masses and springs ask for no memory.
+// After their buffers are allocated, steps of mass-spring bodies allocate no memory.
 
 #include <gtest/gtest.h>
 

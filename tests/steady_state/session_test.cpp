@@ -1,4 +1,4 @@
-// A viewer's session that plays: once everything has been seen once, neither steps nor frames ask for memory.
+// After one full pass over its motion, a playing viewer session allocates no memory in steps or frames.
 
 #include <gtest/gtest.h>
 
@@ -17,7 +17,7 @@
 namespace supple::viewer {
 namespace {
 
-constexpr int period = 50;  // steps after which all waves are as they were
+constexpr int period = 50;  // number of steps after which all waves repeat
 constexpr double time_step = 0.02;
 
 ViewedObject ball(Vec3d at, std::uint64_t seed) {
@@ -27,7 +27,7 @@ ViewedObject ball(Vec3d at, std::uint64_t seed) {
   return object;
 }
 
-/// Balls in waves that begin and stop to touch, and a cloth that hangs still, of masses and springs.
+/// Waving balls that start and stop touching, and a mass-spring cloth at rest.
 SceneView waves() {
   SceneView show;
   show.simulation.time_step = time_step;
@@ -41,7 +41,7 @@ SceneView waves() {
   return show;
 }
 
-/// The same as frames in memory, a period of them.
+/// One period of the same motion as frames in memory.
 class WaveFrames final : public Frames {
  public:
   explicit WaveFrames(const SceneView& show) : objects_(show.objects) {}
@@ -65,7 +65,7 @@ struct Seen {
   std::uint64_t allocations = 0, frames = 0, least_bytes = ~std::uint64_t{0}, most_bytes = 0;
 };
 
-/// Plays the session step by step and takes each frame; counts allocations from the fifth period on.
+/// Plays the session step by step and takes each frame. Counts allocations in the last two of four periods.
 Seen play(SceneView show, std::initializer_list<std::string_view> commands = {}) {
   Session session(std::move(show));
   MessageWriter message;
@@ -92,7 +92,7 @@ Seen play(SceneView show, std::initializer_list<std::string_view> commands = {})
 void expect_no_allocations(const Seen& seen) {
   EXPECT_EQ(seen.allocations, 0u);
   EXPECT_EQ(seen.frames, 2u * period);
-  EXPECT_LT(seen.least_bytes + 1000, seen.most_bytes) << "contacts come and go";
+  EXPECT_LT(seen.least_bytes + 1000, seen.most_bytes) << "the number of contacts varies";
 }
 
 TEST(SteadyStateSession, NoAllocationsInStepsOfASimulation) {

@@ -1,5 +1,5 @@
-// Ten thousand steps of nine built-in objects that deform and collide: once a period of their motion is over,
-// no step allocates memory, and the octrees stay valid.
+// Ten thousand steps of nine built-in objects that deform and collide. After one period of their motion no
+// step allocates memory, and the octrees stay valid.
 
 #include <gtest/gtest.h>
 #include <malloc.h>
@@ -17,7 +17,7 @@
 namespace supple {
 namespace {
 
-/// An object that circles the origin and wobbles; the same again after `period` steps.
+/// An object that circles the origin and wobbles. The motion repeats after `period` steps.
 struct Wobbling {
   static constexpr int period = 1000;
 
@@ -92,7 +92,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Configuration{"SpheresOctree", BoundingVolume::sphere, BroadPhaseMethod::octree, 2000}),
     [](const auto& configuration) { return configuration.param.name; });
 
-/// Continuous contacts of a cloth with itself and a ball, both of them on paths.
+/// Continuous contacts of a cloth with itself and with a ball; both move on paths.
 TEST(SteadyStateContinuous, NoAllocationsAfterWarmUp) {
 #ifdef NDEBUG
   constexpr int steps = 240;
@@ -113,7 +113,7 @@ TEST(SteadyStateContinuous, NoAllocationsAfterWarmUp) {
     for (std::size_t v = 0; v < of_cloth.size(); ++v) {
       const Vec3d p = cloth_mesh.positions[v];
       const double fold = sin_turns(2 * p.x + turns);
-      // Nothing stays in line: the widest integers, for polynomials with repeated roots, are not on the
+      // The vertices are not collinear: repeated roots would need the widest integers, which are not on the
       // stack.
       const double bend = sin_turns(1.7 * p.x + 2.3 * p.z + turns),
                    other = sin_turns(p.x - 3.1 * p.z - turns);
@@ -140,7 +140,7 @@ TEST(SteadyStateContinuous, NoAllocationsAfterWarmUp) {
   EXPECT_GT(contacts, static_cast<std::uint64_t>(steps));
 }
 
-/// Balls that move in every way, a period of them again and again.
+/// Balls that move in every supported way, with a periodic motion.
 class MovingBalls {
  public:
   static constexpr int period = 20;
@@ -153,7 +153,7 @@ class MovingBalls {
       scene_.translate(ids_[i], center(i));
     }
   }
-  /// Returns how often memory was allocated.
+  /// Returns the number of allocations.
   std::uint64_t step(int step) {
     const double turns = static_cast<double>(step % period) / period;
     for (std::size_t v = 0; v < from_.size(); ++v) {
@@ -161,7 +161,7 @@ class MovingBalls {
       to_[v] = from_[v] + Vec3d{0.05, 0.1 * cos_turns(turns), 0};
     }
     const std::uint64_t before = allocation_count();
-    // There and back: sums of offsets are to be the same after each period.
+    // Forwards and back, so the sum of the offsets repeats after each period.
     scene_.translate(ids_[0], {step % 2 == 0 ? 0.25 : -0.25, 0, 0});
     scene_.set_transform(ids_[1], {.rotation = {cos_turns(turns), 0, sin_turns(turns), 0, 1, 0,
                                                 -sin_turns(turns), 0, cos_turns(turns)},
@@ -203,8 +203,8 @@ TEST_P(SteadyStateMoves, NoAllocationsAfterWarmUp) {
   EXPECT_GT(balls.contacts(), 1000u);
 }
 
-/// How tasks are split differs from step to step: a worker's lists may grow long after the first steps, each
-/// time to twice the size, and that less and less often.
+/// The distribution of tasks differs between steps: a worker's lists may still grow after the first steps.
+/// Each growth doubles the capacity, so allocations become rare.
 TEST_P(SteadyStateMoves, HardlyAnyAllocationsWithThreads) {
   MovingBalls balls(GetParam(), 3);
   std::uint64_t allocations = 0;

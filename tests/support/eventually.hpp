@@ -5,8 +5,7 @@
 
 namespace supple {
 
-/// Waits for a condition. Returns false when it does not hold within a minute, which is a failure on any
-/// machine.
+/// Waits for a condition. Returns false if it does not hold within a minute, long enough on any machine.
 template <class Condition>
 bool eventually(Condition condition) {
   const auto limit = std::chrono::steady_clock::now() + std::chrono::minutes(1);

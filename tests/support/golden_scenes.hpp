@@ -10,9 +10,9 @@
 
 namespace supple {
 
-/// What all hard families give together, bit for bit, on every machine, compiler, build type, number of
-/// threads and instruction set: contacts of positions, and contacts on the way from one set of positions to
-/// another.
+/// Hashes of the results of all degenerate families: contacts at given positions, and contacts during motion.
+/// They have the same bits on every machine and with every compiler, build type, number of threads and
+/// instruction set.
 constexpr std::uint64_t golden_hash = 2342057126839866175u;
 constexpr std::uint64_t golden_continuous_hash = 14350918484739907705u;
 constexpr std::uint64_t golden_normal_hash = 4176784545402189687u;
@@ -21,7 +21,7 @@ inline Scene scene_of(const std::vector<TriangleMesh>& meshes, const SceneOption
                       std::uint32_t arity = 8) {
   Scene scene(options);
   for (const TriangleMesh& mesh : meshes) {
-    // Colliding vertices are those of whole leaves: the hash is of a regular octree's.
+    // Colliding vertices belong to whole leaves, so the hash depends on the octree; it uses a regular one.
     scene.add(mesh,
               {.self_collision = true,
                .octree = {.leaf_size = 3, .arity = arity, .regular = options.comparison.colliding_vertices}});
@@ -47,7 +47,7 @@ inline std::uint64_t normal_hash_of_all_families(std::uint32_t threads) {
   return hash;
 }
 
-/// Only the first triangles of each object: nearly all of these pairs need exact arithmetic.
+/// Uses only the first triangles of each object: nearly all of these pairs need exact arithmetic.
 inline std::uint64_t continuous_hash_of_all_families(std::uint32_t threads) {
   std::uint64_t hash = 0xcbf29ce484222325u;
   for (const Family& family : hard_families()) {

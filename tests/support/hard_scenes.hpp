@@ -10,7 +10,7 @@
 
 namespace supple {
 
-/// Objects of a scene that is hard in one way.
+/// Makes objects of a scene with one kind of degeneracy.
 struct Family {
   const char* name;
   std::function<std::vector<TriangleMesh>(std::uint64_t seed)> make;
@@ -21,7 +21,7 @@ inline std::vector<TriangleMesh> random_soups(std::uint64_t seed) {
           crumpled_sheet(6, 6, 0.12, seed + 2)};
 }
 
-/// Sheets of a regular grid at heights that differ by an ulp or not at all.
+/// Regular grids at heights that are equal or differ by one rounding step.
 inline std::vector<TriangleMesh> near_touching_grids(std::uint64_t seed) {
   RandomNumbers random(seed);
   std::vector<TriangleMesh> meshes;
@@ -51,7 +51,7 @@ inline std::vector<TriangleMesh> coplanar_stacks(std::uint64_t seed) {
   return meshes;
 }
 
-/// The same box at sizes that nest, and one that touches it from inside.
+/// Nested copies of a sheet, two of them equal and one smaller by rounding only.
 inline std::vector<TriangleMesh> nested(std::uint64_t seed) {
   std::vector<TriangleMesh> meshes;
   for (const double size : {1.0, 0.5, 1.0 - 0x1p-53, 1.0}) {
@@ -68,7 +68,7 @@ inline std::vector<TriangleMesh> duplicated(std::uint64_t seed) {
   return {mesh, mesh};
 }
 
-/// Triangles that are points or segments, between proper ones, on a coarse lattice.
+/// Triangles on a coarse lattice; some are points or segments.
 inline std::vector<TriangleMesh> zero_area(std::uint64_t seed) {
   std::vector<TriangleMesh> meshes;
   for (int object = 0; object < 2; ++object) {
@@ -97,7 +97,7 @@ inline std::vector<TriangleMesh> scaled(std::uint64_t seed, double scale) {
   return meshes;
 }
 
-/// Ordinary triangles, some with corners at 1e30, others shrunk to 1e-30.
+/// Ordinary triangles; some have a corner near 1e30, others are scaled by 1e-30.
 inline std::vector<TriangleMesh> mixed_scales(std::uint64_t seed) {
   std::vector<TriangleMesh> meshes = random_soups(seed);
   RandomNumbers random(seed);

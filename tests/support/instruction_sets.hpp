@@ -6,8 +6,8 @@
 
 namespace supple {
 
-/// Calls `function(name)` once for each instruction set of this machine that the kernels are compiled for;
-/// they choose it for the duration of the call.
+/// Calls `function(name)` once per instruction set that is compiled in and supported here. During the call,
+/// the kernels use that set.
 template <class Function>
 void for_each_target(Function function) {
   for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {

@@ -10,9 +10,9 @@
 
 namespace supple {
 
-/// A mesh that moves, with all that the narrow phase needs of it.
+/// A moving mesh with all data that the narrow phase needs.
 struct MovingObject {
-  /// `end` empty: at rest.
+  /// An empty `end` means that the mesh is at rest.
   MovingObject(const TriangleMesh& mesh_in, const std::vector<Vec3d>& end_in,
                const ObjectOctreeOptions& options = {}, bool floats = true, std::uint32_t threads = 1)
       : mesh(mesh_in),
@@ -26,7 +26,7 @@ struct MovingObject {
   }
   const VertexBuffer& end_positions() const { return at_rest ? start : end; }
   OctreeView view() const { return moving_view_of(octree, elements, boxes, translation); }
-  /// Positions in the user's order into a buffer in that of the elements.
+  /// Copies positions in the user's order to a buffer in the order of the elements.
   void assign(VertexBuffer& buffer, const std::vector<Vec3d>& positions, bool floats,
               const Parallel& parallel) {
     VertexBuffer given;
@@ -42,7 +42,7 @@ struct MovingObject {
     const std::string wrong = elements.validate(octree);
     return wrong.empty() ? boxes.validate(octree, elements, start, end_positions()) : wrong;
   }
-  /// As stored, the user's numbers.
+  /// The stored position of a vertex in the user's numbering.
   Vec3d position(std::uint32_t vertex, bool at_end) const {
     const auto ids = elements.vertex_ids();
     const auto number = std::find(ids.begin(), ids.end(), vertex) - ids.begin();
@@ -58,7 +58,7 @@ struct MovingObject {
   Vec3d translation;
 };
 
-/// Each vertex somewhere within `distance` of where it was, after all of them went by `common`.
+/// Moves all vertices by `common`, and each coordinate by a random offset of at most `distance`.
 inline std::vector<Vec3d> displaced(const TriangleMesh& mesh, double distance, std::uint64_t seed,
                                     Vec3d common = {}) {
   RandomNumbers random(seed);

@@ -10,7 +10,7 @@
 
 namespace supple {
 
-/// The random numbers of all tests, equal on every machine: the standard defines the numbers of its engines,
+/// Random numbers for all tests, equal on every machine. The standard specifies the numbers of its engines,
 /// but not those of its distributions or of std::shuffle.
 class RandomNumbers {
  public:

@@ -9,7 +9,7 @@
 
 namespace supple {
 
-/// FNV-1a over what a step reports: equal for equal results, bit for bit.
+/// FNV-1a over all results of a step: equal for results with equal bits.
 inline std::uint64_t hash_of(const DetectResult& result, std::uint64_t hash = 0xcbf29ce484222325u) {
   const auto add = [&hash](const auto& value) {
     unsigned char bytes[sizeof(value)];
@@ -57,7 +57,7 @@ inline std::uint64_t hash_of(const DetectResult& result, std::uint64_t hash = 0x
   return hash;
 }
 
-/// Apart from `hash_of`, whose value is older.
+/// Separate from `hash_of`, whose values must not change.
 inline std::uint64_t hash_of_normals(const DetectResult& result, std::uint64_t hash) {
   for (const Contact& contact : result.contacts) {
     for (int axis = 0; axis < 3; ++axis) {
@@ -67,7 +67,7 @@ inline std::uint64_t hash_of_normals(const DetectResult& result, std::uint64_t h
   return hash;
 }
 
-/// One line for each difference that `verify` finds, none when it agrees.
+/// One line per difference that `verify` finds; empty if it agrees.
 inline std::string differences(const Scene& scene) {
   std::string text;
   for (const Difference& d : scene.verify().differences) {

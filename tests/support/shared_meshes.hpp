@@ -4,8 +4,8 @@
 
 namespace supple {
 
-/// The folder of real meshes with known answers: `SUPPLE_DATA`, or else `shared/data` beside the repository.
-/// It may not exist; tests that need it then report that they are skipped.
+/// The folder of real meshes with known results: `SUPPLE_DATA`, or `shared/data` beside the repository. If it
+/// does not exist, tests that need it are skipped.
 std::filesystem::path shared_meshes();
 
 }  // namespace supple

@@ -8,7 +8,7 @@
 
 namespace supple {
 
-/// Separate triangles of about `size` in a cube of half side `extent` about `center`.
+/// Separate triangles of about `size` in a cube with half side `extent` around `center`.
 inline TriangleMesh random_soup(std::uint32_t count, double extent, double size, std::uint64_t seed,
                                 Vec3d center = {}) {
   RandomNumbers random(seed);
@@ -22,7 +22,7 @@ inline TriangleMesh random_soup(std::uint32_t count, double extent, double size,
   return mesh;
 }
 
-/// A sheet of columns × rows squares with shared vertices, crumpled so that it cuts through itself.
+/// A sheet of columns × rows squares with shared vertices, crumpled so that it intersects itself.
 inline TriangleMesh crumpled_sheet(std::uint32_t columns, std::uint32_t rows, double roughness,
                                    std::uint64_t seed) {
   RandomNumbers random(seed);

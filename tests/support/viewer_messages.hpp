@@ -14,8 +14,8 @@
 
 namespace supple {
 
-/// A message of the viewer (docs/protocol.md), read without the code that wrote it. Throws
-/// `std::runtime_error` for whatever a reader must not accept.
+/// A parsed message of the viewer (docs/protocol.md). The parser is independent of the code that writes
+/// messages. Throws `std::runtime_error` for invalid messages.
 class ViewerMessage {
  public:
   static constexpr std::uint32_t no_object = 0xffffffff;

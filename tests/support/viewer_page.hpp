@@ -21,25 +21,25 @@
 namespace supple::viewer {
 
 using Json = nlohmann::json;
-/// Elements of sections.
+/// Types of the elements in sections.
 using Pair = std::array<std::uint32_t, 2>;
 using Ids = std::array<std::uint32_t, 8>;
 using Row = std::array<float, 8>;
 
-/// A page without a network: what it is told and what it says.
+/// A page without a network. It sends commands to the session and reads its messages.
 class TestPage {
  public:
   explicit TestPage(SceneView show) : session(std::move(show)) { session.greet(); }
 
-  /// The next message as it is sent, or nothing; until the next call.
+  /// The next message as sent, or empty; valid until the next call.
   std::span<const std::byte> next_bytes() { return session.next_message(message_); }
-  /// All messages that wait.
+  /// All pending messages.
   std::vector<ViewerMessage> drain() {
     std::vector<ViewerMessage> messages;
     for (auto bytes = next_bytes(); !bytes.empty(); bytes = next_bytes()) messages.emplace_back(bytes);
     return messages;
   }
-  /// The one message that waits.
+  /// The only pending message.
   ViewerMessage only() {
     std::vector<ViewerMessage> messages = drain();
     if (messages.size() != 1) throw std::runtime_error(std::to_string(messages.size()) + " messages came");
@@ -51,11 +51,11 @@ class TestPage {
       throw std::runtime_error("another kind of message came: " + message.json.dump());
     return message;
   }
-  /// The first messages of a simulation: the scene alone.
+  /// Returns the first message of a simulation, which is the scene.
   ViewerMessage scene() { return only(ViewerMessage::scene); }
 
   void say(const Json& command) { session.command(command.dump()); }
-  /// A command that is accepted.
+  /// Sends a command that must succeed, and returns its answer.
   Json ask(Json command) {
     command["id"] = ++last_id_;
     say(command);
@@ -67,7 +67,7 @@ class TestPage {
     }
     throw std::runtime_error("no answer to " + command.dump());
   }
-  /// What a command fails with; it must have done nothing else.
+  /// The error message of a command that must fail without other effects.
   std::string failure(const std::string& command) {
     session.command(command);
     const ViewerMessage message = only(ViewerMessage::failure);
@@ -75,12 +75,12 @@ class TestPage {
     return message.json["message"];
   }
 
-  /// The newest frame; there must be something new.
+  /// The newest frame; the test fails without one.
   ViewerMessage frame() {
     say({{"do", "credit"}, {"frames", 1}});
     return only(ViewerMessage::frame);
   }
-  /// After so many steps, each of which is taken.
+  /// Takes this many steps and returns the last frame.
   ViewerMessage frame_after_steps(int count) {
     ask({{"do", "step"}, {"count", count}});
     for (int i = 0; i < count; ++i) session.advance(0);
@@ -101,7 +101,7 @@ inline ViewedObject test_ball(const char* name, Vec3d at, std::uint32_t frequenc
   return object;
 }
 
-/// A ball in waves, a soft one that flies towards it, and one that rests.
+/// A waving ball, a soft ball that flies towards it, and a ball at rest.
 inline SceneView three_balls() {
   SceneView show;
   show.title = "balls";
@@ -111,7 +111,7 @@ inline SceneView three_balls() {
   return show;
 }
 
-/// Two balls that cut through each other, and one in waves a little further on.
+/// Two balls that intersect, and a waving ball at some distance.
 inline SceneView touching_balls() {
   SceneView show;
   show.objects = {test_ball("left", {}), test_ball("right", {1.5, 0, 0}), test_ball("waves", {4, 0, 0})};
@@ -119,7 +119,7 @@ inline SceneView touching_balls() {
   return show;
 }
 
-/// What a show's simulation is by the library alone.
+/// The same simulation created with the library alone.
 inline Simulation simulation_of(const SceneView& show) {
   Simulation simulation(show.simulation);
   for (const ViewedObject& object : show.objects) {
@@ -154,7 +154,7 @@ inline std::vector<Vec3f> as_floats(std::span<const Vec3d> positions, Vec3d cent
   return floats;
 }
 
-/// The contacts of a frame are those of the library, and so are their points.
+/// Expects that the contacts and contact points of a frame equal those of the library.
 inline void expect_contacts(const ViewerMessage& frame, const DetectResult& result, Vec3d center) {
   std::vector<Ids> contacts;
   for (const Contact& c : result.contacts)

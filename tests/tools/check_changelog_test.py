@@ -1,4 +1,4 @@
-"""The changelog check fires on a visible change without an entry, and only then."""
+"""The changelog check fails for a visible change without an entry, and only then."""
 
 import os
 import pathlib

@@ -1,4 +1,4 @@
-"""The include-order check passes on this repository, and fires on each made-up violation."""
+"""The include-order check passes on this repository and fails on each constructed violation."""
 
 import pathlib
 import subprocess

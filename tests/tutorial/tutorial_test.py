@@ -1,4 +1,4 @@
-"""Runs the tutorial as a reader would: writes its files, runs its commands and programs, and compares what they print."""
+"""Runs the tutorial: writes its files, runs its commands and programs, and compares the output."""
 
 import os
 import pathlib
@@ -11,12 +11,12 @@ import unittest
 ROOT = pathlib.Path(sys.argv[1])
 PROGRAMS = pathlib.Path(sys.argv[2]).resolve()
 PAGES = sorted((ROOT / "docs/tutorial").glob("*.md"))
-# A block of code, with the name of the file it is, if it is one.
+# A code block, optionally preceded by the name of its file.
 BLOCK = re.compile(r"(?:^<!-- file: (?P<file>\S+) -->\n)?^```(?P<language>\w+)\n(?P<code>.*?)^```$", re.M | re.S)
 
 
 def as_pattern(text):
-    """Matches the text; a line '...' stands for any lines."""
+    """A pattern for the text, in which a line '...' matches any lines."""
     lines = [r"(?:.*\n)*?" if line == "..." else re.escape(line) + r"\n" for line in text.splitlines()]
     return "".join(lines) + "$"
 

@@ -1,5 +1,5 @@
-// Plays the sessions that record_sessions has played natively in the WebAssembly module, and compares all messages by
-// their SHA-256. Then what must fail.
+// Plays the sessions of record_sessions in the WebAssembly module and compares the SHA-256 of all messages.
+// Then checks cases that must fail.
 //
 // usage: node play_sessions.mjs supple_session.wasm FOLDER
 import assert from 'node:assert/strict';
@@ -13,11 +13,11 @@ const statistics = 43, header = 16;
 
 class Failure extends Error {}
 
-/** An instance with the imports of viewer/wasm/README.md, and no others. */
+/** An instance with only the imports of viewer/wasm/README.md. */
 async function instantiate() {
   let memory;
   const view = () => new DataView(memory.buffer);
-  const notThere = () => 52;  // no such call
+  const notThere = () => 52;  // ENOSYS: the function does not exist
   const imports = {
     page: {
       fail(pointer, length) {
@@ -54,7 +54,7 @@ async function instantiate() {
   };
 }
 
-/** With zeros where clocks have been. */
+/** Replaces the statistics, which contain times, by zeros. */
 function withoutClocks(message) {
   for (let place = header, i = message.readUInt32LE(12); i > 0; --i) {
     const length = message.readUInt32LE(place + 12), data = place + header;
@@ -95,9 +95,9 @@ for (const session of sessions) {
 assert.ok(contacts > 1000, 'the sessions must have contacts to be compared');
 assert.equal(different, 0, 'sessions differ from those of the native build');
 const exploding = sessions.find(({name}) => name === 'exploding');
-assert.ok(exploding.failures > 0 && exploding.frames > 5, 'a body must blow up, and the session go on');
+assert.ok(exploding.failures > 0 && exploding.frames > 5, 'an unstable body must not end the session');
 
-// A damaged show fails in the page, by a message that says so.
+// A damaged file must fail with a message that says so.
 const damaged = readFileSync(join(folder, 'nine.show'));
 damaged[damaged.length - 1] ^= 1;
 await assert.rejects(async () => (await instantiate()).open(damaged), error => {
@@ -106,5 +106,5 @@ await assert.rejects(async () => (await instantiate()).open(damaged), error => {
   return true;
 });
 
-// Something that is no show at all, likewise.
+// Data of another format must also fail.
 await assert.rejects(async () => (await instantiate()).open(new Uint8Array(3)), Failure);

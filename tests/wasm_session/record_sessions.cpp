@@ -1,5 +1,5 @@
-// Plays sessions natively and writes what the test of the WebAssembly module needs to play them again: the
-// packed shows, what is done to them, and the SHA-256 of all messages, but for what clocks measure.
+// Plays sessions natively and writes files from which the test of the WebAssembly module repeats them: the
+// packed scenes, the commands, and the SHA-256 of all messages without measured times.
 //
 // usage: record_sessions FOLDER
 
@@ -26,7 +26,7 @@ using supple::viewer::ViewedObject;
 
 constexpr std::uint32_t statistics_tag = 43;
 
-/// What is done to a session: each entry a command as JSON text, or milliseconds that pass.
+/// The input of a session: each entry is a command as JSON text or a number of milliseconds to wait.
 struct Script {
   std::string name;
   SceneView show;
@@ -41,7 +41,7 @@ struct Script {
   }
 };
 
-/// Of whole messages, with zeros where clocks have been.
+/// The hash of whole messages, with zeros in place of measured times.
 class MessageHash {
  public:
   MessageHash() : context_(EVP_MD_CTX_new(), &EVP_MD_CTX_free) {
@@ -87,8 +87,8 @@ ViewedObject placed(const char* model, const std::string& name, supple::Vec3d at
   return object;
 }
 
-/// The nine objects of the paper's experiment: they deform for a while and then get random velocities, in a
-/// room so small that they meet.
+/// The nine objects of the paper's experiment. They deform for a while and then get random velocities in a
+/// room that is small enough for collisions.
 Script nine() {
   Script script{"nine", {}};
   script.show.title = "nine";
@@ -130,7 +130,7 @@ Script nine() {
   return script;
 }
 
-/// A body that blows up, in steps far too long for it, and goes on by another integrator.
+/// A body that becomes unstable with long steps, and continues with another integrator.
 Script exploding() {
   Script script{"exploding", {}};
   script.show.title = script.name;
@@ -145,7 +145,7 @@ Script exploding() {
   return script;
 }
 
-/// One that is hard in one way, in waves and against itself.
+/// A degenerate family with wave motion and self-collision.
 Script hard(const supple::Family& family, bool continuous) {
   Script script{std::string(family.name) + (continuous ? "_continuous" : ""), {}};
   script.show.title = script.name;
@@ -153,7 +153,7 @@ Script hard(const supple::Family& family, bool continuous) {
       continuous ? supple::ContactKinds::continuous : supple::ContactKinds::intersection;
   std::uint64_t seed = 0;
   for (supple::TriangleMesh& mesh : family.make(3)) {
-    // What exact arithmetic decides of all of them would take minutes.
+    // Exact arithmetic for all triangles would take minutes.
     if (continuous) mesh.triangles.resize(std::min<std::size_t>(mesh.triangles.size(), 12));
     ViewedObject object{std::move(mesh)};
     object.options.name = "object " + std::to_string(seed);
@@ -169,7 +169,7 @@ Script hard(const supple::Family& family, bool continuous) {
   return script;
 }
 
-/// Plays it; what the other one must find.
+/// Plays the script and returns the results that the module must reproduce.
 nlohmann::json play(const Script& script, std::span<const std::byte> packed) {
   supple::viewer::Session session(supple::viewer::unpack(packed));
   session.greet();

@@ -31,7 +31,7 @@ std::vector<IndexPair> find(BroadPhase& broad_phase, const std::vector<Volume>& 
   return {pairs.begin(), pairs.end()};
 }
 
-/// One of each method, the octree in all its variants.
+/// One set of options per method, and all variants of the octree.
 std::vector<BroadPhaseOptions> all_options() {
   std::vector<BroadPhaseOptions> all;
   for (const BroadPhaseMethod method : test::all_methods)
@@ -62,7 +62,7 @@ TEST(BroadPhase, EveryMethodFindsTheBoxPairsOfADoubleLoop) {
       BroadPhase broad_phase(options);
       ASSERT_EQ(find(broad_phase, scene.boxes), expected) << scene.name << ", " << describe(options);
       ASSERT_EQ(broad_phase.validate(), "") << scene.name << ", " << describe(options);
-      // The same once more, from what was kept.
+      // The second call reuses the state of the first.
       ASSERT_EQ(find(broad_phase, scene.boxes), expected) << scene.name << ", " << describe(options);
     }
   }
@@ -102,7 +102,7 @@ TEST(BroadPhase, TouchingCounts) {
 }
 
 TEST(BroadPhase, TouchingSpheresOfAnySizeShareARegion) {
-  // Pairs at the very limit of the sphere test, where region placement must not be stricter than it.
+  // Pairs at the limit of the sphere test: the placement in regions must not be stricter than that test.
   Random random(11);
   std::vector<BoundingSphere> spheres;
   for (int i = 0; i < 200; ++i) {
@@ -110,7 +110,7 @@ TEST(BroadPhase, TouchingSpheresOfAnySizeShareARegion) {
     const float radius = std::ldexp(random.uniform(0.5f, 1), -static_cast<int>(random.below(30)));
     const float reach = random.uniform(0.5f, 8);
     spheres.push_back({center, radius});
-    // To the side along one axis by exactly the sum of the radii, when floats can say so.
+    // A second sphere that touches the first along one axis, as exactly as floats allow.
     const int axis = static_cast<int>(random.below(3));
     Vec3f beside = center;
     beside[axis] += radius + reach;
@@ -152,7 +152,7 @@ TEST(BroadPhase, ABoxWithANanIsEmpty) {
   }
 }
 
-/// Boxes that drift, jump, change size, come and go; the gaits follow one another.
+/// Boxes that drift, jump, change size, appear and disappear. The kind of motion changes every 10 steps.
 class MovingBoxes {
  public:
   MovingBoxes() : boxes_(test::random_boxes(140, 10, 0.5f, 21)), random_(22) {}
@@ -223,7 +223,7 @@ TEST(BroadPhase, FollowsMovingSpheresForTwoHundredSteps) {
 }
 
 TEST(BroadPhase, AnyNumberOfThreadsGivesTheSamePairs) {
-  // More objects than one thread is handed at once.
+  // More objects than one thread receives in one chunk.
   std::vector<Aabb> boxes = test::random_boxes(9'000, 30, 0.6f, 31);
   const std::vector<BoundingSphere> spheres = test::spheres_in(boxes);
   BroadPhase reference_boxes({.method = BroadPhaseMethod::brute, .scene_octree = {}, .threads = 1});
@@ -318,7 +318,7 @@ TEST(BroadPhase, SaysWhichMethodRan) {
     EXPECT_EQ(broad_phase.stats().method, expected);
     EXPECT_EQ(broad_phase.regions().empty(), method != BroadPhaseMethod::octree);
     broad_phase.find_object_pairs(boxes);
-    EXPECT_EQ(broad_phase.stats().method, expected) << "nothing changed, so that no method ran since";
+    EXPECT_EQ(broad_phase.stats().method, expected) << "nothing changed, so no method ran again";
     EXPECT_EQ(broad_phase.stats().objects_changed, 0u);
   }
 }

@@ -20,7 +20,7 @@ using test::double_loop;
 using test::infinity;
 using test::Random;
 
-/// A box of any kind: most of them like the others of the scene, some far off, huge, flat, empty or infinite.
+/// A random box. Most boxes are ordinary; some are distant, huge, flat, empty or infinite.
 Aabb any_box(Random& random, float side, float size) {
   constexpr float nan = std::numeric_limits<float>::quiet_NaN();
   const Vec3f center = random.point(0, side), half = random.point(0.1f * size, size);
@@ -39,7 +39,7 @@ Aabb any_box(Random& random, float side, float size) {
       return {{center.x, center.y, nan}, center + half};
     case 6:
       return box_around(center * 1e36f, half);
-    case 7:  // on whole numbers: many touch
+    case 7:  // integer coordinates, so many boxes touch
       return {{std::floor(center.x), std::floor(center.y), std::floor(center.z)},
               {std::floor(center.x) + 1, std::floor(center.y) + 1, std::floor(center.z) + 1}};
     default:
@@ -47,7 +47,7 @@ Aabb any_box(Random& random, float side, float size) {
   }
 }
 
-/// Drifts, or is somewhere else.
+/// A box that has drifted, or a new random box.
 Aabb moved(const Aabb& box, Random& random, float side, float size) {
   if (random.below(3) == 0) return any_box(random, side, size);
   const Vec3f by = random.point(-0.3f * size, 0.3f * size);
@@ -64,7 +64,7 @@ TEST(BroadPhase, WithADirtyListOrWithoutFindsThePairsOfADoubleLoop) {
       for (const BroadPhaseMethod method : test::all_methods)
         kind->emplace_back(BroadPhaseOptions{.method = method, .scene_octree = {}, .threads = 1});
     for (int step = 0; step < 120; ++step) {
-      // Mostly few, sometimes all or none; some come, some go.
+      // Usually few objects change, sometimes all or none; objects are added and removed.
       const std::uint32_t one_in = step % 17 == 16 ? 1 : step % 11 == 10 ? 5 : 40;
       std::vector<std::uint32_t> changed;
       if (step == 50) boxes.resize(boxes.size() - 3);
@@ -111,7 +111,7 @@ TEST(BroadPhase, FollowsFewThatMoveInHardScenes) {
     for (int step = 0; step < 40; ++step) {
       std::vector<std::uint32_t> changed;
       for (std::uint32_t k = 0; k < 4; ++k) {
-        // Exchanges, so that the scene stays what it is.
+        // Boxes are exchanged, so the scene as a whole stays the same.
         const std::uint32_t i = random.below(static_cast<std::uint32_t>(boxes.size()));
         const std::uint32_t j = random.below(static_cast<std::uint32_t>(boxes.size()));
         std::swap(boxes[i], boxes[j]);
@@ -138,7 +138,7 @@ TEST(BroadPhase, RefusesAListWithNumbersOfNoVolumes) {
   const auto found = broad_phase.find_object_pairs(boxes, right);
   const std::vector<IndexPair> expected = double_loop(boxes);
   EXPECT_TRUE(std::equal(found.begin(), found.end(), expected.begin(), expected.end()));
-  // After spheres all boxes are new, whatever the list says.
+  // After a search with spheres, all boxes count as changed, whatever the list contains.
   const std::vector<BoundingSphere> spheres = test::spheres_in(boxes);
   broad_phase.find_object_pairs(spheres, right);
   EXPECT_EQ(broad_phase.find_object_pairs(boxes, right).size(), expected.size());
@@ -170,7 +170,7 @@ TEST(BroadPhase, SeesWhatAListLeftOutWhenAListHasItOrNoneIsGiven) {
 class Automatic {
  public:
   explicit Automatic(BroadPhaseOptions options = {}) : broad_phase_(options) {}
-  /// Compares with brute force and with the octree's count of changes.
+  /// Compares the pairs and the count of changed objects with those of brute force.
   const BroadPhaseStats& step(const std::vector<Aabb>& boxes) {
     const auto found = broad_phase_.find_object_pairs(boxes), expected = brute_.find_object_pairs(boxes);
     EXPECT_TRUE(std::equal(found.begin(), found.end(), expected.begin(), expected.end()));
@@ -229,7 +229,7 @@ TEST(AutomaticSearch, DoesNotBuildRegionsWhenFewAndManyChangesTakeTurns) {
 }
 
 TEST(AutomaticSearch, LeavesCrowdsToTheOctreeForSomeSteps) {
-  // Two crowds in a wide scene: no cell of the grid parts them, regions do.
+  // Two dense clusters in a wide scene. No cell size of the grid separates their boxes; the regions do.
   Random random(12);
   std::vector<Aabb> boxes = test::random_boxes(1500, 1, 0.01f, 13);
   boxes.push_back(box_around({1e6f, 1e6f, 1e6f}, {1, 1, 1}));
@@ -245,7 +245,7 @@ TEST(AutomaticSearch, LeavesCrowdsToTheOctreeForSomeSteps) {
   std::size_t steps = 0;
   for (; steps < 100 && automatic.step(boxes).method == BroadPhaseMethod::octree; ++steps)
     for (Aabb& box : boxes) box = {box.min + Vec3f{0.01f, 0, 0}, box.max + Vec3f{0.01f, 0, 0}};
-  EXPECT_LE(steps, 64u) << "the grid is tried again";
+  EXPECT_LE(steps, 64u) << "the automatic method returns to the grid";
 }
 
 TEST(BroadPhase, FewMoveAlikeWithEveryInstructionSetAndNumberOfThreads) {

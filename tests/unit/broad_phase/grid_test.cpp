@@ -19,7 +19,7 @@ using test::double_loop;
 using test::infinity;
 using test::Random;
 
-/// The grid by itself, for boxes or spheres.
+/// The grid without the other methods, for boxes or spheres.
 class GridOnly {
  public:
   explicit GridOnly(std::uint32_t threads, BoundingVolume kind = BoundingVolume::aabb)
@@ -30,7 +30,7 @@ class GridOnly {
     grid_.search(volumes_, parallel_, found_);
     return found_.pairs;
   }
-  /// The automatic method would search with the grid.
+  /// True if the automatic method does not use the grid.
   bool is_crowded() { return !grid_.search_unless_crowded(volumes_, parallel_, found_); }
   std::uint64_t tests() const { return found_.stats.object_pairs_tested; }
 
@@ -41,7 +41,7 @@ class GridOnly {
   FoundPairs found_;
 };
 
-/// Side by side, so that many touch and none of them overlap in more than a face.
+/// Adjacent unit boxes: many touch, and no two of them share more than a face.
 std::vector<Aabb> lattice(std::uint32_t x, std::uint32_t y, std::uint32_t z) {
   std::vector<Aabb> boxes;
   for (std::uint32_t i = 0; i < x * y * z; ++i) {
@@ -52,7 +52,7 @@ std::vector<Aabb> lattice(std::uint32_t x, std::uint32_t y, std::uint32_t z) {
   return boxes;
 }
 
-/// Extents over many powers of two, along each axis by itself.
+/// Boxes whose extents range over many powers of two, chosen separately for each axis.
 std::vector<Aabb> mixed_boxes(std::size_t count, int lowest, int highest, float side, std::uint32_t seed) {
   Random random(seed);
   std::vector<Aabb> boxes;
@@ -114,19 +114,19 @@ std::vector<test::NamedBoxes> hard_scenes() {
 }
 
 TEST(GridSearch, FindsThePairsOfADoubleLoop) {
-  // One after the other: what is kept of one scene must not show in the next.
+  // All scenes use the same searches: state kept from one scene must not affect the next.
   GridOnly one(1), three(3);
   std::size_t with_pairs = 0, crowded = 0;
   for (const test::NamedBoxes& scene : hard_scenes()) {
     const std::vector<IndexPair> expected = double_loop(scene.boxes);
     with_pairs += !expected.empty();
     ASSERT_EQ(one.find(scene.boxes), expected) << scene.name;
-    ASSERT_EQ(one.find(scene.boxes), expected) << scene.name << ", once more";
+    ASSERT_EQ(one.find(scene.boxes), expected) << scene.name << ", second search";
     ASSERT_EQ(three.find(scene.boxes), expected) << scene.name << ", three threads";
     EXPECT_GE(one.tests(), expected.size()) << scene.name;
     if (!one.is_crowded()) continue;
     ++crowded;
-    EXPECT_GT(scene.boxes.size(), 256u) << scene.name << " is not that crowded";
+    EXPECT_GT(scene.boxes.size(), 256u) << scene.name << " is not crowded";
   }
   EXPECT_GE(with_pairs, 20u);
   EXPECT_GE(crowded, 2u);
@@ -154,7 +154,7 @@ TEST(GridSearch, EveryInstructionSetFindsThePairsOfADoubleLoop) {
     for_each_target([&](const char* name) {
       GridOnly grid(1);
       grid.find(scene.boxes);
-      // Once more: whether there are many pairs is known from the call before.
+      // The second search knows from the first whether there are many pairs.
       const std::vector<IndexPair>& found = grid.find(scene.boxes);
       EXPECT_EQ(found, expected) << scene.name << " by " << name;
       if (tests == 0) tests = grid.tests();
@@ -190,7 +190,7 @@ TEST(GridSearch, ThreadsDoTheSameTests) {
 }
 
 TEST(GridSearch, DividesWhatIsDense) {
-  // Against 200 million for brute force and ten million for a sweep.
+  // Brute force does 200 million tests here, a sweep ten million.
   const std::vector<Aabb> boxes = test::random_boxes(20'000, 27, 0.5f, 10);
   GridOnly grid(1);
   grid.find(boxes);
@@ -248,7 +248,7 @@ TEST(PairSorter, SortsRunsOfAnyLength) {
     EXPECT_TRUE(std::is_sorted(sorted.begin(), sorted.end()));
     EXPECT_GT(sorted.size(), 2 * expected.size());
     sorted.erase(std::unique(sorted.begin(), sorted.end()), sorted.end());
-    EXPECT_EQ(sorted, expected) << slots << ", some twice and three times";
+    EXPECT_EQ(sorted, expected) << slots << ", some pairs two or three times";
     for_each_target([&](const char* name) {
       put(sorter.start(1, slots)[0], 0, 1);
       sorter.finish(parallel, sorted);

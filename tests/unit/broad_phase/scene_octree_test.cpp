@@ -17,7 +17,7 @@ namespace {
 using test::box_around;
 using test::Random;
 
-/// The octree by itself, so that counters can be seen.
+/// The octree without the other methods, with access to its counters.
 class Octree {
  public:
   explicit Octree(SceneOctreeOptions options = {})
@@ -59,7 +59,7 @@ TEST_P(SceneOctreeArity, NumbersRegionsAsThePaperDoes) {
     EXPECT_EQ(region.object_count, 0u);
     const Vec3f middle = (region.box.min + region.box.max) * 0.5f;
     for (std::uint64_t k = 0; k < arity; ++k) {
-      ASSERT_TRUE(by_number.contains(arity * number + 1 + k)) << "regions come in groups";
+      ASSERT_TRUE(by_number.contains(arity * number + 1 + k)) << "a region has all its children";
       const SceneRegion& child = by_number[arity * number + 1 + k];
       EXPECT_EQ(child.level, region.level + 1);
       for (int turn = 0; turn < 3; ++turn) {
@@ -81,7 +81,7 @@ INSTANTIATE_TEST_SUITE_P(Arities, SceneOctreeArity, testing::Values(2u, 4u, 8u))
 
 TEST(SceneOctree, ExpandsWhenTwoShareARegionAndReducesWhenTheyPart) {
   Octree octree({.max_level = 4, .expand_at = 2, .region_sphere_test = {}});
-  // Two small objects far apart within a cube that two others hold open.
+  // Small objects far apart. The first two span the root cube.
   std::vector<Aabb> boxes{box_around({0, 0, 0}, {0.01f, 0.01f, 0.01f}),
                           box_around({16, 16, 16}, {0.01f, 0.01f, 0.01f}),
                           box_around({1, 15, 1}, {0.01f, 0.01f, 0.01f})};
@@ -89,7 +89,7 @@ TEST(SceneOctree, ExpandsWhenTwoShareARegionAndReducesWhenTheyPart) {
   EXPECT_EQ(octree.regions().size(), 9u) << "each of the three is alone in a region of level 1";
 
   boxes[2] = box_around({0.1f, 0.1f, 0.1f}, {0.01f, 0.01f, 0.01f});
-  // Fewer than a quarter of the objects would have to move for the step to be incremental.
+  // The octree updates incrementally only if fewer than a quarter of the objects change regions.
   std::vector<Aabb> crowd = boxes;
   Octree many({.max_level = 4, .expand_at = 2, .region_sphere_test = {}});
   for (int i = 0; i < 12; ++i) crowd.push_back(box_around({12, 2, 2}, {5, 5, 5}));
@@ -129,7 +129,7 @@ TEST(SceneOctree, LooksOnlyAtWhatMoved) {
   EXPECT_EQ(still.regions_expanded + still.regions_reduced + still.regions_rebuilt, 0u);
   EXPECT_EQ(octree.pairs(), pairs);
 
-  // So small a move crosses no plane, but it may change pairs.
+  // A move this small crosses no plane, but it may change the pairs.
   const float aside = std::nextafter(boxes[5].min.x, -1.0f);
   boxes[5].min.x = aside;
   const BroadPhaseStats nudged = octree.step(boxes);
@@ -154,20 +154,20 @@ TEST(SceneOctree, TrustsTheListOfChange) {
   std::vector<std::uint32_t> changed;
   const Aabb old = boxes[4];
   boxes[4] = box_around({5, 5, 5}, {4, 4, 4});
-  EXPECT_EQ(octree.step(boxes, changed).objects_changed, 0u) << "not listed, so not looked at";
+  EXPECT_EQ(octree.step(boxes, changed).objects_changed, 0u) << "objects not listed are ignored";
   EXPECT_EQ(octree.pairs(), before);
   changed = {4, 7, 4};
   EXPECT_EQ(octree.step(boxes, changed).objects_changed, 1u);
   EXPECT_GT(octree.pairs().size(), before.size());
   boxes[4] = old;
-  // Slots that are new count as changed.
+  // New slots count as changed.
   boxes.push_back(boxes[0]);
   EXPECT_EQ(octree.step(boxes, changed).objects_changed, 2u);
   EXPECT_TRUE(std::binary_search(octree.pairs().begin(), octree.pairs().end(), IndexPair{0, 300}));
 }
 
 TEST_P(SceneOctreeArity, IsTheSameHoweverItCameAbout) {
-  // The regions after many small steps are those of a tree made at once in the same cube.
+  // After many small steps, the regions equal those of a tree built once in the same cube.
   Random random(4);
   std::vector<Aabb> boxes = test::random_boxes(400, 20, 0.4f, 5);
   SceneCubeChooser chooser;
@@ -204,7 +204,7 @@ TEST_P(SceneOctreeArity, IsTheSameHoweverItCameAbout) {
 }
 
 TEST(SceneOctree, CoincidentObjectsDoNotBlowUpTheRegions) {
-  // The deepest tree allowed, and nothing that dividing could tell apart.
+  // The deepest tree allowed, with objects that no subdivision separates.
   const SceneOctreeOptions deepest{.max_level = 20, .expand_at = 2, .region_sphere_test = {}};
   std::vector<Aabb> boxes(600, box_around({1, 1, 1}, {0.25f, 0.25f, 0.25f}));
   Octree coincident(deepest);
@@ -212,7 +212,7 @@ TEST(SceneOctree, CoincidentObjectsDoNotBlowUpTheRegions) {
   EXPECT_EQ(coincident.pairs().size(), 600u * 599u / 2);
   EXPECT_LE(coincident.regions().size(), 8u * 8u * 3u);
 
-  // Points on top of one another in a scene a million times as wide: one chain of regions, at most 8 wide.
+  // Coincident points in a scene a million times as wide: the tree is one chain of regions, at most 8 wide.
   for (Aabb& box : boxes) box = box_around({1, 1, 1}, {0, 0, 0});
   boxes.back() = box_around({1e6f, 1e6f, 1e6f}, {1, 1, 1});
   boxes[1] = boxes.back();
@@ -221,7 +221,7 @@ TEST(SceneOctree, CoincidentObjectsDoNotBlowUpTheRegions) {
   points.step(boxes);
   EXPECT_LE(points.regions().size(), 2u * 8u * 8u * 20u);
 
-  // A wall through the whole scene touches every region; it expands none of them.
+  // Boxes that cover the whole scene overlap every region; they expand none of them.
   std::vector<Aabb> dust = test::random_boxes(200, 10, 0.001f, 6);
   Octree without(deepest);
   without.step(dust);
@@ -238,7 +238,7 @@ TEST(SceneOctree, RebuildsWhenTheSceneOutgrowsTheCube) {
   std::vector<Aabb> boxes = test::random_boxes(1000, 10, 0.2f, 7);
   octree.step(boxes);
   const float edge = octree.regions()[0].box.max.x - octree.regions()[0].box.min.x;
-  // Everything flies apart slowly: a few objects cross regions in each step, never many at once.
+  // All objects move apart slowly: a few of them change regions in each step, never many at once.
   std::uint64_t rebuilt = 0;
   for (int step = 0; step < 60; ++step) {
     for (Aabb& box : boxes) box = box_around((box.min + box.max) * (0.5f * 1.05f), {0.1f, 0.1f, 0.1f});
@@ -278,11 +278,11 @@ TEST(SceneOctree, DividesUntilLeavesAreSmallUnlessObjectsAreLarge) {
   Octree large;
   large.step(test::random_boxes(2'000, 20, 9.0f, 10));
   EXPECT_LT(large.regions().size(), 300u) << "regions are no smaller than the objects in them";
-  // Few objects are divided until each is alone.
+  // With few objects, regions are divided until each object is alone.
   Octree few;
   few.step(test::random_boxes(30, 20, 0.001f, 11));
   EXPECT_EQ(largest_leaf(few), 1u);
-  // A crowd that cannot be divided does not keep the others from being divided.
+  // Coincident objects that cannot be separated do not prevent the division of the other regions.
   std::vector<Aabb> crowd(500, box_around({10, 10, 10}, {0, 0, 0}));
   const std::vector<Aabb> rest = test::random_boxes(4000, 20, 0.01f, 12);
   crowd.insert(crowd.end(), rest.begin(), rest.end());

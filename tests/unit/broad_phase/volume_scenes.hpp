@@ -34,7 +34,7 @@ inline constexpr std::array all_methods{BroadPhaseMethod::automatic, BroadPhaseM
                                         BroadPhaseMethod::grid, BroadPhaseMethod::sweep,
                                         BroadPhaseMethod::brute};
 
-/// The independent reference: every volume against every other.
+/// The independent reference: tests every pair of volumes.
 template <class Volume>
 std::vector<IndexPair> double_loop(const std::vector<Volume>& volumes) {
   std::vector<IndexPair> pairs;
@@ -89,7 +89,7 @@ inline std::vector<Aabb> lattice_boxes(int side) {
   return boxes;
 }
 
-/// Scenes that are easy to get wrong, next to ordinary ones.
+/// Degenerate scenes and ordinary ones.
 inline std::vector<NamedBoxes> box_scenes() {
   std::vector<NamedBoxes> scenes;
   scenes.push_back({"none", {}});
@@ -148,7 +148,7 @@ inline std::vector<NamedBoxes> box_scenes() {
   return scenes;
 }
 
-/// Spheres in place of boxes: half as wide as the boxes' longest side. Empty boxes give empty spheres.
+/// Spheres at the centres of the boxes, with half the longest side as radius; empty for empty boxes.
 inline std::vector<BoundingSphere> spheres_in(const std::vector<Aabb>& boxes) {
   std::vector<BoundingSphere> spheres;
   for (const Aabb& box : boxes) {

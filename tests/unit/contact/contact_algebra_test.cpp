@@ -37,7 +37,7 @@ Answer between(double low) {
   return TimeBracket{low, std::nextafter(low, 2.0)};
 }
 
-/// The doubles next to a rational.
+/// The bracket of neighbouring doubles around a rational time.
 Answer around(const Rational& time) {
   double low = time.convert_to<double>();
   if (Rational(low) > time) low = std::nextafter(low, -1.0);
@@ -52,12 +52,12 @@ Answer edge_edge(const Points& start, const Points& end, double separation = 0) 
   return first_contact_by_algebra(EdgeEdgeMotion{start, end}, separation);
 }
 
-/// A vertex on a straight path, the face at rest.
+/// The vertex moves on a straight path; the face is at rest.
 Answer vertex_on_face(Vec3d from, Vec3d to, const std::array<Vec3d, 3>& face, double separation = 0) {
   return vertex_face({from, face[0], face[1], face[2]}, {to, face[0], face[1], face[2]}, separation);
 }
 
-/// Edge a moves by `path`, edge b rests.
+/// Edge a moves by `path`; edge b is at rest.
 Answer edge_on_edge(const std::array<Vec3d, 2>& a, Vec3d path, const std::array<Vec3d, 2>& b,
                     double separation = 0) {
   return edge_edge({a[0], a[1], b[0], b[1]}, {a[0] + path, a[1] + path, b[0], b[1]}, separation);
@@ -104,14 +104,14 @@ TEST(ContactAlgebra, FaceCollapsed) {
 }
 
 TEST(ContactAlgebra, FaceCollapsesAtTheMomentOfContact) {
-  // The face shrinks to a segment at t = 1/2, when the vertex comes by.
+  // The face shrinks to a segment at t = 1/2, when the vertex passes it.
   const Points start = {{{1, 0, 1}, {0, 0, 0}, {4, 0, 0}, {1, 2, 0}}};
   const Points end = {{{1, 0, -1}, {0, 0, 0}, {4, 0, 0}, {1, -2, 0}}};
   EXPECT_EQ(vertex_face(start, end), exactly(0.5));
   Points beside = start, beside_end = end;
   beside[0].x = beside_end[0].x = 5;
   EXPECT_EQ(vertex_face(beside, beside_end), never);
-  // It shrinks to a point.
+  // The face shrinks to a point.
   const Points triangle = {{{0, 0, 3}, {1, 0, 0}, {-1, 1, 0}, {-1, -1, 0}}};
   const Points inverted = {{{0, 0, -3}, {-1, 0, 0}, {1, -1, 0}, {1, 1, 0}}};
   EXPECT_EQ(vertex_face(triangle, inverted), exactly(0.5));
@@ -132,7 +132,7 @@ TEST(ContactAlgebra, EdgesCross) {
   EXPECT_EQ(edge_on_edge(a, {0, 0, -3}, b), around(Rational(1, 3)));
   EXPECT_EQ(edge_on_edge(a, {0, 0, -0.5}, b), never);
   EXPECT_EQ(edge_on_edge({{{1, 0, 1}, {2, 0, 1}}}, {0, 0, -3}, b), never);
-  // End point on edge, end point on end point.
+  // An end point meets the interior of an edge, then an end point meets an end point.
   EXPECT_EQ(edge_on_edge({{{0, 0, 1}, {2, 0, 1}}}, {0, 0, -3}, b), around(Rational(1, 3)));
   EXPECT_EQ(edge_on_edge({{{0, 1, 1}, {2, 3, 1}}}, {0, 0, -3}, b), around(Rational(1, 3)));
 }
@@ -191,7 +191,7 @@ TEST(ContactAlgebra, WithinASeparationOfAFace) {
 }
 
 TEST(ContactAlgebra, WithinASeparationOfAnEdgeOrVertex) {
-  // Beside the edge y = 0, then diagonally below it, then past the vertex at the origin.
+  // The nearest feature is the edge y = 0 (beside it, then diagonally below it), then the origin's vertex.
   EXPECT_EQ(vertex_on_face({1, -2, 0}, {1, 0, 0}, flat_face, 0.5), exactly(0.75));
   EXPECT_EQ(vertex_on_face({1, -5, 0}, {1, 4, 0}, flat_face, 2), around(Rational(1, 3)));
   EXPECT_EQ(vertex_on_face({1, -3, -4}, {1, -3, 5}, flat_face, 3), around(Rational(4, 9)));
@@ -202,7 +202,7 @@ TEST(ContactAlgebra, WithinASeparationOfAnEdgeOrVertex) {
 }
 
 TEST(ContactAlgebra, IrrationalTime) {
-  // √2 (1 - t) = 1.
+  // The vertex reaches the separation when √2 (1 - t) = 1.
   const Answer found = vertex_on_face({-1, -1, 0}, {0, 0, 0}, flat_face, 1);
   ASSERT_TRUE(found);
   const auto two_squares = [](double t) { return Rational(2) * (1 - Rational(t)) * (1 - Rational(t)); };
@@ -217,7 +217,7 @@ TEST(ContactAlgebra, EdgesWithinASeparation) {
   EXPECT_EQ(edge_on_edge(a, {0, 0, -2.25}, b, 0.25), around(Rational(1, 3)));
   EXPECT_EQ(edge_on_edge(a, {}, b, 1), exactly(0));
   EXPECT_EQ(edge_on_edge(a, {}, b, std::nextafter(1, 0)), never);
-  // End point near edge, end point near end point, parallel, along one line.
+  // End point near an edge, end point near an end point, parallel edges, collinear edges.
   EXPECT_EQ(edge_on_edge({{{4, 0, 0}, {6, 0, 0}}}, {-9, 0, 0}, b, 1), around(Rational(1, 3)));
   EXPECT_EQ(edge_on_edge({{{4, 4, 8}, {6, 4, 8}}}, {0, 0, -8}, b, 5), exactly(1));
   EXPECT_EQ(edge_on_edge({{{4, -1, 0}, {4, 1, 0}}}, {-9, 0, 0}, b, 1), around(Rational(1, 3)));
@@ -242,7 +242,8 @@ TEST(ContactAlgebra, CoordinatesFarApartInSize) {
 }
 
 TEST(ContactAlgebra, RejectsNothingForWhatRoundingDoes) {
-  // Rounded down to multiples of 2^-55, the face lies below the vertex's end, which is below the true face.
+  // If the face were rounded down to multiples of 2^-55, it would lie below the end position of the vertex.
+  // That position is below the true face.
   constexpr double eighth = 0x1p-58;
   EXPECT_EQ(vertex_on_face({0, 0, 1}, {0, 0, 0}, {{{-1, -1, -eighth}, {-1, 1, -eighth}, {1, 0, 7 * eighth}}}),
             between(std::nextafter(1, 0)));
@@ -264,7 +265,7 @@ TEST(ContactAlgebra, RefusesSeparation) {
   EXPECT_EQ(vertex_on_face({1, 1, 1}, {1, 1, -1}, flat_face, -0.0), exactly(0.5));
 }
 
-/// What rational geometry says at rational times must agree with the bracket.
+/// Compares the bracket with exact rational geometry at sampled times.
 template <class Motion>
 Answer answer_that_agrees_with_samples(const Motion& motion, double separation, int samples) {
   const Answer found = first_contact_by_algebra(motion, separation);
@@ -284,7 +285,7 @@ Answer answer_that_agrees_with_samples(const Motion& motion, double separation, 
   return found;
 }
 
-/// The same for coordinates of moderate size. True for a contact.
+/// Checks coordinates of moderate size in the same way. Returns true if there is a contact.
 template <class Motion>
 bool agrees_with_samples(const Motion& motion, double separation) {
   const Answer found = answer_that_agrees_with_samples(motion, separation, 12);
@@ -404,7 +405,7 @@ void expect_symmetric(const Motion& motion, double separation,
 TEST(ContactAlgebra, Symmetries) {
   RandomNumbers random(7);
   for (int i = 0; i < 120; ++i) {
-    // Small integers, floats, doubles.
+    // Small integers, values with the precision of floats, then of doubles.
     const std::uint32_t steps = i % 3 == 0 ? 2 : i % 3 == 1 ? 1u << 24 : 1u << 31;
     const double scale = 2.0 / steps * (i % 3 == 2 ? 1 + 0x1p-20 : 1), separation = i % 2 * scale * steps / 8;
     expect_symmetric(random_motion<VertexFaceMotion>(random, steps, scale), separation,
@@ -415,8 +416,8 @@ TEST(ContactAlgebra, Symmetries) {
 }
 
 TEST(ContactAlgebra, NeedsNoMoreThanTheCoordinatesAreWide) {
-  // The same motion with one part in 2^60 added far from the contact takes the way without quick rejections
-  // of narrow integers, and comes to the same time.
+  // The scaled motion gets a tiny offset, which makes its coordinates too wide for the quick rejection with
+  // narrow integers. The time must stay the same.
   RandomNumbers random(8);
   int contacts = 0;
   for (int i = 0; i < 300; ++i) {

@@ -1,4 +1,4 @@
-// Published queries and real meshes in motion, whose contacts and times are known from exact arithmetic.
+// Published queries and real moving meshes with contacts and times known from exact arithmetic.
 
 #include <gtest/gtest.h>
 
@@ -29,7 +29,7 @@ std::optional<TimeBracket> answer(const Query& query) {
   return first_contact_by_algebra(VertexFaceMotion{query.start, query.end});
 }
 
-/// Rows of numerator and denominator of x, y, z and the answer; eight rows a query. Quotients are doubles.
+/// A query has eight rows: numerators and denominators of x, y and z, and the answer. Quotients are doubles.
 std::vector<Query> read_queries(const std::filesystem::path& path, bool edges) {
   std::ifstream file(path);
   std::vector<Query> queries;
@@ -91,14 +91,14 @@ Step load_step(const std::string& first, const std::string& second) {
       step.edges.push_back({std::max(a, b), std::min(a, b)});
     }
   }
-  // The list numbers edges by the larger vertex first.
+  // The contact lists number the edges by their larger vertex, then by the smaller one.
   std::ranges::sort(step.edges);
   step.edges.erase(std::unique(step.edges.begin(), step.edges.end()), step.edges.end());
   return step;
 }
 
-/// Every `stride`-th line of `vf VERTEX FACE TIME` or `ee EDGE EDGE TIME`, times rounded to 15 digits.
-/// Returns how many were checked.
+/// Checks every `stride`-th line of `vf VERTEX FACE TIME` or `ee EDGE EDGE TIME`; times have 15 digits.
+/// Returns the number of lines checked.
 std::size_t expect_times(const Step& step, const std::string& list, std::size_t stride) {
   std::ifstream file(shared_meshes() / "contacts" / list);
   std::string line;

@@ -32,7 +32,7 @@ std::optional<TimeBracket> first_contact(const Motion& motion) {
   return std::visit([](const auto& elements) { return exact_first_contact(elements); }, motion);
 }
 
-/// The times next to one that is not a double, given the double below it.
+/// The bracket of a time that is not a double, given the double below it.
 TimeBracket above(double low) {
   return {low, std::nextafter(low, 2.0)};
 }
@@ -49,7 +49,7 @@ void PrintTo(const Case& named, std::ostream* out) {
   *out << named.name;
 }
 
-/// A vertex from `start` to `end`, and a face at rest.
+/// A vertex that moves from `start` to `end`, and a face that is at rest by default.
 constexpr Points triangle{{{}, {0, 0, 0}, {4, 0, 0}, {0, 4, 0}}};
 Case vertex(std::string name, Vec3d start, Vec3d end, std::optional<TimeBracket> first,
             const Points& face_start = triangle, const Points& face_end = triangle) {
@@ -63,8 +63,8 @@ Case edges(std::string name, const Points& start, const Points& end, std::option
   return {std::move(name), EdgeEdgeMotion{start, end}, first};
 }
 
-/// z of the vertex, above a face that turns so fast that the plane touches the vertex' path only once: the
-/// determinant is z - 9 t².
+/// A vertex that starts and ends at the given z. The face turns so fast that its plane meets the path of the
+/// vertex only once: the determinant is z - 9 t².
 Case grazing(std::string name, double start, double end, std::optional<TimeBracket> first) {
   return vertex(std::move(name), {0, 0.25, start}, {1, 0.25, end}, first,
                 {{{}, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}}}, {{{}, {0, 0, 0}, {1, 0, 9}, {0, 1, 0}}});
@@ -87,7 +87,7 @@ const std::vector<Case> cases{
     vertex("PassesAtASurd", {1, 1, -1}, {1, 1, 3}, above(0x1.9e3779b97f4a7p-2),
            {{{}, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}}}, {{{}, {0, 0, 0}, {5, 0, 4}, {0, 5, 0}}}),
 
-    // The side is passed at another time than the plane, with no double between them.
+    // The vertex crosses the side and the plane of the face at different times, with no double in between.
     vertex("FallsBesideByLessThanADouble", {-1, 1, 1}, {2 - unit, 1, -2}, {}),
     vertex("FallsInsideByLessThanADouble", {1, 1, 1}, {-2 + unit, 1, -2}, above(0x1.5555555555555p-2)),
 
@@ -122,7 +122,7 @@ const std::vector<Case> cases{
     vertex("MissesTheFaceJustWhenItIsAPoint", {1, 0, 1}, {1, 0, -2}, {},
            {{{}, {1, 0, 0}, {0, 1, 0}, {-1, -1, 0}}}, {{{}, {-2, 0, 0}, {0, -2, 0}, {2, 2, 0}}}),
 
-    // Double and several roots
+    // Double roots and several roots
     grazing("TouchesWithoutCrossing", -1, 5, above(0x1.5555555555555p-2)),
     grazing("NearlyTouches", std::nextafter(-1.0, -2), 5, {}),
     grazing("CrossesTwice", -0.5, 5.5, above(0x1.8fe5999576089p-4)),
@@ -158,7 +158,7 @@ const std::vector<Case> cases{
     edges("AtRestAndApartInOnePlane", {{{0, 0, 0}, {4, 0, 0}, {0, 1, 0}, {9, 9, 0}}},
           {{{0, 0, 0}, {4, 0, 0}, {0, 1, 0}, {9, 9, 0}}}, {}),
 
-    // What takes long integers
+    // Cases that need long integers
     vertex("LargeFace", {1, 1, 1}, {1, 1, -2}, above(0x1.5555555555555p-2),
            {{{}, {0, 0, 0}, {0x1p90, 0, 0}, {0, 0x1p90, 0}}},
            {{{}, {0, 0, 0}, {0x1p90, 0, 0}, {0, 0x1p90, 0}}}),
@@ -208,7 +208,7 @@ std::vector<std::array<std::size_t, 4>> orders(const EdgeEdgeMotion&) {
   return {{1, 0, 2, 3}, {0, 1, 3, 2}, {1, 0, 3, 2}, {2, 3, 0, 1}, {3, 2, 0, 1}, {2, 3, 1, 0}, {3, 2, 1, 0}};
 }
 
-/// The same elements in other words.
+/// The same motion with renumbered vertices, permuted axes or scaled coordinates.
 std::vector<Motion> equal_motions(const Motion& motion) {
   std::vector<Motion> result;
   std::visit(
@@ -252,7 +252,7 @@ TEST(ExactImpact, NonFiniteCoordinatesTouchNothing) {
                            std::numeric_limits<double>::quiet_NaN()}) {
     for (std::size_t i = 0; i < 8; ++i) {
       for (int axis = 0; axis < 3; ++axis) {
-        EdgeEdgeMotion edges;  // eight times the origin
+        EdgeEdgeMotion edges;  // all eight points at the origin
         VertexFaceMotion face;
         ASSERT_TRUE(exact_first_contact(edges));
         ASSERT_TRUE(exact_first_contact(face));
@@ -267,7 +267,7 @@ TEST(ExactImpact, NonFiniteCoordinatesTouchNothing) {
 
 // Random motion
 
-/// Coordinates -2 … 2, of which all, many or none are in one plane or on one line, vertices coincide or rest.
+/// Coordinates from -2 to 2. All, many or none of the points are in one plane or on one line; some coincide.
 Points small_points(RandomNumbers& random, std::uint32_t flatness) {
   Points points;
   const std::uint32_t values = 3 + 2 * random.below(2);
@@ -314,7 +314,7 @@ std::string describe(const Motion& motion) {
 
 TEST(ExactImpact, FindsWhatDistancesFind) {
   RandomNumbers random(1);
-  // Such coordinates come near without touching by much more than this, or not at all.
+  // Elements with such coordinates either touch or stay farther apart than this.
   constexpr double near = 1e-6;
   for (int i = 0; i < scaled_count(400); ++i) {
     const Motion motion = small_motion(random);
@@ -323,7 +323,7 @@ TEST(ExactImpact, FindsWhatDistancesFind) {
     ASSERT_EQ(first.has_value(), slow.has_value()) << describe(motion);
     if (!first) continue;
     EXPECT_LE(*slow, first->high) << describe(motion);
-    // Distances shrink at least like the square of the time left.
+    // The distance decreases at least as fast as the square of the remaining time.
     EXPECT_LE(first->low, *slow + 0.01) << describe(motion);
     const double then = std::visit([&](const auto& m) { return squared_distance_at(m, first->low); }, motion);
     EXPECT_LE(then, 1e-28) << describe(motion);
@@ -365,7 +365,7 @@ TEST(ExactImpact, RandomMotionDoesNotDependOnOrderAxesAndScale) {
   }
 }
 
-/// At a third of the step the vertex is on a side of the face, where one number is not rounded off it.
+/// The vertex is on a side of the face at a third of the step, up to one rounding step of one coordinate.
 VertexFaceMotion nearly_on_a_side(RandomNumbers& random) {
   VertexFaceMotion motion;
   const auto integers = [&] {
@@ -399,13 +399,13 @@ TEST(ExactImpact, TellsTimesApartThatNoDoubleSeparates) {
   EXPECT_LT(touching, count * 3 / 4);
 }
 
-/// So that sums of some are exact.
+/// Rounds the coordinates so that sums of a few of them are exact.
 Vec3d coarse(Vec3d p) {
   return {std::round(p.x * 0x1p44) * 0x1p-44, std::round(p.y * 0x1p44) * 0x1p-44,
           std::round(p.z * 0x1p44) * 0x1p-44};
 }
 
-/// The vertex is on the face in the middle of the step, and perhaps before.
+/// The vertex touches the face at the middle of the step, and perhaps earlier.
 TEST(ExactImpact, FindsPlantedContacts) {
   RandomNumbers random(4);
   for (int i = 0; i < scaled_count(40); ++i) {

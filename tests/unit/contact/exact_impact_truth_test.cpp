@@ -1,4 +1,4 @@
-// Published queries with their answers, and real motion with the times of all contacts.
+// Published queries with their answers, and real moving meshes with the times of all contacts.
 
 #include <gtest/gtest.h>
 
@@ -20,11 +20,11 @@ namespace supple {
 namespace {
 
 struct PublishedQuery {
-  EdgeEdgeMotion vertices;  ///< or of a vertex and a face
+  EdgeEdgeMotion vertices;  ///< positions of two edges, or of a vertex and a face
   bool touch = false;
 };
 
-/// Eight rows a query: numerator and denominator of x, y and z, and the answer.
+/// Each query has eight rows: numerators and denominators of x, y and z, and the answer.
 std::vector<PublishedQuery> read_queries(const std::filesystem::path& path) {
   std::vector<PublishedQuery> queries;
   std::ifstream file(path);
@@ -67,7 +67,7 @@ struct Step {
   std::filesystem::path start, end;
 };
 
-/// Edges as the lists number them: by the larger vertex, and then by the smaller.
+/// Edges in the order of the contact lists: by the larger vertex, then by the smaller one.
 std::vector<std::array<std::uint32_t, 2>> numbered_edges(const TriangleMesh& mesh) {
   std::vector<std::array<std::uint32_t, 2>> edges;
   for (const Triangle& t : mesh.triangles) {

@@ -31,7 +31,7 @@ const Vec3d& corner(const TrianglePoints& triangle, int i) {
   return triangle[static_cast<std::size_t>(i % 3)];
 }
 
-/// Of corners that coincide, the first names the vertex; of edges on one line, the longest.
+/// The first of coincident corners names the vertex. The longest of collinear edges names the edge.
 bool named_canonically(const TrianglePoints& triangle, Feature feature) {
   const Vec3d &first = corner(triangle, feature.index), &second = corner(triangle, feature.index + 1);
   const Vec3d& third = corner(triangle, feature.index + 2);
@@ -47,7 +47,7 @@ bool named_canonically(const TrianglePoints& triangle, Feature feature) {
   return normal != RationalPoint{} || (part >= 0 && part <= testing::dot(edge, edge));
 }
 
-/// Of the edges that meet at the point, along one axis.
+/// The extent of an edge along one axis; 0 for other features.
 Rational edge_extent(const TrianglePoints& triangle, Feature feature, std::size_t axis) {
   if (feature.kind != FeatureKind::edge) return 0;
   return abs(exact(corner(triangle, feature.index + 1))[axis] - exact(corner(triangle, feature.index))[axis]);
@@ -127,7 +127,7 @@ TEST_P(ExtremePoints, AreThoseOfRationalClipping) {
   }
 }
 
-/// A point and the geometry of its features, whatever the corners are called.
+/// A point and the geometry of its features, independent of the numbering of the corners.
 using Named = std::array<std::vector<std::array<double, 3>>, 3>;
 
 std::vector<std::array<double, 3>> geometry_of(const TrianglePoints& triangle, Feature feature) {

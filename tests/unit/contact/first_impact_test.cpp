@@ -1,5 +1,5 @@
-// First impacts of single pairs of elements against algebra, over random and adversarial motions: a million
-// in optimised builds, fewer where sanitizers slow them down.
+// Compares the first impacts of element pairs with the algebraic reference, for random and adversarial
+// motions: a million in optimised builds, fewer in slower builds with sanitizers.
 
 #include <gtest/gtest.h>
 
@@ -50,7 +50,7 @@ Paths random_paths(RandomNumbers& random, double size, double step) {
   return paths;
 }
 
-/// Whole numbers from -n to n: most of all the degenerate cases.
+/// Integer coordinates from -n to n, which give mostly degenerate cases.
 Paths lattice_paths(RandomNumbers& random, std::uint32_t n) {
   Paths paths;
   for_each_coordinate(paths, [&](double& x) { x = static_cast<double>(random.below(2 * n + 1)) - n; });
@@ -63,9 +63,10 @@ void nudge(RandomNumbers& random, double& x) {
   if (way == 1) x = std::nextafter(x, -10);
 }
 
-/// Weights of the four vertices at a common point of both elements, those of the second negative.
+/// Barycentric coordinates of the four vertices at a common point of both elements; those of the second
+/// element are negative.
 std::array<double, 4> common_point_weights(RandomNumbers& random, bool edges) {
-  // Eighths, ends included: products with lattice coordinates stay exact.
+  // Multiples of 1/8, including both ends: their products with lattice coordinates are exact.
   const auto eighth = [&](std::uint32_t most) { return random.below(most + 1) / 8.0; };
   if (edges) {
     const double s = eighth(8), r = eighth(8);
@@ -75,12 +76,12 @@ std::array<double, 4> common_point_weights(RandomNumbers& random, bool edges) {
   return {1, -(1 - alpha - beta), -alpha, -beta};
 }
 
-/// Moves one vertex so that the elements share a point at time 1/2, 1/4, ... exactly, or nearly when nudged.
+/// Moves one vertex so that the elements share a point at a multiple of 1/8 of the step, or nearly if nudged.
 Paths meeting_paths(RandomNumbers& random, bool edges, bool nudged) {
   Paths paths = lattice_paths(random, 8);
   const std::array<double, 4> weights = common_point_weights(random, edges);
   const double time = random.below(9) / 8.0;
-  std::size_t moved = 0;  // a vertex with a weight that divides without rounding
+  std::size_t moved = 0;  // a vertex whose weight divides without rounding
   for (std::size_t i = 0; i < 4; ++i) {
     if (std::abs(weights[i]) == 1 || std::abs(weights[i]) == 0.5) moved = i;
   }
@@ -181,12 +182,13 @@ const QueryFamily query_families[] = {
      }},
 };
 
-/// Of what is decided by degree six and not by degree three, and by the thousandfold slower algebra.
+/// One query in this many is also tested with a separation: polynomials of degree six instead of three make
+/// the algebra a thousand times slower.
 constexpr int separated_share = 16;
 
 class FirstImpact : public testing::TestWithParam<QueryFamily> {};
 
-/// The vector filter may only reject what does not touch.
+/// The vector filter must keep every motion that touches.
 void expect_filter_keeps(const RelativeMotion& motion, double separation) {
   RelativeMotionBlock block;
   block.set(0, motion);
@@ -302,7 +304,7 @@ TEST(FirstImpactDetails, NormalsPointToWhereTheFirstElementCameFrom) {
     const EdgeEdgeMotion motion{paths.start, paths.end};
     const std::optional<Impact> impact = first_impact(motion);
     if (!impact || impact->toi < 1e-3) continue;
-    // Just before the impact, the two points are apart along the normal.
+    // Just before the impact, the two points are separated along the normal.
     const double t = impact->toi - 1e-4;
     Vec3d gap;
     for (std::size_t i = 0; i < 4; ++i) {
@@ -339,7 +341,7 @@ TEST(FirstImpactErrors, AreForSeparationsThatAreNone) {
 }
 
 TEST(FirstImpactErrors, NothingTouchesWhatIsNotFinite) {
-  EdgeEdgeMotion motion{};  // all at the origin
+  EdgeEdgeMotion motion{};  // all points at the origin
   EXPECT_TRUE(first_impact(motion));
   motion.end[2].y = std::numeric_limits<double>::quiet_NaN();
   EXPECT_FALSE(first_impact(motion));

@@ -21,7 +21,7 @@ using testing::pair_families;
 using testing::PairFamily;
 using testing::TrianglePair3d;
 
-/// The filter for one pair by plain arithmetic, operation by operation: its meaning.
+/// The reference for the filter: one pair in scalar arithmetic, with the same order of operations.
 template <class Scalar>
 class ScalarTwin {
  public:
@@ -75,7 +75,7 @@ class ScalarTwin {
     for (std::size_t i = 0; i < 3; ++i) {
       const Point w = corners[i] - plane[0];
       for (int axis = 0; axis < 3; ++axis) {
-        // As the kernels' maximum: NaN is not forgotten.
+        // The kernels compute the maximum in the same way: it keeps NaN.
         if (!(std::abs(w[axis]) <= reach[axis])) reach[axis] = std::abs(w[axis]);
       }
       side[i] = volume.with(w);
@@ -116,13 +116,13 @@ TrianglePoints widened(const std::array<Vec3<Scalar>, 3>& triangle) {
   return result;
 }
 
-/// Triangles in an object's arrays, each with vertices of its own. The fourth scalar is not to be read.
+/// Triangles in the arrays of an object; no two share vertices. The filter must not read the fourth scalar.
 template <class Scalar>
 class TriangleList {
  public:
   void add(const std::array<Vec3<Scalar>, 3>& corners) {
     const auto first = static_cast<std::uint32_t>(positions_.size() / 4);
-    // Numbered backwards, so that a mistake with numbers shows.
+    // The vertices are numbered backwards to reveal errors in the indexing.
     for (std::size_t i = 3; i-- > 0;)
       positions_.insert(positions_.end(),
                         {corners[i].x, corners[i].y, corners[i].z, std::numeric_limits<Scalar>::quiet_NaN()});
@@ -141,7 +141,7 @@ class TriangleList {
   std::vector<Triangle> triangles_;
 };
 
-/// Two lists, and pairs of a triangle of each; those of b are numbered backwards.
+/// Two lists and pairs with one triangle from each; the triangles of b are in reverse order.
 template <class ScalarA, class ScalarB = ScalarA>
 struct PairList {
   explicit PairList(std::size_t count) {
@@ -214,7 +214,7 @@ TEST_P(PairFilterTest, NeverWrongInSinglePrecision) {
   expect_true_verdicts<float>(GetParam());
 }
 
-/// Objects whose positions are of different precisions and translated: filtered as doubles, where they are.
+/// Objects with different precisions and translations: the filter translates them in double precision.
 template <class ScalarA, class ScalarB>
 void expect_verdicts_where_they_are() {
   RandomNumbers random(34);

@@ -155,7 +155,7 @@ RationalPoint exact_meeting_point(const TrianglePoints& a, Feature on_a, const T
     origin = corner(b, 0);
     normal = cross(subtract(corner(b, 1), origin), subtract(corner(b, 2), origin));
   } else {
-    // The plane through the other edge that is square to the plane of both.
+    // The plane through the other edge that is perpendicular to the plane of both edges.
     origin = corner(b, on_b.index);
     const RationalPoint direction = subtract(corner(b, on_b.index + 1), origin);
     normal = cross(direction, cross(direction, subtract(to, from)));

@@ -17,14 +17,14 @@ RationalPoint subtract(const RationalPoint& a, const RationalPoint& b);
 RationalPoint cross(const RationalPoint& a, const RationalPoint& b);
 Rational dot(const RationalPoint& a, const RationalPoint& b);
 
-/// The extreme points of what two closed triangles share, by cutting the first with the half-spaces whose
-/// intersection the second is, in rational arithmetic. In order around the polygon.
+/// The extreme points of the intersection of two closed triangles, in order around the polygon. The first
+/// triangle is clipped by the half-spaces of the second one in rational arithmetic.
 std::vector<RationalPoint> clipped_extreme_points(const TrianglePoints& a, const TrianglePoints& b);
 
-/// Whether the point is in the relative interior of a part of a triangle.
+/// Whether the point is in the relative interior of the feature.
 bool in_relative_interior(const RationalPoint& point, const TrianglePoints& triangle, Feature feature);
 
-/// The one point in which two features meet, the smaller of which is a vertex or an edge.
+/// The point at which two features meet. At least one of them is a vertex or an edge.
 RationalPoint exact_meeting_point(const TrianglePoints& a, Feature on_a, const TrianglePoints& b,
                                   Feature on_b);
 

@@ -6,7 +6,7 @@
 #include "supple/continuous.hpp"
 #include "unit/contact/rational_clipping.hpp"
 
-// Where moving elements are and how far apart at one rational time, by elementary geometry on rationals.
+// Positions of moving elements and distances between them at a rational time, in rational arithmetic.
 
 namespace supple::testing {
 
@@ -45,7 +45,7 @@ inline Rational squared_distance_to_edge(const RationalPoint& p, const RationalP
   return squared_distance(p, along(a, edge, clamped(dot(subtract(p, a), edge) / length)));
 }
 
-/// A vertex and a face.
+/// The four points are a vertex and a face.
 inline Rational squared_distance_to_face(const std::array<RationalPoint, 4>& p) {
   Rational smallest = squared_distance_to_edge(p[0], p[1], p[2]);
   smallest = std::min(smallest, squared_distance_to_edge(p[0], p[2], p[3]));
@@ -62,7 +62,7 @@ inline Rational squared_distance_to_face(const std::array<RationalPoint, 4>& p) 
   return std::min(smallest, squared_distance(p[0], foot));
 }
 
-/// Two edges.
+/// The four points are the end points of two edges.
 inline Rational squared_distance_of_edges(const std::array<RationalPoint, 4>& p) {
   Rational smallest =
       std::min(squared_distance_to_edge(p[0], p[2], p[3]), squared_distance_to_edge(p[1], p[2], p[3]));

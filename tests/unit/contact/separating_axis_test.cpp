@@ -18,7 +18,7 @@ constexpr TrianglePoints unit{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}};
 TEST(SeparatingAxis, DifferenceOfDimension3) {
   EXPECT_TRUE(triangles_intersect_by_axes(unit, {{{0.2, 0.2, -1}, {0.2, 0.2, 1}, {5, 5, 1}}}));
   EXPECT_FALSE(triangles_intersect_by_axes(unit, {{{0.6, 0.6, -1}, {0.6, 0.6, 1}, {5, 5, 1}}}));
-  // Only the product of two edges separates these.
+  // Only the cross product of two edges separates these triangles.
   EXPECT_FALSE(triangles_intersect_by_axes({{{-1, 0, 0}, {1, 0, 0}, {0, 0, -1}}},
                                            {{{0, -1, 0.1}, {0, 1, 0.1}, {0, 0, 1}}}));
   EXPECT_TRUE(triangles_intersect_by_axes({{{-1, 0, 0}, {1, 0, 0}, {0, 0, -1}}},
@@ -29,7 +29,7 @@ TEST(SeparatingAxis, DifferenceOfDimension2) {
   EXPECT_FALSE(triangles_intersect_by_axes(unit, {{{0, 0, 1}, {1, 0, 1}, {0, 1, 1}}}));
   EXPECT_FALSE(triangles_intersect_by_axes(unit, {{{1, 1, 0}, {1, 0.5, 0}, {0.5, 1, 0}}}));
   EXPECT_TRUE(triangles_intersect_by_axes(unit, {{{1, 1, 0}, {0.5, 0.5, 0}, {0.75, 1, 0}}}));
-  // Crossing segments, segments in parallel planes, a segment beside another's line.
+  // Crossing segments, segments in parallel planes, and a segment that meets only the other's line.
   const TrianglePoints segment{{{-1, 0, 0}, {1, 0, 0}, {0, 0, 0}}};
   EXPECT_TRUE(triangles_intersect_by_axes(segment, {{{0, -1, 0}, {0, 1, 0}, {0, 1, 0}}}));
   EXPECT_FALSE(triangles_intersect_by_axes(segment, {{{0, -1, 1}, {0, 1, 1}, {0, 1, 1}}}));

@@ -27,7 +27,7 @@ Vec3l wide(const Vec3d& v) {
   return {v.x, v.y, v.z};
 }
 
-/// Corners relative to corner 0 of a, divided by the largest extent: of any size to begin with.
+/// Corners relative to corner 0 of a, divided by the largest extent, which may have any size.
 struct RelativePair {
   std::array<Vec3l, 3> a, b;
   Exact size = 0;
@@ -47,7 +47,7 @@ struct RelativePair {
     }
   }
 
-  /// How far a has to move along a unit vector so that a plane perpendicular to it separates the triangles.
+  /// The distance that a must move along the unit vector n until a plane with this normal separates a and b.
   Exact depth(const Vec3l& n) const {
     const auto along = [&](const Vec3l& p) { return dot(n, p); };
     const auto [b0, b1, b2] = b;
@@ -66,7 +66,7 @@ Vec3l random_direction(RandomNumbers& random) {
   }
 }
 
-/// The directions that can be the best: normals of the faces of the difference of the two triangles.
+/// Candidates for the best direction: the face normals of the Minkowski difference of the two triangles.
 std::vector<Vec3l> face_normals(const RelativePair& pair) {
   std::vector<Vec3l> directions;
   const auto add = [&](const Vec3l& p, const Vec3l& q) {
@@ -103,7 +103,7 @@ TEST_P(SeparatingNormals, AreUnitVectorsOfLeastDepth) {
     const RelativePair relative(pair);
     const Exact depth = relative.depth(wide(shared.normal));
     ASSERT_GE(depth, -1e-5L) << describe(pair);
-    // Edges at an angle below 2^-20 count as parallel.
+    // Edges at an angle below 2^-20 count as parallel, hence the tolerance.
     for (const Vec3l& direction : face_normals(relative))
       ASSERT_GE(relative.depth(direction), depth - 1e-5L) << describe(pair);
     for (int k = 0; k < 20; ++k) {
@@ -138,7 +138,7 @@ TEST(SeparatingNormal, SeparatesByTheShortestWay) {
     TrianglePoints moved = pair.a;
     for (Vec3d& p : moved) p += (depth + 1e-9) * shared.normal;
     ASSERT_FALSE(triangles_intersect(moved, pair.b)) << describe(pair);
-    // The other way round it is as far.
+    // The depth is the same with a and b swapped.
     const RelativePair back(TrianglePair3d{pair.b, pair.a});
     const Vec3d back_normal = intersect_triangles(pair.b, pair.a).normal;
     ASSERT_NEAR(static_cast<double>(back.depth(wide(back_normal)) * back.size), depth, 1e-9);

@@ -9,7 +9,7 @@
 #include "supple/continuous.hpp"
 #include "unit/contact/rational_clipping.hpp"
 
-// When moving elements first touch, by their distance and no polynomial in time.
+// Finds when moving elements first touch, from their distance instead of polynomials in time.
 namespace supple::testing {
 
 template <class Real>
@@ -37,7 +37,7 @@ Real squared_distance_to_segment(const Point<Real>& p, const Point<Real>& a, con
   return inner_product(nearest, nearest);
 }
 
-/// Of `m` from the plane of all α u + β w, where the nearest of those has weights that `allowed` accepts.
+/// The squared distance of `m` from the plane α u + β w, if `allowed` accepts the nearest point's α and β.
 template <class Real, class Allowed>
 std::optional<Real> squared_distance_inside(const Point<Real>& m, const Point<Real>& u, const Point<Real>& w,
                                             Allowed allowed) {
@@ -88,8 +88,8 @@ bool touch_at(const Motion& motion, double time) {
   return squared_distance_at(motion, Rational(time)) == 0;
 }
 
-/// The first time at which elements of about unit size are within `near`, or nothing: steps that cannot cross
-/// the distance left.
+/// The first time at which elements of about unit size are within `near`, if any. Each step is too short to
+/// cross the remaining distance.
 template <class Motion>
 std::optional<double> advance_until_near(const Motion& motion, double near) {
   double speed = 0;

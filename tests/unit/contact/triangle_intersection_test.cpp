@@ -22,7 +22,7 @@ struct Case {
   std::string name;
   TrianglePoints a, b;
   IntersectionKind kind;
-  std::vector<ContactPoint> points;  // none: the triangles are apart
+  std::vector<ContactPoint> points;  // empty if the triangles are disjoint
 };
 
 void PrintTo(const Case& named, std::ostream* out) {
@@ -136,7 +136,7 @@ const std::vector<Case> cases{
      polygon,
      {{{4, 0, 0}, v1, face}, {{1, 0, 0}, e0, e2}, {{1, 1, 0}, face, v0}, {{3, 1, 0}, e1, e0}}},
 
-    // Without area
+    // Triangles without area
     {"PointInFace", base, {{{1, 1, 0}, {1, 1, 0}, {1, 1, 0}}}, point, {{{1, 1, 0}, face, v0}}},
     {"PointOnEdge", base, {{{2, 2, 0}, {2, 2, 0}, {2, 2, 0}}}, point, {{{2, 2, 0}, e1, v0}}},
     {"PointOffTheFace", base, {{{1, 1, 1}, {1, 1, 1}, {1, 1, 1}}}, point, {}},
@@ -224,7 +224,7 @@ TEST(TriangleIntersection, NonFiniteCoordinatesTouchNothing) {
 
 TEST(TriangleIntersection, SaysWhenIntegersDecided) {
   EXPECT_FALSE(intersect_triangles(base, {{{1, 1, -1}, {1, 1, 1}, {2, 1, 1}}}).used_exact_fallback);
-  // Both in the plane x + y = z, which no coordinate axis singles out.
+  // Both triangles are in the plane x + y = z, which is not special for any coordinate axis.
   EXPECT_TRUE(intersect_triangles({{{0, 0, 0}, {3, 1, 4}, {1, 3, 4}}}, {{{1, 1, 2}, {5, 1, 6}, {2, 6, 8}}})
                   .used_exact_fallback);
 }

@@ -45,7 +45,7 @@ TrianglePair3d single_precision(RandomNumbers& random) {
   return pair_of([&] { return double(static_cast<float>(random.uniform(-1, 1))); });
 }
 
-/// In the plane x + 2 y + 3 z = 0 or one of its like: exact, and no axis is special.
+/// Both triangles in a plane such as x + 2 y + 3 z = 0. The coordinates are exact, and no axis is special.
 TrianglePair3d tilted_plane(RandomNumbers& random) {
   TrianglePair3d pair = grid(random, 3);
   const int p = random.between(-2, 2), q = random.between(-2, 2), turn = random.between(0, 2);
@@ -74,7 +74,7 @@ TrianglePair3d without_area(RandomNumbers& random) {
   return pair;
 }
 
-/// On one line, so that only the order along it decides.
+/// All corners on one line, so only their order along it decides.
 TrianglePair3d on_one_line(RandomNumbers& random) {
   const Vec3d direction{double(random.between(-1, 1)), double(random.between(-1, 1)), 1};
   TrianglePair3d pair;
@@ -105,7 +105,7 @@ TrianglePair3d identical(RandomNumbers& random) {
   return pair;
 }
 
-/// Touching or nearly: a grid that doubles do not hold exactly, some coordinates one step off.
+/// Triangles that touch or nearly touch, on an inexact grid with some coordinates one rounding step off.
 TrianglePair3d one_step_off(RandomNumbers& random) {
   TrianglePair3d pair = grid(random, 2);
   for_each_coordinate(pair, [&](double& value, int) {
@@ -116,7 +116,7 @@ TrianglePair3d one_step_off(RandomNumbers& random) {
   });
   return pair;
 }
-/// A corner of b in the rounded plane or on a rounded edge of a.
+/// A corner of b in the plane of a or on an edge of a, up to rounding.
 TrianglePair3d nearly_on(RandomNumbers& random) {
   TrianglePair3d pair = uniform(random);
   const double s = (1 + random.uniform(-1, 1)) / 2,
@@ -137,7 +137,7 @@ TrianglePair3d scaled(RandomNumbers& random) {
   for_each_coordinate(pair, [&](double& value, int) { value *= scale; });
   return pair;
 }
-/// The largest doubles: every difference may overflow.
+/// The largest doubles: differences may overflow.
 TrianglePair3d largest(RandomNumbers& random) {
   TrianglePair3d pair = grid(random, 2);
   for_each_coordinate(pair, [&](double& value, int) {
@@ -146,7 +146,7 @@ TrianglePair3d largest(RandomNumbers& random) {
   });
   return pair;
 }
-/// Each axis in a unit of its own.
+/// Each axis has its own scale.
 TrianglePair3d scaled_axes(RandomNumbers& random) {
   TrianglePair3d pair = random.between(0, 1) ? grid(random, 2) : nearly_on(random);
   const double units[3] = {std::ldexp(1, random.between(-1074, 1022)), std::ldexp(1, random.between(-60, 60)),
@@ -154,7 +154,7 @@ TrianglePair3d scaled_axes(RandomNumbers& random) {
   for_each_coordinate(pair, [&](double& value, int axis) { value *= units[axis]; });
   return pair;
 }
-/// Coordinates of all sizes beside one another, some small enough to matter only exactly.
+/// Coordinates of very different sizes; some are so small that they matter only in exact arithmetic.
 TrianglePair3d all_sizes(RandomNumbers& random) {
   TrianglePair3d pair = grid(random, 2);
   const int reach = random.between(0, 1) ? 100 : 1000;

@@ -14,22 +14,22 @@ struct TrianglePair3d {
   TrianglePoints a, b;
 };
 
-/// A way to draw pairs that stresses one kind of trouble.
+/// Draws random pairs that stress one kind of difficulty.
 struct PairFamily {
   std::string name;
   TrianglePair3d (*draw)(RandomNumbers&);
 };
-/// Found by GoogleTest, and so in the names of ctest.
+/// GoogleTest calls this function; ctest shows the name.
 inline void PrintTo(const PairFamily& family, std::ostream* out) {
   *out << family.name;
 }
 
-/// All of them; the same on every machine.
+/// All families, the same on every machine.
 const std::vector<PairFamily>& pair_families();
 
 std::string describe(const TrianglePair3d& pair);
 
-/// Debug and sanitizer builds are some twenty times slower.
+/// The count is reduced because debug and sanitizer builds are about twenty times slower.
 inline int scaled_count(int count_in_debug) {
 #ifdef NDEBUG
   return count_in_debug * 10;

@@ -89,13 +89,13 @@ TEST(Descriptions, KeysThatOccurTogetherDiffer) {
         [&](const auto& field, const auto&) { EXPECT_TRUE(keys.insert(field.key).second) << field.key; },
         values);
   };
-  add(SceneOptions{});  // the command line, recordings, JSON and the viewer have both
+  add(SceneOptions{});  // both appear in the command line, recordings, JSON and the viewer
   add(ObjectOptions{});
   keys.clear();
   add(MassSpringMotion{});
 }
 
-/// The name of an enumerator as the compiler spells it, or the number where there is none: `(Enum)3`.
+/// The name of an enumerator as spelled by the compiler; empty for a value without one, such as `(Enum)3`.
 template <class Enum, Enum value>
 constexpr std::string_view spelling() {
   const std::string_view function = __PRETTY_FUNCTION__;

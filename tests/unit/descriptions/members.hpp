@@ -6,9 +6,9 @@
 #include "supple/result_descriptions.hpp"
 #include "supple/simulation_descriptions.hpp"
 
-// The members of each described structure, by structured bindings: these no longer compile when a structure
-// gets another member. Describe the new member (supple/option_descriptions.hpp, result_descriptions.hpp or
-// simulation_descriptions.hpp), then add a name here.
+// Lists the members of each described structure with structured bindings, which fail to compile when a
+// structure gets another member. Describe the new member (supple/option_descriptions.hpp,
+// result_descriptions.hpp or simulation_descriptions.hpp), then add a name here.
 
 namespace supple {
 

@@ -11,7 +11,7 @@
 
 namespace supple {
 
-/// Writes a value that the description allows and that differs from the one there.
+/// Replaces the value by a different one that the description allows.
 template <class Struct, class Value>
 void set_other(const Field<Struct, Value>& field, Value& value) {
   if constexpr (Worded<Value>) {
@@ -39,7 +39,7 @@ void set_other(const Field<Struct, Value>& field, Value& value) {
   }
 }
 
-/// A structure of which no member is what it is by default.
+/// A structure in which every member differs from its default.
 template <Described Struct>
 Struct other_values() {
   Struct values{};
@@ -68,7 +68,7 @@ std::vector<std::string> differences_of(const Struct& a, const Struct& b) {
   return keys;
 }
 
-/// The keys of the options of the machine, which are lost on purpose.
+/// The keys of the options that belong to the machine, which are not stored.
 template <Described Struct>
 std::vector<std::string> keys_of_machine() {
   std::vector<std::string> keys;

@@ -74,7 +74,7 @@ TEST(ShapePair, EveryArityFindsTheSameCandidates) {
   }
 }
 
-/// Every cell of the columns whose names have none of the words in them.
+/// All cells of the columns whose names contain none of the given words.
 std::vector<std::string> columns_of(const Table& table, const std::vector<std::string>& skipped) {
   std::vector<std::string> text;
   for (std::size_t c = 0; c < table.columns.size(); ++c) {
@@ -108,7 +108,7 @@ TEST(Scaling, CountsDoNotDependOnThreads) {
   const Report one = run_scaling(tiny_scaling(1), false), three = run_scaling(tiny_scaling(3), false);
   EXPECT_EQ(columns_of(table_of(one, "scaling_broad_phase"), {"_ms"}),
             columns_of(table_of(three, "scaling_broad_phase"), {"_ms"}));
-  // A descent that is shared out to threads begins with more pairs of nodes.
+  // With several threads, the descent starts from more pairs of nodes.
   const std::vector<std::string> of_one_thread{"_ms", "node_pairs", "tests"};
   EXPECT_EQ(columns_of(table_of(one, "scaling_vertices"), of_one_thread),
             columns_of(table_of(three, "scaling_vertices"), of_one_thread));
@@ -132,7 +132,7 @@ TEST(Table1, EventsAreTheSameForAnyNumberOfThreads) {
   const RunCounts one = run_scene("table1_9", BoundingVolume::sphere, 3, 1, steps);
   EXPECT_EQ(one.steps, 90u);
   EXPECT_EQ(one.failure, "");
-  EXPECT_GT(one.broad, 0u) << "nothing met: the test shows nothing";
+  EXPECT_GT(one.broad, 0u) << "without collisions the test has no meaning";
   EXPECT_EQ(run_scene("table1_9", BoundingVolume::sphere, 3, 3, steps), one);
 }
 
@@ -158,7 +158,7 @@ TEST(Table1, HasEveryScene) {
   EXPECT_THROW(run_scene("table1_4", BoundingVolume::aabb, 1, 1, [](std::uint64_t) { return false; }), Error);
   for (const std::string& name : table1_scene_names()) {
     const RunCounts counts = run_scene(name, BoundingVolume::aabb, 1, 1, [](std::uint64_t) { return false; });
-    EXPECT_EQ(counts.broad, 0u) << name << " begins apart";
+    EXPECT_EQ(counts.broad, 0u) << name << " begins without overlaps";
   }
 }
 

@@ -26,8 +26,7 @@ std::string base64(const std::string& bytes) {
   return text;
 }
 
-// A square whose two triangles each bring their own three vertices, as two normals would make them: bytes
-// 0-71 points, 72-83 ids.
+// A square whose triangles share no vertices, as if their normals differed. Bytes 0-71: points, 72-83: ids.
 std::string square_buffer(float side) {
   std::string bytes;
   for (const int value : {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0}) {
@@ -37,8 +36,8 @@ std::string square_buffer(float side) {
   return bytes;
 }
 
-// The nodes use the square (mesh 0), the same square as two primitives with a material each (mesh 1), and its
-// points as mere points (mesh 2).
+// The nodes use the square (mesh 0), the square as two primitives with different materials (mesh 1), and only
+// its points (mesh 2).
 std::string gltf(const std::string& nodes, float side = 1) {
   return R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[)" + nodes + R"(],
 "materials":[{},{"doubleSided":true}],

@@ -46,7 +46,7 @@ int orient2d(const Vec3d& a, const Vec3d& b, const Vec3d& c, int axis) {
   return supple::orient2d(a, b, c, axis, used_exact);
 }
 
-/// Coordinates that make trouble for filters: few bits, many bits, nearly equal, huge, tiny.
+/// Coordinates that are difficult for filters: few bits, many bits, nearly equal, huge, tiny.
 class Coordinates {
  public:
   double draw() {
@@ -115,7 +115,7 @@ TEST(Orient3d, IsAntisymmetric) {
 }
 
 TEST(Orient3d, OneStepOffThePlane) {
-  // The volume is 3 · 2^-54, far below the rounding of its products.
+  // The volume is 3 · 2^-54, far below the rounding error of its products.
   const Vec3d a{0.5, 0.5, 0.5}, b{12, 12, 12}, c{24, 24, 30}, d{0.5 + 0x1p-53, 0.5, 0.5};
   EXPECT_EQ(orient3d(a, b, c, d), unbounded_orient3d(a, b, c, d));
   EXPECT_NE(orient3d(a, b, c, d), 0);
@@ -126,7 +126,7 @@ TEST(Orient3d, ProductsThatUnderflowOrOverflow) {
   EXPECT_EQ(orient3d({0, 0, 0}, {smallest, 0, 0}, {0, smallest, 0}, {0, 0, 0}), 0);
   EXPECT_EQ(orient3d({-largest, 0, 0}, {largest, 0, 0}, {0, largest, 0}, {0, 0, largest}), 1);
   EXPECT_EQ(orient3d({-largest, 0, 0}, {largest, 0, 0}, {0, largest, 0}, {0, -largest, -smallest}), -1);
-  // n_y underflows to zero and w_y is huge: the sign is that of a product the filter has lost.
+  // n_y underflows to zero and w_y is huge: the sign is that of a product that underflows in the filter.
   EXPECT_EQ(orient3d({0, 0, 0}, {0, 0, 1e-170}, {1e-170, 0, 0}, {0, 1e300, 0}), 1);
   EXPECT_EQ(orient3d({0, 0, 0}, {0, 1e-170, 1e-170}, {1e-170, 0, 0}, {0, 1e300, 1.5e300}), -1);
 }
@@ -136,13 +136,13 @@ TEST(Orient3d, FallsBackOnlyWhereItMust) {
   supple::orient3d({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0.3, 0.4, 1e-9}, used_exact);
   EXPECT_FALSE(used_exact);
   EXPECT_EQ(supple::orient3d({0.1, 0.2, 5}, {1, 0.7, 5}, {0.3, 1, 5}, {0.3, 0.4, 5}, used_exact), 0);
-  EXPECT_FALSE(used_exact) << "coordinates in one plane of the grid";
+  EXPECT_FALSE(used_exact) << "equal z coordinates";
   supple::orient3d({0, 0, 0}, {1, 0, 1}, {0, 1, 1}, {1, 1, 2}, used_exact);
   EXPECT_TRUE(used_exact);
 }
 
 TEST(Orient2d, SignConvention) {
-  // Seen along z, x and y are as on paper; along x they are y and z, along y they are z and x.
+  // The view along z has the axes x and y; the view along x has y and z; the view along y has z and x.
   EXPECT_EQ(orient2d({0, 0, 9}, {1, 0, 4}, {0, 1, -3}, 2), 1);
   EXPECT_EQ(orient2d({9, 0, 0}, {4, 1, 0}, {-3, 0, 1}, 0), 1);
   EXPECT_EQ(orient2d({0, 9, 0}, {0, 4, 1}, {1, -3, 0}, 1), 1);
@@ -176,7 +176,7 @@ TEST(FindProjection, KeepsTheAreaAndSaysTheTurn) {
   expect({0, 0, 0}, {0, 0, 1}, {1, 0, 0}, 1, 1);
   expect({0, 0, 0}, {1, 1, 1}, {3, 3, 3}, -1, 0);
   expect({1, 2, 3}, {1, 2, 3}, {1, 2, 3}, -1, 0);
-  // Off one line by a step of a double, in one projection only.
+  // Three points that are collinear except for one rounding step in one projection.
   expect({0, 0, 0}, {smallest, smallest, 0}, {2 * smallest, smallest, 0}, 2, -1);
   expect({0, 0, 0}, {0, 1, 0}, {0, 1, smallest}, 0, 1);
 }

@@ -50,7 +50,7 @@ RationalPolynomial negated_remainder(RationalPolynomial p, const RationalPolynom
   return p;
 }
 
-/// How many roots p has in [0, 1], by Sturm's theorem.
+/// The number of roots of p in [0, 1], by Sturm's theorem.
 int sturm_count(const Polynomial& p) {
   RationalPolynomial first(p.coefficients().begin(), p.coefficients().end()), second;
   for (std::size_t i = 1; i < first.size(); ++i) second.push_back(first[i] * static_cast<int>(i));
@@ -68,7 +68,7 @@ int sturm_count(const Polynomial& p) {
     }
     return count;
   };
-  // The theorem counts the roots in (a, b]; a multiple root at an end would void it.
+  // The theorem counts the roots in (a, b]; neither end may be a multiple root.
   const Rational below(-1, 1000000000);
   return variations(below) - variations(1);
 }
@@ -101,7 +101,7 @@ TEST(Polynomial, GcdOfProducts) {
     const Polynomial p = random_polynomial(random, 3, 5), q = random_polynomial(random, 2, 5);
     if (shared.is_zero() || p.is_zero() || q.is_zero()) continue;
     common += shared.degree() > 0;
-    // Whatever p and q share is a divisor of both, so it is once more in the products' divisor.
+    // A common factor of both arguments multiplies their gcd.
     EXPECT_EQ(gcd(p * shared, q * shared), primitive_part(gcd(p, q) * shared));
   }
   EXPECT_GT(common, 300);
@@ -115,7 +115,7 @@ TEST(Polynomial, GcdOfSpecialCases) {
   EXPECT_EQ(gcd(p, Polynomial({4})), Polynomial({1}));
   EXPECT_EQ(gcd(Polynomial({4}), Polynomial()), Polynomial({1}));
   EXPECT_EQ(gcd(p, p * Integer(-5)), Polynomial({-1, 0, 3}));
-  // Coefficients that vanish modulo the prime that is tried first.
+  // Coefficients that vanish modulo the first prime that gcd tries.
   const Integer prime = (Integer(1) << 61) - 1;
   const Polynomial q = with_root(3, prime);
   EXPECT_EQ(gcd(q * with_root(1, 2), q * with_root(1, 3)), q);
@@ -143,7 +143,7 @@ TEST(Polynomial, SignVariationsBoundRoots) {
   EXPECT_EQ(sign_variations(Polynomial({-1, -1})).sign, -1);
   EXPECT_EQ(sign_variations(with_root(1, 3)).count, 1);
   EXPECT_EQ(sign_variations(with_root(1, 3) * with_root(2, 3)).count, 2);
-  // Roots at the ends are not inside.
+  // Roots at the ends of the interval do not count.
   EXPECT_EQ(sign_variations(Polynomial({0, 1, -1})).count, 0);
   EXPECT_EQ(sign_variations(Polynomial()).sign, 0);
 }
@@ -154,7 +154,7 @@ TEST(UnitRoots, AreAsManyAsSturmCounts) {
   for (int i = 0; i < 3000; ++i) {
     Polynomial p = random_polynomial(random, 1 + static_cast<int>(random.below(6)), 4);
     if (p.is_zero()) continue;
-    // Sturm's theorem needs ends that are no multiple roots, and the squarefree part is tested above.
+    // Sturm's theorem requires that no end is a multiple root. A test above covers the squarefree part.
     const Polynomial simple = squarefree_part(p);
     const std::vector<UnitRoot> roots = roots_in_unit_interval(p);
     total += roots.size();
@@ -163,7 +163,7 @@ TEST(UnitRoots, AreAsManyAsSturmCounts) {
   EXPECT_GT(total, 1000u);
 }
 
-/// Whether low and high are the doubles next to x.
+/// Expects that the root's bracket consists of the doubles next to x.
 void expect_neighbours(UnitRoot& root, const Rational& x) {
   const auto [low, high] = root.neighbouring_doubles();
   EXPECT_LE(Rational(low), x);
@@ -175,7 +175,7 @@ TEST(UnitRoots, ArisesOncePerRationalRootInOrder) {
   RandomNumbers random(3);
   for (int i = 0; i < 300; ++i) {
     std::vector<Rational> known;
-    Polynomial p({static_cast<int>(random.below(9)) - 4, 1, 3});  // With roots outside, or none.
+    Polynomial p({static_cast<int>(random.below(9)) - 4, 1, 3});  // may have roots outside [0, 1]
     if (sign_at(p, {0, 0}) * sign_at(p, {1, 0}) <= 0) continue;
     for (std::uint32_t k = 1 + random.below(4); k > 0; --k) {
       const std::uint32_t denominator = 1 + random.below(12), numerator = random.below(denominator + 1);
@@ -224,7 +224,7 @@ TEST(UnitRoots, TinyOnes) {
 }
 
 TEST(UnitRoots, SignOfOthersAtAnIrrationalRoot) {
-  const Polynomial p({-1, 0, 2});  // √½
+  const Polynomial p({-1, 0, 2});  // the root is √½
   std::vector<UnitRoot> roots = roots_in_unit_interval(p * p * with_root(-1, 3));
   ASSERT_EQ(roots.size(), 1u);
   UnitRoot& root = roots[0];
@@ -233,11 +233,11 @@ TEST(UnitRoots, SignOfOthersAtAnIrrationalRoot) {
   EXPECT_EQ(root.sign_of(Polynomial({-3})), -1);
   EXPECT_EQ(root.sign_of(Polynomial({-7, 10})), 1);
   EXPECT_EQ(root.sign_of(Polynomial({-71, 100})), -1);
-  // Nearer to the root than 2^-300 on either side.
+  // Two rationals within 2^-300 of the root, one on each side.
   const Integer below = sqrt(Integer(1) << 601);
   EXPECT_EQ(root.sign_of(with_root(below, Integer(1) << 301)), 1);
   EXPECT_EQ(root.sign_of(with_root(below + 1, Integer(1) << 301)), -1);
-  // The root is also one of this, and so near to another of its roots.
+  // A polynomial that has this root and another root very close to it.
   EXPECT_EQ(root.sign_of(p * with_root(below, Integer(1) << 301)), 0);
   EXPECT_EQ(root.neighbouring_doubles(), (std::pair{std::nextafter(std::sqrt(0.5), 0.0), std::sqrt(0.5)}));
 }

@@ -40,7 +40,7 @@ TEST(Sturm, FindsRationalRootsOfAnyMultiplicity) {
       EXPECT_GE(Rational(high), t);
       EXPECT_EQ(high, Rational(low) == t ? low : std::nextafter(low, 2.0));
       EXPECT_EQ(root->sign_of(p), 0);
-      // Signs next to the root, where a wrong multiplicity or a wrong interval would show.
+      // The signs next to the root reveal a wrong multiplicity or a wrong interval.
       const Integer numerator = boost::multiprecision::numerator(t), scale = Integer(1) << 200;
       const Integer denominator = boost::multiprecision::denominator(t);
       EXPECT_EQ(root->sign_of(with_root(numerator * scale - 1, denominator * scale)), 1);
@@ -51,7 +51,7 @@ TEST(Sturm, FindsRationalRootsOfAnyMultiplicity) {
 }
 
 TEST(Sturm, TellsIrrationalRootsFromTheirNeighbours) {
-  // 2 t² = 1, and 2 t² = 1 ± 2^-300.
+  // The roots satisfy 2 t² = 1 and 2 t² = 1 ± 2^-300.
   const Integer scale = Integer(1) << 300;
   const Polynomial p{-1, 0, 2}, above{-scale - 1, 0, 2 * scale}, below{-scale + 1, 0, 2 * scale};
   std::vector<Root> roots = roots_in_step(p * above * below);
@@ -76,7 +76,7 @@ TEST(Sturm, KnowsRootsAtTheEndsAndNearThem) {
   std::vector<Root> at_end = roots_in_step({-1, 1});
   ASSERT_EQ(at_end.size(), 1u);
   EXPECT_EQ(at_end[0].neighbouring_doubles(), (std::pair<double, double>(1, 1)));
-  // t = 2^-2000 is below all doubles.
+  // t = 2^-2000 is below all positive doubles.
   std::vector<Root> tiny = roots_in_step(with_root(1, Integer(1) << 2000) * with_root(1, 2));
   ASSERT_EQ(tiny.size(), 2u);
   EXPECT_EQ(tiny[0].neighbouring_doubles(), (std::pair<double, double>(0, 0x1p-1074)));

@@ -30,7 +30,7 @@ TriangleMesh awkward_mesh() {
   while (mesh.positions.size() < 1000) {
     const Vec3d point{std::bit_cast<double>(random.bits()), std::bit_cast<double>(random.bits()),
                       std::bit_cast<double>(random.bits())};
-    // The payload of a NaN is more than text can tell.
+    // Text formats do not keep the payload of a NaN.
     if (point == point) mesh.positions.push_back(point);
   }
   return mesh;
@@ -133,7 +133,7 @@ TEST(MeshFile, WritingThatFailsIsAnError) {
   const std::string nowhere = folder / "none" / "a.obj";
   EXPECT_EQ(error_of([&] { save_mesh({}, nowhere); }),
             "cannot write " + nowhere + ": No such file or directory");
-  if (!fs::exists("/dev/full")) GTEST_SKIP() << "no /dev/full here";
+  if (!fs::exists("/dev/full")) GTEST_SKIP() << "/dev/full does not exist";
   for (const char* name : {"full.obj", "full.ply", "full.stl"}) {
     const std::string full = folder / name;
     fs::create_symlink("/dev/full", full);

@@ -15,7 +15,7 @@
 
 namespace supple {
 
-/// A folder of its own for each process, gone with the object.
+/// A folder with a name unique to this process. The destructor removes it.
 class TemporaryFolder {
  public:
   TemporaryFolder()
@@ -30,7 +30,7 @@ class TemporaryFolder {
   TemporaryFolder& operator=(const TemporaryFolder&) = delete;
 
   std::filesystem::path operator/(std::string_view name) const { return path_ / name; }
-  /// Writes a file of these bytes and gives its path.
+  /// Writes the bytes to a file and returns its path.
   std::filesystem::path write(std::string_view name, std::string_view bytes) const {
     std::ofstream(path_ / name, std::ios::binary)
         .write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
@@ -41,7 +41,7 @@ class TemporaryFolder {
   std::filesystem::path path_;
 };
 
-/// What the `Error` says that `action` throws; empty when it throws none.
+/// The message of the `Error` that `action` throws; empty if it throws none.
 template <class Action>
 std::string error_of(Action&& action) {
   try {
@@ -52,7 +52,7 @@ std::string error_of(Action&& action) {
   return {};
 }
 
-/// Equal as bits, so that NaN equals itself and 0 does not equal -0.
+/// Compares the bits, so NaN equals itself and 0 differs from -0.
 inline bool same_bits(const Vec3d& a, const Vec3d& b) {
   for (int axis = 0; axis < 3; ++axis) {
     if (std::bit_cast<std::uint64_t>(a[axis]) != std::bit_cast<std::uint64_t>(b[axis])) return false;

@@ -1,5 +1,5 @@
-// Valid small files, damaged in thousands of ways: each must give a mesh that holds together or an Error of
-// one line. Under the sanitizers this also finds reads beyond the end.
+// Damages small valid files in thousands of ways. Each result must load as a consistent mesh or throw an
+// Error with one line. With sanitizers, this test also finds reads beyond the end.
 
 #include <gtest/gtest.h>
 
@@ -29,7 +29,7 @@ std::string ply_header(const std::string& format) {
          "property list uchar int vertex_indices\nproperty list ushort float t\nend_header\n";
 }
 
-// Zero bytes are valid: empty lists and the origin, until the faces' counts.
+// Zero bytes are valid up to the counts of the faces: they are empty lists and points at the origin.
 std::string binary_ply(const std::string& format, const std::string& three_corners) {
   return ply_header(format) + std::string(2 + 3 * 17, '\0') + three_corners + three_corners;
 }
@@ -110,9 +110,9 @@ class Damage {
   RandomNumbers random_;
 };
 
-// True when the bytes gave a mesh.
+// Returns true if the bytes gave a mesh.
 bool mesh_or_error(Reader read, const std::string& bytes) {
-  // A copy of exactly this size, so that a sanitizer sees the first byte beyond it.
+  // The copy has exactly this size, so sanitizers detect a read of the first byte beyond it.
   const std::vector<char> exact(bytes.begin(), bytes.end());
   TriangleMesh mesh;
   bool read_through = false;
@@ -126,7 +126,7 @@ bool mesh_or_error(Reader read, const std::string& bytes) {
     return false;
   }
   EXPECT_EQ(error_of([&] { check_mesh(mesh); }), "") << bytes;
-  // A header must not decide how much is allocated.
+  // The counts in a header must not determine how much is allocated.
   EXPECT_LE(mesh.positions.capacity(), 64 + 8 * bytes.size());
   EXPECT_LE(mesh.triangles.capacity(), 64 + 8 * bytes.size());
   return true;
@@ -141,7 +141,7 @@ TEST(DamagedFiles, GiveAMeshOrAnError) {
     for (int i = 0; i < 4000 && !testing::Test::HasFailure(); ++i) {
       ++(mesh_or_error(seed.read, damage(seed.bytes)) ? meshes : errors);
     }
-    // The damage must be neither harmless nor fatal throughout, or this checks little.
+    // The test is useful only if the damage is sometimes harmless and sometimes fatal.
     EXPECT_GT(meshes, 100);
     EXPECT_GT(errors, 100);
   }

@@ -16,7 +16,7 @@ std::uint64_t bits(double value) {
   return std::bit_cast<std::uint64_t>(value);
 }
 
-// NaN when no number starts the text or more than the number is in it: no text here means NaN.
+// The parsed number, or NaN if the text is not exactly one number. No text in these tests means NaN.
 double parsed(const std::string& text) {
   double value = std::nan("");
   const char* end = parse_double(text.data(), text.data() + text.size(), value);

@@ -23,7 +23,7 @@ std::string header(const std::string& format, const std::string& elements) {
 const std::string plain =
     header("ascii", "element vertex 4\n" + xyz + "element face 1\n" + faces);  // 9 lines
 
-// The bytes of the values in a given order.
+// Collects the bytes of values in a given byte order.
 class Bytes {
  public:
   explicit Bytes(std::endian order) : order_(order) {}
@@ -177,7 +177,7 @@ Bytes little() {
   return Bytes(std::endian::little);
 }
 
-// The tetrahedron's four vertices and then what `body` holds; the body starts at byte 217.
+// A file with the four vertices of the tetrahedron and then `body`, which starts at byte 217.
 std::string binary(const Bytes& body, const std::string& index = "int") {
   Bytes bytes = little();
   for (const int value : {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1}) bytes.add(static_cast<float>(value));

@@ -30,7 +30,7 @@ TEST(SharedMeshes, CountsAreTheKnownOnes) {
     EXPECT_EQ(topology.non_manifold_edges, truth.at("edges_of_more_than_2_faces"));
     EXPECT_EQ(topology.degenerate_triangles, truth.at("faces_repeating_an_id"));
     EXPECT_EQ(topology.unused_vertices, truth.at("unused_vertices"));
-    // The truth counts an unused vertex as a component of its own.
+    // The truth counts each unused vertex as a component.
     EXPECT_EQ(topology.components + topology.unused_vertices, truth.at("components"));
     for (int axis = 0; axis < 3; ++axis) {
       const auto less = [axis](const Vec3d& a, const Vec3d& b) { return a[axis] < b[axis]; };

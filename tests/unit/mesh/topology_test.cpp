@@ -64,7 +64,7 @@ TEST(Topology, EdgesOfMoreThanTwoTriangles) {
   EXPECT_EQ(topology.boundary_edges, 6u);
   EXPECT_EQ(topology.non_manifold_edges, 1u);
   EXPECT_EQ(topology.components, 1u);
-  // Two faces of one winding still make one edge.
+  // Two faces that traverse their common side in the same direction still share one edge.
   EXPECT_EQ(topology_of(4, {{0, 1, 2}, {0, 1, 3}}).edges, 5u);
 }
 

@@ -19,7 +19,7 @@
 namespace supple {
 namespace {
 
-/// Triangles that hang together through shared vertices.
+/// Triangles connected through shared vertices.
 struct Component {
   std::size_t vertices = 0, edges = 0, border_edges = 0;
   std::vector<Triangle> triangles;
@@ -73,18 +73,18 @@ std::vector<Component> components_of(const TriangleMesh& mesh) {
   return components;
 }
 
-/// No edge is used twice in the same direction: at most two triangles meet there, and they agree on outside.
+/// No directed edge is used twice: at most two triangles share an edge, and their orientations agree.
 void expect_oriented_manifold(const TriangleMesh& mesh) {
   for (const auto& [edge, count] : directed_edges(mesh))
     ASSERT_EQ(count, 1) << mesh.name << " edge " << edge.first << "-" << edge.second;
 }
 
-/// Six times the volume of a tetrahedron, signed.
+/// Six times the signed volume of a tetrahedron.
 double volume_of(Vec3d a, Vec3d b, Vec3d c, Vec3d d) {
   return dot(b - a, cross(c - a, d - a));
 }
 
-/// True when the segment passes through the inside of the triangle. In doubles: a touch may go either way.
+/// Whether the segment passes through the interior of the triangle. Rounding may decide about touches.
 bool crosses(Vec3d start, Vec3d end, Vec3d a, Vec3d b, Vec3d c) {
   if (volume_of(start, a, b, c) * volume_of(end, a, b, c) >= 0) return false;
   const double ab = volume_of(start, end, a, b);
@@ -93,7 +93,7 @@ bool crosses(Vec3d start, Vec3d end, Vec3d a, Vec3d b, Vec3d c) {
   return (ab > 0 && bc > 0 && ca > 0) || (ab < 0 && bc < 0 && ca < 0);
 }
 
-/// True when the boxes around the segment and the triangle are apart: most pairs end here.
+/// Whether the boxes around the segment and the triangle are disjoint, as for most pairs.
 bool far_apart(Vec3d start, Vec3d end, Vec3d a, Vec3d b, Vec3d c) {
   for (int axis = 0; axis < 3; ++axis) {
     const auto [low, high] = std::minmax(start[axis], end[axis]);
@@ -103,14 +103,14 @@ bool far_apart(Vec3d start, Vec3d end, Vec3d a, Vec3d b, Vec3d c) {
   return false;
 }
 
-/// No edge passes through a triangle of the same part.
+/// Expects that no edge passes through a triangle of the same component.
 void expect_no_self_crossing(const TriangleMesh& mesh, const Component& component) {
   const auto& p = mesh.positions;
   for (const Triangle& edges : component.triangles) {
     for (int corner = 0; corner < 3; ++corner) {
       const std::uint32_t a = edges[corner];
       const std::uint32_t b = edges[(corner + 1) % 3];
-      if (component.closed() && a > b) continue;  // its other triangle has it the other way round
+      if (component.closed() && a > b) continue;  // the other triangle has the same edge as (b, a)
       for (const Triangle& t : component.triangles) {
         if (far_apart(p[a], p[b], p[t[0]], p[t[1]], p[t[2]])) continue;
         if (std::find(t.begin(), t.end(), a) != t.end()) continue;
@@ -123,7 +123,7 @@ void expect_no_self_crossing(const TriangleMesh& mesh, const Component& componen
   }
 }
 
-/// 1 for an equilateral triangle, 0 for one without area.
+/// 1 for an equilateral triangle, 0 for a triangle without area.
 double roundness(const TriangleMesh& mesh, const Triangle& t) {
   const Vec3d a = mesh.positions[t[0]];
   const Vec3d b = mesh.positions[t[1]];
@@ -146,7 +146,7 @@ void expect_clean(const TriangleMesh& mesh, double least_roundness) {
   EXPECT_EQ(used.size(), mesh.positions.size()) << mesh.name << " has unused vertices";
 }
 
-/// FNV-1a, 64 bits, over the bits of the positions and the ids, low bytes first.
+/// The 64-bit FNV-1a hash of the bits of the positions and ids, low bytes first.
 std::uint64_t hash_of(const TriangleMesh& mesh) {
   std::uint64_t hash = 14695981039346656037u;
   const auto add = [&](std::uint64_t word) {
@@ -177,7 +177,7 @@ TEST(SelfCrossing, IsSeenByTheTestBelow) {
 struct Expected {
   const char* name;
   std::size_t vertices, triangles;
-  std::size_t spheres, tori, sheets;  // components: closed without and with one handle, open discs
+  std::size_t spheres, tori, sheets;  // components: closed with no handle, closed with one, open discs
   std::size_t border_edges;
   int longest_axis;
   double least_roundness;
@@ -252,7 +252,7 @@ TEST(ModelNames, AreThePapersInItsOrder) {
 TEST(ModelNames, AreListedWhenOneIsUnknown) {
   try {
     make_model("Pawn");
-    FAIL() << "names are told apart by case";
+    FAIL() << "names are case-sensitive";
   } catch (const Error& error) {
     EXPECT_STREQ(error.what(),
                  "unknown model 'Pawn'; the built-in models are pawn, fish, rabbit, human, bike");
@@ -325,7 +325,7 @@ TEST(Cloth, IsASheetThatFacesUp) {
 }
 
 TEST(Cloth, AlternatesItsDiagonals) {
-  // Around the inner vertex of a 2 × 2 sheet all four diagonals meet, or none does.
+  // Four diagonals meet at the inner vertex of a 2 × 2 sheet, so all eight triangles use it.
   const TriangleMesh mesh = make_cloth(2, 2);
   const auto around_middle =
       std::count_if(mesh.triangles.begin(), mesh.triangles.end(),

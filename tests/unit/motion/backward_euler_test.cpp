@@ -1,4 +1,4 @@
-// The linear systems of backward Euler and how they are solved.
+// Tests the linear systems of backward Euler and their solvers.
 
 #include "motion/backward_euler.hpp"
 
@@ -14,7 +14,7 @@ namespace {
 
 using Pairs = std::vector<std::array<std::uint32_t, 2>>;
 
-/// Springs that are stiff against the step take a factor, others conjugate gradients.
+/// With stiff springs the solver uses a sparse factorization, otherwise conjugate gradients.
 MassSpringOptions implicit_options(double stiffness) {
   return {.integrator = Integrator::backward_euler,
           .stiffness = stiffness,
@@ -31,7 +31,7 @@ std::vector<Vec3d> state_of(const MassSpring& body) {
 }
 
 TEST(BackwardEulerSteps, AreTheSameForAnyNumberOfThreads) {
-  // Of more than two chunks of vertices.
+  // The cloth has more than two chunks of vertices.
   const TriangleMesh cloth = make_cloth(36, 36, 3.6, 3.6);
   for (const double stiffness : {100.0, 1e8}) {
     std::vector<Vec3d> expected;
@@ -90,7 +90,7 @@ TEST(BackwardEulerSteps, WithoutStiffnessAreFreeFall) {
                              .fixed_vertices = {3}});
   for (int i = 0; i < 4; ++i) body.step(0.25);
   for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
-    // Velocities at the ends of the steps: 8 h² (1 + 2 + 3 + 4).
+    // Each step moves with its end velocity, so the distance is 8 h² (1 + 2 + 3 + 4).
     const Vec3d way = body.positions()[v] - mesh.positions[v];
     EXPECT_NEAR(way.y, v == 3 ? 0 : -5, 1e-14);
     EXPECT_EQ(way.x, 0);
@@ -133,7 +133,7 @@ struct Equations {
 
   Equations()
       : kinds(free_but_two(mesh.positions.size())),
-        // Stretched, so that nothing has to be left out of the second derivative.
+        // The springs are stretched, so no term of the second derivative is omitted.
         positions(deformed(mesh, 0, 0.01, 41)),
         velocities(random_vectors(mesh.positions.size(), 0.1, 42)),
         at(random_vectors(mesh.positions.size(), 0.1, 43)),
@@ -224,7 +224,7 @@ TEST(StepEquations, ProductIsSymmetricAboveTheMassesAndWhatTheFactorUndoes) {
   EXPECT_LT(largest_difference(solution, x), 1e-12);
 }
 
-/// A graph of rows, and blocks that make the matrix 1 + Σ of positive semidefinite ones.
+/// A graph of rows, and blocks such that the matrix is 1 + Σ of positive semidefinite ones.
 struct Matrix {
   std::uint32_t count;
   Pairs pairs;

@@ -16,7 +16,7 @@ namespace supple {
 constexpr Integrator all_integrators[] = {Integrator::verlet, Integrator::symplectic_euler,
                                           Integrator::backward_euler};
 
-/// Vertices below each other, `length` apart; a triangle with a repeated id is an edge.
+/// A vertical chain with vertices `length` apart. A triangle with a repeated id acts as an edge.
 inline TriangleMesh chain(std::uint32_t vertices, double length) {
   TriangleMesh mesh{"chain", {}, {}};
   for (std::uint32_t v = 0; v < vertices; ++v) {
@@ -40,7 +40,7 @@ inline std::vector<Vec3d> random_vectors(std::size_t count, double size, std::ui
   return vectors;
 }
 
-/// Longer along x, shorter along y, and shaken.
+/// Stretches along x, contracts along y and adds random offsets.
 inline std::vector<Vec3d> deformed(const TriangleMesh& mesh, double stretch, double shake,
                                    std::uint64_t seed) {
   std::vector<Vec3d> positions = mesh.positions;

@@ -1,4 +1,4 @@
-// Motions whose formulas are known.
+// Compares motions with known formulas.
 
 #include <gtest/gtest.h>
 
@@ -82,7 +82,7 @@ TEST(FreeFall, FollowsTheParabolaOfItsIntegrator) {
   for (const Integrator integrator : all_integrators) {
     MassSpringBody body(box, {.integrator = integrator, .gravity = {0, g, 0}});
     run(body, 1, steps);
-    // Both kinds of Euler fall by the end velocity of each step: g h² (1 + 2 + … + n).
+    // Both kinds of Euler advance each step with its end velocity: g h² (1 + 2 + … + n).
     const double way = integrator == Integrator::verlet ? 0.5 * g : g * h * h * steps * (steps + 1) / 2;
     const double tolerance = integrator == Integrator::backward_euler ? 1e-12 : 0;
     EXPECT_NEAR(body.center_of_mass().y, way, tolerance);
@@ -100,7 +100,7 @@ TEST(AirFriction, SlowsDownExponentiallyTowardsTheAir) {
   body.add_drift({0, 1, 0});
   run(body, 20, 1000);
   EXPECT_NEAR(body.mean_velocity().x, 0, 1e-9);
-  EXPECT_EQ(body.mean_velocity().y, 1) << "the air drifts along";
+  EXPECT_EQ(body.mean_velocity().y, 1) << "the air drifts with the body";
   body.reflect(1);
   EXPECT_EQ(body.mean_velocity().y, -1);
   run(body, 1, 10);
@@ -140,7 +140,7 @@ TEST(HangingChain, EachSpringBearsTheWeightBelow) {
 }
 
 TEST(Pendulum, SwingsWithItsPeriod) {
-  // A stiff spring of length 1 on a fixed end; small swings take 2π √(1/g) (1 + θ²/16).
+  // A stiff spring of length 1 with one end fixed; the period of small oscillations is 2π √(1/g) (1 + θ²/16).
   const double g = 9.81, angle = 0.01;
   MassSpringBody body(
       chain(2, 1),

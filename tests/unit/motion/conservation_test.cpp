@@ -1,4 +1,4 @@
-// What must not change.
+// Checks conserved quantities.
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,8 @@
 namespace supple {
 namespace {
 
-/// For a sphere that oscillates freely: the largest relative error of the energy, and its drift, the
-/// difference of its means over the last and the first quarter.
+/// Relative errors of the energy of a freely oscillating sphere: the largest one, and the drift from the mean
+/// of the first quarter to the mean of the last.
 struct EnergyError {
   double largest = 0, drift = 0;
 };
@@ -98,7 +98,7 @@ TEST_P(Momentum, IsKeptToRounding) {
   const Vec3d momentum = body.momentum(), angular = body.angular_momentum(), start = body.center_of_mass();
   const double mass = options.vertex_mass * static_cast<double>(body.vertex_count());
   run(body, 2, options.integrator == Integrator::backward_euler ? 40 : 400);
-  const double scale = mass;  // of velocities and distances of about 1
+  const double scale = mass;  // velocities and distances are about 1
   EXPECT_LT(norm(body.momentum() - momentum), 1e-13 * scale);
   if (options.integrator != Integrator::backward_euler) {
     EXPECT_LT(norm(body.angular_momentum() - angular), 1e-12 * scale);

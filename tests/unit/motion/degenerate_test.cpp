@@ -1,4 +1,4 @@
-// Meshes that are hardly meshes, and options out of range.
+// Degenerate meshes and options that are out of range.
 
 #include <gtest/gtest.h>
 
@@ -112,7 +112,7 @@ TEST(DegenerateBodies, HugeOnesSayNothingButErrors) {
   for (Vec3d& p : mesh.positions) p = p * 1e200;
   MassSpringBody body(mesh, everything(Integrator::verlet));
   body.step(0.1);
-  EXPECT_TRUE(body.springs().empty()) << "their lengths are beyond double";
+  EXPECT_TRUE(body.springs().empty()) << "their lengths overflow";
 }
 
 TEST(MassSpringOptionsCheck, NamesWhatIsOutOfRange) {

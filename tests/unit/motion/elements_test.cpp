@@ -1,4 +1,4 @@
-// Springs of edges and across them, and forces of areas.
+// Springs along and across edges, and forces that keep areas.
 
 #include <gtest/gtest.h>
 
@@ -43,7 +43,8 @@ TEST(SpringNetwork, PutsBendingSpringsBetweenOppositeCorners) {
   EXPECT_TRUE(build_spring_network(mesh, false, false).bending.elements.empty());
   mesh.triangles.push_back({0, 1, 4});
   EXPECT_EQ(pairs_of(build_spring_network(mesh, true, false).bending.elements), (Pairs{{2, 3}, {3, 4}}));
-  // Duplicates and triangles with a repeated id have nothing across; what is an edge already is none.
+  // Duplicate triangles and triangles with a repeated id give no spring across an edge. An existing edge
+  // gives no second spring.
   mesh.triangles = {{0, 1, 2}, {2, 1, 0}, {0, 1, 1}};
   EXPECT_TRUE(build_spring_network(mesh, true, false).bending.elements.empty());
   mesh.triangles = {{0, 1, 2}, {1, 0, 3}, {2, 3, 4}};
@@ -113,7 +114,8 @@ TEST(SpringForce, PullsAlongTheSpring) {
   EXPECT_EQ(spring_force({}, {1, 1, 1}, 2, 3, 4), (Vec3d{0, 0, 0}));
 }
 
-/// A square that is held by two sides and pulled to 1.4 times its length, when it has come to rest.
+/// The area error of a square after it has come to rest; two sides are fixed, and it is stretched to 1.4
+/// times its length.
 AreaError pulled(double area_stiffness) {
   const TriangleMesh cloth = make_cloth(8, 8);
   MassSpringOptions options{
@@ -132,7 +134,7 @@ AreaError pulled(double area_stiffness) {
 }
 
 TEST(AreaForces, KeepAreasUnderPull) {
-  // Held at its sides it cannot shrink there, so that an error is left; docs/motion.md has these numbers.
+  // The square cannot contract at its fixed sides, so an error remains; docs/motion.md lists these numbers.
   const AreaError none = pulled(0), equal = pulled(20), tenfold = pulled(200), hundredfold = pulled(2000);
   EXPECT_GT(none.mean, 0.2);
   EXPECT_LT(equal.mean, 0.8 * none.mean);

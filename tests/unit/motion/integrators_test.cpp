@@ -1,4 +1,4 @@
-// How errors shrink with the step, and which steps are stable.
+// Tests how errors decrease with the step, and which steps are stable.
 
 #include <gtest/gtest.h>
 
@@ -73,7 +73,7 @@ TEST(StableStep, CountsSubstepsAndIsInfiniteForBackwardEuler) {
   const double of_one = MassSpringBody(mesh).stable_step();
   EXPECT_EQ(MassSpringBody(mesh, {.substeps = 4}).stable_step(), 4 * of_one);
   EXPECT_TRUE(std::isinf(MassSpringBody(mesh, {.integrator = Integrator::backward_euler}).stable_step()));
-  // One spring: ω² = 2 k/m, and h ω = 2 is the limit of Verlet.
+  // For one spring, ω² = 2 k/m, and the limit of Verlet is h ω = 2.
   EXPECT_NEAR(MassSpringBody(one_spring(1), {.stiffness = 8, .damping = 0}).stable_step(), 0.5, 1e-15);
 }
 

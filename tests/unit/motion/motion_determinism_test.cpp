@@ -1,4 +1,4 @@
-// The same bits for any number of threads, and on every machine.
+// Motion has the same bits for any number of threads and on every machine.
 
 #include <gtest/gtest.h>
 
@@ -54,7 +54,7 @@ TEST(MotionThreads, MakeNoDifference) {
 }
 
 TEST(MotionThreads, OfABodyMakeNoDifference) {
-  // Large enough that it takes them.
+  // The cloth is large enough for several threads.
   const TriangleMesh cloth = make_cloth(110, 110, 11, 11);
   const std::uint64_t expected = hash_of_run(cloth, {.threads = 1}, 2);
   for (const std::uint32_t threads : {2u, 0u}) {
@@ -62,7 +62,7 @@ TEST(MotionThreads, OfABodyMakeNoDifference) {
   }
 }
 
-// Changes with the arithmetic of a step alone; say so in the changelog.
+// This hash changes only with the arithmetic of a step; record the change in the changelog.
 constexpr std::uint64_t golden_hash = 10756507334953599675u;
 
 TEST(MotionGoldenHash, IsTheSameEverywhere) {

@@ -1,4 +1,4 @@
-// What stays fixed, what is limited, and what does not come back.
+// Tests fixed vertices, limits of the strain and plastic deformation.
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 namespace supple {
 namespace {
 
-/// The largest strain of an edge, and the smallest.
+/// The largest and the smallest strain of an edge.
 struct Strains {
   double largest = -1, smallest = 1e300;
 };
@@ -36,7 +36,7 @@ TEST(FixedVertices, StayOrMoveAlongUniformly) {
     EXPECT_EQ(body.positions()[0], cloth.positions[0]);
     EXPECT_EQ(body.positions()[6], cloth.positions[6] + velocities[6]);
     EXPECT_EQ(body.velocities()[6], velocities[6]);
-    EXPECT_LT(body.positions()[45].y, -0.1) << "the rest falls";
+    EXPECT_LT(body.positions()[45].y, -0.1) << "the other vertices fall";
   }
 }
 
@@ -69,7 +69,7 @@ TEST(MaxStrain, HoldsAHangingSheetTogether) {
   };
   EXPECT_GT(hang(std::numeric_limits<double>::infinity()).largest, 1);
   const Strains limited = hang(0.1);
-  EXPECT_LT(limited.largest, 0.15) << "the rounds are not always enough";
+  EXPECT_LT(limited.largest, 0.15) << "the iterations may leave some strain above the limit";
   EXPECT_GT(limited.smallest, -0.15);
   EXPECT_GT(limited.largest, 0.09);
 }
@@ -121,7 +121,7 @@ TEST(PlasticFlow, OfAHeldSpringGoesToItsYieldAtItsRate) {
   for (const double step : {0.001, 0.1, 100.0}) {
     MassSpringBody body(one_spring(1), {.yield_strain = 0.25, .plastic_rate = 2, .fixed_vertices = {0, 1}});
     body.set_positions(one_spring(1.5).positions);
-    // 1.5 / 1.25 in the end
+    // The final rest length is 1.5 / 1.25.
     const int steps = std::max(1, static_cast<int>(std::lround(0.5 / step)));
     for (int i = 0; i < steps; ++i) body.step(step);
     const double expected = step > 1 ? 1.2 : 1.2 - 0.2 * std::exp(-1.0);
@@ -133,7 +133,7 @@ TEST(PlasticFlow, OfAHeldSpringGoesToItsYieldAtItsRate) {
 TEST(PlasticFlow, TakesAreasAlong) {
   const TriangleMesh cloth = make_cloth(6, 6);
   const auto area_after_pull = [&](double yield_strain) {
-    // So much damping that it does not swing back beyond its yield.
+    // The damping is so large that the body does not swing back beyond its yield strain.
     MassSpringBody body(cloth, {.integrator = Integrator::backward_euler,
                                 .vertex_mass = 0.1,
                                 .damping = 20,

@@ -24,7 +24,7 @@ State state_of(const MassSpringBody& body) {
   return state;
 }
 
-/// Stretched and let go.
+/// A stretched body that is released from rest.
 MassSpringBody swinging(const MassSpringOptions& options) {
   const TriangleMesh mesh = make_torus(10, 6);
   MassSpringBody body(mesh, options);

@@ -1,4 +1,4 @@
-// The force that keeps what closed surfaces enclose.
+// Tests the force that preserves the volume of closed surfaces.
 
 #include <gtest/gtest.h>
 
@@ -32,7 +32,7 @@ std::vector<Vec3d> scaled(std::span<const Vec3d> positions, double factor) {
   return result;
 }
 
-/// Two balls, one wound inward, and an open sheet.
+/// Two balls, one of them with inward faces, and an open sheet.
 TriangleMesh two_balls_and_a_sheet() {
   TriangleMesh mesh = make_icosphere(2);
   append(mesh, inside_out(make_icosphere(3)), {4, 0, 0});
@@ -52,7 +52,7 @@ TEST(ClosedParts, AreTheClosedOnesOfAMesh) {
   EXPECT_TRUE(closed_parts(hole).parts.empty());
   TriangleMesh turned = make_box({1, 1, 1}, 3);
   std::swap(turned.triangles[5][1], turned.triangles[5][2]);
-  EXPECT_TRUE(closed_parts(turned).parts.empty()) << "it has no inside";
+  EXPECT_TRUE(closed_parts(turned).parts.empty()) << "one triangle has the wrong orientation";
   TriangleMesh spoilt = make_box({1, 1, 1}, 3);
   spoilt.triangles.push_back({3, 3, 7});
   EXPECT_EQ(closed_parts(spoilt).parts.size(), 1u);
@@ -80,8 +80,8 @@ TEST(Volume, IsThatOfSolids) {
   EXPECT_NEAR(twice.volume(), 48, 1e-13);
 }
 
-/// All vertices of an icosahedron are alike, so under equal forces inward it only becomes smaller, by the
-/// factor s at which -12 f = ∂E/∂r = (30 k a² (s - 1) + 3 K V s² (s³ - 1)) / r.
+/// By symmetry, equal inward forces scale an icosahedron by the factor s with
+/// -12 f = ∂E/∂r = (30 k a² (s - 1) + 3 K V s² (s³ - 1)) / r.
 TEST(VolumeForce, BalancesPressureOnAnIcosahedron) {
   const TriangleMesh mesh = make_icosphere(1);
   const double edge = 1 / std::sin(0.4 * std::numbers::pi),
@@ -112,8 +112,8 @@ TEST(VolumeForce, BalancesPressureOnAnIcosahedron) {
   }
 }
 
-/// A ball of vertices without springs breathes with ω² = 3 K V · 3 / (n m r²) for small swings, when all are
-/// alike.
+/// Without springs, small radial oscillations of a ball with equivalent vertices have
+/// ω² = 3 K V · 3 / (n m r²).
 TEST(VolumeForce, LetsAnIcosahedronBreatheAtItsFrequency) {
   const TriangleMesh mesh = make_icosphere(1);
   MassSpringBody body(mesh, {.vertex_mass = 0.5, .stiffness = 0, .damping = 0, .volume_stiffness = 8});
@@ -170,7 +170,7 @@ TEST(VolumeForce, KeepsEachPartForItself) {
 }
 
 TEST(VolumeForce, IsIndependentOfThreads) {
-  // Larger than a few blocks, and with a part that begins in the middle of one.
+  // The mesh spans several blocks, and its second part begins in the middle of a block.
   TriangleMesh mesh = make_icosphere(28);
   append(mesh, make_icosphere(20), {3, 0, 0});
   const auto after = [&](std::uint32_t threads) {
@@ -197,7 +197,7 @@ TEST(VolumeForce, IsRefusedWhereNothingIsClosed) {
 }
 
 TEST(VolumeForce, LeavesFlatPartsAlone) {
-  // Two triangles back to back, a flat box, and a vertex that is not finite.
+  // Two triangles back to back, a flat box, and a mesh with a NaN coordinate.
   const TriangleMesh back_to_back{"leaf", {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}, {2, 1, 0}}};
   const TriangleMesh flat = make_box({1, 1e-9, 1}, 2);
   TriangleMesh spoilt = make_icosphere(1);
@@ -234,7 +234,7 @@ TEST(VolumeForce, ShortensTheStableStepAsItShould) {
       for (int i = 0; i < 400; ++i) body.step(part_of_stable * body.stable_step());
       return body.energy().total() / before;
     };
-    EXPECT_LT(energy_after(0.95), 11) << "Verlet's swings by up to 1 / (1 - 0.95²)";
+    EXPECT_LT(energy_after(0.95), 11) << "the energy of Verlet oscillates by up to 1 / (1 - 0.95²)";
     EXPECT_ANY_THROW(EXPECT_GT(energy_after(1.2), 1e3); throw 0) << "the bound is sharp for a ball";
   }
 }
@@ -257,7 +257,7 @@ TEST(VolumeForce, AtAnyStiffnessIsNoHarmToBackwardEuler) {
 }
 
 TEST(VolumeForce, HoldsUpABallThatWouldCollapse) {
-  // Pressed together between gravity and a foot that is held: the springs alone are too soft.
+  // The ball is compressed between gravity and its fixed base: the springs alone are too soft.
   const TriangleMesh mesh = make_icosphere(4);
   std::vector<std::uint32_t> foot;
   for (std::uint32_t v = 0; v < mesh.positions.size(); ++v) {

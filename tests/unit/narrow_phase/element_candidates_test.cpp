@@ -1,5 +1,5 @@
-// Candidates of continuous contacts against every pair of elements, and against known contacts of real
-// meshes.
+// Compares the candidates of continuous contacts with all pairs of elements, and with the known contacts of
+// real meshes.
 
 #include <gtest/gtest.h>
 
@@ -22,7 +22,7 @@ namespace {
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double inf = std::numeric_limits<double>::infinity();
 
-/// The user's numbers: {v, v}, {p, q} with p < q, or {t, t}.
+/// Ids in the user's numbering: {v, v}, {p, q} with p < q, or {t, t}.
 using ElementId = std::array<std::uint32_t, 2>;
 using Candidate = std::tuple<ElementPairKind, ElementId, ElementId>;
 using CandidateSet = std::set<Candidate>;
@@ -59,7 +59,7 @@ ObjectPairView pair_view(const MovingObject& a, const MovingObject& b, double se
                   : moving_pair_of(a.view(), b.view(), separation);
 }
 
-/// A pair found twice fails.
+/// Fails if a pair is found twice.
 CandidateSet find_candidates(const MovingObject& a, const MovingObject& b, double separation,
                              int refinements) {
   const ObjectPairView pair = pair_view(a, b, separation);
@@ -85,14 +85,14 @@ CandidateSet find_candidates(const MovingObject& a, const MovingObject& b, doubl
   return found;
 }
 
-/// An element as brute force sees it: its id and its box at both ends, exactly.
+/// An element in the brute-force search: its id and its exact boxes at both ends of the step.
 struct BruteElement {
   ElementId id;
   std::vector<std::uint32_t> vertices;
   Vec3d min[2], max[2];
 };
 
-/// Appends the element unless it is inert.
+/// Appends the element unless a coordinate is not finite.
 void add_element(const MovingObject& object, ElementId id, std::vector<std::uint32_t> vertices,
                  std::vector<BruteElement>& elements) {
   BruteElement element{
@@ -165,8 +165,7 @@ CandidateSet brute_force(const MovingObject& a, const MovingObject& b, double se
   return found;
 }
 
-/// Nothing missed, and nothing found that rounding, at most `slack`, does not explain. Floats are not
-/// rounded.
+/// Expects no missing candidate, and additional ones only within `slack`, the rounding of the boxes.
 void expect_candidates(const MovingObject& a, const MovingObject& b, double separation, double slack) {
   ASSERT_EQ(a.validate(), "");
   ASSERT_EQ(b.validate(), "");
@@ -239,7 +238,7 @@ TEST_P(ElementCandidates, OfNonFiniteVertices) {
 }
 
 TEST_P(ElementCandidates, OfTouchingBoxes) {
-  // Squares on a grid of small integers: many bounds are equal, at one end or at both.
+  // Triangles on a grid of small integers: many bounds are equal, at one end of the step or at both.
   RandomNumbers random(9);
   TriangleMesh mesh;
   std::vector<Vec3d> end;
@@ -270,7 +269,7 @@ TEST(ElementCandidates, OfNothing) {
 }
 
 TEST(ElementCandidates, BeyondTheRangeOfFloatAreKept) {
-  // All of these are FLT_MAX in single precision, or its negative; the inert ones must still drop out.
+  // In single precision, all of these coordinates round to ±FLT_MAX. Inert elements must still be excluded.
   TriangleMesh mesh;
   for (const double x : {1e39, 1e300, -1e39, -1e300}) {
     const auto first = static_cast<std::uint32_t>(mesh.positions.size());
@@ -303,13 +302,13 @@ TEST(ElementCandidates, OfElementsAtOnePlaceComeInBatches) {
 }
 
 TEST(ElementCandidates, OfElementsThatPassEachOther) {
-  // Through each other along x: at both ends apart, but not on the same side.
+  // They pass through each other along x: at both ends they are apart, but on opposite sides.
   const TriangleMesh left{"", {{0, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 1, 2}}};
   const TriangleMesh right{"", {{1, 0, 0}, {1, 1, 0}, {1, 0, 1}}, {{0, 1, 2}}};
   const MovingObject a(left, right.positions), b(right, left.positions),
       c(right, {{2, 0, 0}, {2, 1, 0}, {2, 0, 1}});
   EXPECT_FALSE(find_candidates(a, b, 0, 0).empty());
-  // After it on the same way: the swept boxes meet, the boxes never do.
+  // c moves ahead of a in the same direction: the swept boxes overlap, but the boxes never do.
   EXPECT_TRUE(find_candidates(a, c, 0, 0).empty());
   EXPECT_FALSE(find_candidates(a, c, 1, 0).empty());
 }
@@ -339,7 +338,7 @@ TEST(ElementCandidates, AreTheSameOnEveryInstructionSet) {
   }
 }
 
-/// Frames with known contacts: `contacts/NAME.txt` of the shared data.
+/// Frames with known contacts from `contacts/NAME.txt` of the shared data.
 void expect_known_contacts(const std::string& name, const std::string& frame_0, const std::string& frame_1,
                            std::uint64_t vertex_face, std::uint64_t edge_edge) {
   std::ifstream contacts(shared_meshes() / "contacts" / (name + ".txt"));
@@ -350,7 +349,7 @@ void expect_known_contacts(const std::string& name, const std::string& frame_0, 
   for (const Triangle& triangle : start.triangles) {
     for (int corner = 0; corner < 3; ++corner) {
       const auto [p, q] = std::minmax(triangle[corner], triangle[(corner + 1) % 3]);
-      ordered.insert({q, p});  // the data's order: by the larger, then by the smaller
+      ordered.insert({q, p});  // the order of the data: by the larger id, then by the smaller one
     }
   }
   std::vector<ElementId> edges;
@@ -389,7 +388,7 @@ void expect_known_contacts(const std::string& name, const std::string& frame_0, 
   }
 }
 
-/// Candidates that are left out are within one child that is said not to touch itself.
+/// Every omitted candidate is inside one child that is marked as free of self-collisions.
 TEST(ElementCandidates, LeaveOutWhatCulledChildrenCannotTouch) {
   const TriangleMesh mesh = crumpled_sheet(40, 30, 0.004, 5);
   const MovingObject object(mesh, displaced(mesh, 0.004, 6));
@@ -417,7 +416,7 @@ TEST(ElementCandidates, LeaveOutWhatCulledChildrenCannotTouch) {
   const CandidateSet all = candidates(false, 0), fewer = candidates(true, 0);
   EXPECT_LT(fewer.size(), all.size());
   EXPECT_TRUE(std::includes(all.begin(), all.end(), fewer.begin(), fewer.end()));
-  // Nothing is claimed of what only comes near.
+  // The culling makes no claim about elements that only come close.
   EXPECT_EQ(candidates(true, 1e-6).size(), candidates(false, 1e-6).size());
 }
 

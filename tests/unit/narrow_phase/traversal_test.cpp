@@ -28,7 +28,7 @@ struct Object {
   Vec3d translation;
 };
 
-/// Candidates in the user's numbers; a pair found twice fails.
+/// Candidates in the user's numbering. Fails if a pair is found twice.
 PairSet candidates(const Object& a, const Object& b, const ObjectPairView& pair, bool refined) {
   Traversal traversal;
   TraversalStats stats;
@@ -69,7 +69,7 @@ ExactBox box_of(const Object& object, std::uint32_t triangle) {
   return box;
 }
 
-/// All pairs whose exact boxes come within `slack`.
+/// All pairs whose exact boxes are within `slack` of each other.
 PairSet overlapping_boxes(const Object& a, const Object& b, bool same_object, double slack) {
   PairSet pairs;
   std::vector<ExactBox> boxes_b;
@@ -98,8 +98,9 @@ TrianglePoints points_of(const Object& object, std::uint32_t triangle) {
   return {at(0), at(1), at(2)};
 }
 
-/// Nothing missed, and nothing reported that rounding does not explain. Spheres enclose the triangles, but
-/// not the corners of their boxes, so only intersections are certain to be found.
+/// Expects that no pair is missing and that every additional one is explained by rounding. Spheres enclose
+/// the triangles but not the corners of their boxes, so with spheres only intersecting triangles must be
+/// found.
 void expect_candidates(const Object& a, const Object& b, bool same_object, double slack) {
   const ObjectPairView pair = same_object ? self_pair_of(a.view()) : pair_of(a.view(), b.view());
   PairSet must = overlapping_boxes(a, b, same_object, 0);

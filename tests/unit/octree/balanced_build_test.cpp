@@ -40,7 +40,7 @@ std::vector<std::vector<std::uint32_t>> leaves_of(const OctreeTopology& topology
   return leaves;
 }
 
-/// That all is in place: what each triangle is in once, and what nodes say of each other.
+/// Checks that each triangle is in exactly one leaf and that the links between nodes agree.
 void expect_sound(const OctreeTopology& topology, std::size_t count, const ObjectOctreeOptions& options) {
   std::vector<std::uint32_t> sorted = topology.order, all(count);
   std::sort(sorted.begin(), sorted.end());
@@ -73,7 +73,7 @@ void expect_sound(const OctreeTopology& topology, std::size_t count, const Objec
   ASSERT_EQ(in_leaves, count);
 }
 
-/// Positions that are hard to tell apart, by number.
+/// Degenerate positions, selected by number.
 TriangleMesh hard(TriangleMesh mesh, std::uint32_t way, RandomNumbers& random) {
   constexpr double inf = std::numeric_limits<double>::infinity();
   for (Vec3d& p : mesh.positions) {
@@ -149,7 +149,7 @@ TEST(BalancedBuild, FillsLeavesAndNodesEvenly) {
 }
 
 TEST(BalancedBuild, LeavesOfCrossingThreadsTileTheSquare) {
-  // Threads that cross the whole square, half of them along x and half along z.
+  // Strips that cross the whole square, half of them along x and half along z.
   TriangleMesh mesh;
   for (std::uint32_t thread = 0; thread < 64; ++thread) {
     const TriangleMesh sheet = crumpled_sheet(64, 1, 0, 0);
@@ -198,7 +198,7 @@ TEST(BalancedBuild, LeavesDoNotMixConnectedParts) {
 TEST(BalancedBuild, CutsGridsBetweenRows) {
   for (const auto& [columns, rows] : {std::pair{40u, 30u}, {24u, 24u}, {100u, 50u}, {64u, 64u}}) {
     const TriangleMesh sheet = crumpled_sheet(columns, rows, 0, 0);
-    // Both triangles of a square have the same centre, as boxes of theirs would.
+    // The two triangles of a square get the same centre.
     std::vector<Vec3d> centers = centers_of(sheet);
     for (std::size_t t = 0; t < centers.size(); t += 2) centers[t] = centers[t + 1];
     const OctreeTopology topology = build_balanced_octree(centers, sheet.triangles, {});
@@ -248,7 +248,7 @@ TEST(BalancedBuild, SeparatesTheRestWhenOneVertexIsFarAway) {
         const Vec3d size = high - low;
         small += size.x * size.y * size.z < 0.5 ? 1 : 0;
       }
-      // Beside a vertex at 1e300, floats cannot tell the others apart until a cut leaves it out.
+      // If a vertex is at 1e300, floats distinguish the other vertices only after a cut that separates it.
       EXPECT_GE(small + (far > 1e100 ? 20 : 8), leaves.size()) << far << ' ' << at;
     }
   }

@@ -60,7 +60,7 @@ TEST(MovingBoxes, InertElementsHaveNone) {
   const TriangleMesh lost{"", {{nan, 0, 0}, {1, 0, 0}, {2, 0, 0}}, {{0, 1, 2}}};
   const MovingObject object(lost, {});
   EXPECT_EQ(object.validate(), "");
-  // The two other vertices and their edge are live.
+  // The two other vertices and their edge remain active.
   EXPECT_EQ(object.boxes.start_box(), (Aabb{{1, 0, 0}, {2, 0, 0}}));
 }
 

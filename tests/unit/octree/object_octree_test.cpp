@@ -16,7 +16,7 @@ struct Soup {
   std::vector<Triangle> triangles;
 };
 
-/// Small triangles scattered over a sphere of the given radius about `center`.
+/// Small triangles at random places on a sphere with the given radius around `center`.
 Soup scattered_soup(std::uint32_t count, double radius, Vec3d center, std::uint32_t seed) {
   RandomNumbers random(seed);
   Soup soup;
@@ -78,7 +78,7 @@ TEST(ObjectOctree, StaysValidOverSizesAndOptions) {
 }
 
 TEST(ObjectOctree, TreesOfAnyArityEndInTheSameCells) {
-  // Down to single triangles: the same leaves in the same order, by half the levels, or three times as many.
+  // With one triangle per leaf, every arity gives the same leaves in the same order; only the depth differs.
   const Soup soup = scattered_soup(3000, 1, {}, 12);
   Built eight(soup, {.leaf_size = 1, .regular = true});
   EXPECT_EQ(eight.refit(soup), "");
@@ -101,7 +101,7 @@ TEST(ObjectOctree, TreesOfAnyArityEndInTheSameCells) {
 }
 
 TEST(ObjectOctree, LevelsOfAnyArityAreCountedInEights) {
-  // Points on a grid of 16 cells a side, one triangle a cell: two levels of eight leave 4 cells a side.
+  // A grid of 16³ cells with one triangle per cell: two levels of arity eight give 64 leaves of 4³ cells.
   Soup soup;
   std::uint32_t next = 0;
   for (int x = 0; x < 16; ++x)
@@ -212,7 +212,7 @@ TEST(ObjectOctree, InertTrianglesAreInNoBox) {
 TEST(ObjectOctree, BorrowedPositionsGiveTheSameVolumes) {
   for (const std::uint32_t count : {1u, 9u, 200u, 5000u}) {
     Soup soup = scattered_soup(count, 2, {1, 2, 3}, count);
-    soup.positions.push_back({100, 100, 100});  // of no triangle
+    soup.positions.push_back({100, 100, 100});  // not used by any triangle
     Built built(soup);
     ASSERT_EQ(built.refit(soup), "");
     const Aabb box = built.octree.box();
@@ -229,7 +229,7 @@ TEST(ObjectOctree, TellsOfANonFiniteVertexWhereverItIs) {
   constexpr double inf = std::numeric_limits<double>::infinity();
   const Soup soup = [] {
     Soup result = scattered_soup(150, 1, {}, 21);
-    result.positions.push_back({0, 0, 0});  // of no triangle
+    result.positions.push_back({0, 0, 0});  // not used by any triangle
     return result;
   }();
   for (std::size_t vertex = 0; vertex < soup.positions.size(); vertex += 50) {
@@ -258,7 +258,7 @@ TEST(ObjectOctree, ValidateFindsAStaleBox) {
   Soup soup = scattered_soup(100, 1, {}, 10);
   Built built(soup);
   EXPECT_EQ(built.refit(soup), "");
-  soup.positions[17].x += 5;  // out of any leaf
+  soup.positions[17].x += 5;  // outside every leaf
   built.vertices.assign(soup.positions, Parallel(1));
   EXPECT_NE(built.octree.validate(built.vertices, {}), "");
 }

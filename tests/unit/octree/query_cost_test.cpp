@@ -13,13 +13,13 @@
 namespace supple {
 namespace {
 
-/// An octree of a soup.
+/// The octree of a triangle soup.
 struct Tree {
   explicit Tree(const TriangleMesh& mesh, bool regular = false)
       : octree(mesh.positions, mesh.triangles, {.regular = regular}, BoundingVolume::aabb,
                SphereFit::vertices) {}
 
-  /// The cost after a refit to these positions.
+  /// The query cost after a refit to these positions.
   double cost(const std::vector<Vec3d>& positions, std::uint32_t threads = 1) {
     const Parallel parallel{threads};
     VertexBuffer vertices;
@@ -35,7 +35,7 @@ struct Tree {
   explicit Tree(ObjectOctree built) : octree(std::move(built)) {}
 };
 
-/// Each triangle moves in one piece.
+/// Moves each triangle rigidly by a random vector.
 std::vector<Vec3d> mixed(const TriangleMesh& mesh, double distance) {
   RandomNumbers random(9);
   std::vector<Vec3d> positions = mesh.positions;
@@ -47,7 +47,7 @@ std::vector<Vec3d> mixed(const TriangleMesh& mesh, double distance) {
 }
 
 TEST(QueryCost, IsTheSumOfSurfacesOfTheChildren) {
-  // Two leaves of one triangle each: a visit and an eighth each, times the share of their surface.
+  // Two leaves with one triangle each: each costs a visit plus an eighth, times its share of the surface.
   const TriangleMesh mesh{
       "", {{0, 0, 0}, {1, 1, 0}, {0, 0, 1}, {3, 0, 0}, {4, 1, 0}, {3, 0, 1}}, {{0, 1, 2}, {3, 4, 5}}};
   ObjectOctree octree(mesh.positions, mesh.triangles, {.leaf_size = 1}, BoundingVolume::aabb,
@@ -121,7 +121,7 @@ TEST(QueryCost, IsHighForAnObjectBuiltWhileItWasAPoint) {
   std::fill(mesh.positions.begin(), mesh.positions.end(), Vec3d{});
   for (const bool regular : {false, true}) {
     Tree tree(mesh, regular);
-    // A regular octree cannot divide equal points; a balanced one divides them anyhow.
+    // A regular octree cannot divide equal points; a balanced octree always divides them.
     ASSERT_EQ(tree.octree.statistics().largest_leaf == 1000, regular);
     Tree rebuilt = tree.rebuilt(spread);
     EXPECT_LT(rebuilt.cost(spread), tree.cost(spread) / 2);

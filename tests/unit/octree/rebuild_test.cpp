@@ -1,4 +1,4 @@
-// `ObjectOctree::rebuilt` from positions of all kinds.
+// Tests `ObjectOctree::rebuilt` with ordinary and degenerate positions.
 
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@
 namespace supple {
 namespace {
 
-/// An octree and the positions of its object, which come in the user's numbers.
+/// An octree and the positions of its object, in the user's order.
 struct Tree {
   Tree(const TriangleMesh& mesh_in, const ObjectOctreeOptions& options, BoundingVolume volume)
       : mesh(mesh_in), octree(mesh.positions, mesh.triangles, options, volume, SphereFit::vertices) {
@@ -59,7 +59,7 @@ struct Tree {
   std::vector<std::uint8_t> inert;
 };
 
-/// Positions that trees find hard, by number.
+/// Positions that are difficult for octrees, selected by number.
 std::vector<Vec3d> deformed(std::vector<Vec3d> positions, std::uint32_t way, RandomNumbers& random) {
   switch (way % 6) {
     case 0:

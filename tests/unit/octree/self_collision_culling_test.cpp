@@ -1,5 +1,5 @@
-// Children said not to touch themselves are checked exactly: all coordinates are multiples of small powers of
-// two, so that positions at eighths of the step are not rounded.
+// Checks exactly that culled children have no self-collisions. All coordinates are multiples of small powers
+// of two, so positions at eighths of the step are not rounded.
 
 #include "octree/self_collision_culling.hpp"
 
@@ -19,13 +19,13 @@ namespace {
 constexpr double pi = 3.14159265358979323846;
 
 struct Culled {
-  /// `end` empty: at rest.
+  /// An empty `end` means that the mesh is at rest.
   Culled(const TriangleMesh& mesh, const std::vector<Vec3d>& end, const ObjectOctreeOptions& options = {},
          bool floats = false)
       : object(mesh, end, options, floats), culling(object.octree, object.elements.faces()) {
     culling.refit(object.octree, object.elements.faces(), object.start, object.end_positions(), Parallel(1));
   }
-  /// How many children are said not to touch themselves.
+  /// The number of culled children.
   std::size_t count() const {
     std::size_t result = 0;
     for (const std::uint8_t mask : culling.masks()) result += static_cast<std::size_t>(std::popcount(mask));
@@ -66,7 +66,7 @@ struct Culled {
   SelfCollisionCulling culling;
 };
 
-/// Whether a mesh, all of it one leaf, is said not to touch itself; checked when it is.
+/// Whether a mesh in a single leaf is culled. If it is, the claim is verified.
 bool is_culled(const TriangleMesh& mesh, const std::vector<Vec3d>& end = {}) {
   const Culled one_leaf(mesh, end, {.leaf_size = 100000});
   one_leaf.expect_true_claims();
@@ -107,7 +107,8 @@ auto turned(double angle) {
   };
 }
 
-/// Goes once about a middle vertex for each 2 π of `angle`, climbing; the last vertex is not the first.
+/// A fan around a central vertex that climbs by `climb`. Every 2 π of `angle` is one full turn; the first and
+/// last vertices differ.
 TriangleMesh fan(std::uint32_t parts, double angle, double climb) {
   TriangleMesh mesh{"", {{0, 0, 0}}, {}};
   for (std::uint32_t i = 0; i <= parts; ++i) {
@@ -144,14 +145,15 @@ TEST(SelfCollisionCulling, MostChildrenOfALargeSmoothSheet) {
       children += node.child_count;
     }
     EXPECT_GT(children, 20u);
-    // Some have boundaries too jagged.
+    // Some children have boundaries that are too jagged.
     EXPECT_GT(3 * large.count(), 2 * children);
     if (floats) large.expect_true_claims();
   }
 }
 
 TEST(SelfCollisionCulling, ABalloonWithinALargeSheet) {
-  // Its small children are smooth, and the sheet around it is flat: the large children must not be culled.
+  // The small children of the balloon are smooth and the sheet around it is flat, but the large child that
+  // contains the balloon must not be culled.
   const auto balloon = [](const Vec3d& p) {
     const double x = p.x - 0.25, z = p.z - 0.25, distance = std::sqrt(x * x + z * z);
     if (distance >= 0.2) return p;
@@ -164,7 +166,7 @@ TEST(SelfCollisionCulling, ABalloonWithinALargeSheet) {
     EXPECT_EQ(root.child_count, 4);
     return sheet_children.culling.masks()[0];
   };
-  // The four children of the root are the quarters of the sheet.
+  // In a regular octree, the four children of the root are the quarters of the sheet.
   const ObjectOctreeOptions quarters{.regular = true};
   EXPECT_EQ(root_children({sheet(40, 40), {}, quarters}), 0xf);
   EXPECT_EQ(root_children({sheet(40, 40, balloon), {}, quarters}), 0xe);
@@ -178,14 +180,14 @@ TEST(SelfCollisionCulling, SurfacesThatCloseOrOverlap) {
   TriangleMesh twice = sheet(3, 3);
   twice.triangles.push_back(twice.triangles[4]);
   EXPECT_FALSE(is_culled(twice));
-  // A ramp: its triangles all face upwards, yet lie above one another.
+  // Spiral ramps: all triangles face upwards, but some lie above others.
   EXPECT_FALSE(is_culled(fan(25, 2 * pi * 1.5, 1)));
   EXPECT_FALSE(is_culled(fan(40, 2 * pi * 2.7, 0)));
   const auto ramp = [](const Vec3d& p) {
     return Vec3d{(1 + p.x) * std::cos(9 * p.z), (1 + p.x) * std::sin(9 * p.z), p.z};
   };
   EXPECT_FALSE(is_culled(sheet(3, 40, ramp)));
-  // Rolled, and twisted by half a turn.
+  // A rolled sheet, and a sheet twisted by half a turn.
   const auto roll = [](const Vec3d& p) { return Vec3d{p.x, std::cos(7 * p.z), std::sin(7 * p.z)}; };
   EXPECT_FALSE(is_culled(sheet(3, 30, roll)));
   const auto twist = [](const Vec3d& p) {
@@ -195,36 +197,36 @@ TEST(SelfCollisionCulling, SurfacesThatCloseOrOverlap) {
 }
 
 TEST(SelfCollisionCulling, SeamsThatTouch) {
-  // A disc cut along a ray, the vertices of the cut doubled.
+  // A disc cut along a ray, with duplicate vertices along the cut.
   TriangleMesh cut_disc = fan(12, 2 * pi, 0);
   cut_disc.positions[13] = cut_disc.positions[1];
   EXPECT_FALSE(is_culled(cut_disc));
-  // Two sheets side by side, the common side doubled.
+  // Two adjacent sheets with duplicate vertices along the common side.
   TriangleMesh pair = sheet(2, 2);
   const TriangleMesh left = pair;
   for (const Vec3d& p : left.positions) pair.positions.push_back(p + Vec3d{1, 0, 0});
   for (const Triangle& t : left.triangles) pair.triangles.push_back({t[0] + 9, t[1] + 9, t[2] + 9});
   EXPECT_FALSE(is_culled(pair));
-  // A vertex on the middle of another triangle's side.
+  // A vertex at the middle of the side of another triangle.
   const TriangleMesh junction{
       "", {{0, 0, 0}, {2, 0, 0}, {0, 2, 0}, {1, 0, 0}, {2, -1, 0}, {1, -1, 0}}, {{0, 1, 2}, {3, 5, 4}}};
   EXPECT_FALSE(is_culled(junction));
-  // Two triangles that share a vertex only.
+  // Two triangles that share only a vertex.
   const TriangleMesh bow{
       "", {{0, 0, 0}, {1, 1, 0}, {1, -1, 0}, {-1, 1, 0}, {-1, -1, 0}}, {{0, 2, 1}, {0, 3, 4}}};
   EXPECT_FALSE(is_culled(bow));
 }
 
 TEST(SelfCollisionCulling, MotionsThatFoldOnTheWay) {
-  // Flat at both ends, all in one point half-way.
+  // The sheet is flat at both ends; half-way all its vertices are in one point.
   EXPECT_FALSE(is_culled(sheet(4, 4), mapped(sheet(4, 4), turned(pi))));
   EXPECT_FALSE(is_culled(sheet(4, 4), mapped(sheet(4, 4), turned(pi / 2))));
-  // A fan that spreads until it lies over itself, and the reverse.
+  // A fan that spreads until it overlaps itself, and the reverse.
   const TriangleMesh open_fan = fan(12, 2 * pi * 0.9, 0), spread_fan = fan(12, 2 * pi * 1.1, 0);
   EXPECT_TRUE(is_culled(open_fan));
   EXPECT_FALSE(is_culled(open_fan, spread_fan.positions));
   EXPECT_FALSE(is_culled(spread_fan, open_fan.positions));
-  // Turned over.
+  // A sheet that is turned over.
   EXPECT_FALSE(is_culled(sheet(4, 4), mapped(sheet(4, 4), [](const Vec3d& p) {
                            return Vec3d{-p.x, p.y, p.z};
                          })));
@@ -254,7 +256,7 @@ TEST(SelfCollisionCulling, DegenerateTriangles) {
   EXPECT_EQ(Culled(tiny, {}, {.leaf_size = 100}).count(), 0u);
 }
 
-/// Few vertices on a coarse grid touch in every way there is.
+/// A few vertices on a coarse grid cover all kinds of touches.
 TEST(SelfCollisionCulling, SmallMeshesOnAGrid) {
   const std::vector<std::vector<Triangle>> shapes = {
       {{0, 1, 2}, {0, 2, 3}, {0, 3, 4}, {0, 4, 5}, {0, 5, 1}},             // a disc
@@ -269,7 +271,7 @@ TEST(SelfCollisionCulling, SmallMeshesOnAGrid) {
   for (int round = 0; round < 40000; ++round) {
     TriangleMesh mesh;
     std::vector<Vec3d> end;
-    // Mostly a slightly shaken regular polygon or strip, so that there is something to claim.
+    // Usually a slightly perturbed regular polygon or strip, so that some children are culled.
     const std::vector<Triangle>& shape = shapes[round % shapes.size()];
     const bool strip = round % shapes.size() == 2;
     const double height = random.below(3) * 0.5;

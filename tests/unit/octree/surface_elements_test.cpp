@@ -23,7 +23,7 @@ TEST(SurfaceElements, OfNothing) {
 }
 
 TEST(SurfaceElements, EdgesAreTheDistinctPairsOfVertices) {
-  // Two triangles of one side, one of them twice, a repeated id, a single point and two unused vertices.
+  // Two triangles with a common side (one twice), a repeated id, a single point and two unused vertices.
   const TriangleMesh mesh{"", std::vector<Vec3d>(8), {{0, 1, 2}, {2, 1, 3}, {0, 1, 2}, {4, 5, 4}, {6, 6, 6}}};
   const ObjectOctree octree = octree_of(mesh);
   const SurfaceElements elements(octree);

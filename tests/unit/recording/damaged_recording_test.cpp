@@ -13,7 +13,7 @@
 namespace supple {
 namespace {
 
-/// Changes a good recording through HDF5, and expects the reader to say what is wrong.
+/// Modifies a valid recording through HDF5. The tests expect a message that states the damage.
 class DamagedRecording : public testing::Test {
  protected:
   DamagedRecording() {
@@ -26,7 +26,7 @@ class DamagedRecording : public testing::Test {
         .write(folder_ / "moving.h5");
   }
 
-  /// Reads everything of a changed copy.
+  /// Reads all of a modified copy and returns the error.
   std::string error_after(const std::function<void(hid_t)>& change, const char* original = "run.h5") const {
     std::filesystem::copy_file(folder_ / original, folder_ / "bad.h5",
                                std::filesystem::copy_options::overwrite_existing);
@@ -62,7 +62,7 @@ class DamagedRecording : public testing::Test {
   TemporaryFolder folder_;
 };
 
-/// Writes a value over row `row` (and everything of it) of a dataset.
+/// Overwrites all values in row `row` of a dataset.
 template <class Value>
 std::function<void(hid_t)> with_value(const char* path, hsize_t row, Value value, hid_t type) {
   return [=](hid_t file) {

@@ -21,7 +21,7 @@ Contents touching(ContactKinds mode) {
                   {{}, {}, fixed}, scene, 4);
 }
 
-/// Compares `base` with what `change` makes of it.
+/// Compares `base_` with a copy that `change` has modified.
 class FindFirstDifference : public testing::TestWithParam<ContactKinds> {
  protected:
   std::optional<RecordingDifference> after(const std::function<void(Contents&)>& change,

@@ -21,7 +21,7 @@ RecordingHeader header_with(const SceneOptions& scene, const ObjectOptions& obje
   return header;
 }
 
-/// Calls `test(changed)` for each option that is recorded, with it alone changed.
+/// Calls `test(changed)` once per recorded option, with only that option changed.
 template <class Options, class Test>
 void change_each(Test test) {
   std::size_t count = 0;
@@ -85,7 +85,7 @@ void write_number(hid_t file, const char* name, hid_t type, std::uint32_t value)
   H5Sclose(space);
 }
 
-/// Makes a recording what version 1 of the format was.
+/// Converts a recording to version 1 of the format.
 void make_version_1(const std::filesystem::path& path, std::size_t objects) {
   const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
   ASSERT_GE(file, 0);

@@ -12,7 +12,7 @@
 
 namespace supple {
 
-/// What a scene gave in a frame, kept.
+/// Copies the result of a frame.
 inline RecordedFrame kept(double time, const DetectResult& result) {
   RecordedFrame frame;
   const auto keep = [](auto& to, auto from) { to.assign(from.begin(), from.end()); };
@@ -29,7 +29,7 @@ inline RecordedFrame kept(double time, const DetectResult& result) {
   return frame;
 }
 
-/// A `DetectResult` that shows a frame.
+/// A `DetectResult` with views of a frame.
 inline DetectResult shown(const RecordedFrame& frame) {
   DetectResult result;
   result.object_pairs = frame.object_pairs;
@@ -44,11 +44,11 @@ inline DetectResult shown(const RecordedFrame& frame) {
   return result;
 }
 
-/// All that a recording has, in memory: to be changed and written again.
+/// All contents of a recording in memory, so that tests can change them and write them again.
 struct Contents {
   RecordingHeader header;
   std::vector<RecordedFrame> frames;
-  std::vector<std::vector<std::vector<Vec3d>>> positions;  ///< of each frame, of each object
+  std::vector<std::vector<std::vector<Vec3d>>> positions;  ///< of each frame and each object
 
   void write(const std::filesystem::path& path) const {
     Recorder recorder(path, header);
@@ -71,7 +71,7 @@ inline Contents read_contents(const Recording& recording) {
   return contents;
 }
 
-/// Objects that move through each other by random steps.
+/// Objects that pass through each other in random steps.
 inline Contents simulate(const std::vector<TriangleMesh>& meshes, std::vector<ObjectOptions> options,
                          const SceneOptions& scene_options, std::uint64_t frames) {
   Contents contents;

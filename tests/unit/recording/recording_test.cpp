@@ -67,7 +67,7 @@ void expect_equal(const RecordingHeader& a, const RecordingHeader& b) {
   }
 }
 
-/// Writes, reads, compares; returns what was read.
+/// Writes the contents, reads them back and compares. Returns the contents read.
 Contents round_trip(const Contents& contents) {
   const TemporaryFolder folder;
   contents.write(folder / "run.h5");
@@ -89,7 +89,7 @@ Contents round_trip(const Contents& contents) {
   return read;
 }
 
-/// Two soups, one against itself as well, and one that stands.
+/// A soup with self-collision, a moving soup and a static soup.
 Contents soups(ContactKinds mode, std::uint64_t frames = 12) {
   ObjectOptions folding, fixed;
   folding.self_collision = true;
@@ -256,7 +256,7 @@ TEST(Recording, EqualContentsAreEqualFiles) {
     return std::string(std::istreambuf_iterator<char>(file), {});
   };
   contents.write(folder / "a.h5");
-  // HDF5 keeps times in whole seconds.
+  // HDF5 stores times in whole seconds.
   const std::time_t written = std::time(nullptr);
   ASSERT_TRUE(eventually([&] { return std::time(nullptr) > written; }));
   contents.write(folder / "b.h5");

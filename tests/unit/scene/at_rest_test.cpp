@@ -12,7 +12,7 @@
 namespace supple {
 namespace {
 
-/// Spheres of which some move in a step and the others rest.
+/// Spheres; in each step some of them move and the others are at rest.
 struct World {
   explicit World(const SceneOptions& options) : scene(options) {
     for (int i = 0; i < 8; ++i) {
@@ -32,7 +32,7 @@ struct World {
   std::vector<ObjectId> ids;
 };
 
-/// What a scene finds that has seen nothing before.
+/// Compares the result with that of a new scene.
 void expect_as_new(const World& world, const DetectResult& result, const SceneOptions& options) {
   World fresh(options);
   fresh.centers = world.centers;

@@ -1,4 +1,4 @@
-// `verify` of continuous contacts finds every fault that is put into a correct result.
+// Checks that `verify` of continuous contacts finds every fault inserted into a correct result.
 
 #include "scene/brute_force_impacts.hpp"
 
@@ -87,7 +87,7 @@ TEST_P(BruteForceImpacts, FindsEachFaultInAResult) {
 }
 
 TEST_P(BruteForceImpacts, KnowsTheSeparation) {
-  if (GetParam() == 0) GTEST_SKIP() << "there is nothing below 0";
+  if (GetParam() == 0) GTEST_SKIP() << "a separation of 0 has no smaller one";
   const Step step(GetParam());
   std::vector<ContinuousDifference> differences;
   compare_impacts({}, step.reported, step.truth_at(GetParam() * (1 - 0x1p-20)), differences);

@@ -13,7 +13,7 @@
 namespace supple {
 namespace {
 
-/// Contacts of different triangles, whose other members tell them apart.
+/// Contacts with distinct triangles. The other members identify each contact.
 std::vector<FoundContact> contacts_of(const std::set<std::pair<std::uint32_t, std::uint32_t>>& triangles,
                                       RandomNumbers& random) {
   std::vector<FoundContact> found;
@@ -38,7 +38,7 @@ void expect_sorted(const std::vector<FoundContact>& found, ContactOrder& order) 
 
 TEST(ContactOrder, RandomContactsOfAnyNumberAndSpread) {
   RandomNumbers random(17);
-  ContactOrder order;  // with what the sort before left in its memory
+  ContactOrder order;  // reused, so it holds the memory of the previous sort
   for (const std::size_t count : {0u, 1u, 2u, 12u, 25u, 100u, 3000u}) {
     for (const std::uint32_t spread : {1u, 2u, 60u, 511u, 512u, 70000u, 0xffffffffu}) {
       std::set<std::pair<std::uint32_t, std::uint32_t>> triangles;

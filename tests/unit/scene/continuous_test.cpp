@@ -1,4 +1,5 @@
-// Continuous contacts of whole scenes against algebra over every pair of elements, in every configuration.
+// Compares the continuous contacts of whole scenes in every configuration with the algebraic reference, which
+// tests every pair of elements.
 
 #include <gtest/gtest.h>
 
@@ -20,19 +21,19 @@ namespace {
 
 using Vertices = std::vector<Vec3d>;
 
-/// A mesh and where its vertices go.
+/// A mesh and the end positions of its vertices.
 struct Moving {
   TriangleMesh mesh;
   Vertices to;
 };
 
-/// The first triangles of a mesh: what brute force by algebra can do in no time.
+/// The first triangles of a mesh, few enough for brute force with the algebraic reference.
 TriangleMesh cropped(TriangleMesh mesh, std::size_t triangles) {
   mesh.triangles.resize(std::min(mesh.triangles.size(), triangles));
   return mesh;
 }
 
-/// Objects that are hard in one way at both ends of the step.
+/// Objects that are degenerate in the same way at both ends of the step.
 std::vector<Moving> moving(const Family& family, std::uint64_t seed) {
   const std::vector<TriangleMesh> from = family.make(seed), to = family.make(seed + 1);
   std::vector<Moving> objects;
@@ -64,7 +65,7 @@ std::vector<ContinuousContact> contacts_of(Scene& scene) {
   return {contacts.begin(), contacts.end()};
 }
 
-/// One line for each difference that `verify` finds, none when it agrees.
+/// One line per difference that `verify` finds; empty if it agrees.
 std::string faults(const Scene& scene) {
   const char* const names[] = {"missed", "added", "late", "early"};
   std::string text;
@@ -147,7 +148,7 @@ TriangleMesh one_triangle(double height) {
   return {"triangle", {{0, 0, height}, {4, 0, height}, {0, 4, height}}, {{0, 1, 2}}};
 }
 
-/// A triangle with its first corner below the others, which falls by `fall`.
+/// A triangle that falls by `fall`. Its first corner is lower than the others.
 struct Falling {
   Scene scene;
   ObjectId floor, stone;
@@ -167,7 +168,7 @@ TEST(ContinuousContacts, ATriangleFallsOnAnother) {
   const DetectResult& result = falling.scene.detect();
   ASSERT_EQ(result.continuous_groups.size(), 1u);
   const auto contacts = result.continuous_contacts_of(result.continuous_groups[0]);
-  ASSERT_EQ(contacts.size(), 3u);  // the corner at 1/2, the others as late as 1
+  ASSERT_EQ(contacts.size(), 3u);  // the first corner at 1/2, the others at 1
   const ContinuousContact& contact = contacts[0];
   EXPECT_EQ(contact.kind, ElementPairKind::face_vertex);
   EXPECT_EQ(contact.element_a, (std::array{0u, 0u}));
@@ -181,7 +182,7 @@ TEST(ContinuousContacts, ATriangleFallsOnAnother) {
   EXPECT_EQ(contact.barycentric_b, (std::array{1.0, 0.0, 0.0}));
   EXPECT_NEAR(contact.point.x, 1, 1e-9);
   EXPECT_NEAR(contact.point.z, 0, 1e-9);
-  EXPECT_EQ(contact.normal, (Vec3d{0, 0, -1}));  // from the stone to the floor, which is a
+  EXPECT_EQ(contact.normal, (Vec3d{0, 0, -1}));  // from the stone (b) to the floor (a)
   EXPECT_EQ(result.contact_events.begin.size(), 1u);
   EXPECT_TRUE(result.groups.empty() && result.contacts.empty());
 }
@@ -197,7 +198,7 @@ TEST(ContinuousContacts, ReachTheSeparationEarlier) {
   Falling falling(2, continuous(0.25));
   EXPECT_NEAR(falling.scene.max_step(), 0.375, 1e-9);
   EXPECT_LE(falling.scene.max_step(), 0.375);
-  Falling stops(0.75, continuous(0.25));  // at the distance exactly
+  Falling stops(0.75, continuous(0.25));  // ends exactly at the separation
   EXPECT_EQ(stops.scene.detect().continuous_contacts.size(), 1u);
   Falling short_of_it(0.75 - 0x1p-50, continuous(0.25));
   EXPECT_EQ(short_of_it.scene.detect().continuous_contacts.size(), 0u);
@@ -266,7 +267,7 @@ TEST(ContinuousContacts, AVertexThatIsNotFiniteHidesNoOther) {
   EXPECT_EQ(scene.result().non_finite_vertices.size(), 2u);
 }
 
-/// A fine flat sheet that waves: far from touching itself, with all its neighbours as near as can be.
+/// A fine sheet that waves without touching itself, though its neighbouring triangles are very close.
 TEST(ContinuousContacts, OfAWavingSheetAreNone) {
   Moving sheet{crumpled_sheet(40, 40, 0, 0), {}};
   sheet.to = sheet.mesh.positions;
@@ -279,7 +280,7 @@ TEST(ContinuousContacts, OfAWavingSheetAreNone) {
 TEST(ContinuousContacts, OfAFoldingSheetAreThoseOfAlgebra) {
   Moving sheet{crumpled_sheet(12, 6, 0, 0), {}};
   sheet.to = sheet.mesh.positions;
-  for (Vec3d& p : sheet.to) {  // the far half turns over onto the near one, and through it
+  for (Vec3d& p : sheet.to) {  // the far half folds over onto the near one and passes through it
     if (p.x > 0.5) p = {1 - p.x, 0.3 - 0.7 * (p.x - 0.5), p.z};
   }
   Scene scene = scene_of({sheet}, continuous());

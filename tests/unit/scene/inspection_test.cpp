@@ -23,10 +23,10 @@
 namespace supple {
 namespace {
 
-constexpr double smallest = 0x1p-1060;  // what rounding does to denormals
+constexpr double smallest = 0x1p-1060;  // the rounding error of denormals
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
-/// A triangle by its name: object, number.
+/// Identifies a triangle by its object and number.
 struct Named {
   ObjectId object;
   std::uint32_t triangle = 0;
@@ -34,12 +34,12 @@ struct Named {
 };
 using NamedPair = std::pair<Named, Named>;
 
-/// A scene with what the tests know of its meshes, to be compared with by brute force.
+/// A scene with copies of its meshes for comparison with brute force.
 struct Known {
   Scene scene;
   std::map<ObjectId, std::vector<Triangle>> triangles{};
   std::map<ObjectId, bool> self{}, is_static{};
-  std::map<ObjectId, std::vector<Vec3d>> start{};  // of continuous contacts: where paths begin
+  std::map<ObjectId, std::vector<Vec3d>> start{};  // for continuous contacts: start positions
   double separation = 0;
 
   explicit Known(const SceneOptions& options = {})
@@ -118,7 +118,7 @@ bool holds(const BoundingSphere& sphere, const std::array<Vec3d, 3>& points) {
   });
 }
 
-/// How far all of b is from all of a along the axis.
+/// The signed gap from triangle a to triangle b along the axis.
 double gap_along(const Vec3d& axis, const std::array<Vec3d, 3>& a, const std::array<Vec3d, 3>& b) {
   double furthest_a = -INFINITY, nearest_b = INFINITY;
   for (const Vec3d& p : a) furthest_a = std::max(furthest_a, dot(axis, p));
@@ -149,7 +149,7 @@ void expect_apart(const PairExplanation& e, const std::array<Vec3d, 3>& a, const
   EXPECT_GE(gap_along(e.axis, a, b), e.distance - 1e-5 * size_of(a, b) - smallest);
 }
 
-/// Checks what `explain` says of two triangles; `is_contact` is what detect said.
+/// Checks the result of `explain` for two triangles; `is_contact` is the result of `detect`.
 void check_explanation(const Known& known, const Named& p, const Named& q, bool is_contact) {
   const PairExplanation e = SceneInspector(known.scene).explain(p.object, p.triangle, q.object, q.triangle);
   const auto a = known.points(p), b = known.points(q);
@@ -170,7 +170,7 @@ void check_explanation(const Known& known, const Named& p, const Named& q, bool 
   } else {
     EXPECT_GE(e.distance, 0);
     EXPECT_NEAR(norm(e.axis), 1, 1e-12);
-    // Closest points are as good as rounding lets them be: of slivers, within a small part of their size.
+    // The closest points are subject to rounding: for slivers, the error is a small part of their size.
     EXPECT_GE(gap_along(e.axis, a, b), e.distance - 1e-6 * size_of(a, b) - smallest);
   }
   const PairExplanation back =
@@ -279,7 +279,7 @@ void check_cells(const Known& known, ObjectId id, std::optional<std::uint32_t> l
     std::size_t inside = 0;
     for (std::uint32_t t = 0; t < triangles.size(); ++t) {
       const Named named{id, t};
-      // A triangle that is inert may be counted by any cell.
+      // Any cell may count an inert triangle.
       const bool is_held = known.is_inert(named) || (holds(cell.box, known.points(named)) &&
                                                      (!is_sphere || holds(cell.sphere, known.points(named))));
       inside += is_held ? 1 : 0;
@@ -290,7 +290,7 @@ void check_cells(const Known& known, ObjectId id, std::optional<std::uint32_t> l
   }
   EXPECT_EQ(counted, triangles.size());
   EXPECT_TRUE(std::all_of(held.begin(), held.end(), [](bool is_held) { return is_held; }));
-  // The root's box is as small as can be; the others are bounded by it.
+  // The root has the smallest enclosing box, so it contains all leaf boxes.
   if (level == 0 && !cells.empty()) {
     ASSERT_EQ(cells.size(), 1u);
     for (const OctreeCell& leaf : SceneInspector(known.scene).cells(id, {})) {
@@ -318,7 +318,7 @@ Known known_scene_of(const std::vector<TriangleMesh>& meshes, const SceneOptions
   return known;
 }
 
-/// As many triangles of each as all pairs of them can be looked at.
+/// Limits each mesh to a number of triangles for which all pairs can be tested.
 std::vector<TriangleMesh> cut(std::vector<TriangleMesh> meshes, std::size_t triangles) {
   for (TriangleMesh& mesh : meshes) mesh.triangles.resize(std::min(mesh.triangles.size(), triangles));
   return meshes;
@@ -345,7 +345,7 @@ TEST_P(Inspection, CandidatesAreThoseOfBruteForce) {
   Known known = known_scene_of(cut(meshes(2), 300), options());
   known.scene.detect();
   check_candidates(known, are_boxes());
-  // Nothing moved: the step takes its contacts from the one before, and the candidates are the same.
+  // The objects are at rest: the step reuses the contacts, and the candidates stay the same.
   known.scene.detect();
   check_candidates(known, are_boxes());
 }
@@ -376,7 +376,7 @@ TEST_P(Inspection, FollowsTranslatedAndStaticObjects) {
   EXPECT_EQ(total, found.size());
   EXPECT_TRUE(std::is_sorted(found.begin(), found.end()));
   if (are_boxes()) {
-    // Boxes that move are grown by what rounding can do: a few candidates more.
+    // The boxes of moving objects are enlarged for rounding, which adds a few candidates.
     const auto expected = candidates_by_brute_force(known);
     EXPECT_TRUE(std::includes(found.begin(), found.end(), expected.begin(), expected.end()));
   }
@@ -387,7 +387,7 @@ TEST_P(Inspection, ExplanationsAgreeWithContinuousDetect) {
     SceneOptions continuous = options();
     continuous.contacts = ContactKinds::continuous;
     continuous.impact.min_separation = separation;
-    // What exact arithmetic decides of such scenes with a separation takes minutes.
+    // With a separation, exact arithmetic takes minutes in these scenes.
     continuous.impact.exact = separation == 0;
     const auto from = cut(meshes(6), 12), to = meshes(7);
     Known known = known_scene_of(from, continuous);
@@ -444,7 +444,7 @@ INSTANTIATE_TEST_SUITE_P(HardFamilies, Inspection,
 
 TEST(InspectionOfScenes, SmoothPartsThatAreNotLookedAtHaveCandidatesToo) {
   Known known;
-  // Not along the axes: boxes of triangles that are near each other overlap.
+  // The sheet is oblique to the axes, so the boxes of nearby triangles overlap.
   TriangleMesh sheet = make_cloth(12, 12);
   for (Vec3d& p : sheet.positions) p.y += p.x + p.z;
   const ObjectId id = known.add(sheet, {.self_collision = true}, 64);
@@ -461,7 +461,7 @@ TEST(InspectionOfScenes, SeesRebuiltOctrees) {
   Known known;
   const TriangleMesh soup = random_soup(400, 1, 0.1, 1);
   const ObjectId id = known.add(soup);
-  // Triangles fly about, each its own way, and end far from those that they were near.
+  // Each triangle moves in its own direction and ends far from its initial neighbours.
   RandomNumbers random(77);
   std::vector<Vec3d> ways, positions = soup.positions;
   for (std::size_t t = 0; t < soup.triangles.size(); ++t) ways.push_back(random.vector(0.05));
@@ -493,7 +493,7 @@ TEST(InspectionOfScenes, FollowsFiltersGroupsAndRemovals) {
   EXPECT_EQ(SceneInspector(known.scene).explain(a, 3, a, 3).stage, PairStage::shared_vertex);
   known.scene.set_self_collision(a, false);
   known.remove(c);
-  EXPECT_THROW(SceneInspector(known.scene).explain(a, 0, d, 0), Error) << "something was changed since";
+  EXPECT_THROW(SceneInspector(known.scene).explain(a, 0, d, 0), Error) << "the scene changed since detect";
   EXPECT_THROW(SceneInspector(known.scene).candidates(1), Error);
   known.scene.detect();
   EXPECT_EQ(SceneInspector(known.scene).explain(a, 3, a, 4).stage, PairStage::not_tested);
@@ -511,7 +511,7 @@ TEST(InspectionOfScenes, FollowsFiltersGroupsAndRemovals) {
 TEST(InspectionOfScenes, SaysWhatCannotBeAsked) {
   Known known;
   const ObjectId ball = known.add(make_icosphere(2)), nothing = known.add(TriangleMesh{});
-  EXPECT_THROW(SceneInspector(known.scene).cells(ball, {}), Error) << "nothing was detected yet";
+  EXPECT_THROW(SceneInspector(known.scene).cells(ball, {}), Error) << "detect has not run yet";
   known.scene.detect();
   EXPECT_TRUE(SceneInspector(known.scene).cells(nothing, {}).empty());
   EXPECT_TRUE(SceneInspector(known.scene).cells(nothing, 0).empty());
@@ -528,7 +528,7 @@ TEST(InspectionOfScenes, SaysWhatCannotBeAsked) {
         << error.what();
   }
   known.scene.translate(ball, {1, 0, 0});
-  EXPECT_THROW(SceneInspector(known.scene).cells(ball, {}), Error) << "it was moved";
+  EXPECT_THROW(SceneInspector(known.scene).cells(ball, {}), Error) << "the object moved";
 }
 
 TEST(InspectionOfScenes, AnObjectOfOneLeafIsItsRoot) {

@@ -73,7 +73,7 @@ TEST(PairCache, ReleasedPairsThatComeAgainEndAndBegin) {
   EXPECT_EQ(list(cache.events().end), (Pairs{pair_of(2, 3)}));
   EXPECT_EQ(list(cache.events().stay), (Pairs{pair_of(0, 1)}));
   cache.update(Pairs{pair_of(0, 1), pair_of(2, 3)});
-  EXPECT_EQ(cache.events().stay.size(), 2u) << "a release holds for one update";
+  EXPECT_EQ(cache.events().stay.size(), 2u) << "a release affects only one update";
 }
 
 TEST(PairCache, EveryBeginHasOneEnd) {

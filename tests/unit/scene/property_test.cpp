@@ -78,7 +78,7 @@ TEST(SceneGoldenHash, IsTheSameForEveryInstructionSet) {
   EXPECT_GE(targets, 1);
 }
 
-/// Not only the outcome: every volume that is compared on the way.
+/// Compares not only the contacts but also the number of all volume tests.
 TEST(SceneGoldenHash, EveryInstructionSetTestsTheSameVolumes) {
   for (const Family& family : hard_families()) {
     const std::vector<TriangleMesh> meshes = family.make(4);

@@ -1,6 +1,6 @@
-// Long random lives of scenes: objects come, move in every way there is, change filters and go; after every
-// step the contacts equal exact brute force, every structure is valid, and events tell the changes of the
-// pairs.
+// Long random sequences of operations: objects are added and removed, move in every supported way and change
+// filters. After every step the contacts equal exact brute force, every structure is valid, and the events
+// match the changes of the pairs.
 
 #include <gtest/gtest.h>
 
@@ -19,13 +19,13 @@
 namespace supple {
 namespace {
 
-/// The pairs that are alive by the events so far.
+/// The active pairs according to the events so far.
 class EventLedger {
  public:
   void apply(const PairEvents& events) {
     std::set<ObjectPair> stayed = alive_;
     for (const ObjectPair& pair : events.end) {
-      EXPECT_EQ(alive_.erase(pair), 1u) << "ended without having begun";
+      EXPECT_EQ(alive_.erase(pair), 1u) << "ended before it began";
       stayed.erase(pair);
     }
     EXPECT_TRUE(std::equal(stayed.begin(), stayed.end(), events.stay.begin(), events.stay.end()));

@@ -5,7 +5,7 @@
 namespace supple {
 namespace {
 
-/// Steps of one query each until it is time to rebuild.
+/// The number of steps, with one query each, until the policy requests a rebuild.
 int steps_until_rebuild(RebuildPolicy& policy) {
   int steps = 1;
   while (!policy.count_queries(1)) ++steps;
@@ -18,12 +18,12 @@ TEST(RebuildPolicy, RebuildsWhenTheExtraCostHasPaidForIt) {
   EXPECT_FALSE(policy.is_degraded());
   EXPECT_EQ(policy.degradation(10), 1);
   policy.set_cost(12);
-  EXPECT_FALSE(policy.is_degraded()) << "too little to gain";
+  EXPECT_FALSE(policy.is_degraded()) << "the expected gain is too small";
   policy.set_cost(20);
   EXPECT_TRUE(policy.is_degraded());
   EXPECT_EQ(policy.degradation(20), 2);
   const int steps = steps_until_rebuild(policy);
-  // The object is three times as bad: the extra cost per step doubles.
+  // The cost ratio is 3 instead of 2, so the extra cost per step doubles.
   RebuildPolicy worse(true);
   worse.set_cost_when_built(10);
   worse.set_cost(30);
@@ -52,7 +52,7 @@ TEST(RebuildPolicy, WaitsLongerAfterAFailureAndLessAfterASuccess) {
   policy.set_cost_when_built(10);
   policy.set_cost(20);
   const int steps = steps_until_rebuild(policy);
-  EXPECT_FALSE(policy.accept(15)) << "not much better";
+  EXPECT_FALSE(policy.accept(15)) << "the new tree is not much better";
   EXPECT_FALSE(policy.is_degraded()) << "the cost at the attempt is the new reference";
   policy.set_cost(40);
   EXPECT_EQ(steps_until_rebuild(policy), 2 * steps);
@@ -74,7 +74,7 @@ TEST(RebuildPolicy, DoesNothingWhenDisabledOrUnknown) {
   policy.set_cost(0);
   EXPECT_EQ(policy.degradation(0), 1);
   EXPECT_FALSE(policy.is_degraded());
-  // Built while all triangles were one point.
+  // The tree was built when all triangles coincided.
   policy.set_cost_when_built(0);
   policy.set_cost(500);
   EXPECT_TRUE(policy.is_degraded());

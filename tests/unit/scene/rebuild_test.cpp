@@ -1,4 +1,4 @@
-// Objects that deform so far that their octrees are rebuilt: the results do not change.
+// Objects deform so much that their octrees are rebuilt. The results must not change.
 
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@
 namespace supple {
 namespace {
 
-/// Objects whose triangles drift apart, each its own way, within a cube.
+/// Objects whose triangles drift in random directions inside a cube.
 class Drift {
  public:
   explicit Drift(std::vector<TriangleMesh> meshes, double speed = 0.05) : meshes_(std::move(meshes)) {
@@ -60,7 +60,7 @@ struct Living {
     for (const TriangleMesh& mesh : drift.meshes()) {
       ObjectOptions of_object;
       of_object.self_collision = self_collision;
-      // Leaves of one or two triangles always face one way, which is taken for a smooth surface.
+      // In leaves of one or two triangles all normals point in similar directions, so they count as smooth.
       of_object.octree.leaf_size = scene.options().contacts == ContactKinds::continuous ? 16 : 4;
       of_object.octree.rebuild_degraded = rebuilds;
       ids.push_back(scene.add(mesh, of_object));
@@ -69,7 +69,7 @@ struct Living {
   void place(Drift& drift) {
     for (std::size_t i = 0; i < ids.size(); ++i) scene.set_positions(ids[i], drift.positions(i));
   }
-  /// They are not to change before the next step has its own.
+  /// The positions must not change until the next step sets its own.
   void share(Drift& drift) {
     for (std::size_t i = 0; i < ids.size(); ++i) scene.share_positions(ids[i], drift.positions(i));
   }
@@ -186,7 +186,7 @@ TEST(SceneRebuild, ObjectsThatAreTurnedAndMovedAfterwardsKeepTheirShape) {
       const double s = 0.6, c = 0.8;
       for (Living* const living : {&built, &kept}) {
         living->place(drift);
-        // A rotation makes a copy of what was given, which is to be renumbered, too.
+        // A rotation copies the given positions; a rebuild must reorder the copy, too.
         living->scene.set_transform(living->ids[0], {{c, -s, 0, s, c, 0, 0, 0, 1}, {0.1, 0, 0}});
         living->scene.translate(living->ids[1], {0, step % 7 == 0 ? 1e31 : 0.2, 0});
       }
@@ -210,7 +210,7 @@ TEST(SceneRebuild, SurvivesPositionsOfAllKinds) {
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   for (const std::uint32_t triangles : {1u, 2u, 5u, 9u, 33u, 70u}) {
     for (const ContactKinds mode : {ContactKinds::intersection, ContactKinds::continuous}) {
-      // Elements that touch in a point, a plane or far away are decided one by one: fewer of them.
+      // Elements that coincide, are coplanar or far away need slow tests, so this case has fewer.
       const bool self_collision = mode == ContactKinds::intersection;
       if (!self_collision && triangles > 33) continue;
       const double huge = self_collision ? 1e40 : 1e12;
@@ -285,7 +285,7 @@ TEST(SceneRebuild, IsTheSameForAnyNumberOfThreads) {
 }
 
 TEST(SceneRebuild, DoesNotHappenWithoutQueries) {
-  // Far apart and not tested against themselves: however far they deform.
+  // The objects are far apart and have no self-collision, so no deformation leads to a rebuild.
   Drift drift = soups(500);
   Living living(drift, with_threads(1), true, false);
   for (int step = 0; step < 100; ++step) {
@@ -308,7 +308,7 @@ TEST(SceneRebuild, DoesNotHappenInEachStepOfASwingingMotion) {
     living.place(step % 2 == 0 ? drift : there);
     steps_with_rebuild += living.scene.detect().stats.octrees_rebuilt > 0 ? 1 : 0;
   }
-  // Triangles are all elsewhere in every other step: even that has to be paid for by several.
+  // Each rebuild needs the extra query cost of several steps, even if all triangles move in each step.
   EXPECT_GT(steps_with_rebuild, 0);
   EXPECT_LT(steps_with_rebuild, 75);
 }
@@ -335,7 +335,7 @@ TEST(SceneRebuild, ObjectsAtRestAreRebuiltForQueriesOfOthers) {
   Living living(drift, with_threads(1), true, false);
   for (int step = 0; step < 20; ++step) drift.advance();
   living.place(drift);
-  // The first object stays at rest while the other one moves.
+  // The first object is at rest while the second one moves.
   std::uint64_t hash = 0;
   for (int step = 0;
        step < 200 && SceneInspector(living.scene).octree_statistics(living.ids[0]).rebuilds == 0; ++step) {
@@ -347,7 +347,7 @@ TEST(SceneRebuild, ObjectsAtRestAreRebuiltForQueriesOfOthers) {
   EXPECT_GT(SceneInspector(living.scene).octree_statistics(living.ids[0]).rebuilds, 0u);
   EXPECT_NE(hash, 0u);
   EXPECT_EQ(differences(living.scene), "");
-  // Nothing moves: what is known of the step before is still told with the user's numbers.
+  // At rest, the step reuses the previous contacts and reports them in the user's numbering.
   const std::vector<Contact> before(living.scene.result().contacts.begin(),
                                     living.scene.result().contacts.end());
   const auto again = living.scene.detect().contacts;

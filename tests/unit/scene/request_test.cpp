@@ -1,4 +1,4 @@
-// One scene that answers several questions, up to a number of contacts, until it is told to stop.
+// Requests to one scene: different kinds of contacts, limits of their number, and stops.
 
 #include <gtest/gtest.h>
 
@@ -21,7 +21,7 @@ namespace {
 
 constexpr ContactKinds both = ContactKinds::intersection | ContactKinds::continuous;
 
-/// What a result lists, with places of its own.
+/// Copies of the lists of a result.
 struct Lists {
   std::vector<Contact> contacts;
   std::vector<ContactPoint> points;
@@ -54,7 +54,7 @@ void expect_equal_contacts(const Lists& found, const Lists& expected) {
   ASSERT_EQ(found.points, expected.points);
 }
 
-/// Groups cover the lists, each kind its own.
+/// The groups of each kind cover its list.
 void expect_groups_fit(const DetectResult& result) {
   std::uint32_t next = 0;
   for (const ContactGroup& group : result.groups) {
@@ -80,7 +80,7 @@ TriangleMesh cropped(TriangleMesh mesh) {
   return mesh;
 }
 
-/// Objects that move in all the ways there are, the same in every scene of one seed.
+/// Objects that move in every supported way. Scenes with the same seed get the same motion.
 class Lives {
  public:
   Lives(const Family& family, std::uint64_t seed) : random_(seed) {
@@ -98,7 +98,7 @@ class Lives {
     for (const TriangleMesh& mesh : meshes_)
       scene.add(mesh, {.self_collision = true, .octree = {.leaf_size = 3}});
   }
-  /// Some objects stay where they are.
+  /// Moves some of the objects.
   void step(const std::vector<Scene*>& scenes) {
     for (std::uint32_t i = 0; i < meshes_.size(); ++i) {
       const std::uint32_t way = random_.below(6);
@@ -118,7 +118,7 @@ class Lives {
 
  private:
   std::vector<TriangleMesh> meshes_;
-  double size_ = 1;  // moves are in proportion to the coordinates
+  double size_ = 1;  // motion is proportional to the coordinates
   RandomNumbers random_;
 };
 
@@ -126,7 +126,7 @@ class OneScene : public testing::TestWithParam<Family> {};
 
 TEST_P(OneScene, AnswersWhatTwoWouldInAnyOrder) {
   const std::string_view family = GetParam().name;
-  // The exact check of continuous contacts takes minutes for mixed scales, and for separations of all
+  // The exact check of continuous contacts takes minutes for mixed scales, and with a separation for all
   // families but one.
   const bool is_slow_to_verify = family == "MixedScales";
   const bool has_separation = family == "RandomSoups";
@@ -152,7 +152,7 @@ TEST_P(OneScene, AnswersWhatTwoWouldInAnyOrder) {
         expect_equal_contacts(found, contacts);
         ASSERT_EQ(found.continuous, impacts.continuous) << step;
         ASSERT_TRUE(is_slow_to_verify || two.verify().agrees()) << step;
-        // One kind after the other, not the same in each step.
+        // Requests both kinds of contacts, in an order that alternates between steps.
         for (const int turn : {step, step + 1}) {
           const bool is_continuous = turn % 2 == 0;
           const DetectResult& answer =
@@ -218,7 +218,7 @@ TEST_P(OneScene, ListsTheFirstContacts) {
       if (result.truncated) {
         EXPECT_THROW(scene.verify(), Error);
       }
-      // Nothing that was left out is taken for known.
+      // The next step does not treat omitted contacts as known.
       const Lists again(scene.detect());
       expect_equal_contacts(again, all);
       ASSERT_EQ(again.continuous, all.continuous);
@@ -229,7 +229,7 @@ TEST_P(OneScene, ListsTheFirstContacts) {
 INSTANTIATE_TEST_SUITE_P(Families, OneScene, testing::ValuesIn(hard_families()),
                          [](const auto& family) { return family.param.name; });
 
-/// Two crumpled balls of threads: nearly every triangle cuts many others.
+/// Dense triangle soups: nearly every triangle intersects many others.
 Scene crowded(ContactKinds contacts, std::uint32_t threads, std::uint32_t triangles = 800) {
   Scene scene({.contacts = contacts, .threads = threads});
   for (std::uint64_t i = 0; i < 3; ++i) {
@@ -259,7 +259,7 @@ TEST(MaxContacts, SavesTheTestsOfWhatIsLeftOut) {
         ASSERT_EQ(result.contacts[i].triangle_b, lists.contacts[i].triangle_b);
         ASSERT_EQ(result.continuous_contacts[i], lists.continuous[i]);
       }
-      // Several threads may be at later jobs before the first ones are through.
+      // Several threads may work on later jobs before the first ones end.
       if (threads == 1) {
         EXPECT_LT(result.stats.node_pairs_visited, all.node_pairs_visited);
       }
@@ -310,7 +310,7 @@ bool stop_from_another_thread(Scene& scene) {
 }
 
 TEST(Stop, FromAnotherThreadEndsALongSearch) {
-  constexpr int most_attempts = 50;  // on a busy machine a search can end before the other thread runs
+  constexpr int most_attempts = 50;  // on a busy machine, a search may end before the other thread runs
   for (const ContactKinds contacts : {ContactKinds::intersection, ContactKinds::continuous}) {
     for (const std::uint32_t threads : {1u, 2u}) {
       Scene fresh = crowded(contacts, threads);
@@ -328,8 +328,8 @@ TEST(Stop, FromAnotherThreadEndsALongSearch) {
   }
 }
 
-/// Translations and transforms cost no pass over the vertices, and contacts are those of the same positions
-/// given outright.
+/// Compares contacts after translations and transforms with those of a scene that gets the same positions
+/// directly.
 TEST(Translation, GivesTheContinuousContactsOfTheSamePositions) {
   RandomNumbers random(31);
   for (const double separation : {0.0, 0.03}) {
@@ -352,11 +352,11 @@ TEST(Translation, GivesTheContinuousContactsOfTheSamePositions) {
       }
       std::size_t found = 0;
       for (int step = 0; step < 10; ++step) {
-        // Far from the origin the sums are rounded.
+        // Far from the origin, sums are rounded.
         const Vec3d far = step < 5 ? Vec3d{} : Vec3d{1e9, -3e7, 1e4};
         for (std::size_t i = 0; i < ids.size(); ++i) {
           if (i == 3 && step != 5) continue;
-          if (i == 0 && step % 2 == 1) continue;  // on a path, below
+          if (i == 0 && step % 2 == 1) continue;  // moves on a path, see below
           if (i == 2) {
             moved.set_transform(
                 ids[i], {.rotation = {0, 0, 1, 0, 1, 0, -1, 0, 0}, .translation = far + random.vector(0.4)});
@@ -389,7 +389,7 @@ TEST(Translation, GivesTheContinuousContactsOfTheSamePositions) {
   }
 }
 
-/// Objects that stay where they are, or on their paths, keep their continuous contacts.
+/// Objects at rest, or with unchanged paths, keep their continuous contacts.
 TEST(Known, ContinuousContactsAreThoseOfANewScene) {
   SceneOptions options;
   options.contacts = ContactKinds::continuous;
@@ -415,7 +415,7 @@ TEST(Known, ContinuousContactsAreThoseOfANewScene) {
     const Lists found(scene.detect());
     EXPECT_LT(scene.result().stats.node_pairs_visited, all);
     EXPECT_TRUE(scene.verify().agrees());
-    // Another separation is another question.
+    // A request with another separation does not reuse these contacts.
     scene.detect({.impact = ImpactOptions{.min_separation = 0.1}});
     EXPECT_GT(scene.result().continuous_contacts.size(), found.continuous.size());
     EXPECT_EQ(Lists(scene.detect()).continuous, found.continuous);

@@ -264,7 +264,8 @@ TEST(Scene, CollidingVerticesAreThoseOfTheCollidingLeaves) {
             (std::vector<std::uint32_t>{0, 1, 2, 0, 1, 2}));
 }
 
-/// The paper's eq. 3 and 4 do not enclose: what they miss is seen by `verify`, and nothing is invented.
+/// The spheres of the paper's equations 3 and 4 do not enclose the triangle: `verify` reports missed contacts
+/// but no false ones.
 TEST(Scene, VerifySeesWhatThePapersSpheresMiss) {
   Scene scene({.bounding_volume = BoundingVolume::sphere, .comparison = {.sphere_fit = SphereFit::box}});
   scene.add(one_triangle(0));
@@ -296,7 +297,7 @@ TEST(Scene, ObjectsSwitchSelfCollisionOnAndOff) {
   const std::size_t contacts = scene.detect().contacts.size();
   EXPECT_GT(contacts, 0u);
   EXPECT_EQ(scene.result().groups.size(), 1u);
-  EXPECT_TRUE(scene.result().contact_events.begin.empty()) << "events are of different objects";
+  EXPECT_TRUE(scene.result().contact_events.begin.empty()) << "events are only for different objects";
   scene.set_self_collision(sheet, false);
   EXPECT_TRUE(scene.detect().contacts.empty());
   scene.set_self_collision(sheet, true);

@@ -30,7 +30,7 @@ ContactKeys keys_of(const DetectResult& result) {
   return keys;
 }
 
-/// Points whose last one ends where memory ends: reading past it is a fault of the process.
+/// Points that end at the last byte before a protected page: a read past the last point crashes.
 template <class Scalar>
 class PointsAtTheEnd {
  public:

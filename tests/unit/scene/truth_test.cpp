@@ -1,4 +1,5 @@
-// Real meshes whose intersecting pairs are known from exact arithmetic: count and SHA-256 of the sorted list.
+// Real meshes whose intersecting pairs are known from exact arithmetic. The truth has the count and the
+// SHA-256 of the sorted list.
 
 #include <gtest/gtest.h>
 #include <openssl/evp.h>
@@ -33,7 +34,7 @@ std::string sha256(const std::string& text) {
   return hex;
 }
 
-/// A transform of truth.json: "s:K" scales, "p:+y-z+x" permutes with signs, "t:X:Y:Z" adds; left to right.
+/// A transform of truth.json, left to right: "s:K" scales, "p:+y-z+x" permutes with signs, "t:X:Y:Z" adds.
 void transform(TriangleMesh& mesh, const std::string& steps) {
   std::istringstream stream(steps);
   for (std::string step; std::getline(stream, step, ',');) {
@@ -75,7 +76,7 @@ struct Truth : testing::Test {
     EXPECT_EQ(sha256(list), expected["sha256_of_sorted_pairs"].get<std::string>());
   }
 
-  /// Volumes are conservative: with boxes, no pair of triangles whose boxes overlap may be lost on the way.
+  /// With boxes, the search must keep every pair of triangles whose boxes overlap.
   static void expect_candidates(const DetectResult& result, const json& expected) {
     EXPECT_GE(result.stats.candidate_pairs, expected["box_overlapping_pairs"].get<std::uint64_t>());
   }
@@ -134,7 +135,7 @@ TEST_F(Truth, VerifyAgreesOnRealMeshes) {
   EXPECT_EQ(differences(touching), "");
 }
 
-/// As truth.json numbers edges: by their larger vertex, then by the smaller.
+/// The edge numbers of truth.json: edges sorted by their larger vertex, then by the smaller one.
 std::map<std::array<std::uint32_t, 2>, std::uint32_t> edge_numbers(const TriangleMesh& mesh) {
   std::map<std::array<std::uint32_t, 2>, std::uint32_t> numbers;
   for (const Triangle& triangle : mesh.triangles) {

@@ -67,7 +67,7 @@ TEST(PositionsViews, ReadMatricesOfAnyLayout) {
   EXPECT_EQ(PositionsView(transposed).data(), transposed.data());
   EXPECT_EQ(points_of(Eigen::Matrix3Xd(transposed)), four_points);
   EXPECT_EQ(points_of(columns.transpose()), four_points);
-  // Parts of a larger matrix.
+  // Blocks of a larger matrix.
   Eigen::MatrixXd larger = Eigen::MatrixXd::Random(9, 7);
   larger.block(2, 3, 4, 3) = columns;
   EXPECT_EQ(points_of(larger.block(2, 3, 4, 3)), four_points);
@@ -79,7 +79,7 @@ TEST(PositionsViews, ReadMatricesOfAnyLayout) {
   Eigen::Map<Eigen::MatrixXd, 0, Stride> map(spread.data(), 4, 3, Stride(30, 7));
   map = columns;
   EXPECT_EQ(points_of(map), four_points);
-  // Packed x y z, as many solvers keep them.
+  // Packed x y z, as in many solvers.
   Eigen::VectorXd packed(12);
   for (int i = 0; i < 12; ++i) packed[i] = four_points[static_cast<std::size_t>(i / 3)][i % 3];
   EXPECT_EQ(points_of(packed), four_points);

@@ -116,7 +116,7 @@ TEST(ContactResponse, ClothLiesOnABall) {
 }
 
 TEST(ContactResponse, RestitutionReturnsSpeedAndFrictionTakesIt) {
-  // A single triangle without springs, which falls flat onto a plate.
+  // A single triangle without springs that falls flat onto a plate.
   const auto velocity_after = [](double restitution, double friction) {
     SimulationOptions options = responding(0.01);
     options.response.restitution = restitution;
@@ -191,7 +191,7 @@ double energy_of(const Simulation& simulation) {
   return sum;
 }
 
-/// Steps of 10 ms are ten times as long as springs alone bear: only substeps carry them.
+/// With steps of 10 ms, ten times too long for the springs, only substeps keep the motion stable.
 TEST(ContactResponse, FeedsNoEnergyToSpringsAtLongSteps) {
   for (const Integrator integrator : {Integrator::verlet, Integrator::symplectic_euler}) {
     SimulationOptions options = responding(0.01);
@@ -214,7 +214,7 @@ TEST(ContactResponse, FeedsNoEnergyToSpringsAtLongSteps) {
     for (int step = 0; step < 200; ++step) {
       contacts += simulation.step().contacts.size();
       const double energy = energy_of(simulation);
-      // What is too near is moved apart against gravity and springs, a little.
+      // The response may raise the energy slightly when it separates vertices against gravity and springs.
       ASSERT_LT(energy, lowest + 0.015 * at_first) << "step " << step;
       lowest = std::min(lowest, energy);
     }

@@ -21,7 +21,7 @@ MassSpringOptions springs(double stiffness, std::vector<std::uint32_t> fixed = {
           .fixed_vertices = fixed};
 }
 
-/// Two masses: (1 + λ, -λ; -λ, 1 + λ)⁻¹ = (1 + λ, λ; λ, 1 + λ) / (1 + 2 λ).
+/// For two masses, (1 + λ, -λ; -λ, 1 + λ)⁻¹ = (1 + λ, λ; λ, 1 + λ) / (1 + 2 λ).
 TEST(ImpulseSpread, OfOneSpringIsThatOfBackwardEuler) {
   const TriangleMesh mesh{"spring", {{0, 0, 0}, {1, 0, 0}, {5, 0, 0}}, {{0, 1, 1}}};
   const double lambda = 0.1 * 0.1 * 30 / 0.5;

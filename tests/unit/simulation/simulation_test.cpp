@@ -31,7 +31,7 @@ TriangleMesh placed(TriangleMesh mesh, double size, Vec3d at, const std::string&
   return mesh;
 }
 
-/// Light enough for waves and stiff enough to keep its shape, stable at steps of 0.01 s.
+/// A body that can wave but keeps its shape. It is stable with steps of 0.01 s.
 MassSpringMotion springy() {
   MassSpringMotion motion;
   motion.springs.vertex_mass = 0.1;
@@ -40,7 +40,7 @@ MassSpringMotion springy() {
   return motion;
 }
 
-/// One that cannot be carried on.
+/// A body that soon becomes unstable.
 MassSpringMotion exploding() {
   MassSpringMotion motion = springy();
   motion.springs.stiffness = 1e9;
@@ -59,7 +59,7 @@ SimulationOptions in_a_room(double half, ContactKinds contacts = ContactKinds::i
   return options;
 }
 
-/// Bodies on a grid that deform for a while and then fly.
+/// Bodies on a grid that first deform and then fly.
 Simulation room_of_bodies(const SimulationOptions& options, int side = 2) {
   Simulation simulation(options);
   const TriangleMesh ball = make_icosphere(2);
@@ -79,7 +79,7 @@ std::vector<ObjectId> objects_of(const Simulation& simulation) {
   return simulation.scene().objects();
 }
 
-/// All that tells two runs apart.
+/// All state in which two runs can differ.
 struct State {
   std::vector<Points> positions, velocities;
   std::uint64_t steps = 0;
@@ -229,7 +229,7 @@ TEST(Simulation, ABodyThatBlowsUpLeavesAllAsBefore) {
         simulation.add(make_icosphere(1), {}, [](double seconds, std::span<Vec3d> positions) {
           for (Vec3d& p : positions) p.y += seconds;
         });
-    // Plastic flow has a state of its own, which the next steps would show.
+    // Plastic flow has additional state that affects later steps.
     MassSpringMotion plastic = springy();
     plastic.springs.yield_strain = 0.001;
     plastic.random_force = 2;
@@ -254,14 +254,14 @@ TEST(Simulation, ABodyThatBlowsUpLeavesAllAsBefore) {
     ASSERT_TRUE(has_failed);
     EXPECT_EQ(state_of(simulation), before);
 
-    // Without exceptions the same is told.
+    // `try_step` reports the same error without an exception.
     const auto error = simulation.try_step();
     ASSERT_TRUE(error);
     EXPECT_EQ(error->object, "firework");
     EXPECT_EQ(error->step, before.steps + 1);
     EXPECT_EQ(state_of(simulation), before);
 
-    // Without the body all goes on as if there never had been one.
+    // After its removal, the simulation continues as if the body had never existed.
     simulation.remove(bad);
     Simulation undisturbed = room_of_bodies(options);
     undisturbed.add(make_icosphere(1), {}, [](double seconds, std::span<Vec3d> positions) {
@@ -347,7 +347,7 @@ TEST(Simulation, TheBorderTurnsBackAndTakesNoSpeed) {
       const MassSpringBody& body = *simulation.body(ids[i]);
       const Vec3d velocity = body.mean_velocity();
       ASSERT_NEAR(norm(velocity), simulation.time() > 0.201 ? 1 : norm(velocity), 1e-9);
-      // A shape that quivers may reach a little further.
+      // An oscillating shape may extend a little beyond the border.
       const Aabb box = SceneInspector(simulation.scene()).bounds(ids[i]);
       for (int axis = 0; axis < 3; ++axis) {
         ASSERT_GT(box.min[axis], -1.2 - overshoot - 0.05);
@@ -397,7 +397,7 @@ TEST(Simulation, GivesTheSameBitsForAnyNumberOfThreads) {
     SimulationOptions options = in_a_room(0.9);
     options.scene.threads = threads;
     Simulation simulation = room_of_bodies(options, 2);
-    // Of so many vertices that it takes all threads.
+    // Enough vertices to use all threads.
     simulation.add(placed(make_cloth(100, 100), 0.2, {0.5, 0.5, 0.5}), {}, springy());
     std::vector<Contact> contacts;
     for (int step = 0; step < 40; ++step) {
@@ -466,11 +466,11 @@ TEST(Simulation, ContinuousContactsSeeTheWholeWay) {
   EXPECT_EQ(pairs.size(), 3u);
   EXPECT_TRUE(simulation.scene().verify().agrees());
 
-  // Where they came to, they touch nothing.
+  // At the end positions the bodies touch nothing.
   EXPECT_TRUE(simulation.detect().continuous_contacts.empty());
   EXPECT_EQ(simulation.step_count(), 1u);
 
-  // Put elsewhere, the body's way begins there.
+  // After `set_positions`, the path of the body starts at the new place.
   simulation.set_positions(body, placed(make_icosphere(1), 0.25, {2, 0, 0}).positions);
   EXPECT_TRUE(simulation.detect().continuous_contacts.empty());
   for (const ContinuousContact& c : simulation.step().continuous_contacts)
@@ -539,7 +539,7 @@ TEST(Simulation, HandlesPullAndThenHold) {
   MassSpringMotion motion = springy();
   motion.springs.fixed_vertices = {0};
   motion.springs.substeps = 3;
-  // Neither divides into whole steps.
+  // Neither duration is a whole number of steps.
   motion.handles = {{{24, 23}, {0.5, 0, 0.25}, 0.105}, {{4}, {0, 1, 0}, 0.033}};
   const ObjectId id = simulation.add(cloth, {}, motion);
   EXPECT_EQ(simulation.body(id)->options().fixed_vertices, (std::vector<std::uint32_t>{0, 4, 23, 24}));

@@ -16,7 +16,7 @@
 namespace supple::viewer {
 namespace {
 
-/// A scene of which no option is what it is by default; objects in waves, of masses and springs, and static.
+/// A scene in which all options differ from their defaults, with a wave, a mass-spring and a static object.
 SceneView rich_scene() {
   SceneView scene;
   scene.title = "rich";
@@ -51,7 +51,7 @@ TEST(PackedScene, KeepsEveryOption) {
             keys_of_machine<MassSpringMotion>());
 }
 
-/// The value of an option as the session says it.
+/// The JSON value that the session sends for an option.
 template <class Struct, class Value>
 Json json_of(const Field<Struct, Value>& field, const Value& value) {
   JsonText json;
@@ -119,12 +119,12 @@ std::vector<std::vector<std::byte>> frames_of(const SceneView& show, int count) 
   return frames;
 }
 
-/// Without the statistics, which measure time.
+/// Compares all sections except the statistics, which contain times.
 void expect_equal_frames(const std::vector<std::vector<std::byte>>& a,
                          const std::vector<std::vector<std::byte>>& b) {
   ASSERT_EQ(a.size(), b.size());
   for (std::size_t i = 0; i < a.size(); ++i) {
-    // Copies: what is read in place has an alignment.
+    // Messages are read in place, so the copies need the right alignment.
     std::vector<std::max_align_t> x((a[i].size() + sizeof(std::max_align_t) - 1) / sizeof(std::max_align_t)),
         y = x;
     ASSERT_EQ(a[i].size(), b[i].size());
@@ -172,7 +172,7 @@ TEST(PackedScene, WhatItIsNotIsSaid) {
   EXPECT_NE(failure(other).find("was packed by version 9"), std::string::npos) << failure(other);
 }
 
-/// The number that tells whether the bytes are damaged, for bytes that were changed on purpose.
+/// Updates the checksum of bytes that were modified on purpose.
 void mend_checksum(std::vector<std::byte>& bytes) {
   const std::span<const std::byte> content = std::span(bytes).subspan(32);
   std::uint64_t hash = 0xcbf29ce484222325u ^ content.size();
@@ -185,7 +185,7 @@ void mend_checksum(std::vector<std::byte>& bytes) {
   std::memcpy(bytes.data() + 24, &hash, sizeof(hash));
 }
 
-/// Single frames, of which one object moves.
+/// Two frames; one object moves.
 struct TwoFrames final : Frames {
   Series rows{{"time"}, {0, 0.1}, {{1, 0, 1}}, {}};
   std::uint64_t count() const override { return 2; }
@@ -210,7 +210,7 @@ TEST(PackedScene, DamagedBytesNeverDoHarm) {
     int refused = 0, taken = 0;
     for (int round = 0; round < 1500; ++round) {
       auto changed = bytes;
-      // Most in the first part, where counts and options are.
+      // Most changes are in the first part, which has the counts and options.
       const auto near = static_cast<std::uint32_t>(std::min<std::size_t>(bytes.size(), 400));
       const auto all = static_cast<std::uint32_t>(bytes.size());
       for (std::uint32_t i = 0; i <= random.below(4); ++i)
@@ -230,7 +230,7 @@ TEST(PackedScene, DamagedBytesNeverDoHarm) {
         continue;
       }
       ++taken;
-      // Whatever it says now, a session refuses it or plays it.
+      // A session must either refuse the modified scene or play it.
       try {
         TestPage page(std::move(read));
         page.drain();

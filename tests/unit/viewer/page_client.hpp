@@ -16,14 +16,14 @@
 
 namespace supple::viewer {
 
-/// What a server answered.
+/// The answer of a server.
 struct Answer {
   unsigned status = 0;
   std::map<std::string, std::string> fields{};
   std::string body{};
 };
 
-/// A request of HTTP, or anything else, as it stands, and the answer to it.
+/// Sends the text of a request, which may be invalid HTTP, and returns the answer.
 inline Answer ask(std::uint16_t port, const std::string& request, bool is_head = false) {
   namespace http = boost::beast::http;
   boost::asio::io_context context;
@@ -41,7 +41,7 @@ inline Answer ask(std::uint16_t port, const std::string& request, bool is_head =
   return answer;
 }
 
-/// A request for a target; an empty host is left out.
+/// Requests a target; an empty host omits the Host field.
 inline Answer get(std::uint16_t port, const std::string& target, std::string host = "default",
                   const std::string& fields = "") {
   if (host == "default") host = "127.0.0.1:" + std::to_string(port);
@@ -52,10 +52,10 @@ inline Answer get(std::uint16_t port, const std::string& target, std::string hos
   return ask(port, request.append(fields).append("\r\n"));
 }
 
-/// A page's end of a WebSocket.
+/// The client end of a WebSocket.
 class PageClient {
  public:
-  /// Throws `boost::system::system_error` when it is not let in.
+  /// Throws `boost::system::system_error` if the server refuses the connection.
   PageClient(std::uint16_t port, const std::string& token, std::string host = "default",
              const std::string& origin = "", const std::string& path = "/session") {
     namespace websocket = boost::beast::websocket;
@@ -78,13 +78,13 @@ class PageClient {
     const auto* const first = static_cast<const std::byte*>(buffer.data().data());
     return ViewerMessage(std::vector<std::byte>(first, first + buffer.size()));
   }
-  /// The next message of a kind; others are passed over.
+  /// Returns the next message of a kind and skips the others.
   ViewerMessage receive(ViewerMessage::Kind kind) {
     ViewerMessage message = receive();
     while (message.kind != kind) message = receive();
     return message;
   }
-  /// Reads until the other end closes: the code it gives, 0 when the connection is just gone.
+  /// Reads until the server closes. Returns the code, or 0 if the connection ended without one.
   std::uint16_t receive_close() {
     try {
       for (;;) receive();

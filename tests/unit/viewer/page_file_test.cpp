@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Bytes of every value, with repetitions and without.
+/// Random bytes.
 std::vector<std::byte> noise(std::size_t count, unsigned seed) {
   std::vector<std::byte> bytes(count);
   RandomNumbers random(seed);
@@ -63,7 +63,7 @@ std::vector<std::byte> gunzip(std::string packed, std::size_t expected) {
   return bytes;
 }
 
-/// What an element of the page holds.
+/// The decoded data in an element of the page.
 std::vector<std::byte> cargo(const std::string& page, const std::string& id, std::size_t expected) {
   const std::string start = "<script type=\"application/octet-stream;base64\" id=\"" + id + "\">";
   const std::size_t first = page.find(start);
@@ -82,11 +82,11 @@ TEST(PageFile, HoldsShowAndModuleByteForByte) {
     const std::string whole = page_with_cargo(page, show, module);
     EXPECT_EQ(cargo(whole, "supple-show", show.size()), show);
     EXPECT_EQ(cargo(whole, "supple-wasm", module.size()), module);
-    // It takes the last such comment's place: a script may name it before.
+    // The data replaces the last such comment: a script may contain an earlier one.
     const std::size_t place = page.rfind("<!--");
     EXPECT_EQ(whole.substr(0, place), page.substr(0, place));
     EXPECT_EQ(whole.substr(whole.size() - 7), "</body>");
-    EXPECT_EQ(whole, page_with_cargo(page, show, module)) << "another time, another page";
+    EXPECT_EQ(whole, page_with_cargo(page, show, module)) << "a second call gives another page";
   }
 }
 

@@ -29,7 +29,7 @@ using nlohmann::json;
 using Kind = ViewerMessage::Kind;
 constexpr std::string_view page = "<!doctype html><title>The page</title>";
 
-/// Two boxes that bend.
+/// Two deformable boxes.
 SceneView small_show() {
   SceneView show;
   show.title = "small";
@@ -44,7 +44,7 @@ SceneView small_show() {
 
 class ViewerServer : public testing::Test {
  protected:
-  ViewerServer() { alarm(120); }  // what waits for ever is a failure
+  ViewerServer() { alarm(120); }  // a test that never ends is a failure
   ~ViewerServer() override {
     end();
     alarm(0);
@@ -96,7 +96,7 @@ TEST_F(ViewerServer, UrlIsWhatOneOpens) {
   start();
   const Server other(Session(small_show()), {"127.0.0.1", 0, page});
   EXPECT_EQ(other.url(), "http://127.0.0.1:" + std::to_string(other.port()) + "/?token=" + other.token());
-  EXPECT_EQ(get(port(), "/?token=" + other.token()).status, 403u) << "each server has a token of its own";
+  EXPECT_EQ(get(port(), "/?token=" + other.token()).status, 403u) << "each server has its own token";
 }
 
 TEST_F(ViewerServer, PageIsNotKeptNorFramedNorMayItLoadAnything) {
@@ -147,7 +147,7 @@ TEST_F(ViewerServer, WhatIsNoRequestIsRefused) {
   start();
   EXPECT_EQ(ask(port(), "\x16\x03\x01 hello\r\n\r\n").status, 400u);
   EXPECT_EQ(ask(port(), "GET / HTTP/1.1\r\nX: " + std::string(100'000, 'x') + "\r\n\r\n").status, 413u);
-  EXPECT_EQ(get(port(), with_token("/")).status, 200u) << "it goes on serving";
+  EXPECT_EQ(get(port(), with_token("/")).status, 200u) << "the server continues";
 }
 
 TEST_F(ViewerServer, SessionNeedsTokenHostAndOrigin) {
@@ -206,7 +206,7 @@ TEST_F(ViewerServer, WhatIsNotUnderstoodIsAFailureNotTheEnd) {
   }
   client.send(R"({"do": "read", "object": 0, "id": 5})");
   EXPECT_EQ(client.receive(Kind::answer).json["id"], 5);
-  client.send("\xff\xfe");  // text is UTF-8, as the standard of WebSockets wants it
+  client.send("\xff\xfe");  // WebSocket text must be UTF-8
   EXPECT_EQ(client.receive_close(), 1007);
 }
 
@@ -229,7 +229,7 @@ TEST_F(ViewerServer, APageThatDoesNotReadIsTakenOverToo) {
   first.send(R"({"do": "speed", "factor": 0})");
   first.send(R"({"do": "credit", "frames": 8})");
   first.send(R"({"do": "play"})");
-  // The scene alone is larger than the buffers of the sockets, so the server cannot send it to the end.
+  // The scene is larger than the buffers of the sockets, so the server cannot send all of it.
   ASSERT_TRUE(eventually([&] { return first.socket().next_layer().available() > 0; }));
   PageClient second = connect();
   EXPECT_EQ(second.receive().kind, Kind::scene);
@@ -244,7 +244,7 @@ TEST_F(ViewerServer, OnlyTextsUpToAMegabyteAreCommands) {
   binary.send(R"({"do": "pause"})");
   EXPECT_EQ(binary.receive_close(), 4003);
 
-  // A mebibyte is still looked at.
+  // The server still parses a text of one mebibyte.
   PageClient large = connect();
   large.send(std::string(std::size_t{1} << 20, ' '));
   EXPECT_EQ(large.receive(Kind::failure).json["fatal"], false);
@@ -262,7 +262,7 @@ TEST_F(ViewerServer, OnlyTextsUpToAMegabyteAreCommands) {
 TEST_F(ViewerServer, MoreCommandsThanMayWaitAreAllCarriedOut) {
   start();
   PageClient client = connect();
-  // Together more than wait at a time, each with an answer that must be read meanwhile.
+  // The commands exceed the server's queue, and each has an answer that the client must read meanwhile.
   const std::string padding(100'000, ' ');
   constexpr int count = 200;
   std::thread sender([&] {
@@ -282,7 +282,7 @@ TEST_F(ViewerServer, ASlowPageGetsTheNewest) {
   int before = client.receive(Kind::frame).json["step"];
   int skipped = 0;
   const bool simulation_goes_on = eventually([&] {
-    std::this_thread::sleep_for(20ms);  // a slow page
+    std::this_thread::sleep_for(20ms);  // simulates a slow page
     client.send(R"({"do": "credit", "frames": 1})");
     const int step = client.receive(Kind::frame).json["step"];
     skipped = step - std::exchange(before, step) - 1;
@@ -318,7 +318,7 @@ TEST_F(ViewerServer, TimeStandsStillWhileNobodyLooks) {
     client.send(R"({"do": "speed", "factor": 0})");
     client.send(R"({"do": "play"})");
     ASSERT_TRUE(eventually([&] { return frames->reads > 20; }));
-  }  // the connection is cut without a close
+  }  // the connection ends without a close
   EXPECT_TRUE(eventually([&] {
     const std::uint64_t reads = frames->reads;
     std::this_thread::sleep_for(100ms);
@@ -335,7 +335,7 @@ TEST_F(ViewerServer, APageComesBackToTheSameSession) {
     client.send(R"({"do": "play"})");
     client.send(R"({"do": "credit", "frames": 8})");
     before = client.receive(Kind::frame).json["step"];
-  }  // the connection is cut without a close
+  }  // the connection ends without a close
   const auto step_of_a_new_page = [&] {
     PageClient client = connect();
     EXPECT_EQ(client.receive().kind, Kind::scene);
@@ -350,7 +350,7 @@ TEST_F(ViewerServer, APageComesBackToTheSameSession) {
   };
   const int after = step_of_a_new_page();
   EXPECT_GE(after, before);
-  EXPECT_EQ(step_of_a_new_page(), after) << "it is paused";
+  EXPECT_EQ(step_of_a_new_page(), after) << "the session is paused";
 }
 
 TEST_F(ViewerServer, APageThatGivesNoSignOfLifeIsGivenUp) {
@@ -367,7 +367,7 @@ TEST_F(ViewerServer, APageThatGivesNoSignOfLifeIsGivenUp) {
     if (type == boost::beast::websocket::frame_type::ping) ++pings;
   });
   std::thread ender([&] {
-    // The server sends a ping after half of its patience.
+    // The server sends a ping after half of its timeout.
     EXPECT_TRUE(eventually([&] { return pings >= 4; }));
     alive.send(R"({"do": "read", "object": 0, "id": 1})");
   });
@@ -393,7 +393,7 @@ TEST_F(ViewerServer, EndsWithoutAPageAndWithOneThatDoesNotAnswer) {
   EXPECT_LT(std::chrono::steady_clock::now() - from, 10s);
 }
 
-/// Frames that cannot be had, by no fault of the file.
+/// Frames that cannot be read for a reason outside the file.
 class BrokenFrames : public Frames {
  public:
   std::uint64_t count() const override { return 2; }

@@ -98,7 +98,7 @@ TEST(ViewerCommands, WhatIsNotUnderstoodIsAFailureAndDoesNothing) {
     EXPECT_EQ(failure.find('\n'), std::string::npos) << shown;
   }
   page.say({{"do", "credit"}, {"frames", 1}});
-  EXPECT_TRUE(page.drain().empty()) << "nothing happened";
+  EXPECT_TRUE(page.drain().empty()) << "the commands had no effect";
   const ViewerMessage after = page.frame_after_steps(1);
   EXPECT_EQ(after.json["step"], 1);
   EXPECT_EQ(after.json["generation"], before.json["generation"]);

@@ -12,7 +12,7 @@
 namespace supple::viewer {
 namespace {
 
-/// A number of the frame's statistics by its name.
+/// A value of the frame's statistics, found by its name.
 double statistic(const ViewerMessage& scene, const ViewerMessage& frame, const std::string& name) {
   const auto names = scene.json["statistics"].get<std::vector<std::string>>();
   const auto found = std::find(names.begin(), names.end(), name);
@@ -68,7 +68,7 @@ TEST(ViewerFrames, EventsAreThoseSinceTheLastFrame) {
   const ViewerMessage first = page.frame();
   EXPECT_EQ(first.values<Pair>(44), (std::vector<Pair>{{0, 1}}));
   EXPECT_TRUE(first.values<Pair>(45).empty());
-  // Ball 2 drifts into 1 within many steps, of which none is sent.
+  // Ball 2 drifts into ball 1 over many steps; none of these frames is sent.
   for (int i = 0; i < 100; ++i) page.session.advance(0.01);
   const ViewerMessage later = page.frame();
   EXPECT_EQ(later.values<Pair>(44), (std::vector<Pair>{{1, 2}}));
@@ -76,7 +76,7 @@ TEST(ViewerFrames, EventsAreThoseSinceTheLastFrame) {
   page.ask({{"do", "reset"}});
   page.drain();
   EXPECT_EQ(page.frame_after_steps(1).values<Pair>(44), (std::vector<Pair>{{0, 1}}))
-      << "the page knows of none";
+      << "after a reset, the page knows of no pairs";
 }
 
 TEST(ViewerFrames, ContinuousContactsAreThoseOfTheLibrary) {
@@ -125,7 +125,7 @@ TEST(ViewerFrames, WhatIsNoNumberIsNaN) {
   const ViewerMessage scene = page.scene();
   const auto sent = page.frame().values<Vec3f>(32, 1);
   EXPECT_TRUE(std::isnan(sent[4].y) && std::isnan(sent[4].z));
-  // The middle of the bounds is at 5e299: nothing near the others is left, but it is said.
+  // The centre of the bounds is at 5e299. Relative to it no x coordinate fits in a float, so NaN is sent.
   EXPECT_EQ(scene.json["center"][0], 5e299);
   EXPECT_TRUE(std::isnan(sent[7].x) && std::isnan(sent[0].x));
   EXPECT_EQ(page.ask({{"do", "read"}, {"object", 1}, {"vertex", 4}})["position"],

@@ -10,7 +10,7 @@
 namespace supple::viewer {
 namespace {
 
-/// Of a mesh, the vertex furthest along x.
+/// The vertex with the largest x.
 std::uint32_t foremost(const TriangleMesh& mesh) {
   const auto less = [](const Vec3d& a, const Vec3d& b) { return a.x < b.x; };
   return static_cast<std::uint32_t>(std::max_element(mesh.positions.begin(), mesh.positions.end(), less) -
@@ -21,7 +21,7 @@ std::vector<Vec3f> positions(const ViewerMessage& frame, std::uint32_t object) {
   return frame.values<Vec3f>(32, object);
 }
 
-/// Two balls of radius 1 that are 0.5 apart; the left one moves, or not.
+/// Two balls of radius 1 with a gap of 0.5; the left one has the given motion.
 SceneView apart(decltype(ViewedObject::motion) motion = {}, std::uint32_t frequency = 8) {
   SceneView show;
   show.objects = {test_ball("left", {}, frequency), test_ball("right", {2.5, 0, 0}, frequency)};
@@ -29,7 +29,7 @@ SceneView apart(decltype(ViewedObject::motion) motion = {}, std::uint32_t freque
   return show;
 }
 
-/// A place in the right ball, in the page's coordinates.
+/// A point inside the right ball, in the page's coordinates.
 Json inside_right(const ViewerMessage& scene, double further = 0) {
   const Vec3d p = Vec3d{1.8 + further, 0, 0} - center_of(scene);
   return {p.x, p.y, p.z};
@@ -73,7 +73,7 @@ TEST(ViewerGrab, AnObjectWithoutMotionIsBentSmoothlyAndTouchesAtOnce) {
   EXPECT_FALSE(released.has(32, 0)) << "it stays bent";
   EXPECT_EQ(released.section(34).count, bent.section(34).count);
   EXPECT_EQ(page.frame_after_steps(2).section(34).count, bent.section(34).count);
-  // Taken again, it goes on from where it is.
+  // A second grab continues from the bent shape.
   page.ask({{"do", "grab"}, {"object", 0}, {"vertex", vertex}, {"radius", 0.6}});
   page.ask({{"do", "drag"}, {"to", inside_right(scene)}});
   page.session.advance(0);
@@ -106,11 +106,11 @@ TEST(ViewerGrab, AnObjectInWavesIsBentOnTopOfThem) {
   const std::uint32_t vertex = foremost(show.objects[0].mesh);
   page.ask({{"do", "grab"}, {"object", 0}, {"vertex", vertex}});
   page.session.advance(1);
-  EXPECT_EQ(page.frame().json["step"], 0) << "held, but not dragged";
+  EXPECT_EQ(page.frame().json["step"], 0) << "grabbed, but not dragged";
   page.ask({{"do", "drag"}, {"to", inside_right(scene)}});
   const Vec3f target = as_floats(std::array{Vec3d{1.8, 0, 0}}, center_of(scene))[0];
   for (int step = 1; step <= 5; ++step) {
-    page.session.advance(0.01);  // paused, but only steps show where it goes
+    page.session.advance(0.01);  // playback is paused, but steps are needed to show the motion
     const ViewerMessage frame = page.frame();
     EXPECT_EQ(frame.json["step"], step);
     EXPECT_LT(distance(positions(frame, 0)[vertex], target), 1e-6);
@@ -119,7 +119,7 @@ TEST(ViewerGrab, AnObjectInWavesIsBentOnTopOfThem) {
   page.ask({{"do", "release"}});
   page.session.advance(0.01);
   EXPECT_EQ(page.frame().json["step"], 5);
-  // Bent for good, and waving again: a twin that was not touched differs by the same offset all the time.
+  // The bend remains while the object waves again: it differs from an untouched copy by a constant offset.
   Simulation free = simulation_of(show);
   for (int i = 0; i < 5; ++i) free.step();
   std::optional<Vec3d> offset;
@@ -135,8 +135,7 @@ TEST(ViewerGrab, AnObjectInWavesIsBentOnTopOfThem) {
   }
 }
 
-/// What bodies may be made of, from slack to as stiff as the step bears, and stiffer by the implicit
-/// integrator.
+/// Materials from slack to the stiffest that the step allows; the implicit integrator allows stiffer ones.
 std::vector<MassSpringMotion> materials() {
   std::vector<MassSpringMotion> materials;
   for (const Integrator integrator :
@@ -174,8 +173,8 @@ TEST(ViewerGrab, ABodyIsPulledIntoContactAndHeldThere) {
     page.ask({{"do", "grab"}, {"object", 0}, {"vertex", vertex}});
     page.ask({{"do", "drag"}, {"to", inside_right(scene)}});
     const Vec3f target = as_floats(std::array{Vec3d{1.8, 0, 0}}, center_of(scene))[0];
-    // A shell that nothing stiffens turns inside out about what holds it, and ends within the other ball: it
-    // is on the way that they touch.
+    // A shell without bending stiffness turns inside out around the grabbed vertex and ends inside the other
+    // ball, so contacts occur only on the way.
     std::uint32_t contacts = 0;
     for (int i = 0; i < 240; ++i) {
       page.session.advance(0.01);
@@ -188,7 +187,7 @@ TEST(ViewerGrab, ABodyIsPulledIntoContactAndHeldThere) {
     EXPECT_LT(distance(positions(pulled, 0)[vertex], target), 0.1);
     page.ask({{"do", "release"}});
     page.session.advance(0.01);
-    EXPECT_EQ(page.frame().json["step"], 241) << "let go, it is paused again";
+    EXPECT_EQ(page.frame().json["step"], 241) << "after the release the session is paused again";
     EXPECT_NO_THROW(page.frame_after_steps(100));
   }
 }
@@ -217,7 +216,7 @@ TEST(ViewerGrab, NoDragMakesABodyExplode) {
   }
 }
 
-/// The block of `scenes/soft_block.toml`: its bottom is held, and pulled at its top.
+/// The block of `scenes/soft_block.toml`: its bottom is fixed and its top is pulled.
 SceneView soft_block() {
   SceneView show;
   ViewedObject block{make_box({2, 1, 2}, 8), {.name = "block", .self_collision = true}};
@@ -266,7 +265,7 @@ TEST(ViewerGrab, FixedVerticesStayWhereTheyAreHeld) {
     page.session.advance(0.01);
     if (i % 25 == 24) contacts = std::max<std::size_t>(contacts, page.frame().section(34).count);
   }
-  EXPECT_GT(contacts, 0u) << "its corner is pulled into the tool";
+  EXPECT_GT(contacts, 0u) << "the pulled corner touches the tool";
   const ViewerMessage frame = page.frame_after_steps(1);
   for (const std::uint32_t fixed : motion.springs.fixed_vertices)
     EXPECT_EQ(positions(frame, 0)[fixed], positions(before, 0)[fixed]);
@@ -285,7 +284,7 @@ TEST(ViewerGrab, StaticObjectsAndRecordingsAreRefusedInWords) {
             "grab: left is static: it cannot be moved or bent");
   page.ask({{"do", "grab"}, {"object", 1}, {"vertex", 0}});
   EXPECT_FALSE(page.failure(R"({"do": "grab", "object": 0, "vertex": 0})").empty());
-  EXPECT_FALSE(page.failure(R"({"do": "drag", "to": [0, 0, 0]})").empty()) << "the other one was let go";
+  EXPECT_FALSE(page.failure(R"({"do": "drag", "to": [0, 0, 0]})").empty()) << "the failed grab released it";
 }
 
 TEST(ViewerGrab, ReleasedByItselfWhenThePageGoes) {

@@ -12,11 +12,11 @@
 namespace supple::viewer {
 namespace {
 
-/// Balls that touch or nearly do, of which one waves and one is tested against itself.
+/// Balls that touch or nearly touch. One of them waves, and one has self-collision.
 SceneView crowd(BoundingVolume volume = BoundingVolume::aabb) {
   SceneView show;
   show.simulation.scene.bounding_volume = volume;
-  show.simulation.scene.broad_phase = BroadPhaseMethod::octree;  // which has regions
+  show.simulation.scene.broad_phase = BroadPhaseMethod::octree;  // this method has regions
   for (int i = 0; i < 6; ++i)
     show.objects.push_back(
         test_ball(("ball " + std::to_string(i)).c_str(), {1.7 * (i % 3), 1.8 * (i / 3), 0.1 * i}, 6));
@@ -53,7 +53,7 @@ TEST(ViewerLayers, AreLeftOutUntilAskedForAndAgainAfterwards) {
   const ViewerMessage frame = page.frame();
   EXPECT_TRUE(frame.has(38) && frame.has(39) && frame.has(40, 0) && frame.has(40, 3) && frame.has(42, 0));
   EXPECT_FALSE(frame.has(40, 1));
-  page.ask({{"do", "layers"}, {"candidates", false}});  // what is not named stays
+  page.ask({{"do", "layers"}, {"candidates", false}});  // layers that are not named stay the same
   const ViewerMessage fewer = page.frame();
   EXPECT_FALSE(fewer.has(38));
   EXPECT_TRUE(fewer.has(39) && fewer.has(40, 3));
@@ -122,7 +122,7 @@ TEST(ViewerLayers, AreWhatTheLibrarySays) {
   }
 }
 
-/// The paper's output is that of a scene which was made to give it.
+/// The colliding vertices equal those of a scene that is created with this option.
 TEST(ViewerLayers, CollidingVerticesAreThoseOfASceneThatGivesThem) {
   for (const ContactKinds contacts :
        {ContactKinds::intersection, ContactKinds::none, ContactKinds::continuous}) {
@@ -154,7 +154,7 @@ TEST(ViewerLayers, CollidingVerticesAreThoseOfASceneThatGivesThem) {
 }
 
 TEST(ViewerLayers, WhatIsTooLargeIsCutAndSaid) {
-  // 1200 triangles on one another, twice: 1,440,000 pairs, all of which touch.
+  // Twice 1200 coincident triangles: 1,440,000 pairs, all of which touch.
   SceneView show;
   for (const char* name : {"heap", "other heap"}) {
     ViewedObject heap;

@@ -13,7 +13,7 @@ TEST(ViewerPlayer, KeepsUpWithTimeAndGivesUpWhatItCannotCatchUpWith) {
   EXPECT_EQ(page.frame().json["step"], 0);
   EXPECT_NEAR(session.advance(0.006), 0.01, 1e-12);
   EXPECT_EQ(page.frame().json["step"], 1);
-  // Ten steps late: one now, one at once, and then it goes on as usual.
+  // Ten steps late: two steps run without delay, then the normal pace resumes.
   EXPECT_EQ(session.advance(0.1), 0);
   EXPECT_EQ(session.advance(0), 0.01);
   EXPECT_NEAR(session.advance(0), 0.01, 1e-12);
@@ -38,7 +38,7 @@ TEST(ViewerPlayer, KeepsUpWithTimeAndGivesUpWhatItCannotCatchUpWith) {
   EXPECT_EQ(page.frame().json["step"], 8);
   page.ask({{"do", "step"}, {"count", 3}});
   session.advance(0);
-  page.ask({{"do", "pause"}});  // gives up the rest
+  page.ask({{"do", "pause"}});  // cancels the remaining steps
   session.advance(0);
   EXPECT_EQ(page.frame().json["step"], 9);
 }

@@ -27,7 +27,7 @@ struct StoredFrames final : Frames {
   const Series& series() const override { return rows; }
 };
 
-/// What a simulation did, and its contacts frame by frame.
+/// The recording of a simulation, and its contacts frame by frame.
 struct Recorded {
   std::shared_ptr<StoredFrames> frames = std::make_shared<StoredFrames>();
   SceneView show;
@@ -79,7 +79,7 @@ std::size_t contact_count(const ViewerMessage& frame) {
   return frame.section(34).count;
 }
 
-/// The scene and the series.
+/// Returns the first two messages: the scene and the series.
 std::vector<ViewerMessage> opening(TestPage& page) {
   std::vector<ViewerMessage> messages = page.drain();
   EXPECT_EQ(messages.size(), 2u);
@@ -113,7 +113,7 @@ TEST(ViewerRecording, EachFrameIsDetectedAsItWas) {
   const Vec3d center = center_of(opening(page)[0]);
   page.ask({{"do", "pause"}});
   std::size_t most = 0;
-  // Forward, back and far.
+  // Seek forwards, backwards and over long distances.
   std::vector<std::uint32_t> order;
   for (std::uint32_t i = 0; i < 60; ++i) order.push_back(i * 37 % 60);
   for (const std::uint32_t number : order) {
@@ -175,7 +175,7 @@ TEST(ViewerRecording, PlaysInItsOwnTimeAndLeavesOutWhatIsLate) {
   EXPECT_NEAR(session.advance(0.004), 0.006, 1e-12);
   EXPECT_NEAR(session.advance(0.006), 0.01, 1e-9);
   EXPECT_EQ(page.frame().json["step"], 1);
-  session.advance(0.1);  // late: ten frames at once
+  session.advance(0.1);  // late by ten frames
   EXPECT_EQ(page.frame().json["step"], 11);
   page.ask({{"do", "speed"}, {"factor", 2}});
   session.advance(0.05);
@@ -188,7 +188,7 @@ TEST(ViewerRecording, PlaysInItsOwnTimeAndLeavesOutWhatIsLate) {
   const ViewerMessage end = page.frame();
   EXPECT_EQ(end.json["step"], 59);
   EXPECT_EQ(end.json["playing"], false);
-  page.ask({{"do", "play"}});  // from the beginning
+  page.ask({{"do", "play"}});  // restarts from the beginning
   session.advance(0);
   const ViewerMessage again = page.frame();
   EXPECT_EQ(again.json["step"], 0);
@@ -266,7 +266,7 @@ TEST(ViewerRecording, AFrameThatCannotBeReadLeavesAllAsItWas) {
   EXPECT_EQ(after.json["step"], 40);
   EXPECT_EQ(contact_count(after), contact_count(before));
   EXPECT_FALSE(after.has(32, 1));
-  page.ask({{"do", "play"}});  // stops before it
+  page.ask({{"do", "play"}});  // stops before the damaged frame
   for (int i = 0; i < 5; ++i) page.session.advance(0.01);
   EXPECT_EQ(page.only(ViewerMessage::failure).json["message"], "run.h5: frame 41 is damaged");
   EXPECT_EQ(page.frame().json["playing"], false);
@@ -329,7 +329,7 @@ TEST(ViewerRecording, PackedFramesAreThoseOfTheRecordingAsFloats) {
         const Vec3d p = recorded.frames->positions[frame][object][i];
         for (int axis = 0; axis < 3; ++axis) ASSERT_NEAR(positions[i][axis], p[axis], 2e-7);
         if (object != 1) {
-          ASSERT_EQ(positions[i], p) << "what never moves is kept as it is";
+          ASSERT_EQ(positions[i], p) << "positions of objects at rest are exact";
         }
       }
     }

@@ -40,7 +40,7 @@ TEST(ViewerSettings, SetChangesEachOptionAndStartsAnew) {
     for (std::uint32_t i = 0; i < 3; ++i) EXPECT_TRUE(frame.has(32, i));
     EXPECT_EQ(page.frame_after_steps(2).json["step"], 2);
   }
-  page.say({{"do", "set"}});  // all of them stay
+  page.say({{"do", "set"}});  // changes nothing
   const ViewerMessage scene = page.scene();
   EXPECT_EQ(scene.json["bounding_volume"], "sphere");
   EXPECT_EQ(scene.json["leaf_size"], 8);
@@ -58,7 +58,7 @@ TEST(ViewerSettings, RepeatsObjectsApartAndCutsTheList) {
   EXPECT_EQ(scene.json["objects"][3]["name"], "waves #2");
   EXPECT_EQ(scene.json["objects"][13]["name"], "soft #5");
   EXPECT_EQ(scene.json["objects"][13]["body"], true);
-  EXPECT_TRUE(page.frame().values<Pair>(33).empty()) << "they are apart, as the three are";
+  EXPECT_TRUE(page.frame().values<Pair>(33).empty()) << "the copies are disjoint, like the three originals";
   EXPECT_NO_THROW(page.frame_after_steps(20));
   page.say({{"do", "set"}, {"objects", 2}});
   scene = page.scene();

@@ -15,7 +15,7 @@ namespace {
 TEST(ViewerSession, TellsTheSceneAndThenFramesAgainstCredit) {
   Session unseen(three_balls());
   MessageWriter message;
-  EXPECT_TRUE(unseen.next_message(message).empty());  // nobody was greeted
+  EXPECT_TRUE(unseen.next_message(message).empty());  // no page was greeted
   unseen.advance(1);
   EXPECT_TRUE(unseen.next_message(message).empty());
 
@@ -37,10 +37,10 @@ TEST(ViewerSession, TellsTheSceneAndThenFramesAgainstCredit) {
                                             {"self_collision", false}}));
   EXPECT_EQ(scene.values<Triangle>(16, 2), make_icosphere(3).triangles);
   EXPECT_EQ(scene.section(16, 2).count, 180u);
-  EXPECT_TRUE(page.drain().empty());  // no credit
+  EXPECT_TRUE(page.drain().empty());  // the page has given no credit
 
   page.say({{"do", "credit"}, {"frames", 2}});
-  const ViewerMessage first = page.only(ViewerMessage::frame);  // and nothing new after it
+  const ViewerMessage first = page.only(ViewerMessage::frame);  // no other message follows
   EXPECT_EQ(first.json["step"], 0);
   EXPECT_EQ(first.json["playing"], true);
   for (std::uint32_t i = 0; i < 3; ++i) EXPECT_EQ(first.section(32, i).count, 92u);
@@ -49,7 +49,7 @@ TEST(ViewerSession, TellsTheSceneAndThenFramesAgainstCredit) {
   EXPECT_EQ(second.json["step"], 1);
   EXPECT_EQ(second.json["time"], 0.01);
   EXPECT_TRUE(second.has(32, 0) && second.has(32, 1));
-  EXPECT_FALSE(second.has(32, 2)) << "what rests is not sent again";
+  EXPECT_FALSE(second.has(32, 2)) << "objects at rest are not sent again";
   page.session.advance(0.01);
   EXPECT_TRUE(page.drain().empty());
 }
@@ -77,7 +77,7 @@ TEST(ViewerSession, APageThatComesAgainGetsAllAfresh) {
   page.drain();
   page.session.command("?");
   page.session.greet();
-  const ViewerMessage scene = page.scene();  // the failure was the other page's, and so was the credit
+  const ViewerMessage scene = page.scene();  // the failure and the credit belonged to the previous page
   EXPECT_EQ(scene.json["generation"], 2);
   const ViewerMessage frame = page.frame();
   EXPECT_EQ(frame.json["generation"], 2);
@@ -88,7 +88,7 @@ TEST(ViewerSession, ABodyThatBlowsUpPausesTheSession) {
   SceneView show = three_balls();
   show.objects[1].motion =
       MassSpringMotion{.springs = {.vertex_mass = 1e-6, .stiffness = 1e4}, .velocity = {-1, 0, 0}};
-  // Out of balance from the start.
+  // The body is out of balance from the start.
   show.objects[1].motion = MassSpringMotion{
       .springs = {.vertex_mass = 1e-6, .stiffness = 1e4}, .random_force = 1, .deform_seconds = 1};
   TestPage page(show);
