@@ -18,9 +18,9 @@ constexpr const char* footer = R"(Examples:
   supple experiment arity
       Compares trees of two, four and eight children.
 
-Each experiment writes CSV tables and a report as one HTML page into a folder, and reports which of the paper's claims
-hold. Plots need the program gnuplot. Without it, everything else is written and the exit status is 2.
-docs/experiments.md describes the experiments.)";
+Each experiment writes CSV tables and a report as one HTML page into a folder, and reports which of the
+paper's claims hold. Plots need the program gnuplot. Without it, everything else is written and the exit
+status is 2. docs/experiments.md describes the experiments.)";
 
 void add_kind(CLI::App& app, ExperimentOptions& options) {
   using Kind = ExperimentOptions::Kind;
