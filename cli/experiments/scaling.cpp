@@ -19,8 +19,12 @@
 namespace supple::experiments {
 namespace {
 
-constexpr std::array methods{BroadPhaseMethod::octree, BroadPhaseMethod::sweep, BroadPhaseMethod::brute};
-constexpr std::array<const char*, 3> method_names{"octree", "sweep and prune", "brute force"};
+/// The methods of the broad phase, as indices of `methods`. The paper's claims are about `octree`.
+enum : std::size_t { octree, grid, sweep, brute };
+constexpr std::array methods{BroadPhaseMethod::octree, BroadPhaseMethod::grid, BroadPhaseMethod::sweep,
+                             BroadPhaseMethod::brute};
+constexpr std::array<const char*, methods.size()> method_names{"octree", "grid", "sweep and prune",
+                                                               "brute force"};
 
 double n_log_n(double n) {
   return n * std::log(n);
@@ -35,6 +39,7 @@ struct BroadCurves {
   Points first_seconds, step_seconds, tests;
   bool stopped = false;  ///< because the next size would take too long
 };
+using CurvesOfMethods = std::array<BroadCurves, methods.size()>;
 
 struct BroadCost {
   double first_seconds = 0, step_seconds = 0;
@@ -67,15 +72,14 @@ BroadCost cost_of_boxes(BroadPhaseMethod method, std::size_t count, const Scalin
 }
 
 /// All methods take the same steps, so the pairs of the last step must be equal.
-bool measure_broad_phase(const ScalingOptions& options, Work& work, Table& table,
-                         std::array<BroadCurves, 3>& curves) {
+bool measure_broad_phase(const ScalingOptions& options, Work& work, Table& table, CurvesOfMethods& curves) {
   bool same_pairs = true;
   for (const std::size_t count : options.object_counts) {
     std::optional<std::uint64_t> pairs;
     for (std::size_t m = 0; m < methods.size(); ++m) {
       work.done(1, fmt::format("{} boxes, {}", count, method_names[m]));
       const double n = static_cast<double>(count);
-      if (methods[m] == BroadPhaseMethod::brute && !curves[m].step_seconds.empty()) {
+      if (m == brute && !curves[m].step_seconds.empty()) {
         const auto [last_n, last_seconds] = curves[m].step_seconds.back();
         curves[m].stopped =
             curves[m].stopped || last_seconds * (n / last_n) * (n / last_n) > options.brute_seconds;
@@ -189,21 +193,21 @@ std::string listed(const std::vector<double>& values) {
   return text;
 }
 
-Claim faster_than_brute(const std::array<BroadCurves, 3>& curves) {
-  const std::vector<double> factors = ratios(curves[0].step_seconds, curves[2].step_seconds);
+Claim faster_than_brute(const CurvesOfMethods& curves) {
+  const std::vector<double> factors = ratios(curves[octree].step_seconds, curves[brute].step_seconds);
   Claim claim{
       "“Our Broad Phase method is better than the brute force Broad Phase” (7).", Verdict::cannot_tell, {}};
   if (factors.empty()) return claim;
   claim.verdict = verdict_of(std::all_of(factors.begin(), factors.end(), [](double f) { return f > 1; }));
   claim.reason = fmt::format("For a step, brute force takes {} times as long as the octree, for {} objects.",
-                             listed(factors), sizes_of(curves[2].step_seconds));
+                             listed(factors), sizes_of(curves[brute].step_seconds));
   if (claim.verdict == Verdict::does_not_hold)
     claim.reason += " For few objects, testing all pairs is less work than maintaining a tree.";
   return claim;
 }
 
-Claim comparable_with_sweep(const std::array<BroadCurves, 3>& curves) {
-  const std::vector<double> factors = ratios(curves[0].step_seconds, curves[1].step_seconds);
+Claim comparable_with_sweep(const CurvesOfMethods& curves) {
+  const std::vector<double> factors = ratios(curves[octree].step_seconds, curves[sweep].step_seconds);
   Claim claim{
       "“… and comparable with the sweep and prune method” (7). Read as: within a factor of two at every "
       "size.",
@@ -214,7 +218,7 @@ Claim comparable_with_sweep(const std::array<BroadCurves, 3>& curves) {
       verdict_of(std::all_of(factors.begin(), factors.end(), [](double f) { return f >= 0.5 && f <= 2; }));
   claim.reason =
       fmt::format("For a step, sweep and prune takes {} times as long as the octree, for {} objects.",
-                  listed(factors), sizes_of(curves[1].step_seconds));
+                  listed(factors), sizes_of(curves[sweep].step_seconds));
   if (claim.verdict == Verdict::does_not_hold && factors.back() > 2)
     claim.reason +=
         " As the scene grows in three directions, more and more boxes overlap along the swept axis.";
@@ -236,16 +240,18 @@ Claim less_than_quadratic(const Points& seconds, const Points& tests) {
   return claim;
 }
 
-std::vector<Growth> broad_growths(const std::array<BroadCurves, 3>& c) {
+std::vector<Growth> broad_growths(const CurvesOfMethods& c) {
   const auto square = [](double n) { return n * n; };
-  return {{"Octree, first step", "time", c[0].first_seconds, "n log n", n_log_n},
-          {"Octree, step in motion", "time", c[0].step_seconds, "less than n²", square},
-          {"Octree, step in motion", "tests", c[0].tests, "less than n²", square},
-          {"Sweep and prune, first step", "time", c[1].first_seconds, "n log n", n_log_n},
-          {"Sweep and prune, step in motion", "time", c[1].step_seconds, "n log n", n_log_n},
-          {"Sweep and prune, step in motion", "tests", c[1].tests, "n log n", n_log_n},
-          {"Brute force, step in motion", "time", c[2].step_seconds, "n²", square},
-          {"Brute force, step in motion", "tests", c[2].tests, "n²", square}};
+  return {{"Octree, first step", "time", c[octree].first_seconds, "n log n", n_log_n},
+          {"Octree, step in motion", "time", c[octree].step_seconds, "less than n²", square},
+          {"Octree, step in motion", "tests", c[octree].tests, "less than n²", square},
+          {"Sweep and prune, first step", "time", c[sweep].first_seconds, "n log n", n_log_n},
+          {"Sweep and prune, step in motion", "time", c[sweep].step_seconds, "n log n", n_log_n},
+          {"Sweep and prune, step in motion", "tests", c[sweep].tests, "n log n", n_log_n},
+          {"Brute force, step in motion", "time", c[brute].step_seconds, "n²", square},
+          {"Brute force, step in motion", "tests", c[brute].tests, "n²", square},
+          {"Grid, step in motion", "time", c[grid].step_seconds, "n log n", n_log_n},
+          {"Grid, step in motion", "tests", c[grid].tests, "n log n", n_log_n}};
 }
 
 std::vector<Growth> shape_growths(const ShapeCurves& c) {
@@ -261,7 +267,7 @@ std::vector<Growth> shape_growths(const ShapeCurves& c) {
           {"Refit with spheres about the vertices (eq. 5)", "time", c.sphere_refit_seconds, "n", linear}};
 }
 
-std::vector<Claim> judge_broad(const std::array<BroadCurves, 3>& curves, const std::vector<Growth>& growths) {
+std::vector<Claim> judge_broad(const CurvesOfMethods& curves, const std::vector<Growth>& growths) {
   std::vector<Claim> claims;
   claims.push_back(judge_bounds("“In the Broad Phase, the brute force method takes O(n²)” (5).",
                                 {growths[6], growths[7]}));
@@ -274,7 +280,7 @@ std::vector<Claim> judge_broad(const std::array<BroadCurves, 3>& curves, const s
       judge_bounds("The region-BV test of all objects takes O(n log n) (7): placing all objects in regions, "
                    "the first step.",
                    {growths[0]}));
-  claims.push_back(less_than_quadratic(curves[0].step_seconds, curves[0].tests));
+  claims.push_back(less_than_quadratic(curves[octree].step_seconds, curves[octree].tests));
   claims.push_back(faster_than_brute(curves));
   claims.push_back(comparable_with_sweep(curves));
   return claims;
@@ -313,7 +319,7 @@ std::vector<Claim> judge_narrow(const std::vector<Growth>& growths, const Points
   return claims;
 }
 
-Section broad_section(const ScalingOptions& options, Table table, const std::array<BroadCurves, 3>& c,
+Section broad_section(const ScalingOptions& options, Table table, const CurvesOfMethods& c,
                       const std::vector<Growth>& growths) {
   Plot time{"Broad phase: one step, all boxes in motion", "boxes", "milliseconds"};
   Plot tests{"Broad phase: tests of a box against a box", "boxes", "tests"};
@@ -321,12 +327,14 @@ Section broad_section(const ScalingOptions& options, Table table, const std::arr
     time.series.push_back({method_names[m], in_milliseconds(c[m].step_seconds), {}, static_cast<int>(m)});
     tests.series.push_back({method_names[m], c[m].tests, {}, static_cast<int>(m)});
   }
-  time.series.push_back(formula_line("n log n", in_milliseconds(c[0].step_seconds), n_log_n, 5));
-  tests.series.push_back(formula_line("n log n", c[0].tests, n_log_n, 5));
+  time.series.push_back(formula_line("n log n", in_milliseconds(c[octree].step_seconds), n_log_n, 5));
+  tests.series.push_back(formula_line("n log n", c[octree].tests, n_log_n, 5));
   Section section{"Number of objects", {}};
   section.blocks.emplace_back(fmt::format(
       "Boxes with sides of 0.5 to 1, one per eight units of volume, all in motion. The time of a step is the "
-      "minimum of {} steps after the first. Brute force stops when a step would take longer than {} s.",
+      "minimum of {} steps after the first. Brute force stops when a step would take longer than {} s. The "
+      "claims of the paper are "
+      "judged by the octree, which is the paper's method.",
       options.frames, rounded(options.brute_seconds)));
   section.blocks.emplace_back(std::move(time));
   section.blocks.emplace_back(std::move(tests));
@@ -387,7 +395,7 @@ Report run_scaling(const ScalingOptions& options, bool show_progress) {
                {"step_ms", "Step ms"},
                {"tests", "Tests"},
                {"pairs", "Pairs"}}};
-  std::array<BroadCurves, 3> broad;
+  CurvesOfMethods broad;
   const bool same_pairs = measure_broad_phase(options, work, boxes, broad);
   Table shapes{"scaling_vertices",
                "Narrow phase",
