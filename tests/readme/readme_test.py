@@ -27,9 +27,10 @@ class Readme(unittest.TestCase):
                    for program in PROGRAMS]
         self.assertEqual(blocks("text"), outputs)
 
-    def test_cmake_project_is_the_one_that_the_install_test_builds(self):
-        project = (ROOT / "tests/install/consumer/CMakeLists.txt").read_text()
-        self.assertIn(blocks("cmake")[0], project)
+    def test_cmake_projects_are_those_that_the_install_tests_build(self):
+        installed, fetched = blocks("cmake")
+        self.assertIn(installed, (ROOT / "tests/install/consumer/CMakeLists.txt").read_text())
+        self.assertIn(fetched, (ROOT / "tests/install/fetching_consumer/CMakeLists.txt").read_text())
 
     def test_links_exist(self):
         links = re.findall(r"\]\(([^)#]+)[^)]*\)", (ROOT / "README.md").read_text())
