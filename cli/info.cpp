@@ -29,6 +29,7 @@ struct MeshInfo {
   MeshTopology topology;
   std::uint64_t non_finite_vertices = 0;
   std::optional<std::array<Vec3d, 2>> bounds;  ///< of the finite vertices; none when no vertex is finite
+  std::uint32_t arity = 0;
   OctreeStatistics octree;
 };
 
@@ -48,14 +49,17 @@ void measure_positions(const TriangleMesh& mesh, MeshInfo& info) {
   if (info.non_finite_vertices < mesh.positions.size()) info.bounds = bounds;
 }
 
-MeshInfo measure(const InputObject& object, const InfoOptions& options) {
+MeshInfo measure(const InputObject& object, SceneOptions scene_options, const InfoOptions& options) {
   MeshInfo info;
   info.name = object.mesh.name;
   info.topology = compute_topology(object.mesh);
   measure_positions(object.mesh, info);
   ObjectOptions chosen = object.options;
   options.given_objects.apply_to(chosen);
-  Scene scene({.threads = 1});
+  info.arity = chosen.octree.arity;
+  scene_options.threads = 1;
+  options.given_scene.apply_to(scene_options);
+  Scene scene(scene_options);
   info.octree = SceneInspector(scene).octree_statistics(scene.add(object.mesh, chosen));
   return info;
 }
@@ -87,10 +91,10 @@ void print_text(const MeshInfo& info) {
   }
   const OctreeStatistics& o = info.octree;
   fmt::print(
-      "  octree       {}, {}, depth {}, {:.1f} triangles per leaf (largest {}), {:.1f} of 8 children per "
+      "  octree       {}, {}, depth {}, {:.1f} triangles per leaf (largest {}), {:.1f} of {} children per "
       "node\n",
       counted(o.nodes, "node"), o.leaves == 1 ? "1 leaf" : grouped(o.leaves) + " leaves", o.depth,
-      o.mean_leaf_size, o.largest_leaf, o.mean_node_width);
+      o.mean_leaf_size, o.largest_leaf, o.mean_node_width, info.arity);
   if (o.cost > 0) fmt::print("  quality      {:.1f} visits per query\n", o.cost);
   fmt::print("  memory       {} bytes, {:.1f} per triangle\n\n", grouped(o.bytes), o.bytes_per_triangle);
 }
@@ -142,7 +146,7 @@ int run_info(const InfoOptions& options) {
     json->begin_array();
   }
   for (const InputObject& object : input.objects) {
-    const MeshInfo info = measure(object, options);
+    const MeshInfo info = measure(object, input.simulation.scene, options);
     if (json) write_json(*json, info);
     if (options.json != "-") print_text(info);
   }

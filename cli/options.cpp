@@ -374,10 +374,24 @@ CLI::App* add_view(CLI::App& program, ViewOptions& options, Dependences& depende
   return app;
 }
 
-CLI::App* add_info(CLI::App& program, InfoOptions& options) {
+CLI::App* add_info(CLI::App& program, InfoOptions& options, Dependences& dependences) {
   CLI::App* app = program.add_subcommand("info", "Print statistics of meshes and of their octrees");
   app->footer(info_footer);
   app->add_option("MESH|SCENE.toml", options.inputs, "Meshes, or one scene file")->required()->type_name("");
+  options.given_scene.for_each_setter([&]<class Struct, class Value>(const Field<Struct, Value>& field,
+                                                                     const Value& default_value, auto set) {
+    if constexpr (std::is_same_v<Value, BoundingVolume>) {
+      add_field(*app, field, default_value, set);
+    } else if constexpr (std::is_same_v<Value, SphereFit>) {
+      const auto has_spheres_given = [&options] {
+        SceneOptions scene;
+        options.given_scene.apply_to(scene);
+        return has_spheres(scene);
+      };
+      dependences.push_back(
+          {add_field(*app, field, default_value, set), has_spheres_given, "--bounding-volume sphere"});
+    }
+  });
   add_object_options(*app, options.given_objects, false);
   add_file(*app, "--json", options.json, "Write the result as JSON; - is standard output");
   return app;
@@ -500,7 +514,7 @@ CommandLine parse_command_line(int argument_count, const char* const* arguments)
   const CLI::App* detect = add_detect(program, result.detect, dependences);
   const CLI::App* simulate = add_simulate(program, result.simulate, dependences);
   const CLI::App* view = add_view(program, result.view, dependences);
-  const CLI::App* info = add_info(program, result.info);
+  const CLI::App* info = add_info(program, result.info, dependences);
   const CLI::App* ccd_queries = add_ccd_queries(program, result.ccd_queries, dependences);
   add_diff(program, result.diff);
   const CLI::App* experiment = experiments::add_experiment(program, result.experiment, dependences);

@@ -61,6 +61,7 @@ struct ViewOptions : MethodOptions {
 /// Options of `supple info`.
 struct InfoOptions {
   std::vector<std::string> inputs;
+  viewer::Overrides<SceneOptions> given_scene;  ///< only the bounding volume
   viewer::Overrides<ObjectOptions> given_objects;
   std::string json;
 };

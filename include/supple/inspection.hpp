@@ -84,10 +84,11 @@ struct OctreeStatistics {
   double bytes_per_triangle = 0;
   std::vector<std::uint64_t> leaves_by_level;
   /// Expected visits of a query whose box overlaps the object's box, by the surface-area heuristic: one visit
-  /// per child and an eighth per triangle of a leaf. Computed for the boxes of the last refit; 0 when they
-  /// have no surface.
+  /// per child and an eighth per triangle of a leaf. Computed for the volumes of the last refit: spheres when
+  /// they are the bounding volume and the object is not on a path, otherwise boxes. 0 when they have no
+  /// surface.
   double cost = 0;
-  /// The cost divided by the cost when the octree was built: 2 when queries cost twice as much.
+  /// The cost by boxes divided by that cost when the octree was built: 2 when queries cost twice as much.
   double degradation = 1;
   std::uint64_t rebuilds = 0;  ///< since the object was added
 };

@@ -50,6 +50,18 @@ class Info(ProgramTest):
         self.assertLessEqual(large_leaves["largest_leaf"], 64)
         self.assertEqual(sum(large_leaves["leaves_by_level"]), large_leaves["leaves"])
 
+    def test_bounding_volume(self):
+        self.write("scene.toml", '[[object]]\nmodel = "rabbit"\n')
+        boxes = self.info("scene.toml")[0]["octree"]
+        spheres = self.info("scene.toml", "--bounding-volume", "sphere")[0]["octree"]
+        fitted = self.info("scene.toml", "--bounding-volume", "sphere", "--sphere-fit", "box")[0]["octree"]
+        self.assertGreater(spheres["bytes"], boxes["bytes"])
+        self.assertEqual(spheres["nodes"], boxes["nodes"])
+        self.assertEqual(len({boxes["cost"], spheres["cost"], fitted["cost"]}), 3)
+        refused = self.run_here("info", "scene.toml", "--sphere-fit", "box")
+        self.assertEqual(refused.status, 2)
+        self.assertIn("--bounding-volume sphere", refused.error)
+
     def test_text(self):
         self.write("a.obj", TRIANGLE)
         done = self.run_here("info", "a.obj")

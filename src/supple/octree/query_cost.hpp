@@ -15,5 +15,8 @@ namespace supple {
 /// 0 when the boxes have no surface or one that is too large for double. O(nodes). The same number on every
 /// machine.
 double query_cost(std::span<const OctreeNode> nodes, const ChildBoxes* boxes);
+/// The same by the surfaces of the spheres. `object` is the sphere of the whole object.
+double query_cost(std::span<const OctreeNode> nodes, const ChildSpheres* spheres,
+                  const BoundingSphere& object);
 
 }  // namespace supple

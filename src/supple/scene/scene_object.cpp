@@ -138,6 +138,8 @@ OctreeStatistics SceneObject::octree_statistics() const {
   statistics.bytes += resting_.bytes() + moving_.bytes();
   statistics.cost = current_query_cost();
   statistics.degradation = rebuild_policy_.degradation(statistics.cost);
+  if (octree_.spheres() != nullptr && resting_.is_current(placement_))
+    statistics.cost = query_cost(octree_.nodes(), octree_.spheres(), octree_.sphere());
   statistics.rebuilds = rebuilds_;
   if (statistics.triangles != 0) {
     statistics.bytes_per_triangle =

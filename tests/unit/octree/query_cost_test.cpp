@@ -59,6 +59,22 @@ TEST(QueryCost, IsTheSumOfSurfacesOfTheChildren) {
   EXPECT_EQ(query_cost(octree.nodes(), octree.boxes()), 2 * 1.125 * 3 / 9);
 }
 
+TEST(QueryCost, OfSpheresIsTheSumOfTheirSurfaces) {
+  // Four leaves with one triangle each: half squares around (0, 0, 0) and (6, 0, 0). Their spheres have the
+  // squared radius 1 + 1/4, that of the object 16.
+  const TriangleMesh mesh{
+      "",
+      {{1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, -1, 0}, {7, 0, 0}, {6, 1, 0}, {5, 0, 0}, {6, -1, 0}},
+      {{0, 1, 2}, {0, 2, 3}, {4, 5, 6}, {4, 6, 7}}};
+  ObjectOctree octree(mesh.positions, mesh.triangles, {.leaf_size = 1}, BoundingVolume::sphere,
+                      SphereFit::vertices);
+  const Parallel parallel{1};
+  VertexBuffer vertices;
+  vertices.assign(mesh.positions, parallel);
+  octree.refit(vertices, {}, parallel);
+  EXPECT_NEAR(query_cost(octree.nodes(), octree.spheres(), octree.sphere()), 4 * 1.125 * 1.25 / 16, 1e-6);
+}
+
 TEST(QueryCost, DoesNotDependOnPlaceAndScale) {
   const TriangleMesh mesh = random_soup(4000, 1, 0.02, 1);
   Tree tree(mesh);
