@@ -247,6 +247,7 @@ void JsonReport::add(const Frame& frame) {
   json_.key("events");
   json_.begin_object();
   write_events(json_, "volumes", result.volume_events);
+  if (options.comparison.colliding_vertices) write_events(json_, "narrow_phase", result.narrow_phase_events);
   write_events(json_, "contacts", result.contact_events);
   json_.end_object();
   write_non_finite(json_, result.non_finite_vertices);

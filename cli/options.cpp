@@ -454,8 +454,8 @@ void resolve(MethodOptions& options, const std::vector<std::string>& inputs) {
   options.given_scene.apply_to(options.scene);
 }
 
-void check_outputs(const DetectionOptions& options) {
-  if (options.scene.comparison.colliding_vertices && options.json.empty())
+void check_outputs(const DetectionOptions& options, bool prints_collisions) {
+  if (options.scene.comparison.colliding_vertices && options.json.empty() && !prints_collisions)
     throw CLI::ValidationError("--colliding-vertices", "has no effect without --json");
   if (options.json == "-" && options.csv == "-")
     throw CLI::ValidationError("--csv", "--json already writes to standard output; give one of them a file");
@@ -529,8 +529,8 @@ CommandLine parse_command_line(int argument_count, const char* const* arguments)
     resolve(result.simulate, {});
     resolve(result.view, result.view.inputs);
     check(dependences);
-    check_outputs(result.detect);
-    check_outputs(result.simulate);
+    check_outputs(result.detect, false);
+    check_outputs(result.simulate, true);
     result.command = detect->parsed()        ? CommandLine::Command::detect
                      : simulate->parsed()    ? CommandLine::Command::simulate
                      : view->parsed()        ? CommandLine::Command::view

@@ -43,6 +43,7 @@ void TextReport::add(const Frame& frame) {
     motion_seconds_ += frame.simulated->motion_seconds;
   }
   volumes_begun_ += result.volume_events.begin.size();
+  leaves_begun_ += result.narrow_phase_events.begin.size();
   begun_ += result.contact_events.begin.size();
   ended_ += result.contact_events.end.size();
   non_finite_ = result.non_finite_vertices.size();
@@ -59,7 +60,7 @@ void TextReport::print(const Scene& scene) const {
   fmt::print("{}, {}, {}\n\n", counted(objects.size(), "object"), counted(triangles, "triangle"),
              counted(frames_, noun_));
   print_contacts(scene);
-  if (simulated_) print_collisions();
+  if (simulated_) print_collisions(scene);
   print_stages();
   if (non_finite_ > 0)
     fmt::print("\n{} not finite in the last frame: the triangles that use these vertices touch nothing\n",
@@ -98,10 +99,11 @@ void TextReport::print_pairs(const Scene& scene) const {
              counted(triangle_pairs_, "triangle pair"), counted(begun_, "time"), counted(ended_, "time"));
 }
 
-void TextReport::print_collisions() const {
-  fmt::print(
-      "collisions: {} that two objects' volumes began to overlap, {} that two objects began to touch\n\n",
-      counted(volumes_begun_, "time"), counted(begun_, "time"));
+void TextReport::print_collisions(const Scene& scene) const {
+  fmt::print("collisions: {} that two objects' volumes began to overlap, ", counted(volumes_begun_, "time"));
+  if (scene.options().comparison.colliding_vertices)
+    fmt::print("{} that leaves of two objects' octrees did, ", counted(leaves_begun_, "time"));
+  fmt::print("{} that two objects began to touch\n\n", counted(begun_, "time"));
 }
 
 void TextReport::print_stages() const {

@@ -31,7 +31,7 @@ class TextReport {
 
   void print_contacts(const Scene& scene) const;
   void print_pairs(const Scene& scene) const;
-  void print_collisions() const;
+  void print_collisions(const Scene& scene) const;
   void print_stages() const;
   void print_verify(const Scene& scene) const;
 
@@ -41,7 +41,7 @@ class TextReport {
   std::map<ObjectPair, PairSummary> pairs_;
   ImpactTables impacts_;  ///< of continuous contacts
   StepStats sum_;
-  std::uint64_t volumes_begun_ = 0, begun_ = 0, ended_ = 0;
+  std::uint64_t volumes_begun_ = 0, leaves_begun_ = 0, begun_ = 0, ended_ = 0;
   bool simulated_ = false;
   double motion_seconds_ = 0;
   std::uint64_t non_finite_ = 0;  ///< in the last frame

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <exception>
 #include <mutex>
-#include <set>
 #include <thread>
 #include <utility>
 
@@ -28,19 +27,6 @@ SimulationOptions simulation_options(const cli::Input& input, BoundingVolume vol
   options.scene.comparison.colliding_vertices = true;
   options.scene.threads = threads;
   return options;
-}
-
-/// Pairs that did not exist before.
-std::uint64_t count_new(const DetectResult& result, std::set<ObjectPair>& pairs) {
-  std::set<ObjectPair> now;
-  std::uint64_t fresh = 0;
-  for (const CollidingVertices& group : result.colliding_vertex_groups) {
-    if (group.a == group.b) continue;
-    now.insert({group.a, group.b});
-    fresh += !pairs.contains({group.a, group.b});
-  }
-  pairs = std::move(now);
-  return fresh;
 }
 
 Runs start_of(const std::string& scene, const cli::Input& input, BoundingVolume volume, double run_seconds) {
@@ -98,11 +84,10 @@ RunCounts run_scene(const std::string& scene, BoundingVolume volume, std::uint64
     simulation.add(object.mesh, options, std::get<MassSpringMotion>(*object.motion));
   }
   RunCounts counts;
-  std::set<ObjectPair> pairs;
   const auto count = [&](const DetectResult& result) {
     counts.broad += result.volume_events.begin.size();
+    counts.narrow += result.narrow_phase_events.begin.size();
     counts.exact += result.contact_events.begin.size();
-    counts.narrow += count_new(result, pairs);
   };
   count(simulation.detect());
   try {

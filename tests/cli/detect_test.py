@@ -94,6 +94,7 @@ class Json(ProgramTest):
     def test_colliding_vertices(self):
         (frame,) = self.detect("a.obj", "b.obj", "far.obj", "--colliding-vertices")["frames"]
         self.assertEqual(frame["colliding_vertices"], [{"a": 0, "b": 1, "vertices_a": [0, 1, 2], "vertices_b": [0, 1, 2]}])
+        self.assertEqual(frame["events"]["narrow_phase"], {"begin": [[0, 1]], "end": []})
 
     def test_verify(self):
         (frame,) = self.detect("a.obj", "b.obj", "--verify")["frames"]

@@ -300,12 +300,18 @@ void Scene::Implementation::publish() {
     result.continuous_contacts = impact_pass_.contacts();
   }
   list_touching_pairs();
+  leaf_pairs_.clear();
+  for (const CollidingVertices& group : result.colliding_vertex_groups) {
+    if (group.a != group.b) leaf_pairs_.push_back({group.a, group.b});
+  }
   volume_pairs_.update(jobs_.pairs);
+  narrow_phase_pairs_.update(leaf_pairs_);
   contact_pairs_.update(touching_pairs_);
   ++step_;
   result.object_pairs = jobs_.pairs;
   result.non_finite_vertices = non_finite_;
   result.volume_events = volume_pairs_.events();
+  result.narrow_phase_events = narrow_phase_pairs_.events();
   result.contact_events = contact_pairs_.events();
   detected_ = true;
 }

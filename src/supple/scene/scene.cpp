@@ -89,8 +89,7 @@ ObjectId Scene::Implementation::add(const PositionsView& positions, const Triang
 
 void Scene::Implementation::remove(ObjectId id) {
   object(id, "remove");
-  volume_pairs_.release(id);
-  contact_pairs_.release(id);
+  for (PairCache* const pairs : {&volume_pairs_, &narrow_phase_pairs_, &contact_pairs_}) pairs->release(id);
   slots_[id.index].object.reset();
   ++slots_[id.index].generation;
   free_slots_.push_back(id.index);

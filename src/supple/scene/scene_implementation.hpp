@@ -135,11 +135,11 @@ class Scene::Implementation {
   std::vector<std::uint32_t> stale_, degraded_, small_;
   std::vector<double> queries_;  // of degraded objects
   Jobs jobs_, impact_jobs_;      // of `detect`, and of `earliest_impact`
-  std::vector<ObjectPair> touching_pairs_;
+  std::vector<ObjectPair> touching_pairs_, leaf_pairs_;
   std::vector<ContactObject> contact_objects_;
   std::vector<MovingObject> moving_objects_;
   std::vector<NonFiniteVertex> non_finite_;
-  PairCache volume_pairs_, contact_pairs_;
+  PairCache volume_pairs_, narrow_phase_pairs_, contact_pairs_;
   ContactPass contact_pass_;
   ImpactPass impact_pass_;
 };

@@ -264,6 +264,32 @@ TEST(Scene, CollidingVerticesAreThoseOfTheCollidingLeaves) {
             (std::vector<std::uint32_t>{0, 1, 2, 0, 1, 2}));
 }
 
+TEST(Scene, NarrowPhaseEventsAreThoseOfOverlappingLeaves) {
+  // Two thin triangles, and one triangle between them and then on one of them: at first the boxes of the
+  // objects overlap, but the leaves do not.
+  const TriangleMesh frame{"frame",
+                           {{-2, -2, 0}, {2, -2, 0}, {0, -1.9, 0}, {-2, 2, 0}, {2, 2, 0}, {0, 1.9, 0}},
+                           {{0, 1, 2}, {3, 4, 5}}};
+  for (const bool enabled : {false, true}) {
+    Scene scene({.comparison = {.colliding_vertices = enabled}});
+    const ObjectId a = scene.add(frame, {.octree = {.leaf_size = 1}}), b = scene.add(upright_triangle());
+    const DetectResult& result = scene.detect();
+    EXPECT_EQ(result.volume_events.begin.size(), 1u);
+    EXPECT_TRUE(result.narrow_phase_events.begin.empty());
+    scene.translate(b, {0, -2.2, 0});
+    scene.detect();
+    EXPECT_EQ(result.volume_events.stay.size(), 1u);
+    ASSERT_EQ(result.narrow_phase_events.begin.size(), enabled ? 1u : 0u);
+    if (enabled) EXPECT_EQ(result.narrow_phase_events.begin[0], (ObjectPair{a, b}));
+    scene.translate(b, {0, 2.2, 0});
+    EXPECT_EQ(scene.detect().narrow_phase_events.end.size(), enabled ? 1u : 0u);
+    scene.translate(b, {0, -2.2, 0});
+    scene.detect();
+    scene.remove(b);
+    EXPECT_EQ(scene.detect().narrow_phase_events.end.size(), enabled ? 1u : 0u);
+  }
+}
+
 /// The spheres of the paper's equations 3 and 4 do not enclose the triangle: `verify` reports missed contacts
 /// but no false ones.
 TEST(Scene, VerifySeesWhatThePapersSpheresMiss) {
