@@ -280,7 +280,9 @@ TEST(Scene, NarrowPhaseEventsAreThoseOfOverlappingLeaves) {
     scene.detect();
     EXPECT_EQ(result.volume_events.stay.size(), 1u);
     ASSERT_EQ(result.narrow_phase_events.begin.size(), enabled ? 1u : 0u);
-    if (enabled) EXPECT_EQ(result.narrow_phase_events.begin[0], (ObjectPair{a, b}));
+    if (enabled) {
+      EXPECT_EQ(result.narrow_phase_events.begin[0], (ObjectPair{a, b}));
+    }
     scene.translate(b, {0, 2.2, 0});
     EXPECT_EQ(scene.detect().narrow_phase_events.end.size(), enabled ? 1u : 0u);
     scene.translate(b, {0, -2.2, 0});
