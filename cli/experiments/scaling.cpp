@@ -333,8 +333,7 @@ Section broad_section(const ScalingOptions& options, Table table, const CurvesOf
   section.blocks.emplace_back(fmt::format(
       "Boxes with sides of 0.5 to 1, one per eight units of volume, all in motion. The time of a step is the "
       "minimum of {} steps after the first. Brute force stops when a step would take longer than {} s. The "
-      "claims of the paper are "
-      "judged by the octree, which is the paper's method.",
+      "octree, which is the paper's method, decides the paper's claims.",
       options.frames, rounded(options.brute_seconds)));
   section.blocks.emplace_back(std::move(time));
   section.blocks.emplace_back(std::move(tests));

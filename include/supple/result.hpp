@@ -100,8 +100,9 @@ struct DetectResult {
   std::span<const std::uint32_t> colliding_vertices;
   std::span<const NonFiniteVertex> non_finite_vertices;
   PairEvents volume_events;  ///< of `object_pairs`
-  /// Of the pairs of different objects whose octrees have leaves that overlap: the collisions of the paper's
-  /// narrow phase. Only with `ComparisonOptions::colliding_vertices`.
+  /// Changes of the pairs of different objects whose leaves overlap. The paper's narrow phase counts these
+  /// pairs. Only with `ComparisonOptions::colliding_vertices`; a step that searches only continuous contacts
+  /// has no such pairs.
   PairEvents narrow_phase_events;
   PairEvents contact_events;  ///< of the pairs of different objects that have contacts of any kind
   StepStats stats;

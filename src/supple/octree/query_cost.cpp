@@ -8,7 +8,7 @@
 namespace supple {
 namespace {
 
-/// `surface_of(node, child)` and `surface` are surfaces by the same unit.
+/// `surface_of(node, child)` is the surface of a child, `surface` that of the object, in the same unit.
 template <class SurfaceOf>
 double sum_of_costs(std::span<const OctreeNode> nodes, double surface, const SurfaceOf& surface_of) {
   constexpr double visits_per_triangle = 0.125;

@@ -24,8 +24,8 @@ inline bool in_order_of_triangles(const FoundContact& p, const FoundContact& q) 
   return p.triangle_a != q.triangle_a ? p.triangle_a < q.triangle_a : p.triangle_b < q.triangle_b;
 }
 
-/// Sorts the contacts of one job at a time by triangle a, then by triangle b. Counts them into about as
-/// many buckets, by ranges of triangle a, and sorts each bucket. Keeps its memory between jobs.
+/// Sorts the contacts of one job at a time by triangle a, then by triangle b. Counts them into buckets by
+/// ranges of triangle a, a few contacts in each, and sorts each bucket. Keeps its memory between jobs.
 class ContactOrder {
  public:
   /// Returns the indices of the contacts in order, valid until the next call. `found` are contacts of

@@ -46,16 +46,21 @@ std::vector<Vec3d> mixed(const TriangleMesh& mesh, double distance) {
   return positions;
 }
 
-TEST(QueryCost, IsTheSumOfSurfacesOfTheChildren) {
-  // Two leaves with one triangle each: each costs a visit plus an eighth, times its share of the surface.
-  const TriangleMesh mesh{
-      "", {{0, 0, 0}, {1, 1, 0}, {0, 0, 1}, {3, 0, 0}, {4, 1, 0}, {3, 0, 1}}, {{0, 1, 2}, {3, 4, 5}}};
-  ObjectOctree octree(mesh.positions, mesh.triangles, {.leaf_size = 1}, BoundingVolume::aabb,
-                      SphereFit::vertices);
+/// A refitted octree with leaves of one triangle.
+ObjectOctree octree_of_single_triangles(const TriangleMesh& mesh, BoundingVolume volume) {
+  ObjectOctree octree(mesh.positions, mesh.triangles, {.leaf_size = 1}, volume, SphereFit::vertices);
   const Parallel parallel{1};
   VertexBuffer vertices;
   vertices.assign(mesh.positions, parallel);
   octree.refit(vertices, {}, parallel);
+  return octree;
+}
+
+TEST(QueryCost, IsTheSumOfSurfacesOfTheChildren) {
+  // Two leaves with one triangle each: each costs a visit plus an eighth, times its share of the surface.
+  const TriangleMesh mesh{
+      "", {{0, 0, 0}, {1, 1, 0}, {0, 0, 1}, {3, 0, 0}, {4, 1, 0}, {3, 0, 1}}, {{0, 1, 2}, {3, 4, 5}}};
+  const ObjectOctree octree = octree_of_single_triangles(mesh, BoundingVolume::aabb);
   EXPECT_EQ(query_cost(octree.nodes(), octree.boxes()), 2 * 1.125 * 3 / 9);
 }
 
@@ -66,12 +71,7 @@ TEST(QueryCost, OfSpheresIsTheSumOfTheirSurfaces) {
       "",
       {{1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, -1, 0}, {7, 0, 0}, {6, 1, 0}, {5, 0, 0}, {6, -1, 0}},
       {{0, 1, 2}, {0, 2, 3}, {4, 5, 6}, {4, 6, 7}}};
-  ObjectOctree octree(mesh.positions, mesh.triangles, {.leaf_size = 1}, BoundingVolume::sphere,
-                      SphereFit::vertices);
-  const Parallel parallel{1};
-  VertexBuffer vertices;
-  vertices.assign(mesh.positions, parallel);
-  octree.refit(vertices, {}, parallel);
+  const ObjectOctree octree = octree_of_single_triangles(mesh, BoundingVolume::sphere);
   EXPECT_NEAR(query_cost(octree.nodes(), octree.spheres(), octree.sphere()), 4 * 1.125 * 1.25 / 16, 1e-6);
 }
 
