@@ -4,7 +4,10 @@ target_compile_features(supple_compile_options INTERFACE cxx_std_20)
 target_compile_options(supple_compile_options INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Wnon-virtual-dtor
   # Results must be equal on all machines, so the compiler must not fuse multiplications and additions.
-  -ffp-contract=off)
+  -ffp-contract=off
+  # From -O2 on, g++ 12 turns two neighbouring conversions of double to float and back into copies of the doubles.
+  # Volumes are computed from numbers as rounded to float, so they would not enclose their vertices.
+  $<$<CXX_COMPILER_ID:GNU>:-fno-tree-slp-vectorize>)
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
   # Kernels are compiled once per instruction set. SSSE3 is left out to save time: processors since 2008 have
   # SSE4, and older ones run portable code.

@@ -1,16 +1,33 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
+
+#include "supple/types.hpp"
 
 namespace supple {
 
 // Options to repeat the paper's experiments and to compare methods. No program needs them to find contacts:
 // the defaults are the fastest. They are parts of `ObjectOptions` and `SceneOptions`.
 
+/// How the octree of an object is built. The contacts are the same for all methods.
+enum class ObjectOctreeBuild : std::uint8_t {
+  /// Top-down. Distributes the triangles among the children so that leaves are about equally full. This takes
+  /// the fewest leaves. Nodes have eight children; with another arity, the octree is regular.
+  balanced,
+  /// Top-down, as in the paper: the children of a node are the octants of its cell.
+  regular,
+  /// Bottom-up: merges neighbouring triangles into leaves, then leaves into nodes, up to the root.
+  bottom_up,
+};
+
 /// How a sphere is fitted to a node.
 enum class SphereFit : std::uint8_t {
   /// The center of the node's box; the radius reaches the farthest vertex (the paper's eq. 5). Conservative.
   vertices,
+  /// The smallest sphere around the vertices, up to rounding: often smaller, never larger than that of
+  /// `vertices`. Conservative. The refit takes longer.
+  minimal,
   /// Center and radius from the longest side L of the box (the paper's eq. 3 and 4). The sphere does not
   /// enclose the corners of the box, so `detect` misses collisions. Only to repeat the paper's experiment.
   box,
@@ -31,20 +48,30 @@ struct ObjectOctreeOptions {
   std::uint32_t max_level = 16;
   /// A node with at most this many triangles is not split, ≥ 1. Vector kernels test the triangles of two
   /// leaves that meet, so small leaves are slower, and they take more memory. The limit is half of this value
-  /// when `SceneOptions::contacts` has continuous contacts, unless `regular` is set.
+  /// when `SceneOptions::contacts` has continuous contacts, unless the octree is regular.
   std::uint32_t leaf_size = 64;
-  /// Children of a node: 8, 4 or 2. A level halves a node's cell along three axes, two or one, which take
-  /// turns. Nodes have room for eight children in any case, so fewer children take more memory and time.
+  /// Children of a node: 8, 4 or 2. In a regular octree, a level halves a cell along three axes, two or one,
+  /// which take turns. Nodes have room for eight children in any case, so fewer children take more memory and
+  /// time.
   std::uint32_t arity = 8;
-  /// Build the paper's regular octree: the children of a node are the octants of its cell. Otherwise, and if
-  /// the arity is 8, the triangles are distributed among the children so that leaves are about equally full,
-  /// which takes fewer leaves.
-  bool regular = false;
+  ObjectOctreeBuild build = ObjectOctreeBuild::balanced;
   /// Rebuild the octree when the object has deformed so much that the accumulated extra query cost exceeds
   /// the cost of a rebuild. Has no effect when the scene reports colliding vertices or uses `SphereFit::box`,
   /// which depend on the leaves.
   bool rebuild_degraded = true;
 };
+
+/// A cube: its lowest corner and the length of its edges, > 0. The corner has no coordinate beyond ±1e36, and
+/// the edge is from 1e-30 to 1e36, so that single precision can represent its halves.
+struct RootCube {
+  Vec3d corner{};
+  double edge = 0;
+
+  constexpr bool operator==(const RootCube&) const = default;
+};
+
+/// The smallest cube around a box, with the same centre. Throws `Error` when the box has no finite size.
+RootCube cube_around(Vec3d lowest, Vec3d highest);
 
 /// Shape of the octree of the scene. The pairs found are the same for all values. Any value but the default
 /// is an `Error` when the broad phase is grid, sweep or brute.
@@ -60,6 +87,9 @@ struct SceneOctreeOptions {
   RegionSphereTest region_sphere_test = RegionSphereTest::arvo;
   /// Children of a region: 8, 4 or 2.
   std::uint32_t arity = 8;
+  /// The root region. Without a value it is fitted to most of the objects, and again when they leave it. The
+  /// outermost regions also contain everything beyond the root, so objects outside are found as well.
+  std::optional<RootCube> root{};
 
   constexpr bool operator==(const SceneOctreeOptions&) const = default;
 };

@@ -10,6 +10,7 @@
 #include <string_view>
 #include <type_traits>
 
+#include "supple/comparison_options.hpp"
 #include "supple/types.hpp"
 
 // Descriptions of options and statistics: name, words, unit, range and one sentence for each member. The
@@ -160,6 +161,13 @@ constexpr std::size_t count_leaves() {
 
 /// The fewest digits that read back to the same double.
 std::string text_of(double value);
+/// `X,Y,Z,EDGE`: the corner and the edge.
+std::string text_of(const RootCube& cube);
+/// Whether the numbers are in their ranges.
+bool is_valid(const RootCube& cube);
+/// The words for these ranges.
+inline constexpr const char* range_of_root_cube =
+    "three coordinates from -1e36 to 1e36 and an edge from 1e-30 to 1e36";
 
 // What `check` throws: `WHERE: STRUCTURE::NAME is VALUE; it must be WHAT`.
 [[noreturn]] void fail_range(std::string_view where, const char* structure, const char* name,
@@ -167,6 +175,8 @@ std::string text_of(double value);
 [[noreturn]] void fail_range(std::string_view where, const char* structure, const char* name, double value,
                              const ValueRange& range);
 [[noreturn]] void fail_range(std::string_view where, const char* structure, const char* name, Vec3d value);
+[[noreturn]] void fail_range(std::string_view where, const char* structure, const char* name,
+                             const RootCube& value);
 [[noreturn]] void fail_range(std::string_view where, const char* structure, const char* name,
                              std::uint64_t value, const std::string& words);
 
@@ -191,6 +201,8 @@ void check(const Struct& options, std::string_view where = {}) {
     } else if constexpr (std::same_as<Value, Vec3d>) {
       if (!field.range.allows(value.x) || !field.range.allows(value.y) || !field.range.allows(value.z))
         fail_range(where, structure, field.name, value);
+    } else if constexpr (std::same_as<Value, std::optional<RootCube>>) {
+      if (value && !is_valid(*value)) fail_range(where, structure, field.name, *value);
     }
   });
 }

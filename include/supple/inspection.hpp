@@ -1,8 +1,10 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -13,13 +15,21 @@ namespace supple {
 
 class Scene;
 
-/// A cell of an object's octree: one child of a node.
+/// A cell of an object's octree: a node of the paper, A(h, k).
 struct OctreeCell {
-  std::uint32_t level = 0;  ///< the root is 0
+  std::uint32_t level = 0;  ///< k; the root is 0
+  /// h: the root is 0, and the children of h are mh + 1 … mh + m in a tree of arity m, in the order of the
+  /// tree. Octants without triangles are left out, so the children that exist have the first numbers, and a
+  /// node that shrank to one of its octants has no number for the others. Empty when the number does not fit
+  /// into 64 bits, which is possible below level 21 of an octree (31 with arity 4, 62 with arity 2).
+  std::optional<std::uint64_t> number = 0;
   bool is_leaf = true;
   std::uint32_t triangle_count = 0;
   Aabb box{};               ///< encloses the triangles at their present positions
   BoundingSphere sphere{};  ///< empty unless the scene's bounding volume is the sphere
+  /// The oriented box (three slabs, along its axes) or the k-DOP (k / 2 slabs) as the intersection of slabs;
+  /// empty for other bounding volumes, and with continuous contacts.
+  std::vector<Slab> slabs{};
 };
 
 /// Two triangles that the narrow phase passes to the exact stage, as the user's numbers. Within one object,
@@ -34,6 +44,30 @@ struct CandidatePair {
 struct CandidateList {
   std::vector<CandidatePair> pairs;  ///< sorted
   std::uint64_t total = 0;
+};
+
+/// The descent of the narrow phase into the octrees of two objects, as a list of pairs by level (Figure 4 of
+/// the paper). Pair (A(h, k) of object a, A(h, k) of object b) is in the list when the volumes of both nodes
+/// overlap, and so do those of all their ancestors. The descent takes one level of both octrees at a time. A
+/// leaf stays while the other side descends, so the nodes of a pair of level k are at level k, or one is a
+/// leaf above it.
+struct NodePairList {
+  struct Pair {
+    std::uint32_t a = 0, b = 0;  ///< places in `nodes_a` and `nodes_b`
+    constexpr auto operator<=>(const Pair&) const = default;
+  };
+  /// The nodes of each object that collide, each once, by level and number. For one object with itself, both
+  /// lists are of this object.
+  std::vector<OctreeCell> nodes_a, nodes_b;
+  std::vector<Pair> pairs;  ///< level by level; within a level ascending
+  /// First pair of each level, then the number of pairs. Level k is [level_begin[k], level_begin[k + 1]).
+  std::vector<std::size_t> level_begin{0};
+
+  std::uint32_t level_count() const { return static_cast<std::uint32_t>(level_begin.size() - 1); }
+  std::span<const Pair> pairs_of(std::uint32_t level) const {
+    return std::span(pairs).subspan(level_begin[level], level_begin[level + 1] - level_begin[level]);
+  }
+  bool is_leaf_pair(const Pair& pair) const { return nodes_a[pair.a].is_leaf && nodes_b[pair.b].is_leaf; }
 };
 
 /// The stage that separated two triangles, in the order of the stages. With continuous contacts, a stage
@@ -57,13 +91,19 @@ struct PairExplanation {
   /// stages. They enclose the present positions; with continuous contacts, the volumes of objects enclose the
   /// whole path. They are rounded outward to floats, so they may seem to overlap far from the origin.
   Aabb box_a{}, box_b{};
-  BoundingSphere sphere_a{}, sphere_b{};   ///< not empty when spheres, not boxes, are apart
+  BoundingSphere sphere_a{}, sphere_b{};  ///< not empty when spheres, not boxes, are apart
+  /// Not empty when oriented boxes or k-DOPs are apart, although their boxes overlap; see
+  /// `OctreeCell::slabs`.
+  std::vector<Slab> slabs_a{}, slabs_b{};
   std::uint32_t level_a = 0, level_b = 0;  ///< levels of the octree cells
+  /// Their numbers, as in `OctreeCell::number`.
+  std::optional<std::uint64_t> number_a = 0, number_b = 0;
   /// At `exact_test`: the unit direction from a to b between the closest points of the triangles, and their
   /// distance, both rounded. When rounding leaves no distance, it is 0 and the axis is a direction that
   /// separates the triangles except for rounding.
   /// At `object_volumes`, `octree_volumes` and `triangle_boxes`: the coordinate axis from a to b along which
-  /// the boxes are furthest apart, or the direction between the centers of the spheres, and the gap along it.
+  /// the boxes are furthest apart, the direction between the centers of the spheres, or that of the slabs
+  /// that are furthest apart (for oriented boxes also the cross product of two axes), and the gap along it.
   /// With continuous contacts both are taken at the end of the step, and both are zero for triangles that
   /// intersect there because they did so from the start.
   Vec3d axis{};
@@ -84,22 +124,25 @@ struct OctreeStatistics {
   double bytes_per_triangle = 0;
   std::vector<std::uint64_t> leaves_by_level;
   /// Expected visits of a query whose box overlaps the object's box, by the surface-area heuristic: one visit
-  /// per child and an eighth per triangle of a leaf. Computed for the volumes of the last refit: spheres when
-  /// they are the bounding volume and the object is not on a path, otherwise boxes. 0 when they have no
-  /// surface.
+  /// per child and an eighth per triangle of a leaf. Computed for the volumes of the last refit: those of
+  /// `SceneOptions::bounding_volume`, or boxes when the object is on a path. 0 when they have no surface.
   double cost = 0;
   /// The cost by boxes divided by that cost when the octree was built: 2 when queries cost twice as much.
   double degradation = 1;
   std::uint64_t rebuilds = 0;  ///< since the object was added
 };
 
+/// The edges of the intersection of slabs, for drawing the `slabs` of a cell. Computed in double and rounded;
+/// none when a slab of a box is infinite.
+std::vector<std::array<Vec3d, 2>> edges_of(std::span<const Slab> slabs);
+
 /// Looks into a scene and its last `detect`, for drawing, learning and tests. When that call found both kinds
 /// of contacts, cells and candidates are those of the search for intersections. The inspector refers to the
 /// scene, which must outlive it and must not be moved. It keeps no memory. Each call allocates memory and
 /// uses one thread.
 ///
-/// `cells`, `candidates` and `explain` throw `Error` when something changed since the last `detect` (for
-/// `cells`: when the object moved).
+/// `cells`, `leaf`, `node_pairs`, `candidates` and `explain` throw `Error` when something changed since the
+/// last `detect` (for `cells`: when the object moved).
 class SceneInspector {
  public:
   explicit SceneInspector(const Scene& scene) : scene_(&scene) {}
@@ -109,6 +152,13 @@ class SceneInspector {
   /// rounded outward. With continuous contacts, they enclose the positions at the end of the step. Cells
   /// without a finite triangle are empty.
   std::vector<OctreeCell> cells(ObjectId object, std::optional<std::uint32_t> level = {}) const;
+  /// The leaf that contains a triangle. O(octree depth). Throws `Error` when the triangle is out of range.
+  OctreeCell leaf(ObjectId object, std::uint32_t triangle) const;
+  /// The pairs of nodes that the narrow phase finds colliding, of two objects, or of one object with itself.
+  /// Empty when the last `detect` did not compare the octrees: the broad phase or a filter excludes the pair,
+  /// or the object's self-collision is off. Includes pairs that `detect` skips, as `candidates` does.
+  /// O(pairs log pairs) time and memory.
+  NodePairList node_pairs(ObjectId object_a, ObjectId object_b) const;
   /// The deepest level with cells; 0 for an object without triangles, which has no cell.
   std::uint32_t octree_depth(ObjectId object) const;
   /// Statistics of an object's octree, O(nodes).
@@ -117,6 +167,8 @@ class SceneInspector {
   Aabb bounds(ObjectId object) const;
   /// Regions of the scene octree in the last step, root first; empty when another method ran.
   std::vector<SceneRegion> regions() const;
+  /// The leaf regions that contain an object, ascending by number; O(placements of all objects).
+  std::vector<SceneRegion> regions(ObjectId object) const;
 
   /// The pairs of triangles that the narrow phase passes to the exact stage: the first `limit` pairs and
   /// their total number. They include pairs that `detect` skips: of two objects that both have not moved, and

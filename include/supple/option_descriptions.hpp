@@ -10,9 +10,11 @@
 namespace supple {
 
 template <>
-inline constexpr std::array words<BoundingVolume>{"aabb", "sphere"};
+inline constexpr std::array words<BoundingVolume>{"aabb", "sphere", "obb", "kdop14", "kdop18", "kdop26"};
 template <>
-inline constexpr std::array words<SphereFit>{"vertices", "box"};
+inline constexpr std::array words<ObjectOctreeBuild>{"balanced", "regular", "bottom_up"};
+template <>
+inline constexpr std::array words<SphereFit>{"vertices", "minimal", "box"};
 template <>
 inline constexpr std::array words<BroadPhaseMethod>{"automatic", "octree", "grid", "sweep", "brute"};
 template <>
@@ -64,13 +66,12 @@ struct Description<ObjectOctreeOptions> {
                                           .doc = "Children of a node of the object's octree",
                                           .range = ValueRange::from(2, 8).only_powers_of_two(),
                                           .key = "tree_arity"});
-    visitor(Field<Options, bool>{.name = "regular",
-                                 .member = &Options::regular,
-                                 .doc =
-                                     "How the object's octree is built: with equally full leaves (balanced), "
-                                     "or from the octants of each cell as in the paper (regular)",
-                                 .key = "object_octree",
-                                 .truth_words = {"balanced", "regular"}});
+    visitor(Field<Options, ObjectOctreeBuild>{
+        .name = "build",
+        .member = &Options::build,
+        .doc = "How the object's octree is built: with equally full leaves (balanced), from the octants of "
+               "each cell as in the paper (regular), or by merging neighbours (bottom-up)",
+        .key = "object_octree"});
     visitor(Field<Options, bool>{
         .name = "rebuild_degraded",
         .member = &Options::rebuild_degraded,
@@ -109,6 +110,12 @@ struct Description<SceneOctreeOptions> {
                                           .doc = "Children of a region of the scene octree",
                                           .range = ValueRange::from(2, 8).only_powers_of_two(),
                                           .key = "scene_octree_arity"});
+    visitor(Field<Options, std::optional<RootCube>>{
+        .name = "root",
+        .member = &Options::root,
+        .doc = "Root region of the scene octree, a cube; without a value it is fitted to the objects",
+        .unit = "length",
+        .key = "scene_octree_root"});
   }
 };
 
@@ -152,8 +159,10 @@ struct Description<ComparisonOptions> {
     using Options = ComparisonOptions;
     visitor(Field<Options, SphereFit>{.name = "sphere_fit",
                                       .member = &Options::sphere_fit,
-                                      .doc = "How spheres are fitted: around the vertices, or from the box "
-                                             "by the paper's eq. 3 and 4, which misses contacts"});
+                                      .doc = "How spheres are fitted: around the middle of the box up to "
+                                             "the farthest vertex (vertices), as small as possible "
+                                             "(minimal), or from the box by the paper's eq. 3 and 4, which "
+                                             "misses contacts (box)"});
     visitor(Field<Options, bool>{
         .name = "colliding_vertices",
         .member = &Options::colliding_vertices,

@@ -16,9 +16,24 @@
 
 namespace supple {
 
-/// Shape that encloses the nodes of an object's octree, and the object itself in the broad phase. With
-/// continuous contacts, only objects have this shape; nodes have boxes.
-enum class BoundingVolume : std::uint8_t { aabb, sphere };
+/// Shape that encloses the nodes of an object's octree, and the object itself in the broad phase. The
+/// contacts are the same for all. With continuous contacts, nodes have boxes, and objects have boxes or
+/// spheres.
+///
+/// Oriented boxes and k-DOPs are tested where boxes overlap. They are tighter than boxes, and take more
+/// memory and more time to refit and to test.
+enum class BoundingVolume : std::uint8_t {
+  aabb,    ///< axis-aligned box
+  sphere,  ///< fitted as `SphereFit` says
+  /// Box along the principal axes of the surface (Gottschalk, Lin and Manocha 1996). Each refit computes its
+  /// axes again.
+  obb,
+  /// Polytopes with fixed directions (Klosowski et al. 1998): the faces of the box, and planes that cut off
+  /// its corners (14), its edges (18), or both (26).
+  kdop14,
+  kdop18,
+  kdop26,
+};
 
 /// How object pairs are found. All methods report the same pairs in the same order.
 enum class BroadPhaseMethod : std::uint8_t {

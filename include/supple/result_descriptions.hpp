@@ -58,7 +58,8 @@ struct Description<StepStats> {
                                            .member = &Stats::broad_phase_method,
                                            .doc = "Method of the broad phase that ran"});
     count("objects_refitted", &Stats::objects_refitted, "objects", "Objects with new positions");
-    count("triangles_refitted", &Stats::triangles_refitted, "triangles", "Triangles of these objects");
+    count("triangles_refitted", &Stats::triangles_refitted, "triangles",
+          "Triangles in the refitted leaves of these objects");
     count("octrees_rebuilt", &Stats::octrees_rebuilt, "octrees", "Degraded octrees that were rebuilt");
     count("triangles_rebuilt", &Stats::triangles_rebuilt, "triangles", "Triangles of these octrees");
     count("object_pairs_tested", &Stats::object_pairs_tested, "pairs",

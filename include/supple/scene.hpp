@@ -1,8 +1,10 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -65,6 +67,16 @@ class Scene {
   /// Sets the positions of all vertices, in the user's numbering. Copies them, O(n). Replaces earlier
   /// transforms, translations and paths. Throws `Error` when the number of positions differs from the mesh.
   void set_positions(ObjectId object, PositionsView positions);
+  /// Sets the positions of some vertices, O(k) for k of them, where only a part of the object moves: all
+  /// others stay. `detect` then refits only the nodes of the octree around these vertices, to the same
+  /// volumes. The positions are those that were last set, before the object's transform and translation,
+  /// which stay; a path ends. When more than an eighth of the vertices move, and for continuous contacts,
+  /// `detect` refits the whole object.
+  ///
+  /// Shared positions are copied first, O(n). Throws `Error` when there is no such vertex, when the numbers
+  /// of vertices and positions differ, and when one is `float` and the object's positions are `double`, or
+  /// the other way round.
+  void set_vertices(ObjectId object, std::span<const std::uint32_t> vertices, PositionsView positions);
   /// As `set_positions`, but the scene reads the user's memory instead of a copy, O(1). The memory must stay
   /// valid until the object gets other positions or is removed. To change the values, write them between two
   /// calls on the scene and then call this function again.

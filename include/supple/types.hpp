@@ -71,6 +71,14 @@ struct BoundingSphere {
   constexpr bool empty() const { return radius < 0; }
 };
 
+/// The points p with low <= dot(direction, p) <= high. The direction need not be of unit length.
+struct Slab {
+  Vec3f direction;
+  float low = 0, high = 0;
+
+  constexpr bool operator==(const Slab&) const = default;
+};
+
 /// Identifies an object of one scene. A scene reuses the `index` of a removed object and raises its
 /// `generation`, so that it recognizes an outdated id. Ordered by index.
 struct ObjectId {

@@ -34,8 +34,8 @@ void AutomaticSearch::search(const VolumeStore& volumes, const Parallel& paralle
   if (ran_octree_) octree_->search(volumes, parallel, found);
 }
 
-std::vector<SceneRegion> AutomaticSearch::regions() const {
-  return ran_octree_ ? octree_->regions() : std::vector<SceneRegion>();
+std::vector<SceneRegion> AutomaticSearch::regions(std::optional<std::uint32_t> slot) const {
+  return ran_octree_ ? octree_->regions(slot) : std::vector<SceneRegion>();
 }
 
 std::string AutomaticSearch::validate(const VolumeStore& volumes) const {

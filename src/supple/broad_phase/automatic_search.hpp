@@ -17,7 +17,7 @@ class AutomaticSearch final : public PairSearch {
   ~AutomaticSearch() override;
 
   void search(const VolumeStore& volumes, const Parallel& parallel, FoundPairs& found) override;
-  std::vector<SceneRegion> regions() const override;
+  std::vector<SceneRegion> regions(std::optional<std::uint32_t> slot) const override;
   std::string validate(const VolumeStore& volumes) const override;
 
  private:

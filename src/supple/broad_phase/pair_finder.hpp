@@ -20,7 +20,9 @@ class PairFinder {
   /// changed, the method does not run and the pairs stay.
   std::span<const IndexPair> find_pairs(const ObjectVolumes& given, const Parallel& parallel);
   const BroadPhaseStats& stats() const { return found_.stats; }
-  std::vector<SceneRegion> regions() const { return search_->regions(); }
+  std::vector<SceneRegion> regions(std::optional<std::uint32_t> slot = {}) const {
+    return search_->regions(slot);
+  }
   std::string validate() const;
 
  private:

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,8 +25,8 @@ class PairSearch {
   /// Replaces the pairs of the step before by the pairs of the present volumes. At least one volume changed.
   /// All stats are zero except `objects_changed`.
   virtual void search(const VolumeStore& volumes, const Parallel& parallel, FoundPairs& found) = 0;
-  /// The regions that the last search used.
-  virtual std::vector<SceneRegion> regions() const { return {}; }
+  /// The regions that the last search used: all, or the leaves that contain the object of a slot.
+  virtual std::vector<SceneRegion> regions(std::optional<std::uint32_t>) const { return {}; }
   /// Checks every invariant. Returns the empty string, or what is wrong.
   virtual std::string validate(const VolumeStore&) const { return {}; }
 };

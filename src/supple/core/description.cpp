@@ -1,6 +1,8 @@
 #include "supple/description.hpp"
 
+#include <algorithm>
 #include <charconv>
+#include <cmath>
 
 #include "core/error.hpp"
 
@@ -9,6 +11,30 @@ namespace supple {
 std::string text_of(double value) {
   char digits[32];
   return {digits, std::to_chars(digits, digits + sizeof(digits), value).ptr};
+}
+
+std::string text_of(const RootCube& cube) {
+  std::string text;
+  for (int axis = 0; axis < 3; ++axis) text += text_of(cube.corner[axis]) + ",";
+  return text + text_of(cube.edge);
+}
+
+bool is_valid(const RootCube& cube) {
+  constexpr double farthest = 1e36;
+  const auto is_near = [](double coordinate) { return std::abs(coordinate) <= farthest; };
+  return is_near(cube.corner.x) && is_near(cube.corner.y) && is_near(cube.corner.z) && cube.edge >= 1e-30 &&
+         cube.edge <= farthest;
+}
+
+RootCube cube_around(Vec3d lowest, Vec3d highest) {
+  const Vec3d size = highest - lowest, centre = lowest + 0.5 * size;
+  const double edge = std::max({size.x, size.y, size.z}), half = 0.5 * edge;
+  const RootCube cube{centre - Vec3d{half, half, half}, edge};
+  if (!is_valid(cube))
+    fail("no cube around the box from (" + text_of(lowest.x) + ", " + text_of(lowest.y) + ", " +
+         text_of(lowest.z) + ") to (" + text_of(highest.x) + ", " + text_of(highest.y) + ", " +
+         text_of(highest.z) + "): its corner and edge must be " + range_of_root_cube);
+  return cube;
 }
 
 std::string text_of(const ValueRange& range, bool is_whole) {
@@ -69,6 +95,10 @@ void fail_range(std::string_view where, const char* structure, const char* name,
   fail_with(where, structure, name,
             "(" + text_of(value.x) + ", " + text_of(value.y) + ", " + text_of(value.z) + ")",
             "three finite numbers");
+}
+
+void fail_range(std::string_view where, const char* structure, const char* name, const RootCube& value) {
+  fail_with(where, structure, name, text_of(value), range_of_root_cube);
 }
 
 void fail_range(std::string_view where, const char* structure, const char* name, std::uint64_t value,

@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "core/float_rounding.hpp"
+#include "narrow_phase/volume_kernels.hpp"
 
 namespace supple {
 namespace {
@@ -17,6 +18,7 @@ void test_children(const ObjectPairView& pair, std::span<const NodePair> node_pa
     overlap_masks(node_pairs, pair.a.spheres, pair.b.spheres, pair.placement, masks);
   } else {
     overlap_masks(node_pairs, pair.a.boxes, pair.b.boxes, pair.placement, masks);
+    separate_volumes(node_pairs, pair.a.volumes, pair.b.volumes, pair.placement, masks);
   }
 }
 
@@ -47,13 +49,6 @@ void for_each_child_pair(const ObjectPairView& pair, NodePair node_pair, std::ui
     const int place = std::countr_zero(mask);
     visit(place >> 3, place & 7);
   }
-}
-
-/// The child that contains the triangle.
-int child_with(const OctreeNode& node, std::uint32_t triangle) {
-  int child = 0;
-  while (node.first_triangle[child + 1] <= triangle) ++child;
-  return child;
 }
 
 std::uint32_t leaf_number(std::uint32_t node, int child) {
@@ -98,6 +93,7 @@ OctreeView view_of(const ObjectOctree& octree, const VertexBuffer& vertices,
   view.nodes = octree.nodes();
   view.boxes = octree.boxes();
   view.spheres = octree.spheres();
+  view.volumes = octree.volumes();
   view.leaf_vertices = octree.leaf_vertices();
   view.arrays = arrays_of(octree.triangles(), vertices, inert);
   view.box = octree.box();
@@ -138,13 +134,40 @@ ObjectPairView moving_self_pair_of(const OctreeView& object, double separation) 
   return pair;
 }
 
+bool object_volumes_apart(const ObjectPairView& pair) {
+  const NodePair objects{pair.a.volumes.object, pair.b.volumes.object};
+  std::uint64_t mask = 1;
+  if (!pair.a.volumes.empty() && !pair.b.volumes.empty())
+    separate_volumes({&objects, 1}, pair.a.volumes, pair.b.volumes, pair.placement, &mask);
+  return mask == 0;
+}
+
+std::optional<NodePair> nodes_below(const ObjectPairView& pair, const ChildPair& children) {
+  const OctreeNode &node_a = pair.a.nodes[children.node_a], &node_b = pair.b.nodes[children.node_b];
+  const int i = children.child_a, j = children.child_b;
+  const bool inner_a = node_a.is_inner(i), inner_b = node_b.is_inner(j);
+  if (inner_a && inner_b) return NodePair{node_a.child_node(i), node_b.child_node(j)};
+  if (inner_a) return NodePair{node_a.child_node(i), children.node_b, 0xff, child_bit(j)};
+  if (inner_b) return NodePair{children.node_a, node_b.child_node(j), child_bit(i), 0xff};
+  return std::nullopt;
+}
+
+void find_overlapping_children(const ObjectPairView& pair, NodePair node_pair,
+                               std::vector<ChildPair>& children) {
+  std::uint64_t mask = 0;
+  test_children(pair, {&node_pair, 1}, &mask);
+  for_each_child_pair(pair, node_pair, mask, [&](int i, int j) {
+    children.push_back({node_pair.a, node_pair.b, i, j});
+  });
+}
+
 ChildPair last_children(const ObjectPairView& pair, TrianglePair triangles) {
   ChildPair at;
   for (;;) {
     const OctreeNode& node_a = pair.a.nodes[at.node_a];
     const OctreeNode& node_b = pair.b.nodes[at.node_b];
-    at.child_a = child_with(node_a, triangles.a);
-    at.child_b = child_with(node_b, triangles.b);
+    at.child_a = node_a.child_with(triangles.a);
+    at.child_b = node_b.child_with(triangles.b);
     const NodePair nodes{at.node_a, at.node_b, child_bit(at.child_a), child_bit(at.child_b)};
     std::uint64_t mask = 0;
     test_children(pair, {&nodes, 1}, &mask);
@@ -184,13 +207,8 @@ void Traversal::expand_batch(const ObjectPairView& pair, TraversalStats& stats) 
     stats.volumes_tested += std::uint64_t{bit_count(node_pair.children_a & node_a.child_mask())} *
                             bit_count(node_pair.children_b & node_b.child_mask());
     for_each_child_pair(pair, node_pair, masks_[k], [&](int i, int j) {
-      const bool inner_a = node_a.is_inner(i), inner_b = node_b.is_inner(j);
-      if (inner_a && inner_b) {
-        stack_.push_back({node_a.child_node(i), node_b.child_node(j)});
-      } else if (inner_a) {
-        stack_.push_back({node_a.child_node(i), node_pair.b, 0xff, child_bit(j)});
-      } else if (inner_b) {
-        stack_.push_back({node_pair.a, node_b.child_node(j), child_bit(i), 0xff});
+      if (const auto below = nodes_below(pair, {node_pair.a, node_pair.b, i, j})) {
+        stack_.push_back(*below);
       } else {
         leaf_pairs_.push_back({node_a.first_triangle[i], node_a.first_triangle[i + 1],
                                node_b.first_triangle[j], node_b.first_triangle[j + 1],

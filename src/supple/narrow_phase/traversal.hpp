@@ -4,6 +4,7 @@
 #include <array>
 #include <atomic>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -20,6 +21,7 @@ struct OctreeView {
   std::span<const OctreeNode> nodes;
   const ChildBoxes* boxes = nullptr;
   const ChildSpheres* spheres = nullptr;  ///< null: the boxes are the volumes
+  NodeVolumesView volumes;                ///< tested where boxes overlap, if it is not empty
   TriangleArrays arrays;
   LeafVertexArrays leaf_vertices;
   Aabb box;           ///< of all positions
@@ -60,6 +62,9 @@ ObjectPairView self_pair_of(const OctreeView& object);
 ObjectPairView moving_pair_of(const OctreeView& a, const OctreeView& b, double separation);
 ObjectPairView moving_self_pair_of(const OctreeView& object, double separation);
 
+/// Whether the oriented boxes or k-DOPs of the two objects are apart; false when they have neither.
+bool object_volumes_apart(const ObjectPairView& pair);
+
 struct TraversalStats {
   std::uint64_t node_pairs_visited = 0;
   std::uint64_t volumes_tested = 0;
@@ -74,6 +79,11 @@ struct ChildPair {
   int child_a = 0, child_b = 0;
   bool apart = false;  ///< the volumes are apart, so the descent ends here
 };
+/// One step of the descent: the pairs of children of two nodes whose volumes overlap.
+void find_overlapping_children(const ObjectPairView& pair, NodePair node_pair,
+                               std::vector<ChildPair>& children);
+/// The next nodes of the descent below two children that overlap; nothing below two leaves.
+std::optional<NodePair> nodes_below(const ObjectPairView& pair, const ChildPair& children);
 /// The end of the descent from the roots to two triangles, numbered in octree order: the first children on
 /// the way that are apart, or the two leaves. For one object with itself, `triangles.a < triangles.b`.
 ChildPair last_children(const ObjectPairView& pair, TrianglePair triangles);

@@ -4,11 +4,13 @@
 #include <atomic>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 #include "geometry/aabb.hpp"
 #include "geometry/vector.hpp"
 #include "octree/balanced_build.hpp"
+#include "octree/bottom_up_build.hpp"
 #include "octree/box_kernels.hpp"
 #include "octree/regular_build.hpp"
 
@@ -34,12 +36,13 @@ std::vector<Vec3d> box_centers(const PositionsView& positions, std::span<const T
   return centers;
 }
 
-/// Balanced octrees have eight children per node; other arities are regular.
 OctreeTopology build_topology(const PositionsView& positions, std::span<const Triangle> triangles,
                               const ObjectOctreeOptions& options) {
   const std::vector<Vec3d> centers = box_centers(positions, triangles);
-  return options.regular || options.arity != 8 ? build_regular_octree(centers, options)
-                                               : build_balanced_octree(centers, triangles, options);
+  if (is_regular(options)) return build_regular_octree(centers, options);
+  return options.build == ObjectOctreeBuild::bottom_up
+             ? build_bottom_up_octree(positions, triangles, centers, options)
+             : build_balanced_octree(centers, triangles, options);
 }
 
 void set_child(ChildSpheres& spheres, int child, const BoundingSphere& sphere) {
@@ -47,42 +50,6 @@ void set_child(ChildSpheres& spheres, int child, const BoundingSphere& sphere) {
   spheres.y[child] = sphere.center.y;
   spheres.z[child] = sphere.center.z;
   spheres.radius[child] = sphere.radius;
-}
-
-/// The paper's equations 3 and 4: the sphere inside the cube that has the lower corner and the longest side
-/// of the box.
-BoundingSphere sphere_from_box(const Aabb& box) {
-  if (box.empty()) return {};
-  const double side =
-      std::max({double{box.max.x} - box.min.x, double{box.max.y} - box.min.y, double{box.max.z} - box.min.z});
-  const auto half = static_cast<float>(side / 2);
-  return {{box.min.x + half, box.min.y + half, box.min.z + half}, half};
-}
-
-/// The paper's equation 5: around the centre of the box, with the distance of the farthest vertex as radius,
-/// rounded up.
-BoundingSphere sphere_around(const Aabb& box, std::span<const Triangle> triangles,
-                             const VertexBuffer& vertices, std::span<const std::uint8_t> inert,
-                             std::uint32_t first) {
-  if (box.empty()) return {};
-  const auto clamped_middle = [](float low, float high) {
-    constexpr double limit = std::numeric_limits<float>::max();
-    return static_cast<float>(
-        (std::clamp(double{low}, -limit, limit) + std::clamp(double{high}, -limit, limit)) / 2);
-  };
-  const Vec3f center{clamped_middle(box.min.x, box.max.x), clamped_middle(box.min.y, box.max.y),
-                     clamped_middle(box.min.z, box.max.z)};
-  double squared_radius = 0;
-  for (std::uint32_t t = 0; t < triangles.size(); ++t) {
-    if (!inert.empty() && inert[first + t] != 0) continue;
-    for (const std::uint32_t vertex : triangles[t]) {
-      const Vec3d p = vertices[vertex];
-      const double dx = p.x - center.x, dy = p.y - center.y, dz = p.z - center.z;
-      squared_radius = std::max(squared_radius, dx * dx + dy * dy + dz * dz);
-    }
-  }
-  // The factor covers the rounding of the sum and the root; the addend covers squares that underflow.
-  return {center, round_up(std::sqrt(squared_radius) * (1 + 0x1p-50) + std::numeric_limits<float>::min())};
 }
 
 }  // namespace
@@ -95,7 +62,11 @@ TriangleArrays arrays_of(std::span<const Triangle> triangles, const VertexBuffer
 ObjectOctree::ObjectOctree(const PositionsView& rest_positions, std::span<const Triangle> triangles,
                            const ObjectOctreeOptions& options, BoundingVolume bounding_volume,
                            SphereFit sphere_fit)
-    : vertex_count_(rest_positions.size()), options_(options), sphere_fit_(sphere_fit) {
+    : volumes_(bounding_volume, 0),
+      vertex_count_(rest_positions.size()),
+      options_(options),
+      bounding_volume_(bounding_volume),
+      sphere_fit_(sphere_fit) {
   OctreeTopology topology = build_topology(rest_positions, triangles, options);
   nodes_ = std::move(topology.nodes);
   nodes_.shrink_to_fit();
@@ -103,6 +74,7 @@ ObjectOctree::ObjectOctree(const PositionsView& rest_positions, std::span<const 
   triangle_ids_ = std::move(topology.order);
   boxes_.resize(nodes_.size());
   if (bounding_volume == BoundingVolume::sphere) spheres_.resize(nodes_.size());
+  volumes_ = NodeVolumes(bounding_volume, nodes_.size());
   triangles_.reserve(triangles.size());
   for (const std::uint32_t id : triangle_ids_) triangles_.push_back(triangles[id]);
   triangle_order_.resize(triangle_ids_.size());
@@ -114,8 +86,7 @@ ObjectOctree ObjectOctree::rebuilt(const PositionsView& positions) const {
   std::vector<Triangle> user_triangles;
   user_triangles.reserve(triangles_.size());
   for (const std::uint32_t t : triangle_order_) user_triangles.push_back(triangles_[t]);
-  const BoundingVolume volume = spheres_.empty() ? BoundingVolume::aabb : BoundingVolume::sphere;
-  return ObjectOctree(positions, user_triangles, options_, volume, sphere_fit_);
+  return ObjectOctree(positions, user_triangles, options_, bounding_volume_, sphere_fit_);
 }
 
 void ObjectOctree::list_leaf_vertices() {
@@ -165,33 +136,94 @@ bool ObjectOctree::refit(const VertexBuffer& vertices, std::span<const std::uint
       !inert.empty() || std::all_of(unused_vertices_.begin(), unused_vertices_.end(),
                                     [&](std::uint32_t vertex) { return is_finite(vertices[vertex]); });
   const TriangleArrays arrays = arrays_of(triangles_, vertices, inert);
+  const SurfacePart surface{triangles_, inert, vertices};
   for_nodes_bottom_up(parallel, 64, [&](std::uint32_t begin, std::uint32_t end) {
     if (!all_finite) return;
     if (!refit_boxes(nodes_.data(), boxes_.data(), arrays, leaf_vertices(), begin, end)) all_finite = false;
-    if (all_finite && !spheres_.empty()) refit_spheres(begin, end, vertices, inert);
+    if (all_finite && !spheres_.empty()) refit_spheres(begin, end, sphere_fitter(vertices, inert));
+    if (all_finite) volumes_.refit(nodes_, boxes_.data(), surface, leaf_vertices(), begin, end);
   });
+  if (all_finite && !nodes_.empty()) volumes_.refit_object(nodes_, boxes_.data(), surface);
   sphere_ = BoundingSphere{};
-  if (all_finite && !spheres_.empty()) {
-    sphere_ = sphere_fit_ == SphereFit::box ? sphere_from_box(box())
-                                            : sphere_around(box(), triangles_, vertices, inert, 0);
-  }
+  if (all_finite && !spheres_.empty()) sphere_ = sphere_fitter(vertices, inert).sphere_of_object(box());
   return all_finite;
 }
 
-void ObjectOctree::refit_spheres(std::uint32_t node_begin, std::uint32_t node_end,
-                                 const VertexBuffer& vertices, std::span<const std::uint8_t> inert) {
-  for (std::uint32_t n = node_begin; n < node_end; ++n) {
-    const OctreeNode& node = nodes_[n];
-    for (int child = 0; child < node_width; ++child) {
-      const Aabb box = child_box(boxes_[n], child);
-      const std::uint32_t begin = node.first_triangle[child];
-      const std::uint32_t count = child < node.child_count ? node.first_triangle[child + 1] - begin : 0;
-      set_child(spheres_[n], child,
-                sphere_fit_ == SphereFit::box
-                    ? sphere_from_box(box)
-                    : sphere_around(box, std::span<const Triangle>(triangles_).subspan(begin, count),
-                                    vertices, inert, begin));
+std::optional<std::size_t> ObjectOctree::refit_moved(const VertexBuffer& vertices,
+                                                     std::span<const std::uint32_t> moved,
+                                                     const Parallel& parallel) {
+  if (first_node_.empty()) list_nodes_of_vertices();
+  stale_nodes_.clear();
+  for (const std::uint32_t vertex : moved) {
+    if (!is_finite(vertices[vertex])) return std::nullopt;
+    for (std::uint32_t i = first_node_[vertex]; i < first_node_[vertex + 1]; ++i)
+      mark_with_ancestors(nodes_of_vertices_[i]);
+  }
+  std::sort(stale_nodes_.begin(), stale_nodes_.end());
+  for (const std::uint32_t node : stale_nodes_) is_stale_[node] = 0;
+  const TriangleArrays arrays = arrays_of(triangles_, vertices, {});
+  const SurfacePart surface{triangles_, {}, vertices};
+  const SphereFitter fitter = sphere_fitter(vertices, {});
+  std::atomic<bool> all_finite = true;
+  std::size_t triangles = 0;
+  for (std::size_t end = stale_nodes_.size(), begin = end; end > 0; end = begin) {
+    const std::uint32_t level_begin = level_begin_[nodes_[stale_nodes_[end - 1]].level];
+    while (begin > 0 && stale_nodes_[begin - 1] >= level_begin) --begin;
+    parallel.for_ranges(end - begin, 16, [&](std::size_t first, std::size_t last, std::uint32_t) {
+      for (std::size_t i = begin + first; i < begin + last; ++i) {
+        const std::uint32_t n = stale_nodes_[i];
+        if (!refit_boxes(nodes_.data(), boxes_.data(), arrays, leaf_vertices(), n, n + 1)) all_finite = false;
+        if (all_finite && !spheres_.empty()) refit_spheres(n, n + 1, fitter);
+        if (all_finite) volumes_.refit(nodes_, boxes_.data(), surface, leaf_vertices(), n, n + 1);
+      }
+    });
+    for (std::size_t i = begin; i < end; ++i) {
+      const OctreeNode& node = nodes_[stale_nodes_[i]];
+      for (int child = 0; child < node.child_count; ++child)
+        triangles += node.is_inner(child) ? 0 : node.size(child);
     }
+  }
+  if (!all_finite) return std::nullopt;
+  if (!stale_nodes_.empty() && !spheres_.empty()) sphere_ = fitter.sphere_of_object(box());
+  if (!stale_nodes_.empty()) volumes_.refit_object(nodes_, boxes_.data(), surface);
+  return triangles;
+}
+
+void ObjectOctree::mark_with_ancestors(std::uint32_t node) {
+  while (std::exchange(is_stale_[node], std::uint8_t{1}) == 0) {
+    stale_nodes_.push_back(node);
+    node = nodes_[node].parent;
+  }
+}
+
+void ObjectOctree::list_nodes_of_vertices() {
+  is_stale_.assign(nodes_.size(), 0);
+  stale_nodes_.reserve(nodes_.size());
+  first_node_.assign(vertex_count_ + 1, 0);
+  const auto for_each_leaf_vertex = [&](const auto& function) {
+    for (std::uint32_t n = 0; n < nodes_.size(); ++n) {
+      const std::uint32_t* const first = &first_leaf_vertex_[std::size_t{n} * node_width];
+      for (std::uint32_t i = first[0]; i < first[node_width]; ++i) function(leaf_vertices_[i], n);
+    }
+  };
+  for_each_leaf_vertex([&](std::uint32_t vertex, std::uint32_t) { ++first_node_[vertex + 1]; });
+  std::partial_sum(first_node_.begin(), first_node_.end(), first_node_.begin());
+  nodes_of_vertices_.resize(first_node_.back());
+  std::vector<std::uint32_t> next(first_node_.begin(), first_node_.end() - 1);
+  for_each_leaf_vertex(
+      [&](std::uint32_t vertex, std::uint32_t n) { nodes_of_vertices_[next[vertex]++] = n; });
+}
+
+SphereFitter ObjectOctree::sphere_fitter(const VertexBuffer& vertices,
+                                         std::span<const std::uint8_t> inert) const {
+  return {sphere_fit_, nodes_, spheres_.data(), leaf_vertices(), triangles_, vertices, inert};
+}
+
+void ObjectOctree::refit_spheres(std::uint32_t node_begin, std::uint32_t node_end,
+                                 const SphereFitter& fitter) {
+  for (std::uint32_t n = node_begin; n < node_end; ++n) {
+    for (int child = 0; child < node_width; ++child)
+      set_child(spheres_[n], child, fitter.sphere_of_child(n, child, child_box(boxes_[n], child)));
   }
 }
 

@@ -1,13 +1,17 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "core/parallel.hpp"
 #include "octree/box_kernels.hpp"
+#include "octree/node_volumes.hpp"
 #include "octree/octree_node.hpp"
+#include "octree/sphere_fit.hpp"
 #include "octree/vertex_buffer.hpp"
 #include "supple/inspection.hpp"
 #include "supple/mesh.hpp"
@@ -33,7 +37,7 @@ TriangleArrays arrays_of(std::span<const Triangle> triangles, const VertexBuffer
 /// less than the nodes that would separate them.
 ///
 /// Memory besides the positions: 272 bytes per node, 23 per triangle, 4 for each vertex of each leaf; with
-/// spheres 128 more per node.
+/// spheres 128 more per node, with oriented boxes 592, with k-DOPs 32 (k - 6).
 class ObjectOctree {
  public:
   /// O(n log n). Triangles with a vertex that is not finite count as the lower corner of the others.
@@ -44,6 +48,9 @@ class ObjectOctree {
   const ChildBoxes* boxes() const { return boxes_.data(); }
   /// Null unless the bounding volume is the sphere.
   const ChildSpheres* spheres() const { return spheres_.empty() ? nullptr : spheres_.data(); }
+
+  /// Empty unless the bounding volume is the oriented box or a k-DOP.
+  NodeVolumesView volumes() const { return volumes_.view(); }
 
   LeafVertexArrays leaf_vertices() const {
     return {first_leaf_vertex_.data(), leaf_vertices_.data(), leaf_corners_.data(), leaf_corners_.size() / 3};
@@ -78,6 +85,17 @@ class ObjectOctree {
   /// is empty and a vertex is not finite; then the volumes are invalid.
   bool refit(const VertexBuffer& vertices, std::span<const std::uint8_t> inert, const Parallel& parallel);
 
+  /// As `refit` without inert triangles, when only the vertices `moved` have changed since the last refit,
+  /// which succeeded without inert triangles. Computes only the nodes with a leaf that contains such a
+  /// vertex, and the nodes above them; the volumes have the same bits as those of `refit`. Returns the number
+  /// of triangles in leaves of these nodes, or nothing when a vertex is not finite; then the volumes are
+  /// invalid.
+  ///
+  /// O(k log n) for k vertices. The first call takes O(n), and memory: 4 bytes a vertex and 4 for each vertex
+  /// of each leaf.
+  std::optional<std::size_t> refit_moved(const VertexBuffer& vertices, std::span<const std::uint32_t> moved,
+                                         const Parallel& parallel);
+
   /// The octree of the same triangles and options, built from other positions. O(n log n).
   ObjectOctree rebuilt(const PositionsView& positions) const;
 
@@ -92,12 +110,15 @@ class ObjectOctree {
 
  private:
   void list_leaf_vertices();
-  void refit_spheres(std::uint32_t node_begin, std::uint32_t node_end, const VertexBuffer& vertices,
-                     std::span<const std::uint8_t> inert);
+  void list_nodes_of_vertices();
+  void mark_with_ancestors(std::uint32_t node);
+  SphereFitter sphere_fitter(const VertexBuffer& vertices, std::span<const std::uint8_t> inert) const;
+  void refit_spheres(std::uint32_t node_begin, std::uint32_t node_end, const SphereFitter& fitter);
 
   std::vector<OctreeNode> nodes_;
   std::vector<ChildBoxes> boxes_;
   std::vector<ChildSpheres> spheres_;
+  NodeVolumes volumes_;
   std::vector<std::uint32_t> level_begin_;  // `OctreeTopology::level_begin`
   std::vector<Triangle> triangles_;
   std::vector<std::uint32_t> triangle_ids_, triangle_order_;
@@ -105,7 +126,12 @@ class ObjectOctree {
   // `LeafVertexArrays`, and the vertices that no triangle uses.
   std::vector<std::uint32_t> first_leaf_vertex_, leaf_vertices_, unused_vertices_;
   std::vector<std::uint8_t> leaf_corners_;
+  // For `refit_moved`: the nodes with a leaf that contains vertex v are `nodes_of_vertices_[first_node_[v]]`
+  // up to `nodes_of_vertices_[first_node_[v + 1]]`, and the nodes to refit with a byte for each node.
+  std::vector<std::uint32_t> first_node_, nodes_of_vertices_, stale_nodes_;
+  std::vector<std::uint8_t> is_stale_;
   ObjectOctreeOptions options_;
+  BoundingVolume bounding_volume_;
   SphereFit sphere_fit_;
   BoundingSphere sphere_;
 };

@@ -64,6 +64,12 @@ struct OctreeNode {
   std::uint32_t child_node(int child) const {
     return first_child + bit_count(inner_mask & ((1u << child) - 1));
   }
+  /// The child that contains the triangle, which the node must contain.
+  int child_with(std::uint32_t triangle) const {
+    int child = 0;
+    while (first_triangle[child + 1] <= triangle) ++child;
+    return child;
+  }
   /// Triangles of the child, and of the whole node.
   std::uint32_t size(int child) const { return first_triangle[child + 1] - first_triangle[child]; }
   std::uint32_t size() const { return first_triangle[node_width] - first_triangle[0]; }

@@ -8,6 +8,7 @@
 
 #include "geometry/vector.hpp"
 #include "octree/octree_node.hpp"
+#include "supple/options.hpp"
 #include "supple/types.hpp"
 
 namespace supple {
@@ -18,6 +19,21 @@ struct OctreeTopology {
   std::vector<std::uint32_t> order;        ///< triangle at each place of the octree's order
   std::vector<std::uint32_t> level_begin;  ///< first node of each level, then the number of nodes
 };
+
+constexpr int bits_per_level(std::uint32_t arity) {
+  return arity == 8 ? 3 : arity == 4 ? 2 : 1;
+}
+
+/// The deepest level of nodes of this arity. Options count levels of eight children.
+constexpr std::uint32_t deepest_level(const ObjectOctreeOptions& options) {
+  return options.max_level * 3 / static_cast<std::uint32_t>(bits_per_level(options.arity));
+}
+
+/// Balanced octrees have eight children per node; with another arity, they are regular instead.
+constexpr bool is_regular(const ObjectOctreeOptions& options) {
+  return options.build == ObjectOctreeBuild::regular ||
+         (options.build == ObjectOctreeBuild::balanced && options.arity != 8);
+}
 
 /// Triangles in the octree's order that become a node or a leaf.
 struct TriangleRange {

@@ -4,6 +4,7 @@
 #include <cstddef>
 
 #include "geometry/aabb.hpp"
+#include "geometry/polytope.hpp"
 
 namespace supple {
 namespace {
@@ -38,6 +39,19 @@ double query_cost(std::span<const OctreeNode> nodes, const ChildSpheres* spheres
   };
   return sum_of_costs(nodes, surface(object),
                       [&](std::size_t n, int i) { return surface(child_sphere(spheres[n], i)); });
+}
+
+double query_cost(std::span<const OctreeNode> nodes, const ChildBoxes* boxes,
+                  const NodeVolumesView& volumes) {
+  if (nodes.empty()) return 0;
+  const auto surface = [&](std::size_t n, int child, const Aabb& box) {
+    return box.empty()
+               ? 0
+               : Polytope(child_slabs(volumes, box, static_cast<std::uint32_t>(n), child, {})).surface();
+  };
+  return sum_of_costs(
+      nodes, surface(volumes.object, 0, enclosing_box(boxes[0])),
+      [&](std::size_t n, int child) { return surface(n, child, child_box(boxes[n], child)); });
 }
 
 }  // namespace supple

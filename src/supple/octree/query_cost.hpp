@@ -2,6 +2,7 @@
 
 #include <span>
 
+#include "octree/node_volumes.hpp"
 #include "octree/octree_node.hpp"
 
 namespace supple {
@@ -18,5 +19,7 @@ double query_cost(std::span<const OctreeNode> nodes, const ChildBoxes* boxes);
 /// The same by the surfaces of the spheres. `object` is the sphere of the whole object.
 double query_cost(std::span<const OctreeNode> nodes, const ChildSpheres* spheres,
                   const BoundingSphere& object);
+/// The same by the surfaces of the oriented boxes or k-DOPs.
+double query_cost(std::span<const OctreeNode> nodes, const ChildBoxes* boxes, const NodeVolumesView& volumes);
 
 }  // namespace supple

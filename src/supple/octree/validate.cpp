@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/float_rounding.hpp"
+#include "geometry/vector.hpp"
 #include "octree/object_octree.hpp"
 
 namespace supple {
@@ -73,6 +74,7 @@ class Validation {
     const Aabb box = child_box(octree_.boxes()[n], child);
     constexpr double inf = std::numeric_limits<double>::infinity();
     Vec3d lower{inf, inf, inf}, upper{-inf, -inf, -inf};
+    const std::vector<Slab> slabs = child_slabs(octree_.volumes(), box, n, child, {});
     for (std::uint32_t t = begin; t < end; ++t) {
       if (!inert_.empty() && inert_[t] != 0) continue;
       for (const std::uint32_t vertex : octree_.triangles()[t]) {
@@ -83,6 +85,8 @@ class Validation {
           if (!(box.min[axis] <= p[axis] && p[axis] <= box.max[axis])) return "box does not enclose a vertex";
         }
         if (check_spheres_ && !in_sphere(n, child, p)) return "sphere does not enclose a vertex";
+        if (!std::all_of(slabs.begin(), slabs.end(), [&](const Slab& slab) { return in_slab(slab, p); }))
+          return "oriented box or k-DOP does not enclose a vertex";
       }
     }
     for (int axis = 0; axis < 3; ++axis) {
@@ -102,6 +106,13 @@ class Validation {
     return distance <= spheres.radius[child] * (1 + 0x1p-40) || std::isinf(spheres.radius[child]);
   }
 
+  static bool in_slab(const Slab& slab, Vec3d p) {
+    const Vec3d d{slab.direction.x, slab.direction.y, slab.direction.z};
+    const double along = dot(d, p);
+    const double rounding = 0x1p-50 * dot(absolute(d), absolute(p));
+    return !(along < slab.low - rounding || along > slab.high + rounding);
+  }
+
   const ObjectOctree& octree_;
   const VertexBuffer& vertices_;
   std::span<const std::uint8_t> inert_;
@@ -112,7 +123,7 @@ class Validation {
 }  // namespace
 
 std::string ObjectOctree::validate(const VertexBuffer& vertices, std::span<const std::uint8_t> inert) const {
-  const bool enclosing_spheres = spheres() != nullptr && sphere_fit_ == SphereFit::vertices;
+  const bool enclosing_spheres = spheres() != nullptr && sphere_fit_ != SphereFit::box;
   return Validation(*this, vertices, inert, enclosing_spheres, options_.arity).run();
 }
 
@@ -141,11 +152,13 @@ OctreeStatistics ObjectOctree::statistics() const {
     result.mean_node_width = static_cast<double>(children) / static_cast<double>(result.nodes);
   }
   result.bytes = nodes_.capacity() * sizeof(OctreeNode) + boxes_.capacity() * sizeof(ChildBoxes) +
-                 spheres_.capacity() * sizeof(ChildSpheres) + triangles_.capacity() * sizeof(Triangle) +
+                 spheres_.capacity() * sizeof(ChildSpheres) + volumes_.bytes() +
+                 triangles_.capacity() * sizeof(Triangle) +
                  (triangle_ids_.capacity() + triangle_order_.capacity() + level_begin_.capacity() +
-                  first_leaf_vertex_.capacity() + leaf_vertices_.capacity() + unused_vertices_.capacity()) *
+                  first_leaf_vertex_.capacity() + leaf_vertices_.capacity() + unused_vertices_.capacity() +
+                  first_node_.capacity() + nodes_of_vertices_.capacity() + stale_nodes_.capacity()) *
                      sizeof(std::uint32_t) +
-                 leaf_corners_.capacity();
+                 leaf_corners_.capacity() + is_stale_.capacity();
   if (result.triangles > 0) {
     result.bytes_per_triangle = static_cast<double>(result.bytes) / static_cast<double>(result.triangles);
   }

@@ -43,6 +43,20 @@ void VertexBuffer::assign(const PositionsView& positions, const Parallel& parall
   if (!is_double_) copy<float>(positions, parallel);
 }
 
+void VertexBuffer::set(std::span<const std::uint32_t> ids, const PositionsView& positions,
+                       const Parallel& parallel) {
+  assert(ids.size() == positions.size() && positions.is_double() == is_double_);
+  if (borrowed_ != nullptr) assign(view(), parallel);
+  for (std::size_t i = 0; i < ids.size(); ++i) {
+    if (is_double_) {
+      set_double(ids[i], positions.get<double>(i));
+    } else {
+      const Vec3f p = positions.get<float>(i);
+      std::copy_n(&p.x, 3, &floats_[3 * std::size_t{ids[i]}]);
+    }
+  }
+}
+
 void VertexBuffer::gather(const VertexBuffer& source, std::span<const std::uint32_t> ids,
                           const Parallel& parallel) {
   assert(&source != this);

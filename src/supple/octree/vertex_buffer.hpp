@@ -39,6 +39,10 @@ class VertexBuffer {
 
   void assign(const PositionsView& positions, const Parallel& parallel);
 
+  /// Vertex `ids[i]` becomes `positions[i]`, which has the precision of the buffer. Borrowed positions are
+  /// copied first.
+  void set(std::span<const std::uint32_t> ids, const PositionsView& positions, const Parallel& parallel);
+
   /// Vertex v becomes vertex `ids[v]` of `source`, in the precision of `source`.
   void gather(const VertexBuffer& source, std::span<const std::uint32_t> ids, const Parallel& parallel);
 
@@ -46,9 +50,13 @@ class VertexBuffer {
   /// when the layout does not allow that: x, y, z must be adjacent and aligned.
   bool borrow(const PositionsView& positions);
 
-  /// Vertex v becomes `function(source[v])`, in double.
+  /// Vertex v becomes `function(source[v])`, in double: all vertices, or those in `ids`.
   template <class Function>
   void transform(const VertexBuffer& source, const Parallel& parallel, const Function& function);
+  template <class Function>
+  void transform(const VertexBuffer& source, std::span<const std::uint32_t> ids, const Function& function) {
+    for (const std::uint32_t vertex : ids) set_double(vertex, function(source[vertex]));
+  }
 
   std::size_t bytes() const {
     return floats_.capacity() * sizeof(float) + doubles_.capacity() * sizeof(double);
@@ -58,6 +66,9 @@ class VertexBuffer {
   void resize(std::size_t count, bool is_double);
   template <class Scalar>
   void copy(const PositionsView& positions, const Parallel& parallel);
+  void set_double(std::size_t vertex, const Vec3d& p) {
+    for (std::size_t axis = 0; axis < 3; ++axis) doubles_[3 * vertex + axis] = p[static_cast<int>(axis)];
+  }
   std::vector<float>& storage(float) { return floats_; }
   std::vector<double>& storage(double) { return doubles_; }
 
@@ -80,10 +91,7 @@ void VertexBuffer::transform(const VertexBuffer& source, const Parallel& paralle
   const std::size_t count = source.size();
   resize(count, true);
   parallel.for_ranges(count, 16384, [&](std::size_t begin, std::size_t end, std::uint32_t) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const Vec3d p = function(source[static_cast<std::uint32_t>(i)]);
-      for (int axis = 0; axis < 3; ++axis) doubles_[3 * i + static_cast<std::size_t>(axis)] = p[axis];
-    }
+    for (std::size_t i = begin; i < end; ++i) set_double(i, function(source[static_cast<std::uint32_t>(i)]));
   });
 }
 

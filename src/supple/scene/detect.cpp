@@ -125,15 +125,15 @@ void Scene::Implementation::refit_objects(const Question& question) {
     }
     if (!object->is_stale(shapes)) continue;
     stale_.push_back(index);
-    if (!object->needs_refit(shapes)) continue;
-    ++result.stats.objects_refitted;
-    result.stats.triangles_refitted += object->octree().triangles().size();
+    if (object->needs_refit(shapes)) ++result.stats.objects_refitted;
   }
   const auto triangles_to_refit = [&](const SceneObject& object) {
     return object.needs_refit(shapes) ? object.octree().triangles().size() : std::size_t{0};
   };
   for_each_object(stale_, triangles_to_refit,
                   [&](SceneObject& object, const Parallel& workers) { object.update(shapes, workers); });
+  for (const std::uint32_t index : stale_)
+    result.stats.triangles_refitted += slots_[index].object->refitted_triangles();
   changed_slots_.clear();
   for (std::uint32_t index = 0; index < slots_.size(); ++index) {
     if (changed_[index] == 0 && !is_another_search) continue;
@@ -163,7 +163,7 @@ void Scene::Implementation::find_object_pairs(Jobs& found) {
   std::fill(changed_.begin(), changed_.end(), std::uint8_t{0});
   found.pairs.clear();
   for (const IndexPair& pair : overlapping) {
-    if (may_pair(pair)) found.pairs.push_back({id_of(pair.a), id_of(pair.b)});
+    if (!volumes_apart(pair) && may_pair(pair)) found.pairs.push_back({id_of(pair.a), id_of(pair.b)});
   }
   found.jobs.clear();
   auto pair = found.pairs.begin();
@@ -174,6 +174,14 @@ void Scene::Implementation::find_object_pairs(Jobs& found) {
     for (; pair != found.pairs.end() && pair->a.index == index; ++pair)
       found.jobs.push_back({index, pair->b.index});
   }
+}
+
+/// Whether the oriented boxes or k-DOPs of two objects are apart whose boxes overlap. They do not enclose the
+/// path of an object.
+bool Scene::Implementation::volumes_apart(const IndexPair& pair) const {
+  if (searched_.moving || !is_tested_after_boxes(options.bounding_volume)) return false;
+  return object_volumes_apart(
+      pair_of(slots_[pair.a].object->resting_view(), slots_[pair.b].object->resting_view()));
 }
 
 bool Scene::Implementation::may_pair(const IndexPair& pair) const {

@@ -1,5 +1,7 @@
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <span>
 #include <utility>
 
 #include "contact/triangle_gap.hpp"
@@ -39,7 +41,9 @@ bool is_inert(const SceneObject& object, std::uint32_t triangle) {
 PairExplanation mirrored(PairExplanation explanation) {
   std::swap(explanation.box_a, explanation.box_b);
   std::swap(explanation.sphere_a, explanation.sphere_b);
+  std::swap(explanation.slabs_a, explanation.slabs_b);
   std::swap(explanation.level_a, explanation.level_b);
+  std::swap(explanation.number_a, explanation.number_b);
   explanation.axis = Vec3d{} - explanation.axis;
   return explanation;
 }
@@ -96,6 +100,52 @@ void set_gap(PairExplanation& explanation, const Vec3d& between_centers) {
   explanation.distance = distance - explanation.sphere_a.radius - explanation.sphere_b.radius;
 }
 
+/// The extent of a volume along a direction.
+struct Extent {
+  double low, high;
+};
+/// Returns the extent of the oriented box that has these three slabs.
+Extent extent_along(Vec3d direction, std::span<const Slab> box) {
+  Extent extent{0, 0};
+  for (const Slab& slab : box) {
+    const double along = dot(direction, Vec3d{slab.direction.x, slab.direction.y, slab.direction.z});
+    extent.low += along * (along > 0 ? slab.low : slab.high);
+    extent.high += along * (along > 0 ? slab.high : slab.low);
+  }
+  return extent;
+}
+
+/// Sets the direction in which the slabs of the explanation are furthest apart, and the gap along it.
+void set_gap(PairExplanation& explanation) {
+  explanation.distance = -INFINITY;
+  const auto consider = [&](Vec3d direction, Extent a, Extent b) {
+    const double length = norm(direction);
+    const double after = (b.low - a.high) / length, before = (a.low - b.high) / length;
+    if (!(std::max(after, before) > explanation.distance)) return;
+    explanation.distance = std::max(after, before);
+    explanation.axis = direction * ((after > before ? 1 : -1) / length);
+  };
+  const std::span<const Slab> slabs_a = explanation.slabs_a, slabs_b = explanation.slabs_b;
+  const auto direction = [](const Slab& slab) {
+    return Vec3d{slab.direction.x, slab.direction.y, slab.direction.z};
+  };
+  constexpr std::size_t axes_of_box = 3;
+  if (slabs_a.size() > axes_of_box) {
+    for (std::size_t d = 0; d < slabs_a.size(); ++d)
+      consider(direction(slabs_a[d]), {slabs_a[d].low, slabs_a[d].high}, {slabs_b[d].low, slabs_b[d].high});
+    return;
+  }
+  const auto consider_boxes = [&](Vec3d along) {
+    // The cross product of parallel axes has no direction.
+    if (norm(along) > 0x1p-20) consider(along, extent_along(along, slabs_a), extent_along(along, slabs_b));
+  };
+  for (const Slab& a : slabs_a) {
+    consider_boxes(direction(a));
+    for (const Slab& b : slabs_b) consider_boxes(cross(direction(a), direction(b)));
+  }
+  for (const Slab& b : slabs_b) consider_boxes(direction(b));
+}
+
 Vec3d center(const BoundingSphere& sphere, const Vec3d& translation) {
   return Vec3d{sphere.center.x, sphere.center.y, sphere.center.z} + translation;
 }
@@ -111,19 +161,22 @@ PairExplanation objects_apart(const SceneObject& a, const SceneObject& b, Boundi
     explanation.box_a = is_continuous ? unclamped(a.box()) : a.box();
     explanation.box_b = is_continuous ? unclamped(b.box()) : b.box();
     set_gap(explanation, corners_of(explanation.box_a, {}), corners_of(explanation.box_b, {}));
+    if (!is_continuous && overlap(a.box(), b.box())) {
+      explanation.slabs_a = object_slabs(a.resting_view());
+      explanation.slabs_b = object_slabs(b.resting_view());
+      set_gap(explanation);
+    }
   }
   return explanation;
 }
 
-/// Children of the root are cells of level 1; an only child is the root itself.
-std::uint32_t cell_level(const OctreeView& view, std::uint32_t node) {
-  return view.nodes[node].child_count == 1 ? 0 : view.nodes[node].level + 1u;
-}
-
-PairExplanation cells_apart(const ObjectPairView& pair, const ChildPair& at) {
+PairExplanation cells_apart(const ObjectPairView& pair, const ChildPair& at, const SceneObject& object_a,
+                            const SceneObject& object_b) {
   PairExplanation explanation{.stage = PairStage::octree_volumes};
   explanation.level_a = cell_level(pair.a, at.node_a);
   explanation.level_b = cell_level(pair.b, at.node_b);
+  explanation.number_a = cell_number(pair.a, object_a.options.octree.arity, at.node_a, at.child_a);
+  explanation.number_b = cell_number(pair.b, object_b.options.octree.arity, at.node_b, at.child_b);
   const Vec3d &to_a = pair.a.translation, &to_b = pair.b.translation;
   if (pair.a.spheres != nullptr) {
     const BoundingSphere a = child_sphere(pair.a, at.node_a, at.child_a);
@@ -136,6 +189,11 @@ PairExplanation cells_apart(const ObjectPairView& pair, const ChildPair& at) {
     explanation.box_a = moved(a, to_a);
     explanation.box_b = moved(b, to_b);
     set_gap(explanation, corners_of(a, to_a), corners_of(b, to_b));
+    if (!pair.a.volumes.empty() && !(explanation.distance > 0)) {
+      explanation.slabs_a = child_slabs(pair.a, at.node_a, at.child_a);
+      explanation.slabs_b = child_slabs(pair.b, at.node_b, at.child_b);
+      set_gap(explanation);
+    }
   }
   return explanation;
 }
@@ -209,7 +267,7 @@ PairExplanation Scene::Implementation::explain_in_order(const ContactJob& job, T
     return objects_apart(a, b, options.bounding_volume, question_.is_continuous());
   const ObjectPairView pair = search_view(job);
   const ChildPair at = last_children(pair, triangles);
-  if (at.apart) return cells_apart(pair, at);
+  if (at.apart) return cells_apart(pair, at, a, b);
   const TrianglePoints points_a = points_of(a, triangles.a), points_b = points_of(b, triangles.b);
   const bool boxes_apart =
       pair.is_moving() ? moving_faces_apart(pair, triangles) : leaf_triangles_apart(pair, at, triangles);

@@ -4,6 +4,7 @@
 
 #include "core/error.hpp"
 #include "geometry/aabb.hpp"
+#include "geometry/polytope.hpp"
 #include "geometry/sphere.hpp"
 #include "mesh/share_vertex.hpp"
 #include "scene/scene_implementation.hpp"
@@ -12,48 +13,104 @@
 namespace supple {
 namespace {
 
-/// The children of an octree as cells, where the object is now.
+/// The cells of an octree, where the object is now.
 class CellReader {
  public:
-  explicit CellReader(const OctreeView& view) : view_(view) {}
+  CellReader(const OctreeView& view, const SceneObject& object) : view_(view), object_(&object) {}
 
-  /// Whether the octree is a single leaf, which is then the root cell.
-  bool is_one_leaf() const {
-    return view_.nodes.size() > 0 && view_.nodes[0].child_count == 1 && !view_.nodes[0].is_inner(0);
-  }
-
-  /// Calls `visit(node, child, is_leaf)` for every child that the search knows; shallow ones first.
-  template <class Visit>
-  void for_each_child(Visit&& visit) const {
-    for (const OctreeNode& node : view_.nodes) {
-      for (int child = 0; child < node.child_count; ++child) visit(node, child, !node.is_inner(child));
-    }
-  }
-
-  OctreeCell cell(const OctreeNode& node, int child, bool is_leaf) const {
+  OctreeCell cell(std::uint32_t n, int child) const {
+    const OctreeNode& node = view_.nodes[n];
     OctreeCell cell;
-    cell.level = is_one_leaf() ? 0 : node.level + 1u;
-    cell.is_leaf = is_leaf;
+    cell.level = cell_level(view_, n);
+    cell.number = cell_number(view_, object_->options.octree.arity, n, child);
+    cell.is_leaf = !node.is_inner(child);
     cell.triangle_count = node.size(child);
-    const auto n = static_cast<std::uint32_t>(&node - view_.nodes.data());
     cell.box = moved(child_box(view_, n, child), view_.translation);
     if (view_.spheres != nullptr) cell.sphere = moved(child_sphere(view_, n, child), view_.translation);
+    cell.slabs = child_slabs(view_, n, child);
     return cell;
   }
 
   /// The root cell of an object that has triangles.
-  OctreeCell root(const BoundingSphere& sphere) const {
-    OctreeCell cell{0, is_one_leaf(), view_.nodes[0].size(), {}, {}};
+  OctreeCell root() const {
+    OctreeCell cell;
+    cell.is_leaf = is_one_leaf(view_);
+    cell.triangle_count = view_.nodes[0].size();
+    cell.slabs = object_slabs(view_);
     for (int child = 0; child < view_.nodes[0].child_count; ++child)
       extend(cell.box, child_box(view_, 0, child));
     cell.box = moved(cell.box, view_.translation);
-    if (view_.spheres != nullptr) cell.sphere = sphere;
+    if (view_.spheres != nullptr) cell.sphere = object_->sphere();
     return cell;
+  }
+
+  /// The leaf with a triangle, numbered in octree order.
+  OctreeCell leaf_with(std::uint32_t triangle) const {
+    std::uint32_t n = 0;
+    int child = view_.nodes[0].child_with(triangle);
+    while (view_.nodes[n].is_inner(child)) {
+      n = view_.nodes[n].child_node(child);
+      child = view_.nodes[n].child_with(triangle);
+    }
+    return cell(n, child);
   }
 
  private:
   OctreeView view_;
+  const SceneObject* object_;
 };
+
+/// The cells of one side of a `NodePairList`. A cell is named by its place in the octree: 0 for the root,
+/// otherwise 1 plus eight times the node plus the child. These names ascend by level and number.
+class CollidingCells {
+ public:
+  using Name = std::uint64_t;
+
+  CollidingCells(const OctreeView& view, const SceneObject& object)
+      : reader_(view, object), is_one_leaf_(is_one_leaf(view)) {}
+
+  Name add_root() { return add(0); }
+  Name add(std::uint32_t node, int child) {
+    return add(is_one_leaf_ ? 0 : 1 + node_width * Name{node} + static_cast<Name>(child));
+  }
+  /// Call after all cells were added, and before `place_of`.
+  std::vector<OctreeCell> list() {
+    std::sort(names_.begin(), names_.end());
+    names_.erase(std::unique(names_.begin(), names_.end()), names_.end());
+    std::vector<OctreeCell> cells;
+    for (const Name name : names_)
+      cells.push_back(name == 0 ? reader_.root()
+                                : reader_.cell(static_cast<std::uint32_t>((name - 1) / node_width),
+                                               static_cast<int>((name - 1) % node_width)));
+    return cells;
+  }
+  std::uint32_t place_of(Name name) const {
+    return static_cast<std::uint32_t>(std::lower_bound(names_.begin(), names_.end(), name) - names_.begin());
+  }
+
+ private:
+  Name add(Name name) {
+    names_.push_back(name);
+    return name;
+  }
+
+  CellReader reader_;
+  bool is_one_leaf_;
+  std::vector<Name> names_;
+};
+
+/// Exchanges both objects.
+NodePairList mirrored(NodePairList list) {
+  std::swap(list.nodes_a, list.nodes_b);
+  for (NodePairList::Pair& pair : list.pairs) std::swap(pair.a, pair.b);
+  for (std::uint32_t level = 0; level < list.level_count(); ++level) {
+    const auto at = [&](std::uint32_t k) {
+      return list.pairs.begin() + static_cast<std::ptrdiff_t>(list.level_begin[k]);
+    };
+    std::sort(at(level), at(level + 1));
+  }
+  return list;
+}
 
 /// Collects the first `limit` pairs in ascending order and counts all of them.
 class FirstPairs {
@@ -116,30 +173,86 @@ void for_each_candidate(Traversal& traversal, const ObjectPairView& pair, Visit&
 
 }  // namespace
 
+/// Throws an error unless the object is as in the last `detect`.
+const SceneObject& Scene::Implementation::refitted_object(ObjectId id, const char* call) const {
+  const SceneObject& asked = object(id, call);
+  if (asked.has_moved() || asked.needs_refit(question_.shapes())) {
+    fail(std::string(call) + ": " + asked.options.name +
+         " was moved since anything was detected; call detect first");
+  }
+  return asked;
+}
+
 std::vector<OctreeCell> Scene::Implementation::octree_cells(ObjectId id,
                                                             std::optional<std::uint32_t> level) const {
-  const SceneObject& asked = object(id, "cells");
-  if (asked.has_moved() || asked.needs_refit(question_.shapes())) {
-    fail("cells: " + asked.options.name + " was moved since anything was detected; call detect first");
-  }
+  const SceneObject& asked = refitted_object(id, "cells");
+  const std::span<const OctreeNode> nodes = asked.octree().nodes();
   std::vector<OctreeCell> cells;
-  if (asked.octree().nodes().empty()) return cells;
-  const CellReader reader(search_view(asked));
-  if (level == 0) return {reader.root(asked.sphere())};
-  reader.for_each_child([&](const OctreeNode& node, int child, bool is_leaf) {
-    const std::uint32_t here = node.level + 1u;
-    const bool is_asked_for = !level ? is_leaf : here == *level || (is_leaf && here < *level);
-    if (is_asked_for) cells.push_back(reader.cell(node, child, is_leaf));
-  });
+  if (nodes.empty()) return cells;
+  const CellReader reader(search_view(asked), asked);
+  if (level == 0) return {reader.root()};
+  for (std::uint32_t n = 0; n < nodes.size(); ++n) {
+    const std::uint32_t here = nodes[n].level + 1u;
+    for (int child = 0; child < nodes[n].child_count; ++child) {
+      const bool is_leaf = !nodes[n].is_inner(child);
+      const bool is_asked_for = !level ? is_leaf : here == *level || (is_leaf && here < *level);
+      if (is_asked_for) cells.push_back(reader.cell(n, child));
+    }
+  }
   return cells;
 }
 
+OctreeCell Scene::Implementation::leaf(ObjectId id, std::uint32_t triangle) const {
+  const SceneObject& asked = refitted_object(id, "leaf");
+  check_triangle(asked, triangle, "leaf");
+  return CellReader(search_view(asked), asked).leaf_with(asked.octree().octree_triangle(triangle));
+}
+
+NodePairList Scene::Implementation::node_pairs(ObjectId id_a, ObjectId id_b) const {
+  const SceneObject &a = object(id_a, "node_pairs"), &b = object(id_b, "node_pairs");
+  if (!detected_) fail("node_pairs: nothing was detected at the present positions; call detect first");
+  if (id_b < id_a) return mirrored(node_pairs(id_b, id_a));
+  NodePairList list;
+  const bool is_compared = std::any_of(jobs_.jobs.begin(), jobs_.jobs.end(), [&](const ContactJob& job) {
+    return job.a == id_a.index && job.b == id_b.index;
+  });
+  if (!is_compared || a.octree().nodes().empty() || b.octree().nodes().empty()) return list;
+
+  const ObjectPairView view = search_view(ContactJob{id_a.index, id_b.index});
+  CollidingCells cells_a(view.a, a), cells_b(view.b, b);
+  std::vector<std::pair<CollidingCells::Name, CollidingCells::Name>> names;
+  const auto finish_level = [&] {
+    std::sort(names.begin() + static_cast<std::ptrdiff_t>(list.level_begin.back()), names.end());
+    list.level_begin.push_back(names.size());
+  };
+  // The broad phase found that the roots overlap. Two octrees of one leaf each have only this pair.
+  names.emplace_back(cells_a.add_root(), cells_b.add_root());
+  finish_level();
+  std::vector<NodePair> nodes;
+  if (!is_one_leaf(view.a) || !is_one_leaf(view.b)) nodes.emplace_back();
+  std::vector<ChildPair> children;
+  while (!nodes.empty()) {
+    children.clear();
+    for (const NodePair& node_pair : nodes) find_overlapping_children(view, node_pair, children);
+    nodes.clear();
+    if (children.empty()) break;
+    for (const ChildPair& at : children) {
+      names.emplace_back(cells_a.add(at.node_a, at.child_a), cells_b.add(at.node_b, at.child_b));
+      if (const auto below = nodes_below(view, at)) nodes.push_back(*below);
+    }
+    finish_level();
+  }
+  list.nodes_a = cells_a.list();
+  list.nodes_b = cells_b.list();
+  list.pairs.reserve(names.size());
+  for (const auto& [name_a, name_b] : names)
+    list.pairs.push_back({cells_a.place_of(name_a), cells_b.place_of(name_b)});
+  return list;
+}
+
 std::uint32_t Scene::Implementation::octree_depth(ObjectId id) const {
-  const CellReader reader(search_view(object(id, "octree_depth")));
-  if (reader.is_one_leaf()) return 0;
-  std::uint32_t depth = 0;
-  reader.for_each_child([&](const OctreeNode& node, int, bool) { depth = std::max(depth, node.level + 1u); });
-  return depth;
+  const std::span<const OctreeNode> nodes = object(id, "octree_depth").octree().nodes();
+  return nodes.empty() || nodes[0].child_count == 1 ? 0 : nodes.back().level + 1u;
 }
 
 ObjectPairView Scene::Implementation::search_view(const ContactJob& job) const {
@@ -180,8 +293,18 @@ std::string Scene::Implementation::validate() const {
   return pair_finder.validate();
 }
 
+std::vector<std::array<Vec3d, 2>> edges_of(std::span<const Slab> slabs) {
+  return Polytope(slabs).edges();
+}
+
 std::vector<OctreeCell> SceneInspector::cells(ObjectId object, std::optional<std::uint32_t> level) const {
   return scene_->implementation_->octree_cells(object, level);
+}
+OctreeCell SceneInspector::leaf(ObjectId object, std::uint32_t triangle) const {
+  return scene_->implementation_->leaf(object, triangle);
+}
+NodePairList SceneInspector::node_pairs(ObjectId object_a, ObjectId object_b) const {
+  return scene_->implementation_->node_pairs(object_a, object_b);
 }
 std::uint32_t SceneInspector::octree_depth(ObjectId object) const {
   return scene_->implementation_->octree_depth(object);
@@ -194,6 +317,10 @@ Aabb SceneInspector::bounds(ObjectId object) const {
 }
 std::vector<SceneRegion> SceneInspector::regions() const {
   return scene_->implementation_->pair_finder.regions();
+}
+std::vector<SceneRegion> SceneInspector::regions(ObjectId object) const {
+  scene_->implementation_->object(object, "regions");
+  return scene_->implementation_->pair_finder.regions(object.index);
 }
 CandidateList SceneInspector::candidates(std::size_t limit) const {
   return scene_->implementation_->candidates(limit);

@@ -35,7 +35,30 @@ void Placement::place_afresh() {
   has_motion_ = has_shape_ = is_baked_ = false;
   rotation_ = RigidTransform{}.rotation;
   translation_ = {};
+  change_all();
+}
+
+void Placement::change_all() {
   ++version_;
+  forget_moved();
+}
+
+void Placement::set_vertices(std::span<const std::uint32_t> vertices, const PositionsView& positions,
+                             const Parallel& parallel) {
+  restore(parallel);
+  if (!has_shape_) {
+    end_.set(vertices, positions, parallel);
+  } else {
+    shape_.set(vertices, positions, parallel);
+    end_.transform(shape_, vertices, [&](const Vec3d& p) { return rotated(p); });
+  }
+  ++version_;
+  // A longer list takes more time than all vertices, and it would grow as long as nothing reads it.
+  if (moved_.size() + vertices.size() > end_.size() / 8) {
+    forget_moved();
+  } else {
+    moved_.insert(moved_.end(), vertices.begin(), vertices.end());
+  }
 }
 
 void Placement::translate(Vec3d offset, const Parallel& parallel) {
@@ -54,7 +77,7 @@ void Placement::set_transform(const RigidTransform& transform, const Parallel& p
 
 /// The object comes to rest at the end of its path, and its translation is no longer baked.
 void Placement::restore(const Parallel& parallel) {
-  if (std::exchange(has_motion_, false)) ++version_;
+  if (std::exchange(has_motion_, false)) change_all();
   if (std::exchange(is_baked_, false)) apply({}, parallel);
 }
 
@@ -62,15 +85,17 @@ void Placement::keep_shape() {
   if (!std::exchange(has_shape_, true)) std::swap(shape_, end_);
 }
 
-void Placement::apply(const Vec3d& translation, const Parallel& parallel) {
+Vec3d Placement::rotated(const Vec3d& p) const {
   const auto& r = rotation_;
+  return {r[0] * p.x + r[1] * p.y + r[2] * p.z, r[3] * p.x + r[4] * p.y + r[5] * p.z,
+          r[6] * p.x + r[7] * p.y + r[8] * p.z};
+}
+
+void Placement::apply(const Vec3d& translation, const Parallel& parallel) {
   const bool translates = translation != Vec3d{};
-  end_.transform(shape_, parallel, [&](const Vec3d& p) {
-    const Vec3d rotated{r[0] * p.x + r[1] * p.y + r[2] * p.z, r[3] * p.x + r[4] * p.y + r[5] * p.z,
-                        r[6] * p.x + r[7] * p.y + r[8] * p.z};
-    return translates ? rotated + translation : rotated;
-  });
-  ++version_;
+  end_.transform(shape_, parallel,
+                 [&](const Vec3d& p) { return translates ? rotated(p) + translation : rotated(p); });
+  change_all();
 }
 
 bool Placement::needs_baking(const Aabb& box) const {

@@ -2,6 +2,9 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
 
 #include "core/parallel.hpp"
 #include "octree/vertex_buffer.hpp"
@@ -20,6 +23,9 @@ class Placement {
   /// Reads the positions in place when their layout allows it.
   void share_positions(const PositionsView& positions, const Parallel& parallel);
   void set_motion(const PositionsView& from, const PositionsView& to, const Parallel& parallel);
+  /// Sets some of the positions p. The object comes to rest; its transform and translation stay.
+  void set_vertices(std::span<const std::uint32_t> vertices, const PositionsView& positions,
+                    const Parallel& parallel);
   void translate(Vec3d offset, const Parallel& parallel);
   void set_transform(const RigidTransform& transform, const Parallel& parallel);
 
@@ -38,8 +44,23 @@ class Placement {
 
   /// Changes whenever `start` or `end` changes; never 0.
   std::uint64_t version() const { return version_; }
+  /// The vertices of `end` that have changed since this version, possibly some others and some twice; nothing
+  /// when all vertices may have changed.
+  std::optional<std::span<const std::uint32_t>> moved_since(std::uint64_t version) const {
+    if (version < moved_since_) return std::nullopt;
+    return moved_;
+  }
+  /// Forgets the vertices that changed before the present version.
+  void forget_moved() {
+    moved_.clear();
+    moved_since_ = version_;
+  }
+  /// Whether the positions p are in double precision.
+  bool is_double() const { return (has_shape_ ? shape_ : end_).is_double(); }
 
  private:
+  Vec3d rotated(const Vec3d& p) const;
+  void change_all();
   Vec3d placed(const Vec3d& p) const;
   void place_afresh();
   void restore(const Parallel& parallel);
@@ -53,6 +74,8 @@ class Placement {
   std::array<double, 9> rotation_ = RigidTransform{}.rotation;
   Vec3d translation_;
   std::uint64_t version_ = 1;
+  std::uint64_t moved_since_ = 1;     // version
+  std::vector<std::uint32_t> moved_;  // since then
 };
 
 }  // namespace supple

@@ -1,5 +1,7 @@
 #include "scene/resting_shape.hpp"
 
+#include <optional>
+
 #include "geometry/vector.hpp"
 
 namespace supple {
@@ -11,14 +13,30 @@ void mark_inert(const ObjectOctree& octree, const VertexBuffer& vertices, std::v
   }
 }
 
-void RestingShape::update(ObjectOctree& octree, Placement& placement, const Parallel& parallel) {
-  if (!is_current(placement)) refit(octree, placement, parallel);
-  if (!placement.needs_baking(octree.box())) return;
+std::size_t RestingShape::update(ObjectOctree& octree, Placement& placement, const Parallel& parallel) {
+  std::size_t refitted = 0;
+  if (!is_current(placement)) refitted = refit(octree, placement, parallel);
+  if (!placement.needs_baking(octree.box())) return refitted;
   placement.bake(parallel);
-  refit(octree, placement, parallel);
+  return refit(octree, placement, parallel);
 }
 
-void RestingShape::refit(ObjectOctree& octree, const Placement& placement, const Parallel& parallel) {
+std::size_t RestingShape::refit(ObjectOctree& octree, Placement& placement, const Parallel& parallel) {
+  const auto moved = placement.moved_since(version_);
+  std::optional<std::size_t> refitted;
+  // With inert triangles, a vertex that becomes finite can change more than the triangles around it.
+  if (moved && inert_.empty() && non_finite_.empty())
+    refitted = octree.refit_moved(placement.end(), *moved, parallel);
+  if (!refitted) {
+    refit_all(octree, placement, parallel);
+    refitted = octree.triangles().size();
+  }
+  version_ = placement.version();
+  placement.forget_moved();
+  return *refitted;
+}
+
+void RestingShape::refit_all(ObjectOctree& octree, const Placement& placement, const Parallel& parallel) {
   inert_.clear();
   non_finite_.clear();
   if (!octree.refit(placement.end(), {}, parallel)) {
@@ -28,7 +46,6 @@ void RestingShape::refit(ObjectOctree& octree, const Placement& placement, const
     }
     octree.refit(placement.end(), inert_, parallel);
   }
-  version_ = placement.version();
 }
 
 OctreeView RestingShape::view(const ObjectOctree& octree, const Placement& placement) const {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -18,8 +19,9 @@ namespace supple {
 class RestingShape {
  public:
   bool is_current(const Placement& placement) const { return version_ == placement.version(); }
-  /// Refits the octree, and bakes the translation if necessary. O(n).
-  void update(ObjectOctree& octree, Placement& placement, const Parallel& parallel);
+  /// Refits the octree, or only the part that moved since the last update, and bakes the translation if
+  /// necessary. O(n). Returns the number of triangles in refitted leaves.
+  std::size_t update(ObjectOctree& octree, Placement& placement, const Parallel& parallel);
   void update_culling(const ObjectOctree& octree, const Placement& placement, const Parallel& parallel) {
     culling_.update(version_, octree, octree.triangles(), placement.end(), placement.end(), parallel);
   }
@@ -39,7 +41,8 @@ class RestingShape {
   }
 
  private:
-  void refit(ObjectOctree& octree, const Placement& placement, const Parallel& parallel);
+  std::size_t refit(ObjectOctree& octree, Placement& placement, const Parallel& parallel);
+  void refit_all(ObjectOctree& octree, const Placement& placement, const Parallel& parallel);
 
   std::uint64_t version_ = 0;
   std::vector<std::uint8_t> inert_;  // `mark_inert`, or empty when all vertices are finite

@@ -53,6 +53,13 @@ void check_count(const SceneObject& object, std::size_t count, const char* call)
        ", which has " + std::to_string(vertices) + " vertices; give one for each vertex");
 }
 
+void check_vertex(const SceneObject& object, std::uint32_t vertex, const char* call) {
+  const std::size_t count = object.octree().vertex_count();
+  if (vertex < count) return;
+  fail(std::string(call) + ": " + object.options.name + " has no vertex " + std::to_string(vertex) +
+       "; it has " + std::to_string(count) + ", numbered from 0");
+}
+
 }  // namespace
 
 void check_triangle(const SceneObject& object, std::uint32_t triangle, const char* call) {
@@ -127,6 +134,24 @@ void Scene::Implementation::set_positions(ObjectId id, const PositionsView& posi
   mark_changed();
 }
 
+void Scene::Implementation::set_vertices(ObjectId id, std::span<const std::uint32_t> vertices,
+                                         const PositionsView& positions) {
+  SceneObject& found = movable_object(id, "set_vertices");
+  const std::string& name = found.options.name;
+  if (positions.size() != vertices.size()) {
+    fail("set_vertices: " + std::to_string(positions.size()) + " positions for " +
+         std::to_string(vertices.size()) + " vertices of " + name + "; give one for each vertex");
+  }
+  for (const std::uint32_t vertex : vertices) check_vertex(found, vertex, "set_vertices");
+  const bool is_double = found.placement().is_double();
+  if (!vertices.empty() && positions.is_double() != is_double) {
+    fail("set_vertices: the positions are " + std::string(is_double ? "float" : "double") + ", those of " +
+         name + " are " + (is_double ? "double" : "float") + "; give both in one precision");
+  }
+  found.move().set_vertices(vertices, positions, parallel);
+  mark_changed();
+}
+
 void Scene::Implementation::share_positions(ObjectId id, const PositionsView& positions) {
   SceneObject& found = movable_object(id, "share_positions");
   check_count(found, positions.size(), "share_positions");
@@ -175,6 +200,9 @@ void Scene::remove(ObjectId object) {
 
 void Scene::set_positions(ObjectId object, PositionsView positions) {
   implementation_->set_positions(object, positions);
+}
+void Scene::set_vertices(ObjectId object, std::span<const std::uint32_t> vertices, PositionsView positions) {
+  implementation_->set_vertices(object, vertices, positions);
 }
 void Scene::share_positions(ObjectId object, PositionsView positions) {
   implementation_->share_positions(object, positions);
@@ -261,11 +289,7 @@ std::size_t Scene::triangle_count(ObjectId object) const {
 
 Vec3d Scene::position(ObjectId object, std::uint32_t vertex) const {
   const SceneObject& found = implementation_->object(object, "position");
-  const std::size_t count = found.octree().vertex_count();
-  if (vertex >= count) {
-    fail("position: " + found.options.name + " has no vertex " + std::to_string(vertex) + "; it has " +
-         std::to_string(count) + ", numbered from 0");
-  }
+  check_vertex(found, vertex, "position");
   return found.placement().position(vertex);
 }
 

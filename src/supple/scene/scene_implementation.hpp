@@ -49,6 +49,7 @@ class Scene::Implementation {
   /// The same; also throws when the object is static.
   SceneObject& movable_object(ObjectId id, const char* call) const;
   void set_positions(ObjectId id, const PositionsView& positions);
+  void set_vertices(ObjectId id, std::span<const std::uint32_t> vertices, const PositionsView& positions);
   void share_positions(ObjectId id, const PositionsView& positions);
   void set_motion(ObjectId id, const PositionsView& from, const PositionsView& to);
 
@@ -58,6 +59,8 @@ class Scene::Implementation {
   std::string validate() const;
 
   std::vector<OctreeCell> octree_cells(ObjectId id, std::optional<std::uint32_t> level) const;
+  OctreeCell leaf(ObjectId id, std::uint32_t triangle) const;
+  NodePairList node_pairs(ObjectId id_a, ObjectId id_b) const;
   std::uint32_t octree_depth(ObjectId id) const;
   CandidateList candidates(std::size_t limit) const;
   PairExplanation explain(ObjectId id_a, std::uint32_t triangle_a, ObjectId id_b,
@@ -105,10 +108,12 @@ class Scene::Implementation {
   void report_non_finite();
   void publish();
   void list_touching_pairs();
+  bool volumes_apart(const IndexPair& pair) const;
   bool may_pair(const IndexPair& pair) const;
   OctreeView search_view(const SceneObject& object) const {
     return question_.searches_at_rest() ? object.resting_view() : object.moving_view();
   }
+  const SceneObject& refitted_object(ObjectId id, const char* call) const;
   /// The pair as the narrow phase sees it, without self-collision culling.
   ObjectPairView search_view(const ContactJob& job) const;
   PairExplanation explain_in_order(const ContactJob& job, TrianglePair triangles) const;

@@ -8,6 +8,7 @@
 #include "geometry/aabb.hpp"
 #include "geometry/sphere.hpp"
 #include "geometry/vector.hpp"
+#include "octree/octree_topology.hpp"
 #include "octree/query_cost.hpp"
 
 namespace supple {
@@ -33,7 +34,7 @@ BoundingSphere sphere_around(const Aabb& box) {
 /// chose.
 ObjectOctreeOptions octree_options(const ObjectOptions& options, const SceneOptions& scene_options) {
   ObjectOctreeOptions octree = options.octree;
-  if (contains(scene_options.contacts, ContactKinds::continuous) && !octree.regular && octree.arity == 8)
+  if (contains(scene_options.contacts, ContactKinds::continuous) && !is_regular(octree))
     octree.leaf_size = octree.leaf_size / 2 + octree.leaf_size % 2;
   return octree;
 }
@@ -48,7 +49,7 @@ SceneObject::SceneObject(const PositionsView& positions, std::span<const Triangl
       // The paper's results depend on the leaves of the rest pose.
       rebuild_policy_(object_options.octree.rebuild_degraded &&
                       !scene_options.comparison.colliding_vertices &&
-                      scene_options.comparison.sphere_fit == SphereFit::vertices) {}
+                      scene_options.comparison.sphere_fit != SphereFit::box) {}
 
 bool SceneObject::is_stale(const SearchedShapes& shapes) const {
   return has_moved_ || shapes != updated_ || needs_refit(shapes);
@@ -61,6 +62,7 @@ bool SceneObject::needs_refit(const SearchedShapes& shapes) const {
 
 void SceneObject::update(const SearchedShapes& shapes, const Parallel& parallel) {
   const bool was_behind = needs_refit(shapes);
+  refitted_triangles_ = shapes.moving && !moving_.is_current(placement_) ? octree_.triangles().size() : 0;
   refit(shapes, parallel);
   update_volumes(shapes);
   if (was_behind && rebuild_policy_.should_measure()) rebuild_policy_.set_cost(current_query_cost());
@@ -75,7 +77,8 @@ void SceneObject::refit(const SearchedShapes& shapes, const Parallel& parallel) 
   wanted.moving = wanted.moving || moving_.is_current(placement_);
   // When one shape bakes the translation, the other one is out of date.
   do {
-    if (wanted.resting) resting_.update(octree_, placement_, parallel);
+    if (wanted.resting)
+      refitted_triangles_ = std::max(refitted_triangles_, resting_.update(octree_, placement_, parallel));
     if (wanted.moving) moving_.update(octree_, placement_, parallel);
   } while (needs_refit(wanted));
   if (!options.self_collision) return;
@@ -140,6 +143,8 @@ OctreeStatistics SceneObject::octree_statistics() const {
   statistics.degradation = rebuild_policy_.degradation(statistics.cost);
   if (octree_.spheres() != nullptr && resting_.is_current(placement_))
     statistics.cost = query_cost(octree_.nodes(), octree_.spheres(), octree_.sphere());
+  if (!octree_.volumes().empty() && resting_.is_current(placement_))
+    statistics.cost = query_cost(octree_.nodes(), octree_.boxes(), octree_.volumes());
   statistics.rebuilds = rebuilds_;
   if (statistics.triangles != 0) {
     statistics.bytes_per_triangle =

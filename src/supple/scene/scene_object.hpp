@@ -45,6 +45,9 @@ class SceneObject {
   /// Updates the shapes and the volumes.
   void update(const SearchedShapes& shapes, const Parallel& parallel);
 
+  /// The triangles in the leaves that the last update refitted.
+  std::size_t refitted_triangles() const { return refitted_triangles_; }
+
   /// Call when the placement has the positions that the octree was built from.
   void measure_built_octree(const Parallel& parallel);
   const RebuildPolicy& rebuild_policy() const { return rebuild_policy_; }
@@ -85,6 +88,7 @@ class SceneObject {
   MovingShape moving_;
   RebuildPolicy rebuild_policy_;
   std::uint64_t rebuilds_ = 0;
+  std::size_t refitted_triangles_ = 0;
   bool has_moved_ = true;
   SearchedShapes updated_;  // by the last update
   Aabb box_;

@@ -2,6 +2,8 @@
 
 #include <cstdint>
 #include <limits>
+#include <optional>
+#include <vector>
 
 #include "narrow_phase/traversal.hpp"
 #include "octree/moving_boxes.hpp"
@@ -28,6 +30,38 @@ inline Aabb child_box(const OctreeView& view, std::uint32_t node, int child) {
 }
 inline BoundingSphere child_sphere(const OctreeView& view, std::uint32_t node, int child) {
   return child_sphere(view.spheres[node], child);
+}
+
+/// The oriented box or k-DOP of a child, and of the whole object, where the object is now; empty for other
+/// volumes.
+inline std::vector<Slab> child_slabs(const OctreeView& view, std::uint32_t node, int child) {
+  if (view.volumes.empty()) return {};
+  return child_slabs(view.volumes, child_box(view.boxes[node], child), node, child, view.translation);
+}
+inline std::vector<Slab> object_slabs(const OctreeView& view) {
+  if (view.volumes.empty()) return {};
+  return child_slabs(view.volumes, enclosing_box(view.boxes[0]), view.volumes.object, 0, view.translation);
+}
+
+/// Whether the octree is a single leaf. Its only cell is then the root.
+inline bool is_one_leaf(const OctreeView& view) {
+  return !view.nodes.empty() && view.nodes[0].child_count == 1;
+}
+
+/// The level of the children of a node: k of the paper.
+inline std::uint32_t cell_level(const OctreeView& view, std::uint32_t node) {
+  return is_one_leaf(view) ? 0 : view.nodes[node].level + 1u;
+}
+
+/// `OctreeCell::number` of a child: h of the paper.
+inline std::optional<std::uint64_t> cell_number(const OctreeView& view, std::uint64_t arity,
+                                                std::uint32_t node, int child) {
+  if (is_one_leaf(view)) return 0;
+  const OctreeNode& of = view.nodes[node];
+  const auto parent = node == 0 ? 0 : cell_number(view, arity, of.parent, of.index_in_parent);
+  constexpr std::uint64_t most = std::numeric_limits<std::uint64_t>::max();
+  if (!parent || *parent > (most - arity) / arity) return std::nullopt;
+  return arity * *parent + 1 + static_cast<std::uint64_t>(child);
 }
 
 /// Box of a moving face at one end of the step; empty when the face is inert.

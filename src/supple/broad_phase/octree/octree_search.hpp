@@ -16,10 +16,12 @@ namespace supple {
 class OctreeSearch final : public PairSearch {
  public:
   OctreeSearch(BoundingVolume bounding_volume, const SceneOctreeOptions& options)
-      : tree_(bounding_volume, options) {}
+      : tree_(bounding_volume, options), cube_chooser_(options.root) {}
 
   void search(const VolumeStore& volumes, const Parallel& parallel, FoundPairs& found) override;
-  std::vector<SceneRegion> regions() const override { return tree_.describe(); }
+  std::vector<SceneRegion> regions(std::optional<std::uint32_t> slot) const override {
+    return tree_.describe(slot);
+  }
   std::string validate(const VolumeStore& volumes) const override { return tree_.validate(volumes); }
 
  private:

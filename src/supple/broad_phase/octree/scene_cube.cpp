@@ -20,6 +20,24 @@ float round_to_few_bits(double value) {
   return static_cast<float>(std::ldexp(std::ceil(fraction * 64), exponent - 6));
 }
 
+double largest_coordinate(const Vec3f& p) {
+  return std::max({std::fabs(p.x), std::fabs(p.y), std::fabs(p.z)});
+}
+
+/// Planes that are closer than eight floats might round to the same float and divide nothing.
+float finest_edge_of(const SceneCube& cube) {
+  return static_cast<float>((largest_coordinate(cube.center) + 0.5 * cube.edge) * 0x1p-20);
+}
+
+SceneCube cube_of(const RootCube& root) {
+  SceneCube cube;
+  for (int axis = 0; axis < 3; ++axis)
+    cube.center[axis] = static_cast<float>(root.corner[axis] + 0.5 * root.edge);
+  cube.edge = static_cast<float>(root.edge);
+  cube.finest_edge = finest_edge_of(cube);
+  return cube;
+}
+
 }  // namespace
 
 bool is_outdated(const SceneCube& present, const SceneCube& best) {
@@ -32,6 +50,7 @@ bool is_outdated(const SceneCube& present, const SceneCube& best) {
 }
 
 SceneCube SceneCubeChooser::choose(std::span<const Aabb> boxes) {
+  if (given_) return cube_of(*given_);
   centers_.clear();
   std::vector<float>& extents = scratch_;
   extents.clear();
@@ -72,11 +91,8 @@ SceneCube SceneCubeChooser::choose(std::span<const Aabb> boxes) {
     edge = std::max(edge, double{cube.core.max[axis]} - cube.core.min[axis]);
   }
   edge = margin * edge + median_extent;
-  const double distance =
-      std::max({std::fabs(cube.center.x), std::fabs(cube.center.y), std::fabs(cube.center.z)});
-  cube.edge = round_to_few_bits(std::max({edge, distance * 0x1p-18, 1e-30}));
-  // Planes that are closer than eight floats might round to the same float and divide nothing.
-  cube.finest_edge = static_cast<float>((distance + 0.5 * cube.edge) * 0x1p-20);
+  cube.edge = round_to_few_bits(std::max({edge, largest_coordinate(cube.center) * 0x1p-18, 1e-30}));
+  cube.finest_edge = finest_edge_of(cube);
   return cube;
 }
 

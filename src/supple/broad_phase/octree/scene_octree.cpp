@@ -313,10 +313,14 @@ void SceneOctree::settle(const VolumeStore& volumes) {
   due_.clear();
 }
 
-std::vector<SceneRegion> SceneOctree::describe() const {
+std::vector<SceneRegion> SceneOctree::describe(std::optional<std::uint32_t> slot) const {
+  const auto contains_slot = [&](const Region& region) {
+    const auto slots = objects(region);
+    return std::find(slots.begin(), slots.end(), *slot) != slots.end();
+  };
   std::vector<SceneRegion> described;
   for (const Region& region : regions_) {
-    if (!region.in_use) continue;
+    if (!region.in_use || (slot && !contains_slot(region))) continue;
     SceneRegion entry{region.number, region.level, {}, region.is_leaf(), region.objects.count};
     for (int axis = 0; axis < 3; ++axis) {
       const float half = std::ldexp(cube_.edge, -halvings(axis, region.level) - 1);

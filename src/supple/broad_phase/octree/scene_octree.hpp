@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -80,7 +81,8 @@ class SceneOctree {
   std::size_t object_count() const { return object_count_; }        ///< without empty volumes
   std::uint64_t expanded_count() const { return expanded_count_; }  ///< since construction
   std::uint64_t reduced_count() const { return reduced_count_; }
-  std::vector<SceneRegion> describe() const;
+  /// All regions, or the leaves that contain the object of a slot.
+  std::vector<SceneRegion> describe(std::optional<std::uint32_t> slot = {}) const;
   std::string validate(const VolumeStore& volumes) const;
 
  private:

@@ -1,0 +1,40 @@
+#include "octree/morton_curve.hpp"
+
+#include <algorithm>
+
+#include "octree/octree_topology.hpp"
+
+namespace supple {
+namespace {
+
+/// Puts two zero bits between each of the low 21 bits.
+std::uint64_t spread_bits(std::uint64_t v) {
+  v = (v | v << 32) & 0x001f00000000ffffu;
+  v = (v | v << 16) & 0x001f0000ff0000ffu;
+  v = (v | v << 8) & 0x100f00f00f00f00fu;
+  v = (v | v << 4) & 0x10c30c30c30c30c3u;
+  return (v | v << 2) & 0x1249249249249249u;
+}
+
+std::uint64_t cell(double fraction) {
+  constexpr double cells = 1 << curve_bits_per_axis;
+  return static_cast<std::uint64_t>(std::clamp(fraction * cells, 0.0, cells - 1));
+}
+
+}  // namespace
+
+void sort_along_curve(std::span<CurvePlace> places, std::span<const Vec3d> centers) {
+  const CenterBounds bounds(places, centers);
+  const double side = bounds.longest_side();
+  for (CurvePlace& place : places) {
+    const Vec3d& c = centers[place.triangle];
+    place.code = 0;
+    if (!(side > 0) || !is_finite(c)) continue;
+    for (int axis = 0; axis < 3; ++axis) {
+      place.code |= spread_bits(cell((c[axis] * CenterBounds::scale - bounds.lower[axis]) / side)) << axis;
+    }
+  }
+  std::sort(places.begin(), places.end());
+}
+
+}  // namespace supple

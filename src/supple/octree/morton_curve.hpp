@@ -1,0 +1,27 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "geometry/vector.hpp"
+
+namespace supple {
+
+constexpr int curve_bits_per_axis = 21;
+
+/// Place of a triangle on a Morton curve: three bits a level, the first level highest.
+struct CurvePlace {
+  std::uint64_t code;
+  std::uint32_t triangle;
+
+  bool operator<(const CurvePlace& other) const {
+    return code != other.code ? code < other.code : triangle < other.triangle;
+  }
+};
+
+/// Codes the centres `centers[triangle]` in the cube around them and sorts by the codes, then by the numbers
+/// of the triangles. A centre that is not finite counts as the lower corner of the others. All codes are 0
+/// when all centres are equal.
+void sort_along_curve(std::span<CurvePlace> places, std::span<const Vec3d> centers);
+
+}  // namespace supple

@@ -1,0 +1,169 @@
+#include "octree/oriented_box_fit.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "core/float_rounding.hpp"
+#include "geometry/aabb.hpp"
+
+namespace supple {
+namespace {
+
+using Matrix = std::array<std::array<double, 3>, 3>;
+
+Matrix covariance(const SurfaceMoments& moments) {
+  const auto& [xx, yy, zz, xy, yz, zx] = moments.second;
+  return {{{xx, xy, zx}, {xy, yy, yz}, {zx, yz, zz}}};
+}
+
+/// Calls `visit(place, p[i] q[i])` for the six products of second moments.
+template <class Visit>
+void for_each_product(Vec3d p, Vec3d q, const Visit& visit) {
+  visit(0, p.x * q.x);
+  visit(1, p.y * q.y);
+  visit(2, p.z * q.z);
+  visit(3, p.x * q.y);
+  visit(4, p.y * q.z);
+  visit(5, p.z * q.x);
+}
+
+/// Sets the entry (i, j) of a symmetric matrix to zero by a rotation, and rotates the vectors likewise.
+void rotate(Matrix& m, std::array<Vec3d, 3>& vectors, std::size_t i, std::size_t j) {
+  if (m[i][j] == 0) return;
+  const double theta = (m[j][j] - m[i][i]) / (2 * m[i][j]);
+  const double t = (theta < 0 ? -1 : 1) / (std::abs(theta) + std::sqrt(theta * theta + 1));
+  const double c = 1 / std::sqrt(t * t + 1), s = t * c;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double p = m[k][i], q = m[k][j];
+    m[k][i] = c * p - s * q;
+    m[k][j] = s * p + c * q;
+  }
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double p = m[i][k], q = m[j][k];
+    m[i][k] = c * p - s * q;
+    m[j][k] = s * p + c * q;
+  }
+  const Vec3d p = vectors[i], q = vectors[j];
+  vectors[i] = c * p - s * q;
+  vectors[j] = s * p + c * q;
+}
+
+/// The eigenvectors of a symmetric matrix by Jacobi's method, orthonormal except for rounding. Converges
+/// quadratically: five sweeps are enough for double.
+std::array<Vec3d, 3> eigenvectors(Matrix m) {
+  std::array<Vec3d, 3> vectors{Vec3d{1, 0, 0}, Vec3d{0, 1, 0}, Vec3d{0, 0, 1}};
+  for (int sweep = 0; sweep < 5; ++sweep) {
+    rotate(m, vectors, 0, 1);
+    rotate(m, vectors, 1, 2);
+    rotate(m, vectors, 0, 2);
+  }
+  return vectors;
+}
+
+double half_surface(Vec3f h) {
+  return double{h.x} * h.y + double{h.y} * h.z + double{h.z} * h.x;
+}
+
+Vec3d in_double(Vec3f v) {
+  return {v.x, v.y, v.z};
+}
+Vec3f in_float(Vec3d v) {
+  return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
+}
+
+OrientedBox aligned_box(const Aabb& box) {
+  OrientedBox result;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double low = box.min[axis], high = box.max[axis];
+    result.center[axis] = static_cast<float>((low + high) / 2);
+    result.half_lengths[axis] = round_up(std::max(high - result.center[axis], result.center[axis] - low));
+  }
+  return result;
+}
+
+/// The box of the triangles along the given axes. All distances are from `near`, a point near the triangles:
+/// a difference of doubles has a relative error only, so the sums have errors below 2^-48 of the half
+/// lengths. The growth by 2^-20 of them covers these and the rounding of the axes, which makes them up to
+/// 2^-22 oblique.
+OrientedBox box_along(const std::array<Vec3d, 3>& axes, Vec3d near, const SurfacePart& part) {
+  OrientedBox box;
+  for (std::size_t k = 0; k < 3; ++k) box.axes[k] = in_float(axes[k]);
+  constexpr double inf = std::numeric_limits<double>::infinity();
+  Vec3d low{inf, inf, inf}, high{-inf, -inf, -inf};
+  const auto extend_by = [&](Vec3d p) {
+    for (int k = 0; k < 3; ++k) {
+      const double along = dot(in_double(box.axes[static_cast<std::size_t>(k)]), p - near);
+      low[k] = std::min(low[k], along);
+      high[k] = std::max(high[k], along);
+    }
+  };
+  part.for_each([&](Vec3d p, Vec3d q, Vec3d r) {
+    extend_by(p);
+    extend_by(q);
+    extend_by(r);
+  });
+  Vec3d center = near;
+  for (int k = 0; k < 3; ++k)
+    center += (low[k] + high[k]) / 2 * in_double(box.axes[static_cast<std::size_t>(k)]);
+  box.center = in_float(center);
+  Vec3d half;
+  for (int k = 0; k < 3; ++k) {
+    const double along = dot(in_double(box.axes[static_cast<std::size_t>(k)]), in_double(box.center) - near);
+    half[k] = std::max(high[k] - along, along - low[k]);
+  }
+  const double growth = 0x1p-20 * (half.x + half.y + half.z) + std::numeric_limits<float>::min();
+  for (int k = 0; k < 3; ++k) box.half_lengths[k] = round_up(half[k] + growth);
+  return box;
+}
+
+}  // namespace
+
+/// The parallel axis theorem.
+SurfaceMoments& SurfaceMoments::operator+=(const SurfaceMoments& other) {
+  if (!(other.area > 0)) return *this;
+  if (!(area > 0)) return *this = other;
+  const Vec3d between = other.center - center;
+  const double sum = area + other.area, share = other.area / sum;
+  for (std::size_t i = 0; i < second.size(); ++i) second[i] += other.second[i];
+  for_each_product(between, between,
+                   [&](std::size_t place, double product) { second[place] += area * share * product; });
+  center += share * between;
+  area = sum;
+  return *this;
+}
+
+SurfaceMoments moments_of(const SurfacePart& part) {
+  SurfaceMoments sum;
+  part.for_each([&](Vec3d p, Vec3d q, Vec3d r) {
+    SurfaceMoments one{norm(cross(q - p, r - p)) / 2, p + (q - p + (r - p)) / 3};
+    // The mean of a b over a triangle with its centre at 0 is the sum of a b over its corners, divided by 12.
+    for (const Vec3d& corner : {p - one.center, q - one.center, r - one.center}) {
+      for_each_product(corner, corner, [&](std::size_t place, double product) {
+        one.second[place] += one.area / 12 * product;
+      });
+    }
+    sum += one;
+  });
+  return sum;
+}
+
+OrientedBox fit_oriented_box(const SurfaceMoments& moments, const Aabb& box, const SurfacePart& part) {
+  if (box.empty()) return {};
+  constexpr float largest = 0x1p60f;  // squares of areas do not overflow
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!(box.min[axis] >= -largest && box.max[axis] <= largest)) {
+      constexpr float inf = std::numeric_limits<float>::infinity();
+      OrientedBox everything;
+      everything.half_lengths = {inf, inf, inf};
+      return everything;
+    }
+  }
+  const OrientedBox aligned = aligned_box(box);
+  if (!(moments.area > 0)) return aligned;
+  const OrientedBox fitted = box_along(eigenvectors(covariance(moments)), in_double(aligned.center), part);
+  return half_surface(fitted.half_lengths) < half_surface(aligned.half_lengths) ? fitted : aligned;
+}
+
+}  // namespace supple
