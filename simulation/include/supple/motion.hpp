@@ -32,8 +32,12 @@ struct MassSpringOptions {
   /// Number of equal parts of a step, ≥ 1.
   std::uint32_t substeps = 1;
 
-  double vertex_mass = 1;        ///< mass m of each vertex, kg, > 0
-  double stiffness = 50;         ///< k_s of the spring on each edge, N/m, ≥ 0
+  double vertex_mass = 1;  ///< mass m of each vertex, kg, > 0
+  double stiffness = 50;   ///< k_s of the spring on each edge, N/m, ≥ 0
+  /// The paper's spring length s, as a factor of the distance in the mesh, > 0: springs on and across edges
+  /// are at rest at this factor times the length that they have in the mesh. The areas to preserve change by
+  /// its square, as the areas of triangles with these sides; the volumes to preserve stay.
+  double rest_length = 1;
   double damping = 0.5;          ///< k_d along each spring, also those across edges, N s/m, ≥ 0
   double air_friction = 0;       ///< k_d of eq. 1, of each vertex against the air around it, N s/m, ≥ 0
   double bending_stiffness = 0;  ///< of a spring across each edge, between the opposite corners, N/m, ≥ 0
@@ -72,7 +76,7 @@ struct MassSpringEnergy {
   double total() const { return kinetic + elastic + area + volume + gravity; }
 };
 
-/// The relative area error |A - A0| / A0 over all triangles with an area at rest.
+/// The relative area error |A - A0| / A0 over all triangles, with the area A0 > 0 that each has in the mesh.
 struct AreaError {
   double largest = 0;
   double mean = 0;
@@ -82,8 +86,9 @@ struct AreaError {
 ///
 ///     m a = f_springs + f_areas + f_volumes + f_external + m g - air_friction (v - v_air) (eq. 1)
 ///
-/// Each edge has one spring. With d the vector from one end to the other, s the rest length and |d|˙ the rate
-/// of |d|, the spring pulls that end with
+/// Each edge has one spring. With d the vector from one end to the other, s the rest length (`rest_length`
+/// times the length in the mesh, until plastic flow changes it) and |d|˙ the rate of |d|, the spring pulls
+/// that end with
 ///
 ///     (stiffness (|d| - s) + damping |d|˙) d / |d| (eq. 2)
 ///
@@ -92,10 +97,10 @@ struct AreaError {
 /// edge in the order of the mesh, unless these corners share an edge.
 ///
 /// `area_stiffness` k adds the energy k (A - A0)² / 2 S for each triangle (after Teschner et al. 2004). S is
-/// the area of the equilateral triangle on its longest side at rest. The force on a corner is -k (A - A0) / S
-/// ∂A/∂x. An area error remains while other forces act: a square with two sides held 1.4 times as far apart
-/// has a mean error of 31 % without this force, 21 % with k = stiffness, 6 % with ten times and 0.9 % with a
-/// hundred times that.
+/// the area of the equilateral triangle on its longest side in the mesh. The force on a corner is -k (A - A0)
+/// / S ∂A/∂x. An area error remains while other forces act: a square with two sides held 1.4 times as far
+/// apart has a mean error of 31 % without this force, 21 % with k = stiffness, 6 % with ten times and 0.9 %
+/// with a hundred times that.
 ///
 /// `volume_stiffness` k adds the energy k (V - V0)² / 2 |V0| for each closed part (after Teschner et al.
 /// 2004, who use V0² instead of |V0|; here k is a pressure). The pressure inside is p = k (V0 - V) / V0,
@@ -114,8 +119,9 @@ struct AreaError {
 /// mass and exert no force.
 class MassSpringBody {
  public:
-  /// The body starts at rest. O(n log n). Throws `Error` as `check_mesh` does, when an option is out of its
-  /// range, and when `volume_stiffness` is set for a mesh without closed parts.
+  /// The body starts with the positions of the mesh and without velocity. O(n log n). Throws `Error` as
+  /// `check_mesh` does, when an option is out of its range, and when `volume_stiffness` is set for a mesh
+  /// without closed parts.
   explicit MassSpringBody(const TriangleMesh& rest, const MassSpringOptions& options = {});
   ~MassSpringBody();
   MassSpringBody(MassSpringBody&&) noexcept;

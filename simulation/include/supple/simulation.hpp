@@ -48,6 +48,19 @@ struct MassSpringMotion {
   std::vector<Handle> handles{};
 };
 
+/// A rigid object that moves at constant velocity and turns about the centre of its vertices. The border
+/// reflects its velocity. Without spin each step is one `Scene::translate`, O(1), otherwise one
+/// `Scene::set_transform`. Random numbers depend on the simulation's seed and the object's index and are the
+/// same on every machine.
+struct RigidMotion {
+  Vec3d velocity{};         ///< m/s
+  double random_speed = 0;  ///< speed in a random direction, added to `velocity`, m/s, ≥ 0
+  /// Angular velocity: its direction is the axis, its length degrees per second, counter-clockwise.
+  Vec3d spin{};
+  double random_spin = 0;               ///< about a random axis, added to `spin`, degrees per second, ≥ 0
+  std::optional<std::uint64_t> seed{};  ///< replaces the object's index
+};
+
 /// The user's own motion: writes the positions of the vertices at `seconds`, the time at the end of the step.
 /// On entry, `positions` contains the positions of the step before, and the rest positions in the first step.
 /// The simulation calls the function once per step, from one thread, in the order of objects. It calls it
@@ -82,8 +95,9 @@ struct ContactResponse {
 struct SimulationOptions {
   SceneOptions scene{};
   double time_step = 0.01;  ///< s, > 0
-  /// Reflects bodies of masses and springs (section 5.2 of the paper): when a body reaches beyond a side
-  /// after a step and its mean velocity points outward, that velocity is reversed along the axis. So a body
+  /// Reflects bodies of masses and springs, and rigid objects (section 5.2 of the paper): when a body reaches
+  /// beyond a side after a step and its mean velocity points outward, that velocity is reversed along the
+  /// axis. So a body
   /// may reach outside by the length of one step. It returns from any position, keeps its speed, and gravity
   /// does not push it out. A body larger than the border is reflected in every step and so stays in
   /// place. Fixed vertices are not reflected. A side may be infinite.
@@ -118,10 +132,11 @@ class Simulation {
   Simulation(Simulation&&) noexcept;
   Simulation& operator=(Simulation&&) noexcept;
 
-  /// Adds an object that only `set_positions` moves, a body of masses and springs, or an object with the
-  /// user's motion. Throws `Error` as `Scene::add` and `MassSpringBody` do.
+  /// Adds an object that only `set_positions` moves, a body of masses and springs, a rigid object that moves,
+  /// or an object with the user's motion. Throws `Error` as `Scene::add` and `MassSpringBody` do.
   ObjectId add(const TriangleMesh& mesh, const ObjectOptions& object = {});
   ObjectId add(const TriangleMesh& mesh, const ObjectOptions& object, const MassSpringMotion& motion);
+  ObjectId add(const TriangleMesh& mesh, const ObjectOptions& object, const RigidMotion& motion);
   ObjectId add(const TriangleMesh& mesh, const ObjectOptions& object, MotionFunction motion);
   void remove(ObjectId object);
 
@@ -142,8 +157,11 @@ class Simulation {
 
   /// The scene of the simulation. Only the simulation moves its objects.
   const Scene& scene() const;
+  /// The positions of all vertices. They are valid until the next step. Of a rigid object, the first call
+  /// after a step computes them, O(n), so calls for one object must not overlap.
   std::span<const Vec3d> positions(ObjectId object) const;
-  /// Sets the positions of an object without motion, or of a body, which keeps its velocities. They apply
+  /// Sets the positions of an object without motion, of a body, which keeps its velocities, or of a rigid
+  /// object, which keeps its velocity and spin and turns about its new centre from now on. They apply
   /// at once: the paths of the next step start there. Throws `Error` as `Scene::set_positions` does, and when
   /// the user's motion moves the object.
   void set_positions(ObjectId object, std::span<const Vec3d> positions);

@@ -41,6 +41,9 @@ struct Description<MassSpringOptions> {
                                    .key = "mass"});
     number("stiffness", &Options::stiffness, "N/m", ValueRange::from(0),
            "Stiffness of the spring on each edge");
+    number(
+        "rest_length", &Options::rest_length, "", ValueRange::above(0),
+        "Length of each spring at rest (the paper's spring length), as a factor of its length in the mesh");
     number("damping", &Options::damping, "N s/m", ValueRange::from(0), "Damping along each spring");
     number("air_friction", &Options::air_friction, "N s/m", ValueRange::from(0),
            "Friction of each vertex against the air");
@@ -128,6 +131,38 @@ struct Description<MassSpringMotion> {
         .member = &Motion::handles,
         .doc = "Vertices that are moved by a vector and then held",
         .key = "pull"});
+  }
+};
+
+template <>
+struct Description<RigidMotion> {
+  static constexpr const char* name = "RigidMotion";
+  template <class Visitor>
+  static constexpr void visit(Visitor&& visitor) {
+    using Motion = RigidMotion;
+    visitor(Field<Motion, Vec3d>{
+        .name = "velocity", .member = &Motion::velocity, .doc = "Velocity at the start", .unit = "m/s"});
+    visitor(Field<Motion, double>{.name = "random_speed",
+                                  .member = &Motion::random_speed,
+                                  .doc = "Speed in a random direction that is added to the velocity",
+                                  .range = ValueRange::from(0),
+                                  .unit = "m/s"});
+    visitor(Field<Motion, Vec3d>{.name = "spin",
+                                 .member = &Motion::spin,
+                                 .doc =
+                                     "Angular velocity: its direction is the axis through the centre of the "
+                                     "vertices, its length the speed, counter-clockwise",
+                                 .unit = "degrees/s"});
+    visitor(Field<Motion, double>{.name = "random_spin",
+                                  .member = &Motion::random_spin,
+                                  .doc = "Angular velocity about a random axis that is added to the spin",
+                                  .range = ValueRange::from(0),
+                                  .unit = "degrees/s"});
+    visitor(Field<Motion, std::optional<std::uint64_t>>{
+        .name = "seed",
+        .member = &Motion::seed,
+        .doc = "Seed of the random numbers, instead of the number of the object; each copy adds its own "
+               "number"});
   }
 };
 

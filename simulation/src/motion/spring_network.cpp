@@ -57,20 +57,21 @@ std::vector<Ends> pairs_across_edges(std::span<const Side> sides, std::span<cons
   return pairs;
 }
 
-std::vector<SpringElement> springs_between(std::span<const Ends> pairs, std::span<const Vec3d> positions) {
+std::vector<SpringElement> springs_between(std::span<const Ends> pairs, std::span<const Vec3d> positions,
+                                           double length_factor) {
   std::vector<SpringElement> springs;
   springs.reserve(pairs.size());
   for (const auto& [a, b] : pairs) {
-    const double rest_length = norm(positions[b] - positions[a]);
+    const double rest_length = length_factor * norm(positions[b] - positions[a]);
     if (std::isfinite(rest_length)) springs.push_back({a, b, rest_length});
   }
   return springs;
 }
 
-std::vector<AreaElement> areas_of(const TriangleMesh& rest) {
+std::vector<AreaElement> areas_of(const TriangleMesh& mesh, double length_factor) {
   std::vector<AreaElement> areas;
-  const auto& p = rest.positions;
-  for (const Triangle& t : rest.triangles) {
+  const auto& p = mesh.positions;
+  for (const Triangle& t : mesh.triangles) {
     const double area = triangle_area(p[t[0]], p[t[1]], p[t[2]]);
     double longest_squared = 0;
     for (int corner = 0; corner < 3; ++corner) {
@@ -78,8 +79,10 @@ std::vector<AreaElement> areas_of(const TriangleMesh& rest) {
       longest_squared = std::max(longest_squared, dot(side, side));
     }
     const double inverse_scale = 4 / (std::sqrt(3.0) * longest_squared);
-    if (area > 0 && std::isfinite(longest_squared) && std::isfinite(inverse_scale)) {
-      areas.push_back({t, area, inverse_scale});
+    const double rest_area = length_factor * length_factor * area;
+    if (area > 0 && std::isfinite(longest_squared) && std::isfinite(inverse_scale) &&
+        std::isfinite(rest_area)) {
+      areas.push_back({t, rest_area, inverse_scale});
     }
   }
   return areas;
@@ -158,18 +161,20 @@ void number_slots(SpringNetwork& network) {
 
 }  // namespace
 
-SpringNetwork build_spring_network(const TriangleMesh& rest, bool with_bending, bool with_areas,
+SpringNetwork build_spring_network(const TriangleMesh& mesh, const MassSpringOptions& options,
                                    const ClosedParts& closed) {
   SpringNetwork network;
-  network.vertex_count = static_cast<std::uint32_t>(rest.positions.size());
+  network.vertex_count = static_cast<std::uint32_t>(mesh.positions.size());
   const std::uint32_t block_count = network.block_count();
-  const std::vector<Side> sides = sorted_sides(rest.triangles);
+  const std::vector<Side> sides = sorted_sides(mesh.triangles);
   const std::vector<Ends> edges = distinct_edges(sides);
-  network.edges = in_blocks(springs_between(edges, rest.positions), block_count);
+  network.edges = in_blocks(springs_between(edges, mesh.positions, options.rest_length), block_count);
   std::vector<Ends> across;
-  if (with_bending) across = pairs_across_edges(sides, edges);
-  network.bending = in_blocks(springs_between(across, rest.positions), block_count);
-  network.areas = in_blocks(with_areas ? areas_of(rest) : std::vector<AreaElement>{}, block_count);
+  if (options.bending_stiffness > 0) across = pairs_across_edges(sides, edges);
+  network.bending = in_blocks(springs_between(across, mesh.positions, options.rest_length), block_count);
+  std::vector<AreaElement> areas;
+  if (options.area_stiffness > 0) areas = areas_of(mesh, options.rest_length);
+  network.areas = in_blocks(areas, block_count);
   network.volumes = in_blocks(closed.elements, block_count);
   network.parts = closed.parts;
   network.runs = runs_of(network.volumes);

@@ -7,6 +7,7 @@
 
 #include "motion/closed_parts.hpp"
 #include "supple/mesh.hpp"
+#include "supple/motion.hpp"
 
 namespace supple {
 
@@ -19,7 +20,7 @@ struct SpringElement {
 };
 
 /// Preserves the area of a triangle. `inverse_scale` is one over the area of the equilateral triangle on its
-/// longest side. With the area itself, the stiffness of slivers would be unbounded.
+/// longest side in the mesh. With the area itself, the stiffness of slivers would be unbounded.
 struct AreaElement {
   Triangle corners{};
   double rest_area = 0;
@@ -65,9 +66,10 @@ struct SpringNetwork {
   std::uint32_t block_count() const { return (vertex_count + vertex_block_size - 1) / vertex_block_size; }
 };
 
-/// Omits elements with a vertex that is not finite, and elements whose size overflows double. An edge of
-/// more than two triangles has one bending spring for each two that are consecutive in the mesh. O(n log n).
-SpringNetwork build_spring_network(const TriangleMesh& rest, bool with_bending, bool with_areas,
+/// The springs on edges, and those across edges and the areas when `options` give them a stiffness. Omits
+/// elements with a vertex that is not finite, and elements whose size overflows double. An edge of more than
+/// two triangles has one bending spring for each two that are consecutive in the mesh. O(n log n).
+SpringNetwork build_spring_network(const TriangleMesh& mesh, const MassSpringOptions& options,
                                    const ClosedParts& closed = {});
 
 /// |(b - a) × (c - a)| / 2

@@ -18,8 +18,7 @@ struct Link {
 /// The springs, and for each triangle with area stiffness k, springs of k / √3 on its sides, which are at
 /// least as stiff.
 std::vector<Link> links_of(const TriangleMesh& rest, const MassSpringOptions& springs) {
-  const SpringNetwork network =
-      build_spring_network(rest, springs.bending_stiffness > 0, springs.area_stiffness > 0);
+  const SpringNetwork network = build_spring_network(rest, springs);
   std::vector<Link> links;
   const auto add = [&](std::uint32_t a, std::uint32_t b, double stiffness) {
     if (stiffness > 0) links.push_back({a, b, stiffness});

@@ -62,26 +62,33 @@ Simulation::Implementation::Implementation(const SimulationOptions& simulation_o
 
 /// Everything that may throw comes first.
 ObjectId Simulation::Implementation::add(const TriangleMesh& mesh, const ObjectOptions& object_options,
-                                         const MassSpringMotion* motion, MotionFunction function) {
+                                         ObjectMotion motion) {
   check_mesh(mesh);
-  if ((motion != nullptr || function != nullptr) && object_options.is_static) {
+  if (motion.index() != 0 && object_options.is_static) {
     fail((object_options.name.empty() ? mesh.name : object_options.name) +
          " is static and has a motion; leave one of them out");
   }
   auto added = std::make_unique<SimulatedObject>();
-  added->function = std::move(function);
-  if (motion == nullptr) {
+  const auto random_of = [&](const std::optional<std::uint64_t>& seed) {
+    const std::uint64_t number = added->id.index | std::uint64_t{added->id.generation} << 32;
+    return Random(options.seed, seed.value_or(number));
+  };
+  if (const auto* const springs = std::get_if<const MassSpringMotion*>(&motion)) {
+    // A body too small for threads is stepped in parallel with others.
+    const bool has_threads = is_worth_threads(mesh.positions.size(), (*springs)->springs.integrator);
+    const std::uint32_t threads = has_threads ? options.scene.threads : 1;
+    MassSpringBody body = make_body(mesh, **springs, threads);
+    added->id = scene.add(mesh, object_options);
+    added->moving_body = std::make_unique<MovingBody>(std::move(body), **springs, options.time_step,
+                                                      random_of((*springs)->seed));
+  } else if (const auto* const rigid = std::get_if<const RigidMotion*>(&motion)) {
+    check(**rigid, "motion of " + mesh.name);
+    added->id = scene.add(mesh, object_options);
+    added->rigid_body.emplace(mesh.positions, **rigid, options.time_step, random_of((*rigid)->seed));
+  } else {
+    if (auto* const function = std::get_if<MotionFunction>(&motion)) added->function = std::move(*function);
     added->own_positions = mesh.positions;
     added->id = scene.add(mesh, object_options);
-  } else {
-    // A body too small for threads is stepped in parallel with others.
-    const bool has_threads = is_worth_threads(mesh.positions.size(), motion->springs.integrator);
-    const std::uint32_t threads = has_threads ? options.scene.threads : 1;
-    MassSpringBody body = make_body(mesh, *motion, threads);
-    added->id = scene.add(mesh, object_options);
-    const std::uint64_t number = added->id.index | std::uint64_t{added->id.generation} << 32;
-    added->moving_body = std::make_unique<MovingBody>(std::move(body), *motion, options.time_step,
-                                                      Random(options.seed, motion->seed.value_or(number)));
   }
   if (response_) add_to_response(mesh, object_options, *added);
   const ObjectId id = added->id;
@@ -124,6 +131,8 @@ void Simulation::Implementation::set_positions(ObjectId id, std::span<const Vec3
   found.is_on_path = false;
   if (found.moving_body != nullptr) {
     found.moving_body->body.set_positions(positions);
+  } else if (found.rigid_body) {
+    found.rigid_body->set_positions(positions);
   } else {
     found.own_positions.assign(positions.begin(), positions.end());
   }
@@ -144,6 +153,7 @@ std::optional<MotionError> Simulation::Implementation::try_step() {
   call_functions(static_cast<double>(steps + 1) * options.time_step);
   remember_positions();
   if (auto error = step_bodies()) return error;
+  step_rigid_bodies();
   if (response_) respond_to_contacts();
   ++steps;
   accept_written_positions();
@@ -163,9 +173,9 @@ void Simulation::Implementation::call_functions(double seconds) {
 }
 
 void Simulation::Implementation::remember_positions() {
-  if (!is_continuous() && !response_) return;
+  if (!needs_paths()) return;
   for (const auto& object : objects_) {
-    if (object == nullptr || object->moving_body == nullptr) continue;
+    if (object == nullptr || (object->moving_body == nullptr && !object->rigid_body)) continue;
     const std::span<const Vec3d> positions = object->positions();
     object->before.assign(positions.begin(), positions.end());
   }
@@ -210,6 +220,12 @@ void Simulation::Implementation::undo_step_of_bodies() {
   }
 }
 
+void Simulation::Implementation::step_rigid_bodies() {
+  for (const auto& object : objects_) {
+    if (object != nullptr && object->rigid_body) object->rigid_body->step();
+  }
+}
+
 void Simulation::Implementation::respond_to_contacts() {
   responding_.clear();
   for (const auto& object : objects_) {
@@ -218,6 +234,8 @@ void Simulation::Implementation::respond_to_contacts() {
       const MassSpringBody& body = object->moving_body->body;
       responding_.push_back(
           {object->id, object->before, body.positions(), body.velocities(), 1 / body.options().vertex_mass});
+    } else if (object->rigid_body) {
+      responding_.push_back({object->id, object->before, object->rigid_body->positions(), {}});
     } else if (object->function != nullptr) {
       responding_.push_back({object->id, object->own_positions, object->next, {}});
     } else {
@@ -246,6 +264,8 @@ void Simulation::Implementation::place_in_scene() {
     if (is_continuous()) {
       scene.set_motion(object->id, object->before, object->positions());
       object->is_on_path = true;
+    } else if (object->rigid_body) {
+      object->rigid_body->place(scene, object->id);
     } else {
       scene.set_positions(object->id, object->positions());
     }
@@ -254,7 +274,9 @@ void Simulation::Implementation::place_in_scene() {
 
 void Simulation::Implementation::prepare_next_step() {
   for (const auto& object : objects_) {
-    if (object != nullptr && object->moving_body != nullptr) object->moving_body->end_step(options.border);
+    if (object == nullptr) continue;
+    if (object->moving_body != nullptr) object->moving_body->end_step(options.border);
+    if (object->rigid_body && options.border) object->rigid_body->reflect_at(*options.border);
   }
 }
 
@@ -265,15 +287,18 @@ Simulation::Simulation(Simulation&&) noexcept = default;
 Simulation& Simulation::operator=(Simulation&&) noexcept = default;
 
 ObjectId Simulation::add(const TriangleMesh& mesh, const ObjectOptions& object) {
-  return implementation_->add(mesh, object, nullptr, nullptr);
+  return implementation_->add(mesh, object, {});
 }
 ObjectId Simulation::add(const TriangleMesh& mesh, const ObjectOptions& object,
                          const MassSpringMotion& motion) {
-  return implementation_->add(mesh, object, &motion, nullptr);
+  return implementation_->add(mesh, object, &motion);
+}
+ObjectId Simulation::add(const TriangleMesh& mesh, const ObjectOptions& object, const RigidMotion& motion) {
+  return implementation_->add(mesh, object, &motion);
 }
 ObjectId Simulation::add(const TriangleMesh& mesh, const ObjectOptions& object, MotionFunction motion) {
   if (motion == nullptr) fail("add: the motion of " + mesh.name + " is an empty function");
-  return implementation_->add(mesh, object, nullptr, std::move(motion));
+  return implementation_->add(mesh, object, std::move(motion));
 }
 void Simulation::remove(ObjectId object) {
   implementation_->remove(object);

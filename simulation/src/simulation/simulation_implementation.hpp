@@ -5,19 +5,26 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "core/parallel.hpp"
 #include "simulation/impulse_response.hpp"
 #include "simulation/moving_body.hpp"
+#include "simulation/rigid_body.hpp"
 #include "supple/simulation.hpp"
 
 namespace supple {
 
-/// One object, moved by a body, by a function, or not at all.
+/// The motion of an object; null pointers do not occur.
+using ObjectMotion =
+    std::variant<std::monostate, const MassSpringMotion*, const RigidMotion*, MotionFunction>;
+
+/// One object, moved by masses and springs, as a rigid body, by a function, or not at all.
 struct SimulatedObject {
   ObjectId id;
   std::unique_ptr<MovingBody> moving_body;
+  std::optional<RigidBody> rigid_body;
   MotionFunction function;
   std::vector<Vec3d> own_positions;    // for objects without a body
   std::vector<Vec3d> next;             // the output of the function, until the step succeeds
@@ -27,9 +34,10 @@ struct SimulatedObject {
   std::exception_ptr exception;        // and as the exception, when there was memory for it
 
   bool has_failed() const { return failure.has_value() || exception != nullptr; }
-  bool moves() const { return moving_body != nullptr || function != nullptr; }
+  bool moves() const { return moving_body != nullptr || rigid_body || function != nullptr; }
   std::span<const Vec3d> positions() const {
-    return moving_body ? moving_body->body.positions() : std::span<const Vec3d>(own_positions);
+    if (moving_body != nullptr) return moving_body->body.positions();
+    return rigid_body ? rigid_body->positions() : std::span<const Vec3d>(own_positions);
   }
 };
 
@@ -37,8 +45,7 @@ class Simulation::Implementation {
  public:
   explicit Implementation(const SimulationOptions& options);
 
-  ObjectId add(const TriangleMesh& mesh, const ObjectOptions& object_options, const MassSpringMotion* motion,
-               MotionFunction function);
+  ObjectId add(const TriangleMesh& mesh, const ObjectOptions& object_options, ObjectMotion motion);
   void remove(ObjectId id);
   const DetectResult& detect();
   std::optional<MotionError> try_step();
@@ -58,10 +65,12 @@ class Simulation::Implementation {
   std::optional<MotionError> step_bodies();
   void step_body(SimulatedObject& object);
   void undo_step_of_bodies();
+  void step_rigid_bodies();
   void respond_to_contacts();
   void accept_written_positions();
   void place_in_scene();
   void prepare_next_step();
+  bool needs_paths() const { return is_continuous() || response_; }
   bool is_continuous() const { return contains(options.scene.contacts, ContactKinds::continuous); }
 
   Parallel parallel_;
