@@ -32,6 +32,9 @@ std::string value_text(double value) {
 std::string value_text(Vec3d value) {
   return to_text(value);
 }
+std::string value_text(const std::optional<RootCube>& value) {
+  return value ? text_of(*value) : "none";
+}
 template <class Value>
 requires std::is_integral_v<Value> std::string value_text(Value value) {
   return std::to_string(value);
@@ -129,9 +132,11 @@ class Comparison {
   Line contacts(const RecordedFrame& a, const RecordedFrame& b) const;
   Line contact_points(const RecordedFrame& a, const RecordedFrame& b) const;
   Line continuous_contacts(const RecordedFrame& a, const RecordedFrame& b) const;
+  Line colliding_vertices(const RecordedFrame& a, const RecordedFrame& b) const;
 
   std::string name(ObjectId id) const;
   std::string name(const ObjectPair& pair) const { return name(pair.a) + " and " + name(pair.b); }
+  std::string name(const CollidingVertices& group) const { return name(ObjectPair{group.a, group.b}); }
   std::string name(const Contact& c) const {
     return "triangle " + std::to_string(c.triangle_a) + " of " + name(c.object_a) + " and triangle " +
            std::to_string(c.triangle_b) + " of " + name(c.object_b);
@@ -290,6 +295,25 @@ Line Comparison::continuous_contacts(const RecordedFrame& a, const RecordedFrame
   return lists("continuous contact", a.continuous_contacts, b.continuous_contacts, key, compare_rows);
 }
 
+Line Comparison::colliding_vertices(const RecordedFrame& a, const RecordedFrame& b) const {
+  const auto compare_groups = [&](const CollidingVertices& p, const CollidingVertices& q) {
+    Line line = first_of([&] { return compare_exactly("count_a", p.count_a, q.count_a); },
+                         [&] { return compare_exactly("count_b", p.count_b, q.count_b); },
+                         [&] { return compare_exactly("first_vertex", p.first_vertex, q.first_vertex); });
+    for (std::size_t i = p.first_vertex; !line && i < p.first_vertex + p.count_a + p.count_b; ++i) {
+      line = compare_exactly("vertex " + std::to_string(i - p.first_vertex), a.colliding_vertices[i],
+                             b.colliding_vertices[i]);
+    }
+    return line;
+  };
+  return lists(
+      "colliding vertices", a.colliding_vertex_groups, b.colliding_vertex_groups,
+      [](const CollidingVertices& group) {
+        return ObjectPair{group.a, group.b};
+      },
+      compare_groups);
+}
+
 Line Comparison::frame(std::uint64_t number) const {
   const RecordedFrame a = a_.frame(number), b = b_.frame(number);
   if (Line line = compare_exactly("time", a.time, b.time)) return line;
@@ -300,14 +324,17 @@ Line Comparison::frame(std::uint64_t number) const {
                               b_.positions(number, place)))
       return line;
   }
-  return first_of([&] { return pairs("object pair", a.object_pairs, b.object_pairs); },
-                  [&] { return contacts(a, b); }, [&] { return contact_points(a, b); },
-                  [&] { return continuous_contacts(a, b); },
-                  [&] { return pairs("event volume_begin", a.volume_begin, b.volume_begin); },
-                  [&] { return pairs("event volume_end", a.volume_end, b.volume_end); },
-                  [&] { return pairs("event contact_begin", a.contact_begin, b.contact_begin); },
-                  [&] { return pairs("event contact_end", a.contact_end, b.contact_end); },
-                  [&] { return compare_described("statistics, ", a.stats, b.stats); });
+  return first_of(
+      [&] { return pairs("object pair", a.object_pairs, b.object_pairs); }, [&] { return contacts(a, b); },
+      [&] { return contact_points(a, b); }, [&] { return continuous_contacts(a, b); },
+      [&] { return colliding_vertices(a, b); },
+      [&] { return pairs("event volume_begin", a.volume_begin, b.volume_begin); },
+      [&] { return pairs("event volume_end", a.volume_end, b.volume_end); },
+      [&] { return pairs("event narrow_phase_begin", a.narrow_phase_begin, b.narrow_phase_begin); },
+      [&] { return pairs("event narrow_phase_end", a.narrow_phase_end, b.narrow_phase_end); },
+      [&] { return pairs("event contact_begin", a.contact_begin, b.contact_begin); },
+      [&] { return pairs("event contact_end", a.contact_end, b.contact_end); },
+      [&] { return compare_described("statistics, ", a.stats, b.stats); });
 }
 
 }  // namespace

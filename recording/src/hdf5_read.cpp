@@ -75,7 +75,7 @@ bool InputFile::has_attribute(const std::string& group, const char* name) const 
   return H5Aexists_by_name(id(), group.c_str(), name, H5P_DEFAULT) > 0;
 }
 
-bool InputFile::has_dataset(const std::string& path) const {
+bool InputFile::has_item(const std::string& path) const {
   return H5Lexists(id(), path.c_str(), H5P_DEFAULT) > 0;
 }
 
@@ -103,14 +103,22 @@ AttributeHandle InputFile::open_attribute(const std::string& group, const char* 
 }
 
 double InputFile::number(const std::string& group, const char* name) const {
+  double value = 0;
+  numbers(group, name, {&value, 1});
+  return value;
+}
+
+void InputFile::numbers(const std::string& group, const char* name, std::span<double> values) const {
   const AttributeHandle attribute = open_attribute(group, name);
   const DatatypeHandle type(H5Aget_type(attribute.id()));
   const DataspaceHandle space(H5Aget_space(attribute.id()));
-  double value = 0;
-  if (!is_number(type.id()) || H5Sget_simple_extent_npoints(space.id()) != 1 ||
-      H5Aread(attribute.id(), H5T_NATIVE_DOUBLE, &value) < 0)
-    fail(group == "/" ? "" : group, std::string("attribute ") + name + " is no single number; record again");
-  return value;
+  const auto count = static_cast<hssize_t>(values.size());
+  if (!is_number(type.id()) || H5Sget_simple_extent_npoints(space.id()) != count ||
+      H5Aread(attribute.id(), H5T_NATIVE_DOUBLE, values.data()) < 0)
+    fail(group == "/" ? "" : group,
+         std::string("attribute ") + name + " is no " +
+             (count == 1 ? "single number" : "list of " + std::to_string(count) + " numbers") +
+             "; record again");
 }
 
 std::uint32_t InputFile::count(const std::string& group, const char* name, std::uint32_t largest) const {

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -22,10 +23,12 @@ class InputFile {
   std::uint64_t size() const { return size_; }
 
   bool has_attribute(const std::string& group, const char* name) const;
-  bool has_dataset(const std::string& path) const;
+  bool has_item(const std::string& path) const;
   bool has_text(const std::string& group, const char* name) const;
   std::size_t count_links(const std::string& group) const;
   double number(const std::string& group, const char* name) const;
+  /// Fills `values`.
+  void numbers(const std::string& group, const char* name, std::span<double> values) const;
   /// Reads a whole number from 0 to `largest`.
   std::uint32_t count(const std::string& group, const char* name,
                       std::uint32_t largest = ~std::uint32_t{0}) const;

@@ -72,6 +72,14 @@ void write_attribute(hid_t file, const std::string& group, const char* name, dou
   write_attribute(file, group, name, H5T_NATIVE_DOUBLE, &value);
 }
 
+void write_attribute(hid_t file, const std::string& group, const char* name, std::span<const double> values) {
+  const hsize_t count = values.size();
+  const DataspaceHandle space(check(H5Screate_simple(1, &count, nullptr)));
+  const AttributeHandle attribute(check(H5Acreate_by_name(
+      file, group.c_str(), name, H5T_NATIVE_DOUBLE, space.id(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT)));
+  check(H5Awrite(attribute.id(), H5T_NATIVE_DOUBLE, values.data()));
+}
+
 void write_attribute(hid_t file, const std::string& group, const char* name, std::uint32_t value) {
   write_attribute(file, group, name, H5T_NATIVE_UINT32, &value);
 }

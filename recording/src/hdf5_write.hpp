@@ -27,6 +27,7 @@ hid_t native_type(ScalarType type);
 
 void create_group(hid_t file, const std::string& path);
 void write_attribute(hid_t file, const std::string& group, const char* name, double value);
+void write_attribute(hid_t file, const std::string& group, const char* name, std::span<const double> values);
 void write_attribute(hid_t file, const std::string& group, const char* name, std::uint32_t value);
 void write_attribute(hid_t file, const std::string& group, const char* name, bool value);  // 0 or 1, uint8
 void write_attribute(hid_t file, const std::string& group, const char* name, const std::string& value);

@@ -86,6 +86,33 @@ const std::vector<ColumnOf<ContinuousContact>>& columns_of() {
 }
 
 template <>
+const std::vector<ColumnOf<CollidingVertices>>& columns_of() {
+  static const std::vector<ColumnOf<CollidingVertices>> columns{
+      column<CollidingVertices>(
+          "object_a", [](auto& row) -> auto& { return row.a.index; }),
+      column<CollidingVertices>(
+          "object_b", [](auto& row) -> auto& { return row.b.index; }),
+      column<CollidingVertices>(
+          "first_vertex", [](auto& row) -> auto& { return row.first_vertex; }),
+      column<CollidingVertices>(
+          "count_a", [](auto& row) -> auto& { return row.count_a; }),
+      column<CollidingVertices>(
+          "count_b", [](auto& row) -> auto& { return row.count_b; }),
+  };
+  return columns;
+}
+
+/// Vertices in colliding leaves.
+template <>
+const std::vector<ColumnOf<std::uint32_t>>& columns_of() {
+  static const std::vector<ColumnOf<std::uint32_t>> columns{
+      column<std::uint32_t>(
+          "vertex", [](auto& row) -> auto& { return row; }),
+  };
+  return columns;
+}
+
+template <>
 const std::vector<ColumnOf<StepStats>>& columns_of() {
   static const std::vector<ColumnOf<StepStats>> columns = [] {
     std::vector<ColumnOf<StepStats>> list;

@@ -2,6 +2,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <chrono>
 #include <cstring>
@@ -64,8 +65,9 @@ template <class Row>
 std::vector<Row> with_places(std::span<const Row> rows, const Places& place_of) {
   std::vector<Row> result(rows.begin(), rows.end());
   for (Row& row : result) {
-    if constexpr (std::is_same_v<Row, ObjectPair>) {
-      row = {place_of(row.a), place_of(row.b)};
+    if constexpr (requires { row.a; }) {
+      row.a = place_of(row.a);
+      row.b = place_of(row.b);
     } else {
       row.object_a = place_of(row.object_a);
       row.object_b = place_of(row.object_b);
@@ -129,6 +131,10 @@ void write_options(hid_t file, const std::string& group, const Options& options)
         if (field.is_of_machine) return;
         if constexpr (Worded<Value>) {
           write_attribute(file, group, field.key, std::string(word_of(value)));
+        } else if constexpr (std::is_same_v<Value, std::optional<RootCube>>) {
+          if (!value) return;
+          const auto& [corner, edge] = *value;
+          write_attribute(file, group, field.key, std::array{corner.x, corner.y, corner.z, edge});
         } else {
           if constexpr (std::is_same_v<Value, bool>) {
             if (field.has_truth_words())
@@ -189,9 +195,12 @@ struct Datasets {
     contacts.emplace(file, group_names::contacts);
     contact_points.emplace(file, group_names::contact_points);
     continuous_contacts.emplace(file, group_names::continuous_contacts);
+    colliding_vertex_groups.emplace(file, group_names::colliding_vertex_groups);
+    colliding_vertices.emplace(file, group_names::colliding_vertices);
     create_group(file, "events");
-    for (const char* name : {group_names::volume_begin, group_names::volume_end, group_names::contact_begin,
-                             group_names::contact_end})
+    for (const char* name :
+         {group_names::volume_begin, group_names::volume_end, group_names::narrow_phase_begin,
+          group_names::narrow_phase_end, group_names::contact_begin, group_names::contact_end})
       events.emplace_back(file, name);
     statistics = create_columns<StepStats>(file, group_names::statistics, frames_in_chunk);
     // `time` is created last, so it grows last: a frame exists when its time exists.
@@ -204,6 +213,8 @@ struct Datasets {
     contacts->for_each_column(function);
     contact_points->for_each_column(function);
     continuous_contacts->for_each_column(function);
+    colliding_vertex_groups->for_each_column(function);
+    colliding_vertices->for_each_column(function);
     for (RaggedWriter<ObjectPair>& pairs : events) pairs.for_each_column(function);
     for (ColumnWriter& column : statistics) function(column);
     function(*time);
@@ -214,7 +225,10 @@ struct Datasets {
   std::optional<RaggedWriter<Contact>> contacts;
   std::optional<RaggedWriter<ContactPoint>> contact_points;
   std::optional<RaggedWriter<ContinuousContact>> continuous_contacts;
-  std::vector<RaggedWriter<ObjectPair>> events;  ///< begin and end of volume overlaps, then of contacts
+  std::optional<RaggedWriter<CollidingVertices>> colliding_vertex_groups;
+  std::optional<RaggedWriter<std::uint32_t>> colliding_vertices;
+  /// Begin and end of volume overlaps, then of the narrow phase, then of contacts.
+  std::vector<RaggedWriter<ObjectPair>> events;
   std::vector<ColumnWriter> statistics;
   std::optional<ColumnWriter> time;
 };
@@ -304,8 +318,12 @@ struct Recorder::Implementation::Rows {
         contacts(with_places(result.contacts, place_of)),
         contact_points(result.contact_points),
         continuous_contacts(with_places(result.continuous_contacts, place_of)),
+        colliding_vertex_groups(with_places(result.colliding_vertex_groups, place_of)),
+        colliding_vertices(result.colliding_vertices),
         events{with_places(result.volume_events.begin, place_of),
                with_places(result.volume_events.end, place_of),
+               with_places(result.narrow_phase_events.begin, place_of),
+               with_places(result.narrow_phase_events.end, place_of),
                with_places(result.contact_events.begin, place_of),
                with_places(result.contact_events.end, place_of)},
         stats(result.stats) {}
@@ -314,7 +332,9 @@ struct Recorder::Implementation::Rows {
   std::vector<Contact> contacts;
   std::span<const ContactPoint> contact_points;
   std::vector<ContinuousContact> continuous_contacts;
-  std::array<std::vector<ObjectPair>, 4> events;
+  std::vector<CollidingVertices> colliding_vertex_groups;
+  std::span<const std::uint32_t> colliding_vertices;
+  std::array<std::vector<ObjectPair>, 6> events;
   StepStats stats;
 };
 
@@ -406,6 +426,8 @@ void Recorder::Implementation::append(double time, std::span<const std::span<con
   datasets_->contacts->append(rows.contacts);
   datasets_->contact_points->append(rows.contact_points);
   datasets_->continuous_contacts->append(rows.continuous_contacts);
+  datasets_->colliding_vertex_groups->append(rows.colliding_vertex_groups);
+  datasets_->colliding_vertices->append(rows.colliding_vertices);
   for (std::size_t i = 0; i < rows.events.size(); ++i) datasets_->events[i].append(rows.events[i]);
   append_rows(datasets_->statistics, std::span(&rows.stats, 1));
   datasets_->time->append_value(&time);

@@ -51,6 +51,18 @@ void read_option(const InputFile& file, const std::string& group, const std::str
   value = word == words[1];
 }
 
+/// The attribute is absent when the option has no value.
+void read_option(const InputFile& file, const std::string& group, const std::string& name,
+                 std::optional<RootCube>& value) {
+  if (!file.has_attribute(group, name.c_str())) return;
+  std::array<double, 4> numbers{};
+  file.numbers(group, name.c_str(), numbers);
+  value = RootCube{{numbers[0], numbers[1], numbers[2]}, numbers[3]};
+  if (!is_valid(*value))
+    fail_about(file, group, name, text_of(*value),
+               ", not " + std::string(range_of_root_cube) + "; record again");
+}
+
 template <class Options>
 void read_options(const InputFile& file, const std::string& group, std::uint32_t version, Options& options) {
   for_each_leaf(
@@ -61,7 +73,7 @@ void read_options(const InputFile& file, const std::string& group, std::uint32_t
           return;
         if constexpr (std::is_same_v<Value, bool>) {
           read_option(file, group, name, value, field.truth_words, version);
-        } else if constexpr (Worded<Value>) {
+        } else if constexpr (Worded<Value> || std::is_same_v<Value, std::optional<RootCube>>) {
           read_option(file, group, name, value);
         } else if constexpr (std::is_same_v<Value, std::string>) {
           value = file.text(group, name.c_str());
@@ -133,19 +145,24 @@ RecordingHeader read_header(const InputFile& file, std::uint32_t version) {
 template <class Row>
 class RaggedReader {
  public:
-  RaggedReader(const InputFile& file, std::uint32_t version, const char* group, std::uint64_t frames)
-      : file_(&file), end_(file, std::string(group) + "/end", ScalarType::uint64, {}) {
+  /// An optional group that the file lacks has no rows: an earlier program wrote the file.
+  RaggedReader(const InputFile& file, std::uint32_t version, const char* group, std::uint64_t frames,
+               bool is_optional = false)
+      : file_(&file) {
+    if (is_optional && !file.has_item(group)) return;
+    end_.emplace(file, std::string(group) + "/end", ScalarType::uint64, std::vector<hsize_t>{});
     for (const ColumnOf<Row>& column : columns_of<Row>()) {
       std::vector<hsize_t> row_shape;
       if (column.width > 1) row_shape.push_back(column.width);
       const std::string path = std::string(group) + "/" + column_in_version(column.name, version);
-      if (version < format_version && !file.has_dataset(path)) continue;
+      if (version < format_version && !file.has_item(path)) continue;
       columns_.push_back({column, ColumnReader(file, path, column.type, std::move(row_shape))});
     }
     check_ends(frames);
   }
 
   std::vector<Row> rows(std::uint64_t frame) {
+    if (!end_) return {};
     const std::uint64_t first = frame == 0 ? 0 : end_of(frame - 1);
     std::vector<Row> rows(end_of(frame) - first);
     for (auto& [column, reader] : columns_) {
@@ -165,13 +182,13 @@ class RaggedReader {
                                      " is " + std::to_string(value) + ", not below " +
                                      std::to_string(allowed) + damaged);
     }
-    file_->fail(end_.path(), "is damaged; record again");
+    file_->fail(end_->path(), "is damaged; record again");
   }
 
  private:
   std::uint64_t end_of(std::uint64_t frame) {
     std::uint64_t end = 0;
-    end_.read(frame, 1, reinterpret_cast<std::byte*>(&end));
+    end_->read(frame, 1, reinterpret_cast<std::byte*>(&end));
     return end;
   }
 
@@ -180,9 +197,9 @@ class RaggedReader {
     for (std::uint64_t frame = 0; frame < frames; ++frame) {
       const std::uint64_t end = end_of(frame);
       if (end < last)
-        file_->fail(end_.path(), "frame " + std::to_string(frame) + " ends at row " + std::to_string(end) +
-                                     ", before the frame before it, which ends at " + std::to_string(last) +
-                                     damaged);
+        file_->fail(end_->path(), "frame " + std::to_string(frame) + " ends at row " + std::to_string(end) +
+                                      ", before the frame before it, which ends at " + std::to_string(last) +
+                                      damaged);
       last = end;
     }
     for (const auto& [of, reader] : columns_) {
@@ -193,7 +210,7 @@ class RaggedReader {
   }
 
   const InputFile* file_;
-  ColumnReader end_;
+  std::optional<ColumnReader> end_;  ///< empty: the file lacks the group
   struct Column {
     ColumnOf<Row> of;
     ColumnReader reader;
@@ -240,6 +257,8 @@ class Recording::Implementation {
   std::vector<Contact> contacts(std::uint64_t frame, std::size_t points);
   std::vector<ContactPoint> contact_points(std::uint64_t frame);
   std::vector<ContinuousContact> continuous_contacts(std::uint64_t frame);
+  std::vector<CollidingVertices> colliding_vertex_groups(std::uint64_t frame,
+                                                         std::span<const std::uint32_t> vertices);
   StepStats stats(std::uint64_t frame);
 
   template <class Row>
@@ -273,7 +292,10 @@ class Recording::Implementation {
   RaggedReader<Contact> contacts_;
   RaggedReader<ContactPoint> contact_points_;
   RaggedReader<ContinuousContact> continuous_contacts_;
-  RaggedReader<ObjectPair> volume_begin_, volume_end_, contact_begin_, contact_end_;
+  RaggedReader<CollidingVertices> colliding_vertex_groups_;
+  RaggedReader<std::uint32_t> colliding_vertices_;
+  RaggedReader<ObjectPair> volume_begin_, volume_end_, narrow_phase_begin_, narrow_phase_end_, contact_begin_,
+      contact_end_;
   std::vector<std::optional<ColumnReader>>
       statistics_;  ///< in the order of `StepStats`; empty if the file lacks it
   std::vector<ColumnReader> positions_;
@@ -288,8 +310,12 @@ Recording::Implementation::Implementation(const std::string& path)
       contacts_(file_, version_, group_names::contacts, frame_count()),
       contact_points_(file_, version_, group_names::contact_points, frame_count()),
       continuous_contacts_(file_, version_, group_names::continuous_contacts, frame_count()),
+      colliding_vertex_groups_(file_, version_, group_names::colliding_vertex_groups, frame_count(), true),
+      colliding_vertices_(file_, version_, group_names::colliding_vertices, frame_count(), true),
       volume_begin_(file_, version_, group_names::volume_begin, frame_count()),
       volume_end_(file_, version_, group_names::volume_end, frame_count()),
+      narrow_phase_begin_(file_, version_, group_names::narrow_phase_begin, frame_count(), true),
+      narrow_phase_end_(file_, version_, group_names::narrow_phase_end, frame_count(), true),
       contact_begin_(file_, version_, group_names::contact_begin, frame_count()),
       contact_end_(file_, version_, group_names::contact_end, frame_count()) {
   const auto check_frames = [this](const ColumnReader& column, std::uint64_t needed) {
@@ -301,7 +327,7 @@ Recording::Implementation::Implementation(const std::string& path)
     const std::string dataset =
         std::string(group_names::statistics) + "/" + column_in_version(column.name, version_);
     statistics_.emplace_back();
-    if (!file_.has_dataset(dataset)) continue;  // files of earlier programs lack it
+    if (!file_.has_item(dataset)) continue;  // files of earlier programs lack it
     statistics_.back().emplace(file_, dataset, column.type, std::vector<hsize_t>{});
     check_frames(*statistics_.back(), frame_count());
   }
@@ -372,6 +398,26 @@ std::vector<ContinuousContact> Recording::Implementation::continuous_contacts(st
                          &ContinuousContact::object_b, check);
 }
 
+std::vector<CollidingVertices> Recording::Implementation::colliding_vertex_groups(
+    std::uint64_t frame, std::span<const std::uint32_t> vertices) {
+  const auto check = [&](std::size_t row, const CollidingVertices& group) {
+    const std::size_t count = vertices.size();
+    const auto check_value = [&](const char* column, std::uint64_t value, std::uint64_t allowed) {
+      check_below(colliding_vertex_groups_, frame, row, column, value, allowed);
+    };
+    check_value("count_a", group.count_a, count + 1);
+    check_value("count_b", group.count_b, count - group.count_a + 1);
+    check_value("first_vertex", group.first_vertex, count - group.count_a - group.count_b + 1);
+    for (std::size_t i = 0; i < std::size_t{group.count_a} + group.count_b; ++i) {
+      const ObjectId object = i < group.count_a ? group.a : group.b;
+      check_below(colliding_vertices_, frame, group.first_vertex + i, "vertex",
+                  vertices[group.first_vertex + i], header_.objects[object.index].rest_positions.size());
+    }
+  };
+  return rows_of_objects(colliding_vertex_groups_, frame, &CollidingVertices::a, &CollidingVertices::b,
+                         check);
+}
+
 StepStats Recording::Implementation::stats(std::uint64_t frame) {
   StepStats stats;
   for (std::size_t c = 0; c < statistics_.size(); ++c) {
@@ -400,6 +446,8 @@ RecordedFrame Recording::Implementation::summary(std::uint64_t number) {
   time_.read(number, 1, reinterpret_cast<std::byte*>(&frame.time));
   frame.volume_begin = pairs(volume_begin_, number);
   frame.volume_end = pairs(volume_end_, number);
+  frame.narrow_phase_begin = pairs(narrow_phase_begin_, number);
+  frame.narrow_phase_end = pairs(narrow_phase_end_, number);
   frame.contact_begin = pairs(contact_begin_, number);
   frame.contact_end = pairs(contact_end_, number);
   frame.stats = stats(number);
@@ -412,6 +460,8 @@ RecordedFrame Recording::Implementation::frame(std::uint64_t number) {
   frame.contact_points = contact_points(number);
   frame.contacts = contacts(number, frame.contact_points.size());
   frame.continuous_contacts = continuous_contacts(number);
+  frame.colliding_vertices = colliding_vertices_.rows(number);
+  frame.colliding_vertex_groups = colliding_vertex_groups(number, frame.colliding_vertices);
   return frame;
 }
 

@@ -38,7 +38,11 @@ struct RecordedFrame {
   std::vector<Contact> contacts{};
   std::vector<ContactPoint> contact_points{};
   std::vector<ContinuousContact> continuous_contacts{};
-  std::vector<ObjectPair> volume_begin{}, volume_end{}, contact_begin{}, contact_end{};
+  std::vector<CollidingVertices> colliding_vertex_groups{};
+  std::vector<std::uint32_t> colliding_vertices{};
+  std::vector<ObjectPair> volume_begin{}, volume_end{};
+  std::vector<ObjectPair> narrow_phase_begin{}, narrow_phase_end{};
+  std::vector<ObjectPair> contact_begin{}, contact_end{};
   StepStats stats{};
 };
 
