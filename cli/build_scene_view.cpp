@@ -94,8 +94,12 @@ class RecordedFrames : public viewer::Frames {
         for (const ObjectPair& pair : pairs)
           events.push_back({static_cast<std::uint32_t>(number), places.at(pair.a), places.at(pair.b)});
       };
-      add(frame.contact_begin, series_.begin);
-      add(frame.contact_end, series_.end);
+      add(frame.contact_begin, series_.contacts.begin);
+      add(frame.contact_end, series_.contacts.end);
+      add(frame.narrow_phase_begin, series_.narrow_phase.begin);
+      add(frame.narrow_phase_end, series_.narrow_phase.end);
+      add(frame.volume_begin, series_.volumes.begin);
+      add(frame.volume_end, series_.volumes.end);
       progress.update(number + 1, fmt::format("reading frame {} of {}", number + 1, count()));
     }
   }
@@ -119,9 +123,9 @@ std::shared_ptr<const viewer::Frames> frames_of(const Input& input, const ViewOp
       return std::make_shared<const RecordedFrames>(motion->recording);
   }
   if (!has_motion<FrameSequence>(input)) return nullptr;
-  if (has_motion<MassSpringMotion>(input))
+  if (has_motion<MassSpringMotion>(input) || has_motion<RigidMotion>(input))
     throw Error(fmt::format(
-        "{}: some objects are moved by files, others by masses and springs, which the viewer "
+        "{}: some objects are moved by files, others are bodies that a simulation moves, which the viewer "
         "cannot show together; record them first, supple simulate {} --record run.h5, and view run.h5",
         options.inputs.front(), options.inputs.front()));
   return std::make_shared<const FileFrames>(input);
@@ -131,6 +135,7 @@ viewer::ViewedObject object_of(const InputObject& object) {
   viewer::ViewedObject shown{object.mesh, object.options, {}};
   if (const auto* motion = motion_of<WaveMotion>(object)) shown.motion = *motion;
   if (const auto* motion = motion_of<MassSpringMotion>(object)) shown.motion = *motion;
+  if (const auto* motion = motion_of<RigidMotion>(object)) shown.motion = *motion;
   return shown;
 }
 

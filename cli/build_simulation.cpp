@@ -28,6 +28,7 @@ struct Adder {
   }
 
   void operator()(const MassSpringMotion& motion) { simulation.add(mesh, options, motion); }
+  void operator()(const RigidMotion& motion) { simulation.add(mesh, options, motion); }
 
   /// The step that ends at a time.
   auto step_at() const {

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <utility>
 
 #include "supple/result_descriptions.hpp"
 
@@ -19,24 +20,48 @@ std::string ids_of(const std::array<std::uint32_t, 2>& element, ElementPairKind 
 
 }  // namespace
 
-CsvReport::CsvReport(const std::string& file_name, ContactKinds contacts) : file_(file_name) {
-  const bool continuous = contains(contacts, ContactKinds::continuous);
-  std::fputs(continuous ? "frame,a,b,kind,a0,a1,b0,b1,toi,certainty\n" : "frame,a,b,i,j\n", file_.stream());
+CsvReport::CsvReport(const std::string& file_name, const SceneOptions& options)
+    : file_(file_name), has_kinds_(options.comparison.colliding_vertices) {
+  const bool continuous = contains(options.contacts, ContactKinds::continuous);
+  std::fputs(continuous   ? "frame,a,b,kind,a0,a1,b0,b1,toi,certainty\n"
+             : has_kinds_ ? "frame,a,b,kind,i,j\n"
+                          : "frame,a,b,i,j\n",
+             file_.stream());
 }
 
 void CsvReport::add(const Frame& frame) {
   fmt::memory_buffer rows;
   for (const Contact& c : frame.result.contacts) {
-    fmt::format_to(fmt::appender(rows), "{},{},{},{},{}\n", frame.number, c.object_a.index, c.object_b.index,
-                   c.triangle_a, c.triangle_b);
+    fmt::format_to(fmt::appender(rows), "{},{},{},{}{},{}\n", frame.number, c.object_a.index,
+                   c.object_b.index, has_kinds_ ? "contact," : "", c.triangle_a, c.triangle_b);
   }
   for (const ContinuousContact& c : frame.result.continuous_contacts) {
     fmt::format_to(fmt::appender(rows), "{},{},{},{},{},{},{},{}\n", frame.number, c.object_a.index,
                    c.object_b.index, word_of(c.kind), ids_of(c.element_a, c.kind),
                    ids_of(c.element_b, c.kind), c.toi, word_of(c.certainty));
   }
+  if (has_kinds_) add_narrow_phase(frame, rows);
   std::fwrite(rows.data(), 1, rows.size(), file_.stream());
   file_.check();
+}
+
+/// Adds the paper's output.
+void CsvReport::add_narrow_phase(const Frame& frame, fmt::memory_buffer& rows) {
+  for (const CollidingVertices& group : frame.result.colliding_vertex_groups) {
+    for (std::uint32_t i = 0; i < group.count_a + group.count_b; ++i) {
+      const std::uint32_t vertex = frame.result.colliding_vertices[group.first_vertex + i];
+      const auto [kind, cells] = i < group.count_a ? std::pair("vertex_a", fmt::format("{},", vertex))
+                                                   : std::pair("vertex_b", fmt::format(",{}", vertex));
+      fmt::format_to(fmt::appender(rows), "{},{},{},{},{}\n", frame.number, group.a.index, group.b.index,
+                     kind, cells);
+    }
+  }
+  const PairEvents& events = frame.result.narrow_phase_events;
+  for (const auto& [kind, pairs] :
+       {std::pair("narrow_phase_begin", events.begin), std::pair("narrow_phase_end", events.end)}) {
+    for (const ObjectPair& pair : pairs)
+      fmt::format_to(fmt::appender(rows), "{},{},{},{},,\n", frame.number, pair.a.index, pair.b.index, kind);
+  }
 }
 
 }  // namespace supple::cli

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <fmt/format.h>
+
 #include <string>
 
 #include "output_file.hpp"
@@ -9,16 +11,19 @@
 namespace supple::cli {
 
 /// Writes one row per contact, as docs/json.md describes: the frame, the objects, and their triangles or
-/// elements.
+/// elements. With colliding vertices also one row per vertex and per event of the narrow phase.
 class CsvReport {
  public:
-  CsvReport(const std::string& file_name, ContactKinds contacts);
+  CsvReport(const std::string& file_name, const SceneOptions& options);
 
   void add(const Frame& frame);
   void finish() { file_.close(); }
 
  private:
+  void add_narrow_phase(const Frame& frame, fmt::memory_buffer& rows);
+
   OutputFile file_;
+  bool has_kinds_;  ///< a column says what each row is
 };
 
 }  // namespace supple::cli

@@ -32,6 +32,8 @@ std::string allowed_values(const Field<Struct, Value>& field) {
     return "three finite numbers";
   } else if constexpr (std::is_same_v<Value, std::optional<std::uint64_t>>) {
     return text_of(field.range, true);
+  } else if constexpr (std::is_same_v<Value, std::optional<RootCube>>) {
+    return range_of_root_cube;
   } else {
     ValueRange range = field.range;
     range.includes_infinity = false;  // infinity is written as none
@@ -50,7 +52,8 @@ std::string default_value(const Field<Struct, Value>& field, const Value& value)
     return "";
   } else if constexpr (std::is_same_v<Value, Vec3d>) {
     return fmt::format("[{}, {}, {}]", value.x, value.y, value.z);
-  } else if constexpr (std::is_same_v<Value, std::optional<std::uint64_t>>) {
+  } else if constexpr (std::is_same_v<Value, std::optional<std::uint64_t>> ||
+                       std::is_same_v<Value, std::optional<RootCube>>) {
     return "none";
   } else {
     return std::isinf(static_cast<double>(value)) ? "none" : fmt::format("{}", value);
@@ -64,13 +67,15 @@ const char* stored_type(const Field<Struct, Value>& field) {
   if (std::is_same_v<Value, std::uint64_t>) return "uint64";
   if (std::is_same_v<Value, std::uint32_t>) return "uint32";
   if (std::is_same_v<Value, bool> && !field.has_truth_words()) return "uint8";
+  if (std::is_same_v<Value, std::optional<RootCube>>) return "float64, 4";
   return "text";
 }
 
 template <class Value>
 constexpr bool is_in_tables =
     Worded<Value> || std::is_arithmetic_v<Value> || std::is_same_v<Value, std::string> ||
-    std::is_same_v<Value, Vec3d> || std::is_same_v<Value, std::optional<std::uint64_t>>;
+    std::is_same_v<Value, Vec3d> || std::is_same_v<Value, std::optional<std::uint64_t>> ||
+    std::is_same_v<Value, std::optional<RootCube>>;
 
 /// Calls `row(field, default_value)` for each option of a structure, except those of the machine.
 template <class Struct, class Row>
@@ -157,8 +162,10 @@ void print_description_tables() {
       if constexpr (is_in_tables<Value>) print_option(field, defaults.*field.member);
     });
   });
+  option_table<SceneOptions>("scene_detection_options");
   option_table<WaveMotion>("scene_wave_options");
   option_table<MassSpringMotion>("scene_mass_spring_options");
+  option_table<RigidMotion>("scene_rigid_options");
   table("scene_response_options", option_header, [] {
     for_each_row<ContactResponse>(
         []<class Value>(const Field<ContactResponse, Value>& field, const Value& value) {

@@ -25,7 +25,7 @@ struct RecordedMotion {
 };
 
 /// The motion of an object from frame to frame.
-using Motion = std::variant<WaveMotion, MassSpringMotion, FrameSequence, RecordedMotion>;
+using Motion = std::variant<WaveMotion, MassSpringMotion, RigidMotion, FrameSequence, RecordedMotion>;
 
 /// A placed object to add to the scene.
 struct InputObject {

@@ -183,7 +183,7 @@ void write_verify(JsonWriter& json, const VerifyReport& report) {
 
 JsonReport::JsonReport(const std::string& file_name, const Input& input, const Scene& scene,
                        const JsonContent& content)
-    : json_(file_name), input_(input), content_(content) {
+    : json_(file_name), input_(input), scene_(scene), content_(content) {
   json_.begin_object();
   json_.member("supple", std::string(SUPPLE_VERSION));
   if (content_.stats) write_options(json_, input_.simulation.scene);
@@ -244,6 +244,7 @@ void JsonReport::add(const Frame& frame) {
     if (content_.contact_details) write_contacts(json_, result, options.contact_points);
   }
   if (options.comparison.colliding_vertices) write_colliding_vertices(json_, result);
+  if (content_.node_pairs) write_node_pairs(json_, scene_, *content_.node_pairs);
   json_.key("events");
   json_.begin_object();
   write_events(json_, "volumes", result.volume_events);

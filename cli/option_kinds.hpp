@@ -4,12 +4,15 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <type_traits>
 #include <vector>
 
@@ -24,6 +27,22 @@ std::string flag_of(const char* key);
 std::string spelled(const char* word);
 bool is_word(const std::string& given, const char* word);
 
+/// Nothing unless the whole text is a finite number.
+std::optional<double> parse_number(std::string_view text);
+/// The numbers of a text such as `1,-2.5,3`; nothing when one is no finite number or their count differs.
+template <std::size_t Count>
+std::optional<std::array<double, Count>> parse_numbers(std::string_view text) {
+  std::array<double, Count> numbers{};
+  for (std::size_t i = 0; i < Count; ++i) {
+    const std::size_t end = i + 1 < Count ? text.find(',') : text.size();
+    const auto number = end <= text.size() ? parse_number(text.substr(0, end)) : std::nullopt;
+    if (!number) return std::nullopt;
+    numbers[i] = *number;
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+  return numbers;
+}
+
 /// An option whose value is one of some words; `set` gets the index of the word.
 CLI::Option* add_words(CLI::App& app, const std::string& name, std::vector<const char*> choices,
                        std::function<void(std::size_t)> set, const std::string& description);
@@ -32,6 +51,30 @@ CLI::Option* add_whole(CLI::App& app, const std::string& name, const ValueRange&
                        std::function<void(std::uint64_t)> set, const std::string& description);
 CLI::Option* add_real(CLI::App& app, const std::string& name, const ValueRange& range, const char* unit,
                       std::function<void(double)> set, const std::string& description);
+
+/// An option with a list of values: given several times, or once with commas. `add` gets each value; a value
+/// that is given twice is an error.
+CLI::Option* add_list(CLI::App& app, const std::string& name, std::function<void(const std::string&)> add,
+                      const std::string& description);
+
+/// The index of the given word; throws a usage error of the option `name` when it is not one of the choices.
+std::size_t index_of_word(const std::string& name, const std::vector<const char*>& choices,
+                          const std::string& given);
+/// The given number; throws a usage error of the option `name` when the range does not allow it.
+std::uint64_t whole_of(const std::string& name, const ValueRange& range, const std::string& given);
+double real_of(const std::string& name, const ValueRange& range, const std::string& given);
+
+/// The value of an option as the command line has it.
+template <class Struct, class Value>
+std::string spelled_value(const Field<Struct, Value>& field, const Value& value) {
+  if constexpr (Worded<Value>) {
+    return spelled(word_of(value));
+  } else if constexpr (std::is_same_v<Value, bool>) {
+    return field.has_truth_words() ? spelled(field.truth_words[value ? 1 : 0]) : value ? "true" : "false";
+  } else {
+    return fmt::format("{}", value);
+  }
+}
 
 /// `Shape of the octree (triangles; default: 64)`
 std::string help_of(const char* doc, const std::string& unit, const std::string& default_value);
@@ -46,13 +89,13 @@ CLI::Option* add_field(CLI::App& app, const Field<Struct, Value>& field, const V
     return add_words(
         app, name, {words<Value>.begin(), words<Value>.end()},
         [set](std::size_t place) { set(static_cast<Value>(place)); },
-        help_of(field.doc, field.unit, spelled(word_of(default_value))));
+        help_of(field.doc, field.unit, spelled_value(field, default_value)));
   } else if constexpr (std::is_same_v<Value, bool>) {
     if (field.has_truth_words())
       return add_words(
           app, name, {field.truth_words.begin(), field.truth_words.end()},
           [set](std::size_t place) { set(place == 1); },
-          help_of(field.doc, field.unit, spelled(field.truth_words[default_value ? 1 : 0])));
+          help_of(field.doc, field.unit, spelled_value(field, default_value)));
     if (!default_value)
       return app.add_flag_callback(
           name, [set] { set(true); }, field.doc);
@@ -62,13 +105,13 @@ CLI::Option* add_field(CLI::App& app, const Field<Struct, Value>& field, const V
         "--no-" + name.substr(2), [set] { set(false); }, negated);
   } else if constexpr (std::is_same_v<Value, double>) {
     return add_real(app, name, field.range, field.unit, set,
-                    help_of(field.doc, field.unit, fmt::format("{}", default_value)));
+                    help_of(field.doc, field.unit, spelled_value(field, default_value)));
   } else {
     ValueRange range = field.range;
     range.highest = std::min(range.highest, static_cast<double>(std::numeric_limits<Value>::max()));
     return add_whole(
         app, name, range, [set](std::uint64_t value) { set(static_cast<Value>(value)); },
-        help_of(field.doc, field.unit, fmt::format("{}", default_value)));
+        help_of(field.doc, field.unit, spelled_value(field, default_value)));
   }
 }
 
@@ -95,5 +138,9 @@ using Dependences = std::vector<Dependence>;
 
 /// Throws a usage error for the first given option whose dependence is not satisfied.
 void check(const Dependences& dependences);
+
+/// Adds the flag of the root of the scene octree. The word `border` needs the scene, which is read later.
+CLI::Option* add_root(CLI::App& app, const char* key, bool& root_is_border,
+                      std::function<void(const RootCube&)> set);
 
 }  // namespace supple::cli

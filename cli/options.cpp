@@ -3,6 +3,9 @@
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <functional>
+#include <iterator>
 #include <limits>
 #include <optional>
 #include <string>
@@ -14,7 +17,9 @@
 #include "exit_status.hpp"
 #include "experiments/experiment_options.hpp"
 #include "option_kinds.hpp"
+#include "option_needs.hpp"
 #include "recorded_input.hpp"
+#include "scene_file.hpp"
 #include "session/settings.hpp"
 #include "supple/recording.hpp"
 #include "supple/simulation_descriptions.hpp"
@@ -65,6 +70,8 @@ constexpr const char* detect_footer = R"(Examples:
       Elements count as touching when they come within 0.001.
   supple detect rabbit.obj fish.ply --verify
       Check the result against exact brute force over all pairs of triangles.
+  supple detect rabbit.obj fish.ply --object-octree regular --leaf-size 1 --node-pairs 0 1
+      The narrow phase of the paper: the pairs of octree nodes that collide, level by level.
   supple detect a.obj b.obj --json - --no-stats | sha256sum
       The same input gives the same bytes for any number of threads and any broad phase.)";
 
@@ -189,37 +196,14 @@ void add_input_options(CLI::App& app, std::vector<std::string>& inputs, bool& se
       ->group("Input");
 }
 
-bool is_continuous(const SceneOptions& scene) {
-  return contains(scene.contacts, ContactKinds::continuous);
+/// The options of the detection that the input has: those of a recording or of a scene file.
+SimulationOptions options_of(const std::vector<std::string>& inputs) {
+  SimulationOptions options;
+  if (inputs.empty()) return options;
+  if (is_recording(inputs.front())) options.scene = Recording(inputs.front()).header().scene;
+  if (is_scene_file(inputs.front())) options = read_scene_options(inputs.front());
+  return options;
 }
-bool has_spheres(const SceneOptions& scene) {
-  return scene.bounding_volume == BoundingVolume::sphere;
-}
-bool has_scene_octree(const SceneOptions& scene) {
-  return viewer::uses_scene_octree(scene.broad_phase);
-}
-
-/// The condition under which an option of the scene has an effect.
-struct Need {
-  const char* key;
-  bool (*is_met)(const SceneOptions& scene);
-  const char* text;
-};
-constexpr Need needs_of_options[] = {
-    {"sphere_fit", has_spheres, "--bounding-volume sphere"},
-    {"region_test", [](const SceneOptions& scene) { return has_spheres(scene) && has_scene_octree(scene); },
-     "--bounding-volume sphere and --broad-phase octree or automatic"},
-    {"scene_octree_max_level", has_scene_octree, "--broad-phase octree or automatic"},
-    {"scene_octree_expand_at", has_scene_octree, "--broad-phase octree or automatic"},
-    {"scene_octree_arity", has_scene_octree, "--broad-phase octree or automatic"},
-    {"min_separation", is_continuous, "--contacts continuous"},
-    {"undecided", is_continuous, "--contacts continuous"},
-    {"contact_points", [](const SceneOptions& scene) { return scene.contacts != ContactKinds::continuous; },
-     "--contacts intersection"},
-    {"colliding_vertices",
-     [](const SceneOptions& scene) { return scene.contacts != ContactKinds::continuous; },
-     "--contacts intersection or none"},
-};
 
 /// Adds every option of the detection. A page has a layer instead of `--colliding-vertices`.
 void add_detection_options(CLI::App& app, MethodOptions& options, Dependences& dependences,
@@ -230,11 +214,16 @@ void add_detection_options(CLI::App& app, MethodOptions& options, Dependences& d
     const bool is_method = std::is_same_v<Struct, SceneOctreeOptions> ||
                            std::is_same_v<Value, BoundingVolume> || std::is_same_v<Value, SphereFit> ||
                            std::is_same_v<Value, BroadPhaseMethod>;
-    CLI::Option* const option =
-        add_field(app, field, default_value, set)->group(is_method ? "Method" : "Detection");
-    for (const Need& need : needs_of_options) {
+    CLI::Option* option = nullptr;
+    if constexpr (std::is_same_v<Value, std::optional<RootCube>>)
+      option = add_root(app, field.key, options.root_is_border, set);
+    else
+      option = add_field(app, field, default_value, set);
+    option->group(is_method ? "Method" : "Detection");
+    for (const OptionNeed& need : option_needs()) {
       if (std::string_view(field.key) == need.key)
-        dependences.push_back({option, [&options, need] { return need.is_met(options.scene); }, need.text});
+        dependences.push_back({option, [&options, need] { return need.is_met(options.scene); },
+                               flag_of(need.decider) + " " + need.values});
     }
   });
   add_object_options(app, options.given_objects, true);
@@ -259,7 +248,10 @@ void add_output_options(CLI::App& app, DetectionOptions& options, Dependences& d
       {group(add_file(
            app, "--csv", options.csv,
            "Write one row per contact: frame,a,b,i,j for triangles; frame,a,b,kind,a0,a1,b0,b1,toi,certainty "
-           "for continuous contacts; - is standard output")),
+           "for continuous contacts; - is standard output. With --colliding-vertices the rows are "
+           "frame,a,b,kind,i,j: also each vertex in colliding leaves, and the begin and end of each "
+           "collision "
+           "of the narrow phase")),
        [&] { return options.scene.contacts != (ContactKinds::intersection | ContactKinds::continuous); },
        "contacts of one kind"});
   dependences.push_back(
@@ -278,6 +270,19 @@ void add_output_options(CLI::App& app, DetectionOptions& options, Dependences& d
                                             "Also write the three vertices of each triangle to the JSON; a "
                                             "polygon is a fan of triangles around its first corner")),
                          [&] { return !options.json.empty(); }, "--json"});
+  dependences.push_back(
+      {group(app.add_option_function<std::vector<std::uint32_t>>(
+                    "--node-pairs",
+                    [&options](const std::vector<std::uint32_t>& objects) {
+                      options.json_content.node_pairs = {objects[0], objects[1]};
+                    },
+                    "Print the descent of the narrow phase into the octrees of two objects, by number, as in "
+                    "the paper: the pairs of nodes (h, k) that collide, level by level, in the last frame. "
+                    "The JSON has all pairs of every frame")
+                 ->type_name("A B")
+                 ->expected(2)),
+       [&] { return !options.json.empty() || (!options.quiet && options.csv != "-"); },
+       "--json or tables on standard output"});
   group(app.add_flag("--quiet", options.quiet, "Print no tables and no progress"));
 }
 
@@ -384,7 +389,7 @@ CLI::App* add_info(CLI::App& program, InfoOptions& options, Dependences& depende
       add_field(*app, field, default_value, set);
     } else if constexpr (std::is_same_v<Value, SphereFit>) {
       const auto has_spheres_given = [&options] {
-        SceneOptions scene;
+        SceneOptions scene = options_of(options.inputs).scene;
         options.given_scene.apply_to(scene);
         return has_spheres(scene);
       };
@@ -443,20 +448,27 @@ void add_diff(CLI::App& program, DiffOptions& options) {
   app->add_flag("--quiet", options.quiet, "Print nothing; only set the exit status");
 }
 
-/// Sets the options of the detection: those of a recording, or the defaults, replaced by the given options.
+/// Sets the options of the detection: those of the input, or the defaults, replaced by the given options.
 void resolve(MethodOptions& options, const std::vector<std::string>& inputs) {
-  if (!inputs.empty() && is_recording(inputs.front()))
-    options.scene = Recording(inputs.front()).header().scene;
+  const SimulationOptions input = options_of(inputs);
+  options.scene = input.scene;
   SceneOptions chosen = options.scene;
   options.given_scene.apply_to(chosen);
-  // Recorded options of the scene octree apply only to the recorded method.
+  // Options of the scene octree in the input apply only to the method in the input.
   if (!has_scene_octree(chosen)) options.scene.scene_octree = {};
   options.given_scene.apply_to(options.scene);
+  if (!options.root_is_border) return;
+  if (!input.border)
+    throw CLI::ValidationError("--scene-octree-root", "border: only a scene file with bounds has a border");
+  options.scene.scene_octree.root = cube_around((*input.border)[0], (*input.border)[1]);
 }
 
 void check_outputs(const DetectionOptions& options, bool prints_collisions) {
-  if (options.scene.comparison.colliding_vertices && options.json.empty() && !prints_collisions)
-    throw CLI::ValidationError("--colliding-vertices", "has no effect without --json");
+  SceneOptions given;
+  options.given_scene.apply_to(given);
+  if (given.comparison.colliding_vertices && options.json.empty() && options.csv.empty() &&
+      !prints_collisions)
+    throw CLI::ValidationError("--colliding-vertices", "has no effect without --json or --csv");
   if (options.json == "-" && options.csv == "-")
     throw CLI::ValidationError("--csv", "--json already writes to standard output; give one of them a file");
 }
@@ -526,7 +538,7 @@ CommandLine parse_command_line(int argument_count, const char* const* arguments)
     }
     if (program.get_subcommands().empty()) throw CLI::RequiredError::Subcommand(1);
     resolve(result.detect, result.detect.inputs);
-    resolve(result.simulate, {});
+    resolve(result.simulate, {result.simulate.input});
     resolve(result.view, result.view.inputs);
     check(dependences);
     check_outputs(result.detect, false);

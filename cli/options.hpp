@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "experiments/experiment.hpp"
@@ -15,7 +16,8 @@ namespace supple::cli {
 
 /// The method that finds contacts.
 struct MethodOptions {
-  SceneOptions scene;  ///< the recorded options or the defaults, replaced by the given options
+  SceneOptions scene;           ///< the options of the input or the defaults, replaced by the given options
+  bool root_is_border = false;  ///< the root of the scene octree is given as the border of the scene
   viewer::Overrides<SceneOptions> given_scene;
   viewer::Overrides<ObjectOptions> given_objects;  ///< of all objects
 };

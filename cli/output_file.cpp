@@ -9,8 +9,8 @@
 
 namespace supple::cli {
 
-OutputFile::OutputFile(const std::string& name) : name_(name == "-" ? "standard output" : name) {
-  stream_ = name == "-" ? stdout : std::fopen(name.c_str(), "wb");
+OutputFile::OutputFile(const std::string& name, Mode mode) : name_(name == "-" ? "standard output" : name) {
+  stream_ = name == "-" ? stdout : std::fopen(name.c_str(), mode == Mode::append ? "ab" : "wb");
   if (!stream_)
     throw Error(fmt::format("{}: cannot write: {}; choose a file in a folder that exists and is yours", name_,
                             std::strerror(errno)));

@@ -8,7 +8,8 @@ namespace supple::cli {
 /// A file that is written from start to end; `-` is standard output. Throws `Error` when it cannot be opened.
 class OutputFile {
  public:
-  explicit OutputFile(const std::string& name);
+  enum class Mode { replace, append };
+  explicit OutputFile(const std::string& name, Mode mode = Mode::replace);
   ~OutputFile();
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;

@@ -61,8 +61,9 @@ void print_difference(const Scene& scene, std::uint64_t frame, const VerifyRepor
 
 Reports::Reports(const DetectionOptions& options, const Input& input, const Scene& scene, std::string noun)
     : options_(options), scene_(scene) {
+  if (options.json_content.node_pairs) check_node_pairs(input, *options.json_content.node_pairs);
   if (!options.json.empty()) json_.emplace(options.json, input, scene, options.json_content);
-  if (!options.csv.empty()) csv_.emplace(options.csv, options.scene.contacts);
+  if (!options.csv.empty()) csv_.emplace(options.csv, options.scene);
   if (!options.quiet && options.json != "-" && options.csv != "-") text_.emplace(std::move(noun));
 }
 
@@ -70,6 +71,7 @@ void Reports::add(const Frame& frame) {
   if (json_) json_->add(frame);
   if (csv_) csv_->add(frame);
   if (text_) text_->add(frame);
+  last_frame_ = frame.number;
   touched_ = touched_ || !frame.result.groups.empty() || !frame.result.continuous_groups.empty();
   if (frame.verify && !frame.verify->agrees() && !std::exchange(differed_, true))
     print_difference(scene_, frame.number, *frame.verify);
@@ -78,7 +80,9 @@ void Reports::add(const Frame& frame) {
 void Reports::finish() {
   if (json_) json_->finish();
   if (csv_) csv_->finish();
-  if (text_) text_->print(scene_);
+  if (!text_) return;
+  text_->print(scene_);
+  if (const auto& objects = options_.json_content.node_pairs) print_node_pairs(scene_, *objects, last_frame_);
 }
 
 int Reports::exit_status() const {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 
@@ -32,6 +33,7 @@ class Reports {
   std::optional<JsonReport> json_;
   std::optional<CsvReport> csv_;
   std::optional<TextReport> text_;
+  std::uint64_t last_frame_ = 0;
   bool touched_ = false, differed_ = false;
 };
 

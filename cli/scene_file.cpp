@@ -8,12 +8,14 @@
 #include <fstream>
 #include <iterator>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <type_traits>
 #include <utility>
 #include <vector>
 
+#include "option_needs.hpp"
 #include "placement.hpp"
 #include "scene_motion.hpp"
 #include "supple/error.hpp"
@@ -213,6 +215,30 @@ ContactResponse read_response(const toml::table& table, const fs::path& path) {
   return response;
 }
 
+void read_root(TomlReader& reader, const char* key, const std::optional<Border>& border,
+               std::optional<RootCube>& root) {
+  if (reader.read_cube(key, "border", root)) return;
+  if (!border) reader.fail(key, "the scene has no border; add bounds = [[x, y, z], [x, y, z]]");
+  root = cube_around((*border)[0], (*border)[1]);
+}
+
+/// Reads the options of the detection.
+void read_detection(TomlReader& reader, const std::optional<Border>& border, SceneOptions& scene) {
+  for_each_leaf(
+      [&](const auto& field, auto& value) {
+        using Value = std::remove_cvref_t<decltype(value)>;
+        if constexpr (std::is_same_v<Value, std::optional<RootCube>>)
+          read_root(reader, field.key, border, value);
+        else if (!field.is_of_machine)
+          reader.read(field, value);
+      },
+      scene);
+  for (const OptionNeed& need : option_needs()) {
+    if (reader.has(need.key) && !need.is_met(scene))
+      reader.fail(need.key, fmt::format("has no effect without {} = {}", need.decider, need.values));
+  }
+}
+
 /// Returns the gravity of masses and springs.
 Vec3d read_scene(const toml::table& table, const fs::path& path, SimulationOptions& simulation) {
   TomlReader reader(path, table, "[scene]");
@@ -221,6 +247,7 @@ Vec3d read_scene(const toml::table& table, const fs::path& path, SimulationOptio
     using Value = std::remove_cvref_t<decltype(simulation.*field.member)>;
     if constexpr (!Described<Value>) reader.read(field, simulation.*field.member);
   });
+  read_detection(reader, simulation.border, simulation.scene);
   Vec3d gravity;
   reader.read("gravity", gravity);
   if (const toml::table* response = reader.table("response"))
@@ -233,6 +260,14 @@ Vec3d read_scene(const toml::table& table, const fs::path& path, SimulationOptio
 
 Input read_scene_file(const fs::path& path, const SceneOverrides& overrides) {
   return read_scene_text(read_text(path), path, overrides);
+}
+
+SimulationOptions read_scene_options(const fs::path& path) {
+  const toml::table file = parse_toml(read_text(path), path);
+  SimulationOptions simulation;
+  TomlReader reader(path, file, "scene file");
+  if (const toml::table* scene = reader.table("scene")) read_scene(*scene, path, simulation);
+  return simulation;
 }
 
 Input read_scene_text(std::string text, const fs::path& path, const SceneOverrides& overrides) {

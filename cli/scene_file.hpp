@@ -14,4 +14,7 @@ Input read_scene_file(const std::filesystem::path& path, const SceneOverrides& o
 Input read_scene_text(std::string text, const std::filesystem::path& path,
                       const SceneOverrides& overrides = {});
 
+/// The options of the table [scene] alone. Throws `Error` in the same way.
+SimulationOptions read_scene_options(const std::filesystem::path& path);
+
 }  // namespace supple::cli

@@ -49,12 +49,14 @@ void SceneMotion::read_kind(TomlReader& reader, Vec3d gravity) {
     reader.read_options(motion_.emplace().emplace<WaveMotion>());
   else if (kind == "mass_spring")
     motion_ = read_mass_spring(reader, gravity);
+  else if (kind == "rigid")
+    reader.read_options(motion_.emplace().emplace<RigidMotion>());
   else if (kind == "frames")
     motion_ = read_frames(reader);
   else if (kind.empty())
-    reader.fail("kind", "kind is missing; choose kind = \"wave\", \"mass_spring\" or \"frames\"");
+    reader.fail("kind", "kind is missing; choose kind = \"wave\", \"mass_spring\", \"rigid\" or \"frames\"");
   else
-    reader.fail("kind", fmt::format("'{}' is not one of wave, mass_spring, frames", kind));
+    reader.fail("kind", fmt::format("'{}' is not one of wave, mass_spring, rigid, frames", kind));
 }
 
 MassSpringMotion SceneMotion::read_mass_spring(TomlReader& reader, Vec3d gravity) {
@@ -103,6 +105,7 @@ std::optional<Motion> SceneMotion::of_copy(std::uint64_t copy, const Placement& 
   if (!motion_) return std::nullopt;
   Motion motion = *motion_;
   if (auto* waves = std::get_if<WaveMotion>(&motion)) waves->seed += copy;
+  if (auto* rigid = std::get_if<RigidMotion>(&motion); rigid && rigid->seed) *rigid->seed += copy;
   if (auto* frames = std::get_if<FrameSequence>(&motion)) frames->placement = placement;
   if (auto* springs = std::get_if<MassSpringMotion>(&motion)) {
     if (springs->seed) *springs->seed += copy;

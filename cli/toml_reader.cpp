@@ -129,6 +129,20 @@ void TomlReader::read_box(const std::string& key, std::array<Vec3d, 2>& box, boo
     box = corners(*found, key, "two corners, [[x, y, z], [x, y, z]], the lowest first", may_be_flat);
 }
 
+bool TomlReader::read_cube(const std::string& key, const std::string& word, std::optional<RootCube>& cube) {
+  const toml::node* found = node(key);
+  if (!found) return true;
+  if (found->is_string() && found->as_string()->get() == word) return false;
+  const std::string expected = fmt::format("[x, y, z, edge], {}, or \"{}\"", range_of_root_cube, word);
+  const toml::array* array = found->as_array();
+  if (!array || array->size() != 4) fail(key, "must be " + expected);
+  std::array<double, 4> numbers{};
+  for (std::size_t i = 0; i < 4; ++i) numbers[i] = number((*array)[i], key, expected.c_str());
+  cube = RootCube{{numbers[0], numbers[1], numbers[2]}, numbers[3]};
+  if (!is_valid(*cube)) fail(key, "must be " + expected);
+  return true;
+}
+
 void TomlReader::read(const std::string& key, std::vector<std::array<Vec3d, 2>>& boxes) {
   constexpr const char* expected = "an array of boxes, each [[x, y, z], [x, y, z]], the lowest corner first";
   const toml::node* found = node(key);

@@ -48,6 +48,8 @@ class TomlReader {
             std::uint32_t highest);
   /// Reads a lowest and a highest corner; along each axis the first must be below the second.
   void read_box(const std::string& key, std::array<Vec3d, 2>& box, bool may_be_flat);
+  /// Reads a cube as [x, y, z, edge]. Returns false when the value is `word` instead.
+  bool read_cube(const std::string& key, const std::string& word, std::optional<RootCube>& cube);
   /// Reads an array of boxes, each [lowest corner, highest corner]. They may be flat.
   void read(const std::string& key, std::vector<std::array<Vec3d, 2>>& boxes);
   /// The table under a key, or null.

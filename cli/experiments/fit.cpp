@@ -49,4 +49,20 @@ std::string text_of(const PowerLaw& fit) {
   return fmt::format("{:.2f} ± {:.2f}", fit.exponent, fit.standard_error);
 }
 
+Estimate estimate_of(std::span<const double> values) {
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  const double count = static_cast<double>(values.size());
+  double sum = 0, squares = 0;
+  for (const double value : values) sum += value;
+  const double mean = sum / count;
+  for (const double value : values) squares += (value - mean) * (value - mean);
+  return {mean, values.size() < 2 ? nan : std::sqrt(squares / (count - 1) / count)};
+}
+
+std::string text_of(const Estimate& estimate) {
+  if (std::isnan(estimate.mean)) return "–";
+  if (std::isnan(estimate.error)) return fmt::format("{:.2f}", estimate.mean);
+  return fmt::format("{:.2f} ± {:.2f}", estimate.mean, estimate.error);
+}
+
 }  // namespace supple::experiments

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -28,5 +29,14 @@ double exponent_of(const std::function<double(double)>& formula, const Points& p
 
 /// `1.03 ± 0.02`
 std::string text_of(const PowerLaw& fit);
+
+/// A mean and its standard error. The error is NaN for fewer than two values; both are NaN for none.
+struct Estimate {
+  double mean, error;
+};
+Estimate estimate_of(std::span<const double> values);
+
+/// `0.87 ± 0.03`
+std::string text_of(const Estimate& estimate);
 
 }  // namespace supple::experiments

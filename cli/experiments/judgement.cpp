@@ -19,12 +19,6 @@ Verdict judge(const Growth& growth) {
                                                                                       : Verdict::cannot_tell;
 }
 
-/// `does_not_hold` if one of the two is, otherwise `cannot_tell` if one of the two is.
-Verdict both(Verdict a, Verdict b) {
-  if (a == Verdict::does_not_hold || b == Verdict::does_not_hold) return Verdict::does_not_hold;
-  return a == Verdict::cannot_tell ? a : b;
-}
-
 std::string described(const Growth& growth) {
   const PowerLaw fit = fit_power_law(growth.points);
   if (fit.points < 3)
@@ -36,6 +30,11 @@ std::string described(const Growth& growth) {
 }
 
 }  // namespace
+
+Verdict both(Verdict a, Verdict b) {
+  if (a == Verdict::does_not_hold || b == Verdict::does_not_hold) return Verdict::does_not_hold;
+  return a == Verdict::cannot_tell ? a : b;
+}
 
 std::string sizes_of(const Points& points) {
   const auto low = std::min_element(points.begin(), points.end()),

@@ -27,6 +27,9 @@ inline constexpr double exponent_tolerance = 0.1;
 /// and fixed costs affect times.
 inline constexpr double time_tolerance = 0.25;
 
+/// `does_not_hold` if one of the two is, otherwise `cannot_tell` if one of the two is.
+Verdict both(Verdict a, Verdict b);
+
 /// Whether the measured exponents are within the bounds of the formulas. If there are counts of tests, only
 /// they decide, and times are shown beside them. Undecided with fewer than three points or a standard error
 /// above 0.25.

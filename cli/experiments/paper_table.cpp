@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "supple/option_descriptions.hpp"
+
 namespace supple::experiments {
 namespace {
 
@@ -61,16 +63,12 @@ Table paper_arithmetic() {
       const auto& counts = broad ? row.broad : row.narrow;
       const double text = broad ? row.text_seconds_broad : row.text_seconds_narrow;
       const double computed = seconds_per_collision(counts);
-      table.add({std::uint64_t{row.objects}, std::string(name_of(row.volume)),
+      table.add({std::uint64_t{row.objects}, std::string(word_of(row.volume)),
                  std::string(broad ? "broad" : "narrow"), mean(counts), computed, text,
                  compared(computed, text)});
     }
   }
   return table;
-}
-
-const char* name_of(BoundingVolume volume) {
-  return volume == BoundingVolume::aabb ? "AABB" : "spheres";
 }
 
 }  // namespace supple::experiments

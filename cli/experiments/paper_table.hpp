@@ -29,6 +29,4 @@ double seconds_per_collision(std::span<const double> counts);
 /// The averages recomputed from the table, those of the text, and their differences.
 Table paper_arithmetic();
 
-const char* name_of(BoundingVolume volume);
-
 }  // namespace supple::experiments

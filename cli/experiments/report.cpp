@@ -95,12 +95,6 @@ std::string draw(const Report& report, std::vector<std::string>& drawings) {
   return missing;
 }
 
-void write_file(const fs::path& path, const std::string& text) {
-  cli::OutputFile file(path.string());
-  std::fwrite(text.data(), 1, text.size(), file.stream());
-  file.close();
-}
-
 }  // namespace
 
 const char* name_of(Verdict verdict) {
@@ -156,12 +150,22 @@ std::string html_of(const Report& report, const std::vector<std::string>& drawin
   return html.finish();
 }
 
-std::string write_report(const Report& report, const fs::path& folder) {
+void make_folder(const fs::path& folder) {
   std::error_code fault;
   fs::create_directories(folder, fault);
   if (!fs::is_directory(folder))
     throw Error(fmt::format("{}: cannot make this folder: {}; choose another with --output", folder.string(),
                             fault.message()));
+}
+
+void write_file(const fs::path& path, const std::string& text) {
+  cli::OutputFile file(path.string());
+  std::fwrite(text.data(), 1, text.size(), file.stream());
+  file.close();
+}
+
+std::string write_report(const Report& report, const fs::path& folder) {
+  make_folder(folder);
   for (const Section& section : report.sections) {
     for (const Block& block : section.blocks) {
       if (const auto* table = std::get_if<Table>(&block))

@@ -47,6 +47,9 @@ std::string text_of(const Report& report);
 /// Makes one page without external resources. `drawings` are the plots of the report, in order; empty
 /// drawings are left out.
 std::string html_of(const Report& report, const std::vector<std::string>& drawings);
+/// Creates a folder if necessary. Throws `Error` when that fails.
+void make_folder(const std::filesystem::path& folder);
+void write_file(const std::filesystem::path& path, const std::string& text);
 /// Writes one CSV file per table and the page into the folder, which is created if necessary. Without
 /// gnuplot, the page has no plots and the function returns a message; otherwise it returns an empty text.
 std::string write_report(const Report& report, const std::filesystem::path& folder);

@@ -34,7 +34,7 @@ PairCost cost_of_pair(const TriangleMesh& a, const TriangleMesh& b, const Object
   Scene scene(options);
   ObjectOptions object;
   object.octree = octree;
-  object.octree.regular = true;
+  object.octree.build = ObjectOctreeBuild::regular;
   PairCost cost;
   ObjectId id_a, id_b;
   std::vector<double> builds;

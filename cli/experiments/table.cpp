@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <utility>
 
 #include "experiments/html.hpp"
 #include "supple/error.hpp"
@@ -99,12 +100,38 @@ std::string csv_of(const Table& table) {
     result += table.columns[c].name;
   }
   result += '\n';
-  for (const auto& row : table.rows) {
-    for (std::size_t c = 0; c < row.size(); ++c) {
-      if (c > 0) result += ',';
-      result += csv_field(row[c]);
+  for (const auto& row : table.rows) result += csv_of(row);
+  return result;
+}
+
+std::string csv_of(const std::vector<Cell>& row) {
+  std::string result;
+  for (std::size_t c = 0; c < row.size(); ++c) {
+    if (c > 0) result += ',';
+    result += csv_field(row[c]);
+  }
+  return result + '\n';
+}
+
+CsvText parse_csv(std::string_view text) {
+  CsvText result;
+  std::vector<std::string> row(1);
+  bool is_quoted = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (c == '"') {
+      // A quote that follows the end of a quoted part stands for a quote.
+      if (!is_quoted && i > 0 && text[i - 1] == '"') row.back() += c;
+      is_quoted = !is_quoted;
+    } else if (c == ',' && !is_quoted) {
+      row.emplace_back();
+    } else if (c == '\n' && !is_quoted) {
+      result.rows.push_back(std::move(row));
+      row.assign(1, {});
+      result.length = i + 1;
+    } else {
+      row.back() += c;
     }
-    result += '\n';
   }
   return result;
 }

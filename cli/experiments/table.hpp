@@ -1,7 +1,9 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -34,7 +36,16 @@ std::string text_of(const Cell& cell, const Column& column);
 std::string text_of(const Table& table);
 /// CSV as in RFC 4180, with line feeds. Measured numbers have enough digits to read back the same number.
 std::string csv_of(const Table& table);
+/// One line of CSV with its line feed.
+std::string csv_of(const std::vector<Cell>& row);
 std::string html_of(const Table& table);
+
+/// The fields of CSV text, line by line, with the header.
+struct CsvText {
+  std::vector<std::vector<std::string>> rows{};
+  std::size_t length = 0;  ///< of the complete lines; a line without line feed at the end is left out
+};
+CsvText parse_csv(std::string_view text);
 
 /// The value with `digits` significant digits. Only numbers far from 1 are in scientific notation.
 std::string rounded(double value, int digits = 3);

@@ -1,19 +1,18 @@
 #pragma once
 
-#include <string>
-#include <vector>
+#include <filesystem>
+#include <optional>
 
 #include "experiments/report.hpp"
-#include "experiments/table1_runs.hpp"
+#include "experiments/table1_options.hpp"
+#include "interruption.hpp"
 
 namespace supple::experiments {
 
-/// The scenes of section 7, built into the program from the scene files of the same names.
-std::vector<std::string> table1_scene_names();
-
-Table1Options table1_options(bool quick);
-
-/// Counts collisions of 3, 6 and 9 objects, and of more complex objects, with boxes and with spheres.
-Report run_table1(const Table1Options& options, bool show_progress);
+/// Counts collisions of 3, 6 and 9 objects, and of other scenes, with several kinds of volumes. Each complete
+/// run goes into a CSV file in the folder, which is created if necessary. With `resume`, the runs in the
+/// folder are not repeated; the options must be those of the folder. Returns nothing after an interruption.
+std::optional<Report> run_table1(const Table1Options& options, const std::filesystem::path& folder,
+                                 bool resume, const cli::Interruption& interruption, bool show_progress);
 
 }  // namespace supple::experiments

@@ -1,0 +1,57 @@
+#include "option_needs.hpp"
+
+#include "session/settings.hpp"
+
+namespace supple::cli {
+namespace {
+
+bool is_continuous(const SceneOptions& scene) {
+  return contains(scene.contacts, ContactKinds::continuous);
+}
+/// Whether the scene looks at positions at rest. Otherwise the volumes enclose whole paths.
+bool is_at_rest(const SceneOptions& scene) {
+  return scene.contacts != ContactKinds::continuous;
+}
+
+/// Oriented boxes and k-DOPs enclose objects at rest, not their paths.
+constexpr bool is_of_positions(BoundingVolume volume) {
+  return volume != BoundingVolume::aabb && volume != BoundingVolume::sphere;
+}
+
+constexpr const char* methods = "octree or automatic";
+constexpr const char* kinds_at_rest = "intersection or none";
+
+constexpr OptionNeed needs[] = {
+    {"bounding_volume",
+     [](const SceneOptions& scene) { return is_at_rest(scene) || !is_of_positions(scene.bounding_volume); },
+     "contacts", "intersection or none, because objects in motion have boxes or spheres"},
+    {"sphere_fit", has_spheres, "bounding_volume", "sphere"},
+    {"sphere_fit", is_at_rest, "contacts", kinds_at_rest},
+    {"region_test", has_spheres, "bounding_volume", "sphere"},
+    {"region_test", has_scene_octree, "broad_phase", methods},
+    {"scene_octree_max_level", has_scene_octree, "broad_phase", methods},
+    {"scene_octree_expand_at", has_scene_octree, "broad_phase", methods},
+    {"scene_octree_arity", has_scene_octree, "broad_phase", methods},
+    {"scene_octree_root", has_scene_octree, "broad_phase", methods},
+    {"min_separation", is_continuous, "contacts", "continuous"},
+    {"undecided", is_continuous, "contacts", "continuous"},
+    {"contact_points",
+     [](const SceneOptions& scene) { return contains(scene.contacts, ContactKinds::intersection); },
+     "contacts", "intersection"},
+    {"colliding_vertices", is_at_rest, "contacts", kinds_at_rest},
+};
+
+}  // namespace
+
+std::span<const OptionNeed> option_needs() {
+  return needs;
+}
+
+bool has_scene_octree(const SceneOptions& scene) {
+  return viewer::uses_scene_octree(scene.broad_phase);
+}
+bool has_spheres(const SceneOptions& scene) {
+  return scene.bounding_volume == BoundingVolume::sphere;
+}
+
+}  // namespace supple::cli

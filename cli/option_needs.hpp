@@ -1,0 +1,24 @@
+#pragma once
+
+#include <span>
+
+#include "supple/options.hpp"
+
+namespace supple::cli {
+
+/// A condition under which an option of the scene has an effect. An option may have several.
+struct OptionNeed {
+  const char* key;
+  bool (*is_met)(const SceneOptions& scene);
+  const char* decider;  ///< key of the option that decides
+  const char* values;   ///< the values of that option that meet the condition
+};
+
+/// The command line and scene files refuse an option that is given and has no effect.
+std::span<const OptionNeed> option_needs();
+
+/// Whether the regions of the scene octree may be used.
+bool has_scene_octree(const SceneOptions& scene);
+bool has_spheres(const SceneOptions& scene);
+
+}  // namespace supple::cli
