@@ -1,8 +1,10 @@
 #include "answers.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "described_json.hpp"
 #include "extent.hpp"
@@ -41,6 +43,17 @@ void add_contacts_of(const DetectResult& result, std::uint32_t object, std::uint
   json.member("contact_count", count);
 }
 
+/// Adds the names of the leaf regions of the scene octree that contain the object, as in the paper.
+void add_regions(const Source& source, std::uint32_t object, JsonText& json) {
+  constexpr std::size_t most = 64;
+  const std::vector<SceneRegion> regions = SceneInspector(source.scene()).regions(source.id(object));
+  json.key("regions");
+  json.begin_array();
+  for (const SceneRegion& region : std::span(regions).first(std::min(most, regions.size())))
+    json.value("R(" + std::to_string(region.number) + ", " + std::to_string(region.level) + ")");
+  json.end_array();
+}
+
 void add_octree(const OctreeStatistics& octree, JsonText& json) {
   json.key("octree");
   json.begin_object();
@@ -58,7 +71,41 @@ std::uint64_t contact_count(const DetectResult& result, std::uint32_t object) {
   return count;
 }
 
+/// `A(9, 2)`, or `S(9, 2)` for a sphere, as in the paper.
+std::string name_of(const OctreeCell& node) {
+  return node_name(!node.sphere.empty(), node.number, node.level);
+}
+
 }  // namespace
+
+std::string node_name(bool is_sphere, std::optional<std::uint64_t> number, std::uint32_t level) {
+  return std::string(is_sphere ? "S(" : "A(") + (number ? std::to_string(*number) : "?") + ", " +
+         std::to_string(level) + ")";
+}
+
+void answer_node_pairs(const Source& source, std::uint32_t a, std::uint32_t b, JsonText& json) {
+  constexpr std::size_t most_names = 100;
+  const NodePairList list = SceneInspector(source.scene()).node_pairs(source.id(a), source.id(b));
+  json.key("levels");
+  json.begin_array();
+  for (std::uint32_t level = 0; level < list.level_count(); ++level) {
+    const auto pairs = list.pairs_of(level);
+    json.begin_object();
+    json.member("pairs", std::uint64_t{pairs.size()});
+    json.member("leaf_pairs",
+                static_cast<std::uint64_t>(std::count_if(
+                    pairs.begin(), pairs.end(), [&](const auto& pair) { return list.is_leaf_pair(pair); })));
+    json.key("names");
+    json.begin_array();
+    for (const NodePairList::Pair& pair : pairs.first(std::min(most_names, pairs.size()))) {
+      const std::string names[] = {name_of(list.nodes_a[pair.a]), name_of(list.nodes_b[pair.b])};
+      json.value(std::span<const std::string>(names));
+    }
+    json.end_array();
+    json.end_object();
+  }
+  json.end_array();
+}
 
 void answer_read_vertex(const Source& source, std::uint32_t object, std::uint32_t vertex, JsonText& json) {
   json.member("object", object);
@@ -79,6 +126,7 @@ void answer_read_triangle(const SceneView& show, const Source& source, std::uint
   json.end_array();
   json.member("area", area(points));
   json.member("normal", unit_normal(points));
+  json.member("leaf", name_of(SceneInspector(source.scene()).leaf(source.id(object), triangle)));
   add_contacts_of(source.scene().result(), object, triangle, json);
 }
 
@@ -100,6 +148,7 @@ void answer_read_object(const SceneView& show, const Source& source, std::uint32
     json.end_array();
   }
   json.member("contact_count", contact_count(source.scene().result(), object));
+  add_regions(source, object, json);
   add_octree(SceneInspector(source.scene()).octree_statistics(source.id(object)), json);
 }
 

@@ -120,6 +120,19 @@ std::optional<Vec3d> Arguments::point(const char* name) {
   return std::nullopt;
 }
 
+std::optional<std::optional<RootCube>> Arguments::cube(const char* name) {
+  const JsonValue* const value = find(name);
+  if (value == nullptr) return std::nullopt;
+  if (value->kind == JsonValue::Kind::null) return std::optional<RootCube>();
+  if (is_list_of(*value, &JsonValue::is_number) && value->elements.size() == 4) {
+    const auto number = [&](std::size_t i) { return value->elements[i].number; };
+    const RootCube cube{{number(0), number(1), number(2)}, number(3)};
+    if (is_valid(cube)) return cube;
+  }
+  must_be(name, std::string("null, or ") + range_of_root_cube);
+  return std::nullopt;
+}
+
 std::optional<std::array<std::uint32_t, 2>> Arguments::pair(const char* name) {
   const JsonValue* const value = find(name);
   if (value == nullptr) return std::nullopt;

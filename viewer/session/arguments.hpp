@@ -28,6 +28,8 @@ class Arguments {
   std::optional<double> number(const char* name, const ValueRange& range);
   std::optional<bool> one_of_two(const char* name, const std::array<const char*, 2>& words_of_truth);
   std::optional<Vec3d> point(const char* name);
+  /// Three coordinates and an edge, or null for no cube.
+  std::optional<std::optional<RootCube>> cube(const char* name);
   /// An object and one of its triangles. Checks only that both are whole numbers.
   std::optional<std::array<std::uint32_t, 2>> pair(const char* name);
   std::optional<std::vector<std::uint32_t>> numbers(const char* name);
@@ -52,6 +54,8 @@ class Arguments {
       given = field.has_truth_words() ? one_of_two(field.key, field.truth_words) : boolean(field.key);
     } else if constexpr (std::is_same_v<Value, double>) {
       given = number(field.key, field.range);
+    } else if constexpr (std::is_same_v<Value, std::optional<RootCube>>) {
+      given = cube(field.key);
     } else {
       if (const auto whole = integer(field.key, field.range)) given = static_cast<Value>(*whole);
     }

@@ -53,9 +53,10 @@ std::string sentence_of(const Pair& pair) {
     case PairStage::object_volumes:
       return "broad phase: the " + shapes + " of " + pair.name_a + " and " + pair.name_b + gap_of(pair.why);
     case PairStage::octree_volumes:
-      return "narrow phase: the " + shape + " of a cell of " + pair.name_a + " at level " +
-             std::to_string(pair.why.level_a) + " and that of a cell of " + pair.name_b + " at level " +
-             std::to_string(pair.why.level_b) + gap_of(pair.why);
+      return "narrow phase: the " + shape + " " +
+             node_name(has_spheres, pair.why.number_a, pair.why.level_a) + " of " + pair.name_a +
+             " and the " + shape + " " + node_name(has_spheres, pair.why.number_b, pair.why.level_b) +
+             " of " + pair.name_b + gap_of(pair.why);
     case PairStage::triangle_boxes:
       return "narrow phase, in the leaves: the boxes of the two triangles" + gap_of(pair.why);
     case PairStage::exact_test:

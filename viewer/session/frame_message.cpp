@@ -4,6 +4,8 @@
 #include <array>
 #include <cstring>
 #include <iterator>
+#include <tuple>
+#include <utility>
 
 #include "statistics.hpp"
 #include "supple/inspection.hpp"
@@ -28,7 +30,7 @@ std::array<float, 3> floats(const Vec3d& v) {
 
 void FramePacker::forget() {
   versions_.clear();
-  touching_.clear();
+  for (ObjectPairs* const pairs : {&touching_, &colliding_, &overlapping_}) pairs->clear();
   paper_vertices_.forget();
 }
 
@@ -44,6 +46,7 @@ void FramePacker::pack(const FrameView& frame, MessageWriter& message) {
   add_statistics(frame);
   if (frame.layers.candidates) add_candidates(frame);
   for (const std::uint32_t object : frame.layers.octree_objects) add_octree(frame, object);
+  if (frame.layers.colliding_nodes) add_colliding_nodes(frame, *frame.layers.colliding_nodes);
   if (frame.layers.scene_regions) add_scene_regions(frame);
   if (frame.layers.colliding_vertices)
     add_colliding_vertices(frame);
@@ -129,27 +132,31 @@ void FramePacker::add_impacts(const FrameView& frame) {
 
 /// Adds the events since the last frame that was sent, which may be several steps ago.
 void FramePacker::add_events(const DetectResult& result) {
-  now_touching_.clear();
+  now_.clear();
+  for (const ObjectPair& pair : result.object_pairs) now_.emplace_back(pair.a.index, pair.b.index);
+  add_changes(Tag::volume_begin, Tag::volume_end, overlapping_);
+  now_.clear();
   for (const auto groups : {result.groups, result.continuous_groups}) {
     for (const ContactGroup& group : groups) {
-      if (group.a != group.b) now_touching_.emplace_back(group.a.index, group.b.index);
+      if (group.a != group.b) now_.emplace_back(group.a.index, group.b.index);
     }
   }
-  std::sort(now_touching_.begin(), now_touching_.end());
-  now_touching_.erase(std::unique(now_touching_.begin(), now_touching_.end()), now_touching_.end());
+  std::sort(now_.begin(), now_.end());
+  now_.erase(std::unique(now_.begin(), now_.end()), now_.end());
+  add_changes(Tag::contact_begin, Tag::contact_end, touching_);
+}
+
+/// Adds the differences between the present pairs and those sent before, which the present pairs replace.
+void FramePacker::add_changes(Tag begin, Tag end, ObjectPairs& sent) {
   const auto add_missing = [&](Tag tag, const ObjectPairs& pairs, const ObjectPairs& from) {
     changed_.clear();
     std::set_difference(pairs.begin(), pairs.end(), from.begin(), from.end(), std::back_inserter(changed_));
-    add_pairs(tag, changed_);
+    const auto rows = message_->add<std::array<std::uint32_t, 2>>(tag, changed_.size());
+    for (std::size_t i = 0; i < changed_.size(); ++i) rows[i] = {changed_[i].first, changed_[i].second};
   };
-  add_missing(Tag::contact_begin, now_touching_, touching_);
-  add_missing(Tag::contact_end, touching_, now_touching_);
-  touching_.swap(now_touching_);
-}
-
-void FramePacker::add_pairs(Tag tag, const ObjectPairs& pairs) {
-  const auto rows = message_->add<std::array<std::uint32_t, 2>>(tag, pairs.size());
-  for (std::size_t i = 0; i < pairs.size(); ++i) rows[i] = {pairs[i].first, pairs[i].second};
+  add_missing(begin, now_, sent);
+  add_missing(end, sent, now_);
+  sent.swap(now_);
 }
 
 void FramePacker::add_statistics(const FrameView& frame) {
@@ -169,16 +176,63 @@ void FramePacker::add_candidates(const FrameView& frame) {
   });
 }
 
-/// Adds spheres when the cells have them, else boxes. Cells without a finite triangle have neither.
 void FramePacker::add_octree(const FrameView& frame, std::uint32_t object) {
   const ObjectId id = frame.source.id(object);
   const SceneInspector inspector(frame.source.scene());
   octree_levels_.push_back(inspector.octree_depth(id));
-  std::vector<OctreeCell> cells = inspector.cells(id, frame.layers.octree_level);
+  add_cells(frame, "octree", {Tag::octree_boxes, Tag::octree_spheres}, object,
+            inspector.cells(id, frame.layers.octree_level));
+}
+
+/// Adds the nodes of each object that collide, each once.
+void FramePacker::add_colliding_nodes(const FrameView& frame, const CollidingNodes& wanted) {
+  const SceneInspector inspector(frame.source.scene());
+  std::vector<std::vector<OctreeCell>> cells(frame.show.objects.size());
+  const auto add = [&](ObjectId a, ObjectId b) {
+    const NodePairList list = inspector.node_pairs(a, b);
+    std::vector<std::uint8_t> is_wanted_a(list.nodes_a.size(), 0), is_wanted_b(list.nodes_b.size(), 0);
+    for (std::uint32_t level = 0; level < list.level_count(); ++level) {
+      if (wanted.level >= 0 && wanted.level != level) continue;
+      for (const NodePairList::Pair& pair : list.pairs_of(level)) {
+        if (wanted.level == CollidingNodes::leaves && !list.is_leaf_pair(pair)) continue;
+        is_wanted_a[pair.a] = is_wanted_b[pair.b] = 1;
+      }
+    }
+    for (std::size_t i = 0; i < is_wanted_a.size(); ++i) {
+      if (is_wanted_a[i] != 0) cells[a.index].push_back(list.nodes_a[i]);
+    }
+    for (std::size_t i = 0; i < is_wanted_b.size(); ++i) {
+      if (is_wanted_b[i] != 0) cells[b.index].push_back(list.nodes_b[i]);
+    }
+  };
+  if (wanted.objects) {
+    add(frame.source.id((*wanted.objects)[0]), frame.source.id((*wanted.objects)[1]));
+  } else {
+    for (const ObjectPair& pair : frame.source.scene().result().object_pairs) add(pair.a, pair.b);
+  }
+  for (std::uint32_t object = 0; object < cells.size(); ++object) {
+    const auto key = [](const OctreeCell& cell) {
+      const Vec3f& at = cell.box.min;
+      return std::tuple(cell.level, cell.number, at.x, at.y, at.z);
+    };
+    std::vector<OctreeCell>& list = cells[object];
+    std::sort(list.begin(), list.end(), [&](const auto& p, const auto& q) { return key(p) < key(q); });
+    const auto same = [&](const auto& p, const auto& q) { return key(p) == key(q); };
+    list.erase(std::unique(list.begin(), list.end(), same), list.end());
+    if (!list.empty())
+      add_cells(frame, "colliding_nodes", {Tag::colliding_boxes, Tag::colliding_spheres}, object,
+                std::move(list));
+  }
+}
+
+/// Adds spheres when the cells have them, else boxes; the tags are those of boxes and spheres. Cells without
+/// a finite triangle have neither.
+void FramePacker::add_cells(const FrameView& frame, const char* layer, std::array<Tag, 2> tags,
+                            std::uint32_t object, std::vector<OctreeCell> cells) {
   std::erase_if(cells, [](const OctreeCell& cell) { return cell.box.empty() && cell.sphere.empty(); });
   const bool has_spheres = !cells.empty() && !cells.front().sphere.empty();
-  const std::size_t count = limited("octree", cells.size());
-  const auto rows = message_->add<Row>(has_spheres ? Tag::octree_spheres : Tag::octree_boxes, object, count);
+  const std::size_t count = limited(layer, cells.size());
+  const auto rows = message_->add<Row>(tags[has_spheres ? 1 : 0], object, count);
   for (std::size_t i = 0; i < count; ++i) {
     const OctreeCell& cell = cells[i];
     const float level = static_cast<float>(cell.level);
@@ -200,8 +254,12 @@ void FramePacker::add_scene_regions(const FrameView& frame) {
   }
 }
 
+/// Also adds the events of the narrow phase, because the same detection finds them.
 void FramePacker::add_colliding_vertices(const FrameView& frame) {
   const auto& vertices = paper_vertices_.find(frame.show, frame.source);
+  now_.clear();
+  for (const ObjectPair& pair : paper_vertices_.pairs()) now_.emplace_back(pair.a.index, pair.b.index);
+  add_changes(Tag::narrow_phase_begin, Tag::narrow_phase_end, colliding_);
   for (std::size_t i = 0; i < vertices.size(); ++i) {
     const std::size_t count = limited("colliding_vertices", vertices[i].size());
     const auto sent =

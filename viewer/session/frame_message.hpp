@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -13,6 +14,7 @@
 #include "paper_vertices.hpp"
 #include "scene_view.hpp"
 #include "source.hpp"
+#include "supple/inspection.hpp"
 
 namespace supple::viewer {
 
@@ -48,10 +50,13 @@ class FramePacker {
   void add_contact_points(const FrameView& frame, std::size_t contact_count);
   void add_impacts(const FrameView& frame);
   void add_events(const DetectResult& result);
-  void add_pairs(Tag tag, const ObjectPairs& pairs);
+  void add_changes(Tag begin, Tag end, ObjectPairs& sent);
   void add_statistics(const FrameView& frame);
   void add_candidates(const FrameView& frame);
   void add_octree(const FrameView& frame, std::uint32_t object);
+  void add_colliding_nodes(const FrameView& frame, const CollidingNodes& wanted);
+  void add_cells(const FrameView& frame, const char* layer, std::array<Tag, 2> tags, std::uint32_t object,
+                 std::vector<OctreeCell> cells);
   void add_scene_regions(const FrameView& frame);
   void add_colliding_vertices(const FrameView& frame);
   void add_text(const FrameView& frame);
@@ -59,7 +64,9 @@ class FramePacker {
 
   MessageWriter* message_ = nullptr;
   std::vector<std::uint64_t> versions_;  // one per object, of the positions last sent; 0 for none
-  ObjectPairs touching_, now_touching_, changed_;
+  /// Pairs that the page knows: of contacts, of the narrow phase, and of volumes.
+  ObjectPairs touching_, colliding_, overlapping_;
+  ObjectPairs now_, changed_;
   std::vector<Omission> omissions_;
   std::vector<std::uint32_t> octree_levels_;
   PaperVertices paper_vertices_;

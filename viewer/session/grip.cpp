@@ -75,6 +75,11 @@ void bend(const Grip& grip, std::span<Vec3d> positions) {
     positions[grip.vertices[i]] = grip.from[i] + grip.weights[i] * offset;
 }
 
+void carry(const Grip& grip, std::span<Vec3d> positions) {
+  const Vec3d offset = *grip.target - positions[grip.vertex];
+  for (Vec3d& p : positions) p += offset;
+}
+
 void pull(const Grip& grip, const std::vector<bool>& is_fixed, MassSpringBody& body, double seconds,
           std::vector<Vec3d>& velocities) {
   const std::span<const Vec3d> positions = body.positions();

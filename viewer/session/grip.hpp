@@ -37,6 +37,9 @@ Grip take_hold(const TriangleMesh& rest, std::span<const Vec3d> now, std::uint32
 /// Moves the held vertices with the target, relative to their positions when the grip started.
 void bend(const Grip& grip, std::span<Vec3d> positions);
 
+/// Moves all positions so that the held vertex is at the target.
+void carry(const Grip& grip, std::span<Vec3d> positions);
+
 /// Gives the held vertices velocities that bring them closer to the target in a step of length `seconds`, as
 /// damped springs integrated by backward Euler would: a rigid body arrives without oscillation. Each pull is
 /// stable on its own and weak compared with inertia, so it does not reduce the stable step of the integrator.

@@ -5,10 +5,12 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 
+#include "supple/comparison_options.hpp"
 #include "supple/types.hpp"
 #include "utf8.hpp"
 
@@ -44,6 +46,13 @@ class JsonOutput {
     value(point.x);
     value(point.y);
     value(point.z);
+    end_array();
+  }
+  void value(const std::optional<RootCube>& cube) {
+    if (!cube) return null();
+    begin_array();
+    for (int axis = 0; axis < 3; ++axis) value(cube->corner[axis]);
+    value(cube->edge);
     end_array();
   }
   void value(std::span<const std::string> texts) {

@@ -31,9 +31,19 @@ enum class Tag : std::uint32_t {
   statistics = 43,
   contact_begin = 44,
   contact_end = 45,
+  narrow_phase_begin = 46,
+  narrow_phase_end = 47,
+  volume_begin = 48,
+  volume_end = 49,
+  colliding_boxes = 50,
+  colliding_spheres = 51,
   series = 64,
-  series_begin = 65,
-  series_end = 66,
+  series_contact_begin = 65,
+  series_contact_end = 66,
+  series_narrow_phase_begin = 67,
+  series_narrow_phase_end = 68,
+  series_volume_begin = 69,
+  series_volume_end = 70,
 };
 
 /// The object id of sections that belong to no object.

@@ -26,6 +26,10 @@ void fields(auto& archive, Of<Border> auto& border) {
   archive(border[0], border[1]);
 }
 
+void fields(auto& archive, Of<RootCube> auto& cube) {
+  archive(cube.corner, cube.edge);
+}
+
 void fields(auto& archive, Of<TriangleMesh> auto& mesh) {
   archive(mesh.name, mesh.positions, mesh.triangles);
 }
@@ -34,14 +38,19 @@ void fields(auto& archive, Of<Series::Event> auto& event) {
   archive(event.frame, event.a, event.b);
 }
 
+void fields(auto& archive, Of<Series::Events> auto& events) {
+  archive(events.begin, events.end);
+}
+
 void fields(auto& archive, Of<Series> auto& series) {
-  archive(series.names, series.values, series.begin, series.end);
+  archive(series.names, series.values, series.contacts, series.narrow_phase, series.volumes);
 }
 
 inline void fields(Packer& archive, const ViewedObject& object) {
   archive(object.mesh, object.options, static_cast<std::uint8_t>(object.motion.index()));
   if (const auto* const wave = std::get_if<WaveMotion>(&object.motion)) archive(*wave);
   if (const auto* const springs = std::get_if<MassSpringMotion>(&object.motion)) archive(*springs);
+  if (const auto* const rigid = std::get_if<RigidMotion>(&object.motion)) archive(*rigid);
 }
 
 inline void fields(Unpacker& archive, ViewedObject& object) {
@@ -56,6 +65,9 @@ inline void fields(Unpacker& archive, ViewedObject& object) {
       break;
     case 2:
       archive(object.motion.emplace<MassSpringMotion>());
+      break;
+    case 3:
+      archive(object.motion.emplace<RigidMotion>());
       break;
     default:
       archive.fail();

@@ -71,8 +71,11 @@ bool PackedFrames::fit_to(std::span<const ViewedObject> objects) {
   const auto exists = [&](const Series::Event& event) {
     return event.frame < count_ && event.a < objects.size() && event.b < objects.size();
   };
-  return std::all_of(series_.begin.begin(), series_.begin.end(), exists) &&
-         std::all_of(series_.end.begin(), series_.end.end(), exists) &&
+  const auto all_exist = [&](const Series::Events& events) {
+    return std::all_of(events.begin.begin(), events.begin.end(), exists) &&
+           std::all_of(events.end.begin(), events.end.end(), exists);
+  };
+  return all_exist(series_.contacts) && all_exist(series_.narrow_phase) && all_exist(series_.volumes) &&
          series_.values.size() == series_.names.size() * (series_.values.empty() ? 0 : count_);
 }
 

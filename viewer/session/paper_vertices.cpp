@@ -25,7 +25,9 @@ const std::vector<std::vector<std::uint32_t>>& PaperVertices::find(const SceneVi
   const DetectResult& result = scene_->detect();
   vertices_.resize(ids_.size());
   for (std::vector<std::uint32_t>& vertices : vertices_) vertices.clear();
+  pairs_.clear();
   for (const CollidingVertices& group : result.colliding_vertex_groups) {
+    if (group.a != group.b) pairs_.push_back({group.a, group.b});
     const auto first = result.colliding_vertices.begin() + group.first_vertex;
     const auto middle = first + group.count_a;
     vertices_[group.a.index].insert(vertices_[group.a.index].end(), first, middle);

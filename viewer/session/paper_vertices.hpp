@@ -17,6 +17,8 @@ class PaperVertices {
   /// Indexed by object; vertices ascend, each occurs once. Valid until the next call. `show` must not change
   /// until `forget`.
   const std::vector<std::vector<std::uint32_t>>& find(const SceneView& show, const Source& source);
+  /// The pairs of different objects with such leaves, in the last call of `find`.
+  const std::vector<ObjectPair>& pairs() const { return pairs_; }
   void forget();
 
  private:
@@ -24,6 +26,7 @@ class PaperVertices {
   std::vector<ObjectId> ids_;
   std::vector<std::uint64_t> versions_;
   std::vector<std::vector<std::uint32_t>> vertices_;
+  std::vector<ObjectPair> pairs_;
 };
 
 }  // namespace supple::viewer

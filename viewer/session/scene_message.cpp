@@ -32,6 +32,7 @@ void add_objects(const Stage& stage, JsonText& json) {
     json.member("static", object.options.is_static);
     json.member("body", body_of(object) != nullptr);
     json.member("waves", std::holds_alternative<WaveMotion>(object.motion));
+    json.member("rigid", std::holds_alternative<RigidMotion>(object.motion));
     json.member("self_collision", object.options.self_collision);
     json.end_object();
   }
@@ -138,11 +139,13 @@ void add_warnings(Stage& stage, JsonText& json) {
   json.member("warnings", std::span<const std::string>(warnings));
 }
 
-void add_events(Tag tag, const std::vector<Series::Event>& events, MessageWriter& message) {
-  const auto rows = message.add<std::array<std::uint32_t, 3>>(tag, events.size());
-  std::transform(events.begin(), events.end(), rows.begin(), [](const Series::Event& event) {
-    return std::array{event.frame, event.a, event.b};
-  });
+void add_events(Tag begin, Tag end, const Series::Events& events, MessageWriter& message) {
+  for (const auto& [tag, list] : {std::pair(begin, &events.begin), std::pair(end, &events.end)}) {
+    const auto rows = message.add<std::array<std::uint32_t, 3>>(tag, list->size());
+    std::transform(list->begin(), list->end(), rows.begin(), [](const Series::Event& event) {
+      return std::array{event.frame, event.a, event.b};
+    });
+  }
 }
 
 }  // namespace
@@ -179,8 +182,9 @@ void pack_series(const Frames& frames, MessageWriter& message) {
   // One row per element, one column per component.
   const auto values = message.add_rows<double>(Tag::series, rows, columns);
   std::copy_n(series.values.begin(), values.size(), values.begin());
-  add_events(Tag::series_begin, series.begin, message);
-  add_events(Tag::series_end, series.end, message);
+  add_events(Tag::series_contact_begin, Tag::series_contact_end, series.contacts, message);
+  add_events(Tag::series_narrow_phase_begin, Tag::series_narrow_phase_end, series.narrow_phase, message);
+  add_events(Tag::series_volume_begin, Tag::series_volume_end, series.volumes, message);
 }
 
 }  // namespace supple::viewer

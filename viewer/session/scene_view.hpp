@@ -16,11 +16,11 @@
 
 namespace supple::viewer {
 
-/// An object, its start position, and its motion: none, waves, or masses and springs.
+/// An object, its start position, and its motion: none, waves, masses and springs, or rigid.
 struct ViewedObject {
   TriangleMesh mesh;
   ObjectOptions options{};
-  std::variant<std::monostate, WaveMotion, MassSpringMotion> motion{};
+  std::variant<std::monostate, WaveMotion, MassSpringMotion, RigidMotion> motion{};
 };
 
 /// Time series of a recording: rows of numbers, and begin and end events of pairs.
@@ -29,9 +29,14 @@ struct Series {
     std::uint32_t frame = 0, a = 0, b = 0;  ///< object ids, a < b
     constexpr bool operator==(const Event&) const = default;
   };
+  struct Events {
+    std::vector<Event> begin{}, end{};
+  };
   std::vector<std::string> names{};  ///< of the columns; the first is "time"
   std::vector<double> values{};      ///< row by row, one row per frame
-  std::vector<Event> begin{}, end{};
+  Events contacts{};
+  Events narrow_phase{};  ///< only when the recording has colliding vertices
+  Events volumes{};
 };
 
 /// The frames of a recording, or of a sequence of files with one frame each.

@@ -80,8 +80,10 @@ class Session::Implementation {
   void release(Arguments& arguments);
   void explain(Arguments& arguments);
   void read(Arguments& arguments);
+  void node_pairs(Arguments& arguments);
 
   void read_octree(const JsonValue& octree, Layers& layers, Arguments& arguments) const;
+  void read_colliding_nodes(const JsonValue& nodes, Layers& layers, Arguments& arguments) const;
   void set_stage(const Settings& settings);
   static std::uint32_t id_of(const char* name, Arguments& arguments);
   bool is_of_recording(Arguments& arguments) const;
@@ -120,7 +122,7 @@ const Session::Implementation::Command Session::Implementation::commands_[] = {
     {"reset", &Implementation::reset},     {"set", &Implementation::set},
     {"grab", &Implementation::grab},       {"drag", &Implementation::drag},
     {"release", &Implementation::release}, {"explain", &Implementation::explain, true},
-    {"read", &Implementation::read, true},
+    {"read", &Implementation::read, true}, {"node_pairs", &Implementation::node_pairs, true},
 };
 
 void Session::Implementation::greet() {
@@ -310,6 +312,10 @@ void Session::Implementation::layers(Arguments& arguments) {
     layers.octree_objects.clear();
     if (octree->kind != JsonValue::Kind::null) read_octree(*octree, layers, arguments);
   }
+  if (const JsonValue* const nodes = arguments.member("colliding_nodes")) {
+    layers.colliding_nodes.reset();
+    if (nodes->kind != JsonValue::Kind::null) read_colliding_nodes(*nodes, layers, arguments);
+  }
   if (!arguments.check()) return;
   layers_ = std::move(layers);
   has_news_ = true;
@@ -331,6 +337,22 @@ void Session::Implementation::read_octree(const JsonValue& octree, Layers& layer
   layers.octree_objects = std::move(objects);
   layers.octree_level.reset();
   if (level >= 0) layers.octree_level = static_cast<std::uint32_t>(level);
+}
+
+void Session::Implementation::read_colliding_nodes(const JsonValue& nodes, Layers& layers,
+                                                   Arguments& arguments) const {
+  if (nodes.kind != JsonValue::Kind::object)
+    return arguments.must_be("colliding_nodes", "null, or {\"objects\": [a, b], \"level\": …}");
+  Arguments inner(nodes, "colliding_nodes");
+  const auto objects = inner.numbers("objects");
+  const auto level = inner.required("level", inner.integer("level", CollidingNodes::all_levels, 1000));
+  if (objects && objects->size() != 2) inner.must_be("objects", "the numbers of two objects");
+  for (const std::uint32_t object : objects.value_or(std::vector<std::uint32_t>())) {
+    if (!has_object(object, inner)) break;
+  }
+  if (!inner.check()) return arguments.fail(inner.error());
+  layers.colliding_nodes = CollidingNodes{{}, level};
+  if (objects) layers.colliding_nodes->objects = {(*objects)[0], (*objects)[1]};
 }
 
 void Session::Implementation::reset(Arguments& arguments) {
@@ -369,6 +391,9 @@ void Session::Implementation::set_stage(const Settings& settings) {
   player_.restart();
   std::erase_if(layers_.octree_objects,
                 [this](std::uint32_t object) { return object >= stage_->show().objects.size(); });
+  if (auto& nodes = layers_.colliding_nodes;
+      nodes && nodes->objects && std::ranges::max(*nodes->objects) >= stage_->show().objects.size())
+    nodes->objects.reset();
   owes_scene_ = true;
 }
 
@@ -417,6 +442,12 @@ void Session::Implementation::read(Arguments& arguments) {
     answer_read_triangle(stage_->show(), source, object, static_cast<std::uint32_t>(*triangle), json_);
   else
     answer_read_object(stage_->show(), source, object, json_);
+}
+
+void Session::Implementation::node_pairs(Arguments& arguments) {
+  const auto a = id_of("a", arguments), b = id_of("b", arguments);
+  if (!has_object(a, arguments) || !has_object(b, arguments) || !arguments.check()) return;
+  answer_node_pairs(stage_->source(), a, b, json_);
 }
 
 std::uint32_t Session::Implementation::id_of(const char* name, Arguments& arguments) {

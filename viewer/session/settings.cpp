@@ -41,6 +41,8 @@ void set_apart(ViewedObject& object, std::size_t copy, const Vec3d& offset) {
   if (auto* const sway = std::get_if<WaveMotion>(&object.motion)) sway->seed += copy * 1'000'003;
   if (auto* const springs = std::get_if<MassSpringMotion>(&object.motion); springs && springs->seed)
     *springs->seed += copy * 1'000'003;
+  if (auto* const rigid = std::get_if<RigidMotion>(&object.motion); rigid && rigid->seed)
+    *rigid->seed += copy * 1'000'003;
 }
 
 /// Checks the total size when the list of objects is repeated up to `count`.

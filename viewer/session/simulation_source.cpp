@@ -20,6 +20,8 @@ SimulationSource::SimulationSource(const SceneView& show)
 void SimulationSource::add(const ViewedObject& object) {
   if (const auto* const springs = std::get_if<MassSpringMotion>(&object.motion)) {
     ids_.push_back(simulation_.add(object.mesh, object.options, *springs));
+  } else if (const auto* const rigid = std::get_if<RigidMotion>(&object.motion)) {
+    ids_.push_back(simulation_.add(object.mesh, object.options, *rigid));
   } else if (std::holds_alternative<WaveMotion>(object.motion)) {
     const std::size_t number = ids_.size();
     ids_.push_back(simulation_.add(start_of(show_, object), object.options,
@@ -49,6 +51,7 @@ void SimulationSource::move_swaying(std::size_t object, double seconds, std::spa
 std::optional<std::string> SimulationSource::take_step() {
   if (grip_ && grip_->target) {
     pull_held();
+    is_dragged_ |= is_rigid(grip_->object);  // the last step moved it away from the target
     bend_held();
   }
   if (const auto error = simulation_.try_step()) return error->what();
@@ -100,7 +103,7 @@ void SimulationSource::release() {
 }
 
 bool SimulationSource::needs_steps() const {
-  return grip_ && grip_->target && moves_by_itself(grip_->object);
+  return grip_ && grip_->target && moves_in_steps(grip_->object);
 }
 
 bool SimulationSource::settle() {
@@ -112,10 +115,13 @@ bool SimulationSource::settle() {
 }
 
 void SimulationSource::bend_held() {
-  if (!grip_ || !is_dragged_ || moves_by_itself(grip_->object)) return;
+  if (!grip_ || !is_dragged_ || moves_in_steps(grip_->object)) return;
   const std::span<const Vec3d> now = positions(grip_->object);
   scratch_.assign(now.begin(), now.end());
-  bend(*grip_, scratch_);
+  if (is_rigid(grip_->object))
+    carry(*grip_, scratch_);
+  else
+    bend(*grip_, scratch_);
   simulation_.set_positions(ids_[grip_->object], scratch_);
   ++versions_[grip_->object];
   is_dragged_ = false;

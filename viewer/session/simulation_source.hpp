@@ -34,12 +34,14 @@ class SimulationSource final : public Source {
   /// Grabs a vertex. Returns the reason when that is impossible. The ids must exist.
   std::optional<std::string> grab(std::size_t object, std::uint32_t vertex, std::optional<double> radius);
   bool holds() const { return grip_.has_value(); }
-  /// Sets the target of the held vertex. An object without motion is bent in the next `settle` or step.
+  /// Sets the target of the held vertex. The next `settle` or step bends an object without motion, and
+  /// carries a rigid one.
   void drag(const Vec3d& target);
   void release();
-  /// True when an object with a motion is held and was dragged, so that only steps show the effect.
+  /// True when an object in waves or of masses and springs is held and was dragged, so that only steps show
+  /// the effect.
   bool needs_steps() const;
-  /// Bends the held object and detects again; false when nothing changed.
+  /// Bends or carries the held object and detects again; false when nothing changed.
   bool settle();
 
  private:
@@ -48,6 +50,11 @@ class SimulationSource final : public Source {
   void bend_held();
   void pull_held();
   bool moves_by_itself(std::size_t object) const { return show_.objects[object].motion.index() != 0; }
+  bool is_rigid(std::size_t object) const {
+    return std::holds_alternative<RigidMotion>(show_.objects[object].motion);
+  }
+  /// Only steps move the object.
+  bool moves_in_steps(std::size_t object) const { return moves_by_itself(object) && !is_rigid(object); }
 
   const SceneView& show_;
   Simulation simulation_;

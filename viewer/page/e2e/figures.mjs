@@ -45,25 +45,29 @@ bounds = [[-1.2, -1.2, -1.2], [1.2, 1.2, 1.2]]
 [[object]]
 name = "one"
 model = "rabbit"
-translate = [-0.16, 0, 0]
+translate = [-0.22, 0, 0]
 rotate_xyz_degrees = [0, 30, 0]
 [[object]]
 name = "other"
 model = "rabbit"
-translate = [0.2, 0.05, 0.05]
+translate = [0.24, 0.05, 0.05]
 rotate_xyz_degrees = [0, 200, 8]
 `;
 
-/** The paper's Figure 5: a collision in the narrow phase with bounding boxes. */
+/** The paper's Figure 5: a collision in the narrow phase. Only the boxes of the leaves that collide. */
 async function narrowPhase(stage) {
-  const program = await stage.program(stage.file("rabbits.toml", TWO_RABBITS));
+  const program = await stage.program(stage.file("rabbits.toml", TWO_RABBITS), "--object-octree", "regular", "--leaf-size", "12");
   const page = await stage.page({ colorScheme: "light", viewport: { width: 1100, height: 720 } });
   await page.goto(program.address);
   await stopWhen(page, () => supple.model.frame?.contacts.length > 0);
-  await check(page, "Object octrees");
-  await check(page, "Wireframe");
-  await check(page, "Contact points", false);
-  await until(page, () => supple.counts().boxes > 0);
+  await check(page, "Colliding nodes");
+  for (const label of ["Contact points", "Intersecting triangles", "Intersection curves"]) await check(page, label, false);
+  await until(page, () => supple.counts().nodeBoxes > 0);
+  for (const name of ["one", "other"]) {
+    await page.getByRole("button", { name: new RegExp(`^${name}`) }).click();
+    await page.getByLabel(`Opacity of ${name}`).fill("0.35");
+  }
+  await page.evaluate(() => supple.model.clearSelection());
   await saveView(page, "narrow_phase_boxes.png");
 }
 

@@ -43,7 +43,7 @@ async function eachLayerShows(stage) {
   await until(page, () => supple.model.frame.contacts.length > 200 && supple.model.frame.objectPairs.length > 8);
   await pause(page);
   const layers = [
-    ["Scene octree", "regions"], ["Object octrees", "boxes"], ["Object pairs", "pairs"], ["Candidate pairs", "candidates"],
+    ["Scene octree", "regions"], ["Object octrees", "boxes"], ["Colliding nodes", "nodeBoxes"], ["Object pairs", "pairs"], ["Candidate pairs", "candidates"],
     ["Intersecting triangles", "triangles"], ["Contact points", "points"], ["Contact normals", "normals"],
     ["Intersection curves", "curves"], ["Colliding vertices", "vertices"], ["Surfaces", null], ["Wireframe", null],
   ];
@@ -96,6 +96,36 @@ async function octreeLevels(stage) {
   await page.getByRole("button", { name: /^left/ }).click();
   await page.getByRole("checkbox", { name: "Selected only" }).check();
   await until(page, (roots) => supple.counts().boxes === roots / 2, roots);
+}
+
+/** The levels of the narrow phase are listed, and each shows its nodes. */
+async function narrowPhaseByLevel(stage) {
+  const { page } = await stage.view(stage.file("balls.toml", TWO_BALLS.replaceAll("0.6", "0.45")));
+  const panel = page.getByRole("region", { name: "Narrow phase" });
+  await panel.getByRole("combobox", { name: "Object pair" }).selectOption("0 1");
+  await panel.getByRole("button", { name: /^level 0/ }).click();
+  await until(page, () => supple.counts().nodeBoxes === 2);
+  assert.equal(await panel.getByLabel("Node pairs").innerText(), "A(0, 0) A(0, 0)");
+  assert.ok(await page.getByRole("checkbox", { name: "Colliding nodes" }).isChecked());
+  await panel.getByRole("button", { name: /^level 1/ }).click();
+  await until(page, () => supple.counts().nodeBoxes > 2);
+  assert.match(await panel.getByLabel("Node pairs").innerText(), /^A\([1-8], 1\) A\([1-8], 1\)/);
+  const inner = (await counts(page)).nodeBoxes;
+  await panel.getByRole("button", { name: /^all levels/ }).click();
+  await until(page, (inner) => supple.counts().nodeBoxes > inner + 2, inner);
+  await panel.getByRole("button", { name: /^all levels/, pressed: true }).click();
+  await until(page, () => supple.counts().nodeBoxes === 0);
+}
+
+/** The collisions of the narrow phase are counted while their layer is on. */
+async function eventsAreCounted(stage) {
+  const { page } = await stage.view(nine);
+  await page.getByRole("checkbox", { name: "Colliding vertices" }).check();
+  await until(page, () => Object.values(supple.model.history.events).every(({ begin }) => begin.length > 0));
+  await pause(page);
+  await page.getByRole("tab", { name: "Plots" }).click();
+  const began = await page.evaluate(() => supple.model.history.events.narrow_phase.begin.length);
+  await page.getByText(`${began} began`).first().waitFor();
 }
 
 async function hidesAndColoursObjects(stage) {
@@ -320,6 +350,8 @@ export const tests = [
   ["each layer shows", eachLayerShows],
   ["layers show what the session counts", countsAreTheSessions],
   ["octrees by level, of one object", octreeLevels],
+  ["the narrow phase by level", narrowPhaseByLevel],
+  ["events of both phases are counted", eventsAreCounted],
   ["objects are hidden and coloured", hidesAndColoursObjects],
   ["a triangle is picked and read", picksATriangle],
   ["the contact table flies to contacts", contactTableFlies],

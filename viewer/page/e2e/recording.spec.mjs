@@ -7,7 +7,7 @@ const FRAMES = 60;
 
 async function open(stage) {
   const file = stage.file("run.h5");
-  await runProgram(stage.supple, ["simulate", join(scenes, "nine.toml"), "--steps", String(FRAMES), "--record", file, "--quiet"]);
+  await runProgram(stage.supple, ["simulate", join(scenes, "nine.toml"), "--steps", String(FRAMES), "--colliding-vertices", "--record", file, "--quiet"]);
   const { page } = await stage.view(file);
   await pause(page);
   await until(page, () => supple.model.history.frames.length > 0);
@@ -63,7 +63,7 @@ async function jumpsToEvents(stage) {
   await page.getByRole("button", { name: "First frame" }).click();
   await isAt(page, 0);
   const events = await page.evaluate(() => {
-    const { begin, end } = supple.model.history.events;
+    const { begin, end } = supple.model.history.events.contact;
     return [...new Set([...begin, ...end].map(({ frame }) => frame))].sort((a, b) => a - b).filter((frame) => frame > 0);
   });
   assert.ok(events.length >= 2, `${events.length} events`);
@@ -73,6 +73,17 @@ async function jumpsToEvents(stage) {
   }
   await page.getByRole("button", { name: "Previous event" }).click();
   await isAt(page, events[0]);
+  // The events of the narrow phase, which this recording has.
+  await page.getByRole("combobox", { name: "Events" }).selectOption("narrow_phase");
+  const first = await page.evaluate(() => {
+    const { begin, end } = supple.model.history.events.narrow_phase;
+    return Math.min(...[...begin, ...end].map(({ frame }) => frame).filter((frame) => frame > 0));
+  });
+  await page.getByRole("button", { name: "First frame" }).click();
+  await isAt(page, 0);
+  await page.getByRole("button", { name: "Next event" }).click();
+  assert.ok(Number.isFinite(first));
+  await isAt(page, first);
 }
 
 async function plotsSeek(stage) {

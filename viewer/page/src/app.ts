@@ -10,6 +10,7 @@ import { colourOf, h, icon, iconButton, setIcon } from "./panels/dom";
 import { FramesDialog } from "./panels/frames_dialog";
 import { helpSheet } from "./panels/help";
 import { Inspector } from "./panels/inspector";
+import { NodePairs } from "./panels/node_pairs";
 import { Card, Notices } from "./panels/notices";
 import { Player } from "./panels/player";
 import { Plots } from "./panels/plots";
@@ -93,7 +94,7 @@ export class App {
       model, view, (plan, signal, progress) => new FramesRun(model, this.client, view, plan, signal, progress).go(), (text) => this.notices.show(text),
     );
     const tabs = this.tabs({
-      Inspect: inspector.element,
+      Inspect: h("div", {}, inspector.element, new NodePairs(model, this.client).element),
       Contacts: new ContactTable(model, fly).element,
       Plots: this.plots.element,
       Settings: new Settings(model, this.client).element,

@@ -2,7 +2,7 @@
 import { objectColour } from "./colours";
 import { sidesOf, type ContactKey } from "./contacts";
 import { Emitter } from "./emitter";
-import type { FrameMessage, SceneMessage, SceneObject, SceneText, SeriesMessage } from "./protocol/messages";
+import { EVENT_KINDS, type EventKind, type FrameMessage, type SceneMessage, type SceneObject, type SceneText, type SeriesMessage } from "./protocol/messages";
 
 export interface ObjectState {
   index: number;
@@ -29,12 +29,12 @@ export interface Bounds {
 }
 
 export const LAYERS = [
-  "surface", "wireframe", "regions", "octree", "pairs", "candidates", "triangles", "points", "normals", "curves", "vertices",
+  "surface", "wireframe", "regions", "octree", "nodes", "pairs", "candidates", "triangles", "points", "normals", "curves", "vertices",
 ] as const;
 export type Layer = (typeof LAYERS)[number];
 
 /** Layers that the session computes, by their names in the protocol. */
-const MADE_BY_SESSION: Record<string, Layer> = { candidates: "candidates", scene_regions: "regions", colliding_vertices: "vertices", octree: "octree" };
+const MADE_BY_SESSION: Record<string, Layer> = { candidates: "candidates", scene_regions: "regions", colliding_vertices: "vertices", octree: "octree", colliding_nodes: "nodes" };
 
 export const TOOLS = ["select", "grab", "explain"] as const;
 export type Tool = (typeof TOOLS)[number];
@@ -55,10 +55,23 @@ export interface Explanation {
   distance: number | null;
 }
 
-export interface Events {
-  begin: { frame: number; a: number; b: number }[];
-  end: { frame: number; a: number; b: number }[];
+export interface Event {
+  frame: number;
+  a: number;
+  b: number;
 }
+export type Events = Record<EventKind, { begin: Event[]; end: Event[] }>;
+const noEvents = (): Events => ({ contact: { begin: [], end: [] }, narrow_phase: { begin: [], end: [] }, volume: { begin: [], end: [] } });
+
+export const EVENT_LABELS: Record<EventKind, string> = { contact: "contacts", narrow_phase: "narrow phase", volume: "broad phase" };
+
+/** The colliding nodes to draw: of two objects or of all pairs, on one level. */
+export interface NodeChoice {
+  objects: [number, number] | null;
+  level: number;
+}
+export const LEAVES = -1;
+export const ALL_LEVELS = -2;
 
 interface ModelEvents {
   scene: SceneText;
@@ -80,13 +93,13 @@ export class History {
   names: string[] = [];
   columns: number[][] = [];
   frames: number[] = [];
-  events: Events = { begin: [], end: [] };
+  events = noEvents();
 
   reset(names: string[]): void {
     this.names = names;
     this.columns = names.map(() => []);
     this.frames = [];
-    this.events = { begin: [], end: [] };
+    this.events = noEvents();
   }
 
   push(frame: number, row: ArrayLike<number>): void {
@@ -97,8 +110,10 @@ export class History {
     this.frames.splice(0, surplus);
     for (const column of this.columns) column.splice(0, surplus);
     const first = this.frames[0]!;
-    this.events.begin = this.events.begin.filter((event) => event.frame >= first);
-    this.events.end = this.events.end.filter((event) => event.frame >= first);
+    for (const events of Object.values(this.events)) {
+      events.begin = events.begin.filter((event) => event.frame >= first);
+      events.end = events.end.filter((event) => event.frame >= first);
+    }
   }
 
   column(name: string): number[] | null {
@@ -111,6 +126,7 @@ function kindOf(object: SceneObject, source: SceneText["source"]): string {
   if (object.static) return "static";
   if (source === "recording") return "recorded";
   if (object.body) return "soft body";
+  if (object.rigid) return "rigid";
   return object.waves ? "swaying" : "at rest";
 }
 
@@ -124,10 +140,11 @@ export class Model extends Emitter<ModelEvents> {
   readonly history = new History();
 
   layers: Record<Layer, boolean> = {
-    surface: true, wireframe: false, regions: false, octree: false, pairs: false, candidates: false,
+    surface: true, wireframe: false, regions: false, octree: false, nodes: false, pairs: false, candidates: false,
     triangles: true, points: true, normals: false, curves: true, vertices: false,
   };
   octree: { onlySelected: boolean; level: number } = { onlySelected: false, level: -1 };
+  nodes: NodeChoice = { objects: null, level: LEAVES };
   throughSurfaces = true;
   pointSize = 5;
   normalLength = 0.015;  // relative to the size of the scene
@@ -169,6 +186,7 @@ export class Model extends Emitter<ModelEvents> {
     this.explained = [];
     this.explanation = null;
     this.contact = null;
+    if (this.nodes.objects?.some((object) => object >= this.objects.length)) this.nodes = { objects: null, level: LEAVES };
     const names = message.text.source === "recording" ? message.text.series : ["time", ...message.text.statistics];
     this.history.reset(names);
     this.emit("scene", message.text);
@@ -200,7 +218,8 @@ export class Model extends Emitter<ModelEvents> {
     this.history.frames = Array.from({ length: rows }, (_, row) => row);
     const list = (data: Uint32Array) =>
       Array.from({ length: data.length / 3 }, (_, i) => ({ frame: data[3 * i]!, a: data[3 * i + 1]!, b: data[3 * i + 2]! }));
-    this.history.events = { begin: list(message.begin), end: list(message.end) };
+    for (const kind of EVENT_KINDS)
+      this.history.events[kind] = { begin: list(message.events[kind].begin), end: list(message.events[kind].end) };
     this.emit("history", null);
   }
 
@@ -209,8 +228,11 @@ export class Model extends Emitter<ModelEvents> {
     const frames = this.history.frames;
     if (frames.length > 0 && frames[frames.length - 1]! >= step) return;  // the same step again, with other layers
     this.history.push(step, [time, ...message.statistics]);
-    for (const [events, data] of [[this.history.events.begin, message.begin], [this.history.events.end, message.end]] as const)
-      for (let i = 0; i < data.length; i += 2) events.push({ frame: step, a: data[i]!, b: data[i + 1]! });
+    for (const kind of EVENT_KINDS)
+      for (const side of ["begin", "end"] as const) {
+        const data = message.events[kind][side];
+        for (let i = 0; i < data.length; i += 2) this.history.events[kind][side].push({ frame: step, a: data[i]!, b: data[i + 1]! });
+      }
     this.emit("history", null);
   }
 
@@ -255,6 +277,11 @@ export class Model extends Emitter<ModelEvents> {
     this.emit("display", null);
   }
 
+  showNodes(nodes: NodeChoice): void {
+    this.nodes = nodes;
+    this.setLayer("nodes", true);
+  }
+
   /**
    * Switches off layers that the session can no longer compute, by their names in the protocol; returns
    * those that were on. Then requests the others again, because a request may have been in transit.
@@ -278,6 +305,7 @@ export class Model extends Emitter<ModelEvents> {
       candidates: this.layers.candidates,
       scene_regions: this.layers.regions,
       colliding_vertices: this.layers.vertices,
+      colliding_nodes: this.layers.nodes ? { level: this.nodes.level, ...(this.nodes.objects && { objects: this.nodes.objects }) } : null,
       octree: this.layers.octree ? { objects, level: this.octree.level } : null,
     };
   }

@@ -75,7 +75,13 @@ export const frameMessage = (): ArrayBuffer =>
     { tag: 43, count: 2, data: new Float64Array([0.001, 1]) },
     words(44, 2, [0, 1]),
     words(45, 2, []),
+    words(46, 2, [0, 1]),
+    words(47, 2, []),
+    words(48, 2, []),
+    words(49, 2, [0, 1]),
+    floats(50, 8, [-1, -1, -1, 0, 1, 1, 1, 2], 1),
+    floats(51, 8, [0, 0, 0, 1, 0, 2, 0, 0], 1),
   );
 
 export const seriesMessage = (): ArrayBuffer =>
-  message(KIND.series, { tag: 64, count: 2, data: new Float64Array([0, 1, 0.1, 2]) }, words(65, 3, [1, 0, 1]), words(66, 3, []));
+  message(KIND.series, { tag: 64, count: 2, data: new Float64Array([0, 1, 0.1, 2]) }, words(65, 3, [1, 0, 1]), words(66, 3, []), words(68, 3, [2, 0, 1]), words(69, 3, []));

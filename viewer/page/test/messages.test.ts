@@ -26,12 +26,16 @@ test("a frame is read in place", () => {
   assert.equal(frame.contactPoints[8], 1);
   assert.deepEqual([...frame.statistics], [0.001, 1]);
   assert.deepEqual([...frame.collidingVertices.get(1)!], [0, 3]);
+  assert.deepEqual([...frame.events.narrow_phase.begin], [0, 1]);
+  assert.deepEqual([...frame.events.volume.end], [0, 1]);
+  assert.equal(frame.collidingBoxes.get(1)!.length, 8);
   assert.ok(Number.isNaN(frame.positions.get(1)![11]));
 });
 
 test("series, answers and failures are read", () => {
   const series = readMessage(seriesMessage(), counts);
   assert.ok(series.kind === "series" && series.values.length === 4);
+  assert.deepEqual(Object.values(series.events).map(({ begin, end }) => [[...begin], [...end]]), [[[1, 0, 1], []], [[], [2, 0, 1]], [[], []]]);
   const answer = readMessage(message(KIND.answer, text({ id: 7, stage: "contact" })), counts);
   assert.ok(answer.kind === "answer" && answer.text.id === 7);
   const failure = readMessage(message(KIND.failure, text({ message: "no", fatal: true })), null);
@@ -77,6 +81,8 @@ test("ids that are not there are refused", () => {
   reject(frameWith(floats(32, 3, [0, 0, 0], 0)), /positions/);
   reject(frameWith(floats(32, 3, [0, 0, 0], 5)), /positions/);
   reject(frameWith(floats(40, 8, new Array<number>(8).fill(0), 2)), /octree/);
+  reject(frameWith(floats(50, 8, new Array<number>(8).fill(0), 2)), /octree/);
+  for (const tag of [44, 46, 49]) reject(frameWith(words(tag, 2, [0, 2])), /_begin|_end/);
   reject(frameWith({ tag: 43, count: 1, data: new Float64Array(1) }), /statistics/);
 });
 

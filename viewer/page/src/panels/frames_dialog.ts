@@ -73,7 +73,7 @@ export class FramesDialog {
     this.counted.hidden = this.count.disabled = frames !== null;
     this.reached.hidden = this.until.disabled = frames === null;
     this.count.max = String(MOST_FILES);
-    const moves = this.model.scene!.objects.some((object) => object.body || object.waves);
+    const moves = this.model.scene!.objects.some((object) => object.body || object.waves || object.rigid);
     this.count.value ||= String(moves ? USUAL_COUNT : 1);
     this.every.max = String(MOST_STEPS);
     this.every.value ||= "1";

@@ -14,7 +14,7 @@ const GROUPS: [string, [string, string][]][] = [
     ["↑ ↓", "in a list: next or previous row"], ["Esc", "release, clear the selection, close"],
   ]],
   ["Layers", [
-    ["S X", "surfaces, wireframe"], ["N B", "scene octree, object octrees"], ["P C", "object pairs, candidates"],
+    ["S X", "surfaces, wireframe"], ["N B K", "scene octree, object octrees, colliding nodes"], ["P C", "object pairs, candidates"],
     ["I D", "intersecting triangles, contact points"], ["Y U J", "normals, curves, vertices"],
   ]],
   ["Page", [

@@ -125,7 +125,6 @@ export class Inspector {
       return;
     }
     const rows: Row[] = [];
-    if (explanation.levels && explanation.stage === "octree_volumes") rows.push(["Levels", show(explanation.levels)]);
     if (explanation.distance) rows.push(["Apart by", readable(explanation.distance)]);
     if (explanation.axis && explanation.distance) rows.push(["Along", show(explanation.axis)]);
     this.verdict.replaceChildren(

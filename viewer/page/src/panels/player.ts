@@ -1,7 +1,8 @@
 /** Play, step, speed and reset; for a recording also the timeline with its events. */
 import type { Client } from "../client";
 import { OKABE_ITO } from "../colours";
-import type { Model } from "../model";
+import { EVENT_LABELS, type Model } from "../model";
+import { EVENT_KINDS, type EventKind } from "../protocol/messages";
 import { h, iconButton, readable, setIcon } from "./dom";
 
 const SPEEDS = [0.1, 0.25, 0.5, 1, 2, 5, 10];
@@ -14,6 +15,7 @@ export class Player {
   private readonly play = iconButton("play", "Play", "Space", () => this.togglePlay());
   private readonly loop = iconButton("loop", "Loop", "L", () => this.toggleLoop());
   private readonly speeds = h("select", { "aria-label": "Speed", title: "Speed ([ and ])", onchange: () => this.setSpeed(Number(this.speeds.value)) });
+  private readonly kinds = h("select", { "aria-label": "Events", title: "Events on the timeline; those of the narrow phase are in recordings made with --colliding-vertices", onchange: () => this.drawMarks() });
   private readonly seed = h("input", { type: "number", min: 0, step: 1, "aria-label": "Seed", title: "Seed of the next reset" });
   private readonly slider = h("input", { type: "range", min: 0, max: 0, step: 1, value: 0, "aria-label": "Timeline", oninput: () => this.scrub() });
   private readonly marks = h("canvas", { class: "marks", "aria-hidden": "true" });
@@ -34,13 +36,14 @@ export class Player {
     const reset = iconButton("reset", "Reset", "R", () => this.reset());
     const track = h("div", { class: "track" }, this.marks, this.slider);
     const seed = h("label", { class: "seed" }, "Seed ", this.seed);
-    this.recordingOnly = [first, last, previous, next, back, this.loop, track];
+    this.kinds.append(...EVENT_KINDS.map((kind) => h("option", { value: kind }, EVENT_LABELS[kind])));
+    this.recordingOnly = [first, last, previous, next, this.kinds, back, this.loop, track];
     this.simulationOnly = [reset, seed];
     this.speeds.append(h("option", { value: 0 }, "fastest"), ...SPEEDS.map((speed) => h("option", { value: speed }, `${speed}×`)));
     this.seed.addEventListener("change", () => this.reset());
     this.element = h(
       "footer", { class: "player", "aria-label": "Player", role: "toolbar" },
-      first, previous, back, this.play, forward, next, last, this.loop, reset, seed, this.speeds, track, this.place, this.rate,
+      first, previous, back, this.play, forward, next, last, this.kinds, this.loop, reset, seed, this.speeds, track, this.place, this.rate,
     );
     model.on("scene", () => this.build());
     model.on("frame", (frame) => this.show(frame.text));
@@ -154,11 +157,15 @@ export class Player {
     this.wanted = null;
   }
 
-  /** Goes to the next or previous frame in which objects begin or stop touching. */
+  private get events() {
+    return this.model.history.events[this.kinds.value as EventKind];
+  }
+
+  /** Goes to the next or previous frame in which pairs of objects begin or end. */
   jump(direction: 1 | -1): void {
     if (!this.model.can("seek")) return;
     const now = this.wanted ?? this.asked ?? this.model.frame?.text.step ?? 0;
-    const { begin, end } = this.model.history.events;
+    const { begin, end } = this.events;
     let best: number | null = null;
     for (const { frame } of [...begin, ...end])
       if ((frame - now) * direction > 0 && (best === null || (best - frame) * direction > 0)) best = frame;
@@ -179,7 +186,7 @@ export class Player {
     context.scale(ratio, ratio);
     const inset = 8;  // half the width of the slider's handle
     const place = (frame: number) => inset + ((width - 2 * inset) * frame) / Math.max(1, frames - 1);
-    const { begin, end } = this.model.history.events;
+    const { begin, end } = this.events;
     for (const [events, colour, top] of [[begin, OKABE_ITO.vermillion, 0], [end, OKABE_ITO.blue, height - 6]] as const) {
       context.fillStyle = colour;
       const columns = new Set(events.map(({ frame }) => Math.round(place(frame))));

@@ -2,8 +2,9 @@
 import uPlot from "uplot";
 import "uplot/dist/uPlot.min.css";
 import { OKABE_ITO } from "../colours";
-import type { Model } from "../model";
-import { colourOf, h } from "./dom";
+import { EVENT_LABELS, type Model } from "../model";
+import { EVENT_KINDS } from "../protocol/messages";
+import { colourOf, h, readable } from "./dom";
 
 const HEIGHT = 132;
 const REDRAW_MILLISECONDS = 150;
@@ -22,6 +23,8 @@ const labelOf = (name: string): string => name.replace(/_seconds$/, "").replace(
 export class Plots {
   readonly element = h("div", { class: "plots" });
   private plots: Plot[] = [];
+  /** How many pairs of objects began and ended, as the paper counts collisions. */
+  private readonly events = h("dl", { "aria-label": "Events", title: "Collisions of the narrow phase are counted while the layer Colliding vertices is on, or in a recording made with --colliding-vertices" });
   private due: ReturnType<typeof setTimeout> | undefined;
 
   constructor(private readonly model: Model, private readonly seek: (frame: number) => void) {
@@ -48,6 +51,7 @@ export class Plots {
     this.add("Contacts and candidates", has(["contacts", "candidate_pairs"]), 1);
     this.add("Time per stage, milliseconds", stages, 1000);
     if (this.plots.length === 0) this.element.append(h("p", { class: "hint empty" }, "This recording has no time series."));
+    this.element.append(h("figure", {}, h("figcaption", {}, "Collisions of two objects"), this.events));
     this.update();
   }
 
@@ -102,7 +106,12 @@ export class Plots {
 
   update(): void {
     if (this.element.clientWidth === 0) return;  // another tab is visible
-    const { frames } = this.model.history;
+    const { frames, events } = this.model.history;
+    this.events.replaceChildren(
+      ...EVENT_KINDS.flatMap((kind) => [
+        h("dt", {}, EVENT_LABELS[kind]), h("dd", {}, `${readable(events[kind].begin.length)} began, ${readable(events[kind].end.length)} ended`),
+      ]),
+    );
     for (const { columns, scale, plot } of this.plots) {
       const lines = columns.map((name) => {
         const column = this.model.history.column(name)!;

@@ -17,6 +17,7 @@ export const LAYER_ROWS: LayerRow[] = [
   { layer: "wireframe", label: "Wireframe", key: "X", colour: "", hint: "The edges of all triangles" },
   { layer: "regions", label: "Scene octree", key: "N", colour: "levels", hint: "Regions that the broad phase used in this frame, coloured by level; none unless the octree ran" },
   { layer: "octree", label: "Object octrees", key: "B", colour: "levels", hint: "Cells of the objects' octrees, coloured by level" },
+  { layer: "nodes", label: "Colliding nodes", key: "K", colour: "levels", hint: "Nodes of two octrees whose volumes overlap in the narrow phase: the leaves, or a level chosen under Narrow phase" },
   { layer: "pairs", label: "Object pairs", key: "P", colour: OKABE_ITO.green, hint: "Objects whose volumes overlap" },
   { layer: "candidates", label: "Candidate pairs", key: "C", colour: OKABE_ITO.blue, hint: "Pairs of triangles that the exact stage decides" },
   { layer: "triangles", label: "Intersecting triangles", key: "I", colour: OKABE_ITO.vermillion, hint: "Triangles that have a contact" },
@@ -101,14 +102,14 @@ export class ScenePanel {
   private refresh(): void {
     const { layers } = this.model;
     for (const [layer, box] of this.boxes) box.checked = layers[layer];
-    this.legend.hidden = !layers.octree && !layers.regions;
+    this.legend.hidden = !layers.octree && !layers.regions && !layers.nodes;
   }
 
   /** Shows the number of drawn elements beside each layer. */
   showCounts(drawn: Record<string, number>): void {
     const { frame, layers } = this.model;
     const of: Partial<Record<Layer, number>> = {
-      regions: drawn["regions"]!, octree: drawn["boxes"]! + drawn["balls"]!, candidates: drawn["candidates"]!, triangles: drawn["triangles"]!,
+      regions: drawn["regions"]!, octree: drawn["boxes"]! + drawn["balls"]!, nodes: drawn["nodeBoxes"]! + drawn["nodeBalls"]!, candidates: drawn["candidates"]!, triangles: drawn["triangles"]!,
       points: drawn["points"]!, normals: drawn["normals"]!, curves: drawn["curves"]!, vertices: drawn["vertices"]!, pairs: drawn["pairs"]!,
     };
     for (const [layer, element] of this.counts) {

@@ -17,6 +17,7 @@ export interface SceneObject {
   static: boolean;
   body: boolean;
   waves?: boolean;
+  rigid?: boolean;
   self_collision: boolean;
 }
 
@@ -58,6 +59,12 @@ export interface FrameText {
   omitted: Record<string, number>;
 }
 
+/** What begins and ends: contacts, collisions of the narrow phase, overlaps of the objects' volumes. */
+export const EVENT_KINDS = ["contact", "narrow_phase", "volume"] as const;
+export type EventKind = (typeof EVENT_KINDS)[number];
+/** In a frame two objects per event; in a series the frame and two objects. */
+export type EventData = Record<EventKind, { begin: Uint32Array; end: Uint32Array }>;
+
 export interface SceneMessage {
   kind: "scene";
   text: SceneText;
@@ -79,9 +86,10 @@ export interface FrameMessage {
   octreeBoxes: Map<number, Float32Array>;
   octreeSpheres: Map<number, Float32Array>;
   collidingVertices: Map<number, Uint32Array>;
+  collidingBoxes: Map<number, Float32Array>;
+  collidingSpheres: Map<number, Float32Array>;
   statistics: Float64Array;
-  begin: Uint32Array;
-  end: Uint32Array;
+  events: EventData;
 }
 
 export interface AnswerMessage {
@@ -97,8 +105,7 @@ export interface FailureMessage {
 export interface SeriesMessage {
   kind: "series";
   values: Float64Array;
-  begin: Uint32Array;
-  end: Uint32Array;
+  events: EventData;
 }
 
 export type Message = SceneMessage | FrameMessage | AnswerMessage | FailureMessage | SeriesMessage;
@@ -131,9 +138,19 @@ const FORMS: Record<number, Form> = {
   43: { name: "statistics", array: Float64Array, width: 1, kinds: ["frame"] },
   44: { name: "contact_begin", array: Uint32Array, width: 2, kinds: ["frame"] },
   45: { name: "contact_end", array: Uint32Array, width: 2, kinds: ["frame"] },
+  46: { name: "narrow_phase_begin", array: Uint32Array, width: 2, kinds: ["frame"] },
+  47: { name: "narrow_phase_end", array: Uint32Array, width: 2, kinds: ["frame"] },
+  48: { name: "volume_begin", array: Uint32Array, width: 2, kinds: ["frame"] },
+  49: { name: "volume_end", array: Uint32Array, width: 2, kinds: ["frame"] },
+  50: { name: "colliding_boxes", array: Float32Array, width: 8, kinds: ["frame"], perObject: true },
+  51: { name: "colliding_spheres", array: Float32Array, width: 8, kinds: ["frame"], perObject: true },
   64: { name: "series", array: Float64Array, width: 0, kinds: ["series"] },
-  65: { name: "series_begin", array: Uint32Array, width: 3, kinds: ["series"] },
-  66: { name: "series_end", array: Uint32Array, width: 3, kinds: ["series"] },
+  65: { name: "series_contact_begin", array: Uint32Array, width: 3, kinds: ["series"] },
+  66: { name: "series_contact_end", array: Uint32Array, width: 3, kinds: ["series"] },
+  67: { name: "series_narrow_phase_begin", array: Uint32Array, width: 3, kinds: ["series"] },
+  68: { name: "series_narrow_phase_end", array: Uint32Array, width: 3, kinds: ["series"] },
+  69: { name: "series_volume_begin", array: Uint32Array, width: 3, kinds: ["series"] },
+  70: { name: "series_volume_end", array: Uint32Array, width: 3, kinds: ["series"] },
 };
 
 type Data = Uint8Array | Uint32Array | Float32Array | Float64Array;
@@ -178,6 +195,11 @@ class Sections {
 
   each<T extends Data>(name: string): Map<number, T> {
     return (this.found.get(name) ?? new Map()) as Map<number, T>;
+  }
+
+  events(prefix: string): EventData {
+    const list = (name: string) => this.one(`${prefix}${name}`, new Uint32Array(0));
+    return Object.fromEntries(EVENT_KINDS.map((kind) => [kind, { begin: list(`${kind}_begin`), end: list(`${kind}_end`) }])) as EventData;
   }
 
   json(): Record<string, unknown> {
@@ -300,6 +322,12 @@ function checkPairs(name: string, data: Uint32Array, stride: number, at: number,
     if (data[i + at]! >= objects || data[i + at + 1]! >= objects) fail(`its section ${name} names an object that does not exist`);
 }
 
+/** The objects are the last two numbers of each event. */
+function checkEvents(events: EventData, stride: number, objects: number): void {
+  for (const kind of EVENT_KINDS)
+    for (const side of ["begin", "end"] as const) checkPairs(`${kind}_${side}`, events[kind][side], stride, stride - 2, objects);
+}
+
 function checkContacts(contacts: Uint32Array, points: number): void {
   for (let i = 0; i < contacts.length; i += 8)
     if (contacts[i + 4]! > 2 || contacts[i + 5]! + contacts[i + 6]! > points) fail("a contact has points that do not exist");
@@ -338,9 +366,10 @@ function readFrame(sections: Sections, scene: SceneCounts): FrameMessage {
     octreeBoxes: sections.each("octree_boxes"),
     octreeSpheres: sections.each("octree_spheres"),
     collidingVertices: sections.each("colliding_vertices"),
+    collidingBoxes: sections.each("colliding_boxes"),
+    collidingSpheres: sections.each("colliding_spheres"),
     statistics: sections.one("statistics", new Float64Array(0)),
-    begin: sections.one("contact_begin", words),
-    end: sections.one("contact_end", words),
+    events: sections.events(""),
   };
   if (text.generation !== scene.generation) return frame;  // belongs to an earlier scene and will be ignored
   for (const [object, positions] of frame.positions)
@@ -349,11 +378,10 @@ function readFrame(sections: Sections, scene: SceneCounts): FrameMessage {
     const limit = scene.vertices[object] ?? 0;
     if (vertices.some((vertex) => vertex >= limit)) fail("its section colliding_vertices names a vertex that does not exist");
   }
-  for (const shapes of [frame.octreeBoxes, frame.octreeSpheres])
+  for (const shapes of [frame.octreeBoxes, frame.octreeSpheres, frame.collidingBoxes, frame.collidingSpheres])
     for (const object of shapes.keys()) if (object >= scene.vertices.length) fail("it has an octree of an object that does not exist");
   checkPairs("object_pairs", frame.objectPairs, 2, 0, scene.vertices.length);
-  checkPairs("contact_begin", frame.begin, 2, 0, scene.vertices.length);
-  checkPairs("contact_end", frame.end, 2, 0, scene.vertices.length);
+  checkEvents(frame.events, 2, scene.vertices.length);
   checkIds("contacts", frame.contacts, 8, [0, 2], scene.triangles);
   checkContacts(frame.contacts, frame.contactPoints.length / 8);
   checkIds("candidates", frame.candidates, 4, [0, 2], scene.triangles);
@@ -364,16 +392,9 @@ function readFrame(sections: Sections, scene: SceneCounts): FrameMessage {
 }
 
 function readSeries(sections: Sections, scene: SceneCounts): SeriesMessage {
-  const words = new Uint32Array(0);
-  const series: SeriesMessage = {
-    kind: "series",
-    values: sections.one("series", new Float64Array(0)),
-    begin: sections.one("series_begin", words),
-    end: sections.one("series_end", words),
-  };
-  checkPairs("series_begin", series.begin, 3, 1, scene.vertices.length);
-  checkPairs("series_end", series.end, 3, 1, scene.vertices.length);
-  return series;
+  const events = sections.events("series_");
+  checkEvents(events, 3, scene.vertices.length);
+  return { kind: "series", values: sections.one("series", new Float64Array(0)), events };
 }
 
 function readAnswer(sections: Sections): AnswerMessage {

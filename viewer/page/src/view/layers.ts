@@ -63,6 +63,8 @@ export class Layers {
   readonly regions = new Cells("boxes", { colour: "#ffffff", opacity: 0.85 });
   readonly boxes = new Cells("boxes", { colour: "#ffffff", opacity: 0.9 });
   readonly balls = new Cells("balls", { colour: "#ffffff", opacity: 0.8 });
+  readonly nodeBoxes = new Cells("boxes", { colour: "#ffffff", opacity: 1, order: 2 });
+  readonly nodeBalls = new Cells("balls", { colour: "#ffffff", opacity: 1, order: 2 });
   readonly pairs = new Lines({ colour: OKABE_ITO.green, size: 3, depthTest: false, order: 4 });
   readonly candidateFaces = new Faces({ colour: OKABE_ITO.yellow, opacity: 0.85, order: 1 });
   readonly candidates = new Lines({ colour: OKABE_ITO.blue, size: 1.5, depthTest: false, order: 3 });
@@ -80,26 +82,26 @@ export class Layers {
 
   private all() {
     return [
-      this.regions, this.boxes, this.balls, this.pairs, this.candidateFaces, this.candidates, this.triangles,
+      this.regions, this.boxes, this.balls, this.nodeBoxes, this.nodeBalls, this.pairs, this.candidateFaces, this.candidates, this.triangles,
       this.points, this.normals, this.curves, this.vertices,
     ];
   }
 
   /** The number of elements that each layer draws. */
   counts(): Record<string, number> {
-    const { regions, boxes, balls, pairs, candidates, candidateFaces, triangles, points, normals, curves, vertices } = this;
+    const { regions, boxes, balls, nodeBoxes, nodeBalls, pairs, candidates, candidateFaces, triangles, points, normals, curves, vertices } = this;
     return Object.fromEntries(
-      Object.entries({ regions, boxes, balls, pairs, candidates, candidateFaces, triangles, points, normals, curves, vertices })
+      Object.entries({ regions, boxes, balls, nodeBoxes, nodeBalls, pairs, candidates, candidateFaces, triangles, points, normals, curves, vertices })
         .map(([name, layer]) => [name, layer.count]),
     );
   }
 
   update(): void {
     const { layers } = this.model;
-    for (const layer of [this.points, this.vertices, this.curves, this.normals]) layer.depthTest = !this.model.throughSurfaces;
+    for (const layer of [this.points, this.vertices, this.curves, this.normals, this.nodeBoxes, this.nodeBalls]) layer.depthTest = !this.model.throughSurfaces;
     this.points.size = this.model.pointSize + 2;
     this.vertices.size = this.model.pointSize;
-    this.fillCells(layers.regions, layers.octree);
+    this.fillCells();
     this.fillPairs(layers.pairs);
     this.fillCandidates(layers.candidates);
     this.fillTriangles(layers.triangles);
@@ -113,13 +115,15 @@ export class Layers {
     return this.model.objects[object]?.visible ?? false;
   }
 
-  private fillCells(regions: boolean, octree: boolean): void {
-    const { frame } = this.model;
-    const ofShown = (cells: Map<number, Float32Array> | undefined) =>
-      octree && cells ? [...cells].filter(([object]) => this.shown(object)).map(([, data]) => data) : [];
-    this.regions.fill(regions && frame ? [frame.sceneRegions] : []);
-    this.boxes.fill(ofShown(frame?.octreeBoxes));
-    this.balls.fill(ofShown(frame?.octreeSpheres));
+  private fillCells(): void {
+    const { frame, layers } = this.model;
+    const ofShown = (on: boolean, cells: Map<number, Float32Array> | undefined) =>
+      on && cells ? [...cells].filter(([object]) => this.shown(object)).map(([, data]) => data) : [];
+    this.regions.fill(layers.regions && frame ? [frame.sceneRegions] : []);
+    this.boxes.fill(ofShown(layers.octree, frame?.octreeBoxes));
+    this.balls.fill(ofShown(layers.octree, frame?.octreeSpheres));
+    this.nodeBoxes.fill(ofShown(layers.nodes, frame?.collidingBoxes));
+    this.nodeBalls.fill(ofShown(layers.nodes, frame?.collidingSpheres));
   }
 
   private fillPairs(on: boolean): void {
