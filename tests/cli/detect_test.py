@@ -96,6 +96,37 @@ class Json(ProgramTest):
         self.assertEqual(frame["colliding_vertices"], [{"a": 0, "b": 1, "vertices_a": [0, 1, 2], "vertices_b": [0, 1, 2]}])
         self.assertEqual(frame["events"]["narrow_phase"], {"begin": [[0, 1]], "end": []})
 
+    def test_node_pairs(self):
+        octree = ("--object-octree", "regular", "--leaf-size", "1")
+        self.write("two.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 8 8 8\nv 9 8 8\nv 8 9 8\nf 1 2 3\nf 4 5 6\n")
+        self.write("near.obj", "v 8 8 7\nv 8 8 9\nv 9 9 8\nf 1 2 3\n")
+        (frame,) = self.detect("two.obj", "near.obj", "--node-pairs", "0", "1", *octree)["frames"]
+        # The root of two.obj has two children. The second one collides with the only node of near.obj.
+        levels = [[[[0, 0], [0, 0]]], [[[2, 1], [0, 0]]]]
+        self.assertEqual(frame["node_pairs"], {"a": 0, "b": 1, "levels": levels})
+        done = self.run_here("detect", "two.obj", "near.obj", "--node-pairs", "0", "1", *octree)
+        self.assertRegex(done.out, r"(?m)^ +0 +1 +0   A\(0, 0\) A\(0, 0\)\n +1 +1 +1   A\(2, 1\) A\(0, 0\)$")
+        done = self.run_here("detect", "two.obj", "near.obj", "--node-pairs", "1", "0", "--bounding-volume", "sphere", *octree)
+        self.assertRegex(done.out, r"S\(0, 0\) S\(2, 1\)")
+        done = self.run_here("detect", "a.obj", "far.obj", "--node-pairs", "0", "1")
+        self.assertIn("the broad phase does not report this pair", done.out)
+        for wrong, message in (
+            (("0", "7"), "there is no object 7; there are 2"),
+            (("1", "1"), "object 1 is not tested against itself; add --self"),
+            (("0", "x"), "--node-pairs"),
+        ):
+            self.assert_one_line_error(self.run_here("detect", "two.obj", "near.obj", "--node-pairs", *wrong), message)
+        quiet = self.run_here("detect", "two.obj", "near.obj", "--node-pairs", "0", "1", "--quiet")
+        self.assert_one_line_error(quiet, "has no effect without --json or tables")
+
+    def test_csv_of_colliding_vertices(self):
+        done = self.run_here("detect", "a.obj", "b.obj", "far.obj", "--colliding-vertices", "--csv", "-")
+        vertices = [f"0,0,1,vertex_a,{v}," for v in range(3)] + [f"0,0,1,vertex_b,,{v}" for v in range(3)]
+        rows = ["0,0,1,contact,0,0", *vertices, "0,0,1,narrow_phase_begin,,"]
+        self.assertEqual(done.out.splitlines(), ["frame,a,b,kind,i,j", *rows])
+        done = self.run_here("detect", "a.obj", "b.obj", "--colliding-vertices", "--contacts", "none", "--csv", "-")
+        self.assertEqual(done.out.splitlines(), ["frame,a,b,kind,i,j", *rows[1:]])
+
     def test_verify(self):
         (frame,) = self.detect("a.obj", "b.obj", "--verify")["frames"]
         self.assertEqual(frame["verify"], {"triangle_pairs_checked": 1, "intersecting_pairs": 1, "differences": []})
@@ -173,7 +204,10 @@ class SameBytes(ProgramTest):
 
         expected = contacts()
         sphere = ("--bounding-volume", "sphere")
-        for arguments in (["--max-level", "3"], ["--leaf-size", "1"], [*sphere], [*sphere, "--region-test", "grown-box"]):
+        bottom_up = ("--object-octree", "bottom-up")
+        for arguments in (["--max-level", "3"], ["--leaf-size", "1"], [*sphere], [*sphere, "--region-test", "grown-box"],
+                          ["--object-octree", "regular"], [*bottom_up], [*bottom_up, "--tree-arity", "2"],
+                          [*bottom_up, "--leaf-size", "1", *sphere], [*bottom_up, *sphere, "--sphere-fit", "minimal"]):
             with self.subTest(arguments=arguments):
                 self.assertEqual(contacts(*arguments), expected)
 

@@ -3,10 +3,13 @@
 import csv
 import os
 import shutil
+import signal
+import subprocess
+import time
 import unittest
 import xml.etree.ElementTree
 
-from program import ProgramTest, run
+from program import PROGRAM, ROOT, ProgramTest, run
 
 TINY = ("table1", "--quick", "--runs", "1", "--seconds", "1")
 
@@ -41,8 +44,11 @@ class Experiment(ProgramTest):
         self.check_page(self.folder / "out/table1.html", plots=2)
         runs = self.rows("out/table1_runs.csv")
         self.assertEqual({r["scene"] for r in runs}, {"table1_3", "table1_6", "table1_9", "three_humans"})
-        self.assertEqual({r["volume"] for r in runs}, {"AABB", "spheres"})
+        self.assertEqual({r["volume"] for r in runs}, {"aabb", "sphere"})
+        self.assertEqual({(r["scene"], r["edge"]) for r in runs if r["edge"] != "6"}, {("table1_9", "4")})
         self.assertEqual({r["steps"] for r in runs}, {"50"})
+        means = [r for r in self.rows("out/table1_means.csv") if r["phase"] == "broad" and r["paper_mean"]]
+        self.assertEqual([r["paper_mean"] for r in means], ["24.6", "12.4", "59", "48.6", "83.2", "76"])
         paper = self.rows("out/table1_paper.csv")
         self.assertAlmostEqual(float(paper[0]["seconds_per_collision"]), 600 / 24.6)
         self.assertEqual([r["comparison"] for r in paper].count("differs"), 1)
@@ -56,9 +62,65 @@ class Experiment(ProgramTest):
         for name in ("table1_runs.csv", "table1_means.csv"):
             self.assertEqual((self.folder / "1" / name).read_text(), (self.folder / "3" / name).read_text())
 
-    def test_by_the_clock(self):
-        self.run_here("experiment", *TINY, "--wall-clock", "1", "--output", "out", "--quiet", PATH="/nonexistent")
-        self.assertGreater(int(self.rows("out/table1_clock_runs.csv")[0]["steps"]), 0)
+    def table1(self, *arguments):
+        """Runs the experiment, with plots if gnuplot is there. Returns the rows of its runs in simulated time."""
+        done = self.run_here("experiment", "table1", *arguments, "--output", "out", "--quiet")
+        self.assertTrue(done.status == 0 or "gnuplot" in done.error, done.error)
+        return self.rows("out/table1_runs.csv")
+
+    def test_the_scene_files_are_mixed_scenes(self):
+        for objects in ("6", "9"):
+            file = str(ROOT / f"scenes/table1_{objects}.toml")
+            runs = self.table1("--objects", objects, "--scene", file, "--seconds", "12", "--runs", "2")
+            self.assertEqual(len(runs), 8)
+            counts = {}
+            for run in runs:
+                counts.setdefault(run["scene"], []).append([run[c] for c in ("broad", "narrow", "exact", "steps")])
+            self.assertEqual(counts[f"table1_{objects}"], counts[file])
+            self.assertTrue(any(run["narrow"] != "0" for run in runs))
+
+    def test_any_scene_and_method(self):
+        size = ("--scene", ROOT / "scenes/nine.toml", "--scene-size", "5,4", "--seconds", "4", "--runs", "2")
+        paper = self.table1(*size)
+        self.assertEqual([r["edge"] for r in paper[::2]], ["5", "5", "4", "4"])
+        self.assertNotEqual(paper[0]["broad"] + paper[0]["narrow"], paper[1]["broad"] + paper[1]["narrow"])
+        self.assertEqual(paper, self.table1(*size, "--broad-phase", "brute"))
+        shallow = self.table1(*size, "--max-level", "0", "--bounding-volume", "sphere,aabb")
+        self.assertEqual([r["volume"] for r in shallow[::2]], ["sphere", "aabb", "sphere", "aabb"])
+        for run in shallow:
+            self.assertEqual(run["narrow"], run["broad"])
+        options = dict(csv.reader((self.folder / "out/table1_options.csv").read_text().splitlines()))
+        self.assertEqual(
+            [options[o] for o in ("--broad-phase", "--max-level", "--leaf-size", "--object-octree", "--sphere-fit")],
+            ["octree", "0", "1", "regular", "vertices"],
+        )
+
+    def test_an_interrupted_experiment_goes_on(self):
+        command = ("experiment", "table1", "--objects", "3", "--bounding-volume", "aabb", "--runs", "2", "--seconds", "0",
+                   "--wall-clock", "1", "--output", "out", "--quiet")  # fmt: skip
+        process = subprocess.Popen([PROGRAM, *command], cwd=self.folder, stderr=subprocess.PIPE, text=True)
+        path = self.folder / "out/table1_clock_runs.csv"
+        deadline = time.monotonic() + 60
+        while not (path.exists() and path.read_text().count("\n") == 2):
+            self.assertLess(time.monotonic(), deadline)
+            time.sleep(0.02)
+        process.send_signal(signal.SIGINT)
+        error = process.communicate()[1]
+        self.assertEqual(process.returncode, 130)
+        self.assertIn("--resume", error)
+        first = path.read_text()
+        self.assertEqual(first.count("\n"), 2)
+        self.assert_one_line_error(
+            self.run_here(*command, "--resume", "--broad-phase", "grid"), "--broad-phase was octree", "is grid now"
+        )
+        self.assert_one_line_error(self.run_here(*command, "--resume", PATH="/nonexistent"), "gnuplot")
+        self.assertEqual(path.read_text()[: len(first)], first)
+        runs = self.rows("out/table1_clock_runs.csv")
+        self.assertEqual([r["seed"] for r in runs], ["1", "2"])
+        for run in runs:
+            self.assertGreaterEqual(float(run["detection_seconds"]), 1)
+            self.assertGreater(float(run["real_seconds"]), float(run["detection_seconds"]))
+        self.assertFalse((self.folder / "out/table1_runs.csv").exists())
 
     def test_without_gnuplot_tables_are_written(self):
         done = self.run_here("experiment", *TINY, "--output", "out", "--quiet", PATH="/nonexistent")
@@ -70,16 +132,30 @@ class Experiment(ProgramTest):
         shutil.which("gnuplot") and os.environ.get("SUPPLE_QUICK_EXPERIMENTS") == "1", "takes long unless optimised"
     )
     def test_quick_versions(self):
-        for name, plots, table in (("scaling", 5, "scaling_vertices"), ("arity", 3, "arity_objects")):
+        for name, plots, table in (("scaling", 5, "scaling_vertices"), ("arity", 3, "arity_objects"),
+                                   ("volumes", 4, "volumes"), ("claims", 0, "claims_motion")):
             done = self.run_here("experiment", name, "--quick")
             self.assertEqual((done.status, done.error), (0, ""))
             page = self.check_page(self.folder / f"experiment_{name}/{name}.html", plots)
-            self.assertGreater(len(self.rows(f"experiment_{name}/{table}.csv")), 5)
+            self.assertGreater(len(self.rows(f"experiment_{name}/{table}.csv")), 4)
             self.assertNotIn("nan", page)
 
     def test_unusable(self):
-        self.assert_one_line_error(run("experiment", "table2"), "table2", "table1, scaling or arity")
+        self.assert_one_line_error(run("experiment", "table2"), "table2", "table1, scaling, arity, volumes or claims")
         self.assert_one_line_error(run("experiment", "scaling", "--runs", "3"), "--runs", "table1")
+        self.assert_one_line_error(run("experiment", "arity", "--max-level", "3"), "--max-level", "table1")
+        for arguments, parts in (
+            (["--objects", "1"], ["--objects", "from 2"]),
+            (["--objects", "3,6,3"], ["'3' is given twice"]),
+            (["--seconds", "0"], ["--seconds", "--wall-clock"]),
+            (["--bounding-volume", "aabb", "--sphere-fit", "box"], ["--sphere-fit", "--bounding-volume sphere"]),
+            (["--broad-phase", "sweep", "--scene-octree-arity", "2"], ["--scene-octree-arity", "octree"]),
+            (["--objects", "9", "--scene-size", "2"], ["--scene-size", "at least 3.6"]),
+            (["--scene", ROOT / "scenes/nine.toml", "--integrator", "verlet"], ["--integrator", "no mass-spring body"]),
+            (["--resume", "--output", "none"], ["--resume", "none"]),
+        ):
+            self.assert_one_line_error(self.run_here("experiment", "table1", *arguments), *parts)
+            self.assertFalse(list(self.folder.iterdir()))
         self.write("file", "no folder")
         self.assert_one_line_error(
             self.run_here("experiment", *TINY, "--output", "file/below", "--quiet"), "file/below", "--output"

@@ -62,6 +62,26 @@ class Info(ProgramTest):
         self.assertEqual(refused.status, 2)
         self.assertIn("--bounding-volume sphere", refused.error)
 
+    def test_object_octree(self):
+        self.write("scene.toml", '[[object]]\nmodel = "human"\nobject_octree = "bottom_up"\n')
+        builds = {build: self.info("scene.toml", "--object-octree", build)[0]["octree"] for build in ("balanced", "regular", "bottom-up")}
+        self.assertEqual(len({octree["leaves"] for octree in builds.values()}), 3)
+        for octree in builds.values():
+            self.assertEqual(octree["triangles"], 2500)
+            self.assertLessEqual(octree["largest_leaf"], 64)
+        self.assertEqual(self.info("scene.toml")[0]["octree"], builds["bottom-up"])
+        halves = self.info("scene.toml", "--tree-arity", "2")[0]["octree"]
+        self.assertEqual(halves["mean_node_width"], 2)
+        self.assertEqual(halves["leaves"], builds["bottom-up"]["leaves"])
+        self.assertLessEqual(self.info("scene.toml", "--max-level", "1", "--leaf-size", "1")[0]["octree"]["depth"], 1)
+        self.assert_one_line_error(self.run_here("info", "scene.toml", "--object-octree", "upward"), "--object-octree", "bottom-up")
+
+    def test_sphere_fit(self):
+        self.write("scene.toml", '[[object]]\nmodel = "human"\n')
+        def cost(fit):
+            return self.info("scene.toml", "--bounding-volume", "sphere", "--sphere-fit", fit)[0]["octree"]["cost"]
+        self.assertLess(cost("minimal"), cost("vertices"))
+
     def test_text(self):
         self.write("a.obj", TRIANGLE)
         done = self.run_here("info", "a.obj")

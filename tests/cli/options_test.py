@@ -22,13 +22,15 @@ resolution = 3
 def flags_of(command):
     """The options in the help of a command with their value names; flags have an empty value name."""
     flags = {}
-    for name, value in re.findall(r"^  (?:-\w, ?)?(--[\w-]+)(?:,--[\w-]+)*(?: ([A-Z|a-z0-9-]+))?(?:  .*| \S.*)?$", run(command, "--help").out, re.M):
+    for name, value in re.findall(r"^  (?:-\w, ?)?(--[\w-]+)(?:,--[\w-]+)*(?: ([A-Z|a-z0-9,-]+))?(?:  .*| \S.*)?$", run(command, "--help").out, re.M):
         flags[name] = value
     return flags
 
 
 def other_value(choices, default):
     """A value other than the default, as command-line text and as JSON."""
+    if choices.startswith("X,Y,Z,EDGE"):
+        return "0.5,1,-2,3", [0.5, 1, -2, 3]
     if "|" in choices:
         words = choices.split("|")
         word = words[(words.index(str(default).replace("_", "-")) + 1) % len(words)]
@@ -70,9 +72,9 @@ class Options(ProgramTest):
         octree = {"broad_phase": (["--broad-phase", "octree"], "octree")}
         intersection = {"contacts": (["--contacts", "intersection"], "intersection")}
         continuous = {"contacts": (["--contacts", "continuous"], "continuous")}
-        with_octree = ("region_test", "scene_octree_max_level", "scene_octree_expand_at", "scene_octree_arity", "always_regions")
+        with_octree = ("region_test", "scene_octree_max_level", "scene_octree_expand_at", "scene_octree_arity", "scene_octree_root")
         for fixed, without in (
-            (octree | continuous, ("contact_points", "colliding_vertices")),
+            (octree | continuous, ("contact_points", "colliding_vertices", "sphere_fit")),
             (octree | intersection, ("min_separation", "undecided")),
             (intersection, ("min_separation", "undecided", *with_octree)),
         ):

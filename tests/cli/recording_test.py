@@ -328,6 +328,30 @@ class Detect(RecordingTest):
         self.assertGreater(total, 1000)
 
     @with_h5py
+    def test_colliding_vertices(self):
+        self.record("run.h5", 40, "--colliding-vertices", 1)
+        frames = self.detect("run.h5", "--colliding-vertices", "--no-stats")["frames"]
+        total = 0
+        with h5py.File(self.folder / "run.h5", "r") as file:
+            self.assertEqual(file.attrs["colliding_vertices"], 1)
+            for number, frame in enumerate(frames):
+                vertices = [v for (v,) in self.recorded(file, number, "colliding_vertices", "vertex")]
+                columns = ("object_a", "object_b", "first_vertex", "count_a", "count_b")
+                groups = [
+                    {"a": a, "b": b, "vertices_a": vertices[first:first + count_a],
+                     "vertices_b": vertices[first + count_a:first + count_a + count_b]}
+                    for a, b, first, count_a, count_b in self.recorded(file, number, "colliding_vertex_groups", *columns)
+                ]
+                self.assertEqual(groups, frame["colliding_vertices"])
+                for event in ("begin", "end"):
+                    pairs = [tuple(pair) for pair in frame["events"]["narrow_phase"][event]]
+                    self.assertEqual(pairs, self.recorded(file, number, f"events/narrow_phase_{event}", "object_a", "object_b"))
+                    total += len(pairs)
+        self.assertGreater(total, 0)
+        # Without the option on the command line, the recorded option applies.
+        self.assertEqual(frames, self.detect("run.h5", "--no-stats")["frames"])
+
+    @with_h5py
     def test_continuous_contacts(self):
         self.record("run.h5", 70, "--contacts", "continuous")
         steps = self.detect("run.h5", "--contact-details", "--verify")["frames"]

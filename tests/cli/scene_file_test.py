@@ -305,7 +305,7 @@ class Errors(ProgramTest):
     def test_motion(self):
         box = '[[object]]\nmodel = "box"\n'
         self.expect(box + 'motion = "sway"\n', 3, "motion", "table")
-        self.expect(box + 'motion = { kind = "swim" }\n', 3, "kind", "'swim'", "wave, mass_spring, frames")
+        self.expect(box + 'motion = { kind = "swim" }\n', 3, "kind", "'swim'", "wave, mass_spring, rigid, frames")
         self.expect(box + 'motion = { velocity = [0, 0, 0] }\n', 3, "motion", "kind", "wave", "mass_spring", "frames")
         self.expect(box + 'motion = { kind = "wave", period = 0 }\n', 3, "period", "above 0")
         self.expect(box + 'motion = { kind = "wave", seed = -1 }\n', 3, "seed", "from 0 up")

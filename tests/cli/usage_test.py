@@ -56,7 +56,7 @@ class UsageErrors(ProgramTest):
 
     def test_stages_that_do_not_exist_are_usage_errors(self):
         self.expect("detect", "a.obj", "--distance", "1", parts=["--distance"])
-        self.expect("detect", "a.obj", "--bounding-volume", "obb", parts=["--bounding-volume", "aabb, sphere"])
+        self.expect("detect", "a.obj", "--bounding-volume", "cone", parts=["--bounding-volume", "aabb, sphere, obb"])
         self.expect("detect", "a.obj", "--bounding-volume", "kdop", parts=["--bounding-volume", "aabb, sphere"])
         self.expect("detect", "a.obj", "--contacts", "proximity", parts=["--contacts", "none, intersection, continuous"])
 

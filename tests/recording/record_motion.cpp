@@ -85,6 +85,7 @@ struct Arguments {
   std::string path;
   std::uint64_t frames = 0, frames_between_flushes = 0, copies = 1, pause = 0;
   ContactKinds contacts = ContactKinds::intersection;
+  bool colliding_vertices = false;
 };
 
 std::FILE* open_log(const char* name) {
@@ -105,6 +106,8 @@ Arguments parse(int count, char** words) {
       arguments.contacts = value == "none"         ? ContactKinds::none
                            : value == "continuous" ? ContactKinds::continuous
                                                    : ContactKinds::intersection;
+    else if (option == "--colliding-vertices")
+      arguments.colliding_vertices = number != 0;
     else if (option == "--frames-between-flushes")
       arguments.frames_between_flushes = static_cast<std::uint64_t>(number);
     else if (option == "--copies")
@@ -124,7 +127,10 @@ Arguments parse(int count, char** words) {
 /// A sphere that moves along x through a static box, and a cloth that folds into itself.
 class Motion {
  public:
-  explicit Motion(const Arguments& arguments) : scene_({.contacts = arguments.contacts, .threads = 1}) {
+  explicit Motion(const Arguments& arguments)
+      : scene_({.contacts = arguments.contacts,
+                .threads = 1,
+                .comparison = {.colliding_vertices = arguments.colliding_vertices}}) {
     header_.time_step = 0.0078125;
     header_.scene = scene_.options();
     header_.scene_file = "# drawn up by record_motion\n";

@@ -24,7 +24,10 @@ inline Scene scene_of(const std::vector<TriangleMesh>& meshes, const SceneOption
     // Colliding vertices belong to whole leaves, so the hash depends on the octree; it uses a regular one.
     scene.add(mesh,
               {.self_collision = true,
-               .octree = {.leaf_size = 3, .arity = arity, .regular = options.comparison.colliding_vertices}});
+               .octree = {.leaf_size = 3,
+                          .arity = arity,
+                          .build = options.comparison.colliding_vertices ? ObjectOctreeBuild::regular
+                                                                         : ObjectOctreeBuild::balanced}});
   }
   return scene;
 }

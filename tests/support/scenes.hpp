@@ -1,13 +1,22 @@
 #pragma once
 
+#include <array>
 #include <bit>
 #include <cstdint>
 #include <cstring>
 #include <string>
 
+#include "supple/option_descriptions.hpp"
 #include "supple/scene.hpp"
 
 namespace supple {
+
+inline constexpr std::array all_bounding_volumes{BoundingVolume::aabb,   BoundingVolume::sphere,
+                                                 BoundingVolume::obb,    BoundingVolume::kdop14,
+                                                 BoundingVolume::kdop18, BoundingVolume::kdop26};
+inline std::string name_of(BoundingVolume volume) {
+  return words<BoundingVolume>[static_cast<std::size_t>(volume)];
+}
 
 /// FNV-1a over all results of a step: equal for results with equal bits.
 inline std::uint64_t hash_of(const DetectResult& result, std::uint64_t hash = 0xcbf29ce484222325u) {

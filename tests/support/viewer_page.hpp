@@ -125,6 +125,8 @@ inline Simulation simulation_of(const SceneView& show) {
   for (const ViewedObject& object : show.objects) {
     if (const auto* const springs = std::get_if<MassSpringMotion>(&object.motion)) {
       simulation.add(object.mesh, object.options, *springs);
+    } else if (const auto* const rigid = std::get_if<RigidMotion>(&object.motion)) {
+      simulation.add(object.mesh, object.options, *rigid);
     } else if (const auto* const waves = std::get_if<WaveMotion>(&object.motion)) {
       const auto move = [waves = *waves, border = show.simulation.border, rest = object.mesh.positions](
                             double seconds, std::span<Vec3d> positions) {

@@ -9,6 +9,7 @@
 #include "broad_phase/volume_store.hpp"
 #include "geometry/aabb.hpp"
 #include "geometry/sphere.hpp"
+#include "supple/description.hpp"
 #include "supple/error.hpp"
 #include "unit/broad_phase/volume_scenes.hpp"
 
@@ -39,11 +40,18 @@ std::vector<BroadPhaseOptions> all_options() {
   for (const RegionSphereTest test : {RegionSphereTest::arvo, RegionSphereTest::grown_box})
     for (const std::uint32_t max_level : {0u, 1u, 4u, 20u})
       for (const std::uint32_t expand_at : {0u, 2u, 9u})
-        all.push_back({BroadPhaseMethod::octree, {max_level, expand_at, test, 8}, 1});
+        all.push_back({BroadPhaseMethod::octree, {max_level, expand_at, test, 8, {}}, 1});
   for (const RegionSphereTest test : {RegionSphereTest::arvo, RegionSphereTest::grown_box})
     for (const std::uint32_t max_level : {0u, 1u, 20u})
       for (const std::uint32_t arity : {2u, 4u})
-        all.push_back({BroadPhaseMethod::octree, {max_level, 2, test, arity}, 1});
+        all.push_back({BroadPhaseMethod::octree, {max_level, 2, test, arity, {}}, 1});
+  // Roots around many objects, around few, beside all, smaller and larger than all, and far away.
+  for (const RootCube& root : {RootCube{{-10, -10, -10}, 20}, RootCube{{0, 0, 0}, 1},
+                               RootCube{{1e6, 1e6, -1e6}, 3}, RootCube{{0.1, 0.2, 0.3}, 1e-30},
+                               RootCube{{-1e36, -1e36, -1e36}, 1e36}, RootCube{{1e36, 0, 0}, 1e-30}})
+    for (const RegionSphereTest test : {RegionSphereTest::arvo, RegionSphereTest::grown_box})
+      for (const std::uint32_t arity : {2u, 8u})
+        all.push_back({BroadPhaseMethod::octree, {0, 2, test, arity, root}, 1});
   return all;
 }
 
@@ -52,7 +60,8 @@ std::string describe(const BroadPhaseOptions& options) {
          std::to_string(options.scene_octree.max_level) + " expand_at " +
          std::to_string(options.scene_octree.expand_at) + " sphere test " +
          std::to_string(static_cast<int>(options.scene_octree.region_sphere_test)) + " arity " +
-         std::to_string(options.scene_octree.arity);
+         std::to_string(options.scene_octree.arity) +
+         (options.scene_octree.root ? " root " + text_of(*options.scene_octree.root) : "");
 }
 
 TEST(BroadPhase, EveryMethodFindsTheBoxPairsOfADoubleLoop) {

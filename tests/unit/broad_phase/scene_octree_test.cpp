@@ -3,12 +3,16 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <limits>
 #include <map>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "broad_phase/pair_finder.hpp"
+#include "supple/description.hpp"
+#include "supple/error.hpp"
 #include "unit/broad_phase/volume_scenes.hpp"
 
 namespace supple {
@@ -248,6 +252,63 @@ TEST(SceneOctree, RebuildsWhenTheSceneOutgrowsTheCube) {
   EXPECT_LT(rebuilt, 60u);
   const float edge_now = octree.regions()[0].box.max.x - octree.regions()[0].box.min.x;
   EXPECT_GT(edge_now, 8 * edge);
+}
+
+TEST(SceneOctreeRoot, IsTheCubeOfTheUserWhereverTheObjectsGo) {
+  std::vector<Aabb> boxes = test::random_boxes(60, 8, 0.1f, 7);
+  Octree octree({.expand_at = 2, .root = RootCube{{-8, -8, -8}, 16}});
+  for (int step = 0; step < 60; ++step) {
+    for (Aabb& box : boxes) box = box_around((box.min + box.max) * (0.5f * 1.05f), {0.1f, 0.1f, 0.1f});
+    octree.step(boxes);
+    ASSERT_EQ(octree.pairs(), test::double_loop(boxes)) << step;
+    const std::vector<SceneRegion> regions = octree.regions();
+    ASSERT_EQ(regions[0].number, 0u);
+    ASSERT_EQ(regions[0].box, (Aabb{{-8, -8, -8}, {8, 8, 8}}));
+    ASSERT_EQ(regions[8].number, 8u);
+    ASSERT_EQ(regions[8].box, (Aabb{{0, 0, 0}, {8, 8, 8}})) << "the octant with the largest coordinates";
+  }
+  EXPECT_GT(boxes[0].min.x, 8) << "the objects leave the root";
+}
+
+TEST(SceneOctreeRoot, OfAnySizeAndPlaceLosesNoPair) {
+  for (const RootCube& root :
+       {RootCube{{-30, -30, -30}, 60}, RootCube{{5, 5, 5}, 4}, RootCube{{100, 100, 100}, 1},
+        RootCube{{9, 9, 9}, 1e-30}, RootCube{{-1e36, -1e36, -1e36}, 1e36}}) {
+    Random random(8);
+    std::vector<Aabb> boxes = test::random_boxes(300, 20, 0.9f, 9);
+    Octree octree({.root = root});
+    for (int step = 0; step < 30; ++step) {
+      for (Aabb& box : boxes) {
+        if (random.below(4) == 0) box = box_around(random.point(-2, 22), random.point(0.01f, 0.9f));
+      }
+      octree.step(boxes);  // also validates
+      ASSERT_EQ(octree.pairs(), test::double_loop(boxes)) << root.edge << ", step " << step;
+    }
+  }
+}
+
+TEST(SceneOctreeRoot, HasNumbersInTheirRanges) {
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  for (const RootCube& root :
+       {RootCube{}, RootCube{{0, 0, 0}, -1}, RootCube{{0, 0, 0}, nan}, RootCube{{nan, 0, 0}, 1},
+        RootCube{{0, test::infinity, 0}, 1}, RootCube{{0, 0, 0}, test::infinity}, RootCube{{0, 0, 1e37}, 1},
+        RootCube{{0, 0, 0}, 1e37}, RootCube{{0, 0, 0}, 1e-31}}) {
+    try {
+      BroadPhase({.method = BroadPhaseMethod::octree, .scene_octree = {.root = root}});
+      ADD_FAILURE() << text_of(root);
+    } catch (const Error& error) {
+      EXPECT_EQ(std::string(error.what()).rfind("SceneOctreeOptions::root is ", 0), 0u) << error.what();
+    }
+  }
+  EXPECT_THROW(BroadPhase({.method = BroadPhaseMethod::grid, .scene_octree = {.root = RootCube{{}, 1}}}),
+               Error)
+      << "the grid has no root";
+}
+
+TEST(SceneOctreeRoot, FitsABox) {
+  EXPECT_EQ(cube_around({-1, -2, 3}, {1, 4, 4}), (RootCube{{-3, -2, 0.5}, 6}));
+  EXPECT_THROW(cube_around({1, 1, 1}, {1, 1, 1}), Error);
+  EXPECT_THROW(cube_around({0, 0, 0}, {1, std::numeric_limits<double>::infinity(), 1}), Error);
 }
 
 TEST(SceneCube, IsNotLedAstrayByOutliers) {

@@ -17,10 +17,11 @@ namespace {
 
 template <class Struct>
 class EachStructure : public testing::Test {};
-using Structures = testing::Types<ImpactOptions, ObjectOctreeOptions, SceneOctreeOptions, ComparisonOptions,
-                                  ObjectOptions, SceneOptions, BroadPhaseOptions, MassSpringOptions,
-                                  MassSpringMotion::Handle, MassSpringMotion, WaveMotion, ContactResponse,
-                                  SimulationOptions, StepStats, BroadPhaseStats, OctreeStatistics>;
+using Structures =
+    testing::Types<ImpactOptions, ObjectOctreeOptions, SceneOctreeOptions, ComparisonOptions, ObjectOptions,
+                   SceneOptions, BroadPhaseOptions, MassSpringOptions, MassSpringMotion::Handle,
+                   MassSpringMotion, RigidMotion, WaveMotion, ContactResponse, SimulationOptions, StepStats,
+                   BroadPhaseStats, OctreeStatistics>;
 TYPED_TEST_SUITE(EachStructure, Structures);
 
 TYPED_TEST(EachStructure, DescribesEveryMemberInOrder) {
@@ -121,6 +122,7 @@ TEST(Descriptions, WordsAreTheNamesOfTheEnumerators) {
   };
   expect(BoundingVolume{});
   expect(SphereFit{});
+  expect(ObjectOctreeBuild{});
   expect(BroadPhaseMethod{});
   expect(RegionSphereTest{});
   expect(Integrator{});
@@ -152,6 +154,7 @@ TEST(Descriptions, OtherValuesDifferFromTheDefaultsAndAreAllowed) {
   expect(ObjectOptions{});
   expect(SimulationOptions{});
   expect(MassSpringMotion{});
+  expect(RigidMotion{});
   expect(WaveMotion{});
 }
 

@@ -21,8 +21,8 @@ inline auto members_of(ObjectOctreeOptions& o) {
   return std::tie(a, b, c, d, e);
 }
 inline auto members_of(SceneOctreeOptions& o) {
-  auto& [a, b, c, d] = o;
-  return std::tie(a, b, c, d);
+  auto& [a, b, c, d, e] = o;
+  return std::tie(a, b, c, d, e);
 }
 inline auto members_of(ObjectOptions& o) {
   auto& [a, b, c, d, e, f] = o;
@@ -41,8 +41,8 @@ inline auto members_of(BroadPhaseOptions& o) {
   return std::tie(a, b, c);
 }
 inline auto members_of(MassSpringOptions& o) {
-  auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, p] = o;
-  return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m, n, p);
+  auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, p, q] = o;
+  return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m, n, p, q);
 }
 inline auto members_of(MassSpringMotion::Handle& o) {
   auto& [a, b, c] = o;
@@ -51,6 +51,10 @@ inline auto members_of(MassSpringMotion::Handle& o) {
 inline auto members_of(MassSpringMotion& o) {
   auto& [a, b, c, d, e, f, g] = o;
   return std::tie(a, b, c, d, e, f, g);
+}
+inline auto members_of(RigidMotion& o) {
+  auto& [a, b, c, d, e] = o;
+  return std::tie(a, b, c, d, e);
 }
 inline auto members_of(WaveMotion& o) {
   auto& [a, b, c, d, e] = o;

@@ -9,8 +9,6 @@
 #include "experiments/paper_table.hpp"
 #include "experiments/scaling.hpp"
 #include "experiments/shape_pair.hpp"
-#include "experiments/table1.hpp"
-#include "supple/error.hpp"
 #include "supple/models.hpp"
 
 namespace supple::experiments {
@@ -125,41 +123,6 @@ TEST(Scaling, BruteForceTestsAllPairsAndStopsInTime) {
   const auto stopped = table_of(run_scaling(options, false), "scaling_broad_phase").rows;
   EXPECT_TRUE(std::holds_alternative<std::uint64_t>(stopped[3][4])) << "the smallest is always measured";
   EXPECT_TRUE(std::holds_alternative<std::monostate>(stopped[7][4]));
-}
-
-TEST(Table1, EventsAreTheSameForAnyNumberOfThreads) {
-  const auto steps = [](std::uint64_t taken) { return taken < 90; };
-  const RunCounts one = run_scene("table1_9", BoundingVolume::sphere, 3, 1, steps);
-  EXPECT_EQ(one.steps, 90u);
-  EXPECT_EQ(one.failure, "");
-  EXPECT_GT(one.broad, 0u) << "without collisions the test has no meaning";
-  EXPECT_EQ(run_scene("table1_9", BoundingVolume::sphere, 3, 3, steps), one);
-}
-
-TEST(Table1, VolumesChangeNoExactContact) {
-  Table1Options options;
-  options.scenes = {"table1_3"};
-  options.runs = 2;
-  options.simulated_seconds = 2;
-  options.threads = 1;
-  const Report report = run_table1(options, false);
-  const auto& rows = table_of(report, "table1_runs").rows;
-  options.threads = 3;
-  EXPECT_EQ(csv_of(table_of(run_table1(options, false), "table1_runs")),
-            csv_of(table_of(report, "table1_runs")));
-  ASSERT_EQ(rows.size(), 4u);
-  EXPECT_EQ(rows[0][7], rows[2][7]);
-  EXPECT_EQ(rows[1][7], rows[3][7]);
-}
-
-TEST(Table1, HasEveryScene) {
-  EXPECT_EQ(table1_scene_names(),
-            (std::vector<std::string>{"table1_3", "table1_6", "table1_9", "three_humans", "three_bikes"}));
-  EXPECT_THROW(run_scene("table1_4", BoundingVolume::aabb, 1, 1, [](std::uint64_t) { return false; }), Error);
-  for (const std::string& name : table1_scene_names()) {
-    const RunCounts counts = run_scene(name, BoundingVolume::aabb, 1, 1, [](std::uint64_t) { return false; });
-    EXPECT_EQ(counts.broad, 0u) << name << " begins without overlaps";
-  }
 }
 
 TEST(Arity, HasEveryArity) {

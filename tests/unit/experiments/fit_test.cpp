@@ -98,5 +98,13 @@ TEST(JudgeBounds, TwoSizesAreTooFew) {
   EXPECT_NE(claim.reason.find("2 sizes"), std::string::npos);
 }
 
+TEST(Estimate, HasTheStandardErrorOfTheMean) {
+  const Estimate estimate = estimate_of(std::vector<double>{1, 2, 3, 4});
+  EXPECT_DOUBLE_EQ(estimate.mean, 2.5);
+  EXPECT_DOUBLE_EQ(estimate.error, std::sqrt(5.0 / 3 / 4));
+  EXPECT_TRUE(std::isnan(estimate_of(std::vector<double>{1}).error));
+  EXPECT_TRUE(std::isnan(estimate_of({}).mean));
+}
+
 }  // namespace
 }  // namespace supple::experiments

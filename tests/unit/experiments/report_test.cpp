@@ -19,6 +19,17 @@ TEST(Table, CsvQuotesAndKeepsNumbersWhole) {
   EXPECT_EQ(csv_of(small_table()), "word,count,number_ms\n\"a, \"\"b\"\"\",1234567,0.1\n<c>,,1234.5678\n");
 }
 
+TEST(Table, CsvIsReadBack) {
+  const CsvText csv = parse_csv(csv_of(small_table()) + "torn,\"off");
+  EXPECT_EQ(csv.rows,
+            (std::vector<std::vector<std::string>>{
+                {"word", "count", "number_ms"}, {"a, \"b\"", "1234567", "0.1"}, {"<c>", "", "1234.5678"}}));
+  EXPECT_EQ(csv.length, csv_of(small_table()).size());
+  EXPECT_EQ(parse_csv("\"\",\"\"\"\",\"a\nb\"\n").rows,
+            (std::vector<std::vector<std::string>>{{"", "\"", "a\nb"}}));
+  EXPECT_TRUE(parse_csv("").rows.empty());
+}
+
 TEST(Table, TextIsAligned) {
   EXPECT_EQ(text_of(small_table()),
             "A table\n"

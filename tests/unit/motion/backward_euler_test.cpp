@@ -125,7 +125,7 @@ struct Equations {
                             .volume_stiffness = 15,
                             .gravity = {0, -10, 0}};
   TriangleMesh mesh = two_spheres();
-  SpringNetwork network = build_spring_network(mesh, true, true, closed_parts(mesh));
+  SpringNetwork network = build_spring_network(mesh, options, closed_parts(mesh));
   std::vector<VertexKind> kinds;
   std::vector<Vec3d> positions, velocities, at;
   StepEquations equations;

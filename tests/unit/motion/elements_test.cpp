@@ -24,7 +24,7 @@ TEST(SpringNetwork, HasEachEdgeOnceAndOneAcrossEachInnerEdge) {
   for (const TriangleMesh& mesh :
        {make_icosphere(4), make_torus(9, 6), make_cloth(60, 50), make_model("fish")}) {
     const MeshTopology topology = compute_topology(mesh);
-    const SpringNetwork network = build_spring_network(mesh, true, true);
+    const SpringNetwork network = build_spring_network(mesh, {.bending_stiffness = 1, .area_stiffness = 1});
     EXPECT_EQ(network.edges.elements.size(), topology.edges);
     EXPECT_EQ(network.areas.elements.size(), mesh.triangles.size());
     Pairs all = pairs_of(network.edges.elements), across = pairs_of(network.bending.elements);
@@ -39,21 +39,22 @@ TEST(SpringNetwork, HasEachEdgeOnceAndOneAcrossEachInnerEdge) {
 
 TEST(SpringNetwork, PutsBendingSpringsBetweenOppositeCorners) {
   TriangleMesh mesh{"fan", {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}}, {{0, 1, 2}, {1, 0, 3}}};
-  EXPECT_EQ(pairs_of(build_spring_network(mesh, true, false).bending.elements), (Pairs{{2, 3}}));
-  EXPECT_TRUE(build_spring_network(mesh, false, false).bending.elements.empty());
+  EXPECT_EQ(pairs_of(build_spring_network(mesh, {.bending_stiffness = 1}).bending.elements), (Pairs{{2, 3}}));
+  EXPECT_TRUE(build_spring_network(mesh, {}).bending.elements.empty());
   mesh.triangles.push_back({0, 1, 4});
-  EXPECT_EQ(pairs_of(build_spring_network(mesh, true, false).bending.elements), (Pairs{{2, 3}, {3, 4}}));
+  EXPECT_EQ(pairs_of(build_spring_network(mesh, {.bending_stiffness = 1}).bending.elements),
+            (Pairs{{2, 3}, {3, 4}}));
   // Duplicate triangles and triangles with a repeated id give no spring across an edge. An existing edge
   // gives no second spring.
   mesh.triangles = {{0, 1, 2}, {2, 1, 0}, {0, 1, 1}};
-  EXPECT_TRUE(build_spring_network(mesh, true, false).bending.elements.empty());
+  EXPECT_TRUE(build_spring_network(mesh, {.bending_stiffness = 1}).bending.elements.empty());
   mesh.triangles = {{0, 1, 2}, {1, 0, 3}, {2, 3, 4}};
-  EXPECT_TRUE(build_spring_network(mesh, true, false).bending.elements.empty());
+  EXPECT_TRUE(build_spring_network(mesh, {.bending_stiffness = 1}).bending.elements.empty());
 }
 
 TEST(SpringNetwork, GivesEachVertexThatOtherBlocksPullItsOwnSlots) {
   const TriangleMesh mesh = make_cloth(80, 80);
-  const SpringNetwork network = build_spring_network(mesh, true, true);
+  const SpringNetwork network = build_spring_network(mesh, {.bending_stiffness = 1, .area_stiffness = 1});
   ASSERT_GT(network.block_count(), 3u);
   std::vector<int> uses(network.first_slot.back());
   EXPECT_GT(uses.size(), 100u);

@@ -1,4 +1,4 @@
-// Tests fixed vertices, limits of the strain and plastic deformation.
+// Tests fixed vertices, rest lengths, limits of the strain and plastic deformation.
 
 #include <gtest/gtest.h>
 
@@ -48,6 +48,74 @@ TEST(FixedVertices, CountForNoMomentum) {
   EXPECT_EQ(body.mean_velocity(), (Vec3d{0, 1, 0}));
   EXPECT_EQ(body.energy().kinetic, 1.5);
   EXPECT_EQ(body.center_of_mass(), (Vec3d{0, 0, 0}));
+}
+
+double distance_of_ends(const MassSpringBody& body) {
+  return norm(body.positions()[1] - body.positions()[0]);
+}
+
+TEST(RestLength, IsTheLengthToWhichASpringReturns) {
+  for (const Integrator integrator : all_integrators) {
+    for (const double factor : {0.5, 1.0, 1.75}) {
+      MassSpringBody body(one_spring(2), {.integrator = integrator, .rest_length = factor, .damping = 5});
+      EXPECT_EQ(body.springs()[0].rest_length, 2 * factor);
+      EXPECT_NEAR(body.energy().elastic, 0.5 * 50 * (2 - 2 * factor) * (2 - 2 * factor), 1e-12);
+      run(body, 20, 2000);
+      EXPECT_NEAR(distance_of_ends(body), 2 * factor, 1e-9);
+      EXPECT_NEAR(norm(body.center_of_mass()), 0, 1e-12);
+    }
+  }
+}
+
+TEST(RestLength, GivesTheOscillationOfTwoMasses) {
+  // Two masses m at distance d on a spring s: d - s oscillates with the frequency √(2 k / m).
+  for (const Integrator integrator : {Integrator::verlet, Integrator::symplectic_euler}) {
+    MassSpringBody body(
+        one_spring(1),
+        {.integrator = integrator, .vertex_mass = 0.5, .stiffness = 9, .rest_length = 0.5, .damping = 0});
+    for (int step = 1; step <= 2000; ++step) {
+      body.step(0.0005);
+      const double expected = 0.5 + 0.5 * std::cos(6 * 0.0005 * step);
+      ASSERT_NEAR(distance_of_ends(body), expected, integrator == Integrator::verlet ? 2e-6 : 2e-3) << step;
+    }
+  }
+}
+
+TEST(RestLength, ShrinksABodyWithItsAreas) {
+  const TriangleMesh mesh = make_icosphere(3);
+  const double area = MassSpringBody(mesh).area();
+  for (const Integrator integrator : all_integrators) {
+    MassSpringBody body(mesh, {.integrator = integrator,
+                               .rest_length = 0.5,
+                               .damping = 2,
+                               .bending_stiffness = 20,
+                               .area_stiffness = 50});
+    EXPECT_GT(body.energy().area, 1);
+    run(body, 20, 2000);
+    EXPECT_NEAR(body.area(), area / 4, 1e-5 * area);
+    EXPECT_NEAR(body.energy().total(), 0, 1e-6) << "springs and areas agree about the shape at rest";
+    for (const MassSpringBody::Spring& spring : body.springs()) {
+      const double in_mesh = norm(mesh.positions[spring.b] - mesh.positions[spring.a]);
+      ASSERT_NEAR(norm(body.positions()[spring.b] - body.positions()[spring.a]), 0.5 * in_mesh, 1e-5);
+    }
+    EXPECT_NEAR(body.area_error().mean, 0.75, 1e-5) << "the error is relative to the mesh";
+  }
+}
+
+TEST(RestLength, IsTheLengthThatLimitsAndYieldsReferTo) {
+  const TriangleMesh mesh = make_icosphere(3);
+  MassSpringBody limited(mesh, {.rest_length = 0.5, .damping = 2, .max_strain = 0.1});
+  run(limited, 4, 400);
+  for (const MassSpringBody::Spring& spring : limited.springs()) {
+    const double in_mesh = norm(mesh.positions[spring.b] - mesh.positions[spring.a]);
+    const double length = norm(limited.positions()[spring.b] - limited.positions()[spring.a]);
+    ASSERT_NEAR(length, 0.5 * in_mesh, 0.5 * (0.1 + 1e-3) * in_mesh);
+  }
+  // A spring that is held at its length in the mesh has twice its rest length. It flows until its strain is
+  // the yield strain.
+  MassSpringBody held(one_spring(1), {.rest_length = 0.5, .yield_strain = 0.25, .fixed_vertices = {0, 1}});
+  run(held, 10, 1000);
+  EXPECT_NEAR(held.springs()[0].rest_length, 1 / 1.25, 1e-6);
 }
 
 TEST(MaxStrain, HoldsAHangingSheetTogether) {

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "supple/triangle_intersection.hpp"
+#include "support/scenes.hpp"
 #include "support/soups.hpp"
 
 namespace supple {
@@ -98,13 +99,13 @@ TrianglePoints points_of(const Object& object, std::uint32_t triangle) {
   return {at(0), at(1), at(2)};
 }
 
-/// Expects that no pair is missing and that every additional one is explained by rounding. Spheres enclose
-/// the triangles but not the corners of their boxes, so with spheres only intersecting triangles must be
-/// found.
+/// Expects that no pair is missing and that every additional one is explained by rounding. All volumes but
+/// boxes enclose the triangles but not the corners of their boxes, so with them only intersecting triangles
+/// must be found.
 void expect_candidates(const Object& a, const Object& b, bool same_object, double slack) {
   const ObjectPairView pair = same_object ? self_pair_of(a.view()) : pair_of(a.view(), b.view());
   PairSet must = overlapping_boxes(a, b, same_object, 0);
-  if (a.octree.spheres() != nullptr)
+  if (a.octree.spheres() != nullptr || !a.octree.volumes().empty())
     std::erase_if(must, [&](const auto& found) {
       return !triangles_intersect_by_axes(points_of(a, found.first), points_of(b, found.second));
     });
@@ -154,7 +155,7 @@ TEST_P(TraversalTest, TranslatedObjects) {
 }
 
 INSTANTIATE_TEST_SUITE_P(VolumesAndShapes, TraversalTest,
-                         testing::Combine(testing::Values(BoundingVolume::aabb, BoundingVolume::sphere),
+                         testing::Combine(testing::ValuesIn(all_bounding_volumes),
                                           testing::Values(0u, 2u, 16u), testing::Values(1u, 4u, 9u)));
 
 }  // namespace

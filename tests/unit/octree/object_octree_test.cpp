@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "support/random.hpp"
+#include "support/scenes.hpp"
 
 namespace supple {
 namespace {
@@ -58,11 +59,17 @@ TEST(ObjectOctree, StaysValidOverSizesAndOptions) {
   for (const std::uint32_t count : {1u, 2u, 8u, 9u, 100u, 5000u}) {
     for (const std::uint32_t leaf_size : {1u, 4u, 8u}) {
       for (const std::uint32_t max_level : {0u, 1u, 3u, 16u}) {
-        for (const auto& [arity, regular] : {std::pair{2u, true}, {4u, true}, {8u, true}, {8u, false}}) {
-          const BoundingVolume volume = count % 2 == 0 ? BoundingVolume::aabb : BoundingVolume::sphere;
+        for (const auto& [arity, build] : {std::pair{2u, ObjectOctreeBuild::regular},
+                                           {4u, ObjectOctreeBuild::regular},
+                                           {8u, ObjectOctreeBuild::regular},
+                                           {8u, ObjectOctreeBuild::balanced},
+                                           {2u, ObjectOctreeBuild::bottom_up},
+                                           {4u, ObjectOctreeBuild::bottom_up},
+                                           {8u, ObjectOctreeBuild::bottom_up}}) {
+          const BoundingVolume volume =
+              all_bounding_volumes[(count + leaf_size + max_level) % all_bounding_volumes.size()];
           const Soup soup = scattered_soup(count, 2, {1, 2, 3}, count);
-          Built built(soup,
-                      {.max_level = max_level, .leaf_size = leaf_size, .arity = arity, .regular = regular},
+          Built built(soup, {.max_level = max_level, .leaf_size = leaf_size, .arity = arity, .build = build},
                       volume);
           EXPECT_EQ(built.refit(soup), "") << count << ' ' << leaf_size << ' ' << max_level << ' ' << arity;
           const OctreeStatistics statistics = built.octree.statistics();
@@ -80,7 +87,7 @@ TEST(ObjectOctree, StaysValidOverSizesAndOptions) {
 TEST(ObjectOctree, TreesOfAnyArityEndInTheSameCells) {
   // With one triangle per leaf, every arity gives the same leaves in the same order; only the depth differs.
   const Soup soup = scattered_soup(3000, 1, {}, 12);
-  Built eight(soup, {.leaf_size = 1, .regular = true});
+  Built eight(soup, {.leaf_size = 1, .build = ObjectOctreeBuild::regular});
   EXPECT_EQ(eight.refit(soup), "");
   std::uint32_t last_depth = eight.octree.statistics().depth;
   std::uint64_t last_nodes = eight.octree.statistics().nodes;
@@ -114,7 +121,7 @@ TEST(ObjectOctree, LevelsOfAnyArityAreCountedInEights) {
         next += 3;
       }
   for (const std::uint32_t arity : {2u, 4u, 8u}) {
-    Built built(soup, {.max_level = 2, .leaf_size = 1, .arity = arity, .regular = true});
+    Built built(soup, {.max_level = 2, .leaf_size = 1, .arity = arity, .build = ObjectOctreeBuild::regular});
     EXPECT_EQ(built.refit(soup), "");
     EXPECT_EQ(built.octree.statistics().leaves, 64u) << arity;
     EXPECT_EQ(built.octree.statistics().depth, arity == 8 ? 2u : arity == 4 ? 3u : 6u);
@@ -156,7 +163,7 @@ TEST(ObjectOctree, EqualCentresEndInOneLeafOfARegularTree) {
     soup.positions.insert(soup.positions.end(), {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
     soup.triangles.push_back({3 * t, 3 * t + 1, 3 * t + 2});
   }
-  Built built(soup, {.regular = true});
+  Built built(soup, {.build = ObjectOctreeBuild::regular});
   EXPECT_EQ(built.refit(soup), "");
   EXPECT_EQ(built.octree.statistics().largest_leaf, 100u);
   EXPECT_EQ(built.octree.statistics().depth, 0u);
@@ -166,15 +173,16 @@ TEST(ObjectOctree, EqualCentresEndInOneLeafOfARegularTree) {
 }
 
 TEST(ObjectOctree, AFarVertexDoesNotFlattenTheRest) {
-  for (const bool regular : {false, true}) {
+  for (const auto build :
+       {ObjectOctreeBuild::balanced, ObjectOctreeBuild::regular, ObjectOctreeBuild::bottom_up}) {
     for (const double far : {1e6, 1e15, 1e30, 1e300}) {
       for (const std::size_t vertex : {0u, 3000u, 5999u}) {
         Soup soup = scattered_soup(2000, 1, {}, 5);
         soup.positions[vertex] = {far, -far, far};
-        Built built(soup, {.regular = regular});
+        Built built(soup, {.build = build});
         EXPECT_EQ(built.refit(soup), "") << far;
         EXPECT_LE(built.octree.statistics().largest_leaf, ObjectOctreeOptions{}.leaf_size) << far;
-        EXPECT_LT(built.octree.statistics().depth, regular ? 12u : 4u) << far;
+        EXPECT_LT(built.octree.statistics().depth, build == ObjectOctreeBuild::regular ? 12u : 4u) << far;
       }
     }
   }
@@ -184,7 +192,7 @@ TEST(ObjectOctree, ExtremeScales) {
   for (const double scale : {1e-310, 1e-300, 1e-40, 1e-30, 1e30, 1e38, 1e39, 1e300}) {
     Soup soup = scattered_soup(300, 1, {}, 6);
     for (Vec3d& p : soup.positions) p = p * scale;
-    for (const BoundingVolume volume : {BoundingVolume::aabb, BoundingVolume::sphere}) {
+    for (const BoundingVolume volume : all_bounding_volumes) {
       Built built(soup, {}, volume);
       EXPECT_EQ(built.refit(soup), "") << scale;
     }

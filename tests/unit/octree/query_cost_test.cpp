@@ -15,9 +15,8 @@ namespace {
 
 /// The octree of a triangle soup.
 struct Tree {
-  explicit Tree(const TriangleMesh& mesh, bool regular = false)
-      : octree(mesh.positions, mesh.triangles, {.regular = regular}, BoundingVolume::aabb,
-               SphereFit::vertices) {}
+  explicit Tree(const TriangleMesh& mesh, ObjectOctreeBuild build = ObjectOctreeBuild::balanced)
+      : octree(mesh.positions, mesh.triangles, {.build = build}, BoundingVolume::aabb, SphereFit::vertices) {}
 
   /// The query cost after a refit to these positions.
   double cost(const std::vector<Vec3d>& positions, std::uint32_t threads = 1) {
@@ -135,10 +134,11 @@ TEST(QueryCost, IsHighForAnObjectBuiltWhileItWasAPoint) {
   TriangleMesh mesh = random_soup(1000, 1, 0.02, 7);
   const std::vector<Vec3d> spread = mesh.positions;
   std::fill(mesh.positions.begin(), mesh.positions.end(), Vec3d{});
-  for (const bool regular : {false, true}) {
-    Tree tree(mesh, regular);
-    // A regular octree cannot divide equal points; a balanced octree always divides them.
-    ASSERT_EQ(tree.octree.statistics().largest_leaf == 1000, regular);
+  for (const auto build :
+       {ObjectOctreeBuild::balanced, ObjectOctreeBuild::regular, ObjectOctreeBuild::bottom_up}) {
+    Tree tree(mesh, build);
+    // A regular octree cannot divide equal points; the other octrees always divide them.
+    ASSERT_EQ(tree.octree.statistics().largest_leaf == 1000, build == ObjectOctreeBuild::regular);
     Tree rebuilt = tree.rebuilt(spread);
     EXPECT_LT(rebuilt.cost(spread), tree.cost(spread) / 2);
     EXPECT_LE(rebuilt.octree.statistics().largest_leaf, ObjectOctreeOptions{}.leaf_size);

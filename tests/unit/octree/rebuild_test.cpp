@@ -92,11 +92,15 @@ TEST(Rebuild, OfAnyTreeIsValid) {
   for (std::uint32_t count = 1; count <= 70; count += 1 + count / 8) {
     const TriangleMesh mesh =
         count % 2 == 0 ? random_soup(count, 1, 0.3, count) : crumpled_sheet(count, 2, 0.1, count);
-    for (const std::uint32_t arity : {2u, 4u, 8u}) {
+    for (const auto& [arity, build] : {std::pair{2u, ObjectOctreeBuild::regular},
+                                       {4u, ObjectOctreeBuild::bottom_up},
+                                       {8u, ObjectOctreeBuild::balanced},
+                                       {8u, ObjectOctreeBuild::bottom_up}}) {
       SCOPED_TRACE(std::to_string(count) + " triangles, arity " + std::to_string(arity));
       ObjectOctreeOptions options;
       options.leaf_size = 1 + random.below(5);
       options.arity = arity;
+      options.build = build;
       options.max_level = random.below(4) == 0 ? 2 : 16;
       const auto volume = count % 3 == 0 ? BoundingVolume::sphere : BoundingVolume::aabb;
       Tree tree(mesh, options, volume);
@@ -115,8 +119,9 @@ TEST(Rebuild, OfAnyTreeIsValid) {
 TEST(Rebuild, GivesTheTreeBuiltFromThePositions) {
   RandomNumbers random(2);
   const TriangleMesh rest = random_soup(3000, 1, 0.05, 3);
-  for (const bool regular : {false, true}) {
-    const ObjectOctreeOptions options{.regular = regular};
+  for (const auto build :
+       {ObjectOctreeBuild::balanced, ObjectOctreeBuild::regular, ObjectOctreeBuild::bottom_up}) {
+    const ObjectOctreeOptions options{.build = build};
     Tree tree(rest, options, BoundingVolume::aabb);
     tree.place(deformed(rest.positions, 0, random));
     tree.rebuild();

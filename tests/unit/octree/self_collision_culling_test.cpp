@@ -167,7 +167,7 @@ TEST(SelfCollisionCulling, ABalloonWithinALargeSheet) {
     return sheet_children.culling.masks()[0];
   };
   // In a regular octree, the four children of the root are the quarters of the sheet.
-  const ObjectOctreeOptions quarters{.regular = true};
+  const ObjectOctreeOptions quarters{.build = ObjectOctreeBuild::regular};
   EXPECT_EQ(root_children({sheet(40, 40), {}, quarters}), 0xf);
   EXPECT_EQ(root_children({sheet(40, 40, balloon), {}, quarters}), 0xe);
   EXPECT_EQ(root_children({sheet(40, 40), mapped(sheet(40, 40), balloon), quarters}), 0xe);

@@ -24,6 +24,10 @@ class DamagedRecording : public testing::Test {
     scene.contacts = ContactKinds::continuous;
     simulate({random_soup(30, 1, 0.6, 4), random_soup(20, 1, 0.6, 5)}, {}, scene, 4)
         .write(folder_ / "moving.h5");
+    scene.contacts = ContactKinds::none;
+    scene.comparison.colliding_vertices = true;
+    simulate({random_soup(30, 1, 0.6, 4), random_soup(20, 1, 0.6, 5)}, {}, scene, 4)
+        .write(folder_ / "paper.h5");
   }
 
   /// Reads all of a modified copy and returns the error.
@@ -150,17 +154,62 @@ TEST_F(DamagedRecording, OtherFormatsAndVersions) {
 }
 
 TEST_F(DamagedRecording, MissingDatasets) {
-  for (const char* path :
-       {"time", "scene_file", "objects", "objects/0", "objects/0/positions", "objects/1/rest_positions",
-        "objects/1/triangles", "object_pairs/end", "object_pairs/object_a", "contacts/end", "contacts/kind",
-        "contacts/normal", "contact_points/position", "continuous_contacts/normal", "continuous_contacts",
-        "events/volume_begin/end", "events/contact_end/object_b"})
+  for (const char* path : {"time",
+                           "scene_file",
+                           "objects",
+                           "objects/0",
+                           "objects/0/positions",
+                           "objects/1/rest_positions",
+                           "objects/1/triangles",
+                           "object_pairs/end",
+                           "object_pairs/object_a",
+                           "contacts/end",
+                           "contacts/kind",
+                           "contacts/normal",
+                           "contact_points/position",
+                           "continuous_contacts/normal",
+                           "continuous_contacts",
+                           "events/volume_begin/end",
+                           "events/contact_end/object_b",
+                           "events/narrow_phase_end/end",
+                           "events/narrow_phase_begin/object_a",
+                           "colliding_vertices/end",
+                           "colliding_vertices/vertex",
+                           "colliding_vertex_groups/count_a"})
     expect("missing", without(path));
 }
 
 TEST_F(DamagedRecording, AMissingStatisticIsNoDamage) {
   EXPECT_EQ(error_after(without("statistics/exact_seconds")), "");
   EXPECT_EQ(Recording(folder_ / "bad.h5").summary(0).stats.exact_seconds, 0);
+}
+
+TEST_F(DamagedRecording, CollidingVerticesThatEarlierProgramsDidNotRecordAreNoDamage) {
+  const auto change = [](hid_t file) {
+    for (const char* path : {"colliding_vertices", "colliding_vertex_groups", "events/narrow_phase_begin",
+                             "events/narrow_phase_end"})
+      without(path)(file);
+  };
+  EXPECT_EQ(error_after(change, "paper.h5"), "");
+  const RecordedFrame frame = Recording(folder_ / "bad.h5").frame(0);
+  EXPECT_TRUE(frame.colliding_vertices.empty() && frame.colliding_vertex_groups.empty() &&
+              frame.narrow_phase_begin.empty());
+  EXPECT_FALSE(frame.object_pairs.empty());
+}
+
+TEST_F(DamagedRecording, CollidingVerticesOutOfRange) {
+  const auto expect_of_paper = [this](const std::string& path, hsize_t row, std::uint64_t value) {
+    expect("/" + path, with_number(path.c_str(), row, value), "paper.h5");
+  };
+  expect_of_paper("colliding_vertex_groups/object_a", 0, 2);
+  expect_of_paper("colliding_vertex_groups/object_b", 1, 99);
+  expect_of_paper("colliding_vertex_groups/first_vertex", 2, 4294967295);
+  expect_of_paper("colliding_vertex_groups/count_a", 0, 4294967295);
+  expect_of_paper("colliding_vertex_groups/count_b", 0, 100000);
+  expect_of_paper("colliding_vertices/vertex", 3, 90);
+  expect_of_paper("events/narrow_phase_begin/object_b", 0, 2);
+  expect("frames name 123456789", with_number("colliding_vertices/end", 3, 123456789), "paper.h5");
+  expect("/colliding_vertex_groups", without("colliding_vertices"), "paper.h5");
 }
 
 TEST_F(DamagedRecording, NumbersOutOfRange) {

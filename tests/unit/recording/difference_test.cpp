@@ -11,12 +11,13 @@
 namespace supple {
 namespace {
 
-Contents touching(ContactKinds mode) {
+Contents touching(ContactKinds mode, bool colliding_vertices = false) {
   ObjectOptions fixed;
   fixed.is_static = true;
   SceneOptions scene;
   scene.contacts = mode;
   scene.threads = 1;
+  scene.comparison.colliding_vertices = colliding_vertices;
   return simulate({random_soup(30, 1, 0.6, 4), random_soup(20, 1, 0.6, 5), random_soup(20, 1, 0.6, 6)},
                   {{}, {}, fixed}, scene, 4);
 }
@@ -105,6 +106,8 @@ TEST_P(InEveryMode, TimesPositionsAndPairs) {
            c.frames[3].volume_begin = {{c.header.objects[0].id, c.header.objects[1].id}};
          });
   for (const auto& [name, pairs] : {std::pair{"event volume_end", &RecordedFrame::volume_end},
+                                    std::pair{"event narrow_phase_begin", &RecordedFrame::narrow_phase_begin},
+                                    std::pair{"event narrow_phase_end", &RecordedFrame::narrow_phase_end},
                                     std::pair{"event contact_begin", &RecordedFrame::contact_begin},
                                     std::pair{"event contact_end", &RecordedFrame::contact_end}}) {
     auto member = pairs;
@@ -159,6 +162,22 @@ TEST_P(OfIntersections, Contacts) {
   });
   expect(2, "number of contact points: ", [](Contents& c) { c.frames[2].contact_points.push_back({}); });
   EXPECT_FALSE(after([](Contents& c) { c.frames[2].contact_points[1].position.x += 1e-9; }, 1e-8));
+}
+
+TEST_P(OfIntersections, CollidingVertices) {
+  base_ = touching(GetParam(), true);
+  ASSERT_GT(base_.frames[1].colliding_vertex_groups.size(), 1u);
+  const std::string pair = "colliding vertices 1, object 0 'object 0' and object 2 'object 2', ";
+  expect(1, pair + "vertex 0: ", [](Contents& c) {
+    RecordedFrame& frame = c.frames[1];
+    frame.colliding_vertices[frame.colliding_vertex_groups[1].first_vertex] += 1;
+  });
+  expect(1, pair + "count_b: ", [](Contents& c) { --c.frames[1].colliding_vertex_groups[1].count_b; });
+  expect(2, "colliding vertices 0: object 0 'object 0' and object 1 'object 1' only in the first",
+         [](Contents& c) {
+           auto& groups = c.frames[2].colliding_vertex_groups;
+           groups.erase(groups.begin());
+         });
 }
 INSTANTIATE_TEST_SUITE_P(, OfIntersections, testing::Values(ContactKinds::intersection));
 

@@ -23,6 +23,10 @@ inline RecordedFrame kept(double time, const DetectResult& result) {
   keep(frame.continuous_contacts, result.continuous_contacts);
   keep(frame.volume_begin, result.volume_events.begin);
   keep(frame.volume_end, result.volume_events.end);
+  keep(frame.colliding_vertex_groups, result.colliding_vertex_groups);
+  keep(frame.colliding_vertices, result.colliding_vertices);
+  keep(frame.narrow_phase_begin, result.narrow_phase_events.begin);
+  keep(frame.narrow_phase_end, result.narrow_phase_events.end);
   keep(frame.contact_begin, result.contact_events.begin);
   keep(frame.contact_end, result.contact_events.end);
   frame.stats = result.stats;
@@ -38,6 +42,10 @@ inline DetectResult shown(const RecordedFrame& frame) {
   result.continuous_contacts = frame.continuous_contacts;
   result.volume_events.begin = frame.volume_begin;
   result.volume_events.end = frame.volume_end;
+  result.colliding_vertex_groups = frame.colliding_vertex_groups;
+  result.colliding_vertices = frame.colliding_vertices;
+  result.narrow_phase_events.begin = frame.narrow_phase_begin;
+  result.narrow_phase_events.end = frame.narrow_phase_end;
   result.contact_events.begin = frame.contact_begin;
   result.contact_events.end = frame.contact_end;
   result.stats = frame.stats;

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <iterator>
 #include <limits>
+#include <tuple>
 
 #include "supple/error.hpp"
 #include "supple/models.hpp"
@@ -23,6 +24,16 @@ void expect_equal_bits(const std::vector<Vec3d>& a, const std::vector<Vec3d>& b)
   EXPECT_TRUE(a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(Vec3d)) == 0);
 }
 
+void expect_equal_colliding_vertices(const RecordedFrame& a, const RecordedFrame& b) {
+  EXPECT_EQ(a.colliding_vertices, b.colliding_vertices);
+  ASSERT_EQ(a.colliding_vertex_groups.size(), b.colliding_vertex_groups.size());
+  for (std::size_t i = 0; i < a.colliding_vertex_groups.size(); ++i) {
+    const CollidingVertices &p = a.colliding_vertex_groups[i], &q = b.colliding_vertex_groups[i];
+    EXPECT_EQ(std::tie(p.a, p.b, p.first_vertex, p.count_a, p.count_b),
+              std::tie(q.a, q.b, q.first_vertex, q.count_a, q.count_b));
+  }
+}
+
 void expect_equal(const RecordedFrame& a, const RecordedFrame& b) {
   EXPECT_EQ(a.time, b.time);
   EXPECT_EQ(a.object_pairs, b.object_pairs);
@@ -31,6 +42,9 @@ void expect_equal(const RecordedFrame& a, const RecordedFrame& b) {
   EXPECT_EQ(a.continuous_contacts, b.continuous_contacts);
   EXPECT_EQ(a.volume_begin, b.volume_begin);
   EXPECT_EQ(a.volume_end, b.volume_end);
+  EXPECT_EQ(a.narrow_phase_begin, b.narrow_phase_begin);
+  EXPECT_EQ(a.narrow_phase_end, b.narrow_phase_end);
+  expect_equal_colliding_vertices(a, b);
   EXPECT_EQ(a.contact_begin, b.contact_begin);
   EXPECT_EQ(a.contact_end, b.contact_end);
   for_each_leaf([](const auto& field, const auto& p, const auto& q) { EXPECT_EQ(p, q) << field.name; },
@@ -82,6 +96,8 @@ Contents round_trip(const Contents& contents) {
     without_contacts.contacts.clear();
     without_contacts.contact_points.clear();
     without_contacts.continuous_contacts.clear();
+    without_contacts.colliding_vertex_groups.clear();
+    without_contacts.colliding_vertices.clear();
     expect_equal(without_contacts, recording.summary(f));
     for (std::size_t i = 0; i < read.header.objects.size(); ++i)
       expect_equal_bits(contents.positions[f][i], read.positions[f][i]);
@@ -90,13 +106,14 @@ Contents round_trip(const Contents& contents) {
 }
 
 /// A soup with self-collision, a moving soup and a static soup.
-Contents soups(ContactKinds mode, std::uint64_t frames = 12) {
+Contents soups(ContactKinds mode, std::uint64_t frames = 12, bool colliding_vertices = false) {
   ObjectOptions folding, fixed;
   folding.self_collision = true;
   fixed.is_static = true;
   SceneOptions scene;
   scene.contacts = mode;
   scene.threads = 1;
+  scene.comparison.colliding_vertices = colliding_vertices;
   return simulate({random_soup(30, 1, 0.5, 1), random_soup(20, 1, 0.6, 2), random_soup(20, 1, 0.6, 3)},
                   {folding, ObjectOptions{}, fixed}, scene, frames);
 }
@@ -120,6 +137,16 @@ TEST(Recording, RoundTripOfContinuousContacts) {
   const Contents read = round_trip(soups(ContactKinds::continuous));
   EXPECT_GT(count_all(read.frames, &RecordedFrame::continuous_contacts), 100u);
   EXPECT_EQ(count_all(read.frames, &RecordedFrame::contacts), 0u);
+}
+
+TEST(Recording, RoundTripOfCollidingVertices) {
+  Contents contents = soups(ContactKinds::none, 12, true);
+  contents.frames[5].narrow_phase_end = {{contents.header.objects[0].id, contents.header.objects[1].id}};
+  const Contents read = round_trip(contents);
+  EXPECT_GT(count_all(read.frames, &RecordedFrame::colliding_vertices), 100u);
+  EXPECT_GT(count_all(read.frames, &RecordedFrame::colliding_vertex_groups), 12u);
+  EXPECT_GT(count_all(read.frames, &RecordedFrame::narrow_phase_begin), 0u);
+  EXPECT_EQ(count_all(soups(ContactKinds::none).frames, &RecordedFrame::colliding_vertices), 0u);
 }
 
 TEST(Recording, RoundTripOfEndingPairs) {

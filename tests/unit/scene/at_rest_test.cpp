@@ -8,6 +8,7 @@
 #include "supple/models.hpp"
 #include "supple/scene.hpp"
 #include "support/random.hpp"
+#include "support/scenes.hpp"
 
 namespace supple {
 namespace {
@@ -66,7 +67,7 @@ void expect_as_new(const World& world, const DetectResult& result, const SceneOp
 
 class AtRest : public ::testing::TestWithParam<std::tuple<BoundingVolume, std::uint32_t, bool>> {};
 INSTANTIATE_TEST_SUITE_P(All, AtRest,
-                         ::testing::Combine(::testing::Values(BoundingVolume::aabb, BoundingVolume::sphere),
+                         ::testing::Combine(::testing::ValuesIn(all_bounding_volumes),
                                             ::testing::Values(1u, 3u), ::testing::Bool()));
 
 TEST_P(AtRest, ContactsAreThoseOfASceneWithoutAPast) {

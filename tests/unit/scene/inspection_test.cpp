@@ -118,6 +118,16 @@ bool holds(const BoundingSphere& sphere, const std::array<Vec3d, 3>& points) {
   });
 }
 
+bool holds(const std::vector<Slab>& slabs, const std::array<Vec3d, 3>& points) {
+  return std::all_of(slabs.begin(), slabs.end(), [&](const Slab& slab) {
+    const Vec3d direction{slab.direction.x, slab.direction.y, slab.direction.z};
+    return std::all_of(points.begin(), points.end(), [&](const Vec3d& p) {
+      const double along = dot(direction, p), rounding = 1e-15 * dot(absolute(direction), absolute(p));
+      return slab.low <= along + rounding && along <= slab.high + rounding;
+    });
+  });
+}
+
 /// The signed gap from triangle a to triangle b along the axis.
 double gap_along(const Vec3d& axis, const std::array<Vec3d, 3>& a, const std::array<Vec3d, 3>& b) {
   double furthest_a = -INFINITY, nearest_b = INFINITY;
@@ -143,7 +153,9 @@ void expect_apart(const PairExplanation& e, const std::array<Vec3d, 3>& a, const
   } else {
     EXPECT_TRUE(holds(e.box_a, a));
     EXPECT_TRUE(holds(e.box_b, b));
-    EXPECT_FALSE(overlap(e.box_a, e.box_b));
+    EXPECT_EQ(overlap(e.box_a, e.box_b), !e.slabs_a.empty());
+    EXPECT_TRUE(holds(e.slabs_a, a));
+    EXPECT_TRUE(holds(e.slabs_b, b));
   }
   EXPECT_GT(e.distance, 0);
   EXPECT_GE(gap_along(e.axis, a, b), e.distance - 1e-5 * size_of(a, b) - smallest);
@@ -178,6 +190,7 @@ void check_explanation(const Known& known, const Named& p, const Named& q, bool 
   EXPECT_EQ(back.stage, e.stage);
   EXPECT_EQ(back.box_a, e.box_b);
   EXPECT_EQ(back.sphere_a, e.sphere_b);
+  EXPECT_EQ(back.slabs_a, e.slabs_b);
   EXPECT_EQ(back.level_a, e.level_b);
   EXPECT_EQ(back.distance, e.distance);
 }
@@ -255,6 +268,23 @@ void check_candidates(const Known& known, bool are_boxes) {
   }
 }
 
+/// The number of slabs of a cell.
+std::size_t slabs_of(const SceneOptions& options) {
+  if (options.contacts == ContactKinds::continuous) return 0;
+  switch (options.bounding_volume) {
+    case BoundingVolume::obb:
+      return 3;
+    case BoundingVolume::kdop14:
+      return 7;
+    case BoundingVolume::kdop18:
+      return 9;
+    case BoundingVolume::kdop26:
+      return 13;
+    default:
+      return 0;
+  }
+}
+
 void check_cells(const Known& known, ObjectId id, std::optional<std::uint32_t> level) {
   const std::vector<OctreeCell> cells = SceneInspector(known.scene).cells(id, level);
   const std::uint32_t depth = SceneInspector(known.scene).octree_depth(id);
@@ -276,12 +306,15 @@ void check_cells(const Known& known, ObjectId id, std::optional<std::uint32_t> l
     const bool is_sphere = known.scene.options().bounding_volume == BoundingVolume::sphere &&
                            known.scene.options().contacts != ContactKinds::continuous;
     EXPECT_EQ(cell.sphere.empty(), cell.box.empty() || !is_sphere);
+    EXPECT_EQ(cell.slabs.size(), slabs_of(known.scene.options()));
     std::size_t inside = 0;
     for (std::uint32_t t = 0; t < triangles.size(); ++t) {
       const Named named{id, t};
       // Any cell may count an inert triangle.
-      const bool is_held = known.is_inert(named) || (holds(cell.box, known.points(named)) &&
-                                                     (!is_sphere || holds(cell.sphere, known.points(named))));
+      const bool is_held =
+          known.is_inert(named) ||
+          (holds(cell.box, known.points(named)) && (!is_sphere || holds(cell.sphere, known.points(named))) &&
+           holds(cell.slabs, known.points(named)));
       inside += is_held ? 1 : 0;
       held[t] = held[t] || is_held;
     }
@@ -434,12 +467,10 @@ TEST_P(Inspection, ExplanationsAgreeWithContinuousDetect) {
 
 INSTANTIATE_TEST_SUITE_P(HardFamilies, Inspection,
                          testing::Combine(testing::ValuesIn(hard_families()),
-                                          testing::Values(BoundingVolume::aabb, BoundingVolume::sphere)),
+                                          testing::ValuesIn(all_bounding_volumes)),
                          [](const auto& instance) {
-                           std::string name = std::get<0>(instance.param).name;
-                           name +=
-                               std::get<1>(instance.param) == BoundingVolume::aabb ? "_boxes" : "_spheres";
-                           return name;
+                           return std::get<0>(instance.param).name + std::string("_") +
+                                  name_of(std::get<1>(instance.param));
                          });
 
 TEST(InspectionOfScenes, SmoothPartsThatAreNotLookedAtHaveCandidatesToo) {

@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <utility>
 #include <vector>
 
 #include "supple/inspection.hpp"
@@ -19,7 +21,7 @@ TEST_P(SceneProperties, DetectEqualsExactBruteForceInEveryConfiguration) {
     ASSERT_GT(reference.result().contacts.size(), 0u);
     ASSERT_EQ(differences(reference), "") << "seed " << seed;
     ASSERT_EQ(SceneInspector(reference).validate(), "");
-    for (const BoundingVolume volume : {BoundingVolume::aabb, BoundingVolume::sphere}) {
+    for (const BoundingVolume volume : all_bounding_volumes) {
       for (const BroadPhaseMethod method :
            {BroadPhaseMethod::automatic, BroadPhaseMethod::octree, BroadPhaseMethod::grid,
             BroadPhaseMethod::sweep, BroadPhaseMethod::brute}) {
@@ -43,7 +45,7 @@ TEST_P(SceneProperties, TreesOfAnyArityGiveTheSameContacts) {
   const std::vector<TriangleMesh> meshes = GetParam().make(5);
   Scene reference = scene_of(meshes, {.threads = 1});
   const std::uint64_t hash = hash_of(reference.detect());
-  for (const BoundingVolume volume : {BoundingVolume::aabb, BoundingVolume::sphere}) {
+  for (const BoundingVolume volume : all_bounding_volumes) {
     for (const std::uint32_t arity : {2u, 4u}) {
       Scene scene = scene_of(
           meshes, {.bounding_volume = volume, .scene_octree = {.arity = arity}, .threads = 2}, arity);
@@ -55,6 +57,33 @@ TEST_P(SceneProperties, TreesOfAnyArityGiveTheSameContacts) {
         ASSERT_EQ(hash_of(result), hash) << arity;
       }
       ASSERT_EQ(SceneInspector(scene).validate(), "");
+    }
+  }
+}
+
+TEST_P(SceneProperties, EveryBuildAndFitGivesTheSameContacts) {
+  const std::vector<TriangleMesh> meshes = GetParam().make(8);
+  Scene reference = scene_of(meshes, {.threads = 1});
+  reference.detect();
+  ASSERT_EQ(differences(reference), "");
+  for (const auto build :
+       {ObjectOctreeBuild::balanced, ObjectOctreeBuild::regular, ObjectOctreeBuild::bottom_up}) {
+    for (const std::uint32_t arity : {2u, 4u, 8u}) {
+      for (const std::uint32_t leaf_size : {1u, 7u, 64u}) {
+        for (const auto& [volume, fit] : {std::pair{BoundingVolume::aabb, SphereFit::vertices},
+                                          {BoundingVolume::sphere, SphereFit::vertices},
+                                          {BoundingVolume::sphere, SphereFit::minimal}}) {
+          Scene scene({.bounding_volume = volume, .threads = 2, .comparison = {.sphere_fit = fit}});
+          for (const TriangleMesh& mesh : meshes) {
+            scene.add(mesh, {.self_collision = true,
+                             .octree = {.leaf_size = leaf_size, .arity = arity, .build = build}});
+          }
+          const DetectResult& result = scene.detect();
+          ASSERT_TRUE(std::ranges::equal(result.contacts, reference.result().contacts));
+          ASSERT_TRUE(std::ranges::equal(result.contact_points, reference.result().contact_points));
+          ASSERT_EQ(SceneInspector(scene).validate(), "");
+        }
+      }
     }
   }
 }

@@ -44,10 +44,12 @@ struct LivingScene {
     const std::uint32_t kind = random.below(4);
     const TriangleMesh mesh = kind == 0 ? crumpled_sheet(4, 3, 0.15, random.below(1000))
                                         : random_soup(random.below(30), 0.5, 0.3, random.below(1000));
-    const ObjectId id = scene.add(mesh, {.self_collision = random.below(2) == 0,
-                                         .octree = {.max_level = random.below(8),
-                                                    .leaf_size = 1 + random.below(6),
-                                                    .arity = 2u << random.below(3)}});
+    const ObjectId id =
+        scene.add(mesh, {.self_collision = random.below(2) == 0,
+                         .octree = {.max_level = random.below(8),
+                                    .leaf_size = 1 + random.below(6),
+                                    .arity = 2u << random.below(3),
+                                    .build = static_cast<ObjectOctreeBuild>(random.below(3))}});
     meshes.resize(std::max<std::size_t>(meshes.size(), id.index + 1));
     meshes[id.index] = mesh;
     scene.translate(id, random.vector(1));
@@ -55,7 +57,7 @@ struct LivingScene {
 
   void change(ObjectId id) {
     const TriangleMesh& mesh = meshes[id.index];
-    switch (random.below(9)) {
+    switch (random.below(10)) {
       case 0:
         return scene.translate(id, random.vector(0.3));
       case 1:
@@ -81,6 +83,17 @@ struct LivingScene {
           if (random.below(40) == 0) p.x = std::numeric_limits<double>::quiet_NaN();
         }
         return scene.set_positions(id, moved);
+      }
+      case 9: {
+        std::vector<std::uint32_t> ids;
+        std::vector<Vec3d> moved;
+        for (std::uint32_t v = 0; v < mesh.positions.size(); v += 1 + random.below(20)) {
+          ids.push_back(v);
+          moved.push_back(mesh.positions[v] + random.vector(0.2));
+          if (random.below(60) == 0) moved.back().y = std::numeric_limits<double>::infinity();
+        }
+        scene.set_positions(id, mesh.positions);
+        return scene.set_vertices(id, ids, moved);
       }
       case 6:
         return scene.set_group(id, 1 + random.below(3), 1 + random.below(3));
@@ -141,19 +154,19 @@ TEST_P(RandomOperations, EveryStepEqualsBruteForce) {
     live({.bounding_volume = volume,
           .broad_phase = method,
           .threads = 2,
-          .comparison = {.colliding_vertices = seed % 2 == 0}},
+          .comparison = {.sphere_fit = seed < 3 ? SphereFit::vertices : SphereFit::minimal,
+                         .colliding_vertices = seed % 2 == 0}},
          seed);
   }
 }
 
 std::string configuration_name(const testing::TestParamInfo<RandomOperations::ParamType>& info) {
-  const std::string volume = std::get<0>(info.param) == BoundingVolume::aabb ? "Boxes" : "Spheres";
   constexpr std::array methods{"Automatic", "Octree", "Grid", "Sweep", "Brute"};
-  return volume + methods[static_cast<std::size_t>(std::get<1>(info.param))];
+  return name_of(std::get<0>(info.param)) + methods[static_cast<std::size_t>(std::get<1>(info.param))];
 }
 
 INSTANTIATE_TEST_SUITE_P(Configurations, RandomOperations,
-                         testing::Combine(testing::Values(BoundingVolume::aabb, BoundingVolume::sphere),
+                         testing::Combine(testing::ValuesIn(all_bounding_volumes),
                                           testing::Values(BroadPhaseMethod::automatic,
                                                           BroadPhaseMethod::octree, BroadPhaseMethod::grid,
                                                           BroadPhaseMethod::sweep, BroadPhaseMethod::brute)),

@@ -99,7 +99,7 @@ void expect_same(const DetectResult& found, const DetectResult& truth) {
 }
 
 TEST(SceneRebuild, ContactsEqualThoseWithoutRebuildsAndOfBruteForce) {
-  for (const BoundingVolume volume : {BoundingVolume::aabb, BoundingVolume::sphere}) {
+  for (const BoundingVolume volume : all_bounding_volumes) {
     SceneOptions options = with_threads(2);
     options.bounding_volume = volume;
     Drift drift = soups(250);

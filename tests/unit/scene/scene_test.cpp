@@ -174,7 +174,7 @@ TEST(Scene, NonFiniteVerticesHideOnlyTheirTriangles) {
   ASSERT_GT(hidden, 0u);
   soup.positions[30].y = nan;
   soup.positions[61].x = -std::numeric_limits<double>::infinity();
-  for (const BoundingVolume volume : {BoundingVolume::aabb, BoundingVolume::sphere}) {
+  for (const BoundingVolume volume : all_bounding_volumes) {
     Scene scene({.bounding_volume = volume});
     const ObjectId id = scene.add(soup, {.self_collision = true});
     const DetectResult& result = scene.detect();

@@ -16,6 +16,7 @@
 #include "supple/models.hpp"
 #include "supple/scene.hpp"
 #include "support/instruction_sets.hpp"
+#include "support/scenes.hpp"
 #include "support/soups.hpp"
 
 namespace supple {
@@ -74,7 +75,7 @@ TYPED_TEST(SharePositions, FindsWhatACopyFindsAndReadsNothingElse) {
   for_each_target([&](const char* target) {
     SCOPED_TRACE(target);
     for (const std::size_t stride : {3u, 5u}) {
-      for (const BoundingVolume volume : {BoundingVolume::aabb, BoundingVolume::sphere}) {
+      for (const BoundingVolume volume : all_bounding_volumes) {
         PointsAtTheEnd<TypeParam> a(ball.positions.size(), stride), b(sheet.positions.size(), stride);
         SceneOptions options;
         options.threads = 2;

@@ -11,7 +11,9 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
+#include <tuple>
 #include <utility>
+#include <vector>
 
 #include "supple/inspection.hpp"
 #include "support/scenes.hpp"
@@ -96,7 +98,7 @@ TEST_F(Truth, SelfIntersections) {
 TEST_F(Truth, PairsOfPlacedMeshes) {
   for (const json& expected : truth["pairs"]) {
     SCOPED_TRACE(expected["name"].get<std::string>());
-    for (const BoundingVolume volume : {BoundingVolume::aabb, BoundingVolume::sphere}) {
+    for (const BoundingVolume volume : all_bounding_volumes) {
       Scene scene({.bounding_volume = volume});
       for (const auto& [mesh, placement] : {std::pair{"a", "ta"}, std::pair{"b", "tb"}}) {
         TriangleMesh placed = load(expected[mesh]);
@@ -105,6 +107,27 @@ TEST_F(Truth, PairsOfPlacedMeshes) {
       }
       expect_pairs(scene.detect(), expected);
       if (volume == BoundingVolume::aabb) expect_candidates(scene.result(), expected);
+    }
+  }
+}
+
+TEST_F(Truth, EveryBuildAndFitFindsThePairsOfPlacedMeshes) {
+  for (const json& expected : truth["pairs"]) {
+    SCOPED_TRACE(expected["name"].get<std::string>());
+    std::vector<TriangleMesh> meshes;
+    for (const auto& [mesh, placement] : {std::pair{"a", "ta"}, std::pair{"b", "tb"}}) {
+      meshes.push_back(load(expected[mesh]));
+      transform(meshes.back(), expected[placement]);
+    }
+    for (const auto& [volume, fit, build, arity] :
+         {std::tuple{BoundingVolume::aabb, SphereFit::vertices, ObjectOctreeBuild::bottom_up, 8u},
+          {BoundingVolume::aabb, SphereFit::vertices, ObjectOctreeBuild::bottom_up, 2u},
+          {BoundingVolume::sphere, SphereFit::minimal, ObjectOctreeBuild::bottom_up, 4u},
+          {BoundingVolume::sphere, SphereFit::minimal, ObjectOctreeBuild::balanced, 8u},
+          {BoundingVolume::sphere, SphereFit::minimal, ObjectOctreeBuild::regular, 8u}}) {
+      Scene scene({.bounding_volume = volume, .comparison = {.sphere_fit = fit}});
+      for (const TriangleMesh& mesh : meshes) scene.add(mesh, {.octree = {.arity = arity, .build = build}});
+      expect_pairs(scene.detect(), expected);
     }
   }
 }

@@ -51,6 +51,17 @@ TEST(PackedScene, KeepsEveryOption) {
             keys_of_machine<MassSpringMotion>());
 }
 
+TEST(PackedScene, KeepsRigidMotion) {
+  SceneView scene;
+  scene.objects = {test_ball("rigid", {}, 2)};
+  scene.objects[0].motion = other_values<RigidMotion>();
+  const SceneView again = unpack(pack(scene));
+  ASSERT_EQ(again.objects.size(), 1u);
+  EXPECT_EQ(differences_of(std::get<RigidMotion>(again.objects[0].motion),
+                           std::get<RigidMotion>(scene.objects[0].motion)),
+            std::vector<std::string>{});
+}
+
 /// The JSON value that the session sends for an option.
 template <class Struct, class Value>
 Json json_of(const Field<Struct, Value>& field, const Value& value) {
@@ -187,7 +198,7 @@ void mend_checksum(std::vector<std::byte>& bytes) {
 
 /// Two frames; one object moves.
 struct TwoFrames final : Frames {
-  Series rows{{"time"}, {0, 0.1}, {{1, 0, 1}}, {}};
+  Series rows{{"time"}, {0, 0.1}, {{{1, 0, 1}}, {}}};
   std::uint64_t count() const override { return 2; }
   void read(std::uint64_t frame, std::size_t object, std::span<Vec3d> positions) const override {
     const ViewedObject ball = test_ball("", {object == 1 ? static_cast<double>(frame) : 0.0, 0, 0}, 1);

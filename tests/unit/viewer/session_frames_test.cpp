@@ -62,6 +62,37 @@ TEST(ViewerFrames, NormalsAreThoseOfTheLibrary) {
   }
 }
 
+/// The events of volumes and of the narrow phase are those of a scene with colliding vertices.
+TEST(ViewerFrames, EventsOfVolumesAndOfTheNarrowPhase) {
+  SceneView show = touching_balls(), giving = show;
+  giving.simulation.scene.comparison.colliding_vertices = true;
+  Simulation simulation = simulation_of(giving);
+  TestPage page(show);
+  page.scene();
+  EXPECT_FALSE(page.frame().has(46)) << "only with the layer";
+  page.ask({{"do", "layers"}, {"colliding_vertices", true}});
+  std::size_t volumes = 0, leaves = 0;
+  for (int step = 0; step < 80; ++step) {
+    const ViewerMessage frame = step == 0 ? page.frame() : page.frame_after_steps(1);
+    if (step > 0) simulation.step();
+    const DetectResult& result = simulation.scene().result();
+    const auto expect = [&](std::uint32_t tag, std::span<const ObjectPair> pairs) {
+      std::vector<Pair> expected;
+      for (const ObjectPair& pair : pairs) expected.push_back({pair.a.index, pair.b.index});
+      EXPECT_EQ(frame.values<Pair>(tag), expected) << tag << " in step " << step;
+      return expected.size();
+    };
+    if (step > 0) {  // the frame before the layer had the volumes already
+      volumes += expect(48, result.volume_events.begin);
+      expect(49, result.volume_events.end);
+    }
+    leaves += expect(46, result.narrow_phase_events.begin);
+    expect(47, result.narrow_phase_events.end);
+  }
+  EXPECT_GT(volumes, 0u);
+  EXPECT_GT(leaves, 1u);
+}
+
 TEST(ViewerFrames, EventsAreThoseSinceTheLastFrame) {
   TestPage page(touching_balls());
   page.scene();

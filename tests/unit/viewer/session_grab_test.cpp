@@ -97,6 +97,34 @@ TEST(ViewerGrab, ABentObjectIsExplainedWhereItIs) {
     EXPECT_EQ(page.ask({{"do", "explain"}, {"a", {c[0], c[1]}}, {"b", {c[2], c[3]}}})["stage"], "contact");
 }
 
+TEST(ViewerGrab, ARigidObjectFollowsAsAWhole) {
+  const SceneView show = apart(RigidMotion{.velocity = {-0.5, 0, 0}});
+  TestPage page(show);
+  const ViewerMessage scene = page.scene();
+  EXPECT_EQ(scene.json["objects"][0]["rigid"], true);
+  EXPECT_EQ(scene.json["objects"][1]["rigid"], false);
+  const auto from = positions(page.frame(), 0);
+  const std::uint32_t vertex = foremost(show.objects[0].mesh);
+  page.ask({{"do", "grab"}, {"object", 0}, {"vertex", vertex}});
+  page.ask({{"do", "drag"}, {"to", inside_right(scene)}});
+  page.session.advance(0);
+  const ViewerMessage carried = page.frame();
+  EXPECT_EQ(carried.json["step"], 0) << "it needs no step";
+  EXPECT_GT(carried.section(34).count, 0u);
+  const Vec3f target = as_floats(std::array{Vec3d{1.8, 0, 0}}, center_of(scene))[0];
+  const auto to = positions(carried, 0);
+  for (std::size_t i = 0; i < to.size(); ++i)
+    EXPECT_LT(distance(to[i], from[i] + target - from[vertex]), 1e-5);
+
+  // It stays in the hand while time passes, and then flies on from there.
+  const float step = 0.5f * 0.01f;
+  const auto later = positions(page.frame_after_steps(5), 0);
+  EXPECT_NEAR(later[vertex].x, target.x - step, 1e-5);
+  page.ask({{"do", "release"}});
+  const auto released = positions(page.frame_after_steps(10), 0);
+  EXPECT_NEAR(released[vertex].x, target.x - 11 * step, 1e-5);
+}
+
 TEST(ViewerGrab, AnObjectInWavesIsBentOnTopOfThem) {
   const SceneView show = apart(WaveMotion{.amplitude = 0.02});
   TestPage page(show);

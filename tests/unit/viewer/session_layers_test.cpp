@@ -1,7 +1,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <map>
 #include <set>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -120,6 +122,107 @@ TEST(ViewerLayers, AreWhatTheLibrarySays) {
       }
     }
   }
+}
+
+/// For each object, the rows of the nodes that are in a wanted pair, each once, by level and number.
+std::vector<std::vector<Row>> colliding_rows(const Scene& scene, std::span<const ObjectPair> pairs, int level,
+                                             Vec3d center) {
+  using Name = std::pair<std::uint32_t, std::uint64_t>;
+  std::vector<std::map<Name, OctreeCell>> nodes(scene.objects().size());
+  for (const ObjectPair& pair : pairs) {
+    const NodePairList list = SceneInspector(scene).node_pairs(pair.a, pair.b);
+    for (std::uint32_t at = 0; at < list.level_count(); ++at) {
+      for (const NodePairList::Pair& p : list.pairs_of(at)) {
+        const OctreeCell &a = list.nodes_a[p.a], &b = list.nodes_b[p.b];
+        const bool both_leaves = a.is_leaf && b.is_leaf;
+        if (level == -1 ? !both_leaves : level >= 0 && static_cast<std::uint32_t>(level) != at) continue;
+        nodes[pair.a.index].emplace(Name(a.level, *a.number), a);
+        nodes[pair.b.index].emplace(Name(b.level, *b.number), b);
+      }
+    }
+  }
+  std::vector<std::vector<Row>> rows(nodes.size());
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    for (const auto& [name, cell] : nodes[i]) {
+      const float at = static_cast<float>(cell.level);
+      const float triangles = cell.is_leaf ? static_cast<float>(cell.triangle_count) : -1;
+      rows[i].push_back(
+          cell.sphere.empty()
+              ? row({narrow(cell.box.min, center)}, at, narrow(cell.box.max, center), triangles)
+              : row({narrow(cell.sphere.center, center)}, cell.sphere.radius, {at, triangles, 0}, 0));
+    }
+  }
+  return rows;
+}
+
+TEST(ViewerLayers, CollidingNodesAreThoseOfTheNarrowPhase) {
+  for (const BoundingVolume volume : {BoundingVolume::aabb, BoundingVolume::sphere}) {
+    const std::uint32_t tag = volume == BoundingVolume::sphere ? 51 : 50;
+    const SceneView show = crowd(volume);
+    Simulation simulation = simulation_of(show);
+    TestPage page(show);
+    const Vec3d center = center_of(page.scene());
+    const auto all_pairs = simulation.scene().result().object_pairs;
+    const std::vector<ObjectPair> one{{{0, 0}, {1, 0}}};
+    std::size_t most = 0;
+    for (const int level : {-2, -1, 0, 1, 2}) {
+      for (const std::span<const ObjectPair> pairs : {all_pairs, std::span<const ObjectPair>(one)}) {
+        Json wanted{{"level", level}};
+        if (pairs.data() == one.data()) wanted["objects"] = {0, 1};
+        page.ask({{"do", "layers"}, {"colliding_nodes", wanted}});
+        const ViewerMessage frame = page.frame();
+        const auto expected = colliding_rows(simulation.scene(), pairs, level, center);
+        for (std::uint32_t object = 0; object < expected.size(); ++object) {
+          EXPECT_EQ(frame.has(tag, object), !expected[object].empty());
+          if (expected[object].empty()) continue;
+          EXPECT_EQ(frame.values<Row>(tag, object), expected[object]);
+          most = std::max(most, expected[object].size());
+        }
+        EXPECT_FALSE(frame.has(101 - tag, 0));
+      }
+    }
+    EXPECT_GT(most, 8u);
+    page.ask({{"do", "layers"}, {"colliding_nodes", nullptr}});
+    EXPECT_FALSE(page.frame().has(tag, 0));
+    for (const char* nodes :
+         {R"(true)", R"({"level": -3})", R"({"objects": [0, 1]})", R"({"objects": [0], "level": 0})",
+          R"({"objects": [0, 6], "level": 0})", R"({"level": 0, "what": 1})"})
+      EXPECT_NE(page.failure(std::string(R"({"do": "layers", "colliding_nodes": )") + nodes + "}"), "");
+  }
+}
+
+TEST(ViewerLayers, ListsTheNodePairsByLevel) {
+  const SceneView show = crowd();
+  Simulation simulation = simulation_of(show);
+  TestPage page(show);
+  page.scene();
+  const NodePairList list = SceneInspector(simulation.scene()).node_pairs({0, 0}, {1, 0});
+  const Json levels = page.ask({{"do", "node_pairs"}, {"a", 0}, {"b", 1}})["levels"];
+  ASSERT_EQ(levels.size(), list.level_count());
+  EXPECT_GT(levels.size(), 1u);
+  EXPECT_EQ(levels[0]["leaf_pairs"], 0);
+  EXPECT_EQ(levels[0]["names"], Json::array({Json::array({"A(0, 0)", "A(0, 0)"})}));
+  for (std::uint32_t level = 0; level < list.level_count(); ++level) {
+    const auto pairs = list.pairs_of(level);
+    EXPECT_EQ(levels[level]["pairs"], pairs.size());
+    const OctreeCell &a = list.nodes_a[pairs[0].a], &b = list.nodes_b[pairs[0].b];
+    const auto name = [](const OctreeCell& cell) {
+      return "A(" + std::to_string(*cell.number) + ", " + std::to_string(cell.level) + ")";
+    };
+    EXPECT_EQ(levels[level]["names"][0], Json::array({name(a), name(b)}));
+    EXPECT_EQ(levels[level]["names"].size(), std::min<std::size_t>(pairs.size(), 100));
+  }
+  EXPECT_TRUE(page.ask({{"do", "node_pairs"}, {"a", 0}, {"b", 5}})["levels"].empty()) << "they are far apart";
+  EXPECT_NE(page.failure(R"({"do": "node_pairs", "id": 1, "a": 0, "b": 6})").find("no object 6"),
+            std::string::npos);
+  Json regions = Json::array();
+  for (const SceneRegion& region : SceneInspector(simulation.scene()).regions({0, 0}))
+    regions.push_back("R(" + std::to_string(region.number) + ", " + std::to_string(region.level) + ")");
+  EXPECT_FALSE(regions.empty());
+  EXPECT_EQ(page.ask({{"do", "read"}, {"object", 0}})["regions"], regions);
+  const OctreeCell leaf = SceneInspector(simulation.scene()).leaf({0, 0}, 17);
+  EXPECT_EQ(page.ask({{"do", "read"}, {"object", 0}, {"triangle", 17}})["leaf"],
+            "A(" + std::to_string(*leaf.number) + ", " + std::to_string(leaf.level) + ")");
 }
 
 /// The colliding vertices equal those of a scene that is created with this option.

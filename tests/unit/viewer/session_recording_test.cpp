@@ -61,10 +61,12 @@ Recorded record(int frames, ContactKinds contacts = ContactKinds::intersection) 
     const auto count = static_cast<double>(result.stats.contacts);
     recorded.frames->rows.values.insert(recorded.frames->rows.values.end(), {simulation.time(), count});
     const auto number = static_cast<std::uint32_t>(frame);
+    for (const ObjectPair& pair : result.volume_events.begin)
+      recorded.frames->rows.volumes.begin.push_back({number, pair.a.index, pair.b.index});
     for (const ObjectPair& pair : result.contact_events.begin)
-      recorded.frames->rows.begin.push_back({number, pair.a.index, pair.b.index});
+      recorded.frames->rows.contacts.begin.push_back({number, pair.a.index, pair.b.index});
     for (const ObjectPair& pair : result.contact_events.end)
-      recorded.frames->rows.end.push_back({number, pair.a.index, pair.b.index});
+      recorded.frames->rows.contacts.end.push_back({number, pair.a.index, pair.b.index});
   }
   recorded.show = live;
   for (std::size_t i = 0; i < live.objects.size(); ++i) {
@@ -103,8 +105,13 @@ TEST(ViewerRecording, TellsSceneAndSeries) {
   using Event = std::array<std::uint32_t, 3>;
   const auto begin = series.values<Event>(65);
   ASSERT_EQ(begin.size(), 1u);
-  const Series::Event& expected = recorded.frames->rows.begin[0];
+  const Series::Event& expected = recorded.frames->rows.contacts.begin[0];
   EXPECT_EQ(begin[0], (Event{expected.frame, expected.a, expected.b}));
+  const std::vector<Series::Event>& volumes = recorded.frames->rows.volumes.begin;
+  ASSERT_FALSE(volumes.empty());
+  ASSERT_EQ(series.values<Event>(69).size(), volumes.size());
+  EXPECT_EQ(series.values<Event>(69)[0], (Event{volumes[0].frame, volumes[0].a, volumes[0].b}));
+  EXPECT_EQ(series.section(67).count, 0u) << "without colliding vertices";
 }
 
 TEST(ViewerRecording, EachFrameIsDetectedAsItWas) {
@@ -235,7 +242,7 @@ TEST(ViewerRecording, EventsAreThoseOfTheFramesThatAreSeen) {
   opening(page);
   page.ask({{"do", "pause"}});
   page.frame();
-  const std::uint32_t begin = recorded.frames->rows.begin.at(0).frame;
+  const std::uint32_t begin = recorded.frames->rows.contacts.begin.at(0).frame;
   const auto seek = [&](std::uint32_t frame) {
     page.ask({{"do", "seek"}, {"frame", frame}});
     page.session.advance(0);

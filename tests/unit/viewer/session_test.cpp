@@ -33,6 +33,7 @@ TEST(ViewerSession, TellsTheSceneAndThenFramesAgainstCredit) {
                                             {"triangles", 180},
                                             {"static", false},
                                             {"body", true},
+                                            {"rigid", false},
                                             {"waves", false},
                                             {"self_collision", false}}));
   EXPECT_EQ(scene.values<Triangle>(16, 2), make_icosphere(3).triangles);

@@ -1,0 +1,45 @@
+// The scenes of the paper's section 7 preserve the areas of triangles, as its section 4 says.
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "scene_file.hpp"
+#include "supple/simulation.hpp"
+
+namespace supple {
+namespace {
+
+/// The mean area error of all objects after 1.1 seconds, in which random forces deform them.
+double area_error_of(const std::string& scene, bool preserved) {
+  const cli::Input input = cli::read_scene_file(SUPPLE_SCENES "/" + scene + ".toml");
+  SimulationOptions options = input.simulation;
+  options.scene.contacts = ContactKinds::none;
+  options.scene.threads = 1;
+  Simulation simulation(options);
+  std::vector<ObjectId> ids;
+  for (const cli::InputObject& object : input.objects) {
+    MassSpringMotion motion = std::get<MassSpringMotion>(*object.motion);
+    EXPECT_GT(motion.springs.area_stiffness, 0) << scene;
+    if (!preserved) motion.springs.area_stiffness = 0;
+    ids.push_back(simulation.add(object.mesh, object.options, motion));
+    EXPECT_GT(simulation.body(ids.back())->stable_step(), options.time_step) << scene;
+  }
+  for (int step = 0; step < 55; ++step) simulation.step();
+  double sum = 0;
+  for (const ObjectId id : ids) sum += simulation.body(id)->area_error().mean;
+  return sum / static_cast<double>(ids.size());
+}
+
+TEST(PaperScenes, PreserveTheAreasOfTriangles) {
+  for (const std::string scene : {"table1_3", "table1_6", "table1_9", "three_humans", "three_bikes"}) {
+    const double error = area_error_of(scene, true);
+    EXPECT_LT(error, 0.015) << scene;
+    EXPECT_LT(error, 0.4 * area_error_of(scene, false)) << scene;
+  }
+}
+
+}  // namespace
+}  // namespace supple

@@ -1,0 +1,260 @@
+#include "experiments/table1.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "experiments/table1_claims.hpp"
+#include "experiments/table1_runs.hpp"
+#include "experiments/table1_scenes.hpp"
+#include "supple/error.hpp"
+
+namespace supple::experiments {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The message of the error that a call throws.
+template <class Call>
+std::string error_of(Call&& call) {
+  try {
+    call();
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+RunCounts run_steps(const Table1Scene& scene, const Table1Method& method, BoundingVolume volume,
+                    std::uint32_t threads, std::uint64_t steps) {
+  return run_scene(scene, method, volume, 3, threads,
+                   [&](const RunCounts& so_far) { return so_far.steps < steps; });
+}
+
+TEST(Table1Runs, CountsAreTheSameForAnyNumberOfThreads) {
+  const RunCounts one = run_steps(mixed_scene(9), {}, BoundingVolume::sphere, 1, 90);
+  EXPECT_EQ(one.steps, 90u);
+  EXPECT_EQ(one.failure, "");
+  EXPECT_GT(one.broad, 0u) << "without collisions the test has no meaning";
+  EXPECT_GT(one.detection_seconds, 0);
+  const RunCounts three = run_steps(mixed_scene(9), {}, BoundingVolume::sphere, 3, 90);
+  EXPECT_EQ(three.broad, one.broad);
+  EXPECT_EQ(three.narrow, one.narrow);
+  EXPECT_EQ(three.exact, one.exact);
+}
+
+TEST(Table1Runs, TheMethodChangesOnlyWhatItCan) {
+  const Table1Scene scene = mixed_scene(9, 4);
+  const RunCounts paper = run_steps(scene, {}, BoundingVolume::sphere, 1, 300);
+  Table1Method brute;
+  brute.scene.broad_phase = BroadPhaseMethod::brute;
+  EXPECT_EQ(run_steps(scene, brute, BoundingVolume::sphere, 1, 300).broad, paper.broad);
+  Table1Method only_roots;
+  only_roots.octree.max_level = 0;
+  const RunCounts of_roots = run_steps(scene, only_roots, BoundingVolume::sphere, 1, 300);
+  EXPECT_EQ(of_roots.exact, paper.exact);
+  EXPECT_EQ(of_roots.narrow, of_roots.broad) << "the only leaf of an octree is the volume of its object";
+  EXPECT_LT(paper.narrow, paper.broad);
+  Table1Method without_exact_stage;
+  without_exact_stage.scene.contacts = ContactKinds::none;
+  const RunCounts without = run_steps(scene, without_exact_stage, BoundingVolume::sphere, 1, 300);
+  EXPECT_EQ(without.narrow, paper.narrow);
+  EXPECT_EQ(without.exact, 0u);
+  EXPECT_GT(paper.exact, 0u);
+}
+
+TEST(Table1Scenes, MixedScenesHaveAnyNumberOfObjects) {
+  for (const std::uint32_t objects : {2u, 3u, 4u, 9u, 12u, 20u, 30u, 100u}) {
+    const cli::Input input = read_scene(mixed_scene(objects), {}, 1);
+    EXPECT_EQ(input.objects.size(), objects);
+    std::vector<std::uint32_t> of_model(3);
+    for (const cli::InputObject& object : input.objects) {
+      const std::size_t vertices = object.mesh.positions.size();
+      ++of_model[vertices == 154 ? 0 : vertices == 216 ? 1 : 2];
+      for (const Vec3d& p : object.mesh.positions) {
+        for (int axis = 0; axis < 3; ++axis) EXPECT_LE(std::fabs(p[axis]), *edge_of(input) / 2);
+      }
+    }
+    EXPECT_LE(of_model[0] - of_model[2], 1u) << objects;
+    EXPECT_TRUE(of_model[1] == of_model[0] || of_model[1] == of_model[2]) << objects;
+    EXPECT_EQ(run_steps(mixed_scene(objects), {}, BoundingVolume::aabb, 1, 0).broad, 0u)
+        << objects << " begin without overlaps";
+  }
+  EXPECT_EQ(edge_of(read_scene(mixed_scene(12), {}, 1)), 6);
+  EXPECT_EQ(edge_of(read_scene(mixed_scene(12, 5.5), {}, 1)), 5.5);
+}
+
+TEST(Table1Scenes, EveryDefaultSceneBeginsWithoutOverlaps) {
+  for (const Table1Scene& scene : default_table1_options(false).scenes)
+    EXPECT_EQ(run_steps(scene, {}, BoundingVolume::aabb, 1, 0).broad, 0u) << scene.name;
+}
+
+TEST(Table1Scenes, RefusesASizeThatIsTooSmall) {
+  const std::string error = error_of([] { read_scene(mixed_scene(9, 2), {}, 1); });
+  EXPECT_NE(error.find("start outside a cube of 2; give at least 3.6"), std::string::npos) << error;
+  EXPECT_EQ(edge_of(read_scene(mixed_scene(9, 3.6), {}, 1)), 3.6);
+  EXPECT_NE(error_of([] {
+              read_scene({Table1Scene::Source::built_in, "table1_4"}, {}, 1);
+            }).find("no scene"),
+            std::string::npos);
+}
+
+class Table1Folder : public testing::Test {
+ protected:
+  void SetUp() override { fs::remove_all(folder_); }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  std::optional<Report> run(bool resume) {
+    return run_table1(options_, folder_, resume, interruption_, false);
+  }
+  std::string read(const char* name) const {
+    std::ifstream stream(folder_ / name, std::ios::binary);
+    return {std::istreambuf_iterator<char>(stream), {}};
+  }
+  /// The rows of a file below the header.
+  std::vector<std::vector<std::string>> rows(const char* name) const {
+    auto rows = parse_csv(read(name)).rows;
+    rows.erase(rows.begin());
+    return rows;
+  }
+
+  static Table1Options tiny() {
+    Table1Options options;
+    options.scenes = {mixed_scene(3)};
+    options.runs = 2;
+    options.simulated_seconds = 2;
+    options.threads = 1;
+    return options;
+  }
+  // Tests run in parallel.
+  fs::path folder_ =
+      fs::path(testing::TempDir()) / testing::UnitTest::GetInstance()->current_test_info()->name();
+  Table1Options options_ = tiny();
+  cli::Interruption interruption_;
+};
+
+TEST_F(Table1Folder, VolumesChangeNoExactContact) {
+  const auto report = run(false);
+  ASSERT_TRUE(report);
+  const auto one = rows("table1_runs.csv");
+  ASSERT_EQ(one.size(), 4u);
+  options_.threads = 3;
+  ASSERT_TRUE(run(false));
+  auto three = rows("table1_runs.csv");
+  std::sort(three.begin(), three.end());
+  auto sorted = one;
+  std::sort(sorted.begin(), sorted.end());
+  EXPECT_EQ(three, sorted);
+  constexpr std::size_t seed = 3, exact = 7;
+  for (const auto& a : one) {
+    for (const auto& b : one) {
+      if (a[seed] == b[seed]) {
+        EXPECT_EQ(a[exact], b[exact]);
+      }
+    }
+  }
+}
+
+TEST_F(Table1Folder, ResumeRepeatsNoCompleteRun) {
+  ASSERT_TRUE(run(false));
+  const std::string whole = read("table1_runs.csv");
+  const auto all = rows("table1_runs.csv");
+  // One complete run, marked by a number that no run has, and a line that a killed program left behind.
+  const std::size_t end_of_header = whole.find('\n') + 1, end_of_run = whole.find('\n', end_of_header) + 1;
+  auto marked = all.front();
+  marked[5] = "777";
+  std::string line;
+  for (const std::string& field : marked) line += (line.empty() ? "" : ",") + field;
+  std::ofstream(folder_ / "table1_runs.csv", std::ios::binary)
+      << whole.substr(0, end_of_header) << line << '\n'
+      << whole.substr(end_of_run, 20);
+  ASSERT_TRUE(run(true));
+  const auto resumed = rows("table1_runs.csv");
+  ASSERT_EQ(resumed.size(), 4u);
+  EXPECT_EQ(resumed.front(), marked);
+  for (std::size_t i = 1; i < 4; ++i) EXPECT_EQ(resumed[i], all[i]);
+}
+
+TEST_F(Table1Folder, ResumeNeedsTheSameOptions) {
+  EXPECT_NE(error_of([&] { run(true); }).find("has no experiment table1"), std::string::npos);
+  ASSERT_TRUE(run(false));
+  options_.method.scene.broad_phase = BroadPhaseMethod::grid;
+  std::string error = error_of([&] { run(true); });
+  EXPECT_NE(error.find("--broad-phase was octree"), std::string::npos) << error;
+  EXPECT_NE(error.find("is grid now"), std::string::npos) << error;
+  options_ = tiny();
+  options_.method.integrator = Integrator::backward_euler;
+  error = error_of([&] { run(true); });
+  EXPECT_NE(error.find("--integrator was not given"), std::string::npos) << error;
+  options_ = tiny();
+  std::ofstream(folder_ / "table1_runs.csv", std::ios::app) << "table1_3,6,aabb,1,3,x,1,1,1,\n";
+  EXPECT_NE(error_of([&] { run(true); }).find("row 5 is not a run"), std::string::npos);
+}
+
+TEST_F(Table1Folder, TheClockCountsDetectionAlone) {
+  options_.simulated_seconds = 0;
+  options_.wall_clock = 0.02;
+  options_.runs = 1;
+  ASSERT_TRUE(run(false));
+  EXPECT_FALSE(fs::exists(folder_ / "table1_runs.csv"));
+  for (const auto& row : rows("table1_clock_runs.csv")) {
+    const double detection = std::stod(row[8]), real = std::stod(row[9]);
+    EXPECT_GE(detection, 0.02);
+    EXPECT_GT(real, detection) << "the motion takes time that does not count";
+  }
+}
+
+/// Runs of a mixed scene with these numbers in the broad and the narrow phase.
+Runs runs_of(std::uint32_t objects, BoundingVolume volume, const std::vector<std::uint64_t>& numbers,
+             double edge = 6) {
+  Runs runs{mixed_scene(objects), edge == 6, objects, edge, volume, 600, {}};
+  for (const std::uint64_t number : numbers) runs.counts.push_back({.broad = number, .narrow = number});
+  return runs;
+}
+
+Verdict verdict_on(const std::vector<Runs>& all, const std::string& part) {
+  for (const Claim& claim : judge_table1(all, {}))
+    if (claim.paper.find(part) != std::string::npos) return claim.verdict;
+  ADD_FAILURE() << "no claim with " << part;
+  return Verdict::cannot_tell;
+}
+
+TEST(Table1Claims, SmallerSceneIsDecidedBeyondTwoStandardErrors) {
+  constexpr auto box = BoundingVolume::aabb;
+  const char* const claim = "smaller the size";
+  const Runs large = runs_of(9, box, {10, 11, 12});
+  EXPECT_EQ(verdict_on({large, runs_of(9, box, {20, 21, 22}, 4)}, claim), Verdict::holds);
+  EXPECT_EQ(verdict_on({large, runs_of(9, box, {2, 3, 4}, 4)}, claim), Verdict::does_not_hold);
+  EXPECT_EQ(verdict_on({large, runs_of(9, box, {11, 12, 13}, 4)}, claim), Verdict::cannot_tell);
+  // The second size may be the larger one.
+  EXPECT_EQ(verdict_on({large, runs_of(9, box, {2, 3, 4}, 8)}, claim), Verdict::holds);
+}
+
+TEST(Table1Claims, ConvergenceNeedsRatiosWithinTenPercent) {
+  constexpr auto box = BoundingVolume::aabb, sphere = BoundingVolume::sphere;
+  const char* const claim = "10 or more";
+  const Runs boxes = runs_of(20, box, {100, 100, 100});
+  EXPECT_EQ(verdict_on({boxes, runs_of(20, sphere, {99, 101, 102})}, claim), Verdict::holds);
+  EXPECT_EQ(verdict_on({boxes, runs_of(20, sphere, {130, 131, 132})}, claim), Verdict::does_not_hold);
+  EXPECT_EQ(verdict_on({boxes, runs_of(20, sphere, {90, 110, 130})}, claim), Verdict::cannot_tell);
+  // Without 20 objects, nothing is known about the narrow phase.
+  EXPECT_EQ(verdict_on({runs_of(12, box, {100, 100}), runs_of(12, sphere, {99, 101})}, claim),
+            Verdict::cannot_tell);
+}
+
+TEST(Table1Claims, RunsThatBrokeOffDoNotCount) {
+  Runs runs = runs_of(3, BoundingVolume::aabb, {10, 12, 500});
+  runs.counts.back().failure = "blew up";
+  EXPECT_EQ(runs.estimate(&RunCounts::broad).mean, 11);
+  EXPECT_EQ(runs.seconds_for_one(&RunCounts::broad), 600.0 / 11);
+}
+
+}  // namespace
+}  // namespace supple::experiments

@@ -1,0 +1,277 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <set>
+#include <tuple>
+#include <vector>
+
+#include "geometry/aabb.hpp"
+#include "geometry/sphere.hpp"
+#include "supple/error.hpp"
+#include "supple/inspection.hpp"
+#include "supple/models.hpp"
+#include "supple/scene.hpp"
+#include "support/soups.hpp"
+
+namespace supple {
+namespace {
+
+/// (level of the list, k and h of a, k and h of b).
+using NamedPair = std::array<std::uint64_t, 5>;
+
+std::set<NamedPair> names_of(const NodePairList& list) {
+  std::set<NamedPair> names;
+  for (std::uint32_t level = 0; level < list.level_count(); ++level) {
+    for (const NodePairList::Pair& pair : list.pairs_of(level)) {
+      const OctreeCell &a = list.nodes_a[pair.a], &b = list.nodes_b[pair.b];
+      names.insert({level, a.level, a.number.value(), b.level, b.number.value()});
+    }
+  }
+  return names;
+}
+
+/// All cells of an octree by number, read level by level.
+std::map<std::uint64_t, OctreeCell> cells_by_number(const Scene& scene, ObjectId object) {
+  const SceneInspector inspector(scene);
+  std::map<std::uint64_t, OctreeCell> cells;
+  for (std::uint32_t level = 0; level <= inspector.octree_depth(object); ++level) {
+    for (const OctreeCell& cell : inspector.cells(object, level)) cells.emplace(cell.number.value(), cell);
+  }
+  return cells;
+}
+
+bool collide(const OctreeCell& a, const OctreeCell& b) {
+  return a.sphere.empty() ? overlap(a.box, b.box) : overlap(a.sphere, b.sphere);
+}
+
+/// Figure 4 by recursion over the numbers: the children of h are mh + 1 … mh + m. `visit` gets all pairs.
+void descend(const std::map<std::uint64_t, OctreeCell>& a, const std::map<std::uint64_t, OctreeCell>& b,
+             std::uint64_t number_a, std::uint64_t number_b, std::uint64_t level, std::uint64_t arity,
+             std::set<NamedPair>& found) {
+  const OctreeCell &cell_a = a.at(number_a), &cell_b = b.at(number_b);
+  if (!collide(cell_a, cell_b)) return;
+  found.insert({level, cell_a.level, number_a, cell_b.level, number_b});
+  if (cell_a.is_leaf && cell_b.is_leaf) return;
+  const auto next = [arity](const auto& cells, const OctreeCell& cell, std::uint64_t number) {
+    std::vector<std::uint64_t> numbers;
+    if (cell.is_leaf) return std::vector{number};
+    for (std::uint64_t child = arity * number + 1; child <= arity * number + arity; ++child) {
+      if (cells.contains(child)) numbers.push_back(child);
+    }
+    EXPECT_GE(numbers.size(), 2u);
+    return numbers;
+  };
+  for (const std::uint64_t child_a : next(a, cell_a, number_a)) {
+    for (const std::uint64_t child_b : next(b, cell_b, number_b))
+      descend(a, b, child_a, child_b, level + 1, arity, found);
+  }
+}
+
+std::set<NamedPair> descent_of(const Scene& scene, ObjectId a, ObjectId b, std::uint64_t arity) {
+  std::set<NamedPair> found;
+  descend(cells_by_number(scene, a), cells_by_number(scene, b), 0, 0, 0, arity, found);
+  return found;
+}
+
+void check_order(const NodePairList& list) {
+  const auto in_order = [](const std::vector<OctreeCell>& cells) {
+    return std::is_sorted(cells.begin(), cells.end(), [](const OctreeCell& p, const OctreeCell& q) {
+      return std::tuple(p.level, *p.number) <= std::tuple(q.level, *q.number);
+    });
+  };
+  EXPECT_TRUE(in_order(list.nodes_a) && in_order(list.nodes_b));
+  EXPECT_EQ(list.level_begin.front(), 0u);
+  EXPECT_EQ(list.level_begin.back(), list.pairs.size());
+  for (std::uint32_t level = 0; level < list.level_count(); ++level) {
+    const auto pairs = list.pairs_of(level);
+    EXPECT_TRUE(std::is_sorted(pairs.begin(), pairs.end()));
+    EXPECT_FALSE(pairs.empty());
+  }
+}
+
+TEST(NodePairs, AreThoseOfARecursiveDescent) {
+  for (const BoundingVolume volume : {BoundingVolume::aabb, BoundingVolume::sphere}) {
+    for (const bool regular : {false, true}) {
+      for (const std::uint32_t arity : {2u, 4u, 8u}) {
+        for (const std::uint32_t leaf_size : {1u, 5u}) {
+          Scene scene({.bounding_volume = volume, .threads = 1});
+          ObjectOptions options;
+          options.octree = {.leaf_size = leaf_size,
+                            .arity = arity,
+                            .build = regular ? ObjectOctreeBuild::regular : ObjectOctreeBuild::balanced};
+          const ObjectId a = scene.add(random_soup(120, 1, 0.3, 1), options);
+          const ObjectId b = scene.add(random_soup(9, 1, 0.3, 2), options);
+          scene.detect();
+          const NodePairList list = SceneInspector(scene).node_pairs(a, b);
+          check_order(list);
+          EXPECT_GT(list.level_count(), 2u);
+          const std::set<NamedPair> names = names_of(list);
+          EXPECT_EQ(names.size(), list.pairs.size());
+          EXPECT_EQ(names, descent_of(scene, a, b, arity));
+        }
+      }
+    }
+  }
+}
+
+TEST(NodePairs, OfTheObjectsInTheOtherOrder) {
+  Scene scene;
+  const ObjectOptions options{.octree = {.leaf_size = 2}};
+  const ObjectId a = scene.add(random_soup(50, 1, 0.4, 3), options);
+  const ObjectId b = scene.add(random_soup(20, 1, 0.4, 4), options);
+  scene.detect();
+  const NodePairList list = SceneInspector(scene).node_pairs(b, a);
+  check_order(list);
+  std::set<NamedPair> turned;
+  for (const auto& [level, level_b, number_b, level_a, number_a] : names_of(list))
+    turned.insert({level, level_a, number_a, level_b, number_b});
+  EXPECT_EQ(turned, names_of(SceneInspector(scene).node_pairs(a, b)));
+}
+
+/// The vertices of the triangles of all leaf pairs are the paper's output.
+TEST(NodePairs, LeafPairsHoldTheCollidingVertices) {
+  SceneOptions scene_options;
+  scene_options.comparison.colliding_vertices = true;
+  Scene scene(scene_options);
+  const ObjectOptions options{.self_collision = true, .octree = {.leaf_size = 3}};
+  const std::vector<TriangleMesh> meshes{random_soup(60, 1, 0.2, 5), random_soup(40, 1, 0.2, 6)};
+  const std::vector<ObjectId> ids{scene.add(meshes[0], options), scene.add(meshes[1], options)};
+  const DetectResult& result = scene.detect();
+  ASSERT_EQ(result.colliding_vertex_groups.size(), 3u);
+  const SceneInspector inspector(scene);
+  for (const CollidingVertices& group : result.colliding_vertex_groups) {
+    const NodePairList list = inspector.node_pairs(group.a, group.b);
+    std::set<std::uint64_t> leaves_a, leaves_b;
+    for (const NodePairList::Pair& pair : list.pairs) {
+      if (!list.is_leaf_pair(pair)) continue;
+      leaves_a.insert(*list.nodes_a[pair.a].number);
+      leaves_b.insert(*list.nodes_b[pair.b].number);
+    }
+    const auto vertices_in = [&](ObjectId object, const std::set<std::uint64_t>& leaves) {
+      const TriangleMesh& mesh = meshes[object == ids[0] ? 0 : 1];
+      std::set<std::uint32_t> vertices;
+      for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+        if (leaves.contains(*inspector.leaf(object, t).number))
+          vertices.insert(mesh.triangles[t].begin(), mesh.triangles[t].end());
+      }
+      return std::vector<std::uint32_t>(vertices.begin(), vertices.end());
+    };
+    const auto part = [&](std::uint32_t first, std::uint32_t count) {
+      const auto all = result.colliding_vertices.subspan(first, count);
+      return std::vector<std::uint32_t>(all.begin(), all.end());
+    };
+    EXPECT_EQ(vertices_in(group.a, leaves_a), part(group.first_vertex, group.count_a));
+    EXPECT_EQ(vertices_in(group.b, leaves_b), part(group.first_vertex + group.count_a, group.count_b));
+  }
+}
+
+TEST(NodePairs, OfSingleLeavesAreTheRoots) {
+  Scene scene;
+  const ObjectId a = scene.add(make_box({1, 1, 1})), b = scene.add(make_box({1, 1, 1}));
+  scene.detect();
+  const NodePairList list = SceneInspector(scene).node_pairs(a, b);
+  ASSERT_EQ(list.pairs.size(), 1u);
+  EXPECT_EQ(names_of(list), (std::set<NamedPair>{{0, 0, 0, 0, 0}}));
+  EXPECT_TRUE(list.is_leaf_pair(list.pairs[0]));
+  EXPECT_EQ(list.nodes_a[0].triangle_count, 12u);
+}
+
+TEST(NodePairs, AreNoneWhenTheBroadPhaseOrAFilterExcludesThePair) {
+  Scene scene;
+  const ObjectId a = scene.add(make_icosphere(4)), b = scene.add(make_icosphere(4));
+  const SceneInspector inspector(scene);
+  EXPECT_THROW(inspector.node_pairs(a, b), Error);
+  scene.detect();
+  EXPECT_FALSE(inspector.node_pairs(a, b).pairs.empty());
+  EXPECT_EQ(inspector.node_pairs(a, a).level_count(), 0u) << "self-collision is off";
+  scene.set_self_collision(a, true);
+  scene.detect();
+  EXPECT_GT(inspector.node_pairs(a, a).pairs.size(), inspector.node_pairs(a, b).level_count());
+  scene.translate(b, {0, 5, 0});
+  EXPECT_THROW(inspector.node_pairs(a, b), Error);
+  scene.detect();
+  EXPECT_EQ(inspector.node_pairs(a, b).level_count(), 0u);
+  scene.translate(b, {0, -4, 0});
+  scene.set_pair_filter([](ObjectId, ObjectId) { return false; });
+  scene.detect();
+  EXPECT_EQ(inspector.node_pairs(a, b).level_count(), 0u);
+}
+
+/// A translated object has the descent of an object with these positions.
+TEST(NodePairs, OfTranslatedObjects) {
+  const TriangleMesh ball = make_icosphere(8);
+  const ObjectOptions options{.octree = {.leaf_size = 4}};
+  Scene moved, placed;
+  const ObjectId a = moved.add(ball, options), b = moved.add(ball, options);
+  moved.translate(b, {1.5, 0.25, 0.125});
+  TriangleMesh other = ball;
+  for (Vec3d& p : other.positions) p += Vec3d{1.5, 0.25, 0.125};
+  const ObjectId c = placed.add(ball, options), d = placed.add(ball, options);
+  placed.set_positions(d, other.positions);
+  moved.detect();
+  placed.detect();
+  const std::set<NamedPair> names = names_of(SceneInspector(moved).node_pairs(a, b));
+  const std::set<NamedPair> expected = names_of(SceneInspector(placed).node_pairs(c, d));
+  EXPECT_GT(expected.size(), 10u);
+  EXPECT_TRUE(std::includes(names.begin(), names.end(), expected.begin(), expected.end()));
+  EXPECT_LE(names.size(), expected.size() + 4) << "rounding adds few pairs";
+}
+
+TEST(NodePairs, NumbersThatDoNotFitAreLeftOut) {
+  // Each split takes off the triangle at the lower end, so the others are always in the second child.
+  TriangleMesh mesh;
+  double size = -1;
+  for (std::uint32_t i = 0; i < 60; ++i, size *= 0.1) {
+    mesh.positions.insert(mesh.positions.end(), {{size, 0, 0}, {size * 1.01, 0, 0}, {size, size * 0.01, 0}});
+    mesh.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+  }
+  Scene scene;
+  ObjectOptions options;
+  options.octree = {.max_level = 32, .leaf_size = 1, .build = ObjectOctreeBuild::regular};
+  const ObjectId object = scene.add(mesh, options);
+  scene.detect();
+  bool has_deep = false;
+  for (const OctreeCell& cell : SceneInspector(scene).cells(object)) {
+    EXPECT_EQ(cell.number.has_value(), cell.level <= 21) << cell.level;
+    has_deep = has_deep || cell.level > 21;
+  }
+  EXPECT_TRUE(has_deep);
+}
+
+TEST(SceneRegions, OfAnObjectAreTheLeavesThatItsBoxTouches) {
+  Scene scene({.broad_phase = BroadPhaseMethod::octree});
+  std::vector<ObjectId> ids;
+  for (std::uint64_t i = 0; i < 30; ++i) {
+    const Vec3d at{std::fmod(0.37 * static_cast<double>(i), 1.0),
+                   std::fmod(0.71 * static_cast<double>(i), 1.0),
+                   std::fmod(0.13 * static_cast<double>(i), 1.0)};
+    ids.push_back(scene.add(random_soup(3, 0.02, 0.01, i, at)));
+  }
+  scene.detect();
+  const SceneInspector inspector(scene);
+  std::map<std::uint64_t, std::uint32_t> counts;
+  for (const ObjectId id : ids) {
+    const Aabb box = inspector.bounds(id);
+    std::set<std::uint64_t> expected, found;
+    for (const SceneRegion& region : inspector.regions()) {
+      if (region.is_leaf && overlap(region.box, box)) expected.insert(region.number);
+    }
+    for (const SceneRegion& region : inspector.regions(id)) found.insert(region.number);
+    EXPECT_EQ(found, expected) << id.index;
+    for (const std::uint64_t number : found) ++counts[number];
+  }
+  std::size_t levels = 0;
+  for (const SceneRegion& region : inspector.regions()) {
+    levels = std::max<std::size_t>(levels, region.level);
+    EXPECT_EQ(counts[region.number], region.object_count) << "inner regions have no objects";
+  }
+  EXPECT_GT(levels, 1u);
+  scene.remove(ids[0]);
+  EXPECT_THROW(inspector.regions(ids[0]), Error);
+}
+
+}  // namespace
+}  // namespace supple
