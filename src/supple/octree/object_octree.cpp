@@ -39,10 +39,14 @@ std::vector<Vec3d> box_centers(const PositionsView& positions, std::span<const T
 OctreeTopology build_topology(const PositionsView& positions, std::span<const Triangle> triangles,
                               const ObjectOctreeOptions& options) {
   const std::vector<Vec3d> centers = box_centers(positions, triangles);
-  if (is_regular(options)) return build_regular_octree(centers, options);
-  return options.build == ObjectOctreeBuild::bottom_up
-             ? build_bottom_up_octree(positions, triangles, centers, options)
-             : build_balanced_octree(centers, triangles, options);
+  switch (options.build) {
+    case ObjectOctreeBuild::regular:
+      return build_regular_octree(centers, options);
+    case ObjectOctreeBuild::bottom_up:
+      return build_bottom_up_octree(positions, triangles, centers, options);
+    default:
+      return build_balanced_octree(centers, triangles, options);
+  }
 }
 
 void set_child(ChildSpheres& spheres, int child, const BoundingSphere& sphere) {
@@ -143,7 +147,7 @@ bool ObjectOctree::refit(const VertexBuffer& vertices, std::span<const std::uint
     if (all_finite && !spheres_.empty()) refit_spheres(begin, end, sphere_fitter(vertices, inert));
     if (all_finite) volumes_.refit(nodes_, boxes_.data(), surface, leaf_vertices(), begin, end);
   });
-  if (all_finite && !nodes_.empty()) volumes_.refit_object(nodes_, boxes_.data(), surface);
+  if (all_finite && !nodes_.empty()) volumes_.refit_object(nodes_, boxes_.data(), surface, leaf_vertices());
   sphere_ = BoundingSphere{};
   if (all_finite && !spheres_.empty()) sphere_ = sphere_fitter(vertices, inert).sphere_of_object(box());
   return all_finite;
@@ -152,10 +156,11 @@ bool ObjectOctree::refit(const VertexBuffer& vertices, std::span<const std::uint
 std::optional<std::size_t> ObjectOctree::refit_moved(const VertexBuffer& vertices,
                                                      std::span<const std::uint32_t> moved,
                                                      const Parallel& parallel) {
+  if (!std::all_of(moved.begin(), moved.end(), [&](std::uint32_t v) { return is_finite(vertices[v]); }))
+    return std::nullopt;
   if (first_node_.empty()) list_nodes_of_vertices();
   stale_nodes_.clear();
   for (const std::uint32_t vertex : moved) {
-    if (!is_finite(vertices[vertex])) return std::nullopt;
     for (std::uint32_t i = first_node_[vertex]; i < first_node_[vertex + 1]; ++i)
       mark_with_ancestors(nodes_of_vertices_[i]);
   }
@@ -185,7 +190,7 @@ std::optional<std::size_t> ObjectOctree::refit_moved(const VertexBuffer& vertice
   }
   if (!all_finite) return std::nullopt;
   if (!stale_nodes_.empty() && !spheres_.empty()) sphere_ = fitter.sphere_of_object(box());
-  if (!stale_nodes_.empty()) volumes_.refit_object(nodes_, boxes_.data(), surface);
+  if (!stale_nodes_.empty()) volumes_.refit_object(nodes_, boxes_.data(), surface, leaf_vertices());
   return triangles;
 }
 
