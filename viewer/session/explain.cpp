@@ -33,6 +33,14 @@ std::string gap_of(const PairExplanation& why) {
   return text;
 }
 
+/// The name of the volumes that are apart.
+std::string shape_of(const PairExplanation& why) {
+  constexpr std::size_t axes_of_box = 3;
+  if (!why.sphere_a.empty()) return "sphere";
+  if (why.slabs_a.empty()) return "box";
+  return why.slabs_a.size() == axes_of_box ? "oriented box" : std::to_string(2 * why.slabs_a.size()) + "-DOP";
+}
+
 std::string why_not_tested(const Pair& pair) {
   if (pair.is_one_object()) return pair.name_a + " is not tested against itself: its self-collision is off";
   std::string text = pair.name_a + " and " + pair.name_b + " are not tested against each other: ";
@@ -42,7 +50,7 @@ std::string why_not_tested(const Pair& pair) {
 
 std::string sentence_of(const Pair& pair) {
   const bool has_spheres = !pair.why.sphere_a.empty();
-  const std::string shape = has_spheres ? "sphere" : "box", shapes = has_spheres ? "spheres" : "boxes";
+  const std::string shape = shape_of(pair.why), shapes = shape + (shape.ends_with("box") ? "es" : "s");
   switch (pair.why.stage) {
     case PairStage::not_tested:
       return why_not_tested(pair);
@@ -93,6 +101,23 @@ void add_spheres(const PairExplanation& why, const Center& center, JsonText& jso
   json.end_array();
 }
 
+void add_edges(const PairExplanation& why, const Center& center, JsonText& json) {
+  json.key("edges");
+  if (why.slabs_a.empty() || why.slabs_b.empty()) return json.null();
+  json.begin_array();
+  for (const auto& slabs : {why.slabs_a, why.slabs_b}) {
+    json.begin_array();
+    for (const auto& [from, to] : edges_of(slabs)) {
+      json.begin_array();
+      json.value(from - center.at);
+      json.value(to - center.at);
+      json.end_array();
+    }
+    json.end_array();
+  }
+  json.end_array();
+}
+
 }  // namespace
 
 void answer_explain(const SceneView& show, const Source& source, const Center& center, ObjectTriangle a,
@@ -105,6 +130,7 @@ void answer_explain(const SceneView& show, const Source& source, const Center& c
   json.member("text", sentence_of(pair));
   add_boxes(pair.why, center, json);
   add_spheres(pair.why, center, json);
+  add_edges(pair.why, center, json);
   json.key("levels");
   json.begin_array();
   json.value(pair.why.level_a);

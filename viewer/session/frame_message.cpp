@@ -180,7 +180,7 @@ void FramePacker::add_octree(const FrameView& frame, std::uint32_t object) {
   const ObjectId id = frame.source.id(object);
   const SceneInspector inspector(frame.source.scene());
   octree_levels_.push_back(inspector.octree_depth(id));
-  add_cells(frame, "octree", {Tag::octree_boxes, Tag::octree_spheres}, object,
+  add_cells(frame, "octree", {Tag::octree_boxes, Tag::octree_spheres, Tag::octree_edges}, object,
             inspector.cells(id, frame.layers.octree_level));
 }
 
@@ -220,19 +220,21 @@ void FramePacker::add_colliding_nodes(const FrameView& frame, const CollidingNod
     const auto same = [&](const auto& p, const auto& q) { return key(p) == key(q); };
     list.erase(std::unique(list.begin(), list.end(), same), list.end());
     if (!list.empty())
-      add_cells(frame, "colliding_nodes", {Tag::colliding_boxes, Tag::colliding_spheres}, object,
+      add_cells(frame, "colliding_nodes",
+                {Tag::colliding_boxes, Tag::colliding_spheres, Tag::colliding_edges}, object,
                 std::move(list));
   }
 }
 
-/// Adds spheres when the cells have them, else boxes; the tags are those of boxes and spheres. Cells without
-/// a finite triangle have neither.
-void FramePacker::add_cells(const FrameView& frame, const char* layer, std::array<Tag, 2> tags,
-                            std::uint32_t object, std::vector<OctreeCell> cells) {
+/// Adds the spheres, oriented boxes, k-DOPs or boxes of the cells. Cells without a finite triangle have none.
+void FramePacker::add_cells(const FrameView& frame, const char* layer, CellTags tags, std::uint32_t object,
+                            std::vector<OctreeCell> cells) {
   std::erase_if(cells, [](const OctreeCell& cell) { return cell.box.empty() && cell.sphere.empty(); });
+  if (!cells.empty() && !cells.front().slabs.empty())
+    return add_edges(frame, layer, tags.edges, object, cells);
   const bool has_spheres = !cells.empty() && !cells.front().sphere.empty();
   const std::size_t count = limited(layer, cells.size());
-  const auto rows = message_->add<Row>(tags[has_spheres ? 1 : 0], object, count);
+  const auto rows = message_->add<Row>(has_spheres ? tags.spheres : tags.boxes, object, count);
   for (std::size_t i = 0; i < count; ++i) {
     const OctreeCell& cell = cells[i];
     const float level = static_cast<float>(cell.level);
@@ -241,6 +243,20 @@ void FramePacker::add_cells(const FrameView& frame, const char* layer, std::arra
                   ? row_of(frame.center(cell.sphere.center), cell.sphere.radius, {level, triangles, 0}, 0)
                   : row_of(frame.center(cell.box.min), level, frame.center(cell.box.max), triangles);
   }
+}
+
+/// Adds the edges of oriented boxes or k-DOPs.
+void FramePacker::add_edges(const FrameView& frame, const char* layer, Tag tag, std::uint32_t object,
+                            std::span<const OctreeCell> cells) {
+  edges_.clear();
+  for (const OctreeCell& cell : cells) {
+    const float level = static_cast<float>(cell.level);
+    const float triangles = cell.is_leaf ? static_cast<float>(cell.triangle_count) : -1;
+    for (const auto& [from, to] : edges_of(cell.slabs))
+      edges_.push_back(row_of(frame.center(from), level, frame.center(to), triangles));
+  }
+  const std::size_t count = limited(layer, edges_.size());
+  std::copy_n(edges_.begin(), count, message_->add<Row>(tag, object, count).begin());
 }
 
 void FramePacker::add_scene_regions(const FrameView& frame) {

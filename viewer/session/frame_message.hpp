@@ -55,8 +55,14 @@ class FramePacker {
   void add_candidates(const FrameView& frame);
   void add_octree(const FrameView& frame, std::uint32_t object);
   void add_colliding_nodes(const FrameView& frame, const CollidingNodes& wanted);
-  void add_cells(const FrameView& frame, const char* layer, std::array<Tag, 2> tags, std::uint32_t object,
+  /// The tags of a layer of cells, by the shape of the cells.
+  struct CellTags {
+    Tag boxes, spheres, edges;
+  };
+  void add_cells(const FrameView& frame, const char* layer, CellTags tags, std::uint32_t object,
                  std::vector<OctreeCell> cells);
+  void add_edges(const FrameView& frame, const char* layer, Tag tag, std::uint32_t object,
+                 std::span<const OctreeCell> cells);
   void add_scene_regions(const FrameView& frame);
   void add_colliding_vertices(const FrameView& frame);
   void add_text(const FrameView& frame);
@@ -69,6 +75,7 @@ class FramePacker {
   ObjectPairs now_, changed_;
   std::vector<Omission> omissions_;
   std::vector<std::uint32_t> octree_levels_;
+  std::vector<std::array<float, 8>> edges_;  // of the cells of one object
   PaperVertices paper_vertices_;
   JsonText json_;
 };

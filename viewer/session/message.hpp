@@ -37,6 +37,8 @@ enum class Tag : std::uint32_t {
   volume_end = 49,
   colliding_boxes = 50,
   colliding_spheres = 51,
+  octree_edges = 52,
+  colliding_edges = 53,
   series = 64,
   series_contact_begin = 65,
   series_contact_end = 66,

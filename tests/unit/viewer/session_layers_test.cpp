@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "../../support/random.hpp"
+#include "../../support/scenes.hpp"
 #include "../../support/viewer_page.hpp"
 #include "supple/inspection.hpp"
 
@@ -38,6 +39,31 @@ Vec3d wide(Vec3f p) {
 
 Vec3f narrow(Vec3f p, Vec3d center) {
   return as_floats(std::array{wide(p)}, center)[0];
+}
+
+/// The shapes of cells, and the tags of the two layers of cells for each shape.
+enum CellTag : std::uint32_t { box_tag, sphere_tag, edge_tag };
+constexpr std::uint32_t octree_tags[] = {40, 41, 52}, colliding_tags[] = {50, 51, 53};
+
+CellTag tag_of(BoundingVolume volume) {
+  if (volume == BoundingVolume::aabb) return box_tag;
+  return volume == BoundingVolume::sphere ? sphere_tag : edge_tag;
+}
+
+/// Adds what the page draws of a cell: its box, its sphere, or the edges of its oriented box or k-DOP.
+void add_rows(const OctreeCell& cell, Vec3d center, std::vector<Row>& rows) {
+  const float at = static_cast<float>(cell.level);
+  const float triangles = cell.is_leaf ? static_cast<float>(cell.triangle_count) : -1;
+  if (!cell.sphere.empty()) {
+    rows.push_back(row({narrow(cell.sphere.center, center)}, cell.sphere.radius, {at, triangles, 0}, 0));
+  } else if (cell.slabs.empty()) {
+    rows.push_back(row({narrow(cell.box.min, center)}, at, narrow(cell.box.max, center), triangles));
+  } else {
+    for (const auto& edge : edges_of(cell.slabs)) {
+      const std::vector<Vec3f> ends = as_floats(edge, center);
+      rows.push_back(row({ends[0]}, at, ends[1], triangles));
+    }
+  }
 }
 
 TEST(ViewerLayers, AreLeftOutUntilAskedForAndAgainAfterwards) {
@@ -75,7 +101,7 @@ TEST(ViewerLayers, HaveNoRegionsUnlessTheOctreeRan) {
 }
 
 TEST(ViewerLayers, AreWhatTheLibrarySays) {
-  for (const BoundingVolume volume : {BoundingVolume::aabb, BoundingVolume::sphere}) {
+  for (const BoundingVolume volume : all_bounding_volumes) {
     const SceneView show = crowd(volume);
     Simulation simulation = simulation_of(show);
     TestPage page(show);
@@ -107,17 +133,9 @@ TEST(ViewerLayers, AreWhatTheLibrarySays) {
       for (const ObjectId id : scene.objects()) {
         std::vector<Row> cells;
         const auto wanted = level < 0 ? std::nullopt : std::optional<std::uint32_t>(level);
-        for (const OctreeCell& cell : SceneInspector(scene).cells(id, wanted)) {
-          const float triangles = cell.is_leaf ? static_cast<float>(cell.triangle_count) : -1;
-          const float at = static_cast<float>(cell.level);
-          if (volume == BoundingVolume::sphere)
-            cells.push_back(
-                row({narrow(cell.sphere.center, center)}, cell.sphere.radius, {at, triangles, 0}, 0));
-          else
-            cells.push_back(row({narrow(cell.box.min, center)}, at, narrow(cell.box.max, center), triangles));
-        }
+        for (const OctreeCell& cell : SceneInspector(scene).cells(id, wanted)) add_rows(cell, center, cells);
         EXPECT_GT(cells.size(), 0u);
-        EXPECT_EQ(frame.values<Row>(volume == BoundingVolume::sphere ? 41 : 40, id.index), cells);
+        EXPECT_EQ(frame.values<Row>(octree_tags[tag_of(volume)], id.index), cells) << name_of(volume);
         EXPECT_EQ(frame.json["octree_levels"][id.index], SceneInspector(scene).octree_depth(id));
       }
     }
@@ -143,21 +161,14 @@ std::vector<std::vector<Row>> colliding_rows(const Scene& scene, std::span<const
   }
   std::vector<std::vector<Row>> rows(nodes.size());
   for (std::size_t i = 0; i < nodes.size(); ++i) {
-    for (const auto& [name, cell] : nodes[i]) {
-      const float at = static_cast<float>(cell.level);
-      const float triangles = cell.is_leaf ? static_cast<float>(cell.triangle_count) : -1;
-      rows[i].push_back(
-          cell.sphere.empty()
-              ? row({narrow(cell.box.min, center)}, at, narrow(cell.box.max, center), triangles)
-              : row({narrow(cell.sphere.center, center)}, cell.sphere.radius, {at, triangles, 0}, 0));
-    }
+    for (const auto& [name, cell] : nodes[i]) add_rows(cell, center, rows[i]);
   }
   return rows;
 }
 
 TEST(ViewerLayers, CollidingNodesAreThoseOfTheNarrowPhase) {
-  for (const BoundingVolume volume : {BoundingVolume::aabb, BoundingVolume::sphere}) {
-    const std::uint32_t tag = volume == BoundingVolume::sphere ? 51 : 50;
+  for (const BoundingVolume volume : all_bounding_volumes) {
+    const std::uint32_t tag = colliding_tags[tag_of(volume)];
     const SceneView show = crowd(volume);
     Simulation simulation = simulation_of(show);
     TestPage page(show);
@@ -178,7 +189,7 @@ TEST(ViewerLayers, CollidingNodesAreThoseOfTheNarrowPhase) {
           EXPECT_EQ(frame.values<Row>(tag, object), expected[object]);
           most = std::max(most, expected[object].size());
         }
-        EXPECT_FALSE(frame.has(101 - tag, 0));
+        for (const std::uint32_t other : colliding_tags) EXPECT_TRUE(other == tag || !frame.has(other, 0));
       }
     }
     EXPECT_GT(most, 8u);
@@ -280,7 +291,7 @@ TEST(ViewerLayers, WhatIsTooLargeIsCutAndSaid) {
 }
 
 TEST(ViewerLayers, ExplainsWhatTheLibraryExplains) {
-  for (const BoundingVolume volume : {BoundingVolume::aabb, BoundingVolume::sphere}) {
+  for (const BoundingVolume volume : all_bounding_volumes) {
     const SceneView show = crowd(volume);
     Simulation simulation = simulation_of(show);
     TestPage page(show);
@@ -304,6 +315,15 @@ TEST(ViewerLayers, ExplainsWhatTheLibraryExplains) {
       ASSERT_EQ(answer["spheres"].is_null(), why.sphere_a.empty());
       if (!why.sphere_a.empty()) {
         EXPECT_EQ(answer["spheres"][1][3], static_cast<double>(why.sphere_b.radius));
+      }
+      ASSERT_EQ(answer["edges"].is_null(), why.slabs_a.empty());
+      if (!why.slabs_a.empty()) {
+        const auto edges = edges_of(why.slabs_b);
+        ASSERT_EQ(answer["edges"][1].size(), edges.size());
+        EXPECT_EQ(answer["edges"][1][0][1][2], edges[0][1].z - center.z);
+        const std::string text = answer["text"];
+        EXPECT_NE(text.find(volume == BoundingVolume::obb ? "oriented box" : "-DOP"), std::string::npos)
+            << text;
       }
       stages.insert(answer["stage"]);
       texts.insert(answer["text"]);

@@ -54,22 +54,29 @@ translate = [0.24, 0.05, 0.05]
 rotate_xyz_degrees = [0, 200, 8]
 `;
 
-/** The paper's Figure 5: a collision in the narrow phase. Only the boxes of the leaves that collide. */
-async function narrowPhase(stage) {
-  const program = await stage.program(stage.file("rabbits.toml", TWO_RABBITS), "--object-octree", "regular", "--leaf-size", "12");
+/** A collision in the narrow phase. Only the volumes of the leaves that collide. */
+async function narrowPhaseWith(stage, volume, shapes, file) {
+  const program = await stage.program(
+    stage.file("rabbits.toml", TWO_RABBITS), "--object-octree", "regular", "--leaf-size", "12", "--bounding-volume", volume,
+  );
   const page = await stage.page({ colorScheme: "light", viewport: { width: 1100, height: 720 } });
   await page.goto(program.address);
   await stopWhen(page, () => supple.model.frame?.contacts.length > 0);
   await check(page, "Colliding nodes");
   for (const label of ["Contact points", "Intersecting triangles", "Intersection curves"]) await check(page, label, false);
-  await until(page, () => supple.counts().nodeBoxes > 0);
+  await until(page, (shapes) => supple.counts()[shapes] > 0, shapes);
   for (const name of ["one", "other"]) {
     await page.getByRole("button", { name: new RegExp(`^${name}`) }).click();
     await page.getByLabel(`Opacity of ${name}`).fill("0.35");
   }
   await page.evaluate(() => supple.model.clearSelection());
-  await saveView(page, "narrow_phase_boxes.png");
+  await saveView(page, file);
 }
+
+/** The paper's Figure 5. */
+const narrowPhase = (stage) => narrowPhaseWith(stage, "aabb", "nodeBoxes", "narrow_phase_boxes.png");
+const narrowPhaseOriented = (stage) => narrowPhaseWith(stage, "obb", "nodeEdges", "narrow_phase_oriented_boxes.png");
+const narrowPhaseKdops = (stage) => narrowPhaseWith(stage, "kdop26", "nodeEdges", "narrow_phase_kdops.png");
 
 async function wholePage(stage) {
   const program = await stage.program(join(scenes, "nine.toml"));
@@ -91,7 +98,7 @@ if (!program || !existsSync(program)) {
 }
 const browser = await chromium.launch({ executablePath: chromiumPath(), headless: true, args: CHROMIUM_FLAGS });
 try {
-  for (const make of [broadPhase, narrowPhase, wholePage]) {
+  for (const make of [broadPhase, narrowPhase, narrowPhaseOriented, narrowPhaseKdops, wholePage]) {
     const stage = new Stage(resolve(program), browser);
     try {
       await make(stage);

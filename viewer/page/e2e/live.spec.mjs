@@ -117,6 +117,23 @@ async function narrowPhaseByLevel(stage) {
   await until(page, () => supple.counts().nodeBoxes === 0);
 }
 
+/** Octree cells and colliding nodes have the shape of the bounding volume. */
+async function otherVolumes(stage) {
+  const file = stage.file("balls.toml", TWO_BALLS.replaceAll("0.6", "0.45"));
+  const edgesOfBox = 12;
+  for (const volume of ["obb", "kdop26"]) {
+    const { page } = await stage.view(file, "--bounding-volume", volume);
+    await page.getByRole("checkbox", { name: "Object octrees" }).check();
+    await page.getByRole("checkbox", { name: "Colliding nodes" }).check();
+    await until(page, () => supple.counts().edges > 0 && supple.counts().nodeEdges > 0);
+    const drawn = await counts(page);
+    assert.equal(drawn.boxes + drawn.balls + drawn.nodeBoxes + drawn.nodeBalls, 0);
+    await page.getByRole("combobox", { name: "Octree level" }).selectOption("0");
+    if (volume === "obb") await until(page, (edges) => supple.counts().edges === edges, 2 * edgesOfBox);
+    else await until(page, (edges) => supple.counts().edges > edges, 2 * edgesOfBox);
+  }
+}
+
 /** The collisions of the narrow phase are counted while their layer is on. */
 async function eventsAreCounted(stage) {
   const { page } = await stage.view(nine);
@@ -351,6 +368,7 @@ export const tests = [
   ["layers show what the session counts", countsAreTheSessions],
   ["octrees by level, of one object", octreeLevels],
   ["the narrow phase by level", narrowPhaseByLevel],
+  ["oriented boxes and k-DOPs", otherVolumes],
   ["events of both phases are counted", eventsAreCounted],
   ["objects are hidden and coloured", hidesAndColoursObjects],
   ["a triangle is picked and read", picksATriangle],

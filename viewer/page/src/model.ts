@@ -50,6 +50,8 @@ export interface Explanation {
   text: string;
   boxes: [number[][], number[][]] | null;
   spheres: number[][] | null;
+  /** For each side the edges of its oriented box or k-DOP. */
+  edges: number[][][][] | null;
   levels: number[] | null;
   axis: number[] | null;
   distance: number | null;

@@ -81,6 +81,8 @@ export const frameMessage = (): ArrayBuffer =>
     words(49, 2, [0, 1]),
     floats(50, 8, [-1, -1, -1, 0, 1, 1, 1, 2], 1),
     floats(51, 8, [0, 0, 0, 1, 0, 2, 0, 0], 1),
+    floats(52, 8, [-1, -1, -1, 0, 1, 1, 1, 2], 1),
+    floats(53, 8, [-1, -1, -1, 0, 1, 1, 1, 2], 1),
   );
 
 export const seriesMessage = (): ArrayBuffer =>

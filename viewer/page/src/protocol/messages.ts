@@ -88,6 +88,8 @@ export interface FrameMessage {
   collidingVertices: Map<number, Uint32Array>;
   collidingBoxes: Map<number, Float32Array>;
   collidingSpheres: Map<number, Float32Array>;
+  octreeEdges: Map<number, Float32Array>;
+  collidingEdges: Map<number, Float32Array>;
   statistics: Float64Array;
   events: EventData;
 }
@@ -144,6 +146,8 @@ const FORMS: Record<number, Form> = {
   49: { name: "volume_end", array: Uint32Array, width: 2, kinds: ["frame"] },
   50: { name: "colliding_boxes", array: Float32Array, width: 8, kinds: ["frame"], perObject: true },
   51: { name: "colliding_spheres", array: Float32Array, width: 8, kinds: ["frame"], perObject: true },
+  52: { name: "octree_edges", array: Float32Array, width: 8, kinds: ["frame"], perObject: true },
+  53: { name: "colliding_edges", array: Float32Array, width: 8, kinds: ["frame"], perObject: true },
   64: { name: "series", array: Float64Array, width: 0, kinds: ["series"] },
   65: { name: "series_contact_begin", array: Uint32Array, width: 3, kinds: ["series"] },
   66: { name: "series_contact_end", array: Uint32Array, width: 3, kinds: ["series"] },
@@ -368,6 +372,8 @@ function readFrame(sections: Sections, scene: SceneCounts): FrameMessage {
     collidingVertices: sections.each("colliding_vertices"),
     collidingBoxes: sections.each("colliding_boxes"),
     collidingSpheres: sections.each("colliding_spheres"),
+    octreeEdges: sections.each("octree_edges"),
+    collidingEdges: sections.each("colliding_edges"),
     statistics: sections.one("statistics", new Float64Array(0)),
     events: sections.events(""),
   };
@@ -378,7 +384,8 @@ function readFrame(sections: Sections, scene: SceneCounts): FrameMessage {
     const limit = scene.vertices[object] ?? 0;
     if (vertices.some((vertex) => vertex >= limit)) fail("its section colliding_vertices names a vertex that does not exist");
   }
-  for (const shapes of [frame.octreeBoxes, frame.octreeSpheres, frame.collidingBoxes, frame.collidingSpheres])
+  const { octreeBoxes, octreeSpheres, octreeEdges, collidingBoxes, collidingSpheres, collidingEdges } = frame;
+  for (const shapes of [octreeBoxes, octreeSpheres, octreeEdges, collidingBoxes, collidingSpheres, collidingEdges])
     for (const object of shapes.keys()) if (object >= scene.vertices.length) fail("it has an octree of an object that does not exist");
   checkPairs("object_pairs", frame.objectPairs, 2, 0, scene.vertices.length);
   checkEvents(frame.events, 2, scene.vertices.length);

@@ -65,6 +65,8 @@ export class Layers {
   readonly balls = new Cells("balls", { colour: "#ffffff", opacity: 0.8 });
   readonly nodeBoxes = new Cells("boxes", { colour: "#ffffff", opacity: 1, order: 2 });
   readonly nodeBalls = new Cells("balls", { colour: "#ffffff", opacity: 1, order: 2 });
+  readonly edges = new Cells("edges", { colour: "#ffffff", opacity: 0.9 });
+  readonly nodeEdges = new Cells("edges", { colour: "#ffffff", opacity: 1, order: 2 });
   readonly pairs = new Lines({ colour: OKABE_ITO.green, size: 3, depthTest: false, order: 4 });
   readonly candidateFaces = new Faces({ colour: OKABE_ITO.yellow, opacity: 0.85, order: 1 });
   readonly candidates = new Lines({ colour: OKABE_ITO.blue, size: 1.5, depthTest: false, order: 3 });
@@ -82,23 +84,23 @@ export class Layers {
 
   private all() {
     return [
-      this.regions, this.boxes, this.balls, this.nodeBoxes, this.nodeBalls, this.pairs, this.candidateFaces, this.candidates, this.triangles,
-      this.points, this.normals, this.curves, this.vertices,
+      this.regions, this.boxes, this.balls, this.edges, this.nodeBoxes, this.nodeBalls, this.nodeEdges, this.pairs, this.candidateFaces,
+      this.candidates, this.triangles, this.points, this.normals, this.curves, this.vertices,
     ];
   }
 
   /** The number of elements that each layer draws. */
   counts(): Record<string, number> {
-    const { regions, boxes, balls, nodeBoxes, nodeBalls, pairs, candidates, candidateFaces, triangles, points, normals, curves, vertices } = this;
+    const { regions, boxes, balls, edges, nodeBoxes, nodeBalls, nodeEdges, pairs, candidates, candidateFaces, triangles, points, normals, curves, vertices } = this;
     return Object.fromEntries(
-      Object.entries({ regions, boxes, balls, nodeBoxes, nodeBalls, pairs, candidates, candidateFaces, triangles, points, normals, curves, vertices })
+      Object.entries({ regions, boxes, balls, edges, nodeBoxes, nodeBalls, nodeEdges, pairs, candidates, candidateFaces, triangles, points, normals, curves, vertices })
         .map(([name, layer]) => [name, layer.count]),
     );
   }
 
   update(): void {
     const { layers } = this.model;
-    for (const layer of [this.points, this.vertices, this.curves, this.normals, this.nodeBoxes, this.nodeBalls]) layer.depthTest = !this.model.throughSurfaces;
+    for (const layer of [this.points, this.vertices, this.curves, this.normals, this.nodeBoxes, this.nodeBalls, this.nodeEdges]) layer.depthTest = !this.model.throughSurfaces;
     this.points.size = this.model.pointSize + 2;
     this.vertices.size = this.model.pointSize;
     this.fillCells();
@@ -122,8 +124,10 @@ export class Layers {
     this.regions.fill(layers.regions && frame ? [frame.sceneRegions] : []);
     this.boxes.fill(ofShown(layers.octree, frame?.octreeBoxes));
     this.balls.fill(ofShown(layers.octree, frame?.octreeSpheres));
+    this.edges.fill(ofShown(layers.octree, frame?.octreeEdges));
     this.nodeBoxes.fill(ofShown(layers.nodes, frame?.collidingBoxes));
     this.nodeBalls.fill(ofShown(layers.nodes, frame?.collidingSpheres));
+    this.nodeEdges.fill(ofShown(layers.nodes, frame?.collidingEdges));
   }
 
   private fillPairs(on: boolean): void {

@@ -227,22 +227,23 @@ const LEVEL_SHADER = `
 
 /**
  * Octree cells in the format of the protocol, eight numbers each, coloured by level: boxes (lower corner,
- * level, upper corner, contents) or spheres (centre, radius, level, contents).
+ * level, upper corner, contents), spheres (centre, radius, level, contents), or single edges (one end, level,
+ * the other end, contents).
  */
 export class Cells extends Primitive<THREE.LineSegments<THREE.InstancedBufferGeometry, THREE.ShaderMaterial>> {
   readonly shape;
   private readonly stream: Stream;
 
-  constructor(kind: "boxes" | "balls", style: Style) {
+  constructor(kind: "boxes" | "balls" | "edges", style: Style) {
     super();
     const geometry = new THREE.InstancedBufferGeometry();
-    const edges = kind === "boxes" ? boxEdges() : ringEdges();
+    const edges = { boxes: boxEdges, balls: ringEdges, edges: () => [0, 0, 0, 1, 1, 1] }[kind]();
     geometry.setAttribute("position", new THREE.Float32BufferAttribute(edges, 3));
     this.stream = new Stream(geometry, 8, { first: [4, 0], second: [4, 4] }, true);
     const place =
-      kind === "boxes"
-        ? "vec3 at = mix(first.xyz, second.xyz, position); paint(first.w, second.w);"
-        : "vec3 at = first.xyz + first.w * position; paint(second.x, second.y);";
+      kind === "balls"
+        ? "vec3 at = first.xyz + first.w * position; paint(second.x, second.y);"
+        : "vec3 at = mix(first.xyz, second.xyz, position); paint(first.w, second.w);";
     const material = materialOf(
       style,
       `in vec4 first; in vec4 second; ${LEVEL_SHADER}

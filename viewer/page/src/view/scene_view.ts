@@ -229,7 +229,9 @@ export class SceneView {
     this.outlines.forEach((lines, side) => {
       const box = explanation?.boxes?.[side];
       const ball = explanation?.spheres?.[side];
-      if (box) lines.fill(12, (into) => writeBox(into, box));
+      const edges = explanation?.edges?.[side];
+      if (edges) lines.fill(edges.length, (into) => writeEdges(into, edges));
+      else if (box) lines.fill(12, (into) => writeBox(into, box));
       else if (ball) lines.fill(144, (into) => writeBall(into, ball));
       else lines.fill(0, () => 0);
     });
@@ -390,6 +392,11 @@ export class SceneView {
   statistics(): { calls: number; triangles: number } {
     return { calls: this.renderer.info.render.calls, triangles: this.renderer.info.render.triangles };
   }
+}
+
+function writeEdges(into: Float32Array, edges: number[][][]): number {
+  into.set(edges.flat(2));
+  return edges.length;
 }
 
 function writeBox(into: Float32Array, box: number[][]): number {
