@@ -13,7 +13,7 @@ namespace supple {
 /// How the octree of an object is built. The contacts are the same for all methods.
 enum class ObjectOctreeBuild : std::uint8_t {
   /// Top-down. Distributes the triangles among the children so that leaves are about equally full. This takes
-  /// the fewest leaves. Nodes have eight children; with another arity, the octree is regular.
+  /// the fewest leaves. The arity is eight; `Scene::add` throws `Error` for another one.
   balanced,
   /// Top-down, as in the paper: the children of a node are the octants of its cell.
   regular,
@@ -50,9 +50,9 @@ struct ObjectOctreeOptions {
   /// leaves that meet, so small leaves are slower, and they take more memory. The limit is half of this value
   /// when `SceneOptions::contacts` has continuous contacts, unless the octree is regular.
   std::uint32_t leaf_size = 64;
-  /// Children of a node: 8, 4 or 2. In a regular octree, a level halves a cell along three axes, two or one,
-  /// which take turns. Nodes have room for eight children in any case, so fewer children take more memory and
-  /// time.
+  /// Children of a node: 8, 4 or 2; balanced octrees have 8. In a regular octree, a level halves a cell along
+  /// three axes, two or one, which take turns. Nodes have room for eight children in any case, so fewer
+  /// children take more memory and time.
   std::uint32_t arity = 8;
   ObjectOctreeBuild build = ObjectOctreeBuild::balanced;
   /// Rebuild the octree when the object has deformed so much that the accumulated extra query cost exceeds

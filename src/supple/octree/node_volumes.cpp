@@ -27,6 +27,34 @@ Slab moved_slab(Vec3f direction, double low, double high, Vec3d translation) {
   return {direction, round_down(low + shift - growth), round_up(high + shift + growth)};
 }
 
+/// Extends the extents by the vertices of a child, whose triangles are `part`.
+void extend_by_child(const AxisFrame& frame, std::span<const OctreeNode> nodes, std::uint32_t n, int child,
+                     const SurfacePart& part, const LeafVertexArrays& leaves, AxisExtents& extents) {
+  const TriangleArrays arrays = arrays_of(part.triangles, part.vertices, part.inert);
+  if (!part.inert.empty()) {
+    for (std::size_t t = 0; t < part.triangles.size(); ++t) {
+      if (part.inert[t] == 0) extend_extents(frame, arrays, part.triangles[t], extents);
+    }
+    return;
+  }
+  // The vertices of consecutive children of consecutive nodes are consecutive.
+  const auto extend_by = [&](std::size_t begin_child, std::size_t end_child) {
+    const std::uint32_t first = leaves.first[begin_child], last = leaves.first[end_child];
+    extend_extents(frame, arrays, {leaves.vertices + first, last - first}, extents);
+  };
+  if (!nodes[n].is_inner(child)) {
+    const std::size_t leaf = std::size_t{n} * node_width + static_cast<std::size_t>(child);
+    return extend_by(leaf, leaf + 1);
+  }
+  // Nodes are in order of levels, so the nodes below in one level are consecutive.
+  const auto count = static_cast<std::uint32_t>(nodes.size());
+  for (std::uint32_t begin = nodes[n].child_node(child), end = begin + 1; begin < end;) {
+    extend_by(std::size_t{begin} * node_width, std::size_t{end} * node_width);
+    begin = nodes[begin].first_child;
+    end = end < count ? nodes[end].first_child : count;
+  }
+}
+
 }  // namespace
 
 NodeVolumes::NodeVolumes(BoundingVolume kind, std::size_t nodes) : directions_(slab_directions_of(kind)) {
@@ -62,20 +90,29 @@ void NodeVolumes::refit(std::span<const OctreeNode> nodes, const ChildBoxes* box
       const SurfaceMoments moments =
           node.is_inner(child) ? moments_[node.child_node(child)] : moments_of(part);
       moments_[n] += moments;
-      set_child(oriented_boxes_[n], child, fit_oriented_box(moments, child_box(boxes[n], child), part));
+      const OrientedBoxFit fit(moments, child_box(boxes[n], child));
+      AxisExtents extents;
+      if (fit.needs_extents()) extend_by_child(fit.frame(), nodes, n, child, part, leaves, extents);
+      set_child(oriented_boxes_[n], child, fit.box(extents));
     }
   }
 }
 
 void NodeVolumes::refit_object(std::span<const OctreeNode> nodes, const ChildBoxes* boxes,
-                               const SurfacePart& surface) {
+                               const SurfacePart& surface, const LeafVertexArrays& leaves) {
   if (!slabs_.empty()) {
     const std::size_t stride = directions_.size() * floats_per_slab;
     unite_slabs(slabs_.data(), nodes[0].child_count, directions_.size(),
                 slabs_.data() + nodes.size() * stride, 0);
   }
   if (oriented_boxes_.empty()) return;
-  set_child(oriented_boxes_.back(), 0, fit_oriented_box(moments_[0], enclosing_box(boxes[0]), surface));
+  const OrientedBoxFit fit(moments_[0], enclosing_box(boxes[0]));
+  AxisExtents extents;
+  for (int child = 0; fit.needs_extents() && child < nodes[0].child_count; ++child) {
+    const SurfacePart part = surface.part(nodes[0].first_triangle[child], nodes[0].size(child));
+    extend_by_child(fit.frame(), nodes, 0, child, part, leaves, extents);
+  }
+  set_child(oriented_boxes_.back(), 0, fit.box(extents));
 }
 
 OrientedBox child_oriented_box(const ChildOrientedBoxes& boxes, int child) {

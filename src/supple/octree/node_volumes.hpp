@@ -48,11 +48,12 @@ class NodeVolumes {
   NodeVolumes(BoundingVolume kind, std::size_t nodes);
 
   /// Updates the volumes of the children of the nodes [begin, end) of one level, after their boxes and the
-  /// nodes below. Slabs take O(vertices) for the whole octree, oriented boxes O(triangles · levels).
+  /// nodes below. Slabs take O(vertices) for the whole octree, oriented boxes O(vertices · levels).
   void refit(std::span<const OctreeNode> nodes, const ChildBoxes* boxes, const SurfacePart& surface,
              const LeafVertexArrays& leaves, std::uint32_t begin, std::uint32_t end);
   /// Updates the volume of the whole object, after all nodes.
-  void refit_object(std::span<const OctreeNode> nodes, const ChildBoxes* boxes, const SurfacePart& surface);
+  void refit_object(std::span<const OctreeNode> nodes, const ChildBoxes* boxes, const SurfacePart& surface,
+                    const LeafVertexArrays& leaves);
 
   bool empty() const { return oriented_boxes_.empty() && slabs_.empty(); }
   NodeVolumesView view() const;

@@ -29,12 +29,6 @@ constexpr std::uint32_t deepest_level(const ObjectOctreeOptions& options) {
   return options.max_level * 3 / static_cast<std::uint32_t>(bits_per_level(options.arity));
 }
 
-/// Balanced octrees have eight children per node; with another arity, they are regular instead.
-constexpr bool is_regular(const ObjectOctreeOptions& options) {
-  return options.build == ObjectOctreeBuild::regular ||
-         (options.build == ObjectOctreeBuild::balanced && options.arity != 8);
-}
-
 /// Triangles in the octree's order that become a node or a leaf.
 struct TriangleRange {
   std::uint32_t begin, end;

@@ -83,41 +83,6 @@ OrientedBox aligned_box(const Aabb& box) {
   return result;
 }
 
-/// The box of the triangles along the given axes. All distances are from `near`, a point near the triangles:
-/// a difference of doubles has a relative error only, so the sums have errors below 2^-48 of the half
-/// lengths. The growth by 2^-20 of them covers these and the rounding of the axes, which makes them up to
-/// 2^-22 oblique.
-OrientedBox box_along(const std::array<Vec3d, 3>& axes, Vec3d near, const SurfacePart& part) {
-  OrientedBox box;
-  for (std::size_t k = 0; k < 3; ++k) box.axes[k] = in_float(axes[k]);
-  constexpr double inf = std::numeric_limits<double>::infinity();
-  Vec3d low{inf, inf, inf}, high{-inf, -inf, -inf};
-  const auto extend_by = [&](Vec3d p) {
-    for (int k = 0; k < 3; ++k) {
-      const double along = dot(in_double(box.axes[static_cast<std::size_t>(k)]), p - near);
-      low[k] = std::min(low[k], along);
-      high[k] = std::max(high[k], along);
-    }
-  };
-  part.for_each([&](Vec3d p, Vec3d q, Vec3d r) {
-    extend_by(p);
-    extend_by(q);
-    extend_by(r);
-  });
-  Vec3d center = near;
-  for (int k = 0; k < 3; ++k)
-    center += (low[k] + high[k]) / 2 * in_double(box.axes[static_cast<std::size_t>(k)]);
-  box.center = in_float(center);
-  Vec3d half;
-  for (int k = 0; k < 3; ++k) {
-    const double along = dot(in_double(box.axes[static_cast<std::size_t>(k)]), in_double(box.center) - near);
-    half[k] = std::max(high[k] - along, along - low[k]);
-  }
-  const double growth = 0x1p-20 * (half.x + half.y + half.z) + std::numeric_limits<float>::min();
-  for (int k = 0; k < 3; ++k) box.half_lengths[k] = round_up(half[k] + growth);
-  return box;
-}
-
 }  // namespace
 
 /// The parallel axis theorem.
@@ -149,21 +114,44 @@ SurfaceMoments moments_of(const SurfacePart& part) {
   return sum;
 }
 
-OrientedBox fit_oriented_box(const SurfaceMoments& moments, const Aabb& box, const SurfacePart& part) {
-  if (box.empty()) return {};
+OrientedBoxFit::OrientedBoxFit(const SurfaceMoments& moments, const Aabb& box) {
+  if (box.empty()) return;
   constexpr float largest = 0x1p60f;  // squares of areas do not overflow
   for (int axis = 0; axis < 3; ++axis) {
     if (!(box.min[axis] >= -largest && box.max[axis] <= largest)) {
       constexpr float inf = std::numeric_limits<float>::infinity();
-      OrientedBox everything;
-      everything.half_lengths = {inf, inf, inf};
-      return everything;
+      aligned_.half_lengths = {inf, inf, inf};
+      return;
     }
   }
-  const OrientedBox aligned = aligned_box(box);
-  if (!(moments.area > 0)) return aligned;
-  const OrientedBox fitted = box_along(eigenvectors(covariance(moments)), in_double(aligned.center), part);
-  return half_surface(fitted.half_lengths) < half_surface(aligned.half_lengths) ? fitted : aligned;
+  aligned_ = aligned_box(box);
+  if (!(moments.area > 0)) return;
+  const std::array<Vec3d, 3> axes = eigenvectors(covariance(moments));
+  for (std::size_t k = 0; k < 3; ++k) frame_.axes[k] = in_float(axes[k]);
+  frame_.origin = in_double(aligned_.center);
+  needs_extents_ = true;
+}
+
+/// The growth covers the errors of the extents and the rounding of the axes, which makes them up to 2^-22
+/// oblique.
+OrientedBox OrientedBoxFit::box(const AxisExtents& extents) const {
+  if (!needs_extents_) return aligned_;
+  OrientedBox fitted{{}, frame_.axes, {}};
+  Vec3d center = frame_.origin;
+  double reach = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double low = extents.low[k], high = extents.high[k];
+    center += (low + high) / 2 * in_double(frame_.axes[k]);
+    reach += std::max(std::abs(low), std::abs(high));
+  }
+  fitted.center = in_float(center);
+  const double growth = 0x1p-19 * reach + std::numeric_limits<float>::min();
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double along = dot(in_double(frame_.axes[k]), in_double(fitted.center) - frame_.origin);
+    fitted.half_lengths[static_cast<int>(k)] =
+        round_up(std::max(extents.high[k] - along, along - extents.low[k]) + growth);
+  }
+  return half_surface(fitted.half_lengths) < half_surface(aligned_.half_lengths) ? fitted : aligned_;
 }
 
 }  // namespace supple

@@ -5,6 +5,7 @@
 #include <span>
 
 #include "geometry/oriented_box.hpp"
+#include "octree/slab_kernels.hpp"
 #include "octree/vertex_buffer.hpp"
 #include "supple/mesh.hpp"
 
@@ -41,10 +42,25 @@ struct SurfacePart {
 
 SurfaceMoments moments_of(const SurfacePart& part);
 
-/// An oriented box that encloses the triangles, rounded outward. Its axes are the principal axes of the
-/// surface, as in Gottschalk, Lin and Manocha, "OBBTree", 1996; the area as weight makes them independent of
-/// the tessellation. It is never larger than `box`, the box of the triangles: it equals `box` when the
-/// principal axes are worse. Infinite when coordinates are so large that squares overflow. O(triangles).
-OrientedBox fit_oriented_box(const SurfaceMoments& moments, const Aabb& box, const SurfacePart& part);
+/// Fits an oriented box to some triangles, rounded outward. Its axes are the principal axes of the surface,
+/// as in Gottschalk, Lin and Manocha, "OBBTree", 1996; the area as weight makes them independent of the
+/// tessellation. The result is never larger than the box of the triangles: it equals that box when the
+/// principal axes are worse. It is infinite when coordinates are so large that squares overflow.
+class OrientedBoxFit {
+ public:
+  /// `box` is the box of the triangles.
+  OrientedBoxFit(const SurfaceMoments& moments, const Aabb& box);
+
+  /// Whether `box` needs the extents of the vertices. Otherwise, the result is known from `box` alone.
+  bool needs_extents() const { return needs_extents_; }
+  const AxisFrame& frame() const { return frame_; }
+  /// The result. `extents` are those of all vertices in `frame`.
+  OrientedBox box(const AxisExtents& extents) const;
+
+ private:
+  OrientedBox aligned_;
+  AxisFrame frame_;
+  bool needs_extents_ = false;
+};
 
 }  // namespace supple

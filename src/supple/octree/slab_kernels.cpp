@@ -37,10 +37,12 @@ struct SlabSums {
   }
   template <class Scalar>
   HWY_INLINE void extend(const DirectionLanes& directions, const Scalar* vertex) {
+    extend(directions, static_cast<float>(vertex[0]), static_cast<float>(vertex[1]),
+           static_cast<float>(vertex[2]));
+  }
+  HWY_INLINE void extend(const DirectionLanes& directions, float vertex_x, float vertex_y, float vertex_z) {
     const SlabTag tag;
-    const auto x = hn::Set(tag, static_cast<float>(vertex[0])),
-               y = hn::Set(tag, static_cast<float>(vertex[1])),
-               z = hn::Set(tag, static_cast<float>(vertex[2]));
+    const auto x = hn::Set(tag, vertex_x), y = hn::Set(tag, vertex_y), z = hn::Set(tag, vertex_z);
     for (std::size_t v = 0; v < V; ++v) {
       const std::size_t i = v * slab_lanes;
       const auto along = hn::Add(
@@ -91,17 +93,22 @@ HWY_NOINLINE void refit_leaf(const OctreeNode& node, int child, const Aabb& box,
   }
 }
 
-template <std::size_t V, class Scalar>
-void refit_nodes(const OctreeNode* nodes, const ChildBoxes* boxes, float* slabs,
-                 std::span<const Vec3f> directions, VertexArray<Scalar> positions,
-                 const TriangleArrays& arrays, const LeafVertexArrays& leaves, std::uint32_t begin,
-                 std::uint32_t end) {
+DirectionLanes lanes_of(std::span<const Vec3f> directions) {
   DirectionLanes lanes;
   for (std::size_t d = 0; d < directions.size(); ++d) {
     lanes.x[d] = directions[d].x;
     lanes.y[d] = directions[d].y;
     lanes.z[d] = directions[d].z;
   }
+  return lanes;
+}
+
+template <std::size_t V, class Scalar>
+void refit_nodes(const OctreeNode* nodes, const ChildBoxes* boxes, float* slabs,
+                 std::span<const Vec3f> directions, VertexArray<Scalar> positions,
+                 const TriangleArrays& arrays, const LeafVertexArrays& leaves, std::uint32_t begin,
+                 std::uint32_t end) {
+  const DirectionLanes lanes = lanes_of(directions);
   const std::size_t stride = floats_per_slab * directions.size();
   for (std::uint32_t n = begin; n < end; ++n) {
     const OctreeNode& node = nodes[n];
@@ -137,6 +144,37 @@ void RefitSlabs(const OctreeNode* nodes, const ChildBoxes* boxes, float* slabs,
   }
 }
 
+template <class Scalar>
+void extend_by(const AxisFrame& frame, VertexArray<Scalar> positions, std::span<const std::uint32_t> vertices,
+               AxisExtents& extents) {
+  constexpr std::size_t vector_count = 4 / slab_lanes;
+  const DirectionLanes lanes = lanes_of(frame.axes);
+  SlabSums<vector_count> sums;
+  for (const std::uint32_t vertex : vertices) {
+    const Scalar* const p = positions[vertex];
+    sums.extend(lanes, static_cast<float>(p[0] - frame.origin.x), static_cast<float>(p[1] - frame.origin.y),
+                static_cast<float>(p[2] - frame.origin.z));
+  }
+  HWY_ALIGN float low[vector_count * slab_lanes], high[vector_count * slab_lanes];
+  for (std::size_t v = 0; v < vector_count; ++v) {
+    hn::Store(sums.low[v], SlabTag(), low + v * slab_lanes);
+    hn::Store(sums.high[v], SlabTag(), high + v * slab_lanes);
+  }
+  for (std::size_t k = 0; k < 3; ++k) {
+    extents.low[k] = std::min(extents.low[k], low[k]);
+    extents.high[k] = std::max(extents.high[k], high[k]);
+  }
+}
+
+void ExtendExtents(const AxisFrame& frame, const TriangleArrays& arrays,
+                   std::span<const std::uint32_t> vertices, AxisExtents& extents) {
+  if (arrays.doubles.data != nullptr) {
+    extend_by(frame, arrays.doubles, vertices, extents);
+  } else {
+    extend_by(frame, arrays.floats, vertices, extents);
+  }
+}
+
 }  // namespace HWY_NAMESPACE
 }  // namespace supple
 HWY_AFTER_NAMESPACE();
@@ -145,11 +183,17 @@ HWY_AFTER_NAMESPACE();
 namespace supple {
 
 HWY_EXPORT(RefitSlabs);
+HWY_EXPORT(ExtendExtents);
 
 void refit_slabs(const OctreeNode* nodes, const ChildBoxes* boxes, float* slabs,
                  std::span<const Vec3f> directions, const TriangleArrays& arrays,
                  const LeafVertexArrays& leaves, std::uint32_t begin, std::uint32_t end) {
   HWY_DYNAMIC_DISPATCH(RefitSlabs)(nodes, boxes, slabs, directions, arrays, leaves, begin, end);
+}
+
+void extend_extents(const AxisFrame& frame, const TriangleArrays& arrays,
+                    std::span<const std::uint32_t> vertices, AxisExtents& extents) {
+  HWY_DYNAMIC_DISPATCH(ExtendExtents)(frame, arrays, vertices, extents);
 }
 
 void unite_slabs(const float* children, int count, std::size_t directions, float* parent, int child) {

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 
 #include "mesh/vertex_arrays.hpp"
@@ -43,6 +44,26 @@ constexpr std::size_t floats_per_slab = 2 * std::size_t{node_width};
 void refit_slabs(const OctreeNode* nodes, const ChildBoxes* boxes, float* slabs,
                  std::span<const Vec3f> directions, const TriangleArrays& arrays,
                  const LeafVertexArrays& leaves, std::uint32_t begin, std::uint32_t end);
+
+/// Three axes at right angles, of unit length except for rounding, and the point where distances along them
+/// begin.
+struct AxisFrame {
+  std::array<Vec3f, 3> axes{};
+  Vec3d origin{};
+};
+
+/// The lowest and the highest distance along each axis; inverted without points.
+struct AxisExtents {
+  std::array<float, 3> low{inverted, inverted, inverted}, high{-inverted, -inverted, -inverted};
+
+ private:
+  static constexpr float inverted = std::numeric_limits<float>::infinity();
+};
+
+/// Extends the extents by the vertices with these ids. The distance of a vertex has an error of at most 2^-21
+/// of the distance between the vertex and the origin. Equal on all instruction sets.
+void extend_extents(const AxisFrame& frame, const TriangleArrays& arrays,
+                    std::span<const std::uint32_t> vertices, AxisExtents& extents);
 
 /// Writes the union of the slabs of the first `count` children in `children` as child `child` of `parent`.
 void unite_slabs(const float* children, int count, std::size_t directions, float* parent, int child);

@@ -80,6 +80,9 @@ ObjectId Scene::Implementation::add(const PositionsView& positions, const Triang
   ObjectOptions named = object_options;
   if (named.name.empty()) named.name = fallback_name.empty() ? described({index, 0}) : fallback_name;
   check(named);
+  if (named.octree.build == ObjectOctreeBuild::balanced && named.octree.arity != node_width)
+    fail(named.name + ": a balanced octree has eight children; for an arity of " +
+         std::to_string(named.octree.arity) + ", build it regular or bottom-up");
   auto object = std::make_unique<SceneObject>(
       positions, checked_triangles(named.name, positions.size(), triangles), named, options);
   object->move().set_positions(positions, parallel);

@@ -34,7 +34,8 @@ BoundingSphere sphere_around(const Aabb& box) {
 /// chose.
 ObjectOctreeOptions octree_options(const ObjectOptions& options, const SceneOptions& scene_options) {
   ObjectOctreeOptions octree = options.octree;
-  if (contains(scene_options.contacts, ContactKinds::continuous) && !is_regular(octree))
+  if (contains(scene_options.contacts, ContactKinds::continuous) &&
+      octree.build != ObjectOctreeBuild::regular)
     octree.leaf_size = octree.leaf_size / 2 + octree.leaf_size % 2;
   return octree;
 }

@@ -92,7 +92,7 @@ TEST(ObjectOctree, TreesOfAnyArityEndInTheSameCells) {
   std::uint32_t last_depth = eight.octree.statistics().depth;
   std::uint64_t last_nodes = eight.octree.statistics().nodes;
   for (const std::uint32_t arity : {4u, 2u}) {
-    Built other(soup, {.leaf_size = 1, .arity = arity});
+    Built other(soup, {.leaf_size = 1, .arity = arity, .build = ObjectOctreeBuild::regular});
     EXPECT_EQ(other.refit(soup), "");
     const auto ids = other.octree.triangle_ids(), expected = eight.octree.triangle_ids();
     EXPECT_TRUE(std::equal(ids.begin(), ids.end(), expected.begin(), expected.end()));

@@ -178,7 +178,10 @@ TEST(SphereFit, EnclosesDegeneratePositions) {
     for (std::uint32_t way = 0; way < hard_ways; ++way) {
       for (const SphereFit fit : {SphereFit::vertices, SphereFit::minimal}) {
         const TriangleMesh mesh = hard_positions(random_soup(count, 1, 0.1, count), way, random);
-        const Tree tree(mesh, fit, {.leaf_size = 1 + random.below(9), .arity = 2u << random.below(3)});
+        const Tree tree(mesh, fit,
+                        {.leaf_size = 1 + random.below(9),
+                         .arity = 2u << random.below(3),
+                         .build = ObjectOctreeBuild::regular});
         EXPECT_EQ(tree.octree.validate(tree.vertices, tree.inert), "") << count << " way " << way;
         if (HasFailure()) return;
       }

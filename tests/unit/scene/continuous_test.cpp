@@ -53,8 +53,12 @@ Scene scene_of(const std::vector<Moving>& objects, const SceneOptions& options, 
                std::uint32_t arity = 8) {
   Scene scene(options);
   for (const Moving& object : objects) {
-    const ObjectId id =
-        scene.add(object.mesh, {.self_collision = true, .octree = {.leaf_size = leaf_size, .arity = arity}});
+    const ObjectId id = scene.add(
+        object.mesh,
+        {.self_collision = true,
+         .octree = {.leaf_size = leaf_size,
+                    .arity = arity,
+                    .build = arity == 8 ? ObjectOctreeBuild::balanced : ObjectOctreeBuild::regular}});
     scene.set_motion(id, object.mesh.positions, object.to);
   }
   return scene;

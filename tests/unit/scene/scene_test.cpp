@@ -362,6 +362,9 @@ TEST(Scene, ErrorsSayWhatWhereAndHowToMend) {
             "ObjectOctreeOptions::leaf_size is 0; it must be a whole number from 1 to 4294967295");
   EXPECT_EQ(error_of([&] { scene.add(one_triangle(0), {.octree = {.arity = 3}}); }),
             "ObjectOctreeOptions::arity is 3; it must be 2, 4 or 8");
+  EXPECT_EQ(
+      error_of([&] { scene.add(one_triangle(0), {.octree = {.arity = 4}}); }),
+      "object 0: a balanced octree has eight children; for an arity of 4, build it regular or bottom-up");
   scene.set_static(a, true);
   EXPECT_EQ(error_of([&] {
               scene.translate(a, {1, 0, 0});
