@@ -17,15 +17,13 @@ constexpr std::uint64_t golden_hash = 2342057126839866175u;
 constexpr std::uint64_t golden_continuous_hash = 14350918484739907705u;
 constexpr std::uint64_t golden_normal_hash = 4176784545402189687u;
 
-inline Scene scene_of(const std::vector<TriangleMesh>& meshes, const SceneOptions& options,
-                      std::uint32_t arity = 8) {
+inline Scene scene_of(const std::vector<TriangleMesh>& meshes, const SceneOptions& options) {
   Scene scene(options);
   for (const TriangleMesh& mesh : meshes) {
     // Colliding vertices belong to whole leaves, so the hash depends on the octree; it uses a regular one.
     scene.add(mesh,
               {.self_collision = true,
                .octree = {.leaf_size = 3,
-                          .arity = arity,
                           .build = options.comparison.colliding_vertices ? ObjectOctreeBuild::regular
                                                                          : ObjectOctreeBuild::balanced}});
   }
