@@ -261,6 +261,7 @@ ClaimsOptions claims_options(bool quick) {
   if (!quick) return options;
   options.volumes = 2048;
   options.spheres = 10'000;
+  options.swept_boxes = {100, 1000};
   options.largest_frequency = 32;
   options.motion_seconds = 2;
   options.rounds = 3;
@@ -271,6 +272,7 @@ Report run_claims(const ClaimsOptions& options, bool show_progress) {
   const std::vector<std::pair<const char*, Finding (*)(const ClaimsOptions&)>> measurements{
       {"tests of two volumes", cost_of_tests},
       {"regions against spheres", region_tests},
+      {"sweep and prune", sweeps_on_one_axis_and_three},
       {"depth and size of triangles", depth_of_small_triangles},
       {"depth and number of triangles", depth_of_many_triangles},
       {"refit after motion", refit_after_motion},

@@ -19,8 +19,12 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Distinguishable on white and on black, also for most people with colour blindness.
-constexpr std::array<const char*, 6> palette{"#0077bb", "#ee7733", "#009988",
-                                             "#cc3311", "#9467bd", "#888888"};
+constexpr std::array<const char*, 9> palette{"#0077bb", "#ee7733", "#009988", "#cc3311", "#9467bd",
+                                             "#888888", "#33bbee", "#ee3377", "#999933"};
+/// gnuplot's numbers of filled shapes: circle, square, triangles and others.
+constexpr std::array<int, 5> point_types{7, 5, 9, 11, 13};
+/// Names along x that fit without rotation.
+constexpr std::size_t most_level_names = 5;
 
 /// A gnuplot string in single quotes, in which only the quote is special.
 std::string quoted(const std::string& text) {
@@ -33,7 +37,8 @@ std::string style_of(const Series& series, std::size_t color) {
   const char* const shade = palette[color % palette.size()];
   switch (series.style) {
     case Series::Style::points:
-      return fmt::format("with points pt 7 ps 0.8 lc rgb '{}'", shade);
+      return fmt::format("with points pt {} ps 0.9 lc rgb '{}'", point_types[color % point_types.size()],
+                         shade);
     case Series::Style::dashed_line:
       return fmt::format("with lines dt 2 lw 1.5 lc rgb '{}'", shade);
     case Series::Style::line_and_points:
@@ -144,8 +149,9 @@ std::string gnuplot_script(const Plot& plot) {
     std::string names;
     for (const auto& [x, name] : plot.x_names)
       names += fmt::format("{}{} {}", names.empty() ? "" : ", ", quoted(name), x);
-    script += fmt::format("set xtics ({})\nset xrange [{}:{}]\n", names, plot.x_names.front().first - 0.8,
-                          plot.x_names.back().first + 0.8);
+    script += fmt::format("set xtics {}({})\nset xrange [{}:{}]\n",
+                          plot.x_names.size() > most_level_names ? "rotate by -20 " : "", names,
+                          plot.x_names.front().first - 0.8, plot.x_names.back().first + 0.8);
   }
   std::string lines, data;
   std::size_t next_color = 0;

@@ -7,6 +7,14 @@
 #include "supple/scene.hpp"
 
 namespace supple::experiments {
+namespace {
+
+ObjectOptions regular(ObjectOctreeOptions octree) {
+  octree.build = ObjectOctreeBuild::regular;
+  return ObjectOptions{.octree = octree};
+}
+
+}  // namespace
 
 TriangleMesh turned(TriangleMesh mesh) {
   // The quaternion (5, 1, 2, 2) / √34.
@@ -32,9 +40,7 @@ PairCost cost_of_pair(const TriangleMesh& a, const TriangleMesh& b, const Object
   options.contacts = ContactKinds::none;
   options.threads = threads;
   Scene scene(options);
-  ObjectOptions object;
-  object.octree = octree;
-  object.octree.build = ObjectOctreeBuild::regular;
+  const ObjectOptions object = regular(octree);
   PairCost cost;
   ObjectId id_a, id_b;
   std::vector<double> builds;
@@ -65,6 +71,13 @@ PairCost cost_of_pair(const TriangleMesh& a, const TriangleMesh& b, const Object
   cost.refit_seconds = least(refits);
   cost.traversal_seconds = least(traversals);
   return cost;
+}
+
+NodePairList node_pairs_of(const TriangleMesh& a, const TriangleMesh& b, const ObjectOctreeOptions& octree) {
+  Scene scene(SceneOptions{.contacts = ContactKinds::none});
+  const ObjectId id_a = scene.add(a, regular(octree)), id_b = scene.add(b, regular(octree));
+  scene.detect();
+  return SceneInspector(scene).node_pairs(id_a, id_b);
 }
 
 }  // namespace supple::experiments

@@ -199,7 +199,19 @@ Costs measure_all(const std::vector<Case>& cases, const std::vector<Variant>& va
   return costs;
 }
 
-/// The geometric mean over the cases of a number divided by that of the first variant.
+/// The sum of a count over the cases divided by that of the first variant. Counts can be 0 in a case, so
+/// means of quotients would say nothing.
+template <class Count>
+Cell relative_sum(const Costs& costs, std::size_t variant, const Count& count) {
+  double sum = 0, sum_of_first = 0;
+  for (const auto& row : costs) {
+    sum += static_cast<double>(count(row[variant]));
+    sum_of_first += static_cast<double>(count(row[0]));
+  }
+  return sum_of_first > 0 ? Cell(sum / sum_of_first) : Cell("none");
+}
+
+/// The geometric mean over the cases of a time or size divided by that of the first variant.
 template <class Number>
 double relative(const Costs& costs, std::size_t variant, const Number& number) {
   double sum = 0;
@@ -268,8 +280,8 @@ Table summary_table(const std::string& name, const std::string& caption, const s
     table.add({variants[v].name, ratio([](const Cost& c) { return c.bytes; }),
                ratio([](const Cost& c) { return c.build_seconds; }),
                ratio([](const Cost& c) { return c.refit_seconds; }),
-               ratio([](const Cost& c) { return c.node_pairs; }),
-               ratio([](const Cost& c) { return c.false_candidates(); }),
+               relative_sum(costs, v, [](const Cost& c) { return c.node_pairs; }),
+               relative_sum(costs, v, [](const Cost& c) { return c.false_candidates(); }),
                ratio([](const Cost& c) { return c.query_seconds; }),
                ratio([](const Cost& c) { return c.seconds(); }),
                v == 0 ? std::string("the measure") : when_it_pays(cases, costs, v)});
@@ -302,7 +314,9 @@ Section section_of(const std::string& heading, const std::string& measure, const
                    const std::string& name) {
   Section section{heading, {}};
   section.blocks.emplace_back(summary_table(
-      name + "_summary", fmt::format("Means over the cases; {}: 1", measure), variants, cases, costs));
+      name + "_summary",
+      fmt::format("Sizes and times: geometric means over the cases; counts: sums; {}: 1", measure), variants,
+      cases, costs));
   section.blocks.emplace_back(relative_plot(fmt::format("False candidates ({}: 1)", measure), cases, variants,
                                             costs, [](const Cost& c) { return c.false_candidates(); }));
   section.blocks.emplace_back(relative_plot(fmt::format("Time of refit and query ({}: 1)", measure), cases,

@@ -164,9 +164,10 @@ class Experiment(ProgramTest):
     def test_tree_arity(self):
         expected = self.run_here("detect", "--json", "-", "--no-stats", *self.models()).out
         for arity in ("2", "4", "8"):
-            done = self.run_here("detect", "--json", "-", "--no-stats", "--tree-arity", arity, *self.models())
+            done = self.run_here("detect", "--json", "-", "--no-stats", "--object-octree", "regular", "--tree-arity", arity, *self.models())
             self.assertEqual((done.status, done.out), (0, expected))
         self.assert_one_line_error(self.run_here("detect", "--tree-arity", "3", *self.models()), "--tree-arity", "2, 4 or 8")
+        self.assert_one_line_error(self.run_here("detect", "--tree-arity", "4", *self.models()), "balanced octree", "arity of 4", "regular or bottom-up")
 
     def models(self):
         scene = "[[object]]\nmodel = 'rabbit'\n[[object]]\nmodel = 'fish'\n"
