@@ -254,16 +254,15 @@ Claim judge_colliding_children(const Sums& sums, Table& table) {
     table.add({std::uint64_t{arities[k]}, std::uint64_t{arities[k] / 2}, std::uint64_t{sum.most}, mean,
                percent, sum.nodes});
     if (sum.above > 0) claim.verdict = Verdict::does_not_hold;
-    found.push_back(
-        fmt::format("up to {} of {} collide, {:.1f} on average, and more than {} in {:.0f} % of the "
-                    "nodes",
-                    sum.most, arities[k], mean, arities[k] / 2, percent));
+    found.push_back(fmt::format(
+        "With {} children, up to {} collide, {:.1f} on average, and more than {} in {:.0f} % of the nodes.",
+        arities[k], sum.most, mean, arities[k] / 2, percent));
   }
   claim.reason = fmt::format(
       "Counted over the colliding pairs of nodes of all cases, with leaves of one triangle: the children of "
-      "one "
-      "node that overlap a child of the other node. {}.",
-      fmt::join(found, "; "));
+      "a "
+      "node that overlap a child of the other node. {}",
+      fmt::join(found, " "));
   return claim;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "core/float_rounding.hpp"
@@ -99,18 +100,31 @@ SurfaceMoments& SurfaceMoments::operator+=(const SurfaceMoments& other) {
   return *this;
 }
 
+/// Sums over the triangles about the first corner, then moves the sums to the centre: without a division for
+/// each triangle.
 SurfaceMoments moments_of(const SurfacePart& part) {
+  std::optional<Vec3d> origin;
   SurfaceMoments sum;
   part.for_each([&](Vec3d p, Vec3d q, Vec3d r) {
-    SurfaceMoments one{norm(cross(q - p, r - p)) / 2, p + (q - p + (r - p)) / 3};
-    // The mean of a b over a triangle with its centre at 0 is the sum of a b over its corners, divided by 12.
-    for (const Vec3d& corner : {p - one.center, q - one.center, r - one.center}) {
-      for_each_product(corner, corner, [&](std::size_t place, double product) {
-        one.second[place] += one.area / 12 * product;
-      });
+    if (!origin) origin = p;
+    p = p - *origin;
+    q = q - *origin;
+    r = r - *origin;
+    const double area = norm(cross(q - p, r - p)) / 2;
+    const Vec3d corners = p + q + r;
+    sum.area += area;
+    sum.center += area / 3 * corners;
+    // The mean of a b over a triangle is the sum of a b over its corners and their sum, divided by 12.
+    for (const Vec3d& corner : {p, q, r, corners}) {
+      for_each_product(corner, corner,
+                       [&](std::size_t place, double product) { sum.second[place] += area / 12 * product; });
     }
-    sum += one;
   });
+  if (!(sum.area > 0)) return {};
+  const Vec3d center = sum.center * (1 / sum.area);
+  for_each_product(center, center,
+                   [&](std::size_t place, double product) { sum.second[place] -= sum.area * product; });
+  sum.center = *origin + center;
   return sum;
 }
 

@@ -14,6 +14,7 @@
 #include "supple/inspection.hpp"
 #include "supple/models.hpp"
 #include "supple/scene.hpp"
+#include "support/configurations.hpp"
 #include "support/soups.hpp"
 
 namespace supple {
@@ -94,24 +95,21 @@ void check_order(const NodePairList& list) {
 
 TEST(NodePairs, AreThoseOfARecursiveDescent) {
   for (const BoundingVolume volume : {BoundingVolume::aabb, BoundingVolume::sphere}) {
-    for (const bool regular : {false, true}) {
-      for (const std::uint32_t arity : {2u, 4u, 8u}) {
-        for (const std::uint32_t leaf_size : {1u, 5u}) {
-          Scene scene({.bounding_volume = volume, .threads = 1});
-          ObjectOptions options;
-          options.octree = {.leaf_size = leaf_size,
-                            .arity = arity,
-                            .build = regular ? ObjectOctreeBuild::regular : ObjectOctreeBuild::balanced};
-          const ObjectId a = scene.add(random_soup(120, 1, 0.3, 1), options);
-          const ObjectId b = scene.add(random_soup(9, 1, 0.3, 2), options);
-          scene.detect();
-          const NodePairList list = SceneInspector(scene).node_pairs(a, b);
-          check_order(list);
-          EXPECT_GT(list.level_count(), 2u);
-          const std::set<NamedPair> names = names_of(list);
-          EXPECT_EQ(names.size(), list.pairs.size());
-          EXPECT_EQ(names, descent_of(scene, a, b, arity));
-        }
+    for (const ObjectOctreeOptions& octree : all_octrees()) {
+      for (const std::uint32_t leaf_size : {1u, 5u}) {
+        Scene scene({.bounding_volume = volume, .threads = 1});
+        ObjectOptions options;
+        options.octree = octree;
+        options.octree.leaf_size = leaf_size;
+        const ObjectId a = scene.add(random_soup(120, 1, 0.3, 1), options);
+        const ObjectId b = scene.add(random_soup(9, 1, 0.3, 2), options);
+        scene.detect();
+        const NodePairList list = SceneInspector(scene).node_pairs(a, b);
+        check_order(list);
+        EXPECT_GT(list.level_count(), 2u);
+        const std::set<NamedPair> names = names_of(list);
+        EXPECT_EQ(names.size(), list.pairs.size());
+        EXPECT_EQ(names, descent_of(scene, a, b, octree.arity));
       }
     }
   }

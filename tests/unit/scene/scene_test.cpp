@@ -364,7 +364,7 @@ TEST(Scene, ErrorsSayWhatWhereAndHowToMend) {
             "ObjectOctreeOptions::arity is 3; it must be 2, 4 or 8");
   EXPECT_EQ(
       error_of([&] { scene.add(one_triangle(0), {.octree = {.arity = 4}}); }),
-      "object 0: a balanced octree has eight children; for an arity of 4, build it regular or bottom-up");
+      "triangle: a balanced octree has eight children; for an arity of 4, build it regular or bottom-up");
   scene.set_static(a, true);
   EXPECT_EQ(error_of([&] {
               scene.translate(a, {1, 0, 0});
