@@ -52,10 +52,12 @@ void rotate(Matrix& m, std::array<Vec3d, 3>& vectors, std::size_t i, std::size_t
 }
 
 /// The eigenvectors of a symmetric matrix by Jacobi's method, orthonormal except for rounding. Converges
-/// quadratically: five sweeps are enough for double.
+/// quadratically: five sweeps are enough for double, and fewer when the matrix is nearly diagonal for float.
 std::array<Vec3d, 3> eigenvectors(Matrix m) {
   std::array<Vec3d, 3> vectors{Vec3d{1, 0, 0}, Vec3d{0, 1, 0}, Vec3d{0, 0, 1}};
+  const double negligible = 0x1p-30 * (m[0][0] + m[1][1] + m[2][2]);
   for (int sweep = 0; sweep < 5; ++sweep) {
+    if (std::max({std::abs(m[0][1]), std::abs(m[1][2]), std::abs(m[0][2])}) <= negligible) break;
     rotate(m, vectors, 0, 1);
     rotate(m, vectors, 1, 2);
     rotate(m, vectors, 0, 2);

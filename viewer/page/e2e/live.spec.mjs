@@ -137,6 +137,8 @@ async function otherVolumes(stage) {
 /** The collisions of the narrow phase are counted while their layer is on. */
 async function eventsAreCounted(stage) {
   const { page } = await stage.view(nine);
+  await page.getByRole("tab", { name: "Plots" }).click();
+  await page.getByText("counted with Colliding vertices").waitFor();
   await page.getByRole("checkbox", { name: "Colliding vertices" }).check();
   await until(page, () => Object.values(supple.model.history.events).every(({ begin }) => begin.length > 0));
   await pause(page);

@@ -3,7 +3,7 @@ import uPlot from "uplot";
 import "uplot/dist/uPlot.min.css";
 import { OKABE_ITO } from "../colours";
 import { EVENT_LABELS, type Model } from "../model";
-import { EVENT_KINDS } from "../protocol/messages";
+import { EVENT_KINDS, type EventKind } from "../protocol/messages";
 import { colourOf, h, readable } from "./dom";
 
 const HEIGHT = 132;
@@ -106,11 +106,9 @@ export class Plots {
 
   update(): void {
     if (this.element.clientWidth === 0) return;  // another tab is visible
-    const { frames, events } = this.model.history;
+    const { frames } = this.model.history;
     this.events.replaceChildren(
-      ...EVENT_KINDS.flatMap((kind) => [
-        h("dt", {}, EVENT_LABELS[kind]), h("dd", {}, `${readable(events[kind].begin.length)} began, ${readable(events[kind].end.length)} ended`),
-      ]),
+      ...EVENT_KINDS.flatMap((kind) => [h("dt", {}, EVENT_LABELS[kind]), h("dd", {}, this.countsOf(kind))]),
     );
     for (const { columns, scale, plot } of this.plots) {
       const lines = columns.map((name) => {
@@ -119,6 +117,13 @@ export class Plots {
       });
       plot.setData([frames, ...lines]);
     }
+  }
+
+  private countsOf(kind: EventKind): string {
+    const { begin, end } = this.model.history.events[kind];
+    if (kind === "narrow_phase" && begin.length === 0 && !this.model.layers.vertices)
+      return "counted with Colliding vertices";
+    return `${readable(begin.length)} began, ${readable(end.length)} ended`;
   }
 
   private resize(): void {
