@@ -57,8 +57,8 @@ bool triangles_intersect(const TrianglePoints& a, const TrianglePoints& b);
 /// Positions: a vertex has its own bits (those of a where two vertices meet). Any other point lies on an
 /// edge. Its error along each axis is at most 2^-44 of the edge's extent plus half a unit in the last place,
 /// and it is never outside the box of either triangle. It depends on that edge and the opposite edge or face
-/// alone, not on the order of corners or triangles, so triangles that share an edge report the same bits
-/// there.
+/// alone, not on the direction of the edge or the order of the triangles, so triangles that share an edge
+/// report the same bits there. Another order of the face's corners can change the last bits.
 ///
 /// Normal: the direction of the shortest translation of triangle a that separates the triangles: afterwards a
 /// plane perpendicular to the normal has each triangle on one of its closed sides, a on the side to which the

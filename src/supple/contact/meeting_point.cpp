@@ -18,10 +18,6 @@ struct Distances {
   double first, second;
 };
 
-/// Floating point suffices when the errors of both distances are below this fraction of their sum. The error
-/// of the crossing's parameter is then at most twice as large.
-constexpr double accepted_error = 0x1p-46;
-
 struct Edge {
   Vec3d first, second;  // in lexicographic order
 
@@ -41,7 +37,7 @@ Distances distances_from_plane(const Edge& edge, const TrianglePoints& triangle)
   const FilteredPlane plane(r, s, t);
   const Filtered first = plane.side(edge.first), second = plane.side(edge.second);
   const double sum = std::fabs(first.value) + std::fabs(second.value);
-  if (std::max(first.bound, second.bound) < accepted_error * sum && std::isfinite(sum)) {
+  if (std::max(first.bound, second.bound) < accepted_distance_error * sum && std::isfinite(sum)) {
     return {std::fabs(first.value), std::fabs(second.value)};
   }
   const std::array points{r, s, t, edge.first, edge.second};
@@ -59,7 +55,8 @@ Distances distances_from_line(const Edge& edge, const Edge& other) {
     const Filtered first = filtered_turn(other.first, other.second, edge.first, axis);
     const Filtered second = filtered_turn(other.first, other.second, edge.second, axis);
     const double sum = std::fabs(first.value) + std::fabs(second.value);
-    const bool accurate = std::max(first.bound, second.bound) < accepted_error * sum && std::isfinite(sum);
+    const bool accurate =
+        std::max(first.bound, second.bound) < accepted_distance_error * sum && std::isfinite(sum);
     if (accurate && sum > best.first + best.second) best = {std::fabs(first.value), std::fabs(second.value)};
   }
   for (int axis = 0; best.first + best.second == 0; ++axis) {
@@ -111,12 +108,10 @@ Vec3d edge_edge_point(Edge edge, Edge other) {
                       std::array{other.first, other.second});
 }
 
-Vec3d edge_face_point(const Edge& edge, TrianglePoints triangle) {
-  for (const auto& [i, j] : {std::pair(0u, 1u), std::pair(1u, 2u), std::pair(0u, 1u)}) {
-    if (lexicographically_less(triangle[j], triangle[i])) std::swap(triangle[i], triangle[j]);
-  }
+Vec3d edge_face_point(const Edge& edge, const TrianglePoints& triangle) {
   const Vec3d point = crossing(edge, distances_from_plane(edge, triangle));
-  return clamp_to_box(clamp_to_box(point, std::array{edge.first, edge.second}), triangle);
+  // Adding 0 turns -0 into 0, because the vector kernel cannot tell them apart.
+  return clamp_to_box(clamp_to_box(point, std::array{edge.first, edge.second}), triangle) + Vec3d{};
 }
 
 }  // namespace

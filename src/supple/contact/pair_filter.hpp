@@ -9,12 +9,6 @@
 
 namespace supple {
 
-/// Triangles of an object, and the translation of its positions.
-struct PlacedTriangles {
-  TriangleArrays arrays;
-  Vec3d translation;
-};
-
 /// What the floating-point filter proves, one bit for each pair. `intersect_triangles` decides pairs with
 /// neither bit.
 struct PairVerdicts {

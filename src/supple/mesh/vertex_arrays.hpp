@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "supple/mesh.hpp"
+#include "supple/types.hpp"
 
 namespace supple {
 
@@ -25,6 +26,12 @@ struct TriangleArrays {
   VertexArray<float> floats;
   VertexArray<double> doubles;
   const std::uint8_t* inert = nullptr;
+};
+
+/// Triangles of an object, and the translation of its positions.
+struct PlacedTriangles {
+  TriangleArrays arrays;
+  Vec3d translation;
 };
 
 }  // namespace supple

@@ -60,6 +60,7 @@ bool ContactPass::run(std::span<const ContactJob> jobs, std::span<const ContactO
     worker.traversal.set_stop(stop);
     worker.found.clear();
     worker.details.clear();
+    worker.crossing_count = 0;
     worker.unfinished.clear();
     worker.points.clear();
     worker.leaves.clear();
@@ -98,7 +99,7 @@ void ContactPass::run_task(std::size_t task, Worker& worker) {
   outcome = {worker.number,
              {{{static_cast<std::uint32_t>(first), 0}, {static_cast<std::uint32_t>(first_point), 0}}}};
   if (limit_.excludes(ContactLimit::place(job, 0))) return;
-  const ObjectPairView pair = view_of_job(job);
+  const TaskInput input = input_of_job(job);
   const auto on_leaves = [&](std::span<const LeafPair> leaf_pairs) {
     if (!search_.colliding_vertices) return;
     for (const LeafPair& leaves : leaf_pairs) worker.leaves.push_back({job, leaves});
@@ -106,23 +107,18 @@ void ContactPass::run_task(std::size_t task, Worker& worker) {
   const auto on_candidates = [&](std::span<const TrianglePair> candidates) {
     if (!search_.contacts) return;
     Timer timer;
-    const std::size_t first_of_batch = worker.found.size();
-    test_candidates(job, pair, candidates, worker);
-    const std::span<const std::uint32_t> ids_a = objects_[outcomes_.job(job).a].triangle_ids;
-    const std::span<const std::uint32_t> ids_b = objects_[outcomes_.job(job).b].triangle_ids;
-    for (FoundContact& found : std::span(worker.found).subspan(first_of_batch)) {
-      found.triangle_a = ids_a[found.triangle_a];
-      found.triangle_b = ids_b[found.triangle_b];
+    test_candidates(input, candidates, worker);
+    if (limit_.is_set()) {
+      add_crossing(input, worker.crossing_count, worker);
+      drop_excess(job, first, worker);
     }
-    if (limit_.is_set()) drop_excess(job, first, worker);
     worker.stats.exact_seconds += timer.lap();
   };
-  worker.traversal.find_triangle_pairs(pair, root, worker.stats.traversal, on_leaves, on_candidates);
-  if (worker.unfinished.size() > 0) {
-    Timer timer;
-    add_normals(worker);
-    worker.stats.exact_seconds += timer.lap();
-  }
+  worker.traversal.find_triangle_pairs(input.pair, root, worker.stats.traversal, on_leaves, on_candidates);
+  Timer timer;
+  add_crossing(input, worker.crossing_count, worker);
+  add_normals(worker);
+  worker.stats.exact_seconds += timer.lap();
   outcome.ranges[of_contacts].count = static_cast<std::uint32_t>(worker.found.size() - first);
   outcome.ranges[of_points].count = static_cast<std::uint32_t>(worker.points.size() - first_point);
   if (!limit_.is_set()) return;
@@ -133,61 +129,94 @@ void ContactPass::run_task(std::size_t task, Worker& worker) {
     outcome.ranges[of_points].count += found.point_count;
 }
 
+ContactPass::TaskInput ContactPass::input_of_job(std::uint32_t job) const {
+  const auto [a, b] = outcomes_.job(job);
+  const ObjectPairView pair = view_of_job(job);
+  return {job,
+          pair,
+          {pair.a.arrays, pair.a.translation},
+          {pair.b.arrays, pair.b.translation},
+          objects_[a].triangle_ids,
+          objects_[b].triangle_ids};
+}
+
 /// A vector kernel decides a block of candidates at a time. The exact test decides the few that remain.
-void ContactPass::test_candidates(std::uint32_t job, const ObjectPairView& pair,
-                                  std::span<const TrianglePair> candidates, Worker& worker) const {
-  const std::span<const std::uint32_t> ids_a = objects_[outcomes_.job(job).a].triangle_ids;
-  const std::span<const std::uint32_t> ids_b = objects_[outcomes_.job(job).b].triangle_ids;
-  const PlacedTriangles triangles_a{pair.a.arrays, pair.a.translation};
-  const PlacedTriangles triangles_b{pair.b.arrays, pair.b.translation};
+void ContactPass::test_candidates(const TaskInput& input, std::span<const TrianglePair> candidates,
+                                  Worker& worker) const {
   std::array<TrianglePair, pair_filter_capacity> ordered, wanted;
   for (std::size_t first = 0; first < candidates.size(); first += pair_filter_capacity) {
     if (stop_.stop_requested()) return;
     auto part = candidates.subspan(first, std::min(pair_filter_capacity, candidates.size() - first));
-    if (pair.same_object) part = in_order_of_results(part, ids_a, ordered);
+    if (input.pair.same_object) part = in_order_of_results(part, input.ids_a, ordered);
     if (limit_.excludes_some()) {
       const auto end = std::copy_if(part.begin(), part.end(), wanted.begin(), [&](const TrianglePair& p) {
-        return !limit_.excludes(ContactLimit::place(job, ids_a[p.a]));
+        return !limit_.excludes(ContactLimit::place(input.job, input.ids_a[p.a]));
       });
       part = {wanted.begin(), end};
       if (part.empty()) continue;
     }
-    const PairVerdicts verdicts = filter_pairs(triangles_a, triangles_b, part);
-    const std::uint64_t crossing = search_.contact_points ? 0 : verdicts.crossing;
-    for_each_bit(crossing, [&](std::size_t k) {
-      worker.found.push_back({part[k].a, part[k].b, 0, worker.number, IntersectionKind::segment, 2});
-      // The caller reads these ids after the batch.
-      hwy::Prefetch(&ids_a[part[k].a]);
-      hwy::Prefetch(&ids_b[part[k].b]);
+    const PairVerdicts verdicts = filter_pairs(input.triangles_a, input.triangles_b, part);
+    for_each_bit(verdicts.crossing, [&](std::size_t k) {
+      worker.crossing[worker.crossing_count++] = part[k];
+      // `add_crossing` reads these ids.
+      hwy::Prefetch(&input.ids_a[part[k].a]);
+      hwy::Prefetch(&input.ids_b[part[k].b]);
     });
+    if (worker.crossing_count >= CrossingSegments::capacity)
+      add_crossing(input, CrossingSegments::capacity, worker);
     const std::uint64_t asked = ~std::uint64_t{0} >> (pair_filter_capacity - part.size());
-    for_each_bit(asked & ~(verdicts.apart | crossing),
-                 [&](std::size_t k) { test_candidate(pair, part[k], worker); });
+    for_each_bit(asked & ~(verdicts.apart | verdicts.crossing),
+                 [&](std::size_t k) { test_candidate(input, part[k], worker); });
   }
 }
 
-void ContactPass::add_normals(Worker& worker) {
-  std::array<Vec3d, IntersectingPairs::capacity> normals;
-  separating_normals(worker.unfinished, normals.data());
-  ContactDetails* const first = worker.details.data() + worker.details.size() - worker.unfinished.size();
-  for (std::size_t i = 0; i < worker.unfinished.size(); ++i) first[i].normal = normals[i];
-  worker.unfinished.clear();
+/// Adds the first `count` pairs that wait in `crossing` to the contacts.
+void ContactPass::add_crossing(const TaskInput& input, std::size_t count, Worker& worker) const {
+  const std::span<const TrianglePair> pairs = std::span(worker.crossing).first(count);
+  if (search_.contact_points) worker.segments.find(input.triangles_a, input.triangles_b, pairs);
+  for (std::size_t k = 0; k < count; ++k) {
+    const auto [a, b] = pairs[k];
+    if (search_.contact_points && !worker.segments.is_known(k)) {
+      test_candidate(input, pairs[k], worker);
+      continue;
+    }
+    worker.found.push_back({input.ids_a[a], input.ids_b[b], static_cast<std::uint32_t>(worker.details.size()),
+                            worker.number, IntersectionKind::segment, 2});
+    if (!search_.contact_points) continue;
+    worker.details.push_back({worker.segments.normal(k), static_cast<std::uint32_t>(worker.points.size())});
+    const std::array ends{worker.segments.end(0, k), worker.segments.end(1, k)};
+    worker.points.insert(worker.points.end(), ends.begin(), ends.end());
+  }
+  std::copy(worker.crossing.begin() + static_cast<std::ptrdiff_t>(count),
+            worker.crossing.begin() + static_cast<std::ptrdiff_t>(worker.crossing_count),
+            worker.crossing.begin());
+  worker.crossing_count -= count;
 }
 
-void ContactPass::test_candidate(const ObjectPairView& pair, TrianglePair candidate, Worker& worker) const {
-  const TrianglePoints a = points_of(pair.a, candidate.a), b = points_of(pair.b, candidate.b);
+void ContactPass::test_candidate(const TaskInput& input, TrianglePair candidate, Worker& worker) const {
+  const TrianglePoints a = points_of(input.pair.a, candidate.a), b = points_of(input.pair.b, candidate.b);
   const TriangleIntersection shared = intersect_triangles_without_normal(a, b);
   worker.stats.exact_fallbacks += shared.used_exact_fallback ? 1 : 0;
   if (!shared.intersects) return;
-  worker.found.push_back({candidate.a, candidate.b, static_cast<std::uint32_t>(worker.details.size()),
-                          worker.number, shared.kind, shared.point_count});
-  if (search_.contact_points) {
-    if (worker.unfinished.size() == IntersectingPairs::capacity) add_normals(worker);
-    worker.unfinished.add(a, b);
-    worker.details.push_back({{}, static_cast<std::uint32_t>(worker.points.size())});
-    const auto points = shared.extreme_points();
-    worker.points.insert(worker.points.end(), points.begin(), points.end());
-  }
+  worker.found.push_back({input.ids_a[candidate.a], input.ids_b[candidate.b],
+                          static_cast<std::uint32_t>(worker.details.size()), worker.number, shared.kind,
+                          shared.point_count});
+  if (!search_.contact_points) return;
+  if (worker.unfinished.size() == IntersectingPairs::capacity) add_normals(worker);
+  worker.unfinished_details[worker.unfinished.size()] = static_cast<std::uint32_t>(worker.details.size());
+  worker.unfinished.add(a, b);
+  worker.details.push_back({{}, static_cast<std::uint32_t>(worker.points.size())});
+  const auto points = shared.extreme_points();
+  worker.points.insert(worker.points.end(), points.begin(), points.end());
+}
+
+void ContactPass::add_normals(Worker& worker) {
+  if (worker.unfinished.size() == 0) return;
+  std::array<Vec3d, IntersectingPairs::capacity> normals;
+  separating_normals(worker.unfinished, normals.data());
+  for (std::size_t i = 0; i < worker.unfinished.size(); ++i)
+    worker.details[worker.unfinished_details[i]].normal = normals[i];
+  worker.unfinished.clear();
 }
 
 /// Drops the excess contacts of one task, which begin at `first`: those that follow the first `wanted()`.
@@ -255,8 +284,8 @@ void ContactPass::gather_found(std::size_t job, Worker& worker) {
       const Worker& finder = workers_[found.worker];
       const ContactDetails& details = finder.details[found.details];
       contact->normal = details.normal;
-      std::copy_n(finder.points.begin() + details.first_point, found.point_count, points_.begin() + point);
-      point += found.point_count;
+      const ContactPoint* const found_points = finder.points.data() + details.first_point;
+      for (std::size_t k = 0; k < found.point_count; ++k) points_[point++] = found_points[k];
     }
     ++contact;
   }

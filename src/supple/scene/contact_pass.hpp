@@ -1,9 +1,12 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
 
+#include "contact/crossing_segments.hpp"
 #include "contact/pair_filter.hpp"
 #include "contact/separating_normal.hpp"
 #include "core/parallel.hpp"
@@ -68,10 +71,16 @@ class ContactPass {
   struct Worker {
     std::uint16_t number = 0;
     Traversal traversal;
-    std::vector<FoundContact> found;  // by all tasks of the worker
+    std::vector<FoundContact> found;  // by all tasks of the worker; triangles have the user's ids
     std::vector<ContactDetails> details;
     std::vector<ContactPoint> points;
-    IntersectingPairs unfinished;  // contacts whose `details` have no normal yet: the last ones
+    // Pairs that cross in a segment, in octree order. They wait here until there is a whole block of them.
+    std::array<TrianglePair, CrossingSegments::capacity + pair_filter_capacity> crossing;
+    std::size_t crossing_count = 0;
+    CrossingSegments segments;
+    // Contacts found one by one whose details have no normal yet, and the indices of these details.
+    IntersectingPairs unfinished;
+    std::array<std::uint32_t, IntersectingPairs::capacity> unfinished_details;
     std::vector<CollidingLeaves> leaves;
     TaskStats stats;
     // Scratch: sorts the contacts of one job.
@@ -83,10 +92,18 @@ class ContactPass {
 
   ObjectPairView view_of_job(std::uint32_t job) const;
   void run_task(std::size_t task, Worker& worker);
-  /// Appends to `found` with triangles in octree order.
-  void test_candidates(std::uint32_t job, const ObjectPairView& pair,
-                       std::span<const TrianglePair> candidates, Worker& worker) const;
-  void test_candidate(const ObjectPairView& pair, TrianglePair candidate, Worker& worker) const;
+  /// What a task tests: the objects of its job.
+  struct TaskInput {
+    std::uint32_t job;
+    ObjectPairView pair;
+    PlacedTriangles triangles_a, triangles_b;
+    std::span<const std::uint32_t> ids_a, ids_b;
+  };
+  TaskInput input_of_job(std::uint32_t job) const;
+  void test_candidates(const TaskInput& input, std::span<const TrianglePair> candidates,
+                       Worker& worker) const;
+  void test_candidate(const TaskInput& input, TrianglePair candidate, Worker& worker) const;
+  void add_crossing(const TaskInput& input, std::size_t count, Worker& worker) const;
   static void add_normals(Worker& worker);
   void drop_excess(std::uint32_t job, std::size_t first, Worker& worker);
   void gather_contacts(const Parallel& parallel);

@@ -5,21 +5,22 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <limits>
 #include <span>
-#include <type_traits>
-#include <vector>
 
 #include "geometry/vector.hpp"
 #include "support/instruction_sets.hpp"
+#include "unit/contact/triangle_lists.hpp"
 #include "unit/contact/triangle_pairs.hpp"
 
 namespace supple {
 namespace {
 
+using testing::converted;
 using testing::pair_families;
 using testing::PairFamily;
+using testing::PairList;
 using testing::TrianglePair3d;
+using testing::widened;
 
 /// The reference for the filter: one pair in scalar arithmetic, with the same order of operations.
 template <class Scalar>
@@ -101,69 +102,11 @@ class ScalarTwin {
   }
 };
 
-template <class Scalar>
-std::array<Vec3<Scalar>, 3> converted(const TrianglePoints& triangle) {
-  std::array<Vec3<Scalar>, 3> result;
-  for (std::size_t i = 0; i < 3; ++i) {
-    for (int axis = 0; axis < 3; ++axis) result[i][axis] = static_cast<Scalar>(triangle[i][axis]);
-  }
-  return result;
+template <class Pairs>
+PairVerdicts verdicts_on(const Pairs& list, std::size_t count, const Vec3d& of_a = {},
+                         const Vec3d& of_b = {}) {
+  return filter_pairs(list.a.placed(of_a), list.b.placed(of_b), std::span(list.pairs).first(count));
 }
-template <class Scalar>
-TrianglePoints widened(const std::array<Vec3<Scalar>, 3>& triangle) {
-  TrianglePoints result;
-  for (std::size_t i = 0; i < 3; ++i) result[i] = {triangle[i].x, triangle[i].y, triangle[i].z};
-  return result;
-}
-
-/// Triangles in the arrays of an object; no two share vertices. The filter must not read the fourth scalar.
-template <class Scalar>
-class TriangleList {
- public:
-  void add(const std::array<Vec3<Scalar>, 3>& corners) {
-    const auto first = static_cast<std::uint32_t>(positions_.size() / 4);
-    // The vertices are numbered backwards to reveal errors in the indexing.
-    for (std::size_t i = 3; i-- > 0;)
-      positions_.insert(positions_.end(),
-                        {corners[i].x, corners[i].y, corners[i].z, std::numeric_limits<Scalar>::quiet_NaN()});
-    triangles_.push_back({first + 2, first + 1, first});
-  }
-  PlacedTriangles placed(const Vec3d& translation = {}) const {
-    PlacedTriangles placed{{}, translation};
-    placed.arrays.triangles = triangles_.data();
-    if constexpr (std::is_same_v<Scalar, float>) placed.arrays.floats = {positions_.data(), 4};
-    if constexpr (std::is_same_v<Scalar, double>) placed.arrays.doubles = {positions_.data(), 4};
-    return placed;
-  }
-
- private:
-  std::vector<Scalar> positions_;
-  std::vector<Triangle> triangles_;
-};
-
-/// Two lists and pairs with one triangle from each; the triangles of b are in reverse order.
-template <class ScalarA, class ScalarB = ScalarA>
-struct PairList {
-  explicit PairList(std::size_t count) {
-    for (std::uint32_t i = 0; i < count; ++i) pairs.push_back({i, static_cast<std::uint32_t>(count) - 1 - i});
-  }
-  void set(std::size_t pair, const std::array<Vec3<ScalarA>, 3>& of_a,
-           const std::array<Vec3<ScalarB>, 3>& of_b) {
-    corners_b.resize(pairs.size());
-    corners_b[pairs[pair].b] = of_b;
-    a.add(of_a);
-    if (pair + 1 < pairs.size()) return;
-    for (const auto& corners : corners_b) b.add(corners);
-  }
-  PairVerdicts verdicts(std::size_t count, const Vec3d& of_a = {}, const Vec3d& of_b = {}) const {
-    return filter_pairs(a.placed(of_a), b.placed(of_b), std::span(pairs).first(count));
-  }
-
-  TriangleList<ScalarA> a;
-  TriangleList<ScalarB> b;
-  std::vector<std::array<Vec3<ScalarB>, 3>> corners_b;
-  std::vector<TrianglePair> pairs;
-};
 
 class PairFilterTest : public ::testing::TestWithParam<PairFamily> {};
 INSTANTIATE_TEST_SUITE_P(All, PairFilterTest, ::testing::ValuesIn(pair_families()),
@@ -195,12 +138,13 @@ void expect_true_verdicts(const PairFamily& family) {
     ASSERT_EQ(expected.apart & hits, 0u);
     ASSERT_EQ(expected.crossing & ~segments, 0u);
     for_each_target([&](const char* target) {
-      const PairVerdicts all = block.verdicts(pair_filter_capacity);
+      const PairVerdicts all = verdicts_on(block, pair_filter_capacity);
       EXPECT_EQ(all.apart & finite, expected.apart & finite) << target;
       EXPECT_EQ(all.crossing, expected.crossing) << target;
       for (const std::size_t count : {std::size_t{0}, std::size_t{1}, std::size_t{13}, std::size_t{63}}) {
         const std::uint64_t asked = (std::uint64_t{1} << count) - 1;
-        EXPECT_EQ(block.verdicts(count), (PairVerdicts{all.apart & asked, all.crossing & asked})) << target;
+        EXPECT_EQ(verdicts_on(block, count), (PairVerdicts{all.apart & asked, all.crossing & asked}))
+            << target;
       }
     });
   }
@@ -241,7 +185,7 @@ void expect_verdicts_where_they_are() {
       expected.crossing |= std::uint64_t{twin.crossing} << i;
     }
     for_each_target([&](const char* target) {
-      const PairVerdicts all = block.verdicts(pair_filter_capacity, shift_a, shift_b);
+      const PairVerdicts all = verdicts_on(block, pair_filter_capacity, shift_a, shift_b);
       EXPECT_EQ(all.apart & finite, expected.apart & finite) << target << ' ' << family.name;
       EXPECT_EQ(all.crossing, expected.crossing) << target << ' ' << family.name;
     });
@@ -265,7 +209,7 @@ TEST(PairFilterRate, MostSeparatedPairsAreRejected) {
       for (std::size_t k = 0; k < 3; ++k) pair.b[k] = pair.a[k] * 0.99 + Vec3d{0.5, 0.3, 0.2};
       block.set(i, pair.a, pair.b);
     }
-    rejected += std::popcount(block.verdicts(pair_filter_capacity).apart);
+    rejected += std::popcount(verdicts_on(block, pair_filter_capacity).apart);
   }
   EXPECT_GT(rejected, 1200);
 }
@@ -280,7 +224,7 @@ int undecided_in_general_position() {
       const TrianglePair3d pair = pair_families()[0].draw(random);
       block.set(i, converted<Scalar>(pair.a), converted<Scalar>(pair.b));
     }
-    const PairVerdicts verdicts = block.verdicts(pair_filter_capacity);
+    const PairVerdicts verdicts = verdicts_on(block, pair_filter_capacity);
     undecided += std::popcount(~(verdicts.apart | verdicts.crossing));
   }
   return undecided;
