@@ -1,4 +1,5 @@
-// Runs Supple alone on cells of workloads A, B and C and prints the median time of each stage.
+// Runs Supple alone on cells of workloads A, B and C and prints the median time of each stage. Options are
+// the defaults; `--pairs-only` leaves out contact points and normals.
 //
 //     supple_stage_medians 18000x64 bunnyx9 cloth-ball u1/100000 --frames 20 --threads 1
 
@@ -24,6 +25,7 @@ struct Choice {
   std::vector<std::string> cells;
   std::size_t frames = 15;
   std::uint32_t threads = 1;
+  bool pairs_only = false;
 };
 
 /// Processor time of the calling process in milliseconds.
@@ -53,12 +55,13 @@ class StageTimes {
     std::printf("%-16s", cell.c_str());
     for (const auto& row : rows_) std::printf(" %9.3f", median(row));
     const auto candidates = last.candidate_pairs + last.vertex_face_candidates + last.edge_edge_candidates;
-    std::printf(" %11llu %9llu\n", static_cast<unsigned long long>(candidates),
-                static_cast<unsigned long long>(last.contacts));
+    std::printf(" %11llu %9llu %9llu\n", static_cast<unsigned long long>(candidates),
+                static_cast<unsigned long long>(last.contacts),
+                static_cast<unsigned long long>(last.exact_fallbacks));
   }
   static void print_heading() {
-    std::printf("%-16s %9s %9s %9s %9s %9s %9s %9s %9s %11s %9s\n", "ms", "set", "refit", "broad", "traverse",
-                "exact", "finish", "detect", "cpu", "candidates", "contacts");
+    std::printf("%-16s %9s %9s %9s %9s %9s %9s %9s %9s %11s %9s %9s\n", "ms", "set", "refit", "broad",
+                "traverse", "exact", "finish", "detect", "cpu", "candidates", "contacts", "fallbacks");
   }
 
  private:
@@ -83,7 +86,7 @@ bool run_copies(const std::string& cell, const Choice& choice) {
   if (!copies) return false;
   SceneOptions options;
   options.threads = choice.threads;
-  options.contact_points = false;
+  options.contact_points = !choice.pairs_only;
   Scene scene(options);
   std::vector<ObjectId> objects;
   for (std::size_t i = 0; i < copies->copies(); ++i)
@@ -164,8 +167,10 @@ Choice choice_of(int argument_count, char** arguments) {
       choice.frames = number_of(arguments[++i]);
     else if (argument == "--threads" && has_value)
       choice.threads = static_cast<std::uint32_t>(number_of(arguments[++i]));
+    else if (argument == "--pairs-only")
+      choice.pairs_only = true;
     else if (argument.starts_with("-"))
-      throw Error("usage: supple_stage_medians [--frames N] [--threads N] [CELL...]");
+      throw Error("usage: supple_stage_medians [--frames N] [--threads N] [--pairs-only] [CELL...]");
     else
       choice.cells.push_back(argument);
   }
