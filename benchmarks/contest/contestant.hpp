@@ -85,7 +85,11 @@ std::unique_ptr<BoxContestant> make_supple_boxes(std::uint32_t threads,
                                                  BroadPhaseMethod method = BroadPhaseMethod::automatic);
 /// One thread; `moving` is the dirty list of every frame.
 std::unique_ptr<BoxContestant> make_supple_boxes_with_dirty_list(std::vector<std::uint32_t> moving);
-std::unique_ptr<CopiesContestant> make_supple_copies(std::uint32_t threads, bool contact_points = false);
+/// What a contestant on deforming copies finds: pairs of triangles, or also contact points and normals, which
+/// is Supple's default.
+enum class CopyResults : std::uint8_t { pairs, contact_points };
+std::unique_ptr<CopiesContestant> make_supple_copies(std::uint32_t threads,
+                                                     CopyResults results = CopyResults::contact_points);
 /// `pairs` are the contacts; the stages include the number of candidates.
 std::unique_ptr<Contestant<ClothStep>> make_supple_cloth(std::uint32_t threads);
 

@@ -7,7 +7,7 @@ void run_copies(const Choice& choice, const std::string& name, bool two_threads,
   if (!copies) return output.skip("the bunny is not there; set SUPPLE_DATA");
   Turns<DeformingCopies, CopiesContestant> turns;
   turns.add("Supple", 1, make_supple_copies(1), *copies);
-  if (!two_threads) turns.add("Supple, contact points", 1, make_supple_copies(1, true), *copies);
+  if (!two_threads) turns.add("Supple, pairs only", 1, make_supple_copies(1, CopyResults::pairs), *copies);
   if (two_threads) turns.add("Supple, 2 threads", 2, make_supple_copies(2), *copies);
   if (!two_threads && !choice.only_supple) {
     for (const auto& entry : other_copies_contestants()) {

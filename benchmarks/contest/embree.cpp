@@ -225,6 +225,9 @@ std::unique_ptr<BoxContestant> make_embree_boxes() {
 std::unique_ptr<CopiesContestant> make_embree_copies() {
   return std::make_unique<EmbreeCopies>();
 }
+std::unique_ptr<CopiesContestant> make_embree_copies_with_points() {
+  return with_contact_points(std::make_unique<EmbreeCopies>());
+}
 
 std::unique_ptr<ClothContestant> make_embree_cloth() {
   return std::make_unique<EmbreeCloth>();

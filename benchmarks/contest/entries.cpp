@@ -30,6 +30,7 @@ std::vector<Entry<CopiesContestant>> other_copies_contestants() {
   std::vector<Entry<CopiesContestant>> entries;
 #ifdef SUPPLE_CONTEST_EMBREE
   entries.push_back({"Embree", make_embree_copies});
+  entries.push_back({"Embree, contact points", make_embree_copies_with_points});
 #endif
 #ifdef SUPPLE_CONTEST_CGAL
   entries.push_back({"CGAL", make_cgal_copies});

@@ -14,6 +14,7 @@ std::unique_ptr<BoxContestant> make_baseline_grid();
 /// Embree 3 with `rtcCollide`: a low-quality rebuild for boxes, a refit for meshes.
 std::unique_ptr<BoxContestant> make_embree_boxes();
 std::unique_ptr<CopiesContestant> make_embree_copies();
+std::unique_ptr<CopiesContestant> make_embree_copies_with_points();
 std::unique_ptr<ClothContestant> make_embree_cloth();
 
 /// CGAL's `box_intersection_d`, which keeps no state between frames.

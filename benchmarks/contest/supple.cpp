@@ -43,11 +43,15 @@ class SuppleBoxesWithDirtyList : public BoxContestant {
   std::span<const IndexPair> pairs_;
 };
 
-SceneOptions options_of(std::uint32_t threads, ContactKinds contacts, bool contact_points = false) {
+SceneOptions options_of(std::uint32_t threads, ContactKinds contacts) {
   SceneOptions options;
   options.threads = threads;
   options.contacts = contacts;
-  options.contact_points = contact_points;  // the other contestants find only pairs
+  return options;
+}
+SceneOptions options_of(std::uint32_t threads, CopyResults results) {
+  SceneOptions options = options_of(threads, ContactKinds::intersection);
+  options.contact_points = results == CopyResults::contact_points;
   return options;
 }
 
@@ -63,8 +67,7 @@ std::vector<StageTime> stages_of(const StepStats& stats, double handing_over, do
 
 class SuppleCopies : public CopiesContestant {
  public:
-  SuppleCopies(std::uint32_t threads, bool contact_points)
-      : scene_(options_of(threads, ContactKinds::intersection, contact_points)) {}
+  SuppleCopies(std::uint32_t threads, CopyResults results) : scene_(options_of(threads, results)) {}
 
   void prepare(const DeformingCopies& copies) override {
     for (std::size_t i = 0; i < copies.copies(); ++i)
@@ -148,8 +151,8 @@ std::unique_ptr<BoxContestant> make_supple_boxes_with_dirty_list(std::vector<std
   return std::make_unique<SuppleBoxesWithDirtyList>(std::move(moving));
 }
 
-std::unique_ptr<CopiesContestant> make_supple_copies(std::uint32_t threads, bool contact_points) {
-  return std::make_unique<SuppleCopies>(threads, contact_points);
+std::unique_ptr<CopiesContestant> make_supple_copies(std::uint32_t threads, CopyResults results) {
+  return std::make_unique<SuppleCopies>(threads, results);
 }
 
 std::unique_ptr<Contestant<ClothStep>> make_supple_cloth(std::uint32_t threads) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -31,6 +32,7 @@ class CandidateContestant : public CopiesContestant {
   void frame(const DeformingCopies& copies) final;
   PairDigest pairs() const final { return digest_of(intersecting_); }
   std::vector<StageTime> stages() const final { return stages_; }
+  std::span<const CopyPair> intersecting() const { return intersecting_; }
 
  protected:
   /// Updates the data structures with the new positions.
@@ -44,5 +46,9 @@ class CandidateContestant : public CopiesContestant {
   std::vector<CopyPair> intersecting_;
   std::vector<StageTime> stages_;
 };
+
+/// A contestant that also computes a normal and contact points for each pair that another one finds, in plain
+/// double precision, as users of that library would.
+std::unique_ptr<CopiesContestant> with_contact_points(std::unique_ptr<CandidateContestant> finder);
 
 }  // namespace supple::benchmarks

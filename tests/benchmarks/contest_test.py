@@ -91,6 +91,15 @@ class Judgement(unittest.TestCase):
         self.assertEqual(judged["A, the best library"], ("CGAL", 4, "reach"))
         self.assertEqual(judged["A, the baselines"], ("baseline sweep", 0.5, "missed"))
 
+    def test_default_options_against_pairs(self):
+        cell = self.cell("B/980x64", Supple=[2, 2, 2], Embree=[8, 8, 8])
+        for name, time in (("Supple, pairs only", 1.6), ("Embree, contact points", 9)):
+            cell["contestants"].append({"name": name, "cpu_ms": [time], "wall_ms": [time], "mean_stage_ms": {}})
+        judged = {row["row"]: (row["against"], row["ratio"], row["met"]) for row in contest.judged([cell]).rows}
+        self.assertEqual(judged["B 980 × 64 and × 512, contact points, against pairs"], ("Embree", 4, "reach"))
+        self.assertEqual(judged["B, contact points in both"], ("Embree, contact points", 4.5, "reach"))
+        self.assertEqual(judged["B, cost of contact points and normals"], ("Supple, pairs only", 1.25, "missed"))
+
     def test_smaller_is_better(self):
         cell = {"cell": "memory/980", "skipped": None, "values": {"heap bytes a triangle": 39.0}, "contestants": []}
         self.assertEqual(contest.judged([cell]).rows[0]["met"], "aim")
