@@ -43,13 +43,15 @@ FULL = (
     + ["A/u1/100000/drift", "A/u1/100000/one-percent"]
     + [f"B/{name}" for name in ("980x64", "980x512", "18000x9", "18000x64", "69620x9", "69620x64", "bunnyx9",
                                 "18000x64-rest", "69620x64-rest")]
-    + ["C/cloth-funnel", "C/cloth-ball", "C/crumpled"]
+    + ["C/cloth-funnel", "C/cloth-ball", "C/crumpled", "C/passing", "C/rods"]
+    + ["step/cloth-funnel", "step/cloth-ball", "step/passing", "step/rods"]
     + ["process/cloth-ball", "process/two-bunnies"]
     + ["threads/B/18000x64", "threads/C/cloth-ball", "threads/C/crumpled"]
     + GROWTH
     + ["limits/bandwidth"]
     + [f"limits/refit/{triangles}" for triangles in (980, 18000, 69620, 1310720)]
-    + ["memory/69620", "memory/bunny"]
+    + ["memory/69620", "memory/bunny", "memory/moving/69620"]
+    + ["build/69620", "build/bunny", "frames/18000x9"]
 )
 QUICK = (
     [f"A/{field}/10000" for field in FIELDS]
@@ -273,6 +275,21 @@ def judged(cells):
                          "Supple, one percent moves, dirty list")
     for cell in judge.matching("C/.*"):
         judge.add_faster("C, candidates and verdicts, against Embree's candidates", cell, ["Embree"], 2.5, 4)
+    for cell in judge.matching("step/.*"):
+        values = judge.cells[cell]["values"]
+        judge.add("safe step", cell, "Supple, detect", values["milliseconds"] / values["milliseconds of detect"], 0.5,
+                  0.3, True)
+    for cell in judge.matching("build/.*"):
+        values = judge.cells[cell]["values"]
+        balanced = values["milliseconds, balanced"]
+        judge.add("build of a balanced octree", cell, "Supple, regular", balanced / values["milliseconds, regular"], 1.1,
+                  1, True)
+        judge.add("build on two threads", cell, "Supple, 1 thread",
+                  balanced / values["milliseconds, balanced, 2 threads"], 1.7, 1.9)
+    for cell in judge.matching("frames/.*"):
+        values = judge.cells[cell]["values"]
+        judge.add("99.9th percentile of frames", cell, "median",
+                  values["milliseconds, 99.9th percentile"] / values["milliseconds, median"], 2, 1.3, True)
     for cell in judge.matching("process/.*"):
         judge.add_faster("whole process supple detect", cell, ["CGAL"], 2, 4)
     for cell in judge.matching("threads/.*"):
@@ -280,9 +297,12 @@ def judged(cells):
         judge.add("two threads", cell, "Supple, 1 thread", one / two, 1.8, 1.95)
     for name, points in growth_points(judge):
         judge.add("growth, exponent", name, "linear", exponent(points), 1.1, 1.05, True)
-    for cell in judge.matching("memory/.*"):
+    for cell in judge.matching("memory/[^/]*"):
         judge.add("memory besides the mesh, bytes a triangle", cell, "", judge.cells[cell]["values"]
                   ["heap bytes a triangle"], 64, 40, True)
+    for cell in judge.matching("memory/moving/.*"):
+        judge.add("memory of moving objects, bytes a triangle", cell, "", judge.cells[cell]["values"]
+                  ["heap bytes a triangle"], 110, 80, True)
     return judge
 
 

@@ -16,13 +16,19 @@ void run_boxes(const Choice& choice, const std::string& cell, Output& output);
 void run_copies(const Choice& choice, const std::string& cell, bool two_threads, Output& output);
 /// A cloth of `make_cloth_step`.
 void run_cloth(const Choice& choice, const std::string& cell, bool two_threads, Output& output);
-/// The longest safe step of a cloth (`Scene::max_step`) and its median time; ipc_toolkit.py compares.
+/// The longest safe step of a cloth (`Scene::max_step`), its median time, and that of `detect` for the same
+/// step; ipc_toolkit.py compares.
 void run_safe_step(const Choice& choice, const std::string& cell, Output& output);
 /// The read bandwidth of each cache level and of memory.
 void run_bandwidth(Output& output);
 /// SHAPE: Supple's refit of one object against the ideal refit.
 void run_refit(const Choice& choice, const std::string& cell, Output& output);
-/// SHAPE: the heap memory of a scene of two copies after some steps, and the part of its octrees.
-void run_memory(const std::string& cell, Output& output);
+/// SHAPE: the heap memory of a scene of two copies after some steps, and the part of its octrees. `moving`:
+/// the copies move on paths (`Scene::set_motion`) and are searched for continuous contacts.
+void run_memory(const std::string& cell, bool moving, Output& output);
+/// SHAPE: the time to add an object with a balanced octree, with a regular octree, and on two threads.
+void run_build(const Choice& choice, const std::string& cell, Output& output);
+/// SHAPExCOPIES: the distribution of the times of 10,000 frames (`Choice::rounds`, if given).
+void run_frames(const Choice& choice, const std::string& cell, Output& output);
 
 }  // namespace supple::benchmarks

@@ -70,21 +70,31 @@ void run_refit(const Choice& choice, const std::string& triangles, Output& outpu
   output.records(turns.records());
 }
 
-void run_memory(const std::string& shape, Output& output) {
+void run_memory(const std::string& shape, bool moving, Output& output) {
   auto copies = make_deforming_copies(shape + "x2");
   if (!copies) return output.skip("the bunny is not there; set SUPPLE_DATA");
   const double before = heap_bytes();
   SceneOptions options;
   options.threads = 1;
+  if (moving) options.contacts = ContactKinds::continuous;
   Scene scene(options);
   std::vector<ObjectId> objects;
   for (std::size_t i = 0; i < copies->copies(); ++i)
     objects.push_back(scene.add(copies->positions(i), copies->triangles()));
+  std::vector<std::vector<Vec3f>> last(copies->copies());
   for (int frame = 0; frame < 3; ++frame) {
+    for (std::size_t i = 0; i < objects.size(); ++i)
+      last[i].assign(copies->positions(i).begin(), copies->positions(i).end());
     copies->advance();
-    for (std::size_t i = 0; i < objects.size(); ++i) scene.set_positions(objects[i], copies->positions(i));
+    for (std::size_t i = 0; i < objects.size(); ++i) {
+      if (moving)
+        scene.set_motion(objects[i], last[i], copies->positions(i));
+      else
+        scene.set_positions(objects[i], copies->positions(i));
+    }
     scene.detect();
   }
+  last = {};
   malloc_trim(0);
   const double held = heap_bytes() - before;
   double octrees = 0, positions = 0;
@@ -97,6 +107,54 @@ void run_memory(const std::string& shape, Output& output) {
   output.value("heap bytes a triangle", held / triangles);
   output.value("octree bytes a triangle", octrees / triangles);
   output.value("positions bytes a triangle", positions / triangles);
+}
+
+void run_build(const Choice& choice, const std::string& shape, Output& output) {
+  const auto copies = make_deforming_copies(shape + "x1");
+  if (!copies) return output.skip("the bunny is not there; set SUPPLE_DATA");
+  const auto time_add = [&](ObjectOctreeBuild build, std::uint32_t threads) {
+    SceneOptions options;
+    options.threads = threads;
+    Scene scene(options);
+    ObjectOptions object;
+    object.octree.build = build;
+    const double start = wall_milliseconds();
+    scene.add(copies->positions(0), copies->triangles(), object);
+    return wall_milliseconds() - start;
+  };
+  std::vector<double> balanced, regular, on_two_threads;
+  const double begin = wall_milliseconds();
+  while (balanced.size() < 3 ||
+         (balanced.size() < choice.rounds && wall_milliseconds() - begin < 1e3 * choice.seconds)) {
+    balanced.push_back(time_add(ObjectOctreeBuild::balanced, 1));
+    regular.push_back(time_add(ObjectOctreeBuild::regular, 1));
+    on_two_threads.push_back(time_add(ObjectOctreeBuild::balanced, 2));
+  }
+  output.value("triangles", static_cast<double>(copies->triangle_count()));
+  output.value("milliseconds, balanced", quantile(balanced, 0.5));
+  output.value("milliseconds, regular", quantile(regular, 0.5));
+  output.value("milliseconds, balanced, 2 threads", quantile(on_two_threads, 0.5));
+}
+
+void run_frames(const Choice& choice, const std::string& name, Output& output) {
+  auto copies = make_deforming_copies(name);
+  if (!copies) return output.skip("the bunny is not there; set SUPPLE_DATA");
+  const auto supple = make_supple_copies(1);
+  supple->prepare(*copies);
+  std::vector<double> times;
+  const std::size_t frames = choice.rounds == Choice().rounds ? 10'000 : choice.rounds;
+  constexpr std::size_t warm_up = 20;  // buffers still grow
+  for (std::size_t frame = 0; frame < frames + warm_up; ++frame) {
+    copies->advance();
+    const double start = wall_milliseconds();
+    supple->frame(*copies);
+    if (frame >= warm_up) times.push_back(wall_milliseconds() - start);
+  }
+  output.value("frames", static_cast<double>(frames));
+  output.value("milliseconds, median", quantile(times, 0.5));
+  output.value("milliseconds, 99th percentile", quantile(times, 0.99));
+  output.value("milliseconds, 99.9th percentile", quantile(times, 0.999));
+  output.value("milliseconds, longest", quantile(times, 1));
 }
 
 }  // namespace supple::benchmarks

@@ -30,6 +30,8 @@ void run(const Choice& choice) {
   const bool two_threads = cell.starts_with("threads/");
   if (two_threads)
     pin_to(0, 2);
+  else if (cell.starts_with("build/"))
+    pin_to(0, 2);
   else if (!cell.starts_with("limits/bandwidth"))
     pin_to(choice.cpu, 1);
   if (cell.starts_with("A/")) {
@@ -52,8 +54,14 @@ void run(const Choice& choice) {
     run_bandwidth(output);
   } else if (cell.starts_with("limits/refit/")) {
     run_refit(choice, after("limits/refit/"), output);
+  } else if (cell.starts_with("memory/moving/")) {
+    run_memory(after("memory/moving/"), true, output);
   } else if (cell.starts_with("memory/")) {
-    run_memory(after("memory/"), output);
+    run_memory(after("memory/"), false, output);
+  } else if (cell.starts_with("build/")) {
+    run_build(choice, after("build/"), output);
+  } else if (cell.starts_with("frames/")) {
+    run_frames(choice, after("frames/"), output);
   } else {
     throw Error("no cell is named '" + cell + "'\n" + usage);
   }

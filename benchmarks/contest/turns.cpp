@@ -2,6 +2,7 @@
 
 #include <sched.h>
 
+#include <algorithm>
 #include <cstdio>
 
 namespace supple::benchmarks {
@@ -19,6 +20,13 @@ std::string text_of(const PairDigest& pairs) {
   std::snprintf(text, sizeof text, "%llu pairs (hash %016llx)", static_cast<unsigned long long>(pairs.count),
                 static_cast<unsigned long long>(pairs.hash));
   return text;
+}
+
+double quantile(std::vector<double> values, double part) {
+  const auto last = static_cast<double>(values.size() - 1);
+  const auto place = values.begin() + static_cast<std::ptrdiff_t>(part * last + 0.5);
+  std::nth_element(values.begin(), place, values.end());
+  return *place;
 }
 
 void check_equal(const std::string& cell, const Record& a, const Record& b) {

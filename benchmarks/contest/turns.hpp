@@ -30,6 +30,8 @@ void pin_to(int first, int count);
 /// Throws `Disagreement` with the cell, both contestants and their results.
 void check_equal(const std::string& cell, const Record& a, const Record& b);
 std::string text_of(const PairDigest& pairs);
+/// The value that the given part of all values does not exceed; 0.5 for the median.
+double quantile(std::vector<double> values, double part);
 
 /// Runs frames in turn. The contestant that starts changes from round to round.
 template <class Workload, class AnyContestant>

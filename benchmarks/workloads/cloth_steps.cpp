@@ -35,6 +35,58 @@ ClothStep crumpled(std::uint32_t columns, std::uint32_t rows) {
   return step;
 }
 
+/// Adds a copy of a body; `start` and `end` place its vertices.
+template <class Start, class End>
+void add_body(ClothStep& step, const TriangleMesh& body, Start start, End end) {
+  const auto first = static_cast<std::uint32_t>(step.start.size());
+  for (const Vec3d& p : body.positions) {
+    step.start.push_back(in_single(start(p)));
+    step.end.push_back(in_single(end(p)));
+  }
+  for (const Triangle& t : body.triangles)
+    step.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+}
+
+/// Layers of spheres of 980 triangles. Neighbouring layers fly in opposite directions, three diameters far,
+/// and pass at a hundredth of a diameter.
+ClothStep passing() {
+  const TriangleMesh sphere = make_icosphere(7);
+  ClothStep step;
+  for (int i = 0; i < 64; ++i) {
+    const int layer = i / 16;
+    const Vec3d center{2.2 * (i % 4), 2.2 * (i / 4 % 4), 2.02 * layer};
+    const double way = layer % 2 == 0 ? 3 : -3;
+    add_body(
+        step, sphere,
+        [&](const Vec3d& p) {
+          return center + p + Vec3d{-way, 0, 0};
+        },
+        [&](const Vec3d& p) {
+          return center + p + Vec3d{way, 0.05, 0};
+        });
+  }
+  return step;
+}
+
+/// Rods of length 2 and width 0.01 side by side, apart at the start. Each turns about its middle in another
+/// direction, so that long triangles sweep over their neighbours and some touch.
+ClothStep rods() {
+  const TriangleMesh rod = make_box({2, 0.01, 0.01}, 1);
+  ClothStep step;
+  for (int i = 0; i < 400; ++i) {
+    const Vec3d center{0, 0.02 * (i % 20), 0.02 * (i / 20)};
+    const auto tilted = [&](const Vec3d& p, double by_y, double by_z) {
+      const double y = p.y + by_y * p.x, z = p.z + by_z * p.x;
+      return center + Vec3d{p.x - by_y * p.y - by_z * p.z, y + 0.1 * sin_turns(0.29 * i) * z, z};
+    };
+    const auto angle = [&](double turns) { return 0.004 * sin_turns(turns * i); };
+    add_body(
+        step, rod, [&](const Vec3d& p) { return tilted(p, angle(0.37), angle(0.61)); },
+        [&](const Vec3d& p) { return tilted(p, 2 * angle(0.73), 2 * angle(0.17)); });
+  }
+  return step;
+}
+
 }  // namespace
 
 std::optional<ClothStep> make_cloth_step(const std::string& name) {
@@ -43,8 +95,10 @@ std::optional<ClothStep> make_cloth_step(const std::string& name) {
   if (name == "cloth-funnel") return load_step("cloth-funnel/frames/227.ply", "cloth-funnel/frames/228.ply");
   if (name == "crumpled") return crumpled(300, 150);
   if (name == "crumpled-small") return crumpled(48, 24);
+  if (name == "passing") return passing();
+  if (name == "rods") return rods();
   throw Error("no cloth is named '" + name +
-              "'; choose one of cloth-ball, cloth-funnel, crumpled, crumpled-small");
+              "'; choose one of cloth-ball, cloth-funnel, crumpled, crumpled-small, passing, rods");
 }
 
 }  // namespace supple::benchmarks

@@ -16,8 +16,8 @@ struct ClothStep {
 };
 
 /// `cloth-ball` and `cloth-funnel` are real frames; returns nothing when their files are missing. `crumpled`
-/// is generated: a sheet of 90,000 triangles whose folds pass through each other. Throws `Error` for other
-/// names.
+/// is generated: a sheet of 90,000 triangles whose folds pass through each other. `passing` are 64 spheres
+/// that fly past one another, `rods` a bundle of 400 thin rods that turn. Throws `Error` for other names.
 std::optional<ClothStep> make_cloth_step(const std::string& name);
 
 }  // namespace supple::benchmarks

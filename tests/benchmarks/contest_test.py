@@ -66,8 +66,24 @@ class Cells(unittest.TestCase):
         for cell in ("A/u1/300/drift", "A/u1/300/one-percent", "threads/B/80x8", "limits/refit/80", "growth/80x2"):
             with self.subTest(cell=cell):
                 self.assertTrue(contestants_of(cell))
-        values = json.loads(run("memory/980").stdout)["values"]
-        self.assertGreater(values["heap bytes a triangle"], values["octree bytes a triangle"])
+        for cell in ("memory/980", "memory/moving/980"):
+            with self.subTest(cell=cell):
+                values = json.loads(run(cell).stdout)["values"]
+                self.assertGreater(values["heap bytes a triangle"], values["octree bytes a triangle"])
+        for cell in ("step/crumpled-small", "step/passing", "step/rods", "build/980", "frames/80x2"):
+            with self.subTest(cell=cell):
+                values = json.loads(run(cell, "--rounds", "20").stdout)["values"]
+                times = {name: value for name, value in values.items() if name.startswith("milliseconds")}
+                self.assertGreaterEqual(len(times), 2)
+                self.assertTrue(all(time > 0 for time in times.values()), times)
+                self.assertTrue(contest.judged([{"cell": cell, "skipped": None, "values": values,
+                                                 "contestants": []}]).rows)
+
+    def test_bodies_that_move_fast(self):
+        for cell in ("C/passing", "C/rods"):
+            with self.subTest(cell=cell):
+                found = contestants_of(cell)
+                self.assertEqual(len({contestant["pairs"] for contestant in found[1:]}), min(1, len(found) - 1))
 
     def test_wrong_names(self):
         for cell in ("A/u1/0", "A/u2/10", "B/981x2", "B/80x0", "C/flag", "D/1"):
