@@ -88,9 +88,15 @@ std::optional<Impact> checked_first_impact(const ElementMotion& motion, const Im
 
 std::optional<Impact> first_impact_of_finite(const ElementMotion& motion, const ImpactOptions& options,
                                              bool& used_exact) {
-  const double separation = options.min_separation;
   const RelativeMotion relative = relative_motion(motion);
-  const ImpactSearch search = search_impact(relative, separation);
+  return first_impact_after(search_impact(relative, options.min_separation), motion, relative, options,
+                            used_exact);
+}
+
+std::optional<Impact> first_impact_after(const ImpactSearch& search, const ElementMotion& motion,
+                                         const RelativeMotion& relative, const ImpactOptions& options,
+                                         bool& used_exact) {
+  const double separation = options.min_separation;
   if (search.outcome == ImpactSearch::Outcome::apart) return std::nullopt;
   if (search.outcome == ImpactSearch::Outcome::touching) {
     return impact_at(motion, relative, search.time, separation);

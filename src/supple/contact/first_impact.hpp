@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "contact/impact_search.hpp"
 #include "contact/relative_motion.hpp"
 #include "supple/continuous.hpp"
 
@@ -11,5 +12,10 @@ namespace supple {
 /// decide, and leaves it unchanged otherwise.
 std::optional<Impact> first_impact_of_finite(const ElementMotion& motion, const ImpactOptions& options,
                                              bool& used_exact);
+
+/// The same after the search of `relative`, the relative motion of the elements.
+std::optional<Impact> first_impact_after(const ImpactSearch& search, const ElementMotion& motion,
+                                         const RelativeMotion& relative, const ImpactOptions& options,
+                                         bool& used_exact);
 
 }  // namespace supple

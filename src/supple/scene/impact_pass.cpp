@@ -17,14 +17,8 @@ namespace {
 
 constexpr std::size_t block_size = RelativeMotionBlock::capacity;
 
-/// A vertex of an object, in octree order.
-struct VertexRef {
-  const MovingObject* object;
-  std::uint32_t vertex;
-};
-
 /// The four vertices of a pair of elements as `VertexFaceMotion` or `EdgeEdgeMotion` orders them.
-std::array<VertexRef, 4> vertices_of(ElementPairKind kind, ElementPair pair, const MovingObject& a,
+std::array<MovingVertex, 4> vertices_of(ElementPairKind kind, ElementPair pair, const MovingObject& a,
                                      const MovingObject& b) {
   switch (kind) {
     case ElementPairKind::vertex_face: {
@@ -47,7 +41,7 @@ Vec3d placed(const Vec3d& position, const MovingObject& object) {
   return object.view.translation == Vec3d{} ? position : position + object.view.translation;
 }
 
-ElementMotion motion_of(ElementPairKind kind, const std::array<VertexRef, 4>& vertices) {
+ElementMotion motion_of(ElementPairKind kind, const std::array<MovingVertex, 4>& vertices) {
   ElementMotion motion;
   motion.are_edges = kind == ElementPairKind::edge_edge;
   for (std::size_t i = 0; i < 4; ++i) {
@@ -58,13 +52,13 @@ ElementMotion motion_of(ElementPairKind kind, const std::array<VertexRef, 4>& ve
   return motion;
 }
 
-std::uint32_t user_vertex(const VertexRef& ref) {
+std::uint32_t user_vertex(const MovingVertex& ref) {
   return ref.object->vertex_ids[ref.vertex];
 }
 
 /// Orders the vertices of each edge, and the two edges of a self-collision, by the user's vertex ids. The
 /// contact then does not depend on the shape of the octrees.
-void sort_edges(std::array<VertexRef, 4>& vertices) {
+void sort_edges(std::array<MovingVertex, 4>& vertices) {
   for (const std::size_t i : {0u, 2u}) {
     if (user_vertex(vertices[i + 1]) < user_vertex(vertices[i])) std::swap(vertices[i], vertices[i + 1]);
   }
@@ -339,10 +333,41 @@ void ImpactPass::test_candidates(std::uint32_t job, ElementPairKind kind,
     fill_block(a, b, latest_.load(std::memory_order_relaxed), kind, part, worker.block);
     std::uint64_t left = may_touch(worker.block, part.size(), kind == ElementPairKind::edge_edge,
                                    round_up(options_.min_separation));
-    for (; left != 0 && !stop_.stop_requested(); left &= left - 1) {
+    worker.open.clear();
+    for (; left != 0; left &= left - 1) {
       const ElementPair candidate = part[static_cast<std::size_t>(std::countr_zero(left))];
-      if (!excludes || !is_excluded(job, kind, candidate)) test_candidate(job, kind, candidate, worker);
+      if (excludes && is_excluded(job, kind, candidate)) continue;
+      OpenPair& pair = worker.open.emplace_back();
+      pair.candidate = candidate;
+      pair.vertices = vertices_of(kind, candidate, a, b);
+      if (kind == ElementPairKind::edge_edge) sort_edges(pair.vertices);
+      pair.motion = motion_of(kind, pair.vertices);
+      pair.relative = relative_motion(pair.motion);
     }
+    decide_open_pairs(job, kind, worker);
+  }
+}
+
+/// A vector kernel decides most pairs that touch; the scalar search decides the others.
+void ImpactPass::decide_open_pairs(std::uint32_t job, ElementPairKind kind, Worker& worker) {
+  const std::size_t count = worker.open.size();
+  const bool is_vectorized = options_.min_separation == 0 && count > 0;
+  if (is_vectorized) {
+    for (std::size_t k = 0; k < count; ++k) worker.motions.set(k, worker.open[k].relative);
+    search_coplanar_times(worker.motions, count, kind == ElementPairKind::edge_edge, worker.coplanar);
+  }
+  const auto search_of = [&](std::size_t k) -> ImpactSearch {
+    if (is_vectorized && (worker.coplanar.apart >> k & 1) != 0) return {ImpactSearch::Outcome::apart};
+    if (is_vectorized && (worker.coplanar.touching >> k & 1) != 0)
+      return {ImpactSearch::Outcome::touching, worker.coplanar.times[k]};
+    return search_undecided(worker.open[k].relative, options_.min_separation);
+  };
+  for (std::size_t k = 0; k < count && !stop_.stop_requested(); ++k) {
+    const OpenPair& pair = worker.open[k];
+    bool used_exact = false;
+    const auto impact = first_impact_after(search_of(k), pair.motion, pair.relative, options_, used_exact);
+    worker.stats.exact_fallbacks += used_exact ? 1 : 0;
+    if (impact) add_contact(job, kind, pair, *impact, worker);
   }
 }
 
@@ -364,32 +389,26 @@ bool ImpactPass::is_excluded(std::uint32_t job, ElementPairKind kind, ElementPai
   return limit_.excludes(place_of(job, kind, first));
 }
 
-void ImpactPass::test_candidate(std::uint32_t job, ElementPairKind kind, ElementPair candidate,
-                                Worker& worker) {
+void ImpactPass::add_contact(std::uint32_t job, ElementPairKind kind, const OpenPair& pair,
+                             const Impact& impact, Worker& worker) {
   const MovingObject& a = objects_[jobs_[job].a];
   const MovingObject& b = objects_[jobs_[job].b];
-  auto vertices = vertices_of(kind, candidate, a, b);
   ContinuousContact contact;
   contact.object_a = a.id;
   contact.object_b = b.id;
   contact.kind = kind;
   if (kind == ElementPairKind::edge_edge) {
-    sort_edges(vertices);
-    contact.element_a = {user_vertex(vertices[0]), user_vertex(vertices[1])};
-    contact.element_b = {user_vertex(vertices[2]), user_vertex(vertices[3])};
+    contact.element_a = {user_vertex(pair.vertices[0]), user_vertex(pair.vertices[1])};
+    contact.element_b = {user_vertex(pair.vertices[2]), user_vertex(pair.vertices[3])};
   } else {
+    const auto [first, second] = pair.candidate;
     const bool vertex_first = kind == ElementPairKind::vertex_face;
-    const std::uint32_t of_a = vertex_first ? a.vertex_ids[candidate.a] : a.triangle_ids[candidate.a];
-    const std::uint32_t of_b = vertex_first ? b.triangle_ids[candidate.b] : b.vertex_ids[candidate.b];
+    const std::uint32_t of_a = vertex_first ? a.vertex_ids[first] : a.triangle_ids[first];
+    const std::uint32_t of_b = vertex_first ? b.triangle_ids[second] : b.vertex_ids[second];
     contact.element_a = {of_a, of_a};
     contact.element_b = {of_b, of_b};
   }
-  bool used_exact = false;
-  const std::optional<Impact> impact =
-      first_impact_of_finite(motion_of(kind, vertices), options_, used_exact);
-  worker.stats.exact_fallbacks += used_exact ? 1 : 0;
-  if (!impact) return;
-  set_impact(contact, *impact);
+  set_impact(contact, impact);
   if (search_ == Search::all) {
     worker.found.push_back(contact);
   } else {

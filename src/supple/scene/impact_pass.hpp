@@ -7,7 +7,9 @@
 #include <span>
 #include <vector>
 
+#include "contact/coplanar_search.hpp"
 #include "contact/impact_filter.hpp"
+#include "contact/relative_motion.hpp"
 #include "core/parallel.hpp"
 #include "core/stop_signal.hpp"
 #include "narrow_phase/traversal.hpp"
@@ -29,6 +31,12 @@ struct MovingObject {
   const VertexBuffer* start = nullptr;
   const VertexBuffer* end = nullptr;
   std::span<const std::uint32_t> triangle_ids, vertex_ids;  ///< the user's ids
+};
+
+/// A vertex of an object, in octree order.
+struct MovingVertex {
+  const MovingObject* object = nullptr;
+  std::uint32_t vertex = 0;
 };
 
 /// Narrow phase and exact stage of continuous contacts for all jobs of a step, on all workers. The narrow
@@ -65,9 +73,19 @@ class ImpactPass {
     ContinuousContact contact;
     std::uint32_t job = 0;
   };
+  /// A pair of elements that passed the filter.
+  struct OpenPair {
+    ElementPair candidate;
+    std::array<MovingVertex, 4> vertices;
+    ElementMotion motion;
+    RelativeMotion relative;
+  };
   struct Worker {
     Traversal traversal;
     RelativeMotionBlock block;
+    std::vector<OpenPair> open;  // pairs of one block of candidates
+    MotionBlock motions;         // of these pairs
+    CoplanarSearch coplanar;
     std::vector<ContinuousContact> found;  // by all tasks of the worker
     TaskStats stats;
     std::optional<Earliest> earliest;
@@ -84,7 +102,9 @@ class ImpactPass {
   void test_candidates(std::uint32_t job, ElementPairKind kind, std::span<const ElementPair> candidates,
                        Worker& worker);
   bool is_excluded(std::uint32_t job, ElementPairKind kind, ElementPair candidate) const;
-  void test_candidate(std::uint32_t job, ElementPairKind kind, ElementPair candidate, Worker& worker);
+  void decide_open_pairs(std::uint32_t job, ElementPairKind kind, Worker& worker);
+  void add_contact(std::uint32_t job, ElementPairKind kind, const OpenPair& pair, const Impact& impact,
+                   Worker& worker);
   void keep_earlier(std::uint32_t job, const ContinuousContact& contact, Worker& worker);
   void drop_excess(std::uint32_t job, std::size_t first, Worker& worker);
   void gather_contacts(const Parallel& parallel);
