@@ -14,8 +14,8 @@ namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-// The steps and the error bounds are those of coplanar_times.cpp and of impact_search.cpp, where they are proven,
-// for motions whose volume is clearly not 0 at both ends of the step and where it turns.
+// The steps and the error bounds are those of coplanar_times.cpp and of impact_search.cpp, where they are
+// proven, for motions whose volume is clearly not 0 at both ends of the step and where it turns.
 
 using Tag = hn::CappedTag<double, 8>;
 using Doubles = hn::Vec<Tag>;
@@ -78,8 +78,7 @@ template <int halvings>
 HWY_NOINLINE Mask part_has_one_sign(const Coefficients& part, Doubles error, Mask wanted) {
   const Mask proven = part.one_sign(error);
   if constexpr (halvings > 0) {
-    const Mask ends_are_clear =
-        hn::And(hn::Gt(hn::Abs(part.c[0]), error), hn::Gt(hn::Abs(part.c[3]), error));
+    const Mask ends_are_clear = hn::And(hn::Gt(hn::Abs(part.c[0]), error), hn::Gt(hn::Abs(part.c[3]), error));
     const Mask open = hn::And(hn::AndNot(proven, wanted), ends_are_clear);
     if (!hn::AllFalse(Tag(), open)) {
       Coefficients before, after;
@@ -227,9 +226,9 @@ struct Place {
       return hn::Add(hn::Add(rounded, hn::Mul(drift, drifted)), underflow);
     };
     const Doubles alpha_error = error(ew, mw_change), beta_error = error(eu, um_change);
-    const Doubles n_error = hn::Add(hn::Add(hn::Mul(hn::Mul(rounding, uw), uw),
-                                            hn::Mul(hn::Mul(hn::Mul(drift, set(2)), uw), uw_change)),
-                                    underflow);
+    const Doubles n_error = hn::Add(
+        hn::Add(hn::Mul(hn::Mul(rounding, uw), uw), hn::Mul(hn::Mul(hn::Mul(drift, set(2)), uw), uw_change)),
+        underflow);
     const Places middle(start, end, hn::Add(low, half));
     const Vector n = cross<Tag>(middle.u, middle.w);
     const Doubles alpha = dot<Tag>(cross<Tag>(middle.m, middle.w), n),
@@ -258,7 +257,8 @@ HWY_INLINE void search_from(const MotionBlock& block, std::size_t first, bool is
   const Doubles zero = hn::Zero(d), one = set(1);
   const Places start(block, 0, first), end(block, 9, first);
   const Volume volume(start, end);
-  Mask apart = hn::And(volume.in_range, part_has_one_sign<3>(volume.bernstein, volume.error, volume.in_range));
+  Mask apart =
+      hn::And(volume.in_range, part_has_one_sign<3>(volume.bernstein, volume.error, volume.in_range));
   const Knots knots(volume);
   // Lanes in which the volume is clearly not 0 at any knot. Each sign change is then one simple root.
   Mask open = hn::AndNot(apart, volume.in_range);
@@ -278,8 +278,8 @@ HWY_INLINE void search_from(const MotionBlock& block, std::size_t first, bool is
     const Place place(start, end, low, high, is_square);
     const Mask is_clear = hn::And(hn::Lt(passed, low), volume.never_zero(passed, low, has_root));
     const Mask is_short = hn::Le(hn::Sub(high, low), set(toi_tolerance / 2));
-    const Mask touches = hn::And(hn::And(has_root, is_clear),
-                                 hn::AndNot(place.outside, hn::And(place.inside, is_short)));
+    const Mask touches =
+        hn::And(hn::And(has_root, is_clear), hn::AndNot(place.outside, hn::And(place.inside, is_short)));
     const Mask now_touching = hn::And(touches, volume.changes_sign(low, high));
     touching = hn::Or(touching, now_touching);
     time = hn::IfThenElse(now_touching, low, time);

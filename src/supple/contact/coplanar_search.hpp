@@ -29,8 +29,8 @@ struct CoplanarSearch {
 
 /// Searches the times at which the four vertices of the first `count` pairs lie in one plane, for elements
 /// without separation. Error bounds prove every bit. Leaves pairs with neither bit to `search_undecided`:
-/// degenerate ones, and those that touch near a border. The results of a pair do not depend on the others, and
-/// are the same on all instruction sets.
+/// degenerate ones, and those that touch near a border. The results of a pair do not depend on the others,
+/// and are the same on all instruction sets.
 void search_coplanar_times(const MotionBlock& block, std::size_t count, bool is_square,
                            CoplanarSearch& search);
 

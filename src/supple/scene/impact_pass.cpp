@@ -19,7 +19,7 @@ constexpr std::size_t block_size = RelativeMotionBlock::capacity;
 
 /// The four vertices of a pair of elements as `VertexFaceMotion` or `EdgeEdgeMotion` orders them.
 std::array<MovingVertex, 4> vertices_of(ElementPairKind kind, ElementPair pair, const MovingObject& a,
-                                     const MovingObject& b) {
+                                        const MovingObject& b) {
   switch (kind) {
     case ElementPairKind::vertex_face: {
       const Triangle& face = b.view.moving.face_ids[pair.b];
@@ -41,15 +41,13 @@ Vec3d placed(const Vec3d& position, const MovingObject& object) {
   return object.view.translation == Vec3d{} ? position : position + object.view.translation;
 }
 
-ElementMotion motion_of(ElementPairKind kind, const std::array<MovingVertex, 4>& vertices) {
-  ElementMotion motion;
+void set_motion(ElementPairKind kind, const std::array<MovingVertex, 4>& vertices, ElementMotion& motion) {
   motion.are_edges = kind == ElementPairKind::edge_edge;
   for (std::size_t i = 0; i < 4; ++i) {
     const MovingObject& object = *vertices[i].object;
     motion.start[i] = placed((*object.start)[vertices[i].vertex], object);
     motion.end[i] = placed((*object.end)[vertices[i].vertex], object);
   }
-  return motion;
 }
 
 std::uint32_t user_vertex(const MovingVertex& ref) {
@@ -333,24 +331,24 @@ void ImpactPass::test_candidates(std::uint32_t job, ElementPairKind kind,
     fill_block(a, b, latest_.load(std::memory_order_relaxed), kind, part, worker.block);
     std::uint64_t left = may_touch(worker.block, part.size(), kind == ElementPairKind::edge_edge,
                                    round_up(options_.min_separation));
-    worker.open.clear();
+    std::size_t count = 0;
     for (; left != 0; left &= left - 1) {
       const ElementPair candidate = part[static_cast<std::size_t>(std::countr_zero(left))];
       if (excludes && is_excluded(job, kind, candidate)) continue;
-      OpenPair& pair = worker.open.emplace_back();
+      OpenPair& pair = worker.open[count++];
       pair.candidate = candidate;
       pair.vertices = vertices_of(kind, candidate, a, b);
       if (kind == ElementPairKind::edge_edge) sort_edges(pair.vertices);
-      pair.motion = motion_of(kind, pair.vertices);
+      set_motion(kind, pair.vertices, pair.motion);
       pair.relative = relative_motion(pair.motion);
     }
-    decide_open_pairs(job, kind, worker);
+    decide_open_pairs(job, kind, count, worker);
   }
 }
 
 /// A vector kernel decides most pairs that touch; the scalar search decides the others.
-void ImpactPass::decide_open_pairs(std::uint32_t job, ElementPairKind kind, Worker& worker) {
-  const std::size_t count = worker.open.size();
+void ImpactPass::decide_open_pairs(std::uint32_t job, ElementPairKind kind, std::size_t count,
+                                   Worker& worker) {
   const bool is_vectorized = options_.min_separation == 0 && count > 0;
   if (is_vectorized) {
     for (std::size_t k = 0; k < count; ++k) worker.motions.set(k, worker.open[k].relative);

@@ -83,8 +83,8 @@ class ImpactPass {
   struct Worker {
     Traversal traversal;
     RelativeMotionBlock block;
-    std::vector<OpenPair> open;  // pairs of one block of candidates
-    MotionBlock motions;         // of these pairs
+    std::array<OpenPair, RelativeMotionBlock::capacity> open;  // pairs of one block of candidates
+    MotionBlock motions;                                       // of these pairs
     CoplanarSearch coplanar;
     std::vector<ContinuousContact> found;  // by all tasks of the worker
     TaskStats stats;
@@ -102,7 +102,7 @@ class ImpactPass {
   void test_candidates(std::uint32_t job, ElementPairKind kind, std::span<const ElementPair> candidates,
                        Worker& worker);
   bool is_excluded(std::uint32_t job, ElementPairKind kind, ElementPair candidate) const;
-  void decide_open_pairs(std::uint32_t job, ElementPairKind kind, Worker& worker);
+  void decide_open_pairs(std::uint32_t job, ElementPairKind kind, std::size_t count, Worker& worker);
   void add_contact(std::uint32_t job, ElementPairKind kind, const OpenPair& pair, const Impact& impact,
                    Worker& worker);
   void keep_earlier(std::uint32_t job, const ContinuousContact& contact, Worker& worker);

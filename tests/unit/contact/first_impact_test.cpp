@@ -5,12 +5,14 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <functional>
 #include <limits>
 #include <numeric>
 #include <optional>
 
+#include "contact/coplanar_search.hpp"
 #include "contact/impact_filter.hpp"
 #include "core/float_rounding.hpp"
 #include "supple/continuous.hpp"
@@ -241,6 +243,61 @@ TEST_P(FirstImpact, OfVertexAndFaceEqualsAlgebra) {
 
 TEST_P(FirstImpact, OfTwoEdgesEqualsAlgebra) {
   expect_family<EdgeEdgeMotion>(GetParam(), true, 2);
+}
+
+/// A pair has the same result in a block of any size, on every instruction set, and as a single query.
+TEST_P(FirstImpact, IsTheSameForBlocksOfPairs) {
+  RandomNumbers random(7);
+  for (const bool edges : {false, true}) {
+    std::array<Paths, MotionBlock::capacity> paths;
+    MotionBlock block;
+    for (std::size_t k = 0; k < paths.size(); ++k) {
+      paths[k] = GetParam().make(random, edges);
+      const VertexFaceMotion face{paths[k].start, paths[k].end};
+      const EdgeEdgeMotion edge{paths[k].start, paths[k].end};
+      block.set(k, edges ? relative_motion(edge) : relative_motion(face));
+    }
+    for_each_target([&](const char* target) {
+      CoplanarSearch all, some;
+      search_coplanar_times(block, paths.size(), edges, all);
+      search_coplanar_times(block, 17, edges, some);
+      EXPECT_EQ(some.apart, all.apart & 0x1ffff) << target;
+      EXPECT_EQ(some.touching, all.touching & 0x1ffff) << target;
+      EXPECT_EQ(all.apart & all.touching, 0u) << target;
+      for (std::size_t k = 0; k < paths.size(); ++k) {
+        const auto single = edges ? first_impact(EdgeEdgeMotion{paths[k].start, paths[k].end})
+                                  : first_impact(VertexFaceMotion{paths[k].start, paths[k].end});
+        if ((all.apart >> k & 1) != 0) {
+          EXPECT_FALSE(single) << target;
+        }
+        if ((all.touching >> k & 1) != 0) {
+          ASSERT_TRUE(single) << target;
+          EXPECT_EQ(single->toi, all.times[k]) << target;
+        }
+      }
+    });
+  }
+}
+
+TEST(CoplanarSearch, DecidesMostPairsInGeneralPosition) {
+  RandomNumbers random(8);
+  int touching = 0, decided = 0;
+  for (int round = 0; round < 100; ++round) {
+    const bool edges = round % 2 == 1;
+    MotionBlock block;
+    for (std::size_t k = 0; k < MotionBlock::capacity; ++k) {
+      const Paths paths = random_paths(random, 1, 1);
+      const VertexFaceMotion face{paths.start, paths.end};
+      const EdgeEdgeMotion edge{paths.start, paths.end};
+      touching += edges ? first_impact(edge).has_value() : first_impact(face).has_value();
+      block.set(k, edges ? relative_motion(edge) : relative_motion(face));
+    }
+    CoplanarSearch search;
+    search_coplanar_times(block, MotionBlock::capacity, edges, search);
+    decided += std::popcount(search.touching);
+  }
+  EXPECT_GT(touching, 200);
+  EXPECT_GT(decided, touching * 19 / 20);
 }
 
 INSTANTIATE_TEST_SUITE_P(Families, FirstImpact, testing::ValuesIn(query_families),
