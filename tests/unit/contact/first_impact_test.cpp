@@ -249,30 +249,30 @@ TEST_P(FirstImpact, OfTwoEdgesEqualsAlgebra) {
 TEST_P(FirstImpact, IsTheSameForBlocksOfPairs) {
   RandomNumbers random(7);
   for (const bool edges : {false, true}) {
-    std::array<Paths, MotionBlock::capacity> paths;
+    constexpr std::size_t count = MotionBlock::capacity;
+    std::array<std::optional<Impact>, count> singles;
     MotionBlock block;
-    for (std::size_t k = 0; k < paths.size(); ++k) {
-      paths[k] = GetParam().make(random, edges);
-      const VertexFaceMotion face{paths[k].start, paths[k].end};
-      const EdgeEdgeMotion edge{paths[k].start, paths[k].end};
+    for (std::size_t k = 0; k < count; ++k) {
+      const Paths paths = GetParam().make(random, edges);
+      const VertexFaceMotion face{paths.start, paths.end};
+      const EdgeEdgeMotion edge{paths.start, paths.end};
       block.set(k, edges ? relative_motion(edge) : relative_motion(face));
+      singles[k] = edges ? first_impact(edge) : first_impact(face);
     }
     for_each_target([&](const char* target) {
       CoplanarSearch all, some;
-      search_coplanar_times(block, paths.size(), edges, all);
+      search_coplanar_times(block, count, edges, all);
       search_coplanar_times(block, 17, edges, some);
       EXPECT_EQ(some.apart, all.apart & 0x1ffff) << target;
       EXPECT_EQ(some.touching, all.touching & 0x1ffff) << target;
       EXPECT_EQ(all.apart & all.touching, 0u) << target;
-      for (std::size_t k = 0; k < paths.size(); ++k) {
-        const auto single = edges ? first_impact(EdgeEdgeMotion{paths[k].start, paths[k].end})
-                                  : first_impact(VertexFaceMotion{paths[k].start, paths[k].end});
+      for (std::size_t k = 0; k < count; ++k) {
         if ((all.apart >> k & 1) != 0) {
-          EXPECT_FALSE(single) << target;
+          EXPECT_FALSE(singles[k]) << target;
         }
         if ((all.touching >> k & 1) != 0) {
-          ASSERT_TRUE(single) << target;
-          EXPECT_EQ(single->toi, all.times[k]) << target;
+          ASSERT_TRUE(singles[k]) << target;
+          EXPECT_EQ(singles[k]->toi, all.times[k]) << target;
         }
       }
     });
