@@ -265,16 +265,19 @@ HWY_INLINE void search_from(const MotionBlock& block, std::size_t first, bool is
   const Doubles twice_error = hn::Mul(set(2), volume.error);
   for (int k = 0; k < 4; ++k) open = hn::And(open, hn::Gt(hn::Abs(knots.values[k]), twice_error));
   Mask touching = hn::Lt(zero, zero);
-  Doubles passed = zero, time = zero;
+  Doubles passed = zero, time = zero, touched_until = zero;
   for (int k = 0; k < 3; ++k) {
-    const Mask has_root =
-        hn::And(open, hn::Xor(hn::Gt(knots.values[k], zero), hn::Gt(knots.values[k + 1], zero)));
-    if (hn::AllFalse(d, has_root)) continue;
-    const Doubles t = volume.zero_between(knots.times[k], knots.times[k + 1], knots.values[k],
-                                          knots.values[k + 1], has_root);
+    const Mask changes = hn::Xor(hn::Gt(knots.values[k], zero), hn::Gt(knots.values[k + 1], zero));
+    const Mask has_root = hn::And(open, changes), comes_later = hn::And(touching, changes);
+    const Mask wanted = hn::Or(has_root, comes_later);
+    if (hn::AllFalse(d, wanted)) continue;
+    const Doubles t =
+        volume.zero_between(knots.times[k], knots.times[k + 1], knots.values[k], knots.values[k + 1], wanted);
     const Doubles reach = hn::Div(twice_error, hn::Abs(volume.slope(t)));
     const Doubles half = hn::IfThenElse(hn::Lt(reach, one), hn::Add(reach, set(0x1p-52)), one);
     const Doubles low = hn::Max(hn::Sub(t, half), zero), high = hn::Min(hn::Add(t, half), one);
+    // The scalar code merges the intervals of two roots that overlap.
+    touching = hn::AndNot(hn::AndNot(hn::Gt(low, touched_until), comes_later), touching);
     const Place place(start, end, low, high, is_square);
     const Mask is_clear = hn::And(hn::Lt(passed, low), volume.never_zero(passed, low, has_root));
     const Mask is_short = hn::Le(hn::Sub(high, low), set(toi_tolerance / 2));
@@ -283,6 +286,7 @@ HWY_INLINE void search_from(const MotionBlock& block, std::size_t first, bool is
     const Mask now_touching = hn::And(touches, volume.changes_sign(low, high));
     touching = hn::Or(touching, now_touching);
     time = hn::IfThenElse(now_touching, low, time);
+    touched_until = hn::IfThenElse(now_touching, high, touched_until);
     const Mask goes_on = hn::And(hn::And(has_root, is_clear), place.outside);
     passed = hn::IfThenElse(goes_on, high, passed);
     // All other lanes with a root are decided, or left to the scalar code.

@@ -28,9 +28,9 @@ struct CoplanarSearch {
 };
 
 /// Searches the times at which the four vertices of the first `count` pairs lie in one plane, for elements
-/// without separation. Error bounds prove every bit. Leaves pairs with neither bit to `search_undecided`:
-/// degenerate ones, and those that touch near a border. The results of a pair do not depend on the others,
-/// and are the same on all instruction sets.
+/// without separation. Where a bit is set, `search_impact` has the same outcome and the same time. It decides
+/// the pairs with neither bit: degenerate ones, and those that touch near a border. The same bits on all
+/// instruction sets.
 void search_coplanar_times(const MotionBlock& block, std::size_t count, bool is_square,
                            CoplanarSearch& search);
 

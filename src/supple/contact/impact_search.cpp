@@ -6,7 +6,6 @@
 #include <span>
 
 #include "contact/closest_points.hpp"
-#include "contact/coplanar_search.hpp"
 #include "contact/coplanar_times.hpp"
 #include "geometry/plane_filter.hpp"
 #include "geometry/vector.hpp"
@@ -204,18 +203,6 @@ RelativePlaces<double> places_at(const RelativeMotion& motion, double time) {
 }
 
 ImpactSearch search_impact(const RelativeMotion& motion, double separation) {
-  if (separation == 0) {
-    MotionBlock block;
-    block.set(0, motion);
-    CoplanarSearch search;
-    search_coplanar_times(block, 1, motion.is_square, search);
-    if (search.apart != 0) return {Outcome::apart};
-    if (search.touching != 0) return {Outcome::touching, search.times[0]};
-  }
-  return search_undecided(motion, separation);
-}
-
-ImpactSearch search_undecided(const RelativeMotion& motion, double separation) {
   ImpactSearch search;
   if (separation == 0) {
     search.outcome = search_coplanar_times(motion, search.time);

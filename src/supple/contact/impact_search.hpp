@@ -19,8 +19,6 @@ struct ImpactSearch {
 
 /// Error bounds prove every outcome, for all finite coordinates. `separation` ≥ 0. Takes about 0.3 µs.
 ImpactSearch search_impact(const RelativeMotion& motion, double separation);
-/// The same for a motion that `search_coplanar_times` does not decide, or with a separation.
-ImpactSearch search_undecided(const RelativeMotion& motion, double separation);
 
 RelativePlaces<double> places_at(const RelativeMotion& motion, double time);
 

@@ -104,7 +104,7 @@ struct LeastPenetration {
 
   HWY_INLINE explicit LeastPenetration(hn::Vec<Tag> size) {
     const auto zero = hn::Zero(Tag());
-    // Of twice the distance, as all lengths below.
+    // `extent` and `offset` are twice as long as the ways, hence the 4.
     flat = hn::Mul(hn::Mul(hn::Set(Tag(), 4 * flat_squared_distance), size), size);
     squared_depth = hn::Set(Tag(), 1.0);  // over no length: infinitely deep
     squared_length = zero;

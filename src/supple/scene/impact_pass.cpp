@@ -358,7 +358,7 @@ void ImpactPass::decide_open_pairs(std::uint32_t job, ElementPairKind kind, std:
     if (is_vectorized && (worker.coplanar.apart >> k & 1) != 0) return {ImpactSearch::Outcome::apart};
     if (is_vectorized && (worker.coplanar.touching >> k & 1) != 0)
       return {ImpactSearch::Outcome::touching, worker.coplanar.times[k]};
-    return search_undecided(worker.open[k].relative, options_.min_separation);
+    return search_impact(worker.open[k].relative, options_.min_separation);
   };
   for (std::size_t k = 0; k < count && !stop_.stop_requested(); ++k) {
     const OpenPair& pair = worker.open[k];

@@ -245,10 +245,12 @@ TEST_P(FirstImpact, OfTwoEdgesEqualsAlgebra) {
   expect_family<EdgeEdgeMotion>(GetParam(), true, 2);
 }
 
-/// A pair has the same result in a block of any size, on every instruction set, and as a single query.
+/// Where the kernel decides, a pair has the result of the scalar search, in a block of any size and on every
+/// instruction set.
 TEST_P(FirstImpact, IsTheSameForBlocksOfPairs) {
   RandomNumbers random(7);
-  for (const bool edges : {false, true}) {
+  for (int round = 0; round < 2 * std::max(queries_per_family / 1000, 1); ++round) {
+    const bool edges = round % 2 == 1;
     constexpr std::size_t count = MotionBlock::capacity;
     std::array<std::optional<Impact>, count> singles;
     MotionBlock block;
