@@ -18,10 +18,11 @@ class VertexSets {
     while (parent_[vertex] != vertex) vertex = parent_[vertex] = parent_[parent_[vertex]];
     return vertex;
   }
-  void join(std::uint32_t a, std::uint32_t b) {
+  /// Returns the root of the joined set.
+  std::uint32_t join(std::uint32_t a, std::uint32_t b) {
     a = root(a);
     b = root(b);
-    parent_[std::max(a, b)] = std::min(a, b);
+    return parent_[std::max(a, b)] = std::min(a, b);
   }
 
  private:

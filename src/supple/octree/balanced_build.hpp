@@ -2,6 +2,7 @@
 
 #include <span>
 
+#include "core/parallel.hpp"
 #include "octree/octree_topology.hpp"
 #include "supple/mesh.hpp"
 #include "supple/options.hpp"
@@ -16,6 +17,6 @@ namespace supple {
 /// No leaf above `max_level` has more than `leaf_size` triangles, also where centres are equal. A centre that
 /// is not finite counts as the lower corner of the others. The result is the same on every machine.
 OctreeTopology build_balanced_octree(std::span<const Vec3d> centers, std::span<const Triangle> triangles,
-                                     const ObjectOctreeOptions& options);
+                                     const ObjectOctreeOptions& options, const Parallel& parallel);
 
 }  // namespace supple

@@ -169,21 +169,27 @@ class BottomUpSplitter {
     return level < deepest_ && *end_of_first(0, range) < range.end;
   }
 
-  /// The clusters of the highest level that divides the range.
-  void split(TriangleRange range, std::uint32_t, std::vector<TriangleRange>& children) const {
-    std::size_t level = begins_.size() - 1;
-    while (*end_of_first(level, range) >= range.end) --level;
-    auto end = end_of_first(level, range);
-    for (std::uint32_t begin = range.begin; begin < range.end; begin = *end++)
-      children.push_back({begin, *end});
+  /// The children of a node are the clusters of the highest level that divides its range.
+  void split(std::span<NodeDivision> nodes, std::uint32_t) const {
+    for (NodeDivision& node : nodes) {
+      const TriangleRange range = node.range;
+      std::size_t level = begins_.size() - 1;
+      while (*end_of_first(level, range) >= range.end) --level;
+      auto end = end_of_first(level, range);
+      for (std::uint32_t begin = range.begin; begin < range.end; begin = *end++)
+        node.push_child({begin, *end});
+    }
   }
 
   /// Along the curve, so that triangles that are tested together are near each other.
-  void finish_leaf(TriangleRange range) {
-    std::ranges::sort(std::span(items_).subspan(range.begin, range.size()), {}, &Item::place);
+  std::vector<std::uint32_t> finish(std::span<const TriangleRange> leaves) {
+    for (const TriangleRange leaf : leaves)
+      std::ranges::sort(std::span(items_).subspan(leaf.begin, leaf.size()), {}, &Item::place);
+    std::vector<std::uint32_t> order;
+    order.reserve(items_.size());
+    for (const Item& item : items_) order.push_back(item.triangle);
+    return order;
   }
-
-  std::span<const Item> items() const { return items_; }
 
  private:
   /// Where the level's first cluster of the range ends.
@@ -233,7 +239,8 @@ OctreeTopology build_bottom_up_octree(const PositionsView& positions, std::span<
   BottomUpMerger merger(std::move(clusters));
   std::vector<Level> levels{merger.merge_level(options.leaf_size)};
   while (merger.cluster_count() > 1) levels.push_back(merger.merge_level(options.arity));
-  return build_octree(BottomUpSplitter(places, levels, deepest_level(options)));
+  return build_octree(static_cast<std::uint32_t>(triangles.size()),
+                      BottomUpSplitter(places, levels, deepest_level(options)));
 }
 
 }  // namespace supple

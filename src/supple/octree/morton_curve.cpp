@@ -24,7 +24,8 @@ std::uint64_t cell(double fraction) {
 }  // namespace
 
 void sort_along_curve(std::span<CurvePlace> places, std::span<const Vec3d> centers) {
-  const CenterBounds bounds(places, centers);
+  CenterBounds bounds;
+  for (const CurvePlace& place : places) bounds.add(centers[place.triangle]);
   const double side = bounds.longest_side();
   for (CurvePlace& place : places) {
     const Vec3d& c = centers[place.triangle];

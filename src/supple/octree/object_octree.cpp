@@ -19,33 +19,36 @@ namespace {
 
 constexpr std::uint32_t unnumbered = std::numeric_limits<std::uint32_t>::max();
 
-std::vector<Vec3d> box_centers(const PositionsView& positions, std::span<const Triangle> triangles) {
-  std::vector<Vec3d> centers;
-  centers.reserve(triangles.size());
-  for (const Triangle& triangle : triangles) {
-    const Vec3d p = positions[triangle[0]], q = positions[triangle[1]], r = positions[triangle[2]];
-    Vec3d center;
-    for (int axis = 0; axis < 3; ++axis) {
-      const auto [low, high] = std::minmax({p[axis], q[axis], r[axis]});
-      center[axis] = low / 2 + high / 2;
-      // std::minmax loses a NaN that is not its first argument; the sum keeps it.
-      if (!std::isfinite(p[axis] * 0 + q[axis] * 0 + r[axis] * 0)) center[axis] = p[axis] + q[axis] + r[axis];
+constexpr std::size_t grain = 4096;  // triangles
+
+std::vector<Vec3d> box_centers(const PositionsView& positions, std::span<const Triangle> triangles,
+                               const Parallel& parallel) {
+  std::vector<Vec3d> centers(triangles.size());
+  parallel.for_ranges(triangles.size(), grain, [&](std::size_t begin, std::size_t end, std::uint32_t) {
+    for (std::size_t t = begin; t < end; ++t) {
+      const Vec3d p = positions[triangles[t][0]], q = positions[triangles[t][1]],
+                  r = positions[triangles[t][2]];
+      for (int axis = 0; axis < 3; ++axis) {
+        const double low = std::min(std::min(p[axis], q[axis]), r[axis]);
+        const double high = std::max(std::max(p[axis], q[axis]), r[axis]);
+        // A minimum can lose a NaN; the sum keeps it.
+        centers[t][axis] = low / 2 + high / 2 + (p[axis] * 0 + q[axis] * 0 + r[axis] * 0);
+      }
     }
-    centers.push_back(center);
-  }
+  });
   return centers;
 }
 
 OctreeTopology build_topology(const PositionsView& positions, std::span<const Triangle> triangles,
-                              const ObjectOctreeOptions& options) {
-  const std::vector<Vec3d> centers = box_centers(positions, triangles);
+                              const ObjectOctreeOptions& options, const Parallel& parallel) {
+  const std::vector<Vec3d> centers = box_centers(positions, triangles, parallel);
   switch (options.build) {
     case ObjectOctreeBuild::regular:
       return build_regular_octree(centers, options);
     case ObjectOctreeBuild::bottom_up:
       return build_bottom_up_octree(positions, triangles, centers, options);
     default:
-      return build_balanced_octree(centers, triangles, options);
+      return build_balanced_octree(centers, triangles, options, parallel);
   }
 }
 
@@ -65,13 +68,13 @@ TriangleArrays arrays_of(std::span<const Triangle> triangles, const VertexBuffer
 
 ObjectOctree::ObjectOctree(const PositionsView& rest_positions, std::span<const Triangle> triangles,
                            const ObjectOctreeOptions& options, BoundingVolume bounding_volume,
-                           SphereFit sphere_fit)
+                           SphereFit sphere_fit, const Parallel& parallel)
     : volumes_(bounding_volume, 0),
       vertex_count_(rest_positions.size()),
       options_(options),
       bounding_volume_(bounding_volume),
       sphere_fit_(sphere_fit) {
-  OctreeTopology topology = build_topology(rest_positions, triangles, options);
+  OctreeTopology topology = build_topology(rest_positions, triangles, options, parallel);
   nodes_ = std::move(topology.nodes);
   nodes_.shrink_to_fit();
   level_begin_ = std::move(topology.level_begin);
@@ -79,57 +82,82 @@ ObjectOctree::ObjectOctree(const PositionsView& rest_positions, std::span<const 
   boxes_.resize(nodes_.size());
   if (bounding_volume == BoundingVolume::sphere) spheres_.resize(nodes_.size());
   volumes_ = NodeVolumes(bounding_volume, nodes_.size());
-  triangles_.reserve(triangles.size());
-  for (const std::uint32_t id : triangle_ids_) triangles_.push_back(triangles[id]);
-  triangle_order_.resize(triangle_ids_.size());
-  for (std::uint32_t t = 0; t < triangle_ids_.size(); ++t) triangle_order_[triangle_ids_[t]] = t;
-  list_leaf_vertices();
+  triangles_.resize(triangles.size());
+  triangle_order_.resize(triangles.size());
+  parallel.for_ranges(triangles.size(), grain, [&](std::size_t begin, std::size_t end, std::uint32_t) {
+    for (std::size_t t = begin; t < end; ++t) {
+      triangles_[t] = triangles[triangle_ids_[t]];
+      triangle_order_[triangle_ids_[t]] = static_cast<std::uint32_t>(t);
+    }
+  });
+  list_leaf_vertices(parallel);
 }
 
-ObjectOctree ObjectOctree::rebuilt(const PositionsView& positions) const {
+ObjectOctree ObjectOctree::rebuilt(const PositionsView& positions, const Parallel& parallel) const {
   std::vector<Triangle> user_triangles;
   user_triangles.reserve(triangles_.size());
   for (const std::uint32_t t : triangle_order_) user_triangles.push_back(triangles_[t]);
-  return ObjectOctree(positions, user_triangles, options_, bounding_volume_, sphere_fit_);
+  return ObjectOctree(positions, user_triangles, options_, bounding_volume_, sphere_fit_, parallel);
 }
 
-void ObjectOctree::list_leaf_vertices() {
+void ObjectOctree::list_leaf_vertices(const Parallel& parallel) {
   struct Place {
     std::uint32_t leaf, place;
   };
-  std::vector<Place> last_places(vertex_count_, {unnumbered, 0});
-  first_leaf_vertex_.clear();
-  leaf_vertices_.clear();
-  unused_vertices_.clear();
-  first_leaf_vertex_.reserve(nodes_.size() * node_width + 1);
-  leaf_vertices_.reserve(triangles_.size());
+  std::vector<std::vector<Place>> last_places(parallel.worker_count());
+  // Each leaf has room for the corners of its triangles, because their number of vertices is not known yet.
+  std::vector<std::uint32_t> vertices(3 * triangles_.size()), counts(nodes_.size() * node_width, 0);
   const std::size_t stride = triangles_.size() + corners_ahead;
   leaf_corners_.assign(3 * stride, 0);
-  for (const OctreeNode& node : nodes_) {
-    for (int child = 0; child < node_width; ++child) {
-      const auto leaf = static_cast<std::uint32_t>(first_leaf_vertex_.size());
-      const auto first = static_cast<std::uint32_t>(leaf_vertices_.size());
-      first_leaf_vertex_.push_back(first);
-      if (child >= node.child_count || node.is_inner(child)) continue;
-      for (std::uint32_t t = node.first_triangle[child]; t < node.first_triangle[child + 1]; ++t) {
-        for (std::size_t corner = 0; corner < 3; ++corner) {
-          const std::uint32_t vertex = triangles_[t][corner];
-          Place& last = last_places[vertex];
-          if (last.leaf != leaf) {
-            last = {leaf, static_cast<std::uint32_t>(leaf_vertices_.size()) - first};
-            leaf_vertices_.push_back(vertex);
-          }
-          leaf_corners_[corner * stride + t] = static_cast<std::uint8_t>(last.place);
+  const auto for_leaves = [&](const auto& body) {
+    parallel.for_ranges(nodes_.size(), 64, [&](std::size_t begin, std::size_t end, std::uint32_t worker) {
+      for (std::size_t n = begin; n < end; ++n) {
+        const OctreeNode& node = nodes_[n];
+        for (int child = 0; child < node.child_count; ++child) {
+          if (!node.is_inner(child))
+            body(n * node_width + static_cast<std::size_t>(child), node.first_triangle[child],
+                 node.first_triangle[child + 1], worker);
         }
       }
-      while (leaf_vertices_.size() % leaf_vertices_step != 0) leaf_vertices_.push_back(leaf_vertices_.back());
+    });
+  };
+  for_leaves([&](std::size_t leaf, std::uint32_t begin, std::uint32_t end, std::uint32_t worker) {
+    std::vector<Place>& last_of_worker = last_places[worker];
+    if (last_of_worker.empty()) last_of_worker.assign(vertex_count_, {unnumbered, 0});
+    std::uint32_t* const found = vertices.data() + 3 * std::size_t{begin};
+    std::uint32_t count = 0;
+    for (std::uint32_t t = begin; t < end; ++t) {
+      for (std::size_t corner = 0; corner < 3; ++corner) {
+        const std::uint32_t vertex = triangles_[t][corner];
+        Place& last = last_of_worker[vertex];
+        if (last.leaf != leaf) {
+          last = {static_cast<std::uint32_t>(leaf), count};
+          found[count++] = vertex;
+        }
+        leaf_corners_[corner * stride + t] = static_cast<std::uint8_t>(last.place);
+      }
     }
+    counts[leaf] = count;
+  });
+  first_leaf_vertex_.reserve(counts.size() + 1);
+  std::uint32_t total = 0;
+  for (const std::uint32_t count : counts) {
+    first_leaf_vertex_.push_back(total);
+    constexpr auto step = static_cast<std::uint32_t>(leaf_vertices_step);
+    total += (count + step - 1) / step * step;
   }
-  first_leaf_vertex_.push_back(static_cast<std::uint32_t>(leaf_vertices_.size()));
-  leaf_vertices_.resize(leaf_vertices_.size() + leaf_vertices_ahead, 0);
-  leaf_vertices_.shrink_to_fit();
+  first_leaf_vertex_.push_back(total);
+  leaf_vertices_.resize(total + leaf_vertices_ahead, 0);
+  for_leaves([&](std::size_t leaf, std::uint32_t begin, std::uint32_t, std::uint32_t) {
+    const std::uint32_t* const found = vertices.data() + 3 * std::size_t{begin};
+    std::uint32_t* const end = std::copy_n(found, counts[leaf], &leaf_vertices_[first_leaf_vertex_[leaf]]);
+    std::fill(end, leaf_vertices_.data() + first_leaf_vertex_[leaf + 1], found[counts[leaf] - 1]);
+  });
   for (std::uint32_t vertex = 0; vertex < vertex_count_; ++vertex) {
-    if (last_places[vertex].leaf == unnumbered) unused_vertices_.push_back(vertex);
+    const auto is_used = [&](const std::vector<Place>& places) {
+      return !places.empty() && places[vertex].leaf != unnumbered;
+    };
+    if (std::ranges::none_of(last_places, is_used)) unused_vertices_.push_back(vertex);
   }
   unused_vertices_.shrink_to_fit();
 }

@@ -42,7 +42,8 @@ class ObjectOctree {
  public:
   /// O(n log n). Triangles with a vertex that is not finite count as the lower corner of the others.
   ObjectOctree(const PositionsView& rest_positions, std::span<const Triangle> triangles,
-               const ObjectOctreeOptions& options, BoundingVolume bounding_volume, SphereFit sphere_fit);
+               const ObjectOctreeOptions& options, BoundingVolume bounding_volume, SphereFit sphere_fit,
+               const Parallel& parallel = Parallel(1));
 
   std::span<const OctreeNode> nodes() const { return nodes_; }
   const ChildBoxes* boxes() const { return boxes_.data(); }
@@ -97,7 +98,7 @@ class ObjectOctree {
                                          const Parallel& parallel);
 
   /// The octree of the same triangles and options, built from other positions. O(n log n).
-  ObjectOctree rebuilt(const PositionsView& positions) const;
+  ObjectOctree rebuilt(const PositionsView& positions, const Parallel& parallel = Parallel(1)) const;
 
   /// Volumes of the whole object at the last refit; empty when it has no finite triangle.
   Aabb box() const { return nodes_.empty() ? Aabb{} : enclosing_box(boxes_[0]); }
@@ -109,7 +110,7 @@ class ObjectOctree {
   OctreeStatistics statistics() const;
 
  private:
-  void list_leaf_vertices();
+  void list_leaf_vertices(const Parallel& parallel);
   void list_nodes_of_vertices();
   void mark_with_ancestors(std::uint32_t node);
   SphereFitter sphere_fitter(const VertexBuffer& vertices, std::span<const std::uint8_t> inert) const;

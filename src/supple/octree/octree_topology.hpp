@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <span>
@@ -36,21 +37,28 @@ struct TriangleRange {
   std::uint32_t size() const { return end - begin; }
 };
 
-/// Makes all nodes from the root down. The splitter decides the order of the triangles:
-/// - `items()` returns the triangles in their order, as items with a member `triangle`.
+/// A range that becomes a node, and the ranges that become its children.
+struct NodeDivision {
+  TriangleRange range{};
+  std::array<TriangleRange, node_width> children{};
+  std::uint32_t child_count = 0;
+
+  void push_child(TriangleRange child) { children[child_count++] = child; }
+};
+
+/// Makes all nodes from the root down, level by level. The splitter decides the order of the triangles:
 /// - `should_split(range, level)` returns whether the range becomes a node, not a leaf. It may reorder the
 ///   range.
-/// - `split(range, level, children)` appends two to eight ranges that cover the range. It may reorder it.
-/// - `finish_leaf(range)` may reorder the triangles of a leaf.
+/// - `split(nodes, level)` gives each `NodeDivision` of the level two to eight children that cover its range.
+///   It may reorder the ranges.
+/// - `finish(leaves)` may reorder the triangles of each leaf. It returns the triangles in their order.
 template <class Splitter>
-OctreeTopology build_octree(Splitter splitter) {
+OctreeTopology build_octree(std::uint32_t triangle_count, Splitter splitter) {
   OctreeTopology topology;
-  std::vector<TriangleRange> ranges, children;
+  std::vector<NodeDivision> divisions;
+  std::vector<TriangleRange> ranges, leaves;
   const auto push_node = [&](TriangleRange range, std::size_t parent, std::uint32_t index,
                              std::uint32_t level) {
-    if (topology.level_begin.size() == level) {
-      topology.level_begin.push_back(static_cast<std::uint32_t>(topology.nodes.size()));
-    }
     OctreeNode node{};
     node.parent = static_cast<std::uint32_t>(parent);
     node.index_in_parent = static_cast<std::uint8_t>(index);
@@ -58,34 +66,40 @@ OctreeTopology build_octree(Splitter splitter) {
     topology.nodes.push_back(node);
     ranges.push_back(range);
   };
-  const auto triangle_count = static_cast<std::uint32_t>(splitter.items().size());
   if (triangle_count > 0) push_node({0, triangle_count}, 0, 0, 0);
-  for (std::size_t n = 0; n < topology.nodes.size(); ++n) {
-    const TriangleRange range = ranges[n];
-    OctreeNode node = topology.nodes[n];
-    node.first_child = static_cast<std::uint32_t>(topology.nodes.size());
-    children.clear();
-    if (splitter.should_split(range, node.level)) {
-      splitter.split(range, node.level, children);
+  for (std::uint32_t level = 0, begin = 0; begin < topology.nodes.size(); ++level) {
+    const auto end = static_cast<std::uint32_t>(topology.nodes.size());
+    topology.level_begin.push_back(begin);
+    divisions.clear();
+    for (std::uint32_t n = begin; n < end; ++n) divisions.push_back({.range = ranges[n]});
+    if (level > 0 || splitter.should_split(divisions.front().range, 0)) {
+      splitter.split(std::span(divisions), level);
     } else {
-      children.push_back(range);  // a root with one leaf
+      divisions.front().push_child(divisions.front().range);  // a root with one leaf
     }
-    for (const TriangleRange& child : children) {
-      const std::uint32_t i = node.child_count++;
-      node.first_triangle[i] = child.begin;
-      if (children.size() == 1 || !splitter.should_split(child, node.level + 1u)) {
-        splitter.finish_leaf(child);
-        continue;
+    for (std::uint32_t n = begin; n < end; ++n) {
+      const NodeDivision& division = divisions[n - begin];
+      OctreeNode node = topology.nodes[n];
+      node.first_child = static_cast<std::uint32_t>(topology.nodes.size());
+      node.child_count = static_cast<std::uint8_t>(division.child_count);
+      for (std::uint32_t i = 0; i < division.child_count; ++i) {
+        const TriangleRange child = division.children[i];
+        node.first_triangle[i] = child.begin;
+        if (division.child_count == 1 || !splitter.should_split(child, level + 1)) {
+          leaves.push_back(child);
+          continue;
+        }
+        node.inner_mask = static_cast<std::uint8_t>(node.inner_mask | 1u << i);
+        push_node(child, n, i, level + 1);
       }
-      node.inner_mask = static_cast<std::uint8_t>(node.inner_mask | 1u << i);
-      push_node(child, n, i, node.level + 1u);
+      std::fill(node.first_triangle + node.child_count, node.first_triangle + node_width + 1,
+                division.range.end);
+      topology.nodes[n] = node;
     }
-    std::fill(node.first_triangle + node.child_count, node.first_triangle + node_width + 1, range.end);
-    topology.nodes[n] = node;
+    begin = end;
   }
   topology.level_begin.push_back(static_cast<std::uint32_t>(topology.nodes.size()));
-  topology.order.reserve(triangle_count);
-  for (const auto& item : splitter.items()) topology.order.push_back(item.triangle);
+  topology.order = splitter.finish(std::span<const TriangleRange>(leaves));
   return topology;
 }
 
@@ -96,16 +110,17 @@ struct CenterBounds {
   static constexpr double inf = std::numeric_limits<double>::infinity();
   Vec3d lower{inf, inf, inf}, upper{-inf, -inf, -inf};
 
-  /// The centre of an item is `centers[item.triangle]`.
-  template <class Item>
-  CenterBounds(std::span<Item> items, std::span<const Vec3d> centers) {
-    for (const Item& item : items) {
-      const Vec3d& c = centers[item.triangle];
-      if (!is_finite(c)) continue;
-      for (int axis = 0; axis < 3; ++axis) {
-        lower[axis] = std::min(lower[axis], c[axis] * scale);
-        upper[axis] = std::max(upper[axis], c[axis] * scale);
-      }
+  void add(const Vec3d& center) {
+    if (!is_finite(center)) return;
+    for (int axis = 0; axis < 3; ++axis) {
+      lower[axis] = std::min(lower[axis], center[axis] * scale);
+      upper[axis] = std::max(upper[axis], center[axis] * scale);
+    }
+  }
+  void add(const CenterBounds& other) {
+    for (int axis = 0; axis < 3; ++axis) {
+      lower[axis] = std::min(lower[axis], other.lower[axis]);
+      upper[axis] = std::max(upper[axis], other.upper[axis]);
     }
   }
   /// Not positive when all centres are one point or none is finite.

@@ -34,23 +34,33 @@ class RegularSplitter {
     return coded_[range.begin].code != coded_[range.end - 1].code;
   }
 
-  /// The octants, quarters or halves of the smallest regular cell that contains the range, without the empty
-  /// ones.
-  void split(TriangleRange range, std::uint32_t, std::vector<TriangleRange>& children) const {
-    const std::uint64_t differing = coded_[range.begin].code ^ coded_[range.end - 1].code;
-    assert(differing != 0);
-    const int level = (bits_of_code - static_cast<int>(std::bit_width(differing))) / bits_per_level_;
-    const int shift = std::max(bits_of_code - (level + 1) * bits_per_level_, 0);
-    for (std::uint32_t i = range.begin; i < range.end; i = children.back().end) {
-      const std::uint64_t octant = coded_[i].code >> shift;
-      const auto past = std::partition_point(coded_.begin() + i, coded_.begin() + range.end,
-                                             [&](const CurvePlace& c) { return c.code >> shift == octant; });
-      children.push_back({i, static_cast<std::uint32_t>(past - coded_.begin())});
+  /// The children of a node are the octants, quarters or halves of the smallest regular cell that contains
+  /// its range, without the empty ones.
+  void split(std::span<NodeDivision> nodes, std::uint32_t) const {
+    for (NodeDivision& node : nodes) {
+      const TriangleRange range = node.range;
+      const std::uint64_t differing = coded_[range.begin].code ^ coded_[range.end - 1].code;
+      assert(differing != 0);
+      const int level = (bits_of_code - static_cast<int>(std::bit_width(differing))) / bits_per_level_;
+      const int shift = std::max(bits_of_code - (level + 1) * bits_per_level_, 0);
+      for (std::uint32_t i = range.begin; i < range.end;) {
+        const std::uint64_t octant = coded_[i].code >> shift;
+        const auto past =
+            std::partition_point(coded_.begin() + i, coded_.begin() + range.end,
+                                 [&](const CurvePlace& c) { return c.code >> shift == octant; });
+        const auto end = static_cast<std::uint32_t>(past - coded_.begin());
+        node.push_child({i, end});
+        i = end;
+      }
     }
   }
 
-  void finish_leaf(TriangleRange) const {}
-  std::span<const CurvePlace> items() const { return coded_; }
+  std::vector<std::uint32_t> finish(std::span<const TriangleRange>) const {
+    std::vector<std::uint32_t> order;
+    order.reserve(coded_.size());
+    for (const CurvePlace& place : coded_) order.push_back(place.triangle);
+    return order;
+  }
 
  private:
   std::span<const Vec3d> centers_;
@@ -63,7 +73,7 @@ class RegularSplitter {
 }  // namespace
 
 OctreeTopology build_regular_octree(std::span<const Vec3d> centers, const ObjectOctreeOptions& options) {
-  return build_octree(RegularSplitter(centers, options));
+  return build_octree(static_cast<std::uint32_t>(centers.size()), RegularSplitter(centers, options));
 }
 
 }  // namespace supple

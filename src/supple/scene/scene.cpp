@@ -29,18 +29,29 @@ const SceneOptions& checked(const SceneOptions& options) {
 }
 
 std::vector<Triangle> checked_triangles(const std::string& name, std::size_t vertex_count,
-                                        const TrianglesView& view) {
-  constexpr std::size_t most = 0xffffffff;
+                                        const TrianglesView& view, const Parallel& parallel) {
+  constexpr std::size_t most = 0xffffffff, grain = 8192;
   if (vertex_count >= most || view.size() >= most) fail(name + ": more than 2^32 - 2 vertices or triangles");
+  const auto is_vertex = [&](std::int64_t id) {
+    return id >= 0 && id < static_cast<std::int64_t>(vertex_count);
+  };
   std::vector<Triangle> triangles(view.size());
-  for (std::size_t t = 0; t < triangles.size(); ++t) {
-    const std::array<std::int64_t, 3> ids = view[t];
-    for (std::size_t corner = 0; corner < 3; ++corner) {
-      if (ids[corner] < 0 || ids[corner] >= static_cast<std::int64_t>(vertex_count)) {
-        fail(name + ": triangle " + std::to_string(t) + " uses vertex " + std::to_string(ids[corner]) +
-             ", but there are " + std::to_string(vertex_count) + " vertices, numbered from 0");
+  const bool are_all = parallel.all_of_ranges(view.size(), grain, [&](std::size_t begin, std::size_t end) {
+    bool are_vertices = true;
+    for (std::size_t t = begin; t < end; ++t) {
+      const std::array<std::int64_t, 3> ids = view[t];
+      for (std::size_t corner = 0; corner < 3; ++corner) {
+        are_vertices = are_vertices && is_vertex(ids[corner]);
+        triangles[t][corner] = static_cast<std::uint32_t>(ids[corner]);
       }
-      triangles[t][corner] = static_cast<std::uint32_t>(ids[corner]);
+    }
+    return are_vertices;
+  });
+  for (std::size_t t = 0; !are_all && t < triangles.size(); ++t) {
+    for (const std::int64_t id : view[t]) {
+      if (is_vertex(id)) continue;
+      fail(name + ": triangle " + std::to_string(t) + " uses vertex " + std::to_string(id) +
+           ", but there are " + std::to_string(vertex_count) + " vertices, numbered from 0");
     }
   }
   return triangles;
@@ -84,7 +95,8 @@ ObjectId Scene::Implementation::add(const PositionsView& positions, const Triang
     fail(named.name + ": a balanced octree has eight children; for an arity of " +
          std::to_string(named.octree.arity) + ", build it regular or bottom-up");
   auto object = std::make_unique<SceneObject>(
-      positions, checked_triangles(named.name, positions.size(), triangles), named, options);
+      positions, checked_triangles(named.name, positions.size(), triangles, parallel), named, options,
+      parallel);
   object->move().set_positions(positions, parallel);
   object->measure_built_octree(parallel);
   if (free_slots_.empty()) {

@@ -43,10 +43,11 @@ ObjectOctreeOptions octree_options(const ObjectOptions& options, const SceneOpti
 }  // namespace
 
 SceneObject::SceneObject(const PositionsView& positions, std::span<const Triangle> triangles,
-                         const ObjectOptions& object_options, const SceneOptions& scene_options)
+                         const ObjectOptions& object_options, const SceneOptions& scene_options,
+                         const Parallel& parallel)
     : options(object_options),
       octree_(positions, triangles, octree_options(object_options, scene_options),
-              scene_options.bounding_volume, scene_options.comparison.sphere_fit),
+              scene_options.bounding_volume, scene_options.comparison.sphere_fit, parallel),
       // The paper's results depend on the leaves of the rest pose.
       rebuild_policy_(object_options.octree.rebuild_degraded &&
                       !scene_options.comparison.colliding_vertices &&
@@ -111,7 +112,7 @@ void SceneObject::measure_built_octree(const Parallel& parallel) {
 }
 
 bool SceneObject::rebuild(const Parallel& parallel) {
-  ObjectOctree octree = octree_.rebuilt(placement_.end().view());
+  ObjectOctree octree = octree_.rebuilt(placement_.end().view(), parallel);
   if (!octree.refit(placement_.end(), {}, parallel)) {
     std::vector<std::uint8_t> inert;
     mark_inert(octree, placement_.end(), inert);

@@ -28,7 +28,8 @@ struct SearchedShapes {
 class SceneObject {
  public:
   SceneObject(const PositionsView& positions, std::span<const Triangle> triangles,
-              const ObjectOptions& object_options, const SceneOptions& scene_options);
+              const ObjectOptions& object_options, const SceneOptions& scene_options,
+              const Parallel& parallel);
 
   /// For changes of the placement; marks the object as moved.
   Placement& move() {

@@ -10,14 +10,16 @@
 #include <vector>
 
 #include "supple/models.hpp"
+#include "support/instruction_sets.hpp"
 #include "support/soups.hpp"
 #include "support/topologies.hpp"
 
 namespace supple {
 namespace {
 
-OctreeTopology built(const TriangleMesh& mesh, const ObjectOctreeOptions& options = {}) {
-  return build_balanced_octree(centers_of(mesh), mesh.triangles, options);
+OctreeTopology built(const TriangleMesh& mesh, const ObjectOctreeOptions& options = {},
+                     std::uint32_t threads = 1) {
+  return build_balanced_octree(centers_of(mesh), mesh.triangles, options, Parallel(threads));
 }
 
 TEST(BalancedBuild, IsSoundForAnySizesOptionsAndPositions) {
@@ -113,7 +115,7 @@ TEST(BalancedBuild, CutsGridsBetweenRows) {
     // The two triangles of a square get the same centre.
     std::vector<Vec3d> centers = centers_of(sheet);
     for (std::size_t t = 0; t < centers.size(); t += 2) centers[t] = centers[t + 1];
-    const OctreeTopology topology = build_balanced_octree(centers, sheet.triangles, {});
+    const OctreeTopology topology = build_balanced_octree(centers, sheet.triangles, {}, Parallel(1));
     std::size_t straight = 0;
     const auto leaves = leaves_of(topology);
     for (const auto& leaf : leaves) {
@@ -128,6 +130,20 @@ TEST(BalancedBuild, CutsGridsBetweenRows) {
       straight += leaf.size() == 2 * std::size_t{right - left + 1} * (bottom - top + 1) ? 1 : 0;
     }
     EXPECT_EQ(straight, leaves.size()) << columns << " x " << rows;
+  }
+}
+
+TEST(BalancedBuild, IsTheSameOnEveryInstructionSetAndNumberOfThreads) {
+  RandomNumbers random(3);
+  for (const std::uint32_t count : {1u, 17u, 300u, 9000u}) {
+    for (std::uint32_t way = 0; way < hard_ways; ++way) {
+      const TriangleMesh mesh =
+          way % 2 == 0 ? random_soup(count, 1, 0.1, count) : crumpled_sheet(1 + count / 8, 4, 0.1, count);
+      const TriangleMesh hard = hard_positions(mesh, way, random);
+      const std::vector<std::uint32_t> order = built(hard).order;
+      for (const std::uint32_t threads : {2u, 7u}) EXPECT_EQ(built(hard, {}, threads).order, order);
+      for_each_target([&](const char* name) { EXPECT_EQ(built(hard).order, order) << name; });
+    }
   }
 }
 
