@@ -57,8 +57,8 @@ class Scene {
   Scene& operator=(Scene&&) noexcept;
 
   /// Adds an object and builds its octree from these positions (the rest pose) in O(n log n), on all threads
-  /// of the scene. An object without triangles touches nothing. Throws `Error` for a vertex id that is negative or too large; the
-  /// message names the triangle and the id.
+  /// of the scene. An object without triangles touches nothing. Throws `Error` for a vertex id that is
+  /// negative or too large; the message names the triangle and the id.
   ObjectId add(const TriangleMesh& mesh, const ObjectOptions& options = {});
   ObjectId add(PositionsView positions, TrianglesView triangles, const ObjectOptions& options = {});
   /// Removes an object. Its pairs end at the next `detect`.

@@ -6,11 +6,14 @@
 #include <hwy/highway.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <limits>
+#include <utility>
 
-#include "core/float_rounding.hpp"
 #include "core/packed_lanes-inl.hpp"
+#include "geometry/aabb.hpp"
+#include "octree/triangle_boxes-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace supple {
@@ -22,27 +25,34 @@ struct MovingBox {
   float start[6], end[6];
 };
 
-HWY_INLINE void load_box(float* box, const float* boxes, std::size_t stride, std::size_t i) {
-  for (std::size_t side = 0; side < 6; ++side) box[side] = boxes[side * stride + i];
-}
+/// Six arrays of boxes at each end of the step, `stride` floats apart.
+struct MovingBoxArrays {
+  const float* start;
+  const float* end;
+  std::size_t stride;
+};
 
-/// Grows the box by at least the separation. Bounds stay within the range of float. Inverted boxes stay
-/// inverted, so that they overlap no other box.
-HWY_INLINE void grow(float* box, float separation) {
-  constexpr float greatest = std::numeric_limits<float>::max();
-  if (box[0] > greatest) return;
-  for (int axis = 0; axis < 3; ++axis) {
-    const float low = box[axis] - separation, high = box[axis + 3] + separation;
-    box[axis] = std::max(low - outward_step(low), -greatest);
-    box[axis + 3] = std::min(high + outward_step(high), greatest);
+constexpr float greatest = std::numeric_limits<float>::max();
+
+/// Moves one side of boxes by the offset, and outward, in the direction `outward` (-1 or 1), by at least the
+/// separation. Bounds stay within the range of float.
+template <class Tag, class Vector = hn::Vec<Tag>>
+HWY_INLINE Vector placed(Tag tag, Vector side, float offset, float separation, float outward) {
+  side = hn::Add(side, hn::Set(tag, offset));
+  if (separation > 0) {
+    side = hn::Add(side, hn::Set(tag, outward * separation));
+    // As `outward_step` of core/float_rounding.hpp.
+    const Vector step = hn::Add(hn::Mul(hn::Abs(side), hn::Set(tag, 0x1p-23f)),
+                                hn::Set(tag, std::numeric_limits<float>::min()));
+    side = hn::Add(side, hn::Mul(hn::Set(tag, outward), step));
   }
+  return hn::Min(hn::Max(side, hn::Set(tag, -greatest)), hn::Set(tag, greatest));
 }
 
 /// Bounds at a time between the two ends of the step. They are farther out, in the direction `outward` (-1 or
 /// 1), than any rounding error. They stay within the range of float, so that an inverted box stays inverted.
 template <class Tag, class Vector = hn::Vec<Tag>>
 HWY_INLINE Vector between(Tag tag, Vector start, Vector end, float time, float outward) {
-  constexpr float greatest = std::numeric_limits<float>::max();
   const Vector sizes = hn::Add(hn::Abs(start), hn::Abs(end));
   const Vector slack = hn::Min(hn::Mul(hn::Set(tag, 0x1p-21f), sizes), hn::Set(tag, greatest / 4));
   const Vector bound = hn::Add(hn::Mul(start, hn::Set(tag, 1 - time)), hn::Mul(end, hn::Set(tag, time)));
@@ -51,42 +61,40 @@ HWY_INLINE Vector between(Tag tag, Vector start, Vector end, float time, float o
   return hn::Min(hn::Max(moved, hn::Set(tag, -greatest)), hn::Set(tag, greatest));
 }
 
-/// Moves the box by the offset, or back. Inverted boxes stay inverted.
-HWY_INLINE void shift(float* box, const Vec3f& offset, float sign) {
-  for (int axis = 0; axis < 3; ++axis) {
-    box[axis] += sign * offset[axis];
-    box[axis + 3] += sign * offset[axis];
+/// Moves boxes by `part.offset`, grows them by the separation, and replaces their end by that of the part of
+/// the step. One of two objects is placed; the other is only shortened.
+template <class Tag>
+HWY_INLINE void place_and_shorten(Tag tag, float* start, float* end, int side, const PartOfStep& part) {
+  const float outward = side < 3 ? -1.0f : 1.0f;
+  auto at_start = hn::LoadU(tag, start), at_end = hn::LoadU(tag, end);
+  if (part.separation > 0 || !(part.offset == Vec3f{})) {
+    at_start = placed(tag, at_start, part.offset[side % 3], part.separation, outward);
+    at_end = placed(tag, at_end, part.offset[side % 3], part.separation, outward);
   }
+  if (part.latest < 1) at_end = between(tag, at_start, at_end, part.latest, outward);
+  hn::StoreU(at_start, tag, start);
+  hn::StoreU(at_end, tag, end);
 }
 
-enum class Side { a, b };
-
-/// The box of an element of a, moved to where the boxes of b are stored, or the reverse.
-template <Side of>
-HWY_NOINLINE MovingBox moving_box(const MovingBoxArrays& arrays, std::size_t i, const PartOfStep& part) {
+/// The placed box of a child. Inverted boxes stay inverted.
+HWY_NOINLINE MovingBox moving_box(const MovingBoxArrays& boxes, std::size_t i, const PartOfStep& part) {
   MovingBox box;
-  load_box(box.start, arrays.start, arrays.stride, i);
-  load_box(box.end, arrays.end, arrays.stride, i);
-  if (!(part.offset == Vec3f{})) {
-    shift(box.start, part.offset, of == Side::a ? -1.0f : 1.0f);
-    shift(box.end, part.offset, of == Side::a ? -1.0f : 1.0f);
+  for (std::size_t side = 0; side < 6; ++side) {
+    box.start[side] = boxes.start[side * boxes.stride + i];
+    box.end[side] = boxes.end[side * boxes.stride + i];
   }
-  if (part.separation > 0) {
-    grow(box.start, part.separation);
-    grow(box.end, part.separation);
-  }
-  if (part.latest < 1) {
-    const hn::CappedTag<float, 1> one;
-    for (std::size_t side = 0; side < 6; ++side) {
-      box.end[side] = hn::GetLane(between(one, hn::Set(one, box.start[side]), hn::Set(one, box.end[side]),
-                                          part.latest, side < 3 ? -1.0f : 1.0f));
-    }
-  }
+  if (box.start[0] > greatest) return box;
+  for (int side = 0; side < 6; ++side)
+    place_and_shorten(hn::CappedTag<float, 1>(), box.start + side, box.end + side, side, part);
   return box;
 }
 
 HWY_INLINE MovingBoxArrays child_boxes(const MovingView& view, std::uint32_t node) {
   return {view.start[node].min_x, view.end[node].min_x, node_width};
+}
+
+HWY_INLINE MovingBoxArrays arrays_of(const MovingBoxBlock& block) {
+  return {block.start[0], block.end[0], leaf_block};
 }
 
 /// Whether a vector of boxes, from `first` on, is apart from `box` along the axis: on the same side at both
@@ -120,28 +128,18 @@ HWY_INLINE std::uint64_t meeting_bits(Tag tag, const MovingBox& box, const Movin
   return mask_bits(tag, hn::Not(apart));
 }
 
-/// Bits of the boxes of a range of at most 64 elements that are not apart from `box`; bits past the range are
-/// unspecified. Not inlined, because compilers would take minutes.
-HWY_NOINLINE std::uint64_t meeting_elements(const MovingBox& box, const MovingBoxArrays& boxes,
-                                            ElementRange range, float latest) {
-  const hn::CappedTag<float, 16> tag;
-  const auto lanes = static_cast<std::uint32_t>(hn::Lanes(tag));
-  std::uint64_t bits = meeting_bits(tag, box, boxes, range.begin, latest);
-  for (std::uint32_t j = lanes; j < range.size(); j += lanes) {
-    bits |= meeting_bits(tag, box, boxes, range.begin + j, latest) << j;
-  }
-  return bits;
-}
-
 void MovingOverlapMasks(const NodePair* pairs, std::size_t count, const MovingView& a, const MovingView& b,
                         const PartOfStep& part, std::uint64_t* masks) {
   const hn::CappedTag<float, node_width> tag;
+  // Here the boxes of a are placed, because there is one of them for each vector of b.
+  PartOfStep part_a = part;
+  part_a.offset = {-part.offset.x, -part.offset.y, -part.offset.z};
   for (std::size_t k = 0; k < count; ++k) {
     const MovingBoxArrays boxes_a = child_boxes(a, pairs[k].a), boxes_b = child_boxes(b, pairs[k].b);
     std::uint64_t mask = 0;
     for (std::uint32_t rest = pairs[k].children_a; rest != 0; rest &= rest - 1) {
       const auto i = static_cast<std::size_t>(std::countr_zero(rest));
-      const MovingBox box = moving_box<Side::a>(boxes_a, i, part);
+      const MovingBox box = moving_box(boxes_a, i, part_a);
       for (std::size_t j = 0; j < node_width; j += hn::Lanes(tag)) {
         mask |= meeting_bits(tag, box, boxes_b, j, part.latest) << (8 * i + j);
       }
@@ -150,80 +148,226 @@ void MovingOverlapMasks(const NodePair* pairs, std::size_t count, const MovingVi
   }
 }
 
+/// Vertices of elements: `vertex(element, corner)`.
+struct VerticesThemselves {
+  static constexpr int corner_count = 1;
+  HWY_INLINE std::size_t vertex(std::size_t element, int) const { return element; }
+};
+template <int corners>
+struct VerticesOfElements {
+  static constexpr int corner_count = corners;
+  const std::array<std::uint32_t, corners>* ids;
+  HWY_INLINE std::size_t vertex(std::size_t element, int corner) const {
+    return ids[element][static_cast<std::size_t>(corner)];
+  }
+};
+
+template <class Ids>
+HWY_INLINE FloatBox element_box(const VertexCorners& corners, const Ids& ids, std::size_t element) {
+  FloatBox box;
+  for (int corner = 0; corner < Ids::corner_count; ++corner) {
+    const std::size_t at = ids.vertex(element, corner) * corners.step;
+    box.extend(corners.lower + at, corners.upper + at);
+  }
+  return box;
+}
+
+/// Sets the boxes of the elements of a range at one end of the step, four at a time.
+template <class Ids>
+HWY_INLINE void set_boxes(const VertexCorners& corners, const Ids& ids, ElementRange range,
+                          float (&boxes)[6][leaf_block]) {
+  const std::uint32_t last = range.size() - 1;
+  for (std::uint32_t i = 0; i < range.size(); i += 4) {
+    FloatBox four[4];
+    for (std::uint32_t k = 0; k < 4; ++k)
+      four[k] = element_box(corners, ids, range.begin + std::min(i + k, last));
+    store_four_boxes(four, boxes, i);
+  }
+}
+
+/// The boxes of a range of at most `leaf_block` elements. Those of object b are placed.
+template <class Ids>
+HWY_INLINE void set_block(const MovingView& view, const Ids& ids, ElementRange range, const PartOfStep& part,
+                          MovingBoxBlock& block) {
+  set_boxes(view.start_corners, ids, range, block.start);
+  set_boxes(view.end_corners, ids, range, block.end);
+  if (part.separation > 0 || part.latest < 1 || !(part.offset == Vec3f{})) {
+    const hn::CappedTag<float, 16> tag;
+    for (int side = 0; side < 6; ++side) {
+      for (std::size_t i = 0; i < range.size(); i += hn::Lanes(tag))
+        place_and_shorten(tag, block.start[side] + i, block.end[side] + i, side, part);
+    }
+  }
+  if (view.inert == nullptr) return;
+  for (std::uint32_t i = 0; i < range.size(); ++i) {
+    bool is_inert = false;
+    for (int corner = 0; corner < Ids::corner_count; ++corner)
+      is_inert = is_inert || view.inert[ids.vertex(range.begin + i, corner)] != 0;
+    for (int side = 0; is_inert && side < 6; ++side) {
+      constexpr float inf = std::numeric_limits<float>::infinity();
+      block.start[side][i] = block.end[side][i] = side < 3 ? inf : -inf;
+    }
+  }
+}
+
+/// The same for every instruction set, so that the order of pairs is too.
+constexpr std::uint32_t group = 16;
+
+/// Bits of a group of boxes of the block, from `first` on, that are not apart from `box`.
+HWY_INLINE std::uint64_t meeting_group(const MovingBox& box, const MovingBoxBlock& block, std::size_t first) {
+  const hn::CappedTag<float, group> tag;
+  std::uint64_t bits = 0;
+  for (std::size_t j = 0; j < group; j += hn::Lanes(tag))
+    bits |= meeting_bits(tag, box, arrays_of(block), first + j, 1) << j;
+  return bits;
+}
+
+/// Bits of the elements of a block that are not apart from `box`. Not inlined, because compilers would take
+/// minutes.
+HWY_NOINLINE std::uint64_t meeting_elements(const MovingBox& box, const MovingBoxBlock& block,
+                                            std::uint32_t count) {
+  std::uint64_t bits = 0;
+  for (std::uint32_t first = 0; first < count; first += group)
+    bits |= meeting_group(box, block, first) << first;
+  return bits & ~std::uint64_t{0} >> (leaf_block - count);
+}
+
+/// For each of `ones`, in ascending order, the bits of a group of `others` that are not apart from it.
+HWY_NOINLINE void meeting_masks(const MovingBoxBlock& ones, std::uint64_t some_ones,
+                                const MovingBoxBlock& others, std::size_t first, std::uint64_t* masks) {
+  for (; some_ones != 0; some_ones &= some_ones - 1) {
+    const auto one = static_cast<std::size_t>(std::countr_zero(some_ones));
+    MovingBox box;
+    for (std::size_t side = 0; side < 6; ++side) {
+      box.start[side] = ones.start[side][one];
+      box.end[side] = ones.end[side][one];
+    }
+    *masks++ = meeting_group(box, others, first);
+  }
+}
+
 /// One call of `find_element_box_pairs`.
 class ElementTests {
  public:
   ElementTests(const MovingView& a, const MovingView& b, const PartOfStep& part, bool same_object,
-               ElementPairBatches& batches)
-      : a_(a), b_(b), part_(part), same_object_(same_object), batches_(batches) {}
+               MovingBoxCache& cache, ElementPairBatches& batches)
+      : a_(a),
+        b_(b),
+        part_a_{0, part.latest, {}},
+        part_b_(part),
+        same_object_(same_object),
+        cache_(cache),
+        batches_(batches) {
+    if (std::exchange(cache.latest, part.latest) != part.latest) cache.clear();
+  }
 
   void test(const LeafPair& leaves) {
     same_leaf_ = same_object_ && leaves.begin_a == leaves.begin_b;
-    box_a_ =
-        moving_box<Side::a>(child_boxes(a_, leaves.leaf_a / node_width), leaves.leaf_a % node_width, part_);
-    box_b_ =
-        moving_box<Side::b>(child_boxes(b_, leaves.leaf_b / node_width), leaves.leaf_b % node_width, part_);
-    const ElementRange vertices_a{a_.first_vertex[leaves.begin_a], a_.first_vertex[leaves.end_a]};
-    const ElementRange vertices_b{b_.first_vertex[leaves.begin_b], b_.first_vertex[leaves.end_b]};
-    const ElementRange faces_a{leaves.begin_a, leaves.end_a}, faces_b{leaves.begin_b, leaves.end_b};
-    match<Kind::vertex_face>(a_.vertices, vertices_a, b_.faces, faces_b);
-    if (!same_leaf_) match<Kind::face_vertex>(a_.faces, faces_a, b_.vertices, vertices_b);
-    match<Kind::edge_edge>(a_.edges, {a_.first_edge[leaves.begin_a], a_.first_edge[leaves.end_a]}, b_.edges,
-                           {b_.first_edge[leaves.begin_b], b_.first_edge[leaves.end_b]});
+    box_a_ = moving_box(child_boxes(a_, leaves.leaf_a / node_width), leaves.leaf_a % node_width, part_a_);
+    box_b_ = moving_box(child_boxes(b_, leaves.leaf_b / node_width), leaves.leaf_b % node_width, part_b_);
+    const Elements<VerticesThemselves> vertices_a{
+        {},
+        &MovingBoxCache::Side::vertices,
+        {a_.first_vertex[leaves.begin_a], a_.first_vertex[leaves.end_a]}};
+    const Elements<VerticesThemselves> vertices_b{
+        {},
+        &MovingBoxCache::Side::vertices,
+        {b_.first_vertex[leaves.begin_b], b_.first_vertex[leaves.end_b]}};
+    const Elements<VerticesOfElements<3>> faces_a{
+        {a_.face_ids}, &MovingBoxCache::Side::faces, {leaves.begin_a, leaves.end_a}};
+    const Elements<VerticesOfElements<3>> faces_b{
+        {b_.face_ids}, &MovingBoxCache::Side::faces, {leaves.begin_b, leaves.end_b}};
+    const Elements<VerticesOfElements<2>> edges_a{
+        {a_.edge_ids},
+        &MovingBoxCache::Side::edges,
+        {a_.first_edge[leaves.begin_a], a_.first_edge[leaves.end_a]}};
+    const Elements<VerticesOfElements<2>> edges_b{
+        {b_.edge_ids},
+        &MovingBoxCache::Side::edges,
+        {b_.first_edge[leaves.begin_b], b_.first_edge[leaves.end_b]}};
+    match<Kind::vertex_face>(vertices_a, faces_b);
+    if (!same_leaf_) match<Kind::face_vertex>(faces_a, vertices_b);
+    match<Kind::edge_edge>(edges_a, edges_b);
   }
   std::uint64_t box_tests() const { return tests_; }
 
  private:
   using Kind = ElementPairKind;
-  /// Elements in one test, one bit for each. The same on all instruction sets, so the order of pairs is too.
-  static constexpr std::uint32_t block = 64;
 
-  template <Kind kind>
-  void match(const MovingBoxArrays& boxes_a, ElementRange range_a, const MovingBoxArrays& boxes_b,
-             ElementRange range_b) {
-    for (std::uint32_t a = range_a.begin; a < range_a.end; a += block) {
-      const ElementRange part_a{a, std::min(a + block, range_a.end)};
-      const std::uint64_t near_b = near_leaf(box_b_, boxes_a, part_a);
-      if (near_b == 0) continue;
+  /// The elements of one kind that a leaf owns.
+  template <class Ids>
+  struct Elements {
+    Ids ids;
+    MovingBoxCache::Kind MovingBoxCache::Side::*cache;
+    ElementRange range;
+
+    ElementRange block(std::uint32_t first) const { return {first, std::min(first + leaf_block, range.end)}; }
+  };
+
+  /// The boxes of a block of elements. Maps consecutive blocks to different places of the cache.
+  template <class Ids>
+  const MovingBoxBlock& boxes_of(const MovingView& view, const Elements<Ids>& elements,
+                                 MovingBoxCache::Side& side, ElementRange block, const PartOfStep& part) {
+    static_assert(MovingBoxCache::size == 16);
+    const std::size_t place = block.begin * 0x9e3779b1u >> 28;
+    MovingBoxCache::Kind& kind = side.*elements.cache;
+    if (std::exchange(kind.first_elements[place], block.begin) != block.begin)
+      set_block(view, elements.ids, block, part, kind.blocks[place]);
+    return kind.blocks[place];
+  }
+
+  template <Kind kind, class IdsA, class IdsB>
+  void match(const Elements<IdsA>& all_a, const Elements<IdsB>& all_b) {
+    for (std::uint32_t first_a = all_a.range.begin; first_a < all_a.range.end; first_a += leaf_block) {
+      const ElementRange range_a = all_a.block(first_a);
+      const MovingBoxBlock& boxes_a = boxes_of(a_, all_a, cache_.a, range_a, part_a_);
+      const std::uint64_t some_a = near_leaf(box_b_, boxes_a, range_a);
+      if (some_a == 0) continue;
       // Avoids finding each pair of edges of one leaf twice.
       const bool half = kind == Kind::edge_edge && same_leaf_;
-      for (std::uint32_t b = half ? a : range_b.begin; b < range_b.end; b += block) {
-        const ElementRange part_b{b, std::min(b + block, range_b.end)};
-        const std::uint64_t near_a = near_leaf(box_a_, boxes_b, part_b);
-        if (near_a != 0) match_blocks<kind>(boxes_a, part_a, near_b, boxes_b, part_b, near_a);
+      for (std::uint32_t first_b = half ? first_a : all_b.range.begin; first_b < all_b.range.end;
+           first_b += leaf_block) {
+        const ElementRange range_b = all_b.block(first_b);
+        const MovingBoxBlock& boxes_b = boxes_of(b_, all_b, cache_.b, range_b, part_b_);
+        const std::uint64_t some_b = near_leaf(box_a_, boxes_b, range_b);
+        if (some_b == 0) continue;
+        const bool with_later = half && first_a == first_b;
+        if (with_later || std::popcount(some_a) <= std::popcount(some_b)) {
+          match_blocks<kind, false>(first_a, boxes_a, some_a, first_b, boxes_b, some_b, with_later);
+        } else {
+          match_blocks<kind, true>(first_b, boxes_b, some_b, first_a, boxes_a, some_a, false);
+        }
       }
     }
   }
 
   /// Bits of the elements that may come near the other leaf.
-  std::uint64_t near_leaf(const MovingBox& leaf, const MovingBoxArrays& boxes, ElementRange range) {
-    const std::uint64_t all = ~std::uint64_t{0} >> (block - range.size());
-    return same_leaf_ ? all : meeting(leaf, boxes, range) & all;
-  }
-
-  std::uint64_t meeting(const MovingBox& box, const MovingBoxArrays& boxes, ElementRange range) {
+  std::uint64_t near_leaf(const MovingBox& leaf, const MovingBoxBlock& boxes, ElementRange range) {
+    if (same_leaf_) return ~std::uint64_t{0} >> (leaf_block - range.size());
     tests_ += range.size();
-    return meeting_elements(box, boxes, range, part_.latest);
+    return meeting_elements(leaf, boxes, range.size());
   }
 
-  /// Tests each element of the side that has fewer against the other side.
-  template <Kind kind>
-  void match_blocks(const MovingBoxArrays& boxes_a, ElementRange range_a, std::uint64_t some_a,
-                    const MovingBoxArrays& boxes_b, ElementRange range_b, std::uint64_t some_b) {
-    const bool one_block = kind == Kind::edge_edge && same_leaf_ && range_a.begin == range_b.begin;
-    if (one_block || std::popcount(some_a) <= std::popcount(some_b)) {
-      for (; some_a != 0; some_a &= some_a - 1) {
-        if (one_block) some_b = some_a & (some_a - 1);
-        const std::uint32_t a = range_a.begin + static_cast<std::uint32_t>(std::countr_zero(some_a));
-        const std::uint64_t hits = meeting(moving_box<Side::a>(boxes_a, a, part_), boxes_b, range_b);
-        add<kind, false>(a, range_b.begin, hits & some_b);
+  /// Tests each of `ones`, elements of a, or of b with `one_is_b`, against the others; in a block against
+  /// itself only against later ones.
+  template <Kind kind, bool one_is_b>
+  void match_blocks(std::uint32_t first_one, const MovingBoxBlock& ones, std::uint64_t some_ones,
+                    std::uint32_t first_other, const MovingBoxBlock& others, std::uint64_t some_others,
+                    bool with_later) {
+    std::array<std::uint64_t, leaf_block> masks;
+    const auto count_ones = static_cast<std::uint64_t>(std::popcount(some_ones));
+    for (std::uint32_t i = 0; i < leaf_block; i += group) {
+      const std::uint64_t some = some_others >> i & ((std::uint64_t{1} << group) - 1);
+      if (some == 0) continue;
+      tests_ += count_ones * group;
+      meeting_masks(ones, some_ones, others, i, masks.data());
+      const std::uint64_t* mask = masks.data();
+      for (std::uint64_t rest = some_ones; rest != 0; rest &= rest - 1) {
+        const auto one = static_cast<std::uint32_t>(std::countr_zero(rest));
+        std::uint64_t hits = *mask++ & some;
+        if (with_later && one >= i) hits &= ~std::uint64_t{0} << std::min(one - i + 1, leaf_block - 1);
+        add<kind, one_is_b>(first_one + one, first_other + i, hits);
       }
-      return;
-    }
-    for (; some_b != 0; some_b &= some_b - 1) {
-      const std::uint32_t b = range_b.begin + static_cast<std::uint32_t>(std::countr_zero(some_b));
-      const std::uint64_t hits = meeting(moving_box<Side::b>(boxes_b, b, part_), boxes_a, range_a);
-      add<kind, true>(b, range_a.begin, hits & some_a);
     }
   }
 
@@ -235,7 +379,7 @@ class ElementTests {
     // In pairs within one object the vertex comes first.
     const bool turned = same_object_ && kind == Kind::face_vertex;
     const Kind reported = turned ? Kind::vertex_face : kind;
-    ElementPair* const pairs = batches_.room_for(reported, block);
+    ElementPair* const pairs = batches_.room_for(reported, group);
     std::size_t count = 0;
     for (; hits != 0; hits &= hits - 1) {
       const std::uint32_t other = first + static_cast<std::uint32_t>(std::countr_zero(hits));
@@ -262,8 +406,9 @@ class ElementTests {
 
   const MovingView& a_;
   const MovingView& b_;
-  PartOfStep part_;
+  PartOfStep part_a_, part_b_;
   bool same_object_;
+  MovingBoxCache& cache_;
   ElementPairBatches& batches_;
   bool same_leaf_ = false;
   MovingBox box_a_, box_b_;
@@ -272,8 +417,8 @@ class ElementTests {
 
 std::uint64_t ElementBoxPairs(const LeafPair* leaf_pairs, std::size_t count, const MovingView& a,
                               const MovingView& b, const PartOfStep& part, bool same_object,
-                              ElementPairBatches& batches) {
-  ElementTests tests(a, b, part, same_object, batches);
+                              MovingBoxCache& cache, ElementPairBatches& batches) {
+  ElementTests tests(a, b, part, same_object, cache, batches);
   for (std::size_t k = 0; k < count; ++k) tests.test(leaf_pairs[k]);
   return tests.box_tests();
 }
@@ -295,9 +440,23 @@ void moving_overlap_masks(std::span<const NodePair> pairs, const MovingView& a, 
 
 std::uint64_t find_element_box_pairs(std::span<const LeafPair> leaf_pairs, const MovingView& a,
                                      const MovingView& b, const PartOfStep& part, bool same_object,
-                                     ElementPairBatches& batches) {
+                                     MovingBoxCache& cache, ElementPairBatches& batches) {
   return HWY_DYNAMIC_DISPATCH(ElementBoxPairs)(leaf_pairs.data(), leaf_pairs.size(), a, b, part, same_object,
-                                               batches);
+                                               cache, batches);
+}
+
+std::array<Aabb, 2> moving_face_boxes(const MovingView& view, std::uint32_t face) {
+  std::array<Aabb, 2> boxes;
+  for (const std::uint32_t vertex : view.face_ids[face]) {
+    if (view.inert != nullptr && view.inert[vertex] != 0) return {};
+    for (const bool at_end : {false, true}) {
+      const VertexCorners& corners = at_end ? view.end_corners : view.start_corners;
+      const float* const low = corners.lower + vertex * corners.step;
+      const float* const high = corners.upper + vertex * corners.step;
+      extend(boxes[at_end ? 1 : 0], Aabb{{low[0], low[1], low[2]}, {high[0], high[1], high[2]}});
+    }
+  }
+  return boxes;
 }
 
 }  // namespace supple

@@ -71,6 +71,35 @@ struct PartOfStep {
   Vec3f offset{};
 };
 
+/// Boxes of up to `leaf_block` elements of one kind at both ends of (a part of) a step: min x, y, z, max x,
+/// y, z. Boxes past the last element are unspecified.
+struct alignas(64) MovingBoxBlock {
+  float start[6][leaf_block], end[6][leaf_block];
+};
+
+/// A cache of the boxes of the elements of recent leaves, for vertices, edges and faces; most are soon used
+/// again. Valid for one pair of objects on their paths; clear it for others.
+struct MovingBoxCache {
+  static constexpr std::size_t size = 16;
+  struct Kind {
+    std::array<std::uint32_t, size> first_elements;
+    std::array<MovingBoxBlock, size> blocks;
+  };
+  struct Side {
+    Kind vertices, edges, faces;
+  };
+  Side a, b;
+  float latest = 1;  ///< of the `PartOfStep`
+
+  MovingBoxCache() { clear(); }
+  void clear() {
+    for (Side* const side : {&a, &b}) {
+      for (Kind* const kind : {&side->vertices, &side->edges, &side->faces})
+        kind->first_elements.fill(~std::uint32_t{0});
+    }
+  }
+};
+
 /// `overlap_masks` for moving nodes: sets the bits of children that may come within the separation.
 void moving_overlap_masks(std::span<const NodePair> pairs, const MovingView& a, const MovingView& b,
                           const PartOfStep& part, std::uint64_t* masks);
@@ -78,8 +107,14 @@ void moving_overlap_masks(std::span<const NodePair> pairs, const MovingView& a, 
 /// Adds all pairs of elements of the leaf pairs that may come within the separation of each other, by their
 /// boxes at both ends of the step. With `same_object`, skips pairs that share a vertex, adds each pair once,
 /// and faces are always b. Never misses a pair. Returns the number of box tests.
+///
+/// Only elements near the box of the other leaf are tested: those of the side that has fewer, one at a time,
+/// against vectors of elements of the other side.
 std::uint64_t find_element_box_pairs(std::span<const LeafPair> leaf_pairs, const MovingView& a,
                                      const MovingView& b, const PartOfStep& part, bool same_object,
-                                     ElementPairBatches& batches);
+                                     MovingBoxCache& cache, ElementPairBatches& batches);
+
+/// The boxes of a moving face at both ends of the step, not yet grown or moved; empty when it is inert.
+std::array<Aabb, 2> moving_face_boxes(const MovingView& view, std::uint32_t face);
 
 }  // namespace supple

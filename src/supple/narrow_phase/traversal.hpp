@@ -4,6 +4,7 @@
 #include <array>
 #include <atomic>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -131,9 +132,12 @@ class Traversal {
           (*static_cast<decltype(count_and_sink)*>(context))(kind, pairs);
         },
         &count_and_sink);
+    if (element_boxes_ == nullptr) element_boxes_ = std::make_unique<MovingBoxCache>();
+    element_boxes_->clear();
     descend(pair, root, stats, [&](std::span<const LeafPair> leaves) {
-      stats.volumes_tested += find_element_box_pairs(leaves, pair.a.moving, pair.b.moving,
-                                                     pair.part_of_step(), pair.same_object, element_pairs_);
+      stats.volumes_tested +=
+          find_element_box_pairs(leaves, pair.a.moving, pair.b.moving, pair.part_of_step(), pair.same_object,
+                                 *element_boxes_, element_pairs_);
     });
     element_pairs_.flush();
   }
@@ -195,6 +199,7 @@ class Traversal {
   std::vector<LeafPair> leaf_pairs_;
   LeafBoxCache leaf_boxes_;
   TrianglePairList candidates_;
+  std::unique_ptr<MovingBoxCache> element_boxes_;  // made by the first `find_element_pairs`
   ElementPairBatches element_pairs_;
 };
 

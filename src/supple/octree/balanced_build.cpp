@@ -98,15 +98,21 @@ class BalancedSplitter {
   BalancedSplitter(std::span<const Vec3d> centers, std::span<const Triangle> triangles,
                    const ObjectOctreeOptions& options, const Parallel& parallel)
       : centers_(centers),
-        part_of_triangle_(connected_parts(triangles)),
         options_(options),
         fill_(options.leaf_size / 2 + options.leaf_size % 2),
         parallel_(parallel),
         scratch_(parallel.worker_count()) {
     points_.resize(centers.size());
     std::iota(points_.triangles.begin(), points_.triangles.end(), 0u);
+    if (centers.empty()) return;
+    // The search for parts is serial, so the coordinates are set at the same time.
+    parallel.for_ranges(2, 1, [&](std::size_t begin, std::size_t end, std::uint32_t) {
+      for (std::size_t task = begin; task < end; ++task) {
+        if (task == 0) part_of_triangle_ = connected_parts(triangles);
+        if (task == 1) set_coordinates({0, static_cast<std::uint32_t>(centers.size())});
+      }
+    });
     if (!part_of_triangle_.empty()) name_limit_ = std::ranges::max(part_of_triangle_) + std::size_t{1};
-    if (!centers.empty()) set_coordinates({0, static_cast<std::uint32_t>(centers.size())}, parallel_);
   }
 
   bool should_split(TriangleRange range, std::uint32_t level) const {
@@ -268,7 +274,7 @@ class BalancedSplitter {
   std::uint32_t cut_across(const PointArrays& points, const Piece& piece, Scratch& scratch) {
     PointBox box = box_of_points(points, piece.range.size());
     if (box.extent(box.longest_axis()) < least_extent) {
-      set_coordinates(piece.range, Parallel(1));
+      set_coordinates(piece.range);
       box = box_of_points(points, piece.range.size());
     }
     const std::size_t axis = box.longest_axis();
@@ -355,34 +361,26 @@ class BalancedSplitter {
   /// Sets coordinates in units of the longest side of the points' box, relative to a point among them. So
   /// floats distinguish the points at any place and scale, and one point far away does not cost the others
   /// their precision.
-  void set_coordinates(TriangleRange range, const Parallel& parallel) {
-    constexpr std::size_t grain = 8192;
+  void set_coordinates(TriangleRange range) {
     const std::span<const std::uint32_t> triangles =
         std::span(points_.triangles).subspan(range.begin, range.size());
-    std::vector<CenterBounds> bounds(parallel.worker_count());
-    parallel.for_ranges(triangles.size(), grain, [&](std::size_t begin, std::size_t end, std::uint32_t w) {
-      CenterBounds bounds_of_worker = bounds[w];
-      for (std::size_t i = begin; i < end; ++i) bounds_of_worker.add(centers_[triangles[i]]);
-      bounds[w] = bounds_of_worker;
-    });
-    for (const CenterBounds& bounds_of_worker : bounds) bounds.front().add(bounds_of_worker);
-    const double side = bounds.front().longest_side();
+    CenterBounds bounds;
+    for (const std::uint32_t triangle : triangles) bounds.add(centers_[triangle]);
+    const double side = bounds.longest_side();
     const auto at = [&](std::uint32_t triangle) {
       const Vec3d& c = centers_[triangle];
-      return is_finite(c) ? c * CenterBounds::scale : bounds.front().lower;
+      return is_finite(c) ? c * CenterBounds::scale : bounds.lower;
     };
     const Vec3d p = at(triangles.front()), q = at(triangles[triangles.size() / 2]), r = at(triangles.back());
     const Vec3d origin{median_of(p.x, q.x, r.x), median_of(p.y, q.y, r.y), median_of(p.z, q.z, r.z)};
     const PointArrays points = points_.arrays().from(range.begin);
-    parallel.for_ranges(triangles.size(), grain, [&](std::size_t begin, std::size_t end, std::uint32_t) {
-      for (std::size_t i = begin; i < end; ++i) {
-        const Vec3d place = at(triangles[i]);
-        for (int axis = 0; axis < 3; ++axis) {
-          points.at[static_cast<std::size_t>(axis)][i] =
-              side > 0 ? static_cast<float>((place[axis] - origin[axis]) / side) : 0.0f;
-        }
+    for (std::size_t i = 0; i < triangles.size(); ++i) {
+      const Vec3d place = at(triangles[i]);
+      for (int axis = 0; axis < 3; ++axis) {
+        points.at[static_cast<std::size_t>(axis)][i] =
+            side > 0 ? static_cast<float>((place[axis] - origin[axis]) / side) : 0.0f;
       }
-    });
+    }
   }
 
   /// Sorts along the Morton curve of 64 cells of the cube around the leaf. Then triangles that are tested

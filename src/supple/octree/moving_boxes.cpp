@@ -12,34 +12,7 @@
 namespace supple {
 namespace {
 
-/// Vector loads reach past the last element of a leaf by less than this.
-constexpr std::size_t padding = 16;
 constexpr std::size_t grain = 8192;
-
-std::size_t stride_of(std::size_t count) {
-  return count + padding;
-}
-
-/// Boxes in the padding are inverted, so that vector loads find no overlap there.
-BoxArrays sized(std::vector<float>& boxes, std::size_t count) {
-  constexpr float inf = std::numeric_limits<float>::infinity();
-  const std::size_t stride = stride_of(count);
-  if (boxes.size() != 6 * stride) {
-    boxes.assign(3 * stride, inf);
-    boxes.resize(6 * stride, -inf);
-  }
-  return {boxes.data(), stride};
-}
-
-MovingBoxArrays arrays_of(const std::vector<float>& start, const std::vector<float>& end) {
-  return {start.data(), end.data(), start.size() / 6};
-}
-
-void invert(std::vector<float>& boxes, std::size_t element) {
-  constexpr float inf = std::numeric_limits<float>::infinity();
-  const std::size_t stride = boxes.size() / 6;
-  for (std::size_t side = 0; side < 6; ++side) boxes[side * stride + element] = side < 3 ? inf : -inf;
-}
 
 Aabb root_box(const std::vector<ChildBoxes>& nodes) {
   return nodes.empty() ? Aabb{} : enclosing_box(nodes[0]);
@@ -50,41 +23,30 @@ Aabb root_box(const std::vector<ChildBoxes>& nodes) {
 bool MovingBoxes::refit(const ObjectOctree& octree, const SurfaceElements& elements,
                         const VertexBuffer& start, const VertexBuffer& end, const Parallel& parallel) {
   at_rest_ = &start == &end;
+  inert_.clear();
   const bool some_inert = mark_inert(start, end, parallel);
-  for (Moment* const moment : {&start_, &end_}) {
-    if (moment == &end_ && at_rest_) continue;
-    set_boxes(*moment, moment == &start_ ? start : end, elements, elements.faces(), parallel);
-    if (some_inert) invert_inert(*moment, elements, elements.faces());
-    refit_nodes(*moment, octree, elements, !some_inert, parallel);
-  }
+  const std::uint8_t* const inert = some_inert ? inert_.data() : nullptr;
+  refit(start_, octree, elements, start, inert, parallel);
+  if (!at_rest_) refit(end_, octree, elements, end, inert, parallel);
   return !some_inert;
 }
 
-void MovingBoxes::set_boxes(Moment& moment, const VertexBuffer& positions, const SurfaceElements& elements,
-                            std::span<const Triangle> faces, const Parallel& parallel) {
-  const std::uint32_t vertex_count = elements.vertex_count();
-  VertexCorners corners{positions.floats().data, positions.floats().data, positions.floats().stride};
-  if (positions.is_double() && vertex_count > 0) {
-    moment.corners.resize(8 * std::size_t{vertex_count});
-    corners = {moment.corners.data(), moment.corners.data() + 4, 8};
-  }
-  const auto ranges = [&](std::size_t count, const auto& body) {
-    parallel.for_ranges(count, grain, [&](std::size_t begin, std::size_t end, std::uint32_t) {
-      body(static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end));
+void MovingBoxes::refit(Moment& moment, const ObjectOctree& octree, const SurfaceElements& elements,
+                        const VertexBuffer& positions, const std::uint8_t* inert,
+                        const Parallel& parallel) const {
+  moment.corners = {positions.floats().data, positions.floats().data, positions.floats().stride};
+  if (positions.is_double()) {
+    moment.rounded.resize(8 * positions.size());
+    moment.corners = {moment.rounded.data(), moment.rounded.data() + 4, 8};
+    parallel.for_ranges(positions.size(), grain, [&](std::size_t begin, std::size_t end, std::uint32_t) {
+      round_corners(positions.doubles().data, moment.rounded.data(), static_cast<std::uint32_t>(begin),
+                    static_cast<std::uint32_t>(end));
     });
-  };
-  const BoxArrays vertices = sized(moment.vertices, vertex_count);
-  ranges(vertex_count, [&](std::uint32_t begin, std::uint32_t end) {
-    if (positions.is_double()) round_corners(positions.doubles().data, moment.corners.data(), begin, end);
-    set_vertex_boxes(corners, vertices, begin, end);
-  });
-  const BoxArrays edges = sized(moment.edges, elements.edge_count());
-  ranges(elements.edge_count(), [&](std::uint32_t begin, std::uint32_t end) {
-    set_edge_boxes(corners, elements.edges().data(), edges, begin, end);
-  });
-  const BoxArrays face_boxes = sized(moment.faces, faces.size());
-  ranges(faces.size(), [&](std::uint32_t begin, std::uint32_t end) {
-    set_face_boxes(corners, faces.data(), face_boxes, begin, end);
+  }
+  moment.nodes.resize(octree.nodes().size());
+  octree.for_nodes_bottom_up(parallel, 512, [&](std::uint32_t begin, std::uint32_t end) {
+    refit_moving_boxes(octree.nodes().data(), moment.nodes.data(), moment.corners, elements.faces().data(),
+                       inert, begin, end);
   });
 }
 
@@ -108,38 +70,12 @@ bool MovingBoxes::mark_inert(const VertexBuffer& start, const VertexBuffer& end,
   return true;
 }
 
-void MovingBoxes::invert_inert(Moment& moment, const SurfaceElements& elements,
-                               std::span<const Triangle> faces) const {
-  for (std::size_t v = 0; v < elements.vertex_count(); ++v) {
-    if (inert_[v] != 0) invert(moment.vertices, v);
-  }
-  const auto edges = elements.edges();
-  for (std::size_t e = 0; e < edges.size(); ++e) {
-    if (inert_[edges[e][0]] != 0 || inert_[edges[e][1]] != 0) invert(moment.edges, e);
-  }
-  for (std::size_t f = 0; f < faces.size(); ++f) {
-    const Triangle& face = faces[f];
-    if (inert_[face[0]] != 0 || inert_[face[1]] != 0 || inert_[face[2]] != 0) invert(moment.faces, f);
-  }
-}
-
-void MovingBoxes::refit_nodes(Moment& moment, const ObjectOctree& octree, const SurfaceElements& elements,
-                              bool faces_enclose, const Parallel& parallel) const {
-  moment.nodes.resize(octree.nodes().size());
-  const auto arrays = [](std::vector<float>& boxes) { return BoxArrays{boxes.data(), boxes.size() / 6}; };
-  const LeafElements leaf_elements{arrays(moment.vertices), arrays(moment.edges),  arrays(moment.faces),
-                                   elements.first_vertex(), elements.first_edge(), faces_enclose};
-  octree.for_nodes_bottom_up(parallel, 512, [&](std::uint32_t begin, std::uint32_t end) {
-    refit_element_boxes(octree.nodes().data(), moment.nodes.data(), leaf_elements, begin, end);
-  });
-}
-
 MovingView MovingBoxes::view(const SurfaceElements& elements) const {
   return {start_.nodes.data(),
           last().nodes.data(),
-          arrays_of(start_.vertices, last().vertices),
-          arrays_of(start_.edges, last().edges),
-          arrays_of(start_.faces, last().faces),
+          start_.corners,
+          last().corners,
+          inert_.empty() ? nullptr : inert_.data(),
           elements.faces().data(),
           elements.edges().data(),
           elements.first_vertex(),
@@ -160,81 +96,38 @@ Aabb MovingBoxes::swept_box() const {
   return box;
 }
 
-std::size_t MovingBoxes::Moment::bytes() const {
-  return (corners.capacity() + vertices.capacity() + edges.capacity() + faces.capacity()) * sizeof(float) +
-         nodes.capacity() * sizeof(ChildBoxes);
-}
-
 std::size_t MovingBoxes::bytes() const {
-  return start_.bytes() + end_.bytes() + inert_.capacity();
+  std::size_t bytes = inert_.capacity();
+  for (const Moment* const moment : {&start_, &end_})
+    bytes += moment->rounded.capacity() * sizeof(float) + moment->nodes.capacity() * sizeof(ChildBoxes);
+  return bytes;
 }
 
 namespace {
 
-/// Checks the boxes at one end of the step.
-class MomentValidation {
- public:
-  MomentValidation(const VertexBuffer& positions, std::span<const std::uint8_t> inert)
-      : positions_(positions), inert_(inert) {}
-
-  /// Adds the box of element `i` to `bounds`; the empty string or what is wrong.
-  std::string check(const float* boxes, std::size_t stride, std::size_t i,
-                    std::span<const std::uint32_t> corners, Aabb& bounds) const {
-    const auto at = [&](std::size_t side) { return boxes[side * stride + i]; };
-    const Aabb box{{at(0), at(1), at(2)}, {at(3), at(4), at(5)}};
-    for (const std::uint32_t vertex : corners) {
-      if (inert_[vertex] != 0) return box == Aabb{} ? "" : "an inert element has a box";
-    }
-    Aabb exact;
-    for (const std::uint32_t vertex : corners) extend(exact, positions_[vertex]);
-    constexpr float greatest = std::numeric_limits<float>::max();
-    for (int axis = 0; axis < 3; ++axis) {
-      exact.min[axis] = std::max(exact.min[axis], -greatest);
-      exact.max[axis] = std::min(exact.max[axis], greatest);
-    }
-    if (box != exact) return "a box is not the element's";
-    extend(bounds, box);
-    return "";
-  }
-
- private:
-  const VertexBuffer& positions_;
-  std::span<const std::uint8_t> inert_;
-};
-
-/// Checks the boxes of the elements and of all children, from the last node up.
-std::string check_moment(const ObjectOctree& octree, const SurfaceElements& elements, const MovingView& view,
-                         bool at_end, const MomentValidation& validation) {
+/// Checks the boxes of all children at one end of the step, from the last node up.
+std::string check_moment(const ObjectOctree& octree, const SurfaceElements& elements, const ChildBoxes* boxes,
+                         const VertexBuffer& positions, std::span<const std::uint8_t> inert) {
+  constexpr float greatest = std::numeric_limits<float>::max();
   const auto nodes = octree.nodes();
   std::vector<Aabb> node_boxes(nodes.size());
-  const ChildBoxes* const children = at_end ? view.end : view.start;
-  const auto check = [&](const MovingBoxArrays& boxes, std::size_t i, std::span<const std::uint32_t> corners,
-                         Aabb& bounds) {
-    return validation.check(at_end ? boxes.end : boxes.start, boxes.stride, i, corners, bounds);
-  };
   for (std::size_t n = nodes.size(); n-- > 0;) {
     for (int child = 0; child < node_width; ++child) {
       Aabb bounds;
       if (child < nodes[n].child_count && nodes[n].is_inner(child)) {
         bounds = node_boxes[nodes[n].child_node(child)];
       } else if (child < nodes[n].child_count) {
-        const std::uint32_t first = nodes[n].first_triangle[child], last = nodes[n].first_triangle[child + 1];
-        const ElementRange vertices = elements.vertices_of(first, last);
-        for (std::uint32_t v = vertices.begin; v < vertices.end; ++v) {
-          if (std::string wrong = check(view.vertices, v, {&v, 1}, bounds); !wrong.empty()) return wrong;
-        }
-        const ElementRange edges = elements.edges_of(first, last);
-        for (std::uint32_t e = edges.begin; e < edges.end; ++e) {
-          if (std::string wrong = check(view.edges, e, elements.edges()[e], bounds); !wrong.empty())
-            return wrong;
-        }
-        for (std::uint32_t f = first; f < last; ++f) {
-          if (std::string wrong = check(view.faces, f, elements.faces()[f], bounds); !wrong.empty()) {
-            return wrong;
+        for (std::uint32_t f = nodes[n].first_triangle[child]; f < nodes[n].first_triangle[child + 1]; ++f) {
+          for (const std::uint32_t vertex : elements.faces()[f]) {
+            if (inert[vertex] == 0) extend(bounds, positions[vertex]);
           }
         }
+        for (int axis = 0; axis < 3 && !bounds.empty(); ++axis) {
+          bounds.min[axis] = std::max(bounds.min[axis], -greatest);
+          bounds.max[axis] = std::min(bounds.max[axis], greatest);
+        }
       }
-      if (child_box(children[n], child) != bounds) return "the box of a child is not that of its elements";
+      if (child_box(boxes[n], child) != bounds) return "the box of a child is not that of its vertices";
       extend(node_boxes[n], bounds);
     }
   }
@@ -247,9 +140,8 @@ std::string MovingBoxes::validate(const ObjectOctree& octree, const SurfaceEleme
                                   const VertexBuffer& start, const VertexBuffer& end) const {
   std::vector<std::uint8_t> inert(start.size());
   for (std::uint32_t v = 0; v < inert.size(); ++v) inert[v] = !is_finite(start[v]) || !is_finite(end[v]);
-  const MovingView shown = view(elements);
-  std::string wrong = check_moment(octree, elements, shown, false, {start, inert});
-  if (wrong.empty()) wrong = check_moment(octree, elements, shown, true, {end, inert});
+  std::string wrong = check_moment(octree, elements, start_.nodes.data(), start, inert);
+  if (wrong.empty()) wrong = check_moment(octree, elements, last().nodes.data(), end, inert);
   return wrong;
 }
 

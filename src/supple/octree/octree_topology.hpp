@@ -117,12 +117,6 @@ struct CenterBounds {
       upper[axis] = std::max(upper[axis], center[axis] * scale);
     }
   }
-  void add(const CenterBounds& other) {
-    for (int axis = 0; axis < 3; ++axis) {
-      lower[axis] = std::min(lower[axis], other.lower[axis]);
-      upper[axis] = std::max(upper[axis], other.upper[axis]);
-    }
-  }
   /// Not positive when all centres are one point or none is finite.
   double longest_side() const { return std::max({upper.x - lower.x, upper.y - lower.y, upper.z - lower.z}); }
 };

@@ -244,6 +244,26 @@ HWY_INLINE void set_four_boxes(Arrays& arrays, std::size_t first, const Box (&bo
 
 #endif
 
+/// Boxes `first` to `first` + 3 of six arrays (min x, y, z, max x, y, z) become the given ones.
+template <class Box, std::size_t size>
+HWY_INLINE void store_four_boxes(const Box (&boxes)[4], float (&arrays)[6][size], std::size_t first) {
+#if HWY_TARGET == HWY_SCALAR
+  for (std::size_t i = 0; i < 4; ++i) {
+    float lower[3], upper[3];
+    boxes[i].store(lower, upper);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      arrays[axis][first + i] = lower[axis];
+      arrays[axis + 3][first + i] = upper[axis];
+    }
+  }
+#else
+  store_transposed(boxes[0].lower(), boxes[1].lower(), boxes[2].lower(), boxes[3].lower(), arrays[0] + first,
+                   arrays[1] + first, arrays[2] + first);
+  store_transposed(boxes[0].upper(), boxes[1].upper(), boxes[2].upper(), boxes[3].upper(), arrays[3] + first,
+                   arrays[4] + first, arrays[5] + first);
+#endif
+}
+
 HWY_INLINE void invert_children_from(ChildBoxes& children, int first) {
   constexpr float inf = std::numeric_limits<float>::infinity();
   for (int child = first; child < node_width; ++child) {

@@ -88,7 +88,7 @@ template <class Work, class Function>
 void Scene::Implementation::for_each_object(std::span<const std::uint32_t> indices, const Work& work,
                                             const Function& function) {
   constexpr std::size_t least_large = 16384;  // triangles
-  constexpr std::size_t shares_of_worker = 8;
+  constexpr std::size_t shares_of_worker = 4;
   std::size_t total = 0;
   for (const std::uint32_t index : indices) total += work(*slots_[index].object);
   const std::size_t large = std::max(least_large, total / (shares_of_worker * parallel.worker_count()));

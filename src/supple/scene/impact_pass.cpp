@@ -437,29 +437,59 @@ void ImpactPass::drop_excess(std::uint32_t job, std::size_t first, Worker& worke
   worker.found.erase(last + 1, worker.found.end());
 }
 
-/// Jobs are in canonical order. Each job gets its range of the list; its contacts are sorted there.
+/// Jobs are in canonical order. Each job gets its range of the list; its contacts are sorted there. All
+/// workers share a job with many contacts.
 void ImpactPass::gather_contacts(const Parallel& parallel) {
+  constexpr std::uint32_t many = 8192;
   outcomes_.place(tasks_.tasks());
   outcomes_.move_known<0>(contacts_);
+  const auto has_many = [&](std::size_t job) { return outcomes_.ranges(job)[0].count >= many; };
   parallel.for_ranges(outcomes_.size(), 8, [&](std::size_t begin, std::size_t end, std::uint32_t w) {
     for (std::size_t job = begin; job < end; ++job) {
-      if (!outcomes_.is_known(job)) gather_found(job, workers_[w]);
+      if (!outcomes_.is_known(job) && !has_many(job)) gather_found(job, workers_[w], Parallel(1));
     }
   });
+  for (std::size_t job = 0; job < outcomes_.size(); ++job) {
+    if (!outcomes_.is_known(job) && has_many(job)) gather_found(job, workers_[0], parallel);
+  }
   outcomes_.complete();
 }
 
-void ImpactPass::gather_found(std::size_t job, Worker& worker) {
+/// Counts the contacts into buckets by kind and first id, a few in each, and sorts each bucket.
+void ImpactPass::gather_found(std::size_t job, Worker& worker, const Parallel& parallel) {
+  constexpr std::size_t contacts_of_bucket = 4;
   worker.keys.clear();
+  std::uint64_t ids = 1;
   for (const auto& task : outcomes_.tasks_of(job)) {
     for (std::uint32_t i = task.ranges[0].first; i < task.ranges[0].end(); ++i) {
       const ContinuousContact& contact = workers_[task.worker].found[i];
       worker.keys.push_back({contact.kind, contact.element_a, contact.element_b, task.worker, i});
+      ids = std::max(ids, std::uint64_t{contact.element_a[0]} + 1);
     }
   }
-  std::sort(worker.keys.begin(), worker.keys.end());
-  ContinuousContact* contact = contacts_.data() + outcomes_.ranges(job)[0].first;
-  for (const Key& key : worker.keys) *contact++ = workers_[key.worker].found[key.index];
+  const auto id_bits = static_cast<int>(std::bit_width(3 * ids));
+  const auto count_bits = static_cast<int>(std::bit_width(worker.keys.size() / contacts_of_bucket));
+  const int shift = std::max(id_bits - count_bits, 0);
+  const auto bucket_of = [&](const Key& key) {
+    return static_cast<std::size_t>((static_cast<std::uint64_t>(key.kind) * ids + key.element_a[0]) >> shift);
+  };
+  const auto buckets = static_cast<std::size_t>((3 * ids - 1) >> shift) + 1;
+  // Counts of the buckets before, then where each bucket begins, and in the end where it ends.
+  std::vector<std::uint32_t>& firsts = worker.first_of_bucket;
+  firsts.assign(buckets + 1, 0);
+  for (const Key& key : worker.keys) ++firsts[bucket_of(key) + 1];
+  for (std::size_t b = 0; b < buckets; ++b) firsts[b + 1] += firsts[b];
+  worker.sorted_keys.resize(worker.keys.size());
+  for (const Key& key : worker.keys) worker.sorted_keys[firsts[bucket_of(key)]++] = key;
+  ContinuousContact* const contacts = contacts_.data() + outcomes_.ranges(job)[0].first;
+  parallel.for_ranges(buckets, 256, [&](std::size_t begin, std::size_t end, std::uint32_t) {
+    for (std::size_t b = begin; b < end; ++b) {
+      const std::uint32_t first = b == 0 ? 0 : firsts[b - 1], last = firsts[b];
+      std::sort(worker.sorted_keys.begin() + first, worker.sorted_keys.begin() + last);
+      for (std::uint32_t i = first; i < last; ++i)
+        contacts[i] = workers_[worker.sorted_keys[i].worker].found[worker.sorted_keys[i].index];
+    }
+  });
 }
 
 }  // namespace supple

@@ -89,7 +89,9 @@ class ImpactPass {
     std::vector<ContinuousContact> found;  // by all tasks of the worker
     TaskStats stats;
     std::optional<Earliest> earliest;
-    std::vector<Key> keys;  // scratch: the contacts of one job
+    // Scratch for the contacts of one job.
+    std::vector<Key> keys, sorted_keys;
+    std::vector<std::uint32_t> first_of_bucket;
   };
   enum class Search : std::uint8_t { all, earliest };
 
@@ -108,7 +110,7 @@ class ImpactPass {
   void keep_earlier(std::uint32_t job, const ContinuousContact& contact, Worker& worker);
   void drop_excess(std::uint32_t job, std::size_t first, Worker& worker);
   void gather_contacts(const Parallel& parallel);
-  void gather_found(std::size_t job, Worker& worker);
+  void gather_found(std::size_t job, Worker& worker, const Parallel& parallel);
 
   Search search_ = Search::all;
   std::span<const ContactJob> jobs_;

@@ -64,18 +64,11 @@ inline std::optional<std::uint64_t> cell_number(const OctreeView& view, std::uin
   return arity * *parent + 1 + static_cast<std::uint64_t>(child);
 }
 
-/// Box of a moving face at one end of the step; empty when the face is inert.
-inline Aabb face_box(const MovingBoxArrays& faces, const float* boxes, std::uint32_t face) {
-  const auto at = [&](std::size_t side) { return boxes[side * faces.stride + face]; };
-  return {{at(0), at(1), at(2)}, {at(3), at(4), at(5)}};
-}
-
 /// Whether one face stays on one side of the other along some axis, by more than the separation, at both ends
 /// of the step and therefore at all times. Faces are in octree order.
 inline bool moving_faces_apart(const ObjectPairView& pair, TrianglePair faces) {
-  const MovingBoxArrays &a = pair.a.moving.faces, &b = pair.b.moving.faces;
-  const Aabb start_a = face_box(a, a.start, faces.a), end_a = face_box(a, a.end, faces.a);
-  const Aabb start_b = face_box(b, b.start, faces.b), end_b = face_box(b, b.end, faces.b);
+  const auto [start_a, end_a] = moving_face_boxes(pair.a.moving, faces.a);
+  const auto [start_b, end_b] = moving_face_boxes(pair.b.moving, faces.b);
   const double separation = pair.separation;
   if (start_a.empty() || start_b.empty()) return true;
   for (int axis = 0; axis < 3; ++axis) {
