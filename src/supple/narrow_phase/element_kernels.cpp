@@ -188,7 +188,11 @@ HWY_INLINE void set_boxes(const VertexCorners& corners, const Ids& ids, ElementR
 /// The boxes of a range of at most `leaf_block` elements. Those of object b are placed.
 template <class Ids>
 HWY_INLINE void set_block(const MovingView& view, const Ids& ids, ElementRange range, const PartOfStep& part,
-                          MovingBoxBlock& block) {
+                          bool with_vertices, MovingBoxBlock& block) {
+  for (std::uint32_t i = 0; with_vertices && i < range.size(); ++i) {
+    for (int corner = 0; corner < Ids::corner_count; ++corner)
+      block.vertices[corner][i] = static_cast<std::uint32_t>(ids.vertex(range.begin + i, corner));
+  }
   set_boxes(view.start_corners, ids, range, block.start);
   set_boxes(view.end_corners, ids, range, block.end);
   if (part.separation > 0 || part.latest < 1 || !(part.offset == Vec3f{})) {
@@ -232,9 +236,32 @@ HWY_NOINLINE std::uint64_t meeting_elements(const MovingBox& box, const MovingBo
   return bits & ~std::uint64_t{0} >> (leaf_block - count);
 }
 
-/// For each of `ones`, in ascending order, the bits of a group of `others` that are not apart from it.
-HWY_NOINLINE void meeting_masks(const MovingBoxBlock& ones, std::uint64_t some_ones,
-                                const MovingBoxBlock& others, std::size_t first, std::uint64_t* masks) {
+/// Bits of a group of elements, from `first` on, that share a vertex with element `one`.
+template <int corners_of_one, int corners_of_other>
+HWY_INLINE std::uint64_t neighbours_in_group(const MovingBoxBlock& ones, std::size_t one,
+                                             const MovingBoxBlock& others, std::size_t first) {
+  const hn::CappedTag<std::uint32_t, group> tag;
+  std::uint64_t bits = 0;
+  for (std::size_t j = 0; j < group; j += hn::Lanes(tag)) {
+    auto same = hn::FirstN(tag, 0);
+    for (int p = 0; p < corners_of_one; ++p) {
+      const auto vertex = hn::Set(tag, ones.vertices[p][one]);
+      for (int q = 0; q < corners_of_other; ++q)
+        same = hn::Or(same, hn::Eq(vertex, hn::LoadU(tag, others.vertices[q] + first + j)));
+    }
+    bits |= mask_bits(tag, same) << j;
+  }
+  return bits;
+}
+
+/// For each of `ones`, the bits of a group of `others` in `some_others`, from `first` on, that are not apart
+/// from it; without those that share a vertex with it if `skips_neighbours`. Returns bits of the ones that
+/// have some.
+template <int corners_of_one, int corners_of_other>
+HWY_NOINLINE std::uint64_t meeting_masks(const MovingBoxBlock& ones, std::uint64_t some_ones,
+                                         const MovingBoxBlock& others, std::uint64_t some_others,
+                                         std::size_t first, bool skips_neighbours, std::uint64_t* masks) {
+  std::uint64_t found = 0;
   for (; some_ones != 0; some_ones &= some_ones - 1) {
     const auto one = static_cast<std::size_t>(std::countr_zero(some_ones));
     MovingBox box;
@@ -242,8 +269,13 @@ HWY_NOINLINE void meeting_masks(const MovingBoxBlock& ones, std::uint64_t some_o
       box.start[side] = ones.start[side][one];
       box.end[side] = ones.end[side][one];
     }
-    *masks++ = meeting_group(box, others, first);
+    std::uint64_t hits = meeting_group(box, others, first) & some_others;
+    if (skips_neighbours)
+      hits &= ~neighbours_in_group<corners_of_one, corners_of_other>(ones, one, others, first);
+    masks[one] = hits;
+    found |= std::uint64_t{hits != 0} << one;
   }
+  return found;
 }
 
 /// One call of `find_element_box_pairs`.
@@ -312,7 +344,7 @@ class ElementTests {
     const std::size_t place = block.begin * 0x9e3779b1u >> 28;
     MovingBoxCache::Kind& kind = side.*elements.cache;
     if (std::exchange(kind.first_elements[place], block.begin) != block.begin)
-      set_block(view, elements.ids, block, part, kind.blocks[place]);
+      set_block(view, elements.ids, block, part, same_object_, kind.blocks[place]);
     return kind.blocks[place];
   }
 
@@ -354,17 +386,19 @@ class ElementTests {
   void match_blocks(std::uint32_t first_one, const MovingBoxBlock& ones, std::uint64_t some_ones,
                     std::uint32_t first_other, const MovingBoxBlock& others, std::uint64_t some_others,
                     bool with_later) {
+    constexpr int corners_a = kind == Kind::vertex_face ? 1 : kind == Kind::edge_edge ? 2 : 3;
+    constexpr int corners_b = 4 - corners_a;
     std::array<std::uint64_t, leaf_block> masks;
-    const auto count_ones = static_cast<std::uint64_t>(std::popcount(some_ones));
     for (std::uint32_t i = 0; i < leaf_block; i += group) {
       const std::uint64_t some = some_others >> i & ((std::uint64_t{1} << group) - 1);
       if (some == 0) continue;
-      tests_ += count_ones * group;
-      meeting_masks(ones, some_ones, others, i, masks.data());
-      const std::uint64_t* mask = masks.data();
-      for (std::uint64_t rest = some_ones; rest != 0; rest &= rest - 1) {
-        const auto one = static_cast<std::uint32_t>(std::countr_zero(rest));
-        std::uint64_t hits = *mask++ & some;
+      tests_ += static_cast<std::uint64_t>(std::popcount(some_ones)) * group;
+      std::uint64_t found = meeting_masks < one_is_b ? corners_b : corners_a,
+                    one_is_b ? corners_a
+                             : corners_b > (ones, some_ones, others, some, i, same_object_, masks.data());
+      for (; found != 0; found &= found - 1) {
+        const auto one = static_cast<std::uint32_t>(std::countr_zero(found));
+        std::uint64_t hits = masks[one];
         if (with_later && one >= i) hits &= ~std::uint64_t{0} << std::min(one - i + 1, leaf_block - 1);
         add<kind, one_is_b>(first_one + one, first_other + i, hits);
       }
@@ -375,7 +409,6 @@ class ElementTests {
   /// `hits`, counted from `first`.
   template <Kind kind, bool of_b>
   void add(std::uint32_t one, std::uint32_t first, std::uint64_t hits) {
-    if (hits == 0) return;
     // In pairs within one object the vertex comes first.
     const bool turned = same_object_ && kind == Kind::face_vertex;
     const Kind reported = turned ? Kind::vertex_face : kind;
@@ -383,25 +416,9 @@ class ElementTests {
     std::size_t count = 0;
     for (; hits != 0; hits &= hits - 1) {
       const std::uint32_t other = first + static_cast<std::uint32_t>(std::countr_zero(hits));
-      pairs[count] = turned != of_b ? ElementPair{other, one} : ElementPair{one, other};
-      // Adds instead of branching, because this branch is hard to predict.
-      count += same_object_ && share_vertex<kind, of_b>(one, other) ? 0u : 1u;
+      pairs[count++] = turned != of_b ? ElementPair{other, one} : ElementPair{one, other};
     }
     batches_.added(reported, count);
-  }
-
-  template <Kind kind, bool of_b>
-  HWY_INLINE bool share_vertex(std::uint32_t one, std::uint32_t other) const {
-    const auto same = [](std::uint32_t p, std::uint32_t q) { return p == q ? 1u : 0u; };
-    if constexpr (kind == Kind::edge_edge) {
-      const Edge &p = a_.edge_ids[one], &q = a_.edge_ids[other];
-      return (same(p[0], q[0]) | same(p[0], q[1]) | same(p[1], q[0]) | same(p[1], q[1])) != 0;
-    } else {
-      constexpr bool one_is_vertex = (kind == Kind::vertex_face) != of_b;
-      const std::uint32_t vertex = one_is_vertex ? one : other;
-      const Triangle& corners = a_.face_ids[one_is_vertex ? other : one];
-      return (same(corners[0], vertex) | same(corners[1], vertex) | same(corners[2], vertex)) != 0;
-    }
   }
 
   const MovingView& a_;

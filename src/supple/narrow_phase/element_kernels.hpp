@@ -72,9 +72,11 @@ struct PartOfStep {
 };
 
 /// Boxes of up to `leaf_block` elements of one kind at both ends of (a part of) a step: min x, y, z, max x,
-/// y, z. Boxes past the last element are unspecified.
+/// y, z. In tests of an object with itself also the vertices of each element, one array for each corner.
+/// Entries past the last element are unspecified.
 struct alignas(64) MovingBoxBlock {
   float start[6][leaf_block], end[6][leaf_block];
+  std::uint32_t vertices[3][leaf_block];
 };
 
 /// A cache of the boxes of the elements of recent leaves, for vertices, edges and faces; most are soon used
