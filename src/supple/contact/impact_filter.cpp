@@ -3,6 +3,9 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include <array>
+#include <type_traits>
+
 #include "contact/impact_filter.hpp"
 #include "core/packed_lanes-inl.hpp"
 #include "geometry/vector3-inl.hpp"
@@ -20,9 +23,10 @@ using LaneMask = hn::Mask<Lanes>;
 using Vector = Vector3<Lanes>;
 
 HWY_INLINE Vector load(const RelativeMotionBlock& block, std::size_t row, std::size_t first) {
-  const Lanes d;
-  return {hn::Load(d, block.rows[row] + first), hn::Load(d, block.rows[row + 1] + first),
-          hn::Load(d, block.rows[row + 2] + first)};
+  Vector vector;
+  Floats unused;
+  hn::LoadInterleaved4(Lanes(), block.rows[row][first], vector.x, vector.y, vector.z, unused);
+  return vector;
 }
 HWY_INLINE Vector add(const Vector& a, const Vector& b) {
   return {hn::Add(a.x, b.x), hn::Add(a.y, b.y), hn::Add(a.z, b.z)};
@@ -152,6 +156,86 @@ class Group {
   Vector reach_m_, reach_u_, reach_w_, reach_;  // greatest magnitudes in the step, by axis
 };
 
+// The four scalars from a vertex on, in as few registers as possible.
+using FourDoubles = hn::CappedTag<double, 4>;
+template <class Scalar>
+using Four = hn::Rebind<Scalar, FourDoubles>;
+
+template <class Scalar>
+HWY_INLINE hn::Vec<FourDoubles> to_double(hn::Vec<Four<Scalar>> v) {
+  if constexpr (std::is_same_v<Scalar, float>) {
+    return hn::PromoteTo(FourDoubles(), v);
+  } else {
+    return v;
+  }
+}
+template <class Scalar>
+HWY_INLINE hn::Vec<Four<float>> to_float(hn::Vec<Four<Scalar>> v) {
+  if constexpr (std::is_same_v<Scalar, float>) {
+    return v;
+  } else {
+    return hn::DemoteTo(Four<float>(), v);
+  }
+}
+
+/// One vertex of a pair.
+template <class Scalar>
+struct PathEnds {
+  const Scalar *start, *end;
+};
+
+/// Sets one vector of a pair: the difference p - q from time 0 to `latest`.
+template <class Scalar>
+HWY_INLINE void set_difference(PathEnds<Scalar> p, PathEnds<Scalar> q, float latest, float* start,
+                               float* end) {
+  const Four<Scalar> d;
+  const Four<float> floats;
+  for (std::size_t i = 0; i < 4; i += hn::Lanes(d)) {
+    const auto at_start = hn::Sub(hn::LoadU(d, p.start + i), hn::LoadU(d, q.start + i));
+    const auto at_end = hn::Sub(hn::LoadU(d, p.end + i), hn::LoadU(d, q.end + i));
+    hn::StoreU(to_float<Scalar>(at_start), floats, start + i);
+    if (latest < 1) {
+      const FourDoubles doubles;
+      const auto from_start = hn::Mul(hn::Set(doubles, 1 - double{latest}), to_double<Scalar>(at_start));
+      const auto from_end = hn::Mul(hn::Set(doubles, double{latest}), to_double<Scalar>(at_end));
+      hn::StoreU(hn::DemoteTo(floats, hn::Add(from_start, from_end)), floats, end + i);
+    } else {
+      hn::StoreU(to_float<Scalar>(at_end), floats, end + i);
+    }
+  }
+}
+
+template <class Scalar>
+HWY_INLINE void set_all_motions(const std::array<VertexPaths<Scalar>, 4>& paths,
+                                const std::array<std::uint32_t, 4>* vertices, std::size_t count,
+                                bool are_edges, float latest, RelativeMotionBlock& block) {
+  using Row = RelativeMotionBlock;
+  const auto set = [&](std::size_t row, std::size_t k, std::size_t p, std::size_t q) HWY_ATTR {
+    const auto ends = [&](std::size_t i) HWY_ATTR {
+      return PathEnds<Scalar>{paths[i].start[vertices[k][i]], paths[i].end[vertices[k][i]]};
+    };
+    set_difference(ends(p), ends(q), latest, block.rows[row][k], block.rows[Row::end + row][k]);
+  };
+  // As `relative_vertex_face` and `relative_edge_edge`.
+  for (std::size_t k = 0; k < count; ++k) {
+    set(Row::m, k, 0, are_edges ? 2 : 1);
+    set(Row::u, k, are_edges ? 0 : 2, 1);
+    set(Row::w, k, 3, are_edges ? 2 : 1);
+  }
+}
+
+void FloatMotions(const std::array<VertexPaths<float>, 4>& paths,
+                  const std::array<std::uint32_t, 4>* vertices, std::size_t count, bool are_edges,
+                  float latest, RelativeMotionBlock& block) {
+  set_all_motions(paths, vertices, count, are_edges, latest, block);
+}
+
+void DoubleMotions(const std::array<VertexPaths<double>, 4>& paths,
+                   const std::array<std::uint32_t, 4>* vertices, std::size_t count, bool are_edges,
+                   float latest, RelativeMotionBlock& block) {
+  set_all_motions(paths, vertices, count, are_edges, latest, block);
+}
+
 std::uint64_t MayTouch(const RelativeMotionBlock& block, std::size_t count, bool is_square,
                        float separation) {
   const Lanes d;
@@ -170,20 +254,33 @@ HWY_AFTER_NAMESPACE();
 namespace supple {
 
 HWY_EXPORT(MayTouch);
+HWY_EXPORT(FloatMotions);
+HWY_EXPORT(DoubleMotions);
 
 std::uint64_t may_touch(const RelativeMotionBlock& block, std::size_t count, bool is_square,
                         float separation) {
   return HWY_DYNAMIC_DISPATCH(MayTouch)(block, count, is_square, separation);
 }
 
+void set_motions(const std::array<VertexPaths<float>, 4>& paths, const std::array<std::uint32_t, 4>* vertices,
+                 std::size_t count, bool are_edges, float latest, RelativeMotionBlock& block) {
+  HWY_DYNAMIC_DISPATCH(FloatMotions)(paths, vertices, count, are_edges, latest, block);
+}
+
+void set_motions(const std::array<VertexPaths<double>, 4>& paths,
+                 const std::array<std::uint32_t, 4>* vertices, std::size_t count, bool are_edges,
+                 float latest, RelativeMotionBlock& block) {
+  HWY_DYNAMIC_DISPATCH(DoubleMotions)(paths, vertices, count, are_edges, latest, block);
+}
+
 void RelativeMotionBlock::set(std::size_t pair, const RelativeMotion& motion) {
-  const auto rounded = [](const Vec3d& v) {
-    return Vec3f{static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
-  };
-  const auto set_places = [&](std::size_t row, const RelativePlaces<double>& places) {
-    set(pair, row + m, rounded(places.m));
-    set(pair, row + u, rounded(places.u));
-    set(pair, row + w, rounded(places.w));
+  const auto set_places = [&](std::size_t first_row, const RelativePlaces<double>& places) {
+    std::size_t row = first_row;
+    for (const Vec3d& v : {places.m, places.u, places.w}) {
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        rows[row][pair][axis] = static_cast<float>(v[static_cast<int>(axis)]);
+      ++row;
+    }
   };
   set_places(0, motion.start);
   set_places(end, motion.end);

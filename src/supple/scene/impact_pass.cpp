@@ -18,158 +18,92 @@ namespace {
 constexpr std::size_t block_size = RelativeMotionBlock::capacity;
 
 /// The four vertices of a pair of elements as `VertexFaceMotion` or `EdgeEdgeMotion` orders them.
-std::array<MovingVertex, 4> vertices_of(ElementPairKind kind, ElementPair pair, const MovingObject& a,
-                                        const MovingObject& b) {
+std::array<std::uint32_t, 4> vertices_of(ElementPairKind kind, ElementPair pair, const MovingObject& a,
+                                         const MovingObject& b) {
   switch (kind) {
     case ElementPairKind::vertex_face: {
       const Triangle& face = b.view.moving.face_ids[pair.b];
-      return {{{&a, pair.a}, {&b, face[0]}, {&b, face[1]}, {&b, face[2]}}};
+      return {pair.a, face[0], face[1], face[2]};
     }
     case ElementPairKind::face_vertex: {
       const Triangle& face = a.view.moving.face_ids[pair.a];
-      return {{{&b, pair.b}, {&a, face[0]}, {&a, face[1]}, {&a, face[2]}}};
+      return {pair.b, face[0], face[1], face[2]};
     }
     default: {
       const Edge& first = a.view.moving.edge_ids[pair.a];
       const Edge& second = b.view.moving.edge_ids[pair.b];
-      return {{{&a, first[0]}, {&a, first[1]}, {&b, second[0]}, {&b, second[1]}}};
+      return {first[0], first[1], second[0], second[1]};
     }
   }
+}
+
+/// The objects of these vertices.
+std::array<const MovingObject*, 4> objects_of(ElementPairKind kind, const MovingObject& a,
+                                              const MovingObject& b) {
+  if (kind == ElementPairKind::vertex_face) return {&a, &b, &b, &b};
+  if (kind == ElementPairKind::face_vertex) return {&b, &a, &a, &a};
+  return {&a, &a, &b, &b};
 }
 
 Vec3d placed(const Vec3d& position, const MovingObject& object) {
   return object.view.translation == Vec3d{} ? position : position + object.view.translation;
 }
 
-void set_motion(ElementPairKind kind, const std::array<MovingVertex, 4>& vertices, ElementMotion& motion) {
-  motion.are_edges = kind == ElementPairKind::edge_edge;
+void set_motion(bool are_edges, const std::array<const MovingObject*, 4>& objects,
+                const std::array<std::uint32_t, 4>& vertices, ElementMotion& motion) {
+  motion.are_edges = are_edges;
   for (std::size_t i = 0; i < 4; ++i) {
-    const MovingObject& object = *vertices[i].object;
-    motion.start[i] = placed((*object.start)[vertices[i].vertex], object);
-    motion.end[i] = placed((*object.end)[vertices[i].vertex], object);
+    motion.start[i] = placed((*objects[i]->start)[vertices[i]], *objects[i]);
+    motion.end[i] = placed((*objects[i]->end)[vertices[i]], *objects[i]);
   }
-}
-
-std::uint32_t user_vertex(const MovingVertex& ref) {
-  return ref.object->vertex_ids[ref.vertex];
 }
 
 /// Orders the vertices of each edge, and the two edges of a self-collision, by the user's vertex ids. The
 /// contact then does not depend on the shape of the octrees.
-void sort_edges(std::array<MovingVertex, 4>& vertices) {
+void sort_edges(const std::array<const MovingObject*, 4>& objects, std::array<std::uint32_t, 4>& vertices) {
+  const auto id = [&](std::size_t i) { return objects[i]->vertex_ids[vertices[i]]; };
   for (const std::size_t i : {0u, 2u}) {
-    if (user_vertex(vertices[i + 1]) < user_vertex(vertices[i])) std::swap(vertices[i], vertices[i + 1]);
+    if (id(i + 1) < id(i)) std::swap(vertices[i], vertices[i + 1]);
   }
-  if (vertices[0].object != vertices[2].object) return;
-  if (std::pair(user_vertex(vertices[2]), user_vertex(vertices[3])) <
-      std::pair(user_vertex(vertices[0]), user_vertex(vertices[1]))) {
+  if (objects[0] != objects[2]) return;
+  if (std::pair(id(2), id(3)) < std::pair(id(0), id(1))) {
     std::swap(vertices[0], vertices[2]);
     std::swap(vertices[1], vertices[3]);
   }
 }
 
-/// Positions of an object at both ends of the step, without its translation.
 template <class Scalar>
-class Path {
- public:
-  explicit Path(const MovingObject& object) {
-    if constexpr (std::is_same_v<Scalar, float>) {
-      start_ = object.start->floats(), end_ = object.end->floats();
-    } else {
-      start_ = object.start->doubles(), end_ = object.end->doubles();
-    }
+void set_motions_of(const std::array<const MovingObject*, 4>& objects,
+                    std::span<const std::array<std::uint32_t, 4>> vertices, bool are_edges, float latest,
+                    RelativeMotionBlock& block) {
+  const auto paths = [&](std::size_t i) -> VertexPaths<Scalar> {
+    if constexpr (std::is_same_v<Scalar, float>)
+      return {objects[i]->start->floats(), objects[i]->end->floats()};
+    else
+      return {objects[i]->start->doubles(), objects[i]->end->doubles()};
+  };
+  set_motions({paths(0), paths(1), paths(2), paths(3)}, vertices.data(), vertices.size(), are_edges, latest,
+              block);
+}
+
+/// Fills a block with the motions of pairs from time 0 to `latest`. Differences of translated positions, and
+/// of a float and a double, are rounded to double and then to float; others are rounded once.
+void fill(const std::array<const MovingObject*, 4>& objects,
+          std::span<const std::array<std::uint32_t, 4>> vertices, bool are_edges, float latest,
+          RelativeMotionBlock& block) {
+  const MovingObject &first = *objects.front(), &last = *objects.back();
+  const bool is_translated = first.view.translation != Vec3d{} || last.view.translation != Vec3d{};
+  if (!is_translated && first.end->is_double() == last.end->is_double()) {
+    const auto set = first.end->is_double() ? set_motions_of<double> : set_motions_of<float>;
+    return set(objects, vertices, are_edges, latest, block);
   }
-  Vec3<Scalar> start(std::uint32_t vertex) const { return at(start_, vertex); }
-  Vec3<Scalar> end(std::uint32_t vertex) const { return at(end_, vertex); }
-
- private:
-  static Vec3<Scalar> at(const VertexArray<Scalar>& positions, std::uint32_t vertex) {
-    const Scalar* const p = positions[vertex];
-    return {p[0], p[1], p[2]};
+  for (std::size_t k = 0; k < vertices.size(); ++k) {
+    ElementMotion motion;
+    set_motion(are_edges, objects, vertices[k], motion);
+    for (std::size_t i = 0; latest < 1 && i < 4; ++i)
+      motion.end[i] = (1 - double{latest}) * motion.start[i] + double{latest} * motion.end[i];
+    block.set(k, relative_motion(motion));
   }
-
-  VertexArray<Scalar> start_, end_;
-};
-
-/// Positions of an object at both ends of the step, with its translation.
-class PlacedPath {
- public:
-  explicit PlacedPath(const MovingObject& object) : object_(object) {}
-  Vec3d start(std::uint32_t vertex) const { return placed((*object_.start)[vertex], object_); }
-  Vec3d end(std::uint32_t vertex) const { return placed((*object_.end)[vertex], object_); }
-
- private:
-  const MovingObject& object_;
-};
-
-/// Fills a block with the motions of pairs from time 0 to `latest`. A difference of two floats is rounded
-/// once; any other difference is rounded to double and then to float.
-template <class PathA, class PathB>
-class BlockFill {
- public:
-  BlockFill(const MovingObject& a, const MovingObject& b, float latest, RelativeMotionBlock& block)
-      : a_(a), b_(b), path_a_(a), path_b_(b), latest_(latest), block_(block) {}
-
-  void set(std::size_t k, ElementPairKind kind, ElementPair pair) {
-    if (kind == ElementPairKind::vertex_face) {
-      set_vertex_face(k, path_a_, pair.a, path_b_, b_.view.moving.face_ids[pair.b]);
-    } else if (kind == ElementPairKind::face_vertex) {
-      set_vertex_face(k, path_b_, pair.b, path_a_, a_.view.moving.face_ids[pair.a]);
-    } else {
-      set_edge_edge(k, a_.view.moving.edge_ids[pair.a], b_.view.moving.edge_ids[pair.b]);
-    }
-  }
-
- private:
-  using Row = RelativeMotionBlock;
-
-  template <class PathV, class PathF>
-  void set_vertex_face(std::size_t k, const PathV& v, std::uint32_t index, const PathF& f,
-                       const Triangle& face) {
-    const auto s0 = f.start(face[0]), e0 = f.end(face[0]);
-    set(k, Row::m, difference(v.start(index), s0), difference(v.end(index), e0));
-    set(k, Row::u, difference(f.start(face[1]), s0), difference(f.end(face[1]), e0));
-    set(k, Row::w, difference(f.start(face[2]), s0), difference(f.end(face[2]), e0));
-  }
-
-  void set_edge_edge(std::size_t k, const Edge& p, const Edge& q) {
-    const auto sp = path_a_.start(p[0]), ep = path_a_.end(p[0]);
-    const auto sq = path_b_.start(q[0]), eq = path_b_.end(q[0]);
-    set(k, Row::m, difference(sp, sq), difference(ep, eq));
-    set(k, Row::u, difference(sp, path_a_.start(p[1])), difference(ep, path_a_.end(p[1])));
-    set(k, Row::w, difference(path_b_.start(q[1]), sq), difference(path_b_.end(q[1]), eq));
-  }
-
-  template <class P, class Q>
-  static auto difference(const Vec3<P>& p, const Vec3<Q>& q) {
-    using Scalar = std::common_type_t<P, Q>;
-    return Vec3<Scalar>{Scalar{p.x} - Scalar{q.x}, Scalar{p.y} - Scalar{q.y}, Scalar{p.z} - Scalar{q.z}};
-  }
-
-  template <class Scalar>
-  void set(std::size_t k, std::size_t row, const Vec3<Scalar>& start, const Vec3<Scalar>& end) {
-    for (int axis = 0; axis < 3; ++axis) {
-      float* const rows = block_.rows[row + static_cast<std::size_t>(axis)] + k;
-      rows[0] = static_cast<float>(start[axis]);
-      rows[Row::end * Row::capacity] =
-          latest_ < 1 ? static_cast<float>((1 - double{latest_}) * start[axis] + double{latest_} * end[axis])
-                      : static_cast<float>(end[axis]);
-    }
-  }
-
-  const MovingObject& a_;
-  const MovingObject& b_;
-  PathA path_a_;
-  PathB path_b_;
-  float latest_;
-  RelativeMotionBlock& block_;
-};
-
-template <class PathA, class PathB>
-void fill(const MovingObject& a, const MovingObject& b, float latest, ElementPairKind kind,
-          std::span<const ElementPair> candidates, RelativeMotionBlock& block) {
-  BlockFill<PathA, PathB> filled(a, b, latest, block);
-  for (std::size_t k = 0; k < candidates.size(); ++k) filled.set(k, kind, candidates[k]);
 }
 
 /// The order of contacts within a job.
@@ -317,29 +251,25 @@ void ImpactPass::test_candidates(std::uint32_t job, ElementPairKind kind,
                                  std::span<const ElementPair> candidates, Worker& worker) {
   const MovingObject& a = objects_[jobs_[job].a];
   const MovingObject& b = objects_[jobs_[job].b];
-  const bool is_translated = a.view.translation != Vec3d{} || b.view.translation != Vec3d{};
-  const bool doubles_a = a.end->is_double(), doubles_b = b.end->is_double();
-  const auto fill_block = is_translated ? fill<PlacedPath, PlacedPath>
-                          : doubles_a
-                              ? doubles_b ? fill<Path<double>, Path<double>> : fill<Path<double>, Path<float>>
-                          : doubles_b ? fill<Path<float>, Path<double>>
-                                      : fill<Path<float>, Path<float>>;
-  const bool excludes = limit_.excludes_some();
+  const auto objects = objects_of(kind, a, b);
+  const bool are_edges = kind == ElementPairKind::edge_edge, excludes = limit_.excludes_some();
+  std::array<std::array<std::uint32_t, 4>, block_size> vertices;
   for (; !candidates.empty() && !stop_.stop_requested();
        candidates = candidates.subspan(std::min(block_size, candidates.size()))) {
     const auto part = candidates.first(std::min(block_size, candidates.size()));
-    fill_block(a, b, latest_.load(std::memory_order_relaxed), kind, part, worker.block);
-    std::uint64_t left = may_touch(worker.block, part.size(), kind == ElementPairKind::edge_edge,
-                                   round_up(options_.min_separation));
+    for (std::size_t k = 0; k < part.size(); ++k) vertices[k] = vertices_of(kind, part[k], a, b);
+    fill(objects, std::span(vertices).first(part.size()), are_edges, latest_.load(std::memory_order_relaxed),
+         worker.block);
+    std::uint64_t left = may_touch(worker.block, part.size(), are_edges, round_up(options_.min_separation));
     std::size_t count = 0;
     for (; left != 0; left &= left - 1) {
-      const ElementPair candidate = part[static_cast<std::size_t>(std::countr_zero(left))];
-      if (excludes && is_excluded(job, kind, candidate)) continue;
+      const auto k = static_cast<std::size_t>(std::countr_zero(left));
+      if (excludes && is_excluded(job, kind, part[k])) continue;
       OpenPair& pair = worker.open[count++];
-      pair.candidate = candidate;
-      pair.vertices = vertices_of(kind, candidate, a, b);
-      if (kind == ElementPairKind::edge_edge) sort_edges(pair.vertices);
-      set_motion(kind, pair.vertices, pair.motion);
+      pair.candidate = part[k];
+      pair.vertices = vertices[k];
+      if (are_edges) sort_edges(objects, pair.vertices);
+      set_motion(are_edges, objects, pair.vertices, pair.motion);
       pair.relative = relative_motion(pair.motion);
     }
     decide_open_pairs(job, kind, count, worker);
@@ -396,8 +326,8 @@ void ImpactPass::add_contact(std::uint32_t job, ElementPairKind kind, const Open
   contact.object_b = b.id;
   contact.kind = kind;
   if (kind == ElementPairKind::edge_edge) {
-    contact.element_a = {user_vertex(pair.vertices[0]), user_vertex(pair.vertices[1])};
-    contact.element_b = {user_vertex(pair.vertices[2]), user_vertex(pair.vertices[3])};
+    contact.element_a = {a.vertex_ids[pair.vertices[0]], a.vertex_ids[pair.vertices[1]]};
+    contact.element_b = {b.vertex_ids[pair.vertices[2]], b.vertex_ids[pair.vertices[3]]};
   } else {
     const auto [first, second] = pair.candidate;
     const bool vertex_first = kind == ElementPairKind::vertex_face;

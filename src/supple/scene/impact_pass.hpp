@@ -33,12 +33,6 @@ struct MovingObject {
   std::span<const std::uint32_t> triangle_ids, vertex_ids;  ///< the user's ids
 };
 
-/// A vertex of an object, in octree order.
-struct MovingVertex {
-  const MovingObject* object = nullptr;
-  std::uint32_t vertex = 0;
-};
-
 /// Narrow phase and exact stage of continuous contacts for all jobs of a step, on all workers. The narrow
 /// phase hands its candidates to the exact stage in batches. The pass keeps its memory between steps.
 class ImpactPass {
@@ -76,7 +70,7 @@ class ImpactPass {
   /// A pair of elements that passed the filter.
   struct OpenPair {
     ElementPair candidate;
-    std::array<MovingVertex, 4> vertices;
+    std::array<std::uint32_t, 4> vertices;
     ElementMotion motion;
     RelativeMotion relative;
   };
