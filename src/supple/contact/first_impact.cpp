@@ -12,12 +12,18 @@
 namespace supple {
 namespace {
 
-/// A vector of length 1, or 0 when `v` has no direction. Scales first, so that squares do not underflow.
-Vec3d normalized(const Vec3d& v) {
+/// The vector divided by its largest coordinate, so that squares neither overflow nor underflow, or 0 when it
+/// has no direction.
+Vec3d scaled(const Vec3d& v) {
   const double size = largest_magnitude(v);
   if (!(size > 0) || !std::isfinite(size)) return {};
-  const Vec3d scaled{v.x / size, v.y / size, v.z / size};
-  return (1 / std::sqrt(dot(scaled, scaled))) * scaled;
+  return {v.x / size, v.y / size, v.z / size};
+}
+
+/// A vector of length 1, or 0 when `v` has no direction.
+Vec3d normalized(const Vec3d& v) {
+  const Vec3d s = scaled(v);
+  return s == Vec3d{} ? s : (1 / std::sqrt(dot(s, s))) * s;
 }
 
 /// A product smaller than this fraction of the magnitudes of its terms has no reliable direction.
@@ -27,17 +33,18 @@ constexpr double negligible = 0x1p-40;
 /// velocity, or else towards its position at the start.
 Vec3d normal_across(const RelativeMotion& motion, const RelativePlaces<double>& places,
                     const ClosestPoints& at) {
-  const Vec3d product = cross(normalized(places.u), normalized(places.w));
+  const Vec3d product = cross(scaled(places.u), scaled(places.w));
   const Vec3d n = dot(product, product) > negligible * negligible ? normalized(product) : Vec3d{};
   const Vec3d velocity = (motion.end.m - motion.start.m) - at.alpha * (motion.end.u - motion.start.u) -
                          at.beta * (motion.end.w - motion.start.w);
-  const Vec3d before = normalized(motion.start.m - at.alpha * motion.start.u - at.beta * motion.start.w);
-  const double side = dot(n, before), approach = dot(n, normalized(velocity));
+  const double approach = dot(n, scaled(velocity));
   if (std::fabs(approach) > negligible) return approach < 0 ? n : -1.0 * n;
+  const Vec3d before = motion.start.m - at.alpha * motion.start.u - at.beta * motion.start.w;
+  const double side = dot(n, scaled(before));
   if (std::fabs(side) > negligible) return side > 0 ? n : -1.0 * n;
   // The motion stays in one plane or on one line. Point back to where the element came from, or else against
   // its velocity.
-  if (before != Vec3d{}) return before;
+  if (scaled(before) != Vec3d{}) return normalized(before);
   if (velocity != Vec3d{}) return -1.0 * normalized(velocity);
   return n;
 }
