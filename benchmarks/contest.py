@@ -51,7 +51,7 @@ FULL = (
     + ["limits/bandwidth"]
     + [f"limits/refit/{triangles}" for triangles in (980, 18000, 69620, 1310720)]
     + ["memory/69620", "memory/bunny", "memory/moving/69620"]
-    + ["build/69620", "build/bunny", "frames/18000x9"]
+    + ["build/69620", "build/bunny", "frames/18000x9", "first/cloth-ball", "first/69620x64"]
 )
 QUICK = (
     [f"A/{field}/10000" for field in FIELDS]
@@ -286,6 +286,8 @@ def judged(cells):
                   1, True)
         judge.add("build on two threads", cell, "Supple, 1 thread",
                   balanced / values["milliseconds, balanced, 2 threads"], 1.7, 1.9)
+    for cell in judge.matching("first/.*"):
+        judge.add_faster("first frame of a process", cell, ["Embree"], 1, 2)
     for cell in judge.matching("frames/.*"):
         values = judge.cells[cell]["values"]
         judge.add("99.9th percentile of frames", cell, "median",

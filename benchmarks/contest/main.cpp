@@ -19,7 +19,7 @@ constexpr const char* usage =
     "      B/SHAPExCOPIES[-rest]  C/CLOTH\n"
     "      step/CLOTH  growth/SHAPExCOPIES  threads/B/...  threads/C/...  limits/bandwidth  "
     "limits/refit/TRIANGLES  "
-    "memory/SHAPE\n"
+    "memory/SHAPE  memory/moving/SHAPE  build/SHAPE  frames/SHAPExCOPIES  first/SHAPExCOPIES  first/CLOTH\n"
     "FIELD: u1 u8 clu cl8   SHAPE: 980, 18000, 69620, ... or bunny   CLOTH: cloth-ball cloth-funnel "
     "crumpled\n";
 
@@ -60,6 +60,8 @@ void run(const Choice& choice) {
     run_memory(after("memory/"), false, output);
   } else if (cell.starts_with("build/")) {
     run_build(choice, after("build/"), output);
+  } else if (cell.starts_with("first/")) {
+    run_first_frame(choice, after("first/"), output);
   } else if (cell.starts_with("frames/")) {
     run_frames(choice, after("frames/"), output);
   } else {
