@@ -1,12 +1,15 @@
 #!/usr/bin/env python3
 """Compares Supple with Embree, CGAL, FCL, Bullet, ODE and two short baselines on the workloads of docs/performance.md.
 
-usage: contest.py [--build DIR] [--quick] [--only CELL]... [--seconds S] [--output DIR] [--save] [--list]
+usage: contest.py [--build DIR] [--quick] [--only CELL]... [--seconds S] [--instruction-set SET] [--output DIR] [--save]
+       [--list]
 
     --build DIR    the build with supple_contest in its bin/ (default: build/release)
     --quick        one cell of each kind, about a minute; otherwise all cells, up to 25 minutes
     --only CELL    a cell, or a pattern of cell names such as 'A/u1/*'; may be repeated
     --seconds S    processor time per cell
+    --instruction-set SET  avx512, avx2 or sse4 for Supple and Embree, without the cells of whole programs; the others
+                   use what they were compiled for
     --output DIR   the folder for results.json, results.csv and results.html (default: build/contest)
     --save         also store the results in benchmarks/results/, named by date and machine
     --list         print the names of all cells
@@ -69,9 +72,11 @@ class Disagreement(Exception):
 # --- running ---
 
 
-def run_cell(build, cell, seconds):
+def run_cell(arguments, cell):
     """Runs supple_contest on one cell and returns its JSON."""
-    command = [build / "bin/supple_contest", cell, "--seconds", str(seconds)]
+    command = [arguments.build / "bin/supple_contest", cell, "--seconds", str(arguments.seconds)]
+    if arguments.instruction_set:
+        command += ["--instruction-set", arguments.instruction_set]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     if done.returncode == 3:
         raise Disagreement(done.stderr.strip())
@@ -339,6 +344,7 @@ def description(build, arguments, missing):
         "cores": str(os.cpu_count()),
         "system": f"{platform.system()} {platform.release()}",
         "compiler": f"{version}, {cache_entry(build, 'CMAKE_BUILD_TYPE')}",
+        "instruction set": arguments.instruction_set or "the best of each library",
         "load at the start": f"{os.getloadavg()[0]:.1f} processes",
         "run": "quick" if arguments.quick else "chosen cells" if arguments.only else "full",
         "left out": ", ".join(missing) or "nothing",
@@ -427,7 +433,8 @@ def write_csv(path, cells):
 
 def file_name_of(about):
     machine = re.sub(r"[^a-z0-9.]+", "-", re.sub(r"\(r\)|\(tm\)|intel|amd|cpu|processor|@", " ", about["processor"].lower()))
-    return f"{about['date'][:10]}-{machine.strip('-')}-contest"
+    limit = about["instruction set"].split()
+    return "-".join([about["date"][:10], machine.strip("-"), *(limit if len(limit) == 1 else []), "contest"])
 
 
 def compact(cells):
@@ -464,6 +471,8 @@ def write_results(arguments, about, cells, judge):
 
 def chosen_cells(arguments):
     cells = QUICK if arguments.quick else FULL
+    if arguments.instruction_set:
+        cells = [cell for cell in cells if not cell.startswith("process/")]
     if not arguments.only:
         return cells
     for pattern in arguments.only:
@@ -485,7 +494,7 @@ def run_all(arguments, cells):
             if cell.startswith("process/"):
                 result = run_process_cell(arguments.build, cell, arguments.seconds, arguments.output)
             else:
-                result = run_cell(arguments.build, cell, arguments.seconds)
+                result = run_cell(arguments, cell)
         except Disagreement as error:
             print(f"DISAGREEMENT {error}", flush=True)
             disagree = True
@@ -509,6 +518,7 @@ def parsed(words):
     parser.add_argument("--quick", action="store_true")
     parser.add_argument("--only", action="append", default=[])
     parser.add_argument("--seconds", type=float)
+    parser.add_argument("--instruction-set", choices=["avx512", "avx2", "sse4"])
     parser.add_argument("--output", type=pathlib.Path, default=ROOT / "build/contest")
     parser.add_argument("--save", action="store_true")
     parser.add_argument("--list", action="store_true")

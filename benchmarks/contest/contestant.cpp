@@ -1,8 +1,11 @@
 #include "contest/contestant.hpp"
 
+#include <hwy/targets.h>
 #include <time.h>
 
 #include <algorithm>
+
+#include "supple/error.hpp"
 
 namespace supple::benchmarks {
 namespace {
@@ -47,6 +50,31 @@ PairDigest ClothContestant::pairs() const {
     digest.add(pair.a, pair.b + (kind << 32));
   }
   return digest;
+}
+
+namespace {
+std::string embree_limit;
+}  // namespace
+
+void limit_instruction_set([[maybe_unused]] const std::string& name) {
+#if HWY_ARCH_X86
+  struct Set {
+    const char *name, *of_embree;
+    std::int64_t target;
+  };
+  for (const Set& set :
+       {Set{"avx512", "avx512", HWY_AVX3}, {"avx2", "avx2", HWY_AVX2}, {"sse4", "sse4.2", HWY_SSE4}}) {
+    if (name != set.name || (hwy::SupportedTargets() & set.target) == 0) continue;
+    hwy::SetSupportedTargetsForTest(set.target);
+    embree_limit = set.of_embree;
+    return;
+  }
+#endif
+  throw Error("this machine has no instruction set named '" + name + "'; choose avx512, avx2 or sse4");
+}
+
+const std::string& embree_instruction_set() {
+  return embree_limit;
 }
 
 double cpu_milliseconds() {

@@ -93,6 +93,12 @@ std::unique_ptr<CopiesContestant> make_supple_copies(std::uint32_t threads,
 /// `pairs` are the contacts; the stages include the number of candidates.
 std::unique_ptr<Contestant<ClothStep>> make_supple_cloth(std::uint32_t threads);
 
+/// Limits Supple and Embree to an instruction set of x86-64: "avx512", "avx2" or "sse4". The others use what
+/// they were compiled for. Throws `Error` for another name or one that this machine does not have.
+void limit_instruction_set(const std::string& name);
+/// The name that Embree has for the limit; empty without one.
+const std::string& embree_instruction_set();
+
 /// Processor time of the calling process.
 double cpu_milliseconds();
 double wall_milliseconds();

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <string>
 
 #include "contest/peers.hpp"
 #include "contest/swept_boxes.hpp"
@@ -13,7 +14,7 @@ namespace {
 /// A device with one thread, as for all contestants.
 class Device {
  public:
-  Device() : device_(rtcNewDevice("threads=1,set_affinity=0")) {
+  Device() : device_(rtcNewDevice(configuration().c_str())) {
     if (device_ == nullptr) throw std::runtime_error("Embree cannot create a device");
   }
   ~Device() { rtcReleaseDevice(device_); }
@@ -22,6 +23,11 @@ class Device {
   operator RTCDevice() const { return device_; }
 
  private:
+  static std::string configuration() {
+    const std::string& limit = embree_instruction_set();
+    return "threads=1,set_affinity=0" + (limit.empty() ? "" : ",isa=" + limit);
+  }
+
   RTCDevice device_;
 };
 

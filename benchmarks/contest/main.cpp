@@ -13,15 +13,16 @@ namespace supple::benchmarks {
 namespace {
 
 constexpr const char* usage =
-    "usage: supple_contest [--seconds S] [--rounds N] [--cpu N] [--only-supple] [--spoil NAME] CELL | "
-    "--missing\n"
+    "usage: supple_contest [--seconds S] [--rounds N] [--cpu N] [--only-supple] [--instruction-set SET] "
+    "[--spoil NAME] CELL | --missing\n"
     "CELL: A/FIELD/N  A/FIELD/N/drift  A/FIELD/N/one-percent  A/FIELD/N/one-in-K\n"
     "      B/SHAPExCOPIES[-rest]  C/CLOTH\n"
     "      step/CLOTH  growth/SHAPExCOPIES  threads/B/...  threads/C/...  limits/bandwidth  "
     "limits/refit/TRIANGLES  "
     "memory/SHAPE  memory/moving/SHAPE  build/SHAPE  frames/SHAPExCOPIES  first/SHAPExCOPIES  first/CLOTH\n"
     "FIELD: u1 u8 clu cl8   SHAPE: 980, 18000, 69620, ... or bunny   CLOTH: cloth-ball cloth-funnel "
-    "crumpled\n";
+    "crumpled passing rods\n"
+    "SET: avx512 avx2 sse4, for Supple and Embree\n";
 
 void run(const Choice& choice) {
   const std::string& cell = choice.cell;
@@ -89,6 +90,8 @@ Choice choice_of(const std::vector<std::string>& words) {
       choice.cpu = static_cast<int>(number_of(words[++i]));
     else if (words[i] == "--spoil" && has_value)
       choice.spoiled = words[++i];
+    else if (words[i] == "--instruction-set" && has_value)
+      limit_instruction_set(words[++i]);
     else if (words[i] == "--only-supple")
       choice.only_supple = true;
     else if (words[i].starts_with("-") || !choice.cell.empty())
