@@ -37,7 +37,8 @@ void MovingBoxes::refit(Moment& moment, const ObjectOctree& octree, const Surfac
   moment.corners = {positions.floats().data, positions.floats().data, positions.floats().stride};
   if (positions.is_double()) {
     moment.rounded.resize(8 * positions.size());
-    moment.corners = {moment.rounded.data(), moment.rounded.data() + 4, 8};
+    const float* const lower = moment.rounded.data();  // null when there are no vertices
+    moment.corners = {lower, lower == nullptr ? lower : lower + 4, 8};
     parallel.for_ranges(positions.size(), grain, [&](std::size_t begin, std::size_t end, std::uint32_t) {
       round_corners(positions.doubles().data, moment.rounded.data(), static_cast<std::uint32_t>(begin),
                     static_cast<std::uint32_t>(end));

@@ -14,9 +14,11 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double inf = std::numeric_limits<double>::infinity();
 
 TEST(MovingBoxes, OfNothing) {
-  const MovingObject object({}, {});
-  EXPECT_EQ(object.validate(), "");
-  EXPECT_TRUE(object.boxes.swept_box().empty());
+  for (const bool floats : {true, false}) {
+    const MovingObject object({}, {}, {}, floats);
+    EXPECT_EQ(object.validate(), "");
+    EXPECT_TRUE(object.boxes.swept_box().empty());
+  }
 }
 
 TEST(MovingBoxes, EncloseEveryElement) {
