@@ -41,15 +41,18 @@ FIELDS = ["u1", "u8", "clu", "cl8"]
 BASELINES = {"baseline sweep", "baseline grid"}
 GROWTH = [f"growth/{triangles}x2" for triangles in (500, 5120, 50000, 499280, 1997120)]
 
+COPIES = ["980x64", "980x512", "18000x9", "18000x64", "69620x9", "69620x64", "bunnyx9"]
+CLOTHS = ["cloth-funnel", "cloth-ball", "crumpled", "passing", "rods"]
+
 FULL = (
     [f"A/{field}/{count}" for field in FIELDS for count in (1000, 10000, 100000, 1000000)]
     + ["A/u1/100000/drift", "A/u1/100000/one-percent"]
-    + [f"B/{name}" for name in ("980x64", "980x512", "18000x9", "18000x64", "69620x9", "69620x64", "bunnyx9",
-                                "18000x64-rest", "69620x64-rest")]
-    + ["C/cloth-funnel", "C/cloth-ball", "C/crumpled", "C/passing", "C/rods"]
-    + ["step/cloth-funnel", "step/cloth-ball", "step/passing", "step/rods"]
+    + [f"B/{name}" for name in (*COPIES, "18000x64-rest", "69620x64-rest")]
+    + [f"C/{cloth}" for cloth in CLOTHS]
+    + [f"step/{cloth}" for cloth in CLOTHS]
     + ["process/cloth-ball", "process/two-bunnies"]
-    + ["threads/B/18000x64", "threads/C/cloth-ball", "threads/C/crumpled"]
+    + [f"threads/B/{name}" for name in COPIES]
+    + [f"threads/C/{cloth}" for cloth in CLOTHS]
     + GROWTH
     + ["limits/bandwidth"]
     + [f"limits/refit/{triangles}" for triangles in (980, 18000, 69620, 1310720)]
