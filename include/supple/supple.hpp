@@ -5,6 +5,7 @@
 #include "supple/comparison_options.hpp"
 #include "supple/contact.hpp"
 #include "supple/continuous.hpp"
+#include "supple/distance.hpp"
 #include "supple/error.hpp"
 #include "supple/inspection.hpp"
 #include "supple/mesh.hpp"
