@@ -70,8 +70,11 @@ std::optional<ContinuousDifference::Fault> fault_of(const std::optional<Impact>&
   if (!impact) return truth ? std::optional(Fault::missed) : std::nullopt;
   if (!truth)
     return impact->certainty == ImpactCertainty::certain ? std::optional(Fault::added) : std::nullopt;
-  if (impact->toi > truth->low) return Fault::late;
-  if (impact->toi < truth->low - toi_tolerance) return Fault::early;
+  const bool touching_at_start = truth->high == 0;
+  if (impact->toi > truth->low || (touching_at_start && !impact->touching_at_start)) return Fault::late;
+  if (!touching_at_start && impact->touching_at_start) return Fault::early;
+  const bool is_certain = impact->certainty == ImpactCertainty::certain;
+  if (is_certain && impact->toi < truth->high - toi_tolerance_at(truth->high)) return Fault::early;
   return std::nullopt;
 }
 

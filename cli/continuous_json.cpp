@@ -150,6 +150,8 @@ void write_continuous_contacts(JsonWriter& json, const char* name, const DetectR
     write_objects(json, contact.object_a, contact.object_b);
     write_elements(json, contact.element_a, contact.element_b, contact.kind);
     json.member("toi", contact.toi);
+    json.member("touching_at_start", contact.touching_at_start);
+    json.member("start_distance", contact.start_distance);
     json.member("certain", contact.certainty == ImpactCertainty::certain);
     write_weights(json, "barycentric_a", contact.barycentric_a, size_a);
     write_weights(json, "barycentric_b", contact.barycentric_b, size_b);

@@ -69,13 +69,16 @@ struct ContinuousContact {
   /// triangle t. `Scene::vertices_of` gives the vertex ids.
   std::array<std::uint32_t, 2> element_a{}, element_b{};
   ImpactCertainty certainty = ImpactCertainty::certain;
-  /// Time of impact, at which they first touch, in [0, 1]: never late, and early by at most `toi_tolerance`.
+  bool touching_at_start = false;  ///< exact; see `Impact`
+  /// Time of impact, at which they first touch, in [0, 1]: never late, and early by at most
+  /// `toi_tolerance_at`. Positive when they are apart at the start; see `Impact`.
   double toi = 0;
+  double start_distance = 0;  ///< at the start of the step; see `Impact`
   /// The point of each element that touches, in barycentric coordinates of the element's vertices: 1, 0, 0
   /// for a vertex; 1 - s, s, 0 for an edge; one coordinate for each corner of a face.
   std::array<double, 3> barycentric_a{}, barycentric_b{};
   Vec3d point;   ///< midpoint of the two points at `toi`
-  Vec3d normal;  ///< unit vector, towards the side of element a before the impact; see `Impact`
+  Vec3d normal;  ///< unit vector from b to the side of element a before the impact; see `Impact`
 
   constexpr bool operator==(const ContinuousContact&) const = default;
 };

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <optional>
@@ -21,9 +22,15 @@ struct EdgeEdgeMotion {
   std::array<Vec3d, 4> start, end;
 };
 
-/// A reported time is never later than the true first contact, and earlier by at most this fraction of the
-/// step. Most times are early by a few units in the last place.
-inline constexpr double toi_tolerance = 0x1p-30;
+/// A reported time is never later than the true first contact. It is earlier by at most `toi_tolerance` of
+/// the step and `toi_relative_tolerance` of the true time, or 2^-1022 where that is more. Most times are
+/// early by a few units in the last place.
+inline constexpr double toi_tolerance = 0x1p-30, toi_relative_tolerance = 0x1p-20;
+
+/// The most by which a reported time may be earlier than the true time `toi`.
+constexpr double toi_tolerance_at(double toi) {
+  return std::min(toi_tolerance, std::max(toi_relative_tolerance * toi, 0x1p-1022));
+}
 
 struct ImpactOptions {
   /// Elements count as touching when their distance is at most this value, finite and ≥ 0, in the unit of
@@ -41,16 +48,23 @@ enum class ImpactCertainty : std::uint8_t {
 
 /// The first contact of two elements. The certainty is exact; all numbers are rounded.
 struct Impact {
-  /// Time of impact in [0, 1]; see `toi_tolerance`. Exactly 0 when they touch at the start.
+  /// Time of impact in [0, 1]; see `toi_tolerance`. Positive when they are apart at the start, unless the
+  /// true time is below every positive double or the impact is not `certain`.
   double toi = 0;
   ImpactCertainty certainty = ImpactCertainty::certain;
+  /// Whether they touch at the start, at a distance of at most `min_separation`; `toi` is then 0. Exact.
+  bool touching_at_start = false;
+  /// Their distance at the start, to a relative error of 2^-20. Exactly 0 when they share a point there.
+  double start_distance = 0;
   /// The points that touch, in barycentric coordinates of the four vertices: 1 and three coordinates in the
   /// face, or 1 - s, s on edge a and 1 - r, r on edge b.
   std::array<double, 4> barycentric{};
   /// Midpoint of the two points at `toi`.
   Vec3d point;
-  /// Unit vector from the face to the side of the vertex before the impact, or from edge b to the side of
-  /// edge a. Pushing the vertex, or edge a, along it separates them. Zero only when no direction is defined.
+  /// Unit vector from the face to the vertex, or from edge b to edge a. With a separation it is the direction
+  /// between the closest points at `toi`. Where these coincide, it is normal to both elements and points to
+  /// the side of the vertex, or of edge a, before the impact. Pushing the vertex, or edge a, along it
+  /// separates them. Zero only when no direction is defined.
   Vec3d normal;
 };
 

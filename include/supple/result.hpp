@@ -135,8 +135,8 @@ struct ContinuousDifference {
   enum class Fault : std::uint8_t {
     missed,  ///< the pair touches and was not reported
     added,   ///< reported as certain, but does not touch
-    late,    ///< reported with a time after the first contact
-    early,   ///< reported with a time before the first contact by more than `toi_tolerance`
+    late,   ///< reported with a time after the first contact, or as apart at the start while they touch there
+    early,  ///< earlier than `toi_tolerance_at` allows, or as touching at the start while they are apart
   };
   ObjectId object_a, object_b;
   ElementPairKind kind = ElementPairKind::vertex_face;

@@ -285,12 +285,15 @@ Line Comparison::continuous_contacts(const RecordedFrame& a, const RecordedFrame
     return std::tuple(c.object_a, c.object_b, c.kind, c.element_a, c.element_b);
   };
   const auto compare_rows = [this](const ContinuousContact& p, const ContinuousContact& q) {
-    return first_of([&] { return compare_exactly("certainty", p.certainty, q.certainty); },
-                    [&] { return compare("toi", p.toi, q.toi); },
-                    [&] { return compare("barycentric_a", p.barycentric_a, q.barycentric_a); },
-                    [&] { return compare("barycentric_b", p.barycentric_b, q.barycentric_b); },
-                    [&] { return compare("point", p.point, q.point); },
-                    [&] { return compare("normal", p.normal, q.normal); });
+    return first_of(
+        [&] { return compare_exactly("certainty", p.certainty, q.certainty); },
+        [&] { return compare_exactly("touching_at_start", p.touching_at_start, q.touching_at_start); },
+        [&] { return compare("toi", p.toi, q.toi); },
+        [&] { return compare("start_distance", p.start_distance, q.start_distance); },
+        [&] { return compare("barycentric_a", p.barycentric_a, q.barycentric_a); },
+        [&] { return compare("barycentric_b", p.barycentric_b, q.barycentric_b); },
+        [&] { return compare("point", p.point, q.point); },
+        [&] { return compare("normal", p.normal, q.normal); });
   };
   return lists("continuous contact", a.continuous_contacts, b.continuous_contacts, key, compare_rows);
 }

@@ -72,7 +72,11 @@ const std::vector<ColumnOf<ContinuousContact>>& columns_of() {
       column<Row>(
           "certainty", [](auto& row) -> auto& { return row.certainty; }),
       column<Row>(
+          "touching_at_start", [](auto& row) -> auto& { return row.touching_at_start; }),
+      column<Row>(
           "toi", [](auto& row) -> auto& { return row.toi; }),
+      column<Row>(
+          "start_distance", [](auto& row) -> auto& { return row.start_distance; }),
       column<Row>(
           "barycentric_a", [](auto& row) -> auto& { return row.barycentric_a; }),
       column<Row>(

@@ -19,7 +19,7 @@
 namespace supple {
 
 inline constexpr const char* format_name = "supple recording";
-inline constexpr std::uint32_t format_version = 2;
+inline constexpr std::uint32_t format_version = 3;
 /// The oldest supported version. Values that it lacks get their defaults.
 inline constexpr std::uint32_t oldest_version = 1;
 
@@ -37,7 +37,8 @@ constexpr std::size_t size_of(ScalarType type) {
 template <class Field>
 struct Storage;
 template <class Field>
-requires(std::is_enum_v<Field> || std::is_same_v<Field, std::uint8_t>) struct Storage<Field> {
+requires(std::is_enum_v<Field> || std::is_same_v<Field, std::uint8_t> ||
+         std::is_same_v<Field, bool>) struct Storage<Field> {
   static_assert(sizeof(Field) == 1);
   static constexpr ScalarType type = ScalarType::uint8;
   static constexpr std::size_t width = 1;
@@ -75,13 +76,16 @@ struct ColumnOf {
   ScalarType type;
   std::size_t width;
   std::size_t offset;  ///< of the field in a row
+  bool is_truth;       ///< a truth value; every number but 0 is true
 
   std::size_t bytes() const { return size_of(type) * width; }
   void store(const Row& row, std::byte* to) const {
     std::memcpy(to, reinterpret_cast<const std::byte*>(&row) + offset, bytes());
   }
   void load(Row& row, const std::byte* from) const {
-    std::memcpy(reinterpret_cast<std::byte*>(&row) + offset, from, bytes());
+    std::byte* const field = reinterpret_cast<std::byte*>(&row) + offset;
+    std::memcpy(field, from, bytes());
+    if (is_truth) *field = std::byte{*from != std::byte{}};
   }
 };
 
@@ -95,7 +99,8 @@ ColumnOf<Row> column(const char* name, FieldOf field_of) {
   Row row{};
   const auto* const field = reinterpret_cast<const std::byte*>(&field_of(row));
   return {name, Stored::type, Stored::width,
-          static_cast<std::size_t>(field - reinterpret_cast<const std::byte*>(&row))};
+          static_cast<std::size_t>(field - reinterpret_cast<const std::byte*>(&row)),
+          std::is_same_v<Field, bool>};
 }
 
 template <class Row>

@@ -50,7 +50,9 @@ inline std::uint64_t hash_of(const DetectResult& result, std::uint64_t hash = 0x
     add(contact.kind);
     for (const auto& element : {contact.element_a, contact.element_b}) add(element);
     add(contact.certainty);
+    add(contact.touching_at_start);
     add(contact.toi);
+    add(contact.start_distance);
     for (const auto& weights : {contact.barycentric_a, contact.barycentric_b}) add(weights);
     add(contact.point);
     add(contact.normal);

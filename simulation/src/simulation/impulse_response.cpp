@@ -108,19 +108,14 @@ bool ImpulseResponse::respond(const ContinuousContact& contact) {
                                   contact.kind == ElementPairKind::face_vertex, contact.barycentric_a);
   const ElementPoint b = point_of(contact.object_b, contact.element_b,
                                   contact.kind == ElementPairKind::vertex_face, contact.barycentric_b);
-  Vec3d normal = contact.normal;
   double parting = 0;
   double restitution = options_.restitution;
-  if (contact.toi == 0) {
-    // The contact normal may depend on the relative velocity, which an earlier round may have reversed.
-    const Vec3d between = start(a) - start(b);
-    const double distance = std::sqrt(dot(between, between));
-    if (distance > 1e-6 * options_.thickness) normal = between * (1 / distance);
-    parting = repulsion_part * std::max(options_.thickness - distance, 0.0) / seconds_;
+  if (contact.touching_at_start) {
+    parting = repulsion_part * std::max(options_.thickness - contact.start_distance, 0.0) / seconds_;
     restitution = 0;  // resting contact does not bounce
   }
-  const bool moved = push_apart(a, b, normal, parting, 0, Velocity::average);
-  return push_apart(a, b, normal, 0, restitution, Velocity::end) || moved;
+  const bool moved = push_apart(a, b, contact.normal, parting, 0, Velocity::average);
+  return push_apart(a, b, contact.normal, 0, restitution, Velocity::end) || moved;
 }
 
 /// Raises the normal speed to at least `least_speed` and to the speed that restitution demands; reduces the
@@ -159,13 +154,6 @@ ImpulseResponse::ElementPoint ImpulseResponse::point_of(ObjectId object,
     point.count = element[0] == element[1] ? 1 : 2;
   }
   return point;
-}
-
-Vec3d ImpulseResponse::start(const ElementPoint& point) const {
-  Vec3d sum;
-  for (std::uint32_t i = 0; i < point.count; ++i)
-    sum = sum + point.object->now.from[point.vertices[i]] * point.weights[i];
-  return sum;
 }
 
 Vec3d ImpulseResponse::velocity(const ElementPoint& point, Velocity kind) const {

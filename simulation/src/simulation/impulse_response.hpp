@@ -81,7 +81,6 @@ class ImpulseResponse {
                         const std::array<double, 3>& weights);
   bool push_apart(const ElementPoint& a, const ElementPoint& b, Vec3d normal, double least_speed,
                   double restitution, Velocity kind);
-  Vec3d start(const ElementPoint& point) const;
   Vec3d velocity(const ElementPoint& point, Velocity kind) const;
   double mobility(const ElementPoint& a, const ElementPoint& b) const;
   double mobility_of_both(const ElementPoint& a, const ElementPoint& b) const;

@@ -280,7 +280,8 @@ HWY_INLINE void search_from(const MotionBlock& block, std::size_t first, bool is
     touching = hn::AndNot(hn::AndNot(hn::Gt(low, touched_until), comes_later), touching);
     const Place place(start, end, low, high, is_square);
     const Mask is_clear = hn::And(hn::Lt(passed, low), volume.never_zero(passed, low, has_root));
-    const Mask is_short = hn::Le(hn::Sub(high, low), set(toi_tolerance / 2));
+    const Doubles longest = hn::Min(set(toi_tolerance / 2), hn::Mul(set(toi_relative_tolerance / 2), low));
+    const Mask is_short = hn::Le(hn::Sub(high, low), longest);
     const Mask touches =
         hn::And(hn::And(has_root, is_clear), hn::AndNot(place.outside, hn::And(place.inside, is_short)));
     const Mask now_touching = hn::And(touches, volume.changes_sign(low, high));

@@ -23,7 +23,7 @@ class MotionBlock {
 /// What floating point can prove at a glance about the first impacts of a block of pairs.
 struct CoplanarSearch {
   std::uint64_t apart = 0;     ///< bit i: pair i does not touch within the step
-  std::uint64_t touching = 0;  ///< bit i: pair i touches, first at most `toi_tolerance` after `times[i]`
+  std::uint64_t touching = 0;  ///< bit i: pair i touches, first within the tolerances after `times[i]` > 0
   double times[MotionBlock::capacity];
 };
 

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "contact/closest_points.hpp"
+#include "contact/element_distance.hpp"
 #include "contact/exact_impact.hpp"
 #include "contact/impact_search.hpp"
 #include "geometry/vector.hpp"
@@ -26,13 +28,75 @@ Vec3d normalized(const Vec3d& v) {
   return s == Vec3d{} ? s : (1 / std::sqrt(dot(s, s))) * s;
 }
 
+/// Places times a power of two, so that products of coordinates do not overflow or underflow.
+struct Scaled {
+  double factor = 1;
+  RelativePlaces<double> places;
+
+  explicit Scaled(const RelativePlaces<double>& unscaled) : places(unscaled) {
+    const double size =
+        largest_magnitude(larger(larger(absolute(unscaled.m), absolute(unscaled.u)), absolute(unscaled.w)));
+    if (!(size > 0x1p100 || size < 0x1p-100) || size == 0) return;
+    factor = std::ldexp(1.0, std::clamp(-std::ilogb(size), -1000, 1000));
+    places = {factor * unscaled.m, factor * unscaled.u, factor * unscaled.w};
+  }
+};
+
+/// Where two elements are closest.
+struct Gap {
+  double alpha = 0, beta = 0, distance = 0;
+  Vec3d normal;  ///< unit vector between the closest points, or 0 where these coincide
+};
+
+/// Uses the relative positions of the elements. `points` gives their positions where double precision is not
+/// enough: where the elements are close compared with their size, edges that are nearly parallel have no
+/// accurate closest points in double precision.
+template <class Points>
+Gap gap_between(const RelativePlaces<double>& relative, bool is_square, const Points& points) {
+  const Scaled scaled(relative);
+  const auto& [m, u, w] = scaled.places;
+  const double size = largest_magnitude(larger(larger(absolute(m), absolute(u)), absolute(w)));
+  const ClosestPoints at = closest_points(scaled.places, is_square);
+  const double distance = std::sqrt(at.squared_distance);
+  if (distance > 0x1p-12 * size)
+    return {at.alpha, at.beta, distance / scaled.factor, (1 / distance) * at.difference};
+  bool used_exact = false;
+  const auto exact = distance_within(points(), any_distance, used_exact);
+  const auto& [a, b] = std::tie(exact->barycentric_a, exact->barycentric_b);
+  return {is_square ? a[1] : b[1], is_square ? b[1] : b[2], exact->distance,
+          exact->distance > 0 ? exact->normal : Vec3d{}};
+}
+
+ElementPoints element_points(const std::array<Vec3d, 4>& points, bool are_edges) {
+  if (are_edges) return {points, 2, 2};
+  return {points, 1, 3};
+}
+
+Gap gap_at_start(const ElementMotion& motion, const RelativeMotion& relative) {
+  return gap_between(relative.start, relative.is_square,
+                     [&] { return element_points(motion.start, motion.are_edges); });
+}
+
+/// The gap at the time at which the elements come within the separation. Has no normal where rounding of the
+/// places could change it.
+Gap gap_at_impact(const RelativeMotion& relative, double time, double separation) {
+  const RelativePlaces<double> places = places_at(relative, time);
+  const auto& [m, u, w] = places;
+  Gap gap = gap_between(places, relative.is_square, [&] {
+    return relative.is_square ? element_points({m, m - u, Vec3d{}, w}, true)
+                              : element_points({m, Vec3d{}, u, w}, false);
+  });
+  const double size = largest_magnitude(larger(larger(absolute(m), absolute(u)), absolute(w)));
+  if (!(separation > 0x1p-36 * size)) gap.normal = {};
+  return gap;
+}
+
 /// A product smaller than this fraction of the magnitudes of its terms has no reliable direction.
 constexpr double negligible = 0x1p-40;
 
 /// The unit vector across both elements, towards the side from which the first element came: against its
 /// velocity, or else towards its position at the start.
-Vec3d normal_across(const RelativeMotion& motion, const RelativePlaces<double>& places,
-                    const ClosestPoints& at) {
+Vec3d normal_across(const RelativeMotion& motion, const RelativePlaces<double>& places, const Gap& at) {
   const Vec3d product = cross(scaled(places.u), scaled(places.w));
   const Vec3d n = dot(product, product) > negligible * negligible ? normalized(product) : Vec3d{};
   const Vec3d velocity = (motion.end.m - motion.start.m) - at.alpha * (motion.end.u - motion.start.u) -
@@ -49,39 +113,40 @@ Vec3d normal_across(const RelativeMotion& motion, const RelativePlaces<double>& 
   return n;
 }
 
-/// Places times a power of two, so that products of coordinates do not overflow or underflow.
-struct Scaled {
-  double factor = 1;
-  RelativePlaces<double> places;
-
-  explicit Scaled(const RelativePlaces<double>& unscaled) : places(unscaled) {
-    const double size =
-        largest_magnitude(larger(larger(absolute(unscaled.m), absolute(unscaled.u)), absolute(unscaled.w)));
-    if (!(size > 0x1p100 || size < 0x1p-100) || size == 0) return;
-    factor = std::ldexp(1.0, std::clamp(-std::ilogb(size), -1000, 1000));
-    places = {factor * unscaled.m, factor * unscaled.u, factor * unscaled.w};
-  }
-};
-
+/// The impact of elements that first touch at `time`; at 0 they may also be apart by less than rounding can
+/// tell.
 Impact impact_at(const ElementMotion& motion, const RelativeMotion& relative, double time,
-                 double separation) {
+                 bool touching_at_start, double separation) {
   const Scaled places(places_at(relative, time));
-  const ClosestPoints at = closest_points(places.places, relative.is_square);
   Impact impact;
   impact.toi = time;
+  impact.touching_at_start = touching_at_start;
+  const bool share_point_at_start = touching_at_start && separation == 0;
+  const Gap start = share_point_at_start ? Gap() : gap_at_start(motion, relative);
+  impact.start_distance = start.distance;
+  Gap gap = start;
+  if (separation == 0) {
+    const ClosestPoints at = closest_points(places.places, relative.is_square);
+    gap = {at.alpha, at.beta, 0, {}};
+  } else if (time > 0) {
+    gap = gap_at_impact(relative, time, separation);
+  }
   std::array<Vec3d, 4> p;
   for (std::size_t i = 0; i < 4; ++i) p[i] = mix(motion.start[i], motion.end[i], time);
   if (relative.is_square) {
-    impact.barycentric = {1 - at.alpha, at.alpha, 1 - at.beta, at.beta};
-    impact.point = 0.5 * (mix(p[0], p[1], at.alpha) + mix(p[2], p[3], at.beta));
+    impact.barycentric = {1 - gap.alpha, gap.alpha, 1 - gap.beta, gap.beta};
+    impact.point = 0.5 * (mix(p[0], p[1], gap.alpha) + mix(p[2], p[3], gap.beta));
   } else {
-    impact.barycentric = {1, std::max(0.0, 1 - at.alpha - at.beta), at.alpha, at.beta};
-    impact.point = 0.5 * (p[0] + (impact.barycentric[1] * p[1] + at.alpha * p[2] + at.beta * p[3]));
+    impact.barycentric = {1, std::max(0.0, 1 - gap.alpha - gap.beta), gap.alpha, gap.beta};
+    impact.point = 0.5 * (p[0] + (impact.barycentric[1] * p[1] + gap.alpha * p[2] + gap.beta * p[3]));
   }
-  // The vector between the elements is accurate when they are apart, but not when they touch.
-  const bool apart = separation > 0 && std::sqrt(at.squared_distance) > 0.5 * places.factor * separation;
-  impact.normal = apart ? normalized(at.difference) : normal_across(relative, places.places, at);
+  impact.normal = gap.normal != Vec3d{} ? gap.normal : normal_across(relative, places.places, gap);
   return impact;
+}
+
+bool touch_at_start(const ElementMotion& motion, double separation) {
+  bool used_exact = false;
+  return distance_within(element_points(motion.start, motion.are_edges), separation, used_exact).has_value();
 }
 
 std::optional<Impact> checked_first_impact(const ElementMotion& motion, const ImpactOptions& options) {
@@ -106,18 +171,19 @@ std::optional<Impact> first_impact_after(const ImpactSearch& search, const Eleme
   const double separation = options.min_separation;
   if (search.outcome == ImpactSearch::Outcome::apart) return std::nullopt;
   if (search.outcome == ImpactSearch::Outcome::touching) {
-    return impact_at(motion, relative, search.time, separation);
+    return impact_at(motion, relative, search.time, search.time == 0, separation);
   }
   used_exact = true;
   if (!options.exact) {
-    Impact impact = impact_at(motion, relative, search.time, separation);
+    const bool at_start = search.time == 0 && touch_at_start(motion, separation);
+    Impact impact = impact_at(motion, relative, search.time, at_start, separation);
     impact.certainty = ImpactCertainty::within_tolerance;
     return impact;
   }
   const std::optional<TimeBracket> first =
       separation == 0 ? exact_first_contact(motion) : exact_first_contact(motion, separation);
   if (!first) return std::nullopt;
-  return impact_at(motion, relative, first->low, separation);
+  return impact_at(motion, relative, first->low, first->high == 0, separation);
 }
 
 std::optional<Impact> first_impact(const VertexFaceMotion& motion, const ImpactOptions& options) {

@@ -72,7 +72,6 @@ Place place_in_domain(const RelativeMotion& motion, double low, double high) {
 
 /// Searches the times at which the four vertices lie in one plane.
 Outcome search_coplanar_times(const RelativeMotion& motion, double& time) {
-  constexpr double longest = toi_tolerance / 2;
   const VolumePolynomial volume(motion);
   if (!volume.in_range()) return Outcome::unsure;
   if (volume.never_zero(0, 1)) return Outcome::apart;
@@ -84,7 +83,8 @@ Outcome search_coplanar_times(const RelativeMotion& motion, double& time) {
     if (place == Place::unclear) return Outcome::unsure;
     if (place == Place::inside) {
       time = low;
-      return high - low <= longest && volume.changes_sign(low, high) ? Outcome::touching : Outcome::unsure;
+      const bool is_short = high - low <= std::min(toi_tolerance / 2, toi_relative_tolerance / 2 * low);
+      return is_short && volume.changes_sign(low, high) ? Outcome::touching : Outcome::unsure;
     }
     passed = high;
   }
@@ -162,7 +162,6 @@ double expected_time(const Moment& moment, const RelativeMotion& motion, double 
 /// time at which they touch.
 Outcome advance(const RelativeMotion& motion, double separation, double& time) {
   constexpr int most_steps = 200;  // some microseconds, where algebra takes hundreds
-  constexpr double closing = toi_tolerance / 4;
   const Vec3d reach = reach_of(motion);
   time = 0;
   Moment here(motion, 0);
@@ -174,6 +173,7 @@ Outcome advance(const RelativeMotion& motion, double separation, double& time) {
     const double expected = expected_time(here, motion, separation);
     // Stays short of the expected time, because nothing can be proven beyond it.
     double next = std::min(expected - (expected - time) / 16, farthest);
+    const double closing = std::min(toi_tolerance, toi_relative_tolerance * time) / 4;
     const bool is_closing = !(next - time > closing);
     if (is_closing) next = std::min(time + closing, 1.0);
     const Moment there(motion, next);

@@ -10,7 +10,7 @@ namespace supple {
 struct ImpactSearch {
   enum class Outcome : std::uint8_t {
     apart,     ///< they do not touch within the step
-    touching,  ///< they touch, first at most `toi_tolerance` after `time`
+    touching,  ///< they touch, first within the tolerances after `time`; at 0 only when at the start
     unsure,    ///< only exact arithmetic can decide; they do not touch before `time`
   };
   Outcome outcome = Outcome::unsure;

@@ -206,9 +206,13 @@ void compare_impacts(const ObjectPair& pair, std::span<const ContinuousContact> 
       note(expected, Fault::missed);
       continue;
     }
-    if (found->toi > expected.time.low) note(expected, Fault::late);
     const bool is_certain = found->certainty == ImpactCertainty::certain;
-    if (is_certain && found->toi < expected.time.high - toi_tolerance) note(expected, Fault::early);
+    const bool touching_at_start = expected.time.high == 0;
+    const double least = expected.time.high - toi_tolerance_at(expected.time.high);
+    if (found->toi > expected.time.low || (touching_at_start && !found->touching_at_start))
+      note(expected, Fault::late);
+    else if ((is_certain && found->toi < least) || (!touching_at_start && found->touching_at_start))
+      note(expected, Fault::early);
     ++found;
   }
   for (; found != reported.end(); ++found) {

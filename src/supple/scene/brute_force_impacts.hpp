@@ -41,7 +41,7 @@ BruteForceImpacts find_impacts_by_brute_force(const PlainMovingObject& a, const 
                                               bool same_object, double separation, const Parallel& parallel);
 
 /// Appends the differences between reported contacts and the truth, both in canonical order: contacts that
-/// are missed or added, and times that are later than the truth or more than `toi_tolerance` earlier.
+/// are missed or added, and times that are later than the truth or more than `toi_tolerance_at` earlier.
 void compare_impacts(const ObjectPair& pair, std::span<const ContinuousContact> reported,
                      std::span<const TouchingElements> truth, std::vector<ContinuousDifference>& differences);
 

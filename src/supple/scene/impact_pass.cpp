@@ -126,7 +126,9 @@ std::uint64_t place_of(std::uint32_t job, ElementPairKind kind, std::uint32_t fi
 void set_impact(ContinuousContact& contact, const Impact& impact) {
   const auto& w = impact.barycentric;
   contact.certainty = impact.certainty;
+  contact.touching_at_start = impact.touching_at_start;
   contact.toi = impact.toi;
+  contact.start_distance = impact.start_distance;
   contact.point = impact.point;
   contact.normal = impact.normal;
   switch (contact.kind) {

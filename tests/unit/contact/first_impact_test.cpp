@@ -11,14 +11,17 @@
 #include <limits>
 #include <numeric>
 #include <optional>
+#include <type_traits>
 
 #include "contact/coplanar_search.hpp"
 #include "contact/impact_filter.hpp"
 #include "core/float_rounding.hpp"
+#include "geometry/vector.hpp"
 #include "supple/continuous.hpp"
 #include "supple/error.hpp"
 #include "support/instruction_sets.hpp"
 #include "support/soups.hpp"
+#include "unit/contact/slow_impact.hpp"
 
 namespace supple {
 namespace {
@@ -188,13 +191,47 @@ const QueryFamily query_families[] = {
 /// the algebra a thousand times slower.
 constexpr int separated_share = 16;
 
-class FirstImpact : public testing::TestWithParam<QueryFamily> {};
+class FirstImpact : public ::testing::TestWithParam<QueryFamily> {};
 
 /// The vector filter must keep every motion that touches.
 void expect_filter_keeps(const RelativeMotion& motion, double separation) {
   RelativeMotionBlock block;
   block.set(0, motion);
   EXPECT_EQ(may_touch(block, 1, motion.is_square, round_up(separation)), 1u);
+}
+
+/// The vector from the point of the second element to that of the first at the time of the impact.
+template <class Motion>
+Vec3d difference_at_impact(const Motion& motion, const Impact& impact) {
+  Vec3d difference;
+  const double t = impact.toi;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const bool of_first = i == 0 || (std::is_same_v<Motion, EdgeEdgeMotion> && i == 1);
+    const double weight = of_first ? impact.barycentric[i] : -impact.barycentric[i];
+    difference = difference + weight * ((1 - t) * motion.start[i] + t * motion.end[i]);
+  }
+  return difference;
+}
+
+/// With a separation, the normal is the direction between the closest points.
+template <class Motion>
+void expect_normal_between_points(const Motion& motion, const Impact& impact, double separation) {
+  const Vec3d d = difference_at_impact(motion, impact);
+  const double length = std::hypot(d.x, d.y, d.z);
+  double size = 0;
+  for (const Corners* corners : {&motion.start, &motion.end}) {
+    for (const Vec3d& p : *corners) size = std::max({size, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+  }
+  if (length < 1e-9 * size || separation < 1e-9 * size) return;
+  EXPECT_GT(dot(d, impact.normal), (1 - 1e-6) * length);
+  EXPECT_LE(length, separation + 1e-8 * size);
+}
+
+template <class Motion>
+void expect_start_distance(const Motion& motion, const Impact& impact) {
+  const testing::Rational square = testing::squared_distance_at(motion, testing::Rational(0));
+  const auto distance = static_cast<double>(std::sqrt(static_cast<long double>(square)));
+  EXPECT_NEAR(impact.start_distance, distance, 0x1p-20 * distance);
 }
 
 template <class Motion>
@@ -207,8 +244,14 @@ void expect_first_impact(const Motion& motion, double separation, int& touching)
   expect_filter_keeps(relative_motion(motion), separation);
   EXPECT_EQ(impact->certainty, ImpactCertainty::certain);
   EXPECT_LE(impact->toi, truth->low);
-  EXPECT_GE(impact->toi, truth->high - toi_tolerance);
+  EXPECT_GE(impact->toi, truth->high - toi_tolerance_at(truth->high));
   EXPECT_GE(impact->toi, 0);
+  EXPECT_EQ(impact->touching_at_start, truth->high == 0);
+  EXPECT_EQ(impact->toi > 0, truth->low > 0);
+  if (separation > 0) {
+    expect_start_distance(motion, *impact);
+    expect_normal_between_points(motion, *impact, separation);
+  }
   for (const double weight : impact->barycentric) {
     EXPECT_GE(weight, 0);
     EXPECT_LE(weight, 1);
@@ -232,7 +275,7 @@ void expect_family(const QueryFamily& family, bool edges, std::uint64_t seed) {
       const double separation = std::ldexp(size, -static_cast<int>(random.below(8)));
       expect_first_impact(motion, separation, touching);
     }
-    if (testing::Test::HasFailure()) FAIL() << "query " << query;
+    if (::testing::Test::HasFailure()) FAIL() << "query " << query;
   }
   EXPECT_GT(touching, 0);
 }
@@ -243,6 +286,64 @@ TEST_P(FirstImpact, OfVertexAndFaceEqualsAlgebra) {
 
 TEST_P(FirstImpact, OfTwoEdgesEqualsAlgebra) {
   expect_family<EdgeEdgeMotion>(GetParam(), true, 2);
+}
+
+TEST(FirstImpactAtStart, KeepsTheSideOfElementsThatPartWithinTheSeparation) {
+  RandomNumbers random(11);
+  const Vec3d v{.3, .05, -.3};
+  for (int i = 0; i < 200; ++i) {
+    const Vec3d step = std::pow(10.0, -static_cast<double>(random.below(20))) * random.vector(0.01);
+    const VertexFaceMotion motion{{v, {0, 0, 0}, {1, 0, 0}, {0, 0, -1}},
+                                  {v + step, {0, 0, 0}, {1, 0, 0}, {0, 0, -1}}};
+    const auto impact = first_impact(motion, {.min_separation = 0.1});
+    ASSERT_TRUE(impact.has_value());
+    EXPECT_TRUE(impact->touching_at_start);
+    EXPECT_EQ(impact->toi, 0);
+    EXPECT_EQ(impact->start_distance, 0.05);
+    EXPECT_NEAR(impact->normal.y, 1, 1e-15) << step.y;
+  }
+}
+
+/// Elements that are much closer than the separation, down to 1e-300, with velocities in all directions.
+TEST(FirstImpactAtStart, NormalIsTheDirectionOfTheGap) {
+  RandomNumbers random(12);
+  for (const double gap : {1e-2, 1e-5, 1e-9, 1e-15, 1e-40, 1e-300}) {
+    for (int i = 0; i < 20; ++i) {
+      const Corners face{
+          {{random.below(3) / 4.0, 0, random.below(3) / 4.0}, {-1, 0, -1}, {2, 0, -1}, {0, 0, 3}}};
+      const double side = i % 2 == 0 ? 1 : -1;
+      VertexFaceMotion motion{face, face};
+      motion.start[0].y = side * gap;
+      for (Vec3d& p : motion.end) p = p + random.vector(0.1);
+      const auto impact = first_impact(motion, {.min_separation = 0.1});
+      ASSERT_TRUE(impact && impact->touching_at_start);
+      EXPECT_NEAR(impact->normal.y, side, 1e-12) << gap;
+      EXPECT_NEAR(impact->start_distance / gap, 1, 1e-6);
+    }
+  }
+}
+
+/// Elements that start outside the separation by any gap and close it: the time is positive and exact to the
+/// relative tolerance.
+TEST(FirstImpactAtStart, IsPositiveWhereElementsAreApart) {
+  for (const double separation : {0.0, 1e-300, 1e-12, 1e-6, 1e-3, 0.1}) {
+    for (int exponent = 4; exponent <= 300; exponent += exponent < 20 ? 1 : 28) {
+      const double height = separation + std::pow(10.0, -exponent);
+      if (height == separation) continue;
+      for (const double fall : {1e-3, 1.0, 1.7}) {
+        const VertexFaceMotion vertex{{{{.25, height, .25}, {0, 0, 0}, {1, 0, 0}, {0, 0, 1}}},
+                                      {{{.25, height - fall, .25}, {0, 0, 0}, {1, 0, 0}, {0, 0, 1}}}};
+        const EdgeEdgeMotion edge{
+            {{{-1, height, .5}, {1, height, .5}, {.2, 0, 0}, {.2, 0, 1}}},
+            {{{-1, height - fall, .5}, {1, height - fall, .6}, {.2, 0, 0}, {.2, 0, 1}}}};
+        int touching = 0;
+        expect_first_impact(vertex, separation, touching);
+        expect_first_impact(edge, separation, touching);
+        EXPECT_EQ(touching, separation < height && fall > height - separation ? 2 : 0)
+            << separation << ' ' << exponent << ' ' << fall;
+      }
+    }
+  }
 }
 
 /// Where the kernel decides, a pair has the result of the scalar search, in a block of any size and on every
@@ -302,7 +403,7 @@ TEST(CoplanarSearch, DecidesMostPairsInGeneralPosition) {
   EXPECT_GT(decided, touching * 19 / 20);
 }
 
-INSTANTIATE_TEST_SUITE_P(Families, FirstImpact, testing::ValuesIn(query_families),
+INSTANTIATE_TEST_SUITE_P(Families, FirstImpact, ::testing::ValuesIn(query_families),
                          [](const auto& family) { return family.param.name; });
 
 TEST(ImpactFilter, KeepsWhatTouchesOnEveryInstructionSet) {

@@ -224,5 +224,26 @@ TEST_F(Truth, StepsTouchWhereAndWhenExactArithmeticSays) {
   }
 }
 
+/// A line search goes a part of the safe step at a time. It always advances, down to gaps of rounding.
+TEST_F(Truth, SafeStepsOfRealFramesAlwaysAdvance) {
+  for (const json& step : truth["steps"]) {
+    SCOPED_TRACE(step["name"].get<std::string>());
+    const TriangleMesh from = load(step["frame0"]), to = load(step["frame1"]);
+    Scene scene({.contacts = ContactKinds::continuous});
+    const ObjectId object = scene.add(from, {.self_collision = true});
+    std::vector<Vec3d> positions = from.positions;
+    for (int i = 0; i < 20; ++i) {
+      scene.set_motion(object, positions, to.positions);
+      const auto impact = scene.earliest_impact();
+      if (!impact) break;
+      ASSERT_FALSE(impact->touching_at_start) << i;
+      ASSERT_GT(impact->toi, 0) << i;
+      ASSERT_GT(impact->start_distance, 0) << i;
+      for (std::size_t v = 0; v < positions.size(); ++v)
+        positions[v] = positions[v] + (impact->toi / 2) * (to.positions[v] - positions[v]);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace supple
