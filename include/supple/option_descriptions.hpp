@@ -20,8 +20,16 @@ inline constexpr std::array words<BroadPhaseMethod>{"automatic", "octree", "grid
 template <>
 inline constexpr std::array words<RegionSphereTest>{"arvo", "grown_box"};
 template <>
-inline constexpr std::array words<ContactKinds>{"none", "intersection", "continuous",
-                                                "intersection,continuous"};
+inline constexpr std::array words<ContactKinds>{"none",
+                                                "intersection",
+                                                "continuous",
+                                                "intersection,continuous",
+                                                "proximity",
+                                                "intersection,proximity",
+                                                "continuous,proximity",
+                                                "intersection,continuous,proximity"};
+template <>
+inline constexpr std::array words<ProximityListing>{"features", "elements"};
 
 template <>
 struct Description<ImpactOptions> {
@@ -137,6 +145,12 @@ struct Description<ObjectOptions> {
         .member = &Options::is_static,
         .doc = "The object never moves; static objects are not tested against each other",
         .key = "static"});
+    visitor(Field<Options, double>{
+        .name = "margin",
+        .member = &Options::margin,
+        .doc = "Proximity: two objects are near where they come within the sum of their margins",
+        .range = ValueRange::from(0, 1e300),
+        .unit = "length"});
     visitor(Field<Options, std::uint32_t>{
         .name = "group",
         .member = &Options::group,
@@ -190,14 +204,19 @@ struct Description<SceneOptions> {
         .name = "contacts",
         .member = &Options::contacts,
         .doc = "Contacts to find: pairs of triangles that intersect (intersection); vertices and faces, and "
-               "pairs of edges, that touch on the way from the frame before (continuous); both; or none. "
-               "Bodies that already cut through each other at the start of the way are found by "
-               "intersection, not by continuous"});
+               "pairs of edges, that touch on the way from the frame before (continuous); pairs within the "
+               "margins of their objects (proximity); several of these; or none. Bodies that already cut "
+               "through each other at the start of the way are found by intersection, not by continuous"});
     visitor(Field<Options, bool>{.name = "contact_points",
                                  .member = &Options::contact_points,
                                  .doc = "Compute the normal and the points of each contact of triangles"});
     visitor(Field<Options, ImpactOptions>{
         .name = "impact", .member = &Options::impact, .doc = "Options of continuous contacts"});
+    visitor(Field<Options, ProximityListing>{
+        .name = "proximity_listing",
+        .member = &Options::proximity_listing,
+        .doc = "Proximity: list each pair of closest features once (features), or every vertex and face and "
+               "every two edges within the margins (elements)"});
     visitor(Field<Options, std::uint32_t>{.name = "threads",
                                           .member = &Options::threads,
                                           .doc = "Worker threads; 0 means one per core",

@@ -12,6 +12,7 @@
 
 #include "supple/comparison_options.hpp"
 #include "supple/continuous.hpp"
+#include "supple/proximity.hpp"
 #include "supple/types.hpp"
 
 namespace supple {
@@ -57,6 +58,9 @@ enum class ContactKinds : std::uint8_t {
   /// Every vertex and face and every two edges that touch on their way within the step. Bodies that already
   /// cut through each other at the start of the step are found by `intersection`, not by `continuous`.
   continuous = 2,
+  /// Every two features, or elements, within the margins of their objects at the current positions; see
+  /// `ProximityPair`.
+  proximity = 4,
 };
 constexpr ContactKinds operator|(ContactKinds p, ContactKinds q) {
   return static_cast<ContactKinds>(static_cast<unsigned>(p) | static_cast<unsigned>(q));
@@ -77,6 +81,9 @@ struct ObjectOptions {
   bool self_collision = false;
   /// The object never moves: it is not tested against other static objects, and moving it is an error.
   bool is_static = false;
+  /// Proximity: two objects, or one with itself, are near where their elements come within the sum of their
+  /// margins, in the unit of the coordinates. From 0 to 1e300.
+  double margin = 0;
   /// Two objects are tested when the `group` of each has a bit in common with the `mask` of the other.
   std::uint32_t group = 1;
   std::uint32_t mask = ~std::uint32_t{0};
@@ -96,6 +103,8 @@ struct SceneOptions {
   /// For continuous contacts: the distance at which elements touch, and whether exact arithmetic decides what
   /// floating point cannot.
   ImpactOptions impact{};
+  /// For proximity: what its list contains.
+  ProximityListing proximity_listing = ProximityListing::features;
   /// Worker threads; 0 means one for each core. The results are the same for any number.
   std::uint32_t threads = 0;
   ComparisonOptions comparison{};
@@ -103,13 +112,14 @@ struct SceneOptions {
 
 /// The contacts that one call of `Scene::detect` finds, and limits of the call.
 struct DetectRequest {
-  /// Without a value, `contacts` and `impact` are those of `SceneOptions`.
+  /// Without a value, these are those of `SceneOptions`.
   std::optional<ContactKinds> contacts{};
   std::optional<ImpactOptions> impact{};
+  std::optional<ProximityListing> proximity_listing{};
   /// The largest number of contacts of each kind in the result: the first ones in canonical order, for any
   /// number of threads. `DetectResult::truncated` says that there are more. The limit bounds the memory and
   /// the number of exact tests. The search skips object pairs after the last reported contact, but it
-  /// searches one object pair to its end.
+  /// searches one object pair to its end. Proximity pairs are all found first.
   std::uint64_t max_contacts = std::numeric_limits<std::uint64_t>::max();
 #ifdef __cpp_lib_jthread
   /// Any thread can stop the call: it ends within milliseconds during the search, otherwise after the current

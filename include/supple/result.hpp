@@ -8,12 +8,13 @@
 
 #include "supple/contact.hpp"
 #include "supple/options.hpp"
+#include "supple/proximity.hpp"
 #include "supple/types.hpp"
 
 namespace supple {
 
 /// The contacts of one pair of objects, or of one object with itself (`a == b`): a range of
-/// `DetectResult::contacts`, or of `continuous_contacts`. Only pairs with contacts of that kind are listed.
+/// `DetectResult::contacts`, `continuous_contacts` or `proximity_pairs`. Only pairs with contacts of that kind are listed.
 struct ContactGroup {
   ObjectId a, b;
   std::uint32_t first_contact = 0;
@@ -71,10 +72,11 @@ struct StepStats {
   std::uint64_t boxes_tested = 0;
   /// Triangle pairs whose boxes overlap and that share no vertex.
   std::uint64_t candidate_pairs = 0;
-  /// For continuous contacts: vertex-face and edge-edge pairs whose moving boxes meet.
+  /// For continuous contacts and proximity: vertex-face and edge-edge pairs whose boxes come within reach.
   std::uint64_t vertex_face_candidates = 0, edge_edge_candidates = 0;
   std::uint64_t exact_fallbacks = 0;  ///< candidates that floating-point filters could not decide
-  std::uint64_t contacts = 0;         ///< reported contacts of all kinds
+  std::uint64_t contacts = 0;         ///< reported intersections and continuous contacts
+  std::uint64_t proximity_pairs = 0;  ///< reported pairs within the margins
 };
 
 /// What `Scene::detect` found. The spans refer to buffers of the scene and are valid until the next call of a
@@ -96,6 +98,9 @@ struct DetectResult {
   std::span<const ContactGroup> continuous_groups;  ///< of `continuous_contacts`
   /// Ordered by object a, object b, kind, element a, element b.
   std::span<const ContinuousContact> continuous_contacts;
+  std::span<const ContactGroup> proximity_groups;  ///< of `proximity_pairs`
+  /// Ordered by object a, object b, kind a, kind b, element a, element b.
+  std::span<const ProximityPair> proximity_pairs;
   std::span<const CollidingVertices> colliding_vertex_groups;
   std::span<const std::uint32_t> colliding_vertices;
   std::span<const NonFiniteVertex> non_finite_vertices;
@@ -104,7 +109,8 @@ struct DetectResult {
   /// pairs. Only with `ComparisonOptions::colliding_vertices`; a step that searches only continuous contacts
   /// has no such pairs.
   PairEvents narrow_phase_events;
-  PairEvents contact_events;  ///< of the pairs of different objects that have contacts of any kind
+  PairEvents contact_events;    ///< of the pairs of different objects that intersect or touch in the step
+  PairEvents proximity_events;  ///< of the pairs of different objects that have proximity pairs
   StepStats stats;
 
   std::span<const Contact> contacts_of(const ContactGroup& group) const {
@@ -112,6 +118,9 @@ struct DetectResult {
   }
   std::span<const ContinuousContact> continuous_contacts_of(const ContactGroup& group) const {
     return continuous_contacts.subspan(group.first_contact, group.contact_count);
+  }
+  std::span<const ProximityPair> proximity_pairs_of(const ContactGroup& group) const {
+    return proximity_pairs.subspan(group.first_contact, group.contact_count);
   }
   /// Empty when `SceneOptions::contact_points` is off.
   std::span<const ContactPoint> points_of(const Contact& contact) const {

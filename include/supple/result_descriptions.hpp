@@ -70,14 +70,15 @@ struct Description<StepStats> {
     work("boxes_tested", &Stats::boxes_tested,
          "Tests of two volumes in nodes and leaves; depends on the number of threads");
     count("candidate_pairs", &Stats::candidate_pairs, "pairs",
-          "Pairs of triangles whose boxes overlap; 0 when only continuous contacts are requested");
+          "Pairs of triangles whose boxes overlap; 0 when only continuous contacts or proximity are requested");
     count("vertex_face_candidates", &Stats::vertex_face_candidates, "pairs",
-          "Pairs of a vertex and a face whose moving boxes meet, with continuous contacts");
+          "Pairs of a vertex and a face whose boxes come within reach, with continuous contacts or proximity");
     count("edge_edge_candidates", &Stats::edge_edge_candidates, "pairs",
-          "Pairs of edges whose moving boxes meet, with continuous contacts");
+          "Pairs of edges whose boxes come within reach, with continuous contacts or proximity");
     count("exact_fallbacks", &Stats::exact_fallbacks, "pairs",
           "Candidates that floating point could not decide");
-    count("contacts", &Stats::contacts, "contacts", "Contacts in the result");
+    count("contacts", &Stats::contacts, "contacts", "Intersections and continuous contacts in the result");
+    count("proximity_pairs", &Stats::proximity_pairs, "pairs", "Proximity pairs in the result");
   }
 };
 

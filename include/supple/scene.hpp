@@ -102,13 +102,15 @@ class Scene {
 
   /// Changes `ObjectOptions::group` and `mask`, O(1).
   void set_group(ObjectId object, std::uint32_t group, std::uint32_t mask);
+  /// Changes `ObjectOptions::margin`, O(1). Throws `Error` when it is out of range.
+  void set_margin(ObjectId object, double margin);
   /// Changes `ObjectOptions::self_collision`, O(1).
   void set_self_collision(ObjectId object, bool enabled);
   /// Sets a function that excludes pairs of objects; an empty function removes it. See `PairFilter`.
   void set_pair_filter(PairFilter filter);
 
   /// Finds every contact of the requested kinds: intersections at the current positions, continuous contacts
-  /// within the step, or both. The request defaults to the options of the scene. Time depends on the objects
+  /// within the step, or pairs within the margins at the current positions. The request defaults to the options of the scene. Time depends on the objects
   /// that moved and on the overlapping volumes; no memory is allocated after the largest step so far. Throws
   /// `Error` when the request is out of range.
   const DetectResult& detect(const DetectRequest& request = {});
@@ -142,6 +144,7 @@ class Scene {
   /// `Error` when the object of a triangle was removed.
   ElementVertices vertices_of(const ContinuousContact& contact, ContactSide side) const;
   ElementVertices vertices_of(const Contact& contact, ContactSide side) const;
+  ElementVertices vertices_of(const ProximityPair& pair, ContactSide side) const;
   const SceneOptions& options() const;
 
  private:

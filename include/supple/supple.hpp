@@ -10,6 +10,7 @@
 #include "supple/inspection.hpp"
 #include "supple/mesh.hpp"
 #include "supple/options.hpp"
+#include "supple/proximity.hpp"
 #include "supple/result.hpp"
 #include "supple/scene.hpp"
 #include "supple/topology.hpp"

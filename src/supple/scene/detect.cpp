@@ -13,11 +13,11 @@ namespace supple {
 
 namespace {
 
-// When each volume grows by half the separation, the volumes of two objects overlap if the objects come
-// within the separation. The growth is rounded up by more than its sums can lose.
+// When each volume grows by half the separation, or by its margin, the volumes of two objects overlap if the
+// objects come within the separation or the sum of their margins. The growth is rounded up by more than its sums can lose.
 
-double growth(double separation) {
-  return separation > 0 ? separation * (0.5 + 0x1p-20) + std::numeric_limits<float>::min() : 0;
+double growth(double half_separation) {
+  return half_separation > 0 ? half_separation * (1 + 0x1p-19) + std::numeric_limits<float>::min() : 0;
 }
 
 Aabb grown(const Aabb& box, double by) {
@@ -46,7 +46,7 @@ StopSignal stop_signal([[maybe_unused]] const DetectRequest& request) {
 }  // namespace
 
 SearchedShapes Question::shapes() const {
-  return {searches_at_rest(), is_continuous(),
+  return {searches_at_rest(), is_continuous(), has_proximity(),
           // Colliding vertices and separations need all overlapping leaves, so nothing may be culled.
           searches_at_rest() && !colliding_vertices, is_continuous() && impact.min_separation == 0};
 }
@@ -54,6 +54,7 @@ SearchedShapes Question::shapes() const {
 const DetectResult& Scene::Implementation::detect(const DetectRequest& request) {
   if (request.impact) check(*request.impact, "DetectRequest::impact");
   question_ = {request.contacts.value_or(options.contacts), request.impact.value_or(options.impact),
+               request.proximity_listing.value_or(options.proximity_listing),
                options.comparison.colliding_vertices};
   const StopSignal stop = stop_signal(request);
   result = {};
@@ -73,6 +74,7 @@ const DetectResult& Scene::Implementation::detect(const DetectRequest& request) 
   result.stats.rebuild_seconds = stage.lap();
   if (question_.searches_at_rest() && !find_contacts(request, stop)) return result;
   if (question_.is_continuous() && !find_impacts(request, stop)) return result;
+  if (question_.has_proximity() && !find_proximity(request, stop)) return result;
   stage.lap();
   report_non_finite();
   publish();
@@ -108,8 +110,12 @@ void Scene::Implementation::for_each_object(std::span<const std::uint32_t> indic
 
 void Scene::Implementation::refit_objects(const Question& question) {
   const SearchedShapes shapes = question.shapes();
-  const double growth_of_volumes = question.is_continuous() ? growth(question.impact.min_separation) : 0;
-  const bool is_another_search = searched_ != shapes || growth_ != growth_of_volumes;
+  const bool is_another_search = searched_ != shapes;
+  const auto growth_of = [&](const SceneObject& object) {
+    return std::max(question.is_continuous() ? growth(question.impact.min_separation / 2) : 0,
+                    question.has_proximity() ? growth(object.options.margin) : 0);
+  };
+  growths_.resize(slots_.size(), 0);
   boxes_.resize(slots_.size());
   spheres_.resize(slots_.size());
   versions_.resize(slots_.size(), 0);
@@ -136,8 +142,10 @@ void Scene::Implementation::refit_objects(const Question& question) {
     result.stats.triangles_refitted += slots_[index].object->refitted_triangles();
   changed_slots_.clear();
   for (std::uint32_t index = 0; index < slots_.size(); ++index) {
-    if (changed_[index] == 0 && !is_another_search) continue;
     const SceneObject* const object = slots_[index].object.get();
+    const double growth_of_volumes = object != nullptr ? growth_of(*object) : 0;
+    if (changed_[index] == 0 && !is_another_search && growths_[index] == growth_of_volumes) continue;
+    growths_[index] = growth_of_volumes;
     const Aabb box = object != nullptr ? grown(object->box(), growth_of_volumes) : Aabb{};
     const BoundingSphere sphere =
         object != nullptr ? grown(object->sphere(), growth_of_volumes) : BoundingSphere{};
@@ -148,7 +156,6 @@ void Scene::Implementation::refit_objects(const Question& question) {
     spheres_[index] = sphere;
   }
   searched_ = shapes;
-  growth_ = growth_of_volumes;
 }
 
 void Scene::Implementation::find_object_pairs(Jobs& found) {
@@ -179,7 +186,7 @@ void Scene::Implementation::find_object_pairs(Jobs& found) {
 /// Whether the oriented boxes or k-DOPs of two objects are apart whose boxes overlap. They do not enclose the
 /// path of an object.
 bool Scene::Implementation::volumes_apart(const IndexPair& pair) const {
-  if (searched_.moving || !is_tested_after_boxes(options.bounding_volume)) return false;
+  if (searched_.moving || searched_.near || !is_tested_after_boxes(options.bounding_volume)) return false;
   return object_volumes_apart(
       pair_of(slots_[pair.a].object->resting_view(), slots_[pair.b].object->resting_view()));
 }
@@ -254,32 +261,44 @@ bool Scene::Implementation::find_contacts(const DetectRequest& request, const St
                            parallel, result.stats);
 }
 
-void Scene::Implementation::list_moving_objects() {
-  moving_objects_.clear();
+void Scene::Implementation::list_element_objects(MovingShape::Part part) {
+  element_objects_.clear();
   for (std::uint32_t index = 0; index < slots_.size(); ++index) {
     const SceneObject* const object = slots_[index].object.get();
-    moving_objects_.emplace_back();
+    element_objects_.emplace_back();
     if (object == nullptr) continue;
-    const MovingShape& shape = object->moving();
-    moving_objects_.back() = {id_of(index), object->moving_view(),           &shape.start(),
-                              &shape.end(), object->octree().triangle_ids(), shape.elements().vertex_ids()};
+    const bool is_way = part == MovingShape::Part::way;
+    const MovingShape& shape = is_way ? object->moving() : object->near();
+    element_objects_.back() = {id_of(index),
+                               is_way ? object->moving_view() : object->near_view(),
+                               &shape.start(),
+                               &shape.end(),
+                               object->octree().triangle_ids(),
+                               shape.elements().vertex_ids(),
+                               object->options.margin};
   }
 }
 
 bool Scene::Implementation::find_impacts(const DetectRequest& request, const StopSignal& stop) {
-  list_moving_objects();
-  return impact_pass_.run(jobs_.jobs, moving_objects_, versions_, question_.impact, request.max_contacts,
+  list_element_objects(MovingShape::Part::way);
+  return impact_pass_.run(jobs_.jobs, element_objects_, versions_, question_.impact, request.max_contacts,
                           stop, parallel, result.stats);
+}
+
+bool Scene::Implementation::find_proximity(const DetectRequest& request, const StopSignal& stop) {
+  list_element_objects(MovingShape::Part::end);
+  return proximity_pass_.run(jobs_.jobs, element_objects_, versions_, question_.proximity_listing,
+                             request.max_contacts, stop, parallel, result.stats);
 }
 
 std::optional<ContinuousContact> Scene::Implementation::earliest_impact() {
   const StepStats stats = result.stats;
-  refit_objects({ContactKinds::continuous, options.impact, false});
+  refit_objects({ContactKinds::continuous, options.impact});
   find_object_pairs(impact_jobs_);
   rebuild_degraded(impact_jobs_);
   result.stats = stats;
-  list_moving_objects();
-  return impact_pass_.find_earliest(impact_jobs_.jobs, moving_objects_, options.impact, parallel);
+  list_element_objects(MovingShape::Part::way);
+  return impact_pass_.find_earliest(impact_jobs_.jobs, element_objects_, options.impact, parallel);
 }
 
 void Scene::Implementation::report_non_finite() {
@@ -307,6 +326,15 @@ void Scene::Implementation::publish() {
     result.continuous_groups = impact_pass_.groups();
     result.continuous_contacts = impact_pass_.contacts();
   }
+  near_pairs_.clear();
+  if (question_.has_proximity()) {
+    result.truncated = result.truncated || proximity_pass_.is_truncated();
+    result.proximity_groups = proximity_pass_.groups();
+    result.proximity_pairs = proximity_pass_.pairs();
+    for (const ContactGroup& group : result.proximity_groups) {
+      if (group.a != group.b) near_pairs_.push_back({group.a, group.b});
+    }
+  }
   list_touching_pairs();
   leaf_pairs_.clear();
   for (const CollidingVertices& group : result.colliding_vertex_groups) {
@@ -315,16 +343,18 @@ void Scene::Implementation::publish() {
   volume_pairs_.update(jobs_.pairs);
   narrow_phase_pairs_.update(leaf_pairs_);
   contact_pairs_.update(touching_pairs_);
+  near_object_pairs_.update(near_pairs_);
   ++step_;
   result.object_pairs = jobs_.pairs;
   result.non_finite_vertices = non_finite_;
   result.volume_events = volume_pairs_.events();
   result.narrow_phase_events = narrow_phase_pairs_.events();
   result.contact_events = contact_pairs_.events();
+  result.proximity_events = near_object_pairs_.events();
   detected_ = true;
 }
 
-/// Pairs of objects with contacts of either kind, each once, ascending.
+/// Pairs of objects that intersect or touch within the step, each once, ascending.
 void Scene::Implementation::list_touching_pairs() {
   touching_pairs_.clear();
   for (const auto groups : {result.groups, result.continuous_groups}) {

@@ -12,6 +12,7 @@
 #include "mesh/share_vertex.hpp"
 #include "scene/scene_implementation.hpp"
 #include "scene/searched_volumes.hpp"
+#include "supple/distance.hpp"
 #include "supple/triangle_intersection.hpp"
 
 namespace supple {
@@ -151,17 +152,17 @@ Vec3d center(const BoundingSphere& sphere, const Vec3d& translation) {
 }
 
 PairExplanation objects_apart(const SceneObject& a, const SceneObject& b, BoundingVolume bounding_volume,
-                              bool is_continuous) {
+                              bool has_elements) {
   PairExplanation explanation{.stage = PairStage::object_volumes};
   if (bounding_volume == BoundingVolume::sphere) {
     explanation.sphere_a = a.sphere();
     explanation.sphere_b = b.sphere();
     set_gap(explanation, center(b.sphere(), {}) - center(a.sphere(), {}));
   } else {
-    explanation.box_a = is_continuous ? unclamped(a.box()) : a.box();
-    explanation.box_b = is_continuous ? unclamped(b.box()) : b.box();
+    explanation.box_a = has_elements ? unclamped(a.box()) : a.box();
+    explanation.box_b = has_elements ? unclamped(b.box()) : b.box();
     set_gap(explanation, corners_of(explanation.box_a, {}), corners_of(explanation.box_b, {}));
-    if (!is_continuous && overlap(a.box(), b.box())) {
+    if (!has_elements && overlap(a.box(), b.box())) {
       explanation.slabs_a = object_slabs(a.resting_view());
       explanation.slabs_b = object_slabs(b.resting_view());
       set_gap(explanation);
@@ -251,20 +252,45 @@ bool Scene::Implementation::touch_on_the_way(const ContactJob& job, TrianglePair
                      });
 }
 
+/// Whether an element of one triangle is within the margins of an element of the other.
+bool Scene::Implementation::are_near(const ContactJob& job, TrianglePair triangles) const {
+  const SceneObject &a = *slots_[job.a].object, &b = *slots_[job.b].object;
+  const TrianglePoints p = points_of(a, triangles.a), q = points_of(b, triangles.b);
+  const Triangle &ids_a = a.octree().triangles()[triangles.a], &ids_b = b.octree().triangles()[triangles.b];
+  const double reach = reach_of(job);
+  const auto is_in = [&](std::uint32_t vertex, const Triangle& triangle) {
+    return job.a == job.b && std::find(triangle.begin(), triangle.end(), vertex) != triangle.end();
+  };
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (!is_in(ids_a[i], ids_b) && point_triangle_distance(p[i], q, reach)) return true;
+    if (!is_in(ids_b[i], ids_a) && point_triangle_distance(q[i], p, reach)) return true;
+    const std::size_t i1 = (i + 1) % 3;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::size_t k1 = (k + 1) % 3;
+      const Triangle edge{ids_b[k], ids_b[k1], ids_b[k]};
+      if (is_in(ids_a[i], edge) || is_in(ids_a[i1], edge)) continue;
+      if (edge_edge_distance({p[i], p[i1]}, {q[k], q[k1]}, reach)) return true;
+    }
+  }
+  return false;
+}
+
 /// Follows the stages of `detect`. Triangles are in the order of the traversal.
 PairExplanation Scene::Implementation::explain_in_order(const ContactJob& job, TrianglePair triangles) const {
   const SceneObject &a = *slots_[job.a].object, &b = *slots_[job.b].object;
   const bool same_object = job.a == job.b;
   if (same_object ? !a.options.self_collision : !may_pair({job.a, job.b}))
     return {.stage = PairStage::not_tested};
-  // Elements touch even when the pair of triangles they belong to is not tested.
+  // Elements touch or are near even when the pair of triangles they belong to is not tested.
   if (question_.is_continuous() && touch_on_the_way(job, triangles)) return {};
+  if (question_.has_proximity() && are_near(job, triangles)) return {};
   if (same_object && share_vertex(a.octree().triangles()[triangles.a], b.octree().triangles()[triangles.b]))
     return {.stage = PairStage::shared_vertex};
   if (is_inert(a, triangles.a) || is_inert(b, triangles.b)) return {.stage = PairStage::inert};
   const ObjectPair ids{id_of(job.a), id_of(job.b)};
   if (!same_object && !std::binary_search(jobs_.pairs.begin(), jobs_.pairs.end(), ids))
-    return objects_apart(a, b, options.bounding_volume, question_.is_continuous());
+    return objects_apart(a, b, options.bounding_volume,
+                         question_.is_continuous() || question_.has_proximity());
   const ObjectPairView pair = search_view(job);
   const ChildPair at = last_children(pair, triangles);
   if (at.apart) return cells_apart(pair, at, a, b);

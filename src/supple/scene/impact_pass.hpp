@@ -13,25 +13,15 @@
 #include "core/parallel.hpp"
 #include "core/stop_signal.hpp"
 #include "narrow_phase/traversal.hpp"
-#include "octree/vertex_buffer.hpp"
 #include "scene/contact_limit.hpp"
 #include "scene/contact_tasks.hpp"
+#include "scene/element_candidates.hpp"
 #include "scene/job_outcomes.hpp"
 #include "supple/contact.hpp"
 #include "supple/options.hpp"
 #include "supple/result.hpp"
 
 namespace supple {
-
-/// The data of a moving object that the pass reads, indexed as in its `SurfaceElements`. For an object at
-/// rest, `start` and `end` are equal. Only an object at rest has a translation in its view.
-struct MovingObject {
-  ObjectId id;
-  OctreeView view;
-  const VertexBuffer* start = nullptr;
-  const VertexBuffer* end = nullptr;
-  std::span<const std::uint32_t> triangle_ids, vertex_ids;  ///< the user's ids
-};
 
 /// Narrow phase and exact stage of continuous contacts for all jobs of a step, on all workers. The narrow
 /// phase hands its candidates to the exact stage in batches. The pass keeps its memory between steps.

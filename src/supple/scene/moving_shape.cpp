@@ -14,11 +14,12 @@ void MovingShape::update(const ObjectOctree& octree, Placement& placement, const
 void MovingShape::refit(const ObjectOctree& octree, const Placement& placement, const Parallel& parallel) {
   if (elements_.vertex_ids().size() != octree.vertex_count()) elements_ = SurfaceElements(octree);
   end_.gather(placement.end(), elements_.vertex_ids(), parallel);
-  if (placement.has_motion()) start_.gather(placement.start(), elements_.vertex_ids(), parallel);
+  if (has_way(placement)) start_.gather(placement.start(), elements_.vertex_ids(), parallel);
   non_finite_.clear();
-  if (!boxes_.refit(octree, elements_, placement.has_motion() ? start_ : end_, end_, parallel)) {
+  if (!boxes_.refit(octree, elements_, has_way(placement) ? start_ : end_, end_, parallel)) {
     for (std::uint32_t vertex = 0; vertex < octree.vertex_count(); ++vertex) {
-      if (!is_finite(placement.position(vertex)) || !is_finite(placement.start_position(vertex)))
+      if (!is_finite(placement.position(vertex)) ||
+          (has_way(placement) && !is_finite(placement.start_position(vertex))))
         non_finite_.push_back(vertex);
     }
   }

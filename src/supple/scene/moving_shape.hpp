@@ -15,10 +15,14 @@
 
 namespace supple {
 
-/// The data of an object for the search for continuous contacts: its elements, their positions at both ends
-/// of the step, and boxes around them. Takes memory only after the first request.
+/// The data of an object for the search for continuous contacts or proximity: its elements, their positions at
+/// both ends of the step, and boxes around them. Takes memory only after the first request.
 class MovingShape {
  public:
+  /// The elements' whole way, or only its end.
+  enum class Part : std::uint8_t { way, end };
+  explicit MovingShape(Part part) : part_(part) {}
+
   bool is_current(const Placement& placement) const { return version_ == placement.version(); }
   /// Computes the boxes, and bakes the translation if necessary. O(n), the first time O(n log n).
   void update(const ObjectOctree& octree, Placement& placement, const Parallel& parallel);
@@ -51,6 +55,9 @@ class MovingShape {
  private:
   void refit(const ObjectOctree& octree, const Placement& placement, const Parallel& parallel);
 
+  bool has_way(const Placement& placement) const { return part_ == Part::way && placement.has_motion(); }
+
+  Part part_;
   std::uint64_t version_ = 0;
   SurfaceElements elements_;
   VertexBuffer start_, end_;

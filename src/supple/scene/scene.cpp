@@ -111,7 +111,8 @@ ObjectId Scene::Implementation::add(const PositionsView& positions, const Triang
 
 void Scene::Implementation::remove(ObjectId id) {
   object(id, "remove");
-  for (PairCache* const pairs : {&volume_pairs_, &narrow_phase_pairs_, &contact_pairs_}) pairs->release(id);
+  for (PairCache* const pairs : {&volume_pairs_, &narrow_phase_pairs_, &contact_pairs_, &near_object_pairs_})
+    pairs->release(id);
   slots_[id.index].object.reset();
   ++slots_[id.index].generation;
   free_slots_.push_back(id.index);
@@ -256,6 +257,16 @@ void Scene::set_group(ObjectId object, std::uint32_t group, std::uint32_t mask) 
   implementation_->mark_changed();
 }
 
+void Scene::set_margin(ObjectId object, double margin) {
+  SceneObject& changed = implementation_->object(object, "set_margin");
+  ObjectOptions options = changed.options;
+  options.margin = margin;
+  check(options, "set_margin");
+  changed.options.margin = margin;
+  changed.move();  // so that its pairs are found again
+  implementation_->mark_changed();
+}
+
 void Scene::set_self_collision(ObjectId object, bool enabled) {
   implementation_->object(object, "set_self_collision").options.self_collision = enabled;
   implementation_->mark_changed();
@@ -321,6 +332,20 @@ ElementVertices Scene::vertices_of(const Contact& contact, ContactSide side) con
   const bool is_a = side == ContactSide::a;
   return implementation_->triangle_vertices(is_a ? contact.object_a : contact.object_b,
                                             is_a ? contact.triangle_a : contact.triangle_b);
+}
+
+ElementVertices Scene::vertices_of(const ProximityPair& pair, ContactSide side) const {
+  const bool is_a = side == ContactSide::a;
+  const std::array<std::uint32_t, 2>& element = is_a ? pair.element_a : pair.element_b;
+  switch (is_a ? pair.kind_a : pair.kind_b) {
+    case FeatureKind::vertex:
+      return {{element[0]}, 1};
+    case FeatureKind::edge:
+      return {{element[0], element[1]}, 2};
+    case FeatureKind::face:
+      break;
+  }
+  return implementation_->triangle_vertices(is_a ? pair.object_a : pair.object_b, element[0]);
 }
 
 const SceneOptions& Scene::options() const {

@@ -13,6 +13,7 @@
 #include "scene/contact_pass.hpp"
 #include "scene/impact_pass.hpp"
 #include "scene/pair_cache.hpp"
+#include "scene/proximity_pass.hpp"
 #include "scene/scene_object.hpp"
 #include "supple/inspection.hpp"
 #include "supple/scene.hpp"
@@ -26,10 +27,12 @@ void check_triangle(const SceneObject& object, std::uint32_t triangle, const cha
 struct Question {
   ContactKinds contacts = ContactKinds::none;
   ImpactOptions impact;
+  ProximityListing proximity_listing = ProximityListing::features;
   bool colliding_vertices = false;
 
   bool has_intersections() const { return contains(contacts, ContactKinds::intersection); }
   bool is_continuous() const { return contains(contacts, ContactKinds::continuous); }
+  bool has_proximity() const { return contains(contacts, ContactKinds::proximity); }
   /// It searches intersections, or only counts their candidates.
   bool searches_at_rest() const { return contacts == ContactKinds::none || has_intersections(); }
   SearchedShapes shapes() const;
@@ -101,23 +104,31 @@ class Scene::Implementation {
   /// These return false when they were stopped.
   bool find_contacts(const DetectRequest& request, const StopSignal& stop);
   bool find_impacts(const DetectRequest& request, const StopSignal& stop);
-  void list_moving_objects();
+  bool find_proximity(const DetectRequest& request, const StopSignal& stop);
+  /// With their elements on the way, or at its end.
+  void list_element_objects(MovingShape::Part part);
   /// `group` holds the reported contacts of the pair; null when there are none.
   void verify_contacts(const ObjectPair& pair, const ContactGroup* group, VerifyReport& report) const;
   void verify_impacts(const ObjectPair& pair, const ContactGroup* group, VerifyReport& report) const;
+  void verify_proximity(const ObjectPair& pair, const ContactGroup* group, VerifyReport& report) const;
   void report_non_finite();
   void publish();
   void list_touching_pairs();
   bool volumes_apart(const IndexPair& pair) const;
   bool may_pair(const IndexPair& pair) const;
   OctreeView search_view(const SceneObject& object) const {
-    return question_.searches_at_rest() ? object.resting_view() : object.moving_view();
+    if (question_.searches_at_rest()) return object.resting_view();
+    return question_.is_continuous() ? object.moving_view() : object.near_view();
   }
   const SceneObject& refitted_object(ObjectId id, const char* call) const;
   /// The pair as the narrow phase sees it, without self-collision culling.
   ObjectPairView search_view(const ContactJob& job) const;
+  double reach_of(const ContactJob& job) const {
+    return reach_of_margins(slots_[job.a].object->options.margin, slots_[job.b].object->options.margin);
+  }
   PairExplanation explain_in_order(const ContactJob& job, TrianglePair triangles) const;
   bool touch_on_the_way(const ContactJob& job, TrianglePair triangles) const;
+  bool are_near(const ContactJob& job, TrianglePair triangles) const;
   ObjectId id_of(std::uint32_t index) const { return {index, slots_[index].generation}; }
   std::vector<ObjectPair> pairs_to_verify() const;
 
@@ -136,17 +147,18 @@ class Scene::Implementation {
   std::uint64_t last_version_ = 0,
                 last_version_before_ = 0;  // the newest, and the newest of the previous step
   SearchedShapes searched_;                // by the last search
-  double growth_ = 0;                      // of boxes and spheres in the last search
+  std::vector<double> growths_;            // of boxes and spheres in the last search
   std::vector<std::uint32_t> stale_, degraded_, small_;
   std::vector<double> queries_;  // of degraded objects
   Jobs jobs_, impact_jobs_;      // of `detect`, and of `earliest_impact`
-  std::vector<ObjectPair> touching_pairs_, leaf_pairs_;
+  std::vector<ObjectPair> touching_pairs_, leaf_pairs_, near_pairs_;
   std::vector<ContactObject> contact_objects_;
-  std::vector<MovingObject> moving_objects_;
+  std::vector<MovingObject> element_objects_;
   std::vector<NonFiniteVertex> non_finite_;
-  PairCache volume_pairs_, narrow_phase_pairs_, contact_pairs_;
+  PairCache volume_pairs_, narrow_phase_pairs_, contact_pairs_, near_object_pairs_;
   ContactPass contact_pass_;
   ImpactPass impact_pass_;
+  ProximityPass proximity_pass_;
 };
 
 }  // namespace supple

@@ -29,13 +29,14 @@ BoundingSphere sphere_around(const Aabb& box) {
   return sphere;
 }
 
-/// The rule for the size of leaves. Continuous detection tests all vertices, edges and faces of two leaves,
+/// The rule for the size of leaves. Continuous detection and proximity test all vertices, edges and faces of two leaves,
 /// most of them in vain, so leaves half as large are faster. Regular octrees keep the size that the user
 /// chose.
 ObjectOctreeOptions octree_options(const ObjectOptions& options, const SceneOptions& scene_options) {
   ObjectOctreeOptions octree = options.octree;
-  if (contains(scene_options.contacts, ContactKinds::continuous) &&
-      octree.build != ObjectOctreeBuild::regular)
+  const bool tests_elements = contains(scene_options.contacts, ContactKinds::continuous) ||
+                              contains(scene_options.contacts, ContactKinds::proximity);
+  if (tests_elements && octree.build != ObjectOctreeBuild::regular)
     octree.leaf_size = octree.leaf_size / 2 + octree.leaf_size % 2;
   return octree;
 }
@@ -59,12 +60,22 @@ bool SceneObject::is_stale(const SearchedShapes& shapes) const {
 
 bool SceneObject::needs_refit(const SearchedShapes& shapes) const {
   return (shapes.resting && !resting_.is_current(placement_)) ||
-         (shapes.moving && !moving_.is_current(placement_));
+         (shapes.moving && !moving_.is_current(placement_)) ||
+         (shapes.near && !near().is_current(placement_));
+}
+
+SearchedShapes SceneObject::with_current(SearchedShapes shapes) const {
+  shapes.resting = shapes.resting || resting_.is_current(placement_);
+  shapes.moving = shapes.moving || moving_.is_current(placement_);
+  shapes.near = shapes.near || near().is_current(placement_);
+  return shapes;
 }
 
 void SceneObject::update(const SearchedShapes& shapes, const Parallel& parallel) {
   const bool was_behind = needs_refit(shapes);
-  refitted_triangles_ = shapes.moving && !moving_.is_current(placement_) ? octree_.triangles().size() : 0;
+  const bool refits_elements = (shapes.moving && !moving_.is_current(placement_)) ||
+                               (shapes.near && !near().is_current(placement_));
+  refitted_triangles_ = refits_elements ? octree_.triangles().size() : 0;
   refit(shapes, parallel);
   update_volumes(shapes);
   if (was_behind && rebuild_policy_.should_measure()) rebuild_policy_.set_cost(current_query_cost());
@@ -74,14 +85,13 @@ void SceneObject::update(const SearchedShapes& shapes, const Parallel& parallel)
 
 /// Updates the shapes for this search, and those that were up to date before.
 void SceneObject::refit(const SearchedShapes& shapes, const Parallel& parallel) {
-  SearchedShapes wanted = shapes;
-  wanted.resting = wanted.resting || resting_.is_current(placement_);
-  wanted.moving = wanted.moving || moving_.is_current(placement_);
+  const SearchedShapes wanted = with_current(shapes);
   // When one shape bakes the translation, the other one is out of date.
   do {
     if (wanted.resting)
       refitted_triangles_ = std::max(refitted_triangles_, resting_.update(octree_, placement_, parallel));
     if (wanted.moving) moving_.update(octree_, placement_, parallel);
+    if (wanted.near) (placement_.has_motion() ? near_ : moving_).update(octree_, placement_, parallel);
   } while (needs_refit(wanted));
   if (!options.self_collision) return;
   if (wanted.cull_resting) resting_.update_culling(octree_, placement_, parallel);
@@ -89,12 +99,13 @@ void SceneObject::refit(const SearchedShapes& shapes, const Parallel& parallel) 
 }
 
 void SceneObject::update_volumes(const SearchedShapes& shapes) {
-  if (!shapes.moving) {
+  if (!shapes.moving && !shapes.near) {
     box_ = moved(octree_.box(), placement_.translation());
     sphere_ = moved(octree_.sphere(), placement_.translation());
     return;
   }
-  box_ = moving_.box();
+  box_ = shapes.moving ? moving_.box() : near().box();
+  if (shapes.near) extend(box_, near().box());
   if (shapes.resting) extend(box_, octree_.box());
   box_ = moved(box_, placement_.translation());
   sphere_ = sphere_around(box_);
@@ -102,8 +113,9 @@ void SceneObject::update_volumes(const SearchedShapes& shapes) {
 
 /// The query cost at the positions of the shape that is up to date: the resting one if both are.
 double SceneObject::current_query_cost() const {
-  const bool moving = !resting_.is_current(placement_) && moving_.is_current(placement_);
-  return query_cost(octree_.nodes(), moving ? moving_.node_boxes() : octree_.boxes());
+  const MovingShape& elements = moving_.is_current(placement_) ? moving_ : near();
+  const bool is_resting = resting_.is_current(placement_) || !elements.is_current(placement_);
+  return query_cost(octree_.nodes(), is_resting ? octree_.boxes() : elements.node_boxes());
 }
 
 void SceneObject::measure_built_octree(const Parallel& parallel) {
@@ -120,12 +132,11 @@ bool SceneObject::rebuild(const Parallel& parallel) {
   }
   if (!rebuild_policy_.accept(query_cost(octree.nodes(), octree.boxes()))) return false;
   ++rebuilds_;
-  SearchedShapes shapes = updated_;
-  shapes.resting = shapes.resting || resting_.is_current(placement_);
-  shapes.moving = shapes.moving || moving_.is_current(placement_);
+  const SearchedShapes shapes = with_current(updated_);
   octree_ = std::move(octree);
   resting_.forget_octree();
   moving_.forget_octree();
+  near_.forget_octree();
   // If memory runs out here, the next update refits the shapes.
   refit(shapes, parallel);
   return true;
@@ -135,12 +146,16 @@ std::string SceneObject::validate() const {
   if (resting_.is_current(placement_)) {
     if (std::string wrong = resting_.validate(octree_, placement_); !wrong.empty()) return wrong;
   }
-  return moving_.is_current(placement_) ? moving_.validate(octree_) : "";
+  for (const MovingShape* shape : {&moving_, &near_}) {
+    if (!shape->is_current(placement_)) continue;
+    if (std::string wrong = shape->validate(octree_); !wrong.empty()) return wrong;
+  }
+  return "";
 }
 
 OctreeStatistics SceneObject::octree_statistics() const {
   OctreeStatistics statistics = octree_.statistics();
-  statistics.bytes += resting_.bytes() + moving_.bytes();
+  statistics.bytes += resting_.bytes() + moving_.bytes() + near_.bytes();
   statistics.cost = current_query_cost();
   statistics.degradation = rebuild_policy_.degradation(statistics.cost);
   if (octree_.spheres() != nullptr && resting_.is_current(placement_))

@@ -18,6 +18,7 @@ namespace supple {
 /// The data of objects that a search needs.
 struct SearchedShapes {
   bool resting = false, moving = false;
+  bool near = false;  ///< elements at the end of the step
   /// Self-collision culling, for objects that are tested against themselves.
   bool cull_resting = false, cull_moving = false;
 
@@ -63,11 +64,19 @@ class SceneObject {
   const BoundingSphere& sphere() const { return sphere_; }
   const ObjectOctree& octree() const { return octree_; }
   const MovingShape& moving() const { return moving_; }
+  /// The elements at the end of the step: those of `moving` for an object at rest.
+  const MovingShape& near() const { return placement_.has_motion() ? near_ : moving_; }
   OctreeView resting_view() const { return resting_.view(octree_, placement_); }
   OctreeView moving_view() const { return moving_.view(octree_, placement_); }
+  OctreeView near_view() const {
+    OctreeView view = near().view(octree_, placement_);
+    view.culled = nullptr;
+    return view;
+  }
   /// The user's ids, ascending.
   std::span<const std::uint32_t> non_finite_vertices(const SearchedShapes& shapes) const {
-    return shapes.moving ? moving_.non_finite_vertices() : resting_.non_finite_vertices();
+    if (shapes.moving) return moving_.non_finite_vertices();
+    return shapes.resting ? resting_.non_finite_vertices() : near().non_finite_vertices();
   }
   /// The position of a vertex that is not finite: at the end of the step, or at its start if the end is
   /// finite.
@@ -80,13 +89,15 @@ class SceneObject {
 
  private:
   void refit(const SearchedShapes& shapes, const Parallel& parallel);
+  /// Adds the shapes that are up to date.
+  SearchedShapes with_current(SearchedShapes shapes) const;
   double current_query_cost() const;
   void update_volumes(const SearchedShapes& shapes);
 
   ObjectOctree octree_;
   Placement placement_;
   RestingShape resting_;
-  MovingShape moving_;
+  MovingShape moving_{MovingShape::Part::way}, near_{MovingShape::Part::end};
   RebuildPolicy rebuild_policy_;
   std::uint64_t rebuilds_ = 0;
   std::size_t refitted_triangles_ = 0;

@@ -25,16 +25,16 @@ inline auto members_of(SceneOctreeOptions& o) {
   return std::tie(a, b, c, d, e);
 }
 inline auto members_of(ObjectOptions& o) {
-  auto& [a, b, c, d, e, f] = o;
-  return std::tie(a, b, c, d, e, f);
+  auto& [a, b, c, d, e, f, g] = o;
+  return std::tie(a, b, c, d, e, f, g);
 }
 inline auto members_of(ComparisonOptions& o) {
   auto& [a, b] = o;
   return std::tie(a, b);
 }
 inline auto members_of(SceneOptions& o) {
-  auto& [a, b, c, d, e, f, g, h] = o;
-  return std::tie(a, b, c, d, e, f, g, h);
+  auto& [a, b, c, d, e, f, g, h, i] = o;
+  return std::tie(a, b, c, d, e, f, g, h, i);
 }
 inline auto members_of(BroadPhaseOptions& o) {
   auto& [a, b, c] = o;
@@ -69,8 +69,8 @@ inline auto members_of(SimulationOptions& o) {
   return std::tie(a, b, c, d, e);
 }
 inline auto members_of(StepStats& o) {
-  auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, p, q, r, s, t, u, v] = o;
-  return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m, n, p, q, r, s, t, u, v);
+  auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, p, q, r, s, t, u, v, w] = o;
+  return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m, n, p, q, r, s, t, u, v, w);
 }
 inline auto members_of(BroadPhaseStats& o) {
   auto& [a, b, c, d, e, f, g, h] = o;

@@ -2,14 +2,12 @@
 // SHA-256 of the sorted list.
 
 #include <gtest/gtest.h>
-#include <openssl/evp.h>
 
 #include <algorithm>
 #include <array>
 #include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -18,47 +16,12 @@
 #include "support/configurations.hpp"
 #include "support/scenes.hpp"
 #include "support/shared_meshes.hpp"
+#include "support/truth_data.hpp"
 
 namespace supple {
 namespace {
 
 using nlohmann::json;
-
-std::string sha256(const std::string& text) {
-  unsigned char digest[EVP_MAX_MD_SIZE];
-  unsigned int size = 0;
-  EVP_Digest(text.data(), text.size(), digest, &size, EVP_sha256(), nullptr);
-  std::string hex;
-  for (unsigned int i = 0; i < size; ++i) {
-    hex += "0123456789abcdef"[digest[i] >> 4];
-    hex += "0123456789abcdef"[digest[i] & 15];
-  }
-  return hex;
-}
-
-/// A transform of truth.json, left to right: "s:K" scales, "p:+y-z+x" permutes with signs, "t:X:Y:Z" adds.
-void transform(TriangleMesh& mesh, const std::string& steps) {
-  std::istringstream stream(steps);
-  for (std::string step; std::getline(stream, step, ',');) {
-    if (step == "-") continue;
-    if (step[0] == 't') {
-      Vec3d offset;
-      std::sscanf(step.c_str(), "t:%lf:%lf:%lf", &offset.x, &offset.y, &offset.z);
-      for (Vec3d& p : mesh.positions) p = p + offset;
-    } else if (step[0] == 's') {
-      for (Vec3d& p : mesh.positions) p = p * std::stod(step.substr(2));
-    } else {
-      for (Vec3d& p : mesh.positions) {
-        Vec3d q;
-        for (int axis = 0; axis < 3; ++axis) {
-          const double value = p[step[3 + 2 * axis] - 'x'];
-          q[axis] = step[2 + 2 * axis] == '-' ? -value : value;
-        }
-        p = q;
-      }
-    }
-  }
-}
 
 struct Truth : testing::Test {
   void SetUp() override {
@@ -67,7 +30,7 @@ struct Truth : testing::Test {
     file >> truth;
   }
 
-  static TriangleMesh load(const json& mesh) { return load_mesh(shared_meshes() / mesh.get<std::string>()); }
+  static TriangleMesh load(const json& mesh) { return load_shared_mesh(mesh.get<std::string>()); }
 
   static void expect_pairs(const DetectResult& result, const json& expected) {
     EXPECT_EQ(result.contacts.size(), expected["intersecting_pairs"].get<std::size_t>());
@@ -156,20 +119,6 @@ TEST_F(Truth, VerifyAgreesOnRealMeshes) {
   touching.add(turned);
   touching.detect();
   EXPECT_EQ(differences(touching), "");
-}
-
-/// The edge numbers of truth.json: edges sorted by their larger vertex, then by the smaller one.
-std::map<std::array<std::uint32_t, 2>, std::uint32_t> edge_numbers(const TriangleMesh& mesh) {
-  std::map<std::array<std::uint32_t, 2>, std::uint32_t> numbers;
-  for (const Triangle& triangle : mesh.triangles) {
-    for (std::size_t i = 0; i < 3; ++i) {
-      const auto [low, high] = std::minmax(triangle[i], triangle[(i + 1) % 3]);
-      numbers[{high, low}] = 0;
-    }
-  }
-  std::uint32_t next = 0;
-  for (auto& [edge, number] : numbers) number = next++;
-  return numbers;
 }
 
 /// Sorted pairs of element numbers with their times.

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "contact/impact_filter.hpp"
+#include "contact/relative_motion.hpp"
+#include "narrow_phase/traversal.hpp"
+#include "octree/vertex_buffer.hpp"
+#include "supple/contact.hpp"
+
+namespace supple {
+
+/// The data of an object that passes over elements read, indexed as in its `SurfaceElements`. For an object
+/// at rest, `start` and `end` are equal. Only an object at rest has a translation in its view.
+struct MovingObject {
+  ObjectId id;
+  OctreeView view;
+  const VertexBuffer* start = nullptr;
+  const VertexBuffer* end = nullptr;
+  std::span<const std::uint32_t> triangle_ids, vertex_ids;  ///< the user's ids
+  double margin = 0;
+};
+
+/// The four vertices of a pair of elements as `VertexFaceMotion` or `EdgeEdgeMotion` orders them.
+std::array<std::uint32_t, 4> vertices_of(ElementPairKind kind, ElementPair pair, const MovingObject& a,
+                                         const MovingObject& b);
+
+/// The objects of these vertices.
+std::array<const MovingObject*, 4> objects_of(ElementPairKind kind, const MovingObject& a,
+                                              const MovingObject& b);
+
+inline Vec3d placed(const Vec3d& position, const MovingObject& object) {
+  return object.view.translation == Vec3d{} ? position : position + object.view.translation;
+}
+
+void set_motion(bool are_edges, const std::array<const MovingObject*, 4>& objects,
+                const std::array<std::uint32_t, 4>& vertices, ElementMotion& motion);
+
+/// Fills a block with the motions of pairs from time 0 to `latest`. Differences of translated positions, and
+/// of a float and a double, are rounded to double and then to float; others are rounded once.
+void fill(const std::array<const MovingObject*, 4>& objects,
+          std::span<const std::array<std::uint32_t, 4>> vertices, bool are_edges, float latest,
+          RelativeMotionBlock& block);
+
+}  // namespace supple
