@@ -155,16 +155,35 @@ struct ContinuousDifference {
   constexpr bool operator==(const ContinuousDifference&) const = default;
 };
 
+/// A pair of features or elements on which `Scene::verify` and the last `Scene::detect` differ.
+struct ProximityDifference {
+  enum class Fault : std::uint8_t {
+    missed,   ///< the pair is within the margins and was not reported
+    added,    ///< reported, but not within the margins, or not of closest features, or twice
+    inexact,  ///< reported with other features than those that are closest, or with an inaccurate distance
+  };
+  ObjectId object_a, object_b;
+  FeatureKind kind_a = FeatureKind::vertex, kind_b = FeatureKind::vertex;
+  std::array<std::uint32_t, 2> element_a{}, element_b{};
+  Fault fault = Fault::missed;
+
+  constexpr bool operator==(const ProximityDifference&) const = default;
+};
+
 /// Result of `Scene::verify`: exact brute force over every triangle pair of the scene for intersections, and
-/// over every vertex-face and edge-edge pair for continuous contacts.
+/// over every vertex-face and edge-edge pair for continuous contacts and for proximity.
 struct VerifyReport {
   std::uint64_t triangle_pairs_checked = 0;
   std::uint64_t intersecting_pairs = 0;
   std::uint64_t element_pairs_checked = 0;
   std::uint64_t touching_element_pairs = 0;
   std::vector<Difference> differences;                       ///< sorted
+  std::uint64_t near_pairs = 0;                              ///< proximity pairs, by the scene's listing
   std::vector<ContinuousDifference> continuous_differences;  ///< sorted
-  bool agrees() const { return differences.empty() && continuous_differences.empty(); }
+  std::vector<ProximityDifference> proximity_differences;    ///< sorted
+  bool agrees() const {
+    return differences.empty() && continuous_differences.empty() && proximity_differences.empty();
+  }
 };
 
 /// One region of the scene octree, for inspection and drawing.

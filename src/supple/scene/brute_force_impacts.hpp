@@ -7,17 +7,11 @@
 #include <vector>
 
 #include "core/parallel.hpp"
+#include "scene/brute_force_elements.hpp"
 #include "supple/contact.hpp"
-#include "supple/mesh.hpp"
 #include "supple/result.hpp"
 
 namespace supple {
-
-/// The input of the brute force: positions at both ends of the step and triangles with the user's ids.
-struct PlainMovingObject {
-  std::vector<Vec3d> start, end;
-  std::vector<Triangle> triangles;
-};
 
 /// Two elements, named as in `ContinuousContact`.
 struct TouchingElements {

@@ -4,6 +4,7 @@
 #include "core/error.hpp"
 #include "scene/brute_force_contacts.hpp"
 #include "scene/brute_force_impacts.hpp"
+#include "scene/brute_force_proximity.hpp"
 #include "scene/scene_implementation.hpp"
 
 namespace supple {
@@ -86,6 +87,24 @@ void Scene::Implementation::verify_impacts(const ObjectPair& pair, const Contact
   compare_impacts(pair, reported, truth.touching, report.continuous_differences);
 }
 
+void Scene::Implementation::verify_proximity(const ObjectPair& pair, const ContactGroup* group,
+                                             VerifyReport& report) const {
+  const bool same_object = pair.a == pair.b;
+  const auto at_end = [&](ObjectId id) {
+    PlainMovingObject plain = plain_moving_object(*slots_[id.index].object);
+    plain.start = plain.end;
+    return plain;
+  };
+  const PlainMovingObject a = at_end(pair.a), b = same_object ? a : at_end(pair.b);
+  const BruteForceProximity truth = find_proximity_by_brute_force(
+      a, b, same_object, reach_of({pair.a.index, pair.b.index}), question_.proximity_listing, parallel);
+  report.element_pairs_checked += truth.pairs_checked;
+  report.near_pairs += truth.near.size();
+  const auto reported =
+      group != nullptr ? result.proximity_pairs_of(*group) : std::span<const ProximityPair>{};
+  compare_proximity(pair, reported, truth.near, report.proximity_differences);
+}
+
 VerifyReport Scene::Implementation::verify() const {
   if (!detected_) fail("verify: nothing was detected at the present positions; call detect first");
   if (result.truncated)
@@ -95,6 +114,7 @@ VerifyReport Scene::Implementation::verify() const {
   VerifyReport report;
   auto contacts = result.groups.begin();
   auto impacts = result.continuous_groups.begin();
+  auto near = result.proximity_groups.begin();
   const auto next_of = [](auto& next, const auto& groups, const ObjectPair& pair) {
     const bool reported = next != groups.end() && next->a == pair.a && next->b == pair.b;
     return reported ? &*next++ : nullptr;
@@ -102,8 +122,10 @@ VerifyReport Scene::Implementation::verify() const {
   for (const ObjectPair& pair : pairs_to_verify()) {
     const ContactGroup* const of_contacts = next_of(contacts, result.groups, pair);
     const ContactGroup* const of_impacts = next_of(impacts, result.continuous_groups, pair);
+    const ContactGroup* const of_proximity = next_of(near, result.proximity_groups, pair);
     if (question_.has_intersections()) verify_contacts(pair, of_contacts, report);
     if (question_.is_continuous()) verify_impacts(pair, of_impacts, report);
+    if (question_.has_proximity()) verify_proximity(pair, of_proximity, report);
   }
   return report;
 }

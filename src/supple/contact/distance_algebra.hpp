@@ -1,0 +1,30 @@
+#pragma once
+
+#include <array>
+#include <boost/multiprecision/cpp_int.hpp>
+#include <span>
+
+#include "supple/contact.hpp"
+#include "supple/types.hpp"
+
+namespace supple {
+
+using Rational =
+    boost::multiprecision::number<boost::multiprecision::cpp_rational_backend, boost::multiprecision::et_off>;
+
+/// The closest points of two elements, exactly.
+struct ExactDistance {
+  Rational squared;
+  Feature on_a, on_b;
+  std::array<Rational, 3> weights_a, weights_b;
+};
+
+/// Tries all pairs of features, for `verify` and for tests. Shares no code with the functions of `distance.hpp`,
+/// which says what the features are where there are several. Elements have one to three vertices with finite coordinates, at
+/// least one of them one vertex, or both two. Takes tens of microseconds to milliseconds.
+ExactDistance distance_by_algebra(std::span<const Vec3d> a, std::span<const Vec3d> b);
+
+/// Whether the distance is within 4 units in the last place of the exact one.
+bool is_accurate(double distance, const Rational& squared);
+
+}  // namespace supple
