@@ -7,15 +7,22 @@
 #include <utility>
 
 #include "supple/result_descriptions.hpp"
+#include "text.hpp"
 
 namespace supple::cli {
 
 namespace {
 
 /// An edge has two ids; a vertex or a face has one.
-std::string ids_of(const std::array<std::uint32_t, 2>& element, ElementPairKind kind) {
-  if (kind == ElementPairKind::edge_edge) return fmt::format("{},{}", element[0], element[1]);
+std::string ids_of(const std::array<std::uint32_t, 2>& element, bool is_edge) {
+  if (is_edge) return fmt::format("{},{}", element[0], element[1]);
   return fmt::format("{},", element[0]);
+}
+std::string ids_of(const std::array<std::uint32_t, 2>& element, ElementPairKind kind) {
+  return ids_of(element, kind == ElementPairKind::edge_edge);
+}
+std::string ids_of(const std::array<std::uint32_t, 2>& element, FeatureKind kind) {
+  return ids_of(element, kind == FeatureKind::edge);
 }
 
 }  // namespace
@@ -23,7 +30,9 @@ std::string ids_of(const std::array<std::uint32_t, 2>& element, ElementPairKind 
 CsvReport::CsvReport(const std::string& file_name, const SceneOptions& options)
     : file_(file_name), has_kinds_(options.comparison.colliding_vertices) {
   const bool continuous = contains(options.contacts, ContactKinds::continuous);
-  std::fputs(continuous   ? "frame,a,b,kind,a0,a1,b0,b1,toi,certainty\n"
+  const bool proximity = contains(options.contacts, ContactKinds::proximity);
+  std::fputs(proximity    ? "frame,a,b,kind,a0,a1,b0,b1,distance\n"
+             : continuous ? "frame,a,b,kind,a0,a1,b0,b1,toi,certainty\n"
              : has_kinds_ ? "frame,a,b,kind,i,j\n"
                           : "frame,a,b,i,j\n",
              file_.stream());
@@ -39,6 +48,11 @@ void CsvReport::add(const Frame& frame) {
     fmt::format_to(fmt::appender(rows), "{},{},{},{},{},{},{},{}\n", frame.number, c.object_a.index,
                    c.object_b.index, word_of(c.kind), ids_of(c.element_a, c.kind),
                    ids_of(c.element_b, c.kind), c.toi, word_of(c.certainty));
+  }
+  for (const ProximityPair& p : frame.result.proximity_pairs) {
+    fmt::format_to(fmt::appender(rows), "{},{},{},{},{},{},{}\n", frame.number, p.object_a.index,
+                   p.object_b.index, kind_word(p.kind_a, p.kind_b), ids_of(p.element_a, p.kind_a),
+                   ids_of(p.element_b, p.kind_b), p.distance);
   }
   if (has_kinds_) add_narrow_phase(frame, rows);
   std::fwrite(rows.data(), 1, rows.size(), file_.stream());

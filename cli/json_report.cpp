@@ -10,20 +10,17 @@
 #include <vector>
 
 #include "continuous_json.hpp"
+#include "proximity_json.hpp"
 #include "session/described_json.hpp"
 #include "supple/option_descriptions.hpp"
 #include "supple/result_descriptions.hpp"
 #include "supple/version.hpp"
+#include "text.hpp"
 
 namespace supple::cli {
 namespace {
 
 /// `v0` … `v2`, `e0` … `e2`, `f`.
-std::string name_of(Feature feature) {
-  if (feature.kind == FeatureKind::face) return "f";
-  return fmt::format("{}{}", feature.kind == FeatureKind::vertex ? 'v' : 'e', feature.index);
-}
-
 /// Writes all options except those of the machine.
 template <class Options>
 void write_options(JsonWriter& json, const Options& options) {
@@ -233,15 +230,22 @@ void JsonReport::add(const Frame& frame) {
   write_object_pairs(json_, "object_pairs", result.object_pairs);
   const bool continuous = contains(options.contacts, ContactKinds::continuous);
   const bool both = continuous && contains(options.contacts, ContactKinds::intersection);
+  const bool at_rest =
+      options.contacts == ContactKinds::none || contains(options.contacts, ContactKinds::intersection);
+  const bool proximity = contains(options.contacts, ContactKinds::proximity);
   if (continuous) {
     write_continuous_groups(json_, result, !options.impact.exact);
     if (content_.contact_details)
       write_continuous_contacts(json_, both ? "continuous_contacts" : "contacts", result);
   }
-  if (both || !continuous) {
+  if (at_rest) {
     write_groups(json_, "triangle_pairs", result, false);
     write_groups(json_, "self", result, true);
     if (content_.contact_details) write_contacts(json_, result, options.contact_points);
+  }
+  if (proximity) {
+    write_proximity_groups(json_, result, options.proximity_listing);
+    if (content_.contact_details) write_proximity_pairs(json_, result);
   }
   if (options.comparison.colliding_vertices) write_colliding_vertices(json_, result);
   if (content_.node_pairs) write_node_pairs(json_, scene_, *content_.node_pairs);
@@ -250,11 +254,13 @@ void JsonReport::add(const Frame& frame) {
   write_events(json_, "volumes", result.volume_events);
   if (options.comparison.colliding_vertices) write_events(json_, "narrow_phase", result.narrow_phase_events);
   write_events(json_, "contacts", result.contact_events);
+  if (proximity) write_events(json_, "proximity", result.proximity_events);
   json_.end_object();
   write_non_finite(json_, result.non_finite_vertices);
   if (frame.verify) {
     if (continuous) write_continuous_verify(json_, both ? "continuous_verify" : "verify", *frame.verify);
-    if (both || !continuous) write_verify(json_, *frame.verify);
+    if (contains(options.contacts, ContactKinds::intersection)) write_verify(json_, *frame.verify);
+    if (proximity) write_proximity_verify(json_, *frame.verify);
   }
   if (content_.stats) write_stats(json_, frame);
   json_.end_object();

@@ -8,9 +8,9 @@ namespace {
 bool is_continuous(const SceneOptions& scene) {
   return contains(scene.contacts, ContactKinds::continuous);
 }
-/// Whether the scene looks at positions at rest. Otherwise the volumes enclose whole paths.
+/// Whether the scene looks at triangles at rest. Otherwise it searches elements, with boxes.
 bool is_at_rest(const SceneOptions& scene) {
-  return scene.contacts != ContactKinds::continuous;
+  return scene.contacts == ContactKinds::none || contains(scene.contacts, ContactKinds::intersection);
 }
 
 /// Oriented boxes and k-DOPs enclose objects at rest, not their paths.
@@ -24,7 +24,8 @@ constexpr const char* kinds_at_rest = "intersection or none";
 constexpr OptionNeed needs[] = {
     {"bounding_volume",
      [](const SceneOptions& scene) { return is_at_rest(scene) || !is_of_positions(scene.bounding_volume); },
-     "contacts", "intersection or none, because objects in motion have boxes or spheres"},
+     "contacts",
+     "intersection or none, because vertices, edges and faces are searched with boxes or spheres"},
     {"sphere_fit", has_spheres, "bounding_volume", "sphere"},
     {"sphere_fit", is_at_rest, "contacts", kinds_at_rest},
     {"region_test", has_spheres, "bounding_volume", "sphere"},
@@ -35,6 +36,7 @@ constexpr OptionNeed needs[] = {
     {"scene_octree_root", has_scene_octree, "broad_phase", methods},
     {"min_separation", is_continuous, "contacts", "continuous"},
     {"undecided", is_continuous, "contacts", "continuous"},
+    {"proximity_listing", has_proximity, "contacts", "proximity"},
     {"contact_points",
      [](const SceneOptions& scene) { return contains(scene.contacts, ContactKinds::intersection); },
      "contacts", "intersection"},
@@ -42,6 +44,10 @@ constexpr OptionNeed needs[] = {
 };
 
 }  // namespace
+
+bool has_proximity(const SceneOptions& scene) {
+  return contains(scene.contacts, ContactKinds::proximity);
+}
 
 std::span<const OptionNeed> option_needs() {
   return needs;

@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <bit>
 #include <functional>
 #include <iterator>
 #include <limits>
@@ -152,14 +153,15 @@ at the start of the step, and then at its end. A row has numerator,denominator o
 numbers of any size. It may also have the answer, 0 or 1, the same in all eight rows. Each coordinate must
 be representable as a double.)";
 
-/// Adds the options of the octree of each object, and `--self` when objects are tested.
+/// Adds the options of the octree of each object, and `--self` and `--margin` when objects are tested.
 void add_object_options(CLI::App& app, viewer::Overrides<ObjectOptions>& objects, bool are_tested) {
   objects.for_each_setter([&]<class Struct, class Value>(const Field<Struct, Value>& field,
                                                          const Value& default_value, auto set) {
     if constexpr (std::is_same_v<Struct, ObjectOctreeOptions>) {
       add_field(app, field, default_value, set)->group(are_tested ? "Method" : "Options");
-    } else if constexpr (std::is_same_v<Value, bool>) {
-      if (are_tested && std::string_view(field.key) == "self")
+    } else if constexpr (std::is_same_v<Value, bool> || std::is_same_v<Value, double>) {
+      const std::string_view key(field.key);
+      if (are_tested && (key == "self" || key == "margin"))
         add_field(app, field, default_value, set)->group("Detection");
     }
   });
@@ -227,15 +229,18 @@ void add_detection_options(CLI::App& app, MethodOptions& options, Dependences& d
     }
   });
   add_object_options(app, options.given_objects, true);
+  dependences.push_back({app.get_option("--margin"), [&options] { return has_proximity(options.scene); },
+                         "--contacts proximity"});
 }
 
 void add_report_options(CLI::App& app, DetectionOptions& options, Dependences& dependences) {
   const auto add = [&](const char* name, bool& value, const char* description) {
     dependences.push_back({app.add_flag(name, value, description)->group("Detection"),
                            [&options] { return options.scene.contacts != ContactKinds::none; },
-                           "--contacts intersection or continuous"});
+                           "--contacts intersection, continuous or proximity"});
   };
-  add("--fail-on-contact", options.fail_on_contact, "Exit with status 1 when anything touches");
+  add("--fail-on-contact", options.fail_on_contact,
+      "Exit with status 1 when anything touches, or is near with --contacts proximity");
   add("--verify", options.verify,
       "Check each frame by exact brute force over all pairs of triangles or elements; exit with status 3 "
       "when the results differ");
@@ -248,11 +253,12 @@ void add_output_options(CLI::App& app, DetectionOptions& options, Dependences& d
       {group(add_file(
            app, "--csv", options.csv,
            "Write one row per contact: frame,a,b,i,j for triangles; frame,a,b,kind,a0,a1,b0,b1,toi,certainty "
-           "for continuous contacts; - is standard output. With --colliding-vertices the rows are "
+           "for continuous contacts; frame,a,b,kind,a0,a1,b0,b1,distance for proximity; - is standard "
+           "output. With --colliding-vertices the rows are "
            "frame,a,b,kind,i,j: also each vertex in colliding leaves, and the begin and end of each "
            "collision "
            "of the narrow phase")),
-       [&] { return options.scene.contacts != (ContactKinds::intersection | ContactKinds::continuous); },
+       [&] { return std::popcount(static_cast<unsigned>(options.scene.contacts)) <= 1; },
        "contacts of one kind"});
   dependences.push_back(
       {group(app.add_flag_callback(
@@ -263,7 +269,8 @@ void add_output_options(CLI::App& app, DetectionOptions& options, Dependences& d
       {group(app.add_flag(
            "--contact-details", options.json_content.contact_details,
            "Also write each contact to the JSON: for triangles the kind, the normal and the points; for "
-           "continuous contacts the barycentric coordinates, the point and the normal")),
+           "continuous contacts the barycentric coordinates, the point and the normal; for proximity also "
+           "both points")),
        [&] { return !options.json.empty() && options.scene.contacts != ContactKinds::none; },
        "--json and contacts"});
   dependences.push_back({group(app.add_flag("--faces", options.json_content.faces,
@@ -340,6 +347,8 @@ CLI::App* add_simulate(CLI::App& program, SimulateOptions& options, Dependences&
                   "XDMF file for ParaView next to it")
       ->type_name("FILE.h5")
       ->group("Output");
+  dependences.push_back({app->get_option("--record"), [&options] { return !has_proximity(options.scene); },
+                         "--contacts intersection, continuous or none, which a recording holds"});
   add_output_options(*app, options, dependences);
   return app;
 }

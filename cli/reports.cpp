@@ -49,12 +49,39 @@ std::string describe(const Scene& scene, const ContinuousDifference& d) {
                      one_line(scene.name(d.object_b)), outcome_of(d.fault));
 }
 
+const char* outcome_of(ProximityDifference::Fault fault) {
+  switch (fault) {
+    case ProximityDifference::Fault::missed:
+      return "are near and were not reported";
+    case ProximityDifference::Fault::added:
+      return "were reported and are not near";
+    case ProximityDifference::Fault::inexact:
+      break;
+  }
+  return "were reported with wrong features or an inaccurate distance";
+}
+
+std::string describe(const Scene& scene, const ProximityDifference& d) {
+  constexpr std::array nouns{"vertex", "edge", "face"};
+  const auto named = [&](FeatureKind kind, const std::array<std::uint32_t, 2>& ids, ObjectId object) {
+    const std::string numbers =
+        kind == FeatureKind::edge ? fmt::format("{} {}", ids[0], ids[1]) : fmt::format("{}", ids[0]);
+    return fmt::format("{} {} of {}", nouns[static_cast<std::size_t>(kind)], numbers,
+                       one_line(scene.name(object)));
+  };
+  return fmt::format("{} and {} {}", named(d.kind_a, d.element_a, d.object_a),
+                     named(d.kind_b, d.element_b, d.object_b), outcome_of(d.fault));
+}
+
 void print_difference(const Scene& scene, std::uint64_t frame, const VerifyReport& report) {
-  const bool continuous = !report.continuous_differences.empty();
+  const std::string first =
+      !report.continuous_differences.empty() ? describe(scene, report.continuous_differences.front())
+      : !report.differences.empty()          ? describe(scene, report.differences.front())
+                                             : describe(scene, report.proximity_differences.front());
+  const std::size_t differences =
+      report.differences.size() + report.continuous_differences.size() + report.proximity_differences.size();
   fmt::print(stderr, "supple: verify: frame {} has {} from brute force; the first: {}\n", frame,
-             counted(report.differences.size() + report.continuous_differences.size(), "difference"),
-             continuous ? describe(scene, report.continuous_differences.front())
-                        : describe(scene, report.differences.front()));
+             counted(differences, "difference"), first);
 }
 
 }  // namespace
@@ -72,7 +99,8 @@ void Reports::add(const Frame& frame) {
   if (csv_) csv_->add(frame);
   if (text_) text_->add(frame);
   last_frame_ = frame.number;
-  touched_ = touched_ || !frame.result.groups.empty() || !frame.result.continuous_groups.empty();
+  touched_ = touched_ || !frame.result.groups.empty() || !frame.result.continuous_groups.empty() ||
+             !frame.result.proximity_groups.empty();
   if (frame.verify && !frame.verify->agrees() && !std::exchange(differed_, true))
     print_difference(scene_, frame.number, *frame.verify);
 }

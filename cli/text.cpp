@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <string_view>
 #include <utility>
 
 namespace supple::cli {
@@ -49,6 +50,16 @@ std::string one_line(std::string text) {
 
 std::string name_of(const Scene& scene, ObjectId object) {
   return fmt::format("{} {}", object.index, scene.name(object));
+}
+
+std::string name_of(Feature feature) {
+  if (feature.kind == FeatureKind::face) return "f";
+  return fmt::format("{}{}", feature.kind == FeatureKind::vertex ? 'v' : 'e', feature.index);
+}
+
+std::string kind_word(FeatureKind a, FeatureKind b) {
+  constexpr std::string_view letters = "vef";
+  return {letters[static_cast<std::size_t>(a)], letters[static_cast<std::size_t>(b)]};
 }
 
 std::string grouped(std::uint64_t number) {

@@ -20,6 +20,11 @@ inline constexpr std::size_t most_rows = 40;
 /// The number and name of an object, for tables.
 std::string name_of(const Scene& scene, ObjectId object);
 
+/// `v0` … `v2`, `e0` … `e2`, `f`.
+std::string name_of(Feature feature);
+/// The kinds of the two sides of a proximity pair, as in JSON and CSV: `vf`, `ee` and so on.
+std::string kind_word(FeatureKind a, FeatureKind b);
+
 /// The most likely intended word for a mistyped word, or nothing when no word is similar.
 std::optional<std::string> nearest_of(const std::string& mistyped, const std::vector<std::string>& words);
 

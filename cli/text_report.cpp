@@ -36,6 +36,14 @@ void TextReport::add(const Frame& frame) {
     pair.frame_of_most = frame.number;
   }
   triangle_pairs_ += result.contacts.size();
+  for (const ContactGroup& group : result.proximity_groups) {
+    NearSummary& near = near_[{group.a, group.b}];
+    ++near.frames;
+    if (near.pairs == 0) near.smallest = result.proximity_pairs_of(group).front().distance;
+    near.pairs += group.contact_count;
+    for (const ProximityPair& pair : result.proximity_pairs_of(group))
+      near.smallest = std::min(near.smallest, pair.distance);
+  }
   impacts_.add(frame);
   add_to(sum_, result.stats);
   if (frame.simulated) {
@@ -49,8 +57,10 @@ void TextReport::add(const Frame& frame) {
   non_finite_ = result.non_finite_vertices.size();
   if (!frame.verify) return;
   verified_ = true;
-  checked_ += frame.verify->triangle_pairs_checked + frame.verify->element_pairs_checked;
-  differences_ += frame.verify->differences.size() + frame.verify->continuous_differences.size();
+  const VerifyReport& verify = *frame.verify;
+  checked_ += verify.triangle_pairs_checked + verify.element_pairs_checked + verify.proximity_pairs_checked;
+  differences_ +=
+      verify.differences.size() + verify.continuous_differences.size() + verify.proximity_differences.size();
 }
 
 void TextReport::print(const Scene& scene) const {
@@ -71,6 +81,30 @@ void TextReport::print(const Scene& scene) const {
 void TextReport::print_contacts(const Scene& scene) const {
   if (contains(scene.options().contacts, ContactKinds::intersection)) print_pairs(scene);
   if (contains(scene.options().contacts, ContactKinds::continuous)) impacts_.print(scene);
+  if (contains(scene.options().contacts, ContactKinds::proximity)) print_near(scene);
+}
+
+void TextReport::print_near(const Scene& scene) const {
+  if (near_.empty()) {
+    fmt::print("Nothing is within the margins.\n\n");
+    return;
+  }
+  std::vector<std::pair<ObjectPair, NearSummary>> rows(near_.begin(), near_.end());
+  std::sort(rows.begin(), rows.end(), [](const auto& x, const auto& y) {
+    return x.second.pairs != y.second.pairs ? x.second.pairs > y.second.pairs : x.first < y.first;
+  });
+  const bool lists_features = scene.options().proximity_listing == ProximityListing::features;
+  fmt::print("{:<20} {:<20} {:>8} {:>16} {:>24}\n", "object", "is near", "frames",
+             lists_features ? "feature pairs" : "element pairs", "smallest distance");
+  for (std::size_t i = 0; i < std::min(rows.size(), most_rows); ++i) {
+    const auto& [pair, near] = rows[i];
+    fmt::print("{:<20} {:<20} {:>8} {:>16} {:>24}\n", name_of(scene, pair.a),
+               pair.a == pair.b ? "itself" : name_of(scene, pair.b), grouped(near.frames),
+               grouped(near.pairs), near.smallest);
+  }
+  if (rows.size() > most_rows)
+    fmt::print("and {} with fewer; --csv lists all\n", counted(rows.size() - most_rows, "pair"));
+  fmt::print("\n");
 }
 
 void TextReport::print_pairs(const Scene& scene) const {
@@ -128,7 +162,8 @@ void TextReport::print_stages() const {
                           "candidate"),
                   counted(sum_.boxes_tested, "box test")));
   row("exact", sum_.exact_seconds,
-      fmt::format("{}, {} decided by exact arithmetic", counted(sum_.contacts, "contact"),
+      fmt::format("{}{}, {} decided by exact arithmetic", counted(sum_.contacts, "contact"),
+                  sum_.proximity_pairs > 0 ? ", " + counted(sum_.proximity_pairs, "near pair") : "",
                   grouped(sum_.exact_fallbacks)));
   row("sort, events", sum_.sort_and_events_seconds, "");
   row("total", total_seconds, "");
@@ -136,7 +171,7 @@ void TextReport::print_stages() const {
 
 void TextReport::print_verify(const Scene& scene) const {
   const char* const noun = scene.options().contacts == ContactKinds::intersection ? "triangle pair"
-                           : scene.options().contacts == ContactKinds::continuous
+                           : !contains(scene.options().contacts, ContactKinds::intersection)
                                ? "element pair"
                                : "triangle and element pair";
   fmt::print("\nverified: {} checked by brute force, {}\n", counted(checked_, noun),

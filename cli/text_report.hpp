@@ -29,7 +29,13 @@ class TextReport {
     std::uint64_t frame_of_most = 0;  ///< the first frame with this number
   };
 
+  struct NearSummary {
+    std::uint64_t frames = 0, pairs = 0;
+    double smallest = 0;  ///< distance
+  };
+
   void print_contacts(const Scene& scene) const;
+  void print_near(const Scene& scene) const;
   void print_pairs(const Scene& scene) const;
   void print_collisions(const Scene& scene) const;
   void print_stages() const;
@@ -39,6 +45,7 @@ class TextReport {
   std::uint64_t triangle_pairs_ = 0;
   std::uint64_t frames_ = 0;
   std::map<ObjectPair, PairSummary> pairs_;
+  std::map<ObjectPair, NearSummary> near_;
   ImpactTables impacts_;  ///< of continuous contacts
   StepStats sum_;
   std::uint64_t volumes_begun_ = 0, leaves_begun_ = 0, begun_ = 0, ended_ = 0;

@@ -20,14 +20,9 @@ inline constexpr std::array words<BroadPhaseMethod>{"automatic", "octree", "grid
 template <>
 inline constexpr std::array words<RegionSphereTest>{"arvo", "grown_box"};
 template <>
-inline constexpr std::array words<ContactKinds>{"none",
-                                                "intersection",
-                                                "continuous",
-                                                "intersection,continuous",
-                                                "proximity",
-                                                "intersection,proximity",
-                                                "continuous,proximity",
-                                                "intersection,continuous,proximity"};
+inline constexpr std::array words<ContactKinds>{
+    "none",      "intersection",           "continuous",           "intersection,continuous",
+    "proximity", "intersection,proximity", "continuous,proximity", "intersection,continuous,proximity"};
 template <>
 inline constexpr std::array words<ProximityListing>{"features", "elements"};
 

@@ -10,7 +10,8 @@ namespace supple {
 
 /// What a list of proximity pairs contains.
 enum class ProximityListing : std::uint8_t {
-  /// Each pair of features once: two vertices, a vertex and the inside of an edge or of a face, or the insides
+  /// Each pair of features once: two vertices, a vertex and the inside of an edge or of a face, or the
+  /// insides
   /// of two edges. What a solver needs: one pair for each constraint.
   features,
   /// Every vertex and face and every two edges within the margins, with their closest points.
@@ -26,8 +27,8 @@ enum class ProximityListing : std::uint8_t {
 /// edges stands first.
 struct ProximityPair {
   ObjectId object_a, object_b;  ///< equal for a pair of an object with itself
-  /// Of the pair: vertex and vertex, vertex and edge, vertex and face, or edge and edge, in any order. In the
-  /// listing of elements: vertex and face, face and vertex, or edge and edge.
+  /// The kinds of the pair: vertex and vertex, vertex and edge, vertex and face, or edge and edge, in any
+  /// order. In the listing of elements: vertex and face, face and vertex, or edge and edge.
   FeatureKind kind_a = FeatureKind::vertex, kind_b = FeatureKind::vertex;
   /// The user's numbers: {v, v} for a vertex v, {v, w} with v < w for an edge, {t, t} for the face of
   /// triangle t. `Scene::vertices_of` gives the vertex ids.

@@ -14,7 +14,8 @@
 namespace supple {
 
 /// The contacts of one pair of objects, or of one object with itself (`a == b`): a range of
-/// `DetectResult::contacts`, `continuous_contacts` or `proximity_pairs`. Only pairs with contacts of that kind are listed.
+/// `DetectResult::contacts`, `continuous_contacts` or `proximity_pairs`. Only pairs with contacts of that
+/// kind are listed.
 struct ContactGroup {
   ObjectId a, b;
   std::uint32_t first_contact = 0;
@@ -177,8 +178,9 @@ struct VerifyReport {
   std::uint64_t intersecting_pairs = 0;
   std::uint64_t element_pairs_checked = 0;
   std::uint64_t touching_element_pairs = 0;
+  std::uint64_t proximity_pairs_checked = 0;                 ///< pairs of elements
+  std::uint64_t near_pairs = 0;                              ///< in the listing of the last `detect`
   std::vector<Difference> differences;                       ///< sorted
-  std::uint64_t near_pairs = 0;                              ///< proximity pairs, by the scene's listing
   std::vector<ContinuousDifference> continuous_differences;  ///< sorted
   std::vector<ProximityDifference> proximity_differences;    ///< sorted
   bool agrees() const {

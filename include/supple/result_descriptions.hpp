@@ -22,6 +22,8 @@ inline constexpr std::array words<ElementPairKind>{"vf", "fv", "ee"};
 template <>
 inline constexpr std::array words<ContinuousDifference::Fault>{"missed", "added", "late", "early"};
 template <>
+inline constexpr std::array words<ProximityDifference::Fault>{"missed", "added", "inexact"};
+template <>
 inline constexpr std::array words<PairStage>{"not_tested",     "shared_vertex",  "inert",
                                              "object_volumes", "octree_volumes", "triangle_boxes",
                                              "exact_test",     "contact"};
@@ -69,10 +71,12 @@ struct Description<StepStats> {
          "Pairs of octree nodes in the narrow phase; depends on the number of threads");
     work("boxes_tested", &Stats::boxes_tested,
          "Tests of two volumes in nodes and leaves; depends on the number of threads");
-    count("candidate_pairs", &Stats::candidate_pairs, "pairs",
-          "Pairs of triangles whose boxes overlap; 0 when only continuous contacts or proximity are requested");
-    count("vertex_face_candidates", &Stats::vertex_face_candidates, "pairs",
-          "Pairs of a vertex and a face whose boxes come within reach, with continuous contacts or proximity");
+    count(
+        "candidate_pairs", &Stats::candidate_pairs, "pairs",
+        "Pairs of triangles whose boxes overlap; 0 when only continuous contacts or proximity are requested");
+    count(
+        "vertex_face_candidates", &Stats::vertex_face_candidates, "pairs",
+        "Pairs of a vertex and a face whose boxes come within reach, with continuous contacts or proximity");
     count("edge_edge_candidates", &Stats::edge_edge_candidates, "pairs",
           "Pairs of edges whose boxes come within reach, with continuous contacts or proximity");
     count("exact_fallbacks", &Stats::exact_fallbacks, "pairs",

@@ -110,9 +110,9 @@ class Scene {
   void set_pair_filter(PairFilter filter);
 
   /// Finds every contact of the requested kinds: intersections at the current positions, continuous contacts
-  /// within the step, or pairs within the margins at the current positions. The request defaults to the options of the scene. Time depends on the objects
-  /// that moved and on the overlapping volumes; no memory is allocated after the largest step so far. Throws
-  /// `Error` when the request is out of range.
+  /// within the step, or pairs within the margins at the current positions. The request defaults to the
+  /// options of the scene. Time depends on the objects that moved and on the overlapping volumes; no memory
+  /// is allocated after the largest step so far. Throws `Error` when the request is out of range.
   const DetectResult& detect(const DetectRequest& request = {});
   /// The first continuous contact with `SceneOptions::impact`, or nothing when nothing touches within the
   /// step. Of contacts with the same time, it is the first in canonical order. The search skips pairs that

@@ -341,6 +341,8 @@ struct Recorder::Implementation::Rows {
 Recorder::Implementation::Implementation(const fs::path& path, const RecordingHeader& header)
     : path_(final_path(path)), place_of_(header.objects) {
   check_header(header);
+  if (contains(header.scene.contacts, ContactKinds::proximity))
+    throw Error(path_.string() + ": a recording holds no proximity pairs; record a scene without them");
   const fs::path xdmf = xdmf_path(path_);
   for (const RecordedObject& object : header.objects)
     objects_.push_back({object.rest_positions.size(), object.options.is_static, {}});

@@ -55,8 +55,10 @@ int main() {
   }
   const std::uint64_t contacts = supple::hash_of_all_families(1);
   const std::uint64_t continuous = supple::continuous_hash_of_all_families(1);
-  const bool equal = contacts == supple::golden_hash && continuous == supple::golden_continuous_hash;
-  std::printf("%s: %" PRIu64 " %" PRIu64 " %s\n", name, contacts, continuous,
+  const std::uint64_t proximity = supple::proximity_hash_of_all_families(1);
+  const bool equal = contacts == supple::golden_hash && continuous == supple::golden_continuous_hash &&
+                     proximity == supple::golden_proximity_hash;
+  std::printf("%s: %" PRIu64 " %" PRIu64 " %" PRIu64 " %s\n", name, contacts, continuous, proximity,
               equal ? "as everywhere" : "DIFFERENT");
   return equal ? 0 : 1;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -16,6 +17,7 @@ namespace supple {
 constexpr std::uint64_t golden_hash = 5724621896693359205u;
 constexpr std::uint64_t golden_continuous_hash = 18216801788449742353u;
 constexpr std::uint64_t golden_normal_hash = 14020266159755522772u;
+constexpr std::uint64_t golden_proximity_hash = 4925802320043405106u;
 
 inline Scene scene_of(const std::vector<TriangleMesh>& meshes, const SceneOptions& options) {
   Scene scene(options);
@@ -64,6 +66,44 @@ inline std::uint64_t continuous_hash_of_all_families(std::uint32_t threads) {
       scene.set_motion(objects[i], from[i].positions, to[i].positions);
     }
     hash = hash_of(scene.detect(), hash);
+  }
+  return hash;
+}
+
+/// The largest coordinate difference within the meshes.
+inline double size_of(const std::vector<TriangleMesh>& meshes) {
+  double size = 0;
+  for (const TriangleMesh& mesh : meshes) {
+    for (const Vec3d& p : mesh.positions) {
+      for (int axis = 0; axis < 3; ++axis) {
+        const double difference = std::abs(p[axis] - meshes.front().positions.front()[axis]);
+        if (std::isfinite(difference)) size = std::max(size, difference);
+      }
+    }
+  }
+  return size;
+}
+
+/// Every object near itself and the others, within a thousandth of the size. Uses only the first triangles.
+inline Scene near_scene_of(std::vector<TriangleMesh> meshes, const SceneOptions& options) {
+  const double margin = 1e-3 * size_of(meshes);
+  Scene scene(options);
+  for (TriangleMesh& mesh : meshes) {
+    mesh.triangles.resize(std::min(mesh.triangles.size(), std::size_t{24}));
+    scene.add(mesh, {.self_collision = true, .margin = margin, .octree = {.leaf_size = 3}});
+  }
+  return scene;
+}
+
+inline std::uint64_t proximity_hash_of_all_families(std::uint32_t threads) {
+  std::uint64_t hash = 0xcbf29ce484222325u;
+  for (const Family& family : hard_families()) {
+    for (const ProximityListing listing : {ProximityListing::features, ProximityListing::elements}) {
+      Scene scene = near_scene_of(
+          family.make(3),
+          {.contacts = ContactKinds::proximity, .proximity_listing = listing, .threads = threads});
+      hash = hash_of_proximity(scene.detect(), hash);
+    }
   }
   return hash;
 }

@@ -78,6 +78,28 @@ inline std::uint64_t hash_of_normals(const DetectResult& result, std::uint64_t h
   return hash;
 }
 
+inline std::uint64_t hash_of_proximity(const DetectResult& result, std::uint64_t hash) {
+  const auto add = [&](std::uint64_t value) { hash = (hash ^ value) * 0x100000001b3u; };
+  const auto add_numbers = [&](const std::array<double, 3>& numbers) {
+    for (const double number : numbers) add(std::bit_cast<std::uint64_t>(number));
+  };
+  for (const ProximityPair& pair : result.proximity_pairs) {
+    for (const ObjectId object : {pair.object_a, pair.object_b}) add(object.index);
+    for (const FeatureKind kind : {pair.kind_a, pair.kind_b}) add(static_cast<std::uint64_t>(kind));
+    for (const auto& element : {pair.element_a, pair.element_b}) {
+      add(element[0]);
+      add(element[1]);
+    }
+    for (const Feature& feature : {pair.on_a, pair.on_b})
+      add(static_cast<std::uint64_t>(feature.kind) << 8 | feature.index);
+    add(std::bit_cast<std::uint64_t>(pair.distance));
+    add_numbers(pair.barycentric_a);
+    add_numbers(pair.barycentric_b);
+    for (const Vec3d& v : {pair.point_a, pair.point_b, pair.normal}) add_numbers({v.x, v.y, v.z});
+  }
+  return hash;
+}
+
 /// One line per difference that `verify` finds; empty if it agrees.
 inline std::string differences(const Scene& scene) {
   std::string text;

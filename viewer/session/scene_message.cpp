@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -76,7 +77,12 @@ void add_words(JsonText& json) {
           json.end_array();
         };
         if (field.has_truth_words()) add(field.truth_words);
-        if constexpr (Worded<Value>) add(words<Value>);
+        if constexpr (std::is_same_v<Value, ContactKinds>) {
+          constexpr auto first_with_proximity = static_cast<std::size_t>(ContactKinds::proximity);
+          add(std::span(words<Value>).first(first_with_proximity));
+        } else if constexpr (Worded<Value> && !std::is_same_v<Value, ProximityListing>) {
+          add(words<Value>);
+        }
       },
       options);
 }

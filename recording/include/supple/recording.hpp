@@ -54,7 +54,8 @@ struct RecordedFrame {
 class Recorder {
  public:
   /// Replaces existing files once the new recording has its header. Throws `Error` when the files cannot be
-  /// written, or the header is inconsistent.
+  /// written, when the header is inconsistent, and when its scene finds proximity, which a recording does not
+  /// hold.
   Recorder(const std::filesystem::path& path, const RecordingHeader& header);
   /// Closes without throwing. Call `close` to see errors.
   ~Recorder();

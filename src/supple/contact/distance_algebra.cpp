@@ -102,8 +102,8 @@ ExactDistance distance_by_algebra(std::span<const Vec3d> a, std::span<const Vec3
       found.on_a = of_a.feature;
       found.on_b = of_b.feature;
       const Rank rank{static_cast<int>(dimension), of_a.vertices.size() > 1, of_a.order, of_b.order};
-      const bool is_better = !best_rank || found.squared < best.squared ||
-                             (found.squared == best.squared && rank < *best_rank);
+      const bool is_better =
+          !best_rank || found.squared < best.squared || (found.squared == best.squared && rank < *best_rank);
       if (!is_better) continue;
       const auto spread = [](std::array<Rational, 3>& weights, const Part& part) {
         std::array<Rational, 3> result;

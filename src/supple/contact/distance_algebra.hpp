@@ -19,9 +19,10 @@ struct ExactDistance {
   std::array<Rational, 3> weights_a, weights_b;
 };
 
-/// Tries all pairs of features, for `verify` and for tests. Shares no code with the functions of `distance.hpp`,
-/// which says what the features are where there are several. Elements have one to three vertices with finite coordinates, at
-/// least one of them one vertex, or both two. Takes tens of microseconds to milliseconds.
+/// Tries all pairs of features, for `verify` and for tests. Shares no code with the functions of
+/// `distance.hpp`, which says what the features are where there are several. Elements have one to three
+/// vertices with finite coordinates, at least one of them one vertex, or both two. Takes tens of microseconds
+/// to milliseconds.
 ExactDistance distance_by_algebra(std::span<const Vec3d> a, std::span<const Vec3d> b);
 
 /// Whether the distance is within 4 units in the last place of the exact one.

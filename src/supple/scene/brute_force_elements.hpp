@@ -56,9 +56,9 @@ struct Sweep {
   explicit Sweep(std::vector<BoxedElement> unsorted);
 };
 
-/// Calls `decide(p, q)` for all pairs of elements that may come within `separation` of each other within the step,
-/// on all workers, and appends what it returns: an optional value. Within one object, leaves out pairs that share
-/// a vertex, and takes pairs of edges once, the smaller one first.
+/// Calls `decide(p, q)` for all pairs of elements that may come within `separation` of each other within the
+/// step, on all workers, and appends what it returns: an optional value. Within one object, leaves out pairs
+/// that share a vertex, and takes pairs of edges once, the smaller one first.
 template <class Found, class Decide>
 void decide_all(const std::vector<BoxedElement>& a, const Sweep& b, bool same_object, bool are_edges,
                 double separation, const Parallel& parallel, Decide&& decide, std::vector<Found>& found) {

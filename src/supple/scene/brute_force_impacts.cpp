@@ -54,9 +54,8 @@ BruteForceImpacts find_impacts_by_brute_force(const PlainMovingObject& a, const 
   }
   test_all(Kind::edge_edge, of_a.edges, Sweep(of_b.edges),
            [&](const BoxedElement& p, const BoxedElement& q) { return edge_edge(a, p, b, q); });
-  std::sort(
-      result.touching.begin(), result.touching.end(),
-      [](const TouchingElements& p, const TouchingElements& q) { return place_of(p) < place_of(q); });
+  std::sort(result.touching.begin(), result.touching.end(),
+            [](const TouchingElements& p, const TouchingElements& q) { return place_of(p) < place_of(q); });
   return result;
 }
 

@@ -65,9 +65,9 @@ double distance_to_segment(const Vec3d& p, const Vec3d& a, const Vec3d& b) {
   return std::sqrt(dot(rest, rest));
 }
 
-/// Whether two elements are clearly farther apart than `reach`: the planes or lines of their interiors are, or
-/// no points inside them are closest, and their borders are farther apart. Rounding, and interiors that are
-/// nearly parallel, change a distance by much less than the slack.
+/// Whether two elements are clearly farther apart than `reach`: the planes or lines of their interiors are,
+/// or no points inside them are closest, and their borders are farther apart. Rounding, and interiors that
+/// are nearly parallel, change a distance by much less than the slack.
 bool clearly_apart(std::span<const Vec3d> a, std::span<const Vec3d> b, double reach) {
   double size = reach;
   for (const auto& points : {a, b}) {

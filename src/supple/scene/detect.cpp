@@ -14,7 +14,8 @@ namespace supple {
 namespace {
 
 // When each volume grows by half the separation, or by its margin, the volumes of two objects overlap if the
-// objects come within the separation or the sum of their margins. The growth is rounded up by more than its sums can lose.
+// objects come within the separation or the sum of their margins. The growth is rounded up by more than its
+// sums can lose.
 
 double growth(double half_separation) {
   return half_separation > 0 ? half_separation * (1 + 0x1p-19) + std::numeric_limits<float>::min() : 0;

@@ -15,8 +15,8 @@
 
 namespace supple {
 
-/// The data of an object for the search for continuous contacts or proximity: its elements, their positions at
-/// both ends of the step, and boxes around them. Takes memory only after the first request.
+/// The data of an object for the search for continuous contacts or proximity: its elements, their positions
+/// at both ends of the step, and boxes around them. Takes memory only after the first request.
 class MovingShape {
  public:
   /// The elements' whole way, or only its end.

@@ -17,8 +17,8 @@ constexpr std::size_t block_size = RelativeMotionBlock::capacity;
 struct Element {
   FeatureKind kind = FeatureKind::vertex;
   std::uint8_t count = 0;
-  std::array<std::uint32_t, 3> ids{};      ///< ascending
-  std::array<std::uint8_t, 3> corners{};   ///< the corner of the user's triangle that has each id
+  std::array<std::uint32_t, 3> ids{};     ///< ascending
+  std::array<std::uint8_t, 3> corners{};  ///< the corner of the user's triangle that has each id
   std::array<Vec3d, 3> points{};
   std::uint32_t triangle = 0;
 
@@ -246,9 +246,10 @@ void ProximityPass::add_pair(std::uint32_t job, ElementPairKind kind, ElementPai
   const auto side_of = lists_features ? side_of_feature : side_of_element;
   const Side side_a = side_of(first, found->on_a, found->barycentric_a),
              side_b = side_of(second, found->on_b, found->barycentric_b);
-  ProximityPair pair{a.id,      b.id,      side_a.kind,        side_b.kind,        side_a.name,
-                     side_b.name, side_a.on, side_b.on,       found->distance,    side_a.barycentric,
-                     side_b.barycentric, found->point_a, found->point_b, found->normal};
+  ProximityPair pair{
+      a.id,           b.id,         side_a.kind,     side_b.kind,        side_a.name,        side_b.name,
+      side_a.on,      side_b.on,    found->distance, side_a.barycentric, side_b.barycentric, found->point_a,
+      found->point_b, found->normal};
   const bool swaps = is_self ? std::tie(side_b.kind, side_b.name) < std::tie(side_a.kind, side_a.name)
                              : kind == ElementPairKind::face_vertex;
   if (swaps) swap_sides(pair);

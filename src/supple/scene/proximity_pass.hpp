@@ -76,8 +76,8 @@ class ProximityPass {
   std::vector<Worker> workers_;
   ContactTasks tasks_;
   JobOutcomes<1> outcomes_;
-  std::vector<std::uint32_t> first_tasks_;   // of each open job, and the number of tasks
-  std::vector<std::vector<Key>> keys_;       // of each open job, in order
+  std::vector<std::uint32_t> first_tasks_;  // of each open job, and the number of tasks
+  std::vector<std::vector<Key>> keys_;      // of each open job, in order
   std::vector<ContactGroup> groups_;
   std::vector<ProximityPair> pairs_;
   bool is_truncated_ = false;

@@ -29,9 +29,9 @@ BoundingSphere sphere_around(const Aabb& box) {
   return sphere;
 }
 
-/// The rule for the size of leaves. Continuous detection and proximity test all vertices, edges and faces of two leaves,
-/// most of them in vain, so leaves half as large are faster. Regular octrees keep the size that the user
-/// chose.
+/// The rule for the size of leaves. Continuous detection and proximity test all vertices, edges and faces of
+/// two leaves, most of them in vain, so leaves half as large are faster. Regular octrees keep the size that
+/// the user chose.
 ObjectOctreeOptions octree_options(const ObjectOptions& options, const SceneOptions& scene_options) {
   ObjectOctreeOptions octree = options.octree;
   const bool tests_elements = contains(scene_options.contacts, ContactKinds::continuous) ||
@@ -73,8 +73,8 @@ SearchedShapes SceneObject::with_current(SearchedShapes shapes) const {
 
 void SceneObject::update(const SearchedShapes& shapes, const Parallel& parallel) {
   const bool was_behind = needs_refit(shapes);
-  const bool refits_elements = (shapes.moving && !moving_.is_current(placement_)) ||
-                               (shapes.near && !near().is_current(placement_));
+  const bool refits_elements =
+      (shapes.moving && !moving_.is_current(placement_)) || (shapes.near && !near().is_current(placement_));
   refitted_triangles_ = refits_elements ? octree_.triangles().size() : 0;
   refit(shapes, parallel);
   update_volumes(shapes);

@@ -98,7 +98,7 @@ void Scene::Implementation::verify_proximity(const ObjectPair& pair, const Conta
   const PlainMovingObject a = at_end(pair.a), b = same_object ? a : at_end(pair.b);
   const BruteForceProximity truth = find_proximity_by_brute_force(
       a, b, same_object, reach_of({pair.a.index, pair.b.index}), question_.proximity_listing, parallel);
-  report.element_pairs_checked += truth.pairs_checked;
+  report.proximity_pairs_checked += truth.pairs_checked;
   report.near_pairs += truth.near.size();
   const auto reported =
       group != nullptr ? result.proximity_pairs_of(*group) : std::span<const ProximityPair>{};

@@ -97,6 +97,7 @@ TEST(SceneGoldenHash, IsTheSameForAnyNumberOfThreads) {
     EXPECT_EQ(hash_of_all_families(threads), golden_hash) << threads;
     EXPECT_EQ(continuous_hash_of_all_families(threads), golden_continuous_hash) << threads;
     EXPECT_EQ(normal_hash_of_all_families(threads), golden_normal_hash) << threads;
+    EXPECT_EQ(proximity_hash_of_all_families(threads), golden_proximity_hash) << threads;
   }
 }
 
@@ -106,6 +107,7 @@ TEST(SceneGoldenHash, IsTheSameForEveryInstructionSet) {
     EXPECT_EQ(hash_of_all_families(1), golden_hash) << target;
     EXPECT_EQ(continuous_hash_of_all_families(1), golden_continuous_hash) << target;
     EXPECT_EQ(normal_hash_of_all_families(1), golden_normal_hash) << target;
+    EXPECT_EQ(proximity_hash_of_all_families(1), golden_proximity_hash) << target;
     ++targets;
   });
   EXPECT_GE(targets, 1);
