@@ -144,7 +144,7 @@ struct Description<ObjectOptions> {
         .name = "margin",
         .member = &Options::margin,
         .doc = "Proximity: two objects are near where they come within the sum of their margins",
-        .range = ValueRange::from(0, 1e300),
+        .range = ValueRange::from(0),
         .unit = "length"});
     visitor(Field<Options, std::uint32_t>{
         .name = "group",

@@ -82,7 +82,7 @@ struct ObjectOptions {
   /// The object never moves: it is not tested against other static objects, and moving it is an error.
   bool is_static = false;
   /// Proximity: two objects, or one with itself, are near where their elements come within the sum of their
-  /// margins, in the unit of the coordinates. From 0 to 1e300.
+  /// margins, in the unit of the coordinates. Finite, at least 0.
   double margin = 0;
   /// Two objects are tested when the `group` of each has a bit in common with the `mask` of the other.
   std::uint32_t group = 1;

@@ -122,7 +122,7 @@ class Json(ContinuousTest):
         for given, expected in zip(weights + point, [0.5, 0.25, 0.25, 1, 1, 0]):
             self.assertAlmostEqual(given, expected, delta=1e-8)
         normal = [0.0, 0.0, -1.0]
-        expected = {"a": 0, "b": 1, "kind": "fv", "elements": [0, 0], "certain": True, "barycentric_b": [1.0], "normal": normal}
+        expected = {"a": 0, "b": 1, "kind": "fv", "elements": [0, 0], "touching_at_start": False, "start_distance": 1.0, "certain": True, "barycentric_b": [1.0], "normal": normal}
         self.assertEqual(contact, expected)
         self.write_scene(("blade", BLADE, [0, 0, -4]), ("upper", UPPER_EDGE, None))
         (contact,) = self.steps("scene.toml", "--contact-details")[0]["contacts"]

@@ -269,7 +269,7 @@ class Document(RecordingTest):
         done = subprocess.run([sys.executable, "-c", example], cwd=self.folder, capture_output=True, text=True)
         self.assertEqual((done.returncode, done.stderr), (0, ""))
         lines = done.stdout.splitlines()
-        self.assertEqual(lines[0], "supple recording 2 intersection")
+        self.assertEqual(lines[0], "supple recording 3 intersection")
         contacts = [len(f["contacts"]) for f in self.detect("run.h5", "--contact-details")["frames"]]
         told = [int(line.split(" s: ")[1].split(" contacts")[0]) for line in lines[1:]]
         self.assertEqual(told, [count for count in contacts if count > 0])
@@ -503,9 +503,9 @@ class Diff(RecordingTest):
             del file["contacts/kind"]
 
         def raise_version(file):
-            file.attrs["version"] = 3
+            file.attrs["version"] = 4
 
-        for change, part in ((delete, "/contacts/kind: is missing"), (raise_version, "is a recording of version 3")):
+        for change, part in ((delete, "/contacts/kind: is missing"), (raise_version, "is a recording of version 4")):
             (self.folder / "bad.h5").write_bytes((self.folder / "a.h5").read_bytes())
             with h5py.File(self.folder / "bad.h5", "r+") as file:
                 change(file)

@@ -317,29 +317,38 @@ Vec3d direction_of(const Vec3d& v) {
 }
 
 /// Pairs of doubles have a relative error below 2^-96 of the magnitudes of all terms. Lengths are between
-/// 2^-60 and 2^60 and the sines of all angles above 2^-40 here, so all results have a relative error below
-/// 2^-53. Returns nothing otherwise.
-std::optional<RoundedNumbers> rounded_by_pairs(const ElementPoints& elements, const Features& features) {
+/// 2^-60 and 2^60 here. With full accuracy, the sines of all angles are above 2^-40, so all results have a
+/// relative error below 2^-53. With rough accuracy, those at elements that nearly touch are above 2^-68, and
+/// the error is below 2^-26. Returns nothing otherwise.
+std::optional<RoundedNumbers> rounded_by_pairs(const ElementPoints& elements, const Features& features,
+                                               DistanceAccuracy accuracy) {
   const auto vector = [&](std::size_t i, std::size_t j) { return elements.points[i] - elements.points[j]; };
   const auto squared = [](const Vec3d& v) { return supple::dot(v, v); };
   const auto in_range = [](double square) { return square > 0x1p-120 && square < 0x1p120; };
+  const bool is_full = accuracy == DistanceAccuracy::full;
   constexpr double least = 0x1p-80;
+  double magnitude = 0;  // of the terms of the squared distance times its divisor
   if (features.kind == Features::Kind::vertices) {
     if (!in_range(squared(vector(features.vertex, features.edge[0])))) return {};
   } else if (features.kind == Features::Kind::vertex_edge) {
     const Vec3d w = vector(features.vertex, features.edge[0]), e = vector(features.edge[1], features.edge[0]);
     const double ww = squared(w), ee = squared(e);
-    if (!in_range(ww) || !in_range(ee) || !(squared(supple::cross(w, e)) > least * ww * ee)) return {};
+    magnitude = ww * ee;
+    if (!in_range(ww) || !in_range(ee)) return {};
+    if (is_full && !(squared(supple::cross(w, e)) > least * magnitude)) return {};
   } else {
     const bool are_edges = elements.count_a == 2;
     const Vec3d u = are_edges ? vector(1, 0) : vector(2, 1), v = are_edges ? vector(3, 2) : vector(3, 1);
     const Vec3d w = are_edges ? vector(0, 2) : vector(0, 1);
-    const double uu = squared(u), vv = squared(v), ww = squared(w),
-                 volume = supple::dot(supple::cross(u, v), w);
-    if (!in_range(uu) || !in_range(vv) || !in_range(ww) || !(volume * volume > least * uu * vv * ww))
-      return {};
+    const double uu = squared(u), vv = squared(v), ww = squared(w);
+    magnitude = uu * vv * ww;
+    if (!in_range(uu) || !in_range(vv) || !in_range(ww)) return {};
+    const Vec3d n = supple::cross(u, v);
+    const double volume = supple::dot(n, w);
+    if (is_full ? !(volume * volume > least * magnitude) : !(squared(n) > least * uu * vv)) return {};
   }
   const auto numbers = numbers_of(DoubleDoubleNumbers(elements), features, elements.count_a == 2);
+  if (!is_full && !(static_cast<double>(numbers.squared) > 0x1p-136 * magnitude)) return {};
   const double divisor(numbers.divisor);
   RoundedNumbers result;
   result.distance = std::sqrt(static_cast<double>(numbers.squared) / divisor);
@@ -480,7 +489,7 @@ std::optional<ElementDistance> checked(const ElementPoints& elements, double max
 }  // namespace
 
 std::optional<ElementDistance> distance_within(const ElementPoints& elements, double max_distance,
-                                               bool& used_exact) {
+                                               bool& used_exact, DistanceAccuracy accuracy) {
   const BoundedNumbers bounded(elements);
   FeatureSearch<BoundedNumbers> search(bounded, elements);
   std::optional<Features> features = search.search();
@@ -494,8 +503,8 @@ std::optional<ElementDistance> distance_within(const ElementPoints& elements, do
   }
   used_exact = used_exact || integers;
   if (!*is_within) return {};
-  // The numbers depend on the features alone, not on the bound.
-  if (const auto numbers = rounded_by_pairs(elements, *features))
+  // The numbers depend on the features and the accuracy alone, not on the bound.
+  if (const auto numbers = rounded_by_pairs(elements, *features, accuracy))
     return result_of(elements, *features, *numbers);
   used_exact = true;
   if (!integers) integers.emplace(elements, max_distance);

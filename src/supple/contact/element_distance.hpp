@@ -15,8 +15,14 @@ struct ElementPoints {
   std::uint8_t count_a = 1, count_b = 1;
 };
 
+/// What the error of a distance and its normal is at most: 4 units in the last place, or 2^-26 of it, for
+/// which integers are rarely needed.
+enum class DistanceAccuracy : std::uint8_t { full, rough };
+
 /// The functions of `supple/distance.hpp` as one. `max_distance` ≥ 0. Sets `used_exact` when integers decide.
+/// Decisions and features are exact for any accuracy.
 std::optional<ElementDistance> distance_within(const ElementPoints& elements, double max_distance,
-                                               bool& used_exact);
+                                               bool& used_exact,
+                                               DistanceAccuracy accuracy = DistanceAccuracy::full);
 
 }  // namespace supple

@@ -61,7 +61,7 @@ Gap gap_between(const RelativePlaces<double>& relative, bool is_square, const Po
   if (distance > 0x1p-12 * size)
     return {at.alpha, at.beta, distance / scaled.factor, (1 / distance) * at.difference};
   bool used_exact = false;
-  const auto exact = distance_within(points(), any_distance, used_exact);
+  const auto exact = distance_within(points(), any_distance, used_exact, DistanceAccuracy::rough);
   const auto& [a, b] = std::tie(exact->barycentric_a, exact->barycentric_b);
   return {is_square ? a[1] : b[1], is_square ? b[1] : b[2], exact->distance,
           exact->distance > 0 ? exact->normal : Vec3d{}};
@@ -146,7 +146,9 @@ Impact impact_at(const ElementMotion& motion, const RelativeMotion& relative, do
 
 bool touch_at_start(const ElementMotion& motion, double separation) {
   bool used_exact = false;
-  return distance_within(element_points(motion.start, motion.are_edges), separation, used_exact).has_value();
+  return distance_within(element_points(motion.start, motion.are_edges), separation, used_exact,
+                         DistanceAccuracy::rough)
+      .has_value();
 }
 
 std::optional<Impact> checked_first_impact(const ElementMotion& motion, const ImpactOptions& options) {

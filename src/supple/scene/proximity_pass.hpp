@@ -1,8 +1,10 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <compare>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -21,7 +23,7 @@ namespace supple {
 
 /// The distance within which elements of the two objects are near.
 inline double reach_of_margins(double margin_a, double margin_b) {
-  return margin_a + margin_b;
+  return std::min(margin_a + margin_b, std::numeric_limits<double>::max());
 }
 
 /// Narrow phase and exact stage of proximity for all jobs of a step, on all workers. The pass keeps its

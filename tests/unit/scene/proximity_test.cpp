@@ -203,13 +203,14 @@ TEST(ProximityPairs, LeaveOutElementsThatAreNotFinite) {
 
 TEST(ProximityPairs, RefuseMarginsOutOfRange) {
   Scene scene({.contacts = proximity});
-  for (const double margin : {-1.0, std::numeric_limits<double>::quiet_NaN(), 1e301})
+  for (const double margin :
+       {-1.0, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()})
     EXPECT_THROW(scene.add(triangle, {.margin = margin}), Error) << margin;
   const ObjectId object = scene.add(triangle);
   EXPECT_THROW(scene.set_margin(object, -1), Error);
   EXPECT_THROW(scene.set_margin({7, 0}, 1), Error);
-  scene.add(TriangleMesh{}, {.margin = 1e300});
-  scene.add(triangle, {.margin = 1e300});
+  scene.add(TriangleMesh{}, {.margin = 1e308});
+  scene.add(triangle, {.margin = 1e308});
   EXPECT_FALSE(scene.detect().proximity_pairs.empty());
 }
 

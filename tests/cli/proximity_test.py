@@ -1,0 +1,76 @@
+"""Tests `supple detect --contacts proximity`: what is within the margins, with distances."""
+
+import unittest
+
+from program import TRIANGLE, ProgramTest, moved
+
+NEAR = ("--contacts", "proximity", "--margin", "0.125")
+
+
+class Proximity(ProgramTest):
+    maxDiff = None
+
+    def setUp(self):
+        super().setUp()
+        self.write("low.obj", TRIANGLE)
+        self.write("high.obj", moved(TRIANGLE, 0, 0, 0.25))
+
+    def frame(self, *arguments):
+        (frame,) = self.detect("low.obj", "high.obj", *NEAR, *arguments)["frames"]
+        return frame
+
+    def test_features_and_elements(self):
+        frame = self.frame("--verify")
+        self.assertEqual(list(frame), ["frame", "object_pairs", "proximity", "events", "non_finite", "proximity_verify", "stats"])
+        (group,) = frame["proximity"]
+        self.assertEqual(list(group), ["a", "b", "vv", "ve", "vf", "ev", "ee", "fv"])
+        # Corners lie over corners; each pair once.
+        self.assertEqual(group["vv"], [[0, 0, 0.25], [1, 1, 0.25], [2, 2, 0.25]])
+        self.assertEqual(frame["events"]["proximity"]["begin"], [[0, 1]])
+        self.assertEqual(frame["events"]["contacts"]["begin"], [])
+        self.assertEqual(frame["proximity_verify"]["differences"], [])
+        self.assertEqual(frame["proximity_verify"]["near_pairs"], frame["stats"]["proximity_pairs"])
+        (group,) = self.frame("--proximity-listing", "elements")["proximity"]
+        self.assertEqual(list(group), ["a", "b", "vf", "ee", "fv"])
+        self.assertEqual(group["vf"], [[v, 0, 0.25] for v in range(3)])
+        self.assertEqual(group["fv"], [[0, v, 0.25] for v in range(3)])
+        self.assertIn([0, 1, 0, 1, 0.25], group["ee"])
+
+    def test_a_smaller_margin(self):
+        (frame,) = self.detect("low.obj", "high.obj", "--contacts", "proximity", "--margin", "0.1249")["frames"]
+        self.assertEqual(frame["proximity"], [])
+
+    def test_details(self):
+        pair = self.frame("--contact-details", "--proximity-listing", "elements")["proximity_pairs"][0]
+        keys = ["a", "b", "kind", "elements", "on_a", "on_b", "distance", "barycentric_a", "barycentric_b", "point_a", "point_b", "normal"]
+        self.assertEqual(list(pair), keys)
+        self.assertEqual((pair["kind"], pair["elements"], pair["on_a"], pair["on_b"]), ("vf", [0, 0], "v0", "v0"))
+        self.assertEqual((pair["barycentric_a"], pair["barycentric_b"], pair["normal"]), ([1], [1, 0, 0], [0, 0, -1]))
+
+    def test_with_other_kinds(self):
+        (frame,) = self.detect("low.obj", "high.obj", "--contacts", "intersection,proximity", "--margin", "0.125", "--verify")["frames"]
+        for key in ("triangle_pairs", "proximity", "verify", "proximity_verify"):
+            self.assertIn(key, frame)
+
+    def test_csv_and_tables(self):
+        rows = self.run_here("detect", "low.obj", "high.obj", *NEAR, "--csv", "-").out.splitlines()
+        self.assertEqual(rows[:2], ["frame,a,b,kind,a0,a1,b0,b1,distance", "0,0,1,vv,0,,0,,0.25"])
+        done = self.run_here("detect", "low.obj", "high.obj", *NEAR, "--fail-on-contact", "--verify")
+        self.assertEqual(done.status, 1)
+        self.assertIn("feature pairs", done.out)
+        self.assertIn("no difference", done.out)
+
+    def test_errors(self):
+        for arguments, part in (
+            (("--margin", "1"), "--contacts proximity"),
+            (("--contacts", "proximity", "--margin", "-1"), "--margin"),
+            (("--proximity-listing", "elements"), "--contacts proximity"),
+            (("--contacts", "proximity", "--bounding-volume", "obb"), "--contacts"),
+        ):
+            self.assert_one_line_error(self.run_here("detect", "low.obj", *arguments), part)
+        (self.folder / "scene.toml").write_text('[scene]\ncontacts = "proximity"\n[[object]]\nmesh = "low.obj"\n')
+        self.assert_one_line_error(self.run_here("simulate", "scene.toml", "--record", "run.h5"), "--record")
+
+
+if __name__ == "__main__":
+    unittest.main()
