@@ -347,8 +347,6 @@ CLI::App* add_simulate(CLI::App& program, SimulateOptions& options, Dependences&
                   "XDMF file for ParaView next to it")
       ->type_name("FILE.h5")
       ->group("Output");
-  dependences.push_back({app->get_option("--record"), [&options] { return !has_proximity(options.scene); },
-                         "--contacts intersection, continuous or none, which a recording holds"});
   add_output_options(*app, options, dependences);
   return app;
 }

@@ -132,6 +132,7 @@ class Comparison {
   Line contacts(const RecordedFrame& a, const RecordedFrame& b) const;
   Line contact_points(const RecordedFrame& a, const RecordedFrame& b) const;
   Line continuous_contacts(const RecordedFrame& a, const RecordedFrame& b) const;
+  Line proximity_pairs(const RecordedFrame& a, const RecordedFrame& b) const;
   Line colliding_vertices(const RecordedFrame& a, const RecordedFrame& b) const;
 
   std::string name(ObjectId id) const;
@@ -142,6 +143,9 @@ class Comparison {
            std::to_string(c.triangle_b) + " of " + name(c.object_b);
   }
   std::string name(const ContinuousContact& c) const;
+  std::string name(const ProximityPair& pair) const;
+  /// An edge has two different ids.
+  std::string name(const char* noun, const std::array<std::uint32_t, 2>& ids, ObjectId object) const;
 
   /// Compares lists in ascending order of `key`. `compare_rows` compares two rows with equal keys.
   template <class Row, class Key, class CompareRows>
@@ -179,23 +183,31 @@ std::string Comparison::name(ObjectId id) const {
   return "object of id " + std::to_string(id.index);
 }
 
+std::string Comparison::name(const char* noun, const std::array<std::uint32_t, 2>& ids,
+                             ObjectId object) const {
+  std::string text = std::string(noun) + " " + std::to_string(ids[0]);
+  if (ids[0] != ids[1]) text.append(" ").append(std::to_string(ids[1]));
+  return text + " of " + name(object);
+}
+
+std::string Comparison::name(const ProximityPair& pair) const {
+  constexpr std::array nouns{"vertex", "edge", "face"};
+  return name(nouns[static_cast<std::size_t>(pair.kind_a)], pair.element_a, pair.object_a) + " and " +
+         name(nouns[static_cast<std::size_t>(pair.kind_b)], pair.element_b, pair.object_b);
+}
+
 std::string Comparison::name(const ContinuousContact& c) const {
-  const auto element = [this](const char* noun, const std::array<std::uint32_t, 2>& ids, ObjectId object) {
-    std::string text = std::string(noun) + " " + std::to_string(ids[0]);
-    if (ids[0] != ids[1]) text.append(" ").append(std::to_string(ids[1]));
-    return text + " of " + name(object);
-  };
   const bool edges = c.kind == ElementPairKind::edge_edge,
              vertex_first = c.kind == ElementPairKind::vertex_face;
-  return element(edges          ? "edge"
-                 : vertex_first ? "vertex"
-                                : "face",
-                 c.element_a, c.object_a) +
+  return name(edges          ? "edge"
+              : vertex_first ? "vertex"
+                             : "face",
+              c.element_a, c.object_a) +
          " and " +
-         element(edges          ? "edge"
-                 : vertex_first ? "face"
-                                : "vertex",
-                 c.element_b, c.object_b);
+         name(edges          ? "edge"
+              : vertex_first ? "face"
+                             : "vertex",
+              c.element_b, c.object_b);
 }
 
 Line Comparison::headers() const {
@@ -298,6 +310,25 @@ Line Comparison::continuous_contacts(const RecordedFrame& a, const RecordedFrame
   return lists("continuous contact", a.continuous_contacts, b.continuous_contacts, key, compare_rows);
 }
 
+Line Comparison::proximity_pairs(const RecordedFrame& a, const RecordedFrame& b) const {
+  const auto key = [](const ProximityPair& p) {
+    return std::tuple(p.object_a, p.object_b, p.kind_a, p.kind_b, p.element_a, p.element_b);
+  };
+  const auto compare_rows = [this](const ProximityPair& p, const ProximityPair& q) {
+    return first_of([&] { return compare_exactly("feature_a", p.on_a.kind, q.on_a.kind); },
+                    [&] { return compare_exactly("feature_index_a", p.on_a.index, q.on_a.index); },
+                    [&] { return compare_exactly("feature_b", p.on_b.kind, q.on_b.kind); },
+                    [&] { return compare_exactly("feature_index_b", p.on_b.index, q.on_b.index); },
+                    [&] { return compare("distance", p.distance, q.distance); },
+                    [&] { return compare("barycentric_a", p.barycentric_a, q.barycentric_a); },
+                    [&] { return compare("barycentric_b", p.barycentric_b, q.barycentric_b); },
+                    [&] { return compare("point_a", p.point_a, q.point_a); },
+                    [&] { return compare("point_b", p.point_b, q.point_b); },
+                    [&] { return compare("normal", p.normal, q.normal); });
+  };
+  return lists("proximity pair", a.proximity_pairs, b.proximity_pairs, key, compare_rows);
+}
+
 Line Comparison::colliding_vertices(const RecordedFrame& a, const RecordedFrame& b) const {
   const auto compare_groups = [&](const CollidingVertices& p, const CollidingVertices& q) {
     Line line = first_of([&] { return compare_exactly("count_a", p.count_a, q.count_a); },
@@ -330,13 +361,15 @@ Line Comparison::frame(std::uint64_t number) const {
   return first_of(
       [&] { return pairs("object pair", a.object_pairs, b.object_pairs); }, [&] { return contacts(a, b); },
       [&] { return contact_points(a, b); }, [&] { return continuous_contacts(a, b); },
-      [&] { return colliding_vertices(a, b); },
+      [&] { return proximity_pairs(a, b); }, [&] { return colliding_vertices(a, b); },
       [&] { return pairs("event volume_begin", a.volume_begin, b.volume_begin); },
       [&] { return pairs("event volume_end", a.volume_end, b.volume_end); },
       [&] { return pairs("event narrow_phase_begin", a.narrow_phase_begin, b.narrow_phase_begin); },
       [&] { return pairs("event narrow_phase_end", a.narrow_phase_end, b.narrow_phase_end); },
       [&] { return pairs("event contact_begin", a.contact_begin, b.contact_begin); },
       [&] { return pairs("event contact_end", a.contact_end, b.contact_end); },
+      [&] { return pairs("event proximity_begin", a.proximity_begin, b.proximity_begin); },
+      [&] { return pairs("event proximity_end", a.proximity_end, b.proximity_end); },
       [&] { return compare_described("statistics, ", a.stats, b.stats); });
 }
 

@@ -90,6 +90,46 @@ const std::vector<ColumnOf<ContinuousContact>>& columns_of() {
 }
 
 template <>
+const std::vector<ColumnOf<ProximityPair>>& columns_of() {
+  using Row = ProximityPair;
+  static const std::vector<ColumnOf<Row>> columns{
+      column<Row>(
+          "object_a", [](auto& row) -> auto& { return row.object_a.index; }),
+      column<Row>(
+          "object_b", [](auto& row) -> auto& { return row.object_b.index; }),
+      column<Row>(
+          "kind_a", [](auto& row) -> auto& { return row.kind_a; }),
+      column<Row>(
+          "kind_b", [](auto& row) -> auto& { return row.kind_b; }),
+      column<Row>(
+          "element_a", [](auto& row) -> auto& { return row.element_a; }),
+      column<Row>(
+          "element_b", [](auto& row) -> auto& { return row.element_b; }),
+      column<Row>(
+          "feature_a", [](auto& row) -> auto& { return row.on_a.kind; }),
+      column<Row>(
+          "feature_index_a", [](auto& row) -> auto& { return row.on_a.index; }),
+      column<Row>(
+          "feature_b", [](auto& row) -> auto& { return row.on_b.kind; }),
+      column<Row>(
+          "feature_index_b", [](auto& row) -> auto& { return row.on_b.index; }),
+      column<Row>(
+          "distance", [](auto& row) -> auto& { return row.distance; }),
+      column<Row>(
+          "barycentric_a", [](auto& row) -> auto& { return row.barycentric_a; }),
+      column<Row>(
+          "barycentric_b", [](auto& row) -> auto& { return row.barycentric_b; }),
+      column<Row>(
+          "point_a", [](auto& row) -> auto& { return row.point_a; }),
+      column<Row>(
+          "point_b", [](auto& row) -> auto& { return row.point_b; }),
+      column<Row>(
+          "normal", [](auto& row) -> auto& { return row.normal; }),
+  };
+  return columns;
+}
+
+template <>
 const std::vector<ColumnOf<CollidingVertices>>& columns_of() {
   static const std::vector<ColumnOf<CollidingVertices>> columns{
       column<CollidingVertices>(

@@ -112,6 +112,7 @@ inline constexpr const char* object_pairs = "object_pairs";
 inline constexpr const char* contacts = "contacts";
 inline constexpr const char* contact_points = "contact_points";
 inline constexpr const char* continuous_contacts = "continuous_contacts";
+inline constexpr const char* proximity_pairs = "proximity_pairs";
 inline constexpr const char* colliding_vertex_groups = "colliding_vertex_groups";
 inline constexpr const char* colliding_vertices = "colliding_vertices";
 inline constexpr const char* volume_begin = "events/volume_begin";
@@ -120,6 +121,8 @@ inline constexpr const char* narrow_phase_begin = "events/narrow_phase_begin";
 inline constexpr const char* narrow_phase_end = "events/narrow_phase_end";
 inline constexpr const char* contact_begin = "events/contact_begin";
 inline constexpr const char* contact_end = "events/contact_end";
+inline constexpr const char* proximity_begin = "events/proximity_begin";
+inline constexpr const char* proximity_end = "events/proximity_end";
 inline constexpr const char* statistics = "statistics";  // one row per frame
 }  // namespace group_names
 

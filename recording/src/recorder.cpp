@@ -195,12 +195,14 @@ struct Datasets {
     contacts.emplace(file, group_names::contacts);
     contact_points.emplace(file, group_names::contact_points);
     continuous_contacts.emplace(file, group_names::continuous_contacts);
+    proximity_pairs.emplace(file, group_names::proximity_pairs);
     colliding_vertex_groups.emplace(file, group_names::colliding_vertex_groups);
     colliding_vertices.emplace(file, group_names::colliding_vertices);
     create_group(file, "events");
     for (const char* name :
          {group_names::volume_begin, group_names::volume_end, group_names::narrow_phase_begin,
-          group_names::narrow_phase_end, group_names::contact_begin, group_names::contact_end})
+          group_names::narrow_phase_end, group_names::contact_begin, group_names::contact_end,
+          group_names::proximity_begin, group_names::proximity_end})
       events.emplace_back(file, name);
     statistics = create_columns<StepStats>(file, group_names::statistics, frames_in_chunk);
     // `time` is created last, so it grows last: a frame exists when its time exists.
@@ -213,6 +215,7 @@ struct Datasets {
     contacts->for_each_column(function);
     contact_points->for_each_column(function);
     continuous_contacts->for_each_column(function);
+    proximity_pairs->for_each_column(function);
     colliding_vertex_groups->for_each_column(function);
     colliding_vertices->for_each_column(function);
     for (RaggedWriter<ObjectPair>& pairs : events) pairs.for_each_column(function);
@@ -225,9 +228,10 @@ struct Datasets {
   std::optional<RaggedWriter<Contact>> contacts;
   std::optional<RaggedWriter<ContactPoint>> contact_points;
   std::optional<RaggedWriter<ContinuousContact>> continuous_contacts;
+  std::optional<RaggedWriter<ProximityPair>> proximity_pairs;
   std::optional<RaggedWriter<CollidingVertices>> colliding_vertex_groups;
   std::optional<RaggedWriter<std::uint32_t>> colliding_vertices;
-  /// Begin and end of volume overlaps, then of the narrow phase, then of contacts.
+  /// Begin and end of volume overlaps, then of the narrow phase, of contacts and of proximity.
   std::vector<RaggedWriter<ObjectPair>> events;
   std::vector<ColumnWriter> statistics;
   std::optional<ColumnWriter> time;
@@ -318,6 +322,7 @@ struct Recorder::Implementation::Rows {
         contacts(with_places(result.contacts, place_of)),
         contact_points(result.contact_points),
         continuous_contacts(with_places(result.continuous_contacts, place_of)),
+        proximity_pairs(with_places(result.proximity_pairs, place_of)),
         colliding_vertex_groups(with_places(result.colliding_vertex_groups, place_of)),
         colliding_vertices(result.colliding_vertices),
         events{with_places(result.volume_events.begin, place_of),
@@ -325,24 +330,25 @@ struct Recorder::Implementation::Rows {
                with_places(result.narrow_phase_events.begin, place_of),
                with_places(result.narrow_phase_events.end, place_of),
                with_places(result.contact_events.begin, place_of),
-               with_places(result.contact_events.end, place_of)},
+               with_places(result.contact_events.end, place_of),
+               with_places(result.proximity_events.begin, place_of),
+               with_places(result.proximity_events.end, place_of)},
         stats(result.stats) {}
 
   std::vector<ObjectPair> object_pairs;
   std::vector<Contact> contacts;
   std::span<const ContactPoint> contact_points;
   std::vector<ContinuousContact> continuous_contacts;
+  std::vector<ProximityPair> proximity_pairs;
   std::vector<CollidingVertices> colliding_vertex_groups;
   std::span<const std::uint32_t> colliding_vertices;
-  std::array<std::vector<ObjectPair>, 6> events;
+  std::array<std::vector<ObjectPair>, 8> events;
   StepStats stats;
 };
 
 Recorder::Implementation::Implementation(const fs::path& path, const RecordingHeader& header)
     : path_(final_path(path)), place_of_(header.objects) {
   check_header(header);
-  if (contains(header.scene.contacts, ContactKinds::proximity))
-    throw Error(path_.string() + ": a recording holds no proximity pairs; record a scene without them");
   const fs::path xdmf = xdmf_path(path_);
   for (const RecordedObject& object : header.objects)
     objects_.push_back({object.rest_positions.size(), object.options.is_static, {}});
@@ -428,6 +434,7 @@ void Recorder::Implementation::append(double time, std::span<const std::span<con
   datasets_->contacts->append(rows.contacts);
   datasets_->contact_points->append(rows.contact_points);
   datasets_->continuous_contacts->append(rows.continuous_contacts);
+  datasets_->proximity_pairs->append(rows.proximity_pairs);
   datasets_->colliding_vertex_groups->append(rows.colliding_vertex_groups);
   datasets_->colliding_vertices->append(rows.colliding_vertices);
   for (std::size_t i = 0; i < rows.events.size(); ++i) datasets_->events[i].append(rows.events[i]);

@@ -257,6 +257,7 @@ class Recording::Implementation {
   std::vector<Contact> contacts(std::uint64_t frame, std::size_t points);
   std::vector<ContactPoint> contact_points(std::uint64_t frame);
   std::vector<ContinuousContact> continuous_contacts(std::uint64_t frame);
+  std::vector<ProximityPair> proximity_pairs(std::uint64_t frame);
   std::vector<CollidingVertices> colliding_vertex_groups(std::uint64_t frame,
                                                          std::span<const std::uint32_t> vertices);
   StepStats stats(std::uint64_t frame);
@@ -292,10 +293,11 @@ class Recording::Implementation {
   RaggedReader<Contact> contacts_;
   RaggedReader<ContactPoint> contact_points_;
   RaggedReader<ContinuousContact> continuous_contacts_;
+  RaggedReader<ProximityPair> proximity_pairs_;
   RaggedReader<CollidingVertices> colliding_vertex_groups_;
   RaggedReader<std::uint32_t> colliding_vertices_;
   RaggedReader<ObjectPair> volume_begin_, volume_end_, narrow_phase_begin_, narrow_phase_end_, contact_begin_,
-      contact_end_;
+      contact_end_, proximity_begin_, proximity_end_;
   std::vector<std::optional<ColumnReader>>
       statistics_;  ///< in the order of `StepStats`; empty if the file lacks it
   std::vector<ColumnReader> positions_;
@@ -310,6 +312,7 @@ Recording::Implementation::Implementation(const std::string& path)
       contacts_(file_, version_, group_names::contacts, frame_count()),
       contact_points_(file_, version_, group_names::contact_points, frame_count()),
       continuous_contacts_(file_, version_, group_names::continuous_contacts, frame_count()),
+      proximity_pairs_(file_, version_, group_names::proximity_pairs, frame_count(), true),
       colliding_vertex_groups_(file_, version_, group_names::colliding_vertex_groups, frame_count(), true),
       colliding_vertices_(file_, version_, group_names::colliding_vertices, frame_count(), true),
       volume_begin_(file_, version_, group_names::volume_begin, frame_count()),
@@ -317,7 +320,9 @@ Recording::Implementation::Implementation(const std::string& path)
       narrow_phase_begin_(file_, version_, group_names::narrow_phase_begin, frame_count(), true),
       narrow_phase_end_(file_, version_, group_names::narrow_phase_end, frame_count(), true),
       contact_begin_(file_, version_, group_names::contact_begin, frame_count()),
-      contact_end_(file_, version_, group_names::contact_end, frame_count()) {
+      contact_end_(file_, version_, group_names::contact_end, frame_count()),
+      proximity_begin_(file_, version_, group_names::proximity_begin, frame_count(), true),
+      proximity_end_(file_, version_, group_names::proximity_end, frame_count(), true) {
   const auto check_frames = [this](const ColumnReader& column, std::uint64_t needed) {
     if (column.rows() < needed)
       file_.fail(column.path(), "has " + std::to_string(column.rows()) + " frames, the recording has " +
@@ -398,6 +403,30 @@ std::vector<ContinuousContact> Recording::Implementation::continuous_contacts(st
                          &ContinuousContact::object_b, check);
 }
 
+std::vector<ProximityPair> Recording::Implementation::proximity_pairs(std::uint64_t frame) {
+  const auto check = [&](std::size_t row, const ProximityPair& p) {
+    const auto check_value = [&](const char* column, std::uint64_t value, std::uint64_t allowed) {
+      check_below(proximity_pairs_, frame, row, column, value, allowed);
+    };
+    const auto check_element = [&](const char* column, ObjectId object, FeatureKind kind,
+                                   const std::array<std::uint32_t, 2>& element) {
+      const RecordedObject& of = header_.objects[object.index];
+      for (const std::uint32_t number : element)
+        check_value(column, number,
+                    kind == FeatureKind::face ? of.triangles.size() : of.rest_positions.size());
+    };
+    check_value("kind_a", static_cast<std::uint64_t>(p.kind_a), 3);
+    check_value("kind_b", static_cast<std::uint64_t>(p.kind_b), 3);
+    check_element("element_a", p.object_a, p.kind_a, p.element_a);
+    check_element("element_b", p.object_b, p.kind_b, p.element_b);
+    check_value("feature_a", static_cast<std::uint64_t>(p.on_a.kind), 3);
+    check_value("feature_b", static_cast<std::uint64_t>(p.on_b.kind), 3);
+    check_value("feature_index_a", p.on_a.index, 3);
+    check_value("feature_index_b", p.on_b.index, 3);
+  };
+  return rows_of_objects(proximity_pairs_, frame, &ProximityPair::object_a, &ProximityPair::object_b, check);
+}
+
 std::vector<CollidingVertices> Recording::Implementation::colliding_vertex_groups(
     std::uint64_t frame, std::span<const std::uint32_t> vertices) {
   const auto check = [&](std::size_t row, const CollidingVertices& group) {
@@ -450,6 +479,8 @@ RecordedFrame Recording::Implementation::summary(std::uint64_t number) {
   frame.narrow_phase_end = pairs(narrow_phase_end_, number);
   frame.contact_begin = pairs(contact_begin_, number);
   frame.contact_end = pairs(contact_end_, number);
+  frame.proximity_begin = pairs(proximity_begin_, number);
+  frame.proximity_end = pairs(proximity_end_, number);
   frame.stats = stats(number);
   return frame;
 }
@@ -460,6 +491,7 @@ RecordedFrame Recording::Implementation::frame(std::uint64_t number) {
   frame.contact_points = contact_points(number);
   frame.contacts = contacts(number, frame.contact_points.size());
   frame.continuous_contacts = continuous_contacts(number);
+  frame.proximity_pairs = proximity_pairs(number);
   frame.colliding_vertices = colliding_vertices_.rows(number);
   frame.colliding_vertex_groups = colliding_vertex_groups(number, frame.colliding_vertices);
   return frame;

@@ -38,11 +38,13 @@ struct RecordedFrame {
   std::vector<Contact> contacts{};
   std::vector<ContactPoint> contact_points{};
   std::vector<ContinuousContact> continuous_contacts{};
+  std::vector<ProximityPair> proximity_pairs{};
   std::vector<CollidingVertices> colliding_vertex_groups{};
   std::vector<std::uint32_t> colliding_vertices{};
   std::vector<ObjectPair> volume_begin{}, volume_end{};
   std::vector<ObjectPair> narrow_phase_begin{}, narrow_phase_end{};
   std::vector<ObjectPair> contact_begin{}, contact_end{};
+  std::vector<ObjectPair> proximity_begin{}, proximity_end{};
   StepStats stats{};
 };
 
@@ -54,8 +56,7 @@ struct RecordedFrame {
 class Recorder {
  public:
   /// Replaces existing files once the new recording has its header. Throws `Error` when the files cannot be
-  /// written, when the header is inconsistent, and when its scene finds proximity, which a recording does not
-  /// hold.
+  /// written, or the header is inconsistent.
   Recorder(const std::filesystem::path& path, const RecordingHeader& header);
   /// Closes without throwing. Call `close` to see errors.
   ~Recorder();

@@ -12,14 +12,15 @@ namespace supple {
 namespace {
 
 Contents touching(ContactKinds mode, bool colliding_vertices = false) {
-  ObjectOptions fixed;
+  ObjectOptions free, fixed;
+  free.margin = fixed.margin = 0.05;
   fixed.is_static = true;
   SceneOptions scene;
   scene.contacts = mode;
   scene.threads = 1;
   scene.comparison.colliding_vertices = colliding_vertices;
   return simulate({random_soup(30, 1, 0.6, 4), random_soup(20, 1, 0.6, 5), random_soup(20, 1, 0.6, 6)},
-                  {{}, {}, fixed}, scene, 4);
+                  {free, free, fixed}, scene, 4);
 }
 
 /// Compares `base_` with a copy that `change` has modified.
@@ -48,6 +49,7 @@ class FindFirstDifference : public testing::TestWithParam<ContactKinds> {
 using InEveryMode = FindFirstDifference;
 using OfIntersections = FindFirstDifference;
 using OfContinuousContacts = FindFirstDifference;
+using OfProximity = FindFirstDifference;
 
 TEST_P(InEveryMode, NothingWhenEqual) {
   EXPECT_FALSE(after([](Contents&) {}));
@@ -109,7 +111,9 @@ TEST_P(InEveryMode, TimesPositionsAndPairs) {
                                     std::pair{"event narrow_phase_begin", &RecordedFrame::narrow_phase_begin},
                                     std::pair{"event narrow_phase_end", &RecordedFrame::narrow_phase_end},
                                     std::pair{"event contact_begin", &RecordedFrame::contact_begin},
-                                    std::pair{"event contact_end", &RecordedFrame::contact_end}}) {
+                                    std::pair{"event contact_end", &RecordedFrame::contact_end},
+                                    std::pair{"event proximity_begin", &RecordedFrame::proximity_begin},
+                                    std::pair{"event proximity_end", &RecordedFrame::proximity_end}}) {
     auto member = pairs;
     expect(3, name, [member](Contents& c) {
       (c.frames[3].*member).push_back({c.header.objects[1].id, c.header.objects[2].id});
@@ -192,7 +196,9 @@ TEST_P(OfContinuousContacts, EveryField) {
     EXPECT_NE(difference->what.find(std::string(", ") + field + ": "), std::string::npos) << difference->what;
   };
   change("certainty", [](ContinuousContact& c) { c.certainty = ImpactCertainty::within_tolerance; });
+  change("touching_at_start", [](ContinuousContact& c) { c.touching_at_start = !c.touching_at_start; });
   change("toi", [](ContinuousContact& c) { c.toi += 1e-3; });
+  change("start_distance", [](ContinuousContact& c) { c.start_distance += 1e-3; });
   change("barycentric_a", [](ContinuousContact& c) { c.barycentric_a[1] += 1e-3; });
   change("barycentric_b", [](ContinuousContact& c) { c.barycentric_b[2] += 1e-3; });
   change("point", [](ContinuousContact& c) { c.point.y += 1e-3; });
@@ -202,6 +208,35 @@ TEST_P(OfContinuousContacts, EveryField) {
   });
 }
 INSTANTIATE_TEST_SUITE_P(, OfContinuousContacts, testing::Values(ContactKinds::continuous));
+
+TEST_P(OfProximity, EveryField) {
+  ASSERT_GT(base_.frames[2].proximity_pairs.size(), 1u);
+  const auto change = [this](const char* field, const std::function<void(ProximityPair&)>& function) {
+    const std::optional<RecordingDifference> difference =
+        after([&](Contents& c) { function(c.frames[2].proximity_pairs[1]); });
+    ASSERT_TRUE(difference) << field;
+    EXPECT_EQ(difference->frame, 2u);
+    EXPECT_EQ(difference->what.find("proximity pair 1, "), 0u) << difference->what;
+    EXPECT_NE(difference->what.find(std::string(", ") + field + ": "), std::string::npos) << difference->what;
+  };
+  const auto other = [](FeatureKind kind) {
+    return kind == FeatureKind::edge ? FeatureKind::vertex : FeatureKind::edge;
+  };
+  change("feature_a", [&](ProximityPair& p) { p.on_a.kind = other(p.on_a.kind); });
+  change("feature_index_a", [](ProximityPair& p) { p.on_a.index = p.on_a.index == 1 ? 0 : 1; });
+  change("feature_b", [&](ProximityPair& p) { p.on_b.kind = other(p.on_b.kind); });
+  change("feature_index_b", [](ProximityPair& p) { p.on_b.index = p.on_b.index == 1 ? 0 : 1; });
+  change("distance", [](ProximityPair& p) { p.distance += 1e-3; });
+  change("barycentric_a", [](ProximityPair& p) { p.barycentric_a[1] += 1e-3; });
+  change("barycentric_b", [](ProximityPair& p) { p.barycentric_b[2] += 1e-3; });
+  change("point_a", [](ProximityPair& p) { p.point_a.y += 1e-3; });
+  change("point_b", [](ProximityPair& p) { p.point_b.y += 1e-3; });
+  change("normal", [](ProximityPair& p) { p.normal.z += 1e-3; });
+  expect(2, "proximity pair 0: ", [](Contents& c) {
+    c.frames[2].proximity_pairs.erase(c.frames[2].proximity_pairs.begin());
+  });
+}
+INSTANTIATE_TEST_SUITE_P(, OfProximity, testing::Values(ContactKinds::proximity));
 
 }  // namespace
 }  // namespace supple

@@ -29,6 +29,9 @@ inline RecordedFrame kept(double time, const DetectResult& result) {
   keep(frame.narrow_phase_end, result.narrow_phase_events.end);
   keep(frame.contact_begin, result.contact_events.begin);
   keep(frame.contact_end, result.contact_events.end);
+  keep(frame.proximity_begin, result.proximity_events.begin);
+  keep(frame.proximity_end, result.proximity_events.end);
+  keep(frame.proximity_pairs, result.proximity_pairs);
   frame.stats = result.stats;
   return frame;
 }
@@ -48,6 +51,9 @@ inline DetectResult shown(const RecordedFrame& frame) {
   result.narrow_phase_events.end = frame.narrow_phase_end;
   result.contact_events.begin = frame.contact_begin;
   result.contact_events.end = frame.contact_end;
+  result.proximity_events.begin = frame.proximity_begin;
+  result.proximity_events.end = frame.proximity_end;
+  result.proximity_pairs = frame.proximity_pairs;
   result.stats = frame.stats;
   return result;
 }

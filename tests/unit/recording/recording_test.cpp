@@ -47,6 +47,9 @@ void expect_equal(const RecordedFrame& a, const RecordedFrame& b) {
   expect_equal_colliding_vertices(a, b);
   EXPECT_EQ(a.contact_begin, b.contact_begin);
   EXPECT_EQ(a.contact_end, b.contact_end);
+  EXPECT_EQ(a.proximity_pairs, b.proximity_pairs);
+  EXPECT_EQ(a.proximity_begin, b.proximity_begin);
+  EXPECT_EQ(a.proximity_end, b.proximity_end);
   for_each_leaf([](const auto& field, const auto& p, const auto& q) { EXPECT_EQ(p, q) << field.name; },
                 a.stats, b.stats);
 }
@@ -72,6 +75,7 @@ void expect_equal(const RecordingHeader& a, const RecordingHeader& b) {
     EXPECT_EQ(p.options.name, q.options.name);
     EXPECT_EQ(p.options.self_collision, q.options.self_collision);
     EXPECT_EQ(p.options.is_static, q.options.is_static);
+    EXPECT_EQ(p.options.margin, q.options.margin);
     EXPECT_EQ(p.options.group, q.options.group);
     EXPECT_EQ(p.options.mask, q.options.mask);
     EXPECT_EQ(p.options.octree.max_level, q.options.octree.max_level);
@@ -96,6 +100,7 @@ Contents round_trip(const Contents& contents) {
     without_contacts.contacts.clear();
     without_contacts.contact_points.clear();
     without_contacts.continuous_contacts.clear();
+    without_contacts.proximity_pairs.clear();
     without_contacts.colliding_vertex_groups.clear();
     without_contacts.colliding_vertices.clear();
     expect_equal(without_contacts, recording.summary(f));
@@ -109,6 +114,7 @@ Contents round_trip(const Contents& contents) {
 Contents soups(ContactKinds mode, std::uint64_t frames = 12, bool colliding_vertices = false) {
   ObjectOptions folding, fixed;
   folding.self_collision = true;
+  folding.margin = fixed.margin = 0.01;
   fixed.is_static = true;
   SceneOptions scene;
   scene.contacts = mode;
@@ -131,6 +137,12 @@ TEST(Recording, RoundTripOfIntersections) {
   EXPECT_GT(count_all(read.frames, &RecordedFrame::contact_points), 100u);
   EXPECT_GT(count_all(read.frames, &RecordedFrame::volume_begin), 0u);
   EXPECT_GT(count_all(read.frames, &RecordedFrame::contact_begin), 0u);
+}
+
+TEST(Recording, RoundTripOfProximity) {
+  const Contents read = round_trip(soups(ContactKinds::proximity));
+  EXPECT_GT(count_all(read.frames, &RecordedFrame::proximity_pairs), 100u);
+  EXPECT_GT(count_all(read.frames, &RecordedFrame::proximity_begin), 0u);
 }
 
 TEST(Recording, RoundTripOfContinuousContacts) {
