@@ -84,12 +84,14 @@ inline double size_of(const std::vector<TriangleMesh>& meshes) {
   return size;
 }
 
-/// Every object near itself and the others, within a thousandth of the size. Uses only the first triangles.
-inline Scene near_scene_of(std::vector<TriangleMesh> meshes, const SceneOptions& options) {
+/// Every object near itself and the others, within a thousandth of the size. Uses only the first triangles of
+/// each.
+inline Scene near_scene_of(std::vector<TriangleMesh> meshes, const SceneOptions& options,
+                           std::size_t triangles = 24) {
   const double margin = 1e-3 * size_of(meshes);
   Scene scene(options);
   for (TriangleMesh& mesh : meshes) {
-    mesh.triangles.resize(std::min(mesh.triangles.size(), std::size_t{24}));
+    mesh.triangles.resize(std::min(mesh.triangles.size(), triangles));
     scene.add(mesh, {.self_collision = true, .margin = margin, .octree = {.leaf_size = 3}});
   }
   return scene;
