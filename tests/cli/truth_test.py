@@ -102,6 +102,44 @@ class Truth(ProgramTest):
             with self.subTest(case["name"]):
                 self.expect(case, frame["self"][0]["pairs"])
 
+    def numbered(self, group, meshes):
+        """The pairs of each kind as published: the number of an edge in place of its two vertices."""
+        edges = [edge_numbers(mesh) for mesh in meshes]
+        pairs = {}
+        for kinds in group.keys() - {"a", "b"}:
+            pairs[kinds] = []
+            for row in group[kinds]:
+                ids, numbers = iter(row[:-1]), []
+                for kind, of_mesh in zip(kinds, (edges[0], edges[-1])):
+                    numbers.append(of_mesh[next(ids), next(ids)] if kind == "e" else next(ids))
+                if len(meshes) == 1 and kinds in ("vv", "ee"):
+                    numbers.sort()
+                pairs[kinds].append(tuple(numbers))
+            pairs[kinds].sort()
+        return pairs
+
+    def test_proximity(self):
+        for case in json.loads((DATA / "proximity.json").read_text())["proximity"]:
+            meshes = [DATA / case[m] for m in ("mesh", "a", "b") if m in case]
+            margin = repr(float(case["D"]) / 2)
+            inputs = meshes
+            if len(meshes) == 2:
+                inputs = ["scene.toml"]
+                objects = [f'[[object]]\nmesh = "{m}"\n{placement(case[t])}\n' for m, t in zip(meshes, ("ta", "tb"))]
+                self.write("scene.toml", "".join(objects))
+            for listing in ("elements", "features"):
+                with self.subTest(case["name"], listing=listing):
+                    arguments = ("--contacts", "proximity", "--margin", margin, "--proximity-listing", listing)
+                    (frame,) = self.detect(*inputs, *arguments)["frames"]
+                    (group,) = frame["proximity"]
+                    found = self.numbered(group, meshes)
+                    kinds = ("vf", "fv", "ee") if listing == "elements" else case["features"]
+                    expected = case if listing == "elements" else case["features"]
+                    for kind in kinds:
+                        if kind in expected:
+                            truth, pairs = expected[kind], found[kind.lower()]
+                            self.assertEqual((len(pairs), digest(pairs)), (truth["pairs"], truth["sha256_of_sorted_pairs"]), kind)
+
     def expect_step(self, case, step, edges):
         self.assertEqual(len(edges), case["edges"])
         (group,) = step["continuous"]
