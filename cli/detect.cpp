@@ -5,10 +5,13 @@
 #include <algorithm>
 #include <string>
 #include <variant>
+#include <vector>
 
 #include "build_simulation.hpp"
 #include "inputs.hpp"
+#include "option_needs.hpp"
 #include "progress.hpp"
+#include "recorded_input.hpp"
 #include "reports.hpp"
 #include "supple/error.hpp"
 #include "text.hpp"
@@ -52,11 +55,18 @@ std::uint64_t count_frames(const Input& input, const DetectOptions& options) {
   return frames;
 }
 
+/// One mesh, or its frames, without a scene around it: it can only be near itself.
+bool is_one_mesh(const std::vector<std::string>& inputs, const Input& input) {
+  return input.objects.size() == 1 && !is_scene_file(inputs.front()) && !is_recording(inputs.front());
+}
+
 }  // namespace
 
 int run_detect(const DetectOptions& options) {
   Input input = options.sequence ? read_sequence(options.inputs) : read_objects(options.inputs);
   apply(options, input);
+  if (is_one_mesh(options.inputs, input) && has_proximity(options.scene))
+    input.objects.front().options.self_collision = true;
   const std::uint64_t frames = count_frames(input, options);
   Simulation simulation = build_simulation(input);
 

@@ -69,6 +69,8 @@ constexpr const char* detect_footer = R"(Examples:
       when they do.
   supple detect --contacts continuous --min-separation 0.001 scene.toml --frames 300
       Elements count as touching when they come within 0.001.
+  supple detect --contacts proximity --margin 0.005 cloth.obj body.obj --json near.json
+      What is within 0.01, the sum of both margins, and how far. One mesh alone is near itself.
   supple detect rabbit.obj fish.ply --verify
       Check the result against exact brute force over all pairs of triangles.
   supple detect rabbit.obj fish.ply --object-octree regular --leaf-size 1 --node-pairs 0 1

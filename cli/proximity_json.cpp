@@ -21,17 +21,10 @@ Kinds kinds_of(const ProximityPair& pair) {
 }
 
 /// The kinds that a group can have, in canonical order.
-std::vector<Kinds> kinds_of(const ContactGroup& group, ProximityListing listing) {
+std::vector<Kinds> kinds_of(ProximityListing listing) {
   using enum FeatureKind;
-  std::vector<Kinds> kinds{{vertex, vertex}, {vertex, edge}, {vertex, face},
-                           {edge, vertex},   {edge, edge},   {face, vertex}};
-  std::erase_if(kinds, [&](const Kinds& k) {
-    const bool is_of_elements =
-        k == Kinds{edge, edge} || k == Kinds{vertex, face} || k == Kinds{face, vertex};
-    return (listing == ProximityListing::elements && !is_of_elements) ||
-           (group.a == group.b && k.second < k.first);
-  });
-  return kinds;
+  if (listing == ProximityListing::elements) return {{vertex, face}, {edge, edge}, {face, vertex}};
+  return {{vertex, vertex}, {vertex, edge}, {vertex, face}, {edge, vertex}, {edge, edge}, {face, vertex}};
 }
 
 void write_ids(JsonWriter& json, const std::array<std::uint32_t, 2>& element, FeatureKind kind) {
@@ -76,7 +69,7 @@ void write_proximity_groups(JsonWriter& json, const DetectResult& result, Proxim
     json.member("a", std::uint64_t{group.a.index});
     json.member("b", std::uint64_t{group.b.index});
     auto pairs = result.proximity_pairs_of(group);
-    for (const Kinds& kinds : kinds_of(group, listing)) {
+    for (const Kinds& kinds : kinds_of(listing)) {
       json.key(kind_word(kinds.first, kinds.second).c_str());
       json.begin_array();
       // The pairs of one kind are consecutive, and the kinds are in this order.

@@ -11,8 +11,7 @@ namespace supple {
 /// What a list of proximity pairs contains.
 enum class ProximityListing : std::uint8_t {
   /// Each pair of features once: two vertices, a vertex and the inside of an edge or of a face, or the
-  /// insides
-  /// of two edges. What a solver needs: one pair for each constraint.
+  /// insides of two edges. What a solver needs: one pair for each constraint.
   features,
   /// Every vertex and face and every two edges within the margins, with their closest points.
   elements,

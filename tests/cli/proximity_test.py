@@ -2,7 +2,7 @@
 
 import unittest
 
-from program import TRIANGLE, ProgramTest, moved
+from program import TRIANGLE, ProgramTest, joined, moved
 
 NEAR = ("--contacts", "proximity", "--margin", "0.125")
 
@@ -35,6 +35,14 @@ class Proximity(ProgramTest):
         self.assertEqual(group["vf"], [[v, 0, 0.25] for v in range(3)])
         self.assertEqual(group["fv"], [[0, v, 0.25] for v in range(3)])
         self.assertIn([0, 1, 0, 1, 0.25], group["ee"])
+
+    def test_one_mesh_is_near_itself(self):
+        self.write("both.obj", joined(TRIANGLE, moved(TRIANGLE, 0, 0, 0.25)))
+        for arguments in ((), ("--self",)):
+            (frame,) = self.detect("both.obj", *NEAR, "--proximity-listing", "elements", *arguments)["frames"]
+            (group,) = frame["proximity"]
+            self.assertEqual((group["a"], group["b"], group["fv"]), (0, 0, []))
+            self.assertEqual(len(group["vf"]), 6)
 
     def test_a_smaller_margin(self):
         (frame,) = self.detect("low.obj", "high.obj", "--contacts", "proximity", "--margin", "0.1249")["frames"]

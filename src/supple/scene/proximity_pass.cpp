@@ -231,7 +231,7 @@ void ProximityPass::add_pair(std::uint32_t job, ElementPairKind kind, ElementPai
   const bool are_edges = kind == ElementPairKind::edge_edge, is_self = &a == &b;
   const auto objects = objects_of(kind, a, b);
   const std::size_t count = are_edges ? 2 : 1;
-  // Of a vertex and a face, the vertex is first here.
+  // A vertex stands before a face here.
   Element first = element_of(*objects[0], std::span(vertices).first(count));
   Element second = element_of(*objects[3], std::span(vertices).subspan(count));
   if (kind == ElementPairKind::vertex_face) second.triangle = b.triangle_ids[candidate.b];
