@@ -17,7 +17,7 @@ namespace supple {
 constexpr std::uint64_t golden_hash = 5724621896693359205u;
 constexpr std::uint64_t golden_continuous_hash = 18216801788449742353u;
 constexpr std::uint64_t golden_normal_hash = 14020266159755522772u;
-constexpr std::uint64_t golden_proximity_hash = 4925802320043405106u;
+constexpr std::uint64_t golden_proximity_hash = 649647511004271498u;
 
 inline Scene scene_of(const std::vector<TriangleMesh>& meshes, const SceneOptions& options) {
   Scene scene(options);

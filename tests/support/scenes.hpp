@@ -79,7 +79,10 @@ inline std::uint64_t hash_of_normals(const DetectResult& result, std::uint64_t h
 }
 
 inline std::uint64_t hash_of_proximity(const DetectResult& result, std::uint64_t hash) {
-  const auto add = [&](std::uint64_t value) { hash = (hash ^ value) * 0x100000001b3u; };
+  const auto add = [&](std::uint64_t value) {
+    hash = (hash ^ value) * 0x100000001b3u;
+    hash ^= hash >> 32;  // otherwise the signs of two numbers can cancel out
+  };
   const auto add_numbers = [&](const std::array<double, 3>& numbers) {
     for (const double number : numbers) add(std::bit_cast<std::uint64_t>(number));
   };

@@ -259,6 +259,7 @@ void ProximityPass::add_pair(std::uint32_t job, ElementPairKind kind, ElementPai
     const Element of_second = lists_features ? feature_of(second, found->on_b) : in_corner_order(second);
     pair.normal = swaps ? normal_across(of_second, of_first) : normal_across(of_first, of_second);
   }
+  pair.normal = pair.normal + Vec3d{};  // no negative zeros, which depend on the order of the elements
   worker.found.push_back(pair);
 }
 

@@ -93,7 +93,7 @@ std::string volume_name(const testing::TestParamInfo<OctreeLives::ParamType>& in
 INSTANTIATE_TEST_SUITE_P(Volumes, OctreeLives, testing::ValuesIn(all_enclosing_volumes()), volume_name);
 
 TEST(SceneGoldenHash, IsTheSameForAnyNumberOfThreads) {
-  for (std::uint32_t threads = 1; threads <= 8; ++threads) {
+  for (const std::uint32_t threads : {1u, 2u, 3u, 8u}) {
     EXPECT_EQ(hash_of_all_families(threads), golden_hash) << threads;
     EXPECT_EQ(continuous_hash_of_all_families(threads), golden_continuous_hash) << threads;
     EXPECT_EQ(normal_hash_of_all_families(threads), golden_normal_hash) << threads;

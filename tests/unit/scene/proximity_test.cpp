@@ -40,6 +40,16 @@ TEST_P(Proximity, EqualsExactBruteForce) {
   }
 }
 
+/// Several pairs of elements can have the same closest features, and threads decide which is found first. The
+/// sign of a zero would tell them apart.
+TEST_P(Proximity, HasNoNegativeZeros) {
+  Scene scene = near_scene_of(GetParam().make(1), {.contacts = proximity});
+  for (const ProximityPair& pair : scene.detect().proximity_pairs) {
+    for (int axis = 0; axis < 3; ++axis)
+      ASSERT_FALSE(pair.normal[axis] == 0 && std::signbit(pair.normal[axis]));
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Families, Proximity, testing::ValuesIn(hard_families()),
                          [](const auto& family) { return family.param.name; });
 
