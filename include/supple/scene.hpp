@@ -10,6 +10,7 @@
 
 #include "supple/mesh.hpp"
 #include "supple/options.hpp"
+#include "supple/queries.hpp"
 #include "supple/result.hpp"
 #include "supple/types.hpp"
 #include "supple/views.hpp"
@@ -130,6 +131,28 @@ class Scene {
   /// for two meshes of 70,000 triangles. Throws `Error` when an object or option changed since the last
   /// `detect`, and when that call was stopped, truncated, or found no kind of contacts.
   VerifyReport verify() const;
+
+  // Queries. They refit the objects that have moved, as `detect` does, and run on all threads of the scene;
+  // results do not depend on their number. They do not change `result` and `verify`. All throw `Error` when
+  // the numbers of queries and results differ, and when the filter names an object that is not in the scene.
+
+  /// For each point the nearest triangle, or nothing when there is none within the largest distance and when
+  /// the point is not finite. About 1 to 10 µs a point; needs memory of some kilobytes a thread. Throws
+  /// `Error` when the largest distance is negative or NaN.
+  void closest(std::span<const Vec3d> points, std::span<std::optional<ClosestPoint>> results,
+               const ClosestOptions& options = {});
+  /// For each ray the first triangle on it, or nothing when there is none, when a number of the ray is not
+  /// finite, and when its direction is zero. Watertight: a ray through an edge hits a triangle of the edge.
+  void cast(std::span<const Ray> rays, std::span<std::optional<RayHit>> results,
+            const CastOptions& options = {});
+  /// For each point whether it is inside an object of the filter: outside of all, else on a triangle of one,
+  /// or inside at least one. Exact. A point inside a part of a surface that crosses itself is inside where a
+  /// ray from it crosses the surface an odd number of times. Points that are not finite are outside, and so
+  /// are all points of an object with a vertex that is not finite, except on its triangles.
+  ///
+  /// The surfaces must be closed: throws `Error` when an object of the filter has an edge with an odd number
+  /// of triangles, and names it. The first call checks that in O(n log n).
+  void inside(std::span<const Vec3d> points, std::span<Containment> results, const QueryFilter& filter = {});
 
   std::vector<ObjectId> objects() const;  ///< ascending
   bool contains(ObjectId object) const;

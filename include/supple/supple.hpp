@@ -11,6 +11,7 @@
 #include "supple/mesh.hpp"
 #include "supple/options.hpp"
 #include "supple/proximity.hpp"
+#include "supple/queries.hpp"
 #include "supple/result.hpp"
 #include "supple/scene.hpp"
 #include "supple/topology.hpp"

@@ -13,35 +13,14 @@
 #include <tuple>
 
 #include "core/error.hpp"
+#include "geometry/bounded_double.hpp"
 #include "geometry/double_double.hpp"
+#include "geometry/quotient.hpp"
 #include "geometry/vector.hpp"
 #include "geometry/wide_integer.hpp"
 
 namespace supple {
 namespace {
-
-/// A double and a bound of its error. A bound that overflows is infinite or NaN, and then no sign is known.
-struct BoundedDouble {
-  double value = 0, bound = 0;
-
-  /// The result of one operation on doubles: covers its rounding, an underflow, and the roundings of `error`.
-  static BoundedDouble rounded(double value, double error) {
-    return {value, (error + 0x1p-53 * std::fabs(value)) * (1 + 0x1p-49) + 0x1p-1060};
-  }
-  friend BoundedDouble operator+(const BoundedDouble& a, const BoundedDouble& b) {
-    return rounded(a.value + b.value, a.bound + b.bound);
-  }
-  friend BoundedDouble operator-(const BoundedDouble& a, const BoundedDouble& b) {
-    return rounded(a.value - b.value, a.bound + b.bound);
-  }
-  friend BoundedDouble operator*(const BoundedDouble& a, const BoundedDouble& b) {
-    return rounded(a.value * b.value,
-                   std::fabs(a.value) * b.bound + a.bound * std::fabs(b.value) + a.bound * b.bound);
-  }
-};
-
-/// What `sign_of` returns when the sign is not known.
-constexpr int unknown = 2;
 
 class BoundedNumbers {
  public:
@@ -50,17 +29,13 @@ class BoundedNumbers {
   explicit BoundedNumbers(const ElementPoints& elements) : points_(elements.points) {}
   std::array<Number, 3> difference(std::size_t i, std::size_t j) const {
     std::array<Number, 3> result;
-    for (int axis = 0; axis < 3; ++axis) {
-      const double value = points_[i][axis] - points_[j][axis];
-      result[static_cast<std::size_t>(axis)] = {value, 0x1p-53 * std::fabs(value)};
-    }
+    for (int axis = 0; axis < 3; ++axis)
+      result[static_cast<std::size_t>(axis)] = BoundedDouble::difference(points_[i][axis], points_[j][axis]);
     return result;
   }
   static Number number(double value) { return {value, 0}; }
   static Number one() { return {1, 0}; }
-  static int sign_of(const Number& n) {
-    return std::fabs(n.value) > n.bound ? (n.value > 0 ? 1 : -1) : unknown;
-  }
+  static int sign_of(const Number& n) { return supple::sign_of(n); }
 
  private:
   const std::array<Vec3d, 4>& points_;
@@ -201,6 +176,17 @@ class FeatureSearch {
     }
     return known(best_);
   }
+  /// The sign of the difference of this distance and another one, whose numbers are multiplied by 2^`scale`
+  /// with respect to these; nothing when it is not known.
+  std::optional<int> compare(const FeatureSearch& other, int scale) {
+    Number here = squared_ * other.divisor_, there = other.squared_ * divisor_;
+    if constexpr (requires { here <<= 1; }) {
+      if (scale > 0) here <<= 2 * scale;
+      if (scale < 0) there <<= -2 * scale;
+    }
+    const int side = sign_of(here - there);
+    return known(side);
+  }
   /// Whether the distance is at most `most`; nothing when this is not known.
   std::optional<bool> is_within(double most) {
     if (std::isinf(most)) return true;
@@ -217,7 +203,7 @@ class FeatureSearch {
   }
   int sign_of(const Number& number) {
     const int result = Numbers::sign_of(number);
-    is_known_ = is_known_ && result != unknown;
+    is_known_ = is_known_ && result != unknown_sign;
     return result;
   }
 
@@ -229,7 +215,7 @@ class FeatureSearch {
         Numbers::sign_of(are_edges ? n.whole - n.along_u : n.whole - n.along_u - n.along_v),
         are_edges ? Numbers::sign_of(n.whole - n.along_v) : 1};
     if (std::ranges::any_of(signs, [](int sign) { return sign <= 0; })) return false;
-    is_known_ = std::ranges::count(signs, unknown) == 0;
+    is_known_ = std::ranges::count(signs, unknown_sign) == 0;
     best_ = {};
     squared_ = n.volume * n.volume;
     divisor_ = n.whole;
@@ -362,25 +348,6 @@ std::optional<RoundedNumbers> rounded_by_pairs(const ElementPoints& elements, co
   return result;
 }
 
-/// The quotient of integers p ≥ 0 and q > 0 as a · 2^exponent, with 0.5 < a < 2.
-struct Quotient {
-  double a = 0;
-  int exponent = 0;
-
-  Quotient(const UnboundedInteger& p, const UnboundedInteger& q) {
-    if (sign(p) == 0) return;
-    const int bits_p = bit_length(p), bits_q = bit_length(q);
-    a = approximate(p, -bits_p) / approximate(q, -bits_q);
-    exponent = bits_p - bits_q;
-  }
-  double value() const { return std::ldexp(a, exponent); }
-  /// Times 2^scale.
-  double square_root(int scale) const {
-    const int odd = exponent & 1;
-    return std::ldexp(std::sqrt(odd != 0 ? 2 * a : a), (exponent - odd) / 2 + scale);
-  }
-};
-
 Vec3d rounded_direction(const Vector<UnboundedInteger>& v) {
   int bits = 0;
   for (const UnboundedInteger& x : v)
@@ -512,6 +479,20 @@ std::optional<ElementDistance> distance_within(const ElementPoints& elements, do
       result_of(elements, *features, rounded_by_integers(*integers, elements, *features));
   if (result.normal == Vec3d{}) result.normal = direction_across(*integers, elements);
   return result;
+}
+
+int compare_distances(const ElementPoints& p, const ElementPoints& q, bool& used_exact) {
+  const BoundedNumbers bounded_p(p), bounded_q(q);
+  FeatureSearch<BoundedNumbers> of_p(bounded_p, p), of_q(bounded_q, q);
+  if (of_p.search() && of_q.search()) {
+    if (const std::optional<int> order = of_p.compare(of_q, 0)) return *order;
+  }
+  used_exact = true;
+  const IntegerNumbers exact_p(p, 0), exact_q(q, 0);
+  FeatureSearch<IntegerNumbers> of_exact_p(exact_p, p), of_exact_q(exact_q, q);
+  of_exact_p.search();
+  of_exact_q.search();
+  return *of_exact_p.compare(of_exact_q, exact_p.lowest() - exact_q.lowest());
 }
 
 std::optional<ElementDistance> point_point_distance(const Vec3d& a, const Vec3d& b, double max_distance) {

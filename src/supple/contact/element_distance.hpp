@@ -25,4 +25,8 @@ std::optional<ElementDistance> distance_within(const ElementPoints& elements, do
                                                bool& used_exact,
                                                DistanceAccuracy accuracy = DistanceAccuracy::full);
 
+/// The sign of the difference of two distances: -1 when the first is smaller. Exact. Sets `used_exact` when
+/// integers decide.
+int compare_distances(const ElementPoints& p, const ElementPoints& q, bool& used_exact);
+
 }  // namespace supple

@@ -287,6 +287,17 @@ double Scene::max_step() {
   const auto earliest = implementation_->earliest_impact();
   return earliest ? earliest->toi : 1;
 }
+void Scene::closest(std::span<const Vec3d> points, std::span<std::optional<ClosestPoint>> results,
+                    const ClosestOptions& options) {
+  implementation_->closest(points, results, options);
+}
+void Scene::cast(std::span<const Ray> rays, std::span<std::optional<RayHit>> results,
+                 const CastOptions& options) {
+  implementation_->cast(rays, results, options);
+}
+void Scene::inside(std::span<const Vec3d> points, std::span<Containment> results, const QueryFilter& filter) {
+  implementation_->inside(points, results, filter);
+}
 const DetectResult& Scene::result() const {
   return implementation_->result;
 }

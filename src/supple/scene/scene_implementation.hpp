@@ -12,6 +12,7 @@
 #include "core/stop_signal.hpp"
 #include "scene/contact_pass.hpp"
 #include "scene/impact_pass.hpp"
+#include "scene/object_queries.hpp"
 #include "scene/pair_cache.hpp"
 #include "scene/proximity_pass.hpp"
 #include "scene/scene_object.hpp"
@@ -58,6 +59,13 @@ class Scene::Implementation {
 
   const DetectResult& detect(const DetectRequest& request);
   std::optional<ContinuousContact> earliest_impact();
+  /// Calls `answer(queries, objects, i)` for all i below `count`, with objects at their present positions.
+  template <class Answer>
+  void answer_queries(const QueryFilter& seen, std::size_t count, const char* call, const Answer& answer);
+  void closest(std::span<const Vec3d> points, std::span<std::optional<ClosestPoint>> results,
+               const ClosestOptions& query);
+  void cast(std::span<const Ray> rays, std::span<std::optional<RayHit>> results, const CastOptions& query);
+  void inside(std::span<const Vec3d> points, std::span<Containment> results, const QueryFilter& seen);
   VerifyReport verify() const;
   std::string validate() const;
 
@@ -98,6 +106,8 @@ class Scene::Implementation {
   void refit_objects(const Question& question);
   template <class Work, class Function>
   void for_each_object(std::span<const std::uint32_t> indices, const Work& work, const Function& function);
+  /// Refits the objects that have moved and lists those that the filter lets through.
+  void list_queried_objects(const QueryFilter& seen, const char* call);
   void find_object_pairs(Jobs& found);
   void count_queries(const Jobs& jobs);
   void rebuild_degraded(const Jobs& jobs);
@@ -154,6 +164,8 @@ class Scene::Implementation {
   std::vector<ObjectPair> touching_pairs_, leaf_pairs_, near_pairs_;
   std::vector<ContactObject> contact_objects_;
   std::vector<MovingObject> element_objects_;
+  std::vector<QueriedObject> queried_objects_;
+  std::vector<ObjectQueries> queries_of_workers_;
   std::vector<NonFiniteVertex> non_finite_;
   PairCache volume_pairs_, narrow_phase_pairs_, contact_pairs_, near_object_pairs_;
   ContactPass contact_pass_;

@@ -118,6 +118,26 @@ double SceneObject::current_query_cost() const {
   return query_cost(octree_.nodes(), is_resting ? octree_.boxes() : elements.node_boxes());
 }
 
+std::optional<std::array<std::uint32_t, 2>> SceneObject::open_edge() {
+  if (knows_open_edge_) return open_edge_;
+  std::vector<std::array<std::uint32_t, 2>> edges;
+  for (const Triangle& triangle : octree_.triangles()) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto [first, last] = std::minmax(triangle[i], triangle[(i + 1) % 3]);
+      if (first != last) edges.push_back({first, last});
+    }
+  }
+  std::sort(edges.begin(), edges.end());
+  for (std::size_t i = 0; i < edges.size() && !open_edge_;) {
+    std::size_t end = i + 1;
+    while (end < edges.size() && edges[end] == edges[i]) ++end;
+    if ((end - i) % 2 != 0) open_edge_ = edges[i];
+    i = end;
+  }
+  knows_open_edge_ = true;
+  return open_edge_;
+}
+
 void SceneObject::measure_built_octree(const Parallel& parallel) {
   resting_.update(octree_, placement_, parallel);
   rebuild_policy_.set_cost_when_built(current_query_cost());

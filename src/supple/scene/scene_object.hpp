@@ -1,6 +1,8 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -82,6 +84,9 @@ class SceneObject {
   /// finite.
   Vec3d non_finite_position(std::uint32_t vertex) const;
   /// Checks the shapes that are up to date.
+  /// An edge with an odd number of triangles, as the user's vertices; nothing when the surface is closed.
+  /// The first call takes O(n log n), later ones nothing.
+  std::optional<std::array<std::uint32_t, 2>> open_edge();
   std::string validate() const;
   OctreeStatistics octree_statistics() const;
 
@@ -102,6 +107,8 @@ class SceneObject {
   std::uint64_t rebuilds_ = 0;
   std::size_t refitted_triangles_ = 0;
   bool has_moved_ = true;
+  bool knows_open_edge_ = false;
+  std::optional<std::array<std::uint32_t, 2>> open_edge_;
   SearchedShapes updated_;  // by the last update
   Aabb box_;
   BoundingSphere sphere_;

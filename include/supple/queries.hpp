@@ -1,0 +1,77 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <optional>
+
+#include "supple/contact.hpp"
+#include "supple/types.hpp"
+
+namespace supple {
+
+// Questions to the objects of a scene at their present positions: `Scene::closest`, `Scene::cast`,
+// `Scene::inside`. An object on a path is at its end.
+
+/// The objects that a query sees.
+struct QueryFilter {
+  std::optional<ObjectId> object{};  ///< only this object; nothing: all objects of the scene
+  std::uint32_t mask = 0xffffffff;   ///< objects whose `ObjectOptions::group` has a bit in common with it
+};
+
+struct ClosestOptions {
+  QueryFilter filter{};
+  /// Points without a triangle within this distance, closed, have no result; ≥ 0.
+  double max_distance = std::numeric_limits<double>::infinity();
+};
+
+/// The nearest triangle of a point. Exact arithmetic decides which one it is; of several at the same distance
+/// it is the one with the smallest object, then the smallest number.
+struct ClosestPoint {
+  ObjectId object;
+  std::uint32_t triangle = 0;  ///< the user's number
+  Feature feature;             ///< the smallest part of the triangle that holds the closest point; exact
+  double distance = 0;         ///< within 4 units in the last place
+  /// The closest point by the triangle's corners, each coordinate within 2^-50.
+  std::array<double, 3> barycentric{};
+  Vec3d point;  ///< rounded
+  /// Unit vector from the closest point to the query's point. On the triangle: its normal, by the right-hand
+  /// rule.
+  Vec3d normal;
+
+  constexpr bool operator==(const ClosestPoint&) const = default;
+};
+
+/// The points origin + t · direction with t ≥ 0. The direction need not be a unit vector.
+struct Ray {
+  Vec3d origin, direction;
+};
+
+struct CastOptions {
+  QueryFilter filter{};
+  /// Also counts all triangles on the ray, which takes longer.
+  bool count_hits = false;
+};
+
+/// The first triangle on a ray, as a closed set: its edges and corners count. Exact arithmetic decides which
+/// triangle it is; of several at the same t it is the one with the smallest object, then the smallest number.
+struct RayHit {
+  ObjectId object;
+  std::uint32_t triangle = 0;  ///< the user's number
+  /// The smallest t ≥ 0 at which the point of the ray is in the triangle, within 4 units in the last place.
+  double t = 0;
+  Vec3d point;                          ///< origin + t · direction, rounded
+  std::array<double, 3> barycentric{};  ///< of the triangle's point nearest to `point`
+  std::uint64_t hits = 1;               ///< triangles on the whole ray; 1 without `CastOptions::count_hits`
+
+  constexpr bool operator==(const RayHit&) const = default;
+};
+
+/// Where a point is with respect to closed surfaces.
+enum class Containment : std::uint8_t {
+  outside,
+  on,      ///< in a triangle
+  inside,  ///< a ray from the point crosses the surface an odd number of times
+};
+
+}  // namespace supple

@@ -1,0 +1,252 @@
+#include "scene/object_queries.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <tuple>
+
+#include "contact/element_distance.hpp"
+#include "contact/ray_triangle.hpp"
+#include "geometry/exact_predicates.hpp"
+#include "geometry/vector.hpp"
+
+namespace supple {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// The box of a triangle, in double.
+struct CornerBox {
+  Vec3d min, max;
+
+  explicit CornerBox(const TrianglePoints& corners) : min(corners[0]), max(corners[0]) {
+    for (const Vec3d& corner : corners) {
+      for (int axis = 0; axis < 3; ++axis) {
+        min[axis] = std::min(min[axis], corner[axis]);
+        max[axis] = std::max(max[axis], corner[axis]);
+      }
+    }
+  }
+};
+
+/// At most the distance of a point and a box.
+template <class Box>
+double distance_bound(const Vec3d& point, const Box& box) {
+  constexpr double down = 1 - 0x1p-50;
+  double sum = 0, largest = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double gap = std::max({box.min[axis] - point[axis], point[axis] - box.max[axis], 0.0});
+    sum += gap * gap;
+    largest = std::max(largest, gap);
+  }
+  return down * (sum < infinity ? std::sqrt(sum) : largest);
+}
+
+/// At most the first parameter at which a ray is in a box; infinite when it misses the box.
+template <class Box>
+double ray_bound(const Ray& ray, const Box& box) {
+  // Widened by more than the roundings of a difference and a quotient.
+  const auto below = [](double t) { return t * (t > 0 ? 1 - 0x1p-50 : 1 + 0x1p-50) - 0x1p-1060; };
+  const auto above = [](double t) { return t * (t > 0 ? 1 + 0x1p-50 : 1 - 0x1p-50) + 0x1p-1060; };
+  double first = 0, last = infinity;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double low = box.min[axis], high = box.max[axis], origin = ray.origin[axis],
+                 direction = ray.direction[axis];
+    if (direction == 0) {
+      if (origin < low || origin > high) return infinity;
+      continue;
+    }
+    const double enter = ((direction > 0 ? low : high) - origin) / direction,
+                 leave = ((direction > 0 ? high : low) - origin) / direction;
+    first = std::max(first, below(enter));
+    last = std::min(last, above(leave));
+  }
+  return first <= last ? std::min(first, std::numeric_limits<double>::max()) : infinity;
+}
+
+/// 0 when the upward line from the point meets the box, otherwise infinite.
+template <class Box>
+double column_bound(const Vec3d& point, const Box& box) {
+  const bool meets = box.min[0] <= point.x && point.x <= box.max[0] && box.min[1] <= point.y &&
+                     point.y <= box.max[1] && point.z <= box.max[2];
+  return meets ? 0 : infinity;
+}
+
+ElementPoints point_and_triangle(const Vec3d& point, const TrianglePoints& corners) {
+  return {{point, corners[0], corners[1], corners[2]}, 1, 3};
+}
+
+/// The feature of a triangle by its vertices, to recognise it in the triangles around it.
+std::tuple<FeatureKind, std::uint32_t, std::uint32_t> name_of(const Feature& feature,
+                                                              const Triangle& triangle, std::uint32_t id) {
+  if (feature.kind == FeatureKind::face) return {feature.kind, id, id};
+  const std::uint32_t first = triangle[feature.index],
+                      last = feature.kind == FeatureKind::vertex ? first : triangle[(feature.index + 1u) % 3];
+  return {feature.kind, std::min(first, last), std::max(first, last)};
+}
+
+/// The turn of a, b and the point in the x-y plane, where the point is moved by (e, e²) for an infinitely
+/// small e > 0. 0 only when a and b have equal x and y.
+int turn_beside(const Vec3d& a, const Vec3d& b, const Vec3d& point, bool& used_exact) {
+  if (const int turn = orient2d(a, b, point, 2, used_exact)) return turn;
+  if (a.y != b.y) return a.y > b.y ? 1 : -1;
+  return (b.x > a.x) - (b.x < a.x);
+}
+
+/// Whether a ray from beside the point, straight up, crosses the triangle, which does not contain the point.
+bool crosses_above(const TrianglePoints& corners, const Vec3d& point, bool& used_exact) {
+  const int turn = turn_beside(corners[0], corners[1], point, used_exact);
+  if (turn == 0 || turn_beside(corners[1], corners[2], point, used_exact) != turn ||
+      turn_beside(corners[2], corners[0], point, used_exact) != turn)
+    return false;
+  return orient3d(corners[0], corners[1], corners[2], point, used_exact) * turn < 0;
+}
+
+}  // namespace
+
+TrianglePoints QueriedObject::corners(std::uint32_t triangle) const {
+  TrianglePoints result;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Vec3d p = (*positions)[triangles[triangle][i]];
+    result[i] = view.translation == Vec3d{} ? p : p + view.translation;
+  }
+  return result;
+}
+
+template <class BoundOf>
+void ObjectQueries::order(std::span<const QueriedObject> objects, const BoundOf& bound_of, double limit) {
+  order_.clear();
+  for (std::uint32_t i = 0; i < objects.size(); ++i) {
+    if (objects[i].box.empty()) continue;
+    const double bound = bound_of(objects[i].box);
+    if (bound <= limit) order_.emplace_back(bound, i);
+  }
+  std::sort(order_.begin(), order_.end());
+}
+
+std::optional<ClosestPoint> ObjectQueries::closest(std::span<const QueriedObject> objects, const Vec3d& point,
+                                                   double max_distance) {
+  if (!is_finite(point)) return {};
+  struct Best {
+    ElementDistance found;
+    TrianglePoints corners;
+    std::uint32_t object = 0, id = 0;
+    std::tuple<FeatureKind, std::uint32_t, std::uint32_t> feature;
+  };
+  std::optional<Best> best;
+  double limit = max_distance;
+  bool used_exact = false;
+  const auto bound_of = [&](const auto& box) { return distance_bound(point, box); };
+  order(objects, bound_of, limit);
+  for (const auto& [object_bound, index] : order_) {
+    const QueriedObject& object = objects[index];
+    if (!(object_bound <= limit)) break;
+    descent_.run(object.view, bound_of, [&] { return limit; }, [&](std::uint32_t begin, std::uint32_t end) {
+      for (std::uint32_t t = begin; t < end; ++t) {
+        if (object.is_inert(t)) continue;
+        const TrianglePoints corners = object.corners(t);
+        if (!(bound_of(CornerBox(corners)) <= limit)) continue;
+        const ElementPoints elements = point_and_triangle(point, corners);
+        const auto found = distance_within(elements, limit, used_exact);
+        if (!found) continue;
+        const std::uint32_t id = object.triangle_ids[t];
+        const auto feature = name_of(found->on_b, object.triangles[t], id);
+        if (best) {
+          const bool is_same_feature = best->object == index && best->feature == feature;
+          const int side =
+              is_same_feature
+                  ? 0
+                  : compare_distances(elements, point_and_triangle(point, best->corners), used_exact);
+          if (side > 0) continue;
+          if (side == 0 && std::tie(best->object, best->id) < std::tie(index, id)) continue;
+        }
+        best = {*found, corners, index, id, feature};
+        limit = std::min(max_distance, found->distance * (1 + 0x1p-49) + 0x1p-1060);
+      }
+    });
+  }
+  if (!best) return {};
+  return ClosestPoint{objects[best->object].id,  best->id,
+                      best->found.on_b,          best->found.distance,
+                      best->found.barycentric_b, best->found.point_b,
+                      best->found.normal};
+}
+
+std::optional<RayHit> ObjectQueries::cast(std::span<const QueriedObject> objects, const Ray& ray,
+                                          bool count_hits) {
+  if (!is_finite(ray.origin) || !is_finite(ray.direction) || ray.direction == Vec3d{}) return {};
+  struct Best {
+    RayParameter parameter;
+    TrianglePoints corners;
+    double t = 0;
+    std::uint32_t object = 0, id = 0;
+  };
+  std::optional<Best> best;
+  constexpr double any = std::numeric_limits<double>::max();
+  double limit = any;
+  std::uint64_t hits = 0;
+  bool used_exact = false;
+  const auto bound_of = [&](const auto& box) { return ray_bound(ray, box); };
+  order(objects, bound_of, limit);
+  for (const auto& [object_bound, index] : order_) {
+    const QueriedObject& object = objects[index];
+    if (!(object_bound <= limit)) break;
+    descent_.run(object.view, bound_of, [&] { return limit; }, [&](std::uint32_t begin, std::uint32_t end) {
+      for (std::uint32_t t = begin; t < end; ++t) {
+        if (object.is_inert(t)) continue;
+        const TrianglePoints corners = object.corners(t);
+        if (!(bound_of(CornerBox(corners)) <= limit)) continue;
+        const auto parameter = RayParameter::find(ray, corners, used_exact);
+        if (!parameter) continue;
+        ++hits;
+        const std::uint32_t id = object.triangle_ids[t];
+        if (best) {
+          const int side = parameter->compare(best->parameter, used_exact);
+          if (side > 0 || (side == 0 && std::tie(best->object, best->id) < std::tie(index, id))) continue;
+        }
+        best = {*parameter, corners, parameter->rounded(), index, id};
+        if (!count_hits) limit = std::min(any, best->t * (1 + 0x1p-45) + 0x1p-1060);
+      }
+    });
+  }
+  if (!best) return {};
+  RayHit hit{objects[best->object].id, best->id, best->t, ray.origin + best->t * ray.direction, {},
+             count_hits ? hits : 1};
+  if (is_finite(hit.point)) {
+    const ElementPoints elements = point_and_triangle(hit.point, best->corners);
+    hit.barycentric = distance_within(elements, infinity, used_exact, DistanceAccuracy::rough)->barycentric_b;
+  }
+  return hit;
+}
+
+Containment ObjectQueries::inside(const QueriedObject& object, const Vec3d& point) {
+  bool is_on = false, is_inside = false, used_exact = false;
+  const auto bound_of = [&](const auto& box) { return column_bound(point, box); };
+  descent_.run(object.view, bound_of, [&] { return is_on ? -1.0 : 0.0; },
+               [&](std::uint32_t begin, std::uint32_t end) {
+                 for (std::uint32_t t = begin; t < end && !is_on; ++t) {
+                   if (object.is_inert(t)) continue;
+                   const TrianglePoints corners = object.corners(t);
+                   const CornerBox box(corners);
+                   if (bound_of(box) > 0) continue;
+                   if (box.min.z <= point.z)
+                     is_on = distance_within(point_and_triangle(point, corners), 0, used_exact).has_value();
+                   if (!is_on && crosses_above(corners, point, used_exact)) is_inside = !is_inside;
+                 }
+               });
+  if (is_on) return Containment::on;
+  return is_inside && object.view.arrays.inert == nullptr ? Containment::inside : Containment::outside;
+}
+
+Containment ObjectQueries::inside(std::span<const QueriedObject> objects, const Vec3d& point) {
+  Containment result = Containment::outside;
+  if (!is_finite(point)) return result;
+  order(objects, [&](const Aabb& box) { return column_bound(point, box); }, 0);
+  for (const auto& [bound, index] : order_) {
+    result = std::max(result, inside(objects[index], point));
+    if (result == Containment::inside) break;
+  }
+  return result;
+}
+
+}  // namespace supple

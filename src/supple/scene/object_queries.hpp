@@ -1,0 +1,53 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "narrow_phase/ordered_descent.hpp"
+#include "octree/vertex_buffer.hpp"
+#include "supple/mesh.hpp"
+#include "supple/queries.hpp"
+#include "supple/triangle_intersection.hpp"
+
+namespace supple {
+
+/// What queries read of one object at rest, whose octree is refitted.
+struct QueriedObject {
+  ObjectId id;
+  OctreeView view;
+  const VertexBuffer* positions = nullptr;
+  std::span<const Triangle> triangles;  ///< in octree order
+  std::span<const std::uint32_t> triangle_ids;
+  Aabb box;  ///< of the placed object
+
+  /// The placed corners of a triangle in octree order.
+  TrianglePoints corners(std::uint32_t triangle) const;
+  bool is_inert(std::uint32_t triangle) const {
+    return view.arrays.inert != nullptr && view.arrays.inert[triangle] != 0;
+  }
+};
+
+/// Answers queries to a list of objects, one after the other. Holds the memory of one worker.
+class ObjectQueries {
+ public:
+  std::optional<ClosestPoint> closest(std::span<const QueriedObject> objects, const Vec3d& point,
+                                      double max_distance);
+  std::optional<RayHit> cast(std::span<const QueriedObject> objects, const Ray& ray, bool count_hits);
+  /// `on` before `inside`, for each object; `inside` if the point is inside one of them, else `on` if it is
+  /// on one of them. Objects with an inert triangle contain nothing.
+  Containment inside(std::span<const QueriedObject> objects, const Vec3d& point);
+
+ private:
+  Containment inside(const QueriedObject& object, const Vec3d& point);
+  /// The objects with a bound of at most `limit`, the smallest first.
+  template <class BoundOf>
+  void order(std::span<const QueriedObject> objects, const BoundOf& bound_of, double limit);
+
+  OrderedDescent descent_;
+  std::vector<std::pair<double, std::uint32_t>> order_;
+};
+
+}  // namespace supple

@@ -1,0 +1,425 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "contact/distance_algebra.hpp"
+#include "supple/error.hpp"
+#include "supple/inspection.hpp"
+#include "supple/scene.hpp"
+#include "support/hard_scenes.hpp"
+#include "support/random.hpp"
+#include "support/scenes.hpp"
+
+namespace supple {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+using RationalVector = std::array<Rational, 3>;
+
+std::vector<std::optional<ClosestPoint>> closest_of(Scene& scene, const std::vector<Vec3d>& points,
+                                                    const ClosestOptions& options = {}) {
+  std::vector<std::optional<ClosestPoint>> results(points.size());
+  scene.closest(points, results, options);
+  return results;
+}
+std::vector<std::optional<RayHit>> hits_of(Scene& scene, const std::vector<Ray>& rays,
+                                           const CastOptions& options = {}) {
+  std::vector<std::optional<RayHit>> results(rays.size());
+  scene.cast(rays, results, options);
+  return results;
+}
+std::vector<Containment> inside_of(Scene& scene, const std::vector<Vec3d>& points,
+                                   const QueryFilter& filter = {}) {
+  std::vector<Containment> results(points.size());
+  scene.inside(points, results, filter);
+  return results;
+}
+
+/// The finite triangles of a scene in canonical order.
+struct PlacedTriangle {
+  ObjectId object;
+  std::uint32_t id;
+  std::array<Vec3d, 3> corners;
+};
+std::vector<PlacedTriangle> triangles_of(const Scene& scene, const std::vector<TriangleMesh>& meshes) {
+  std::vector<PlacedTriangle> triangles;
+  for (const ObjectId object : scene.objects()) {
+    const TriangleMesh& mesh = meshes[object.index];
+    for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+      PlacedTriangle triangle{object, t, {}};
+      bool is_all_finite = true;
+      for (std::size_t i = 0; i < 3; ++i) {
+        triangle.corners[i] = scene.position(object, mesh.triangles[t][i]);
+        for (int axis = 0; axis < 3; ++axis)
+          is_all_finite = is_all_finite && std::isfinite(triangle.corners[i][axis]);
+      }
+      if (is_all_finite) triangles.push_back(triangle);
+    }
+  }
+  return triangles;
+}
+
+/// Compares with rationals over all triangles.
+void expect_closest(const std::vector<PlacedTriangle>& triangles, const Vec3d& point,
+                    const std::optional<ClosestPoint>& found) {
+  const PlacedTriangle* best = nullptr;
+  Rational least;
+  Feature feature;
+  for (const PlacedTriangle& triangle : triangles) {
+    const ExactDistance exact = distance_by_algebra({&point, 1}, triangle.corners);
+    if (best != nullptr && exact.squared >= least) continue;
+    best = &triangle;
+    least = exact.squared;
+    feature = exact.on_b;
+  }
+  ASSERT_EQ(found.has_value(), best != nullptr);
+  if (!found) return;
+  EXPECT_EQ(found->object, best->object);
+  EXPECT_EQ(found->triangle, best->id);
+  EXPECT_EQ(found->feature, feature);
+  EXPECT_TRUE(is_accurate(found->distance, least)) << found->distance;
+}
+
+// The first parameter of a ray in a triangle, by solving for the points where its line meets the inside, an
+// edge or a corner.
+
+RationalVector minus(const Vec3d& a, const Vec3d& b) {
+  return {Rational(a.x) - Rational(b.x), Rational(a.y) - Rational(b.y), Rational(a.z) - Rational(b.z)};
+}
+Rational determinant(const RationalVector& a, const RationalVector& b, const RationalVector& c) {
+  return a[0] * (b[1] * c[2] - b[2] * c[1]) - a[1] * (b[0] * c[2] - b[2] * c[0]) +
+         a[2] * (b[0] * c[1] - b[1] * c[0]);
+}
+
+std::optional<Rational> first_parameter(const Ray& ray, const std::array<Vec3d, 3>& corners) {
+  std::optional<Rational> first;
+  const auto consider = [&](const Rational& t) {
+    if (t >= 0 && (!first || t < *first)) first = t;
+  };
+  if (distance_by_algebra({&ray.origin, 1}, corners).squared == 0) consider(0);
+  const RationalVector d = minus(ray.direction, {});
+  const RationalVector a = minus(corners[0], ray.origin), u = minus(corners[1], corners[0]),
+                       v = minus(corners[2], corners[0]);
+  const auto negative = [](RationalVector x) {
+    for (Rational& number : x) number = -number;
+    return x;
+  };
+  // t d - p u - q v = a
+  if (const Rational whole = determinant(d, negative(u), negative(v)); whole != 0) {
+    const Rational t = determinant(a, negative(u), negative(v)) / whole,
+                   p = determinant(d, a, negative(v)) / whole, q = determinant(d, negative(u), a) / whole;
+    if (p >= 0 && q >= 0 && p + q <= 1) consider(t);
+  }
+  for (std::size_t i = 0; i < 3; ++i) {
+    const RationalVector to = minus(corners[i], ray.origin), e = minus(corners[(i + 1) % 3], corners[i]);
+    for (std::size_t x = 0; x < 3; ++x) {
+      const std::size_t y = (x + 1) % 3, z = (x + 2) % 3;
+      if (d[x] != 0) {  // the corner on the line
+        const Rational t = to[x] / d[x];
+        if (t * d[y] == to[y] && t * d[z] == to[z]) consider(t);
+      }
+      const Rational whole = e[x] * d[y] - e[y] * d[x];  // t d - p e = to
+      if (whole == 0) continue;
+      const Rational t = (e[x] * to[y] - e[y] * to[x]) / whole, p = (d[x] * to[y] - d[y] * to[x]) / whole;
+      if (p >= 0 && p <= 1 && t * d[z] - p * e[z] == to[z]) consider(t);
+    }
+  }
+  return first;
+}
+
+void expect_hit(const std::vector<PlacedTriangle>& triangles, const Ray& ray,
+                const std::optional<RayHit>& found, bool counts) {
+  const PlacedTriangle* best = nullptr;
+  Rational least;
+  std::uint64_t hits = 0;
+  for (const PlacedTriangle& triangle : triangles) {
+    const auto t = first_parameter(ray, triangle.corners);
+    if (!t) continue;
+    ++hits;
+    if (best != nullptr && *t >= least) continue;
+    best = &triangle;
+    least = *t;
+  }
+  ASSERT_EQ(found.has_value(), best != nullptr);
+  if (!found) return;
+  EXPECT_EQ(found->object, best->object);
+  EXPECT_EQ(found->triangle, best->id);
+  EXPECT_TRUE(is_accurate(found->t, least * least)) << found->t;
+  EXPECT_EQ(found->hits, counts ? hits : 1);
+}
+
+class Queries : public testing::TestWithParam<Family> {};
+
+/// Points and rays from and through corners, centres of edges and places nearby: many distances tie, many
+/// rays lie in a plane.
+TEST_P(Queries, EqualBruteForceByRationals) {
+#ifdef NDEBUG
+  constexpr std::size_t most = 12, count = 12;
+#else
+  constexpr std::size_t most = 6, count = 6;
+#endif
+  std::vector<TriangleMesh> meshes = GetParam().make(5);
+  for (TriangleMesh& mesh : meshes) mesh.triangles.resize(std::min(mesh.triangles.size(), most));
+  Scene scene;
+  for (const TriangleMesh& mesh : meshes) scene.add(mesh, {.octree = {.leaf_size = 2}});
+  const std::vector<PlacedTriangle> triangles = triangles_of(scene, meshes);
+  ASSERT_FALSE(triangles.empty());
+  RandomNumbers random(7);
+  const auto any_point = [&] {
+    const auto& c = triangles[random.below(static_cast<std::uint32_t>(triangles.size()))].corners;
+    const Vec3d& p = c[random.below(3)];
+    const Vec3d& q = c[random.below(3)];
+    const double share = random.below(3) / 2.0;
+    return (1 - share) * p + share * q;
+  };
+  std::vector<Vec3d> points;
+  std::vector<Ray> rays;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Vec3d a = any_point(), b = any_point();
+    points.push_back(random.below(2) == 0 ? a : 0.5 * a + 0.5 * b);
+    Vec3d direction = any_point() - b;
+    if (random.below(3) == 0) direction = {0, 0, random.below(2) == 0 ? 1.0 : -1.0};
+    rays.push_back({random.below(2) == 0 ? b : b - direction, direction});
+  }
+  const auto closest = closest_of(scene, points);
+  for (std::size_t i = 0; i < count; ++i) expect_closest(triangles, points[i], closest[i]);
+  for (const bool counts : {false, true}) {
+    const auto hits = hits_of(scene, rays, {.count_hits = counts});
+    for (std::size_t i = 0; i < count; ++i) {
+      if (rays[i].direction == Vec3d{}) {
+        EXPECT_FALSE(hits[i]);
+      } else {
+        expect_hit(triangles, rays[i], hits[i], counts);
+      }
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Families, Queries, testing::ValuesIn(hard_families()),
+                         [](const auto& family) { return family.param.name; });
+
+TriangleMesh tetrahedron(const std::array<Vec3d, 4>& corners) {
+  return {"tetrahedron", {corners.begin(), corners.end()}, {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}}};
+}
+
+/// Where a point is, by its barycentric coordinates in rationals.
+Containment in_tetrahedron(const std::array<Vec3d, 4>& c, const Vec3d& p) {
+  const Rational whole = determinant(minus(c[1], c[0]), minus(c[2], c[0]), minus(c[3], c[0]));
+  if (whole != 0) {
+    std::array<Rational, 4> weights;
+    weights[1] = determinant(minus(p, c[0]), minus(c[2], c[0]), minus(c[3], c[0])) / whole;
+    weights[2] = determinant(minus(c[1], c[0]), minus(p, c[0]), minus(c[3], c[0])) / whole;
+    weights[3] = determinant(minus(c[1], c[0]), minus(c[2], c[0]), minus(p, c[0])) / whole;
+    weights[0] = 1 - weights[1] - weights[2] - weights[3];
+    const Rational least = *std::min_element(weights.begin(), weights.end());
+    return least > 0 ? Containment::inside : least == 0 ? Containment::on : Containment::outside;
+  }
+  for (const Triangle& t : tetrahedron(c).triangles) {
+    const std::array<Vec3d, 3> corners{c[t[0]], c[t[1]], c[t[2]]};
+    if (distance_by_algebra({&p, 1}, corners).squared == 0) return Containment::on;
+  }
+  return Containment::outside;
+}
+
+TEST(QueriesInside, EqualBarycentricCoordinatesOnALattice) {
+  RandomNumbers random(3);
+  int on = 0, inside = 0;
+  for (int round = 0; round < 300; ++round) {
+    const double scale = std::ldexp(1.0, 10 * static_cast<int>(random.below(7)) - 30);
+    const auto lattice_point = [&](std::uint32_t size) {
+      Vec3d p;
+      for (int axis = 0; axis < 3; ++axis) p[axis] = scale * random.below(size);
+      return p;
+    };
+    // One object with two tetrahedra, which may cross, touch or lie in one another.
+    std::array<std::array<Vec3d, 4>, 2> corners;
+    TriangleMesh mesh;
+    for (auto& four : corners) {
+      for (Vec3d& corner : four) corner = lattice_point(6);
+      const TriangleMesh part = tetrahedron(four);
+      const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+      mesh.positions.insert(mesh.positions.end(), part.positions.begin(), part.positions.end());
+      for (const Triangle& t : part.triangles)
+        mesh.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+    }
+    Scene scene;
+    scene.add(mesh, {.octree = {.leaf_size = 1}});
+    std::vector<Vec3d> points;
+    for (int i = 0; i < 20; ++i) points.push_back(lattice_point(6));
+    const std::vector<Containment> found = inside_of(scene, points);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const Containment a = in_tetrahedron(corners[0], points[i]), b = in_tetrahedron(corners[1], points[i]);
+      const bool is_on = a == Containment::on || b == Containment::on;
+      const Containment expected = is_on ? Containment::on : a != b ? Containment::inside : Containment::outside;
+      EXPECT_EQ(found[i], expected) << round << ' ' << i;
+      on += expected == Containment::on ? 1 : 0;
+      inside += expected == Containment::inside ? 1 : 0;
+    }
+  }
+  EXPECT_GT(on, 100);
+  EXPECT_GT(inside, 20);
+}
+
+const TriangleMesh corner_mesh = tetrahedron({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}});
+
+TEST(QueriesInside, NamesAnOpenEdge) {
+  Scene scene;
+  TriangleMesh mesh = corner_mesh;
+  mesh.name = "bag";
+  mesh.triangles.pop_back();
+  const ObjectId open = scene.add(mesh);
+  const ObjectId closed = scene.add(corner_mesh);
+  try {
+    inside_of(scene, {Vec3d{0.1, 0.1, 0.1}});
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(std::string(error.what()),
+              "inside: the surface of bag is open: the edge of vertices 0 and 2 has an odd number of "
+              "triangles; close the holes, or leave the object out by the filter");
+  }
+  EXPECT_THROW(inside_of(scene, {}, {.object = open}), Error);
+  EXPECT_EQ(inside_of(scene, {Vec3d{0.1, 0.1, 0.1}}, {.object = closed}).front(), Containment::inside);
+}
+
+TEST(QueriesInside, PrefersAnObjectThatContainsThePoint) {
+  Scene scene;
+  scene.add(corner_mesh);
+  const ObjectId moved = scene.add(corner_mesh, {.group = 2});
+  scene.translate(moved, {-0.25, -0.125, 0});
+  const std::vector<Vec3d> points{{0, 0.25, 0.25}, {2, 0, 0}};
+  EXPECT_EQ(inside_of(scene, points, {.mask = 1}), (std::vector{Containment::on, Containment::outside}));
+  EXPECT_EQ(inside_of(scene, points), (std::vector{Containment::inside, Containment::outside}));
+}
+
+TEST(QueriesOfAScene, SeeObjectsWhereTheyAre) {
+  Scene scene;
+  const ObjectId object = scene.add(corner_mesh);
+  const auto distance = [&] { return closest_of(scene, {Vec3d{3, 0, 0}}).front()->distance; };
+  EXPECT_EQ(distance(), 2);
+  scene.translate(object, {1, 0, 0});
+  EXPECT_EQ(distance(), 1);
+  scene.set_positions(object, corner_mesh.positions);
+  EXPECT_EQ(distance(), 2);
+  std::vector<Vec3d> end = corner_mesh.positions;
+  end[1].x = 2.5;
+  scene.set_motion(object, corner_mesh.positions, end);
+  EXPECT_EQ(distance(), 0.5);
+  scene.remove(object);
+  EXPECT_FALSE(closest_of(scene, {Vec3d{3, 0, 0}}).front());
+  EXPECT_FALSE(hits_of(scene, {{{3, 0, 0}, {-1, 0, 0}}}).front());
+}
+
+TEST(QueriesOfAScene, DoNotDisturbDetection) {
+  RandomNumbers random(11);
+  Scene asked, plain;
+  std::vector<ObjectId> ids;
+  for (int i = 0; i < 6; ++i) {
+    ids.push_back(asked.add(corner_mesh));
+    plain.add(corner_mesh);
+  }
+  for (int step = 0; step < 200; ++step) {
+    for (const ObjectId id : ids) {
+      if (random.below(2) == 0) continue;
+      const Vec3d offset = random.vector(0.5);
+      asked.translate(id, offset);
+      plain.translate(id, offset);
+      if (random.below(3) == 0) closest_of(asked, {random.vector(1)});
+    }
+    const DetectRequest request{.contacts = random.below(2) == 0 ? ContactKinds::intersection
+                                                                 : ContactKinds::continuous};
+    const DetectResult& expected = plain.detect(request);
+    const DetectResult& found = asked.detect(request);
+    ASSERT_EQ(hash_of(found), hash_of(expected)) << step;
+    ASSERT_TRUE(std::ranges::equal(found.contact_events.begin, expected.contact_events.begin));
+    const auto contacts = found.contacts.size();
+    inside_of(asked, {random.vector(1)});
+    ASSERT_EQ(asked.result().contacts.size(), contacts);
+    ASSERT_TRUE(asked.verify().agrees());
+    ASSERT_EQ(SceneInspector(asked).validate(), "");
+  }
+}
+
+TEST(QueriesOfAScene, LeaveOutWhatIsNotFinite) {
+  Scene scene;
+  TriangleMesh mesh = corner_mesh;
+  mesh.positions[3].z = nan;
+  scene.add(mesh);
+  const auto closest = closest_of(scene, {{0.25, 0.25, 2}, {nan, 0, 0}});
+  EXPECT_EQ(closest[0]->triangle, 0u);
+  EXPECT_EQ(closest[0]->distance, 2);
+  EXPECT_FALSE(closest[1]);
+  const auto hits = hits_of(scene, {{{0.25, 0.25, 2}, {0, 0, -1}},
+                                    {{0.25, 0.25, 2}, {0, 0, 0}},
+                                    {{nan, 0, 0}, {0, 0, 1}},
+                                    {{0, 0, 0}, {0, 0, std::numeric_limits<double>::infinity()}}});
+  EXPECT_EQ(hits[0]->t, 2);
+  EXPECT_FALSE(hits[1] || hits[2] || hits[3]);
+  EXPECT_EQ(inside_of(scene, {{0.1, 0.1, -0.1}, {0.1, 0.1, 0}, {nan, 0, 0}}),
+            (std::vector{Containment::outside, Containment::on, Containment::outside}));
+}
+
+TEST(QueriesOfAScene, HaveClosedBounds) {
+  Scene scene;
+  scene.add(corner_mesh);
+  const std::vector<Vec3d> point{{0.25, 0.25, -1}};
+  EXPECT_TRUE(closest_of(scene, point, {.max_distance = 1}).front());
+  EXPECT_FALSE(closest_of(scene, point, {.max_distance = std::nextafter(1.0, 0.0)}).front());
+  EXPECT_THROW(closest_of(scene, point, {.max_distance = -1}), Error);
+  EXPECT_THROW(closest_of(scene, point, {.max_distance = nan}), Error);
+  std::vector<std::optional<ClosestPoint>> results(2);
+  EXPECT_THROW(scene.closest(point, results), Error);
+  EXPECT_THROW(closest_of(scene, point, {.filter = {.object = ObjectId{7, 0}}}), Error);
+}
+
+/// All magnitudes that doubles have.
+TEST(QueriesOfAScene, ScaleWithTheCoordinates) {
+  for (const int exponent : {-1000, -300, -60, 60, 300, 1000}) {
+    const double scale = std::ldexp(1.0, exponent);
+    TriangleMesh mesh = corner_mesh;
+    for (Vec3d& p : mesh.positions) p = scale * p;
+    Scene scene;
+    scene.add(mesh);
+    const Vec3d inside{scale / 8, scale / 8, scale / 4};
+    const auto closest = closest_of(scene, {inside, {scale * 3, 0, 0}});
+    EXPECT_EQ(closest[0]->distance, scale / 8) << exponent;
+    EXPECT_EQ(closest[1]->distance, scale * 2) << exponent;
+    const auto hits = hits_of(scene, {{{scale / 8, scale / 8, -scale}, {0, 0, scale}}}, {.count_hits = true});
+    EXPECT_EQ(hits[0]->t, 1) << exponent;
+    EXPECT_EQ(hits[0]->hits, 2u) << exponent;
+    EXPECT_EQ(inside_of(scene, {inside}).front(), Containment::inside) << exponent;
+  }
+}
+
+TEST(QueriesOfAScene, AreTheSameForAnyNumberOfThreads) {
+  RandomNumbers random(1);
+  std::vector<Vec3d> points;
+  std::vector<Ray> rays;
+  for (int i = 0; i < 500; ++i) {
+    points.push_back(random.vector(2));
+    rays.push_back({random.vector(2), random.vector(1)});
+  }
+  std::vector<std::optional<ClosestPoint>> closest;
+  std::vector<std::optional<RayHit>> hits;
+  for (const std::uint32_t threads : {1u, 2u, 3u, 8u}) {
+    for (const std::uint32_t leaf_size : {1u, 64u}) {
+      Scene scene({.threads = threads});
+      for (const std::uint64_t seed : {1u, 2u})
+        scene.add(crumpled_sheet(20, 20, 0.2, seed), {.octree = {.leaf_size = leaf_size}});
+      if (closest.empty()) {
+        closest = closest_of(scene, points);
+        hits = hits_of(scene, rays);
+      }
+      EXPECT_EQ(closest_of(scene, points), closest) << threads;
+      EXPECT_EQ(hits_of(scene, rays), hits) << threads;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace supple
