@@ -12,6 +12,7 @@
 #include "info.hpp"
 #include "options.hpp"
 #include "output_file.hpp"
+#include "query.hpp"
 #include "simulate.hpp"
 #include "text.hpp"
 #include "view.hpp"
@@ -29,6 +30,8 @@ int run(const CommandLine& line) {
       return run_view(line.view);
     case CommandLine::Command::info:
       return run_info(line.info);
+    case CommandLine::Command::query:
+      return run_query(line.query);
     case CommandLine::Command::ccd_queries:
       return run_ccd_queries(line.ccd_queries);
     case CommandLine::Command::experiment:

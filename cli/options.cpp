@@ -39,6 +39,7 @@ constexpr const char* program_footer = R"(Examples:
                                             simulate moving objects and record their contacts
   supple view run.h5                        show a scene or a recording in a browser
   supple info rabbit.obj                    counts, bounds, holes, octree statistics
+  supple query closest points.txt body.obj  nearest triangles of points; also inside, and rays
   supple ccd-queries edge-edge/*.csv        continuous queries, compared with published answers
   supple experiment scaling --quick         how does the time grow with the number of objects?
   supple diff a.h5 b.h5                     where do two recordings differ first?
@@ -135,6 +136,19 @@ constexpr const char* info_footer = R"(Examples:
       The same for many meshes, as JSON on standard output.
   supple info scene.toml
       Every object of a scene, as it is placed.)";
+
+constexpr const char* query_footer = R"(Examples:
+  supple query closest points.txt rabbit.obj fish.ply
+      The nearest triangle of each point, and its distance.
+  supple query inside points.txt rabbit.obj --json -
+      Which points are inside, outside or on the surface? It must be closed.
+  supple query rays rays.txt scene.toml --all-hits --json hits.json
+      The first triangle on each ray, and how many triangles there are on the whole ray.
+
+A file of points has three numbers a line; a file of rays has six, the origin and the direction, which
+need not have length 1. Blanks or commas separate the numbers. Of several triangles at the same distance,
+the one with the smallest number counts; exact arithmetic decides. Objects of a scene file or a recording
+are where they start.)";
 
 constexpr const char* ccd_queries_footer = R"(Examples:
   supple ccd-queries sample-queries/*/vertex-face/*.csv
@@ -411,6 +425,46 @@ CLI::App* add_info(CLI::App& program, InfoOptions& options, Dependences& depende
   return app;
 }
 
+CLI::App* add_query(CLI::App& program, QueryOptions& options, Dependences& dependences) {
+  CLI::App* app = program.add_subcommand(
+      "query", "Find the nearest triangles of points, the points inside, or the first triangles on rays");
+  app->footer(query_footer);
+  app->add_option_function<std::string>(
+         "KIND",
+         [&options](const std::string& word) {
+           const auto place = std::ranges::find(words<SceneQuery>, word);
+           if (place == words<SceneQuery>.end())
+             throw CLI::ValidationError("KIND", word + " is none of closest, inside and rays");
+           options.kind = static_cast<SceneQuery>(place - words<SceneQuery>.begin());
+         },
+         "The question: closest, inside or rays")
+      ->required()
+      ->type_name("");
+  app->add_option("FILE.txt", options.file, "Points or rays")->required()->type_name("");
+  app->add_option("MESH|SCENE.toml|RUN.h5", options.inputs,
+                  "Meshes, one per object; or one scene file; or one recording")
+      ->required()
+      ->type_name("");
+  dependences.push_back(
+      {add_real(
+           *app, "--max-distance", ValueRange::from(0), "length",
+           [&](double distance) { options.max_distance = distance; },
+           "Leave out triangles that are farther away than this (default: any distance)"),
+       [&] { return options.kind == SceneQuery::closest; }, "the question closest"});
+  dependences.push_back(
+      {app->add_flag("--all-hits", options.all_hits, "Also count all triangles on each ray"),
+       [&] { return options.kind == SceneQuery::rays; }, "the question rays"});
+  options.given_scene.for_each_setter([&]<class Struct, class Value>(const Field<Struct, Value>& field,
+                                                                     const Value& default_value, auto set) {
+    if constexpr (std::is_same_v<Value, std::uint32_t>) {
+      if (field.is_of_machine) add_field(*app, field, default_value, set);
+    }
+  });
+  add_file(*app, "--json", options.json, "Write the results as JSON; - is standard output");
+  app->add_flag("--quiet", options.quiet, "Print no table and no progress");
+  return app;
+}
+
 CLI::App* add_ccd_queries(CLI::App& program, CcdQueriesOptions& options, Dependences& dependences) {
   CLI::App* app = program.add_subcommand("ccd-queries",
                                          "Answer published vertex-face and edge-edge queries of continuous "
@@ -536,6 +590,7 @@ CommandLine parse_command_line(int argument_count, const char* const* arguments)
   const CLI::App* simulate = add_simulate(program, result.simulate, dependences);
   const CLI::App* view = add_view(program, result.view, dependences);
   const CLI::App* info = add_info(program, result.info, dependences);
+  const CLI::App* query = add_query(program, result.query, dependences);
   const CLI::App* ccd_queries = add_ccd_queries(program, result.ccd_queries, dependences);
   add_diff(program, result.diff);
   const CLI::App* experiment = experiments::add_experiment(program, result.experiment, dependences);
@@ -556,6 +611,7 @@ CommandLine parse_command_line(int argument_count, const char* const* arguments)
                      : simulate->parsed()    ? CommandLine::Command::simulate
                      : view->parsed()        ? CommandLine::Command::view
                      : info->parsed()        ? CommandLine::Command::info
+                     : query->parsed()       ? CommandLine::Command::query
                      : ccd_queries->parsed() ? CommandLine::Command::ccd_queries
                      : experiment->parsed()  ? CommandLine::Command::experiment
                                              : CommandLine::Command::diff;

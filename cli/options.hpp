@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -11,6 +12,16 @@
 #include "query_file.hpp"
 #include "session/overrides.hpp"
 #include "supple/option_descriptions.hpp"
+
+namespace supple::cli {
+
+/// Questions of `supple query`.
+enum class SceneQuery : std::uint8_t { closest, inside, rays };
+
+}  // namespace supple::cli
+
+template <>
+inline constexpr std::array supple::words<supple::cli::SceneQuery>{"closest", "inside", "rays"};
 
 namespace supple::cli {
 
@@ -68,6 +79,18 @@ struct InfoOptions {
   std::string json;
 };
 
+/// Options of `supple query`.
+struct QueryOptions {
+  SceneQuery kind = SceneQuery::closest;
+  std::string file;                             ///< of points or rays
+  std::vector<std::string> inputs;              ///< meshes, patterns, or one scene file or recording
+  viewer::Overrides<SceneOptions> given_scene;  ///< only the number of threads
+  double max_distance = std::numeric_limits<double>::infinity();
+  bool all_hits = false;
+  bool quiet = false;
+  std::string json;
+};
+
 /// Options of `supple ccd-queries`.
 struct CcdQueriesOptions {
   std::vector<std::string> inputs;   ///< query files or patterns
@@ -90,13 +113,14 @@ struct DiffOptions {
 };
 
 struct CommandLine {
-  enum class Command { detect, simulate, view, info, ccd_queries, diff, experiment, exit };
+  enum class Command { detect, simulate, view, info, query, ccd_queries, diff, experiment, exit };
   Command command = Command::exit;
   int exit_status = 0;  ///< of `Command::exit`: help, version or a usage error, already printed
   DetectOptions detect;
   SimulateOptions simulate;
   ViewOptions view;
   InfoOptions info;
+  QueryOptions query;
   CcdQueriesOptions ccd_queries;
   experiments::ExperimentOptions experiment;
   DiffOptions diff;

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "supple/contact.hpp"
+#include "supple/description.hpp"
 #include "supple/types.hpp"
 
 namespace supple {
@@ -73,5 +74,7 @@ enum class Containment : std::uint8_t {
   on,      ///< in a triangle
   inside,  ///< a ray from the point crosses the surface an odd number of times
 };
+template <>
+inline constexpr std::array words<Containment>{"outside", "on", "inside"};
 
 }  // namespace supple

@@ -76,6 +76,41 @@ ElementPoints point_and_triangle(const Vec3d& point, const TrianglePoints& corne
   return {{point, corners[0], corners[1], corners[2]}, 1, 3};
 }
 
+/// About the point of a triangle that is closest to the origin; any point for a triangle almost without area.
+///
+/// Ericson, Real-Time Collision Detection, 2005, section 5.1.5.
+Vec3d rough_closest(const TrianglePoints& c) {
+  const Vec3d u = c[1] - c[0], v = c[2] - c[0];
+  const double u0 = -dot(u, c[0]), v0 = -dot(v, c[0]);
+  if (u0 <= 0 && v0 <= 0) return c[0];
+  const double u1 = -dot(u, c[1]), v1 = -dot(v, c[1]);
+  if (u1 >= 0 && v1 <= u1) return c[1];
+  const double u2 = -dot(u, c[2]), v2 = -dot(v, c[2]);
+  if (v2 >= 0 && u2 <= v2) return c[2];
+  const double on_w = u0 * v1 - u1 * v0, on_v = u2 * v0 - u0 * v2, on_u = u1 * v2 - u2 * v1;
+  if (on_w <= 0 && u0 >= 0 && u1 <= 0) return c[0] + (u0 / (u0 - u1)) * u;
+  if (on_v <= 0 && v0 >= 0 && v2 <= 0) return c[0] + (v0 / (v0 - v2)) * v;
+  if (on_u <= 0 && v1 >= u1 && u2 >= v2) {
+    const double along = v1 - u1;
+    return c[1] + (along / (along + (u2 - v2))) * (c[2] - c[1]);
+  }
+  const double whole = on_u + on_v + on_w;
+  return c[0] + (on_v / whole) * u + (on_w / whole) * v;
+}
+
+/// Whether a triangle is farther from the point than `limit`: then it lies beyond a plane at this distance.
+/// True only when that is certain; almost always true where it is so.
+bool is_beyond(const Vec3d& point, const TrianglePoints& corners, double limit) {
+  const TrianglePoints seen{corners[0] - point, corners[1] - point, corners[2] - point};
+  const Vec3d normal = rough_closest(seen);
+  const double square = dot(normal, normal);
+  const double farthest = std::max({dot(seen[0], seen[0]), dot(seen[1], seen[1]), dot(seen[2], seen[2])});
+  if (!(square > 0x1p-900 && farthest < 0x1p900)) return false;
+  const double least = std::min({dot(seen[0], normal), dot(seen[1], normal), dot(seen[2], normal)});
+  // A product of vectors has a rounding error below 2^-50 of the product of their lengths.
+  return least / std::sqrt(square) - 0x1p-48 * std::sqrt(farthest) > limit;
+}
+
 /// The feature of a triangle by its vertices, to recognise it in the triangles around it.
 std::tuple<FeatureKind, std::uint32_t, std::uint32_t> name_of(const Feature& feature,
                                                               const Triangle& triangle, std::uint32_t id) {
@@ -146,6 +181,7 @@ std::optional<ClosestPoint> ObjectQueries::closest(std::span<const QueriedObject
         if (object.is_inert(t)) continue;
         const TrianglePoints corners = object.corners(t);
         if (!(bound_of(CornerBox(corners)) <= limit)) continue;
+        if (is_beyond(point, corners, limit)) continue;
         const ElementPoints elements = point_and_triangle(point, corners);
         const auto found = distance_within(elements, limit, used_exact);
         if (!found) continue;

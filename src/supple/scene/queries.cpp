@@ -74,7 +74,7 @@ void Scene::Implementation::inside(std::span<const Vec3d> points, std::span<Cont
     if (!edge) continue;
     fail("inside: the surface of " + slot.object->options.name + " is open: the edge of vertices " +
          std::to_string((*edge)[0]) + " and " + std::to_string((*edge)[1]) +
-         " has an odd number of triangles; close the holes, or leave the object out by the filter");
+         " has an odd number of triangles; close the holes, or leave this object out");
   }
   answer_queries(seen, points.size(), "inside", [&](ObjectQueries& queries, std::size_t i) {
     results[i] = queries.inside(queried_objects_, points[i]);
