@@ -445,12 +445,11 @@ CLI::App* add_query(CLI::App& program, QueryOptions& options, Dependences& depen
                   "Meshes, one per object; or one scene file; or one recording")
       ->required()
       ->type_name("");
-  dependences.push_back(
-      {add_real(
-           *app, "--max-distance", ValueRange::from(0), "length",
-           [&](double distance) { options.max_distance = distance; },
-           "Leave out triangles that are farther away than this (default: any distance)"),
-       [&] { return options.kind == SceneQuery::closest; }, "the question closest"});
+  dependences.push_back({add_real(
+                             *app, "--max-distance", ValueRange::from(0), "length",
+                             [&](double distance) { options.max_distance = distance; },
+                             "Leave out triangles that are farther away than this (default: any distance)"),
+                         [&] { return options.kind == SceneQuery::closest; }, "the question closest"});
   dependences.push_back(
       {app->add_flag("--all-hits", options.all_hits, "Also count all triangles on each ray"),
        [&] { return options.kind == SceneQuery::rays; }, "the question rays"});

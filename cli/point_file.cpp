@@ -42,7 +42,8 @@ void read_lines(const std::filesystem::path& path, const char* meaning, const Ad
     }
     if (found == 0) continue;
     if (found != count)
-      throw Error(fmt::format("{}: line {}: {} numbers; a line has {}", path.string(), number, found, meaning));
+      throw Error(
+          fmt::format("{}: line {}: {} numbers; a line has {}", path.string(), number, found, meaning));
     add(values);
   }
   if (file.bad()) throw Error(fmt::format("{}: the file cannot be read to its end", path.string()));

@@ -57,7 +57,11 @@ RayNumbers<Number> ray_numbers(const Ray& ray, const TrianglePoints& triangle, c
 
 RayNumbers<BoundedDouble> bounded_numbers(const Ray& ray, const TrianglePoints& triangle) {
   return ray_numbers<BoundedDouble>(
-      ray, triangle, [](double x) { return BoundedDouble{x, 0}; }, BoundedDouble::difference);
+      ray, triangle,
+      [](double x) {
+        return BoundedDouble{x, 0};
+      },
+      BoundedDouble::difference);
 }
 
 /// All numbers are multiplied by the same power of two, which the parameter does not depend on.
@@ -69,9 +73,9 @@ RayNumbers<UnboundedInteger> integer_numbers(const Ray& ray, const TrianglePoint
   }
   const int lowest = BitRange(all).lowest;
   const auto number = [&](double x) { return to_integer<UnboundedInteger>(x, lowest); };
-  return ray_numbers<UnboundedInteger>(
-      ray, triangle, number,
-      [&](double x, double origin) { return UnboundedInteger(number(x) - number(origin)); });
+  return ray_numbers<UnboundedInteger>(ray, triangle, number, [&](double x, double origin) {
+    return UnboundedInteger(number(x) - number(origin));
+  });
 }
 
 struct IntegerFraction {

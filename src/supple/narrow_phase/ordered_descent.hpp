@@ -10,8 +10,8 @@
 
 namespace supple {
 
-/// The descent of a query into one octree, nearest children first. Holds the stack of one worker, kept between
-/// calls.
+/// The descent of a query into one octree, nearest children first. Holds the stack of one worker, kept
+/// between calls.
 class OrderedDescent {
  public:
   /// Calls `on_triangles(begin, end)` with the leaves, as ranges of triangles in octree order, for which

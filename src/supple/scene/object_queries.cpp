@@ -176,30 +176,32 @@ std::optional<ClosestPoint> ObjectQueries::closest(std::span<const QueriedObject
   for (const auto& [object_bound, index] : order_) {
     const QueriedObject& object = objects[index];
     if (!(object_bound <= limit)) break;
-    descent_.run(object.view, bound_of, [&] { return limit; }, [&](std::uint32_t begin, std::uint32_t end) {
-      for (std::uint32_t t = begin; t < end; ++t) {
-        if (object.is_inert(t)) continue;
-        const TrianglePoints corners = object.corners(t);
-        if (!(bound_of(CornerBox(corners)) <= limit)) continue;
-        if (is_beyond(point, corners, limit)) continue;
-        const ElementPoints elements = point_and_triangle(point, corners);
-        const auto found = distance_within(elements, limit, used_exact);
-        if (!found) continue;
-        const std::uint32_t id = object.triangle_ids[t];
-        const auto feature = name_of(found->on_b, object.triangles[t], id);
-        if (best) {
-          const bool is_same_feature = best->object == index && best->feature == feature;
-          const int side =
-              is_same_feature
-                  ? 0
-                  : compare_distances(elements, point_and_triangle(point, best->corners), used_exact);
-          if (side > 0) continue;
-          if (side == 0 && std::tie(best->object, best->id) < std::tie(index, id)) continue;
-        }
-        best = {*found, corners, index, id, feature};
-        limit = std::min(max_distance, found->distance * (1 + 0x1p-49) + 0x1p-1060);
-      }
-    });
+    descent_.run(
+        object.view, bound_of, [&] { return limit; },
+        [&](std::uint32_t begin, std::uint32_t end) {
+          for (std::uint32_t t = begin; t < end; ++t) {
+            if (object.is_inert(t)) continue;
+            const TrianglePoints corners = object.corners(t);
+            if (!(bound_of(CornerBox(corners)) <= limit)) continue;
+            if (is_beyond(point, corners, limit)) continue;
+            const ElementPoints elements = point_and_triangle(point, corners);
+            const auto found = distance_within(elements, limit, used_exact);
+            if (!found) continue;
+            const std::uint32_t id = object.triangle_ids[t];
+            const auto feature = name_of(found->on_b, object.triangles[t], id);
+            if (best) {
+              const bool is_same_feature = best->object == index && best->feature == feature;
+              const int side =
+                  is_same_feature
+                      ? 0
+                      : compare_distances(elements, point_and_triangle(point, best->corners), used_exact);
+              if (side > 0) continue;
+              if (side == 0 && std::tie(best->object, best->id) < std::tie(index, id)) continue;
+            }
+            best = {*found, corners, index, id, feature};
+            limit = std::min(max_distance, found->distance * (1 + 0x1p-49) + 0x1p-1060);
+          }
+        });
   }
   if (!best) return {};
   return ClosestPoint{objects[best->object].id,  best->id,
@@ -227,23 +229,25 @@ std::optional<RayHit> ObjectQueries::cast(std::span<const QueriedObject> objects
   for (const auto& [object_bound, index] : order_) {
     const QueriedObject& object = objects[index];
     if (!(object_bound <= limit)) break;
-    descent_.run(object.view, bound_of, [&] { return limit; }, [&](std::uint32_t begin, std::uint32_t end) {
-      for (std::uint32_t t = begin; t < end; ++t) {
-        if (object.is_inert(t)) continue;
-        const TrianglePoints corners = object.corners(t);
-        if (!(bound_of(CornerBox(corners)) <= limit)) continue;
-        const auto parameter = RayParameter::find(ray, corners, used_exact);
-        if (!parameter) continue;
-        ++hits;
-        const std::uint32_t id = object.triangle_ids[t];
-        if (best) {
-          const int side = parameter->compare(best->parameter, used_exact);
-          if (side > 0 || (side == 0 && std::tie(best->object, best->id) < std::tie(index, id))) continue;
-        }
-        best = {*parameter, corners, parameter->rounded(), index, id};
-        if (!count_hits) limit = std::min(any, best->t * (1 + 0x1p-45) + 0x1p-1060);
-      }
-    });
+    descent_.run(
+        object.view, bound_of, [&] { return limit; },
+        [&](std::uint32_t begin, std::uint32_t end) {
+          for (std::uint32_t t = begin; t < end; ++t) {
+            if (object.is_inert(t)) continue;
+            const TrianglePoints corners = object.corners(t);
+            if (!(bound_of(CornerBox(corners)) <= limit)) continue;
+            const auto parameter = RayParameter::find(ray, corners, used_exact);
+            if (!parameter) continue;
+            ++hits;
+            const std::uint32_t id = object.triangle_ids[t];
+            if (best) {
+              const int side = parameter->compare(best->parameter, used_exact);
+              if (side > 0 || (side == 0 && std::tie(best->object, best->id) < std::tie(index, id))) continue;
+            }
+            best = {*parameter, corners, parameter->rounded(), index, id};
+            if (!count_hits) limit = std::min(any, best->t * (1 + 0x1p-45) + 0x1p-1060);
+          }
+        });
   }
   if (!best) return {};
   RayHit hit{objects[best->object].id, best->id, best->t, ray.origin + best->t * ray.direction, {},
@@ -258,18 +262,19 @@ std::optional<RayHit> ObjectQueries::cast(std::span<const QueriedObject> objects
 Containment ObjectQueries::inside(const QueriedObject& object, const Vec3d& point) {
   bool is_on = false, is_inside = false, used_exact = false;
   const auto bound_of = [&](const auto& box) { return column_bound(point, box); };
-  descent_.run(object.view, bound_of, [&] { return is_on ? -1.0 : 0.0; },
-               [&](std::uint32_t begin, std::uint32_t end) {
-                 for (std::uint32_t t = begin; t < end && !is_on; ++t) {
-                   if (object.is_inert(t)) continue;
-                   const TrianglePoints corners = object.corners(t);
-                   const CornerBox box(corners);
-                   if (bound_of(box) > 0) continue;
-                   if (box.min.z <= point.z)
-                     is_on = distance_within(point_and_triangle(point, corners), 0, used_exact).has_value();
-                   if (!is_on && crosses_above(corners, point, used_exact)) is_inside = !is_inside;
-                 }
-               });
+  descent_.run(
+      object.view, bound_of, [&] { return is_on ? -1.0 : 0.0; },
+      [&](std::uint32_t begin, std::uint32_t end) {
+        for (std::uint32_t t = begin; t < end && !is_on; ++t) {
+          if (object.is_inert(t)) continue;
+          const TrianglePoints corners = object.corners(t);
+          const CornerBox box(corners);
+          if (bound_of(box) > 0) continue;
+          if (box.min.z <= point.z)
+            is_on = distance_within(point_and_triangle(point, corners), 0, used_exact).has_value();
+          if (!is_on && crosses_above(corners, point, used_exact)) is_inside = !is_inside;
+        }
+      });
   if (is_on) return Containment::on;
   return is_inside && object.view.arrays.inert == nullptr ? Containment::inside : Containment::outside;
 }
@@ -277,7 +282,8 @@ Containment ObjectQueries::inside(const QueriedObject& object, const Vec3d& poin
 Containment ObjectQueries::inside(std::span<const QueriedObject> objects, const Vec3d& point) {
   Containment result = Containment::outside;
   if (!is_finite(point)) return result;
-  order(objects, [&](const Aabb& box) { return column_bound(point, box); }, 0);
+  order(
+      objects, [&](const Aabb& box) { return column_bound(point, box); }, 0);
   for (const auto& [bound, index] : order_) {
     result = std::max(result, inside(objects[index], point));
     if (result == Containment::inside) break;

@@ -256,7 +256,9 @@ TEST(QueriesInside, EqualBarycentricCoordinatesOnALattice) {
     for (std::size_t i = 0; i < points.size(); ++i) {
       const Containment a = in_tetrahedron(corners[0], points[i]), b = in_tetrahedron(corners[1], points[i]);
       const bool is_on = a == Containment::on || b == Containment::on;
-      const Containment expected = is_on ? Containment::on : a != b ? Containment::inside : Containment::outside;
+      const Containment expected = is_on    ? Containment::on
+                                   : a != b ? Containment::inside
+                                            : Containment::outside;
       EXPECT_EQ(found[i], expected) << round << ' ' << i;
       on += expected == Containment::on ? 1 : 0;
       inside += expected == Containment::inside ? 1 : 0;
