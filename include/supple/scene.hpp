@@ -137,8 +137,8 @@ class Scene {
   // the numbers of queries and results differ, and when the filter names an object that is not in the scene.
 
   /// For each point the nearest triangle, or nothing when there is none within the largest distance and when
-  /// the point is not finite. About 1 to 10 µs a point; needs memory of some kilobytes a thread. Throws
-  /// `Error` when the largest distance is negative or NaN.
+  /// the point is not finite. Takes some microseconds for a point near the surface, tens of microseconds for
+  /// one far away. Throws `Error` when the largest distance is negative or NaN.
   void closest(std::span<const Vec3d> points, std::span<std::optional<ClosestPoint>> results,
                const ClosestOptions& options = {});
   /// For each ray the first triangle on it, or nothing when there is none, when a number of the ray is not

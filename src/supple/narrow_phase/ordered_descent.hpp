@@ -14,12 +14,12 @@ namespace supple {
 /// between calls.
 class OrderedDescent {
  public:
-  /// Calls `on_triangles(begin, end)` with the leaves, as ranges of triangles in octree order, for which
-  /// `bound_of(box)` is at most `limit()`. `bound_of` must not grow when its box shrinks to a part; children
-  /// without a finite triangle are skipped. `limit()` may decrease during the descent.
-  template <class BoundOf, class Limit, class OnTriangles>
-  void run(const OctreeView& view, const BoundOf& bound_of, const Limit& limit,
-           const OnTriangles& on_triangles) {
+  /// Calls `on_leaf(leaf, begin, end)` with the leaves for which `bound_of(box)` is at most `limit()`: eight
+  /// times the node plus the child, and the range of triangles in octree order. The bound of a box must be at
+  /// most that of every part of it. Skips children without a finite triangle. `limit()` may decrease during
+  /// the descent.
+  template <class BoundOf, class Limit, class OnLeaf>
+  void run(const OctreeView& view, const BoundOf& bound_of, const Limit& limit, const OnLeaf& on_leaf) {
     stack_.clear();
     if (!view.nodes.empty()) expand(view, 0, bound_of, limit());
     while (!stack_.empty()) {
@@ -30,7 +30,8 @@ class OrderedDescent {
       if (node.is_inner(entry.child)) {
         expand(view, node.child_node(entry.child), bound_of, limit());
       } else {
-        on_triangles(node.first_triangle[entry.child], node.first_triangle[entry.child + 1]);
+        on_leaf(node_width * entry.node + static_cast<std::uint32_t>(entry.child),
+                node.first_triangle[entry.child], node.first_triangle[entry.child + 1]);
       }
     }
   }

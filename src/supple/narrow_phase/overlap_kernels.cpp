@@ -399,6 +399,11 @@ std::uint64_t TriangleBoxPairs(const LeafPair* leaf_pairs, std::size_t count, co
   return tests.box_tests();
 }
 
+void LoadLeafBoxes(const LeafArrays& object, std::uint32_t leaf, std::uint32_t begin, std::uint32_t end,
+                   LeafBoxes& boxes) {
+  load_boxes(boxes, object, leaf, begin, end);
+}
+
 }  // namespace HWY_NAMESPACE
 }  // namespace supple
 HWY_AFTER_NAMESPACE();
@@ -407,11 +412,17 @@ HWY_AFTER_NAMESPACE();
 namespace supple {
 
 HWY_EXPORT(BoxOverlapMasks);
+HWY_EXPORT(LoadLeafBoxes);
 HWY_EXPORT(TriangleBoxPairs);
 
 void overlap_masks(std::span<const NodePair> pairs, const ChildBoxes* a, const ChildBoxes* b,
                    const RelativePlacement& placement, std::uint64_t* masks) {
   HWY_DYNAMIC_DISPATCH(BoxOverlapMasks)(pairs.data(), pairs.size(), a, b, placement, masks);
+}
+
+void load_leaf_boxes(const LeafArrays& object, std::uint32_t leaf, std::uint32_t begin, std::uint32_t end,
+                     LeafBoxes& boxes) {
+  HWY_DYNAMIC_DISPATCH(LoadLeafBoxes)(object, leaf, begin, end, boxes);
 }
 
 std::uint64_t find_triangle_box_pairs(std::span<const LeafPair> leaf_pairs, const LeafArrays& a,

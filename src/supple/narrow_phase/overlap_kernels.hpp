@@ -98,6 +98,11 @@ struct LeafArrays {
   LeafVertexArrays vertices;
 };
 
+/// Computes the boxes of the triangles [begin, end) of a leaf, at most a block, in octree order. `leaf` is
+/// eight times the node plus the child.
+void load_leaf_boxes(const LeafArrays& object, std::uint32_t leaf, std::uint32_t begin, std::uint32_t end,
+                     LeafBoxes& boxes);
+
 /// Appends all pairs of triangles of the leaf pairs whose boxes may overlap, numbered in octree order. Skips
 /// inert triangles. With `same_object`, skips pairs that share a vertex and appends each pair once, a < b or
 /// b < a. Never misses an overlap. Returns the number of box tests.

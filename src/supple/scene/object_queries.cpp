@@ -1,12 +1,14 @@
 #include "scene/object_queries.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <tuple>
 
 #include "contact/element_distance.hpp"
 #include "contact/ray_triangle.hpp"
+#include "core/float_rounding.hpp"
 #include "geometry/exact_predicates.hpp"
 #include "geometry/vector.hpp"
 
@@ -98,27 +100,135 @@ Vec3d rough_closest(const TrianglePoints& c) {
   return c[0] + (on_v / whole) * u + (on_w / whole) * v;
 }
 
-/// Whether a triangle is farther from the point than `limit`: then it lies beyond a plane at this distance.
-/// True only when that is certain; almost always true where it is so.
-bool is_beyond(const Vec3d& point, const TrianglePoints& corners, double limit) {
+/// At most the distance of a point and a triangle, and almost always nearly that: the distance of a plane
+/// beyond which the triangle lies. 0 where rounding leaves nothing certain.
+double plane_bound(const Vec3d& point, const TrianglePoints& corners) {
   const TrianglePoints seen{corners[0] - point, corners[1] - point, corners[2] - point};
   const Vec3d normal = rough_closest(seen);
   const double square = dot(normal, normal);
   const double farthest = std::max({dot(seen[0], seen[0]), dot(seen[1], seen[1]), dot(seen[2], seen[2])});
-  if (!(square > 0x1p-900 && farthest < 0x1p900)) return false;
+  if (!(square > 0x1p-900 && farthest < 0x1p900)) return 0;
   const double least = std::min({dot(seen[0], normal), dot(seen[1], normal), dot(seen[2], normal)});
   // A product of vectors has a rounding error below 2^-50 of the product of their lengths.
-  return least / std::sqrt(square) - 0x1p-48 * std::sqrt(farthest) > limit;
+  return std::max(0.0, least / std::sqrt(square) - 0x1p-48 * std::sqrt(farthest));
 }
 
+using FeatureName = std::tuple<FeatureKind, std::uint32_t, std::uint32_t>;
+
 /// The feature of a triangle by its vertices, to recognise it in the triangles around it.
-std::tuple<FeatureKind, std::uint32_t, std::uint32_t> name_of(const Feature& feature,
-                                                              const Triangle& triangle, std::uint32_t id) {
+FeatureName name_of(const Feature& feature, const Triangle& triangle, std::uint32_t id) {
   if (feature.kind == FeatureKind::face) return {feature.kind, id, id};
   const std::uint32_t first = triangle[feature.index],
                       last = feature.kind == FeatureKind::vertex ? first : triangle[(feature.index + 1u) % 3];
   return {feature.kind, std::min(first, last), std::max(first, last)};
 }
+
+/// A point as the boxes of an object's triangles see it: single precision, without the translation.
+class PointInFloats {
+ public:
+  PointInFloats(const Vec3d& point, const QueriedObject& object) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const double offset = object.view.translation[axis], local = point[axis] - offset;
+      // More than the roundings of `local` and of a translated vertex.
+      const double largest =
+          std::max(std::fabs(double{object.box.min[axis]}), std::fabs(double{object.box.max[axis]}));
+      const double slop = offset == 0 ? 0 : 0x1p-50 * (std::fabs(point[axis]) + std::fabs(offset) + largest);
+      low_[axis] = round_down(local - slop);
+      high_[axis] = round_up(local + slop);
+    }
+  }
+
+  /// Squared distances of the boxes. At most those of the triangles, but for the roundings that
+  /// `NearestTriangle::squared_limit` covers.
+  void squared_distances(const LeafBoxes& boxes, std::array<float, leaf_block>& squares) const {
+    for (std::size_t i = 0; i < leaf_block; ++i) {
+      const float x = std::max(std::max(boxes.min_x[i] - high_.x, low_.x - boxes.max_x[i]), 0.0f);
+      const float y = std::max(std::max(boxes.min_y[i] - high_.y, low_.y - boxes.max_y[i]), 0.0f);
+      const float z = std::max(std::max(boxes.min_z[i] - high_.z, low_.z - boxes.max_z[i]), 0.0f);
+      squares[i] = x * x + y * y + z * z;
+    }
+  }
+
+ private:
+  Vec3f low_, high_;
+};
+
+/// The nearest triangle so far.
+class NearestTriangle {
+ public:
+  NearestTriangle(std::span<const QueriedObject> objects, const Vec3d& point, double max_distance)
+      : objects_(objects), point_(point), max_distance_(max_distance) {
+    set_limit(max_distance);
+  }
+
+  /// Triangles farther away than this are not of interest.
+  double limit() const { return limit_; }
+  /// Its square, rounded up by more than a squared distance in single precision can lose.
+  float squared_limit() const { return squared_limit_; }
+
+  /// Triangles in octree order from `begin` on, one for each bit.
+  void consider(std::uint32_t index, std::uint32_t begin, std::uint64_t triangles) {
+    std::array<double, leaf_block> bounds;
+    std::uint32_t first = leaf_block;
+    for (std::uint64_t left = triangles; left != 0; left &= left - 1) {
+      const auto i = static_cast<std::uint32_t>(std::countr_zero(left));
+      bounds[i] = plane_bound(point_, objects_[index].corners(begin + i));
+      if (first == leaf_block || bounds[i] < bounds[first]) first = i;
+    }
+    // The nearest one first, which discards most of the others.
+    if (first != leaf_block && bounds[first] <= limit_) consider(index, begin + first);
+    for (std::uint64_t left = triangles; left != 0; left &= left - 1) {
+      const auto i = static_cast<std::uint32_t>(std::countr_zero(left));
+      if (i != first && bounds[i] <= limit_) consider(index, begin + i);
+    }
+  }
+
+  std::optional<ClosestPoint> result() const {
+    if (!found_) return {};
+    return ClosestPoint{
+        objects_[index_].id, id_,           found_->on_b, found_->distance, found_->barycentric_b,
+        found_->point_b,     found_->normal};
+  }
+
+ private:
+  void consider(std::uint32_t index, std::uint32_t t) {
+    const QueriedObject& object = objects_[index];
+    const TrianglePoints corners = object.corners(t);
+    const ElementPoints elements = point_and_triangle(point_, corners);
+    const auto found = distance_within(elements, limit_, used_exact_);
+    if (!found) return;
+    const std::uint32_t id = object.triangle_ids[t];
+    const FeatureName feature = name_of(found->on_b, object.triangles[t], id);
+    if (found_) {
+      const bool is_same_feature = index_ == index && feature_ == feature;
+      const int side = is_same_feature
+                           ? 0
+                           : compare_distances(elements, point_and_triangle(point_, corners_), used_exact_);
+      if (side > 0 || (side == 0 && std::tie(index_, id_) < std::tie(index, id))) return;
+    }
+    found_ = found;
+    corners_ = corners;
+    index_ = index;
+    id_ = id;
+    feature_ = feature;
+    set_limit(std::min(max_distance_, found->distance * (1 + 0x1p-49) + 0x1p-1060));
+  }
+
+  void set_limit(double limit) {
+    limit_ = limit;
+    squared_limit_ = round_up(limit * limit * (1 + 0x1p-18) + 0x1p-120);
+  }
+
+  std::span<const QueriedObject> objects_;
+  Vec3d point_;
+  double max_distance_, limit_ = 0;
+  float squared_limit_ = 0;
+  std::optional<ElementDistance> found_;
+  TrianglePoints corners_;
+  std::uint32_t index_ = 0, id_ = 0;
+  FeatureName feature_;
+  bool used_exact_ = false;
+};
 
 /// The turn of a, b and the point in the x-y plane, where the point is moved by (e, e²) for an infinitely
 /// small e > 0. 0 only when a and b have equal x and y.
@@ -162,52 +272,28 @@ void ObjectQueries::order(std::span<const QueriedObject> objects, const BoundOf&
 std::optional<ClosestPoint> ObjectQueries::closest(std::span<const QueriedObject> objects, const Vec3d& point,
                                                    double max_distance) {
   if (!is_finite(point)) return {};
-  struct Best {
-    ElementDistance found;
-    TrianglePoints corners;
-    std::uint32_t object = 0, id = 0;
-    std::tuple<FeatureKind, std::uint32_t, std::uint32_t> feature;
-  };
-  std::optional<Best> best;
-  double limit = max_distance;
-  bool used_exact = false;
-  const auto bound_of = [&](const auto& box) { return distance_bound(point, box); };
-  order(objects, bound_of, limit);
+  NearestTriangle nearest(objects, point, max_distance);
+  const auto bound_of = [&](const Aabb& box) { return distance_bound(point, box); };
+  order(objects, bound_of, max_distance);
   for (const auto& [object_bound, index] : order_) {
     const QueriedObject& object = objects[index];
-    if (!(object_bound <= limit)) break;
+    if (!(object_bound <= nearest.limit())) break;
+    const LeafArrays leaves{object.view.arrays, object.view.boxes, object.view.leaf_vertices};
+    const PointInFloats seen(point, object);
     descent_.run(
-        object.view, bound_of, [&] { return limit; },
-        [&](std::uint32_t begin, std::uint32_t end) {
-          for (std::uint32_t t = begin; t < end; ++t) {
-            if (object.is_inert(t)) continue;
-            const TrianglePoints corners = object.corners(t);
-            if (!(bound_of(CornerBox(corners)) <= limit)) continue;
-            if (is_beyond(point, corners, limit)) continue;
-            const ElementPoints elements = point_and_triangle(point, corners);
-            const auto found = distance_within(elements, limit, used_exact);
-            if (!found) continue;
-            const std::uint32_t id = object.triangle_ids[t];
-            const auto feature = name_of(found->on_b, object.triangles[t], id);
-            if (best) {
-              const bool is_same_feature = best->object == index && best->feature == feature;
-              const int side =
-                  is_same_feature
-                      ? 0
-                      : compare_distances(elements, point_and_triangle(point, best->corners), used_exact);
-              if (side > 0) continue;
-              if (side == 0 && std::tie(best->object, best->id) < std::tie(index, id)) continue;
-            }
-            best = {*found, corners, index, id, feature};
-            limit = std::min(max_distance, found->distance * (1 + 0x1p-49) + 0x1p-1060);
+        object.view, bound_of, [&] { return nearest.limit(); },
+        [&](std::uint32_t leaf, std::uint32_t begin, std::uint32_t end) {
+          for (; begin < end; begin += leaf_block) {
+            load_leaf_boxes(leaves, leaf, begin, std::min(begin + leaf_block, end), boxes_);
+            seen.squared_distances(boxes_, squares_);
+            std::uint64_t near = 0;
+            for (std::uint32_t i = 0; i < boxes_.size; ++i)
+              near |= std::uint64_t{squares_[i] <= nearest.squared_limit()} << i;
+            nearest.consider(index, begin, near & boxes_.triangles);
           }
         });
   }
-  if (!best) return {};
-  return ClosestPoint{objects[best->object].id,  best->id,
-                      best->found.on_b,          best->found.distance,
-                      best->found.barycentric_b, best->found.point_b,
-                      best->found.normal};
+  return nearest.result();
 }
 
 std::optional<RayHit> ObjectQueries::cast(std::span<const QueriedObject> objects, const Ray& ray,
@@ -231,7 +317,7 @@ std::optional<RayHit> ObjectQueries::cast(std::span<const QueriedObject> objects
     if (!(object_bound <= limit)) break;
     descent_.run(
         object.view, bound_of, [&] { return limit; },
-        [&](std::uint32_t begin, std::uint32_t end) {
+        [&](std::uint32_t, std::uint32_t begin, std::uint32_t end) {
           for (std::uint32_t t = begin; t < end; ++t) {
             if (object.is_inert(t)) continue;
             const TrianglePoints corners = object.corners(t);
@@ -264,7 +350,7 @@ Containment ObjectQueries::inside(const QueriedObject& object, const Vec3d& poin
   const auto bound_of = [&](const auto& box) { return column_bound(point, box); };
   descent_.run(
       object.view, bound_of, [&] { return is_on ? -1.0 : 0.0; },
-      [&](std::uint32_t begin, std::uint32_t end) {
+      [&](std::uint32_t, std::uint32_t begin, std::uint32_t end) {
         for (std::uint32_t t = begin; t < end && !is_on; ++t) {
           if (object.is_inert(t)) continue;
           const TrianglePoints corners = object.corners(t);

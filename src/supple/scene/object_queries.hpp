@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -7,6 +8,7 @@
 #include <vector>
 
 #include "narrow_phase/ordered_descent.hpp"
+#include "narrow_phase/overlap_kernels.hpp"
 #include "octree/vertex_buffer.hpp"
 #include "supple/mesh.hpp"
 #include "supple/queries.hpp"
@@ -47,6 +49,8 @@ class ObjectQueries {
   void order(std::span<const QueriedObject> objects, const BoundOf& bound_of, double limit);
 
   OrderedDescent descent_;
+  LeafBoxes boxes_;
+  std::array<float, leaf_block> squares_{};
   std::vector<std::pair<double, std::uint32_t>> order_;
 };
 

@@ -12,6 +12,7 @@
 #include "supple/error.hpp"
 #include "supple/inspection.hpp"
 #include "supple/scene.hpp"
+#include "support/golden_scenes.hpp"
 #include "support/hard_scenes.hpp"
 #include "support/random.hpp"
 #include "support/scenes.hpp"
@@ -167,7 +168,11 @@ TEST_P(Queries, EqualBruteForceByRationals) {
   std::vector<TriangleMesh> meshes = GetParam().make(5);
   for (TriangleMesh& mesh : meshes) mesh.triangles.resize(std::min(mesh.triangles.size(), most));
   Scene scene;
-  for (const TriangleMesh& mesh : meshes) scene.add(mesh, {.octree = {.leaf_size = 2}});
+  const double size = size_of(meshes);
+  for (const TriangleMesh& mesh : meshes) {
+    const ObjectId id = scene.add(mesh, {.octree = {.leaf_size = 2}});
+    if (id.index == 1) scene.translate(id, {size / 3, -size / 7, size / 9});
+  }
   const std::vector<PlacedTriangle> triangles = triangles_of(scene, meshes);
   ASSERT_FALSE(triangles.empty());
   RandomNumbers random(7);
