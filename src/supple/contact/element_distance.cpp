@@ -15,6 +15,7 @@
 #include "core/error.hpp"
 #include "geometry/bounded_double.hpp"
 #include "geometry/double_double.hpp"
+#include "geometry/number_vector.hpp"
 #include "geometry/quotient.hpp"
 #include "geometry/vector.hpp"
 #include "geometry/wide_integer.hpp"
@@ -85,16 +86,7 @@ class IntegerNumbers {
 };
 
 template <class Number>
-using Vector = std::array<Number, 3>;
-
-template <class Number>
-Number dot(const Vector<Number>& a, const Vector<Number>& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-template <class Number>
-Vector<Number> cross(const Vector<Number>& a, const Vector<Number>& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
+using Vector = NumberVector<Number>;
 
 /// The features that hold the closest points. Vertices have the indices of `ElementPoints`.
 struct Features {

@@ -10,22 +10,15 @@
 #include <utility>
 
 #include "geometry/double_double.hpp"
+#include "geometry/number_vector.hpp"
 #include "geometry/quotient.hpp"
+#include "geometry/vector.hpp"
 
 namespace supple {
 namespace {
 
 template <class Number>
-using Vector = std::array<Number, 3>;
-
-template <class Number>
-Number dot(const Vector<Number>& a, const Vector<Number>& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-template <class Number>
-Vector<Number> cross(const Vector<Number>& a, const Vector<Number>& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
+using Vector = NumberVector<Number>;
 
 /// The direction, and the corners as seen from the origin.
 template <class Number>
@@ -181,7 +174,10 @@ RayParameter::Fraction RayParameter::exact() const {
 }
 
 double RayParameter::rounded() const {
-  if (is_bounded_ && is_well_known(numerator_) && is_well_known(denominator_)) {
+  // Larger numbers times very small ones would lose the lower halves of pairs.
+  double largest = largest_magnitude(ray_->direction);
+  for (const Vec3d& corner : triangle_) largest = std::max(largest, largest_magnitude(corner - ray_->origin));
+  if (largest < 0x1p200 && is_bounded_ && is_well_known(numerator_) && is_well_known(denominator_)) {
     const auto numbers = ray_numbers<DoubleDouble>(
         *ray_, triangle_, [](double x) { return DoubleDouble(x); },
         [](double x, double origin) { return exact_sum(x, -origin); });

@@ -403,6 +403,26 @@ TEST(QueriesOfAScene, ScaleWithTheCoordinates) {
   }
 }
 
+/// The ray's numbers and those of the triangles may differ in size as much as doubles can.
+TEST(QueriesOfAScene, RoundTheParametersOfLongRaysAtSmallTriangles) {
+  RandomNumbers random(9);
+  for (const int exponent : {-500, -250, -100, 100, 250}) {
+    for (int round = 0; round < 20; ++round) {
+      std::array<Vec3d, 4> corners;
+      for (Vec3d& corner : corners) corner = std::ldexp(1.0, exponent) * random.vector(1);
+      const std::vector<TriangleMesh> meshes{tetrahedron(corners)};
+      Scene scene;
+      scene.add(meshes.front());
+      const Vec3d origin = std::ldexp(1.0, exponent) * random.vector(3);
+      const Vec3d middle = 0.25 * (corners[0] + corners[1] + corners[2] + corners[3]);
+      const Ray ray{origin, std::ldexp(1.0, std::min(1000, -2 * exponent)) * (middle - origin)};
+      const auto hits = hits_of(scene, {ray});
+      EXPECT_TRUE(hits.front()) << exponent;
+      expect_hit(triangles_of(scene, meshes), ray, hits.front(), false);
+    }
+  }
+}
+
 TEST(QueriesOfAScene, AreTheSameForAnyNumberOfThreads) {
   RandomNumbers random(1);
   std::vector<Vec3d> points;
