@@ -22,7 +22,10 @@ inline constexpr std::array words<RegionSphereTest>{"arvo", "grown_box"};
 template <>
 inline constexpr std::array words<ContactKinds>{
     "none",      "intersection",           "continuous",           "intersection,continuous",
-    "proximity", "intersection,proximity", "continuous,proximity", "intersection,continuous,proximity"};
+    "proximity", "intersection,proximity", "continuous,proximity", "intersection,continuous,proximity",
+    "penetration", "intersection,penetration", "continuous,penetration",
+    "intersection,continuous,penetration", "proximity,penetration", "intersection,proximity,penetration",
+    "continuous,proximity,penetration", "intersection,continuous,proximity,penetration"};
 template <>
 inline constexpr std::array words<ProximityListing>{"features", "elements"};
 
@@ -146,6 +149,11 @@ struct Description<ObjectOptions> {
         .doc = "Proximity: two objects are near where they come within the sum of their margins",
         .range = ValueRange::from(0),
         .unit = "length"});
+    visitor(Field<Options, bool>{
+        .name = "solid",
+        .member = &Options::solid,
+        .doc = "Penetration: the object is solid, so that vertices can be inside it; its surface must be "
+               "closed and oriented alike"});
     visitor(Field<Options, std::uint32_t>{
         .name = "group",
         .member = &Options::group,

@@ -61,6 +61,9 @@ enum class ContactKinds : std::uint8_t {
   /// Every two features, or elements, within the margins of their objects at the current positions; see
   /// `ProximityPair`.
   proximity = 4,
+  /// What objects that intersect do: vertices inside solids with their depths, contained parts, and curves;
+  /// see `Penetration`, `ContainedPart` and `IntersectionCurve`. It includes `intersection`.
+  penetration = 8,
 };
 constexpr ContactKinds operator|(ContactKinds p, ContactKinds q) {
   return static_cast<ContactKinds>(static_cast<unsigned>(p) | static_cast<unsigned>(q));
@@ -71,6 +74,11 @@ constexpr ContactKinds& operator|=(ContactKinds& p, ContactKinds q) {
 /// Whether all of `kinds` are in the set.
 constexpr bool contains(ContactKinds set, ContactKinds kinds) {
   return (set | kinds) == set;
+}
+
+/// The set with all that its kinds include.
+constexpr ContactKinds with_included(ContactKinds set) {
+  return contains(set, ContactKinds::penetration) ? set | ContactKinds::intersection : set;
 }
 
 /// Options of one object, given when it is added.
@@ -84,6 +92,10 @@ struct ObjectOptions {
   /// Proximity: two objects, or one with itself, are near where their elements come within the sum of their
   /// margins, in the unit of the coordinates. Finite, at least 0.
   double margin = 0;
+  /// The surface bounds a solid, into which other objects can penetrate. `Scene::add` checks that it is
+  /// closed and that its triangles are oriented alike: each edge has as many triangles in one direction as in
+  /// the other. A point is inside where a ray from it crosses the surface an odd number of times.
+  bool solid = false;
   /// Two objects are tested when the `group` of each has a bit in common with the `mask` of the other.
   std::uint32_t group = 1;
   std::uint32_t mask = ~std::uint32_t{0};
@@ -119,7 +131,8 @@ struct DetectRequest {
   /// The largest number of contacts of each kind in the result: the first ones in canonical order, for any
   /// number of threads. `DetectResult::truncated` says that there are more. The limit bounds the memory and
   /// the number of exact tests. The search skips object pairs after the last reported contact, but it
-  /// searches one object pair to its end. Proximity pairs are all found first.
+  /// searches one object pair to its end. Proximity pairs are all found first. Penetration needs all
+  /// intersections: a limit is an error then.
   std::uint64_t max_contacts = std::numeric_limits<std::uint64_t>::max();
 #ifdef __cpp_lib_jthread
   /// Any thread can stop the call: it ends within milliseconds during the search, otherwise after the current

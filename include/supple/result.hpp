@@ -8,6 +8,7 @@
 
 #include "supple/contact.hpp"
 #include "supple/options.hpp"
+#include "supple/penetration.hpp"
 #include "supple/proximity.hpp"
 #include "supple/types.hpp"
 
@@ -57,6 +58,7 @@ struct StepStats {
   double rebuild_seconds = 0;          ///< rebuild of degraded octrees
   double traversal_seconds = 0;        ///< search for candidates in object pairs
   double exact_seconds = 0;            ///< exact decision of candidates
+  double penetration_seconds = 0;      ///< vertices inside solids, contained parts, and curves
   double sort_and_events_seconds = 0;  ///< sorting of contacts, and events
   double total_seconds = 0;
 
@@ -78,6 +80,8 @@ struct StepStats {
   std::uint64_t exact_fallbacks = 0;  ///< candidates that floating-point filters could not decide
   std::uint64_t contacts = 0;         ///< reported intersections and continuous contacts
   std::uint64_t proximity_pairs = 0;  ///< reported pairs within the margins
+  std::uint64_t penetrations = 0;     ///< reported vertices inside solids
+  std::uint64_t curves = 0;           ///< reported curves of intersection
 };
 
 /// What `Scene::detect` found. The spans refer to buffers of the scene and are valid until the next call of a
@@ -102,6 +106,16 @@ struct DetectResult {
   std::span<const ContactGroup> proximity_groups;  ///< of `proximity_pairs`
   /// Ordered by object a, object b, kind a, kind b, element a, element b.
   std::span<const ProximityPair> proximity_pairs;
+  /// Of `penetrations` and `vertices_on_surface`; ordered by object a, object b.
+  std::span<const PenetrationGroup> penetration_groups;
+  std::span<const Penetration> penetrations;  ///< ordered by object a, object b, vertex
+  std::span<const std::uint32_t> vertices_on_surface;
+  std::span<const ContainedPart> contained_parts;  ///< ordered by inner object, outer object, vertex
+  /// Ordered by object a, object b, smallest contact.
+  std::span<const IntersectionCurve> curves;
+  std::span<const std::uint32_t> curve_contacts;  ///< indices into `contacts`
+  std::span<const Vec3d> curve_points;
+  std::span<const std::uint32_t> enclosed_vertices;
   std::span<const CollidingVertices> colliding_vertex_groups;
   std::span<const std::uint32_t> colliding_vertices;
   std::span<const NonFiniteVertex> non_finite_vertices;
@@ -123,7 +137,26 @@ struct DetectResult {
   std::span<const ProximityPair> proximity_pairs_of(const ContactGroup& group) const {
     return proximity_pairs.subspan(group.first_contact, group.contact_count);
   }
-  /// Empty when `SceneOptions::contact_points` is off.
+  std::span<const Penetration> penetrations_of(const PenetrationGroup& group) const {
+    return penetrations.subspan(group.first_penetration, group.penetration_count);
+  }
+  std::span<const std::uint32_t> vertices_on_surface_of(const PenetrationGroup& group) const {
+    return vertices_on_surface.subspan(group.first_on_surface, group.on_surface_count);
+  }
+  std::span<const std::uint32_t> contacts_of(const IntersectionCurve& curve) const {
+    return curve_contacts.subspan(curve.first_contact, curve.contact_count);
+  }
+  std::span<const Vec3d> points_of(const IntersectionCurve& curve) const {
+    return curve_points.subspan(curve.first_point, curve.point_count);
+  }
+  std::span<const std::uint32_t> enclosed_vertices_of(const IntersectionCurve& curve,
+                                                      ContactSide side) const {
+    return side == ContactSide::a
+               ? enclosed_vertices.subspan(curve.first_enclosed, curve.enclosed_count_a)
+               : enclosed_vertices.subspan(curve.first_enclosed + curve.enclosed_count_a,
+                                           curve.enclosed_count_b);
+  }
+  /// Empty when `SceneOptions::contact_points` is off and no penetration was requested.
   std::span<const ContactPoint> points_of(const Contact& contact) const {
     return contact_points.empty() ? contact_points
                                   : contact_points.subspan(contact.first_point, contact.point_count);
@@ -171,8 +204,24 @@ struct ProximityDifference {
   constexpr bool operator==(const ProximityDifference&) const = default;
 };
 
+/// A vertex of a on which `Scene::verify` and the last `Scene::detect` differ: inside b, on its surface, or
+/// the smallest vertex of a contained part.
+struct PenetrationDifference {
+  enum class Fault : std::uint8_t {
+    missed,   ///< inside, on the surface or contained, and not reported as that
+    added,    ///< reported, but not so
+    inexact,  ///< reported with another triangle than the nearest, or with an inaccurate depth
+  };
+  ObjectId object_a, object_b;
+  std::uint32_t vertex = 0;
+  Fault fault = Fault::missed;
+
+  constexpr bool operator==(const PenetrationDifference&) const = default;
+};
+
 /// Result of `Scene::verify`: exact brute force over every triangle pair of the scene for intersections, and
-/// over every vertex-face and edge-edge pair for continuous contacts and for proximity.
+/// over every vertex-face and edge-edge pair for continuous contacts and for proximity, and over every vertex
+/// and triangle for penetrations and contained parts. Curves follow from the intersections.
 struct VerifyReport {
   std::uint64_t triangle_pairs_checked = 0;
   std::uint64_t intersecting_pairs = 0;
@@ -180,12 +229,17 @@ struct VerifyReport {
   std::uint64_t touching_element_pairs = 0;
   std::uint64_t proximity_pairs_checked = 0;                 ///< pairs of elements
   std::uint64_t near_pairs = 0;                              ///< in the listing of the last `detect`
+  std::uint64_t vertex_triangle_pairs_checked = 0;           ///< for penetration
+  std::uint64_t inside_vertices = 0;                         ///< inside solids
   std::vector<Difference> differences;                       ///< sorted
   std::vector<ContinuousDifference> continuous_differences;  ///< sorted
   std::vector<ProximityDifference> proximity_differences;    ///< sorted
-  bool agrees() const {
-    return differences.empty() && continuous_differences.empty() && proximity_differences.empty();
+  std::vector<PenetrationDifference> penetration_differences;  ///< sorted by objects
+  std::uint64_t difference_count() const {
+    return differences.size() + continuous_differences.size() + proximity_differences.size() +
+           penetration_differences.size();
   }
+  bool agrees() const { return difference_count() == 0; }
 };
 
 /// One region of the scene octree, for inspection and drawing.

@@ -24,6 +24,8 @@ inline constexpr std::array words<ContinuousDifference::Fault>{"missed", "added"
 template <>
 inline constexpr std::array words<ProximityDifference::Fault>{"missed", "added", "inexact"};
 template <>
+inline constexpr std::array words<PenetrationDifference::Fault>{"missed", "added", "inexact"};
+template <>
 inline constexpr std::array words<PairStage>{"not_tested",     "shared_vertex",  "inert",
                                              "object_volumes", "octree_volumes", "triangle_boxes",
                                              "exact_test",     "contact"};
@@ -53,6 +55,8 @@ struct Description<StepStats> {
     seconds("traversal_seconds", &Stats::traversal_seconds,
             "Time of the narrow phase, which finds candidates");
     seconds("exact_seconds", &Stats::exact_seconds, "Time of the exact stage, which decides the candidates");
+    seconds("penetration_seconds", &Stats::penetration_seconds,
+            "Time to find vertices inside solids, contained parts and curves");
     seconds("sort_and_events_seconds", &Stats::sort_and_events_seconds,
             "Time to sort contacts and to find events");
     seconds("total_seconds", &Stats::total_seconds, "Time of the whole detection");
@@ -83,6 +87,8 @@ struct Description<StepStats> {
           "Candidates that floating point could not decide");
     count("contacts", &Stats::contacts, "contacts", "Intersections and continuous contacts in the result");
     count("proximity_pairs", &Stats::proximity_pairs, "pairs", "Proximity pairs in the result");
+    count("penetrations", &Stats::penetrations, "vertices", "Vertices inside solids in the result");
+    count("curves", &Stats::curves, "curves", "Curves of intersection in the result");
   }
 };
 

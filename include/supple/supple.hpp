@@ -10,6 +10,7 @@
 #include "supple/inspection.hpp"
 #include "supple/mesh.hpp"
 #include "supple/options.hpp"
+#include "supple/penetration.hpp"
 #include "supple/proximity.hpp"
 #include "supple/queries.hpp"
 #include "supple/result.hpp"

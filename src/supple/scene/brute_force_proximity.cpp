@@ -65,9 +65,15 @@ double distance_to_segment(const Vec3d& p, const Vec3d& a, const Vec3d& b) {
   return std::sqrt(dot(rest, rest));
 }
 
-/// Whether two elements are clearly farther apart than `reach`: the planes or lines of their interiors are,
-/// or no points inside them are closest, and their borders are farther apart. Rounding, and interiors that
-/// are nearly parallel, change a distance by much less than the slack.
+auto place_of(const NearElements& near) {
+  return std::tie(near.kind_a, near.kind_b, near.element_a, near.element_b);
+}
+auto place_of(const ProximityPair& pair) {
+  return std::tie(pair.kind_a, pair.kind_b, pair.element_a, pair.element_b);
+}
+
+}  // namespace
+
 bool clearly_apart(std::span<const Vec3d> a, std::span<const Vec3d> b, double reach) {
   double size = reach;
   for (const auto& points : {a, b}) {
@@ -97,15 +103,6 @@ bool clearly_apart(std::span<const Vec3d> a, std::span<const Vec3d> b, double re
   const double on_a = -first, on_b = second;
   return on_a < -slack || on_a > 1 + slack || on_b < -slack || on_b > 1 + slack;
 }
-
-auto place_of(const NearElements& near) {
-  return std::tie(near.kind_a, near.kind_b, near.element_a, near.element_b);
-}
-auto place_of(const ProximityPair& pair) {
-  return std::tie(pair.kind_a, pair.kind_b, pair.element_a, pair.element_b);
-}
-
-}  // namespace
 
 BruteForceProximity find_proximity_by_brute_force(const PlainMovingObject& a, const PlainMovingObject& b,
                                                   bool same_object, double reach, ProximityListing listing,

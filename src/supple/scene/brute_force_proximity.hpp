@@ -32,6 +32,12 @@ BruteForceProximity find_proximity_by_brute_force(const PlainMovingObject& a, co
                                                   bool same_object, double reach, ProximityListing listing,
                                                   const Parallel& parallel);
 
+/// Whether two elements, one of them a vertex or both edges, are clearly farther apart than `reach`: the
+/// planes or lines of their interiors are, or no points inside them are closest, and their borders are
+/// farther apart. Rounding, and interiors that are nearly parallel, change a distance by much less than the
+/// slack.
+bool clearly_apart(std::span<const Vec3d> a, std::span<const Vec3d> b, double reach);
+
 /// Appends the differences between reported pairs and the truth, both in canonical order.
 void compare_proximity(const ObjectPair& pair, std::span<const ProximityPair> reported,
                        std::span<const NearElements> truth, std::vector<ProximityDifference>& differences);

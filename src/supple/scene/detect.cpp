@@ -3,6 +3,7 @@
 #include <limits>
 #include <vector>
 
+#include "core/error.hpp"
 #include "core/float_rounding.hpp"
 #include "core/timer.hpp"
 #include "geometry/aabb.hpp"
@@ -54,9 +55,11 @@ SearchedShapes Question::shapes() const {
 
 const DetectResult& Scene::Implementation::detect(const DetectRequest& request) {
   if (request.impact) check(*request.impact, "DetectRequest::impact");
-  question_ = {request.contacts.value_or(options.contacts), request.impact.value_or(options.impact),
+  question_ = {with_included(request.contacts.value_or(options.contacts)), request.impact.value_or(options.impact),
                request.proximity_listing.value_or(options.proximity_listing),
                options.comparison.colliding_vertices};
+  if (question_.has_penetration() && request.max_contacts != DetectRequest{}.max_contacts)
+    fail("detect: penetration needs all intersections; request it without max_contacts");
   const StopSignal stop = stop_signal(request);
   result = {};
   result.step = step_;
@@ -77,6 +80,10 @@ const DetectResult& Scene::Implementation::detect(const DetectRequest& request) 
   if (question_.is_continuous() && !find_impacts(request, stop)) return result;
   if (question_.has_proximity() && !find_proximity(request, stop)) return result;
   stage.lap();
+  if (question_.has_penetration()) {
+    if (!find_penetrations(stop)) return result;
+    result.stats.penetration_seconds = stage.lap();
+  }
   report_non_finite();
   publish();
   result.stats.sort_and_events_seconds += stage.lap();
@@ -256,7 +263,8 @@ bool Scene::Implementation::find_contacts(const DetectRequest& request, const St
     contact_objects_.back() = {id_of(index), object->resting_view(), object->octree().triangle_ids(),
                                object->octree().vertex_count()};
   }
-  const ContactSearch search{question_.has_intersections(), options.contact_points,
+  const ContactSearch search{question_.has_intersections(),
+                             options.contact_points || question_.has_penetration(),
                              options.comparison.colliding_vertices};
   return contact_pass_.run(jobs_.jobs, contact_objects_, versions_, search, request.max_contacts, stop,
                            parallel, result.stats);
@@ -290,6 +298,28 @@ bool Scene::Implementation::find_proximity(const DetectRequest& request, const S
   list_element_objects(MovingShape::Part::end);
   return proximity_pass_.run(jobs_.jobs, element_objects_, versions_, question_.proximity_listing,
                              request.max_contacts, stop, parallel, result.stats);
+}
+
+bool Scene::Implementation::find_penetrations(const StopSignal& stop) {
+  penetrated_objects_.assign(slots_.size(), {});
+  for (const auto& [a, b] : jobs_.jobs) {
+    for (const std::uint32_t index : {a, b}) {
+      if (penetrated_objects_[index].surface.octree != nullptr) continue;
+      SceneObject& object = *slots_[index].object;
+      penetrated_objects_[index] = {queried_object(index),
+                                    {&object.octree(), &object.vertex_triangles(), &object.placement().end(),
+                                     object.resting_view().translation},
+                                    object.options.solid};
+    }
+  }
+  DetectResult found;
+  found.groups = contact_pass_.groups();
+  found.contacts = contact_pass_.contacts();
+  found.contact_points = contact_pass_.contact_points();
+  if (!penetration_pass_.run(jobs_.jobs, penetrated_objects_, found, stop, parallel)) return false;
+  result.stats.penetrations = penetration_pass_.penetrations().size();
+  result.stats.curves = penetration_pass_.curves().curves.size();
+  return true;
 }
 
 std::optional<ContinuousContact> Scene::Implementation::earliest_impact() {
@@ -326,6 +356,17 @@ void Scene::Implementation::publish() {
     result.truncated = result.truncated || impact_pass_.is_truncated();
     result.continuous_groups = impact_pass_.groups();
     result.continuous_contacts = impact_pass_.contacts();
+  }
+  if (question_.has_penetration()) {
+    result.penetration_groups = penetration_pass_.groups();
+    result.penetrations = penetration_pass_.penetrations();
+    result.vertices_on_surface = penetration_pass_.vertices_on_surface();
+    result.contained_parts = penetration_pass_.contained_parts();
+    const CurveLists& curves = penetration_pass_.curves();
+    result.curves = curves.curves;
+    result.curve_contacts = curves.contacts;
+    result.curve_points = curves.points;
+    result.enclosed_vertices = curves.enclosed;
   }
   near_pairs_.clear();
   if (question_.has_proximity()) {

@@ -11,6 +11,7 @@
 #include "core/float_rounding.hpp"
 #include "geometry/exact_predicates.hpp"
 #include "geometry/vector.hpp"
+#include "scene/feature_name.hpp"
 
 namespace supple {
 namespace {
@@ -111,16 +112,6 @@ double plane_bound(const Vec3d& point, const TrianglePoints& corners) {
   const double least = std::min({dot(seen[0], normal), dot(seen[1], normal), dot(seen[2], normal)});
   // A product of vectors has a rounding error below 2^-50 of the product of their lengths.
   return std::max(0.0, least / std::sqrt(square) - 0x1p-48 * std::sqrt(farthest));
-}
-
-using FeatureName = std::tuple<FeatureKind, std::uint32_t, std::uint32_t>;
-
-/// The feature of a triangle by its vertices, to recognise it in the triangles around it.
-FeatureName name_of(const Feature& feature, const Triangle& triangle, std::uint32_t id) {
-  if (feature.kind == FeatureKind::face) return {feature.kind, id, id};
-  const std::uint32_t first = triangle[feature.index],
-                      last = feature.kind == FeatureKind::vertex ? first : triangle[(feature.index + 1u) % 3];
-  return {feature.kind, std::min(first, last), std::max(first, last)};
 }
 
 /// A point as the boxes of an object's triangles see it: single precision, without the translation.

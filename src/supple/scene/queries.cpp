@@ -18,9 +18,18 @@ void Scene::Implementation::list_queried_objects(const QueryFilter& seen, const 
     const SceneObject* const found = slots_[index].object.get();
     if (found == nullptr || (seen.object && seen.object->index != index)) continue;
     if ((found->options.group & seen.mask) == 0) continue;
-    queried_objects_.push_back({id_of(index), found->resting_view(), &found->placement().end(),
-                                found->octree().triangles(), found->octree().triangle_ids(), found->box()});
+    queried_objects_.push_back(queried_object(index));
   }
+}
+
+QueriedObject Scene::Implementation::queried_object(std::uint32_t index) const {
+  const SceneObject& found = *slots_[index].object;
+  return {id_of(index),
+          found.resting_view(),
+          &found.placement().end(),
+          found.octree().triangles(),
+          found.octree().triangle_ids(),
+          found.box()};
 }
 
 template <class Answer>

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/error.hpp"
+#include "mesh/vertex_triangles.hpp"
 #include "scene/scene_implementation.hpp"
 #include "supple/option_descriptions.hpp"
 
@@ -83,7 +84,9 @@ void check_triangle(const SceneObject& object, std::uint32_t triangle, const cha
 Scene::Implementation::Implementation(const SceneOptions& scene_options)
     : options(checked(scene_options)),
       parallel(scene_options.threads),
-      pair_finder(scene_options.broad_phase, scene_options.bounding_volume, scene_options.scene_octree) {}
+      pair_finder(scene_options.broad_phase, scene_options.bounding_volume, scene_options.scene_octree) {
+  options.contacts = with_included(options.contacts);
+}
 
 ObjectId Scene::Implementation::add(const PositionsView& positions, const TrianglesView& triangles,
                                     const ObjectOptions& object_options, const std::string& fallback_name) {
@@ -94,9 +97,12 @@ ObjectId Scene::Implementation::add(const PositionsView& positions, const Triang
   if (named.octree.build == ObjectOctreeBuild::balanced && named.octree.arity != node_width)
     fail(named.name + ": a balanced octree has eight children; for an arity of " +
          std::to_string(named.octree.arity) + ", build it regular or bottom-up");
-  auto object = std::make_unique<SceneObject>(
-      positions, checked_triangles(named.name, positions.size(), triangles, parallel), named, options,
-      parallel);
+  const std::vector<Triangle> checked = checked_triangles(named.name, positions.size(), triangles, parallel);
+  if (named.solid) {
+    if (const std::string fault = fault_of_solid(checked); !fault.empty())
+      fail(named.name + " is no solid: " + fault);
+  }
+  auto object = std::make_unique<SceneObject>(positions, checked, named, options, parallel);
   object->move().set_positions(positions, parallel);
   object->measure_built_octree(parallel);
   if (free_slots_.empty()) {

@@ -14,6 +14,7 @@
 #include "scene/impact_pass.hpp"
 #include "scene/object_queries.hpp"
 #include "scene/pair_cache.hpp"
+#include "scene/penetration_pass.hpp"
 #include "scene/proximity_pass.hpp"
 #include "scene/scene_object.hpp"
 #include "supple/inspection.hpp"
@@ -33,6 +34,7 @@ struct Question {
 
   bool has_intersections() const { return contains(contacts, ContactKinds::intersection); }
   bool is_continuous() const { return contains(contacts, ContactKinds::continuous); }
+  bool has_penetration() const { return contains(contacts, ContactKinds::penetration); }
   bool has_proximity() const { return contains(contacts, ContactKinds::proximity); }
   /// It searches intersections, or only counts their candidates.
   bool searches_at_rest() const { return contacts == ContactKinds::none || has_intersections(); }
@@ -115,11 +117,16 @@ class Scene::Implementation {
   bool find_contacts(const DetectRequest& request, const StopSignal& stop);
   bool find_impacts(const DetectRequest& request, const StopSignal& stop);
   bool find_proximity(const DetectRequest& request, const StopSignal& stop);
+  /// Needs the contacts.
+  bool find_penetrations(const StopSignal& stop);
+  /// What queries and the search for penetrations read.
+  QueriedObject queried_object(std::uint32_t index) const;
   /// With their elements on the way, or at its end.
   void list_element_objects(MovingShape::Part part);
   /// `group` holds the reported contacts of the pair; null when there are none.
   void verify_contacts(const ObjectPair& pair, const ContactGroup* group, VerifyReport& report) const;
   void verify_impacts(const ObjectPair& pair, const ContactGroup* group, VerifyReport& report) const;
+  void verify_penetrations(const ObjectPair& pair, VerifyReport& report) const;
   void verify_proximity(const ObjectPair& pair, const ContactGroup* group, VerifyReport& report) const;
   void report_non_finite();
   void publish();
@@ -165,12 +172,14 @@ class Scene::Implementation {
   std::vector<ContactObject> contact_objects_;
   std::vector<MovingObject> element_objects_;
   std::vector<QueriedObject> queried_objects_;
+  std::vector<PenetratedObject> penetrated_objects_;
   std::vector<ObjectQueries> queries_of_workers_;
   std::vector<NonFiniteVertex> non_finite_;
   PairCache volume_pairs_, narrow_phase_pairs_, contact_pairs_, near_object_pairs_;
   ContactPass contact_pass_;
   ImpactPass impact_pass_;
   ProximityPass proximity_pass_;
+  PenetrationPass penetration_pass_;
 };
 
 }  // namespace supple

@@ -138,6 +138,20 @@ std::optional<std::array<std::uint32_t, 2>> SceneObject::open_edge() {
   return open_edge_;
 }
 
+const VertexTriangles& SceneObject::vertex_triangles() {
+  const std::uint8_t* const inert = resting_view().arrays.inert;
+  if (vertex_triangles_ && !leaves_out_inert_ && inert == nullptr) return *vertex_triangles_;
+  const std::size_t count = octree_.triangles().size();
+  std::vector<Triangle> triangles(count);
+  std::vector<std::uint8_t> inert_by_id(inert != nullptr ? count : 0);
+  for (std::uint32_t t = 0; t < count; ++t) {
+    triangles[octree_.triangle_ids()[t]] = octree_.triangles()[t];
+    if (inert != nullptr) inert_by_id[octree_.triangle_ids()[t]] = inert[t];
+  }
+  leaves_out_inert_ = inert != nullptr;
+  return vertex_triangles_.emplace(triangles, inert_by_id, octree_.vertex_count());
+}
+
 void SceneObject::measure_built_octree(const Parallel& parallel) {
   resting_.update(octree_, placement_, parallel);
   rebuild_policy_.set_cost_when_built(current_query_cost());

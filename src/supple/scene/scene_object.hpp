@@ -7,6 +7,7 @@
 #include <string>
 
 #include "core/parallel.hpp"
+#include "mesh/vertex_triangles.hpp"
 #include "octree/object_octree.hpp"
 #include "scene/moving_shape.hpp"
 #include "scene/placement.hpp"
@@ -83,10 +84,13 @@ class SceneObject {
   /// The position of a vertex that is not finite: at the end of the step, or at its start if the end is
   /// finite.
   Vec3d non_finite_position(std::uint32_t vertex) const;
-  /// Checks the shapes that are up to date.
   /// An edge with an odd number of triangles, as the user's vertices; nothing when the surface is closed.
   /// The first call takes O(n log n), later ones nothing.
   std::optional<std::array<std::uint32_t, 2>> open_edge();
+  /// The triangles around each vertex at rest, without inert ones. The first call takes O(n), and so does each
+  /// call while there are inert triangles.
+  const VertexTriangles& vertex_triangles();
+  /// Checks the shapes that are up to date.
   std::string validate() const;
   OctreeStatistics octree_statistics() const;
 
@@ -109,6 +113,8 @@ class SceneObject {
   bool has_moved_ = true;
   bool knows_open_edge_ = false;
   std::optional<std::array<std::uint32_t, 2>> open_edge_;
+  std::optional<VertexTriangles> vertex_triangles_;
+  bool leaves_out_inert_ = false;  // `vertex_triangles_` does
   SearchedShapes updated_;  // by the last update
   Aabb box_;
   BoundingSphere sphere_;

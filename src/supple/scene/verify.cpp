@@ -4,6 +4,7 @@
 #include "core/error.hpp"
 #include "scene/brute_force_contacts.hpp"
 #include "scene/brute_force_impacts.hpp"
+#include "scene/brute_force_penetrations.hpp"
 #include "scene/brute_force_proximity.hpp"
 #include "scene/scene_implementation.hpp"
 
@@ -105,6 +106,40 @@ void Scene::Implementation::verify_proximity(const ObjectPair& pair, const Conta
   compare_proximity(pair, reported, truth.near, report.proximity_differences);
 }
 
+/// Both objects in each other, where the other one is solid.
+void Scene::Implementation::verify_penetrations(const ObjectPair& pair, VerifyReport& report) const {
+  if (pair.a == pair.b) return;
+  const PlainObject a = plain_object(*slots_[pair.a.index].object),
+                    b = plain_object(*slots_[pair.b.index].object);
+  const std::vector<TrianglePair> touching = intersecting_pairs_by_brute_force(a, b, false, parallel);
+  const auto verify_inside = [&](const ObjectPair& in_order, const PlainObject& inner,
+                                 const PlainObject& outer, std::uint32_t TrianglePair::*side) {
+    if (!slots_[in_order.b.index].object->options.solid) return;
+    std::vector<std::uint32_t> triangles;
+    for (const TrianglePair& touch : touching) triangles.push_back(touch.*side);
+    const BruteForcePenetrations truth =
+        find_penetrations_by_brute_force(inner, outer, triangles, parallel);
+    report.vertex_triangle_pairs_checked += truth.pairs_checked;
+    report.inside_vertices += static_cast<std::uint64_t>(
+        std::count_if(truth.vertices.begin(), truth.vertices.end(),
+                      [](const ExactPenetration& p) { return p.where == Containment::inside; }));
+    std::span<const Penetration> inside;
+    std::span<const std::uint32_t> on_surface;
+    for (const PenetrationGroup& group : result.penetration_groups) {
+      if (group.a != in_order.a || group.b != in_order.b) continue;
+      inside = result.penetrations_of(group);
+      on_surface = result.vertices_on_surface_of(group);
+    }
+    std::vector<ContainedPart> parts;
+    for (const ContainedPart& part : result.contained_parts) {
+      if (part.inner == in_order.a && part.outer == in_order.b) parts.push_back(part);
+    }
+    compare_penetrations(in_order, inside, on_surface, parts, truth, report.penetration_differences);
+  };
+  verify_inside(pair, a, b, &TrianglePair::a);
+  verify_inside({pair.b, pair.a}, b, a, &TrianglePair::b);
+}
+
 VerifyReport Scene::Implementation::verify() const {
   if (!detected_) fail("verify: nothing was detected at the present positions; call detect first");
   if (result.truncated)
@@ -126,6 +161,7 @@ VerifyReport Scene::Implementation::verify() const {
     if (question_.has_intersections()) verify_contacts(pair, of_contacts, report);
     if (question_.is_continuous()) verify_impacts(pair, of_impacts, report);
     if (question_.has_proximity()) verify_proximity(pair, of_proximity, report);
+    if (question_.has_penetration()) verify_penetrations(pair, report);
   }
   return report;
 }

@@ -1,0 +1,324 @@
+#include "scene/curve_finder.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <tuple>
+
+#include "geometry/vector.hpp"
+
+namespace supple {
+namespace {
+
+Vec3d unit_or_zero(const Vec3d& v) {
+  const double largest = std::max({std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)});
+  if (!(largest > 0 && std::isfinite(largest))) return {};
+  const Vec3d scaled{v.x / largest, v.y / largest, v.z / largest};
+  return (1 / std::sqrt(dot(scaled, scaled))) * scaled + Vec3d{};
+}
+
+}  // namespace
+
+void CurveFinder::find(const CurveInput& input, CurveLists& lists) {
+  input_ = input;
+  contacts_ = input.result->contacts_of(*input.group);
+  if (contacts_.empty()) return;
+  const Contact& last = contacts_.back();
+  points_ = input.result->contact_points.subspan(
+      contacts_[0].first_point, last.first_point + last.point_count - contacts_[0].first_point);
+  link_contacts();
+  for (std::size_t c = 0; c + 1 < first_member_.size(); ++c)
+    add_curve(std::span(members_).subspan(first_member_[c], first_member_[c + 1] - first_member_[c]), lists);
+}
+
+/// Joins the contacts that have a point in common, and lists the contacts of each curve.
+void CurveFinder::link_contacts() {
+  const auto count = static_cast<std::uint32_t>(contacts_.size());
+  links_.clear();
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const Triangle &a = input_.a.triangle(contact(i).triangle_a), &b = input_.b.triangle(contact(i).triangle_b);
+    for (std::uint32_t k = 0; k < contact(i).point_count; ++k) {
+      const std::uint32_t place = first_place(i) + k;
+      Link link{name_of(points_[place].on_a, a, contact(i).triangle_a),
+                name_of(points_[place].on_b, b, contact(i).triangle_b), i, place};
+      if (input_.same_object && link.b < link.a) {
+        std::swap(link.a, link.b);
+        link.is_swapped = true;
+      }
+      links_.push_back(link);
+    }
+  }
+  std::sort(links_.begin(), links_.end());
+  sides_.start(count);
+  is_one_sided_.assign(count, 0);
+  key_.resize(links_.size());
+  first_link_.clear();
+  for (std::uint32_t l = 0; l < links_.size(); ++l) {
+    const bool is_next = l == 0 || std::tie(links_[l - 1].a, links_[l - 1].b) != std::tie(links_[l].a, links_[l].b);
+    if (is_next) first_link_.push_back(l);
+    const Link &first = links_[first_link_.back()], &link = links_[l];
+    if (!sides_.join(first.contact, link.contact, first.is_swapped != link.is_swapped))
+      is_one_sided_[link.contact] = 1;
+    key_[link.place] = static_cast<std::uint32_t>(first_link_.size() - 1);
+  }
+  first_link_.push_back(static_cast<std::uint32_t>(links_.size()));
+
+  // The smallest contact of a curve is the root of its set.
+  first_member_.assign(1, 0);
+  curve_of_.resize(count);
+  is_turned_.resize(count);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const auto [root, is_opposite] = sides_.find(i);
+    is_turned_[i] = is_opposite ? 1 : 0;
+    if (is_one_sided_[i] != 0) is_one_sided_[root] = 1;
+    if (root == i) {
+      curve_of_[i] = static_cast<std::uint32_t>(first_member_.size() - 1);
+      first_member_.push_back(0);
+    }
+    curve_of_[i] = curve_of_[root];
+    ++first_member_[curve_of_[i] + 1];
+  }
+  for (std::size_t c = 1; c < first_member_.size(); ++c) first_member_[c] += first_member_[c - 1];
+  members_.resize(count);
+  for (std::uint32_t i = 0; i < count; ++i) members_[first_member_[curve_of_[i]]++] = i;
+  // Each number is now the end of its curve.
+  first_member_.pop_back();
+  first_member_.insert(first_member_.begin(), 0);
+}
+
+CurveKind CurveFinder::kind_of(std::span<const std::uint32_t> members) const {
+  CurveKind kind = CurveKind::closed;
+  for (const std::uint32_t i : members) {
+    if (contact(i).kind != IntersectionKind::segment) return CurveKind::branched;
+    for (std::uint32_t k = 0; k < 2; ++k) {
+      const std::uint32_t contacts = degree(key_[first_place(i) + k]);
+      if (contacts > 2) return CurveKind::branched;
+      if (contacts == 1) kind = CurveKind::open;
+    }
+  }
+  return kind;
+}
+
+/// Lists the contacts of a closed or an open curve in their order.
+void CurveFinder::walk(std::span<const std::uint32_t> members, CurveKind kind) {
+  steps_.clear();
+  Step step{members.front(), first_place(members.front()), first_place(members.front()) + 1};
+  if (kind == CurveKind::open) {
+    for (const std::uint32_t i : members) {
+      const std::uint32_t place = first_place(i);
+      const bool starts = degree(key_[place]) == 1, ends = degree(key_[place + 1]) == 1;
+      if (!starts && !ends) continue;
+      step = starts ? Step{i, place, place + 1} : Step{i, place + 1, place};
+      break;
+    }
+  }
+  for (;;) {
+    steps_.push_back(step);
+    const std::uint32_t key = key_[step.leave];
+    if (degree(key) == 1 || steps_.size() == members.size()) break;
+    const Link* const links = &links_[first_link_[key]];
+    const Link& next = links[0].contact == step.contact ? links[1] : links[0];
+    const std::uint32_t place = first_place(next.contact);
+    step = {next.contact, next.place, next.place == place ? place + 1 : place};
+  }
+}
+
+/// Positive when the steps go in the direction n_b x n_a.
+double CurveFinder::turn_of_steps() const {
+  double sum = 0;
+  for (const Step& step : steps_) {
+    const Vec3d n_a = unit_normal(input_.a.corners(contact(step.contact).triangle_a)),
+                n_b = unit_normal(input_.b.corners(contact(step.contact).triangle_b));
+    const double turn = dot(cross(n_b, n_a), position(step.leave) - position(step.enter));
+    if (std::isfinite(turn)) sum += is_turned(step.contact) ? -turn : turn;
+  }
+  return sum;
+}
+
+void CurveFinder::turn_around(CurveKind kind) {
+  for (Step& step : steps_) std::swap(step.enter, step.leave);
+  // A closed curve keeps its first contact.
+  std::reverse(steps_.begin() + (kind == CurveKind::closed ? 1 : 0), steps_.end());
+}
+
+void CurveFinder::add_curve(std::span<const std::uint32_t> members, CurveLists& lists) {
+  const auto size_of = [](const auto& list) { return static_cast<std::uint32_t>(list.size()); };
+  IntersectionCurve curve;
+  curve.a = input_.group->a;
+  curve.b = input_.group->b;
+  curve.kind = kind_of(members);
+  curve.first_contact = size_of(lists.contacts);
+  curve.contact_count = static_cast<std::uint32_t>(members.size());
+  curve.first_point = size_of(lists.points);
+  curve.first_enclosed = size_of(lists.enclosed);
+  steps_.clear();
+  if (curve.kind == CurveKind::branched) {
+    for (const std::uint32_t i : members) lists.contacts.push_back(input_.group->first_contact + i);
+  } else {
+    walk(members, curve.kind);
+    if (turn_of_steps() < 0) turn_around(curve.kind);
+    for (const Step& step : steps_) {
+      lists.contacts.push_back(input_.group->first_contact + step.contact);
+      lists.points.push_back(position(step.enter));
+    }
+    if (curve.kind == CurveKind::open) lists.points.push_back(position(steps_.back().leave));
+  }
+  curve.point_count = size_of(lists.points) - curve.first_point;
+  measure(members, curve);
+  curve.enclosed_count_a = static_cast<std::uint32_t>(enclose(members, false, lists));
+  curve.enclosed_count_b = static_cast<std::uint32_t>(enclose(members, true, lists));
+  curve.depth = depth_of(members, curve, lists);
+  lists.curves.push_back(curve);
+}
+
+void CurveFinder::measure(std::span<const std::uint32_t> members, IntersectionCurve& curve) const {
+  Vec3d middle, normal, middle_of_points;
+  double length = 0, points = 0;
+  for (const std::uint32_t i : members) {
+    const std::uint32_t place = first_place(i), count = contact(i).point_count;
+    for (std::uint32_t k = 0; k < count; ++k) middle_of_points = middle_of_points + position(place + k);
+    points += count;
+    const Vec3d along = position(place + count - 1) - position(place);
+    const double part = std::sqrt(dot(along, along));
+    middle = middle + (part / 2) * (position(place) + position(place + count - 1));
+    normal = normal + (is_turned(i) ? -part : part) * contact(i).normal;
+    length += part;
+  }
+  curve.centroid = length > 0 ? (1 / length) * middle : (1 / points) * middle_of_points;
+  if (curve.kind == CurveKind::closed) {
+    Vec3d area;
+    for (const Step& step : steps_)
+      area = area + cross(position(step.enter) - curve.centroid, position(step.leave) - curve.centroid);
+    curve.area = 0.5 * area;
+  }
+  curve.normal = unit_or_zero(curve.area);
+  if (curve.normal == Vec3d{}) curve.normal = unit_or_zero(normal);
+  if (curve.normal == Vec3d{}) curve.normal = contact(members.front()).normal;
+}
+
+bool CurveFinder::is_cut(std::uint32_t v, std::uint32_t w) const {
+  return std::binary_search(cut_edges_.begin(), cut_edges_.end(),
+                            std::array{std::min(v, w), std::max(v, w)});
+}
+
+/// Appends the vertices that the curve encloses on one side and returns their number.
+std::size_t CurveFinder::enclose(std::span<const std::uint32_t> members, bool side_b, CurveLists& lists) {
+  const SurfaceView& surface = side_b ? input_.b : input_.a;
+  const bool is_one_sided = is_one_sided_[members.front()] != 0;
+  if (is_one_sided && side_b) return 0;
+  corners_.clear();
+  crossed_edges_.clear();
+  const auto add_side = [&](std::uint32_t i, bool of_b) {
+    const Triangle& triangle = surface.triangle(of_b ? contact(i).triangle_b : contact(i).triangle_a);
+    corners_.insert(corners_.end(), triangle.begin(), triangle.end());
+    for (std::uint32_t k = 0; k < contact(i).point_count; ++k) {
+      const std::uint32_t place = first_place(i) + k;
+      const FeatureName name = name_of(of_b ? points_[place].on_b : points_[place].on_a, triangle, 0);
+      if (name.kind == FeatureKind::edge) crossed_edges_.push_back({name.first, name.last, key_[place]});
+    }
+  };
+  for (const std::uint32_t i : members) {
+    add_side(i, side_b != is_turned(i));
+    if (is_one_sided) add_side(i, !is_turned(i));
+  }
+  const auto sort_once = [](auto& list) {
+    std::sort(list.begin(), list.end());
+    list.erase(std::unique(list.begin(), list.end()), list.end());
+  };
+  sort_once(crossed_edges_);
+  sort_once(corners_);
+  cut_edges_.clear();
+  for (std::size_t begin = 0, end = 0; begin < crossed_edges_.size(); begin = end) {
+    const auto [v, w, key] = crossed_edges_[begin];
+    while (end < crossed_edges_.size() && crossed_edges_[end][0] == v && crossed_edges_[end][1] == w) ++end;
+    if ((end - begin) % 2 != 0) cut_edges_.push_back({v, w});
+  }
+  if (cut_edges_.empty()) return 0;
+
+  // Corners on the same side of the curve have the same colour.
+  colors_.start(corners_.size());
+  const auto corner = [&](std::uint32_t vertex) {
+    return static_cast<std::uint32_t>(std::lower_bound(corners_.begin(), corners_.end(), vertex) -
+                                      corners_.begin());
+  };
+  const auto join_corners = [&](const Triangle& triangle) {
+    bool agrees = true;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t v = triangle[k], w = triangle[(k + 1) % 3];
+      if (v != w) agrees = colors_.join(corner(v), corner(w), is_cut(v, w)) && agrees;
+    }
+    return agrees;
+  };
+  for (const std::uint32_t i : members) {
+    const bool of_b = side_b != is_turned(i);
+    if (!join_corners(surface.triangle(of_b ? contact(i).triangle_b : contact(i).triangle_a))) return 0;
+    if (is_one_sided &&
+        !join_corners(surface.triangle(of_b ? contact(i).triangle_a : contact(i).triangle_b)))
+      return 0;
+  }
+  const std::vector<std::uint32_t>* const enclosed = smaller_side(surface);
+  if (enclosed == nullptr) return 0;
+  const auto first = static_cast<std::ptrdiff_t>(lists.enclosed.size());
+  lists.enclosed.insert(lists.enclosed.end(), enclosed->begin(), enclosed->end());
+  std::sort(lists.enclosed.begin() + first, lists.enclosed.end());
+  return enclosed->size();
+}
+
+/// Floods both sides of the curve in turns, without crossing it, until one of them is complete. Null when
+/// they are the same side.
+const std::vector<std::uint32_t>* CurveFinder::smaller_side(const SurfaceView& surface) {
+  const auto mark_of = [&](std::size_t color) { return last_mark_ + static_cast<std::uint32_t>(color); };
+  marks_.resize(std::max(marks_.size(), surface.around->vertex_count()), 0);
+  constexpr std::uint32_t almost_all = 0xfffffff0;
+  if (last_mark_ > almost_all) {
+    std::fill(marks_.begin(), marks_.end(), 0);
+    last_mark_ = 0;
+  }
+  last_mark_ += 2;
+  for (auto& flooded : flooded_) flooded.clear();
+  for (std::uint32_t c = 0; c < corners_.size(); ++c) {
+    const ParitySets::Place place = colors_.find(c);
+    if (place.root != 0) return nullptr;
+    const std::size_t color = place.is_opposite ? 1 : 0;
+    marks_[corners_[c]] = mark_of(color);
+    flooded_[color].push_back(corners_[c]);
+  }
+  for (std::size_t next = 0;; ++next) {
+    for (std::size_t color = 0; color < 2; ++color) {
+      if (next == flooded_[color].size()) return &flooded_[color];
+      const std::uint32_t v = flooded_[color][next];
+      for (const std::uint32_t t : surface.around->around(v)) {
+        for (const std::uint32_t w : surface.triangle(t)) {
+          if (marks_[w] == mark_of(color)) continue;
+          const bool is_other = marks_[w] == mark_of(1 - color);
+          if (is_other) {
+            if (is_cut(v, w)) continue;
+            return nullptr;
+          }
+          marks_[w] = mark_of(color);
+          flooded_[color].push_back(w);
+        }
+      }
+    }
+  }
+}
+
+double CurveFinder::depth_of(std::span<const std::uint32_t> members, const IntersectionCurve& curve,
+                             const CurveLists& lists) const {
+  const auto height = [&](const Vec3d& p) { return dot(p - curve.centroid, curve.normal); };
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (const std::uint32_t i : members) {
+    for (std::uint32_t k = 0; k < contact(i).point_count; ++k) {
+      low = std::min(low, height(position(first_place(i) + k)));
+      high = std::max(high, height(position(first_place(i) + k)));
+    }
+  }
+  const std::uint32_t* enclosed = lists.enclosed.data() + curve.first_enclosed;
+  for (std::uint32_t i = 0; i < curve.enclosed_count_a; ++i)
+    low = std::min(low, height(input_.a.position(*enclosed++)));
+  for (std::uint32_t i = 0; i < curve.enclosed_count_b; ++i)
+    high = std::max(high, height(input_.b.position(*enclosed++)));
+  return high - low;
+}
+
+}  // namespace supple

@@ -1,0 +1,105 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "scene/feature_name.hpp"
+#include "scene/parity_sets.hpp"
+#include "scene/surface_view.hpp"
+#include "supple/penetration.hpp"
+#include "supple/result.hpp"
+
+namespace supple {
+
+/// Curves with the lists that they refer to.
+struct CurveLists {
+  std::vector<IntersectionCurve> curves;
+  std::vector<std::uint32_t> contacts;
+  std::vector<Vec3d> points;
+  std::vector<std::uint32_t> enclosed;
+
+  void clear() {
+    curves.clear();
+    contacts.clear();
+    points.clear();
+    enclosed.clear();
+  }
+};
+
+/// The contacts of two objects, or of one object with itself.
+struct CurveInput {
+  SurfaceView a, b;
+  bool same_object = false;
+  const ContactGroup* group = nullptr;
+  const DetectResult* result = nullptr;  ///< with the contacts of the group, and their points
+};
+
+/// Links contacts to curves. Holds the memory of one worker.
+class CurveFinder {
+ public:
+  /// Appends the curves of a group, ordered by their smallest contacts. O(n log n) for n contacts, and the
+  /// vertices that each curve encloses.
+  void find(const CurveInput& input, CurveLists& lists);
+
+ private:
+  /// A point of a contact. Points with the same names are one point of a curve.
+  struct Link {
+    FeatureName a, b;
+    std::uint32_t contact = 0, place = 0;  // of the group
+    bool is_swapped = false;               // within one object: the names are in the other order
+    constexpr auto operator<=>(const Link&) const = default;
+  };
+  /// A contact on its way along a curve: it enters and leaves it at these points.
+  struct Step {
+    std::uint32_t contact = 0, enter = 0, leave = 0;
+  };
+
+  void link_contacts();
+  void add_curve(std::span<const std::uint32_t> members, CurveLists& lists);
+  CurveKind kind_of(std::span<const std::uint32_t> members) const;
+  void walk(std::span<const std::uint32_t> members, CurveKind kind);
+  void turn_around(CurveKind kind);
+  double turn_of_steps() const;
+  void measure(std::span<const std::uint32_t> members, IntersectionCurve& curve) const;
+  std::size_t enclose(std::span<const std::uint32_t> members, bool side_b, CurveLists& lists);
+  double depth_of(std::span<const std::uint32_t> members, const IntersectionCurve& curve,
+                  const CurveLists& lists) const;
+  const std::vector<std::uint32_t>* smaller_side(const SurfaceView& surface);
+  bool is_cut(std::uint32_t v, std::uint32_t w) const;
+
+  const Contact& contact(std::uint32_t i) const { return contacts_[i]; }
+  std::uint32_t first_place(std::uint32_t i) const {
+    return contacts_[i].first_point - contacts_[0].first_point;
+  }
+  Vec3d position(std::uint32_t place) const { return points_[place].position; }
+  std::uint32_t degree(std::uint32_t key) const { return first_link_[key + 1] - first_link_[key]; }
+  /// Whether side a of the curve is object b of the contact: only within one object.
+  bool is_turned(std::uint32_t i) const { return is_turned_[i] != 0; }
+
+  CurveInput input_;
+  std::span<const Contact> contacts_;     // of the group
+  std::span<const ContactPoint> points_;  // of these contacts
+
+  std::vector<Link> links_;                // sorted: by key
+  std::vector<std::uint32_t> first_link_;  // of each key
+  std::vector<std::uint32_t> key_;         // of each place
+  ParitySets sides_;                       // of the contacts; the sets are the curves
+  std::vector<std::uint8_t> is_one_sided_;  // by smallest contact: the sides of the curve are one
+  std::vector<std::uint8_t> is_turned_;     // by contact
+  std::vector<std::uint32_t> members_, first_member_, curve_of_;
+  std::vector<Step> steps_;
+
+  // One side of a curve.
+  std::vector<std::uint32_t> corners_;  // vertices of its triangles, ascending
+  std::vector<std::array<std::uint32_t, 3>> crossed_edges_;  // with the key of the crossing
+  std::vector<std::array<std::uint32_t, 2>> cut_edges_;      // crossed an odd number of times
+  ParitySets colors_;
+  std::vector<std::uint32_t> marks_;  // by vertex
+  std::uint32_t last_mark_ = 0;
+  std::array<std::vector<std::uint32_t>, 2> flooded_;
+};
+
+}  // namespace supple
