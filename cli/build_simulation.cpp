@@ -57,6 +57,7 @@ struct Adder {
 
 void apply(const MethodOptions& options, Input& input) {
   input.simulation.scene = options.scene;
+  input.simulation.scene.contacts = with_included(options.scene.contacts);
   for (InputObject& object : input.objects) options.given_objects.apply_to(object.options);
 }
 

@@ -31,16 +31,22 @@ CsvReport::CsvReport(const std::string& file_name, const SceneOptions& options)
     : file_(file_name), has_kinds_(options.comparison.colliding_vertices) {
   const bool continuous = contains(options.contacts, ContactKinds::continuous);
   const bool proximity = contains(options.contacts, ContactKinds::proximity);
-  std::fputs(proximity    ? "frame,a,b,kind,a0,a1,b0,b1,distance\n"
-             : continuous ? "frame,a,b,kind,a0,a1,b0,b1,toi,certainty\n"
-             : has_kinds_ ? "frame,a,b,kind,i,j\n"
-                          : "frame,a,b,i,j\n",
+  has_penetration_ = contains(options.contacts, ContactKinds::penetration);
+  std::fputs(has_penetration_ ? "frame,a,b,vertex,triangle,depth\n"
+             : proximity      ? "frame,a,b,kind,a0,a1,b0,b1,distance\n"
+             : continuous     ? "frame,a,b,kind,a0,a1,b0,b1,toi,certainty\n"
+             : has_kinds_     ? "frame,a,b,kind,i,j\n"
+                              : "frame,a,b,i,j\n",
              file_.stream());
 }
 
 void CsvReport::add(const Frame& frame) {
   fmt::memory_buffer rows;
-  for (const Contact& c : frame.result.contacts) {
+  for (const Penetration& p : frame.result.penetrations) {
+    fmt::format_to(fmt::appender(rows), "{},{},{},{},{},{}\n", frame.number, p.object_a.index,
+                   p.object_b.index, p.vertex, p.triangle, p.depth);
+  }
+  for (const Contact& c : has_penetration_ ? std::span<const Contact>() : frame.result.contacts) {
     fmt::format_to(fmt::appender(rows), "{},{},{},{}{},{}\n", frame.number, c.object_a.index,
                    c.object_b.index, has_kinds_ ? "contact," : "", c.triangle_a, c.triangle_b);
   }

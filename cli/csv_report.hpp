@@ -23,6 +23,7 @@ class CsvReport {
   void add_narrow_phase(const Frame& frame, fmt::memory_buffer& rows);
 
   OutputFile file_;
+  bool has_penetration_ = false;
   bool has_kinds_;  ///< a column says what each row is
 };
 

@@ -1,6 +1,7 @@
 #include "description_tables.hpp"
 
 #include <fmt/core.h>
+#include <fmt/ranges.h>
 
 #include <cmath>
 #include <optional>
@@ -21,7 +22,9 @@ std::string code(const std::string& text) {
 
 template <class Struct, class Value>
 std::string allowed_values(const Field<Struct, Value>& field) {
-  if constexpr (Worded<Value>) {
+  if constexpr (WordedSet<Value>) {
+    return fmt::format("`{}`; several with commas between them", fmt::join(set_words<Value>, "`, `"));
+  } else if constexpr (Worded<Value>) {
     return code(list_of_words<Value>("`, `"));
   } else if constexpr (std::is_same_v<Value, bool>) {
     if (field.has_truth_words()) return fmt::format("`{}`, `{}`", field.truth_words[0], field.truth_words[1]);

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "continuous_json.hpp"
+#include "penetration_json.hpp"
 #include "proximity_json.hpp"
 #include "session/described_json.hpp"
 #include "supple/option_descriptions.hpp"
@@ -247,6 +248,8 @@ void JsonReport::add(const Frame& frame) {
     write_proximity_groups(json_, result, options.proximity_listing);
     if (content_.contact_details) write_proximity_pairs(json_, result);
   }
+  const bool penetration = contains(options.contacts, ContactKinds::penetration);
+  if (penetration) write_penetration(json_, result, content_.contact_details);
   if (options.comparison.colliding_vertices) write_colliding_vertices(json_, result);
   if (content_.node_pairs) write_node_pairs(json_, scene_, *content_.node_pairs);
   json_.key("events");
@@ -261,6 +264,7 @@ void JsonReport::add(const Frame& frame) {
     if (continuous) write_continuous_verify(json_, both ? "continuous_verify" : "verify", *frame.verify);
     if (contains(options.contacts, ContactKinds::intersection)) write_verify(json_, *frame.verify);
     if (proximity) write_proximity_verify(json_, *frame.verify);
+    if (penetration) write_penetration_verify(json_, *frame.verify);
   }
   if (content_.stats) write_stats(json_, frame);
   json_.end_object();

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <fmt/core.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -85,7 +86,18 @@ template <class Struct, class Value, class Set>
 CLI::Option* add_field(CLI::App& app, const Field<Struct, Value>& field, const Value& default_value,
                        Set set) {
   const std::string name = flag_of(field.key);
-  if constexpr (Worded<Value>) {
+  if constexpr (WordedSet<Value>) {
+    const auto parse = [name, set](const std::string& given) {
+      const std::optional<Value> value = value_of_set<Value>(given);
+      if (!value)
+        throw CLI::ValidationError(name, fmt::format("'{}' is not {}", given, list_of_set_words<Value>()));
+      set(*value);
+    };
+    return app
+        .add_option_function<std::string>(name, parse,
+                                          help_of(field.doc, field.unit, spelled_value(field, default_value)))
+        ->type_name(fmt::format("{},...", fmt::join(set_words<Value>, "|")));
+  } else if constexpr (Worded<Value>) {
     return add_words(
         app, name, {words<Value>.begin(), words<Value>.end()},
         [set](std::size_t place) { set(static_cast<Value>(place)); },

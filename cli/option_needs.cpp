@@ -10,7 +10,8 @@ bool is_continuous(const SceneOptions& scene) {
 }
 /// Whether the scene looks at triangles at rest. Otherwise it searches elements, with boxes.
 bool is_at_rest(const SceneOptions& scene) {
-  return scene.contacts == ContactKinds::none || contains(scene.contacts, ContactKinds::intersection);
+  return scene.contacts == ContactKinds::none ||
+         contains(with_included(scene.contacts), ContactKinds::intersection);
 }
 
 /// Oriented boxes and k-DOPs enclose objects at rest, not their paths.
@@ -47,6 +48,10 @@ constexpr OptionNeed needs[] = {
 
 bool has_proximity(const SceneOptions& scene) {
   return contains(scene.contacts, ContactKinds::proximity);
+}
+
+bool has_penetration(const SceneOptions& scene) {
+  return contains(scene.contacts, ContactKinds::penetration);
 }
 
 std::span<const OptionNeed> option_needs() {

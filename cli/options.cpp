@@ -72,6 +72,8 @@ constexpr const char* detect_footer = R"(Examples:
       Elements count as touching when they come within 0.001.
   supple detect --contacts proximity --margin 0.005 cloth.obj body.obj --json near.json
       What is within 0.01, the sum of both margins, and how far. One mesh alone is near itself.
+  supple detect a.obj b.obj --contacts penetration --solid --json inside.json
+      Which vertices of one are inside the other, how deep, and the curves in which they intersect.
   supple detect rabbit.obj fish.ply --verify
       Check the result against exact brute force over all pairs of triangles.
   supple detect rabbit.obj fish.ply --object-octree regular --leaf-size 1 --node-pairs 0 1
@@ -169,7 +171,8 @@ at the start of the step, and then at its end. A row has numerator,denominator o
 numbers of any size. It may also have the answer, 0 or 1, the same in all eight rows. Each coordinate must
 be representable as a double.)";
 
-/// Adds the options of the octree of each object, and `--self` and `--margin` when objects are tested.
+/// Adds the options of the octree of each object, and `--self`, `--margin` and `--solid` when objects are
+/// tested.
 void add_object_options(CLI::App& app, viewer::Overrides<ObjectOptions>& objects, bool are_tested) {
   objects.for_each_setter([&]<class Struct, class Value>(const Field<Struct, Value>& field,
                                                          const Value& default_value, auto set) {
@@ -177,7 +180,7 @@ void add_object_options(CLI::App& app, viewer::Overrides<ObjectOptions>& objects
       add_field(app, field, default_value, set)->group(are_tested ? "Method" : "Options");
     } else if constexpr (std::is_same_v<Value, bool> || std::is_same_v<Value, double>) {
       const std::string_view key(field.key);
-      if (are_tested && (key == "self" || key == "margin"))
+      if (are_tested && (key == "self" || key == "margin" || key == "solid"))
         add_field(app, field, default_value, set)->group("Detection");
     }
   });
@@ -247,18 +250,24 @@ void add_detection_options(CLI::App& app, MethodOptions& options, Dependences& d
   add_object_options(app, options.given_objects, true);
   dependences.push_back({app.get_option("--margin"), [&options] { return has_proximity(options.scene); },
                          "--contacts proximity"});
+  dependences.push_back({app.get_option("--solid"), [&options] { return has_penetration(options.scene); },
+                         "--contacts penetration"});
 }
 
 void add_report_options(CLI::App& app, DetectionOptions& options, Dependences& dependences) {
   const auto add = [&](const char* name, bool& value, const char* description) {
     dependences.push_back({app.add_flag(name, value, description)->group("Detection"),
                            [&options] { return options.scene.contacts != ContactKinds::none; },
-                           "--contacts intersection, continuous or proximity"});
+                           "--contacts other than none"});
   };
   add("--fail-on-contact", options.fail_on_contact,
-      "Exit with status 1 when anything touches, or is near with --contacts proximity");
+      "Exit with status 1 when anything touches, is near with --contacts proximity, or is inside a solid "
+      "with "
+      "--contacts penetration");
   add("--verify", options.verify,
-      "Check each frame by exact brute force over all pairs of triangles or elements; exit with status 3 "
+      "Check each frame by exact brute force over all pairs of triangles, elements, or vertices and "
+      "triangles; "
+      "exit with status 3 "
       "when the results differ");
 }
 
@@ -269,12 +278,18 @@ void add_output_options(CLI::App& app, DetectionOptions& options, Dependences& d
       {group(add_file(
            app, "--csv", options.csv,
            "Write one row per contact: frame,a,b,i,j for triangles; frame,a,b,kind,a0,a1,b0,b1,toi,certainty "
-           "for continuous contacts; frame,a,b,kind,a0,a1,b0,b1,distance for proximity; - is standard "
+           "for continuous contacts; frame,a,b,kind,a0,a1,b0,b1,distance for proximity; "
+           "frame,a,b,vertex,triangle,depth for penetration, one row per vertex inside a solid; - is "
+           "standard "
            "output. With --colliding-vertices the rows are "
            "frame,a,b,kind,i,j: also each vertex in colliding leaves, and the begin and end of each "
            "collision "
            "of the narrow phase")),
-       [&] { return std::popcount(static_cast<unsigned>(options.scene.contacts)) <= 1; },
+       [&] {
+         const auto kinds = static_cast<unsigned>(options.scene.contacts);
+         const auto included = static_cast<unsigned>(ContactKinds::intersection);
+         return std::popcount(has_penetration(options.scene) ? kinds & ~included : kinds) <= 1;
+       },
        "contacts of one kind"});
   dependences.push_back(
       {group(app.add_flag_callback(
@@ -286,7 +301,7 @@ void add_output_options(CLI::App& app, DetectionOptions& options, Dependences& d
            "--contact-details", options.json_content.contact_details,
            "Also write each contact to the JSON: for triangles the kind, the normal and the points; for "
            "continuous contacts the barycentric coordinates, the point and the normal; for proximity also "
-           "both points")),
+           "both points; for penetration the way out, and the points and enclosed vertices of curves")),
        [&] { return !options.json.empty() && options.scene.contacts != ContactKinds::none; },
        "--json and contacts"});
   dependences.push_back({group(app.add_flag("--faces", options.json_content.faces,

@@ -73,15 +73,31 @@ std::string describe(const Scene& scene, const ProximityDifference& d) {
                      named(d.kind_b, d.element_b, d.object_b), outcome_of(d.fault));
 }
 
+const char* outcome_of(PenetrationDifference::Fault fault) {
+  switch (fault) {
+    case PenetrationDifference::Fault::missed:
+      return "is inside or on the surface of it and was not reported so";
+    case PenetrationDifference::Fault::added:
+      return "was reported as inside or on the surface of it and is not";
+    case PenetrationDifference::Fault::inexact:
+      break;
+  }
+  return "was reported with a triangle that is not the nearest or with an inaccurate depth";
+}
+
+std::string describe(const Scene& scene, const PenetrationDifference& d) {
+  return fmt::format("for {}: vertex {} of {} {}", one_line(scene.name(d.object_b)), d.vertex,
+                     one_line(scene.name(d.object_a)), outcome_of(d.fault));
+}
+
 void print_difference(const Scene& scene, std::uint64_t frame, const VerifyReport& report) {
   const std::string first =
-      !report.continuous_differences.empty() ? describe(scene, report.continuous_differences.front())
-      : !report.differences.empty()          ? describe(scene, report.differences.front())
-                                             : describe(scene, report.proximity_differences.front());
-  const std::size_t differences =
-      report.differences.size() + report.continuous_differences.size() + report.proximity_differences.size();
+      !report.continuous_differences.empty()  ? describe(scene, report.continuous_differences.front())
+      : !report.differences.empty()           ? describe(scene, report.differences.front())
+      : !report.proximity_differences.empty() ? describe(scene, report.proximity_differences.front())
+                                              : describe(scene, report.penetration_differences.front());
   fmt::print(stderr, "supple: verify: frame {} has {} from brute force; the first: {}\n", frame,
-             counted(differences, "difference"), first);
+             counted(report.difference_count(), "difference"), first);
 }
 
 }  // namespace
@@ -100,7 +116,7 @@ void Reports::add(const Frame& frame) {
   if (text_) text_->add(frame);
   last_frame_ = frame.number;
   touched_ = touched_ || !frame.result.groups.empty() || !frame.result.continuous_groups.empty() ||
-             !frame.result.proximity_groups.empty();
+             !frame.result.proximity_groups.empty() || !frame.result.penetration_groups.empty();
   if (frame.verify && !frame.verify->agrees() && !std::exchange(differed_, true))
     print_difference(scene_, frame.number, *frame.verify);
 }

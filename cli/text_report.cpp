@@ -44,6 +44,24 @@ void TextReport::add(const Frame& frame) {
     for (const ProximityPair& pair : result.proximity_pairs_of(group))
       near.smallest = std::min(near.smallest, pair.distance);
   }
+  for (const PenetrationGroup& group : result.penetration_groups) {
+    if (group.penetration_count == 0) continue;
+    InsideSummary& inside = inside_[{group.a, group.b}];
+    ++inside.frames;
+    inside.vertices += group.penetration_count;
+    for (const Penetration& p : result.penetrations_of(group))
+      inside.deepest = std::max(inside.deepest, p.depth);
+  }
+  ObjectPair last_contained;
+  for (const ContainedPart& part : result.contained_parts) {
+    const ObjectPair pair{part.inner, part.outer};
+    if (part.is_whole && std::exchange(last_contained, pair) != pair) ++inside_[pair].frames_contained;
+  }
+  for (const IntersectionCurve& curve : result.curves) {
+    ++(curve.kind == CurveKind::closed ? closed_curves_
+       : curve.kind == CurveKind::open ? open_curves_
+                                       : branched_curves_);
+  }
   impacts_.add(frame);
   add_to(sum_, result.stats);
   if (frame.simulated) {
@@ -58,9 +76,9 @@ void TextReport::add(const Frame& frame) {
   if (!frame.verify) return;
   verified_ = true;
   const VerifyReport& verify = *frame.verify;
-  checked_ += verify.triangle_pairs_checked + verify.element_pairs_checked + verify.proximity_pairs_checked;
-  differences_ +=
-      verify.differences.size() + verify.continuous_differences.size() + verify.proximity_differences.size();
+  checked_ += verify.triangle_pairs_checked + verify.element_pairs_checked + verify.proximity_pairs_checked +
+              verify.vertex_triangle_pairs_checked;
+  differences_ += verify.difference_count();
 }
 
 void TextReport::print(const Scene& scene) const {
@@ -71,7 +89,7 @@ void TextReport::print(const Scene& scene) const {
              counted(frames_, noun_));
   print_contacts(scene);
   if (simulated_) print_collisions(scene);
-  print_stages();
+  print_stages(scene);
   if (non_finite_ > 0)
     fmt::print("\n{} not finite in the last frame: the triangles that use these vertices touch nothing\n",
                counted(non_finite_, "position"));
@@ -80,6 +98,7 @@ void TextReport::print(const Scene& scene) const {
 
 void TextReport::print_contacts(const Scene& scene) const {
   if (contains(scene.options().contacts, ContactKinds::intersection)) print_pairs(scene);
+  if (contains(scene.options().contacts, ContactKinds::penetration)) print_penetrations(scene);
   if (contains(scene.options().contacts, ContactKinds::continuous)) impacts_.print(scene);
   if (contains(scene.options().contacts, ContactKinds::proximity)) print_near(scene);
 }
@@ -101,6 +120,31 @@ void TextReport::print_near(const Scene& scene) const {
     fmt::print("{:<20} {:<20} {:>8} {:>16} {:>24}\n", name_of(scene, pair.a),
                pair.a == pair.b ? "itself" : name_of(scene, pair.b), grouped(near.frames),
                grouped(near.pairs), near.smallest);
+  }
+  if (rows.size() > most_rows)
+    fmt::print("and {} with fewer; --csv lists all\n", counted(rows.size() - most_rows, "pair"));
+  fmt::print("\n");
+}
+
+void TextReport::print_penetrations(const Scene& scene) const {
+  fmt::print("The intersections form {} ({} closed, {} open, {} branched).\n",
+             counted(closed_curves_ + open_curves_ + branched_curves_, "curve"), grouped(closed_curves_),
+             grouped(open_curves_), grouped(branched_curves_));
+  if (inside_.empty()) {
+    fmt::print("No vertex is inside a solid object.\n\n");
+    return;
+  }
+  std::vector<std::pair<ObjectPair, InsideSummary>> rows(inside_.begin(), inside_.end());
+  std::sort(rows.begin(), rows.end(), [](const auto& x, const auto& y) {
+    return x.second.vertices != y.second.vertices ? x.second.vertices > y.second.vertices : x.first < y.first;
+  });
+  fmt::print("\n{:<20} {:<20} {:>8} {:>16} {:>24} {:>16}\n", "object", "is inside", "frames",
+             "vertices inside", "largest depth", "frames as whole");
+  for (std::size_t i = 0; i < std::min(rows.size(), most_rows); ++i) {
+    const auto& [pair, inside] = rows[i];
+    fmt::print("{:<20} {:<20} {:>8} {:>16} {:>24} {:>16}\n", name_of(scene, pair.a), name_of(scene, pair.b),
+               grouped(inside.frames), grouped(inside.vertices), inside.deepest,
+               grouped(inside.frames_contained));
   }
   if (rows.size() > most_rows)
     fmt::print("and {} with fewer; --csv lists all\n", counted(rows.size() - most_rows, "pair"));
@@ -140,7 +184,7 @@ void TextReport::print_collisions(const Scene& scene) const {
   fmt::print("{} that two objects began to touch\n\n", counted(begun_, "time"));
 }
 
-void TextReport::print_stages() const {
+void TextReport::print_stages(const Scene& scene) const {
   const double frames = static_cast<double>(std::max<std::uint64_t>(frames_, 1));
   const double total_seconds = sum_.total_seconds + motion_seconds_;
   const auto row = [&](const char* stage, double seconds, const std::string& work) {
@@ -165,12 +209,18 @@ void TextReport::print_stages() const {
       fmt::format("{}{}, {} decided by exact arithmetic", counted(sum_.contacts, "contact"),
                   sum_.proximity_pairs > 0 ? ", " + counted(sum_.proximity_pairs, "near pair") : "",
                   grouped(sum_.exact_fallbacks)));
+  if (contains(scene.options().contacts, ContactKinds::penetration))
+    row("penetration", sum_.penetration_seconds,
+        fmt::format("{} inside, {}", counted(sum_.penetrations, "vertex", "vertices"),
+                    counted(sum_.curves, "curve")));
   row("sort, events", sum_.sort_and_events_seconds, "");
   row("total", total_seconds, "");
 }
 
 void TextReport::print_verify(const Scene& scene) const {
-  const char* const noun = scene.options().contacts == ContactKinds::intersection ? "triangle pair"
+  const char* const noun = contains(scene.options().contacts, ContactKinds::penetration)
+                               ? "pair of triangles, elements, or vertex and triangle"
+                           : scene.options().contacts == ContactKinds::intersection ? "triangle pair"
                            : !contains(scene.options().contacts, ContactKinds::intersection)
                                ? "element pair"
                                : "triangle and element pair";

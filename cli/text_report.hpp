@@ -34,11 +34,18 @@ class TextReport {
     double smallest = 0;  ///< distance
   };
 
+  struct InsideSummary {
+    std::uint64_t frames = 0, vertices = 0;
+    double deepest = 0;
+    std::uint64_t frames_contained = 0;  ///< frames in which the whole object is inside
+  };
+
   void print_contacts(const Scene& scene) const;
+  void print_penetrations(const Scene& scene) const;
   void print_near(const Scene& scene) const;
   void print_pairs(const Scene& scene) const;
   void print_collisions(const Scene& scene) const;
-  void print_stages() const;
+  void print_stages(const Scene& scene) const;
   void print_verify(const Scene& scene) const;
 
   std::string noun_;
@@ -46,6 +53,8 @@ class TextReport {
   std::uint64_t frames_ = 0;
   std::map<ObjectPair, PairSummary> pairs_;
   std::map<ObjectPair, NearSummary> near_;
+  std::map<ObjectPair, InsideSummary> inside_;  ///< a in b
+  std::uint64_t closed_curves_ = 0, open_curves_ = 0, branched_curves_ = 0;
   ImpactTables impacts_;  ///< of continuous contacts
   StepStats sum_;
   std::uint64_t volumes_begun_ = 0, leaves_begun_ = 0, begun_ = 0, ended_ = 0;

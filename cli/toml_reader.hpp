@@ -84,7 +84,14 @@ class TomlReader {
 
 template <class Struct, class Value>
 void TomlReader::read(const Field<Struct, Value>& field, Value& value) {
-  if constexpr (Worded<Value>) {
+  if constexpr (WordedSet<Value>) {
+    if (!has(field.key)) return;
+    std::string given;
+    read(field.key, given);
+    const std::optional<Value> found = value_of_set<Value>(given);
+    if (!found) fail(field.key, "'" + given + "' is not " + list_of_set_words<Value>());
+    value = *found;
+  } else if constexpr (Worded<Value>) {
     if (const auto place = read_word(field.key, words<Value>)) value = static_cast<Value>(*place);
   } else if constexpr (std::is_same_v<Value, bool>) {
     if (!field.has_truth_words())

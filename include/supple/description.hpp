@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <concepts>
 #include <cstddef>
@@ -51,6 +52,44 @@ std::string list_of_words(std::string_view separator = ", ") {
     list += word;
   }
   return list;
+}
+
+/// For an enumeration whose values are sets: the word for the empty set, then the words for single members,
+/// in the order of their bits. Users write several members with commas between them, in any order.
+template <class Enum>
+inline constexpr std::array<const char*, 0> set_words{};
+
+template <class Enum>
+concept WordedSet = Worded<Enum> &&(set_words<Enum>.size() > 0);
+
+/// The set of a text such as `b,a`; nothing when a part of it is not a word, or the word for the empty set is
+/// not alone.
+template <WordedSet Enum>
+constexpr std::optional<Enum> value_of_set(std::string_view text) {
+  if (text == set_words<Enum>[0]) return Enum{};
+  unsigned bits = 0;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find(',', begin), text.size());
+    std::size_t member = 1;
+    while (member < set_words<Enum>.size() && text.substr(begin, end - begin) != set_words<Enum>[member])
+      ++member;
+    if (member == set_words<Enum>.size()) return std::nullopt;
+    bits |= 1u << (member - 1);
+    begin = end + 1;
+  }
+  return static_cast<Enum>(bits);
+}
+
+/// `none, or one or more of a, b, with commas`
+template <WordedSet Enum>
+std::string list_of_set_words() {
+  std::string list = set_words<Enum>[0];
+  list += ", or one or more of ";
+  for (std::size_t i = 1; i < set_words<Enum>.size(); ++i) {
+    list += set_words<Enum>[i];
+    list += ", ";
+  }
+  return list + "with commas";
 }
 
 /// The values that a number may have.

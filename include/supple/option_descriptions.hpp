@@ -20,12 +20,25 @@ inline constexpr std::array words<BroadPhaseMethod>{"automatic", "octree", "grid
 template <>
 inline constexpr std::array words<RegionSphereTest>{"arvo", "grown_box"};
 template <>
-inline constexpr std::array words<ContactKinds>{
-    "none",      "intersection",           "continuous",           "intersection,continuous",
-    "proximity", "intersection,proximity", "continuous,proximity", "intersection,continuous,proximity",
-    "penetration", "intersection,penetration", "continuous,penetration",
-    "intersection,continuous,penetration", "proximity,penetration", "intersection,proximity,penetration",
-    "continuous,proximity,penetration", "intersection,continuous,proximity,penetration"};
+inline constexpr std::array words<ContactKinds>{"none",
+                                                "intersection",
+                                                "continuous",
+                                                "intersection,continuous",
+                                                "proximity",
+                                                "intersection,proximity",
+                                                "continuous,proximity",
+                                                "intersection,continuous,proximity",
+                                                "penetration",
+                                                "intersection,penetration",
+                                                "continuous,penetration",
+                                                "intersection,continuous,penetration",
+                                                "proximity,penetration",
+                                                "intersection,proximity,penetration",
+                                                "continuous,proximity,penetration",
+                                                "intersection,continuous,proximity,penetration"};
+template <>
+inline constexpr std::array set_words<ContactKinds>{"none", "intersection", "continuous", "proximity",
+                                                    "penetration"};
 template <>
 inline constexpr std::array words<ProximityListing>{"features", "elements"};
 
@@ -206,10 +219,13 @@ struct Description<SceneOptions> {
     visitor(Field<Options, ContactKinds>{
         .name = "contacts",
         .member = &Options::contacts,
-        .doc = "Contacts to find: pairs of triangles that intersect (intersection); vertices and faces, and "
-               "pairs of edges, that touch on the way from the frame before (continuous); pairs within the "
-               "margins of their objects (proximity); several of these; or none. Bodies that already cut "
-               "through each other at the start of the way are found by intersection, not by continuous"});
+        .doc =
+            "Contacts to find: pairs of triangles that intersect (intersection); vertices and faces, and "
+            "pairs of edges, that touch on the way from the frame before (continuous); pairs within the "
+            "margins of their objects (proximity); vertices inside solid objects, contained parts and curves "
+            "of intersection (penetration, which includes intersection); several of these; or none. Bodies "
+            "that already cut "
+            "through each other at the start of the way are found by intersection, not by continuous"});
     visitor(Field<Options, bool>{.name = "contact_points",
                                  .member = &Options::contact_points,
                                  .doc = "Compute the normal and the points of each contact of triangles"});

@@ -17,7 +17,7 @@ struct Penetration {
   /// The triangle of b that is nearest, by the user's number: the smallest of several at the same distance.
   std::uint32_t triangle = 0;
   Feature feature{};  ///< the smallest part of the triangle that holds the closest point
-  double depth = 0;  ///< distance to the surface of b, within 4 units in the last place
+  double depth = 0;   ///< distance to the surface of b, within 4 units in the last place
   /// The closest point by the triangle's corners, each coordinate within 2^-50.
   std::array<double, 3> barycentric{};
   Vec3d point{};   ///< the closest point, rounded

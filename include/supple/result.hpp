@@ -151,10 +151,9 @@ struct DetectResult {
   }
   std::span<const std::uint32_t> enclosed_vertices_of(const IntersectionCurve& curve,
                                                       ContactSide side) const {
-    return side == ContactSide::a
-               ? enclosed_vertices.subspan(curve.first_enclosed, curve.enclosed_count_a)
-               : enclosed_vertices.subspan(curve.first_enclosed + curve.enclosed_count_a,
-                                           curve.enclosed_count_b);
+    return side == ContactSide::a ? enclosed_vertices.subspan(curve.first_enclosed, curve.enclosed_count_a)
+                                  : enclosed_vertices.subspan(curve.first_enclosed + curve.enclosed_count_a,
+                                                              curve.enclosed_count_b);
   }
   /// Empty when `SceneOptions::contact_points` is off and no penetration was requested.
   std::span<const ContactPoint> points_of(const Contact& contact) const {
@@ -227,13 +226,13 @@ struct VerifyReport {
   std::uint64_t intersecting_pairs = 0;
   std::uint64_t element_pairs_checked = 0;
   std::uint64_t touching_element_pairs = 0;
-  std::uint64_t proximity_pairs_checked = 0;                 ///< pairs of elements
-  std::uint64_t near_pairs = 0;                              ///< in the listing of the last `detect`
-  std::uint64_t vertex_triangle_pairs_checked = 0;           ///< for penetration
-  std::uint64_t inside_vertices = 0;                         ///< inside solids
-  std::vector<Difference> differences;                       ///< sorted
-  std::vector<ContinuousDifference> continuous_differences;  ///< sorted
-  std::vector<ProximityDifference> proximity_differences;    ///< sorted
+  std::uint64_t proximity_pairs_checked = 0;                   ///< pairs of elements
+  std::uint64_t near_pairs = 0;                                ///< in the listing of the last `detect`
+  std::uint64_t vertex_triangle_pairs_checked = 0;             ///< for penetration
+  std::uint64_t inside_vertices = 0;                           ///< inside solids
+  std::vector<Difference> differences;                         ///< sorted
+  std::vector<ContinuousDifference> continuous_differences;    ///< sorted
+  std::vector<ProximityDifference> proximity_differences;      ///< sorted
   std::vector<PenetrationDifference> penetration_differences;  ///< sorted by objects
   std::uint64_t difference_count() const {
     return differences.size() + continuous_differences.size() + proximity_differences.size() +

@@ -103,6 +103,39 @@ inline std::uint64_t hash_of_proximity(const DetectResult& result, std::uint64_t
   return hash;
 }
 
+inline std::uint64_t hash_of_penetrations(const DetectResult& result,
+                                          std::uint64_t hash = 0xcbf29ce484222325u) {
+  const auto add = [&](std::uint64_t value) {
+    hash = (hash ^ value) * 0x100000001b3u;
+    hash ^= hash >> 32;
+  };
+  const auto add_vector = [&](const Vec3d& v) {
+    for (int axis = 0; axis < 3; ++axis) add(std::bit_cast<std::uint64_t>(v[axis]));
+  };
+  for (const Penetration& p : result.penetrations) {
+    for (const std::uint32_t id : {p.object_a.index, p.object_b.index, p.vertex, p.triangle}) add(id);
+    add(static_cast<std::uint64_t>(p.feature.kind) << 8 | p.feature.index);
+    add(std::bit_cast<std::uint64_t>(p.depth));
+    for (const double weight : p.barycentric) add(std::bit_cast<std::uint64_t>(weight));
+    add_vector(p.point);
+    add_vector(p.normal);
+  }
+  for (const ContainedPart& part : result.contained_parts) {
+    for (const std::uint32_t id : {part.inner.index, part.outer.index, part.vertex, part.vertex_count})
+      add(id);
+  }
+  for (const IntersectionCurve& curve : result.curves) {
+    add(static_cast<std::uint64_t>(curve.kind));
+    for (const Vec3d& v : {curve.centroid, curve.area, curve.normal}) add_vector(v);
+    add(std::bit_cast<std::uint64_t>(curve.depth));
+  }
+  for (const auto& list : {result.vertices_on_surface, result.curve_contacts, result.enclosed_vertices}) {
+    for (const std::uint32_t id : list) add(id);
+  }
+  for (const Vec3d& point : result.curve_points) add_vector(point);
+  return hash;
+}
+
 /// One line per difference that `verify` finds; empty if it agrees.
 inline std::string differences(const Scene& scene) {
   std::string text;

@@ -145,9 +145,8 @@ BruteForcePenetrations find_penetrations_by_brute_force(const PlainObject& inner
   BruteForcePenetrations result;
   std::vector<std::uint8_t> is_used(inner.positions.size(), 0);
   for (const Triangle& triangle : inner.triangles) {
-    const bool is_inert = std::any_of(triangle.begin(), triangle.end(), [&](std::uint32_t v) {
-      return !is_finite(inner.positions[v]);
-    });
+    const bool is_inert = std::any_of(triangle.begin(), triangle.end(),
+                                      [&](std::uint32_t v) { return !is_finite(inner.positions[v]); });
     for (const std::uint32_t v : triangle) is_used[v] |= is_inert ? 0 : 1;
   }
   for (const Triangle& triangle : outer.triangles) {
@@ -160,7 +159,8 @@ BruteForcePenetrations find_penetrations_by_brute_force(const PlainObject& inner
   parallel.for_ranges(inner.positions.size(), 64, [&](std::size_t begin, std::size_t end, std::uint32_t w) {
     for (std::size_t v = begin; v < end; ++v) {
       if (is_used[v] == 0) continue;
-      ExactPenetration penetration{static_cast<std::uint32_t>(v), where_is(inner.positions[v], triangles), 0, 0};
+      ExactPenetration penetration{static_cast<std::uint32_t>(v), where_is(inner.positions[v], triangles), 0,
+                                   0};
       if (penetration.where == Containment::outside) continue;
       if (penetration.where == Containment::inside) find_nearest(inner.positions[v], triangles, penetration);
       found[w].push_back(penetration);
@@ -190,7 +190,8 @@ void compare_penetrations(const ObjectPair& pair, std::span<const Penetration> i
     for (; next_on != on_surface.end() && *next_on < expected.vertex; ++next_on) note(*next_on, Fault::added);
     const bool is_inside = next_inside != inside.end() && next_inside->vertex == expected.vertex;
     const bool is_on = next_on != on_surface.end() && *next_on == expected.vertex;
-    const bool is_right_list = expected.where == Containment::inside ? is_inside && !is_on : is_on && !is_inside;
+    const bool is_right_list =
+        expected.where == Containment::inside ? is_inside && !is_on : is_on && !is_inside;
     if (!is_right_list)
       note(expected.vertex, Fault::missed);
     else if (is_inside && (next_inside->triangle != expected.triangle ||

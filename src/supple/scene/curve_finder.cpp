@@ -36,7 +36,8 @@ void CurveFinder::link_contacts() {
   const auto count = static_cast<std::uint32_t>(contacts_.size());
   links_.clear();
   for (std::uint32_t i = 0; i < count; ++i) {
-    const Triangle &a = input_.a.triangle(contact(i).triangle_a), &b = input_.b.triangle(contact(i).triangle_b);
+    const Triangle &a = input_.a.triangle(contact(i).triangle_a),
+                   &b = input_.b.triangle(contact(i).triangle_b);
     for (std::uint32_t k = 0; k < contact(i).point_count; ++k) {
       const std::uint32_t place = first_place(i) + k;
       Link link{name_of(points_[place].on_a, a, contact(i).triangle_a),
@@ -54,7 +55,8 @@ void CurveFinder::link_contacts() {
   key_.resize(links_.size());
   first_link_.clear();
   for (std::uint32_t l = 0; l < links_.size(); ++l) {
-    const bool is_next = l == 0 || std::tie(links_[l - 1].a, links_[l - 1].b) != std::tie(links_[l].a, links_[l].b);
+    const bool is_next =
+        l == 0 || std::tie(links_[l - 1].a, links_[l - 1].b) != std::tie(links_[l].a, links_[l].b);
     if (is_next) first_link_.push_back(l);
     const Link &first = links_[first_link_.back()], &link = links_[l];
     if (!sides_.join(first.contact, link.contact, first.is_swapped != link.is_swapped))
@@ -197,8 +199,7 @@ void CurveFinder::measure(std::span<const std::uint32_t> members, IntersectionCu
 }
 
 bool CurveFinder::is_cut(std::uint32_t v, std::uint32_t w) const {
-  return std::binary_search(cut_edges_.begin(), cut_edges_.end(),
-                            std::array{std::min(v, w), std::max(v, w)});
+  return std::binary_search(cut_edges_.begin(), cut_edges_.end(), std::array{std::min(v, w), std::max(v, w)});
 }
 
 /// Appends the vertices that the curve encloses on one side and returns their number.
@@ -252,8 +253,7 @@ std::size_t CurveFinder::enclose(std::span<const std::uint32_t> members, bool si
   for (const std::uint32_t i : members) {
     const bool of_b = side_b != is_turned(i);
     if (!join_corners(surface.triangle(of_b ? contact(i).triangle_b : contact(i).triangle_a))) return 0;
-    if (is_one_sided &&
-        !join_corners(surface.triangle(of_b ? contact(i).triangle_a : contact(i).triangle_b)))
+    if (is_one_sided && !join_corners(surface.triangle(of_b ? contact(i).triangle_a : contact(i).triangle_b)))
       return 0;
   }
   const std::vector<std::uint32_t>* const enclosed = smaller_side(surface);

@@ -83,17 +83,17 @@ class CurveFinder {
   std::span<const Contact> contacts_;     // of the group
   std::span<const ContactPoint> points_;  // of these contacts
 
-  std::vector<Link> links_;                // sorted: by key
-  std::vector<std::uint32_t> first_link_;  // of each key
-  std::vector<std::uint32_t> key_;         // of each place
-  ParitySets sides_;                       // of the contacts; the sets are the curves
+  std::vector<Link> links_;                 // sorted: by key
+  std::vector<std::uint32_t> first_link_;   // of each key
+  std::vector<std::uint32_t> key_;          // of each place
+  ParitySets sides_;                        // of the contacts; the sets are the curves
   std::vector<std::uint8_t> is_one_sided_;  // by smallest contact: the sides of the curve are one
   std::vector<std::uint8_t> is_turned_;     // by contact
   std::vector<std::uint32_t> members_, first_member_, curve_of_;
   std::vector<Step> steps_;
 
   // One side of a curve.
-  std::vector<std::uint32_t> corners_;  // vertices of its triangles, ascending
+  std::vector<std::uint32_t> corners_;                       // vertices of its triangles, ascending
   std::vector<std::array<std::uint32_t, 3>> crossed_edges_;  // with the key of the crossing
   std::vector<std::array<std::uint32_t, 2>> cut_edges_;      // crossed an odd number of times
   ParitySets colors_;

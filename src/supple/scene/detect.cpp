@@ -55,9 +55,9 @@ SearchedShapes Question::shapes() const {
 
 const DetectResult& Scene::Implementation::detect(const DetectRequest& request) {
   if (request.impact) check(*request.impact, "DetectRequest::impact");
-  question_ = {with_included(request.contacts.value_or(options.contacts)), request.impact.value_or(options.impact),
-               request.proximity_listing.value_or(options.proximity_listing),
-               options.comparison.colliding_vertices};
+  question_ = {
+      with_included(request.contacts.value_or(options.contacts)), request.impact.value_or(options.impact),
+      request.proximity_listing.value_or(options.proximity_listing), options.comparison.colliding_vertices};
   if (question_.has_penetration() && request.max_contacts != DetectRequest{}.max_contacts)
     fail("detect: penetration needs all intersections; request it without max_contacts");
   const StopSignal stop = stop_signal(request);

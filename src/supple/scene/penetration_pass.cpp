@@ -27,7 +27,8 @@ std::uint32_t size_of(const List& list) {
 
 /// Appends a range of another list.
 template <class Item>
-void append(std::vector<Item>& list, const std::vector<Item>& from, std::uint32_t first, std::uint32_t count) {
+void append(std::vector<Item>& list, const std::vector<Item>& from, std::uint32_t first,
+            std::uint32_t count) {
   const auto begin = from.begin() + static_cast<std::ptrdiff_t>(first);
   list.insert(list.end(), begin, begin + static_cast<std::ptrdiff_t>(count));
 }
@@ -105,8 +106,7 @@ void PenetrationPass::collect_touched(const Task& task, const DetectResult& resu
     const std::uint32_t id = task.inner_is_b ? contact.triangle_b : contact.triangle_a;
     worker.triangles.push_back(id);
     for (const ContactPoint& point : result.points_of(contact)) {
-      const FeatureName name =
-          name_of(task.inner_is_b ? point.on_b : point.on_a, surface.triangle(id), id);
+      const FeatureName name = name_of(task.inner_is_b ? point.on_b : point.on_a, surface.triangle(id), id);
       if (name.kind == FeatureKind::edge) worker.cut_edges.push_back({name.first, name.last});
       if (name.kind == FeatureKind::vertex) worker.marks[name.first] |= is_on_surface;
     }
@@ -216,8 +216,8 @@ void PenetrationPass::gather() {
     const Worker& worker = workers_[outcome.worker];
     const ObjectId inner = objects_[tasks_[i].inner].queried.id, outer = objects_[tasks_[i].outer].queried.id;
     if (outcome.inside + outcome.on_surface > 0)
-      groups_.push_back({inner, outer, size_of(penetrations_), outcome.inside, size_of(on_surface_),
-                         outcome.on_surface});
+      groups_.push_back(
+          {inner, outer, size_of(penetrations_), outcome.inside, size_of(on_surface_), outcome.on_surface});
     for (std::uint32_t k = 0; k < outcome.inside; ++k)
       penetrations_.push_back({inner, outer, worker.inside[outcome.first_inside + k]});
     append(on_surface_, worker.on_surface, outcome.first_on_surface, outcome.on_surface);
@@ -250,7 +250,8 @@ bool PenetrationPass::find_depths(const StopSignal& stop, const Parallel& parall
       const Vec3d position = inner.surface.position(penetration.vertex);
       // The vertex before is often near: its depth and the way to it bound this depth.
       double bound = std::numeric_limits<double>::infinity();
-      if (last != nullptr && last->object_a == penetration.object_a && last->object_b == penetration.object_b) {
+      if (last != nullptr && last->object_a == penetration.object_a &&
+          last->object_b == penetration.object_b) {
         const Vec3d way = position - last_position;
         const double sum = (last->depth + std::sqrt(dot(way, way))) * (1 + 0x1p-40) + 0x1p-500;
         if (std::isfinite(sum)) bound = sum;

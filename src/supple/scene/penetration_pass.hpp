@@ -72,8 +72,8 @@ class PenetrationPass {
     std::vector<std::array<std::uint32_t, 2>> cut_edges;
     std::vector<std::uint32_t> corners, triangles, touched;
     ParitySets sets;
-    std::vector<Containment> state;  // by set
-    std::vector<std::uint8_t> marks;  // by vertex
+    std::vector<Containment> state;         // by set
+    std::vector<std::uint8_t> marks;        // by vertex
     std::vector<std::uint8_t> has_contact;  // by part
   };
 

@@ -87,8 +87,8 @@ class SceneObject {
   /// An edge with an odd number of triangles, as the user's vertices; nothing when the surface is closed.
   /// The first call takes O(n log n), later ones nothing.
   std::optional<std::array<std::uint32_t, 2>> open_edge();
-  /// The triangles around each vertex at rest, without inert ones. The first call takes O(n), and so does each
-  /// call while there are inert triangles.
+  /// The triangles around each vertex at rest, without inert ones. The first call takes O(n), and so does
+  /// each call while there are inert triangles.
   const VertexTriangles& vertex_triangles();
   /// Checks the shapes that are up to date.
   std::string validate() const;
@@ -115,7 +115,7 @@ class SceneObject {
   std::optional<std::array<std::uint32_t, 2>> open_edge_;
   std::optional<VertexTriangles> vertex_triangles_;
   bool leaves_out_inert_ = false;  // `vertex_triangles_` does
-  SearchedShapes updated_;  // by the last update
+  SearchedShapes updated_;         // by the last update
   Aabb box_;
   BoundingSphere sphere_;
 };

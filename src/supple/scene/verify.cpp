@@ -117,8 +117,7 @@ void Scene::Implementation::verify_penetrations(const ObjectPair& pair, VerifyRe
     if (!slots_[in_order.b.index].object->options.solid) return;
     std::vector<std::uint32_t> triangles;
     for (const TrianglePair& touch : touching) triangles.push_back(touch.*side);
-    const BruteForcePenetrations truth =
-        find_penetrations_by_brute_force(inner, outer, triangles, parallel);
+    const BruteForcePenetrations truth = find_penetrations_by_brute_force(inner, outer, triangles, parallel);
     report.vertex_triangle_pairs_checked += truth.pairs_checked;
     report.inside_vertices += static_cast<std::uint64_t>(
         std::count_if(truth.vertices.begin(), truth.vertices.end(),
