@@ -25,8 +25,8 @@ inline auto members_of(SceneOctreeOptions& o) {
   return std::tie(a, b, c, d, e);
 }
 inline auto members_of(ObjectOptions& o) {
-  auto& [a, b, c, d, e, f, g] = o;
-  return std::tie(a, b, c, d, e, f, g);
+  auto& [a, b, c, d, e, f, g, h] = o;
+  return std::tie(a, b, c, d, e, f, g, h);
 }
 inline auto members_of(ComparisonOptions& o) {
   auto& [a, b] = o;
@@ -69,8 +69,8 @@ inline auto members_of(SimulationOptions& o) {
   return std::tie(a, b, c, d, e);
 }
 inline auto members_of(StepStats& o) {
-  auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, p, q, r, s, t, u, v, w] = o;
-  return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m, n, p, q, r, s, t, u, v, w);
+  auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, p, q, r, s, t, u, v, w, x, y, z] = o;
+  return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m, n, p, q, r, s, t, u, v, w, x, y, z);
 }
 inline auto members_of(BroadPhaseStats& o) {
   auto& [a, b, c, d, e, f, g, h] = o;
