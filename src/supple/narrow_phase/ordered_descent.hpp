@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -14,21 +15,22 @@ namespace supple {
 /// between calls.
 class OrderedDescent {
  public:
-  /// Calls `on_leaf(leaf, begin, end)` with the leaves for which `bound_of(box)` is at most `limit()`: eight
-  /// times the node plus the child, and the range of triangles in octree order. The bound of a box must be at
-  /// most that of every part of it. Skips children without a finite triangle. `limit()` may decrease during
-  /// the descent.
-  template <class BoundOf, class Limit, class OnLeaf>
-  void run(const OctreeView& view, const BoundOf& bound_of, const Limit& limit, const OnLeaf& on_leaf) {
+  /// Calls `on_leaf(leaf, begin, end)` with the leaves whose boxes have a bound of at most `limit()`: eight
+  /// times the node plus the child, and the range of triangles in octree order. `bound_children(node,
+  /// bounds)` writes the bounds of the children of a node. The bound of a box must be at most that of every
+  /// part of it. Skips children without a finite triangle. `limit()` may decrease during the descent.
+  template <class BoundChildren, class Limit, class OnLeaf>
+  void run(const OctreeView& view, const BoundChildren& bound_children, const Limit& limit,
+           const OnLeaf& on_leaf) {
     stack_.clear();
-    if (!view.nodes.empty()) expand(view, 0, bound_of, limit());
+    if (!view.nodes.empty()) expand(view, 0, bound_children, limit());
     while (!stack_.empty()) {
       const Entry entry = stack_.back();
       stack_.pop_back();
       if (!(entry.bound <= limit())) continue;
       const OctreeNode& node = view.nodes[entry.node];
       if (node.is_inner(entry.child)) {
-        expand(view, node.child_node(entry.child), bound_of, limit());
+        expand(view, node.child_node(entry.child), bound_children, limit());
       } else {
         on_leaf(node_width * entry.node + static_cast<std::uint32_t>(entry.child),
                 node.first_triangle[entry.child], node.first_triangle[entry.child + 1]);
@@ -44,14 +46,14 @@ class OrderedDescent {
   };
 
   /// Pushes the children, the nearest last.
-  template <class BoundOf>
-  void expand(const OctreeView& view, std::uint32_t node, const BoundOf& bound_of, double limit) {
+  template <class BoundChildren>
+  void expand(const OctreeView& view, std::uint32_t node, const BoundChildren& bound_children, double limit) {
     const std::size_t first = stack_.size();
+    std::array<double, node_width> bounds;
+    bound_children(node, bounds);
     for (int child = 0; child < view.nodes[node].child_count; ++child) {
-      const Aabb box = child_box(view.boxes[node], child);
-      if (box.empty()) continue;
-      const double bound = bound_of(moved(box, view.translation));
-      if (bound <= limit) stack_.push_back({bound, node, child});
+      if (bounds[static_cast<std::size_t>(child)] <= limit && !child_box(view.boxes[node], child).empty())
+        stack_.push_back({bounds[static_cast<std::size_t>(child)], node, child});
     }
     std::sort(stack_.begin() + static_cast<std::ptrdiff_t>(first), stack_.end(),
               [](const Entry& a, const Entry& b) { return a.bound > b.bound; });

@@ -8,9 +8,11 @@
 
 #include "contact/element_distance.hpp"
 #include "contact/ray_triangle.hpp"
+#include "contact/triangle_bounds.hpp"
 #include "core/float_rounding.hpp"
 #include "geometry/exact_predicates.hpp"
 #include "geometry/vector.hpp"
+#include "narrow_phase/distance_kernels.hpp"
 #include "scene/feature_name.hpp"
 
 namespace supple {
@@ -79,76 +81,38 @@ ElementPoints point_and_triangle(const Vec3d& point, const TrianglePoints& corne
   return {{point, corners[0], corners[1], corners[2]}, 1, 3};
 }
 
-/// About the point of a triangle that is closest to the origin; any point for a triangle almost without area.
-///
-/// Ericson, Real-Time Collision Detection, 2005, section 5.1.5.
-Vec3d rough_closest(const TrianglePoints& c) {
-  const Vec3d u = c[1] - c[0], v = c[2] - c[0];
-  const double u0 = -dot(u, c[0]), v0 = -dot(v, c[0]);
-  if (u0 <= 0 && v0 <= 0) return c[0];
-  const double u1 = -dot(u, c[1]), v1 = -dot(v, c[1]);
-  if (u1 >= 0 && v1 <= u1) return c[1];
-  const double u2 = -dot(u, c[2]), v2 = -dot(v, c[2]);
-  if (v2 >= 0 && u2 <= v2) return c[2];
-  const double on_w = u0 * v1 - u1 * v0, on_v = u2 * v0 - u0 * v2, on_u = u1 * v2 - u2 * v1;
-  if (on_w <= 0 && u0 >= 0 && u1 <= 0) return c[0] + (u0 / (u0 - u1)) * u;
-  if (on_v <= 0 && v0 >= 0 && v2 <= 0) return c[0] + (v0 / (v0 - v2)) * v;
-  if (on_u <= 0 && v1 >= u1 && u2 >= v2) {
-    const double along = v1 - u1;
-    return c[1] + (along / (along + (u2 - v2))) * (c[2] - c[1]);
+/// A point as the boxes of an object's octree see it: in single precision, without the translation.
+PointBounds seen_by(const QueriedObject& object, const Vec3d& point) {
+  PointBounds bounds;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double offset = object.view.translation[axis], local = point[axis] - offset;
+    // More than the roundings of `local` and of a translated vertex.
+    const double largest =
+        std::max(std::fabs(double{object.box.min[axis]}), std::fabs(double{object.box.max[axis]}));
+    const double slop = offset == 0 ? 0 : 0x1p-50 * (std::fabs(point[axis]) + std::fabs(offset) + largest);
+    bounds.low[axis] = round_down(local - slop);
+    bounds.high[axis] = round_up(local + slop);
   }
-  const double whole = on_u + on_v + on_w;
-  return c[0] + (on_v / whole) * u + (on_w / whole) * v;
+  return bounds;
 }
 
-/// At most the distance of a point and a triangle, and almost always nearly that: the distance of a plane
-/// beyond which the triangle lies. 0 where rounding leaves nothing certain.
-double plane_bound(const Vec3d& point, const TrianglePoints& corners) {
-  const TrianglePoints seen{corners[0] - point, corners[1] - point, corners[2] - point};
-  const Vec3d normal = rough_closest(seen);
-  const double square = dot(normal, normal);
-  const double farthest = std::max({dot(seen[0], seen[0]), dot(seen[1], seen[1]), dot(seen[2], seen[2])});
-  if (!(square > 0x1p-900 && farthest < 0x1p900)) return 0;
-  const double least = std::min({dot(seen[0], normal), dot(seen[1], normal), dot(seen[2], normal)});
-  // A product of vectors has a rounding error below 2^-50 of the product of their lengths.
-  return std::max(0.0, least / std::sqrt(square) - 0x1p-48 * std::sqrt(farthest));
+/// `bound_children` of `OrderedDescent`, from the bound of a box.
+template <class BoundOf>
+auto bound_each_child(const OctreeView& view, const BoundOf& bound_of) {
+  return [&view, &bound_of](std::uint32_t node, std::array<double, node_width>& bounds) {
+    for (int child = 0; child < view.nodes[node].child_count; ++child)
+      bounds[static_cast<std::size_t>(child)] =
+          bound_of(moved(child_box(view.boxes[node], child), view.translation));
+  };
 }
-
-/// A point as the boxes of an object's triangles see it: single precision, without the translation.
-class PointInFloats {
- public:
-  PointInFloats(const Vec3d& point, const QueriedObject& object) {
-    for (int axis = 0; axis < 3; ++axis) {
-      const double offset = object.view.translation[axis], local = point[axis] - offset;
-      // More than the roundings of `local` and of a translated vertex.
-      const double largest =
-          std::max(std::fabs(double{object.box.min[axis]}), std::fabs(double{object.box.max[axis]}));
-      const double slop = offset == 0 ? 0 : 0x1p-50 * (std::fabs(point[axis]) + std::fabs(offset) + largest);
-      low_[axis] = round_down(local - slop);
-      high_[axis] = round_up(local + slop);
-    }
-  }
-
-  /// Squared distances of the boxes. At most those of the triangles, but for the roundings that
-  /// `NearestTriangle::squared_limit` covers.
-  void squared_distances(const LeafBoxes& boxes, std::array<float, leaf_block>& squares) const {
-    for (std::size_t i = 0; i < leaf_block; ++i) {
-      const float x = std::max(std::max(boxes.min_x[i] - high_.x, low_.x - boxes.max_x[i]), 0.0f);
-      const float y = std::max(std::max(boxes.min_y[i] - high_.y, low_.y - boxes.max_y[i]), 0.0f);
-      const float z = std::max(std::max(boxes.min_z[i] - high_.z, low_.z - boxes.max_z[i]), 0.0f);
-      squares[i] = x * x + y * y + z * z;
-    }
-  }
-
- private:
-  Vec3f low_, high_;
-};
 
 /// The nearest triangle so far.
 class NearestTriangle {
  public:
-  NearestTriangle(std::span<const QueriedObject> objects, const Vec3d& point, double max_distance)
-      : objects_(objects), point_(point), max_distance_(max_distance) {
+  NearestTriangle(std::span<const QueriedObject> objects, const Vec3d& point, double max_distance,
+                  std::vector<NearTriangle>& candidates)
+      : objects_(objects), point_(point), max_distance_(max_distance), candidates_(candidates) {
+    candidates_.clear();
     set_limit(max_distance);
   }
 
@@ -157,22 +121,38 @@ class NearestTriangle {
   /// Its square, rounded up by more than a squared distance in single precision can lose.
   float squared_limit() const { return squared_limit_; }
 
-  /// Triangles in octree order from `begin` on, one for each bit.
+  /// Triangles in octree order from `begin` on, one for each bit. Keeps those that may be the nearest.
   void consider(std::uint32_t index, std::uint32_t begin, std::uint64_t triangles) {
-    std::array<double, leaf_block> bounds;
-    std::uint32_t first = leaf_block;
-    for (std::uint64_t left = triangles; left != 0; left &= left - 1) {
-      const auto i = static_cast<std::uint32_t>(std::countr_zero(left));
-      bounds[i] = plane_bound(point_, objects_[index].corners(begin + i));
-      if (first == leaf_block || bounds[i] < bounds[first]) first = i;
-    }
-    // The nearest one first, which discards most of the others.
-    if (first != leaf_block && bounds[first] <= limit_) consider(index, begin + first);
-    for (std::uint64_t left = triangles; left != 0; left &= left - 1) {
-      const auto i = static_cast<std::uint32_t>(std::countr_zero(left));
-      if (i != first && bounds[i] <= limit_) consider(index, begin + i);
+    std::array<TrianglePair, leaf_block> list;
+    std::array<double, leaf_block> lower, upper;
+    std::size_t count = 0;
+    for (std::uint64_t left = triangles; left != 0; left &= left - 1)
+      list[count++] = {begin + static_cast<std::uint32_t>(std::countr_zero(left)), 0};
+    if (count == 0) return;
+    bound_distances(point_, {objects_[index].view.arrays, objects_[index].view.translation},
+                    std::span(list).first(count), lower.data(), upper.data());
+    const double least = *std::min_element(upper.begin(), upper.begin() + static_cast<std::ptrdiff_t>(count));
+    if (least < limit_) set_limit(least);
+    for (std::size_t i = 0; i < count; ++i) {
+      if (lower[i] <= limit_) candidates_.push_back({lower[i], index, list[i].a});
     }
   }
+
+  /// Decides between the triangles that were kept. The nearest one first, which discards most of the others.
+  void decide() {
+    if (candidates_.empty()) return;
+    std::swap(candidates_.front(), *std::min_element(candidates_.begin(), candidates_.end(),
+                                                     [](const NearTriangle& p, const NearTriangle& q) {
+                                                       return p.distance < q.distance;
+                                                     }));
+    for (const NearTriangle& candidate : candidates_) {
+      if (candidate.distance <= limit_) decide(candidate.object, candidate.triangle);
+    }
+  }
+
+  std::uint32_t object() const { return index_; }
+  /// In octree order.
+  std::uint32_t triangle() const { return triangle_; }
 
   std::optional<ClosestPoint> result() const {
     if (!found_) return {};
@@ -182,7 +162,8 @@ class NearestTriangle {
   }
 
  private:
-  void consider(std::uint32_t index, std::uint32_t t) {
+  void decide(std::uint32_t index, std::uint32_t t) {
+    if (found_ && index_ == index && triangle_ == t) return;
     const QueriedObject& object = objects_[index];
     const TrianglePoints corners = object.corners(t);
     const ElementPoints elements = point_and_triangle(point_, corners);
@@ -200,6 +181,7 @@ class NearestTriangle {
     found_ = found;
     corners_ = corners;
     index_ = index;
+    triangle_ = t;
     id_ = id;
     feature_ = feature;
     set_limit(std::min(max_distance_, found->distance * (1 + 0x1p-49) + 0x1p-1060));
@@ -214,9 +196,10 @@ class NearestTriangle {
   Vec3d point_;
   double max_distance_, limit_ = 0;
   float squared_limit_ = 0;
+  std::vector<NearTriangle>& candidates_;
   std::optional<ElementDistance> found_;
   TrianglePoints corners_;
-  std::uint32_t index_ = 0, id_ = 0;
+  std::uint32_t index_ = 0, triangle_ = 0, id_ = 0;
   FeatureName feature_;
   bool used_exact_ = false;
 };
@@ -260,31 +243,55 @@ void ObjectQueries::order(std::span<const QueriedObject> objects, const BoundOf&
   std::sort(order_.begin(), order_.end());
 }
 
+const LeafBoxes& ObjectQueries::boxes_of(std::uint32_t index, const QueriedObject& object, std::uint32_t leaf,
+                                         std::uint32_t begin, std::uint32_t end) {
+  constexpr std::size_t recent_leaves = 64;
+  if (recent_.empty()) recent_.resize(recent_leaves);
+  RecentBoxes& recent = recent_[(begin / leaf_block + leaf) % recent_leaves];
+  if (recent.object != index || recent.begin != begin) {
+    const LeafArrays leaves{object.view.arrays, object.view.boxes, object.view.leaf_vertices};
+    load_leaf_boxes(leaves, leaf, begin, end, recent.boxes);
+    recent.object = index;
+    recent.begin = begin;
+  }
+  return recent.boxes;
+}
+
+void ObjectQueries::start() {
+  last_nearest_.reset();
+  for (RecentBoxes& recent : recent_) recent.object = RecentBoxes::none;
+}
+
 std::optional<ClosestPoint> ObjectQueries::closest(std::span<const QueriedObject> objects, const Vec3d& point,
                                                    double max_distance) {
   if (!is_finite(point)) return {};
-  NearestTriangle nearest(objects, point, max_distance);
+  NearestTriangle nearest(objects, point, max_distance, candidates_);
   const auto bound_of = [&](const Aabb& box) { return distance_bound(point, box); };
-  order(objects, bound_of, max_distance);
+  if (last_nearest_) nearest.consider(last_nearest_->object, last_nearest_->triangle, 1);
+  order(objects, bound_of, nearest.limit());
   for (const auto& [object_bound, index] : order_) {
     const QueriedObject& object = objects[index];
     if (!(object_bound <= nearest.limit())) break;
-    const LeafArrays leaves{object.view.arrays, object.view.boxes, object.view.leaf_vertices};
-    const PointInFloats seen(point, object);
+    const PointBounds seen = seen_by(object, point);
     descent_.run(
-        object.view, bound_of, [&] { return nearest.limit(); },
+        object.view,
+        [&](std::uint32_t node, std::array<double, node_width>& bounds) {
+          std::array<float, node_width> squares;
+          squared_distances(seen, object.view.boxes[node], squares.data());
+          std::copy(squares.begin(), squares.end(), bounds.begin());
+        },
+        [&] { return double{nearest.squared_limit()}; },
         [&](std::uint32_t leaf, std::uint32_t begin, std::uint32_t end) {
           for (; begin < end; begin += leaf_block) {
-            load_leaf_boxes(leaves, leaf, begin, std::min(begin + leaf_block, end), boxes_);
-            seen.squared_distances(boxes_, squares_);
-            std::uint64_t near = 0;
-            for (std::uint32_t i = 0; i < boxes_.size; ++i)
-              near |= std::uint64_t{squares_[i] <= nearest.squared_limit()} << i;
-            nearest.consider(index, begin, near & boxes_.triangles);
+            const LeafBoxes& boxes = boxes_of(index, object, leaf, begin, std::min(begin + leaf_block, end));
+            nearest.consider(index, begin, near_triangles(seen, boxes, nearest.squared_limit()));
           }
         });
   }
-  return nearest.result();
+  nearest.decide();
+  const std::optional<ClosestPoint> result = nearest.result();
+  if (result) last_nearest_ = {0, nearest.object(), nearest.triangle()};
+  return result;
 }
 
 std::optional<RayHit> ObjectQueries::cast(std::span<const QueriedObject> objects, const Ray& ray,
@@ -307,7 +314,7 @@ std::optional<RayHit> ObjectQueries::cast(std::span<const QueriedObject> objects
     const QueriedObject& object = objects[index];
     if (!(object_bound <= limit)) break;
     descent_.run(
-        object.view, bound_of, [&] { return limit; },
+        object.view, bound_each_child(object.view, bound_of), [&] { return limit; },
         [&](std::uint32_t, std::uint32_t begin, std::uint32_t end) {
           for (std::uint32_t t = begin; t < end; ++t) {
             if (object.is_inert(t)) continue;
@@ -340,7 +347,7 @@ Containment ObjectQueries::inside(const QueriedObject& object, const Vec3d& poin
   bool is_on = false, is_inside = false, used_exact = false;
   const auto bound_of = [&](const auto& box) { return column_bound(point, box); };
   descent_.run(
-      object.view, bound_of, [&] { return is_on ? -1.0 : 0.0; },
+      object.view, bound_each_child(object.view, bound_of), [&] { return is_on ? -1.0 : 0.0; },
       [&](std::uint32_t, std::uint32_t begin, std::uint32_t end) {
         for (std::uint32_t t = begin; t < end && !is_on; ++t) {
           if (object.is_inert(t)) continue;

@@ -32,9 +32,19 @@ struct QueriedObject {
   }
 };
 
+/// A triangle, by object in a list of objects and in octree order, and at most its distance to a point.
+struct NearTriangle {
+  double distance = 0;
+  std::uint32_t object = 0, triangle = 0;
+};
+
 /// Answers queries to a list of objects, one after the other. Holds the memory of one worker.
 class ObjectQueries {
  public:
+  /// Call before queries to another list of objects, or after they changed.
+  void start();
+  /// Looks first at the triangle that was nearest to the point before: for points that are close to each
+  /// other, hardly any other triangle is nearer.
   std::optional<ClosestPoint> closest(std::span<const QueriedObject> objects, const Vec3d& point,
                                       double max_distance);
   std::optional<RayHit> cast(std::span<const QueriedObject> objects, const Ray& ray, bool count_hits);
@@ -43,14 +53,25 @@ class ObjectQueries {
   Containment inside(std::span<const QueriedObject> objects, const Vec3d& point);
 
  private:
+  struct RecentBoxes {
+    static constexpr std::uint32_t none = ~std::uint32_t{0};
+    std::uint32_t object = none, begin = 0;
+    LeafBoxes boxes;
+  };
+
+  const LeafBoxes& boxes_of(std::uint32_t index, const QueriedObject& object, std::uint32_t leaf,
+                            std::uint32_t begin, std::uint32_t end);
   Containment inside(const QueriedObject& object, const Vec3d& point);
   /// The objects with a bound of at most `limit`, the smallest first.
   template <class BoundOf>
   void order(std::span<const QueriedObject> objects, const BoundOf& bound_of, double limit);
 
+  std::optional<NearTriangle> last_nearest_;
+  std::vector<NearTriangle> candidates_;
   OrderedDescent descent_;
-  LeafBoxes boxes_;
-  std::array<float, leaf_block> squares_{};
+  /// The boxes of the leaves that closest points looked at last; points that are close to each other look at
+  /// the same leaves. They fit into the second-level cache.
+  std::vector<RecentBoxes> recent_;
   std::vector<std::pair<double, std::uint32_t>> order_;
 };
 

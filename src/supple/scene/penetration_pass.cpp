@@ -241,31 +241,25 @@ void PenetrationPass::gather() {
 bool PenetrationPass::find_depths(const StopSignal& stop, const Parallel& parallel) {
   constexpr std::size_t grain = 64;
   parallel.for_ranges(penetrations_.size(), grain, [&](std::size_t begin, std::size_t end, std::uint32_t w) {
-    const Penetration* last = nullptr;
-    Vec3d last_position;
+    ObjectQueries& queries = workers_[w].queries;
+    ObjectId last_outer;
     for (std::size_t i = begin; i < end && !stop.stop_requested(); ++i) {
       Penetration& penetration = penetrations_[i];
       const PenetratedObject& inner = objects_[penetration.object_a.index];
       const PenetratedObject& outer = objects_[penetration.object_b.index];
-      const Vec3d position = inner.surface.position(penetration.vertex);
-      // The vertex before is often near: its depth and the way to it bound this depth.
-      double bound = std::numeric_limits<double>::infinity();
-      if (last != nullptr && last->object_a == penetration.object_a &&
-          last->object_b == penetration.object_b) {
-        const Vec3d way = position - last_position;
-        const double sum = (last->depth + std::sqrt(dot(way, way))) * (1 + 0x1p-40) + 0x1p-500;
-        if (std::isfinite(sum)) bound = sum;
-      }
+      if (i == begin || penetration.object_b != last_outer) queries.start();
+      last_outer = penetration.object_b;
       const ClosestPoint closest =
-          workers_[w].queries.closest(std::span(&outer.queried, 1), position, bound).value();
+          queries
+              .closest(std::span(&outer.queried, 1), inner.surface.position(penetration.vertex),
+                       std::numeric_limits<double>::infinity())
+              .value();
       penetration.triangle = closest.triangle;
       penetration.feature = closest.feature;
       penetration.depth = closest.distance;
       penetration.barycentric = closest.barycentric;
       penetration.point = closest.point;
       penetration.normal = Vec3d{} - closest.normal;
-      last = &penetration;
-      last_position = position;
     }
   });
   return !stop.stop_requested();

@@ -39,7 +39,9 @@ void Scene::Implementation::answer_queries(const QueryFilter& seen, std::size_t 
   list_queried_objects(seen, call);
   queries_of_workers_.resize(parallel.worker_count());
   parallel.for_ranges(count, grain, [&](std::size_t begin, std::size_t end, std::uint32_t worker) {
-    for (std::size_t i = begin; i < end; ++i) answer(queries_of_workers_[worker], i);
+    ObjectQueries& queries = queries_of_workers_[worker];
+    queries.start();
+    for (std::size_t i = begin; i < end; ++i) answer(queries, i);
   });
 }
 
