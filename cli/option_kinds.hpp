@@ -96,7 +96,7 @@ CLI::Option* add_field(CLI::App& app, const Field<Struct, Value>& field, const V
     return app
         .add_option_function<std::string>(name, parse,
                                           help_of(field.doc, field.unit, spelled_value(field, default_value)))
-        ->type_name(fmt::format("{},...", fmt::join(set_words<Value>, "|")));
+        ->type_name(fmt::format("{}", fmt::join(set_words<Value>, "|")));
   } else if constexpr (Worded<Value>) {
     return add_words(
         app, name, {words<Value>.begin(), words<Value>.end()},

@@ -39,7 +39,9 @@ constexpr OptionNeed needs[] = {
     {"undecided", is_continuous, "contacts", "continuous"},
     {"proximity_listing", has_proximity, "contacts", "proximity"},
     {"contact_points",
-     [](const SceneOptions& scene) { return contains(scene.contacts, ContactKinds::intersection); },
+     [](const SceneOptions& scene) {
+       return contains(with_included(scene.contacts), ContactKinds::intersection);
+     },
      "contacts", "intersection"},
     {"colliding_vertices", is_at_rest, "contacts", kinds_at_rest},
 };

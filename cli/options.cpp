@@ -258,7 +258,7 @@ void add_report_options(CLI::App& app, DetectionOptions& options, Dependences& d
   const auto add = [&](const char* name, bool& value, const char* description) {
     dependences.push_back({app.add_flag(name, value, description)->group("Detection"),
                            [&options] { return options.scene.contacts != ContactKinds::none; },
-                           "--contacts other than none"});
+                           "--contacts intersection or another kind"});
   };
   add("--fail-on-contact", options.fail_on_contact,
       "Exit with status 1 when anything touches, is near with --contacts proximity, or is inside a solid "

@@ -19,6 +19,8 @@ void run_cloth(const Choice& choice, const std::string& cell, bool two_threads, 
 /// The longest safe step of a cloth (`Scene::max_step`), its median time, and that of `detect` for the same
 /// step; ipc_toolkit.py compares.
 void run_safe_step(const Choice& choice, const std::string& cell, Output& output);
+/// A task of `make_query_task`: points, rays, or penetrations.
+void run_queries(const Choice& choice, const std::string& cell, Output& output);
 /// The read bandwidth of each cache level and of memory.
 void run_bandwidth(Output& output);
 /// SHAPE: Supple's refit of one object against the ideal refit.

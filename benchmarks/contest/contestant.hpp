@@ -12,6 +12,7 @@
 #include "workloads/cloth_steps.hpp"
 #include "workloads/deforming_copies.hpp"
 #include "workloads/moving_boxes.hpp"
+#include "workloads/query_tasks.hpp"
 
 namespace supple::benchmarks {
 
@@ -66,6 +67,20 @@ class ClothContestant : public Contestant<ClothStep> {
   virtual std::span<const ElementPair> candidates() const = 0;
 };
 
+/// Answers the queries of a task. `pairs` counts the answers.
+class QueryContestant : public Contestant<QueryTask> {
+ public:
+  virtual bool answers_kind(QueryTaskKind kind) const = 0;
+  /// One number for each query of the last frame: the distance of a point, 1 or 0 for inside and outside, or
+  /// the first parameter of a ray, infinite without a triangle. Of penetrations: the number of vertices
+  /// inside and the sum of their depths, for each of the two copies.
+  std::span<const double> answers() const { return answers_; }
+  PairDigest pairs() const override { return {answers_.size(), 0}; }
+
+ protected:
+  std::vector<double> answers_;
+};
+
 /// How to make a contestant, and the largest size for which it is fast enough to run.
 template <class Contestant>
 struct Entry {
@@ -78,6 +93,7 @@ struct Entry {
 std::vector<Entry<BoxContestant>> other_box_contestants();
 std::vector<Entry<CopiesContestant>> other_copies_contestants();
 std::vector<Entry<ClothContestant>> other_cloth_contestants();
+std::vector<Entry<QueryContestant>> other_query_contestants();
 /// Libraries that were not found.
 std::vector<std::string> missing_libraries();
 
@@ -92,6 +108,8 @@ std::unique_ptr<CopiesContestant> make_supple_copies(std::uint32_t threads,
                                                      CopyResults results = CopyResults::contact_points);
 /// `pairs` are the contacts; the stages include the number of candidates.
 std::unique_ptr<Contestant<ClothStep>> make_supple_cloth(std::uint32_t threads);
+
+std::unique_ptr<QueryContestant> make_supple_queries(std::uint32_t threads);
 
 /// Limits Supple and Embree to an instruction set of x86-64: "avx512", "avx2" or "sse4". The others use what
 /// they were compiled for. Throws `Error` for another name or one that this machine does not have.

@@ -1,6 +1,8 @@
 #include <embree3/rtcore.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <string>
 
@@ -222,6 +224,131 @@ class EmbreeCloth : public ClothContestant {
   std::vector<ElementPair> candidates_;
 };
 
+/// Triangles, for rays and closest points.
+class EmbreeQueries : public QueryContestant {
+ public:
+  bool answers_kind(QueryTaskKind kind) const override {
+    return kind == QueryTaskKind::closest || kind == QueryTaskKind::rays;
+  }
+  ~EmbreeQueries() override {
+    for (const RTCGeometry geometry : geometries_) rtcReleaseGeometry(geometry);
+    if (scene_ != nullptr) rtcReleaseScene(scene_);
+  }
+  void prepare(const QueryTask& task) override {
+    const bool is_moving = task.kind == QueryTaskKind::rays;
+    scene_ = rtcNewScene(device_);
+    rtcSetSceneFlags(scene_,
+                     is_moving ? RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_DYNAMIC : RTC_SCENE_FLAG_NONE);
+    const auto& triangles = task.copies.triangles();
+    for (std::size_t i = 0; i < task.copies.copies(); ++i) {
+      const RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
+      rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, triangles.data(), 0,
+                                 sizeof(Triangle), triangles.size());
+      const auto positions = task.copies.positions(i);
+      rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, positions.data(), 0,
+                                 sizeof(Vec3f), positions.size());
+      if (is_moving) rtcSetGeometryBuildQuality(geometry, RTC_BUILD_QUALITY_REFIT);
+      rtcCommitGeometry(geometry);
+      rtcAttachGeometry(scene_, geometry);
+      geometries_.push_back(geometry);
+    }
+    rtcCommitScene(scene_);
+    positions_ = task.copies.positions(0).data();
+    triangles_ = triangles.data();
+    answers_.resize(task.points.size() + task.rays.size());
+  }
+  void frame(const QueryTask& task) override {
+    if (task.kind == QueryTaskKind::rays)
+      cast(task);
+    else
+      find_closest(task);
+  }
+
+ private:
+  void cast(const QueryTask& task) {
+    for (const RTCGeometry geometry : geometries_) {
+      rtcUpdateGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0);
+      rtcCommitGeometry(geometry);
+    }
+    rtcCommitScene(scene_);
+    for (std::size_t i = 0; i < task.rays.size(); ++i) {
+      const auto& [origin, direction] = task.rays[i];
+      RTCRayHit hit{};
+      hit.ray.org_x = static_cast<float>(origin.x);
+      hit.ray.org_y = static_cast<float>(origin.y);
+      hit.ray.org_z = static_cast<float>(origin.z);
+      hit.ray.dir_x = static_cast<float>(direction.x);
+      hit.ray.dir_y = static_cast<float>(direction.y);
+      hit.ray.dir_z = static_cast<float>(direction.z);
+      hit.ray.tfar = std::numeric_limits<float>::infinity();
+      hit.ray.mask = ~0u;
+      hit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+      RTCIntersectContext context;
+      rtcInitIntersectContext(&context);
+      rtcIntersect1(scene_, &context, &hit);
+      answers_[i] = hit.hit.geomID == RTC_INVALID_GEOMETRY_ID ? std::numeric_limits<double>::infinity()
+                                                              : double{hit.ray.tfar};
+    }
+  }
+
+  void find_closest(const QueryTask& task) {
+    for (std::size_t i = 0; i < task.points.size(); ++i) {
+      const Vec3d& p = task.points[i];
+      RTCPointQuery query{static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z), 0,
+                          std::numeric_limits<float>::infinity()};
+      RTCPointQueryContext context;
+      rtcInitPointQueryContext(&context);
+      rtcPointQuery(scene_, &query, &context, shrink, this);
+      answers_[i] = double{query.radius};
+    }
+  }
+
+  static float dot(const Vec3f& a, const Vec3f& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+  static Vec3f between(const Vec3f& a, const Vec3f& b) { return {b.x - a.x, b.y - a.y, b.z - a.z}; }
+
+  /// Shrinks the query to the distance of a triangle (Ericson, Real-Time Collision Detection, 5.1.5).
+  static bool shrink(RTCPointQueryFunctionArguments* arguments) {
+    const auto& self = *static_cast<EmbreeQueries*>(arguments->userPtr);
+    const Triangle& t = self.triangles_[arguments->primID];
+    const Vec3f p{arguments->query->x, arguments->query->y, arguments->query->z};
+    const Vec3f &a = self.positions_[t[0]], &b = self.positions_[t[1]], &c = self.positions_[t[2]];
+    const Vec3f ab = between(a, b), ac = between(a, c), ap = between(a, p), bp = between(b, p),
+                cp = between(c, p);
+    const float d1 = dot(ab, ap), d2 = dot(ac, ap), d3 = dot(ab, bp), d4 = dot(ac, bp), d5 = dot(ab, cp),
+                d6 = dot(ac, cp);
+    const float va = d3 * d6 - d5 * d4, vb = d5 * d2 - d1 * d6, vc = d1 * d4 - d3 * d2;
+    float v = 0, w = 0;
+    if (d1 <= 0 && d2 <= 0) {
+    } else if (d3 >= 0 && d4 <= d3) {
+      v = 1;
+    } else if (vc <= 0 && d1 >= 0 && d3 <= 0) {
+      v = d1 / (d1 - d3);
+    } else if (d6 >= 0 && d5 <= d6) {
+      w = 1;
+    } else if (vb <= 0 && d2 >= 0 && d6 <= 0) {
+      w = d2 / (d2 - d6);
+    } else if (va <= 0 && d4 >= d3 && d5 >= d6) {
+      w = (d4 - d3) / ((d4 - d3) + (d5 - d6));
+      v = 1 - w;
+    } else {
+      const float part = 1 / (va + vb + vc);
+      v = vb * part;
+      w = vc * part;
+    }
+    const Vec3f way{ap.x - v * ab.x - w * ac.x, ap.y - v * ab.y - w * ac.y, ap.z - v * ab.z - w * ac.z};
+    const float distance = std::sqrt(dot(way, way));
+    if (distance >= arguments->query->radius) return false;
+    arguments->query->radius = distance;
+    return true;
+  }
+
+  Device device_;
+  RTCScene scene_ = nullptr;
+  std::vector<RTCGeometry> geometries_;
+  const Vec3f* positions_ = nullptr;
+  const Triangle* triangles_ = nullptr;
+};
+
 }  // namespace
 
 std::unique_ptr<BoxContestant> make_embree_boxes() {
@@ -237,6 +364,10 @@ std::unique_ptr<CopiesContestant> make_embree_copies_with_points() {
 
 std::unique_ptr<ClothContestant> make_embree_cloth() {
   return std::make_unique<EmbreeCloth>();
+}
+
+std::unique_ptr<QueryContestant> make_embree_queries() {
+  return std::make_unique<EmbreeQueries>();
 }
 
 }  // namespace supple::benchmarks

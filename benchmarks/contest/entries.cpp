@@ -55,6 +55,17 @@ std::vector<Entry<ClothContestant>> other_cloth_contestants() {
   return entries;
 }
 
+std::vector<Entry<QueryContestant>> other_query_contestants() {
+  std::vector<Entry<QueryContestant>> entries;
+#ifdef SUPPLE_CONTEST_EMBREE
+  entries.push_back({"Embree", make_embree_queries});
+#endif
+#ifdef SUPPLE_CONTEST_CGAL
+  entries.push_back({"CGAL", make_cgal_queries});
+#endif
+  return entries;
+}
+
 std::vector<std::string> missing_libraries() {
   std::vector<std::string> missing;
 #ifndef SUPPLE_CONTEST_EMBREE

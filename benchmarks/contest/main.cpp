@@ -17,6 +17,8 @@ constexpr const char* usage =
     "[--spoil NAME] CELL | --missing\n"
     "CELL: A/FIELD/N  A/FIELD/N/drift  A/FIELD/N/one-percent  A/FIELD/N/one-in-K\n"
     "      B/SHAPExCOPIES[-rest]  C/CLOTH\n"
+    "      Q/closest/SHAPE-uniform  Q/closest/SHAPE-near  Q/inside/SHAPE  Q/rays/SHAPExCOPIES  "
+    "Q/penetration/SHAPE\n"
     "      step/CLOTH  growth/SHAPExCOPIES  threads/B/...  threads/C/...  limits/bandwidth  "
     "limits/refit/TRIANGLES  "
     "memory/SHAPE  memory/moving/SHAPE  build/SHAPE  frames/SHAPExCOPIES  first/SHAPExCOPIES  first/CLOTH\n"
@@ -45,6 +47,8 @@ void run(const Choice& choice) {
     run_copies(alone, after("growth/"), false, output);
   } else if (cell.starts_with("C/")) {
     run_cloth(choice, after("C/"), false, output);
+  } else if (cell.starts_with("Q/")) {
+    run_queries(choice, after("Q/"), output);
   } else if (cell.starts_with("step/")) {
     run_safe_step(choice, after("step/"), output);
   } else if (cell.starts_with("threads/B/")) {

@@ -16,11 +16,16 @@ std::unique_ptr<BoxContestant> make_embree_boxes();
 std::unique_ptr<CopiesContestant> make_embree_copies();
 std::unique_ptr<CopiesContestant> make_embree_copies_with_points();
 std::unique_ptr<ClothContestant> make_embree_cloth();
+/// Closest points by `rtcPointQuery` and a triangle test in single precision; rays by `rtcIntersect1` in a
+/// robust scene with refit.
+std::unique_ptr<QueryContestant> make_embree_queries();
 
 /// CGAL's `box_intersection_d`, which keeps no state between frames.
 std::unique_ptr<BoxContestant> make_cgal_boxes();
 std::unique_ptr<CopiesContestant> make_cgal_copies();
 std::unique_ptr<ClothContestant> make_cgal_cloth();
+/// `AABB_tree` and `Side_of_triangle_mesh`; for penetrations, the trees are built again in each frame.
+std::unique_ptr<QueryContestant> make_cgal_queries();
 
 /// FCL: for boxes a dynamic AABB tree, rebuilt in each frame (otherwise it slows down many times); for
 /// meshes a tree of boxes with refit.

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <limits>
 
 #include "contest/contestant.hpp"
 #include "supple/scene.hpp"
@@ -141,6 +142,53 @@ class SuppleCloth : public Contestant<ClothStep> {
   std::vector<StageTime> stages_;
 };
 
+class SuppleQueries : public QueryContestant {
+ public:
+  explicit SuppleQueries(std::uint32_t threads) : scene_(options_of(threads, ContactKinds::penetration)) {}
+  bool answers_kind(QueryTaskKind) const override { return true; }
+  void prepare(const QueryTask& task) override {
+    for (std::size_t i = 0; i < task.copies.copies(); ++i)
+      objects_.push_back(scene_.add(task.copies.positions(i), task.copies.triangles(),
+                                    {.solid = task.kind == QueryTaskKind::penetration}));
+    answers_.resize(task.points.size() + task.rays.size());
+    frame(task);
+  }
+  void frame(const QueryTask& task) override {
+    const bool is_moving = task.kind == QueryTaskKind::rays || task.kind == QueryTaskKind::penetration;
+    for (std::size_t i = 0; is_moving && i < objects_.size(); ++i)
+      scene_.share_positions(objects_[i], task.copies.positions(i));
+    if (task.kind == QueryTaskKind::closest) {
+      closest_.resize(task.points.size());
+      scene_.closest(task.points, closest_);
+      for (std::size_t i = 0; i < closest_.size(); ++i) answers_[i] = closest_[i]->distance;
+    } else if (task.kind == QueryTaskKind::inside) {
+      inside_.resize(task.points.size());
+      scene_.inside(task.points, inside_);
+      for (std::size_t i = 0; i < inside_.size(); ++i)
+        answers_[i] = inside_[i] == Containment::inside ? 1 : 0;
+    } else if (task.kind == QueryTaskKind::rays) {
+      hits_.resize(task.rays.size());
+      scene_.cast(task.rays, hits_);
+      for (std::size_t i = 0; i < hits_.size(); ++i)
+        answers_[i] = hits_[i] ? hits_[i]->t : std::numeric_limits<double>::infinity();
+    } else {
+      answers_.assign(4, 0);
+      for (const Penetration& p : scene_.detect().penetrations) {
+        const std::size_t place = p.object_a == objects_[0] ? 0 : 2;
+        answers_[place] += 1;
+        answers_[place + 1] += p.depth;
+      }
+    }
+  }
+
+ private:
+  Scene scene_;
+  std::vector<ObjectId> objects_;
+  std::vector<std::optional<ClosestPoint>> closest_;
+  std::vector<std::optional<RayHit>> hits_;
+  std::vector<Containment> inside_;
+};
+
 }  // namespace
 
 std::unique_ptr<BoxContestant> make_supple_boxes(std::uint32_t threads, BroadPhaseMethod method) {
@@ -157,6 +205,10 @@ std::unique_ptr<CopiesContestant> make_supple_copies(std::uint32_t threads, Copy
 
 std::unique_ptr<Contestant<ClothStep>> make_supple_cloth(std::uint32_t threads) {
   return std::make_unique<SuppleCloth>(threads);
+}
+
+std::unique_ptr<QueryContestant> make_supple_queries(std::uint32_t threads) {
+  return std::make_unique<SuppleQueries>(threads);
 }
 
 }  // namespace supple::benchmarks

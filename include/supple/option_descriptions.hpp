@@ -223,7 +223,8 @@ struct Description<SceneOptions> {
             "Contacts to find: pairs of triangles that intersect (intersection); vertices and faces, and "
             "pairs of edges, that touch on the way from the frame before (continuous); pairs within the "
             "margins of their objects (proximity); vertices inside solid objects, contained parts and curves "
-            "of intersection (penetration, which includes intersection); several of these; or none. Bodies "
+            "of intersection (penetration, which includes intersection); several of these with commas "
+            "between them; or none. Bodies "
             "that already cut "
             "through each other at the start of the way are found by intersection, not by continuous"});
     visitor(Field<Options, bool>{.name = "contact_points",

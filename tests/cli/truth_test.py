@@ -3,6 +3,7 @@ elements during motion. The program must find all of them and no others."""
 
 import hashlib
 import json
+import math
 import os
 import pathlib
 import re
@@ -139,6 +140,30 @@ class Truth(ProgramTest):
                         if kind in expected:
                             truth, pairs = expected[kind], found[kind.lower()]
                             self.assertEqual((len(pairs), digest(pairs)), (truth["pairs"], truth["sha256_of_sorted_pairs"]), kind)
+
+    def pair(self, case):
+        """A scene file with both meshes of a case in their places."""
+        objects = [f'[[object]]\nmesh = "{DATA / case[m]}"\n{placement(case["t" + m])}\n' for m in "ab"]
+        self.write("scene.toml", "".join(objects))
+        return "scene.toml"
+
+    def test_vertices_inside_and_their_depths(self):
+        for case in json.loads((DATA / "proximity.json").read_text())["depth"]:
+            with self.subTest(case["name"]):
+                (frame,) = self.detect(self.pair(case), "--contacts", "penetration", "--solid")["frames"]
+                (rows,) = [group["vertices"] for group in frame["penetration"] if group["a"] == 0]
+                self.assertEqual(len(rows), case["inside"])
+                text = "".join(f"{vertex}\n" for vertex, _, _ in rows)
+                self.assertEqual(hashlib.sha256(text.encode()).hexdigest(), case["sha256_of_inside"])
+                self.assertAlmostEqual(math.fsum(depth for _, _, depth in rows) / float(case["depth"]["sum"]), 1, 14)
+                self.assertEqual(frame["containment"], [[0, 1]] if case["inside"] == case["query_points"] else [])
+
+    def test_curves(self):
+        for case in json.loads((DATA / "proximity.json").read_text())["contours"]:
+            with self.subTest(case["name"]):
+                (frame,) = self.detect(self.pair(case), "--contacts", "penetration")["frames"]
+                found = [(curve["segments"], curve["kind"]) for curve in frame["curves"]]
+                self.assertEqual(found, [(segments, kind) for _, _, segments, kind in case["curve_list"]])
 
     def expect_step(self, case, step, edges):
         self.assertEqual(len(edges), case["edges"])

@@ -58,7 +58,7 @@ class UsageErrors(ProgramTest):
         self.expect("detect", "a.obj", "--distance", "1", parts=["--distance"])
         self.expect("detect", "a.obj", "--bounding-volume", "cone", parts=["--bounding-volume", "aabb, sphere, obb"])
         self.expect("detect", "a.obj", "--bounding-volume", "kdop", parts=["--bounding-volume", "aabb, sphere"])
-        self.expect("detect", "a.obj", "--contacts", "nearness", parts=["--contacts", "none, intersection, continuous"])
+        self.expect("detect", "a.obj", "--contacts", "nearness", parts=["--contacts", "none, or one or more of intersection, continuous"])
 
     def test_values(self):
         self.expect("detect", "a.obj", "--threads", "-1", parts=["--threads", "'-1'", "0 to 1024"])
