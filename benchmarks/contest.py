@@ -44,11 +44,15 @@ GROWTH = [f"growth/{triangles}x2" for triangles in (500, 5120, 50000, 499280, 19
 COPIES = ["980x64", "980x512", "18000x9", "18000x64", "69620x9", "69620x64", "bunnyx9"]
 CLOTHS = ["cloth-funnel", "cloth-ball", "crumpled", "passing", "rods"]
 
+QUERIES = ["Q/closest/bunny-uniform", "Q/closest/bunny-near", "Q/inside/69620", "Q/rays/69620x9", "Q/penetration/69620",
+           "Q/penetration/69620-deep"]
+
 FULL = (
     [f"A/{field}/{count}" for field in FIELDS for count in (1000, 10000, 100000, 1000000)]
     + ["A/u1/100000/drift", "A/u1/100000/one-percent"]
     + [f"B/{name}" for name in (*COPIES, "18000x64-rest", "69620x64-rest")]
     + [f"C/{cloth}" for cloth in CLOTHS]
+    + QUERIES
     + [f"step/{cloth}" for cloth in CLOTHS]
     + ["process/cloth-ball", "process/two-bunnies"]
     + [f"threads/B/{name}" for name in COPIES]
@@ -62,7 +66,7 @@ FULL = (
 QUICK = (
     [f"A/{field}/10000" for field in FIELDS]
     + ["A/u1/100000", "A/clu/100000", "A/u1/100000/one-percent", "B/980x64", "B/18000x9", "B/bunnyx9",
-       "B/18000x64-rest", "C/cloth-funnel", "C/crumpled", "process/two-bunnies", "threads/B/18000x64"]
+       "B/18000x64-rest", "C/cloth-funnel", "C/crumpled", "Q/inside/69620", "process/two-bunnies", "threads/B/18000x64"]
     + GROWTH[:3]
     + ["limits/refit/69620", "memory/69620"]
 )
@@ -283,6 +287,11 @@ def judged(cells):
                          "Supple, one percent moves, dirty list")
     for cell in judge.matching("C/.*"):
         judge.add_faster("C, candidates and verdicts, against Embree's candidates", cell, ["Embree"], 2.5, 4)
+    for cell in judge.matching("Q/(closest|rays)/.*"):
+        reach = 0.5 if "rays" in cell else 1
+        judge.add_faster(f"Q, {cell.split('/')[1]}, against Embree", cell, ["Embree"], reach, 2 * reach)
+    for cell in judge.matching("Q/(closest|inside|penetration)/.*"):
+        judge.add_faster(f"Q, {cell.split('/')[1]}, against CGAL", cell, ["CGAL"], 20, 30)
     for cell in judge.matching("step/.*"):
         values = judge.cells[cell]["values"]
         judge.add("safe step", cell, "Supple, detect", values["milliseconds"] / values["milliseconds of detect"], 0.5,
@@ -398,7 +407,7 @@ def times_by_cell(cells):
     for name, group in groups.items():
         compared = [cell for cell in group if any(c["name"] == "Supple" for c in cell["contestants"])]
         names = list(dict.fromkeys(c["name"] for cell in compared for c in cell["contestants"]))
-        if name not in ("A", "B", "C", "process") or not names:
+        if name not in ("A", "B", "C", "Q", "process") or not names:
             continue
         lines = [["ms", *names, "pairs"]]
         for cell in compared:

@@ -38,7 +38,7 @@ std::optional<QueryTask> make_query_task(const std::string& name) {
   const auto after = [&](std::size_t length, std::size_t ending) {
     return name.substr(length, name.size() - length - ending);
   };
-  const bool is_near = name.ends_with("-near");
+  const bool is_near = name.ends_with("-near"), is_deep = name.ends_with("-deep");
   std::string copies_name;
   QueryTaskKind kind = QueryTaskKind::closest;
   if (has("closest/") && (is_near || name.ends_with("-uniform"))) {
@@ -51,12 +51,13 @@ std::optional<QueryTask> make_query_task(const std::string& name) {
     copies_name = after(5, 0);
   } else if (has("penetration/")) {
     kind = QueryTaskKind::penetration;
-    copies_name = after(12, 0) + "x2";
+    copies_name = after(12, is_deep ? 5 : 0) + "x2";
   } else {
     throw Error("no query task is named '" + name + "'");
   }
   auto copies = make_deforming_copies(copies_name);
   if (!copies) return {};
+  if (is_deep) copies = DeformingCopies(copies->mesh(), 2, 0.4);
   QueryTask task{kind, std::move(*copies)};
   RandomNumbers random(7);
   const Box box(task.copies);

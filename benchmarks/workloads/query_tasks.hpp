@@ -29,7 +29,8 @@ struct QueryTask {
 
 /// `closest/SHAPE-uniform` has points in the box of the mesh, `closest/SHAPE-near` points within 1 % of the
 /// box of a vertex, `inside/SHAPE` points in the box, `rays/SHAPExCOPIES` and `penetration/SHAPE` copies as
-/// in `make_deforming_copies`. Returns nothing when a file is missing. Throws `Error` for other names.
+/// in `make_deforming_copies`. With `penetration/SHAPE-deep`, the copies are 0.4 apart, so that most of each
+/// is inside the other. Returns nothing when a file is missing. Throws `Error` for other names.
 std::optional<QueryTask> make_query_task(const std::string& name);
 
 }  // namespace supple::benchmarks

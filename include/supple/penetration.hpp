@@ -80,7 +80,7 @@ struct IntersectionCurve {
   std::uint32_t first_enclosed = 0, enclosed_count_a = 0, enclosed_count_b = 0;
   // Rounded, with the same bits for any number of threads.
   Vec3d centroid{};  ///< of the segments by their lengths
-  /// Of a closed curve: the vector area of the polygon of its points, by the right-hand rule; else zero. It
+  /// The vector area of the polygon of the points of a closed curve, by the right-hand rule; else zero. It
   /// points to the side of a when the normals of both surfaces point outwards.
   Vec3d area{};
   /// Unit vector: the direction of the area, or else the mean direction of the contacts' normals by length.

@@ -56,6 +56,11 @@ class Cells(unittest.TestCase):
         for contestant in contestants[1:]:
             self.assertEqual(contestant["pairs"], 22954, contestant["name"])
 
+    def test_answers_to_queries_agree(self):
+        for cell in ("closest/980-uniform", "closest/980-near", "inside/980", "rays/980x4", "penetration/980", "penetration/980-deep"):
+            with self.subTest(cell=cell):
+                self.assertGreater(contestants_of("Q/" + cell)[0]["pairs"], 0)
+
     def test_a_lost_pair_is_noticed(self):
         done = run("A/u1/300", "--rounds", "1", "--spoil", "baseline grid")
         self.assertEqual(done.returncode, 3)

@@ -12,7 +12,7 @@
 #include "core/float_rounding.hpp"
 #include "geometry/exact_predicates.hpp"
 #include "geometry/vector.hpp"
-#include "narrow_phase/distance_kernels.hpp"
+#include "narrow_phase/query_kernels.hpp"
 #include "scene/feature_name.hpp"
 
 namespace supple {
@@ -81,29 +81,41 @@ ElementPoints point_and_triangle(const Vec3d& point, const TrianglePoints& corne
   return {{point, corners[0], corners[1], corners[2]}, 1, 3};
 }
 
+/// More than the roundings of a point without the translation, and of a translated vertex.
+double slop_of(const QueriedObject& object, const Vec3d& point, int axis) {
+  const double offset = object.view.translation[axis];
+  if (offset == 0) return 0;
+  const double largest =
+      std::max(std::fabs(double{object.box.min[axis]}), std::fabs(double{object.box.max[axis]}));
+  return 0x1p-50 * (std::fabs(point[axis]) + std::fabs(offset) + largest);
+}
+
 /// A point as the boxes of an object's octree see it: in single precision, without the translation.
 PointBounds seen_by(const QueriedObject& object, const Vec3d& point) {
   PointBounds bounds;
   for (int axis = 0; axis < 3; ++axis) {
-    const double offset = object.view.translation[axis], local = point[axis] - offset;
-    // More than the roundings of `local` and of a translated vertex.
-    const double largest =
-        std::max(std::fabs(double{object.box.min[axis]}), std::fabs(double{object.box.max[axis]}));
-    const double slop = offset == 0 ? 0 : 0x1p-50 * (std::fabs(point[axis]) + std::fabs(offset) + largest);
+    const double local = point[axis] - object.view.translation[axis], slop = slop_of(object, point, axis);
     bounds.low[axis] = round_down(local - slop);
     bounds.high[axis] = round_up(local + slop);
   }
   return bounds;
 }
 
-/// `bound_children` of `OrderedDescent`, from the bound of a box.
-template <class BoundOf>
-auto bound_each_child(const OctreeView& view, const BoundOf& bound_of) {
-  return [&view, &bound_of](std::uint32_t node, std::array<double, node_width>& bounds) {
-    for (int child = 0; child < view.nodes[node].child_count; ++child)
-      bounds[static_cast<std::size_t>(child)] =
-          bound_of(moved(child_box(view.boxes[node], child), view.translation));
-  };
+/// A ray as the boxes of an object's octree see it: without the translation.
+RaySlabs slabs_of(const QueriedObject& object, const Ray& ray) {
+  constexpr double smallest = 0x1p-1000, largest = 0x1p1000;
+  RaySlabs slabs;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double offset = object.view.translation[axis], local = ray.origin[axis] - offset;
+    const double slop = slop_of(object, ray.origin, axis);
+    slabs.low[axis] = local - slop;
+    slabs.high[axis] = local + slop;
+    const double size = std::fabs(ray.direction[axis]);
+    slabs.is_parallel[static_cast<std::size_t>(axis)] = size == 0;
+    slabs.is_unlimited[static_cast<std::size_t>(axis)] = size != 0 && !(size >= smallest && size <= largest);
+    slabs.reciprocal[axis] = 1 / ray.direction[axis];
+  }
+  return slabs;
 }
 
 /// The nearest triangle so far.
@@ -257,6 +269,18 @@ const LeafBoxes& ObjectQueries::boxes_of(std::uint32_t index, const QueriedObjec
   return recent.boxes;
 }
 
+/// Calls `visit` with the triangles of a leaf that `chosen(boxes)` has, in octree order.
+template <class Chosen, class Visit>
+void ObjectQueries::visit_leaf(std::uint32_t index, const QueriedObject& object, std::uint32_t leaf,
+                               std::uint32_t begin, std::uint32_t end, const Chosen& chosen,
+                               const Visit& visit) {
+  for (; begin < end; begin += leaf_block) {
+    const LeafBoxes& boxes = boxes_of(index, object, leaf, begin, std::min(begin + leaf_block, end));
+    for (std::uint64_t left = chosen(boxes); left != 0; left &= left - 1)
+      visit(begin + static_cast<std::uint32_t>(std::countr_zero(left)));
+  }
+}
+
 void ObjectQueries::start() {
   last_nearest_.reset();
   for (RecentBoxes& recent : recent_) recent.object = RecentBoxes::none;
@@ -277,7 +301,7 @@ std::optional<ClosestPoint> ObjectQueries::closest(std::span<const QueriedObject
         object.view,
         [&](std::uint32_t node, std::array<double, node_width>& bounds) {
           std::array<float, node_width> squares;
-          squared_distances(seen, object.view.boxes[node], squares.data());
+          squared_distances(seen, object.view.boxes[node], squares);
           std::copy(squares.begin(), squares.end(), bounds.begin());
         },
         [&] { return double{nearest.squared_limit()}; },
@@ -313,24 +337,28 @@ std::optional<RayHit> ObjectQueries::cast(std::span<const QueriedObject> objects
   for (const auto& [object_bound, index] : order_) {
     const QueriedObject& object = objects[index];
     if (!(object_bound <= limit)) break;
+    const RaySlabs slabs = slabs_of(object, ray);
     descent_.run(
-        object.view, bound_each_child(object.view, bound_of), [&] { return limit; },
-        [&](std::uint32_t, std::uint32_t begin, std::uint32_t end) {
-          for (std::uint32_t t = begin; t < end; ++t) {
-            if (object.is_inert(t)) continue;
+        object.view,
+        [&](std::uint32_t node, std::array<double, node_width>& bounds) {
+          ray_bounds(slabs, object.view.boxes[node], bounds);
+        },
+        [&] { return limit; },
+        [&](std::uint32_t leaf, std::uint32_t first, std::uint32_t end) {
+          const auto on_ray = [&](const LeafBoxes& boxes) { return triangles_on_ray(slabs, boxes, limit); };
+          visit_leaf(index, object, leaf, first, end, on_ray, [&](std::uint32_t t) {
             const TrianglePoints corners = object.corners(t);
-            if (!(bound_of(CornerBox(corners)) <= limit)) continue;
             const auto parameter = RayParameter::find(ray, corners, used_exact);
-            if (!parameter) continue;
+            if (!parameter) return;
             ++hits;
             const std::uint32_t id = object.triangle_ids[t];
             if (best) {
               const int side = parameter->compare(best->parameter, used_exact);
-              if (side > 0 || (side == 0 && std::tie(best->object, best->id) < std::tie(index, id))) continue;
+              if (side > 0 || (side == 0 && std::tie(best->object, best->id) < std::tie(index, id))) return;
             }
             best = {*parameter, corners, parameter->rounded(), index, id};
             if (!count_hits) limit = std::min(any, best->t * (1 + 0x1p-45) + 0x1p-1060);
-          }
+          });
         });
   }
   if (!best) return {};
@@ -343,22 +371,37 @@ std::optional<RayHit> ObjectQueries::cast(std::span<const QueriedObject> objects
   return hit;
 }
 
-Containment ObjectQueries::inside(const QueriedObject& object, const Vec3d& point) {
+Containment ObjectQueries::inside(std::uint32_t index, const QueriedObject& object, const Vec3d& point) {
   bool is_on = false, is_inside = false, used_exact = false;
-  const auto bound_of = [&](const auto& box) { return column_bound(point, box); };
-  descent_.run(
-      object.view, bound_each_child(object.view, bound_of), [&] { return is_on ? -1.0 : 0.0; },
-      [&](std::uint32_t, std::uint32_t begin, std::uint32_t end) {
-        for (std::uint32_t t = begin; t < end && !is_on; ++t) {
-          if (object.is_inert(t)) continue;
-          const TrianglePoints corners = object.corners(t);
-          const CornerBox box(corners);
-          if (bound_of(box) > 0) continue;
-          if (box.min.z <= point.z)
-            is_on = distance_within(point_and_triangle(point, corners), 0, used_exact).has_value();
-          if (!is_on && crosses_above(corners, point, used_exact)) is_inside = !is_inside;
-        }
-      });
+  const PointBounds seen = seen_by(object, point);
+  Aabb column{seen.low, seen.high};
+  column.max.z = std::numeric_limits<float>::infinity();
+  const auto in_column = [&](const LeafBoxes& boxes) { return overlapping_triangles(column, boxes); };
+  nodes_.assign(1, 0);
+  while (!nodes_.empty() && !is_on && !object.view.nodes.empty()) {
+    const std::uint32_t number = nodes_.back();
+    const OctreeNode& node = object.view.nodes[number];
+    nodes_.pop_back();
+    const std::uint32_t children = (1u << node.child_count) - 1;
+    for (std::uint32_t left = overlapping_children(column, object.view.boxes[number]) & children; left != 0;
+         left &= left - 1) {
+      const int child = std::countr_zero(left);
+      if (node.is_inner(child)) {
+        nodes_.push_back(node.child_node(child));
+        continue;
+      }
+      visit_leaf(index, object, node_width * number + static_cast<std::uint32_t>(child),
+                 node.first_triangle[child], node.first_triangle[child + 1], in_column, [&](std::uint32_t t) {
+                   if (is_on) return;
+                   const TrianglePoints corners = object.corners(t);
+                   const CornerBox box(corners);
+                   if (column_bound(point, box) > 0) return;
+                   if (box.min.z <= point.z)
+                     is_on = distance_within(point_and_triangle(point, corners), 0, used_exact).has_value();
+                   if (!is_on && crosses_above(corners, point, used_exact)) is_inside = !is_inside;
+                 });
+    }
+  }
   if (is_on) return Containment::on;
   return is_inside && object.view.arrays.inert == nullptr ? Containment::inside : Containment::outside;
 }
@@ -369,7 +412,7 @@ Containment ObjectQueries::inside(std::span<const QueriedObject> objects, const 
   order(
       objects, [&](const Aabb& box) { return column_bound(point, box); }, 0);
   for (const auto& [bound, index] : order_) {
-    result = std::max(result, inside(objects[index], point));
+    result = std::max(result, inside(index, objects[index], point));
     if (result == Containment::inside) break;
   }
   return result;

@@ -27,9 +27,6 @@ struct QueriedObject {
 
   /// The placed corners of a triangle in octree order.
   TrianglePoints corners(std::uint32_t triangle) const;
-  bool is_inert(std::uint32_t triangle) const {
-    return view.arrays.inert != nullptr && view.arrays.inert[triangle] != 0;
-  }
 };
 
 /// A triangle, by object in a list of objects and in octree order, and at most its distance to a point.
@@ -61,7 +58,10 @@ class ObjectQueries {
 
   const LeafBoxes& boxes_of(std::uint32_t index, const QueriedObject& object, std::uint32_t leaf,
                             std::uint32_t begin, std::uint32_t end);
-  Containment inside(const QueriedObject& object, const Vec3d& point);
+  template <class Chosen, class Visit>
+  void visit_leaf(std::uint32_t index, const QueriedObject& object, std::uint32_t leaf, std::uint32_t begin,
+                  std::uint32_t end, const Chosen& chosen, const Visit& visit);
+  Containment inside(std::uint32_t index, const QueriedObject& object, const Vec3d& point);
   /// The objects with a bound of at most `limit`, the smallest first.
   template <class BoundOf>
   void order(std::span<const QueriedObject> objects, const BoundOf& bound_of, double limit);
@@ -69,8 +69,9 @@ class ObjectQueries {
   std::optional<NearTriangle> last_nearest_;
   std::vector<NearTriangle> candidates_;
   OrderedDescent descent_;
-  /// The boxes of the leaves that closest points looked at last; points that are close to each other look at
-  /// the same leaves. They fit into the second-level cache.
+  std::vector<std::uint32_t> nodes_;
+  /// The boxes of the leaves that queries looked at last; points that are close to each other look at the
+  /// same leaves. They fit into the second-level cache.
   std::vector<RecentBoxes> recent_;
   std::vector<std::pair<double, std::uint32_t>> order_;
 };

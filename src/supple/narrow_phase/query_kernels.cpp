@@ -1,0 +1,151 @@
+#include "narrow_phase/query_kernels.hpp"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "narrow_phase/query_kernels.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include <limits>
+
+#include "core/packed_lanes-inl.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace supple::HWY_NAMESPACE {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// Squared distances of the boxes from `first` on, a vector of them.
+template <class Tag, class Boxes>
+HWY_INLINE hn::Vec<Tag> squares_of(Tag d, const PointBounds& point, const Boxes& boxes, std::size_t first) {
+  const auto gap = [&](const float* low, const float* high, float point_low, float point_high) HWY_ATTR {
+    const auto below = hn::Sub(hn::Load(d, low + first), hn::Set(d, point_high));
+    const auto above = hn::Sub(hn::Set(d, point_low), hn::Load(d, high + first));
+    return hn::Max(hn::Max(below, above), hn::Zero(d));
+  };
+  const auto x = gap(boxes.min_x, boxes.max_x, point.low.x, point.high.x);
+  const auto y = gap(boxes.min_y, boxes.max_y, point.low.y, point.high.y);
+  const auto z = gap(boxes.min_z, boxes.max_z, point.low.z, point.high.z);
+  return hn::Add(hn::Add(hn::Mul(x, x), hn::Mul(y, y)), hn::Mul(z, z));
+}
+
+void SquaredDistances(const PointBounds& point, const ChildBoxes& boxes, float* squares) {
+  const hn::CappedTag<float, node_width> d;
+  for (std::size_t i = 0; i < node_width; i += hn::Lanes(d))
+    hn::StoreU(squares_of(d, point, boxes, i), d, squares + i);
+}
+
+std::uint64_t NearTriangles(const PointBounds& point, const LeafBoxes& boxes, float limit) {
+  const hn::CappedTag<float, 16> d;
+  std::uint64_t near = 0;
+  for (std::size_t i = 0; i < boxes.size; i += hn::Lanes(d))
+    near |= mask_bits(d, hn::Le(squares_of(d, point, boxes, i), hn::Set(d, limit))) << i;
+  return near & boxes.triangles;
+}
+
+template <class Tag, class Boxes>
+HWY_INLINE std::uint64_t overlapping(Tag d, const Aabb& box, const Boxes& boxes, std::size_t count) {
+  std::uint64_t bits = 0;
+  for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
+    const auto axis = [&](const float* low, const float* high, float box_low, float box_high) HWY_ATTR {
+      return hn::And(hn::Le(hn::Load(d, low + i), hn::Set(d, box_high)),
+                     hn::Ge(hn::Load(d, high + i), hn::Set(d, box_low)));
+    };
+    const auto overlap = hn::And(axis(boxes.min_x, boxes.max_x, box.min.x, box.max.x),
+                                 hn::And(axis(boxes.min_y, boxes.max_y, box.min.y, box.max.y),
+                                         axis(boxes.min_z, boxes.max_z, box.min.z, box.max.z)));
+    bits |= mask_bits(d, overlap) << i;
+  }
+  return bits;
+}
+
+std::uint64_t OverlappingChildren(const Aabb& box, const ChildBoxes& boxes) {
+  return overlapping(hn::CappedTag<float, node_width>(), box, boxes, node_width);
+}
+std::uint64_t OverlappingTriangles(const Aabb& box, const LeafBoxes& boxes) {
+  return overlapping(hn::CappedTag<float, 16>(), box, boxes, boxes.size) & boxes.triangles;
+}
+
+/// Lower bounds for the boxes from `first` on.
+template <class Tag, class Boxes>
+HWY_INLINE hn::Vec<Tag> bounds_of(Tag d, const RaySlabs& ray, const Boxes& boxes, std::size_t first) {
+  const hn::Rebind<float, Tag> singles;
+  const auto infinity = hn::Inf(d);
+  auto enter = hn::Zero(d), leave = infinity;
+  auto meets = hn::Eq(enter, enter);
+  const float* const mins[] = {boxes.min_x, boxes.min_y, boxes.min_z};
+  const float* const maxs[] = {boxes.max_x, boxes.max_y, boxes.max_z};
+  for (int axis = 0; axis < 3; ++axis) {
+    if (ray.is_unlimited[static_cast<std::size_t>(axis)]) continue;
+    const auto low = hn::PromoteTo(d, hn::Load(singles, mins[axis] + first)),
+               high = hn::PromoteTo(d, hn::Load(singles, maxs[axis] + first));
+    const auto origin_low = hn::Set(d, ray.low[axis]), origin_high = hn::Set(d, ray.high[axis]);
+    if (ray.is_parallel[static_cast<std::size_t>(axis)]) {
+      meets = hn::And(meets, hn::And(hn::Le(low, origin_high), hn::Ge(high, origin_low)));
+      continue;
+    }
+    const auto reciprocal = hn::Set(d, ray.reciprocal[axis]);
+    const auto to_low = hn::Mul(hn::Sub(low, origin_high), reciprocal),
+               to_high = hn::Mul(hn::Sub(high, origin_low), reciprocal);
+    // Widened by more than the roundings of a difference, a reciprocal and a product.
+    const auto near = ray.reciprocal[axis] > 0 ? to_low : to_high,
+               far = ray.reciprocal[axis] > 0 ? to_high : to_low;
+    const auto slack = [&](hn::Vec<Tag> t) HWY_ATTR {
+      return hn::Add(hn::Mul(hn::Abs(t), hn::Set(d, 0x1p-49)), hn::Set(d, 0x1p-1060));
+    };
+    enter = hn::Max(enter, hn::Sub(near, slack(near)));
+    leave = hn::Min(leave, hn::Add(far, slack(far)));
+  }
+  return hn::IfThenElse(hn::And(meets, hn::Le(enter, leave)),
+                        hn::Min(enter, hn::Set(d, std::numeric_limits<double>::max())), infinity);
+}
+
+void RayBounds(const RaySlabs& ray, const ChildBoxes& boxes, double* bounds) {
+  const hn::CappedTag<double, node_width> d;
+  for (std::size_t i = 0; i < node_width; i += hn::Lanes(d))
+    hn::StoreU(bounds_of(d, ray, boxes, i), d, bounds + i);
+}
+
+std::uint64_t TrianglesOnRay(const RaySlabs& ray, const LeafBoxes& boxes, double limit) {
+  const hn::CappedTag<double, 8> d;
+  std::uint64_t found = 0;
+  for (std::size_t i = 0; i < boxes.size; i += hn::Lanes(d))
+    found |= mask_bits(d, hn::Le(bounds_of(d, ray, boxes, i), hn::Set(d, limit))) << i;
+  return found & boxes.triangles;
+}
+
+}  // namespace
+}  // namespace supple::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace supple {
+
+HWY_EXPORT(SquaredDistances);
+HWY_EXPORT(NearTriangles);
+HWY_EXPORT(OverlappingChildren);
+HWY_EXPORT(OverlappingTriangles);
+HWY_EXPORT(RayBounds);
+HWY_EXPORT(TrianglesOnRay);
+
+void squared_distances(const PointBounds& point, const ChildBoxes& boxes, std::array<float, 8>& squares) {
+  HWY_DYNAMIC_DISPATCH(SquaredDistances)(point, boxes, squares.data());
+}
+std::uint64_t near_triangles(const PointBounds& point, const LeafBoxes& boxes, float limit) {
+  return HWY_DYNAMIC_DISPATCH(NearTriangles)(point, boxes, limit);
+}
+std::uint32_t overlapping_children(const Aabb& box, const ChildBoxes& boxes) {
+  return static_cast<std::uint32_t>(HWY_DYNAMIC_DISPATCH(OverlappingChildren)(box, boxes));
+}
+std::uint64_t overlapping_triangles(const Aabb& box, const LeafBoxes& boxes) {
+  return HWY_DYNAMIC_DISPATCH(OverlappingTriangles)(box, boxes);
+}
+void ray_bounds(const RaySlabs& ray, const ChildBoxes& boxes, std::array<double, 8>& bounds) {
+  HWY_DYNAMIC_DISPATCH(RayBounds)(ray, boxes, bounds.data());
+}
+std::uint64_t triangles_on_ray(const RaySlabs& ray, const LeafBoxes& boxes, double limit) {
+  return HWY_DYNAMIC_DISPATCH(TrianglesOnRay)(ray, boxes, limit);
+}
+
+}  // namespace supple
+#endif
