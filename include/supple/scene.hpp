@@ -154,6 +154,23 @@ class Scene {
   /// of triangles, and names it. The first call checks that in O(n log n).
   void inside(std::span<const Vec3d> points, std::span<Containment> results, const QueryFilter& filter = {});
 
+  /// The nearest features of two objects, as a pair of the listing of features, or nothing when one of them
+  /// has no finite triangle. Of several pairs at the same distance, the first one in the order of
+  /// `DetectResult::proximity_pairs`. When the surfaces intersect, the distance is 0, and the pair is the
+  /// first point of their first contact: then an edge can be paired with a face. `object_a` is the smaller
+  /// object. An object inside another one has the distance of the surfaces. Triangles with a vertex that is
+  /// not finite do not count. Starts at the result of the last
+  /// call for these objects, so that objects that move little take less time. Throws `Error` when both are
+  /// the same.
+  std::optional<ProximityPair> distance(ObjectId a, ObjectId b);
+  /// The same for all pairs of objects that `detect` would test and that are within `max_distance`, closed:
+  /// one pair of features for each, ordered by objects. Valid until the next call of a function of the scene
+  /// that is not const. Throws `Error` when the distance is negative or NaN.
+  std::span<const ProximityPair> distances(double max_distance);
+  /// Whether any triangle of one object intersects one of the other. Stops at the first. Throws `Error` when
+  /// both are the same.
+  bool any_contact(ObjectId a, ObjectId b);
+
   std::vector<ObjectId> objects() const;  ///< ascending
   bool contains(ObjectId object) const;
   const std::string& name(ObjectId object) const;

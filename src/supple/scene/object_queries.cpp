@@ -255,27 +255,14 @@ void ObjectQueries::order(std::span<const QueriedObject> objects, const BoundOf&
   std::sort(order_.begin(), order_.end());
 }
 
-const LeafBoxes& ObjectQueries::boxes_of(std::uint32_t index, const QueriedObject& object, std::uint32_t leaf,
-                                         std::uint32_t begin, std::uint32_t end) {
-  constexpr std::size_t recent_leaves = 64;
-  if (recent_.empty()) recent_.resize(recent_leaves);
-  RecentBoxes& recent = recent_[(begin / leaf_block + leaf) % recent_leaves];
-  if (recent.object != index || recent.begin != begin) {
-    const LeafArrays leaves{object.view.arrays, object.view.boxes, object.view.leaf_vertices};
-    load_leaf_boxes(leaves, leaf, begin, end, recent.boxes);
-    recent.object = index;
-    recent.begin = begin;
-  }
-  return recent.boxes;
-}
-
 /// Calls `visit` with the triangles of a leaf that `chosen(boxes)` has, in octree order.
 template <class Chosen, class Visit>
 void ObjectQueries::visit_leaf(std::uint32_t index, const QueriedObject& object, std::uint32_t leaf,
                                std::uint32_t begin, std::uint32_t end, const Chosen& chosen,
                                const Visit& visit) {
   for (; begin < end; begin += leaf_block) {
-    const LeafBoxes& boxes = boxes_of(index, object, leaf, begin, std::min(begin + leaf_block, end));
+    const LeafBoxes& boxes =
+        recent_.boxes_of(index, object.leaves(), leaf, begin, std::min(begin + leaf_block, end));
     for (std::uint64_t left = chosen(boxes); left != 0; left &= left - 1)
       visit(begin + static_cast<std::uint32_t>(std::countr_zero(left)));
   }
@@ -283,7 +270,7 @@ void ObjectQueries::visit_leaf(std::uint32_t index, const QueriedObject& object,
 
 void ObjectQueries::start() {
   last_nearest_.reset();
-  for (RecentBoxes& recent : recent_) recent.object = RecentBoxes::none;
+  recent_.clear();
 }
 
 std::optional<ClosestPoint> ObjectQueries::closest(std::span<const QueriedObject> objects, const Vec3d& point,
@@ -307,7 +294,8 @@ std::optional<ClosestPoint> ObjectQueries::closest(std::span<const QueriedObject
         [&] { return double{nearest.squared_limit()}; },
         [&](std::uint32_t leaf, std::uint32_t begin, std::uint32_t end) {
           for (; begin < end; begin += leaf_block) {
-            const LeafBoxes& boxes = boxes_of(index, object, leaf, begin, std::min(begin + leaf_block, end));
+            const LeafBoxes& boxes =
+                recent_.boxes_of(index, object.leaves(), leaf, begin, std::min(begin + leaf_block, end));
             nearest.consider(index, begin, near_triangles(seen, boxes, nearest.squared_limit()));
           }
         });

@@ -9,6 +9,7 @@
 
 #include "narrow_phase/ordered_descent.hpp"
 #include "narrow_phase/overlap_kernels.hpp"
+#include "narrow_phase/recent_leaf_boxes.hpp"
 #include "octree/vertex_buffer.hpp"
 #include "supple/mesh.hpp"
 #include "supple/queries.hpp"
@@ -27,6 +28,7 @@ struct QueriedObject {
 
   /// The placed corners of a triangle in octree order.
   TrianglePoints corners(std::uint32_t triangle) const;
+  LeafArrays leaves() const { return {view.arrays, view.boxes, view.leaf_vertices}; }
 };
 
 /// A triangle, by object in a list of objects and in octree order, and at most its distance to a point.
@@ -44,20 +46,14 @@ class ObjectQueries {
   /// other, hardly any other triangle is nearer.
   std::optional<ClosestPoint> closest(std::span<const QueriedObject> objects, const Vec3d& point,
                                       double max_distance);
+  /// Of the last result of `closest`, in octree order.
+  std::uint32_t last_nearest_triangle() const { return last_nearest_->triangle; }
   std::optional<RayHit> cast(std::span<const QueriedObject> objects, const Ray& ray, bool count_hits);
   /// `on` before `inside`, for each object; `inside` if the point is inside one of them, else `on` if it is
   /// on one of them. Objects with an inert triangle contain nothing.
   Containment inside(std::span<const QueriedObject> objects, const Vec3d& point);
 
  private:
-  struct RecentBoxes {
-    static constexpr std::uint32_t none = ~std::uint32_t{0};
-    std::uint32_t object = none, begin = 0;
-    LeafBoxes boxes;
-  };
-
-  const LeafBoxes& boxes_of(std::uint32_t index, const QueriedObject& object, std::uint32_t leaf,
-                            std::uint32_t begin, std::uint32_t end);
   template <class Chosen, class Visit>
   void visit_leaf(std::uint32_t index, const QueriedObject& object, std::uint32_t leaf, std::uint32_t begin,
                   std::uint32_t end, const Chosen& chosen, const Visit& visit);
@@ -70,9 +66,7 @@ class ObjectQueries {
   std::vector<NearTriangle> candidates_;
   OrderedDescent descent_;
   std::vector<std::uint32_t> nodes_;
-  /// The boxes of the leaves that queries looked at last; points that are close to each other look at the
-  /// same leaves. They fit into the second-level cache.
-  std::vector<RecentBoxes> recent_;
+  RecentLeafBoxes recent_;
   std::vector<std::pair<double, std::uint32_t>> order_;
 };
 

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 #include "core/error.hpp"
@@ -8,11 +9,7 @@ namespace supple {
 
 void Scene::Implementation::list_queried_objects(const QueryFilter& seen, const char* call) {
   if (seen.object) object(*seen.object, call);
-  // Keeps the broad phase up to date, as `earliest_impact` does.
-  const StepStats stats = result.stats;
-  refit_objects({});
-  find_object_pairs(impact_jobs_);
-  result.stats = stats;
+  refit_for_queries();
   queried_objects_.clear();
   for (std::uint32_t index = 0; index < slots_.size(); ++index) {
     const SceneObject* const found = slots_[index].object.get();
@@ -32,6 +29,14 @@ QueriedObject Scene::Implementation::queried_object(std::uint32_t index) const {
           found.box()};
 }
 
+/// Keeps the broad phase up to date, as `earliest_impact` does.
+void Scene::Implementation::refit_for_queries() {
+  const StepStats stats = result.stats;
+  refit_objects({});
+  find_object_pairs(impact_jobs_);
+  result.stats = stats;
+}
+
 template <class Answer>
 void Scene::Implementation::answer_queries(const QueryFilter& seen, std::size_t count, const char* call,
                                            const Answer& answer) {
@@ -47,6 +52,21 @@ void Scene::Implementation::answer_queries(const QueryFilter& seen, std::size_t 
 
 namespace {
 
+/// Whether two boxes may be within `distance` of each other.
+bool may_be_within(const Aabb& a, const Aabb& b, double distance) {
+  double square = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double gap = std::max({double{a.min[axis]} - b.max[axis], double{b.min[axis]} - a.max[axis], 0.0});
+    square += gap * gap;
+  }
+  return square * (1 - 0x1p-50) <= distance * distance * (1 + 0x1p-50) + 0x1p-1060;
+}
+
+void check_distance(double distance, const char* call) {
+  if (distance >= 0) return;
+  fail(std::string(call) + ": max_distance is " + std::to_string(distance) + "; it must be 0 or more");
+}
+
 void check_counts(std::size_t queries, std::size_t results, const char* call) {
   if (queries == results) return;
   fail(std::string(call) + ": " + std::to_string(results) + " results for " + std::to_string(queries) +
@@ -59,8 +79,7 @@ void Scene::Implementation::closest(std::span<const Vec3d> points,
                                     std::span<std::optional<ClosestPoint>> results,
                                     const ClosestOptions& query) {
   check_counts(points.size(), results.size(), "closest");
-  if (!(query.max_distance >= 0))
-    fail("closest: max_distance is " + std::to_string(query.max_distance) + "; it must be 0 or more");
+  check_distance(query.max_distance, "closest");
   answer_queries(query.filter, points.size(), "closest", [&](ObjectQueries& queries, std::size_t i) {
     results[i] = queries.closest(queried_objects_, points[i], query.max_distance);
   });
@@ -90,6 +109,98 @@ void Scene::Implementation::inside(std::span<const Vec3d> points, std::span<Cont
   answer_queries(seen, points.size(), "inside", [&](ObjectQueries& queries, std::size_t i) {
     results[i] = queries.inside(queried_objects_, points[i]);
   });
+}
+
+ObjectPair Scene::Implementation::two_objects(ObjectId a, ObjectId b, const char* call) const {
+  object(a, call);
+  object(b, call);
+  if (a == b) fail(std::string(call) + ": both objects are " + object(a, call).options.name + "; give two");
+  return a < b ? ObjectPair{a, b} : ObjectPair{b, a};
+}
+
+/// `triangles` are those to look at first, in octree order, and become those of the result.
+std::optional<ProximityPair> Scene::Implementation::nearest_of(const ObjectPair& pair, double max_distance,
+                                                               NearestPairSearch& search,
+                                                               TrianglePair& triangles) const {
+  const SceneObject &a = *slots_[pair.a.index].object, &b = *slots_[pair.b.index].object;
+  std::optional<TrianglePair> guess;
+  const auto is_inert = [](const SceneObject& object, std::uint32_t triangle) {
+    const std::uint8_t* const inert = object.resting_view().arrays.inert;
+    return inert != nullptr && inert[triangle] != 0;
+  };
+  if (const auto known = nearest_triangles_.find(pair); known != nearest_triangles_.end()) {
+    const TrianglePair last{a.octree().octree_triangle(known->second.a),
+                            b.octree().octree_triangle(known->second.b)};
+    if (!is_inert(a, last.a) && !is_inert(b, last.b)) guess = last;
+  }
+  const auto found =
+      search.nearest(queried_object(pair.a.index), queried_object(pair.b.index), max_distance, guess);
+  if (found) {
+    triangles = {a.octree().triangle_ids()[search.triangles().a],
+                 b.octree().triangle_ids()[search.triangles().b]};
+  }
+  return found;
+}
+
+std::optional<ProximityPair> Scene::Implementation::distance(ObjectId a, ObjectId b) {
+  const ObjectPair pair = two_objects(a, b, "distance");
+  refit_for_queries();
+  pair_searches_.resize(parallel.worker_count());
+  TrianglePair triangles;
+  const auto found = nearest_of(pair, any_distance, pair_searches_.front(), triangles);
+  if (found) nearest_triangles_[pair] = triangles;
+  return found;
+}
+
+bool Scene::Implementation::any_contact(ObjectId a, ObjectId b) {
+  const ObjectPair pair = two_objects(a, b, "any_contact");
+  refit_for_queries();
+  pair_searches_.resize(parallel.worker_count());
+  return pair_searches_.front().any_contact(queried_object(pair.a.index), queried_object(pair.b.index));
+}
+
+std::span<const ProximityPair> Scene::Implementation::distances(double max_distance) {
+  check_distance(max_distance, "distances");
+  refit_for_queries();
+  struct Candidate {
+    ObjectPair pair;
+    std::optional<ProximityPair> found;
+    TrianglePair triangles;
+  };
+  // Objects by the lower end of their boxes: those after `b.min.x - max_distance` are too far away.
+  std::vector<std::uint32_t> order;
+  for (std::uint32_t index = 0; index < slots_.size(); ++index) {
+    if (slots_[index].object != nullptr && !slots_[index].object->box().empty()) order.push_back(index);
+  }
+  const auto box_of = [&](std::uint32_t index) -> const Aabb& { return slots_[index].object->box(); };
+  std::sort(order.begin(), order.end(), [&](std::uint32_t p, std::uint32_t q) {
+    return std::pair(box_of(p).min.x, p) < std::pair(box_of(q).min.x, q);
+  });
+  std::vector<Candidate> candidates;
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    const double last = double{box_of(order[i]).max.x} + max_distance, end = last + 0x1p-50 * std::fabs(last);
+    for (std::size_t k = i + 1; k < order.size() && !(box_of(order[k]).min.x > end); ++k) {
+      const auto [a, b] = std::minmax(order[i], order[k]);
+      if (may_be_within(box_of(a), box_of(b), max_distance) && may_pair({a, b}))
+        candidates.push_back({{id_of(a), id_of(b)}, {}, {}});
+    }
+  }
+  std::sort(candidates.begin(), candidates.end(),
+            [](const Candidate& p, const Candidate& q) { return p.pair < q.pair; });
+  pair_searches_.resize(parallel.worker_count());
+  parallel.for_ranges(candidates.size(), 1, [&](std::size_t begin, std::size_t end, std::uint32_t worker) {
+    for (std::size_t i = begin; i < end; ++i) {
+      Candidate& candidate = candidates[i];
+      candidate.found = nearest_of(candidate.pair, max_distance, pair_searches_[worker], candidate.triangles);
+    }
+  });
+  distances_.clear();
+  for (const Candidate& candidate : candidates) {
+    if (!candidate.found) continue;
+    distances_.push_back(*candidate.found);
+    nearest_triangles_[candidate.pair] = candidate.triangles;
+  }
+  return distances_;
 }
 
 }  // namespace supple

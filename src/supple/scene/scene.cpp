@@ -119,6 +119,8 @@ void Scene::Implementation::remove(ObjectId id) {
   object(id, "remove");
   for (PairCache* const pairs : {&volume_pairs_, &narrow_phase_pairs_, &contact_pairs_, &near_object_pairs_})
     pairs->release(id);
+  std::erase_if(nearest_triangles_,
+                [&](const auto& known) { return known.first.a == id || known.first.b == id; });
   slots_[id.index].object.reset();
   ++slots_[id.index].generation;
   free_slots_.push_back(id.index);
@@ -303,6 +305,15 @@ void Scene::cast(std::span<const Ray> rays, std::span<std::optional<RayHit>> res
 }
 void Scene::inside(std::span<const Vec3d> points, std::span<Containment> results, const QueryFilter& filter) {
   implementation_->inside(points, results, filter);
+}
+std::optional<ProximityPair> Scene::distance(ObjectId a, ObjectId b) {
+  return implementation_->distance(a, b);
+}
+std::span<const ProximityPair> Scene::distances(double max_distance) {
+  return implementation_->distances(max_distance);
+}
+bool Scene::any_contact(ObjectId a, ObjectId b) {
+  return implementation_->any_contact(a, b);
 }
 const DetectResult& Scene::result() const {
   return implementation_->result;

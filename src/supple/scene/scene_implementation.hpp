@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
 #include <span>
@@ -12,6 +13,7 @@
 #include "core/stop_signal.hpp"
 #include "scene/contact_pass.hpp"
 #include "scene/impact_pass.hpp"
+#include "scene/nearest_pair.hpp"
 #include "scene/object_queries.hpp"
 #include "scene/pair_cache.hpp"
 #include "scene/penetration_pass.hpp"
@@ -68,6 +70,9 @@ class Scene::Implementation {
                const ClosestOptions& query);
   void cast(std::span<const Ray> rays, std::span<std::optional<RayHit>> results, const CastOptions& query);
   void inside(std::span<const Vec3d> points, std::span<Containment> results, const QueryFilter& seen);
+  std::optional<ProximityPair> distance(ObjectId a, ObjectId b);
+  std::span<const ProximityPair> distances(double max_distance);
+  bool any_contact(ObjectId a, ObjectId b);
   VerifyReport verify() const;
   std::string validate() const;
 
@@ -108,6 +113,12 @@ class Scene::Implementation {
   void refit_objects(const Question& question);
   template <class Work, class Function>
   void for_each_object(std::span<const std::uint32_t> indices, const Work& work, const Function& function);
+  /// Refits the objects that have moved, without changing the result of `detect`.
+  void refit_for_queries();
+  /// Both objects, the smaller one first.
+  ObjectPair two_objects(ObjectId a, ObjectId b, const char* call) const;
+  std::optional<ProximityPair> nearest_of(const ObjectPair& pair, double max_distance,
+                                          NearestPairSearch& search, TrianglePair& triangles) const;
   /// Refits the objects that have moved and lists those that the filter lets through.
   void list_queried_objects(const QueryFilter& seen, const char* call);
   void find_object_pairs(Jobs& found);
@@ -174,6 +185,10 @@ class Scene::Implementation {
   std::vector<QueriedObject> queried_objects_;
   std::vector<PenetratedObject> penetrated_objects_;
   std::vector<ObjectQueries> queries_of_workers_;
+  std::vector<NearestPairSearch> pair_searches_;  // by worker
+  /// Triangles with the nearest features of pairs of objects, the user's numbers.
+  std::map<ObjectPair, TrianglePair> nearest_triangles_;
+  std::vector<ProximityPair> distances_;
   std::vector<NonFiniteVertex> non_finite_;
   PairCache volume_pairs_, narrow_phase_pairs_, contact_pairs_, near_object_pairs_;
   ContactPass contact_pass_;

@@ -1,0 +1,293 @@
+#include "scene/nearest_pair.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <tuple>
+
+#include "contact/triangle_intersection.hpp"
+#include "core/float_rounding.hpp"
+#include "geometry/aabb.hpp"
+#include "geometry/vector.hpp"
+#include "scene/feature_name.hpp"
+
+namespace supple {
+namespace {
+
+auto place_of(const ProximityPair& pair) {
+  return std::tie(pair.kind_a, pair.kind_b, pair.element_a, pair.element_b);
+}
+
+bool boxes_overlap(const TrianglePoints& a, const TrianglePoints& b) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto [low_a, high_a] = std::minmax({a[0][axis], a[1][axis], a[2][axis]});
+    const auto [low_b, high_b] = std::minmax({b[0][axis], b[1][axis], b[2][axis]});
+    if (low_a > high_b || low_b > high_a) return false;
+  }
+  return true;
+}
+
+ElementPoints points_of(const PairElement& a, const PairElement& b) {
+  ElementPoints elements;
+  elements.count_a = a.count;
+  elements.count_b = b.count;
+  std::copy_n(a.points.begin(), a.count, elements.points.begin());
+  std::copy_n(b.points.begin(), b.count, elements.points.begin() + a.count);
+  return elements;
+}
+
+/// The barycentric coordinates of a point near a feature of a triangle, by the vertices of the feature: those
+/// of an edge by ascending ids.
+std::array<double, 3> weights_at(const Vec3d& point, const Feature& feature, const TrianglePoints& corners,
+                                 const Triangle& vertices) {
+  ElementPoints elements{{point, corners[0], corners[1], corners[2]}, 1, 3};
+  if (feature.kind != FeatureKind::face) {
+    elements.count_b = feature.kind == FeatureKind::vertex ? 1 : 2;
+    elements.points[1] = corners[feature.index];
+    elements.points[2] = corners[(feature.index + 1u) % 3];
+    if (feature.kind == FeatureKind::edge && vertices[(feature.index + 1u) % 3] < vertices[feature.index])
+      std::swap(elements.points[1], elements.points[2]);
+  }
+  bool used_exact = false;
+  return distance_within(elements, any_distance, used_exact, DistanceAccuracy::rough)->barycentric_b;
+}
+
+}  // namespace
+
+void NearestPairSearch::start(const QueriedObject& a, const QueriedObject& b, Search search,
+                              double max_distance) {
+  a_ = &a;
+  b_ = &b;
+  search_ = search;
+  recent_.clear();
+  queries_.start();
+  intersects_ = false;
+  best_.reset();
+  stack_.clear();
+  for (int axis = 0; axis < 3; ++axis) {
+    const double from = a.view.translation[axis], to = b.view.translation[axis];
+    offset_[axis] = from - to;
+    const auto largest = [&](const Aabb& box) {
+      return std::max(std::fabs(double{box.min[axis]}), std::fabs(double{box.max[axis]}));
+    };
+    // More than the roundings of two translated vertices and of the sums below.
+    slop_[axis] = from == 0 && to == 0
+                      ? 0
+                      : 0x1p-49 * (std::fabs(from) + std::fabs(to) + largest(a.box) + largest(b.box));
+  }
+  set_limit(max_distance);
+}
+
+void NearestPairSearch::set_limit(double limit) {
+  limit_ = limit;
+  squared_limit_ = round_up(limit * limit * (1 + 0x1p-18) + 0x1p-120);
+}
+
+PointBounds NearestPairSearch::seen(const Aabb& box, double direction) const {
+  PointBounds bounds;
+  for (int axis = 0; axis < 3; ++axis) {
+    bounds.low[axis] = round_down(box.min[axis] + direction * offset_[axis] - slop_[axis]);
+    bounds.high[axis] = round_up(box.max[axis] + direction * offset_[axis] + slop_[axis]);
+  }
+  return bounds;
+}
+
+bool NearestPairSearch::any_contact(const QueriedObject& a, const QueriedObject& b) {
+  start(a, b, Search::any_contact, 0);
+  descend();
+  return intersects_;
+}
+
+std::optional<ProximityPair> NearestPairSearch::nearest(const QueriedObject& a, const QueriedObject& b,
+                                                        double max_distance,
+                                                        std::optional<TrianglePair> guess) {
+  start(a, b, Search::nearest, max_distance);
+  if (a.box.empty() || b.box.empty()) return {};
+  if (guess)
+    decide(*guess);
+  else
+    guess_by_projection();
+  descend();
+  return intersects_ ? contact_pair() : best_;
+}
+
+/// Projects a point from one surface to the other and back, until the distance no longer decreases.
+void NearestPairSearch::guess_by_projection() {
+  Vec3d point;
+  for (int axis = 0; axis < 3; ++axis)
+    point[axis] = (double{a_->box.min[axis]} + double{a_->box.max[axis]}) / 2;
+  if (!is_finite(point)) return;
+  constexpr int most = 6;
+  TrianglePair triangles;
+  double last = any_distance;
+  for (int i = 0; i < most; ++i) {
+    const QueriedObject& onto = i % 2 == 0 ? *b_ : *a_;
+    queries_.start();
+    const auto closest = queries_.closest(std::span(&onto, 1), point, any_distance);
+    if (!closest) return;
+    (i % 2 == 0 ? triangles.b : triangles.a) = queries_.last_nearest_triangle();
+    if (i > 1 && !(closest->distance < last)) break;
+    if (i > 0) last = closest->distance;
+    point = closest->point;
+    if (!is_finite(point)) return;
+  }
+  decide(triangles);
+}
+
+void NearestPairSearch::descend() {
+  const auto children = [](const QueriedObject& object, std::uint32_t node) {
+    return int{object.view.nodes[node].child_count};
+  };
+  if (a_->view.nodes.empty() || b_->view.nodes.empty()) return;
+  expand(0, 0, children(*a_, 0), 0, 0, children(*b_, 0));
+  while (!stack_.empty() && !is_done()) {
+    const Entry entry = stack_.back();
+    stack_.pop_back();
+    if (!(entry.square <= squared_limit_)) continue;
+    const OctreeNode &node_a = a_->view.nodes[entry.node_a], &node_b = b_->view.nodes[entry.node_b];
+    const bool is_inner_a = node_a.is_inner(entry.child_a), is_inner_b = node_b.is_inner(entry.child_b);
+    if (!is_inner_a && !is_inner_b) {
+      test_leaves(entry);
+      continue;
+    }
+    const std::uint32_t next_a = is_inner_a ? node_a.child_node(entry.child_a) : entry.node_a,
+                        next_b = is_inner_b ? node_b.child_node(entry.child_b) : entry.node_b;
+    expand(next_a, is_inner_a ? 0 : entry.child_a, is_inner_a ? children(*a_, next_a) : entry.child_a + 1,
+           next_b, is_inner_b ? 0 : entry.child_b, is_inner_b ? children(*b_, next_b) : entry.child_b + 1);
+  }
+}
+
+/// Pushes the pairs of children within the limit, the nearest last.
+void NearestPairSearch::expand(std::uint32_t node_a, int first_a, int end_a, std::uint32_t node_b,
+                               int first_b, int end_b) {
+  const std::size_t first = stack_.size();
+  const ChildBoxes &boxes_a = a_->view.boxes[node_a], &boxes_b = b_->view.boxes[node_b];
+  for (int i = first_a; i < end_a; ++i) {
+    const Aabb box = child_box(boxes_a, i);
+    if (box.empty()) continue;
+    std::array<float, node_width> squares;
+    squared_distances(seen_by_b(box), boxes_b, squares);
+    for (int k = first_b; k < end_b; ++k) {
+      const float square = squares[static_cast<std::size_t>(k)];
+      if (square <= squared_limit_ && !child_box(boxes_b, k).empty())
+        stack_.push_back({square, node_a, node_b, i, k});
+    }
+  }
+  std::sort(stack_.begin() + static_cast<std::ptrdiff_t>(first), stack_.end(),
+            [](const Entry& p, const Entry& q) {
+              return std::tie(q.square, q.child_a, q.child_b) < std::tie(p.square, p.child_a, p.child_b);
+            });
+}
+
+void NearestPairSearch::test_leaves(const Entry& leaves) {
+  const OctreeNode &node_a = a_->view.nodes[leaves.node_a], &node_b = b_->view.nodes[leaves.node_b];
+  const std::uint32_t leaf_a = node_width * leaves.node_a + static_cast<std::uint32_t>(leaves.child_a),
+                      leaf_b = node_width * leaves.node_b + static_cast<std::uint32_t>(leaves.child_b);
+  const std::uint32_t end_a = node_a.first_triangle[leaves.child_a + 1],
+                      end_b = node_b.first_triangle[leaves.child_b + 1];
+  const PointBounds box_b = seen_by_a(child_box(b_->view.boxes[leaves.node_b], leaves.child_b));
+  for (std::uint32_t begin_a = node_a.first_triangle[leaves.child_a]; begin_a < end_a;
+       begin_a += leaf_block) {
+    // A copy, because the next call may overwrite it.
+    const LeafBoxes boxes_a =
+        recent_.boxes_of(0, a_->leaves(), leaf_a, begin_a, std::min(begin_a + leaf_block, end_a));
+    for (std::uint64_t left_a = near_triangles(box_b, boxes_a, squared_limit_); left_a != 0;
+         left_a &= left_a - 1) {
+      const auto i = static_cast<std::uint32_t>(std::countr_zero(left_a));
+      const PointBounds box_a = seen_by_b({{boxes_a.min_x[i], boxes_a.min_y[i], boxes_a.min_z[i]},
+                                           {boxes_a.max_x[i], boxes_a.max_y[i], boxes_a.max_z[i]}});
+      for (std::uint32_t begin_b = node_b.first_triangle[leaves.child_b]; begin_b < end_b;
+           begin_b += leaf_block) {
+        const LeafBoxes& boxes_b =
+            recent_.boxes_of(1, b_->leaves(), leaf_b, begin_b, std::min(begin_b + leaf_block, end_b));
+        for (std::uint64_t left_b = near_triangles(box_a, boxes_b, squared_limit_); left_b != 0;
+             left_b &= left_b - 1) {
+          decide({begin_a + i, begin_b + static_cast<std::uint32_t>(std::countr_zero(left_b))});
+          if (is_done()) return;
+        }
+      }
+    }
+  }
+}
+
+void NearestPairSearch::decide(TrianglePair triangles) {
+  const TrianglePoints a = a_->corners(triangles.a), b = b_->corners(triangles.b);
+  const auto ids_of = [&](TrianglePair pair) {
+    return std::pair(a_->triangle_ids[pair.a], b_->triangle_ids[pair.b]);
+  };
+  if (boxes_overlap(a, b)) {
+    if (intersects_ && search_ == Search::nearest && ids_of(triangles_) < ids_of(triangles)) return;
+    if (triangles_intersect(a, b)) {
+      intersects_ = true;
+      triangles_ = triangles;
+      set_limit(0);
+      return;
+    }
+  }
+  if (!intersects_ && search_ == Search::nearest) decide_elements(triangles, a, b);
+}
+
+/// Considers the vertices and faces and the edges of two triangles that do not intersect.
+void NearestPairSearch::decide_elements(TrianglePair triangles, const TrianglePoints& a,
+                                        const TrianglePoints& b) {
+  const Triangle &vertices_a = a_->triangles[triangles.a], &vertices_b = b_->triangles[triangles.b];
+  const auto vertex = [](const Triangle& vertices, const TrianglePoints& corners, std::size_t i) {
+    return PairElement(std::span(&vertices[i], 1), {corners[i]}, 0);
+  };
+  const auto edge = [](const Triangle& vertices, const TrianglePoints& corners, std::size_t i) {
+    const std::size_t k = (i + 1) % 3;
+    return PairElement(std::array{vertices[i], vertices[k]}, {corners[i], corners[k]}, 0);
+  };
+  const PairElement face_a(vertices_a, a, a_->triangle_ids[triangles.a]),
+      face_b(vertices_b, b, b_->triangle_ids[triangles.b]);
+  for (std::size_t i = 0; i < 3; ++i) {
+    consider(vertex(vertices_a, a, i), face_b, PairOrder::given, triangles);
+    consider(vertex(vertices_b, b, i), face_a, PairOrder::swapped, triangles);
+    for (std::size_t k = 0; k < 3; ++k)
+      consider(edge(vertices_a, a, i), edge(vertices_b, b, k), PairOrder::given, triangles);
+  }
+}
+
+void NearestPairSearch::consider(const PairElement& first, const PairElement& second, PairOrder order,
+                                 TrianglePair triangles) {
+  const auto pair = proximity_pair_within(first, second, {a_->id, b_->id}, order, ProximityListing::features,
+                                          limit_, used_exact_);
+  if (!pair) return;
+  const ElementPoints elements = points_of(first, second);
+  if (best_) {
+    const bool is_same = place_of(*pair) == place_of(*best_);
+    const int side = is_same ? 0 : compare_distances(elements, best_elements_, used_exact_);
+    if (side > 0 || (side == 0 && place_of(*best_) <= place_of(*pair))) return;
+  }
+  best_ = pair;
+  best_elements_ = elements;
+  triangles_ = triangles;
+  set_limit(std::min(limit_, pair->distance * (1 + 0x1p-49) + 0x1p-1060));
+}
+
+/// The first point of the first contact.
+ProximityPair NearestPairSearch::contact_pair() const {
+  const TrianglePoints a = a_->corners(triangles_.a), b = b_->corners(triangles_.b);
+  const TriangleIntersection shared = intersect_triangles(a, b);
+  const ContactPoint& point = shared.points[0];
+  const auto ids = [](const Feature& feature, const QueriedObject& object, std::uint32_t triangle) {
+    const FeatureName name = name_of(feature, object.triangles[triangle], object.triangle_ids[triangle]);
+    return std::array{name.first, name.last};
+  };
+  return {a_->id,
+          b_->id,
+          point.on_a.kind,
+          point.on_b.kind,
+          ids(point.on_a, *a_, triangles_.a),
+          ids(point.on_b, *b_, triangles_.b),
+          {point.on_a.kind, 0},
+          {point.on_b.kind, 0},
+          0,
+          weights_at(point.position, point.on_a, a, a_->triangles[triangles_.a]),
+          weights_at(point.position, point.on_b, b, b_->triangles[triangles_.b]),
+          point.position,
+          point.position,
+          shared.normal};
+}
+
+}  // namespace supple

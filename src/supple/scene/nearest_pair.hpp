@@ -1,0 +1,71 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "narrow_phase/query_kernels.hpp"
+#include "narrow_phase/recent_leaf_boxes.hpp"
+#include "scene/object_queries.hpp"
+#include "scene/proximity_pair.hpp"
+
+namespace supple {
+
+/// Finds the nearest features of two objects by descending both octrees at once, nearest pairs of children
+/// first. Holds the memory of one worker.
+class NearestPairSearch {
+ public:
+  /// Whether any two triangles of the objects intersect.
+  bool any_contact(const QueriedObject& a, const QueriedObject& b);
+
+  /// The nearest features; nothing when they are farther apart than `max_distance` or an object has no finite
+  /// triangle. Of several pairs at the same distance, the first one in the order of proximity pairs. When the
+  /// surfaces intersect: the first extreme point of their first contact, at distance 0. `guess` are triangles
+  /// that may be near, in octree order.
+  std::optional<ProximityPair> nearest(const QueriedObject& a, const QueriedObject& b, double max_distance,
+                                       std::optional<TrianglePair> guess);
+  /// Triangles with the features of the last result, in octree order.
+  TrianglePair triangles() const { return triangles_; }
+
+ private:
+  /// Children of a node of a and of a node of b.
+  struct Entry {
+    float square = 0;
+    std::uint32_t node_a = 0, node_b = 0;
+    int child_a = 0, child_b = 0;
+  };
+  enum class Search : std::uint8_t { any_contact, nearest };
+
+  void start(const QueriedObject& a, const QueriedObject& b, Search search, double max_distance);
+  void descend();
+  void expand(std::uint32_t node_a, int first_a, int end_a, std::uint32_t node_b, int first_b, int end_b);
+  void test_leaves(const Entry& leaves);
+  void decide(TrianglePair triangles);
+  void decide_elements(TrianglePair triangles, const TrianglePoints& a, const TrianglePoints& b);
+  void consider(const PairElement& first, const PairElement& second, PairOrder order, TrianglePair triangles);
+  void guess_by_projection();
+  ProximityPair contact_pair() const;
+  void set_limit(double limit);
+  bool is_done() const { return search_ == Search::any_contact && intersects_; }
+  /// A box of a as b's boxes see it, and the other way round.
+  PointBounds seen_by_b(const Aabb& box) const { return seen(box, 1); }
+  PointBounds seen_by_a(const Aabb& box) const { return seen(box, -1); }
+  PointBounds seen(const Aabb& box, double direction) const;
+
+  const QueriedObject* a_ = nullptr;
+  const QueriedObject* b_ = nullptr;
+  Search search_ = Search::nearest;
+  Vec3d offset_, slop_;  // from a to b
+  double limit_ = 0;
+  float squared_limit_ = 0;
+  bool intersects_ = false, used_exact_ = false;
+  TrianglePair triangles_;
+  std::optional<ProximityPair> best_;
+  ElementPoints best_elements_;
+  std::vector<Entry> stack_;
+  RecentLeafBoxes recent_;
+  ObjectQueries queries_;
+};
+
+}  // namespace supple
