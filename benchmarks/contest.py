@@ -45,7 +45,7 @@ COPIES = ["980x64", "980x512", "18000x9", "18000x64", "69620x9", "69620x64", "bu
 CLOTHS = ["cloth-funnel", "cloth-ball", "crumpled", "passing", "rods"]
 
 QUERIES = ["Q/closest/bunny-uniform", "Q/closest/bunny-near", "Q/inside/69620", "Q/rays/69620x9", "Q/penetration/69620",
-           "Q/penetration/69620-deep"]
+           "Q/penetration/69620-deep", "Q/distance/bunny-apart", "Q/distance/bunny-near"]
 
 FULL = (
     [f"A/{field}/{count}" for field in FIELDS for count in (1000, 10000, 100000, 1000000)]
@@ -292,6 +292,8 @@ def judged(cells):
         judge.add_faster(f"Q, {cell.split('/')[1]}, against Embree", cell, ["Embree"], reach, 2 * reach)
     for cell in judge.matching("Q/(closest|inside|penetration)/.*"):
         judge.add_faster(f"Q, {cell.split('/')[1]}, against CGAL", cell, ["CGAL"], 20, 30)
+    for cell in judge.matching("Q/distance/.*"):
+        judge.add_faster("Q, distance, against FCL", cell, ["FCL"], 10, 20)
     for cell in judge.matching("step/.*"):
         values = judge.cells[cell]["values"]
         judge.add("safe step", cell, "Supple, detect", values["milliseconds"] / values["milliseconds of detect"], 0.5,

@@ -19,7 +19,9 @@ using Tree = CGAL::AABB_tree<CGAL::AABB_traits<Kernel, CGAL::AABB_face_graph_tri
 
 class CgalQueries : public QueryContestant {
  public:
-  bool answers_kind(QueryTaskKind kind) const override { return kind != QueryTaskKind::rays; }
+  bool answers_kind(QueryTaskKind kind) const override {
+    return kind != QueryTaskKind::rays && kind != QueryTaskKind::distance;
+  }
 
   void prepare(const QueryTask& task) override {
     meshes_.resize(task.copies.copies());

@@ -73,7 +73,7 @@ class QueryContestant : public Contestant<QueryTask> {
   virtual bool answers_kind(QueryTaskKind kind) const = 0;
   /// One number for each query of the last frame: the distance of a point, 1 or 0 for inside and outside, or
   /// the first parameter of a ray, infinite without a triangle. Of penetrations: the number of vertices
-  /// inside and the sum of their depths, for each of the two copies.
+  /// inside and the sum of their depths, for each of the two copies. Of distances: the distance.
   std::span<const double> answers() const { return answers_; }
   PairDigest pairs() const override { return {answers_.size(), 0}; }
 

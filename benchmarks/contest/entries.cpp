@@ -63,6 +63,9 @@ std::vector<Entry<QueryContestant>> other_query_contestants() {
 #ifdef SUPPLE_CONTEST_CGAL
   entries.push_back({"CGAL", make_cgal_queries});
 #endif
+#ifdef SUPPLE_CONTEST_FCL
+  entries.push_back({"FCL", make_fcl_queries});
+#endif
   return entries;
 }
 

@@ -3,6 +3,7 @@
 #include <fcl/geometry/shape/box.h>
 #include <fcl/narrowphase/detail/traversal/collision/bvh_collision_traversal_node.h>
 #include <fcl/narrowphase/detail/traversal/traversal_recurse.h>
+#include <fcl/narrowphase/distance.h>
 
 #include "contest/peers.hpp"
 #include "contest/triangle_test.hpp"
@@ -120,6 +121,33 @@ class FclCopies : public CandidateContestant {
   std::vector<Aabb> boxes_;
 };
 
+class FclQueries : public QueryContestant {
+ public:
+  bool answers_kind(QueryTaskKind kind) const override { return kind == QueryTaskKind::distance; }
+  void prepare(const QueryTask& task) override {
+    std::vector<Point> points;
+    for (const Vec3f& p : task.copies.positions(0)) points.emplace_back(p.x, p.y, p.z);
+    std::vector<fcl::Triangle> triangles;
+    for (const Triangle& t : task.copies.triangles()) triangles.emplace_back(t[0], t[1], t[2]);
+    model_ = std::make_shared<fcl::BVHModel<fcl::OBBRSSd>>();
+    model_->beginModel();
+    model_->addSubModel(points, triangles);
+    model_->endModel();
+  }
+  void frame(const QueryTask& task) override {
+    fcl::Transform3d place = fcl::Transform3d::Identity();
+    place.translation() = Point(task.offset.x, task.offset.y, task.offset.z);
+    const fcl::CollisionObjectd a(model_), b(model_, place);
+    fcl::DistanceRequestd request;
+    request.enable_nearest_points = true;
+    fcl::DistanceResultd result;
+    answers_.assign(1, fcl::distance(&a, &b, request, result));
+  }
+
+ private:
+  std::shared_ptr<fcl::BVHModel<fcl::OBBRSSd>> model_;
+};
+
 }  // namespace
 
 std::unique_ptr<BoxContestant> make_fcl_boxes() {
@@ -128,6 +156,10 @@ std::unique_ptr<BoxContestant> make_fcl_boxes() {
 
 std::unique_ptr<CopiesContestant> make_fcl_copies() {
   return std::make_unique<FclCopies>();
+}
+
+std::unique_ptr<QueryContestant> make_fcl_queries() {
+  return std::make_unique<FclQueries>();
 }
 
 }  // namespace supple::benchmarks

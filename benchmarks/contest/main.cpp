@@ -18,7 +18,7 @@ constexpr const char* usage =
     "CELL: A/FIELD/N  A/FIELD/N/drift  A/FIELD/N/one-percent  A/FIELD/N/one-in-K\n"
     "      B/SHAPExCOPIES[-rest]  C/CLOTH\n"
     "      Q/closest/SHAPE-uniform  Q/closest/SHAPE-near  Q/inside/SHAPE  Q/rays/SHAPExCOPIES  "
-    "Q/penetration/SHAPE[-deep]\n"
+    "Q/penetration/SHAPE[-deep]  Q/distance/SHAPE-apart  Q/distance/SHAPE-near\n"
     "      step/CLOTH  growth/SHAPExCOPIES  threads/B/...  threads/C/...  limits/bandwidth  "
     "limits/refit/TRIANGLES  "
     "memory/SHAPE  memory/moving/SHAPE  build/SHAPE  frames/SHAPExCOPIES  first/SHAPExCOPIES  first/CLOTH\n"

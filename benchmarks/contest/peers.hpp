@@ -31,6 +31,8 @@ std::unique_ptr<QueryContestant> make_cgal_queries();
 /// meshes a tree of boxes with refit.
 std::unique_ptr<BoxContestant> make_fcl_boxes();
 std::unique_ptr<CopiesContestant> make_fcl_copies();
+/// `distance` on trees of OBBRSS.
+std::unique_ptr<QueryContestant> make_fcl_queries();
 
 /// Bullet: for boxes `btDbvt` with every leaf updated and one pass of incremental optimisation; for meshes
 /// the box tree of GImpact with refit.

@@ -150,6 +150,8 @@ class SuppleQueries : public QueryContestant {
     for (std::size_t i = 0; i < task.copies.copies(); ++i)
       objects_.push_back(scene_.add(task.copies.positions(i), task.copies.triangles(),
                                     {.solid = task.kind == QueryTaskKind::penetration}));
+    if (task.kind == QueryTaskKind::distance)
+      objects_.push_back(scene_.add(task.copies.positions(0), task.copies.triangles()));
     answers_.resize(task.points.size() + task.rays.size());
     frame(task);
   }
@@ -157,7 +159,10 @@ class SuppleQueries : public QueryContestant {
     const bool is_moving = task.kind == QueryTaskKind::rays || task.kind == QueryTaskKind::penetration;
     for (std::size_t i = 0; is_moving && i < objects_.size(); ++i)
       scene_.share_positions(objects_[i], task.copies.positions(i));
-    if (task.kind == QueryTaskKind::closest) {
+    if (task.kind == QueryTaskKind::distance) {
+      scene_.set_transform(objects_[1], {.translation = task.offset});
+      answers_.assign(1, scene_.distance(objects_[0], objects_[1])->distance);
+    } else if (task.kind == QueryTaskKind::closest) {
       closest_.resize(task.points.size());
       scene_.closest(task.points, closest_);
       for (std::size_t i = 0; i < closest_.size(); ++i) answers_[i] = closest_[i]->distance;

@@ -52,6 +52,9 @@ std::optional<QueryTask> make_query_task(const std::string& name) {
   } else if (has("penetration/")) {
     kind = QueryTaskKind::penetration;
     copies_name = after(12, is_deep ? 5 : 0) + "x2";
+  } else if (has("distance/") && (is_near || name.ends_with("-apart"))) {
+    kind = QueryTaskKind::distance;
+    copies_name = after(9, is_near ? 5 : 6) + "x1";
   } else {
     throw Error("no query task is named '" + name + "'");
   }
@@ -63,7 +66,10 @@ std::optional<QueryTask> make_query_task(const std::string& name) {
   const Box box(task.copies);
   const auto vertices = task.copies.positions(0);
   const double reach = 0.01 * (box.high.x - box.low.x);
-  for (std::size_t i = 0; i < queries && kind != QueryTaskKind::penetration; ++i) {
+  if (kind == QueryTaskKind::distance)
+    task.offset = in_single_precision({(box.high.x - box.low.x) * (is_near ? 1.025 : 2), 0, 0});
+  const bool has_queries = kind != QueryTaskKind::penetration && kind != QueryTaskKind::distance;
+  for (std::size_t i = 0; i < queries && has_queries; ++i) {
     if (kind == QueryTaskKind::rays) {
       const Vec3d origin = box.random_point(random);
       task.rays.push_back({origin, in_single_precision(random.direction())});

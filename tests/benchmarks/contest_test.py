@@ -57,7 +57,7 @@ class Cells(unittest.TestCase):
             self.assertEqual(contestant["pairs"], 22954, contestant["name"])
 
     def test_answers_to_queries_agree(self):
-        for cell in ("closest/980-uniform", "closest/980-near", "inside/980", "rays/980x4", "penetration/980", "penetration/980-deep"):
+        for cell in ("closest/980-uniform", "closest/980-near", "inside/980", "rays/980x4", "penetration/980", "penetration/980-deep", "distance/980-apart", "distance/980-near"):
             with self.subTest(cell=cell):
                 self.assertGreater(contestants_of("Q/" + cell)[0]["pairs"], 0)
 

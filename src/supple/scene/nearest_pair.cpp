@@ -18,13 +18,24 @@ auto place_of(const ProximityPair& pair) {
   return std::tie(pair.kind_a, pair.kind_b, pair.element_a, pair.element_b);
 }
 
-bool boxes_overlap(const TrianglePoints& a, const TrianglePoints& b) {
+/// Whether the boxes of some points are farther apart than `distance`.
+bool boxes_apart(std::span<const Vec3d> a, std::span<const Vec3d> b, double distance) {
+  double square = 0;
   for (int axis = 0; axis < 3; ++axis) {
-    const auto [low_a, high_a] = std::minmax({a[0][axis], a[1][axis], a[2][axis]});
-    const auto [low_b, high_b] = std::minmax({b[0][axis], b[1][axis], b[2][axis]});
-    if (low_a > high_b || low_b > high_a) return false;
+    double low_a = a[0][axis], high_a = low_a, low_b = b[0][axis], high_b = low_b;
+    for (const Vec3d& p : a) {
+      low_a = std::min(low_a, p[axis]);
+      high_a = std::max(high_a, p[axis]);
+    }
+    for (const Vec3d& p : b) {
+      low_b = std::min(low_b, p[axis]);
+      high_b = std::max(high_b, p[axis]);
+    }
+    const double gap = std::max({low_a - high_b, low_b - high_a, 0.0});
+    if (gap > distance * (1 + 0x1p-50)) return true;
+    square += gap * gap;
   }
-  return true;
+  return square > distance * distance * (1 + 0x1p-48) + 0x1p-1040;
 }
 
 ElementPoints points_of(const PairElement& a, const PairElement& b) {
@@ -185,29 +196,68 @@ void NearestPairSearch::test_leaves(const Entry& leaves) {
                       leaf_b = node_width * leaves.node_b + static_cast<std::uint32_t>(leaves.child_b);
   const std::uint32_t end_a = node_a.first_triangle[leaves.child_a + 1],
                       end_b = node_b.first_triangle[leaves.child_b + 1];
-  const PointBounds box_b = seen_by_a(child_box(b_->view.boxes[leaves.node_b], leaves.child_b));
+  const PointBounds box_a = seen_by_b(child_box(a_->view.boxes[leaves.node_a], leaves.child_a)),
+                    box_b = seen_by_a(child_box(b_->view.boxes[leaves.node_b], leaves.child_b));
   for (std::uint32_t begin_a = node_a.first_triangle[leaves.child_a]; begin_a < end_a;
        begin_a += leaf_block) {
     // A copy, because the next call may overwrite it.
     const LeafBoxes boxes_a =
         recent_.boxes_of(0, a_->leaves(), leaf_a, begin_a, std::min(begin_a + leaf_block, end_a));
-    for (std::uint64_t left_a = near_triangles(box_b, boxes_a, squared_limit_); left_a != 0;
-         left_a &= left_a - 1) {
-      const auto i = static_cast<std::uint32_t>(std::countr_zero(left_a));
-      const PointBounds box_a = seen_by_b({{boxes_a.min_x[i], boxes_a.min_y[i], boxes_a.min_z[i]},
-                                           {boxes_a.max_x[i], boxes_a.max_y[i], boxes_a.max_z[i]}});
-      for (std::uint32_t begin_b = node_b.first_triangle[leaves.child_b]; begin_b < end_b;
-           begin_b += leaf_block) {
-        const LeafBoxes& boxes_b =
-            recent_.boxes_of(1, b_->leaves(), leaf_b, begin_b, std::min(begin_b + leaf_block, end_b));
-        for (std::uint64_t left_b = near_triangles(box_a, boxes_b, squared_limit_); left_b != 0;
-             left_b &= left_b - 1) {
-          decide({begin_a + i, begin_b + static_cast<std::uint32_t>(std::countr_zero(left_b))});
-          if (is_done()) return;
-        }
-      }
+    const std::uint64_t near_a = near_triangles(box_b, boxes_a, squared_limit_);
+    if (near_a == 0) continue;
+    for (std::uint32_t begin_b = node_b.first_triangle[leaves.child_b]; begin_b < end_b;
+         begin_b += leaf_block) {
+      const LeafBoxes& boxes_b =
+          recent_.boxes_of(1, b_->leaves(), leaf_b, begin_b, std::min(begin_b + leaf_block, end_b));
+      const std::uint64_t near_b = near_triangles(box_a, boxes_b, squared_limit_);
+      if (near_b != 0) test_blocks(boxes_a, near_a, begin_a, boxes_b, near_b, begin_b);
+      if (is_done()) return;
     }
   }
+}
+
+void NearestPairSearch::test_blocks(const LeafBoxes& boxes_a, std::uint64_t near_a, std::uint32_t begin_a,
+                                    const LeafBoxes& boxes_b, std::uint64_t near_b, std::uint32_t begin_b) {
+  // Two triangles are not nearer than their projections to the direction between the nearest features so far.
+  // Laterally, their boxes are a good bound; together few pairs are left.
+  Projections along_a, along_b;
+  const bool has_direction = best_ && !intersects_ && best_->distance > 0;
+  if (has_direction) {
+    along_a = project(*a_, begin_a, near_a, 1);
+    along_b = project(*b_, begin_b, near_b, -1);
+  }
+  for (std::uint64_t left_a = near_a; left_a != 0; left_a &= left_a - 1) {
+    const auto i = static_cast<std::uint32_t>(std::countr_zero(left_a));
+    const PointBounds box_a = seen_by_b({{boxes_a.min_x[i], boxes_a.min_y[i], boxes_a.min_z[i]},
+                                         {boxes_a.max_x[i], boxes_a.max_y[i], boxes_a.max_z[i]}});
+    for (std::uint64_t left_b = near_triangles(box_a, boxes_b, squared_limit_) & near_b; left_b != 0;
+         left_b &= left_b - 1) {
+      const auto k = static_cast<std::uint32_t>(std::countr_zero(left_b));
+      if (has_direction && along_a.least[i] + along_b.least[k] > limit_) continue;
+      decide({begin_a + i, begin_b + k});
+      if (is_done()) return;
+    }
+  }
+}
+
+/// For each triangle a lower bound of its coordinates along `sign` times the direction from b to a, from the
+/// middle between the nearest features so far.
+NearestPairSearch::Projections NearestPairSearch::project(const QueriedObject& object, std::uint32_t begin,
+                                                          std::uint64_t triangles, double sign) const {
+  const Vec3d middle = 0.5 * (best_->point_a + best_->point_b);
+  Projections result;
+  for (std::uint64_t left = triangles; left != 0; left &= left - 1) {
+    const auto i = static_cast<std::uint32_t>(std::countr_zero(left));
+    double least = any_distance, size = 0;
+    for (const Vec3d& corner : object.corners(begin + i)) {
+      const Vec3d from_middle = corner - middle;
+      least = std::min(least, sign * dot(from_middle, best_->normal));
+      size = std::max(size, largest_magnitude(from_middle));
+    }
+    // More than the roundings of the difference, the product and the direction.
+    result.least[i] = least - 0x1p-48 * size;
+  }
+  return result;
 }
 
 void NearestPairSearch::decide(TrianglePair triangles) {
@@ -215,7 +265,7 @@ void NearestPairSearch::decide(TrianglePair triangles) {
   const auto ids_of = [&](TrianglePair pair) {
     return std::pair(a_->triangle_ids[pair.a], b_->triangle_ids[pair.b]);
   };
-  if (boxes_overlap(a, b)) {
+  if (!boxes_apart(a, b, 0)) {
     if (intersects_ && search_ == Search::nearest && ids_of(triangles_) < ids_of(triangles)) return;
     if (triangles_intersect(a, b)) {
       intersects_ = true;
@@ -238,13 +288,36 @@ void NearestPairSearch::decide_elements(TrianglePair triangles, const TrianglePo
     const std::size_t k = (i + 1) % 3;
     return PairElement(std::array{vertices[i], vertices[k]}, {corners[i], corners[k]}, 0);
   };
-  const PairElement face_a(vertices_a, a, a_->triangle_ids[triangles.a]),
-      face_b(vertices_b, b, b_->triangle_ids[triangles.b]);
+  const auto face = [](const QueriedObject& object, std::uint32_t triangle, const TrianglePoints& corners) {
+    return PairElement(object.triangles[triangle], corners, object.triangle_ids[triangle]);
+  };
+  // Most pairs of elements are farther apart than the limit along the direction between the nearest ones.
+  std::array<double, 3> along_a{}, along_b{};
+  const Vec3d middle = best_ ? 0.5 * (best_->point_a + best_->point_b) : Vec3d{};
+  const Vec3d normal = best_ ? best_->normal : Vec3d{};
+  double size = 0;
   for (std::size_t i = 0; i < 3; ++i) {
-    consider(vertex(vertices_a, a, i), face_b, PairOrder::given, triangles);
-    consider(vertex(vertices_b, b, i), face_a, PairOrder::swapped, triangles);
-    for (std::size_t k = 0; k < 3; ++k)
-      consider(edge(vertices_a, a, i), edge(vertices_b, b, k), PairOrder::given, triangles);
+    along_a[i] = dot(a[i] - middle, normal);
+    along_b[i] = dot(b[i] - middle, normal);
+    size = std::max({size, largest_magnitude(a[i] - middle), largest_magnitude(b[i] - middle)});
+  }
+  const double slack = 0x1p-47 * size;
+  const auto are_apart = [&](double least_a, double most_b) { return least_a - most_b - slack > limit_; };
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::size_t next = (i + 1) % 3;
+    const std::array edge_a{a[i], a[next]};
+    if (!are_apart(along_a[i], std::max({along_b[0], along_b[1], along_b[2]})) &&
+        !boxes_apart(std::span(&a[i], 1), b, limit_))
+      consider(vertex(vertices_a, a, i), face(*b_, triangles.b, b), PairOrder::given, triangles);
+    if (!are_apart(std::min({along_a[0], along_a[1], along_a[2]}), along_b[i]) &&
+        !boxes_apart(std::span(&b[i], 1), a, limit_))
+      consider(vertex(vertices_b, b, i), face(*a_, triangles.a, a), PairOrder::swapped, triangles);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::size_t after = (k + 1) % 3;
+      if (!are_apart(std::min(along_a[i], along_a[next]), std::max(along_b[k], along_b[after])) &&
+          !boxes_apart(edge_a, std::array{b[k], b[after]}, limit_))
+        consider(edge(vertices_a, a, i), edge(vertices_b, b, k), PairOrder::given, triangles);
+    }
   }
 }
 

@@ -35,12 +35,19 @@ class NearestPairSearch {
     std::uint32_t node_a = 0, node_b = 0;
     int child_a = 0, child_b = 0;
   };
+  struct Projections {
+    std::array<double, leaf_block> least;
+  };
   enum class Search : std::uint8_t { any_contact, nearest };
 
   void start(const QueriedObject& a, const QueriedObject& b, Search search, double max_distance);
   void descend();
   void expand(std::uint32_t node_a, int first_a, int end_a, std::uint32_t node_b, int first_b, int end_b);
   void test_leaves(const Entry& leaves);
+  void test_blocks(const LeafBoxes& boxes_a, std::uint64_t near_a, std::uint32_t begin_a,
+                   const LeafBoxes& boxes_b, std::uint64_t near_b, std::uint32_t begin_b);
+  Projections project(const QueriedObject& object, std::uint32_t begin, std::uint64_t triangles,
+                      double sign) const;
   void decide(TrianglePair triangles);
   void decide_elements(TrianglePair triangles, const TrianglePoints& a, const TrianglePoints& b);
   void consider(const PairElement& first, const PairElement& second, PairOrder order, TrianglePair triangles);

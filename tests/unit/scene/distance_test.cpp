@@ -21,7 +21,8 @@
 namespace supple {
 namespace {
 
-/// Triangles with a vertex that is not finite are no part of a surface; their vertices are elements only of other triangles.
+/// Triangles with a vertex that is not finite are no part of a surface; their vertices are elements only of
+/// other triangles.
 PlainMovingObject plain_object(const Scene& scene, ObjectId id, const TriangleMesh& mesh) {
   PlainMovingObject plain{{}, {}, mesh.triangles};
   for (std::uint32_t v = 0; v < mesh.positions.size(); ++v) plain.end.push_back(scene.position(id, v));
