@@ -56,9 +56,12 @@ int main() {
   const std::uint64_t contacts = supple::hash_of_all_families(1);
   const std::uint64_t continuous = supple::continuous_hash_of_all_families(1);
   const std::uint64_t proximity = supple::proximity_hash_of_all_families(1);
+  const std::uint64_t queries = supple::query_hash_of_all_families(1);
+  const std::uint64_t penetrations = supple::penetration_hash_of_boxes(1);
   const bool equal = contacts == supple::golden_hash && continuous == supple::golden_continuous_hash &&
-                     proximity == supple::golden_proximity_hash;
-  std::printf("%s: %" PRIu64 " %" PRIu64 " %" PRIu64 " %s\n", name, contacts, continuous, proximity,
-              equal ? "as everywhere" : "DIFFERENT");
+                     proximity == supple::golden_proximity_hash && queries == supple::golden_query_hash &&
+                     penetrations == supple::golden_penetration_hash;
+  std::printf("%s: %" PRIu64 " %" PRIu64 " %" PRIu64 " %" PRIu64 " %" PRIu64 " %s\n", name, contacts,
+              continuous, proximity, queries, penetrations, equal ? "as everywhere" : "DIFFERENT");
   return equal ? 0 : 1;
 }

@@ -1,12 +1,17 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
+#include <optional>
 #include <vector>
 
 #include "support/hard_scenes.hpp"
+#include "support/random.hpp"
 #include "support/scenes.hpp"
 
 namespace supple {
@@ -18,6 +23,8 @@ constexpr std::uint64_t golden_hash = 5724621896693359205u;
 constexpr std::uint64_t golden_continuous_hash = 18216801788449742353u;
 constexpr std::uint64_t golden_normal_hash = 14020266159755522772u;
 constexpr std::uint64_t golden_proximity_hash = 649647511004271498u;
+constexpr std::uint64_t golden_query_hash = 8850470696668589257u;
+constexpr std::uint64_t golden_penetration_hash = 3070345004726795168u;
 
 inline Scene scene_of(const std::vector<TriangleMesh>& meshes, const SceneOptions& options) {
   Scene scene(options);
@@ -104,8 +111,90 @@ inline std::uint64_t proximity_hash_of_all_families(std::uint32_t threads) {
       Scene scene = near_scene_of(
           family.make(3),
           {.contacts = ContactKinds::proximity, .proximity_listing = listing, .threads = threads});
-      hash = hash_of_proximity(scene.detect(), hash);
+      hash = hash_of_proximity(scene.detect().proximity_pairs, hash);
     }
+  }
+  return hash;
+}
+
+/// Closest points and first triangles on rays around the objects, and the distances of all pairs of objects.
+inline std::uint64_t query_hash_of_all_families(std::uint32_t threads) {
+  std::uint64_t hash = 0xcbf29ce484222325u;
+  const auto add = [&](std::uint64_t value) {
+    hash = (hash ^ value) * 0x100000001b3u;
+    hash ^= hash >> 32;
+  };
+  const auto add_numbers = [&](const auto& numbers) {
+    for (const double number : numbers) add(std::bit_cast<std::uint64_t>(number));
+  };
+  for (const Family& family : hard_families()) {
+    const std::vector<TriangleMesh> meshes = family.make(3);
+    Scene scene = scene_of(meshes, {.threads = threads});
+    RandomNumbers random(9);
+    const double size = size_of(meshes);
+    std::vector<Vec3d> points;
+    std::vector<Ray> rays;
+    for (int i = 0; i < 60; ++i) {
+      points.push_back(meshes.front().positions.front() + random.vector(size));
+      rays.push_back({points.back(), random.vector(size)});
+    }
+    std::vector<std::optional<ClosestPoint>> closest(points.size());
+    scene.closest(points, closest);
+    for (const auto& found : closest) {
+      add(found ? found->object.index : ~std::uint64_t{0});
+      if (!found) continue;
+      add(found->triangle);
+      add_numbers(found->barycentric);
+      for (const Vec3d& v : {found->point, found->normal}) add_numbers(std::array{v.x, v.y, v.z});
+    }
+    std::vector<std::optional<RayHit>> hits(rays.size());
+    scene.cast(rays, hits, {.count_hits = true});
+    for (const auto& hit : hits) {
+      add(hit ? hit->object.index : ~std::uint64_t{0});
+      if (!hit) continue;
+      add(hit->triangle);
+      add(hit->hits);
+      add_numbers(std::array{hit->t});
+      add_numbers(hit->barycentric);
+    }
+    hash = hash_of_proximity(scene.distances(std::numeric_limits<double>::infinity()), hash);
+  }
+  return hash;
+}
+
+/// Boxes with corners at random places, some of which are on a lattice.
+inline std::uint64_t penetration_hash_of_boxes(std::uint32_t threads) {
+  std::uint64_t hash = 0xcbf29ce484222325u;
+  for (std::uint64_t seed = 0; seed < 30; ++seed) {
+    RandomNumbers random(seed);
+    Scene scene({.contacts = ContactKinds::penetration, .threads = threads});
+    for (int i = 0; i < 4; ++i) {
+      TriangleMesh box{"box",
+                       {},
+                       {{0, 1, 3},
+                        {0, 3, 2},
+                        {4, 6, 7},
+                        {4, 7, 5},
+                        {0, 4, 5},
+                        {0, 5, 1},
+                        {2, 3, 7},
+                        {2, 7, 6},
+                        {0, 2, 6},
+                        {0, 6, 4},
+                        {1, 5, 7},
+                        {1, 7, 3}}};
+      const Vec3d offset = random.vector(1);
+      const bool is_on_lattice = i % 2 == 0;
+      for (std::uint32_t corner = 0; corner < 8; ++corner) {
+        const Vec3d at{static_cast<double>(corner >> 2), static_cast<double>(corner >> 1 & 1),
+                       static_cast<double>(corner & 1)};
+        const auto step = [&] { return 0.5 * random.between(-1, 1); };
+        const double x = step(), y = step();
+        box.positions.push_back(is_on_lattice ? at + Vec3d{x, y, step()} : at + offset + random.vector(0.2));
+      }
+      scene.add(box, {.self_collision = true, .solid = true, .octree = {.leaf_size = 3}});
+    }
+    hash = hash_of_penetrations(scene.detect(), hash);
   }
   return hash;
 }

@@ -78,7 +78,7 @@ inline std::uint64_t hash_of_normals(const DetectResult& result, std::uint64_t h
   return hash;
 }
 
-inline std::uint64_t hash_of_proximity(const DetectResult& result, std::uint64_t hash) {
+inline std::uint64_t hash_of_proximity(std::span<const ProximityPair> pairs, std::uint64_t hash) {
   const auto add = [&](std::uint64_t value) {
     hash = (hash ^ value) * 0x100000001b3u;
     hash ^= hash >> 32;  // otherwise the signs of two numbers can cancel out
@@ -86,7 +86,7 @@ inline std::uint64_t hash_of_proximity(const DetectResult& result, std::uint64_t
   const auto add_numbers = [&](const std::array<double, 3>& numbers) {
     for (const double number : numbers) add(std::bit_cast<std::uint64_t>(number));
   };
-  for (const ProximityPair& pair : result.proximity_pairs) {
+  for (const ProximityPair& pair : pairs) {
     for (const ObjectId object : {pair.object_a, pair.object_b}) add(object.index);
     for (const FeatureKind kind : {pair.kind_a, pair.kind_b}) add(static_cast<std::uint64_t>(kind));
     for (const auto& element : {pair.element_a, pair.element_b}) {

@@ -250,11 +250,10 @@ bool PenetrationPass::find_depths(const StopSignal& stop, const Parallel& parall
       const PenetratedObject& outer = objects_[penetration.object_b.index];
       if (i == begin || penetration.object_b != last_outer) queries.start();
       last_outer = penetration.object_b;
+      // There is one, because the vertex is inside.
       const ClosestPoint closest =
-          queries
-              .closest(std::span(&outer.queried, 1), inner.surface.position(penetration.vertex),
-                       std::numeric_limits<double>::infinity())
-              .value();
+          *queries.closest(std::span(&outer.queried, 1), inner.surface.position(penetration.vertex),
+                           std::numeric_limits<double>::infinity());
       penetration.triangle = closest.triangle;
       penetration.feature = closest.feature;
       penetration.depth = closest.distance;

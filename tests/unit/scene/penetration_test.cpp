@@ -370,6 +370,11 @@ TriangleMesh small_solid(RandomNumbers& random, int extent, double scale) {
   return mesh;
 }
 
+TriangleMesh around_lattice(int extent, double scale) {
+  const double size = extent + 2, middle = 0.5 * extent;
+  return moved_mesh(make_box({size, size, size}), Vec3d{middle, middle, middle} * scale, scale);
+}
+
 class HardSolids : public testing::TestWithParam<double> {};
 
 TEST_P(HardSolids, AgreeWithBruteForceAndWithQueries) {
@@ -390,6 +395,7 @@ TEST_P(HardSolids, AgreeWithBruteForceAndWithQueries) {
     for (int i = 0; i < 3; ++i) {
       meshes.push_back(lattice_solid(random, extent, GetParam()));
       if (i == 2 && seed % 2 == 0) meshes.back() = small_solid(random, extent, GetParam());
+      if (i == 1 && seed % 4 == 0) meshes.back() = around_lattice(extent, GetParam());
       scene.add(meshes.back(), {.solid = true, .octree = {.leaf_size = 1 + random.below(8)}});
     }
     const DetectResult& result = scene.detect();

@@ -98,6 +98,8 @@ TEST(SceneGoldenHash, IsTheSameForAnyNumberOfThreads) {
     EXPECT_EQ(continuous_hash_of_all_families(threads), golden_continuous_hash) << threads;
     EXPECT_EQ(normal_hash_of_all_families(threads), golden_normal_hash) << threads;
     EXPECT_EQ(proximity_hash_of_all_families(threads), golden_proximity_hash) << threads;
+    EXPECT_EQ(query_hash_of_all_families(threads), golden_query_hash) << threads;
+    EXPECT_EQ(penetration_hash_of_boxes(threads), golden_penetration_hash) << threads;
   }
 }
 
@@ -108,6 +110,8 @@ TEST(SceneGoldenHash, IsTheSameForEveryInstructionSet) {
     EXPECT_EQ(continuous_hash_of_all_families(1), golden_continuous_hash) << target;
     EXPECT_EQ(normal_hash_of_all_families(1), golden_normal_hash) << target;
     EXPECT_EQ(proximity_hash_of_all_families(1), golden_proximity_hash) << target;
+    EXPECT_EQ(query_hash_of_all_families(1), golden_query_hash) << target;
+    EXPECT_EQ(penetration_hash_of_boxes(1), golden_penetration_hash) << target;
     ++targets;
   });
   EXPECT_GE(targets, 1);
