@@ -23,7 +23,7 @@ constexpr std::uint64_t golden_hash = 5724621896693359205u;
 constexpr std::uint64_t golden_continuous_hash = 18216801788449742353u;
 constexpr std::uint64_t golden_normal_hash = 14020266159755522772u;
 constexpr std::uint64_t golden_proximity_hash = 649647511004271498u;
-constexpr std::uint64_t golden_query_hash = 8850470696668589257u;
+constexpr std::uint64_t golden_query_hash = 16834821160368692095u;
 constexpr std::uint64_t golden_penetration_hash = 3070345004726795168u;
 
 inline Scene scene_of(const std::vector<TriangleMesh>& meshes, const SceneOptions& options) {

@@ -47,19 +47,26 @@ ElementPoints points_of(const PairElement& a, const PairElement& b) {
   return elements;
 }
 
-/// The barycentric coordinates of a point near a feature of a triangle, by the vertices of the feature: those
-/// of an edge by ascending ids.
+/// The barycentric coordinates of a point on a feature of a triangle, by the vertices of the feature: those
+/// of an edge by ascending ids. Rounded.
 std::array<double, 3> weights_at(const Vec3d& point, const Feature& feature, const TrianglePoints& corners,
                                  const Triangle& vertices) {
-  ElementPoints elements{{point, corners[0], corners[1], corners[2]}, 1, 3};
-  if (feature.kind != FeatureKind::face) {
-    elements.count_b = feature.kind == FeatureKind::vertex ? 1 : 2;
-    elements.points[1] = corners[feature.index];
-    elements.points[2] = corners[(feature.index + 1u) % 3];
-    if (feature.kind == FeatureKind::edge && vertices[(feature.index + 1u) % 3] < vertices[feature.index])
-      std::swap(elements.points[1], elements.points[2]);
+  if (feature.kind == FeatureKind::vertex) return {1, 0, 0};
+  const std::size_t first = feature.index, next = (first + 1) % 3;
+  const Vec3d to_point = point - corners[first], along = corners[next] - corners[first];
+  const double size = std::max(largest_magnitude(along), largest_magnitude(corners[2] - corners[first]));
+  const auto scaled = [&](const Vec3d& v) { return Vec3d{v.x / size, v.y / size, v.z / size}; };
+  const Vec3d w = scaled(to_point), u = scaled(along);
+  if (feature.kind == FeatureKind::edge) {
+    const double part = std::clamp(dot(w, u) / dot(u, u), 0.0, 1.0);
+    const bool is_reversed = vertices[next] < vertices[first];
+    return is_reversed ? std::array{part, 1 - part, 0.0} : std::array{1 - part, part, 0.0};
   }
-  bool used_exact = false;
+  const Vec3d v = scaled(corners[2] - corners[0]), n = cross(u, v);
+  const double whole = dot(n, n), s = dot(cross(w, v), n) / whole, t = dot(cross(u, w), n) / whole;
+  if (std::isfinite(s) && std::isfinite(t)) return {1 - s - t, s, t};
+  bool used_exact = false;  // almost without area
+  const ElementPoints elements{{point, corners[0], corners[1], corners[2]}, 1, 3};
   return distance_within(elements, any_distance, used_exact, DistanceAccuracy::rough)->barycentric_b;
 }
 
@@ -335,7 +342,7 @@ void NearestPairSearch::consider(const PairElement& first, const PairElement& se
   best_ = pair;
   best_elements_ = elements;
   triangles_ = triangles;
-  set_limit(std::min(limit_, pair->distance * (1 + 0x1p-49) + 0x1p-1060));
+  set_limit(std::min(limit_, pair->distance * (1 + 0x1p-36) + 0x1p-1060));
 }
 
 /// The first point of the first contact.

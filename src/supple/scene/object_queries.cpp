@@ -196,7 +196,7 @@ class NearestTriangle {
     triangle_ = t;
     id_ = id;
     feature_ = feature;
-    set_limit(std::min(max_distance_, found->distance * (1 + 0x1p-49) + 0x1p-1060));
+    set_limit(std::min(max_distance_, found->distance * (1 + 0x1p-36) + 0x1p-1060));
   }
 
   void set_limit(double limit) {

@@ -159,46 +159,46 @@ bool Scene::Implementation::any_contact(ObjectId a, ObjectId b) {
   return pair_searches_.front().any_contact(queried_object(pair.a.index), queried_object(pair.b.index));
 }
 
+/// Lists the pairs of objects whose boxes are within the distance, in canonical order.
+void Scene::Implementation::list_near_objects(double max_distance) {
+  near_objects_.clear();
+  by_box_.clear();
+  for (std::uint32_t index = 0; index < slots_.size(); ++index) {
+    if (slots_[index].object != nullptr && !slots_[index].object->box().empty()) by_box_.push_back(index);
+  }
+  const auto box_of = [&](std::uint32_t index) -> const Aabb& { return slots_[index].object->box(); };
+  std::sort(by_box_.begin(), by_box_.end(), [&](std::uint32_t p, std::uint32_t q) {
+    return std::pair(box_of(p).min.x, p) < std::pair(box_of(q).min.x, q);
+  });
+  for (std::size_t i = 0; i < by_box_.size(); ++i) {
+    const double last = double{box_of(by_box_[i]).max.x} + max_distance,
+                 end = last + 0x1p-50 * std::fabs(last);
+    for (std::size_t k = i + 1; k < by_box_.size() && !(box_of(by_box_[k]).min.x > end); ++k) {
+      const auto [a, b] = std::minmax(by_box_[i], by_box_[k]);
+      if (may_be_within(box_of(a), box_of(b), max_distance) && may_pair({a, b}))
+        near_objects_.push_back({{id_of(a), id_of(b)}, {}, {}});
+    }
+  }
+  std::sort(near_objects_.begin(), near_objects_.end(),
+            [](const NearObjects& p, const NearObjects& q) { return p.pair < q.pair; });
+}
+
 std::span<const ProximityPair> Scene::Implementation::distances(double max_distance) {
   check_distance(max_distance, "distances");
   refit_for_queries();
-  struct Candidate {
-    ObjectPair pair;
-    std::optional<ProximityPair> found;
-    TrianglePair triangles;
-  };
-  // Objects by the lower end of their boxes: those after `b.min.x - max_distance` are too far away.
-  std::vector<std::uint32_t> order;
-  for (std::uint32_t index = 0; index < slots_.size(); ++index) {
-    if (slots_[index].object != nullptr && !slots_[index].object->box().empty()) order.push_back(index);
-  }
-  const auto box_of = [&](std::uint32_t index) -> const Aabb& { return slots_[index].object->box(); };
-  std::sort(order.begin(), order.end(), [&](std::uint32_t p, std::uint32_t q) {
-    return std::pair(box_of(p).min.x, p) < std::pair(box_of(q).min.x, q);
-  });
-  std::vector<Candidate> candidates;
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    const double last = double{box_of(order[i]).max.x} + max_distance, end = last + 0x1p-50 * std::fabs(last);
-    for (std::size_t k = i + 1; k < order.size() && !(box_of(order[k]).min.x > end); ++k) {
-      const auto [a, b] = std::minmax(order[i], order[k]);
-      if (may_be_within(box_of(a), box_of(b), max_distance) && may_pair({a, b}))
-        candidates.push_back({{id_of(a), id_of(b)}, {}, {}});
-    }
-  }
-  std::sort(candidates.begin(), candidates.end(),
-            [](const Candidate& p, const Candidate& q) { return p.pair < q.pair; });
+  list_near_objects(max_distance);
   pair_searches_.resize(parallel.worker_count());
-  parallel.for_ranges(candidates.size(), 1, [&](std::size_t begin, std::size_t end, std::uint32_t worker) {
+  parallel.for_ranges(near_objects_.size(), 1, [&](std::size_t begin, std::size_t end, std::uint32_t worker) {
     for (std::size_t i = begin; i < end; ++i) {
-      Candidate& candidate = candidates[i];
-      candidate.found = nearest_of(candidate.pair, max_distance, pair_searches_[worker], candidate.triangles);
+      NearObjects& near = near_objects_[i];
+      near.found = nearest_of(near.pair, max_distance, pair_searches_[worker], near.triangles);
     }
   });
   distances_.clear();
-  for (const Candidate& candidate : candidates) {
-    if (!candidate.found) continue;
-    distances_.push_back(*candidate.found);
-    nearest_triangles_[candidate.pair] = candidate.triangles;
+  for (const NearObjects& near : near_objects_) {
+    if (!near.found) continue;
+    distances_.push_back(*near.found);
+    nearest_triangles_[near.pair] = near.triangles;
   }
   return distances_;
 }

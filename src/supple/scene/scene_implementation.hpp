@@ -103,6 +103,14 @@ class Scene::Implementation {
     std::uint32_t generation = 0;
   };
 
+  /// Two objects that may be near, their nearest features, and triangles that have these, by the user's
+  /// numbers.
+  struct NearObjects {
+    ObjectPair pair;
+    std::optional<ProximityPair> found;
+    TrianglePair triangles;
+  };
+
   /// The pairs of objects whose volumes overlap, and all jobs: these pairs and the objects with
   /// self-collision, in canonical order.
   struct Jobs {
@@ -115,6 +123,7 @@ class Scene::Implementation {
   void for_each_object(std::span<const std::uint32_t> indices, const Work& work, const Function& function);
   /// Refits the objects that have moved, without changing the result of `detect`.
   void refit_for_queries();
+  void list_near_objects(double max_distance);
   /// Both objects, the smaller one first.
   ObjectPair two_objects(ObjectId a, ObjectId b, const char* call) const;
   std::optional<ProximityPair> nearest_of(const ObjectPair& pair, double max_distance,
@@ -188,6 +197,8 @@ class Scene::Implementation {
   std::vector<NearestPairSearch> pair_searches_;  // by worker
   /// Triangles with the nearest features of pairs of objects, the user's numbers.
   std::map<ObjectPair, TrianglePair> nearest_triangles_;
+  std::vector<NearObjects> near_objects_;
+  std::vector<std::uint32_t> by_box_;
   std::vector<ProximityPair> distances_;
   std::vector<NonFiniteVertex> non_finite_;
   PairCache volume_pairs_, narrow_phase_pairs_, contact_pairs_, near_object_pairs_;
