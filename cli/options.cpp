@@ -171,8 +171,8 @@ at the start of the step, and then at its end. A row has numerator,denominator o
 numbers of any size. It may also have the answer, 0 or 1, the same in all eight rows. Each coordinate must
 be representable as a double.)";
 
-/// Adds the options of the octree of each object, and `--self`, `--margin` and `--solid` when objects are
-/// tested.
+/// Adds the options of the octree of each object, and `--self`, `--weld`, `--margin` and `--solid` when
+/// objects are tested.
 void add_object_options(CLI::App& app, viewer::Overrides<ObjectOptions>& objects, bool are_tested) {
   objects.for_each_setter([&]<class Struct, class Value>(const Field<Struct, Value>& field,
                                                          const Value& default_value, auto set) {
@@ -180,7 +180,7 @@ void add_object_options(CLI::App& app, viewer::Overrides<ObjectOptions>& objects
       add_field(app, field, default_value, set)->group(are_tested ? "Method" : "Options");
     } else if constexpr (std::is_same_v<Value, bool> || std::is_same_v<Value, double>) {
       const std::string_view key(field.key);
-      if (are_tested && (key == "self" || key == "margin" || key == "solid"))
+      if (are_tested && (key == "self" || key == "weld" || key == "margin" || key == "solid"))
         add_field(app, field, default_value, set)->group("Detection");
     }
   });

@@ -151,6 +151,11 @@ struct Description<ObjectOptions> {
                                  .member = &Options::self_collision,
                                  .doc = "Also test the object against itself",
                                  .key = "self"});
+    visitor(Field<Options, bool>{.name = "weld",
+                                 .member = &Options::weld,
+                                 .doc = "Vertices with equal positions count as one, so that a seam that was "
+                                        "split for texture coordinates "
+                                        "is no border"});
     visitor(Field<Options, bool>{
         .name = "is_static",
         .member = &Options::is_static,

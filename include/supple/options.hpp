@@ -87,6 +87,10 @@ struct ObjectOptions {
   std::string name{};
   /// Also test the object against itself. Triangles that share a vertex id are never a contact.
   bool self_collision = false;
+  /// Vertices with equal positions when the object is added count as one: the first of them stands for all,
+  /// in triangles and in results, and the positions of the others are not read. So a seam that was split for
+  /// texture coordinates is no border, and its two sides are neighbours, not contacts. O(n).
+  bool weld = false;
   /// The object never moves: it is not tested against other static objects, and moving it is an error.
   bool is_static = false;
   /// Proximity: two objects, or one with itself, are near where their elements come within the sum of their

@@ -24,6 +24,9 @@ struct ClosestOptions {
   QueryFilter filter{};
   /// Points without a triangle within this distance, closed, have no result; ≥ 0.
   double max_distance = std::numeric_limits<double>::infinity();
+  /// The distance is negative where the point is inside the object of the nearest triangle. The surfaces must
+  /// be closed, as for `Scene::inside`.
+  bool signed_distance = false;
 };
 
 /// The nearest triangle of a point. Exact arithmetic decides which one it is; of several at the same distance
@@ -32,7 +35,7 @@ struct ClosestPoint {
   ObjectId object;
   std::uint32_t triangle = 0;  ///< the user's number
   Feature feature;             ///< the smallest part of the triangle that holds the closest point; exact
-  double distance = 0;         ///< within 4 units in the last place
+  double distance = 0;         ///< within 4 units in the last place; negative for a signed distance inside
   /// The closest point by the triangle's corners, each coordinate within 2^-50.
   std::array<double, 3> barycentric{};
   Vec3d point;  ///< rounded
@@ -66,6 +69,26 @@ struct RayHit {
   std::uint64_t hits = 1;               ///< triangles on the whole ray; 1 without `CastOptions::count_hits`
 
   constexpr bool operator==(const RayHit&) const = default;
+};
+
+/// The points p with min ≤ p ≤ max on each axis.
+struct QueryBox {
+  Vec3d min, max;
+};
+
+/// The points within `radius` of the center, closed.
+struct QuerySphere {
+  Vec3d center;
+  double radius = 0;
+};
+
+/// A triangle that shares a point with a box or a sphere. Exact.
+struct Overlap {
+  std::uint32_t query = 0;  ///< the place of the box or sphere in the list of queries
+  ObjectId object;
+  std::uint32_t triangle = 0;  ///< the user's number
+
+  constexpr auto operator<=>(const Overlap&) const = default;
 };
 
 /// Where a point is with respect to closed surfaces.

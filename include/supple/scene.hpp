@@ -137,14 +137,20 @@ class Scene {
   // the numbers of queries and results differ, and when the filter names an object that is not in the scene.
 
   /// For each point the nearest triangle, or nothing when there is none within the largest distance and when
-  /// the point is not finite. Takes about 10 µs for a point near a surface of 70,000 triangles, and 30 µs for
-  /// one far away. Throws `Error` when the largest distance is negative or NaN.
+  /// the point is not finite. Takes about 2 µs for a point near a surface of 70,000 triangles, and 5 µs for
+  /// one far away. Throws `Error` when the largest distance is negative or NaN, and for a signed distance
+  /// when a surface is open.
   void closest(std::span<const Vec3d> points, std::span<std::optional<ClosestPoint>> results,
                const ClosestOptions& options = {});
   /// For each ray the first triangle on it, or nothing when there is none, when a number of the ray is not
   /// finite, and when its direction is zero. Watertight: a ray through an edge hits a triangle of the edge.
   void cast(std::span<const Ray> rays, std::span<std::optional<RayHit>> results,
             const CastOptions& options = {});
+  /// All triangles that overlap each box or sphere, ordered by query, object and triangle. A box or sphere
+  /// with a number that is not finite, a box with min > max, and a sphere with a negative radius overlap
+  /// nothing. Valid until the next call of a function of the scene that is not const.
+  std::span<const Overlap> overlaps(std::span<const QueryBox> boxes, const QueryFilter& filter = {});
+  std::span<const Overlap> overlaps(std::span<const QuerySphere> spheres, const QueryFilter& filter = {});
   /// For each point whether it is inside an object of the filter: outside of all, else on a triangle of one,
   /// or inside at least one. Exact. A point inside a part of a surface that crosses itself is inside where a
   /// ray from it crosses the surface an odd number of times. Points that are not finite are outside, and so

@@ -119,9 +119,9 @@ class Options(ProgramTest):
         self.assert_one_line_error(self.run_here("detect", "run.h5", "--no-contact-points"), "--contacts intersection")
 
     def test_from_a_scene_file_through_a_recording(self):
-        keys = 'self = true\nstatic = true\nmargin = 0.25\nsolid = true\ngroup = 6\nmask = 5\nmax_level = 3\nleaf_size = 5\ntree_arity = 4\nobject_octree = "regular"\nrebuild_degraded = false\n'
+        keys = 'self = true\nweld = true\nstatic = true\nmargin = 0.25\nsolid = true\ngroup = 6\nmask = 5\nmax_level = 3\nleaf_size = 5\ntree_arity = 4\nobject_octree = "regular"\nrebuild_degraded = false\n'
         self.write("scene.toml", SCENE + keys)
-        expected = {"self": True, "static": True, "margin": 0.25, "solid": True, "group": 6, "mask": 5, "max_level": 3, "leaf_size": 5, "tree_arity": 4,
+        expected = {"self": True, "weld": True, "static": True, "margin": 0.25, "solid": True, "group": 6, "mask": 5, "max_level": 3, "leaf_size": 5, "tree_arity": 4,
                     "object_octree": "regular", "rebuild_degraded": False}
         self.assertEqual(set(expected), set(self.detect("scene.toml")["objects"][1]["options"]))
         done = self.run_here("simulate", "scene.toml", "--frames", "2", "--quiet", "--record", "run.h5")

@@ -233,6 +233,43 @@ bool crosses_above(const TrianglePoints& corners, const Vec3d& point, bool& used
   return orient3d(corners[0], corners[1], corners[2], point, used_exact) * turn < 0;
 }
 
+/// A box, exactly: its points, and the twelve triangles of its faces.
+class BoxFaces {
+ public:
+  explicit BoxFaces(const QueryBox& box) : box_(box) {
+    std::array<Vec3d, 8> corners;
+    for (std::uint32_t i = 0; i < 8; ++i)
+      corners[i] = {(i & 1) != 0 ? box.max.x : box.min.x, (i & 2) != 0 ? box.max.y : box.min.y,
+                    (i & 4) != 0 ? box.max.z : box.min.z};
+    constexpr std::uint8_t faces[6][4] = {{0, 2, 6, 4}, {1, 3, 7, 5}, {0, 1, 5, 4},
+                                          {2, 3, 7, 6}, {0, 1, 3, 2}, {4, 5, 7, 6}};
+    for (std::size_t f = 0; f < 6; ++f) {
+      const auto& [a, b, c, d] = faces[f];
+      triangles_[2 * f] = {corners[a], corners[b], corners[c]};
+      triangles_[2 * f + 1] = {corners[a], corners[c], corners[d]};
+    }
+  }
+
+  /// Whether the triangle shares a point with the box: a corner inside, or a point on a face.
+  bool meet(const TrianglePoints& triangle) const {
+    const CornerBox around(triangle);
+    for (int axis = 0; axis < 3; ++axis) {
+      if (around.min[axis] > box_.max[axis] || around.max[axis] < box_.min[axis]) return false;
+    }
+    const auto has = [&](const Vec3d& p) {
+      return box_.min.x <= p.x && p.x <= box_.max.x && box_.min.y <= p.y && p.y <= box_.max.y &&
+             box_.min.z <= p.z && p.z <= box_.max.z;
+    };
+    return std::any_of(triangle.begin(), triangle.end(), has) ||
+           std::any_of(triangles_.begin(), triangles_.end(),
+                       [&](const TrianglePoints& face) { return triangles_intersect(face, triangle); });
+  }
+
+ private:
+  QueryBox box_;
+  std::array<TrianglePoints, 12> triangles_;
+};
+
 }  // namespace
 
 TrianglePoints QueriedObject::corners(std::uint32_t triangle) const {
@@ -359,39 +396,83 @@ std::optional<RayHit> ObjectQueries::cast(std::span<const QueriedObject> objects
   return hit;
 }
 
+template <class Visit>
+void ObjectQueries::visit_overlapping(std::uint32_t index, const QueriedObject& object, const Aabb& box,
+                                      const Visit& visit) {
+  const auto chosen = [&](const LeafBoxes& boxes) { return overlapping_triangles(box, boxes); };
+  nodes_.clear();
+  if (!object.view.nodes.empty()) nodes_.push_back(0);
+  while (!nodes_.empty()) {
+    const std::uint32_t number = nodes_.back();
+    const OctreeNode& node = object.view.nodes[number];
+    nodes_.pop_back();
+    const std::uint32_t children = (1u << node.child_count) - 1;
+    for (std::uint32_t left = overlapping_children(box, object.view.boxes[number]) & children; left != 0;
+         left &= left - 1) {
+      const int child = std::countr_zero(left);
+      if (node.is_inner(child)) {
+        nodes_.push_back(node.child_node(child));
+      } else {
+        visit_leaf(index, object, node_width * number + static_cast<std::uint32_t>(child),
+                   node.first_triangle[child], node.first_triangle[child + 1], chosen, visit);
+      }
+    }
+  }
+}
+
 Containment ObjectQueries::inside(std::uint32_t index, const QueriedObject& object, const Vec3d& point) {
   bool is_on = false, is_inside = false, used_exact = false;
   const PointBounds seen = seen_by(object, point);
   Aabb column{seen.low, seen.high};
   column.max.z = std::numeric_limits<float>::infinity();
-  const auto in_column = [&](const LeafBoxes& boxes) { return overlapping_triangles(column, boxes); };
-  nodes_.assign(1, 0);
-  while (!nodes_.empty() && !is_on && !object.view.nodes.empty()) {
-    const std::uint32_t number = nodes_.back();
-    const OctreeNode& node = object.view.nodes[number];
-    nodes_.pop_back();
-    const std::uint32_t children = (1u << node.child_count) - 1;
-    for (std::uint32_t left = overlapping_children(column, object.view.boxes[number]) & children; left != 0;
-         left &= left - 1) {
-      const int child = std::countr_zero(left);
-      if (node.is_inner(child)) {
-        nodes_.push_back(node.child_node(child));
-        continue;
-      }
-      visit_leaf(index, object, node_width * number + static_cast<std::uint32_t>(child),
-                 node.first_triangle[child], node.first_triangle[child + 1], in_column, [&](std::uint32_t t) {
-                   if (is_on) return;
-                   const TrianglePoints corners = object.corners(t);
-                   const CornerBox box(corners);
-                   if (column_bound(point, box) > 0) return;
-                   if (box.min.z <= point.z)
-                     is_on = distance_within(point_and_triangle(point, corners), 0, used_exact).has_value();
-                   if (!is_on && crosses_above(corners, point, used_exact)) is_inside = !is_inside;
-                 });
-    }
-  }
+  visit_overlapping(index, object, column, [&](std::uint32_t t) {
+    if (is_on) return;
+    const TrianglePoints corners = object.corners(t);
+    const CornerBox box(corners);
+    if (column_bound(point, box) > 0) return;
+    if (box.min.z <= point.z)
+      is_on = distance_within(point_and_triangle(point, corners), 0, used_exact).has_value();
+    if (!is_on && crosses_above(corners, point, used_exact)) is_inside = !is_inside;
+  });
   if (is_on) return Containment::on;
   return is_inside && object.view.arrays.inert == nullptr ? Containment::inside : Containment::outside;
+}
+
+void ObjectQueries::overlaps(std::span<const QueriedObject> objects, const QueryBox& box, std::uint32_t query,
+                             std::vector<Overlap>& found) {
+  if (!is_finite(box.min) || !is_finite(box.max)) return;
+  if (box.min.x > box.max.x || box.min.y > box.max.y || box.min.z > box.max.z) return;
+  const BoxFaces faces(box);
+  for (std::uint32_t index = 0; index < objects.size(); ++index) {
+    const QueriedObject& object = objects[index];
+    const Aabb seen{seen_by(object, box.min).low, seen_by(object, box.max).high};
+    visit_overlapping(index, object, seen, [&](std::uint32_t t) {
+      if (faces.meet(object.corners(t))) found.push_back({query, object.id, object.triangle_ids[t]});
+    });
+  }
+}
+
+void ObjectQueries::overlaps(std::span<const QueriedObject> objects, const QuerySphere& sphere,
+                             std::uint32_t query, std::vector<Overlap>& found) {
+  if (!is_finite(sphere.center) || !std::isfinite(sphere.radius) || !(sphere.radius >= 0)) return;
+  const Vec3d reach{sphere.radius, sphere.radius, sphere.radius};
+  bool used_exact = false;
+  for (std::uint32_t index = 0; index < objects.size(); ++index) {
+    const QueriedObject& object = objects[index];
+    // The floats round by more than the sums in double.
+    Aabb seen{seen_by(object, sphere.center - reach).low, seen_by(object, sphere.center + reach).high};
+    for (int axis = 0; axis < 3; ++axis) {
+      seen.min[axis] =
+          round_down(double{seen.min[axis]} - 0x1p-50 * (std::fabs(sphere.center[axis]) + sphere.radius));
+      seen.max[axis] =
+          round_up(double{seen.max[axis]} + 0x1p-50 * (std::fabs(sphere.center[axis]) + sphere.radius));
+    }
+    visit_overlapping(index, object, seen, [&](std::uint32_t t) {
+      if (distance_within(point_and_triangle(sphere.center, object.corners(t)), sphere.radius, used_exact,
+                          DistanceAccuracy::rough))
+        found.push_back({query, object.id, object.triangle_ids[t]});
+    });
+  }
 }
 
 Containment ObjectQueries::inside(std::span<const QueriedObject> objects, const Vec3d& point) {

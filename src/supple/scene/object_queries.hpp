@@ -49,6 +49,15 @@ class ObjectQueries {
   /// Of the last result of `closest`, in octree order.
   std::uint32_t last_nearest_triangle() const { return last_nearest_->triangle; }
   std::optional<RayHit> cast(std::span<const QueriedObject> objects, const Ray& ray, bool count_hits);
+  /// Whether the point of the last `closest` is inside the object of its result.
+  bool is_inside_nearest(std::span<const QueriedObject> objects, const Vec3d& point) {
+    return inside(last_nearest_->object, objects[last_nearest_->object], point) == Containment::inside;
+  }
+  /// Appends the triangles that overlap the region.
+  void overlaps(std::span<const QueriedObject> objects, const QueryBox& box, std::uint32_t query,
+                std::vector<Overlap>& found);
+  void overlaps(std::span<const QueriedObject> objects, const QuerySphere& sphere, std::uint32_t query,
+                std::vector<Overlap>& found);
   /// `on` before `inside`, for each object; `inside` if the point is inside one of them, else `on` if it is
   /// on one of them. Objects with an inert triangle contain nothing.
   Containment inside(std::span<const QueriedObject> objects, const Vec3d& point);
@@ -57,6 +66,11 @@ class ObjectQueries {
   template <class Chosen, class Visit>
   void visit_leaf(std::uint32_t index, const QueriedObject& object, std::uint32_t leaf, std::uint32_t begin,
                   std::uint32_t end, const Chosen& chosen, const Visit& visit);
+  /// Calls `visit` with the triangles of an object whose boxes overlap the box, in octree order within
+  /// leaves.
+  template <class Visit>
+  void visit_overlapping(std::uint32_t index, const QueriedObject& object, const Aabb& box,
+                         const Visit& visit);
   Containment inside(std::uint32_t index, const QueriedObject& object, const Vec3d& point);
   /// The objects with a bound of at most `limit`, the smallest first.
   template <class BoundOf>

@@ -75,13 +75,30 @@ void check_counts(std::size_t queries, std::size_t results, const char* call) {
 
 }  // namespace
 
+void Scene::Implementation::check_closed(const QueryFilter& seen, const char* call) {
+  if (seen.object) object(*seen.object, call);
+  for (const Slot& slot : slots_) {
+    if (slot.object == nullptr || (slot.object->options.group & seen.mask) == 0) continue;
+    if (seen.object && slots_[seen.object->index].object != slot.object) continue;
+    const auto edge = slot.object->open_edge();
+    if (!edge) continue;
+    fail(std::string(call) + ": the surface of " + slot.object->options.name +
+         " is open: the edge of vertices " + std::to_string((*edge)[0]) + " and " +
+         std::to_string((*edge)[1]) +
+         " has an odd number of triangles; close the holes, or leave this object out");
+  }
+}
+
 void Scene::Implementation::closest(std::span<const Vec3d> points,
                                     std::span<std::optional<ClosestPoint>> results,
                                     const ClosestOptions& query) {
   check_counts(points.size(), results.size(), "closest");
   check_distance(query.max_distance, "closest");
+  if (query.signed_distance) check_closed(query.filter, "closest");
   answer_queries(query.filter, points.size(), "closest", [&](ObjectQueries& queries, std::size_t i) {
     results[i] = queries.closest(queried_objects_, points[i], query.max_distance);
+    if (query.signed_distance && results[i] && queries.is_inside_nearest(queried_objects_, points[i]))
+      results[i]->distance = -results[i]->distance;
   });
 }
 
@@ -96,20 +113,36 @@ void Scene::Implementation::cast(std::span<const Ray> rays, std::span<std::optio
 void Scene::Implementation::inside(std::span<const Vec3d> points, std::span<Containment> results,
                                    const QueryFilter& seen) {
   check_counts(points.size(), results.size(), "inside");
-  if (seen.object) object(*seen.object, "inside");
-  for (const Slot& slot : slots_) {
-    if (slot.object == nullptr || (slot.object->options.group & seen.mask) == 0) continue;
-    if (seen.object && slots_[seen.object->index].object != slot.object) continue;
-    const auto edge = slot.object->open_edge();
-    if (!edge) continue;
-    fail("inside: the surface of " + slot.object->options.name + " is open: the edge of vertices " +
-         std::to_string((*edge)[0]) + " and " + std::to_string((*edge)[1]) +
-         " has an odd number of triangles; close the holes, or leave this object out");
-  }
+  check_closed(seen, "inside");
   answer_queries(seen, points.size(), "inside", [&](ObjectQueries& queries, std::size_t i) {
     results[i] = queries.inside(queried_objects_, points[i]);
   });
 }
+
+template <class Region>
+std::span<const Overlap> Scene::Implementation::overlaps(std::span<const Region> regions,
+                                                         const QueryFilter& seen) {
+  constexpr std::size_t grain = 16;
+  list_queried_objects(seen, "overlaps");
+  queries_of_workers_.resize(parallel.worker_count());
+  overlaps_of_workers_.resize(parallel.worker_count());
+  for (std::vector<Overlap>& found : overlaps_of_workers_) found.clear();
+  parallel.for_ranges(regions.size(), grain, [&](std::size_t begin, std::size_t end, std::uint32_t worker) {
+    queries_of_workers_[worker].start();
+    for (std::size_t i = begin; i < end; ++i)
+      queries_of_workers_[worker].overlaps(queried_objects_, regions[i], static_cast<std::uint32_t>(i),
+                                           overlaps_of_workers_[worker]);
+  });
+  overlaps_.clear();
+  for (const std::vector<Overlap>& found : overlaps_of_workers_)
+    overlaps_.insert(overlaps_.end(), found.begin(), found.end());
+  std::sort(overlaps_.begin(), overlaps_.end());
+  return overlaps_;
+}
+template std::span<const Overlap> Scene::Implementation::overlaps(std::span<const QueryBox> regions,
+                                                                  const QueryFilter& seen);
+template std::span<const Overlap> Scene::Implementation::overlaps(std::span<const QuerySphere> regions,
+                                                                  const QueryFilter& seen);
 
 ObjectPair Scene::Implementation::two_objects(ObjectId a, ObjectId b, const char* call) const {
   object(a, call);

@@ -6,6 +6,7 @@
 
 #include "core/error.hpp"
 #include "mesh/vertex_triangles.hpp"
+#include "mesh/vertex_welder.hpp"
 #include "scene/scene_implementation.hpp"
 #include "supple/option_descriptions.hpp"
 
@@ -58,6 +59,20 @@ std::vector<Triangle> checked_triangles(const std::string& name, std::size_t ver
   return triangles;
 }
 
+/// Replaces each vertex by the first one with an equal position.
+void weld(const PositionsView& positions, std::vector<Triangle>& triangles) {
+  VertexWelder welder;
+  std::vector<std::uint32_t> first_vertices, same(positions.size());
+  for (std::uint32_t v = 0; v < same.size(); ++v) {
+    const std::uint32_t point = welder.id_of(positions[v]);
+    if (point == first_vertices.size()) first_vertices.push_back(v);
+    same[v] = first_vertices[point];
+  }
+  for (Triangle& triangle : triangles) {
+    for (std::uint32_t& vertex : triangle) vertex = same[vertex];
+  }
+}
+
 void check_count(const SceneObject& object, std::size_t count, const char* call) {
   const std::size_t vertices = object.octree().vertex_count();
   if (count == vertices) return;
@@ -97,7 +112,8 @@ ObjectId Scene::Implementation::add(const PositionsView& positions, const Triang
   if (named.octree.build == ObjectOctreeBuild::balanced && named.octree.arity != node_width)
     fail(named.name + ": a balanced octree has eight children; for an arity of " +
          std::to_string(named.octree.arity) + ", build it regular or bottom-up");
-  const std::vector<Triangle> checked = checked_triangles(named.name, positions.size(), triangles, parallel);
+  std::vector<Triangle> checked = checked_triangles(named.name, positions.size(), triangles, parallel);
+  if (named.weld) weld(positions, checked);
   if (named.solid) {
     if (const std::string fault = fault_of_solid(checked); !fault.empty())
       fail(named.name + " is no solid: " + fault);
@@ -305,6 +321,12 @@ void Scene::cast(std::span<const Ray> rays, std::span<std::optional<RayHit>> res
 }
 void Scene::inside(std::span<const Vec3d> points, std::span<Containment> results, const QueryFilter& filter) {
   implementation_->inside(points, results, filter);
+}
+std::span<const Overlap> Scene::overlaps(std::span<const QueryBox> boxes, const QueryFilter& filter) {
+  return implementation_->overlaps(boxes, filter);
+}
+std::span<const Overlap> Scene::overlaps(std::span<const QuerySphere> spheres, const QueryFilter& filter) {
+  return implementation_->overlaps(spheres, filter);
 }
 std::optional<ProximityPair> Scene::distance(ObjectId a, ObjectId b) {
   return implementation_->distance(a, b);

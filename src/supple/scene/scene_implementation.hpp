@@ -70,6 +70,9 @@ class Scene::Implementation {
                const ClosestOptions& query);
   void cast(std::span<const Ray> rays, std::span<std::optional<RayHit>> results, const CastOptions& query);
   void inside(std::span<const Vec3d> points, std::span<Containment> results, const QueryFilter& seen);
+  /// For boxes and spheres.
+  template <class Region>
+  std::span<const Overlap> overlaps(std::span<const Region> regions, const QueryFilter& seen);
   std::optional<ProximityPair> distance(ObjectId a, ObjectId b);
   std::span<const ProximityPair> distances(double max_distance);
   bool any_contact(ObjectId a, ObjectId b);
@@ -123,6 +126,8 @@ class Scene::Implementation {
   void for_each_object(std::span<const std::uint32_t> indices, const Work& work, const Function& function);
   /// Refits the objects that have moved, without changing the result of `detect`.
   void refit_for_queries();
+  /// Throws an error that names `call` when the surface of an object that the query sees is open.
+  void check_closed(const QueryFilter& seen, const char* call);
   void list_near_objects(double max_distance);
   /// Both objects, the smaller one first.
   ObjectPair two_objects(ObjectId a, ObjectId b, const char* call) const;
@@ -194,6 +199,8 @@ class Scene::Implementation {
   std::vector<QueriedObject> queried_objects_;
   std::vector<PenetratedObject> penetrated_objects_;
   std::vector<ObjectQueries> queries_of_workers_;
+  std::vector<std::vector<Overlap>> overlaps_of_workers_;
+  std::vector<Overlap> overlaps_;
   std::vector<NearestPairSearch> pair_searches_;  // by worker
   /// Triangles with the nearest features of pairs of objects, the user's numbers.
   std::map<ObjectPair, TrianglePair> nearest_triangles_;

@@ -25,8 +25,8 @@ inline auto members_of(SceneOctreeOptions& o) {
   return std::tie(a, b, c, d, e);
 }
 inline auto members_of(ObjectOptions& o) {
-  auto& [a, b, c, d, e, f, g, h] = o;
-  return std::tie(a, b, c, d, e, f, g, h);
+  auto& [a, b, c, d, e, f, g, h, i] = o;
+  return std::tie(a, b, c, d, e, f, g, h, i);
 }
 inline auto members_of(ComparisonOptions& o) {
   auto& [a, b] = o;

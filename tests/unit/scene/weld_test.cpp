@@ -1,0 +1,67 @@
+// Meshes whose seams have several vertices at each place.
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <vector>
+
+#include "supple/error.hpp"
+#include "supple/models.hpp"
+#include "supple/scene.hpp"
+
+namespace supple {
+namespace {
+
+/// Each triangle has its own vertices.
+TriangleMesh split(const TriangleMesh& mesh) {
+  TriangleMesh result{mesh.name, {}, {}};
+  for (const Triangle& triangle : mesh.triangles) {
+    const auto first = static_cast<std::uint32_t>(result.positions.size());
+    for (const std::uint32_t vertex : triangle) result.positions.push_back(mesh.positions[vertex]);
+    result.triangles.push_back({first, first + 1, first + 2});
+  }
+  return result;
+}
+
+TEST(Weld, MakesTheSidesOfASeamNeighbours) {
+  const TriangleMesh ball = make_icosphere(3), pieces = split(ball);
+  Scene scene({.contacts = ContactKinds::intersection | ContactKinds::proximity});
+  scene.add(pieces, {.self_collision = true, .margin = 1e-3});
+  EXPECT_GT(scene.detect().contacts.size(), pieces.triangles.size());
+  EXPECT_FALSE(scene.result().proximity_pairs.empty());
+  Scene welded({.contacts = ContactKinds::intersection | ContactKinds::proximity});
+  const ObjectId id = welded.add(pieces, {.self_collision = true, .weld = true, .margin = 1e-3});
+  EXPECT_TRUE(welded.detect().contacts.empty());
+  EXPECT_TRUE(welded.result().proximity_pairs.empty());
+  EXPECT_TRUE(welded.verify().agrees());
+  // The first vertex of each place stands for all.
+  welded.set_positions(id, pieces.positions);
+  EXPECT_TRUE(welded.detect().contacts.empty());
+}
+
+TEST(Weld, ClosesASolid) {
+  const TriangleMesh ball = make_icosphere(3), pieces = split(ball);
+  Scene scene({.contacts = ContactKinds::penetration});
+  EXPECT_THROW(scene.add(pieces, {.solid = true}), Error);
+  const ObjectId outer = scene.add(pieces, {.weld = true, .solid = true});
+  const ObjectId inner = scene.add(ball);
+  std::vector<Vec3d> positions = ball.positions;
+  for (Vec3d& p : positions) p = p * 0.5;
+  scene.set_positions(inner, positions);
+  EXPECT_EQ(scene.detect().penetrations.size(), ball.positions.size());
+  ASSERT_EQ(scene.result().contained_parts.size(), 1u);
+  EXPECT_EQ(scene.result().contained_parts[0].outer, outer);
+  // In welded triangles, the smallest of the equal vertices has the name.
+  EXPECT_EQ(scene.detect({.contacts = ContactKinds::none}).object_pairs.size(), 1u);
+}
+
+TEST(Weld, KeepsVerticesThatAreNotFiniteApart) {
+  TriangleMesh pieces = split(make_icosphere(1));
+  for (std::size_t v : {3u, 7u}) pieces.positions[v].x = std::numeric_limits<double>::quiet_NaN();
+  Scene scene;
+  scene.add(pieces, {.self_collision = true, .weld = true});
+  EXPECT_EQ(scene.detect().non_finite_vertices.size(), 2u);
+}
+
+}  // namespace
+}  // namespace supple
