@@ -38,15 +38,6 @@ bool boxes_apart(std::span<const Vec3d> a, std::span<const Vec3d> b, double dist
   return square > distance * distance * (1 + 0x1p-48) + 0x1p-1040;
 }
 
-ElementPoints points_of(const PairElement& a, const PairElement& b) {
-  ElementPoints elements;
-  elements.count_a = a.count;
-  elements.count_b = b.count;
-  std::copy_n(a.points.begin(), a.count, elements.points.begin());
-  std::copy_n(b.points.begin(), b.count, elements.points.begin() + a.count);
-  return elements;
-}
-
 /// The barycentric coordinates of a point on a feature of a triangle, by the vertices of the feature: those
 /// of an edge by ascending ids. Rounded.
 std::array<double, 3> weights_at(const Vec3d& point, const Feature& feature, const TrianglePoints& corners,

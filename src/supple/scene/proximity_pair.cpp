@@ -53,16 +53,6 @@ Side side_of_feature(const PairElement& element, const Feature& on,
   return side;
 }
 
-/// The points of both elements in the order of `ElementPoints`: element a has the fewer vertices.
-ElementPoints points_of(const PairElement& a, const PairElement& b) {
-  ElementPoints elements;
-  elements.count_a = a.count;
-  elements.count_b = b.count;
-  std::copy_n(a.points.begin(), a.count, elements.points.begin());
-  std::copy_n(b.points.begin(), b.count, elements.points.begin() + a.count);
-  return elements;
-}
-
 /// The element with the corners in the user's order.
 PairElement in_corner_order(const PairElement& element) {
   PairElement result = element;
@@ -101,6 +91,15 @@ void swap_sides(ProximityPair& pair) {
 }
 
 }  // namespace
+
+ElementPoints points_of(const PairElement& a, const PairElement& b) {
+  ElementPoints elements;
+  elements.count_a = a.count;
+  elements.count_b = b.count;
+  std::copy_n(a.points.begin(), a.count, elements.points.begin());
+  std::copy_n(b.points.begin(), b.count, elements.points.begin() + a.count);
+  return elements;
+}
 
 PairElement::PairElement(std::span<const std::uint32_t> vertex_ids, const std::array<Vec3d, 3>& positions,
                          std::uint32_t triangle_id)

@@ -33,6 +33,9 @@ struct PairElement {
   std::array<std::uint32_t, 2> edge_order() const { return {ids[1], ids[0]}; }
 };
 
+/// The points of both elements; the first one has no more vertices than the second.
+ElementPoints points_of(const PairElement& first, const PairElement& second);
+
 /// Which element of a pair belongs to object a: the first, the second, or, within one object, the smaller
 /// one.
 enum class PairOrder : std::uint8_t { given, swapped, by_names };

@@ -11,27 +11,14 @@
 #include <vector>
 
 #include "supple/scene.hpp"
-#include "support/shared_meshes.hpp"
-#include "support/truth_data.hpp"
+#include "support/proximity_truth.hpp"
 
 namespace supple {
 namespace {
 
 using nlohmann::json;
 
-struct PenetrationTruth : testing::Test {
-  void SetUp() override {
-    std::ifstream file(shared_meshes() / "proximity.json");
-    if (!file) GTEST_SKIP() << "no " << shared_meshes() << "; set SUPPLE_DATA to the folder of truth.json";
-    file >> truth;
-  }
-  static TriangleMesh mesh_of(const json& expected, const char* mesh, const char* placement) {
-    TriangleMesh loaded = load_shared_mesh(expected[mesh].get<std::string>());
-    transform(loaded, expected[placement].get<std::string>());
-    return loaded;
-  }
-  json truth;
-};
+using PenetrationTruth = ProximityTruthTest;
 
 TEST_F(PenetrationTruth, VerticesInsideAndTheirDepths) {
   for (const json& expected : truth["depth"]) {

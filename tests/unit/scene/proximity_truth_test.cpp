@@ -14,8 +14,7 @@
 #include <vector>
 
 #include "supple/scene.hpp"
-#include "support/shared_meshes.hpp"
-#include "support/truth_data.hpp"
+#include "support/proximity_truth.hpp"
 
 namespace supple {
 namespace {
@@ -25,14 +24,7 @@ using nlohmann::json;
 /// The pairs of one kind, such as "vf" or "VE", as numbers of proximity.json, with their distances.
 using NumberedPairs = std::map<std::string, std::map<std::pair<std::uint32_t, std::uint32_t>, double>>;
 
-struct ProximityTruth : testing::Test {
-  void SetUp() override {
-    std::ifstream file(shared_meshes() / "proximity.json");
-    if (!file) GTEST_SKIP() << "no " << shared_meshes() << "; set SUPPLE_DATA to the folder of truth.json";
-    file >> truth;
-  }
-  json truth;
-};
+using ProximityTruth = ProximityTruthTest;
 
 /// One case of the section "proximity": one mesh with itself, or two placed meshes.
 class Case {

@@ -11,25 +11,14 @@
 #include <vector>
 
 #include "supple/scene.hpp"
-#include "support/shared_meshes.hpp"
-#include "support/truth_data.hpp"
+#include "support/proximity_truth.hpp"
 
 namespace supple {
 namespace {
 
 using nlohmann::json;
 
-struct QueriesTruth : testing::Test {
-  void SetUp() override {
-    std::ifstream file(shared_meshes() / "proximity.json");
-    if (!file) GTEST_SKIP() << "no " << shared_meshes() << "; set SUPPLE_DATA to the folder of truth.json";
-    file >> truth;
-  }
-  static TriangleMesh mesh_of(const json& expected, const char* mesh, const char* placement) {
-    TriangleMesh loaded = load_shared_mesh(expected[mesh].get<std::string>());
-    transform(loaded, expected[placement].get<std::string>());
-    return loaded;
-  }
+struct QueriesTruth : ProximityTruthTest {
   static std::ifstream file_of(const json& expected, const char* ending) {
     return std::ifstream(shared_meshes() / "proximity" / (expected["name"].get<std::string>() + ending));
   }
@@ -40,7 +29,6 @@ struct QueriesTruth : testing::Test {
       points.push_back({std::stod(x), std::stod(y), std::stod(z)});
     return points;
   }
-  json truth;
 };
 
 TEST_F(QueriesTruth, NearestTriangles) {
