@@ -42,6 +42,8 @@ void FramePacker::pack(const FrameView& frame, MessageWriter& message) {
   add_positions(frame);
   add_contacts(frame);
   add_impacts(frame);
+  add_gaps(frame);
+  add_penetrations(frame);
   add_events(frame.source.scene().result());
   add_statistics(frame);
   if (frame.layers.candidates) add_candidates(frame);
@@ -127,6 +129,43 @@ void FramePacker::add_impacts(const FrameView& frame) {
   for (std::size_t i = 0; i < count; ++i) {
     const ContinuousContact& c = contacts[i];
     points[i] = row_of(frame.center(c.point), static_cast<float>(c.toi), floats(c.normal), 0);
+  }
+}
+
+/// Adds the proximity pairs, each with its closest points.
+void FramePacker::add_gaps(const FrameView& frame) {
+  if (!contains(frame.source.scene().options().contacts, ContactKinds::proximity)) return;
+  const auto pairs = frame.source.scene().result().proximity_pairs;
+  const std::size_t count = limited("gaps", pairs.size());
+  const auto objects = message_->add<std::array<std::uint32_t, 2>>(Tag::gaps, count);
+  for (std::size_t i = 0; i < count; ++i) objects[i] = {pairs[i].object_a.index, pairs[i].object_b.index};
+  const auto rows = message_->add<Row>(Tag::gap_points, count);
+  const auto margin = [&](ObjectId object) { return frame.show.objects[object.index].options.margin; };
+  for (std::size_t i = 0; i < count; ++i) {
+    const ProximityPair& pair = pairs[i];
+    const double reach = margin(pair.object_a) + margin(pair.object_b);
+    const double share = reach > 0 ? pair.distance / reach : 0;
+    rows[i] = row_of(frame.center(pair.point_a), static_cast<float>(pair.distance),
+                     frame.center(pair.point_b), static_cast<float>(share));
+  }
+}
+
+/// Adds the vertices inside solid objects, each with the closest point of the surface.
+void FramePacker::add_penetrations(const FrameView& frame) {
+  const Scene& scene = frame.source.scene();
+  if (!contains(scene.options().contacts, ContactKinds::penetration)) return;
+  const auto penetrations = scene.result().penetrations;
+  const std::size_t count = limited("penetrations", penetrations.size());
+  const auto ids = message_->add<std::array<std::uint32_t, 4>>(Tag::penetrations, count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const Penetration& p = penetrations[i];
+    ids[i] = {p.object_a.index, p.vertex, p.object_b.index, p.triangle};
+  }
+  const auto rows = message_->add<Row>(Tag::penetration_points, count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const Penetration& p = penetrations[i];
+    rows[i] = row_of(frame.center(scene.position(p.object_a, p.vertex)), static_cast<float>(p.depth),
+                     frame.center(p.point), 0);
   }
 }
 

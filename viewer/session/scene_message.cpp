@@ -78,8 +78,12 @@ void add_words(JsonText& json) {
         };
         if (field.has_truth_words()) add(field.truth_words);
         if constexpr (std::is_same_v<Value, ContactKinds>) {
-          constexpr auto first_with_proximity = static_cast<std::size_t>(ContactKinds::proximity);
-          add(std::span(words<Value>).first(first_with_proximity));
+          std::vector<const char*> sets;  // with all that they include
+          for (std::size_t i = 0; i < words<Value>.size(); ++i) {
+            if (const auto kinds = static_cast<Value>(i); with_included(kinds) == kinds)
+              sets.push_back(words<Value>[i]);
+          }
+          add(sets);
         } else if constexpr (Worded<Value> && !std::is_same_v<Value, ProximityListing>) {
           add(words<Value>);
         }

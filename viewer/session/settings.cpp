@@ -103,11 +103,7 @@ SceneView arranged(const SceneView& show, const Settings& settings) {
   if (settings.objects) repeat_objects(arranged, *settings.objects);
   SimulationOptions& simulation = arranged.simulation;
   settings.scene.apply_to(simulation.scene);
-  if (contains(simulation.scene.contacts, ContactKinds::proximity) ||
-      contains(simulation.scene.contacts, ContactKinds::penetration))
-    fail(
-        "contacts: a page shows no proximity and no penetration; choose intersection, continuous, both or "
-        "none");
+  simulation.scene.contacts = with_included(simulation.scene.contacts);
   if (!uses_scene_octree(simulation.scene.broad_phase)) simulation.scene.scene_octree = {};
   // `PaperVertices` computes these, and only on request.
   simulation.scene.comparison.colliding_vertices = false;

@@ -62,6 +62,52 @@ TEST(ViewerFrames, NormalsAreThoseOfTheLibrary) {
   }
 }
 
+TEST(ViewerFrames, GapsAndPenetrationsAreThoseOfTheLibrary) {
+  SceneView show = touching_balls();
+  show.simulation.scene.contacts = ContactKinds::proximity | ContactKinds::penetration;
+  for (ViewedObject& object : show.objects) {
+    object.options.margin = 0.02;
+    object.options.solid = true;
+  }
+  Simulation simulation = simulation_of(show);
+  const DetectResult& expected = simulation.detect();
+  TestPage page(show);
+  const Vec3d center = center_of(page.scene());
+  const ViewerMessage frame = page.frame();
+  const auto point_of = [](const Row& row, std::size_t first) {
+    return Vec3f{row[first], row[first + 1], row[first + 2]};
+  };
+  const auto pairs = frame.values<Pair>(54);
+  const auto gaps = frame.values<Row>(55);
+  ASSERT_EQ(pairs.size(), expected.proximity_pairs.size());
+  ASSERT_EQ(gaps.size(), pairs.size());
+  EXPECT_GT(gaps.size(), 0u);
+  for (std::size_t i = 0; i < gaps.size(); ++i) {
+    const ProximityPair& pair = expected.proximity_pairs[i];
+    EXPECT_EQ(pairs[i], (Pair{pair.object_a.index, pair.object_b.index}));
+    EXPECT_EQ(point_of(gaps[i], 0), as_floats(std::array{pair.point_a}, center)[0]);
+    EXPECT_EQ(point_of(gaps[i], 4), as_floats(std::array{pair.point_b}, center)[0]);
+    EXPECT_EQ(gaps[i][3], static_cast<float>(pair.distance));
+    EXPECT_EQ(gaps[i][7], static_cast<float>(pair.distance / 0.04));
+  }
+  const auto ids = frame.values<std::array<std::uint32_t, 4>>(56);
+  const auto depths = frame.values<Row>(57);
+  ASSERT_EQ(ids.size(), expected.penetrations.size());
+  ASSERT_EQ(depths.size(), ids.size());
+  EXPECT_GT(ids.size(), 0u);
+  for (std::size_t i = 0; i < ids.size(); ++i) {
+    const Penetration& p = expected.penetrations[i];
+    EXPECT_EQ(ids[i], (std::array{p.object_a.index, p.vertex, p.object_b.index, p.triangle}));
+    EXPECT_EQ(depths[i][3], static_cast<float>(p.depth));
+    EXPECT_EQ(point_of(depths[i], 4), as_floats(std::array{p.point}, center)[0]);
+  }
+  // Only scenes that find them have these sections.
+  TestPage plain(touching_balls());
+  plain.scene();
+  const ViewerMessage other = plain.frame();
+  for (const std::uint32_t tag : {54u, 55u, 56u, 57u}) EXPECT_FALSE(other.has(tag));
+}
+
 /// The events of volumes and of the narrow phase are those of a scene with colliding vertices.
 TEST(ViewerFrames, EventsOfVolumesAndOfTheNarrowPhase) {
   SceneView show = touching_balls(), giving = show;

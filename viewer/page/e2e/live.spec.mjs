@@ -64,6 +64,27 @@ async function eachLayerShows(stage) {
   }
 }
 
+/** Gaps within the margins, and depths in solid objects, are drawn by layers of their own. */
+async function gapsAndDepthsShow(stage) {
+  const ball = (x) => `[[object]]\nmodel = "icosphere"\nfrequency = 6\ntranslate = [${x}, 0, 0]\nmargin = 0.05\nsolid = true\n`;
+  const scene = stage.file("balls.toml", `[scene]\ncontacts = "proximity,penetration"\n${ball(0)}${ball(1.9)}${ball(3.95)}`);
+  const { page } = await stage.view(scene);
+  await until(page, () => supple.model.frame.gaps.length > 4 && supple.model.frame.penetrations.length > 4);
+  await settled(page);
+  const { drawn, gaps, depths } = await page.evaluate(() => ({
+    drawn: supple.counts(), gaps: supple.model.frame.gaps.length / 2, depths: supple.model.frame.penetrations.length / 4,
+  }));
+  assert.equal(drawn.gaps, gaps);
+  assert.equal(drawn.depths, depths);
+  for (const [label, count] of [["Gaps", "gaps"], ["Depths", "depths"]]) {
+    const before = await picture(page);
+    await page.getByRole("checkbox", { name: label, exact: true }).uncheck();
+    await until(page, (name) => supple.counts()[name] === 0, count);
+    await settled(page);
+    assert.notEqual(await picture(page), before, `${label} shows nothing`);
+  }
+}
+
 async function countsAreTheSessions(stage) {
   const { page } = await stage.view(nine);
   await until(page, () => supple.model.frame.contacts.length > 200);
@@ -367,6 +388,7 @@ export const tests = [
   ["moves, pauses and steps", movesPausesAndSteps],
   ["resets with a seed, at another speed", resetsWithASeedAndSpeed],
   ["each layer shows", eachLayerShows],
+  ["gaps and depths show", gapsAndDepthsShow],
   ["layers show what the session counts", countsAreTheSessions],
   ["octrees by level, of one object", octreeLevels],
   ["the narrow phase by level", narrowPhaseByLevel],

@@ -78,6 +78,10 @@ test("ids that are not there are refused", () => {
   reject(frameWith(words(42, 1, [4], 1)), /colliding_vertices/);
   reject(frameWith(words(36, 8, [0, 3, 0, 1, 1, 0, 0, 0]), floats(37, 8, new Array<number>(8).fill(0))), /impact/);
   reject(frameWith(words(36, 8, [0, 0, 0, 1, 1, 0, 0, 0])), /impacts/);
+  reject(frameWith(words(54, 2, [0, 2]), floats(55, 8, new Array<number>(8).fill(0))), /gap/);
+  reject(frameWith(words(54, 2, [0, 1])), /gaps/);
+  reject(frameWith(words(56, 4, [0, 99, 1, 0]), floats(57, 8, new Array<number>(8).fill(0))), /penetrations/);
+  reject(frameWith(words(56, 4, [0, 0, 1, 0])), /penetrations/);
   reject(frameWith(floats(32, 3, [0, 0, 0], 0)), /positions/);
   reject(frameWith(floats(32, 3, [0, 0, 0], 5)), /positions/);
   reject(frameWith(floats(40, 8, new Array<number>(8).fill(0), 2)), /octree/);

@@ -24,12 +24,19 @@ export const LAYER_ROWS: LayerRow[] = [
   { layer: "points", label: "Contact points", key: "D", colour: OKABE_ITO.yellow, hint: "Extreme points of the intersection of two triangles" },
   { layer: "normals", label: "Contact normals", key: "Y", colour: OKABE_ITO.sky, hint: "The normal at each contact point" },
   { layer: "curves", label: "Intersection curves", key: "U", colour: "ink", hint: "Curves along which surfaces intersect" },
+  { layer: "gaps", label: "Gaps", key: "M", colour: "gaps", hint: "Closest points within the margins, coloured by distance: vermillion up to a quarter of the margins, then orange, green and blue" },
+  { layer: "depths", label: "Depths", key: "E", colour: OKABE_ITO.purple, hint: "From each vertex inside a solid object to the closest point of its surface" },
   { layer: "vertices", label: "Colliding vertices", key: "J", colour: OKABE_ITO.purple, hint: "The output of the paper: vertices of colliding octree nodes" },
 ];
 
 function swatch(colour: string): HTMLElement {
+  if (colour === "gaps") return swatchOf([5, 1, 2, 0].map(levelColour));
   if (colour !== "levels") return h("span", { class: "swatch", style: colour ? `background:${colour === "ink" ? "var(--ink)" : colour}` : "visibility:hidden" });
-  const stops = LEVELS.slice(0, 4).map((level, i) => `${level} ${i * 25}% ${i * 25 + 25}%`);
+  return swatchOf(LEVELS.slice(0, 4));
+}
+
+function swatchOf(four: string[]): HTMLElement {
+  const stops = four.map((level, i) => `${level} ${i * 25}% ${i * 25 + 25}%`);
   return h("span", { class: "swatch", style: `background:linear-gradient(90deg,${stops.join(",")})` });
 }
 
@@ -110,7 +117,7 @@ export class ScenePanel {
     const { frame, layers } = this.model;
     const of: Partial<Record<Layer, number>> = {
       regions: drawn["regions"]!, octree: drawn["boxes"]! + drawn["balls"]!, nodes: drawn["nodeBoxes"]! + drawn["nodeBalls"]!, candidates: drawn["candidates"]!, triangles: drawn["triangles"]!,
-      points: drawn["points"]!, normals: drawn["normals"]!, curves: drawn["curves"]!, vertices: drawn["vertices"]!, pairs: drawn["pairs"]!,
+      points: drawn["points"]!, normals: drawn["normals"]!, curves: drawn["curves"]!, gaps: drawn["gaps"]!, depths: drawn["depths"]!, vertices: drawn["vertices"]!, pairs: drawn["pairs"]!,
     };
     for (const [layer, element] of this.counts) {
       const count = of[layer];

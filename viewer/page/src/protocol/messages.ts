@@ -81,6 +81,10 @@ export interface FrameMessage {
   contactPoints: Float32Array;
   impacts: Uint32Array;
   impactPoints: Float32Array;
+  gaps: Uint32Array;
+  gapPoints: Float32Array;
+  penetrations: Uint32Array;
+  penetrationPoints: Float32Array;
   candidates: Uint32Array;
   sceneRegions: Float32Array;
   octreeBoxes: Map<number, Float32Array>;
@@ -148,6 +152,10 @@ const FORMS: Record<number, Form> = {
   51: { name: "colliding_spheres", array: Float32Array, width: 8, kinds: ["frame"], perObject: true },
   52: { name: "octree_edges", array: Float32Array, width: 8, kinds: ["frame"], perObject: true },
   53: { name: "colliding_edges", array: Float32Array, width: 8, kinds: ["frame"], perObject: true },
+  54: { name: "gaps", array: Uint32Array, width: 2, kinds: ["frame"] },
+  55: { name: "gap_points", array: Float32Array, width: 8, kinds: ["frame"] },
+  56: { name: "penetrations", array: Uint32Array, width: 4, kinds: ["frame"] },
+  57: { name: "penetration_points", array: Float32Array, width: 8, kinds: ["frame"] },
   64: { name: "series", array: Float64Array, width: 0, kinds: ["series"] },
   65: { name: "series_contact_begin", array: Uint32Array, width: 3, kinds: ["series"] },
   66: { name: "series_contact_end", array: Uint32Array, width: 3, kinds: ["series"] },
@@ -365,6 +373,10 @@ function readFrame(sections: Sections, scene: SceneCounts): FrameMessage {
     contactPoints: sections.one("contact_points", floats),
     impacts: sections.one("impacts", words),
     impactPoints: sections.one("impact_points", floats),
+    gaps: sections.one("gaps", words),
+    gapPoints: sections.one("gap_points", floats),
+    penetrations: sections.one("penetrations", words),
+    penetrationPoints: sections.one("penetration_points", floats),
     candidates: sections.one("candidates", words),
     sceneRegions: sections.one("scene_regions", floats),
     octreeBoxes: sections.each("octree_boxes"),
@@ -394,6 +406,11 @@ function readFrame(sections: Sections, scene: SceneCounts): FrameMessage {
   checkIds("candidates", frame.candidates, 4, [0, 2], scene.triangles);
   checkImpacts(frame.impacts, scene);
   if (frame.impactPoints.length !== frame.impacts.length) fail("the numbers of impacts and of their points differ");
+  if (frame.gaps.some((object) => object >= scene.vertices.length)) fail("a gap names an object that does not exist");
+  if (frame.gapPoints.length !== 4 * frame.gaps.length) fail("the numbers of gaps and of their points differ");
+  checkIds("penetrations", frame.penetrations, 4, [2, 2], scene.triangles);
+  checkIds("penetrations", frame.penetrations, 4, [0, 0], scene.vertices);
+  if (frame.penetrationPoints.length !== 2 * frame.penetrations.length) fail("the numbers of penetrations and of their points differ");
   if (frame.statistics.length !== 0 && frame.statistics.length !== scene.statistics) fail("its statistics are not those of the scene");
   return frame;
 }

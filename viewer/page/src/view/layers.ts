@@ -1,6 +1,6 @@
 /** Layers over the surfaces, filled from the newest frame while switched on. */
 import * as THREE from "three";
-import { OKABE_ITO } from "../colours";
+import { gapLevel, OKABE_ITO } from "../colours";
 import { boundsOf, type Model, type ObjectState } from "../model";
 import { Cells, Dots, Faces, Lines } from "./primitives";
 
@@ -74,6 +74,8 @@ export class Layers {
   readonly points = new Dots({ colour: OKABE_ITO.yellow, order: 6 });
   readonly normals = new Lines({ colour: OKABE_ITO.sky, size: 2, depthTest: false, order: 5 });
   readonly curves = new Lines({ colour: "#ffffff", size: 2.5, depthTest: false, order: 5 });
+  readonly gaps = new Cells("edges", { colour: "#ffffff", opacity: 1, order: 5 });
+  readonly depths = new Lines({ colour: OKABE_ITO.purple, size: 2.5, depthTest: false, order: 5 });
   readonly vertices = new Dots({ colour: OKABE_ITO.purple, order: 6 });
   private readonly marks = new Marks();
 
@@ -85,22 +87,22 @@ export class Layers {
   private all() {
     return [
       this.regions, this.boxes, this.balls, this.edges, this.nodeBoxes, this.nodeBalls, this.nodeEdges, this.pairs, this.candidateFaces,
-      this.candidates, this.triangles, this.points, this.normals, this.curves, this.vertices,
+      this.candidates, this.triangles, this.points, this.normals, this.curves, this.gaps, this.depths, this.vertices,
     ];
   }
 
   /** The number of elements that each layer draws. */
   counts(): Record<string, number> {
-    const { regions, boxes, balls, edges, nodeBoxes, nodeBalls, nodeEdges, pairs, candidates, candidateFaces, triangles, points, normals, curves, vertices } = this;
+    const { regions, boxes, balls, edges, nodeBoxes, nodeBalls, nodeEdges, pairs, candidates, candidateFaces, triangles, points, normals, curves, gaps, depths, vertices } = this;
     return Object.fromEntries(
-      Object.entries({ regions, boxes, balls, edges, nodeBoxes, nodeBalls, nodeEdges, pairs, candidates, candidateFaces, triangles, points, normals, curves, vertices })
+      Object.entries({ regions, boxes, balls, edges, nodeBoxes, nodeBalls, nodeEdges, pairs, candidates, candidateFaces, triangles, points, normals, curves, gaps, depths, vertices })
         .map(([name, layer]) => [name, layer.count]),
     );
   }
 
   update(): void {
     const { layers } = this.model;
-    for (const layer of [this.points, this.vertices, this.curves, this.normals, this.nodeBoxes, this.nodeBalls, this.nodeEdges]) layer.depthTest = !this.model.throughSurfaces;
+    for (const layer of [this.points, this.vertices, this.curves, this.normals, this.gaps, this.depths, this.nodeBoxes, this.nodeBalls, this.nodeEdges]) layer.depthTest = !this.model.throughSurfaces;
     this.points.size = this.model.pointSize + 2;
     this.vertices.size = this.model.pointSize;
     this.fillCells();
@@ -110,6 +112,8 @@ export class Layers {
     this.fillPoints(layers.points);
     this.fillNormals(layers.normals);
     this.fillCurves(layers.curves);
+    this.fillGaps(layers.gaps);
+    this.fillDepths(layers.depths);
     this.fillVertices(layers.vertices);
   }
 
@@ -245,6 +249,35 @@ export class Layers {
         for (let k = 0; k < lines; ++k)
           for (const point of [first + k, first + ((k + 1) % count)])
             for (let axis = 0; axis < 3; ++axis) into[at++] = contactPoints[8 * point + axis]!;
+      }
+      return at / 6;
+    });
+  }
+
+  /** Lines between closest points, coloured by the share of the margins that the distance takes. */
+  private fillGaps(on: boolean): void {
+    const { frame } = this.model;
+    if (!on || !frame || frame.gaps.length === 0) return this.gaps.fill([]);
+    const rows = new Float32Array(frame.gapPoints.length);
+    let at = 0;
+    for (let i = 0; i < frame.gaps.length / 2; ++i) {
+      if (!this.shown(frame.gaps[2 * i]!) || !this.shown(frame.gaps[2 * i + 1]!)) continue;
+      rows.set(frame.gapPoints.subarray(8 * i, 8 * i + 8), at);
+      rows[at + 3] = gapLevel(frame.gapPoints[8 * i + 7]!);
+      at += 8;
+    }
+    this.gaps.fill([rows.subarray(0, at)]);
+  }
+
+  /** Lines from the vertices inside solid objects to the closest points of their surfaces. */
+  private fillDepths(on: boolean): void {
+    const { frame } = this.model;
+    const count = on && frame ? frame.penetrations.length / 4 : 0;
+    this.depths.fill(count, (into) => {
+      let at = 0;
+      for (let i = 0; i < count; ++i) {
+        if (!this.shown(frame!.penetrations[4 * i]!) || !this.shown(frame!.penetrations[4 * i + 2]!)) continue;
+        for (const end of [0, 4]) for (let axis = 0; axis < 3; ++axis) into[at++] = frame!.penetrationPoints[8 * i + end + axis]!;
       }
       return at / 6;
     });
