@@ -153,7 +153,8 @@ void TextReport::print_penetrations(const Scene& scene) const {
 
 void TextReport::print_pairs(const Scene& scene) const {
   if (pairs_.empty()) {
-    fmt::print("Nothing touches.\n\n");
+    const bool finds_only_these = scene.options().contacts == ContactKinds::intersection;
+    fmt::print("{}\n\n", finds_only_these ? "Nothing touches." : "No triangles intersect.");
     return;
   }
   std::vector<std::pair<ObjectPair, PairSummary>> rows(pairs_.begin(), pairs_.end());
