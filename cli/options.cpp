@@ -466,6 +466,10 @@ CLI::App* add_query(CLI::App& program, QueryOptions& options, Dependences& depen
                              "Leave out triangles that are farther away than this (default: any distance)"),
                          [&] { return options.kind == SceneQuery::closest; }, "the question closest"});
   dependences.push_back(
+      {app->add_flag("--signed", options.signed_distance,
+                     "Distances of points inside are negative; the surfaces must be closed"),
+       [&] { return options.kind == SceneQuery::closest; }, "the question closest"});
+  dependences.push_back(
       {app->add_flag("--all-hits", options.all_hits, "Also count all triangles on each ray"),
        [&] { return options.kind == SceneQuery::rays; }, "the question rays"});
   options.given_scene.for_each_setter([&]<class Struct, class Value>(const Field<Struct, Value>& field,

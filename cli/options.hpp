@@ -86,6 +86,7 @@ struct QueryOptions {
   std::vector<std::string> inputs;              ///< meshes, patterns, or one scene file or recording
   viewer::Overrides<SceneOptions> given_scene;  ///< only the number of threads
   double max_distance = std::numeric_limits<double>::infinity();
+  bool signed_distance = false;
   bool all_hits = false;
   bool quiet = false;
   std::string json;

@@ -75,7 +75,8 @@ void Run::answer() {
   switch (options_.kind) {
     case SceneQuery::closest:
       return in_batches(read_points(options_.file), closest_, [&](const auto& points, const auto& results) {
-        scene_.closest(points, results, {.max_distance = options_.max_distance});
+        scene_.closest(points, results,
+                       {.max_distance = options_.max_distance, .signed_distance = options_.signed_distance});
       });
     case SceneQuery::inside:
       return in_batches(read_points(options_.file), contained_,

@@ -32,6 +32,14 @@ class Query(ProgramTest):
         near = self.query("closest", "points.txt", "solid.obj", "above.obj", "--max-distance", "1")
         self.assertEqual(near["results"], [None, [1, 0, 0.5], None])
 
+    def test_signed_distances(self):
+        self.write("points.txt", "0.1 0.2 0.05\n0.1 0.2 -0.5\n")
+        (inside, outside) = self.query("closest", "points.txt", "solid.obj", "--signed")["results"]
+        self.assertEqual((inside[2], outside[2]), (-0.05, 0.5))
+        self.assertEqual(self.query("closest", "points.txt", "solid.obj")["results"][0][2], 0.05)
+        failed = self.run_here("query", "closest", "points.txt", "above.obj", "--signed")
+        self.assert_one_line_error(failed, "closest: the surface of above is open")
+
     def test_inside(self):
         self.write("points.txt", "0.1 0.1 0.1\n0.1 0.1 0\n1 1 1\n")
         self.assertEqual(self.query("inside", "points.txt", "solid.obj")["results"], ["inside", "on", "outside"])
@@ -60,6 +68,7 @@ class Query(ProgramTest):
             (("closest", "none.txt", "solid.obj"), "none.txt: the file cannot be read"),
             (("nearest", "points.txt", "solid.obj"), "nearest is none of closest, inside and rays"),
             (("closest", "points.txt", "solid.obj", "--all-hits"), "--all-hits: has no effect without the question rays"),
+            (("rays", "points.txt", "solid.obj", "--signed"), "--signed: has no effect without the question closest"),
             (("rays", "points.txt", "solid.obj", "--max-distance", "1"), "--max-distance: has no effect without"),
         ):
             self.assert_one_line_error(self.run_here("query", *arguments), message)
