@@ -70,7 +70,7 @@ std::uint64_t OverlappingTriangles(const Aabb& box, const LeafBoxes& boxes) {
 template <class Tag, class Boxes>
 HWY_INLINE hn::Vec<Tag> bounds_of(Tag d, const RaySlabs& ray, const Boxes& boxes, std::size_t first) {
   const hn::Rebind<float, Tag> singles;
-  const auto infinity = hn::Inf(d);
+  const auto infinity = hn::Inf(d), largest = hn::Set(d, std::numeric_limits<double>::max());
   auto enter = hn::Zero(d), leave = infinity;
   auto meets = hn::Eq(enter, enter);
   const float* const mins[] = {boxes.min_x, boxes.min_y, boxes.min_z};
@@ -87,17 +87,17 @@ HWY_INLINE hn::Vec<Tag> bounds_of(Tag d, const RaySlabs& ray, const Boxes& boxes
     const auto reciprocal = hn::Set(d, ray.reciprocal[axis]);
     const auto to_low = hn::Mul(hn::Sub(low, origin_high), reciprocal),
                to_high = hn::Mul(hn::Sub(high, origin_low), reciprocal);
-    // Widened by more than the roundings of a difference, a reciprocal and a product.
-    const auto near = ray.reciprocal[axis] > 0 ? to_low : to_high,
-               far = ray.reciprocal[axis] > 0 ? to_high : to_low;
+    // Widened by more than the roundings of a difference, a reciprocal and a product. Products that overflow
+    // stay finite, because the difference of two infinities would exclude the box.
+    const auto near = hn::Min(ray.reciprocal[axis] > 0 ? to_low : to_high, largest),
+               far = hn::Max(ray.reciprocal[axis] > 0 ? to_high : to_low, hn::Neg(largest));
     const auto slack = [&](hn::Vec<Tag> t) HWY_ATTR {
       return hn::Add(hn::Mul(hn::Abs(t), hn::Set(d, 0x1p-49)), hn::Set(d, 0x1p-1060));
     };
     enter = hn::Max(enter, hn::Sub(near, slack(near)));
     leave = hn::Min(leave, hn::Add(far, slack(far)));
   }
-  return hn::IfThenElse(hn::And(meets, hn::Le(enter, leave)),
-                        hn::Min(enter, hn::Set(d, std::numeric_limits<double>::max())), infinity);
+  return hn::IfThenElse(hn::And(meets, hn::Le(enter, leave)), hn::Min(enter, largest), infinity);
 }
 
 void RayBounds(const RaySlabs& ray, const ChildBoxes& boxes, double* bounds) {

@@ -448,5 +448,18 @@ TEST(QueriesOfAScene, AreTheSameForAnyNumberOfThreads) {
   }
 }
 
+/// The parameters of such rays overflow on the way, but their boxes must not be excluded.
+TEST(Cast, WithDirectionsOfExtremeSizes) {
+  Scene scene;
+  scene.add(TriangleMesh{"far", {{1, -1, -1}, {1, 3, -1}, {1, -1, 3}}, {{0, 1, 2}}});
+  std::vector<Ray> rays;
+  for (const double size : {1e-308, 1e-300, 1e-297, 1e-200, 1e200, 1e300}) {
+    for (const double start : {-1e12, 0.0}) rays.push_back({{start, 0, 0}, {size, size * 1e-13, 0}});
+  }
+  std::vector<std::optional<RayHit>> hits(rays.size());
+  scene.cast(rays, hits);
+  for (std::size_t i = 0; i < rays.size(); ++i) EXPECT_TRUE(hits[i]) << i;
+}
+
 }  // namespace
 }  // namespace supple
