@@ -21,7 +21,6 @@
 namespace supple::cli {
 namespace {
 
-/// `v0` … `v2`, `e0` … `e2`, `f`.
 /// Writes all options except those of the machine.
 template <class Options>
 void write_options(JsonWriter& json, const Options& options) {

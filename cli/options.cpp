@@ -262,12 +262,10 @@ void add_report_options(CLI::App& app, DetectionOptions& options, Dependences& d
   };
   add("--fail-on-contact", options.fail_on_contact,
       "Exit with status 1 when anything touches, is near with --contacts proximity, or is inside a solid "
-      "with "
-      "--contacts penetration");
+      "with --contacts penetration");
   add("--verify", options.verify,
       "Check each frame by exact brute force over all pairs of triangles, elements, or vertices and "
-      "triangles; "
-      "exit with status 3 "
+      "triangles; exit with status 3 "
       "when the results differ");
 }
 

@@ -139,7 +139,7 @@ void TextReport::print_penetrations(const Scene& scene) const {
     return x.second.vertices != y.second.vertices ? x.second.vertices > y.second.vertices : x.first < y.first;
   });
   fmt::print("\n{:<20} {:<20} {:>8} {:>16} {:>24} {:>16}\n", "object", "is inside", "frames",
-             "vertices inside", "largest depth", "frames as whole");
+             "vertices inside", "largest depth", "frames, wholly");
   for (std::size_t i = 0; i < std::min(rows.size(), most_rows); ++i) {
     const auto& [pair, inside] = rows[i];
     fmt::print("{:<20} {:<20} {:>8} {:>16} {:>24} {:>16}\n", name_of(scene, pair.a), name_of(scene, pair.b),
@@ -173,7 +173,10 @@ void TextReport::print_pairs(const Scene& scene) const {
                pair.a == pair.b ? "itself" : name_of(scene, pair.b), grouped(summary.frames),
                grouped(summary.triangle_pairs), grouped(summary.most), summary.frame_of_most);
   }
-  if (left_out > 0) fmt::print("and {} with fewer; --csv lists all\n", counted(left_out, "pair"));
+  const bool is_in_csv = !contains(scene.options().contacts, ContactKinds::penetration);
+  if (left_out > 0)
+    fmt::print("and {} with fewer; {} lists all\n", counted(left_out, "pair"),
+               is_in_csv ? "--csv" : "--json");
   fmt::print("\n{} that intersect; pairs of objects began to touch {} and separated {}\n\n",
              counted(triangle_pairs_, "triangle pair"), counted(begun_, "time"), counted(ended_, "time"));
 }

@@ -154,8 +154,7 @@ struct Description<ObjectOptions> {
     visitor(Field<Options, bool>{.name = "weld",
                                  .member = &Options::weld,
                                  .doc = "Vertices with equal positions count as one, so that a seam that was "
-                                        "split for texture coordinates "
-                                        "is no border"});
+                                        "split for texture coordinates is no border"});
     visitor(Field<Options, bool>{
         .name = "is_static",
         .member = &Options::is_static,
@@ -229,9 +228,8 @@ struct Description<SceneOptions> {
             "pairs of edges, that touch on the way from the frame before (continuous); pairs within the "
             "margins of their objects (proximity); vertices inside solid objects, contained parts and curves "
             "of intersection (penetration, which includes intersection); several of these with commas "
-            "between them; or none. Bodies "
-            "that already cut "
-            "through each other at the start of the way are found by intersection, not by continuous"});
+            "between them; or none. Bodies that already cut through each other at the start of the way are "
+            "found by intersection, not by continuous"});
     visitor(Field<Options, bool>{.name = "contact_points",
                                  .member = &Options::contact_points,
                                  .doc = "Compute the normal and the points of each contact of triangles"});

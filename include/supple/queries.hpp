@@ -12,7 +12,7 @@
 namespace supple {
 
 // Questions to the objects of a scene at their present positions: `Scene::closest`, `Scene::cast`,
-// `Scene::inside`. An object on a path is at its end.
+// `Scene::overlaps`, `Scene::inside`. An object on a path is at its end.
 
 /// The objects that a query sees.
 struct QueryFilter {

@@ -87,13 +87,16 @@ std::string fault_of_solid(std::span<const Triangle> triangles) {
     else
       name(uses[begin], ++turned, turned_edges);
   }
+  const auto edges = [](std::size_t count) {
+    return std::to_string(count) + (count == 1 ? " edge" : " edges");
+  };
   const auto more = [](std::size_t count) { return count > most_named ? ", ..." : ""; };
   if (open > 0)
-    return "the surface is open at " + std::to_string(open) + " edges (vertices " + open_edges + more(open) +
+    return "the surface is open at " + edges(open) + " (vertices " + open_edges + more(open) +
            "); close the holes";
   if (turned > 0)
-    return "neighbouring triangles turn against each other at " + std::to_string(turned) +
-           " edges (vertices " + turned_edges + more(turned) + "); orient all triangles alike";
+    return "neighbouring triangles turn against each other at " + edges(turned) + " (vertices " +
+           turned_edges + more(turned) + "); orient all triangles alike";
   return "";
 }
 

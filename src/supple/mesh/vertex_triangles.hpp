@@ -10,7 +10,7 @@
 
 namespace supple {
 
-/// The triangles around each vertex, and the connected parts of a surface. Memory: 12 bytes per vertex, 12
+/// The triangles around each vertex, and the connected parts of a surface. Memory: 8 bytes per vertex, 12
 /// per triangle.
 class VertexTriangles {
  public:

@@ -45,7 +45,9 @@ std::array<double, 3> weights_at(const Vec3d& point, const Feature& feature, con
   if (feature.kind == FeatureKind::vertex) return {1, 0, 0};
   const std::size_t first = feature.index, next = (first + 1) % 3;
   const Vec3d to_point = point - corners[first], along = corners[next] - corners[first];
-  const double size = std::max(largest_magnitude(along), largest_magnitude(corners[2] - corners[first]));
+  const double size = feature.kind == FeatureKind::edge
+                          ? largest_magnitude(along)
+                          : std::max(largest_magnitude(along), largest_magnitude(corners[2] - corners[0]));
   const auto scaled = [&](const Vec3d& v) { return Vec3d{v.x / size, v.y / size, v.z / size}; };
   const Vec3d w = scaled(to_point), u = scaled(along);
   if (feature.kind == FeatureKind::edge) {

@@ -46,7 +46,7 @@ class ObjectQueries {
   /// other, hardly any other triangle is nearer.
   std::optional<ClosestPoint> closest(std::span<const QueriedObject> objects, const Vec3d& point,
                                       double max_distance);
-  /// Of the last result of `closest`, in octree order.
+  /// The triangle of the last result of `closest`, in octree order.
   std::uint32_t last_nearest_triangle() const { return last_nearest_->triangle; }
   std::optional<RayHit> cast(std::span<const QueriedObject> objects, const Ray& ray, bool count_hits);
   /// Whether the point of the last `closest` is inside the object of its result.

@@ -151,7 +151,8 @@ ObjectPair Scene::Implementation::two_objects(ObjectId a, ObjectId b, const char
   return a < b ? ObjectPair{a, b} : ObjectPair{b, a};
 }
 
-/// `triangles` are those to look at first, in octree order, and become those of the result.
+/// Sets `triangles` to those of the result, by the user's numbers. The search starts at those of the last
+/// one.
 std::optional<ProximityPair> Scene::Implementation::nearest_of(const ObjectPair& pair, double max_distance,
                                                                NearestPairSearch& search,
                                                                TrianglePair& triangles) const {

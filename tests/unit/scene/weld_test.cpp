@@ -51,7 +51,7 @@ TEST(Weld, ClosesASolid) {
   EXPECT_EQ(scene.detect().penetrations.size(), ball.positions.size());
   ASSERT_EQ(scene.result().contained_parts.size(), 1u);
   EXPECT_EQ(scene.result().contained_parts[0].outer, outer);
-  // In welded triangles, the smallest of the equal vertices has the name.
+  // The broad phase sees both objects.
   EXPECT_EQ(scene.detect({.contacts = ContactKinds::none}).object_pairs.size(), 1u);
 }
 
