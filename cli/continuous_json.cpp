@@ -32,18 +32,19 @@ Contacts of_kind(Contacts group, Kind kind) {
 }
 
 /// Writes one id for a vertex or a face, and two ids for an edge.
-void write_ids(JsonWriter& json, const Element& element, Kind kind) {
+void write_ids(JsonWriter& json, const Element& element, FeatureKind kind) {
   json.value(std::uint64_t{element[0]});
-  if (kind == Kind::edge_edge) json.value(std::uint64_t{element[1]});
+  if (kind == FeatureKind::edge) json.value(std::uint64_t{element[1]});
 }
 
 /// Writes one row per contact: the ids of both elements and the time.
 void write_rows(JsonWriter& json, Contacts contacts) {
   json.begin_array();
   for (const ContinuousContact& contact : contacts) {
+    const auto [kind_a, kind_b] = feature_kinds(contact.kind);
     json.begin_array();
-    write_ids(json, contact.element_a, contact.kind);
-    write_ids(json, contact.element_b, contact.kind);
+    write_ids(json, contact.element_a, kind_a);
+    write_ids(json, contact.element_b, kind_b);
     json.value(contact.toi);
     json.end_array();
   }
@@ -69,8 +70,8 @@ void write_earliest(JsonWriter& json, Contacts contacts) {
     json.value(first->toi);
 }
 
-void write_element(JsonWriter& json, const Element& element, Kind kind) {
-  if (kind == Kind::edge_edge)
+void write_element(JsonWriter& json, const Element& element, FeatureKind kind) {
+  if (kind == FeatureKind::edge)
     json.pair(element[0], element[1]);
   else
     json.value(std::uint64_t{element[0]});
@@ -80,31 +81,19 @@ void write_elements(JsonWriter& json, const Element& a, const Element& b, Kind k
   json.member("kind", word_of(kind));
   json.key("elements");
   json.begin_array();
-  write_element(json, a, kind);
-  write_element(json, b, kind);
+  const auto [kind_a, kind_b] = feature_kinds(kind);
+  write_element(json, a, kind_a);
+  write_element(json, b, kind_b);
   json.end_array();
 }
 
 /// Writes one weight per vertex of the element.
 void write_weights(JsonWriter& json, const char* name, const std::array<double, 3>& weights,
-                   std::size_t count) {
+                   FeatureKind kind) {
   json.key(name);
   json.begin_array();
-  for (std::size_t i = 0; i < count; ++i) json.value(weights[i]);
+  for (std::size_t i = 0; i <= static_cast<std::size_t>(kind); ++i) json.value(weights[i]);
   json.end_array();
-}
-
-/// Numbers of vertices of the elements of a and b.
-std::array<std::size_t, 2> sizes_of_elements(Kind kind) {
-  switch (kind) {
-    case Kind::vertex_face:
-      return {1, 3};
-    case Kind::face_vertex:
-      return {3, 1};
-    case Kind::edge_edge:
-      break;
-  }
-  return {2, 2};
 }
 
 void write_objects(JsonWriter& json, ObjectId a, ObjectId b) {
@@ -145,7 +134,7 @@ void write_continuous_contacts(JsonWriter& json, const char* name, const DetectR
   json.key(name);
   json.begin_array();
   for (const ContinuousContact& contact : result.continuous_contacts) {
-    const auto [size_a, size_b] = sizes_of_elements(contact.kind);
+    const auto [kind_a, kind_b] = feature_kinds(contact.kind);
     json.begin_object();
     write_objects(json, contact.object_a, contact.object_b);
     write_elements(json, contact.element_a, contact.element_b, contact.kind);
@@ -153,8 +142,8 @@ void write_continuous_contacts(JsonWriter& json, const char* name, const DetectR
     json.member("touching_at_start", contact.touching_at_start);
     json.member("start_distance", contact.start_distance);
     json.member("certain", contact.certainty == ImpactCertainty::certain);
-    write_weights(json, "barycentric_a", contact.barycentric_a, size_a);
-    write_weights(json, "barycentric_b", contact.barycentric_b, size_b);
+    write_weights(json, "barycentric_a", contact.barycentric_a, kind_a);
+    write_weights(json, "barycentric_b", contact.barycentric_b, kind_b);
     json.member("point", contact.point);
     json.member("normal", contact.normal);
     json.end_object();

@@ -14,15 +14,9 @@ namespace supple::cli {
 namespace {
 
 /// An edge has two ids; a vertex or a face has one.
-std::string ids_of(const std::array<std::uint32_t, 2>& element, bool is_edge) {
-  if (is_edge) return fmt::format("{},{}", element[0], element[1]);
-  return fmt::format("{},", element[0]);
-}
-std::string ids_of(const std::array<std::uint32_t, 2>& element, ElementPairKind kind) {
-  return ids_of(element, kind == ElementPairKind::edge_edge);
-}
 std::string ids_of(const std::array<std::uint32_t, 2>& element, FeatureKind kind) {
-  return ids_of(element, kind == FeatureKind::edge);
+  if (kind == FeatureKind::edge) return fmt::format("{},{}", element[0], element[1]);
+  return fmt::format("{},", element[0]);
 }
 
 }  // namespace
@@ -52,8 +46,8 @@ void CsvReport::add(const Frame& frame) {
   }
   for (const ContinuousContact& c : frame.result.continuous_contacts) {
     fmt::format_to(fmt::appender(rows), "{},{},{},{},{},{},{},{}\n", frame.number, c.object_a.index,
-                   c.object_b.index, word_of(c.kind), ids_of(c.element_a, c.kind),
-                   ids_of(c.element_b, c.kind), c.toi, word_of(c.certainty));
+                   c.object_b.index, word_of(c.kind), ids_of(c.element_a, feature_kinds(c.kind)[0]),
+                   ids_of(c.element_b, feature_kinds(c.kind)[1]), c.toi, word_of(c.certainty));
   }
   for (const ProximityPair& p : frame.result.proximity_pairs) {
     fmt::format_to(fmt::appender(rows), "{},{},{},{},{},{},{}\n", frame.number, p.object_a.index,

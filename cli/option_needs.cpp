@@ -5,13 +5,9 @@
 namespace supple::cli {
 namespace {
 
-bool is_continuous(const SceneOptions& scene) {
-  return contains(scene.contacts, ContactKinds::continuous);
-}
 /// Whether the scene looks at triangles at rest. Otherwise it searches elements, with boxes.
 bool is_at_rest(const SceneOptions& scene) {
-  return scene.contacts == ContactKinds::none ||
-         contains(with_included(scene.contacts), ContactKinds::intersection);
+  return scene.contacts == ContactKinds::none || has_intersections(scene);
 }
 
 /// Oriented boxes and k-DOPs enclose objects at rest, not their paths.
@@ -35,18 +31,27 @@ constexpr OptionNeed needs[] = {
     {"scene_octree_expand_at", has_scene_octree, "broad_phase", methods},
     {"scene_octree_arity", has_scene_octree, "broad_phase", methods},
     {"scene_octree_root", has_scene_octree, "broad_phase", methods},
-    {"min_separation", is_continuous, "contacts", "continuous"},
-    {"undecided", is_continuous, "contacts", "continuous"},
+    {"min_separation", has_continuous, "contacts", "continuous"},
+    {"undecided", has_continuous, "contacts", "continuous"},
+    {"max_time", has_continuous, "contacts", "continuous"},
+    {"skip_parting", has_continuous, "contacts", "continuous"},
+    {"continuous_listing", has_continuous, "contacts", "continuous"},
+    {"element_kinds", [](const SceneOptions& scene) { return has_continuous(scene) || has_proximity(scene); },
+     "contacts", "continuous or proximity"},
     {"proximity_listing", has_proximity, "contacts", "proximity"},
-    {"contact_points",
-     [](const SceneOptions& scene) {
-       return contains(with_included(scene.contacts), ContactKinds::intersection);
-     },
-     "contacts", "intersection"},
+    {"contact_points", has_intersections, "contacts", "intersection"},
     {"colliding_vertices", is_at_rest, "contacts", kinds_at_rest},
 };
 
 }  // namespace
+
+bool has_intersections(const SceneOptions& scene) {
+  return contains(with_included(scene.contacts), ContactKinds::intersection);
+}
+
+bool has_continuous(const SceneOptions& scene) {
+  return contains(scene.contacts, ContactKinds::continuous);
+}
 
 bool has_proximity(const SceneOptions& scene) {
   return contains(scene.contacts, ContactKinds::proximity);

@@ -19,6 +19,8 @@ std::span<const OptionNeed> option_needs();
 
 /// Whether the regions of the scene octree may be used.
 bool has_scene_octree(const SceneOptions& scene);
+bool has_intersections(const SceneOptions& scene);
+bool has_continuous(const SceneOptions& scene);
 bool has_proximity(const SceneOptions& scene);
 bool has_penetration(const SceneOptions& scene);
 bool has_spheres(const SceneOptions& scene);

@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <functional>
 #include <iterator>
@@ -171,24 +172,28 @@ at the start of the step, and then at its end. A row has numerator,denominator o
 numbers of any size. It may also have the answer, 0 or 1, the same in all eight rows. Each coordinate must
 be representable as a double.)";
 
-/// Adds the options of the octree of each object, and `--self`, `--weld`, `--margin` and `--solid` when
-/// objects are tested.
+constexpr std::array tested_object_keys{"self", "neighbours", "weld", "margin", "own_separation", "solid"};
+
+/// Adds the options of the octree of each object, and those of `tested_object_keys` when objects are tested.
 void add_object_options(CLI::App& app, viewer::Overrides<ObjectOptions>& objects, bool are_tested) {
   objects.for_each_setter([&]<class Struct, class Value>(const Field<Struct, Value>& field,
                                                          const Value& default_value, auto set) {
     if constexpr (std::is_same_v<Struct, ObjectOctreeOptions>) {
       add_field(app, field, default_value, set)->group(are_tested ? "Method" : "Options");
-    } else if constexpr (std::is_same_v<Value, bool> || std::is_same_v<Value, double>) {
-      const std::string_view key(field.key);
-      if (are_tested && (key == "self" || key == "weld" || key == "margin" || key == "solid"))
+    } else if constexpr (!std::is_same_v<Value, std::string>) {
+      const auto& keys = tested_object_keys;
+      if (are_tested && std::find(keys.begin(), keys.end(), std::string_view(field.key)) != keys.end())
         add_field(app, field, default_value, set)->group("Detection");
     }
   });
 }
 
+/// The options that have an effect on the answer of a single query.
 void add_impact_options(CLI::App& app, ImpactOptions& impact) {
   for_each_leaf(
       [&](const auto& field, auto& value) {
+        if (field.key == std::string_view("max_time") || field.key == std::string_view("skip_parting"))
+          return;
         add_field(app, field, value, [&value](const auto& given) { value = given; });
       },
       impact);
@@ -250,6 +255,10 @@ void add_detection_options(CLI::App& app, MethodOptions& options, Dependences& d
   add_object_options(app, options.given_objects, true);
   dependences.push_back({app.get_option("--margin"), [&options] { return has_proximity(options.scene); },
                          "--contacts proximity"});
+  dependences.push_back({app.get_option("--own-separation"),
+                         [&options] { return has_continuous(options.scene); }, "--contacts continuous"});
+  dependences.push_back({app.get_option("--neighbours"),
+                         [&options] { return has_intersections(options.scene); }, "--contacts intersection"});
   dependences.push_back({app.get_option("--solid"), [&options] { return has_penetration(options.scene); },
                          "--contacts penetration"});
 }

@@ -32,20 +32,13 @@ const char* outcome_of(ContinuousDifference::Fault fault) {
   return "were reported with a time too long before they touch";
 }
 
-/// The elements of a and of b in words.
-std::array<const char*, 2> nouns_of(ElementPairKind kind) {
-  if (kind == ElementPairKind::vertex_face) return {"vertex", "face"};
-  if (kind == ElementPairKind::face_vertex) return {"face", "vertex"};
-  return {"edge", "edge"};
-}
-
 std::string describe(const Scene& scene, const ContinuousDifference& d) {
-  const auto [noun_a, noun_b] = nouns_of(d.kind);
+  const auto [kind_a, kind_b] = feature_kinds(d.kind);
   const auto numbers = [](const std::array<std::uint32_t, 2>& ids) {
     return ids[0] == ids[1] ? fmt::format("{}", ids[0]) : fmt::format("{} {}", ids[0], ids[1]);
   };
-  return fmt::format("{} {} of {} and {} {} of {} {}", noun_a, numbers(d.element_a),
-                     one_line(scene.name(d.object_a)), noun_b, numbers(d.element_b),
+  return fmt::format("{} {} of {} and {} {} of {} {}", word_of(kind_a), numbers(d.element_a),
+                     one_line(scene.name(d.object_a)), word_of(kind_b), numbers(d.element_b),
                      one_line(scene.name(d.object_b)), outcome_of(d.fault));
 }
 
@@ -62,12 +55,10 @@ const char* outcome_of(ProximityDifference::Fault fault) {
 }
 
 std::string describe(const Scene& scene, const ProximityDifference& d) {
-  constexpr std::array nouns{"vertex", "edge", "face"};
   const auto named = [&](FeatureKind kind, const std::array<std::uint32_t, 2>& ids, ObjectId object) {
     const std::string numbers =
         kind == FeatureKind::edge ? fmt::format("{} {}", ids[0], ids[1]) : fmt::format("{}", ids[0]);
-    return fmt::format("{} {} of {}", nouns[static_cast<std::size_t>(kind)], numbers,
-                       one_line(scene.name(object)));
+    return fmt::format("{} {} of {}", word_of(kind), numbers, one_line(scene.name(object)));
   };
   return fmt::format("{} and {} {}", named(d.kind_a, d.element_a, d.object_a),
                      named(d.kind_b, d.element_b, d.object_b), outcome_of(d.fault));

@@ -52,13 +52,41 @@ struct Contact {
 };
 
 /// The kinds of the two elements of a continuous contact: first of object a, then of object b. A contact of
-/// an object with itself is never `face_vertex`: its element a is the vertex.
-enum class ElementPairKind : std::uint8_t { vertex_face, face_vertex, edge_edge };
+/// an object with itself is never `face_vertex` or `edge_vertex`: its element a is the vertex. The last three
+/// occur with `ObjectOptions::edges` and `points`: a vertex and an edge or a point of these lists.
+enum class ElementPairKind : std::uint8_t {
+  vertex_face,
+  face_vertex,
+  edge_edge,
+  vertex_edge,
+  edge_vertex,
+  vertex_vertex,
+};
+
+/// The kinds of element a and of element b.
+constexpr std::array<FeatureKind, 2> feature_kinds(ElementPairKind kind) {
+  using enum FeatureKind;
+  switch (kind) {
+    case ElementPairKind::vertex_face:
+      return {vertex, face};
+    case ElementPairKind::face_vertex:
+      return {face, vertex};
+    case ElementPairKind::edge_edge:
+      return {edge, edge};
+    case ElementPairKind::vertex_edge:
+      return {vertex, edge};
+    case ElementPairKind::edge_vertex:
+      return {edge, vertex};
+    case ElementPairKind::vertex_vertex:
+      break;
+  }
+  return {vertex, vertex};
+}
 
 /// Two elements that touch on their way within the step. Bodies that already cut through each other at the
 /// start of the step have no continuous contact until two of their elements touch; `Contact` reports them.
-/// Edges are the distinct pairs of vertices of the triangles. Within
-/// one object, elements that share a vertex id are not a contact, and edge a is the smaller edge.
+/// Edges are the distinct pairs of vertices of the triangles and those of `ObjectOptions::edges`. Within one
+/// object, elements that share a vertex id are not a contact, and edge a or vertex a is the smaller one.
 ///
 /// With `ImpactCertainty::certain`, the pair is exact. `toi`, the barycentric coordinates, `point` and
 /// `normal` are rounded.

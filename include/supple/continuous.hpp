@@ -12,6 +12,18 @@ namespace supple {
 // Continuous collision: vertices move on straight paths from `start` (t = 0) to `end` (t = 1). Edges and
 // faces move with their vertices. Elements are closed sets. Edges and faces may degenerate at any time.
 
+// In two dimensions, z is 0 for all points.
+
+/// Two points a and b, in this order, at both ends of the step.
+struct PointPointMotion {
+  std::array<Vec3d, 2> start, end;
+};
+
+/// A point p and an edge (e0, e1), in this order, at both ends of the step.
+struct PointEdgeMotion {
+  std::array<Vec3d, 3> start, end;
+};
+
 /// A vertex v and a face (f0, f1, f2), in this order, at both ends of the step.
 struct VertexFaceMotion {
   std::array<Vec3d, 4> start, end;
@@ -39,6 +51,13 @@ struct ImpactOptions {
   /// Exact arithmetic decides pairs that floating point cannot decide. When this is off, such pairs are
   /// reported as touching `within_tolerance`, which bounds the time per pair.
   bool exact = true;
+  /// Impacts with a later reported time are left out, and the search ends there: 0 to 1.
+  double max_time = 1;
+  /// Leaves out elements that are apart at the start, within the separation there, and part: up to `max_time`
+  /// their distance keeps at least 1 - 2^-10 of that at the start. Has no effect without a separation.
+  bool skip_parting = false;
+
+  constexpr bool operator==(const ImpactOptions&) const = default;
 };
 
 enum class ImpactCertainty : std::uint8_t {
@@ -56,12 +75,13 @@ struct Impact {
   bool touching_at_start = false;
   /// Their distance at the start, to a relative error of 2^-20. Exactly 0 when they share a point there.
   double start_distance = 0;
-  /// The points that touch, in barycentric coordinates of the four vertices: 1 and three coordinates in the
-  /// face, or 1 - s, s on edge a and 1 - r, r on edge b.
+  /// The points that touch, in barycentric coordinates of the vertices: 1 and three coordinates in the face,
+  /// 1 - s, s on edge a and 1 - r, r on edge b, 1 and 1 - s, s on the edge, or 1 and 1 for two points.
   std::array<double, 4> barycentric{};
   /// Midpoint of the two points at `toi`.
   Vec3d point;
-  /// Unit vector from the face to the vertex, or from edge b to edge a. With a separation it is the direction
+  /// Unit vector from the face or edge to the vertex, from edge b to edge a, or from point b to point a. With
+  /// a separation it is the direction
   /// between the closest points at `toi`. Where these coincide, it is normal to both elements and points to
   /// the side of the vertex, or of edge a, before the impact. Pushing the vertex, or edge a, along it
   /// separates them. Zero only when no direction is defined.
@@ -73,12 +93,15 @@ struct Impact {
 /// parallel edges, degenerate faces, and no motion. Elements with a coordinate that is not finite touch
 /// nothing.
 ///
-/// Throws `Error` when `min_separation` is negative or not finite. Takes about 0.1 µs for elements that stay
-/// apart and 0.3 µs for others. When only exact arithmetic can decide, it takes a few microseconds, or a few
+/// Throws `Error` when an option is out of its range. Takes about 0.1 µs for elements that stay apart and
+/// 0.3 µs for others. When only exact arithmetic can decide, it takes a few microseconds, or a few
 /// hundred with a separation, and allocates memory. Coordinates that differ by more than 2^100 in size can
 /// then take milliseconds, tenths of a second at worst.
 std::optional<Impact> first_impact(const VertexFaceMotion& motion, const ImpactOptions& options = {});
 std::optional<Impact> first_impact(const EdgeEdgeMotion& motion, const ImpactOptions& options = {});
+/// Points and edges take some microseconds where they touch without a separation.
+std::optional<Impact> first_impact(const PointPointMotion& motion, const ImpactOptions& options = {});
+std::optional<Impact> first_impact(const PointEdgeMotion& motion, const ImpactOptions& options = {});
 
 /// The true first time of contact lies in [low, high]. The two are neighbouring doubles, or equal.
 struct TimeBracket {
@@ -95,5 +118,8 @@ struct TimeBracket {
 std::optional<TimeBracket> first_contact_by_algebra(const VertexFaceMotion& motion,
                                                     double min_separation = 0);
 std::optional<TimeBracket> first_contact_by_algebra(const EdgeEdgeMotion& motion, double min_separation = 0);
+std::optional<TimeBracket> first_contact_by_algebra(const PointPointMotion& motion,
+                                                    double min_separation = 0);
+std::optional<TimeBracket> first_contact_by_algebra(const PointEdgeMotion& motion, double min_separation = 0);
 
 }  // namespace supple

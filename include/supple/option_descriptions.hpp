@@ -41,6 +41,12 @@ inline constexpr std::array set_words<ContactKinds>{"none", "intersection", "con
                                                     "penetration"};
 template <>
 inline constexpr std::array words<ProximityListing>{"features", "elements"};
+template <>
+inline constexpr std::array words<ElementKinds>{"all", "vertex_face", "edge_edge"};
+template <>
+inline constexpr std::array words<ContinuousListing>{"all", "first"};
+template <>
+inline constexpr std::array words<Neighbours>{"skip", "exact"};
 
 template <>
 struct Description<ImpactOptions> {
@@ -61,6 +67,16 @@ struct Description<ImpactOptions> {
                                     "decides them (exact), or they are reported as within tolerance (report)",
                              .key = "undecided",
                              .truth_words = {"report", "exact"}});
+    visitor(Field<Options, double>{
+        .name = "max_time",
+        .member = &Options::max_time,
+        .doc = "Continuous contacts: leave out those later in the step, which is from 0 to 1",
+        .range = ValueRange::from(0, 1)});
+    visitor(Field<Options, bool>{
+        .name = "skip_parting",
+        .member = &Options::skip_parting,
+        .doc =
+            "Continuous contacts: leave out elements that are within the separation at the start and part"});
   }
 };
 
@@ -151,6 +167,11 @@ struct Description<ObjectOptions> {
                                  .member = &Options::self_collision,
                                  .doc = "Also test the object against itself",
                                  .key = "self"});
+    visitor(Field<Options, Neighbours>{
+        .name = "neighbours",
+        .member = &Options::neighbours,
+        .doc = "Triangles of one object that share a vertex: not tested (skip), or tested for intersection "
+               "beyond what they share (exact)"});
     visitor(Field<Options, bool>{.name = "weld",
                                  .member = &Options::weld,
                                  .doc = "Vertices with equal positions count as one, so that a seam that was "
@@ -166,6 +187,13 @@ struct Description<ObjectOptions> {
         .doc = "Proximity: two objects are near where they come within the sum of their margins",
         .range = ValueRange::from(0),
         .unit = "length"});
+    visitor(Field<Options, double>{
+        .name = "min_separation",
+        .member = &Options::min_separation,
+        .doc = "Continuous contacts: added to the minimum separation, for each of two objects",
+        .range = ValueRange::from(0),
+        .unit = "length",
+        .key = "own_separation"});
     visitor(Field<Options, bool>{
         .name = "solid",
         .member = &Options::solid,
@@ -240,6 +268,15 @@ struct Description<SceneOptions> {
         .member = &Options::proximity_listing,
         .doc = "Proximity: list each pair of closest features once (features), or every vertex and face and "
                "every two edges within the margins (elements)"});
+    visitor(Field<Options, ElementKinds>{
+        .name = "element_kinds",
+        .member = &Options::element_kinds,
+        .doc = "Continuous contacts and proximity: search all pairs of elements, only vertices with faces "
+               "(vertex_face), or only pairs of edges (edge_edge)"});
+    visitor(Field<Options, ContinuousListing>{
+        .name = "continuous_listing",
+        .member = &Options::continuous_listing,
+        .doc = "Continuous contacts: list all, or the first of each vertex, edge and face (first)"});
     visitor(Field<Options, std::uint32_t>{.name = "threads",
                                           .member = &Options::threads,
                                           .doc = "Worker threads; 0 means one per core",
@@ -247,6 +284,20 @@ struct Description<SceneOptions> {
                                           .is_of_machine = true});
     visitor(Field<Options, ComparisonOptions>{
         .name = "comparison", .member = &Options::comparison, .doc = "Options for comparison"});
+  }
+};
+
+template <>
+struct Description<StepOptions> {
+  static constexpr const char* name = "StepOptions";
+  template <class Visitor>
+  static constexpr void visit(Visitor&& visitor) {
+    using Options = StepOptions;
+    visitor(Field<Options, double>{
+        .name = "keep",
+        .member = &Options::keep,
+        .doc = "Share of its distance at the start that each pair of elements keeps in a safe step",
+        .range = ValueRange::from(0, 0.99)});
   }
 };
 

@@ -1,10 +1,12 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <limits>
 #include <optional>
 #include <string>
+#include <vector>
 #include <version>
 #ifdef __cpp_lib_jthread
 #include <stop_token>
@@ -81,21 +83,54 @@ constexpr ContactKinds with_included(ContactKinds set) {
   return contains(set, ContactKinds::penetration) ? set | ContactKinds::intersection : set;
 }
 
+/// The pairs of elements that continuous contacts and proximity search.
+enum class ElementKinds : std::uint8_t {
+  all,
+  vertex_face,  ///< vertices with faces, edges and points
+  edge_edge,
+};
+
+/// Which continuous contacts are listed.
+enum class ContinuousListing : std::uint8_t {
+  all,
+  /// The first contact of each vertex, edge and face, by time of impact and then in canonical order.
+  first,
+};
+
+/// Whether triangles of one object that share a vertex id are tested against each other.
+enum class Neighbours : std::uint8_t {
+  skip,
+  /// Intersections of triangles with themselves also find triangles that share a vertex or an edge and meet
+  /// elsewhere, as exact arithmetic decides. Two triangles with the same vertices always do.
+  exact,
+};
+
 /// Options of one object, given when it is added.
 struct ObjectOptions {
   /// Appears in messages and results; the mesh's name when empty.
   std::string name{};
   /// Also test the object against itself. Triangles that share a vertex id are never a contact.
   bool self_collision = false;
+  Neighbours neighbours = Neighbours::skip;
   /// Vertices with equal positions when the object is added count as one: the first of them stands for all,
   /// in triangles and in results, and the positions of the others are not read. So a seam that was split for
   /// texture coordinates is no border, and its two sides are neighbours, not contacts. O(n).
   bool weld = false;
+  /// The same for chosen vertices: vertex v counts as vertex `same_vertex[v]`, which counts as itself. Empty,
+  /// or an id for each vertex. Not together with `weld`.
+  std::vector<std::uint32_t> same_vertex{};
+  /// Edges and points of no triangle, for example of rods and particles, as vertex ids. They take part in
+  /// continuous contacts and proximity. Queries and other kinds of contacts read triangles alone.
+  std::vector<std::array<std::uint32_t, 2>> edges{};
+  std::vector<std::uint32_t> points{};
   /// The object never moves: it is not tested against other static objects, and moving it is an error.
   bool is_static = false;
   /// Proximity: two objects, or one with itself, are near where their elements come within the sum of their
   /// margins, in the unit of the coordinates. Finite, at least 0.
   double margin = 0;
+  /// Continuous contacts: elements of two objects, or of one with itself, touch at a distance of
+  /// `ImpactOptions::min_separation` plus this value of both objects. Finite, at least 0.
+  double min_separation = 0;
   /// The surface bounds a solid, into which other objects can penetrate. `Scene::add` checks that it is
   /// closed and that its triangles are oriented alike: each edge has as many triangles in one direction as in
   /// the other. A point is inside where a ray from it crosses the surface an odd number of times.
@@ -121,6 +156,9 @@ struct SceneOptions {
   ImpactOptions impact{};
   /// For proximity: what its list contains.
   ProximityListing proximity_listing = ProximityListing::features;
+  /// For continuous contacts and proximity: the pairs of elements that are searched.
+  ElementKinds element_kinds = ElementKinds::all;
+  ContinuousListing continuous_listing = ContinuousListing::all;
   /// Worker threads; 0 means one for each core. The results are the same for any number.
   std::uint32_t threads = 0;
   ComparisonOptions comparison{};
@@ -132,11 +170,13 @@ struct DetectRequest {
   std::optional<ContactKinds> contacts{};
   std::optional<ImpactOptions> impact{};
   std::optional<ProximityListing> proximity_listing{};
+  std::optional<ElementKinds> element_kinds{};
+  std::optional<ContinuousListing> continuous_listing{};
   /// The largest number of contacts of each kind in the result: the first ones in canonical order, for any
   /// number of threads. `DetectResult::truncated` says that there are more. The limit bounds the memory and
   /// the number of exact tests. The search skips object pairs after the last reported contact, but it
-  /// searches one object pair to its end. Proximity pairs are all found first. Penetration needs all
-  /// intersections: a limit is an error then.
+  /// searches one object pair to its end. Proximity pairs, and the first contacts of elements, are all found
+  /// first. Penetration needs all intersections: a limit is an error then.
   std::uint64_t max_contacts = std::numeric_limits<std::uint64_t>::max();
 #ifdef __cpp_lib_jthread
   /// Any thread can stop the call: it ends within milliseconds during the search, otherwise after the current
@@ -144,6 +184,12 @@ struct DetectRequest {
   /// without the stopped call.
   std::stop_token stop{};
 #endif
+};
+
+/// How a step is shortened; see `Scene::collision_free_step`.
+struct StepOptions {
+  /// The share of its distance at the start that each pair of elements keeps, 0 to 0.99.
+  double keep = 0.2;
 };
 
 /// Returns whether a pair of objects may be tested. The scene calls it from one thread, in ascending order,

@@ -126,6 +126,8 @@ struct DetectResult {
   PairEvents narrow_phase_events;
   PairEvents contact_events;    ///< of the pairs of different objects that intersect or touch in the step
   PairEvents proximity_events;  ///< of the pairs of different objects that have proximity pairs
+  /// Of the pairs of objects one of which has a vertex or a part inside the other.
+  PairEvents penetration_events;
   StepStats stats;
 
   std::span<const Contact> contacts_of(const ContactGroup& group) const {

@@ -15,10 +15,12 @@ namespace supple {
 template <>
 inline constexpr std::array words<IntersectionKind>{"point", "segment", "polygon"};
 template <>
-inline constexpr std::array words<ImpactCertainty>{"certain", "within_tolerance"};
-/// A vertex of a and a face of b, the reverse, and two edges.
+inline constexpr std::array words<FeatureKind>{"vertex", "edge", "face"};
 template <>
-inline constexpr std::array words<ElementPairKind>{"vf", "fv", "ee"};
+inline constexpr std::array words<ImpactCertainty>{"certain", "within_tolerance"};
+/// The element of a before that of b: vertex, edge or face.
+template <>
+inline constexpr std::array words<ElementPairKind>{"vf", "fv", "ee", "ve", "ev", "vv"};
 template <>
 inline constexpr std::array words<ContinuousDifference::Fault>{"missed", "added", "late", "early"};
 template <>

@@ -105,6 +105,15 @@ class Scene {
   void set_group(ObjectId object, std::uint32_t group, std::uint32_t mask);
   /// Changes `ObjectOptions::margin`, O(1). Throws `Error` when it is out of range.
   void set_margin(ObjectId object, double margin);
+  /// Changes `ObjectOptions::min_separation`, O(1). Throws `Error` when it is out of range.
+  void set_min_separation(ObjectId object, double separation);
+  /// Gives each vertex a group and a mask, as bits. Two vertices may touch when the group of each has a bit
+  /// in common with the mask of the other; for objects without groups, all bits are set. `detect`, `verify`
+  /// and safe steps leave out two triangles or elements when no vertex of one may touch a vertex of the
+  /// other. Queries do not read the groups. O(n). Empty lists remove them. Throws `Error` when the lists have
+  /// not one number for each vertex.
+  void set_vertex_groups(ObjectId object, std::span<const std::uint32_t> groups,
+                         std::span<const std::uint32_t> masks);
   /// Changes `ObjectOptions::self_collision`, O(1).
   void set_self_collision(ObjectId object, bool enabled);
   /// Sets a function that excludes pairs of objects; an empty function removes it. See `PairFilter`.
@@ -124,6 +133,15 @@ class Scene {
   /// later than the true first contact. Bodies that already cut through each other at the start do not
   /// shorten it.
   double max_step();
+  /// A part of the step, 0 to 1, after which nothing has crossed and every pair of elements keeps a share of
+  /// its distance at the start, `StepOptions::keep`. With a separation, a pair that is farther apart at the
+  /// start keeps it, and this share of its distance beyond it. So a pair within the separation, or one that
+  /// parts, does not end the step. It is the largest such part to a relative accuracy of 2^-18.
+  ///
+  /// Positive, unless elements share a point at the start, or rounding leaves no room: it is proven that also
+  /// the positions from + t (to - from), computed in double, are reached without contact. Ignores
+  /// `ImpactOptions::max_time` and `skip_parting`. Throws `Error` when an option is out of its range.
+  double collision_free_step(const StepOptions& options = {});
   /// The result of the last `detect`.
   const DetectResult& result() const;
   /// Recomputes the last `detect`, all kinds of contacts that it found, by exact arithmetic over all pairs of

@@ -191,23 +191,14 @@ std::string Comparison::name(const char* noun, const std::array<std::uint32_t, 2
 }
 
 std::string Comparison::name(const ProximityPair& pair) const {
-  constexpr std::array nouns{"vertex", "edge", "face"};
-  return name(nouns[static_cast<std::size_t>(pair.kind_a)], pair.element_a, pair.object_a) + " and " +
-         name(nouns[static_cast<std::size_t>(pair.kind_b)], pair.element_b, pair.object_b);
+  return name(word_of(pair.kind_a), pair.element_a, pair.object_a) + " and " +
+         name(word_of(pair.kind_b), pair.element_b, pair.object_b);
 }
 
 std::string Comparison::name(const ContinuousContact& c) const {
-  const bool edges = c.kind == ElementPairKind::edge_edge,
-             vertex_first = c.kind == ElementPairKind::vertex_face;
-  return name(edges          ? "edge"
-              : vertex_first ? "vertex"
-                             : "face",
-              c.element_a, c.object_a) +
-         " and " +
-         name(edges          ? "edge"
-              : vertex_first ? "face"
-                             : "vertex",
-              c.element_b, c.object_b);
+  const auto [kind_a, kind_b] = feature_kinds(c.kind);
+  return name(word_of(kind_a), c.element_a, c.object_a) + " and " +
+         name(word_of(kind_b), c.element_b, c.object_b);
 }
 
 Line Comparison::headers() const {

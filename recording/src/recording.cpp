@@ -387,15 +387,15 @@ void Recording::Implementation::check_elements(std::uint64_t frame, std::size_t 
     for (const std::uint32_t number : element)
       check_below(continuous_contacts_, frame, row, column, number, allowed);
   };
-  check_element("element_a", contact.object_a, contact.element_a,
-                contact.kind == ElementPairKind::face_vertex);
-  check_element("element_b", contact.object_b, contact.element_b,
-                contact.kind == ElementPairKind::vertex_face);
+  const auto [kind_a, kind_b] = feature_kinds(contact.kind);
+  check_element("element_a", contact.object_a, contact.element_a, kind_a == FeatureKind::face);
+  check_element("element_b", contact.object_b, contact.element_b, kind_b == FeatureKind::face);
 }
 
 std::vector<ContinuousContact> Recording::Implementation::continuous_contacts(std::uint64_t frame) {
   const auto check = [&](std::size_t row, const ContinuousContact& c) {
-    check_below(continuous_contacts_, frame, row, "kind", static_cast<std::uint64_t>(c.kind), 3);
+    check_below(continuous_contacts_, frame, row, "kind", static_cast<std::uint64_t>(c.kind),
+                words<ElementPairKind>.size());
     check_below(continuous_contacts_, frame, row, "certainty", static_cast<std::uint64_t>(c.certainty), 2);
     check_elements(frame, row, c);
   };

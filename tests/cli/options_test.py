@@ -75,14 +75,16 @@ class Options(ProgramTest):
         with_octree = ("region_test", "scene_octree_max_level", "scene_octree_expand_at", "scene_octree_arity", "scene_octree_root")
         proximity = {"contacts": (["--contacts", "proximity"], "proximity")}
         penetration = {"contacts": (["--contacts", "penetration"], "intersection,penetration")}
-        of_continuous, of_proximity = ("min_separation", "undecided", "solid"), ("margin", "proximity_listing", "solid")
+        of_continuous = ("min_separation", "undecided", "max_time", "skip_parting", "continuous_listing", "own_separation", "solid")
+        of_proximity = ("margin", "proximity_listing", "solid")
+        of_intersections = ("neighbours",)
         of_triangles = ("contact_points", "colliding_vertices", "sphere_fit")
         for fixed, without in (
-            (octree | continuous, (*of_triangles, *of_proximity)),
-            (octree | intersection, (*of_continuous, *of_proximity)),
-            (intersection, (*of_continuous, *of_proximity, *with_octree)),
-            (proximity, (*of_continuous, *of_triangles, *with_octree)),
-            (penetration, ("min_separation", "undecided", "margin", "proximity_listing", *with_octree)),
+            (octree | continuous, (*of_triangles, *of_proximity, *of_intersections)),
+            (octree | intersection, (*of_continuous, *of_proximity, "element_kinds")),
+            (intersection, (*of_continuous, *of_proximity, "element_kinds", *with_octree)),
+            (proximity, (*of_continuous, *of_triangles, *of_intersections, *with_octree)),
+            (penetration, (*(set(of_continuous + of_proximity) - {"solid"}), "element_kinds", *with_octree)),
         ):
             others = {key: other for key, other in (self.others() | fixed).items() if key not in without}
             words = [word for arguments, _ in others.values() for word in arguments]
@@ -119,9 +121,9 @@ class Options(ProgramTest):
         self.assert_one_line_error(self.run_here("detect", "run.h5", "--no-contact-points"), "--contacts intersection")
 
     def test_from_a_scene_file_through_a_recording(self):
-        keys = 'self = true\nweld = true\nstatic = true\nmargin = 0.25\nsolid = true\ngroup = 6\nmask = 5\nmax_level = 3\nleaf_size = 5\ntree_arity = 4\nobject_octree = "regular"\nrebuild_degraded = false\n'
+        keys = 'self = true\nneighbours = "exact"\nown_separation = 0.5\nweld = true\nstatic = true\nmargin = 0.25\nsolid = true\ngroup = 6\nmask = 5\nmax_level = 3\nleaf_size = 5\ntree_arity = 4\nobject_octree = "regular"\nrebuild_degraded = false\n'
         self.write("scene.toml", SCENE + keys)
-        expected = {"self": True, "weld": True, "static": True, "margin": 0.25, "solid": True, "group": 6, "mask": 5, "max_level": 3, "leaf_size": 5, "tree_arity": 4,
+        expected = {"self": True, "neighbours": "exact", "own_separation": 0.5, "weld": True, "static": True, "margin": 0.25, "solid": True, "group": 6, "mask": 5, "max_level": 3, "leaf_size": 5, "tree_arity": 4,
                     "object_octree": "regular", "rebuild_degraded": False}
         self.assertEqual(set(expected), set(self.detect("scene.toml")["objects"][1]["options"]))
         done = self.run_here("simulate", "scene.toml", "--frames", "2", "--quiet", "--record", "run.h5")

@@ -29,6 +29,10 @@ KEYS = {
     "contact_points": ("false", False, ""),
     "min_separation": ("0.25", 0.25, 'contacts = "continuous"\n'),
     "undecided": ('"report"', "report", 'contacts = "continuous"\n'),
+    "max_time": ("0.5", 0.5, 'contacts = "continuous"\n'),
+    "skip_parting": ("true", True, 'contacts = "continuous"\n'),
+    "element_kinds": ('"edge_edge"', "edge_edge", 'contacts = "proximity"\n'),
+    "continuous_listing": ('"first"', "first", 'contacts = "continuous"\n'),
     "colliding_vertices": ("true", True, ""),
     "proximity_listing": ('"elements"', "elements", 'contacts = "proximity"\n'),
 }

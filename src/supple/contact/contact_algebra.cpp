@@ -221,4 +221,14 @@ std::optional<TimeBracket> first_contact_by_algebra(const EdgeEdgeMotion& motion
   return first_contact(motion.start, motion.end, 2, min_separation);
 }
 
+std::optional<TimeBracket> first_contact_by_algebra(const PointPointMotion& motion, double min_separation) {
+  const auto with_face = [](const std::array<Vec3d, 2>& p) { return std::array{p[0], p[1], p[1], p[1]}; };
+  return first_contact(with_face(motion.start), with_face(motion.end), 1, min_separation);
+}
+
+std::optional<TimeBracket> first_contact_by_algebra(const PointEdgeMotion& motion, double min_separation) {
+  const auto with_face = [](const std::array<Vec3d, 3>& p) { return std::array{p[0], p[1], p[2], p[2]}; };
+  return first_contact(with_face(motion.start), with_face(motion.end), 1, min_separation);
+}
+
 }  // namespace supple

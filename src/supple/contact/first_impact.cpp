@@ -3,11 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <tuple>
+#include <utility>
 
 #include "contact/closest_points.hpp"
 #include "contact/element_distance.hpp"
 #include "contact/exact_impact.hpp"
+#include "contact/impact_filter.hpp"
 #include "contact/impact_search.hpp"
+#include "core/float_rounding.hpp"
 #include "geometry/vector.hpp"
 #include "supple/option_descriptions.hpp"
 
@@ -106,8 +109,13 @@ Vec3d normal_across(const RelativeMotion& motion, const RelativePlaces<double>& 
   const Vec3d before = motion.start.m - at.alpha * motion.start.u - at.beta * motion.start.w;
   const double side = dot(n, scaled(before));
   if (std::fabs(side) > negligible) return side > 0 ? n : -1.0 * n;
-  // The motion stays in one plane or on one line. Point back to where the element came from, or else against
-  // its velocity.
+  // The motion stays in one plane or on one line. Point back to where the element came from, across the line
+  // of the elements if they have one, or else against its velocity.
+  if (n == Vec3d{}) {
+    const Vec3d along = normalized(dot(places.u, places.u) < dot(places.w, places.w) ? places.w : places.u);
+    const Vec3d across = scaled(before) - dot(scaled(before), along) * along;
+    if (dot(across, across) > negligible * negligible) return normalized(across);
+  }
   if (scaled(before) != Vec3d{}) return normalized(before);
   if (velocity != Vec3d{}) return -1.0 * normalized(velocity);
   return n;
@@ -144,32 +152,9 @@ Impact impact_at(const ElementMotion& motion, const RelativeMotion& relative, do
   return impact;
 }
 
-bool touch_at_start(const ElementMotion& motion, double separation) {
-  bool used_exact = false;
-  return distance_within(element_points(motion.start, motion.are_edges), separation, used_exact,
-                         DistanceAccuracy::rough)
-      .has_value();
-}
-
-std::optional<Impact> checked_first_impact(const ElementMotion& motion, const ImpactOptions& options) {
-  check(options, "first_impact");
-  if (!std::ranges::all_of(motion.start, is_finite) || !std::ranges::all_of(motion.end, is_finite)) return {};
-  bool used_exact = false;
-  return first_impact_of_finite(motion, options, used_exact);
-}
-
-}  // namespace
-
-std::optional<Impact> first_impact_of_finite(const ElementMotion& motion, const ImpactOptions& options,
-                                             bool& used_exact) {
-  const RelativeMotion relative = relative_motion(motion);
-  return first_impact_after(search_impact(relative, options.min_separation), motion, relative, options,
-                            used_exact);
-}
-
-std::optional<Impact> first_impact_after(const ImpactSearch& search, const ElementMotion& motion,
-                                         const RelativeMotion& relative, const ImpactOptions& options,
-                                         bool& used_exact) {
+std::optional<Impact> impact_after(const ImpactSearch& search, const ElementMotion& motion,
+                                   const RelativeMotion& relative, const ImpactOptions& options,
+                                   bool& used_exact) {
   const double separation = options.min_separation;
   if (search.outcome == ImpactSearch::Outcome::apart) return std::nullopt;
   if (search.outcome == ImpactSearch::Outcome::touching) {
@@ -177,7 +162,7 @@ std::optional<Impact> first_impact_after(const ImpactSearch& search, const Eleme
   }
   used_exact = true;
   if (!options.exact) {
-    const bool at_start = search.time == 0 && touch_at_start(motion, separation);
+    const bool at_start = search.time == 0 && are_within(motion, separation);
     Impact impact = impact_at(motion, relative, search.time, at_start, separation);
     impact.certainty = ImpactCertainty::within_tolerance;
     return impact;
@@ -188,11 +173,91 @@ std::optional<Impact> first_impact_after(const ImpactSearch& search, const Eleme
   return impact_at(motion, relative, first->low, first->high == 0, separation);
 }
 
+/// Whether elements that are apart at the start, within the separation, part.
+bool part(const Impact& impact, const ElementMotion& motion, const RelativeMotion& relative,
+          const ImpactOptions& options, bool& used_exact) {
+  if (!impact.touching_at_start || !(impact.start_distance > 0)) return false;
+  const double least = impact.start_distance * (1 - 0x1p-10);
+  const std::optional<double> time = first_time_within(motion, relative, least, options.exact, used_exact);
+  return !time || *time > options.max_time;
+}
+
+}  // namespace
+
+float end_of_search(const ImpactOptions& options) {
+  return std::min(1.0f, round_up(options.max_time + toi_tolerance));
+}
+
+std::optional<double> first_time_within(const ElementMotion& motion, const RelativeMotion& relative,
+                                        double separation, bool exact, bool& used_exact) {
+  const ImpactSearch search = search_impact(relative, separation);
+  if (search.outcome == ImpactSearch::Outcome::apart) return std::nullopt;
+  if (search.outcome == ImpactSearch::Outcome::touching || !exact) return search.time;
+  used_exact = true;
+  const auto first = separation == 0 ? exact_first_contact(motion) : exact_first_contact(motion, separation);
+  return first ? std::optional(first->low) : std::nullopt;
+}
+
+std::optional<Impact> first_impact_after(const ImpactSearch& search, const ElementMotion& motion,
+                                         const RelativeMotion& relative, const ImpactOptions& options,
+                                         bool& used_exact) {
+  const std::optional<Impact> impact = impact_after(search, motion, relative, options, used_exact);
+  if (!impact || impact->toi > options.max_time) return std::nullopt;
+  if (options.skip_parting && part(*impact, motion, relative, options, used_exact)) return std::nullopt;
+  return impact;
+}
+
+bool are_within(const ElementMotion& motion, double separation) {
+  bool used_exact = false;
+  return distance_within(element_points(motion.start, motion.are_edges), separation, used_exact,
+                         DistanceAccuracy::rough)
+      .has_value();
+}
+
+double distance_at_start(const ElementMotion& motion, const RelativeMotion& relative) {
+  return gap_at_start(motion, relative).distance;
+}
+
+namespace {
+
+/// Whether a vector kernel proves that the elements touch after `until`.
+bool touch_later(const RelativeMotion& motion, float until, double separation) {
+  RelativeMotionBlock block;
+  block.set(0, part_of_motion(motion, until));
+  return may_touch(block, 1, motion.is_square, round_up(separation)) == 0;
+}
+
+std::optional<Impact> checked_first_impact(const ElementMotion& motion, const ImpactOptions& options) {
+  check(options, "first_impact");
+  if (!std::ranges::all_of(motion.start, is_finite) || !std::ranges::all_of(motion.end, is_finite)) return {};
+  const RelativeMotion relative = relative_motion(motion);
+  const float until = end_of_search(options);
+  if (until < 1 && touch_later(relative, until, options.min_separation)) return {};
+  bool used_exact = false;
+  return first_impact_after(search_impact(relative, options.min_separation), motion, relative, options,
+                            used_exact);
+}
+
+}  // namespace
+
 std::optional<Impact> first_impact(const VertexFaceMotion& motion, const ImpactOptions& options) {
   return checked_first_impact(motion, options);
 }
 std::optional<Impact> first_impact(const EdgeEdgeMotion& motion, const ImpactOptions& options) {
   return checked_first_impact(motion, options);
+}
+std::optional<Impact> first_impact(const PointPointMotion& motion, const ImpactOptions& options) {
+  std::optional<Impact> impact = checked_first_impact(motion, options);
+  if (impact) impact->barycentric = {1, 1, 0, 0};
+  return impact;
+}
+std::optional<Impact> first_impact(const PointEdgeMotion& motion, const ImpactOptions& options) {
+  std::optional<Impact> impact = checked_first_impact(motion, options);
+  if (impact) {
+    auto& [point, start, end, same_end] = impact->barycentric;
+    end += std::exchange(same_end, 0);
+  }
+  return impact;
 }
 
 }  // namespace supple

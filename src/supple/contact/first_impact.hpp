@@ -8,12 +8,24 @@
 
 namespace supple {
 
-/// `first_impact` for finite coordinates and valid options. Sets `used_exact` when floating point could not
-/// decide, and leaves it unchanged otherwise.
-std::optional<Impact> first_impact_of_finite(const ElementMotion& motion, const ImpactOptions& options,
-                                             bool& used_exact);
+/// The part of the step in which impacts are searched: a little more than up to `max_time`, because a
+/// reported time may be early.
+float end_of_search(const ImpactOptions& options);
 
-/// The same after the search of `relative`, the relative motion of the elements.
+/// A time up to which the elements stay farther apart than `separation`, early by no more than the
+/// tolerances; nothing when they do so within the whole step. Without `exact` it may be earlier, or there may
+/// be one when they stay apart.
+std::optional<double> first_time_within(const ElementMotion& motion, const RelativeMotion& relative,
+                                        double separation, bool exact, bool& used_exact);
+
+/// The distance of the elements at the start, to a relative error of 2^-20; 0 only when they share a point.
+double distance_at_start(const ElementMotion& motion, const RelativeMotion& relative);
+
+/// Whether the elements are within `separation` at the start, exactly.
+bool are_within(const ElementMotion& motion, double separation);
+
+/// `first_impact` for finite coordinates and valid options, after the search of `relative`, the relative
+/// motion of the elements. Sets `used_exact` when floating point could not decide.
 std::optional<Impact> first_impact_after(const ImpactSearch& search, const ElementMotion& motion,
                                          const RelativeMotion& relative, const ImpactOptions& options,
                                          bool& used_exact);

@@ -285,7 +285,7 @@ class ElementTests {
                MovingBoxCache& cache, ElementPairBatches& batches)
       : a_(a),
         b_(b),
-        part_a_{0, part.latest, {}},
+        part_a_{0, part.latest, {}, part.kinds},
         part_b_(part),
         same_object_(same_object),
         cache_(cache),
@@ -317,9 +317,11 @@ class ElementTests {
         {b_.edge_ids},
         &MovingBoxCache::Side::edges,
         {b_.first_edge[leaves.begin_b], b_.first_edge[leaves.end_b]}};
-    match<Kind::vertex_face>(vertices_a, faces_b);
-    if (!same_leaf_) match<Kind::face_vertex>(faces_a, vertices_b);
-    match<Kind::edge_edge>(edges_a, edges_b);
+    if (part_b_.kinds != ElementKinds::edge_edge) {
+      match<Kind::vertex_face>(vertices_a, faces_b);
+      if (!same_leaf_) match<Kind::face_vertex>(faces_a, vertices_b);
+    }
+    if (part_b_.kinds != ElementKinds::vertex_face) match<Kind::edge_edge>(edges_a, edges_b);
   }
   std::uint64_t box_tests() const { return tests_; }
 

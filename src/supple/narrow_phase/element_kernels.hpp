@@ -8,6 +8,7 @@
 #include "narrow_phase/overlap_kernels.hpp"
 #include "octree/moving_boxes.hpp"
 #include "supple/contact.hpp"
+#include "supple/options.hpp"
 
 namespace supple {
 
@@ -69,6 +70,7 @@ struct PartOfStep {
   float separation = 0;
   float latest = 1;
   Vec3f offset{};
+  ElementKinds kinds = ElementKinds::all;  ///< pairs of elements that are tested
 };
 
 /// Boxes of up to `leaf_block` elements of one kind at both ends of (a part of) a step: min x, y, z, max x,

@@ -48,12 +48,13 @@ struct ObjectPairView {
   float separation = 0;
   /// Null, or the time in the step until which contacts are of interest. It may decrease during the search.
   const std::atomic<float>* latest = nullptr;
+  ElementKinds kinds = ElementKinds::all;  ///< for moving objects
 
   /// Bounds at a time before the end cost more than those at the end, and for a late time they save little.
   PartOfStep part_of_step() const {
     constexpr float least = 0x1p-20f, most = 0.125f;
     const float until = latest != nullptr ? latest->load(std::memory_order_relaxed) : 1;
-    return {separation, until < most ? std::max(until, least) : 1, placement.offset};
+    return {separation, until < most ? std::max(until, least) : 1, placement.offset, kinds};
   }
   bool is_moving() const { return a.moving.start != nullptr; }
 };

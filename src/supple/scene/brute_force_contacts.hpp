@@ -4,7 +4,9 @@
 #include <vector>
 
 #include "core/parallel.hpp"
+#include "scene/vertex_groups.hpp"
 #include "supple/mesh.hpp"
+#include "supple/options.hpp"
 #include "supple/types.hpp"
 
 namespace supple {
@@ -13,11 +15,13 @@ namespace supple {
 struct PlainObject {
   std::vector<Vec3d> positions;
   std::vector<Triangle> triangles;
+  VertexGroups groups{};
+  Neighbours neighbours = Neighbours::skip;
 };
 
 /// Returns all intersecting pairs of triangles of two objects, sorted. For an object with itself
-/// (`same_object`), these are pairs with a < b that share no vertex id. Triangles with a coordinate that is
-/// not finite intersect nothing.
+/// (`same_object`), these are pairs with a < b that share no vertex id, or that meet beyond what they share
+/// with `Neighbours::exact`. Triangles with a coordinate that is not finite intersect nothing.
 ///
 /// Each pair is decided by comparing the exact boxes of its triangles or by exact integer arithmetic. The
 /// boxes of b are sorted along x, so that one comparison decides many pairs.

@@ -9,8 +9,8 @@ namespace {
 
 /// Appends the element unless a coordinate is not finite.
 void append(const PlainMovingObject& object, std::array<std::uint32_t, 3> vertices,
-            std::array<std::uint32_t, 2> name, std::vector<BoxedElement>& elements) {
-  BoxedElement element{vertices, name, {}, {}, {}, {}};
+            std::array<std::uint32_t, 2> name, FeatureKind kind, std::vector<BoxedElement>& elements) {
+  BoxedElement element{vertices, name, kind, {}, {}, {}, {}};
   const auto corner = [&](const std::vector<Vec3d>& positions, std::size_t i) {
     return positions[vertices[i]];
   };
@@ -47,10 +47,14 @@ BoxedElements boxed_elements(const PlainMovingObject& object) {
   keep_distinct(vertices);
   keep_distinct(edges);
   BoxedElements elements;
-  for (const std::uint32_t v : vertices) append(object, {v, v, v}, {v, v}, elements.vertices);
-  for (const auto& [v, w] : edges) append(object, {v, w, w}, {v, w}, elements.edges);
-  for (std::uint32_t f = 0; f < object.triangles.size(); ++f) {
-    append(object, object.triangles[f], {f, f}, elements.faces);
+  using enum FeatureKind;
+  for (const std::uint32_t v : vertices) append(object, {v, v, v}, {v, v}, vertex, elements.vertices);
+  for (const auto& [v, w] : edges) append(object, {v, w, w}, {v, w}, edge, elements.edges);
+  for (std::uint32_t f = 0; f < object.face_count; ++f)
+    append(object, object.triangles[f], {f, f}, face, elements.faces);
+  for (std::size_t f = object.face_count; f < object.triangles.size(); ++f) {
+    const Triangle& extra = object.triangles[f];
+    append(object, extra, {extra[0], extra[1]}, extra[0] == extra[1] ? vertex : edge, elements.faces);
   }
   return elements;
 }

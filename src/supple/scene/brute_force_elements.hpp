@@ -10,6 +10,8 @@
 #include <vector>
 
 #include "core/parallel.hpp"
+#include "scene/vertex_groups.hpp"
+#include "supple/contact.hpp"
 #include "supple/mesh.hpp"
 
 // What the brute forces of continuous contacts and of proximity share: all elements, and all pairs of them.
@@ -19,18 +21,23 @@ namespace supple {
 struct PlainMovingObject {
   std::vector<Vec3d> start, end;
   std::vector<Triangle> triangles;
+  VertexGroups groups{};
+  /// Triangles from here on are edges and points of no triangle, with the last vertex repeated.
+  std::size_t face_count = triangles.size();
 };
 
 /// A vertex, edge or face: its vertices, its ids, and its exact boxes at both ends of the step.
 struct BoxedElement {
   std::array<std::uint32_t, 3> vertices;
   std::array<std::uint32_t, 2> name;
+  FeatureKind kind;
   double start_min[3], start_max[3], end_min[3], end_max[3];
 
   double sweep_min() const { return std::min(start_min[0], end_min[0]); }
   double sweep_max() const { return std::max(start_max[0], end_max[0]); }
 };
 
+/// `faces` also has the edges and points of no triangle.
 struct BoxedElements {
   std::vector<BoxedElement> vertices, edges, faces;
 };
@@ -46,6 +53,11 @@ std::uint64_t element_pairs(const BoxedElements& a, const BoxedElements& b, bool
 bool stay_apart(const BoxedElement& p, const BoxedElement& q, double separation);
 
 bool share_vertex(const BoxedElement& p, const BoxedElement& q);
+
+inline bool may_touch_by_groups(const PlainMovingObject& a, const BoxedElement& p, const PlainMovingObject& b,
+                                const BoxedElement& q) {
+  return may_touch_by_groups(a.groups, p.vertices, b.groups, q.vertices);
+}
 
 /// Elements of b sorted by their least x. `reach` is, for each, the greatest x of the elements up to it:
 /// where that is less than the least x of another element, none of the elements up to here comes near it.

@@ -17,9 +17,8 @@ struct SortedElement {
   std::vector<Vec3d> points;
   std::array<std::uint32_t, 2> name;
 
-  SortedElement(const PlainMovingObject& object, const BoxedElement& element, std::size_t count)
-      : name(element.name) {
-    for (std::size_t i = 0; i < count; ++i)
+  SortedElement(const PlainMovingObject& object, const BoxedElement& element) : name(element.name) {
+    for (std::size_t i = 0; i <= static_cast<std::size_t>(element.kind); ++i)
       ids.push_back({element.vertices[i], static_cast<std::uint8_t>(i)});
     std::sort(ids.begin(), ids.end());
     for (const auto& [id, corner] : ids) points.push_back(object.end[id]);
@@ -106,14 +105,15 @@ bool clearly_apart(std::span<const Vec3d> a, std::span<const Vec3d> b, double re
 
 BruteForceProximity find_proximity_by_brute_force(const PlainMovingObject& a, const PlainMovingObject& b,
                                                   bool same_object, double reach, ProximityListing listing,
-                                                  const Parallel& parallel) {
+                                                  ElementKinds kinds, const Parallel& parallel) {
   const BoxedElements of_a = boxed_elements(a), of_b = boxed_elements(b);
   const Rational squared_reach = Rational(reach) * Rational(reach);
   BruteForceProximity result;
   result.pairs_checked = element_pairs(of_a, of_b, same_object);
   const auto decide = [&](SortedElement first, SortedElement second,
                           bool swaps) -> std::optional<NearElements> {
-    if (clearly_apart(first.points, second.points, reach)) return {};
+    if (first.points.size() + second.points.size() == 4 && clearly_apart(first.points, second.points, reach))
+      return {};
     ExactDistance exact = distance_by_algebra(first.points, second.points);
     if (exact.squared > squared_reach) return {};
     Side side_a = side_of(first, exact.on_a, listing), side_b = side_of(second, exact.on_b, listing);
@@ -122,29 +122,32 @@ BruteForceProximity find_proximity_by_brute_force(const PlainMovingObject& a, co
     return NearElements{side_a.kind, side_b.kind, side_a.name,  side_b.name,
                         side_a.on,   side_b.on,   exact.squared};
   };
-  decide_all(
-      of_a.vertices, Sweep(of_b.faces), same_object, false, reach, parallel,
-      [&](const BoxedElement& p, const BoxedElement& q) {
-        return decide(SortedElement(a, p, 1), SortedElement(b, q, 3), false);
-      },
-      result.near);
-  if (!same_object) {
-    decide_all(
-        of_a.faces, Sweep(of_b.vertices), false, false, reach, parallel,
-        [&](const BoxedElement& p, const BoxedElement& q) {
-          return decide(SortedElement(b, q, 1), SortedElement(a, p, 3), true);
-        },
-        result.near);
+  const auto decide_pairs = [&](const std::vector<BoxedElement>& p_all,
+                                const std::vector<BoxedElement>& q_all, bool are_edges,
+                                const auto& decide_pair) {
+    const auto decide_allowed = [&](const BoxedElement& p, const BoxedElement& q) {
+      return may_touch_by_groups(a, p, b, q) ? decide_pair(p, q) : std::nullopt;
+    };
+    decide_all(p_all, Sweep(q_all), same_object, are_edges, reach, parallel, decide_allowed, result.near);
+  };
+  if (kinds != ElementKinds::edge_edge) {
+    decide_pairs(of_a.vertices, of_b.faces, false, [&](const BoxedElement& p, const BoxedElement& q) {
+      return decide(SortedElement(a, p), SortedElement(b, q), false);
+    });
+    if (!same_object) {
+      decide_pairs(of_a.faces, of_b.vertices, false, [&](const BoxedElement& p, const BoxedElement& q) {
+        return decide(SortedElement(b, q), SortedElement(a, p), true);
+      });
+    }
   }
-  decide_all(
-      of_a.edges, Sweep(of_b.edges), same_object, true, reach, parallel,
-      [&](const BoxedElement& p, const BoxedElement& q) {
-        // Ties within one object: the edge with the smaller larger id counts as the first.
-        const bool in_order = std::pair(p.name[1], p.name[0]) < std::pair(q.name[1], q.name[0]);
-        if (!same_object || in_order) return decide(SortedElement(a, p, 2), SortedElement(b, q, 2), false);
-        return decide(SortedElement(b, q, 2), SortedElement(a, p, 2), false);
-      },
-      result.near);
+  if (kinds != ElementKinds::vertex_face) {
+    decide_pairs(of_a.edges, of_b.edges, true, [&](const BoxedElement& p, const BoxedElement& q) {
+      // Ties within one object: the edge with the smaller larger id counts as the first.
+      const bool in_order = std::pair(p.name[1], p.name[0]) < std::pair(q.name[1], q.name[0]);
+      if (!same_object || in_order) return decide(SortedElement(a, p), SortedElement(b, q), false);
+      return decide(SortedElement(b, q), SortedElement(a, p), false);
+    });
+  }
   std::sort(result.near.begin(), result.near.end(),
             [](const NearElements& p, const NearElements& q) { return place_of(p) < place_of(q); });
   const auto same = [](const NearElements& p, const NearElements& q) { return place_of(p) == place_of(q); };

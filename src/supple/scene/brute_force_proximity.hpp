@@ -30,9 +30,9 @@ struct BruteForceProximity {
 /// larger by far more than rounding, or rationals decide each pair of elements.
 BruteForceProximity find_proximity_by_brute_force(const PlainMovingObject& a, const PlainMovingObject& b,
                                                   bool same_object, double reach, ProximityListing listing,
-                                                  const Parallel& parallel);
+                                                  ElementKinds kinds, const Parallel& parallel);
 
-/// Whether two elements, one of them a vertex or both edges, are clearly farther apart than `reach`: the
+/// Whether a vertex and a face, or two edges, are clearly farther apart than `reach`: the
 /// planes or lines of their interiors are, or no points inside them are closest, and their borders are
 /// farther apart. Rounding, and interiors that are nearly parallel, change a distance by much less than the
 /// slack.

@@ -7,6 +7,7 @@
 #include <bit>
 #include <utility>
 
+#include "contact/neighbour_test.hpp"
 #include "contact/triangle_intersection.hpp"
 
 namespace supple {
@@ -29,6 +30,14 @@ TrianglePoints points_of(const OctreeView& view, std::uint32_t triangle) {
 template <class Visit>
 void for_each_bit(std::uint64_t bits, Visit&& visit) {
   for (; bits != 0; bits &= bits - 1) visit(static_cast<std::size_t>(std::countr_zero(bits)));
+}
+
+std::uint32_t smallest_common_vertex(const Triangle& p, const Triangle& q) {
+  std::uint32_t smallest = ~std::uint32_t{0};
+  for (const std::uint32_t v : p) {
+    if (std::find(q.begin(), q.end(), v) != q.end()) smallest = std::min(smallest, v);
+  }
+  return smallest;
 }
 
 /// Orders each pair as in the result, so that the exact stage does not depend on the shape of the octrees.
@@ -116,6 +125,13 @@ void ContactPass::run_task(std::size_t task, Worker& worker) {
   };
   worker.traversal.find_triangle_pairs(input.pair, root, worker.stats.traversal, on_leaves, on_candidates);
   Timer timer;
+  if (search_.contacts && input.pair.same_object && input.object_a.neighbours != nullptr) {
+    test_neighbours(input, task, worker);
+    if (limit_.is_set()) {
+      add_crossing(input, worker.crossing_count, worker);
+      drop_excess(job, first, worker);
+    }
+  }
   add_crossing(input, worker.crossing_count, worker);
   add_normals(worker);
   worker.stats.exact_seconds += timer.lap();
@@ -137,20 +153,51 @@ ContactPass::TaskInput ContactPass::input_of_job(std::uint32_t job) const {
           {pair.a.arrays, pair.a.translation},
           {pair.b.arrays, pair.b.translation},
           objects_[a].triangle_ids,
-          objects_[b].triangle_ids};
+          objects_[b].triangle_ids,
+          objects_[a],
+          objects_[b]};
+}
+
+/// Tests triangles that share a vertex. The tasks of a job share the vertices.
+void ContactPass::test_neighbours(const TaskInput& input, std::size_t task, Worker& worker) const {
+  const std::span<const ContactTask> tasks = tasks_.tasks();
+  const auto [first_task, end_task] =
+      std::equal_range(tasks.begin(), tasks.end(), tasks[task],
+                       [](const ContactTask& p, const ContactTask& q) { return p.job < q.job; });
+  const std::size_t count = input.object_a.vertex_count;
+  const auto parts = static_cast<std::size_t>(end_task - first_task);
+  const std::size_t part = task - static_cast<std::size_t>(first_task - tasks.begin());
+  const auto corners = input.pair.a.arrays.triangles;
+  worker.neighbours.clear();
+  for (std::size_t v = count * part / parts; v < count * (part + 1) / parts && !stop_.stop_requested(); ++v) {
+    const std::span<const std::uint32_t> around =
+        input.object_a.neighbours->around(static_cast<std::uint32_t>(v));
+    for (std::size_t i = 0; i < around.size(); ++i) {
+      for (std::size_t k = i + 1; k < around.size(); ++k) {
+        const Triangle &p = corners[around[i]], &q = corners[around[k]];
+        if (smallest_common_vertex(p, q) != v) continue;
+        if (meet_elsewhere(p, points_of(input.pair.a, around[i]), q, points_of(input.pair.a, around[k])))
+          worker.neighbours.push_back({around[i], around[k]});
+      }
+    }
+  }
+  test_candidates(input, worker.neighbours, worker);
 }
 
 /// A vector kernel decides a block of candidates at a time. The exact test decides the few that remain.
 void ContactPass::test_candidates(const TaskInput& input, std::span<const TrianglePair> candidates,
                                   Worker& worker) const {
+  const bool has_groups = !input.object_a.groups.empty() || !input.object_b.groups.empty();
   std::array<TrianglePair, pair_filter_capacity> ordered, wanted;
   for (std::size_t first = 0; first < candidates.size(); first += pair_filter_capacity) {
     if (stop_.stop_requested()) return;
     auto part = candidates.subspan(first, std::min(pair_filter_capacity, candidates.size() - first));
     if (input.pair.same_object) part = in_order_of_results(part, input.ids_a, ordered);
-    if (limit_.excludes_some()) {
+    if (limit_.excludes_some() || has_groups) {
       const auto end = std::copy_if(part.begin(), part.end(), wanted.begin(), [&](const TrianglePair& p) {
-        return !limit_.excludes(ContactLimit::place(input.job, input.ids_a[p.a]));
+        return !limit_.excludes(ContactLimit::place(input.job, input.ids_a[p.a])) &&
+               may_touch_by_groups(input.object_a.groups, input.pair.a.arrays.triangles[p.a],
+                                   input.object_b.groups, input.pair.b.arrays.triangles[p.b]);
       });
       part = {wanted.begin(), end};
       if (part.empty()) continue;

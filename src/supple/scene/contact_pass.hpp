@@ -12,11 +12,13 @@
 #include "core/parallel.hpp"
 #include "core/stop_signal.hpp"
 #include "core/timer.hpp"
+#include "mesh/vertex_triangles.hpp"
 #include "narrow_phase/traversal.hpp"
 #include "scene/contact_limit.hpp"
 #include "scene/contact_order.hpp"
 #include "scene/contact_tasks.hpp"
 #include "scene/job_outcomes.hpp"
+#include "scene/vertex_groups.hpp"
 #include "supple/contact.hpp"
 #include "supple/result.hpp"
 
@@ -28,6 +30,9 @@ struct ContactObject {
   OctreeView view;
   std::span<const std::uint32_t> triangle_ids;  ///< the user's id of each triangle in octree order
   std::size_t vertex_count = 0;
+  VertexGroups groups;
+  /// The triangles around each vertex, in octree order, if triangles that share one are tested; else null.
+  const VertexTriangles* neighbours = nullptr;
 };
 
 /// What the pass searches.
@@ -78,6 +83,7 @@ class ContactPass {
     std::array<TrianglePair, CrossingSegments::capacity + pair_filter_capacity> crossing;
     std::size_t crossing_count = 0;
     CrossingSegments segments;
+    std::vector<TrianglePair> neighbours;  // scratch
     // Contacts found one by one whose details have no normal yet, and the indices of these details.
     IntersectingPairs unfinished;
     std::array<std::uint32_t, IntersectingPairs::capacity> unfinished_details;
@@ -98,11 +104,14 @@ class ContactPass {
     ObjectPairView pair;
     PlacedTriangles triangles_a, triangles_b;
     std::span<const std::uint32_t> ids_a, ids_b;
+    const ContactObject& object_a;
+    const ContactObject& object_b;
   };
   TaskInput input_of_job(std::uint32_t job) const;
   void test_candidates(const TaskInput& input, std::span<const TrianglePair> candidates,
                        Worker& worker) const;
   void test_candidate(const TaskInput& input, TrianglePair candidate, Worker& worker) const;
+  void test_neighbours(const TaskInput& input, std::size_t task, Worker& worker) const;
   void add_crossing(const TaskInput& input, std::size_t count, Worker& worker) const;
   static void add_normals(Worker& worker);
   void drop_excess(std::uint32_t job, std::size_t first, Worker& worker);

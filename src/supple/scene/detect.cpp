@@ -50,16 +50,29 @@ StopSignal stop_signal([[maybe_unused]] const DetectRequest& request) {
 SearchedShapes Question::shapes() const {
   return {searches_at_rest(), is_continuous(), has_proximity(),
           // Colliding vertices and separations need all overlapping leaves, so nothing may be culled.
-          searches_at_rest() && !colliding_vertices, is_continuous() && impact.min_separation == 0};
+          searches_at_rest() && !colliding_vertices, is_continuous() && impact.impact.min_separation == 0};
+}
+
+/// Penetrations and curves need all intersections.
+void Scene::Implementation::check_penetration(const DetectRequest& request) const {
+  if (request.max_contacts != DetectRequest{}.max_contacts)
+    fail("detect: penetration needs all intersections; request it without max_contacts");
+  for (const Slot& slot : slots_) {
+    if (slot.object == nullptr || slot.object->vertex_groups().empty()) continue;
+    fail("detect: penetration needs all intersections, but " + slot.object->options.name +
+         " has vertex groups; remove them with set_vertex_groups");
+  }
 }
 
 const DetectResult& Scene::Implementation::detect(const DetectRequest& request) {
   if (request.impact) check(*request.impact, "DetectRequest::impact");
   question_ = {
-      with_included(request.contacts.value_or(options.contacts)), request.impact.value_or(options.impact),
-      request.proximity_listing.value_or(options.proximity_listing), options.comparison.colliding_vertices};
-  if (question_.has_penetration() && request.max_contacts != DetectRequest{}.max_contacts)
-    fail("detect: penetration needs all intersections; request it without max_contacts");
+      with_included(request.contacts.value_or(options.contacts)),
+      {request.impact.value_or(options.impact), request.element_kinds.value_or(options.element_kinds),
+       request.continuous_listing.value_or(options.continuous_listing)},
+      request.proximity_listing.value_or(options.proximity_listing),
+      options.comparison.colliding_vertices};
+  if (question_.has_penetration()) check_penetration(request);
   const StopSignal stop = stop_signal(request);
   result = {};
   result.step = step_;
@@ -120,7 +133,9 @@ void Scene::Implementation::refit_objects(const Question& question) {
   const SearchedShapes shapes = question.shapes();
   const bool is_another_search = searched_ != shapes;
   const auto growth_of = [&](const SceneObject& object) {
-    return std::max(question.is_continuous() ? growth(question.impact.min_separation / 2) : 0,
+    const double separation = question.impact.impact.min_separation / 2 + object.options.min_separation;
+    const double kept = question.reach_of_way > 0 ? question.reach_of_way * object.ways(parallel).longest : 0;
+    return std::max(question.is_continuous() ? growth(separation + kept) : 0,
                     question.has_proximity() ? growth(object.options.margin) : 0);
   };
   growths_.resize(slots_.size(), 0);
@@ -257,11 +272,15 @@ void Scene::Implementation::rebuild_degraded(const Jobs& jobs) {
 bool Scene::Implementation::find_contacts(const DetectRequest& request, const StopSignal& stop) {
   contact_objects_.clear();
   for (std::uint32_t index = 0; index < slots_.size(); ++index) {
-    const SceneObject* const object = slots_[index].object.get();
+    SceneObject* const object = slots_[index].object.get();
     contact_objects_.emplace_back();
     if (object == nullptr) continue;
-    contact_objects_.back() = {id_of(index), object->resting_view(), object->octree().triangle_ids(),
-                               object->octree().vertex_count()};
+    contact_objects_.back() = {id_of(index),
+                               object->resting_view(),
+                               object->octree().triangle_ids(),
+                               object->octree().vertex_count(),
+                               object->vertex_groups(),
+                               object->neighbours()};
   }
   const ContactSearch search{question_.has_intersections(),
                              options.contact_points || question_.has_penetration(),
@@ -278,13 +297,18 @@ void Scene::Implementation::list_element_objects(MovingShape::Part part) {
     if (object == nullptr) continue;
     const bool is_way = part == MovingShape::Part::way;
     const MovingShape& shape = is_way ? object->moving() : object->near();
-    element_objects_.back() = {id_of(index),
-                               is_way ? object->moving_view() : object->near_view(),
-                               &shape.start(),
-                               &shape.end(),
-                               object->octree().triangle_ids(),
-                               shape.elements().vertex_ids(),
-                               object->options.margin};
+    MovingObject& listed = element_objects_.back();
+    listed.id = id_of(index);
+    listed.view = is_way ? object->moving_view() : object->near_view();
+    listed.start = &shape.start();
+    listed.end = &shape.end();
+    listed.triangle_ids = object->octree().triangle_ids();
+    listed.vertex_ids = shape.elements().vertex_ids();
+    listed.face_count = object->face_count();
+    listed.is_point = object->is_point();
+    listed.groups = object->vertex_groups();
+    listed.margin = object->options.margin;
+    listed.min_separation = object->options.min_separation;
   }
 }
 
@@ -296,8 +320,9 @@ bool Scene::Implementation::find_impacts(const DetectRequest& request, const Sto
 
 bool Scene::Implementation::find_proximity(const DetectRequest& request, const StopSignal& stop) {
   list_element_objects(MovingShape::Part::end);
-  return proximity_pass_.run(jobs_.jobs, element_objects_, versions_, question_.proximity_listing,
-                             request.max_contacts, stop, parallel, result.stats);
+  return proximity_pass_.run(jobs_.jobs, element_objects_, versions_,
+                             {question_.proximity_listing, question_.impact.kinds}, request.max_contacts,
+                             stop, parallel, result.stats);
 }
 
 bool Scene::Implementation::find_penetrations(const StopSignal& stop) {
@@ -322,14 +347,104 @@ bool Scene::Implementation::find_penetrations(const StopSignal& stop) {
   return true;
 }
 
-std::optional<ContinuousContact> Scene::Implementation::earliest_impact() {
+/// Prepares a search on the way that does not change the result of `detect`.
+void Scene::Implementation::search_on_the_way(const Question& question) {
   const StepStats stats = result.stats;
-  refit_objects({ContactKinds::continuous, options.impact});
+  refit_objects(question);
   find_object_pairs(impact_jobs_);
   rebuild_degraded(impact_jobs_);
   result.stats = stats;
   list_element_objects(MovingShape::Part::way);
-  return impact_pass_.find_earliest(impact_jobs_.jobs, element_objects_, options.impact, parallel);
+}
+
+std::optional<ContinuousContact> Scene::Implementation::earliest_impact() {
+  search_on_the_way({ContactKinds::continuous, impact_options()});
+  return impact_pass_.find_earliest(impact_jobs_.jobs, element_objects_, impact_options(), parallel);
+}
+
+double Scene::Implementation::collision_free_step(const StepOptions& step) {
+  check(step, "collision_free_step");
+  Question question{ContactKinds::continuous, impact_options()};
+  question.reach_of_way = step.keep / (1 - step.keep);
+  search_on_the_way(question);
+  for (std::uint32_t index = 0; index < slots_.size(); ++index) {
+    if (slots_[index].object == nullptr) continue;
+    const SceneObject::Ways ways = slots_[index].object->ways(parallel);
+    MovingObject& listed = element_objects_[index];
+    listed.mean_way = ways.mean;
+    listed.farthest_way = ways.farthest_from_mean;
+    listed.largest_coordinate = ways.largest_coordinate;
+  }
+  const SafeStep safe =
+      impact_pass_.find_safe_step(impact_jobs_.jobs, element_objects_, impact_options(), step, parallel);
+  return safe.is_near_rounding ? proven_step(safe.time) : safe.time;
+}
+
+namespace {
+
+/// Adds the elements of an object at other positions, with its vertex groups.
+ObjectId add_copy(const SceneObject& object, const std::vector<Vec3d>& positions, Scene& scene) {
+  std::vector<Triangle> faces;
+  ObjectOptions options;
+  options.self_collision = object.options.self_collision;
+  for (std::uint32_t t = 0; t < object.octree().triangles().size(); ++t) {
+    const Triangle triangle = object.octree().user_triangle(t);
+    const auto& [v, w, last] = triangle;
+    if (t < object.face_count()) {
+      faces.push_back(triangle);
+    } else if (v == w) {
+      options.points.push_back(v);
+    } else {
+      options.edges.push_back({v, w});
+    }
+  }
+  const ObjectId id = scene.add(positions, faces, options);
+  const VertexGroups groups = object.vertex_groups();
+  scene.set_vertex_groups(id, groups.groups, groups.masks);
+  return id;
+}
+
+}  // namespace
+
+/// Searches contacts on straight paths to the rounded positions, in a scene of its own.
+double Scene::Implementation::proven_step(double part) const {
+  SceneOptions plain;
+  plain.threads = options.threads;
+  plain.contacts = ContactKinds::continuous;
+  plain.element_kinds = options.element_kinds;
+  Scene scene(plain);
+  struct Path {
+    ObjectId id;
+    const SceneObject* object;
+    std::vector<Vec3d> start, end;
+  };
+  std::vector<Path> paths;
+  std::vector<ObjectId> ids;  // of this scene, by index in `scene`
+  for (const ObjectId id : objects()) {
+    const SceneObject& object = *slots_[id.index].object;
+    Path path{{}, &object, {}, {}};
+    for (std::uint32_t v = 0; v < object.octree().vertex_count(); ++v)
+      path.start.push_back(object.placement().start_position(v));
+    path.end = path.start;
+    path.id = add_copy(object, path.start, scene);
+    ids.push_back(id);
+    paths.push_back(std::move(path));
+  }
+  scene.set_pair_filter([&](ObjectId a, ObjectId b) {
+    return may_pair({ids[a.index].index, ids[b.index].index});
+  });
+  for (; part > 0; part /= 2) {
+    for (Path& path : paths) {
+      if (!path.object->placement().has_motion()) continue;
+      for (std::uint32_t v = 0; v < path.end.size(); ++v) {
+        const Vec3d way = path.object->placement().position(v) - path.start[v];
+        path.end[v] = path.start[v] + part * way;
+      }
+      scene.set_motion(path.id, path.start, path.end);
+    }
+    if (!scene.earliest_impact()) break;
+  }
+  return part;
 }
 
 void Scene::Implementation::report_non_finite() {
@@ -368,6 +483,7 @@ void Scene::Implementation::publish() {
     result.curve_points = curves.points;
     result.enclosed_vertices = curves.enclosed;
   }
+  list_deep_pairs();
   near_pairs_.clear();
   if (question_.has_proximity()) {
     result.truncated = result.truncated || proximity_pass_.is_truncated();
@@ -386,6 +502,7 @@ void Scene::Implementation::publish() {
   narrow_phase_pairs_.update(leaf_pairs_);
   contact_pairs_.update(touching_pairs_);
   near_object_pairs_.update(near_pairs_);
+  penetrating_pairs_.update(deep_pairs_);
   ++step_;
   result.object_pairs = jobs_.pairs;
   result.non_finite_vertices = non_finite_;
@@ -393,7 +510,20 @@ void Scene::Implementation::publish() {
   result.narrow_phase_events = narrow_phase_pairs_.events();
   result.contact_events = contact_pairs_.events();
   result.proximity_events = near_object_pairs_.events();
+  result.penetration_events = penetrating_pairs_.events();
   detected_ = true;
+}
+
+/// Pairs of objects one of which has a vertex or a part inside the other, each once, ascending.
+void Scene::Implementation::list_deep_pairs() {
+  deep_pairs_.clear();
+  const auto add = [&](ObjectId a, ObjectId b) { deep_pairs_.push_back({std::min(a, b), std::max(a, b)}); };
+  for (const PenetrationGroup& group : result.penetration_groups) {
+    if (group.penetration_count > 0) add(group.a, group.b);
+  }
+  for (const ContainedPart& part : result.contained_parts) add(part.inner, part.outer);
+  std::sort(deep_pairs_.begin(), deep_pairs_.end());
+  deep_pairs_.erase(std::unique(deep_pairs_.begin(), deep_pairs_.end()), deep_pairs_.end());
 }
 
 /// Pairs of objects that intersect or touch within the step, each once, ascending.

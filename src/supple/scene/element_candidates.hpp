@@ -2,12 +2,14 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 
 #include "contact/impact_filter.hpp"
 #include "contact/relative_motion.hpp"
 #include "narrow_phase/traversal.hpp"
 #include "octree/vertex_buffer.hpp"
+#include "scene/vertex_groups.hpp"
 #include "supple/contact.hpp"
 
 namespace supple {
@@ -20,8 +22,33 @@ struct MovingObject {
   const VertexBuffer* start = nullptr;
   const VertexBuffer* end = nullptr;
   std::span<const std::uint32_t> triangle_ids, vertex_ids;  ///< the user's ids
-  double margin = 0;
+  /// Faces with ids from here on are edges and points of no triangle, with the last corner repeated.
+  std::uint32_t face_count = 0;
+  std::span<const std::uint8_t> is_point;  ///< by the user's vertex: whether it is such a point; may be empty
+  VertexGroups groups;
+  double margin = 0, min_separation = 0;
+  /// For safe steps: the mean way of the vertices, the largest difference of a way from it, and the largest
+  /// coordinate.
+  Vec3d mean_way;
+  double farthest_way = 0, largest_coordinate = 0;
 };
+
+/// How a pair of elements is reported.
+struct ElementNames {
+  ElementPairKind kind = ElementPairKind::vertex_face;
+  std::array<std::uint32_t, 2> a{}, b{};
+  bool is_turned = false;  ///< the first element of the motion is that of b
+};
+
+/// Nothing for a pair of points that is reported as another pair. `vertices` are those of the pair, with
+/// edges in the order of their user's ids.
+std::optional<ElementNames> names_of(ElementPairKind kind, ElementPair pair,
+                                     const std::array<std::uint32_t, 4>& vertices, const MovingObject& a,
+                                     const MovingObject& b);
+
+/// Whether the vertex groups let two elements touch.
+bool may_touch_by_groups(const std::array<const MovingObject*, 4>& objects,
+                         const std::array<std::uint32_t, 4>& vertices, bool are_edges);
 
 /// The four vertices of a pair of elements as `VertexFaceMotion` or `EdgeEdgeMotion` orders them.
 std::array<std::uint32_t, 4> vertices_of(ElementPairKind kind, ElementPair pair, const MovingObject& a,

@@ -237,8 +237,8 @@ bool Scene::Implementation::touch_on_the_way(const ContactJob& job, TrianglePair
     });
   };
   const auto touches = [&](const ContinuousContact& contact) {
-    const bool face_a = contact.kind == ElementPairKind::face_vertex;
-    const bool face_b = contact.kind == ElementPairKind::vertex_face;
+    const auto [kind_a, kind_b] = feature_kinds(contact.kind);
+    const bool face_a = kind_a == FeatureKind::face, face_b = kind_b == FeatureKind::face;
     if (has(id_a, corners_a, face_a, contact.element_a) && has(id_b, corners_b, face_b, contact.element_b))
       return true;
     return job.a == job.b && has(id_b, corners_b, face_a, contact.element_a) &&

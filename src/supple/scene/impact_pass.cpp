@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
+#include <limits>
 #include <numeric>
 #include <tuple>
 #include <utility>
@@ -43,68 +45,89 @@ bool is_earlier(const ContinuousContact& p, std::uint32_t job_p, const Continuou
 }
 
 std::uint64_t place_of(std::uint32_t job, ElementPairKind kind, std::uint32_t first_of_element_a) {
-  return ContactLimit::place(job, static_cast<std::uint32_t>(kind) << 30 | first_of_element_a >> 2);
+  return ContactLimit::place(job, static_cast<std::uint32_t>(kind) << 29 | first_of_element_a >> 3);
 }
 
 /// Copies the impact to the contact, with the weights and the normal in the order of a and b.
-void set_impact(ContinuousContact& contact, const Impact& impact) {
+void set_impact(ContinuousContact& contact, const Impact& impact, bool is_turned) {
   const auto& w = impact.barycentric;
   contact.certainty = impact.certainty;
   contact.touching_at_start = impact.touching_at_start;
   contact.toi = impact.toi;
   contact.start_distance = impact.start_distance;
   contact.point = impact.point;
-  contact.normal = impact.normal;
-  switch (contact.kind) {
-    case ElementPairKind::vertex_face:
-      contact.barycentric_a = {1, 0, 0};
-      contact.barycentric_b = {w[1], w[2], w[3]};
+  contact.normal = is_turned ? -1.0 * impact.normal : impact.normal;
+  if (contact.kind == ElementPairKind::edge_edge) {
+    contact.barycentric_a = {w[0], w[1], 0};
+    contact.barycentric_b = {w[2], w[3], 0};
+    return;
+  }
+  const auto [kind_a, kind_b] = feature_kinds(contact.kind);
+  auto& of_vertex = is_turned ? contact.barycentric_b : contact.barycentric_a;
+  auto& of_face = is_turned ? contact.barycentric_a : contact.barycentric_b;
+  of_vertex = {1, 0, 0};
+  switch (is_turned ? kind_a : kind_b) {
+    case FeatureKind::vertex:
+      of_face = {1, 0, 0};
       break;
-    case ElementPairKind::face_vertex:
-      contact.barycentric_a = {w[1], w[2], w[3]};
-      contact.barycentric_b = {1, 0, 0};
-      contact.normal = -1.0 * impact.normal;
+    case FeatureKind::edge:
+      of_face = {w[1], w[2] + w[3], 0};
       break;
-    case ElementPairKind::edge_edge:
-      contact.barycentric_a = {w[0], w[1], 0};
-      contact.barycentric_b = {w[2], w[3], 0};
+    case FeatureKind::face:
+      of_face = {w[1], w[2], w[3]};
       break;
   }
+}
+
+/// Vertices that move by `ways` come nearer by at most this.
+double largest_approach_of(const ElementMotion& motion) {
+  std::array<Vec3d, 4> ways;
+  for (std::size_t i = 0; i < 4; ++i) ways[i] = motion.end[i] - motion.start[i];
+  double largest = 0;
+  const std::size_t count = motion.are_edges ? 2 : 1;
+  for (std::size_t i = 0; i < count; ++i) {
+    for (std::size_t k = count; k < 4; ++k) {
+      const Vec3d way = ways[i] - ways[k];
+      largest = std::max(largest, std::hypot(way.x, way.y, way.z));
+    }
+  }
+  return largest * (1 + 0x1p-40);
 }
 
 }  // namespace
 
 bool ImpactPass::run(std::span<const ContactJob> jobs, std::span<const MovingObject> objects,
-                     std::span<const std::uint64_t> versions, const ImpactOptions& options,
+                     std::span<const std::uint64_t> versions, const ImpactSearchOptions& options,
                      std::uint64_t max_contacts, const StopSignal& stop, const Parallel& parallel,
                      StepStats& stats) {
   Timer timer;
-  const bool is_same_search =
-      options.min_separation == last_options_.min_separation && options.exact == last_options_.exact;
+  const bool is_same_search = options.impact == last_options_.impact && options.kinds == last_options_.kinds;
+  const bool lists_first = options.listing == ContinuousListing::first;
   last_options_ = options;
   start(jobs, objects, options, stop);
   outcomes_.plan(jobs, versions, is_same_search);
-  limit_.start(max_contacts, jobs.size());
+  limit_.start(lists_first ? ContactLimit::unlimited : max_contacts, jobs.size());
   for (std::uint32_t job = 0; limit_.is_set() && job < jobs.size(); ++job)
     limit_.add(job, outcomes_.ranges(job)[0].count);
   search(Search::all, outcomes_.open_jobs(), parallel);
   add_stats(workers_, timer.lap(), stats);
   if (stop.stop_requested()) return false;
   gather_contacts(parallel);
-  is_truncated_ = contacts_.size() > max_contacts;
+  is_truncated_ = !lists_first && contacts_.size() > max_contacts;
   if (is_truncated_) {
     outcomes_.truncate(max_contacts);
     contacts_.resize(static_cast<std::size_t>(max_contacts));
   }
   outcomes_.list_groups(groups_, [&](std::uint32_t object) { return objects_[object].id; });
-  stats.contacts += contacts_.size();
+  if (lists_first) is_truncated_ = first_contacts_.choose(contacts_, max_contacts, groups_);
+  stats.contacts += this->contacts().size();
   stats.sort_and_events_seconds += timer.lap();
   return true;
 }
 
 std::optional<ContinuousContact> ImpactPass::find_earliest(std::span<const ContactJob> jobs,
                                                            std::span<const MovingObject> objects,
-                                                           const ImpactOptions& options,
+                                                           const ImpactSearchOptions& options,
                                                            const Parallel& parallel) {
   start(jobs, objects, options, {});
   limit_.start(ContactLimit::unlimited, 0);
@@ -120,8 +143,28 @@ std::optional<ContinuousContact> ImpactPass::find_earliest(std::span<const Conta
   return best != nullptr ? std::optional(best->contact) : std::nullopt;
 }
 
+SafeStep ImpactPass::find_safe_step(std::span<const ContactJob> jobs, std::span<const MovingObject> objects,
+                                    const ImpactSearchOptions& options, const StepOptions& step,
+                                    const Parallel& parallel) {
+  start(jobs, objects, options, {});
+  step_ = step;
+  options_.impact.max_time = 1;
+  limit_.start(ContactLimit::unlimited, 0);
+  all_jobs_.clear();
+  for (std::uint32_t job = 0; job < jobs.size(); ++job) {
+    if (largest_approach(job) > 0) all_jobs_.push_back(job);
+  }
+  search(Search::safe_step, all_jobs_, parallel);
+  SafeStep safe;
+  for (const Worker& worker : workers_) {
+    safe.time = std::min(safe.time, worker.step.time);
+    safe.is_near_rounding = safe.is_near_rounding || worker.step.is_near_rounding;
+  }
+  return safe;
+}
+
 void ImpactPass::start(std::span<const ContactJob> jobs, std::span<const MovingObject> objects,
-                       const ImpactOptions& options, const StopSignal& stop) {
+                       const ImpactSearchOptions& options, const StopSignal& stop) {
   jobs_ = jobs;
   objects_ = objects;
   options_ = options;
@@ -130,13 +173,14 @@ void ImpactPass::start(std::span<const ContactJob> jobs, std::span<const MovingO
 
 void ImpactPass::search(Search search, std::span<const std::uint32_t> jobs, const Parallel& parallel) {
   search_ = search;
-  latest_ = 1;
+  latest_ = end_of_search(options_.impact);
   workers_.resize(parallel.worker_count());
   for (Worker& worker : workers_) {
     worker.traversal.set_stop(stop_);
     worker.found.clear();
     worker.stats = {};
     worker.earliest.reset();
+    worker.step = {};
   }
   tasks_.plan(jobs, workers_.size(), workers_[0].traversal,
               [&](std::uint32_t job) { return view_of_job(job); });
@@ -144,12 +188,38 @@ void ImpactPass::search(Search search, std::span<const std::uint32_t> jobs, cons
   tasks_.run(parallel, workers_, stop_, [&](std::size_t task, std::uint32_t w) { run_task(task, w); });
 }
 
+ImpactOptions ImpactPass::impact_of_job(std::uint32_t job) const {
+  ImpactOptions impact = options_.impact;
+  impact.min_separation = separation_of(impact.min_separation, objects_[jobs_[job].a].min_separation,
+                                        objects_[jobs_[job].b].min_separation);
+  return impact;
+}
+
+/// The most by which two elements of the job come nearer within the step.
+double ImpactPass::largest_approach(std::uint32_t job) const {
+  const MovingObject& a = objects_[jobs_[job].a];
+  const MovingObject& b = objects_[jobs_[job].b];
+  const Vec3d way = a.mean_way - b.mean_way;
+  return (std::hypot(way.x, way.y, way.z) + a.farthest_way + b.farthest_way) * (1 + 0x1p-40);
+}
+
+/// A safe step: elements that come nearer by `approach` are no longer at the separation plus a share `keep`
+/// of their distance beyond it only if that distance was at most approach / (1 - keep).
+double ImpactPass::reach_of_job(std::uint32_t job) const {
+  const double separation = impact_of_job(job).min_separation;
+  if (search_ != Search::safe_step) return separation;
+  const double kept = step_.keep / (1 - step_.keep) * largest_approach(job) * (1 + 0x1p-40);
+  return std::min(separation + kept, std::numeric_limits<double>::max());
+}
+
 ObjectPairView ImpactPass::view_of_job(std::uint32_t job) const {
   const MovingObject& a = objects_[jobs_[job].a];
   const MovingObject& b = objects_[jobs_[job].b];
-  ObjectPairView pair = &a == &b ? moving_self_pair_of(a.view, options_.min_separation)
-                                 : moving_pair_of(a.view, b.view, options_.min_separation);
-  if (search_ == Search::earliest) pair.latest = &latest_;
+  const double reach = reach_of_job(job);
+  ObjectPairView pair = &a == &b ? moving_self_pair_of(a.view, reach) : moving_pair_of(a.view, b.view, reach);
+  if (reach > 0) pair.a.culled = nullptr;
+  pair.kinds = options_.kinds;
+  if (latest_ < 1 || search_ != Search::all) pair.latest = &latest_;
   return pair;
 }
 
@@ -179,6 +249,7 @@ void ImpactPass::test_candidates(std::uint32_t job, ElementPairKind kind,
   const MovingObject& b = objects_[jobs_[job].b];
   const auto objects = objects_of(kind, a, b);
   const bool are_edges = kind == ElementPairKind::edge_edge, excludes = limit_.excludes_some();
+  const float reach = round_up(reach_of_job(job));
   std::array<std::array<std::uint32_t, 4>, block_size> vertices;
   for (; !candidates.empty() && !stop_.stop_requested();
        candidates = candidates.subspan(std::min(block_size, candidates.size()))) {
@@ -186,11 +257,12 @@ void ImpactPass::test_candidates(std::uint32_t job, ElementPairKind kind,
     for (std::size_t k = 0; k < part.size(); ++k) vertices[k] = vertices_of(kind, part[k], a, b);
     fill(objects, std::span(vertices).first(part.size()), are_edges, latest_.load(std::memory_order_relaxed),
          worker.block);
-    std::uint64_t left = may_touch(worker.block, part.size(), are_edges, round_up(options_.min_separation));
+    std::uint64_t left = may_touch(worker.block, part.size(), are_edges, reach);
     std::size_t count = 0;
     for (; left != 0; left &= left - 1) {
       const auto k = static_cast<std::size_t>(std::countr_zero(left));
-      if (excludes && is_excluded(job, kind, part[k])) continue;
+      if (excludes && is_excluded(job, kind, part[k], vertices[k])) continue;
+      if (!may_touch_by_groups(objects, vertices[k], are_edges)) continue;
       OpenPair& pair = worker.open[count++];
       pair.candidate = part[k];
       pair.vertices = vertices[k];
@@ -205,7 +277,12 @@ void ImpactPass::test_candidates(std::uint32_t job, ElementPairKind kind,
 /// A vector kernel decides most pairs that touch; the scalar search decides the others.
 void ImpactPass::decide_open_pairs(std::uint32_t job, ElementPairKind kind, std::size_t count,
                                    Worker& worker) {
-  const bool is_vectorized = options_.min_separation == 0 && count > 0;
+  if (search_ == Search::safe_step) {
+    for (std::size_t k = 0; k < count; ++k) shorten_step(job, worker.open[k], worker);
+    return;
+  }
+  const ImpactOptions options = impact_of_job(job);
+  const bool is_vectorized = options.min_separation == 0 && count > 0;
   if (is_vectorized) {
     for (std::size_t k = 0; k < count; ++k) worker.motions.set(k, worker.open[k].relative);
     search_coplanar_times(worker.motions, count, kind == ElementPairKind::edge_edge, worker.coplanar);
@@ -214,55 +291,69 @@ void ImpactPass::decide_open_pairs(std::uint32_t job, ElementPairKind kind, std:
     if (is_vectorized && (worker.coplanar.apart >> k & 1) != 0) return {ImpactSearch::Outcome::apart};
     if (is_vectorized && (worker.coplanar.touching >> k & 1) != 0)
       return {ImpactSearch::Outcome::touching, worker.coplanar.times[k]};
-    return search_impact(worker.open[k].relative, options_.min_separation);
+    return search_impact(worker.open[k].relative, options.min_separation);
   };
   for (std::size_t k = 0; k < count && !stop_.stop_requested(); ++k) {
     const OpenPair& pair = worker.open[k];
     bool used_exact = false;
-    const auto impact = first_impact_after(search_of(k), pair.motion, pair.relative, options_, used_exact);
+    const auto impact = first_impact_after(search_of(k), pair.motion, pair.relative, options, used_exact);
     worker.stats.exact_fallbacks += used_exact ? 1 : 0;
     if (impact) add_contact(job, kind, pair, *impact, worker);
   }
 }
 
-/// Compares the first id of element a, the smallest of the element's ids, with the limit.
-bool ImpactPass::is_excluded(std::uint32_t job, ElementPairKind kind, ElementPair candidate) const {
+/// Compares the first id of element a with the limit.
+bool ImpactPass::is_excluded(std::uint32_t job, ElementPairKind kind, ElementPair candidate,
+                             std::array<std::uint32_t, 4> vertices) const {
   const MovingObject& a = objects_[jobs_[job].a];
-  const auto least = [](const MovingObject& object, const Edge& edge) {
-    return std::min(object.vertex_ids[edge[0]], object.vertex_ids[edge[1]]);
-  };
-  std::uint32_t first = 0;
-  if (kind == ElementPairKind::vertex_face) {
-    first = a.vertex_ids[candidate.a];
-  } else if (kind == ElementPairKind::face_vertex) {
-    first = a.triangle_ids[candidate.a];
-  } else {
-    first = least(a, a.view.moving.edge_ids[candidate.a]);
-    if (jobs_[job].a == jobs_[job].b) first = std::min(first, least(a, a.view.moving.edge_ids[candidate.b]));
+  const MovingObject& b = objects_[jobs_[job].b];
+  if (kind == ElementPairKind::edge_edge) sort_edges(objects_of(kind, a, b), vertices);
+  const std::optional<ElementNames> names = names_of(kind, candidate, vertices, a, b);
+  return !names || limit_.excludes(place_of(job, names->kind, names->a[0]));
+}
+
+/// Shortens the step of the worker so that the pair keeps its share of its distance.
+void ImpactPass::shorten_step(std::uint32_t job, const OpenPair& pair, Worker& worker) {
+  const ImpactOptions options = impact_of_job(job);
+  const double separation = options.min_separation;
+  const double distance = distance_at_start(pair.motion, pair.relative) * (1 - 0x1p-19);
+  if (distance == 0) {
+    worker.step.time = 0;
+    return search_until(0);
   }
-  return limit_.excludes(place_of(job, kind, first));
+  double least = step_.keep * distance;
+  if (distance > separation) {
+    least = separation + step_.keep * (distance - separation);
+  } else if (separation > 0 && !are_within(pair.motion, separation)) {
+    least = separation;
+  }
+  if (distance - least > largest_approach_of(pair.motion)) return;
+  const MovingObject& a = objects_[jobs_[job].a];
+  const MovingObject& b = objects_[jobs_[job].b];
+  const double rounding = 0x1p-48 * std::max(a.largest_coordinate, b.largest_coordinate);
+  if (!(least > rounding)) worker.step.is_near_rounding = true;
+  bool used_exact = false;
+  const std::optional<double> time =
+      first_time_within(pair.motion, pair.relative, least, options.exact, used_exact);
+  worker.stats.exact_fallbacks += used_exact ? 1 : 0;
+  if (!time) return;
+  worker.step.time = std::min(worker.step.time, *time);
+  search_until(*time);
 }
 
 void ImpactPass::add_contact(std::uint32_t job, ElementPairKind kind, const OpenPair& pair,
                              const Impact& impact, Worker& worker) {
   const MovingObject& a = objects_[jobs_[job].a];
   const MovingObject& b = objects_[jobs_[job].b];
+  const std::optional<ElementNames> names = names_of(kind, pair.candidate, pair.vertices, a, b);
+  if (!names) return;
   ContinuousContact contact;
   contact.object_a = a.id;
   contact.object_b = b.id;
-  contact.kind = kind;
-  if (kind == ElementPairKind::edge_edge) {
-    contact.element_a = {a.vertex_ids[pair.vertices[0]], a.vertex_ids[pair.vertices[1]]};
-    contact.element_b = {b.vertex_ids[pair.vertices[2]], b.vertex_ids[pair.vertices[3]]};
-  } else {
-    const auto [first, second] = pair.candidate;
-    const bool vertex_first = kind == ElementPairKind::vertex_face;
-    const std::uint32_t of_a = vertex_first ? a.vertex_ids[first] : a.triangle_ids[first];
-    const std::uint32_t of_b = vertex_first ? b.triangle_ids[second] : b.vertex_ids[second];
-    contact.element_a = {of_a, of_a};
-    contact.element_b = {of_b, of_b};
-  }
-  set_impact(contact, impact);
+  contact.kind = names->kind;
+  contact.element_a = names->a;
+  contact.element_b = names->b;
+  set_impact(contact, impact, names->is_turned);
   if (search_ == Search::all) {
     worker.found.push_back(contact);
   } else {
@@ -273,9 +364,13 @@ void ImpactPass::add_contact(std::uint32_t job, ElementPairKind kind, const Open
 void ImpactPass::keep_earlier(std::uint32_t job, const ContinuousContact& contact, Worker& worker) {
   if (worker.earliest && !is_earlier(contact, job, worker.earliest->contact, worker.earliest->job)) return;
   worker.earliest = {contact, job};
-  // A reported time may be early by the tolerance. The pair with the earliest reported time may therefore
-  // touch later than another pair does.
-  const float until = round_up(contact.toi + toi_tolerance);
+  search_until(contact.toi);
+}
+
+/// A reported time may be early by the tolerance. The pair with the earliest reported time may therefore
+/// touch later than another pair does.
+void ImpactPass::search_until(double time) {
+  const float until = round_up(time + toi_tolerance);
   float latest = latest_.load(std::memory_order_relaxed);
   while (until < latest && !latest_.compare_exchange_weak(latest, until, std::memory_order_relaxed)) {
   }
@@ -315,21 +410,22 @@ void ImpactPass::gather_contacts(const Parallel& parallel) {
 void ImpactPass::gather_found(std::size_t job, Worker& worker, const Parallel& parallel) {
   constexpr std::size_t contacts_of_bucket = 4;
   worker.keys.clear();
-  std::uint64_t ids = 1;
+  std::uint64_t ids = 1, kinds = 1;
   for (const auto& task : outcomes_.tasks_of(job)) {
     for (std::uint32_t i = task.ranges[0].first; i < task.ranges[0].end(); ++i) {
       const ContinuousContact& contact = workers_[task.worker].found[i];
       worker.keys.push_back({contact.kind, contact.element_a, contact.element_b, task.worker, i});
       ids = std::max(ids, std::uint64_t{contact.element_a[0]} + 1);
+      kinds = std::max(kinds, static_cast<std::uint64_t>(contact.kind) + 1);
     }
   }
-  const auto id_bits = static_cast<int>(std::bit_width(3 * ids));
+  const auto id_bits = static_cast<int>(std::bit_width(kinds * ids));
   const auto count_bits = static_cast<int>(std::bit_width(worker.keys.size() / contacts_of_bucket));
   const int shift = std::max(id_bits - count_bits, 0);
   const auto bucket_of = [&](const Key& key) {
     return static_cast<std::size_t>((static_cast<std::uint64_t>(key.kind) * ids + key.element_a[0]) >> shift);
   };
-  const auto buckets = static_cast<std::size_t>((3 * ids - 1) >> shift) + 1;
+  const auto buckets = static_cast<std::size_t>((kinds * ids - 1) >> shift) + 1;
   // Counts of the buckets before, then where each bucket begins, and in the end where it ends.
   std::vector<std::uint32_t>& firsts = worker.first_of_bucket;
   firsts.assign(buckets + 1, 0);

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
@@ -16,12 +18,32 @@
 #include "scene/contact_limit.hpp"
 #include "scene/contact_tasks.hpp"
 #include "scene/element_candidates.hpp"
+#include "scene/first_contacts.hpp"
 #include "scene/job_outcomes.hpp"
 #include "supple/contact.hpp"
 #include "supple/options.hpp"
 #include "supple/result.hpp"
 
 namespace supple {
+
+/// The distance at which elements of two objects touch.
+inline double separation_of(double of_scene, double of_a, double of_b) {
+  return std::min(of_scene + (of_a + of_b), std::numeric_limits<double>::max());
+}
+
+/// What a search for continuous contacts finds.
+struct ImpactSearchOptions {
+  ImpactOptions impact;
+  ElementKinds kinds = ElementKinds::all;
+  ContinuousListing listing = ContinuousListing::all;
+};
+
+/// A part of the step without contact.
+struct SafeStep {
+  double time = 1;
+  /// Elements are so near that rounded positions at this time could touch.
+  bool is_near_rounding = false;
+};
 
 /// Narrow phase and exact stage of continuous contacts for all jobs of a step, on all workers. The narrow
 /// phase hands its candidates to the exact stage in batches. The pass keeps its memory between steps.
@@ -31,16 +53,23 @@ class ImpactPass {
   /// contain indices of `objects`; `versions` are those of the objects' positions. Returns false when it was
   /// stopped; the lists are then not valid.
   bool run(std::span<const ContactJob> jobs, std::span<const MovingObject> objects,
-           std::span<const std::uint64_t> versions, const ImpactOptions& options, std::uint64_t max_contacts,
-           const StopSignal& stop, const Parallel& parallel, StepStats& stats);
+           std::span<const std::uint64_t> versions, const ImpactSearchOptions& options,
+           std::uint64_t max_contacts, const StopSignal& stop, const Parallel& parallel, StepStats& stats);
   /// The contact with the earliest time; the first in canonical order among equal times. Does not change the
   /// lists.
   std::optional<ContinuousContact> find_earliest(std::span<const ContactJob> jobs,
                                                  std::span<const MovingObject> objects,
-                                                 const ImpactOptions& options, const Parallel& parallel);
+                                                 const ImpactSearchOptions& options,
+                                                 const Parallel& parallel);
+  /// See `Scene::collision_free_step`. Does not change the lists.
+  SafeStep find_safe_step(std::span<const ContactJob> jobs, std::span<const MovingObject> objects,
+                          const ImpactSearchOptions& options, const StepOptions& step,
+                          const Parallel& parallel);
 
   std::span<const ContactGroup> groups() const { return groups_; }
-  std::span<const ContinuousContact> contacts() const { return contacts_; }
+  std::span<const ContinuousContact> contacts() const {
+    return options_.listing == ContinuousListing::first ? first_contacts_.contacts() : contacts_;
+  }
   /// There are more than `max_contacts` contacts.
   bool is_truncated() const { return is_truncated_; }
 
@@ -73,25 +102,33 @@ class ImpactPass {
     std::vector<ContinuousContact> found;  // by all tasks of the worker
     TaskStats stats;
     std::optional<Earliest> earliest;
+    SafeStep step;
     // Scratch for the contacts of one job.
     std::vector<Key> keys, sorted_keys;
     std::vector<std::uint32_t> first_of_bucket;
   };
-  enum class Search : std::uint8_t { all, earliest };
+  enum class Search : std::uint8_t { all, earliest, safe_step };
 
   /// Plans and runs the tasks of `jobs`, which are indices into `jobs_`.
   void search(Search search, std::span<const std::uint32_t> jobs, const Parallel& parallel);
   void start(std::span<const ContactJob> jobs, std::span<const MovingObject> objects,
-             const ImpactOptions& options, const StopSignal& stop);
+             const ImpactSearchOptions& options, const StopSignal& stop);
+  ImpactOptions impact_of_job(std::uint32_t job) const;
+  /// The distance within which the pass searches.
+  double reach_of_job(std::uint32_t job) const;
+  double largest_approach(std::uint32_t job) const;
   ObjectPairView view_of_job(std::uint32_t job) const;
   void run_task(std::size_t task, std::uint32_t worker);
   void test_candidates(std::uint32_t job, ElementPairKind kind, std::span<const ElementPair> candidates,
                        Worker& worker);
-  bool is_excluded(std::uint32_t job, ElementPairKind kind, ElementPair candidate) const;
+  bool is_excluded(std::uint32_t job, ElementPairKind kind, ElementPair candidate,
+                   std::array<std::uint32_t, 4> vertices) const;
   void decide_open_pairs(std::uint32_t job, ElementPairKind kind, std::size_t count, Worker& worker);
+  void shorten_step(std::uint32_t job, const OpenPair& pair, Worker& worker);
   void add_contact(std::uint32_t job, ElementPairKind kind, const OpenPair& pair, const Impact& impact,
                    Worker& worker);
   void keep_earlier(std::uint32_t job, const ContinuousContact& contact, Worker& worker);
+  void search_until(double time);
   void drop_excess(std::uint32_t job, std::size_t first, Worker& worker);
   void gather_contacts(const Parallel& parallel);
   void gather_found(std::size_t job, Worker& worker, const Parallel& parallel);
@@ -99,19 +136,21 @@ class ImpactPass {
   Search search_ = Search::all;
   std::span<const ContactJob> jobs_;
   std::span<const MovingObject> objects_;
-  ImpactOptions options_;
+  ImpactSearchOptions options_;
+  StepOptions step_;
   StopSignal stop_;
   std::vector<Worker> workers_;
   ContactTasks tasks_;
   ContactLimit limit_;
   JobOutcomes<1> outcomes_;
-  ImpactOptions last_options_;           // of the last `run`
+  ImpactSearchOptions last_options_;     // of the last `run`
   std::vector<std::uint32_t> all_jobs_;  // of `find_earliest`
   /// `find_earliest` skips pairs that cannot touch before this time.
   std::atomic<float> latest_ = 1;
 
   std::vector<ContactGroup> groups_;
   std::vector<ContinuousContact> contacts_;
+  FirstContacts first_contacts_;
   bool is_truncated_ = false;
 };
 

@@ -259,7 +259,7 @@ ObjectPairView Scene::Implementation::search_view(const ContactJob& job) const {
   OctreeView a = search_view(*slots_[job.a].object), b = search_view(*slots_[job.b].object);
   a.culled = b.culled = nullptr;
   if (question_.searches_at_rest()) return job.a == job.b ? self_pair_of(a) : pair_of(a, b);
-  const double separation = question_.is_continuous() ? question_.impact.min_separation : reach_of(job);
+  const double separation = question_.is_continuous() ? separation_of(job) : reach_of(job);
   return job.a == job.b ? moving_self_pair_of(a, separation) : moving_pair_of(a, b, separation);
 }
 

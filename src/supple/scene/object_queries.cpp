@@ -435,7 +435,7 @@ Containment ObjectQueries::inside(std::uint32_t index, const QueriedObject& obje
     if (!is_on && crosses_above(corners, point, used_exact)) is_inside = !is_inside;
   });
   if (is_on) return Containment::on;
-  return is_inside && object.view.arrays.inert == nullptr ? Containment::inside : Containment::outside;
+  return is_inside && !object.has_inert_faces ? Containment::inside : Containment::outside;
 }
 
 void ObjectQueries::overlaps(std::span<const QueriedObject> objects, const QueryBox& box, std::uint32_t query,

@@ -25,6 +25,7 @@ struct QueriedObject {
   std::span<const Triangle> triangles;  ///< in octree order
   std::span<const std::uint32_t> triangle_ids;
   Aabb box;  ///< of the placed object
+  bool has_inert_faces = false;
 
   /// The placed corners of a triangle in octree order.
   TrianglePoints corners(std::uint32_t triangle) const;

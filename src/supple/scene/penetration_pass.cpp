@@ -134,7 +134,7 @@ void PenetrationPass::find_inside(const Task& task, const DetectResult& result, 
   const PenetratedObject& inner = objects_[task.inner];
   const VertexTriangles& around = *inner.surface.around;
   const std::span<const QueriedObject> outer(&objects_[task.outer].queried, 1);
-  if (outer.front().view.arrays.inert != nullptr) return;
+  if (outer.front().has_inert_faces) return;
   worker.queries.start();
   worker.marks.resize(std::max(worker.marks.size(), around.vertex_count()), 0);
   collect_touched(task, result, worker);

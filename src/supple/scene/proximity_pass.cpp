@@ -28,16 +28,15 @@ PairElement element_of(const MovingObject& object, std::span<const std::uint32_t
 }  // namespace
 
 bool ProximityPass::run(std::span<const ContactJob> jobs, std::span<const MovingObject> objects,
-                        std::span<const std::uint64_t> versions, ProximityListing listing,
+                        std::span<const std::uint64_t> versions, const ProximitySearch& search,
                         std::uint64_t max_pairs, const StopSignal& stop, const Parallel& parallel,
                         StepStats& stats) {
   Timer timer;
   jobs_ = jobs;
   objects_ = objects;
   stop_ = stop;
-  listing_ = listing;
-  outcomes_.plan(jobs, versions, listing == last_listing_);
-  last_listing_ = listing;
+  outcomes_.plan(jobs, versions, search == search_);
+  search_ = search;
   workers_.resize(parallel.worker_count());
   for (Worker& worker : workers_) {
     worker.traversal.set_stop(stop);
@@ -73,7 +72,9 @@ ObjectPairView ProximityPass::view_of_job(std::uint32_t job) const {
   const MovingObject& a = objects_[jobs_[job].a];
   const MovingObject& b = objects_[jobs_[job].b];
   const double reach = reach_of_margins(a.margin, b.margin);
-  return &a == &b ? moving_self_pair_of(a.view, reach) : moving_pair_of(a.view, b.view, reach);
+  ObjectPairView pair = &a == &b ? moving_self_pair_of(a.view, reach) : moving_pair_of(a.view, b.view, reach);
+  pair.kinds = search_.kinds;
+  return pair;
 }
 
 void ProximityPass::run_task(std::size_t task, std::uint32_t w) {
@@ -106,7 +107,8 @@ void ProximityPass::test_candidates(std::uint32_t job, ElementPairKind kind,
     for (std::uint64_t left = may_touch(worker.block, part.size(), are_edges, reach); left != 0;
          left &= left - 1) {
       const auto k = static_cast<std::size_t>(std::countr_zero(left));
-      add_pair(job, kind, part[k], vertices[k], worker);
+      if (may_touch_by_groups(objects, vertices[k], are_edges))
+        add_pair(job, kind, part[k], vertices[k], worker);
     }
   }
 }
@@ -122,14 +124,16 @@ void ProximityPass::add_pair(std::uint32_t job, ElementPairKind kind, ElementPai
   const std::uint32_t triangle = kind == ElementPairKind::vertex_face   ? b.triangle_ids[candidate.b]
                                  : kind == ElementPairKind::face_vertex ? a.triangle_ids[candidate.a]
                                                                         : 0;
+  std::size_t count_b = 4 - count;
+  if (!are_edges && triangle >= objects[3]->face_count) count_b = vertices[1] == vertices[2] ? 1 : 2;
   PairElement first = element_of(*objects[0], std::span(vertices).first(count), 0);
-  PairElement second = element_of(*objects[3], std::span(vertices).subspan(count), triangle);
+  PairElement second = element_of(*objects[3], std::span(vertices).subspan(count, count_b), triangle);
   if (is_self && are_edges && second.edge_order() < first.edge_order()) std::swap(first, second);
   bool used_exact = false;
   const auto order = is_self                                ? PairOrder::by_names
                      : kind == ElementPairKind::face_vertex ? PairOrder::swapped
                                                             : PairOrder::given;
-  const auto pair = proximity_pair_within(first, second, {a.id, b.id}, order, listing_,
+  const auto pair = proximity_pair_within(first, second, {a.id, b.id}, order, search_.listing,
                                           reach_of_margins(a.margin, b.margin), used_exact);
   worker.stats.exact_fallbacks += used_exact ? 1 : 0;
   if (pair) worker.found.push_back(*pair);

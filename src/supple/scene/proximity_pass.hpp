@@ -26,6 +26,14 @@ inline double reach_of_margins(double margin_a, double margin_b) {
   return std::min(margin_a + margin_b, std::numeric_limits<double>::max());
 }
 
+/// What a search for proximity lists.
+struct ProximitySearch {
+  ProximityListing listing = ProximityListing::features;
+  ElementKinds kinds = ElementKinds::all;
+
+  constexpr bool operator==(const ProximitySearch&) const = default;
+};
+
 /// Narrow phase and exact stage of proximity for all jobs of a step, on all workers. The pass keeps its
 /// memory between steps.
 class ProximityPass {
@@ -34,7 +42,7 @@ class ProximityPass {
   /// which are at rest; `versions` are those of the objects' positions and margins. Returns false when it was
   /// stopped; the lists are then not valid.
   bool run(std::span<const ContactJob> jobs, std::span<const MovingObject> objects,
-           std::span<const std::uint64_t> versions, ProximityListing listing, std::uint64_t max_pairs,
+           std::span<const std::uint64_t> versions, const ProximitySearch& search, std::uint64_t max_pairs,
            const StopSignal& stop, const Parallel& parallel, StepStats& stats);
 
   std::span<const ContactGroup> groups() const { return groups_; }
@@ -73,7 +81,7 @@ class ProximityPass {
 
   std::span<const ContactJob> jobs_;
   std::span<const MovingObject> objects_;
-  ProximityListing listing_ = ProximityListing::features, last_listing_ = ProximityListing::features;
+  ProximitySearch search_;
   StopSignal stop_;
   std::vector<Worker> workers_;
   ContactTasks tasks_;

@@ -26,7 +26,8 @@ QueriedObject Scene::Implementation::queried_object(std::uint32_t index) const {
           &found.placement().end(),
           found.octree().triangles(),
           found.octree().triangle_ids(),
-          found.box()};
+          found.box(),
+          found.has_inert_faces()};
 }
 
 /// Keeps the broad phase up to date, as `earliest_impact` does.

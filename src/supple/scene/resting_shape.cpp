@@ -6,11 +6,17 @@
 
 namespace supple {
 
-void mark_inert(const ObjectOctree& octree, const VertexBuffer& vertices, std::vector<std::uint8_t>& inert) {
+bool mark_inert(const ObjectOctree& octree, const VertexBuffer& vertices, std::uint32_t face_count,
+                std::vector<std::uint8_t>& inert) {
   inert.assign(octree.triangles().size(), 0);
+  bool are_faces = false;
   for (std::uint32_t t = 0; t < inert.size(); ++t) {
     for (const std::uint32_t vertex : octree.triangles()[t]) inert[t] |= !is_finite(vertices[vertex]);
+    const bool is_face = octree.triangle_ids()[t] < face_count;
+    are_faces = are_faces || (is_face && inert[t] != 0);
+    inert[t] |= !is_face;
   }
+  return are_faces;
 }
 
 std::size_t RestingShape::update(ObjectOctree& octree, Placement& placement, const Parallel& parallel) {
@@ -39,13 +45,14 @@ std::size_t RestingShape::refit(ObjectOctree& octree, Placement& placement, cons
 void RestingShape::refit_all(ObjectOctree& octree, const Placement& placement, const Parallel& parallel) {
   inert_.clear();
   non_finite_.clear();
-  if (!octree.refit(placement.end(), {}, parallel)) {
-    mark_inert(octree, placement.end(), inert_);
-    for (std::uint32_t vertex = 0; vertex < octree.vertex_count(); ++vertex) {
-      if (!is_finite(placement.position(vertex))) non_finite_.push_back(vertex);
-    }
-    octree.refit(placement.end(), inert_, parallel);
+  has_inert_faces_ = false;
+  const bool are_finite = octree.refit(placement.end(), {}, parallel);
+  if (are_finite && octree.triangles().size() == face_count_) return;
+  has_inert_faces_ = mark_inert(octree, placement.end(), face_count_, inert_);
+  for (std::uint32_t vertex = 0; !are_finite && vertex < octree.vertex_count(); ++vertex) {
+    if (!is_finite(placement.position(vertex))) non_finite_.push_back(vertex);
   }
+  octree.refit(placement.end(), inert_, parallel);
 }
 
 OctreeView RestingShape::view(const ObjectOctree& octree, const Placement& placement) const {

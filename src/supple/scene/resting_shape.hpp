@@ -18,6 +18,9 @@ namespace supple {
 /// which this class updates.
 class RestingShape {
  public:
+  /// Triangles with ids from `face_count` on are always inert.
+  explicit RestingShape(std::uint32_t face_count) : face_count_(face_count) {}
+
   bool is_current(const Placement& placement) const { return version_ == placement.version(); }
   /// Refits the octree, or only the part that moved since the last update, and bakes the translation if
   /// necessary. O(n). Returns the number of triangles in refitted leaves.
@@ -29,6 +32,7 @@ class RestingShape {
   OctreeView view(const ObjectOctree& octree, const Placement& placement) const;
   /// The user's ids at the last update, ascending.
   std::span<const std::uint32_t> non_finite_vertices() const { return non_finite_; }
+  bool has_inert_faces() const { return has_inert_faces_; }
   std::string validate(const ObjectOctree& octree, const Placement& placement) const {
     return octree.validate(placement.end(), inert_);
   }
@@ -44,13 +48,17 @@ class RestingShape {
   std::size_t refit(ObjectOctree& octree, Placement& placement, const Parallel& parallel);
   void refit_all(ObjectOctree& octree, const Placement& placement, const Parallel& parallel);
 
+  std::uint32_t face_count_;
   std::uint64_t version_ = 0;
-  std::vector<std::uint8_t> inert_;  // `mark_inert`, or empty when all vertices are finite
+  std::vector<std::uint8_t> inert_;  // `mark_inert`, or empty when there are no inert triangles
+  bool has_inert_faces_ = false;
   std::vector<std::uint32_t> non_finite_;
   AdaptiveCulling culling_;
 };
 
-/// Sets a byte per triangle in octree order: 1 when a vertex of the triangle is not finite.
-void mark_inert(const ObjectOctree& octree, const VertexBuffer& vertices, std::vector<std::uint8_t>& inert);
+/// Sets a byte per triangle in octree order: 1 when a vertex of the triangle is not finite, and for triangles
+/// with ids from `face_count` on. Returns whether there are some of the first kind.
+bool mark_inert(const ObjectOctree& octree, const VertexBuffer& vertices, std::uint32_t face_count,
+                std::vector<std::uint8_t>& inert);
 
 }  // namespace supple

@@ -59,8 +59,8 @@ std::vector<Triangle> checked_triangles(const std::string& name, std::size_t ver
   return triangles;
 }
 
-/// Replaces each vertex by the first one with an equal position.
-void weld(const PositionsView& positions, std::vector<Triangle>& triangles) {
+/// The first vertex with the position of each vertex.
+std::vector<std::uint32_t> vertices_at_same_position(const PositionsView& positions) {
   VertexWelder welder;
   std::vector<std::uint32_t> first_vertices, same(positions.size());
   for (std::uint32_t v = 0; v < same.size(); ++v) {
@@ -68,9 +68,50 @@ void weld(const PositionsView& positions, std::vector<Triangle>& triangles) {
     if (point == first_vertices.size()) first_vertices.push_back(v);
     same[v] = first_vertices[point];
   }
-  for (Triangle& triangle : triangles) {
-    for (std::uint32_t& vertex : triangle) vertex = same[vertex];
+  return same;
+}
+
+/// `ObjectOptions::same_vertex`, or its replacement by `weld`; empty when each vertex is its own.
+std::vector<std::uint32_t> checked_same_vertices(const PositionsView& positions,
+                                                 const ObjectOptions& options) {
+  const std::vector<std::uint32_t>& same = options.same_vertex;
+  if (options.weld && !same.empty())
+    fail(options.name + ": weld and same_vertex are both set; choose one of them");
+  if (options.weld) return vertices_at_same_position(positions);
+  if (!same.empty() && same.size() != positions.size()) {
+    fail(options.name + ": same_vertex has " + std::to_string(same.size()) + " ids for " +
+         std::to_string(positions.size()) + " vertices; give one for each vertex");
   }
+  for (std::size_t v = 0; v < same.size(); ++v) {
+    if (same[v] < same.size() && same[same[v]] == same[v]) continue;
+    fail(options.name + ": same_vertex of vertex " + std::to_string(v) + " is " + std::to_string(same[v]) +
+         ", which is no vertex that counts as itself");
+  }
+  return same;
+}
+
+/// The edges and points of no triangle, as triangles with repeated corners.
+std::vector<Triangle> checked_extra_elements(std::size_t vertex_count, const ObjectOptions& options) {
+  const auto check_vertex = [&](std::uint32_t vertex, const char* what, std::size_t i) {
+    if (vertex < vertex_count) return;
+    fail(options.name + ": " + what + " " + std::to_string(i) + " uses vertex " + std::to_string(vertex) +
+         ", but there are " + std::to_string(vertex_count) + " vertices, numbered from 0");
+  };
+  std::vector<Triangle> elements;
+  for (std::size_t i = 0; i < options.edges.size(); ++i) {
+    const auto [v, w] = std::minmax(options.edges[i][0], options.edges[i][1]);
+    check_vertex(w, "edge", i);
+    if (v == w)
+      fail(options.name + ": both ends of edge " + std::to_string(i) + " are vertex " + std::to_string(v) +
+           "; list it in points");
+    elements.push_back({v, w, w});
+  }
+  for (std::size_t i = 0; i < options.points.size(); ++i) {
+    const std::uint32_t v = options.points[i];
+    check_vertex(v, "point", i);
+    elements.push_back({v, v, v});
+  }
+  return elements;
 }
 
 void check_count(const SceneObject& object, std::size_t count, const char* call) {
@@ -90,7 +131,7 @@ void check_vertex(const SceneObject& object, std::uint32_t vertex, const char* c
 }  // namespace
 
 void check_triangle(const SceneObject& object, std::uint32_t triangle, const char* call) {
-  const std::size_t count = object.octree().triangles().size();
+  const std::size_t count = object.face_count();
   if (triangle < count) return;
   fail(std::string(call) + ": " + object.options.name + " has no triangle " + std::to_string(triangle) +
        "; it has " + std::to_string(count) + ", numbered from 0");
@@ -112,13 +153,26 @@ ObjectId Scene::Implementation::add(const PositionsView& positions, const Triang
   if (named.octree.build == ObjectOctreeBuild::balanced && named.octree.arity != node_width)
     fail(named.name + ": a balanced octree has eight children; for an arity of " +
          std::to_string(named.octree.arity) + ", build it regular or bottom-up");
-  std::vector<Triangle> checked = checked_triangles(named.name, positions.size(), triangles, parallel);
-  if (named.weld) weld(positions, checked);
+  std::vector<Triangle> faces = checked_triangles(named.name, positions.size(), triangles, parallel);
+  std::vector<Triangle> extra = checked_extra_elements(positions.size(), named);
+  if (faces.size() + extra.size() >= 0xffffffff) fail(named.name + ": more than 2^32 - 2 elements");
+  if (const auto same = checked_same_vertices(positions, named); !same.empty()) {
+    for (auto* const elements : {&faces, &extra}) {
+      for (Triangle& triangle : *elements) {
+        for (std::uint32_t& vertex : triangle) vertex = same[vertex];
+      }
+    }
+    // Welded ends make an edge a point.
+    for (Triangle& edge : extra) std::sort(edge.begin(), edge.begin() + 2);
+    for (Triangle& edge : extra) edge[2] = edge[1];
+  }
+  std::sort(extra.begin(), extra.end());
+  extra.erase(std::unique(extra.begin(), extra.end()), extra.end());
   if (named.solid) {
-    if (const std::string fault = fault_of_solid(checked); !fault.empty())
+    if (const std::string fault = fault_of_solid(faces); !fault.empty())
       fail(named.name + " is no solid: " + fault);
   }
-  auto object = std::make_unique<SceneObject>(positions, checked, named, options, parallel);
+  auto object = std::make_unique<SceneObject>(positions, std::move(faces), extra, named, options, parallel);
   object->move().set_positions(positions, parallel);
   object->measure_built_octree(parallel);
   if (free_slots_.empty()) {
@@ -133,7 +187,8 @@ ObjectId Scene::Implementation::add(const PositionsView& positions, const Triang
 
 void Scene::Implementation::remove(ObjectId id) {
   object(id, "remove");
-  for (PairCache* const pairs : {&volume_pairs_, &narrow_phase_pairs_, &contact_pairs_, &near_object_pairs_})
+  for (PairCache* const pairs :
+       {&volume_pairs_, &narrow_phase_pairs_, &contact_pairs_, &near_object_pairs_, &penetrating_pairs_})
     pairs->release(id);
   std::erase_if(nearest_triangles_,
                 [&](const auto& known) { return known.first.a == id || known.first.b == id; });
@@ -209,6 +264,31 @@ void Scene::Implementation::set_motion(ObjectId id, const PositionsView& from, c
   mark_changed();
 }
 
+void Scene::Implementation::set_distance(ObjectId id, double ObjectOptions::*member, double distance,
+                                         const char* call) {
+  SceneObject& found = object(id, call);
+  ObjectOptions changed = found.options;
+  changed.*member = distance;
+  check(changed, call);
+  found.options.*member = distance;
+  found.move();  // so that its pairs are found again
+  mark_changed();
+}
+
+void Scene::Implementation::set_vertex_groups(ObjectId id, std::span<const std::uint32_t> groups,
+                                              std::span<const std::uint32_t> masks) {
+  SceneObject& found = object(id, "set_vertex_groups");
+  const std::size_t count = found.octree().vertex_count();
+  for (const std::size_t given : {groups.size(), masks.size()}) {
+    if (given == count || (groups.empty() && masks.empty())) continue;
+    fail("set_vertex_groups: " + std::to_string(given) + " numbers for " + found.options.name +
+         ", which has " + std::to_string(count) + " vertices; give a group and a mask for each vertex");
+  }
+  found.set_vertex_groups(groups, masks);
+  found.move();  // so that its pairs are found again
+  mark_changed();
+}
+
 std::vector<ObjectId> Scene::Implementation::objects() const {
   std::vector<ObjectId> ids;
   for (std::uint32_t index = 0; index < slots_.size(); ++index) {
@@ -221,6 +301,19 @@ ElementVertices Scene::Implementation::triangle_vertices(ObjectId id, std::uint3
   const SceneObject& found = object(id, "vertices_of");
   check_triangle(found, triangle, "vertices_of");
   return {found.octree().user_triangle(triangle), 3};
+}
+
+ElementVertices Scene::Implementation::element_vertices(ObjectId id, FeatureKind kind,
+                                                        const std::array<std::uint32_t, 2>& element) const {
+  switch (kind) {
+    case FeatureKind::vertex:
+      return {{element[0]}, 1};
+    case FeatureKind::edge:
+      return {{element[0], element[1]}, 2};
+    case FeatureKind::face:
+      break;
+  }
+  return triangle_vertices(id, element[0]);
 }
 
 Scene::Scene(const SceneOptions& options) : implementation_(std::make_unique<Implementation>(options)) {}
@@ -282,13 +375,16 @@ void Scene::set_group(ObjectId object, std::uint32_t group, std::uint32_t mask) 
 }
 
 void Scene::set_margin(ObjectId object, double margin) {
-  SceneObject& changed = implementation_->object(object, "set_margin");
-  ObjectOptions options = changed.options;
-  options.margin = margin;
-  check(options, "set_margin");
-  changed.options.margin = margin;
-  changed.move();  // so that its pairs are found again
-  implementation_->mark_changed();
+  implementation_->set_distance(object, &ObjectOptions::margin, margin, "set_margin");
+}
+
+void Scene::set_min_separation(ObjectId object, double separation) {
+  implementation_->set_distance(object, &ObjectOptions::min_separation, separation, "set_min_separation");
+}
+
+void Scene::set_vertex_groups(ObjectId object, std::span<const std::uint32_t> groups,
+                              std::span<const std::uint32_t> masks) {
+  implementation_->set_vertex_groups(object, groups, masks);
 }
 
 void Scene::set_self_collision(ObjectId object, bool enabled) {
@@ -306,6 +402,9 @@ const DetectResult& Scene::detect(const DetectRequest& request) {
 }
 std::optional<ContinuousContact> Scene::earliest_impact() {
   return implementation_->earliest_impact();
+}
+double Scene::collision_free_step(const StepOptions& step) {
+  return implementation_->collision_free_step(step);
 }
 double Scene::max_step() {
   const auto earliest = implementation_->earliest_impact();
@@ -360,7 +459,7 @@ std::size_t Scene::vertex_count(ObjectId object) const {
 }
 
 std::size_t Scene::triangle_count(ObjectId object) const {
-  return implementation_->object(object, "triangle_count").octree().triangles().size();
+  return implementation_->object(object, "triangle_count").face_count();
 }
 
 Vec3d Scene::position(ObjectId object, std::uint32_t vertex) const {
@@ -372,11 +471,8 @@ Vec3d Scene::position(ObjectId object, std::uint32_t vertex) const {
 ElementVertices Scene::vertices_of(const ContinuousContact& contact, ContactSide side) const {
   const bool is_a = side == ContactSide::a;
   const std::array<std::uint32_t, 2>& element = is_a ? contact.element_a : contact.element_b;
-  const auto face = is_a ? ElementPairKind::face_vertex : ElementPairKind::vertex_face;
-  if (contact.kind == face)
-    return implementation_->triangle_vertices(is_a ? contact.object_a : contact.object_b, element[0]);
-  if (contact.kind == ElementPairKind::edge_edge) return {{element[0], element[1]}, 2};
-  return {{element[0]}, 1};
+  return implementation_->element_vertices(is_a ? contact.object_a : contact.object_b,
+                                           feature_kinds(contact.kind)[is_a ? 0 : 1], element);
 }
 ElementVertices Scene::vertices_of(const Contact& contact, ContactSide side) const {
   const bool is_a = side == ContactSide::a;
@@ -387,15 +483,8 @@ ElementVertices Scene::vertices_of(const Contact& contact, ContactSide side) con
 ElementVertices Scene::vertices_of(const ProximityPair& pair, ContactSide side) const {
   const bool is_a = side == ContactSide::a;
   const std::array<std::uint32_t, 2>& element = is_a ? pair.element_a : pair.element_b;
-  switch (is_a ? pair.kind_a : pair.kind_b) {
-    case FeatureKind::vertex:
-      return {{element[0]}, 1};
-    case FeatureKind::edge:
-      return {{element[0], element[1]}, 2};
-    case FeatureKind::face:
-      break;
-  }
-  return implementation_->triangle_vertices(is_a ? pair.object_a : pair.object_b, element[0]);
+  return implementation_->element_vertices(is_a ? pair.object_a : pair.object_b,
+                                           is_a ? pair.kind_a : pair.kind_b, element);
 }
 
 const SceneOptions& Scene::options() const {

@@ -30,9 +30,11 @@ void check_triangle(const SceneObject& object, std::uint32_t triangle, const cha
 /// What a step searches.
 struct Question {
   ContactKinds contacts = ContactKinds::none;
-  ImpactOptions impact;
+  ImpactSearchOptions impact;
   ProximityListing proximity_listing = ProximityListing::features;
   bool colliding_vertices = false;
+  /// Of continuous contacts: the share of an object's way by which its volume grows.
+  double reach_of_way = 0;
 
   bool has_intersections() const { return contains(contacts, ContactKinds::intersection); }
   bool is_continuous() const { return contains(contacts, ContactKinds::continuous); }
@@ -60,9 +62,15 @@ class Scene::Implementation {
   void set_vertices(ObjectId id, std::span<const std::uint32_t> vertices, const PositionsView& positions);
   void share_positions(ObjectId id, const PositionsView& positions);
   void set_motion(ObjectId id, const PositionsView& from, const PositionsView& to);
+  void set_vertex_groups(ObjectId id, std::span<const std::uint32_t> groups,
+                         std::span<const std::uint32_t> masks);
+
+  /// Changes a distance of an object's options.
+  void set_distance(ObjectId id, double ObjectOptions::*member, double distance, const char* call);
 
   const DetectResult& detect(const DetectRequest& request);
   std::optional<ContinuousContact> earliest_impact();
+  double collision_free_step(const StepOptions& step);
   /// Calls `answer(queries, objects, i)` for all i below `count`, with objects at their present positions.
   template <class Answer>
   void answer_queries(const QueryFilter& seen, std::size_t count, const char* call, const Answer& answer);
@@ -88,6 +96,8 @@ class Scene::Implementation {
                           std::uint32_t triangle_b) const;
 
   ElementVertices triangle_vertices(ObjectId id, std::uint32_t triangle) const;
+  ElementVertices element_vertices(ObjectId id, FeatureKind kind,
+                                   const std::array<std::uint32_t, 2>& element) const;
   bool contains(ObjectId id) const;
   std::vector<ObjectId> objects() const;
   /// Call after any change to what `detect` would find.
@@ -142,6 +152,12 @@ class Scene::Implementation {
   bool find_contacts(const DetectRequest& request, const StopSignal& stop);
   bool find_impacts(const DetectRequest& request, const StopSignal& stop);
   bool find_proximity(const DetectRequest& request, const StopSignal& stop);
+  void search_on_the_way(const Question& question);
+  /// The longest part of the step, halved until rounded positions are reached without contact.
+  double proven_step(double part) const;
+  ImpactSearchOptions impact_options() const {
+    return {options.impact, options.element_kinds, options.continuous_listing};
+  }
   /// Needs the contacts.
   bool find_penetrations(const StopSignal& stop);
   /// What queries and the search for penetrations read.
@@ -156,6 +172,8 @@ class Scene::Implementation {
   void report_non_finite();
   void publish();
   void list_touching_pairs();
+  void list_deep_pairs();
+  void check_penetration(const DetectRequest& request) const;
   bool volumes_apart(const IndexPair& pair) const;
   bool may_pair(const IndexPair& pair) const;
   OctreeView search_view(const SceneObject& object) const {
@@ -167,6 +185,11 @@ class Scene::Implementation {
   ObjectPairView search_view(const ContactJob& job) const;
   double reach_of(const ContactJob& job) const {
     return reach_of_margins(slots_[job.a].object->options.margin, slots_[job.b].object->options.margin);
+  }
+  double separation_of(const ContactJob& job) const {
+    return supple::separation_of(question_.impact.impact.min_separation,
+                                 slots_[job.a].object->options.min_separation,
+                                 slots_[job.b].object->options.min_separation);
   }
   PairExplanation explain_in_order(const ContactJob& job, TrianglePair triangles) const;
   bool touch_on_the_way(const ContactJob& job, TrianglePair triangles) const;
@@ -193,7 +216,7 @@ class Scene::Implementation {
   std::vector<std::uint32_t> stale_, degraded_, small_;
   std::vector<double> queries_;  // of degraded objects
   Jobs jobs_, impact_jobs_;      // of `detect`, and of `earliest_impact`
-  std::vector<ObjectPair> touching_pairs_, leaf_pairs_, near_pairs_;
+  std::vector<ObjectPair> touching_pairs_, leaf_pairs_, near_pairs_, deep_pairs_;
   std::vector<ContactObject> contact_objects_;
   std::vector<MovingObject> element_objects_;
   std::vector<QueriedObject> queried_objects_;
@@ -208,7 +231,7 @@ class Scene::Implementation {
   std::vector<std::uint32_t> by_box_;
   std::vector<ProximityPair> distances_;
   std::vector<NonFiniteVertex> non_finite_;
-  PairCache volume_pairs_, narrow_phase_pairs_, contact_pairs_, near_object_pairs_;
+  PairCache volume_pairs_, narrow_phase_pairs_, contact_pairs_, near_object_pairs_, penetrating_pairs_;
   ContactPass contact_pass_;
   ImpactPass impact_pass_;
   ProximityPass proximity_pass_;

@@ -41,18 +41,68 @@ ObjectOctreeOptions octree_options(const ObjectOptions& options, const SceneOpti
   return octree;
 }
 
+std::vector<Triangle> with_extra(std::vector<Triangle> faces, std::span<const Triangle> extra) {
+  faces.insert(faces.end(), extra.begin(), extra.end());
+  return faces;
+}
+
 }  // namespace
 
-SceneObject::SceneObject(const PositionsView& positions, std::span<const Triangle> triangles,
-                         const ObjectOptions& object_options, const SceneOptions& scene_options,
-                         const Parallel& parallel)
+SceneObject::SceneObject(const PositionsView& positions, std::vector<Triangle> faces,
+                         std::span<const Triangle> extra, const ObjectOptions& object_options,
+                         const SceneOptions& scene_options, const Parallel& parallel)
     : options(object_options),
-      octree_(positions, triangles, octree_options(object_options, scene_options),
+      face_count_(static_cast<std::uint32_t>(faces.size())),
+      octree_(positions, with_extra(std::move(faces), extra), octree_options(object_options, scene_options),
               scene_options.bounding_volume, scene_options.comparison.sphere_fit, parallel),
-      // The paper's results depend on the leaves of the rest pose.
-      rebuild_policy_(object_options.octree.rebuild_degraded &&
+      // The paper's results depend on the leaves of the rest pose. The cost of an octree at rest leaves out
+      // extra elements.
+      rebuild_policy_(object_options.octree.rebuild_degraded && extra.empty() &&
                       !scene_options.comparison.colliding_vertices &&
-                      scene_options.comparison.sphere_fit != SphereFit::box) {}
+                      scene_options.comparison.sphere_fit != SphereFit::box) {
+  // They are in the octree now.
+  options.edges = {};
+  options.points = {};
+  options.same_vertex = {};
+  for (const auto& [v, w, last] : extra) {
+    if (v != w) continue;
+    is_point_.resize(positions.size(), 0);
+    is_point_[v] = 1;
+  }
+}
+
+SceneObject::Ways SceneObject::ways(const Parallel& parallel) const {
+  constexpr std::size_t grain = 4096;
+  Ways all;
+  const auto is_finite_at = [&](std::uint32_t v) {
+    return is_finite(placement_.start_position(v)) && is_finite(placement_.position(v));
+  };
+  const auto way = [&](std::uint32_t v) { return placement_.position(v) - placement_.start_position(v); };
+  const auto count = static_cast<std::uint32_t>(octree_.vertex_count());
+  // Of all vertices, in one order, so that the result does not depend on the number of threads.
+  for (std::uint32_t v = 0; placement_.has_motion() && v < count; ++v) {
+    if (is_finite_at(v)) all.mean = all.mean + (1.0 / count) * way(v);
+  }
+  if (!is_finite(all.mean)) all.mean = {};
+  std::vector<Ways> parts(parallel.worker_count());
+  parallel.for_ranges(count, grain, [&](std::size_t begin, std::size_t end, std::uint32_t worker) {
+    Ways& part = parts[worker];
+    for (auto v = static_cast<std::uint32_t>(begin); v < end; ++v) {
+      if (!is_finite_at(v)) continue;
+      const Vec3d d = way(v), rest = d - all.mean;
+      part.longest = std::max(part.longest, std::hypot(d.x, d.y, d.z));
+      part.farthest_from_mean = std::max(part.farthest_from_mean, std::hypot(rest.x, rest.y, rest.z));
+      part.largest_coordinate = std::max({part.largest_coordinate, largest_magnitude(placement_.position(v)),
+                                          largest_magnitude(placement_.start_position(v))});
+    }
+  });
+  for (const Ways& part : parts) {
+    all.longest = std::max(all.longest, part.longest);
+    all.farthest_from_mean = std::max(all.farthest_from_mean, part.farthest_from_mean);
+    all.largest_coordinate = std::max(all.largest_coordinate, part.largest_coordinate);
+  }
+  return all;
+}
 
 bool SceneObject::is_stale(const SearchedShapes& shapes) const {
   return has_moved_ || shapes != updated_ || needs_refit(shapes);
@@ -93,7 +143,7 @@ void SceneObject::refit(const SearchedShapes& shapes, const Parallel& parallel) 
     if (wanted.moving) moving_.update(octree_, placement_, parallel);
     if (wanted.near) (placement_.has_motion() ? near_ : moving_).update(octree_, placement_, parallel);
   } while (needs_refit(wanted));
-  if (!options.self_collision) return;
+  if (!options.self_collision || has_extra_elements()) return;
   if (wanted.cull_resting) resting_.update_culling(octree_, placement_, parallel);
   if (wanted.cull_moving) moving_.update_culling(octree_, parallel);
 }
@@ -152,6 +202,17 @@ const VertexTriangles& SceneObject::vertex_triangles() {
   return vertex_triangles_.emplace(triangles, inert_by_id, octree_.vertex_count());
 }
 
+const VertexTriangles* SceneObject::neighbours() {
+  if (options.neighbours == Neighbours::skip || !options.self_collision) return nullptr;
+  const std::uint8_t* const inert = resting_view().arrays.inert;
+  if (!neighbours_ || inert != nullptr || neighbours_leave_out_inert_) {
+    const std::size_t count = inert != nullptr ? octree_.triangles().size() : 0;
+    neighbours_.emplace(octree_.triangles(), std::span(inert, count), octree_.vertex_count());
+    neighbours_leave_out_inert_ = inert != nullptr;
+  }
+  return &*neighbours_;
+}
+
 void SceneObject::measure_built_octree(const Parallel& parallel) {
   resting_.update(octree_, placement_, parallel);
   rebuild_policy_.set_cost_when_built(current_query_cost());
@@ -159,15 +220,16 @@ void SceneObject::measure_built_octree(const Parallel& parallel) {
 
 bool SceneObject::rebuild(const Parallel& parallel) {
   ObjectOctree octree = octree_.rebuilt(placement_.end().view(), parallel);
-  if (!octree.refit(placement_.end(), {}, parallel)) {
+  if (!octree.refit(placement_.end(), {}, parallel) || has_extra_elements()) {
     std::vector<std::uint8_t> inert;
-    mark_inert(octree, placement_.end(), inert);
+    mark_inert(octree, placement_.end(), face_count_, inert);
     octree.refit(placement_.end(), inert, parallel);
   }
   if (!rebuild_policy_.accept(query_cost(octree.nodes(), octree.boxes()))) return false;
   ++rebuilds_;
   const SearchedShapes shapes = with_current(updated_);
   octree_ = std::move(octree);
+  neighbours_.reset();
   resting_.forget_octree();
   moving_.forget_octree();
   near_.forget_octree();

@@ -5,6 +5,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "core/parallel.hpp"
 #include "mesh/vertex_triangles.hpp"
@@ -13,6 +14,7 @@
 #include "scene/placement.hpp"
 #include "scene/rebuild_policy.hpp"
 #include "scene/resting_shape.hpp"
+#include "scene/vertex_groups.hpp"
 #include "supple/inspection.hpp"
 #include "supple/options.hpp"
 
@@ -31,7 +33,8 @@ struct SearchedShapes {
 /// One object of a scene: its octree, its placement, and the shapes that searches read.
 class SceneObject {
  public:
-  SceneObject(const PositionsView& positions, std::span<const Triangle> triangles,
+  /// `extra` are edges and points of no triangle, with the last vertex repeated.
+  SceneObject(const PositionsView& positions, std::vector<Triangle> faces, std::span<const Triangle> extra,
               const ObjectOptions& object_options, const SceneOptions& scene_options,
               const Parallel& parallel);
 
@@ -66,11 +69,33 @@ class SceneObject {
   const Aabb& box() const { return box_; }
   const BoundingSphere& sphere() const { return sphere_; }
   const ObjectOctree& octree() const { return octree_; }
+  /// The octree's triangles with ids from here on are edges and points of no triangle.
+  std::uint32_t face_count() const { return face_count_; }
+  bool has_extra_elements() const { return face_count_ != octree_.triangles().size(); }
+  std::span<const std::uint8_t> is_point() const { return is_point_; }
+  /// Whether a face has a vertex that is not finite; its object contains nothing.
+  bool has_inert_faces() const { return resting_.has_inert_faces(); }
+
+  VertexGroups vertex_groups() const { return {groups_, masks_}; }
+  void set_vertex_groups(std::span<const std::uint32_t> groups, std::span<const std::uint32_t> masks) {
+    groups_.assign(groups.begin(), groups.end());
+    masks_.assign(masks.begin(), masks.end());
+  }
+  /// How far the vertices move, without those that are not finite. O(n).
+  struct Ways {
+    Vec3d mean;
+    double farthest_from_mean = 0, longest = 0, largest_coordinate = 0;
+  };
+  Ways ways(const Parallel& parallel) const;
   const MovingShape& moving() const { return moving_; }
   /// The elements at the end of the step: those of `moving` for an object at rest.
   const MovingShape& near() const { return placement_.has_motion() ? near_ : moving_; }
   OctreeView resting_view() const { return resting_.view(octree_, placement_); }
-  OctreeView moving_view() const { return moving_.view(octree_, placement_); }
+  OctreeView moving_view() const {
+    OctreeView view = moving_.view(octree_, placement_);
+    if (has_extra_elements()) view.culled = nullptr;
+    return view;
+  }
   OctreeView near_view() const {
     OctreeView view = near().view(octree_, placement_);
     view.culled = nullptr;
@@ -90,6 +115,9 @@ class SceneObject {
   /// The triangles around each vertex at rest, without inert ones. The first call takes O(n), and so does
   /// each call while there are inert triangles.
   const VertexTriangles& vertex_triangles();
+  /// The triangles around each vertex in octree order, without inert ones, or null when neighbours are not
+  /// tested. Takes O(n) when the octree or the inert triangles have changed.
+  const VertexTriangles* neighbours();
   /// Checks the shapes that are up to date.
   std::string validate() const;
   OctreeStatistics octree_statistics() const;
@@ -103,19 +131,24 @@ class SceneObject {
   double current_query_cost() const;
   void update_volumes(const SearchedShapes& shapes);
 
+  std::uint32_t face_count_;
   ObjectOctree octree_;
   Placement placement_;
-  RestingShape resting_;
+  RestingShape resting_{face_count_};
   MovingShape moving_{MovingShape::Part::way}, near_{MovingShape::Part::end};
   RebuildPolicy rebuild_policy_;
   std::uint64_t rebuilds_ = 0;
   std::size_t refitted_triangles_ = 0;
+  std::vector<std::uint32_t> groups_, masks_;  // by vertex
+  std::vector<std::uint8_t> is_point_;         // by vertex, or empty
   bool has_moved_ = true;
   bool knows_open_edge_ = false;
   std::optional<std::array<std::uint32_t, 2>> open_edge_;
   std::optional<VertexTriangles> vertex_triangles_;
   bool leaves_out_inert_ = false;  // `vertex_triangles_` does
-  SearchedShapes updated_;         // by the last update
+  std::optional<VertexTriangles> neighbours_;
+  bool neighbours_leave_out_inert_ = false;
+  SearchedShapes updated_;  // by the last update
   Aabb box_;
   BoundingSphere sphere_;
 };

@@ -11,22 +11,27 @@
 namespace supple {
 namespace {
 
-std::vector<Triangle> user_triangles(const SceneObject& object) {
+std::vector<Triangle> user_triangles(const SceneObject& object, std::size_t count) {
   const ObjectOctree& octree = object.octree();
-  std::vector<Triangle> triangles(octree.triangles().size());
+  std::vector<Triangle> triangles(count);
   for (std::uint32_t t = 0; t < triangles.size(); ++t) triangles[t] = octree.user_triangle(t);
   return triangles;
 }
 
 PlainObject plain_object(const SceneObject& object) {
-  PlainObject plain{{}, user_triangles(object)};
+  PlainObject plain{
+      {}, user_triangles(object, object.face_count()), object.vertex_groups(), object.options.neighbours};
   for (std::uint32_t vertex = 0; vertex < object.octree().vertex_count(); ++vertex)
     plain.positions.push_back(object.placement().position(vertex));
   return plain;
 }
 
 PlainMovingObject plain_moving_object(const SceneObject& object) {
-  PlainMovingObject plain{{}, {}, user_triangles(object)};
+  PlainMovingObject plain{{},
+                          {},
+                          user_triangles(object, object.octree().triangles().size()),
+                          object.vertex_groups(),
+                          object.face_count()};
   for (std::uint32_t vertex = 0; vertex < object.octree().vertex_count(); ++vertex) {
     plain.start.push_back(object.placement().start_position(vertex));
     plain.end.push_back(object.placement().position(vertex));
@@ -79,13 +84,15 @@ void Scene::Implementation::verify_impacts(const ObjectPair& pair, const Contact
   const bool same_object = pair.a == pair.b;
   const PlainMovingObject a = plain_moving_object(*slots_[pair.a.index].object);
   const PlainMovingObject b = same_object ? a : plain_moving_object(*slots_[pair.b.index].object);
-  const BruteForceImpacts truth =
-      find_impacts_by_brute_force(a, b, same_object, question_.impact.min_separation, parallel);
+  BruteForceSearch search{question_.impact.impact, question_.impact.kinds};
+  search.impact.min_separation = separation_of({pair.a.index, pair.b.index});
+  const BruteForceImpacts truth = find_impacts_by_brute_force(a, b, same_object, search, parallel);
   report.element_pairs_checked += truth.pairs_checked;
   report.touching_element_pairs += truth.touching.size();
   const auto reported =
       group != nullptr ? result.continuous_contacts_of(*group) : std::span<const ContinuousContact>{};
-  compare_impacts(pair, reported, truth.touching, report.continuous_differences);
+  compare_impacts(pair, reported, truth.touching, question_.impact.listing, result.continuous_contacts,
+                  report.continuous_differences);
 }
 
 void Scene::Implementation::verify_proximity(const ObjectPair& pair, const ContactGroup* group,
@@ -97,8 +104,9 @@ void Scene::Implementation::verify_proximity(const ObjectPair& pair, const Conta
     return plain;
   };
   const PlainMovingObject a = at_end(pair.a), b = same_object ? a : at_end(pair.b);
-  const BruteForceProximity truth = find_proximity_by_brute_force(
-      a, b, same_object, reach_of({pair.a.index, pair.b.index}), question_.proximity_listing, parallel);
+  const BruteForceProximity truth =
+      find_proximity_by_brute_force(a, b, same_object, reach_of({pair.a.index, pair.b.index}),
+                                    question_.proximity_listing, question_.impact.kinds, parallel);
   report.proximity_pairs_checked += truth.pairs_checked;
   report.near_pairs += truth.near.size();
   const auto reported =

@@ -492,6 +492,72 @@ TEST(FirstImpactDetails, DoNotDependOnTheOrderOfTheElements) {
   }
 }
 
+TEST(FirstImpactOfPoints, EqualsAlgebraAndTheFaceThatItSpans) {
+  RandomNumbers random(8);
+  for (int i = 0; i < 4000; ++i) {
+    const bool is_planar = i % 2 == 0, is_lattice = i % 3 == 0;
+    const auto point = [&] {
+      Vec3d p = random.vector(1);
+      if (is_lattice) p = {std::nearbyint(2 * p.x), std::nearbyint(2 * p.y), std::nearbyint(2 * p.z)};
+      if (is_planar) p.z = 0;
+      return p;
+    };
+    const double separation = i % 5 < 2 ? 0.1 : 0;
+    const PointEdgeMotion edge{{point(), point(), point()}, {point(), point(), point()}};
+    const PointPointMotion points{{edge.start[0], edge.start[1]}, {edge.end[0], edge.end[1]}};
+    const auto check = [&](const auto& motion, const VertexFaceMotion& face) {
+      const std::optional<TimeBracket> truth = first_contact_by_algebra(motion, separation);
+      const std::optional<Impact> impact = first_impact(motion, {.min_separation = separation});
+      ASSERT_EQ(impact.has_value(), truth.has_value()) << i;
+      if (!impact) return;
+      EXPECT_LE(impact->toi, truth->low);
+      EXPECT_GE(impact->toi, truth->high - toi_tolerance_at(truth->high));
+      EXPECT_EQ(impact->toi, first_impact(face, {.min_separation = separation})->toi);
+      EXPECT_EQ(impact->barycentric[0], 1);
+      EXPECT_NEAR(impact->barycentric[1] + impact->barycentric[2], 1, 1e-12);
+      EXPECT_EQ(impact->barycentric[3], 0);
+      if (is_planar) {
+        EXPECT_EQ(impact->normal.z, 0);
+      }
+    };
+    const auto& [s, e] = edge;
+    check(edge, {{s[0], s[1], s[2], s[2]}, {e[0], e[1], e[2], e[2]}});
+    check(points, {{s[0], s[1], s[1], s[1]}, {e[0], e[1], e[1], e[1]}});
+  }
+}
+
+TEST(FirstImpactOfPoints, InAPlaneHasTheNormalOfTheEdge) {
+  const PointEdgeMotion motion{{Vec3d{0.3, 1, 0}, {0, 0, 0}, {1, 0, 0}},
+                               {Vec3d{0.9, -1, 0}, {0, 0, 0}, {1, 0, 0}}};
+  const std::optional<Impact> impact = first_impact(motion);
+  ASSERT_TRUE(impact);
+  EXPECT_NEAR(impact->toi, 0.5, 1e-8);
+  EXPECT_NEAR(impact->normal.y, 1, 1e-12);
+  EXPECT_NEAR(impact->barycentric[2], 0.6, 1e-7);
+  EXPECT_FALSE(first_impact(motion, {.max_time = 0.4}));
+  EXPECT_TRUE(first_impact(motion, {.max_time = 0.6}));
+}
+
+TEST(FirstImpactOptions, MaxTimeLeavesOutWhatIsReportedLater) {
+  RandomNumbers random(9);
+  std::size_t found = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const Paths paths = random_paths(random, 1, 1);
+    const VertexFaceMotion motion{paths.start, paths.end};
+    const double separation = i % 2 == 0 ? 0.05 : 0;
+    const std::optional<Impact> impact = first_impact(motion, {.min_separation = separation});
+    if (!impact) continue;
+    ++found;
+    for (const double until : {0.0, 0.3, impact->toi, std::nextafter(impact->toi, 0)}) {
+      const bool is_reported =
+          first_impact(motion, {.min_separation = separation, .max_time = until}).has_value();
+      EXPECT_EQ(is_reported, impact->toi <= until) << i;
+    }
+  }
+  EXPECT_GT(found, 500u);
+  EXPECT_THROW(first_impact(VertexFaceMotion{}, {.max_time = 1.5}), Error);
+}
+
 TEST(FirstImpactErrors, AreForSeparationsThatAreNone) {
   const VertexFaceMotion motion{};
   for (const double wrong :

@@ -19,7 +19,7 @@ template <class Struct>
 class EachStructure : public testing::Test {};
 using Structures =
     testing::Types<ImpactOptions, ObjectOctreeOptions, SceneOctreeOptions, ComparisonOptions, ObjectOptions,
-                   SceneOptions, BroadPhaseOptions, MassSpringOptions, MassSpringMotion::Handle,
+                   SceneOptions, StepOptions, BroadPhaseOptions, MassSpringOptions, MassSpringMotion::Handle,
                    MassSpringMotion, RigidMotion, WaveMotion, ContactResponse, SimulationOptions, StepStats,
                    BroadPhaseStats, OctreeStatistics>;
 TYPED_TEST_SUITE(EachStructure, Structures);

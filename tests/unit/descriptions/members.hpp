@@ -13,8 +13,12 @@
 namespace supple {
 
 inline auto members_of(ImpactOptions& o) {
-  auto& [a, b] = o;
-  return std::tie(a, b);
+  auto& [a, b, c, d] = o;
+  return std::tie(a, b, c, d);
+}
+inline auto members_of(StepOptions& o) {
+  auto& [a] = o;
+  return std::tie(a);
 }
 inline auto members_of(ObjectOctreeOptions& o) {
   auto& [a, b, c, d, e] = o;
@@ -24,17 +28,18 @@ inline auto members_of(SceneOctreeOptions& o) {
   auto& [a, b, c, d, e] = o;
   return std::tie(a, b, c, d, e);
 }
+/// Lists of vertices have no description: programs set them, not files or command lines.
 inline auto members_of(ObjectOptions& o) {
-  auto& [a, b, c, d, e, f, g, h, i] = o;
-  return std::tie(a, b, c, d, e, f, g, h, i);
+  auto& [a, b, c, d, same_vertex, edges, points, e, f, g, h, i, j, k] = o;
+  return std::tie(a, b, c, d, e, f, g, h, i, j, k);
 }
 inline auto members_of(ComparisonOptions& o) {
   auto& [a, b] = o;
   return std::tie(a, b);
 }
 inline auto members_of(SceneOptions& o) {
-  auto& [a, b, c, d, e, f, g, h, i] = o;
-  return std::tie(a, b, c, d, e, f, g, h, i);
+  auto& [a, b, c, d, e, f, g, h, i, j, k] = o;
+  return std::tie(a, b, c, d, e, f, g, h, i, j, k);
 }
 inline auto members_of(BroadPhaseOptions& o) {
   auto& [a, b, c] = o;

@@ -46,11 +46,12 @@ struct Step {
   }
 
   std::vector<TouchingElements> truth_at(double separation) const {
-    return find_impacts_by_brute_force(a, b, false, separation, Parallel(1)).touching;
+    return find_impacts_by_brute_force(a, b, false, {.impact = {.min_separation = separation}}, Parallel(1))
+        .touching;
   }
   std::vector<Fault> faults_of(const std::vector<ContinuousContact>& contacts) const {
     std::vector<ContinuousDifference> differences;
-    compare_impacts({}, contacts, truth, differences);
+    compare_impacts({}, contacts, truth, ContinuousListing::all, {}, differences);
     std::vector<Fault> faults;
     for (const ContinuousDifference& difference : differences) faults.push_back(difference.fault);
     return faults;
@@ -90,10 +91,12 @@ TEST_P(BruteForceImpacts, KnowsTheSeparation) {
   if (GetParam() == 0) GTEST_SKIP() << "a separation of 0 has no smaller one";
   const Step step(GetParam());
   std::vector<ContinuousDifference> differences;
-  compare_impacts({}, step.reported, step.truth_at(GetParam() * (1 - 0x1p-20)), differences);
+  compare_impacts({}, step.reported, step.truth_at(GetParam() * (1 - 0x1p-20)), ContinuousListing::all, {},
+                  differences);
   EXPECT_FALSE(differences.empty()) << "all contacts with a slightly smaller separation are later";
   differences.clear();
-  compare_impacts({}, step.reported, step.truth_at(GetParam() * (1 + 0x1p-20)), differences);
+  compare_impacts({}, step.reported, step.truth_at(GetParam() * (1 + 0x1p-20)), ContinuousListing::all, {},
+                  differences);
   EXPECT_FALSE(differences.empty()) << "all contacts with a slightly larger separation are earlier";
 }
 

@@ -66,7 +66,8 @@ void expect_nearest(const PlainMovingObject& a, const PlainMovingObject& b,
     return;
   }
   const double reach = found->distance * (1 + 1e-9) + std::numeric_limits<double>::denorm_min();
-  const auto truth = find_proximity_by_brute_force(a, b, false, reach, ProximityListing::features, serial);
+  const auto truth = find_proximity_by_brute_force(a, b, false, reach, ProximityListing::features,
+                                                   ElementKinds::all, serial);
   ASSERT_FALSE(truth.near.empty());
   const auto place = [](const auto& pair) {
     return std::tie(pair.kind_a, pair.kind_b, pair.element_a, pair.element_b);

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
 #include <vector>
 
@@ -61,6 +62,27 @@ TEST(Weld, KeepsVerticesThatAreNotFiniteApart) {
   Scene scene;
   scene.add(pieces, {.self_collision = true, .weld = true});
   EXPECT_EQ(scene.detect().non_finite_vertices.size(), 2u);
+}
+
+TEST(Weld, ByAMapIsThatOfEqualPositions) {
+  const TriangleMesh ball = make_icosphere(3), pieces = split(ball);
+  std::vector<std::uint32_t> same(pieces.positions.size());
+  for (std::uint32_t v = 0; v < same.size(); ++v) {
+    same[v] = static_cast<std::uint32_t>(
+        std::find(pieces.positions.begin(), pieces.positions.end(), pieces.positions[v]) -
+        pieces.positions.begin());
+  }
+  const ContactKinds kinds = ContactKinds::intersection | ContactKinds::proximity;
+  Scene scene({.contacts = kinds}), welded({.contacts = kinds});
+  const ObjectOptions options{.self_collision = true, .margin = 0.3};
+  ObjectOptions by_map = options, by_position = options;
+  by_map.same_vertex = same;
+  by_position.weld = true;
+  scene.add(pieces, by_map);
+  welded.add(pieces, by_position);
+  const auto pairs = scene.detect().proximity_pairs, expected = welded.detect().proximity_pairs;
+  EXPECT_GT(pairs.size(), 0u);
+  EXPECT_EQ(std::vector(pairs.begin(), pairs.end()), std::vector(expected.begin(), expected.end()));
 }
 
 }  // namespace

@@ -1,0 +1,250 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "scene/brute_force_elements.hpp"
+#include "supple/distance.hpp"
+#include "supple/error.hpp"
+#include "supple/scene.hpp"
+#include "support/hard_scenes.hpp"
+#include "support/random.hpp"
+
+namespace supple {
+namespace {
+
+struct Path {
+  TriangleMesh mesh;
+  std::vector<Vec3d> to;
+};
+
+Scene scene_of(const std::vector<Path>& paths, double separation = 0) {
+  SceneOptions options;
+  options.contacts = ContactKinds::continuous;
+  options.impact.min_separation = separation;
+  Scene scene(options);
+  for (const Path& path : paths) {
+    const ObjectId id = scene.add(path.mesh, {.self_collision = true, .octree = {.leaf_size = 3}});
+    scene.set_motion(id, path.mesh.positions, path.to);
+  }
+  return scene;
+}
+
+std::vector<Vec3d> at(const Path& path, double t) {
+  std::vector<Vec3d> positions;
+  for (std::size_t v = 0; v < path.to.size(); ++v) {
+    const Vec3d& from = path.mesh.positions[v];
+    positions.push_back(from + t * (path.to[v] - from));
+  }
+  return positions;
+}
+
+/// Calls `visit` with the points of each vertex-face and edge-edge pair at the start and at time t.
+template <class Visit>
+void for_each_pair(const std::vector<Path>& paths, double t, const Visit& visit) {
+  std::vector<PlainMovingObject> objects;
+  std::vector<BoxedElements> elements;
+  for (const Path& path : paths) {
+    objects.push_back({path.mesh.positions, at(path, t), path.mesh.triangles});
+    elements.push_back(boxed_elements(objects.back()));
+  }
+  const auto visit_all = [&](std::size_t a, const std::vector<BoxedElement>& of_a, std::size_t b,
+                             const std::vector<BoxedElement>& of_b) {
+    for (const BoxedElement& p : of_a) {
+      for (const BoxedElement& q : of_b) {
+        if (a == b && (share_vertex(p, q) || (p.kind == q.kind && q.name <= p.name))) continue;
+        const auto points = [&](const std::vector<Vec3d>& positions, const BoxedElement& element) {
+          std::vector<Vec3d> found;
+          for (std::size_t i = 0; i <= static_cast<std::size_t>(element.kind); ++i)
+            found.push_back(positions[element.vertices[i]]);
+          return found;
+        };
+        visit(std::array{points(objects[a].start, p), points(objects[b].start, q)},
+              std::array{points(objects[a].end, p), points(objects[b].end, q)});
+      }
+    }
+  };
+  for (std::size_t a = 0; a < paths.size(); ++a) {
+    for (std::size_t b = 0; b < paths.size(); ++b) {
+      visit_all(a, elements[a].vertices, b, elements[b].faces);
+      if (a <= b) visit_all(a, elements[a].edges, b, elements[b].edges);
+    }
+  }
+}
+
+double distance_of(const std::array<std::vector<Vec3d>, 2>& elements) {
+  const auto& [a, b] = elements;
+  if (a.size() == 2) return edge_edge_distance({a[0], a[1]}, {b[0], b[1]})->distance;
+  return point_triangle_distance(a[0], {b[0], b[1], b[2]})->distance;
+}
+
+/// The least share of its distance that a pair has at the rounded positions at time t.
+double least_share(const std::vector<Path>& paths, double t, double separation) {
+  double least = std::numeric_limits<double>::infinity();
+  for_each_pair(paths, t, [&](const auto& start, const auto& end) {
+    const double before = distance_of(start), after = distance_of(end);
+    const double excess = before > separation ? separation : 0;
+    least = std::min(least, (after - excess) / (before - excess));
+  });
+  return least;
+}
+
+/// Sheets that fly through each other, deformed and far from touching at the start.
+std::vector<Path> flying_sheets(std::uint64_t seed, double scale = 1, double gap = 0.4) {
+  RandomNumbers random(seed);
+  std::vector<Path> paths;
+  for (int i = 0; i < 2; ++i) {
+    Path path{crumpled_sheet(3, 3, 0.1, seed + static_cast<std::uint64_t>(i)), {}};
+    for (Vec3d& p : path.mesh.positions) {
+      p.y += gap * i;
+      p = scale * p;
+    }
+    const Vec3d way = random.vector(1);
+    for (const Vec3d& p : path.mesh.positions)
+      path.to.push_back(p + scale * (Vec3d{way.x, i == 0 ? 0.5 : -0.5, way.z} + random.vector(0.2)));
+    paths.push_back(path);
+  }
+  return paths;
+}
+
+TEST(SafeStep, KeepsTheShareOfEachDistanceAndIsTheLargest) {
+  for (const double keep : {0.0, 0.2, 0.5, 0.9}) {
+    for (const double separation : {0.0, 0.02}) {
+      for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+        const std::vector<Path> paths = flying_sheets(seed);
+        Scene scene = scene_of(paths, separation);
+        const double t = scene.collision_free_step({.keep = keep});
+        ASSERT_GT(t, 0);
+        EXPECT_GE(least_share(paths, t, separation), keep * (1 - 0x1p-18) - 1e-9);
+        if (t == 1) continue;
+        EXPECT_LE(least_share(paths, t * (1 + 1e-4), separation), keep + 1e-3)
+            << "a longer step keeps it too";
+      }
+    }
+  }
+}
+
+TEST(SafeStep, IsThatOfTheFirstImpactWhenNothingIsKept) {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    Scene scene = scene_of(flying_sheets(seed));
+    const double first = scene.max_step();
+    const double t = scene.collision_free_step({.keep = 0});
+    EXPECT_LE(t, first);
+    EXPECT_NEAR(t, first, 1e-6);
+  }
+}
+
+TEST(SafeStep, DoesNotDependOnThreadsOrScale) {
+  const std::vector<Path> paths = flying_sheets(3), huge = flying_sheets(3, 0x1p300),
+                          tiny = flying_sheets(3, 0x1p-300);
+  Scene scene = scene_of(paths);
+  const double t = scene.collision_free_step();
+  EXPECT_LT(t, 1);
+  for (const std::uint32_t threads : {1u, 2u, 5u}) {
+    Scene other({.contacts = ContactKinds::continuous, .threads = threads});
+    for (const Path& path : paths)
+      other.set_motion(other.add(path.mesh, {.self_collision = true}), path.mesh.positions, path.to);
+    EXPECT_EQ(other.collision_free_step(), t) << threads;
+  }
+  Scene of_huge = scene_of(huge), of_tiny = scene_of(tiny);
+  EXPECT_NEAR(of_huge.collision_free_step(), t, 1e-9);
+  EXPECT_NEAR(of_tiny.collision_free_step(), t, 1e-9);
+}
+
+/// A line search that repeats the step always advances, and nothing crosses at the rounded positions.
+TEST(SafeStep, AlwaysAdvancesInALineSearch) {
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    std::vector<Path> paths = flying_sheets(seed);
+    Scene scene = scene_of(paths);
+    for (int step = 0; step < 20; ++step) {
+      const double t = scene.collision_free_step();
+      ASSERT_GT(t, 0) << step;
+      Scene check = scene_of(paths);
+      for (std::size_t i = 0; i < paths.size(); ++i) {
+        const std::vector<Vec3d> reached = at(paths[i], t);
+        check.set_motion(check.objects()[i], paths[i].mesh.positions, reached);
+        paths[i].mesh.positions = reached;
+        scene.set_motion(scene.objects()[i], reached, paths[i].to);
+      }
+      ASSERT_FALSE(check.earliest_impact()) << step;
+    }
+  }
+}
+
+TriangleMesh triangle_at(double z, double size = 1) {
+  TriangleMesh mesh;
+  mesh.positions = {{-size, -size, z}, {size, -size, z}, {0, size, z}};
+  mesh.triangles = {{0, 1, 2}};
+  return mesh;
+}
+
+/// Gaps below the rounding of the coordinates: the positions from + t (to - from) decide.
+TEST(SafeStep, ReachesRoundedPositionsWithoutContact) {
+  for (const double gap : {1e-4, 1e-12, 0x1p-50, 0x1p-52}) {
+    const std::vector<Path> paths{{triangle_at(1 + gap), triangle_at(0.3).positions},
+                                  {triangle_at(1), triangle_at(1).positions}};
+    Scene scene = scene_of(paths);
+    const double t = scene.collision_free_step();
+    EXPECT_GT(t, 0) << gap;
+    Scene check = scene_of({{paths[0].mesh, at(paths[0], t)}, {paths[1].mesh, at(paths[1], t)}});
+    EXPECT_FALSE(check.earliest_impact()) << gap;
+    EXPECT_GT(at(paths[0], t)[0].z, 1) << gap;
+  }
+  for (const double gap : {1e-20, 1e-100, 1e-300}) {
+    Scene scene =
+        scene_of({{triangle_at(gap), triangle_at(-1).positions}, {triangle_at(0), triangle_at(0).positions}});
+    const double t = scene.collision_free_step();
+    EXPECT_GT(t, 0) << gap;
+    EXPECT_NEAR(t / gap, 0.8, 1e-4) << gap;
+  }
+}
+
+TEST(SafeStep, IsNotEndedByPairsWithinTheSeparationThatPart) {
+  const std::vector<Path> paths{{triangle_at(0.01), triangle_at(0.5).positions},
+                                {triangle_at(0), triangle_at(0).positions}};
+  Scene scene = scene_of(paths, 0.1);
+  EXPECT_EQ(scene.max_step(), 0);
+  EXPECT_EQ(scene.collision_free_step(), 1);
+  Scene nearer = scene_of(
+      {{triangle_at(0.01), triangle_at(0).positions}, {triangle_at(0), triangle_at(0).positions}}, 0.1);
+  EXPECT_NEAR(nearer.collision_free_step({.keep = 0.25}), 0.75, 1e-5);
+}
+
+TEST(SafeStep, IsZeroWhereElementsTouchAtTheStart) {
+  Scene scene =
+      scene_of({{triangle_at(0), triangle_at(1).positions}, {triangle_at(0), triangle_at(0).positions}});
+  EXPECT_EQ(scene.collision_free_step(), 0);
+  Scene at_rest =
+      scene_of({{triangle_at(0), triangle_at(0).positions}, {triangle_at(0), triangle_at(0).positions}});
+  EXPECT_EQ(at_rest.collision_free_step(), 1) << "nothing moves";
+}
+
+TEST(SafeStep, OfFastThingsTogetherDoesNotCountTheirWay) {
+  TriangleMesh sheet = crumpled_sheet(8, 8, 0.05, 1);
+  std::vector<Vec3d> to = sheet.positions;
+  for (Vec3d& p : to) p = p + Vec3d{100, 50, 20};
+  Scene scene = scene_of({{sheet, to}});
+  EXPECT_EQ(scene.collision_free_step({.keep = 0.9}), 1);
+}
+
+TEST(SafeStep, IgnoresVerticesThatAreNotFinite) {
+  std::vector<Path> paths = flying_sheets(2);
+  paths[0].to[3].x = std::numeric_limits<double>::quiet_NaN();
+  Scene scene = scene_of(paths);
+  const double t = scene.collision_free_step();
+  EXPECT_GT(t, 0);
+  EXPECT_LE(t, 1);
+  EXPECT_EQ(Scene().collision_free_step(), 1);
+}
+
+TEST(SafeStep, RefusesSharesOutOfRange) {
+  Scene scene;
+  for (const double keep : {-0.1, 1.0, std::numeric_limits<double>::quiet_NaN()})
+    EXPECT_THROW(scene.collision_free_step({.keep = keep}), Error);
+}
+
+}  // namespace
+}  // namespace supple
