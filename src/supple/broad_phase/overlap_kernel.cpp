@@ -22,15 +22,17 @@ namespace hn = hwy::HWY_NAMESPACE;
 using Floats = hn::CappedTag<float, max_lanes>;
 using Integers = hn::RebindToUnsigned<Floats>;
 
-/// Adds the pairs of box `row` with the boxes of hit lanes, counted from `column`, that begin here. Returns
-/// the new number of pairs in the batch.
+/// Adds the pairs of box `row` with the boxes of hit lanes, counted from `column`, that begin here and have
+/// paired kinds. Returns the new number of pairs in the batch.
 template <class Mask>
 HWY_INLINE std::size_t append(const BoxLanes& boxes, std::size_t row, std::size_t column, Mask hit,
                               std::size_t count, PairList& pairs) {
   const Integers lanes;
-  const auto begins =
-      hn::Or(hn::Set(lanes, boxes.begins[row]), hn::LoadU(lanes, boxes.begins.data() + column));
-  const auto reported = hn::And(hn::RebindMask(lanes, hit), hn::Eq(begins, hn::Set(lanes, 7)));
+  const std::uint32_t row_marks = boxes.marks[row];
+  const auto required = hn::Set(lanes, PairMarks::required(row_marks));
+  const auto marks =
+      hn::Or(hn::Set(lanes, row_marks & PairMarks::begins), hn::LoadU(lanes, boxes.marks.data() + column));
+  const auto reported = hn::And(hn::RebindMask(lanes, hit), hn::Eq(hn::And(marks, required), required));
   hn::StoreU(hn::Set(lanes, boxes.slots[row]), lanes, pairs.first.data() + count);
   hn::StoreU(packed_lanes(lanes, hn::LoadU(lanes, boxes.slots.data() + column), reported), lanes,
              pairs.second.data() + count);
@@ -93,7 +95,7 @@ void BoxLanes::resize(std::size_t new_count) {
     for (std::vector<float>& ends : min) ends.resize(size);
     for (std::vector<float>& ends : max) ends.resize(size);
     slots.resize(size);
-    begins.resize(size);
+    marks.resize(size);
   }
   std::fill_n(min[0].begin() + static_cast<std::ptrdiff_t>(count), max_lanes,
               std::numeric_limits<float>::quiet_NaN());

@@ -11,17 +11,10 @@ bool differs(const Volume& now, const Volume& before) {
   return std::memcmp(&now, &before, sizeof(Volume)) != 0 && !(now.empty() && before.empty());
 }
 
-template <class Volume>
-Volume volume_at(std::span<const Volume> given, std::size_t slot) {
-  return slot < given.size() ? given[slot] : Volume{};
-}
-
-/// Whether the volumes of [begin, end) are certainly the same as before; quick for volumes at rest.
-template <class Volume>
-bool is_same_block(std::span<const Volume> given, const std::vector<Volume>& known, std::size_t begin,
+template <class Item>
+bool is_same_range(std::span<const Item> given, const std::vector<Item>& known, std::size_t begin,
                    std::size_t end) {
-  return end <= given.size() &&
-         std::memcmp(&given[begin], &known[begin], (end - begin) * sizeof(Volume)) == 0;
+  return end <= given.size() && std::memcmp(&given[begin], &known[begin], (end - begin) * sizeof(Item)) == 0;
 }
 
 }  // namespace
@@ -31,6 +24,7 @@ void VolumeStore::update(const ObjectVolumes& given, const Parallel& parallel) {
   given_count_ = has_spheres_ ? given.spheres.size() : given.boxes.size();
   boxes_.resize(std::max(given_count_, known_count));
   if (has_spheres_) spheres_.resize(boxes_.size());
+  if (wanted_.has_kinds()) kinds_.resize(boxes_.size());
   if (!given.dirty) {
     compare_all(given, parallel);
   } else {
@@ -44,18 +38,35 @@ void VolumeStore::update(const ObjectVolumes& given, const Parallel& parallel) {
   revision_ += changed_count_ != 0;
 }
 
-bool VolumeStore::take_if_changed(const ObjectVolumes& given, std::uint32_t slot) {
-  if (has_spheres_) {
-    const BoundingSphere sphere = volume_at(given.spheres, slot);
-    if (!differs(sphere, spheres_[slot])) return false;
-    spheres_[slot] = sphere;
-    boxes_[slot] = bounding_box(sphere);
+template <class Volume>
+bool VolumeStore::take_if_changed(std::span<const Volume> given, std::span<const std::uint8_t> kinds,
+                                  std::uint32_t slot, Volume& known) {
+  Volume volume = slot < given.size() ? given[slot] : Volume{};
+  if (!wanted_.has_kinds() || slot >= given.size()) {
+    if (!differs(volume, known)) return false;
   } else {
-    const Aabb box = volume_at(given.boxes, slot);
-    if (!differs(box, boxes_[slot])) return false;
-    boxes_[slot] = box;
+    const std::uint8_t kind = kinds[slot];
+    if (wanted_.partners(kind) == 0) volume = Volume{};
+    const bool is_other_kind = kind != kinds_[slot] && !volume.empty();
+    if (!is_other_kind && !differs(volume, known)) return false;
+    kinds_[slot] = kind;
   }
+  known = volume;
   return true;
+}
+
+bool VolumeStore::take_if_changed(const ObjectVolumes& given, std::uint32_t slot) {
+  if (!has_spheres_) return take_if_changed(given.boxes, given.kinds, slot, boxes_[slot]);
+  if (!take_if_changed(given.spheres, given.kinds, slot, spheres_[slot])) return false;
+  boxes_[slot] = bounding_box(spheres_[slot]);
+  return true;
+}
+
+/// Whether the volumes of [begin, end) are certainly the same as before; quick for volumes at rest.
+bool VolumeStore::is_same_block(const ObjectVolumes& given, std::size_t begin, std::size_t end) const {
+  if (wanted_.has_kinds() && !is_same_range(given.kinds, kinds_, begin, end)) return false;
+  return has_spheres_ ? is_same_range(given.spheres, spheres_, begin, end)
+                      : is_same_range(given.boxes, boxes_, begin, end);
 }
 
 void VolumeStore::compare_all(const ObjectVolumes& given, const Parallel& parallel) {
@@ -69,9 +80,7 @@ void VolumeStore::compare_all(const ObjectVolumes& given, const Parallel& parall
       const std::size_t begin = chunk * chunk_size, end = std::min(begin + chunk_size, slots);
       for (std::size_t block = begin; block < end; block += block_size) {
         const std::size_t block_end = std::min(block + block_size, end);
-        if (has_spheres_ ? is_same_block(given.spheres, spheres_, block, block_end)
-                         : is_same_block(given.boxes, boxes_, block, block_end))
-          continue;
+        if (is_same_block(given, block, block_end)) continue;
         for (std::size_t slot = block; slot < block_end; ++slot)
           if (take_if_changed(given, static_cast<std::uint32_t>(slot)))
             listed_[begin + count++] = static_cast<std::uint32_t>(slot);

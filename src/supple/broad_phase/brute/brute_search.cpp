@@ -9,7 +9,7 @@ void BruteSearch::search(const VolumeStore& volumes, const Parallel& parallel, F
   lanes_.resize(boxes.size());
   std::size_t count = 0;
   for (std::uint32_t slot = 0; slot < boxes.size(); ++slot)
-    if (!boxes[slot].empty()) lanes_.set(count++, slot, boxes[slot]);
+    if (!boxes[slot].empty()) lanes_.set(count++, slot, boxes[slot], marks_of(volumes, slot));
   lanes_.resize(count);
 
   const auto lists = sorter_.start(parallel.worker_count(), boxes.size());

@@ -156,6 +156,7 @@ std::uint64_t search_level(const Grid& grid, const BinnedBoxes& boxes, std::size
                 pairs.first.data(),   pairs.second.data(),  boxes.has_many_pairs};
   const std::uint32_t* const cell_begins = boxes.cell_begins.data();
   const GridLevel level = grid.levels[level_index];
+  const std::uint32_t own_bit = 1u << level_index;
   for (std::size_t place = begin; place < end; ++place) {
     const Query query = query_of(arrays, place);
     const auto visit = [&](std::size_t from, std::size_t to)
@@ -164,15 +165,18 @@ std::uint64_t search_level(const Grid& grid, const BinnedBoxes& boxes, std::size
       visit(place + 1, cell_begins[level.division(0, query.high[0]) + 1]);
       continue;
     }
-    const Divisions cells = divisions_of(level, query, 0), second = divisions_of(level, query, 1);
-    const std::uint32_t own_second = level.division(1, query.low[1]);
-    const std::uint32_t own_third = level.division(2, query.low[2]);
-    const std::size_t own_row = std::size_t{own_third * level.divisions[1] + own_second} * level.divisions[0];
-    visit(place + 1, cell_begins[level.first_cell + own_row + cells.last + 1]);
-    for_rows(cell_begins, level, cells, {own_second + 1, second.last}, {own_third, own_third}, visit);
-    for_rows(cell_begins, level, cells, second, {own_third + 1, level.division(2, query.high[2])}, visit);
-    for (std::size_t smaller = 0; smaller < level_index; ++smaller) {
-      const GridLevel& others = grid.levels[smaller];
+    if ((level.tested_levels & own_bit) != 0) {
+      const Divisions cells = divisions_of(level, query, 0), second = divisions_of(level, query, 1);
+      const std::uint32_t own_second = level.division(1, query.low[1]);
+      const std::uint32_t own_third = level.division(2, query.low[2]);
+      const std::size_t own_row =
+          std::size_t{own_third * level.divisions[1] + own_second} * level.divisions[0];
+      visit(place + 1, cell_begins[level.first_cell + own_row + cells.last + 1]);
+      for_rows(cell_begins, level, cells, {own_second + 1, second.last}, {own_third, own_third}, visit);
+      for_rows(cell_begins, level, cells, second, {own_third + 1, level.division(2, query.high[2])}, visit);
+    }
+    for (std::uint32_t rest = level.tested_levels & ~own_bit; rest != 0; rest &= rest - 1) {
+      const GridLevel& others = grid.levels[static_cast<std::size_t>(std::countr_zero(rest))];
       for_rows(cell_begins, others, divisions_of(others, query, 0), divisions_of(others, query, 1),
                divisions_of(others, query, 2), visit);
     }

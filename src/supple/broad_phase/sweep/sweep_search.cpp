@@ -40,7 +40,7 @@ void SweepSearch::search(const VolumeStore& volumes, const Parallel& parallel, F
   lanes_.is_sorted = true;
   for (std::size_t i = 0; i < order_.size(); ++i) {
     const auto slot = static_cast<std::uint32_t>(order_[i]);
-    lanes_.set(i, slot, boxes[slot], 7, axis);
+    lanes_.set(i, slot, boxes[slot], marks_of(volumes, slot), axis);
   }
 
   const auto lists = sorter_.start(parallel.worker_count(), boxes.size());
