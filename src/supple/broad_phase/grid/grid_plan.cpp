@@ -157,7 +157,7 @@ void GridPlanner::add_level(Grid& grid, std::size_t kind, double count, double s
   const auto width = [&](std::size_t k) { return width_in_extents_[grid.axes[k]]; };
   const double others = count * 2 * size / width(0);
   if (others >= others_of_one_row) {
-    const double row_width = std::max(std::sqrt(width(1) * width(2) * others_of_row / others), 2 * size);
+    const double row_width = std::max(std::sqrt(width(1) * width(2) * others_of_row / others), 0.5 * size);
     for (const std::size_t k : {1, 2})
       level.divisions[k] = static_cast<std::uint32_t>(std::clamp(width(k) / row_width, 1.0, 4096.0));
   }
