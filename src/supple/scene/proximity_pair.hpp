@@ -40,6 +40,20 @@ ElementPoints points_of(const PairElement& first, const PairElement& second);
 /// one.
 enum class PairOrder : std::uint8_t { given, swapped, by_names };
 
+/// What a list of pairs is ordered by: the kinds and the user's numbers of both sides.
+struct PairName {
+  FeatureKind kind_a{}, kind_b{};
+  std::array<std::uint32_t, 2> element_a{}, element_b{};
+
+  auto operator<=>(const PairName&) const = default;
+};
+/// The name of the pair that `proximity_pair_of` makes. Does not read the points of the elements.
+PairName name_of_pair(const PairElement& first, const PairElement& second, const ClosestFeatures& features,
+                      PairOrder order, ProximityListing listing);
+ProximityPair proximity_pair_of(const PairElement& first, const PairElement& second,
+                                const ElementDistance& found, const ObjectPair& objects, PairOrder order,
+                                ProximityListing listing);
+
 /// The pair of two elements or of their closest features, if they are within `reach`. The first element has
 /// one vertex and the second one to three, or both have two. All numbers depend on the ids and the positions
 /// alone: two element pairs with the same closest features give the same bits. Sets `used_exact` when
