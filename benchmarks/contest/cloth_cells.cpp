@@ -67,7 +67,7 @@ double size_of(const ClothStep& step) {
   return std::max({high.x - low.x, high.y - low.y, high.z - low.z});
 }
 
-/// Reflects the step, so that every frame has new boxes and the same pairs.
+/// Reflects the step, so that every frame has new positions and boxes, and the same pairs.
 void reflect(ClothStep& step) {
   for (std::vector<Vec3d>* positions : {&step.start, &step.end}) {
     for (Vec3d& p : *positions) p = -p;
@@ -141,7 +141,7 @@ void run_near_cloth(const Choice& choice, const std::string& name, Output& outpu
       turns.add(entry.name, 1, entry.make(), *step);
   }
   turns.run(
-      choice, *step, [&] { turn_round(*step); },
+      choice, *step, [&] { reflect(*step); },
       [&](const std::vector<std::size_t>& ran, const auto&, const std::vector<Record>& records) {
         // The listing of features has other pairs.
         for (const std::size_t i : ran) {

@@ -102,33 +102,16 @@ ElementPoints points_of(const PairElement& a, const PairElement& b) {
   ElementPoints elements;
   elements.count_a = a.count;
   elements.count_b = b.count;
-  std::copy_n(a.points.begin(), a.count, elements.points.begin());
-  std::copy_n(b.points.begin(), b.count, elements.points.begin() + a.count);
+  for (std::size_t i = 0; i < 4; ++i) elements.points[i] = i < a.count ? a.points[i] : b.points[i - a.count];
   return elements;
 }
 
-PairElement::PairElement(std::span<const std::uint32_t> vertex_ids, const std::array<Vec3d, 3>& positions,
-                         std::uint32_t triangle_id)
-    : kind(static_cast<FeatureKind>(vertex_ids.size() - 1)),
-      count(static_cast<std::uint8_t>(vertex_ids.size())),
-      corners{0, 1, 2},
-      triangle(triangle_id) {
-  for (std::size_t i = 1; i < count; ++i) {
-    for (std::size_t j = i; j > 0 && vertex_ids[corners[j]] < vertex_ids[corners[j - 1]]; --j)
-      std::swap(corners[j], corners[j - 1]);
-  }
-  for (std::size_t i = 0; i < count; ++i) {
-    ids[i] = vertex_ids[corners[i]];
-    points[i] = positions[corners[i]];
-  }
-}
-
-PairName name_of_pair(const PairElement& first, const PairElement& second, const ClosestFeatures& features,
+PairName name_of_pair(const ElementIds& first, const ElementIds& second, const ClosestFeatures& features,
                       PairOrder order, ProximityListing listing) {
   const auto on = features_of_elements(features, first.count);
   PairName name{first.kind, second.kind, first.name(), second.name()};
   if (listing == ProximityListing::features) {
-    const auto set_feature = [](const PairElement& element, const Feature& feature, FeatureKind& kind,
+    const auto set_feature = [](const ElementIds& element, const Feature& feature, FeatureKind& kind,
                                 std::array<std::uint32_t, 2>& ids) {
       if (feature.kind == FeatureKind::face || element.count == 1) return;
       const auto [low, high] = ends_of(feature);

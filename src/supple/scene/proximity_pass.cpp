@@ -10,15 +10,34 @@ namespace {
 
 constexpr std::size_t block_size = PointsBlock::capacity;
 
-PairElement element_of(const MovingObject& object, std::span<const std::uint32_t> vertices,
-                       std::uint32_t triangle, bool with_points) {
-  std::array<std::uint32_t, 3> ids{};
+template <std::size_t count>
+ElementIds element_of(const MovingObject& object, std::span<const std::uint32_t, count> vertices,
+                      std::uint32_t triangle) {
+  std::array<std::uint32_t, count> ids;
+  for (std::size_t i = 0; i < count; ++i) ids[i] = object.vertex_ids[vertices[i]];
+  return ElementIds(ids, triangle);
+}
+
+PairElement with_points_of(const MovingObject& object, const ElementIds& element,
+                           const std::uint32_t* vertices) {
   std::array<Vec3d, 3> points{};
-  for (std::size_t i = 0; i < vertices.size(); ++i) {
-    ids[i] = object.vertex_ids[vertices[i]];
-    if (with_points) points[i] = placed((*object.end)[vertices[i]], object);
-  }
-  return PairElement(std::span(ids).first(vertices.size()), points, triangle);
+  for (std::size_t i = 0; i < element.count; ++i) points[i] = placed((*object.end)[vertices[i]], object);
+  return {element, points};
+}
+
+/// Sets one vertex of each pair.
+void set_points(const MovingObject& object, std::span<const std::array<std::uint32_t, 4>> vertices,
+                std::size_t vertex, PointsBlock& block) {
+  const auto set = [&](const auto& positions) {
+    for (std::size_t k = 0; k < vertices.size(); ++k) {
+      const auto* const p = positions[vertices[k][vertex]];
+      block.set(vertex, k, placed(Vec3d{p[0], p[1], p[2]}, object));
+    }
+  };
+  if (object.end->is_double())
+    set(object.end->doubles());
+  else
+    set(object.end->floats());
 }
 
 /// Renumbers the vertices of features: vertex i becomes `places[i]`.
@@ -73,21 +92,15 @@ bool ProximityPass::run(std::span<const ContactJob> jobs, std::span<const Moving
   outcomes_.expect_tasks(tasks_.tasks().size());
   tasks_.run(parallel, workers_, stop, [&](std::size_t task, std::uint32_t w) { run_task(task, w); });
   add_stats(workers_, timer.lap(), stats);
+  for (Worker& worker : workers_) worker.stats = {};
   if (stop.stop_requested()) return false;
   sort_found(parallel);
   outcomes_.place(tasks_.tasks());
   outcomes_.move_known<0>(pairs_);
-  for (std::size_t open = 0; open < outcomes_.open_jobs().size(); ++open) {
-    const std::uint32_t job = outcomes_.open_jobs()[open];
-    const std::span<const Found> found = sorted_[open];
-    ProximityPair* const to = pairs_.data() + outcomes_.ranges(job)[0].first;
-    constexpr std::size_t grain = 8 * block_size;
-    parallel.for_ranges(found.size(), grain, [&](std::size_t begin, std::size_t end, std::uint32_t w) {
-      for (std::size_t i = begin; i < end; i += block_size)
-        compute_pairs(job, found.subspan(i, std::min(block_size, end - i)), workers_[w], to + i);
-    });
-  }
-  for (Worker& worker : workers_) stats.exact_fallbacks += std::exchange(worker.stats.exact_fallbacks, 0);
+  stats.sort_and_events_seconds += timer.lap();
+  compute_found(parallel);
+  for (const Worker& worker : workers_) stats.exact_fallbacks += worker.stats.exact_fallbacks;
+  stats.exact_seconds += timer.lap();
   outcomes_.complete();
   is_truncated_ = pairs_.size() > max_pairs;
   if (is_truncated_) {
@@ -128,15 +141,14 @@ void ProximityPass::test_candidates(std::uint32_t job, ElementPairKind kind,
   const auto objects = objects_of(kind, a, b);
   const bool are_edges = kind == ElementPairKind::edge_edge;
   const double reach = reach_of_margins(a.margin, b.margin);
+  std::array<std::array<std::uint32_t, 4>, block_size> vertices;
   std::array<FeatureCode, block_size> codes;
   for (; !candidates.empty() && !stop_.stop_requested();
        candidates = candidates.subspan(std::min(block_size, candidates.size()))) {
     const auto part = candidates.first(std::min(block_size, candidates.size()));
-    for (std::size_t k = 0; k < part.size(); ++k) {
-      const auto vertices = vertices_of(kind, part[k], a, b);
-      for (std::size_t i = 0; i < 4; ++i)
-        worker.block.set(i, k, placed((*objects[i]->end)[vertices[i]], *objects[i]));
-    }
+    for (std::size_t k = 0; k < part.size(); ++k) vertices[k] = vertices_of(kind, part[k], a, b);
+    for (std::size_t i = 0; i < 4; ++i)
+      set_points(*objects[i], std::span(vertices).first(part.size()), i, worker.block);
     classify(worker.block, part.size(), are_edges, reach, codes.data());
     for (std::size_t k = 0; k < part.size(); ++k) {
       if (codes[k] != FeatureCode::apart) add(job, kind, part[k], codes[k], worker);
@@ -147,13 +159,14 @@ void ProximityPass::test_candidates(std::uint32_t job, ElementPairKind kind,
 void ProximityPass::add(std::uint32_t job, ElementPairKind kind, ElementPair candidate, FeatureCode code,
                         Worker& worker) {
   const bool are_edges = kind == ElementPairKind::edge_edge;
-  Elements elements = elements_of(job, kind, candidate, code == FeatureCode::unknown);
-  const auto& [first, second, is_swapped] = elements;
+  const Elements elements = elements_of(job, kind, candidate);
+  const auto& [first, second, vertices, is_swapped] = elements;
   std::optional<ClosestFeatures> features;
   if (code == FeatureCode::unknown) {
-    bool used_exact = false;
+    const auto [first_points, second_points] = with_points(job, kind, elements);
     const double reach = reach_of_margins(objects_[jobs_[job].a].margin, objects_[jobs_[job].b].margin);
-    features = closest_features_within(points_of(first, second), reach, used_exact);
+    bool used_exact = false;
+    features = closest_features_within(points_of(first_points, second_points), reach, used_exact);
     worker.stats.exact_fallbacks += used_exact ? 1 : 0;
     if (!features) return;
   } else {
@@ -174,56 +187,90 @@ PairOrder ProximityPass::order_of(std::uint32_t job, ElementPairKind kind) const
 }
 
 ProximityPass::Elements ProximityPass::elements_of(std::uint32_t job, ElementPairKind kind,
-                                                   ElementPair candidate, bool with_points) const {
+                                                   ElementPair candidate) const {
   const MovingObject& a = objects_[jobs_[job].a];
   const MovingObject& b = objects_[jobs_[job].b];
-  const bool are_edges = kind == ElementPairKind::edge_edge;
   const auto objects = objects_of(kind, a, b);
-  const auto vertices = vertices_of(kind, candidate, a, b);
-  const std::size_t count = are_edges ? 2 : 1;
+  auto vertices = vertices_of(kind, candidate, a, b);
+  const std::span<const std::uint32_t, 4> of_pair(vertices);
+  if (kind == ElementPairKind::edge_edge) {
+    const auto larger_first = [&](const MovingObject& object, std::size_t i) {
+      const auto [low, high] =
+          std::minmax({object.vertex_ids[vertices[i]], object.vertex_ids[vertices[i + 1]]});
+      return std::uint64_t{high} << 32 | low;
+    };
+    const bool is_swapped = &a == &b && larger_first(b, 2) < larger_first(a, 0);
+    if (is_swapped) vertices = {vertices[2], vertices[3], vertices[0], vertices[1]};
+    return {element_of(a, of_pair.first<2>(), 0), element_of(b, of_pair.last<2>(), 0), vertices, is_swapped};
+  }
   // A vertex stands before a face here.
-  const std::uint32_t triangle = kind == ElementPairKind::vertex_face   ? b.triangle_ids[candidate.b]
-                                 : kind == ElementPairKind::face_vertex ? a.triangle_ids[candidate.a]
-                                                                        : 0;
-  Elements elements{element_of(*objects[0], std::span(vertices).first(count), 0, with_points),
-                    element_of(*objects[3], std::span(vertices).subspan(count), triangle, with_points)};
-  elements.is_swapped = &a == &b && are_edges && elements.second.edge_order() < elements.first.edge_order();
-  if (elements.is_swapped) std::swap(elements.first, elements.second);
-  return elements;
+  const std::uint32_t triangle =
+      kind == ElementPairKind::vertex_face ? b.triangle_ids[candidate.b] : a.triangle_ids[candidate.a];
+  return {element_of(*objects[0], of_pair.first<1>(), 0),
+          element_of(*objects[3], of_pair.last<3>(), triangle), vertices, false};
+}
+
+/// Both elements with their positions.
+std::array<PairElement, 2> ProximityPass::with_points(std::uint32_t job, ElementPairKind kind,
+                                                      const Elements& elements) const {
+  const auto objects = objects_of(kind, objects_[jobs_[job].a], objects_[jobs_[job].b]);
+  const std::uint32_t* const vertices = elements.vertices.data();
+  return {with_points_of(*objects[0], elements.first, vertices),
+          with_points_of(*objects[3], elements.second, vertices + elements.first.count)};
+}
+
+/// Computes the pairs of all open jobs.
+void ProximityPass::compute_found(const Parallel& parallel) {
+  blocks_.clear();
+  for (std::uint32_t open = 0; open < outcomes_.open_jobs().size(); ++open) {
+    for (std::size_t first = 0; first < sorted_[open].size(); first += block_size)
+      blocks_.push_back({open, static_cast<std::uint32_t>(first)});
+  }
+  constexpr std::size_t grain = 8;
+  parallel.for_ranges(blocks_.size(), grain, [&](std::size_t begin, std::size_t end, std::uint32_t w) {
+    for (const auto& [open, first] : std::span(blocks_).subspan(begin, end - begin)) {
+      const std::uint32_t job = outcomes_.open_jobs()[open];
+      const auto rest = std::span<const Found>(sorted_[open]).subspan(first);
+      compute_pairs(job, rest.first(std::min(block_size, rest.size())), workers_[w],
+                    pairs_.data() + outcomes_.ranges(job)[0].first + first);
+    }
+  });
 }
 
 /// Computes the pairs of one block.
 void ProximityPass::compute_pairs(std::uint32_t job, std::span<const Found> found, Worker& worker,
                                   ProximityPair* pairs) {
   const ObjectPair objects{objects_[jobs_[job].a].id, objects_[jobs_[job].b].id};
-  for (std::size_t i = 0; i < found.size(); ++i)
-    worker.elements[i] = elements_of(job, found[i].kind, found[i].candidate, true);
-  const auto kind_of = [&](std::size_t i) {
-    return feature_pair_of(found[i].features, found[i].kind == ElementPairKind::edge_edge);
-  };
   std::array<std::size_t, block_size> members;
   for (const FeaturePair kind :
        {FeaturePair::vertices, FeaturePair::vertex_edge, FeaturePair::vertex_face, FeaturePair::edges}) {
     std::size_t count = 0;
     for (std::size_t i = 0; i < found.size(); ++i) {
-      if (kind_of(i) != kind) continue;
-      const ElementPoints elements = points_of(worker.elements[i].first, worker.elements[i].second);
-      const auto points = points_of_features(found[i].features);
-      for (std::size_t k = 0; k < 4; ++k) worker.block.set(k, count, elements.points[points[k]]);
+      const Found& pair = found[i];
+      if (feature_pair_of(pair.features, pair.kind == ElementPairKind::edge_edge) != kind) continue;
+      worker.elements[count] = with_points(job, pair.kind, elements_of(job, pair.kind, pair.candidate));
+      const auto& [first, second] = worker.elements[count];
+      const auto points = points_of_features(pair.features);
+      for (std::size_t k = 0; k < 4; ++k) {
+        const std::size_t point = points[k];
+        worker.block.set(k, count,
+                         point < first.count ? first.points[point] : second.points[point - first.count]);
+      }
       members[count++] = i;
     }
     if (count == 0) continue;
     compute_distance_numbers(worker.block, count, kind, worker.numbers);
     for (std::size_t m = 0; m < count; ++m) {
-      const std::size_t i = members[m];
-      const auto& [first, second, is_swapped] = worker.elements[i];
-      const ElementPoints elements = points_of(first, second);
+      const Found& pair = found[members[m]];
+      const auto& [first, second] = worker.elements[m];
+      const ElementPoints points = points_of(first, second);
       bool used_exact = false;
       const ElementDistance distance = worker.numbers.is_valid[m] != 0
-                                           ? distance_of(elements, found[i].features, worker.numbers.at(m))
-                                           : distance_of(elements, found[i].features, used_exact);
+                                           ? distance_of(points, pair.features, worker.numbers.at(m))
+                                           : distance_of(points, pair.features, used_exact);
       worker.stats.exact_fallbacks += used_exact ? 1 : 0;
-      pairs[i] = proximity_pair_of(first, second, distance, objects, order_of(job, found[i].kind), listing_);
+      pairs[members[m]] =
+          proximity_pair_of(first, second, distance, objects, order_of(job, pair.kind), listing_);
     }
   }
 }
@@ -260,7 +307,7 @@ void ProximityPass::sort_job(std::size_t first_task, std::size_t end_task,
   };
   for_each_found([&](const Found& found) {
     ++count;
-    ids = std::max<std::size_t>(ids, found.name.element_a[0] + std::size_t{1});
+    ids = std::max(ids, found.name.element_a[0] + std::size_t{1});
   });
   // Few pairs are in one bin.
   if (count < ids) ids = 0;

@@ -52,14 +52,15 @@ class ProximityPass {
   };
   /// The elements of a candidate in the order of `ElementPoints`.
   struct Elements {
-    PairElement first, second;
-    bool is_swapped = false;  // the first element is that of object b; only edges of one object
+    ElementIds first, second;
+    std::array<std::uint32_t, 4> vertices;  // of first, then of second, in the order of their corners
+    bool is_swapped = false;  // two edges of one object, in the other order than the candidate's
   };
   struct Worker {
     Traversal traversal;
     PointsBlock block;
     DistanceNumbersBlock numbers;
-    std::array<Elements, PointsBlock::capacity> elements;
+    std::array<std::array<PairElement, 2>, PointsBlock::capacity> elements;
     std::vector<Found> found;             // by all tasks of the worker
     std::vector<std::uint32_t> bin_ends;  // scratch of `sort_job`
     TaskStats stats;
@@ -70,12 +71,14 @@ class ProximityPass {
   void test_candidates(std::uint32_t job, ElementPairKind kind, std::span<const ElementPair> candidates,
                        Worker& worker);
   void add(std::uint32_t job, ElementPairKind kind, ElementPair candidate, FeatureCode code, Worker& worker);
-  Elements elements_of(std::uint32_t job, ElementPairKind kind, ElementPair candidate,
-                       bool with_points) const;
+  Elements elements_of(std::uint32_t job, ElementPairKind kind, ElementPair candidate) const;
+  std::array<PairElement, 2> with_points(std::uint32_t job, ElementPairKind kind,
+                                         const Elements& elements) const;
   PairOrder order_of(std::uint32_t job, ElementPairKind kind) const;
   void sort_found(const Parallel& parallel);
   void sort_job(std::size_t first_task, std::size_t end_task, std::vector<std::uint32_t>& bin_ends,
                 std::vector<Found>& sorted);
+  void compute_found(const Parallel& parallel);
   void compute_pairs(std::uint32_t job, std::span<const Found> found, Worker& worker, ProximityPair* pairs);
 
   std::span<const ContactJob> jobs_;
@@ -86,6 +89,11 @@ class ProximityPass {
   ContactTasks tasks_;
   JobOutcomes<1> outcomes_;
   std::vector<std::uint32_t> first_tasks_;  // of each open job, and the number of tasks
+  /// Part of a list of `sorted_`.
+  struct Block {
+    std::uint32_t open = 0, first = 0;
+  };
+  std::vector<Block> blocks_;
   std::vector<std::vector<Found>> sorted_;  // of each open job, each name once
   std::vector<ContactGroup> groups_;
   std::vector<ProximityPair> pairs_;
