@@ -27,11 +27,12 @@ struct PairMarks {
   static constexpr int partners_shift = 8, kind_shift = 16;
   std::uint32_t bits;
 
+  explicit PairMarks(std::uint32_t begins_here) : bits(begins_here) {}
   /// `partners` has a bit for each kind that the kind of the box is paired with.
   PairMarks(std::uint32_t begins_here, std::size_t kind, std::uint32_t partners)
       : bits(begins_here | partners << partners_shift | static_cast<std::uint32_t>(kind) << kind_shift) {}
-  /// The bits that the marks of two boxes must have, if one of them has these marks. The bits of `begins` may
-  /// be in either.
+  /// With kinds: the bits that the marks of two boxes must have, if one of them has these marks. The bits of
+  /// `begins` may be in either, the others are in the other.
   static std::uint32_t required(std::uint32_t marks) {
     return begins | 1u << partners_shift << (marks >> kind_shift);
   }
@@ -39,6 +40,7 @@ struct PairMarks {
 
 inline PairMarks marks_of(const VolumeStore& volumes, std::uint32_t slot,
                           std::uint32_t begins_here = PairMarks::begins) {
+  if (!volumes.wanted().has_kinds()) return PairMarks(begins_here);
   const std::size_t kind = volumes.kind(slot);
   return {begins_here, kind, volumes.wanted().partners(kind)};
 }
@@ -68,9 +70,9 @@ struct BoxLanes {
 };
 
 /// Tests each of the lanes [begin, end) against all lanes behind it. Adds the pairs that overlap, begin here
-/// and have paired kinds to `pairs`. When spheres are given, per slot, their overlap decides. Returns the
-/// number of tests, which is the same for every instruction set.
+/// and have paired kinds to `pairs`. When the volumes are spheres, their overlap decides. Returns the number
+/// of tests, which is the same for every instruction set.
 std::uint64_t find_overlaps(const BoxLanes& boxes, std::size_t begin, std::size_t end,
-                            std::span<const BoundingSphere> spheres, PairList& pairs);
+                            const VolumeStore& volumes, PairList& pairs);
 
 }  // namespace supple

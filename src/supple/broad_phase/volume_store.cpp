@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <utility>
 
 namespace supple {
 namespace {
@@ -9,6 +10,11 @@ namespace {
 template <class Volume>
 bool differs(const Volume& now, const Volume& before) {
   return std::memcmp(&now, &before, sizeof(Volume)) != 0 && !(now.empty() && before.empty());
+}
+
+template <class Volume>
+Volume volume_at(std::span<const Volume> given, std::size_t slot) {
+  return slot < given.size() ? given[slot] : Volume{};
 }
 
 template <class Item>
@@ -38,28 +44,31 @@ void VolumeStore::update(const ObjectVolumes& given, const Parallel& parallel) {
   revision_ += changed_count_ != 0;
 }
 
-template <class Volume>
-bool VolumeStore::take_if_changed(std::span<const Volume> given, std::span<const std::uint8_t> kinds,
-                                  std::uint32_t slot, Volume& known) {
-  Volume volume = slot < given.size() ? given[slot] : Volume{};
-  if (!wanted_.has_kinds() || slot >= given.size()) {
-    if (!differs(volume, known)) return false;
+/// A volume whose kind has no partner is empty.
+inline bool VolumeStore::take_volume_if_changed(const ObjectVolumes& given, std::uint32_t slot,
+                                                bool has_partner) {
+  if (has_spheres_) {
+    const BoundingSphere sphere = has_partner ? volume_at(given.spheres, slot) : BoundingSphere{};
+    if (!differs(sphere, spheres_[slot])) return false;
+    spheres_[slot] = sphere;
+    boxes_[slot] = bounding_box(sphere);
   } else {
-    const std::uint8_t kind = kinds[slot];
-    if (wanted_.partners(kind) == 0) volume = Volume{};
-    const bool is_other_kind = kind != kinds_[slot] && !volume.empty();
-    if (!is_other_kind && !differs(volume, known)) return false;
-    kinds_[slot] = kind;
+    const Aabb box = has_partner ? volume_at(given.boxes, slot) : Aabb{};
+    if (!differs(box, boxes_[slot])) return false;
+    boxes_[slot] = box;
   }
-  known = volume;
   return true;
 }
 
+bool VolumeStore::take_kind_if_changed(const ObjectVolumes& given, std::uint32_t slot) {
+  if (slot >= given.kinds.size()) return take_volume_if_changed(given, slot, true);
+  const std::uint8_t kind = given.kinds[slot], last_kind = std::exchange(kinds_[slot], kind);
+  const bool has_other_volume = take_volume_if_changed(given, slot, wanted_.partners(kind) != 0);
+  return has_other_volume || (kind != last_kind && !boxes_[slot].empty());
+}
+
 bool VolumeStore::take_if_changed(const ObjectVolumes& given, std::uint32_t slot) {
-  if (!has_spheres_) return take_if_changed(given.boxes, given.kinds, slot, boxes_[slot]);
-  if (!take_if_changed(given.spheres, given.kinds, slot, spheres_[slot])) return false;
-  boxes_[slot] = bounding_box(spheres_[slot]);
-  return true;
+  return wanted_.has_kinds() ? take_kind_if_changed(given, slot) : take_volume_if_changed(given, slot, true);
 }
 
 /// Whether the volumes of [begin, end) are certainly the same as before; quick for volumes at rest.

@@ -106,9 +106,8 @@ class VolumeStore {
   }
 
  private:
-  template <class Volume>
-  bool take_if_changed(std::span<const Volume> given, std::span<const std::uint8_t> kinds, std::uint32_t slot,
-                       Volume& known);
+  bool take_volume_if_changed(const ObjectVolumes& given, std::uint32_t slot, bool has_partner);
+  bool take_kind_if_changed(const ObjectVolumes& given, std::uint32_t slot);
   bool take_if_changed(const ObjectVolumes& given, std::uint32_t slot);
   bool is_same_block(const ObjectVolumes& given, std::size_t begin, std::size_t end) const;
   void compare_all(const ObjectVolumes& given, const Parallel& parallel);

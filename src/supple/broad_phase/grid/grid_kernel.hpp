@@ -55,13 +55,14 @@ struct Grid {
   std::array<float, 3> low{}, steps_per_unit{};  ///< by x, y, z
   std::array<std::size_t, 3> axes{0, 1, 2};      ///< the first, second and third axis: 0 is x, 1 is y, 2 is z
   std::vector<GridLevel> levels;                 ///< by kind, then from the smallest boxes to the largest
-  std::array<std::uint8_t, volume_kind_count + 1> first_level{};  ///< of each kind, and the number of levels
+  std::array<std::uint32_t, volume_kind_count + 1> first_level{};  ///< of each kind, and the number of levels
 
   bool is_one_row() const { return levels.size() == 1 && levels[0].row_count() == 1; }
-  /// The first level of the kind whose limit is at least the box's extent. The last level has no limit.
-  std::size_t level_of(const QuantizedBox& box, std::size_t kind) const {
-    std::size_t level = first_level[kind];
-    for (; level + 1u < first_level[kind + 1]; ++level) {
+  /// The first of the levels [begin, end) whose limit is at least the box's extent. The last one has no
+  /// limit.
+  std::size_t level_of(const QuantizedBox& box, std::size_t begin, std::size_t end) const {
+    std::size_t level = begin;
+    for (; level + 1 < end; ++level) {
       const auto& limit = levels[level].limit;
       if (box.extent(0) <= limit[0] && box.extent(1) <= limit[1] && box.extent(2) <= limit[2]) break;
     }

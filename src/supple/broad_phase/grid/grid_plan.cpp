@@ -26,14 +26,14 @@ void GridPlanner::plan(const VolumeStore& volumes, Grid& grid) {
   grid.levels.clear();
   auto begin = samples_.begin();
   for (std::size_t kind = 0; kind < volume_kind_count; ++kind) {
-    grid.first_level[kind] = static_cast<std::uint8_t>(grid.levels.size());
+    grid.first_level[kind] = static_cast<std::uint32_t>(grid.levels.size());
     if (volumes.wanted().partners(kind) == 0) continue;
     const auto end =
         std::find_if(begin, samples_.end(), [&](const Sample& sample) { return sample.kind != kind; });
     choose_levels(kind, std::span(begin, end), grid);
     begin = end;
   }
-  grid.first_level.back() = static_cast<std::uint8_t>(grid.levels.size());
+  grid.first_level.back() = static_cast<std::uint32_t>(grid.levels.size());
   pair_levels(volumes.wanted(), grid.levels);
 }
 

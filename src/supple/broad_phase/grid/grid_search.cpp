@@ -84,6 +84,11 @@ void GridSearch::quantize(const VolumeStore& volumes, Chunk& chunk) {
   chunk.places.assign(last_level.first_block + last_level.block_count(), 0);
   chunk.max_extent.assign(grid_.levels.size(), {});
   chunk.count = 0;
+  const bool has_kinds = volumes.wanted().has_kinds();
+  const std::size_t level_count = grid_.levels.size();
+  const auto level_of_kind = [&](const QuantizedBox& box, std::size_t kind) {
+    return grid_.level_of(box, grid_.first_level[kind], grid_.first_level[kind + 1]);
+  };
   for (std::size_t begin = chunk.begin; begin < chunk.end; begin += batch_size) {
     const std::size_t place = chunk.begin + chunk.count;
     const auto batch = volumes.boxes().subspan(begin, std::min(batch_size, chunk.end - begin));
@@ -93,7 +98,8 @@ void GridSearch::quantize(const VolumeStore& volumes, Chunk& chunk) {
     if (grid_.is_one_row()) continue;
     for (std::size_t i = place; i < place + count; ++i) {
       const QuantizedBox& box = quantized_[i];
-      const std::size_t level_index = grid_.level_of(box, volumes.kind(box.slot));
+      const std::size_t level_index =
+          has_kinds ? level_of_kind(box, volumes.kind(box.slot)) : grid_.level_of(box, 0, level_count);
       const GridLevel& level = grid_.levels[level_index];
       for (std::size_t axis = 0; axis < 3; ++axis) {
         std::uint32_t& max_extent = chunk.max_extent[level_index][axis];

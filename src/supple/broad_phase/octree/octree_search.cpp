@@ -141,7 +141,7 @@ void OctreeSearch::find_in_leaf(const VolumeStore& volumes, const SceneOctree::R
     const auto slot = static_cast<std::uint32_t>(worker.order[i]);
     worker.lanes.set(i, slot, boxes[slot], marks_of(volumes, slot, begins(boxes[slot])));
   }
-  worker.tests += find_overlaps(worker.lanes, 0, slots.size(), volumes.spheres(), pairs);
+  worker.tests += find_overlaps(worker.lanes, 0, slots.size(), volumes, pairs);
 }
 
 void OctreeSearch::find_of_object(const VolumeStore& volumes, std::uint32_t slot, Worker& worker,

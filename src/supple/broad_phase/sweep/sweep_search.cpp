@@ -47,7 +47,7 @@ void SweepSearch::search(const VolumeStore& volumes, const Parallel& parallel, F
   std::atomic<std::uint64_t> tests = 0;
   constexpr std::size_t grain = 256;
   parallel.for_ranges(order_.size(), grain, [&](std::size_t begin, std::size_t end, std::uint32_t worker) {
-    tests += find_overlaps(lanes_, begin, end, volumes.spheres(), lists[worker]);
+    tests += find_overlaps(lanes_, begin, end, volumes, lists[worker]);
   });
   sorter_.finish(parallel, found.pairs);
   found.stats.object_pairs_tested = tests;
