@@ -52,6 +52,7 @@ FULL = (
     + ["A/u1/100000/drift", "A/u1/100000/one-percent"]
     + [f"B/{name}" for name in (*COPIES, "18000x64-rest", "69620x64-rest")]
     + [f"C/{cloth}" for cloth in CLOTHS]
+    + [f"{kind}/{cloth}" for kind in "EP" for cloth in CLOTHS[:3]]
     + QUERIES
     + [f"step/{cloth}" for cloth in CLOTHS]
     + ["process/cloth-ball", "process/two-bunnies"]
@@ -66,7 +67,8 @@ FULL = (
 QUICK = (
     [f"A/{field}/10000" for field in FIELDS]
     + ["A/u1/100000", "A/clu/100000", "A/u1/100000/one-percent", "B/980x64", "B/18000x9", "B/bunnyx9",
-       "B/18000x64-rest", "C/cloth-funnel", "C/crumpled", "Q/inside/69620", "process/two-bunnies", "threads/B/18000x64"]
+       "B/18000x64-rest", "C/cloth-funnel", "C/crumpled", "E/crumpled", "P/crumpled", "Q/inside/69620",
+       "process/two-bunnies", "threads/B/18000x64"]
     + GROWTH[:3]
     + ["limits/refit/69620", "memory/69620"]
 )
@@ -287,6 +289,10 @@ def judged(cells):
                          "Supple, one percent moves, dirty list")
     for cell in judge.matching("C/.*"):
         judge.add_faster("C, candidates and verdicts, against Embree's candidates", cell, ["Embree"], 2.5, 4)
+    for cell in judge.matching("E/.*"):
+        judge.add_faster("E, element boxes by kinds, against the best library", cell, judge.libraries(cell), 1.5, 2)
+    for cell in judge.matching("P/.*"):
+        judge.add_faster("P, proximity by features, against Embree with plain distances", cell, ["Embree"], 1.5, 2)
     for cell in judge.matching("Q/(closest|rays)/.*"):
         reach = 0.5 if "rays" in cell else 1
         judge.add_faster(f"Q, {cell.split('/')[1]}, against Embree", cell, ["Embree"], reach, 2 * reach)
@@ -409,7 +415,7 @@ def times_by_cell(cells):
     for name, group in groups.items():
         compared = [cell for cell in group if any(c["name"] == "Supple" for c in cell["contestants"])]
         names = list(dict.fromkeys(c["name"] for cell in compared for c in cell["contestants"]))
-        if name not in ("A", "B", "C", "Q", "process") or not names:
+        if name not in ("A", "B", "C", "E", "P", "Q", "process") or not names:
             continue
         lines = [["ms", *names, "pairs"]]
         for cell in compared:

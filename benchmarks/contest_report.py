@@ -228,6 +228,8 @@ def html_of(about, cells, rows, growth):
     parts += ["<h2>Deforming objects</h2>", *bars_of(cells, "B/", "B, ")]
     parts += ["<h2>Cloth</h2><p>Supple's time includes exact verdicts, that of the others only candidates.</p>",
               *bars_of(cells, "C/", "C, ")]
+    parts += ["<h2>Proximity</h2><p>Supple finds features with points and normals, Embree's user distances.</p>",
+              *bars_of(cells, "P/", "P, ")]
     if growth:
         parts += ["<h2>Growth</h2>", growth_plot(growth)]
     parts += bars_of(cells, "limits/refit/", "Refit, triangles: ")

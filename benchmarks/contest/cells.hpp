@@ -16,6 +16,10 @@ void run_boxes(const Choice& choice, const std::string& cell, Output& output);
 void run_copies(const Choice& choice, const std::string& cell, bool two_threads, Output& output);
 /// A cloth of `make_cloth_step`.
 void run_cloth(const Choice& choice, const std::string& cell, bool two_threads, Output& output);
+/// The candidates of a cloth by boxes alone.
+void run_cloth_boxes(const Choice& choice, const std::string& cell, Output& output);
+/// Proximity of a cloth with itself, with a margin of a thousandth of the cloth's size.
+void run_near_cloth(const Choice& choice, const std::string& cell, Output& output);
 /// The longest safe step of a cloth (`Scene::max_step`), its median time, and that of `detect` for the same
 /// step; ipc_toolkit.py compares.
 void run_safe_step(const Choice& choice, const std::string& cell, Output& output);

@@ -55,6 +55,25 @@ void turn_round(ClothStep& step) {
   step.start.swap(step.end);
 }
 
+/// The longest edge of the box around the start.
+double size_of(const ClothStep& step) {
+  Vec3d low = step.start.front(), high = low;
+  for (const Vec3d& p : step.start) {
+    for (int axis = 0; axis < 3; ++axis) {
+      low[axis] = std::min(low[axis], p[axis]);
+      high[axis] = std::max(high[axis], p[axis]);
+    }
+  }
+  return std::max({high.x - low.x, high.y - low.y, high.z - low.z});
+}
+
+/// Reflects the step, so that every frame has new positions and boxes, and the same pairs.
+void reflect(ClothStep& step) {
+  for (std::vector<Vec3d>* positions : {&step.start, &step.end}) {
+    for (Vec3d& p : *positions) p = -p;
+  }
+}
+
 }  // namespace
 
 void run_cloth(const Choice& choice, const std::string& name, bool two_threads, Output& output) {
@@ -86,6 +105,48 @@ void run_cloth(const Choice& choice, const std::string& name, bool two_threads, 
         const std::size_t first = two_threads || records.size() < 2 ? 0 : 1;
         for (const std::size_t i : ran) {
           if (i >= first) check_equal(choice.cell, records[first], records[i]);
+        }
+      });
+  output.records(turns.records());
+}
+
+void run_cloth_boxes(const Choice& choice, const std::string& name, Output& output) {
+  auto step = make_cloth_step(name);
+  if (!step) return output.skip("the frames of " + name + " are not there; set SUPPLE_DATA");
+  output.value("triangles", static_cast<double>(step->triangles.size()));
+  auto supple = make_supple_cloth_boxes(1);
+  supple->prepare(*step);
+  check_known(choice, name, supple->candidates());
+  Turns<ClothStep, ClothContestant> turns;
+  turns.add("Supple", 1, std::move(supple), *step);
+  if (!choice.only_supple) {
+    for (const auto& entry : other_cloth_contestants()) turns.add(entry.name, 1, entry.make(), *step);
+  }
+  turns.run(
+      choice, *step, [&] { reflect(*step); }, same_pairs(choice.cell));
+  output.records(turns.records());
+}
+
+void run_near_cloth(const Choice& choice, const std::string& name, Output& output) {
+  auto step = make_cloth_step(name);
+  if (!step) return output.skip("the frames of " + name + " are not there; set SUPPLE_DATA");
+  const double margin = 1e-3 * size_of(*step);
+  output.value("triangles", static_cast<double>(step->triangles.size()));
+  output.value("margin", margin);
+  Turns<ClothStep, Contestant<ClothStep>> turns;
+  turns.add("Supple", 1, make_supple_near_cloth(1, margin, ProximityListing::features), *step);
+  turns.add("Supple, elements", 1, make_supple_near_cloth(1, margin, ProximityListing::elements), *step);
+  if (!choice.only_supple) {
+    for (const auto& entry : other_near_cloth_contestants(margin))
+      turns.add(entry.name, 1, entry.make(), *step);
+  }
+  turns.run(
+      choice, *step, [&] { reflect(*step); },
+      [&](const std::vector<std::size_t>& ran, const auto&, const std::vector<Record>& records) {
+        // The listing of features has other pairs.
+        for (const std::size_t i : ran) {
+          if (i > 1 && std::find(ran.begin(), ran.end(), 1) != ran.end())
+            check_equal(choice.cell, records[1], records[i]);
         }
       });
   output.records(turns.records());

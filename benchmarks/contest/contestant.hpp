@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "supple/broad_phase.hpp"
+#include "supple/proximity.hpp"
 #include "workloads/cloth_steps.hpp"
 #include "workloads/deforming_copies.hpp"
 #include "workloads/moving_boxes.hpp"
@@ -93,6 +94,8 @@ struct Entry {
 std::vector<Entry<BoxContestant>> other_box_contestants();
 std::vector<Entry<CopiesContestant>> other_copies_contestants();
 std::vector<Entry<ClothContestant>> other_cloth_contestants();
+/// Vertices and faces, and edges, at the start of the step, whose distance is at most twice the margin.
+std::vector<Entry<Contestant<ClothStep>>> other_near_cloth_contestants(double margin);
 std::vector<Entry<QueryContestant>> other_query_contestants();
 /// Libraries that were not found.
 std::vector<std::string> missing_libraries();
@@ -108,6 +111,13 @@ std::unique_ptr<CopiesContestant> make_supple_copies(std::uint32_t threads,
                                                      CopyResults results = CopyResults::contact_points);
 /// `pairs` are the contacts; the stages include the number of candidates.
 std::unique_ptr<Contestant<ClothStep>> make_supple_cloth(std::uint32_t threads);
+
+/// The candidates of a cloth by `BroadPhase` alone: all boxes in one call, and pairs of vertices with faces
+/// and of edges with edges.
+std::unique_ptr<ClothContestant> make_supple_cloth_boxes(std::uint32_t threads);
+/// Proximity of a cloth with itself at the start of the step; `pairs` are those of the listing.
+std::unique_ptr<Contestant<ClothStep>> make_supple_near_cloth(std::uint32_t threads, double margin,
+                                                              ProximityListing listing);
 
 std::unique_ptr<QueryContestant> make_supple_queries(std::uint32_t threads);
 

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "contest/peers.hpp"
+#include "contest/plain_distance.hpp"
 #include "contest/swept_boxes.hpp"
 #include "contest/triangle_test.hpp"
 
@@ -224,6 +225,80 @@ class EmbreeCloth : public ClothContestant {
   std::vector<ElementPair> candidates_;
 };
 
+class EmbreeNearCloth : public Contestant<ClothStep> {
+ public:
+  explicit EmbreeNearCloth(double margin) : margin_(margin) {}
+  void prepare(const ClothStep& step) override {
+    step_ = &step;
+    boxes_.prepare(step);
+    boxes_.update_grown(step, margin_);
+    lists_ = {boxes_.vertex_boxes.data(), boxes_.edge_boxes.data(), boxes_.face_boxes.data()};
+    const std::size_t counts[] = {boxes_.vertex_boxes.size(), boxes_.edge_boxes.size(),
+                                  boxes_.face_boxes.size()};
+    for (std::size_t i = 0; i < 3; ++i) {
+      scenes_[i] = std::make_unique<BoxScene>(device_, counts[i], bounds_of_listed_box, &lists_[i],
+                                              RTC_BUILD_QUALITY_REFIT);
+    }
+  }
+  void frame(const ClothStep& step) override {
+    step_ = &step;
+    boxes_.update_grown(step, margin_);
+    for (const auto& scene : scenes_) scene->update();
+    near_.clear();
+    rtcCollide(scenes_[0]->scene(), scenes_[2]->scene(), keep_vertex_face, this);
+    rtcCollide(scenes_[1]->scene(), scenes_[1]->scene(), keep_edges, this);
+  }
+  PairDigest pairs() const override {
+    PairDigest digest;
+    for (const NearPair& pair : near_)
+      digest.add(pair.elements.a,
+                 pair.elements.b + (std::uint64_t{pair.elements.is_edge_edge ? 0u : 1u} << 32));
+    return digest;
+  }
+
+ private:
+  struct NearPair {
+    ElementPair elements;
+    double distance;
+  };
+
+  void add(const ElementPair& elements, double distance) {
+    if (distance <= 2 * margin_) near_.push_back({elements, distance});
+  }
+  static void keep_vertex_face(void* user, RTCCollision* collisions, unsigned count) {
+    auto& self = *static_cast<EmbreeNearCloth*>(user);
+    const std::vector<Vec3d>& p = self.step_->start;
+    for (unsigned i = 0; i < count; ++i) {
+      const std::uint32_t place = collisions[i].primID0, face = collisions[i].primID1;
+      const std::uint32_t vertex = self.boxes_.used_vertices[place];
+      const Triangle& t = self.step_->triangles[face];
+      if (boxes_overlap(self.boxes_.vertex_boxes[place], self.boxes_.face_boxes[face]) &&
+          !has_corner(t, vertex))
+        self.add({false, vertex, face}, plain_distance(p[vertex], {p[t[0]], p[t[1]], p[t[2]]}));
+    }
+  }
+  static void keep_edges(void* user, RTCCollision* collisions, unsigned count) {
+    auto& self = *static_cast<EmbreeNearCloth*>(user);
+    const std::vector<Vec3d>& p = self.step_->start;
+    for (unsigned i = 0; i < count; ++i) {
+      const std::uint32_t a = collisions[i].primID0, b = collisions[i].primID1;
+      if (a < b && boxes_overlap(self.boxes_.edge_boxes[a], self.boxes_.edge_boxes[b]) &&
+          !self.boxes_.edges_share(a, b)) {
+        const auto &e = self.boxes_.edges[a], &f = self.boxes_.edges[b];
+        self.add({true, a, b}, plain_distance({p[e[0]], p[e[1]]}, {p[f[0]], p[f[1]]}));
+      }
+    }
+  }
+
+  Device device_;
+  double margin_;
+  const ClothStep* step_ = nullptr;
+  ClothBoxes boxes_;
+  std::array<const Aabb*, 3> lists_{};
+  std::array<std::unique_ptr<BoxScene>, 3> scenes_;
+  std::vector<NearPair> near_;
+};
+
 /// Triangles, for rays and closest points.
 class EmbreeQueries : public QueryContestant {
  public:
@@ -364,6 +439,10 @@ std::unique_ptr<CopiesContestant> make_embree_copies_with_points() {
 
 std::unique_ptr<ClothContestant> make_embree_cloth() {
   return std::make_unique<EmbreeCloth>();
+}
+
+std::unique_ptr<Contestant<ClothStep>> make_embree_near_cloth(double margin) {
+  return std::make_unique<EmbreeNearCloth>(margin);
 }
 
 std::unique_ptr<QueryContestant> make_embree_queries() {

@@ -16,7 +16,7 @@ constexpr const char* usage =
     "usage: supple_contest [--seconds S] [--rounds N] [--cpu N] [--only-supple] [--instruction-set SET] "
     "[--spoil NAME] CELL | --missing\n"
     "CELL: A/FIELD/N  A/FIELD/N/drift  A/FIELD/N/one-percent  A/FIELD/N/one-in-K\n"
-    "      B/SHAPExCOPIES[-rest]  C/CLOTH\n"
+    "      B/SHAPExCOPIES[-rest]  C/CLOTH  E/CLOTH  P/CLOTH\n"
     "      Q/closest/SHAPE-uniform  Q/closest/SHAPE-near  Q/inside/SHAPE  Q/rays/SHAPExCOPIES  "
     "Q/penetration/SHAPE[-deep]  Q/distance/SHAPE-apart  Q/distance/SHAPE-near\n"
     "      step/CLOTH  growth/SHAPExCOPIES  threads/B/...  threads/C/...  limits/bandwidth  "
@@ -47,6 +47,10 @@ void run(const Choice& choice) {
     run_copies(alone, after("growth/"), false, output);
   } else if (cell.starts_with("C/")) {
     run_cloth(choice, after("C/"), false, output);
+  } else if (cell.starts_with("E/")) {
+    run_cloth_boxes(choice, after("E/"), output);
+  } else if (cell.starts_with("P/")) {
+    run_near_cloth(choice, after("P/"), output);
   } else if (cell.starts_with("Q/")) {
     run_queries(choice, after("Q/"), output);
   } else if (cell.starts_with("step/")) {

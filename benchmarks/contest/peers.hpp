@@ -16,6 +16,9 @@ std::unique_ptr<BoxContestant> make_embree_boxes();
 std::unique_ptr<CopiesContestant> make_embree_copies();
 std::unique_ptr<CopiesContestant> make_embree_copies_with_points();
 std::unique_ptr<ClothContestant> make_embree_cloth();
+/// The same with boxes at the start of the step, grown by the margin, and distances in plain double
+/// precision.
+std::unique_ptr<Contestant<ClothStep>> make_embree_near_cloth(double margin);
 /// Closest points by `rtcPointQuery` and a triangle test in single precision; rays by `rtcIntersect1` in a
 /// robust scene with refit.
 std::unique_ptr<QueryContestant> make_embree_queries();

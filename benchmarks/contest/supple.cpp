@@ -2,6 +2,7 @@
 #include <limits>
 
 #include "contest/contestant.hpp"
+#include "contest/swept_boxes.hpp"
 #include "supple/scene.hpp"
 
 namespace supple::benchmarks {
@@ -102,6 +103,12 @@ class SuppleCopies : public CopiesContestant {
   std::vector<StageTime> stages_;
 };
 
+/// The index of an edge in the ascending list.
+std::uint64_t number_of(const std::vector<std::array<std::uint32_t, 2>>& edges,
+                        const std::array<std::uint32_t, 2>& vertices) {
+  return static_cast<std::uint64_t>(std::lower_bound(edges.begin(), edges.end(), vertices) - edges.begin());
+}
+
 class SuppleCloth : public Contestant<ClothStep> {
  public:
   explicit SuppleCloth(std::uint32_t threads) : scene_(options_of(threads, ContactKinds::continuous)) {}
@@ -122,7 +129,7 @@ class SuppleCloth : public Contestant<ClothStep> {
     PairDigest digest;
     for (const ContinuousContact& contact : scene_.result().continuous_contacts) {
       if (contact.kind == ElementPairKind::edge_edge)
-        digest.add(edge(contact.element_a), edge(contact.element_b));
+        digest.add(number_of(edges_, contact.element_a), number_of(edges_, contact.element_b));
       else
         digest.add(contact.element_a[0], contact.element_b[0] + (std::uint64_t{1} << 32));
     }
@@ -131,12 +138,94 @@ class SuppleCloth : public Contestant<ClothStep> {
   std::vector<StageTime> stages() const override { return stages_; }
 
  private:
-  std::uint64_t edge(const std::array<std::uint32_t, 2>& vertices) const {
-    return static_cast<std::uint64_t>(std::lower_bound(edges_.begin(), edges_.end(), vertices) -
-                                      edges_.begin());
+  Scene scene_;
+  ObjectId cloth_;
+  std::vector<std::array<std::uint32_t, 2>> edges_;
+  std::vector<StageTime> stages_;
+};
+
+class SuppleClothBoxes : public ClothContestant {
+ public:
+  explicit SuppleClothBoxes(std::uint32_t threads) {
+    BroadPhaseOptions options;
+    options.threads = threads;
+    options.kind_pairs = {{vertex, face}, {edge, edge}};
+    broad_phase_ = BroadPhase(options);
+  }
+  void prepare(const ClothStep& step) override {
+    triangles_ = step.triangles;
+    elements_.prepare(step);
+    kinds_.assign(elements_.vertex_boxes.size(), vertex);
+    kinds_.resize(kinds_.size() + elements_.edge_boxes.size(), edge);
+    kinds_.resize(kinds_.size() + elements_.face_boxes.size(), face);
+    frame(step);
+  }
+  void frame(const ClothStep& step) override {
+    elements_.update(step);
+    candidates_.clear();
+    const auto first_edge = static_cast<std::uint32_t>(elements_.vertex_boxes.size());
+    const auto first_face = first_edge + static_cast<std::uint32_t>(elements_.edge_boxes.size());
+    for (const IndexPair& pair : broad_phase_.find_object_pairs(elements_.boxes, kinds_)) {
+      if (pair.a < first_edge) {
+        const std::uint32_t v = elements_.used_vertices[pair.a], f = pair.b - first_face;
+        if (!has_corner(triangles_[f], v)) candidates_.push_back({false, v, f});
+      } else if (const std::uint32_t a = pair.a - first_edge, b = pair.b - first_edge;
+                 !elements_.edges_share(a, b)) {
+        candidates_.push_back({true, a, b});
+      }
+    }
+  }
+  std::span<const ElementPair> candidates() const override { return candidates_; }
+
+ private:
+  enum Kind : std::uint8_t { vertex, edge, face };
+
+  BroadPhase broad_phase_;
+  ClothBoxes elements_;
+  std::vector<Triangle> triangles_;
+  std::vector<std::uint8_t> kinds_;
+  std::vector<ElementPair> candidates_;
+};
+
+class SuppleNearCloth : public Contestant<ClothStep> {
+ public:
+  SuppleNearCloth(std::uint32_t threads, double margin, ProximityListing listing)
+      : scene_(options_for(threads, listing)), margin_(margin) {}
+
+  void prepare(const ClothStep& step) override {
+    cloth_ = scene_.add(step.start, step.triangles, {.self_collision = true, .margin = margin_});
+    edges_ = edges_of(step.triangles);
+    frame(step);
+  }
+  void frame(const ClothStep& step) override {
+    const double start = cpu_milliseconds();
+    scene_.set_positions(cloth_, step.start);
+    const double handed_over = cpu_milliseconds();
+    const StepStats& stats = scene_.detect().stats;
+    stages_ = stages_of(stats, handed_over - start, cpu_milliseconds() - handed_over);
+  }
+  /// As the other contestants number their pairs: only with the listing of elements.
+  PairDigest pairs() const override {
+    PairDigest digest;
+    for (const ProximityPair& pair : scene_.result().proximity_pairs) {
+      if (pair.kind_b == FeatureKind::face)
+        digest.add(pair.element_a[0], pair.element_b[0] + (std::uint64_t{1} << 32));
+      else
+        digest.add(number_of(edges_, pair.element_a), number_of(edges_, pair.element_b));
+    }
+    return digest;
+  }
+  std::vector<StageTime> stages() const override { return stages_; }
+
+ private:
+  static SceneOptions options_for(std::uint32_t threads, ProximityListing listing) {
+    SceneOptions options = options_of(threads, ContactKinds::proximity);
+    options.proximity_listing = listing;
+    return options;
   }
 
   Scene scene_;
+  double margin_;
   ObjectId cloth_;
   std::vector<std::array<std::uint32_t, 2>> edges_;
   std::vector<StageTime> stages_;
@@ -210,6 +299,15 @@ std::unique_ptr<CopiesContestant> make_supple_copies(std::uint32_t threads, Copy
 
 std::unique_ptr<Contestant<ClothStep>> make_supple_cloth(std::uint32_t threads) {
   return std::make_unique<SuppleCloth>(threads);
+}
+
+std::unique_ptr<ClothContestant> make_supple_cloth_boxes(std::uint32_t threads) {
+  return std::make_unique<SuppleClothBoxes>(threads);
+}
+
+std::unique_ptr<Contestant<ClothStep>> make_supple_near_cloth(std::uint32_t threads, double margin,
+                                                              ProximityListing listing) {
+  return std::make_unique<SuppleNearCloth>(threads, margin, listing);
 }
 
 std::unique_ptr<QueryContestant> make_supple_queries(std::uint32_t threads) {

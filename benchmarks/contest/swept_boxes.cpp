@@ -1,6 +1,7 @@
 #include "contest/swept_boxes.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace supple::benchmarks {
 
@@ -18,21 +19,33 @@ Aabb swept_box(const ClothStep& step, std::span<const std::uint32_t> vertices) {
   return box;
 }
 
+Aabb grown_box(const ClothStep& step, std::span<const std::uint32_t> vertices, double margin) {
+  Aabb box;
+  for (const std::uint32_t vertex : vertices) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto x = static_cast<float>(step.start[vertex][axis]);
+      box.min[axis] = std::min(box.min[axis], x);
+      box.max[axis] = std::max(box.max[axis], x);
+    }
+  }
+  for (int axis = 0; axis < 3; ++axis) {
+    const float size = std::max(std::fabs(box.min[axis]), std::fabs(box.max[axis]));
+    const float by = static_cast<float>(margin) * (1 + 0x1p-20f) + size * 0x1p-22f;
+    box.min[axis] -= by;
+    box.max[axis] += by;
+  }
+  return box;
+}
+
 void ClothBoxes::prepare(const ClothStep& step) {
   edges = edges_of(step.triangles);
   for (const Triangle& t : step.triangles) used_vertices.insert(used_vertices.end(), t.begin(), t.end());
   std::sort(used_vertices.begin(), used_vertices.end());
   used_vertices.erase(std::unique(used_vertices.begin(), used_vertices.end()), used_vertices.end());
-  vertex_boxes.resize(used_vertices.size());
-  edge_boxes.resize(edges.size());
-  face_boxes.resize(step.triangles.size());
-}
-
-void ClothBoxes::update(const ClothStep& step) {
-  for (std::size_t i = 0; i < vertex_boxes.size(); ++i)
-    vertex_boxes[i] = swept_box(step, std::span(&used_vertices[i], 1));
-  for (std::size_t i = 0; i < edge_boxes.size(); ++i) edge_boxes[i] = swept_box(step, edges[i]);
-  for (std::size_t i = 0; i < face_boxes.size(); ++i) face_boxes[i] = swept_box(step, step.triangles[i]);
+  boxes.resize(used_vertices.size() + edges.size() + step.triangles.size());
+  vertex_boxes = std::span(boxes).first(used_vertices.size());
+  edge_boxes = std::span(boxes).subspan(used_vertices.size(), edges.size());
+  face_boxes = std::span(boxes).last(step.triangles.size());
 }
 
 }  // namespace supple::benchmarks

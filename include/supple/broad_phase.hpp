@@ -19,6 +19,17 @@ struct IndexPair {
   constexpr auto operator<=>(const IndexPair&) const = default;
 };
 
+/// The box from `lowest` to `highest`, grown by `radius` on all sides and rounded outward: it contains every
+/// point whose distance along each axis is at most the radius, exactly. Bounds that are finite floats stay.
+/// Others move outward by at most 3 units in the last place or 2^-125, whichever is more; beyond the range of
+/// float they become infinite. The box is empty when a coordinate is a NaN, or when `lowest` is above
+/// `highest` along an axis.
+/// Throws `Error` when the radius is negative or a NaN. O(1), about 10 ns.
+Aabb enclosing_box(const Vec3d& lowest, const Vec3d& highest, double radius = 0);
+/// The same around points, such as the vertices of an element at both ends of a step. The box is empty when
+/// there are no points.
+Aabb enclosing_box(std::span<const Vec3d> points, double radius = 0);
+
 /// What the last call of `BroadPhase::find_object_pairs` did. All counts are 0 when no volume changed.
 struct BroadPhaseStats {
   /// The method that ran last: octree or grid when `automatic` was chosen.
@@ -34,12 +45,26 @@ struct BroadPhaseStats {
   std::uint64_t regions_rebuilt = 0;   ///< 1 when all regions were rebuilt
 };
 
+/// The number of kinds that volumes may have: kinds are 0 to 7.
+inline constexpr std::uint32_t volume_kind_count = 8;
+
+/// Two kinds whose volumes are paired with each other, in any order, or one kind whose volumes are paired
+/// among themselves.
+struct KindPair {
+  std::uint8_t a = 0, b = 0;
+  constexpr bool operator==(const KindPair&) const = default;
+};
+
 struct BroadPhaseOptions {
   BroadPhaseMethod method = BroadPhaseMethod::automatic;
   /// For the methods automatic and octree.
   SceneOctreeOptions scene_octree{};
   /// Worker threads; 0 means one per core. The pairs are the same for any number of threads.
   std::uint32_t threads = 0;
+  /// The wanted pairs of kinds, for example vertices with faces and edges with edges. Repeats are allowed.
+  /// When there are some, each call needs the kind of each volume, and the result has only pairs of volumes
+  /// of these kinds. The default finds the pairs of all volumes, and calls have no kinds.
+  std::vector<KindPair> kind_pairs{};
 };
 
 /// The broad phase alone: volumes in, overlapping pairs out. For programs that have boxes or spheres and no
@@ -49,7 +74,8 @@ struct BroadPhaseOptions {
 /// one `BroadPhase` must not overlap.
 class BroadPhase {
  public:
-  /// Throws `Error` when an option is out of its range, or has no effect with the method.
+  /// Throws `Error` when an option is out of its range, or has no effect with the method, and when
+  /// `kind_pairs` has a kind that is not below `volume_kind_count`.
   explicit BroadPhase(const BroadPhaseOptions& options = {});
   ~BroadPhase();
   BroadPhase(BroadPhase&&) noexcept;
@@ -81,6 +107,26 @@ class BroadPhase {
   std::span<const IndexPair> find_object_pairs(std::span<const Aabb> boxes,
                                                std::span<const std::uint32_t> dirty);
   std::span<const IndexPair> find_object_pairs(std::span<const BoundingSphere> spheres,
+                                               std::span<const std::uint32_t> dirty);
+
+  /// The same for volumes of several kinds: only pairs of `BroadPhaseOptions::kind_pairs`. `kinds` has the
+  /// kind of each volume. A volume whose kind differs from the call before counts as changed, and a dirty
+  /// list must contain it. Volumes whose kind is in no wanted pair count as empty.
+  ///
+  /// The grid keeps the volumes of each kind apart, so it does not test unwanted pairs. The other methods
+  /// test them and leave them out.
+  /// Throws `Error` when there are not as many kinds as volumes, when a kind is not below
+  /// `volume_kind_count`, when the options have no `kind_pairs`, and in the functions without kinds when they
+  /// have some.
+  std::span<const IndexPair> find_object_pairs(std::span<const Aabb> boxes,
+                                               std::span<const std::uint8_t> kinds);
+  std::span<const IndexPair> find_object_pairs(std::span<const BoundingSphere> spheres,
+                                               std::span<const std::uint8_t> kinds);
+  std::span<const IndexPair> find_object_pairs(std::span<const Aabb> boxes,
+                                               std::span<const std::uint8_t> kinds,
+                                               std::span<const std::uint32_t> dirty);
+  std::span<const IndexPair> find_object_pairs(std::span<const BoundingSphere> spheres,
+                                               std::span<const std::uint8_t> kinds,
                                                std::span<const std::uint32_t> dirty);
 
   /// Statistics of the last call.

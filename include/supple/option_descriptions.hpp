@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "supple/broad_phase.hpp"
 #include "supple/continuous.hpp"
 #include "supple/description.hpp"
@@ -316,6 +318,8 @@ struct Description<BroadPhaseOptions> {
                                           .doc = "Worker threads; 0 means one per core",
                                           .range = ValueRange::from(0, 1024),
                                           .is_of_machine = true});
+    visitor(Field<Options, std::vector<KindPair>>{
+        .name = "kind_pairs", .member = &Options::kind_pairs, .doc = "Wanted pairs of kinds of volumes"});
   }
 };
 

@@ -56,6 +56,14 @@ class Cells(unittest.TestCase):
         for contestant in contestants[1:]:
             self.assertEqual(contestant["pairs"], 22954, contestant["name"])
 
+    def test_element_boxes_and_proximity_of_a_cloth(self):
+        for contestant in contestants_of("E/crumpled-small"):
+            self.assertEqual(contestant["pairs"], 22954, contestant["name"])
+        found = contestants_of("P/crumpled-small")
+        self.assertEqual(found[0]["pairs"], 494)
+        for contestant in found[1:]:
+            self.assertEqual(contestant["pairs"], 655, contestant["name"])
+
     def test_answers_to_queries_agree(self):
         for cell in ("closest/980-uniform", "closest/980-near", "inside/980", "rays/980x4", "penetration/980", "penetration/980-deep", "distance/980-apart", "distance/980-near"):
             with self.subTest(cell=cell):

@@ -5,12 +5,14 @@
 #include <malloc.h>
 
 #include <cctype>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "allocation_count.hpp"
+#include "supple/broad_phase.hpp"
 #include "supple/inspection.hpp"
 #include "supple/models.hpp"
 #include "supple/option_descriptions.hpp"
@@ -94,6 +96,72 @@ INSTANTIATE_TEST_SUITE_P(
                     Configuration{"BoxesSweep", BoundingVolume::aabb, BroadPhaseMethod::sweep, 2000},
                     Configuration{"SpheresOctree", BoundingVolume::sphere, BroadPhaseMethod::octree, 2000}),
     [](const auto& configuration) { return configuration.param.name; });
+
+/// A cloth that folds, within its margin of itself.
+TEST(SteadyStateProximity, NoAllocationsAfterWarmUp) {
+  constexpr int period = 12, steps = 5 * period;
+  const TriangleMesh cloth = make_cloth(32, 32);
+  for (const ProximityListing listing : {ProximityListing::features, ProximityListing::elements}) {
+    SceneOptions options;
+    options.contacts = ContactKinds::proximity;
+    options.proximity_listing = listing;
+    options.threads = 1;
+    Scene scene(options);
+    const ObjectId id = scene.add(cloth, {.self_collision = true, .margin = 0.02});
+    std::vector<Vec3d> positions = cloth.positions;
+    std::uint64_t pairs = 0, allocated_in_steps = 0;
+    for (int step = 0; step < steps; ++step) {
+      const double turns = static_cast<double>(step % period) / period;
+      for (std::size_t v = 0; v < positions.size(); ++v) {
+        const Vec3d p = cloth.positions[v];
+        const double fold = sin_turns(2 * p.x + turns);
+        // No two edges are parallel: these would need integers of any size, which are not on the stack.
+        const auto ripple = [&](double part) { return 1e-3 * sin_turns(part * static_cast<double>(v)); };
+        positions[v] = {0.25 * p.x + 0.13 * fold + ripple(0.123),
+                        0.2 * sin_turns(1.3 * p.x + 0.37 * p.z + turns) + ripple(0.377), p.z + ripple(0.719)};
+      }
+      const std::uint64_t before = allocation_count();
+      scene.set_positions(id, positions);
+      pairs += scene.detect().proximity_pairs.size();
+      if (step >= 2 * period) allocated_in_steps += allocation_count() - before;
+    }
+    EXPECT_EQ(allocated_in_steps, 0u);
+    EXPECT_GT(pairs, 10'000u);
+  }
+}
+
+/// Boxes of three kinds that drift; in some steps only a few move, or change their kind.
+TEST(SteadyStateKinds, NoAllocationsAfterWarmUp) {
+  constexpr int period = 24, steps = 4 * period;
+  for (const BroadPhaseMethod method : {BroadPhaseMethod::automatic, BroadPhaseMethod::octree,
+                                        BroadPhaseMethod::grid, BroadPhaseMethod::sweep}) {
+    BroadPhaseOptions options;
+    options.method = method;
+    options.threads = 1;
+    options.kind_pairs = {{0, 2}, {1, 1}};
+    BroadPhase broad_phase(options);
+    std::vector<Aabb> boxes(3000);
+    std::vector<std::uint8_t> kinds(boxes.size());
+    std::uint64_t pairs = 0, allocated_in_steps = 0;
+    for (int step = 0; step < steps; ++step) {
+      const int turn = step % period;
+      for (std::size_t i = 0; i < boxes.size(); ++i) {
+        if (turn > period / 2 && i % 50 != 0) continue;
+        const auto place = [&](double part) {
+          return static_cast<float>(10 * sin_turns(part * static_cast<double>(i) + 0.01 * turn));
+        };
+        const Vec3f low{place(0.123), place(0.377), place(0.719)};
+        boxes[i] = {low, low + Vec3f{0.8f, 0.8f, 0.8f}};
+        kinds[i] = static_cast<std::uint8_t>((i + static_cast<std::size_t>(turn) / 3) % 3);
+      }
+      const std::uint64_t before = allocation_count();
+      pairs += broad_phase.find_object_pairs(boxes, kinds).size();
+      if (step >= 2 * period) allocated_in_steps += allocation_count() - before;
+    }
+    EXPECT_EQ(allocated_in_steps, 0u) << static_cast<int>(method);
+    EXPECT_GT(pairs, 10'000u);
+  }
+}
 
 /// Continuous contacts of a cloth with itself and with a ball; both move on paths.
 TEST(SteadyStateContinuous, NoAllocationsAfterWarmUp) {

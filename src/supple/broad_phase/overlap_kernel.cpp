@@ -22,23 +22,28 @@ namespace hn = hwy::HWY_NAMESPACE;
 using Floats = hn::CappedTag<float, max_lanes>;
 using Integers = hn::RebindToUnsigned<Floats>;
 
-/// Adds the pairs of box `row` with the boxes of hit lanes, counted from `column`, that begin here. Returns
-/// the new number of pairs in the batch.
-template <class Mask>
+/// Adds the pairs of box `row` with the boxes of hit lanes, counted from `column`, that begin here and have
+/// paired kinds. Returns the new number of pairs in the batch.
+template <bool has_kinds, class Mask>
 HWY_INLINE std::size_t append(const BoxLanes& boxes, std::size_t row, std::size_t column, Mask hit,
                               std::size_t count, PairList& pairs) {
   const Integers lanes;
-  const auto begins =
-      hn::Or(hn::Set(lanes, boxes.begins[row]), hn::LoadU(lanes, boxes.begins.data() + column));
-  const auto reported = hn::And(hn::RebindMask(lanes, hit), hn::Eq(begins, hn::Set(lanes, 7)));
+  const std::uint32_t row_marks = boxes.marks[row];
+  const auto required =
+      hn::Set(lanes, has_kinds ? PairMarks::required(row_marks) : std::uint32_t{PairMarks::begins});
+  auto marks = hn::Or(hn::Set(lanes, has_kinds ? row_marks & PairMarks::begins : row_marks),
+                      hn::LoadU(lanes, boxes.marks.data() + column));
+  if (has_kinds) marks = hn::And(marks, required);
+  const auto reported = hn::And(hn::RebindMask(lanes, hit), hn::Eq(marks, required));
   hn::StoreU(hn::Set(lanes, boxes.slots[row]), lanes, pairs.first.data() + count);
   hn::StoreU(packed_lanes(lanes, hn::LoadU(lanes, boxes.slots.data() + column), reported), lanes,
              pairs.second.data() + count);
   return count + hn::CountTrue(lanes, reported);
 }
 
-std::uint64_t find(const BoxLanes& boxes, std::size_t begin, std::size_t end,
-                   std::span<const BoundingSphere> spheres, PairList& pairs) {
+template <bool has_kinds>
+std::uint64_t find_pairs(const BoxLanes& boxes, std::size_t begin, std::size_t end,
+                         std::span<const BoundingSphere> spheres, PairList& pairs) {
   const Floats lanes;
   const float* const min_x = boxes.min[0].data();
   const float* const min_y = boxes.min[1].data();
@@ -61,7 +66,7 @@ std::uint64_t find(const BoxLanes& boxes, std::size_t begin, std::size_t end,
       const auto in_z = hn::And(hn::Le(hn::LoadU(lanes, min_z + j), row_max_z),
                                 hn::Ge(hn::LoadU(lanes, max_z + j), row_min_z));
       const auto hit = hn::And(in_x, hn::And(in_y, in_z));
-      if (!hn::AllFalse(lanes, hit)) count = append(boxes, row, j, hit, count, pairs);
+      if (!hn::AllFalse(lanes, hit)) count = append<has_kinds>(boxes, row, j, hit, count, pairs);
       if (HWY_UNLIKELY(count > PairList::batch_size)) {
         pairs.flush(count, spheres);
         count = 0;
@@ -74,6 +79,12 @@ std::uint64_t find(const BoxLanes& boxes, std::size_t begin, std::size_t end,
   }
   pairs.flush(count, spheres);
   return tests;
+}
+
+std::uint64_t find(const BoxLanes& boxes, std::size_t begin, std::size_t end,
+                   std::span<const BoundingSphere> spheres, bool has_kinds, PairList& pairs) {
+  return has_kinds ? find_pairs<true>(boxes, begin, end, spheres, pairs)
+                   : find_pairs<false>(boxes, begin, end, spheres, pairs);
 }
 
 }  // namespace
@@ -93,15 +104,16 @@ void BoxLanes::resize(std::size_t new_count) {
     for (std::vector<float>& ends : min) ends.resize(size);
     for (std::vector<float>& ends : max) ends.resize(size);
     slots.resize(size);
-    begins.resize(size);
+    marks.resize(size);
   }
   std::fill_n(min[0].begin() + static_cast<std::ptrdiff_t>(count), max_lanes,
               std::numeric_limits<float>::quiet_NaN());
 }
 
 std::uint64_t find_overlaps(const BoxLanes& boxes, std::size_t begin, std::size_t end,
-                            std::span<const BoundingSphere> spheres, PairList& pairs) {
-  return HWY_DYNAMIC_DISPATCH(find)(boxes, begin, end, spheres, pairs);
+                            const VolumeStore& volumes, PairList& pairs) {
+  return HWY_DYNAMIC_DISPATCH(find)(boxes, begin, end, volumes.spheres(), volumes.wanted().has_kinds(),
+                                    pairs);
 }
 
 }  // namespace supple

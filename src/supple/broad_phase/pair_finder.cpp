@@ -44,8 +44,8 @@ std::unique_ptr<PairSearch> make_search(BroadPhaseMethod method, BoundingVolume 
 }  // namespace
 
 PairFinder::PairFinder(BroadPhaseMethod method, BoundingVolume bounding_volume,
-                       const SceneOctreeOptions& octree_options)
-    : volumes_(bounding_volume), search_(make_search(method, bounding_volume, octree_options)) {
+                       const SceneOctreeOptions& octree_options, const WantedKinds& wanted)
+    : volumes_(bounding_volume, wanted), search_(make_search(method, bounding_volume, octree_options)) {
   found_.stats.method = method == BroadPhaseMethod::automatic ? BroadPhaseMethod::grid : method;
 }
 

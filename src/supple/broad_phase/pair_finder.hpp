@@ -14,7 +14,7 @@ class PairFinder {
  public:
   /// Throws `Error` when an option is out of its range or has no effect with the method.
   PairFinder(BroadPhaseMethod method, BoundingVolume bounding_volume,
-             const SceneOctreeOptions& octree_options);
+             const SceneOctreeOptions& octree_options, const WantedKinds& wanted = {});
 
   /// All overlapping pairs, sorted by (a, b), each once. The span lasts until the next call. When no volume
   /// changed, the method does not run and the pairs stay.

@@ -17,7 +17,7 @@ struct FoundPairs {
 };
 
 /// One method of the broad phase. All methods find the same pairs: (a, b) exactly when neither volume is
-/// empty and `overlap` of geometry reports the two.
+/// empty, their kinds are paired, and `overlap` of geometry reports the two.
 class PairSearch {
  public:
   virtual ~PairSearch() = default;

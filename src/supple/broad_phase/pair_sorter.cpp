@@ -73,6 +73,15 @@ namespace supple {
 
 HWY_EXPORT(sort_runs);
 
+namespace {
+
+/// When objects have more pairs on average, sorting by digits takes less time.
+constexpr std::size_t pairs_of_slot_to_sort_by_digits = 24;
+/// The counters of a digit then fit into the first-level cache.
+constexpr std::size_t most_slots_to_sort_by_digits = std::size_t{1} << 26;
+
+}  // namespace
+
 void PairList::flush(std::size_t count, std::span<const BoundingSphere> spheres) {
   const std::size_t size = pairs_.size();
   pairs_.resize(size + count);
@@ -123,12 +132,16 @@ void PairSorter::finish(const Parallel& parallel, std::vector<IndexPair>& sorted
   });
 }
 
-void PairSorter::sort_bin(std::size_t bin, Scratch& scratch, IndexPair* sorted) const {
-  const std::span<const IndexPair> pairs(binned_.data() + bin_begins_[bin],
-                                         bin_begins_[bin + 1] - bin_begins_[bin]);
+void PairSorter::sort_bin(std::size_t bin, Scratch& scratch, IndexPair* sorted) {
+  const std::span<IndexPair> pairs(binned_.data() + bin_begins_[bin],
+                                   bin_begins_[bin + 1] - bin_begins_[bin]);
   if (pairs.empty()) return;
   const auto first_slot = static_cast<std::uint32_t>(bin << shift_);
-  scratch.ends.assign(std::min(std::size_t{1} << shift_, slot_count_ - first_slot) + 1, 0);
+  const std::size_t slots_of_bin = std::min(std::size_t{1} << shift_, slot_count_ - first_slot);
+  if (pairs.size() >= pairs_of_slot_to_sort_by_digits * slots_of_bin &&
+      slot_count_ <= most_slots_to_sort_by_digits)
+    return sort_by_digits(pairs, first_slot, scratch, sorted + bin_begins_[bin]);
+  scratch.ends.assign(slots_of_bin + 1, 0);
   scratch.marks.resize(slot_count_ / 64 + 1, 0);
   if (scratch.a.size() < pairs.size() + max_lanes) {
     scratch.a.resize(pairs.size() + pairs.size() / 2 + max_lanes);
@@ -147,6 +160,25 @@ void PairSorter::sort_bin(std::size_t bin, Scratch& scratch, IndexPair* sorted) 
   HWY_DYNAMIC_DISPATCH(sort_runs)
   ({scratch.a.data(), pairs.size()}, {scratch.b.data(), pairs.size()}, scratch.ends, first_slot,
    scratch.marks, sorted + bin_begins_[bin]);
+}
+
+/// Sorts by the lower half of b's bits, the upper half, and a. Each pass keeps the order of equal digits, and
+/// moves the pairs between the two arrays.
+void PairSorter::sort_by_digits(std::span<IndexPair> pairs, std::uint32_t first_slot, Scratch& scratch,
+                                IndexPair* sorted) const {
+  const int half = (static_cast<int>(std::bit_width(slot_count_)) + 1) / 2;
+  const auto pass = [&](const IndexPair* from, IndexPair* to, int digit_bits, const auto& digit_of) {
+    scratch.ends.assign((std::size_t{1} << digit_bits), 0);
+    std::uint32_t* const next = scratch.ends.data();
+    for (std::size_t i = 0; i < pairs.size(); ++i) ++next[digit_of(from[i])];
+    std::uint32_t begin = 0;
+    for (std::uint32_t& end : scratch.ends) begin += std::exchange(end, begin);
+    for (std::size_t i = 0; i < pairs.size(); ++i) to[next[digit_of(from[i])]++] = from[i];
+  };
+  const std::uint32_t mask = (1u << half) - 1;
+  pass(pairs.data(), sorted, half, [&](const IndexPair& pair) { return pair.b & mask; });
+  pass(sorted, pairs.data(), half, [&](const IndexPair& pair) { return pair.b >> half; });
+  pass(pairs.data(), sorted, shift_, [&](const IndexPair& pair) { return pair.a - first_slot; });
 }
 
 }  // namespace supple

@@ -30,9 +30,10 @@ class PairList {
   std::vector<std::size_t> bin_places_;
 };
 
-/// Sorts the pairs of all workers by (a, b): into bins by the upper bits of a, then by a within each bin,
-/// then each run of equal a by b. O(pairs + slots), more only where an object has between 64 and slots / 4096
-/// pairs.
+/// Sorts the pairs of all workers by (a, b): into bins by the upper bits of a, then each bin. Where objects
+/// have many pairs, the bin is sorted by digits of b and by a; otherwise by a, and then each run of equal a
+/// by b. O(pairs + slots), more only where an object has between 64 and slots / 4096 pairs and most others
+/// have few.
 class PairSorter {
  public:
   /// One empty list for each worker. Every slot of a pair is less than `slot_count`.
@@ -48,7 +49,9 @@ class PairSorter {
     std::vector<std::uint32_t> a, b;   // pairs of a bin, run after run
     std::vector<std::uint64_t> marks;  // a bit per slot, all 0 between runs
   };
-  void sort_bin(std::size_t bin, Scratch& scratch, IndexPair* sorted) const;
+  void sort_bin(std::size_t bin, Scratch& scratch, IndexPair* sorted);
+  void sort_by_digits(std::span<IndexPair> pairs, std::uint32_t first_slot, Scratch& scratch,
+                      IndexPair* sorted) const;
 
   std::size_t slot_count_ = 0;
   int shift_ = 0;  // the bin of a pair is a >> shift_

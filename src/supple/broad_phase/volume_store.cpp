@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <utility>
 
 namespace supple {
 namespace {
@@ -16,12 +17,10 @@ Volume volume_at(std::span<const Volume> given, std::size_t slot) {
   return slot < given.size() ? given[slot] : Volume{};
 }
 
-/// Whether the volumes of [begin, end) are certainly the same as before; quick for volumes at rest.
-template <class Volume>
-bool is_same_block(std::span<const Volume> given, const std::vector<Volume>& known, std::size_t begin,
+template <class Item>
+bool is_same_range(std::span<const Item> given, const std::vector<Item>& known, std::size_t begin,
                    std::size_t end) {
-  return end <= given.size() &&
-         std::memcmp(&given[begin], &known[begin], (end - begin) * sizeof(Volume)) == 0;
+  return end <= given.size() && std::memcmp(&given[begin], &known[begin], (end - begin) * sizeof(Item)) == 0;
 }
 
 }  // namespace
@@ -31,6 +30,7 @@ void VolumeStore::update(const ObjectVolumes& given, const Parallel& parallel) {
   given_count_ = has_spheres_ ? given.spheres.size() : given.boxes.size();
   boxes_.resize(std::max(given_count_, known_count));
   if (has_spheres_) spheres_.resize(boxes_.size());
+  if (wanted_.has_kinds()) kinds_.resize(boxes_.size());
   if (!given.dirty) {
     compare_all(given, parallel);
   } else {
@@ -44,18 +44,38 @@ void VolumeStore::update(const ObjectVolumes& given, const Parallel& parallel) {
   revision_ += changed_count_ != 0;
 }
 
-bool VolumeStore::take_if_changed(const ObjectVolumes& given, std::uint32_t slot) {
+/// A volume whose kind has no partner is empty.
+inline bool VolumeStore::take_volume_if_changed(const ObjectVolumes& given, std::uint32_t slot,
+                                                bool has_partner) {
   if (has_spheres_) {
-    const BoundingSphere sphere = volume_at(given.spheres, slot);
+    const BoundingSphere sphere = has_partner ? volume_at(given.spheres, slot) : BoundingSphere{};
     if (!differs(sphere, spheres_[slot])) return false;
     spheres_[slot] = sphere;
     boxes_[slot] = bounding_box(sphere);
   } else {
-    const Aabb box = volume_at(given.boxes, slot);
+    const Aabb box = has_partner ? volume_at(given.boxes, slot) : Aabb{};
     if (!differs(box, boxes_[slot])) return false;
     boxes_[slot] = box;
   }
   return true;
+}
+
+bool VolumeStore::take_kind_if_changed(const ObjectVolumes& given, std::uint32_t slot) {
+  if (slot >= given.kinds.size()) return take_volume_if_changed(given, slot, true);
+  const std::uint8_t kind = given.kinds[slot], last_kind = std::exchange(kinds_[slot], kind);
+  const bool has_other_volume = take_volume_if_changed(given, slot, wanted_.partners(kind) != 0);
+  return has_other_volume || (kind != last_kind && !boxes_[slot].empty());
+}
+
+bool VolumeStore::take_if_changed(const ObjectVolumes& given, std::uint32_t slot) {
+  return wanted_.has_kinds() ? take_kind_if_changed(given, slot) : take_volume_if_changed(given, slot, true);
+}
+
+/// Whether the volumes of [begin, end) are certainly the same as before; quick for volumes at rest.
+bool VolumeStore::is_same_block(const ObjectVolumes& given, std::size_t begin, std::size_t end) const {
+  if (wanted_.has_kinds() && !is_same_range(given.kinds, kinds_, begin, end)) return false;
+  return has_spheres_ ? is_same_range(given.spheres, spheres_, begin, end)
+                      : is_same_range(given.boxes, boxes_, begin, end);
 }
 
 void VolumeStore::compare_all(const ObjectVolumes& given, const Parallel& parallel) {
@@ -69,9 +89,7 @@ void VolumeStore::compare_all(const ObjectVolumes& given, const Parallel& parall
       const std::size_t begin = chunk * chunk_size, end = std::min(begin + chunk_size, slots);
       for (std::size_t block = begin; block < end; block += block_size) {
         const std::size_t block_end = std::min(block + block_size, end);
-        if (has_spheres_ ? is_same_block(given.spheres, spheres_, block, block_end)
-                         : is_same_block(given.boxes, boxes_, block, block_end))
-          continue;
+        if (is_same_block(given, block, block_end)) continue;
         for (std::size_t slot = block; slot < block_end; ++slot)
           if (take_if_changed(given, static_cast<std::uint32_t>(slot)))
             listed_[begin + count++] = static_cast<std::uint32_t>(slot);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -10,15 +11,40 @@
 #include "core/float_rounding.hpp"
 #include "core/parallel.hpp"
 #include "geometry/sphere.hpp"
+#include "supple/broad_phase.hpp"
 #include "supple/options.hpp"
 
 namespace supple {
+
+/// The wanted pairs of kinds: for each kind a bit for each kind that it is paired with.
+class WantedKinds {
+ public:
+  /// All volumes have the kind 0 and are paired.
+  WantedKinds() : partners_{1} {}
+  /// Nothing else is paired, unless the list is empty.
+  explicit WantedKinds(std::span<const KindPair> pairs) : has_kinds_(!pairs.empty()) {
+    partners_[0] = has_kinds_ ? 0 : 1;
+    for (const auto [a, b] : pairs) {
+      partners_[a] = static_cast<std::uint8_t>(partners_[a] | 1u << b);
+      partners_[b] = static_cast<std::uint8_t>(partners_[b] | 1u << a);
+    }
+  }
+  bool has_kinds() const { return has_kinds_; }
+  std::uint32_t partners(std::size_t kind) const { return partners_[kind]; }
+  bool are_paired(std::size_t a, std::size_t b) const { return (partners_[a] >> b & 1) != 0; }
+
+ private:
+  static_assert(volume_kind_count == 8, "a byte has a bit for each kind");
+  std::array<std::uint8_t, volume_kind_count> partners_{};
+  bool has_kinds_ = false;
+};
 
 /// The volumes that a caller gives for one step, by slot: boxes or spheres. The volumes of removed objects
 /// are empty. A box with a NaN is empty.
 struct ObjectVolumes {
   std::span<const Aabb> boxes{};
   std::span<const BoundingSphere> spheres{};
+  std::span<const std::uint8_t> kinds{};  ///< as many as volumes if the kinds are wanted, otherwise empty
   /// The dirty list: slots whose volumes may differ from the step before, in any order; repeats are allowed.
   /// Without a list all volumes are compared. Slots that are new or gone need not be listed.
   std::optional<std::span<const std::uint32_t>> dirty{};
@@ -55,10 +81,12 @@ struct ObjectVolume {
 /// The volumes of all slots in the present step, and the slots that changed since the step before.
 class VolumeStore {
  public:
-  explicit VolumeStore(BoundingVolume kind) : has_spheres_(kind == BoundingVolume::sphere) {}
+  explicit VolumeStore(BoundingVolume bounding_volume, const WantedKinds& wanted = {})
+      : has_spheres_(bounding_volume == BoundingVolume::sphere), wanted_(wanted) {}
 
-  /// Copies the volumes that differ bit by bit from those of the step before, and lists their slots. Two
-  /// empty volumes are equal. O(slots), or O(dirty log dirty) with a dirty list.
+  /// Copies the volumes that differ bit by bit, or in their kind, from those of the step before, and lists
+  /// their slots. Two empty volumes are equal. A volume whose kind has no partner is stored as empty.
+  /// O(slots), or O(dirty log dirty) with a dirty list.
   void update(const ObjectVolumes& given, const Parallel& parallel);
   /// Slots that changed, ascending.
   std::span<const std::uint32_t> changed() const { return {listed_.data(), changed_count_}; }
@@ -70,19 +98,27 @@ class VolumeStore {
   std::span<const Aabb> boxes() const { return boxes_; }
   /// Empty when the volumes are boxes; then boxes decide which pairs overlap, otherwise spheres.
   std::span<const BoundingSphere> spheres() const { return spheres_; }
+  const WantedKinds& wanted() const { return wanted_; }
+  /// Of a volume that is not empty.
+  std::size_t kind(std::uint32_t slot) const { return wanted_.has_kinds() ? kinds_[slot] : 0; }
   ObjectVolume volume(std::uint32_t slot) const {
     return {boxes_[slot], has_spheres_ ? spheres_[slot] : BoundingSphere{}};
   }
 
  private:
+  bool take_volume_if_changed(const ObjectVolumes& given, std::uint32_t slot, bool has_partner);
+  bool take_kind_if_changed(const ObjectVolumes& given, std::uint32_t slot);
   bool take_if_changed(const ObjectVolumes& given, std::uint32_t slot);
+  bool is_same_block(const ObjectVolumes& given, std::size_t begin, std::size_t end) const;
   void compare_all(const ObjectVolumes& given, const Parallel& parallel);
 
   bool has_spheres_;
+  WantedKinds wanted_;
   std::size_t given_count_ = 0;  // volumes of this step
   std::uint64_t revision_ = 0;
   std::vector<Aabb> boxes_;
   std::vector<BoundingSphere> spheres_;
+  std::vector<std::uint8_t> kinds_;  // empty unless kinds are wanted
   std::vector<std::uint32_t> listed_;
   std::size_t changed_count_ = 0;
   std::vector<std::size_t> chunk_sizes_;

@@ -88,16 +88,7 @@ class IntegerNumbers {
 template <class Number>
 using Vector = NumberVector<Number>;
 
-/// The features that hold the closest points. Vertices have the indices of `ElementPoints`.
-struct Features {
-  enum class Kind : std::uint8_t { vertices, vertex_edge, interiors };
-  Kind kind = Kind::interiors;
-  std::uint8_t vertex = 0;  ///< of either element; of a when both features are vertices
-  std::array<std::uint8_t, 2>
-      edge{};  ///< the edge's ends, ascending; the first is b's vertex for two vertices
-
-  bool operator==(const Features&) const = default;
-};
+using Features = ClosestFeatures;
 
 /// Which features count where several hold the closest points: the smallest.
 auto rank_of(const Features& f, std::uint8_t count_a) {
@@ -247,7 +238,7 @@ class FeatureSearch {
 
 /// The squared distance is `squared` / `divisor`, the weights are `along[i]` / `divisor`.
 template <class Number>
-struct DistanceNumbers {
+struct QuotientNumbers {
   Number squared, divisor;
   std::array<Number, 2> along{}, rest{};  ///< `rest[0]` also leaves out `along[1]` for a face
   Vector<Number> direction;               ///< from the edge to the vertex, or from b to a
@@ -256,7 +247,7 @@ struct DistanceNumbers {
 template <class Numbers>
 auto numbers_of(const Numbers& numbers, const Features& features, bool are_edges) {
   using Number = typename Numbers::Number;
-  DistanceNumbers<Number> result;
+  QuotientNumbers<Number> result;
   if (features.kind == Features::Kind::interiors) {
     const InteriorNumbers<Number> n(numbers, are_edges);
     result.squared = n.volume * n.volume;
@@ -280,13 +271,6 @@ auto numbers_of(const Numbers& numbers, const Features& features, bool are_edges
   return result;
 }
 
-/// The same numbers, rounded.
-struct RoundedNumbers {
-  double distance = 0;
-  std::array<double, 2> along{}, rest{};
-  Vec3d direction;
-};
-
 Vec3d direction_of(const Vec3d& v) {
   const double size = largest_magnitude(v);
   if (!(size > 0)) return {};
@@ -298,8 +282,8 @@ Vec3d direction_of(const Vec3d& v) {
 /// 2^-60 and 2^60 here. With full accuracy, the sines of all angles are above 2^-40, so all results have a
 /// relative error below 2^-53. With rough accuracy, those at elements that nearly touch are above 2^-68, and
 /// the error is below 2^-26. Returns nothing otherwise.
-std::optional<RoundedNumbers> rounded_by_pairs(const ElementPoints& elements, const Features& features,
-                                               DistanceAccuracy accuracy) {
+std::optional<DistanceNumbers> rounded_by_pairs(const ElementPoints& elements, const Features& features,
+                                                DistanceAccuracy accuracy) {
   const auto vector = [&](std::size_t i, std::size_t j) { return elements.points[i] - elements.points[j]; };
   const auto squared = [](const Vec3d& v) { return supple::dot(v, v); };
   const auto in_range = [](double square) { return square > 0x1p-120 && square < 0x1p120; };
@@ -328,7 +312,7 @@ std::optional<RoundedNumbers> rounded_by_pairs(const ElementPoints& elements, co
   const auto numbers = numbers_of(DoubleDoubleNumbers(elements), features, elements.count_a == 2);
   if (!is_full && !(static_cast<double>(numbers.squared) > 0x1p-136 * magnitude)) return {};
   const double divisor(numbers.divisor);
-  RoundedNumbers result;
+  DistanceNumbers result;
   result.distance = std::sqrt(static_cast<double>(numbers.squared) / divisor);
   for (std::size_t i = 0; i < 2; ++i) {
     result.along[i] = static_cast<double>(numbers.along[i]) / divisor;
@@ -371,10 +355,10 @@ Vec3d direction_across(const IntegerNumbers& numbers, const ElementPoints& eleme
   return {1, 0, 0};
 }
 
-RoundedNumbers rounded_by_integers(const IntegerNumbers& numbers, const ElementPoints& elements,
-                                   const Features& features) {
+DistanceNumbers rounded_by_integers(const IntegerNumbers& numbers, const ElementPoints& elements,
+                                    const Features& features) {
   const auto exact = numbers_of(numbers, features, elements.count_a == 2);
-  RoundedNumbers result;
+  DistanceNumbers result;
   result.distance = Quotient(exact.squared, exact.divisor).square_root(numbers.lowest());
   for (std::size_t i = 0; i < 2; ++i) {
     result.along[i] = Quotient(exact.along[i], exact.divisor).value();
@@ -389,54 +373,6 @@ Feature edge_feature(std::uint8_t first, std::uint8_t last) {
   return {FeatureKind::edge, static_cast<std::uint8_t>(first == 0 && last == 2 ? 2 : first)};
 }
 
-ElementDistance result_of(const ElementPoints& elements, const Features& features,
-                          const RoundedNumbers& numbers) {
-  const std::uint8_t count_a = elements.count_a;
-  ElementDistance result;
-  result.distance = numbers.distance;
-  result.normal = numbers.direction;
-  const auto set_vertex = [&](std::uint8_t vertex) {
-    const bool of_a = vertex < count_a;
-    const auto index = static_cast<std::uint8_t>(of_a ? vertex : vertex - count_a);
-    (of_a ? result.on_a : result.on_b) = {FeatureKind::vertex, index};
-    (of_a ? result.barycentric_a : result.barycentric_b)[index] = 1;
-  };
-  switch (features.kind) {
-    case Features::Kind::vertices:
-      set_vertex(features.vertex);
-      set_vertex(features.edge[0]);
-      break;
-    case Features::Kind::vertex_edge: {
-      set_vertex(features.vertex);
-      const bool on_b = features.vertex < count_a;
-      const std::uint8_t base = on_b ? count_a : 0;
-      const auto first = static_cast<std::uint8_t>(features.edge[0] - base),
-                 last = static_cast<std::uint8_t>(features.edge[1] - base);
-      (on_b ? result.on_b : result.on_a) = edge_feature(first, last);
-      auto& weights = on_b ? result.barycentric_b : result.barycentric_a;
-      weights[first] = numbers.rest[0];
-      weights[last] = numbers.along[0];
-      if (!on_b) result.normal = -1.0 * result.normal;
-      break;
-    }
-    case Features::Kind::interiors:
-      if (count_a == 2) {
-        result.on_a = result.on_b = {FeatureKind::edge, 0};
-        result.barycentric_a = {numbers.rest[0], numbers.along[0], 0};
-        result.barycentric_b = {numbers.rest[1], numbers.along[1], 0};
-      } else {
-        set_vertex(0);
-        result.on_b = {FeatureKind::face, 0};
-        result.barycentric_b = {numbers.rest[0], numbers.along[0], numbers.along[1]};
-      }
-      break;
-  }
-  for (std::size_t i = 0; i < count_a; ++i) result.point_a += result.barycentric_a[i] * elements.points[i];
-  for (std::size_t i = 0; i < elements.count_b; ++i)
-    result.point_b += result.barycentric_b[i] * elements.points[count_a + i];
-  return result;
-}
-
 std::optional<ElementDistance> checked(const ElementPoints& elements, double max_distance) {
   if (!(max_distance >= 0))
     fail("distance: max_distance is " + std::to_string(max_distance) + "; it must be 0 or more");
@@ -447,30 +383,106 @@ std::optional<ElementDistance> checked(const ElementPoints& elements, double max
 
 }  // namespace
 
-std::optional<ElementDistance> distance_within(const ElementPoints& elements, double max_distance,
-                                               bool& used_exact, DistanceAccuracy accuracy) {
+std::optional<ClosestFeatures> closest_features_within(const ElementPoints& elements, double max_distance,
+                                                       bool& used_exact) {
   const BoundedNumbers bounded(elements);
   FeatureSearch<BoundedNumbers> search(bounded, elements);
   std::optional<Features> features = search.search();
   std::optional<bool> is_within = features ? search.is_within(max_distance) : std::nullopt;
-  std::optional<IntegerNumbers> integers;
   if (!is_within) {
-    integers.emplace(elements, max_distance);
-    FeatureSearch<IntegerNumbers> exact_search(*integers, elements);
+    used_exact = true;
+    const IntegerNumbers integers(elements, max_distance);
+    FeatureSearch<IntegerNumbers> exact_search(integers, elements);
     features = exact_search.search();
     is_within = exact_search.is_within(max_distance);
   }
-  used_exact = used_exact || integers;
-  if (!*is_within) return {};
-  // The numbers depend on the features and the accuracy alone, not on the bound.
-  if (const auto numbers = rounded_by_pairs(elements, *features, accuracy))
-    return result_of(elements, *features, *numbers);
+  return *is_within ? features : std::nullopt;
+}
+
+ElementDistance distance_of(const ElementPoints& elements, const ClosestFeatures& features, bool& used_exact,
+                            DistanceAccuracy accuracy) {
+  if (const auto numbers = rounded_by_pairs(elements, features, accuracy))
+    return distance_of(elements, features, *numbers);
   used_exact = true;
-  if (!integers) integers.emplace(elements, max_distance);
-  ElementDistance result =
-      result_of(elements, *features, rounded_by_integers(*integers, elements, *features));
-  if (result.normal == Vec3d{}) result.normal = direction_across(*integers, elements);
+  const IntegerNumbers integers(elements, any_distance);
+  ElementDistance result = distance_of(elements, features, rounded_by_integers(integers, elements, features));
+  if (result.normal == Vec3d{}) result.normal = direction_across(integers, elements);
   return result;
+}
+
+ElementDistance distance_of(const ElementPoints& elements, const ClosestFeatures& features,
+                            const DistanceNumbers& numbers) {
+  const std::uint8_t count_a = elements.count_a;
+  ElementDistance result;
+  result.distance = numbers.distance;
+  result.normal = numbers.direction;
+  const auto on = features_of_elements(features, count_a);
+  result.on_a = on[0];
+  result.on_b = on[1];
+  const auto set_vertex = [&](std::uint8_t vertex) {
+    if (vertex < count_a)
+      result.barycentric_a[vertex] = 1;
+    else
+      result.barycentric_b[static_cast<std::size_t>(vertex - count_a)] = 1;
+  };
+  switch (features.kind) {
+    case Features::Kind::vertices:
+      set_vertex(features.vertex);
+      set_vertex(features.edge[0]);
+      break;
+    case Features::Kind::vertex_edge: {
+      set_vertex(features.vertex);
+      const bool on_b = features.vertex < count_a;
+      const std::size_t base = on_b ? count_a : 0;
+      auto& weights = on_b ? result.barycentric_b : result.barycentric_a;
+      weights[features.edge[0] - base] = numbers.rest[0];
+      weights[features.edge[1] - base] = numbers.along[0];
+      if (!on_b) result.normal = -1.0 * result.normal;
+      break;
+    }
+    case Features::Kind::interiors:
+      if (count_a == 2) {
+        result.barycentric_a = {numbers.rest[0], numbers.along[0], 0};
+        result.barycentric_b = {numbers.rest[1], numbers.along[1], 0};
+      } else {
+        set_vertex(0);
+        result.barycentric_b = {numbers.rest[0], numbers.along[0], numbers.along[1]};
+      }
+      break;
+  }
+  for (std::size_t i = 0; i < count_a; ++i) result.point_a += result.barycentric_a[i] * elements.points[i];
+  for (std::size_t i = 0; i < elements.count_b; ++i)
+    result.point_b += result.barycentric_b[i] * elements.points[count_a + i];
+  return result;
+}
+
+std::array<Feature, 2> features_of_elements(const ClosestFeatures& features, std::uint8_t count_a) {
+  const auto vertex_feature = [&](std::uint8_t vertex) {
+    return Feature{FeatureKind::vertex,
+                   static_cast<std::uint8_t>(vertex < count_a ? vertex : vertex - count_a)};
+  };
+  switch (features.kind) {
+    case Features::Kind::vertices:
+      return {vertex_feature(features.vertex), vertex_feature(features.edge[0])};
+    case Features::Kind::vertex_edge: {
+      const bool on_b = features.vertex < count_a;
+      const std::uint8_t base = on_b ? count_a : 0;
+      const Feature edge = edge_feature(static_cast<std::uint8_t>(features.edge[0] - base),
+                                        static_cast<std::uint8_t>(features.edge[1] - base));
+      const Feature vertex = vertex_feature(features.vertex);
+      return on_b ? std::array{vertex, edge} : std::array{edge, vertex};
+    }
+    default:
+      if (count_a == 2) return {Feature{FeatureKind::edge, 0}, Feature{FeatureKind::edge, 0}};
+      return {Feature{FeatureKind::vertex, 0}, Feature{FeatureKind::face, 0}};
+  }
+}
+
+std::optional<ElementDistance> distance_within(const ElementPoints& elements, double max_distance,
+                                               bool& used_exact, DistanceAccuracy accuracy) {
+  const auto features = closest_features_within(elements, max_distance, used_exact);
+  if (!features) return {};
+  return distance_of(elements, *features, used_exact, accuracy);
 }
 
 int compare_distances(const ElementPoints& p, const ElementPoints& q, bool& used_exact) {

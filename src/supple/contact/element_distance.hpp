@@ -19,6 +19,38 @@ struct ElementPoints {
 /// which integers are rarely needed.
 enum class DistanceAccuracy : std::uint8_t { full, rough };
 
+/// The features that hold the closest points. Vertices have the indices of `ElementPoints`.
+struct ClosestFeatures {
+  enum class Kind : std::uint8_t { vertices, vertex_edge, interiors };
+  Kind kind = Kind::interiors;
+  std::uint8_t vertex = 0;  ///< of either element; of a when both features are vertices
+  std::array<std::uint8_t, 2>
+      edge{};  ///< the edge's ends, ascending; the first is b's vertex for two vertices
+
+  bool operator==(const ClosestFeatures&) const = default;
+};
+
+/// The squared distance's root, the weights and the direction: the weights of the second end of an edge, or
+/// of the second and the third corner of a face, and those of the first; for two edges, of a and of b.
+struct DistanceNumbers {
+  double distance = 0;
+  std::array<double, 2> along{}, rest{};
+  Vec3d direction;  ///< from the edge to the vertex, or from b to a
+};
+
+/// The closest features of two elements whose distance is at most `max_distance` ≥ 0, or nothing. Exact. Sets
+/// `used_exact` when integers decide.
+std::optional<ClosestFeatures> closest_features_within(const ElementPoints& elements, double max_distance,
+                                                       bool& used_exact);
+/// The distance and the closest points of these features.
+ElementDistance distance_of(const ElementPoints& elements, const ClosestFeatures& features, bool& used_exact,
+                            DistanceAccuracy accuracy = DistanceAccuracy::full);
+/// The same from numbers that were computed before.
+ElementDistance distance_of(const ElementPoints& elements, const ClosestFeatures& features,
+                            const DistanceNumbers& numbers);
+/// The features as parts of each element.
+std::array<Feature, 2> features_of_elements(const ClosestFeatures& features, std::uint8_t count_a);
+
 /// The functions of `supple/distance.hpp` as one. `max_distance` ≥ 0. Sets `used_exact` when integers decide.
 /// Decisions and features are exact for any accuracy.
 std::optional<ElementDistance> distance_within(const ElementPoints& elements, double max_distance,

@@ -21,32 +21,6 @@ void set_motions_of(const std::array<const MovingObject*, 4>& objects,
 
 }  // namespace
 
-std::array<std::uint32_t, 4> vertices_of(ElementPairKind kind, ElementPair pair, const MovingObject& a,
-                                         const MovingObject& b) {
-  switch (kind) {
-    case ElementPairKind::vertex_face: {
-      const Triangle& face = b.view.moving.face_ids[pair.b];
-      return {pair.a, face[0], face[1], face[2]};
-    }
-    case ElementPairKind::face_vertex: {
-      const Triangle& face = a.view.moving.face_ids[pair.a];
-      return {pair.b, face[0], face[1], face[2]};
-    }
-    default: {
-      const Edge& first = a.view.moving.edge_ids[pair.a];
-      const Edge& second = b.view.moving.edge_ids[pair.b];
-      return {first[0], first[1], second[0], second[1]};
-    }
-  }
-}
-
-std::array<const MovingObject*, 4> objects_of(ElementPairKind kind, const MovingObject& a,
-                                              const MovingObject& b) {
-  if (kind == ElementPairKind::vertex_face) return {&a, &b, &b, &b};
-  if (kind == ElementPairKind::face_vertex) return {&b, &a, &a, &a};
-  return {&a, &a, &b, &b};
-}
-
 std::optional<ElementNames> names_of(ElementPairKind kind, ElementPair pair,
                                      const std::array<std::uint32_t, 4>& vertices, const MovingObject& a,
                                      const MovingObject& b) {

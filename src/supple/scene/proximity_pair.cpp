@@ -53,6 +53,12 @@ Side side_of_feature(const PairElement& element, const Feature& on,
   return side;
 }
 
+bool swaps_sides(PairOrder order, FeatureKind kind_a, const std::array<std::uint32_t, 2>& name_a,
+                 FeatureKind kind_b, const std::array<std::uint32_t, 2>& name_b) {
+  return order == PairOrder::by_names ? std::tie(kind_b, name_b) < std::tie(kind_a, name_a)
+                                      : order == PairOrder::swapped;
+}
+
 /// The element with the corners in the user's order.
 PairElement in_corner_order(const PairElement& element) {
   PairElement result = element;
@@ -96,25 +102,30 @@ ElementPoints points_of(const PairElement& a, const PairElement& b) {
   ElementPoints elements;
   elements.count_a = a.count;
   elements.count_b = b.count;
-  std::copy_n(a.points.begin(), a.count, elements.points.begin());
-  std::copy_n(b.points.begin(), b.count, elements.points.begin() + a.count);
+  for (std::size_t i = 0; i < 4; ++i) elements.points[i] = i < a.count ? a.points[i] : b.points[i - a.count];
   return elements;
 }
 
-PairElement::PairElement(std::span<const std::uint32_t> vertex_ids, const std::array<Vec3d, 3>& positions,
-                         std::uint32_t triangle_id)
-    : kind(static_cast<FeatureKind>(vertex_ids.size() - 1)),
-      count(static_cast<std::uint8_t>(vertex_ids.size())),
-      corners{0, 1, 2},
-      triangle(triangle_id) {
-  for (std::size_t i = 1; i < count; ++i) {
-    for (std::size_t j = i; j > 0 && vertex_ids[corners[j]] < vertex_ids[corners[j - 1]]; --j)
-      std::swap(corners[j], corners[j - 1]);
+PairName name_of_pair(const ElementIds& first, const ElementIds& second, const ClosestFeatures& features,
+                      PairOrder order, ProximityListing listing) {
+  const auto on = features_of_elements(features, first.count);
+  PairName name{first.kind, second.kind, first.name(), second.name()};
+  if (listing == ProximityListing::features) {
+    const auto set_feature = [](const ElementIds& element, const Feature& feature, FeatureKind& kind,
+                                std::array<std::uint32_t, 2>& ids) {
+      if (feature.kind == FeatureKind::face || element.count == 1) return;
+      const auto [low, high] = ends_of(feature);
+      kind = feature.kind;
+      ids = {element.ids[low], element.ids[high]};
+    };
+    set_feature(first, on[0], name.kind_a, name.element_a);
+    set_feature(second, on[1], name.kind_b, name.element_b);
   }
-  for (std::size_t i = 0; i < count; ++i) {
-    ids[i] = vertex_ids[corners[i]];
-    points[i] = positions[corners[i]];
+  if (swaps_sides(order, name.kind_a, name.element_a, name.kind_b, name.element_b)) {
+    std::swap(name.kind_a, name.kind_b);
+    std::swap(name.element_a, name.element_b);
   }
+  return name;
 }
 
 std::optional<ProximityPair> proximity_pair_within(const PairElement& first, const PairElement& second,
@@ -122,21 +133,25 @@ std::optional<ProximityPair> proximity_pair_within(const PairElement& first, con
                                                    ProximityListing listing, double reach, bool& used_exact) {
   const auto found = distance_within(points_of(first, second), reach, used_exact);
   if (!found) return {};
+  return proximity_pair_of(first, second, *found, objects, order, listing);
+}
+
+ProximityPair proximity_pair_of(const PairElement& first, const PairElement& second,
+                                const ElementDistance& found, const ObjectPair& objects, PairOrder order,
+                                ProximityListing listing) {
   const bool lists_features = listing == ProximityListing::features;
   const auto side_of = lists_features ? side_of_feature : side_of_element;
-  const Side side_a = side_of(first, found->on_a, found->barycentric_a),
-             side_b = side_of(second, found->on_b, found->barycentric_b);
-  ProximityPair pair{objects.a,          objects.b,      side_a.kind,    side_b.kind,     side_a.name,
-                     side_b.name,        side_a.on,      side_b.on,      found->distance, side_a.barycentric,
-                     side_b.barycentric, found->point_a, found->point_b, found->normal};
-  const bool swaps = order == PairOrder::by_names
-                         ? std::tie(side_b.kind, side_b.name) < std::tie(side_a.kind, side_a.name)
-                         : order == PairOrder::swapped;
+  const Side side_a = side_of(first, found.on_a, found.barycentric_a),
+             side_b = side_of(second, found.on_b, found.barycentric_b);
+  ProximityPair pair{objects.a,          objects.b,     side_a.kind,   side_b.kind,    side_a.name,
+                     side_b.name,        side_a.on,     side_b.on,     found.distance, side_a.barycentric,
+                     side_b.barycentric, found.point_a, found.point_b, found.normal};
+  const bool swaps = swaps_sides(order, side_a.kind, side_a.name, side_b.kind, side_b.name);
   if (swaps) swap_sides(pair);
   if (pair.distance == 0) {
     // The direction across features that touch must not depend on the elements around them.
-    const PairElement of_first = lists_features ? feature_of(first, found->on_a) : in_corner_order(first);
-    const PairElement of_second = lists_features ? feature_of(second, found->on_b) : in_corner_order(second);
+    const PairElement of_first = lists_features ? feature_of(first, found.on_a) : in_corner_order(first);
+    const PairElement of_second = lists_features ? feature_of(second, found.on_b) : in_corner_order(second);
     pair.normal = swaps ? normal_across(of_second, of_first) : normal_across(of_first, of_second);
   }
   pair.normal = pair.normal + Vec3d{};  // no negative zeros, which depend on the order of the elements

@@ -2,20 +2,19 @@
 
 #include <algorithm>
 #include <array>
-#include <compare>
 #include <cstdint>
 #include <limits>
 #include <span>
 #include <vector>
 
-#include "contact/element_distance.hpp"
-#include "contact/impact_filter.hpp"
+#include "contact/distance_kernels.hpp"
 #include "core/parallel.hpp"
 #include "core/stop_signal.hpp"
 #include "narrow_phase/traversal.hpp"
 #include "scene/contact_tasks.hpp"
 #include "scene/element_candidates.hpp"
 #include "scene/job_outcomes.hpp"
+#include "scene/proximity_pair.hpp"
 #include "supple/proximity.hpp"
 #include "supple/result.hpp"
 
@@ -51,22 +50,27 @@ class ProximityPass {
   bool is_truncated() const { return is_truncated_; }
 
  private:
-  /// Orders the pairs of a job canonically and says where each is stored.
-  struct Key {
-    FeatureKind kind_a{}, kind_b{};
-    std::array<std::uint32_t, 2> element_a{}, element_b{};
-    std::uint32_t worker = 0, index = 0;
-
-    auto operator<=>(const Key&) const = default;
-    bool is_same_pair(const Key& other) const {
-      return kind_a == other.kind_a && kind_b == other.kind_b && element_a == other.element_a &&
-             element_b == other.element_b;
-    }
+  /// A pair within the margins. Several candidates may have the same closest features, and so the same name
+  /// and the same numbers, which are computed for one of them.
+  struct Found {
+    PairName name;
+    ElementPairKind kind{};
+    ClosestFeatures features;  // of the elements of `elements_of`
+    ElementPair candidate;
+  };
+  /// The elements of a candidate in the order of `ElementPoints`.
+  struct Elements {
+    ElementIds first, second;
+    std::array<std::uint32_t, 4> vertices;  // of first, then of second, in the order of their corners
+    bool is_swapped = false;  // two edges of one object, in the other order than the candidate's
   };
   struct Worker {
     Traversal traversal;
-    RelativeMotionBlock block;
-    std::vector<ProximityPair> found;  // by all tasks of the worker
+    PointsBlock block;
+    DistanceNumbersBlock numbers;
+    std::array<std::array<PairElement, 2>, PointsBlock::capacity> elements;
+    std::vector<Found> found;             // by all tasks of the worker
+    std::vector<std::uint32_t> bin_ends;  // scratch of `sort_job`
     TaskStats stats;
   };
 
@@ -74,10 +78,16 @@ class ProximityPass {
   void run_task(std::size_t task, std::uint32_t worker);
   void test_candidates(std::uint32_t job, ElementPairKind kind, std::span<const ElementPair> candidates,
                        Worker& worker);
-  void add_pair(std::uint32_t job, ElementPairKind kind, ElementPair candidate,
-                std::array<std::uint32_t, 4> vertices, Worker& worker);
+  void add(std::uint32_t job, ElementPairKind kind, ElementPair candidate, FeatureCode code, Worker& worker);
+  Elements elements_of(std::uint32_t job, ElementPairKind kind, ElementPair candidate) const;
+  std::array<PairElement, 2> with_points(std::uint32_t job, ElementPairKind kind,
+                                         const Elements& elements) const;
+  PairOrder order_of(std::uint32_t job, ElementPairKind kind) const;
   void sort_found(const Parallel& parallel);
-  void sort_job(std::size_t first_task, std::size_t end_task, std::vector<Key>& keys);
+  void sort_job(std::size_t first_task, std::size_t end_task, std::vector<std::uint32_t>& bin_ends,
+                std::vector<Found>& sorted);
+  void compute_found(const Parallel& parallel);
+  void compute_pairs(std::uint32_t job, std::span<const Found> found, Worker& worker, ProximityPair* pairs);
 
   std::span<const ContactJob> jobs_;
   std::span<const MovingObject> objects_;
@@ -87,7 +97,12 @@ class ProximityPass {
   ContactTasks tasks_;
   JobOutcomes<1> outcomes_;
   std::vector<std::uint32_t> first_tasks_;  // of each open job, and the number of tasks
-  std::vector<std::vector<Key>> keys_;      // of each open job, in order
+  /// Part of a list of `sorted_`.
+  struct Block {
+    std::uint32_t open = 0, first = 0;
+  };
+  std::vector<Block> blocks_;
+  std::vector<std::vector<Found>> sorted_;  // of each open job, each name once
   std::vector<ContactGroup> groups_;
   std::vector<ProximityPair> pairs_;
   bool is_truncated_ = false;

@@ -42,8 +42,8 @@ inline auto members_of(SceneOptions& o) {
   return std::tie(a, b, c, d, e, f, g, h, i, j, k);
 }
 inline auto members_of(BroadPhaseOptions& o) {
-  auto& [a, b, c] = o;
-  return std::tie(a, b, c);
+  auto& [a, b, c, d] = o;
+  return std::tie(a, b, c, d);
 }
 inline auto members_of(MassSpringOptions& o) {
   auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, p, q] = o;

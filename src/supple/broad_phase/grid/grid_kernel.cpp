@@ -149,13 +149,15 @@ HWY_INLINE void for_rows(const std::uint32_t* cell_begins, const GridLevel& leve
   }
 }
 
-template <bool only_row>
+/// Without `tests_own_level`, the boxes are only tested against those of other levels.
+template <bool only_row, bool tests_own_level>
 std::uint64_t search_level(const Grid& grid, const BinnedBoxes& boxes, std::size_t level_index,
                            std::size_t begin, std::size_t end, PairList& pairs) {
   Arrays arrays{boxes.ends[0].data(), boxes.ends[1].data(), boxes.ends[2].data(), boxes.slots.data(),
                 pairs.first.data(),   pairs.second.data(),  boxes.has_many_pairs};
   const std::uint32_t* const cell_begins = boxes.cell_begins.data();
   const GridLevel level = grid.levels[level_index];
+  const std::uint32_t other_levels = level.tested_levels & ~(1u << level_index);
   for (std::size_t place = begin; place < end; ++place) {
     const Query query = query_of(arrays, place);
     const auto visit = [&](std::size_t from, std::size_t to)
@@ -164,15 +166,18 @@ std::uint64_t search_level(const Grid& grid, const BinnedBoxes& boxes, std::size
       visit(place + 1, cell_begins[level.division(0, query.high[0]) + 1]);
       continue;
     }
-    const Divisions cells = divisions_of(level, query, 0), second = divisions_of(level, query, 1);
-    const std::uint32_t own_second = level.division(1, query.low[1]);
-    const std::uint32_t own_third = level.division(2, query.low[2]);
-    const std::size_t own_row = std::size_t{own_third * level.divisions[1] + own_second} * level.divisions[0];
-    visit(place + 1, cell_begins[level.first_cell + own_row + cells.last + 1]);
-    for_rows(cell_begins, level, cells, {own_second + 1, second.last}, {own_third, own_third}, visit);
-    for_rows(cell_begins, level, cells, second, {own_third + 1, level.division(2, query.high[2])}, visit);
-    for (std::size_t smaller = 0; smaller < level_index; ++smaller) {
-      const GridLevel& others = grid.levels[smaller];
+    if constexpr (tests_own_level) {
+      const Divisions cells = divisions_of(level, query, 0), second = divisions_of(level, query, 1);
+      const std::uint32_t own_second = level.division(1, query.low[1]);
+      const std::uint32_t own_third = level.division(2, query.low[2]);
+      const std::size_t own_row =
+          std::size_t{own_third * level.divisions[1] + own_second} * level.divisions[0];
+      visit(place + 1, cell_begins[level.first_cell + own_row + cells.last + 1]);
+      for_rows(cell_begins, level, cells, {own_second + 1, second.last}, {own_third, own_third}, visit);
+      for_rows(cell_begins, level, cells, second, {own_third + 1, level.division(2, query.high[2])}, visit);
+    }
+    for (std::uint32_t rest = other_levels; rest != 0; rest &= rest - 1) {
+      const GridLevel& others = grid.levels[static_cast<std::size_t>(std::countr_zero(rest))];
       for_rows(cell_begins, others, divisions_of(others, query, 0), divisions_of(others, query, 1),
                divisions_of(others, query, 2), visit);
     }
@@ -183,7 +188,10 @@ std::uint64_t search_level(const Grid& grid, const BinnedBoxes& boxes, std::size
 
 std::uint64_t search(const Grid& grid, const BinnedBoxes& boxes, std::size_t level, std::size_t begin,
                      std::size_t end, PairList& pairs) {
-  const auto function = grid.is_one_row() ? search_level<true> : search_level<false>;
+  const bool tests_own_level = (grid.levels[level].tested_levels >> level & 1) != 0;
+  const auto function = grid.is_one_row() ? search_level<true, true>
+                        : tests_own_level ? search_level<false, true>
+                                          : search_level<false, false>;
   return function(grid, boxes, level, begin, end, pairs);
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 namespace supple {
 namespace {
@@ -16,19 +17,29 @@ constexpr double others_of_row = 16;
 
 }  // namespace
 
-void GridPlanner::plan(std::span<const Aabb> boxes, Grid& grid) {
-  count_ = static_cast<double>(boxes.size());
-  take_sample(boxes);
+void GridPlanner::plan(const VolumeStore& volumes, Grid& grid) {
+  count_ = static_cast<double>(volumes.slot_count());
+  take_sample(volumes);
   choose_bounds(grid);
   choose_axes(grid);
+  measure_sizes();
   grid.levels.clear();
-  if (count_ / width_in_extents_[grid.axes[0]] >= others_of_one_row) choose_levels(grid);
-  // The last level has one row and takes all boxes that are left.
-  add_level(grid, grid.levels.empty() ? count_ / 2 : 256, 0);
+  auto begin = samples_.begin();
+  for (std::size_t kind = 0; kind < volume_kind_count; ++kind) {
+    grid.first_level[kind] = static_cast<std::uint32_t>(grid.levels.size());
+    if (volumes.wanted().partners(kind) == 0) continue;
+    const auto end =
+        std::find_if(begin, samples_.end(), [&](const Sample& sample) { return sample.kind != kind; });
+    choose_levels(kind, std::span(begin, end), grid);
+    begin = end;
+  }
+  grid.first_level.back() = static_cast<std::uint32_t>(grid.levels.size());
+  pair_levels(volumes.wanted(), grid.levels);
 }
 
 /// Takes every k-th box, without empty ones.
-void GridPlanner::take_sample(std::span<const Aabb> boxes) {
+void GridPlanner::take_sample(const VolumeStore& volumes) {
+  const auto boxes = volumes.boxes();
   const std::size_t wanted = std::min<std::size_t>(64 + boxes.size() / 64, 1024);
   const std::size_t stride = boxes.size() / wanted + 1;
   samples_.clear();
@@ -39,6 +50,7 @@ void GridPlanner::take_sample(std::span<const Aabb> boxes) {
       sample.low[axis] = std::clamp(boxes[i].min[static_cast<int>(axis)], -farthest, farthest);
       sample.high[axis] = std::clamp(boxes[i].max[static_cast<int>(axis)], -farthest, farthest);
     }
+    sample.kind = volumes.kind(static_cast<std::uint32_t>(i));
     samples_.push_back(sample);
   }
 }
@@ -86,38 +98,66 @@ void GridPlanner::choose_axes(Grid& grid) {
   grid.axes = {first, (first + 1) % 3, (first + 2) % 3};
 }
 
-/// The first level takes the smallest 31/32 of the boxes, and somewhat larger ones. The next level takes the
-/// same share of the boxes that are left, and so on.
-///
-/// Boxes that are much smaller than their level's limit are tested against boxes that they would not meet in
-/// narrower rows. But at least 1/32 of the level's boxes are half as large as the limit or larger, and
-/// overlap what surrounds them. With 16 tests at a time, the tests in vain take about as long as these pairs.
-void GridPlanner::choose_levels(Grid& grid) {
+/// Sorts the sample by kind and size.
+void GridPlanner::measure_sizes() {
   for (Sample& sample : samples_) {
     sample.size = 0;
     for (std::size_t axis = 0; axis < 3; ++axis)
       sample.size =
           std::max(sample.size, (double{sample.high[axis]} - sample.low[axis]) / mean_extent_[axis]);
   }
-  const auto smaller = [](const Sample& a, const Sample& b) { return a.size < b.size; };
-  std::sort(samples_.begin(), samples_.end(), smaller);
-  for (auto begin = samples_.begin(); begin != samples_.end() && grid.levels.size() + 1 < most_levels;) {
-    const auto largest = begin + (samples_.end() - begin) * 31 / 32;
-    const auto end = std::upper_bound(begin, samples_.end(), Sample{{}, {}, 2 * largest->size}, smaller);
-    add_level(grid, count_ * static_cast<double>(end - begin) / static_cast<double>(samples_.size()),
-              std::max(std::prev(end)->size, 1e-3));
-    begin = end;
+  std::sort(samples_.begin(), samples_.end(), [](const Sample& a, const Sample& b) {
+    return std::tie(a.kind, a.size) < std::tie(b.kind, b.size);
+  });
+}
+
+/// Adds the levels of one kind of boxes, from the sample of this kind. The first level takes the smallest
+/// 31/32 of the boxes, and somewhat larger ones. The next level takes the same share of the boxes that are
+/// left, and so on. The last level has one row and takes all boxes that are left.
+///
+/// Boxes that are much smaller than their level's limit are tested against boxes that they would not meet in
+/// narrower rows. But at least 1/32 of the level's boxes are half as large as the limit or larger, and
+/// overlap what surrounds them. With 16 tests at a time, the tests in vain take about as long as these pairs.
+void GridPlanner::choose_levels(std::size_t kind, std::span<const Sample> samples, Grid& grid) const {
+  const double boxes_of_sample = count_ / static_cast<double>(std::max<std::size_t>(samples_.size(), 1));
+  const auto count_of = [&](std::size_t sample_count) {
+    return boxes_of_sample * static_cast<double>(sample_count);
+  };
+  const bool is_dense = count_of(samples.size()) / width_in_extents_[grid.axes[0]] >= others_of_one_row;
+  std::size_t added = 0;
+  for (auto rest = samples; is_dense && !rest.empty() && added + 1 < most_levels; ++added) {
+    const double largest = rest[rest.size() * 31 / 32].size;
+    const auto end = std::upper_bound(rest.begin(), rest.end(), 2 * largest,
+                                      [](double size, const Sample& sample) { return size < sample.size; });
+    const auto count = static_cast<std::size_t>(end - rest.begin());
+    add_level(grid, kind, count_of(count), std::max(rest[count - 1].size, 1e-3));
+    rest = rest.subspan(count);
+  }
+  add_level(grid, kind, added == 0 && !samples.empty() ? count_of(samples.size()) / 2 : 256, 0);
+  grid.levels.back().limit.fill(quantization_steps);
+}
+
+/// Of two levels whose kinds are paired, the boxes of the one with larger boxes are tested against the other.
+void GridPlanner::pair_levels(const WantedKinds& wanted, std::vector<GridLevel>& levels) {
+  static_assert(most_levels * volume_kind_count <= 32, "a word has a bit for each level");
+  for (std::size_t i = 0; i < levels.size(); ++i) {
+    for (std::size_t j = 0; j <= i; ++j) {
+      if (!wanted.are_paired(levels[i].kind, levels[j].kind)) continue;
+      const bool has_smaller = levels[i].limit[0] < levels[j].limit[0];
+      levels[has_smaller ? j : i].tested_levels |= 1u << (has_smaller ? i : j);
+    }
   }
 }
 
 /// Adds a level for `count` boxes up to a size in mean extents; for boxes of any size when it is 0.
-void GridPlanner::add_level(Grid& grid, double count, double size) const {
+void GridPlanner::add_level(Grid& grid, std::size_t kind, double count, double size) const {
   constexpr double boxes_of_block = 4096, most_blocks = 1024;  // two blocks fit into the second-level cache
   GridLevel level;
+  level.kind = static_cast<std::uint8_t>(kind);
   const auto width = [&](std::size_t k) { return width_in_extents_[grid.axes[k]]; };
   const double others = count * 2 * size / width(0);
   if (others >= others_of_one_row) {
-    const double row_width = std::max(std::sqrt(width(1) * width(2) * others_of_row / others), 2 * size);
+    const double row_width = std::max(std::sqrt(width(1) * width(2) * others_of_row / others), 0.5 * size);
     for (const std::size_t k : {1, 2})
       level.divisions[k] = static_cast<std::uint32_t>(std::clamp(width(k) / row_width, 1.0, 4096.0));
   }

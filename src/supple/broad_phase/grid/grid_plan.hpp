@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "broad_phase/grid/grid_kernel.hpp"
+#include "broad_phase/volume_store.hpp"
 
 namespace supple {
 
@@ -14,18 +15,21 @@ namespace supple {
 class GridPlanner {
  public:
   /// O(sample). `max_extent` of the levels is 0.
-  void plan(std::span<const Aabb> boxes, Grid& grid);
+  void plan(const VolumeStore& volumes, Grid& grid);
 
  private:
   struct Sample {
     std::array<float, 3> low{}, high{};
     double size = 0;  // the largest extent, in mean extents
+    std::size_t kind = 0;
   };
-  void take_sample(std::span<const Aabb> boxes);
+  void take_sample(const VolumeStore& volumes);
   void choose_bounds(Grid& grid);
   void choose_axes(Grid& grid);
-  void choose_levels(Grid& grid);
-  void add_level(Grid& grid, double count, double size) const;
+  void measure_sizes();
+  void choose_levels(std::size_t kind, std::span<const Sample> samples, Grid& grid) const;
+  static void pair_levels(const WantedKinds& wanted, std::vector<GridLevel>& levels);
+  void add_level(Grid& grid, std::size_t kind, double count, double size) const;
 
   double count_ = 0;  // of all boxes
   std::vector<Sample> samples_;

@@ -31,7 +31,7 @@ std::uint64_t GridSearch::bin(const VolumeStore& volumes, const Parallel& parall
   const auto boxes = volumes.boxes();
   binned_.exact = boxes;
   binned_.spheres = volumes.spheres();
-  planner_.plan(boxes, grid_);
+  planner_.plan(volumes, grid_);
   quantized_.resize(boxes.size());
   blocks_.resize(boxes.size());
   // Several chunks for each worker balance the load.
@@ -41,7 +41,7 @@ std::uint64_t GridSearch::bin(const VolumeStore& volumes, const Parallel& parall
     for (std::size_t i = first; i < last; ++i) {
       chunks_[i].begin = boxes.size() * i / chunk_count;
       chunks_[i].end = boxes.size() * (i + 1) / chunk_count;
-      quantize(boxes, chunks_[i]);
+      quantize(volumes, chunks_[i]);
     }
   });
   for (std::size_t level = 0; level < grid_.levels.size(); ++level)
@@ -78,22 +78,28 @@ std::uint64_t GridSearch::bin(const VolumeStore& volumes, const Parallel& parall
   return squares;
 }
 
-void GridSearch::quantize(std::span<const Aabb> boxes, Chunk& chunk) {
+void GridSearch::quantize(const VolumeStore& volumes, Chunk& chunk) {
   constexpr std::size_t batch_size = 2048;  // stays in the second-level cache
   const GridLevel& last_level = grid_.levels.back();
   chunk.places.assign(last_level.first_block + last_level.block_count(), 0);
   chunk.max_extent.assign(grid_.levels.size(), {});
   chunk.count = 0;
+  const bool has_kinds = volumes.wanted().has_kinds();
+  const std::size_t level_count = grid_.levels.size();
+  const auto level_of_kind = [&](const QuantizedBox& box, std::size_t kind) {
+    return grid_.level_of(box, grid_.first_level[kind], grid_.first_level[kind + 1]);
+  };
   for (std::size_t begin = chunk.begin; begin < chunk.end; begin += batch_size) {
     const std::size_t place = chunk.begin + chunk.count;
-    const auto batch = boxes.subspan(begin, std::min(batch_size, chunk.end - begin));
+    const auto batch = volumes.boxes().subspan(begin, std::min(batch_size, chunk.end - begin));
     const std::size_t count =
         quantize_boxes(grid_, batch, static_cast<std::uint32_t>(begin), quantized_.data() + place);
     chunk.count += count;
     if (grid_.is_one_row()) continue;
     for (std::size_t i = place; i < place + count; ++i) {
       const QuantizedBox& box = quantized_[i];
-      const std::size_t level_index = grid_.level_of(box);
+      const std::size_t level_index =
+          has_kinds ? level_of_kind(box, volumes.kind(box.slot)) : grid_.level_of(box, 0, level_count);
       const GridLevel& level = grid_.levels[level_index];
       for (std::size_t axis = 0; axis < 3; ++axis) {
         std::uint32_t& max_extent = chunk.max_extent[level_index][axis];

@@ -10,10 +10,10 @@
 
 namespace supple {
 
-/// A hierarchical grid, rebuilt in each step. The boxes are quantized and sorted by size, row and cell. Each
-/// box is tested against the boxes that follow it in its row and in the rows beside it, up to 16 at a time,
-/// and against the boxes of all levels for smaller boxes. Each box is in one cell, so each pair is found
-/// once.
+/// A hierarchical grid, rebuilt in each step. The boxes are quantized and sorted by kind, size, row and cell.
+/// Each box is tested against the boxes that follow it in its row and in the rows beside it, up to 16 at a
+/// time, and against the boxes of all levels for smaller boxes, as far as the kinds are paired. Each box is
+/// in one cell, so each pair is found once.
 class GridSearch final : public PairSearch {
  public:
   void search(const VolumeStore& volumes, const Parallel& parallel, FoundPairs& found) override;
@@ -29,7 +29,7 @@ class GridSearch final : public PairSearch {
   };
 
   std::uint64_t bin(const VolumeStore& volumes, const Parallel& parallel);
-  void quantize(std::span<const Aabb> boxes, Chunk& chunk);
+  void quantize(const VolumeStore& volumes, Chunk& chunk);
   std::uint64_t sort_block(const GridLevel& level, std::size_t block);
   void search_cells(const Parallel& parallel, FoundPairs& found);
   std::size_t box_count() const { return block_begins_.back(); }

@@ -139,15 +139,16 @@ void OctreeSearch::find_in_leaf(const VolumeStore& volumes, const SceneOctree::R
   worker.lanes.resize(slots.size());
   for (std::size_t i = 0; i < slots.size(); ++i) {
     const auto slot = static_cast<std::uint32_t>(worker.order[i]);
-    worker.lanes.set(i, slot, boxes[slot], begins(boxes[slot]));
+    worker.lanes.set(i, slot, boxes[slot], marks_of(volumes, slot, begins(boxes[slot])));
   }
-  worker.tests += find_overlaps(worker.lanes, 0, slots.size(), volumes.spheres(), pairs);
+  worker.tests += find_overlaps(worker.lanes, 0, slots.size(), volumes, pairs);
 }
 
 void OctreeSearch::find_of_object(const VolumeStore& volumes, std::uint32_t slot, Worker& worker,
                                   PairList& pairs) const {
   const auto boxes = volumes.boxes();
   const ObjectVolume volume = volumes.volume(slot);
+  const std::size_t kind = volumes.kind(slot);
   tree_.visit_leaves(volume, [&](const SceneOctree::Region& leaf) {
     const std::uint32_t begins = tree_.placed_by_sphere() ? std::uint32_t{7} : begins_in(leaf, volume.box);
     const auto slots = tree_.objects(leaf);
@@ -158,6 +159,7 @@ void OctreeSearch::find_of_object(const VolumeStore& volumes, std::uint32_t slot
       // When both objects changed, the one with the smaller index finds the pair.
       if (other == slot || (other < slot && is_changed_[other] != 0)) continue;
       if ((begins | begins_in(leaf, boxes[other])) != 7) continue;
+      if (!volumes.wanted().are_paired(kind, volumes.kind(other))) continue;
       pairs.first[count] = slot;
       pairs.second[count++] = other;
       if (count <= PairList::batch_size) continue;

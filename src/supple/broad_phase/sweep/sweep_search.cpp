@@ -40,14 +40,14 @@ void SweepSearch::search(const VolumeStore& volumes, const Parallel& parallel, F
   lanes_.is_sorted = true;
   for (std::size_t i = 0; i < order_.size(); ++i) {
     const auto slot = static_cast<std::uint32_t>(order_[i]);
-    lanes_.set(i, slot, boxes[slot], 7, axis);
+    lanes_.set(i, slot, boxes[slot], marks_of(volumes, slot), axis);
   }
 
   const auto lists = sorter_.start(parallel.worker_count(), boxes.size());
   std::atomic<std::uint64_t> tests = 0;
   constexpr std::size_t grain = 256;
   parallel.for_ranges(order_.size(), grain, [&](std::size_t begin, std::size_t end, std::uint32_t worker) {
-    tests += find_overlaps(lanes_, begin, end, volumes.spheres(), lists[worker]);
+    tests += find_overlaps(lanes_, begin, end, volumes, lists[worker]);
   });
   sorter_.finish(parallel, found.pairs);
   found.stats.object_pairs_tested = tests;
