@@ -30,10 +30,12 @@ struct ClosestFeatures {
   bool operator==(const ClosestFeatures&) const = default;
 };
 
-/// The squared distance's root, the weights and the direction: the weights of the second end of an edge, or
-/// of the second and the third corner of a face, and those of the first; for two edges, of a and of b.
+/// The numbers of a distance, rounded.
 struct DistanceNumbers {
   double distance = 0;
+  /// The barycentric coordinates of the closest points: `along` of the second end of an edge, `rest` of the
+  /// first; for two edges, of a and of b. For a face: `along` of the second and the third corner, `rest[0]`
+  /// of the first.
   std::array<double, 2> along{}, rest{};
   Vec3d direction;  ///< from the edge to the vertex, or from b to a
 };

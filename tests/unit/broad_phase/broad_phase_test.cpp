@@ -248,6 +248,19 @@ TEST(BroadPhase, AnyNumberOfThreadsGivesTheSamePairs) {
   }
 }
 
+TEST(BroadPhase, SortsThePairsOfVolumesThatHaveMany) {
+  // Most bins are sorted by digits, and those of the small boxes in the second half by runs.
+  std::vector<Aabb> boxes = test::random_boxes(5'000, 10, 1.0f, 34);
+  for (std::size_t i = boxes.size() / 2; i < boxes.size(); ++i)
+    boxes[i].max = boxes[i].min + 0.05f * (boxes[i].max - boxes[i].min);
+  const std::vector<IndexPair> expected = double_loop(boxes);
+  ASSERT_GT(expected.size(), 30 * boxes.size());
+  for (const std::uint32_t threads : {1u, 3u}) {
+    BroadPhase broad_phase({.method = BroadPhaseMethod::automatic, .scene_octree = {}, .threads = threads});
+    EXPECT_TRUE(find(broad_phase, boxes) == expected) << threads;
+  }
+}
+
 TEST(BroadPhase, AnyNumberOfThreadsDoesTheSameWork) {
   std::vector<BroadPhase> kept;
   for (const BroadPhaseMethod method : test::all_methods)

@@ -37,8 +37,8 @@ struct GridLevel {
   std::uint32_t first_block = 0;  ///< a block is 2^rows_per_block_log2 rows, which are sorted together
   std::uint8_t rows_per_block_log2 = 0;
   std::uint8_t kind = 0;
-  std::uint32_t tested_levels =
-      0;  ///< a bit for each level whose boxes are tested against those of this level
+  /// A bit for each level, perhaps this one, whose boxes are tested against those of this level.
+  std::uint32_t tested_levels = 0;
 
   std::uint32_t division(std::size_t axis, std::uint32_t step) const {
     return step * divisions[axis] / quantization_steps;
