@@ -71,6 +71,14 @@ struct RayHit {
   constexpr bool operator==(const RayHit&) const = default;
 };
 
+/// One of the triangles on a ray; see `Scene::cast_all`.
+struct ListedRayHit {
+  std::uint32_t query = 0;  ///< the place of the ray in the list of queries
+  RayHit hit;               ///< `RayHit::hits` is the number of triangles on the ray
+
+  constexpr bool operator==(const ListedRayHit&) const = default;
+};
+
 /// The points p with min ≤ p ≤ max on each axis.
 struct QueryBox {
   Vec3d min, max;

@@ -164,6 +164,9 @@ class Scene {
   /// finite, and when its direction is zero. Watertight: a ray through an edge hits a triangle of the edge.
   void cast(std::span<const Ray> rays, std::span<std::optional<RayHit>> results,
             const CastOptions& options = {});
+  /// All triangles on each ray, ordered by ray, then by t as exact arithmetic compares it, object and
+  /// triangle. Valid until the next call of a function of the scene that is not const.
+  std::span<const ListedRayHit> cast_all(std::span<const Ray> rays, const QueryFilter& filter = {});
   /// All triangles that overlap each box or sphere, ordered by query, object and triangle. A box or sphere
   /// with a number that is not finite, a box with min > max, and a sphere with a negative radius overlap
   /// nothing. Valid until the next call of a function of the scene that is not const.

@@ -16,6 +16,7 @@ class RayParameter {
   /// and the direction not zero. Sets `used_exact` when integers decide.
   static std::optional<RayParameter> find(const Ray& ray, const TrianglePoints& triangle, bool& used_exact);
 
+  const TrianglePoints& triangle() const { return triangle_; }
   /// Within 4 units in the last place.
   double rounded() const;
   /// The sign of the difference of two parameters, exact.

@@ -233,6 +233,24 @@ bool crosses_above(const TrianglePoints& corners, const Vec3d& point, bool& used
   return orient3d(corners[0], corners[1], corners[2], point, used_exact) * turn < 0;
 }
 
+/// By the place on the ray, then by object and triangle.
+bool is_before(const TriangleOnRay& p, const TriangleOnRay& q) {
+  bool used_exact = false;
+  const int side = p.parameter.compare(q.parameter, used_exact);
+  return side != 0 ? side < 0 : std::tie(p.object, p.id) < std::tie(q.object, q.id);
+}
+
+RayHit hit_of(ObjectId object, const Ray& ray, const TriangleOnRay& found, std::uint64_t hits) {
+  const double t = found.parameter.rounded();
+  RayHit hit{object, found.id, t, ray.origin + t * ray.direction, {}, hits};
+  if (is_finite(hit.point)) {
+    bool used_exact = false;
+    const ElementPoints elements = point_and_triangle(hit.point, found.parameter.triangle());
+    hit.barycentric = distance_within(elements, infinity, used_exact, DistanceAccuracy::rough)->barycentric_b;
+  }
+  return hit;
+}
+
 /// A box, exactly: its points, and the twelve triangles of its faces.
 class BoxFaces {
  public:
@@ -343,22 +361,14 @@ std::optional<ClosestPoint> ObjectQueries::closest(std::span<const QueriedObject
   return result;
 }
 
-std::optional<RayHit> ObjectQueries::cast(std::span<const QueriedObject> objects, const Ray& ray,
-                                          bool count_hits) {
-  if (!is_finite(ray.origin) || !is_finite(ray.direction) || ray.direction == Vec3d{}) return {};
-  struct Best {
-    RayParameter parameter;
-    TrianglePoints corners;
-    double t = 0;
-    std::uint32_t object = 0, id = 0;
-  };
-  std::optional<Best> best;
-  constexpr double any = std::numeric_limits<double>::max();
-  double limit = any;
-  std::uint64_t hits = 0;
+/// Calls `visit(hit)` with the triangles on the ray up to `limit`, which may decrease.
+template <class Visit>
+void ObjectQueries::visit_triangles_on_ray(std::span<const QueriedObject> objects, const Ray& ray,
+                                           const double& limit, const Visit& visit) {
+  if (!is_finite(ray.origin) || !is_finite(ray.direction) || ray.direction == Vec3d{}) return;
   bool used_exact = false;
-  const auto bound_of = [&](const auto& box) { return ray_bound(ray, box); };
-  order(objects, bound_of, limit);
+  order(
+      objects, [&](const auto& box) { return ray_bound(ray, box); }, limit);
   for (const auto& [object_bound, index] : order_) {
     const QueriedObject& object = objects[index];
     if (!(object_bound <= limit)) break;
@@ -372,28 +382,38 @@ std::optional<RayHit> ObjectQueries::cast(std::span<const QueriedObject> objects
         [&](std::uint32_t leaf, std::uint32_t first, std::uint32_t end) {
           const auto on_ray = [&](const LeafBoxes& boxes) { return triangles_on_ray(slabs, boxes, limit); };
           visit_leaf(index, object, leaf, first, end, on_ray, [&](std::uint32_t t) {
-            const TrianglePoints corners = object.corners(t);
-            const auto parameter = RayParameter::find(ray, corners, used_exact);
-            if (!parameter) return;
-            ++hits;
-            const std::uint32_t id = object.triangle_ids[t];
-            if (best) {
-              const int side = parameter->compare(best->parameter, used_exact);
-              if (side > 0 || (side == 0 && std::tie(best->object, best->id) < std::tie(index, id))) return;
-            }
-            best = {*parameter, corners, parameter->rounded(), index, id};
-            if (!count_hits) limit = std::min(any, best->t * (1 + 0x1p-45) + 0x1p-1060);
+            if (const auto parameter = RayParameter::find(ray, object.corners(t), used_exact))
+              visit(TriangleOnRay{*parameter, index, object.triangle_ids[t]});
           });
         });
   }
+}
+
+std::optional<RayHit> ObjectQueries::cast(std::span<const QueriedObject> objects, const Ray& ray,
+                                          bool count_hits) {
+  std::optional<TriangleOnRay> best;
+  constexpr double any = std::numeric_limits<double>::max();
+  double limit = any;
+  std::uint64_t hits = 0;
+  visit_triangles_on_ray(objects, ray, limit, [&](const TriangleOnRay& found) {
+    ++hits;
+    if (best && !is_before(found, *best)) return;
+    best = found;
+    if (!count_hits) limit = std::min(any, found.parameter.rounded() * (1 + 0x1p-45) + 0x1p-1060);
+  });
   if (!best) return {};
-  RayHit hit{objects[best->object].id, best->id, best->t, ray.origin + best->t * ray.direction, {},
-             count_hits ? hits : 1};
-  if (is_finite(hit.point)) {
-    const ElementPoints elements = point_and_triangle(hit.point, best->corners);
-    hit.barycentric = distance_within(elements, infinity, used_exact, DistanceAccuracy::rough)->barycentric_b;
-  }
-  return hit;
+  return hit_of(objects[best->object].id, ray, *best, count_hits ? hits : 1);
+}
+
+void ObjectQueries::cast_all(std::span<const QueriedObject> objects, const Ray& ray, std::uint32_t query,
+                             std::vector<ListedRayHit>& found) {
+  constexpr double any = std::numeric_limits<double>::max();
+  on_ray_.clear();
+  visit_triangles_on_ray(objects, ray, any,
+                         [&](const TriangleOnRay& triangle) { on_ray_.push_back(triangle); });
+  std::sort(on_ray_.begin(), on_ray_.end(), is_before);
+  for (const TriangleOnRay& triangle : on_ray_)
+    found.push_back({query, hit_of(objects[triangle.object].id, ray, triangle, on_ray_.size())});
 }
 
 template <class Visit>

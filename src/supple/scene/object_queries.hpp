@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "contact/ray_triangle.hpp"
 #include "narrow_phase/ordered_descent.hpp"
 #include "narrow_phase/overlap_kernels.hpp"
 #include "narrow_phase/recent_leaf_boxes.hpp"
@@ -38,6 +39,12 @@ struct NearTriangle {
   std::uint32_t object = 0, triangle = 0;
 };
 
+/// A triangle on a ray: its place on the ray, its object in a list of objects, and the user's number.
+struct TriangleOnRay {
+  RayParameter parameter;
+  std::uint32_t object = 0, id = 0;
+};
+
 /// Answers queries to a list of objects, one after the other. Holds the memory of one worker.
 class ObjectQueries {
  public:
@@ -50,6 +57,9 @@ class ObjectQueries {
   /// The triangle of the last result of `closest`, in octree order.
   std::uint32_t last_nearest_triangle() const { return last_nearest_->triangle; }
   std::optional<RayHit> cast(std::span<const QueriedObject> objects, const Ray& ray, bool count_hits);
+  /// Appends all triangles on the ray, ordered by t, object and triangle.
+  void cast_all(std::span<const QueriedObject> objects, const Ray& ray, std::uint32_t query,
+                std::vector<ListedRayHit>& found);
   /// Whether the point of the last `closest` is inside the object of its result.
   bool is_inside_nearest(std::span<const QueriedObject> objects, const Vec3d& point) {
     return inside(last_nearest_->object, objects[last_nearest_->object], point) == Containment::inside;
@@ -72,12 +82,16 @@ class ObjectQueries {
   template <class Visit>
   void visit_overlapping(std::uint32_t index, const QueriedObject& object, const Aabb& box,
                          const Visit& visit);
+  template <class Visit>
+  void visit_triangles_on_ray(std::span<const QueriedObject> objects, const Ray& ray, const double& limit,
+                              const Visit& visit);
   Containment inside(std::uint32_t index, const QueriedObject& object, const Vec3d& point);
   /// The objects with a bound of at most `limit`, the smallest first.
   template <class BoundOf>
   void order(std::span<const QueriedObject> objects, const BoundOf& bound_of, double limit);
 
   std::optional<NearTriangle> last_nearest_;
+  std::vector<TriangleOnRay> on_ray_;  // of `cast_all`
   std::vector<NearTriangle> candidates_;
   OrderedDescent descent_;
   std::vector<std::uint32_t> nodes_;

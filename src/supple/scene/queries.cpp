@@ -111,6 +111,31 @@ void Scene::Implementation::cast(std::span<const Ray> rays, std::span<std::optio
   });
 }
 
+std::span<const ListedRayHit> Scene::Implementation::cast_all(std::span<const Ray> rays,
+                                                              const QueryFilter& seen) {
+  constexpr std::size_t grain = 64;
+  list_queried_objects(seen, "cast_all");
+  queries_of_workers_.resize(parallel.worker_count());
+  hits_of_workers_.resize(parallel.worker_count());
+  hits_of_rays_.resize(rays.size());
+  for (std::vector<ListedRayHit>& found : hits_of_workers_) found.clear();
+  parallel.for_ranges(rays.size(), grain, [&](std::size_t begin, std::size_t end, std::uint32_t worker) {
+    queries_of_workers_[worker].start();
+    std::vector<ListedRayHit>& found = hits_of_workers_[worker];
+    for (std::size_t i = begin; i < end; ++i) {
+      const std::size_t first = found.size();
+      queries_of_workers_[worker].cast_all(queried_objects_, rays[i], static_cast<std::uint32_t>(i), found);
+      hits_of_rays_[i] = {worker, first, found.size() - first};
+    }
+  });
+  hits_.clear();
+  for (const auto& [worker, first, count] : hits_of_rays_) {
+    const auto begin = hits_of_workers_[worker].begin() + static_cast<std::ptrdiff_t>(first);
+    hits_.insert(hits_.end(), begin, begin + static_cast<std::ptrdiff_t>(count));
+  }
+  return hits_;
+}
+
 void Scene::Implementation::inside(std::span<const Vec3d> points, std::span<Containment> results,
                                    const QueryFilter& seen) {
   check_counts(points.size(), results.size(), "inside");

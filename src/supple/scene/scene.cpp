@@ -418,6 +418,9 @@ void Scene::cast(std::span<const Ray> rays, std::span<std::optional<RayHit>> res
                  const CastOptions& options) {
   implementation_->cast(rays, results, options);
 }
+std::span<const ListedRayHit> Scene::cast_all(std::span<const Ray> rays, const QueryFilter& filter) {
+  return implementation_->cast_all(rays, filter);
+}
 void Scene::inside(std::span<const Vec3d> points, std::span<Containment> results, const QueryFilter& filter) {
   implementation_->inside(points, results, filter);
 }

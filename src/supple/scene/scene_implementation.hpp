@@ -33,7 +33,7 @@ struct Question {
   ImpactSearchOptions impact;
   ProximityListing proximity_listing = ProximityListing::features;
   bool colliding_vertices = false;
-  /// Of continuous contacts: the share of an object's way by which its volume grows.
+  /// The share of an object's way by which its volume grows in a search for continuous contacts.
   double reach_of_way = 0;
 
   bool has_intersections() const { return contains(contacts, ContactKinds::intersection); }
@@ -77,6 +77,7 @@ class Scene::Implementation {
   void closest(std::span<const Vec3d> points, std::span<std::optional<ClosestPoint>> results,
                const ClosestOptions& query);
   void cast(std::span<const Ray> rays, std::span<std::optional<RayHit>> results, const CastOptions& query);
+  std::span<const ListedRayHit> cast_all(std::span<const Ray> rays, const QueryFilter& seen);
   void inside(std::span<const Vec3d> points, std::span<Containment> results, const QueryFilter& seen);
   /// For boxes and spheres.
   template <class Region>
@@ -224,6 +225,14 @@ class Scene::Implementation {
   std::vector<ObjectQueries> queries_of_workers_;
   std::vector<std::vector<Overlap>> overlaps_of_workers_;
   std::vector<Overlap> overlaps_;
+  /// The hits of one ray in the list of a worker.
+  struct HitsOfRay {
+    std::uint32_t worker = 0;
+    std::size_t first = 0, count = 0;
+  };
+  std::vector<HitsOfRay> hits_of_rays_;
+  std::vector<std::vector<ListedRayHit>> hits_of_workers_;
+  std::vector<ListedRayHit> hits_;
   std::vector<NearestPairSearch> pair_searches_;  // by worker
   /// Triangles with the nearest features of pairs of objects, the user's numbers.
   std::map<ObjectPair, TrianglePair> nearest_triangles_;

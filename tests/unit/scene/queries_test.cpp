@@ -155,6 +155,30 @@ void expect_hit(const std::vector<PlacedTriangle>& triangles, const Ray& ray,
   EXPECT_EQ(found->hits, counts ? hits : 1);
 }
 
+void expect_all_hits(const std::vector<PlacedTriangle>& triangles, const std::vector<Ray>& rays,
+                     std::span<const ListedRayHit> found) {
+  using Hit = std::tuple<std::uint32_t, Rational, ObjectId, std::uint32_t>;
+  std::vector<Hit> truth;
+  for (std::uint32_t i = 0; i < rays.size(); ++i) {
+    for (const PlacedTriangle& triangle : triangles) {
+      if (rays[i].direction == Vec3d{}) continue;
+      if (const auto t = first_parameter(rays[i], triangle.corners))
+        truth.emplace_back(i, *t, triangle.object, triangle.id);
+    }
+  }
+  std::sort(truth.begin(), truth.end());
+  ASSERT_EQ(found.size(), truth.size());
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    const auto& [query, t, object, id] = truth[i];
+    EXPECT_EQ(std::tie(found[i].query, found[i].hit.object, found[i].hit.triangle),
+              std::tie(query, object, id));
+    EXPECT_TRUE(is_accurate(found[i].hit.t, t * t)) << found[i].hit.t;
+    EXPECT_EQ(found[i].hit.hits, std::count_if(truth.begin(), truth.end(), [&](const Hit& other) {
+                return std::get<0>(other) == query;
+              }));
+  }
+}
+
 class Queries : public testing::TestWithParam<Family> {};
 
 /// Points and rays from and through corners, centres of edges and places nearby: many distances tie, many
@@ -204,6 +228,7 @@ TEST_P(Queries, EqualBruteForceByRationals) {
       }
     }
   }
+  expect_all_hits(triangles, rays, scene.cast_all(rays));
 }
 
 INSTANTIATE_TEST_SUITE_P(Families, Queries, testing::ValuesIn(hard_families()),
@@ -230,6 +255,31 @@ Containment in_tetrahedron(const std::array<Vec3d, 4>& c, const Vec3d& p) {
     if (distance_by_algebra({&p, 1}, corners).squared == 0) return Containment::on;
   }
   return Containment::outside;
+}
+
+TEST(QueriesOfRays, ListTheHitsOfManyRaysForAnyNumberOfThreads) {
+  RandomNumbers random(6);
+  std::vector<Ray> rays;
+  for (int i = 0; i < 500; ++i) rays.push_back({random.vector(1), random.vector(1)});
+  std::vector<ListedRayHit> expected;
+  for (const std::uint32_t threads : {1u, 4u}) {
+    Scene scene({.threads = threads});
+    for (const std::uint64_t seed : {1u, 2u}) scene.add(random_soup(200, 1, 0.4, seed));
+    const auto first = hits_of(scene, rays, {.count_hits = true});
+    const std::span<const ListedRayHit> hits = scene.cast_all(rays);
+    std::size_t next = 0;
+    for (std::uint32_t i = 0; i < rays.size(); ++i) {
+      if (!first[i]) continue;
+      ASSERT_LT(next, hits.size());
+      EXPECT_EQ(hits[next].query, i);
+      EXPECT_EQ(hits[next].hit, *first[i]);
+      next += first[i]->hits;
+    }
+    EXPECT_EQ(next, hits.size());
+    if (threads == 1) expected.assign(hits.begin(), hits.end());
+    EXPECT_EQ(std::vector(hits.begin(), hits.end()), expected);
+    EXPECT_TRUE(scene.cast_all({}).empty());
+  }
 }
 
 TEST(QueriesInside, EqualBarycentricCoordinatesOnALattice) {
