@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "exit_status.hpp"
+#include "supple/result_descriptions.hpp"
 #include "text.hpp"
 
 namespace supple::cli {

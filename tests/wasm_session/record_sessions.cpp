@@ -127,6 +127,7 @@ Script nine() {
       R"({"do": "set", "integrator": "backward_euler", "bounding_volume": "sphere", "objects": 4})");
   script.command(R"({"do": "layers", "colliding_vertices": true, "colliding_nodes": {"level": -2}})");
   script.command(R"({"do": "node_pairs", "id": 6, "a": 0, "b": 1})");
+  script.command(R"({"do": "measure", "id": 7, "a": 0, "b": 1})");
   script.steps(8, 20);
   return script;
 }

@@ -1,5 +1,7 @@
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
+#include <optional>
 #include <string>
 
 #include "answers.hpp"
@@ -138,6 +140,26 @@ void answer_explain(const SceneView& show, const Source& source, const Center& c
   json.end_array();
   json.member("axis", pair.why.axis);
   json.member("distance", pair.why.distance);
+}
+
+void answer_measure(const SceneView& show, const Source& source, const Center& center, std::uint32_t a,
+                    std::uint32_t b, JsonText& json) {
+  std::optional<ProximityPair> found;
+  if (a != b) {
+    Scene both;
+    const ObjectId id_a = both.add(source.positions(a), show.objects[a].mesh.triangles);
+    const ObjectId id_b = both.add(source.positions(b), show.objects[b].mesh.triangles);
+    found = both.distance(id_a, id_b);
+  }
+  json.key("distance");
+  if (!found) json.null();
+  if (found) json.value(found->distance);
+  json.key("points");
+  if (!found) return json.null();
+  json.begin_array();
+  json.value(found->point_a - center.at);
+  json.value(found->point_b - center.at);
+  json.end_array();
 }
 
 }  // namespace supple::viewer

@@ -79,6 +79,7 @@ class Session::Implementation {
   void drag(Arguments& arguments);
   void release(Arguments& arguments);
   void explain(Arguments& arguments);
+  void measure(Arguments& arguments);
   void read(Arguments& arguments);
   void node_pairs(Arguments& arguments);
 
@@ -115,14 +116,23 @@ class Session::Implementation {
 };
 
 const Session::Implementation::Command Session::Implementation::commands_[] = {
-    {"credit", &Implementation::credit},   {"play", &Implementation::play},
-    {"pause", &Implementation::pause},     {"step", &Implementation::step},
-    {"speed", &Implementation::speed},     {"loop", &Implementation::loop},
-    {"seek", &Implementation::seek},       {"layers", &Implementation::layers},
-    {"reset", &Implementation::reset},     {"set", &Implementation::set},
-    {"grab", &Implementation::grab},       {"drag", &Implementation::drag},
-    {"release", &Implementation::release}, {"explain", &Implementation::explain, true},
-    {"read", &Implementation::read, true}, {"node_pairs", &Implementation::node_pairs, true},
+    {"credit", &Implementation::credit},
+    {"play", &Implementation::play},
+    {"pause", &Implementation::pause},
+    {"step", &Implementation::step},
+    {"speed", &Implementation::speed},
+    {"loop", &Implementation::loop},
+    {"seek", &Implementation::seek},
+    {"layers", &Implementation::layers},
+    {"reset", &Implementation::reset},
+    {"set", &Implementation::set},
+    {"grab", &Implementation::grab},
+    {"drag", &Implementation::drag},
+    {"release", &Implementation::release},
+    {"explain", &Implementation::explain, true},
+    {"measure", &Implementation::measure, true},
+    {"read", &Implementation::read, true},
+    {"node_pairs", &Implementation::node_pairs, true},
 };
 
 void Session::Implementation::greet() {
@@ -424,6 +434,12 @@ void Session::Implementation::explain(Arguments& arguments) {
              b = arguments.required("b", arguments.pair("b"));
   if (!has_triangle(a, arguments) || !has_triangle(b, arguments) || !arguments.check()) return;
   answer_explain(stage_->show(), stage_->source(), stage_->center(), a, b, json_);
+}
+
+void Session::Implementation::measure(Arguments& arguments) {
+  const auto a = id_of("a", arguments), b = id_of("b", arguments);
+  if (!has_object(a, arguments) || !has_object(b, arguments) || !arguments.check()) return;
+  answer_measure(stage_->show(), stage_->source(), stage_->center(), a, b, json_);
 }
 
 void Session::Implementation::read(Arguments& arguments) {

@@ -97,6 +97,28 @@ TEST(ViewerGrab, ABentObjectIsExplainedWhereItIs) {
     EXPECT_EQ(page.ask({{"do", "explain"}, {"a", {c[0], c[1]}}, {"b", {c[2], c[3]}}})["stage"], "contact");
 }
 
+TEST(ViewerMeasure, FindsTheNearestPointsOfTwoObjectsWhereTheyAre) {
+  const SceneView show = apart();
+  TestPage page(show);
+  const ViewerMessage message = page.scene();
+  Scene scene;
+  for (const ViewedObject& object : show.objects) scene.add(object.mesh);
+  const auto expected = scene.distance({0, 0}, {1, 0});
+  const Json answer = page.ask({{"do", "measure"}, {"a", 1}, {"b", 0}});
+  EXPECT_EQ(answer["distance"], expected->distance);
+  const auto point = [&](int i) {
+    return Vec3d{answer["points"][i][0], answer["points"][i][1], answer["points"][i][2]};
+  };
+  const Vec3d way = point(1) - point(0);
+  EXPECT_NEAR(std::hypot(way.x, way.y, way.z), expected->distance, 1e-12);
+  EXPECT_TRUE(page.ask({{"do", "measure"}, {"a", 1}, {"b", 1}})["distance"].is_null());
+  page.ask({{"do", "grab"}, {"object", 0}, {"vertex", foremost(show.objects[0].mesh)}});
+  page.ask({{"do", "drag"}, {"to", inside_right(message)}});
+  EXPECT_EQ(page.ask({{"do", "measure"}, {"a", 0}, {"b", 1}})["distance"], 0) << "they touch";
+  EXPECT_NE(page.failure(R"({"do": "measure", "id": 1, "a": 0, "b": 9})").find("no object 9"),
+            std::string::npos);
+}
+
 TEST(ViewerGrab, ARigidObjectFollowsAsAWhole) {
   const SceneView show = apart(RigidMotion{.velocity = {-0.5, 0, 0}});
   TestPage page(show);

@@ -45,6 +45,11 @@ export interface Selection {
   vertex: number | null;
 }
 
+export interface Measurement {
+  distance: number;
+  points: [number[], number[]];
+}
+
 export interface Explanation {
   stage: string;
   text: string;
@@ -55,6 +60,8 @@ export interface Explanation {
   levels: number[] | null;
   axis: number[] | null;
   distance: number | null;
+  /** The ruler: the nearest points of the two objects; null for one object. */
+  nearest: Measurement | null;
 }
 
 export interface Event {

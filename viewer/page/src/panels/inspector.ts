@@ -2,7 +2,7 @@
 import type { Client } from "../client";
 import { OKABE_ITO } from "../colours";
 import { findContact, hasImpacts, kindAt, pointsAt, sidesOf } from "../contacts";
-import type { Explanation, Model } from "../model";
+import type { Explanation, Measurement, Model } from "../model";
 import { h, readable } from "./dom";
 
 /** Interval between updates of the values while things move. */
@@ -105,8 +105,11 @@ export class Inspector {
       return;
     }
     try {
-      const answer = await this.client.ask({ do: "explain", a: [a.object, a.triangle], b: [b.object, b.triangle] });
-      this.model.setExplained(pair, answer as unknown as Explanation);
+      const [why, nearest] = await Promise.all([
+        this.client.ask({ do: "explain", a: [a.object, a.triangle], b: [b.object, b.triangle] }),
+        this.client.ask({ do: "measure", a: a.object, b: b.object }),
+      ]) as unknown as [Omit<Explanation, "nearest">, Measurement | { distance: null }];
+      this.model.setExplained(pair, { ...why, nearest: nearest.distance === null ? null : nearest });
     } catch (error) {
       this.complain((error as Error).message);
     }
@@ -127,6 +130,7 @@ export class Inspector {
     const rows: Row[] = [];
     if (explanation.distance) rows.push(["Apart by", readable(explanation.distance)]);
     if (explanation.axis && explanation.distance) rows.push(["Along", show(explanation.axis)]);
+    if (explanation.nearest) rows.push(["Objects apart by", readable(explanation.nearest.distance)]);
     this.verdict.replaceChildren(
       h("h4", {}, STAGES[explanation.stage] ?? explanation.stage), h("p", {}, explanation.text), table(rows),
     );

@@ -32,6 +32,7 @@ export class SceneView {
   private readonly outlines = [OKABE_ITO.orange, OKABE_ITO.sky].map((colour) => new Lines({ colour, size: 2.5, depthTest: false, order: 7 }));
   private readonly picked = [OKABE_ITO.orange, OKABE_ITO.sky].map((colour) => new Faces({ colour, opacity: 0.95, order: 4 }));
   private readonly gap = new Lines({ colour: "#ffffff", size: 2, depthTest: false, order: 8 });
+  private readonly ruler = new Lines({ colour: OKABE_ITO.yellow, size: 2.5, depthTest: false, order: 8 });
   private readonly pull = new Lines({ colour: OKABE_ITO.vermillion, size: 2.5, depthTest: false, order: 8 });
   private dirty = true;
   private filled = false;
@@ -46,7 +47,7 @@ export class SceneView {
     this.rig = new CameraRig(canvas, () => this.invalidate());
     this.layers = new Layers(model);
     this.scene.add(this.surfaces.group, this.layers.group);
-    for (const extra of [this.selected, this.vertex, this.contactDot, ...this.outlines, ...this.picked, this.gap, this.pull])
+    for (const extra of [this.selected, this.vertex, this.contactDot, ...this.outlines, ...this.picked, this.gap, this.ruler, this.pull])
       this.scene.add(extra.shape);
     canvas.addEventListener("webglcontextlost", (event) => {
       event.preventDefault();
@@ -234,6 +235,11 @@ export class SceneView {
       else if (box) lines.fill(12, (into) => writeBox(into, box));
       else if (ball) lines.fill(144, (into) => writeBall(into, ball));
       else lines.fill(0, () => 0);
+    });
+    const nearest = explanation?.nearest;
+    this.ruler.fill(nearest ? 1 : 0, (into) => {
+      into.set(nearest!.points.flat());
+      return 1;
     });
     const axis = explanation?.axis;
     const span = axis && explanation.distance ? this.gapSpan(axis, explanation.distance) : null;
