@@ -48,13 +48,18 @@ struct ObjectPairView {
   float separation = 0;
   /// Null, or the time in the step until which contacts are of interest. It may decrease during the search.
   const std::atomic<float>* latest = nullptr;
+  float separation_of_whole_step = 0;  ///< added to the separation in the share of the step that is searched
   ElementKinds kinds = ElementKinds::all;  ///< for moving objects
 
   /// Bounds at a time before the end cost more than those at the end, and for a late time they save little.
   PartOfStep part_of_step() const {
     constexpr float least = 0x1p-20f, most = 0.125f;
     const float until = latest != nullptr ? latest->load(std::memory_order_relaxed) : 1;
-    return {separation, until < most ? std::max(until, least) : 1, placement.offset, kinds};
+    const float part = until < most ? std::max(until, least) : 1;
+    const float grown = separation_of_whole_step > 0
+                            ? (separation + part * separation_of_whole_step) * (1 + 0x1p-20f)
+                            : separation;
+    return {grown, part, placement.offset, kinds};
   }
   bool is_moving() const { return a.moving.start != nullptr; }
 };

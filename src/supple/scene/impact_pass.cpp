@@ -109,7 +109,7 @@ bool ImpactPass::run(std::span<const ContactJob> jobs, std::span<const MovingObj
   limit_.start(lists_first ? ContactLimit::unlimited : max_contacts, jobs.size());
   for (std::uint32_t job = 0; limit_.is_set() && job < jobs.size(); ++job)
     limit_.add(job, outcomes_.ranges(job)[0].count);
-  search(Search::all, outcomes_.open_jobs(), parallel);
+  search(Search::all, outcomes_.open_jobs(), end_of_search(options_.impact), parallel);
   add_stats(workers_, timer.lap(), stats);
   if (stop.stop_requested()) return false;
   gather_contacts(parallel);
@@ -133,13 +133,8 @@ std::optional<ContinuousContact> ImpactPass::find_earliest(std::span<const Conta
   limit_.start(ContactLimit::unlimited, 0);
   all_jobs_.resize(jobs.size());
   std::iota(all_jobs_.begin(), all_jobs_.end(), 0u);
-  search(Search::earliest, all_jobs_, parallel);
-  const Earliest* best = nullptr;
-  for (const Worker& worker : workers_) {
-    if (!worker.earliest) continue;
-    const Earliest& found = *worker.earliest;
-    if (best == nullptr || is_earlier(found.contact, found.job, best->contact, best->job)) best = &found;
-  }
+  search(Search::earliest, all_jobs_, end_of_search(options_.impact), parallel);
+  const Earliest* const best = earliest_of_workers();
   return best != nullptr ? std::optional(best->contact) : std::nullopt;
 }
 
@@ -154,13 +149,27 @@ SafeStep ImpactPass::find_safe_step(std::span<const ContactJob> jobs, std::span<
   for (std::uint32_t job = 0; job < jobs.size(); ++job) {
     if (largest_approach(job) > 0) all_jobs_.push_back(job);
   }
-  search(Search::safe_step, all_jobs_, parallel);
-  SafeStep safe;
+  // What touches bounds the step, and a short step needs little more than the separation.
+  search(Search::touching, all_jobs_, 1, parallel);
+  const Earliest* const touching = earliest_of_workers();
+  SafeStep safe{touching != nullptr ? touching->contact.toi : 1};
+  if (safe.time == 0) return safe;
+  search(Search::safe_step, all_jobs_, std::min(1.0f, round_up(safe.time + toi_tolerance)), parallel);
   for (const Worker& worker : workers_) {
     safe.time = std::min(safe.time, worker.step.time);
     safe.is_near_rounding = safe.is_near_rounding || worker.step.is_near_rounding;
   }
   return safe;
+}
+
+const ImpactPass::Earliest* ImpactPass::earliest_of_workers() const {
+  const Earliest* best = nullptr;
+  for (const Worker& worker : workers_) {
+    if (!worker.earliest) continue;
+    const Earliest& found = *worker.earliest;
+    if (best == nullptr || is_earlier(found.contact, found.job, best->contact, best->job)) best = &found;
+  }
+  return best;
 }
 
 void ImpactPass::start(std::span<const ContactJob> jobs, std::span<const MovingObject> objects,
@@ -171,9 +180,10 @@ void ImpactPass::start(std::span<const ContactJob> jobs, std::span<const MovingO
   stop_ = stop;
 }
 
-void ImpactPass::search(Search search, std::span<const std::uint32_t> jobs, const Parallel& parallel) {
+void ImpactPass::search(Search search, std::span<const std::uint32_t> jobs, float until,
+                        const Parallel& parallel) {
   search_ = search;
-  latest_ = end_of_search(options_.impact);
+  latest_ = until;
   workers_.resize(parallel.worker_count());
   for (Worker& worker : workers_) {
     worker.traversal.set_stop(stop_);
@@ -190,6 +200,7 @@ void ImpactPass::search(Search search, std::span<const std::uint32_t> jobs, cons
 
 ImpactOptions ImpactPass::impact_of_job(std::uint32_t job) const {
   ImpactOptions impact = options_.impact;
+  if (search_ == Search::touching) return {.exact = impact.exact};
   impact.min_separation = separation_of(impact.min_separation, objects_[jobs_[job].a].min_separation,
                                         objects_[jobs_[job].b].min_separation);
   return impact;
@@ -203,21 +214,21 @@ double ImpactPass::largest_approach(std::uint32_t job) const {
   return (std::hypot(way.x, way.y, way.z) + a.farthest_way + b.farthest_way) * (1 + 0x1p-40);
 }
 
-/// A safe step: elements that come nearer by `approach` are no longer at the separation plus a share `keep`
-/// of their distance beyond it only if that distance was at most approach / (1 - keep).
-double ImpactPass::reach_of_job(std::uint32_t job) const {
-  const double separation = impact_of_job(job).min_separation;
-  if (search_ != Search::safe_step) return separation;
-  const double kept = step_.keep / (1 - step_.keep) * largest_approach(job) * (1 + 0x1p-40);
-  return std::min(separation + kept, std::numeric_limits<double>::max());
+/// Elements that come nearer by `approach` are no longer at the separation plus a share `keep` of their
+/// distance beyond it only if that distance was at most approach / (1 - keep).
+double ImpactPass::kept_distance(std::uint32_t job) const {
+  if (search_ != Search::safe_step) return 0;
+  return step_.keep / (1 - step_.keep) * largest_approach(job) * (1 + 0x1p-40);
 }
 
 ObjectPairView ImpactPass::view_of_job(std::uint32_t job) const {
   const MovingObject& a = objects_[jobs_[job].a];
   const MovingObject& b = objects_[jobs_[job].b];
-  const double reach = reach_of_job(job);
-  ObjectPairView pair = &a == &b ? moving_self_pair_of(a.view, reach) : moving_pair_of(a.view, b.view, reach);
-  if (reach > 0) pair.a.culled = nullptr;
+  const double separation = impact_of_job(job).min_separation, kept = kept_distance(job);
+  ObjectPairView pair =
+      &a == &b ? moving_self_pair_of(a.view, separation) : moving_pair_of(a.view, b.view, separation);
+  if (separation > 0 || kept > 0) pair.a.culled = nullptr;
+  pair.separation_of_whole_step = round_up(std::min(kept, double{std::numeric_limits<float>::max()}));
   pair.kinds = options_.kinds;
   if (latest_ < 1 || search_ != Search::all) pair.latest = &latest_;
   return pair;
@@ -249,14 +260,15 @@ void ImpactPass::test_candidates(std::uint32_t job, ElementPairKind kind,
   const MovingObject& b = objects_[jobs_[job].b];
   const auto objects = objects_of(kind, a, b);
   const bool are_edges = kind == ElementPairKind::edge_edge, excludes = limit_.excludes_some();
-  const float reach = round_up(reach_of_job(job));
+  const double separation = impact_of_job(job).min_separation, kept = kept_distance(job);
   std::array<std::array<std::uint32_t, 4>, block_size> vertices;
   for (; !candidates.empty() && !stop_.stop_requested();
        candidates = candidates.subspan(std::min(block_size, candidates.size()))) {
     const auto part = candidates.first(std::min(block_size, candidates.size()));
     for (std::size_t k = 0; k < part.size(); ++k) vertices[k] = vertices_of(kind, part[k], a, b);
-    fill(objects, std::span(vertices).first(part.size()), are_edges, latest_.load(std::memory_order_relaxed),
-         worker.block);
+    const float latest = latest_.load(std::memory_order_relaxed);
+    fill(objects, std::span(vertices).first(part.size()), are_edges, latest, worker.block);
+    const float reach = round_up(separation + kept * latest);
     std::uint64_t left = may_touch(worker.block, part.size(), are_edges, reach);
     std::size_t count = 0;
     for (; left != 0; left &= left - 1) {

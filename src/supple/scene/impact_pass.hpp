@@ -107,15 +107,17 @@ class ImpactPass {
     std::vector<Key> keys, sorted_keys;
     std::vector<std::uint32_t> first_of_bucket;
   };
-  enum class Search : std::uint8_t { all, earliest, safe_step };
+  /// `touching`: the earliest contact without any separation.
+  enum class Search : std::uint8_t { all, earliest, touching, safe_step };
 
-  /// Plans and runs the tasks of `jobs`, which are indices into `jobs_`.
-  void search(Search search, std::span<const std::uint32_t> jobs, const Parallel& parallel);
+  /// Plans and runs the tasks of `jobs`, which are indices into `jobs_`, until a time in the step.
+  void search(Search search, std::span<const std::uint32_t> jobs, float until, const Parallel& parallel);
+  const Earliest* earliest_of_workers() const;
   void start(std::span<const ContactJob> jobs, std::span<const MovingObject> objects,
              const ImpactSearchOptions& options, const StopSignal& stop);
   ImpactOptions impact_of_job(std::uint32_t job) const;
-  /// The distance within which the pass searches.
-  double reach_of_job(std::uint32_t job) const;
+  /// What a safe step adds to the separation over the whole step.
+  double kept_distance(std::uint32_t job) const;
   double largest_approach(std::uint32_t job) const;
   ObjectPairView view_of_job(std::uint32_t job) const;
   void run_task(std::size_t task, std::uint32_t worker);
