@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 #include <memory>
 
 #include "core/float_rounding.hpp"
@@ -11,8 +12,54 @@
 namespace supple {
 namespace {
 
+/// Whether two boxes at both ends of a part of a step are farther apart than the separation, on the same side
+/// at both ends.
+bool stay_apart(const ObjectPairView& pair, const PartOfStep& part, std::uint32_t node_a, int child_a,
+                std::uint32_t node_b, int child_b) {
+  const Aabb a0 = child_box(pair.a.moving.start[node_a], child_a),
+             a1 = child_box(pair.a.moving.end[node_a], child_a),
+             b0 = child_box(pair.b.moving.start[node_b], child_b),
+             b1 = child_box(pair.b.moving.end[node_b], child_b);
+  const auto at_end = [&](float start, float end) {
+    return (1 - double{part.latest}) * start + double{part.latest} * end;
+  };
+  for (int axis = 0; axis < 3; ++axis) {
+    const double offset = part.offset[axis];
+    const double size = std::fabs(double{a0.min[axis]}) + std::fabs(double{a0.max[axis]}) +
+                        std::fabs(double{b0.min[axis]}) + std::fabs(double{b0.max[axis]}) +
+                        std::fabs(double{a1.min[axis]}) + std::fabs(double{a1.max[axis]}) +
+                        std::fabs(double{b1.min[axis]}) + std::fabs(double{b1.max[axis]}) + std::fabs(offset);
+    const double least = part.separation + 0x1p-50 * size;
+    const double above_start = b0.min[axis] + offset - a0.max[axis],
+                 above_end = at_end(b0.min[axis], b1.min[axis]) + offset - at_end(a0.max[axis], a1.max[axis]);
+    const double below_start = a0.min[axis] - b0.max[axis] - offset,
+                 below_end = at_end(a0.min[axis], a1.min[axis]) - at_end(b0.max[axis], b1.max[axis]) - offset;
+    if ((above_start > least && above_end > least) || (below_start > least && below_end > least)) return true;
+  }
+  return false;
+}
+
+/// As `moving_overlap_masks`, with a separation of each pair of children.
+std::uint64_t masks_of_near_children(const ObjectPairView& pair, const NodePair& nodes) {
+  const std::uint32_t children_a = nodes.children_a & pair.a.nodes[nodes.a].child_mask(),
+                      children_b = nodes.children_b & pair.b.nodes[nodes.b].child_mask();
+  std::uint64_t mask = 0;
+  for (int i = 0; i < node_width; ++i) {
+    if ((children_a >> i & 1) == 0 || child_box(pair.a.moving.start[nodes.a], i).empty()) continue;
+    for (int j = 0; j < node_width; ++j) {
+      if ((children_b >> j & 1) == 0 || child_box(pair.b.moving.start[nodes.b], j).empty()) continue;
+      if (!stay_apart(pair, pair.part_of_step(nodes.a, i, nodes.b, j), nodes.a, i, nodes.b, j))
+        mask |= std::uint64_t{1} << (node_width * i + j);
+    }
+  }
+  return mask;
+}
+
 void test_children(const ObjectPairView& pair, std::span<const NodePair> node_pairs, std::uint64_t* masks) {
-  if (pair.is_moving()) {
+  if (pair.is_moving() && pair.kept_share > 0) {
+    for (std::size_t k = 0; k < node_pairs.size(); ++k)
+      masks[k] = masks_of_near_children(pair, node_pairs[k]);
+  } else if (pair.is_moving()) {
     moving_overlap_masks(node_pairs, pair.a.moving, pair.b.moving, pair.part_of_step(), masks);
   } else if (pair.a.spheres != nullptr) {
     overlap_masks(node_pairs, pair.a.spheres, pair.b.spheres, pair.placement, masks);
@@ -109,6 +156,27 @@ OctreeView moving_view_of(const ObjectOctree& octree, const SurfaceElements& ele
   view.translation = translation;
   view.moving = boxes.view(elements);
   return view;
+}
+
+PartOfStep ObjectPairView::part_of_step(std::uint32_t node_a, int child_a, std::uint32_t node_b,
+                                        int child_b) const {
+  PartOfStep part = part_of_step();
+  if (kept_share == 0) return part;
+  const auto way_of = [](const OctreeView& view, std::uint32_t node, int child) {
+    const Aabb way = view.ways != nullptr ? child_box(view.ways[node], child) : Aabb{{0, 0, 0}, {0, 0, 0}};
+    return way.empty() ? Aabb{{0, 0, 0}, {0, 0, 0}} : way;
+  };
+  const Aabb way_a = way_of(a, node_a, child_a), way_b = way_of(b, node_b, child_b);
+  double square = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double most = std::max(std::fabs(double{way_a.max[axis]} - way_b.min[axis]),
+                                 std::fabs(double{way_a.min[axis]} - way_b.max[axis]));
+    square += most * most;
+  }
+  part.separation =
+      round_up(std::min((part.separation + kept_share * part.latest * std::sqrt(square)) * (1 + 0x1p-20),
+                        double{std::numeric_limits<float>::max()}));
+  return part;
 }
 
 ObjectPairView pair_of(const OctreeView& a, const OctreeView& b) {

@@ -27,6 +27,8 @@ struct OctreeView {
   LeafVertexArrays leaf_vertices;
   Aabb box;           ///< of all positions
   Vec3d translation;  ///< added to each position
+  /// Boxes of the ways of the vertices in each child, for `ObjectPairView::kept_share`; null at rest.
+  const ChildBoxes* ways = nullptr;
   MovingView moving;  ///< for moving objects, which do not use `arrays` and `leaf_vertices`
   /// Masks of a `SelfCollisionCulling` for these positions, or null. An object against itself then skips
   /// children that cannot touch themselves. This loses candidates, but no contacts.
@@ -48,19 +50,18 @@ struct ObjectPairView {
   float separation = 0;
   /// Null, or the time in the step until which contacts are of interest. It may decrease during the search.
   const std::atomic<float>* latest = nullptr;
-  float separation_of_whole_step = 0;  ///< added to the separation in the share of the step that is searched
+  /// Share of the largest approach of two vertices of two children that is added to their separation.
+  double kept_share = 0;
   ElementKinds kinds = ElementKinds::all;  ///< for moving objects
 
   /// Bounds at a time before the end cost more than those at the end, and for a late time they save little.
   PartOfStep part_of_step() const {
     constexpr float least = 0x1p-20f, most = 0.125f;
     const float until = latest != nullptr ? latest->load(std::memory_order_relaxed) : 1;
-    const float part = until < most ? std::max(until, least) : 1;
-    const float grown = separation_of_whole_step > 0
-                            ? (separation + part * separation_of_whole_step) * (1 + 0x1p-20f)
-                            : separation;
-    return {grown, part, placement.offset, kinds};
+    return {separation, until < most ? std::max(until, least) : 1, placement.offset, kinds};
   }
+  /// The same for two children, with the separation that `kept_share` asks for.
+  PartOfStep part_of_step(std::uint32_t node_a, int child_a, std::uint32_t node_b, int child_b) const;
   bool is_moving() const { return a.moving.start != nullptr; }
 };
 ObjectPairView pair_of(const OctreeView& a, const OctreeView& b);
@@ -140,10 +141,16 @@ class Traversal {
         &count_and_sink);
     if (element_boxes_ == nullptr) element_boxes_ = std::make_unique<MovingBoxCache>();
     element_boxes_->clear();
+    const auto find_pairs = [&](std::span<const LeafPair> leaves, const PartOfStep& part) {
+      stats.volumes_tested += find_element_box_pairs(leaves, pair.a.moving, pair.b.moving, part,
+                                                     pair.same_object, *element_boxes_, element_pairs_);
+    };
     descend(pair, root, stats, [&](std::span<const LeafPair> leaves) {
-      stats.volumes_tested +=
-          find_element_box_pairs(leaves, pair.a.moving, pair.b.moving, pair.part_of_step(), pair.same_object,
-                                 *element_boxes_, element_pairs_);
+      if (pair.kept_share == 0) return find_pairs(leaves, pair.part_of_step());
+      for (const LeafPair& leaf_pair : leaves) {
+        element_boxes_->clear();  // they have the separation of the pair before
+        find_pairs({&leaf_pair, 1}, part_of_step(pair, leaf_pair));
+      }
     });
     element_pairs_.flush();
   }
@@ -164,6 +171,10 @@ class Traversal {
   static constexpr std::size_t leaf_batch = 256;
   static constexpr std::size_t candidate_batch = 1024;
 
+  static PartOfStep part_of_step(const ObjectPairView& pair, const LeafPair& leaves) {
+    return pair.part_of_step(leaves.leaf_a / node_width, static_cast<int>(leaves.leaf_a % node_width),
+                             leaves.leaf_b / node_width, static_cast<int>(leaves.leaf_b % node_width));
+  }
   void expand_batch(const ObjectPairView& pair, TraversalStats& stats);
 
   /// Calls `on_leaves` with batches of the leaf pairs below `root`.

@@ -7,6 +7,7 @@
 #include "core/float_rounding.hpp"
 #include "core/timer.hpp"
 #include "geometry/aabb.hpp"
+#include "octree/way_boxes.hpp"
 #include "scene/scene_implementation.hpp"
 #include "supple/option_descriptions.hpp"
 
@@ -367,6 +368,7 @@ double Scene::Implementation::collision_free_step(const StepOptions& step) {
   Question question{ContactKinds::continuous, impact_options()};
   question.reach_of_way = step.keep / (1 - step.keep);
   search_on_the_way(question);
+  ways_of_nodes_.resize(slots_.size());
   for (std::uint32_t index = 0; index < slots_.size(); ++index) {
     if (slots_[index].object == nullptr) continue;
     const SceneObject::Ways ways = slots_[index].object->ways(parallel);
@@ -374,6 +376,11 @@ double Scene::Implementation::collision_free_step(const StepOptions& step) {
     listed.mean_way = ways.mean;
     listed.farthest_way = ways.farthest_from_mean;
     listed.largest_coordinate = ways.largest_coordinate;
+    const SceneObject& object = *slots_[index].object;
+    if (!object.placement().has_motion()) continue;
+    set_way_boxes(object.octree(), object.moving().elements(), *listed.start, *listed.end,
+                  ways_of_nodes_[index]);
+    listed.view.ways = ways_of_nodes_[index].data();
   }
   const SafeStep safe =
       impact_pass_.find_safe_step(impact_jobs_.jobs, element_objects_, impact_options(), step, parallel);

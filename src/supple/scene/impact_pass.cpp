@@ -224,11 +224,11 @@ double ImpactPass::kept_distance(std::uint32_t job) const {
 ObjectPairView ImpactPass::view_of_job(std::uint32_t job) const {
   const MovingObject& a = objects_[jobs_[job].a];
   const MovingObject& b = objects_[jobs_[job].b];
-  const double separation = impact_of_job(job).min_separation, kept = kept_distance(job);
+  const double separation = impact_of_job(job).min_separation;
   ObjectPairView pair =
       &a == &b ? moving_self_pair_of(a.view, separation) : moving_pair_of(a.view, b.view, separation);
-  if (separation > 0 || kept > 0) pair.a.culled = nullptr;
-  pair.separation_of_whole_step = round_up(std::min(kept, double{std::numeric_limits<float>::max()}));
+  if (search_ == Search::safe_step) pair.kept_share = step_.keep / (1 - step_.keep);
+  if (separation > 0 || pair.kept_share > 0) pair.a.culled = nullptr;
   pair.kinds = options_.kinds;
   if (latest_ < 1 || search_ != Search::all) pair.latest = &latest_;
   return pair;

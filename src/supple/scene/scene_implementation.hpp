@@ -220,6 +220,7 @@ class Scene::Implementation {
   std::vector<ObjectPair> touching_pairs_, leaf_pairs_, near_pairs_, deep_pairs_;
   std::vector<ContactObject> contact_objects_;
   std::vector<MovingObject> element_objects_;
+  std::vector<std::vector<ChildBoxes>> ways_of_nodes_;  // by slot, of safe steps
   std::vector<QueriedObject> queried_objects_;
   std::vector<PenetratedObject> penetrated_objects_;
   std::vector<ObjectQueries> queries_of_workers_;
