@@ -44,6 +44,10 @@ struct Description<MassSpringOptions> {
     number(
         "rest_length", &Options::rest_length, "", ValueRange::above(0),
         "Length of each spring at rest (the paper's spring length), as a factor of its length in the mesh");
+    visitor(Field<Options, bool>{.name = "connect_pieces",
+                                 .member = &Options::connect_pieces,
+                                 .doc = "Springs also connect the pieces of the mesh, so that they do not "
+                                        "drift apart"});
     number("damping", &Options::damping, "N s/m", ValueRange::from(0), "Damping along each spring");
     number("air_friction", &Options::air_friction, "N s/m", ValueRange::from(0),
            "Friction of each vertex against the air");

@@ -41,8 +41,8 @@ inline auto members_of(BroadPhaseOptions& o) {
   return std::tie(a, b, c);
 }
 inline auto members_of(MassSpringOptions& o) {
-  auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, p, q] = o;
-  return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m, n, p, q);
+  auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, p, q, r] = o;
+  return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m, n, p, q, r);
 }
 inline auto members_of(MassSpringMotion::Handle& o) {
   auto& [a, b, c] = o;
