@@ -203,8 +203,6 @@ struct Description<ContactResponse> {
   template <class Visitor>
   static constexpr void visit(Visitor&& visitor) {
     using Options = ContactResponse;
-    visitor(Field<Options, bool>{
-        .name = "enabled", .member = &Options::enabled, .doc = "Contacts push masses and springs apart"});
     visitor(Field<Options, double>{.name = "thickness",
                                    .member = &Options::thickness,
                                    .doc = "Distance that the response keeps between elements",
@@ -249,7 +247,7 @@ struct Description<SimulationOptions> {
         Field<Options, std::uint64_t>{.name = "seed",
                                       .member = &Options::seed,
                                       .doc = "Seed of the random numbers: velocities, forces and rotations"});
-    visitor(Field<Options, ContactResponse>{
+    visitor(Field<Options, std::optional<ContactResponse>>{
         .name = "response", .member = &Options::response, .doc = "Response to contacts"});
   }
 };

@@ -61,8 +61,8 @@ inline auto members_of(WaveMotion& o) {
   return std::tie(a, b, c, d, e);
 }
 inline auto members_of(ContactResponse& o) {
-  auto& [a, b, c, d, e] = o;
-  return std::tie(a, b, c, d, e);
+  auto& [a, b, c, d] = o;
+  return std::tie(a, b, c, d);
 }
 inline auto members_of(SimulationOptions& o) {
   auto& [a, b, c, d, e] = o;
