@@ -170,10 +170,7 @@ void print_description_tables() {
   option_table<MassSpringMotion>("scene_mass_spring_options");
   option_table<RigidMotion>("scene_rigid_options");
   table("scene_response_options", option_header, [] {
-    for_each_row<ContactResponse>(
-        []<class Value>(const Field<ContactResponse, Value>& field, const Value& value) {
-          if constexpr (!std::is_same_v<Value, bool>) print_option(field, value);
-        });
+    for_each_row<ContactResponse>([](const auto& field, const auto& value) { print_option(field, value); });
   });
   table("protocol_settings", option_header, [] {
     const auto row = [](const auto& field, const auto& value) {

@@ -180,7 +180,9 @@ Copies read_copies(TomlReader& reader) {
 void read_objects(const toml::table& table, const fs::path& path, const std::string& where, Vec3d gravity,
                   Shapes& shapes, Input& input) {
   TomlReader reader(path, table, where);
-  const ObjectOptions options = read_options(reader);
+  ObjectOptions options = read_options(reader);
+  if (input.simulation.response)
+    options.margin = std::max(options.margin, least_margin(*input.simulation.response));
   const Placement placement = read_placement(reader);
   const Copies copies = read_copies(reader);
   SceneMotion motion(reader, path, where, gravity);
@@ -206,11 +208,7 @@ void read_objects(const toml::table& table, const fs::path& path, const std::str
 ContactResponse read_response(const toml::table& table, const fs::path& path) {
   TomlReader reader(path, table, "[scene]: response");
   ContactResponse response;
-  response.enabled = true;
-  // The presence of the table enables the response.
-  for_each_field<ContactResponse>([&]<class Value>(const Field<ContactResponse, Value>& field) {
-    if constexpr (!std::is_same_v<Value, bool>) reader.read(field, response.*field.member);
-  });
+  for_each_field<ContactResponse>([&](const auto& field) { reader.read(field, response.*field.member); });
   reader.finish();
   return response;
 }
@@ -245,7 +243,8 @@ Vec3d read_scene(const toml::table& table, const fs::path& path, SimulationOptio
   if (reader.has("bounds")) reader.read_box("bounds", simulation.border.emplace(), false);
   for_each_field<SimulationOptions>([&](const auto& field) {
     using Value = std::remove_cvref_t<decltype(simulation.*field.member)>;
-    if constexpr (!Described<Value>) reader.read(field, simulation.*field.member);
+    if constexpr (!Described<Value> && !std::is_same_v<Value, std::optional<ContactResponse>>)
+      reader.read(field, simulation.*field.member);
   });
   read_detection(reader, simulation.border, simulation.scene);
   Vec3d gravity;

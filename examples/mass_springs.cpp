@@ -8,7 +8,7 @@
 int main() {
   supple::SimulationOptions options;
   options.time_step = 0.005;
-  options.response = {.enabled = true, .thickness = 0.01, .friction = 0.3};
+  options.response = supple::ContactResponse{.thickness = 0.01, .friction = 0.3};
   supple::Simulation simulation(options);
 
   supple::TriangleMesh ball = supple::make_icosphere(5);

@@ -38,6 +38,11 @@ struct MassSpringOptions {
   /// are at rest at this factor times the length that they have in the mesh. The areas to preserve change by
   /// its square, as the areas of triangles with these sides; the volumes to preserve stay.
   double rest_length = 1;
+  /// Springs as those on edges also connect the pieces of a mesh, for models of several pieces, which would
+  /// drift apart. Each piece is connected to the larger ones: of its vertices, the 16 that are nearest to a
+  /// larger piece each get springs to the three corners of the nearest triangle. No effect on a mesh of one
+  /// piece.
+  bool connect_pieces = false;
   double damping = 0.5;          ///< k_d along each spring, also those across edges, N s/m, ≥ 0
   double air_friction = 0;       ///< k_d of eq. 1, of each vertex against the air around it, N s/m, ≥ 0
   double bending_stiffness = 0;  ///< of a spring across each edge, between the opposite corners, N/m, ≥ 0
@@ -86,9 +91,9 @@ struct AreaError {
 ///
 ///     m a = f_springs + f_areas + f_volumes + f_external + m g - air_friction (v - v_air) (eq. 1)
 ///
-/// Each edge has one spring. With d the vector from one end to the other, s the rest length (`rest_length`
-/// times the length in the mesh, until plastic flow changes it) and |d|˙ the rate of |d|, the spring pulls
-/// that end with
+/// Each edge has one spring, and `connect_pieces` adds springs between pieces. With d the vector from one end
+/// to the other, s the rest length (`rest_length` times the length in the mesh, until plastic flow changes
+/// it) and |d|˙ the rate of |d|, the spring pulls that end with
 ///
 ///     (stiffness (|d| - s) + damping |d|˙) d / |d| (eq. 2)
 ///

@@ -14,6 +14,7 @@
 #include "supple/mesh.hpp"
 #include "supple/motion.hpp"
 #include "supple/options.hpp"
+#include "supple/response.hpp"
 #include "supple/result.hpp"
 #include "supple/scene.hpp"
 #include "supple/types.hpp"
@@ -67,31 +68,6 @@ struct RigidMotion {
 /// again for the same step when the step failed and is repeated. The function must not call the simulation.
 using MotionFunction = std::function<void(double seconds, std::span<Vec3d> positions)>;
 
-/// Simple contact response by impulses (Bridson, Fedkiw and Anderson 2002). A vertex and a face, or two
-/// edges, that would pass through each other in a step or come nearer than `thickness` get impulses along the
-/// normal of the contact, which stop the approach. Elements that are already too near are moved apart by a
-/// tenth of the missing distance in each step. An impulse also moves the surrounding vertices, as far as
-/// springs transmit it in a step, so that it strains the springs by no more energy than it takes from the
-/// motion. The energy grows only when elements that are too near are moved apart, by about a percent at long
-/// steps. `self_collision`, groups and masks apply. Momentum is conserved between bodies of masses and
-/// springs. Fixed vertices and all other objects do not react.
-///
-/// The response does not guarantee that objects stay apart; the scene reports the contacts that remain. It
-/// works when objects do not intersect at first and steps are short, so that nothing moves further than about
-/// an edge in one. `time_step` may be several times the stable step of springs without substeps. Impulses
-/// reach at most 1024 vertices, so springs that transmit them further (h² stiffness / mass above 100 or so)
-/// may gain energy. `thickness` should be well below the length of the shortest edge.
-///
-/// Cost: up to `iterations` continuous detections per step, and memory for a second scene. For each vertex
-/// that touched something, it also takes 16 bytes for each vertex that its impulses move.
-struct ContactResponse {
-  bool enabled = false;
-  double thickness = 1e-3;       ///< m, > 0
-  double restitution = 0;        ///< 0 stops the approach, 1 reverses it
-  double friction = 0;           ///< Coulomb's coefficient, ≥ 0
-  std::uint32_t iterations = 4;  ///< largest number of rounds of detection and impulses per step, ≥ 1
-};
-
 struct SimulationOptions {
   SceneOptions scene{};
   double time_step = 0.01;  ///< s, > 0
@@ -103,7 +79,24 @@ struct SimulationOptions {
   /// place. Fixed vertices are not reflected. A side may be infinite.
   std::optional<Border> border{};
   std::uint64_t seed = 0;  ///< seed of all random numbers
-  ContactResponse response{};
+  /// Contacts push masses and springs apart; nothing: they do not. Fixed vertices and all other objects do
+  /// not react. The margins of the objects are raised to `least_margin`. When the scene finds proximity in
+  /// the listing of features, the response uses this result, otherwise it finds the same itself.
+  ///
+  /// An impulse also moves the surrounding vertices, as far as springs transmit it in a step, so that it
+  /// strains the springs by no more energy than it takes from the motion. The energy grows only when elements
+  /// that are too near are moved apart, by a few percent of the energy of an impact at long steps. Momentum
+  /// is conserved between bodies of masses and springs.
+  ///
+  /// The response does not guarantee that objects stay apart; the scene reports the contacts that remain. It
+  /// works when objects do not intersect at first and steps are short, so that nothing moves further than
+  /// about an edge in one. `time_step` may be several times the stable step of springs without substeps.
+  /// Impulses reach at most 1024 vertices, so springs that transmit them further (h² stiffness / mass above
+  /// 100 or so) may gain energy. `thickness` should be well below the length of the shortest edge.
+  ///
+  /// Cost: usually one continuous detection per step, at most `iterations`, and memory for a second scene.
+  /// For each vertex that touched something, it also takes 16 bytes for each vertex that its impulses move.
+  std::optional<ContactResponse> response{};
 };
 
 /// A step of a body failed: a number was no longer finite, or a vertex moved too far. The message names the

@@ -44,6 +44,10 @@ struct Description<MassSpringOptions> {
     number(
         "rest_length", &Options::rest_length, "", ValueRange::above(0),
         "Length of each spring at rest (the paper's spring length), as a factor of its length in the mesh");
+    visitor(Field<Options, bool>{.name = "connect_pieces",
+                                 .member = &Options::connect_pieces,
+                                 .doc = "Springs also connect the pieces of the mesh, so that they do not "
+                                        "drift apart"});
     number("damping", &Options::damping, "N s/m", ValueRange::from(0), "Damping along each spring");
     number("air_friction", &Options::air_friction, "N s/m", ValueRange::from(0),
            "Friction of each vertex against the air");
@@ -199,8 +203,6 @@ struct Description<ContactResponse> {
   template <class Visitor>
   static constexpr void visit(Visitor&& visitor) {
     using Options = ContactResponse;
-    visitor(Field<Options, bool>{
-        .name = "enabled", .member = &Options::enabled, .doc = "Contacts push masses and springs apart"});
     visitor(Field<Options, double>{.name = "thickness",
                                    .member = &Options::thickness,
                                    .doc = "Distance that the response keeps between elements",
@@ -245,7 +247,7 @@ struct Description<SimulationOptions> {
         Field<Options, std::uint64_t>{.name = "seed",
                                       .member = &Options::seed,
                                       .doc = "Seed of the random numbers: velocities, forces and rotations"});
-    visitor(Field<Options, ContactResponse>{
+    visitor(Field<Options, std::optional<ContactResponse>>{
         .name = "response", .member = &Options::response, .doc = "Response to contacts"});
   }
 };

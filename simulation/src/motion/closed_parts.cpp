@@ -5,31 +5,10 @@
 #include <cmath>
 #include <numeric>
 
+#include "motion/mesh_pieces.hpp"
+
 namespace supple {
 namespace {
-
-bool spans_nothing(const Triangle& t) {
-  return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
-}
-
-/// For each vertex, the lowest vertex id of its connected component.
-std::vector<std::uint32_t> lowest_of_piece(const TriangleMesh& mesh) {
-  std::vector<std::uint32_t> parent(mesh.positions.size());
-  std::iota(parent.begin(), parent.end(), 0u);
-  const auto root = [&](std::uint32_t v) {
-    while (parent[v] != v) v = parent[v] = parent[parent[v]];
-    return v;
-  };
-  for (const Triangle& t : mesh.triangles) {
-    if (spans_nothing(t)) continue;
-    for (const std::uint32_t other : {t[1], t[2]}) {
-      const std::uint32_t a = root(t[0]), b = root(other);
-      parent[std::max(a, b)] = std::min(a, b);
-    }
-  }
-  for (std::uint32_t v = 0; v < parent.size(); ++v) parent[v] = root(v);
-  return parent;
-}
 
 /// Indexed by the lowest vertex of each component: 1 when each edge occurs equally often in both directions.
 std::vector<std::uint8_t> closed_pieces(const TriangleMesh& mesh, std::span<const std::uint32_t> piece) {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "geometry/vector.hpp"
+#include "motion/mesh_pieces.hpp"
 
 namespace supple {
 namespace {
@@ -167,10 +168,15 @@ SpringNetwork build_spring_network(const TriangleMesh& mesh, const MassSpringOpt
   network.vertex_count = static_cast<std::uint32_t>(mesh.positions.size());
   const std::uint32_t block_count = network.block_count();
   const std::vector<Side> sides = sorted_sides(mesh.triangles);
-  const std::vector<Ends> edges = distinct_edges(sides);
-  network.edges = in_blocks(springs_between(edges, mesh.positions, options.rest_length), block_count);
+  std::vector<Ends> edges = distinct_edges(sides);
   std::vector<Ends> across;
   if (options.bending_stiffness > 0) across = pairs_across_edges(sides, edges);
+  if (options.connect_pieces) {
+    const std::vector<Ends> connections = connections_of_pieces(mesh);
+    edges.insert(edges.end(), connections.begin(), connections.end());
+    std::sort(edges.begin(), edges.end());
+  }
+  network.edges = in_blocks(springs_between(edges, mesh.positions, options.rest_length), block_count);
   network.bending = in_blocks(springs_between(across, mesh.positions, options.rest_length), block_count);
   std::vector<AreaElement> areas;
   if (options.area_stiffness > 0) areas = areas_of(mesh, options.rest_length);

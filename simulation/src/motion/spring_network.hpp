@@ -54,7 +54,8 @@ struct VolumeRun {
 /// The elements that act on the vertices of a mesh, and the slots for their forces.
 struct SpringNetwork {
   std::uint32_t vertex_count = 0;
-  ElementBlocks<SpringElement> edges;    ///< one per pair of different vertices of a triangle
+  /// One per pair of different vertices of a triangle, and those between pieces.
+  ElementBlocks<SpringElement> edges;
   ElementBlocks<SpringElement> bending;  ///< one across each edge, unless it is itself an edge
   ElementBlocks<AreaElement> areas;      ///< triangles with positive area
   ElementBlocks<VolumeElement> volumes;  ///< triangles of `parts`
@@ -66,9 +67,10 @@ struct SpringNetwork {
   std::uint32_t block_count() const { return (vertex_count + vertex_block_size - 1) / vertex_block_size; }
 };
 
-/// The springs on edges, and those across edges and the areas when `options` give them a stiffness. Omits
-/// elements with a vertex that is not finite, and elements whose size overflows double. An edge of more than
-/// two triangles has one bending spring for each two that are consecutive in the mesh. O(n log n).
+/// The springs on edges and between pieces, and those across edges and the areas when `options` give them a
+/// stiffness. Omits elements with a vertex that is not finite, and elements whose size overflows double. An
+/// edge of more than two triangles has one bending spring for each two that are consecutive in the mesh. O(n
+/// log n).
 SpringNetwork build_spring_network(const TriangleMesh& mesh, const MassSpringOptions& options,
                                    const ClosedParts& closed = {});
 

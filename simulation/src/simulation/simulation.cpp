@@ -1,5 +1,6 @@
 #include "supple/simulation.hpp"
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <utility>
@@ -25,6 +26,7 @@ void check_border(const Border& border) {
 const SimulationOptions& checked(const SimulationOptions& options) {
   check(options);
   if (options.border) check_border(*options.border);
+  if (options.response) check(*options.response);
   return options;
 }
 
@@ -57,13 +59,20 @@ Simulation::Implementation::Implementation(const SimulationOptions& simulation_o
     : options(checked(simulation_options)),
       scene(simulation_options.scene),
       parallel_(simulation_options.scene.threads) {
-  if (options.response.enabled) response_.emplace(options.response, options.time_step, options.scene.threads);
+  if (!options.response) return;
+  const SceneOptions search{.contacts = ContactKinds::continuous, .threads = options.scene.threads};
+  response_.emplace(Response{Scene(search), ContactImpulses(*options.response, options.time_step), {}});
+  response_->scene.set_pair_filter([this](ObjectId a, ObjectId b) {
+    return objects_[a.index]->moving_body != nullptr || objects_[b.index]->moving_body != nullptr;
+  });
 }
 
 /// Everything that may throw comes first.
-ObjectId Simulation::Implementation::add(const TriangleMesh& mesh, const ObjectOptions& object_options,
+ObjectId Simulation::Implementation::add(const TriangleMesh& mesh, ObjectOptions object_options,
                                          ObjectMotion motion) {
   check_mesh(mesh);
+  if (options.response)
+    object_options.margin = std::max(object_options.margin, least_margin(*options.response));
   if (motion.index() != 0 && object_options.is_static) {
     fail((object_options.name.empty() ? mesh.name : object_options.name) +
          " is static and has a motion; leave one of them out");
@@ -94,22 +103,30 @@ ObjectId Simulation::Implementation::add(const TriangleMesh& mesh, const ObjectO
   const ObjectId id = added->id;
   if (objects_.size() <= id.index) objects_.resize(id.index + 1);
   objects_[id.index] = std::move(added);
+  has_current_result_ = false;
   return id;
 }
 
 void Simulation::Implementation::add_to_response(const TriangleMesh& mesh,
                                                  const ObjectOptions& object_options,
-                                                 const SimulatedObject& object) {
-  const MovingBody* const moving = object.moving_body.get();
-  const MassSpringOptions* const springs = moving != nullptr ? &moving->body.options() : nullptr;
-  [[maybe_unused]] const ObjectId id = response_->add(mesh, object_options, springs);
+                                                 SimulatedObject& object) {
+  ObjectOptions own = object_options;
+  own.is_static = false;
+  own.self_collision = object_options.self_collision && object.moving_body != nullptr;
+  [[maybe_unused]] const ObjectId id = response_->scene.add(mesh, own);
   assert(id == object.id);
+  if (object.moving_body == nullptr) return;
+  const MassSpringOptions& springs = object.moving_body->body.options();
+  object.spread.emplace(mesh, springs, options.time_step);
+  object.inverse_masses.assign(mesh.positions.size(), 1 / springs.vertex_mass);
+  for (const std::uint32_t vertex : springs.fixed_vertices) object.inverse_masses[vertex] = 0;
 }
 
 void Simulation::Implementation::remove(ObjectId id) {
   scene.remove(id);
-  if (response_) response_->remove(id);
+  if (response_) response_->scene.remove(id);
   objects_[id.index].reset();
+  has_current_result_ = false;
 }
 
 SimulatedObject& Simulation::Implementation::object(ObjectId id, const char* call) const {
@@ -127,7 +144,8 @@ void Simulation::Implementation::set_positions(ObjectId id, std::span<const Vec3
          " is moved by a function, so its positions cannot be set; let the function write other positions");
   }
   scene.set_positions(id, positions);
-  if (response_) response_->set_positions(id, positions);
+  if (response_) response_->scene.set_positions(id, positions);
+  has_current_result_ = false;
   found.is_on_path = false;
   if (found.moving_body != nullptr) {
     found.moving_body->body.set_positions(positions);
@@ -144,6 +162,7 @@ const DetectResult& Simulation::Implementation::detect() {
     scene.set_positions(object->id, object->positions());
     object->is_on_path = false;
   }
+  has_current_result_ = true;
   return scene.detect();
 }
 
@@ -161,6 +180,7 @@ std::optional<MotionError> Simulation::Implementation::try_step() {
   prepare_next_step();
   motion_seconds = timer.lap();
   scene.detect();
+  has_current_result_ = true;
   return std::nullopt;
 }
 
@@ -227,27 +247,40 @@ void Simulation::Implementation::step_rigid_bodies() {
 }
 
 void Simulation::Implementation::respond_to_contacts() {
-  responding_.clear();
+  gather_responding_objects();
+  response_->impulses.resolve(response_->scene, near_pairs(), response_->objects);
+  for (const auto& object : objects_) {
+    if (object == nullptr || object->moving_body == nullptr) continue;
+    if (const auto change = response_->impulses.change(object->id))
+      object->moving_body->change_velocities(change->of_average_velocity, change->of_end_velocity);
+  }
+}
+
+void Simulation::Implementation::gather_responding_objects() {
+  response_->objects.clear();
   for (const auto& object : objects_) {
     if (object == nullptr) continue;
     if (object->moving_body != nullptr) {
       const MassSpringBody& body = object->moving_body->body;
-      responding_.push_back(
-          {object->id, object->before, body.positions(), body.velocities(), 1 / body.options().vertex_mass});
+      response_->objects.push_back({object->id, object->before, body.positions(), body.velocities(),
+                                    object->inverse_masses, &*object->spread});
     } else if (object->rigid_body) {
-      responding_.push_back({object->id, object->before, object->rigid_body->positions(), {}});
+      response_->objects.push_back({object->id, object->before, object->rigid_body->positions()});
     } else if (object->function != nullptr) {
-      responding_.push_back({object->id, object->own_positions, object->next, {}});
-    } else {
-      responding_.push_back({object->id, object->own_positions, object->own_positions, {}});
+      response_->objects.push_back({object->id, object->own_positions, object->next});
     }
   }
-  response_->resolve(responding_);
-  for (const auto& object : objects_) {
-    if (object == nullptr || object->moving_body == nullptr) continue;
-    if (const auto change = response_->change(object->id))
-      object->moving_body->change_velocities(change->of_average_velocity, change->of_velocity);
+}
+
+/// The proximity of the last step, when the scene has found it; otherwise found here, with the same result.
+std::span<const ProximityPair> Simulation::Implementation::near_pairs() {
+  if (has_current_result_ && contains(options.scene.contacts, ContactKinds::proximity) &&
+      options.scene.proximity_listing == ProximityListing::features) {
+    return scene.result().proximity_pairs;
   }
+  for (const RespondingObject& object : response_->objects)
+    response_->scene.set_positions(object.id, object.from);
+  return response_->scene.detect({.contacts = ContactKinds::proximity}).proximity_pairs;
 }
 
 void Simulation::Implementation::accept_written_positions() {

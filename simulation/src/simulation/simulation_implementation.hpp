@@ -9,7 +9,8 @@
 #include <vector>
 
 #include "core/parallel.hpp"
-#include "simulation/impulse_response.hpp"
+#include "simulation/contact_impulses.hpp"
+#include "simulation/impulse_spread.hpp"
 #include "simulation/moving_body.hpp"
 #include "simulation/rigid_body.hpp"
 #include "supple/simulation.hpp"
@@ -26,10 +27,12 @@ struct SimulatedObject {
   std::unique_ptr<MovingBody> moving_body;
   std::optional<RigidBody> rigid_body;
   MotionFunction function;
-  std::vector<Vec3d> own_positions;    // for objects without a body
-  std::vector<Vec3d> next;             // the output of the function, until the step succeeds
-  std::vector<Vec3d> before;           // positions before the last step, kept only when paths are needed
-  bool is_on_path = false;             // the scene has the path of the last step
+  std::vector<Vec3d> own_positions;     // for objects without a body
+  std::vector<Vec3d> next;              // the output of the function, until the step succeeds
+  std::vector<Vec3d> before;            // positions before the last step, kept only when paths are needed
+  bool is_on_path = false;              // the scene has the path of the last step
+  std::optional<ImpulseSpread> spread;  // for bodies, with a response
+  std::vector<double> inverse_masses;
   std::optional<std::string> failure;  // why the body failed in this step, as text
   std::exception_ptr exception;        // and as the exception, when there was memory for it
 
@@ -45,7 +48,7 @@ class Simulation::Implementation {
  public:
   explicit Implementation(const SimulationOptions& options);
 
-  ObjectId add(const TriangleMesh& mesh, const ObjectOptions& object_options, ObjectMotion motion);
+  ObjectId add(const TriangleMesh& mesh, ObjectOptions object_options, ObjectMotion motion);
   void remove(ObjectId id);
   const DetectResult& detect();
   std::optional<MotionError> try_step();
@@ -59,7 +62,7 @@ class Simulation::Implementation {
 
  private:
   void add_to_response(const TriangleMesh& mesh, const ObjectOptions& object_options,
-                       const SimulatedObject& object);
+                       SimulatedObject& object);
   void call_functions(double seconds);
   void remember_positions();
   std::optional<MotionError> step_bodies();
@@ -67,17 +70,26 @@ class Simulation::Implementation {
   void undo_step_of_bodies();
   void step_rigid_bodies();
   void respond_to_contacts();
+  void gather_responding_objects();
+  std::span<const ProximityPair> near_pairs();
   void accept_written_positions();
   void place_in_scene();
   void prepare_next_step();
   bool needs_paths() const { return is_continuous() || response_; }
   bool is_continuous() const { return contains(options.scene.contacts, ContactKinds::continuous); }
 
+  /// A second scene, because detection within the step would change the events of the first scene.
+  struct Response {
+    Scene scene;
+    ContactImpulses impulses;
+    std::vector<RespondingObject> objects;  // scratch memory of a step
+  };
+
   Parallel parallel_;
-  std::optional<ImpulseResponse> response_;
+  std::optional<Response> response_;
+  bool has_current_result_ = false;  // the result of the scene is that of the present positions
   std::vector<std::unique_ptr<SimulatedObject>> objects_;  // indexed by object
   std::vector<SimulatedObject*> small_bodies_;             // scratch memory of a step
-  std::vector<RespondingObject> responding_;
 };
 
 }  // namespace supple

@@ -46,8 +46,8 @@ inline auto members_of(BroadPhaseOptions& o) {
   return std::tie(a, b, c, d);
 }
 inline auto members_of(MassSpringOptions& o) {
-  auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, p, q] = o;
-  return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m, n, p, q);
+  auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, p, q, r] = o;
+  return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m, n, p, q, r);
 }
 inline auto members_of(MassSpringMotion::Handle& o) {
   auto& [a, b, c] = o;
@@ -66,8 +66,8 @@ inline auto members_of(WaveMotion& o) {
   return std::tie(a, b, c, d, e);
 }
 inline auto members_of(ContactResponse& o) {
-  auto& [a, b, c, d, e] = o;
-  return std::tie(a, b, c, d, e);
+  auto& [a, b, c, d] = o;
+  return std::tie(a, b, c, d);
 }
 inline auto members_of(SimulationOptions& o) {
   auto& [a, b, c, d, e] = o;

@@ -33,6 +33,8 @@ void set_other(const Field<Struct, Value>& field, Value& value) {
     value = RootCube{{-1.5, 0.1, 3}, 2.7};
   } else if constexpr (std::is_same_v<Value, std::optional<Border>>) {
     value = Border{{{-5, -6, -7}, {8, 9, 10}}};
+  } else if constexpr (std::is_same_v<Value, std::optional<ContactResponse>>) {
+    value = ContactResponse{.friction = 0.25};
   } else if constexpr (std::is_same_v<Value, std::vector<std::uint32_t>>) {
     value = {1, 2};
   } else {

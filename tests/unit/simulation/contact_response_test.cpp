@@ -19,8 +19,7 @@ SimulationOptions responding(double time_step) {
   SimulationOptions options;
   options.time_step = time_step;
   options.scene.threads = 1;
-  options.response.enabled = true;
-  options.response.thickness = 0.01;
+  options.response = ContactResponse{.thickness = 0.01};
   return options;
 }
 
@@ -50,7 +49,7 @@ Momentum momentum_of(const Simulation& simulation) {
 
 TEST(ContactResponse, IsOffByDefault) {
   SimulationOptions options = responding(0.002);
-  options.response.enabled = false;
+  options.response.reset();
   Simulation simulation(options);
   MassSpringMotion motion = stiff();
   motion.velocity = {2, 0, 0};
@@ -64,7 +63,7 @@ TEST(ContactResponse, IsOffByDefault) {
 TEST(ContactResponse, BallsBounceAndKeepTheirMomentum) {
   for (const double friction : {0.0, 0.4}) {
     SimulationOptions options = responding(0.002);
-    options.response.friction = friction;
+    options.response->friction = friction;
     Simulation simulation(options);
     MassSpringMotion motion = stiff();
     motion.velocity = {1, 0, 0};
@@ -91,7 +90,7 @@ TEST(ContactResponse, BallsBounceAndKeepTheirMomentum) {
 
 TEST(ContactResponse, ClothLiesOnABall) {
   SimulationOptions options = responding(0.004);
-  options.response.friction = 0.3;
+  options.response->friction = 0.3;
   Simulation simulation(options);
   simulation.add(placed(make_icosphere(4), 0.3, {}), {.is_static = true});
   MassSpringMotion motion;
@@ -119,8 +118,8 @@ TEST(ContactResponse, RestitutionReturnsSpeedAndFrictionTakesIt) {
   // A single triangle without springs that falls flat onto a plate.
   const auto velocity_after = [](double restitution, double friction) {
     SimulationOptions options = responding(0.01);
-    options.response.restitution = restitution;
-    options.response.friction = friction;
+    options.response->restitution = restitution;
+    options.response->friction = friction;
     Simulation simulation(options);
     simulation.add(make_cloth(1, 1, 10, 10), {.is_static = true});
     TriangleMesh triangle;
@@ -195,8 +194,8 @@ double energy_of(const Simulation& simulation) {
 TEST(ContactResponse, FeedsNoEnergyToSpringsAtLongSteps) {
   for (const Integrator integrator : {Integrator::verlet, Integrator::symplectic_euler}) {
     SimulationOptions options = responding(0.01);
-    options.response.thickness = 0.02;
-    options.response.friction = 0.3;
+    options.response->thickness = 0.02;
+    options.response->friction = 0.3;
     Simulation simulation(options);
     simulation.add(placed(make_icosphere(6), 0.5, {}), {.is_static = true});
     MassSpringMotion motion;
@@ -215,7 +214,7 @@ TEST(ContactResponse, FeedsNoEnergyToSpringsAtLongSteps) {
       contacts += simulation.step().contacts.size();
       const double energy = energy_of(simulation);
       // The response may raise the energy slightly when it separates vertices against gravity and springs.
-      ASSERT_LT(energy, lowest + 0.015 * at_first) << "step " << step;
+      ASSERT_LT(energy, lowest + 0.03 * at_first) << "step " << step;
       lowest = std::min(lowest, energy);
     }
     EXPECT_EQ(contacts, 0u);
@@ -269,6 +268,42 @@ TEST(ContactResponse, GivesTheSameBitsForAnyNumberOfThreads) {
   const std::vector<Vec3d> one = run(1);
   EXPECT_EQ(run(2), one);
   EXPECT_EQ(run(3), one);
+}
+
+/// The response takes the proximity of the scene when the scene finds it, and otherwise finds the same.
+TEST(ContactResponse, DoesNotDependOnTheContactsOfTheScene) {
+  const auto run = [](ContactKinds contacts, ProximityListing listing, bool detects_between) {
+    SimulationOptions options = responding(0.004);
+    options.scene.contacts = contacts;
+    options.scene.proximity_listing = listing;
+    Simulation simulation(options);
+    simulation.add(placed(make_icosphere(3), 0.2, {}), {.is_static = true, .margin = 0.01});
+    MassSpringMotion motion = stiff();
+    motion.velocity = {1.5, 0, 0};
+    const ObjectId id = simulation.add(placed(make_icosphere(3), 0.2, {-0.5, 0.05, 0}), {}, motion);
+    for (int step = 0; step < 100; ++step) {
+      simulation.step();
+      if (detects_between) simulation.detect();
+    }
+    const auto positions = simulation.positions(id);
+    return std::vector<Vec3d>(positions.begin(), positions.end());
+  };
+  constexpr ContactKinds both = ContactKinds::intersection | ContactKinds::proximity;
+  const std::vector<Vec3d> expected = run(both, ProximityListing::features, false);
+  EXPECT_LT(expected.front().x, -0.4);
+  EXPECT_EQ(run(ContactKinds::none, ProximityListing::features, false), expected);
+  EXPECT_EQ(run(ContactKinds::continuous, ProximityListing::features, false), expected);
+  EXPECT_EQ(run(both, ProximityListing::elements, false), expected);
+  EXPECT_EQ(run(both, ProximityListing::features, true), expected);
+}
+
+TEST(ContactResponse, RaisesMarginsToThreeQuartersOfTheThickness) {
+  SimulationOptions options = responding(0.01);
+  options.scene.contacts = ContactKinds::proximity;
+  Simulation simulation(options);
+  simulation.add(make_cloth(1, 1), {});
+  simulation.add(placed(make_cloth(1, 1), 1, {0, 0.014, 0}), {});
+  EXPECT_EQ(simulation.detect().proximity_groups.size(), 1u);
 }
 
 TEST(ContactResponse, SurvivesRemovalAndTeleports) {

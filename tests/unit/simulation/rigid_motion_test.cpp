@@ -273,8 +273,7 @@ TEST(RigidMotion, StopsWithTheBodyThatFails) {
 
 TEST(RigidMotion, PushesBodiesAside) {
   SimulationOptions options;
-  options.response.enabled = true;
-  options.response.thickness = 0.02;
+  options.response = ContactResponse{.thickness = 0.02};
   Simulation simulation(options);
   MassSpringMotion soft;
   soft.springs.bending_stiffness = 50;

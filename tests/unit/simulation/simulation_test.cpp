@@ -130,10 +130,10 @@ TEST(Simulation, RefusesOptionsOutOfTheirRange) {
       "SimulationOptions::border: along y it goes from 2.000000 to 1.000000; the first corner must be the "
       "lower one");
   EXPECT_NE(message([](auto& o) { o.border = Border{{{-1, -1, not_a_number}, {1, 1, 1}}}; }), "");
-  EXPECT_NE(message([](auto& o) { o.response.thickness = 0; }), "");
-  EXPECT_NE(message([](auto& o) { o.response.restitution = 1.5; }), "");
-  EXPECT_NE(message([](auto& o) { o.response.friction = -1; }), "");
-  EXPECT_NE(message([](auto& o) { o.response.iterations = 0; }), "");
+  EXPECT_NE(message([](auto& o) { o.response = ContactResponse{.thickness = 0}; }), "");
+  EXPECT_NE(message([](auto& o) { o.response = ContactResponse{.restitution = 1.5}; }), "");
+  EXPECT_NE(message([](auto& o) { o.response = ContactResponse{.friction = -1}; }), "");
+  EXPECT_NE(message([](auto& o) { o.response = ContactResponse{.iterations = 0}; }), "");
   EXPECT_NE(message([](auto& o) { o.scene.threads = 5000; }), "");
   EXPECT_EQ(message([](auto&) {}), "");
 }
