@@ -58,6 +58,11 @@ bool overlap_beside_edge(const Vec3d& p, const Vec3d& q, const Vec3d& a, const V
 bool opposite_side_meets(const Vec3d& v, const Corners& side, const TrianglePoints& triangle) {
   const Vec3d &first = side.points[0], &last = side.last();
   bool used_exact = false;
+  // Most sides are above or below the plane of the triangle.
+  const auto above_plane = [&](const Vec3d& point) {
+    return orient3d(triangle[0], triangle[1], triangle[2], point, used_exact);
+  };
+  if (above_plane(first) * above_plane(last) > 0) return false;
   const bool is_on_side = !find_projection(v, first, last, used_exact) && is_between(first, v, last);
   if (!is_on_side) return triangles_intersect({first, last, last}, triangle);
   const auto meets = [&](const Vec3d& end) {
