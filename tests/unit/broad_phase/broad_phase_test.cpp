@@ -250,7 +250,7 @@ TEST(BroadPhase, AnyNumberOfThreadsGivesTheSamePairs) {
 
 TEST(BroadPhase, SortsThePairsOfVolumesThatHaveMany) {
   // Most bins are sorted by digits, and those of the small boxes in the second half by runs.
-  std::vector<Aabb> boxes = test::random_boxes(5'000, 10, 1.0f, 34);
+  std::vector<Aabb> boxes = test::random_boxes(5'000, 10, 3.0f, 34);
   for (std::size_t i = boxes.size() / 2; i < boxes.size(); ++i)
     boxes[i].max = boxes[i].min + 0.05f * (boxes[i].max - boxes[i].min);
   const std::vector<IndexPair> expected = double_loop(boxes);

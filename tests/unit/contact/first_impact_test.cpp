@@ -494,7 +494,7 @@ TEST(FirstImpactDetails, DoNotDependOnTheOrderOfTheElements) {
 
 TEST(FirstImpactOfPoints, EqualsAlgebraAndTheFaceThatItSpans) {
   RandomNumbers random(8);
-  for (int i = 0; i < 4000; ++i) {
+  for (int i = 0; i < queries_per_family / 2; ++i) {
     const bool is_planar = i % 2 == 0, is_lattice = i % 3 == 0;
     const auto point = [&] {
       Vec3d p = random.vector(1);
@@ -541,7 +541,7 @@ TEST(FirstImpactOfPoints, InAPlaneHasTheNormalOfTheEdge) {
 TEST(FirstImpactOptions, MaxTimeLeavesOutWhatIsReportedLater) {
   RandomNumbers random(9);
   std::size_t found = 0;
-  for (int i = 0; i < 20000; ++i) {
+  for (int i = 0; i < 2 * queries_per_family; ++i) {
     const Paths paths = random_paths(random, 1, 1);
     const VertexFaceMotion motion{paths.start, paths.end};
     const double separation = i % 2 == 0 ? 0.05 : 0;
@@ -554,7 +554,7 @@ TEST(FirstImpactOptions, MaxTimeLeavesOutWhatIsReportedLater) {
       EXPECT_EQ(is_reported, impact->toi <= until) << i;
     }
   }
-  EXPECT_GT(found, 500u);
+  EXPECT_GT(found, static_cast<std::size_t>(queries_per_family / 40));
   EXPECT_THROW(first_impact(VertexFaceMotion{}, {.max_time = 1.5}), Error);
 }
 

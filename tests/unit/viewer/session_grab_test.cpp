@@ -114,6 +114,7 @@ TEST(ViewerMeasure, FindsTheNearestPointsOfTwoObjectsWhereTheyAre) {
   EXPECT_TRUE(page.ask({{"do", "measure"}, {"a", 1}, {"b", 1}})["distance"].is_null());
   page.ask({{"do", "grab"}, {"object", 0}, {"vertex", foremost(show.objects[0].mesh)}});
   page.ask({{"do", "drag"}, {"to", inside_right(message)}});
+  page.session.advance(0);
   EXPECT_EQ(page.ask({{"do", "measure"}, {"a", 0}, {"b", 1}})["distance"], 0) << "they touch";
   EXPECT_NE(page.failure(R"({"do": "measure", "id": 1, "a": 0, "b": 9})").find("no object 9"),
             std::string::npos);
