@@ -252,6 +252,29 @@ class Springs(ProgramTest):
         response = "response = { thickness = 0.01, iterations = 8 }"
         self.assertEqual(self.touching(response, "velocity = [0.25, 0, 0], stiffness = 500, substeps = 4"), [])
 
+    def test_response_raises_margins_to_three_quarters_of_its_thickness(self):
+        def near(thickness):
+            self.write("scene.toml", f'[scene]\ncontacts = "proximity"\nresponse = {{ thickness = {thickness} }}\n'
+                       '[[object]]\nmodel = "box"\n[[object]]\nmodel = "box"\ntranslate = [1.014, 0, 0]\n')
+            return bool(self.detect("scene.toml")["frames"][0].get("proximity"))
+
+        self.assertTrue(near(0.01))
+        self.assertFalse(near(0.009))
+
+    def test_connected_pieces_stay_together(self):
+        # Two triangles; one is fixed, and gravity pulls the other one to the plate.
+        self.write("pieces.obj", ([(-0.4, 0, 0), (-0.4, 1, 0), (-0.4, 0, 1), (0.3, 0, 0), (0.6, 1, 0), (0.8, 0, 1)],
+                                  [(0, 1, 2), (3, 4, 5)]))
+
+        def touches(keys):
+            motion = "gravity = [1, 0, 0], stiffness = 50, damping = 5, substeps = 4, fixed = [[[-0.5, 0, 0], [-0.3, 1, 1]]]"
+            self.write("scene.toml", '[scene]\ntime_step = 0.1\n[[object]]\nmodel = "box"\nsize = [0.01, 9, 9]\n'
+                       'translate = [1.005, 0, 0]\n[[object]]\nmesh = "pieces.obj"\n' + SPRINGS.format(motion + keys))
+            return any(f["triangle_pairs"] for f in self.detect("scene.toml", "--steps", "40")["frames"])
+
+        self.assertTrue(touches(""))
+        self.assertFalse(touches(", connect_pieces = true"))
+
     def test_seed_decides_unless_the_object_has_one(self):
         def contacts(seed, keys):
             self.write("scene.toml", f'[scene]\nseed = {seed}\n[[object]]\nmodel = "icosphere"\n[[object]]\nmodel = "icosphere"\n'

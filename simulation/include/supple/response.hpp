@@ -61,12 +61,12 @@ struct ResponseBody {
 /// none, they come nearer than the thickness, but still do not pass through each other. Objects that are not
 /// among `bodies` are at rest and do not react. Groups, masks, the filter and `self_collision` apply.
 ///
-/// Afterwards `Scene::result` is that of the last detection, and the bodies are on the paths of the whole
-/// step
-/// (`Scene::set_motion`), until other positions are set.
+/// Afterwards `Scene::result` is that of the last detection, and the next events compare with it. The bodies
+/// are on the paths of the whole step (`Scene::set_motion`) until other positions are set.
 ///
 /// Returns the part of the step, 0 to 1, in which nothing touches: 1 when the impulses removed all impacts,
-/// otherwise `Scene::max_step`. Bodies that move no further than this do not pass through anything.
+/// otherwise `Scene::max_step`. Bodies that move no further than this do not pass through anything. Elements
+/// that touch at the start make it 0.
 ///
 /// Costs one detection of proximity and usually one or two of continuous contacts, and memory in proportion
 /// to the bodies and their contacts. Throws `Error` when an option, `dt` > 0 or a mass is out of its range,
