@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numeric>
 #include <optional>
+#include <utility>
 
 #include "supple/scene.hpp"
 
@@ -23,8 +24,10 @@ std::vector<Piece> pieces_by_size(const TriangleMesh& mesh) {
   }
   for (std::uint32_t v = 0; v < lowest.size(); ++v) pieces[lowest[v]].vertices.push_back(v);
   std::erase_if(pieces, [](const Piece& piece) { return piece.triangles.empty(); });
-  std::stable_sort(pieces.begin(), pieces.end(),
-                   [](const Piece& a, const Piece& b) { return a.vertices.size() > b.vertices.size(); });
+  std::sort(pieces.begin(), pieces.end(), [](const Piece& a, const Piece& b) {
+    if (a.vertices.size() != b.vertices.size()) return a.vertices.size() > b.vertices.size();
+    return a.vertices.front() < b.vertices.front();
+  });
   return pieces;
 }
 
@@ -77,8 +80,8 @@ std::vector<std::array<std::uint32_t, 2>> connections_of_pieces(const TriangleMe
     for (std::size_t i = 0; i < closest.size(); ++i) {
       if (closest[i]) order.push_back(i);
     }
-    std::stable_sort(order.begin(), order.end(), [&](std::size_t i, std::size_t j) {
-      return closest[i]->distance < closest[j]->distance;
+    std::sort(order.begin(), order.end(), [&](std::size_t i, std::size_t j) {
+      return std::pair(closest[i]->distance, i) < std::pair(closest[j]->distance, j);
     });
     if (order.size() > most_vertices) order.resize(most_vertices);
     for (const std::size_t i : order) {
