@@ -254,6 +254,7 @@ async function saysWhyThereIsNoContact(stage) {
   const verdict = page.getByRole("status", { name: "Explanation" });
   await verdict.getByRole("heading", { name: /objects are apart/ }).waitFor();
   await verdict.getByText("Apart by").waitFor();
+  await verdict.getByText("Distance of the objects").waitFor();
   assert.equal(await page.evaluate(() => supple.model.explanation.stage), "object_volumes");
   assert.ok(Math.abs((await page.evaluate(() => supple.model.explanation.distance)) - 0.2) < 0.05);
   await page.keyboard.press("Escape");

@@ -130,7 +130,7 @@ export class Inspector {
     const rows: Row[] = [];
     if (explanation.distance) rows.push(["Apart by", readable(explanation.distance)]);
     if (explanation.axis && explanation.distance) rows.push(["Along", show(explanation.axis)]);
-    if (explanation.nearest) rows.push(["Objects apart by", readable(explanation.nearest.distance)]);
+    if (explanation.nearest) rows.push(["Distance of the objects", readable(explanation.nearest.distance)]);
     this.verdict.replaceChildren(
       h("h4", {}, STAGES[explanation.stage] ?? explanation.stage), h("p", {}, explanation.text), table(rows),
     );
