@@ -46,7 +46,8 @@ Scene moving_scene(const Family& family, const SceneOptions& options, std::uint6
 double separation_of(const Family& family) {
   if (family.name == std::string_view("MixedScales")) return 0;
   double size = 0;
-  for (const Vec3d& p : family.make(1).front().positions) {
+  const std::vector<TriangleMesh> meshes = family.make(1);
+  for (const Vec3d& p : meshes.front().positions) {
     for (int axis = 0; axis < 3; ++axis) {
       if (std::isfinite(p[axis])) size = std::max(size, std::fabs(p[axis]));
     }

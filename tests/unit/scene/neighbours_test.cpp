@@ -18,7 +18,7 @@
 namespace supple {
 namespace {
 
-constexpr ObjectOptions exact_neighbours{.self_collision = true, .neighbours = Neighbours::exact};
+const ObjectOptions exact_neighbours{.self_collision = true, .neighbours = Neighbours::exact};
 
 std::vector<TrianglePair> pairs_of(const DetectResult& result) {
   std::vector<TrianglePair> pairs;
