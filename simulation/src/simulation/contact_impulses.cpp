@@ -150,7 +150,8 @@ bool ContactImpulses::push_apart(const Touch& touch, double impulse, Velocity ki
 
 std::size_t ContactImpulses::velocity_count(const Touch& touch) const {
   const auto has_end = [&](const ElementPoint& point) {
-    return !participants_[point.object].changes[1].empty();
+    const Participant& object = participants_[point.object];
+    return object.now && !object.now->end_velocities.empty();
   };
   return has_end(touch.a) || has_end(touch.b) ? 2 : 1;
 }
