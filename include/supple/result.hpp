@@ -124,10 +124,9 @@ struct DetectResult {
   /// pairs. Only with `ComparisonOptions::colliding_vertices`; a step that searches only continuous contacts
   /// has no such pairs.
   PairEvents narrow_phase_events;
-  PairEvents contact_events;    ///< of the pairs of different objects that intersect or touch in the step
-  PairEvents proximity_events;  ///< of the pairs of different objects that have proximity pairs
-  /// Of the pairs of objects one of which has a vertex or a part inside the other.
-  PairEvents penetration_events;
+  PairEvents contact_events;      ///< of the pairs of different objects that intersect or touch in the step
+  PairEvents proximity_events;    ///< of the pairs of different objects that have proximity pairs
+  PairEvents penetration_events;  ///< of the pairs of objects with a vertex or a part inside the other one
   StepStats stats;
 
   std::span<const Contact> contacts_of(const ContactGroup& group) const {

@@ -99,7 +99,7 @@ class VolumeStore {
   /// Empty when the volumes are boxes; then boxes decide which pairs overlap, otherwise spheres.
   std::span<const BoundingSphere> spheres() const { return spheres_; }
   const WantedKinds& wanted() const { return wanted_; }
-  /// Of a volume that is not empty.
+  /// The volume must not be empty.
   std::size_t kind(std::uint32_t slot) const { return wanted_.has_kinds() ? kinds_[slot] : 0; }
   ObjectVolume volume(std::uint32_t slot) const {
     return {boxes_[slot], has_spheres_ ? spheres_[slot] : BoundingSphere{}};

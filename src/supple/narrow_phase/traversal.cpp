@@ -173,9 +173,10 @@ PartOfStep ObjectPairView::part_of_step(std::uint32_t node_a, int child_a, std::
                                  std::fabs(double{way_a.min[axis]} - way_b.max[axis]));
     square += most * most;
   }
-  part.separation =
-      round_up(std::min((part.separation + kept_share * part.latest * std::sqrt(square)) * (1 + 0x1p-20),
-                        double{std::numeric_limits<float>::max()}));
+  // Beyond the range of float, boxes do not say how far elements are apart.
+  constexpr double most = std::numeric_limits<float>::max() / 4;
+  const double grown = (part.separation + kept_share * part.latest * std::sqrt(square)) * (1 + 0x1p-20);
+  part.separation = grown <= most ? round_up(grown) : std::numeric_limits<float>::infinity();
   return part;
 }
 

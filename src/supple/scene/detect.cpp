@@ -130,13 +130,21 @@ void Scene::Implementation::for_each_object(std::span<const std::uint32_t> indic
   });
 }
 
+/// The part of an object in the distance at which elements of two objects are of interest.
+double Scene::Implementation::half_separation_of(const SceneObject& object, std::uint32_t index,
+                                                 const Question& question) const {
+  const double separation = question.impact.impact.min_separation / 2 + object.options.min_separation;
+  if (!question.safe_step) return separation;
+  const VertexWays& ways = ways_[index];
+  return separation + kept_share(*question.safe_step) * ways.longest +
+         safe_step_rounding * ways.largest_coordinate;
+}
+
 void Scene::Implementation::refit_objects(const Question& question) {
   const SearchedShapes shapes = question.shapes();
   const bool is_another_search = searched_ != shapes;
-  const auto growth_of = [&](const SceneObject& object) {
-    const double separation = question.impact.impact.min_separation / 2 + object.options.min_separation;
-    const double kept = question.reach_of_way > 0 ? question.reach_of_way * object.ways(parallel).longest : 0;
-    return std::max(question.is_continuous() ? growth(separation + kept) : 0,
+  const auto growth_of = [&](const SceneObject& object, std::uint32_t index) {
+    return std::max(question.is_continuous() ? growth(half_separation_of(object, index, question)) : 0,
                     question.has_proximity() ? growth(object.options.margin) : 0);
   };
   growths_.resize(slots_.size(), 0);
@@ -167,7 +175,7 @@ void Scene::Implementation::refit_objects(const Question& question) {
   changed_slots_.clear();
   for (std::uint32_t index = 0; index < slots_.size(); ++index) {
     const SceneObject* const object = slots_[index].object.get();
-    const double growth_of_volumes = object != nullptr ? growth_of(*object) : 0;
+    const double growth_of_volumes = object != nullptr ? growth_of(*object, index) : 0;
     if (changed_[index] == 0 && !is_another_search && growths_[index] == growth_of_volumes) continue;
     growths_[index] = growth_of_volumes;
     const Aabb box = object != nullptr ? grown(object->box(), growth_of_volumes) : Aabb{};
@@ -365,17 +373,18 @@ std::optional<ContinuousContact> Scene::Implementation::earliest_impact() {
 
 double Scene::Implementation::collision_free_step(const StepOptions& step) {
   check(step, "collision_free_step");
-  Question question{ContactKinds::continuous, impact_options()};
-  question.reach_of_way = step.keep / (1 - step.keep);
-  search_on_the_way(question);
+  ways_.resize(slots_.size());
   ways_of_nodes_.resize(slots_.size());
   for (std::uint32_t index = 0; index < slots_.size(); ++index) {
+    if (slots_[index].object != nullptr) ways_[index] = slots_[index].object->ways(parallel);
+  }
+  Question question{ContactKinds::continuous, impact_options()};
+  question.safe_step = step;
+  search_on_the_way(question);
+  for (std::uint32_t index = 0; index < slots_.size(); ++index) {
     if (slots_[index].object == nullptr) continue;
-    const SceneObject::Ways ways = slots_[index].object->ways(parallel);
     MovingObject& listed = element_objects_[index];
-    listed.mean_way = ways.mean;
-    listed.farthest_way = ways.farthest_from_mean;
-    listed.largest_coordinate = ways.largest_coordinate;
+    listed.ways = &ways_[index];
     const SceneObject& object = *slots_[index].object;
     if (!object.placement().has_motion()) continue;
     set_way_boxes(object.octree(), object.moving().elements(), *listed.start, *listed.end,
@@ -393,7 +402,7 @@ namespace {
 ObjectId add_copy(const SceneObject& object, const std::vector<Vec3d>& positions, Scene& scene) {
   std::vector<Triangle> faces;
   ObjectOptions options;
-  options.self_collision = object.options.self_collision;
+  options.self_collision = object.options.self_collision && object.placement().has_motion();
   for (std::uint32_t t = 0; t < object.octree().triangles().size(); ++t) {
     const Triangle triangle = object.octree().user_triangle(t);
     const auto& [v, w, last] = triangle;
@@ -437,8 +446,11 @@ double Scene::Implementation::proven_step(double part) const {
     ids.push_back(id);
     paths.push_back(std::move(path));
   }
+  // Objects that rest may touch.
   scene.set_pair_filter([&](ObjectId a, ObjectId b) {
-    return may_pair({ids[a.index].index, ids[b.index].index});
+    const bool is_moving =
+        paths[a.index].object->placement().has_motion() || paths[b.index].object->placement().has_motion();
+    return is_moving && may_pair({ids[a.index].index, ids[b.index].index});
   });
   for (; part > 0; part /= 2) {
     for (Path& path : paths) {

@@ -14,6 +14,12 @@
 
 namespace supple {
 
+/// How far the vertices of an object move, without those that are not finite.
+struct VertexWays {
+  Vec3d mean;
+  double farthest_from_mean = 0, longest = 0, largest_coordinate = 0;
+};
+
 /// The data of an object that passes over elements read, indexed as in its `SurfaceElements`. For an object
 /// at rest, `start` and `end` are equal. Only an object at rest has a translation in its view.
 struct MovingObject {
@@ -27,10 +33,7 @@ struct MovingObject {
   std::span<const std::uint8_t> is_point;  ///< by the user's vertex: whether it is such a point; may be empty
   VertexGroups groups;
   double margin = 0, min_separation = 0;
-  /// For safe steps: the mean way of the vertices, the largest difference of a way from it, and the largest
-  /// coordinate.
-  Vec3d mean_way;
-  double farthest_way = 0, largest_coordinate = 0;
+  const VertexWays* ways = nullptr;  ///< for safe steps
 };
 
 /// How a pair of elements is reported.

@@ -79,11 +79,15 @@ void set_impact(ContinuousContact& contact, const Impact& impact, bool is_turned
   }
 }
 
-/// Vertices that move by `ways` come nearer by at most this.
+/// The differences of ways are rounded, which counts where vertices move together.
+constexpr double rounding_of_ways = 0x1p-50;
+
+/// The most by which two vertices of a pair come nearer.
 double largest_approach_of(const ElementMotion& motion) {
   std::array<Vec3d, 4> ways;
   for (std::size_t i = 0; i < 4; ++i) ways[i] = motion.end[i] - motion.start[i];
-  double largest = 0;
+  double largest = 0, longest = 0;
+  for (const Vec3d& way : ways) longest = std::max(longest, std::hypot(way.x, way.y, way.z));
   const std::size_t count = motion.are_edges ? 2 : 1;
   for (std::size_t i = 0; i < count; ++i) {
     for (std::size_t k = count; k < 4; ++k) {
@@ -91,7 +95,7 @@ double largest_approach_of(const ElementMotion& motion) {
       largest = std::max(largest, std::hypot(way.x, way.y, way.z));
     }
   }
-  return largest * (1 + 0x1p-40);
+  return largest * (1 + 0x1p-40) + rounding_of_ways * longest;
 }
 
 }  // namespace
@@ -210,25 +214,37 @@ ImpactOptions ImpactPass::impact_of_job(std::uint32_t job) const {
 double ImpactPass::largest_approach(std::uint32_t job) const {
   const MovingObject& a = objects_[jobs_[job].a];
   const MovingObject& b = objects_[jobs_[job].b];
-  const Vec3d way = a.mean_way - b.mean_way;
-  return (std::hypot(way.x, way.y, way.z) + a.farthest_way + b.farthest_way) * (1 + 0x1p-40);
+  const Vec3d way = a.ways->mean - b.ways->mean;
+  const double farthest = a.ways->farthest_from_mean + b.ways->farthest_from_mean;
+  return (std::hypot(way.x, way.y, way.z) + farthest) * (1 + 0x1p-40) +
+         rounding_of_ways * (a.ways->longest + b.ways->longest);
+}
+
+double ImpactPass::rounding_of_job(std::uint32_t job) const {
+  return safe_step_rounding * std::max(objects_[jobs_[job].a].ways->largest_coordinate,
+                                       objects_[jobs_[job].b].ways->largest_coordinate);
+}
+
+double ImpactPass::searched_distance(std::uint32_t job) const {
+  const double separation = impact_of_job(job).min_separation;
+  return search_ == Search::safe_step ? separation + rounding_of_job(job) : separation;
 }
 
 /// Elements that come nearer by `approach` are no longer at the separation plus a share `keep` of their
 /// distance beyond it only if that distance was at most approach / (1 - keep).
 double ImpactPass::kept_distance(std::uint32_t job) const {
   if (search_ != Search::safe_step) return 0;
-  return step_.keep / (1 - step_.keep) * largest_approach(job) * (1 + 0x1p-40);
+  return kept_share(step_) * largest_approach(job) * (1 + 0x1p-40);
 }
 
 ObjectPairView ImpactPass::view_of_job(std::uint32_t job) const {
   const MovingObject& a = objects_[jobs_[job].a];
   const MovingObject& b = objects_[jobs_[job].b];
-  const double separation = impact_of_job(job).min_separation;
+  const double distance = searched_distance(job);
   ObjectPairView pair =
-      &a == &b ? moving_self_pair_of(a.view, separation) : moving_pair_of(a.view, b.view, separation);
-  if (search_ == Search::safe_step) pair.kept_share = step_.keep / (1 - step_.keep);
-  if (separation > 0 || pair.kept_share > 0) pair.a.culled = nullptr;
+      &a == &b ? moving_self_pair_of(a.view, distance) : moving_pair_of(a.view, b.view, distance);
+  if (search_ == Search::safe_step) pair.kept_share = kept_share(step_);
+  if (distance > 0 || pair.kept_share > 0) pair.a.culled = nullptr;
   pair.kinds = options_.kinds;
   if (latest_ < 1 || search_ != Search::all) pair.latest = &latest_;
   return pair;
@@ -260,7 +276,7 @@ void ImpactPass::test_candidates(std::uint32_t job, ElementPairKind kind,
   const MovingObject& b = objects_[jobs_[job].b];
   const auto objects = objects_of(kind, a, b);
   const bool are_edges = kind == ElementPairKind::edge_edge, excludes = limit_.excludes_some();
-  const double separation = impact_of_job(job).min_separation, kept = kept_distance(job);
+  const double distance = searched_distance(job), kept = kept_distance(job);
   std::array<std::array<std::uint32_t, 4>, block_size> vertices;
   for (; !candidates.empty() && !stop_.stop_requested();
        candidates = candidates.subspan(std::min(block_size, candidates.size()))) {
@@ -268,7 +284,7 @@ void ImpactPass::test_candidates(std::uint32_t job, ElementPairKind kind,
     for (std::size_t k = 0; k < part.size(); ++k) vertices[k] = vertices_of(kind, part[k], a, b);
     const float latest = latest_.load(std::memory_order_relaxed);
     fill(objects, std::span(vertices).first(part.size()), are_edges, latest, worker.block);
-    const float reach = round_up(separation + kept * latest);
+    const float reach = round_up(distance + kept * latest);
     std::uint64_t left = may_touch(worker.block, part.size(), are_edges, reach);
     std::size_t count = 0;
     for (; left != 0; left &= left - 1) {
@@ -339,11 +355,9 @@ void ImpactPass::shorten_step(std::uint32_t job, const OpenPair& pair, Worker& w
   } else if (separation > 0 && !are_within(pair.motion, separation)) {
     least = separation;
   }
-  if (distance - least > largest_approach_of(pair.motion)) return;
-  const MovingObject& a = objects_[jobs_[job].a];
-  const MovingObject& b = objects_[jobs_[job].b];
-  const double rounding = 0x1p-48 * std::max(a.largest_coordinate, b.largest_coordinate);
-  if (!(least > rounding)) worker.step.is_near_rounding = true;
+  const double nearest = distance - largest_approach_of(pair.motion);
+  if (!(std::max(least, nearest) > rounding_of_job(job))) worker.step.is_near_rounding = true;
+  if (nearest > least) return;
   bool used_exact = false;
   const std::optional<double> time =
       first_time_within(pair.motion, pair.relative, least, options.exact, used_exact);

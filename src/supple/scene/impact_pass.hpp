@@ -38,6 +38,17 @@ struct ImpactSearchOptions {
   ContinuousListing listing = ContinuousListing::all;
 };
 
+/// Two elements that come nearer by d, and then keep less than `StepOptions::keep` of their distance, are
+/// within d times this share of each other.
+inline double kept_share(const StepOptions& step) {
+  return step.keep / (1 - step.keep);
+}
+
+/// Two vertices at from + t (to - from), computed in double, come nearer by rounding by less than this share
+/// of their largest coordinate: each coordinate takes three roundings of at most 2^-53 of |from| + 2 |to -
+/// from|.
+constexpr double safe_step_rounding = 0x1p-48;
+
 /// A part of the step without contact.
 struct SafeStep {
   double time = 1;
@@ -116,8 +127,11 @@ class ImpactPass {
   void start(std::span<const ContactJob> jobs, std::span<const MovingObject> objects,
              const ImpactSearchOptions& options, const StopSignal& stop);
   ImpactOptions impact_of_job(std::uint32_t job) const;
-  /// What a safe step adds to the separation over the whole step.
+  /// The distance within which the pass searches, and what a safe step adds to it over the whole step.
+  double searched_distance(std::uint32_t job) const;
   double kept_distance(std::uint32_t job) const;
+  /// By how much rounding may bring two vertices of the job nearer in a safe step.
+  double rounding_of_job(std::uint32_t job) const;
   double largest_approach(std::uint32_t job) const;
   ObjectPairView view_of_job(std::uint32_t job) const;
   void run_task(std::size_t task, std::uint32_t worker);

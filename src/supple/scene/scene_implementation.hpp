@@ -33,8 +33,7 @@ struct Question {
   ImpactSearchOptions impact;
   ProximityListing proximity_listing = ProximityListing::features;
   bool colliding_vertices = false;
-  /// The share of an object's way by which its volume grows in a search for continuous contacts.
-  double reach_of_way = 0;
+  std::optional<StepOptions> safe_step{};  ///< continuous contacts: for a safe step
 
   bool has_intersections() const { return contains(contacts, ContactKinds::intersection); }
   bool is_continuous() const { return contains(contacts, ContactKinds::continuous); }
@@ -132,6 +131,7 @@ class Scene::Implementation {
     std::vector<ContactJob> jobs;
   };
 
+  double half_separation_of(const SceneObject& object, std::uint32_t index, const Question& question) const;
   void refit_objects(const Question& question);
   template <class Work, class Function>
   void for_each_object(std::span<const std::uint32_t> indices, const Work& work, const Function& function);
@@ -154,7 +154,7 @@ class Scene::Implementation {
   bool find_impacts(const DetectRequest& request, const StopSignal& stop);
   bool find_proximity(const DetectRequest& request, const StopSignal& stop);
   void search_on_the_way(const Question& question);
-  /// The longest part of the step, halved until rounded positions are reached without contact.
+  /// Halves the part of the step until rounded positions are reached without contact.
   double proven_step(double part) const;
   ImpactSearchOptions impact_options() const {
     return {options.impact, options.element_kinds, options.continuous_listing};
@@ -220,7 +220,9 @@ class Scene::Implementation {
   std::vector<ObjectPair> touching_pairs_, leaf_pairs_, near_pairs_, deep_pairs_;
   std::vector<ContactObject> contact_objects_;
   std::vector<MovingObject> element_objects_;
-  std::vector<std::vector<ChildBoxes>> ways_of_nodes_;  // by slot, of safe steps
+  // By slot, of safe steps.
+  std::vector<VertexWays> ways_;
+  std::vector<std::vector<ChildBoxes>> ways_of_nodes_;
   std::vector<QueriedObject> queried_objects_;
   std::vector<PenetratedObject> penetrated_objects_;
   std::vector<ObjectQueries> queries_of_workers_;

@@ -71,22 +71,22 @@ SceneObject::SceneObject(const PositionsView& positions, std::vector<Triangle> f
   }
 }
 
-SceneObject::Ways SceneObject::ways(const Parallel& parallel) const {
+VertexWays SceneObject::ways(const Parallel& parallel) const {
   constexpr std::size_t grain = 4096;
-  Ways all;
+  VertexWays all;
   const auto is_finite_at = [&](std::uint32_t v) {
     return is_finite(placement_.start_position(v)) && is_finite(placement_.position(v));
   };
   const auto way = [&](std::uint32_t v) { return placement_.position(v) - placement_.start_position(v); };
   const auto count = static_cast<std::uint32_t>(octree_.vertex_count());
-  // Of all vertices, in one order, so that the result does not depend on the number of threads.
+  // One thread sums the ways, so that the result does not depend on the number of threads.
   for (std::uint32_t v = 0; placement_.has_motion() && v < count; ++v) {
     if (is_finite_at(v)) all.mean = all.mean + (1.0 / count) * way(v);
   }
   if (!is_finite(all.mean)) all.mean = {};
-  std::vector<Ways> parts(parallel.worker_count());
+  std::vector<VertexWays> parts(parallel.worker_count());
   parallel.for_ranges(count, grain, [&](std::size_t begin, std::size_t end, std::uint32_t worker) {
-    Ways& part = parts[worker];
+    VertexWays& part = parts[worker];
     for (auto v = static_cast<std::uint32_t>(begin); v < end; ++v) {
       if (!is_finite_at(v)) continue;
       const Vec3d d = way(v), rest = d - all.mean;
@@ -96,7 +96,7 @@ SceneObject::Ways SceneObject::ways(const Parallel& parallel) const {
                                           largest_magnitude(placement_.start_position(v))});
     }
   });
-  for (const Ways& part : parts) {
+  for (const VertexWays& part : parts) {
     all.longest = std::max(all.longest, part.longest);
     all.farthest_from_mean = std::max(all.farthest_from_mean, part.farthest_from_mean);
     all.largest_coordinate = std::max(all.largest_coordinate, part.largest_coordinate);

@@ -10,6 +10,7 @@
 #include "core/parallel.hpp"
 #include "mesh/vertex_triangles.hpp"
 #include "octree/object_octree.hpp"
+#include "scene/element_candidates.hpp"
 #include "scene/moving_shape.hpp"
 #include "scene/placement.hpp"
 #include "scene/rebuild_policy.hpp"
@@ -81,12 +82,8 @@ class SceneObject {
     groups_.assign(groups.begin(), groups.end());
     masks_.assign(masks.begin(), masks.end());
   }
-  /// How far the vertices move, without those that are not finite. O(n).
-  struct Ways {
-    Vec3d mean;
-    double farthest_from_mean = 0, longest = 0, largest_coordinate = 0;
-  };
-  Ways ways(const Parallel& parallel) const;
+  /// O(n).
+  VertexWays ways(const Parallel& parallel) const;
   const MovingShape& moving() const { return moving_; }
   /// The elements at the end of the step: those of `moving` for an object at rest.
   const MovingShape& near() const { return placement_.has_motion() ? near_ : moving_; }

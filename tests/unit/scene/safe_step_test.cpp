@@ -150,8 +150,11 @@ TEST(SafeStep, DoesNotDependOnThreadsOrScale) {
     EXPECT_EQ(other.collision_free_step(), t) << threads;
   }
   Scene of_huge = scene_of(huge), of_tiny = scene_of(tiny);
-  EXPECT_NEAR(of_huge.collision_free_step(), t, 1e-9);
-  EXPECT_NEAR(of_tiny.collision_free_step(), t, 1e-9);
+  for (const double keep : {0.2, 0.9, 0.99}) {
+    const double expected = scene.collision_free_step({.keep = keep});
+    EXPECT_NEAR(of_huge.collision_free_step({.keep = keep}), expected, 1e-9) << keep;
+    EXPECT_NEAR(of_tiny.collision_free_step({.keep = keep}), expected, 1e-9) << keep;
+  }
 }
 
 /// A line search that repeats the step always advances, and nothing crosses at the rounded positions.
@@ -200,6 +203,31 @@ TEST(SafeStep, ReachesRoundedPositionsWithoutContact) {
     EXPECT_GT(t, 0) << gap;
     EXPECT_NEAR(t / gap, 0.8, 1e-4) << gap;
   }
+}
+
+/// Neither plate approaches the other, but the rounding of positions would bring them into contact.
+TEST(SafeStep, ProvesThatPlatesWhichMoveTogetherDoNotTouch) {
+  for (const double gap : {0x1p-52, 0x1p-51, 0x1p-50}) {
+    for (const double way : {0.7, 1 / 3.0, 1e5}) {
+      std::vector<Path> paths{{triangle_at(1 + gap), {}}, {triangle_at(1), {}}};
+      for (Path& path : paths) {
+        for (const Vec3d& p : path.mesh.positions) path.to.push_back(p + Vec3d{0, 0, way});
+      }
+      Scene scene = scene_of(paths);
+      const double t = scene.collision_free_step();
+      Scene check = scene_of({{paths[0].mesh, at(paths[0], t)}, {paths[1].mesh, at(paths[1], t)}});
+      EXPECT_FALSE(check.earliest_impact()) << gap << " " << way;
+    }
+  }
+}
+
+TEST(SafeStep, DoesNotEndWhereObjectsThatRestTouch) {
+  std::vector<Path> paths{{triangle_at(1 + 0x1p-50), triangle_at(0.3).positions},
+                          {triangle_at(1), triangle_at(1).positions}};
+  Scene scene = scene_of(paths);
+  for (int i = 0; i < 2; ++i) scene.add(triangle_at(-5), {.self_collision = true});
+  EXPECT_EQ(scene.collision_free_step(), scene_of(paths).collision_free_step());
+  EXPECT_GT(scene.collision_free_step(), 0);
 }
 
 TEST(SafeStep, IsNotEndedByPairsWithinTheSeparationThatPart) {

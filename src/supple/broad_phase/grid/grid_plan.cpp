@@ -137,7 +137,7 @@ void GridPlanner::choose_levels(std::size_t kind, std::span<const Sample> sample
   grid.levels.back().limit.fill(quantization_steps);
 }
 
-/// Of two levels whose kinds are paired, the boxes of the one with larger boxes are tested against the other.
+/// Two levels whose kinds are paired: the boxes of the level with larger boxes are tested against the other.
 void GridPlanner::pair_levels(const WantedKinds& wanted, std::vector<GridLevel>& levels) {
   static_assert(most_levels * volume_kind_count <= 32, "a word has a bit for each level");
   for (std::size_t i = 0; i < levels.size(); ++i) {
