@@ -150,6 +150,21 @@ class SceneOptions(ProgramTest):
                 with self.subTest(command=command, given=given):
                     self.assert_one_line_error(self.run_here(command, scene, *given), *parts)
 
+    def test_a_flag_that_needs_another_flag_with_meshes(self):
+        self.write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+        for given, parts in (
+            (("--neighbours", "exact"), ("--neighbours", "--self")),
+            (("--contacts", "continuous", "--skip-parting"), ("--skip-parting", "--min-separation")),
+            (("--max-time", "0.5"), ("--max-time", "--contacts continuous")),
+            (("--element-kinds", "edge-edge"), ("--element-kinds", "--contacts continuous or proximity")),
+            (("--contacts", "continuous", "--neighbours", "exact", "--self"), ("--neighbours", "--contacts intersection")),
+            (("--own-separation", "1"), ("--own-separation", "--contacts continuous")),
+        ):
+            with self.subTest(given=given):
+                self.assert_one_line_error(self.run_here("detect", "a.obj", *given), *parts)
+        self.done("detect", "a.obj", "--neighbours", "exact", "--self")
+        self.done("detect", "a.obj", "--contacts", "continuous", "--skip-parting", "--min-separation", "0.1")
+
     def test_unknown_keys_and_values(self):
         self.assert_one_line_error(self.run_here("detect", self.scene("broad_fase = 1\n")), "scene.toml:2", "did you mean broad_phase?")
         self.assert_one_line_error(self.run_here("detect", self.scene('broad_phase = "tree"\n')), "'tree' is not one of automatic, octree")
