@@ -173,55 +173,81 @@ class EmbreeCopies : public CandidateContestant {
   std::vector<Aabb> boxes_;
 };
 
-class EmbreeCloth : public ClothContestant {
+/// The boxes of the vertices, edges and faces of a cloth.
+class EmbreeElements {
  public:
-  void prepare(const ClothStep& step) override {
+  ClothBoxes boxes;  ///< change them before `prepare` and `find`
+
+  void prepare(const ClothStep& step) {
     triangles_ = step.triangles;
-    boxes_.prepare(step);
-    boxes_.update(step);
-    lists_ = {boxes_.vertex_boxes.data(), boxes_.edge_boxes.data(), boxes_.face_boxes.data()};
-    const std::size_t counts[] = {boxes_.vertex_boxes.size(), boxes_.edge_boxes.size(),
-                                  boxes_.face_boxes.size()};
+    lists_ = {boxes.vertex_boxes.data(), boxes.edge_boxes.data(), boxes.face_boxes.data()};
+    const std::size_t counts[] = {boxes.vertex_boxes.size(), boxes.edge_boxes.size(),
+                                  boxes.face_boxes.size()};
     for (std::size_t i = 0; i < 3; ++i) {
       scenes_[i] = std::make_unique<BoxScene>(device_, counts[i], bounds_of_listed_box, &lists_[i],
                                               RTC_BUILD_QUALITY_REFIT);
     }
   }
-  void frame(const ClothStep& step) override {
-    boxes_.update(step);
+  /// Calls `visit(ElementPair)` with all pairs of a vertex and a face, and of two edges, whose boxes overlap
+  /// and that share no vertex.
+  template <class Visit>
+  void find(const Visit& visit) {
+    Search<Visit> search{*this, visit};
     for (const auto& scene : scenes_) scene->update();
+    rtcCollide(scenes_[0]->scene(), scenes_[2]->scene(), Search<Visit>::visit_vertex_face, &search);
+    rtcCollide(scenes_[1]->scene(), scenes_[1]->scene(), Search<Visit>::visit_edges, &search);
+  }
+
+ private:
+  template <class Visit>
+  struct Search {
+    const EmbreeElements& elements;
+    const Visit& visit;
+
+    static void visit_vertex_face(void* user, RTCCollision* collisions, unsigned count) {
+      const auto& [elements, visit] = *static_cast<const Search*>(user);
+      const ClothBoxes& boxes = elements.boxes;
+      for (unsigned i = 0; i < count; ++i) {
+        const std::uint32_t place = collisions[i].primID0, face = collisions[i].primID1;
+        const std::uint32_t vertex = boxes.used_vertices[place];
+        if (boxes_overlap(boxes.vertex_boxes[place], boxes.face_boxes[face]) &&
+            !has_corner(elements.triangles_[face], vertex))
+          visit(ElementPair{false, vertex, face});
+      }
+    }
+    static void visit_edges(void* user, RTCCollision* collisions, unsigned count) {
+      const auto& [elements, visit] = *static_cast<const Search*>(user);
+      const ClothBoxes& boxes = elements.boxes;
+      for (unsigned i = 0; i < count; ++i) {
+        const std::uint32_t a = collisions[i].primID0, b = collisions[i].primID1;
+        if (a < b && boxes_overlap(boxes.edge_boxes[a], boxes.edge_boxes[b]) && !boxes.edges_share(a, b))
+          visit(ElementPair{true, a, b});
+      }
+    }
+  };
+
+  Device device_;
+  std::vector<Triangle> triangles_;
+  std::array<const Aabb*, 3> lists_{};
+  std::array<std::unique_ptr<BoxScene>, 3> scenes_;
+};
+
+class EmbreeCloth : public ClothContestant {
+ public:
+  void prepare(const ClothStep& step) override {
+    elements_.boxes.prepare(step);
+    elements_.boxes.update(step);
+    elements_.prepare(step);
+  }
+  void frame(const ClothStep& step) override {
+    elements_.boxes.update(step);
     candidates_.clear();
-    rtcCollide(scenes_[0]->scene(), scenes_[2]->scene(), keep_vertex_face, this);
-    rtcCollide(scenes_[1]->scene(), scenes_[1]->scene(), keep_edges, this);
+    elements_.find([&](const ElementPair& pair) { candidates_.push_back(pair); });
   }
   std::span<const ElementPair> candidates() const override { return candidates_; }
 
  private:
-  static void keep_vertex_face(void* user, RTCCollision* collisions, unsigned count) {
-    auto& self = *static_cast<EmbreeCloth*>(user);
-    for (unsigned i = 0; i < count; ++i) {
-      const std::uint32_t place = collisions[i].primID0, face = collisions[i].primID1;
-      const std::uint32_t vertex = self.boxes_.used_vertices[place];
-      if (boxes_overlap(self.boxes_.vertex_boxes[place], self.boxes_.face_boxes[face]) &&
-          !has_corner(self.triangles_[face], vertex))
-        self.candidates_.push_back({false, vertex, face});
-    }
-  }
-  static void keep_edges(void* user, RTCCollision* collisions, unsigned count) {
-    auto& self = *static_cast<EmbreeCloth*>(user);
-    for (unsigned i = 0; i < count; ++i) {
-      const std::uint32_t a = collisions[i].primID0, b = collisions[i].primID1;
-      if (a < b && boxes_overlap(self.boxes_.edge_boxes[a], self.boxes_.edge_boxes[b]) &&
-          !self.boxes_.edges_share(a, b))
-        self.candidates_.push_back({true, a, b});
-    }
-  }
-
-  Device device_;
-  ClothBoxes boxes_;
-  std::vector<Triangle> triangles_;
-  std::array<const Aabb*, 3> lists_{};
-  std::array<std::unique_ptr<BoxScene>, 3> scenes_;
+  EmbreeElements elements_;
   std::vector<ElementPair> candidates_;
 };
 
@@ -229,24 +255,25 @@ class EmbreeNearCloth : public Contestant<ClothStep> {
  public:
   explicit EmbreeNearCloth(double margin) : margin_(margin) {}
   void prepare(const ClothStep& step) override {
-    step_ = &step;
-    boxes_.prepare(step);
-    boxes_.update_grown(step, margin_);
-    lists_ = {boxes_.vertex_boxes.data(), boxes_.edge_boxes.data(), boxes_.face_boxes.data()};
-    const std::size_t counts[] = {boxes_.vertex_boxes.size(), boxes_.edge_boxes.size(),
-                                  boxes_.face_boxes.size()};
-    for (std::size_t i = 0; i < 3; ++i) {
-      scenes_[i] = std::make_unique<BoxScene>(device_, counts[i], bounds_of_listed_box, &lists_[i],
-                                              RTC_BUILD_QUALITY_REFIT);
-    }
+    elements_.boxes.prepare(step);
+    elements_.boxes.update_grown(step, margin_);
+    elements_.prepare(step);
   }
   void frame(const ClothStep& step) override {
-    step_ = &step;
-    boxes_.update_grown(step, margin_);
-    for (const auto& scene : scenes_) scene->update();
+    elements_.boxes.update_grown(step, margin_);
     near_.clear();
-    rtcCollide(scenes_[0]->scene(), scenes_[2]->scene(), keep_vertex_face, this);
-    rtcCollide(scenes_[1]->scene(), scenes_[1]->scene(), keep_edges, this);
+    const std::vector<Vec3d>& p = step.start;
+    elements_.find([&](const ElementPair& pair) {
+      double distance = 0;
+      if (pair.is_edge_edge) {
+        const auto &e = elements_.boxes.edges[pair.a], &f = elements_.boxes.edges[pair.b];
+        distance = plain_distance({p[e[0]], p[e[1]]}, {p[f[0]], p[f[1]]});
+      } else {
+        const Triangle& t = step.triangles[pair.b];
+        distance = plain_distance(p[pair.a], {p[t[0]], p[t[1]], p[t[2]]});
+      }
+      if (distance <= 2 * margin_) near_.push_back({pair, distance});
+    });
   }
   PairDigest pairs() const override {
     PairDigest digest;
@@ -262,40 +289,8 @@ class EmbreeNearCloth : public Contestant<ClothStep> {
     double distance;
   };
 
-  void add(const ElementPair& elements, double distance) {
-    if (distance <= 2 * margin_) near_.push_back({elements, distance});
-  }
-  static void keep_vertex_face(void* user, RTCCollision* collisions, unsigned count) {
-    auto& self = *static_cast<EmbreeNearCloth*>(user);
-    const std::vector<Vec3d>& p = self.step_->start;
-    for (unsigned i = 0; i < count; ++i) {
-      const std::uint32_t place = collisions[i].primID0, face = collisions[i].primID1;
-      const std::uint32_t vertex = self.boxes_.used_vertices[place];
-      const Triangle& t = self.step_->triangles[face];
-      if (boxes_overlap(self.boxes_.vertex_boxes[place], self.boxes_.face_boxes[face]) &&
-          !has_corner(t, vertex))
-        self.add({false, vertex, face}, plain_distance(p[vertex], {p[t[0]], p[t[1]], p[t[2]]}));
-    }
-  }
-  static void keep_edges(void* user, RTCCollision* collisions, unsigned count) {
-    auto& self = *static_cast<EmbreeNearCloth*>(user);
-    const std::vector<Vec3d>& p = self.step_->start;
-    for (unsigned i = 0; i < count; ++i) {
-      const std::uint32_t a = collisions[i].primID0, b = collisions[i].primID1;
-      if (a < b && boxes_overlap(self.boxes_.edge_boxes[a], self.boxes_.edge_boxes[b]) &&
-          !self.boxes_.edges_share(a, b)) {
-        const auto &e = self.boxes_.edges[a], &f = self.boxes_.edges[b];
-        self.add({true, a, b}, plain_distance({p[e[0]], p[e[1]]}, {p[f[0]], p[f[1]]}));
-      }
-    }
-  }
-
-  Device device_;
   double margin_;
-  const ClothStep* step_ = nullptr;
-  ClothBoxes boxes_;
-  std::array<const Aabb*, 3> lists_{};
-  std::array<std::unique_ptr<BoxScene>, 3> scenes_;
+  EmbreeElements elements_;
   std::vector<NearPair> near_;
 };
 
@@ -389,27 +384,8 @@ class EmbreeQueries : public QueryContestant {
     const Vec3f &a = self.positions_[t[0]], &b = self.positions_[t[1]], &c = self.positions_[t[2]];
     const Vec3f ab = between(a, b), ac = between(a, c), ap = between(a, p), bp = between(b, p),
                 cp = between(c, p);
-    const float d1 = dot(ab, ap), d2 = dot(ac, ap), d3 = dot(ab, bp), d4 = dot(ac, bp), d5 = dot(ab, cp),
-                d6 = dot(ac, cp);
-    const float va = d3 * d6 - d5 * d4, vb = d5 * d2 - d1 * d6, vc = d1 * d4 - d3 * d2;
-    float v = 0, w = 0;
-    if (d1 <= 0 && d2 <= 0) {
-    } else if (d3 >= 0 && d4 <= d3) {
-      v = 1;
-    } else if (vc <= 0 && d1 >= 0 && d3 <= 0) {
-      v = d1 / (d1 - d3);
-    } else if (d6 >= 0 && d5 <= d6) {
-      w = 1;
-    } else if (vb <= 0 && d2 >= 0 && d6 <= 0) {
-      w = d2 / (d2 - d6);
-    } else if (va <= 0 && d4 >= d3 && d5 >= d6) {
-      w = (d4 - d3) / ((d4 - d3) + (d5 - d6));
-      v = 1 - w;
-    } else {
-      const float part = 1 / (va + vb + vc);
-      v = vb * part;
-      w = vc * part;
-    }
+    const auto [v, w] =
+        nearest_weights(dot(ab, ap), dot(ac, ap), dot(ab, bp), dot(ac, bp), dot(ab, cp), dot(ac, cp));
     const Vec3f way{ap.x - v * ab.x - w * ac.x, ap.y - v * ab.y - w * ac.y, ap.z - v * ab.z - w * ac.z};
     const float distance = std::sqrt(dot(way, way));
     if (distance >= arguments->query->radius) return false;
