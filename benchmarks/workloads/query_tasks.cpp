@@ -8,7 +8,7 @@
 namespace supple::benchmarks {
 namespace {
 
-constexpr std::size_t queries = 100'000;
+constexpr std::size_t queries = 100'000, points_for_inside = 1'000'000;
 
 Vec3d in_single_precision(const Vec3d& p) {
   return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
@@ -69,7 +69,8 @@ std::optional<QueryTask> make_query_task(const std::string& name) {
   if (kind == QueryTaskKind::distance)
     task.offset = in_single_precision({(box.high.x - box.low.x) * (is_near ? 1.025 : 2), 0, 0});
   const bool has_queries = kind != QueryTaskKind::penetration && kind != QueryTaskKind::distance;
-  for (std::size_t i = 0; i < queries && has_queries; ++i) {
+  const std::size_t count = kind == QueryTaskKind::inside ? points_for_inside : queries;
+  for (std::size_t i = 0; i < count && has_queries; ++i) {
     if (kind == QueryTaskKind::rays) {
       const Vec3d origin = box.random_point(random);
       task.rays.push_back({origin, in_single_precision(random.direction())});

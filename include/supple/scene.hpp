@@ -157,9 +157,9 @@ class Scene {
   // the numbers of queries and results differ, and when the filter names an object that is not in the scene.
 
   /// For each point the nearest triangle, or nothing when there is none within the largest distance and when
-  /// the point is not finite. Takes about 2 µs for a point near a surface of 70,000 triangles, and 5 µs for
-  /// one far away. Throws `Error` when the largest distance is negative or NaN, and for a signed distance
-  /// when a surface is open.
+  /// the point is not finite. Takes about 1 µs for each of many points near a surface of 70,000 triangles,
+  /// and 3 µs for those far away; twice as long for a single point. Throws `Error` when the largest distance
+  /// is negative or NaN, and for a signed distance when a surface is open.
   void closest(std::span<const Vec3d> points, std::span<std::optional<ClosestPoint>> results,
                const ClosestOptions& options = {});
   /// For each ray the first triangle on it, or nothing when there is none, when a number of the ray is not
@@ -177,7 +177,9 @@ class Scene {
   /// For each point whether it is inside an object of the filter: outside of all, else on a triangle of one,
   /// or inside at least one. Exact. A point inside a part of a surface that crosses itself is inside where a
   /// ray from it crosses the surface an odd number of times. Points that are not finite are outside, and so
-  /// are all points of an object with a vertex that is not finite, except on its triangles.
+  /// are all points of an object with a vertex that is not finite, except on its triangles. Takes about
+  /// 0.3 µs for a point in the box of 70,000 triangles; many points in one call share a grid of at most four
+  /// million cells, and a million of them take 30 ms.
   ///
   /// The surfaces must be closed: throws `Error` when an object of the filter has an edge with an odd number
   /// of triangles, and names it. The first call checks that in O(n log n).

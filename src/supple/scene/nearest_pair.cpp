@@ -14,8 +14,8 @@
 namespace supple {
 namespace {
 
-auto place_of(const ProximityPair& pair) {
-  return std::tie(pair.kind_a, pair.kind_b, pair.element_a, pair.element_b);
+PairName name_of(const ProximityPair& pair) {
+  return {pair.kind_a, pair.kind_b, pair.element_a, pair.element_b};
 }
 
 /// Whether the boxes of some points are farther apart than `distance`.
@@ -75,6 +75,8 @@ void NearestPairSearch::start(const QueriedObject& a, const QueriedObject& b, Se
   intersects_ = false;
   best_.reset();
   stack_.clear();
+  vertices_and_faces_.count = 0;
+  edges_.count = 0;
   for (int axis = 0; axis < 3; ++axis) {
     const double from = a.view.translation[axis], to = b.view.translation[axis];
     offset_[axis] = from - to;
@@ -118,7 +120,13 @@ std::optional<ProximityPair> NearestPairSearch::nearest(const QueriedObject& a, 
     decide(*guess);
   else
     guess_by_projection();
+  consider(vertices_and_faces_);
+  consider(edges_);
   descend();
+  if (!intersects_) {
+    consider(vertices_and_faces_);
+    consider(edges_);
+  }
   return intersects_ ? contact_pair() : best_;
 }
 
@@ -308,29 +316,55 @@ void NearestPairSearch::decide_elements(TrianglePair triangles, const TrianglePo
     const std::array edge_a{a[i], a[next]};
     if (!are_apart(along_a[i], std::max({along_b[0], along_b[1], along_b[2]})) &&
         !boxes_apart(std::span(&a[i], 1), b, limit_))
-      consider(vertex(vertices_a, a, i), face(*b_, triangles.b, b), PairOrder::given, triangles);
+      add({vertex(vertices_a, a, i), face(*b_, triangles.b, b), PairOrder::given, triangles});
     if (!are_apart(std::min({along_a[0], along_a[1], along_a[2]}), along_b[i]) &&
         !boxes_apart(std::span(&b[i], 1), a, limit_))
-      consider(vertex(vertices_b, b, i), face(*a_, triangles.a, a), PairOrder::swapped, triangles);
+      add({vertex(vertices_b, b, i), face(*a_, triangles.a, a), PairOrder::swapped, triangles});
     for (std::size_t k = 0; k < 3; ++k) {
       const std::size_t after = (k + 1) % 3;
       if (!are_apart(std::min(along_a[i], along_a[next]), std::max(along_b[k], along_b[after])) &&
           !boxes_apart(edge_a, std::array{b[k], b[after]}, limit_))
-        consider(edge(vertices_a, a, i), edge(vertices_b, b, k), PairOrder::given, triangles);
+        add({edge(vertices_a, a, i), edge(vertices_b, b, k), PairOrder::given, triangles});
     }
   }
 }
 
-void NearestPairSearch::consider(const PairElement& first, const PairElement& second, PairOrder order,
-                                 TrianglePair triangles) {
+void NearestPairSearch::add(const ElementCandidate& candidate) {
+  Candidates& list = candidate.first.count == 1 ? vertices_and_faces_ : edges_;
+  const ElementPoints elements = points_of(candidate.first, candidate.second);
+  for (std::size_t i = 0; i < 4; ++i) list.block.set(i, list.count, elements.points[i]);
+  list.candidates[list.count++] = candidate;
+  if (list.count == PointsBlock::capacity) consider(list);
+}
+
+/// Considers those that the kernel does not exclude.
+void NearestPairSearch::consider(Candidates& list) {
+  const bool are_edges = &list == &edges_;
+  std::array<FeatureCode, PointsBlock::capacity> codes;
+  classify(list.block, list.count, are_edges, limit_, codes.data());
+  for (std::size_t i = 0; i < list.count; ++i) {
+    if (codes[i] == FeatureCode::apart) continue;
+    const ElementCandidate& candidate = list.candidates[i];
+    // Most of the others have the nearest features again, which several triangles share.
+    const bool is_known =
+        codes[i] != FeatureCode::unknown && best_ &&
+        name_of_pair(candidate.first, candidate.second, features_of_code(codes[i], are_edges),
+                     candidate.order, ProximityListing::features) == name_of(*best_);
+    if (!is_known) consider(candidate);
+  }
+  list.count = 0;
+}
+
+void NearestPairSearch::consider(const ElementCandidate& candidate) {
+  const auto& [first, second, order, triangles] = candidate;
   const auto pair = proximity_pair_within(first, second, {a_->id, b_->id}, order, ProximityListing::features,
                                           limit_, used_exact_);
   if (!pair) return;
   const ElementPoints elements = points_of(first, second);
   if (best_) {
-    const bool is_same = place_of(*pair) == place_of(*best_);
+    const bool is_same = name_of(*pair) == name_of(*best_);
     const int side = is_same ? 0 : compare_distances(elements, best_elements_, used_exact_);
-    if (side > 0 || (side == 0 && place_of(*best_) <= place_of(*pair))) return;
+    if (side > 0 || (side == 0 && name_of(*best_) <= name_of(*pair))) return;
   }
   best_ = pair;
   best_elements_ = elements;

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "contact/distance_kernels.hpp"
 #include "narrow_phase/query_kernels.hpp"
 #include "narrow_phase/recent_leaf_boxes.hpp"
 #include "scene/object_queries.hpp"
@@ -38,6 +39,17 @@ class NearestPairSearch {
   struct Projections {
     std::array<double, leaf_block> least;
   };
+  /// A vertex and a face, or two edges.
+  struct ElementCandidate {
+    PairElement first, second;
+    PairOrder order = PairOrder::given;
+    TrianglePair triangles;
+  };
+  struct Candidates {
+    PointsBlock block;
+    std::array<ElementCandidate, PointsBlock::capacity> candidates;
+    std::size_t count = 0;
+  };
   enum class Search : std::uint8_t { any_contact, nearest };
 
   void start(const QueriedObject& a, const QueriedObject& b, Search search, double max_distance);
@@ -50,7 +62,9 @@ class NearestPairSearch {
                       double sign) const;
   void decide(TrianglePair triangles);
   void decide_elements(TrianglePair triangles, const TrianglePoints& a, const TrianglePoints& b);
-  void consider(const PairElement& first, const PairElement& second, PairOrder order, TrianglePair triangles);
+  void add(const ElementCandidate& candidate);
+  void consider(Candidates& list);
+  void consider(const ElementCandidate& candidate);
   void guess_by_projection();
   ProximityPair contact_pair() const;
   void set_limit(double limit);
@@ -71,6 +85,7 @@ class NearestPairSearch {
   std::optional<ProximityPair> best_;
   ElementPoints best_elements_;
   std::vector<Entry> stack_;
+  Candidates vertices_and_faces_, edges_;
   RecentLeafBoxes recent_;
   ObjectQueries queries_;
 };

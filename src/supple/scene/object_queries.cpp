@@ -14,6 +14,7 @@
 #include "geometry/vector.hpp"
 #include "narrow_phase/query_kernels.hpp"
 #include "scene/feature_name.hpp"
+#include "scene/upward_ray.hpp"
 
 namespace supple {
 namespace {
@@ -67,14 +68,6 @@ double ray_bound(const Ray& ray, const Box& box) {
     last = std::min(last, above(leave));
   }
   return first <= last ? std::min(first, std::numeric_limits<double>::max()) : infinity;
-}
-
-/// 0 when the upward line from the point meets the box, otherwise infinite.
-template <class Box>
-double column_bound(const Vec3d& point, const Box& box) {
-  const bool meets = box.min[0] <= point.x && point.x <= box.max[0] && box.min[1] <= point.y &&
-                     point.y <= box.max[1] && point.z <= box.max[2];
-  return meets ? 0 : infinity;
 }
 
 ElementPoints point_and_triangle(const Vec3d& point, const TrianglePoints& corners) {
@@ -215,23 +208,6 @@ class NearestTriangle {
   FeatureName feature_;
   bool used_exact_ = false;
 };
-
-/// The turn of a, b and the point in the x-y plane, where the point is moved by (e, e²) for an infinitely
-/// small e > 0. 0 only when a and b have equal x and y.
-int turn_beside(const Vec3d& a, const Vec3d& b, const Vec3d& point, bool& used_exact) {
-  if (const int turn = orient2d(a, b, point, 2, used_exact)) return turn;
-  if (a.y != b.y) return a.y > b.y ? 1 : -1;
-  return (b.x > a.x) - (b.x < a.x);
-}
-
-/// Whether a ray from beside the point, straight up, crosses the triangle, which does not contain the point.
-bool crosses_above(const TrianglePoints& corners, const Vec3d& point, bool& used_exact) {
-  const int turn = turn_beside(corners[0], corners[1], point, used_exact);
-  if (turn == 0 || turn_beside(corners[1], corners[2], point, used_exact) != turn ||
-      turn_beside(corners[2], corners[0], point, used_exact) != turn)
-    return false;
-  return orient3d(corners[0], corners[1], corners[2], point, used_exact) * turn < 0;
-}
 
 /// By the place on the ray, then by object and triangle.
 bool is_before(const TriangleOnRay& p, const TriangleOnRay& q) {
@@ -441,21 +417,14 @@ void ObjectQueries::visit_overlapping(std::uint32_t index, const QueriedObject& 
 }
 
 Containment ObjectQueries::inside(std::uint32_t index, const QueriedObject& object, const Vec3d& point) {
-  bool is_on = false, is_inside = false, used_exact = false;
+  if (!is_finite(point)) return Containment::outside;
+  UpwardRay ray(point);
   const PointBounds seen = seen_by(object, point);
   Aabb column{seen.low, seen.high};
   column.max.z = std::numeric_limits<float>::infinity();
-  visit_overlapping(index, object, column, [&](std::uint32_t t) {
-    if (is_on) return;
-    const TrianglePoints corners = object.corners(t);
-    const CornerBox box(corners);
-    if (column_bound(point, box) > 0) return;
-    if (box.min.z <= point.z)
-      is_on = distance_within(point_and_triangle(point, corners), 0, used_exact).has_value();
-    if (!is_on && crosses_above(corners, point, used_exact)) is_inside = !is_inside;
-  });
-  if (is_on) return Containment::on;
-  return is_inside && !object.has_inert_faces ? Containment::inside : Containment::outside;
+  visit_overlapping(index, object, column, [&](std::uint32_t t) { ray.meet(object.corners(t)); });
+  if (ray.starts_on_surface()) return Containment::on;
+  return ray.is_odd() && !object.has_inert_faces ? Containment::inside : Containment::outside;
 }
 
 void ObjectQueries::overlaps(std::span<const QueriedObject> objects, const QueryBox& box, std::uint32_t query,
@@ -493,18 +462,6 @@ void ObjectQueries::overlaps(std::span<const QueriedObject> objects, const Query
         found.push_back({query, object.id, object.triangle_ids[t]});
     });
   }
-}
-
-Containment ObjectQueries::inside(std::span<const QueriedObject> objects, const Vec3d& point) {
-  Containment result = Containment::outside;
-  if (!is_finite(point)) return result;
-  order(
-      objects, [&](const Aabb& box) { return column_bound(point, box); }, 0);
-  for (const auto& [bound, index] : order_) {
-    result = std::max(result, inside(index, objects[index], point));
-    if (result == Containment::inside) break;
-  }
-  return result;
 }
 
 }  // namespace supple

@@ -69,9 +69,8 @@ class ObjectQueries {
                 std::vector<Overlap>& found);
   void overlaps(std::span<const QueriedObject> objects, const QuerySphere& sphere, std::uint32_t query,
                 std::vector<Overlap>& found);
-  /// `on` before `inside`, for each object; `inside` if the point is inside one of them, else `on` if it is
-  /// on one of them. Objects with an inert triangle contain nothing.
-  Containment inside(std::span<const QueriedObject> objects, const Vec3d& point);
+  /// `index` is a number of the caller. Objects with an inert triangle contain nothing.
+  Containment inside(std::uint32_t index, const QueriedObject& object, const Vec3d& point);
 
  private:
   template <class Chosen, class Visit>
@@ -85,7 +84,6 @@ class ObjectQueries {
   template <class Visit>
   void visit_triangles_on_ray(std::span<const QueriedObject> objects, const Ray& ray, const double& limit,
                               const Visit& visit);
-  Containment inside(std::uint32_t index, const QueriedObject& object, const Vec3d& point);
   /// The objects with a bound of at most `limit`, the smallest first.
   template <class BoundOf>
   void order(std::span<const QueriedObject> objects, const BoundOf& bound_of, double limit);

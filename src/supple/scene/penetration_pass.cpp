@@ -167,7 +167,7 @@ void PenetrationPass::find_inside(const Task& task, const DetectResult& result, 
   for (std::uint32_t c = 0; c < corners.size(); ++c) {
     const std::uint32_t v = corners[c], root = worker.sets.find(c).root;
     worker.has_contact[around.part_of(v)] = 1;
-    if (root == c) worker.state[c] = worker.queries.inside(outer, inner.surface.position(v));
+    if (root == c) worker.state[c] = worker.queries.inside(0, outer.front(), inner.surface.position(v));
     if (worker.state[root] == Containment::on) worker.on_surface.push_back(v);
     if (worker.state[root] != Containment::inside) continue;
     marks[v] |= is_visited;
@@ -178,7 +178,8 @@ void PenetrationPass::find_inside(const Task& task, const DetectResult& result, 
   for (std::uint32_t part = 0; part < around.parts().size(); ++part) {
     if (worker.has_contact[part] != 0) continue;
     const auto [vertex, count] = around.parts()[part];
-    if (worker.queries.inside(outer, inner.surface.position(vertex)) != Containment::inside) continue;
+    if (worker.queries.inside(0, outer.front(), inner.surface.position(vertex)) != Containment::inside)
+      continue;
     ++contained;
     worker.parts.push_back({inner.queried.id, outer.front().id, vertex, count, false});
     marks[vertex] |= is_visited;

@@ -38,16 +38,19 @@ void Scene::Implementation::refit_for_queries() {
   result.stats = stats;
 }
 
+/// `places` are those of the queries. Neighbours follow each other, because a search is fast where the one
+/// before it was near.
 template <class Answer>
-void Scene::Implementation::answer_queries(const QueryFilter& seen, std::size_t count, const char* call,
-                                           const Answer& answer) {
+void Scene::Implementation::answer_queries(std::span<const Vec3d> places, const Answer& answer) {
   constexpr std::size_t grain = 64;
-  list_queried_objects(seen, call);
+  order_of_queries_.resize(places.size());
+  for (std::uint32_t i = 0; i < places.size(); ++i) order_of_queries_[i].triangle = i;
+  sort_along_curve(order_of_queries_, places);
   queries_of_workers_.resize(parallel.worker_count());
-  parallel.for_ranges(count, grain, [&](std::size_t begin, std::size_t end, std::uint32_t worker) {
+  parallel.for_ranges(places.size(), grain, [&](std::size_t begin, std::size_t end, std::uint32_t worker) {
     ObjectQueries& queries = queries_of_workers_[worker];
     queries.start();
-    for (std::size_t i = begin; i < end; ++i) answer(queries, i);
+    for (std::size_t k = begin; k < end; ++k) answer(queries, order_of_queries_[k].triangle);
   });
 }
 
@@ -96,7 +99,8 @@ void Scene::Implementation::closest(std::span<const Vec3d> points,
   check_counts(points.size(), results.size(), "closest");
   check_distance(query.max_distance, "closest");
   if (query.signed_distance) check_closed(query.filter, "closest");
-  answer_queries(query.filter, points.size(), "closest", [&](ObjectQueries& queries, std::size_t i) {
+  list_queried_objects(query.filter, "closest");
+  answer_queries(points, [&](ObjectQueries& queries, std::size_t i) {
     results[i] = queries.closest(queried_objects_, points[i], query.max_distance);
     if (query.signed_distance && results[i] && queries.is_inside_nearest(queried_objects_, points[i]))
       results[i]->distance = -results[i]->distance;
@@ -106,7 +110,10 @@ void Scene::Implementation::closest(std::span<const Vec3d> points,
 void Scene::Implementation::cast(std::span<const Ray> rays, std::span<std::optional<RayHit>> results,
                                  const CastOptions& query) {
   check_counts(rays.size(), results.size(), "cast");
-  answer_queries(query.filter, rays.size(), "cast", [&](ObjectQueries& queries, std::size_t i) {
+  list_queried_objects(query.filter, "cast");
+  origins_.clear();
+  for (const Ray& ray : rays) origins_.push_back(ray.origin);
+  answer_queries(origins_, [&](ObjectQueries& queries, std::size_t i) {
     results[i] = queries.cast(queried_objects_, rays[i], query.count_hits);
   });
 }
@@ -140,8 +147,46 @@ void Scene::Implementation::inside(std::span<const Vec3d> points, std::span<Cont
                                    const QueryFilter& seen) {
   check_counts(points.size(), results.size(), "inside");
   check_closed(seen, "inside");
-  answer_queries(seen, points.size(), "inside", [&](ObjectQueries& queries, std::size_t i) {
-    results[i] = queries.inside(queried_objects_, points[i]);
+  list_queried_objects(seen, "inside");
+  queries_of_workers_.resize(parallel.worker_count());
+  std::fill(results.begin(), results.end(), Containment::outside);
+  for (const QueriedObject& object : queried_objects_) find_inside(object, points, results);
+}
+
+/// Raises the results of the points in the box of the object.
+void Scene::Implementation::find_inside(const QueriedObject& object, std::span<const Vec3d> points,
+                                        std::span<Containment> results) {
+  constexpr std::size_t grain = 4096;
+  const auto in_box = [&](const Vec3d& point) {
+    bool is_in = true;
+    for (int axis = 0; axis < 3; ++axis)
+      is_in &= object.box.min[axis] <= point[axis] && point[axis] <= object.box.max[axis];
+    return is_in;
+  };
+  const auto count = static_cast<std::size_t>(std::count_if(points.begin(), points.end(), in_box));
+  if (count == 0) return;
+  queries_of_workers_.front().start();
+  const bool has_cells = containment_cells_.build(object, count, queries_of_workers_.front());
+  order_of_workers_.resize(parallel.worker_count());
+  parallel.for_ranges(points.size(), grain, [&](std::size_t begin, std::size_t end, std::uint32_t worker) {
+    std::vector<CurvePlace>& open = order_of_workers_[worker];
+    open.clear();
+    for (std::size_t i = begin; i < end; ++i) {
+      if (results[i] == Containment::inside || !in_box(points[i])) continue;
+      const auto side = has_cells ? containment_cells_.side_of(points[i]) : std::nullopt;
+      if (side) {
+        results[i] = std::max(results[i], *side);
+      } else {
+        open.push_back({0, static_cast<std::uint32_t>(i)});
+      }
+    }
+    sort_along_curve(open, points);
+    ObjectQueries& queries = queries_of_workers_[worker];
+    queries.start();
+    for (const CurvePlace& place : open) {
+      Containment& answer = results[place.triangle];
+      answer = std::max(answer, queries.inside(0, object, points[place.triangle]));
+    }
   });
 }
 

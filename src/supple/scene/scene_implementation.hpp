@@ -11,7 +11,9 @@
 #include "broad_phase/pair_finder.hpp"
 #include "core/parallel.hpp"
 #include "core/stop_signal.hpp"
+#include "octree/morton_curve.hpp"
 #include "scene/contact_pass.hpp"
+#include "scene/containment_cells.hpp"
 #include "scene/impact_pass.hpp"
 #include "scene/nearest_pair.hpp"
 #include "scene/object_queries.hpp"
@@ -70,9 +72,11 @@ class Scene::Implementation {
   const DetectResult& detect(const DetectRequest& request);
   std::optional<ContinuousContact> earliest_impact();
   double collision_free_step(const StepOptions& step);
-  /// Calls `answer(queries, objects, i)` for all i below `count`, with objects at their present positions.
+  /// Calls `answer(queries, i)` once for each query i.
   template <class Answer>
-  void answer_queries(const QueryFilter& seen, std::size_t count, const char* call, const Answer& answer);
+  void answer_queries(std::span<const Vec3d> places, const Answer& answer);
+  void find_inside(const QueriedObject& object, std::span<const Vec3d> points,
+                   std::span<Containment> results);
   void closest(std::span<const Vec3d> points, std::span<std::optional<ClosestPoint>> results,
                const ClosestOptions& query);
   void cast(std::span<const Ray> rays, std::span<std::optional<RayHit>> results, const CastOptions& query);
@@ -226,6 +230,10 @@ class Scene::Implementation {
   std::vector<QueriedObject> queried_objects_;
   std::vector<PenetratedObject> penetrated_objects_;
   std::vector<ObjectQueries> queries_of_workers_;
+  std::vector<CurvePlace> order_of_queries_;
+  std::vector<std::vector<CurvePlace>> order_of_workers_;
+  std::vector<Vec3d> origins_;  // of rays
+  ContainmentCells containment_cells_;
   std::vector<std::vector<Overlap>> overlaps_of_workers_;
   std::vector<Overlap> overlaps_;
   /// The hits of one ray in the list of a worker.

@@ -12,6 +12,7 @@
 #include "contact/distance_algebra.hpp"
 #include "supple/error.hpp"
 #include "supple/inspection.hpp"
+#include "supple/models.hpp"
 #include "supple/scene.hpp"
 #include "support/golden_scenes.hpp"
 #include "support/hard_scenes.hpp"
@@ -325,6 +326,95 @@ TEST(QueriesInside, EqualBarycentricCoordinatesOnALattice) {
 }
 
 const TriangleMesh corner_mesh = tetrahedron({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}});
+
+/// Points around a mesh: anywhere, at its corners, edges and faces and beside them, and on lattices in its
+/// box.
+std::vector<Vec3d> points_around(const TriangleMesh& mesh, RandomNumbers& random) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  Vec3d low{infinity, infinity, infinity}, high = Vec3d{} - low;
+  for (const Vec3d& p : mesh.positions) {
+    for (int axis = 0; axis < 3; ++axis) {
+      low[axis] = std::fmin(low[axis], p[axis]);
+      high[axis] = std::fmax(high[axis], p[axis]);
+    }
+  }
+  std::vector<Vec3d> points;
+  for (std::uint32_t i = 0; i < 4000; ++i) {
+    const Triangle& t = mesh.triangles[random.below(static_cast<std::uint32_t>(mesh.triangles.size()))];
+    const Vec3d corner = mesh.positions[t[0]];
+    Vec3d point;
+    for (int axis = 0; axis < 3; ++axis) {
+      const std::uint32_t parts = 1 + random.below(24);
+      const double beside = std::nextafter(corner[axis], random.below(2) == 0 ? infinity : -infinity);
+      const double choices[] = {
+          low[axis] + (high[axis] - low[axis]) * random.uniform(-0.05, 1.05),
+          corner[axis],
+          beside,
+          corner[axis] / 2 + mesh.positions[t[1]][axis] / 2,
+          corner[axis] / 4 + mesh.positions[t[1]][axis] / 4 + mesh.positions[t[2]][axis] / 2,
+          low[axis] + (high[axis] - low[axis]) * random.below(parts + 1) / parts};
+      // Mostly the same choice for all axes.
+      point[axis] = choices[random.below(10) > 0 ? i % 6 : random.below(6)];
+    }
+    points.push_back(point);
+  }
+  return points;
+}
+
+/// Few points are compared with the surface one by one, many by cells.
+TEST(QueriesInside, AnswerManyPointsAsTheyAnswerFew) {
+  RandomNumbers random(8);
+  TriangleMesh pile;  // of crossing tetrahedra
+  for (int i = 0; i < 60; ++i) {
+    std::array<Vec3d, 4> corners;
+    const Vec3d place = random.vector(1);
+    for (Vec3d& corner : corners) corner = place + random.vector(0.3);
+    const TriangleMesh part = tetrahedron(corners);
+    const auto first = static_cast<std::uint32_t>(pile.positions.size());
+    pile.positions.insert(pile.positions.end(), part.positions.begin(), part.positions.end());
+    for (const Triangle& t : part.triangles)
+      pile.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+  }
+  const auto scaled = [](TriangleMesh mesh, const Vec3d& factors) {
+    for (Vec3d& p : mesh.positions) p = {p.x * factors.x, p.y * factors.y, p.z * factors.z};
+    return mesh;
+  };
+  TriangleMesh inert = pile;
+  inert.positions[5].y = nan;
+  const std::vector<TriangleMesh> meshes{pile,
+                                         inert,
+                                         make_box({1, 2, 3}),
+                                         make_box({1, 1, 1}, 9),
+                                         make_torus(20, 12),
+                                         make_icosphere(6),
+                                         scaled(pile, {0x1p300, 0x1p300, 0x1p300}),
+                                         scaled(pile, {0x1p120, 0x1p120, 0x1p120}),
+                                         scaled(pile, {0x1p-300, 0x1p-300, 0x1p-300}),
+                                         scaled(pile, {0x1p-140, 0x1p-140, 0x1p-140}),
+                                         scaled(make_torus(20, 12), {1, 0x1p-60, 0x1p60}),
+                                         scaled(make_torus(20, 12), {1, 0, 1})};
+  std::array<int, 3> counts{};
+  for (std::size_t i = 0; i < meshes.size(); ++i) {
+    for (const Vec3d& offset : {Vec3d{}, Vec3d{1.0 / 3, 1e6, -0.1}}) {
+      Scene scene({.threads = 2});
+      scene.translate(scene.add(meshes[i]), offset);
+      if (i < 2) scene.add(make_box({0.5, 0.5, 0.5}));
+      std::vector<Vec3d> points = points_around(meshes[i], random);
+      for (Vec3d& p : points) p = p + offset;
+      points[7].x = nan;
+      const std::vector<Containment> together = inside_of(scene, points);
+      for (std::size_t first = 0; first < points.size(); first += 200) {
+        const auto begin = points.begin() + static_cast<std::ptrdiff_t>(first);
+        const std::vector<Containment> few = inside_of(scene, {begin, begin + 200});
+        for (std::size_t k = 0; k < few.size(); ++k) {
+          ASSERT_EQ(together[first + k], few[k]) << i << ' ' << first + k;
+          ++counts[static_cast<std::size_t>(few[k])];
+        }
+      }
+    }
+  }
+  for (const int count : counts) EXPECT_GT(count, 10'000);
+}
 
 TEST(QueriesInside, NamesAnOpenEdge) {
   Scene scene;
