@@ -87,7 +87,7 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
 template <class Query, class Result, class Answer, class Verify>
 void Run::in_batches(const std::vector<Query>& queries, std::vector<Result>& results, const Answer& answer,
                      const Verify& verify) {
-  constexpr std::size_t batch = 4096, verified_batch = 128;
+  constexpr std::size_t batch = 1 << 16, verified_batch = 128;
   results.resize(queries.size());
   const auto start = std::chrono::steady_clock::now();
   for_batches(queries.size(), batch, !options_.quiet, "query", [&](std::size_t first, std::size_t size) {
