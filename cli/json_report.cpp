@@ -257,6 +257,7 @@ void JsonReport::add(const Frame& frame) {
   if (options.comparison.colliding_vertices) write_events(json_, "narrow_phase", result.narrow_phase_events);
   write_events(json_, "contacts", result.contact_events);
   if (proximity) write_events(json_, "proximity", result.proximity_events);
+  if (penetration) write_events(json_, "penetration", result.penetration_events);
   json_.end_object();
   write_non_finite(json_, result.non_finite_vertices);
   if (frame.verify) {

@@ -35,6 +35,8 @@ struct PenetrationGroup {
   std::uint32_t penetration_count = 0;
   std::uint32_t first_on_surface = 0;
   std::uint32_t on_surface_count = 0;
+
+  constexpr bool operator==(const PenetrationGroup&) const = default;
 };
 
 /// A connected part of an object that is inside a solid object and touches no triangle of it. Triangles that
@@ -89,6 +91,8 @@ struct IntersectionCurve {
   /// How far a must move along `normal` until its enclosed vertices and the curve's points on a are not below
   /// those of b.
   double depth = 0;
+
+  constexpr bool operator==(const IntersectionCurve&) const = default;
 };
 
 }  // namespace supple

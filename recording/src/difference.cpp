@@ -133,11 +133,24 @@ class Comparison {
   Line contact_points(const RecordedFrame& a, const RecordedFrame& b) const;
   Line continuous_contacts(const RecordedFrame& a, const RecordedFrame& b) const;
   Line proximity_pairs(const RecordedFrame& a, const RecordedFrame& b) const;
+  Line penetrations(const RecordedFrame& a, const RecordedFrame& b) const;
+  Line penetration_groups(const RecordedFrame& a, const RecordedFrame& b) const;
+  Line contained_parts(const RecordedFrame& a, const RecordedFrame& b) const;
+  Line curves(const RecordedFrame& a, const RecordedFrame& b) const;
+  Line lists_of_curves(const IntersectionCurve& curve, const RecordedFrame& a, const RecordedFrame& b) const;
   Line colliding_vertices(const RecordedFrame& a, const RecordedFrame& b) const;
 
   std::string name(ObjectId id) const;
   std::string name(const ObjectPair& pair) const { return name(pair.a) + " and " + name(pair.b); }
   std::string name(const CollidingVertices& group) const { return name(ObjectPair{group.a, group.b}); }
+  std::string name(const PenetrationGroup& group) const { return name(ObjectPair{group.a, group.b}); }
+  std::string name(const IntersectionCurve& curve) const { return name(ObjectPair{curve.a, curve.b}); }
+  std::string name(const Penetration& p) const {
+    return "vertex " + std::to_string(p.vertex) + " of " + name(p.object_a) + " in " + name(p.object_b);
+  }
+  std::string name(const ContainedPart& part) const {
+    return "vertex " + std::to_string(part.vertex) + " of " + name(part.inner) + " in " + name(part.outer);
+  }
   std::string name(const Contact& c) const {
     return "triangle " + std::to_string(c.triangle_a) + " of " + name(c.object_a) + " and triangle " +
            std::to_string(c.triangle_b) + " of " + name(c.object_b);
@@ -324,6 +337,98 @@ Line Comparison::proximity_pairs(const RecordedFrame& a, const RecordedFrame& b)
   return lists("proximity pair", a.proximity_pairs, b.proximity_pairs, key, compare_rows);
 }
 
+Line Comparison::penetrations(const RecordedFrame& a, const RecordedFrame& b) const {
+  const auto key = [](const Penetration& p) { return std::tuple(p.object_a, p.object_b, p.vertex); };
+  const auto compare_rows = [this](const Penetration& p, const Penetration& q) {
+    return first_of([&] { return compare_exactly("triangle", p.triangle, q.triangle); },
+                    [&] { return compare_exactly("feature", p.feature.kind, q.feature.kind); },
+                    [&] { return compare_exactly("feature_index", p.feature.index, q.feature.index); },
+                    [&] { return compare("depth", p.depth, q.depth); },
+                    [&] { return compare("barycentric", p.barycentric, q.barycentric); },
+                    [&] { return compare("point", p.point, q.point); },
+                    [&] { return compare("normal", p.normal, q.normal); });
+  };
+  return lists("penetration", a.penetrations, b.penetrations, key, compare_rows);
+}
+
+Line Comparison::penetration_groups(const RecordedFrame& a, const RecordedFrame& b) const {
+  const auto compare_groups = [&](const PenetrationGroup& p, const PenetrationGroup& q) {
+    Line line = first_of(
+        [&] { return compare_exactly("penetration_count", p.penetration_count, q.penetration_count); },
+        [&] { return compare_exactly("first_penetration", p.first_penetration, q.first_penetration); },
+        [&] { return compare_exactly("on_surface_count", p.on_surface_count, q.on_surface_count); },
+        [&] { return compare_exactly("first_on_surface", p.first_on_surface, q.first_on_surface); });
+    for (std::size_t i = 0; !line && i < p.on_surface_count; ++i) {
+      line = compare_exactly("vertex on surface " + std::to_string(i),
+                             a.vertices_on_surface[p.first_on_surface + i],
+                             b.vertices_on_surface[p.first_on_surface + i]);
+    }
+    return line;
+  };
+  return lists(
+      "penetration group", a.penetration_groups, b.penetration_groups,
+      [](const PenetrationGroup& group) {
+        return ObjectPair{group.a, group.b};
+      },
+      compare_groups);
+}
+
+Line Comparison::contained_parts(const RecordedFrame& a, const RecordedFrame& b) const {
+  const auto key = [](const ContainedPart& part) { return std::tuple(part.inner, part.outer, part.vertex); };
+  const auto compare_rows = [](const ContainedPart& p, const ContainedPart& q) {
+    return first_of([&] { return compare_exactly("vertex_count", p.vertex_count, q.vertex_count); },
+                    [&] { return compare_exactly("is_whole", p.is_whole, q.is_whole); });
+  };
+  return lists("contained part", a.contained_parts, b.contained_parts, key, compare_rows);
+}
+
+Line Comparison::curves(const RecordedFrame& a, const RecordedFrame& b) const {
+  const auto compare_rows = [&](const IntersectionCurve& p, const IntersectionCurve& q) {
+    return first_of(
+        [&] { return compare_exactly("kind", p.kind, q.kind); },
+        [&] { return compare_exactly("contact_count", p.contact_count, q.contact_count); },
+        [&] { return compare_exactly("first_contact", p.first_contact, q.first_contact); },
+        [&] { return compare_exactly("point_count", p.point_count, q.point_count); },
+        [&] { return compare_exactly("first_point", p.first_point, q.first_point); },
+        [&] { return compare_exactly("enclosed_count_a", p.enclosed_count_a, q.enclosed_count_a); },
+        [&] { return compare_exactly("enclosed_count_b", p.enclosed_count_b, q.enclosed_count_b); },
+        [&] { return compare_exactly("first_enclosed", p.first_enclosed, q.first_enclosed); },
+        [&] { return lists_of_curves(p, a, b); }, [&] { return compare("centroid", p.centroid, q.centroid); },
+        [&] { return compare("area", p.area, q.area); },
+        [&] { return compare("normal", p.normal, q.normal); },
+        [&] { return compare("depth", p.depth, q.depth); });
+  };
+  return lists(
+      "curve", a.curves, b.curves,
+      [](const IntersectionCurve& curve) {
+        return ObjectPair{curve.a, curve.b};
+      },
+      compare_rows);
+}
+
+/// Compares the lists of two curves with equal ranges.
+Line Comparison::lists_of_curves(const IntersectionCurve& curve, const RecordedFrame& a,
+                                 const RecordedFrame& b) const {
+  for (std::size_t i = 0; i < curve.contact_count; ++i) {
+    const std::size_t row = curve.first_contact + i;
+    if (Line line =
+            compare_exactly("contact " + std::to_string(i), a.curve_contacts[row], b.curve_contacts[row]))
+      return line;
+  }
+  for (std::size_t i = 0; i < curve.point_count; ++i) {
+    const std::size_t row = curve.first_point + i;
+    if (Line line = compare("point " + std::to_string(i), a.curve_points[row], b.curve_points[row]))
+      return line;
+  }
+  for (std::size_t i = 0; i < curve.enclosed_count_a + curve.enclosed_count_b; ++i) {
+    const std::size_t row = curve.first_enclosed + i;
+    if (Line line = compare_exactly("enclosed vertex " + std::to_string(i), a.enclosed_vertices[row],
+                                    b.enclosed_vertices[row]))
+      return line;
+  }
+  return {};
+}
+
 Line Comparison::colliding_vertices(const RecordedFrame& a, const RecordedFrame& b) const {
   const auto compare_groups = [&](const CollidingVertices& p, const CollidingVertices& q) {
     Line line = first_of([&] { return compare_exactly("count_a", p.count_a, q.count_a); },
@@ -356,7 +461,9 @@ Line Comparison::frame(std::uint64_t number) const {
   return first_of(
       [&] { return pairs("object pair", a.object_pairs, b.object_pairs); }, [&] { return contacts(a, b); },
       [&] { return contact_points(a, b); }, [&] { return continuous_contacts(a, b); },
-      [&] { return proximity_pairs(a, b); }, [&] { return colliding_vertices(a, b); },
+      [&] { return proximity_pairs(a, b); }, [&] { return penetrations(a, b); },
+      [&] { return penetration_groups(a, b); }, [&] { return contained_parts(a, b); },
+      [&] { return curves(a, b); }, [&] { return colliding_vertices(a, b); },
       [&] { return pairs("event volume_begin", a.volume_begin, b.volume_begin); },
       [&] { return pairs("event volume_end", a.volume_end, b.volume_end); },
       [&] { return pairs("event narrow_phase_begin", a.narrow_phase_begin, b.narrow_phase_begin); },
@@ -365,6 +472,8 @@ Line Comparison::frame(std::uint64_t number) const {
       [&] { return pairs("event contact_end", a.contact_end, b.contact_end); },
       [&] { return pairs("event proximity_begin", a.proximity_begin, b.proximity_begin); },
       [&] { return pairs("event proximity_end", a.proximity_end, b.proximity_end); },
+      [&] { return pairs("event penetration_begin", a.penetration_begin, b.penetration_begin); },
+      [&] { return pairs("event penetration_end", a.penetration_end, b.penetration_end); },
       [&] { return compare_described("statistics, ", a.stats, b.stats); });
 }
 

@@ -130,6 +130,127 @@ const std::vector<ColumnOf<ProximityPair>>& columns_of() {
 }
 
 template <>
+const std::vector<ColumnOf<PenetrationGroup>>& columns_of() {
+  using Row = PenetrationGroup;
+  static const std::vector<ColumnOf<Row>> columns{
+      column<Row>(
+          "object_a", [](auto& row) -> auto& { return row.a.index; }),
+      column<Row>(
+          "object_b", [](auto& row) -> auto& { return row.b.index; }),
+      column<Row>(
+          "first_penetration", [](auto& row) -> auto& { return row.first_penetration; }),
+      column<Row>(
+          "penetration_count", [](auto& row) -> auto& { return row.penetration_count; }),
+      column<Row>(
+          "first_on_surface", [](auto& row) -> auto& { return row.first_on_surface; }),
+      column<Row>(
+          "on_surface_count", [](auto& row) -> auto& { return row.on_surface_count; }),
+  };
+  return columns;
+}
+
+template <>
+const std::vector<ColumnOf<Penetration>>& columns_of() {
+  using Row = Penetration;
+  static const std::vector<ColumnOf<Row>> columns{
+      column<Row>(
+          "object_a", [](auto& row) -> auto& { return row.object_a.index; }),
+      column<Row>(
+          "object_b", [](auto& row) -> auto& { return row.object_b.index; }),
+      column<Row>(
+          "vertex", [](auto& row) -> auto& { return row.vertex; }),
+      column<Row>(
+          "triangle", [](auto& row) -> auto& { return row.triangle; }),
+      column<Row>(
+          "feature", [](auto& row) -> auto& { return row.feature.kind; }),
+      column<Row>(
+          "feature_index", [](auto& row) -> auto& { return row.feature.index; }),
+      column<Row>(
+          "depth", [](auto& row) -> auto& { return row.depth; }),
+      column<Row>(
+          "barycentric", [](auto& row) -> auto& { return row.barycentric; }),
+      column<Row>(
+          "point", [](auto& row) -> auto& { return row.point; }),
+      column<Row>(
+          "normal", [](auto& row) -> auto& { return row.normal; }),
+  };
+  return columns;
+}
+
+template <>
+const std::vector<ColumnOf<ContainedPart>>& columns_of() {
+  using Row = ContainedPart;
+  static const std::vector<ColumnOf<Row>> columns{
+      column<Row>(
+          "object_a", [](auto& row) -> auto& { return row.inner.index; }),
+      column<Row>(
+          "object_b", [](auto& row) -> auto& { return row.outer.index; }),
+      column<Row>(
+          "vertex", [](auto& row) -> auto& { return row.vertex; }),
+      column<Row>(
+          "vertex_count", [](auto& row) -> auto& { return row.vertex_count; }),
+      column<Row>(
+          "is_whole", [](auto& row) -> auto& { return row.is_whole; }),
+  };
+  return columns;
+}
+
+template <>
+const std::vector<ColumnOf<IntersectionCurve>>& columns_of() {
+  using Row = IntersectionCurve;
+  static const std::vector<ColumnOf<Row>> columns{
+      column<Row>(
+          "object_a", [](auto& row) -> auto& { return row.a.index; }),
+      column<Row>(
+          "object_b", [](auto& row) -> auto& { return row.b.index; }),
+      column<Row>(
+          "kind", [](auto& row) -> auto& { return row.kind; }),
+      column<Row>(
+          "first_contact", [](auto& row) -> auto& { return row.first_contact; }),
+      column<Row>(
+          "contact_count", [](auto& row) -> auto& { return row.contact_count; }),
+      column<Row>(
+          "first_point", [](auto& row) -> auto& { return row.first_point; }),
+      column<Row>(
+          "point_count", [](auto& row) -> auto& { return row.point_count; }),
+      column<Row>(
+          "first_enclosed", [](auto& row) -> auto& { return row.first_enclosed; }),
+      column<Row>(
+          "enclosed_count_a", [](auto& row) -> auto& { return row.enclosed_count_a; }),
+      column<Row>(
+          "enclosed_count_b", [](auto& row) -> auto& { return row.enclosed_count_b; }),
+      column<Row>(
+          "centroid", [](auto& row) -> auto& { return row.centroid; }),
+      column<Row>(
+          "area", [](auto& row) -> auto& { return row.area; }),
+      column<Row>(
+          "normal", [](auto& row) -> auto& { return row.normal; }),
+      column<Row>(
+          "depth", [](auto& row) -> auto& { return row.depth; }),
+  };
+  return columns;
+}
+
+template <>
+const std::vector<ColumnOf<CurveContact>>& columns_of() {
+  static const std::vector<ColumnOf<CurveContact>> columns{
+      column<CurveContact>(
+          "contact", [](auto& row) -> auto& { return row.contact; }),
+  };
+  return columns;
+}
+
+/// Points of curves.
+template <>
+const std::vector<ColumnOf<Vec3d>>& columns_of() {
+  static const std::vector<ColumnOf<Vec3d>> columns{
+      column<Vec3d>(
+          "position", [](auto& row) -> auto& { return row; }),
+  };
+  return columns;
+}
+
+template <>
 const std::vector<ColumnOf<CollidingVertices>>& columns_of() {
   static const std::vector<ColumnOf<CollidingVertices>> columns{
       column<CollidingVertices>(
@@ -146,7 +267,7 @@ const std::vector<ColumnOf<CollidingVertices>>& columns_of() {
   return columns;
 }
 
-/// Vertices in colliding leaves.
+/// Vertices on surfaces, enclosed by curves, or in colliding leaves.
 template <>
 const std::vector<ColumnOf<std::uint32_t>>& columns_of() {
   static const std::vector<ColumnOf<std::uint32_t>> columns{

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <span>
 #include <string>
+#include <tuple>
 #include <type_traits>
 #include <vector>
 
@@ -106,6 +107,23 @@ ColumnOf<Row> column(const char* name, FieldOf field_of) {
 template <class Row>
 const std::vector<ColumnOf<Row>>& columns_of();
 
+/// A row of `curve_contacts`. Its type distinguishes its column from that of lists of vertices.
+struct CurveContact {
+  std::uint32_t contact = 0;
+};
+
+/// References to the two objects of a row: its columns `object_a` and `object_b`.
+template <class Row>
+auto objects_of(Row& row) {
+  if constexpr (requires { row.inner; }) {
+    return std::tie(row.inner, row.outer);
+  } else if constexpr (requires { row.a; }) {
+    return std::tie(row.a, row.b);
+  } else {
+    return std::tie(row.object_a, row.object_b);
+  }
+}
+
 /// Names of the groups with any number of rows per frame.
 namespace group_names {
 inline constexpr const char* object_pairs = "object_pairs";
@@ -113,6 +131,14 @@ inline constexpr const char* contacts = "contacts";
 inline constexpr const char* contact_points = "contact_points";
 inline constexpr const char* continuous_contacts = "continuous_contacts";
 inline constexpr const char* proximity_pairs = "proximity_pairs";
+inline constexpr const char* penetration_groups = "penetration_groups";
+inline constexpr const char* penetrations = "penetrations";
+inline constexpr const char* vertices_on_surface = "vertices_on_surface";
+inline constexpr const char* contained_parts = "contained_parts";
+inline constexpr const char* curves = "curves";
+inline constexpr const char* curve_contacts = "curve_contacts";
+inline constexpr const char* curve_points = "curve_points";
+inline constexpr const char* enclosed_vertices = "enclosed_vertices";
 inline constexpr const char* colliding_vertex_groups = "colliding_vertex_groups";
 inline constexpr const char* colliding_vertices = "colliding_vertices";
 inline constexpr const char* volume_begin = "events/volume_begin";
@@ -123,6 +149,8 @@ inline constexpr const char* contact_begin = "events/contact_begin";
 inline constexpr const char* contact_end = "events/contact_end";
 inline constexpr const char* proximity_begin = "events/proximity_begin";
 inline constexpr const char* proximity_end = "events/proximity_end";
+inline constexpr const char* penetration_begin = "events/penetration_begin";
+inline constexpr const char* penetration_end = "events/penetration_end";
 inline constexpr const char* statistics = "statistics";  // one row per frame
 }  // namespace group_names
 

@@ -66,13 +66,9 @@ template <class Row>
 std::vector<Row> with_places(std::span<const Row> rows, const Places& place_of) {
   std::vector<Row> result(rows.begin(), rows.end());
   for (Row& row : result) {
-    if constexpr (requires { row.a; }) {
-      row.a = place_of(row.a);
-      row.b = place_of(row.b);
-    } else {
-      row.object_a = place_of(row.object_a);
-      row.object_b = place_of(row.object_b);
-    }
+    auto [a, b] = objects_of(row);
+    a = place_of(a);
+    b = place_of(b);
   }
   return result;
 }
@@ -205,13 +201,22 @@ struct Datasets {
     contact_points.emplace(file, group_names::contact_points);
     continuous_contacts.emplace(file, group_names::continuous_contacts);
     proximity_pairs.emplace(file, group_names::proximity_pairs);
+    penetration_groups.emplace(file, group_names::penetration_groups);
+    penetrations.emplace(file, group_names::penetrations);
+    vertices_on_surface.emplace(file, group_names::vertices_on_surface);
+    contained_parts.emplace(file, group_names::contained_parts);
+    curves.emplace(file, group_names::curves);
+    curve_contacts.emplace(file, group_names::curve_contacts);
+    curve_points.emplace(file, group_names::curve_points);
+    enclosed_vertices.emplace(file, group_names::enclosed_vertices);
     colliding_vertex_groups.emplace(file, group_names::colliding_vertex_groups);
     colliding_vertices.emplace(file, group_names::colliding_vertices);
     create_group(file, "events");
     for (const char* name :
          {group_names::volume_begin, group_names::volume_end, group_names::narrow_phase_begin,
           group_names::narrow_phase_end, group_names::contact_begin, group_names::contact_end,
-          group_names::proximity_begin, group_names::proximity_end})
+          group_names::proximity_begin, group_names::proximity_end, group_names::penetration_begin,
+          group_names::penetration_end})
       events.emplace_back(file, name);
     statistics = create_columns<StepStats>(file, group_names::statistics, frames_in_chunk);
     // `time` is created last, so it grows last: a frame exists when its time exists.
@@ -225,6 +230,14 @@ struct Datasets {
     contact_points->for_each_column(function);
     continuous_contacts->for_each_column(function);
     proximity_pairs->for_each_column(function);
+    penetration_groups->for_each_column(function);
+    penetrations->for_each_column(function);
+    vertices_on_surface->for_each_column(function);
+    contained_parts->for_each_column(function);
+    curves->for_each_column(function);
+    curve_contacts->for_each_column(function);
+    curve_points->for_each_column(function);
+    enclosed_vertices->for_each_column(function);
     colliding_vertex_groups->for_each_column(function);
     colliding_vertices->for_each_column(function);
     for (RaggedWriter<ObjectPair>& pairs : events) pairs.for_each_column(function);
@@ -238,9 +251,18 @@ struct Datasets {
   std::optional<RaggedWriter<ContactPoint>> contact_points;
   std::optional<RaggedWriter<ContinuousContact>> continuous_contacts;
   std::optional<RaggedWriter<ProximityPair>> proximity_pairs;
+  std::optional<RaggedWriter<PenetrationGroup>> penetration_groups;
+  std::optional<RaggedWriter<Penetration>> penetrations;
+  std::optional<RaggedWriter<std::uint32_t>> vertices_on_surface;
+  std::optional<RaggedWriter<ContainedPart>> contained_parts;
+  std::optional<RaggedWriter<IntersectionCurve>> curves;
+  std::optional<RaggedWriter<CurveContact>> curve_contacts;
+  std::optional<RaggedWriter<Vec3d>> curve_points;
+  std::optional<RaggedWriter<std::uint32_t>> enclosed_vertices;
   std::optional<RaggedWriter<CollidingVertices>> colliding_vertex_groups;
   std::optional<RaggedWriter<std::uint32_t>> colliding_vertices;
-  /// Begin and end of volume overlaps, then of the narrow phase, of contacts and of proximity.
+  /// Begin and end of volume overlaps, then of the narrow phase, of contacts, of proximity and of
+  /// penetration.
   std::vector<RaggedWriter<ObjectPair>> events;
   std::vector<ColumnWriter> statistics;
   std::optional<ColumnWriter> time;
@@ -332,6 +354,14 @@ struct Recorder::Implementation::Rows {
         contact_points(result.contact_points),
         continuous_contacts(with_places(result.continuous_contacts, place_of)),
         proximity_pairs(with_places(result.proximity_pairs, place_of)),
+        penetration_groups(with_places(result.penetration_groups, place_of)),
+        penetrations(with_places(result.penetrations, place_of)),
+        vertices_on_surface(result.vertices_on_surface),
+        contained_parts(with_places(result.contained_parts, place_of)),
+        curves(with_places(result.curves, place_of)),
+        curve_contacts(result.curve_contacts.begin(), result.curve_contacts.end()),
+        curve_points(result.curve_points),
+        enclosed_vertices(result.enclosed_vertices),
         colliding_vertex_groups(with_places(result.colliding_vertex_groups, place_of)),
         colliding_vertices(result.colliding_vertices),
         events{with_places(result.volume_events.begin, place_of),
@@ -341,7 +371,9 @@ struct Recorder::Implementation::Rows {
                with_places(result.contact_events.begin, place_of),
                with_places(result.contact_events.end, place_of),
                with_places(result.proximity_events.begin, place_of),
-               with_places(result.proximity_events.end, place_of)},
+               with_places(result.proximity_events.end, place_of),
+               with_places(result.penetration_events.begin, place_of),
+               with_places(result.penetration_events.end, place_of)},
         stats(result.stats) {}
 
   std::vector<ObjectPair> object_pairs;
@@ -349,9 +381,17 @@ struct Recorder::Implementation::Rows {
   std::span<const ContactPoint> contact_points;
   std::vector<ContinuousContact> continuous_contacts;
   std::vector<ProximityPair> proximity_pairs;
+  std::vector<PenetrationGroup> penetration_groups;
+  std::vector<Penetration> penetrations;
+  std::span<const std::uint32_t> vertices_on_surface;
+  std::vector<ContainedPart> contained_parts;
+  std::vector<IntersectionCurve> curves;
+  std::vector<CurveContact> curve_contacts;
+  std::span<const Vec3d> curve_points;
+  std::span<const std::uint32_t> enclosed_vertices;
   std::vector<CollidingVertices> colliding_vertex_groups;
   std::span<const std::uint32_t> colliding_vertices;
-  std::array<std::vector<ObjectPair>, 8> events;
+  std::array<std::vector<ObjectPair>, 10> events;
   StepStats stats;
 };
 
@@ -444,6 +484,14 @@ void Recorder::Implementation::append(double time, std::span<const std::span<con
   datasets_->contact_points->append(rows.contact_points);
   datasets_->continuous_contacts->append(rows.continuous_contacts);
   datasets_->proximity_pairs->append(rows.proximity_pairs);
+  datasets_->penetration_groups->append(rows.penetration_groups);
+  datasets_->penetrations->append(rows.penetrations);
+  datasets_->vertices_on_surface->append(rows.vertices_on_surface);
+  datasets_->contained_parts->append(rows.contained_parts);
+  datasets_->curves->append(rows.curves);
+  datasets_->curve_contacts->append(rows.curve_contacts);
+  datasets_->curve_points->append(rows.curve_points);
+  datasets_->enclosed_vertices->append(rows.enclosed_vertices);
   datasets_->colliding_vertex_groups->append(rows.colliding_vertex_groups);
   datasets_->colliding_vertices->append(rows.colliding_vertices);
   for (std::size_t i = 0; i < rows.events.size(); ++i) datasets_->events[i].append(rows.events[i]);

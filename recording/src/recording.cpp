@@ -258,14 +258,18 @@ class Recording::Implementation {
  private:
   void check_frame(std::uint64_t number) const;
   std::vector<ObjectPair> pairs(RaggedReader<ObjectPair>& reader, std::uint64_t frame) const {
-    return rows_of_objects(reader, frame, &ObjectPair::a, &ObjectPair::b,
-                           [](std::size_t, const ObjectPair&) {});
+    return rows_of_objects(reader, frame, [](std::size_t, const ObjectPair&) {});
   }
   void check_elements(std::uint64_t frame, std::size_t row, const ContinuousContact& contact);
   std::vector<Contact> contacts(std::uint64_t frame, std::size_t points);
   std::vector<ContactPoint> contact_points(std::uint64_t frame);
   std::vector<ContinuousContact> continuous_contacts(std::uint64_t frame);
   std::vector<ProximityPair> proximity_pairs(std::uint64_t frame);
+  std::vector<PenetrationGroup> penetration_groups(std::uint64_t frame, const RecordedFrame& lists);
+  std::vector<Penetration> penetrations(std::uint64_t frame);
+  std::vector<ContainedPart> contained_parts(std::uint64_t frame);
+  std::vector<IntersectionCurve> curves(std::uint64_t frame, const RecordedFrame& lists);
+  std::vector<std::uint32_t> curve_contacts(std::uint64_t frame, std::size_t contacts);
   std::vector<CollidingVertices> colliding_vertex_groups(std::uint64_t frame,
                                                          std::span<const std::uint32_t> vertices);
   StepStats stats(std::uint64_t frame);
@@ -276,14 +280,40 @@ class Recording::Implementation {
     if (value >= allowed) rows.fail(frame, row, column, value, allowed);
   }
 
+  /// A value and its column.
+  struct Named {
+    const char* column;
+    std::uint64_t value;
+  };
+  /// Checks a range of a list of `size` rows.
+  template <class Row>
+  void check_range(RaggedReader<Row>& rows, std::uint64_t frame, std::size_t row, Named count, Named first,
+                   std::size_t size) const {
+    check_below(rows, frame, row, count.column, count.value, size + 1);
+    check_below(rows, frame, row, first.column, first.value, size - count.value + 1);
+  }
+  /// Checks two ranges of such a list, one after the other.
+  template <class Row>
+  void check_two_ranges(RaggedReader<Row>& rows, std::uint64_t frame, std::size_t row, Named count_a,
+                        Named count_b, Named first, std::size_t size) const {
+    check_below(rows, frame, row, count_a.column, count_a.value, size + 1);
+    check_range(rows, frame, row, count_b, first, size - count_a.value);
+  }
+  /// Checks a range of a list of vertices of one object, which is given by its index.
+  void check_vertices(RaggedReader<std::uint32_t>& rows, std::uint64_t frame,
+                      std::span<const std::uint32_t> vertices, std::size_t first, std::size_t count,
+                      ObjectId object) const {
+    for (std::size_t i = first; i < first + count; ++i)
+      check_below(rows, frame, i, "vertex", vertices[i], header_.objects[object.index].rest_positions.size());
+  }
+
   /// Reads rows that refer to objects by index. Calls `check(number, row)`, then replaces indices by ids.
   template <class Row, class Check>
-  std::vector<Row> rows_of_objects(RaggedReader<Row>& reader, std::uint64_t frame, ObjectId Row::*object_a,
-                                   ObjectId Row::*object_b, Check check) const {
+  std::vector<Row> rows_of_objects(RaggedReader<Row>& reader, std::uint64_t frame, Check check) const {
     const std::vector<RecordedObject>& objects = header_.objects;
     std::vector<Row> rows = reader.rows(frame);
     for (std::size_t i = 0; i < rows.size(); ++i) {
-      ObjectId &a = rows[i].*object_a, &b = rows[i].*object_b;
+      auto [a, b] = objects_of(rows[i]);
       check_below(reader, frame, i, "object_a", a.index, objects.size());
       check_below(reader, frame, i, "object_b", b.index, objects.size());
       check(i, rows[i]);
@@ -302,10 +332,18 @@ class Recording::Implementation {
   RaggedReader<ContactPoint> contact_points_;
   RaggedReader<ContinuousContact> continuous_contacts_;
   RaggedReader<ProximityPair> proximity_pairs_;
+  RaggedReader<PenetrationGroup> penetration_groups_;
+  RaggedReader<Penetration> penetrations_;
+  RaggedReader<std::uint32_t> vertices_on_surface_;
+  RaggedReader<ContainedPart> contained_parts_;
+  RaggedReader<IntersectionCurve> curves_;
+  RaggedReader<CurveContact> curve_contacts_;
+  RaggedReader<Vec3d> curve_points_;
+  RaggedReader<std::uint32_t> enclosed_vertices_;
   RaggedReader<CollidingVertices> colliding_vertex_groups_;
   RaggedReader<std::uint32_t> colliding_vertices_;
   RaggedReader<ObjectPair> volume_begin_, volume_end_, narrow_phase_begin_, narrow_phase_end_, contact_begin_,
-      contact_end_, proximity_begin_, proximity_end_;
+      contact_end_, proximity_begin_, proximity_end_, penetration_begin_, penetration_end_;
   std::vector<std::optional<ColumnReader>>
       statistics_;  ///< in the order of `StepStats`; empty if the file lacks it
   std::vector<ColumnReader> positions_;
@@ -321,6 +359,14 @@ Recording::Implementation::Implementation(const std::string& path)
       contact_points_(file_, version_, group_names::contact_points, frame_count()),
       continuous_contacts_(file_, version_, group_names::continuous_contacts, frame_count()),
       proximity_pairs_(file_, version_, group_names::proximity_pairs, frame_count(), true),
+      penetration_groups_(file_, version_, group_names::penetration_groups, frame_count(), true),
+      penetrations_(file_, version_, group_names::penetrations, frame_count(), true),
+      vertices_on_surface_(file_, version_, group_names::vertices_on_surface, frame_count(), true),
+      contained_parts_(file_, version_, group_names::contained_parts, frame_count(), true),
+      curves_(file_, version_, group_names::curves, frame_count(), true),
+      curve_contacts_(file_, version_, group_names::curve_contacts, frame_count(), true),
+      curve_points_(file_, version_, group_names::curve_points, frame_count(), true),
+      enclosed_vertices_(file_, version_, group_names::enclosed_vertices, frame_count(), true),
       colliding_vertex_groups_(file_, version_, group_names::colliding_vertex_groups, frame_count(), true),
       colliding_vertices_(file_, version_, group_names::colliding_vertices, frame_count(), true),
       volume_begin_(file_, version_, group_names::volume_begin, frame_count()),
@@ -330,7 +376,9 @@ Recording::Implementation::Implementation(const std::string& path)
       contact_begin_(file_, version_, group_names::contact_begin, frame_count()),
       contact_end_(file_, version_, group_names::contact_end, frame_count()),
       proximity_begin_(file_, version_, group_names::proximity_begin, frame_count(), true),
-      proximity_end_(file_, version_, group_names::proximity_end, frame_count(), true) {
+      proximity_end_(file_, version_, group_names::proximity_end, frame_count(), true),
+      penetration_begin_(file_, version_, group_names::penetration_begin, frame_count(), true),
+      penetration_end_(file_, version_, group_names::penetration_end, frame_count(), true) {
   const auto check_frames = [this](const ColumnReader& column, std::uint64_t needed) {
     if (column.rows() < needed)
       file_.fail(column.path(), "has " + std::to_string(column.rows()) + " frames, the recording has " +
@@ -372,7 +420,7 @@ std::vector<Contact> Recording::Implementation::contacts(std::uint64_t frame, st
       check_value("first_point", c.first_point, points - c.point_count + 1);
     }
   };
-  return rows_of_objects(contacts_, frame, &Contact::object_a, &Contact::object_b, check);
+  return rows_of_objects(contacts_, frame, check);
 }
 
 std::vector<ContactPoint> Recording::Implementation::contact_points(std::uint64_t frame) {
@@ -407,8 +455,7 @@ std::vector<ContinuousContact> Recording::Implementation::continuous_contacts(st
     check_below(continuous_contacts_, frame, row, "certainty", static_cast<std::uint64_t>(c.certainty), 2);
     check_elements(frame, row, c);
   };
-  return rows_of_objects(continuous_contacts_, frame, &ContinuousContact::object_a,
-                         &ContinuousContact::object_b, check);
+  return rows_of_objects(continuous_contacts_, frame, check);
 }
 
 std::vector<ProximityPair> Recording::Implementation::proximity_pairs(std::uint64_t frame) {
@@ -432,27 +479,84 @@ std::vector<ProximityPair> Recording::Implementation::proximity_pairs(std::uint6
     check_value("feature_index_a", p.on_a.index, 3);
     check_value("feature_index_b", p.on_b.index, 3);
   };
-  return rows_of_objects(proximity_pairs_, frame, &ProximityPair::object_a, &ProximityPair::object_b, check);
+  return rows_of_objects(proximity_pairs_, frame, check);
+}
+
+std::vector<Penetration> Recording::Implementation::penetrations(std::uint64_t frame) {
+  const auto check = [&](std::size_t row, const Penetration& p) {
+    const auto check_value = [&](const char* column, std::uint64_t value, std::uint64_t allowed) {
+      check_below(penetrations_, frame, row, column, value, allowed);
+    };
+    check_value("vertex", p.vertex, header_.objects[p.object_a.index].rest_positions.size());
+    check_value("triangle", p.triangle, header_.objects[p.object_b.index].triangles.size());
+    check_value("feature", static_cast<std::uint64_t>(p.feature.kind), 3);
+    check_value("feature_index", p.feature.index, 3);
+  };
+  return rows_of_objects(penetrations_, frame, check);
+}
+
+std::vector<PenetrationGroup> Recording::Implementation::penetration_groups(std::uint64_t frame,
+                                                                            const RecordedFrame& lists) {
+  const auto check = [&](std::size_t row, const PenetrationGroup& group) {
+    check_range(penetration_groups_, frame, row, {"penetration_count", group.penetration_count},
+                {"first_penetration", group.first_penetration}, lists.penetrations.size());
+    check_range(penetration_groups_, frame, row, {"on_surface_count", group.on_surface_count},
+                {"first_on_surface", group.first_on_surface}, lists.vertices_on_surface.size());
+    check_vertices(vertices_on_surface_, frame, lists.vertices_on_surface, group.first_on_surface,
+                   group.on_surface_count, group.a);
+  };
+  return rows_of_objects(penetration_groups_, frame, check);
+}
+
+std::vector<ContainedPart> Recording::Implementation::contained_parts(std::uint64_t frame) {
+  const auto check = [&](std::size_t row, const ContainedPart& part) {
+    const std::size_t vertices = header_.objects[part.inner.index].rest_positions.size();
+    check_below(contained_parts_, frame, row, "vertex", part.vertex, vertices);
+    check_below(contained_parts_, frame, row, "vertex_count", part.vertex_count, vertices + 1);
+  };
+  return rows_of_objects(contained_parts_, frame, check);
+}
+
+std::vector<std::uint32_t> Recording::Implementation::curve_contacts(std::uint64_t frame,
+                                                                     std::size_t contacts) {
+  std::vector<std::uint32_t> numbers;
+  for (const CurveContact& row : curve_contacts_.rows(frame)) {
+    check_below(curve_contacts_, frame, numbers.size(), "contact", row.contact, contacts);
+    numbers.push_back(row.contact);
+  }
+  return numbers;
+}
+
+std::vector<IntersectionCurve> Recording::Implementation::curves(std::uint64_t frame,
+                                                                 const RecordedFrame& lists) {
+  const auto check = [&](std::size_t row, const IntersectionCurve& curve) {
+    check_below(curves_, frame, row, "kind", static_cast<std::uint64_t>(curve.kind), words<CurveKind>.size());
+    check_range(curves_, frame, row, {"contact_count", curve.contact_count},
+                {"first_contact", curve.first_contact}, lists.curve_contacts.size());
+    check_range(curves_, frame, row, {"point_count", curve.point_count}, {"first_point", curve.first_point},
+                lists.curve_points.size());
+    check_two_ranges(curves_, frame, row, {"enclosed_count_a", curve.enclosed_count_a},
+                     {"enclosed_count_b", curve.enclosed_count_b}, {"first_enclosed", curve.first_enclosed},
+                     lists.enclosed_vertices.size());
+    check_vertices(enclosed_vertices_, frame, lists.enclosed_vertices, curve.first_enclosed,
+                   curve.enclosed_count_a, curve.a);
+    check_vertices(enclosed_vertices_, frame, lists.enclosed_vertices,
+                   std::size_t{curve.first_enclosed} + curve.enclosed_count_a, curve.enclosed_count_b,
+                   curve.b);
+  };
+  return rows_of_objects(curves_, frame, check);
 }
 
 std::vector<CollidingVertices> Recording::Implementation::colliding_vertex_groups(
     std::uint64_t frame, std::span<const std::uint32_t> vertices) {
   const auto check = [&](std::size_t row, const CollidingVertices& group) {
-    const std::size_t count = vertices.size();
-    const auto check_value = [&](const char* column, std::uint64_t value, std::uint64_t allowed) {
-      check_below(colliding_vertex_groups_, frame, row, column, value, allowed);
-    };
-    check_value("count_a", group.count_a, count + 1);
-    check_value("count_b", group.count_b, count - group.count_a + 1);
-    check_value("first_vertex", group.first_vertex, count - group.count_a - group.count_b + 1);
-    for (std::size_t i = 0; i < std::size_t{group.count_a} + group.count_b; ++i) {
-      const ObjectId object = i < group.count_a ? group.a : group.b;
-      check_below(colliding_vertices_, frame, group.first_vertex + i, "vertex",
-                  vertices[group.first_vertex + i], header_.objects[object.index].rest_positions.size());
-    }
+    check_two_ranges(colliding_vertex_groups_, frame, row, {"count_a", group.count_a},
+                     {"count_b", group.count_b}, {"first_vertex", group.first_vertex}, vertices.size());
+    check_vertices(colliding_vertices_, frame, vertices, group.first_vertex, group.count_a, group.a);
+    check_vertices(colliding_vertices_, frame, vertices, std::size_t{group.first_vertex} + group.count_a,
+                   group.count_b, group.b);
   };
-  return rows_of_objects(colliding_vertex_groups_, frame, &CollidingVertices::a, &CollidingVertices::b,
-                         check);
+  return rows_of_objects(colliding_vertex_groups_, frame, check);
 }
 
 StepStats Recording::Implementation::stats(std::uint64_t frame) {
@@ -489,6 +593,8 @@ RecordedFrame Recording::Implementation::summary(std::uint64_t number) {
   frame.contact_end = pairs(contact_end_, number);
   frame.proximity_begin = pairs(proximity_begin_, number);
   frame.proximity_end = pairs(proximity_end_, number);
+  frame.penetration_begin = pairs(penetration_begin_, number);
+  frame.penetration_end = pairs(penetration_end_, number);
   frame.stats = stats(number);
   return frame;
 }
@@ -500,6 +606,14 @@ RecordedFrame Recording::Implementation::frame(std::uint64_t number) {
   frame.contacts = contacts(number, frame.contact_points.size());
   frame.continuous_contacts = continuous_contacts(number);
   frame.proximity_pairs = proximity_pairs(number);
+  frame.penetrations = penetrations(number);
+  frame.vertices_on_surface = vertices_on_surface_.rows(number);
+  frame.penetration_groups = penetration_groups(number, frame);
+  frame.contained_parts = contained_parts(number);
+  frame.curve_contacts = curve_contacts(number, frame.contacts.size());
+  frame.curve_points = curve_points_.rows(number);
+  frame.enclosed_vertices = enclosed_vertices_.rows(number);
+  frame.curves = curves(number, frame);
   frame.colliding_vertices = colliding_vertices_.rows(number);
   frame.colliding_vertex_groups = colliding_vertex_groups(number, frame.colliding_vertices);
   return frame;

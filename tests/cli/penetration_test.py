@@ -33,6 +33,7 @@ class Penetration(ProgramTest):
         verify = frame["penetration_verify"]
         self.assertEqual((verify["inside_vertices"], verify["differences"]), (2, []))
         self.assertEqual((frame["stats"]["penetrations"], frame["stats"]["curves"]), (2, 1))
+        self.assertEqual(frame["events"]["penetration"], {"begin": [[0, 1]], "end": []})
 
     def test_contained_parts(self):
         self.write("within.obj", joined(moved(SMALL, 0.5, 0.5, 0.5), moved(SMALL, 1.25, 1.25, 1.25)))

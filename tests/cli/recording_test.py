@@ -30,6 +30,7 @@ except ImportError:
 
 from program import ROOT, TRIANGLE, ProgramTest, run
 
+DATA = pathlib.Path(os.environ.get("SUPPLE_DATA", ROOT.parent / "shared/data"))
 RECORD = os.environ.get("SUPPLE_RECORD_MOTION", str(ROOT / "build/release/bin/record_motion"))
 PAGE = (ROOT / "docs/recording.md").read_text()
 with_h5py = unittest.skipUnless(h5py, "needs h5py")
@@ -66,6 +67,11 @@ class RecordingTest(ProgramTest):
         if check:
             self.assertEqual((done.returncode, done.stderr), (0, ""))
         return done
+
+    def recorded(self, file, frame, group, *columns):
+        end = file[f"{group}/end"]
+        rows = slice(end[frame - 1] if frame else 0, end[frame])
+        return [tuple(row) for row in zip(*(file[f"{group}/{column}"][rows].tolist() for column in columns))]
 
     def assert_first_frames(self, path, whole, at_least):
         """Expects that the file opens and has the first frames of `whole`, the values of datasets."""
@@ -275,6 +281,27 @@ class Document(RecordingTest):
         self.assertEqual(told, [count for count in contacts if count > 0])
         self.assertGreater(sum(told), 0)
 
+    @with_h5py
+    def test_example_of_penetration(self):
+        self.write("solids.toml", SOLIDS)
+        done = self.run_here("simulate", "solids.toml", "--frames", 8, "--quiet", "--record", "run.h5", "--json", "run.json", "--contact-details")
+        self.assertEqual((done.status, done.error), (0, ""))
+        example = re.findall(r"```python\n(.*?)```", PAGE, re.S)[1]
+        done = subprocess.run([sys.executable, "-c", example], cwd=self.folder, capture_output=True, text=True)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        expected = []
+        for frame in json.loads((self.folder / "run.json").read_text())["frames"]:
+            time = f"{frame['frame'] * 0.25:.3f} s: "
+            for group in frame["penetration"]:
+                if group["vertices"]:
+                    expected.append(f"{time}{len(group['vertices'])} vertices of object {group['a']} inside object {group['b']}, "
+                                    f"the deepest at {max(depth for _, _, depth in group['vertices']):g}")
+            for curve in frame["curves"]:
+                first = numpy.array(curve["pairs"][0], numpy.uint32)
+                expected.append(f"{time}{curve['kind']} curve of {curve['segments']} pairs, {first} first")
+        self.assertEqual(done.stdout.splitlines(), expected)
+        self.assertGreater(len(expected), 16)
+
     def test_xdmf(self):
         for name in ("run", "moving"):
             root = xml.etree.ElementTree.parse(self.folder / f"{name}.xdmf").getroot()
@@ -294,11 +321,6 @@ class Document(RecordingTest):
 
 class Detect(RecordingTest):
     """Detection on a recording gives the recorded results."""
-
-    def recorded(self, file, frame, group, *columns):
-        end = file[f"{group}/end"]
-        rows = slice(end[frame - 1] if frame else 0, end[frame])
-        return [tuple(row) for row in zip(*(file[f"{group}/{column}"][rows].tolist() for column in columns))]
 
     @with_h5py
     def test_intersections(self):
@@ -394,6 +416,173 @@ class Detect(RecordingTest):
         ):
             with self.subTest(arguments=arguments):
                 self.assert_one_line_error(self.run_here("detect", *arguments), *parts)
+
+
+# A box, a ball that passes its corner, a small ball that passes into it, and a cloth that ends in it.
+SOLIDS = """[scene]
+time_step = 0.25
+contacts = "penetration"
+[[object]]
+name = "box"
+model = "box"
+size = [2, 2, 2]
+resolution = 3
+solid = true
+static = true
+[[object]]
+name = "ball"
+model = "icosphere"
+frequency = 4
+translate = [-2.25, 0.875, 0.875]
+solid = true
+motion = { kind = "wave", velocity = [1, 0, 0], amplitude = 0.0625 }
+[[object]]
+name = "small"
+model = "icosphere"
+frequency = 2
+scale = 0.25
+translate = [1.5, -0.125, 0.0625]
+solid = true
+motion = { kind = "wave", velocity = [-2, 0, 0] }
+[[object]]
+name = "cloth"
+model = "cloth"
+columns = 4
+rows = 4
+translate = [0.9375, -0.75, 0.03125]
+motion = { kind = "wave", amplitude = 0.03125 }
+"""
+
+
+class Penetration(RecordingTest):
+    def record_scene(self, scene, frames, *arguments, name="run"):
+        """Writes a recording of a simulation and returns the frames of the JSON, without their times."""
+        self.write("solids.toml", scene)
+        done = self.run_here("simulate", "solids.toml", "--frames", frames, "--quiet", "--record", f"{name}.h5", "--json", f"{name}.json",
+                             "--contact-details", "--no-stats", *arguments)
+        self.assertEqual((done.status, done.error), (0, ""))
+        frames = json.loads((self.folder / f"{name}.json").read_text())["frames"]
+        for frame in frames:
+            del frame["time"]
+        return frames
+
+    def assert_detected_again(self, frames):
+        detected = self.detect("run.h5", "--contact-details", "--no-stats")["frames"]
+        self.assertEqual(len(detected), len(frames))
+        for number, frame in enumerate(frames):
+            for key, value in frame.items():
+                self.assertTrue(detected[number][key] == value, f"frame {number}, {key}")  # too long to print
+
+    def assert_recorded(self, file, number, frame):
+        """Compares a frame of a recording with the JSON."""
+        recorded = lambda group, *columns: self.recorded(file, number, group, *columns)
+        fields = ("vertex", "triangle", "depth", "barycentric", "point", "normal")
+        self.assertEqual(recorded("penetrations", "object_a", "object_b", *fields),
+                         [(p["a"], p["b"], *(p[field] for field in fields)) for p in frame["penetrations"]])
+        self.assertEqual(["vef"[kind] for (kind,) in recorded("penetrations", "feature")], [p["on"][0] for p in frame["penetrations"]])
+        groups = recorded("penetration_groups", "object_a", "object_b", "first_penetration", "penetration_count", "first_on_surface", "on_surface_count")
+        vertices = recorded("penetrations", "vertex", "triangle", "depth")
+        on_surface = [v for (v,) in recorded("vertices_on_surface", "vertex")]
+        self.assertEqual([{"a": a, "b": b, "vertices": [list(row) for row in vertices[first:first + count]],
+                           "on_surface": on_surface[first_on:first_on + count_on]} for a, b, first, count, first_on, count_on in groups],
+                         frame["penetration"])
+        parts = recorded("contained_parts", "object_a", "object_b", "vertex", "vertex_count", "is_whole")
+        self.assertEqual([part[:4] for part in parts], [tuple(part.values()) for part in frame["contained_parts"]])
+        self.assertEqual({part[:2] for part in parts if part[4]}, {tuple(pair) for pair in frame["containment"]})
+        contacts = recorded("contacts", "triangle_a", "triangle_b")
+        along = [list(contacts[contact]) for (contact,) in recorded("curve_contacts", "contact")]
+        points = [point for (point,) in recorded("curve_points", "position")]
+        enclosed = [v for (v,) in recorded("enclosed_vertices", "vertex")]
+        columns = ("object_a", "object_b", "kind", "first_contact", "contact_count", "first_point", "point_count",
+                   "first_enclosed", "enclosed_count_a", "enclosed_count_b", "centroid", "area", "normal", "depth")
+        curves = []
+        for row in recorded("curves", *columns):
+            c = dict(zip(columns, row))
+            middle = c["first_enclosed"] + c["enclosed_count_a"]
+            curves.append({"a": c["object_a"], "b": c["object_b"], "kind": ("closed", "open", "branched")[c["kind"]], "segments": c["contact_count"],
+                           "pairs": along[c["first_contact"]:c["first_contact"] + c["contact_count"]],
+                           "points": points[c["first_point"]:c["first_point"] + c["point_count"]],
+                           "centroid": c["centroid"], "area": c["area"], "normal": c["normal"], "depth": c["depth"],
+                           "enclosed_a": enclosed[c["first_enclosed"]:middle], "enclosed_b": enclosed[middle:middle + c["enclosed_count_b"]]})
+        self.assertEqual(curves, frame["curves"])
+        for event in ("begin", "end"):
+            pairs = [tuple(pair) for pair in frame["events"]["penetration"][event]]
+            self.assertEqual(recorded(f"events/penetration_{event}", "object_a", "object_b"), pairs)
+
+    def assert_all_recorded(self, frames):
+        with h5py.File(self.folder / "run.h5", "r") as file:
+            for number, frame in enumerate(frames):
+                self.assert_recorded(file, number, frame)
+            solid = [int(file[f"objects/{i}"].attrs["solid"]) for i in range(len(file["objects"]))]
+            self.assertEqual(solid, [1, 1, 1, 0])
+
+    @with_h5py
+    def test_every_field(self):
+        frames = self.record_scene(SOLIDS, 8)
+        self.assert_all_recorded(frames)
+        self.assertGreater(sum(len(frame["penetrations"]) for frame in frames), 50)
+        self.assertGreater(sum(len(frame["containment"]) for frame in frames), 1)
+        self.assertEqual({curve["kind"] for frame in frames for curve in frame["curves"]} & {"closed", "open"}, {"closed", "open"})
+        self.assertGreater(sum(len(frame["events"]["penetration"]["begin"]) for frame in frames), 1)
+        self.assertGreater(sum(len(frame["events"]["penetration"]["end"]) for frame in frames), 0)
+
+    def test_detect(self):
+        frames = self.record_scene(SOLIDS, 8)
+        self.assert_detected_again(frames)
+        verified = self.detect("run.h5", "--verify")["frames"]
+        self.assertEqual([frame["penetration_verify"]["differences"] for frame in verified], 8 * [[]])
+        self.assertGreater(verified[4]["penetration_verify"]["inside_vertices"], 0)
+        # Options of the command line replace recorded ones.
+        self.assertNotIn("penetration", self.detect("run.h5", "--contacts", "intersection")["frames"][4])
+
+    @with_h5py
+    def test_real_meshes(self):
+        models = DATA / "models"
+        if not models.exists():
+            self.skipTest(f"no {models}; set SUPPLE_DATA to the folder of truth.json")
+        objects = "".join(f'[[object]]\nmesh = "{models / mesh}"\n{options}\n' for mesh, options in (
+            ("spot.obj", "solid = true\nstatic = true"),
+            ("spot.obj", 'solid = true\ntranslate = [-0.125, 0.25, 0.125]\nmotion = { kind = "rigid", velocity = [0.5, 0, 0], spin = [0, 40, 0] }'),
+            ("spot.obj", 'solid = true\nscale = 0.125\ntranslate = [0, 0.125, -0.25]\nmotion = { kind = "rigid", velocity = [0, 0, 1] }'),
+            ("stanford-bunny.obj", "scale = 8\ntranslate = [0, -0.75, 0]"),
+        ))
+        frames = self.record_scene(f'[scene]\ntime_step = 0.25\ncontacts = "penetration"\n{objects}', 4)
+        self.assert_all_recorded(frames)
+        self.assert_detected_again(frames)
+        self.assertGreater(sum(len(frame["penetrations"]) for frame in frames), 1000)
+        self.assertGreater(sum(len(frame["containment"]) for frame in frames), 0)
+        self.assertGreater(sum(len(frame["curves"]) for frame in frames), 10)
+
+    @with_h5py
+    def test_diff(self):
+        self.record_scene(SOLIDS, 6, "--threads", 1)
+        self.record_scene(SOLIDS, 6, "--threads", 2, name="other")
+        done = self.run_here("diff", "run.h5", "other.h5")
+        self.assertEqual((done.status, done.out, done.error), (0, "run.h5 and other.h5 are equal: 6 frames\n", ""))
+        with h5py.File(self.folder / "other.h5", "r+") as file:
+            row = int(file["penetrations/end"][3])
+            file["penetrations/depth"][row] += 0.125
+            file["curves/depth"][int(file["curves/end"][4])] += 1
+        done = self.run_here("diff", "run.h5", "other.h5")
+        self.assertEqual((done.status, done.error), (1, ""))
+        self.assertRegex(done.out, r"^run\.h5 and other\.h5 differ in frame 4: penetration 0, vertex \d+ of object 0 'box' in object 1 'ball', "
+                                   r"depth: [\d.]+ and [\d.]+\n$")
+        done = self.run_here("diff", "run.h5", "other.h5", "--tolerance", "0.5")
+        self.assertRegex(done.out, r"differ in frame 5: curve 0, object 0 'box' and object 1 'ball', depth: ")
+
+    @with_h5py
+    def test_damaged_files(self):
+        self.record_scene(SOLIDS, 6)
+        for path, part in (
+            ("curve_contacts/contact", "/curve_contacts/contact: row 0 of frame 4 is 4294967295, not below "),
+            ("curves/first_enclosed", "/curves/first_enclosed: row 0 of frame 4 is 4294967295, not below "),
+            ("penetration_groups/penetration_count", "/penetration_groups/penetration_count: row 0 of frame 4 is 4294967295"),
+            ("penetrations/triangle", "/penetrations/triangle: row 0 of frame 4 is 4294967295, not below "),
+        ):
+            (self.folder / "bad.h5").write_bytes((self.folder / "run.h5").read_bytes())
+            with h5py.File(self.folder / "bad.h5", "r+") as file:
+                file[path][int(file[path.split("/")[0] + "/end"][3])] = 4294967295
+            self.assert_one_line_error(self.run_here("diff", "run.h5", "bad.h5"), "bad.h5: ", part)
 
 
 class Version1(ProgramTest):

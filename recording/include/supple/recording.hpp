@@ -39,12 +39,21 @@ struct RecordedFrame {
   std::vector<ContactPoint> contact_points{};
   std::vector<ContinuousContact> continuous_contacts{};
   std::vector<ProximityPair> proximity_pairs{};
+  std::vector<PenetrationGroup> penetration_groups{};
+  std::vector<Penetration> penetrations{};
+  std::vector<std::uint32_t> vertices_on_surface{};
+  std::vector<ContainedPart> contained_parts{};
+  std::vector<IntersectionCurve> curves{};
+  std::vector<std::uint32_t> curve_contacts{};
+  std::vector<Vec3d> curve_points{};
+  std::vector<std::uint32_t> enclosed_vertices{};
   std::vector<CollidingVertices> colliding_vertex_groups{};
   std::vector<std::uint32_t> colliding_vertices{};
   std::vector<ObjectPair> volume_begin{}, volume_end{};
   std::vector<ObjectPair> narrow_phase_begin{}, narrow_phase_end{};
   std::vector<ObjectPair> contact_begin{}, contact_end{};
   std::vector<ObjectPair> proximity_begin{}, proximity_end{};
+  std::vector<ObjectPair> penetration_begin{}, penetration_end{};
   StepStats stats{};
 };
 
@@ -90,8 +99,8 @@ class Recording {
 
   const RecordingHeader& header() const;
   std::uint64_t frame_count() const;
-  /// Throws `Error` when there is no such frame, or its data refer to objects, triangles or vertices that do
-  /// not exist. Sequential reading is fastest.
+  /// Throws `Error` when there is no such frame, or its data refer to objects, triangles, vertices or
+  /// rows that do not exist. Sequential reading is fastest.
   RecordedFrame frame(std::uint64_t number) const;
   /// As `frame`, but only time, events and statistics, in a fraction of the time.
   RecordedFrame summary(std::uint64_t number) const;

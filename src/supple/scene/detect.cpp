@@ -350,7 +350,7 @@ bool Scene::Implementation::find_penetrations(const StopSignal& stop) {
   found.groups = contact_pass_.groups();
   found.contacts = contact_pass_.contacts();
   found.contact_points = contact_pass_.contact_points();
-  if (!penetration_pass_.run(jobs_.jobs, penetrated_objects_, found, stop, parallel)) return false;
+  if (!penetration_pass_.run(jobs_.jobs, penetrated_objects_, versions_, found, stop, parallel)) return false;
   result.stats.penetrations = penetration_pass_.penetrations().size();
   result.stats.curves = penetration_pass_.curves().curves.size();
   return true;

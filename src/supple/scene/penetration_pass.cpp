@@ -25,20 +25,22 @@ std::uint32_t size_of(const List& list) {
   return static_cast<std::uint32_t>(list.size());
 }
 
-/// Appends a range of another list.
 template <class Item>
-void append(std::vector<Item>& list, const std::vector<Item>& from, std::uint32_t first,
-            std::uint32_t count) {
-  const auto begin = from.begin() + static_cast<std::ptrdiff_t>(first);
-  list.insert(list.end(), begin, begin + static_cast<std::ptrdiff_t>(count));
+std::span<Item> part_of(std::vector<Item>& list, Range range) {
+  return std::span(list).subspan(range.first, range.count);
 }
 
 }  // namespace
 
 bool PenetrationPass::run(std::span<const ContactJob> jobs, std::span<const PenetratedObject> objects,
-                          const DetectResult& result, const StopSignal& stop, const Parallel& parallel) {
+                          std::span<const std::uint64_t> versions, const DetectResult& result,
+                          const StopSignal& stop, const Parallel& parallel) {
   objects_ = objects;
-  plan(jobs, result);
+  list_pairs(jobs);
+  outcomes_.plan(pairs_, versions, true);
+  tasks_.clear();
+  for (const std::uint32_t i : outcomes_.open_jobs()) tasks_.push_back({i, {}});
+  outcomes_.expect_tasks(tasks_.size());
   workers_.resize(parallel.worker_count());
   for (Worker& worker : workers_) {
     worker.curves.clear();
@@ -46,52 +48,55 @@ bool PenetrationPass::run(std::span<const ContactJob> jobs, std::span<const Pene
     worker.on_surface.clear();
     worker.parts.clear();
   }
-  outcomes_.assign(tasks_.size(), {});
   parallel.for_ranges(tasks_.size(), 1, [&](std::size_t begin, std::size_t end, std::uint32_t w) {
     for (std::size_t i = begin; i < end && !stop.stop_requested(); ++i) {
-      outcomes_[i].worker = w;
-      run_task(tasks_[i], result, workers_[w], outcomes_[i]);
+      const auto first = sizes_of(workers_[w]);
+      run_task(task_of(pairs_[tasks_[i].job], result), result, workers_[w]);
+      const auto last = sizes_of(workers_[w]);
+      Outcomes::TaskOutcome& outcome = outcomes_.of_task(i);
+      outcome.worker = w;
+      for (std::size_t list = 0; list < list_count; ++list)
+        outcome.ranges[list] = {first[list], last[list] - first[list]};
     }
   });
   if (stop.stop_requested()) return false;
   gather();
-  return find_depths(stop, parallel);
+  if (!find_depths(stop, parallel)) return false;
+  outcomes_.complete();
+  return true;
 }
 
-void PenetrationPass::plan(std::span<const ContactJob> jobs, const DetectResult& result) {
-  tasks_.clear();
-  auto group = result.groups.begin();
+void PenetrationPass::list_pairs(std::span<const ContactJob> jobs) {
+  pairs_.clear();
   for (const auto& [a, b] : jobs) {
-    const bool has_contacts = group != result.groups.end() && group->a == objects_[a].queried.id &&
-                              group->b == objects_[b].queried.id;
-    const ContactGroup* const contacts = has_contacts ? &*group++ : nullptr;
-    if (has_contacts) tasks_.push_back({a, b, contacts, true, false});
-    if (a == b) continue;
-    if (objects_[b].is_solid) tasks_.push_back({a, b, contacts, false, false});
-    if (objects_[a].is_solid) tasks_.push_back({b, a, contacts, false, true});
+    pairs_.push_back({a, b});
+    if (a != b && objects_[a].is_solid) pairs_.push_back({b, a});
   }
-  std::sort(tasks_.begin(), tasks_.end(), [](const Task& p, const Task& q) {
-    return std::tie(p.inner, p.outer, p.finds_curves) < std::tie(q.inner, q.outer, q.finds_curves);
-  });
+  std::sort(pairs_.begin(), pairs_.end());
 }
 
-void PenetrationPass::run_task(const Task& task, const DetectResult& result, Worker& worker,
-                               Outcome& outcome) const {
-  if (task.finds_curves) {
-    outcome.first_curve = size_of(worker.curves.curves);
-    worker.curve_finder.find({objects_[task.inner].surface, objects_[task.outer].surface,
-                              task.inner == task.outer, task.group, &result},
+PenetrationPass::Task PenetrationPass::task_of(ContactJob pair, const DetectResult& result) const {
+  const auto [a, b] = std::minmax(pair.a, pair.b);
+  const ObjectPair objects{objects_[a].queried.id, objects_[b].queried.id};
+  const auto pair_of = [](const ContactGroup& group) { return ObjectPair{group.a, group.b}; };
+  const auto group = std::ranges::lower_bound(result.groups, objects, {}, pair_of);
+  const bool has_contacts = group != result.groups.end() && pair_of(*group) == objects;
+  return {pair.a, pair.b, has_contacts ? &*group : nullptr};
+}
+
+std::array<std::uint32_t, PenetrationPass::list_count> PenetrationPass::sizes_of(const Worker& worker) {
+  const CurveLists& curves = worker.curves;
+  return {size_of(worker.inside),  size_of(worker.on_surface), size_of(worker.parts),
+          size_of(curves.curves),  size_of(curves.contacts),   size_of(curves.points),
+          size_of(curves.enclosed)};
+}
+
+void PenetrationPass::run_task(const Task& task, const DetectResult& result, Worker& worker) const {
+  const PenetratedObject &inner = objects_[task.inner], &outer = objects_[task.outer];
+  if (task.inner != task.outer && outer.is_solid) find_inside(task, result, worker);
+  if (task.inner <= task.outer && task.group != nullptr)
+    worker.curve_finder.find({inner.surface, outer.surface, task.inner == task.outer, task.group, &result},
                              worker.curves);
-    outcome.curves = size_of(worker.curves.curves) - outcome.first_curve;
-    return;
-  }
-  outcome.first_inside = size_of(worker.inside);
-  outcome.first_on_surface = size_of(worker.on_surface);
-  outcome.first_part = size_of(worker.parts);
-  find_inside(task, result, worker);
-  outcome.inside = size_of(worker.inside) - outcome.first_inside;
-  outcome.on_surface = size_of(worker.on_surface) - outcome.first_on_surface;
-  outcome.parts = size_of(worker.parts) - outcome.first_part;
 }
 
 /// Lists the triangles with contacts, their corners, and their edges that have a point in common with the
@@ -102,11 +107,12 @@ void PenetrationPass::collect_touched(const Task& task, const DetectResult& resu
   worker.corners.clear();
   worker.cut_edges.clear();
   if (task.group == nullptr) return;
+  const bool inner_is_b = task.inner > task.outer;
   for (const Contact& contact : result.contacts_of(*task.group)) {
-    const std::uint32_t id = task.inner_is_b ? contact.triangle_b : contact.triangle_a;
+    const std::uint32_t id = inner_is_b ? contact.triangle_b : contact.triangle_a;
     worker.triangles.push_back(id);
     for (const ContactPoint& point : result.points_of(contact)) {
-      const FeatureName name = name_of(task.inner_is_b ? point.on_b : point.on_a, surface.triangle(id), id);
+      const FeatureName name = name_of(inner_is_b ? point.on_b : point.on_a, surface.triangle(id), id);
       if (name.kind == FeatureKind::edge) worker.cut_edges.push_back({name.first, name.last});
       if (name.kind == FeatureKind::vertex) worker.marks[name.first] |= is_on_surface;
     }
@@ -206,63 +212,97 @@ void PenetrationPass::find_inside(const Task& task, const DetectResult& result, 
             worker.on_surface.end());
 }
 
-/// Writes the lists of the workers in the order of the tasks. Penetrations have no depth yet.
+/// Pairs are in canonical order. Reused items move within the lists; new items are written between them. New
+/// penetrations have no depth yet.
 void PenetrationPass::gather() {
+  outcomes_.place(tasks_);
+  outcomes_.move_known<of_penetrations>(penetrations_);
+  outcomes_.move_known<of_surface>(on_surface_);
+  outcomes_.move_known<of_parts>(parts_);
+  outcomes_.move_known<of_curves>(curves_.curves);
+  outcomes_.move_known<of_curve_contacts>(curves_.contacts);
+  outcomes_.move_known<of_curve_points>(curves_.points);
+  outcomes_.move_known<of_enclosed>(curves_.enclosed);
   groups_.clear();
-  penetrations_.clear();
-  on_surface_.clear();
-  parts_.clear();
-  curves_.clear();
-  for (std::size_t i = 0; i < tasks_.size(); ++i) {
-    const Outcome& outcome = outcomes_[i];
-    const Worker& worker = workers_[outcome.worker];
-    const ObjectId inner = objects_[tasks_[i].inner].queried.id, outer = objects_[tasks_[i].outer].queried.id;
-    if (outcome.inside + outcome.on_surface > 0)
-      groups_.push_back(
-          {inner, outer, size_of(penetrations_), outcome.inside, size_of(on_surface_), outcome.on_surface});
-    for (std::uint32_t k = 0; k < outcome.inside; ++k)
-      penetrations_.push_back({inner, outer, worker.inside[outcome.first_inside + k]});
-    append(on_surface_, worker.on_surface, outcome.first_on_surface, outcome.on_surface);
-    append(parts_, worker.parts, outcome.first_part, outcome.parts);
-    for (std::uint32_t k = 0; k < outcome.curves; ++k) {
-      IntersectionCurve curve = worker.curves.curves[outcome.first_curve + k];
-      const auto move = [](auto& list, const auto& from, std::uint32_t& first, std::uint32_t count) {
-        const std::uint32_t begin = size_of(list);
-        append(list, from, first, count);
-        first = begin;
-      };
-      move(curves_.contacts, worker.curves.contacts, curve.first_contact, curve.contact_count);
-      move(curves_.points, worker.curves.points, curve.first_point, curve.point_count);
-      move(curves_.enclosed, worker.curves.enclosed, curve.first_enclosed,
-           curve.enclosed_count_a + curve.enclosed_count_b);
-      curves_.curves.push_back(curve);
+  new_penetrations_.clear();
+  for (std::size_t i = 0; i < outcomes_.size(); ++i) {
+    if (outcomes_.is_known(i)) {
+      move_known_curves(i);
+    } else {
+      gather_found(i);
     }
+    const Range inside = outcomes_.ranges(i)[of_penetrations], surface = outcomes_.ranges(i)[of_surface];
+    if (inside.count + surface.count > 0)
+      groups_.push_back({objects_[pairs_[i].a].queried.id, objects_[pairs_[i].b].queried.id, inside.first,
+                         inside.count, surface.first, surface.count});
+  }
+}
+
+/// The curves and the contacts that they refer to have moved within their lists.
+void PenetrationPass::move_known_curves(std::size_t i) {
+  const Outcomes::Ranges &from = outcomes_.last_ranges(i), &to = outcomes_.ranges(i);
+  move_ranges(i, from);
+  const std::uint32_t change = to[of_curve_contacts].first - from[of_curve_contacts].first;
+  for (std::uint32_t& contact : part_of(curves_.contacts, to[of_curve_contacts])) contact += change;
+}
+
+void PenetrationPass::gather_found(std::size_t i) {
+  const auto& [w, from] = outcomes_.tasks_of(i).front();
+  const Outcomes::Ranges& to = outcomes_.ranges(i);
+  const Worker& worker = workers_[w];
+  const ObjectId inner = objects_[pairs_[i].a].queried.id, outer = objects_[pairs_[i].b].queried.id;
+  for (std::uint32_t k = 0; k < to[of_penetrations].count; ++k) {
+    const std::uint32_t place = to[of_penetrations].first + k;
+    penetrations_[place] = {inner, outer, worker.inside[from[of_penetrations].first + k]};
+    new_penetrations_.push_back(place);
+  }
+  const auto copy = [&](List list, const auto& found, auto& all) {
+    std::copy_n(found.begin() + from[list].first, from[list].count, all.begin() + to[list].first);
+  };
+  copy(of_surface, worker.on_surface, on_surface_);
+  copy(of_parts, worker.parts, parts_);
+  copy(of_curves, worker.curves.curves, curves_.curves);
+  copy(of_curve_contacts, worker.curves.contacts, curves_.contacts);
+  copy(of_curve_points, worker.curves.points, curves_.points);
+  copy(of_enclosed, worker.curves.enclosed, curves_.enclosed);
+  move_ranges(i, from);
+}
+
+/// Renumbers the ranges of curves that were in other lists, or at other places.
+void PenetrationPass::move_ranges(std::size_t i, const Outcomes::Ranges& from) {
+  const Outcomes::Ranges& to = outcomes_.ranges(i);
+  const auto change = [&](List list) { return to[list].first - from[list].first; };
+  for (IntersectionCurve& curve : part_of(curves_.curves, to[of_curves])) {
+    curve.first_contact += change(of_curve_contacts);
+    curve.first_point += change(of_curve_points);
+    curve.first_enclosed += change(of_enclosed);
   }
 }
 
 bool PenetrationPass::find_depths(const StopSignal& stop, const Parallel& parallel) {
   constexpr std::size_t grain = 64;
-  parallel.for_ranges(penetrations_.size(), grain, [&](std::size_t begin, std::size_t end, std::uint32_t w) {
-    ObjectQueries& queries = workers_[w].queries;
-    ObjectId last_outer;
-    for (std::size_t i = begin; i < end && !stop.stop_requested(); ++i) {
-      Penetration& penetration = penetrations_[i];
-      const PenetratedObject& inner = objects_[penetration.object_a.index];
-      const PenetratedObject& outer = objects_[penetration.object_b.index];
-      if (i == begin || penetration.object_b != last_outer) queries.start();
-      last_outer = penetration.object_b;
-      // There is one, because the vertex is inside.
-      const ClosestPoint closest =
-          *queries.closest(std::span(&outer.queried, 1), inner.surface.position(penetration.vertex),
-                           std::numeric_limits<double>::infinity());
-      penetration.triangle = closest.triangle;
-      penetration.feature = closest.feature;
-      penetration.depth = closest.distance;
-      penetration.barycentric = closest.barycentric;
-      penetration.point = closest.point;
-      penetration.normal = Vec3d{} - closest.normal;
-    }
-  });
+  parallel.for_ranges(
+      new_penetrations_.size(), grain, [&](std::size_t begin, std::size_t end, std::uint32_t w) {
+        ObjectQueries& queries = workers_[w].queries;
+        ObjectId last_outer;
+        for (std::size_t i = begin; i < end && !stop.stop_requested(); ++i) {
+          Penetration& penetration = penetrations_[new_penetrations_[i]];
+          const PenetratedObject& inner = objects_[penetration.object_a.index];
+          const PenetratedObject& outer = objects_[penetration.object_b.index];
+          if (i == begin || penetration.object_b != last_outer) queries.start();
+          last_outer = penetration.object_b;
+          // There is one, because the vertex is inside.
+          const ClosestPoint closest =
+              *queries.closest(std::span(&outer.queried, 1), inner.surface.position(penetration.vertex),
+                               std::numeric_limits<double>::infinity());
+          penetration.triangle = closest.triangle;
+          penetration.feature = closest.feature;
+          penetration.depth = closest.distance;
+          penetration.barycentric = closest.barycentric;
+          penetration.point = closest.point;
+          penetration.normal = Vec3d{} - closest.normal;
+        }
+      });
   return !stop.stop_requested();
 }
 

@@ -9,6 +9,7 @@
 #include "core/stop_signal.hpp"
 #include "scene/contact_tasks.hpp"
 #include "scene/curve_finder.hpp"
+#include "scene/job_outcomes.hpp"
 #include "scene/object_queries.hpp"
 #include "scene/surface_view.hpp"
 #include "supple/penetration.hpp"
@@ -33,12 +34,16 @@ struct PenetratedObject {
 /// triangle with a contact, it is a whole connected part of a. So one query for each connected part without
 /// contacts, and one for each set of corners of triangles with contacts, leave no vertex out. Only sets that
 /// are inside are walked through.
+///
+/// Of two objects that have not moved since the previous run, the pass reuses what it found. It keeps its
+/// memory between steps.
 class PenetrationPass {
  public:
-  /// `jobs` ascend and contain indices of `objects`; `result` has all contacts of the jobs. Returns false
-  /// when it was stopped; the lists are then not valid.
+  /// `jobs` ascend and contain indices of `objects`; `versions` are those of the objects' positions; `result`
+  /// has all contacts of the jobs. Returns false when it was stopped; the lists are then not valid.
   bool run(std::span<const ContactJob> jobs, std::span<const PenetratedObject> objects,
-           const DetectResult& result, const StopSignal& stop, const Parallel& parallel);
+           std::span<const std::uint64_t> versions, const DetectResult& result, const StopSignal& stop,
+           const Parallel& parallel);
 
   std::span<const PenetrationGroup> groups() const { return groups_; }
   std::span<const Penetration> penetrations() const { return penetrations_; }
@@ -47,21 +52,25 @@ class PenetrationPass {
   const CurveLists& curves() const { return curves_; }
 
  private:
-  /// Part of a job: its curves, or the vertices of one object inside the other.
+  /// The vertices of one object, `inner`, inside another one, and the curves of the two. The curves belong to
+  /// the task with the smaller object inside.
   struct Task {
     std::uint32_t inner = 0, outer = 0;
-    const ContactGroup* group = nullptr;
-    bool finds_curves = false;
-    bool inner_is_b = false;
+    const ContactGroup* group = nullptr;  // of both
   };
-  /// What a task found, as ranges of the lists of its worker.
-  struct Outcome {
-    std::uint32_t worker = 0;
-    std::uint32_t first_curve = 0, curves = 0;
-    std::uint32_t first_inside = 0, inside = 0;
-    std::uint32_t first_on_surface = 0, on_surface = 0;
-    std::uint32_t first_part = 0, parts = 0;
+  /// The lists of the result in `JobOutcomes`. The contacts of the curves of a task are those of its group,
+  /// in another order, so both have the same range of their lists.
+  enum List : std::size_t {
+    of_penetrations,
+    of_surface,
+    of_parts,
+    of_curves,
+    of_curve_contacts,
+    of_curve_points,
+    of_enclosed,
+    list_count
   };
+  using Outcomes = JobOutcomes<list_count>;
   struct Worker {
     CurveFinder curve_finder;
     ObjectQueries queries;
@@ -70,24 +79,31 @@ class PenetrationPass {
     std::vector<ContainedPart> parts;
     // Scratch of one task.
     std::vector<std::array<std::uint32_t, 2>> cut_edges;
-    std::vector<std::uint32_t> corners, triangles, touched;
+    std::vector<std::uint32_t> corners, triangles;
     ParitySets sets;
     std::vector<Containment> state;         // by set
     std::vector<std::uint8_t> marks;        // by vertex
     std::vector<std::uint8_t> has_contact;  // by part
   };
 
-  void plan(std::span<const ContactJob> jobs, const DetectResult& result);
-  void run_task(const Task& task, const DetectResult& result, Worker& worker, Outcome& outcome) const;
+  void list_pairs(std::span<const ContactJob> jobs);
+  Task task_of(ContactJob pair, const DetectResult& result) const;
+  void run_task(const Task& task, const DetectResult& result, Worker& worker) const;
+  static std::array<std::uint32_t, list_count> sizes_of(const Worker& worker);
   void find_inside(const Task& task, const DetectResult& result, Worker& worker) const;
   void collect_touched(const Task& task, const DetectResult& result, Worker& worker) const;
   void gather();
+  void move_known_curves(std::size_t i);
+  void gather_found(std::size_t i);
+  void move_ranges(std::size_t i, const Outcomes::Ranges& from);
   bool find_depths(const StopSignal& stop, const Parallel& parallel);
 
   std::span<const PenetratedObject> objects_;
   std::vector<Worker> workers_;
-  std::vector<Task> tasks_;
-  std::vector<Outcome> outcomes_;
+  std::vector<ContactJob> pairs_;  // inner and outer object, ascending
+  std::vector<ContactTask> tasks_;
+  Outcomes outcomes_;
+  std::vector<std::uint32_t> new_penetrations_;  // whose depths are not known
 
   std::vector<PenetrationGroup> groups_;
   std::vector<Penetration> penetrations_;

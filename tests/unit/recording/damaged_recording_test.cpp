@@ -31,6 +31,7 @@ class DamagedRecording : public testing::Test {
     scene.comparison.colliding_vertices = true;
     simulate({random_soup(30, 1, 0.6, 4), random_soup(20, 1, 0.6, 5)}, {}, scene, 4)
         .write(folder_ / "paper.h5");
+    simulate_solids(4).write(folder_ / "solids.h5");
   }
 
   /// Reads all of a modified copy and returns the error.
@@ -124,6 +125,7 @@ std::function<void(hid_t)> with_attribute(const char* name, std::uint32_t value)
 TEST_F(DamagedRecording, UnchangedIsFine) {
   EXPECT_EQ(error_after([](hid_t) {}), "");
   EXPECT_EQ(error_after([](hid_t) {}, "moving.h5"), "");
+  EXPECT_EQ(error_after([](hid_t) {}, "solids.h5"), "");
 }
 
 TEST_F(DamagedRecording, OtherFormatsAndVersions) {
@@ -178,7 +180,17 @@ TEST_F(DamagedRecording, MissingDatasets) {
                            "events/narrow_phase_begin/object_a",
                            "colliding_vertices/end",
                            "colliding_vertices/vertex",
-                           "colliding_vertex_groups/count_a"})
+                           "colliding_vertex_groups/count_a",
+                           "penetration_groups/object_b",
+                           "penetrations/end",
+                           "penetrations/depth",
+                           "vertices_on_surface/vertex",
+                           "contained_parts/is_whole",
+                           "curves/kind",
+                           "curve_contacts/contact",
+                           "curve_points/position",
+                           "enclosed_vertices/end",
+                           "events/penetration_begin/object_a"})
     expect("missing", without(path));
 }
 
@@ -213,6 +225,60 @@ TEST_F(DamagedRecording, CollidingVerticesOutOfRange) {
   expect_of_paper("events/narrow_phase_begin/object_b", 0, 2);
   expect("frames name 123456789", with_number("colliding_vertices/end", 3, 123456789), "paper.h5");
   expect("/colliding_vertex_groups", without("colliding_vertices"), "paper.h5");
+}
+
+TEST_F(DamagedRecording, PenetrationThatEarlierProgramsDidNotRecordIsNoDamage) {
+  const auto change = [](hid_t file) {
+    for (const char* path : {"penetration_groups", "penetrations", "vertices_on_surface", "contained_parts",
+                             "curves", "curve_contacts", "curve_points", "enclosed_vertices",
+                             "events/penetration_begin", "events/penetration_end"})
+      without(path)(file);
+  };
+  EXPECT_EQ(error_after(change, "solids.h5"), "");
+  const RecordedFrame frame = Recording(folder_ / "bad.h5").frame(2);
+  EXPECT_TRUE(frame.penetrations.empty() && frame.penetration_groups.empty() && frame.curves.empty() &&
+              frame.penetration_begin.empty());
+  EXPECT_FALSE(frame.contacts.empty());
+}
+
+TEST_F(DamagedRecording, PenetrationOutOfRange) {
+  const auto expect_of_solids = [this](const std::string& path, hsize_t row, std::uint64_t value) {
+    expect("/" + path + ": row ", with_number(path.c_str(), row, value), "solids.h5");
+  };
+  for (const char* column : {"object_a", "object_b", "vertex", "triangle"})
+    expect_of_solids(std::string("penetrations/") + column, 5, 100000);
+  expect_of_solids("penetrations/feature", 1, 3);
+  expect_of_solids("penetrations/feature_index", 1, 3);
+  expect_of_solids("penetration_groups/object_a", 0, 4);
+  expect_of_solids("penetration_groups/object_b", 0, 4294967295);
+  for (const char* column :
+       {"first_penetration", "penetration_count", "first_on_surface", "on_surface_count"}) {
+    expect_of_solids(std::string("penetration_groups/") + column, 1, 100000);
+    expect_of_solids(std::string("penetration_groups/") + column, 1, 4294967295);
+  }
+  expect_of_solids("vertices_on_surface/vertex", 2, 100000);
+  expect_of_solids("contained_parts/object_a", 0, 4);
+  expect_of_solids("contained_parts/object_b", 0, 4);
+  expect_of_solids("contained_parts/vertex", 0, 26);
+  expect_of_solids("contained_parts/vertex_count", 0, 27);
+  expect_of_solids("curves/object_a", 0, 4);
+  expect_of_solids("curves/object_b", 0, 99);
+  expect_of_solids("curves/kind", 0, 3);
+  for (const char* column : {"first_contact", "contact_count", "first_point", "point_count", "first_enclosed",
+                             "enclosed_count_a", "enclosed_count_b"}) {
+    expect_of_solids(std::string("curves/") + column, 1, 100000);
+    expect_of_solids(std::string("curves/") + column, 1, 4294967295);
+  }
+  expect_of_solids("curve_contacts/contact", 3, 100000);
+  expect_of_solids("enclosed_vertices/vertex", 2, 100000);
+  expect_of_solids("events/penetration_begin/object_b", 0, 4);
+  expect("frames name 123456789", with_number("curve_points/end", 3, 123456789), "solids.h5");
+  // Rows that refer to a list that is not in the file.
+  expect("/penetration_groups/penetration_count", without("penetrations"), "solids.h5");
+  expect("/penetration_groups/on_surface_count", without("vertices_on_surface"), "solids.h5");
+  expect("/curves/contact_count", without("curve_contacts"), "solids.h5");
+  expect("/curves/point_count", without("curve_points"), "solids.h5");
+  expect("/curves/enclosed_count_", without("enclosed_vertices"), "solids.h5");
 }
 
 TEST_F(DamagedRecording, NumbersOutOfRange) {

@@ -118,7 +118,9 @@ TEST_P(InEveryMode, TimesPositionsAndPairs) {
                                     std::pair{"event contact_begin", &RecordedFrame::contact_begin},
                                     std::pair{"event contact_end", &RecordedFrame::contact_end},
                                     std::pair{"event proximity_begin", &RecordedFrame::proximity_begin},
-                                    std::pair{"event proximity_end", &RecordedFrame::proximity_end}}) {
+                                    std::pair{"event proximity_end", &RecordedFrame::proximity_end},
+                                    std::pair{"event penetration_begin", &RecordedFrame::penetration_begin},
+                                    std::pair{"event penetration_end", &RecordedFrame::penetration_end}}) {
     auto member = pairs;
     expect(3, name, [member](Contents& c) {
       (c.frames[3].*member).push_back({c.header.objects[1].id, c.header.objects[2].id});
@@ -242,6 +244,109 @@ TEST_P(OfProximity, EveryField) {
   });
 }
 INSTANTIATE_TEST_SUITE_P(, OfProximity, testing::Values(ContactKinds::proximity));
+
+class OfPenetration : public FindFirstDifference {
+ protected:
+  OfPenetration() { base_ = simulate_solids(4); }
+
+  /// Expects that the difference names the row and the field.
+  template <class Row>
+  void change(std::vector<Row> RecordedFrame::*list, std::size_t row, const std::string& item,
+              const std::string& field, const std::function<void(Row&)>& function) const {
+    ASSERT_GT((base_.frames[2].*list).size(), row) << item;
+    const std::optional<RecordingDifference> difference =
+        after([&](Contents& c) { function((c.frames[2].*list)[row]); });
+    ASSERT_TRUE(difference) << field;
+    EXPECT_EQ(difference->frame, 2u);
+    EXPECT_EQ(difference->what.find(item), 0u) << difference->what;
+    EXPECT_NE(difference->what.find(", " + field + ": "), std::string::npos) << difference->what;
+  }
+};
+
+TEST_P(OfPenetration, EveryFieldOfPenetrations) {
+  const auto change_row = [this](const char* field, const std::function<void(Penetration&)>& function) {
+    change<Penetration>(&RecordedFrame::penetrations, 1, "penetration 1, vertex ", field, function);
+  };
+  change_row("triangle", [](Penetration& p) { p.triangle = p.triangle == 0 ? 1 : 0; });
+  change_row("feature", [](Penetration& p) {
+    p.feature.kind = p.feature.kind == FeatureKind::edge ? FeatureKind::face : FeatureKind::edge;
+  });
+  change_row("feature_index", [](Penetration& p) { p.feature.index = p.feature.index == 1 ? 0 : 1; });
+  change_row("depth", [](Penetration& p) { p.depth += 1e-3; });
+  change_row("barycentric", [](Penetration& p) { p.barycentric[2] += 1e-3; });
+  change_row("point", [](Penetration& p) { p.point.y += 1e-3; });
+  change_row("normal", [](Penetration& p) { p.normal.z += 1e-3; });
+  const Penetration& first = base_.frames[2].penetrations[0];
+  expect(2,
+         "penetration 0: vertex " + std::to_string(first.vertex) +
+             " of object 0 'object 0' in object 1 'object 1' only in the first",
+         [](Contents& c) { ++c.frames[2].penetrations[0].vertex; });
+  EXPECT_FALSE(after([](Contents& c) { c.frames[2].penetrations[1].depth += 1e-9; }, 1e-8));
+}
+
+TEST_P(OfPenetration, EveryFieldOfGroups) {
+  const std::vector<PenetrationGroup>& groups = base_.frames[2].penetration_groups;
+  std::size_t row = 0;
+  while (row < groups.size() && (groups[row].on_surface_count == 0 || groups[row].penetration_count == 0))
+    ++row;
+  ASSERT_LT(row, groups.size());
+  ASSERT_GT(groups[row].first_penetration, 0u);
+  const std::string item = "penetration group " + std::to_string(row) + ", object ";
+  const auto change_row = [&](const char* field, const std::function<void(PenetrationGroup&)>& function) {
+    change<PenetrationGroup>(&RecordedFrame::penetration_groups, row, item, field, function);
+  };
+  change_row("penetration_count", [](PenetrationGroup& g) { --g.penetration_count; });
+  change_row("first_penetration", [](PenetrationGroup& g) { --g.first_penetration; });
+  change_row("on_surface_count", [](PenetrationGroup& g) { --g.on_surface_count; });
+  expect(2, item, [&](Contents& c) { c.frames[2].vertices_on_surface[groups[row].first_on_surface] += 1; });
+  expect(2, "penetration group 0: object 0 'object 0' and object 1 'object 1' only in the first",
+         [](Contents& c) { c.frames[2].penetration_groups.erase(c.frames[2].penetration_groups.begin()); });
+}
+
+TEST_P(OfPenetration, EveryFieldOfContainedParts) {
+  expect(3, "contained part 0, vertex 0 of object 2 'object 2' in object 0 'object 0', vertex_count: ",
+         [](Contents& c) { --c.frames[3].contained_parts.at(0).vertex_count; });
+  expect(3, "contained part 0, vertex 0 of object 2 'object 2' in object 0 'object 0', is_whole: 1 and 0",
+         [](Contents& c) { c.frames[3].contained_parts.at(0).is_whole = false; });
+  expect(3, "contained part 0: vertex 0 of object 2 'object 2' in object 0 'object 0' only in the first",
+         [](Contents& c) { c.frames[3].contained_parts.clear(); });
+}
+
+TEST_P(OfPenetration, EveryFieldOfCurves) {
+  const std::vector<IntersectionCurve>& curves = base_.frames[2].curves;
+  ASSERT_EQ(curves.at(0).kind, CurveKind::closed);
+  ASSERT_GT(curves[0].enclosed_count_a, 0u);
+  ASSERT_GT(curves[0].enclosed_count_b, 0u);
+  const std::string item = "curve 0, object 0 'object 0' and object 1 'object 1', ";
+  const auto change_row = [&](const char* field, const std::function<void(IntersectionCurve&)>& function) {
+    change<IntersectionCurve>(&RecordedFrame::curves, 0, item, field, function);
+  };
+  expect(2, item + "kind: 'closed' and 'open'",
+         [](Contents& c) { c.frames[2].curves[0].kind = CurveKind::open; });
+  expect(2, item + "contact_count: ", [](Contents& c) { --c.frames[2].curves[0].contact_count; });
+  expect(2, item + "point_count: ", [](Contents& c) { --c.frames[2].curves[0].point_count; });
+  expect(2, item + "enclosed_count_a: ", [](Contents& c) { --c.frames[2].curves[0].enclosed_count_a; });
+  expect(2, item + "enclosed_count_b: ", [](Contents& c) { --c.frames[2].curves[0].enclosed_count_b; });
+  expect(2, "curve 1, ", [](Contents& c) { --c.frames[2].curves.at(1).first_contact; });
+  expect(2, "curve 1, ", [](Contents& c) { --c.frames[2].curves.at(1).first_point; });
+  expect(2, "curve 1, ", [](Contents& c) { --c.frames[2].curves.at(1).first_enclosed; });
+  expect(2, item + "contact 3: ", [](Contents& c) { c.frames[2].curve_contacts[3] = 0; });
+  expect(2, item + "point 4: (", [](Contents& c) { c.frames[2].curve_points[4].x += 1e-9; });
+  expect(2, item + "enclosed vertex 0: ", [](Contents& c) { c.frames[2].enclosed_vertices[0] += 1; });
+  change_row("centroid", [](IntersectionCurve& c) { c.centroid.x += 1e-3; });
+  change_row("area", [](IntersectionCurve& c) { c.area.y += 1e-3; });
+  change_row("normal", [](IntersectionCurve& c) { c.normal.z += 1e-3; });
+  change_row("depth", [](IntersectionCurve& c) { c.depth += 1e-3; });
+  expect(2, "curve " + std::to_string(curves.size() - 1) + ": object ",
+         [](Contents& c) { c.frames[2].curves.pop_back(); });
+  EXPECT_FALSE(after(
+      [](Contents& c) {
+        c.frames[2].curves[0].centroid.x += 1e-9;
+        c.frames[2].curve_points[4].x += 1e-9;
+      },
+      1e-8));
+}
+INSTANTIATE_TEST_SUITE_P(, OfPenetration, testing::Values(ContactKinds::penetration));
 
 }  // namespace
 }  // namespace supple

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "supple/models.hpp"
 #include "supple/recording.hpp"
 #include "supple/scene.hpp"
 #include "unit/mesh/mesh_files.hpp"
@@ -32,6 +33,16 @@ inline RecordedFrame kept(double time, const DetectResult& result) {
   keep(frame.proximity_begin, result.proximity_events.begin);
   keep(frame.proximity_end, result.proximity_events.end);
   keep(frame.proximity_pairs, result.proximity_pairs);
+  keep(frame.penetration_groups, result.penetration_groups);
+  keep(frame.penetrations, result.penetrations);
+  keep(frame.vertices_on_surface, result.vertices_on_surface);
+  keep(frame.contained_parts, result.contained_parts);
+  keep(frame.curves, result.curves);
+  keep(frame.curve_contacts, result.curve_contacts);
+  keep(frame.curve_points, result.curve_points);
+  keep(frame.enclosed_vertices, result.enclosed_vertices);
+  keep(frame.penetration_begin, result.penetration_events.begin);
+  keep(frame.penetration_end, result.penetration_events.end);
   frame.stats = result.stats;
   return frame;
 }
@@ -54,6 +65,16 @@ inline DetectResult shown(const RecordedFrame& frame) {
   result.proximity_events.begin = frame.proximity_begin;
   result.proximity_events.end = frame.proximity_end;
   result.proximity_pairs = frame.proximity_pairs;
+  result.penetration_groups = frame.penetration_groups;
+  result.penetrations = frame.penetrations;
+  result.vertices_on_surface = frame.vertices_on_surface;
+  result.contained_parts = frame.contained_parts;
+  result.curves = frame.curves;
+  result.curve_contacts = frame.curve_contacts;
+  result.curve_points = frame.curve_points;
+  result.enclosed_vertices = frame.enclosed_vertices;
+  result.penetration_events.begin = frame.penetration_begin;
+  result.penetration_events.end = frame.penetration_end;
   result.stats = frame.stats;
   return result;
 }
@@ -85,9 +106,19 @@ inline Contents read_contents(const Recording& recording) {
   return contents;
 }
 
-/// Objects that pass through each other in random steps.
+/// The offset of a vertex from its rest position in a frame.
+using OffsetOf = Vec3d (*)(std::uint64_t frame, std::size_t object, std::size_t vertex);
+
+/// Deforms objects so that they pass through each other in random steps.
+inline Vec3d random_offset(std::uint64_t frame, std::size_t object, std::size_t vertex) {
+  const double x = static_cast<double>((frame * 7 + vertex * 3 + object * 5) % 11) / 11 - 0.4;
+  return {x, 0.3 * x, static_cast<double>(frame % 5) / 8};
+}
+
+/// Records the objects while their vertices move.
 inline Contents simulate(const std::vector<TriangleMesh>& meshes, std::vector<ObjectOptions> options,
-                         const SceneOptions& scene_options, std::uint64_t frames) {
+                         const SceneOptions& scene_options, std::uint64_t frames,
+                         OffsetOf offset_of = random_offset) {
   Contents contents;
   Scene scene(scene_options);
   contents.header.scene = scene_options;
@@ -104,10 +135,8 @@ inline Contents simulate(const std::vector<TriangleMesh>& meshes, std::vector<Ob
     for (std::size_t i = 0; i < meshes.size(); ++i) {
       if (options[i].is_static) continue;
       const std::vector<Vec3d> from = positions[i];
-      for (std::size_t v = 0; v < from.size(); ++v) {
-        const double x = static_cast<double>((f * 7 + v * 3 + i * 5) % 11) / 11 - 0.4;
-        positions[i][v] = meshes[i].positions[v] + Vec3d{x, 0.3 * x, static_cast<double>(f % 5) / 8};
-      }
+      for (std::size_t v = 0; v < from.size(); ++v)
+        positions[i][v] = meshes[i].positions[v] + offset_of(f, i, v);
       if (scene_options.contacts == ContactKinds::continuous)
         scene.set_motion(contents.header.objects[i].id, from, positions[i]);
       else
@@ -117,6 +146,27 @@ inline Contents simulate(const std::vector<TriangleMesh>& meshes, std::vector<Ob
     contents.positions.push_back(positions);
   }
   return contents;
+}
+
+/// A static box, and what passes through it: a sphere, and a small box that touches it from outside, is half
+/// inside, touches it from inside, and is contained. A cloth ends in the box and folds into itself. The
+/// objects but the cloth are solid.
+inline Contents simulate_solids(std::uint64_t frames) {
+  ObjectOptions solid, fixed, folding;
+  solid.solid = fixed.solid = true;
+  fixed.is_static = true;
+  folding.self_collision = true;
+  SceneOptions scene;
+  scene.contacts = ContactKinds::penetration;
+  scene.threads = 1;
+  const auto offset_of = [](std::uint64_t frame, std::size_t object, std::size_t vertex) {
+    const double way = static_cast<double>(frame) / 4;
+    if (object == 1) return Vec3d{-1.9 + way, 1.3, 0.1};
+    if (object == 2) return Vec3d{1.25 - way, 0.25, -0.125};
+    return Vec3d{0.8, 0.3, vertex % 5 == 0 ? 0.45 * way : 0};
+  };
+  return simulate({make_box({2, 2, 2}, 2), make_icosphere(3), make_box({0.5, 0.5, 0.5}, 2), make_cloth(5, 5)},
+                  {fixed, solid, solid, folding}, scene, frames, offset_of);
 }
 
 }  // namespace supple

@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cstring>
 #include <ctime>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <limits>
@@ -13,6 +15,7 @@
 #include "supple/models.hpp"
 #include "supple/result_descriptions.hpp"
 #include "support/eventually.hpp"
+#include "support/shared_meshes.hpp"
 #include "support/soups.hpp"
 #include "unit/recording/recorded_scenes.hpp"
 
@@ -50,6 +53,16 @@ void expect_equal(const RecordedFrame& a, const RecordedFrame& b) {
   EXPECT_EQ(a.proximity_pairs, b.proximity_pairs);
   EXPECT_EQ(a.proximity_begin, b.proximity_begin);
   EXPECT_EQ(a.proximity_end, b.proximity_end);
+  EXPECT_EQ(a.penetration_groups, b.penetration_groups);
+  EXPECT_EQ(a.penetrations, b.penetrations);
+  EXPECT_EQ(a.vertices_on_surface, b.vertices_on_surface);
+  EXPECT_EQ(a.contained_parts, b.contained_parts);
+  EXPECT_EQ(a.curves, b.curves);
+  EXPECT_EQ(a.curve_contacts, b.curve_contacts);
+  EXPECT_EQ(a.curve_points, b.curve_points);
+  EXPECT_EQ(a.enclosed_vertices, b.enclosed_vertices);
+  EXPECT_EQ(a.penetration_begin, b.penetration_begin);
+  EXPECT_EQ(a.penetration_end, b.penetration_end);
   for_each_leaf([](const auto& field, const auto& p, const auto& q) { EXPECT_EQ(p, q) << field.name; },
                 a.stats, b.stats);
 }
@@ -76,6 +89,7 @@ void expect_equal(const RecordingHeader& a, const RecordingHeader& b) {
     EXPECT_EQ(p.options.self_collision, q.options.self_collision);
     EXPECT_EQ(p.options.is_static, q.options.is_static);
     EXPECT_EQ(p.options.margin, q.options.margin);
+    EXPECT_EQ(p.options.solid, q.options.solid);
     EXPECT_EQ(p.options.group, q.options.group);
     EXPECT_EQ(p.options.mask, q.options.mask);
     EXPECT_EQ(p.options.edges, q.options.edges);
@@ -103,6 +117,14 @@ Contents round_trip(const Contents& contents) {
     without_contacts.contact_points.clear();
     without_contacts.continuous_contacts.clear();
     without_contacts.proximity_pairs.clear();
+    without_contacts.penetration_groups.clear();
+    without_contacts.penetrations.clear();
+    without_contacts.vertices_on_surface.clear();
+    without_contacts.contained_parts.clear();
+    without_contacts.curves.clear();
+    without_contacts.curve_contacts.clear();
+    without_contacts.curve_points.clear();
+    without_contacts.enclosed_vertices.clear();
     without_contacts.colliding_vertex_groups.clear();
     without_contacts.colliding_vertices.clear();
     expect_equal(without_contacts, recording.summary(f));
@@ -145,6 +167,51 @@ TEST(Recording, RoundTripOfProximity) {
   const Contents read = round_trip(soups(ContactKinds::proximity));
   EXPECT_GT(count_all(read.frames, &RecordedFrame::proximity_pairs), 100u);
   EXPECT_GT(count_all(read.frames, &RecordedFrame::proximity_begin), 0u);
+}
+
+TEST(Recording, RoundTripOfPenetration) {
+  const Contents read = round_trip(simulate_solids(8));
+  EXPECT_GT(count_all(read.frames, &RecordedFrame::penetrations), 100u);
+  for (const auto list : {&RecordedFrame::vertices_on_surface, &RecordedFrame::curve_contacts,
+                          &RecordedFrame::enclosed_vertices})
+    EXPECT_GT(count_all(read.frames, list), 20u);
+  EXPECT_GT(count_all(read.frames, &RecordedFrame::penetration_groups), 8u);
+  EXPECT_GT(count_all(read.frames, &RecordedFrame::contained_parts), 1u);
+  EXPECT_GT(count_all(read.frames, &RecordedFrame::curve_points), 20u);
+  EXPECT_GT(count_all(read.frames, &RecordedFrame::penetration_begin), 1u);
+  EXPECT_GT(count_all(read.frames, &RecordedFrame::penetration_end), 0u);
+  std::array<std::size_t, 3> of_kind{};
+  std::size_t of_itself = 0;
+  for (const RecordedFrame& frame : read.frames) {
+    for (const IntersectionCurve& curve : frame.curves) {
+      ++of_kind[static_cast<std::size_t>(curve.kind)];
+      of_itself += curve.a == curve.b ? 1 : 0;
+    }
+  }
+  for (const std::size_t count : of_kind) EXPECT_GT(count, 0u);
+  EXPECT_GT(of_itself, 0u);
+}
+
+/// Real meshes: a closed cow in another one, and an open bunny that cuts through both.
+TEST(Recording, RoundTripOfPenetrationOfRealMeshes) {
+  const auto folder = shared_meshes() / "models";
+  if (!std::filesystem::exists(folder)) GTEST_SKIP() << folder << " is missing";
+  const TriangleMesh cow = load_mesh(folder / "spot.obj");
+  TriangleMesh small = cow, bunny = load_mesh(folder / "stanford-bunny.obj");
+  for (Vec3d& p : small.positions) p = 0.1 * p;
+  for (Vec3d& p : bunny.positions) p = 8 * p - Vec3d{0, 0.8, 0};
+  SceneOptions scene;
+  scene.contacts = ContactKinds::penetration;
+  const auto offset_of = [](std::uint64_t frame, std::size_t object, std::size_t) {
+    const double way = static_cast<double>(frame) * 0.15;
+    return object == 1 ? Vec3d{way, 0.1, 0.2} : object == 2 ? Vec3d{0, 0.1, way} : Vec3d{};
+  };
+  const Contents read =
+      round_trip(simulate({cow, cow, small, bunny}, {{.solid = true}, {.solid = true}, {.solid = true}, {}},
+                          scene, 4, offset_of));
+  EXPECT_GT(count_all(read.frames, &RecordedFrame::penetrations), 1000u);
+  EXPECT_GT(count_all(read.frames, &RecordedFrame::contained_parts), 0u);
+  EXPECT_GT(count_all(read.frames, &RecordedFrame::curves), 10u);
 }
 
 TEST(Recording, RoundTripOfContinuousContacts) {

@@ -6,7 +6,9 @@
 #include <cmath>
 #include <limits>
 #include <set>
+#include <stop_token>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "supple/error.hpp"
@@ -59,8 +61,9 @@ std::vector<std::uint32_t> vertices_of(std::span<const Penetration> penetrations
   return vertices;
 }
 
-std::vector<std::uint32_t> list_of(std::span<const std::uint32_t> ids) {
-  return {ids.begin(), ids.end()};
+template <class Item>
+std::vector<Item> list_of(std::span<const Item> items) {
+  return {items.begin(), items.end()};
 }
 
 TEST(Penetration, HasDepthAndTheWayOut) {
@@ -433,6 +436,188 @@ TEST_P(HardSolids, AgreeWithBruteForceAndWithQueries) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Scales, HardSolids, testing::Values(1.0, 0x1p-1000, 0x1p+900, 1e-3));
+
+/// Copies rows. The object of index i in the fresh scene becomes `ids[i]`.
+template <class Row>
+std::vector<Row> renamed(std::span<const Row> rows, const std::vector<ObjectId>& ids) {
+  std::vector<Row> copies(rows.begin(), rows.end());
+  const auto rename = [&](ObjectId& id) { id = ids.at(id.index); };
+  for (Row& row : copies) {
+    if constexpr (std::is_same_v<Row, ContainedPart>) {
+      rename(row.inner);
+      rename(row.outer);
+    } else if constexpr (std::is_same_v<Row, Penetration>) {
+      rename(row.object_a);
+      rename(row.object_b);
+    } else {
+      rename(row.a);
+      rename(row.b);
+    }
+  }
+  return copies;
+}
+
+/// A scene in which only some objects move in each step, so that it reuses the penetrations of others.
+class LifeOfSolids {
+ public:
+  explicit LifeOfSolids(std::uint64_t seed) : random_(seed), scene_(options()) {}
+
+  void step() {
+    const std::vector<ObjectId> ids = scene_.objects();
+    if (ids.size() < 6) add();
+    for (const ObjectId id : ids) {
+      if (random_.below(4) == 0) change(id);
+    }
+    // Steps that find other things, or nothing.
+    switch (random_.below(8)) {
+      case 0:
+        scene_.detect({.contacts = ContactKinds::none});
+        break;
+      case 1:
+        scene_.detect({.contacts = ContactKinds::intersection, .max_contacts = 3});
+        break;
+      case 2:
+        scene_.detect({.contacts = ContactKinds::penetration | ContactKinds::proximity});
+        break;
+      case 3: {
+        std::stop_source stopped;
+        stopped.request_stop();
+        scene_.detect({.stop = stopped.get_token()});
+        break;
+      }
+      default:
+        break;
+    }
+  }
+
+  void expect_fresh_answers() {
+    const DetectResult& result = scene_.detect();
+    Scene fresh(options());
+    const std::vector<ObjectId> ids = scene_.objects();
+    for (const ObjectId id : ids) {
+      const Body& body = bodies_[id.index];
+      const ObjectId copy = fresh.add(body.mesh, body.options);
+      fresh.set_positions(copy, body.positions);
+      fresh.translate(copy, body.translation);
+    }
+    const DetectResult& expected = fresh.detect();
+    EXPECT_EQ(list_of(result.penetration_groups), renamed(expected.penetration_groups, ids));
+    EXPECT_EQ(list_of(result.penetrations), renamed(expected.penetrations, ids));
+    EXPECT_EQ(list_of(result.vertices_on_surface), list_of(expected.vertices_on_surface));
+    EXPECT_EQ(list_of(result.contained_parts), renamed(expected.contained_parts, ids));
+    EXPECT_EQ(list_of(result.curves), renamed(expected.curves, ids));
+    EXPECT_EQ(list_of(result.curve_contacts), list_of(expected.curve_contacts));
+    EXPECT_EQ(list_of(result.curve_points), list_of(expected.curve_points));
+    EXPECT_EQ(list_of(result.enclosed_vertices), list_of(expected.enclosed_vertices));
+    inside += result.penetrations.size();
+    on_surface += result.vertices_on_surface.size();
+    parts += result.contained_parts.size();
+    curves += result.curves.size();
+  }
+
+  std::size_t inside = 0, on_surface = 0, parts = 0, curves = 0;
+
+ private:
+  struct Body {
+    TriangleMesh mesh;
+    ObjectOptions options;
+    std::vector<Vec3d> positions;
+    Vec3d translation;
+  };
+
+  static SceneOptions options() {
+    SceneOptions options = penetration;
+    options.threads = 2;
+    return options;
+  }
+
+  void add() {
+    Body body;
+    const std::uint32_t shape = random_.below(4);
+    body.mesh = shape == 0   ? wavy(make_icosphere(4), random_)
+                : shape == 1 ? moved_mesh(make_icosphere(1), {}, 0.2)
+                             : lattice_solid(random_, 3, 0.5);
+    body.options.solid = random_.below(4) != 0;
+    body.options.self_collision = random_.below(2) == 0;
+    body.positions = body.mesh.positions;
+    const ObjectId id = scene_.add(body.mesh, body.options);
+    bodies_.resize(std::max<std::size_t>(bodies_.size(), id.index + 1));
+    bodies_[id.index] = body;
+  }
+
+  void change(ObjectId id) {
+    Body& body = bodies_[id.index];
+    switch (random_.below(8)) {
+      case 0:
+        return scene_.remove(id);
+      case 1:
+        body.options.self_collision = !body.options.self_collision;
+        return scene_.set_self_collision(id, body.options.self_collision);
+      case 2:
+        body.options.group = 1 + random_.below(3);
+        body.options.mask = 1 + random_.below(3);
+        return scene_.set_group(id, body.options.group, body.options.mask);
+      case 3:
+        body.positions = body.mesh.positions;
+        for (Vec3d& p : body.positions) p = p + random_.vector(0.1);
+        if (random_.below(4) == 0) body.positions.front().x = std::numeric_limits<double>::quiet_NaN();
+        body.translation = {};
+        return scene_.set_positions(id, body.positions);
+      default: {
+        const Vec3d way = 0.5 * Vec3d{double(random_.between(-1, 1)), double(random_.between(-1, 1)), 0};
+        body.translation = body.translation + way;
+        return scene_.translate(id, way);
+      }
+    }
+  }
+
+  RandomNumbers random_;
+  Scene scene_;
+  std::vector<Body> bodies_;  // by slot
+};
+
+TEST(Penetration, ReusesOnlyWhatAFreshSceneFinds) {
+#ifdef NDEBUG
+  constexpr std::uint64_t seeds = 30;
+#else
+  constexpr std::uint64_t seeds = 4;
+#endif
+  std::size_t inside = 0, on_surface = 0, parts = 0, curves = 0;
+  for (std::uint64_t seed = 0; seed < seeds; ++seed) {
+    LifeOfSolids life(seed);
+    for (int step = 0; step < 60; ++step) {
+      SCOPED_TRACE("seed " + std::to_string(seed) + ", step " + std::to_string(step));
+      life.step();
+      life.expect_fresh_answers();
+      if (testing::Test::HasFailure()) return;
+    }
+    inside += life.inside;
+    on_surface += life.on_surface;
+    parts += life.parts;
+    curves += life.curves;
+  }
+  EXPECT_GT(inside, 60 * seeds);
+  EXPECT_GT(on_surface, 60 * seeds);
+  EXPECT_GT(parts, 10 * seeds);
+  EXPECT_GT(curves, 60 * seeds);
+}
+
+/// Of objects at rest, the closest points are not searched again.
+TEST(Penetration, OfObjectsAtRestIsReused) {
+  Scene scene(penetration);
+  for (const double x : {0.0, 0.7}) scene.add(moved_mesh(make_icosphere(40), {x, 0.1, 0.2}), {.solid = true});
+  const ObjectId moving = scene.add(moved_mesh(make_icosphere(2), {10, 0, 0}), {.solid = true});
+  const std::uint64_t hash = hash_of_penetrations(scene.detect());
+  const double first = scene.result().stats.penetration_seconds;
+  ASSERT_GT(scene.result().penetrations.size(), 1000u);
+  double least = first;
+  for (int step = 0; step < 10; ++step) {
+    scene.translate(moving, {0.01, 0, 0});
+    EXPECT_EQ(hash_of_penetrations(scene.detect()), hash);
+    least = std::min(least, scene.result().stats.penetration_seconds);
+  }
+  EXPECT_LT(least, first / 10);
+}
 
 TEST(Penetration, IsTheSameForAnyNumberOfThreads) {
   const auto hash_with = [](std::uint32_t threads) {
