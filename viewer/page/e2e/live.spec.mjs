@@ -85,6 +85,39 @@ async function gapsAndDepthsShow(stage) {
   }
 }
 
+/** Each patch is drawn, its numbers are listed, and its row flies to it. */
+async function patchesShow(stage) {
+  const ball = (x, y) => `[[object]]\nname = "at ${x}"\nmodel = "icosphere"\nfrequency = 6\ntranslate = [${x}, ${y}, 0.05]\n`;
+  const { page } = await stage.view(stage.file("balls.toml", `[scene]\ncontacts = "penetration"\n${ball(0, 0)}${ball(1.9, 0.04)}${ball(3.6, -0.07)}`));
+  await until(page, () => supple.model.frame.patches.length > 0);
+  await settled(page);
+  const { drawn, frame } = await page.evaluate(() => {
+    const { patches, patchPoints, enclosedVertices } = supple.model.frame;
+    return { drawn: supple.counts(), frame: { patches: [...patches], points: [...patchPoints], enclosed: enclosedVertices.length } };
+  });
+  assert.equal(drawn.patches, 2);
+  assert.equal(frame.patches.length, 16);
+  assert.ok(drawn.patchFaces > frame.enclosed / 2 && frame.enclosed > 4);
+  const before = await picture(page);
+  await page.getByRole("checkbox", { name: "Patches", exact: true }).uncheck();
+  await until(page, () => supple.counts().patches === 0 && supple.counts().patchFaces === 0 && supple.counts().patchArrows === 0);
+  await settled(page);
+  assert.notEqual(await picture(page), before, "patches show nothing");
+
+  await page.getByRole("tab", { name: "Patches" }).click();
+  const rows = page.getByRole("grid", { name: "Patches" }).getByRole("row");
+  assert.equal(await rows.count(), 2);
+  const rounded = (x) => String(Number(x.toPrecision(3)));
+  const { patches, points } = frame;
+  const expected = ["at 1.9", "at 3.6", rounded(points[15]), rounded(points[11]), `${patches[13]} + ${patches[14]}`];
+  assert.deepEqual(await rows.nth(1).getByRole("gridcell").allTextContents(), expected);
+  await rows.nth(1).click();
+  await settled(page);
+  const { target } = await camera(page);
+  points.slice(8, 11).forEach((x, axis) => assert.ok(Math.abs(target[axis] - x) < 1e-3, `${target} is not at ${points}`));
+  assert.equal(await rows.nth(1).getAttribute("aria-selected"), "true");
+}
+
 async function countsAreTheSessions(stage) {
   const { page } = await stage.view(nine);
   await until(page, () => supple.model.frame.contacts.length > 200);
@@ -390,6 +423,7 @@ export const tests = [
   ["resets with a seed, at another speed", resetsWithASeedAndSpeed],
   ["each layer shows", eachLayerShows],
   ["gaps and depths show", gapsAndDepthsShow],
+  ["patches show and are listed", patchesShow],
   ["layers show what the session counts", countsAreTheSessions],
   ["octrees by level, of one object", octreeLevels],
   ["the narrow phase by level", narrowPhaseByLevel],

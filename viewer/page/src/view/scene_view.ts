@@ -77,7 +77,7 @@ export class SceneView {
   }
 
   setInk(colour: string): void {
-    this.layers.curves.colour = colour;
+    for (const layer of [this.layers.curves, this.layers.patchArrows, this.layers.patches]) layer.colour = colour;
     this.gap.colour = colour;
     this.invalidate();
   }
@@ -301,9 +301,10 @@ export class SceneView {
     this.frameObjects([this.model.objects[selection.object]!]);
   }
 
-  flyTo(point: number[]): void {
+  /** Frames a point and everything within `least` of it, but at least a small part of the scene. */
+  flyTo(point: number[], least = 0): void {
     const bounds = this.model.scene!.bounds;
-    const reach = 0.04 * (Math.hypot(...bounds[1].map((x, axis) => x - bounds[0][axis]!)) || 1);
+    const reach = Math.max(least, 0.04 * (Math.hypot(...bounds[1].map((x, axis) => x - bounds[0][axis]!)) || 1));
     const around = [-reach, reach].flatMap((step) => [0, 1, 2].map((axis) => point.map((x, i) => (i === axis ? x + step : x))));
     this.rig.frame(new THREE.Vector3().fromArray(point), around);
   }
