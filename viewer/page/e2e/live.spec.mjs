@@ -88,6 +88,8 @@ async function gapsAndDepthsShow(stage) {
   }));
   assert.equal(drawn.gaps, gaps);
   assert.equal(drawn.depths, depths);
+  await page.getByRole("tab", { name: "Contacts" }).click();
+  await page.getByText(`${gaps.toLocaleString("en")} near pairs`).waitFor();
   for (const [label, count] of [["Gaps", "gaps"], ["Depths", "depths"]]) {
     const before = await picture(page);
     await page.getByRole("checkbox", { name: label, exact: true }).uncheck();
