@@ -431,6 +431,11 @@ async function plotsFollow(stage) {
   assert.equal(await page.locator("figure canvas").count(), 3);
   const rows = await page.evaluate(() => supple.model.history.column("contacts").at(-1));
   assert.ok(Number.isFinite(rows));
+  for (const figure of await page.locator("figure:has(canvas)").all()) {
+    const markers = figure.locator(".u-marker");
+    const colours = await markers.evaluateAll((all) => all.map((marker) => getComputedStyle(marker).borderColor));
+    assert.ok(colours.length > 0 && new Set(colours).size === colours.length, `two lines have one colour: ${colours.join("; ")}`);
+  }
 }
 
 export const tests = [
