@@ -70,6 +70,7 @@ void TextReport::add(const Frame& frame) {
   }
   volumes_begun_ += result.volume_events.begin.size();
   leaves_begun_ += result.narrow_phase_events.begin.size();
+  near_begun_ += result.proximity_events.begin.size();
   begun_ += result.contact_events.begin.size();
   ended_ += result.contact_events.end.size();
   non_finite_ = result.non_finite_vertices.size();
@@ -185,6 +186,8 @@ void TextReport::print_collisions(const Scene& scene) const {
   fmt::print("collisions: {} that two objects' volumes began to overlap, ", counted(volumes_begun_, "time"));
   if (scene.options().comparison.colliding_vertices)
     fmt::print("{} that leaves of two objects' octrees did, ", counted(leaves_begun_, "time"));
+  if (contains(scene.options().contacts, ContactKinds::proximity))
+    fmt::print("{} that two objects came within their margins, ", counted(near_begun_, "time"));
   fmt::print("{} that two objects began to touch\n\n", counted(begun_, "time"));
 }
 

@@ -57,7 +57,7 @@ class TextReport {
   std::uint64_t closed_curves_ = 0, open_curves_ = 0, branched_curves_ = 0;
   ImpactTables impacts_;  ///< of continuous contacts
   StepStats sum_;
-  std::uint64_t volumes_begun_ = 0, leaves_begun_ = 0, begun_ = 0, ended_ = 0;
+  std::uint64_t volumes_begun_ = 0, leaves_begun_ = 0, near_begun_ = 0, begun_ = 0, ended_ = 0;
   bool simulated_ = false;
   double motion_seconds_ = 0;
   std::uint64_t non_finite_ = 0;  ///< in the last frame

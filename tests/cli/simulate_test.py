@@ -108,6 +108,7 @@ class Steps(SimulateTest):
         done = self.run_here("simulate", "balls.toml", "--frames", "51", "--colliding-vertices")
         self.assertRegex(done.out, r"collisions: .* volumes .*, [1-9]\d* times? that leaves .*, [1-9]\d* times? .* touch")
         self.assertRegex(done.out, r"\nmotion +\S+ +\d+ %")
+        self.assertNotIn("margins", done.out)
         rows = re.findall(r"^(0 icosphere|1 icosphere|all)((?: +\S+){7})$", done.out, re.M)
         self.assertEqual([name for name, _ in rows], ["0 icosphere", "1 icosphere", "all"])
         start, end, *parts = (float(x) for x in rows[2][1].split())
@@ -115,6 +116,10 @@ class Steps(SimulateTest):
         self.assertEqual(start, 0)
         self.assertGreater(end, 20)  # 84 masses of 1 kg at 1 m/s, minus the loss by damping
         self.assertLess(end, 60)
+
+    def test_counts_objects_that_come_near(self):
+        done = self.run_here("simulate", str(SCENES / "cloth_over_ball.toml"), "--frames", "51")
+        self.assertRegex(done.out, r"collisions: 1 time .* volumes .*, 1 time .* within their margins, 0 times .* touch")
 
     def test_quiet(self):
         done = self.run_here("simulate", "balls.toml", "--frames", "4", "--quiet")

@@ -44,6 +44,7 @@ void FramePacker::pack(const FrameView& frame, MessageWriter& message) {
   add_impacts(frame);
   add_gaps(frame);
   add_penetrations(frame);
+  add_patches(frame);
   add_events(frame.source.scene().result());
   add_statistics(frame);
   if (frame.layers.candidates) add_candidates(frame);
@@ -167,6 +168,42 @@ void FramePacker::add_penetrations(const FrameView& frame) {
     rows[i] = row_of(frame.center(scene.position(p.object_a, p.vertex)), static_cast<float>(p.depth),
                      frame.center(p.point), 0);
   }
+}
+
+/// Adds the curves of intersection with their patches, as many as there is room for with the vertices that
+/// they enclose.
+void FramePacker::add_patches(const FrameView& frame) {
+  const Scene& scene = frame.source.scene();
+  if (!contains(scene.options().contacts, ContactKinds::penetration)) return;
+  const std::span<const IntersectionCurve> all = scene.result().curves;
+  const auto vertex_end = [](const IntersectionCurve& curve) {
+    return std::size_t{curve.first_enclosed} + curve.enclosed_count_a + curve.enclosed_count_b;
+  };
+  std::size_t count = 0;
+  while (count < std::min(all.size(), most_elements) && vertex_end(all[count]) <= most_elements) ++count;
+  if (count < all.size()) omissions_.push_back({"patches", all.size()});
+  const std::span<const IntersectionCurve> curves = all.first(count);
+  const auto ids = message_->add<Ids>(Tag::patches, count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const IntersectionCurve& c = curves[i];
+    ids[i] = {c.a.index,
+              c.b.index,
+              static_cast<std::uint32_t>(c.kind),
+              c.contact_count,
+              c.first_enclosed,
+              c.enclosed_count_a,
+              c.enclosed_count_b,
+              0};
+  }
+  const auto rows = message_->add<Row>(Tag::patch_points, count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const IntersectionCurve& c = curves[i];
+    rows[i] = row_of(frame.center(c.centroid), static_cast<float>(c.depth), floats(c.normal),
+                     static_cast<float>(norm(c.area)));
+  }
+  const std::size_t vertex_count = curves.empty() ? 0 : vertex_end(curves.back());
+  const auto vertices = message_->add<std::uint32_t>(Tag::enclosed_vertices, vertex_count);
+  std::copy_n(scene.result().enclosed_vertices.begin(), vertex_count, vertices.begin());
 }
 
 /// Adds the events since the last frame that was sent, which may be several steps ago.

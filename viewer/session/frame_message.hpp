@@ -51,6 +51,7 @@ class FramePacker {
   void add_impacts(const FrameView& frame);
   void add_gaps(const FrameView& frame);
   void add_penetrations(const FrameView& frame);
+  void add_patches(const FrameView& frame);
   void add_events(const DetectResult& result);
   void add_changes(Tag begin, Tag end, ObjectPairs& sent);
   void add_statistics(const FrameView& frame);

@@ -62,7 +62,7 @@ TEST(ViewerFrames, NormalsAreThoseOfTheLibrary) {
   }
 }
 
-TEST(ViewerFrames, GapsAndPenetrationsAreThoseOfTheLibrary) {
+TEST(ViewerFrames, GapsPenetrationsAndPatchesAreThoseOfTheLibrary) {
   SceneView show = touching_balls();
   show.simulation.scene.contacts = ContactKinds::proximity | ContactKinds::penetration;
   for (ViewedObject& object : show.objects) {
@@ -101,11 +101,29 @@ TEST(ViewerFrames, GapsAndPenetrationsAreThoseOfTheLibrary) {
     EXPECT_EQ(depths[i][3], static_cast<float>(p.depth));
     EXPECT_EQ(point_of(depths[i], 4), as_floats(std::array{p.point}, center)[0]);
   }
+  const auto patches = frame.values<std::array<std::uint32_t, 8>>(58);
+  const auto centroids = frame.values<Row>(59);
+  ASSERT_EQ(patches.size(), expected.curves.size());
+  ASSERT_EQ(centroids.size(), patches.size());
+  EXPECT_GT(patches.size(), 0u);
+  EXPECT_FALSE(expected.enclosed_vertices.empty());
+  EXPECT_EQ(frame.values<std::uint32_t>(60),
+            std::vector(expected.enclosed_vertices.begin(), expected.enclosed_vertices.end()));
+  for (std::size_t i = 0; i < patches.size(); ++i) {
+    const IntersectionCurve& c = expected.curves[i];
+    EXPECT_EQ(patches[i],
+              (std::array{c.a.index, c.b.index, static_cast<std::uint32_t>(c.kind), c.contact_count,
+                          c.first_enclosed, c.enclosed_count_a, c.enclosed_count_b, 0u}));
+    EXPECT_EQ(point_of(centroids[i], 0), as_floats(std::array{c.centroid}, center)[0]);
+    EXPECT_EQ(point_of(centroids[i], 4), as_floats(std::array{c.normal}, {})[0]);
+    EXPECT_EQ(centroids[i][3], static_cast<float>(c.depth));
+    EXPECT_EQ(centroids[i][7], static_cast<float>(norm(c.area)));
+  }
   // Only scenes that find them have these sections.
   TestPage plain(touching_balls());
   plain.scene();
   const ViewerMessage other = plain.frame();
-  for (const std::uint32_t tag : {54u, 55u, 56u, 57u}) EXPECT_FALSE(other.has(tag));
+  for (const std::uint32_t tag : {54u, 55u, 56u, 57u, 58u, 59u, 60u}) EXPECT_FALSE(other.has(tag));
 }
 
 /// The events of volumes and of the narrow phase are those of a scene with colliding vertices.

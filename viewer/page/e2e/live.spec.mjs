@@ -22,6 +22,18 @@ async function movesPausesAndSteps(stage) {
   await until(page, (paused) => supple.model.frame.text.step > paused + 3, paused);
 }
 
+/** Objects that drift through the whole scene stay in view. */
+async function firstViewShowsTheBorder(stage) {
+  const { page } = await stage.view(join(scenes, "table1_3.toml"));
+  const outside = await page.evaluate(() => {
+    const { left, top, right, bottom } = document.querySelector("canvas.view").getBoundingClientRect();
+    const [lower, upper] = supple.model.scene.bounds;
+    const corners = [0, 1, 2, 3, 4, 5, 6, 7].map((i) => [0, 1, 2].map((axis) => ((i >> axis) & 1 ? upper : lower)[axis]));
+    return corners.map((corner) => supple.project(corner)).filter(({ x, y }) => !(x > left && x < right && y > top && y < bottom));
+  });
+  assert.deepEqual(outside, []);
+}
+
 async function resetsWithASeedAndSpeed(stage) {
   const { page } = await stage.view(nine);
   await until(page, () => supple.model.frame.text.step > 10);
@@ -76,6 +88,8 @@ async function gapsAndDepthsShow(stage) {
   }));
   assert.equal(drawn.gaps, gaps);
   assert.equal(drawn.depths, depths);
+  await page.getByRole("tab", { name: "Contacts" }).click();
+  await page.getByText(`${gaps.toLocaleString("en")} near pairs`).waitFor();
   for (const [label, count] of [["Gaps", "gaps"], ["Depths", "depths"]]) {
     const before = await picture(page);
     await page.getByRole("checkbox", { name: label, exact: true }).uncheck();
@@ -83,6 +97,40 @@ async function gapsAndDepthsShow(stage) {
     await settled(page);
     assert.notEqual(await picture(page), before, `${label} shows nothing`);
   }
+}
+
+/** Each patch is drawn, its numbers are listed, and its row flies to it. */
+async function patchesShow(stage) {
+  const ball = (x, y) => `[[object]]\nname = "at ${x}"\nmodel = "icosphere"\nfrequency = 6\ntranslate = [${x}, ${y}, 0.05]\n`;
+  const { page } = await stage.view(stage.file("balls.toml", `[scene]\ncontacts = "penetration"\n${ball(0, 0)}${ball(1.9, 0.04)}${ball(3.6, -0.07)}`));
+  await until(page, () => supple.model.frame.patches.length > 0);
+  await settled(page);
+  const { drawn, frame } = await page.evaluate(() => {
+    const { patches, patchPoints, enclosedVertices } = supple.model.frame;
+    return { drawn: supple.counts(), frame: { patches: [...patches], points: [...patchPoints], enclosed: enclosedVertices.length } };
+  });
+  assert.equal(drawn.patches, 2);
+  assert.equal(frame.patches.length, 16);
+  assert.ok(drawn.patchFaces > frame.enclosed / 2 && frame.enclosed > 4);
+  const before = await picture(page);
+  await page.getByRole("checkbox", { name: "Patches", exact: true }).uncheck();
+  await until(page, () => supple.counts().patches === 0 && supple.counts().patchFaces === 0 && supple.counts().patchArrows === 0);
+  await settled(page);
+  assert.notEqual(await picture(page), before, "patches show nothing");
+
+  await page.getByRole("tab", { name: "Patches" }).click();
+  const rows = page.getByRole("grid", { name: "Patches" }).getByRole("row");
+  await rows.nth(1).waitFor();
+  assert.equal(await rows.count(), 2);
+  const rounded = (x) => String(Number(x.toPrecision(3)));
+  const { patches, points } = frame;
+  const expected = ["at 1.9", "at 3.6", rounded(points[15]), rounded(points[11]), `${patches[13]} + ${patches[14]}`];
+  assert.deepEqual(await rows.nth(1).getByRole("gridcell").allTextContents(), expected);
+  await rows.nth(1).click();
+  await settled(page);
+  const { target } = await camera(page);
+  points.slice(8, 11).forEach((x, axis) => assert.ok(Math.abs(target[axis] - x) < 1e-3, `${target} is not at ${points}`));
+  assert.equal(await rows.nth(1).getAttribute("aria-selected"), "true");
 }
 
 async function countsAreTheSessions(stage) {
@@ -383,13 +431,20 @@ async function plotsFollow(stage) {
   assert.equal(await page.locator("figure canvas").count(), 3);
   const rows = await page.evaluate(() => supple.model.history.column("contacts").at(-1));
   assert.ok(Number.isFinite(rows));
+  for (const figure of await page.locator("figure:has(canvas)").all()) {
+    const markers = figure.locator(".u-marker");
+    const colours = await markers.evaluateAll((all) => all.map((marker) => getComputedStyle(marker).borderColor));
+    assert.ok(colours.length > 0 && new Set(colours).size === colours.length, `two lines have one colour: ${colours.join("; ")}`);
+  }
 }
 
 export const tests = [
   ["moves, pauses and steps", movesPausesAndSteps],
+  ["the first view shows the border", firstViewShowsTheBorder],
   ["resets with a seed, at another speed", resetsWithASeedAndSpeed],
   ["each layer shows", eachLayerShows],
   ["gaps and depths show", gapsAndDepthsShow],
+  ["patches show and are listed", patchesShow],
   ["layers show what the session counts", countsAreTheSessions],
   ["octrees by level, of one object", octreeLevels],
   ["the narrow phase by level", narrowPhaseByLevel],

@@ -44,7 +44,8 @@ export class ContactTable {
       this.listed = [];
       for (let place = 0; place < contactCount(frame); ++place) if (involves(frame, place, selection.object)) this.listed.push(place);
     }
-    const text = frame ? `${readable(this.count)} contacts · ${readable(frame.objectPairs.length / 2)} object pairs` : "";
+    const near = frame && frame.gaps.length > 0 ? `${readable(frame.gaps.length / 2)} near pairs · ` : "";
+    const text = frame ? `${readable(this.count)} contacts · ${near}${readable(frame.objectPairs.length / 2)} object pairs` : "";
     if (this.summary.textContent !== text) this.summary.textContent = text;
     this.window.element.setAttribute("aria-rowcount", String(this.count));
     this.window.setCount(this.count);

@@ -48,7 +48,8 @@ export class Plots {
     const has = (wanted: string[]) => wanted.filter((name) => names.includes(name));
     const stages = names.filter(isStage);
     this.add("Object pairs", has(["object_pairs"]), 1);
-    this.add("Contacts and candidates", has(["contacts", "candidate_pairs"]), 1);
+    const near = this.model.scene.contacts.includes("proximity") ? ["proximity_pairs"] : [];
+    this.add("Contacts and candidates", has(["contacts", "candidate_pairs", ...near]), 1);
     this.add("Time per stage, milliseconds", stages, 1000);
     if (this.plots.length === 0) this.element.append(h("p", { class: "hint empty" }, "This recording has no time series."));
     this.element.append(h("figure", {}, h("figcaption", {}, "Collisions of two objects"), this.events));
@@ -58,6 +59,7 @@ export class Plots {
   private add(title: string, columns: string[], scale: number): void {
     if (columns.length === 0) return;
     const ink = colourOf("--ink-soft");
+    const stroke = (name: string, i: number) => (name === "total_seconds" ? colourOf("--ink") : LINES[i % LINES.length]!);
     const grid = colourOf("--line");
     const axis = { stroke: ink, grid: { stroke: grid, width: 1 }, ticks: { stroke: grid, width: 1 }, font: "11px system-ui" };
     const holder = h("figure", { "aria-label": title }, h("figcaption", {}, title));
@@ -68,7 +70,7 @@ export class Plots {
       legend: { live: false },
       cursor: { points: { show: false }, drag: { x: false, y: false } },
       axes: [{ ...axis, size: 26 }, { ...axis, size: 52 }],
-      series: [{ label: "frame" }, ...columns.map((name, i) => ({ label: labelOf(name), stroke: LINES[i % LINES.length]!, width: 1.5, points: { show: false } }))],
+      series: [{ label: "frame" }, ...columns.map((name, i) => ({ label: labelOf(name), stroke: stroke(name, i), width: 1.5, points: { show: false } }))],
       hooks: { draw: [(plot) => this.drawCursor(plot)] },
     };
     const empty = [[], ...columns.map(() => [])] as unknown as uPlot.AlignedData;

@@ -26,6 +26,7 @@ export const LAYER_ROWS: LayerRow[] = [
   { layer: "curves", label: "Intersection curves", key: "U", colour: "ink", hint: "Curves along which surfaces intersect" },
   { layer: "gaps", label: "Gaps", key: "M", colour: "gaps", hint: "Closest points within the margins, coloured by distance: vermillion up to a quarter of the margins, then orange, green and blue" },
   { layer: "depths", label: "Depths", key: "E", colour: OKABE_ITO.purple, hint: "From each vertex inside a solid object to the closest point of its surface" },
+  { layer: "patches", label: "Patches", key: "A", colour: OKABE_ITO.green, hint: "The triangles at the vertices that each intersection curve encloses, and the way along which the first object leaves the second: an arrow as long as the depth" },
   { layer: "vertices", label: "Colliding vertices", key: "J", colour: OKABE_ITO.purple, hint: "The output of the paper: vertices of colliding octree nodes" },
 ];
 
@@ -117,7 +118,7 @@ export class ScenePanel {
     const { frame, layers } = this.model;
     const of: Partial<Record<Layer, number>> = {
       regions: drawn["regions"]!, octree: drawn["boxes"]! + drawn["balls"]!, nodes: drawn["nodeBoxes"]! + drawn["nodeBalls"]!, candidates: drawn["candidates"]!, triangles: drawn["triangles"]!,
-      points: drawn["points"]!, normals: drawn["normals"]!, curves: drawn["curves"]!, gaps: drawn["gaps"]!, depths: drawn["depths"]!, vertices: drawn["vertices"]!, pairs: drawn["pairs"]!,
+      points: drawn["points"]!, normals: drawn["normals"]!, curves: drawn["curves"]!, gaps: drawn["gaps"]!, depths: drawn["depths"]!, patches: drawn["patches"]!, vertices: drawn["vertices"]!, pairs: drawn["pairs"]!,
     };
     for (const [layer, element] of this.counts) {
       const count = of[layer];

@@ -85,6 +85,9 @@ export interface FrameMessage {
   gapPoints: Float32Array;
   penetrations: Uint32Array;
   penetrationPoints: Float32Array;
+  patches: Uint32Array;
+  patchPoints: Float32Array;
+  enclosedVertices: Uint32Array;
   candidates: Uint32Array;
   sceneRegions: Float32Array;
   octreeBoxes: Map<number, Float32Array>;
@@ -156,6 +159,9 @@ const FORMS: Record<number, Form> = {
   55: { name: "gap_points", array: Float32Array, width: 8, kinds: ["frame"] },
   56: { name: "penetrations", array: Uint32Array, width: 4, kinds: ["frame"] },
   57: { name: "penetration_points", array: Float32Array, width: 8, kinds: ["frame"] },
+  58: { name: "patches", array: Uint32Array, width: 8, kinds: ["frame"] },
+  59: { name: "patch_points", array: Float32Array, width: 8, kinds: ["frame"] },
+  60: { name: "enclosed_vertices", array: Uint32Array, width: 1, kinds: ["frame"] },
   64: { name: "series", array: Float64Array, width: 0, kinds: ["series"] },
   65: { name: "series_contact_begin", array: Uint32Array, width: 3, kinds: ["series"] },
   66: { name: "series_contact_end", array: Uint32Array, width: 3, kinds: ["series"] },
@@ -360,6 +366,20 @@ function checkImpacts(impacts: Uint32Array, scene: SceneCounts): void {
   }
 }
 
+function checkPatches({ patches, patchPoints, enclosedVertices }: FrameMessage, scene: SceneCounts): void {
+  if (patchPoints.length !== patches.length) fail("the numbers of patches and of their points differ");
+  for (let i = 0; i < patches.length; i += 8) {
+    if (patches[i + 2]! > 2) fail("a patch has an unknown kind");
+    let at = patches[i + 4]!;
+    for (const side of [0, 1]) {
+      const limit = scene.vertices[patches[i + side]!];
+      if (limit === undefined) fail("a patch names an object that does not exist");
+      const vertices = enclosedVertices.subarray(at, (at += patches[i + 5 + side]!));
+      if (at > enclosedVertices.length || vertices.some((vertex) => vertex >= limit)) fail("a patch encloses a vertex that does not exist");
+    }
+  }
+}
+
 function readFrame(sections: Sections, scene: SceneCounts): FrameMessage {
   const text = frameText(sections.json());
   const words = new Uint32Array(0);
@@ -377,6 +397,9 @@ function readFrame(sections: Sections, scene: SceneCounts): FrameMessage {
     gapPoints: sections.one("gap_points", floats),
     penetrations: sections.one("penetrations", words),
     penetrationPoints: sections.one("penetration_points", floats),
+    patches: sections.one("patches", words),
+    patchPoints: sections.one("patch_points", floats),
+    enclosedVertices: sections.one("enclosed_vertices", words),
     candidates: sections.one("candidates", words),
     sceneRegions: sections.one("scene_regions", floats),
     octreeBoxes: sections.each("octree_boxes"),
@@ -411,6 +434,7 @@ function readFrame(sections: Sections, scene: SceneCounts): FrameMessage {
   checkIds("penetrations", frame.penetrations, 4, [2, 2], scene.triangles);
   checkIds("penetrations", frame.penetrations, 4, [0, 0], scene.vertices);
   if (frame.penetrationPoints.length !== 2 * frame.penetrations.length) fail("the numbers of penetrations and of their points differ");
+  checkPatches(frame, scene);
   if (frame.statistics.length !== 0 && frame.statistics.length !== scene.statistics) fail("its statistics are not those of the scene");
   return frame;
 }

@@ -2,6 +2,7 @@
 import * as THREE from "three";
 import { gapLevel, OKABE_ITO } from "../colours";
 import { boundsOf, type Model, type ObjectState } from "../model";
+import type { FrameMessage } from "../protocol/messages";
 import { Cells, Dots, Faces, Lines } from "./primitives";
 
 const CONTACT = OKABE_ITO.vermillion;
@@ -33,6 +34,45 @@ function writeCentre(into: Float32Array, at: number, object: ObjectState): boole
   if (!bounds) return false;
   for (let axis = 0; axis < 3; ++axis) into[at + axis] = (bounds.lower[axis]! + bounds.upper[axis]!) / 2;
   return true;
+}
+
+/** The triangles at the vertices that curves enclose: an object and a triangle each. */
+function enclosedFaces({ patches, enclosedVertices }: FrameMessage, at: number[], objects: ObjectState[]): number[] {
+  const enclosed = new Map<number, Uint8Array>();  // 1 for each enclosed vertex
+  for (const i of at) {
+    let from = patches[i + 4]!;
+    for (const side of [0, 1]) {
+      const object = patches[i + side]!;
+      if (!enclosed.has(object)) enclosed.set(object, new Uint8Array(objects[object]!.vertices));
+      for (const vertex of enclosedVertices.subarray(from, (from += patches[i + 5 + side]!))) enclosed.get(object)![vertex] = 1;
+    }
+  }
+  const faces: number[] = [];
+  for (const [object, marks] of enclosed) {
+    const { corners } = objects[object]!;
+    for (let i = 0; i < corners.length; i += 3)
+      if (marks[corners[i]!] || marks[corners[i + 1]!] || marks[corners[i + 2]!]) faces.push(object, i / 3);
+  }
+  return faces;
+}
+
+const ARROW_LINES = 5;
+
+/** Writes a shaft and the four edges of its head. A row has the start, the length and the unit direction. */
+function writeArrow(into: Float32Array, at: number, row: Float32Array): void {
+  const start = new THREE.Vector3().fromArray(row);
+  const length = row[3]!;
+  const along = new THREE.Vector3().fromArray(row, 4);
+  const tip = start.clone().addScaledVector(along, length);
+  const away = Math.abs(along.x) < 0.6 ? new THREE.Vector3(1, 0, 0) : new THREE.Vector3(0, 1, 0);
+  const across = away.cross(along).setLength(0.1 * length);
+  const up = along.clone().cross(across);
+  const back = tip.clone().addScaledVector(along, -0.25 * length);
+  const ends = [start, back.clone().add(across), back.clone().sub(across), back.clone().add(up), back.clone().sub(up)];
+  ends.forEach((end, i) => {
+    end.toArray(into, at + 6 * i);
+    tip.toArray(into, at + 6 * i + 3);
+  });
 }
 
 /** A set of triangles that can be cleared in constant time. */
@@ -76,6 +116,9 @@ export class Layers {
   readonly curves = new Lines({ colour: "#ffffff", size: 2.5, depthTest: false, order: 5 });
   readonly gaps = new Cells("edges", { colour: "#ffffff", opacity: 1, order: 5 });
   readonly depths = new Lines({ colour: OKABE_ITO.purple, size: 2.5, depthTest: false, order: 5 });
+  readonly patchFaces = new Faces({ colour: OKABE_ITO.green, opacity: 0.5, order: 1 });
+  readonly patchArrows = new Lines({ colour: "#ffffff", size: 3.5, depthTest: false, order: 6 });
+  readonly patches = new Dots({ colour: "#ffffff", order: 7 });
   readonly vertices = new Dots({ colour: OKABE_ITO.purple, order: 6 });
   private readonly marks = new Marks();
 
@@ -87,24 +130,26 @@ export class Layers {
   private all() {
     return [
       this.regions, this.boxes, this.balls, this.edges, this.nodeBoxes, this.nodeBalls, this.nodeEdges, this.pairs, this.candidateFaces,
-      this.candidates, this.triangles, this.points, this.normals, this.curves, this.gaps, this.depths, this.vertices,
+      this.candidates, this.triangles, this.points, this.normals, this.curves, this.gaps, this.depths, this.patchFaces, this.patchArrows, this.patches,
+      this.vertices,
     ];
   }
 
   /** The number of elements that each layer draws. */
   counts(): Record<string, number> {
-    const { regions, boxes, balls, edges, nodeBoxes, nodeBalls, nodeEdges, pairs, candidates, candidateFaces, triangles, points, normals, curves, gaps, depths, vertices } = this;
+    const { regions, boxes, balls, edges, nodeBoxes, nodeBalls, nodeEdges, pairs, candidates, candidateFaces, triangles, points, normals, curves, gaps, depths, patchFaces, patchArrows, patches, vertices } = this;
     return Object.fromEntries(
-      Object.entries({ regions, boxes, balls, edges, nodeBoxes, nodeBalls, nodeEdges, pairs, candidates, candidateFaces, triangles, points, normals, curves, gaps, depths, vertices })
+      Object.entries({ regions, boxes, balls, edges, nodeBoxes, nodeBalls, nodeEdges, pairs, candidates, candidateFaces, triangles, points, normals, curves, gaps, depths, patchFaces, patchArrows, patches, vertices })
         .map(([name, layer]) => [name, layer.count]),
     );
   }
 
   update(): void {
     const { layers } = this.model;
-    for (const layer of [this.points, this.vertices, this.curves, this.normals, this.gaps, this.depths, this.nodeBoxes, this.nodeBalls, this.nodeEdges]) layer.depthTest = !this.model.throughSurfaces;
+    for (const layer of [this.points, this.vertices, this.curves, this.normals, this.gaps, this.depths, this.patchFaces, this.patchArrows, this.patches, this.nodeBoxes, this.nodeBalls, this.nodeEdges]) layer.depthTest = !this.model.throughSurfaces;
     this.points.size = this.model.pointSize + 2;
     this.vertices.size = this.model.pointSize;
+    this.patches.size = this.model.pointSize + 4;
     this.fillCells();
     this.fillPairs(layers.pairs);
     this.fillCandidates(layers.candidates);
@@ -114,6 +159,7 @@ export class Layers {
     this.fillCurves(layers.curves);
     this.fillGaps(layers.gaps);
     this.fillDepths(layers.depths);
+    this.fillPatches(layers.patches);
     this.fillVertices(layers.vertices);
   }
 
@@ -280,6 +326,28 @@ export class Layers {
         for (const end of [0, 4]) for (let axis = 0; axis < 3; ++axis) into[at++] = frame!.penetrationPoints[8 * i + end + axis]!;
       }
       return at / 6;
+    });
+  }
+
+  /** The triangles at the vertices that each curve encloses, and an arrow along its normal, as long as its depth. */
+  private fillPatches(on: boolean): void {
+    const { frame, objects } = this.model;
+    const shown: number[] = [];
+    for (let i = 0; on && frame && i < frame.patches.length; i += 8)
+      if (this.shown(frame.patches[i]!) && this.shown(frame.patches[i + 1]!)) shown.push(i);
+    const faces = frame ? enclosedFaces(frame, shown, objects) : [];
+    this.patchFaces.fill(faces.length / 2, (into) => {
+      let at = 0;
+      for (let i = 0; i < faces.length; i += 2) at = writeTriangle(into, at, objects[faces[i]!]!, faces[i + 1]!);
+      return at / 9;
+    });
+    this.patches.fill(shown.length, (into) => {
+      shown.forEach((i, k) => into.set(frame!.patchPoints.subarray(i, i + 3), 3 * k));
+      return shown.length;
+    });
+    this.patchArrows.fill(ARROW_LINES * shown.length, (into) => {
+      shown.forEach((i, k) => writeArrow(into, 6 * ARROW_LINES * k, frame!.patchPoints.subarray(i, i + 8)));
+      return ARROW_LINES * shown.length;
     });
   }
 

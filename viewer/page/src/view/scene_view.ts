@@ -9,6 +9,9 @@ import { pick, type Hit } from "./picking";
 import { Dots, Faces, Lines, shared } from "./primitives";
 import { obstacleOf, Surfaces } from "./surfaces";
 
+/** From the scene to the first camera: from above, so that one looks into open boxes. */
+const FIRST_DIRECTION = new THREE.Vector3(0.55, 0.7, 1);
+
 /** In pixels. */
 export interface PictureSize {
   width: number;
@@ -77,7 +80,7 @@ export class SceneView {
   }
 
   setInk(colour: string): void {
-    this.layers.curves.colour = colour;
+    for (const layer of [this.layers.curves, this.layers.patchArrows, this.layers.patches]) layer.colour = colour;
     this.gap.colour = colour;
     this.invalidate();
   }
@@ -282,13 +285,17 @@ export class SceneView {
     this.invalidate();
   }
 
+  /** Shows the whole border, so that objects that move within it stay in view. */
   private firstFrame(): void {
     this.hasFramed = true;
-    if (!this.rig.restore()) this.frameAll(new THREE.Vector3(0.55, 0.4, 1), false);
+    if (this.rig.restore()) return;
+    const [lower, upper] = this.model.scene!.bounds;
+    const corners = [0, 1, 2, 3, 4, 5, 6, 7].map((i) => [0, 1, 2].map((axis) => ((i >> axis) & 1 ? upper : lower)[axis]!));
+    this.rig.frame(new THREE.Vector3(), corners, FIRST_DIRECTION, false);
   }
 
-  frameAll(direction?: THREE.Vector3, fly = true): void {
-    this.frameObjects(this.model.objects.filter((object) => object.visible), direction, fly);
+  frameAll(): void {
+    this.frameObjects(this.model.objects.filter((object) => object.visible));
   }
 
   /** Frames the selection: a contact, a triangle or vertex, or an object; otherwise everything. */
@@ -301,20 +308,21 @@ export class SceneView {
     this.frameObjects([this.model.objects[selection.object]!]);
   }
 
-  flyTo(point: number[]): void {
+  /** Frames a point and everything within `least` of it, but at least a small part of the scene. */
+  flyTo(point: number[], least = 0): void {
     const bounds = this.model.scene!.bounds;
-    const reach = 0.04 * (Math.hypot(...bounds[1].map((x, axis) => x - bounds[0][axis]!)) || 1);
+    const reach = Math.max(least, 0.04 * (Math.hypot(...bounds[1].map((x, axis) => x - bounds[0][axis]!)) || 1));
     const around = [-reach, reach].flatMap((step) => [0, 1, 2].map((axis) => point.map((x, i) => (i === axis ? x + step : x))));
     this.rig.frame(new THREE.Vector3().fromArray(point), around);
   }
 
-  private frameObjects(objects: ObjectState[], direction?: THREE.Vector3, fly = true): void {
+  private frameObjects(objects: ObjectState[]): void {
     const bounds = boundsOfAll(objects);
     if (!bounds) return;
     const lower = new THREE.Vector3().fromArray(bounds.lower);
     const upper = new THREE.Vector3().fromArray(bounds.upper);
     this.rig.setExtent(Math.max(lower.length(), upper.length()));
-    this.rig.frame(lower.add(upper).multiplyScalar(0.5), objects.map((object) => object.positions), direction, fly);
+    this.rig.frame(lower.add(upper).multiplyScalar(0.5), objects.map((object) => object.positions));
   }
 
   private rayAt(x: number, y: number): THREE.Ray {

@@ -1,0 +1,90 @@
+/** A table of the patches of the frame: the curves of intersection, and what they enclose. */
+import type { Model } from "../model";
+import { h, readable } from "./dom";
+import { RowWindow, type Row } from "./row_window";
+
+const ROW_HEIGHT = 24;
+const CURVE_KINDS = ["closed", "open", "branched"];
+const rounded = (value: number): string => String(Number(value.toPrecision(3)));
+
+export class PatchTable {
+  readonly element: HTMLElement;
+  private readonly summary = h("p", { class: "hint", "aria-live": "off" });
+  private readonly window: RowWindow<Row>;
+  /** A row of this frame only: patches have no identity from frame to frame. */
+  private chosen = -1;
+
+  constructor(private readonly model: Model, private readonly flyTo: (point: number[], reach: number) => void) {
+    this.window = new RowWindow(
+      { class: "table-view", role: "grid", "aria-label": "Patches", tabindex: 0, onkeydown: (event: KeyboardEvent) => this.key(event) },
+      h("div", { class: "rows" }), ROW_HEIGHT, () => this.makeRow(),
+    );
+    const heads: [string, string][] = [
+      ["object a", ""], ["object b", ""], ["area", "Area of a closed curve, or the kind of the curve"],
+      ["depth", "How far a must move along the normal"], ["enclosed", "Vertices of a and of b that the curve encloses"],
+    ];
+    this.element = h(
+      "div", { class: "contacts patches" },
+      h("div", { class: "table-top" }, this.summary),
+      h("div", { class: "row head", "aria-hidden": "true" }, ...heads.map(([name, title]) => h("span", { title }, name))),
+      this.window.element,
+    );
+    model.on("scene", () => this.update());
+    model.on("frame", () => this.update());
+  }
+
+  private get count(): number {
+    return (this.model.frame?.patches.length ?? 0) / 8;
+  }
+
+  private update(): void {
+    this.chosen = -1;
+    const { scene } = this.model;
+    const finds = scene?.contacts.includes("penetration") ?? false;
+    const text = finds ? `${readable(this.count)} ${this.count === 1 ? "patch" : "patches"}` : "Only scenes with the contacts “penetration” have patches (Settings).";
+    if (this.summary.textContent !== text) this.summary.textContent = text;
+    this.window.element.setAttribute("aria-rowcount", String(this.count));
+    this.window.setCount(this.count);
+  }
+
+  private makeRow(): Row {
+    const cells = Array.from({ length: 5 }, () => h("span", { role: "gridcell" }));
+    let at = 0;
+    const element = h("div", { class: "row", role: "row", onclick: () => this.choose(at) }, ...cells);
+    const show = (index: number) => {
+      at = index;
+      this.showRow(element, cells, index);
+    };
+    return { element, show };
+  }
+
+  private showRow(row: HTMLElement, cells: HTMLElement[], index: number): void {
+    const { patches, patchPoints } = this.model.frame!;
+    const [a, b, kind, , , countA, countB] = patches.subarray(8 * index, 8 * index + 8);
+    const [depth, area] = [patchPoints[8 * index + 3]!, patchPoints[8 * index + 7]!];
+    const names = [a!, b!].map((object) => this.model.objects[object]!.name);
+    const texts = [...names, kind === 0 ? rounded(area) : CURVE_KINDS[kind!]!, rounded(depth), `${countA} + ${countB}`];
+    texts.forEach((text, i) => {
+      if (cells[i]!.textContent !== text) cells[i]!.textContent = text;
+    });
+    row.setAttribute("aria-rowindex", String(index + 1));
+    row.setAttribute("aria-selected", String(index === this.chosen));
+  }
+
+  private choose(index: number): void {
+    if (index >= this.count) return;  // it has disappeared meanwhile
+    this.chosen = index;
+    this.window.reveal(index);
+    this.window.draw();
+    const [x, y, z, depth, , , , area] = this.model.frame!.patchPoints.subarray(8 * index, 8 * index + 8);
+    this.flyTo([x!, y!, z!], Math.max(depth!, Math.sqrt(area!)));
+  }
+
+  private key(event: KeyboardEvent): void {
+    const next = this.window.rowAfter(event.key, this.chosen);
+    if (next === null) return;
+    event.preventDefault();
+    event.stopPropagation();
+    this.choose(next);
+  }
+}
