@@ -83,8 +83,10 @@ bool clearly_apart(std::span<const Vec3d> a, std::span<const Vec3d> b, double re
   const Vec3d u = a.size() == 2 ? a[1] - a[0] : b[1] - b[0];
   const Vec3d v = b.size() == 3 ? b[2] - b[0] : b[1] - b[0];
   const Vec3d n = cross(u, v);
-  const double length = std::sqrt(dot(n, n));
-  if (length > 0 && std::fabs(dot(n, a[0] - b[0])) > least * length) return true;
+  // The normal of sides that are nearly parallel or tiny is mostly rounding.
+  const double nn = dot(n, n);
+  const bool has_normal = nn > 1e-8 * dot(u, u) * dot(v, v) + 1e-290;
+  if (has_normal && std::fabs(dot(n, a[0] - b[0])) > least * std::sqrt(nn)) return true;
   for (std::size_t i = 0; i < a.size(); ++i) {
     for (std::size_t k = 0; k < b.size(); ++k) {
       if (b.size() > 1 && distance_to_segment(a[i], b[k], b[(k + 1) % b.size()]) <= least) return false;
@@ -92,8 +94,7 @@ bool clearly_apart(std::span<const Vec3d> a, std::span<const Vec3d> b, double re
     }
   }
   // Farther from all borders than the slack: two interiors decide.
-  const double nn = dot(n, n);
-  if (!(nn > 1e-8 * dot(u, u) * dot(v, v))) return false;
+  if (!has_normal) return false;
   const Vec3d w = a[0] - b[0];
   const double first = dot(cross(w, v), n) / nn, second = dot(cross(u, w), n) / nn;
   constexpr double slack = 1e-3;
