@@ -1,106 +1,14 @@
 #include "scene/brute_force_penetrations.hpp"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
-#include <limits>
-#include <optional>
 
 #include "geometry/vector.hpp"
 #include "mesh/vertex_sets.hpp"
-#include "scene/brute_force_proximity.hpp"
-#include "supple/triangle_intersection.hpp"
+#include "scene/brute_force_queries.hpp"
+#include "supple/distance.hpp"
 
 namespace supple {
 namespace {
-
-/// Sign of (b - a) x (p - a) in the y-z plane, where p is moved by (e, e²) for an infinitely small e > 0.
-int turn_beside(const Vec3d& a, const Vec3d& b, const Vec3d& p) {
-  const Rational turn = (Rational(b.y) - Rational(a.y)) * (Rational(p.z) - Rational(a.z)) -
-                        (Rational(b.z) - Rational(a.z)) * (Rational(p.y) - Rational(a.y));
-  if (turn != 0) return turn.sign();
-  if (a.z != b.z) return a.z > b.z ? 1 : -1;
-  return (b.y > a.y) - (b.y < a.y);
-}
-
-int side_of_plane(const TrianglePoints& t, const Vec3d& p) {
-  std::array<std::array<Rational, 3>, 3> rows;
-  const std::array<Vec3d, 3> ends{t[1], t[2], p};
-  for (std::size_t r = 0; r < 3; ++r) {
-    for (int axis = 0; axis < 3; ++axis)
-      rows[r][static_cast<std::size_t>(axis)] = Rational(ends[r][axis]) - Rational(t[0][axis]);
-  }
-  const auto& [u, v, w] = rows;
-  const Rational determinant = (u[1] * v[2] - u[2] * v[1]) * w[0] + (u[2] * v[0] - u[0] * v[2]) * w[1] +
-                               (u[0] * v[1] - u[1] * v[0]) * w[2];
-  return determinant.sign();
-}
-
-/// Whether the ray in the direction of x from beside the point crosses the triangle, which does not contain
-/// the point.
-bool crosses_ahead(const TrianglePoints& t, const Vec3d& p) {
-  const int turn = turn_beside(t[0], t[1], p);
-  if (turn == 0 || turn_beside(t[1], t[2], p) != turn || turn_beside(t[2], t[0], p) != turn) return false;
-  return side_of_plane(t, p) * turn < 0;
-}
-
-struct BoxedCorners {
-  TrianglePoints corners;
-  Vec3d min, max;
-};
-
-std::vector<BoxedCorners> boxed_corners(const PlainObject& object) {
-  std::vector<BoxedCorners> result;
-  for (const Triangle& triangle : object.triangles) {
-    BoxedCorners boxed;
-    for (std::size_t k = 0; k < 3; ++k) boxed.corners[k] = object.positions[triangle[k]];
-    boxed.min = boxed.max = boxed.corners[0];
-    for (const Vec3d& corner : boxed.corners) {
-      for (int axis = 0; axis < 3; ++axis) {
-        boxed.min[axis] = std::min(boxed.min[axis], corner[axis]);
-        boxed.max[axis] = std::max(boxed.max[axis], corner[axis]);
-      }
-    }
-    result.push_back(boxed);
-  }
-  return result;
-}
-
-Containment where_is(const Vec3d& p, std::span<const BoxedCorners> triangles) {
-  bool is_inside = false;
-  for (const BoxedCorners& t : triangles) {
-    if (p.y < t.min.y || p.y > t.max.y || p.z < t.min.z || p.z > t.max.z || p.x > t.max.x) continue;
-    if (p.x >= t.min.x && triangles_intersect_by_axes({p, p, p}, t.corners)) return Containment::on;
-    if (crosses_ahead(t.corners, p)) is_inside = !is_inside;
-  }
-  return is_inside ? Containment::inside : Containment::outside;
-}
-
-double box_distance(const Vec3d& p, const BoxedCorners& t) {
-  Vec3d gap;
-  for (int axis = 0; axis < 3; ++axis)
-    gap[axis] = std::max({t.min[axis] - p[axis], p[axis] - t.max[axis], 0.0});
-  return std::sqrt(dot(gap, gap));
-}
-
-void find_nearest(const Vec3d& p, std::span<const BoxedCorners> triangles, ExactPenetration& found) {
-  double bound = std::numeric_limits<double>::infinity();
-  for (const BoxedCorners& t : triangles) {
-    for (const Vec3d& corner : t.corners)
-      bound = std::min(bound, std::sqrt(dot(corner - p, corner - p)) * (1 + 0x1p-40) + 0x1p-500);
-  }
-  std::optional<Rational> least;
-  for (std::uint32_t i = 0; i < triangles.size(); ++i) {
-    const BoxedCorners& t = triangles[i];
-    if (box_distance(p, t) > bound || clearly_apart(std::span(&p, 1), t.corners, bound)) continue;
-    const Rational squared = distance_by_algebra(std::span(&p, 1), t.corners).squared;
-    if (least && squared >= *least) continue;
-    least = squared;
-    found.triangle = i;
-    bound = std::min(bound, std::sqrt(squared.convert_to<double>()) * (1 + 0x1p-40) + 0x1p-500);
-  }
-  found.squared_depth = *least;
-}
 
 /// The connected parts with all vertices inside and no triangle that touches.
 std::vector<ContainedPart> contained_parts(const PlainObject& inner, std::span<const std::uint32_t> touching,
@@ -149,20 +57,20 @@ BruteForcePenetrations find_penetrations_by_brute_force(const PlainObject& inner
                                       [&](std::uint32_t v) { return !is_finite(inner.positions[v]); });
     for (const std::uint32_t v : triangle) is_used[v] |= is_inert ? 0 : 1;
   }
-  for (const Triangle& triangle : outer.triangles) {
-    for (const std::uint32_t v : triangle) {
-      if (!is_finite(outer.positions[v])) return result;
-    }
-  }
-  const std::vector<BoxedCorners> triangles = boxed_corners(outer);
+  const PlainSurface surface(outer);
+  if (surface.has_inert) return result;
   std::vector<std::vector<ExactPenetration>> found(parallel.worker_count());
   parallel.for_ranges(inner.positions.size(), 64, [&](std::size_t begin, std::size_t end, std::uint32_t w) {
     for (std::size_t v = begin; v < end; ++v) {
       if (is_used[v] == 0) continue;
-      ExactPenetration penetration{static_cast<std::uint32_t>(v), where_is(inner.positions[v], triangles), 0,
-                                   0};
+      const Vec3d& p = inner.positions[v];
+      ExactPenetration penetration{static_cast<std::uint32_t>(v), surface.containment(p), 0, 0};
       if (penetration.where == Containment::outside) continue;
-      if (penetration.where == Containment::inside) find_nearest(inner.positions[v], triangles, penetration);
+      if (penetration.where == Containment::inside) {
+        const auto nearest = nearest_by_brute_force(p, std::span(&surface, 1), any_distance);
+        penetration.triangle = nearest->triangle;
+        penetration.squared_depth = nearest->distance.squared;
+      }
       found[w].push_back(penetration);
     }
   });
@@ -170,7 +78,7 @@ BruteForcePenetrations find_penetrations_by_brute_force(const PlainObject& inner
   std::sort(result.vertices.begin(), result.vertices.end(),
             [](const auto& p, const auto& q) { return p.vertex < q.vertex; });
   result.parts = contained_parts(inner, touching, result.vertices);
-  result.pairs_checked = inner.positions.size() * triangles.size();
+  result.pairs_checked = inner.positions.size() * surface.triangles.size();
   return result;
 }
 

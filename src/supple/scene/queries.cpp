@@ -63,6 +63,8 @@ bool may_be_within(const Aabb& a, const Aabb& b, double distance) {
   return square * (1 - 0x1p-50) <= distance * distance * (1 + 0x1p-50) + 0x1p-1060;
 }
 
+}  // namespace
+
 void check_distance(double distance, const char* call) {
   if (distance >= 0) return;
   fail(std::string(call) + ": max_distance is " + std::to_string(distance) + "; it must be 0 or more");
@@ -74,9 +76,7 @@ void check_counts(std::size_t queries, std::size_t results, const char* call) {
        " queries; give one for each");
 }
 
-}  // namespace
-
-void Scene::Implementation::check_closed(const QueryFilter& seen, const char* call) {
+void Scene::Implementation::check_closed(const QueryFilter& seen, const char* call) const {
   if (seen.object) object(*seen.object, call);
   for (const Slot& slot : slots_) {
     if (slot.object == nullptr || (slot.object->options.group & seen.mask) == 0) continue;

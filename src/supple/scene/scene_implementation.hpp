@@ -24,8 +24,13 @@
 
 namespace supple {
 
-/// Throws an error that names `call` when the object has no such triangle.
+struct PlainScene;
+
+/// These throw an error that names `call`: when the object has no such triangle, when a largest distance is
+/// negative or NaN, and when the numbers of queries and results differ.
 void check_triangle(const SceneObject& object, std::uint32_t triangle, const char* call);
+void check_distance(double distance, const char* call);
+void check_counts(std::size_t queries, std::size_t results, const char* call);
 
 /// What a step searches.
 struct Question {
@@ -85,6 +90,23 @@ class Scene::Implementation {
   std::span<const ProximityPair> distances(double max_distance);
   bool any_contact(ObjectId a, ObjectId b);
   VerifyReport verify() const;
+  std::vector<WrongAnswer> verify_closest(std::span<const Vec3d> points,
+                                          std::span<const std::optional<ClosestPoint>> results,
+                                          const ClosestOptions& query) const;
+  std::vector<WrongAnswer> verify_cast(std::span<const Ray> rays,
+                                       std::span<const std::optional<RayHit>> results,
+                                       const CastOptions& query) const;
+  std::vector<WrongAnswer> verify_cast_all(std::span<const Ray> rays, std::span<const ListedRayHit> hits,
+                                           const QueryFilter& seen) const;
+  template <class Region>
+  std::vector<WrongAnswer> verify_overlaps(std::span<const Region> regions, std::span<const Overlap> overlaps,
+                                           const QueryFilter& seen) const;
+  std::vector<WrongAnswer> verify_inside(std::span<const Vec3d> points, std::span<const Containment> results,
+                                         const QueryFilter& seen) const;
+  std::vector<WrongAnswer> verify_distance(ObjectId a, ObjectId b,
+                                           const std::optional<ProximityPair>& found) const;
+  std::vector<WrongAnswer> verify_distances(double max_distance, std::span<const ProximityPair> found) const;
+  std::vector<WrongAnswer> verify_any_contact(ObjectId a, ObjectId b, bool found) const;
   std::string validate() const;
 
   std::vector<OctreeCell> octree_cells(ObjectId id, std::optional<std::uint32_t> level) const;
@@ -138,7 +160,7 @@ class Scene::Implementation {
   /// Refits the objects that have moved, without changing the result of `detect`.
   void refit_for_queries();
   /// Throws an error that names `call` when the surface of an object that the query sees is open.
-  void check_closed(const QueryFilter& seen, const char* call);
+  void check_closed(const QueryFilter& seen, const char* call) const;
   void list_near_objects(double max_distance);
   /// Both objects, the smaller one first.
   ObjectPair two_objects(ObjectId a, ObjectId b, const char* call) const;
@@ -170,6 +192,12 @@ class Scene::Implementation {
   void verify_impacts(const ObjectPair& pair, const ContactGroup* group, VerifyReport& report) const;
   void verify_penetrations(const ObjectPair& pair, VerifyReport& report) const;
   void verify_proximity(const ObjectPair& pair, const ContactGroup* group, VerifyReport& report) const;
+  class AnswerWords;
+  /// The objects that the filter lets through.
+  PlainScene plain_scene(const QueryFilter& seen, const char* call) const;
+  /// The distance of two objects in words, as found (null: nothing) and by brute force, when they differ.
+  std::optional<WrongAnswer> wrong_distance(const ObjectPair& pair, double max_distance,
+                                            const ProximityPair* found) const;
   void report_non_finite();
   void publish();
   void list_touching_pairs();

@@ -6,41 +6,10 @@
 #include "scene/brute_force_impacts.hpp"
 #include "scene/brute_force_penetrations.hpp"
 #include "scene/brute_force_proximity.hpp"
+#include "scene/plain_objects.hpp"
 #include "scene/scene_implementation.hpp"
 
 namespace supple {
-namespace {
-
-std::vector<Triangle> user_triangles(const SceneObject& object, std::size_t count) {
-  const ObjectOctree& octree = object.octree();
-  std::vector<Triangle> triangles(count);
-  for (std::uint32_t t = 0; t < triangles.size(); ++t) triangles[t] = octree.user_triangle(t);
-  return triangles;
-}
-
-PlainObject plain_object(const SceneObject& object) {
-  PlainObject plain{
-      {}, user_triangles(object, object.face_count()), object.vertex_groups(), object.options.neighbours};
-  for (std::uint32_t vertex = 0; vertex < object.octree().vertex_count(); ++vertex)
-    plain.positions.push_back(object.placement().position(vertex));
-  return plain;
-}
-
-PlainMovingObject plain_moving_object(const SceneObject& object) {
-  PlainMovingObject plain{{},
-                          {},
-                          user_triangles(object, object.octree().triangles().size()),
-                          object.vertex_groups(),
-                          object.face_count()};
-  for (std::uint32_t vertex = 0; vertex < object.octree().vertex_count(); ++vertex) {
-    plain.start.push_back(object.placement().start_position(vertex));
-    plain.end.push_back(object.placement().position(vertex));
-  }
-  return plain;
-}
-
-}  // namespace
-
 /// All pairs of objects that may collide by their groups and filters, whatever their volumes.
 std::vector<ObjectPair> Scene::Implementation::pairs_to_verify() const {
   std::vector<ObjectPair> pairs;

@@ -1,0 +1,423 @@
+#include <algorithm>
+#include <boost/multiprecision/cpp_bin_float.hpp>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <utility>
+
+#include "core/error.hpp"
+#include "geometry/vector.hpp"
+#include "scene/brute_force_queries.hpp"
+#include "scene/plain_objects.hpp"
+#include "scene/scene_implementation.hpp"
+#include "supple/result_descriptions.hpp"
+
+namespace supple {
+namespace {
+
+/// As `is_accurate`, for numbers of any kind and for values that no double holds.
+bool is_near(double number, const Rational& exact) {
+  constexpr double largest = std::numeric_limits<double>::max();
+  if (std::isinf(number) && number > 0) return exact > Rational(largest);
+  return number >= 0 && is_accurate(number, exact * exact);
+}
+bool is_distance(double distance, const Rational& squared) {
+  constexpr double largest = std::numeric_limits<double>::max();
+  if (std::isinf(distance) && distance > 0) return squared > Rational(largest) * Rational(largest);
+  return distance >= 0 && is_accurate(distance, squared);
+}
+
+double rounded_root(const Rational& squared) {
+  using Wide = boost::multiprecision::cpp_bin_float_50;
+  return sqrt(squared.convert_to<Wide>()).convert_to<double>();
+}
+
+/// Wrong answers of queries that threads check one by one.
+class WrongAnswers {
+ public:
+  explicit WrongAnswers(const Parallel& parallel)
+      : parallel_(parallel), of_workers_(parallel.worker_count()) {}
+
+  /// Calls `check(i)` for all i below `count`; it returns both answers when they differ.
+  template <class Check>
+  std::vector<WrongAnswer> check_all(std::size_t count, const Check& check) {
+    parallel_.for_ranges(count, 1, [&](std::size_t begin, std::size_t end, std::uint32_t worker) {
+      for (std::size_t i = begin; i < end; ++i) {
+        if (std::optional<WrongAnswer> wrong = check(i)) {
+          wrong->query = i;
+          of_workers_[worker].push_back(*std::move(wrong));
+        }
+      }
+    });
+    std::vector<WrongAnswer> all;
+    for (auto& part : of_workers_) std::move(part.begin(), part.end(), std::back_inserter(all));
+    std::ranges::sort(all, {}, &WrongAnswer::query);
+    return all;
+  }
+
+ private:
+  const Parallel& parallel_;
+  std::vector<std::vector<WrongAnswer>> of_workers_;
+};
+
+/// The first place at which two lists differ. `describe_found` and `describe_truth` give the words of an
+/// item.
+template <class Found, class Truth, class Equal, class DescribeFound, class DescribeTruth>
+std::optional<WrongAnswer> compare_lists(std::span<const Found> found, std::span<const Truth> truth,
+                                         const Equal& equal, const DescribeFound& describe_found,
+                                         const DescribeTruth& describe_truth) {
+  if (std::ranges::equal(found, truth, equal)) return {};
+  const auto [f, t] = std::ranges::mismatch(found, truth, equal);
+  const auto place = f - found.begin();
+  const auto item = [&](bool is_end, const auto& describe) {
+    return std::to_string(place) + ": " + (is_end ? "nothing" : describe());
+  };
+  return WrongAnswer{0, item(f == found.end(), [&] { return describe_found(*f); }),
+                     item(t == truth.end(), [&] { return describe_truth(*t); })};
+}
+
+/// The items of a list for each query. They must stand by ascending query, like those of the scene.
+template <class Item>
+class ItemsOfQueries {
+ public:
+  ItemsOfQueries(std::span<const Item> items, std::size_t count, const char* call)
+      : items_(items), first_(count + 1, 0) {
+    for (std::size_t i = 0; i < items.size(); ++i) {
+      if (items[i].query >= count || (i > 0 && items[i].query < items[i - 1].query))
+        fail(std::string(call) + ": item " + std::to_string(i) + " of the list is for query " +
+             std::to_string(items[i].query) + "; give the list as the query returned it");
+      ++first_[items[i].query + 1];
+    }
+    for (std::size_t i = 0; i < count; ++i) first_[i + 1] += first_[i];
+  }
+  std::span<const Item> of(std::size_t query) const {
+    return items_.subspan(first_[query], first_[query + 1] - first_[query]);
+  }
+
+ private:
+  std::span<const Item> items_;
+  std::vector<std::size_t> first_;
+};
+
+}  // namespace
+
+/// Names objects in the words of answers, also those that are not in the scene.
+class Scene::Implementation::AnswerWords {
+ public:
+  explicit AnswerWords(const Implementation& scene) : scene_(scene) {}
+
+  std::string triangle(ObjectId object, std::uint32_t triangle) const {
+    return "triangle " + std::to_string(triangle) + " of " + name(object);
+  }
+  std::string name(ObjectId object) const {
+    const std::string number = "object " + std::to_string(object.index);
+    if (!scene_.contains(object)) return number + " (not in the scene)";
+    return number + " (" + scene_.slots_[object.index].object->options.name + ")";
+  }
+  std::string element(FeatureKind kind, const std::array<std::uint32_t, 2>& ids) const {
+    const std::string text = std::string(word_of(kind)) + " " + std::to_string(ids[0]);
+    return kind == FeatureKind::edge ? text + " " + std::to_string(ids[1]) : text;
+  }
+
+ private:
+  const Implementation& scene_;
+};
+
+PlainScene Scene::Implementation::plain_scene(const QueryFilter& seen, const char* call) const {
+  if (seen.object) object(*seen.object, call);
+  PlainScene plain;
+  for (const ObjectId id : objects()) {
+    const SceneObject& found = *slots_[id.index].object;
+    if ((seen.object && id != *seen.object) || (found.options.group & seen.mask) == 0) continue;
+    plain.ids.push_back(id);
+    plain.surfaces.emplace_back(plain_object(found));
+  }
+  return plain;
+}
+
+std::vector<WrongAnswer> Scene::Implementation::verify_closest(
+    std::span<const Vec3d> points, std::span<const std::optional<ClosestPoint>> results,
+    const ClosestOptions& query) const {
+  check_counts(points.size(), results.size(), "verify_closest");
+  check_distance(query.max_distance, "verify_closest");
+  if (query.signed_distance) check_closed(query.filter, "verify_closest");
+  const PlainScene plain = plain_scene(query.filter, "verify_closest");
+  const AnswerWords words(*this);
+  const auto describe = [&](ObjectId object, std::uint32_t triangle, const Feature& feature, double distance,
+                            const std::array<double, 3>& weights) {
+    return words.triangle(object, triangle) + " at " + word_of(feature.kind) + " " +
+           std::to_string(feature.index) + ", distance " + text_of(distance) + ", barycentric " +
+           text_of(weights[0]) + " " + text_of(weights[1]) + " " + text_of(weights[2]);
+  };
+  return WrongAnswers(parallel).check_all(points.size(), [&](std::size_t i) -> std::optional<WrongAnswer> {
+    std::optional<ExactNearest> truth;
+    if (is_finite(points[i])) truth = nearest_by_brute_force(points[i], plain.surfaces, query.max_distance);
+    const bool is_inside = truth && query.signed_distance &&
+                           plain.surfaces[truth->surface].containment(points[i]) == Containment::inside;
+    const std::optional<ClosestPoint>& found = results[i];
+    const auto is_right = [&] {
+      if (found.has_value() != truth.has_value()) return false;
+      if (!found) return true;
+      for (std::size_t k = 0; k < 3; ++k) {
+        if (!std::isfinite(found->barycentric[k])) return false;
+        const Rational error = Rational(found->barycentric[k]) - truth->distance.weights_b[k];
+        if (abs(error) > Rational(0x1p-50)) return false;
+      }
+      return found->object == plain.ids[truth->surface] && found->triangle == truth->triangle &&
+             found->feature == truth->distance.on_b &&
+             is_distance(is_inside ? -found->distance : found->distance, truth->distance.squared);
+    };
+    if (is_right()) return {};
+    std::string of_found = "nothing", of_truth = "nothing";
+    if (found)
+      of_found =
+          describe(found->object, found->triangle, found->feature, found->distance, found->barycentric);
+    if (truth) {
+      std::array<double, 3> weights;
+      for (std::size_t k = 0; k < 3; ++k) weights[k] = truth->distance.weights_b[k].convert_to<double>();
+      const double distance = rounded_root(truth->distance.squared);
+      of_truth = describe(plain.ids[truth->surface], truth->triangle, truth->distance.on_b,
+                          is_inside ? -distance : distance, weights);
+    }
+    return WrongAnswer{0, of_found, of_truth};
+  });
+}
+
+std::vector<WrongAnswer> Scene::Implementation::verify_cast(std::span<const Ray> rays,
+                                                            std::span<const std::optional<RayHit>> results,
+                                                            const CastOptions& query) const {
+  check_counts(rays.size(), results.size(), "verify_cast");
+  const PlainScene plain = plain_scene(query.filter, "verify_cast");
+  const AnswerWords words(*this);
+  const auto describe = [&](ObjectId object, std::uint32_t triangle, double t, std::uint64_t hits) {
+    const std::string text = words.triangle(object, triangle) + ", t " + text_of(t);
+    return query.count_hits ? text + ", hits " + std::to_string(hits) : text;
+  };
+  return WrongAnswers(parallel).check_all(rays.size(), [&](std::size_t i) -> std::optional<WrongAnswer> {
+    const std::vector<ExactHit> truth = hits_by_brute_force(rays[i], plain.surfaces);
+    const std::optional<RayHit>& found = results[i];
+    const std::uint64_t hits = query.count_hits ? truth.size() : 1;
+    const bool is_right = found && !truth.empty()
+                              ? found->object == plain.ids[truth.front().surface] &&
+                                    found->triangle == truth.front().triangle && found->hits == hits &&
+                                    is_near(found->t, truth.front().t)
+                              : !found && truth.empty();
+    if (is_right) return {};
+    std::string of_found = "nothing", of_truth = "nothing";
+    if (found) of_found = describe(found->object, found->triangle, found->t, found->hits);
+    if (!truth.empty())
+      of_truth = describe(plain.ids[truth.front().surface], truth.front().triangle,
+                          truth.front().t.convert_to<double>(), hits);
+    return WrongAnswer{0, of_found, of_truth};
+  });
+}
+
+std::vector<WrongAnswer> Scene::Implementation::verify_cast_all(std::span<const Ray> rays,
+                                                                std::span<const ListedRayHit> hits,
+                                                                const QueryFilter& seen) const {
+  const ItemsOfQueries<ListedRayHit> found(hits, rays.size(), "verify_cast_all");
+  const PlainScene plain = plain_scene(seen, "verify_cast_all");
+  const AnswerWords words(*this);
+  return WrongAnswers(parallel).check_all(rays.size(), [&](std::size_t i) {
+    const std::vector<ExactHit> truth = hits_by_brute_force(rays[i], plain.surfaces);
+    const auto describe = [&](ObjectId object, std::uint32_t triangle, double t, std::uint64_t count) {
+      return words.triangle(object, triangle) + ", t " + text_of(t) + ", hits " + std::to_string(count);
+    };
+    return compare_lists(
+        found.of(i), std::span(truth),
+        [&](const ListedRayHit& f, const ExactHit& t) {
+          return f.hit.object == plain.ids[t.surface] && f.hit.triangle == t.triangle &&
+                 f.hit.hits == truth.size() && is_near(f.hit.t, t.t);
+        },
+        [&](const ListedRayHit& f) { return describe(f.hit.object, f.hit.triangle, f.hit.t, f.hit.hits); },
+        [&](const ExactHit& t) {
+          return describe(plain.ids[t.surface], t.triangle, t.t.convert_to<double>(), truth.size());
+        });
+  });
+}
+
+template <class Region>
+std::vector<WrongAnswer> Scene::Implementation::verify_overlaps(std::span<const Region> regions,
+                                                                std::span<const Overlap> overlaps,
+                                                                const QueryFilter& seen) const {
+  const ItemsOfQueries<Overlap> found(overlaps, regions.size(), "verify_overlaps");
+  const PlainScene plain = plain_scene(seen, "verify_overlaps");
+  const AnswerWords words(*this);
+  return WrongAnswers(parallel).check_all(regions.size(), [&](std::size_t i) {
+    std::vector<Overlap> truth;
+    for (std::size_t s = 0; s < plain.surfaces.size(); ++s) {
+      for (const BoxedCorners& t : plain.surfaces[s].triangles) {
+        if (overlaps_by_brute_force(regions[i], t))
+          truth.push_back({static_cast<std::uint32_t>(i), plain.ids[s], t.triangle});
+      }
+    }
+    const auto describe = [&](const Overlap& o) { return words.triangle(o.object, o.triangle); };
+    return compare_lists(found.of(i), std::span<const Overlap>(truth), std::equal_to<>(), describe, describe);
+  });
+}
+template std::vector<WrongAnswer> Scene::Implementation::verify_overlaps(std::span<const QueryBox> regions,
+                                                                         std::span<const Overlap> overlaps,
+                                                                         const QueryFilter& seen) const;
+template std::vector<WrongAnswer> Scene::Implementation::verify_overlaps(std::span<const QuerySphere> regions,
+                                                                         std::span<const Overlap> overlaps,
+                                                                         const QueryFilter& seen) const;
+
+std::vector<WrongAnswer> Scene::Implementation::verify_inside(std::span<const Vec3d> points,
+                                                              std::span<const Containment> results,
+                                                              const QueryFilter& seen) const {
+  check_counts(points.size(), results.size(), "verify_inside");
+  check_closed(seen, "verify_inside");
+  const PlainScene plain = plain_scene(seen, "verify_inside");
+  return WrongAnswers(parallel).check_all(points.size(), [&](std::size_t i) -> std::optional<WrongAnswer> {
+    Containment truth = Containment::outside;
+    for (const PlainSurface& surface : plain.surfaces) {
+      if (is_finite(points[i])) truth = std::max(truth, surface.containment(points[i]));
+    }
+    if (results[i] == truth) return {};
+    return WrongAnswer{0, word_of(results[i]), word_of(truth)};
+  });
+}
+
+std::optional<WrongAnswer> Scene::Implementation::wrong_distance(const ObjectPair& pair, double max_distance,
+                                                                 const ProximityPair* found) const {
+  const PlainObject a = plain_object(*slots_[pair.a.index].object),
+                    b = plain_object(*slots_[pair.b.index].object);
+  std::optional<double> guess;
+  if (found != nullptr) guess = found->distance;
+  const std::optional<ExactPair> truth = nearest_pair_by_brute_force(a, b, max_distance, guess, parallel);
+  const AnswerWords words(*this);
+  const auto is_on_first_contact = [&] {
+    const auto corners_of = [](FeatureKind kind, const std::array<std::uint32_t, 2>& ids,
+                               const PlainObject& object,
+                               std::uint32_t triangle) -> std::optional<TrianglePoints> {
+      const Triangle& whole = object.triangles[triangle];
+      const auto has = [&](std::uint32_t v) { return std::ranges::find(whole, v) != whole.end(); };
+      const auto& at = object.positions;
+      if (kind == FeatureKind::face) {
+        if (ids != std::array{triangle, triangle}) return {};
+        return TrianglePoints{at[whole[0]], at[whole[1]], at[whole[2]]};
+      }
+      if (!has(ids[0]) || !has(ids[1]) || (kind == FeatureKind::vertex) != (ids[0] == ids[1])) return {};
+      return TrianglePoints{at[ids[0]], at[ids[1]], at[ids[1]]};
+    };
+    const auto on_a = corners_of(found->kind_a, found->element_a, a, truth->contact->a),
+               on_b = corners_of(found->kind_b, found->element_b, b, truth->contact->b);
+    return found->distance == 0 && on_a && on_b && found->on_a == Feature{found->kind_a, 0} &&
+           found->on_b == Feature{found->kind_b, 0} && triangles_intersect_by_axes(*on_a, *on_b);
+  };
+  const auto is_nearest = [&] {
+    const NearElements& near = truth->nearest;
+    return found->kind_a == near.kind_a && found->kind_b == near.kind_b &&
+           found->element_a == near.element_a && found->element_b == near.element_b &&
+           found->on_a == near.on_a && found->on_b == near.on_b && is_distance(found->distance, near.squared);
+  };
+  const auto is_right = [&] {
+    if (found == nullptr || !truth) return found == nullptr && !truth;
+    if (found->object_a != pair.a || found->object_b != pair.b) return false;
+    return truth->contact ? is_on_first_contact() : is_nearest();
+  };
+  if (is_right()) return {};
+  const auto describe = [&](const auto& of, double distance) {
+    return words.element(of.kind_a, of.element_a) + " and " + words.element(of.kind_b, of.element_b) +
+           ", distance " + text_of(distance);
+  };
+  std::string of_found = words.name(pair.a) + " and " + words.name(pair.b) + ": ", of_truth = "nothing";
+  of_found += found != nullptr ? describe(*found, found->distance) : "nothing";
+  if (truth && truth->contact)
+    of_truth = "distance 0, triangles " + std::to_string(truth->contact->a) + " and " +
+               std::to_string(truth->contact->b) + " intersect";
+  else if (truth)
+    of_truth = describe(truth->nearest, rounded_root(truth->nearest.squared));
+  return WrongAnswer{0, of_found, of_truth};
+}
+
+std::vector<WrongAnswer> Scene::Implementation::verify_distance(
+    ObjectId a, ObjectId b, const std::optional<ProximityPair>& found) const {
+  const ObjectPair pair = two_objects(a, b, "verify_distance");
+  const auto wrong = wrong_distance(pair, any_distance, found ? &*found : nullptr);
+  return wrong ? std::vector{*wrong} : std::vector<WrongAnswer>{};
+}
+
+std::vector<WrongAnswer> Scene::Implementation::verify_distances(double max_distance,
+                                                                 std::span<const ProximityPair> found) const {
+  check_distance(max_distance, "verify_distances");
+  const AnswerWords words(*this);
+  std::vector<WrongAnswer> wrong;
+  const ProximityPair* next = found.data();
+  const ProximityPair* const end = next + found.size();
+  std::uint64_t place = 0;
+  const auto note_added = [&] {
+    wrong.push_back({place,
+                     words.name(next->object_a) + " and " + words.name(next->object_b) + ": distance " +
+                         text_of(next->distance),
+                     "no such pair at this place of the list"});
+    ++next;
+  };
+  const auto objects_of = [](const ProximityPair& pair) { return ObjectPair{pair.object_a, pair.object_b}; };
+  for (const ObjectPair& pair : pairs_to_verify()) {
+    if (pair.a == pair.b) continue;
+    while (next != end && objects_of(*next) < pair) note_added();
+    const bool is_listed = next != end && objects_of(*next) == pair;
+    if (const auto differs = wrong_distance(pair, max_distance, is_listed ? next : nullptr))
+      wrong.push_back({place, differs->found, differs->expected});
+    if (is_listed) ++next;
+    ++place;
+  }
+  while (next != end) note_added();
+  return wrong;
+}
+
+std::vector<WrongAnswer> Scene::Implementation::verify_any_contact(ObjectId a, ObjectId b, bool found) const {
+  const ObjectPair pair = two_objects(a, b, "verify_any_contact");
+  const auto contacts =
+      intersecting_pairs_by_brute_force(plain_object(*slots_[pair.a.index].object),
+                                        plain_object(*slots_[pair.b.index].object), false, parallel);
+  if (contacts.empty() != found) return {};
+  return {{0, found ? "a contact" : "no contact",
+           contacts.empty() ? "no contact"
+                            : "triangles " + std::to_string(contacts.front().a) + " and " +
+                                  std::to_string(contacts.front().b) + " intersect"}};
+}
+
+std::vector<WrongAnswer> Scene::verify_closest(std::span<const Vec3d> points,
+                                               std::span<const std::optional<ClosestPoint>> results,
+                                               const ClosestOptions& options) const {
+  return implementation_->verify_closest(points, results, options);
+}
+std::vector<WrongAnswer> Scene::verify_cast(std::span<const Ray> rays,
+                                            std::span<const std::optional<RayHit>> results,
+                                            const CastOptions& options) const {
+  return implementation_->verify_cast(rays, results, options);
+}
+std::vector<WrongAnswer> Scene::verify_cast_all(std::span<const Ray> rays, std::span<const ListedRayHit> hits,
+                                                const QueryFilter& filter) const {
+  return implementation_->verify_cast_all(rays, hits, filter);
+}
+std::vector<WrongAnswer> Scene::verify_overlaps(std::span<const QueryBox> boxes,
+                                                std::span<const Overlap> found,
+                                                const QueryFilter& filter) const {
+  return implementation_->verify_overlaps(boxes, found, filter);
+}
+std::vector<WrongAnswer> Scene::verify_overlaps(std::span<const QuerySphere> spheres,
+                                                std::span<const Overlap> found,
+                                                const QueryFilter& filter) const {
+  return implementation_->verify_overlaps(spheres, found, filter);
+}
+std::vector<WrongAnswer> Scene::verify_inside(std::span<const Vec3d> points,
+                                              std::span<const Containment> results,
+                                              const QueryFilter& filter) const {
+  return implementation_->verify_inside(points, results, filter);
+}
+std::vector<WrongAnswer> Scene::verify_distance(ObjectId a, ObjectId b,
+                                                const std::optional<ProximityPair>& found) const {
+  return implementation_->verify_distance(a, b, found);
+}
+std::vector<WrongAnswer> Scene::verify_distances(double max_distance,
+                                                 std::span<const ProximityPair> found) const {
+  return implementation_->verify_distances(max_distance, found);
+}
+std::vector<WrongAnswer> Scene::verify_any_contact(ObjectId a, ObjectId b, bool found) const {
+  return implementation_->verify_any_contact(a, b, found);
+}
+
+}  // namespace supple
