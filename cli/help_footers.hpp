@@ -13,7 +13,7 @@ inline constexpr const char* program_footer = R"(Examples:
                                             simulate moving objects and record their contacts
   supple view run.h5                        show a scene or a recording in a browser
   supple info rabbit.obj                    counts, bounds, holes, octree statistics
-  supple query closest points.txt body.obj  nearest triangles of points; also inside, and rays
+  supple query closest points.txt body.obj  nearest triangles of points; also inside, rays, distance
   supple ccd-queries edge-edge/*.csv        continuous queries, compared with published answers
   supple experiment scaling --quick         how does the time grow with the number of objects?
   supple diff a.h5 b.h5                     where do two recordings differ first?
@@ -120,6 +120,10 @@ inline constexpr const char* query_footer = R"(Examples:
       Which points are inside, outside or on the surface? It must be closed.
   supple query rays rays.txt scene.toml --all-hits --json hits.json
       The first triangle on each ray, and how many triangles there are on the whole ray.
+  supple query distance rabbit.obj fish.ply --max-distance 0.1
+      How far are objects apart, and where are they nearest? Each two within 0.1.
+  supple query closest points.txt rabbit.obj --verify
+      Check each answer against exact brute force over all triangles.
 
 A file of points has three numbers a line; a file of rays has six, the origin and the direction, which
 need not have length 1. Blanks or commas separate the numbers. Of several triangles at the same distance,

@@ -324,29 +324,33 @@ CLI::App* add_info(CLI::App& program, InfoOptions& options, Dependences& depende
 
 CLI::App* add_query(CLI::App& program, QueryOptions& options, Dependences& dependences) {
   CLI::App* app = program.add_subcommand(
-      "query", "Find the nearest triangles of points, the points inside, or the first triangles on rays");
+      "query",
+      "Find the nearest triangles of points, the points inside, the first triangles on rays, or the distances "
+      "of objects");
   app->footer(query_footer);
   app->add_option_function<std::string>(
          "KIND",
          [&options](const std::string& word) {
            const auto place = std::ranges::find(words<SceneQuery>, word);
            if (place == words<SceneQuery>.end())
-             throw CLI::ValidationError("KIND", word + " is none of closest, inside and rays");
+             throw CLI::ValidationError("KIND", word + " is none of closest, inside, rays and distance");
            options.kind = static_cast<SceneQuery>(place - words<SceneQuery>.begin());
          },
-         "The question: closest, inside or rays")
+         "The question: closest, inside, rays or distance")
       ->required()
       ->type_name("");
-  app->add_option("FILE.txt", options.file, "Points or rays")->required()->type_name("");
+  app->add_option("FILE.txt", options.file, "Points or rays; leave it out for the question distance")
+      ->type_name("");
   app->add_option("MESH|SCENE.toml|RUN.h5", options.inputs,
                   "Meshes, one per object; or one scene file; or one recording")
-      ->required()
       ->type_name("");
-  dependences.push_back({add_real(
-                             *app, "--max-distance", ValueRange::from(0), "length",
-                             [&](double distance) { options.max_distance = distance; },
-                             "Leave out triangles that are farther away than this (default: any distance)"),
-                         [&] { return options.kind == SceneQuery::closest; }, "the question closest"});
+  dependences.push_back(
+      {add_real(
+           *app, "--max-distance", ValueRange::from(0), "length",
+           [&](double distance) { options.max_distance = distance; },
+           "Leave out triangles and objects that are farther away than this (default: any distance)"),
+       [&] { return options.kind == SceneQuery::closest || options.kind == SceneQuery::distance; },
+       "the question closest or distance"});
   dependences.push_back(
       {app->add_flag("--signed", options.signed_distance,
                      "Distances of points inside are negative; the surfaces must be closed"),
@@ -360,9 +364,22 @@ CLI::App* add_query(CLI::App& program, QueryOptions& options, Dependences& depen
       if (field.is_of_machine) add_field(*app, field, default_value, set);
     }
   });
+  app->add_flag("--verify", options.verify,
+                "Check each answer by exact brute force over all triangles; exit with status 3 when one is "
+                "wrong");
   add_file(*app, "--json", options.json, "Write the results as JSON; - is standard output");
   app->add_flag("--quiet", options.quiet, "Print no table and no progress");
   return app;
+}
+
+/// The question distance has no file of points: the first argument is an input then.
+void sort_arguments(QueryOptions& options) {
+  if (options.kind == SceneQuery::distance && !options.file.empty()) {
+    options.inputs.insert(options.inputs.begin(), options.file);
+    options.file.clear();
+  }
+  if (options.kind != SceneQuery::distance && options.file.empty()) throw CLI::RequiredError("FILE.txt");
+  if (options.inputs.empty()) throw CLI::RequiredError("MESH|SCENE.toml|RUN.h5");
 }
 
 CLI::App* add_ccd_queries(CLI::App& program, CcdQueriesOptions& options, Dependences& dependences) {
@@ -504,6 +521,7 @@ CommandLine parse_command_line(int argument_count, const char* const* arguments)
     resolve(result.detect, result.detect.inputs);
     resolve(result.simulate, {result.simulate.input});
     resolve(result.view, result.view.inputs);
+    if (query->parsed()) sort_arguments(result.query);
     check(dependences);
     check_outputs(result.detect, false);
     check_outputs(result.simulate, true);

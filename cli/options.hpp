@@ -16,12 +16,12 @@
 namespace supple::cli {
 
 /// Questions of `supple query`.
-enum class SceneQuery : std::uint8_t { closest, inside, rays };
+enum class SceneQuery : std::uint8_t { closest, inside, rays, distance };
 
 }  // namespace supple::cli
 
 template <>
-inline constexpr std::array supple::words<supple::cli::SceneQuery>{"closest", "inside", "rays"};
+inline constexpr std::array supple::words<supple::cli::SceneQuery>{"closest", "inside", "rays", "distance"};
 
 namespace supple::cli {
 
@@ -82,12 +82,13 @@ struct InfoOptions {
 /// Options of `supple query`.
 struct QueryOptions {
   SceneQuery kind = SceneQuery::closest;
-  std::string file;                             ///< of points or rays
+  std::string file;                             ///< of points or rays; none for distances
   std::vector<std::string> inputs;              ///< meshes, patterns, or one scene file or recording
   viewer::Overrides<SceneOptions> given_scene;  ///< only the number of threads
   double max_distance = std::numeric_limits<double>::infinity();
   bool signed_distance = false;
   bool all_hits = false;
+  bool verify = false;
   bool quiet = false;
   std::string json;
 };

@@ -107,6 +107,19 @@ void write_proximity_pairs(JsonWriter& json, const DetectResult& result) {
   json.end_array();
 }
 
+void write_distance(JsonWriter& json, const ProximityPair& pair) {
+  json.begin_array();
+  json.value(std::uint64_t{pair.object_a.index});
+  json.value(std::uint64_t{pair.object_b.index});
+  json.value(pair.distance);
+  json.value(kind_word(pair.kind_a, pair.kind_b));
+  write_element(json, pair.element_a, pair.kind_a);
+  write_element(json, pair.element_b, pair.kind_b);
+  json.value(pair.point_a);
+  json.value(pair.point_b);
+  json.end_array();
+}
+
 void write_proximity_verify(JsonWriter& json, const VerifyReport& report) {
   json.key("proximity_verify");
   json.begin_object();

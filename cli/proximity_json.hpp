@@ -11,6 +11,8 @@ namespace supple::cli {
 void write_proximity_groups(JsonWriter& json, const DetectResult& result, ProximityListing listing);
 /// `proximity_pairs`: the pairs with their points, normals and barycentric coordinates.
 void write_proximity_pairs(JsonWriter& json, const DetectResult& result);
+/// One pair of objects of `supple query distance`, as a list.
+void write_distance(JsonWriter& json, const ProximityPair& pair);
 void write_proximity_verify(JsonWriter& json, const VerifyReport& report);
 
 }  // namespace supple::cli
