@@ -22,7 +22,11 @@ const std::filesystem::path& FrameSequence::file_at(std::uint64_t frame) const {
 }
 
 FrameFiles::FrameFiles(FrameSequence sequence, const TriangleMesh& mesh)
-    : sequence_(std::move(sequence)), vertex_count_(mesh.positions.size()), triangles_(mesh.triangles) {}
+    : sequence_(std::move(sequence)),
+      vertex_count_(mesh.positions.size()),
+      triangles_(mesh.triangles),
+      edges_(mesh.edges),
+      points_(mesh.points) {}
 
 void FrameFiles::read(std::uint64_t step, std::span<Vec3d> positions) const {
   constexpr const char* advice =
@@ -37,12 +41,17 @@ void FrameFiles::read(std::uint64_t step, std::span<Vec3d> positions) const {
     throw Error(fmt::format("{}: has {} {}, but {} has {}; {}", name, given, what, first, expected, advice));
   };
   check_count("vertices", mesh.positions.size(), vertex_count_);
-  check_count("triangles", mesh.triangles.size(), triangles_.size());
-  const auto difference =
-      std::mismatch(mesh.triangles.begin(), mesh.triangles.end(), triangles_.begin()).first;
-  if (difference != mesh.triangles.end())
-    throw Error(fmt::format("{}: triangle {} has different vertices than in {}; {}", name,
-                            difference - mesh.triangles.begin(), first, advice));
+  const auto check_elements = [&](const char* one, const char* several, const auto& given,
+                                  const auto& expected) {
+    check_count(several, given.size(), expected.size());
+    const auto difference = std::mismatch(given.begin(), given.end(), expected.begin()).first;
+    if (difference != given.end())
+      throw Error(fmt::format("{}: {} {} has different vertices than in {}; {}", name, one,
+                              difference - given.begin(), first, advice));
+  };
+  check_elements("triangle", "triangles", mesh.triangles, triangles_);
+  check_elements("line", "lines", mesh.edges, edges_);
+  check_elements("point", "points", mesh.points, points_);
   if (sequence_.placement) place(mesh.positions, *sequence_.placement);
   std::copy(mesh.positions.begin(), mesh.positions.end(), positions.begin());
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -24,17 +25,19 @@ struct FrameSequence {
 /// Reads the frames of a sequence on demand.
 class FrameFiles {
  public:
-  /// Frames must have the number of vertices and the triangles of this mesh.
+  /// Frames must have the number of vertices of this mesh, and its triangles, edges and points.
   FrameFiles(FrameSequence sequence, const TriangleMesh& mesh);
 
   /// Reads the positions at a step. Throws `Error` when the file cannot be read, or when it has other counts
-  /// or other triangles.
+  /// or other triangles, edges or points.
   void read(std::uint64_t step, std::span<Vec3d> positions) const;
 
  private:
   FrameSequence sequence_;
   std::size_t vertex_count_;
   std::vector<Triangle> triangles_;
+  std::vector<std::array<std::uint32_t, 2>> edges_;
+  std::vector<std::uint32_t> points_;
 };
 
 /// Reads a mesh file of any format. Throws `Error` when the file does not exist.

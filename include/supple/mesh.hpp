@@ -14,11 +14,16 @@ namespace supple {
 using Triangle = std::array<std::uint32_t, 3>;
 
 /// A triangle soup with shared vertices. It need not be a manifold: holes, flaps, duplicate and zero-area
-/// triangles, triangles with a repeated id and unused vertices are all allowed.
+/// triangles, triangles with a repeated id and unused vertices are all allowed. It can also have edges and
+/// points of no triangle, for example rods and particles.
 struct TriangleMesh {
   std::string name;                 ///< for messages and results; the stem of the file name when loaded
   std::vector<Vec3d> positions;     ///< any doubles; non-finite ones make their triangles inert
   std::vector<Triangle> triangles;  ///< each id must be below positions.size()
+  /// Edges and points of no triangle, as vertex ids; `Scene::add` adds them to those of its options. See
+  /// `ObjectOptions::edges`.
+  std::vector<std::array<std::uint32_t, 2>> edges{};
+  std::vector<std::uint32_t> points{};
 };
 
 /// Reads an OBJ, OFF, PLY (ASCII, little or big endian, float or double) or STL (ASCII or binary) file. The
@@ -26,17 +31,20 @@ struct TriangleMesh {
 ///
 /// Coordinates keep the precision of the file, and ids keep its order: vertex i is the i-th vertex of the
 /// file. Polygons become fans around their first corner, in file order. Texture and normal ids are ignored.
-/// Unused vertices stay. STL has no ids: corners with equal coordinates become one vertex, numbered by first
-/// use. Throws `Error`; the message names the file, the line or byte, the value, and the allowed values.
+/// Unused vertices stay. The lines of an OBJ file become edges, n - 1 for a polyline of n vertices, and its
+/// points become points; lines and points of other formats are ignored. STL has no ids: corners with equal
+/// coordinates become one vertex, numbered by first use. Throws `Error`; the message names the file, the line
+/// or byte, the value, and the allowed values.
 TriangleMesh load_mesh(const std::filesystem::path& path);
 
 /// Writes a file in the format of its extension: .obj, .off, .ply (binary little endian, double), .stl
 /// (binary, single precision). Text formats print the shortest digits that read back to the same double.
-/// Throws `Error` when the extension is unknown or the file cannot be written.
+/// Throws `Error` when the extension is unknown, when the file cannot be written, and when the mesh has edges
+/// or points of no triangle and the format is not OBJ.
 void save_mesh(const TriangleMesh& mesh, const std::filesystem::path& path);
 
-/// Throws `Error` when a triangle uses a vertex that does not exist; the message names mesh, triangle and
-/// value.
+/// Throws `Error` when a triangle, an edge or a point uses a vertex that does not exist, and when both ends
+/// of an edge are the same vertex; the message names the mesh, the place in its list, and the value.
 void check_mesh(const TriangleMesh& mesh);
 
 }  // namespace supple

@@ -31,7 +31,7 @@ void fields(auto& archive, Of<RootCube> auto& cube) {
 }
 
 void fields(auto& archive, Of<TriangleMesh> auto& mesh) {
-  archive(mesh.name, mesh.positions, mesh.triangles);
+  archive(mesh.name, mesh.positions, mesh.triangles, mesh.edges, mesh.points);
 }
 
 void fields(auto& archive, Of<Series::Event> auto& event) {

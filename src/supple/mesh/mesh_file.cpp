@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <limits>
 #include <string>
 
@@ -39,8 +40,9 @@ TriangleMesh load_mesh(const std::filesystem::path& path) {
   TriangleMesh mesh = format->read(read_file(path), shown(path));
   mesh.name = path.stem().string();
   constexpr std::uint64_t most = std::numeric_limits<std::uint32_t>::max();
-  if (mesh.positions.size() > most || mesh.triangles.size() > most) {
-    fail(shown(path) + ": more vertices or triangles than the " + std::to_string(most) +
+  if (std::max({mesh.positions.size(), mesh.triangles.size(), mesh.edges.size(), mesh.points.size()}) >
+      most) {
+    fail(shown(path) + ": more vertices, triangles, lines or points than the " + std::to_string(most) +
          " that ids can tell");
   }
   return mesh;
@@ -53,6 +55,10 @@ void save_mesh(const TriangleMesh& mesh, const std::filesystem::path& path) {
          " is none of .obj, .off, .ply and .stl");
   }
   check_mesh(mesh);
+  if (format->write != write_obj && !(mesh.edges.empty() && mesh.points.empty())) {
+    fail("cannot write " + shown(path) + ": mesh " + in_quotes(mesh.name) +
+         " has edges or points of no triangle, which only .obj files hold");
+  }
   write_file(path, format->write(mesh));
 }
 

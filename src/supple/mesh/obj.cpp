@@ -1,7 +1,8 @@
-// Wavefront OBJ: reads polygons and ignores texture coordinates, normals, groups, materials, lines and
-// curves.
+// Wavefront OBJ: reads polygons, lines and points, and ignores texture coordinates, normals, groups,
+// materials and curves.
 
-#include <limits>
+#include <span>
+#include <string>
 #include <vector>
 
 #include "mesh/mesh_formats.hpp"
@@ -23,6 +24,10 @@ class ObjReader {
         mesh_.positions.push_back(scanner_.point());
       } else if (keyword == "f") {
         read_face();
+      } else if (keyword == "l") {
+        read_polyline();
+      } else if (keyword == "p") {
+        read_points();
       } else if (keyword.find('\0') != std::string_view::npos) {
         scanner_.fail_here("a zero byte; OBJ files are plain text");
       }
@@ -36,13 +41,14 @@ class ObjReader {
   struct ForwardReference {
     std::int64_t index;
     std::size_t line;
+    const char* element;
   };
 
   void read_face() {
     std::uint32_t first = 0, previous = 0;
     std::size_t corners = 0;
     for (; !scanner_.at_line_end(); ++corners) {
-      const std::uint32_t corner = read_corner();
+      const std::uint32_t corner = read_vertex("face");
       if (corners == 0) first = corner;
       if (corners >= 2) mesh_.triangles.push_back({first, previous, corner});
       previous = corner;
@@ -52,17 +58,41 @@ class ObjReader {
     }
   }
 
-  std::uint32_t read_corner() {
-    const std::int64_t index = scanner_.integer("a face index", true);
+  void read_polyline() {
+    std::uint32_t previous = 0;
+    std::size_t vertices = 0;
+    for (; !scanner_.at_line_end(); ++vertices) {
+      const std::uint32_t vertex = read_vertex("line");
+      if (vertices > 0 && vertex == previous) {
+        scanner_.fail_here("a line joins vertex " + std::to_string(std::uint64_t{vertex} + 1) +
+                           " to itself; leave out the repetition, or write a point: p " +
+                           std::to_string(std::uint64_t{vertex} + 1));
+      }
+      if (vertices > 0) mesh_.edges.push_back({previous, vertex});
+      previous = vertex;
+    }
+    if (vertices < 2)
+      scanner_.fail_here("a line has " + std::to_string(vertices) + " vertices; it needs at least 2");
+  }
+
+  void read_points() {
+    if (scanner_.at_line_end()) scanner_.fail_here("a point has no vertex; it needs at least 1");
+    while (!scanner_.at_line_end()) mesh_.points.push_back(read_vertex("point"));
+  }
+
+  /// The vertex of an element, with texture and normal ids after it. `element` names it in messages.
+  std::uint32_t read_vertex(const char* element) {
+    const std::string what = std::string(element) + " index";
+    const std::int64_t index = scanner_.integer(("a " + what).c_str(), true);
     const auto count = static_cast<std::int64_t>(mesh_.positions.size());
-    if (index == 0) scanner_.fail_here("face index 0 is not allowed; OBJ counts vertices from 1");
+    if (index == 0) scanner_.fail_here(what + " 0 is not allowed; OBJ counts vertices from 1");
     if (index < -count) {
-      scanner_.fail_here("face index " + std::to_string(index) + " is out of range; the file has " +
+      scanner_.fail_here(what + " " + std::to_string(index) + " is out of range; the file has " +
                          std::to_string(count) + " vertices before it");
     }
     if (index < 0) return static_cast<std::uint32_t>(count + index);
     if (index > count && (forward_.empty() || index > forward_.back().index)) {
-      forward_.push_back({index, scanner_.line()});
+      forward_.push_back({index, scanner_.line(), element});
     }
     return static_cast<std::uint32_t>(index - 1);
   }
@@ -71,7 +101,8 @@ class ObjReader {
     const auto count = static_cast<std::int64_t>(mesh_.positions.size());
     for (const ForwardReference& reference : forward_) {
       if (reference.index <= count) continue;
-      scanner_.fail_at(reference.line, "face index " + std::to_string(reference.index) +
+      scanner_.fail_at(reference.line, std::string(reference.element) + " index " +
+                                           std::to_string(reference.index) +
                                            " is out of range; the file has " + std::to_string(count) +
                                            " vertices, counted from 1");
     }
@@ -98,14 +129,17 @@ std::string write_obj(const TriangleMesh& mesh) {
     }
     text += '\n';
   }
-  for (const Triangle& triangle : mesh.triangles) {
-    text += 'f';
-    for (const std::uint32_t id : triangle) {
+  const auto append_element = [&](char keyword, std::span<const std::uint32_t> ids) {
+    text += keyword;
+    for (const std::uint32_t id : ids) {
       text += ' ';
       append_integer(text, std::uint64_t{id} + 1);
     }
     text += '\n';
-  }
+  };
+  for (const Triangle& triangle : mesh.triangles) append_element('f', triangle);
+  for (const auto& edge : mesh.edges) append_element('l', edge);
+  for (const std::uint32_t& point : mesh.points) append_element('p', {&point, 1});
   return text;
 }
 

@@ -322,7 +322,10 @@ Scene::Scene(Scene&&) noexcept = default;
 Scene& Scene::operator=(Scene&&) noexcept = default;
 
 ObjectId Scene::add(const TriangleMesh& mesh, const ObjectOptions& options) {
-  return implementation_->add(mesh.positions, mesh.triangles, options, mesh.name);
+  ObjectOptions with_elements = options;
+  with_elements.edges.insert(with_elements.edges.end(), mesh.edges.begin(), mesh.edges.end());
+  with_elements.points.insert(with_elements.points.end(), mesh.points.begin(), mesh.points.end());
+  return implementation_->add(mesh.positions, mesh.triangles, with_elements, mesh.name);
 }
 ObjectId Scene::add(PositionsView positions, TrianglesView triangles, const ObjectOptions& options) {
   return implementation_->add(positions, triangles, options, "");
