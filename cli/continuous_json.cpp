@@ -16,19 +16,23 @@ using Contacts = std::span<const ContinuousContact>;
 using Kind = ElementPairKind;
 using Element = std::array<std::uint32_t, 2>;
 
-/// The kinds that a group can have. In a group of an object with itself, the vertex is always the element of
-/// a.
-std::vector<Kind> kinds_of(const ContactGroup& group) {
-  if (group.a == group.b) return {Kind::vertex_face, Kind::edge_edge};
-  return {Kind::vertex_face, Kind::face_vertex, Kind::edge_edge};
-}
-
 /// The contacts of one kind are consecutive.
 Contacts of_kind(Contacts group, Kind kind) {
   const auto is_before = [&](const ContinuousContact& c) { return c.kind < kind; };
   const auto is_not_after = [&](const ContinuousContact& c) { return c.kind <= kind; };
   const auto first = std::partition_point(group.begin(), group.end(), is_before);
   return {first, std::partition_point(first, group.end(), is_not_after)};
+}
+
+/// The kinds of triangles, and those of lines and points that the group has. In a group of an object with
+/// itself, the vertex is always the element of a.
+std::vector<Kind> kinds_of(const ContactGroup& group, Contacts contacts) {
+  std::vector<Kind> kinds{Kind::vertex_face, Kind::face_vertex, Kind::edge_edge};
+  if (group.a == group.b) std::erase(kinds, Kind::face_vertex);
+  for (const Kind kind : {Kind::vertex_edge, Kind::edge_vertex, Kind::vertex_vertex}) {
+    if (!of_kind(contacts, kind).empty()) kinds.push_back(kind);
+  }
+  return kinds;
 }
 
 /// Writes one id for a vertex or a face, and two ids for an edge.
@@ -108,7 +112,7 @@ void write_continuous_groups(JsonWriter& json, const DetectResult& result, bool 
   json.begin_array();
   for (const ContactGroup& group : result.continuous_groups) {
     const Contacts contacts = result.continuous_contacts_of(group);
-    const std::vector<Kind> kinds = kinds_of(group);
+    const std::vector<Kind> kinds = kinds_of(group, contacts);
     json.begin_object();
     write_objects(json, group.a, group.b);
     for (const Kind kind : kinds) {

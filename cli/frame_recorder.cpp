@@ -13,7 +13,10 @@ RecordingHeader header_of(const Simulation& simulation, const Input& input) {
   const std::vector<ObjectId> objects = simulation.scene().objects();
   for (std::size_t i = 0; i < objects.size(); ++i) {
     const InputObject& object = input.objects[i];
-    header.objects.push_back({objects[i], object.options, object.mesh.positions, object.mesh.triangles});
+    ObjectOptions options = object.options;
+    options.edges.insert(options.edges.end(), object.mesh.edges.begin(), object.mesh.edges.end());
+    options.points.insert(options.points.end(), object.mesh.points.begin(), object.mesh.points.end());
+    header.objects.push_back({objects[i], std::move(options), object.mesh.positions, object.mesh.triangles});
   }
   return header;
 }

@@ -27,6 +27,7 @@ namespace {
 struct MeshInfo {
   std::string name;
   MeshTopology topology;
+  std::uint64_t lines = 0, points = 0;  ///< edges and points of no triangle
   std::uint64_t non_finite_vertices = 0;
   std::optional<std::array<Vec3d, 2>> bounds;  ///< of the finite vertices; none when no vertex is finite
   std::uint32_t arity = 0;
@@ -53,6 +54,8 @@ MeshInfo measure(const InputObject& object, SceneOptions scene_options, const In
   MeshInfo info;
   info.name = object.mesh.name;
   info.topology = compute_topology(object.mesh);
+  info.lines = object.mesh.edges.size();
+  info.points = object.mesh.points.size();
   measure_positions(object.mesh, info);
   ObjectOptions chosen = object.options;
   options.given_objects.apply_to(chosen);
@@ -82,6 +85,8 @@ void print_text(const MeshInfo& info) {
   fmt::print("\n  triangles    {}", grouped(t.triangles));
   if (t.degenerate_triangles > 0) fmt::print(", {} with a repeated vertex", grouped(t.degenerate_triangles));
   fmt::print("\n  edges        {}\n", grouped(t.edges));
+  if (info.lines + info.points > 0)
+    fmt::print("  lines        {}, and {}\n", counted(info.lines, "edge"), counted(info.points, "point"));
   fmt::print("  surface      {}\n", describe_surface(t));
   fmt::print("  components   {}, Euler characteristic {}\n", grouped(t.components), t.euler_characteristic);
   if (info.bounds) {
@@ -113,6 +118,8 @@ void write_json(JsonWriter& json, const MeshInfo& info) {
   json.member("vertices", t.vertices);
   json.member("triangles", t.triangles);
   json.member("edges", t.edges);
+  json.member("lines", info.lines);
+  json.member("points", info.points);
   json.member("closed", t.closed());
   json.member("boundary_edges", t.boundary_edges);
   json.member("non_manifold_edges", t.non_manifold_edges);

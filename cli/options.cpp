@@ -323,10 +323,10 @@ CLI::App* add_info(CLI::App& program, InfoOptions& options, Dependences& depende
 }
 
 CLI::App* add_query(CLI::App& program, QueryOptions& options, Dependences& dependences) {
-  CLI::App* app = program.add_subcommand(
-      "query",
-      "Find the nearest triangles of points, the points inside, the first triangles on rays, or the distances "
-      "of objects");
+  CLI::App* app = program.add_subcommand("query",
+                                         "Find the nearest triangles of points, the points inside, the first "
+                                         "triangles on rays, or the distances "
+                                         "of objects");
   app->footer(query_footer);
   app->add_option_function<std::string>(
          "KIND",

@@ -1,12 +1,10 @@
 #include "proximity_json.hpp"
 
-#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <span>
 #include <string>
 #include <utility>
-#include <vector>
 
 #include "supple/result_descriptions.hpp"
 #include "text.hpp"
@@ -20,11 +18,11 @@ Kinds kinds_of(const ProximityPair& pair) {
   return {pair.kind_a, pair.kind_b};
 }
 
-/// The kinds that a group can have, in canonical order.
-std::vector<Kinds> kinds_of(ProximityListing listing) {
-  using enum FeatureKind;
-  if (listing == ProximityListing::elements) return {{vertex, face}, {edge, edge}, {face, vertex}};
-  return {{vertex, vertex}, {vertex, edge}, {vertex, face}, {edge, vertex}, {edge, edge}, {face, vertex}};
+/// Whether the list of the kind is written also when it is empty. The others occur with lines and points.
+constexpr bool is_usual(const Kinds& kinds, ProximityListing listing) {
+  const bool are_edges = kinds == Kinds{FeatureKind::edge, FeatureKind::edge};
+  const bool has_face = kinds.first == FeatureKind::face || kinds.second == FeatureKind::face;
+  return listing == ProximityListing::features || are_edges || has_face;
 }
 
 void write_ids(JsonWriter& json, const std::array<std::uint32_t, 2>& element, FeatureKind kind) {
@@ -69,11 +67,15 @@ void write_proximity_groups(JsonWriter& json, const DetectResult& result, Proxim
     json.member("a", std::uint64_t{group.a.index});
     json.member("b", std::uint64_t{group.b.index});
     auto pairs = result.proximity_pairs_of(group);
-    for (const Kinds& kinds : kinds_of(listing)) {
+    using enum FeatureKind;
+    for (const Kinds& kinds : {Kinds{vertex, vertex}, Kinds{vertex, edge}, Kinds{vertex, face},
+                               Kinds{edge, vertex}, Kinds{edge, edge}, Kinds{face, vertex}}) {
+      // The pairs of one kind are consecutive, and the kinds are in this order.
+      const auto has_kind = [&] { return !pairs.empty() && kinds_of(pairs.front()) == kinds; };
+      if (!is_usual(kinds, listing) && !has_kind()) continue;
       json.key(kind_word(kinds.first, kinds.second).c_str());
       json.begin_array();
-      // The pairs of one kind are consecutive, and the kinds are in this order.
-      for (; !pairs.empty() && kinds_of(pairs.front()) == kinds; pairs = pairs.subspan(1)) {
+      for (; has_kind(); pairs = pairs.subspan(1)) {
         const ProximityPair& pair = pairs.front();
         json.begin_array();
         write_ids(json, pair.element_a, pair.kind_a);

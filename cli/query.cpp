@@ -43,9 +43,7 @@ class Run {
   void in_batches(const std::vector<Query>& queries, std::vector<Result>& results, const Answer& answer,
                   const Verify& verify);
   void find_distances();
-  std::size_t count() const {
-    return closest_.size() + hits_.size() + contained_.size() + distances_.size();
-  }
+  std::size_t count() const { return closest_.size() + hits_.size() + contained_.size() + distances_.size(); }
   void write_result(JsonWriter& json, std::size_t i) const;
   void print_result(std::size_t i) const;
 
@@ -253,8 +251,8 @@ void Run::print() const {
                                       "  a  b  distance  nearest elements  nearest points\n"};
   const bool are_distances = options_.kind == SceneQuery::distance;
   if (count() == 0)
-    return fmt::print("{}", are_distances ? "No two objects are within the distance.\n"
-                                          : "There are no queries.\n");
+    return fmt::print(
+        "{}", are_distances ? "No two objects are within the distance.\n" : "There are no queries.\n");
   fmt::print("{}", headings[static_cast<std::size_t>(options_.kind)]);
   for (std::size_t i = 0; i < std::min(count(), most_rows); ++i) print_result(i);
   if (count() > most_rows)

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <utility>
 
 #include "supple/error.hpp"
 #include "supple/recording.hpp"
@@ -28,8 +29,9 @@ Input read_recording(const std::string& name) {
   for (std::size_t i = 0; i < header.objects.size(); ++i) {
     const RecordedObject& object = header.objects[i];
     InputObject& added = input.objects.emplace_back();
-    added.mesh = {object.options.name, recording->positions(0, i), object.triangles};
     added.options = object.options;
+    added.mesh = {object.options.name, recording->positions(0, i), object.triangles,
+                  std::exchange(added.options.edges, {}), std::exchange(added.options.points, {})};
     if (!object.options.is_static) added.motion = RecordedMotion{recording, i};
   }
   return input;

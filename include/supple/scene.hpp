@@ -203,10 +203,11 @@ class Scene {
   // Checks of answers. Each takes the arguments of a query and its answer at the present positions. It
   // decides the query again by exact arithmetic over all triangles, without octrees and without code of the
   // search, and lists every wrong answer, ascending by query. An answer is right when its objects, triangles,
-  // elements, features, counts and places are exact, and its distance or t is within 4 units in the last
-  // place, and barycentric coordinates of closest points within 2^-50. Points, normals, and the barycentric
-  // coordinates of rays and of pairs are not compared. All run on all threads of the scene, and throw `Error`
-  // as the query does. 1,000 points or rays on 70,000 triangles take seconds.
+  // elements, features, counts and places are exact, its distance or t is within 4 units in the last place,
+  // and barycentric coordinates of closest points are within 2^-50. Points, normals, and the barycentric
+  // coordinates of rays and of pairs are not compared. All run on all threads of the scene. They throw
+  // `Error` as the query does, and when a list is not ordered by query. 1,000 points or rays on 70,000
+  // triangles take seconds.
 
   std::vector<WrongAnswer> verify_closest(std::span<const Vec3d> points,
                                           std::span<const std::optional<ClosestPoint>> results,
@@ -223,8 +224,8 @@ class Scene {
                                            const QueryFilter& filter = {}) const;
   std::vector<WrongAnswer> verify_inside(std::span<const Vec3d> points, std::span<const Containment> results,
                                          const QueryFilter& filter = {}) const;
-  /// Of a pair that intersects, the distance must be 0, and the elements must share a point and belong to the
-  /// first contact.
+  /// For objects that intersect, the distance must be 0, and the elements must share a point and belong to
+  /// the triangles of the first contact.
   std::vector<WrongAnswer> verify_distance(ObjectId a, ObjectId b,
                                            const std::optional<ProximityPair>& found) const;
   std::vector<WrongAnswer> verify_distances(double max_distance, std::span<const ProximityPair> found) const;

@@ -227,14 +227,18 @@ Line Comparison::object(std::size_t place) const {
       [&] {
         return compare_exactly("number of vertices" + of, a.rest_positions.size(), b.rest_positions.size());
       },
-      [&] { return compare_exactly("number of triangles" + of, a.triangles.size(), b.triangles.size()); },
       [&] { return points_of("rest position", of, a.rest_positions, b.rest_positions); });
   if (line) return line;
-  for (std::size_t t = 0; t < a.triangles.size(); ++t) {
-    if (Line vertices = compare_exactly("triangle " + std::to_string(t) + of, a.triangles[t], b.triangles[t]))
-      return vertices;
-  }
-  return {};
+  const auto elements = [&](const std::string& noun, const auto& of_a, const auto& of_b) -> Line {
+    if (Line count = compare_exactly("number of " + noun + "s" + of, of_a.size(), of_b.size())) return count;
+    for (std::size_t i = 0; i < of_a.size(); ++i) {
+      if (Line ids = compare_exactly(noun + " " + std::to_string(i) + of, of_a[i], of_b[i])) return ids;
+    }
+    return {};
+  };
+  return first_of([&] { return elements("triangle", a.triangles, b.triangles); },
+                  [&] { return elements("edge", a.options.edges, b.options.edges); },
+                  [&] { return elements("point", a.options.points, b.options.points); });
 }
 
 Line Comparison::points_of(const char* item, const std::string& of, std::span<const Vec3d> a,

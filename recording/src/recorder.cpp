@@ -8,6 +8,7 @@
 #include <cstring>
 #include <optional>
 #include <system_error>
+#include <tuple>
 #include <utility>
 
 #include "commit_driver.hpp"
@@ -167,20 +168,28 @@ PositionsWriter write_object(hid_t file, std::size_t place, const RecordedObject
              object.rest_positions.data());
   write_rows(file, path + "/triangles", ScalarType::uint32, object.triangles.size(), 3,
              object.triangles.data());
+  const auto& [edges, points] = std::tie(object.options.edges, object.options.points);
+  if (!edges.empty()) write_rows(file, path + "/edges", ScalarType::uint32, edges.size(), 2, edges.data());
+  if (!points.empty())
+    write_rows(file, path + "/points", ScalarType::uint32, points.size(), 0, points.data());
   return {file, path + "/positions", object.rest_positions.size()};
 }
 
 void check_header(const RecordingHeader& header) {
   for (std::size_t place = 0; place < header.objects.size(); ++place) {
     const RecordedObject& object = header.objects[place];
-    for (std::size_t t = 0; t < object.triangles.size(); ++t) {
-      for (const std::uint32_t vertex : object.triangles[t]) {
+    const auto check = [&](const char* what, std::size_t i, std::span<const std::uint32_t> vertices) {
+      for (const std::uint32_t vertex : vertices) {
         if (vertex >= object.rest_positions.size())
-          throw Error("triangle " + std::to_string(t) + " of object " + std::to_string(place) +
+          throw Error(std::string(what) + " " + std::to_string(i) + " of object " + std::to_string(place) +
                       " of a recording uses vertex " + std::to_string(vertex) + " of " +
                       std::to_string(object.rest_positions.size()) + "; give the mesh that the scene has");
       }
-    }
+    };
+    const auto& [edges, points] = std::tie(object.options.edges, object.options.points);
+    for (std::size_t t = 0; t < object.triangles.size(); ++t) check("triangle", t, object.triangles[t]);
+    for (std::size_t i = 0; i < edges.size(); ++i) check("edge", i, edges[i]);
+    for (std::size_t i = 0; i < points.size(); ++i) check("point", i, {&points[i], 1});
   }
 }
 

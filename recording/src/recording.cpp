@@ -105,8 +105,9 @@ std::uint32_t check_format(const InputFile& file) {
 }
 
 template <class Element>
-std::vector<Element> read_all(const InputFile& file, const std::string& path, ScalarType type) {
-  ColumnReader column(file, path, type, {3});
+std::vector<Element> read_all(const InputFile& file, const std::string& path, ScalarType type,
+                              std::vector<hsize_t> row_shape) {
+  ColumnReader column(file, path, type, std::move(row_shape));
   std::vector<Element> elements(column.rows());
   column.read(0, elements.size(), reinterpret_cast<std::byte*>(elements.data()));
   return elements;
@@ -117,16 +118,23 @@ RecordedObject read_object(const InputFile& file, std::uint32_t version, std::si
   RecordedObject object{};
   object.id = {file.count(path, "id_index"), file.count(path, "id_generation")};
   read_options(file, path, version, object.options);
-  object.rest_positions = read_all<Vec3d>(file, path + "/rest_positions", ScalarType::float64);
-  object.triangles = read_all<Triangle>(file, path + "/triangles", ScalarType::uint32);
-  for (std::size_t t = 0; t < object.triangles.size(); ++t) {
-    for (const std::uint32_t vertex : object.triangles[t]) {
-      if (vertex >= object.rest_positions.size())
-        file.fail(path + "/triangles", "row " + std::to_string(t) + " names vertex " +
-                                           std::to_string(vertex) + ", the object has " +
-                                           std::to_string(object.rest_positions.size()) + damaged);
+  object.rest_positions = read_all<Vec3d>(file, path + "/rest_positions", ScalarType::float64, {3});
+  const auto read_elements = [&]<class Element>(const char* name, std::vector<Element>& elements,
+                                                std::vector<hsize_t> row_shape) {
+    const std::string dataset = path + name;
+    elements = read_all<Element>(file, dataset, ScalarType::uint32, std::move(row_shape));
+    constexpr std::size_t width = sizeof(Element) / sizeof(std::uint32_t);
+    const std::span ids(reinterpret_cast<const std::uint32_t*>(elements.data()), width * elements.size());
+    for (std::size_t i = 0; i < ids.size(); ++i) {
+      if (ids[i] >= object.rest_positions.size())
+        file.fail(dataset, "row " + std::to_string(i / width) + " names vertex " + std::to_string(ids[i]) +
+                               ", the object has " + std::to_string(object.rest_positions.size()) + damaged);
     }
-  }
+  };
+  read_elements("/triangles", object.triangles, {3});
+  // Of objects with lines and points.
+  if (file.has_item(path + "/edges")) read_elements("/edges", object.options.edges, {2});
+  if (file.has_item(path + "/points")) read_elements("/points", object.options.points, {});
   return object;
 }
 

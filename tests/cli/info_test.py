@@ -21,7 +21,7 @@ class Info(ProgramTest):
         self.assertEqual(
             mesh,
             {
-                "name": "a", "vertices": 5, "triangles": 2, "edges": 3, "closed": False, "boundary_edges": 3,
+                "name": "a", "vertices": 5, "triangles": 2, "edges": 3, "lines": 0, "points": 0, "closed": False, "boundary_edges": 3,
                 "non_manifold_edges": 0, "components": 1, "euler_characteristic": 1, "unused_vertices": 2,
                 "degenerate_triangles": 1, "non_finite_vertices": 1, "bounds": [[0.0, 0.0, 0.0], [5.0, 5.0, 5.0]],
             },
@@ -32,6 +32,12 @@ class Info(ProgramTest):
              "bytes_per_triangle", "leaves_by_level", "cost", "degradation", "rebuilds",
              "triangles", "vertices"},
         )
+
+    def test_lines_and_points(self):
+        self.write("rod.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nv 3 0 0\nl 1 2 3\np 4 1\n")
+        (mesh,) = self.info("rod.obj")
+        self.assertEqual((mesh["triangles"], mesh["edges"], mesh["lines"], mesh["points"]), (0, 0, 2, 2))
+        self.assertIn("\n  lines        2 edges, and 2 points\n", self.run_here("info", "rod.obj").out)
 
     def test_scene_file(self):
         self.write("scene.toml", '[[object]]\nname = "ring"\nmodel = "torus"\ntranslate = [1, 0, 0]\n[[object]]\nmodel = "box"\n')

@@ -6,7 +6,7 @@ import os
 import pathlib
 import unittest
 
-from program import ROOT, TRIANGLE, ProgramTest, moved
+from program import ROOT, TRIANGLE, UPRIGHT, ProgramTest, moved
 
 DATA = pathlib.Path(os.environ.get("SUPPLE_DATA", ROOT.parent / "shared/data"))
 SOLID = ([(0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)], [(0, 2, 1), (0, 1, 3), (1, 2, 3), (2, 0, 3)])
@@ -52,6 +52,46 @@ class Query(ProgramTest):
         self.assertEqual(self.query("rays", *inputs)["results"], [[0, 0, 2], None])
         self.assertEqual(self.query("rays", *inputs, "--all-hits")["results"], [[0, 0, 2, 3], None])
 
+    def test_distance(self):
+        self.write("beside.obj", moved(SOLID, 0, -2, 0))
+        inputs = ("solid.obj", "above.obj", "beside.obj")
+        result = self.query("distance", *inputs)
+        self.assertEqual((result["query"], len(result["objects"])), ("distance", 3))
+        corner, along, aslant = result["results"]
+        self.assertEqual(corner, [0, 1, 4, "vv", 3, 0, [0, 0, 1], [0, 0, 5]])
+        self.assertEqual(along, [0, 2, 1, "vv", 0, 2, [0, 0, 0], [0, -1, 0]])
+        self.assertEqual(aslant[:2], [1, 2])
+        near = self.query("distance", *inputs, "--max-distance", "1", "--verify")
+        self.assertEqual(near["results"], [along])
+        self.assertEqual(near["verify"], {"answers_checked": 1, "differences": []})
+        self.write("upright.obj", UPRIGHT)
+        self.write("flat.obj", TRIANGLE)
+        ((a, b, distance, *_),) = self.query("distance", "upright.obj", "flat.obj", "--verify")["results"]
+        self.assertEqual((a, b, distance), (0, 1, 0))
+        self.write("three.toml", '[[object]]\nmodel = "box"\nrepeat = [3, 1, 1]\nspacing = [2, 1, 1]\n')
+        self.assertEqual([row[2] for row in self.query("distance", "three.toml")["results"]], [1, 3, 1])
+
+    def test_table_of_distances(self):
+        table = self.run_here("query", "distance", "solid.obj", "above.obj", "--verify").out
+        self.assertIn("  0 solid  1 above  4  vertex 3 to vertex 0  (0, 0, 1) to (0, 0, 5)\n", table)
+        self.assertIn("verified: 1 answer checked by brute force, no difference\n", table)
+        far = self.run_here("query", "distance", "solid.obj", "above.obj", "--max-distance", "3")
+        self.assertEqual((far.status, far.out), (0, "No two objects are within the distance.\n"))
+
+    def test_verify(self):
+        self.write("points.txt", "0.1 0.2 0.05\n0 0 0\nnan 0 0\n" * 100)
+        self.write("rays.txt", "0.25 0.25 -1 0 0 0.5\n0 0 0 0 0 0\n")
+        for arguments, count in (
+            (("closest", "points.txt", "solid.obj"), 300),
+            (("closest", "points.txt", "solid.obj", "--signed", "--max-distance", "0.01"), 300),
+            (("inside", "points.txt", "solid.obj"), 300),
+            (("rays", "rays.txt", "solid.obj", "above.obj"), 2),
+            (("rays", "rays.txt", "solid.obj", "above.obj", "--all-hits"), 2),
+        ):
+            verify = self.query(*arguments, "--verify")["verify"]
+            self.assertEqual(verify, {"answers_checked": count, "differences": []})
+        self.assertNotIn("verify", self.query("inside", "points.txt", "solid.obj"))
+
     def test_table(self):
         self.write("points.txt", "0.25 0.25 -2\n" * 50)
         table = self.run_here("query", "closest", "points.txt", "solid.obj").out
@@ -66,7 +106,14 @@ class Query(ProgramTest):
             (("closest", "points.txt", "solid.obj"), "points.txt: line 2: 2 numbers; a line has three: x, y and z"),
             (("closest", "words.txt", "solid.obj"), 'words.txt: line 1: "x" is not a number that a double can hold'),
             (("closest", "none.txt", "solid.obj"), "none.txt: the file cannot be read"),
-            (("nearest", "points.txt", "solid.obj"), "nearest is none of closest, inside and rays"),
+            (("nearest", "points.txt", "solid.obj"), "nearest is none of closest, inside, rays and distance"),
+            (("distance", "solid.obj"), "solid.obj: has 1 object; distances need two"),
+            (("distance",), "MESH|SCENE.toml|RUN.h5 is required"),
+            (("closest",), "FILE.txt is required"),
+            (("closest", "points.txt"), "MESH|SCENE.toml|RUN.h5 is required"),
+            (("distance", "solid.obj", "above.obj", "--signed"), "--signed: has no effect without the question closest"),
+            (("distance", "solid.obj", "above.obj", "--all-hits"), "--all-hits: has no effect without the question rays"),
+            (("inside", "points.txt", "solid.obj", "--max-distance", "1"), "has no effect without the question closest or distance"),
             (("closest", "points.txt", "solid.obj", "--all-hits"), "--all-hits: has no effect without the question rays"),
             (("rays", "points.txt", "solid.obj", "--signed"), "--signed: has no effect without the question closest"),
             (("rays", "points.txt", "solid.obj", "--max-distance", "1"), "--max-distance: has no effect without"),

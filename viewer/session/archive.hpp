@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <bit>
 #include <concepts>
 #include <cstddef>
@@ -25,7 +26,8 @@ static_assert(std::endian::native == std::endian::little, "packed scenes are lit
 template <class Value>
 concept Plain = std::is_same_v<Value, std::uint8_t> || std::is_same_v<Value, std::uint32_t> ||
     std::is_same_v<Value, std::uint64_t> || std::is_same_v<Value, float> || std::is_same_v<Value, double> ||
-    std::is_same_v<Value, Vec3d> || std::is_same_v<Value, Triangle> || std::is_same_v<Value, char>;
+    std::is_same_v<Value, Vec3d> || std::is_same_v<Value, Triangle> ||
+    std::is_same_v<Value, std::array<std::uint32_t, 2>> || std::is_same_v<Value, char>;
 
 /// Writes values one after the other. `fields(archive, value)` lists the members of a structure for both
 /// archives.

@@ -72,7 +72,8 @@ class ObjReader {
       previous = vertex;
     }
     if (vertices < 2)
-      scanner_.fail_here("a line has " + std::to_string(vertices) + " vertices; it needs at least 2");
+      scanner_.fail_here("a line has " + std::to_string(vertices) +
+                         (vertices == 1 ? " vertex" : " vertices") + "; it needs at least 2");
   }
 
   void read_points() {

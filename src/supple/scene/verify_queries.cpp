@@ -1,6 +1,7 @@
 #include <algorithm>
-#include <boost/multiprecision/cpp_bin_float.hpp>
+#include <boost/multiprecision/cpp_int.hpp>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 #include <string>
 #include <utility>
@@ -27,9 +28,16 @@ bool is_distance(double distance, const Rational& squared) {
   return distance >= 0 && is_accurate(distance, squared);
 }
 
+/// The root to at least 60 bits, rounded to double: that of an integer, which is the number times a power
+/// of 4.
 double rounded_root(const Rational& squared) {
-  using Wide = boost::multiprecision::cpp_bin_float_50;
-  return sqrt(squared.convert_to<Wide>()).convert_to<double>();
+  if (squared == 0) return 0;
+  boost::multiprecision::cpp_int over = numerator(squared), under = denominator(squared);
+  int shift = 126 + static_cast<int>(msb(under)) - static_cast<int>(msb(over));
+  shift -= shift % 2;
+  (shift > 0 ? over : under) <<= std::abs(shift);
+  const boost::multiprecision::cpp_int scaled = over / under;
+  return std::ldexp(sqrt(scaled).convert_to<double>(), -shift / 2);
 }
 
 /// Wrong answers of queries that threads check one by one.

@@ -92,6 +92,25 @@ TEST(MeshFile, StlIsSavedInSinglePrecision) {
   EXPECT_EQ(normal[2], 1.0f);
 }
 
+TEST(MeshFile, OnlyObjHoldsLinesAndPoints) {
+  const TemporaryFolder folder;
+  TriangleMesh mesh;
+  mesh.name = "rod";
+  mesh.positions = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}};
+  mesh.edges = {{0, 1}, {1, 2}};
+  mesh.points = {2};
+  save_mesh(mesh, folder / "rod.obj");
+  const TriangleMesh loaded = load_mesh(folder / "rod.obj");
+  EXPECT_EQ(loaded.edges, mesh.edges);
+  EXPECT_EQ(loaded.points, mesh.points);
+  for (const char* name : {"rod.off", "rod.ply", "rod.stl"}) {
+    EXPECT_EQ(error_of([&] { save_mesh(mesh, folder / name); }),
+              "cannot write " + (folder / name).string() +
+                  ": mesh 'rod' has edges or points of no triangle, which only .obj files hold");
+    EXPECT_FALSE(fs::exists(folder / name));
+  }
+}
+
 TEST(MeshFile, NamesUnreadablePaths) {
   const TemporaryFolder folder;
   const std::string missing = folder / "missing.obj";
@@ -158,7 +177,18 @@ TEST(CheckMesh, NamesTheTriangleAndTheValue) {
   EXPECT_EQ(error_of([&] { save_mesh(mesh, "never-written.obj"); }), message);
   EXPECT_FALSE(fs::exists("never-written.obj"));
   mesh.triangles.pop_back();
+  mesh.edges = {{0, 1}, {1, 2}};
+  mesh.points = {2, 0};
   EXPECT_EQ(error_of([&] { check_mesh(mesh); }), "");
+  mesh.points[1] = 3;
+  EXPECT_EQ(error_of([&] { check_mesh(mesh); }),
+            "mesh 'rabbit': point 1 uses vertex 3; the mesh has 3 vertices, counted from 0");
+  mesh.edges[1] = {1, 1};
+  EXPECT_EQ(error_of([&] { check_mesh(mesh); }),
+            "mesh 'rabbit': both ends of edge 1 are vertex 1; list it in points");
+  mesh.edges[0] = {0, 7};
+  EXPECT_EQ(error_of([&] { check_mesh(mesh); }),
+            "mesh 'rabbit': edge 0 uses vertex 7; the mesh has 3 vertices, counted from 0");
 }
 
 }  // namespace

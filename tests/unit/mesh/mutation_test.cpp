@@ -42,7 +42,8 @@ struct Seed {
 
 std::vector<Seed> seeds() {
   const std::string obj =
-      "# c\nv 0 0 0\nv 1.5 -2e3 nan 1\nv\t0 1 0\r\nvn 0 0 1\nf 1/1 2/2/2 \\\n3//3\nf -1 -2 -3 1\nl 1 2\nf 1 "
+      "# c\nv 0 0 0\nv 1.5 -2e3 nan 1\nv\t0 1 0\r\nvn 0 0 1\nf 1/1 2/2/2 \\\n3//3\nf -1 -2 -3 1\nl 1 2 "
+      "\\\n-1\np 1 3\nf 1 "
       "2 3";
   const std::string coff =
       "COFF\n# c\n4 2 0\n0 0 0 1 1 1 1\n1 0 0 1\n0 1 0 2\n0 0 inf 3\n3 0 1 2 255 0 0\n4 0 1 2 3\n";
@@ -129,6 +130,7 @@ bool mesh_or_error(Reader read, const std::string& bytes) {
   // The counts in a header must not determine how much is allocated.
   EXPECT_LE(mesh.positions.capacity(), 64 + 8 * bytes.size());
   EXPECT_LE(mesh.triangles.capacity(), 64 + 8 * bytes.size());
+  EXPECT_LE(mesh.edges.capacity() + mesh.points.capacity(), 64 + 8 * bytes.size());
   return true;
 }
 

@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <string>
 #include <vector>
@@ -35,7 +37,7 @@ const ObjCase obj_cases[] = {
     {"comments", "# v 9 9 9\n" + corners + "f 1 2 3 # 4\nf 2 3 4#5\n#\n", {{0, 1, 2}, {1, 2, 3}}},
     {"a comment's backslash joins nothing", corners + "# C:\\dir\\\nf 1 2 3\n", {{0, 1, 2}}},
     {"continued lines", corners + "f 1 \\\n 2 \\\r\n3\\\n\nv 1 \\\n2 3\n", {{0, 1, 2}}, 5},
-    {"a continued keyword that is ignored", corners + "l 1 2 \\\n3 4\nf 1 2 3\n", {{0, 1, 2}}},
+    {"a continued keyword that is ignored", corners + "curv 1 2 \\\n3 4\nf 1 2 3\n", {{0, 1, 2}}},
     {"other statements",
      "mtllib a.mtl\no thing\ng a b\n" + corners +
          "vn 0 0 1\nvt 0 0\nvp 1\ns off\nusemtl x\nl 1 2\np 1\nfoo bar\ncurv 0 1 2\nend\nf 1 2 3\nV 1 2\n",
@@ -81,6 +83,18 @@ TEST(Obj, KeepsCoordinatesAsTheyAre) {
   EXPECT_TRUE(same_bits(mesh.positions[4], {1, 2, 3}));
 }
 
+TEST(Obj, ReadsLinesAndPoints) {
+  const TriangleMesh mesh = read_obj(
+      "l 1/7 2 \\\n4/1\np 3\n" + corners + "l -1 -4\nf 1 2 3\nl 1 2 3 1 # closed\np 1//2 -1\n", "a.obj");
+  using Edges = std::vector<std::array<std::uint32_t, 2>>;
+  EXPECT_EQ(mesh.edges, (Edges{{0, 1}, {1, 3}, {3, 0}, {0, 1}, {1, 2}, {2, 0}}));
+  EXPECT_EQ(mesh.points, (std::vector<std::uint32_t>{2, 0, 3}));
+  EXPECT_EQ(mesh.triangles, (std::vector<Triangle>{{0, 1, 2}}));
+  const TriangleMesh again = read_obj(write_obj(mesh), "b.obj");
+  EXPECT_EQ(again.edges, mesh.edges);
+  EXPECT_EQ(again.points, mesh.points);
+}
+
 struct ErrorCase {
   std::string text;
   const char* message;
@@ -106,6 +120,17 @@ const ErrorCase obj_errors[] = {
     {corners + "f 1 2 3.5\n", "a.obj:5: expected an integer for a face index, found '3.5'"},
     {corners + "f 1 2 /3\n", "a.obj:5: expected an integer for a face index, found '/3'"},
     {corners + "f 1 2 \\\n\\\nx\n", "a.obj:7: expected an integer for a face index, found 'x'"},
+    {corners + "l 1\n", "a.obj:5: a line has 1 vertex; it needs at least 2"},
+    {corners + "l\n", "a.obj:5: a line has 0 vertices; it needs at least 2"},
+    {corners + "l 1 2 2 3\n",
+     "a.obj:5: a line joins vertex 2 to itself; leave out the repetition, or write a point: p 2"},
+    {corners + "l 0 1\n", "a.obj:5: line index 0 is not allowed; OBJ counts vertices from 1"},
+    {corners + "l 1 5\n", "a.obj:5: line index 5 is out of range; the file has 4 vertices, counted from 1"},
+    {"p 7\nf 1 2 5\n" + corners,
+     "a.obj:1: point index 7 is out of range; the file has 4 vertices, counted from 1"},
+    {corners + "p\n", "a.obj:5: a point has no vertex; it needs at least 1"},
+    {corners + "p 1 x\n", "a.obj:5: expected an integer for a point index, found 'x'"},
+    {corners + "p -5\n", "a.obj:5: point index -5 is out of range; the file has 4 vertices before it"},
     {"v 0 0\n", "a.obj:1: expected a number for z, found the end of the line"},
     {"v 0", "a.obj:1: expected a number for y, found the end of the file"},
     {"v 0 # 1 2\n", "a.obj:1: expected a number for y, found the end of the line"},

@@ -22,7 +22,10 @@ class DamagedRecording : public testing::Test {
     simulate({random_soup(30, 1, 0.6, 4), random_soup(20, 1, 0.6, 5)}, {}, scene, 4)
         .write(folder_ / "run.h5");
     scene.contacts = ContactKinds::continuous;
-    simulate({random_soup(30, 1, 0.6, 4), random_soup(20, 1, 0.6, 5)}, {}, scene, 4)
+    ObjectOptions with_lines;
+    with_lines.edges = {{0, 40}, {40, 41}};
+    with_lines.points = {7};
+    simulate({random_soup(30, 1, 0.6, 4), random_soup(20, 1, 0.6, 5)}, {with_lines}, scene, 4)
         .write(folder_ / "moving.h5");
     scene.contacts = ContactKinds::none;
     scene.comparison.colliding_vertices = true;
@@ -227,6 +230,8 @@ TEST_F(DamagedRecording, NumbersOutOfRange) {
   expect("/events/volume_begin/object_a", with_number("events/volume_begin/object_a", 0, 2));
   expect("/events/contact_begin/object_a", with_number("events/contact_begin/object_a", 0, 1000));
   expect("/objects/0/triangles: row 2 names vertex 4000", with_number("objects/0/triangles", 2, 4000));
+  expect("/objects/0/edges: row 1 names vertex 90", with_number("objects/0/edges", 1, 90), "moving.h5");
+  expect("/objects/0/points: row 0 names vertex 4000", with_number("objects/0/points", 0, 4000), "moving.h5");
   for (const char* path : {"object_a", "object_b", "kind", "certainty", "element_a", "element_b"})
     expect(path, with_number((std::string("continuous_contacts/") + path).c_str(), 0, 250), "moving.h5");
 }

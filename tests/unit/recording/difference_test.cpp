@@ -76,6 +76,11 @@ TEST_P(InEveryMode, WhatIsSaidOnce) {
   expect({}, "mask of object 2: 4294967295 and 5", [](Contents& c) { c.header.objects[2].options.mask = 5; });
   expect({}, "triangle 3 of object 0: (9, 10, 11) and (9, 10, 2)",
          [](Contents& c) { c.header.objects[0].triangles[3][2] = 2; });
+  expect({}, "number of edges of object 0: 0 and 1", [](Contents& c) {
+    c.header.objects[0].options.edges = {{1, 2}};
+  });
+  expect({}, "number of points of object 1: 0 and 1",
+         [](Contents& c) { c.header.objects[1].options.points = {4}; });
   expect({}, "rest position of vertex 6 of object 0: ", [](Contents& c) {
     c.header.objects[0].rest_positions[6].y += 1;
   });

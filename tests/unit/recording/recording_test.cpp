@@ -78,6 +78,8 @@ void expect_equal(const RecordingHeader& a, const RecordingHeader& b) {
     EXPECT_EQ(p.options.margin, q.options.margin);
     EXPECT_EQ(p.options.group, q.options.group);
     EXPECT_EQ(p.options.mask, q.options.mask);
+    EXPECT_EQ(p.options.edges, q.options.edges);
+    EXPECT_EQ(p.options.points, q.options.points);
     EXPECT_EQ(p.options.octree.max_level, q.options.octree.max_level);
     EXPECT_EQ(p.options.octree.leaf_size, q.options.octree.leaf_size);
     expect_equal_bits(p.rest_positions, q.rest_positions);

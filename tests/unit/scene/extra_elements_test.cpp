@@ -148,6 +148,26 @@ TEST(ExtraElements, FollowTheirWeldedVerticesAndVerticesThatAreNotFinite) {
   EXPECT_NO_THROW(scene.detect());
 }
 
+/// Those of the mesh and those of the options.
+TEST(ExtraElements, OfAMesh) {
+  TriangleMesh mesh;
+  mesh.name = "rods";
+  mesh.positions = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}};
+  mesh.edges = {{0, 1}};
+  mesh.points = {2};
+  Scene scene({.contacts = ContactKinds::proximity});
+  scene.add(mesh, {.edges = {{2, 3}}, .points = {1}, .margin = 0.125});
+  const std::vector<Vec3d> particles{{0.5, 0.25, 0}, {2.5, 0.25, 0}, {1.5, 0.25, 0}};
+  scene.add(particles, std::vector<Triangle>{}, {.points = {0, 1, 2}, .margin = 0.125});
+  const auto pairs = scene.detect().proximity_pairs;
+  ASSERT_EQ(pairs.size(), 2u);
+  EXPECT_EQ(pairs[0].element_a, (std::array{0u, 1u}));
+  EXPECT_EQ(pairs[1].element_a, (std::array{2u, 3u}));
+  EXPECT_TRUE(scene.verify().agrees());
+  mesh.edges = {{0, 9}};
+  EXPECT_THROW(scene.add(mesh), Error);
+}
+
 TEST(ExtraElements, RefuseIdsThatAreNoVertices) {
   Scene scene;
   const std::vector<Vec3d> points{{0, 0, 0}, {1, 0, 0}};
