@@ -9,6 +9,7 @@
 #include <optional>
 #include <vector>
 
+#include "supple/description.hpp"
 #include "supple/error.hpp"
 #include "supple/models.hpp"
 #include "supple/scene.hpp"
@@ -404,6 +405,26 @@ TEST(VerifyQueries, NoticesWrongDistancesOfObjectsThatIntersect) {
   EXPECT_TRUE(objects.scene.verify_any_contact(objects.box, objects.other, true).empty());
   EXPECT_EQ(objects.scene.verify_any_contact(objects.box, objects.other, false).size(), 1u);
   EXPECT_EQ(objects.scene.verify_any_contact(objects.box, objects.ball, true).size(), 1u);
+}
+
+/// Also where the squares of distances are no doubles.
+TEST(VerifyQueries, SaysWhatBruteForceFinds) {
+  for (const double scale : {1.0, 0x1p300, 0x1p-300, 0x1p-1030}) {
+    Scene scene;
+    TriangleMesh mesh{"plate", {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}};
+    for (Vec3d& p : mesh.positions) p = scale * p;
+    scene.add(mesh);
+    const std::vector<Vec3d> points{scale * Vec3d{0.25, 0.25, 0.75}};
+    const std::vector<std::optional<ClosestPoint>> answers(1);
+    const std::vector<WrongAnswer> expected{{0, "nothing",
+                                             "triangle 0 of object 0 (plate) at face 0, distance " +
+                                                 text_of(0.75 * scale) + ", barycentric 0.5 0.25 0.25"}};
+    EXPECT_EQ(scene.verify_closest(points, answers), expected);
+    scene.add(std::vector<Vec3d>{points[0], points[0], points[0]}, std::vector<Triangle>{{0, 1, 2}});
+    const std::vector<WrongAnswer> of_pair{{0, "object 0 (plate) and object 1 (object 1): nothing",
+                                            "face 0 and vertex 0, distance " + text_of(0.75 * scale)}};
+    EXPECT_EQ(scene.verify_distances(infinite, {}), of_pair);
+  }
 }
 
 TEST(VerifyQueries, SeesTheObjectsOfTheFilter) {
