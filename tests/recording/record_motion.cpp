@@ -135,10 +135,12 @@ class Motion {
     header_.scene = scene_.options();
     header_.scene_file = "# drawn up by record_motion\n";
     for (std::uint64_t copy = 0; copy < arguments.copies; ++copy) {
-      ObjectOptions fixed, folding;
+      ObjectOptions with_lines, fixed, folding;
+      with_lines.edges = {{0, 20}, {20, 21}};
+      with_lines.points = {5};
       fixed.is_static = true;
       folding.self_collision = true;
-      add(make_icosphere(2), "sphere", {});
+      add(make_icosphere(2), "sphere", with_lines);
       add(make_box({1, 1, 1}, 2), "box", fixed);
       add(make_cloth(4, 4), "cloth \xc3\xa9", folding);
     }

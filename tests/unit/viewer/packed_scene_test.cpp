@@ -51,6 +51,17 @@ TEST(PackedScene, KeepsEveryOption) {
             keys_of_machine<MassSpringMotion>());
 }
 
+TEST(PackedScene, KeepsLinesAndPoints) {
+  SceneView scene;
+  scene.objects = {test_ball("rods", {}, 2)};
+  scene.objects[0].mesh.edges = {{0, 1}, {1, 2}};
+  scene.objects[0].mesh.points = {3};
+  const SceneView again = unpack(pack(scene));
+  ASSERT_EQ(again.objects.size(), 1u);
+  EXPECT_EQ(again.objects[0].mesh.edges, scene.objects[0].mesh.edges);
+  EXPECT_EQ(again.objects[0].mesh.points, scene.objects[0].mesh.points);
+}
+
 TEST(PackedScene, KeepsRigidMotion) {
   SceneView scene;
   scene.objects = {test_ball("rigid", {}, 2)};
