@@ -279,6 +279,11 @@ bool overlaps_by_brute_force(const QueryBox& box, const BoxedCorners& triangle) 
     if (box.min[axis] > box.max[axis]) return false;
     if (triangle.min[axis] > box.max[axis] || triangle.max[axis] < box.min[axis]) return false;
   }
+  const auto has = [&](const Vec3d& p) {
+    return box.min.x <= p.x && p.x <= box.max.x && box.min.y <= p.y && p.y <= box.max.y && box.min.z <= p.z &&
+           p.z <= box.max.z;
+  };
+  if (std::ranges::any_of(triangle.corners, has)) return true;
   std::vector<RationalVector> polygon;
   for (const Vec3d& corner : triangle.corners) polygon.push_back(difference(corner, {}));
   for (int axis = 0; axis < 3; ++axis) {

@@ -2,7 +2,9 @@
 #include <boost/multiprecision/cpp_int.hpp>
 #include <cmath>
 #include <cstdlib>
+#include <iterator>
 #include <limits>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -16,12 +18,7 @@
 namespace supple {
 namespace {
 
-/// As `is_accurate`, for numbers of any kind and for values that no double holds.
-bool is_near(double number, const Rational& exact) {
-  constexpr double largest = std::numeric_limits<double>::max();
-  if (std::isinf(number) && number > 0) return exact > Rational(largest);
-  return number >= 0 && is_accurate(number, exact * exact);
-}
+/// As `is_accurate`, also for numbers that are negative or NaN, and for distances that no double holds.
 bool is_distance(double distance, const Rational& squared) {
   constexpr double largest = std::numeric_limits<double>::max();
   if (std::isinf(distance) && distance > 0) return squared > Rational(largest) * Rational(largest);
@@ -40,33 +37,23 @@ double rounded_root(const Rational& squared) {
   return std::ldexp(sqrt(scaled).convert_to<double>(), -shift / 2);
 }
 
-/// Wrong answers of queries that threads check one by one.
-class WrongAnswers {
- public:
-  explicit WrongAnswers(const Parallel& parallel)
-      : parallel_(parallel), of_workers_(parallel.worker_count()) {}
-
-  /// Calls `check(i)` for all i below `count`; it returns both answers when they differ.
-  template <class Check>
-  std::vector<WrongAnswer> check_all(std::size_t count, const Check& check) {
-    parallel_.for_ranges(count, 1, [&](std::size_t begin, std::size_t end, std::uint32_t worker) {
-      for (std::size_t i = begin; i < end; ++i) {
-        if (std::optional<WrongAnswer> wrong = check(i)) {
-          wrong->query = i;
-          of_workers_[worker].push_back(*std::move(wrong));
-        }
-      }
-    });
-    std::vector<WrongAnswer> all;
-    for (auto& part : of_workers_) std::move(part.begin(), part.end(), std::back_inserter(all));
-    std::ranges::sort(all, {}, &WrongAnswer::query);
-    return all;
-  }
-
- private:
-  const Parallel& parallel_;
-  std::vector<std::vector<WrongAnswer>> of_workers_;
-};
+/// Calls `check(i)` for all i below `count`, on all threads. It returns both answers when they differ.
+template <class Check>
+std::vector<WrongAnswer> wrong_answers(const Parallel& parallel, std::size_t count, const Check& check) {
+  std::vector<std::vector<WrongAnswer>> of_workers(parallel.worker_count());
+  parallel.for_ranges(count, 1, [&](std::size_t begin, std::size_t end, std::uint32_t worker) {
+    for (std::size_t i = begin; i < end; ++i) {
+      std::optional<WrongAnswer> wrong = check(i);
+      if (!wrong) continue;
+      wrong->query = i;
+      of_workers[worker].push_back(*std::move(wrong));
+    }
+  });
+  std::vector<WrongAnswer> all;
+  for (auto& part : of_workers) std::move(part.begin(), part.end(), std::back_inserter(all));
+  std::ranges::sort(all, {}, &WrongAnswer::query);
+  return all;
+}
 
 /// The first place at which two lists differ. `describe_found` and `describe_truth` give the words of an
 /// item.
@@ -157,7 +144,7 @@ std::vector<WrongAnswer> Scene::Implementation::verify_closest(
            std::to_string(feature.index) + ", distance " + text_of(distance) + ", barycentric " +
            text_of(weights[0]) + " " + text_of(weights[1]) + " " + text_of(weights[2]);
   };
-  return WrongAnswers(parallel).check_all(points.size(), [&](std::size_t i) -> std::optional<WrongAnswer> {
+  return wrong_answers(parallel, points.size(), [&](std::size_t i) -> std::optional<WrongAnswer> {
     std::optional<ExactNearest> truth;
     if (is_finite(points[i])) truth = nearest_by_brute_force(points[i], plain.surfaces, query.max_distance);
     const bool is_inside = truth && query.signed_distance &&
@@ -201,14 +188,14 @@ std::vector<WrongAnswer> Scene::Implementation::verify_cast(std::span<const Ray>
     const std::string text = words.triangle(object, triangle) + ", t " + text_of(t);
     return query.count_hits ? text + ", hits " + std::to_string(hits) : text;
   };
-  return WrongAnswers(parallel).check_all(rays.size(), [&](std::size_t i) -> std::optional<WrongAnswer> {
+  return wrong_answers(parallel, rays.size(), [&](std::size_t i) -> std::optional<WrongAnswer> {
     const std::vector<ExactHit> truth = hits_by_brute_force(rays[i], plain.surfaces);
     const std::optional<RayHit>& found = results[i];
     const std::uint64_t hits = query.count_hits ? truth.size() : 1;
     const bool is_right = found && !truth.empty()
                               ? found->object == plain.ids[truth.front().surface] &&
                                     found->triangle == truth.front().triangle && found->hits == hits &&
-                                    is_near(found->t, truth.front().t)
+                                    is_distance(found->t, truth.front().t * truth.front().t)
                               : !found && truth.empty();
     if (is_right) return {};
     std::string of_found = "nothing", of_truth = "nothing";
@@ -226,7 +213,7 @@ std::vector<WrongAnswer> Scene::Implementation::verify_cast_all(std::span<const 
   const ItemsOfQueries<ListedRayHit> found(hits, rays.size(), "verify_cast_all");
   const PlainScene plain = plain_scene(seen, "verify_cast_all");
   const AnswerWords words(*this);
-  return WrongAnswers(parallel).check_all(rays.size(), [&](std::size_t i) {
+  return wrong_answers(parallel, rays.size(), [&](std::size_t i) {
     const std::vector<ExactHit> truth = hits_by_brute_force(rays[i], plain.surfaces);
     const auto describe = [&](ObjectId object, std::uint32_t triangle, double t, std::uint64_t count) {
       return words.triangle(object, triangle) + ", t " + text_of(t) + ", hits " + std::to_string(count);
@@ -235,7 +222,7 @@ std::vector<WrongAnswer> Scene::Implementation::verify_cast_all(std::span<const 
         found.of(i), std::span(truth),
         [&](const ListedRayHit& f, const ExactHit& t) {
           return f.hit.object == plain.ids[t.surface] && f.hit.triangle == t.triangle &&
-                 f.hit.hits == truth.size() && is_near(f.hit.t, t.t);
+                 f.hit.hits == truth.size() && is_distance(f.hit.t, t.t * t.t);
         },
         [&](const ListedRayHit& f) { return describe(f.hit.object, f.hit.triangle, f.hit.t, f.hit.hits); },
         [&](const ExactHit& t) {
@@ -251,7 +238,7 @@ std::vector<WrongAnswer> Scene::Implementation::verify_overlaps(std::span<const 
   const ItemsOfQueries<Overlap> found(overlaps, regions.size(), "verify_overlaps");
   const PlainScene plain = plain_scene(seen, "verify_overlaps");
   const AnswerWords words(*this);
-  return WrongAnswers(parallel).check_all(regions.size(), [&](std::size_t i) {
+  return wrong_answers(parallel, regions.size(), [&](std::size_t i) {
     std::vector<Overlap> truth;
     for (std::size_t s = 0; s < plain.surfaces.size(); ++s) {
       for (const BoxedCorners& t : plain.surfaces[s].triangles) {
@@ -276,7 +263,7 @@ std::vector<WrongAnswer> Scene::Implementation::verify_inside(std::span<const Ve
   check_counts(points.size(), results.size(), "verify_inside");
   check_closed(seen, "verify_inside");
   const PlainScene plain = plain_scene(seen, "verify_inside");
-  return WrongAnswers(parallel).check_all(points.size(), [&](std::size_t i) -> std::optional<WrongAnswer> {
+  return wrong_answers(parallel, points.size(), [&](std::size_t i) -> std::optional<WrongAnswer> {
     Containment truth = Containment::outside;
     for (const PlainSurface& surface : plain.surfaces) {
       if (is_finite(points[i])) truth = std::max(truth, surface.containment(points[i]));
