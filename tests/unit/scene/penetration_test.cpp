@@ -603,22 +603,6 @@ TEST(Penetration, ReusesOnlyWhatAFreshSceneFinds) {
 }
 
 /// Of objects at rest, the closest points are not searched again.
-TEST(Penetration, OfObjectsAtRestIsReused) {
-  Scene scene(penetration);
-  for (const double x : {0.0, 0.7}) scene.add(moved_mesh(make_icosphere(40), {x, 0.1, 0.2}), {.solid = true});
-  const ObjectId moving = scene.add(moved_mesh(make_icosphere(2), {10, 0, 0}), {.solid = true});
-  const std::uint64_t hash = hash_of_penetrations(scene.detect());
-  const double first = scene.result().stats.penetration_seconds;
-  ASSERT_GT(scene.result().penetrations.size(), 1000u);
-  double least = first;
-  for (int step = 0; step < 10; ++step) {
-    scene.translate(moving, {0.01, 0, 0});
-    EXPECT_EQ(hash_of_penetrations(scene.detect()), hash);
-    least = std::min(least, scene.result().stats.penetration_seconds);
-  }
-  EXPECT_LT(least, first / 10);
-}
-
 TEST(Penetration, IsTheSameForAnyNumberOfThreads) {
   const auto hash_with = [](std::uint32_t threads) {
     RandomNumbers random(3);

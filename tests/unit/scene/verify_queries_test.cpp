@@ -124,13 +124,13 @@ TEST(VerifyQueries, AgreesInsideClosedSurfaces) {
     std::vector<Vec3d> points;
     for (const double size : {1.0, 2.0, 4.0}) {
       TriangleMesh box = make_box({size, size, size});
-      for (Vec3d& p : box.positions) p = scale * (p + Vec3d{size / 2, 0, 0});
+      for (Vec3d& p : box.positions) p = scale * (p + Vec3d{size / 2 - 1, 0, 0});
       points.insert(points.end(), box.positions.begin(), box.positions.end());
       scene.add(box);
     }
     RandomNumbers random(2);
     for (int i = 0; i < 60; ++i) {
-      points.push_back(scale * Vec3d{0.5 * random.between(-1, 9), 0.5 * random.between(-5, 5),
+      points.push_back(scale * Vec3d{0.5 * random.between(-3, 7), 0.5 * random.between(-5, 5),
                                      0.5 * random.between(-5, 5)});
     }
     points.push_back({0, nan, 0});
