@@ -12,6 +12,7 @@
 
 #include "exit_status.hpp"
 #include "inputs.hpp"
+#include "output_names.hpp"
 #include "progress.hpp"
 #include "query_report.hpp"
 #include "supple/error.hpp"
@@ -31,6 +32,7 @@ struct QueryPaths {
 std::vector<QueryPaths> paths_of(const CcdQueriesOptions& options) {
   const std::vector<fs::path> queries = expand_patterns(options.inputs);
   const std::vector<fs::path> answers = expand_patterns(options.answers);
+  for (const auto& inputs : {queries, answers}) check_output_names({{"--json", options.json}}, inputs);
   if (!answers.empty() && answers.size() != queries.size())
     throw Error(fmt::format("--answers: {} for {}; give one for each, in the same order",
                             counted(answers.size(), "file"),

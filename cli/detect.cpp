@@ -10,6 +10,7 @@
 #include "build_simulation.hpp"
 #include "inputs.hpp"
 #include "option_needs.hpp"
+#include "output_names.hpp"
 #include "progress.hpp"
 #include "recorded_input.hpp"
 #include "reports.hpp"
@@ -64,6 +65,7 @@ bool is_one_mesh(const std::vector<std::string>& inputs, const Input& input) {
 
 int run_detect(const DetectOptions& options) {
   Input input = options.sequence ? read_sequence(options.inputs) : read_objects(options.inputs);
+  check_output_names({{"--json", options.json}, {"--csv", options.csv}}, input.files);
   apply(options, input);
   if (is_one_mesh(options.inputs, input) && has_proximity(options.scene))
     input.objects.front().options.self_collision = true;

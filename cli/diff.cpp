@@ -2,11 +2,14 @@
 
 #include <fmt/core.h>
 
+#include <array>
+#include <filesystem>
 #include <optional>
 #include <string>
 
 #include "exit_status.hpp"
 #include "json_writer.hpp"
+#include "output_names.hpp"
 #include "supple/recording.hpp"
 #include "supple/version.hpp"
 #include "text.hpp"
@@ -55,6 +58,8 @@ void print_text(const DiffOptions& options, const Recording& a,
 }  // namespace
 
 int run_diff(const DiffOptions& options) {
+  const std::array<std::filesystem::path, 2> inputs{options.recordings[0], options.recordings[1]};
+  check_output_names({{"--json", options.json}}, inputs);
   const Recording a(options.recordings[0]), b(options.recordings[1]);
   const std::optional<RecordingDifference> difference = find_first_difference(a, b, options.tolerance);
   if (!options.json.empty()) write_json(options, a, b, difference);

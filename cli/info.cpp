@@ -12,6 +12,7 @@
 #include "exit_status.hpp"
 #include "inputs.hpp"
 #include "json_writer.hpp"
+#include "output_names.hpp"
 #include "session/described_json.hpp"
 #include "supple/inspection.hpp"
 #include "supple/result_descriptions.hpp"
@@ -144,6 +145,7 @@ void write_json(JsonWriter& json, const MeshInfo& info) {
 
 int run_info(const InfoOptions& options) {
   const Input input = read_objects(options.inputs);
+  check_output_names({{"--json", options.json}}, input.files);
   std::optional<JsonWriter> json;
   if (!options.json.empty()) {
     json.emplace(options.json);

@@ -102,7 +102,8 @@ Input read_objects(const std::vector<std::string>& names, const SceneOverrides& 
     return read_recording(*recording);
   }
   Input input;
-  for (const fs::path& path : expand_patterns(names)) input.objects.push_back({read_mesh(path), {}, {}});
+  input.files = expand_patterns(names);
+  for (const fs::path& path : input.files) input.objects.push_back({read_mesh(path), {}, {}});
   return input;
 }
 
@@ -120,6 +121,7 @@ Input read_sequence(const std::vector<std::string>& names) {
       throw Error(fmt::format("{}: there is no such file; check the folder and the spelling", path.string()));
   }
   Input input;
+  input.files = frames.files;
   input.frames = {frames.files.front().string(), frames.files.size()};
   TriangleMesh first = read_mesh(frames.files.front());
   input.objects.push_back({std::move(first), {}, std::move(frames)});

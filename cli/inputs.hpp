@@ -44,7 +44,8 @@ struct Input {
     std::uint64_t count = 0;
   };
   std::optional<Frames> frames{};
-  std::string scene_text;  ///< of the scene file; empty when there is none
+  std::string scene_text;                    ///< of the scene file; empty when there is none
+  std::vector<std::filesystem::path> files;  ///< all that were read or will be read
 };
 
 /// Values of the command line that replace those of the scene file.

@@ -1,7 +1,9 @@
+#include <fcntl.h>
 #include <fmt/core.h>
 #include <hdf5.h>
 
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 
 #include "ccd_queries.hpp"
@@ -44,11 +46,20 @@ int run(const CommandLine& line) {
   return line.exit_status;
 }
 
+/// Opens /dev/null in place of standard streams that the caller has closed. Otherwise the first files that
+/// the program opens would be these streams, and messages would overwrite them.
+void open_closed_streams() {
+  for (const int stream : {0, 1, 2}) {
+    if (fcntl(stream, F_GETFD) == -1 && open("/dev/null", O_RDWR) != stream) std::abort();
+  }
+}
+
 }  // namespace
 }  // namespace supple::cli
 
 int main(int argument_count, char** arguments) {
   using namespace supple::cli;
+  open_closed_streams();
   // The program closes all recordings before it exits. Without this call, HDF5 would report handles that a
   // damaged recording left open to standard error.
   H5dont_atexit();

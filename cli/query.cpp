@@ -15,6 +15,7 @@
 #include "exit_status.hpp"
 #include "inputs.hpp"
 #include "json_writer.hpp"
+#include "output_names.hpp"
 #include "point_file.hpp"
 #include "progress.hpp"
 #include "proximity_json.hpp"
@@ -64,8 +65,10 @@ SceneOptions scene_options(const QueryOptions& options) {
 }
 
 Run::Run(const QueryOptions& options) : options_(options), scene_(scene_options(options)) {
-  for (const InputObject& object : read_objects(options.inputs).objects)
-    scene_.add(object.mesh, object.options);
+  Input input = read_objects(options.inputs);
+  if (!options.file.empty()) input.files.emplace_back(options.file);
+  check_output_names({{"--json", options.json}}, input.files);
+  for (const InputObject& object : input.objects) scene_.add(object.mesh, object.options);
 }
 
 /// Calls `work(first, size)` for batches of `count` queries, and shows the progress.

@@ -143,7 +143,8 @@ double RowReader::coordinate(char axis, std::string_view numerator, std::string_
   if (const std::optional<double> usual = exact_small_quotient(numerator, denominator)) return *usual;
   const Integer top = integer(numerator), bottom = integer(denominator);
   if (bottom == 0) fail_with("has the denominator 0; any other whole number is allowed");
-  const Rational value(top, bottom);
+  // Boost's fractions have positive denominators.
+  const Rational value(bottom < 0 ? -top : top, abs(bottom));
   const std::optional<double> exact = exact_double(value);
   if (!exact) fail_with("is not the exact value of a double; " + advice_for(value));
   return *exact;

@@ -24,6 +24,7 @@ Input read_recording(const std::string& name) {
     throw Error(fmt::format("{}: the recording has no frame; record some steps", name));
   const RecordingHeader& header = recording->header();
   Input input;
+  input.files = {name};
   input.frames = {name, recording->frame_count()};
   input.simulation.time_step = header.time_step;
   for (std::size_t i = 0; i < header.objects.size(); ++i) {

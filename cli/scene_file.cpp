@@ -23,6 +23,7 @@
 #include "supple/models.hpp"
 #include "supple/simulation_descriptions.hpp"
 #include "text.hpp"
+#include "toml_limits.hpp"
 #include "toml_reader.hpp"
 
 namespace supple::cli {
@@ -32,14 +33,21 @@ namespace fs = std::filesystem;
 
 std::string read_text(const fs::path& path) {
   std::ifstream stream(path, std::ios::binary);
-  std::string text{std::istreambuf_iterator<char>(stream), {}};
-  if (!stream || fs::is_directory(path))
+  std::string text;
+  std::array<char, 65536> part;
+  while (text.size() <= most_toml_bytes && (stream.read(part.data(), part.size()) || stream.gcount() > 0))
+    text.append(part.data(), static_cast<std::size_t>(stream.gcount()));
+  if (text.size() > most_toml_bytes)
+    throw Error(fmt::format("{}: a scene file has at most {} MB; name large meshes by their files",
+                            path.string(), most_toml_bytes >> 20));
+  if (!stream.eof() || fs::is_directory(path))
     throw Error(
         fmt::format("{}: cannot read this scene file; check the folder and the spelling", path.string()));
   return text;
 }
 
 toml::table parse_toml(const std::string& text, const fs::path& path) {
+  check_toml_limits(text, path);
   try {
     return toml::parse(text, path.string());
   } catch (const toml::parse_error& error) {
@@ -98,7 +106,9 @@ TriangleMesh read_parametrised_model(TomlReader& reader, const std::string& name
 }
 
 /// Meshes by file or model name, because a scene often uses the same mesh many times.
-using Shapes = std::map<std::string, TriangleMesh>;
+struct Shapes {
+  std::map<std::string, TriangleMesh> meshes, models;
+};
 
 /// `frames` has the files of an object that is moved by files; such an object needs no other mesh.
 TriangleMesh read_shape(TomlReader& reader, const fs::path& folder, const FrameSequence* frames,
@@ -111,7 +121,7 @@ TriangleMesh read_shape(TomlReader& reader, const fs::path& folder, const FrameS
     reader.fail(reader.has("mesh") ? "model" : "", "give either mesh = \"FILE\" or model = \"NAME\"");
   if (reader.has("model")) {
     if (!is_named_model(model)) return named(read_parametrised_model(reader, model), model);
-    const auto [found, is_new] = shapes.try_emplace("model " + model);
+    const auto [found, is_new] = shapes.models.try_emplace(model);
     if (is_new) found->second = named(make_model(model), model);
     return found->second;
   }
@@ -119,7 +129,7 @@ TriangleMesh read_shape(TomlReader& reader, const fs::path& folder, const FrameS
   if (!fs::exists(path))
     reader.fail("mesh",
                 fmt::format("there is no file {}; paths start at the scene file's folder", path.string()));
-  const auto [found, is_new] = shapes.try_emplace("mesh " + path.string());
+  const auto [found, is_new] = shapes.meshes.try_emplace(path.string());
   if (is_new) found->second = load_any_mesh(path);
   return found->second;
 }
@@ -283,6 +293,12 @@ Input read_scene_text(std::string text, const fs::path& path, const SceneOverrid
   Shapes shapes;
   for (std::size_t i = 0; i < objects.size(); ++i)
     read_objects(*objects[i], path, fmt::format("[[object]] {}", i), gravity, shapes, input);
+  input.files.push_back(path);
+  for (const auto& [name, mesh] : shapes.meshes) input.files.emplace_back(name);
+  for (const InputObject& object : input.objects) {
+    const auto* frames = object.motion ? std::get_if<FrameSequence>(&*object.motion) : nullptr;
+    if (frames != nullptr) input.files.insert(input.files.end(), frames->files.begin(), frames->files.end());
+  }
   if (input.objects.empty())
     throw Error(fmt::format("{}: has no objects; add an [[object]] with mesh or model", path.string()));
   return input;

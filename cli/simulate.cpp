@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdint>
+#include <filesystem>
 #include <limits>
 #include <optional>
 #include <string>
@@ -15,6 +16,7 @@
 #include "frame_recorder.hpp"
 #include "inputs.hpp"
 #include "interruption.hpp"
+#include "output_names.hpp"
 #include "progress.hpp"
 #include "reports.hpp"
 #include "session/long_steps.hpp"
@@ -141,6 +143,14 @@ int Run::status_of_interruption(int signal) const {
 
 int run_simulate(const SimulateOptions& options) {
   Input input = read_input(options);
+  std::string xdmf;
+  if (!options.record.empty())
+    xdmf = std::filesystem::path(options.record).replace_extension(".xdmf").string();
+  check_output_names({{"--json", options.json},
+                      {"--csv", options.csv},
+                      {"--record", options.record},
+                      {"the .xdmf file of --record", xdmf}},
+                     input.files);
   apply(options, input);
   return Run(options, input).go();
 }

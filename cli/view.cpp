@@ -16,6 +16,7 @@
 #include "export/page_file.hpp"
 #include "inputs.hpp"
 #include "interruption.hpp"
+#include "output_names.hpp"
 #include "server/server.hpp"
 #include "session/packed_scene.hpp"
 #include "session/session.hpp"
@@ -106,6 +107,7 @@ int serve(viewer::SceneView show, const ViewOptions& options) {
 int run_view(const ViewOptions& options) {
   check_build();
   Input input = read_input(options);
+  check_output_names({{"--export", options.page_file}}, input.files);
   apply(options, input);
   viewer::SceneView show = build_scene_view(input, options);
   if (!options.page_file.empty()) return write_page(show, options);

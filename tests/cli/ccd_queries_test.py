@@ -182,6 +182,13 @@ class Format(Queries):
             self.write(name, text)
             self.assert_one_line_error(self.run_here("ccd-queries", name, *arguments), *parts)
 
+    def test_negative_and_large_denominators(self):
+        denominators = (1, 3, 2**65, 7 * 2**65) * 2
+        lines = [",".join(f"{-c * n},{-n}" for c in point) for point, n in zip(FALLING, denominators)]
+        self.write("vf.csv", "\n".join(lines) + "\n")
+        (file,) = self.queries("vf.csv")["files"]
+        self.assert_time(file["times"][0], 0.5)
+
     def test_numbers_that_are_no_double(self):
         for value, parts in (
             (Fraction(1, 3), ("z = 1/3", "6004799503160661/18014398509481984")),
@@ -190,6 +197,7 @@ class Format(Queries):
             (2**1024, ("z = 1797", "scale")),
         ):
             self.expect(rows(FALLING) + rows(with_height(value, 1)), "vf.csv:9: ", "double", *parts)
+        self.expect("1,1,1,1,1,-3\n" * 8, "vf.csv:1: ", "z = 1/-3", "-6004799503160661/18014398509481984")
 
     def test_wrong_rows(self):
         good = rows(FALLING)

@@ -296,6 +296,24 @@ class Errors(ProgramTest):
         self.expect('[[object]\nmodel = "box"\n', 1, "TOML")
         self.expect('[[object]]\nmodel = "box"\nmodel = "box"\n', 3, "TOML")
 
+    def test_text_that_the_parser_cannot_take(self):
+        for text, line, part in (
+            (".".join(["a"] * 500_000) + " = 1\n", 1, "more than 64 parts"),
+            ("\n\n[" + " . ".join(["a"] * 70) + "]\n", 3, "more than 64 parts"),
+            ("a = " + "[" * 100_000, 1, "more than 64 levels"),
+            ("a = " + "{ a = " * 100_000, 1, "more than 64 levels"),
+            ("# ä\n[*", 2, "byte 0x2a outside of a string"),
+            ("\ufedf", 1, "byte 0xef outside of a string"),
+            ("a = 'b\na = \"\"\"\n*\n\"\"\" *\n", 4, "byte 0x2a"),
+        ):
+            self.expect(text, line, "not valid TOML", part)
+        # Strings and comments may have everything.
+        text = "\ufeff# a.b.c.[[[[ ä\n'" + "a." * 100 + "' = '''\n[[*\n'''\n" + r'"ä\"*" = [0.5, [1.5, 2.5]]' + "\n"
+        self.expect(text, 2, "unknown key")
+        with open(self.folder / "large.toml", "wb") as file:
+            file.truncate(2**26 + 1)
+        self.assert_one_line_error(self.run_here("detect", "large.toml"), "large.toml: a scene file has at most 64 MB")
+
     def test_unknown_keys_say_which_there_are(self):
         self.expect('[[object]]\nmodel = "box"\nscael = 2\n', 3, "[[object]] 0: scael", "scale", "translate")
         self.expect('[scene]\nborder = 1\n[[object]]\nmodel = "box"\n', 2, "[scene]: border", "bounds")

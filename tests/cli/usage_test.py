@@ -1,5 +1,7 @@
 """Tests exit statuses, one-line errors and the help with its examples, on which scripts rely."""
 
+import json
+import os
 import re
 import subprocess
 import unittest
@@ -117,6 +119,53 @@ class UsageErrors(ProgramTest):
 
     def test_file_names_with_line_breaks_still_give_one_line(self):
         self.expect("detect", "no\nsuch.obj", parts=["no such.obj"])
+
+    def test_outputs_never_replace_inputs_or_each_other(self):
+        self.write("meshed.toml", '[[object]]\nmesh = "b.obj"\n')
+        self.assertEqual(self.run_here("simulate", "scene.toml", "--frames", "2", "--record", "run.h5", "--quiet").status, 0)
+        (self.folder / "link.obj").symlink_to("a.obj")
+        self.write("points.txt", "0 0 0\n")
+        before = {path.name: path.read_bytes() for path in self.folder.iterdir()}
+        for option, name, arguments in (
+            ("--json", "a.obj", ["detect", "a.obj", "b.obj", "--json"]),
+            ("--csv", "./a.obj", ["detect", "a.obj", "b.obj", "--csv"]),
+            ("--json", "link.obj", ["detect", "a.obj", "b.obj", "--json"]),
+            ("--json", "b.obj", ["detect", "?.obj", "--json"]),
+            ("--json", "b.obj", ["detect", "a.obj", "b.obj", "--sequence", "--json"]),
+            ("--json", "meshed.toml", ["detect", "meshed.toml", "--json"]),
+            ("--csv", "b.obj", ["detect", "meshed.toml", "--csv"]),
+            ("--json", "run.h5", ["detect", "run.h5", "--json"]),
+            ("--record", "meshed.toml", ["simulate", "meshed.toml", "--record"]),
+            ("--export", "a.obj", ["view", "a.obj", "--export"]),
+            ("--json", "a.obj", ["info", "a.obj", "--json"]),
+            ("--json", "a.obj", ["query", "closest", "points.txt", "a.obj", "--json"]),
+            ("--json", "points.txt", ["query", "closest", "points.txt", "a.obj", "--json"]),
+            ("--json", "run.h5", ["diff", "run.h5", "run.h5", "--json"]),
+        ):
+            self.expect(*arguments, name, parts=[f"{option}: {name} is an input"])
+        for arguments in (
+            ["detect", "a.obj", "b.obj", "--json", "x", "--csv", "./x"],
+            ["simulate", "scene.toml", "--json", "x.h5", "--record", "x.h5"],
+            ["simulate", "scene.toml", "--csv", "x.xdmf", "--record", "x.h5"],
+        ):
+            self.expect(*arguments, parts=["already writes"])
+        self.assertEqual({path.name: path.read_bytes() for path in self.folder.iterdir()}, before)
+        done = self.run_here("detect", "a.obj", "b.obj", "--json", "/dev/null", "--csv", "/dev/null", "--quiet")
+        self.assertEqual((done.status, done.error), (0, ""))
+
+    def test_closed_streams_are_not_taken_by_files(self):
+        for closed in ([1], [2], [0, 1, 2]):
+            with self.subTest(closed=closed):
+
+                def status_of(*arguments, closed=closed):
+                    close = lambda: [os.close(stream) for stream in closed]
+                    return subprocess.run([PROGRAM, *arguments], cwd=self.folder, preexec_fn=close).returncode
+
+                self.assertEqual(status_of("detect", "a.obj", "b.obj", "--json", "x.json", "--csv", "x.csv"), 0)
+                self.assertEqual(len(json.loads((self.folder / "x.json").read_text())["objects"]), 2)
+                self.assertTrue((self.folder / "x.csv").read_text().startswith("frame,"))
+                self.assertEqual(status_of("simulate", "scene.toml", "--frames", "3", "--record", "x.h5"), 0)
+                self.assertEqual(self.run_here("detect", "x.h5", "--quiet").status, 0)
 
     def test_full_disk(self):
         for flag in ("--json", "--csv"):
