@@ -46,6 +46,8 @@ FileHandle open_for_reading(const std::string& path) {
     throw Error(path + ": there is no such file; check the folder and the spelling");
   if (std::filesystem::is_directory(path, error))
     throw Error(path + ": is a folder; give the recording's .h5 file");
+  if (std::filesystem::exists(path, error) && !std::filesystem::is_regular_file(path, error))
+    throw Error(path + ": is a pipe or a device; give the recording's .h5 file");
   if (const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), std::fclose);
       !file)
     throw Error(path + ": cannot read: " + std::generic_category().message(errno) +
@@ -60,11 +62,53 @@ FileHandle open_for_reading(const std::string& path) {
   throw Error(path + ": is no recording (not an HDF5 file); make one with supple simulate --record");
 }
 
+/// Stops at the first link that leads elsewhere, and copies its name.
+herr_t find_other_link(hid_t, const char* name, const H5L_info_t* link, void* found) {
+  if (link->type == H5L_TYPE_HARD) return 0;
+  *static_cast<std::string*>(found) = name;
+  return 1;
+}
+
+bool is_compressed(const DatasetHandle& dataset) {
+  const PropertyListHandle creation(check(H5Dget_create_plist(dataset.id())));
+  return H5Pget_nfilters(creation.id()) != 0;
+}
+
+/// Whether all data of a dataset are in its own file, compressed by nothing but deflate.
+bool is_stored_plainly(const DatasetHandle& dataset) {
+  const PropertyListHandle creation(check(H5Dget_create_plist(dataset.id())));
+  const H5D_layout_t layout = H5Pget_layout(creation.id());
+  if (layout != H5D_COMPACT && layout != H5D_CONTIGUOUS && layout != H5D_CHUNKED) return false;
+  if (H5Pget_external_count(creation.id()) != 0) return false;
+  const int filters = H5Pget_nfilters(creation.id());
+  for (int i = 0; i < filters; ++i) {
+    unsigned flags = 0;
+    std::size_t values = 0;
+    if (H5Pget_filter2(creation.id(), static_cast<unsigned>(i), &flags, &values, nullptr, 0, nullptr,
+                       nullptr) != H5Z_FILTER_DEFLATE)
+      return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 InputFile::InputFile(const std::string& path) : path_(path), file_(open_for_reading(path)) {
   std::error_code error;
   size_ = std::filesystem::file_size(path, error);
+  // A link could lead to any file of the user.
+  std::string other;
+  if (H5Lvisit(id(), H5_INDEX_NAME, H5_ITER_NATIVE, find_other_link, &other) != 0)
+    fail(other, other.empty() ? "the file is damaged, copy it again or record again"
+                              : "is a soft or an external link; recordings have none, so record again");
+}
+
+DatasetHandle InputFile::open_dataset(const std::string& path, hid_t access) const {
+  DatasetHandle dataset(H5Dopen2(id(), path.c_str(), access));
+  if (!dataset) fail(path, "is missing; the file is damaged or not a whole recording, record again");
+  if (!is_stored_plainly(dataset))
+    fail(path, "is not stored plainly in this file; only deflate and no external or virtual storage is read");
+  return dataset;
 }
 
 void InputFile::fail(const std::string& item, const std::string& what) const {
@@ -143,8 +187,7 @@ std::string InputFile::text(const std::string& group, const char* name) const {
 }
 
 std::string InputFile::text_dataset(const std::string& path) const {
-  const DatasetHandle dataset(H5Dopen2(id(), path.c_str(), H5P_DEFAULT));
-  if (!dataset) fail(path, "is missing; the file is damaged or not a whole recording, record again");
+  const DatasetHandle dataset = open_dataset(path);
   const DatatypeHandle type(H5Dget_type(dataset.id()));
   const DataspaceHandle space(H5Dget_space(dataset.id()));
   try {
@@ -165,8 +208,7 @@ ColumnReader::ColumnReader(const InputFile& file, std::string path, ScalarType t
       row_bytes_(size_of(type)) {
   const PropertyListHandle access(check(H5Pcreate(H5P_DATASET_ACCESS)));
   check(H5Pset_chunk_cache(access.id(), 5, 4 * block_bytes, 1.0));
-  dataset_ = DatasetHandle(H5Dopen2(file.id(), path_.c_str(), access.id()));
-  if (!dataset_) file.fail(path_, "is missing; the file is damaged or not a whole recording, record again");
+  dataset_ = file.open_dataset(path_, access.id());
   const DatatypeHandle stored(H5Dget_type(dataset_.id()));
   const DataspaceHandle space(H5Dget_space(dataset_.id()));
   const int rank = H5Sget_simple_extent_ndims(space.id());
@@ -179,8 +221,10 @@ ColumnReader::ColumnReader(const InputFile& file, std::string path, ScalarType t
   for (const hsize_t n : row_shape_) row_bytes_ *= n;
   // HDF5 reads missing data as zeros, and a damaged row count could request any amount of memory.
   const std::uint64_t stored_row_bytes = row_bytes_ / size_of(type_) * H5Tget_size(stored.id());
+  constexpr std::uint64_t best_deflate = 1032;
   const std::uint64_t storage = H5Dget_storage_size(dataset_.id());
-  if (storage > file.size() || (stored_row_bytes > 0 && rows_ > storage / stored_row_bytes))
+  const std::uint64_t most_bytes = is_compressed(dataset_) ? best_deflate * storage : storage;
+  if (storage > file.size() || (stored_row_bytes > 0 && rows_ > most_bytes / stored_row_bytes))
     file.fail(path_, "has " + std::to_string(rows_) +
                          " rows, which are not all in the file; it is damaged or cut short, copy it again or "
                          "record again");

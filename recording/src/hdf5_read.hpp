@@ -35,6 +35,9 @@ class InputFile {
   std::string text(const std::string& group, const char* name) const;
   std::string text_dataset(const std::string& path) const;
 
+  /// The data must be in this file itself, without filters other than deflate.
+  DatasetHandle open_dataset(const std::string& path, hid_t access = H5P_DEFAULT) const;
+
   [[noreturn]] void fail(const std::string& item, const std::string& what) const;
 
  private:

@@ -700,6 +700,57 @@ class Diff(RecordingTest):
                 change(file)
             self.assert_one_line_error(self.run_here("diff", "a.h5", "bad.h5"), "bad.h5: ", part)
 
+    @with_h5py
+    def test_data_outside_of_the_file(self):
+        """A recording from somewhere must not make the program read other files."""
+        with h5py.File(self.folder / "a.h5", "r") as file:
+            values = file["time"][()]
+        (self.folder / "secret").write_bytes(values.tobytes())
+
+        def replace(file, **storage):
+            del file["time"]
+            file.create_dataset("time", shape=values.shape, dtype=values.dtype, maxshape=(None,), **storage)
+
+        def link(file, target):
+            del file["time"]
+            file["time"] = target
+
+        def link_softly(file):
+            file.move("objects/0/positions", "objects/0/others")
+            file["objects/0/positions"] = h5py.SoftLink("/objects/0/others")
+
+        def map_virtually(file):
+            del file["time"]
+            layout = h5py.VirtualLayout(values.shape, values.dtype)
+            layout[:] = h5py.VirtualSource("a.h5", "time", values.shape)
+            file.create_virtual_dataset("time", layout)
+
+        def store_outside(file):
+            del file["time"]
+            file.create_dataset("time", shape=values.shape, dtype=values.dtype, external="secret")
+
+        for change, part in (
+            (lambda file: link(file, h5py.ExternalLink("a.h5", "/time")), "/time: is a soft or an external link"),
+            (link_softly, "/objects/0/positions: is a soft or an external link"),
+            (map_virtually, "/time: is not stored plainly"),
+            (store_outside, "/time: is not stored plainly"),
+            (lambda file: replace(file, chunks=(4,), compression="lzf"), "/time: is not stored plainly"),
+            (lambda file: replace(file, chunks=(4,), shuffle=True), "/time: is not stored plainly"),
+        ):
+            (self.folder / "bad.h5").write_bytes((self.folder / "a.h5").read_bytes())
+            with h5py.File(self.folder / "bad.h5", "r+") as file:
+                change(file)
+            for arguments in (["diff", "a.h5", "bad.h5"], ["detect", "bad.h5"], ["info", "bad.h5"]):
+                with self.subTest(part=part, arguments=arguments):
+                    self.assert_one_line_error(self.run_here(*arguments), "bad.h5: ", part)
+        (self.folder / "same.h5").write_bytes((self.folder / "a.h5").read_bytes())
+        with h5py.File(self.folder / "same.h5", "r+") as file:
+            replace(file, chunks=(4,), compression="gzip")
+            file["time"][()] = values
+        self.assertEqual(self.run_here("diff", "a.h5", "same.h5").status, 0)
+        os.mkfifo(self.folder / "pipe.h5")
+        self.assert_one_line_error(self.run_here("info", "pipe.h5"), "pipe.h5: is a pipe or a device")
+
 
 if __name__ == "__main__":
     unittest.main()
