@@ -2,9 +2,12 @@
 #include <fmt/core.h>
 #include <hdf5.h>
 
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
+#include <filesystem>
+#include <new>
 
 #include "ccd_queries.hpp"
 #include "detect.hpp"
@@ -60,6 +63,8 @@ void open_closed_streams() {
 int main(int argument_count, char** arguments) {
   using namespace supple::cli;
   open_closed_streams();
+  // A limit of the file size (ulimit -f) is then an error of writing, as a full disk is.
+  std::signal(SIGXFSZ, SIG_IGN);
   // The program closes all recordings before it exits. Without this call, HDF5 would report handles that a
   // damaged recording left open to standard error.
   H5dont_atexit();
@@ -67,6 +72,12 @@ int main(int argument_count, char** arguments) {
     const int exit_status = run(parse_command_line(argument_count, arguments));
     OutputFile("-").close();
     return exit_status;
+  } catch (const std::bad_alloc&) {
+    fmt::print(stderr, "supple: the memory is used up; give fewer or smaller meshes, or fewer --threads\n");
+    return exit_unusable;
+  } catch (const std::filesystem::filesystem_error& error) {
+    fmt::print(stderr, "supple: {}: {}\n", one_line(error.path1().string()), error.code().message());
+    return exit_unusable;
   } catch (const std::exception& error) {
     fmt::print(stderr, "supple: {}\n", one_line(error.what()));
     return exit_unusable;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <tuple>
 #include <utility>
 
@@ -121,10 +122,9 @@ Vec3d normal_across(const RelativeMotion& motion, const RelativePlaces<double>& 
   return n;
 }
 
-/// The impact of elements that first touch at `time`; at 0 they may also be apart by less than rounding can
-/// tell.
-Impact impact_at(const ElementMotion& motion, const RelativeMotion& relative, double time,
-                 bool touching_at_start, double separation) {
+/// As `impact_at`, where differences of coordinates do not overflow.
+Impact moderate_impact_at(const ElementMotion& motion, const RelativeMotion& relative, double time,
+                          bool touching_at_start, double separation) {
   const Scaled places(places_at(relative, time));
   Impact impact;
   impact.toi = time;
@@ -149,6 +149,36 @@ Impact impact_at(const ElementMotion& motion, const RelativeMotion& relative, do
     impact.point = 0.5 * (p[0] + (impact.barycentric[1] * p[1] + gap.alpha * p[2] + gap.beta * p[3]));
   }
   impact.normal = gap.normal != Vec3d{} ? gap.normal : normal_across(relative, places.places, gap);
+  return impact;
+}
+
+double largest_coordinate(const ElementMotion& motion) {
+  double largest = 0;
+  for (std::size_t i = 0; i < 4; ++i)
+    largest = std::max({largest, largest_magnitude(motion.start[i]), largest_magnitude(motion.end[i])});
+  return largest;
+}
+
+/// The impact of elements that first touch at `time`; at 0 they may also be apart by less than rounding can
+/// tell.
+Impact impact_at(const ElementMotion& motion, const RelativeMotion& relative, double time,
+                 bool touching_at_start, double separation) {
+  constexpr double largest = 0x1p1015, factor = 0x1p-8;
+  if (largest_coordinate(motion) <= largest)
+    return moderate_impact_at(motion, relative, time, touching_at_start, separation);
+  ElementMotion smaller = motion;
+  for (auto* places : {&smaller.start, &smaller.end}) {
+    for (Vec3d& p : *places) p = factor * p;
+  }
+  Impact impact =
+      moderate_impact_at(smaller, relative_motion(smaller), time, touching_at_start, factor * separation);
+  // Rounding could lead beyond the largest double, and so can a distance.
+  const auto restored = [](double x) {
+    constexpr double most = std::numeric_limits<double>::max();
+    return std::clamp(x / factor, -most, most);
+  };
+  impact.start_distance = restored(impact.start_distance);
+  impact.point = {restored(impact.point.x), restored(impact.point.y), restored(impact.point.z)};
   return impact;
 }
 

@@ -456,6 +456,44 @@ TEST(FirstImpactDetails, OfAVertexThatFallsOnAFace) {
   EXPECT_EQ(sooner->normal, (Vec3d{0, 0, 1}));
 }
 
+/// Coordinates up to the largest double change the scale, nothing else.
+TEST(FirstImpactDetails, AreThoseOfSmallCoordinatesUpToTheLargestDouble) {
+  RandomNumbers random(12);
+  const double factor = 0x1p1023;
+  int checked = 0;
+  for (int query = 0; query < 2000; ++query) {
+    const Paths small = random_paths(random, 1, 1);
+    Paths large = small;
+    for (Corners* corners : {&large.start, &large.end}) {
+      for (Vec3d& p : *corners) p = factor * p;
+    }
+    for (const double separation : {0.0, 0.05}) {
+      for (const bool are_edges : {false, true}) {
+        const auto impact_of = [&](const Paths& paths, double scale) {
+          const ImpactOptions options{.min_separation = scale * separation};
+          return are_edges ? first_impact(EdgeEdgeMotion{paths.start, paths.end}, options)
+                           : first_impact(VertexFaceMotion{paths.start, paths.end}, options);
+        };
+        const auto expected = impact_of(small, 1), found = impact_of(large, factor);
+        ASSERT_EQ(found.has_value(), expected.has_value()) << query;
+        if (!found) continue;
+        EXPECT_NEAR(found->toi, expected->toi, 0x1p-29) << query;
+        EXPECT_EQ(found->touching_at_start, expected->touching_at_start) << query;
+        EXPECT_TRUE(is_finite(found->point)) << query;
+        EXPECT_NEAR(dot(found->normal, found->normal), 1, 1e-12) << query;
+        EXPECT_NEAR(std::accumulate(found->barycentric.begin(), found->barycentric.end(), 0.0), 2, 1e-9)
+            << query;
+        EXPECT_NEAR(found->start_distance / factor, expected->start_distance, 1e-5) << query;
+        if (dot(found->normal, expected->normal) < 0.9) continue;  // nearly parallel elements
+        for (int axis = 0; axis < 3; ++axis)
+          EXPECT_NEAR(found->point[axis] / factor, expected->point[axis], 1e-5) << query;
+        ++checked;
+      }
+    }
+  }
+  EXPECT_GT(checked, 500);
+}
+
 TEST(FirstImpactDetails, NormalsPointToWhereTheFirstElementCameFrom) {
   RandomNumbers random(5);
   int checked = 0;
