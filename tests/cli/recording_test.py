@@ -747,7 +747,8 @@ class Diff(RecordingTest):
         with h5py.File(self.folder / "same.h5", "r+") as file:
             replace(file, chunks=(4,), compression="gzip")
             file["time"][()] = values
-        self.assertEqual(self.run_here("diff", "a.h5", "same.h5").status, 0)
+        done = self.run_here("diff", "a.h5", "same.h5")
+        self.assertEqual((done.status, done.error), (0, ""))
         os.mkfifo(self.folder / "pipe.h5")
         self.assert_one_line_error(self.run_here("info", "pipe.h5"), "pipe.h5: is a pipe or a device")
 

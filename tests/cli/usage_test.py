@@ -3,6 +3,7 @@
 import json
 import os
 import re
+import resource
 import subprocess
 import unittest
 
@@ -136,13 +137,15 @@ class UsageErrors(ProgramTest):
             ("--csv", "b.obj", ["detect", "meshed.toml", "--csv"]),
             ("--json", "run.h5", ["detect", "run.h5", "--json"]),
             ("--record", "meshed.toml", ["simulate", "meshed.toml", "--record"]),
-            ("--export", "a.obj", ["view", "a.obj", "--export"]),
             ("--json", "a.obj", ["info", "a.obj", "--json"]),
             ("--json", "a.obj", ["query", "closest", "points.txt", "a.obj", "--json"]),
             ("--json", "points.txt", ["query", "closest", "points.txt", "a.obj", "--json"]),
             ("--json", "run.h5", ["diff", "run.h5", "run.h5", "--json"]),
         ):
             self.expect(*arguments, name, parts=[f"{option}: {name} is an input"])
+        page = self.run_here("view", "a.obj", "--export", "a.obj")
+        self.assertEqual(page.status, 2)
+        self.assertRegex(page.error, "--export: a.obj is an input|built without the viewer")
         for arguments in (
             ["detect", "a.obj", "b.obj", "--json", "x", "--csv", "./x"],
             ["simulate", "scene.toml", "--json", "x.h5", "--record", "x.h5"],
@@ -159,13 +162,35 @@ class UsageErrors(ProgramTest):
 
                 def status_of(*arguments, closed=closed):
                     close = lambda: [os.close(stream) for stream in closed]
-                    return subprocess.run([PROGRAM, *arguments], cwd=self.folder, preexec_fn=close).returncode
+                    return subprocess.run([PROGRAM, *arguments, "--quiet"], cwd=self.folder, preexec_fn=close).returncode
 
                 self.assertEqual(status_of("detect", "a.obj", "b.obj", "--json", "x.json", "--csv", "x.csv"), 0)
                 self.assertEqual(len(json.loads((self.folder / "x.json").read_text())["objects"]), 2)
                 self.assertTrue((self.folder / "x.csv").read_text().startswith("frame,"))
                 self.assertEqual(status_of("simulate", "scene.toml", "--frames", "3", "--record", "x.h5"), 0)
                 self.assertEqual(self.run_here("detect", "x.h5", "--quiet").status, 0)
+
+    def test_limit_of_the_file_size(self):
+        limit = lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (64, 64))
+        command = [PROGRAM, "detect", "a.obj", "b.obj", "--quiet", "--json", "x.json"]
+        done = subprocess.run(command, cwd=self.folder, preexec_fn=limit, capture_output=True, text=True)
+        self.assertEqual((done.returncode, done.stderr), (2, "supple: x.json: writing failed; is the disk full?\n"))
+
+    def test_folders_are_no_files(self):
+        (self.folder / "folder.toml").mkdir()
+        self.write("vf.csv", "")
+        self.expect("detect", "folder.toml", parts=["folder.toml: cannot read this scene file"])
+        self.expect("query", "closest", "folder.toml", "a.obj", parts=["folder.toml"])
+        self.expect("ccd-queries", "vf.csv", "--answers", "folder.toml", parts=["folder.toml"])
+
+    @unittest.skipIf("SUPPLE_SANITIZED" in os.environ, "a sanitizer needs more addresses")
+    def test_memory(self):
+        self.write("large.toml", '[[object]]\nmodel = "icosphere"\nfrequency = 4000\n')
+        limit = lambda: resource.setrlimit(resource.RLIMIT_AS, (1 << 30, 1 << 30))
+        command = [PROGRAM, "detect", "large.toml", "--threads", "1"]
+        done = subprocess.run(command, cwd=self.folder, preexec_fn=limit, capture_output=True, text=True)
+        self.assertEqual((done.returncode, done.stdout), (2, ""))
+        self.assertRegex(done.stderr, "^supple: the memory is used up; [^\n]*\n$")
 
     def test_full_disk(self):
         for flag in ("--json", "--csv"):
