@@ -132,7 +132,7 @@ RecordedObject read_object(const InputFile& file, std::uint32_t version, std::si
     }
   };
   read_elements("/triangles", object.triangles, {3});
-  // Of objects with lines and points.
+  // Only objects with edges and points of no triangle have these.
   if (file.has_item(path + "/edges")) read_elements("/edges", object.options.edges, {2});
   if (file.has_item(path + "/points")) read_elements("/points", object.options.points, {});
   return object;

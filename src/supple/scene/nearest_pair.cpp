@@ -125,13 +125,9 @@ std::optional<ProximityPair> NearestPairSearch::nearest(const QueriedObject& a, 
     decide(*guess);
   else
     guess_by_projection();
-  consider(vertices_and_faces_);
-  consider(edges_);
+  consider_all();
   descend();
-  if (!intersects_) {
-    consider(vertices_and_faces_);
-    consider(edges_);
-  }
+  if (!intersects_) consider_all();
   return intersects_ ? contact_pair() : best_;
 }
 
@@ -340,6 +336,11 @@ void NearestPairSearch::add(const ElementCandidate& candidate) {
   for (std::size_t i = 0; i < 4; ++i) list.block.set(i, list.count, elements.points[i]);
   list.candidates[list.count++] = candidate;
   if (list.count == PointsBlock::capacity) consider(list);
+}
+
+void NearestPairSearch::consider_all() {
+  consider(vertices_and_faces_);
+  consider(edges_);
 }
 
 /// Considers those that the kernel does not exclude.

@@ -63,6 +63,7 @@ class NearestPairSearch {
   void decide(TrianglePair triangles);
   void decide_elements(TrianglePair triangles, const TrianglePoints& a, const TrianglePoints& b);
   void add(const ElementCandidate& candidate);
+  void consider_all();
   void consider(Candidates& list);
   void consider(const ElementCandidate& candidate);
   void guess_by_projection();

@@ -35,7 +35,7 @@ struct PenetratedObject {
 /// contacts, and one for each set of corners of triangles with contacts, leave no vertex out. Only sets that
 /// are inside are walked through.
 ///
-/// Of two objects that have not moved since the previous run, the pass reuses what it found. It keeps its
+/// The pass reuses what it found for two objects that have not moved since the previous run. It keeps its
 /// memory between steps.
 class PenetrationPass {
  public:

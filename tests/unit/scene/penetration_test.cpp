@@ -602,7 +602,6 @@ TEST(Penetration, ReusesOnlyWhatAFreshSceneFinds) {
   EXPECT_GT(curves, 60 * seeds);
 }
 
-/// Of objects at rest, the closest points are not searched again.
 TEST(Penetration, IsTheSameForAnyNumberOfThreads) {
   const auto hash_with = [](std::uint32_t threads) {
     RandomNumbers random(3);
