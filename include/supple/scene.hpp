@@ -157,8 +157,8 @@ class Scene {
   // the numbers of queries and results differ, and when the filter names an object that is not in the scene.
 
   /// For each point the nearest triangle, or nothing when there is none within the largest distance and when
-  /// the point is not finite. Takes about 1 µs for each of many points near a surface of 70,000 triangles,
-  /// and 3 µs for those far away; twice as long for a single point. Throws `Error` when the largest distance
+  /// the point is not finite. Takes about 1.4 µs for each of many points near a surface of 70,000 triangles,
+  /// and 3.5 µs for those far away; longer for single points. Throws `Error` when the largest distance
   /// is negative or NaN, and for a signed distance when a surface is open.
   void closest(std::span<const Vec3d> points, std::span<std::optional<ClosestPoint>> results,
                const ClosestOptions& options = {});
@@ -179,7 +179,7 @@ class Scene {
   /// ray from it crosses the surface an odd number of times. Points that are not finite are outside, and so
   /// are all points of an object with a vertex that is not finite, except on its triangles. Takes about
   /// 0.3 µs for a point in the box of 70,000 triangles; many points in one call share a grid of at most four
-  /// million cells, and a million of them take 30 ms.
+  /// million cells, and a million of them take 60 ms.
   ///
   /// The surfaces must be closed: throws `Error` when an object of the filter has an edge with an odd number
   /// of triangles, and names it. The first call checks that in O(n log n).
