@@ -17,6 +17,24 @@ Vec3d unit_or_zero(const Vec3d& v) {
   return (1 / std::sqrt(dot(scaled, scaled))) * scaled + Vec3d{};
 }
 
+/// The power of two that brings coordinates of any size to about 1, so that their squares and sums neither
+/// overflow nor vanish. It changes no other rounding.
+struct UnitScale {
+  explicit UnitScale(double largest)
+      : factor(std::ldexp(1.0, -std::clamp(largest > 0 ? std::ilogb(largest) : 0, -1000, 1023))) {}
+
+  /// The value before scaling, at most the largest double.
+  double restored(double scaled) const {
+    constexpr double most = std::numeric_limits<double>::max();
+    return std::clamp(scaled / factor, -most, most);
+  }
+  Vec3d restored(const Vec3d& scaled) const {
+    return {restored(scaled.x), restored(scaled.y), restored(scaled.z)};
+  }
+
+  double factor;
+};
+
 }  // namespace
 
 void CurveFinder::find(const CurveInput& input, CurveLists& lists) {
@@ -174,26 +192,31 @@ void CurveFinder::add_curve(std::span<const std::uint32_t> members, CurveLists& 
 }
 
 void CurveFinder::measure(std::span<const std::uint32_t> members, IntersectionCurve& curve) const {
+  double largest = 0;
+  for_each_point(members, [&](const Vec3d& p) { largest = std::max(largest, largest_magnitude(p)); });
+  const UnitScale scale(largest);
+  const auto scaled = [&](std::uint32_t place) { return scale.factor * position(place); };
   Vec3d middle, normal, middle_of_points;
   double length = 0, points = 0;
   for (const std::uint32_t i : members) {
     const std::uint32_t place = first_place(i), count = contact(i).point_count;
-    for (std::uint32_t k = 0; k < count; ++k) middle_of_points = middle_of_points + position(place + k);
+    for (std::uint32_t k = 0; k < count; ++k) middle_of_points = middle_of_points + scaled(place + k);
     points += count;
-    const Vec3d along = position(place + count - 1) - position(place);
+    const Vec3d along = scaled(place + count - 1) - scaled(place);
     const double part = std::sqrt(dot(along, along));
-    middle = middle + (part / 2) * (position(place) + position(place + count - 1));
+    middle = middle + (part / 2) * (scaled(place) + scaled(place + count - 1));
     normal = normal + (is_turned(i) ? -part : part) * contact(i).normal;
     length += part;
   }
-  curve.centroid = length > 0 ? (1 / length) * middle : (1 / points) * middle_of_points;
+  const Vec3d centroid = length > 0 ? (1 / length) * middle : (1 / points) * middle_of_points;
+  curve.centroid = scale.restored(centroid);
+  Vec3d area;
   if (curve.kind == CurveKind::closed) {
-    Vec3d area;
     for (const Step& step : steps_)
-      area = area + cross(position(step.enter) - curve.centroid, position(step.leave) - curve.centroid);
-    curve.area = 0.5 * area;
+      area = area + cross(scaled(step.enter) - centroid, scaled(step.leave) - centroid);
+    curve.area = scale.restored(scale.restored(0.5 * area));
   }
-  curve.normal = unit_or_zero(curve.area);
+  curve.normal = unit_or_zero(area);
   if (curve.normal == Vec3d{}) curve.normal = unit_or_zero(normal);
   if (curve.normal == Vec3d{}) curve.normal = contact(members.front()).normal;
 }
@@ -305,20 +328,29 @@ const std::vector<std::uint32_t>* CurveFinder::smaller_side(const SurfaceView& s
 
 double CurveFinder::depth_of(std::span<const std::uint32_t> members, const IntersectionCurve& curve,
                              const CurveLists& lists) const {
-  const auto height = [&](const Vec3d& p) { return dot(p - curve.centroid, curve.normal); };
+  const std::span<const std::uint32_t> enclosed(lists.enclosed);
+  const auto of_a = enclosed.subspan(curve.first_enclosed, curve.enclosed_count_a),
+             of_b = enclosed.subspan(curve.first_enclosed + curve.enclosed_count_a, curve.enclosed_count_b);
+  double largest = 0;
+  // An enclosed vertex can lie at infinity.
+  const auto grow = [&](const Vec3d& p) {
+    if (is_finite(p)) largest = std::max(largest, largest_magnitude(p));
+  };
+  for_each_point(members, grow);
+  for (const std::uint32_t v : of_a) grow(input_.a.position(v));
+  for (const std::uint32_t v : of_b) grow(input_.b.position(v));
+  const UnitScale scale(largest);
   double low = std::numeric_limits<double>::infinity(), high = -low;
-  for (const std::uint32_t i : members) {
-    for (std::uint32_t k = 0; k < contact(i).point_count; ++k) {
-      low = std::min(low, height(position(first_place(i) + k)));
-      high = std::max(high, height(position(first_place(i) + k)));
-    }
-  }
-  const std::uint32_t* enclosed = lists.enclosed.data() + curve.first_enclosed;
-  for (std::uint32_t i = 0; i < curve.enclosed_count_a; ++i)
-    low = std::min(low, height(input_.a.position(*enclosed++)));
-  for (std::uint32_t i = 0; i < curve.enclosed_count_b; ++i)
-    high = std::max(high, height(input_.b.position(*enclosed++)));
-  return high - low;
+  const auto add = [&](const Vec3d& p, bool to_low, bool to_high) {
+    if (!is_finite(p)) return;
+    const double height = dot(scale.factor * p - scale.factor * curve.centroid, curve.normal);
+    if (to_low) low = std::min(low, height);
+    if (to_high) high = std::max(high, height);
+  };
+  for_each_point(members, [&](const Vec3d& p) { add(p, true, true); });
+  for (const std::uint32_t v : of_a) add(input_.a.position(v), true, false);
+  for (const std::uint32_t v : of_b) add(input_.b.position(v), false, true);
+  return scale.restored(high - low);
 }
 
 }  // namespace supple

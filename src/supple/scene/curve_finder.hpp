@@ -75,6 +75,12 @@ class CurveFinder {
     return contacts_[i].first_point - contacts_[0].first_point;
   }
   Vec3d position(std::uint32_t place) const { return points_[place].position; }
+  template <class Function>
+  void for_each_point(std::span<const std::uint32_t> members, Function function) const {
+    for (const std::uint32_t i : members) {
+      for (std::uint32_t k = 0; k < contact(i).point_count; ++k) function(position(first_place(i) + k));
+    }
+  }
   std::uint32_t degree(std::uint32_t key) const { return first_link_[key + 1] - first_link_[key]; }
   /// Whether side a of the curve is object b of the contact: only within one object.
   bool is_turned(std::uint32_t i) const { return is_turned_[i] != 0; }

@@ -244,6 +244,33 @@ TEST(Curves, OfABallThatDipsIntoACloth) {
   EXPECT_NEAR(curve.depth, cloth_normal.y > 0 ? -lowest : 0, 1e-12);
 }
 
+TEST(Curves, HaveFiniteNumbersAtAnySize) {
+  const auto curves_at = [](double size) {
+    Scene scene(penetration);
+    scene.add(moved_mesh(make_icosphere(4), {}, size));
+    scene.add(moved_mesh(make_cloth(6, 6, 5, 5), {0.01 * size, 0.5 * size, 0.02 * size}, size));
+    const auto curves = scene.detect().curves;
+    return std::vector(curves.begin(), curves.end());
+  };
+  const auto of_unit = curves_at(1);
+  ASSERT_EQ(of_unit.size(), 1u);
+  ASSERT_EQ(of_unit[0].kind, CurveKind::closed);
+  // 2^1021 is the largest power of two at which the meshes have finite coordinates.
+  for (const int exponent : {-1000, -600, 300, 600, 1021}) {
+    const double size = std::ldexp(1.0, exponent);
+    const auto curves = curves_at(size);
+    ASSERT_EQ(curves.size(), 1u) << exponent;
+    EXPECT_EQ(curves[0].kind, CurveKind::closed) << exponent;
+    const Vec3d of_one = of_unit[0].centroid, of_this = curves[0].centroid;
+    for (int axis = 0; axis < 3; ++axis) {
+      EXPECT_NEAR(of_this[axis] / size, of_one[axis], 1e-9) << exponent;
+      EXPECT_NEAR(curves[0].normal[axis], of_unit[0].normal[axis], 1e-9) << exponent;
+      EXPECT_TRUE(std::isfinite(curves[0].area[axis])) << exponent;
+    }
+    EXPECT_NEAR(curves[0].depth / size, of_unit[0].depth, 1e-9) << exponent;
+  }
+}
+
 TEST(Curves, AcrossACloth) {
   // A small cloth stands across a large one.
   TriangleMesh small = make_cloth(8, 8, 0.5, 0.5);
