@@ -18,6 +18,13 @@
 namespace supple {
 namespace {
 
+/// Queries do not read the groups of vertices.
+PlainObject object_of_queries(const SceneObject& object) {
+  PlainObject plain = plain_object(object);
+  plain.groups = {};
+  return plain;
+}
+
 /// As `is_accurate`, also for numbers that are negative or NaN, and for distances that no double holds.
 bool is_distance(double distance, const Rational& squared) {
   constexpr double largest = std::numeric_limits<double>::max();
@@ -125,7 +132,7 @@ PlainScene Scene::Implementation::plain_scene(const QueryFilter& seen, const cha
     const SceneObject& found = *slots_[id.index].object;
     if ((seen.object && id != *seen.object) || (found.options.group & seen.mask) == 0) continue;
     plain.ids.push_back(id);
-    plain.surfaces.emplace_back(plain_object(found));
+    plain.surfaces.emplace_back(object_of_queries(found));
   }
   return plain;
 }
@@ -275,8 +282,8 @@ std::vector<WrongAnswer> Scene::Implementation::verify_inside(std::span<const Ve
 
 std::optional<WrongAnswer> Scene::Implementation::wrong_distance(const ObjectPair& pair, double max_distance,
                                                                  const ProximityPair* found) const {
-  const PlainObject a = plain_object(*slots_[pair.a.index].object),
-                    b = plain_object(*slots_[pair.b.index].object);
+  const PlainObject a = object_of_queries(*slots_[pair.a.index].object),
+                    b = object_of_queries(*slots_[pair.b.index].object);
   std::optional<double> guess;
   if (found != nullptr) guess = found->distance;
   const std::optional<ExactPair> truth = nearest_pair_by_brute_force(a, b, max_distance, guess, parallel);
@@ -365,8 +372,8 @@ std::vector<WrongAnswer> Scene::Implementation::verify_distances(double max_dist
 std::vector<WrongAnswer> Scene::Implementation::verify_any_contact(ObjectId a, ObjectId b, bool found) const {
   const ObjectPair pair = two_objects(a, b, "verify_any_contact");
   const auto contacts =
-      intersecting_pairs_by_brute_force(plain_object(*slots_[pair.a.index].object),
-                                        plain_object(*slots_[pair.b.index].object), false, parallel);
+      intersecting_pairs_by_brute_force(object_of_queries(*slots_[pair.a.index].object),
+                                        object_of_queries(*slots_[pair.b.index].object), false, parallel);
   if (contacts.empty() != found) return {};
   return {{0, found ? "a contact" : "no contact",
            contacts.empty() ? "no contact"

@@ -408,6 +408,23 @@ TEST(VerifyQueries, NoticesWrongDistancesOfObjectsThatIntersect) {
 }
 
 /// Also where the squares of distances are no doubles.
+TEST(VerifyQueries, DoesNotReadTheGroupsOfVertices) {
+  Scene scene;
+  const TriangleMesh box = make_box({1, 1, 1});
+  const ObjectId a = scene.add(box), b = scene.add(box);
+  scene.translate(b, {0.5, 0.5, 0.5});
+  const std::vector<std::uint32_t> group(box.positions.size(), 1), mask(box.positions.size(), 2);
+  scene.set_vertex_groups(a, group, mask);
+  scene.set_vertex_groups(b, group, mask);
+  ASSERT_EQ(scene.detect().contacts.size(), 0u);
+  const auto pair = scene.distance(a, b);
+  ASSERT_TRUE(pair);
+  EXPECT_EQ(pair->distance, 0);
+  EXPECT_EQ(first_of(scene.verify_distance(a, b, pair)), "");
+  ASSERT_TRUE(scene.any_contact(a, b));
+  EXPECT_EQ(first_of(scene.verify_any_contact(a, b, true)), "");
+}
+
 TEST(VerifyQueries, SaysWhatBruteForceFinds) {
   for (const double scale : {1.0, 0x1p300, 0x1p-300, 0x1p-1030}) {
     Scene scene;
