@@ -74,8 +74,12 @@ struct NodePairList {
 /// separates the triangles for the whole step. Their elements are tested separately, so `contact` then takes
 /// precedence over every stage except the first.
 enum class PairStage : std::uint8_t {
-  not_tested,  ///< the scene does not test these objects: static, group and mask, filter, no self-collision
-  shared_vertex,   ///< both in one object, with a common vertex (or the same triangle): never a contact
+  /// The scene does not test these objects (static, group and mask, filter, no self-collision) or these
+  /// triangles (groups of vertices).
+  not_tested,
+  /// Both in one object, with a common vertex, or the same triangle: no contact, unless
+  /// `Neighbours::exact` finds that they also meet elsewhere.
+  shared_vertex,
   inert,           ///< a corner is not a finite number
   object_volumes,  ///< the volumes of the objects are apart: the broad phase
   octree_volumes,  ///< the volumes of two octree cells are apart: the narrow phase

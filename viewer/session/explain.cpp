@@ -44,10 +44,11 @@ std::string shape_of(const PairExplanation& why) {
 }
 
 std::string why_not_tested(const Pair& pair) {
-  if (pair.is_one_object()) return pair.name_a + " is not tested against itself: its self-collision is off";
+  if (pair.is_one_object() && !pair.a.options.self_collision)
+    return pair.name_a + " is not tested against itself: its self-collision is off";
   std::string text = pair.name_a + " and " + pair.name_b + " are not tested against each other: ";
   if (pair.a.options.is_static && pair.b.options.is_static) return text + "both are static";
-  return text + "their groups and masks exclude each other";
+  return text + "their groups and masks, or those of the triangles' vertices, exclude each other";
 }
 
 std::string sentence_of(const Pair& pair) {
@@ -57,7 +58,7 @@ std::string sentence_of(const Pair& pair) {
     case PairStage::not_tested:
       return why_not_tested(pair);
     case PairStage::shared_vertex:
-      return "they share a vertex; such triangles of one object are never a contact";
+      return "they share a vertex and meet nowhere else, or neighbours of one object are not tested";
     case PairStage::inert:
       return "a corner is not finite, so they touch nothing";
     case PairStage::object_volumes:

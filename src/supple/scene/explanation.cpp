@@ -4,6 +4,7 @@
 #include <span>
 #include <utility>
 
+#include "contact/neighbour_test.hpp"
 #include "contact/triangle_gap.hpp"
 #include "core/error.hpp"
 #include "geometry/aabb.hpp"
@@ -257,18 +258,28 @@ bool Scene::Implementation::are_near(const ContactJob& job, TrianglePair triangl
   const SceneObject &a = *slots_[job.a].object, &b = *slots_[job.b].object;
   const TrianglePoints p = points_of(a, triangles.a), q = points_of(b, triangles.b);
   const Triangle &ids_a = a.octree().triangles()[triangles.a], &ids_b = b.octree().triangles()[triangles.b];
+  const VertexGroups groups_a = a.vertex_groups(), groups_b = b.vertex_groups();
   const double reach = reach_of(job);
+  const auto may_touch = [&](const Triangle& of_a, const Triangle& of_b) {
+    return may_touch_by_groups(groups_a, of_a, groups_b, of_b);
+  };
+  const auto corner = [](std::uint32_t vertex) { return Triangle{vertex, vertex, vertex}; };
   const auto is_in = [&](std::uint32_t vertex, const Triangle& triangle) {
     return job.a == job.b && std::find(triangle.begin(), triangle.end(), vertex) != triangle.end();
   };
   for (std::size_t i = 0; i < 3; ++i) {
-    if (!is_in(ids_a[i], ids_b) && point_triangle_distance(p[i], q, reach)) return true;
-    if (!is_in(ids_b[i], ids_a) && point_triangle_distance(q[i], p, reach)) return true;
+    if (!is_in(ids_a[i], ids_b) && may_touch(corner(ids_a[i]), ids_b) &&
+        point_triangle_distance(p[i], q, reach))
+      return true;
+    if (!is_in(ids_b[i], ids_a) && may_touch(ids_a, corner(ids_b[i])) &&
+        point_triangle_distance(q[i], p, reach))
+      return true;
     const std::size_t i1 = (i + 1) % 3;
     for (std::size_t k = 0; k < 3; ++k) {
       const std::size_t k1 = (k + 1) % 3;
       const Triangle edge{ids_b[k], ids_b[k1], ids_b[k]};
       if (is_in(ids_a[i], edge) || is_in(ids_a[i1], edge)) continue;
+      if (!may_touch({ids_a[i], ids_a[i1], ids_a[i]}, edge)) continue;
       if (edge_edge_distance({p[i], p[i1]}, {q[k], q[k1]}, reach)) return true;
     }
   }
@@ -281,11 +292,18 @@ PairExplanation Scene::Implementation::explain_in_order(const ContactJob& job, T
   const bool same_object = job.a == job.b;
   if (same_object ? !a.options.self_collision : !may_pair({job.a, job.b}))
     return {.stage = PairStage::not_tested};
+  const Triangle &ids_a = a.octree().triangles()[triangles.a], &ids_b = b.octree().triangles()[triangles.b];
+  if (!may_touch_by_groups(a.vertex_groups(), ids_a, b.vertex_groups(), ids_b))
+    return {.stage = PairStage::not_tested};
   // Elements touch or are near even when the pair of triangles they belong to is not tested.
   if (question_.is_continuous() && touch_on_the_way(job, triangles)) return {};
   if (question_.has_proximity() && are_near(job, triangles)) return {};
-  if (same_object && share_vertex(a.octree().triangles()[triangles.a], b.octree().triangles()[triangles.b]))
-    return {.stage = PairStage::shared_vertex};
+  if (same_object && share_vertex(ids_a, ids_b)) {
+    const bool meet = question_.searches_at_rest() && a.options.neighbours == Neighbours::exact &&
+                      triangles.a != triangles.b && !is_inert(a, triangles.a) && !is_inert(b, triangles.b) &&
+                      meet_elsewhere(ids_a, points_of(a, triangles.a), ids_b, points_of(b, triangles.b));
+    return {.stage = meet ? PairStage::contact : PairStage::shared_vertex};
+  }
   if (is_inert(a, triangles.a) || is_inert(b, triangles.b)) return {.stage = PairStage::inert};
   const ObjectPair ids{id_of(job.a), id_of(job.b)};
   if (!same_object && !std::binary_search(jobs_.pairs.begin(), jobs_.pairs.end(), ids))

@@ -511,6 +511,53 @@ TEST(InspectionOfScenes, SeesRebuiltOctrees) {
   check_candidates(known, true);
 }
 
+TEST(InspectionOfScenes, FollowsTheGroupsOfVertices) {
+  const TriangleMesh ball = make_icosphere(2);
+  for (const ContactKinds kinds : {ContactKinds::intersection, ContactKinds::proximity}) {
+    Scene scene({.contacts = kinds});
+    const ObjectId a = scene.add(ball, {.margin = 1}), b = scene.add(ball, {.margin = 1});
+    // Only the first vertex of each may touch the other one.
+    std::vector<std::uint32_t> groups(ball.positions.size(), 1), masks(ball.positions.size(), 2);
+    for (const ObjectId id : {a, b}) {
+      scene.set_vertex_groups(id, groups, masks);
+      groups[0] = 3;
+      masks[0] = 3;
+    }
+    scene.detect();
+    std::size_t not_tested = 0;
+    for (std::uint32_t p = 0; p < ball.triangles.size(); ++p) {
+      const auto stage = SceneInspector(scene).explain(a, p, b, p).stage;
+      const Triangle& t = ball.triangles[p];
+      const bool may_touch = std::find(t.begin(), t.end(), 0) != t.end();
+      EXPECT_EQ(stage, may_touch ? PairStage::contact : PairStage::not_tested) << p;
+      not_tested += stage == PairStage::not_tested;
+    }
+    EXPECT_GT(not_tested, 0u);
+  }
+}
+
+TEST(InspectionOfScenes, KnowsNeighboursThatMeetElsewhere) {
+  // A fan of three triangles around a vertex; the third one cuts through the first.
+  TriangleMesh fan;
+  fan.positions = {{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {4, 2, -2}, {4, 1, 3}};
+  fan.triangles = {{0, 1, 2}, {0, 3, 4}, {0, 2, 3}};
+  for (const Neighbours neighbours : {Neighbours::skip, Neighbours::exact}) {
+    Scene scene;
+    const ObjectId id = scene.add(fan, {.self_collision = true, .neighbours = neighbours});
+    const auto contacts = scene.detect().contacts;
+    for (std::uint32_t p = 0; p < 3; ++p) {
+      for (std::uint32_t q = 0; q < 3; ++q) {
+        const bool listed = std::any_of(contacts.begin(), contacts.end(), [&](const Contact& c) {
+          return c.triangle_a == std::min(p, q) && c.triangle_b == std::max(p, q);
+        });
+        EXPECT_EQ(SceneInspector(scene).explain(id, p, id, q).stage,
+                  listed ? PairStage::contact : PairStage::shared_vertex);
+      }
+    }
+    EXPECT_EQ(contacts.size(), neighbours == Neighbours::exact ? 1u : 0u);
+  }
+}
+
 TEST(InspectionOfScenes, FollowsFiltersGroupsAndRemovals) {
   const TriangleMesh ball = make_icosphere(2);
   Known known;
