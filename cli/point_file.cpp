@@ -11,6 +11,7 @@
 #include <system_error>
 
 #include "supple/error.hpp"
+#include "text.hpp"
 
 namespace supple::cli {
 namespace {
@@ -36,8 +37,9 @@ void read_lines(const std::filesystem::path& path, const char* meaning, const Ad
       const std::string_view digits = word.starts_with('+') ? word.substr(1) : word;
       const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
       if (error != std::errc() || end != digits.data() + digits.size())
-        throw Error(fmt::format("{}: line {}: \"{}\" is not a number that a double can hold; a line has {}",
-                                path.string(), number, word.substr(0, 40), meaning));
+        throw Error(
+            one_line(fmt::format("{}: line {}: \"{}\" is not a number that a double can hold; a line has {}",
+                                 path.string(), number, word.substr(0, 40), meaning)));
       if (found < count) values[found] = value;
     }
     if (found == 0) continue;

@@ -81,7 +81,7 @@ class RowReader {
   std::optional<Row> next();
   std::uint64_t line_number() const { return line_number_; }
   [[noreturn]] void fail(const std::string& what) const {
-    throw Error(fmt::format("{}:{}: {}", path_.string(), line_number_, what));
+    throw Error(one_line(fmt::format("{}:{}: {}", path_.string(), line_number_, what)));
   }
 
  private:
@@ -271,7 +271,7 @@ void read_answers(const fs::path& path, QueryFile& file) {
   const rapidjson::ParseResult parsed =
       rapidjson::Reader().Parse<rapidjson::kParseIterativeFlag>(input, handler);
   const auto fail = [&](const std::string& what) {
-    throw Error(fmt::format("{}:{}: {}", path.string(), line_of(text, parsed.Offset()), what));
+    throw Error(one_line(fmt::format("{}:{}: {}", path.string(), line_of(text, parsed.Offset()), what)));
   };
   if (parsed.Code() == rapidjson::kParseErrorTermination)
     fail(handler.in_list ? fmt::format("entry {} must be true or false", handler.answers.size())
