@@ -38,6 +38,10 @@ if(SUPPLE_SANITIZE)
   add_link_options(-fsanitize=${SUPPLE_SANITIZE})
   if(CMAKE_CXX_COMPILER_ID MATCHES "Clang")
     add_compile_options(-fsanitize-ignorelist=${CMAKE_CURRENT_LIST_DIR}/SanitizerIgnoreList.txt)
+    if(SUPPLE_SANITIZE MATCHES "address")
+      # The fuzz targets follow which branches an input reaches.
+      add_compile_options(-fsanitize=fuzzer-no-link)
+    endif()
   endif()
   if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
     # Kernels for SSE4, AVX2 and AVX-512 only: with sanitizers, clang needs minutes for the portable kernels.

@@ -64,11 +64,14 @@ std::vector<std::byte> pack(const SceneView& show) {
   const bool has_frames = show.frames != nullptr;
   packer(show.title, show.simulation, show.objects, has_frames);
   if (has_frames) packer(PackedFrames(*show.frames, show.objects, extent_of(show).center()));
-  const std::vector<std::byte> content = packer.take();
+  return with_header(packer.take());
+}
+
+std::vector<std::byte> with_header(std::span<const std::byte> content) {
   const Header header{.version = own_version(), .checksum = checksum_of(content)};
   std::vector<std::byte> bytes(sizeof(header) + content.size());
   std::memcpy(bytes.data(), &header, sizeof(header));
-  std::memcpy(bytes.data() + sizeof(header), content.data(), content.size());
+  if (!content.empty()) std::memcpy(bytes.data() + sizeof(header), content.data(), content.size());
   return bytes;
 }
 

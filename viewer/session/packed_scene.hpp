@@ -12,6 +12,8 @@ namespace supple::viewer {
 /// reads them. Frames of a recording are packed as floats. Throws `Error` when the motion of an object
 /// cannot be packed.
 std::vector<std::byte> pack(const SceneView& show);
+/// Adds the header of this version, with a checksum, to a packed scene without one. `pack` does so.
+std::vector<std::byte> with_header(std::span<const std::byte> content);
 /// Throws `Error` when `pack` of this version did not write the bytes.
 SceneView unpack(std::span<const std::byte> bytes);
 
