@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "child_reader.hpp"
 #include "supple/error.hpp"
 #include "supple/formats.hpp"
 
@@ -13,7 +14,7 @@ namespace supple::cli {
 TriangleMesh read_mesh(const std::filesystem::path& path) {
   if (!std::filesystem::exists(path))
     throw Error(fmt::format("{}: there is no such file; check the folder and the spelling", path.string()));
-  return load_any_mesh(path);
+  return is_read_by_assimp(path) ? load_in_child(path) : load_any_mesh(path);
 }
 
 const std::filesystem::path& FrameSequence::file_at(std::uint64_t frame) const {

@@ -154,13 +154,20 @@ std::span<const std::string_view> supported_extensions() {
   return views;
 }
 
+bool is_read_by_assimp(const std::filesystem::path& path) {
+  const std::string extension = lower_case_extension(path);
+  const std::span<const std::string_view> known = supported_extensions();
+  return std::find(native_extensions.begin(), native_extensions.end(), extension) ==
+             native_extensions.end() &&
+         std::binary_search(known.begin(), known.end(), extension);
+}
+
 TriangleMesh load_any_mesh(const std::filesystem::path& path) {
   const std::string extension = lower_case_extension(path);
   if (std::find(native_extensions.begin(), native_extensions.end(), extension) != native_extensions.end()) {
     return load_mesh(path);
   }
-  const std::span<const std::string_view> known = supported_extensions();
-  if (!std::binary_search(known.begin(), known.end(), extension)) {
+  if (!is_read_by_assimp(path)) {
     fail("cannot read " + shown(path) + ": unknown extension " + in_quotes(extension) +
          "; .obj, .off, .ply, .stl, .gltf, .glb, .fbx, .dae, .3ds and more are supported");
   }

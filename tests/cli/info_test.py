@@ -39,6 +39,14 @@ class Info(ProgramTest):
         self.assertEqual((mesh["triangles"], mesh["edges"], mesh["lines"], mesh["points"]), (0, 0, 2, 2))
         self.assertIn("\n  lines        2 edges, and 2 points\n", self.run_here("info", "rod.obj").out)
 
+    def test_files_that_make_assimp_crash(self):
+        # A failed assertion, and a null pointer.
+        for name, text in (("a.nff", "pabcdefg"), ("a.lws", "}abcdefg")):
+            self.write(name, text)
+            done = self.run_here("info", name)
+            self.assertEqual((done.status, done.out), (2, ""))
+            self.assertRegex(done.error, rf"\Asupple: {name}: Assimp, which reads this format, crashes on the file;.*\n\Z")
+
     def test_scene_file(self):
         self.write("scene.toml", '[[object]]\nname = "ring"\nmodel = "torus"\ntranslate = [1, 0, 0]\n[[object]]\nmodel = "box"\n')
         ring, box = self.info("scene.toml")

@@ -18,8 +18,12 @@ namespace supple {
 /// vertices of one node with equal coordinates become one vertex, numbered by first use. Vertices of
 /// different nodes stay separate.
 ///
-/// Throws `Error` with the reason when the file cannot be read.
+/// Throws `Error` with the reason when the file cannot be read. Assimp can crash on damaged files; a program
+/// that reads files of strangers can call this function in a child process.
 TriangleMesh load_any_mesh(const std::filesystem::path& path);
+
+/// Whether `load_any_mesh` gives the file to Assimp, by its extension.
+bool is_read_by_assimp(const std::filesystem::path& path);
 
 /// The extensions that `load_any_mesh` reads: lower case, with their dot, sorted. Valid until the program
 /// ends.
