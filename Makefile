@@ -3,12 +3,15 @@ JOBS ?= $(shell nproc)
 
 BASE ?= HEAD
 
-.PHONY: help demo program test build bench bench-quick bench-kernels bench-compare contest check format docs figures clean dependencies
+SECONDS ?= 30
+
+.PHONY: help demo program test build fuzz bench bench-quick bench-kernels bench-compare contest check format docs figures clean dependencies
 
 help:
 	@echo 'make demo     build the program, drop a cloth over a ball, collide nine objects, write a page that shows them'
 	@echo 'make test     build, then every test'
 	@echo 'make build    the release build: build/release/bin/supple'
+	@echo 'make fuzz     every fuzz target with sanitizers, for SECONDS=30 each'
 	@echo 'make bench    Supple against Embree, CGAL, FCL, Bullet and ODE: up to 25 minutes; bench-quick takes one'
 	@echo 'make bench-kernels   single stages and kernels of Supple'
 	@echo 'make bench-compare BASE=COMMIT   this working tree against a commit'
@@ -41,6 +44,13 @@ test: build
 build: dependencies
 	cmake --preset release
 	cmake --build --preset release -j $(JOBS)
+
+# FUZZ contains options of the script: make fuzz SECONDS=600 FUZZ="obj scene --keep --record"
+fuzz:
+	tools/install_dependencies.sh --ci
+	cmake --preset asan
+	cmake --build --preset asan -j $(JOBS) --target fuzz_targets
+	fuzz/run.py --seconds $(SECONDS) $(FUZZ)
 
 # CONTEST contains options of the script: make bench CONTEST="--only 'B/*' --save"
 bench: contest
