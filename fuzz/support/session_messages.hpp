@@ -1,6 +1,7 @@
 #pragma once
 
-#include <rapidjson/document.h>
+#include <rapidjson/memorystream.h>
+#include <rapidjson/reader.h>
 
 #include <cstddef>
 #include <cstdint>
@@ -27,10 +28,12 @@ inline void check_session_message(std::span<const std::byte> message) {
     const std::size_t data = place + 16, length = word(place + 12);
     check(data + length <= message.size(), "a section ends behind its message");
     if (word(place) == static_cast<std::uint32_t>(viewer::Tag::text)) {
-      rapidjson::Document json;
-      json.Parse<rapidjson::kParseValidateEncodingFlag>(reinterpret_cast<const char*>(message.data() + data),
-                                                        length);
-      check(!json.HasParseError() && json.IsObject(), "a text is not a JSON object");
+      const char* const text = reinterpret_cast<const char*>(message.data() + data);
+      rapidjson::MemoryStream stream(text, length);
+      rapidjson::BaseReaderHandler<> ignore;
+      check(length > 0 && text[0] == '{', "a text is not a JSON object");
+      check(rapidjson::Reader().Parse<rapidjson::kParseValidateEncodingFlag>(stream, ignore),
+            "a text is not JSON");
     }
     place = data + (length + 15) / 16 * 16;
   }
