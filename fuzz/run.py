@@ -49,7 +49,7 @@ def command_of(name, program, build, seconds):
         return [program, "--random", str(seconds)]
     grown = build / "fuzz" / "corpora" / name
     grown.mkdir(parents=True, exist_ok=True)
-    command = [program, grown, f"-max_total_time={seconds}", "-timeout=60", "-rss_limit_mb=3000", "-print_final_stats=1",
+    command = [program, grown, *(path for path in [FUZZ / "regressions" / name] if path.is_dir()), f"-max_total_time={seconds}", "-timeout=60", "-rss_limit_mb=3000", "-print_final_stats=1",
                "-artifact_prefix=./"]
     dictionary = FUZZ / "dictionaries" / f"{name}.dict"
     return command + ([f"-dict={dictionary}"] if dictionary.exists() else [])
