@@ -50,8 +50,8 @@ class Refusal {
 };
 
 /// Calls `life(refusal)` once for each of its allocations, which the refusal refuses. A life frees all that
-/// it allocates. Takes about 200 allocations, evenly spread (20 under sanitizers), and every one with
-/// `SUPPLE_FAULTS=all`; `many` takes 2000.
+/// it allocates. Takes about 500 allocations, evenly spread (20 under sanitizers), and every one with
+/// `SUPPLE_FAULTS=all`; `many` takes 4000.
 template <class Life>
 void refuse_every_allocation(const Life& life, bool counts_leaks = true) {
   constexpr std::int64_t many = std::numeric_limits<std::int64_t>::max();
@@ -67,7 +67,7 @@ void refuse_every_allocation(const Life& life, bool counts_leaks = true) {
   const char* const wanted = std::getenv("SUPPLE_FAULTS");
   const bool takes_all = wanted != nullptr && std::string_view(wanted) == "all";
   const bool takes_many = wanted != nullptr && std::string_view(wanted) == "many";
-  const std::int64_t few = std::getenv("SUPPLE_SANITIZED") != nullptr ? 20 : takes_many ? 2000 : 200;
+  const std::int64_t few = std::getenv("SUPPLE_SANITIZED") != nullptr ? 20 : takes_many ? 4000 : 500;
   const std::int64_t stride = takes_all ? 1 : allocations / few + 1;
   std::int64_t lives = 0, failures = 0;
   for (std::int64_t n = 1; n <= allocations && !testing::Test::HasFailure(); n += stride, ++lives) {
