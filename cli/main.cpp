@@ -57,23 +57,44 @@ void open_closed_streams() {
   }
 }
 
+void report_lack_of_memory() {
+  // Without a buffer, so that this needs no memory.
+  std::fputs("supple: the memory is used up; give fewer or smaller meshes, or fewer --threads\n", stderr);
+}
+
+/// Libraries end the program where memory runs out in functions that must not throw. Then there is nothing to
+/// clean up: recordings are valid at any moment.
+[[noreturn]] void terminate() {
+  try {
+    if (const std::exception_ptr thrown = std::current_exception()) std::rethrow_exception(thrown);
+  } catch (const std::bad_alloc&) {
+    report_lack_of_memory();
+    std::_Exit(exit_unusable);
+  } catch (...) {  // a fault of the program
+  }
+  std::abort();
+}
+
 }  // namespace
 }  // namespace supple::cli
 
 int main(int argument_count, char** arguments) {
   using namespace supple::cli;
   open_closed_streams();
+  std::set_terminate(terminate);
   // A limit of the file size (ulimit -f) is then an error of writing, as a full disk is.
   std::signal(SIGXFSZ, SIG_IGN);
   // The program closes all recordings before it exits. Without this call, HDF5 would report handles that a
   // damaged recording left open to standard error.
   H5dont_atexit();
+  // The program reports what fails; HDF5 must not print its own messages.
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
   try {
     const int exit_status = run(parse_command_line(argument_count, arguments));
     OutputFile("-").close();
     return exit_status;
   } catch (const std::bad_alloc&) {
-    fmt::print(stderr, "supple: the memory is used up; give fewer or smaller meshes, or fewer --threads\n");
+    report_lack_of_memory();
     return exit_unusable;
   } catch (const std::filesystem::filesystem_error& error) {
     fmt::print(stderr, "supple: {}: {}\n", one_line(error.path1().string()), error.code().message());

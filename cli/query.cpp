@@ -84,7 +84,7 @@ void for_batches(std::size_t count, std::size_t batch, bool shows_progress, cons
 }
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return std::max(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), 0.0);
 }
 
 template <class Query, class Result, class Answer, class Verify>

@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdint>
@@ -84,7 +85,7 @@ int Run::go() {
   const Clock::time_point start = Clock::now();
   add_frame(simulation_.detect());
   const bool stable = take_steps(interruption);
-  finish(std::chrono::duration<double>(Clock::now() - start).count());
+  finish(std::max(std::chrono::duration<double>(Clock::now() - start).count(), 0.0));
   if (!stable) return exit_unusable;
   return interruption.signal() == 0 ? reports_.exit_status() : status_of_interruption(interruption.signal());
 }
@@ -124,7 +125,7 @@ void Run::finish(double seconds) {
     const auto steps = static_cast<double>(simulation_.step_count());
     fmt::print("{} of {} s: {:.6g} s simulated in {:.3g} s, {:.3g} steps/s\n",
                counted(simulation_.step_count(), "step"), simulation_.options().time_step, simulation_.time(),
-               seconds, steps / seconds);
+               seconds, seconds > 0 ? steps / seconds : 0);
   }
   reports_.finish();
   if (reports_.has_tables()) energies_.print(simulation_);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <chrono>
 #include <cstdint>
 #include <string>
@@ -27,7 +28,7 @@ template <class Call>
 double seconds_of(Call&& call) {
   const auto start = std::chrono::steady_clock::now();
   call();
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return std::max(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), 0.0);
 }
 
 /// The minimum of several times of the same work, because other work of the machine only adds time. 0 when

@@ -48,7 +48,9 @@ struct RigidTransform {
 ///
 /// Errors: every function that takes an `ObjectId` throws `Error` when the object is not in the scene.
 /// Functions that move an object throw `Error` when it is static, and when a number of a translation or
-/// rotation is not finite. `SceneInspector` shows the inside of a scene.
+/// rotation is not finite. When memory runs out, functions throw `std::bad_alloc`. The scene stays usable: a
+/// change that failed has no effect, events are not lost, and every call can be repeated. `SceneInspector`
+/// shows the inside of a scene.
 class Scene {
  public:
   /// Throws `Error` when an option is out of its range.

@@ -6,6 +6,7 @@
 #include <cerrno>
 #include <chrono>
 #include <cstring>
+#include <new>
 #include <optional>
 #include <system_error>
 #include <tuple>
@@ -331,7 +332,7 @@ class Recorder::Implementation {
   void append(double time, std::span<const std::span<const Vec3d>> positions, const Rows& rows);
   std::size_t pending_bytes();
   void write_out();
-  void close_file();
+  void abandon();
   [[noreturn]] void stop();
 
   fs::path path_;
@@ -422,17 +423,23 @@ void Recorder::Implementation::create(const RecordingHeader& header) {
   } catch (const Hdf5Failure&) {
     error = std::error_code(file_ ? write_error(file_.id()) : ENOMEM, std::generic_category());
     if (!error) error = std::error_code(EIO, std::generic_category());
+  } catch (const std::bad_alloc&) {
+    abandon();
+    unlink(draft.c_str());
+    throw;
   }
   if (!error) return;
-  if (file_) discard_writes(file_.id());
-  close_file();
-  std::error_code ignored;
-  fs::remove(draft, ignored);
+  abandon();
+  unlink(draft.c_str());
   fail_to_create(path_, error.value());
 }
 
 void Recorder::Implementation::check_open() const {
   if (!failure_.empty()) throw Error(failure_);
+  if (!datasets_ && !closed_) {
+    throw Error(path_.string() + ": the memory was used up; the recording ends after its first " +
+                std::to_string(flushed_frames_) + " frames, record again with more memory");
+  }
   if (closed_) throw Error(path_.string() + ": the recording is closed; add frames before close()");
 }
 
@@ -468,6 +475,9 @@ void Recorder::Implementation::add(double time, std::span<const std::span<const 
     if (pending_bytes() >= most_pending_bytes || Clock::now() - last_flush_ >= flush_interval) write_out();
   } catch (const Hdf5Failure&) {
     stop();
+  } catch (const std::bad_alloc&) {
+    abandon();  // a part of the frame may be in memory
+    throw;
   }
 }
 
@@ -521,12 +531,13 @@ void Recorder::Implementation::stop() {
   failure_ = path_.string() + ": writing failed: " + (error != 0 ? std::strerror(error) : "HDF5 refused") +
              "; the recording ends after its first " + std::to_string(flushed_frames_) +
              " frames, make room and record again";
-  discard_writes(file_.id());
-  close_file();
+  abandon();
   throw Error(failure_);
 }
 
-void Recorder::Implementation::close_file() {
+/// Leaves the file as the last flush left it.
+void Recorder::Implementation::abandon() {
+  if (file_) discard_writes(file_.id());
   datasets_.reset();
   file_.reset();
 }
@@ -538,6 +549,9 @@ void Recorder::Implementation::flush() {
     write_out();
   } catch (const Hdf5Failure&) {
     stop();
+  } catch (const std::bad_alloc&) {
+    abandon();
+    throw;
   }
 }
 

@@ -54,7 +54,8 @@ void Player::restart() {
 }
 
 Player::Outcome Player::advance(Stage& stage, double seconds) {
-  const double passed = std::clamp(seconds, 0.0, longest_pause);
+  // Clocks jump. NaN counts as no time.
+  const double passed = seconds > 0 ? std::min(seconds, longest_pause) : 0;
   if (SimulationSource* const simulation = stage.simulation())
     return advance_simulation(*simulation, stage.show().simulation.time_step, passed);
   return advance_recording(*stage.recording(), passed);

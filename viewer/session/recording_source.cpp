@@ -61,7 +61,8 @@ std::uint64_t RecordingSource::frame_at(double seconds) const {
 void RecordingSource::seek(std::uint64_t frame) {
   const auto start = std::chrono::steady_clock::now();
   read(frame);
-  read_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
+  read_seconds_ = std::max(taken.count(), 0.0);
   for (std::size_t i = 0; i < objects_.size(); ++i) {
     if (!show_.objects[i].options.is_static) place(i, has_paths() && frame > 0);
   }

@@ -11,7 +11,8 @@
 namespace supple::viewer {
 
 /// One viewer session (docs/protocol.md): takes commands, produces messages. It has no clock, no threads of
-/// its own and no network, so the program and the page run the same code.
+/// its own and no network, so the program and the page run the same code. When memory runs out, functions
+/// produce a failure message or throw `std::bad_alloc`; after the exception, only destroy the session.
 class Session {
  public:
   /// Throws `Error` when an object or an option is invalid.
@@ -22,8 +23,7 @@ class Session {
 
   /// Call when a page connects or reconnects. It gets the whole scene again and has no credit yet.
   void greet();
-  /// Executes a command in JSON. An invalid command produces a failure message; this function does not
-  /// throw.
+  /// Executes a command in JSON. An invalid command produces a failure message, not an exception.
   void command(std::string_view json);
   /// Lets `seconds` pass; takes at most one step or frame. Returns the number of seconds until the next
   /// change if no command arrives; 0 when there is more to do.

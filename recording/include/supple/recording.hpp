@@ -73,7 +73,8 @@ class Recorder {
   Recorder& operator=(Recorder&&) noexcept;
 
   /// Adds a frame: the positions of each object, in the order of the header. Throws `Error` when a size
-  /// differs, or when the disk is full; flushed frames stay readable.
+  /// differs, or when the disk is full; flushed frames stay readable. When memory runs out in a function of
+  /// the recorder, the recording ends after the flushed frames, too.
   void add(double time, std::span<const std::span<const Vec3d>> positions, const DetectResult& result);
   /// Writes all frames to the file. Throws `Error` when the disk is full.
   void flush();

@@ -110,6 +110,9 @@ struct MotionError : Error {
 
 /// Moves objects by their own motion, step by step, and finds the collisions between them.
 ///
+/// When memory runs out, functions that are not const throw `std::bad_alloc` and may have done a part of
+/// their work: then only destroy the simulation.
+///
 /// ```cpp
 /// supple::Simulation simulation({.border = supple::Border{{{-1, -1, -1}, {1, 1, 1}}}, .seed = 1});
 /// simulation.add(supple::make_model("rabbit"), {}, supple::MassSpringMotion{.random_speed = 0.4});

@@ -45,19 +45,38 @@ std::unique_ptr<PairSearch> make_search(BroadPhaseMethod method, BoundingVolume 
 
 PairFinder::PairFinder(BroadPhaseMethod method, BoundingVolume bounding_volume,
                        const SceneOctreeOptions& octree_options, const WantedKinds& wanted)
-    : volumes_(bounding_volume, wanted), search_(make_search(method, bounding_volume, octree_options)) {
+    : method_(method),
+      bounding_volume_(bounding_volume),
+      octree_options_(octree_options),
+      volumes_(bounding_volume, wanted),
+      search_(make_search(method, bounding_volume, octree_options)) {
   found_.stats.method = method == BroadPhaseMethod::automatic ? BroadPhaseMethod::grid : method;
 }
 
 std::span<const IndexPair> PairFinder::find_pairs(const ObjectVolumes& given, const Parallel& parallel) {
   found_.stats = {.method = found_.stats.method};
-  volumes_.update(given, parallel);
+  ObjectVolumes wanted = given;
+  if (!is_complete_) {
+    start_afresh();
+    wanted.dirty = std::nullopt;
+  }
+  is_complete_ = false;
+  volumes_.update(wanted, parallel);
   found_.stats.objects_changed = volumes_.changed().size();
   if (found_.stats.objects_changed != 0) search_->search(volumes_, parallel, found_);
+  is_complete_ = true;
   return found_.pairs;
 }
 
+/// When memory ran out, the volumes may be those of the failed step, and the search may know half of them.
+void PairFinder::start_afresh() {
+  search_ = make_search(method_, bounding_volume_, octree_options_);
+  volumes_ = VolumeStore(bounding_volume_, volumes_.wanted());
+  found_.pairs.clear();
+}
+
 std::string PairFinder::validate() const {
+  if (!is_complete_) return "";  // the next search uses nothing of it
   const auto& pairs = found_.pairs;
   if (!std::is_sorted(pairs.begin(), pairs.end()) ||
       std::adjacent_find(pairs.begin(), pairs.end()) != pairs.end())

@@ -18,6 +18,7 @@ class PairFinder {
 
   /// All overlapping pairs, sorted by (a, b), each once. The span lasts until the next call. When no volume
   /// changed, the method does not run and the pairs stay.
+  /// After a call that threw an exception, the next one searches all volumes.
   std::span<const IndexPair> find_pairs(const ObjectVolumes& given, const Parallel& parallel);
   const BroadPhaseStats& stats() const { return found_.stats; }
   std::vector<SceneRegion> regions(std::optional<std::uint32_t> slot = {}) const {
@@ -26,8 +27,14 @@ class PairFinder {
   std::string validate() const;
 
  private:
+  void start_afresh();
+
+  BroadPhaseMethod method_;
+  BoundingVolume bounding_volume_;
+  SceneOctreeOptions octree_options_;
   VolumeStore volumes_;
   std::unique_ptr<PairSearch> search_;
+  bool is_complete_ = true;  // the last search
   FoundPairs found_;
 };
 

@@ -1,17 +1,19 @@
 #pragma once
 
+#include <algorithm>
 #include <chrono>
 
 namespace supple {
 
-/// Measures seconds by the steady clock since construction or since the last lap.
+/// Measures seconds by the steady clock since construction or since the last lap. Never negative, also when
+/// the clock of a virtual machine goes backwards.
 class Timer {
  public:
   double lap() {
     const auto now = std::chrono::steady_clock::now();
     const double seconds = std::chrono::duration<double>(now - start_).count();
     start_ = now;
-    return seconds;
+    return std::max(seconds, 0.0);
   }
 
  private:

@@ -24,10 +24,11 @@ class ElementPairBatches {
   static constexpr std::size_t capacity = 1024;
   using Sink = void (*)(void* context, ElementPairKind kind, std::span<const ElementPair> pairs);
 
-  /// The receiver of the batches; borrowed until `flush`.
+  /// The receiver of the batches; borrowed until `flush`. Drops pairs that an exception has left behind.
   void set_sink(Sink sink, void* context) {
     sink_ = sink;
     context_ = context;
+    for (Batch& batch : batches_) batch.count = 0;
   }
   /// Space for `count` more pairs of the kind; `count` is far below the capacity. The caller writes pairs
   /// there and passes their number to `added`.

@@ -116,6 +116,7 @@ class Traversal {
   void find_triangle_pairs(const ObjectPairView& pair, NodePair root, TraversalStats& stats,
                            OnLeaves&& on_leaves, Sink&& sink) {
     leaf_boxes_.clear();
+    candidates_.clear();  // an exception may have left some there
     descend(pair, root, stats, [&](std::span<const LeafPair> leaves) {
       on_leaves(leaves);
       test_leaves(pair, leaves, stats, sink);

@@ -10,7 +10,13 @@ constexpr std::size_t grain = 16384;
 
 }  // namespace
 
+void VertexBuffer::reserve(std::size_t count, bool is_double) {
+  if (is_double) doubles_.reserve(3 * count + 1);
+  if (!is_double) floats_.reserve(3 * count + 1);
+}
+
 void VertexBuffer::resize(std::size_t count, bool is_double) {
+  reserve(count, is_double);  // before anything changes
   // A change of precision frees the other storage. This happens once, not in the steady state.
   if (is_double != is_double_ || count != count_) {
     if (is_double) std::vector<float>().swap(floats_);

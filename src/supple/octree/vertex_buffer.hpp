@@ -37,6 +37,8 @@ class VertexBuffer {
     return is_double_ ? view_of(doubles()) : view_of(floats());
   }
 
+  /// Takes memory, so that `assign` and `transform` of this many positions cannot fail.
+  void reserve(std::size_t count, bool is_double);
   void assign(const PositionsView& positions, const Parallel& parallel);
 
   /// Vertex `ids[i]` becomes `positions[i]`, which has the precision of the buffer. Borrowed positions are

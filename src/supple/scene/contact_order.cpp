@@ -60,9 +60,9 @@ class ContactOrder::Keys {
 
 std::span<const std::uint32_t> ContactOrder::sort(std::span<const FoundContact> found) {
   if (order_.size() < found.size()) {
-    order_.resize(found.size());
     keys_.resize(found.size() + lanes);
     numbers_.resize(found.size());
+    order_.resize(found.size());  // the last: its size says that all have room
   }
   const std::span<std::uint32_t> order(order_.data(), found.size());
   const Keys keys(found);

@@ -1,6 +1,8 @@
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "core/error.hpp"
@@ -477,83 +479,87 @@ void Scene::Implementation::report_non_finite() {
 }
 
 void Scene::Implementation::publish() {
-  result.stopped = false;
+  DetectResult found = result;
+  found.stopped = false;
   if (question_.searches_at_rest()) {
-    result.truncated = contact_pass_.is_truncated();
-    result.groups = contact_pass_.groups();
-    result.contacts = contact_pass_.contacts();
-    result.contact_points = contact_pass_.contact_points();
-    result.colliding_vertex_groups = contact_pass_.colliding_vertex_groups();
-    result.colliding_vertices = contact_pass_.colliding_vertices();
+    found.truncated = contact_pass_.is_truncated();
+    found.groups = contact_pass_.groups();
+    found.contacts = contact_pass_.contacts();
+    found.contact_points = contact_pass_.contact_points();
+    found.colliding_vertex_groups = contact_pass_.colliding_vertex_groups();
+    found.colliding_vertices = contact_pass_.colliding_vertices();
   }
   if (question_.is_continuous()) {
-    result.truncated = result.truncated || impact_pass_.is_truncated();
-    result.continuous_groups = impact_pass_.groups();
-    result.continuous_contacts = impact_pass_.contacts();
+    found.truncated = found.truncated || impact_pass_.is_truncated();
+    found.continuous_groups = impact_pass_.groups();
+    found.continuous_contacts = impact_pass_.contacts();
   }
   if (question_.has_penetration()) {
-    result.penetration_groups = penetration_pass_.groups();
-    result.penetrations = penetration_pass_.penetrations();
-    result.vertices_on_surface = penetration_pass_.vertices_on_surface();
-    result.contained_parts = penetration_pass_.contained_parts();
+    found.penetration_groups = penetration_pass_.groups();
+    found.penetrations = penetration_pass_.penetrations();
+    found.vertices_on_surface = penetration_pass_.vertices_on_surface();
+    found.contained_parts = penetration_pass_.contained_parts();
     const CurveLists& curves = penetration_pass_.curves();
-    result.curves = curves.curves;
-    result.curve_contacts = curves.contacts;
-    result.curve_points = curves.points;
-    result.enclosed_vertices = curves.enclosed;
+    found.curves = curves.curves;
+    found.curve_contacts = curves.contacts;
+    found.curve_points = curves.points;
+    found.enclosed_vertices = curves.enclosed;
   }
-  list_deep_pairs();
+  list_deep_pairs(found);
   near_pairs_.clear();
   if (question_.has_proximity()) {
-    result.truncated = result.truncated || proximity_pass_.is_truncated();
-    result.proximity_groups = proximity_pass_.groups();
-    result.proximity_pairs = proximity_pass_.pairs();
-    for (const ContactGroup& group : result.proximity_groups) {
+    found.truncated = found.truncated || proximity_pass_.is_truncated();
+    found.proximity_groups = proximity_pass_.groups();
+    found.proximity_pairs = proximity_pass_.pairs();
+    for (const ContactGroup& group : found.proximity_groups) {
       if (group.a != group.b) near_pairs_.push_back({group.a, group.b});
     }
   }
-  list_touching_pairs();
+  list_touching_pairs(found);
   leaf_pairs_.clear();
-  for (const CollidingVertices& group : result.colliding_vertex_groups) {
+  for (const CollidingVertices& group : found.colliding_vertex_groups) {
     if (group.a != group.b) leaf_pairs_.push_back({group.a, group.b});
   }
-  volume_pairs_.update(jobs_.pairs);
-  narrow_phase_pairs_.update(leaf_pairs_);
-  contact_pairs_.update(touching_pairs_);
-  near_object_pairs_.update(near_pairs_);
-  penetrating_pairs_.update(deep_pairs_);
+  using Update = std::pair<PairCache*, std::span<const ObjectPair>>;
+  const std::array updates{Update{&volume_pairs_, jobs_.pairs}, Update{&narrow_phase_pairs_, leaf_pairs_},
+                           Update{&contact_pairs_, touching_pairs_}, Update{&near_object_pairs_, near_pairs_},
+                           Update{&penetrating_pairs_, deep_pairs_}};
+  // From here on, nothing may run out of memory: each pair begins and ends exactly once.
+  for (const auto& [cache, pairs] : updates) cache->prepare(pairs);
+  for (const auto& [cache, pairs] : updates) cache->update(pairs);
   ++step_;
-  result.object_pairs = jobs_.pairs;
-  result.non_finite_vertices = non_finite_;
-  result.volume_events = volume_pairs_.events();
-  result.narrow_phase_events = narrow_phase_pairs_.events();
-  result.contact_events = contact_pairs_.events();
-  result.proximity_events = near_object_pairs_.events();
-  result.penetration_events = penetrating_pairs_.events();
+  found.object_pairs = jobs_.pairs;
+  found.non_finite_vertices = non_finite_;
+  found.volume_events = volume_pairs_.events();
+  found.narrow_phase_events = narrow_phase_pairs_.events();
+  found.contact_events = contact_pairs_.events();
+  found.proximity_events = near_object_pairs_.events();
+  found.penetration_events = penetrating_pairs_.events();
+  result = found;
   detected_ = true;
 }
 
 /// Pairs of objects one of which has a vertex or a part inside the other, each once, ascending.
-void Scene::Implementation::list_deep_pairs() {
+void Scene::Implementation::list_deep_pairs(const DetectResult& found) {
   deep_pairs_.clear();
   const auto add = [&](ObjectId a, ObjectId b) { deep_pairs_.push_back({std::min(a, b), std::max(a, b)}); };
-  for (const PenetrationGroup& group : result.penetration_groups) {
+  for (const PenetrationGroup& group : found.penetration_groups) {
     if (group.penetration_count > 0) add(group.a, group.b);
   }
-  for (const ContainedPart& part : result.contained_parts) add(part.inner, part.outer);
+  for (const ContainedPart& part : found.contained_parts) add(part.inner, part.outer);
   std::sort(deep_pairs_.begin(), deep_pairs_.end());
   deep_pairs_.erase(std::unique(deep_pairs_.begin(), deep_pairs_.end()), deep_pairs_.end());
 }
 
 /// Pairs of objects that intersect or touch within the step, each once, ascending.
-void Scene::Implementation::list_touching_pairs() {
+void Scene::Implementation::list_touching_pairs(const DetectResult& found) {
   touching_pairs_.clear();
-  for (const auto groups : {result.groups, result.continuous_groups}) {
+  for (const auto groups : {found.groups, found.continuous_groups}) {
     for (const ContactGroup& group : groups) {
       if (group.a != group.b) touching_pairs_.push_back({group.a, group.b});
     }
   }
-  if (result.groups.empty() || result.continuous_groups.empty()) return;
+  if (found.groups.empty() || found.continuous_groups.empty()) return;
   std::sort(touching_pairs_.begin(), touching_pairs_.end());
   touching_pairs_.erase(std::unique(touching_pairs_.begin(), touching_pairs_.end()), touching_pairs_.end());
 }

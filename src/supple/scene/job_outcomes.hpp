@@ -6,6 +6,7 @@
 #include <cstring>
 #include <span>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "scene/contact_tasks.hpp"
@@ -31,11 +32,12 @@ class JobOutcomes {
   /// Starts a step. `versions` are those of the objects' positions. The outcome of a job is known when both
   /// versions are those of the previous step and that step made the same search.
   void plan(std::span<const ContactJob> jobs, std::span<const std::uint64_t> versions, bool is_same_search) {
+    // Nothing is known until this step is complete, also when memory runs out on the way.
+    const std::size_t known = std::exchange(reusable_, 0);
     outcomes_.swap(last_outcomes_);
     // The two lists take turns; both grow at once.
     outcomes_.reserve(last_outcomes_.capacity());
-    last_outcomes_.resize(is_same_search ? reusable_ : 0);
-    reusable_ = 0;  // until this step is complete
+    last_outcomes_.resize(is_same_search ? known : 0);
     outcomes_.clear();
     open_jobs_.clear();
     std::uint32_t last = 0;

@@ -5,6 +5,13 @@
 
 namespace supple {
 
+void PairCache::prepare(std::span<const ObjectPair> now) {
+  pairs_.reserve(now.size());
+  begin_.reserve(now.size());
+  stay_.reserve(now.size());
+  end_.reserve(pairs_.size());
+}
+
 void PairCache::update(std::span<const ObjectPair> now) {
   assert(std::is_sorted(now.begin(), now.end()) && std::adjacent_find(now.begin(), now.end()) == now.end());
   begin_.clear();
@@ -30,6 +37,10 @@ void PairCache::update(std::span<const ObjectPair> now) {
 void PairCache::release(ObjectId object) {
   const auto place = std::lower_bound(released_.begin(), released_.end(), object);
   if (place == released_.end() || *place != object) released_.insert(place, object);
+}
+
+void PairCache::prepare_release() {
+  if (released_.size() == released_.capacity()) released_.reserve(2 * released_.size() + 8);
 }
 
 bool PairCache::is_released(const ObjectPair& pair) const {

@@ -12,13 +12,17 @@ namespace supple {
 /// released when they separate (the paper's section 5.2). A pair that begins ends exactly once.
 class PairCache {
  public:
-  /// Takes the pairs of this step, ascending, each once. O(old + new); allocates only when there are more
-  /// pairs than ever before.
+  /// Takes memory for an `update` with these pairs, so that it cannot fail; only when there are more pairs
+  /// than ever before.
+  void prepare(std::span<const ObjectPair> now);
+  /// Takes the pairs of this step, ascending, each once. O(old + new).
   void update(std::span<const ObjectPair> now);
 
   /// The object was removed: its pairs end at the next `update`. A pair that this `update` contains again
   /// ends and begins. Objects with the same index and another generation are different objects.
   void release(ObjectId object);
+  /// Takes memory for a `release`, so that it cannot fail.
+  void prepare_release();
 
   /// Changes made by the last `update`, each list ascending. Valid until the next one.
   PairEvents events() const { return {begin_, stay_, end_}; }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <tuple>
+#include <utility>
 
 #include "geometry/exact_predicates.hpp"
 #include "geometry/vector.hpp"
@@ -142,6 +143,7 @@ void PenetrationPass::find_inside(const Task& task, const DetectResult& result, 
   const std::span<const QueriedObject> outer(&objects_[task.outer].queried, 1);
   if (outer.front().has_inert_faces) return;
   worker.queries.start();
+  if (std::exchange(worker.has_marks, true)) std::fill(worker.marks.begin(), worker.marks.end(), 0);
   worker.marks.resize(std::max(worker.marks.size(), around.vertex_count()), 0);
   collect_touched(task, result, worker);
   auto& marks = worker.marks;
@@ -207,6 +209,7 @@ void PenetrationPass::find_inside(const Task& task, const DetectResult& result, 
   }
   for (const std::uint32_t v : corners) marks[v] = 0;
   for (std::size_t i = first_inside; i < worker.inside.size(); ++i) marks[worker.inside[i]] = 0;
+  worker.has_marks = false;
   std::sort(worker.inside.begin() + static_cast<std::ptrdiff_t>(first_inside), worker.inside.end());
   std::sort(worker.on_surface.begin() + static_cast<std::ptrdiff_t>(first_on_surface),
             worker.on_surface.end());

@@ -82,7 +82,8 @@ class PenetrationPass {
     std::vector<std::uint32_t> corners, triangles;
     ParitySets sets;
     std::vector<Containment> state;         // by set
-    std::vector<std::uint8_t> marks;        // by vertex
+    std::vector<std::uint8_t> marks;        // by vertex; zero between tasks
+    bool has_marks = false;                 // a task did not end, because memory ran out
     std::vector<std::uint8_t> has_contact;  // by part
   };
 

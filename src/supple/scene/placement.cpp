@@ -15,16 +15,18 @@ constexpr double largest_lazy_size = 1e30;
 }  // namespace
 
 void Placement::set_positions(const PositionsView& positions, const Parallel& parallel) {
+  end_.reserve(positions.size(), positions.is_double());
   place_afresh();
   end_.assign(positions, parallel);
 }
 
 void Placement::share_positions(const PositionsView& positions, const Parallel& parallel) {
+  if (!end_.borrow(positions)) return set_positions(positions, parallel);
   place_afresh();
-  if (!end_.borrow(positions)) end_.assign(positions, parallel);
 }
 
 void Placement::set_motion(const PositionsView& from, const PositionsView& to, const Parallel& parallel) {
+  start_.reserve(from.size(), from.is_double());
   set_positions(to, parallel);
   start_.assign(from, parallel);
   has_motion_ = true;
@@ -46,6 +48,9 @@ void Placement::change_all() {
 void Placement::set_vertices(std::span<const std::uint32_t> vertices, const PositionsView& positions,
                              const Parallel& parallel) {
   restore(parallel);
+  // A longer list takes more time than all vertices, and it would grow as long as nothing reads it.
+  const bool is_listed = moved_.size() + vertices.size() <= end_.size() / 8;
+  if (is_listed) moved_.insert(moved_.end(), vertices.begin(), vertices.end());
   if (!has_shape_) {
     end_.set(vertices, positions, parallel);
   } else {
@@ -53,12 +58,7 @@ void Placement::set_vertices(std::span<const std::uint32_t> vertices, const Posi
     end_.transform(shape_, vertices, [&](const Vec3d& p) { return rotated(p); });
   }
   ++version_;
-  // A longer list takes more time than all vertices, and it would grow as long as nothing reads it.
-  if (moved_.size() + vertices.size() > end_.size() / 8) {
-    forget_moved();
-  } else {
-    moved_.insert(moved_.end(), vertices.begin(), vertices.end());
-  }
+  if (!is_listed) forget_moved();
 }
 
 void Placement::translate(Vec3d offset, const Parallel& parallel) {
@@ -67,6 +67,7 @@ void Placement::translate(Vec3d offset, const Parallel& parallel) {
 }
 
 void Placement::set_transform(const RigidTransform& transform, const Parallel& parallel) {
+  if (transform.rotation != rotation_) reserve_transformed();
   restore(parallel);
   translation_ = transform.translation;
   if (transform.rotation == rotation_) return;
@@ -78,11 +79,17 @@ void Placement::set_transform(const RigidTransform& transform, const Parallel& p
 /// The object comes to rest at the end of its path, and its translation is no longer baked.
 void Placement::restore(const Parallel& parallel) {
   if (std::exchange(has_motion_, false)) change_all();
-  if (std::exchange(is_baked_, false)) apply({}, parallel);
+  if (is_baked_) apply({}, parallel);
+  is_baked_ = false;
 }
 
 void Placement::keep_shape() {
   if (!std::exchange(has_shape_, true)) std::swap(shape_, end_);
+}
+
+/// Takes memory for `keep_shape` and `apply`.
+void Placement::reserve_transformed() {
+  (has_shape_ ? end_ : shape_).reserve(end_.size(), true);
 }
 
 Vec3d Placement::rotated(const Vec3d& p) const {
@@ -107,6 +114,7 @@ bool Placement::needs_baking(const Aabb& box) const {
 }
 
 void Placement::bake(const Parallel& parallel) {
+  reserve_transformed();
   keep_shape();
   apply(translation_, parallel);
   is_baked_ = true;

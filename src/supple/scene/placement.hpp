@@ -17,6 +17,8 @@ namespace supple {
 /// The position of a vertex is fl(R p) + T, where p is the position that the user gave last. `end` holds fl(R
 /// p); T is added when volumes and positions are read, so that a translation is O(1). Where that could lose
 /// bits or overflow in single precision, T is baked into `end` instead. An object on a path has no T.
+///
+/// Each function takes all memory before it changes anything, so one that runs out of memory has no effect.
 class Placement {
  public:
   void set_positions(const PositionsView& positions, const Parallel& parallel);
@@ -65,6 +67,7 @@ class Placement {
   void place_afresh();
   void restore(const Parallel& parallel);
   void keep_shape();
+  void reserve_transformed();
   void apply(const Vec3d& translation, const Parallel& parallel);
 
   VertexBuffer end_;

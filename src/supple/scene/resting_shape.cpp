@@ -43,6 +43,7 @@ std::size_t RestingShape::refit(ObjectOctree& octree, Placement& placement, cons
 }
 
 void RestingShape::refit_all(ObjectOctree& octree, const Placement& placement, const Parallel& parallel) {
+  version_ = 0;  // until all is refitted, also when memory runs out on the way
   inert_.clear();
   non_finite_.clear();
   has_inert_faces_ = false;

@@ -1,6 +1,7 @@
 #include "supple/scene.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -187,15 +188,18 @@ ObjectId Scene::Implementation::add(const PositionsView& positions, const Triang
 
 void Scene::Implementation::remove(ObjectId id) {
   object(id, "remove");
-  for (PairCache* const pairs :
-       {&volume_pairs_, &narrow_phase_pairs_, &contact_pairs_, &near_object_pairs_, &penetrating_pairs_})
-    pairs->release(id);
+  const std::array caches{&volume_pairs_, &narrow_phase_pairs_, &contact_pairs_, &near_object_pairs_,
+                          &penetrating_pairs_};
+  // What may run out of memory comes first, so that no object is half removed.
+  for (PairCache* const pairs : caches) pairs->prepare_release();
+  free_slots_.reserve(slots_.capacity());
+  changed_.resize(slots_.size(), 0);
+  for (PairCache* const pairs : caches) pairs->release(id);
   std::erase_if(nearest_triangles_,
                 [&](const auto& known) { return known.first.a == id || known.first.b == id; });
   slots_[id.index].object.reset();
   ++slots_[id.index].generation;
   free_slots_.push_back(id.index);
-  changed_.resize(slots_.size(), 0);
   changed_[id.index] = 1;
   mark_changed();
 }

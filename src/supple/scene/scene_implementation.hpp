@@ -204,8 +204,8 @@ class Scene::Implementation {
                                             const ProximityPair* found) const;
   void report_non_finite();
   void publish();
-  void list_touching_pairs();
-  void list_deep_pairs();
+  void list_touching_pairs(const DetectResult& found);
+  void list_deep_pairs(const DetectResult& found);
   void check_penetration(const DetectRequest& request) const;
   bool volumes_apart(const IndexPair& pair) const;
   bool may_pair(const IndexPair& pair) const;

@@ -79,6 +79,8 @@ class SceneObject {
 
   VertexGroups vertex_groups() const { return {groups_, masks_}; }
   void set_vertex_groups(std::span<const std::uint32_t> groups, std::span<const std::uint32_t> masks) {
+    groups_.reserve(groups.size());
+    masks_.reserve(masks.size());  // so that both change, or none
     groups_.assign(groups.begin(), groups.end());
     masks_.assign(masks.begin(), masks.end());
   }
