@@ -61,8 +61,10 @@ struct ImpactOptions {
 };
 
 enum class ImpactCertainty : std::uint8_t {
-  certain,           ///< proven: the elements touch
-  within_tolerance,  ///< so close that floating point cannot decide; only when `exact` is off
+  certain,  ///< proven: the elements touch
+  /// So close that floating point cannot decide. Only when `exact` is off, or for coordinates of more than
+  /// `SceneOptions::max_exact_bits`.
+  within_tolerance,
 };
 
 /// The first contact of two elements. The certainty is exact; all numbers are rounded.
@@ -95,7 +97,7 @@ struct Impact {
 /// Throws `Error` when an option is out of its range. Takes about 0.1 µs for elements that stay apart and
 /// 0.3 µs for others. When only exact arithmetic can decide, it takes a few microseconds, or a few
 /// hundred with a separation, and allocates memory. Coordinates that differ by more than 2^100 in size can
-/// then take milliseconds, tenths of a second at worst.
+/// then take milliseconds, tenths of a second at worst; docs/conventions.md has a table.
 std::optional<Impact> first_impact(const VertexFaceMotion& motion, const ImpactOptions& options = {});
 std::optional<Impact> first_impact(const EdgeEdgeMotion& motion, const ImpactOptions& options = {});
 /// Points and edges take some microseconds where they touch without a separation.

@@ -34,12 +34,20 @@ HWY_INLINE Vector add(const Vector& a, const Vector& b) {
 HWY_INLINE Vector scaled(const Vector& a, Floats s) {
   return {hn::Mul(a.x, s), hn::Mul(a.y, s), hn::Mul(a.z, s)};
 }
-HWY_INLINE Floats fused_dot(const Vector& a, const Vector& b) {
-  return hn::MulAdd(a.z, b.z, hn::MulAdd(a.y, b.y, hn::Mul(a.x, b.x)));
+/// a b + c and c - a b with two roundings, which all instruction sets have. So the same pairs are undecided
+/// on every machine, which is visible where these are reported.
+HWY_INLINE Floats sum_with_product(Floats a, Floats b, Floats c) {
+  return hn::Add(hn::Mul(a, b), c);
 }
-HWY_INLINE Vector fused_cross(const Vector& a, const Vector& b) {
-  return {hn::NegMulAdd(a.z, b.y, hn::Mul(a.y, b.z)), hn::NegMulAdd(a.x, b.z, hn::Mul(a.z, b.x)),
-          hn::NegMulAdd(a.y, b.x, hn::Mul(a.x, b.y))};
+HWY_INLINE Floats less_product(Floats a, Floats b, Floats c) {
+  return hn::Sub(c, hn::Mul(a, b));
+}
+HWY_INLINE Floats dot_product(const Vector& a, const Vector& b) {
+  return sum_with_product(a.z, b.z, sum_with_product(a.y, b.y, hn::Mul(a.x, b.x)));
+}
+HWY_INLINE Vector cross_product(const Vector& a, const Vector& b) {
+  return {less_product(a.z, b.y, hn::Mul(a.y, b.z)), less_product(a.x, b.z, hn::Mul(a.z, b.x)),
+          less_product(a.y, b.x, hn::Mul(a.x, b.y))};
 }
 HWY_INLINE Floats sum(const Vector& a) {
   return hn::Add(hn::Add(a.x, a.y), a.z);
@@ -75,15 +83,15 @@ class Group {
     const Lanes d;
     const Floats size = sum(absolute(n));
     const Floats tiny = hn::Set(d, 0x1p-110f);
-    Floats bound =
-        hn::MulAdd(hn::Set(d, 0x1p-20f), fused_dot(absolute(n), reach_), hn::MulAdd(tiny, size, tiny));
+    Floats bound = sum_with_product(hn::Set(d, 0x1p-20f), dot_product(absolute(n), reach_),
+                                    sum_with_product(tiny, size, tiny));
     // The addend covers squares that underflow.
     const Floats length =
-        hn::Mul(hn::Sqrt(hn::Add(fused_dot(n, n), hn::Set(d, 0x1p-100f))), hn::Set(d, 1 + 0x1p-20f));
-    bound = hn::MulAdd(separation_, length, bound);
-    const Floats sm0 = fused_dot(n, start_.m), sm1 = fused_dot(n, end_.m);
-    const Floats su0 = fused_dot(n, start_.u), su1 = fused_dot(n, end_.u);
-    const Floats sw0 = fused_dot(n, start_.w), sw1 = fused_dot(n, end_.w);
+        hn::Mul(hn::Sqrt(hn::Add(dot_product(n, n), hn::Set(d, 0x1p-100f))), hn::Set(d, 1 + 0x1p-20f));
+    bound = sum_with_product(separation_, length, bound);
+    const Floats sm0 = dot_product(n, start_.m), sm1 = dot_product(n, end_.m);
+    const Floats su0 = dot_product(n, start_.u), su1 = dot_product(n, end_.u);
+    const Floats sw0 = dot_product(n, start_.w), sw1 = dot_product(n, end_.w);
     const Floats above = hn::Min(hn::Sub(sm0, extent(su0, sw0)), hn::Sub(sm1, extent(su1, sw1)));
     const Floats below = hn::Max(hn::Add(sm0, extent(hn::Neg(su0), hn::Neg(sw0))),
                                  hn::Add(sm1, extent(hn::Neg(su1), hn::Neg(sw1))));
@@ -99,47 +107,48 @@ class Group {
   HWY_NOINLINE LaneMask never_coplanar() const {
     const Lanes d;
     const Floats third = hn::Set(d, 1.0f / 3.0f), half = hn::Set(d, 0.5f);
-    const Vector n0 = fused_cross(start_.u, start_.w), n2 = fused_cross(end_.u, end_.w);
-    const Vector twice_n1 = add(fused_cross(start_.u, end_.w), fused_cross(end_.u, start_.w));
-    const Floats c0 = fused_dot(start_.m, n0), c3 = fused_dot(end_.m, n2);
-    const Floats c1 = hn::Mul(third, hn::Add(fused_dot(end_.m, n0), fused_dot(start_.m, twice_n1)));
-    const Floats c2 = hn::Mul(third, hn::Add(fused_dot(start_.m, n2), fused_dot(end_.m, twice_n1)));
+    const Vector n0 = cross_product(start_.u, start_.w), n2 = cross_product(end_.u, end_.w);
+    const Vector twice_n1 = add(cross_product(start_.u, end_.w), cross_product(end_.u, start_.w));
+    const Floats c0 = dot_product(start_.m, n0), c3 = dot_product(end_.m, n2);
+    const Floats c1 = hn::Mul(third, hn::Add(dot_product(end_.m, n0), dot_product(start_.m, twice_n1)));
+    const Floats c2 = hn::Mul(third, hn::Add(dot_product(start_.m, n2), dot_product(end_.m, twice_n1)));
     const Floats least = hn::Min(hn::Min(c0, c1), hn::Min(c2, c3));
     const Floats most = hn::Max(hn::Max(c0, c1), hn::Max(c2, c3));
-    const Vector minors{hn::MulAdd(reach_u_.y, reach_w_.z, hn::Mul(reach_u_.z, reach_w_.y)),
-                        hn::MulAdd(reach_u_.z, reach_w_.x, hn::Mul(reach_u_.x, reach_w_.z)),
-                        hn::MulAdd(reach_u_.x, reach_w_.y, hn::Mul(reach_u_.y, reach_w_.x))};
+    const Vector minors{sum_with_product(reach_u_.y, reach_w_.z, hn::Mul(reach_u_.z, reach_w_.y)),
+                        sum_with_product(reach_u_.z, reach_w_.x, hn::Mul(reach_u_.x, reach_w_.z)),
+                        sum_with_product(reach_u_.x, reach_w_.y, hn::Mul(reach_u_.y, reach_w_.x))};
     const Floats tiny = hn::Set(d, 0x1p-100f);
-    const Floats magnitude = hn::Mul(hn::Set(d, 8.0f), fused_dot(minors, reach_m_));
-    Floats bound = hn::MulAdd(hn::Set(d, 0x1p-22f), magnitude, hn::MulAdd(tiny, sum(reach_), tiny));
+    const Floats magnitude = hn::Mul(hn::Set(d, 8.0f), dot_product(minors, reach_m_));
+    Floats bound =
+        sum_with_product(hn::Set(d, 0x1p-22f), magnitude, sum_with_product(tiny, sum(reach_), tiny));
     const Floats area =
         hn::Max(sum(absolute(n0)), hn::Max(sum(absolute(n2)), hn::Mul(half, sum(absolute(twice_n1)))));
-    bound =
-        hn::MulAdd(separation_, hn::MulAdd(hn::Set(d, 0x1p-19f), sum(minors), hn::Add(area, tiny)), bound);
+    bound = sum_with_product(separation_,
+                             sum_with_product(hn::Set(d, 0x1p-19f), sum(minors), hn::Add(area, tiny)), bound);
     return hn::Gt(hn::Max(least, hn::Neg(most)), bound);
   }
 
   HWY_INLINE LaneMask apart() const {
     const Lanes d;
     const Vector m = add(start_.m, end_.m), u = add(start_.u, end_.u), w = add(start_.w, end_.w);
-    const Vector n = fused_cross(u, w);
+    const Vector n = cross_product(u, w);
     LaneMask result = separated_along(n);
     result = hn::Or(result, never_coplanar());
-    result = hn::Or(result, separated_along(fused_cross(u, n)));
-    result = hn::Or(result, separated_along(fused_cross(w, n)));
+    result = hn::Or(result, separated_along(cross_product(u, n)));
+    result = hn::Or(result, separated_along(cross_product(w, n)));
     if (hn::AllTrue(d, result)) return result;
-    if (!is_square_) result = hn::Or(result, separated_along(fused_cross(subtract(w, u), n)));
+    if (!is_square_) result = hn::Or(result, separated_along(cross_product(subtract(w, u), n)));
     result = hn::Or(result, separated_along(m));
     result =
-        hn::Or(result, separated_along(subtract(scaled(m, fused_dot(u, u)), scaled(u, fused_dot(m, u)))));
+        hn::Or(result, separated_along(subtract(scaled(m, dot_product(u, u)), scaled(u, dot_product(m, u)))));
     result =
-        hn::Or(result, separated_along(subtract(scaled(m, fused_dot(w, w)), scaled(w, fused_dot(m, w)))));
+        hn::Or(result, separated_along(subtract(scaled(m, dot_product(w, w)), scaled(w, dot_product(m, w)))));
     if (hn::AllTrue(d, result)) return result;
     const Vector velocity = subtract(end_.m, start_.m);
-    result = hn::Or(result, separated_along(fused_cross(velocity, u)));
-    result = hn::Or(result, separated_along(fused_cross(velocity, w)));
-    result = hn::Or(result, separated_along(fused_cross(start_.u, start_.w)));
-    return hn::Or(result, separated_along(fused_cross(end_.u, end_.w)));
+    result = hn::Or(result, separated_along(cross_product(velocity, u)));
+    result = hn::Or(result, separated_along(cross_product(velocity, w)));
+    result = hn::Or(result, separated_along(cross_product(start_.u, start_.w)));
+    return hn::Or(result, separated_along(cross_product(end_.u, end_.w)));
   }
 
  private:

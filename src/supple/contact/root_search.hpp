@@ -10,6 +10,7 @@
 
 #include "contact/step_root.hpp"
 #include "geometry/integer_points.hpp"
+#include "geometry/root_refinement.hpp"
 #include "supple/continuous.hpp"
 
 namespace supple {
@@ -95,19 +96,24 @@ StepRoots<Numbers> find_roots(const Cubic<typename Numbers::Volume>& polynomial)
   }
 }
 
-/// Halves the interval, or sets it to the middle when that is the root. Returns false when the interval is a
-/// point already, or when the integers are too short.
+/// Halves the interval, or sets it to the middle when that is the root. Integers of any length halve it
+/// several times. Returns false when the interval is a point already, or when the integers are too short.
 template <class Numbers>
 bool narrow(StepRoot<Numbers>& root) {
   TimeInterval<Numbers>& interval = root.interval;
   if (interval.is_point() || root.too_fine) return false;
-  root.too_fine = interval.exponent == Numbers::finest;
-  if (root.too_fine) return false;
-  const typename Numbers::Time middle = interval.low + interval.high;
-  interval = {interval.low << 1, interval.high << 1, interval.exponent + 1};
-  const int side = sign(value_at(root.powers, middle, interval.exponent));
-  if (side != -root.sign_before) interval.low = middle;
-  if (side != root.sign_before) interval.high = middle;
+  if constexpr (std::is_same_v<Numbers, UnboundedNumbers>) {
+    refine(interval, root.sign_before,
+           [&](const UnboundedInteger& time, int exponent) { return value_at(root.powers, time, exponent); });
+  } else {
+    root.too_fine = interval.exponent == Numbers::finest;
+    if (root.too_fine) return false;
+    const typename Numbers::Time middle = interval.low + interval.high;
+    interval = {interval.low << 1, interval.high << 1, interval.exponent + 1};
+    const int side = sign(value_at(root.powers, middle, interval.exponent));
+    if (side != -root.sign_before) interval.low = middle;
+    if (side != root.sign_before) interval.high = middle;
+  }
   return true;
 }
 

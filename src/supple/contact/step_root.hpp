@@ -39,6 +39,7 @@ template <class Numbers>
 struct TimeInterval {
   typename Numbers::Time low{}, high{};
   int exponent = 0;
+  int gain = 1;  ///< see `refine`
 
   bool is_point() const { return low == high; }
 };

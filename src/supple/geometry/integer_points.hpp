@@ -120,20 +120,28 @@ struct Dyadic {
   }
 };
 
+/// The bits that finite numbers occupy: all are multiples of 2^bottom and below 2^top.
+struct BitExtent {
+  int bottom = 2000, top = -2000;  ///< of no number, or of 0
+
+  void include(double value) {
+    const Dyadic dyadic(value);
+    if (dyadic.mantissa == 0) return;
+    bottom = std::min(bottom, dyadic.exponent + std::countr_zero(dyadic.mantissa));
+    top = std::max(top, dyadic.exponent + 64 - std::countl_zero(dyadic.mantissa));
+  }
+  int bits() const { return std::max(top - bottom, 0); }
+};
+
 /// The bits that numbers of one axis occupy: all are multiples of 2^lowest and below 2^(lowest + width).
 struct BitRange {
   int lowest = 0, width = 0;
 
   template <std::size_t count>
   explicit BitRange(const std::array<double, count>& values) {
-    int bottom = 2000, top = -2000;
-    for (const double value : values) {
-      const Dyadic dyadic(value);
-      if (dyadic.mantissa == 0) continue;
-      bottom = std::min(bottom, dyadic.exponent + std::countr_zero(dyadic.mantissa));
-      top = std::max(top, dyadic.exponent + 64 - std::countl_zero(dyadic.mantissa));
-    }
-    if (top > bottom) lowest = bottom, width = top - bottom;
+    BitExtent extent;
+    for (const double value : values) extent.include(value);
+    if (extent.bits() > 0) lowest = extent.bottom, width = extent.bits();
   }
 };
 

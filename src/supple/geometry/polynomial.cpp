@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cassert>
 #include <cstdint>
+#include <optional>
 
+#include "geometry/root_refinement.hpp"
 #include "geometry/wide_integer.hpp"
 
 namespace supple {
@@ -34,7 +36,8 @@ Polynomial on_interval(const Polynomial& q, const BinaryFraction& left) {
   return Polynomial(std::move(c));
 }
 
-/// The remainder of a power of q's leading coefficient, times p, divided by q.
+/// The remainder of c^(deg p - deg q + 1) p divided by q, where c is q's leading coefficient and deg p ≥ deg
+/// q ≥ 0.
 Polynomial pseudo_remainder(const Polynomial& p, const Polynomial& q) {
   Coefficients rest = p.coefficients();
   const Coefficients& divisor = q.coefficients();
@@ -44,9 +47,35 @@ Polynomial pseudo_remainder(const Polynomial& p, const Polynomial& q) {
     rest.pop_back();
     for (Integer& c : rest) c *= divisor.back();
     for (std::size_t i = 0; i + 1 < divisor.size(); ++i) rest[shift + i] -= factor * divisor[i];
-    while (!rest.empty() && rest.back().is_zero()) rest.pop_back();
   }
   return Polynomial(std::move(rest));
+}
+
+/// p / q, which is an integer. Multiplies by the inverse of q modulo a power of two, which Newton's method
+/// finds (Jebelean, An algorithm for exact division, 1993). Boost divides in quadratic time.
+Integer exact_quotient(const Integer& p, const Integer& q) {
+  if (p.is_zero()) return 0;
+  const unsigned zeros = lsb(Integer(abs(q)));
+  const Integer dividend = abs(p) >> zeros, divisor = abs(q) >> zeros;
+  const auto modulo = [](const Integer& value, int bits) {
+    return Integer(value & ((Integer(1) << bits) - 1));
+  };
+  const int bits = bit_length(dividend) - bit_length(divisor) + 1;
+  Integer inverse = 1;
+  for (int known = 1; known < bits;) {
+    known = std::min(2 * known, bits);
+    const Integer one = modulo(modulo(divisor, known) * inverse, known);
+    inverse = modulo(inverse * ((Integer(1) << known) + 2 - one), known);
+  }
+  const Integer quotient = modulo(modulo(dividend, bits) * inverse, bits);
+  return p.sign() == q.sign() ? quotient : Integer(-quotient);
+}
+
+/// p / divisor, where the quotient has integer coefficients.
+Polynomial exact_quotient(const Polynomial& p, const Integer& divisor) {
+  Coefficients c = p.coefficients();
+  for (Integer& value : c) value = exact_quotient(value, divisor);
+  return Polynomial(std::move(c));
 }
 
 /// True when p and q have no common divisor modulo a prime, and therefore none at all. This test nearly
@@ -87,15 +116,33 @@ Polynomial exact_quotient(const Polynomial& p, const Polynomial& q) {
   assert(rest.size() >= divisor.size());
   Coefficients quotient(rest.size() - divisor.size() + 1);
   for (std::size_t at = quotient.size(); at-- > 0;) {
-    quotient[at] = rest[at + divisor.size() - 1] / divisor.back();
+    quotient[at] = exact_quotient(rest[at + divisor.size() - 1], divisor.back());
     for (std::size_t i = 0; i < divisor.size(); ++i) rest[at + i] -= quotient[at] * divisor[i];
   }
   return Polynomial(std::move(quotient));
 }
 
-/// 2^(n bits) p(x / 2^bits), where n is the degree of p.
-Polynomial stretched(const Polynomial& p, int bits) {
-  return on_interval(p, {0, bits});
+/// 2^(n bits) p(x), where n is the degree of p.
+Integer value_at(const Polynomial& p, const BinaryFraction& x) {
+  const Coefficients& c = p.coefficients();
+  if (c.empty()) return 0;
+  Integer value = c.back();
+  for (std::size_t i = c.size() - 1; i-- > 0;) {
+    value *= x.numerator;
+    value += c[i] << static_cast<std::size_t>(x.bits) * (c.size() - 1 - i);
+  }
+  return value;
+}
+
+/// The number of one of 2^bits parts of (0, 1) that may have all `variations` of the polynomial: where a
+/// Newton step from 0 leads if that many roots are close together. Nothing for the first part, and when the
+/// step leads out of the interval.
+std::optional<Integer> part_by_newton(const Polynomial& local, int variations, int bits) {
+  const Coefficients& c = local.coefficients();
+  if (c[1].is_zero() || c[0].sign() == c[1].sign()) return {};
+  Integer part = (abs(c[0]) * variations << bits) / abs(c[1]);
+  if (part.is_zero() || bit_length(part) > bits) return {};
+  return part;
 }
 
 /// Roots of p in the open interval from `left` to left + 2^-left.bits; `local` is p there, moved to [0, 1].
@@ -106,19 +153,22 @@ void isolate(const Polynomial& p, Polynomial local, BinaryFraction left, std::ve
     roots.emplace_back(p, std::move(left));
     return;
   }
-  // When one part of the interval has all variations, the rest has no roots. Exponential steps to the left
-  // are fast when the roots have very different magnitudes.
-  Polynomial half;
-  for (int bits = 1; bits > 0;) {
-    half = stretched(local, bits);
-    if (sign_variations(half).count == variations) {
-      local = std::move(half);
-      left = {left.numerator << bits, left.bits + bits};
-      bits *= 2;
-    } else {
-      bits /= 2;
-    }
-  }
+  // When one part of the interval has all variations, the rest has no roots. The parts become smaller
+  // exponentially, which is fast when the roots are close together, or close to an end.
+  const auto go_to_part = [&](int bits) {
+    const auto go = [&](const Integer& part) {
+      Polynomial smaller = on_interval(local, {part, bits});
+      if (sign_variations(smaller).count != variations) return false;
+      local = std::move(smaller);
+      left = {(left.numerator << bits) + part, left.bits + bits};
+      return true;
+    };
+    if (go(0) || go((Integer(1) << bits) - 1)) return true;
+    const std::optional<Integer> part = part_by_newton(local, variations, bits);
+    return part && go(*part);
+  };
+  for (int bits = 1; bits > 0;) bits = go_to_part(bits) ? 2 * bits : bits / 2;
+  const Polynomial half = on_interval(local, {0, 1});
   const BinaryFraction middle{2 * left.numerator + 1, left.bits + 1};
   isolate(p, half, {2 * left.numerator, left.bits + 1}, roots);
   Coefficients right = half.coefficients();
@@ -171,47 +221,37 @@ Polynomial derivative(const Polynomial& p) {
   return Polynomial(std::move(slope));
 }
 
-Polynomial primitive_part(const Polynomial& p) {
-  if (p.is_zero()) return p;
-  Coefficients c = p.coefficients();
-  Integer content = abs(c.back());
-  for (std::size_t i = 0; i + 1 < c.size() && content != 1; ++i) {
-    content = boost::multiprecision::gcd(content, c[i]);
-  }
-  if (c.back().sign() < 0) content = -content;
-  if (content != 1) {
-    for (Integer& value : c) value /= content;
-  }
-  return Polynomial(std::move(c));
-}
-
 Polynomial gcd(const Polynomial& p, const Polynomial& q) {
   if (coprime_modulo_prime(p, q)) return Polynomial({1});
-  Polynomial larger = primitive_part(p), smaller = primitive_part(q);
+  Polynomial larger = p, smaller = q;
   if (larger.degree() < smaller.degree()) std::swap(larger, smaller);
+  if (smaller.is_zero()) return larger;
+  const Integer leading = larger.coefficients().back();
+  // Subresultants (Brown and Traub, On Euclid's algorithm and the theory of subresultants, 1971): divisors of
+  // all coefficients are known, so no divisors of large integers are searched.
+  Integer last = 1, power = 1;
   while (smaller.degree() > 0) {
-    Polynomial rest = primitive_part(pseudo_remainder(larger, smaller));
+    const auto degrees = static_cast<unsigned>(larger.degree() - smaller.degree());
+    Polynomial rest = exact_quotient(pseudo_remainder(larger, smaller), last * pow(power, degrees));
     larger = std::move(smaller);
     smaller = std::move(rest);
+    last = larger.coefficients().back();
+    if (degrees > 0) power = exact_quotient(pow(last, degrees), pow(power, degrees - 1));
   }
-  return smaller.is_zero() ? larger : smaller;
+  if (!smaller.is_zero()) return Polynomial({1});
+  // The leading coefficient of the primitive divisor divides that of p or q.
+  return exact_quotient(larger * leading, larger.coefficients().back());
 }
 
 Polynomial squarefree_part(const Polynomial& p) {
-  if (coprime_modulo_prime(p, derivative(p))) return p;
-  const Polynomial primitive = primitive_part(p);
-  return exact_quotient(primitive, gcd(primitive, derivative(primitive)));
+  const Polynomial slope = derivative(p);
+  if (coprime_modulo_prime(p, slope)) return p;
+  const Polynomial divisor = gcd(p, slope);
+  return exact_quotient(p * divisor.coefficients().back(), divisor);
 }
 
 int sign_at(const Polynomial& p, const BinaryFraction& x) {
-  const Coefficients& c = p.coefficients();
-  if (c.empty()) return 0;
-  Integer value = c.back();
-  for (std::size_t i = c.size() - 1; i-- > 0;) {
-    value *= x.numerator;
-    value += c[i] << static_cast<std::size_t>(x.bits) * (c.size() - 1 - i);
-  }
-  return value.sign();
+  return value_at(p, x).sign();
 }
 
 SignVariations sign_variations(const Polynomial& p) {
@@ -228,49 +268,44 @@ SignVariations sign_variations(const Polynomial& p) {
   return result;
 }
 
-UnitRoot::UnitRoot(BinaryFraction x) : left_(std::move(x)), exact_(true) {}
+UnitRoot::UnitRoot(BinaryFraction x) : interval_{x.numerator, x.numerator, x.bits} {}
 
 UnitRoot::UnitRoot(const Polynomial& p, BinaryFraction x)
-    : polynomial_(p), left_(std::move(x)), exact_(false) {
-  const Polynomial local = on_interval(p, left_);
+    : polynomial_(p), interval_{x.numerator, x.numerator + 1, x.bits} {
+  const Polynomial local = on_interval(p, x);
   assert(sign_variations(local).count % 2 == 1);
   const auto first =
       std::ranges::find_if(local.coefficients(), [](const Integer& c) { return !c.is_zero(); });
   sign_after_left_ = first->sign();
 }
 
-void UnitRoot::halve() {
-  left_.numerator = 2 * left_.numerator + 1;
-  ++left_.bits;
-  const int sign = sign_at(polynomial_, left_);
-  if (sign == 0) {
-    exact_ = true;
-  } else if (sign != sign_after_left_) {
-    left_.numerator -= 1;
-  }
+void UnitRoot::narrow() {
+  refine(interval_, sign_after_left_, [&](const Integer& numerator, int bits) {
+    return value_at(polynomial_, {numerator, bits});
+  });
 }
 
 int UnitRoot::sign_of(const Polynomial& q) {
-  constexpr int halvings_before_zero_is_likely = 16;
+  constexpr int steps_before_zero_is_likely = 5;
   bool may_be_zero = true;
-  for (int halvings = 4;; halvings *= 2) {
-    if (exact_) return sign_at(q, left_);
-    const SignVariations variations = sign_variations(on_interval(q, left_));
+  for (int step = 0;; ++step) {
+    if (is_exact()) return sign_at(q, left());
+    const SignVariations variations = sign_variations(on_interval(q, left()));
     if (variations.count == 0) return variations.sign;
-    if (may_be_zero && halvings > halvings_before_zero_is_likely) {
+    if (may_be_zero && step >= steps_before_zero_is_likely) {
       // The common divisor has at most one root in the interval, a simple one. If it has one, q is 0 there.
-      if (sign_variations(on_interval(gcd(polynomial_, q), left_)).count % 2 == 1) return 0;
+      if (sign_variations(on_interval(gcd(polynomial_, q), left())).count % 2 == 1) return 0;
       may_be_zero = false;
     }
-    for (int i = 0; i < halvings && !exact_; ++i) halve();
+    narrow();
   }
 }
 
 std::pair<double, double> UnitRoot::neighbouring_doubles() {
   constexpr int digits = 53, finest = 1074;
-  while (!exact_ && bit_length(left_.numerator) < digits && left_.bits < finest) halve();
-  const Integer right = exact_ ? left_.numerator : Integer(left_.numerator + 1);
-  return {round_time(left_.numerator, left_.bits, false), round_time(right, left_.bits, true)};
+  while (!is_exact() && bit_length(interval_.low) < digits && interval_.exponent < finest) narrow();
+  return {round_time(interval_.low, interval_.exponent, false),
+          round_time(interval_.high, interval_.exponent, true)};
 }
 
 std::vector<UnitRoot> roots_in_unit_interval(const Polynomial& p) {

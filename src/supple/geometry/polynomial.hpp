@@ -34,10 +34,8 @@ class Polynomial {
 
 Polynomial derivative(const Polynomial& p);
 
-/// The coefficients divided by their greatest common divisor, with a positive leading coefficient.
-Polynomial primitive_part(const Polynomial& p);
-
-/// The greatest common divisor, primitive. gcd(0, 0) = 0.
+/// The greatest common divisor up to a constant factor. Its leading coefficient is that of the argument of
+/// larger degree, or it is 1. gcd(0, 0) = 0.
 Polynomial gcd(const Polynomial& p, const Polynomial& q);
 
 /// A polynomial with the same roots, all of them simple. p is not 0.
@@ -66,8 +64,8 @@ SignVariations sign_variations(const Polynomial& p);
 
 /// The only root of a polynomial in some interval: an algebraic number in [0, 1].
 ///
-/// Keeps an open interval (k, k + 1) / 2^bits that contains this root and no other, or the exact root
-/// k / 2^bits. Queries may narrow the interval, which does not change their results.
+/// Keeps an open interval (k, k + 1) / 2^n that contains this root and no other, or the exact root k / 2^n.
+/// Queries may narrow the interval, which does not change their results.
 class UnitRoot {
  public:
   /// The root is exactly x.
@@ -82,17 +80,24 @@ class UnitRoot {
   std::pair<double, double> neighbouring_doubles();
 
  private:
-  void halve();
+  struct Interval {
+    UnboundedInteger low, high;
+    int exponent = 0;
+    int gain = 1;
+  };
+
+  bool is_exact() const { return interval_.low == interval_.high; }
+  BinaryFraction left() const { return {interval_.low, interval_.exponent}; }
+  void narrow();
 
   Polynomial polynomial_;
-  BinaryFraction left_;
+  Interval interval_;
   int sign_after_left_ = 0;
-  bool exact_;
 };
 
 /// The roots in [0, 1], ascending, each once. p is not 0. Roots are isolated by halving the interval until
 /// Descartes' rule leaves none or one (Collins and Akritas, Polynomial real root isolation using Descartes'
-/// rule of signs, 1976).
+/// rule of signs, 1976). Newton steps reach roots that are close together.
 std::vector<UnitRoot> roots_in_unit_interval(const Polynomial& p);
 
 }  // namespace supple

@@ -72,7 +72,7 @@ const DetectResult& Scene::Implementation::detect(const DetectRequest& request) 
   question_ = {
       with_included(request.contacts.value_or(options.contacts)),
       {request.impact.value_or(options.impact), request.element_kinds.value_or(options.element_kinds),
-       request.continuous_listing.value_or(options.continuous_listing)},
+       request.continuous_listing.value_or(options.continuous_listing), options.max_exact_bits},
       request.proximity_listing.value_or(options.proximity_listing),
       options.comparison.colliding_vertices};
   if (question_.has_penetration()) check_penetration(request);
@@ -90,6 +90,7 @@ const DetectResult& Scene::Implementation::detect(const DetectRequest& request) 
   result.stats.object_pairs = jobs_.pairs.size();
   result.stats.broad_phase_seconds = stage.lap();
   if (stop.stop_requested()) return result;
+  check_exact_bits(jobs_);
   rebuild_degraded(jobs_);
   result.stats.rebuild_seconds = stage.lap();
   if (question_.searches_at_rest() && !find_contacts(request, stop)) return result;
@@ -430,6 +431,7 @@ double Scene::Implementation::proven_step(double part) const {
   plain.threads = options.threads;
   plain.contacts = ContactKinds::continuous;
   plain.element_kinds = options.element_kinds;
+  plain.max_exact_bits = options.max_exact_bits;
   Scene scene(plain);
   struct Path {
     ObjectId id;

@@ -12,6 +12,7 @@
 #include "contact/impact_search.hpp"
 #include "core/float_rounding.hpp"
 #include "core/timer.hpp"
+#include "geometry/integer_points.hpp"
 
 namespace supple {
 namespace {
@@ -77,6 +78,18 @@ void set_impact(ContinuousContact& contact, const Impact& impact, bool is_turned
       of_face = {w[1], w[2], w[3]};
       break;
   }
+}
+
+/// The bits of all numbers on which the impact depends.
+int bits_of(const ElementMotion& motion, double separation) {
+  BitExtent extent;
+  extent.include(separation);
+  for (const auto* moment : {&motion.start, &motion.end}) {
+    for (const Vec3d& p : *moment) {
+      for (int axis = 0; axis < 3; ++axis) extent.include(p[axis]);
+    }
+  }
+  return extent.bits();
 }
 
 /// The differences of ways are rounded, which counts where vertices move together.
@@ -324,10 +337,17 @@ void ImpactPass::decide_open_pairs(std::uint32_t job, ElementPairKind kind, std:
   for (std::size_t k = 0; k < count && !stop_.stop_requested(); ++k) {
     const OpenPair& pair = worker.open[k];
     bool used_exact = false;
-    const auto impact = first_impact_after(search_of(k), pair.motion, pair.relative, options, used_exact);
+    ImpactOptions of_pair = options;
+    of_pair.exact = may_be_exact(pair, options.min_separation);
+    const auto impact = first_impact_after(search_of(k), pair.motion, pair.relative, of_pair, used_exact);
     worker.stats.exact_fallbacks += used_exact ? 1 : 0;
     if (impact) add_contact(job, kind, pair, *impact, worker);
   }
+}
+
+bool ImpactPass::may_be_exact(const OpenPair& pair, double separation) const {
+  if (!options_.impact.exact || !has_exact_limit()) return options_.impact.exact;
+  return bits_of(pair.motion, separation) <= static_cast<int>(options_.max_exact_bits);
 }
 
 /// Compares the first id of element a with the limit.
@@ -360,7 +380,7 @@ void ImpactPass::shorten_step(std::uint32_t job, const OpenPair& pair, Worker& w
   if (nearest > least) return;
   bool used_exact = false;
   const std::optional<double> time =
-      first_time_within(pair.motion, pair.relative, least, options.exact, used_exact);
+      first_time_within(pair.motion, pair.relative, least, may_be_exact(pair, least), used_exact);
   worker.stats.exact_fallbacks += used_exact ? 1 : 0;
   if (!time) return;
   worker.step.time = std::min(worker.step.time, *time);
@@ -396,6 +416,8 @@ void ImpactPass::keep_earlier(std::uint32_t job, const ContinuousContact& contac
 /// A reported time may be early by the tolerance. The pair with the earliest reported time may therefore
 /// touch later than another pair does.
 void ImpactPass::search_until(double time) {
+  // Which undecided pairs the search meets must not depend on the order in which threads find impacts.
+  if (has_exact_limit()) return;
   const float until = round_up(time + toi_tolerance);
   float latest = latest_.load(std::memory_order_relaxed);
   while (until < latest && !latest_.compare_exchange_weak(latest, until, std::memory_order_relaxed)) {

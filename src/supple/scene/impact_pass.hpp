@@ -36,6 +36,8 @@ struct ImpactSearchOptions {
   ImpactOptions impact;
   ElementKinds kinds = ElementKinds::all;
   ContinuousListing listing = ContinuousListing::all;
+  /// Exact arithmetic decides only pairs of at most so many bits.
+  std::uint32_t max_exact_bits = most_exact_bits;
 };
 
 /// Two elements that come nearer by d, and then keep less than `StepOptions::keep` of their distance, are
@@ -145,6 +147,9 @@ class ImpactPass {
                    Worker& worker);
   void keep_earlier(std::uint32_t job, const ContinuousContact& contact, Worker& worker);
   void search_until(double time);
+  bool has_exact_limit() const { return options_.max_exact_bits < most_exact_bits; }
+  /// Whether exact arithmetic may decide the pair.
+  bool may_be_exact(const OpenPair& pair, double separation) const;
   void drop_excess(std::uint32_t job, std::size_t first, Worker& worker);
   void gather_contacts(const Parallel& parallel);
   void gather_found(std::size_t job, Worker& worker, const Parallel& parallel);

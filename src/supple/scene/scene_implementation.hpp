@@ -183,7 +183,7 @@ class Scene::Implementation {
   /// Halves the part of the step until rounded positions are reached without contact.
   double proven_step(double part) const;
   ImpactSearchOptions impact_options() const {
-    return {options.impact, options.element_kinds, options.continuous_listing};
+    return {options.impact, options.element_kinds, options.continuous_listing, options.max_exact_bits};
   }
   /// Needs the contacts.
   bool find_penetrations(const StopSignal& stop);
@@ -207,6 +207,9 @@ class Scene::Implementation {
   void list_touching_pairs(const DetectResult& found);
   void list_deep_pairs(const DetectResult& found);
   void check_penetration(const DetectRequest& request) const;
+  /// Throws an error when coordinates of two objects exceed `SceneOptions::max_exact_bits`, unless all
+  /// requested contacts are continuous.
+  void check_exact_bits(const Jobs& jobs) const;
   bool volumes_apart(const IndexPair& pair) const;
   bool may_pair(const IndexPair& pair) const;
   OctreeView search_view(const SceneObject& object) const {

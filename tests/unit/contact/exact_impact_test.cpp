@@ -426,5 +426,48 @@ TEST(ExactImpact, FindsPlantedContacts) {
   }
 }
 
+/// Small numbers times one of three powers of two, which differ much.
+double hostile_number(RandomNumbers& random, int exponent) {
+  const double value = random.between(-3, 3) + (random.below(2) == 0 ? unit : 0);
+  return std::ldexp(value, exponent * random.between(-1, 1));
+}
+
+/// At rest, with opposite ends, or any.
+std::array<Points, 2> hostile_step(RandomNumbers& random, int exponent) {
+  std::array<Points, 2> step;
+  for (Points& points : step) {
+    for (Vec3d& p : points)
+      p = {hostile_number(random, exponent), hostile_number(random, exponent),
+           hostile_number(random, exponent)};
+  }
+  auto& [start, end] = step;
+  for (std::size_t k = 0; k < 4; ++k) {
+    const std::uint32_t kind = random.below(4);
+    if (kind == 0) end[k] = start[k];
+    if (kind == 1) end[k] = -1.0 * start[k];
+  }
+  return step;
+}
+
+TEST(ExactImpact, OfHostileCoordinatesIsThatOfAlgebra) {
+  RandomNumbers random(5);
+  int touching = 0;
+  const int count = scaled_count(30);
+  for (int i = 0; i < count; ++i) {
+    const auto [start, end] = hostile_step(random, i % 8 == 0 ? 200 : 40);
+    const double separation = i % 2 == 0 ? 0 : std::fabs(hostile_number(random, 40)) + unit;
+    const auto first_of = [&](const auto& motion) {
+      return separation > 0 ? exact_first_contact(motion, separation) : exact_first_contact(motion);
+    };
+    const VertexFaceMotion face{start, end};
+    const auto first = first_of(face);
+    touching += first.has_value() && first->high > 0;
+    ASSERT_EQ(first, first_contact_by_algebra(face, separation)) << i;
+    const EdgeEdgeMotion edges{start, end};
+    ASSERT_EQ(first_of(edges), first_contact_by_algebra(edges, separation)) << i;
+  }
+  EXPECT_GT(touching, count / 20);
+}
+
 }  // namespace
 }  // namespace supple

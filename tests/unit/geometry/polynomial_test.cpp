@@ -32,6 +32,16 @@ Polynomial random_polynomial(RandomNumbers& random, int degree, std::uint32_t si
   return Polynomial(std::move(c));
 }
 
+/// The coefficients divided by their greatest common divisor, with a positive leading coefficient.
+Polynomial primitive_part(const Polynomial& p) {
+  Integer content = 0;
+  for (const Integer& c : p.coefficients()) content = boost::multiprecision::gcd(content, c);
+  if (!p.is_zero() && p.coefficients().back().sign() < 0) content = -content;
+  std::vector<Integer> c = p.coefficients();
+  for (Integer& value : c) value /= content;
+  return Polynomial(std::move(c));
+}
+
 using RationalPolynomial = std::vector<Rational>;
 
 Rational value_at(const RationalPolynomial& p, const Rational& x) {
@@ -87,12 +97,6 @@ TEST(Polynomial, ArithmeticDropsLeadingZeros) {
   EXPECT_TRUE(derivative(Polynomial({7})).is_zero());
 }
 
-TEST(Polynomial, PrimitivePart) {
-  EXPECT_EQ(primitive_part(Polynomial({12, 0, -18})), Polynomial({-2, 0, 3}));
-  EXPECT_EQ(primitive_part(Polynomial({-7})), Polynomial({1}));
-  EXPECT_TRUE(primitive_part(Polynomial()).is_zero());
-}
-
 TEST(Polynomial, GcdOfProducts) {
   RandomNumbers random(1);
   int common = 0;
@@ -102,29 +106,40 @@ TEST(Polynomial, GcdOfProducts) {
     if (shared.is_zero() || p.is_zero() || q.is_zero()) continue;
     common += shared.degree() > 0;
     // A common factor of both arguments multiplies their gcd.
-    EXPECT_EQ(gcd(p * shared, q * shared), primitive_part(gcd(p, q) * shared));
+    EXPECT_EQ(primitive_part(gcd(p * shared, q * shared)), primitive_part(gcd(p, q) * shared));
   }
   EXPECT_GT(common, 300);
 }
 
 TEST(Polynomial, GcdOfSpecialCases) {
   const Polynomial p({-2, 0, 6});
-  EXPECT_EQ(gcd(p, Polynomial()), Polynomial({-1, 0, 3}));
-  EXPECT_EQ(gcd(Polynomial(), p), Polynomial({-1, 0, 3}));
+  EXPECT_EQ(gcd(p, Polynomial()), p);
+  EXPECT_EQ(gcd(Polynomial(), p), p);
   EXPECT_TRUE(gcd(Polynomial(), Polynomial()).is_zero());
   EXPECT_EQ(gcd(p, Polynomial({4})), Polynomial({1}));
-  EXPECT_EQ(gcd(Polynomial({4}), Polynomial()), Polynomial({1}));
-  EXPECT_EQ(gcd(p, p * Integer(-5)), Polynomial({-1, 0, 3}));
+  EXPECT_EQ(gcd(Polynomial({4}), Polynomial()).degree(), 0);
+  EXPECT_EQ(primitive_part(gcd(p, p * Integer(-5))), Polynomial({-1, 0, 3}));
   // Coefficients that vanish modulo the first prime that gcd tries.
   const Integer prime = (Integer(1) << 61) - 1;
   const Polynomial q = with_root(3, prime);
-  EXPECT_EQ(gcd(q * with_root(1, 2), q * with_root(1, 3)), q);
+  EXPECT_EQ(primitive_part(gcd(q * with_root(1, 2), q * with_root(1, 3))), q);
   EXPECT_EQ(gcd(q * prime, with_root(1, 2) * prime), Polynomial({1}));
+}
+
+TEST(Polynomial, GcdOfLargeCoefficients) {
+  const Integer large = Integer(1) << 5000;
+  const Polynomial shared = with_root(large / 3, large) * with_root(-large / 5, large - 1);
+  const Polynomial p = shared * with_root(large / 7, large) * with_root(2, large + 1) * Integer(-9);
+  const Polynomial q = shared * with_root(3, large) * Polynomial({large, 1, large / 11});
+  EXPECT_EQ(primitive_part(gcd(p, q)), primitive_part(shared));
+  EXPECT_EQ(primitive_part(gcd(q, p)), primitive_part(shared));
 }
 
 TEST(Polynomial, SquarefreePartKeepsEachRootOnce) {
   const Polynomial a = with_root(1, 3), b = with_root(-2, 5), c({1, 0, 1});
-  EXPECT_EQ(squarefree_part(power(a, 3) * power(b, 2) * power(c, 2) * Integer(6)), a * b * c);
+  const Polynomial simple = squarefree_part(power(a, 3) * power(b, 2) * power(c, 2) * Integer(6));
+  EXPECT_EQ(primitive_part(simple), a * b * c);
+  EXPECT_EQ(primitive_part(squarefree_part(power(a, 2) * b * Integer(-6))), a * b);
   EXPECT_EQ(primitive_part(squarefree_part(a * b * Integer(-4))), a * b);
   EXPECT_EQ(squarefree_part(Polynomial({9})).degree(), 0);
 }
@@ -205,6 +220,24 @@ TEST(UnitRoots, CloseTogether) {
   EXPECT_EQ(roots[1].sign_of(with_root(large / 3 + 1, large)), -1);
   EXPECT_EQ(roots[2].sign_of(with_root(large / 3, large)), 1);
   EXPECT_EQ(roots[2].sign_of(with_root(large / 3 + 1, large)), 0);
+}
+
+/// Bisection would take 40,000 steps for each root.
+TEST(UnitRoots, CloserThanAnyBisectionReaches) {
+  const Integer large = Integer(1) << 40000;
+  for (const int part : {2, 3}) {  // around 1/2 and 1/3
+    const Integer near = large / part;
+    const Polynomial p = with_root(near - 5, large) * with_root(near + 6, large) * with_root(1, large);
+    std::vector<UnitRoot> roots = roots_in_unit_interval(p * p);
+    ASSERT_EQ(roots.size(), 3u);
+    expect_neighbours(roots[0], Rational(1, large));
+    expect_neighbours(roots[1], Rational(near - 5, large));
+    EXPECT_EQ(roots[1].sign_of(with_root(near - 5, large)), 0);
+    EXPECT_EQ(roots[1].sign_of(with_root(near - 4, large)), -1);
+    EXPECT_EQ(roots[1].sign_of(with_root(near - 6, large)), 1);
+    EXPECT_EQ(roots[2].sign_of(with_root(near + 6, large) * with_root(-1, 3)), 0);
+    EXPECT_EQ(roots[2].sign_of(with_root(near + 5, large)), 1);
+  }
 }
 
 TEST(UnitRoots, TinyOnes) {
