@@ -8,6 +8,7 @@
 #include <exception>
 #include <filesystem>
 #include <new>
+#include <stdexcept>
 
 #include "ccd_queries.hpp"
 #include "detect.hpp"
@@ -57,6 +58,11 @@ void open_closed_streams() {
   }
 }
 
+int report_no_memory() {
+  fmt::print(stderr, "supple: the memory is used up; give fewer or smaller meshes, or fewer --threads\n");
+  return exit_unusable;
+}
+
 }  // namespace
 }  // namespace supple::cli
 
@@ -73,10 +79,12 @@ int main(int argument_count, char** arguments) {
     OutputFile("-").close();
     return exit_status;
   } catch (const std::bad_alloc&) {
-    fmt::print(stderr, "supple: the memory is used up; give fewer or smaller meshes, or fewer --threads\n");
-    return exit_unusable;
+    return report_no_memory();
+  } catch (const std::length_error&) {
+    return report_no_memory();  // an array that no memory can hold
   } catch (const std::filesystem::filesystem_error& error) {
-    fmt::print(stderr, "supple: {}: {}\n", one_line(error.path1().string()), error.code().message());
+    fmt::print(stderr, "supple: {}: {}; check the path and who may use it\n",
+               one_line(error.path1().string()), error.code().message());
     return exit_unusable;
   } catch (const std::exception& error) {
     fmt::print(stderr, "supple: {}\n", one_line(error.what()));
