@@ -8,6 +8,7 @@
 #include <exception>
 #include <filesystem>
 #include <new>
+#include <stdexcept>
 
 #include "ccd_queries.hpp"
 #include "detect.hpp"
@@ -57,9 +58,10 @@ void open_closed_streams() {
   }
 }
 
-void report_lack_of_memory() {
+int report_lack_of_memory() {
   // Without a buffer, so that this needs no memory.
   std::fputs("supple: the memory is used up; give fewer or smaller meshes, or fewer --threads\n", stderr);
+  return exit_unusable;
 }
 
 /// Libraries end the program where memory runs out in functions that must not throw. Then there is nothing to
@@ -68,8 +70,7 @@ void report_lack_of_memory() {
   try {
     if (const std::exception_ptr thrown = std::current_exception()) std::rethrow_exception(thrown);
   } catch (const std::bad_alloc&) {
-    report_lack_of_memory();
-    std::_Exit(exit_unusable);
+    std::_Exit(report_lack_of_memory());
   } catch (...) {  // a fault of the program
   }
   std::abort();
@@ -94,10 +95,12 @@ int main(int argument_count, char** arguments) {
     OutputFile("-").close();
     return exit_status;
   } catch (const std::bad_alloc&) {
-    report_lack_of_memory();
-    return exit_unusable;
+    return report_lack_of_memory();
+  } catch (const std::length_error&) {
+    return report_lack_of_memory();  // an array that no memory can hold
   } catch (const std::filesystem::filesystem_error& error) {
-    fmt::print(stderr, "supple: {}: {}\n", one_line(error.path1().string()), error.code().message());
+    fmt::print(stderr, "supple: {}: {}; check the path and who may use it\n",
+               one_line(error.path1().string()), error.code().message());
     return exit_unusable;
   } catch (const std::exception& error) {
     fmt::print(stderr, "supple: {}\n", one_line(error.what()));

@@ -10,6 +10,7 @@
 #include <string_view>
 #include <system_error>
 
+#include "input_stream.hpp"
 #include "supple/error.hpp"
 #include "text.hpp"
 
@@ -21,9 +22,7 @@ constexpr std::string_view separators = " \t\r,";
 /// Calls `add(numbers)` for each line with numbers.
 template <std::size_t count, class Add>
 void read_lines(const std::filesystem::path& path, const char* meaning, const Add& add) {
-  std::ifstream file(path);
-  if (!file || std::filesystem::is_directory(path))
-    throw Error(fmt::format("{}: the file cannot be read; check the folder and the spelling", path.string()));
+  std::ifstream file = open_input(path);
   std::string line;
   for (std::size_t number = 1; std::getline(file, line); ++number) {
     std::string_view rest = std::string_view(line).substr(0, line.find('#'));

@@ -9,10 +9,10 @@
 #include <array>
 #include <cmath>
 #include <fstream>
-#include <iterator>
 #include <string_view>
 #include <utility>
 
+#include "input_stream.hpp"
 #include "rational.hpp"
 #include "supple/error.hpp"
 #include "text.hpp"
@@ -24,13 +24,6 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t rows_of_query = 8;
 constexpr std::size_t columns_of_point = 6;
-
-std::ifstream open(const fs::path& path) {
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream || fs::is_directory(path))
-    throw Error(fmt::format("{}: cannot read this file; check the folder and the spelling", path.string()));
-  return stream;
-}
 
 std::string_view trimmed(std::string_view text) {
   const std::size_t first = text.find_first_not_of(" \t\r");
@@ -76,7 +69,7 @@ struct Row {
 /// Reads row by row and skips empty lines.
 class RowReader {
  public:
-  explicit RowReader(const fs::path& path) : path_(path), stream_(open(path)) {}
+  explicit RowReader(const fs::path& path) : path_(path), stream_(open_input(path)) {}
 
   std::optional<Row> next();
   std::uint64_t line_number() const { return line_number_; }
@@ -264,8 +257,7 @@ void read_answers(const fs::path& path, QueryFile& file) {
   if (file.answers && file.size() > 0)
     throw Error(fmt::format("{}: already has a column of answers; leave out --answers {}", file.path.string(),
                             path.string()));
-  std::ifstream stream = open(path);
-  const std::string text{std::istreambuf_iterator<char>(stream), {}};
+  const std::string text = read_text(path);
   AnswerHandler handler;
   rapidjson::MemoryStream input(text.data(), text.size());
   const rapidjson::ParseResult parsed =

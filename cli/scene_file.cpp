@@ -5,8 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <fstream>
-#include <iterator>
 #include <map>
 #include <optional>
 #include <string>
@@ -15,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "input_stream.hpp"
 #include "option_needs.hpp"
 #include "placement.hpp"
 #include "scene_motion.hpp"
@@ -31,18 +30,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string read_text(const fs::path& path) {
-  std::ifstream stream(path, std::ios::binary);
-  std::string text;
-  std::array<char, 65536> part;
-  while (text.size() <= most_toml_bytes && (stream.read(part.data(), part.size()) || stream.gcount() > 0))
-    text.append(part.data(), static_cast<std::size_t>(stream.gcount()));
+std::string read_toml(const fs::path& path) {
+  std::string text = read_text(path, most_toml_bytes + 1);
   if (text.size() > most_toml_bytes)
     throw Error(fmt::format("{}: a scene file has at most {} MB; name large meshes by their files",
                             path.string(), most_toml_bytes >> 20));
-  if (!stream.eof() || fs::is_directory(path))
-    throw Error(
-        fmt::format("{}: cannot read this scene file; check the folder and the spelling", path.string()));
   return text;
 }
 
@@ -268,11 +260,11 @@ Vec3d read_scene(const toml::table& table, const fs::path& path, SimulationOptio
 }  // namespace
 
 Input read_scene_file(const fs::path& path, const SceneOverrides& overrides) {
-  return read_scene_text(read_text(path), path, overrides);
+  return read_scene_text(read_toml(path), path, overrides);
 }
 
 SimulationOptions read_scene_options(const fs::path& path) {
-  const toml::table file = parse_toml(read_text(path), path);
+  const toml::table file = parse_toml(read_toml(path), path);
   SimulationOptions simulation;
   TomlReader reader(path, file, "scene file");
   if (const toml::table* scene = reader.table("scene")) read_scene(*scene, path, simulation);

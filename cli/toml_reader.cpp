@@ -54,6 +54,8 @@ void TomlReader::read(const std::string& key, std::string& value) {
   if (!found) return;
   if (!found->is_string()) fail_at(found->source(), key, "must be a string in quotes");
   value = found->as_string()->get();
+  if (value.find('\0') != std::string::npos)
+    fail_at(found->source(), key, "has a character of code 0, which no name can have");
 }
 
 void TomlReader::read(const std::string& key, bool& value) {

@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <set>
 #include <span>
 #include <string>
@@ -16,6 +14,7 @@
 #include "experiments/table1_claims.hpp"
 #include "experiments/table1_runs.hpp"
 #include "experiments/work.hpp"
+#include "input_stream.hpp"
 #include "supple/error.hpp"
 
 namespace supple::experiments {
@@ -156,12 +155,11 @@ void check_options(const Table1Options& options, const fs::path& folder, bool re
     write_file(path, text);
     return;
   }
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream)
+  if (!fs::exists(path))
     throw Error(fmt::format("--resume: {} has no experiment table1; leave out --resume to start one",
                             folder.string()));
   const auto given = parse_csv(text).rows;
-  const auto found = parse_csv(std::string(std::istreambuf_iterator<char>(stream), {})).rows;
+  const auto found = parse_csv(cli::read_text(path)).rows;
   const auto value_of = [](const auto& rows, const std::string& name) {
     const auto row = std::find_if(rows.begin(), rows.end(), [&](const auto& r) { return r.front() == name; });
     return row == rows.end() ? std::string("not given") : row->back();

@@ -1,11 +1,10 @@
 #include <fmt/core.h>
 
 #include <charconv>
-#include <fstream>
-#include <iterator>
 #include <system_error>
 
 #include "experiments/table1_runs.hpp"
+#include "input_stream.hpp"
 #include "supple/error.hpp"
 
 namespace supple::experiments {
@@ -94,8 +93,7 @@ RunLog::RunLog(const fs::path& folder, bool by_clock, bool resume) : by_clock_(b
   const std::string header = csv_of(table);
   std::size_t length = 0;
   if (resume && fs::exists(path)) {
-    std::ifstream stream(path, std::ios::binary);
-    const std::string text{std::istreambuf_iterator<char>(stream), {}};
+    const std::string text = cli::read_text(path);
     const CsvText csv = parse_csv(text);
     if (csv.length > 0 && text.rfind(header, 0) != 0)
       throw Error(

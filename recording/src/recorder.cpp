@@ -330,6 +330,7 @@ class Recorder::Implementation {
   void check_open() const;
   void check_positions(std::span<const std::span<const Vec3d>> positions) const;
   void append(double time, std::span<const std::span<const Vec3d>> positions, const Rows& rows);
+  bool flush_is_due();
   std::size_t pending_bytes();
   void write_out();
   void abandon();
@@ -472,7 +473,7 @@ void Recorder::Implementation::add(double time, std::span<const std::span<const 
   try {
     append(time, positions, rows);
     ++frames_;
-    if (pending_bytes() >= most_pending_bytes || Clock::now() - last_flush_ >= flush_interval) write_out();
+    if (flush_is_due()) write_out();
   } catch (const Hdf5Failure&) {
     stop();
   } catch (const std::bad_alloc&) {
@@ -509,6 +510,12 @@ void Recorder::Implementation::append(double time, std::span<const std::span<con
   datasets_->time->append_value(&time);
   xdmf_->add_frame(time);
   check_writes(file_.id());
+}
+
+bool Recorder::Implementation::flush_is_due() {
+  // The first frames are flushed early, so that a recording that fills a small disk keeps most of them.
+  return frames_ - flushed_frames_ > flushed_frames_ / 8 || pending_bytes() >= most_pending_bytes ||
+         Clock::now() - last_flush_ >= flush_interval;
 }
 
 std::size_t Recorder::Implementation::pending_bytes() {

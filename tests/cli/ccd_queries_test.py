@@ -234,7 +234,7 @@ class Format(Queries):
         expect("[true, false] true", "a.json:1: ", "JSON")
         expect("", "a.json:1: ", "JSON")
         expect("[true]", "vf.csv", "a.json", "column of answers", queries=rows(FALLING, 1))
-        self.expect(rows(FALLING), "none.json", "cannot read", arguments=("--answers", "none.json"))
+        self.expect(rows(FALLING), "none.json", "there is no such file", arguments=("--answers", "none.json"))
         self.write("ee.csv", rows(CROSSING))
         self.write("a.json", "[true]")
         self.expect(rows(FALLING), "--answers", "1 file for 2", arguments=("ee.csv", "--answers", "a.json"))
@@ -243,7 +243,7 @@ class Format(Queries):
         for name in ("none.csv", "no*.csv"):
             self.assert_one_line_error(self.run_here("ccd-queries", name), name)
         (self.folder / "ee").mkdir()
-        self.assert_one_line_error(self.run_here("ccd-queries", "ee"), "ee", "cannot read")
+        self.assert_one_line_error(self.run_here("ccd-queries", "ee"), "ee", "a folder")
 
     def test_options(self):
         text = rows(FALLING)

@@ -105,7 +105,7 @@ class Query(ProgramTest):
         for arguments, message in (
             (("closest", "points.txt", "solid.obj"), "points.txt: line 2: 2 numbers; a line has three: x, y and z"),
             (("closest", "words.txt", "solid.obj"), 'words.txt: line 1: "x" is not a number that a double can hold'),
-            (("closest", "none.txt", "solid.obj"), "none.txt: the file cannot be read"),
+            (("closest", "none.txt", "solid.obj"), "none.txt: there is no such file"),
             (("nearest", "points.txt", "solid.obj"), "nearest is none of closest, inside, rays and distance"),
             (("distance", "solid.obj"), "solid.obj: has 1 object; distances need two"),
             (("distance",), "MESH|SCENE.toml|RUN.h5 is required"),

@@ -28,7 +28,7 @@ try:
 except ImportError:
     h5py = None
 
-from program import ROOT, TRIANGLE, ProgramTest, run
+from program import PROGRAM, ROOT, TRIANGLE, ProgramTest, run
 
 DATA = pathlib.Path(os.environ.get("SUPPLE_DATA", ROOT.parent / "shared/data"))
 RECORD = os.environ.get("SUPPLE_RECORD_MOTION", str(ROOT / "build/release/bin/record_motion"))
@@ -152,6 +152,32 @@ class Killed(RecordingTest):
         self.assertEqual(done.returncode, 2)
         self.assertRegex(done.stderr, r"^killed\.h5: writing failed: .* the recording ends after its first \d+ frames")
         self.check(done.stdout)
+
+
+class SmallDisk(ProgramTest):
+    """A limit of the file size stops a recording in the same way as a disk that is full."""
+
+    def record(self, frames, limit):
+        preexec = lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))
+        command = [PROGRAM, "simulate", ROOT / "scenes/nine.toml", "--frames", str(frames), "--record", "run.h5", "--quiet"]
+        return subprocess.run(command, cwd=self.folder, preexec_fn=preexec, capture_output=True, text=True)
+
+    def size_with(self, frames):
+        self.assertEqual(self.record(frames, resource.RLIM_INFINITY).returncode, 0)
+        return (self.folder / "run.h5").stat().st_size
+
+    def test_frames_that_fit_are_kept(self):
+        sizes = {fit: self.size_with(fit) for fit in (1, 9, 40)}
+        for fit, size in sizes.items():
+            done = self.record(100, size + (1 << 16))
+            self.assertEqual(done.returncode, 2)
+            kept = re.fullmatch(r"supple: run\.h5: writing failed: File too large; the recording ends after its first "
+                                r"(\d+) frames, make room and record again\n", done.stderr)
+            self.assertTrue(kept, done.stderr)
+            self.assertGreaterEqual(int(kept[1]), fit * 8 // 9)
+            read = self.run_here("detect", "run.h5", "--json", "-", "--no-stats")
+            self.assertEqual((read.status, read.error), (0, ""))
+            self.assertEqual(len(json.loads(read.out)["frames"]), int(kept[1]))
 
 
 class Stopped(RecordingTest):

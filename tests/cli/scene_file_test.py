@@ -403,7 +403,7 @@ class Errors(ProgramTest):
         self.expect('[[object]]\nmotion = { kind = "frames", files = "f.ply" }\n', 2, "files", "f.ply", "no file")
 
     def test_file(self):
-        self.assert_one_line_error(self.run_here("detect", "none.toml"), "none.toml", "cannot read")
+        self.assert_one_line_error(self.run_here("detect", "none.toml"), "none.toml", "there is no such file")
         self.write("empty.toml", "")
         self.assert_one_line_error(self.run_here("detect", "empty.toml"), "empty.toml", "[[object]]")
 

@@ -274,7 +274,7 @@ class Ends(SimulateTest):
         for arguments, parts in (
             ([], ["required"]),
             (["a.obj"], ["a.obj", "scene file"]),
-            (["none.toml"], ["none.toml", "cannot read"]),
+            (["none.toml"], ["none.toml", "there is no such file"]),
             (["box.toml", "--frames", "0"], ["--frames", "'0'"]),
             (["box.toml", "--seconds", "0"], ["--seconds", "'0'", "above 0"]),
             (["box.toml", "--seconds", "1e30"], ["--seconds", "allowed"]),

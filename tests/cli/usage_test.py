@@ -7,7 +7,7 @@ import resource
 import subprocess
 import unittest
 
-from program import CROSSED, FAR, FLOOR, PROGRAM, SPIKE, TRIANGLE, UPRIGHT, ProgramTest, joined, moved, run
+from program import CROSSED, FAR, FLOOR, PROGRAM, SPIKE, TRIANGLE, UPRIGHT, ProgramTest, Result, joined, moved, run
 
 
 class Help(ProgramTest):
@@ -179,9 +179,64 @@ class UsageErrors(ProgramTest):
     def test_folders_are_no_files(self):
         (self.folder / "folder.toml").mkdir()
         self.write("vf.csv", "")
-        self.expect("detect", "folder.toml", parts=["folder.toml: cannot read this scene file"])
+        self.expect("detect", "folder.toml", parts=["folder.toml: is not a regular file but a folder"])
         self.expect("query", "closest", "folder.toml", "a.obj", parts=["folder.toml"])
         self.expect("ccd-queries", "vf.csv", "--answers", "folder.toml", parts=["folder.toml"])
+
+    def test_named_pipes_and_devices_are_no_files(self):
+        """A named pipe without a writer would block the program, and /dev/zero has no end."""
+        self.write("vf.csv", "0,1,0,1,0,1\n" * 8)
+        self.write("pipe_scene.toml", '[[object]]\nmesh = "pipe.obj"\n')
+        self.write("frames.toml", '[[object]]\nmodel = "box"\nmotion = { kind = "frames", files = "pipe.obj" }\n')
+        for name in ("pipe.obj", "pipe.glb", "pipe.toml", "pipe.h5", "pipe.txt", "pipe_vf.csv"):
+            os.mkfifo(self.folder / name)
+            (self.folder / name.replace("pipe", "device")).symlink_to("/dev/zero")
+        for arguments in (
+            ["info", "pipe.obj"],
+            ["info", "pipe.glb"],
+            ["detect", "--sequence", "pipe.obj"],
+            ["detect", "pipe_scene.toml"],
+            ["simulate", "frames.toml"],
+            ["detect", "pipe.toml"],
+            ["info", "pipe.h5"],
+            ["simulate", "scene.toml", "--record", "pipe.h5"],
+            ["query", "closest", "pipe.txt", "a.obj"],
+            ["query", "rays", "pipe.txt", "a.obj"],
+            ["ccd-queries", "pipe_vf.csv"],
+            ["ccd-queries", "vf.csv", "--answers", "pipe.txt"],
+        ):
+            for kind in ("pipe", "device"):
+                if kind == "device" and ("pipe_scene.toml" in arguments or "frames.toml" in arguments):
+                    continue  # these name the pipe
+                given = [word.replace("pipe", kind) for word in arguments]
+                done = Result(subprocess.run([PROGRAM, *given], cwd=self.folder, capture_output=True, text=True, timeout=120))
+                self.assert_one_line_error(done, kind)
+                self.assertRegex(done.error, "regular file|a pipe or a device", given)
+
+    def test_pipes_of_the_shell_are_read(self):
+        for given in ("<(echo 0.1 0.1 0)", "/dev/stdin"):
+            command = f'echo 0.1 0.1 0 | "{PROGRAM}" query closest {given} a.obj --json -'
+            done = subprocess.run(["bash", "-c", command], cwd=self.folder, capture_output=True, text=True)
+            self.assertEqual((done.returncode, done.stderr), (0, ""))
+            self.assertEqual(len(json.loads(done.stdout)["results"]), 1)
+
+    def test_names_that_the_system_refuses(self):
+        long = "x" * 300
+        (self.folder / "loop.obj").symlink_to("loop.obj")
+        for arguments in (["info", f"{long}.obj"], ["detect", f"{long}.toml"], ["query", "closest", long, "a.obj"],
+                          ["info", "loop.obj"], ["ccd-queries", f"{long}_vf.csv"], ["detect", "a.obj", "--json", long]):
+            self.expect(*arguments, parts=["; c"])
+        self.write("zero.toml", '[[object]]\nmesh = "a.obj\\u0000.obj"\n')
+        self.expect("info", "zero.toml", parts=["zero.toml:2: [[object]] 0: mesh: has a character of code 0"])
+
+    def test_files_that_fail_while_read(self):
+        """The first bytes of /proc/self/mem cannot be read."""
+        self.write("vf.csv", "0,1,0,1,0,1\n" * 8)
+        for name in ("bad.obj", "bad.toml", "bad.txt", "bad_vf.csv"):
+            (self.folder / name).symlink_to("/proc/self/mem")
+        for arguments in (["info", "bad.obj"], ["detect", "bad.toml"], ["query", "closest", "bad.txt", "a.obj"],
+                          ["ccd-queries", "bad_vf.csv"], ["ccd-queries", "vf.csv", "--answers", "bad.txt"]):
+            self.expect(*arguments, parts=[arguments[-1] if arguments[0] != "query" else "bad.txt", "read"])
 
     @unittest.skipIf("SUPPLE_SANITIZED" in os.environ, "a sanitizer needs more addresses")
     def test_memory(self):

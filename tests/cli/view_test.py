@@ -176,10 +176,10 @@ class Serve(ViewTest):
 
     def test_options_reach_the_session(self):
         self.write("scene.toml", BODY)
-        _, url = self.start("scene.toml", "--seed", 7, "--time-step", 0.002, "--bounding-volume", "sphere", "--self", "--max-level", 5,
+        _, url = self.start("scene.toml", "--seed", 2**64 - 1, "--time-step", 0.002, "--bounding-volume", "sphere", "--self", "--max-level", 5,
                             "--leaf-size", 9, "--broad-phase", "sweep", "--contacts", "continuous")
         scene = self.connect(url).receive_text(SCENE)
-        for key, value in (("seed", 7), ("time_step", 0.002), ("bounding_volume", "sphere"), ("max_level", 5), ("leaf_size", 9),
+        for key, value in (("seed", str(2**64 - 1)), ("time_step", 0.002), ("bounding_volume", "sphere"), ("max_level", 5), ("leaf_size", 9),
                            ("broad_phase", "sweep"), ("contacts", "continuous"), ("title", "scene.toml")):
             self.assertEqual(scene[key], value, key)
         self.assertTrue(scene["objects"][0]["self_collision"])

@@ -1,5 +1,6 @@
 #include "server.hpp"
 
+#include <algorithm>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/post.hpp>
@@ -9,6 +10,7 @@
 #include <boost/beast/websocket.hpp>
 #include <cstddef>
 #include <exception>
+#include <list>
 #include <memory>
 #include <optional>
 #include <string>
@@ -33,8 +35,10 @@ using namespace std::chrono_literals;
 constexpr std::size_t largest_command = std::size_t{1} << 20;
 /// Stop reading when this many bytes of commands wait for the current step to end.
 constexpr std::size_t most_waiting = std::size_t{4} << 20;
-/// Largest number of requests that are read or answered at the same time.
-constexpr int most_requests = 64;
+/// Most connections that have not shown the token, from one address and in all. A new one replaces the
+/// oldest.
+constexpr std::ptrdiff_t most_strangers_of_address = 16;
+constexpr std::size_t most_strangers = 64;
 
 enum CloseCode : std::uint16_t {
   taken_over = 4001,
@@ -164,18 +168,21 @@ class Request : public std::enable_shared_from_this<Request> {
     const Access& access;
     std::string_view page;
     std::function<void(beast::tcp_stream, const http::request<http::empty_body>&)> connect;
-    int& count;  ///< number of requests
+    std::list<Request*>& strangers;  ///< that have not shown the token, oldest first
   };
 
-  Request(tcp::socket socket, const Context& context) : stream_(std::move(socket)), context_(context) {
-    ++context_.count;
+  Request(tcp::socket socket, const asio::ip::address& peer, const Context& context)
+      : stream_(std::move(socket)), peer_(peer), context_(context) {
+    context_.strangers.push_back(this);
   }
-  ~Request() { --context_.count; }
+  ~Request() { context_.strangers.remove(this); }
   Request(const Request&) = delete;
   Request& operator=(const Request&) = delete;
 
+  const asio::ip::address& peer() const { return peer_; }
+
   void read() {
-    stream_.expires_after(10s);
+    stream_.expires_after(5s);
     http::async_read(stream_, buffer_, parser_, [self = shared_from_this()](error_code error, std::size_t) {
       if (!error) return self->answer();
       if (error == http::error::body_limit || error == http::error::header_limit)
@@ -184,6 +191,12 @@ class Request : public std::enable_shared_from_this<Request> {
           error != http::error::end_of_stream && error != http::error::partial_message)
         self->refuse(http::status::bad_request, "This is not an HTTP request.\n");
     });
+  }
+
+  /// Ends the connection.
+  void drop() {
+    context_.strangers.remove(this);
+    stream_.close();
   }
 
  private:
@@ -204,6 +217,7 @@ class Request : public std::enable_shared_from_this<Request> {
     if (!context_.access.knows_token(target.token)) {
       respond(http::status::forbidden, "text/html; charset=utf-8", no_token_page);
     } else {
+      context_.strangers.remove(this);
       respond(http::status::ok, "text/html; charset=utf-8", context_.page);
     }
   }
@@ -259,6 +273,7 @@ class Request : public std::enable_shared_from_this<Request> {
   static std::string_view text(beast::string_view view) { return {view.data(), view.size()}; }
 
   beast::tcp_stream stream_;
+  asio::ip::address peer_;
   Context context_;
   beast::flat_buffer buffer_{16 * 1024};
   http::request_parser<http::empty_body> parser_;
@@ -281,7 +296,7 @@ class Server::Implementation {
         requests_{
             access_, options.page,
             [this](beast::tcp_stream stream, const auto& request) { connect(std::move(stream), request); },
-            request_count_},
+            strangers_},
         clock_(sockets_),
         session_(std::move(session), listener()) {}
 
@@ -322,8 +337,9 @@ class Server::Implementation {
       if (!acceptor_.is_open()) return;
       if (!error) {
         socket.set_option(tcp::no_delay(true), error);
-        // Drop connections beyond the limit, which no user of a browser reaches.
-        if (request_count_ < most_requests) std::make_shared<Request>(std::move(socket), requests_)->read();
+        const asio::ip::address peer = socket.remote_endpoint(error).address();
+        make_room_for(peer);
+        std::make_shared<Request>(std::move(socket), peer, requests_)->read();
         return accept();
       }
       clock_of_retry_.expires_after(100ms);
@@ -331,6 +347,15 @@ class Server::Implementation {
         if (acceptor_.is_open()) accept();
       });
     });
+  }
+
+  /// Drops the oldest stranger when there are too many, so that slow connections do not keep new ones out.
+  void make_room_for(const asio::ip::address& peer) {
+    const auto is_of_peer = [&](const Request* request) { return request->peer() == peer; };
+    if (std::ranges::count_if(strangers_, is_of_peer) >= most_strangers_of_address)
+      (*std::ranges::find_if(strangers_, is_of_peer))->drop();
+    else if (strangers_.size() >= most_strangers)
+      strangers_.front()->drop();
   }
 
   void watch(const std::function<bool()>& should_end) {
@@ -398,7 +423,7 @@ class Server::Implementation {
   }
 
   ServerOptions options_;
-  int request_count_ = 0;  ///< outlives the requests, which the next member holds
+  std::list<Request*> strangers_;  ///< outlives the requests, which the next member holds
   asio::io_context sockets_{1};
   tcp::acceptor acceptor_;
   Access access_;

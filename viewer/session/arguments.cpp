@@ -1,8 +1,10 @@
 #include "arguments.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <limits>
+#include <system_error>
 #include <utility>
 
 #include "json_text.hpp"
@@ -96,6 +98,19 @@ std::optional<double> Arguments::number(const char* name, const ValueRange& rang
   if (value == nullptr) return std::nullopt;
   if (value->is_number() && range.allows(value->number)) return value->number;
   must_be(name, text_of(range, false));
+  return std::nullopt;
+}
+
+std::optional<std::uint64_t> Arguments::digits(const char* name) {
+  const JsonValue* const value = find(name);
+  if (value == nullptr) return std::nullopt;
+  std::uint64_t number = 0;
+  const char* const end = value->text.data() + value->text.size();
+  if (value->kind == JsonValue::Kind::text) {
+    const auto [rest, error] = std::from_chars(value->text.data(), end, number);
+    if (error == std::errc() && rest == end) return number;
+  }
+  must_be(name, "a text of digits, from \"0\" to \"18446744073709551615\"");
   return std::nullopt;
 }
 

@@ -26,6 +26,8 @@ class Arguments {
   std::optional<double> number(const char* name, double low, double high);
   std::optional<std::int64_t> integer(const char* name, const ValueRange& range);
   std::optional<double> number(const char* name, const ValueRange& range);
+  /// A whole number of up to 64 bits as a text of digits: numbers of JavaScript are exact only up to 2^53.
+  std::optional<std::uint64_t> digits(const char* name);
   std::optional<bool> one_of_two(const char* name, const std::array<const char*, 2>& words_of_truth);
   std::optional<Vec3d> point(const char* name);
   /// Three coordinates and an edge, or null for no cube.

@@ -97,7 +97,7 @@ void add_options(const Stage& stage, JsonText& json) {
   const ObjectOctreeOptions octree =
       show.objects.empty() ? ObjectOctreeOptions{} : show.objects.front().options.octree;
   json.member("time_step", show.simulation.time_step);
-  json.member("seed", show.simulation.seed);
+  json.member("seed", std::to_string(show.simulation.seed));
   add_settings(scene, json);
   add_settings(octree, json);
   json.key("integrator");

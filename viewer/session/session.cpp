@@ -367,8 +367,7 @@ void Session::Implementation::read_colliding_nodes(const JsonValue& nodes, Layer
 
 void Session::Implementation::reset(Arguments& arguments) {
   Settings settings = settings_;
-  if (const auto seed = arguments.integer("seed", 0, largest_count))
-    settings.seed = static_cast<std::uint64_t>(*seed);
+  if (const auto seed = arguments.digits("seed")) settings.seed = *seed;
   if (!is_of_simulation(arguments) || !arguments.check()) return;
   set_stage(settings);
 }

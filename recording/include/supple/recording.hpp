@@ -60,8 +60,9 @@ struct RecordedFrame {
 /// Writes a recording (docs/recording.md): an HDF5 file, and an XDMF file with the same stem for ParaView.
 ///
 /// The file is readable at any time up to the last flush, also after the process was killed: between flushes,
-/// the recorder never overwrites data that the file refers to. `add` flushes once per second, and when 32 MiB
-/// wait in memory. The destructor flushes at the end.
+/// the recorder never overwrites data that the file refers to. `add` flushes once per second, when 32 MiB
+/// wait in memory, and when the number of frames has grown by more than an eighth since the last flush. The
+/// destructor flushes at the end.
 class Recorder {
  public:
   /// Replaces existing files once the new recording has its header. Throws `Error` when the files cannot be

@@ -23,8 +23,11 @@ std::string reason() {
 
 File open_for_reading(const std::filesystem::path& path) {
   std::error_code ignored;
-  if (std::filesystem::is_directory(path, ignored))
-    fail("cannot open " + shown(path) + ": it is a directory");
+  const std::filesystem::file_status kind = std::filesystem::status(path, ignored);
+  if (is_directory(kind)) fail("cannot open " + shown(path) + ": it is a directory");
+  // A pipe can wait for a writer forever, and a device can be endless.
+  if (is_other(kind))
+    fail("cannot open " + shown(path) + ": it is not a regular file but a pipe or a device; give a file");
   File file(std::fopen(path.string().c_str(), "rb"));
   if (!file) fail("cannot open " + shown(path) + ": " + reason());
   return file;

@@ -11,7 +11,8 @@ std::string shown(const std::filesystem::path& path);
 /// The extension with its dot, in lower case; empty when there is none.
 std::string lower_case_extension(const std::filesystem::path& path);
 
-/// Fails with "cannot open ..." and the system's reason when the file cannot be read or is a directory.
+/// Fails with "cannot open ..." and the reason when the file cannot be read, or is a directory, a pipe or a
+/// device.
 void check_readable(const std::filesystem::path& path);
 
 /// Reads all bytes of a file. Fails as `check_readable` does.

@@ -51,7 +51,7 @@ void VertexBuffer::assign(const PositionsView& positions, const Parallel& parall
 
 void VertexBuffer::set(std::span<const std::uint32_t> ids, const PositionsView& positions,
                        const Parallel& parallel) {
-  assert(ids.size() == positions.size() && positions.is_double() == is_double_);
+  assert(ids.size() == positions.size() && (ids.empty() || positions.is_double() == is_double_));
   if (borrowed_ != nullptr) assign(view(), parallel);
   for (std::size_t i = 0; i < ids.size(); ++i) {
     if (is_double_) {

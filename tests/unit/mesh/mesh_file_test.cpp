@@ -1,4 +1,5 @@
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <bit>
 #include <cmath>
@@ -118,6 +119,10 @@ TEST(MeshFile, NamesUnreadablePaths) {
   const std::string directory = folder / "directory.obj";
   fs::create_directory(directory);
   EXPECT_EQ(error_of([&] { load_mesh(directory); }), "cannot open " + directory + ": it is a directory");
+  const std::string pipe = folder / "pipe.obj";
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  EXPECT_EQ(error_of([&] { load_mesh(pipe); }),
+            "cannot open " + pipe + ": it is not a regular file but a pipe or a device; give a file");
   const std::string through_file = folder.write("file.obj", "") / "a.obj";
   EXPECT_EQ(error_of([&] { load_mesh(through_file); }), "cannot open " + through_file + ": Not a directory");
 }

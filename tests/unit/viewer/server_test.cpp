@@ -2,10 +2,13 @@
 
 #include <gtest/gtest.h>
 #include <poll.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <atomic>
+#include <boost/asio/read.hpp>
+#include <boost/asio/write.hpp>
 #include <chrono>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -13,6 +16,7 @@
 #include <string>
 #include <thread>
 #include <utility>
+#include <vector>
 
 #include "session/scene_view.hpp"
 #include "supple/error.hpp"
@@ -148,6 +152,37 @@ TEST_F(ViewerServer, WhatIsNoRequestIsRefused) {
   EXPECT_EQ(ask(port(), "\x16\x03\x01 hello\r\n\r\n").status, 400u);
   EXPECT_EQ(ask(port(), "GET / HTTP/1.1\r\nX: " + std::string(100'000, 'x') + "\r\n\r\n").status, 413u);
   EXPECT_EQ(get(port(), with_token("/")).status, 200u) << "the server continues";
+}
+
+TEST_F(ViewerServer, SlowConnectionsDoNotKeepNewClientsOut) {
+  rlimit files{};
+  ASSERT_EQ(getrlimit(RLIMIT_NOFILE, &files), 0);
+  files.rlim_cur = std::min<rlim_t>(files.rlim_max, 4096);
+  ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &files), 0);
+  start();
+  const std::size_t count = std::min<std::size_t>(1000, files.rlim_cur - 200);
+  boost::asio::io_context context;
+  std::vector<boost::asio::ip::tcp::socket> slow;
+  const std::string begin = "GET " + with_token("/") + " HTTP/1.1\r\nHost: " + own_host() + "\r\n";
+  for (std::size_t i = 0; i < count; ++i) {
+    slow.emplace_back(context).connect({boost::asio::ip::make_address("127.0.0.1"), port()});
+    boost::system::error_code may_be_dropped;
+    boost::asio::write(slow.back(), boost::asio::buffer(begin), may_be_dropped);
+  }
+  const auto is_closed = [](boost::asio::ip::tcp::socket& socket) {
+    pollfd connection{socket.native_handle(), POLLRDHUP, 0};
+    return poll(&connection, 1, 0) == 1;
+  };
+  // The newest one may still end its request.
+  boost::asio::write(slow.back(), boost::asio::buffer("\r\n", 2));
+  std::string answer;
+  boost::system::error_code end_of_answer;
+  boost::asio::read(slow.back(), boost::asio::dynamic_buffer(answer), end_of_answer);
+  EXPECT_TRUE(answer.starts_with("HTTP/1.1 200")) << answer;
+
+  EXPECT_EQ(get(port(), with_token("/")).status, 200u);
+  EXPECT_EQ(connect().receive().kind, Kind::scene);
+  EXPECT_TRUE(eventually([&] { return std::ranges::count_if(slow, is_closed) + 16 >= std::ssize(slow); }));
 }
 
 TEST_F(ViewerServer, SessionNeedsTokenHostAndOrigin) {

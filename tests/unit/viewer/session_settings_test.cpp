@@ -80,13 +80,33 @@ TEST(ViewerSettings, ResetStartsAnewWithTheSeed) {
     return page.scene();
   };
   const auto first = positions();
-  EXPECT_EQ(reset({}).json["seed"], 0);
+  EXPECT_EQ(reset({}).json["seed"], "0");
   EXPECT_EQ(positions(), first);
-  EXPECT_EQ(reset({{"seed", 5}}).json["seed"], 5);
+  EXPECT_EQ(reset({{"seed", "5"}}).json["seed"], "5");
   const auto other = positions();
   EXPECT_NE(other, first);
-  EXPECT_EQ(reset({}).json["seed"], 5);
+  EXPECT_EQ(reset({}).json["seed"], "5");
   EXPECT_EQ(positions(), other);
+}
+
+TEST(ViewerSettings, CarriesEverySeedOf64Bits) {
+  SceneView show = three_balls();
+  show.objects[1].motion = MassSpringMotion{.random_speed = 1};
+  show.simulation.seed = (std::uint64_t{1} << 53) + 1;  // a number of JavaScript is not exact here
+  TestPage page(show);
+  EXPECT_EQ(page.scene().json["seed"], "9007199254740993");
+  for (const std::uint64_t seed : {std::uint64_t{1} << 32, (std::uint64_t{1} << 63) + 1, ~std::uint64_t{0}}) {
+    page.say({{"do", "reset"}, {"seed", std::to_string(seed)}});
+    EXPECT_EQ(page.scene().json["seed"], std::to_string(seed));
+    page.ask({{"do", "pause"}});
+    const auto shown = page.frame_after_steps(3).values<Vec3f>(32, 1);
+    SceneView same = show;
+    same.simulation.seed = seed;
+    TestPage other(same);
+    other.scene();
+    other.ask({{"do", "pause"}});
+    EXPECT_EQ(shown, other.frame_after_steps(3).values<Vec3f>(32, 1)) << seed;
+  }
 }
 
 TEST(ViewerSettings, AFailedSetLeavesAllAsItWas) {

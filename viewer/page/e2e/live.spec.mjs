@@ -40,10 +40,10 @@ async function resetsWithASeedAndSpeed(stage) {
   await page.getByRole("combobox", { name: "Speed" }).selectOption("0.1");
   await until(page, () => supple.model.frame.text.speed === 0.1);
   const generation = await page.evaluate(() => supple.model.scene.generation);
-  await page.getByRole("spinbutton", { name: "Seed" }).fill("7");
-  await page.getByRole("spinbutton", { name: "Seed" }).press("Enter");
+  await page.getByRole("textbox", { name: "Seed" }).fill("18446744073709551615");
+  await page.getByRole("textbox", { name: "Seed" }).press("Enter");
   await until(page, (old) => supple.model.scene.generation > old && supple.model.frame, generation);
-  assert.equal(await page.evaluate(() => supple.model.scene.seed), 7);
+  assert.equal(await page.evaluate(() => supple.model.scene.seed), "18446744073709551615");
   await pause(page);
   await page.getByRole("button", { name: "Reset" }).click();
   await until(page, () => supple.model.frame?.text.step === 0);

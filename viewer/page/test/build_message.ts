@@ -42,7 +42,7 @@ export const SCENE = {
     { name: "one", vertices: 3, triangles: 1, static: false, body: true, self_collision: false },
     { name: "other", vertices: 4, triangles: 2, static: true, body: false, self_collision: false },
   ],
-  frames: null, time_step: 0.01, seed: 0, bounding_volume: "aabb", contacts: "intersection", broad_phase: "octree",
+  frames: null, time_step: 0.01, seed: "0", bounding_volume: "aabb", contacts: "intersection", broad_phase: "octree",
   max_level: 16, leaf_size: 64, integrator: "verlet", choices: { contacts: ["none", "intersection"] }, can: ["play", "reset", "grab", "set"], statistics: ["total_seconds", "contacts"],
   series: ["time", "contacts"], warnings: [],
 };

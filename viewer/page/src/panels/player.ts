@@ -16,7 +16,7 @@ export class Player {
   private readonly loop = iconButton("loop", "Loop", "L", () => this.toggleLoop());
   private readonly speeds = h("select", { "aria-label": "Speed", title: "Speed ([ and ])", onchange: () => this.setSpeed(Number(this.speeds.value)) });
   private readonly kinds = h("select", { "aria-label": "Events", title: "Events on the timeline; those of the narrow phase are in recordings made with --colliding-vertices", onchange: () => this.drawMarks() });
-  private readonly seed = h("input", { type: "number", min: 0, step: 1, "aria-label": "Seed", title: "Seed of the next reset" });
+  private readonly seed = h("input", { type: "text", inputmode: "numeric", "aria-label": "Seed", title: "Seed of the next reset" });
   private readonly slider = h("input", { type: "range", min: 0, max: 0, step: 1, value: 0, "aria-label": "Timeline", oninput: () => this.scrub() });
   private readonly marks = h("canvas", { class: "marks", "aria-hidden": "true" });
   private readonly place = h("output", { class: "place", "aria-label": "Place" });
@@ -62,7 +62,7 @@ export class Player {
     for (const element of this.simulationOnly) element.hidden = isRecording;
     this.speeds.querySelector<HTMLOptionElement>("option[value='0']")!.hidden = isRecording;
     this.slider.max = String(Math.max(0, (scene.frames ?? 1) - 1));
-    this.seed.value = String(scene.seed);
+    this.seed.value = scene.seed;
     this.wanted = this.asked = null;
     this.element.classList.toggle("recording", isRecording);
     this.drawMarks();
@@ -132,8 +132,8 @@ export class Player {
 
   reset(): void {
     if (!this.model.can("reset")) return;
-    const seed = this.seed.valueAsNumber;
-    this.client.send(Number.isInteger(seed) && seed >= 0 ? { do: "reset", seed } : { do: "reset" });
+    const seed = this.seed.value.trim();
+    this.client.send(seed ? { do: "reset", seed } : { do: "reset" });
   }
 
   seek(frame: number): void {

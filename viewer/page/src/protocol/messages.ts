@@ -33,7 +33,8 @@ export interface SceneText {
   objects: SceneObject[];
   frames: number | null;
   time_step: number;
-  seed: number;
+  /** Digits, because numbers of JavaScript are exact only up to 2^53. */
+  seed: string;
   bounding_volume: string;
   contacts: string;
   broad_phase: string;
@@ -281,7 +282,7 @@ function sceneText(json: Record<string, unknown>): SceneText {
   need(s.frames === null || isCount(s.frames), "frames");
   need((s.frames !== null) === (s.source === "recording"), "frames");
   need(isNumber(s.time_step), "time_step");
-  need(isNumber(s.seed), "seed");
+  need(isText(s.seed), "seed");
   need(isCount(s.max_level), "max_level");
   need(isCount(s.leaf_size), "leaf_size");
   need(s.integrator === null || isText(s.integrator), "integrator");
