@@ -292,6 +292,13 @@ CLI::App* add_view(CLI::App& program, ViewOptions& options, Dependences& depende
                              "--no-open", [&] { options.open_browser = false; },
                              "Print the address without opening a browser")),
                          is_served, no_export});
+  dependences.push_back(
+      {group(add_whole(
+           *app, "--max-memory", ValueRange::from(0, 1'000'000'000),
+           [&](std::uint64_t megabytes) { options.budget.bytes = 1e6 * static_cast<double>(megabytes); },
+           "Memory in MB that commands of the page may add to that of the scene as opened, as estimated "
+           "for its objects, vertices and triangles (default: 2000)")),
+       is_served, no_export});
   group(app->add_option("--export", options.page_file,
                         "Write one HTML file instead of starting a server: any browser can show it, and the "
                         "detection runs in the page")

@@ -11,6 +11,7 @@
 #include "json_report.hpp"
 #include "query_file.hpp"
 #include "session/overrides.hpp"
+#include "session/session.hpp"
 #include "supple/option_descriptions.hpp"
 
 namespace supple::cli {
@@ -68,6 +69,7 @@ struct ViewOptions : MethodOptions {
   std::string address = "127.0.0.1";
   std::uint16_t port = 0;  ///< 0: any free port
   bool open_browser = true;
+  viewer::MemoryBudget budget;
   std::string page_file;  ///< file to write instead of serving; empty: serve
 };
 

@@ -90,7 +90,7 @@ void warn_of_others(const ViewOptions& options) {
 }
 
 int serve(viewer::SceneView show, const ViewOptions& options) {
-  viewer::Server server(viewer::Session(std::move(show)),
+  viewer::Server server(viewer::Session(std::move(show), options.budget),
                         {options.address, options.port, viewer::embedded_page()});
   warn_of_others(options);
   const Interruption interruption;

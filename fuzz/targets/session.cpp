@@ -73,7 +73,7 @@ viewer::SceneView scene(std::uint32_t choice) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   fuzz::ByteReader bytes(data, size);
-  viewer::Session session(scene(bytes.byte()));
+  viewer::Session session(scene(bytes.byte()), {1e7});
   viewer::MessageWriter writer;
   session.greet();
   std::string_view rest = bytes.text();

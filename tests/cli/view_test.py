@@ -185,6 +185,20 @@ class Serve(ViewTest):
         self.assertTrue(scene["objects"][0]["self_collision"])
         self.assertTrue(scene["objects"][0]["body"])
 
+    def test_memory_of_commands_is_limited(self):
+        self.write("scene.toml", BODY)
+        for arguments, answer in ((("--max-memory", 0), FAILURE), ((), SCENE)):
+            _, url = self.start("scene.toml", *arguments)
+            page = self.connect(url)
+            page.receive_text(SCENE)
+            page.send(do="set", objects=50)
+            told = page.receive_text(answer)
+            if answer == FAILURE:
+                self.assertIn("larger --max-memory", told["message"])
+            else:
+                self.assertEqual(len(told["objects"]), 50)
+        self.assert_one_line_error(self.run_here("view", "scene.toml", "--max-memory", 5, "--export", "page.html"), "--max-memory")
+
     def test_recording(self):
         self.write("scene.toml", BODY + '[[object]]\nmodel = "box"\ntranslate = [0.9, 0, 0]\n')
         self.assertEqual(self.run_here("simulate", "scene.toml", "--frames", 6, "--record", "run.h5", "--quiet").status, 0)

@@ -29,7 +29,9 @@ using Row = std::array<float, 8>;
 /// A page without a network. It sends commands to the session and reads its messages.
 class TestPage {
  public:
-  explicit TestPage(SceneView show) : session(std::move(show)) { session.greet(); }
+  explicit TestPage(SceneView show, MemoryBudget budget = {}) : session(std::move(show), budget) {
+    session.greet();
+  }
 
   /// The next message as sent, or empty; valid until the next call.
   std::span<const std::byte> next_bytes() { return session.next_message(message_); }

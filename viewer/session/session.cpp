@@ -37,8 +37,10 @@ constexpr std::int64_t largest_count = std::numeric_limits<std::int64_t>::max();
 
 class Session::Implementation {
  public:
-  explicit Implementation(SceneView show)
-      : show_(std::move(show)), stage_(std::make_unique<Stage>(show_, settings_)) {
+  Implementation(SceneView show, MemoryBudget budget)
+      : show_(std::move(show)),
+        most_memory_(estimated_memory(show_, settings_) + budget.bytes),
+        stage_(std::make_unique<Stage>(show_, settings_)) {
     if (stage_->has_motion()) player_.play(*stage_);
   }
 
@@ -89,6 +91,7 @@ class Session::Implementation {
   static std::uint32_t id_of(const char* name, Arguments& arguments);
   bool is_of_recording(Arguments& arguments) const;
   bool is_of_simulation(Arguments& arguments) const;
+  bool fits_in_memory(const Settings& settings, Arguments& arguments) const;
   bool has_object(std::uint32_t object, Arguments& arguments) const;
   bool has_triangle(std::array<std::uint32_t, 2> triangle, Arguments& arguments) const;
   bool has_vertex(std::uint32_t object, std::uint32_t vertex, Arguments& arguments) const;
@@ -100,6 +103,7 @@ class Session::Implementation {
 
   SceneView show_;
   Settings settings_;
+  double most_memory_;  ///< in bytes
   std::unique_ptr<Stage> stage_;
   Player player_;
   Layers layers_;
@@ -387,8 +391,21 @@ void Session::Implementation::set(Arguments& arguments) {
     keep(settings.integrator, arguments.one_of<Integrator>("integrator"));
     keep(settings.time_step, arguments.number("time_step", 1e-6, 10));
   }
-  if (!arguments.check()) return;
+  if (!arguments.check() || !fits_in_memory(settings, arguments)) return;
   set_stage(settings);
+}
+
+bool Session::Implementation::fits_in_memory(const Settings& settings, Arguments& arguments) const {
+  const double needed = estimated_memory(show_, settings);
+  if (needed <= most_memory_) return true;
+  const auto megabytes = [](double bytes) {
+    return std::to_string(static_cast<std::uint64_t>(bytes / 1e6)) + " MB";
+  };
+  arguments.fail(std::to_string(settings.objects.value_or(show_.objects.size())) +
+                 " objects with such octrees can need " + megabytes(needed) + ", and this session has " +
+                 megabytes(most_memory_) +
+                 "; show fewer objects, or larger leaves, or use supple view with a larger --max-memory");
+  return false;
 }
 
 /// On failure nothing changes.
@@ -533,7 +550,8 @@ void Session::Implementation::fail(const std::string& message, bool fatal,
   add_reply(MessageKind::failure);
 }
 
-Session::Session(SceneView show) : implementation_(std::make_unique<Implementation>(std::move(show))) {}
+Session::Session(SceneView show, MemoryBudget budget)
+    : implementation_(std::make_unique<Implementation>(std::move(show), budget)) {}
 Session::~Session() = default;
 Session::Session(Session&&) noexcept = default;
 Session& Session::operator=(Session&&) noexcept = default;

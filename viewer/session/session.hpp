@@ -10,13 +10,18 @@
 
 namespace supple::viewer {
 
+/// Memory in bytes that commands may add to that of the scene as it was opened (`estimated_memory`).
+struct MemoryBudget {
+  double bytes = 2e9;
+};
+
 /// One viewer session (docs/protocol.md): takes commands, produces messages. It has no clock, no threads of
 /// its own and no network, so the program and the page run the same code. When memory runs out, functions
 /// produce a failure message or throw `std::bad_alloc`; after the exception, only destroy the session.
 class Session {
  public:
   /// Throws `Error` when an object or an option is invalid.
-  explicit Session(SceneView show);
+  explicit Session(SceneView show, MemoryBudget budget = {});
   ~Session();
   Session(Session&&) noexcept;
   Session& operator=(Session&&) noexcept;

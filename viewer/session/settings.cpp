@@ -45,15 +45,21 @@ void set_apart(ViewedObject& object, std::size_t copy, const Vec3d& offset) {
     *rigid->seed += copy * 1'000'003;
 }
 
+/// Calls `visit(object)` for each object when the list of objects is repeated up to `count`.
+template <class Visit>
+void visit_repeated(const SceneView& show, std::size_t count, const Visit& visit) {
+  for (std::size_t i = 0; i < count && !show.objects.empty(); ++i)
+    visit(show.objects[i % show.objects.size()]);
+}
+
 /// Checks the total size when the list of objects is repeated up to `count`.
 void check_size(const SceneView& show, std::size_t count) {
   constexpr std::uint64_t most_elements = 100'000'000;
   std::uint64_t vertices = 0, triangles = 0;
-  for (std::size_t i = 0; i < count && !show.objects.empty(); ++i) {
-    const TriangleMesh& mesh = show.objects[i % show.objects.size()].mesh;
-    vertices += mesh.positions.size();
-    triangles += mesh.triangles.size();
-  }
+  visit_repeated(show, count, [&](const ViewedObject& object) {
+    vertices += object.mesh.positions.size();
+    triangles += object.mesh.triangles.size();
+  });
   if (std::max(vertices, triangles) <= most_elements) return;
   fail(std::to_string(count) + " objects have " + std::to_string(vertices) + " vertices and " +
        std::to_string(triangles) + " triangles; a page can show " + std::to_string(most_elements) +
@@ -96,6 +102,20 @@ void check_show(const SceneView& show) {
 }
 
 }  // namespace
+
+double estimated_memory(const SceneView& show, const Settings& settings) {
+  // In bytes. Small leaves have as many nodes as triangles.
+  constexpr double of_object = 20'000, of_vertex = 400, of_triangle = 400, of_leaf = 4'000;
+  double bytes = 0;
+  visit_repeated(show, settings.objects.value_or(show.objects.size()), [&](const ViewedObject& object) {
+    ObjectOctreeOptions octree = object.options.octree;
+    settings.octree.apply_to(octree);
+    const auto vertices = static_cast<double>(object.mesh.positions.size());
+    const auto triangles = static_cast<double>(object.mesh.triangles.size());
+    bytes += of_object + of_vertex * vertices + (of_triangle + of_leaf / octree.leaf_size) * triangles;
+  });
+  return bytes;
+}
 
 SceneView arranged(const SceneView& show, const Settings& settings) {
   check_show(show);

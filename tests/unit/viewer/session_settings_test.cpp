@@ -1,10 +1,12 @@
 #include <gtest/gtest.h>
+#include <malloc.h>
 
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "../../support/viewer_page.hpp"
+#include "session/settings.hpp"
 
 namespace supple::viewer {
 namespace {
@@ -109,10 +111,74 @@ TEST(ViewerSettings, CarriesEverySeedOf64Bits) {
   }
 }
 
+TEST(ViewerSettings, CommandsStayWithinTheMemoryBudget) {
+  TestPage page(three_balls(), {4e6});
+  page.scene();
+  EXPECT_NE(page.failure(R"({"do": "set", "objects": 100000})").find("--max-memory"), std::string::npos);
+  EXPECT_NE(page.failure(R"({"do": "set", "objects": 20, "leaf_size": 1})").find("MB"), std::string::npos);
+  page.say({{"do", "set"}, {"objects", 20}});
+  EXPECT_EQ(page.scene().json["objects"].size(), 20u);
+  page.failure(R"({"do": "set", "leaf_size": 1})");
+  page.say({{"do", "reset"}});
+  EXPECT_EQ(page.scene().json["objects"].size(), 20u) << "a failure changes nothing";
+}
+
+TEST(ViewerSettings, TheOpenedSceneNeedsNoBudget) {
+  SceneView show = three_balls();
+  show.objects.resize(2);
+  TestPage page(show, {0});
+  page.scene();
+  page.say({{"do", "set"}, {"contacts", "continuous"}});
+  EXPECT_EQ(page.scene().json["objects"].size(), 2u);
+  page.failure(R"({"do": "set", "objects": 3})");
+  page.say({{"do", "set"}, {"objects", 1}});
+  page.scene();
+  page.say({{"do", "set"}, {"objects", 2}});
+  EXPECT_EQ(page.scene().json["objects"].size(), 2u);
+}
+
+#if defined(__GLIBC__) && defined(NDEBUG) && !defined(__SANITIZE_ADDRESS__)
+/// Memory of the whole program, without what it has freed.
+double allocated_bytes() {
+  const auto memory = mallinfo2();
+  return static_cast<double>(memory.uordblks + memory.hblkhd);
+}
+
+TEST(ViewerSettings, MemoryIsEstimatedGenerously) {
+  const Json small_nodes{{"tree_arity", 2}, {"object_octree", "regular"}, {"bounding_volume", "kdop26"}};
+  for (const auto& [leaf_size, options] :
+       {std::pair{64u, Json::object()}, {8u, Json::object()}, {1u, small_nodes}}) {
+    for (const char* const contacts : {"intersection", "continuous", "intersection,continuous,proximity"}) {
+      for (const auto& [frequency, count] : {std::pair{1u, 400u}, {16u, 10u}}) {
+        SceneView show;
+        show.simulation.scene.threads = 1;
+        show.objects.push_back({make_icosphere(frequency), {.self_collision = true}, MassSpringMotion{}});
+        show.objects.front().options.octree.leaf_size = leaf_size;
+        Settings settings;
+        settings.objects = count;
+        const double estimate = estimated_memory(show, settings), before = allocated_bytes();
+        TestPage page(std::move(show));
+        Json command = options;
+        command.update({{"do", "set"}, {"contacts", contacts}, {"objects", count}});
+        page.scene();
+        page.say(command);
+        EXPECT_EQ(page.scene().json["objects"].size(), count);
+        page.ask({{"do", "layers"}, {"candidates", true}, {"colliding_vertices", true}});
+        page.ask({{"do", "pause"}});
+        page.frame_after_steps(2);
+        const double needed = allocated_bytes() - before;
+        EXPECT_LE(needed, estimate) << leaf_size << command;
+        EXPECT_GE(needed, 0.1 * estimate) << leaf_size << command;
+      }
+    }
+  }
+}
+#endif
+
 TEST(ViewerSettings, AFailedSetLeavesAllAsItWas) {
   SceneView show = three_balls();
   show.objects[2] = test_ball("fine", {0, 0, 2.2}, 30);
-  TestPage page(show);
+  TestPage page(show, {1e18});
   page.scene();
   page.ask({{"do", "pause"}});
   page.frame_after_steps(3);
