@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -52,6 +53,9 @@ struct Input {
 struct SceneOverrides {
   std::optional<std::uint64_t> seed{};
   std::optional<double> time_step{};
+  /// Scene files with more triangles in all objects are refused before the objects are made. A few bytes can
+  /// ask for billions, so set it for files of strangers.
+  std::uint64_t most_triangles = std::numeric_limits<std::uint64_t>::max();
 };
 
 bool is_scene_file(const std::string& name);

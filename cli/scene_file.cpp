@@ -64,11 +64,29 @@ TriangleMesh named(TriangleMesh mesh, const std::string& name) {
   return mesh;
 }
 
+/// Counts the triangles of a scene file against `SceneOverrides::most_triangles`.
+class TriangleBudget {
+ public:
+  explicit TriangleBudget(std::uint64_t most) : most_(most) {}
+  /// Throws when `count` more triangles in each of `copies` are too many.
+  void check(TomlReader& reader, const char* key, std::uint64_t count, std::uint64_t copies = 1) const {
+    if (count > (most_ - used_) / std::max<std::uint64_t>(copies, 1))
+      reader.fail(key,
+                  fmt::format("more than {} triangles in all objects; give fewer or smaller objects", most_));
+  }
+  void use(std::uint64_t count) { used_ += count; }
+
+ private:
+  std::uint64_t most_, used_ = 0;
+};
+
 /// Reads the models that have additional keys.
-TriangleMesh read_parametrised_model(TomlReader& reader, const std::string& name) {
+TriangleMesh read_parametrised_model(TomlReader& reader, const std::string& name,
+                                     const TriangleBudget& budget) {
   std::uint32_t frequency = 8, rings = 24, sides = 12, resolution = 1, columns = 16, rows = 16;
   if (name == "icosphere") {
     reader.read("frequency", frequency, 1, 4096);
+    budget.check(reader, "frequency", 20 * std::uint64_t{frequency} * frequency);
     return make_icosphere(frequency);
   }
   if (name == "torus") {
@@ -77,6 +95,7 @@ TriangleMesh read_parametrised_model(TomlReader& reader, const std::string& name
     reader.read("sides", sides, 3, 1 << 12);
     reader.read("major_radius", major_radius, ValueRange::above(0));
     reader.read("minor_radius", minor_radius, ValueRange::above(0));
+    budget.check(reader, "rings", 2 * std::uint64_t{rings} * sides);
     return make_torus(rings, sides, major_radius, minor_radius);
   }
   if (name == "box") {
@@ -84,6 +103,7 @@ TriangleMesh read_parametrised_model(TomlReader& reader, const std::string& name
     reader.read("size", size);
     if (!(size.x > 0 && size.y > 0 && size.z > 0)) reader.fail("size", "must be three numbers above 0");
     reader.read("resolution", resolution, 1, 4096);
+    budget.check(reader, "resolution", 12 * std::uint64_t{resolution} * resolution);
     return make_box(size, resolution);
   }
   if (name == "cloth") {
@@ -92,6 +112,7 @@ TriangleMesh read_parametrised_model(TomlReader& reader, const std::string& name
     reader.read("rows", rows, 1, 1 << 14);
     reader.read("width", width, ValueRange::above(0));
     reader.read("depth", depth, ValueRange::above(0));
+    budget.check(reader, "columns", 2 * std::uint64_t{columns} * rows);
     return make_cloth(columns, rows, width, depth);
   }
   reader.fail("model", fmt::format("there is no model '{}'; choose one of {}", name, available_models()));
@@ -104,7 +125,7 @@ struct Shapes {
 
 /// `frames` has the files of an object that is moved by files; such an object needs no other mesh.
 TriangleMesh read_shape(TomlReader& reader, const fs::path& folder, const FrameSequence* frames,
-                        Shapes& shapes) {
+                        const TriangleBudget& budget, Shapes& shapes) {
   std::string mesh, model;
   reader.read("mesh", mesh);
   reader.read("model", model);
@@ -112,7 +133,7 @@ TriangleMesh read_shape(TomlReader& reader, const fs::path& folder, const FrameS
   if (reader.has("mesh") == reader.has("model"))
     reader.fail(reader.has("mesh") ? "model" : "", "give either mesh = \"FILE\" or model = \"NAME\"");
   if (reader.has("model")) {
-    if (!is_named_model(model)) return named(read_parametrised_model(reader, model), model);
+    if (!is_named_model(model)) return named(read_parametrised_model(reader, model, budget), model);
     const auto [found, is_new] = shapes.models.try_emplace(model);
     if (is_new) found->second = named(make_model(model), model);
     return found->second;
@@ -122,7 +143,7 @@ TriangleMesh read_shape(TomlReader& reader, const fs::path& folder, const FrameS
     reader.fail("mesh",
                 fmt::format("there is no file {}; paths start at the scene file's folder", path.string()));
   const auto [found, is_new] = shapes.meshes.try_emplace(path.string());
-  if (is_new) found->second = load_any_mesh(path);
+  if (is_new) found->second = read_mesh(path);
   return found->second;
 }
 
@@ -180,7 +201,7 @@ Copies read_copies(TomlReader& reader) {
 }
 
 void read_objects(const toml::table& table, const fs::path& path, const std::string& where, Vec3d gravity,
-                  Shapes& shapes, Input& input) {
+                  TriangleBudget& budget, Shapes& shapes, Input& input) {
   TomlReader reader(path, table, where);
   ObjectOptions options = read_options(reader);
   if (input.simulation.response)
@@ -190,8 +211,10 @@ void read_objects(const toml::table& table, const fs::path& path, const std::str
   SceneMotion motion(reader, path, where, gravity);
   if (!motion.empty() && options.is_static)
     reader.fail("motion", "a static object does not move; leave out motion or static");
-  const TriangleMesh mesh = read_shape(reader, path.parent_path(), motion.frames(), shapes);
+  const TriangleMesh mesh = read_shape(reader, path.parent_path(), motion.frames(), budget, shapes);
   reader.finish();
+  budget.check(reader, "repeat", mesh.triangles.size(), copies.count());
+  budget.use(mesh.triangles.size() * copies.count());
 
   for (std::uint64_t copy = 0; copy < copies.count(); ++copy) {
     Placement placed = placement;
@@ -283,8 +306,9 @@ Input read_scene_text(std::string text, const fs::path& path, const SceneOverrid
   input.simulation.seed = overrides.seed.value_or(input.simulation.seed);
   input.simulation.time_step = overrides.time_step.value_or(input.simulation.time_step);
   Shapes shapes;
+  TriangleBudget budget(overrides.most_triangles);
   for (std::size_t i = 0; i < objects.size(); ++i)
-    read_objects(*objects[i], path, fmt::format("[[object]] {}", i), gravity, shapes, input);
+    read_objects(*objects[i], path, fmt::format("[[object]] {}", i), gravity, budget, shapes, input);
   input.files.push_back(path);
   for (const auto& [name, mesh] : shapes.meshes) input.files.emplace_back(name);
   for (const InputObject& object : input.objects) {
