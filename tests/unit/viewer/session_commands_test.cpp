@@ -98,7 +98,7 @@ TEST(ViewerCommands, WhatIsNotUnderstoodIsAFailureAndDoesNothing) {
     std::string failure;
     ASSERT_NO_THROW(failure = page.failure(command)) << shown;
     EXPECT_GT(failure.size(), 10u) << shown;
-    EXPECT_LT(failure.size(), 400u) << shown;
+    EXPECT_LT(failure.size(), 500u) << shown;
     EXPECT_EQ(failure.find('\n'), std::string::npos) << shown;
   }
   page.say({{"do", "credit"}, {"frames", 1}});
