@@ -44,21 +44,21 @@ def programs_of(build, names):
     return {name: found[name] for name in (names or found)}
 
 
-def command_of(name, program, build, seconds):
+def command_of(name, program, build, seconds, seed):
     if not uses_libfuzzer(build):
-        return [program, "--random", str(seconds)]
+        return [program, "--random", seconds, *([seed] if seed else [])]
     grown = build / "fuzz" / "corpora" / name
     grown.mkdir(parents=True, exist_ok=True)
-    command = [program, grown, *(path for path in [FUZZ / "regressions" / name] if path.is_dir()), f"-max_total_time={seconds}", "-timeout=60", "-rss_limit_mb=3000", "-print_final_stats=1",
+    command = [program, grown, *(path for path in [FUZZ / "regressions" / name] if path.is_dir()), f"-max_total_time={seconds}", f"-seed={seed}", "-timeout=300", "-rss_limit_mb=3000", "-print_final_stats=1",
                "-artifact_prefix=./"]
     dictionary = FUZZ / "dictionaries" / f"{name}.dict"
     return command + ([f"-dict={dictionary}"] if dictionary.exists() else [])
 
 
-def run(name, program, build, seconds):
+def run(name, program, build, seconds, seed):
     failures = build / "fuzz" / "failures" / name
     failures.mkdir(parents=True, exist_ok=True)
-    done = subprocess.run([str(part) for part in command_of(name, program, build, seconds)], cwd=failures,
+    done = subprocess.run([str(part) for part in command_of(name, program, build, seconds, seed)], cwd=failures,
                           stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, errors="replace")
     counted = re.search(r"number_of_executed_units: (\d+)|^(\d+) executions$", done.stdout, re.M)
     executions = int(counted.group(1) or counted.group(2)) if counted else 0
@@ -131,6 +131,7 @@ def main():
     parser.add_argument("targets", nargs="*", help="names of targets; default: all")
     parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build" / "asan", help="build folder (default: build/asan)")
     parser.add_argument("--seconds", type=int, default=30, help="time for each target (default: 30)")
+    parser.add_argument("--seed", type=int, default=0, help="of the random numbers; the same seed gives the same inputs, as far as the time allows (default: any)")
     parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="targets at the same time (default: one per core)")
     parser.add_argument("--keep", action="store_true", help="minimise the grown corpora and write them to fuzz/corpora")
     parser.add_argument("--record", action="store_true", help="add the run to fuzz/results.csv and fuzz/results.md")
@@ -142,7 +143,7 @@ def main():
 
     counts, failed = {}, []
     with ThreadPoolExecutor(arguments.jobs) as pool:
-        for name, status, executions, output in pool.map(lambda item: run(*item, build, arguments.seconds), programs.items()):
+        for name, status, executions, output in pool.map(lambda item: run(*item, build, arguments.seconds, arguments.seed), programs.items()):
             counts[name] = executions
             print(f"{name:14} {executions:12,} executions  {'ok' if status == 0 else 'FAILED'}", flush=True)
             if status != 0:

@@ -239,7 +239,7 @@ class Stopped(RecordingTest):
 
     @with_h5py
     def test_at_each_write(self):
-        self.check_each_state(10, least=400)
+        self.check_each_state(3, least=300)
 
     @with_h5py
     def test_when_chunk_indexes_split(self):
