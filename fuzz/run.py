@@ -44,13 +44,17 @@ def programs_of(build, names):
     return {name: found[name] for name in (names or found)}
 
 
+def kept_inputs(name, build):
+    return [path for path in (build / "fuzz" / "corpora" / name, FUZZ / "regressions" / name) if path.is_dir()]
+
+
 def command_of(name, program, build, seconds, seed):
     if not uses_libfuzzer(build):
         return [program, "--random", seconds, *([seed] if seed else [])]
-    grown = build / "fuzz" / "corpora" / name
+    grown = build / "fuzz" / "grown" / name
     grown.mkdir(parents=True, exist_ok=True)
-    command = [program, grown, *(path for path in [FUZZ / "regressions" / name] if path.is_dir()), f"-max_total_time={seconds}", f"-seed={seed}", "-timeout=300", "-rss_limit_mb=3000", "-print_final_stats=1",
-               "-artifact_prefix=./"]
+    command = [program, grown, *kept_inputs(name, build), f"-max_total_time={seconds}", f"-seed={seed}", "-timeout=300",
+               "-rss_limit_mb=3000", "-print_final_stats=1", "-artifact_prefix=./"]
     dictionary = FUZZ / "dictionaries" / f"{name}.dict"
     return command + ([f"-dict={dictionary}"] if dictionary.exists() else [])
 
@@ -68,7 +72,7 @@ def run(name, program, build, seconds, seed):
 def keep(name, program, build):
     """Writes the smallest set of inputs that reaches all that the corpus reaches."""
     with tempfile.TemporaryDirectory() as folder:
-        subprocess.run([program, "-merge=1", "-timeout=60", folder, build / "fuzz" / "corpora" / name], check=True,
+        subprocess.run([program, "-merge=1", "-timeout=300", folder, build / "fuzz" / "grown" / name, *kept_inputs(name, build)], check=True,
                        stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         (FUZZ / "corpora").mkdir(exist_ok=True)
 
