@@ -13,7 +13,8 @@ namespace {
 
 constexpr std::string_view bare_characters =
     "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+.,:=[]{} \t\r\n";
-constexpr int most_levels = 64, most_parts = 64;
+constexpr std::size_t most_levels = 64;
+constexpr int most_parts = 64;
 
 /// The end of the string that starts at `begin` with a quote, behind its last quote, or the end of the text.
 /// A string of one line ends with its line.
@@ -33,10 +34,20 @@ std::size_t end_of_string(std::string_view text, std::size_t begin) {
   return text.size();
 }
 
+/// Whether the brackets at the beginning of `text` are followed by a key, as those of a table are.
+bool names_a_table(std::string_view text) {
+  text.remove_prefix(text.starts_with("[[") ? 2 : 1);
+  text.remove_prefix(std::min(text.find_first_not_of(" \t"), text.size()));
+  constexpr std::string_view no_key = "+.,:=[]{} \t\r\n#";
+  return !text.empty() && no_key.find(text[0]) == std::string_view::npos;
+}
+
 }  // namespace
 
 void check_toml_limits(std::string_view text, const std::filesystem::path& path) {
-  int line = 1, levels = 0, parts = 1;
+  int line = 1, parts = 1;
+  std::string open;    // the brackets that are not closed yet
+  bool begins = true;  // a line outside of all brackets
   const auto fail = [&](const std::string& what) {
     throw Error(fmt::format("{}:{}: not valid TOML: {}", path.string(), line, what));
   };
@@ -51,17 +62,24 @@ void check_toml_limits(std::string_view text, const std::filesystem::path& path)
       const std::size_t end = end_of_string(text, i);
       for (const char of_string : text.substr(i, end - i)) line += of_string == '\n' ? 1 : 0;
       i = end;
+      begins = false;
       continue;
     }
     if (bare_characters.find(c) == std::string_view::npos)
       fail(fmt::format("byte {:#04x} outside of a string; put names with such letters in quotes",
                        static_cast<unsigned char>(c)));
     if (c == '\n') ++line;
-    if (c == '[' || c == '{') ++levels;
-    if (c == ']' || c == '}') --levels;
+    if (begins && c == '[' && !names_a_table(text.substr(i))) fail("a table needs a name: [name]");
+    if (c == '[' || c == '{') open.push_back(c);
+    if (c == ']' || c == '}') {
+      if (open.empty() || open.back() != (c == ']' ? '[' : '{'))
+        fail(fmt::format("'{}' closes nothing that is open", c));
+      open.pop_back();
+    }
     parts = c == '.' ? parts + 1 : std::string_view("=,[]{}\n").find(c) != std::string_view::npos ? 1 : parts;
-    if (levels > most_levels) fail(fmt::format("lists and tables of more than {} levels", most_levels));
+    if (open.size() > most_levels) fail(fmt::format("lists and tables of more than {} levels", most_levels));
     if (parts > most_parts) fail(fmt::format("a key of more than {} parts", most_parts));
+    begins = open.empty() && (c == '\n' || (begins && (c == ' ' || c == '\t' || c == '\r')));
     ++i;
   }
 }

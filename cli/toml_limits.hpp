@@ -6,8 +6,8 @@
 namespace supple::cli {
 
 /// Checks what the TOML parser cannot: before it parses, the text must have only characters that TOML allows
-/// outside of strings and comments, and neither deep lists and tables nor keys of many parts, which would
-/// overflow the stack. Throws `Error` with file and line.
+/// outside of strings and comments, brackets that match, and neither deep lists and tables nor keys of many
+/// parts, which would overflow the stack. Throws `Error` with file and line.
 void check_toml_limits(std::string_view text, const std::filesystem::path& path);
 
 /// Files beyond this size are not read, bytes.

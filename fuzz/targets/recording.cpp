@@ -188,6 +188,14 @@ class Editor {
     return H5Tarray_create2(H5T_NATIVE_DOUBLE, 1, size);
   }
 
+  /// HDF5 keeps attributes, and data without chunks while it writes them, in memory.
+  static bool is_small(hid_t of_type, hid_t of_space) {
+    constexpr double most_bytes = 1 << 20;
+    return static_cast<double>(H5Sget_simple_extent_npoints(of_space)) *
+               static_cast<double>(H5Tget_size(of_type)) <=
+           most_bytes;
+  }
+
   hid_t space() {
     const int rank = static_cast<int>(bytes_.below(5));
     if (rank == 4) return H5Screate(bytes_.flag() ? H5S_NULL : H5S_SCALAR);
@@ -255,8 +263,10 @@ class Editor {
   void replace(const std::string& path) {
     const hid_t of_type = type(), of_space = space(), list = storage(of_space);
     H5Ldelete(file_, path.c_str(), H5P_DEFAULT);
-    const hid_t set = H5Dcreate2(file_, path.c_str(), of_type, of_space, H5P_DEFAULT, list, H5P_DEFAULT);
-    if (set >= 0) H5Dclose(set);
+    if (H5Pget_layout(list) == H5D_CHUNKED || is_small(of_type, of_space)) {
+      const hid_t set = H5Dcreate2(file_, path.c_str(), of_type, of_space, H5P_DEFAULT, list, H5P_DEFAULT);
+      if (set >= 0) H5Dclose(set);
+    }
     H5Pclose(list);
     H5Sclose(of_space);
     H5Tclose(of_type);
@@ -309,7 +319,9 @@ class Editor {
       H5Adelete(object, name.data());
       if (bytes_.below(4) > 0) {
         const hid_t of_type = type(), of_space = bytes_.flag() ? H5Screate(H5S_SCALAR) : space();
-        const hid_t made = H5Acreate2(object, name.data(), of_type, of_space, H5P_DEFAULT, H5P_DEFAULT);
+        const hid_t made = is_small(of_type, of_space)
+                               ? H5Acreate2(object, name.data(), of_type, of_space, H5P_DEFAULT, H5P_DEFAULT)
+                               : H5I_INVALID_HID;
         const H5T_class_t kind = H5Tget_class(of_type);
         if (made >= 0 && H5Sget_simple_extent_npoints(of_space) == 1 && H5Tget_size(of_type) <= 64 &&
             kind != H5T_VLEN && H5Tis_variable_str(of_type) <= 0 && kind != H5T_REFERENCE) {

@@ -303,6 +303,9 @@ class Errors(ProgramTest):
             ("a = " + "[" * 100_000, 1, "more than 64 levels"),
             ("a = " + "{ a = " * 100_000, 1, "more than 64 levels"),
             ("# ä\n[*", 2, "byte 0x2a outside of a string"),
+            ("a = 1\nb = [[-3, }", 2, "'}' closes nothing that is open"),
+            ("\n [ # name\n]", 2, "a table needs a name"),
+            ("[[=", 1, "a table needs a name"),
             ("\ufedf", 1, "byte 0xef outside of a string"),
             ("a = 'b\na = \"\"\"\n*\n\"\"\" *\n", 4, "byte 0x2a"),
         ):
