@@ -48,8 +48,8 @@ build: dependencies
 # FUZZ contains options of the script: make fuzz SECONDS=600 FUZZ="obj scene --keep --record"
 fuzz:
 	tools/install_dependencies.sh --ci
-	cmake --preset asan
-	cmake --build --preset asan -j $(JOBS) --target fuzz_targets
+	cmake --preset fuzz
+	cmake --build --preset fuzz -j $(JOBS)
 	fuzz/run.py --seconds $(SECONDS) $(FUZZ)
 
 # CONTEST contains options of the script: make bench CONTEST="--only 'B/*' --save"

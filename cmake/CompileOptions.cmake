@@ -38,8 +38,8 @@ if(SUPPLE_SANITIZE)
   add_link_options(-fsanitize=${SUPPLE_SANITIZE})
   if(CMAKE_CXX_COMPILER_ID MATCHES "Clang")
     add_compile_options(-fsanitize-ignorelist=${CMAKE_CURRENT_LIST_DIR}/SanitizerIgnoreList.txt)
-    if(SUPPLE_SANITIZE MATCHES "address")
-      # The fuzz targets follow which branches an input reaches.
+    if(SUPPLE_LIBFUZZER)
+      # libFuzzer follows which branches an input reaches.
       add_compile_options(-fsanitize=fuzzer-no-link)
     endif()
   endif()

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Runs the fuzz targets of a build, each for some seconds on its corpus, and prints how many inputs they ran.
 
-A build with clang and the address sanitizer (build/asan) uses libFuzzer; every other build runs random inputs at
-its own speed. Exits with 1 when a target fails; the input that made it fail is then in build/fuzz/failures.
+The preset fuzz uses libFuzzer; every other build runs random inputs and changed inputs of the corpora at its own
+speed. Exits with 1 when a target fails; the input that made it fail is then in build/fuzz/failures.
 """
 import argparse
 import csv
@@ -31,7 +31,7 @@ def cached(build, name):
 
 
 def uses_libfuzzer(build):
-    return "address" in cached(build, "SUPPLE_SANITIZE") and "clang" in cached(build, "CMAKE_CXX_COMPILER")
+    return cached(build, "SUPPLE_LIBFUZZER") == "ON"
 
 
 def programs_of(build, names):
@@ -50,7 +50,7 @@ def kept_inputs(name, build):
 
 def command_of(name, program, build, seconds, seed):
     if not uses_libfuzzer(build):
-        return [program, "--random", seconds, *([seed] if seed else [])]
+        return [program, "--random", seconds, seed, *kept_inputs(name, build)]
     grown = build / "fuzz" / "grown" / name
     grown.mkdir(parents=True, exist_ok=True)
     command = [program, grown, *kept_inputs(name, build), f"-max_total_time={seconds}", f"-seed={seed}", "-timeout=300",
@@ -110,12 +110,12 @@ def record(build, seconds, counts):
 def write_page(rows):
     total = {}
     for row in rows:
-        name = "sanitizers" if row["build"] == "asan" else "release speed"
+        name = "sanitizers" if row["build"] in ("asan", "fuzz") else "release speed"
         total.setdefault(row["target"], {"sanitizers": 0, "release speed": 0})[name] += int(row["executions"])
     lines = ["# Fuzzing: how much ran", "",
              "`fuzz/run.py --record` adds each run to `results.csv` and writes this page from it. An execution is one input:",
              "one file, one list of commands, one pair of triangles or elements, or the life of a scene. No recorded run",
-             "ended with a failure that is not mended.", "", "| Target | Executions with sanitizers | Executions at release speed |", "|---|---|---|"]
+             "found a fault that is still there.", "", "| Target | Executions with sanitizers | Executions at release speed |", "|---|---|---|"]
     lines += [f"| `{name}` | {of['sanitizers']:,} | {of['release speed']:,} |" for name, of in sorted(total.items())]
     lines += ["", "| Targets | Executions | Goal |", "|---|---|---|"]
     for what, (goal, names) in GOALS.items():
@@ -133,7 +133,7 @@ def write_page(rows):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("targets", nargs="*", help="names of targets; default: all")
-    parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build" / "asan", help="build folder (default: build/asan)")
+    parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build" / "fuzz", help="build folder (default: build/fuzz)")
     parser.add_argument("--seconds", type=int, default=30, help="time for each target (default: 30)")
     parser.add_argument("--seed", type=int, default=0, help="of the random numbers; the same seed gives the same inputs, as far as the time allows (default: any)")
     parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="targets at the same time (default: one per core)")
@@ -142,7 +142,7 @@ def main():
     arguments = parser.parse_args()
     build = arguments.build.resolve()
     if not (build / "CMakeCache.txt").exists():
-        sys.exit(f"fuzz/run.py: {build} is no build folder; run: cmake --preset asan && cmake --build --preset asan")
+        sys.exit(f"fuzz/run.py: {build} is no build folder; run: cmake --preset fuzz && cmake --build --preset fuzz")
     programs = programs_of(build, arguments.targets)
 
     counts, failed = {}, []
@@ -153,7 +153,7 @@ def main():
             if status != 0:
                 failed.append(name)
                 print("\n".join(output.splitlines()[-60:]))
-                print(f"The input is in {build / 'fuzz' / 'failures' / name}. Keep it in fuzz/regressions/{name} when the fault is mended.")
+                print(f"The input is in {build / 'fuzz' / 'failures' / name}. Keep it in fuzz/regressions/{name} when the fault is fixed.")
     if arguments.keep and uses_libfuzzer(build):
         for name, program in programs.items():
             keep(name, program, build)
