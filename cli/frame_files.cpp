@@ -8,12 +8,14 @@
 #include "child_reader.hpp"
 #include "supple/error.hpp"
 #include "supple/formats.hpp"
+#include "text.hpp"
 
 namespace supple::cli {
 
 TriangleMesh read_mesh(const std::filesystem::path& path) {
   if (!std::filesystem::exists(path))
-    throw Error(fmt::format("{}: there is no such file; check the folder and the spelling", path.string()));
+    throw Error(
+        one_line(fmt::format("{}: there is no such file; check the folder and the spelling", path.string())));
   return is_read_by_assimp(path) ? load_in_child(path) : load_any_mesh(path);
 }
 

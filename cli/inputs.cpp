@@ -11,6 +11,7 @@
 #include "recorded_input.hpp"
 #include "scene_file.hpp"
 #include "supple/error.hpp"
+#include "text.hpp"
 
 namespace supple::cli {
 namespace {
@@ -47,7 +48,8 @@ std::vector<fs::path> files_that_match(const std::string& pattern) {
   std::vector<std::string> names(found.gl_pathv, found.gl_pathv + found.gl_pathc);
   globfree(&found);
   if (status != 0 || names.empty())
-    throw Error(fmt::format("{}: no file matches this pattern; check the folder and the spelling", pattern));
+    throw Error(one_line(
+        fmt::format("{}: no file matches this pattern; check the folder and the spelling", pattern)));
   std::sort(names.begin(), names.end(), natural_less);
   return {names.begin(), names.end()};
 }

@@ -19,8 +19,8 @@ const toml::node* TomlReader::node(const std::string& key) {
 
 void TomlReader::fail_at(const toml::source_region& place, const std::string& key,
                          const std::string& what) const {
-  throw Error(fmt::format("{}:{}: {}: {}{}{}", file_.string(), place.begin.line, where_, key,
-                          key.empty() ? "" : ": ", what));
+  throw Error(one_line(fmt::format("{}:{}: {}: {}{}{}", file_.string(), place.begin.line, where_, key,
+                                   key.empty() ? "" : ": ", what)));
 }
 
 void TomlReader::fail(const std::string& key, const std::string& what) const {
