@@ -3,7 +3,6 @@
 #include <fcntl.h>
 #include <fmt/core.h>
 #include <spawn.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <array>
@@ -13,7 +12,6 @@
 #include <cstring>
 #include <string_view>
 #include <system_error>
-#include <thread>
 
 #include "text.hpp"
 
@@ -97,8 +95,8 @@ void open_in_browser(const fs::path& page) {
   std::string program = opener, argument = page;
   const std::array<char*, 3> arguments{program.data(), argument.data(), nullptr};
   pid_t child = 0;
-  if (posix_spawnp(&child, opener, &actions, &attributes, arguments.data(), environ) == 0)
-    std::thread([child] { waitpid(child, nullptr, 0); }).detach();
+  // Nothing waits for it: what is left of it when it ends is small, and goes when this program ends.
+  posix_spawnp(&child, opener, &actions, &attributes, arguments.data(), environ);
   posix_spawnattr_destroy(&attributes);
   posix_spawn_file_actions_destroy(&actions);
 }

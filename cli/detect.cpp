@@ -9,6 +9,7 @@
 
 #include "build_simulation.hpp"
 #include "inputs.hpp"
+#include "missing_threads.hpp"
 #include "option_needs.hpp"
 #include "output_names.hpp"
 #include "progress.hpp"
@@ -70,6 +71,7 @@ int run_detect(const DetectOptions& options) {
   if (is_one_mesh(options.inputs, input) && has_proximity(options.scene))
     input.objects.front().options.self_collision = true;
   const std::uint64_t frames = count_frames(input, options);
+  warn_of_missing_threads(options.scene.threads);
   Simulation simulation = build_simulation(input);
 
   // Continuous contacts are found between the previous frame and this frame, so the first frame has none.

@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <new>
 #include <stdexcept>
+#include <system_error>
 
 #include "ccd_queries.hpp"
 #include "detect.hpp"
@@ -71,7 +72,9 @@ int report_lack_of_memory() {
     if (const std::exception_ptr thrown = std::current_exception()) std::rethrow_exception(thrown);
   } catch (const std::bad_alloc&) {
     std::_Exit(report_lack_of_memory());
-  } catch (...) {  // a fault of the program
+  } catch (const std::exception& error) {  // a fault of the program
+    std::fprintf(stderr, "supple: %s\n", error.what());
+  } catch (...) {
   }
   std::abort();
 }
@@ -101,6 +104,12 @@ int main(int argument_count, char** arguments) {
   } catch (const std::filesystem::filesystem_error& error) {
     fmt::print(stderr, "supple: {}: {}; check the path and who may use it\n",
                one_line(error.path1().string()), error.code().message());
+    return exit_unusable;
+  } catch (const std::system_error& error) {
+    const bool is_thread = error.code() == std::errc::resource_unavailable_try_again;
+    fmt::print(stderr, "supple: {}\n",
+               is_thread ? "the system refuses to create a thread; raise its limits (ulimit -u, ulimit -v)"
+                         : one_line(error.what()));
     return exit_unusable;
   } catch (const std::exception& error) {
     fmt::print(stderr, "supple: {}\n", one_line(error.what()));

@@ -15,6 +15,7 @@
 #include "exit_status.hpp"
 #include "inputs.hpp"
 #include "json_writer.hpp"
+#include "missing_threads.hpp"
 #include "output_names.hpp"
 #include "point_file.hpp"
 #include "progress.hpp"
@@ -68,6 +69,7 @@ Run::Run(const QueryOptions& options) : options_(options), scene_(scene_options(
   Input input = read_objects(options.inputs);
   if (!options.file.empty()) input.files.emplace_back(options.file);
   check_output_names({{"--json", options.json}}, input.files);
+  warn_of_missing_threads(scene_.options().threads);
   for (const InputObject& object : input.objects) scene_.add(object.mesh, object.options);
 }
 

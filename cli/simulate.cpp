@@ -17,6 +17,7 @@
 #include "frame_recorder.hpp"
 #include "inputs.hpp"
 #include "interruption.hpp"
+#include "missing_threads.hpp"
 #include "output_names.hpp"
 #include "progress.hpp"
 #include "reports.hpp"
@@ -153,6 +154,7 @@ int run_simulate(const SimulateOptions& options) {
                       {"the .xdmf file of --record", xdmf}},
                      input.files);
   apply(options, input);
+  warn_of_missing_threads(options.scene.threads);
   return Run(options, input).go();
 }
 

@@ -16,6 +16,7 @@
 #include "export/page_file.hpp"
 #include "inputs.hpp"
 #include "interruption.hpp"
+#include "missing_threads.hpp"
 #include "output_names.hpp"
 #include "server/server.hpp"
 #include "session/packed_scene.hpp"
@@ -111,6 +112,7 @@ int run_view(const ViewOptions& options) {
   apply(options, input);
   viewer::SceneView show = build_scene_view(input, options);
   if (!options.page_file.empty()) return write_page(show, options);
+  warn_of_missing_threads(options.scene.threads);
   return serve(std::move(show), options);
 }
 

@@ -34,6 +34,7 @@ if(SUPPLE_WARNINGS_AS_ERRORS)
 endif()
 if(SUPPLE_SANITIZE)
   # These options also apply to targets that link the library: a sanitizer needs them in the whole program.
+  add_compile_definitions(SUPPLE_SANITIZED)
   add_compile_options(-fsanitize=${SUPPLE_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
   add_link_options(-fsanitize=${SUPPLE_SANITIZE})
   if(CMAKE_CXX_COMPILER_ID MATCHES "Clang")

@@ -6,12 +6,14 @@
 #include <cmath>
 #include <exception>
 #include <mutex>
+#include <system_error>
 #include <thread>
 #include <utility>
 
 #include "build_simulation.hpp"
 #include "experiments/table1_scenes.hpp"
 #include "experiments/work.hpp"
+#include "missing_threads.hpp"
 #include "session/settings.hpp"
 
 namespace supple::experiments {
@@ -167,7 +169,12 @@ std::optional<std::vector<Runs>> run_by_steps(const Table1Options& options, RunL
   const unsigned cores = std::max(std::thread::hardware_concurrency(), 1u);
   const unsigned given = options.threads.value_or(0);
   std::vector<std::thread> threads;
-  for (unsigned i = 1; i < (given == 0 ? cores : given); ++i) threads.emplace_back(run_tasks);
+  const unsigned wanted = given == 0 ? cores : given;
+  try {
+    while (threads.size() + 1 < wanted) threads.emplace_back(run_tasks);
+  } catch (const std::system_error&) {
+    cli::warn_of_missing_threads(wanted, static_cast<unsigned>(threads.size()) + 1);
+  }
   run_tasks();
   for (std::thread& thread : threads) thread.join();
   if (fault) std::rethrow_exception(fault);

@@ -169,7 +169,8 @@ struct SceneOptions {
   /// takes O(n). Coordinates above 2^-150 and below 2^50 have at most 252 bits. 53 to `most_exact_bits`,
   /// which means no limit.
   std::uint32_t max_exact_bits = most_exact_bits;
-  /// Worker threads; 0 means one for each core. The results are the same for any number.
+  /// Worker threads; 0 means one for each core. Fewer work when the system refuses to create them
+  /// (supple/threads.hpp). The results are the same for any number.
   std::uint32_t threads = 0;
   ComparisonOptions comparison{};
 };

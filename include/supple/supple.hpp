@@ -15,6 +15,7 @@
 #include "supple/queries.hpp"
 #include "supple/result.hpp"
 #include "supple/scene.hpp"
+#include "supple/threads.hpp"
 #include "supple/topology.hpp"
 #include "supple/triangle_intersection.hpp"
 #include "supple/trigonometry.hpp"

@@ -8,12 +8,14 @@
 //   FAULT_ALLOCATION=N       the N-th allocation fails
 //   FAULT_ALLOCATIONS_FROM=N the N-th allocation and all later ones fail
 //   FAULT_HDF5=1             allocations of HDF5 count and fail, too
+//   FAULT_HDF5_CRASH=N       a crash within HDF5 exits with status N
 //   FAULT_CLOCK=MODE         clocks go forward by hours, backward by hours, both in turns (jump), or stop
 //   FAULT_COUNTS=FILE        at exit, writes the numbers of writes and of allocations to this file
 //
 // A seccomp filter turns writes into signals, so that those of the C library are seen, too.
 
 #include <dlfcn.h>
+#include <execinfo.h>
 #include <fcntl.h>
 #include <link.h>
 #include <linux/filter.h>
@@ -35,6 +37,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <ctime>
+#include <iterator>
 
 // The allocator of glibc under its own names.
 extern "C" {
@@ -67,8 +70,13 @@ long number_of(const char* variable) {
 /// The code of HDF5.
 struct Code {
   std::uintptr_t begin = 0, end = 0;
+  bool contains(const void* place) const {
+    const auto address = reinterpret_cast<std::uintptr_t>(place);
+    return address >= begin && address < end;
+  }
 };
 Code hdf5;
+bool hdf5_is_spared = true;
 
 int find_hdf5(dl_phdr_info* library, std::size_t, void*) {
   if (std::strstr(library->dlpi_name, "libhdf5") == nullptr) return 0;
@@ -84,8 +92,7 @@ int find_hdf5(dl_phdr_info* library, std::size_t, void*) {
 
 bool is_refused(const void* caller) {
   if (!is_active.load(std::memory_order_relaxed)) return false;
-  const auto place = reinterpret_cast<std::uintptr_t>(caller);
-  if (place >= hdf5.begin && place < hdf5.end) return false;
+  if (hdf5_is_spared && hdf5.contains(caller)) return false;
   const long n = ++allocations;
   return n == faults.allocation || (faults.allocations_from != never && n >= faults.allocations_from);
 }
@@ -190,6 +197,22 @@ void watch_writes() {
     _exit(77);
 }
 
+/// HDF5 calls no functions of the program, so it is at fault when it is among the callers.
+void on_crash(int signal) {
+  void* callers[64];
+  const int count = backtrace(callers, static_cast<int>(std::size(callers)));
+  if (std::any_of(callers, callers + count, [](const void* caller) { return hdf5.contains(caller); }))
+    _exit(static_cast<int>(number_of("FAULT_HDF5_CRASH")));
+  std::signal(signal, SIG_DFL);
+  raise(signal);
+}
+
+void watch_crashes() {
+  void* first_call_allocates[1];
+  backtrace(first_call_allocates, 1);
+  for (const int signal : {SIGSEGV, SIGABRT}) std::signal(signal, on_crash);
+}
+
 void read_faults() {
   faults.kill_at = number_of("FAULT_KILL_AT_WRITE");
   faults.tear_at = number_of("FAULT_TEAR_AT_WRITE");
@@ -199,7 +222,8 @@ void read_faults() {
   faults.allocations_from = number_of("FAULT_ALLOCATIONS_FROM");
   const char* const clock = std::getenv("FAULT_CLOCK");
   faults.clock = clock != nullptr ? clock[0] : '\0';
-  if (number_of("FAULT_HDF5") == never) dl_iterate_phdr(find_hdf5, nullptr);
+  dl_iterate_phdr(find_hdf5, nullptr);
+  hdf5_is_spared = number_of("FAULT_HDF5") == never;
   bytes_left = std::max(0L, faults.disk_bytes);
 }
 
@@ -222,6 +246,7 @@ int main_with_faults(int count, char** arguments, char** environment) {
   if (counts_file != nullptr) std::atexit(write_counts);
   const bool writes_fail = faults.kill_at != never || faults.tear_at != never || faults.disk_bytes != never ||
                            faults.error_at != never;
+  if (number_of("FAULT_HDF5_CRASH") != never) watch_crashes();
   if (writes_fail || counts_file != nullptr) watch_writes();
   is_active = true;
   return real_main(count, arguments, environment);

@@ -83,7 +83,7 @@ TEST_P(SteadyState, NoAllocationsAfterWarmUpAndValidOctreesThroughout) {
   }
   EXPECT_EQ(allocated_in_steps, 0u);
   EXPECT_GT(contacts, static_cast<std::uint64_t>(steps));
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#if !defined(SUPPLE_SANITIZED)
   EXPECT_LE(mallinfo2().uordblks, heap_after_warm_up + 4096) << "the heap grew";
 #endif
 }

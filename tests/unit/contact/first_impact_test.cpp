@@ -26,7 +26,7 @@
 namespace supple {
 namespace {
 
-#if defined(NDEBUG) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#if defined(NDEBUG) && !defined(SUPPLE_SANITIZED)
 constexpr int queries_per_family = 8000;
 #else
 constexpr int queries_per_family = 320;

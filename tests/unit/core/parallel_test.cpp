@@ -2,10 +2,18 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
+#include <cstdlib>
 #include <stdexcept>
 #include <thread>
 #include <vector>
+
+#include "supple/threads.hpp"
+
+#if defined(__linux__)
+#include <sys/resource.h>
+#endif
 
 namespace supple {
 namespace {
@@ -52,6 +60,39 @@ TEST_P(ParallelFor, MoreThreadsThanCoresPrintNothing) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Threads, ParallelFor, testing::Values(0u, 1u, 2u, 4u, 64u));
+
+TEST(AvailableThreads, AreAsManyAsAskedFor) {
+  EXPECT_EQ(available_threads(1), 1u);
+  EXPECT_EQ(available_threads(5), 5u);
+  EXPECT_EQ(available_threads(2), 2u);
+  EXPECT_GE(available_threads(0), 1u);
+}
+
+// Sanitizers reserve more address space than any such limit.
+#if defined(__linux__) && !defined(SUPPLE_SANITIZED)
+/// Ends the process with status 0 when fewer threads than asked for do all of the work.
+[[noreturn]] void work_with_too_few_threads() {
+  rlimit limit{};
+  getrlimit(RLIMIT_AS, &limit);
+  limit.rlim_cur = rlim_t{3} << 30;
+  setrlimit(RLIMIT_AS, &limit);
+  for (const std::uint32_t asked_for : {100u, 200u, 3u}) {
+    const Parallel parallel(asked_for);
+    std::vector<std::uint8_t> visits(10000);
+    parallel.for_ranges(visits.size(), 10, [&](std::size_t begin, std::size_t end, std::uint32_t) {
+      for (std::size_t i = begin; i < end; ++i) ++visits[i];
+    });
+    const bool is_done = std::ranges::all_of(visits, [](std::uint8_t count) { return count == 1; });
+    if (!is_done || parallel.worker_count() < 2 || (asked_for > 3 && parallel.worker_count() > 40))
+      std::_Exit(1);
+  }
+  std::_Exit(0);
+}
+
+TEST(AvailableThreadsDeathTest, AreFewerWhenTheSystemRefusesThem) {
+  EXPECT_EXIT(work_with_too_few_threads(), testing::ExitedWithCode(0), "");
+}
+#endif
 
 }  // namespace
 }  // namespace supple

@@ -137,7 +137,7 @@ TEST(ViewerSettings, TheOpenedSceneNeedsNoBudget) {
   EXPECT_EQ(page.scene().json["objects"].size(), 2u);
 }
 
-#if defined(__GLIBC__) && defined(NDEBUG) && !defined(__SANITIZE_ADDRESS__)
+#if defined(__GLIBC__) && defined(NDEBUG) && !defined(SUPPLE_SANITIZED)
 /// Memory of the whole program, without what it has freed.
 double allocated_bytes() {
   const auto memory = mallinfo2();
