@@ -5,13 +5,14 @@ BASE ?= HEAD
 
 SECONDS ?= 30
 
-.PHONY: help demo program test build fuzz bench bench-quick bench-kernels bench-compare contest check format docs figures clean dependencies
+.PHONY: help demo program test build fuzz coverage bench bench-quick bench-kernels bench-compare contest check format docs figures clean dependencies
 
 help:
 	@echo 'make demo     build the program, drop a cloth over a ball, collide nine objects, write a page that shows them'
 	@echo 'make test     build, then every test'
 	@echo 'make build    the release build: build/release/bin/supple'
 	@echo 'make fuzz     every fuzz target with sanitizers, for SECONDS=30 each'
+	@echo 'make coverage which lines and branches the tests and the corpora of the fuzz targets reach'
 	@echo 'make bench    Supple against Embree, CGAL, FCL, Bullet and ODE: up to 25 minutes; bench-quick takes one'
 	@echo 'make bench-kernels   single stages and kernels of Supple'
 	@echo 'make bench-compare BASE=COMMIT   this working tree against a commit'
@@ -51,6 +52,13 @@ fuzz:
 	cmake --preset fuzz
 	cmake --build --preset fuzz -j $(JOBS)
 	fuzz/run.py --seconds $(SECONDS) $(FUZZ)
+
+# COVERAGE contains options of the script: make coverage COVERAGE=--record
+coverage:
+	tools/install_dependencies.sh --coverage
+	cmake --preset coverage
+	cmake --build --preset coverage -j $(JOBS)
+	tools/coverage.py $(COVERAGE)
 
 # CONTEST contains options of the script: make bench CONTEST="--only 'B/*' --save"
 bench: contest

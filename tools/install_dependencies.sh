@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # Installs the Debian 12 packages for a build, the tests and the demo. --ci adds the packages of the checks,
-# clang and the sanitizers; --bench adds the libraries that benchmarks compare with; --instruction-sets adds
-# the compilers and emulators of tools/check_instruction_sets.sh. Returns quickly when everything is
-# installed.
+# clang and the sanitizers; --bench adds the libraries that benchmarks compare with; --coverage adds what
+# tools/coverage.py needs; --instruction-sets adds the compilers and emulators of
+# tools/check_instruction_sets.sh. Returns quickly when everything is installed.
 set -euo pipefail
 
 packages=(
@@ -26,6 +26,9 @@ if [ "${1:-}" = "--bench" ]; then
   packages+=(git pkg-config libembree-dev libcgal-dev libfcl-dev libbullet-dev libode-dev)
 fi
 
+if [ "${1:-}" = "--coverage" ]; then
+  packages+=(llvm-19 python3-h5py)
+fi
 if [ "${1:-}" = "--instruction-sets" ]; then
   packages+=(g++-aarch64-linux-gnu qemu-user clang-19 lld-19 wasi-libc libc++-19-dev-wasm32 libclang-rt-19-dev-wasm32 nodejs)
 fi
