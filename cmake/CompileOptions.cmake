@@ -50,6 +50,16 @@ if(SUPPLE_SANITIZE)
   endif()
 endif()
 
+if(SUPPLE_COVERAGE)
+  add_compile_options(-fprofile-instr-generate -fcoverage-mapping)
+  add_link_options(-fprofile-instr-generate)
+  # Each kernel is counted once, so it must be compiled for one instruction set only.
+  add_compile_definitions(HWY_COMPILE_ONLY_STATIC)
+  if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
+    add_compile_options(-march=x86-64-v3 -maes -mpclmul)
+  endif()
+endif()
+
 # Compiles the headers that most sources of a target include once instead of once for each source. A compiler
 # cache does not store the results of such compilations, so builds with a cache do not use it. The debug preset
 # does not use it either, which finds sources that miss an include. With the thread sanitizer and precompiled

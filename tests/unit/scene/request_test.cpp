@@ -6,6 +6,8 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
+#include <span>
+#include <stop_token>
 #include <string_view>
 #include <thread>
 #include <vector>
@@ -267,6 +269,24 @@ TEST(MaxContacts, SavesTheTestsOfWhatIsLeftOut) {
   }
 }
 
+TEST(MaxContacts, CutsTheListOfOneTask) {
+  Scene scene({.contacts = ContactKinds::continuous, .threads = 1});
+  for (std::uint64_t i = 0; i < 2; ++i) {
+    const TriangleMesh soup = random_soup(400, 1, 0.5, 20 + i);
+    std::vector<Vec3d> to = soup.positions;
+    RandomNumbers random(i);
+    for (Vec3d& p : to) p = p + random.vector(0.3);
+    scene.set_motion(scene.add(soup, {}), soup.positions, to);
+  }
+  const Lists all(scene.detect());
+  ASSERT_GT(all.continuous.size(), 4000u);
+  for (const std::size_t limit : {0u, 5u, 100u, 700u, 3000u}) {
+    const DetectResult& result = scene.detect({.max_contacts = limit});
+    EXPECT_TRUE(result.truncated);
+    ASSERT_TRUE(std::ranges::equal(result.continuous_contacts, std::span(all.continuous).first(limit)));
+  }
+}
+
 TEST(Stop, BeforeAnythingIsFoundLeavesTheSceneAsItWas) {
   Scene scene = crowded(both, 2, 200), other = crowded(both, 2, 200);
   scene.detect();
@@ -289,6 +309,43 @@ TEST(Stop, BeforeAnythingIsFoundLeavesTheSceneAsItWas) {
   const DetectResult& expected = other.detect();
   EXPECT_EQ(hash_of(result), hash_of(expected));
   EXPECT_EQ(result.step, expected.step);
+}
+
+/// Two solids that penetrate each other, and a third one near them.
+Scene three_balls(ContactKinds contacts) {
+  Scene scene({.contacts = contacts, .threads = 1});
+  const TriangleMesh ball = make_icosphere(2);
+  for (const double x : {0.0, 1.5, 3.52}) {
+    const ObjectId id = scene.add(ball, {.margin = 0.05, .solid = true});
+    std::vector<Vec3d> from = ball.positions, to;
+    for (Vec3d& p : from) p.x += x;
+    for (const Vec3d& p : from) to.push_back({p.x - 0.1 * x, p.y, p.z});
+    scene.set_motion(id, from, to);
+  }
+  return scene;
+}
+
+TEST(Stop, InThePairFilterEndsTheStepOfEveryKind) {
+  for (const ContactKinds contacts : {ContactKinds::intersection, ContactKinds::continuous,
+                                      ContactKinds::proximity, ContactKinds::penetration}) {
+    Scene scene = three_balls(contacts);
+    std::stop_source source;
+    scene.set_pair_filter([&](ObjectId, ObjectId) {
+      source.request_stop();
+      return true;
+    });
+    EXPECT_TRUE(scene.detect({.stop = source.get_token()}).stopped);
+    EXPECT_EQ(SceneInspector(scene).validate(), "");
+    scene.set_pair_filter({});
+    EXPECT_FALSE(scene.detect().stopped);
+    Scene other = three_balls(contacts);
+    other.detect();
+    const DetectResult &result = scene.result(), &expected = other.result();
+    EXPECT_EQ(hash_of(result), hash_of(expected));
+    EXPECT_EQ(result.proximity_pairs.size(), expected.proximity_pairs.size());
+    EXPECT_EQ(result.penetrations.size(), expected.penetrations.size());
+    EXPECT_TRUE(scene.verify().agrees());
+  }
 }
 
 /// Starts a search and requests a stop from another thread. Returns whether the search was stopped.
