@@ -536,6 +536,53 @@ TEST(InspectionOfScenes, FollowsTheGroupsOfVertices) {
   }
 }
 
+/// A triangle that has all of these vertices.
+std::uint32_t triangle_with(const TriangleMesh& mesh, const ElementVertices& element) {
+  const auto found = std::ranges::find_if(mesh.triangles, [&](const Triangle& triangle) {
+    return std::all_of(element.begin(), element.end(), [&](std::uint32_t vertex) {
+      return std::ranges::find(triangle, vertex) != triangle.end();
+    });
+  });
+  return static_cast<std::uint32_t>(found - mesh.triangles.begin());
+}
+
+/// Two waved sheets in one object, the upper one on its way down.
+TEST(InspectionOfScenes, KnowsWhatTouchesOnTheWayOrIsNearWithinOneObject) {
+  TriangleMesh sheets = make_cloth(6, 6, 6, 6);
+  const auto count = static_cast<std::uint32_t>(sheets.positions.size());
+  for (std::uint32_t v = 0; v < count; ++v) {
+    const Vec3d p = sheets.positions[v];
+    sheets.positions.push_back({p.x + 0.3, p.y + 0.5, p.z + 0.2});
+    sheets.positions[v] = {p.x, p.y + 0.1 * static_cast<double>(v % 5), p.z};
+  }
+  const std::size_t triangles = sheets.triangles.size();
+  for (std::size_t t = 0; t < triangles; ++t) {
+    const Triangle ids = sheets.triangles[t];
+    sheets.triangles.push_back({ids[0] + count, ids[1] + count, ids[2] + count});
+  }
+  std::vector<Vec3d> to = sheets.positions;
+  for (std::uint32_t v = count; v < 2 * count; ++v) to[v].y -= 0.6;
+
+  const auto check = [&](const Scene& scene, ObjectId id, const auto& pairs) {
+    EXPECT_GT(pairs.size(), 20u);
+    for (const auto& pair : pairs) {
+      const std::uint32_t a = triangle_with(sheets, scene.vertices_of(pair, ContactSide::a)),
+                          b = triangle_with(sheets, scene.vertices_of(pair, ContactSide::b));
+      EXPECT_EQ(SceneInspector(scene).explain(id, a, id, b).stage, PairStage::contact) << a << " " << b;
+    }
+    // The first triangle lies beyond the end of the other sheet.
+    EXPECT_NE(SceneInspector(scene).explain(id, 0, id, static_cast<std::uint32_t>(2 * triangles - 1)).stage,
+              PairStage::contact);
+  };
+  Scene still({.contacts = ContactKinds::proximity});
+  const ObjectId of_still = still.add(sheets, {.self_collision = true, .margin = 0.1});
+  check(still, of_still, still.detect().proximity_pairs);
+  Scene moving({.contacts = ContactKinds::continuous});
+  const ObjectId of_moving = moving.add(sheets, {.self_collision = true});
+  moving.set_motion(of_moving, sheets.positions, to);
+  check(moving, of_moving, moving.detect().continuous_contacts);
+}
+
 TEST(InspectionOfScenes, KnowsNeighboursThatMeetElsewhere) {
   // A fan of three triangles around a vertex; the third one cuts through the first.
   TriangleMesh fan;
