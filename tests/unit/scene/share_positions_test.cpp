@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstring>
 #include <limits>
 #include <new>
@@ -174,6 +175,39 @@ TYPED_TEST(SharePositions, AreReadForContinuousContactsToo) {
   points.assign(points.size(), {100, 100, 100});
   scene.share_positions(id, points);
   EXPECT_TRUE(scene.detect().continuous_contacts.empty());
+}
+
+TYPED_TEST(SharePositions, CopiesWhatItCannotReadInPlace) {
+  using Scalar = TypeParam;
+  const TriangleMesh ball = make_icosphere(2);
+  const std::size_t n = ball.positions.size();
+  constexpr std::ptrdiff_t size = sizeof(Scalar), odd = 3 * size + 1;
+  std::vector<Scalar> reversed(3 * n), columns(3 * n);
+  std::vector<std::byte> unaligned(static_cast<std::size_t>(odd) * n + 1);
+  for (std::size_t v = 0; v < n; ++v) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const auto x = static_cast<Scalar>(ball.positions[v][static_cast<int>(axis)] + 0.3);
+      reversed[3 * (n - 1 - v) + axis] = columns[axis * n + v] = x;
+      std::memcpy(unaligned.data() + 1 + static_cast<std::size_t>(odd) * v + axis * sizeof(Scalar), &x,
+                  sizeof(Scalar));
+    }
+  }
+  const auto* const odd_place = reinterpret_cast<const Scalar*>(unaligned.data() + 1);
+  const std::vector<PositionsView> views{
+      {reversed.data() + 3 * (n - 1), n, -3 * size},
+      {columns.data(), n, size, static_cast<std::ptrdiff_t>(n) * size},
+      {odd_place, n, odd},
+  };
+  for (const PositionsView& view : views) {
+    Scene shared, copied;
+    for (Scene* scene : {&shared, &copied}) scene->add(ball);
+    const ObjectId of_shared = shared.add(ball), of_copied = copied.add(ball);
+    shared.share_positions(of_shared, view);
+    copied.set_positions(of_copied, view);
+    EXPECT_EQ(keys_of(shared.detect()), keys_of(copied.detect()));
+    EXPECT_FALSE(shared.result().contacts.empty());
+    EXPECT_TRUE(shared.verify().agrees());
+  }
 }
 
 TEST(SharePositions, ChecksWhatItIsGiven) {
