@@ -264,7 +264,8 @@ ObjectPairView ImpactPass::view_of_job(std::uint32_t job) const {
 }
 
 void ImpactPass::run_task(std::size_t task, std::uint32_t w) {
-  const auto [job, root] = tasks_.tasks()[task];
+  const ContactTask& contact_task = tasks_.tasks()[task];
+  const std::uint32_t job = contact_task.job;
   Worker& worker = workers_[w];
   const std::size_t first = worker.found.size();
   const auto set_outcome = [&] {
@@ -273,7 +274,7 @@ void ImpactPass::run_task(std::size_t task, std::uint32_t w) {
     limit_.add(job, count);
   };
   if (limit_.excludes(ContactLimit::place(job, 0))) return set_outcome();
-  worker.traversal.find_element_pairs(view_of_job(job), root, worker.stats.traversal,
+  worker.traversal.find_element_pairs(view_of_job(job), contact_task.root, worker.stats.traversal,
                                       [&](ElementPairKind kind, std::span<const ElementPair> candidates) {
                                         Timer timer;
                                         test_candidates(job, kind, candidates, worker);
