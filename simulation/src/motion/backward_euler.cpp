@@ -16,6 +16,8 @@ constexpr double tolerance = 1e-3;
 /// Conjugate gradients stop when the residual falls to this fraction of the first residual. The remaining
 /// error is smaller than that of Newton's method, whose Hessian omits terms that may be negative.
 constexpr double forcing = 0.02;
+/// ln(2 / forcing). The logarithm of the C library differs between machines.
+constexpr double log_of_accuracy = 4.605170185988092;
 
 }  // namespace
 
@@ -111,7 +113,7 @@ double BackwardEuler::expected_iterations() const {
     if (kinds_[v] == VertexKind::free)
       largest = std::max({largest, diagonal_[v].xx, diagonal_[v].yy, diagonal_[v].zz});
   }
-  return 0.5 * std::log(2 / forcing) * std::sqrt(largest / equations_.smallest_diagonal());
+  return 0.5 * log_of_accuracy * std::sqrt(largest / equations_.smallest_diagonal());
 }
 
 /// Solves from scratch, because a direct solver cannot use the partial result of conjugate gradients.

@@ -157,7 +157,7 @@ std::optional<TimeBracket> first_contact(const Elements& elements, bool separate
 /// hence throughout. A dot product is off by less than 2^-51 of the sum of its terms' magnitudes.
 bool apart_along(Vec3d direction, const std::array<Vec3d, 4>& start, const std::array<Vec3d, 4>& end,
                  std::size_t first_size, double separation) {
-  const double length = std::hypot(direction.x, direction.y, direction.z);
+  const double length = scaled_norm(direction);
   if (!(length > 0x1p-1000 && length < 0x1p1000)) return false;
   direction = direction / length;
   double above = std::numeric_limits<double>::infinity(), below = above, size = 0;

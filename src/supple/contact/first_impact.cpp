@@ -85,7 +85,7 @@ Gap gap_at_start(const ElementMotion& motion, const RelativeMotion& relative) {
 /// places could change it.
 Gap gap_at_impact(const RelativeMotion& relative, double time, double separation) {
   const RelativePlaces<double> places = places_at(relative, time);
-  const auto& [m, u, w] = places;
+  const Vec3d &m = places.m, &u = places.u, &w = places.w;
   Gap gap = gap_between(places, relative.is_square, [&] {
     return relative.is_square ? element_points({m, m - u, Vec3d{}, w}, true)
                               : element_points({m, Vec3d{}, u, w}, false);

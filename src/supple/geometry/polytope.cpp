@@ -23,6 +23,12 @@ Vec3d point_between(Vec3d p, double distance_p, Vec3d q, double distance_q) {
   return p + distance_p / (distance_p - distance_q) * (q - p);
 }
 
+/// Increases with the angle of (x, y), as `std::atan2` does, whose bits differ between C libraries.
+double place_around(double x, double y) {
+  const double size = std::fabs(x) + std::fabs(y);
+  return size > 0 ? std::copysign(1 - x / size, y) : 0;
+}
+
 /// Puts the corners of a convex face into their order around it.
 void sort_around(std::vector<Vec3d>& corners, Vec3d normal) {
   std::sort(corners.begin(), corners.end(), precedes);
@@ -31,10 +37,10 @@ void sort_around(std::vector<Vec3d>& corners, Vec3d normal) {
   Vec3d center{};
   for (const Vec3d& corner : corners) center += corner / static_cast<double>(corners.size());
   const Vec3d u = corners.front() - center, v = cross(normal, u);
-  const auto angle = [&](Vec3d corner) {
-    return std::atan2(dot(corner - center, v), dot(corner - center, u));
+  const auto place = [&](Vec3d corner) {
+    return place_around(dot(corner - center, u), dot(corner - center, v));
   };
-  std::sort(corners.begin(), corners.end(), [&](Vec3d p, Vec3d q) { return angle(p) < angle(q); });
+  std::sort(corners.begin(), corners.end(), [&](Vec3d p, Vec3d q) { return place(p) < place(q); });
 }
 
 }  // namespace

@@ -21,6 +21,13 @@ inline double largest_magnitude(const Vec3d& v) {
   return std::max({std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)});
 }
 
+/// As `norm`, also when the square of the vector overflows or underflows. `std::hypot` of three numbers gives
+/// other bits in each standard library.
+inline double scaled_norm(const Vec3d& v) {
+  const double largest = largest_magnitude(v);
+  return largest > 0 && std::isfinite(largest) ? largest * norm(v / largest) : largest;
+}
+
 /// v · 2^exponent.
 inline Vec3d scaled(const Vec3d& v, int exponent) {
   return {std::ldexp(v.x, exponent), std::ldexp(v.y, exponent), std::ldexp(v.z, exponent)};

@@ -102,7 +102,7 @@ class Validation {
   bool in_sphere(std::uint32_t n, int child, Vec3d p) const {
     const ChildSpheres& spheres = octree_.spheres()[n];
     const double distance =
-        std::hypot(p.x - spheres.x[child], p.y - spheres.y[child], p.z - spheres.z[child]);
+        scaled_norm({p.x - spheres.x[child], p.y - spheres.y[child], p.z - spheres.z[child]});
     return distance <= spheres.radius[child] * (1 + 0x1p-40) || std::isinf(spheres.radius[child]);
   }
 

@@ -28,7 +28,7 @@ double increased(double distance) {
 
 double length(const Vec3d& v) {
   const double squared = dot(v, v);
-  return std::isfinite(squared) ? std::sqrt(squared) : std::hypot(v.x, v.y, v.z);
+  return std::isfinite(squared) ? std::sqrt(squared) : scaled_norm(v);
 }
 
 double box_distance(const Vec3d& p, const BoxedCorners& t) {
@@ -321,7 +321,7 @@ double bound_of_distance(const PlainSurface& a, const PlainSurface& b) {
     for (const BoxedCorners& t : (i % 2 == 0 ? b : a).triangles) {
       for (const Vec3d& corner : t.corners) {
         const Vec3d gap = corner - point;
-        const double distance = std::hypot(gap.x, gap.y, gap.z);
+        const double distance = scaled_norm(gap);
         if (distance < least) std::tie(least, nearest) = std::tuple(distance, corner);
       }
     }

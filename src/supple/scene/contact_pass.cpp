@@ -102,7 +102,8 @@ ObjectPairView ContactPass::view_of_job(std::uint32_t job) const {
 }
 
 void ContactPass::run_task(std::size_t task, Worker& worker) {
-  const auto [job, root] = tasks_.tasks()[task];
+  const ContactTask& contact_task = tasks_.tasks()[task];
+  const std::uint32_t job = contact_task.job;
   Outcomes::TaskOutcome& outcome = outcomes_.of_task(task);
   const std::size_t first = worker.found.size(), first_point = worker.points.size();
   outcome = {worker.number,
@@ -123,7 +124,8 @@ void ContactPass::run_task(std::size_t task, Worker& worker) {
     }
     worker.stats.exact_seconds += timer.lap();
   };
-  worker.traversal.find_triangle_pairs(input.pair, root, worker.stats.traversal, on_leaves, on_candidates);
+  worker.traversal.find_triangle_pairs(input.pair, contact_task.root, worker.stats.traversal, on_leaves,
+                                       on_candidates);
   Timer timer;
   if (search_.contacts && input.pair.same_object && input.object_a.neighbours != nullptr) {
     test_neighbours(input, task, worker);

@@ -228,11 +228,11 @@ bool Scene::Implementation::touch_on_the_way(const ContactJob& job, TrianglePair
     const ObjectOctree& octree = slots_[slot].object->octree();
     return std::pair(octree.triangle_ids()[triangle], octree.triangles()[triangle]);
   };
-  const auto [id_a, corners_a] = corners(job.a, triangles.a);
-  const auto [id_b, corners_b] = corners(job.b, triangles.b);
-  const auto has = [](std::uint32_t id, const Triangle& of, bool is_face,
+  const auto a = corners(job.a, triangles.a), b = corners(job.b, triangles.b);
+  const auto has = [](const std::pair<std::uint32_t, Triangle>& triangle, bool is_face,
                       const std::array<std::uint32_t, 2>& element) {
-    if (is_face) return element[0] == id;
+    const Triangle& of = triangle.second;
+    if (is_face) return element[0] == triangle.first;
     return std::all_of(element.begin(), element.end(), [&](std::uint32_t vertex) {
       return std::find(of.begin(), of.end(), vertex) != of.end();
     });
@@ -240,10 +240,8 @@ bool Scene::Implementation::touch_on_the_way(const ContactJob& job, TrianglePair
   const auto touches = [&](const ContinuousContact& contact) {
     const auto [kind_a, kind_b] = feature_kinds(contact.kind);
     const bool face_a = kind_a == FeatureKind::face, face_b = kind_b == FeatureKind::face;
-    if (has(id_a, corners_a, face_a, contact.element_a) && has(id_b, corners_b, face_b, contact.element_b))
-      return true;
-    return job.a == job.b && has(id_b, corners_b, face_a, contact.element_a) &&
-           has(id_a, corners_a, face_b, contact.element_b);
+    if (has(a, face_a, contact.element_a) && has(b, face_b, contact.element_b)) return true;
+    return job.a == job.b && has(b, face_a, contact.element_a) && has(a, face_b, contact.element_b);
   };
   return std::any_of(result.continuous_groups.begin(), result.continuous_groups.end(),
                      [&](const ContactGroup& group) {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
 #include <limits>
 #include <numeric>
 #include <tuple>
@@ -13,6 +12,7 @@
 #include "core/float_rounding.hpp"
 #include "core/timer.hpp"
 #include "geometry/integer_points.hpp"
+#include "geometry/vector.hpp"
 
 namespace supple {
 namespace {
@@ -100,12 +100,12 @@ double largest_approach_of(const ElementMotion& motion) {
   std::array<Vec3d, 4> ways;
   for (std::size_t i = 0; i < 4; ++i) ways[i] = motion.end[i] - motion.start[i];
   double largest = 0, longest = 0;
-  for (const Vec3d& way : ways) longest = std::max(longest, std::hypot(way.x, way.y, way.z));
+  for (const Vec3d& way : ways) longest = std::max(longest, scaled_norm(way));
   const std::size_t count = motion.are_edges ? 2 : 1;
   for (std::size_t i = 0; i < count; ++i) {
     for (std::size_t k = count; k < 4; ++k) {
       const Vec3d way = ways[i] - ways[k];
-      largest = std::max(largest, std::hypot(way.x, way.y, way.z));
+      largest = std::max(largest, scaled_norm(way));
     }
   }
   return largest * (1 + 0x1p-40) + rounding_of_ways * longest;
@@ -229,7 +229,7 @@ double ImpactPass::largest_approach(std::uint32_t job) const {
   const MovingObject& b = objects_[jobs_[job].b];
   const Vec3d way = a.ways->mean - b.ways->mean;
   const double farthest = a.ways->farthest_from_mean + b.ways->farthest_from_mean;
-  return (std::hypot(way.x, way.y, way.z) + farthest) * (1 + 0x1p-40) +
+  return (scaled_norm(way) + farthest) * (1 + 0x1p-40) +
          rounding_of_ways * (a.ways->longest + b.ways->longest);
 }
 
@@ -264,7 +264,8 @@ ObjectPairView ImpactPass::view_of_job(std::uint32_t job) const {
 }
 
 void ImpactPass::run_task(std::size_t task, std::uint32_t w) {
-  const auto [job, root] = tasks_.tasks()[task];
+  const ContactTask& contact_task = tasks_.tasks()[task];
+  const std::uint32_t job = contact_task.job;
   Worker& worker = workers_[w];
   const std::size_t first = worker.found.size();
   const auto set_outcome = [&] {
@@ -273,7 +274,7 @@ void ImpactPass::run_task(std::size_t task, std::uint32_t w) {
     limit_.add(job, count);
   };
   if (limit_.excludes(ContactLimit::place(job, 0))) return set_outcome();
-  worker.traversal.find_element_pairs(view_of_job(job), root, worker.stats.traversal,
+  worker.traversal.find_element_pairs(view_of_job(job), contact_task.root, worker.stats.traversal,
                                       [&](ElementPairKind kind, std::span<const ElementPair> candidates) {
                                         Timer timer;
                                         test_candidates(job, kind, candidates, worker);

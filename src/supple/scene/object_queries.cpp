@@ -311,7 +311,8 @@ std::optional<ClosestPoint> ObjectQueries::closest(std::span<const QueriedObject
   const auto bound_of = [&](const Aabb& box) { return distance_bound(point, box); };
   if (last_nearest_) nearest.consider(last_nearest_->object, last_nearest_->triangle, 1);
   order(objects, bound_of, nearest.limit());
-  for (const auto& [object_bound, index] : order_) {
+  for (const auto& [object_bound, object_index] : order_) {
+    const std::uint32_t index = object_index;
     const QueriedObject& object = objects[index];
     if (!(object_bound <= nearest.limit())) break;
     const PointBounds seen = seen_by(object, point);
@@ -345,7 +346,8 @@ void ObjectQueries::visit_triangles_on_ray(std::span<const QueriedObject> object
   bool used_exact = false;
   order(
       objects, [&](const auto& box) { return ray_bound(ray, box); }, limit);
-  for (const auto& [object_bound, index] : order_) {
+  for (const auto& [object_bound, object_index] : order_) {
+    const std::uint32_t index = object_index;
     const QueriedObject& object = objects[index];
     if (!(object_bound <= limit)) break;
     const RaySlabs slabs = slabs_of(object, ray);

@@ -250,9 +250,10 @@ void PenetrationPass::move_known_curves(std::size_t i) {
 }
 
 void PenetrationPass::gather_found(std::size_t i) {
-  const auto& [w, from] = outcomes_.tasks_of(i).front();
+  const Outcomes::TaskOutcome& outcome = outcomes_.tasks_of(i).front();
+  const Outcomes::Ranges& from = outcome.ranges;
   const Outcomes::Ranges& to = outcomes_.ranges(i);
-  const Worker& worker = workers_[w];
+  const Worker& worker = workers_[outcome.worker];
   const ObjectId inner = objects_[pairs_[i].a].queried.id, outer = objects_[pairs_[i].b].queried.id;
   for (std::uint32_t k = 0; k < to[of_penetrations].count; ++k) {
     const std::uint32_t place = to[of_penetrations].first + k;

@@ -122,10 +122,11 @@ ObjectPairView ProximityPass::view_of_job(std::uint32_t job) const {
 }
 
 void ProximityPass::run_task(std::size_t task, std::uint32_t w) {
-  const auto [job, root] = tasks_.tasks()[task];
+  const ContactTask& contact_task = tasks_.tasks()[task];
+  const std::uint32_t job = contact_task.job;
   Worker& worker = workers_[w];
   const std::size_t first = worker.found.size();
-  worker.traversal.find_element_pairs(view_of_job(job), root, worker.stats.traversal,
+  worker.traversal.find_element_pairs(view_of_job(job), contact_task.root, worker.stats.traversal,
                                       [&](ElementPairKind kind, std::span<const ElementPair> candidates) {
                                         Timer timer;
                                         test_candidates(job, kind, candidates, worker);

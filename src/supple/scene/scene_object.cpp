@@ -90,8 +90,8 @@ VertexWays SceneObject::ways(const Parallel& parallel) const {
     for (auto v = static_cast<std::uint32_t>(begin); v < end; ++v) {
       if (!is_finite_at(v)) continue;
       const Vec3d d = way(v), rest = d - all.mean;
-      part.longest = std::max(part.longest, std::hypot(d.x, d.y, d.z));
-      part.farthest_from_mean = std::max(part.farthest_from_mean, std::hypot(rest.x, rest.y, rest.z));
+      part.longest = std::max(part.longest, scaled_norm(d));
+      part.farthest_from_mean = std::max(part.farthest_from_mean, scaled_norm(rest));
       part.largest_coordinate = std::max({part.largest_coordinate, largest_magnitude(placement_.position(v)),
                                           largest_magnitude(placement_.start_position(v))});
     }

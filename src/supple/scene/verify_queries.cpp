@@ -69,13 +69,13 @@ std::optional<WrongAnswer> compare_lists(std::span<const Found> found, std::span
                                          const Equal& equal, const DescribeFound& describe_found,
                                          const DescribeTruth& describe_truth) {
   if (std::ranges::equal(found, truth, equal)) return {};
-  const auto [f, t] = std::ranges::mismatch(found, truth, equal);
-  const auto place = f - found.begin();
+  const auto differ = std::ranges::mismatch(found, truth, equal);
+  const auto place = differ.in1 - found.begin();
   const auto item = [&](bool is_end, const auto& describe) {
     return std::to_string(place) + ": " + (is_end ? "nothing" : describe());
   };
-  return WrongAnswer{0, item(f == found.end(), [&] { return describe_found(*f); }),
-                     item(t == truth.end(), [&] { return describe_truth(*t); })};
+  return WrongAnswer{0, item(differ.in1 == found.end(), [&] { return describe_found(*differ.in1); }),
+                     item(differ.in2 == truth.end(), [&] { return describe_truth(*differ.in2); })};
 }
 
 /// The items of a list for each query. They must stand by ascending query, like those of the scene.
