@@ -424,6 +424,35 @@ TEST(Recorder, NamesPathsThatCannotBeWritten) {
             std::string::npos);
 }
 
+/// The text of these frames is longer than the pieces in which the recorder writes it.
+TEST(Recorder, WritesXdmfOfManyObjectsInTheOrderOfFrames) {
+  constexpr std::uint32_t object_count = 100;
+  constexpr int frame_count = 300;
+  const std::vector<Vec3d> triangle{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  RecordingHeader header;
+  for (std::uint32_t i = 0; i < object_count; ++i)
+    header.objects.push_back({{i, 0}, {.name = "triangle"}, triangle, {{0, 1, 2}}});
+  const std::vector<std::span<const Vec3d>> positions(object_count, triangle);
+  const TemporaryFolder folder;
+  Scene scene;
+  Recorder recorder(folder / "run.h5", header);
+  for (int frame = 0; frame < frame_count; ++frame) recorder.add(frame, positions, scene.detect());
+  recorder.close();
+  std::ifstream file(folder / "run.xdmf");
+  const std::string text(std::istreambuf_iterator<char>(file), {});
+  std::size_t at = 0;
+  for (int frame = 0; frame < frame_count; ++frame) {
+    at = text.find("<Time Value=\"", at);
+    ASSERT_NE(at, std::string::npos) << frame;
+    at += 13;
+    ASSERT_EQ(std::stod(text.substr(at)), frame);
+    const std::string place_in_file = ">" + std::to_string(frame) + " 0 0 1 1 1 1 3 3<";
+    EXPECT_NE(text.find(place_in_file, at), std::string::npos) << frame;
+  }
+  EXPECT_EQ(text.find("<Time Value=\"", at), std::string::npos);
+  EXPECT_EQ(text.find("</Xdmf>\n"), text.size() - 8);
+}
+
 TEST(Recorder, FollowsALink) {
   const TemporaryFolder folder;
   std::ofstream(folder / "target.h5") << "old";
