@@ -12,23 +12,23 @@
 namespace supple::cli {
 namespace {
 
-/// Adds an object; one overload per kind of motion.
+/// Adds an object and returns its id; one overload per kind of motion.
 struct Adder {
   Simulation& simulation;
   TriangleMesh mesh;
   const ObjectOptions& options;
 
-  void operator()(const WaveMotion& motion) {
+  ObjectId operator()(const WaveMotion& motion) {
     const auto swayed = [motion, border = simulation.options().border, rest = mesh.positions](
                             double seconds, std::span<Vec3d> positions) {
       apply_wave_motion(motion, border, rest, seconds, positions);
     };
     swayed(0, mesh.positions);
-    simulation.add(mesh, options, swayed);
+    return simulation.add(mesh, options, swayed);
   }
 
-  void operator()(const MassSpringMotion& motion) { simulation.add(mesh, options, motion); }
-  void operator()(const RigidMotion& motion) { simulation.add(mesh, options, motion); }
+  ObjectId operator()(const MassSpringMotion& motion) { return simulation.add(mesh, options, motion); }
+  ObjectId operator()(const RigidMotion& motion) { return simulation.add(mesh, options, motion); }
 
   /// The step that ends at a time.
   auto step_at() const {
@@ -37,19 +37,21 @@ struct Adder {
     };
   }
 
-  void operator()(const FrameSequence& sequence) {
+  ObjectId operator()(const FrameSequence& sequence) {
     const auto frames = std::make_shared<const FrameFiles>(sequence, mesh);
     frames->read(0, mesh.positions);
-    simulation.add(mesh, options, [step = step_at(), frames](double seconds, std::span<Vec3d> positions) {
-      frames->read(step(seconds), positions);
-    });
+    return simulation.add(mesh, options,
+                          [step = step_at(), frames](double seconds, std::span<Vec3d> positions) {
+                            frames->read(step(seconds), positions);
+                          });
   }
 
-  void operator()(const RecordedMotion& motion) {
-    simulation.add(mesh, options, [step = step_at(), motion](double seconds, std::span<Vec3d> positions) {
-      const std::vector<Vec3d> recorded = motion.recording->positions(step(seconds), motion.object);
-      std::copy(recorded.begin(), recorded.end(), positions.begin());
-    });
+  ObjectId operator()(const RecordedMotion& motion) {
+    return simulation.add(
+        mesh, options, [step = step_at(), motion](double seconds, std::span<Vec3d> positions) {
+          const std::vector<Vec3d> recorded = motion.recording->positions(step(seconds), motion.object);
+          std::copy(recorded.begin(), recorded.end(), positions.begin());
+        });
   }
 };
 
@@ -61,14 +63,14 @@ void apply(const MethodOptions& options, Input& input) {
   for (InputObject& object : input.objects) options.given_objects.apply_to(object.options);
 }
 
+ObjectId add_object(Simulation& simulation, const InputObject& object) {
+  return object.motion ? std::visit(Adder{simulation, object.mesh, object.options}, *object.motion)
+                       : simulation.add(object.mesh, object.options);
+}
+
 Simulation build_simulation(const Input& input) {
   Simulation simulation(input.simulation);
-  for (const InputObject& object : input.objects) {
-    if (object.motion)
-      std::visit(Adder{simulation, object.mesh, object.options}, *object.motion);
-    else
-      simulation.add(object.mesh, object.options);
-  }
+  for (const InputObject& object : input.objects) add_object(simulation, object);
   return simulation;
 }
 

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <cstring>
 #include <optional>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -16,6 +15,7 @@
 #include "supple/scene.hpp"
 #include "support/byte_reader.hpp"
 #include "support/check.hpp"
+#include "support/event_ledger.hpp"
 
 namespace {
 
@@ -24,31 +24,6 @@ using fuzz::check;
 
 constexpr int most_operations = 60;
 constexpr std::size_t most_objects = 6;
-
-/// The pairs that are active according to the events so far.
-class EventLedger {
- public:
-  void apply(const PairEvents& events) {
-    for (const ObjectPair& pair : events.end)
-      check(alive_.erase(pair) == 1, "a pair ended that had not begun");
-    check(std::equal(alive_.begin(), alive_.end(), events.stay.begin(), events.stay.end()),
-          "a pair that stays is missing or too much");
-    for (const ObjectPair& pair : events.begin) check(alive_.insert(pair).second, "a pair began twice");
-  }
-
- private:
-  std::set<ObjectPair> alive_;
-};
-
-struct Ledgers {
-  EventLedger volumes, contacts, proximity, penetration;
-  void apply(const DetectResult& result) {
-    volumes.apply(result.volume_events);
-    contacts.apply(result.contact_events);
-    proximity.apply(result.proximity_events);
-    penetration.apply(result.penetration_events);
-  }
-};
 
 void check_answers(const std::vector<WrongAnswer>& wrong, const std::string& what) {
   if (!wrong.empty()) check(false, what + " is " + wrong[0].found + " instead of " + wrong[0].expected);
@@ -371,7 +346,7 @@ class Life {
   fuzz::CoordinateReader coordinate_;
   std::array<Scene, 2> scenes_;
   std::vector<Object> objects_;
-  std::array<Ledgers, 2> ledgers_;
+  std::array<fuzz::EventLedgers, 2> ledgers_;
 };
 
 }  // namespace

@@ -519,7 +519,7 @@ bool Recorder::Implementation::flush_is_due() {
 }
 
 std::size_t Recorder::Implementation::pending_bytes() {
-  std::size_t bytes = xdmf_->pending_bytes();
+  std::size_t bytes = 0;
   datasets_->for_each_column([&](const ColumnWriter& column) { bytes += column.pending_bytes(); });
   return bytes;
 }

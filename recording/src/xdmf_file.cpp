@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstddef>
 #include <cstring>
 #include <string_view>
 
@@ -19,6 +20,8 @@ constexpr std::string_view opening_tags =
     "<Xdmf Version=\"2.0\">\n<Domain>\n"
     "<Grid Name=\"recording\" GridType=\"Collection\" CollectionType=\"Temporal\">\n";
 constexpr std::string_view closing_tags = "</Grid>\n</Domain>\n</Xdmf>\n";
+/// The text of a frame of many objects is long, so frames wait as times, and their text is made in pieces.
+constexpr std::size_t enough_text = std::size_t{1} << 20;
 
 /// The number of bytes of the first UTF-8 character, or 0 when it is invalid or not allowed in XML.
 std::size_t character_length(std::string_view text) {
@@ -92,39 +95,48 @@ XdmfFile::XdmfFile(const std::filesystem::path& path, const std::filesystem::pat
   }
   descriptor_ = open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
   if (descriptor_ < 0) fail_to_write(path);
-  pending_ = opening_tags;
-  write();
+  text_ = opening_tags;
+  write_text();
 }
 
 XdmfFile::~XdmfFile() {
   if (descriptor_ >= 0) close(descriptor_);
 }
 
-void XdmfFile::add_frame(double time) {
-  pending_ +=
-      "<Grid GridType=\"Collection\" CollectionType=\"Spatial\">\n<Time Value=\"" + to_text(time) + "\"/>\n";
-  ++frames_;
-  for (const Grid& grid : grids_) {
-    pending_ += grid.before_frame + std::to_string(grid.moves ? frames_ - 1 : 0) + grid.before_frame_count +
-                std::to_string(grid.moves ? frames_ : 1) + grid.rest;
+void XdmfFile::write() {
+  while (!pending_.empty()) {
+    text_.clear();
+    std::size_t count = 0;
+    for (; count < pending_.size() && text_.size() < enough_text; ++count)
+      append_text(frames_ + count, pending_[count]);
+    write_text();
+    frames_ += count;
+    pending_.erase(pending_.begin(), pending_.begin() + static_cast<std::ptrdiff_t>(count));
   }
-  pending_ += "</Grid>\n";
 }
 
-void XdmfFile::write() {
-  if (pending_.empty()) return;
-  const std::size_t longer_by = pending_.size();
-  pending_ += closing_tags;
+void XdmfFile::append_text(std::uint64_t frame, double time) {
+  text_ +=
+      "<Grid GridType=\"Collection\" CollectionType=\"Spatial\">\n<Time Value=\"" + to_text(time) + "\"/>\n";
+  for (const Grid& grid : grids_) {
+    text_ += grid.before_frame + std::to_string(grid.moves ? frame : 0) + grid.before_frame_count +
+             std::to_string(grid.moves ? frame + 1 : 1) + grid.rest;
+  }
+  text_ += "</Grid>\n";
+}
+
+void XdmfFile::write_text() {
+  const std::size_t longer_by = text_.size();
+  text_ += closing_tags;
   std::size_t done = 0;
-  while (done < pending_.size()) {
+  while (done < text_.size()) {
     const ssize_t written =
-        pwrite(descriptor_, pending_.data() + done, pending_.size() - done, static_cast<off_t>(end_ + done));
+        pwrite(descriptor_, text_.data() + done, text_.size() - done, static_cast<off_t>(end_ + done));
     if (written < 0 && errno == EINTR) continue;
     if (written < 0) fail_to_write(path_);
     done += static_cast<std::size_t>(written);
   }
   end_ += longer_by;
-  pending_.clear();
 }
 
 }  // namespace supple

@@ -10,7 +10,7 @@
 namespace supple {
 
 /// The XDMF file of a recording: one grid per object and frame, which refers to the numbers in the HDF5 file.
-/// It is complete XML after every `write`: one system call overwrites the closing tags with the new frames.
+/// It is complete XML after every system call, each of which overwrites the closing tags with new frames.
 class XdmfFile {
  public:
   /// Replaces the file. Throws `Error` when it cannot be written.
@@ -20,10 +20,9 @@ class XdmfFile {
   XdmfFile(const XdmfFile&) = delete;
   XdmfFile& operator=(const XdmfFile&) = delete;
 
-  void add_frame(double time);
-  /// Adds the frames since the last call. Throws `Error`.
+  void add_frame(double time) { pending_.push_back(time); }
+  /// Writes the frames since the last call. Throws `Error`.
   void write();
-  std::size_t pending_bytes() const { return pending_.size(); }
 
  private:
   struct Grid {
@@ -31,12 +30,16 @@ class XdmfFile {
     bool moves = true;
   };
 
+  void append_text(std::uint64_t frame, double time);
+  void write_text();
+
   std::filesystem::path path_;
   int descriptor_ = -1;
   std::vector<Grid> grids_;
-  std::uint64_t frames_ = 0;
-  std::uint64_t end_ = 0;  ///< position of the closing tags
-  std::string pending_;
+  std::uint64_t frames_ = 0;     ///< in the file
+  std::uint64_t end_ = 0;        ///< position of the closing tags
+  std::vector<double> pending_;  ///< times of the frames that are not in the file yet
+  std::string text_;             ///< scratch memory of `write`
 };
 
 }  // namespace supple

@@ -95,7 +95,8 @@ struct SimulationOptions {
   /// 100 or so) may gain energy. `thickness` should be well below the length of the shortest edge.
   ///
   /// Cost: usually one continuous detection per step, at most `iterations`, and memory for a second scene.
-  /// For each vertex that touched something, it also takes 16 bytes for each vertex that its impulses move.
+  /// For each vertex that touched something, it also takes 16 bytes for each vertex that its impulses move,
+  /// once for all bodies with equal springs.
   std::optional<ContactResponse> response{};
 };
 

@@ -62,6 +62,10 @@ ImpulseSpread::ImpulseSpread(const TriangleMesh& rest, const MassSpringOptions& 
   }
 }
 
+bool ImpulseSpread::has_springs_of(const ImpulseSpread& other) const {
+  return is_fixed_ == other.is_fixed_ && first_ == other.first_ && neighbors_ == other.neighbors_;
+}
+
 void ImpulseSpread::begin_step() {
   constexpr std::size_t most_shares = (std::size_t{64} << 20) / sizeof(Share);
   if (share_count_ <= most_shares) return;
@@ -74,7 +78,8 @@ std::span<const ImpulseSpread::Share> ImpulseSpread::from(std::uint32_t vertex) 
   if (shares.empty() && is_fixed_[vertex] == 0) {
     gather_patch(vertex);
     solve();
-    shares = largest_shares();
+    select_largest_shares();
+    shares.assign(largest_.begin(), largest_.end());  // without spare capacity, because it stays
     share_count_ += shares.size();
     for (const std::uint32_t v : patch_) place_[v] = no_place;
   }
@@ -141,18 +146,18 @@ void ImpulseSpread::solve() {
 }
 
 /// Drops shares below a thousandth of the largest and rescales the rest.
-std::vector<ImpulseSpread::Share> ImpulseSpread::largest_shares() const {
-  std::vector<Share> shares;
+void ImpulseSpread::select_largest_shares() {
+  largest_.clear();
   double all = 0, kept = 0;
   for (std::size_t i = 0; i < patch_.size(); ++i) {
     all += parts_[i];
     if (!(parts_[i] > 1e-3 * parts_[0])) continue;
     kept += parts_[i];
-    shares.push_back({patch_[i], parts_[i]});
+    largest_.push_back({patch_[i], parts_[i]});
   }
-  for (Share& share : shares) share.part *= all / kept;
-  std::sort(shares.begin(), shares.end(), [](const Share& a, const Share& b) { return a.vertex < b.vertex; });
-  return shares;
+  for (Share& share : largest_) share.part *= all / kept;
+  std::sort(largest_.begin(), largest_.end(),
+            [](const Share& a, const Share& b) { return a.vertex < b.vertex; });
 }
 
 }  // namespace supple

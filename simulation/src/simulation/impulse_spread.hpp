@@ -26,6 +26,9 @@ class ImpulseSpread {
 
   ImpulseSpread(const TriangleMesh& rest, const MassSpringOptions& springs, double seconds);
 
+  /// Whether both have the same springs and fixed vertices, and so the same shares. Compares all springs.
+  bool has_springs_of(const ImpulseSpread& other) const;
+
   /// Drops cached shares when they take more than 64 MB. Recomputed shares are equal.
   void begin_step();
   /// One share per vertex, none for fixed vertices. Computed on first use, valid until the end of the step.
@@ -37,6 +40,7 @@ class ImpulseSpread {
   struct Neighbor {
     std::uint32_t vertex = 0;
     double stiffness = 0;  // h² k / m
+    bool operator==(const Neighbor&) const = default;
   };
 
   std::span<const Neighbor> neighbors(std::uint32_t vertex) const {
@@ -45,7 +49,7 @@ class ImpulseSpread {
   void gather_patch(std::uint32_t vertex);
   void multiply(std::span<const double> parts, std::span<double> product) const;
   void solve();
-  std::vector<Share> largest_shares() const;
+  void select_largest_shares();
 
   std::vector<std::uint8_t> is_fixed_;
   std::vector<std::uint32_t> first_;  // offset of each vertex in neighbors_, and the end
@@ -56,6 +60,7 @@ class ImpulseSpread {
   // Scratch memory for one patch.
   std::vector<std::uint32_t> patch_, place_;  // the vertices, and the index of each vertex among them
   std::vector<double> parts_, residual_, direction_, product_;
+  std::vector<Share> largest_;
 };
 
 }  // namespace supple

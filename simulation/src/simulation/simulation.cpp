@@ -117,9 +117,21 @@ void Simulation::Implementation::add_to_response(const TriangleMesh& mesh,
   assert(id == object.id);
   if (object.moving_body == nullptr) return;
   const MassSpringOptions& springs = object.moving_body->body.options();
-  object.spread.emplace(mesh, springs, options.time_step);
+  object.spread = spread_of(mesh, springs);
   object.inverse_masses.assign(mesh.positions.size(), 1 / springs.vertex_mass);
   for (const std::uint32_t vertex : springs.fixed_vertices) object.inverse_masses[vertex] = 0;
+}
+
+/// That of an object with equal springs, if there is one: copies of an object would compute and keep the
+/// same.
+std::shared_ptr<ImpulseSpread> Simulation::Implementation::spread_of(const TriangleMesh& mesh,
+                                                                     const MassSpringOptions& springs) const {
+  auto made = std::make_shared<ImpulseSpread>(mesh, springs, options.time_step);
+  for (const auto& other : objects_) {
+    if (other != nullptr && other->spread != nullptr && other->spread->has_springs_of(*made))
+      return other->spread;
+  }
+  return made;
 }
 
 void Simulation::Implementation::remove(ObjectId id) {
@@ -263,7 +275,7 @@ void Simulation::Implementation::gather_responding_objects() {
     if (object->moving_body != nullptr) {
       const MassSpringBody& body = object->moving_body->body;
       response_->objects.push_back({object->id, object->before, body.positions(), body.velocities(),
-                                    object->inverse_masses, &*object->spread});
+                                    object->inverse_masses, object->spread.get()});
     } else if (object->rigid_body) {
       response_->objects.push_back({object->id, object->before, object->rigid_body->positions()});
     } else if (object->function != nullptr) {

@@ -27,11 +27,11 @@ struct SimulatedObject {
   std::unique_ptr<MovingBody> moving_body;
   std::optional<RigidBody> rigid_body;
   MotionFunction function;
-  std::vector<Vec3d> own_positions;     // for objects without a body
-  std::vector<Vec3d> next;              // the output of the function, until the step succeeds
-  std::vector<Vec3d> before;            // positions before the last step, kept only when paths are needed
-  bool is_on_path = false;              // the scene has the path of the last step
-  std::optional<ImpulseSpread> spread;  // for bodies, with a response
+  std::vector<Vec3d> own_positions;       // for objects without a body
+  std::vector<Vec3d> next;                // the output of the function, until the step succeeds
+  std::vector<Vec3d> before;              // positions before the last step, kept only when paths are needed
+  bool is_on_path = false;                // the scene has the path of the last step
+  std::shared_ptr<ImpulseSpread> spread;  // for bodies, with a response; shared by those with equal springs
   std::vector<double> inverse_masses;
   std::optional<std::string> failure;  // why the body failed in this step, as text
   std::exception_ptr exception;        // and as the exception, when there was memory for it
@@ -63,6 +63,7 @@ class Simulation::Implementation {
  private:
   void add_to_response(const TriangleMesh& mesh, const ObjectOptions& object_options,
                        SimulatedObject& object);
+  std::shared_ptr<ImpulseSpread> spread_of(const TriangleMesh& mesh, const MassSpringOptions& springs) const;
   void call_functions(double seconds);
   void remember_positions();
   std::optional<MotionError> step_bodies();

@@ -69,5 +69,16 @@ TEST(ImpulseSpread, GoesFurtherWhenSpringsAreStiff) {
   }
 }
 
+TEST(ImpulseSpread, HasTheSpringsOfCopiesOnly) {
+  TriangleMesh mesh = make_icosphere(3);
+  const ImpulseSpread spread(mesh, springs(100), 0.01);
+  for (Vec3d& p : mesh.positions) p = p + Vec3d{0.3, 5, -7};
+  EXPECT_TRUE(spread.has_springs_of(ImpulseSpread(mesh, springs(100), 0.01)));
+  EXPECT_FALSE(spread.has_springs_of(ImpulseSpread(mesh, springs(101), 0.01)));
+  EXPECT_FALSE(spread.has_springs_of(ImpulseSpread(mesh, springs(100), 0.02)));
+  EXPECT_FALSE(spread.has_springs_of(ImpulseSpread(mesh, springs(100, {3}), 0.01)));
+  EXPECT_FALSE(spread.has_springs_of(ImpulseSpread(make_icosphere(4), springs(100), 0.01)));
+}
+
 }  // namespace
 }  // namespace supple
