@@ -108,7 +108,7 @@ def processor_seconds():
 
 def line_of(machine, compiler, library, level, name, result):
     runner = RUNNERS[machine]
-    place = f"{runner[0]} {version_of(runner[0])}" if runner else "this processor"
+    place = f"{runner[0]} {version_of(runner[0])}" if runner else "the processor"
     return f"| {machine} | {compiler} {version_of(compiler)} | {library} | `-{level}` | {name} | {place} | {result} |"
 
 
