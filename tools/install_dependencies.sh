@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # Installs the Debian 12 packages for a build, the tests and the demo. --ci adds the packages of the checks,
 # clang and the sanitizers; --bench adds the libraries that benchmarks compare with; --coverage adds what
-# tools/coverage.py needs; --instruction-sets adds the compilers and emulators of
-# tools/check_instruction_sets.sh. Returns quickly when everything is installed.
+# tools/coverage.py needs; --determinism adds the compilers and emulators of tools/check_determinism.py.
+# Returns quickly when everything is installed.
 set -euo pipefail
 
 packages=(
@@ -29,8 +29,8 @@ fi
 if [ "${1:-}" = "--coverage" ]; then
   packages+=(llvm-19 python3-h5py)
 fi
-if [ "${1:-}" = "--instruction-sets" ]; then
-  packages+=(g++-aarch64-linux-gnu qemu-user clang-19 lld-19 wasi-libc libc++-19-dev-wasm32 libclang-rt-19-dev-wasm32 nodejs)
+if [ "${1:-}" = "--determinism" ]; then
+  packages+=(g++-aarch64-linux-gnu g++-riscv64-linux-gnu qemu-user clang-14 libc++-19-dev libc++abi-19-dev)
 fi
 
 if ! command -v dpkg-query >/dev/null; then

@@ -10,21 +10,12 @@
 #include <optional>
 #include <vector>
 
+#include "support/golden_hash.hpp"
 #include "support/hard_scenes.hpp"
 #include "support/random.hpp"
 #include "support/scenes.hpp"
 
 namespace supple {
-
-/// Hashes of the results of all degenerate families: contacts at given positions, and contacts during motion.
-/// They have the same bits on every machine and with every compiler, build type, number of threads and
-/// instruction set.
-constexpr std::uint64_t golden_hash = 5724621896693359205u;
-constexpr std::uint64_t golden_continuous_hash = 939415131219478756u;
-constexpr std::uint64_t golden_normal_hash = 14020266159755522772u;
-constexpr std::uint64_t golden_proximity_hash = 649647511004271498u;
-constexpr std::uint64_t golden_query_hash = 16834821160368692095u;
-constexpr std::uint64_t golden_penetration_hash = 3070345004726795168u;
 
 inline Scene scene_of(const std::vector<TriangleMesh>& meshes, const SceneOptions& options) {
   Scene scene(options);
@@ -40,7 +31,7 @@ inline Scene scene_of(const std::vector<TriangleMesh>& meshes, const SceneOption
 }
 
 inline std::uint64_t hash_of_all_families(std::uint32_t threads) {
-  std::uint64_t hash = 0xcbf29ce484222325u;
+  std::uint64_t hash = empty_hash;
   for (const Family& family : hard_families()) {
     Scene scene = scene_of(family.make(3), {.threads = threads, .comparison = {.colliding_vertices = true}});
     hash = hash_of(scene.detect(), hash);
@@ -49,7 +40,7 @@ inline std::uint64_t hash_of_all_families(std::uint32_t threads) {
 }
 
 inline std::uint64_t normal_hash_of_all_families(std::uint32_t threads) {
-  std::uint64_t hash = 0xcbf29ce484222325u;
+  std::uint64_t hash = empty_hash;
   for (const Family& family : hard_families()) {
     Scene scene = scene_of(family.make(3), {.threads = threads});
     hash = hash_of_normals(scene.detect(), hash);
@@ -57,22 +48,46 @@ inline std::uint64_t normal_hash_of_all_families(std::uint32_t threads) {
   return hash;
 }
 
-/// Uses only the first triangles of each object: nearly all of these pairs need exact arithmetic.
+inline void keep_first(std::size_t triangles, TriangleMesh& mesh) {
+  if (mesh.triangles.size() <= triangles) return;
+  mesh.triangles.erase(mesh.triangles.begin() + static_cast<std::ptrdiff_t>(triangles), mesh.triangles.end());
+}
+
+/// Objects that move from the positions of some meshes to those of others. Uses only the first triangles of
+/// each.
+inline Scene moving_scene_of(std::vector<TriangleMesh> from, const std::vector<TriangleMesh>& to,
+                             std::size_t triangles, std::uint32_t threads) {
+  for (TriangleMesh& mesh : from) keep_first(triangles, mesh);
+  SceneOptions options;
+  options.contacts = ContactKinds::continuous;
+  options.threads = threads;
+  Scene scene = scene_of(from, options);
+  const std::vector<ObjectId> objects = scene.objects();
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    scene.set_motion(objects[i], from[i].positions, to[i].positions);
+  }
+  return scene;
+}
+
+/// Nearly all pairs of elements need exact arithmetic.
 inline std::uint64_t continuous_hash_of_all_families(std::uint32_t threads) {
-  std::uint64_t hash = 0xcbf29ce484222325u;
+  std::uint64_t hash = empty_hash;
   for (const Family& family : hard_families()) {
-    std::vector<TriangleMesh> from = family.make(6);
-    const std::vector<TriangleMesh> to = family.make(7);
-    for (TriangleMesh& mesh : from) mesh.triangles.resize(std::min(mesh.triangles.size(), std::size_t{12}));
-    SceneOptions options;
-    options.contacts = ContactKinds::continuous;
-    options.threads = threads;
-    Scene scene = scene_of(from, options);
-    const std::vector<ObjectId> objects = scene.objects();
-    for (std::size_t i = 0; i < objects.size(); ++i) {
-      scene.set_motion(objects[i], from[i].positions, to[i].positions);
-    }
+    Scene scene = moving_scene_of(family.make(6), family.make(7), 12, threads);
     hash = hash_of(scene.detect(), hash);
+  }
+  return hash;
+}
+
+/// The parts of a step that are safe, for few triangles, which are often apart at the start.
+inline std::uint64_t safe_step_hash_of_all_families(std::uint32_t threads) {
+  std::uint64_t hash = empty_hash;
+  for (const Family& family : hard_families()) {
+    for (std::uint64_t seed = 0; seed < 4; ++seed) {
+      Scene scene = moving_scene_of(family.make(seed), family.make(seed + 4), 2, threads);
+      for (const double part : {scene.max_step(), scene.collision_free_step()})
+        hash = hash_of_word(std::bit_cast<std::uint64_t>(part), hash);
+    }
   }
   return hash;
 }
@@ -98,14 +113,14 @@ inline Scene near_scene_of(std::vector<TriangleMesh> meshes, const SceneOptions&
   const double margin = 1e-3 * size_of(meshes);
   Scene scene(options);
   for (TriangleMesh& mesh : meshes) {
-    mesh.triangles.resize(std::min(mesh.triangles.size(), triangles));
+    keep_first(triangles, mesh);
     scene.add(mesh, {.self_collision = true, .margin = margin, .octree = {.leaf_size = 3}});
   }
   return scene;
 }
 
 inline std::uint64_t proximity_hash_of_all_families(std::uint32_t threads) {
-  std::uint64_t hash = 0xcbf29ce484222325u;
+  std::uint64_t hash = empty_hash;
   for (const Family& family : hard_families()) {
     for (const ProximityListing listing : {ProximityListing::features, ProximityListing::elements}) {
       Scene scene = near_scene_of(
@@ -119,7 +134,7 @@ inline std::uint64_t proximity_hash_of_all_families(std::uint32_t threads) {
 
 /// Closest points and first triangles on rays around the objects, and the distances of all pairs of objects.
 inline std::uint64_t query_hash_of_all_families(std::uint32_t threads) {
-  std::uint64_t hash = 0xcbf29ce484222325u;
+  std::uint64_t hash = empty_hash;
   const auto add = [&](std::uint64_t value) {
     hash = (hash ^ value) * 0x100000001b3u;
     hash ^= hash >> 32;
@@ -164,7 +179,7 @@ inline std::uint64_t query_hash_of_all_families(std::uint32_t threads) {
 
 /// Boxes with corners at random places, some of which are on a lattice.
 inline std::uint64_t penetration_hash_of_boxes(std::uint32_t threads) {
-  std::uint64_t hash = 0xcbf29ce484222325u;
+  std::uint64_t hash = empty_hash;
   for (std::uint64_t seed = 0; seed < 30; ++seed) {
     RandomNumbers random(seed);
     Scene scene({.contacts = ContactKinds::penetration, .threads = threads});
@@ -198,5 +213,16 @@ inline std::uint64_t penetration_hash_of_boxes(std::uint32_t threads) {
   }
   return hash;
 }
+
+/// Results of all degenerate families, and of boxes that penetrate.
+constexpr GoldenHash golden_scene_hashes[] = {
+    {"contacts", hash_of_all_families, 5724621896693359205u},
+    {"normals", normal_hash_of_all_families, 14020266159755522772u},
+    {"continuous", continuous_hash_of_all_families, 939415131219478756u},
+    {"safe steps", safe_step_hash_of_all_families, 11851350648023135346u},
+    {"proximity", proximity_hash_of_all_families, 649647511004271498u},
+    {"queries", query_hash_of_all_families, 16834821160368692095u},
+    {"penetrations", penetration_hash_of_boxes, 3070345004726795168u},
+};
 
 }  // namespace supple

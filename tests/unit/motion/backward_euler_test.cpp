@@ -7,7 +7,7 @@
 #include "core/parallel.hpp"
 #include "motion/mass_spring.hpp"
 #include "supple/error.hpp"
-#include "unit/motion/bodies.hpp"
+#include "support/bodies.hpp"
 
 namespace supple {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "unit/motion/bodies.hpp"
+#include "support/bodies.hpp"
 
 namespace supple {
 namespace {

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "supple/error.hpp"
-#include "unit/motion/bodies.hpp"
+#include "support/bodies.hpp"
 
 namespace supple {
 namespace {

@@ -5,7 +5,7 @@
 #include "motion/element_forces.hpp"
 #include "motion/spring_network.hpp"
 #include "supple/topology.hpp"
-#include "unit/motion/bodies.hpp"
+#include "support/bodies.hpp"
 
 namespace supple {
 namespace {

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "supple/error.hpp"
-#include "unit/motion/bodies.hpp"
+#include "support/bodies.hpp"
 
 namespace supple {
 namespace {

@@ -2,36 +2,16 @@
 
 #include <gtest/gtest.h>
 
-#include <bit>
+#include <optional>
+#include <vector>
 
 #include "core/parallel.hpp"
 #include "motion/mass_spring.hpp"
-#include "unit/motion/bodies.hpp"
+#include "support/bodies.hpp"
+#include "support/golden_motion.hpp"
 
 namespace supple {
 namespace {
-
-std::uint64_t hash_of(const MassSpringBody& body, std::uint64_t hash) {
-  const auto add = [&](double value) {
-    const auto bits = std::bit_cast<std::uint64_t>(value);
-    for (int byte = 0; byte < 8; ++byte) hash = (hash ^ (bits >> (8 * byte) & 0xff)) * 0x100000001b3u;
-  };
-  for (const auto vectors : {body.positions(), body.velocities()}) {
-    for (const Vec3d& v : vectors) {
-      for (int axis = 0; axis < 3; ++axis) add(v[axis]);
-    }
-  }
-  add(body.energy().total());
-  return hash;
-}
-
-std::uint64_t hash_of_run(const TriangleMesh& mesh, const MassSpringOptions& options, int steps) {
-  MassSpringBody body(mesh, options);
-  body.set_positions(deformed(mesh, 0.15, 0.0002, 21));
-  body.add_drift({0.5, 0, 0});
-  for (int i = 0; i < steps; ++i) body.step(0.01);
-  return hash_of(body, 0xcbf29ce484222325u);
-}
 
 TEST(MotionThreads, MakeNoDifference) {
   const TriangleMesh cloth = make_cloth(50, 50, 5, 5);
@@ -62,29 +42,11 @@ TEST(MotionThreads, OfABodyMakeNoDifference) {
   }
 }
 
-// This hash changes only with the arithmetic of a step; record the change in the changelog.
-constexpr std::uint64_t golden_hash = 10756507334953599675u;
-
 TEST(MotionGoldenHash, IsTheSameEverywhere) {
-  const TriangleMesh mesh = make_torus(24, 12);
-  std::uint64_t hash = 0;
-  for (const Integrator integrator : all_integrators) {
-    for (const double stiffness : {50.0, 5000.0}) {
-      hash = hash * 31 + hash_of_run(mesh,
-                                     {.integrator = integrator,
-                                      .substeps = 2,
-                                      .stiffness = stiffness,
-                                      .air_friction = 0.1,
-                                      .bending_stiffness = 5,
-                                      .area_stiffness = 20,
-                                      .gravity = {0, -1, 0},
-                                      .max_strain = 0.1,
-                                      .yield_strain = 0.05,
-                                      .fixed_vertices = {0}},
-                                     4);
-    }
+  for (const std::uint32_t threads : {1u, 3u}) {
+    for (const GoldenHash& golden : golden_motion_hashes)
+      EXPECT_EQ(golden.compute(threads), golden.value) << golden.part << ", " << threads << " threads";
   }
-  EXPECT_EQ(hash, golden_hash);
 }
 
 }  // namespace

@@ -7,7 +7,7 @@
 
 #include "motion/closed_parts.hpp"
 #include "supple/error.hpp"
-#include "unit/motion/bodies.hpp"
+#include "support/bodies.hpp"
 
 namespace supple {
 namespace {

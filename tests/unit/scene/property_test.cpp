@@ -92,26 +92,20 @@ std::string volume_name(const testing::TestParamInfo<OctreeLives::ParamType>& in
 
 INSTANTIATE_TEST_SUITE_P(Volumes, OctreeLives, testing::ValuesIn(all_enclosing_volumes()), volume_name);
 
+void expect_golden_hashes(std::uint32_t threads, const char* target) {
+  for (const GoldenHash& golden : golden_scene_hashes)
+    EXPECT_EQ(golden.compute(threads), golden.value)
+        << golden.part << ", " << threads << " threads, " << target;
+}
+
 TEST(SceneGoldenHash, IsTheSameForAnyNumberOfThreads) {
-  for (const std::uint32_t threads : {1u, 2u, 3u, 8u}) {
-    EXPECT_EQ(hash_of_all_families(threads), golden_hash) << threads;
-    EXPECT_EQ(continuous_hash_of_all_families(threads), golden_continuous_hash) << threads;
-    EXPECT_EQ(normal_hash_of_all_families(threads), golden_normal_hash) << threads;
-    EXPECT_EQ(proximity_hash_of_all_families(threads), golden_proximity_hash) << threads;
-    EXPECT_EQ(query_hash_of_all_families(threads), golden_query_hash) << threads;
-    EXPECT_EQ(penetration_hash_of_boxes(threads), golden_penetration_hash) << threads;
-  }
+  for (const std::uint32_t threads : {1u, 2u, 3u, 8u}) expect_golden_hashes(threads, "best instruction set");
 }
 
 TEST(SceneGoldenHash, IsTheSameForEveryInstructionSet) {
   int targets = 0;
   for_each_target([&](const char* target) {
-    EXPECT_EQ(hash_of_all_families(1), golden_hash) << target;
-    EXPECT_EQ(continuous_hash_of_all_families(1), golden_continuous_hash) << target;
-    EXPECT_EQ(normal_hash_of_all_families(1), golden_normal_hash) << target;
-    EXPECT_EQ(proximity_hash_of_all_families(1), golden_proximity_hash) << target;
-    EXPECT_EQ(query_hash_of_all_families(1), golden_query_hash) << target;
-    EXPECT_EQ(penetration_hash_of_boxes(1), golden_penetration_hash) << target;
+    expect_golden_hashes(1, target);
     ++targets;
   });
   EXPECT_GE(targets, 1);
