@@ -131,11 +131,12 @@ def draw(folder, runs):
     columns = 3
     rows = -(-len(scenes) // columns)
     script = [f"set terminal svg noenhanced size 960,{70 + 190 * rows} dynamic font 'sans-serif,12' background '#ffffff'",
-              f"set output '{folder / 'memory.svg'}'", "set datafile separator ','", "set border 3", "set tics nomirror",
+              f"set output '{folder / 'memory.svg'}'", "set datafile separator ','", "set border 3", "set tics nomirror font ',9'",
               "set grid lc rgb '#999999' lw 0.4 dt 1", "set xtics autofreq", "set yrange [0:*]", "set ylabel 'heap in use, MB'", "set xlabel 'thousand frames'",
               "set key bottom right samplen 2", f"set multiplot layout {rows},{columns}"]
+    legend = max(scenes, key=lambda scene: sum(r["scene"] == scene for r in runs))
     for scene in scenes:
-        script.append(f"set key {'on' if scene == scenes[0] else 'off'}")
+        script.append(f"set key {'on' if scene == legend else 'off'}")
         lines = [f"'{folder / (scene + '-' + r['way'] + '.csv')}' using ($1/1e3):($4/1e6) with lines lw 2 lc rgb '{colors[r['way']]}' title '{r['way']}'"
                  for r in runs if r["scene"] == scene]
         script += [f"set title '{scene}'", "plot " + ", ".join(lines)]
