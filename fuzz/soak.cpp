@@ -47,7 +47,7 @@ struct Options {
   double seconds = std::numeric_limits<double>::infinity();
   std::uint64_t row_every = 1000, check_every = 10'000, replace_every = 0;
   std::string record;
-  std::uint64_t record_frames = 10'000;
+  std::uint64_t record_frames = 5000;
   std::uint32_t threads = 1;
 };
 

@@ -30,6 +30,9 @@ using Clock = std::chrono::steady_clock;
 constexpr auto flush_interval = std::chrono::seconds(1);
 /// The maximum number of bytes that wait for a flush.
 constexpr std::size_t most_pending_bytes = std::size_t{32} << 20;
+/// The bytes of a column that wait for more rows. The memory of a recording then depends neither on the
+/// number of contacts nor on how many frames a second has.
+constexpr std::size_t most_pending_bytes_of_column = std::size_t{128} << 10;
 constexpr std::size_t frames_in_chunk = 1024;
 constexpr std::size_t rows_in_chunk = 4096;
 
@@ -332,6 +335,7 @@ class Recorder::Implementation {
   void append(double time, std::span<const std::span<const Vec3d>> positions, const Rows& rows);
   bool flush_is_due();
   std::size_t pending_bytes();
+  void write_long_columns();
   void write_out();
   void abandon();
   [[noreturn]] void stop();
@@ -473,6 +477,7 @@ void Recorder::Implementation::add(double time, std::span<const std::span<const 
   try {
     append(time, positions, rows);
     ++frames_;
+    write_long_columns();
     if (flush_is_due()) write_out();
   } catch (const Hdf5Failure&) {
     stop();
@@ -522,6 +527,14 @@ std::size_t Recorder::Implementation::pending_bytes() {
   std::size_t bytes = 0;
   datasets_->for_each_column([&](const ColumnWriter& column) { bytes += column.pending_bytes(); });
   return bytes;
+}
+
+/// Until the flush, the file has no header that counts these rows.
+void Recorder::Implementation::write_long_columns() {
+  datasets_->for_each_column([](ColumnWriter& column) {
+    if (column.pending_bytes() >= most_pending_bytes_of_column) column.write_pending();
+  });
+  check_writes(file_.id());
 }
 
 void Recorder::Implementation::write_out() {
