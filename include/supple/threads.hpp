@@ -10,7 +10,7 @@ namespace supple {
 ///
 /// Every `Scene`, `BroadPhase` and body calls this, so a program needs it only to tell its user. A call that
 /// asks for more threads than all calls before creates them; they stay until the process ends. It takes about
-/// 0.1 ms for each. Any thread may call it.
+/// 0.3 ms for each. Any thread may call it.
 std::uint32_t available_threads(std::uint32_t threads);
 
 }  // namespace supple
