@@ -583,6 +583,21 @@ TEST(InspectionOfScenes, KnowsWhatTouchesOnTheWayOrIsNearWithinOneObject) {
   check(moving, of_moving, moving.detect().continuous_contacts);
 }
 
+TEST(InspectionOfScenes, KnowsTheGapBetweenObjectsThatAreFarFromEachOther) {
+  for (const ContactKinds contacts : {ContactKinds::continuous, ContactKinds::proximity}) {
+    Scene scene({.contacts = contacts});
+    TriangleMesh box = make_box({1, 1, 1}, 1);
+    const ObjectId a = scene.add(box, {.margin = 0.25});
+    for (Vec3d& p : box.positions) p.x += 4;
+    const ObjectId b = scene.add(box, {.margin = 0.25});
+    scene.detect();
+    const PairExplanation explanation = SceneInspector(scene).explain(a, 0, b, 0);
+    EXPECT_EQ(explanation.stage, PairStage::object_volumes);
+    EXPECT_NEAR(explanation.distance, 3, 1e-5) << "the gap between the objects, without margins";
+    EXPECT_EQ(explanation.axis, (Vec3d{1, 0, 0}));
+  }
+}
+
 TEST(InspectionOfScenes, KnowsNeighboursThatMeetElsewhere) {
   // A fan of three triangles around a vertex; the third one cuts through the first.
   TriangleMesh fan;

@@ -312,9 +312,9 @@ TEST(Stop, BeforeAnythingIsFoundLeavesTheSceneAsItWas) {
 }
 
 /// Two solids that penetrate each other, and a third one near them.
-Scene three_balls(ContactKinds contacts) {
+Scene three_balls(ContactKinds contacts, std::uint32_t subdivisions) {
   Scene scene({.contacts = contacts, .threads = 1});
-  const TriangleMesh ball = make_icosphere(2);
+  const TriangleMesh ball = make_icosphere(subdivisions);
   for (const double x : {0.0, 1.5, 3.52}) {
     const ObjectId id = scene.add(ball, {.margin = 0.05, .solid = true});
     std::vector<Vec3d> from = ball.positions, to;
@@ -328,7 +328,7 @@ Scene three_balls(ContactKinds contacts) {
 TEST(Stop, InThePairFilterEndsTheStepOfEveryKind) {
   for (const ContactKinds contacts : {ContactKinds::intersection, ContactKinds::continuous,
                                       ContactKinds::proximity, ContactKinds::penetration}) {
-    Scene scene = three_balls(contacts);
+    Scene scene = three_balls(contacts, 2);
     std::stop_source source;
     scene.set_pair_filter([&](ObjectId, ObjectId) {
       source.request_stop();
@@ -338,7 +338,7 @@ TEST(Stop, InThePairFilterEndsTheStepOfEveryKind) {
     EXPECT_EQ(SceneInspector(scene).validate(), "");
     scene.set_pair_filter({});
     EXPECT_FALSE(scene.detect().stopped);
-    Scene other = three_balls(contacts);
+    Scene other = three_balls(contacts, 2);
     other.detect();
     const DetectResult &result = scene.result(), &expected = other.result();
     EXPECT_EQ(hash_of(result), hash_of(expected));
@@ -497,6 +497,37 @@ TEST(Events, AreOfPairsThatTouchInAnyWay) {
   EXPECT_FALSE(scene.result().contacts.empty());
   scene.set_positions(stone, above);
   EXPECT_EQ(scene.detect().contact_events.end.size(), 1u);
+}
+
+/// Stops after more and more time, so that each stage is stopped in some attempt.
+TEST(Stop, AtAnyTimeLeavesTheNextStepAsItWouldBe) {
+  for (const ContactKinds contacts : {ContactKinds::proximity, ContactKinds::penetration,
+                                      both | ContactKinds::proximity | ContactKinds::penetration}) {
+    Scene fresh = three_balls(contacts, 4);
+    fresh.detect();
+    int stops = 0;
+    for (int spins = 0; spins < 1 << 16; spins = 2 * spins + 1) {
+      Scene scene = three_balls(contacts, 4);
+      std::stop_source source;
+      std::atomic<bool> is_started = false;
+      std::thread stopper([&] {
+        for (int i = 0; i < spins; ++i) is_started = true;
+        source.request_stop();
+      });
+      while (spins > 0 && !is_started) std::this_thread::yield();
+      if (spins == 0) stopper.join();
+      stops += scene.detect({.stop = source.get_token()}).stopped ? 1 : 0;
+      if (spins > 0) stopper.join();
+      EXPECT_EQ(SceneInspector(scene).validate(), "");
+      const DetectResult &result = scene.detect(), &expected = fresh.result();
+      EXPECT_FALSE(result.stopped);
+      EXPECT_EQ(hash_of(result), hash_of(expected));
+      EXPECT_TRUE(std::ranges::equal(result.proximity_pairs, expected.proximity_pairs));
+      EXPECT_TRUE(std::ranges::equal(result.penetrations, expected.penetrations));
+      EXPECT_TRUE(std::ranges::equal(result.curve_contacts, expected.curve_contacts));
+    }
+    EXPECT_GT(stops, 0);
+  }
 }
 
 }  // namespace
