@@ -32,7 +32,7 @@ WARM_UP = 0.1  # of the frames
 LEAST_ROWS = 10  # with fewer, a part of the run may have none
 MOST_ROWS = 200  # of a stored table
 MEGABYTE = 1e6
-COLUMNS = ["scene", "way", "frames", "seconds", "heap_start", "heap_end", "heap_growth", "resident_start", "resident_end",
+COLUMNS = ["scene", "way", "commit", "frames", "seconds", "heap_start", "heap_end", "heap_growth", "resident_start", "resident_end",
            "resident_growth", "events", "checked", "replaced", "recordings", "result"]
 
 
@@ -58,7 +58,7 @@ def growth(rows, name):
 
 def judge(scene, way, rows, failure, most_growth):
     last = rows[-1] if rows else {}
-    summary = dict.fromkeys(COLUMNS, "") | {"scene": scene, "way": way, "frames": int(last.get("frame", 0)), "seconds": round(last.get("seconds", 0)), "result": failure}
+    summary = dict.fromkeys(COLUMNS, "") | {"scene": scene, "way": way, "commit": output_of("git", "rev-parse", "--short", "HEAD"), "frames": int(last.get("frame", 0)), "seconds": round(last.get("seconds", 0)), "result": failure}
     for name in ("events", "checked", "replaced", "recordings"):
         summary[name] = int(last.get(name, 0))
     if len(rows) < LEAST_ROWS:
@@ -113,15 +113,15 @@ def write_csv(path, columns, rows):
 
 
 def write_page(folder, runs):
-    lines = ["# Soak test", "", f"`fuzz/soak.py` wrote this page, last on {datetime.date.today().isoformat()} at commit "
-             f"{output_of('git', 'rev-parse', '--short', 'HEAD')}, on", f"{processor()} with {os.cpu_count()} cores. The help of the script says what the ways are "
-             "and how memory is judged.", "", "Memory is in MB (10⁶ bytes) after the warm-up and at the end; growth is that of the peak. Heap in use is what",
+    notes = [f"[{path.name}]({path.name})" for path in sorted(folder.glob("*.md")) if path.name != "README.md"]
+    lines = ["# Soak test", "", f"`fuzz/soak.py` wrote this page, last on {datetime.date.today().isoformat()}, on {processor()} with", f"{os.cpu_count()} cores. "
+             "The help of the script says what the ways are and how memory is judged.", *(["Notes: " + ", ".join(notes) + "."] if notes else []), "", "Memory is in MB (10⁶ bytes) after the warm-up and at the end; growth is that of the peak. Heap in use is what",
              "the program allocated and did not free. `SCENE-WAY.csv` has up to 200 rows of each run.", "",
              "![Memory of each scene over the frames](memory.svg)", "",
-             "| Scene | Way | Frames | Seconds | Heap, MB | Growth | Resident, MB | Growth | Events | Checked | Replaced | Files | Result |",
-             "|---|---|---|---|---|---|---|---|---|---|---|---|---|"]
+             "| Scene | Way | Commit | Frames | Seconds | Heap, MB | Growth | Resident, MB | Growth | Events | Checked | Replaced | Files | Result |",
+             "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|"]
     for r in runs:
-        lines.append(f"| {r['scene']} | {r['way']} | {int(r['frames']):,} | {r['seconds']} | {r['heap_start']} → {r['heap_end']} | {r['heap_growth']} % | "
+        lines.append(f"| {r['scene']} | {r['way']} | {r['commit']} | {int(r['frames']):,} | {r['seconds']} | {r['heap_start']} → {r['heap_end']} | {r['heap_growth']} % | "
                      f"{r['resident_start']} → {r['resident_end']} | {r['resident_growth']} % | {int(r['events']):,} | {r['checked']} | "
                      f"{r['replaced']} | {r['recordings']} | {r['result']} |")
     (folder / "README.md").write_text("\n".join(lines) + "\n")
