@@ -96,6 +96,11 @@ class NodeReader {
   }
 
   std::uint32_t vertex(const aiMesh& part, unsigned index) {
+    // Assimp counts the vertices also when it finds no positions.
+    if (!part.HasPositions()) {
+      fail(file_ + ": mesh " + in_quotes(part.mName.C_Str()) +
+           " has triangles but no positions; check how the file stores them");
+    }
     if (index >= part.mNumVertices) {
       fail(file_ + ": mesh " + in_quotes(part.mName.C_Str()) + ": vertex index " + std::to_string(index) +
            " is out of range; it has " + std::to_string(part.mNumVertices) + " vertices, counted from 0");

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -178,6 +179,27 @@ TEST(LoadAnyMesh, SaysWhyAFileCannotBeRead) {
     EXPECT_GT(message.size(), broken.size() + 20) << message;
     EXPECT_EQ(message.find('\n'), std::string::npos) << message;
   }
+}
+
+// Binary glTF 1, whose accessor of positions names no view.
+TEST(LoadAnyMesh, TrianglesNeedPositions) {
+  const TemporaryFolder folder;
+  std::string json = R"({"asset":{"version":"1.0"},
+"accessors":{"p":{"byteOffset":0,"componentType":5126,"count":4,"type":"VEC3"},
+"i":{"bufferView":"v","byteOffset":0,"byteStride":0,"componentType":5123,"count":12,"type":"SCALAR"}},
+"buffers":{},
+"bufferViews":{"v":{"buffer":"binary_glTF","byteOffset":0,"byteLength":24,"target":34963}},
+"meshes":{"m":{"primitives":[{"mode":4,"indices":"i","attributes":{"POSITION":"p"}}]}},
+"nodes":{"n":{"meshes":["m"]}},"scenes":{"s":{"nodes":["n"]}},"scene":"s"})";
+  while (json.size() % 4 != 0) json += ' ';
+  const auto size = static_cast<std::uint32_t>(json.size());
+  std::string bytes = "glTF";
+  for (const std::uint32_t word : {1u, 20 + size + 24, size, 0u}) append_scalar(bytes, word);
+  bytes += json;
+  for (const int id : {0, 1, 2, 0, 2, 3, 0, 1, 3, 1, 2, 3})
+    append_scalar(bytes, static_cast<std::uint16_t>(id));
+  const std::string path = folder.write("a.glb", bytes);
+  EXPECT_NE(error_of([&] { load_any_mesh(path); }).find("has triangles but no positions"), std::string::npos);
 }
 
 TEST(SupportedExtensions, NativeOnesAndThoseOfAssimp) {
