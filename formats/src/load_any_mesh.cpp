@@ -69,7 +69,14 @@ class NodeReader {
   void append(const aiScene& scene, const aiNode& node, const Transform& to_scene) {
     const auto first_vertex = static_cast<std::uint32_t>(mesh_.positions.size());
     const std::size_t first_triangle = mesh_.triangles.size();
-    for (unsigned i = 0; i < node.mNumMeshes; ++i) append(*scene.mMeshes[node.mMeshes[i]]);
+    for (unsigned i = 0; i < node.mNumMeshes; ++i) {
+      const unsigned index = node.mMeshes[i];
+      if (index >= scene.mNumMeshes) {
+        fail(file_ + ": node " + in_quotes(node.mName.C_Str()) + ": mesh " + std::to_string(index) +
+             " is out of range; the file has " + std::to_string(scene.mNumMeshes) + ", counted from 0");
+      }
+      append(*scene.mMeshes[index]);
+    }
 
     // Multiplying by an identity would change infinities and the sign of zero.
     const bool moves = to_scene != identity;

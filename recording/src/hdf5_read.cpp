@@ -9,6 +9,7 @@
 #include <system_error>
 
 #include "hdf5_write.hpp"
+#include "mesh/quotes.hpp"
 #include "supple/error.hpp"
 #include "text.hpp"
 
@@ -112,7 +113,7 @@ DatasetHandle InputFile::open_dataset(const std::string& path, hid_t access) con
 }
 
 void InputFile::fail(const std::string& item, const std::string& what) const {
-  throw Error(path_ + ": /" + item + ": " + what);
+  throw Error(one_line(path_ + ": /" + item + ": " + what));
 }
 
 bool InputFile::has_attribute(const std::string& group, const char* name) const {

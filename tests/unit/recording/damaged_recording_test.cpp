@@ -150,12 +150,16 @@ TEST_F(DamagedRecording, OtherFormatsAndVersions) {
   expect("attribute contact_points is 7, not a whole number from 0 to 1",
          with_attribute("contact_points", 7));
   expect("attribute contacts is no text", with_attribute("contacts", 7));
-  expect("'spheres', which this program does not know", [](hid_t file) {
-    const hid_t type = H5Tcopy(H5T_C_S1);
-    H5Tset_size(type, 8);
-    replace_attribute(file, "contacts", type, "spheres");
-    H5Tclose(type);
-  });
+  const auto with_word = [](const char* word) {
+    return [word](hid_t file) {
+      const hid_t type = H5Tcopy(H5T_C_S1);
+      H5Tset_size(type, std::strlen(word) + 1);
+      replace_attribute(file, "contacts", type, word);
+      H5Tclose(type);
+    };
+  };
+  expect("'spheres', which this program does not know", with_word("spheres"));
+  expect("'s?heres', which this program does not know", with_word("s\nheres"));
 }
 
 TEST_F(DamagedRecording, MissingDatasets) {
