@@ -9,7 +9,6 @@
 #include <system_error>
 
 #include "hdf5_write.hpp"
-#include "mesh/quotes.hpp"
 #include "supple/error.hpp"
 #include "text.hpp"
 
@@ -113,7 +112,11 @@ DatasetHandle InputFile::open_dataset(const std::string& path, hid_t access) con
 }
 
 void InputFile::fail(const std::string& item, const std::string& what) const {
-  throw Error(one_line(path_ + ": /" + item + ": " + what));
+  std::string message = path_ + ": /" + item + ": " + what;
+  // Words of the file may contain any character, but a message is one line.
+  std::ranges::replace_if(
+      message, [](unsigned char c) { return c < 0x20 || c == 0x7f; }, '?');
+  throw Error(message);
 }
 
 bool InputFile::has_attribute(const std::string& group, const char* name) const {

@@ -11,7 +11,6 @@
 #include "hdf5_read.hpp"
 #include "hdf5_write.hpp"
 #include "layout.hpp"
-#include "mesh/quotes.hpp"
 #include "supple/error.hpp"
 #include "supple/option_descriptions.hpp"
 #include "supple/result_descriptions.hpp"
@@ -33,7 +32,7 @@ void read_option(const InputFile& file, const std::string& group, const std::str
   const std::string word = file.text(group, name.c_str());
   const std::optional<Enum> found = value_of_word<Enum>(word);
   if (!found)
-    fail_about(file, group, name, in_quotes(word),
+    fail_about(file, group, name, "'" + word + "'",
                ", which this program does not know; use the supple that recorded it");
   value = *found;
 }
@@ -47,7 +46,7 @@ void read_option(const InputFile& file, const std::string& group, const std::str
   }
   const std::string word = file.text(group, name.c_str());
   if (word != words[0] && word != words[1])
-    fail_about(file, group, name, in_quotes(word),
+    fail_about(file, group, name, "'" + word + "'",
                ", which this program does not know; use the supple that recorded it");
   value = word == words[1];
 }
