@@ -2,17 +2,14 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cstdio>
-#include <thread>
 
 #include "supple/threads.hpp"
 
 namespace supple::cli {
 
 void warn_of_missing_threads(std::uint32_t threads) {
-  warn_of_missing_threads(threads != 0 ? threads : std::max(std::thread::hardware_concurrency(), 1u),
-                          available_threads(threads));
+  warn_of_missing_threads(threads != 0 ? threads : usable_cores(), available_threads(threads));
 }
 
 void warn_of_missing_threads(std::uint32_t wanted, std::uint32_t available) {

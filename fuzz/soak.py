@@ -7,10 +7,10 @@ Each run has one of three ways:
     record    also writes a recording; a full file is closed, read and replaced by a new one
     replace   every 100 frames, one object is removed and added again at the same place, one after the other
 
-The program checks each frame (soak.cpp). The first tenth of a run is its warm-up. Memory is flat when the peak of the
-second half is at most 1 % above the peak between warm-up and second half, for the heap in use and for the resident
-memory; 3 % for recordings, whose rows wait up to a second for a flush. Exits with 1 when a check fails or memory is
-not flat.
+The program checks each frame (soak.cpp). The first tenth of a run is its warm-up. Memory is flat when the peak of
+the second half is at most 1 % above the peak between warm-up and second half, for the heap in use and for the
+resident memory; 3 % for recordings, whose rows wait up to a second for a flush. Exits with 1 when a check fails
+or memory is not flat.
 """
 import argparse
 import csv

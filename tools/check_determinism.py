@@ -1,8 +1,10 @@
 #!/usr/bin/env python3
 """Checks that results have the same bits on several machines, with several compilers.
 
-For each row of the table below, compiles the library and runs it on the scenes, models and bodies of tests/support/golden_*.hpp. All rows must give the same hash. A row without its compiler or emulator on this
-machine is skipped with a message; tools/install_dependencies.sh --determinism installs all of them on Debian 12.
+For each row of the table below, compiles the library and runs it on the scenes, models and bodies of
+tests/support/golden_*.hpp. All rows must give the same hash. The script skips a row, with a message, when this
+machine lacks the compiler or the emulator; tools/install_dependencies.sh --determinism installs all of them on
+Debian 12.
 """
 import argparse
 import os

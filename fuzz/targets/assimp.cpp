@@ -55,6 +55,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   }();
   fuzz::ByteReader bytes(data, size);
   const std::size_t choice = bytes.byte() % extensions.size();
+  // Assimp's reader of its own dumps overwrites memory, which ends this process later and not the child.
+  if (extensions[choice] == ".assbin") return 0;
   const fuzz::TemporaryFile file{std::string(extensions[choice])};
   file.write(bytes.text());
   if (!assimp_survives(file.path())) return 0;

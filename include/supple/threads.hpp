@@ -13,4 +13,7 @@ namespace supple {
 /// 0.3 ms for each. Any thread may call it.
 std::uint32_t available_threads(std::uint32_t threads);
 
+/// The number of cores that this process may use, at least 1.
+std::uint32_t usable_cores();
+
 }  // namespace supple

@@ -56,6 +56,13 @@ class Json(ProgramTest):
             },
         )
 
+    def test_a_process_on_one_core_lacks_no_threads(self):
+        done = subprocess.run(
+            [PROGRAM, "detect", "a.obj", "b.obj"], cwd=self.folder, capture_output=True, text=True,
+            preexec_fn=lambda: os.sched_setaffinity(0, [min(os.sched_getaffinity(0))]),
+        )
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+
     def test_without_contact(self):
         (frame,) = self.detect("a.obj", "far.obj")["frames"]
         for key in ("object_pairs", "triangle_pairs", "self", "non_finite"):

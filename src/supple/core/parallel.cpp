@@ -45,6 +45,9 @@ struct Parallel::Threads {};
 std::uint32_t available_threads(std::uint32_t) {
   return 1;
 }
+std::uint32_t usable_cores() {
+  return 1;
+}
 
 Parallel::Parallel(std::uint32_t) {}
 
@@ -54,11 +57,11 @@ void Parallel::run(std::size_t count, std::size_t, void* callable, RangeFunction
 
 #else
 
-namespace {
-
-std::uint32_t cores() {
+std::uint32_t usable_cores() {
   return static_cast<std::uint32_t>(tbb::this_task_arena::max_concurrency());
 }
+
+namespace {
 
 /// Creates up to `count` threads that exist at the same time, and ends them. Returns how many there were.
 std::uint32_t count_new_threads(std::uint32_t count) {
@@ -113,7 +116,7 @@ class ThreadSupply {
   void start(std::uint32_t count) {
     // More threads than cores are unusual but allowed. Without this, oneTBB prints a warning on standard
     // error. Of several such controls, the smallest value would count.
-    if (count > cores()) more_than_cores_.emplace(tbb::global_control::max_allowed_parallelism, count);
+    if (count > usable_cores()) more_than_cores_.emplace(tbb::global_control::max_allowed_parallelism, count);
     auto arena = std::make_unique<tbb::task_arena>(static_cast<int>(count));
     // No thread leaves before all are there. oneTBB may give fewer, because of other work or of a limit that
     // the program sets; so this does not wait for them for ever.
@@ -144,7 +147,7 @@ class ThreadSupply {
 std::uint32_t available_threads(std::uint32_t threads) {
   // Never destroyed: when the process ends, oneTBB's threads may have ended before.
   static ThreadSupply& supply = *new ThreadSupply;
-  return supply.provide(threads != 0 ? threads : cores());
+  return supply.provide(threads != 0 ? threads : usable_cores());
 }
 
 struct Parallel::Threads {

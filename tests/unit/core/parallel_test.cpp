@@ -70,7 +70,7 @@ TEST(AvailableThreads, AreAsManyAsAskedFor) {
 
 // Sanitizers reserve more address space than any such limit.
 #if defined(__linux__) && !defined(SUPPLE_SANITIZED)
-/// Ends the process with status 0 when fewer threads than asked for do all of the work.
+/// Requests more threads than the address space allows. Exits with 0 when those that exist do all work.
 [[noreturn]] void work_with_too_few_threads() {
   rlimit limit{};
   getrlimit(RLIMIT_AS, &limit);

@@ -202,6 +202,11 @@ TEST(LoadAnyMesh, TrianglesNeedPositions) {
   EXPECT_NE(error_of([&] { load_any_mesh(path); }).find("has triangles but no positions"), std::string::npos);
 }
 
+TEST(LoadAnyMesh, NodesNeedTheirMeshes) {
+  EXPECT_NE(error_of([] { load_any_mesh(SUPPLE_DUMP); }).find("is out of range; the file has"),
+            std::string::npos);
+}
+
 TEST(SupportedExtensions, NativeOnesAndThoseOfAssimp) {
   const auto extensions = supported_extensions();
   EXPECT_TRUE(std::is_sorted(extensions.begin(), extensions.end()));
