@@ -85,9 +85,9 @@ def main():
     print(text)
     if arguments.record:
         commit = subprocess.run(["git", "rev-parse", "--short", "HEAD"], cwd=ROOT, check=True, stdout=subprocess.PIPE, text=True).stdout.strip()
-        PAGE.write_text(f"# Coverage\n\n`tools/coverage.py --record` writes this table: the lines and branches that the tests and the corpora\n"
-                        f"reach, without the tests that kill the program or take minutes, and those that the corpora reach alone.\n{datetime.date.today()}, commit {commit}, clang-19 with -O1.\n"
-                        f"[README.md](README.md) says what is left.\n\n{text}\n")
+        PAGE.write_text("# Coverage\n\n`tools/coverage.py --record` writes this table: the lines and branches that the tests and the corpora reach,\n"
+                        "without the tests that kill the program or take minutes, and those that the corpora reach alone.\n"
+                        f"{datetime.date.today()}, commit {commit}, clang-19 with -O1.\n[README.md](README.md) says what is left.\n\n{text}\n")
 
 
 if __name__ == "__main__":
