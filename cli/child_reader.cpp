@@ -67,8 +67,9 @@ class Pipe {
 /// The lists of a mesh, each as its length and its bytes. `visit(list)` writes or reads one.
 template <class Mesh, class Visit>
 bool for_each_list(Mesh& mesh, Visit visit) {
+  const std::span polygons(&mesh.polygons, 1);
   return visit(mesh.name) && visit(mesh.positions) && visit(mesh.triangles) && visit(mesh.edges) &&
-         visit(mesh.points);
+         visit(mesh.points) && visit(polygons);
 }
 
 bool write_mesh(const Pipe& pipe, const TriangleMesh& mesh) {
@@ -86,7 +87,8 @@ bool read_mesh(std::span<const char> bytes, TriangleMesh& mesh) {
     std::memcpy(&count, bytes.data(), sizeof count);
     bytes = bytes.subspan(sizeof count);
     if (count > bytes.size() / sizeof list[0]) return false;
-    list.resize(count);
+    if constexpr (requires { list.resize(count); }) list.resize(count);
+    if (count != list.size()) return false;
     if (count > 0) std::memcpy(list.data(), bytes.data(), count * sizeof list[0]);
     bytes = bytes.subspan(count * sizeof list[0]);
     return true;

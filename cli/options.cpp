@@ -173,7 +173,7 @@ void add_output_options(CLI::App& app, DetectionOptions& options, Dependences& d
        "--json and contacts"});
   dependences.push_back({group(app.add_flag("--faces", options.json_content.faces,
                                             "Also write the three vertices of each triangle to the JSON; a "
-                                            "polygon is a fan of triangles around its first corner")),
+                                            "polygon of n corners is n - 2 triangles")),
                          [&] { return !options.json.empty(); }, "--json"});
   dependences.push_back(
       {group(app.add_option_function<std::vector<std::uint32_t>>(

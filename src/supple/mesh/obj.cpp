@@ -1,4 +1,4 @@
-// Wavefront OBJ: reads polygons, lines and points, and ignores texture coordinates, normals, groups,
+// Wavefront OBJ: reads faces, lines and points, and ignores texture coordinates, normals, groups,
 // materials and curves.
 
 #include <span>
@@ -7,6 +7,7 @@
 
 #include "mesh/mesh_formats.hpp"
 #include "mesh/number_text.hpp"
+#include "mesh/polygon.hpp"
 #include "mesh/text_scanner.hpp"
 
 namespace supple {
@@ -33,6 +34,7 @@ class ObjReader {
       }
     }
     check_forward_references();
+    cut_polygons(mesh_, fans_);
     return std::move(mesh_);
   }
 
@@ -45,17 +47,11 @@ class ObjReader {
   };
 
   void read_face() {
-    std::uint32_t first = 0, previous = 0;
-    std::size_t corners = 0;
-    for (; !scanner_.at_line_end(); ++corners) {
-      const std::uint32_t corner = read_vertex("face");
-      if (corners == 0) first = corner;
-      if (corners >= 2) mesh_.triangles.push_back({first, previous, corner});
-      previous = corner;
-    }
-    if (corners < 3) {
-      scanner_.fail_here("a face has " + std::to_string(corners) + " corners; it needs at least 3");
-    }
+    corners_.clear();
+    while (!scanner_.at_line_end()) corners_.push_back(read_vertex("face"));
+    if (corners_.empty()) scanner_.fail_here("a face has no corners; it needs at least 1");
+    if (corners_.size() == 2) check_line(corners_[0], corners_[1]);
+    add_face(mesh_, fans_, corners_);
   }
 
   void read_polyline() {
@@ -63,17 +59,22 @@ class ObjReader {
     std::size_t vertices = 0;
     for (; !scanner_.at_line_end(); ++vertices) {
       const std::uint32_t vertex = read_vertex("line");
-      if (vertices > 0 && vertex == previous) {
-        scanner_.fail_here("a line joins vertex " + std::to_string(std::uint64_t{vertex} + 1) +
-                           " to itself; leave out the repetition, or write a point: p " +
-                           std::to_string(std::uint64_t{vertex} + 1));
+      if (vertices > 0) {
+        check_line(previous, vertex);
+        mesh_.edges.push_back({previous, vertex});
       }
-      if (vertices > 0) mesh_.edges.push_back({previous, vertex});
       previous = vertex;
     }
     if (vertices < 2)
       scanner_.fail_here("a line has " + std::to_string(vertices) +
                          (vertices == 1 ? " vertex" : " vertices") + "; it needs at least 2");
+  }
+
+  void check_line(std::uint32_t from, std::uint32_t to) const {
+    if (from != to) return;
+    const std::string id = std::to_string(std::uint64_t{to} + 1);
+    scanner_.fail_here("a line joins vertex " + id +
+                       " to itself; leave out the repetition, or write a point: p " + id);
   }
 
   void read_points() {
@@ -112,6 +113,8 @@ class ObjReader {
   TextScanner scanner_;
   TriangleMesh mesh_;
   std::vector<ForwardReference> forward_;
+  std::vector<std::uint32_t> corners_;  // of the face that is read
+  std::vector<PolygonFan> fans_;
 };
 
 }  // namespace

@@ -3,9 +3,9 @@
 
 #include <utility>
 
+#include "mesh/face_reader.hpp"
 #include "mesh/mesh_formats.hpp"
 #include "mesh/number_text.hpp"
-#include "mesh/polygon.hpp"
 #include "mesh/text_scanner.hpp"
 
 namespace supple {
@@ -30,6 +30,7 @@ class OffReader {
       scanner_.fail_here("more follows after the " + std::to_string(vertices) + " vertices and " +
                          std::to_string(faces) + " faces of the header");
     }
+    faces_.finish(mesh_);
     return std::move(mesh_);
   }
 
@@ -55,10 +56,10 @@ class OffReader {
   }
 
   // Check the counts before they determine an allocation. The shortest vertex is "0 0 0", the shortest face
-  // is "3 0 0 0", and a line end follows all but the last.
+  // is "1 0", and a line end follows all but the last.
   void check_counts(std::size_t vertices, std::size_t faces) const {
     const std::size_t available = scanner_.remaining() + 1;
-    if (vertices > available / 6 || faces > (available - 6 * vertices) / 8) {
+    if (vertices > available / 6 || faces > (available - 6 * vertices) / 4) {
       scanner_.fail_here("the header announces " + std::to_string(vertices) + " vertices and " +
                          std::to_string(faces) + " faces, more than the " +
                          std::to_string(scanner_.remaining()) + " bytes after it can hold");
@@ -75,7 +76,7 @@ class OffReader {
     if (!scanner_.skip_to_word()) fail_truncated("faces", i, count);
     const std::int64_t corners = scanner_.integer("the number of corners");
     const auto next_index = [&] { return scanner_.integer("a vertex index"); };
-    add_polygon(mesh_, mesh_.positions.size(), i, corners, scanner_, next_index);
+    faces_.read(mesh_, mesh_.positions.size(), i, corners, scanner_, next_index);
     scanner_.skip_line();
   }
 
@@ -86,6 +87,7 @@ class OffReader {
 
   TextScanner scanner_;
   TriangleMesh mesh_;
+  FaceReader faces_;
 };
 
 }  // namespace

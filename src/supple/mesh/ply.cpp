@@ -10,8 +10,8 @@
 
 #include "core/error.hpp"
 #include "mesh/byte_order.hpp"
+#include "mesh/face_reader.hpp"
 #include "mesh/mesh_formats.hpp"
-#include "mesh/polygon.hpp"
 #include "mesh/text_scanner.hpp"
 
 namespace supple {
@@ -283,6 +283,7 @@ class BodyReader {
       }
     }
     body_.finish();
+    faces_.finish(mesh_);
     return std::move(mesh_);
   }
 
@@ -306,8 +307,6 @@ class BodyReader {
     std::uint64_t size = 0;
     for (const Property& property : element.properties) {
       size += Body::least_size(property.count_type.value_or(property.type));
-      // Every polygon has at least three corners.
-      if (element.name == "face" && is_vertex_list(property)) size += 3 * Body::least_size(property.type);
     }
     return size;
   }
@@ -349,7 +348,8 @@ class BodyReader {
     if (vertex_list == element.properties.end()) {
       body_.fail_here("element 'face' has no list 'vertex_indices' or 'vertex_index'");
     }
-    mesh_.triangles.reserve(element.count);
+    // A triangle takes at least four bytes.
+    mesh_.triangles.reserve(std::min<std::uint64_t>(element.count, body_.available() / 4));
     for (std::uint64_t face = 0; face < element.count; ++face) {
       for (const Property& property : element.properties) {
         if (&property == &*vertex_list) {
@@ -364,7 +364,7 @@ class BodyReader {
   void read_face(std::uint64_t face, const Property& vertex_list) {
     const std::int64_t corners = body_.integer(*vertex_list.count_type);
     const auto next_index = [&] { return body_.integer(vertex_list.type); };
-    add_polygon(mesh_, vertex_count_, face, corners, body_, next_index);
+    faces_.read(mesh_, vertex_count_, face, corners, body_, next_index);
   }
 
   void skip_property(const Property& property) {
@@ -380,6 +380,7 @@ class BodyReader {
   Body body_;
   std::uint64_t vertex_count_ = 0;
   TriangleMesh mesh_;
+  FaceReader faces_;
 };
 
 }  // namespace

@@ -1,37 +1,27 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
-#include <string>
+#include <span>
+#include <vector>
 
 #include "supple/mesh.hpp"
 
 namespace supple {
 
-/// Adds the polygon with the given number in its file as a fan of triangles around its first corner.
-/// `next_index()` reads a corner. Fails through `source.fail_here` when there are fewer than 3 corners, or an
-/// index is not below `vertices`.
-template <class Source, class NextIndex>
-void add_polygon(TriangleMesh& mesh, std::uint64_t vertices, std::uint64_t number, std::int64_t corners,
-                 const Source& source, NextIndex&& next_index) {
-  const auto fail = [&](const std::string& message) {
-    source.fail_here("face " + std::to_string(number) + message);
-  };
-  const auto next_corner = [&] {
-    const std::int64_t index = next_index();
-    if (index < 0 || static_cast<std::uint64_t>(index) >= vertices) {
-      fail(": vertex index " + std::to_string(index) + " is out of range; the file has " +
-           std::to_string(vertices) + " vertices, counted from 0");
-    }
-    return static_cast<std::uint32_t>(index);
-  };
-  if (corners < 3) fail(" has " + std::to_string(corners) + " corners; it needs at least 3");
-  const std::uint32_t first = next_corner();
-  std::uint32_t previous = next_corner();
-  for (std::int64_t k = 2; k < corners; ++k) {
-    const std::uint32_t corner = next_corner();
-    mesh.triangles.push_back({first, previous, corner});
-    previous = corner;
-  }
-}
+/// A polygon of a mesh: the triangles of one fan around its first corner, in the list of the mesh.
+struct PolygonFan {
+  std::size_t first_triangle, corners;
+};
+
+/// Adds a face of a file to the mesh: three or more corners as a fan of triangles around the first corner,
+/// two as an edge, one as a point. A fan of more than one triangle is added to `fans`. The ids need not exist
+/// yet. The face needs at least one corner.
+void add_face(TriangleMesh& mesh, std::vector<PolygonFan>& fans, std::span<const std::uint32_t> corners);
+
+/// Replaces fans by triangles inside the outline of their polygon, and counts the polygons in
+/// `mesh.polygons`. A polygon with n corners keeps its n - 2 places in the list of triangles. Call this when
+/// the positions are complete; `fans` are those of `add_face`, and every id must exist. See `PolygonCutter`.
+void cut_polygons(TriangleMesh& mesh, std::span<const PolygonFan> fans);
 
 }  // namespace supple

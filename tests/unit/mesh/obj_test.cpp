@@ -42,10 +42,14 @@ const ObjCase obj_cases[] = {
      "mtllib a.mtl\no thing\ng a b\n" + corners +
          "vn 0 0 1\nvt 0 0\nvp 1\ns off\nusemtl x\nl 1 2\np 1\nfoo bar\ncurv 0 1 2\nend\nf 1 2 3\nV 1 2\n",
      {{0, 1, 2}}},
-    {"polygons become fans",
-     corners + "v 2 2 2\nf 5 1 2 3\nf 1 2 3 4 5\n",
+    {"convex polygons become fans",
+     "f 5 1 2 3\nv 0 0 0\nv 2 0 0\nv 3 1 0\nv 2 2 0\nv 0 2 0\nf 1 2 3 4 5\n",
      {{4, 0, 1}, {4, 1, 2}, {0, 1, 2}, {0, 2, 3}, {0, 3, 4}},
      5},
+    {"concave polygons stay inside their outline",
+     "v 3 1 0\nv 3 0 0\nv 0 0 0\nv 0 3 0\nf 1 2 3 4 5 6\nv 1 3 0\nv 1 1 0\nf 1 2 3\n",
+     {{5, 0, 1}, {5, 1, 2}, {5, 2, 3}, {5, 3, 4}, {0, 1, 2}},
+     6},
     {"relative ids count from where they stand",
      corners + "f -4 -3 -1\nv 1 1 1\nf -1 -5 2\n",
      {{0, 1, 3}, {4, 0, 1}},
@@ -86,6 +90,7 @@ TEST(Obj, KeepsCoordinatesAsTheyAre) {
 TEST(Obj, ReadsLinesAndPoints) {
   const TriangleMesh mesh = read_obj(
       "l 1/7 2 \\\n4/1\np 3\n" + corners + "l -1 -4\nf 1 2 3\nl 1 2 3 1 # closed\np 1//2 -1\n", "a.obj");
+  EXPECT_EQ(read_obj(corners + "f 1 2\nf -1 2\nf 4\n", "a.obj").edges.size(), 2u);
   using Edges = std::vector<std::array<std::uint32_t, 2>>;
   EXPECT_EQ(mesh.edges, (Edges{{0, 1}, {1, 3}, {3, 0}, {0, 1}, {1, 2}, {2, 0}}));
   EXPECT_EQ(mesh.points, (std::vector<std::uint32_t>{2, 0, 3}));
@@ -114,8 +119,9 @@ const ErrorCase obj_errors[] = {
      "a.obj:5: expected an integer for a face index, found '99999999999999999999'"},
     {"v 0 0 0\nv 1 0 0\nf -1 -2 -3\n" + corners,
      "a.obj:3: face index -3 is out of range; the file has 2 vertices before it"},
-    {corners + "f 1 2\n", "a.obj:5: a face has 2 corners; it needs at least 3"},
-    {corners + "f\n", "a.obj:5: a face has 0 corners; it needs at least 3"},
+    {corners + "f 2 2\n",
+     "a.obj:5: a line joins vertex 2 to itself; leave out the repetition, or write a point: p 2"},
+    {corners + "f\n", "a.obj:5: a face has no corners; it needs at least 1"},
     {corners + "f 1 2 x\n", "a.obj:5: expected an integer for a face index, found 'x'"},
     {corners + "f 1 2 3.5\n", "a.obj:5: expected an integer for a face index, found '3.5'"},
     {corners + "f 1 2 /3\n", "a.obj:5: expected an integer for a face index, found '/3'"},
