@@ -135,7 +135,7 @@ int main(int argc, char** argv) {
 
       // The longest step that is free of contact, then shorter ones until the energy falls enough.
       scene.set_motion(cloth, x, moved(x, direction, 1));
-      const double free_part = scene.max_step();
+      const double free_part = scene.max_step().step;
       if (free_part < 1) ++limited;
       double part = free_part < 1 ? 0.9 * free_part : 1;
       Potential next = potential(moved(x, direction, part));

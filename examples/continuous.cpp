@@ -34,7 +34,7 @@ int main() {
                 scene.name(impact->object_a).c_str(), scene.name(impact->object_b).c_str(), impact->toi,
                 scene.detect().continuous_contacts.size());
     // Your own response goes here. This one stops before the contact.
-    const double part = 0.9 * scene.max_step();
+    const double part = 0.9 * scene.max_step().step;
     for (std::size_t i = 0; i < now.size(); ++i) now[i] = now[i] + part * velocity;
   }
 }

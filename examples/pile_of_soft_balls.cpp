@@ -181,7 +181,7 @@ int main(int argc, char** argv) {
       begin = now();
       for (std::size_t i = 0; i < balls.id.size(); ++i)
         scene.set_motion(balls.id[i], balls.of(from, i), balls.of(balls.positions, i));
-      part = scene.max_step();
+      part = scene.max_step().step;
       in_supple += now() - begin;
       for (std::size_t v = 0; part < 1 && v < from.size(); ++v)
         balls.positions[v] = from[v] + (balls.positions[v] - from[v]) * (0.9 * part);

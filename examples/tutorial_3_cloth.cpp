@@ -77,7 +77,7 @@ int main() {
     }
 
     // 3. Go as far as is safe: the whole step, or to just before the first contact that is left.
-    const double part = left == 0 ? 1 : 0.9 * scene.max_step();
+    const double part = left == 0 ? 1 : 0.9 * scene.max_step().step;
     for (std::size_t i = 0; i < now.size(); ++i) now[i] += (next[i] - now[i]) * part;
     if (step % 20 != 0) continue;
     double lowest = now[0].y;

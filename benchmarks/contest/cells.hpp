@@ -20,7 +20,7 @@ void run_cloth(const Choice& choice, const std::string& cell, bool two_threads, 
 void run_cloth_boxes(const Choice& choice, const std::string& cell, Output& output);
 /// Proximity of a cloth with itself, with a margin of a thousandth of the cloth's size.
 void run_near_cloth(const Choice& choice, const std::string& cell, Output& output);
-/// The longest safe step of a cloth (`Scene::max_step`), that which keeps a share of all distances
+/// The longest safe step of a cloth (`Scene::max_step`), that which keeps a tenth of all distances
 /// (`Scene::collision_free_step`), and the median times of both and of `detect` for the same step;
 /// ipc_toolkit.py compares.
 void run_safe_step(const Choice& choice, const std::string& cell, Output& output);

@@ -1,12 +1,15 @@
-// The first impact of two moving elements against exact algebra.
+// The first impact of two moving elements against exact algebra, and their safe step against rational
+// arithmetic.
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <vector>
 
 #include "supple/continuous.hpp"
 #include "support/byte_reader.hpp"
 #include "support/check.hpp"
+#include "support/kept_distance.hpp"
 
 namespace {
 
@@ -59,6 +62,47 @@ void run(fuzz::ByteReader& bytes) {
   }
 }
 
+/// Two objects of one element each.
+void run_safe_step(fuzz::ByteReader& bytes) {
+  fuzz::CoordinateReader coordinate(bytes);
+  const std::uint32_t kind = bytes.below(5);
+  const std::size_t count_a = kind < 2 ? 2 : 1, count_b = kind < 2 ? 2 : kind < 4 ? 3 : 1;
+  testing::TwoElements elements;
+  const std::uint8_t still = bytes.byte();  // bits of the vertices that rest
+  const bool is_rigid = bytes.below(4) == 0;
+  double size = 0;
+  const auto place = [&] {
+    const Vec3d p = coordinate.point();
+    for (int axis = 0; axis < 3; ++axis) size = std::max(size, std::abs(p[axis]));
+    return p;
+  };
+  const auto add = [&](std::size_t count, unsigned bits, std::vector<Vec3d>& start, std::vector<Vec3d>& end) {
+    const Vec3d way = place();
+    for (std::size_t i = 0; i < count; ++i) {
+      start.push_back(place());
+      const bool rests = (bits >> i & 1) != 0;
+      end.push_back(is_rigid ? start[i] + way : rests ? start[i] : place());
+    }
+  };
+  add(count_a, still, elements.start_a, elements.end_a);
+  add(count_b, still >> 4u, elements.start_b, elements.end_b);
+  const double keep = static_cast<double>(bytes.below(100)) / 100;
+  double separation = bytes.below(2) == 0 ? std::abs(coordinate()) : 0;
+  if (bytes.below(4) == 0) separation *= static_cast<double>(bytes.byte()) / 255;
+  if (!coordinate.is_small() || !(size < 0x1p20)) return;
+  const std::vector<testing::MovingPair> pairs = elements.pairs();
+  const SafeStep found = elements.scene(separation).collision_free_step({.keep = keep});
+  check(found.limit.has_value() == (found.step < 1), "a step has no limit");
+  if (touch_at_start(pairs)) return;
+  const testing::StepFault fault = check_step(pairs, separation, keep, found.step, bytes.below(8) == 0);
+  check(fault != testing::StepFault::too_long, "the safe step is too long");
+  // Where elements are so near that rounding could make them touch, the step is shorter.
+  const bool is_near = std::ranges::any_of(pairs, [&](const testing::MovingPair& pair) {
+    return testing::KeptSquare(pair, separation, keep).rounded() <= 0x1p-44 * size;
+  });
+  check(is_near || fault == testing::StepFault::none, "the safe step is too short");
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
@@ -79,5 +123,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     default:
       run<EdgeEdgeMotion>(bytes);
   }
+  if (!bytes.at_end()) run_safe_step(bytes);
   return 0;
 }

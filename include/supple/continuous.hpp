@@ -83,9 +83,9 @@ struct Impact {
   /// Midpoint of the two points at `toi`.
   Vec3d point;
   /// Unit vector from the face or edge to the vertex, from edge b to edge a, or from point b to point a. With
-  /// a separation it is the direction between the closest points at `toi`. Where these coincide, it is normal
-  /// to both elements and points to the side of the vertex, or of edge a, before the impact. Pushing the
-  /// vertex, or edge a, along it separates them. Zero only when no direction is defined.
+  /// a separation, between the closest points at `toi`. Where these coincide, normal to both elements, on the
+  /// side of the vertex or edge a before the impact if there is one; elements that meet end to end on a line
+  /// have its direction. Pushing the vertex, or edge a, along it separates them. Zero where none is defined.
   Vec3d normal;
 };
 

@@ -12,6 +12,7 @@
 #include "supple/options.hpp"
 #include "supple/queries.hpp"
 #include "supple/result.hpp"
+#include "supple/safe_step.hpp"
 #include "supple/types.hpp"
 #include "supple/views.hpp"
 
@@ -131,21 +132,39 @@ class Scene {
   /// can only touch later, so with many contacts it is faster than `detect`. Does not change `result` and
   /// `verify`.
   std::optional<ContinuousContact> earliest_impact();
-  /// The largest safe part of the step, 0 to 1: the time of `earliest_impact`, or 1 without an impact. Never
-  /// later than the true first contact. Bodies that already cut through each other at the start do not
-  /// shorten it.
-  double max_step();
+  /// The largest safe part of the step, 0 to 1: the time of `earliest_impact` and its pair, or 1 without an
+  /// impact. Never later than the true first contact. Bodies that already cut through each other at the start
+  /// do not shorten it.
+  SafeStep max_step();
   /// A part of the step, 0 to 1, after which nothing has crossed and every pair of elements keeps a share of
-  /// its distance at the start, `StepOptions::keep`. With a separation, a pair that is farther apart at the
-  /// start keeps it, and this share of its distance beyond it. So a pair within the separation, or one that
-  /// parts, does not end the step. It is the largest such part to a relative accuracy of 2^-18.
+  /// its distance at the start, `StepOptions::keep`; and the pair that ends it.
   ///
-  /// Positive, unless elements share a point at the start, or rounding leaves no room: it is proven that also
-  /// the positions from + t (to - from), computed in double, are reached without contact. Where rounding
-  /// could make elements touch, the part is halved until it does not; this takes about as long as adding all
-  /// objects to another scene. Ignores `ImpactOptions::max_time` and `skip_parting`. Throws `Error` when an
-  /// option is out of its range.
-  double collision_free_step(const StepOptions& options = {});
+  /// A pair at the distance D at the start keeps `keep` D. With a separation s, a pair that is farther apart
+  /// keeps s + `keep` (D - s), so a pair within the separation, or one that parts, does not end the step. The
+  /// step is never longer than up to the first time at which a pair is at the distance that it keeps, and
+  /// shorter by at most 2^-18 of it.
+  ///
+  /// Elements that share a point at the start end the step there, unless they touch at rest: the vertices of
+  /// the features that touch, as `ElementDistance` names them, all move by exactly the same way. Such a pair
+  /// does not limit the step: two objects that rest, or fixed vertices on a static object.
+  ///
+  /// Otherwise the step is positive. It is proven that also the positions from + t (to - from), computed in
+  /// double, are reached without contact, for coordinates below 2^1022. Where rounding could make elements
+  /// touch, the part is shortened by 2^-19 of it, then halved until it does not; the limiting pair is then
+  /// the first that would touch. Pairs of more than `SceneOptions::max_exact_bits` can make it shorter.
+  ///
+  /// Ignores `ImpactOptions::max_time` and `skip_parting`. Throws `Error` when an option is out of its range.
+  SafeStep collision_free_step(const StepOptions& options = {});
+  /// A safe part of the step for each object, ascending, so that one pair does not stop all objects. Objects
+  /// of one island move by the same part. After each island has moved by its part, or by less, nothing has
+  /// crossed and every pair keeps its share as for `collision_free_step`; the islands can move in any order,
+  /// or at the same time at different speeds.
+  ///
+  /// Two objects that move are in one island unless every two of their elements are so far apart that what
+  /// both move towards each other cannot use up their room. Objects that do not move have the step 1 and
+  /// connect nothing. Takes longer than `collision_free_step`, because no time bounds the search. Valid until
+  /// the next call of a function of the scene that is not const. Throws `Error` as that function does.
+  std::span<const ObjectStep> collision_free_steps(const StepOptions& options = {});
   /// The result of the last `detect`.
   const DetectResult& result() const;
   /// Recomputes the last `detect`, all kinds of contacts that it found, by exact arithmetic over all pairs of
@@ -249,6 +268,7 @@ class Scene {
   ElementVertices vertices_of(const ContinuousContact& contact, ContactSide side) const;
   ElementVertices vertices_of(const Contact& contact, ContactSide side) const;
   ElementVertices vertices_of(const ProximityPair& pair, ContactSide side) const;
+  ElementVertices vertices_of(const LimitingPair& pair, ContactSide side) const;
   const SceneOptions& options() const;
 
  private:

@@ -14,6 +14,7 @@
 #include "supple/proximity.hpp"
 #include "supple/queries.hpp"
 #include "supple/result.hpp"
+#include "supple/safe_step.hpp"
 #include "supple/scene.hpp"
 #include "supple/threads.hpp"
 #include "supple/topology.hpp"

@@ -185,8 +185,12 @@ std::vector<Call> moving() {
         world.scene.set_motion(world.ids[0], world.positions, moved(world.positions, {1.5, 0, 0}));
       },
       [](World& world) { world.detect({.contacts = all_kinds}); },
-      [](World& world) { world.log.push_back(world.scene.max_step()); },
-      [](World& world) { world.log.push_back(world.scene.collision_free_step()); },
+      [](World& world) { world.log.push_back(world.scene.max_step().step); },
+      [](World& world) { world.log.push_back(world.scene.collision_free_step().step); },
+      [](World& world) {
+        for (const ObjectStep& found : world.scene.collision_free_steps())
+          world.log.push_back(found.safe.step);
+      },
       [](World& world) { world.scene.set_positions(world.ids[0], PositionsView(world.floats)); },
       [](World& world) { world.detect({.contacts = all_kinds}); },
       [](World& world) { world.scene.share_positions(world.ids[0], world.positions); },

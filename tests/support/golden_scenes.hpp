@@ -85,8 +85,10 @@ inline std::uint64_t safe_step_hash_of_all_families(std::uint32_t threads) {
   for (const Family& family : hard_families()) {
     for (std::uint64_t seed = 0; seed < 4; ++seed) {
       Scene scene = moving_scene_of(family.make(seed), family.make(seed + 4), 2, threads);
-      for (const double part : {scene.max_step(), scene.collision_free_step()})
+      for (const double part : {scene.max_step().step, scene.collision_free_step().step})
         hash = hash_of_word(std::bit_cast<std::uint64_t>(part), hash);
+      for (const ObjectStep& found : scene.collision_free_steps())
+        hash = hash_of_word(std::bit_cast<std::uint64_t>(found.safe.step), hash);
     }
   }
   return hash;
@@ -218,8 +220,8 @@ inline std::uint64_t penetration_hash_of_boxes(std::uint32_t threads) {
 constexpr GoldenHash golden_scene_hashes[] = {
     {"contacts", hash_of_all_families, 5724621896693359205u},
     {"normals", normal_hash_of_all_families, 14020266159755522772u},
-    {"continuous", continuous_hash_of_all_families, 939415131219478756u},
-    {"safe steps", safe_step_hash_of_all_families, 11851350648023135346u},
+    {"continuous", continuous_hash_of_all_families, 2109742332807707606u},
+    {"safe steps", safe_step_hash_of_all_families, 4587861327473532269u},
     {"proximity", proximity_hash_of_all_families, 649647511004271498u},
     {"queries", query_hash_of_all_families, 16834821160368692095u},
     {"penetrations", penetration_hash_of_boxes, 3070345004726795168u},

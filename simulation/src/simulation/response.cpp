@@ -82,7 +82,7 @@ double respond(Scene& scene, std::span<const ResponseBody> bodies, double dt,
     for (std::size_t v = 0; v < body.velocities.size(); ++v)
       body.velocities[v] += change->of_average_velocity[v];
   }
-  return is_free ? 1 : scene.max_step();
+  return is_free ? 1 : scene.max_step().step;
 }
 
 double respond(Scene& scene, ObjectId object, std::span<Vec3d> velocities, std::span<const double> masses,

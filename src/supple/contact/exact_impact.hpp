@@ -21,4 +21,14 @@ std::optional<TimeBracket> exact_first_contact(const ElementMotion& motion);
 /// to 1e300.
 std::optional<TimeBracket> exact_first_contact(const ElementMotion& motion, double separation);
 
+/// The distance that two elements keep in a safe step: the share `keep`, 0 to 1, of their distance D at the
+/// start, or `separation` + `keep` (D - `separation`) where D is larger than the separation.
+struct KeptDistance {
+  double separation = 0, keep = 0;
+};
+
+/// The first time at which two elements are at a distance of at most the one that they keep: 0 when they
+/// share a point at the start. Takes up to a few milliseconds where that distance is no rational number.
+std::optional<TimeBracket> exact_first_contact(const ElementMotion& motion, const KeptDistance& kept);
+
 }  // namespace supple

@@ -12,10 +12,17 @@
 #include "contact/impact_filter.hpp"
 #include "contact/impact_search.hpp"
 #include "core/float_rounding.hpp"
+#include "geometry/double_double.hpp"
 #include "geometry/vector.hpp"
 #include "supple/option_descriptions.hpp"
 
 namespace supple {
+
+ElementPoints element_points(const std::array<Vec3d, 4>& points, bool are_edges) {
+  if (are_edges) return {points, 2, 2};
+  return {points, 1, 3};
+}
+
 namespace {
 
 /// The vector divided by its largest coordinate, so that squares neither overflow nor underflow, or 0 when it
@@ -71,11 +78,6 @@ Gap gap_between(const RelativePlaces<double>& relative, bool is_square, const Po
           exact->distance > 0 ? exact->normal : Vec3d{}};
 }
 
-ElementPoints element_points(const std::array<Vec3d, 4>& points, bool are_edges) {
-  if (are_edges) return {points, 2, 2};
-  return {points, 1, 3};
-}
-
 Gap gap_at_start(const ElementMotion& motion, const RelativeMotion& relative) {
   return gap_between(relative.start, relative.is_square,
                      [&] { return element_points(motion.start, motion.are_edges); });
@@ -98,28 +100,45 @@ Gap gap_at_impact(const RelativeMotion& relative, double time, double separation
 /// A product smaller than this fraction of the magnitudes of its terms has no reliable direction.
 constexpr double negligible = 0x1p-40;
 
+/// The cross product of two vectors with coordinates of at most 1. Its direction is accurate also for vectors
+/// that are nearly parallel.
+Vec3d accurate_cross(const Vec3d& u, const Vec3d& w) {
+  const auto component = [](double a, double b, double c, double d) {
+    return static_cast<double>(exact_product(a, b) - exact_product(c, d));
+  };
+  return {component(u.y, w.z, u.z, w.y), component(u.z, w.x, u.x, w.z), component(u.x, w.y, u.y, w.x)};
+}
+
+/// A unit vector across a unit vector; in the plane z = 0 for lines in it.
+Vec3d across(const Vec3d& along) {
+  const Vec3d in_plane{along.y, -along.x, 0};
+  return dot(in_plane, in_plane) > negligible ? normalized(in_plane) : Vec3d{1, 0, 0};
+}
+
 /// The unit vector across both elements, towards the side from which the first element came: against its
-/// velocity, or else towards its position at the start.
-Vec3d normal_across(const RelativeMotion& motion, const RelativePlaces<double>& places, const Gap& at) {
-  const Vec3d product = cross(scaled(places.u), scaled(places.w));
+/// velocity, or else towards its position at the start, where the elements are apart there.
+Vec3d normal_across(const RelativeMotion& motion, const RelativePlaces<double>& places, const Gap& at,
+                    bool apart_at_start) {
+  const Vec3d product = accurate_cross(scaled(places.u), scaled(places.w));
   const Vec3d n = dot(product, product) > negligible * negligible ? normalized(product) : Vec3d{};
   const Vec3d velocity = (motion.end.m - motion.start.m) - at.alpha * (motion.end.u - motion.start.u) -
                          at.beta * (motion.end.w - motion.start.w);
   const double approach = dot(n, scaled(velocity));
   if (std::fabs(approach) > negligible) return approach < 0 ? n : -1.0 * n;
-  const Vec3d before = motion.start.m - at.alpha * motion.start.u - at.beta * motion.start.w;
+  const Vec3d before =
+      apart_at_start ? motion.start.m - at.alpha * motion.start.u - at.beta * motion.start.w : Vec3d{};
   const double side = dot(n, scaled(before));
   if (std::fabs(side) > negligible) return side > 0 ? n : -1.0 * n;
-  // The motion stays in one plane or on one line. Point back to where the element came from, across the line
-  // of the elements if they have one, or else against its velocity.
-  if (n == Vec3d{}) {
-    const Vec3d along = normalized(dot(places.u, places.u) < dot(places.w, places.w) ? places.w : places.u);
-    const Vec3d across = scaled(before) - dot(scaled(before), along) * along;
-    if (dot(across, across) > negligible * negligible) return normalized(across);
+  // The motion stays in the plane of both elements.
+  if (n != Vec3d{}) return n;
+  // The elements are on one line, or points. The normal is across the line, unless they meet end to end.
+  const Vec3d along = normalized(dot(places.u, places.u) < dot(places.w, places.w) ? places.w : places.u);
+  for (const Vec3d& v : {before, -1.0 * velocity}) {
+    const Vec3d rest = scaled(v) - dot(scaled(v), along) * along;
+    if (dot(rest, rest) > negligible * negligible) return normalized(rest);
   }
   if (scaled(before) != Vec3d{}) return normalized(before);
-  if (velocity != Vec3d{}) return -1.0 * normalized(velocity);
-  return n;
+  return along != Vec3d{} ? across(along) : Vec3d{};
 }
 
 /// As `impact_at`, where differences of coordinates do not overflow.
@@ -148,7 +167,9 @@ Impact moderate_impact_at(const ElementMotion& motion, const RelativeMotion& rel
     impact.barycentric = {1, std::max(0.0, 1 - gap.alpha - gap.beta), gap.alpha, gap.beta};
     impact.point = 0.5 * (p[0] + (impact.barycentric[1] * p[1] + gap.alpha * p[2] + gap.beta * p[3]));
   }
-  impact.normal = gap.normal != Vec3d{} ? gap.normal : normal_across(relative, places.places, gap);
+  const bool is_apart_at_start = time > 0 || start.distance > 0;
+  impact.normal =
+      gap.normal != Vec3d{} ? gap.normal : normal_across(relative, places.places, gap, is_apart_at_start);
   return impact;
 }
 
@@ -203,6 +224,19 @@ std::optional<Impact> impact_after(const ImpactSearch& search, const ElementMoti
   return impact_at(motion, relative, first->low, first->high == 0, separation);
 }
 
+/// A time up to which the elements stay farther apart than `separation`, early by no more than the
+/// tolerances; nothing when they do so within the whole step. Without `exact` it may be earlier, or there may
+/// be one when they stay apart.
+std::optional<double> first_time_within(const ElementMotion& motion, const RelativeMotion& relative,
+                                        double separation, bool exact, bool& used_exact) {
+  const ImpactSearch search = search_impact(relative, separation);
+  if (search.outcome == ImpactSearch::Outcome::apart) return std::nullopt;
+  if (search.outcome == ImpactSearch::Outcome::touching || !exact) return search.time;
+  used_exact = true;
+  const auto first = separation == 0 ? exact_first_contact(motion) : exact_first_contact(motion, separation);
+  return first ? std::optional(first->low) : std::nullopt;
+}
+
 /// Whether elements that are apart at the start, within the separation, part.
 bool part(const Impact& impact, const ElementMotion& motion, const RelativeMotion& relative,
           const ImpactOptions& options, bool& used_exact) {
@@ -216,16 +250,6 @@ bool part(const Impact& impact, const ElementMotion& motion, const RelativeMotio
 
 float end_of_search(const ImpactOptions& options) {
   return std::min(1.0f, round_up(options.max_time + toi_tolerance));
-}
-
-std::optional<double> first_time_within(const ElementMotion& motion, const RelativeMotion& relative,
-                                        double separation, bool exact, bool& used_exact) {
-  const ImpactSearch search = search_impact(relative, separation);
-  if (search.outcome == ImpactSearch::Outcome::apart) return std::nullopt;
-  if (search.outcome == ImpactSearch::Outcome::touching || !exact) return search.time;
-  used_exact = true;
-  const auto first = separation == 0 ? exact_first_contact(motion) : exact_first_contact(motion, separation);
-  return first ? std::optional(first->low) : std::nullopt;
 }
 
 std::optional<Impact> first_impact_after(const ImpactSearch& search, const ElementMotion& motion,
@@ -242,10 +266,6 @@ bool are_within(const ElementMotion& motion, double separation) {
   return distance_within(element_points(motion.start, motion.are_edges), separation, used_exact,
                          DistanceAccuracy::rough)
       .has_value();
-}
-
-double distance_at_start(const ElementMotion& motion, const RelativeMotion& relative) {
-  return gap_at_start(motion, relative).distance;
 }
 
 namespace {

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <array>
 #include <optional>
 
+#include "contact/element_distance.hpp"
 #include "contact/impact_search.hpp"
 #include "contact/relative_motion.hpp"
 #include "supple/continuous.hpp"
@@ -12,14 +14,8 @@ namespace supple {
 /// reported time may be early.
 float end_of_search(const ImpactOptions& options);
 
-/// A time up to which the elements stay farther apart than `separation`, early by no more than the
-/// tolerances; nothing when they do so within the whole step. Without `exact` it may be earlier, or there may
-/// be one when they stay apart.
-std::optional<double> first_time_within(const ElementMotion& motion, const RelativeMotion& relative,
-                                        double separation, bool exact, bool& used_exact);
-
-/// The distance of the elements at the start, to a relative error of 2^-20; 0 only when they share a point.
-double distance_at_start(const ElementMotion& motion, const RelativeMotion& relative);
+/// The elements at one end of a motion.
+ElementPoints element_points(const std::array<Vec3d, 4>& points, bool are_edges);
 
 /// Whether the elements are within `separation` at the start, exactly.
 bool are_within(const ElementMotion& motion, double separation);

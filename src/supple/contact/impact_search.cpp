@@ -143,10 +143,14 @@ bool apart_between(const Moment& first, const Moment& last, const RelativeMotion
   return true;
 }
 
-/// Whether the elements are proven to be within the separation. Each coordinate of the difference takes at
-/// most 12 roundings, its length 8.
+/// A proven bound of the distance. Each coordinate of the difference takes at most 12 roundings, its length
+/// 8.
+double most_distance(const Moment& moment, const Vec3d& reach) {
+  return moment.distance * (1 + 0x1p-49) + 0x1p-46 * (reach.x + reach.y + reach.z) + 0x1p-500;
+}
+
 bool surely_touching(const Moment& moment, const Vec3d& reach, double separation) {
-  return moment.distance * (1 + 0x1p-49) + 0x1p-46 * (reach.x + reach.y + reach.z) + 0x1p-500 < separation;
+  return most_distance(moment, reach) < separation;
 }
 
 /// When the distance reaches the separation at its present rate of change; after the step when it grows.
@@ -200,6 +204,19 @@ Outcome advance(const RelativeMotion& motion, double separation, double& time) {
 RelativePlaces<double> places_at(const RelativeMotion& motion, double time) {
   return {mix(motion.start.m, motion.end.m, time), mix(motion.start.u, motion.end.u, time),
           mix(motion.start.w, motion.end.w, time)};
+}
+
+/// No difference is shorter than its component along the closest direction, whose roundings are those of
+/// `apart_between`.
+DistanceBounds distance_bounds(const RelativeMotion& motion, double time) {
+  const Vec3d reach = reach_of(motion);
+  const Moment moment(motion, time);
+  const Vec3d& n = moment.closest.difference;
+  const std::array<double, 4> along = corners_along(n, moment.places);
+  const double least = *std::min_element(along.begin(), along.begin() + (motion.is_square ? 4 : 3)) -
+                       (0x1p-48 * dot(absolute(n), reach) + 0x1p-900);
+  const double length = std::sqrt(dot(n, n) + 0x1p-900) * (1 + 0x1p-49);
+  return {least > 0 ? least / length * (1 - 0x1p-50) : 0, most_distance(moment, reach), (1 / length) * n};
 }
 
 ImpactSearch search_impact(const RelativeMotion& motion, double separation) {

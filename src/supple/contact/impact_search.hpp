@@ -22,4 +22,12 @@ ImpactSearch search_impact(const RelativeMotion& motion, double separation);
 
 RelativePlaces<double> places_at(const RelativeMotion& motion, double time);
 
+/// Proven bounds of the distance of the elements at a time. They differ by a small multiple of the rounding
+/// of the relative positions.
+struct DistanceBounds {
+  double low = 0, high = 0;
+  Vec3d direction;  ///< from the second element to the first; all points of both are `low` apart along it
+};
+DistanceBounds distance_bounds(const RelativeMotion& motion, double time);
+
 }  // namespace supple

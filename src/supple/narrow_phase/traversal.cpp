@@ -169,8 +169,12 @@ PartOfStep ObjectPairView::part_of_step(std::uint32_t node_a, int child_a, std::
   const Aabb way_a = way_of(a, node_a, child_a), way_b = way_of(b, node_b, child_b);
   double square = 0;
   for (int axis = 0; axis < 3; ++axis) {
-    const double most = std::max(std::fabs(double{way_a.max[axis]} - way_b.min[axis]),
-                                 std::fabs(double{way_a.min[axis]} - way_b.max[axis]));
+    const auto longest = [&](const Aabb& way) {
+      return std::max(std::fabs(double{way.min[axis]}), std::fabs(double{way.max[axis]}));
+    };
+    const double most = any_parts ? longest(way_a) + longest(way_b)
+                                  : std::max(std::fabs(double{way_a.max[axis]} - way_b.min[axis]),
+                                             std::fabs(double{way_a.min[axis]} - way_b.max[axis]));
     square += most * most;
   }
   // Beyond the range of float, boxes do not say how far elements are apart.

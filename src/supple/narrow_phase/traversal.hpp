@@ -52,6 +52,9 @@ struct ObjectPairView {
   const std::atomic<float>* latest = nullptr;
   /// Share of the largest approach of two vertices of two children that is added to their separation.
   double kept_share = 0;
+  /// The two children may move by any parts of their ways, so that the sum of both ways counts instead of the
+  /// approach.
+  bool any_parts = false;
   ElementKinds kinds = ElementKinds::all;  ///< for moving objects
 
   /// Bounds at a time before the end cost more than those at the end, and for a late time they save little.

@@ -374,8 +374,8 @@ std::optional<ContinuousContact> Scene::Implementation::earliest_impact() {
   return impact_pass_.find_earliest(impact_jobs_.jobs, element_objects_, impact_options(), parallel);
 }
 
-double Scene::Implementation::collision_free_step(const StepOptions& step) {
-  check(step, "collision_free_step");
+/// Prepares a search for safe steps.
+void Scene::Implementation::prepare_safe_step(const StepOptions& step) {
   ways_.resize(slots_.size());
   ways_of_nodes_.resize(slots_.size());
   for (std::uint32_t index = 0; index < slots_.size(); ++index) {
@@ -394,80 +394,21 @@ double Scene::Implementation::collision_free_step(const StepOptions& step) {
                   ways_of_nodes_[index]);
     listed.view.ways = ways_of_nodes_[index].data();
   }
-  const SafeStep safe =
-      impact_pass_.find_safe_step(impact_jobs_.jobs, element_objects_, impact_options(), step, parallel);
-  return safe.is_near_rounding ? proven_step(safe.time) : safe.time;
 }
 
-namespace {
-
-/// Adds the elements of an object at other positions, with its vertex groups.
-ObjectId add_copy(const SceneObject& object, const std::vector<Vec3d>& positions, Scene& scene) {
-  std::vector<Triangle> faces;
-  ObjectOptions options;
-  options.self_collision = object.options.self_collision && object.placement().has_motion();
-  for (std::uint32_t t = 0; t < object.octree().triangles().size(); ++t) {
-    const Triangle triangle = object.octree().user_triangle(t);
-    const auto& [v, w, last] = triangle;
-    if (t < object.face_count()) {
-      faces.push_back(triangle);
-    } else if (v == w) {
-      options.points.push_back(v);
-    } else {
-      options.edges.push_back({v, w});
-    }
-  }
-  const ObjectId id = scene.add(positions, faces, options);
-  const VertexGroups groups = object.vertex_groups();
-  scene.set_vertex_groups(id, groups.groups, groups.masks);
-  return id;
+SafeStep Scene::Implementation::collision_free_step(const StepOptions& step) {
+  check(step, "collision_free_step");
+  prepare_safe_step(step);
+  return impact_pass_.find_safe_step(impact_jobs_.jobs, element_objects_, impact_options(), step, parallel);
 }
 
-}  // namespace
-
-/// Searches contacts on straight paths to the rounded positions, in a scene of its own.
-double Scene::Implementation::proven_step(double part) const {
-  SceneOptions plain;
-  plain.threads = options.threads;
-  plain.contacts = ContactKinds::continuous;
-  plain.element_kinds = options.element_kinds;
-  plain.max_exact_bits = options.max_exact_bits;
-  Scene scene(plain);
-  struct Path {
-    ObjectId id;
-    const SceneObject* object;
-    std::vector<Vec3d> start, end;
-  };
-  std::vector<Path> paths;
-  std::vector<ObjectId> ids;  // of this scene, by index in `scene`
-  for (const ObjectId id : objects()) {
-    const SceneObject& object = *slots_[id.index].object;
-    Path path{{}, &object, {}, {}};
-    for (std::uint32_t v = 0; v < object.octree().vertex_count(); ++v)
-      path.start.push_back(object.placement().start_position(v));
-    path.end = path.start;
-    path.id = add_copy(object, path.start, scene);
-    ids.push_back(id);
-    paths.push_back(std::move(path));
-  }
-  // Objects that rest may touch.
-  scene.set_pair_filter([&](ObjectId a, ObjectId b) {
-    const bool is_moving =
-        paths[a.index].object->placement().has_motion() || paths[b.index].object->placement().has_motion();
-    return is_moving && may_pair({ids[a.index].index, ids[b.index].index});
-  });
-  for (; part > 0; part /= 2) {
-    for (Path& path : paths) {
-      if (!path.object->placement().has_motion()) continue;
-      for (std::uint32_t v = 0; v < path.end.size(); ++v) {
-        const Vec3d way = path.object->placement().position(v) - path.start[v];
-        path.end[v] = path.start[v] + part * way;
-      }
-      scene.set_motion(path.id, path.start, path.end);
-    }
-    if (!scene.earliest_impact()) break;
-  }
-  return part;
+std::span<const ObjectStep> Scene::Implementation::collision_free_steps(const StepOptions& step) {
+  check(step, "collision_free_steps");
+  prepare_safe_step(step);
+  object_steps_ =
+      impact_pass_.find_safe_steps(impact_jobs_.jobs, element_objects_, impact_options(), step, parallel);
+  std::erase_if(object_steps_, [&](const ObjectStep& found) { return !contains(found.object); });
+  return object_steps_;
 }
 
 void Scene::Implementation::report_non_finite() {

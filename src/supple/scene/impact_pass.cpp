@@ -9,6 +9,7 @@
 
 #include "contact/first_impact.hpp"
 #include "contact/impact_search.hpp"
+#include "contact/safe_time.hpp"
 #include "core/float_rounding.hpp"
 #include "core/timer.hpp"
 #include "geometry/integer_points.hpp"
@@ -92,25 +93,6 @@ int bits_of(const ElementMotion& motion, double separation) {
   return extent.bits();
 }
 
-/// The differences of ways are rounded, which counts where vertices move together.
-constexpr double rounding_of_ways = 0x1p-50;
-
-/// The most by which two vertices of a pair come nearer.
-double largest_approach_of(const ElementMotion& motion) {
-  std::array<Vec3d, 4> ways;
-  for (std::size_t i = 0; i < 4; ++i) ways[i] = motion.end[i] - motion.start[i];
-  double largest = 0, longest = 0;
-  for (const Vec3d& way : ways) longest = std::max(longest, scaled_norm(way));
-  const std::size_t count = motion.are_edges ? 2 : 1;
-  for (std::size_t i = 0; i < count; ++i) {
-    for (std::size_t k = count; k < 4; ++k) {
-      const Vec3d way = ways[i] - ways[k];
-      largest = std::max(largest, scaled_norm(way));
-    }
-  }
-  return largest * (1 + 0x1p-40) + rounding_of_ways * longest;
-}
-
 }  // namespace
 
 bool ImpactPass::run(std::span<const ContactJob> jobs, std::span<const MovingObject> objects,
@@ -155,30 +137,6 @@ std::optional<ContinuousContact> ImpactPass::find_earliest(std::span<const Conta
   return best != nullptr ? std::optional(best->contact) : std::nullopt;
 }
 
-SafeStep ImpactPass::find_safe_step(std::span<const ContactJob> jobs, std::span<const MovingObject> objects,
-                                    const ImpactSearchOptions& options, const StepOptions& step,
-                                    const Parallel& parallel) {
-  start(jobs, objects, options, {});
-  step_ = step;
-  options_.impact.max_time = 1;
-  limit_.start(ContactLimit::unlimited, 0);
-  all_jobs_.clear();
-  for (std::uint32_t job = 0; job < jobs.size(); ++job) {
-    if (largest_approach(job) > 0) all_jobs_.push_back(job);
-  }
-  // What touches bounds the step, and a short step needs little more than the separation.
-  search(Search::touching, all_jobs_, 1, parallel);
-  const Earliest* const touching = earliest_of_workers();
-  SafeStep safe{touching != nullptr ? touching->contact.toi : 1};
-  if (safe.time == 0) return safe;
-  search(Search::safe_step, all_jobs_, std::min(1.0f, round_up(safe.time + toi_tolerance)), parallel);
-  for (const Worker& worker : workers_) {
-    safe.time = std::min(safe.time, worker.step.time);
-    safe.is_near_rounding = safe.is_near_rounding || worker.step.is_near_rounding;
-  }
-  return safe;
-}
-
 const ImpactPass::Earliest* ImpactPass::earliest_of_workers() const {
   const Earliest* best = nullptr;
   for (const Worker& worker : workers_) {
@@ -207,7 +165,8 @@ void ImpactPass::search(Search search, std::span<const std::uint32_t> jobs, floa
     worker.found.clear();
     worker.stats = {};
     worker.earliest.reset();
-    worker.step = {};
+    worker.limits.clear();
+    worker.near_jobs.clear();
   }
   tasks_.plan(jobs, workers_.size(), workers_[0].traversal,
               [&](std::uint32_t job) { return view_of_job(job); });
@@ -217,37 +176,10 @@ void ImpactPass::search(Search search, std::span<const std::uint32_t> jobs, floa
 
 ImpactOptions ImpactPass::impact_of_job(std::uint32_t job) const {
   ImpactOptions impact = options_.impact;
-  if (search_ == Search::touching) return {.exact = impact.exact};
+  if (search_ == Search::touching || search_ == Search::rounded) return {.exact = impact.exact};
   impact.min_separation = separation_of(impact.min_separation, objects_[jobs_[job].a].min_separation,
                                         objects_[jobs_[job].b].min_separation);
   return impact;
-}
-
-/// The most by which two elements of the job come nearer within the step.
-double ImpactPass::largest_approach(std::uint32_t job) const {
-  const MovingObject& a = objects_[jobs_[job].a];
-  const MovingObject& b = objects_[jobs_[job].b];
-  const Vec3d way = a.ways->mean - b.ways->mean;
-  const double farthest = a.ways->farthest_from_mean + b.ways->farthest_from_mean;
-  return (scaled_norm(way) + farthest) * (1 + 0x1p-40) +
-         rounding_of_ways * (a.ways->longest + b.ways->longest);
-}
-
-double ImpactPass::rounding_of_job(std::uint32_t job) const {
-  return safe_step_rounding * std::max(objects_[jobs_[job].a].ways->largest_coordinate,
-                                       objects_[jobs_[job].b].ways->largest_coordinate);
-}
-
-double ImpactPass::searched_distance(std::uint32_t job) const {
-  const double separation = impact_of_job(job).min_separation;
-  return search_ == Search::safe_step ? separation + rounding_of_job(job) : separation;
-}
-
-/// Elements that come nearer by `approach` are no longer at the separation plus a share `keep` of their
-/// distance beyond it only if that distance was at most approach / (1 - keep).
-double ImpactPass::kept_distance(std::uint32_t job) const {
-  if (search_ != Search::safe_step) return 0;
-  return kept_share(step_) * largest_approach(job) * (1 + 0x1p-40);
 }
 
 ObjectPairView ImpactPass::view_of_job(std::uint32_t job) const {
@@ -256,7 +188,8 @@ ObjectPairView ImpactPass::view_of_job(std::uint32_t job) const {
   const double distance = searched_distance(job);
   ObjectPairView pair =
       &a == &b ? moving_self_pair_of(a.view, distance) : moving_pair_of(a.view, b.view, distance);
-  if (search_ == Search::safe_step) pair.kept_share = kept_share(step_);
+  pair.kept_share = share_of_approach();
+  pair.any_parts = search_ == Search::free;
   if (distance > 0 || pair.kept_share > 0) pair.a.culled = nullptr;
   pair.kinds = options_.kinds;
   if (latest_ < 1 || search_ != Search::all) pair.latest = &latest_;
@@ -319,8 +252,8 @@ void ImpactPass::test_candidates(std::uint32_t job, ElementPairKind kind,
 /// A vector kernel decides most pairs that touch; the scalar search decides the others.
 void ImpactPass::decide_open_pairs(std::uint32_t job, ElementPairKind kind, std::size_t count,
                                    Worker& worker) {
-  if (search_ == Search::safe_step) {
-    for (std::size_t k = 0; k < count; ++k) shorten_step(job, worker.open[k], worker);
+  if (search_ == Search::safe_step || search_ == Search::free || search_ == Search::rounded) {
+    for (std::size_t k = 0; k < count; ++k) limit_step(job, kind, worker.open[k], worker);
     return;
   }
   const ImpactOptions options = impact_of_job(job);
@@ -342,7 +275,9 @@ void ImpactPass::decide_open_pairs(std::uint32_t job, ElementPairKind kind, std:
     of_pair.exact = may_be_exact(pair, options.min_separation);
     const auto impact = first_impact_after(search_of(k), pair.motion, pair.relative, of_pair, used_exact);
     worker.stats.exact_fallbacks += used_exact ? 1 : 0;
-    if (impact) add_contact(job, kind, pair, *impact, worker);
+    if (!impact) continue;
+    if (search_ == Search::touching && impact->touching_at_start && touch_at_rest(pair.motion)) continue;
+    add_contact(job, kind, pair, *impact, worker);
   }
 }
 
@@ -359,33 +294,6 @@ bool ImpactPass::is_excluded(std::uint32_t job, ElementPairKind kind, ElementPai
   if (kind == ElementPairKind::edge_edge) sort_edges(objects_of(kind, a, b), vertices);
   const std::optional<ElementNames> names = names_of(kind, candidate, vertices, a, b);
   return !names || limit_.excludes(place_of(job, names->kind, names->a[0]));
-}
-
-/// Shortens the step of the worker so that the pair keeps its share of its distance.
-void ImpactPass::shorten_step(std::uint32_t job, const OpenPair& pair, Worker& worker) {
-  const ImpactOptions options = impact_of_job(job);
-  const double separation = options.min_separation;
-  const double distance = distance_at_start(pair.motion, pair.relative) * (1 - 0x1p-19);
-  if (distance == 0) {
-    worker.step.time = 0;
-    return search_until(0);
-  }
-  double least = step_.keep * distance;
-  if (distance > separation) {
-    least = separation + step_.keep * (distance - separation);
-  } else if (separation > 0 && !are_within(pair.motion, separation)) {
-    least = separation;
-  }
-  const double nearest = distance - largest_approach_of(pair.motion);
-  if (!(std::max(least, nearest) > rounding_of_job(job))) worker.step.is_near_rounding = true;
-  if (nearest > least) return;
-  bool used_exact = false;
-  const std::optional<double> time =
-      first_time_within(pair.motion, pair.relative, least, may_be_exact(pair, least), used_exact);
-  worker.stats.exact_fallbacks += used_exact ? 1 : 0;
-  if (!time) return;
-  worker.step.time = std::min(worker.step.time, *time);
-  search_until(*time);
 }
 
 void ImpactPass::add_contact(std::uint32_t job, ElementPairKind kind, const OpenPair& pair,

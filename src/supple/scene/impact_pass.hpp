@@ -23,6 +23,7 @@
 #include "supple/contact.hpp"
 #include "supple/options.hpp"
 #include "supple/result.hpp"
+#include "supple/safe_step.hpp"
 
 namespace supple {
 
@@ -46,17 +47,15 @@ inline double kept_share(const StepOptions& step) {
   return step.keep / (1 - step.keep);
 }
 
+/// The pair of elements of a contact.
+inline LimitingPair pair_of_contact(const ContinuousContact& contact) {
+  return {contact.object_a, contact.object_b, contact.kind, contact.element_a, contact.element_b};
+}
+
 /// Two vertices at from + t (to - from), computed in double, come nearer by rounding by less than this share
 /// of their largest coordinate: each coordinate takes three roundings of at most 2^-53 of |from| + 2 |to -
 /// from|.
 constexpr double safe_step_rounding = 0x1p-48;
-
-/// A part of the step without contact.
-struct SafeStep {
-  double time = 1;
-  /// Elements are so near that rounded positions at this time could touch.
-  bool is_near_rounding = false;
-};
 
 /// Narrow phase and exact stage of continuous contacts for all jobs of a step, on all workers. The narrow
 /// phase hands its candidates to the exact stage in batches. The pass keeps its memory between steps.
@@ -78,6 +77,12 @@ class ImpactPass {
   SafeStep find_safe_step(std::span<const ContactJob> jobs, std::span<const MovingObject> objects,
                           const ImpactSearchOptions& options, const StepOptions& step,
                           const Parallel& parallel);
+  /// See `Scene::collision_free_steps`. One step for each element of `objects`; those of no job have the step
+  /// 1. Does not change the lists.
+  std::vector<ObjectStep> find_safe_steps(std::span<const ContactJob> jobs,
+                                          std::span<const MovingObject> objects,
+                                          const ImpactSearchOptions& options, const StepOptions& step,
+                                          const Parallel& parallel);
 
   std::span<const ContactGroup> groups() const { return groups_; }
   std::span<const ContinuousContact> contacts() const {
@@ -106,6 +111,12 @@ class ImpactPass {
     ElementMotion motion;
     RelativeMotion relative;
   };
+  /// A pair that limits the step of a job, and the part of the step that it leaves.
+  struct StepLimit {
+    std::uint32_t job = 0;
+    double time = 1;
+    LimitingPair pair;
+  };
   struct Worker {
     Traversal traversal;
     RelativeMotionBlock block;
@@ -115,13 +126,16 @@ class ImpactPass {
     std::vector<ContinuousContact> found;  // by all tasks of the worker
     TaskStats stats;
     std::optional<Earliest> earliest;
-    SafeStep step;
+    std::vector<StepLimit> limits;         // the first of the job of each task
+    std::vector<std::uint32_t> near_jobs;  // with elements so near that rounded positions could touch
     // Scratch for the contacts of one job.
     std::vector<Key> keys, sorted_keys;
     std::vector<std::uint32_t> first_of_bucket;
   };
-  /// `touching`: the earliest contact without any separation.
-  enum class Search : std::uint8_t { all, earliest, touching, safe_step };
+  /// `touching`: the earliest contact without any separation. `safe_step`: the parts of the step that keep
+  /// distances. `free`: those that also keep them when both objects move by other parts. `rounded`: contacts
+  /// on the ways to the rounded positions at these parts.
+  enum class Search : std::uint8_t { all, earliest, touching, safe_step, free, rounded };
 
   /// Plans and runs the tasks of `jobs`, which are indices into `jobs_`, until a time in the step.
   void search(Search search, std::span<const std::uint32_t> jobs, float until, const Parallel& parallel);
@@ -129,9 +143,11 @@ class ImpactPass {
   void start(std::span<const ContactJob> jobs, std::span<const MovingObject> objects,
              const ImpactSearchOptions& options, const StopSignal& stop);
   ImpactOptions impact_of_job(std::uint32_t job) const;
-  /// The distance within which the pass searches, and what a safe step adds to it over the whole step.
+  /// The distance within which the pass searches, and what a safe step adds to it over the whole step: a
+  /// share of the largest approach.
   double searched_distance(std::uint32_t job) const;
   double kept_distance(std::uint32_t job) const;
+  double share_of_approach() const;
   /// By how much rounding may bring two vertices of the job nearer in a safe step.
   double rounding_of_job(std::uint32_t job) const;
   double largest_approach(std::uint32_t job) const;
@@ -142,7 +158,19 @@ class ImpactPass {
   bool is_excluded(std::uint32_t job, ElementPairKind kind, ElementPair candidate,
                    std::array<std::uint32_t, 4> vertices) const;
   void decide_open_pairs(std::uint32_t job, ElementPairKind kind, std::size_t count, Worker& worker);
-  void shorten_step(std::uint32_t job, const OpenPair& pair, Worker& worker);
+  void limit_step(std::uint32_t job, ElementPairKind kind, const OpenPair& pair, Worker& worker);
+  std::optional<double> limit_of(std::uint32_t job, const OpenPair& pair, Worker& worker);
+  static bool is_before(const StepLimit& p, const StepLimit& q);
+  void start_steps(std::span<const ContactJob> jobs, std::span<const MovingObject> objects,
+                   const ImpactSearchOptions& options, const StepOptions& step);
+  void list_limits();
+  void join_islands();
+  void shorten(std::uint32_t island, const StepLimit& limit);
+  void prove_rounded_positions(const Parallel& parallel);
+  bool moves(std::uint32_t object) const;
+  std::uint32_t island_of(std::uint32_t object) const;
+  std::uint32_t mover_of(std::uint32_t job) const;
+  bool is_between_islands(std::uint32_t job) const;
   void add_contact(std::uint32_t job, ElementPairKind kind, const OpenPair& pair, const Impact& impact,
                    Worker& worker);
   void keep_earlier(std::uint32_t job, const ContinuousContact& contact, Worker& worker);
@@ -166,6 +194,13 @@ class ImpactPass {
   JobOutcomes<1> outcomes_;
   ImpactSearchOptions last_options_;     // of the last `run`
   std::vector<std::uint32_t> all_jobs_;  // of `find_earliest`
+  // Safe steps: the first limit of each job, the free parts by job, and by object the islands as a forest. Each
+  // object points to one of its island with a smaller index, or to itself; then it has the island's step.
+  std::vector<StepLimit> limits_;
+  std::vector<double> free_parts_;
+  std::vector<std::uint32_t> island_;
+  std::vector<SafeStep> safe_;
+  bool ends_early_ = false;  ///< the search needs no limits after the first
   /// `find_earliest` skips pairs that cannot touch before this time.
   std::atomic<float> latest_ = 1;
 

@@ -410,12 +410,15 @@ const DetectResult& Scene::detect(const DetectRequest& request) {
 std::optional<ContinuousContact> Scene::earliest_impact() {
   return implementation_->earliest_impact();
 }
-double Scene::collision_free_step(const StepOptions& step) {
+SafeStep Scene::collision_free_step(const StepOptions& step) {
   return implementation_->collision_free_step(step);
 }
-double Scene::max_step() {
+std::span<const ObjectStep> Scene::collision_free_steps(const StepOptions& step) {
+  return implementation_->collision_free_steps(step);
+}
+SafeStep Scene::max_step() {
   const auto earliest = implementation_->earliest_impact();
-  return earliest ? earliest->toi : 1;
+  return earliest ? SafeStep{earliest->toi, pair_of_contact(*earliest)} : SafeStep{};
 }
 void Scene::closest(std::span<const Vec3d> points, std::span<std::optional<ClosestPoint>> results,
                     const ClosestOptions& options) {
@@ -478,11 +481,14 @@ Vec3d Scene::position(ObjectId object, std::uint32_t vertex) const {
   return found.placement().position(vertex);
 }
 
-ElementVertices Scene::vertices_of(const ContinuousContact& contact, ContactSide side) const {
+ElementVertices Scene::vertices_of(const LimitingPair& pair, ContactSide side) const {
   const bool is_a = side == ContactSide::a;
-  const std::array<std::uint32_t, 2>& element = is_a ? contact.element_a : contact.element_b;
-  return implementation_->element_vertices(is_a ? contact.object_a : contact.object_b,
-                                           feature_kinds(contact.kind)[is_a ? 0 : 1], element);
+  const std::array<std::uint32_t, 2>& element = is_a ? pair.element_a : pair.element_b;
+  return implementation_->element_vertices(is_a ? pair.object_a : pair.object_b,
+                                           feature_kinds(pair.kind)[is_a ? 0 : 1], element);
+}
+ElementVertices Scene::vertices_of(const ContinuousContact& contact, ContactSide side) const {
+  return vertices_of(pair_of_contact(contact), side);
 }
 ElementVertices Scene::vertices_of(const Contact& contact, ContactSide side) const {
   const bool is_a = side == ContactSide::a;

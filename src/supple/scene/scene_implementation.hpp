@@ -76,7 +76,8 @@ class Scene::Implementation {
 
   const DetectResult& detect(const DetectRequest& request);
   std::optional<ContinuousContact> earliest_impact();
-  double collision_free_step(const StepOptions& step);
+  SafeStep collision_free_step(const StepOptions& step);
+  std::span<const ObjectStep> collision_free_steps(const StepOptions& step);
   /// Calls `answer(queries, i)` once for each query i.
   template <class Answer>
   void answer_queries(std::span<const Vec3d> places, const Answer& answer);
@@ -180,8 +181,7 @@ class Scene::Implementation {
   bool find_impacts(const DetectRequest& request, const StopSignal& stop);
   bool find_proximity(const DetectRequest& request, const StopSignal& stop);
   void search_on_the_way(const Question& question);
-  /// Halves the part of the step until rounded positions are reached without contact.
-  double proven_step(double part) const;
+  void prepare_safe_step(const StepOptions& step);
   ImpactSearchOptions impact_options() const {
     return {options.impact, options.element_kinds, options.continuous_listing, options.max_exact_bits};
   }
@@ -258,6 +258,7 @@ class Scene::Implementation {
   // By slot, of safe steps.
   std::vector<VertexWays> ways_;
   std::vector<std::vector<ChildBoxes>> ways_of_nodes_;
+  std::vector<ObjectStep> object_steps_;
   std::vector<QueriedObject> queried_objects_;
   std::vector<PenetratedObject> penetrated_objects_;
   std::vector<ObjectQueries> queries_of_workers_;

@@ -122,7 +122,7 @@ TEST_P(ContinuousScenes, FindTheEarliestOfAll) {
                                           [](const auto& p, const auto& q) { return p.toi < q.toi; });
       ASSERT_NE(first, all.end());
       EXPECT_EQ(scene.earliest_impact(), *first) << seed;
-      EXPECT_EQ(scene.max_step(), first->toi);
+      EXPECT_EQ(scene.max_step().step, first->toi);
     }
   }
 }
@@ -195,13 +195,13 @@ TEST(ContinuousContacts, NothingTouchesThatStopsShort) {
   Falling falling(0.999);
   EXPECT_TRUE(falling.scene.detect().continuous_contacts.empty());
   EXPECT_FALSE(falling.scene.earliest_impact().has_value());
-  EXPECT_EQ(falling.scene.max_step(), 1);
+  EXPECT_EQ(falling.scene.max_step().step, 1);
 }
 
 TEST(ContinuousContacts, ReachTheSeparationEarlier) {
   Falling falling(2, continuous(0.25));
-  EXPECT_NEAR(falling.scene.max_step(), 0.375, 1e-9);
-  EXPECT_LE(falling.scene.max_step(), 0.375);
+  EXPECT_NEAR(falling.scene.max_step().step, 0.375, 1e-9);
+  EXPECT_LE(falling.scene.max_step().step, 0.375);
   Falling stops(0.75, continuous(0.25));  // ends exactly at the separation
   EXPECT_EQ(stops.scene.detect().continuous_contacts.size(), 1u);
   Falling short_of_it(0.75 - 0x1p-50, continuous(0.25));

@@ -192,7 +192,7 @@ TEST(Respond, TheReturnedPartOfTheStepIsFree) {
   const double part = respond(scene, bodies, 10 * dt, thick);
   EXPECT_LT(part, 1);
   EXPECT_GT(part, 0);
-  EXPECT_EQ(part, scene.max_step());
+  EXPECT_EQ(part, scene.max_step().step);
   for (Body* const body : {&below, &above, &ball}) body->advance(scene, part * 10 * dt);
   EXPECT_EQ(scene.detect().contacts.size(), 0u);
 }

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+
+#include "supple/contact.hpp"
+#include "supple/types.hpp"
+
+namespace supple {
+
+/// The two elements that limit a step, named as in `ContinuousContact`.
+struct LimitingPair {
+  ObjectId object_a, object_b;  ///< equal for two elements of one object
+  ElementPairKind kind = ElementPairKind::vertex_face;
+  std::array<std::uint32_t, 2> element_a{}, element_b{};
+
+  constexpr bool operator==(const LimitingPair&) const = default;
+};
+
+/// The safe part of a step.
+struct SafeStep {
+  double step = 1;  ///< 0 to 1
+  /// The pair that ends it; of several at the same time the first in canonical order. Nothing for the whole
+  /// step.
+  std::optional<LimitingPair> limit;
+
+  constexpr bool operator==(const SafeStep&) const = default;
+};
+
+/// The safe part of the step of one object; see `Scene::collision_free_steps`.
+struct ObjectStep {
+  ObjectId object;
+  /// The first of the objects that move by the same part.
+  ObjectId island;
+  SafeStep safe;
+
+  constexpr bool operator==(const ObjectStep&) const = default;
+};
+
+}  // namespace supple
