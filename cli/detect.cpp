@@ -72,6 +72,10 @@ int run_detect(const DetectOptions& options) {
     input.objects.front().options.self_collision = true;
   const std::uint64_t frames = count_frames(input, options);
   warn_of_missing_threads(options.scene.threads);
+  const bool prints_text = !options.quiet && options.json != "-" && options.csv != "-";
+  if (options.sequence && prints_text) {
+    if (const std::string gaps = describe_gaps(input.files); !gaps.empty()) fmt::print("{}\n", gaps);
+  }
   Simulation simulation = build_simulation(input);
 
   // Continuous contacts are found between the previous frame and this frame, so the first frame has none.

@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cctype>
 #include <utility>
 
 #include "child_reader.hpp"
@@ -12,12 +13,30 @@
 
 namespace supple::cli {
 
+std::string lower_case_extension(const std::filesystem::path& path) {
+  std::string extension = path.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension;
+}
+
 TriangleMesh read_mesh(const std::filesystem::path& path) {
   if (!std::filesystem::exists(path))
     throw Error(
         one_line(fmt::format("{}: there is no such file; check the folder and the spelling", path.string())));
   return is_read_by_assimp(path) ? load_in_child(path) : load_any_mesh(path);
 }
+
+namespace {
+
+/// Whether vertices keep their ids in frames of this format. Readers of other formats join corners at one
+/// place, so a frame in which vertices meet has fewer.
+bool stores_vertex_ids(const std::filesystem::path& path) {
+  const std::string extension = lower_case_extension(path);
+  return extension == ".obj" || extension == ".off" || extension == ".ply";
+}
+
+}  // namespace
 
 const std::filesystem::path& FrameSequence::file_at(std::uint64_t frame) const {
   const std::uint64_t count = files.size();
@@ -38,15 +57,17 @@ void FrameFiles::read(std::uint64_t step, std::span<Vec3d> positions) const {
   const std::filesystem::path& file = sequence_.file_at(step);
   const std::string name = file.string();
   const std::string first = sequence_.files.front().string();
-  TriangleMesh mesh = read_mesh(file);
+  const TriangleMesh mesh = read_mesh(file);
   const auto check_count = [&](const char* what, std::size_t given, std::size_t expected) {
     if (given == expected) return;
     throw Error(fmt::format("{}: has {} {}, but {} has {}; {}", name, given, what, first, expected, advice));
   };
-  check_count("vertices", mesh.positions.size(), vertex_count_);
+  const bool has_ids = stores_vertex_ids(file);
+  if (has_ids) check_count("vertices", mesh.positions.size(), vertex_count_);
   const auto check_elements = [&](const char* one, const char* several, const auto& given,
                                   const auto& expected) {
     check_count(several, given.size(), expected.size());
+    if (!has_ids) return;
     const auto difference = std::mismatch(given.begin(), given.end(), expected.begin()).first;
     if (difference != given.end())
       throw Error(fmt::format("{}: {} {} has different vertices than in {}; {}", name, one,
@@ -55,8 +76,36 @@ void FrameFiles::read(std::uint64_t step, std::span<Vec3d> positions) const {
   check_elements("triangle", "triangles", mesh.triangles, triangles_);
   check_elements("line", "lines", mesh.edges, edges_);
   check_elements("point", "points", mesh.points, points_);
-  if (sequence_.placement) place(mesh.positions, *sequence_.placement);
-  std::copy(mesh.positions.begin(), mesh.positions.end(), positions.begin());
+  if (has_ids) {
+    std::copy(mesh.positions.begin(), mesh.positions.end(), positions.begin());
+  } else if (const auto parted = place_by_corners(mesh, positions)) {
+    throw Error(
+        fmt::format("{}: corners of vertex {} part, which are at one place in {}; save the frames in a "
+                    "format with vertex ids, such as PLY",
+                    name, *parted, first));
+  }
+  if (sequence_.placement) place(positions, *sequence_.placement);
+}
+
+std::optional<std::uint32_t> FrameFiles::place_by_corners(const TriangleMesh& mesh,
+                                                          std::span<Vec3d> positions) const {
+  std::vector<bool> is_placed(vertex_count_);
+  const auto find_parted = [&](const auto& elements,
+                               const auto& first_elements) -> std::optional<std::uint32_t> {
+    for (std::size_t i = 0; i < elements.size(); ++i) {
+      for (std::size_t corner = 0; corner < elements[i].size(); ++corner) {
+        const std::uint32_t vertex = first_elements[i][corner];
+        const Vec3d& place = mesh.positions[elements[i][corner]];
+        if (is_placed[vertex] && place == place && positions[vertex] != place) return vertex;
+        positions[vertex] = place;
+        is_placed[vertex] = true;
+      }
+    }
+    return std::nullopt;
+  };
+  for (std::size_t i = 0; i < points_.size(); ++i) positions[points_[i]] = mesh.positions[mesh.points[i]];
+  const auto parted = find_parted(mesh.triangles, triangles_);
+  return parted ? parted : find_parted(mesh.edges, edges_);
 }
 
 }  // namespace supple::cli

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "placement.hpp"
@@ -25,7 +26,9 @@ struct FrameSequence {
 /// Reads the frames of a sequence on demand.
 class FrameFiles {
  public:
-  /// Frames must have the number of vertices of this mesh, and its triangles, edges and points.
+  /// Frames must have the number of vertices of this mesh, and its triangles, edges and points. Formats
+  /// without vertex ids, such as STL, must have as many triangles: each of their corners moves the vertex
+  /// that it has in this mesh.
   FrameFiles(FrameSequence sequence, const TriangleMesh& mesh);
 
   /// Reads the positions at a step. Throws `Error` when the file cannot be read, or when it has other counts
@@ -33,12 +36,17 @@ class FrameFiles {
   void read(std::uint64_t step, std::span<Vec3d> positions) const;
 
  private:
+  /// Gives each vertex of the first frame the place of its corners. Returns a vertex whose corners part.
+  std::optional<std::uint32_t> place_by_corners(const TriangleMesh& mesh, std::span<Vec3d> positions) const;
+
   FrameSequence sequence_;
   std::size_t vertex_count_;
   std::vector<Triangle> triangles_;
   std::vector<std::array<std::uint32_t, 2>> edges_;
   std::vector<std::uint32_t> points_;
 };
+
+std::string lower_case_extension(const std::filesystem::path& path);
 
 /// Reads a mesh file of any format. Throws `Error` when the file does not exist.
 TriangleMesh read_mesh(const std::filesystem::path& path);

@@ -29,6 +29,7 @@ struct MeshInfo {
   std::string name;
   MeshTopology topology;
   std::uint64_t lines = 0, points = 0;  ///< edges and points of no triangle
+  PolygonCounts polygons;
   std::uint64_t non_finite_vertices = 0;
   std::optional<std::array<Vec3d, 2>> bounds;  ///< of the finite vertices; none when no vertex is finite
   std::uint32_t arity = 0;
@@ -57,6 +58,7 @@ MeshInfo measure(const InputObject& object, SceneOptions scene_options, const In
   info.topology = compute_topology(object.mesh);
   info.lines = object.mesh.edges.size();
   info.points = object.mesh.points.size();
+  info.polygons = object.mesh.polygons;
   measure_positions(object.mesh, info);
   ObjectOptions chosen = object.options;
   options.given_objects.apply_to(chosen);
@@ -77,6 +79,20 @@ std::string describe_surface(const MeshTopology& t) {
   return text;
 }
 
+std::string describe_polygons(const PolygonCounts& polygons) {
+  std::string text;
+  const auto add = [&](std::uint64_t number, const std::string& words) {
+    if (number > 0) text += (text.empty() ? "" : ", ") + words;
+  };
+  add(polygons.quads, counted(polygons.quads, "quad"));
+  add(polygons.larger, grouped(polygons.larger) + " of more than 4 corners");
+  add(polygons.concave, grouped(polygons.concave) + " concave");
+  add(polygons.crossing,
+      grouped(polygons.crossing) + (polygons.crossing == 1 ? " crosses itself" : " cross themselves"));
+  add(polygons.bent, grouped(polygons.bent) + " not flat");
+  return text;
+}
+
 void print_text(const MeshInfo& info) {
   const MeshTopology& t = info.topology;
   fmt::print("{}\n", info.name);
@@ -85,6 +101,7 @@ void print_text(const MeshInfo& info) {
   if (info.non_finite_vertices > 0) fmt::print(", {} not finite", grouped(info.non_finite_vertices));
   fmt::print("\n  triangles    {}", grouped(t.triangles));
   if (t.degenerate_triangles > 0) fmt::print(", {} with a repeated vertex", grouped(t.degenerate_triangles));
+  if (info.polygons != PolygonCounts{}) fmt::print("\n  polygons     {}", describe_polygons(info.polygons));
   fmt::print("\n  edges        {}\n", grouped(t.edges));
   if (info.lines + info.points > 0)
     fmt::print("  lines        {}, and {}\n", counted(info.lines, "edge"), counted(info.points, "point"));
@@ -112,12 +129,20 @@ void write_octree(JsonWriter& json, const OctreeStatistics& octree) {
   json.end_object();
 }
 
+void write_polygons(JsonWriter& json, const PolygonCounts& polygons) {
+  json.key("polygons");
+  json.begin_object();
+  viewer::write_members(json, polygons);
+  json.end_object();
+}
+
 void write_json(JsonWriter& json, const MeshInfo& info) {
   const MeshTopology& t = info.topology;
   json.begin_object();
   json.member("name", info.name);
   json.member("vertices", t.vertices);
   json.member("triangles", t.triangles);
+  write_polygons(json, info.polygons);
   json.member("edges", t.edges);
   json.member("lines", info.lines);
   json.member("points", info.points);

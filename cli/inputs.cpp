@@ -4,13 +4,15 @@
 #include <glob.h>
 
 #include <algorithm>
-#include <cctype>
+#include <span>
 #include <string_view>
+#include <system_error>
 #include <utility>
 
 #include "recorded_input.hpp"
 #include "scene_file.hpp"
 #include "supple/error.hpp"
+#include "supple/formats.hpp"
 #include "text.hpp"
 
 namespace supple::cli {
@@ -54,6 +56,57 @@ std::vector<fs::path> files_that_match(const std::string& pattern) {
   return {names.begin(), names.end()};
 }
 
+/// The part of a file name with the number of a frame: its last digits before the extension. Empty when there
+/// are none.
+struct NumberedName {
+  std::string_view before, digits, after;
+
+  explicit NumberedName(std::string_view name) {
+    const std::size_t stem = std::min(name.rfind('.'), name.size());
+    std::size_t end = stem;
+    while (end > 0 && !is_digit(name[end - 1])) --end;
+    std::size_t begin = end;
+    while (begin > 0 && is_digit(name[begin - 1])) --begin;
+    before = name.substr(0, begin);
+    digits = name.substr(begin, end - begin);
+    after = name.substr(end);
+  }
+};
+
+[[noreturn]] void refuse_folder(const fs::path& folder) {
+  std::vector<std::string> names;
+  std::error_code ignored;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored)) {
+    const std::span<const std::string_view> known = supported_extensions();
+    if (std::binary_search(known.begin(), known.end(), lower_case_extension(entry.path())))
+      names.push_back(entry.path().filename().string());
+  }
+  if (names.empty())
+    throw Error(
+        one_line(fmt::format("{}: is a folder without mesh files; give mesh files", folder.string())));
+  const std::string first = *std::min_element(names.begin(), names.end(), natural_less);
+  const NumberedName name(first);
+  const std::string pattern = name.digits.empty() ? '*' + fs::path(first).extension().string()
+                                                  : fmt::format("{}*{}", name.before, name.after);
+  throw Error(one_line(fmt::format("{}: is a folder; give its files as a quoted pattern: '{}'",
+                                   folder.string(), (folder / pattern).string())));
+}
+
+/// Refuses names such as frame_%04d.obj and frame_####.obj, which other programs replace by numbers.
+void refuse_number_format(const std::string& name) {
+  const std::size_t begin = name.find_first_of("%#");
+  if (begin == std::string::npos || fs::exists(name)) return;
+  std::size_t end = name.find_first_not_of(name[begin] == '#' ? "#" : "0123456789", begin + 1);
+  end = std::min(end, name.size());
+  if (name[begin] == '%') {
+    if (end == name.size() || (name[end] != 'd' && name[end] != 'i' && name[end] != 'u')) return;
+    ++end;
+  }
+  throw Error(
+      one_line(fmt::format("{}: no file has this name; give numbered files as a quoted pattern: '{}*{}'",
+                           name, name.substr(0, begin), name.substr(end))));
+}
+
 }  // namespace
 
 bool natural_less(const std::string& a, const std::string& b) {
@@ -72,6 +125,8 @@ std::vector<fs::path> expand_patterns(const std::vector<std::string>& names) {
   std::vector<fs::path> paths;
   for (const std::string& name : names) {
     if (name.find_first_of("*?[") == std::string::npos || fs::exists(name)) {
+      if (fs::is_directory(name)) refuse_folder(name);
+      refuse_number_format(name);
       paths.emplace_back(name);
       continue;
     }
@@ -81,11 +136,30 @@ std::vector<fs::path> expand_patterns(const std::vector<std::string>& names) {
   return paths;
 }
 
+std::string describe_gaps(const std::vector<fs::path>& files) {
+  std::vector<std::pair<std::uint64_t, std::uint64_t>> steps;
+  std::uint64_t least = ~std::uint64_t{0};
+  for (std::size_t i = 1; i < files.size(); ++i) {
+    const std::string from = files[i - 1].string(), to = files[i].string();
+    const NumberedName a(from), b(to);
+    constexpr std::size_t most_digits = 18;  // of numbers below 2^63
+    if (a.before != b.before || a.after != b.after || a.digits.empty() || b.digits.empty() ||
+        std::max(a.digits.size(), b.digits.size()) > most_digits)
+      return {};
+    const std::uint64_t start = std::stoull(std::string(a.digits)), end = std::stoull(std::string(b.digits));
+    if (end <= start) return {};
+    steps.emplace_back(start, end);
+    least = std::min(least, end - start);
+  }
+  std::erase_if(steps, [&](const auto& step) { return step.second - step.first == least; });
+  if (steps.empty()) return {};
+  return fmt::format("note: the numbers of the frames have {}: frame {} follows frame {} directly{}",
+                     counted(steps.size(), "gap"), steps[0].second, steps[0].first,
+                     steps.size() > 1 ? ", and so on" : "");
+}
+
 bool is_scene_file(const std::string& name) {
-  std::string extension = fs::path(name).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension == ".toml";
+  return lower_case_extension(name) == ".toml";
 }
 
 Input read_objects(const std::vector<std::string>& names, const SceneOverrides& overrides) {

@@ -69,6 +69,9 @@ Input read_sequence(const std::vector<std::string>& names);
 /// Replaces each pattern by the matching files, sorted by the numbers in the names: frame_9 before frame_10.
 /// Throws `Error` when no file matches.
 std::vector<std::filesystem::path> expand_patterns(const std::vector<std::string>& names);
+/// One line about the gaps in the numbers of a sequence: steps that are larger than the smallest one. Empty
+/// when there is none, and when the names do not differ in their last number alone, in ascending order.
+std::string describe_gaps(const std::vector<std::filesystem::path>& files);
 bool natural_less(const std::string& a, const std::string& b);
 
 }  // namespace supple::cli

@@ -36,7 +36,7 @@ Vec3d rotated(const Rotation& r, Vec3d p) {
 
 }  // namespace
 
-void place(std::vector<Vec3d>& positions, const Placement& placement) {
+void place(std::span<Vec3d> positions, const Placement& placement) {
   const bool turned = placement.rotate_xyz_degrees != Vec3d{};
   const Rotation r = rotation(placement.rotate_xyz_degrees);
   for (Vec3d& p : positions) {

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "supple/types.hpp"
@@ -23,7 +24,7 @@ struct Placement {
   Vec3d translate;
 };
 
-void place(std::vector<Vec3d>& positions, const Placement& placement);
+void place(std::span<Vec3d> positions, const Placement& placement);
 
 /// A random rotation for a seed and a number, with uniform distribution (Shoemake, Uniform Random Rotations,
 /// 1992).

@@ -5,6 +5,7 @@
 #include "supple/continuous.hpp"
 #include "supple/description.hpp"
 #include "supple/inspection.hpp"
+#include "supple/mesh.hpp"
 #include "supple/option_descriptions.hpp"
 #include "supple/result.hpp"
 
@@ -141,6 +142,23 @@ struct Description<OctreeStatistics> {
     value("cost", &Stats::cost, "visits", "Mean visits of a query by the surface-area heuristic");
     value("degradation", &Stats::degradation, "", "The cost divided by the cost when the octree was built");
     value("rebuilds", &Stats::rebuilds, "rebuilds", "Rebuilds of the octree since the object was added");
+  }
+};
+
+template <>
+struct Description<PolygonCounts> {
+  static constexpr const char* name = "PolygonCounts";
+  template <class Visitor>
+  static constexpr void visit(Visitor&& visitor) {
+    const auto count = [&](const char* field, std::uint64_t PolygonCounts::*member, const char* doc) {
+      visitor(Field<PolygonCounts, std::uint64_t>{
+          .name = field, .member = member, .doc = doc, .unit = "polygons"});
+    };
+    count("quads", &PolygonCounts::quads, "Faces with four corners");
+    count("larger", &PolygonCounts::larger, "Faces with five corners or more");
+    count("concave", &PolygonCounts::concave, "Of both, those that turn both ways");
+    count("crossing", &PolygonCounts::crossing, "Of both, those whose outline crosses itself");
+    count("bent", &PolygonCounts::bent, "Of both, those that are not flat within 1/1000 of their size");
   }
 };
 

@@ -272,6 +272,40 @@ class Sequence(ProgramTest):
         done = self.run_here("detect", "--quiet", "--sequence", "frame_*.obj")
         self.assert_one_line_error(done, "frame_12.obj", "triangle 1")
 
+    def test_gaps_in_the_numbers_are_named(self):
+        note = "note: the numbers of the frames have 1 gap: frame 9 follows frame 2 directly\n"
+        self.assertTrue(self.run_here("detect", "--sequence", "frame_*.obj", "--self").out.startswith(note))
+        self.assertNotIn("note", self.run_here("detect", "--sequence", "frame_?.obj", "--self", "--json", "-").out)
+        for files in (["frame_1.obj", "frame_9.obj"], ["frame_9.obj", "frame_10.obj", "frame_11.obj"]):
+            self.assertNotIn("note", self.run_here("detect", "--sequence", *files, "--self").out)
+
+    def test_folders_and_number_formats_are_answered_with_a_pattern(self):
+        self.write("notes.txt", "")
+        for mode in (["--sequence"], []):
+            done = self.run_here("detect", *mode, self.folder)
+            self.assert_one_line_error(done, f"{self.folder}: is a folder; give its files as a quoted pattern: '{self.folder}/frame_*.obj'")
+            for name in ("frame_%d.obj", "frame_%04d.obj", "frame_####.obj"):
+                self.assert_one_line_error(self.run_here("detect", *mode, name), f"{name}: no file has this name", "'frame_*.obj'")
+        self.write("empty/notes.txt", "")
+        self.assert_one_line_error(self.run_here("detect", "empty"), "empty: is a folder without mesh files")
+        self.write("odd_%d.obj", TRIANGLE)
+        self.assertEqual(len(self.detect("odd_%d.obj")["objects"]), 1)
+
+    def test_stl_frames_in_which_corners_meet(self):
+        def facets(*triangles):
+            corners = ["\n".join(f"vertex {x} {y} {z}" for x, y, z in t) for t in triangles]
+            return "solid\n" + "\n".join(f"facet normal 0 0 1\nouter loop\n{c}\nendloop\nendfacet" for c in corners) + "\nendsolid\n"
+
+        low = ((0, 0, 0), (1, 0, 0), (0, 1, 0))
+        self.write("m_1.stl", facets(low, ((0, 0, 2), (1, 0, 2), (0, 1, 2))))
+        self.write("m_2.stl", facets(low, ((0, 0, 0), (1, 0, 2), (0, 1, 2))))
+        first, second = self.detect("--sequence", "m_?.stl", "--self")["frames"]
+        self.assertEqual(first["self"], [])
+        self.assertEqual(second["self"], [{"a": 0, "pairs": [[0, 1]]}])
+        # A vertex of the first frame cannot be at two places later.
+        done = self.run_here("detect", "--sequence", "m_2.stl", "m_1.stl", "--self")
+        self.assert_one_line_error(done, "m_1.stl: corners of vertex 0 part", "m_2.stl", "PLY")
+
     def test_pattern_with_characters_of_patterns_in_the_name(self):
         self.write("odd[1].obj", TRIANGLE)
         self.assertEqual(len(self.detect("odd[1].obj")["objects"]), 1)

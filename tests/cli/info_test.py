@@ -6,6 +6,9 @@ import unittest
 from program import TRIANGLE, ProgramTest
 
 
+NO_POLYGONS = {"quads": 0, "larger": 0, "concave": 0, "crossing": 0, "bent": 0}
+
+
 class Info(ProgramTest):
     maxDiff = None
 
@@ -21,7 +24,7 @@ class Info(ProgramTest):
         self.assertEqual(
             mesh,
             {
-                "name": "a", "vertices": 5, "triangles": 2, "edges": 3, "lines": 0, "points": 0, "closed": False, "boundary_edges": 3,
+                "name": "a", "vertices": 5, "triangles": 2, "edges": 3, "polygons": NO_POLYGONS, "lines": 0, "points": 0, "closed": False, "boundary_edges": 3,
                 "non_manifold_edges": 0, "components": 1, "euler_characteristic": 1, "unused_vertices": 2,
                 "degenerate_triangles": 1, "non_finite_vertices": 1, "bounds": [[0.0, 0.0, 0.0], [5.0, 5.0, 5.0]],
             },
@@ -38,6 +41,15 @@ class Info(ProgramTest):
         (mesh,) = self.info("rod.obj")
         self.assertEqual((mesh["triangles"], mesh["edges"], mesh["lines"], mesh["points"]), (0, 0, 2, 2))
         self.assertIn("\n  lines        2 edges, and 2 points\n", self.run_here("info", "rod.obj").out)
+
+    def test_polygons(self):
+        corners = "v 0 0 0\nv 4 0 0\nv 4 4 0\nv 0 4 1\nv 1 1 0\nv 0 4 0\n"
+        self.write("a.obj", corners + "f 1 2 3\nf 1 2 3 6\nf 1 2 3 4\nf 1 2 5 6\nf 1 3 2 6\nf 1 2 3 6 5\n")
+        (mesh,) = self.info("a.obj")
+        self.assertEqual(mesh["polygons"], {"quads": 4, "larger": 1, "concave": 2, "crossing": 1, "bent": 1})
+        self.assertEqual(mesh["triangles"], 12)
+        text = "\n  polygons     4 quads, 1 of more than 4 corners, 2 concave, 1 crosses itself, 1 not flat\n"
+        self.assertIn(text, self.run_here("info", "a.obj").out)
 
     def test_files_that_make_assimp_crash(self):
         # A failed assertion, and a null pointer.

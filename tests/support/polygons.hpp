@@ -103,6 +103,55 @@ inline std::string fault_of_cover(Polygon polygon, std::vector<Triangle> triangl
   return {};
 }
 
+/// Whether two edges cross, or the polygon winds around some area other than once, in the direction of its
+/// area. The coordinates must be small integers: it computes in double, with points near each part of each
+/// edge.
+inline bool crosses_itself(const Polygon& polygon) {
+  const std::size_t count = polygon.size();
+  const auto side = [](const Point& a, const Point& b, const Point& c) {
+    const std::int64_t area = doubled_area(a, b, c);
+    return (area > 0) - (area < 0);
+  };
+  const std::int64_t area = doubled_area(polygon);
+  const int direction = (area > 0) - (area < 0);
+  const auto winding = [&](double x, double y) {
+    int sum = 0;
+    for (std::size_t k = 0; k < count; ++k) {
+      const auto [ax, ay] = polygon[k];
+      const auto [bx, by] = polygon[(k + 1) % count];
+      const double left = static_cast<double>(bx - ax) * (y - static_cast<double>(ay)) -
+                          static_cast<double>(by - ay) * (x - static_cast<double>(ax));
+      if (static_cast<double>(ay) <= y && static_cast<double>(by) > y && left > 0) ++sum;
+      if (static_cast<double>(ay) > y && static_cast<double>(by) <= y && left < 0) --sum;
+    }
+    return sum;
+  };
+  for (std::size_t i = 0; i < count; ++i) {
+    const Point &a = polygon[i], &b = polygon[(i + 1) % count];
+    const double dx = static_cast<double>(b[0] - a[0]), dy = static_cast<double>(b[1] - a[1]);
+    std::vector<double> cuts{0, 1};
+    for (std::size_t j = 0; j < count; ++j) {
+      const Point &c = polygon[j], &d = polygon[(j + 1) % count];
+      const int sides[] = {side(a, b, c), side(a, b, d), side(c, d, a), side(c, d, b)};
+      if (sides[0] * sides[1] < 0 && sides[2] * sides[3] < 0) return true;
+      if (sides[0] == 0 && (dx != 0 || dy != 0))
+        cuts.push_back((static_cast<double>(c[0] - a[0]) * dx + static_cast<double>(c[1] - a[1]) * dy) /
+                       (dx * dx + dy * dy));
+    }
+    std::sort(cuts.begin(), cuts.end());
+    for (std::size_t k = 0; k + 1 < cuts.size(); ++k) {
+      const double middle = (cuts[k] + cuts[k + 1]) / 2;
+      if (cuts[k + 1] - cuts[k] < 1e-9 || middle <= 0 || middle >= 1) continue;
+      for (const double aside : {-1e-6, 1e-6}) {
+        const int found = winding(static_cast<double>(a[0]) + middle * dx - aside * dy,
+                                  static_cast<double>(a[1]) + middle * dy + aside * dx);
+        if (found != 0 && found != direction) return true;
+      }
+    }
+  }
+  return false;
+}
+
 inline Polygon starting_at(Polygon polygon, std::size_t first) {
   std::rotate(polygon.begin(), polygon.begin() + static_cast<std::ptrdiff_t>(first), polygon.end());
   return polygon;

@@ -82,7 +82,7 @@ bool EarClipper::pop(Rank rank, std::uint32_t& corner) {
 }
 
 bool EarClipper::may_cut_ear(std::uint32_t corner) {
-  const Obstacles obstacles = find_obstacles(corner);
+  const Obstacles obstacles = find_obstacles(corner, true);
   if (obstacles.inside != none) {
     wait(corner, blocked, obstacles.inside);
   } else if (obstacles.touching != none) {
@@ -94,7 +94,7 @@ bool EarClipper::may_cut_ear(std::uint32_t corner) {
 }
 
 bool EarClipper::may_cut_loose(std::uint32_t corner) {
-  const Obstacles obstacles = find_obstacles(corner);
+  const Obstacles obstacles = find_obstacles(corner, false);
   if (obstacles.inside != none) {
     wait(corner, blocked, obstacles.inside);
     return false;
@@ -105,7 +105,7 @@ bool EarClipper::may_cut_loose(std::uint32_t corner) {
   return false;
 }
 
-EarClipper::Obstacles EarClipper::find_obstacles(std::uint32_t corner) const {
+EarClipper::Obstacles EarClipper::find_obstacles(std::uint32_t corner, bool only_one) const {
   const std::array triangle{previous_[corner], corner, next_[corner]};
   const auto [a, b, c] = triangle;
   Obstacles found{none, none};
@@ -118,7 +118,7 @@ EarClipper::Obstacles EarClipper::find_obstacles(std::uint32_t corner) const {
       return true;
     }
     if (found.touching == none) found.touching = d;
-    return false;
+    return only_one;
   });
   return found;
 }

@@ -30,7 +30,7 @@ class EarClipper {
   enum Rank : std::uint8_t {
     spike,     ///< no area: the edges coincide, or one has no length
     ear,       ///< turns left; not known to be blocked
-    loose,     ///< an ear that other corners touch
+    loose,     ///< turns left, and another corner touches its triangle
     straight,  ///< no area: the corner lies on the line from the previous to the next
     blocked,   ///< turns left, and the outline passes through its triangle
     reflex,    ///< turns right
@@ -58,7 +58,8 @@ class EarClipper {
   void set_rank(std::uint32_t corner, Rank rank);
   bool may_cut_ear(std::uint32_t corner);
   bool may_cut_loose(std::uint32_t corner);
-  Obstacles find_obstacles(std::uint32_t corner) const;
+  /// Of all obstacles in the triangle of the corner, or of the first one that is found.
+  Obstacles find_obstacles(std::uint32_t corner, bool only_one) const;
   /// Whether an edge to `end`, from a corner with these sides of a triangle, goes into the open triangle.
   bool enters(std::uint32_t end, const std::array<std::uint32_t, 3>& triangle,
               const std::array<int, 3>& sides_of_start) const;

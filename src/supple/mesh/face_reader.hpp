@@ -8,6 +8,19 @@
 
 namespace supple {
 
+/// The index as a vertex id. Fails through `source.fail_here` when it is not below `vertices`; the message
+/// names the element.
+template <class Source>
+std::uint32_t checked_vertex(std::int64_t index, std::uint64_t vertices, const char* element,
+                             std::uint64_t number, const Source& source) {
+  if (index < 0 || static_cast<std::uint64_t>(index) >= vertices) {
+    source.fail_here(element + (' ' + std::to_string(number)) + ": vertex index " + std::to_string(index) +
+                     " is out of range; the file has " + std::to_string(vertices) +
+                     " vertices, counted from 0");
+  }
+  return static_cast<std::uint32_t>(index);
+}
+
 /// Reads the faces of formats that list the vertices of a face by ids from 0.
 class FaceReader {
  public:
@@ -22,14 +35,8 @@ class FaceReader {
     };
     if (corners < 1) fail(" has " + std::to_string(corners) + " corners; it needs at least 1");
     corners_.clear();
-    for (std::int64_t k = 0; k < corners; ++k) {
-      const std::int64_t index = next_index();
-      if (index < 0 || static_cast<std::uint64_t>(index) >= vertices) {
-        fail(": vertex index " + std::to_string(index) + " is out of range; the file has " +
-             std::to_string(vertices) + " vertices, counted from 0");
-      }
-      corners_.push_back(static_cast<std::uint32_t>(index));
-    }
+    for (std::int64_t k = 0; k < corners; ++k)
+      corners_.push_back(checked_vertex(next_index(), vertices, "face", number, source));
     if (corners == 2 && corners_[0] == corners_[1])
       fail(" is a line that joins vertex " + std::to_string(corners_[0]) + " to itself; leave it out");
     add_face(mesh, fans_, corners_);

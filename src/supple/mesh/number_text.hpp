@@ -6,7 +6,8 @@
 namespace supple {
 
 /// Reads the decimal number at the start of [first, last), correctly rounded, in any locale. Also accepts a
-/// leading '+', and `inf`, `infinity` and `nan` in any case. A number that is too large becomes an infinity,
+/// leading '+', and `inf`, `infinity` and `nan` in any case, and what Microsoft's older libraries print for
+/// them (`1.#INF`, `-1.#IND`). A number that is too large becomes an infinity,
 /// and a number that is too small becomes a zero, with its sign. Returns the end of the number, or null when
 /// no number starts there.
 const char* parse_double(const char* first, const char* last, double& value);

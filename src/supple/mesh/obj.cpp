@@ -23,7 +23,7 @@ class ObjReader {
       const std::string_view keyword = scanner_.word();
       if (keyword == "v") {
         mesh_.positions.push_back(scanner_.point());
-      } else if (keyword == "f") {
+      } else if (keyword == "f" || keyword == "fo") {  // "fo" is the older name
         read_face();
       } else if (keyword == "l") {
         read_polyline();

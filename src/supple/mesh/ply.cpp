@@ -1,5 +1,5 @@
-// PLY, text or binary in either byte order: reads vertices with x, y, z and polygons, and skips everything
-// else.
+// PLY, text or binary in either byte order: reads vertices with x, y, z, faces and triangle strips, and skips
+// everything else.
 
 #include <algorithm>
 #include <bit>
@@ -111,9 +111,6 @@ class HeaderReader {
 
   void read_element() {
     const std::string name(scanner_.word());
-    if (name == "tristrips") {
-      scanner_.fail_here("triangle strips are not supported; save the mesh with an element 'face'");
-    }
     const std::int64_t count = scanner_.integer("the number of elements");
     if (count < 0)
       scanner_.fail_here("element " + in_quotes(name) + " has the count " + std::to_string(count));
@@ -275,7 +272,11 @@ class BodyReader {
       if (element.name == "vertex") {
         read_vertices(element);
       } else if (element.name == "face") {
-        read_faces(element);
+        // A triangle takes at least four bytes.
+        mesh_.triangles.reserve(std::min<std::uint64_t>(element.count, body_.available() / 4));
+        read_lists(element, [&](std::uint64_t face, const Property& list) { read_face(face, list); });
+      } else if (element.name == "tristrips") {
+        read_lists(element, [&](std::uint64_t strip, const Property& list) { read_strip(strip, list); });
       } else if (!element.properties.empty()) {
         for (std::uint64_t i = 0; i < element.count; ++i) {
           for (const Property& property : element.properties) skip_property(property);
@@ -342,18 +343,19 @@ class BodyReader {
     return axes;
   }
 
-  void read_faces(const Element& element) {
+  // Calls `read(number, property)` for the list of vertices of each face or strip.
+  template <class Read>
+  void read_lists(const Element& element, Read read) {
     if (element.count == 0) return;
     const auto vertex_list = std::ranges::find_if(element.properties, is_vertex_list);
     if (vertex_list == element.properties.end()) {
-      body_.fail_here("element 'face' has no list 'vertex_indices' or 'vertex_index'");
+      body_.fail_here("element " + in_quotes(element.name) +
+                      " has no list 'vertex_indices' or 'vertex_index'");
     }
-    // A triangle takes at least four bytes.
-    mesh_.triangles.reserve(std::min<std::uint64_t>(element.count, body_.available() / 4));
-    for (std::uint64_t face = 0; face < element.count; ++face) {
+    for (std::uint64_t number = 0; number < element.count; ++number) {
       for (const Property& property : element.properties) {
         if (&property == &*vertex_list) {
-          read_face(face, property);
+          read(number, property);
         } else {
           skip_property(property);
         }
@@ -365,6 +367,32 @@ class BodyReader {
     const std::int64_t corners = body_.integer(*vertex_list.count_type);
     const auto next_index = [&] { return body_.integer(vertex_list.type); };
     faces_.read(mesh_, vertex_count_, face, corners, body_, next_index);
+  }
+
+  // Each vertex of a strip forms a triangle with the two before it, and every second triangle is turned
+  // around. After -1 the strip starts again. Strips repeat vertices to go on elsewhere; the triangles of such
+  // a repetition have no area and are left out.
+  void read_strip(std::uint64_t number, const Property& vertex_list) {
+    const std::int64_t count = body_.integer(*vertex_list.count_type);
+    if (count < 0) {
+      body_.fail_here("strip " + std::to_string(number) + " has " + std::to_string(count) + " vertices");
+    }
+    std::uint32_t first = 0, second = 0;
+    std::uint64_t run = 0;
+    for (std::int64_t i = 0; i < count; ++i, ++run) {
+      const std::int64_t index = body_.integer(vertex_list.type);
+      if (index == -1) {
+        run = ~std::uint64_t{0};
+        continue;
+      }
+      const std::uint32_t vertex = checked_vertex(index, vertex_count_, "strip", number, body_);
+      if (run >= 2 && first != second && second != vertex && vertex != first) {
+        mesh_.triangles.push_back(run % 2 == 0 ? Triangle{first, second, vertex}
+                                               : Triangle{second, first, vertex});
+      }
+      first = second;
+      second = vertex;
+    }
   }
 
   void skip_property(const Property& property) {

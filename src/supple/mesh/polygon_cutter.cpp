@@ -4,6 +4,7 @@
 #include <cassert>
 
 #include "geometry/vector.hpp"
+#include "mesh/outline_winding.hpp"
 
 namespace supple {
 namespace {
@@ -40,7 +41,10 @@ PolygonShape PolygonCutter::cut(std::span<const Vec3d> corners, std::span<Triang
   const OutlineView view(corners);
   if (!view) return shape;
   shape.bent = is_bent(corners);
-  if (!fan_stays_inside(view)) shape.crosses = !clipper_.clip(view, triangles);
+  if (!fan_stays_inside(view)) {
+    const bool all_turn_left = clipper_.clip(view, triangles);
+    shape.crosses = !all_turn_left || crosses_itself(view);
+  }
   shape.concave = !shape.crosses && turns_right_somewhere(view);
   return shape;
 }

@@ -1,5 +1,6 @@
 // STL, text or binary: triangles of three points. Equal points become one vertex.
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
@@ -32,10 +33,12 @@ std::uint64_t announced_size(std::string_view bytes) {
   return prologue_size + std::uint64_t{facet_size} * announced_facets(bytes);
 }
 
-// Binary files may start with "solid" too. So first test the size, and zero bytes, which no text has.
+// Binary files may start with "solid" too. So first test the size, and zero bytes, which text has only at its
+// end.
 bool is_text(std::string_view bytes) {
   if (bytes.size() >= prologue_size && bytes.size() == announced_size(bytes)) return false;
-  if (bytes.substr(0, 1024).find('\0') != std::string_view::npos) return false;
+  if (is_utf16(bytes)) return true;  // the reader of text refuses it
+  if (without_padding(bytes).substr(0, 1024).find('\0') != std::string_view::npos) return false;
   TextScanner scanner(bytes, "", {});
   return scanner.skip_to_word() && equal_ignoring_case(scanner.word(), "solid");
 }
@@ -86,7 +89,7 @@ class StlTextReader {
     scanner_.skip_line();
     while (true) {
       const std::string_view word = next_word();
-      if (equal_ignoring_case(word, "endsolid")) break;
+      if (ends(word, "solid")) break;
       if (!equal_ignoring_case(word, "facet")) scanner_.fail_expected("'facet' or 'endsolid'", word);
       read_facet();
     }
@@ -101,8 +104,8 @@ class StlTextReader {
     expect("loop");
     Triangle triangle;
     for (std::uint32_t& id : triangle) id = read_vertex();
-    expect("endloop");
-    expect("endfacet");
+    expect_end("loop");
+    expect_end("facet");
     mesh_.triangles.push_back(triangle);
   }
 
@@ -114,6 +117,18 @@ class StlTextReader {
   std::string_view next_word() {
     scanner_.skip_to_word();
     return scanner_.word();
+  }
+
+  // Some programs write "end solid" instead of "endsolid".
+  bool ends(std::string_view word, std::string_view part) {
+    if (equal_ignoring_case(word, "end")) return equal_ignoring_case(scanner_.word(), part);
+    return equal_ignoring_case(word.substr(0, 3), "end") &&
+           equal_ignoring_case(word.substr(std::min<std::size_t>(word.size(), 3)), part);
+  }
+
+  void expect_end(const std::string& part) {
+    const std::string_view word = next_word();
+    if (!ends(word, part)) scanner_.fail_expected(in_quotes("end" + part), word);
   }
 
   void expect(std::string_view keyword) {

@@ -7,13 +7,24 @@
 
 namespace supple {
 
+bool is_utf16(std::string_view text) {
+  return text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF");
+}
+
+std::string_view without_padding(std::string_view text) {
+  constexpr std::string_view padding("\0\x1a", 2), blanks_and_padding("\0\x1a \t\v\f\r\n", 8);
+  const std::size_t end = text.find_last_not_of(blanks_and_padding) + 1;
+  return text.substr(0, text.find_first_of(padding, end));
+}
+
 TextScanner::TextScanner(std::string_view text, std::string file, TextSyntax syntax)
     : begin_(text.data()),
       position_(begin_),
-      end_(begin_ + text.size()),
+      end_(begin_ + without_padding(text).size()),
       file_(std::move(file)),
       syntax_(syntax) {
   if (text.starts_with("\xEF\xBB\xBF")) position_ += 3;
+  if (is_utf16(text)) fail_here("the text is UTF-16; save the file as UTF-8 or ASCII");
 }
 
 bool TextScanner::is_continuation(const char* place) const {

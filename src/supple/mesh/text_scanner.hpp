@@ -16,8 +16,15 @@ struct TextSyntax {
   bool backslash_continues = false;  ///< a backslash as the last character joins the next line to this one
 };
 
+/// Whether the text starts with a byte order mark of UTF-16.
+bool is_utf16(std::string_view text);
+/// The text without zero bytes and end-of-file characters (Ctrl-Z), mixed with blanks, at its end: some
+/// programs fill the last block of a file with them.
+std::string_view without_padding(std::string_view text);
+
 /// Reads words and numbers, line by line, from a text file in memory, and tracks the line for messages. Lines
-/// end with LF, CR LF or CR. Skips a byte order mark at the start. Keeps a view of the text.
+/// end with LF, CR LF or CR. Skips a byte order mark at the start, and padding at the end. Fails when the
+/// text is UTF-16. Keeps a view of the text.
 class TextScanner {
  public:
   TextScanner(std::string_view text, std::string file, TextSyntax syntax);

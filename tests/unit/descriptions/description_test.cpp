@@ -21,7 +21,7 @@ using Structures =
     testing::Types<ImpactOptions, ObjectOctreeOptions, SceneOctreeOptions, ComparisonOptions, ObjectOptions,
                    SceneOptions, StepOptions, BroadPhaseOptions, MassSpringOptions, MassSpringMotion::Handle,
                    MassSpringMotion, RigidMotion, WaveMotion, ContactResponse, SimulationOptions, StepStats,
-                   BroadPhaseStats, OctreeStatistics>;
+                   BroadPhaseStats, OctreeStatistics, PolygonCounts>;
 TYPED_TEST_SUITE(EachStructure, Structures);
 
 TYPED_TEST(EachStructure, DescribesEveryMemberInOrder) {

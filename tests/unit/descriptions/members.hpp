@@ -85,5 +85,9 @@ inline auto members_of(OctreeStatistics& o) {
   auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n] = o;
   return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m, n);
 }
+inline auto members_of(PolygonCounts& o) {
+  auto& [a, b, c, d, e] = o;
+  return std::tie(a, b, c, d, e);
+}
 
 }  // namespace supple

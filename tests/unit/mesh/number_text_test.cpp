@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdlib>
+#include <limits>
 #include <string>
 
 #include "support/random.hpp"
@@ -63,6 +64,22 @@ TEST(ParseDouble, AgreesWithTheStandardLibrary) {
                            "Infinity",
                            "-infinity"}) {
     EXPECT_EQ(bits(parsed(text)), bits(std::strtod(text, nullptr))) << text;
+  }
+}
+
+TEST(ParseDouble, WhatMicrosoftPrints) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(parsed("1.#INF"), infinity);
+  EXPECT_EQ(parsed("-1.#INF000"), -infinity);
+  for (const std::string text : {"1.#QNAN", "-1.#IND", "1.#SNAN0", "+1.#QNAN000", "nan(ind)", "-nan(snan)"}) {
+    double value = 0;
+    EXPECT_EQ(parse_double(text.data(), text.data() + text.size(), value), text.data() + text.size()) << text;
+    EXPECT_TRUE(std::isnan(value)) << text;
+  }
+  for (const std::string text : {"1.#", "1.#inf", "1.#IN", "2.#INF", "1#INF"}) {
+    double value = 0;
+    EXPECT_EQ(*parse_double(text.data(), text.data() + text.size(), value), '#') << text;
+    EXPECT_EQ(value, text[0] - '0');
   }
 }
 

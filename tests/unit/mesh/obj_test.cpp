@@ -58,6 +58,9 @@ const ObjCase obj_cases[] = {
     {"repeated ids stay", corners + "f 1 1 2\nf 3 3 3\n", {{0, 0, 1}, {2, 2, 2}}},
     {"signs", corners + "f +1 +2 +3\nv +1 -2 +.5\n", {{0, 1, 2}}, 5},
     {"weights and colours", "v 0 0 0 1\nv 1 0 0 0.5 0.5 0.5\nv 0 1 0 1 .1 .2 .3\nf 1 2 3\n", {{0, 1, 2}}, 3},
+    {"zero bytes at the end", corners + "f 1 2 3\n" + std::string(3, '\0'), {{0, 1, 2}}},
+    {"end-of-file characters and blanks at the end", corners + "f 1 2 3\x1a \r\n\x1a\n", {{0, 1, 2}}},
+    {"the older name of faces", corners + "fo 1 2 3\n", {{0, 1, 2}}},
     {"no faces", corners, {}},
     {"nothing", "", {}, 0},
     {"only blanks", "\n \n\t\r\n", {}, 0},
@@ -146,7 +149,9 @@ const ErrorCase obj_errors[] = {
     {"v 0 0x10 0\n", "a.obj:1: expected a number for y, found '0x10'"},
     {"v \x01" + std::string(60, 'a') + " 0 0\n",
      "a.obj:1: expected a number for x, found '?aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa...'"},
-    {std::string("\xFF\xFEv\0 \0\x31\0\n\0", 10), "a.obj:1: a zero byte; OBJ files are plain text"},
+    {std::string("\xFF\xFEv\0 \0\x31\0\n\0", 10),
+     "a.obj:1: the text is UTF-16; save the file as UTF-8 or ASCII"},
+    {std::string("v 0 0 0\n\0v 1 0 0\n", 17), "a.obj:2: a zero byte; OBJ files are plain text"},
 };
 
 TEST(Obj, SaysWhatIsWrongAndWhere) {

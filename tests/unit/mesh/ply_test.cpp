@@ -15,6 +15,7 @@ namespace {
 
 const std::string xyz = "property float x\nproperty float y\nproperty float z\n";
 const std::string faces = "property list uchar int vertex_indices\n";
+const std::string strips = "property list int int vertex_indices\n";
 const std::string corners = "0 0 0\n1 0 0\n0 1 0\n0 0 1\n";
 
 std::string header(const std::string& format, const std::string& elements) {
@@ -77,6 +78,19 @@ const PlyCase ply_cases[] = {
          "0 1\n",
      {{0, 1, 2}}},
     {"polygons become fans", plain + corners + "4 3 0 1 2\n", {{3, 0, 1}, {3, 1, 2}}},
+    {"a strip that starts again",
+     header("ascii", "element vertex 4\n" + xyz + "element tristrips 2\n" + strips) + corners +
+         "10 0 1 2 3 -1 -1 3 2 1 0\n0\n",
+     {{0, 1, 2}, {2, 1, 3}, {3, 2, 1}, {1, 2, 0}}},
+    {"a strip that repeats vertices to go on elsewhere",
+     header("ascii", "element vertex 4\n" + xyz + "element tristrips 1\n" + strips) + corners +
+         "8 0 1 2 2 3 3 1 0\n",
+     {{0, 1, 2}, {1, 3, 0}}},
+    {"faces of one corner and of two",
+     header("ascii", "element vertex 4\n" + xyz + "element face 3\n" + faces) + corners +
+         "1 2\n2 1 0\n3 0 1 2\n",
+     {{0, 1, 2}}},
+    {"zero bytes at the end", plain + corners + "3 0 1 2\n" + std::string(3, '\0'), {{0, 1, 2}}},
     {"no element face", header("ascii", "element vertex 4\n" + xyz) + corners, {}},
     {"no faces", header("ascii", "element vertex 4\n" + xyz + "element face 0\n") + corners, {}},
     {"nothing", header("ascii", "element vertex 0\nelement face 0\n"), {}, 0},
@@ -200,8 +214,15 @@ const ErrorCase ply_errors[] = {
      "a.ply:3: expected an integer for the number of elements, found the end of the line"},
     {"ply\nformat ascii 1.0\nelement vertex 1\nelement vertex 1\n",
      "a.ply:4: element 'vertex' is there twice"},
-    {"ply\nformat ascii 1.0\nelement tristrips 1\n",
-     "a.ply:3: triangle strips are not supported; save the mesh with an element 'face'"},
+    {header("ascii", "element vertex 4\n" + xyz + "element tristrips 1\n" + strips) + corners +
+         "4 0 1 2 -2\n",
+     "a.ply:14: strip 0: vertex index -2 is out of range; the file has 4 vertices, counted from 0"},
+    {header("ascii", "element vertex 4\n" + xyz + "element tristrips 1\n" + strips) + corners + "4 0 1 2\n",
+     "a.ply:15: the file ends before the last element of the header"},
+    {header("ascii", "element vertex 4\n" + xyz + "element tristrips 1\n" + strips) + corners + "-4 0 1 2\n",
+     "a.ply:14: strip 0 has -4 vertices"},
+    {header("ascii", "element vertex 4\n" + xyz + "element tristrips 1\nproperty int n\n") + corners + "1\n",
+     "a.ply:13: element 'tristrips' has no list 'vertex_indices' or 'vertex_index'"},
     {"ply\nformat ascii 1.0\nproperty float x\n", "a.ply:3: a property comes before any element"},
     {"ply\nformat ascii 1.0\nelement vertex 1\nproperty half x\n",
      "a.ply:4: unknown type 'half' of a property"},

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "geometry/vector.hpp"
 #include "support/polygons.hpp"
 #include "support/random.hpp"
 
@@ -158,6 +159,141 @@ TEST(PolygonCutter, PolygonsThatTouchThemselves) {
     if (polygons::doubled_area(polygon) == 0) continue;
     expect_cover(polygons::sheared(random, polygon), "collapsed " + std::to_string(i), 1 + random.below(6));
     if (HasFailure()) return;
+  }
+}
+
+TEST(PolygonCutter, OutlinesThatCrossThemselves) {
+  const Polygon shapes[] = {
+      {{0, 0}, {2, 2}, {2, 0}, {0, 2}},                                  // a bow tie without area
+      {{0, 0}, {4, 4}, {4, 0}, {0, 3}},                                  // a bow tie
+      {{0, 9}, {-6, -8}, {9, 3}, {-9, 3}, {6, -8}},                      // a pentagram: it winds twice inside
+      {{0, 0}, {2, 0}, {2, 2}, {0, 2}, {0, 0}, {2, 0}, {2, 2}, {0, 2}},  // a square twice
+      {{0, 0}, {2, 2}, {4, 4}, {4, 0}, {2, 2}, {0, 3}},                  // edges cross in a corner of both
+      {{0, 0}, {4, 0}, {4, 4}, {2, 4}, {2, -1}, {2, 4}, {0, 4}},         // a spike leaves on the other side
+      {{0, 0}, {9, 0}, {9, 9}, {2, 9}, {2, 3}, {-3, 3}, {-3, 5}, {4, 5}, {4, 7}, {0, 7}},  // a folded strip
+  };
+  for (const Polygon& shape : shapes) {
+    for (std::size_t first = 0; first < shape.size(); ++first) {
+      const Cut result = cut(in_space(polygons::starting_at(shape, first)));
+      EXPECT_TRUE(result.shape.crosses) << shape[1][0];
+      EXPECT_FALSE(result.shape.concave);
+      std::int64_t area = 0;
+      for (const Triangle& t : result.triangles) {
+        const auto at = [&](std::uint32_t corner) { return shape[(corner + first) % shape.size()]; };
+        area += polygons::doubled_area(at(t[0]), at(t[1]), at(t[2]));
+      }
+      EXPECT_EQ(area, polygons::doubled_area(shape));
+    }
+  }
+}
+
+TEST(PolygonCutter, FindsAllCrossings) {
+  RandomNumbers random(3);
+  int crossing = 0, simple = 0;
+  for (int i = 0; i < 4000 && !HasFailure(); ++i) {
+    Polygon polygon;
+    const std::uint32_t grid = 2 + random.below(4);
+    for (std::uint32_t k = 0, corners = 4 + random.below(4); k < corners; ++k)
+      polygon.push_back({random.below(grid), random.below(grid)});
+    const bool expected = polygons::crosses_itself(polygon);
+    const Cut result = cut(in_space(polygon));
+    std::string text;
+    for (const Point& p : polygon) text += " (" + std::to_string(p[0]) + ", " + std::to_string(p[1]) + ")";
+    EXPECT_EQ(result.shape.crosses, expected) << text;
+    if (!expected && polygons::doubled_area(polygon) != 0) {
+      EXPECT_EQ(fault_of_cover(polygon, result.triangles), "") << text;
+    }
+    ++(expected ? crossing : simple);
+  }
+  EXPECT_GT(crossing, 500);
+  EXPECT_GT(simple, 500);
+}
+
+TEST(PolygonCutter, PolygonsWithoutArea) {
+  const std::vector<std::vector<Vec3d>> shapes = {
+      {{1, 2, 3}, {1, 2, 3}, {1, 2, 3}, {1, 2, 3}},                        // a point
+      {{0, 0, 0}, {1, 2, 3}, {3, 6, 9}, {2, 4, 6}, {-1, -2, -3}},          // a line
+      {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {1, 0, 0}},                        // a path and back
+      {{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {2, 0, 0}, {4, 0, 0}, {2, 0, 0}},  // a path with a fork
+  };
+  for (const std::vector<Vec3d>& corners : shapes) {
+    const Cut result = cut(corners);
+    EXPECT_FALSE(result.shape.crosses);
+    EXPECT_EQ(result.triangles.size(), corners.size() - 2);
+    for (const Triangle& t : result.triangles)
+      EXPECT_EQ(cross(corners[t[1]] - corners[t[0]], corners[t[2]] - corners[t[0]]), (Vec3d{0, 0, 0}));
+  }
+}
+
+TEST(PolygonCutter, CornersThatAreNotFinite) {
+  for (const double value :
+       {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+    const Cut result = cut({{3, 1, 0}, {3, 0, 0}, {0, 0, value}, {0, 3, 0}, {1, 3, 0}, {1, 1, 0}});
+    EXPECT_EQ(result.triangles, fan(6));
+    EXPECT_FALSE(result.shape.concave || result.shape.crosses || result.shape.bent);
+  }
+}
+
+TEST(PolygonCutter, NamesWhatIsNotFlat) {
+  const auto roof = [](double height) {
+    return cut({{0, 0, height}, {10, 0, 0}, {10, 10, height}, {0, 10, 0}}).shape.bent;
+  };
+  EXPECT_FALSE(roof(0));
+  EXPECT_FALSE(roof(0.019));
+  EXPECT_TRUE(roof(0.021));
+  EXPECT_TRUE(roof(1e100));
+  // Nearly flat polygons are cut inside their outline, too.
+  RandomNumbers random(4);
+  for (int i = 0; i < 100; ++i) {
+    const Polygon polygon = polygons::random_simple_polygon(random, 12, 100);
+    if (polygon.empty()) continue;
+    std::vector<Vec3d> corners = in_space(polygon, 3);
+    for (Vec3d& corner : corners) corner = corner + random.vector(1e-3);
+    const Cut result = cut(corners);
+    EXPECT_FALSE(result.shape.bent || result.shape.crosses);
+    EXPECT_EQ(fault_of_cover(polygon, result.triangles), "");
+  }
+}
+
+TEST(PolygonCutter, HugeTinyAndSlimPolygons) {
+  // An L whose legs are 2^-900 wide and 2^900 long, far from the origin of the other axis.
+  const double wide = 0x1p-900, far = 0x1p900;
+  const std::vector<Vec3d> corners{{far, wide, 5}, {far, 0, 5},    {0, 0, 5},
+                                   {0, far, 5},    {wide, far, 5}, {wide, wide, 5}};
+  const Polygon shape{{9, 1}, {9, 0}, {0, 0}, {0, 9}, {1, 9}, {1, 1}};
+  const Cut result = cut(corners);
+  EXPECT_EQ(fault_of_cover(shape, result.triangles), "");
+  EXPECT_TRUE(result.shape.concave);
+  // Coordinates whose differences overflow.
+  constexpr double largest = std::numeric_limits<double>::max();
+  const Cut wide_cut = cut({{largest, -largest / 2, 0},
+                            {largest, -largest, 0},
+                            {-largest, -largest, 0},
+                            {-largest, largest, 0},
+                            {-largest / 2, largest, 0},
+                            {-largest / 2, -largest / 2, 0}});
+  EXPECT_EQ(fault_of_cover(shape, wide_cut.triangles), "");
+  EXPECT_TRUE(wide_cut.shape.concave);
+}
+
+TEST(PolygonCutter, LargePolygonsTakeNearlyLinearTime) {
+  // A comb, and a comb of slanted teeth, whose boxes all overlap.
+  for (const std::int64_t slant : {0, 1}) {
+    constexpr std::int64_t teeth = 20000;
+    Polygon polygon{{0, -1}, {3 * teeth, -1}};
+    for (std::int64_t i = teeth; i-- > 0;) {
+      polygon.push_back({3 * i + 2 + slant * 3 * teeth, 3 * teeth});
+      polygon.push_back({3 * i, 0});
+    }
+    const Cut result = cut(in_space(polygon));
+    EXPECT_TRUE(result.shape.concave);
+    std::int64_t area = 0;
+    for (const Triangle& t : result.triangles) {
+      const std::int64_t part = polygons::doubled_area(polygon[t[0]], polygon[t[1]], polygon[t[2]]);
+      EXPECT_GE(part, 0);
+      area += part;
+    }
+    EXPECT_EQ(area, polygons::doubled_area(polygon));
   }
 }
 

@@ -63,6 +63,15 @@ const StlCase stl_cases[] = {
      "solid a\n" + facet("0 0 0", "1 0 0", "0 1 0") + "endsolid a\n\nsolid b\n" +
          facet("1 0 0", "1 1 0", "0 1 0") + "endsolid b\n",
      two_triangles},
+    {"the end in two words", "solid a\n" + two_facets + "end solid a\nsolid b\nEnd Solid", two_triangles},
+    {"all ends in two words",
+     "solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nend loop\nend "
+     "facet\nend "
+     "solid\n",
+     {{0, 1, 2}},
+     3},
+    {"zero bytes at the end", "solid a\n" + two_facets + "endsolid a\n" + std::string(9, '\0'),
+     two_triangles},
     {"an empty solid", "solid a\nendsolid a\n", {}, 0},
     {"normals that are no numbers",
      "solid\nfacet normal 1.#QNAN nan -nan(ind)\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 "
@@ -153,6 +162,8 @@ const ErrorCase stl_errors[] = {
      "a.stl:7: expected 'endloop', found 'vertex'"},
     {"solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 x 0\n",
      "a.stl:4: expected a number for y, found 'x'"},
+    {"solid a\nend facet\n", "a.stl:2: expected 'facet' or 'endsolid', found 'end'"},
+    {std::string("\xFF\xFEs\0o\0", 6), "a.stl:1: the text is UTF-16; save the file as UTF-8 or ASCII"},
     {"solid a\nendsolid a\nrubbish\n", "a.stl:3: expected 'solid', found 'rubbish'"},
 };
 
