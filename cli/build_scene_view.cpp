@@ -13,6 +13,7 @@
 #include "frame_files.hpp"
 #include "progress.hpp"
 #include "session/statistics.hpp"
+#include "session/utf8.hpp"
 #include "supple/error.hpp"
 #include "text.hpp"
 
@@ -38,6 +39,7 @@ class FileFrames : public viewer::Frames {
     for (const InputObject& object : input.objects) {
       if (const auto* sequence = motion_of<FrameSequence>(object))
         count_ = std::max<std::uint64_t>(count_, sequence->files.size());
+      if (const auto* motion = motion_of<ComputedMotion>(object)) count_ = std::max(count_, motion->count);
     }
   }
 
@@ -55,6 +57,7 @@ class FileFrames : public viewer::Frames {
       const auto files = std::make_shared<const FrameFiles>(*sequence, object.mesh);
       return [files](std::uint64_t frame, std::span<Vec3d> positions) { files->read(frame, positions); };
     }
+    if (const auto* motion = motion_of<ComputedMotion>(object)) return motion->positions;
     const auto rest = std::make_shared<const std::vector<Vec3d>>(object.mesh.positions);
     if (const auto* motion = motion_of<WaveMotion>(object)) {
       return [this, motion = *motion, rest](std::uint64_t frame, std::span<Vec3d> positions) {
@@ -121,7 +124,7 @@ std::shared_ptr<const viewer::Frames> frames_of(const Input& input, const ViewOp
     if (const auto* motion = motion_of<RecordedMotion>(object))
       return std::make_shared<const RecordedFrames>(motion->recording);
   }
-  if (!has_motion<FrameSequence>(input)) return nullptr;
+  if (!has_motion<FrameSequence>(input) && !has_motion<ComputedMotion>(input)) return nullptr;
   if (has_motion<MassSpringMotion>(input) || has_motion<RigidMotion>(input))
     throw Error(fmt::format(
         "{}: some objects are moved by files, others are bodies that a simulation moves, which the viewer "
@@ -139,7 +142,7 @@ viewer::ViewedObject object_of(const InputObject& object) {
 }
 
 std::string title_of(const std::vector<std::string>& inputs) {
-  const std::string first = valid_utf8(std::filesystem::path(inputs.front()).filename().string());
+  const std::string first = viewer::valid_utf8(std::filesystem::path(inputs.front()).filename().string());
   return inputs.size() == 1 ? first : fmt::format("{} and {} more", first, inputs.size() - 1);
 }
 

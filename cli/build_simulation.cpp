@@ -46,6 +46,15 @@ struct Adder {
                           });
   }
 
+  ObjectId operator()(const ComputedMotion& motion) {
+    motion.positions(0, mesh.positions);
+    return simulation.add(
+        mesh, options,
+        [step = step_at(), read = motion.positions](double seconds, std::span<Vec3d> positions) {
+          read(step(seconds), positions);
+        });
+  }
+
   ObjectId operator()(const RecordedMotion& motion) {
     return simulation.add(
         mesh, options, [step = step_at(), motion](double seconds, std::span<Vec3d> positions) {

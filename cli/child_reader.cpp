@@ -64,24 +64,30 @@ class Pipe {
   std::array<int, 2> ends_{-1, -1};
 };
 
-/// The lists of a mesh, each as its length and its bytes. `visit(list)` writes or reads one.
-template <class Mesh, class Visit>
-bool for_each_list(Mesh& mesh, Visit visit) {
+/// The lists of a file, each as its length and its bytes. `visit(list)` writes or reads one. `clips` has a
+/// zero byte after each name.
+template <class File, class Text, class Visit>
+bool for_each_list(File& file, Text& clips, Visit visit) {
+  auto& mesh = file.mesh;
   const std::span polygons(&mesh.polygons, 1);
+  const std::span frame(&file.frame, 1);
   return visit(mesh.name) && visit(mesh.positions) && visit(mesh.triangles) && visit(mesh.edges) &&
-         visit(mesh.points) && visit(polygons);
+         visit(mesh.points) && visit(polygons) && visit(clips) && visit(frame);
 }
 
-bool write_mesh(const Pipe& pipe, const TriangleMesh& mesh) {
+bool write_file(const Pipe& pipe, const MeshFile& file) {
   const Answer answer = Answer::mesh;
-  return pipe.write_all(&answer, 1) && for_each_list(mesh, [&](const auto& list) {
+  std::string clips;
+  for (const std::string& name : file.clips) clips.append(name.c_str(), std::strlen(name.c_str()) + 1);
+  return pipe.write_all(&answer, 1) && for_each_list(file, clips, [&](const auto& list) {
            const std::uint64_t count = list.size();
            return pipe.write_all(&count, sizeof count) && pipe.write_all(list.data(), count * sizeof list[0]);
          });
 }
 
-bool read_mesh(std::span<const char> bytes, TriangleMesh& mesh) {
-  return for_each_list(mesh, [&](auto& list) {
+bool read_file(std::span<const char> bytes, MeshFile& file) {
+  std::string clips;
+  const bool is_complete = for_each_list(file, clips, [&](auto& list) {
     std::uint64_t count = 0;
     if (bytes.size() < sizeof count) return false;
     std::memcpy(&count, bytes.data(), sizeof count);
@@ -93,6 +99,9 @@ bool read_mesh(std::span<const char> bytes, TriangleMesh& mesh) {
     bytes = bytes.subspan(count * sizeof list[0]);
     return true;
   });
+  for (std::size_t begin = 0; begin < clips.size(); begin = clips.find('\0', begin) + 1)
+    file.clips.emplace_back(clips.c_str() + begin);
+  return is_complete;
 }
 
 [[noreturn]] void run_child(const Pipe& pipe, const std::filesystem::path& path) {
@@ -104,7 +113,7 @@ bool read_mesh(std::span<const char> bytes, TriangleMesh& mesh) {
     is_written = pipe.write_all(&answer, 1) && pipe.write_all(text.data(), text.size());
   };
   try {
-    is_written = write_mesh(pipe, load_any_mesh(path));
+    is_written = write_file(pipe, read_mesh_file(path));
   } catch (const Error& error) {
     write_text(Answer::error, error.what());
   } catch (const std::bad_alloc&) {
@@ -116,7 +125,7 @@ bool read_mesh(std::span<const char> bytes, TriangleMesh& mesh) {
 
 }  // namespace
 
-TriangleMesh load_in_child(const std::filesystem::path& path) {
+MeshFile read_in_child(const std::filesystem::path& path) {
   Pipe pipe;
   const pid_t child = fork();
   if (child < 0)
@@ -128,17 +137,17 @@ TriangleMesh load_in_child(const std::filesystem::path& path) {
   int status = 0;
   while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
-  TriangleMesh mesh;
+  MeshFile file;
   if (WIFEXITED(status) && WEXITSTATUS(status) == 0 && !bytes.empty()) {
     const std::span<const char> content = std::span(bytes).subspan(1);
     const Answer answer{bytes.front()};
-    if (answer == Answer::mesh && read_mesh(content, mesh)) return mesh;
+    if (answer == Answer::mesh && read_file(content, file)) return file;
     if (answer == Answer::error) throw Error(std::string(content.begin(), content.end()));
     if (answer == Answer::out_of_memory) throw std::bad_alloc();
   }
   throw Error(
-      one_line(fmt::format("{}: Assimp, which reads this format, crashes on the file; is it damaged? Save it "
-                           "again, or as OBJ or PLY",
+      one_line(fmt::format("{}: Assimp, the library that reads this format, crashed. The file may be fine; "
+                           "export it as glTF, OBJ or PLY instead",
                            path.string())));
 }
 

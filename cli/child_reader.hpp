@@ -2,12 +2,12 @@
 
 #include <filesystem>
 
-#include "supple/mesh.hpp"
+#include "supple/formats.hpp"
 
 namespace supple::cli {
 
-/// As `load_any_mesh`, in a child process. So a file that makes Assimp crash is an `Error`, and not the end
+/// As `read_mesh_file`, in a child process. So a file that makes Assimp crash is an `Error`, and not the end
 /// of this program.
-TriangleMesh load_in_child(const std::filesystem::path& path);
+MeshFile read_in_child(const std::filesystem::path& path);
 
 }  // namespace supple::cli

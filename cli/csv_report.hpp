@@ -17,14 +17,12 @@ class CsvReport {
   CsvReport(const std::string& file_name, const SceneOptions& options);
 
   void add(const Frame& frame);
-  /// Adds a row `truncated` with empty cells when the results are not complete.
-  void finish(bool is_truncated);
+  void finish() { file_.close(); }
 
  private:
   void add_narrow_phase(const Frame& frame, fmt::memory_buffer& rows);
 
   OutputFile file_;
-  std::size_t columns_ = 0;
   bool has_penetration_ = false;
   bool has_kinds_;  ///< a column says what each row is
 };

@@ -10,6 +10,7 @@
 #include <type_traits>
 
 #include "session/settings.hpp"
+#include "supple/format_descriptions.hpp"
 #include "supple/result_descriptions.hpp"
 #include "supple/simulation_descriptions.hpp"
 
@@ -159,6 +160,7 @@ void print_description_tables() {
   statistics_tables();
   option_table<SceneOptions, ObjectOptions>("json_options");
   option_table<ObjectOptions>("scene_object_options");
+  option_table<CoordinateConversion>("scene_coordinate_options");
   table("scene_simulation_options", option_header, [] {
     const SimulationOptions defaults;
     for_each_field<SimulationOptions>([&]<class Value>(const Field<SimulationOptions, Value>& field) {

@@ -8,7 +8,6 @@
 
 #include "child_reader.hpp"
 #include "supple/error.hpp"
-#include "supple/formats.hpp"
 #include "text.hpp"
 
 namespace supple::cli {
@@ -20,11 +19,13 @@ std::string lower_case_extension(const std::filesystem::path& path) {
   return extension;
 }
 
-TriangleMesh read_mesh(const std::filesystem::path& path) {
+MeshFile read_mesh(const std::filesystem::path& path, const CoordinateConversion& conversion) {
   if (!std::filesystem::exists(path))
     throw Error(
         one_line(fmt::format("{}: there is no such file; check the folder and the spelling", path.string())));
-  return is_read_by_assimp(path) ? load_in_child(path) : load_any_mesh(path);
+  MeshFile file = is_read_by_assimp(path) ? read_in_child(path) : read_mesh_file(path);
+  convert(file.mesh.positions, file.frame, conversion);
+  return file;
 }
 
 namespace {
@@ -57,7 +58,7 @@ void FrameFiles::read(std::uint64_t step, std::span<Vec3d> positions) const {
   const std::filesystem::path& file = sequence_.file_at(step);
   const std::string name = file.string();
   const std::string first = sequence_.files.front().string();
-  const TriangleMesh mesh = read_mesh(file);
+  const TriangleMesh mesh = read_mesh(file, sequence_.conversion).mesh;
   const auto check_count = [&](const char* what, std::size_t given, std::size_t expected) {
     if (given == expected) return;
     throw Error(fmt::format("{}: has {} {}, but {} has {}; {}", name, given, what, first, expected, advice));

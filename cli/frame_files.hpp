@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "placement.hpp"
-#include "supple/mesh.hpp"
+#include "supple/formats.hpp"
 
 namespace supple::cli {
 
@@ -19,6 +19,7 @@ struct FrameSequence {
   std::vector<std::filesystem::path> files;  ///< one or more
   bool loop = false;
   std::optional<Placement> placement;  ///< of each frame; none: the coordinates of the files are used
+  CoordinateConversion conversion{};   ///< of each file, before the placement
 
   const std::filesystem::path& file_at(std::uint64_t frame) const;
 };
@@ -48,7 +49,13 @@ class FrameFiles {
 
 std::string lower_case_extension(const std::filesystem::path& path);
 
-/// Reads a mesh file of any format. Throws `Error` when the file does not exist.
-TriangleMesh read_mesh(const std::filesystem::path& path);
+/// Whether any conversion is wanted.
+constexpr bool is_given(const CoordinateConversion& conversion) {
+  return conversion.up != UpAxis::file || conversion.unit != LengthUnit::file;
+}
+
+/// Reads a mesh file of any format, with the conversion. A file whose reader can crash is read in a child
+/// process. Throws `Error` when the file does not exist.
+MeshFile read_mesh(const std::filesystem::path& path, const CoordinateConversion& conversion = {});
 
 }  // namespace supple::cli

@@ -1,6 +1,7 @@
 #include "inputs.hpp"
 
 #include <fmt/core.h>
+#include <fmt/ranges.h>
 #include <glob.h>
 
 #include <algorithm>
@@ -107,7 +108,88 @@ void refuse_number_format(const std::string& name) {
                            name, name.substr(0, begin), name.substr(end))));
 }
 
+/// Throws when an option of `reading` has no effect on a scene file or a recording.
+void check_no_reading(const std::string& name, const MeshReading& reading, const char* instead) {
+  const char* option = reading.conversion.up != UpAxis::file         ? "--up"
+                       : reading.conversion.unit != LengthUnit::file ? "--unit"
+                       : reading.clips.clip                          ? "--clip"
+                       : reading.clips.fps                           ? "--fps"
+                       : !reading.cache.empty()                      ? "--cache"
+                                                                     : nullptr;
+  if (option != nullptr)
+    throw Error(one_line(fmt::format("{}: {} applies to mesh files only; {}", name, option, instead)));
+}
+
+/// Throws when the conversion applies to none of the files.
+void check_conversion(const std::vector<CoordinateFrame>& frames, const CoordinateConversion& conversion) {
+  const auto states = [&](const CoordinateConversion& part) {
+    return std::any_of(frames.begin(), frames.end(),
+                       [&](const CoordinateFrame& frame) { return can_convert(frame, part); });
+  };
+  if (conversion.up != UpAxis::file && !states({conversion.up, LengthUnit::file}))
+    throw Error(
+        "--up: no file states which axis points up; a scene file can rotate meshes, rotate_xyz_degrees");
+  if (conversion.unit != LengthUnit::file && !states({UpAxis::file, conversion.unit}))
+    throw Error("--unit: no file states its unit; a scene file can scale meshes, scale");
+}
+
+/// Plays the clip of an object.
+void add_clip(const fs::path& path, const MeshReading& reading, InputObject& object, Input& input) {
+  const ClipPlayer player(path, reading.clips.clip);
+  ComputedMotion motion = player.frames(reading.clips, reading.conversion);
+  if (!input.frames || motion.count > input.frames->count) {
+    input.frames = {path.string(), motion.count};
+    const double seconds = player.clip().end - player.clip().start;
+    if (reading.clips.fps || !reading.clips.frames)
+      input.simulation.time_step = 1 / reading.clips.fps.value_or(film_rate);
+    else if (motion.count > 1 && seconds > 0)
+      input.simulation.time_step = seconds / static_cast<double>(motion.count - 1);
+  }
+  object.motion = std::move(motion);
+  if (std::string note = player.note(reading.clips.clip, "--clip NAME"); !note.empty())
+    input.notes.push_back(std::move(note));
+}
+
+Input read_meshes(const std::vector<std::string>& names, const MeshReading& reading) {
+  Input input;
+  input.files = expand_patterns(names);
+  std::vector<CoordinateFrame> frames;
+  for (const fs::path& path : input.files) {
+    MeshFile file = read_mesh(path, reading.conversion);
+    frames.push_back(file.frame);
+    InputObject& object = input.objects.emplace_back(InputObject{std::move(file.mesh), {}, {}});
+    if (file.clips.empty()) continue;
+    if (reading.clips.is_given())
+      add_clip(path, reading, object, input);
+    else
+      input.notes.push_back(clips_note(path, file.clips, "--frames N plays one"));
+  }
+  if (is_given(reading.conversion)) check_conversion(frames, reading.conversion);
+  if ((reading.clips.clip || reading.clips.fps) && !input.frames)
+    throw Error(
+        fmt::format("{}: no file has an animation; leave it out", reading.clips.clip ? "--clip" : "--fps"));
+  if (!reading.cache.empty()) {
+    if (input.objects.size() != 1 || input.frames)
+      throw Error("--cache: needs one mesh without a clip; use a scene file for more objects");
+    InputObject& object = input.objects.front();
+    ComputedMotion motion = play_cache(reading.cache, object.mesh.positions.size(), false, {});
+    input.frames = {reading.cache, motion.count};
+    input.files.emplace_back(reading.cache);
+    object.motion = std::move(motion);
+  }
+  return input;
+}
+
 }  // namespace
+
+std::string clips_note(const fs::path& path, const std::vector<std::string>& clips, const char* advice) {
+  return one_line(fmt::format("{}: has {}: {}; {}", path.string(), counted(clips.size(), "clip"),
+                              fmt::join(clips, ", "), advice));
+}
+
+void print_notes(const Input& input) {
+  for (const std::string& note : input.notes) fmt::print(stderr, "supple: note: {}\n", note);
+}
 
 bool natural_less(const std::string& a, const std::string& b) {
   std::string_view rest_a = a, rest_b = b;
@@ -162,12 +244,14 @@ bool is_scene_file(const std::string& name) {
   return lower_case_extension(name) == ".toml";
 }
 
-Input read_objects(const std::vector<std::string>& names, const SceneOverrides& overrides) {
+Input read_objects(const std::vector<std::string>& names, const SceneOverrides& overrides,
+                   const MeshReading& reading) {
   const auto scene = std::find_if(names.begin(), names.end(), is_scene_file);
   if (scene != names.end()) {
     if (names.size() > 1)
       throw Error(fmt::format(
           "{}: a scene file must be the only input; add the other meshes to it as objects", *scene));
+    check_no_reading(*scene, reading, "an [[object]] has keys for it");
     return read_scene_file(*scene, overrides);
   }
   if (const auto recording = std::find_if(names.begin(), names.end(), is_recording);
@@ -175,15 +259,13 @@ Input read_objects(const std::vector<std::string>& names, const SceneOverrides& 
     if (names.size() > 1)
       throw Error(
           fmt::format("{}: a recording must be the only input; leave out the other inputs", *recording));
+    check_no_reading(*recording, reading, "leave it out");
     return read_recording(*recording);
   }
-  Input input;
-  input.files = expand_patterns(names);
-  for (const fs::path& path : input.files) input.objects.push_back({read_mesh(path), {}, {}});
-  return input;
+  return read_meshes(names, reading);
 }
 
-Input read_sequence(const std::vector<std::string>& names) {
+Input read_sequence(const std::vector<std::string>& names, const CoordinateConversion& conversion) {
   const auto scene = std::find_if(names.begin(), names.end(), is_scene_file);
   if (scene != names.end())
     throw Error(
@@ -191,6 +273,7 @@ Input read_sequence(const std::vector<std::string>& names) {
   if (const auto recording = std::find_if(names.begin(), names.end(), is_recording); recording != names.end())
     throw Error(fmt::format("{}: a recording has its own frames; leave out --sequence", *recording));
   FrameSequence frames;
+  frames.conversion = conversion;
   frames.files = expand_patterns(names);
   for (const fs::path& path : frames.files) {
     if (!fs::exists(path))
@@ -199,8 +282,9 @@ Input read_sequence(const std::vector<std::string>& names) {
   Input input;
   input.files = frames.files;
   input.frames = {frames.files.front().string(), frames.files.size()};
-  TriangleMesh first = read_mesh(frames.files.front());
-  input.objects.push_back({std::move(first), {}, std::move(frames)});
+  MeshFile first = read_mesh(frames.files.front(), conversion);
+  if (is_given(conversion)) check_conversion({first.frame}, conversion);
+  input.objects.push_back({std::move(first.mesh), {}, std::move(frames)});
   return input;
 }
 

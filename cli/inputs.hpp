@@ -10,6 +10,7 @@
 #include <variant>
 #include <vector>
 
+#include "clips.hpp"
 #include "frame_files.hpp"
 #include "supple/mesh.hpp"
 #include "supple/options.hpp"
@@ -26,7 +27,8 @@ struct RecordedMotion {
 };
 
 /// The motion of an object from frame to frame.
-using Motion = std::variant<WaveMotion, MassSpringMotion, RigidMotion, FrameSequence, RecordedMotion>;
+using Motion =
+    std::variant<WaveMotion, MassSpringMotion, RigidMotion, FrameSequence, ComputedMotion, RecordedMotion>;
 
 /// A placed object to add to the scene.
 struct InputObject {
@@ -47,6 +49,7 @@ struct Input {
   std::optional<Frames> frames{};
   std::string scene_text;                    ///< of the scene file; empty when there is none
   std::vector<std::filesystem::path> files;  ///< all that were read or will be read
+  std::vector<std::string> notes{};          ///< what users should know about the files, for standard error
 };
 
 /// Values of the command line that replace those of the scene file.
@@ -58,13 +61,26 @@ struct SceneOverrides {
   std::uint64_t most_triangles = std::numeric_limits<std::uint64_t>::max();
 };
 
+/// How the command line reads meshes.
+struct MeshReading {
+  CoordinateConversion conversion{};
+  ClipOptions clips{};
+  std::string cache{};  ///< a point cache; empty: none
+};
+
 bool is_scene_file(const std::string& name);
 
 /// Reads meshes, one object each, by name or quoted pattern (`part*.obj`, sorted by the numbers in the
 /// names); or one scene file; or one recording.
-Input read_objects(const std::vector<std::string>& names, const SceneOverrides& overrides = {});
+Input read_objects(const std::vector<std::string>& names, const SceneOverrides& overrides = {},
+                   const MeshReading& reading = {});
 /// Reads a sequence: the object of the first frame, moved by all frames.
-Input read_sequence(const std::vector<std::string>& names);
+Input read_sequence(const std::vector<std::string>& names, const CoordinateConversion& conversion = {});
+/// `walk.glb: has 2 clips: walk, run; ` and the advice.
+std::string clips_note(const std::filesystem::path& path, const std::vector<std::string>& clips,
+                       const char* advice);
+/// Prints the notes of an input to standard error.
+void print_notes(const Input& input);
 
 /// Replaces each pattern by the matching files, sorted by the numbers in the names: frame_9 before frame_10.
 /// Throws `Error` when no file matches.

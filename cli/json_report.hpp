@@ -28,8 +28,7 @@ class JsonReport {
              const JsonContent& content);
 
   void add(const Frame& frame);
-  /// `was_ended` says that frames are missing.
-  void finish(bool was_ended);
+  void finish();
 
  private:
   JsonWriter json_;
@@ -38,7 +37,6 @@ class JsonReport {
   const Input& input_;
   const Scene& scene_;
   JsonContent content_;
-  bool is_truncated_ = false;
 };
 
 }  // namespace supple::cli

@@ -24,6 +24,7 @@
 #include "recorded_input.hpp"
 #include "scene_file.hpp"
 #include "session/settings.hpp"
+#include "supple/format_descriptions.hpp"
 #include "supple/recording.hpp"
 #include "supple/simulation_descriptions.hpp"
 #include "supple/version.hpp"
@@ -31,30 +32,6 @@
 
 namespace supple::cli {
 namespace {
-
-/// Welding, where objects are not tested for contacts.
-void add_weld(CLI::App& app, viewer::Overrides<ObjectOptions>& objects) {
-  objects.for_each_setter([&]<class Struct, class Value>(const Field<Struct, Value>& field,
-                                                         const Value& default_value, auto set) {
-    if constexpr (std::is_same_v<Value, bool>) {
-      if (field.key == std::string_view("weld")) add_field(app, field, default_value, set);
-    }
-  });
-}
-
-CLI::Option* add_max_contacts(CLI::App& app, RunLimits& limits, const char* description) {
-  return add_whole(
-      app, "--max-contacts", ValueRange::from(1, 1e18),
-      [&limits](std::uint64_t number) { limits.max_contacts = number; }, description);
-}
-
-CLI::Option* add_time_limit(CLI::App& app, RunLimits& limits) {
-  return add_real(
-      app, "--time-limit", ValueRange::above(0), "s", [&limits](double seconds) { limits.seconds = seconds; },
-      "End this wall-clock time after the input was read: the results so far are written, and the JSON and "
-      "CSV "
-      "say that they are truncated (default: no limit)");
-}
 
 constexpr std::array tested_object_keys{"self", "neighbours", "weld", "margin", "own_separation", "solid"};
 
@@ -94,16 +71,43 @@ void add_kind(CLI::App& app, std::optional<QueryKind>& kind) {
       "Kind of the queries (default: from the names of folders and files)");
 }
 
+void add_conversion(CLI::App& app, CoordinateConversion& conversion) {
+  for_each_field<CoordinateConversion>([&](const auto& field) {
+    add_field(app, field, conversion.*field.member, [&conversion, member = field.member](auto value) {
+      conversion.*member = value;
+    })->group("Input");
+  });
+}
+
 /// Adds the inputs: meshes, a scene file, a recording, or frames.
-void add_input_options(CLI::App& app, std::vector<std::string>& inputs, bool& sequence) {
+void add_input_options(CLI::App& app, std::vector<std::string>& inputs, bool& sequence,
+                       MeshReading& reading) {
   app.add_option("MESH|SCENE.toml|RUN.h5", inputs,
                  "Meshes, one per object; or one scene file; or one recording")
       ->required()
       ->type_name("");
-  app.add_flag("--sequence", sequence,
-               "The meshes are frames of one object, in the order of the command line; a quoted pattern such "
-               "as 'frame_*.ply' is sorted by the numbers in the names")
-      ->group("Input");
+  CLI::Option* const frames =
+      app.add_flag(
+             "--sequence", sequence,
+             "The meshes are frames of one object, in the order of the command line; a quoted pattern such "
+             "as 'frame_*.ply' is sorted by the numbers in the names")
+          ->group("Input");
+  const auto group = [frames](CLI::Option* option) { option->group("Input")->excludes(frames); };
+  group(app.add_option_function<std::string>(
+               "--clip", [&reading](const std::string& name) { reading.clips.clip = name; },
+               "Animation of glTF, FBX or COLLADA files to play, by name (default: the first)")
+            ->type_name("NAME"));
+  group(add_real(
+      app, "--fps", ValueRange::above(0), "frames per second",
+      [&reading](double fps) { reading.clips.fps = fps; },
+      "Play the animation at this rate (default: with --frames N, N frames evenly from its start to its end; "
+      "otherwise 25)"));
+  group(
+      app.add_option("--cache", reading.cache,
+                     "Point cache with the positions of the mesh in each frame; its vertices have the order "
+                     "of the mesh file")
+          ->type_name("FILE.pc2|FILE.mdd"));
+  add_conversion(app, reading.conversion);
 }
 
 /// The options of the detection that the input has: those of a recording or of a scene file.
@@ -155,7 +159,7 @@ void add_report_options(CLI::App& app, DetectionOptions& options, Dependences& d
   };
   add("--fail-on-contact", options.fail_on_contact,
       "Exit with status 1 when anything touches, is near with --contacts proximity, or is inside a solid "
-      "with --contacts penetration; otherwise with status 2 when a kind of contacts had nothing to test");
+      "with --contacts penetration");
   add("--verify", options.verify,
       "Check each frame by exact brute force over all pairs of triangles, elements, or vertices and "
       "triangles; exit with status 3 "
@@ -219,10 +223,10 @@ CLI::App* add_detect(CLI::App& program, DetectOptions& options, Dependences& dep
   CLI::App* app =
       program.add_subcommand("detect", "Find every contact of static meshes, a sequence or a scene");
   app->footer(detect_footer);
-  add_input_options(*app, options.inputs, options.sequence);
+  add_input_options(*app, options.inputs, options.sequence, options.reading);
   add_frames(*app, options.frames,
              "Number of frames (default: all frames of a sequence, a recording or a scene with mesh files as "
-             "frames; otherwise one frame, or two with continuous contacts)")
+             "frames; otherwise one frame, or two with continuous contacts); plays the animation of a file")
       ->group("Input");
   add_detection_options(*app, options, dependences);
   // Objects of scene files and recordings have options of their own.
@@ -241,18 +245,6 @@ CLI::App* add_detect(CLI::App& program, DetectOptions& options, Dependences& dep
         return options.scene.impact.min_separation > 0 || app->count("--own-separation") > 0;
       }));
   add_report_options(*app, options, dependences);
-  dependences.push_back(
-      {add_max_contacts(
-           *app, options.limits,
-           "Find at most this many contacts of each kind in a frame, the first ones in the order of "
-           "the results; the JSON and CSV say that they are truncated (default: no limit)")
-           ->group("Detection"),
-       [&options] {
-         return options.scene.contacts != ContactKinds::none && !has_penetration(options.scene) &&
-                !options.verify;
-       },
-       "contacts other than penetration, and no --verify"});
-  add_time_limit(*app, options.limits)->group("Detection");
   add_output_options(*app, options, dependences);
   return app;
 }
@@ -291,7 +283,6 @@ CLI::App* add_simulate(CLI::App& program, SimulateOptions& options, Dependences&
   add_simulation_options(*app, options);
   add_detection_options(*app, options, dependences);
   add_report_options(*app, options, dependences);
-  add_time_limit(*app, options.limits)->group("Detection");
   app->add_option("--record", options.record,
                   "Write positions, contacts, events and statistics of each frame to an HDF5 file, and an "
                   "XDMF file for ParaView next to it")
@@ -306,7 +297,9 @@ CLI::App* add_view(CLI::App& program, ViewOptions& options, Dependences& depende
                                          "Show moving objects in a browser with their contacts and the "
                                          "stages that find them; objects can be pulled");
   app->footer(view_footer);
-  add_input_options(*app, options.inputs, options.sequence);
+  add_input_options(*app, options.inputs, options.sequence, options.reading);
+  add_frames(*app, options.reading.clips.frames, "Number of frames of the animation of a file")
+      ->group("Input");
   add_scene_overrides(*app, options.seed, options.time_step);
   add_detection_options(*app, options, dependences, true);
 
@@ -347,6 +340,7 @@ CLI::App* add_info(CLI::App& program, InfoOptions& options, Dependences& depende
   CLI::App* app = program.add_subcommand("info", "Print statistics of meshes and of their octrees");
   app->footer(info_footer);
   app->add_option("MESH|SCENE.toml", options.inputs, "Meshes, or one scene file")->required()->type_name("");
+  add_conversion(*app, options.conversion);
   options.given_scene.for_each_setter([&]<class Struct, class Value>(const Field<Struct, Value>& field,
                                                                      const Value& default_value, auto set) {
     if constexpr (std::is_same_v<Value, BoundingVolume>) {
@@ -362,7 +356,6 @@ CLI::App* add_info(CLI::App& program, InfoOptions& options, Dependences& depende
     }
   });
   add_object_options(*app, options.given_objects, false);
-  add_weld(*app, options.given_objects);
   add_file(*app, "--json", options.json, "Write the result as JSON; - is standard output");
   return app;
 }
@@ -373,6 +366,7 @@ CLI::App* add_query(CLI::App& program, QueryOptions& options, Dependences& depen
                                          "triangles on rays, or the distances "
                                          "of objects");
   app->footer(query_footer);
+  add_conversion(*app, options.conversion);
   app->add_option_function<std::string>(
          "KIND",
          [&options](const std::string& word) {
@@ -409,12 +403,6 @@ CLI::App* add_query(CLI::App& program, QueryOptions& options, Dependences& depen
       if (field.is_of_machine) add_field(*app, field, default_value, set);
     }
   });
-  add_weld(*app, options.given_objects);
-  add_max_contacts(
-      *app, options.limits,
-      "Write at most this many results: answers of the first points or rays, or the first pairs of "
-      "objects; the JSON says that they are truncated (default: no limit)");
-  add_time_limit(*app, options.limits);
   app->add_flag("--verify", options.verify,
                 "Check each answer by exact brute force over all triangles; exit with status 3 when one is "
                 "wrong");

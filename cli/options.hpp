@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "experiments/experiment.hpp"
+#include "inputs.hpp"
 #include "json_report.hpp"
 #include "query_file.hpp"
 #include "session/overrides.hpp"
@@ -34,15 +35,8 @@ struct MethodOptions {
   viewer::Overrides<ObjectOptions> given_objects;  ///< of all objects
 };
 
-/// What ends a run before it is complete. The results so far are written and marked as truncated.
-struct RunLimits {
-  std::uint64_t max_contacts = std::numeric_limits<std::uint64_t>::max();
-  std::optional<double> seconds{};  ///< of wall-clock time, without reading the input
-};
-
 /// The options of all commands that find and report contacts.
 struct DetectionOptions : MethodOptions {
-  RunLimits limits;
   bool verify = false;
   bool fail_on_contact = false;
   bool quiet = false;
@@ -54,6 +48,7 @@ struct DetectionOptions : MethodOptions {
 struct DetectOptions : DetectionOptions {
   std::vector<std::string> inputs;  ///< meshes, patterns, or one scene file or recording
   bool sequence = false;            ///< the inputs are frames of one object
+  MeshReading reading;
   std::optional<std::uint64_t> frames;
 };
 
@@ -71,6 +66,7 @@ struct SimulateOptions : DetectionOptions {
 struct ViewOptions : MethodOptions {
   std::vector<std::string> inputs;  ///< meshes, patterns, or one scene file or recording
   bool sequence = false;            ///< the inputs are frames of one object
+  MeshReading reading;
   std::optional<std::uint64_t> seed;
   std::optional<double> time_step;
   std::string address = "127.0.0.1";
@@ -83,6 +79,7 @@ struct ViewOptions : MethodOptions {
 /// Options of `supple info`.
 struct InfoOptions {
   std::vector<std::string> inputs;
+  CoordinateConversion conversion;
   viewer::Overrides<SceneOptions> given_scene;  ///< only the bounding volume
   viewer::Overrides<ObjectOptions> given_objects;
   std::string json;
@@ -91,11 +88,10 @@ struct InfoOptions {
 /// Options of `supple query`.
 struct QueryOptions {
   SceneQuery kind = SceneQuery::closest;
-  std::string file;                                ///< of points or rays; none for distances
-  std::vector<std::string> inputs;                 ///< meshes, patterns, or one scene file or recording
-  viewer::Overrides<SceneOptions> given_scene;     ///< only the number of threads
-  viewer::Overrides<ObjectOptions> given_objects;  ///< only welding
-  RunLimits limits;
+  std::string file;                 ///< of points or rays; none for distances
+  std::vector<std::string> inputs;  ///< meshes, patterns, or one scene file or recording
+  CoordinateConversion conversion;
+  viewer::Overrides<SceneOptions> given_scene;  ///< only the number of threads
   double max_distance = std::numeric_limits<double>::infinity();
   bool signed_distance = false;
   bool all_hits = false;

@@ -18,7 +18,7 @@
 #include "placement.hpp"
 #include "scene_motion.hpp"
 #include "supple/error.hpp"
-#include "supple/formats.hpp"
+#include "supple/format_descriptions.hpp"
 #include "supple/models.hpp"
 #include "supple/simulation_descriptions.hpp"
 #include "text.hpp"
@@ -120,23 +120,47 @@ TriangleMesh read_parametrised_model(TomlReader& reader, const std::string& name
 
 /// Meshes by file or model name, because a scene often uses the same mesh many times.
 struct Shapes {
-  std::map<std::string, TriangleMesh> meshes, models;
+  std::map<std::string, MeshFile> meshes;  ///< without conversion
+  std::map<std::string, TriangleMesh> models;
+};
+
+/// The mesh of an object, and its file when it has one.
+struct Shape {
+  TriangleMesh mesh;
+  std::optional<fs::path> file{};
+  std::vector<std::string> clips{};
 };
 
 /// `frames` has the files of an object that is moved by files; such an object needs no other mesh.
-TriangleMesh read_shape(TomlReader& reader, const fs::path& folder, const FrameSequence* frames,
-                        const TriangleBudget& budget, Shapes& shapes) {
+Shape read_shape(TomlReader& reader, const fs::path& folder, const FrameSequence* frames,
+                 const CoordinateConversion& conversion, const TriangleBudget& budget, Shapes& shapes) {
   std::string mesh, model;
   reader.read("mesh", mesh);
   reader.read("model", model);
-  if (frames && mesh.empty() && model.empty()) return read_mesh(frames->files.front());
+  const auto converted = [&](MeshFile file, const fs::path& path) -> Shape {
+    for (const CoordinateConversion& part : {CoordinateConversion{conversion.up, LengthUnit::file},
+                                             CoordinateConversion{UpAxis::file, conversion.unit}}) {
+      if (is_given(part) && !can_convert(file.frame, part))
+        reader.fail(part.up != UpAxis::file ? "up" : "unit",
+                    "the mesh file does not state its own; use rotate_xyz_degrees and scale");
+    }
+    convert(file.mesh.positions, file.frame, conversion);
+    return {std::move(file.mesh), path, std::move(file.clips)};
+  };
+  if (frames && mesh.empty() && model.empty()) {
+    Shape first = converted(read_mesh(frames->files.front()), frames->files.front());
+    first.clips.clear();
+    return first;
+  }
+  if (is_given(conversion) && mesh.empty())
+    reader.fail(conversion.up != UpAxis::file ? "up" : "unit", "has no effect without mesh = \"FILE\"");
   if (reader.has("mesh") == reader.has("model"))
     reader.fail(reader.has("mesh") ? "model" : "", "give either mesh = \"FILE\" or model = \"NAME\"");
   if (reader.has("model")) {
-    if (!is_named_model(model)) return named(read_parametrised_model(reader, model, budget), model);
+    if (!is_named_model(model)) return {named(read_parametrised_model(reader, model, budget), model)};
     const auto [found, is_new] = shapes.models.try_emplace(model);
     if (is_new) found->second = named(make_model(model), model);
-    return found->second;
+    return {found->second};
   }
   const fs::path path = folder / mesh;
   if (!fs::exists(path))
@@ -144,7 +168,7 @@ TriangleMesh read_shape(TomlReader& reader, const fs::path& folder, const FrameS
                 fmt::format("there is no file {}; paths start at the scene file's folder", path.string()));
   const auto [found, is_new] = shapes.meshes.try_emplace(path.string());
   if (is_new) found->second = read_mesh(path);
-  return found->second;
+  return converted(found->second, path);
 }
 
 Placement read_placement(TomlReader& reader) {
@@ -208,11 +232,17 @@ void read_objects(const toml::table& table, const fs::path& path, const std::str
     options.margin = std::max(options.margin, least_margin(*input.simulation.response));
   const Placement placement = read_placement(reader);
   const Copies copies = read_copies(reader);
-  SceneMotion motion(reader, path, where, gravity);
+  CoordinateConversion conversion;
+  reader.read_options(conversion);
+  SceneMotion motion(reader, path, where, gravity, conversion);
   if (!motion.empty() && options.is_static)
     reader.fail("motion", "a static object does not move; leave out motion or static");
-  const TriangleMesh mesh = read_shape(reader, path.parent_path(), motion.frames(), budget, shapes);
+  const Shape shape = read_shape(reader, path.parent_path(), motion.frames(), conversion, budget, shapes);
+  const TriangleMesh& mesh = shape.mesh;
   reader.finish();
+  motion.read_files(shape.file ? &*shape.file : nullptr, input.simulation.time_step, input.notes);
+  if (motion.empty() && !shape.clips.empty())
+    input.notes.push_back(clips_note(*shape.file, shape.clips, "motion = { kind = \"clip\" } plays one"));
   budget.check(reader, "repeat", mesh.triangles.size(), copies.count());
   budget.use(mesh.triangles.size() * copies.count());
 
@@ -310,7 +340,7 @@ Input read_scene_text(std::string text, const fs::path& path, const SceneOverrid
   for (std::size_t i = 0; i < objects.size(); ++i)
     read_objects(*objects[i], path, fmt::format("[[object]] {}", i), gravity, budget, shapes, input);
   input.files.push_back(path);
-  for (const auto& [name, mesh] : shapes.meshes) input.files.emplace_back(name);
+  for (const auto& [name, shape] : shapes.meshes) input.files.emplace_back(name);
   for (const InputObject& object : input.objects) {
     const auto* frames = object.motion ? std::get_if<FrameSequence>(&*object.motion) : nullptr;
     if (frames != nullptr) input.files.insert(input.files.end(), frames->files.begin(), frames->files.end());

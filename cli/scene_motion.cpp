@@ -32,8 +32,11 @@ bool contains(const std::vector<std::uint32_t>& ascending, std::uint32_t vertex)
 }  // namespace
 
 SceneMotion::SceneMotion(TomlReader& object, const std::filesystem::path& scene_file, std::string where,
-                         Vec3d gravity)
-    : file_(scene_file), table_(object.table("motion")), where_(std::move(where) + ": motion") {
+                         Vec3d gravity, const CoordinateConversion& conversion)
+    : file_(scene_file),
+      conversion_(conversion),
+      table_(object.table("motion")),
+      where_(std::move(where) + ": motion") {
   if (!table_) return;
   TomlReader reader(file_, *table_, where_);
   read_kind(reader, gravity);
@@ -53,10 +56,56 @@ void SceneMotion::read_kind(TomlReader& reader, Vec3d gravity) {
     reader.read_options(motion_.emplace().emplace<RigidMotion>());
   else if (kind == "frames")
     motion_ = read_frames(reader);
+  else if (kind == "clip" || kind == "cache")
+    read_playback(reader, kind == "cache");
   else if (kind.empty())
-    reader.fail("kind", "kind is missing; choose kind = \"wave\", \"mass_spring\", \"rigid\" or \"frames\"");
+    reader.fail(
+        "kind",
+        "kind is missing; choose kind = \"wave\", \"mass_spring\", \"rigid\", \"frames\", \"clip\" or "
+        "\"cache\"");
   else
-    reader.fail("kind", fmt::format("'{}' is not one of wave, mass_spring, rigid, frames", kind));
+    reader.fail("kind",
+                fmt::format("'{}' is not one of wave, mass_spring, rigid, frames, clip, cache", kind));
+}
+
+void SceneMotion::read_playback(TomlReader& reader, bool is_cache) {
+  Playback& playback = playback_.emplace();
+  reader.read("loop", playback.loop);
+  if (is_cache) {
+    std::string file;
+    reader.read("file", file);
+    if (file.empty()) reader.fail("file", "file is missing; give the point cache, file = \"body.pc2\"");
+    playback.cache = file_.parent_path() / file;
+    return;
+  }
+  if (reader.has("clip")) reader.read("clip", playback.clip.emplace());
+  reader.read("speed", playback.speed, ValueRange::above(0));
+}
+
+void SceneMotion::read_files(const std::filesystem::path* mesh_file, double time_step,
+                             std::vector<std::string>& notes) {
+  if (!playback_) return;
+  const TomlReader reader(file_, *table_, where_);
+  const Playback playback = *playback_;
+  if (mesh_file == nullptr)
+    reader.fail("kind", "needs mesh = \"FILE\": a built-in model has no clips and no cache");
+  try {
+    if (!playback.cache.empty()) {
+      play_ = [playback](const Placement& placement, std::size_t vertices) {
+        return play_cache(playback.cache, vertices, playback.loop, placement);
+      };
+      return;
+    }
+    const ClipPlayer player(*mesh_file, playback.clip);
+    if (std::string note = player.note(playback.clip, "motion = { kind = \"clip\", clip = \"NAME\" }");
+        !note.empty())
+      notes.push_back(std::move(note));
+    play_ = [=, conversion = conversion_](const Placement& placement, std::size_t) {
+      return player.steps(time_step, playback.speed, playback.loop, conversion, placement);
+    };
+  } catch (const Error& error) {
+    reader.fail("kind", error.what());
+  }
 }
 
 MassSpringMotion SceneMotion::read_mass_spring(TomlReader& reader, Vec3d gravity) {
@@ -85,6 +134,7 @@ void SceneMotion::read_pulls(TomlReader& reader) {
 
 FrameSequence SceneMotion::read_frames(TomlReader& reader) const {
   FrameSequence frames;
+  frames.conversion = conversion_;
   std::string pattern;
   reader.read("files", pattern);
   reader.read("loop", frames.loop);
@@ -102,6 +152,7 @@ FrameSequence SceneMotion::read_frames(TomlReader& reader) const {
 
 std::optional<Motion> SceneMotion::of_copy(std::uint64_t copy, const Placement& placement,
                                            const std::vector<Vec3d>& positions) {
+  if (play_) return play_(placement, positions.size());
   if (!motion_) return std::nullopt;
   Motion motion = *motion_;
   if (auto* waves = std::get_if<WaveMotion>(&motion)) waves->seed += copy;

@@ -2,10 +2,12 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <optional>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "browser.hpp"
@@ -34,13 +36,25 @@ void check_build() {
         "needs npm and clang-19's WebAssembly (tools/install_dependencies.sh gets them on Debian 12)");
 }
 
+/// Whether a mesh of the command line plays an animation.
+bool moves_by_itself(const Input& input) {
+  return input.scene_text.empty() && input.frames && std::any_of(input.objects.begin(), input.objects.end(), [](const InputObject& object) {
+           return object.motion && std::holds_alternative<ComputedMotion>(*object.motion);
+         });
+}
+
 Input read_input(const ViewOptions& options) {
   const bool is_scene = is_scene_file(options.inputs.front());
   if (options.seed && !is_scene) throw Error("--seed: only a scene file uses random numbers; leave it out");
   if (options.time_step && !is_scene && !options.sequence)
     throw Error("--time-step: only a scene file or --sequence has time steps; leave it out");
-  if (!options.sequence) return read_objects(options.inputs, {options.seed, options.time_step});
-  Input input = read_sequence(options.inputs);
+  if (!options.sequence) {
+    Input input = read_objects(options.inputs, {options.seed, options.time_step}, options.reading);
+    if (options.reading.clips.frames && !moves_by_itself(input))
+      throw Error("--frames: only the animation of a mesh file has a choice of frames; leave it out");
+    return input;
+  }
+  Input input = read_sequence(options.inputs, options.reading.conversion);
   // Mesh files contain no times, so play 25 frames per second.
   constexpr double film_seconds = 0.04;
   input.simulation.time_step = options.time_step.value_or(film_seconds);
@@ -108,6 +122,7 @@ int serve(viewer::SceneView show, const ViewOptions& options) {
 int run_view(const ViewOptions& options) {
   check_build();
   Input input = read_input(options);
+  print_notes(input);
   check_output_names({{"--export", options.page_file}}, input.files);
   apply(options, input);
   viewer::SceneView show = build_scene_view(input, options);

@@ -21,6 +21,5 @@
 #include "supple/triangle_intersection.hpp"
 #include "supple/trigonometry.hpp"
 #include "supple/types.hpp"
-#include "supple/utf8.hpp"
 #include "supple/version.hpp"
 #include "supple/views.hpp"
