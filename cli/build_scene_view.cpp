@@ -13,7 +13,6 @@
 #include "frame_files.hpp"
 #include "progress.hpp"
 #include "session/statistics.hpp"
-#include "session/utf8.hpp"
 #include "supple/error.hpp"
 #include "text.hpp"
 
@@ -142,7 +141,7 @@ viewer::ViewedObject object_of(const InputObject& object) {
 }
 
 std::string title_of(const std::vector<std::string>& inputs) {
-  const std::string first = viewer::valid_utf8(std::filesystem::path(inputs.front()).filename().string());
+  const std::string first = valid_utf8(std::filesystem::path(inputs.front()).filename().string());
   return inputs.size() == 1 ? first : fmt::format("{} and {} more", first, inputs.size() - 1);
 }
 

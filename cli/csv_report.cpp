@@ -3,7 +3,9 @@
 #include <fmt/core.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
+#include <string_view>
 #include <utility>
 
 #include "supple/result_descriptions.hpp"
@@ -26,12 +28,18 @@ CsvReport::CsvReport(const std::string& file_name, const SceneOptions& options)
   const bool continuous = contains(options.contacts, ContactKinds::continuous);
   const bool proximity = contains(options.contacts, ContactKinds::proximity);
   has_penetration_ = contains(options.contacts, ContactKinds::penetration);
-  std::fputs(has_penetration_ ? "frame,a,b,vertex,triangle,depth\n"
-             : proximity      ? "frame,a,b,kind,a0,a1,b0,b1,distance\n"
-             : continuous     ? "frame,a,b,kind,a0,a1,b0,b1,toi,certainty\n"
-             : has_kinds_     ? "frame,a,b,kind,i,j\n"
-                              : "frame,a,b,i,j\n",
-             file_.stream());
+  const char* const heading = has_penetration_ ? "frame,a,b,vertex,triangle,depth\n"
+                              : proximity      ? "frame,a,b,kind,a0,a1,b0,b1,distance\n"
+                              : continuous     ? "frame,a,b,kind,a0,a1,b0,b1,toi,certainty\n"
+                              : has_kinds_     ? "frame,a,b,kind,i,j\n"
+                                               : "frame,a,b,i,j\n";
+  columns_ = static_cast<std::size_t>(std::ranges::count(std::string_view(heading), ',')) + 1;
+  std::fputs(heading, file_.stream());
+}
+
+void CsvReport::finish(bool is_truncated) {
+  if (is_truncated) std::fputs(("truncated" + std::string(columns_ - 1, ',') + "\n").c_str(), file_.stream());
+  file_.close();
 }
 
 void CsvReport::add(const Frame& frame) {

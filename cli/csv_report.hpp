@@ -17,12 +17,14 @@ class CsvReport {
   CsvReport(const std::string& file_name, const SceneOptions& options);
 
   void add(const Frame& frame);
-  void finish() { file_.close(); }
+  /// Adds a row `truncated` with empty cells when the results are not complete.
+  void finish(bool is_truncated);
 
  private:
   void add_narrow_phase(const Frame& frame, fmt::memory_buffer& rows);
 
   OutputFile file_;
+  std::size_t columns_ = 0;
   bool has_penetration_ = false;
   bool has_kinds_;  ///< a column says what each row is
 };

@@ -3,12 +3,16 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
 
 #include "build_simulation.hpp"
+#include "exit_status.hpp"
+#include "half_turns.hpp"
 #include "inputs.hpp"
+#include "interruption.hpp"
 #include "missing_threads.hpp"
 #include "option_needs.hpp"
 #include "output_names.hpp"
@@ -89,15 +93,35 @@ int run_detect(const DetectOptions& options) {
   const std::uint64_t first = options.scene.contacts == ContactKinds::continuous && frames > 1 ? 1 : 0;
   const char* const noun = continuous ? "step" : "frame";
   Reports reports(options, input, simulation.scene(), noun);
-  Progress progress(frames - first, !options.quiet, noun);
-  for (std::uint64_t number = first; number < frames; ++number) {
-    const bool is_start = number == 0 && !(continuous && frames == 1);
-    Frame frame{number, is_start ? simulation.detect() : simulation.step()};
-    if (options.verify && !(is_start && continuous)) frame.verify = simulation.scene().verify();
-    reports.add(frame);
-    const std::uint64_t done = number - first + 1;
-    progress.update(done, fmt::format("{} {} of {}", noun, done, frames - first));
+  std::optional<HalfTurns> turns;
+  if (continuous) turns.emplace(simulation, input);
+  std::uint64_t done = 0;
+  const auto end_early = [&](const Interruption& end) {
+    reports.finish(true);
+    const std::string place = fmt::format("{} {} of {}", noun, done, frames - first);
+    return report_end(end, options.limits.seconds, place,
+                      end.signal() != 0 ? exit_done : reports.exit_status());
+  };
+  Interruption interruption(options.limits.seconds,
+                            [&](const Interruption& end) { exit_now(end_early(end)); });
+  {
+    Progress progress(frames - first, !options.quiet, noun);
+    for (std::uint64_t number = first; number < frames && !interruption.is_requested(); ++number) {
+      const bool is_start = number == 0 && !(continuous && frames == 1);
+      const DetectRequest request{.max_contacts = options.limits.max_contacts, .stop = interruption.token()};
+      if (turns) turns->remember_positions();
+      Frame frame{number, is_start ? simulation.detect(request) : simulation.step(request)};
+      if (frame.result.stopped) break;
+      if (turns) frame.turned = turns->find();
+      if (options.verify && !(is_start && continuous)) frame.verify = simulation.scene().verify();
+      const auto hold = interruption.hold();
+      reports.add(frame);
+      done = number - first + 1;
+      progress.update(done, fmt::format("{} {} of {}", noun, done, frames - first));
+    }
   }
+  interruption.end();
+  if (done < frames - first) return end_early(interruption);
   reports.finish();
   return reports.exit_status();
 }

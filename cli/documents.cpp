@@ -132,10 +132,11 @@ void print_man(const CLI::App& program) {
       ".TP\n.B 0\nSuccess.\n"
       ".TP\n.B 1\n\\-\\-fail\\-on\\-contact: something touches. diff: the recordings differ.\n"
       ".TP\n.B 2\nUsage or input error, reported in one line on standard error. simulate: the motion "
-      "blew up.\n"
+      "blew up. \\-\\-fail\\-on\\-contact: nothing touches, but something was not tested.\n"
       ".TP\n.B 3\n\\-\\-verify: brute force gives a different result. ccd\\-queries: an answer is false.\n"
-      ".TP\n.B 130, 143\nsimulate was interrupted by SIGINT or SIGTERM; its files are complete up to that "
-      "frame.\n");
+      ".TP\n.B 130, 143\nA command was interrupted by SIGINT or SIGTERM; its files are whole and say that "
+      "they "
+      "are truncated.\n");
 }
 
 }  // namespace

@@ -8,9 +8,10 @@ enum ExitStatus : int {
   exit_contact = 1,  ///< --fail-on-contact, and something touches
   exit_differ = 1,   ///< supple diff found a difference
   exit_unusable =
-      2,  ///< usage or input error, reported in one line on standard error; or a motion that blew up
+      2,  ///< usage or input error, reported in one line on standard error; a motion that blew up; or
+          ///< --fail-on-contact, and nothing was tested
   exit_differences = 3,    ///< --verify found a difference, or an answer of a query is false
-  exit_interrupted = 128,  ///< plus the number of the signal that ended a simulation early
+  exit_interrupted = 128,  ///< plus the number of the signal that ended a run early
 };
 
 }  // namespace supple::cli

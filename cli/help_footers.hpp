@@ -19,10 +19,12 @@ inline constexpr const char* program_footer = R"(Examples:
   supple diff a.h5 b.h5                     where do two recordings differ first?
 
 Exit status: 0 means success. 1 means that something touches (with --fail-on-contact) or that two
-recordings differ (diff). 2 means a usage or input error, which is reported in one line, or a motion that
-blew up (simulate). 3 means that brute force gives a different result (--verify) or that an answer is
-false (ccd-queries). 130 and 143 mean that simulate was interrupted; its files are complete up to that
-frame. view exits with 0 when it is interrupted.)";
+recordings differ (diff). 2 means a usage or input error, which is reported in one line, a motion that blew
+up (simulate), or that nothing touches but something was not tested (--fail-on-contact): an object alone,
+nothing that moves, or a run that --time-limit ended. 3 means that brute force gives a different result
+(--verify) or that an answer is false (ccd-queries). 130 and 143 mean that detect, query or simulate was
+interrupted; its files are whole, have what was found, and say that they are truncated. view exits with 0
+when it is interrupted.)";
 
 inline constexpr const char* detect_footer = R"(Examples:
   supple detect rabbit.obj fish.ply
@@ -38,7 +40,9 @@ inline constexpr const char* detect_footer = R"(Examples:
       Detects the contacts of a recording again, with the recorded options. Options of the command line
       replace them.
   supple detect a.stl b.stl --fail-on-contact --quiet && echo apart
-      For scripts: the exit status is 1 when something touches.
+      For scripts: the exit status is 1 when something touches, and 2 when nothing could be tested.
+  supple detect a.obj b.obj --max-contacts 1000 --time-limit 60 --json result.json
+      At most 1000 contacts of each kind and a minute. The JSON says whether it is truncated.
   supple detect --contacts continuous --self --sequence 'frame_*.ply' --json impacts.json
       Every vertex and face and every two edges that touch on the way between two frames, and the time
       when they do.
@@ -82,8 +86,8 @@ inline constexpr const char* simulate_footer = R"(Examples:
       Shorter steps than in the scene file.
 
 Frame 0 is the start, and frame k is the state after k steps. The continuous contacts of frame k are those
-on the way from frame k - 1 to frame k. Ctrl-C ends the run after the current step; files and tables are
-complete up to that step.)";
+on the way from frame k - 1 to frame k. Ctrl-C ends the run; files and tables are complete up to the last
+whole step.)";
 
 inline constexpr const char* view_footer = R"(Examples:
   supple view scenes/nine.toml
@@ -118,6 +122,8 @@ inline constexpr const char* query_footer = R"(Examples:
       The nearest triangle of each point, and its distance.
   supple query inside points.txt rabbit.obj --json -
       Which points are inside, outside or on the surface? It must be closed.
+  supple query inside points.txt export.obj --weld
+      Vertices at equal positions count as one, so that seams of an export do not open the surface.
   supple query rays rays.txt scene.toml --all-hits --json hits.json
       The first triangle on each ray, and how many triangles there are on the whole ray.
   supple query distance rabbit.obj fish.ply --max-distance 0.1

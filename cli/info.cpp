@@ -28,6 +28,7 @@ namespace {
 struct MeshInfo {
   std::string name;
   MeshTopology topology;
+  bool is_open_at_seams = false;
   std::uint64_t lines = 0, points = 0;  ///< edges and points of no triangle
   PolygonCounts polygons;
   std::uint64_t non_finite_vertices = 0;
@@ -53,30 +54,23 @@ void measure_positions(const TriangleMesh& mesh, MeshInfo& info) {
 }
 
 MeshInfo measure(const InputObject& object, SceneOptions scene_options, const InfoOptions& options) {
+  ObjectOptions chosen = object.options;
+  options.given_objects.apply_to(chosen);
+  const TriangleMesh surface = chosen.weld ? welded(object.mesh) : object.mesh;
   MeshInfo info;
   info.name = object.mesh.name;
-  info.topology = compute_topology(object.mesh);
+  info.topology = compute_topology(surface);
+  info.is_open_at_seams = is_open_at_seams(surface);
   info.lines = object.mesh.edges.size();
   info.points = object.mesh.points.size();
   info.polygons = object.mesh.polygons;
   measure_positions(object.mesh, info);
-  ObjectOptions chosen = object.options;
-  options.given_objects.apply_to(chosen);
   info.arity = chosen.octree.arity;
   scene_options.threads = 1;
   options.given_scene.apply_to(scene_options);
   Scene scene(scene_options);
   info.octree = SceneInspector(scene).octree_statistics(scene.add(object.mesh, chosen));
   return info;
-}
-
-std::string describe_surface(const MeshTopology& t) {
-  if (t.edges == 0) return "no triangles";
-  std::string text =
-      t.closed() ? "closed" : fmt::format("open, {}", counted(t.boundary_edges, "boundary edge"));
-  if (t.non_manifold_edges > 0)
-    text += fmt::format(", {}", counted(t.non_manifold_edges, "non-manifold edge"));
-  return text;
 }
 
 std::string describe_polygons(const PolygonCounts& polygons) {
@@ -95,7 +89,7 @@ std::string describe_polygons(const PolygonCounts& polygons) {
 
 void print_text(const MeshInfo& info) {
   const MeshTopology& t = info.topology;
-  fmt::print("{}\n", info.name);
+  fmt::print("{}\n", one_line(info.name));
   fmt::print("  vertices     {}", grouped(t.vertices));
   if (t.unused_vertices > 0) fmt::print(", {} in no triangle", grouped(t.unused_vertices));
   if (info.non_finite_vertices > 0) fmt::print(", {} not finite", grouped(info.non_finite_vertices));
@@ -106,6 +100,9 @@ void print_text(const MeshInfo& info) {
   if (info.lines + info.points > 0)
     fmt::print("  lines        {}, and {}\n", counted(info.lines, "edge"), counted(info.points, "point"));
   fmt::print("  surface      {}\n", describe_surface(t));
+  if (info.is_open_at_seams)
+    fmt::print(
+        "               most open edges are seams between vertices at equal positions; --weld closes them\n");
   fmt::print("  components   {}, Euler characteristic {}\n", grouped(t.components), t.euler_characteristic);
   if (info.bounds) {
     const auto& [lowest, highest] = *info.bounds;
@@ -148,6 +145,8 @@ void write_json(JsonWriter& json, const MeshInfo& info) {
   json.member("points", info.points);
   json.member("closed", t.closed());
   json.member("boundary_edges", t.boundary_edges);
+  json.member("odd_edges", t.odd_edges);
+  json.member("open_at_seams", info.is_open_at_seams);
   json.member("non_manifold_edges", t.non_manifold_edges);
   json.member("components", t.components);
   json.member("euler_characteristic", t.euler_characteristic);

@@ -148,6 +148,25 @@ void write_non_finite(JsonWriter& json, std::span<const NonFiniteVertex> vertice
   json.end_array();
 }
 
+void write_untested(JsonWriter& json, const Frame& frame) {
+  json.key("untested");
+  json.begin_array();
+  for (const UntestedKind& untested : frame.result.untested) {
+    json.begin_object();
+    json.member("kind", word_of(untested.kind));
+    json.member("reason", word_of(untested.reason));
+    json.end_object();
+  }
+  for (const ObjectId object : frame.turned) {
+    json.begin_object();
+    json.member("kind", word_of(ContactKinds::continuous));
+    json.member("reason", "half_turn");
+    json.member("object", std::uint64_t{object.index});
+    json.end_object();
+  }
+  json.end_array();
+}
+
 void write_stats(JsonWriter& json, const Frame& frame) {
   json.key("stats");
   json.begin_object();
@@ -227,6 +246,9 @@ void JsonReport::add(const Frame& frame) {
   json_.member("frame", frame.number);
   if (frame.simulated) json_.member("time", frame.simulated->time);
   add_files(frame.number);
+  json_.member("truncated", result.truncated);
+  is_truncated_ = is_truncated_ || result.truncated;
+  write_untested(json_, frame);
   write_object_pairs(json_, "object_pairs", result.object_pairs);
   const bool continuous = contains(options.contacts, ContactKinds::continuous);
   const bool both = continuous && contains(options.contacts, ContactKinds::intersection);
@@ -271,8 +293,9 @@ void JsonReport::add(const Frame& frame) {
   json_.flush();
 }
 
-void JsonReport::finish() {
+void JsonReport::finish(bool was_ended) {
   json_.end_array();
+  json_.member("truncated", was_ended || is_truncated_);
   json_.end_object();
   json_.close();
 }

@@ -28,7 +28,8 @@ class JsonReport {
              const JsonContent& content);
 
   void add(const Frame& frame);
-  void finish();
+  /// `was_ended` says that frames are missing.
+  void finish(bool was_ended);
 
  private:
   JsonWriter json_;
@@ -37,6 +38,7 @@ class JsonReport {
   const Input& input_;
   const Scene& scene_;
   JsonContent content_;
+  bool is_truncated_ = false;
 };
 
 }  // namespace supple::cli

@@ -59,6 +59,11 @@ void open_closed_streams() {
   }
 }
 
+/// For the time in which the input is read, and nothing was written yet: Interruption replaces it then.
+extern "C" void end_at_signal(int signal) {
+  std::_Exit(exit_interrupted + signal);
+}
+
 int report_lack_of_memory() {
   // Without a buffer, so that this needs no memory.
   std::fputs("supple: the memory is used up; give fewer or smaller meshes, or fewer --threads\n", stderr);
@@ -88,6 +93,9 @@ int main(int argument_count, char** arguments) {
   std::set_terminate(terminate);
   // A limit of the file size (ulimit -f) is then an error of writing, as a full disk is.
   std::signal(SIGXFSZ, SIG_IGN);
+  for (const int signal : {SIGINT, SIGTERM}) {
+    if (std::signal(signal, end_at_signal) == SIG_IGN) std::signal(signal, SIG_IGN);
+  }
   // The program closes all recordings before it exits. Without this call, HDF5 would report handles that a
   // damaged recording left open to standard error.
   H5dont_atexit();
@@ -103,16 +111,16 @@ int main(int argument_count, char** arguments) {
     return report_lack_of_memory();  // an array that no memory can hold
   } catch (const std::filesystem::filesystem_error& error) {
     fmt::print(stderr, "supple: {}: {}; check the path and who may use it\n",
-               one_line(error.path1().string()), error.code().message());
+               supple::one_line(error.path1().string()), error.code().message());
     return exit_unusable;
   } catch (const std::system_error& error) {
     const bool is_thread = error.code() == std::errc::resource_unavailable_try_again;
     fmt::print(stderr, "supple: {}\n",
                is_thread ? "the system refuses to create a thread; raise its limits (ulimit -u, ulimit -v)"
-                         : one_line(error.what()));
+                         : supple::one_line(error.what()));
     return exit_unusable;
   } catch (const std::exception& error) {
-    fmt::print(stderr, "supple: {}\n", one_line(error.what()));
+    fmt::print(stderr, "supple: {}\n", supple::one_line(error.what()));
     return exit_unusable;
   }
 }

@@ -33,6 +33,30 @@
 namespace supple::cli {
 namespace {
 
+/// Welding, where objects are not tested for contacts.
+void add_weld(CLI::App& app, viewer::Overrides<ObjectOptions>& objects) {
+  objects.for_each_setter([&]<class Struct, class Value>(const Field<Struct, Value>& field,
+                                                         const Value& default_value, auto set) {
+    if constexpr (std::is_same_v<Value, bool>) {
+      if (field.key == std::string_view("weld")) add_field(app, field, default_value, set);
+    }
+  });
+}
+
+CLI::Option* add_max_contacts(CLI::App& app, RunLimits& limits, const char* description) {
+  return add_whole(
+      app, "--max-contacts", ValueRange::from(1, 1e18),
+      [&limits](std::uint64_t number) { limits.max_contacts = number; }, description);
+}
+
+CLI::Option* add_time_limit(CLI::App& app, RunLimits& limits) {
+  return add_real(
+      app, "--time-limit", ValueRange::above(0), "s", [&limits](double seconds) { limits.seconds = seconds; },
+      "End this wall-clock time after the input was read: the results so far are written, and the JSON and "
+      "CSV "
+      "say that they are truncated (default: no limit)");
+}
+
 constexpr std::array tested_object_keys{"self", "neighbours", "weld", "margin", "own_separation", "solid"};
 
 /// Adds the options of the octree of each object, and those of `tested_object_keys` when objects are tested.
@@ -159,7 +183,7 @@ void add_report_options(CLI::App& app, DetectionOptions& options, Dependences& d
   };
   add("--fail-on-contact", options.fail_on_contact,
       "Exit with status 1 when anything touches, is near with --contacts proximity, or is inside a solid "
-      "with --contacts penetration");
+      "with --contacts penetration; otherwise with status 2 when a kind of contacts had nothing to test");
   add("--verify", options.verify,
       "Check each frame by exact brute force over all pairs of triangles, elements, or vertices and "
       "triangles; exit with status 3 "
@@ -245,6 +269,18 @@ CLI::App* add_detect(CLI::App& program, DetectOptions& options, Dependences& dep
         return options.scene.impact.min_separation > 0 || app->count("--own-separation") > 0;
       }));
   add_report_options(*app, options, dependences);
+  dependences.push_back(
+      {add_max_contacts(
+           *app, options.limits,
+           "Find at most this many contacts of each kind in a frame, the first ones in the order of "
+           "the results; the JSON and CSV say that they are truncated (default: no limit)")
+           ->group("Detection"),
+       [&options] {
+         return options.scene.contacts != ContactKinds::none && !has_penetration(options.scene) &&
+                !options.verify;
+       },
+       "contacts other than penetration, and no --verify"});
+  add_time_limit(*app, options.limits)->group("Detection");
   add_output_options(*app, options, dependences);
   return app;
 }
@@ -283,6 +319,7 @@ CLI::App* add_simulate(CLI::App& program, SimulateOptions& options, Dependences&
   add_simulation_options(*app, options);
   add_detection_options(*app, options, dependences);
   add_report_options(*app, options, dependences);
+  add_time_limit(*app, options.limits)->group("Detection");
   app->add_option("--record", options.record,
                   "Write positions, contacts, events and statistics of each frame to an HDF5 file, and an "
                   "XDMF file for ParaView next to it")
@@ -356,6 +393,7 @@ CLI::App* add_info(CLI::App& program, InfoOptions& options, Dependences& depende
     }
   });
   add_object_options(*app, options.given_objects, false);
+  add_weld(*app, options.given_objects);
   add_file(*app, "--json", options.json, "Write the result as JSON; - is standard output");
   return app;
 }
@@ -403,6 +441,12 @@ CLI::App* add_query(CLI::App& program, QueryOptions& options, Dependences& depen
       if (field.is_of_machine) add_field(*app, field, default_value, set);
     }
   });
+  add_weld(*app, options.given_objects);
+  add_max_contacts(
+      *app, options.limits,
+      "Write at most this many results: answers of the first points or rays, or the first pairs of "
+      "objects; the JSON says that they are truncated (default: no limit)");
+  add_time_limit(*app, options.limits);
   app->add_flag("--verify", options.verify,
                 "Check each answer by exact brute force over all triangles; exit with status 3 when one is "
                 "wrong");

@@ -35,8 +35,15 @@ struct MethodOptions {
   viewer::Overrides<ObjectOptions> given_objects;  ///< of all objects
 };
 
+/// What ends a run before it is complete. The results so far are written and marked as truncated.
+struct RunLimits {
+  std::uint64_t max_contacts = std::numeric_limits<std::uint64_t>::max();
+  std::optional<double> seconds{};  ///< of wall-clock time, without reading the input
+};
+
 /// The options of all commands that find and report contacts.
 struct DetectionOptions : MethodOptions {
+  RunLimits limits;
   bool verify = false;
   bool fail_on_contact = false;
   bool quiet = false;
@@ -88,10 +95,12 @@ struct InfoOptions {
 /// Options of `supple query`.
 struct QueryOptions {
   SceneQuery kind = SceneQuery::closest;
-  std::string file;                 ///< of points or rays; none for distances
-  std::vector<std::string> inputs;  ///< meshes, patterns, or one scene file or recording
+  std::string file;                                ///< of points or rays; none for distances
+  std::vector<std::string> inputs;                 ///< meshes, patterns, or one scene file or recording
   CoordinateConversion conversion;
-  viewer::Overrides<SceneOptions> given_scene;  ///< only the number of threads
+  viewer::Overrides<SceneOptions> given_scene;     ///< only the number of threads
+  viewer::Overrides<ObjectOptions> given_objects;  ///< only welding
+  RunLimits limits;
   double max_distance = std::numeric_limits<double>::infinity();
   bool signed_distance = false;
   bool all_hits = false;

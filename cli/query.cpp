@@ -6,6 +6,7 @@
 #include <array>
 #include <chrono>
 #include <cstddef>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -14,6 +15,7 @@
 
 #include "exit_status.hpp"
 #include "inputs.hpp"
+#include "interruption.hpp"
 #include "json_writer.hpp"
 #include "missing_threads.hpp"
 #include "output_names.hpp"
@@ -34,20 +36,23 @@ class Run {
  public:
   explicit Run(const QueryOptions& options);
 
-  void answer();
-  void write_json() const;
+  /// Returns the exit status.
+  int go();
+
+ private:
+  void answer(Interruption& interruption);
+  int report(bool was_ended) const;
+  void write_json(bool is_truncated) const;
   void print() const;
   /// With `--verify`, writes one line to standard error when an answer is wrong; returns the exit status.
   int report_wrong_answers() const;
-
- private:
   template <class Query, class Result, class Answer, class Verify>
-  void in_batches(const std::vector<Query>& queries, std::vector<Result>& results, const Answer& answer,
-                  const Verify& verify);
-  void find_distances();
-  std::size_t count() const { return closest_.size() + hits_.size() + contained_.size() + distances_.size(); }
+  void in_batches(Interruption& interruption, std::vector<Query> queries, std::vector<Result>& results,
+                  const Answer& answer, const Verify& verify);
+  void find_distances(Interruption& interruption);
   void write_result(JsonWriter& json, std::size_t i) const;
   void print_result(std::size_t i) const;
+  void warn_of_objects_without_triangles() const;
 
   const QueryOptions& options_;
   Scene scene_;
@@ -57,6 +62,9 @@ class Run {
   std::vector<ProximityPair> distances_;
   std::vector<WrongAnswer> wrong_;
   double seconds_ = 0;
+  std::size_t count_ = 0, checked_ = 0;  // results, and those that were checked by brute force
+  // Points, rays or pairs of objects; more than `count_` when a limit or a signal ended the run.
+  std::size_t total_ = std::numeric_limits<std::size_t>::max();
 };
 
 SceneOptions scene_options(const QueryOptions& options) {
@@ -71,18 +79,24 @@ Run::Run(const QueryOptions& options) : options_(options), scene_(scene_options(
   if (!options.file.empty()) input.files.emplace_back(options.file);
   check_output_names({{"--json", options.json}}, input.files);
   warn_of_missing_threads(scene_.options().threads);
-  for (const InputObject& object : input.objects) scene_.add(object.mesh, object.options);
+  for (InputObject& object : input.objects) {
+    options.given_objects.apply_to(object.options);
+    scene_.add(object.mesh, object.options);
+  }
 }
 
-/// Calls `work(first, size)` for batches of `count` queries, and shows the progress.
+/// Calls `work(first, size)` for batches of `count` queries, and shows the progress. `done` counts the
+/// queries of finished batches.
 template <class Work>
-void for_batches(std::size_t count, std::size_t batch, bool shows_progress, const char* noun,
-                 const Work& work) {
+void for_batches(Interruption& interruption, std::size_t count, std::size_t batch, bool shows_progress,
+                 const char* noun, std::size_t& done, const Work& work) {
   Progress progress(count, shows_progress, noun);
-  for (std::size_t first = 0; first < count; first += batch) {
+  for (std::size_t first = 0; first < count && !interruption.is_requested(); first += batch) {
     const std::size_t size = std::min(batch, count - first);
     work(first, size);
-    progress.update(first + size, fmt::format("{} {} of {}", noun, first + size, count));
+    const auto hold = interruption.hold();
+    done = first + size;
+    progress.update(done, fmt::format("{} {} of {}", noun, done, count));
   }
 }
 
@@ -91,62 +105,121 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
 }
 
 template <class Query, class Result, class Answer, class Verify>
-void Run::in_batches(const std::vector<Query>& queries, std::vector<Result>& results, const Answer& answer,
-                     const Verify& verify) {
+void Run::in_batches(Interruption& interruption, std::vector<Query> queries, std::vector<Result>& results,
+                     const Answer& answer, const Verify& verify) {
   constexpr std::size_t batch = 1 << 16, verified_batch = 128;
+  total_ = queries.size();
+  queries.resize(std::min<std::uint64_t>(total_, options_.limits.max_contacts));
   results.resize(queries.size());
   const auto start = std::chrono::steady_clock::now();
-  for_batches(queries.size(), batch, !options_.quiet, "query", [&](std::size_t first, std::size_t size) {
-    answer(std::span(queries).subspan(first, size), std::span(results).subspan(first, size));
-  });
+  for_batches(interruption, queries.size(), batch, !options_.quiet, "query", count_,
+              [&](std::size_t first, std::size_t size) {
+                answer(std::span(queries).subspan(first, size), std::span(results).subspan(first, size));
+              });
   seconds_ = seconds_since(start);
   if (!options_.verify) return;
-  for_batches(queries.size(), verified_batch, !options_.quiet, "answer",
+  for_batches(interruption, count_, verified_batch, !options_.quiet, "answer", checked_,
               [&](std::size_t first, std::size_t size) {
-                for (WrongAnswer& wrong : verify(std::span(queries).subspan(first, size),
-                                                 std::span(std::as_const(results)).subspan(first, size))) {
+                std::vector<WrongAnswer> found =
+                    verify(std::span(queries).subspan(first, size),
+                           std::span(std::as_const(results)).subspan(first, size));
+                const auto hold = interruption.hold();
+                for (WrongAnswer& wrong : found) {
                   wrong.query += first;
                   wrong_.push_back(std::move(wrong));
                 }
               });
 }
 
-void Run::find_distances() {
+void Run::find_distances(Interruption& interruption) {
   if (scene_.objects().size() < 2)
     throw Error(fmt::format("{}: has {}; distances need two, so add meshes, or objects to the scene",
                             options_.inputs.front(), counted(scene_.objects().size(), "object")));
   const auto start = std::chrono::steady_clock::now();
   const auto found = scene_.distances(options_.max_distance);
-  seconds_ = seconds_since(start);
-  distances_.assign(found.begin(), found.end());
-  if (options_.verify) wrong_ = scene_.verify_distances(options_.max_distance, distances_);
+  {
+    const auto hold = interruption.hold();
+    seconds_ = seconds_since(start);
+    distances_.assign(found.begin(), found.end());
+    total_ = found.size();
+    count_ = std::min<std::uint64_t>(total_, options_.limits.max_contacts);
+  }
+  if (!options_.verify || interruption.is_requested()) return;
+  std::vector<WrongAnswer> wrong = scene_.verify_distances(options_.max_distance, distances_);
+  const auto hold = interruption.hold();
+  wrong_ = std::move(wrong);
+  checked_ = total_;
 }
 
-void Run::answer() {
+void Run::answer(Interruption& interruption) {
   const ClosestOptions closest{.max_distance = options_.max_distance,
                                .signed_distance = options_.signed_distance};
   const CastOptions cast{.count_hits = options_.all_hits};
   switch (options_.kind) {
     case SceneQuery::closest:
       return in_batches(
-          read_points(options_.file), closest_,
+          interruption, read_points(options_.file), closest_,
           [&](const auto& points, const auto& results) { scene_.closest(points, results, closest); },
           [&](const auto& points, const auto& results) {
             return scene_.verify_closest(points, results, closest);
           });
     case SceneQuery::inside:
       return in_batches(
-          read_points(options_.file), contained_,
+          interruption, read_points(options_.file), contained_,
           [&](const auto& points, const auto& results) { scene_.inside(points, results); },
           [&](const auto& points, const auto& results) { return scene_.verify_inside(points, results); });
     case SceneQuery::rays:
       return in_batches(
-          read_rays(options_.file), hits_,
+          interruption, read_rays(options_.file), hits_,
           [&](const auto& rays, const auto& results) { scene_.cast(rays, results, cast); },
           [&](const auto& rays, const auto& results) { return scene_.verify_cast(rays, results, cast); });
     case SceneQuery::distance:
-      return find_distances();
+      return find_distances(interruption);
   }
+}
+
+int Run::go() {
+  warn_of_objects_without_triangles();
+  const auto end_early = [this](const Interruption& end) {
+    const bool is_checking = count_ > 0 && (count_ == total_ || count_ >= options_.limits.max_contacts);
+    const std::string place =
+        is_checking ? fmt::format("the check of {}", counted(checked_, "answer")) : counted(count_, "result");
+    return report_end(end, options_.limits.seconds, place, report(true));
+  };
+  Interruption interruption(options_.limits.seconds,
+                            [&](const Interruption& end) { exit_now(end_early(end)); });
+  answer(interruption);
+  interruption.end();
+  const bool is_whole = (count_ == total_ || count_ >= options_.limits.max_contacts) &&
+                        (!options_.verify || checked_ >= count_);
+  return is_whole ? report(false) : end_early(interruption);
+}
+
+/// Returns the exit status.
+int Run::report(bool was_ended) const {
+  if (!options_.json.empty()) write_json(count_ < total_);
+  if (!options_.quiet && options_.json != "-") print();
+  if (count_ < total_ && !was_ended)
+    fmt::print(stderr, "supple: there are more results than --max-contacts {}; they are truncated\n",
+               options_.limits.max_contacts);
+  return report_wrong_answers();
+}
+
+/// Answers without a triangle mean nothing.
+void Run::warn_of_objects_without_triangles() const {
+  std::vector<std::string> names;
+  for (const ObjectId object : scene_.objects()) {
+    if (scene_.triangle_count(object) == 0) names.push_back(name_of(scene_, object));
+  }
+  if (names.empty()) return;
+  if (names.size() == scene_.objects().size())
+    throw Error(
+        fmt::format("{}: no object has a triangle, so there is nothing to query; give surfaces of "
+                    "triangles, not clouds of points",
+                    options_.inputs.front()));
+  if (!options_.quiet)
+    fmt::print(stderr, "supple: warning: {} without triangles, which no query finds; the first: {}\n",
+               counted(names.size(), "object"), names.front());
 }
 
 int Run::report_wrong_answers() const {
@@ -185,7 +258,7 @@ void Run::write_result(JsonWriter& json, std::size_t i) const {
   }
 }
 
-void Run::write_json() const {
+void Run::write_json(bool is_truncated) const {
   JsonWriter json(options_.json);
   json.begin_object();
   json.member("supple", std::string(SUPPLE_VERSION));
@@ -202,12 +275,13 @@ void Run::write_json() const {
   json.end_array();
   json.key("results");
   json.begin_array();
-  for (std::size_t i = 0; i < count(); ++i) write_result(json, i);
+  for (std::size_t i = 0; i < count_; ++i) write_result(json, i);
   json.end_array();
+  json.member("truncated", is_truncated);
   if (options_.verify) {
     json.key("verify");
     json.begin_object();
-    json.member("answers_checked", std::uint64_t{count()});
+    json.member("answers_checked", std::uint64_t{checked_});
     json.key("differences");
     json.begin_array();
     for (const WrongAnswer& wrong : wrong_) {
@@ -256,29 +330,26 @@ void Run::print() const {
                                       "     ray  object  first triangle  t\n",
                                       "  a  b  distance  nearest elements  nearest points\n"};
   const bool are_distances = options_.kind == SceneQuery::distance;
-  if (count() == 0)
+  if (count_ == 0 && count_ < total_) return;
+  if (count_ == 0)
     return fmt::print(
         "{}", are_distances ? "No two objects are within the distance.\n" : "There are no queries.\n");
   fmt::print("{}", headings[static_cast<std::size_t>(options_.kind)]);
-  for (std::size_t i = 0; i < std::min(count(), most_rows); ++i) print_result(i);
-  if (count() > most_rows)
-    fmt::print("{:>8}  {} more; --json writes all of them\n", "", grouped(count() - most_rows));
+  for (std::size_t i = 0; i < std::min(count_, most_rows); ++i) print_result(i);
+  if (count_ > most_rows)
+    fmt::print("{:>8}  {} more; --json writes all of them\n", "", grouped(count_ - most_rows));
   fmt::print("{} in {:.3g} s, {:.3g} µs each\n",
-             are_distances ? counted(count(), "pair") : counted(count(), "query", "queries"), seconds_,
-             1e6 * seconds_ / static_cast<double>(count()));
+             are_distances ? counted(count_, "pair") : counted(count_, "query", "queries"), seconds_,
+             1e6 * seconds_ / static_cast<double>(count_));
   if (options_.verify)
-    fmt::print("verified: {} checked by brute force, {}\n", counted(count(), "answer"),
+    fmt::print("verified: {} checked by brute force, {}\n", counted(checked_, "answer"),
                wrong_.empty() ? "no difference" : counted(wrong_.size(), "difference"));
 }
 
 }  // namespace
 
 int run_query(const QueryOptions& options) {
-  Run run(options);
-  run.answer();
-  if (!options.json.empty()) run.write_json();
-  if (!options.quiet && options.json != "-") run.print();
-  return run.report_wrong_answers();
+  return Run(options).go();
 }
 
 }  // namespace supple::cli

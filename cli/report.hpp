@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "supple/result.hpp"
 
@@ -18,6 +19,8 @@ struct Frame {
     double motion_seconds = 0;  ///< wall-clock time of the motion
   };
   std::optional<Simulated> simulated{};
+  /// Objects whose straight paths in a step are not their motion; see half_turns.hpp.
+  std::vector<ObjectId> turned{};
 };
 
 }  // namespace supple::cli

@@ -1,6 +1,7 @@
 #include "reports.hpp"
 
 #include <fmt/core.h>
+#include <fmt/ranges.h>
 
 #include <array>
 #include <cstdint>
@@ -95,35 +96,54 @@ void print_difference(const Scene& scene, std::uint64_t frame, const VerifyRepor
 }  // namespace
 
 Reports::Reports(const DetectionOptions& options, const Input& input, const Scene& scene, std::string noun)
-    : options_(options), scene_(scene) {
+    : options_(options), scene_(scene), tested_(input, scene.options().contacts) {
   if (options.json_content.node_pairs) check_node_pairs(input, *options.json_content.node_pairs);
   if (!options.json.empty()) json_.emplace(options.json, input, scene, options.json_content);
   if (!options.csv.empty()) csv_.emplace(options.csv, options.scene);
-  if (!options.quiet && options.json != "-" && options.csv != "-") text_.emplace(std::move(noun));
+  if (!options.quiet && options.json != "-" && options.csv != "-")
+    text_.emplace(std::move(noun), input, scene);
 }
 
 void Reports::add(const Frame& frame) {
   if (json_) json_->add(frame);
   if (csv_) csv_->add(frame);
   if (text_) text_->add(frame);
+  tested_.add(frame);
   last_frame_ = frame.number;
+  if (frame.result.truncated) ++truncated_frames_;
   touched_ = touched_ || !frame.result.groups.empty() || !frame.result.continuous_groups.empty() ||
              !frame.result.proximity_groups.empty() || !frame.result.penetration_groups.empty();
   if (frame.verify && !frame.verify->agrees() && !std::exchange(differed_, true))
     print_difference(scene_, frame.number, *frame.verify);
 }
 
-void Reports::finish() {
-  if (json_) json_->finish();
-  if (csv_) csv_->finish();
-  if (!text_) return;
-  text_->print(scene_);
-  if (const auto& objects = options_.json_content.node_pairs) print_node_pairs(scene_, *objects, last_frame_);
+void Reports::finish(bool was_ended) {
+  was_ended_ = was_ended;
+  if (json_) json_->finish(was_ended);
+  if (csv_) csv_->finish(was_ended || truncated_frames_ > 0);
+  if (truncated_frames_ > 0)
+    fmt::print(stderr, "supple: {} more contacts than --max-contacts {}; the results are truncated\n",
+               truncated_frames_ == 1 ? "a frame has" : counted(truncated_frames_, "frame") + " have",
+               options_.limits.max_contacts);
+  if (!text_) {
+    if (!options_.quiet && !is_failing()) report_faults("warning");
+    return;
+  }
+  text_->print(scene_, tested_);
+  if (const auto& objects = options_.json_content.node_pairs; objects && !was_ended)
+    print_node_pairs(scene_, *objects, last_frame_);
+}
+
+void Reports::report_faults(const char* what) const {
+  if (const std::vector<std::string> faults = tested_.faults(); !faults.empty())
+    fmt::print(stderr, "supple: {}: {}\n", what, fmt::join(faults, "; "));
 }
 
 int Reports::exit_status() const {
   if (differed_) return exit_differences;
-  return options_.fail_on_contact && touched_ ? exit_contact : exit_done;
+  if (!is_failing()) return options_.fail_on_contact && touched_ ? exit_contact : exit_done;
+  report_faults("--fail-on-contact");
+  return was_ended_ || !tested_.faults().empty() ? exit_unusable : exit_done;
 }
 
 }  // namespace supple::cli

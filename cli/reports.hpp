@@ -9,6 +9,7 @@
 #include "options.hpp"
 #include "report.hpp"
 #include "supple/scene.hpp"
+#include "tested_kinds.hpp"
 #include "text_report.hpp"
 
 namespace supple::cli {
@@ -23,18 +24,25 @@ class Reports {
   bool has_tables() const { return text_.has_value(); }
   /// Prints the first difference of the run; the JSON has all of them.
   void add(const Frame& frame);
-  void finish();
-  /// The exit status for the frames so far.
+  /// `was_ended` says that a limit or a signal ended the run, so that frames are missing.
+  void finish(bool was_ended = false);
+  /// The exit status of a finished run. With --fail-on-contact, it reports on standard error what was not
+  /// tested.
   int exit_status() const;
 
  private:
+  void report_faults(const char* what) const;
+  /// Whether what was not tested decides the exit status, which then reports it.
+  bool is_failing() const { return options_.fail_on_contact && !touched_ && !differed_; }
+
   const DetectionOptions& options_;
   const Scene& scene_;
   std::optional<JsonReport> json_;
   std::optional<CsvReport> csv_;
   std::optional<TextReport> text_;
-  std::uint64_t last_frame_ = 0;
-  bool touched_ = false, differed_ = false;
+  TestedKinds tested_;
+  std::uint64_t last_frame_ = 0, truncated_frames_ = 0;
+  bool touched_ = false, differed_ = false, was_ended_ = false;
 };
 
 }  // namespace supple::cli

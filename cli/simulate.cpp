@@ -15,6 +15,7 @@
 #include "energy_table.hpp"
 #include "exit_status.hpp"
 #include "frame_recorder.hpp"
+#include "half_turns.hpp"
 #include "inputs.hpp"
 #include "interruption.hpp"
 #include "missing_threads.hpp"
@@ -60,16 +61,22 @@ class Run {
         simulation_(build_simulation(input)),
         reports_(options, input, simulation_.scene(), "frame"),
         recorder_(options.record, simulation_, input),
-        energies_(simulation_) {}
+        energies_(simulation_) {
+    if (contains(options.scene.contacts, ContactKinds::continuous)) turns_.emplace(simulation_, input);
+  }
 
   /// Runs until the last step, an interruption or a blow-up. Returns the exit status.
   int go();
 
  private:
-  bool take_steps(const Interruption& interruption);
-  void add_frame(const DetectResult& result);
-  void finish(double seconds);
-  int status_of_interruption(int signal) const;
+  bool take_steps(Interruption& interruption);
+  /// Returns false when the detection was stopped.
+  bool add_frame(Interruption& interruption, const DetectResult& result);
+  void finish(bool was_ended);
+  enum class Moment { between_steps, in_a_step };
+  /// Reports the frames so far. Returns the exit status.
+  int end_early(const Interruption& interruption, Moment moment);
+  static DetectRequest request_of(const Interruption& interruption) { return {.stop = interruption.token()}; }
 
   const SimulateOptions& options_;
   std::uint64_t steps_;
@@ -77,27 +84,35 @@ class Run {
   Reports reports_;
   FrameRecorder recorder_;
   EnergyTable energies_;
+  std::optional<HalfTurns> turns_;
+  Clock::time_point start_ = Clock::now();
+  std::uint64_t frames_ = 0;  ///< that were added
+  double time_ = 0;           ///< simulated, s, of the last of them
 };
 
 int Run::go() {
   if (const auto warning = viewer::warning_of_long_steps(simulation_))
     fmt::print(stderr, "supple: warning: {}: {}\n", one_line(options_.input), one_line(*warning));
-  const Interruption interruption;
-  const Clock::time_point start = Clock::now();
-  add_frame(simulation_.detect());
-  const bool stable = take_steps(interruption);
-  finish(std::max(std::chrono::duration<double>(Clock::now() - start).count(), 0.0));
-  if (!stable) return exit_unusable;
-  return interruption.signal() == 0 ? reports_.exit_status() : status_of_interruption(interruption.signal());
+  Interruption interruption(options_.limits.seconds,
+                            [this](const Interruption& end) { exit_now(end_early(end, Moment::in_a_step)); });
+  start_ = Clock::now();
+  const bool is_whole = add_frame(interruption, simulation_.detect(request_of(interruption)));
+  const bool stable = !is_whole || take_steps(interruption);
+  interruption.end();
+  if (stable && frames_ < steps_ + 1) return end_early(interruption, Moment::between_steps);
+  finish(false);
+  if (reports_.has_tables()) energies_.print(simulation_);
+  return stable ? reports_.exit_status() : exit_unusable;
 }
 
 /// False when the motion blew up.
-bool Run::take_steps(const Interruption& interruption) {
+bool Run::take_steps(Interruption& interruption) {
   Progress progress(steps_, !options_.quiet, "step");
   std::optional<std::string> fault;
-  while (simulation_.step_count() < steps_ && interruption.signal() == 0) {
+  while (simulation_.step_count() < steps_ && !interruption.is_requested()) {
+    if (turns_) turns_->remember_positions();
     try {
-      add_frame(simulation_.step());
+      if (!add_frame(interruption, simulation_.step(request_of(interruption)))) break;
     } catch (const MotionError& error) {
       fault = error.what();
       break;
@@ -105,40 +120,47 @@ bool Run::take_steps(const Interruption& interruption) {
     const std::uint64_t done = simulation_.step_count();
     progress.update(done, fmt::format("step {} of {}", done, steps_));
   }
-  if (fault) fmt::print(stderr, "supple: {}: {}\n", one_line(options_.input), one_line(*fault));
+  if (fault) fmt::print(stderr, "supple: {}: {}\n", one_line(options_.input), *fault);
   return !fault;
 }
 
-void Run::add_frame(const DetectResult& result) {
+bool Run::add_frame(Interruption& interruption, const DetectResult& result) {
+  if (result.stopped) return false;
   const std::uint64_t number = simulation_.step_count();
   Frame frame{number, result};
   frame.simulated = {simulation_.time(), number == 0 ? 0 : simulation_.motion_seconds()};
+  if (turns_ && number > 0) frame.turned = turns_->find();
   const bool is_start_of_continuous =
       number == 0 && contains(options_.scene.contacts, ContactKinds::continuous);
   if (options_.verify && !is_start_of_continuous) frame.verify = simulation_.scene().verify();
+  const auto hold = interruption.hold();
   recorder_.add(result);
   reports_.add(frame);
+  frames_ = number + 1;
+  time_ = simulation_.time();
+  return true;
 }
 
-void Run::finish(double seconds) {
+void Run::finish(bool was_ended) {
   recorder_.close();
-  if (reports_.has_tables()) {
-    const auto steps = static_cast<double>(simulation_.step_count());
-    fmt::print("{} of {} s: {:.6g} s simulated in {:.3g} s, {:.3g} steps/s\n",
-               counted(simulation_.step_count(), "step"), simulation_.options().time_step, simulation_.time(),
-               seconds, seconds > 0 ? steps / seconds : 0);
+  if (reports_.has_tables() && frames_ > 0) {
+    const double seconds = std::max(std::chrono::duration<double>(Clock::now() - start_).count(), 0.0);
+    const auto steps = static_cast<double>(frames_ - 1);
+    fmt::print("{} of {} s: {:.6g} s simulated in {:.3g} s, {:.3g} steps/s\n", counted(frames_ - 1, "step"),
+               simulation_.options().time_step, time_, seconds, seconds > 0 ? steps / seconds : 0);
   }
-  reports_.finish();
-  if (reports_.has_tables()) energies_.print(simulation_);
+  reports_.finish(was_ended);
 }
 
-int Run::status_of_interruption(int signal) const {
-  fmt::print(stderr, "supple: interrupted after step {} of {}, {:.6g} s{}\n", simulation_.step_count(),
-             steps_, simulation_.time(),
-             options_.record.empty() ? ""
-                                     : fmt::format("; {} has {}", one_line(options_.record),
-                                                   counted(simulation_.step_count() + 1, "frame")));
-  return exit_interrupted + signal;
+int Run::end_early(const Interruption& interruption, Moment moment) {
+  finish(true);
+  // In a step, another thread changes the simulation.
+  if (reports_.has_tables() && moment == Moment::between_steps) energies_.print(simulation_);
+  std::string place = fmt::format("step {} of {}, {:.6g} s", frames_ == 0 ? 0 : frames_ - 1, steps_, time_);
+  if (!options_.record.empty())
+    place += fmt::format("; {} has {}", one_line(options_.record), counted(frames_, "frame"));
+  return report_end(interruption, options_.limits.seconds, place,
+                    interruption.signal() != 0 ? exit_done : reports_.exit_status());
 }
 
 }  // namespace

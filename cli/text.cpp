@@ -40,16 +40,8 @@ std::optional<std::string> nearest_of(const std::string& mistyped, const std::ve
   return nearest;
 }
 
-std::string one_line(std::string text) {
-  for (char& c : text) {
-    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = ' ';
-  }
-  while (!text.empty() && text.back() == ' ') text.pop_back();
-  return text;
-}
-
 std::string name_of(const Scene& scene, ObjectId object) {
-  return fmt::format("{} {}", object.index, scene.name(object));
+  return fmt::format("{} {}", object.index, one_line(scene.name(object)));
 }
 
 std::string name_of(Feature feature) {

@@ -7,12 +7,9 @@
 #include <vector>
 
 #include "supple/scene.hpp"
+#include "supple/utf8.hpp"
 
 namespace supple::cli {
-
-/// Replaces each line break, tab or other control character by a blank, so that error messages are one line
-/// for any file name.
-std::string one_line(std::string text);
 
 /// A table prints at most this many rows, and then the number of omitted rows.
 inline constexpr std::size_t most_rows = 40;

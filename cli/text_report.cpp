@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cctype>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -63,6 +64,7 @@ void TextReport::add(const Frame& frame) {
                                        : branched_curves_);
   }
   impacts_.add(frame);
+  self_contacts_.add(result);
   add_to(sum_, result.stats);
   if (frame.simulated) {
     simulated_ = true;
@@ -82,13 +84,13 @@ void TextReport::add(const Frame& frame) {
   differences_ += verify.difference_count();
 }
 
-void TextReport::print(const Scene& scene) const {
+void TextReport::print(const Scene& scene, const TestedKinds& tested) const {
   const std::vector<ObjectId> objects = scene.objects();
   std::uint64_t triangles = 0;
   for (const ObjectId object : objects) triangles += scene.triangle_count(object);
   fmt::print("{}, {}, {}\n\n", counted(objects.size(), "object"), counted(triangles, "triangle"),
              counted(frames_, noun_));
-  print_contacts(scene);
+  print_contacts(scene, tested);
   if (simulated_) print_collisions(scene);
   print_stages(scene);
   if (non_finite_ > 0)
@@ -97,11 +99,21 @@ void TextReport::print(const Scene& scene) const {
   if (verified_) print_verify(scene);
 }
 
-void TextReport::print_contacts(const Scene& scene) const {
-  if (contains(scene.options().contacts, ContactKinds::intersection)) print_pairs(scene);
-  if (contains(scene.options().contacts, ContactKinds::penetration)) print_penetrations(scene);
-  if (contains(scene.options().contacts, ContactKinds::continuous)) impacts_.print(scene);
-  if (contains(scene.options().contacts, ContactKinds::proximity)) print_near(scene);
+/// Of kinds that were not tested, it prints no "Nothing touches."
+void TextReport::print_contacts(const Scene& scene, const TestedKinds& tested) const {
+  if (tested.was_tested(ContactKinds::intersection)) {
+    print_pairs(scene);
+    if (contains(scene.options().contacts, ContactKinds::penetration)) print_curves();
+  }
+  if (tested.was_tested(ContactKinds::penetration)) print_penetrations(scene);
+  if (tested.was_tested(ContactKinds::continuous)) impacts_.print(scene);
+  if (tested.was_tested(ContactKinds::proximity)) print_near(scene);
+  for (std::vector<std::string> lines : {tested.faults(), self_contacts_.notes()}) {
+    for (std::string& line : lines) {
+      line.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(line.front())));
+      fmt::print("{}.\n\n", line);
+    }
+  }
 }
 
 void TextReport::print_near(const Scene& scene) const {
@@ -127,10 +139,13 @@ void TextReport::print_near(const Scene& scene) const {
   fmt::print("\n");
 }
 
-void TextReport::print_penetrations(const Scene& scene) const {
-  fmt::print("The intersections form {} ({} closed, {} open, {} branched).\n",
+void TextReport::print_curves() const {
+  fmt::print("The intersections form {} ({} closed, {} open, {} branched).\n\n",
              counted(closed_curves_ + open_curves_ + branched_curves_, "curve"), grouped(closed_curves_),
              grouped(open_curves_), grouped(branched_curves_));
+}
+
+void TextReport::print_penetrations(const Scene& scene) const {
   if (inside_.empty()) {
     fmt::print("No vertex is inside a solid object.\n\n");
     return;
@@ -139,8 +154,8 @@ void TextReport::print_penetrations(const Scene& scene) const {
   std::sort(rows.begin(), rows.end(), [](const auto& x, const auto& y) {
     return x.second.vertices != y.second.vertices ? x.second.vertices > y.second.vertices : x.first < y.first;
   });
-  fmt::print("\n{:<20} {:<20} {:>8} {:>16} {:>24} {:>16}\n", "object", "is inside", "frames",
-             "vertices inside", "largest depth", "frames, wholly");
+  fmt::print("{:<20} {:<20} {:>8} {:>16} {:>24} {:>16}\n", "object", "is inside", "frames", "vertices inside",
+             "largest depth", "frames, wholly");
   for (std::size_t i = 0; i < std::min(rows.size(), most_rows); ++i) {
     const auto& [pair, inside] = rows[i];
     fmt::print("{:<20} {:<20} {:>8} {:>16} {:>24} {:>16}\n", name_of(scene, pair.a), name_of(scene, pair.b),

@@ -7,7 +7,9 @@
 
 #include "impact_tables.hpp"
 #include "report.hpp"
+#include "self_contacts.hpp"
 #include "supple/scene.hpp"
+#include "tested_kinds.hpp"
 
 namespace supple::cli {
 
@@ -15,11 +17,12 @@ namespace supple::cli {
 class TextReport {
  public:
   /// `noun` is the word for a frame: `frame` or `step`.
-  explicit TextReport(std::string noun) : noun_(std::move(noun)) {}
+  TextReport(std::string noun, const Input& input, const Scene& scene)
+      : noun_(std::move(noun)), self_contacts_(input, scene) {}
 
   void add(const Frame& frame);
   /// Prints to standard output.
-  void print(const Scene& scene) const;
+  void print(const Scene& scene, const TestedKinds& tested) const;
 
  private:
   struct PairSummary {
@@ -40,7 +43,8 @@ class TextReport {
     std::uint64_t frames_contained = 0;  ///< frames in which the whole object is inside
   };
 
-  void print_contacts(const Scene& scene) const;
+  void print_contacts(const Scene& scene, const TestedKinds& tested) const;
+  void print_curves() const;
   void print_penetrations(const Scene& scene) const;
   void print_near(const Scene& scene) const;
   void print_pairs(const Scene& scene) const;
@@ -55,6 +59,7 @@ class TextReport {
   std::map<ObjectPair, NearSummary> near_;
   std::map<ObjectPair, InsideSummary> inside_;  ///< a in b
   std::uint64_t closed_curves_ = 0, open_curves_ = 0, branched_curves_ = 0;
+  SelfContacts self_contacts_;
   ImpactTables impacts_;  ///< of continuous contacts
   StepStats sum_;
   std::uint64_t volumes_begun_ = 0, leaves_begun_ = 0, near_begun_ = 0, begun_ = 0, ended_ = 0;

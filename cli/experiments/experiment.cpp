@@ -97,7 +97,7 @@ int run_experiment(const ExperimentOptions& options) {
       fmt::print(
           stderr,
           "supple: interrupted; {} has the complete runs, and the same command with --resume goes on\n",
-          cli::one_line(folder.string()));
+          one_line(folder.string()));
       return cli::exit_interrupted + interruption.signal();
     }
   } else {

@@ -48,6 +48,31 @@ struct PairEvents {
   std::span<const ObjectPair> begin, stay, end;
 };
 
+/// Why there was nothing to test for a kind of contacts.
+enum class NothingToTest : std::uint8_t {
+  no_objects,  ///< the scene has no object
+  /// No object has a triangle. For continuous contacts and proximity: nor an edge or a point, or no edge when
+  /// only pairs of edges are searched.
+  no_elements,
+  not_finite,     ///< each element has a vertex that is not finite
+  no_solid,       ///< penetration: no object is solid
+  no_motion,      ///< continuous contacts: no object has a path
+  no_margin,      ///< proximity: all margins are 0, so that only elements at distance 0 are near
+  one_object,     ///< one object has elements, and it is not tested against itself
+  shared_vertex,  ///< one object is tested against itself, but each two of its elements share a vertex
+  all_static,     ///< all objects with elements are static
+  groups,         ///< groups and masks, of objects or of vertices, exclude all pairs
+  filter,         ///< the pair filter excludes all pairs
+};
+
+/// A kind of contacts for which there was nothing to test.
+struct UntestedKind {
+  ContactKinds kind = ContactKinds::none;  ///< one kind
+  NothingToTest reason = NothingToTest::no_objects;
+
+  constexpr bool operator==(const UntestedKind&) const = default;
+};
+
 /// Wall-clock seconds and work counts of one step. When two objects both have not moved, the step reuses
 /// their contacts, and the counts do not include the work that found them. Traversal and exact tests run
 /// interleaved on several threads: their wall-clock time is measured together and split by the threads' own
@@ -128,6 +153,9 @@ struct DetectResult {
   PairEvents proximity_events;    ///< of the pairs of different objects that have proximity pairs
   PairEvents penetration_events;  ///< of the pairs of objects with a vertex or a part inside the other one
   StepStats stats;
+  /// The requested kinds for which there was nothing to test: no contacts of these kinds then means nothing.
+  /// At most one entry for each kind, in their order. A kind that found something is never listed.
+  std::span<const UntestedKind> untested;
 
   std::span<const Contact> contacts_of(const ContactGroup& group) const {
     return contacts.subspan(group.first_contact, group.contact_count);

@@ -29,6 +29,10 @@ inline constexpr std::array words<ProximityDifference::Fault>{"missed", "added",
 template <>
 inline constexpr std::array words<PenetrationDifference::Fault>{"missed", "added", "inexact"};
 template <>
+inline constexpr std::array words<NothingToTest>{"no_objects", "no_elements", "not_finite", "no_solid",
+                                                 "no_motion",  "no_margin",   "one_object", "shared_vertex",
+                                                 "all_static", "groups",      "filter"};
+template <>
 inline constexpr std::array words<PairStage>{"not_tested",     "shared_vertex",  "inert",
                                              "object_volumes", "octree_volumes", "triangle_boxes",
                                              "exact_test",     "contact"};

@@ -119,13 +119,16 @@ class Scene {
                          std::span<const std::uint32_t> masks);
   /// Changes `ObjectOptions::self_collision`, O(1).
   void set_self_collision(ObjectId object, bool enabled);
-  /// Sets a function that excludes pairs of objects; an empty function removes it. See `PairFilter`.
+  /// Sets a function that excludes pairs of objects; an empty function removes it. See `PairFilter`. When it
+  /// excludes all pairs whose volumes overlap, `detect` also asks for others, until it accepts one.
   void set_pair_filter(PairFilter filter);
 
   /// Finds every contact of the requested kinds: intersections at the current positions, continuous contacts
   /// within the step, or pairs within the margins at the current positions. The request defaults to the
   /// options of the scene. Time depends on the objects that moved and on the overlapping volumes; no memory
-  /// is allocated after the largest step so far. Throws `Error` when the request is out of range.
+  /// is allocated after the largest step so far. An empty list of contacts means that nothing touches, unless
+  /// `DetectResult::untested` says that there was nothing to test. Throws `Error` when the request is out of
+  /// range.
   const DetectResult& detect(const DetectRequest& request = {});
   /// The first continuous contact with `SceneOptions::impact`, or nothing when nothing touches within the
   /// step. Of contacts with the same time, it is the first in canonical order. The search skips pairs that

@@ -21,5 +21,6 @@
 #include "supple/triangle_intersection.hpp"
 #include "supple/trigonometry.hpp"
 #include "supple/types.hpp"
+#include "supple/utf8.hpp"
 #include "supple/version.hpp"
 #include "supple/views.hpp"

@@ -55,7 +55,7 @@ class Json(ContinuousTest):
         result = self.detect("--sequence", "frame_?.obj", "--self", *CONTINUOUS)
         self.assertEqual([o["name"] for o in result["objects"]], ["frame_0"])
         (step,) = result["frames"]
-        keys = ["frame", "files", "object_pairs", "continuous", "earliest", "events", "non_finite", "stats"]
+        keys = ["frame", "files", "truncated", "untested", "object_pairs", "continuous", "earliest", "events", "non_finite", "stats"]
         self.assertEqual(list(step), keys)
         self.assert_groups(step, [{"a": 0, "b": 0, "vf": [[3, 0, 0.5]], "ee": []}])
         self.assertEqual(step["stats"]["contacts"], 1)

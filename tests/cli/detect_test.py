@@ -26,7 +26,7 @@ class Json(ProgramTest):
 
     def test_two_meshes(self):
         result = self.detect("a.obj", "b.obj", "--contact-details")
-        self.assertEqual(list(result), ["supple", "options", "objects", "frames"])
+        self.assertEqual(list(result), ["supple", "options", "objects", "frames", "truncated"])
         for given in result["objects"]:
             self.assertEqual(given.pop("options")["max_level"], 16)
         self.assertEqual(
@@ -48,6 +48,8 @@ class Json(ProgramTest):
             frame,
             {
                 "frame": 0,
+                "truncated": False,
+                "untested": [],
                 "object_pairs": [[0, 1]],
                 "triangle_pairs": [{"a": 0, "b": 1, "pairs": [[0, 0]]}],
                 "self": [],

@@ -24,7 +24,7 @@ class Info(ProgramTest):
         self.assertEqual(
             mesh,
             {
-                "name": "a", "vertices": 5, "triangles": 2, "edges": 3, "polygons": NO_POLYGONS, "lines": 0, "points": 0, "closed": False, "boundary_edges": 3,
+                "name": "a", "vertices": 5, "triangles": 2, "edges": 3, "polygons": NO_POLYGONS, "lines": 0, "points": 0, "closed": False, "boundary_edges": 3, "odd_edges": 3, "open_at_seams": False,
                 "non_manifold_edges": 0, "components": 1, "euler_characteristic": 1, "unused_vertices": 2,
                 "degenerate_triangles": 1, "non_finite_vertices": 1, "bounds": [[0.0, 0.0, 0.0], [5.0, 5.0, 5.0]],
             },

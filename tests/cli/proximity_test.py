@@ -21,7 +21,7 @@ class Proximity(ProgramTest):
 
     def test_features_and_elements(self):
         frame = self.frame("--verify")
-        self.assertEqual(list(frame), ["frame", "object_pairs", "proximity", "events", "non_finite", "proximity_verify", "stats"])
+        self.assertEqual(list(frame), ["frame", "truncated", "untested", "object_pairs", "proximity", "events", "non_finite", "proximity_verify", "stats"])
         (group,) = frame["proximity"]
         self.assertEqual(list(group), ["a", "b", "vv", "ve", "vf", "ev", "ee", "fv"])
         # Corners lie over corners; each pair once.

@@ -44,7 +44,7 @@ class Query(ProgramTest):
         self.write("points.txt", "0.1 0.1 0.1\n0.1 0.1 0\n1 1 1\n")
         self.assertEqual(self.query("inside", "points.txt", "solid.obj")["results"], ["inside", "on", "outside"])
         failed = self.run_here("query", "inside", "points.txt", "above.obj")
-        self.assert_one_line_error(failed, "the surface of above is open: the edge of vertices 0 and 1")
+        self.assert_one_line_error(failed, "the surface of above is open, 3 boundary edges: the edge of vertices 0 and 1")
 
     def test_rays(self):
         self.write("rays.txt", "0.25 0.25 -1 0 0 0.5\n0 0 0 0 0 0\n")

@@ -276,7 +276,9 @@ class ExitStatus(ProgramTest):
         self.assertEqual(self.status("a.obj", "far.obj", "--fail-on-contact"), 0)
 
     def test_fail_on_contact_with_itself(self):
-        self.assertEqual(self.status("crossed.obj", "--fail-on-contact"), 0)
+        done = self.run_here("detect", "--quiet", "crossed.obj", "--fail-on-contact")
+        self.assertEqual(done.status, 2)
+        self.assertIn("--self", done.error)
         self.assertEqual(self.status("crossed.obj", "--fail-on-contact", "--self"), 1)
 
     def test_fail_on_contact_in_any_frame(self):

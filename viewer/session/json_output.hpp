@@ -12,7 +12,7 @@
 
 #include "supple/comparison_options.hpp"
 #include "supple/types.hpp"
-#include "utf8.hpp"
+#include "supple/utf8.hpp"
 
 namespace supple::viewer {
 

@@ -137,15 +137,17 @@ class Simulation {
   ObjectId add(const TriangleMesh& mesh, const ObjectOptions& object, MotionFunction motion);
   void remove(ObjectId object);
 
-  /// Finds the contacts at the present positions. Nothing moves: continuous contacts are those at time 0.
-  const DetectResult& detect();
+  /// Finds the contacts at the present positions. Nothing moves: continuous contacts are those at time 0. The
+  /// request gives the limits of the detection, here and below; its kinds must be those of the scene. A
+  /// detection that is stopped has no contacts, but the step was taken.
+  const DetectResult& detect(const DetectRequest& request = {});
   /// Advances all objects by one time step, then detects. Continuous contacts are those on the straight paths
   /// of the step. Throws `MotionError` when a body fails, and rethrows what the user's motion throws; the
   /// state is then as before the call. Objects without motion cost nothing.
-  const DetectResult& step();
+  const DetectResult& step(const DetectRequest& request = {});
   /// As `step`, but returns the error instead of throwing it when a body fails. Returns nothing when the step
   /// succeeded; `scene().result()` then has the result. For builds without exceptions.
-  [[nodiscard]] std::optional<MotionError> try_step();
+  [[nodiscard]] std::optional<MotionError> try_step(const DetectRequest& request = {});
 
   std::uint64_t step_count() const;  ///< steps taken
   double time() const;               ///< step_count() · time_step, s

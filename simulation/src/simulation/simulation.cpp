@@ -168,18 +168,18 @@ void Simulation::Implementation::set_positions(ObjectId id, std::span<const Vec3
   }
 }
 
-const DetectResult& Simulation::Implementation::detect() {
+const DetectResult& Simulation::Implementation::detect(const DetectRequest& request) {
   for (const auto& object : objects_) {
     if (object == nullptr || !object->is_on_path) continue;
     scene.set_positions(object->id, object->positions());
     object->is_on_path = false;
   }
   has_current_result_ = true;
-  return scene.detect();
+  return scene.detect(request);
 }
 
 /// Operations after the step of the bodies must not fail; operations before it must have no lasting effect.
-std::optional<MotionError> Simulation::Implementation::try_step() {
+std::optional<MotionError> Simulation::Implementation::try_step(const DetectRequest& request) {
   Timer timer;
   call_functions(static_cast<double>(steps + 1) * options.time_step);
   remember_positions();
@@ -191,8 +191,8 @@ std::optional<MotionError> Simulation::Implementation::try_step() {
   place_in_scene();
   prepare_next_step();
   motion_seconds = timer.lap();
-  scene.detect();
-  has_current_result_ = true;
+  scene.detect(request);
+  has_current_result_ = !scene.result().stopped;
   return std::nullopt;
 }
 
@@ -349,15 +349,15 @@ void Simulation::remove(ObjectId object) {
   implementation_->remove(object);
 }
 
-const DetectResult& Simulation::detect() {
-  return implementation_->detect();
+const DetectResult& Simulation::detect(const DetectRequest& request) {
+  return implementation_->detect(request);
 }
-const DetectResult& Simulation::step() {
-  if (const auto error = try_step()) raise(*error);
+const DetectResult& Simulation::step(const DetectRequest& request) {
+  if (const auto error = try_step(request)) raise(*error);
   return scene().result();
 }
-std::optional<MotionError> Simulation::try_step() {
-  return implementation_->try_step();
+std::optional<MotionError> Simulation::try_step(const DetectRequest& request) {
+  return implementation_->try_step(request);
 }
 
 std::uint64_t Simulation::step_count() const {

@@ -50,8 +50,8 @@ class Simulation::Implementation {
 
   ObjectId add(const TriangleMesh& mesh, ObjectOptions object_options, ObjectMotion motion);
   void remove(ObjectId id);
-  const DetectResult& detect();
-  std::optional<MotionError> try_step();
+  const DetectResult& detect(const DetectRequest& request);
+  std::optional<MotionError> try_step(const DetectRequest& request);
   void set_positions(ObjectId id, std::span<const Vec3d> positions);
   SimulatedObject& object(ObjectId id, const char* call) const;
 

@@ -19,7 +19,7 @@ void fail(const std::string& message) {
 #if defined(__cpp_exceptions)
   throw Error(message);
 #else
-  if (failure_handler != nullptr) failure_handler(message);
+  if (failure_handler != nullptr) failure_handler(one_line(message));
   std::abort();
 #endif
 }

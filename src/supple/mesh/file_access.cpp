@@ -36,7 +36,7 @@ File open_for_reading(const std::filesystem::path& path) {
 }  // namespace
 
 std::string shown(const std::filesystem::path& path) {
-  return one_line(path.string());
+  return one_line(path.string(), '?');
 }
 
 std::string lower_case_extension(const std::filesystem::path& path) {

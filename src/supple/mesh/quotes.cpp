@@ -1,20 +1,16 @@
 #include "mesh/quotes.hpp"
 
-#include <algorithm>
-
 namespace supple {
-
-std::string one_line(std::string text) {
-  std::ranges::replace_if(
-      text, [](unsigned char c) { return c < 32 || c == 127; }, '?');
-  return text;
-}
 
 std::string in_quotes(std::string_view text) {
   constexpr std::size_t longest = 40;
-  std::string result = "'";
-  result += one_line(std::string(text.substr(0, longest)));
-  return result + (text.size() > longest ? "...'" : "'");
+  std::size_t shown = text.size();
+  if (shown > longest) {
+    shown = longest;
+    // Not the first bytes of a character.
+    while (shown > longest - 4 && (text[shown] & 0xc0) == 0x80) --shown;
+  }
+  return "'" + one_line(text.substr(0, shown), '?') + (shown < text.size() ? "...'" : "'");
 }
 
 }  // namespace supple

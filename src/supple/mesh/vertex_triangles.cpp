@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "mesh/vertex_sets.hpp"
+#include "supple/topology.hpp"
 
 namespace supple {
 namespace {
@@ -52,14 +53,14 @@ VertexTriangles::VertexTriangles(std::span<const Triangle> triangles, std::span<
   }
 }
 
-std::string fault_of_solid(std::span<const Triangle> triangles) {
+std::string fault_of_solid(const TriangleMesh& mesh) {
   struct Use {
     std::uint32_t first, last;
     int direction;
   };
   std::vector<Use> uses;
-  uses.reserve(3 * triangles.size());
-  for (const Triangle& triangle : triangles) {
+  uses.reserve(3 * mesh.triangles.size());
+  for (const Triangle& triangle : mesh.triangles) {
     for (std::size_t i = 0; i < 3; ++i) {
       const std::uint32_t from = triangle[i], to = triangle[(i + 1) % 3];
       if (from != to) uses.push_back({std::min(from, to), std::max(from, to), from < to ? 1 : -1});
@@ -92,8 +93,8 @@ std::string fault_of_solid(std::span<const Triangle> triangles) {
   };
   const auto more = [](std::size_t count) { return count > most_named ? ", ..." : ""; };
   if (open > 0)
-    return "the surface is open at " + edges(open) + " (vertices " + open_edges + more(open) +
-           "); close the holes";
+    return "the surface is open at " + edges(open) + " (vertices " + open_edges + more(open) + "); " +
+           advice_for_open_surface(mesh);
   if (turned > 0)
     return "neighbouring triangles turn against each other at " + edges(turned) + " (vertices " +
            turned_edges + more(turned) + "); orient all triangles alike";

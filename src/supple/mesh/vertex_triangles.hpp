@@ -38,8 +38,8 @@ class VertexTriangles {
 };
 
 /// Why a surface does not bound a solid: it is not closed, or its triangles are not oriented alike. Names the
-/// first of its faulty edges, as a clause; the empty string when every edge has as many triangles in one
-/// direction as in the other. O(n log n).
-std::string fault_of_solid(std::span<const Triangle> triangles);
+/// first of its faulty edges, and how to correct them, as a clause; the empty string when every edge has as
+/// many triangles in one direction as in the other. O(n log n).
+std::string fault_of_solid(const TriangleMesh& mesh);
 
 }  // namespace supple

@@ -226,12 +226,15 @@ bool Scene::Implementation::volumes_apart(const IndexPair& pair) const {
       pair_of(slots_[pair.a].object->resting_view(), slots_[pair.b].object->resting_view()));
 }
 
-bool Scene::Implementation::may_pair(const IndexPair& pair) const {
+bool Scene::Implementation::may_pair_by_groups(const IndexPair& pair) const {
   const ObjectOptions& a = slots_[pair.a].object->options;
   const ObjectOptions& b = slots_[pair.b].object->options;
   if (a.is_static && b.is_static) return false;
-  if ((a.group & b.mask) == 0 || (b.group & a.mask) == 0) return false;
-  return !filter || filter(id_of(pair.a), id_of(pair.b));
+  return (a.group & b.mask) != 0 && (b.group & a.mask) != 0;
+}
+
+bool Scene::Implementation::may_pair(const IndexPair& pair) const {
+  return may_pair_by_groups(pair) && (!filter || filter(id_of(pair.a), id_of(pair.b)));
 }
 
 /// Counts the queries of each octree. Jobs of objects that did not move search nothing. A query of another
@@ -459,6 +462,7 @@ void Scene::Implementation::publish() {
     }
   }
   list_touching_pairs(found);
+  list_untested(found);
   leaf_pairs_.clear();
   for (const CollidingVertices& group : found.colliding_vertex_groups) {
     if (group.a != group.b) leaf_pairs_.push_back({group.a, group.b});

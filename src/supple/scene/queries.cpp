@@ -4,6 +4,7 @@
 
 #include "core/error.hpp"
 #include "scene/scene_implementation.hpp"
+#include "supple/topology.hpp"
 
 namespace supple {
 
@@ -56,6 +57,15 @@ void Scene::Implementation::answer_queries(std::span<const Vec3d> places, const 
 
 namespace {
 
+TriangleMesh surface_of(const SceneObject& object) {
+  TriangleMesh mesh;
+  for (std::uint32_t v = 0; v < object.octree().vertex_count(); ++v)
+    mesh.positions.push_back(object.placement().position(v));
+  for (std::uint32_t t = 0; t < object.face_count(); ++t)
+    mesh.triangles.push_back(object.octree().user_triangle(t));
+  return mesh;
+}
+
 /// Whether two boxes may be within `distance` of each other.
 bool may_be_within(const Aabb& a, const Aabb& b, double distance) {
   double square = 0;
@@ -86,10 +96,12 @@ void Scene::Implementation::check_closed(const QueryFilter& seen, const char* ca
     if (seen.object && slots_[seen.object->index].object != slot.object) continue;
     const auto edge = slot.object->open_edge();
     if (!edge) continue;
-    fail(std::string(call) + ": the surface of " + slot.object->options.name +
-         " is open: the edge of vertices " + std::to_string((*edge)[0]) + " and " +
-         std::to_string((*edge)[1]) +
-         " has an odd number of triangles; close the holes, or leave this object out");
+    const TriangleMesh surface = surface_of(*slot.object);
+    fail(std::string(call) + ": the surface of " + slot.object->options.name + " is " +
+         describe_surface(compute_topology(surface)) + ": the edge of vertices " +
+         std::to_string((*edge)[0]) + " and " + std::to_string((*edge)[1]) +
+         " has an odd number of triangles; " + advice_for_open_surface(surface) +
+         ", or leave this object out");
   }
 }
 

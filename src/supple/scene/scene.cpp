@@ -7,9 +7,9 @@
 
 #include "core/error.hpp"
 #include "mesh/vertex_triangles.hpp"
-#include "mesh/vertex_welder.hpp"
 #include "scene/scene_implementation.hpp"
 #include "supple/option_descriptions.hpp"
+#include "supple/topology.hpp"
 
 namespace supple {
 namespace {
@@ -58,18 +58,6 @@ std::vector<Triangle> checked_triangles(const std::string& name, std::size_t ver
     }
   }
   return triangles;
-}
-
-/// The first vertex with the position of each vertex.
-std::vector<std::uint32_t> vertices_at_same_position(const PositionsView& positions) {
-  VertexWelder welder;
-  std::vector<std::uint32_t> first_vertices, same(positions.size());
-  for (std::uint32_t v = 0; v < same.size(); ++v) {
-    const std::uint32_t point = welder.id_of(positions[v]);
-    if (point == first_vertices.size()) first_vertices.push_back(v);
-    same[v] = first_vertices[point];
-  }
-  return same;
 }
 
 /// `ObjectOptions::same_vertex`, or its replacement by `weld`; empty when each vertex is its own.
@@ -170,7 +158,9 @@ ObjectId Scene::Implementation::add(const PositionsView& positions, const Triang
   std::sort(extra.begin(), extra.end());
   extra.erase(std::unique(extra.begin(), extra.end()), extra.end());
   if (named.solid) {
-    if (const std::string fault = fault_of_solid(faces); !fault.empty())
+    TriangleMesh surface{.name = {}, .positions = {}, .triangles = faces};
+    for (std::size_t v = 0; v < positions.size(); ++v) surface.positions.push_back(positions[v]);
+    if (const std::string fault = fault_of_solid(surface); !fault.empty())
       fail(named.name + " is no solid: " + fault);
   }
   auto object = std::make_unique<SceneObject>(positions, std::move(faces), extra, named, options, parallel);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -203,6 +204,11 @@ class Scene::Implementation {
   std::optional<WrongAnswer> wrong_distance(const ObjectPair& pair, double max_distance,
                                             const ProximityPair* found) const;
   void report_non_finite();
+  /// Why a kind of contacts has nothing to test; nothing when something is tested.
+  std::optional<NothingToTest> nothing_to_test(ContactKinds kind);
+  template <class Accept>
+  bool any_candidate_pair(ContactKinds kind, const Accept& accept) const;
+  void list_untested(DetectResult& found);
   void publish();
   void list_touching_pairs(const DetectResult& found);
   void list_deep_pairs(const DetectResult& found);
@@ -212,6 +218,8 @@ class Scene::Implementation {
   void check_exact_bits(const Jobs& jobs) const;
   bool volumes_apart(const IndexPair& pair) const;
   bool may_pair(const IndexPair& pair) const;
+  /// Without the pair filter.
+  bool may_pair_by_groups(const IndexPair& pair) const;
   OctreeView search_view(const SceneObject& object) const {
     if (question_.searches_at_rest()) return object.resting_view();
     return question_.is_continuous() ? object.moving_view() : object.near_view();
@@ -283,6 +291,8 @@ class Scene::Implementation {
   std::vector<std::uint32_t> by_box_;
   std::vector<ProximityPair> distances_;
   std::vector<NonFiniteVertex> non_finite_;
+  std::array<UntestedKind, 4> untested_;
+  std::vector<std::uint32_t> candidates_;  // objects with something to test
   PairCache volume_pairs_, narrow_phase_pairs_, contact_pairs_, near_object_pairs_, penetrating_pairs_;
   ContactPass contact_pass_;
   ImpactPass impact_pass_;

@@ -428,8 +428,9 @@ TEST(QueriesInside, NamesAnOpenEdge) {
     FAIL();
   } catch (const Error& error) {
     EXPECT_EQ(std::string(error.what()),
-              "inside: the surface of bag is open: the edge of vertices 0 and 2 has an odd number of "
-              "triangles; close the holes, or leave this object out");
+              "inside: the surface of bag is open, 3 boundary edges: the edge of vertices 0 and 2 has an odd "
+              "number "
+              "of triangles; close the holes, or leave this object out");
   }
   EXPECT_THROW(inside_of(scene, {}, {.object = open}), Error);
   EXPECT_EQ(inside_of(scene, {Vec3d{0.1, 0.1, 0.1}}, {.object = closed}).front(), Containment::inside);
