@@ -21,8 +21,9 @@ constexpr std::string_view magic = "glTF";
 bool is_known(std::string_view extension) {
   constexpr std::array applied = {"KHR_mesh_quantization", "KHR_draco_mesh_compression",
                                   "EXT_meshopt_compression", "EXT_mesh_gpu_instancing"};
-  constexpr std::array without_shape = {"KHR_materials_", "KHR_texture_", "EXT_texture_", "MSFT_texture_",
-                                        "KHR_lights_",    "KHR_xmp",      "EXT_lights_"};
+  constexpr std::array without_shape = {"KHR_materials_", "KHR_technique", "KHR_texture_",
+                                        "EXT_texture_",   "MSFT_texture_", "MSFT_packing_",
+                                        "KHR_lights_",    "KHR_xmp",       "EXT_lights_"};
   return std::find(applied.begin(), applied.end(), extension) != applied.end() ||
          std::any_of(without_shape.begin(), without_shape.end(),
                      [&](std::string_view start) { return extension.starts_with(start); });

@@ -8,8 +8,8 @@
 #include <string_view>
 #include <vector>
 
-#include "support/random.hpp"
 #include "supple/formats.hpp"
+#include "support/random.hpp"
 #include "unit/formats/gltf_builder.hpp"
 #include "unit/mesh/mesh_files.hpp"
 
@@ -83,7 +83,7 @@ TEST(Gltf, SparseAccessors) {
 TEST(Gltf, UnknownRequiredExtensionsAreNamed) {
   GltfBuilder gltf = shown_primitive(0);
   gltf.add("VEC3", triangle);
-  gltf.json["extensionsRequired"] = {"KHR_materials_unlit", "KHR_texture_transform"};
+  gltf.json["extensionsRequired"] = {"KHR_materials_unlit", "KHR_texture_transform", "KHR_technique_webgl"};
   EXPECT_EQ(load(gltf).positions, triangle_points);
   gltf.json["extensionsRequired"] = {"KHR_materials_unlit", "XYZ_curved_triangles"};
   EXPECT_NE(error(gltf).find("requires the extension 'XYZ_curved_triangles'"), std::string::npos)
@@ -261,8 +261,9 @@ std::string everything() {
   gltf.json["skins"] = {{{"joints", {1}}}};
   const int times = gltf.add<float>("SCALAR", {0, 1});
   const int values = gltf.add<float>("SCALAR", {0, 1});
-  gltf.json["animations"] = {{{"samplers", {{{"input", times}, {"output", values}}}},
-                              {"channels", {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "weights"}}}}}}}};
+  gltf.json["animations"] = {
+      {{"samplers", {{{"input", times}, {"output", values}}}},
+       {"channels", {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "weights"}}}}}}}};
   return gltf.text();
 }
 
@@ -278,7 +279,8 @@ TEST(Gltf, DamagedFiles) {
     constexpr std::string_view replacements = "0123456789-.,:[]{}\"ae";
     const auto size = static_cast<std::uint32_t>(damaged.size());
     for (int k = 0; k < 2; ++k)
-      damaged[random.below(size)] = replacements[random.below(static_cast<std::uint32_t>(replacements.size()))];
+      damaged[random.below(size)] =
+          replacements[random.below(static_cast<std::uint32_t>(replacements.size()))];
     if (i % 4 == 0) damaged.resize(random.below(size));
     const auto path = folder.write("b.gltf", damaged);
     errors += !error_of([&] { check_mesh(load_any_mesh(path)); }).empty();
