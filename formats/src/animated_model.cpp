@@ -119,6 +119,24 @@ void AnimatedModel::add_part(ModelPart part, std::span<const Surface> surfaces, 
   parts.push_back(std::move(part));
 }
 
+void AnimatedModel::remove_idle_tracks() {
+  std::vector<bool> moves_mesh(nodes.size());
+  const auto mark = [&](std::uint32_t node) {
+    for (; node != ModelNode::no_parent && !moves_mesh[node]; node = nodes[node].parent)
+      moves_mesh[node] = true;
+  };
+  for (const ModelPart& part : parts) {
+    mark(part.node);
+    if (part.skin) std::for_each(skins[*part.skin].joints.begin(), skins[*part.skin].joints.end(), mark);
+  }
+  for (std::size_t i = clips.size(); i-- > 0;) {
+    std::erase_if(tracks[i], [&](const AnimationTrack& track) { return !moves_mesh[track.node]; });
+    if (!tracks[i].empty()) continue;
+    clips.erase(clips.begin() + static_cast<std::ptrdiff_t>(i));
+    tracks.erase(tracks.begin() + static_cast<std::ptrdiff_t>(i));
+  }
+}
+
 void AnimatedModel::finish(const std::string& file) {
   std::vector<std::vector<std::uint32_t>> children(nodes.size());
   order_.clear();
@@ -134,6 +152,7 @@ void AnimatedModel::finish(const std::string& file) {
   }
   if (order_.size() != nodes.size()) fail(file + ": a node is its own ancestor; the nodes must form trees");
 
+  remove_idle_tracks();
   pose(nullptr, 0, mesh.positions);
   const std::vector<Transform> scene = to_scene(nodes);
   for (const ModelPart& part : parts) {

@@ -87,14 +87,15 @@ struct AnimatedModel {
   /// Adds the surfaces as one part. Equal vertices become one; vertices of no triangle are left out. `part`
   /// has everything but the vertices. `file` is the name in messages.
   void add_part(ModelPart part, std::span<const Surface> surfaces, const std::string& file);
-  /// Puts the mesh into the pose at rest and reverses mirrored triangles. Fails when a node is its own
-  /// ancestor.
+  /// Puts the mesh into the pose at rest, reverses mirrored triangles, and removes animations of what has no
+  /// mesh, such as cameras. Fails when a node is its own ancestor.
   void finish(const std::string& file);
 
   /// Computes positions: with the tracks of a clip at a time, or at rest with null.
   void pose(const std::vector<AnimationTrack>* played, double time, std::span<Vec3d> positions) const;
 
  private:
+  void remove_idle_tracks();
   /// The transform from each node to the scene.
   std::vector<Transform> to_scene(const std::vector<ModelNode>& posed) const;
 

@@ -31,7 +31,7 @@ class AnimatedMesh {
   /// The mesh in the pose of the file's nodes, as `read_mesh_file` returns it.
   const TriangleMesh& mesh() const;
   const CoordinateFrame& frame() const;
-  /// In the order of the file.
+  /// In the order of the file, without those that move no mesh, such as those of cameras.
   std::span<const AnimationClip> clips() const;
 
   /// Computes the positions of all vertices at a time, in seconds, of the clip with this index. Before its

@@ -127,6 +127,16 @@ TEST(Animation, ChildrenFollowTheirParents) {
   EXPECT_EQ(pose(load(gltf), 0.5), (std::vector<Vec3d>{{3, 2, 3}, {5, 2, 3}, {3, 4, 3}}));
 }
 
+TEST(Animation, ClipsOfCamerasAreLeftOut) {
+  GltfBuilder gltf = triangle_file();
+  gltf.json["nodes"].push_back({{"name", "camera"}});
+  gltf.json["scenes"] = {{{"nodes", {0, 1}}}};
+  add_channel(gltf, 0, 1, "translation", "LINEAR", {0, 1}, "VEC3", {0, 0, 0, 1, 0, 0});
+  EXPECT_TRUE(load(gltf).clips().empty());
+  add_channel(gltf, 0, 0, "translation", "LINEAR", {0, 1}, "VEC3", {0, 0, 0, 1, 0, 0});
+  EXPECT_EQ(load(gltf).clips().size(), 1u);
+}
+
 TEST(Animation, MorphTargets) {
   GltfBuilder gltf = triangle_file();
   gltf.json["meshes"][0]["primitives"][0]["targets"] = {
