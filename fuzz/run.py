@@ -20,7 +20,7 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 FUZZ = ROOT / "fuzz"
 LOG = FUZZ / "results.csv"
 COLUMNS = ["date", "commit", "machine", "build", "target", "seconds", "executions"]
-GOALS = {"Loaders, parsers and commands": (10**9, ["obj", "off", "ply", "stl", "assimp", "queries", "scene", "recording", "session", "packed"]),
+GOALS = {"Loaders, parsers and commands": (10**9, ["obj", "off", "ply", "stl", "assimp", "volumes", "queries", "scene", "recording", "session", "packed"]),
          "Pairs of triangles and impacts": (10**9, ["triangles", "impacts"]),
          "Lives of scenes and broad phases": (10**8, ["scene_lives", "broad_phases"])}
 

@@ -9,7 +9,7 @@ packages=(
   cmake ninja-build g++ python3
   libtbb-dev libhwy-dev libboost-dev libeigen3-dev
   libassimp-dev zlib1g-dev  # Debian's Assimp names zlib's file for linking, but does not depend on it
-  libmeshoptimizer-dev libdraco-dev
+  libmeshoptimizer-dev libdraco-dev libzip-dev libpugixml-dev
   libhdf5-dev
   libcli11-dev libtomlplusplus-dev rapidjson-dev libfmt-dev gnuplot-nox
   # The viewer, which also needs npm:

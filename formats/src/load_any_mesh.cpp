@@ -5,10 +5,10 @@
 #include <utility>
 #include <vector>
 
-#include "core/error.hpp"
+#include "file_kinds.hpp"
 #include "mesh/file_access.hpp"
-#include "mesh/quotes.hpp"
 #include "model_readers.hpp"
+#include "own_formats.hpp"
 #include "supple/formats.hpp"
 
 namespace supple {
@@ -27,6 +27,7 @@ bool is_gltf(std::string_view extension) {
 // Parses Assimp's own list, which has the form "*.3d;*.3ds;...".
 std::vector<std::string> list_extensions() {
   std::vector<std::string> result(native_extensions.begin(), native_extensions.end());
+  result.insert(result.end(), own_extensions().begin(), own_extensions().end());
   aiString list;
   Assimp::Importer().GetExtensionList(list);
   std::string_view rest = list.C_Str();
@@ -51,22 +52,26 @@ std::span<const std::string_view> supported_extensions() {
 bool is_read_by_assimp(const std::filesystem::path& path) {
   const std::string extension = lower_case_extension(path);
   const std::span<const std::string_view> known = supported_extensions();
-  return !is_native(extension) && !is_gltf(extension) &&
+  return !is_native(extension) && !is_gltf(extension) && !has_own_reader(path) &&
          std::binary_search(known.begin(), known.end(), extension);
 }
 
 AnimatedModel read_model(const std::filesystem::path& path) {
   const std::string extension = lower_case_extension(path);
+  const std::string start = read_start(path);
+  if (!std::ranges::binary_search(supported_extensions(), extension)) fail_unsupported(path, start);
+  check_kind(path, start);
   AnimatedModel model;
   if (is_native(extension)) {
     model.mesh = load_mesh(path);
   } else if (is_gltf(extension)) {
     model = read_gltf(path);
-  } else if (is_read_by_assimp(path)) {
-    model = read_with_assimp(path);
+  } else if (has_own_reader(path)) {
+    MeshFile file = read_own_format(path);
+    model.mesh = std::move(file.mesh);
+    model.frame = file.frame;
   } else {
-    fail("cannot read " + shown(path) + ": unknown extension " + in_quotes(extension) +
-         "; .obj, .off, .ply, .stl, .gltf, .glb, .fbx, .dae, .3ds and more are supported");
+    model = read_with_assimp(path);
   }
   model.mesh.name = path.stem().string();
   return model;

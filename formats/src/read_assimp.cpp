@@ -11,6 +11,7 @@
 #include "assimp_clips.hpp"
 #include "assimp_frame.hpp"
 #include "core/error.hpp"
+#include "file_kinds.hpp"
 #include "mesh/file_access.hpp"
 #include "mesh/polygon.hpp"
 #include "mesh/quotes.hpp"
@@ -187,6 +188,10 @@ AnimatedModel read_with_assimp(const std::filesystem::path& path) {
   const aiScene* scene = importer.ReadFile(path.string(), steps);
   if (scene == nullptr || scene->mRootNode == nullptr) {
     const std::string reason = one_line(importer.GetErrorString());
+    // Assimp reads some files of these formats.
+    if (const std::string advice = advice_on_extension(extension); !advice.empty())
+      fail("cannot read " + shown(path) + ": " + advice +
+           (reason.empty() ? "" : " (Assimp: " + reason + ")"));
     fail("cannot read " + shown(path) + ": " +
          (reason.empty() ? "Assimp, which reads this format, gives no reason; save it as OBJ, PLY or glTF"
                          : reason));

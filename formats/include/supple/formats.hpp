@@ -45,8 +45,11 @@ struct MeshFile {
       clips{};  ///< names of its animations (animation.hpp); the mesh is the pose at rest
 };
 
-/// Reads a mesh file. `load_mesh` reads OBJ, OFF, PLY and STL, an own reader glTF and GLB, and Assimp all
-/// other formats (FBX, COLLADA, 3DS, X3D, ...). The extension selects the reader; its case does not matter.
+/// Reads a mesh file. `load_mesh` reads OBJ, OFF, PLY and STL; own readers read glTF and GLB, 3MF, and the
+/// surfaces of meshes with solids (Gmsh, legacy VTK, TetGen, Medit); Assimp reads all other formats (FBX,
+/// COLLADA, 3DS, X3D, ...). The extension selects the reader; its case does not matter. Of Medit and Ogre,
+/// which share .mesh, the content selects. docs/formats.md has a table of what is read, and says which
+/// triangles the surface of a mesh with solids has.
 ///
 /// All meshes of a glTF file or of a file that Assimp reads become one mesh, in the order of the node tree,
 /// in the file's own units and axes: coordinates are those of the file. Left-handed formats (X, B3D, LWO,
@@ -64,7 +67,8 @@ struct MeshFile {
 /// EXT_mesh_gpu_instancing. An unknown extension that the file requires is an error that names it.
 ///
 /// Throws `Error` with the reason when the file cannot be read. Assimp can crash on damaged files; a program
-/// that reads files of strangers can call this function in a child process.
+/// that reads files of strangers can call this function in a child process. The message for a format without
+/// a reader names the format and what to export instead, also when only the first bytes of the file tell it.
 MeshFile read_mesh_file(const std::filesystem::path& path);
 
 /// The mesh of `read_mesh_file`.

@@ -21,6 +21,7 @@ TextScanner::TextScanner(std::string_view text, std::string file, TextSyntax syn
     : begin_(text.data()),
       position_(begin_),
       end_(begin_ + without_padding(text).size()),
+      padded_end_(begin_ + text.size()),
       file_(std::move(file)),
       syntax_(syntax) {
   if (text.starts_with("\xEF\xBB\xBF")) position_ += 3;

@@ -37,6 +37,10 @@ class TextScanner {
   bool skip_to_word();
   /// Moves past `literal` if it comes next.
   bool accept(std::string_view literal);
+  /// Counts the padding at the end as part of the file: its last numbers are binary.
+  void keep_padding() { end_ = padded_end_; }
+  /// Moves over bytes that are no text, at most `remaining()`. Their line ends do not count.
+  void skip_bytes(std::size_t count) { position_ += count; }
   /// The next word of this line; empty at its end.
   std::string_view word();
 
@@ -66,6 +70,7 @@ class TextScanner {
   const char* begin_;
   const char* position_;
   const char* end_;
+  const char* padded_end_;
   std::size_t line_ = 1;
   std::string file_;
   TextSyntax syntax_;

@@ -156,8 +156,7 @@ TEST(LoadAnyMesh, SaysWhyAFileCannotBeRead) {
   EXPECT_EQ(error_of([&] { load_any_mesh(directory); }), "cannot open " + directory + ": it is a directory");
   EXPECT_EQ(error_of([] { load_any_mesh("a.xyz1"); }),
             "cannot read a.xyz1: unknown extension '.xyz1'; .obj, .off, .ply, .stl, .gltf, .glb, .fbx, .dae, "
-            ".3ds and "
-            "more are supported");
+            ".3ds, .3mf, .msh, .vtk and more are supported");
   for (const char* name : {"a.gltf", "a.glb", "a.fbx", "a.dae", "a.3ds"}) {
     const std::string broken = folder.write(name, "{\n\"not\"\n");
     const std::string message = error_of([&] { load_any_mesh(broken); });
