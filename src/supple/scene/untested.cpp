@@ -53,19 +53,24 @@ struct TestedElements {
                                 : object.face_count();
   }
   bool is_tested(const Triangle& element) const { return !only_edges || element[0] != element[2]; }
-  bool is_finite(const SceneObject& object, const Triangle& element) const {
-    return std::all_of(element.begin(), element.end(), [&](std::uint32_t v) {
-      const Placement& placement = object.placement();
-      return supple::is_finite(placement.position(v)) &&
-             (!on_the_way || supple::is_finite(placement.start_position(v)));
-    });
+  bool is_finite(const SceneObject& object, std::uint32_t vertex) const {
+    const Placement& placement = object.placement();
+    return supple::is_finite(placement.position(vertex)) &&
+           (!on_the_way || supple::is_finite(placement.start_position(vertex)));
   }
-  /// The first tested and finite element from this number on, or the number of elements.
+  /// Whether an element takes part: a triangle with an edge that is finite, or all of another element.
+  /// Without edges and points, all of a triangle.
+  bool takes_part(const SceneObject& object, std::uint32_t element) const {
+    const Triangle& corners = object.octree().user_triangle(element);
+    const auto finite =
+        std::count_if(corners.begin(), corners.end(), [&](std::uint32_t v) { return is_finite(object, v); });
+    const bool has_parts = has_edges_and_points && element < object.face_count();
+    return is_tested(corners) && finite >= (has_parts ? 2 : 3);
+  }
+  /// The first element from this number on that takes part, or the number of elements.
   std::uint32_t next(const SceneObject& object, std::uint32_t element) const {
     const std::uint32_t end = count(object);
-    while (element < end && !(is_tested(object.octree().user_triangle(element)) &&
-                              is_finite(object, object.octree().user_triangle(element))))
-      ++element;
+    while (element < end && !takes_part(object, element)) ++element;
     return element;
   }
   bool has_any(const SceneObject& object) const {
@@ -77,33 +82,44 @@ struct TestedElements {
   }
 };
 
-bool has_vertex(const Triangle& element, std::uint32_t vertex) {
-  return std::find(element.begin(), element.end(), vertex) != element.end();
+std::size_t count_different(Triangle element) {
+  std::sort(element.begin(), element.end());
+  return static_cast<std::size_t>(std::unique(element.begin(), element.end()) - element.begin());
 }
 
-/// Whether an object has two triangles, or two elements, that it tests against each other when it is tested
-/// against itself.
-bool has_separate_elements(const SceneObject& object, const TestedElements& tested) {
+/// Whether an object has two triangles that it tests against each other when it is tested against itself.
+bool has_separate_triangles(const SceneObject& object, const TestedElements& tested) {
   const std::uint32_t first = tested.next(object, 0), end = tested.count(object);
   if (first == end) return false;
   const Triangle& one = object.octree().user_triangle(first);
-  for (std::uint32_t e = tested.next(object, first + 1); e < end; e = tested.next(object, e + 1)) {
-    const Triangle& other = object.octree().user_triangle(e);
-    const auto shares = [&](std::uint32_t vertex) { return has_vertex(one, vertex); };
-    // Elements are parts of triangles: a vertex of one that the other lacks is enough.
-    const bool is_separate =
-        tested.has_edges_and_points
-            ? !std::all_of(other.begin(), other.end(), shares) ||
-                  !std::all_of(one.begin(), one.end(), [&](std::uint32_t v) { return has_vertex(other, v); })
-            : std::none_of(other.begin(), other.end(), shares) ||
-                  object.options.neighbours == Neighbours::exact;
-    if (is_separate) return true;
+  for (std::uint32_t t = tested.next(object, first + 1); t < end; t = tested.next(object, t + 1)) {
+    const Triangle& other = object.octree().user_triangle(t);
+    if (object.options.neighbours == Neighbours::exact ||
+        std::find_first_of(one.begin(), one.end(), other.begin(), other.end()) == one.end())
+      return true;
   }
-  if (tested.has_edges_and_points) return false;
   std::vector<Triangle> all;  // for example a fan
   for (std::uint32_t t = first; t < end; t = tested.next(object, t + 1))
     all.push_back(object.octree().user_triangle(t));
   return count_neighbour_pairs(all) < std::uint64_t{all.size()} * (all.size() - 1) / 2;
+}
+
+/// The same for elements: a fourth vertex is enough for a triangle, a third one for an edge of no triangle.
+bool has_separate_elements(const SceneObject& object, const TestedElements& tested) {
+  constexpr std::size_t of_two_edges = 4;
+  std::size_t needed = of_two_edges;
+  std::vector<std::uint32_t> vertices;
+  for (std::uint32_t e = tested.next(object, 0); e < tested.count(object); e = tested.next(object, e + 1)) {
+    const Triangle& element = object.octree().user_triangle(e);
+    if (!tested.only_edges) needed = std::min(needed, count_different(element) + 1);
+    for (const std::uint32_t vertex : element) {
+      if (tested.is_finite(object, vertex) &&
+          std::find(vertices.begin(), vertices.end(), vertex) == vertices.end())
+        vertices.push_back(vertex);
+    }
+    if (vertices.size() >= needed) return true;
+  }
+  return false;
 }
 
 /// Whether the groups of vertices let two vertices of an object touch.
@@ -217,7 +233,8 @@ std::optional<NothingToTest> Scene::Implementation::nothing_to_test(ContactKinds
                             any_of_candidates([](const SceneObject& o) { return o.options.self_collision; });
   if (tests_itself && any_of_candidates([&](const SceneObject& object) {
         return object.options.self_collision && has_quality(kind, object) && may_touch_itself(object) &&
-               has_separate_elements(object, tested);
+               (tested.has_edges_and_points ? has_separate_elements(object, tested)
+                                            : has_separate_triangles(object, tested));
       }))
     return std::nullopt;
   if (candidates_.size() == 1) {
