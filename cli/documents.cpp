@@ -115,8 +115,9 @@ void print_man(const CLI::App& program) {
   for (const CLI::App* command : commands_of(program))
     fmt::print(".B supple {}\n{}\n.br\n", command->get_name(), arguments_of(*command));
   fmt::print(
-      ".SH DESCRIPTION\n{}\nMeshes are OBJ, OFF, PLY or STL files, or glTF, FBX, COLLADA and others that "
-      "Assimp reads; scene files are TOML, recordings HDF5.\n",
+      ".SH DESCRIPTION\n{}\nMeshes are OBJ, OFF, PLY, STL, glTF, 3MF, Gmsh, VTK, TetGen or Medit files, or "
+      "FBX, "
+      "COLLADA and others that Assimp reads; scene files are TOML, recordings HDF5.\n",
       roff(program.get_description()));
   for (const CLI::App* command : commands_of(program)) {
     fmt::print(".SH SUPPLE {}\n{}.\n", upper_case(command->get_name()), roff(command->get_description()));
