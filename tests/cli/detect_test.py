@@ -231,6 +231,18 @@ class SameBytes(ProgramTest):
                 self.assertEqual(contacts(*arguments), expected)
 
 
+class Polygons(ProgramTest):
+    def test_nothing_touches_in_the_notch_of_a_concave_polygon(self):
+        corners = "v -1 0 0\nv 1 0 0\nv 1 2 0\nv 0 2 0\nv 0 1 0\nv -1 1 0\n"
+        self.write("notched.obj", corners + "f 1 2 3 4 5 6\n")
+        self.write("inside.obj", ([(-0.1, 1.5, -1.0), (-0.1, 1.5, 1.0), (-0.12, 1.52, 1.0)], [(0, 1, 2)]))
+        self.write("crossing.obj", ([(0.1, 1.5, -1.0), (0.1, 1.5, 1.0), (0.12, 1.52, 1.0)], [(0, 1, 2)]))
+        (frame,) = self.detect("notched.obj", "inside.obj")["frames"]
+        self.assertEqual(frame["triangle_pairs"], [])
+        (frame,) = self.detect("notched.obj", "crossing.obj")["frames"]
+        self.assertEqual(len(frame["triangle_pairs"]), 1)
+
+
 class Sequence(ProgramTest):
     def setUp(self):
         super().setUp()

@@ -23,6 +23,19 @@ class Query(ProgramTest):
         self.assertEqual((done.status, done.error), (0, ""))
         return json.loads(done.out)
 
+    def test_rays_through_the_notch_of_a_concave_polygon_hit_nothing(self):
+        outline = [(3, 1), (3, 0), (0, 0), (0, 3), (1, 3), (1, 1)]
+        self.write("notch.txt", "1.2 1.5 5 0 0 -1\n2 1.5 5 0 0 -1\n0.5 2.5 5 0 0 -1\n")
+        for first in range(6):
+            for step in (1, -1):
+                corners = [outline[(first + step * k) % 6] for k in range(6)]
+                self.write("l.obj", "".join(f"v {x} {y} 0\n" for x, y in corners) + "f 1 2 3 4 5 6\n")
+                self.write("l.off", "OFF\n6 1 0\n" + "".join(f"{x} {y} 0\n" for x, y in corners) + "6 0 1 2 3 4 5\n")
+                for name in ("l.obj", "l.off"):
+                    left, right, inside = self.query("rays", "notch.txt", name, "--all-hits")["results"]
+                    self.assertEqual((left, right), (None, None), (name, corners))
+                    self.assertEqual(inside[2], 5)
+
     def test_closest(self):
         self.write("points.txt", "# x y z\n0.25 0.25 -2\n\n0.25,0.25,4.5  # nearer to the triangle\nnan 0 0\n")
         result = self.query("closest", "points.txt", "solid.obj", "above.obj")
