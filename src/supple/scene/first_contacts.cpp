@@ -10,8 +10,8 @@ bool FirstContacts::Entry::operator<(const Entry& other) const {
          std::tie(other.object, other.kind, other.name, other.toi, other.contact);
 }
 
-bool FirstContacts::choose(std::span<const ContinuousContact> all, std::uint64_t max_contacts,
-                           std::vector<ContactGroup>& groups) {
+/// Marks the contacts that are the first of one of their elements. `all` are in canonical order.
+void FirstContacts::find_first(std::span<const ContinuousContact> all) {
   entries_.clear();
   for (std::uint32_t i = 0; i < all.size(); ++i) {
     const ContinuousContact& contact = all[i];
@@ -24,6 +24,24 @@ bool FirstContacts::choose(std::span<const ContinuousContact> all, std::uint64_t
   for (std::size_t i = 0; i < entries_.size(); ++i) {
     if (i == 0 || !entries_[i].is_of_same_element(entries_[i - 1])) is_first_[entries_[i].contact] = 1;
   }
+}
+
+void FirstContacts::keep_first(std::vector<ContinuousContact>& found, std::size_t begin) {
+  const auto first = found.begin() + static_cast<std::ptrdiff_t>(begin);
+  std::sort(first, found.end(), [](const ContinuousContact& p, const ContinuousContact& q) {
+    return std::tie(p.kind, p.element_a, p.element_b) < std::tie(q.kind, q.element_a, q.element_b);
+  });
+  find_first({first, found.end()});
+  auto kept = first;
+  for (std::size_t i = 0; i < is_first_.size(); ++i) {
+    if (is_first_[i] != 0) *kept++ = found[begin + i];
+  }
+  found.erase(kept, found.end());
+}
+
+bool FirstContacts::choose(std::span<const ContinuousContact> all, std::uint64_t max_contacts,
+                           std::vector<ContactGroup>& groups) {
+  find_first(all);
   contacts_.clear();
   bool are_more = false;
   for (ContactGroup& group : groups) {

@@ -21,6 +21,9 @@ class FirstContacts {
   bool choose(std::span<const ContinuousContact> all, std::uint64_t max_contacts,
               std::vector<ContactGroup>& groups);
   std::span<const ContinuousContact> contacts() const { return contacts_; }
+  /// Keeps those contacts of one pair of objects from `begin` on that are the first of one of their elements,
+  /// in canonical order. O(n log n).
+  void keep_first(std::vector<ContinuousContact>& found, std::size_t begin);
 
  private:
   /// One element of a contact. Sorted, the first contact of each element stands first.
@@ -36,6 +39,8 @@ class FirstContacts {
     }
     bool operator<(const Entry& other) const;
   };
+
+  void find_first(std::span<const ContinuousContact> all);
 
   std::vector<Entry> entries_;
   std::vector<std::uint8_t> is_first_;

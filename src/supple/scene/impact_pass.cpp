@@ -19,6 +19,7 @@ namespace supple {
 namespace {
 
 constexpr std::size_t block_size = RelativeMotionBlock::capacity;
+constexpr std::size_t least_to_keep_first = 16384;  // contacts, 4 MB
 
 /// Orders the vertices of each edge, and the two edges of a self-collision, by the user's vertex ids. The
 /// contact then does not depend on the shape of the octrees.
@@ -100,25 +101,26 @@ bool ImpactPass::run(std::span<const ContactJob> jobs, std::span<const MovingObj
                      std::uint64_t max_contacts, const StopSignal& stop, const Parallel& parallel,
                      StepStats& stats) {
   Timer timer;
-  const bool is_same_search = options.impact == last_options_.impact && options.kinds == last_options_.kinds;
-  const bool lists_first = options.listing == ContinuousListing::first;
+  const bool is_same_search = options.impact == last_options_.impact &&
+                              options.kinds == last_options_.kinds &&
+                              options.listing == last_options_.listing;
   last_options_ = options;
   start(jobs, objects, options, stop);
   outcomes_.plan(jobs, versions, is_same_search);
-  limit_.start(lists_first ? ContactLimit::unlimited : max_contacts, jobs.size());
+  limit_.start(lists_first() ? ContactLimit::unlimited : max_contacts, jobs.size());
   for (std::uint32_t job = 0; limit_.is_set() && job < jobs.size(); ++job)
     limit_.add(job, outcomes_.ranges(job)[0].count);
   search(Search::all, outcomes_.open_jobs(), end_of_search(options_.impact), parallel);
   add_stats(workers_, timer.lap(), stats);
   if (stop.stop_requested()) return false;
   gather_contacts(parallel);
-  is_truncated_ = !lists_first && contacts_.size() > max_contacts;
+  is_truncated_ = !lists_first() && contacts_.size() > max_contacts;
   if (is_truncated_) {
     outcomes_.truncate(max_contacts);
     contacts_.resize(static_cast<std::size_t>(max_contacts));
   }
   outcomes_.list_groups(groups_, [&](std::uint32_t object) { return objects_[object].id; });
-  if (lists_first) is_truncated_ = first_contacts_.choose(contacts_, max_contacts, groups_);
+  if (lists_first()) is_truncated_ = first_contacts_.choose(contacts_, max_contacts, groups_);
   stats.contacts += this->contacts().size();
   stats.sort_and_events_seconds += timer.lap();
   return true;
@@ -201,6 +203,7 @@ void ImpactPass::run_task(std::size_t task, std::uint32_t w) {
   const std::uint32_t job = contact_task.job;
   Worker& worker = workers_[w];
   const std::size_t first = worker.found.size();
+  worker.keep_first_at = least_to_keep_first;
   const auto set_outcome = [&] {
     const auto count = static_cast<std::uint32_t>(worker.found.size() - first);
     if (search_ == Search::all) outcomes_.of_task(task) = {w, {{{static_cast<std::uint32_t>(first), count}}}};
@@ -212,8 +215,11 @@ void ImpactPass::run_task(std::size_t task, std::uint32_t w) {
                                         Timer timer;
                                         test_candidates(job, kind, candidates, worker);
                                         if (limit_.is_set()) drop_excess(job, first, worker);
+                                        keep_first(first, worker.keep_first_at, worker);
                                         worker.stats.exact_seconds += timer.lap();
                                       });
+  constexpr std::size_t many = 256;
+  keep_first(first, many, worker);
   set_outcome();
 }
 
@@ -343,6 +349,20 @@ void ImpactPass::drop_excess(std::uint32_t job, std::size_t first, Worker& worke
       [](const ContinuousContact& p, const ContinuousContact& q) { return order_of(p) < order_of(q); });
   limit_.exclude_after(place_of(job, last->kind, last->element_a[0]));
   worker.found.erase(last + 1, worker.found.end());
+}
+
+/// Of the contacts of one task, which begin at `first`, keeps those that may be listed, if there are at least
+/// so many. A contact that is not the first of an element in its task is not the first in the scene.
+void ImpactPass::keep_first(std::size_t first, std::size_t least, Worker& worker) const {
+  if (search_ != Search::all || !lists_first() || worker.found.size() - first < least) return;
+  worker.first_contacts.keep_first(worker.found, first);
+  worker.keep_first_at = std::max(least_to_keep_first, 2 * (worker.found.size() - first));
+}
+
+std::size_t ImpactPass::largest_buffer() const {
+  std::size_t largest = 0;
+  for (const Worker& worker : workers_) largest = std::max(largest, worker.found.capacity());
+  return largest;
 }
 
 /// Jobs are in canonical order. Each job gets its range of the list; its contacts are sorted there. All

@@ -86,10 +86,12 @@ class ImpactPass {
 
   std::span<const ContactGroup> groups() const { return groups_; }
   std::span<const ContinuousContact> contacts() const {
-    return options_.listing == ContinuousListing::first ? first_contacts_.contacts() : contacts_;
+    return lists_first() ? first_contacts_.contacts() : contacts_;
   }
   /// There are more than `max_contacts` contacts.
   bool is_truncated() const { return is_truncated_; }
+  /// The most contacts that a worker has held at once since it was made.
+  std::size_t largest_buffer() const;
 
  private:
   /// Orders the contacts of a job canonically and says where each is stored.
@@ -124,6 +126,8 @@ class ImpactPass {
     MotionBlock motions;                                       // of these pairs
     CoplanarSearch coplanar;
     std::vector<ContinuousContact> found;  // by all tasks of the worker
+    FirstContacts first_contacts;
+    std::size_t keep_first_at = 0;  // number of contacts of the present task
     TaskStats stats;
     std::optional<Earliest> earliest;
     std::vector<StepLimit> limits;         // the first of the job of each task
@@ -179,6 +183,8 @@ class ImpactPass {
   /// Whether exact arithmetic may decide the pair.
   bool may_be_exact(const OpenPair& pair, double separation) const;
   void drop_excess(std::uint32_t job, std::size_t first, Worker& worker);
+  bool lists_first() const { return options_.listing == ContinuousListing::first; }
+  void keep_first(std::size_t first, std::size_t least, Worker& worker) const;
   void gather_contacts(const Parallel& parallel);
   void gather_found(std::size_t job, Worker& worker, const Parallel& parallel);
 

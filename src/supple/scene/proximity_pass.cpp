@@ -1,6 +1,7 @@
 #include "scene/proximity_pass.hpp"
 
 #include <algorithm>
+#include <span>
 #include <utility>
 
 #include "core/timer.hpp"
@@ -9,6 +10,8 @@ namespace supple {
 namespace {
 
 constexpr std::size_t block_size = PointsBlock::capacity;
+constexpr std::size_t least_merge = 65536;  // candidates, 6 MB
+constexpr std::uint32_t no_job = ~std::uint32_t{0};
 
 template <std::size_t count>
 ElementIds element_of(const MovingObject& object, std::span<const std::uint32_t, count> vertices,
@@ -80,10 +83,18 @@ bool ProximityPass::run(std::span<const ContactJob> jobs, std::span<const Moving
   stop_ = stop;
   outcomes_.plan(jobs, versions, search == search_);
   search_ = search;
+  max_pairs_ = max_pairs;
   workers_.resize(parallel.worker_count());
+  Found none;
+  none.job = no_job;
   for (Worker& worker : workers_) {
     worker.traversal.set_stop(stop);
     worker.found.clear();
+    worker.runs.clear();
+    worker.run_first = 0;
+    worker.merge_at = least_merge;
+    worker.is_full = false;
+    worker.recent.fill(none);
     worker.stats = {};
   }
   tasks_.plan(outcomes_.open_jobs(), workers_.size(), workers_[0].traversal,
@@ -125,15 +136,17 @@ void ProximityPass::run_task(std::size_t task, std::uint32_t w) {
   const ContactTask& contact_task = tasks_.tasks()[task];
   const std::uint32_t job = contact_task.job;
   Worker& worker = workers_[w];
-  const std::size_t first = worker.found.size();
+  outcomes_.of_task(task) = {};  // `sort_found` counts the pairs
+  if (worker.is_full && worker.last.job < job) return;
   worker.traversal.find_element_pairs(view_of_job(job), contact_task.root, worker.stats.traversal,
                                       [&](ElementPairKind kind, std::span<const ElementPair> candidates) {
                                         Timer timer;
                                         test_candidates(job, kind, candidates, worker);
                                         worker.stats.exact_seconds += timer.lap();
                                       });
-  const auto count = static_cast<std::uint32_t>(worker.found.size() - first);
-  outcomes_.of_task(task) = {w, {{{static_cast<std::uint32_t>(first), count}}}};
+  const auto end = static_cast<std::uint32_t>(worker.found.size());
+  if (worker.run_first < end) worker.runs.push_back({job, worker.run_first, end});
+  worker.run_first = end;
 }
 
 void ProximityPass::test_candidates(std::uint32_t job, ElementPairKind kind,
@@ -181,8 +194,47 @@ void ProximityPass::add(std::uint32_t job, ElementPairKind kind, ElementPair can
           static_cast<std::uint8_t>(first.count + i);
     features = renumbered(features_of_code(code, are_edges), places);
   }
-  worker.found.push_back({name_of_pair(first, second, *features, order_of(job, kind), search_.listing), kind,
-                          *features, candidate});
+  keep({job, name_of_pair(first, second, *features, order_of(job, kind), search_.listing), kind, *features,
+        candidate},
+       worker);
+}
+
+/// Adds the candidate, unless it is one of the recent ones again or comes after all pairs of the result.
+void ProximityPass::keep(const Found& found, Worker& worker) const {
+  if (worker.is_full && worker.last < found) return;
+  const auto& [kind_a, kind_b, element_a, element_b] = found.name;
+  const std::uint32_t hash = (element_a[0] * 31 + element_a[1]) * 31 + element_b[0] * 7 + element_b[1];
+  Found& recent = worker.recent[hash % worker.recent.size()];
+  if (recent == found) return;
+  recent = found;
+  worker.found.push_back(found);
+  if (worker.found.size() >= worker.merge_at) merge(worker);
+}
+
+/// Keeps one candidate of each name, of the first `max_pairs_` names and one more, which shows that there are
+/// more.
+void ProximityPass::merge(Worker& worker) const {
+  std::vector<Found>& found = worker.found;
+  std::sort(found.begin(), found.end());
+  found.erase(std::unique(found.begin(), found.end()), found.end());
+  if (found.size() > max_pairs_) {
+    found.resize(static_cast<std::size_t>(max_pairs_) + 1);
+    worker.is_full = true;
+    worker.last = found.back();
+  }
+  worker.runs.clear();
+  for (std::uint32_t i = 0; i < found.size(); ++i) {
+    if (i == 0 || found[i].job != found[i - 1].job) worker.runs.push_back({found[i].job, i, i});
+    worker.runs.back().end = i + 1;
+  }
+  worker.run_first = static_cast<std::uint32_t>(found.size());
+  worker.merge_at = std::max(least_merge, 2 * found.size());
+}
+
+std::size_t ProximityPass::largest_buffer() const {
+  std::size_t largest = 0;
+  for (const Worker& worker : workers_) largest = std::max(largest, worker.found.capacity());
+  return largest;
 }
 
 PairOrder ProximityPass::order_of(std::uint32_t job, ElementPairKind kind) const {
@@ -286,32 +338,31 @@ void ProximityPass::compute_pairs(std::uint32_t job, std::span<const Found> foun
 
 /// Orders the pairs of each open job, each once, and tells their number to the outcomes.
 void ProximityPass::sort_found(const Parallel& parallel) {
-  first_tasks_.clear();
-  for (std::uint32_t task = 0; task < tasks_.tasks().size(); ++task) {
-    if (task == 0 || tasks_.tasks()[task].job != tasks_.tasks()[task - 1].job) first_tasks_.push_back(task);
-  }
-  const std::size_t jobs = first_tasks_.size();
-  first_tasks_.push_back(static_cast<std::uint32_t>(tasks_.tasks().size()));
-  if (sorted_.size() < outcomes_.open_jobs().size()) sorted_.resize(outcomes_.open_jobs().size());
+  const std::span<const std::uint32_t> open_jobs = outcomes_.open_jobs();
+  const std::span<const ContactTask> tasks = tasks_.tasks();
+  if (sorted_.size() < open_jobs.size()) sorted_.resize(open_jobs.size());
   for (std::vector<Found>& sorted : sorted_) sorted.clear();
-  parallel.for_ranges(jobs, 1, [&](std::size_t begin, std::size_t end, std::uint32_t w) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const auto& open = outcomes_.open_jobs();
-      const auto place = std::lower_bound(open.begin(), open.end(), tasks_.tasks()[first_tasks_[i]].job);
-      sort_job(first_tasks_[i], first_tasks_[i + 1], workers_[w].bin_ends,
-               sorted_[static_cast<std::size_t>(place - open.begin())]);
+  for (Worker& worker : workers_) std::ranges::sort(worker.runs, {}, &Run::job);
+  parallel.for_ranges(open_jobs.size(), 1, [&](std::size_t begin, std::size_t end, std::uint32_t w) {
+    for (std::size_t open = begin; open < end; ++open) {
+      sort_job(open_jobs[open], workers_[w].bin_ends, sorted_[open]);
+      const auto task = std::ranges::lower_bound(tasks, open_jobs[open], {}, &ContactTask::job);
+      if (task == tasks.end() || task->job != open_jobs[open]) continue;
+      outcomes_.of_task(static_cast<std::size_t>(task - tasks.begin())).ranges[0].count =
+          static_cast<std::uint32_t>(sorted_[open].size());
     }
   });
 }
 
 /// Sorts by the first element and its kinds in linear time, then the few pairs of each.
-void ProximityPass::sort_job(std::size_t first_task, std::size_t end_task,
-                             std::vector<std::uint32_t>& bin_ends, std::vector<Found>& sorted) {
+void ProximityPass::sort_job(std::uint32_t job, std::vector<std::uint32_t>& bin_ends,
+                             std::vector<Found>& sorted) const {
   std::size_t count = 0, ids = 0;
   const auto for_each_found = [&](const auto& visit) {
-    for (std::size_t task = first_task; task < end_task; ++task) {
-      const auto& [w, ranges] = outcomes_.of_task(task);
-      for (std::uint32_t i = ranges[0].first; i < ranges[0].end(); ++i) visit(workers_[w].found[i]);
+    for (const Worker& worker : workers_) {
+      for (const Run& run : std::ranges::equal_range(worker.runs, job, {}, &Run::job)) {
+        for (std::uint32_t i = run.first; i < run.end; ++i) visit(worker.found[i]);
+      }
     }
   };
   for_each_found([&](const Found& found) {
@@ -343,8 +394,6 @@ void ProximityPass::sort_job(std::size_t first_task, std::size_t end_task,
     begin = end;
   }
   sorted.erase(last, sorted.end());
-  for (std::size_t task = first_task; task < end_task; ++task) outcomes_.of_task(task).ranges[0].count = 0;
-  outcomes_.of_task(first_task).ranges[0].count = static_cast<std::uint32_t>(sorted.size());
 }
 
 }  // namespace supple

@@ -34,7 +34,8 @@ struct ProximitySearch {
 };
 
 /// Narrow phase and exact stage of proximity for all jobs of a step, on all workers. The pass keeps its
-/// memory between steps.
+/// memory between steps. It is proportional to the pairs of the result: a worker merges candidates with the
+/// same features when its buffer is full, and drops those after the first `max_pairs`.
 class ProximityPass {
  public:
   /// Finds the first `max_pairs` pairs in canonical order. `jobs` ascend and contain indices of `objects`,
@@ -48,15 +49,27 @@ class ProximityPass {
   std::span<const ProximityPair> pairs() const { return pairs_; }
   /// There are more than `max_pairs` pairs.
   bool is_truncated() const { return is_truncated_; }
+  /// The most candidates that a worker has held at once since it was made.
+  std::size_t largest_buffer() const;
 
  private:
   /// A pair within the margins. Several candidates may have the same closest features, and so the same name
   /// and the same numbers, which are computed for one of them.
   struct Found {
+    std::uint32_t job = 0;
     PairName name;
     ElementPairKind kind{};
     ClosestFeatures features;  // of the elements of `elements_of`
     ElementPair candidate;
+
+    bool operator<(const Found& other) const {
+      return job != other.job ? job < other.job : name < other.name;
+    }
+    bool operator==(const Found& other) const { return job == other.job && name == other.name; }
+  };
+  /// Candidates of one job that follow each other in the list of a worker.
+  struct Run {
+    std::uint32_t job = 0, first = 0, end = 0;
   };
   /// The elements of a candidate in the order of `ElementPoints`.
   struct Elements {
@@ -69,7 +82,13 @@ class ProximityPass {
     PointsBlock block;
     DistanceNumbersBlock numbers;
     std::array<std::array<PairElement, 2>, PointsBlock::capacity> elements;
-    std::vector<Found> found;             // by all tasks of the worker
+    std::vector<Found> found;     // by all tasks of the worker
+    std::vector<Run> runs;        // of finished tasks, or of what was merged
+    std::uint32_t run_first = 0;  // where the present task began to add candidates after those
+    std::size_t merge_at = 0;     // size of `found`
+    bool is_full = false;         // nothing after the last of what was merged is needed
+    Found last;
+    std::array<Found, 256> recent;        // some of the candidates that were added before
     std::vector<std::uint32_t> bin_ends;  // scratch of `sort_job`
     TaskStats stats;
   };
@@ -84,8 +103,9 @@ class ProximityPass {
                                          const Elements& elements) const;
   PairOrder order_of(std::uint32_t job, ElementPairKind kind) const;
   void sort_found(const Parallel& parallel);
-  void sort_job(std::size_t first_task, std::size_t end_task, std::vector<std::uint32_t>& bin_ends,
-                std::vector<Found>& sorted);
+  void sort_job(std::uint32_t job, std::vector<std::uint32_t>& bin_ends, std::vector<Found>& sorted) const;
+  void keep(const Found& found, Worker& worker) const;
+  void merge(Worker& worker) const;
   void compute_found(const Parallel& parallel);
   void compute_pairs(std::uint32_t job, std::span<const Found> found, Worker& worker, ProximityPair* pairs);
 
@@ -93,10 +113,10 @@ class ProximityPass {
   std::span<const MovingObject> objects_;
   ProximitySearch search_;
   StopSignal stop_;
+  std::uint64_t max_pairs_ = 0;
   std::vector<Worker> workers_;
   ContactTasks tasks_;
   JobOutcomes<1> outcomes_;
-  std::vector<std::uint32_t> first_tasks_;  // of each open job, and the number of tasks
   /// Part of a list of `sorted_`.
   struct Block {
     std::uint32_t open = 0, first = 0;

@@ -1,0 +1,117 @@
+// The memory of proximity and of first contacts is proportional to what is listed, not to the pairs of
+// elements that have the same nearest features.
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "core/parallel.hpp"
+#include "scene/impact_pass.hpp"
+#include "scene/proximity_pass.hpp"
+#include "scene/scene_object.hpp"
+#include "supple/scene.hpp"
+#include "supple/trigonometry.hpp"
+
+namespace supple {
+namespace {
+
+constexpr std::uint32_t spokes = 300;
+constexpr std::uint64_t any_number = std::numeric_limits<std::uint64_t>::max();
+
+/// Triangles around the first vertex. The edges of two fans are nearest at these vertices.
+TriangleMesh make_fan(const Vec3d& apex, double height) {
+  TriangleMesh fan{"", {apex}, {}};
+  for (std::uint32_t i = 0; i < spokes; ++i) {
+    const double turns = static_cast<double>(i) / spokes;
+    fan.positions.push_back(apex + Vec3d{cos_turns(turns), sin_turns(turns), height});
+    fan.triangles.push_back({0, 1 + i, 1 + (i + 1) % spokes});
+  }
+  return fan;
+}
+
+class Fans {
+ public:
+  Fans() : low_(add(make_fan({0, 0, 0}, -2))), high_(add(make_fan({0, 0, 1}, 2))) {
+    for (SceneObject* const object : {&low_, &high_}) {
+      const MovingShape& shape = object->moving();
+      MovingObject& listed = listed_.emplace_back();
+      listed.id = {static_cast<std::uint32_t>(listed_.size() - 1), 0};
+      listed.view = object->moving_view();
+      listed.start = &shape.start();
+      listed.end = &shape.end();
+      listed.triangle_ids = object->octree().triangle_ids();
+      listed.vertex_ids = shape.elements().vertex_ids();
+      listed.face_count = object->face_count();
+      listed.margin = 0.51;
+    }
+  }
+  std::span<const ProximityPair> near(ProximityPass& pass, ProximityListing listing,
+                                      std::uint64_t max_pairs) const {
+    StepStats stats;
+    pass.run(jobs_, listed_, versions_, {listing}, max_pairs, {}, Parallel(1), stats);
+    return pass.pairs();
+  }
+  std::span<const ContinuousContact> touching(ImpactPass& pass, ContinuousListing listing) const {
+    StepStats stats;
+    ImpactSearchOptions options;
+    options.impact.min_separation = 1.02;
+    options.listing = listing;
+    pass.run(jobs_, listed_, versions_, options, any_number, {}, Parallel(1), stats);
+    return pass.contacts();
+  }
+
+ private:
+  static SceneObject add(const TriangleMesh& mesh) {
+    SceneObject object(mesh.positions, mesh.triangles, {}, {}, {}, Parallel(1));
+    object.move().set_positions(mesh.positions, Parallel(1));
+    object.update({.moving = true}, Parallel(1));
+    return object;
+  }
+
+  SceneObject low_, high_;
+  std::vector<MovingObject> listed_;
+  std::array<ContactJob, 1> jobs_{{{0, 1}}};
+  std::array<std::uint64_t, 2> versions_{1, 2};
+};
+
+TEST(BoundedMemory, OfFeaturesIsThatOfTheList) {
+  const Fans fans;
+  ProximityPass pass;
+  EXPECT_EQ(fans.near(pass, ProximityListing::features, any_number).size(), 1u);
+  EXPECT_LT(pass.largest_buffer(), 100u);
+}
+
+TEST(BoundedMemory, OfTheFirstPairsIsLimited) {
+  const Fans fans;
+  ProximityPass all, some;
+  const auto expected = fans.near(all, ProximityListing::elements, any_number);
+  ASSERT_GT(expected.size(), std::size_t{spokes} * spokes);
+  EXPECT_GE(all.largest_buffer(), expected.size());
+  for (const std::uint64_t most : {0u, 1u, 1000u}) {
+    const auto found = fans.near(some, ProximityListing::elements, most);
+    EXPECT_TRUE(some.is_truncated());
+    ASSERT_EQ(found.size(), most);
+    EXPECT_TRUE(std::equal(found.begin(), found.end(), expected.begin()));
+  }
+  EXPECT_LE(some.largest_buffer(), 65536u);
+  EXPECT_EQ(fans.near(some, ProximityListing::elements, any_number).size(), expected.size())
+      << "the next search finds all";
+}
+
+TEST(BoundedMemory, OfFirstContactsIsThatOfTheElements) {
+  const Fans fans;
+  ImpactPass all, first;
+  EXPECT_GT(fans.touching(all, ContinuousListing::all).size(), std::size_t{spokes} * spokes);
+  const auto found = fans.touching(first, ContinuousListing::first);
+  EXPECT_LT(found.size(), std::size_t{8 * spokes});
+  EXPECT_LT(first.largest_buffer(), all.largest_buffer() / 3);
+  EXPECT_GT(fans.touching(first, ContinuousListing::all).size(), std::size_t{spokes} * spokes)
+      << "a list of all contacts does not reuse one of first contacts";
+}
+
+}  // namespace
+}  // namespace supple
