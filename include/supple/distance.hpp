@@ -22,7 +22,7 @@ using EdgePoints = std::array<Vec3d, 2>;
 /// of b; then the smaller index on a, then on b. The edges of a triangle count in the order (0, 1), (0, 2),
 /// (1, 2).
 struct ElementDistance {
-  /// Within 4 units in the last place of the exact distance.
+  /// Within 4 units in the last place of the exact distance; infinite where no double holds it.
   double distance = 0;
   Feature on_a, on_b;
   /// The closest points in barycentric coordinates of the element's vertices: 1, 0, 0 for a point; 1 - s, s,

@@ -166,8 +166,8 @@ struct SceneOptions {
   /// coordinates reach from the highest bit of the largest to the last bit of the finest. Elements of more
   /// bits that floating point cannot decide are reported as continuous contacts `within_tolerance`. For all
   /// other kinds of contacts, `detect` throws `Error` when two objects that may touch have more bits, which
-  /// takes O(n). Coordinates above 2^-150 and below 2^50 have at most 252 bits. 53 to `most_exact_bits`,
-  /// which means no limit.
+  /// takes O(n), and so do queries for their numbers and the objects that they see. Coordinates above 2^-150
+  /// and below 2^50 have at most 252 bits. 53 to `most_exact_bits`, which means no limit.
   std::uint32_t max_exact_bits = most_exact_bits;
   /// Worker threads; 0 means one for each core. Fewer work when the system refuses to create them
   /// (supple/threads.hpp). The results are the same for any number.
@@ -186,8 +186,8 @@ struct DetectRequest {
   /// The largest number of contacts of each kind in the result: the first ones in canonical order, for any
   /// number of threads. `DetectResult::truncated` says that there are more. The limit bounds the memory and
   /// the number of exact tests. The search skips object pairs after the last reported contact, but it
-  /// searches one object pair to its end. Proximity pairs, and the first contacts of elements, are all found
-  /// first. Penetration needs all intersections: a limit is an error then.
+  /// searches one object pair to its end. First contacts of elements are all found first, which takes memory
+  /// for each element that touches. Penetration needs all intersections: a limit is an error then.
   std::uint64_t max_contacts = std::numeric_limits<std::uint64_t>::max();
 #ifdef __cpp_lib_jthread
   /// Any thread can stop the call: it ends within milliseconds during the search, otherwise after the current

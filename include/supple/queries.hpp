@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "supple/call_limits.hpp"
 #include "supple/contact.hpp"
 #include "supple/description.hpp"
 #include "supple/types.hpp"
@@ -28,6 +29,7 @@ struct ClosestOptions {
   /// The distance is negative where the point is inside the object of the nearest triangle. The surfaces must
   /// be closed, as for `Scene::inside`.
   bool signed_distance = false;
+  CallLimits limits{};
 };
 
 /// The nearest triangle of a point. Exact arithmetic decides which one it is; of several at the same distance
@@ -36,7 +38,9 @@ struct ClosestPoint {
   ObjectId object;
   std::uint32_t triangle = 0;  ///< the user's number
   Feature feature;             ///< the smallest part of the triangle that holds the closest point; exact
-  double distance = 0;         ///< within 4 units in the last place; negative for a signed distance inside
+  /// Within 4 units in the last place; infinite where no double holds it. Negative for a signed distance
+  /// inside.
+  double distance = 0;
   /// The closest point by the triangle's corners, each coordinate within 2^-50.
   std::array<double, 3> barycentric{};
   Vec3d point;  ///< rounded
@@ -56,6 +60,7 @@ struct CastOptions {
   QueryFilter filter{};
   /// Also counts all triangles on the ray, which takes longer.
   bool count_hits = false;
+  CallLimits limits{};
 };
 
 /// The first triangle on a ray, as a closed set: its edges and corners count. Exact arithmetic decides which

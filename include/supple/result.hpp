@@ -259,6 +259,7 @@ struct VerifyReport {
   std::uint64_t near_pairs = 0;                                ///< in the listing of the last `detect`
   std::uint64_t vertex_triangle_pairs_checked = 0;             ///< for penetration
   std::uint64_t inside_vertices = 0;                           ///< inside solids
+  bool stopped = false;                                        ///< by `CallLimits::stop`, so not complete
   std::vector<Difference> differences;                         ///< sorted
   std::vector<ContinuousDifference> continuous_differences;    ///< sorted
   std::vector<ProximityDifference> proximity_differences;      ///< sorted

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "supple/call_limits.hpp"
 #include "supple/mesh.hpp"
 #include "supple/options.hpp"
 #include "supple/queries.hpp"
@@ -173,12 +174,20 @@ class Scene {
   /// Recomputes the last `detect`, all kinds of contacts that it found, by exact arithmetic over all pairs of
   /// triangles or elements, without octrees or filters, and lists every difference. Quadratic: under a second
   /// for two meshes of 70,000 triangles. Throws `Error` when an object or option changed since the last
-  /// `detect`, and when that call was stopped, truncated, or found no kind of contacts.
-  VerifyReport verify() const;
+  /// `detect`, and when that call was stopped, truncated, or found no kind of contacts. A stop ends it after
+  /// the pair of objects that it compares.
+  VerifyReport verify(const CallLimits& limits = {}) const;
 
   // Queries. They refit the objects that have moved, as `detect` does, and run on all threads of the scene;
   // results do not depend on their number. They do not change `result` and `verify`. All throw `Error` when
   // the numbers of queries and results differ, and when the filter names an object that is not in the scene.
+  //
+  // Worst case: each query decides all triangles, and `distance` all pairs of elements, by exact arithmetic;
+  // docs/conventions.md has a table of its time. That needs input made for it, such as many triangles at
+  // distances that are equal to a hundred bits. `CallLimits::stop` ends such a call. With
+  // `SceneOptions::max_exact_bits`, queries throw `Error` before any exact work when the numbers of a query
+  // and the coordinates of an object that it sees have more bits together; that check takes O(n) of all
+  // objects that the queries see.
 
   /// For each point the nearest triangle, or nothing when there is none within the largest distance and when
   /// the point is not finite. Takes about 1.4 µs for each of many points near a surface of 70,000 triangles,
@@ -192,12 +201,15 @@ class Scene {
             const CastOptions& options = {});
   /// All triangles on each ray, ordered by ray, then by t as exact arithmetic compares it, object and
   /// triangle. Valid until the next call of a function of the scene that is not const.
-  std::span<const ListedRayHit> cast_all(std::span<const Ray> rays, const QueryFilter& filter = {});
+  std::span<const ListedRayHit> cast_all(std::span<const Ray> rays, const QueryFilter& filter = {},
+                                         const CallLimits& limits = {});
   /// All triangles that overlap each box or sphere, ordered by query, object and triangle. A box or sphere
   /// with a number that is not finite, a box with min > max, and a sphere with a negative radius overlap
   /// nothing. Valid until the next call of a function of the scene that is not const.
-  std::span<const Overlap> overlaps(std::span<const QueryBox> boxes, const QueryFilter& filter = {});
-  std::span<const Overlap> overlaps(std::span<const QuerySphere> spheres, const QueryFilter& filter = {});
+  std::span<const Overlap> overlaps(std::span<const QueryBox> boxes, const QueryFilter& filter = {},
+                                    const CallLimits& limits = {});
+  std::span<const Overlap> overlaps(std::span<const QuerySphere> spheres, const QueryFilter& filter = {},
+                                    const CallLimits& limits = {});
   /// For each point whether it is inside an object of the filter: outside of all, else on a triangle of one,
   /// or inside at least one. Exact. A point inside a part of a surface that crosses itself is inside where a
   /// ray from it crosses the surface an odd number of times. Points that are not finite are outside, and so
@@ -207,24 +219,25 @@ class Scene {
   ///
   /// The surfaces must be closed: throws `Error` when an object of the filter has an edge with an odd number
   /// of triangles, and names it. The first call checks that in O(n log n).
-  void inside(std::span<const Vec3d> points, std::span<Containment> results, const QueryFilter& filter = {});
+  void inside(std::span<const Vec3d> points, std::span<Containment> results, const QueryFilter& filter = {},
+              const CallLimits& limits = {});
 
   /// The nearest features of two objects, as a pair of the listing of features, or nothing when one of them
   /// has no finite triangle. Of several pairs at the same distance, the first one in the order of
   /// `DetectResult::proximity_pairs`. When the surfaces intersect, the distance is 0, and the pair is the
   /// first point of their first contact: then an edge can be paired with a face. `object_a` is the smaller
   /// object. An object inside another one has the distance of the surfaces. Triangles with a vertex that is
-  /// not finite do not count. Starts at the result of the last
-  /// call for these objects, so that objects that move little take less time. Throws `Error` when both are
-  /// the same.
-  std::optional<ProximityPair> distance(ObjectId a, ObjectId b);
+  /// not finite do not count. A distance that no double holds is infinite. Starts at the result of the last
+  /// call for these objects, so that objects that move little take less time. Objects that are far from each
+  /// other take no longer than near ones. Throws `Error` when both are the same.
+  std::optional<ProximityPair> distance(ObjectId a, ObjectId b, const CallLimits& limits = {});
   /// The same for all pairs of objects that `detect` would test and that are within `max_distance`, closed:
   /// one pair of features for each, ordered by objects. Valid until the next call of a function of the scene
   /// that is not const. Throws `Error` when the distance is negative or NaN.
-  std::span<const ProximityPair> distances(double max_distance);
+  std::span<const ProximityPair> distances(double max_distance, const CallLimits& limits = {});
   /// Whether any triangle of one object intersects one of the other. Stops at the first. Throws `Error` when
   /// both are the same.
-  bool any_contact(ObjectId a, ObjectId b);
+  bool any_contact(ObjectId a, ObjectId b, const CallLimits& limits = {});
 
   // Checks of answers. Each takes the arguments of a query and its answer at the present positions. It
   // decides the query again by exact arithmetic over all triangles, without octrees and without code of the

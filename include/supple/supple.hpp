@@ -2,6 +2,7 @@
 
 /// All headers of the core, without the components models, simulation, formats and recording.
 #include "supple/broad_phase.hpp"
+#include "supple/call_limits.hpp"
 #include "supple/comparison_options.hpp"
 #include "supple/contact.hpp"
 #include "supple/continuous.hpp"

@@ -17,4 +17,14 @@ struct StopSignal {
 };
 #endif
 
+/// The stop of a request, or of limits.
+template <class Limits>
+StopSignal stop_of([[maybe_unused]] const Limits& limits) {
+#ifdef __cpp_lib_jthread
+  return limits.stop;
+#else
+  return {};
+#endif
+}
+
 }  // namespace supple

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <tuple>
 #include <utility>
@@ -108,7 +109,8 @@ BruteForceProximity find_proximity_by_brute_force(const PlainMovingObject& a, co
                                                   bool same_object, double reach, ProximityListing listing,
                                                   ElementKinds kinds, const Parallel& parallel) {
   const BoxedElements of_a = boxed_elements(a), of_b = boxed_elements(b);
-  const Rational squared_reach = Rational(reach) * Rational(reach);
+  const bool is_bounded = reach <= std::numeric_limits<double>::max();
+  const Rational squared_reach = is_bounded ? Rational(reach) * Rational(reach) : Rational(0);
   BruteForceProximity result;
   result.pairs_checked = element_pairs(of_a, of_b, same_object);
   const auto decide = [&](SortedElement first, SortedElement second,
@@ -116,7 +118,7 @@ BruteForceProximity find_proximity_by_brute_force(const PlainMovingObject& a, co
     if (first.points.size() + second.points.size() == 4 && clearly_apart(first.points, second.points, reach))
       return {};
     ExactDistance exact = distance_by_algebra(first.points, second.points);
-    if (exact.squared > squared_reach) return {};
+    if (is_bounded && exact.squared > squared_reach) return {};
     Side side_a = side_of(first, exact.on_a, listing), side_b = side_of(second, exact.on_b, listing);
     if (same_object) swaps = std::tie(side_b.kind, side_b.name) < std::tie(side_a.kind, side_a.name);
     if (swaps) std::swap(side_a, side_b);

@@ -325,6 +325,7 @@ double bound_of_distance(const PlainSurface& a, const PlainSurface& b) {
         if (distance < least) std::tie(least, nearest) = std::tuple(distance, corner);
       }
     }
+    if (std::isinf(least)) return least;
     point = nearest;
     bound = least;
   }
@@ -366,8 +367,7 @@ std::optional<ExactPair> nearest_pair_by_brute_force(const PlainObject& a, const
         found.near, [](const NearElements& p, const NearElements& q) { return place_of(p) < place_of(q); });
     return least != found.near.end() ? std::optional(ExactPair{{}, *least}) : std::nullopt;
   };
-  constexpr double largest = std::numeric_limits<double>::max();
-  const double bound = std::min({max_distance, bound_of_distance(surface_a, surface_b), largest});
+  const double bound = std::min(max_distance, bound_of_distance(surface_a, surface_b));
   if (guess && *guess >= 0 && increased(*guess) < bound) {
     if (auto nearest = nearest_within(increased(*guess))) return nearest;
   }

@@ -40,14 +40,6 @@ BoundingSphere grown(const BoundingSphere& sphere, double by) {
   return {sphere.center, round_up(sphere.radius + by)};
 }
 
-StopSignal stop_signal([[maybe_unused]] const DetectRequest& request) {
-#ifdef __cpp_lib_jthread
-  return request.stop;
-#else
-  return {};
-#endif
-}
-
 }  // namespace
 
 SearchedShapes Question::shapes() const {
@@ -76,7 +68,7 @@ const DetectResult& Scene::Implementation::detect(const DetectRequest& request) 
       request.proximity_listing.value_or(options.proximity_listing),
       options.comparison.colliding_vertices};
   if (question_.has_penetration()) check_penetration(request);
-  const StopSignal stop = stop_signal(request);
+  const StopSignal stop = stop_of(request);
   result = {};
   result.step = step_;
   result.stopped = true;  // until `publish`

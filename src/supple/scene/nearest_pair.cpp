@@ -66,14 +66,16 @@ std::array<double, 3> weights_at(const Vec3d& point, const Feature& feature, con
 }  // namespace
 
 void NearestPairSearch::start(const QueriedObject& a, const QueriedObject& b, Search search,
-                              double max_distance) {
+                              double max_distance, const StopSignal& stop) {
+  stop_ = stop;
   a_ = &a;
   b_ = &b;
   search_ = search;
   recent_.clear();
-  queries_.start();
   intersects_ = false;
   best_.reset();
+  bound_.clear();
+  decided_triangles_ = decided_elements_ = 0;
   stack_.clear();
   vertices_and_faces_.count = 0;
   edges_.count = 0;
@@ -110,16 +112,17 @@ PointBounds NearestPairSearch::seen(const Aabb& box, double direction) const {
   return bounds;
 }
 
-bool NearestPairSearch::any_contact(const QueriedObject& a, const QueriedObject& b) {
-  start(a, b, Search::any_contact, 0);
+bool NearestPairSearch::any_contact(const QueriedObject& a, const QueriedObject& b, const StopSignal& stop) {
+  start(a, b, Search::any_contact, 0, stop);
   descend();
   return intersects_;
 }
 
 std::optional<ProximityPair> NearestPairSearch::nearest(const QueriedObject& a, const QueriedObject& b,
                                                         double max_distance,
-                                                        std::optional<TrianglePair> guess) {
-  start(a, b, Search::nearest, max_distance);
+                                                        std::optional<TrianglePair> guess,
+                                                        const StopSignal& stop) {
+  start(a, b, Search::nearest, max_distance, stop);
   if (a.box.empty() || b.box.empty()) return {};
   if (guess)
     decide(*guess);
@@ -136,13 +139,14 @@ void NearestPairSearch::guess_by_projection() {
   Vec3d point;
   for (int axis = 0; axis < 3; ++axis)
     point[axis] = (double{a_->box.min[axis]} + double{a_->box.max[axis]}) / 2;
+  if (!is_finite(point)) point = a_->corners(0)[0];
   if (!is_finite(point)) return;
   constexpr int most = 6;
   TrianglePair triangles;
   double last = any_distance;
   for (int i = 0; i < most; ++i) {
     const QueriedObject& onto = i % 2 == 0 ? *b_ : *a_;
-    queries_.start();
+    queries_.start(stop_);
     const auto closest = queries_.closest(std::span(&onto, 1), point, any_distance);
     if (!closest) return;
     (i % 2 == 0 ? triangles.b : triangles.a) = queries_.last_nearest_triangle();
@@ -163,7 +167,7 @@ void NearestPairSearch::descend() {
   while (!stack_.empty() && !is_done()) {
     const Entry entry = stack_.back();
     stack_.pop_back();
-    if (!(entry.square <= squared_limit_)) continue;
+    if (!(entry.square <= squared_limit_) || are_apart(entry)) continue;
     const OctreeNode &node_a = a_->view.nodes[entry.node_a], &node_b = b_->view.nodes[entry.node_b];
     const bool is_inner_a = node_a.is_inner(entry.child_a), is_inner_b = node_b.is_inner(entry.child_b);
     if (!is_inner_a && !is_inner_b) {
@@ -177,26 +181,67 @@ void NearestPairSearch::descend() {
   }
 }
 
+/// Whether the bound, which may be another one than when the entry was pushed, excludes it.
+bool NearestPairSearch::are_apart(const Entry& entry) const {
+  if (!bound_.is_set()) return false;
+  const QueryBox box_a = a_->child_box(entry.node_a, entry.child_a),
+                 box_b = b_->child_box(entry.node_b, entry.child_b);
+  return bound_.are_apart(box_a, bound_.depth(NearestBound::a, box_a), box_b,
+                          bound_.depth(NearestBound::b, box_b));
+}
+
 /// Pushes the pairs of children within the limit, the nearest last.
 void NearestPairSearch::expand(std::uint32_t node_a, int first_a, int end_a, std::uint32_t node_b,
                                int first_b, int end_b) {
   const std::size_t first = stack_.size();
   const ChildBoxes &boxes_a = a_->view.boxes[node_a], &boxes_b = b_->view.boxes[node_b];
+  const bool needs_placed = bound_.is_set() || a_->fine_boxes != nullptr || b_->fine_boxes != nullptr;
+  std::array<QueryBox, node_width> placed_b;
+  std::array<double, node_width> depths_b{};
+  for (int k = first_b; needs_placed && k < end_b; ++k) {
+    const auto place = static_cast<std::size_t>(k);
+    placed_b[place] = b_->child_box(node_b, k);
+    if (bound_.is_set()) depths_b[place] = bound_.depth(NearestBound::b, placed_b[place]);
+  }
   for (int i = first_a; i < end_a; ++i) {
     const Aabb box = child_box(boxes_a, i);
     if (box.empty()) continue;
+    const QueryBox placed = needs_placed ? a_->child_box(node_a, i) : QueryBox{};
+    const double depth_a = bound_.is_set() ? bound_.depth(NearestBound::a, placed) : 0;
     std::array<float, node_width> squares;
-    squared_distances(seen_by_b(box), boxes_b, squares);
+    squared_distances_of(box, placed, node_b, first_b, end_b, placed_b, squares);
     for (int k = first_b; k < end_b; ++k) {
-      const float square = squares[static_cast<std::size_t>(k)];
-      if (square <= squared_limit_ && !child_box(boxes_b, k).empty())
-        stack_.push_back({square, node_a, node_b, i, k});
+      const auto place = static_cast<std::size_t>(k);
+      if (!(squares[place] <= squared_limit_) || child_box(boxes_b, k).empty()) continue;
+      if (bound_.is_set() && bound_.are_apart(placed, depth_a, placed_b[place], depths_b[place])) continue;
+      const double depth = depth_a + depths_b[place];
+      stack_.push_back(
+          {squares[place], depth == depth ? static_cast<float>(depth) : 0, node_a, node_b, i, k});
     }
   }
   std::sort(stack_.begin() + static_cast<std::ptrdiff_t>(first), stack_.end(),
             [](const Entry& p, const Entry& q) {
-              return std::tie(q.square, q.child_a, q.child_b) < std::tie(p.square, p.child_a, p.child_b);
+              return std::tie(q.square, q.depth, q.child_a, q.child_b) <
+                     std::tie(p.square, p.depth, p.child_a, p.child_b);
             });
+}
+
+/// The squared distances of a box of a and the children of a node of b, as `squared_distances` bounds them.
+void NearestPairSearch::squared_distances_of(const Aabb& box, const QueryBox& placed, std::uint32_t node_b,
+                                             int first, int end, std::span<const QueryBox> placed_b,
+                                             std::array<float, node_width>& squares) const {
+  if (a_->fine_boxes == nullptr && b_->fine_boxes == nullptr)
+    return squared_distances(seen_by_b(box), b_->view.boxes[node_b], squares);
+  for (int k = first; k < end; ++k) {
+    const QueryBox& other = placed_b[static_cast<std::size_t>(k)];
+    double square = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      const double gap =
+          std::max({placed.min[axis] - other.max[axis], other.min[axis] - placed.max[axis], 0.0});
+      square += gap * gap;
+    }
+    squares[static_cast<std::size_t>(k)] = static_cast<float>(square);
+  }
 }
 
 void NearestPairSearch::test_leaves(const Entry& leaves) {
@@ -227,46 +272,42 @@ void NearestPairSearch::test_leaves(const Entry& leaves) {
 
 void NearestPairSearch::test_blocks(const LeafBoxes& boxes_a, std::uint64_t near_a, std::uint32_t begin_a,
                                     const LeafBoxes& boxes_b, std::uint64_t near_b, std::uint32_t begin_b) {
-  // Two triangles are not nearer than their projections to the direction between the nearest features so far.
-  // Laterally, their boxes are a good bound; together few pairs are left.
-  Projections along_a, along_b;
-  const bool has_direction = best_ && !intersects_ && best_->distance > 0;
-  if (has_direction) {
-    along_a = project(*a_, begin_a, near_a, 1);
-    along_b = project(*b_, begin_b, near_b, -1);
-  }
   for (std::uint64_t left_a = near_a; left_a != 0; left_a &= left_a - 1) {
     const auto i = static_cast<std::uint32_t>(std::countr_zero(left_a));
+    // A contact of this triangle would come after the first one so far.
+    if (intersects_ && a_->triangle_ids[triangles_.a] < a_->triangle_ids[begin_a + i]) continue;
     const PointBounds box_a = seen_by_b({{boxes_a.min_x[i], boxes_a.min_y[i], boxes_a.min_z[i]},
                                          {boxes_a.max_x[i], boxes_a.max_y[i], boxes_a.max_z[i]}});
     for (std::uint64_t left_b = near_triangles(box_a, boxes_b, squared_limit_) & near_b; left_b != 0;
          left_b &= left_b - 1) {
       const auto k = static_cast<std::uint32_t>(std::countr_zero(left_b));
-      if (has_direction && along_a.least[i] + along_b.least[k] > limit_) continue;
+      if (bound_.is_set()) {
+        find_depths(NearestBound::a, begin_a, near_a, block_a_);
+        find_depths(NearestBound::b, begin_b, near_b, block_b_);
+        if (block_a_.least[i] + block_b_.least[k] > 0 ||
+            bound_.excludes(block_a_.depths[i], NearestBound::all_corners, block_b_.depths[k],
+                            NearestBound::all_corners))
+          continue;
+      }
       decide({begin_a + i, begin_b + k});
       if (is_done()) return;
     }
   }
 }
 
-/// For each triangle a lower bound of its coordinates along `sign` times the direction from b to a, from the
-/// middle between the nearest features so far.
-NearestPairSearch::Projections NearestPairSearch::project(const QueriedObject& object, std::uint32_t begin,
-                                                          std::uint64_t triangles, double sign) const {
-  const Vec3d middle = 0.5 * (best_->point_a + best_->point_b);
-  Projections result;
+void NearestPairSearch::find_depths(NearestBound::Side side, std::uint32_t begin, std::uint64_t triangles,
+                                    BlockDepths& block) {
+  const bool is_same = block.begin == begin && block.version == bound_.version();
+  if (is_same && (triangles & ~block.triangles) == 0) return;
+  block.begin = begin;
+  block.version = bound_.version();
+  block.triangles = triangles;
+  const QueriedObject& object = side == NearestBound::a ? *a_ : *b_;
   for (std::uint64_t left = triangles; left != 0; left &= left - 1) {
     const auto i = static_cast<std::uint32_t>(std::countr_zero(left));
-    double least = any_distance, size = 0;
-    for (const Vec3d& corner : object.corners(begin + i)) {
-      const Vec3d from_middle = corner - middle;
-      least = std::min(least, sign * dot(from_middle, best_->normal));
-      size = std::max(size, largest_magnitude(from_middle));
-    }
-    // More than the roundings of the difference, the product and the direction.
-    result.least[i] = least - 0x1p-48 * size;
+    block.depths[i] = bound_.depths(side, object, begin + i);
+    block.least[i] = block.depths[i].least(NearestBound::all_corners);
   }
-  return result;
 }
 
 void NearestPairSearch::decide(TrianglePair triangles) {
@@ -274,10 +315,12 @@ void NearestPairSearch::decide(TrianglePair triangles) {
   const auto ids_of = [&](TrianglePair pair) {
     return std::pair(a_->triangle_ids[pair.a], b_->triangle_ids[pair.b]);
   };
+  if (intersects_ && search_ == Search::nearest && ids_of(triangles_) < ids_of(triangles)) return;
+  ++decided_triangles_;
   if (!boxes_apart(a, b, 0)) {
-    if (intersects_ && search_ == Search::nearest && ids_of(triangles_) < ids_of(triangles)) return;
     if (triangles_intersect(a, b)) {
       intersects_ = true;
+      bound_.clear();
       triangles_ = triangles;
       set_limit(0);
       return;
@@ -300,30 +343,24 @@ void NearestPairSearch::decide_elements(TrianglePair triangles, const TrianglePo
   const auto face = [](const QueriedObject& object, std::uint32_t triangle, const TrianglePoints& corners) {
     return PairElement(object.triangles[triangle], corners, object.triangle_ids[triangle]);
   };
-  // Most pairs of elements are farther apart than the limit along the direction between the nearest ones.
-  std::array<double, 3> along_a{}, along_b{};
-  const Vec3d middle = best_ ? 0.5 * (best_->point_a + best_->point_b) : Vec3d{};
-  const Vec3d normal = best_ ? best_->normal : Vec3d{};
-  double size = 0;
-  for (std::size_t i = 0; i < 3; ++i) {
-    along_a[i] = dot(a[i] - middle, normal);
-    along_b[i] = dot(b[i] - middle, normal);
-    size = std::max({size, largest_magnitude(a[i] - middle), largest_magnitude(b[i] - middle)});
+  TriangleDepths depths_a, depths_b;
+  if (bound_.is_set()) {
+    depths_a = bound_.depths(NearestBound::a, *a_, triangles.a);
+    depths_b = bound_.depths(NearestBound::b, *b_, triangles.b);
   }
-  const double slack = 0x1p-47 * size;
-  const auto are_apart = [&](double least_a, double most_b) { return least_a - most_b - slack > limit_; };
+  const auto is_excluded = [&](unsigned corners_a, unsigned corners_b) {
+    return bound_.is_set() && bound_.excludes(depths_a, corners_a, depths_b, corners_b);
+  };
   for (std::size_t i = 0; i < 3; ++i) {
     const std::size_t next = (i + 1) % 3;
     const std::array edge_a{a[i], a[next]};
-    if (!are_apart(along_a[i], std::max({along_b[0], along_b[1], along_b[2]})) &&
-        !boxes_apart(std::span(&a[i], 1), b, limit_))
+    if (!is_excluded(1u << i, NearestBound::all_corners) && !boxes_apart(std::span(&a[i], 1), b, limit_))
       add({vertex(vertices_a, a, i), face(*b_, triangles.b, b), PairOrder::given, triangles});
-    if (!are_apart(std::min({along_a[0], along_a[1], along_a[2]}), along_b[i]) &&
-        !boxes_apart(std::span(&b[i], 1), a, limit_))
+    if (!is_excluded(NearestBound::all_corners, 1u << i) && !boxes_apart(std::span(&b[i], 1), a, limit_))
       add({vertex(vertices_b, b, i), face(*a_, triangles.a, a), PairOrder::swapped, triangles});
     for (std::size_t k = 0; k < 3; ++k) {
       const std::size_t after = (k + 1) % 3;
-      if (!are_apart(std::min(along_a[i], along_a[next]), std::max(along_b[k], along_b[after])) &&
+      if (!is_excluded(1u << i | 1u << next, 1u << k | 1u << after) &&
           !boxes_apart(edge_a, std::array{b[k], b[after]}, limit_))
         add({edge(vertices_a, a, i), edge(vertices_b, b, k), PairOrder::given, triangles});
     }
@@ -362,6 +399,7 @@ void NearestPairSearch::consider(Candidates& list) {
 }
 
 void NearestPairSearch::consider(const ElementCandidate& candidate) {
+  ++decided_elements_;
   const auto& [first, second, order, triangles] = candidate;
   const auto pair = proximity_pair_within(first, second, {a_->id, b_->id}, order, ProximityListing::features,
                                           limit_, used_exact_);
@@ -375,6 +413,7 @@ void NearestPairSearch::consider(const ElementCandidate& candidate) {
   best_ = pair;
   best_elements_ = elements;
   triangles_ = triangles;
+  if (pair->distance > 0) bound_.set(*a_, *b_, *best_, triangles);
   set_limit(std::min(limit_, pair->distance * (1 + 0x1p-36) + 0x1p-1060));
 }
 

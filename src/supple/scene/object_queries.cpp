@@ -8,12 +8,13 @@
 
 #include "contact/element_distance.hpp"
 #include "contact/ray_triangle.hpp"
-#include "contact/triangle_bounds.hpp"
 #include "core/float_rounding.hpp"
 #include "geometry/exact_predicates.hpp"
 #include "geometry/vector.hpp"
 #include "narrow_phase/query_kernels.hpp"
-#include "scene/feature_name.hpp"
+#include "scene/nearest_triangle.hpp"
+#include "scene/ray_line.hpp"
+#include "scene/support_plane.hpp"
 #include "scene/upward_ray.hpp"
 
 namespace supple {
@@ -21,19 +22,16 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// The box of a triangle, in double.
-struct CornerBox {
-  Vec3d min, max;
-
-  explicit CornerBox(const TrianglePoints& corners) : min(corners[0]), max(corners[0]) {
-    for (const Vec3d& corner : corners) {
-      for (int axis = 0; axis < 3; ++axis) {
-        min[axis] = std::min(min[axis], corner[axis]);
-        max[axis] = std::max(max[axis], corner[axis]);
-      }
+QueryBox box_of(const TrianglePoints& corners) {
+  QueryBox box{corners[0], corners[0]};
+  for (const Vec3d& corner : corners) {
+    for (int axis = 0; axis < 3; ++axis) {
+      box.min[axis] = std::min(box.min[axis], corner[axis]);
+      box.max[axis] = std::max(box.max[axis], corner[axis]);
     }
   }
-};
+  return box;
+}
 
 /// At most the distance of a point and a box.
 template <class Box>
@@ -70,8 +68,12 @@ double ray_bound(const Ray& ray, const Box& box) {
   return first <= last ? std::min(first, std::numeric_limits<double>::max()) : infinity;
 }
 
-ElementPoints point_and_triangle(const Vec3d& point, const TrianglePoints& corners) {
-  return {{point, corners[0], corners[1], corners[2]}, 1, 3};
+/// Finite; where the box is too large for floats, the origin.
+Vec3d middle_of(const QueriedObject& object) {
+  Vec3d middle;
+  for (int axis = 0; axis < 3; ++axis)
+    middle[axis] = (double{object.box.min[axis]} + double{object.box.max[axis]}) / 2;
+  return is_finite(middle) ? middle : Vec3d{};
 }
 
 /// More than the roundings of a point without the translation, and of a translated vertex.
@@ -111,103 +113,10 @@ RaySlabs slabs_of(const QueriedObject& object, const Ray& ray) {
   return slabs;
 }
 
-/// The nearest triangle so far.
-class NearestTriangle {
- public:
-  NearestTriangle(std::span<const QueriedObject> objects, const Vec3d& point, double max_distance,
-                  std::vector<NearTriangle>& candidates)
-      : objects_(objects), point_(point), max_distance_(max_distance), candidates_(candidates) {
-    candidates_.clear();
-    set_limit(max_distance);
-  }
-
-  /// Triangles farther away than this are not of interest.
-  double limit() const { return limit_; }
-  /// Its square, rounded up by more than a squared distance in single precision can lose.
-  float squared_limit() const { return squared_limit_; }
-
-  /// Triangles in octree order from `begin` on, one for each bit. Keeps those that may be the nearest.
-  void consider(std::uint32_t index, std::uint32_t begin, std::uint64_t triangles) {
-    std::array<TrianglePair, leaf_block> list;
-    std::array<double, leaf_block> lower, upper;
-    std::size_t count = 0;
-    for (std::uint64_t left = triangles; left != 0; left &= left - 1)
-      list[count++] = {begin + static_cast<std::uint32_t>(std::countr_zero(left)), 0};
-    if (count == 0) return;
-    bound_distances(point_, {objects_[index].view.arrays, objects_[index].view.translation},
-                    std::span(list).first(count), lower.data(), upper.data());
-    const double least = *std::min_element(upper.begin(), upper.begin() + static_cast<std::ptrdiff_t>(count));
-    if (least < limit_) set_limit(least);
-    for (std::size_t i = 0; i < count; ++i) {
-      if (lower[i] <= limit_) candidates_.push_back({lower[i], index, list[i].a});
-    }
-  }
-
-  /// Decides between the triangles that were kept. The nearest one first, which discards most of the others.
-  void decide() {
-    if (candidates_.empty()) return;
-    std::swap(candidates_.front(), *std::min_element(candidates_.begin(), candidates_.end(),
-                                                     [](const NearTriangle& p, const NearTriangle& q) {
-                                                       return p.distance < q.distance;
-                                                     }));
-    for (const NearTriangle& candidate : candidates_) {
-      if (candidate.distance <= limit_) decide(candidate.object, candidate.triangle);
-    }
-  }
-
-  std::uint32_t object() const { return index_; }
-  /// In octree order.
-  std::uint32_t triangle() const { return triangle_; }
-
-  std::optional<ClosestPoint> result() const {
-    if (!found_) return {};
-    return ClosestPoint{
-        objects_[index_].id, id_,           found_->on_b, found_->distance, found_->barycentric_b,
-        found_->point_b,     found_->normal};
-  }
-
- private:
-  void decide(std::uint32_t index, std::uint32_t t) {
-    if (found_ && index_ == index && triangle_ == t) return;
-    const QueriedObject& object = objects_[index];
-    const TrianglePoints corners = object.corners(t);
-    const ElementPoints elements = point_and_triangle(point_, corners);
-    const auto found = distance_within(elements, limit_, used_exact_);
-    if (!found) return;
-    const std::uint32_t id = object.triangle_ids[t];
-    const FeatureName feature = name_of(found->on_b, object.triangles[t], id);
-    if (found_) {
-      const bool is_same_feature = index_ == index && feature_ == feature;
-      const int side = is_same_feature
-                           ? 0
-                           : compare_distances(elements, point_and_triangle(point_, corners_), used_exact_);
-      if (side > 0 || (side == 0 && std::tie(index_, id_) < std::tie(index, id))) return;
-    }
-    found_ = found;
-    corners_ = corners;
-    index_ = index;
-    triangle_ = t;
-    id_ = id;
-    feature_ = feature;
-    set_limit(std::min(max_distance_, found->distance * (1 + 0x1p-36) + 0x1p-1060));
-  }
-
-  void set_limit(double limit) {
-    limit_ = limit;
-    squared_limit_ = round_up(limit * limit * (1 + 0x1p-18) + 0x1p-120);
-  }
-
-  std::span<const QueriedObject> objects_;
-  Vec3d point_;
-  double max_distance_, limit_ = 0;
-  float squared_limit_ = 0;
-  std::vector<NearTriangle>& candidates_;
-  std::optional<ElementDistance> found_;
-  TrianglePoints corners_;
-  std::uint32_t index_ = 0, triangle_ = 0, id_ = 0;
-  FeatureName feature_;
-  bool used_exact_ = false;
-};
+/// The square of a lower bound of a distance, rounded down.
+double squared_bound(double distance) {
+  return distance * distance * (1 - 0x1p-50);
+}
 
 /// By the place on the ray, then by object and triangle.
 bool is_before(const TriangleOnRay& p, const TriangleOnRay& q) {
@@ -246,7 +155,7 @@ class BoxFaces {
 
   /// Whether the triangle shares a point with the box: a corner inside, or a point on a face.
   bool meet(const TrianglePoints& triangle) const {
-    const CornerBox around(triangle);
+    const QueryBox around = box_of(triangle);
     for (int axis = 0; axis < 3; ++axis) {
       if (around.min[axis] > box_.max[axis] || around.max[axis] < box_.min[axis]) return false;
     }
@@ -266,6 +175,12 @@ class BoxFaces {
 
 }  // namespace
 
+bool is_far(const Aabb& box, double distance, double ratio) {
+  const double size =
+      std::max({double{box.max.x} - box.min.x, double{box.max.y} - box.min.y, double{box.max.z} - box.min.z});
+  return distance > ratio * size;
+}
+
 TrianglePoints QueriedObject::corners(std::uint32_t triangle) const {
   TrianglePoints result;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -273,6 +188,68 @@ TrianglePoints QueriedObject::corners(std::uint32_t triangle) const {
     result[i] = view.translation == Vec3d{} ? p : p + view.translation;
   }
   return result;
+}
+
+QueryBox QueriedObject::child_box(std::uint32_t node, int child) const {
+  QueryBox result;
+  if (fine_boxes != nullptr) {
+    result = fine_boxes[node_width * node + static_cast<std::uint32_t>(child)];
+  } else {
+    const Aabb rounded = supple::child_box(view.boxes[node], child);
+    result = {{rounded.min.x, rounded.min.y, rounded.min.z}, {rounded.max.x, rounded.max.y, rounded.max.z}};
+  }
+  // Vertices are placed with the same rounding, which is monotonic.
+  return {result.min + view.translation, result.max + view.translation};
+}
+
+/// Writes squares of lower bounds of the distances of the point and the children; NaN for those behind the
+/// plane, if there is one.
+void ObjectQueries::bound_children(const QueriedObject& object, std::uint32_t node, const Vec3d& point,
+                                   const PointBounds& seen, const NearestTriangle& nearest,
+                                   std::array<double, node_width>& bounds) {
+  std::array<float, node_width> squares;
+  squared_distances(seen, object.view.boxes[node], squares);
+  std::copy(squares.begin(), squares.end(), bounds.begin());
+  if (!nearest.has_plane() && object.fine_boxes == nullptr) return;
+  for (int child = 0; child < object.view.nodes[node].child_count; ++child) {
+    double& bound = bounds[static_cast<std::size_t>(child)];
+    const QueryBox box = object.child_box(node, child);
+    if (object.fine_boxes != nullptr) bound = squared_bound(distance_bound(point, box));
+    if (nearest.has_plane() && nearest.is_behind(box)) bound = std::numeric_limits<double>::quiet_NaN();
+  }
+}
+
+/// A triangle that is nearly the first one in the direction from the point, in octree order.
+std::uint32_t ObjectQueries::frontmost_triangle(const QueriedObject& object, const Vec3d& point) {
+  SupportPlane plane;
+  plane.origin = middle_of(object);
+  const Vec3d way = plane.origin - point;
+  plane.normal = way / scaled_norm(way);
+  std::uint32_t node = 0;
+  for (;;) {
+    int first = 0;
+    double least = infinity;
+    for (int child = 0; child < object.view.nodes[node].child_count; ++child) {
+      if (supple::child_box(object.view.boxes[node], child).empty()) continue;
+      const double depth = plane.depth(object.child_box(node, child));
+      if (depth < least) std::tie(least, first) = std::tuple(depth, child);
+    }
+    const OctreeNode& found = object.view.nodes[node];
+    if (found.is_inner(first)) {
+      node = found.child_node(first);
+      continue;
+    }
+    std::uint32_t triangle = found.first_triangle[first];
+    least = infinity;
+    for (std::uint32_t t = triangle; t < found.first_triangle[first + 1]; ++t) {
+      if (object.view.arrays.inert != nullptr && object.view.arrays.inert[t] != 0) continue;
+      for (const Vec3d& corner : object.corners(t)) {
+        const double depth = plane.depth(corner);
+        if (depth < least) std::tie(least, triangle) = std::tuple(depth, t);
+      }
+    }
+    return triangle;
+  }
 }
 
 template <class BoundOf>
@@ -291,7 +268,7 @@ template <class Chosen, class Visit>
 void ObjectQueries::visit_leaf(std::uint32_t index, const QueriedObject& object, std::uint32_t leaf,
                                std::uint32_t begin, std::uint32_t end, const Chosen& chosen,
                                const Visit& visit) {
-  for (; begin < end; begin += leaf_block) {
+  for (; begin < end && !stop_.stop_requested(); begin += leaf_block) {
     const LeafBoxes& boxes =
         recent_.boxes_of(index, object.leaves(), leaf, begin, std::min(begin + leaf_block, end));
     for (std::uint64_t left = chosen(boxes); left != 0; left &= left - 1)
@@ -299,7 +276,8 @@ void ObjectQueries::visit_leaf(std::uint32_t index, const QueriedObject& object,
   }
 }
 
-void ObjectQueries::start() {
+void ObjectQueries::start(const StopSignal& stop) {
+  stop_ = stop;
   last_nearest_.reset();
   recent_.clear();
 }
@@ -307,7 +285,7 @@ void ObjectQueries::start() {
 std::optional<ClosestPoint> ObjectQueries::closest(std::span<const QueriedObject> objects, const Vec3d& point,
                                                    double max_distance) {
   if (!is_finite(point)) return {};
-  NearestTriangle nearest(objects, point, max_distance, candidates_);
+  NearestTriangle nearest(objects, point, max_distance, stop_, candidates_);
   const auto bound_of = [&](const Aabb& box) { return distance_bound(point, box); };
   if (last_nearest_) nearest.consider(last_nearest_->object, last_nearest_->triangle, 1);
   order(objects, bound_of, nearest.limit());
@@ -316,14 +294,14 @@ std::optional<ClosestPoint> ObjectQueries::closest(std::span<const QueriedObject
     const QueriedObject& object = objects[index];
     if (!(object_bound <= nearest.limit())) break;
     const PointBounds seen = seen_by(object, point);
+    // Distances in single precision hardly tell its triangles apart.
+    if (is_far(object.box, object_bound, far_ratio)) nearest.decide(index, frontmost_triangle(object, point));
     descent_.run(
         object.view,
         [&](std::uint32_t node, std::array<double, node_width>& bounds) {
-          std::array<float, node_width> squares;
-          squared_distances(seen, object.view.boxes[node], squares);
-          std::copy(squares.begin(), squares.end(), bounds.begin());
+          bound_children(object, node, point, seen, nearest, bounds);
         },
-        [&] { return double{nearest.squared_limit()}; },
+        [&] { return stop_.stop_requested() ? -1 : double{nearest.squared_limit()}; },
         [&](std::uint32_t leaf, std::uint32_t begin, std::uint32_t end) {
           for (; begin < end; begin += leaf_block) {
             const LeafBoxes& boxes =
@@ -333,6 +311,7 @@ std::optional<ClosestPoint> ObjectQueries::closest(std::span<const QueriedObject
         });
   }
   nearest.decide();
+  decided_ += nearest.decided();
   const std::optional<ClosestPoint> result = nearest.result();
   if (result) last_nearest_ = {0, nearest.object(), nearest.triangle()};
   return result;
@@ -351,16 +330,28 @@ void ObjectQueries::visit_triangles_on_ray(std::span<const QueriedObject> object
     const QueriedObject& object = objects[index];
     if (!(object_bound <= limit)) break;
     const RaySlabs slabs = slabs_of(object, ray);
+    std::optional<RayLine> line;  // where slabs of boxes are too rough
+    const double distance = object_bound * scaled_norm(ray.direction);
+    if (object.fine_boxes != nullptr || is_far(object.box, distance, 0x1p16))
+      line.emplace(ray, middle_of(object));
     descent_.run(
         object.view,
         [&](std::uint32_t node, std::array<double, node_width>& bounds) {
           ray_bounds(slabs, object.view.boxes[node], bounds);
+          for (int child = 0; line && child < object.view.nodes[node].child_count; ++child) {
+            const QueryBox box = object.child_box(node, child);
+            double& bound = bounds[static_cast<std::size_t>(child)];
+            bound = line->misses(box) ? infinity : std::max(bound, ray_bound(ray, box));
+          }
         },
-        [&] { return limit; },
+        [&] { return stop_.stop_requested() ? -1 : limit; },
         [&](std::uint32_t leaf, std::uint32_t first, std::uint32_t end) {
           const auto on_ray = [&](const LeafBoxes& boxes) { return triangles_on_ray(slabs, boxes, limit); };
           visit_leaf(index, object, leaf, first, end, on_ray, [&](std::uint32_t t) {
-            if (const auto parameter = RayParameter::find(ray, object.corners(t), used_exact))
+            const TrianglePoints corners = object.corners(t);
+            if (line && line->misses(box_of(corners))) return;
+            ++decided_;
+            if (const auto parameter = RayParameter::find(ray, corners, used_exact))
               visit(TriangleOnRay{*parameter, index, object.triangle_ids[t]});
           });
         });
@@ -395,8 +386,15 @@ void ObjectQueries::cast_all(std::span<const QueriedObject> objects, const Ray& 
 }
 
 template <class Visit>
-void ObjectQueries::visit_overlapping(std::uint32_t index, const QueriedObject& object, const Aabb& box,
-                                      const Visit& visit) {
+void ObjectQueries::visit_overlapping(std::uint32_t index, const QueriedObject& object,
+                                      const QueryBox& region, const Visit& visit) {
+  const Aabb box{seen_by(object, region.min).low, seen_by(object, region.max).high};
+  const auto are_apart = [&](const QueryBox& other) {
+    for (int axis = 0; axis < 3; ++axis) {
+      if (other.min[axis] > region.max[axis] || other.max[axis] < region.min[axis]) return true;
+    }
+    return false;
+  };
   const auto chosen = [&](const LeafBoxes& boxes) { return overlapping_triangles(box, boxes); };
   nodes_.clear();
   if (!object.view.nodes.empty()) nodes_.push_back(0);
@@ -408,6 +406,7 @@ void ObjectQueries::visit_overlapping(std::uint32_t index, const QueriedObject& 
     for (std::uint32_t left = overlapping_children(box, object.view.boxes[number]) & children; left != 0;
          left &= left - 1) {
       const int child = std::countr_zero(left);
+      if (object.fine_boxes != nullptr && are_apart(object.child_box(number, child))) continue;
       if (node.is_inner(child)) {
         nodes_.push_back(node.child_node(child));
       } else {
@@ -421,9 +420,7 @@ void ObjectQueries::visit_overlapping(std::uint32_t index, const QueriedObject& 
 Containment ObjectQueries::inside(std::uint32_t index, const QueriedObject& object, const Vec3d& point) {
   if (!is_finite(point)) return Containment::outside;
   UpwardRay ray(point);
-  const PointBounds seen = seen_by(object, point);
-  Aabb column{seen.low, seen.high};
-  column.max.z = std::numeric_limits<float>::infinity();
+  const QueryBox column{point, {point.x, point.y, infinity}};
   visit_overlapping(index, object, column, [&](std::uint32_t t) { ray.meet(object.corners(t)); });
   if (ray.starts_on_surface()) return Containment::on;
   return ray.is_odd() && !object.has_inert_faces ? Containment::inside : Containment::outside;
@@ -436,8 +433,7 @@ void ObjectQueries::overlaps(std::span<const QueriedObject> objects, const Query
   const BoxFaces faces(box);
   for (std::uint32_t index = 0; index < objects.size(); ++index) {
     const QueriedObject& object = objects[index];
-    const Aabb seen{seen_by(object, box.min).low, seen_by(object, box.max).high};
-    visit_overlapping(index, object, seen, [&](std::uint32_t t) {
+    visit_overlapping(index, object, box, [&](std::uint32_t t) {
       if (faces.meet(object.corners(t))) found.push_back({query, object.id, object.triangle_ids[t]});
     });
   }
@@ -446,19 +442,17 @@ void ObjectQueries::overlaps(std::span<const QueriedObject> objects, const Query
 void ObjectQueries::overlaps(std::span<const QueriedObject> objects, const QuerySphere& sphere,
                              std::uint32_t query, std::vector<Overlap>& found) {
   if (!is_finite(sphere.center) || !std::isfinite(sphere.radius) || !(sphere.radius >= 0)) return;
-  const Vec3d reach{sphere.radius, sphere.radius, sphere.radius};
+  // More than the roundings of a sum.
+  QueryBox around;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double center = sphere.center[axis], slack = 0x1p-50 * (std::fabs(center) + sphere.radius);
+    around.min[axis] = center - sphere.radius - slack;
+    around.max[axis] = center + sphere.radius + slack;
+  }
   bool used_exact = false;
   for (std::uint32_t index = 0; index < objects.size(); ++index) {
     const QueriedObject& object = objects[index];
-    // The floats round by more than the sums in double.
-    Aabb seen{seen_by(object, sphere.center - reach).low, seen_by(object, sphere.center + reach).high};
-    for (int axis = 0; axis < 3; ++axis) {
-      seen.min[axis] =
-          round_down(double{seen.min[axis]} - 0x1p-50 * (std::fabs(sphere.center[axis]) + sphere.radius));
-      seen.max[axis] =
-          round_up(double{seen.max[axis]} + 0x1p-50 * (std::fabs(sphere.center[axis]) + sphere.radius));
-    }
-    visit_overlapping(index, object, seen, [&](std::uint32_t t) {
+    visit_overlapping(index, object, around, [&](std::uint32_t t) {
       if (distance_within(point_and_triangle(sphere.center, object.corners(t)), sphere.radius, used_exact,
                           DistanceAccuracy::rough))
         found.push_back({query, object.id, object.triangle_ids[t]});

@@ -418,32 +418,36 @@ void Scene::cast(std::span<const Ray> rays, std::span<std::optional<RayHit>> res
                  const CastOptions& options) {
   implementation_->cast(rays, results, options);
 }
-std::span<const ListedRayHit> Scene::cast_all(std::span<const Ray> rays, const QueryFilter& filter) {
-  return implementation_->cast_all(rays, filter);
+std::span<const ListedRayHit> Scene::cast_all(std::span<const Ray> rays, const QueryFilter& filter,
+                                              const CallLimits& limits) {
+  return implementation_->cast_all(rays, filter, limits);
 }
-void Scene::inside(std::span<const Vec3d> points, std::span<Containment> results, const QueryFilter& filter) {
-  implementation_->inside(points, results, filter);
+void Scene::inside(std::span<const Vec3d> points, std::span<Containment> results, const QueryFilter& filter,
+                   const CallLimits& limits) {
+  implementation_->inside(points, results, filter, limits);
 }
-std::span<const Overlap> Scene::overlaps(std::span<const QueryBox> boxes, const QueryFilter& filter) {
-  return implementation_->overlaps(boxes, filter);
+std::span<const Overlap> Scene::overlaps(std::span<const QueryBox> boxes, const QueryFilter& filter,
+                                         const CallLimits& limits) {
+  return implementation_->overlaps(boxes, filter, limits);
 }
-std::span<const Overlap> Scene::overlaps(std::span<const QuerySphere> spheres, const QueryFilter& filter) {
-  return implementation_->overlaps(spheres, filter);
+std::span<const Overlap> Scene::overlaps(std::span<const QuerySphere> spheres, const QueryFilter& filter,
+                                         const CallLimits& limits) {
+  return implementation_->overlaps(spheres, filter, limits);
 }
-std::optional<ProximityPair> Scene::distance(ObjectId a, ObjectId b) {
-  return implementation_->distance(a, b);
+std::optional<ProximityPair> Scene::distance(ObjectId a, ObjectId b, const CallLimits& limits) {
+  return implementation_->distance(a, b, limits);
 }
-std::span<const ProximityPair> Scene::distances(double max_distance) {
-  return implementation_->distances(max_distance);
+std::span<const ProximityPair> Scene::distances(double max_distance, const CallLimits& limits) {
+  return implementation_->distances(max_distance, limits);
 }
-bool Scene::any_contact(ObjectId a, ObjectId b) {
-  return implementation_->any_contact(a, b);
+bool Scene::any_contact(ObjectId a, ObjectId b, const CallLimits& limits) {
+  return implementation_->any_contact(a, b, limits);
 }
 const DetectResult& Scene::result() const {
   return implementation_->result;
 }
-VerifyReport Scene::verify() const {
-  return implementation_->verify();
+VerifyReport Scene::verify(const CallLimits& limits) const {
+  return implementation_->verify(limits);
 }
 
 std::vector<ObjectId> Scene::objects() const {

@@ -15,6 +15,7 @@
 #include "octree/morton_curve.hpp"
 #include "scene/contact_pass.hpp"
 #include "scene/containment_cells.hpp"
+#include "scene/exact_limit.hpp"
 #include "scene/impact_pass.hpp"
 #include "scene/nearest_pair.hpp"
 #include "scene/object_queries.hpp"
@@ -81,21 +82,24 @@ class Scene::Implementation {
   std::span<const ObjectStep> collision_free_steps(const StepOptions& step);
   /// Calls `answer(queries, i)` once for each query i.
   template <class Answer>
-  void answer_queries(std::span<const Vec3d> places, const Answer& answer);
-  void find_inside(const QueriedObject& object, std::span<const Vec3d> points,
+  void answer_queries(std::span<const Vec3d> places, const StopSignal& stop, const Answer& answer);
+  void find_inside(const QueriedObject& object, std::span<const Vec3d> points, const StopSignal& stop,
                    std::span<Containment> results);
   void closest(std::span<const Vec3d> points, std::span<std::optional<ClosestPoint>> results,
                const ClosestOptions& query);
   void cast(std::span<const Ray> rays, std::span<std::optional<RayHit>> results, const CastOptions& query);
-  std::span<const ListedRayHit> cast_all(std::span<const Ray> rays, const QueryFilter& seen);
-  void inside(std::span<const Vec3d> points, std::span<Containment> results, const QueryFilter& seen);
+  std::span<const ListedRayHit> cast_all(std::span<const Ray> rays, const QueryFilter& seen,
+                                         const CallLimits& limits);
+  void inside(std::span<const Vec3d> points, std::span<Containment> results, const QueryFilter& seen,
+              const CallLimits& limits);
   /// For boxes and spheres.
   template <class Region>
-  std::span<const Overlap> overlaps(std::span<const Region> regions, const QueryFilter& seen);
-  std::optional<ProximityPair> distance(ObjectId a, ObjectId b);
-  std::span<const ProximityPair> distances(double max_distance);
-  bool any_contact(ObjectId a, ObjectId b);
-  VerifyReport verify() const;
+  std::span<const Overlap> overlaps(std::span<const Region> regions, const QueryFilter& seen,
+                                    const CallLimits& limits);
+  std::optional<ProximityPair> distance(ObjectId a, ObjectId b, const CallLimits& limits);
+  std::span<const ProximityPair> distances(double max_distance, const CallLimits& limits);
+  bool any_contact(ObjectId a, ObjectId b, const CallLimits& limits);
+  VerifyReport verify(const CallLimits& limits) const;
   std::vector<WrongAnswer> verify_closest(std::span<const Vec3d> points,
                                           std::span<const std::optional<ClosestPoint>> results,
                                           const ClosestOptions& query) const;
@@ -168,9 +172,12 @@ class Scene::Implementation {
   /// Throws an error that names `call` when the surface of an object that the query sees is open.
   void check_closed(const QueryFilter& seen, const char* call) const;
   void list_near_objects(double max_distance);
+  bool are_far(const ObjectPair& pair) const;
+  const QueryBox* updated_fine_boxes(ObjectId id);
+  void prepare_nearest(const ObjectPair& pair);
   /// Both objects, the smaller one first.
   ObjectPair two_objects(ObjectId a, ObjectId b, const char* call) const;
-  std::optional<ProximityPair> nearest_of(const ObjectPair& pair, double max_distance,
+  std::optional<ProximityPair> nearest_of(const ObjectPair& pair, double max_distance, const StopSignal& stop,
                                           NearestPairSearch& search, TrianglePair& triangles) const;
   /// Refits the objects that have moved and lists those that the filter lets through.
   void list_queried_objects(const QueryFilter& seen, const char* call);
@@ -216,6 +223,11 @@ class Scene::Implementation {
   /// Throws an error when coordinates of two objects exceed `SceneOptions::max_exact_bits`, unless all
   /// requested contacts are continuous.
   void check_exact_bits(const Jobs& jobs) const;
+  /// The same for queries, whose errors name `call`: between pairs of objects, and between the numbers of
+  /// queries and the queried objects.
+  void check_exact_bits(std::span<const ObjectPair> pairs, const char* call) const;
+  void check_exact_bits(const CoordinateBits& queries, const char* call) const;
+  bool has_exact_limit() const { return options.max_exact_bits < most_exact_bits; }
   bool volumes_apart(const IndexPair& pair) const;
   bool may_pair(const IndexPair& pair) const;
   /// Without the pair filter.

@@ -227,6 +227,7 @@ bool SceneObject::rebuild(const Parallel& parallel) {
   }
   if (!rebuild_policy_.accept(query_cost(octree.nodes(), octree.boxes()))) return false;
   ++rebuilds_;
+  fine_boxes_ = {};
   const SearchedShapes shapes = with_current(updated_);
   octree_ = std::move(octree);
   neighbours_.reset();

@@ -11,6 +11,7 @@
 #include "mesh/vertex_triangles.hpp"
 #include "octree/object_octree.hpp"
 #include "scene/element_candidates.hpp"
+#include "scene/fine_boxes.hpp"
 #include "scene/moving_shape.hpp"
 #include "scene/placement.hpp"
 #include "scene/rebuild_policy.hpp"
@@ -89,6 +90,11 @@ class SceneObject {
   const MovingShape& moving() const { return moving_; }
   /// The elements at the end of the step: those of `moving` for an object at rest.
   const MovingShape& near() const { return placement_.has_motion() ? near_ : moving_; }
+  bool needs_fine_boxes() const { return FineBoxes::are_needed(resting_view()); }
+  /// Takes O(n) when the octree or the positions have changed.
+  void update_fine_boxes() { fine_boxes_.update(resting_view(), placement_.end(), placement_.version()); }
+  /// The boxes of the octree at rest in double; null when they are not up to date.
+  const QueryBox* fine_boxes() const { return fine_boxes_.of_version(placement_.version()); }
   OctreeView resting_view() const { return resting_.view(octree_, placement_); }
   OctreeView moving_view() const {
     OctreeView view = moving_.view(octree_, placement_);
@@ -135,6 +141,7 @@ class SceneObject {
   Placement placement_;
   RestingShape resting_{face_count_};
   MovingShape moving_{MovingShape::Part::way}, near_{MovingShape::Part::end};
+  FineBoxes fine_boxes_;
   RebuildPolicy rebuild_policy_;
   std::uint64_t rebuilds_ = 0;
   std::size_t refitted_triangles_ = 0;

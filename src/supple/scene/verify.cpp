@@ -116,7 +116,7 @@ void Scene::Implementation::verify_penetrations(const ObjectPair& pair, VerifyRe
   verify_inside({pair.b, pair.a}, b, a, &TrianglePair::b);
 }
 
-VerifyReport Scene::Implementation::verify() const {
+VerifyReport Scene::Implementation::verify(const CallLimits& limits) const {
   if (!detected_) fail("verify: nothing was detected at the present positions; call detect first");
   if (result.truncated)
     fail("verify: the last detect stopped at max_contacts; call detect with a larger max_contacts first");
@@ -131,6 +131,8 @@ VerifyReport Scene::Implementation::verify() const {
     return reported ? &*next++ : nullptr;
   };
   for (const ObjectPair& pair : pairs_to_verify()) {
+    report.stopped = stop_of(limits).stop_requested();
+    if (report.stopped) break;
     const ContactGroup* const of_contacts = next_of(contacts, result.groups, pair);
     const ContactGroup* const of_impacts = next_of(impacts, result.continuous_groups, pair);
     const ContactGroup* const of_proximity = next_of(near, result.proximity_groups, pair);
