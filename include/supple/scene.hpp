@@ -229,7 +229,8 @@ class Scene {
   /// object. An object inside another one has the distance of the surfaces. Triangles with a vertex that is
   /// not finite do not count. A distance that no double holds is infinite. Starts at the result of the last
   /// call for these objects, so that objects that move little take less time. Objects that are far from each
-  /// other need few decisions, unless their coordinates are so coarse that many elements are equally near. Throws `Error` when both are the same.
+  /// other need few decisions, unless their coordinates are so coarse that many elements are equally near.
+  /// Throws `Error` when both are the same.
   std::optional<ProximityPair> distance(ObjectId a, ObjectId b, const CallLimits& limits = {});
   /// The same for all pairs of objects that `detect` would test and that are within `max_distance`, closed:
   /// one pair of features for each, ordered by objects. Valid until the next call of a function of the scene
