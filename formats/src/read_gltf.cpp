@@ -59,6 +59,14 @@ std::vector<Triangle> triangles_of(const std::vector<std::uint32_t>& ids, std::u
   return triangles;
 }
 
+/// A number of a file that should be an index.
+std::string shown_index(double number) {
+  constexpr double most = 4294967296;
+  return number >= 0 && number < most && number == std::floor(number)
+             ? std::to_string(static_cast<std::uint64_t>(number))
+             : std::to_string(number);
+}
+
 class GltfReader {
  public:
   explicit GltfReader(const std::filesystem::path& path) : file_(path), root_(file_.root()) {}
@@ -123,7 +131,7 @@ class GltfReader {
     ids.reserve(numbers.count);
     for (const double number : numbers.values) {
       if (!(number >= 0 && number < static_cast<double>(points)) || number != std::floor(number))
-        primitive["indices"].fail_here("vertex index " + std::to_string(static_cast<long long>(number)) +
+        primitive["indices"].fail_here("vertex index " + shown_index(number) +
                                        " is out of range; the primitive has " + std::to_string(points) +
                                        " vertices, counted from 0");
       ids.push_back(static_cast<std::uint32_t>(number));
