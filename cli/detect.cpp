@@ -113,7 +113,9 @@ int run_detect(const DetectOptions& options) {
       Frame frame{number, is_start ? simulation.detect(request) : simulation.step(request)};
       if (frame.result.stopped) break;
       if (turns) frame.turned = turns->find();
-      if (options.verify && !(is_start && continuous)) frame.verify = simulation.scene().verify();
+      if (options.verify && !(is_start && continuous))
+        frame.verify = simulation.scene().verify({interruption.token()});
+      if (interruption.token().stop_requested() && frame.verify) break;
       const auto hold = interruption.hold();
       reports.add(frame);
       done = number - first + 1;

@@ -94,6 +94,7 @@ void for_batches(Interruption& interruption, std::size_t count, std::size_t batc
   for (std::size_t first = 0; first < count && !interruption.is_requested(); first += batch) {
     const std::size_t size = std::min(batch, count - first);
     work(first, size);
+    if (interruption.token().stop_requested()) break;  // its answers may be missing
     const auto hold = interruption.hold();
     done = first + size;
     progress.update(done, fmt::format("{} {} of {}", noun, done, count));
@@ -136,7 +137,9 @@ void Run::find_distances(Interruption& interruption) {
     throw Error(fmt::format("{}: has {}; distances need two, so add meshes, or objects to the scene",
                             options_.inputs.front(), counted(scene_.objects().size(), "object")));
   const auto start = std::chrono::steady_clock::now();
-  const auto found = scene_.distances(options_.max_distance);
+  const CallLimits limits{interruption.token()};
+  const auto found = scene_.distances(options_.max_distance, limits);
+  if (limits.stop.stop_requested()) return;
   {
     const auto hold = interruption.hold();
     seconds_ = seconds_since(start);
@@ -153,8 +156,9 @@ void Run::find_distances(Interruption& interruption) {
 
 void Run::answer(Interruption& interruption) {
   const ClosestOptions closest{.max_distance = options_.max_distance,
-                               .signed_distance = options_.signed_distance};
-  const CastOptions cast{.count_hits = options_.all_hits};
+                               .signed_distance = options_.signed_distance,
+                               .limits = {interruption.token()}};
+  const CastOptions cast{.count_hits = options_.all_hits, .limits = {interruption.token()}};
   switch (options_.kind) {
     case SceneQuery::closest:
       return in_batches(
@@ -166,7 +170,9 @@ void Run::answer(Interruption& interruption) {
     case SceneQuery::inside:
       return in_batches(
           interruption, read_points(options_.file), contained_,
-          [&](const auto& points, const auto& results) { scene_.inside(points, results); },
+          [&](const auto& points, const auto& results) {
+            scene_.inside(points, results, {}, {interruption.token()});
+          },
           [&](const auto& points, const auto& results) { return scene_.verify_inside(points, results); });
     case SceneQuery::rays:
       return in_batches(

@@ -132,7 +132,9 @@ bool Run::add_frame(Interruption& interruption, const DetectResult& result) {
   if (turns_ && number > 0) frame.turned = turns_->find();
   const bool is_start_of_continuous =
       number == 0 && contains(options_.scene.contacts, ContactKinds::continuous);
-  if (options_.verify && !is_start_of_continuous) frame.verify = simulation_.scene().verify();
+  if (options_.verify && !is_start_of_continuous)
+    frame.verify = simulation_.scene().verify({interruption.token()});
+  if (frame.verify && interruption.token().stop_requested()) return false;
   const auto hold = interruption.hold();
   recorder_.add(result);
   reports_.add(frame);
