@@ -11,6 +11,7 @@
 #include "extent.hpp"
 #include "long_steps.hpp"
 #include "statistics.hpp"
+#include "supple/result_descriptions.hpp"
 #include "supple/simulation_descriptions.hpp"
 #include "supple/version.hpp"
 
@@ -118,6 +119,30 @@ void add_choices(JsonText& json) {
   json.end_object();
 }
 
+/// The words of the kinds in frame messages, in the order of their numbers.
+void add_kinds(JsonText& json) {
+  const auto add = [&](const char* name, const auto& list) {
+    json.key(name);
+    json.begin_array();
+    for (const char* word : list) json.value(word);
+    json.end_array();
+  };
+  json.key("kinds");
+  json.begin_object();
+  add("contact", words<IntersectionKind>);
+  add("certainty", words<ImpactCertainty>);
+  add("curve", words<CurveKind>);
+  json.key("impact");
+  json.begin_array();
+  for (std::size_t i = 0; i < words<ElementPairKind>.size(); ++i) {
+    json.begin_array();
+    for (const FeatureKind kind : feature_kinds(static_cast<ElementPairKind>(i))) json.value(word_of(kind));
+    json.end_array();
+  }
+  json.end_array();
+  json.end_object();
+}
+
 void add_abilities(Stage& stage, JsonText& json) {
   json.member("source", stage.recording() ? "recording" : "simulation");
   json.key("frames");
@@ -172,6 +197,7 @@ void pack_scene(Stage& stage, std::uint64_t generation, JsonText& json, MessageW
   add_objects(stage, json);
   add_options(stage, json);
   add_choices(json);
+  add_kinds(json);
   add_column_names(stage, json);
   add_warnings(stage, json);
   json.end_object();

@@ -1,5 +1,5 @@
 /** Contacts of both kinds: triangles that intersect, or elements that collide during the step. */
-import type { FrameMessage } from "./protocol/messages";
+import type { FrameMessage, Kinds } from "./protocol/messages";
 
 type ContactData = Pick<FrameMessage, "contacts" | "impacts">;
 
@@ -17,8 +17,6 @@ export interface ContactSide {
 }
 
 const STRIDE = 8;
-const KINDS = ["point", "segment", "polygon"];
-const IMPACT_KINDS = ["vertex–face", "face–vertex", "edge–edge"];
 
 export const hasImpacts = (frame: ContactData): boolean => frame.impacts.length > 0;
 
@@ -43,17 +41,17 @@ export function findContact(frame: ContactData, key: ContactKey): number {
   return -1;
 }
 
-export function sidesOf(key: ContactKey): [ContactSide, ContactSide] {
+export function sidesOf(key: ContactKey, kinds: Kinds): [ContactSide, ContactSide] {
   if (key.length === 4)
     return [{ object: key[0]!, elements: [key[1]!], isFace: true }, { object: key[2]!, elements: [key[3]!], isFace: true }];
-  const kind = key[6]!;
-  const side = (at: number, isFace: boolean): ContactSide =>
-    ({ object: key[at]!, elements: kind === 2 ? [key[at + 1]!, key[at + 2]!] : [key[at + 1]!], isFace });
-  return [side(0, kind === 1), side(3, kind === 0)];
+  const [a, b] = kinds.impact[key[6]!]!;
+  const side = (at: number, kind: string): ContactSide =>
+    ({ object: key[at]!, elements: kind === "edge" ? [key[at + 1]!, key[at + 2]!] : [key[at + 1]!], isFace: kind === "face" });
+  return [side(0, a), side(3, b)];
 }
 
-export function kindAt(frame: ContactData, place: number): string {
-  return hasImpacts(frame) ? IMPACT_KINDS[frame.impacts[STRIDE * place + 6]!]! : KINDS[frame.contacts[STRIDE * place + 4]!]!;
+export function kindAt(frame: ContactData, place: number, kinds: Kinds): string {
+  return hasImpacts(frame) ? kinds.impact[frame.impacts[STRIDE * place + 6]!]!.join("–") : kinds.contact[frame.contacts[STRIDE * place + 4]!]!;
 }
 
 /** Whether one side of a contact is the given object. */

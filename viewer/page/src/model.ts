@@ -258,7 +258,7 @@ export class Model extends Emitter<ModelEvents> {
 
   /** Selects a contact, and the touching part of object a. */
   selectContact(key: ContactKey): void {
-    const [a] = sidesOf(key);
+    const [a] = sidesOf(key, this.scene!.kinds);
     this.select({ object: a.object, triangle: a.isFace ? a.elements[0]! : null, vertex: null }, key);
   }
 

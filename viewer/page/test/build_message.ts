@@ -43,7 +43,12 @@ export const SCENE = {
     { name: "other", vertices: 4, triangles: 2, static: true, body: false, self_collision: false },
   ],
   frames: null, time_step: 0.01, seed: "0", bounding_volume: "aabb", contacts: "intersection", broad_phase: "octree",
-  max_level: 16, leaf_size: 64, integrator: "verlet", choices: { contacts: ["none", "intersection"] }, can: ["play", "reset", "grab", "set"], statistics: ["total_seconds", "contacts"],
+  max_level: 16, leaf_size: 64, integrator: "verlet", choices: { contacts: ["none", "intersection"] },
+  kinds: {
+    contact: ["point", "segment", "polygon"], certainty: ["certain", "within_tolerance"], curve: ["closed", "open", "branched"],
+    impact: [["vertex", "face"], ["face", "vertex"], ["edge", "edge"], ["vertex", "edge"], ["edge", "vertex"], ["vertex", "vertex"]],
+  },
+  can: ["play", "reset", "grab", "set"], statistics: ["total_seconds", "contacts"],
   series: ["time", "contacts"], warnings: [],
 };
 

@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { contactCount, findContact, involves, keyAt, pointsAt, sidesOf } from "../src/contacts";
+import { contactCount, findContact, involves, keyAt, kindAt, pointsAt, sidesOf } from "../src/contacts";
 import { countsOf, readMessage, type FrameMessage, type SceneMessage } from "../src/protocol/messages";
 import { floats, FRAME, KIND, message, sceneMessage, text, words, type Section } from "./build_message";
 
@@ -13,7 +13,7 @@ test("intersections are found again by what touches", () => {
   assert.equal(contactCount(frame), 2);
   assert.deepEqual([0, 1].map((place) => findContact(frame, keyAt(frame, place))), [0, 1]);
   assert.equal(findContact(frame, [0, 0, 1, 2]), -1);
-  assert.deepEqual(sidesOf(keyAt(frame, 1)), [{ object: 0, elements: [0], isFace: true }, { object: 1, elements: [1], isFace: true }]);
+  assert.deepEqual(sidesOf(keyAt(frame, 1), counts.kinds), [{ object: 0, elements: [0], isFace: true }, { object: 1, elements: [1], isFace: true }]);
   assert.deepEqual([pointsAt(frame, 1).first, pointsAt(frame, 1).count], [2, 1]);
   assert.deepEqual([involves(frame, 0, 1), involves(frame, 0, 2)], [true, false]);
 });
@@ -22,8 +22,17 @@ test("impacts of edges that share a vertex are told apart", () => {
   const rows = [[0, 0, 1, 1, 0, 1, 2, 1], [0, 0, 2, 1, 0, 1, 2, 1], [0, 2, 0, 1, 1, 0, 0, 1], [0, 0, 0, 1, 3, 0, 1, 1]];
   const frame = frameOf(words(36, 8, rows.flat()), floats(37, 8, new Array<number>(32).fill(0)));
   assert.deepEqual(rows.map((_, place) => findContact(frame, keyAt(frame, place))), [0, 1, 2, 3]);
-  assert.deepEqual(sidesOf(keyAt(frame, 1))[0], { object: 0, elements: [0, 2], isFace: false });
-  assert.deepEqual(sidesOf(keyAt(frame, 2))[1], { object: 1, elements: [1], isFace: true });
-  assert.deepEqual(sidesOf(keyAt(frame, 3))[0], { object: 0, elements: [0], isFace: true });
+  assert.deepEqual(sidesOf(keyAt(frame, 1), counts.kinds)[0], { object: 0, elements: [0, 2], isFace: false });
+  assert.deepEqual(sidesOf(keyAt(frame, 2), counts.kinds)[1], { object: 1, elements: [1], isFace: true });
+  assert.deepEqual(sidesOf(keyAt(frame, 3), counts.kinds)[0], { object: 0, elements: [0], isFace: true });
   assert.ok(involves(frame, 3, 1));
+});
+
+test("impacts of rods and particles have vertices and edges", () => {
+  const rows = [[0, 2, 2, 1, 1, 3, 3, 0], [0, 0, 1, 1, 3, 3, 4, 1], [0, 1, 1, 1, 2, 2, 5, 0]];
+  const frame = frameOf(words(36, 8, rows.flat()), floats(37, 8, new Array<number>(24).fill(0)));
+  assert.deepEqual(sidesOf(keyAt(frame, 0), counts.kinds).map(({ elements }) => elements), [[2], [1, 3]]);
+  assert.deepEqual(sidesOf(keyAt(frame, 1), counts.kinds).map(({ elements }) => elements), [[0, 1], [3]]);
+  assert.deepEqual(sidesOf(keyAt(frame, 2), counts.kinds).map(({ elements }) => elements), [[1], [2]]);
+  assert.deepEqual([0, 1, 2].map((place) => kindAt(frame, place, counts.kinds)), ["vertex–edge", "edge–vertex", "vertex–vertex"]);
 });

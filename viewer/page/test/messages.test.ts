@@ -73,11 +73,13 @@ test("ids that are not there are refused", () => {
   reject(frameWith(words(33, 2, [0, 2])), /object_pairs/);
   reject(frameWith(words(34, 8, [0, 1, 1, 0, 0, 0, 0, 0])), /contacts/);
   reject(frameWith(words(34, 8, [0, 0, 1, 0, 1, 2, 0, 0])), /points/);
-  reject(frameWith(words(34, 8, [0, 0, 1, 0, 3, 0, 0, 0])), /points/);
   reject(frameWith(words(38, 4, [0, 0, 1, 2])), /candidates/);
   reject(frameWith(words(42, 1, [4], 1)), /colliding_vertices/);
   reject(frameWith(words(36, 8, [0, 3, 0, 1, 1, 0, 0, 0]), floats(37, 8, new Array<number>(8).fill(0))), /impact/);
   reject(frameWith(words(36, 8, [0, 0, 0, 1, 1, 0, 0, 0])), /impacts/);
+  for (const row of [[0, 0, 0, 1, 1, 0, 6, 0], [0, 0, 0, 1, 1, 0, 0, 2], [0, 0, 0, 1, 0, 4, 3, 0]])
+    reject(frameWith(words(36, 8, row), floats(37, 8, new Array<number>(8).fill(0))), /impact/);
+  reject(frameWith(words(34, 8, [0, 0, 1, 0, 3, 0, 0, 0])), /kind/);
   reject(frameWith(words(54, 2, [0, 2]), floats(55, 8, new Array<number>(8).fill(0))), /gap/);
   reject(frameWith(words(54, 2, [0, 1])), /gaps/);
   reject(frameWith(words(56, 4, [0, 99, 1, 0]), floats(57, 8, new Array<number>(8).fill(0))), /penetrations/);

@@ -1,6 +1,11 @@
 // The part of node's types that the tests use. The page itself must not see node's types.
 declare module "node:test" {
   export function test(name: string, body: () => void | Promise<void>): void;
+  export function test(name: string, options: { skip: boolean }, body: () => void | Promise<void>): void;
+}
+declare module "node:fs" {
+  export function readFileSync(path: string): Uint8Array;
+  export function readFileSync(path: string, encoding: "utf8"): string;
 }
 declare module "node:assert/strict" {
   interface Assert {

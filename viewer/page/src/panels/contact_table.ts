@@ -66,8 +66,9 @@ export class ContactTable {
     const frame = this.model.frame!;
     const place = this.listed ? this.listed[index]! : index;
     const key = keyAt(frame, place);
-    const sides = sidesOf(key).flatMap(({ object, elements }) => [this.model.objects[object]!.name, elements.join("–")]);
-    [...sides, kindAt(frame, place)].forEach((text, i) => {
+    const { kinds } = this.model.scene!;
+    const sides = sidesOf(key, kinds).flatMap(({ object, elements }) => [this.model.objects[object]!.name, elements.join("–")]);
+    [...sides, kindAt(frame, place, kinds)].forEach((text, i) => {
       if (cells[i]!.textContent !== text) cells[i]!.textContent = text;
     });
     row.setAttribute("aria-rowindex", String(index + 1));

@@ -3,21 +3,11 @@ import type { Client } from "../client";
 import { OKABE_ITO } from "../colours";
 import { findContact, hasImpacts, kindAt, pointsAt, sidesOf } from "../contacts";
 import type { Explanation, Measurement, Model } from "../model";
+import { STAGES } from "../stages";
 import { h, readable } from "./dom";
 
 /** Interval between updates of the values while things move. */
 const REFRESH_MILLISECONDS = 250;
-
-const STAGES: Record<string, string> = {
-  not_tested: "Not tested",
-  shared_vertex: "They share a vertex",
-  inert: "A corner is not finite",
-  object_volumes: "Broad phase: the objects are apart",
-  octree_volumes: "Narrow phase: octree cells are apart",
-  triangle_boxes: "Leaves: the boxes of the triangles are apart",
-  exact_test: "Exact stage: the triangles are apart",
-  contact: "They are a contact",
-};
 
 function show(value: unknown): string {
   if (typeof value === "number") return readable(value);
@@ -205,11 +195,12 @@ export class Inspector {
   private contactRows(): Row[] {
     const { contact, frame } = this.model;
     if (!contact || !frame) return [];
-    const sides = sidesOf(contact).map(({ object, elements }) => `${this.model.objects[object]!.name} ${elements.join("–")}`);
+    const { kinds } = this.model.scene!;
+    const sides = sidesOf(contact, kinds).map(({ object, elements }) => `${this.model.objects[object]!.name} ${elements.join("–")}`);
     const rows: Row[] = [["between", sides.join(" and ")]];
     const place = findContact(frame, contact);
     if (place < 0) return [...rows, ["now", "no longer a contact"]];
-    rows.push(["kind", kindAt(frame, place)]);
+    rows.push(["kind", kindAt(frame, place, kinds)]);
     const { data, first, count } = pointsAt(frame, place);
     const center = this.model.scene!.center;
     rows.push(["points", String(count)]);

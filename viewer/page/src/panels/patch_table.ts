@@ -4,7 +4,6 @@ import { h, readable } from "./dom";
 import { RowWindow, type Row } from "./row_window";
 
 const ROW_HEIGHT = 24;
-const CURVE_KINDS = ["closed", "open", "branched"];
 const rounded = (value: number): string => String(Number(value.toPrecision(3)));
 
 export class PatchTable {
@@ -63,7 +62,8 @@ export class PatchTable {
     const [a, b, kind, , , countA, countB] = patches.subarray(8 * index, 8 * index + 8);
     const [depth, area] = [patchPoints[8 * index + 3]!, patchPoints[8 * index + 7]!];
     const names = [a!, b!].map((object) => this.model.objects[object]!.name);
-    const texts = [...names, kind === 0 ? rounded(area) : CURVE_KINDS[kind!]!, rounded(depth), `${countA} + ${countB}`];
+    const word = this.model.scene!.kinds.curve[kind!]!;
+    const texts = [...names, word === "closed" ? rounded(area) : word, rounded(depth), `${countA} + ${countB}`];
     texts.forEach((text, i) => {
       if (cells[i]!.textContent !== text) cells[i]!.textContent = text;
     });

@@ -23,6 +23,15 @@ export interface SceneObject {
 
 export type Vector = [number, number, number];
 
+/** The words of the kinds in frames, in the order of their numbers. */
+export interface Kinds {
+  contact: string[];
+  certainty: string[];
+  curve: string[];
+  /** The elements of a and of b: vertex, edge or face. */
+  impact: [string, string][];
+}
+
 export interface SceneText {
   version: string;
   title: string;
@@ -43,6 +52,7 @@ export interface SceneText {
   integrator: string | null;
   /** The words of each option that has words. */
   choices: Record<string, string[]>;
+  kinds: Kinds;
   can: string[];
   statistics: string[];
   series: string[];
@@ -172,6 +182,9 @@ const FORMS: Record<number, Form> = {
   70: { name: "series_volume_end", array: Uint32Array, width: 3, kinds: ["series"] },
 };
 
+/** Whether the page reads sections with this tag. */
+export const readsTag = (tag: number): boolean => tag in FORMS;
+
 type Data = Uint8Array | Uint32Array | Float32Array | Float64Array;
 
 /** Sizes of the scene, against which frames are validated. */
@@ -181,6 +194,7 @@ export interface SceneCounts {
   triangles: number[];
   statistics: number;
   series: number;
+  kinds: Kinds;
 }
 
 export function countsOf(scene: SceneText): SceneCounts {
@@ -190,6 +204,7 @@ export function countsOf(scene: SceneText): SceneCounts {
     triangles: scene.objects.map((object) => object.triangles),
     statistics: scene.statistics.length,
     series: scene.series.length,
+    kinds: scene.kinds,
   };
 }
 
@@ -267,6 +282,14 @@ const isText = (value: unknown): value is string => typeof value === "string";
 const isVector = (value: unknown): value is Vector =>
   Array.isArray(value) && value.length === 3 && value.every(isNumber);
 const isTexts = (value: unknown): value is string[] => Array.isArray(value) && value.every(isText);
+const isElement = (value: unknown): boolean => value === "vertex" || value === "edge" || value === "face";
+
+function isKinds(value: unknown): value is Kinds {
+  if (typeof value !== "object" || value === null) return false;
+  const { contact, certainty, curve, impact } = value as Kinds;
+  return [contact, certainty, curve].every(isTexts) && Array.isArray(impact) &&
+    impact.every((pair) => Array.isArray(pair) && pair.length === 2 && pair.every(isElement));
+}
 
 function need(ok: boolean, name: string): void {
   if (!ok) fail(`its text has no valid “${name}”`);
@@ -287,6 +310,7 @@ function sceneText(json: Record<string, unknown>): SceneText {
   need(isCount(s.leaf_size), "leaf_size");
   need(s.integrator === null || isText(s.integrator), "integrator");
   need(typeof s.choices === "object" && s.choices !== null && Object.values(s.choices).every(isTexts), "choices");
+  need(isKinds(s.kinds), "kinds");
   for (const name of ["can", "statistics", "series", "warnings"] as const) need(isTexts(s[name]), name);
   need(Array.isArray(s.objects), "objects");
   for (const object of s.objects as unknown[]) {
@@ -347,30 +371,30 @@ function checkEvents(events: EventData, stride: number, objects: number): void {
     for (const side of ["begin", "end"] as const) checkPairs(`${kind}_${side}`, events[kind][side], stride, stride - 2, objects);
 }
 
-function checkContacts(contacts: Uint32Array, points: number): void {
-  for (let i = 0; i < contacts.length; i += 8)
-    if (contacts[i + 4]! > 2 || contacts[i + 5]! + contacts[i + 6]! > points) fail("a contact has points that do not exist");
+function checkContacts(contacts: Uint32Array, points: number, kinds: number): void {
+  for (let i = 0; i < contacts.length; i += 8) {
+    if (contacts[i + 4]! >= kinds) fail("a contact has an unknown kind");
+    if (contacts[i + 5]! + contacts[i + 6]! > points) fail("a contact has points that do not exist");
+  }
 }
 
 function checkImpacts(impacts: Uint32Array, scene: SceneCounts): void {
   for (let i = 0; i < impacts.length; i += 8) {
-    const kind = impacts[i + 6]!;
-    if (kind > 2) fail("an impact has an unknown kind");
-    for (const side of [0, 1]) {
-      const object = impacts[i + 3 * side]!;
-      const isFace = (kind === 0 && side === 1) || (kind === 1 && side === 0);
-      const limit = (isFace ? scene.triangles : scene.vertices)[object];
+    const kinds = scene.kinds.impact[impacts[i + 6]!];
+    if (!kinds || impacts[i + 7]! >= scene.kinds.certainty.length) fail("an impact has an unknown kind");
+    kinds.forEach((kind, side) => {
+      const limit = (kind === "face" ? scene.triangles : scene.vertices)[impacts[i + 3 * side]!];
       const first = impacts[i + 3 * side + 1]!;
       const second = impacts[i + 3 * side + 2]!;
-      if (limit === undefined || first >= limit || (kind === 2 && second >= limit)) fail("an impact names an element that does not exist");
-    }
+      if (limit === undefined || first >= limit || (kind === "edge" && second >= limit)) fail("an impact names an element that does not exist");
+    });
   }
 }
 
 function checkPatches({ patches, patchPoints, enclosedVertices }: FrameMessage, scene: SceneCounts): void {
   if (patchPoints.length !== patches.length) fail("the numbers of patches and of their points differ");
   for (let i = 0; i < patches.length; i += 8) {
-    if (patches[i + 2]! > 2) fail("a patch has an unknown kind");
+    if (patches[i + 2]! >= scene.kinds.curve.length) fail("a patch has an unknown kind");
     let at = patches[i + 4]!;
     for (const side of [0, 1]) {
       const limit = scene.vertices[patches[i + side]!];
@@ -426,7 +450,7 @@ function readFrame(sections: Sections, scene: SceneCounts): FrameMessage {
   checkPairs("object_pairs", frame.objectPairs, 2, 0, scene.vertices.length);
   checkEvents(frame.events, 2, scene.vertices.length);
   checkIds("contacts", frame.contacts, 8, [0, 2], scene.triangles);
-  checkContacts(frame.contacts, frame.contactPoints.length / 8);
+  checkContacts(frame.contacts, frame.contactPoints.length / 8, scene.kinds.contact.length);
   checkIds("candidates", frame.candidates, 4, [0, 2], scene.triangles);
   checkImpacts(frame.impacts, scene);
   if (frame.impactPoints.length !== frame.impacts.length) fail("the numbers of impacts and of their points differ");
@@ -460,7 +484,9 @@ function readFailure(sections: Sections): FailureMessage {
   return { kind: "failure", text };
 }
 
-const NO_SCENE: SceneCounts = { generation: -1, vertices: [], triangles: [], statistics: 0, series: 0 };
+const NO_SCENE: SceneCounts = {
+  generation: -1, vertices: [], triangles: [], statistics: 0, series: 0, kinds: { contact: [], certainty: [], curve: [], impact: [] },
+};
 
 /**
  * Reads one message. `scene` has the sizes from the last scene message, or is null before the first one.

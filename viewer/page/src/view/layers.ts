@@ -229,10 +229,10 @@ export class Layers {
   }
 
   private fillTriangles(on: boolean): void {
-    const { frame } = this.model;
+    const { frame, scene } = this.model;
     const none = new Uint32Array(0);
     if (frame && frame.impacts.length > 0)
-      this.fillFaces(this.triangles, on ? frame.impacts : none, 8, [0, 3], (i, side) => frame.impacts[i + 6] === 1 - side);
+      this.fillFaces(this.triangles, on ? frame.impacts : none, 8, [0, 3], (i, side) => scene!.kinds.impact[frame.impacts[i + 6]!]![side] === "face");
     else this.fillFaces(this.triangles, on && frame ? frame.contacts : none, 8, [0, 2], () => true);
   }
 
