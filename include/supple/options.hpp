@@ -138,6 +138,8 @@ struct ObjectOptions {
   /// Two objects are tested when the `group` of each has a bit in common with the `mask` of the other.
   std::uint32_t group = 1;
   std::uint32_t mask = ~std::uint32_t{0};
+  /// A number or a pointer of the user; the library does not read it. See `Scene::user_data`.
+  std::uint64_t user_data = 0;
   ObjectOctreeOptions octree{};  ///< shape of the octree; only for comparison
 };
 

@@ -109,10 +109,8 @@ struct StepStats {
   std::uint64_t curves = 0;           ///< reported curves of intersection
 };
 
-/// What `Scene::detect` found. The spans refer to buffers of the scene and are valid until the next call of a
-/// function of the scene that is not const, except `earliest_impact` and `max_step`. Everything is in one
-/// canonical order: by object a, object b, triangle a, triangle b. Lists of kinds that were not requested are
-/// empty.
+/// What `Scene::detect` found. `Scene` says how long the spans are valid. Everything is in one canonical
+/// order: by object a, object b, triangle a, triangle b. Lists of kinds that were not requested are empty.
 ///
 /// Pairs, kinds, features and element ids are exact: they are the answer of exact arithmetic on the given
 /// coordinates. `object_pairs` and the candidates are conservative. Normals, points, barycentric coordinates

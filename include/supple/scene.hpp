@@ -24,6 +24,11 @@ namespace supple {
 struct RigidTransform {
   std::array<double, 9> rotation{1, 0, 0, 0, 1, 0, 0, 0, 1};
   Vec3d translation{};
+
+  /// The rotation by the quaternion x i + y j + z k + w, then the translation. The quaternion need not have
+  /// unit length: it is divided by its length, and each number of the matrix is within 2^-49 of the exact
+  /// one. It has the same bits on every machine. Throws `Error` when the quaternion is zero or not finite.
+  static RigidTransform from_quaternion(double x, double y, double z, double w, Vec3d translation = {});
 };
 
 /// Deforming objects and all contacts between them.
@@ -44,6 +49,9 @@ struct RigidTransform {
 /// Memory: the scene keeps one copy of each object's positions, in the precision of the last call, and no
 /// copy of shared positions. It keeps a second copy for objects moved by `set_transform` or `set_motion`.
 /// Once continuous contacts are requested, it also keeps copies of the positions at both ends of the step.
+///
+/// Spans: those of a result are valid until the next `detect`, and those that a query returns until the next
+/// query with the same name; no other function ends them, except the destructor and an assignment.
 ///
 /// Threads: calls on one scene must not overlap, except calls of const functions. Different scenes are
 /// independent.
@@ -118,6 +126,8 @@ class Scene {
   /// not one number for each vertex.
   void set_vertex_groups(ObjectId object, std::span<const std::uint32_t> groups,
                          std::span<const std::uint32_t> masks);
+  /// Changes `ObjectOptions::user_data`, O(1).
+  void set_user_data(ObjectId object, std::uint64_t data);
   /// Changes `ObjectOptions::self_collision`, O(1).
   void set_self_collision(ObjectId object, bool enabled);
   /// Sets a function that excludes pairs of objects; an empty function removes it. See `PairFilter`. When it
@@ -200,12 +210,12 @@ class Scene {
   void cast(std::span<const Ray> rays, std::span<std::optional<RayHit>> results,
             const CastOptions& options = {});
   /// All triangles on each ray, ordered by ray, then by t as exact arithmetic compares it, object and
-  /// triangle. Valid until the next call of a function of the scene that is not const.
+  /// triangle.
   std::span<const ListedRayHit> cast_all(std::span<const Ray> rays, const QueryFilter& filter = {},
                                          const CallLimits& limits = {});
   /// All triangles that overlap each box or sphere, ordered by query, object and triangle. A box or sphere
   /// with a number that is not finite, a box with min > max, and a sphere with a negative radius overlap
-  /// nothing. Valid until the next call of a function of the scene that is not const.
+  /// nothing.
   std::span<const Overlap> overlaps(std::span<const QueryBox> boxes, const QueryFilter& filter = {},
                                     const CallLimits& limits = {});
   std::span<const Overlap> overlaps(std::span<const QuerySphere> spheres, const QueryFilter& filter = {},
@@ -233,8 +243,8 @@ class Scene {
   /// Throws `Error` when both are the same.
   std::optional<ProximityPair> distance(ObjectId a, ObjectId b, const CallLimits& limits = {});
   /// The same for all pairs of objects that `detect` would test and that are within `max_distance`, closed:
-  /// one pair of features for each, ordered by objects. Valid until the next call of a function of the scene
-  /// that is not const. Throws `Error` when the distance is negative or NaN.
+  /// one pair of features for each, ordered by objects. Throws `Error` when the distance is
+  /// negative or NaN.
   std::span<const ProximityPair> distances(double max_distance, const CallLimits& limits = {});
   /// Whether any triangle of one object intersects one of the other. Stops at the first. Throws `Error` when
   /// both are the same.
@@ -274,6 +284,7 @@ class Scene {
   std::vector<ObjectId> objects() const;  ///< ascending
   bool contains(ObjectId object) const;
   const std::string& name(ObjectId object) const;
+  std::uint64_t user_data(ObjectId object) const;  ///< `ObjectOptions::user_data`
   std::size_t vertex_count(ObjectId object) const;
   std::size_t triangle_count(ObjectId object) const;
   /// The position that the exact tests use: with transforms and translations. Throws `Error` when there is no
@@ -286,11 +297,36 @@ class Scene {
   ElementVertices vertices_of(const Contact& contact, ContactSide side) const;
   ElementVertices vertices_of(const ProximityPair& pair, ContactSide side) const;
   ElementVertices vertices_of(const LimitingPair& pair, ContactSide side) const;
+  /// Calls `function(object, vertex, weight)` for each vertex of a pair: first those of a, then those of b.
+  /// The weights are the barycentric coordinates of the closest or touching points, with the sign + for a and
+  /// - for b. So their sum is 0, but for rounding, and the sum of weight times position is the vector from
+  /// the point of b to the point of a. Of a `Contact`, the points are the mean of its points in both
+  /// triangles, or the centres of the triangles when `SceneOptions::contact_points` is off or a triangle is
+  /// flat. O(1). Throws `Error` as `vertices_of` does; of a `Contact` also when it is not of `result`.
+  template <class Pair, class Function>
+  void for_each_vertex(const Pair& pair, Function&& function) const {
+    const PairWeights weights = weights_of(pair);
+    for (const ContactSide side : {ContactSide::a, ContactSide::b}) {
+      const bool is_a = side == ContactSide::a;
+      const ElementVertices vertices = vertices_of(pair, side);
+      for (std::size_t i = 0; i < vertices.size(); ++i)
+        function(is_a ? pair.object_a : pair.object_b, vertices[i], is_a ? weights.a[i] : -weights.b[i]);
+    }
+  }
   const SceneOptions& options() const;
 
  private:
   friend class SceneInspector;
   class Implementation;
+  struct PairWeights {
+    std::array<double, 3> a{}, b{};
+  };
+  PairWeights weights_of(const Contact& contact) const;
+  template <class Pair>
+  PairWeights weights_of(const Pair& pair) const {
+    return {pair.barycentric_a, pair.barycentric_b};
+  }
+
   std::unique_ptr<Implementation> implementation_;
 };
 

@@ -384,6 +384,10 @@ void Scene::set_vertex_groups(ObjectId object, std::span<const std::uint32_t> gr
   implementation_->set_vertex_groups(object, groups, masks);
 }
 
+void Scene::set_user_data(ObjectId object, std::uint64_t data) {
+  implementation_->object(object, "set_user_data").options.user_data = data;
+}
+
 void Scene::set_self_collision(ObjectId object, bool enabled) {
   implementation_->object(object, "set_self_collision").options.self_collision = enabled;
   implementation_->mark_changed();
@@ -459,6 +463,10 @@ bool Scene::contains(ObjectId object) const {
 
 const std::string& Scene::name(ObjectId object) const {
   return implementation_->object(object, "name").options.name;
+}
+
+std::uint64_t Scene::user_data(ObjectId object) const {
+  return implementation_->object(object, "user_data").options.user_data;
 }
 
 std::size_t Scene::vertex_count(ObjectId object) const {

@@ -28,9 +28,9 @@ inline auto members_of(SceneOctreeOptions& o) {
   auto& [a, b, c, d, e] = o;
   return std::tie(a, b, c, d, e);
 }
-/// Lists of vertices have no description: programs set them, not files or command lines.
+/// Lists of vertices and data of the user have no description: programs set them, not files or command lines.
 inline auto members_of(ObjectOptions& o) {
-  auto& [a, b, c, d, same_vertex, edges, points, e, f, g, h, i, j, k] = o;
+  auto& [a, b, c, d, same_vertex, edges, points, e, f, g, h, i, j, user_data, k] = o;
   return std::tie(a, b, c, d, e, f, g, h, i, j, k);
 }
 inline auto members_of(ComparisonOptions& o) {
