@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "frame_files.hpp"
+#include "parts.hpp"
 
 namespace supple::cli {
 namespace {
@@ -69,7 +70,11 @@ struct Adder {
 void apply(const MethodOptions& options, Input& input) {
   input.simulation.scene = options.scene;
   input.simulation.scene.contacts = with_included(options.scene.contacts);
-  for (InputObject& object : input.objects) options.given_objects.apply_to(object.options);
+  for (InputObject& object : input.objects) {
+    options.given_objects.apply_to(object.options);
+    object.splits = object.splits || options.parts;
+  }
+  split_parts(input);
 }
 
 ObjectId add_object(Simulation& simulation, const InputObject& object) {

@@ -13,6 +13,7 @@
 #include "inputs.hpp"
 #include "json_writer.hpp"
 #include "output_names.hpp"
+#include "parts.hpp"
 #include "session/described_json.hpp"
 #include "supple/inspection.hpp"
 #include "supple/result_descriptions.hpp"
@@ -168,8 +169,13 @@ void write_json(JsonWriter& json, const MeshInfo& info) {
 }  // namespace
 
 int run_info(const InfoOptions& options) {
-  const Input input = read_objects(options.inputs, {}, {options.conversion, {}, {}});
+  Input input = read_objects(options.inputs, {}, {options.conversion, {}, {}});
   print_notes(input);
+  for (InputObject& object : input.objects) {
+    options.given_objects.apply_to(object.options);
+    object.splits = object.splits || options.parts;
+  }
+  split_parts(input);
   check_output_names({{"--json", options.json}}, input.files);
   std::optional<JsonWriter> json;
   if (!options.json.empty()) {

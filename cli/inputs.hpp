@@ -30,11 +30,21 @@ struct RecordedMotion {
 using Motion =
     std::variant<WaveMotion, MassSpringMotion, RigidMotion, FrameSequence, ComputedMotion, RecordedMotion>;
 
+/// Where an object comes from that is a part of a mesh.
+struct PartOfMesh {
+  std::string mesh;                                ///< the name of the whole mesh
+  std::vector<std::uint32_t> vertices, triangles;  ///< ids in the whole mesh
+  /// Of a solid mesh: why the part is not solid; empty when it is.
+  std::optional<std::string> not_solid{};
+};
+
 /// A placed object to add to the scene.
 struct InputObject {
   TriangleMesh mesh;
   ObjectOptions options;
   std::optional<Motion> motion;
+  bool splits = false;  ///< each connected part shall be an object
+  std::optional<PartOfMesh> part{};
 };
 
 /// The input of a command: objects and their motion.

@@ -84,6 +84,15 @@ void add_impact_options(CLI::App& app, ImpactOptions& impact) {
       impact);
 }
 
+void add_parts(CLI::App& app, bool& parts, const char* group) {
+  app.add_flag(
+         "--parts", parts,
+         "Each connected part of a mesh is an object of its own: triangles and edges that share a "
+         "vertex, or a position with --weld, are connected. With --solid, the parts that are closed and "
+         "oriented alike are solid")
+      ->group(group);
+}
+
 CLI::Option* add_frames(CLI::App& app, std::optional<std::uint64_t>& frames, const char* description) {
   return add_number(app, "--frames,--steps", frames, 1, 1'000'000'000, description);
 }
@@ -165,6 +174,7 @@ void add_detection_options(CLI::App& app, MethodOptions& options, Dependences& d
     }
   });
   add_object_options(app, options.given_objects, true);
+  add_parts(app, options.parts, "Detection");
   dependences.push_back({app.get_option("--margin"), [&options] { return has_proximity(options.scene); },
                          "--contacts proximity"});
   dependences.push_back({app.get_option("--own-separation"),
@@ -394,6 +404,7 @@ CLI::App* add_info(CLI::App& program, InfoOptions& options, Dependences& depende
   });
   add_object_options(*app, options.given_objects, false);
   add_weld(*app, options.given_objects);
+  add_parts(*app, options.parts, "Options");
   add_file(*app, "--json", options.json, "Write the result as JSON; - is standard output");
   return app;
 }

@@ -33,6 +33,7 @@ struct MethodOptions {
   bool root_is_border = false;  ///< the root of the scene octree is given as the border of the scene
   viewer::Overrides<SceneOptions> given_scene;
   viewer::Overrides<ObjectOptions> given_objects;  ///< of all objects
+  bool parts = false;                              ///< each connected part is an object
 };
 
 /// What ends a run before it is complete. The results so far are written and marked as truncated.
@@ -89,6 +90,7 @@ struct InfoOptions {
   CoordinateConversion conversion;
   viewer::Overrides<SceneOptions> given_scene;  ///< only the bounding volume
   viewer::Overrides<ObjectOptions> given_objects;
+  bool parts = false;  ///< each connected part is an object
   std::string json;
 };
 

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "exit_status.hpp"
+#include "parts.hpp"
 #include "supple/result_descriptions.hpp"
 #include "text.hpp"
 
@@ -96,7 +97,7 @@ void print_difference(const Scene& scene, std::uint64_t frame, const VerifyRepor
 }  // namespace
 
 Reports::Reports(const DetectionOptions& options, const Input& input, const Scene& scene, std::string noun)
-    : options_(options), scene_(scene), tested_(input, scene.options().contacts) {
+    : options_(options), scene_(scene), solid_parts_(describe_solid_parts(input)), tested_(input, scene.options().contacts) {
   if (options.json_content.node_pairs) check_node_pairs(input, *options.json_content.node_pairs);
   if (!options.json.empty()) json_.emplace(options.json, input, scene, options.json_content);
   if (!options.csv.empty()) csv_.emplace(options.csv, options.scene);
@@ -130,6 +131,7 @@ void Reports::finish(bool was_ended) {
     return;
   }
   text_->print(scene_, tested_);
+  if (!solid_parts_.empty()) fmt::print("\n{}\n", solid_parts_);
   if (const auto& objects = options_.json_content.node_pairs; objects && !was_ended)
     print_node_pairs(scene_, *objects, last_frame_);
 }

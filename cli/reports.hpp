@@ -37,6 +37,7 @@ class Reports {
 
   const DetectionOptions& options_;
   const Scene& scene_;
+  std::string solid_parts_;
   std::optional<JsonReport> json_;
   std::optional<CsvReport> csv_;
   std::optional<TextReport> text_;

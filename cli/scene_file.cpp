@@ -237,6 +237,11 @@ void read_objects(const toml::table& table, const fs::path& path, const std::str
   SceneMotion motion(reader, path, where, gravity, conversion);
   if (!motion.empty() && options.is_static)
     reader.fail("motion", "a static object does not move; leave out motion or static");
+  bool parts = false;
+  reader.read("parts", parts);
+  if (parts && motion.frames() != nullptr)
+    reader.fail("parts",
+                "the frames of files have no parts; leave out parts, or save each part as files of its own");
   const Shape shape = read_shape(reader, path.parent_path(), motion.frames(), conversion, budget, shapes);
   const TriangleMesh& mesh = shape.mesh;
   reader.finish();
@@ -250,12 +255,13 @@ void read_objects(const toml::table& table, const fs::path& path, const std::str
     Placement placed = placement;
     if (copies.count() > 1) placed.translate = placed.translate + copies.offset(copy);
     if (copies.random_rotation) placed.turn = random_rotation(input.simulation.seed, input.objects.size());
-    InputObject& object = input.objects.emplace_back(InputObject{mesh, options, {}});
+    InputObject& object = input.objects.emplace_back(InputObject{mesh, options, {}, false, {}});
     place(object.mesh.positions, placed);
     object.motion = motion.of_copy(copy, placed, object.mesh.positions);
     if (!options.name.empty()) object.mesh.name = options.name;
     if (copies.count() > 1) object.mesh.name += fmt::format(" {}", copy + 1);
     object.options.name = object.mesh.name;
+    object.splits = parts;
   }
   motion.check_boxes();
 }

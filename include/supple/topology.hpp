@@ -54,4 +54,24 @@ std::string advice_for_open_surface(const TriangleMesh& mesh);
 /// The pairs of triangles with a common vertex, which `Neighbours::skip` does not test. O(n log n).
 std::uint64_t count_neighbour_pairs(std::span<const Triangle> triangles);
 
+/// A connected part of a mesh, as a mesh with ids of its own.
+struct MeshPart {
+  /// Vertices, triangles, edges and points in the order of the whole mesh; the name is that of the mesh.
+  TriangleMesh mesh;
+  std::vector<std::uint32_t> vertices;   ///< the vertex of the whole mesh, by vertex of the part
+  std::vector<std::uint32_t> triangles;  ///< the triangle of the whole mesh, by triangle of the part
+};
+
+/// Splits a mesh into its connected parts, ordered by their smallest vertices: triangles and edges that share
+/// a vertex id are connected, and a point alone is a part. Vertices that nothing uses are in no part. With
+/// `weld`, vertices with equal positions are connected too, so that a split seam joins; they stay apart in
+/// the part, so give `ObjectOptions::weld` to its object. O(n). Throws `Error` as `check_mesh` does.
+std::vector<MeshPart> split_into_parts(const TriangleMesh& mesh, bool weld = false);
+
+/// Why the triangles of a mesh do not bound a solid (`ObjectOptions::solid`), as a clause that names the
+/// first faulty edges; the empty string when each edge has as many triangles in one direction as in the
+/// other. With `weld`, vertices with equal positions count as one. O(n log n). Throws `Error` as `check_mesh`
+/// does.
+std::string fault_of_solid(const TriangleMesh& mesh, bool weld = false);
+
 }  // namespace supple

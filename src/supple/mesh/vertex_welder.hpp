@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "supple/types.hpp"
-#include "supple/views.hpp"
 
 namespace supple {
 
@@ -67,17 +66,5 @@ class VertexWelder {
   std::vector<std::uint32_t>
       slots_;  // ids of points; the size is a power of two, and at most half of the slots are used
 };
-
-/// The first vertex with the position of each vertex.
-inline std::vector<std::uint32_t> vertices_at_same_position(const PositionsView& positions) {
-  VertexWelder welder;
-  std::vector<std::uint32_t> first_vertices, same(positions.size());
-  for (std::uint32_t v = 0; v < same.size(); ++v) {
-    const std::uint32_t point = welder.id_of(positions[v]);
-    if (point == first_vertices.size()) first_vertices.push_back(v);
-    same[v] = first_vertices[point];
-  }
-  return same;
-}
 
 }  // namespace supple
