@@ -152,12 +152,25 @@ void statistics_tables() {
   });
 }
 
+template <class... Records>
+void record_table(const char* name) {
+  table(name, "| Record | Key | Unit | Meaning |", [] {
+    const auto rows = []<class Record>(const Record&) {
+      for_each_field<Record>([](const auto& field) {
+        fmt::print("| {} | `{}` | {} | {} |\n", Description<Record>::name, field.key, field.unit, field.doc);
+      });
+    };
+    (rows(Records{}), ...);
+  });
+}
+
 }  // namespace
 
 void print_description_tables() {
   attribute_table<SceneOptions>("recording_scene_options");
   attribute_table<ObjectOptions>("recording_object_options");
   statistics_tables();
+  record_table<Manifold, ManifoldPoint>("json_manifolds");
   option_table<SceneOptions, ObjectOptions>("json_options");
   option_table<ObjectOptions>("scene_object_options");
   option_table<CoordinateConversion>("scene_coordinate_options");

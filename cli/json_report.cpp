@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "continuous_json.hpp"
+#include "manifold_json.hpp"
 #include "penetration_json.hpp"
 #include "proximity_json.hpp"
 #include "session/described_json.hpp"
@@ -45,6 +46,20 @@ void write_faces(JsonWriter& json, const std::vector<Triangle>& triangles) {
     json.end_array();
   }
   json.end_array();
+}
+
+void write_part(JsonWriter& json, const PartOfMesh& part) {
+  json.key("part");
+  json.begin_object();
+  json.member("of", part.mesh);
+  for (const auto& [name, ids] :
+       {std::pair("vertices", &part.vertices), std::pair("triangles", &part.triangles)}) {
+    json.key(name);
+    json.begin_array();
+    for (const std::uint32_t id : *ids) json.value(id);
+    json.end_array();
+  }
+  json.end_object();
 }
 
 void write_object_pairs(JsonWriter& json, const char* name, std::span<const ObjectPair> pairs) {
@@ -213,6 +228,7 @@ JsonReport::JsonReport(const std::string& file_name, const Input& input, const S
     json_.member("triangles", std::uint64_t{scene.triangle_count(objects[i])});
     if (content_.stats) write_options(json_, input_.objects[i].options);
     if (content_.faces) write_faces(json_, input_.objects[i].mesh.triangles);
+    if (input_.objects[i].part) write_part(json_, *input_.objects[i].part);
     json_.end_object();
   }
   json_.end_array();
@@ -271,6 +287,7 @@ void JsonReport::add(const Frame& frame) {
   }
   const bool penetration = contains(options.contacts, ContactKinds::penetration);
   if (penetration) write_penetration(json_, result, content_.contact_details);
+  if (options.manifolds) write_manifolds(json_, result);
   if (options.comparison.colliding_vertices) write_colliding_vertices(json_, result);
   if (content_.node_pairs) write_node_pairs(json_, scene_, *content_.node_pairs);
   json_.key("events");

@@ -39,6 +39,8 @@ constexpr OptionNeed needs[] = {
     {"element_kinds", [](const SceneOptions& scene) { return has_continuous(scene) || has_proximity(scene); },
      "contacts", "continuous or proximity"},
     {"proximity_listing", has_proximity, "contacts", "proximity"},
+    {"manifolds", [](const SceneOptions& scene) { return has_penetration(scene) || has_proximity(scene); },
+     "contacts", "penetration or proximity"},
     {"contact_points", has_intersections, "contacts", "intersection"},
     {"colliding_vertices", is_at_rest, "contacts", kinds_at_rest},
 };

@@ -279,6 +279,11 @@ struct Description<SceneOptions> {
         .name = "continuous_listing",
         .member = &Options::continuous_listing,
         .doc = "Continuous contacts: list all, or the first of each vertex, edge and face (first)"});
+    visitor(Field<Options, bool>{
+        .name = "manifolds",
+        .member = &Options::manifolds,
+        .doc = "Penetration and proximity: also reduce each patch of contacts to a normal, a depth and at "
+               "most four points, with ids that last from frame to frame"});
     visitor(Field<Options, std::uint32_t>{
         .name = "max_exact_bits",
         .member = &Options::max_exact_bits,

@@ -164,6 +164,10 @@ struct SceneOptions {
   /// For continuous contacts and proximity: the pairs of elements that are searched.
   ElementKinds element_kinds = ElementKinds::all;
   ContinuousListing continuous_listing = ContinuousListing::all;
+  /// For penetration and proximity: also a normal, a depth and up to four points for each patch of contacts,
+  /// with ids that last from step to step; see `Manifold`. A request with this option and without these kinds
+  /// is an error.
+  bool manifolds = false;
   /// Bounds the time of exact arithmetic on hostile coordinates; docs/conventions.md has a table. The bits of
   /// coordinates reach from the highest bit of the largest to the last bit of the finest. Elements of more
   /// bits that floating point cannot decide are reported as continuous contacts `within_tolerance`. For all
@@ -185,6 +189,7 @@ struct DetectRequest {
   std::optional<ProximityListing> proximity_listing{};
   std::optional<ElementKinds> element_kinds{};
   std::optional<ContinuousListing> continuous_listing{};
+  std::optional<bool> manifolds{};
   /// The largest number of contacts of each kind in the result: the first ones in canonical order, for any
   /// number of threads. `DetectResult::truncated` says that there are more. The limit bounds the memory and
   /// the number of exact tests. The search skips object pairs after the last reported contact, but it

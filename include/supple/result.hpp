@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "supple/contact.hpp"
+#include "supple/manifold.hpp"
 #include "supple/options.hpp"
 #include "supple/penetration.hpp"
 #include "supple/proximity.hpp"
@@ -139,6 +140,9 @@ struct DetectResult {
   std::span<const std::uint32_t> curve_contacts;  ///< indices into `contacts`
   std::span<const Vec3d> curve_points;
   std::span<const std::uint32_t> enclosed_vertices;
+  std::span<const Manifold> manifolds;  ///< ordered by object a, object b, first contact or nearest pair
+  std::span<const ManifoldPoint> manifold_points;
+  std::span<const EndedManifold> ended_manifolds;  ///< those of the last step that are gone, by id
   std::span<const CollidingVertices> colliding_vertex_groups;
   std::span<const std::uint32_t> colliding_vertices;
   std::span<const NonFiniteVertex> non_finite_vertices;
@@ -181,6 +185,9 @@ struct DetectResult {
     return side == ContactSide::a ? enclosed_vertices.subspan(curve.first_enclosed, curve.enclosed_count_a)
                                   : enclosed_vertices.subspan(curve.first_enclosed + curve.enclosed_count_a,
                                                               curve.enclosed_count_b);
+  }
+  std::span<const ManifoldPoint> points_of(const Manifold& manifold) const {
+    return manifold_points.subspan(manifold.first_point, manifold.point_count);
   }
   /// Empty when `SceneOptions::contact_points` is off and no penetration was requested.
   std::span<const ContactPoint> points_of(const Contact& contact) const {

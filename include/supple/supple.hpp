@@ -9,6 +9,7 @@
 #include "supple/distance.hpp"
 #include "supple/error.hpp"
 #include "supple/inspection.hpp"
+#include "supple/manifold.hpp"
 #include "supple/mesh.hpp"
 #include "supple/options.hpp"
 #include "supple/penetration.hpp"

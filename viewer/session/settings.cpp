@@ -127,6 +127,7 @@ SceneView arranged(const SceneView& show, const Settings& settings) {
   if (!uses_scene_octree(simulation.scene.broad_phase)) simulation.scene.scene_octree = {};
   // `PaperVertices` computes these, and only on request.
   simulation.scene.comparison.colliding_vertices = false;
+  simulation.scene.manifolds = false;
   simulation.time_step = settings.time_step.value_or(simulation.time_step);
   simulation.seed = settings.seed.value_or(simulation.seed);
   for (ViewedObject& object : arranged.objects) {

@@ -22,11 +22,14 @@ struct Settings {
 };
 
 /// Whether the commands can set an option of the scene or of an octree. The colliding vertices are a layer of
-/// frames instead. A page shows no proximity.
+/// frames instead. A page shows no manifolds, and one listing of proximity.
 template <class Struct, class Value>
 constexpr bool is_setting(const Field<Struct, Value>& field) {
   if constexpr (std::is_same_v<Struct, ComparisonOptions>) {
     if (std::string_view(field.name) == "colliding_vertices") return false;
+  }
+  if constexpr (std::is_same_v<Struct, SceneOptions>) {
+    if (std::string_view(field.name) == "manifolds") return false;
   }
   if constexpr (std::is_same_v<Value, ProximityListing>) return false;
   return !field.is_of_machine;

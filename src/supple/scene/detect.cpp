@@ -59,6 +59,11 @@ void Scene::Implementation::check_penetration(const DetectRequest& request) cons
   }
 }
 
+void Scene::Implementation::check_manifolds() const {
+  if (question_.has_penetration() || question_.has_proximity()) return;
+  fail("detect: manifolds are made from penetration or proximity; request one of these contacts");
+}
+
 const DetectResult& Scene::Implementation::detect(const DetectRequest& request) {
   if (request.impact) check(*request.impact, "DetectRequest::impact");
   question_ = {
@@ -66,7 +71,9 @@ const DetectResult& Scene::Implementation::detect(const DetectRequest& request) 
       {request.impact.value_or(options.impact), request.element_kinds.value_or(options.element_kinds),
        request.continuous_listing.value_or(options.continuous_listing), options.max_exact_bits},
       request.proximity_listing.value_or(options.proximity_listing),
-      options.comparison.colliding_vertices};
+      options.comparison.colliding_vertices,
+      request.manifolds.value_or(options.manifolds)};
+  if (request.manifolds.value_or(false)) check_manifolds();
   if (question_.has_penetration()) check_penetration(request);
   const StopSignal stop = stop_of(request);
   result = {};
@@ -416,6 +423,17 @@ void Scene::Implementation::report_non_finite() {
   }
 }
 
+void Scene::Implementation::find_manifolds(const DetectResult& found) {
+  if (!question_.manifolds) return manifold_pass_.find_none();
+  manifold_objects_.clear();
+  for (const Slot& slot : slots_) {
+    manifold_objects_.emplace_back();
+    if (slot.object != nullptr)
+      manifold_objects_.back() = {&slot.object->octree(), &slot.object->placement()};
+  }
+  manifold_pass_.find(found, manifold_objects_);
+}
+
 void Scene::Implementation::publish() {
   DetectResult found = result;
   found.stopped = false;
@@ -459,6 +477,7 @@ void Scene::Implementation::publish() {
   for (const CollidingVertices& group : found.colliding_vertex_groups) {
     if (group.a != group.b) leaf_pairs_.push_back({group.a, group.b});
   }
+  find_manifolds(found);
   using Update = std::pair<PairCache*, std::span<const ObjectPair>>;
   const std::array updates{Update{&volume_pairs_, jobs_.pairs}, Update{&narrow_phase_pairs_, leaf_pairs_},
                            Update{&contact_pairs_, touching_pairs_}, Update{&near_object_pairs_, near_pairs_},
@@ -466,7 +485,11 @@ void Scene::Implementation::publish() {
   // From here on, nothing may run out of memory: each pair begins and ends exactly once.
   for (const auto& [cache, pairs] : updates) cache->prepare(pairs);
   for (const auto& [cache, pairs] : updates) cache->update(pairs);
+  manifold_pass_.publish();
   ++step_;
+  found.manifolds = manifold_pass_.manifolds();
+  found.manifold_points = manifold_pass_.points();
+  found.ended_manifolds = manifold_pass_.ended();
   found.object_pairs = jobs_.pairs;
   found.non_finite_vertices = non_finite_;
   found.volume_events = volume_pairs_.events();

@@ -17,6 +17,7 @@
 #include "scene/containment_cells.hpp"
 #include "scene/exact_limit.hpp"
 #include "scene/impact_pass.hpp"
+#include "scene/manifold_pass.hpp"
 #include "scene/nearest_pair.hpp"
 #include "scene/object_queries.hpp"
 #include "scene/pair_cache.hpp"
@@ -42,6 +43,7 @@ struct Question {
   ImpactSearchOptions impact;
   ProximityListing proximity_listing = ProximityListing::features;
   bool colliding_vertices = false;
+  bool manifolds = false;
   std::optional<StepOptions> safe_step{};  ///< continuous contacts: for a safe step
 
   bool has_intersections() const { return contains(contacts, ContactKinds::intersection); }
@@ -216,10 +218,12 @@ class Scene::Implementation {
   template <class Accept>
   bool any_candidate_pair(ContactKinds kind, const Accept& accept) const;
   void list_untested(DetectResult& found);
+  void find_manifolds(const DetectResult& found);
   void publish();
   void list_touching_pairs(const DetectResult& found);
   void list_deep_pairs(const DetectResult& found);
   void check_penetration(const DetectRequest& request) const;
+  void check_manifolds() const;
   /// Throws an error when coordinates of two objects exceed `SceneOptions::max_exact_bits`, unless all
   /// requested contacts are continuous.
   void check_exact_bits(const Jobs& jobs) const;
@@ -310,6 +314,8 @@ class Scene::Implementation {
   ImpactPass impact_pass_;
   ProximityPass proximity_pass_;
   PenetrationPass penetration_pass_;
+  ManifoldPass manifold_pass_;
+  std::vector<ManifoldObject> manifold_objects_;
 };
 
 }  // namespace supple

@@ -1,0 +1,70 @@
+#pragma once
+
+#include <cstdint>
+
+#include "supple/types.hpp"
+
+namespace supple {
+
+/// Whether something was there in the last step. What ends is no longer listed.
+enum class Lasting : std::uint8_t { begin, stay };
+
+/// What a manifold summarises.
+enum class ManifoldSource : std::uint8_t { curve, pairs };
+
+/// One of the points that span a manifold.
+struct ManifoldPoint {
+  std::uint64_t id = 0;  ///< of no other point of the scene
+  Lasting lasting = Lasting::begin;
+  /// Of a curve: a point of it, or a vertex that it encloses. Of pairs: the middle of the closest points.
+  Vec3d position{};
+  /// Of a curve: how far the vertex is beyond the plane through the centroid of the curve, at right angles to
+  /// the normal, 0 for points of the curve, and at most `Manifold::depth`; where a curve encloses no vertex,
+  /// it is `Manifold::depth`. Of pairs: minus the distance.
+  double depth = 0;
+
+  constexpr bool operator==(const ManifoldPoint&) const = default;
+};
+
+/// A patch of contacts of two objects, or of one object with itself, reduced to what a rigid body needs: one
+/// normal, one depth, and at most four points that span it. With penetration, each `IntersectionCurve` is a
+/// patch. Two objects without a curve have the patches of their proximity pairs: a patch grows from the
+/// nearest pair that is in no patch yet over all pairs in no patch that have vertices in common, on either
+/// object, and whose normals are within 45 degrees of its normal.
+///
+/// The points are the deepest one, and those that are farthest from it, from the line, and outside the
+/// triangle of those before. Points nearer than 2^-10 of the size of the patch to what is spanned already
+/// are left out, so an edge has two points and a vertex has one. They run counter-clockwise, seen from a.
+///
+/// A manifold keeps its id while it stays. Of all manifolds of two objects in two steps that follow each
+/// other, those with most features in common are the same (a feature is a vertex, edge or triangle of one
+/// object), then those whose points are nearest to each other, then the first ones. So the only manifold of
+/// two objects stays as long as they have one; when a patch splits, one part stays and the others begin; when
+/// patches merge, one stays and the others end. The points of a manifold that stays are matched in the same
+/// way. A step without manifolds ends all.
+struct Manifold {
+  ObjectId a, b;         ///< equal for a patch of an object with itself
+  std::uint64_t id = 0;  ///< of no other manifold of the scene
+  Lasting lasting = Lasting::begin;
+  ManifoldSource source = ManifoldSource::curve;
+  /// Unit vector from b to a: that of the curve, or of the nearest pair. Zero when it is zero.
+  Vec3d normal{};
+  double depth = 0;               ///< that of the curve, or minus the distance of the nearest pair
+  std::uint32_t first_point = 0;  ///< of `DetectResult::manifold_points`
+  std::uint32_t point_count = 0;  ///< 1 to 4
+  /// The index of the curve in `DetectResult::curves`, or of the nearest pair in
+  /// `DetectResult::proximity_pairs`.
+  std::uint32_t record = 0;
+
+  constexpr bool operator==(const Manifold&) const = default;
+};
+
+/// A manifold of the last step that no manifold of this step continues.
+struct EndedManifold {
+  ObjectId a, b;  ///< they may be removed
+  std::uint64_t id = 0;
+
+  constexpr bool operator==(const EndedManifold&) const = default;
+};
+
+}  // namespace supple
