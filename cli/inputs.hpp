@@ -34,7 +34,7 @@ using Motion =
 struct PartOfMesh {
   std::string mesh;                                ///< the name of the whole mesh
   std::vector<std::uint32_t> vertices, triangles;  ///< ids in the whole mesh
-  /// Of a solid mesh: why the part is not solid; empty when it is.
+  /// Why a part of a solid mesh is not solid; empty when it is.
   std::optional<std::string> not_solid{};
 };
 
