@@ -105,6 +105,7 @@ TEST(SteadyStateProximity, NoAllocationsAfterWarmUp) {
     SceneOptions options;
     options.contacts = ContactKinds::proximity;
     options.proximity_listing = listing;
+    options.manifolds = true;
     options.threads = 1;
     Scene scene(options);
     const ObjectId id = scene.add(cloth, {.self_collision = true, .margin = 0.02});
@@ -217,7 +218,9 @@ class MovingBalls {
   static constexpr int period = 20;
 
   MovingBalls(ContactKinds contacts, std::uint32_t threads)
-      : scene_({.contacts = contacts, .threads = threads}),
+      : scene_({.contacts = contacts,
+                .manifolds = contains(contacts, ContactKinds::penetration),
+                .threads = threads}),
         has_limit_(!contains(contacts, ContactKinds::penetration)) {
     for (std::size_t i = 0; i < 8; ++i) {
       const TriangleMesh ball = uneven_ball(i);
