@@ -16,11 +16,11 @@ enum class ManifoldSource : std::uint8_t { curve, pairs };
 struct ManifoldPoint {
   std::uint64_t id = 0;  ///< of no other point of the scene
   Lasting lasting = Lasting::begin;
-  /// A point of the curve, or a vertex that it encloses; for pairs, the middle of the closest points.
+  /// A point of the curve, or a vertex that it encloses beyond the plane through its centroid at right angles
+  /// to the normal; for pairs, the middle of the closest points.
   Vec3d position{};
-  /// How far an enclosed vertex is beyond the plane through the centroid of the curve, at right angles to the
-  /// normal, at most `Manifold::depth`; 0 for a point of the curve. Where the curve encloses no vertex, it is
-  /// `Manifold::depth`. For pairs, minus the distance.
+  /// How far an enclosed vertex is beyond this plane, at most `Manifold::depth`; 0 for a point of the curve.
+  /// Where no vertex is beyond the plane, all points have `Manifold::depth`. For pairs, minus the distance.
   double depth = 0;
 
   constexpr bool operator==(const ManifoldPoint&) const = default;

@@ -1,6 +1,7 @@
-#include <algorithm>
+#include <array>
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <vector>
 
 #include "mesh/vertex_sets.hpp"

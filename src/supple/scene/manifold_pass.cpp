@@ -72,7 +72,6 @@ void ManifoldPass::add_manifold(const Manifold& manifold) {
 
 void ManifoldPass::add_curve(const DetectResult& result, std::uint32_t index) {
   const IntersectionCurve& curve = result.curves[index];
-  const bool encloses = curve.enclosed_count_a + curve.enclosed_count_b > 0;
   candidates_.clear();
   for (const std::uint32_t i : result.contacts_of(curve)) {
     const Contact& contact = result.contacts[i];
@@ -81,12 +80,16 @@ void ManifoldPass::add_curve(const DetectResult& result, std::uint32_t index) {
     for (const ContactPoint& point : result.points_of(contact))
       candidates_.push_back(
           {point.position,
-           encloses ? 0 : curve.depth,
+           0,
            {name_of(point.on_a, a, contact.triangle_a), name_of(point.on_b, b, contact.triangle_b)},
            {true, true}});
   }
+  const std::size_t on_curve = candidates_.size();
   add_enclosed(result, curve, ContactSide::a);
   add_enclosed(result, curve, ContactSide::b);
+  if (candidates_.size() == on_curve) {
+    for (ManifoldCandidate& candidate : candidates_) candidate.depth = curve.depth;
+  }
   Manifold manifold{curve.a, curve.b};
   manifold.source = ManifoldSource::curve;
   manifold.normal = curve.normal;
@@ -95,6 +98,7 @@ void ManifoldPass::add_curve(const DetectResult& result, std::uint32_t index) {
   add_manifold(manifold);
 }
 
+/// Adds the vertices that the curve encloses beyond its plane.
 void ManifoldPass::add_enclosed(const DetectResult& result, const IntersectionCurve& curve,
                                 ContactSide side) {
   const bool is_a = side == ContactSide::a;
@@ -103,7 +107,8 @@ void ManifoldPass::add_enclosed(const DetectResult& result, const IntersectionCu
     const Vec3d position = placement.position(v);
     if (!is_finite(position)) continue;
     const double height = height_of(position, curve.centroid, is_a ? -curve.normal : curve.normal);
-    ManifoldCandidate candidate{position, std::clamp(height, 0.0, std::max(curve.depth, 0.0))};
+    if (!(height > 0)) continue;
+    ManifoldCandidate candidate{position, std::min(height, curve.depth)};
     candidate.names[is_a ? 0 : 1] = {FeatureKind::vertex, v, v};
     candidate.has_name[is_a ? 0 : 1] = true;
     candidates_.push_back(candidate);

@@ -7,13 +7,13 @@
 #include <cstring>
 #include <set>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "supple/error.hpp"
 #include "supple/models.hpp"
 #include "supple/scene.hpp"
 #include "supple/trigonometry.hpp"
-#include "support/random.hpp"
 
 namespace supple {
 namespace {
@@ -95,7 +95,7 @@ TEST(Manifold, BoxOnFloorHasItsCorners) {
 
 TEST(Manifold, BoxInFloorHasItsCornersWithTheirDepths) {
   Scene scene(touching);
-  const ObjectId box = scene.add(make_box({2, 2, 2}), {.solid = true});
+  const ObjectId box = scene.add(make_box({2, 2, 2}, 3), {.solid = true});
   scene.add(floor_of(2), {.name = "floor"});
   scene.translate(box, {0.125, 0.9375, 0.25});
   const DetectResult& result = scene.detect();
@@ -160,7 +160,7 @@ TEST(Manifold, SphereInFloorHasItsDeepestPoint) {
   double deepest = 0;
   for (const ManifoldPoint& point : points) deepest = std::max(deepest, point.depth);
   EXPECT_NEAR(deepest, manifold.depth, 1e-12);
-  EXPECT_GT(area_of(points, manifold.normal), 0.3);
+  EXPECT_GT(area_of(points, manifold.normal), 0.25);
 }
 
 TEST(Manifold, IdsLastWhileABoxSlides) {
@@ -370,7 +370,6 @@ TEST(Manifold, IsTheSameForAnyNumberOfThreadsAndSpansItsPatch) {
     std::vector<ManifoldPoint> points;
     for (const std::uint32_t threads : {1u, 2u, 5u}) {
       Scene scene({.contacts = kinds, .manifolds = true, .threads = threads});
-      RandomNumbers random(11);
       const TriangleMesh ball = make_icosphere(3);
       std::vector<ObjectId> ids;
       for (int i = 0; i < 12; ++i)

@@ -4,8 +4,10 @@
 
 #include <cstddef>
 #include <cstring>
+#include <limits>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "supple/models.hpp"
@@ -64,6 +66,7 @@ TEST_P(ResultSpans, OnlyDetectEndsThem) {
   const TriangleMesh ball = make_icosphere(4);
   std::vector<Vec3d> up = ball.positions, broken = ball.positions;
   for (Vec3d& p : up) p = p + Vec3d{0.1, 0.7, 0.2};
+  for (Vec3d& p : broken) p.x += 3;
   broken[0].x = std::numeric_limits<double>::quiet_NaN();
   const ObjectId a = scene.add(ball, {.self_collision = true, .margin = 0.05, .solid = true});
   const ObjectId b = scene.add(ball, {.margin = 0.05, .solid = true});
