@@ -12,6 +12,8 @@ namespace {
 
 /// Normals of pairs in one patch are within 45 degrees of the normal of its nearest pair.
 constexpr double least_cosine = 0.70710678118654757;
+/// The least cosine of pairs that a patch can replace: about 75 degrees.
+constexpr double least_kept_cosine = 0.25;
 
 /// How far a point is beyond the plane through `origin`, along `direction`.
 double height_of(const Vec3d& point, const Vec3d& origin, const Vec3d& direction) {
@@ -161,9 +163,13 @@ void ManifoldPass::grow_patch(std::span<const ProximityPair> pairs, std::uint32_
       if (std::exchange(scanned_by_[vertex], seed) == seed) continue;
       for (std::uint32_t u = first_use_[vertex]; u < first_use_[vertex + 1]; ++u) {
         const std::uint32_t other = uses_[u].pair;
-        if (is_in_patch_[other] != 0 || dot(pairs[other].normal, pairs[seed].normal) < least_cosine) continue;
+        if (is_in_patch_[other] != 0) continue;
+        const double cosine = dot(pairs[other].normal, pairs[seed].normal);
+        const bool is_kept_apart =
+            cosine >= least_kept_cosine && cosine * pairs[other].distance >= pairs[seed].distance;
+        if (cosine < least_cosine && !is_kept_apart) continue;
         is_in_patch_[other] = 1;
-        patch_.push_back(other);
+        if (cosine >= least_cosine) patch_.push_back(other);
       }
     }
   }

@@ -44,7 +44,7 @@ TEST(ForEachVertex, WeightsOfPairsGiveTheWayFromBToA) {
   const TriangleMesh ball = make_icosphere(3);
   const ObjectId a = scene.add(ball, {.self_collision = true, .margin = 0.1}),
                  b = scene.add(ball, {.margin = 0.1});
-  scene.translate(b, {1.95, 0.1, 0.05});
+  scene.translate(b, {1.85, 0.1, 0.05});
   const DetectResult& result = scene.detect();
   ASSERT_FALSE(result.proximity_pairs.empty());
   for (const ProximityPair& pair : result.proximity_pairs) {
@@ -115,7 +115,7 @@ TEST(ForEachVertex, FlatTrianglesAndMissingPointsHaveTheCentre) {
                           [&](ObjectId, std::uint32_t, double weight) { weights.push_back(weight); });
     ASSERT_EQ(weights.size(), 6u);
     for (int i = 0; i < 3; ++i) EXPECT_EQ(weights[static_cast<std::size_t>(i)], 1.0 / 3);
-    if (!with_points) EXPECT_EQ(weights[5], -1.0 / 3);
+    EXPECT_TRUE(with_points || weights[5] == -1.0 / 3);
   }
 }
 

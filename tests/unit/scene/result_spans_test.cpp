@@ -125,7 +125,7 @@ TEST_P(ResultSpans, OnlyDetectEndsThem) {
   held.check("changes of objects");
   query();
   scene.remove(c);
-  for (int i = 0; i < 100; ++i) scene.add(ball);
+  for (int i = 0; i < 50; ++i) scene.translate(scene.add(ball), {10.0 + 5 * i, 0, 0});
   held.check("remove and add");
   query();
   Scene other = std::move(scene);
