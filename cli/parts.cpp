@@ -63,8 +63,9 @@ void add_parts(InputObject whole, std::vector<InputObject>& objects) {
     if (!object.options.name.empty()) object.options.name = object.mesh.name;
     object.part = PartOfMesh{whole.mesh.name, std::move(part.vertices), std::move(part.triangles), {}};
     if (!whole.options.solid) continue;
-    object.part->not_solid = object.mesh.triangles.empty() ? "it has no triangles"
-                                                           : fault_of_solid(object.mesh, whole.options.weld);
+    object.part->not_solid = object.mesh.triangles.empty()
+                                 ? "it has no triangles"
+                                 : fault_of_solid(whole.options.weld ? welded(object.mesh) : object.mesh);
     object.options.solid = object.part->not_solid->empty();
   }
 }

@@ -31,8 +31,8 @@ struct ManifoldPoint {
 /// patch. Two objects without a curve have the patches of their proximity pairs: a patch grows from the
 /// nearest pair that is in no patch yet over all pairs in no patch that have vertices in common, on either
 /// object, and whose normals are within 45 degrees of its normal. It also replaces pairs with such vertices
-/// whose normals are within 75 degrees and that are as far apart along its normal as the nearest pair: for
-/// example an edge of a floor and an edge of the side of a box that stands on it.
+/// whose elements are as far apart along its normal as the nearest pair: for example an edge of a floor and
+/// an edge of the side of a box that stands on it.
 ///
 /// The points are the deepest one, and those that are farthest from it, from the line, and outside the
 /// triangle of those before. Points nearer than 2^-10 of the size of the patch to what is spanned already

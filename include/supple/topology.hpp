@@ -68,10 +68,10 @@ struct MeshPart {
 /// the part, so give `ObjectOptions::weld` to its object. O(n). Throws `Error` as `check_mesh` does.
 std::vector<MeshPart> split_into_parts(const TriangleMesh& mesh, bool weld = false);
 
-/// Why the triangles of a mesh do not bound a solid (`ObjectOptions::solid`), as a clause that names the
-/// first faulty edges; the empty string when each edge has as many triangles in one direction as in the
-/// other. With `weld`, vertices with equal positions count as one. O(n log n). Throws `Error` as `check_mesh`
-/// does.
-std::string fault_of_solid(const TriangleMesh& mesh, bool weld = false);
+/// Why a surface does not bound a solid (`ObjectOptions::solid`): it is not closed, or its triangles are not
+/// oriented alike. Names the first of its faulty edges, and how to correct them, as a clause; the empty
+/// string when every edge has as many triangles in one direction as in the other. The vertex ids must be
+/// valid. O(n log n).
+std::string fault_of_solid(const TriangleMesh& mesh);
 
 }  // namespace supple

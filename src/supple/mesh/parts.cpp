@@ -1,11 +1,9 @@
 #include <array>
 #include <cstdint>
 #include <limits>
-#include <span>
 #include <vector>
 
 #include "mesh/vertex_sets.hpp"
-#include "mesh/vertex_triangles.hpp"
 #include "supple/topology.hpp"
 
 namespace supple {
@@ -69,11 +67,6 @@ std::vector<MeshPart> split_into_parts(const TriangleMesh& mesh, bool weld) {
   for (const auto& [v, w] : mesh.edges) part_of(v).mesh.edges.push_back({id[v], id[w]});
   for (const std::uint32_t v : mesh.points) part_of(v).mesh.points.push_back(id[v]);
   return parts;
-}
-
-std::string fault_of_solid(const TriangleMesh& mesh, bool weld) {
-  check_mesh(mesh);
-  return fault_of_solid(std::span<const Triangle>(weld ? welded(mesh).triangles : mesh.triangles));
 }
 
 }  // namespace supple

@@ -3,7 +3,6 @@
 #include <array>
 #include <cstdint>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "supple/mesh.hpp"
@@ -36,10 +35,5 @@ class VertexTriangles {
   std::vector<std::uint32_t> first_, triangles_, part_;
   std::vector<Part> parts_;
 };
-
-/// Why a surface does not bound a solid: it is not closed, or its triangles are not oriented alike. Names the
-/// first of its faulty edges, and how to correct them, as a clause; the empty string when every edge has as
-/// many triangles in one direction as in the other. O(n log n).
-std::string fault_of_solid(const TriangleMesh& mesh);
 
 }  // namespace supple

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <tuple>
 #include <utility>
 
@@ -12,8 +13,6 @@ namespace {
 
 /// Normals of pairs in one patch are within 45 degrees of the normal of its nearest pair.
 constexpr double least_cosine = 0.70710678118654757;
-/// The least cosine of pairs that a patch can replace: about 75 degrees.
-constexpr double least_kept_cosine = 0.25;
 
 /// How far a point is beyond the plane through `origin`, along `direction`.
 double height_of(const Vec3d& point, const Vec3d& origin, const Vec3d& direction) {
@@ -117,6 +116,18 @@ void ManifoldPass::add_enclosed(const DetectResult& result, const IntersectionCu
   }
 }
 
+/// Calls `visit` for each vertex id of an element.
+template <class Visit>
+void ManifoldPass::for_each_vertex(ObjectId object, FeatureKind kind,
+                                   const std::array<std::uint32_t, 2>& element, const Visit& visit) const {
+  if (kind == FeatureKind::face) {
+    for (const std::uint32_t v : objects_[object.index].octree->user_triangle(element[0])) visit(v);
+    return;
+  }
+  visit(element[0]);
+  if (kind == FeatureKind::edge) visit(element[1]);
+}
+
 /// Lists which pairs of a group use each vertex.
 void ManifoldPass::link_pairs(const DetectResult& result, const ContactGroup& group) {
   const std::span<const ProximityPair> pairs = result.proximity_pairs_of(group);
@@ -127,13 +138,7 @@ void ManifoldPass::link_pairs(const DetectResult& result, const ContactGroup& gr
     const auto add = [&](std::uint32_t side, ObjectId object, FeatureKind kind,
                          const std::array<std::uint32_t, 2>& element) {
       if (group.a == group.b) side = 0;
-      if (kind == FeatureKind::face) {
-        for (const std::uint32_t v : objects_[object.index].octree->user_triangle(element[0]))
-          uses_.push_back({side, v, i});
-      } else {
-        uses_.push_back({side, element[0], i});
-        if (kind == FeatureKind::edge) uses_.push_back({side, element[1], i});
-      }
+      for_each_vertex(object, kind, element, [&](std::uint32_t v) { uses_.push_back({side, v, i}); });
     };
     add(0, pair.object_a, pair.kind_a, pair.element_a);
     add(1, pair.object_b, pair.kind_b, pair.element_b);
@@ -153,6 +158,22 @@ void ManifoldPass::link_pairs(const DetectResult& result, const ContactGroup& gr
   first_use_.push_back(static_cast<std::uint32_t>(uses_.size()));
 }
 
+/// Whether the elements of a pair are as far apart along the normal of the nearest pair as that pair, but for
+/// rounding.
+bool ManifoldPass::is_kept_apart(const ProximityPair& pair, const ProximityPair& nearest) const {
+  double low_a = std::numeric_limits<double>::infinity(), high_b = -low_a, size = nearest.distance;
+  const auto height = [&](ObjectId object, std::uint32_t vertex) {
+    const Vec3d position = objects_[object.index].placement->position(vertex);
+    size = std::max(size, largest_magnitude(position));
+    return dot(position, nearest.normal);
+  };
+  for_each_vertex(pair.object_a, pair.kind_a, pair.element_a,
+                  [&](std::uint32_t v) { low_a = std::min(low_a, height(pair.object_a, v)); });
+  for_each_vertex(pair.object_b, pair.kind_b, pair.element_b,
+                  [&](std::uint32_t v) { high_b = std::max(high_b, height(pair.object_b, v)); });
+  return low_a - high_b >= nearest.distance - 0x1p-40 * size;
+}
+
 void ManifoldPass::grow_patch(std::span<const ProximityPair> pairs, std::uint32_t seed) {
   patch_.assign(1, seed);
   is_in_patch_[seed] = 1;
@@ -164,12 +185,10 @@ void ManifoldPass::grow_patch(std::span<const ProximityPair> pairs, std::uint32_
       for (std::uint32_t u = first_use_[vertex]; u < first_use_[vertex + 1]; ++u) {
         const std::uint32_t other = uses_[u].pair;
         if (is_in_patch_[other] != 0) continue;
-        const double cosine = dot(pairs[other].normal, pairs[seed].normal);
-        const bool is_kept_apart =
-            cosine >= least_kept_cosine && cosine * pairs[other].distance >= pairs[seed].distance;
-        if (cosine < least_cosine && !is_kept_apart) continue;
+        const bool has_direction = dot(pairs[other].normal, pairs[seed].normal) >= least_cosine;
+        if (!has_direction && !is_kept_apart(pairs[other], pairs[seed])) continue;
         is_in_patch_[other] = 1;
-        if (cosine >= least_cosine) patch_.push_back(other);
+        if (has_direction) patch_.push_back(other);
       }
     }
   }

@@ -102,6 +102,10 @@ class ManifoldPass {
   void add_enclosed(const DetectResult& result, const IntersectionCurve& curve, ContactSide side);
   void add_patches(const DetectResult& result, const ContactGroup& group);
   void link_pairs(const DetectResult& result, const ContactGroup& group);
+  template <class Visit>
+  void for_each_vertex(ObjectId object, FeatureKind kind, const std::array<std::uint32_t, 2>& element,
+                       const Visit& visit) const;
+  bool is_kept_apart(const ProximityPair& pair, const ProximityPair& nearest) const;
   void grow_patch(std::span<const ProximityPair> pairs, std::uint32_t seed);
   void add_manifold(const Manifold& manifold);
   void match();

@@ -127,7 +127,7 @@ TEST(FaultOfSolid, NamesWhatSceneAddRefuses) {
     soup.triangles.push_back({first, first + 1, first + 2});
   }
   EXPECT_NE(fault_of_solid(soup), "");
-  EXPECT_EQ(fault_of_solid(soup, true), "");
+  EXPECT_EQ(fault_of_solid(welded(soup)), "");
 }
 
 }  // namespace
