@@ -50,8 +50,9 @@ struct RigidTransform {
 /// copy of shared positions. It keeps a second copy for objects moved by `set_transform` or `set_motion`.
 /// Once continuous contacts are requested, it also keeps copies of the positions at both ends of the step.
 ///
-/// Spans: those of a result are valid until the next `detect`, and those that a query returns until the next
-/// query with the same name; no other function ends them, except the destructor and an assignment.
+/// Spans: those of a result are valid until the next `detect`, and those that another function returns until
+/// the next call of a function with the same name; nothing else ends them, except the destructor and an
+/// assignment.
 ///
 /// Threads: calls on one scene must not overlap, except calls of const functions. Different scenes are
 /// independent.
@@ -176,8 +177,8 @@ class Scene {
   ///
   /// Two objects that move are in one island unless every two of their elements are so far apart that what
   /// both move towards each other cannot use up their room. Objects that do not move have the step 1 and
-  /// connect nothing. Takes longer than `collision_free_step`, because no time bounds the search. Valid until
-  /// the next call of a function of the scene that is not const. Throws `Error` as that function does.
+  /// connect nothing. Takes longer than `collision_free_step`, because no time bounds the search. Throws
+  /// `Error` as that function does.
   std::span<const ObjectStep> collision_free_steps(const StepOptions& options = {});
   /// The result of the last `detect`.
   const DetectResult& result() const;
