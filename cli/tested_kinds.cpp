@@ -130,7 +130,8 @@ std::string TestedKinds::advice_for_one_object(ContactKinds kind) const {
   const TriangleMesh& mesh = input_.objects.front().mesh;
   if (input_.objects.size() != 1) return reason;
   const std::uint64_t parts = compute_topology(mesh).components;
-  if (parts > 1) reason += fmt::format(", and its {} connected parts against each other", grouped(parts));
+  if (parts > 1)
+    reason += fmt::format(", --parts makes an object of each of its {} connected parts", grouped(parts));
   return reason;
 }
 

@@ -64,7 +64,9 @@ class Untested(ProgramTest):
 
     def test_one_object(self):
         self.expect("a.obj", kind="intersection", reason="one_object", says="othing was tested: there is only one object; --self")
-        self.expect("crossed.obj", kind="intersection", reason="one_object", says="--self tests it against itself, and its 2 connected parts")
+        self.expect("crossed.obj", kind="intersection", reason="one_object", says="--self tests it against itself, --parts makes an object of each of its 2 connected parts")
+        done = self.run_here("detect", "crossed.obj", "--parts", "--fail-on-contact", "--quiet")
+        self.assertEqual((done.status, done.error), (1, ""))
         self.expect("a.obj", "points.ply", kind="intersection", reason="one_object", says="only one object has a triangle")
         self.expect("a.obj", "--self", kind="intersection", reason="shared_vertex", says="share a vertex; give --neighbours exact")
         self.expect("--sequence", "a.obj", "far.obj", kind="intersection", reason="one_object", says="--self")
