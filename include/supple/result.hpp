@@ -35,7 +35,8 @@ struct CollidingVertices {
 };
 
 /// A vertex with a coordinate that is not a finite number. The triangles that use it are inert: they are in
-/// no box and in no contact until the vertex has a finite position.
+/// no box and in no contact until the vertex has a finite position. Vertices that nothing uses, such as those
+/// that `ObjectOptions::weld` replaces by others, are not listed.
 struct NonFiniteVertex {
   ObjectId object;
   std::uint32_t vertex = 0;

@@ -1,6 +1,7 @@
 #include "scene/moving_shape.hpp"
 
 #include "geometry/vector.hpp"
+#include "scene/resting_shape.hpp"
 
 namespace supple {
 
@@ -17,11 +18,11 @@ void MovingShape::refit(const ObjectOctree& octree, const Placement& placement, 
   if (has_way(placement)) start_.gather(placement.start(), elements_.vertex_ids(), parallel);
   non_finite_.clear();
   if (!boxes_.refit(octree, elements_, has_way(placement) ? start_ : end_, end_, parallel)) {
-    for (std::uint32_t vertex = 0; vertex < octree.vertex_count(); ++vertex) {
-      if (!is_finite(placement.position(vertex)) ||
-          (has_way(placement) && !is_finite(placement.start_position(vertex))))
-        non_finite_.push_back(vertex);
-    }
+    const auto is_finite_at = [&](std::uint32_t v) {
+      return is_finite(placement.position(v)) &&
+             (!has_way(placement) || is_finite(placement.start_position(v)));
+    };
+    list_non_finite(octree, is_finite_at, non_finite_);
   }
   version_ = placement.version();
 }

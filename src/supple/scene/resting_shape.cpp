@@ -50,9 +50,8 @@ void RestingShape::refit_all(ObjectOctree& octree, const Placement& placement, c
   const bool are_finite = octree.refit(placement.end(), {}, parallel);
   if (are_finite && octree.triangles().size() == face_count_) return;
   has_inert_faces_ = mark_inert(octree, placement.end(), face_count_, inert_);
-  for (std::uint32_t vertex = 0; !are_finite && vertex < octree.vertex_count(); ++vertex) {
-    if (!is_finite(placement.position(vertex))) non_finite_.push_back(vertex);
-  }
+  const auto is_finite_at = [&](std::uint32_t v) { return is_finite(placement.position(v)); };
+  if (!are_finite) list_non_finite(octree, is_finite_at, non_finite_);
   octree.refit(placement.end(), inert_, parallel);
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -55,6 +56,22 @@ class RestingShape {
   std::vector<std::uint32_t> non_finite_;
   AdaptiveCulling culling_;
 };
+
+/// Lists the user's ids, ascending, of the vertices of triangles, edges and points for which
+/// `is_finite_at(v)` is false. Nothing reads other vertices, for example those that were welded to another
+/// one. O(n log n).
+template <class IsFinite>
+void list_non_finite(const ObjectOctree& octree, const IsFinite& is_finite_at,
+                     std::vector<std::uint32_t>& vertices) {
+  vertices.clear();
+  for (const Triangle& triangle : octree.triangles()) {
+    for (const std::uint32_t v : triangle) {
+      if (!is_finite_at(v)) vertices.push_back(v);
+    }
+  }
+  std::sort(vertices.begin(), vertices.end());
+  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+}
 
 /// Sets a byte per triangle in octree order: 1 when a vertex of the triangle is not finite, and for triangles
 /// with ids from `face_count` on. Returns whether there are some of the first kind.

@@ -8,6 +8,7 @@
 
 #include "supple/error.hpp"
 #include "supple/models.hpp"
+#include "supple/option_descriptions.hpp"
 #include "supple/scene.hpp"
 
 namespace supple {
@@ -62,6 +63,27 @@ TEST(Weld, KeepsVerticesThatAreNotFiniteApart) {
   Scene scene;
   scene.add(pieces, {.self_collision = true, .weld = true});
   EXPECT_EQ(scene.detect().non_finite_vertices.size(), 2u);
+}
+
+TEST(Weld, NothingReadsTheVerticesThatWereReplaced) {
+  const TriangleMesh pieces = split(make_icosphere(2));
+  for (const auto kinds : {ContactKinds::intersection, ContactKinds::continuous, ContactKinds::proximity,
+                           ContactKinds::penetration}) {
+    Scene scene({.contacts = kinds});
+    const ObjectId id = scene.add(pieces, {.weld = true, .margin = 0.1});
+    scene.add(TriangleMesh{"triangle", {{0.9, 0, 0}, {3, 0, 0}, {3, 1, 0}}, {{0, 1, 2}}}, {.margin = 0.1});
+    // The last vertex stands at the place of others, and the first one stands for itself.
+    std::vector<Vec3d> positions = pieces.positions;
+    positions.back().y = std::numeric_limits<double>::quiet_NaN();
+    scene.set_positions(id, positions);
+    EXPECT_TRUE(scene.detect().non_finite_vertices.empty()) << word_of(kinds);
+    scene.set_motion(id, positions, positions);
+    EXPECT_TRUE(scene.detect().non_finite_vertices.empty()) << word_of(kinds);
+    positions.front().x = std::numeric_limits<double>::infinity();
+    scene.set_positions(id, positions);
+    ASSERT_EQ(scene.detect().non_finite_vertices.size(), 1u) << word_of(kinds);
+    EXPECT_EQ(scene.result().non_finite_vertices[0].vertex, 0u);
+  }
 }
 
 TEST(Weld, ByAMapIsThatOfEqualPositions) {
