@@ -28,7 +28,8 @@ struct Penetration {
 
 /// The vertices of a that are inside b or on its surface: ranges of `DetectResult::penetrations` and of
 /// `DetectResult::vertices_on_surface`, each with ascending vertices. Only pairs with such a vertex are
-/// listed. The vertices of b inside a are a group of their own.
+/// listed. The vertices of b inside a are a group of their own. With `PenetrationDepths::deepest`, only one
+/// of the vertices inside is listed.
 struct PenetrationGroup {
   ObjectId a, b;
   std::uint32_t first_penetration = 0;
@@ -69,10 +70,27 @@ inline constexpr std::array words<CurveKind>{"closed", "open", "branched"};
 /// ascending contacts and no points.
 ///
 /// On each of two surfaces, a curve encloses the vertices that it cuts off: those on the smaller of the two
-/// sides, by the number of vertices. It encloses none where it does not divide the connected part of the
-/// surface, and none where it passes through vertices in a way that leaves the sides open. On a curve of an
-/// object with itself, side a has the smaller triangle of the curve's smallest contact. See Baraff, Witkin
-/// and Kass, Untangling Cloth, 2003.
+/// sides, by the number of vertices, and of equal sides the one that is behind. It encloses none where it
+/// does not divide the connected part of the surface, and none where it passes through vertices in a way that
+/// leaves the sides open. On a curve of an object with itself, side a has the smaller triangle of the curve's
+/// smallest contact. See Baraff, Witkin and Kass, Untangling Cloth, 2003.
+///
+/// `normal` and `depth` say how a leaves b. They concern two parts: on each surface, the triangles of the
+/// curve's contacts and those around the vertices behind it. These are the vertices on the side of the curve
+/// that is lower along the direction of its area for a, and higher for b; where the surface is about level
+/// there, they are the enclosed vertices. The depth along a direction is the longest way, in this direction,
+/// from a point of part a to a point of part b straight ahead. So this move brings part a past part b, and a
+/// shorter one does not. It is at most the smallest move in this direction after which two convex bodies do
+/// not overlap. Triangles parallel to the direction have nothing ahead, and triangles that touch only beside
+/// each other are not ahead of each other: sides that slide past each other do not count.
+///
+/// `normal` is the direction with the least depth of these: the outward normals of faces of b, and the
+/// reverse of those of a, on which at least half of the curve lies; and the direction of the area, for other
+/// than closed curves that of their segments. Where there are none, it is the mean direction of the contacts'
+/// normals by length. Contacts in which one triangle is nowhere behind the other only touch; their faces
+/// count where the curve has no other contacts. Where several directions have the same depth (within 2^-36),
+/// it is their mean, so that a symmetric curve has a symmetric normal; only where they cancel out, it is the
+/// first of them. To exchange a and b reverses the normal.
 struct IntersectionCurve {
   ObjectId a, b;  ///< equal for a curve of an object with itself
   CurveKind kind = CurveKind::closed;
@@ -85,12 +103,8 @@ struct IntersectionCurve {
   /// The vector area of the polygon of the points of a closed curve, by the right-hand rule; else zero. It
   /// points to the side of a when the normals of both surfaces point outwards.
   Vec3d area{};
-  /// Unit vector: the direction of the area, or else the mean direction of the contacts' normals by length.
-  /// Zero when that is zero.
-  Vec3d normal{};
-  /// How far a must move along `normal` until its enclosed vertices and the curve's points on a are not below
-  /// those of b.
-  double depth = 0;
+  Vec3d normal{};    ///< unit vector along which a leaves b
+  double depth = 0;  ///< how far a must move along `normal`; 0 where the parts only touch
 
   constexpr bool operator==(const IntersectionCurve&) const = default;
 };

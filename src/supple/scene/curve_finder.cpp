@@ -5,10 +5,17 @@
 #include <limits>
 #include <tuple>
 
+#include "geometry/exact_predicates.hpp"
 #include "geometry/vector.hpp"
 
 namespace supple {
 namespace {
+
+template <class List>
+void sort_once(List& list) {
+  std::sort(list.begin(), list.end());
+  list.erase(std::unique(list.begin(), list.end()), list.end());
+}
 
 Vec3d unit_or_zero(const Vec3d& v) {
   const double largest = std::max({std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)});
@@ -19,21 +26,18 @@ Vec3d unit_or_zero(const Vec3d& v) {
 
 /// The power of two that brings coordinates of any size to about 1, so that their squares and sums neither
 /// overflow nor vanish. It changes no other rounding.
-struct UnitScale {
-  explicit UnitScale(double largest)
-      : factor(std::ldexp(1.0, -std::clamp(largest > 0 ? std::ilogb(largest) : 0, -1000, 1023))) {}
+double scale_of(double largest) {
+  return std::ldexp(1.0, -std::clamp(largest > 0 ? std::ilogb(largest) : 0, -1000, 1023));
+}
 
-  /// The value before scaling, at most the largest double.
-  double restored(double scaled) const {
-    constexpr double most = std::numeric_limits<double>::max();
-    return std::clamp(scaled / factor, -most, most);
-  }
-  Vec3d restored(const Vec3d& scaled) const {
-    return {restored(scaled.x), restored(scaled.y), restored(scaled.z)};
-  }
-
-  double factor;
-};
+/// The value before scaling, at most the largest double.
+double restored(double scaled, double scale) {
+  constexpr double most = std::numeric_limits<double>::max();
+  return std::clamp(scaled / scale, -most, most);
+}
+Vec3d restored(const Vec3d& scaled, double scale) {
+  return {restored(scaled.x, scale), restored(scaled.y, scale), restored(scaled.z, scale)};
+}
 
 }  // namespace
 
@@ -185,18 +189,19 @@ void CurveFinder::add_curve(std::span<const std::uint32_t> members, CurveLists& 
   }
   curve.point_count = size_of(lists.points) - curve.first_point;
   measure(members, curve);
+  for (auto& behind : behind_) behind.clear();
   curve.enclosed_count_a = static_cast<std::uint32_t>(enclose(members, false, lists));
   curve.enclosed_count_b = static_cast<std::uint32_t>(enclose(members, true, lists));
-  curve.depth = depth_of(members, curve, lists);
+  find_way_out(members, curve);
   lists.curves.push_back(curve);
 }
 
-void CurveFinder::measure(std::span<const std::uint32_t> members, IntersectionCurve& curve) const {
+void CurveFinder::measure(std::span<const std::uint32_t> members, IntersectionCurve& curve) {
   double largest = 0;
   for_each_point(members, [&](const Vec3d& p) { largest = std::max(largest, largest_magnitude(p)); });
-  const UnitScale scale(largest);
-  const auto scaled = [&](std::uint32_t place) { return scale.factor * position(place); };
-  Vec3d middle, normal, middle_of_points;
+  scale_ = scale_of(largest);
+  const auto scaled = [&](std::uint32_t place) { return scale_ * position(place); };
+  Vec3d middle, middle_of_points;
   double length = 0, points = 0;
   for (const std::uint32_t i : members) {
     const std::uint32_t place = first_place(i), count = contact(i).point_count;
@@ -205,20 +210,113 @@ void CurveFinder::measure(std::span<const std::uint32_t> members, IntersectionCu
     const Vec3d along = scaled(place + count - 1) - scaled(place);
     const double part = std::sqrt(dot(along, along));
     middle = middle + (part / 2) * (scaled(place) + scaled(place + count - 1));
-    normal = normal + (is_turned(i) ? -part : part) * contact(i).normal;
     length += part;
   }
   const Vec3d centroid = length > 0 ? (1 / length) * middle : (1 / points) * middle_of_points;
-  curve.centroid = scale.restored(centroid);
+  curve.centroid = restored(centroid, scale_);
   Vec3d area;
   if (curve.kind == CurveKind::closed) {
     for (const Step& step : steps_)
       area = area + cross(scaled(step.enter) - centroid, scaled(step.leave) - centroid);
-    curve.area = scale.restored(scale.restored(0.5 * area));
+    curve.area = restored(restored(0.5 * area, scale_), scale_);
   }
-  curve.normal = unit_or_zero(area);
-  if (curve.normal == Vec3d{}) curve.normal = unit_or_zero(normal);
-  if (curve.normal == Vec3d{}) curve.normal = contact(members.front()).normal;
+  middle_ = centroid;
+  of_area_ = curve.kind == CurveKind::closed ? unit_or_zero(area) : direction_of_segments(members);
+}
+
+/// Half around the polygon that the triangles of a contact share; the length of a segment.
+double CurveFinder::length_of(std::uint32_t i) const {
+  const std::uint32_t place = first_place(i), count = contact(i).point_count;
+  double around = 0;
+  for (std::uint32_t k = 0; k < count; ++k)
+    around += norm(scale_ * position(place + (k + 1) % count) - scale_ * position(place + k));
+  return around / 2;
+}
+
+/// Whether one of the two triangles is nowhere behind the other one.
+bool CurveFinder::only_touches(std::uint32_t i) const {
+  bool used_exact = false;
+  const auto is_outside = [&](const TrianglePoints& p, const TrianglePoints& q) {
+    return std::all_of(p.begin(), p.end(), [&](const Vec3d& corner) {
+      return orient3d(q[0], q[1], q[2], corner, used_exact) >= 0;
+    });
+  };
+  const TrianglePoints a = input_.a.corners(contact(i).triangle_a),
+                       b = input_.b.corners(contact(i).triangle_b);
+  return is_outside(a, b) || is_outside(b, a);
+}
+
+/// Lists the normals of faces on which at least half of the curve lies: those of b, and the reverse of those
+/// of a. Contacts that only touch count where there are no others.
+void CurveFinder::list_face_normals(std::span<const std::uint32_t> members) {
+  double whole = 0;
+  const auto add = [&](const Vec3d& n, double length) {
+    const auto rounded = [](double x) { return std::floor(x * 0x1p30 + 0.5); };
+    if (n != Vec3d{})
+      directions_.push_back({{rounded(n.x), rounded(n.y), rounded(n.z)}, {n.x, n.y, n.z}, length});
+  };
+  for (const bool counts_touching : {false, true}) {
+    directions_.clear();
+    for (const std::uint32_t i : members) {
+      const double length = length_of(i);
+      if (length == 0 || (!counts_touching && only_touches(i))) continue;
+      whole += length;
+      const Vec3d n_a = unit_normal(input_.a.corners(contact(i).triangle_a)),
+                  n_b = unit_normal(input_.b.corners(contact(i).triangle_b));
+      add(is_turned(i) ? n_a : n_b, length);
+      add(Vec3d{} - (is_turned(i) ? n_b : n_a), length);
+    }
+    if (whole > 0) break;
+  }
+  std::sort(directions_.begin(), directions_.end());
+  for (std::size_t first = 0, next = 0; first < directions_.size(); first = next) {
+    double length = 0;
+    for (; next < directions_.size() && directions_[next].rounded == directions_[first].rounded; ++next)
+      length += directions_[next].length;
+    const auto& [x, y, z] = directions_[first].normal;
+    if (length >= (0.5 - 0x1p-20) * whole) normals_.push_back({x, y, z});
+  }
+}
+
+/// The direction of the area that segments surround, each in the direction n_b x n_a, in any order; zero when
+/// rounding is a large part of it.
+Vec3d CurveFinder::direction_of_segments(std::span<const std::uint32_t> members) const {
+  Vec3d area;
+  double length = 0;
+  for (const std::uint32_t i : members) {
+    if (contact(i).kind != IntersectionKind::segment) continue;
+    const Vec3d p = scale_ * position(first_place(i)) - middle_,
+                q = scale_ * position(first_place(i) + 1) - middle_;
+    const Vec3d n_a = unit_normal(input_.a.corners(contact(i).triangle_a)),
+                n_b = unit_normal(input_.b.corners(contact(i).triangle_b));
+    const double along = dot(cross(n_b, n_a), q - p) * (is_turned(i) ? -1 : 1);
+    if (along != 0) area = area + (along > 0 ? 1.0 : -1.0) * cross(p, q);
+    length += norm(q - p);
+  }
+  return norm(area) > 0x1p-20 * length * length ? unit_or_zero(area) : Vec3d{};
+}
+
+/// Lists the directions of which `find_way_out` chooses one.
+void CurveFinder::list_normals(std::span<const std::uint32_t> members) {
+  normals_.clear();
+  list_face_normals(members);
+  const auto is_near = [&](const Vec3d& n) { return squared_norm(n - of_area_) < 0x1p-34; };
+  if (of_area_ != Vec3d{} && std::none_of(normals_.begin(), normals_.end(), is_near))
+    normals_.push_back(of_area_);
+  if (!normals_.empty()) return;
+  Vec3d by_length, sum;
+  for (const std::uint32_t i : members) {
+    const Vec3d normal = is_turned(i) ? Vec3d{} - contact(i).normal : contact(i).normal;
+    by_length = by_length + length_of(i) * normal;
+    sum = sum + normal;
+  }
+  normals_ = {contact(members.front()).normal};
+  // Sums of which rounding is a large part have no direction.
+  constexpr double least = 0x1p-30;
+  double length = 0;
+  for (const std::uint32_t i : members) length += length_of(i);
+  if (norm(sum) > least * static_cast<double>(members.size())) normals_.front() = unit_or_zero(sum);
+  if (norm(by_length) > least * length) normals_.front() = unit_or_zero(by_length);
 }
 
 bool CurveFinder::is_cut(std::uint32_t v, std::uint32_t w) const {
@@ -245,10 +343,6 @@ std::size_t CurveFinder::enclose(std::span<const std::uint32_t> members, bool si
     add_side(i, side_b != is_turned(i));
     if (is_one_sided) add_side(i, !is_turned(i));
   }
-  const auto sort_once = [](auto& list) {
-    std::sort(list.begin(), list.end());
-    list.erase(std::unique(list.begin(), list.end()), list.end());
-  };
   sort_once(crossed_edges_);
   sort_once(corners_);
   cut_edges_.clear();
@@ -279,17 +373,38 @@ std::size_t CurveFinder::enclose(std::span<const std::uint32_t> members, bool si
     if (is_one_sided && !join_corners(surface.triangle(of_b ? contact(i).triangle_a : contact(i).triangle_b)))
       return 0;
   }
-  const std::vector<std::uint32_t>* const enclosed = smaller_side(surface);
+  const std::optional<std::size_t> behind = color_behind(surface, side_b);
+  const std::vector<std::uint32_t>* const enclosed = smaller_side(surface, behind);
   if (enclosed == nullptr) return 0;
+  behind_[side_b ? 1 : 0] = behind ? flooded_[*behind] : *enclosed;
   const auto first = static_cast<std::ptrdiff_t>(lists.enclosed.size());
   lists.enclosed.insert(lists.enclosed.end(), enclosed->begin(), enclosed->end());
   std::sort(lists.enclosed.begin() + first, lists.enclosed.end());
   return enclosed->size();
 }
 
-/// Floods both sides of the curve in turns, without crossing it, until one of them is complete. Null when
-/// they are the same side.
-const std::vector<std::uint32_t>* CurveFinder::smaller_side(const SurfaceView& surface) {
+/// The colour of the corners that are behind along the direction of the area: lower for a and higher for b.
+/// Nothing when there is no direction, or hardly a difference.
+std::optional<std::size_t> CurveFinder::color_behind(const SurfaceView& surface, bool side_b) {
+  std::array<double, 2> sums{}, counts{};
+  double extent = 0;
+  for (std::uint32_t c = 0; c < corners_.size(); ++c) {
+    const std::size_t color = colors_.find(c).is_opposite ? 1 : 0;
+    const Vec3d from_middle = scale_ * surface.position(corners_[c]) - middle_;
+    sums[color] += dot(of_area_, from_middle);
+    counts[color] += 1;
+    extent = std::max(extent, largest_magnitude(from_middle));
+  }
+  if (counts[0] == 0 || counts[1] == 0) return {};
+  const double difference = sums[0] / counts[0] - sums[1] / counts[1];
+  if (!(std::fabs(difference) > 0x1p-7 * extent)) return {};
+  return (difference > 0) == side_b ? 0 : 1;
+}
+
+/// Floods both sides of the curve in turns, without crossing it, until one of them is complete, and then the
+/// one that is behind. Null when they are the same side.
+const std::vector<std::uint32_t>* CurveFinder::smaller_side(const SurfaceView& surface,
+                                                            std::optional<std::size_t> behind) {
   const auto mark_of = [&](std::size_t color) { return last_mark_ + static_cast<std::uint32_t>(color); };
   marks_.resize(std::max(marks_.size(), surface.around->vertex_count()), 0);
   constexpr std::uint32_t almost_all = 0xfffffff0;
@@ -306,9 +421,16 @@ const std::vector<std::uint32_t>* CurveFinder::smaller_side(const SurfaceView& s
     marks_[corners_[c]] = mark_of(color);
     flooded_[color].push_back(corners_[c]);
   }
+  const std::vector<std::uint32_t>* smaller = nullptr;
   for (std::size_t next = 0;; ++next) {
     for (std::size_t color = 0; color < 2; ++color) {
-      if (next == flooded_[color].size()) return &flooded_[color];
+      if (smaller == nullptr && next == flooded_[color].size()) {
+        smaller = &flooded_[color];
+        // Of two equal ones, the one that is behind counts as the smaller one.
+        if (behind && flooded_[*behind].size() == next) smaller = &flooded_[*behind];
+      }
+      if (smaller != nullptr && (!behind || next >= flooded_[*behind].size())) return smaller;
+      if (next >= flooded_[color].size()) continue;
       const std::uint32_t v = flooded_[color][next];
       for (const std::uint32_t t : surface.around->around(v)) {
         for (const std::uint32_t w : surface.triangle(t)) {
@@ -326,31 +448,63 @@ const std::vector<std::uint32_t>* CurveFinder::smaller_side(const SurfaceView& s
   }
 }
 
-double CurveFinder::depth_of(std::span<const std::uint32_t> members, const IntersectionCurve& curve,
-                             const CurveLists& lists) const {
-  const std::span<const std::uint32_t> enclosed(lists.enclosed);
-  const auto of_a = enclosed.subspan(curve.first_enclosed, curve.enclosed_count_a),
-             of_b = enclosed.subspan(curve.first_enclosed + curve.enclosed_count_a, curve.enclosed_count_b);
+/// Collects the triangles of both sides, relative to a point of the curve and scaled to about 1 or less.
+/// Returns the scale.
+double CurveFinder::collect_parts(std::span<const std::uint32_t> members) {
+  const auto surface_of = [&](std::size_t side) { return side == 0 ? input_.a : input_.b; };
   double largest = 0;
-  // An enclosed vertex can lie at infinity.
-  const auto grow = [&](const Vec3d& p) {
-    if (is_finite(p)) largest = std::max(largest, largest_magnitude(p));
-  };
-  for_each_point(members, grow);
-  for (const std::uint32_t v : of_a) grow(input_.a.position(v));
-  for (const std::uint32_t v : of_b) grow(input_.b.position(v));
-  const UnitScale scale(largest);
-  double low = std::numeric_limits<double>::infinity(), high = -low;
-  const auto add = [&](const Vec3d& p, bool to_low, bool to_high) {
-    if (!is_finite(p)) return;
-    const double height = dot(scale.factor * p - scale.factor * curve.centroid, curve.normal);
-    if (to_low) low = std::min(low, height);
-    if (to_high) high = std::max(high, height);
-  };
-  for_each_point(members, [&](const Vec3d& p) { add(p, true, true); });
-  for (const std::uint32_t v : of_a) add(input_.a.position(v), true, false);
-  for (const std::uint32_t v : of_b) add(input_.b.position(v), false, true);
-  return scale.restored(high - low);
+  for (std::size_t side = 0; side < 2; ++side) {
+    const SurfaceView surface = surface_of(side);
+    std::vector<std::uint32_t>& triangles = triangles_[side];
+    triangles.clear();
+    for (const std::uint32_t i : members) {
+      const bool of_b = (side != 0) != is_turned(i);
+      triangles.push_back(of_b ? contact(i).triangle_b : contact(i).triangle_a);
+    }
+    for (const std::uint32_t v : behind_[side]) {
+      const std::span<const std::uint32_t> around = surface.around->around(v);
+      triangles.insert(triangles.end(), around.begin(), around.end());
+    }
+    sort_once(triangles);
+    for (const std::uint32_t t : triangles) {
+      for (const Vec3d& p : surface.corners(t)) largest = std::max(largest, largest_magnitude(p));
+    }
+  }
+  const double scale = scale_of(largest);
+  const Vec3d origin = scale * position(first_place(members.front()));
+  parts_.clear();
+  for (std::size_t side = 0; side < 2; ++side) {
+    for (const std::uint32_t t : triangles_[side]) {
+      TrianglePoints corners = surface_of(side).corners(t);
+      for (Vec3d& p : corners) p = scale * p - origin;
+      parts_.add(side, corners);
+    }
+  }
+  return scale;
+}
+
+/// Chooses the normal with the least depth.
+void CurveFinder::find_way_out(std::span<const std::uint32_t> members, IntersectionCurve& curve) {
+  list_normals(members);
+  const double scale = collect_parts(members);
+  ways_.clear();
+  for (const Vec3d& normal : normals_) ways_.push_back(parts_.way_along(normal));
+  const auto best = std::min_element(ways_.begin(), ways_.end()) - ways_.begin();
+  double depth = ways_[static_cast<std::size_t>(best)];
+  curve.normal = normals_[static_cast<std::size_t>(best)];
+  // Between equal ways it is the middle one, so that the normal of a symmetric curve is symmetric.
+  Vec3d sum;
+  std::size_t equal = 0;
+  for (std::size_t i = 0; i < ways_.size(); ++i) {
+    if (ways_[i] > depth * (1 + 0x1p-36)) continue;
+    sum = sum + normals_[i];
+    ++equal;
+  }
+  if (equal > 1 && norm(sum) > 0x1p-10) {
+    curve.normal = unit_or_zero(sum);
+    depth = parts_.way_along(curve.normal);
+  }
+  curve.depth = restored(depth, scale);
 }
 
 }  // namespace supple

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "scene/curve_parts.hpp"
 #include "scene/feature_name.hpp"
 #include "scene/parity_sets.hpp"
 #include "scene/surface_view.hpp"
@@ -63,11 +64,18 @@ class CurveFinder {
   void walk(std::span<const std::uint32_t> members, CurveKind kind);
   void turn_around(CurveKind kind);
   double turn_of_steps() const;
-  void measure(std::span<const std::uint32_t> members, IntersectionCurve& curve) const;
+  void measure(std::span<const std::uint32_t> members, IntersectionCurve& curve);
+  void list_face_normals(std::span<const std::uint32_t> members);
+  Vec3d direction_of_segments(std::span<const std::uint32_t> members) const;
+  void list_normals(std::span<const std::uint32_t> members);
+  bool only_touches(std::uint32_t i) const;
+  double length_of(std::uint32_t i) const;
+  double collect_parts(std::span<const std::uint32_t> members);
+  void find_way_out(std::span<const std::uint32_t> members, IntersectionCurve& curve);
   std::size_t enclose(std::span<const std::uint32_t> members, bool side_b, CurveLists& lists);
-  double depth_of(std::span<const std::uint32_t> members, const IntersectionCurve& curve,
-                  const CurveLists& lists) const;
-  const std::vector<std::uint32_t>* smaller_side(const SurfaceView& surface);
+  std::optional<std::size_t> color_behind(const SurfaceView& surface, bool side_b);
+  const std::vector<std::uint32_t>* smaller_side(const SurfaceView& surface,
+                                                 std::optional<std::size_t> behind);
   bool is_cut(std::uint32_t v, std::uint32_t w) const;
 
   const Contact& contact(std::uint32_t i) const { return contacts_[i]; }
@@ -97,6 +105,22 @@ class CurveFinder {
   std::vector<std::uint8_t> is_turned_;     // by contact
   std::vector<std::uint32_t> members_, first_member_, curve_of_;
   std::vector<Step> steps_;
+
+  double scale_ = 1;        // brings the points of the curve to about 1
+  Vec3d middle_, of_area_;  // its centroid, scaled, and the direction of its area, or zero
+
+  /// A direction in which a may leave b, with the length of the curve on faces of that normal.
+  struct Direction {
+    std::array<double, 3> rounded{}, normal{};  // the first is equal for normals that differ by rounding
+    double length = 0;
+    constexpr auto operator<=>(const Direction&) const = default;
+  };
+  std::vector<Direction> directions_;
+  std::vector<Vec3d> normals_;                        // from which that of the curve is chosen
+  std::vector<double> ways_;                          // along them
+  std::array<std::vector<std::uint32_t>, 2> behind_;  // vertices of both surfaces
+  CurveParts parts_;
+  std::array<std::vector<std::uint32_t>, 2> triangles_;  // of the parts
 
   // One side of a curve.
   std::vector<std::uint32_t> corners_;                       // vertices of its triangles, ascending

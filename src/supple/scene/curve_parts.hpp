@@ -1,0 +1,50 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "supple/triangle_intersection.hpp"
+#include "supple/types.hpp"
+
+namespace supple {
+
+/// Triangles of two surfaces, a below b, and how far a has to move to pass b. Keeps its memory.
+class CurveParts {
+ public:
+  void clear() {
+    for (auto& part : triangles_) part.clear();
+  }
+  /// Coordinates are about 1 or less. `side` is 0 for a and 1 for b.
+  void add(std::size_t side, const TrianglePoints& corners) { triangles_[side].push_back(corners); }
+
+  /// The longest way along the unit vector from a point of a to a point of b, at least 0: so a passes b by
+  /// this move. Triangles that are parallel to the vector, or that overlap only by rounding as seen along it,
+  /// have no such points. O(n log n) for n triangles whose pairs have different ways.
+  double way_along(const Vec3d& normal);
+
+ private:
+  /// By the coordinates across the vector, and its height along it in z.
+  struct Box {
+    Vec3d min, max;
+  };
+  struct Node {
+    Box box;
+    std::uint32_t first = 0, last = 0;  // triangles
+    std::uint32_t child = 0;            // the first of two; 0 for a leaf
+  };
+  struct Pair {
+    std::uint32_t a, b;
+    double bound;
+  };
+
+  void build(std::size_t side);
+  void split(std::size_t side, std::uint32_t node);
+
+  std::array<std::vector<TrianglePoints>, 2> triangles_, projected_;
+  std::array<std::vector<Node>, 2> nodes_;
+  std::vector<Pair> stack_;
+};
+
+}  // namespace supple
