@@ -50,8 +50,12 @@ void TextReport::add(const Frame& frame) {
     InsideSummary& inside = inside_[{group.a, group.b}];
     ++inside.frames;
     inside.vertices += group.penetration_count;
-    for (const Penetration& p : result.penetrations_of(group))
-      inside.deepest = std::max(inside.deepest, p.depth);
+    for (const Penetration& p : result.penetrations_of(group)) {
+      if (p.depth <= inside.deepest) continue;
+      inside.deepest = p.depth;
+      inside.deepest_vertex = p.vertex;
+      inside.frame_of_deepest = frame.number;
+    }
   }
   ObjectPair last_contained;
   for (const ContainedPart& part : result.contained_parts) {
@@ -154,16 +158,24 @@ void TextReport::print_penetrations(const Scene& scene) const {
   std::sort(rows.begin(), rows.end(), [](const auto& x, const auto& y) {
     return x.second.vertices != y.second.vertices ? x.second.vertices > y.second.vertices : x.first < y.first;
   });
-  fmt::print("{:<20} {:<20} {:>8} {:>16} {:>24} {:>16}\n", "object", "is inside", "frames", "vertices inside",
-             "largest depth", "frames, wholly");
+  const bool lists_all = scene.options().depths == PenetrationDepths::all;
+  fmt::print("{:<20} {:<20} {:>8} {:>16} {:>24} {:>12} {:>16}\n", "object", "is inside", "frames",
+             lists_all ? "vertices inside" : "vertices listed", "largest depth", "in frame",
+             "frames, wholly");
   for (std::size_t i = 0; i < std::min(rows.size(), most_rows); ++i) {
     const auto& [pair, inside] = rows[i];
-    fmt::print("{:<20} {:<20} {:>8} {:>16} {:>24} {:>16}\n", name_of(scene, pair.a), name_of(scene, pair.b),
-               grouped(inside.frames), grouped(inside.vertices), inside.deepest,
-               grouped(inside.frames_contained));
+    fmt::print("{:<20} {:<20} {:>8} {:>16} {:>24} {:>12} {:>16}\n", name_of(scene, pair.a),
+               name_of(scene, pair.b), grouped(inside.frames), grouped(inside.vertices), inside.deepest,
+               inside.frame_of_deepest, grouped(inside.frames_contained));
   }
   if (rows.size() > most_rows)
     fmt::print("and {} with fewer; --csv lists all\n", counted(rows.size() - most_rows, "pair"));
+  const auto& [pair, deepest] = *std::ranges::max_element(
+      rows, [](const auto& x, const auto& y) { return x.second.deepest < y.second.deepest; });
+  if (deepest.vertices > 0)
+    fmt::print("\nThe deepest is vertex {} of {} inside {}: {} in {} {}.\n", deepest.deepest_vertex,
+               name_of(scene, pair.a), name_of(scene, pair.b), deepest.deepest, noun_,
+               deepest.frame_of_deepest);
   fmt::print("\n");
 }
 

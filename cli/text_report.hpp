@@ -40,6 +40,8 @@ class TextReport {
   struct InsideSummary {
     std::uint64_t frames = 0, vertices = 0;
     double deepest = 0;
+    std::uint32_t deepest_vertex = 0;
+    std::uint64_t frame_of_deepest = 0;  ///< the first frame with this depth
     std::uint64_t frames_contained = 0;  ///< frames in which the whole object is inside
   };
 

@@ -97,6 +97,15 @@ enum class ContinuousListing : std::uint8_t {
   first,
 };
 
+/// Which vertices inside solids are listed with their depths.
+enum class PenetrationDepths : std::uint8_t {
+  all,
+  /// One vertex for each object and each solid that it enters: that with the largest `Penetration::depth`,
+  /// the smallest of several. Takes a fraction of the time, because most vertices are only shown to be less
+  /// deep.
+  deepest,
+};
+
 /// Whether triangles of one object that share a vertex id are tested against each other.
 enum class Neighbours : std::uint8_t {
   skip,
@@ -133,7 +142,9 @@ struct ObjectOptions {
   double min_separation = 0;
   /// The surface bounds a solid, into which other objects can penetrate. `Scene::add` checks that it is
   /// closed and that its triangles are oriented alike: each edge has as many triangles in one direction as in
-  /// the other. A point is inside where a ray from it crosses the surface an odd number of times.
+  /// the other. A point is inside where a ray from it crosses the surface an odd number of times. While a
+  /// vertex of a triangle is not finite, nothing is inside; points on the other triangles are still on the
+  /// surface.
   bool solid = false;
   /// Two objects are tested when the `group` of each has a bit in common with the `mask` of the other.
   std::uint32_t group = 1;
@@ -168,6 +179,7 @@ struct SceneOptions {
   /// with ids that last from step to step; see `Manifold`. A request with this option and without these kinds
   /// is an error.
   bool manifolds = false;
+  PenetrationDepths depths = PenetrationDepths::all;
   /// Bounds the time of exact arithmetic on hostile coordinates; docs/conventions.md has a table. The bits of
   /// coordinates reach from the highest bit of the largest to the last bit of the finest. Elements of more
   /// bits that floating point cannot decide are reported as continuous contacts `within_tolerance`. For all
@@ -190,6 +202,7 @@ struct DetectRequest {
   std::optional<ElementKinds> element_kinds{};
   std::optional<ContinuousListing> continuous_listing{};
   std::optional<bool> manifolds{};
+  std::optional<PenetrationDepths> depths{};
   /// The largest number of contacts of each kind in the result: the first ones in canonical order, for any
   /// number of threads. `DetectResult::truncated` says that there are more. The limit bounds the memory and
   /// the number of exact tests. The search skips object pairs after the last reported contact, but it

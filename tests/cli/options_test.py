@@ -80,12 +80,13 @@ class Options(ProgramTest):
         of_continuous = ("min_separation", "undecided", "max_time", "skip_parting", "continuous_listing", "own_separation", "solid")
         of_proximity = ("margin", "proximity_listing", "solid")
         of_intersections = ("neighbours",)
+        of_penetration = ("depths",)
         of_triangles = ("contact_points", "colliding_vertices", "sphere_fit")
         for fixed, without in (
-            (octree | continuous, (*of_triangles, *of_proximity, *of_intersections)),
-            (octree | intersection, (*of_continuous, *of_proximity, "element_kinds")),
-            (intersection, (*of_continuous, *of_proximity, "element_kinds", *with_octree)),
-            (proximity, (*of_continuous, *of_triangles, *of_intersections, *with_octree)),
+            (octree | continuous, (*of_triangles, *of_proximity, *of_intersections, *of_penetration)),
+            (octree | intersection, (*of_continuous, *of_proximity, *of_penetration, "element_kinds")),
+            (intersection, (*of_continuous, *of_proximity, *of_penetration, "element_kinds", *with_octree)),
+            (proximity, (*of_continuous, *of_triangles, *of_intersections, *of_penetration, *with_octree)),
             (penetration, (*(set(of_continuous + of_proximity) - {"solid"}), "element_kinds", *with_octree)),
         ):
             others = {key: other for key, other in (self.others() | fixed).items() if key not in without}

@@ -1,5 +1,6 @@
 """Tests `supple detect --contacts penetration`: vertices inside solids, contained parts and curves."""
 
+import json
 import unittest
 
 from program import ProgramTest, joined, moved
@@ -81,6 +82,46 @@ class Penetration(ProgramTest):
         self.assertEqual(done.status, 1)
         for words in ("1 curve (1 closed, 0 open, 0 branched)", "vertices inside", "no difference"):
             self.assertIn(words, done.out)
+
+    def test_the_deepest_vertex_and_its_frame(self):
+        for frame, depth in enumerate((0.125, 0.75, 0.375, 0.75)):
+            self.write(f"f_{frame}.obj", moved(BOX, 0, 0, 2 - depth))
+        done = self.run_here("detect", "a.obj", "f_*.obj", *PENETRATION)
+        self.assertIn("The deepest is vertex", done.out)
+        self.assertIn(": 0.75 in frame 1.", done.out)
+
+    def test_only_the_deepest(self):
+        self.write("ball.obj", moved(SMALL, 1.75, 0.5, 0.25))
+        self.write("twice.obj", joined(moved(SMALL, 0.25, 0.5, 0.5), moved(SMALL, 1.0, 0.75, 0.75)))
+        for name, count in (("ball.obj", 4), ("twice.obj", 16)):
+            of_all = self.frame(name, "a.obj")["penetration"][0]["vertices"]
+            self.assertEqual(len(of_all), count)
+            frame = self.frame(name, "a.obj", "--depths", "deepest", "--verify")
+            deepest = max(of_all, key=lambda row: (row[2], -row[0]))
+            self.assertEqual((frame["penetration"][0]["vertices"], frame["penetration_verify"]["differences"]), ([deepest], []))
+            self.assertEqual(frame["stats"]["penetrations"], 1)
+        done = self.run_here("detect", "twice.obj", "a.obj", "--depths", "deepest")
+        self.assertEqual(done.status, 2)
+        self.assertIn("--depths", done.error)
+
+    def test_flush_boxes(self):
+        self.write("c.obj", moved(BOX, 0, 1.9375, 0))
+        (curve,) = self.frame("a.obj", "c.obj", "--contact-details")["curves"]
+        self.assertEqual((curve["kind"], curve["normal"], curve["depth"]), ("branched", [0, -1, 0], 0.0625))
+
+    def test_a_vertex_that_is_not_finite(self):
+        """Nothing is inside such a solid, and points on its other triangles are on it, for both commands."""
+        corners = [*CORNERS[:7], (float("nan"), 2.0, 2.0)]
+        self.write("torn.obj", (corners, BOX[1]))
+        self.write("touching.obj", moved(SMALL, -0.5, 0.5, 0.25))
+        self.write("within.obj", moved(SMALL, 0.25, 0.25, 0.5))
+        self.write("points.txt", "0 0.5 0.25\n0.5 0.5 0.5\n")
+        frame = self.frame("touching.obj", "torn.obj", "--verify")
+        self.assertEqual([(g["a"], g["vertices"], g["on_surface"]) for g in frame["penetration"]], [(0, [], [4, 5, 6, 7])])
+        self.assertEqual(frame["penetration_verify"]["differences"], [])
+        self.assertEqual(self.frame("within.obj", "torn.obj")["penetration"], [])
+        done = self.run_here("query", "inside", "points.txt", "torn.obj", "--json", "-")
+        self.assertEqual(json.loads(done.out)["results"], ["on", "outside"])
 
     def test_errors(self):
         self.write("open.obj", (BOX[0], BOX[1][1:]))

@@ -33,6 +33,7 @@ KEYS = {
     "skip_parting": ("true", True, 'contacts = "continuous"\n'),
     "element_kinds": ('"edge_edge"', "edge_edge", 'contacts = "proximity"\n'),
     "continuous_listing": ('"first"', "first", 'contacts = "continuous"\n'),
+    "depths": ('"deepest"', "deepest", 'contacts = "penetration"\n'),
     "max_exact_bits": ("300", 300, ""),
     "colliding_vertices": ("true", True, ""),
     "proximity_listing": ('"elements"', "elements", 'contacts = "proximity"\n'),

@@ -1,11 +1,11 @@
 #include "scene/brute_force_penetrations.hpp"
 
 #include <algorithm>
+#include <iterator>
+#include <utility>
 
 #include "geometry/vector.hpp"
 #include "mesh/vertex_sets.hpp"
-#include "scene/brute_force_queries.hpp"
-#include "supple/distance.hpp"
 
 namespace supple {
 namespace {
@@ -58,23 +58,22 @@ BruteForcePenetrations find_penetrations_by_brute_force(const PlainObject& inner
     for (const std::uint32_t v : triangle) is_used[v] |= is_inert ? 0 : 1;
   }
   const PlainSurface surface(outer);
-  if (surface.has_inert) return result;
   std::vector<std::vector<ExactPenetration>> found(parallel.worker_count());
   parallel.for_ranges(inner.positions.size(), 64, [&](std::size_t begin, std::size_t end, std::uint32_t w) {
     for (std::size_t v = begin; v < end; ++v) {
       if (is_used[v] == 0) continue;
       const Vec3d& p = inner.positions[v];
-      ExactPenetration penetration{static_cast<std::uint32_t>(v), surface.containment(p), 0, 0};
+      ExactPenetration penetration{static_cast<std::uint32_t>(v), surface.containment(p), 0, {}};
       if (penetration.where == Containment::outside) continue;
       if (penetration.where == Containment::inside) {
-        const auto nearest = nearest_by_brute_force(p, std::span(&surface, 1), any_distance);
-        penetration.triangle = nearest->triangle;
-        penetration.squared_depth = nearest->distance.squared;
+        PlainSurface::Nearest nearest = surface.nearest(p);
+        penetration.triangle = nearest.triangle;
+        penetration.squared_depth = std::move(nearest.squared);
       }
       found[w].push_back(penetration);
     }
   });
-  for (const auto& part : found) result.vertices.insert(result.vertices.end(), part.begin(), part.end());
+  for (auto& part : found) std::move(part.begin(), part.end(), std::back_inserter(result.vertices));
   std::sort(result.vertices.begin(), result.vertices.end(),
             [](const auto& p, const auto& q) { return p.vertex < q.vertex; });
   result.parts = contained_parts(inner, touching, result.vertices);
@@ -82,9 +81,36 @@ BruteForcePenetrations find_penetrations_by_brute_force(const PlainObject& inner
   return result;
 }
 
+namespace {
+
+/// The vertices that must be listed: those on the surface, and of those inside only the one that is reported,
+/// if none is deeper, and otherwise the deepest.
+std::vector<ExactPenetration> expected_deepest(std::span<const Penetration> inside,
+                                               std::span<const ExactPenetration> truth) {
+  constexpr int units = 8;  // two depths may be rounded
+  const ExactPenetration* deepest = nullptr;
+  for (const ExactPenetration& p : truth) {
+    if (p.where != Containment::inside) continue;
+    if (deepest == nullptr || compare(p.squared_depth, deepest->squared_depth) > 0) deepest = &p;
+  }
+  for (const ExactPenetration& p : truth) {
+    const bool is_reported = inside.size() == 1 && inside.front().vertex == p.vertex;
+    if (is_reported && p.where == Containment::inside &&
+        is_within_units(inside.front().depth, deepest->squared_depth, units))
+      deepest = &p;
+  }
+  std::vector<ExactPenetration> expected;
+  for (const ExactPenetration& p : truth) {
+    if (p.where == Containment::on || &p == deepest) expected.push_back(p);
+  }
+  return expected;
+}
+
+}  // namespace
+
 void compare_penetrations(const ObjectPair& pair, std::span<const Penetration> inside,
                           std::span<const std::uint32_t> on_surface, std::span<const ContainedPart> parts,
-                          const BruteForcePenetrations& truth,
+                          const BruteForcePenetrations& truth, PenetrationDepths depths,
                           std::vector<PenetrationDifference>& differences) {
   using Fault = PenetrationDifference::Fault;
   const auto note = [&](std::uint32_t vertex, Fault fault) {
@@ -92,7 +118,9 @@ void compare_penetrations(const ObjectPair& pair, std::span<const Penetration> i
   };
   auto next_inside = inside.begin();
   auto next_on = on_surface.begin();
-  for (const ExactPenetration& expected : truth.vertices) {
+  const bool is_deepest = depths == PenetrationDepths::deepest;
+  for (const ExactPenetration& expected :
+       is_deepest ? expected_deepest(inside, truth.vertices) : truth.vertices) {
     for (; next_inside != inside.end() && next_inside->vertex < expected.vertex; ++next_inside)
       note(next_inside->vertex, Fault::added);
     for (; next_on != on_surface.end() && *next_on < expected.vertex; ++next_on) note(*next_on, Fault::added);
@@ -103,7 +131,7 @@ void compare_penetrations(const ObjectPair& pair, std::span<const Penetration> i
     if (!is_right_list)
       note(expected.vertex, Fault::missed);
     else if (is_inside && (next_inside->triangle != expected.triangle ||
-                           !is_accurate(next_inside->depth, expected.squared_depth)))
+                           !is_within_units(next_inside->depth, expected.squared_depth, 4)))
       note(expected.vertex, Fault::inexact);
     if (is_inside) ++next_inside;
     if (is_on) ++next_on;

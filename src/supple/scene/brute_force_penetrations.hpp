@@ -4,9 +4,10 @@
 #include <span>
 #include <vector>
 
-#include "contact/distance_algebra.hpp"
 #include "core/parallel.hpp"
 #include "scene/brute_force_contacts.hpp"
+#include "scene/plain_surface.hpp"
+#include "supple/options.hpp"
 #include "supple/penetration.hpp"
 #include "supple/queries.hpp"
 #include "supple/result.hpp"
@@ -18,7 +19,7 @@ struct ExactPenetration {
   std::uint32_t vertex = 0;
   Containment where = Containment::inside;
   std::uint32_t triangle = 0;  ///< the nearest one, if inside; the smallest of several
-  Rational squared_depth;
+  SquaredDistance squared_depth;
 };
 
 struct BruteForcePenetrations {
@@ -27,17 +28,18 @@ struct BruteForcePenetrations {
   std::uint64_t pairs_checked = 0;  ///< of a vertex and a triangle
 };
 
-/// Tests every vertex of `inner` against every triangle of `outer`, a closed surface, by rationals. Double
-/// precision only discards what is clearly farther away. `touching` are the triangles of `inner` that
-/// intersect `outer`, ascending.
+/// Tests the vertices of `inner` against the triangles of `outer`, a closed surface, by integers. Double
+/// precision with error bounds only discards what is clearly farther away or beside the vertex. `touching`
+/// are the triangles of `inner` that intersect `outer`, ascending.
 BruteForcePenetrations find_penetrations_by_brute_force(const PlainObject& inner, const PlainObject& outer,
                                                         std::span<const std::uint32_t> touching,
                                                         const Parallel& parallel);
 
-/// Appends the differences between the truth and what was reported for one object inside another.
+/// Appends the differences between the truth and what was reported for one object inside another. With
+/// `PenetrationDepths::deepest`, the reported vertex must be the deepest one, to the accuracy of depths.
 void compare_penetrations(const ObjectPair& pair, std::span<const Penetration> inside,
                           std::span<const std::uint32_t> on_surface, std::span<const ContainedPart> parts,
-                          const BruteForcePenetrations& truth,
+                          const BruteForcePenetrations& truth, PenetrationDepths depths,
                           std::vector<PenetrationDifference>& differences);
 
 }  // namespace supple

@@ -38,64 +38,6 @@ double box_distance(const Vec3d& p, const BoxedCorners& t) {
   return length(gap);
 }
 
-/// Sign of (b - a) x (p - a) in the y-z plane, where p is moved by (e, e²) for an infinitely small e > 0.
-int turn_beside(const Vec3d& a, const Vec3d& b, const Vec3d& p) {
-  const Rational turn = (Rational(b.y) - Rational(a.y)) * (Rational(p.z) - Rational(a.z)) -
-                        (Rational(b.z) - Rational(a.z)) * (Rational(p.y) - Rational(a.y));
-  if (turn != 0) return turn.sign();
-  if (a.z != b.z) return a.z > b.z ? 1 : -1;
-  return (b.y > a.y) - (b.y < a.y);
-}
-
-int side_of_plane(const TrianglePoints& t, const Vec3d& p) {
-  const RationalVector u = difference(t[1], t[0]), v = difference(t[2], t[0]), w = difference(p, t[0]);
-  const Rational determinant = (u[1] * v[2] - u[2] * v[1]) * w[0] + (u[2] * v[0] - u[0] * v[2]) * w[1] +
-                               (u[0] * v[1] - u[1] * v[0]) * w[2];
-  return determinant.sign();
-}
-
-/// Whether the ray in the direction of x from beside the point crosses the triangle, which does not contain
-/// the point.
-bool crosses_ahead(const TrianglePoints& t, const Vec3d& p) {
-  const int turn = turn_beside(t[0], t[1], p);
-  if (turn == 0 || turn_beside(t[1], t[2], p) != turn || turn_beside(t[2], t[0], p) != turn) return false;
-  return side_of_plane(t, p) * turn < 0;
-}
-
-}  // namespace
-
-PlainSurface::PlainSurface(const PlainObject& object) {
-  for (std::uint32_t t = 0; t < object.triangles.size(); ++t) {
-    BoxedCorners boxed;
-    for (std::size_t k = 0; k < 3; ++k) boxed.corners[k] = object.positions[object.triangles[t][k]];
-    if (!std::ranges::all_of(boxed.corners, is_finite)) {
-      has_inert = true;
-      continue;
-    }
-    boxed.min = boxed.max = boxed.corners[0];
-    for (const Vec3d& corner : boxed.corners) {
-      for (int axis = 0; axis < 3; ++axis) {
-        boxed.min[axis] = std::min(boxed.min[axis], corner[axis]);
-        boxed.max[axis] = std::max(boxed.max[axis], corner[axis]);
-      }
-    }
-    boxed.triangle = t;
-    triangles.push_back(boxed);
-  }
-}
-
-Containment PlainSurface::containment(const Vec3d& p) const {
-  bool is_inside = false;
-  for (const BoxedCorners& t : triangles) {
-    if (p.y < t.min.y || p.y > t.max.y || p.z < t.min.z || p.z > t.max.z || p.x > t.max.x) continue;
-    if (p.x >= t.min.x && triangles_intersect_by_axes({p, p, p}, t.corners)) return Containment::on;
-    if (crosses_ahead(t.corners, p)) is_inside = !is_inside;
-  }
-  return is_inside && !has_inert ? Containment::inside : Containment::outside;
-}
-
-namespace {
-
 /// Calls `visit(surface, triangle)` for all triangles in canonical order.
 template <class Visit>
 void for_each_triangle(std::span<const PlainSurface> surfaces, const Visit& visit) {

@@ -9,31 +9,13 @@
 #include "core/parallel.hpp"
 #include "scene/brute_force_contacts.hpp"
 #include "scene/brute_force_proximity.hpp"
+#include "scene/plain_surface.hpp"
 #include "supple/queries.hpp"
 #include "supple/triangle_intersection.hpp"
 
 // Answers to queries, decided for `verify` over all triangles by rationals. Double precision only discards
 // what boxes or distances prove, with a slack that exceeds its rounding. Shares no code with the queries.
 namespace supple {
-
-/// A triangle with finite corners, and its exact box.
-struct BoxedCorners {
-  TrianglePoints corners;
-  Vec3d min, max;
-  std::uint32_t triangle = 0;  ///< the user's number
-};
-
-/// The triangles of one object.
-struct PlainSurface {
-  std::vector<BoxedCorners> triangles;  ///< those with finite corners, ascending
-  bool has_inert = false;               ///< other triangles are left out
-
-  explicit PlainSurface(const PlainObject& object);
-
-  /// Where a finite point is: on a triangle, else inside by an odd number of crossings of a ray along x. With
-  /// a triangle that is left out, nothing is inside.
-  Containment containment(const Vec3d& point) const;
-};
 
 /// The objects that a query sees, in canonical order.
 struct PlainScene {

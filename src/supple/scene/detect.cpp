@@ -72,7 +72,8 @@ const DetectResult& Scene::Implementation::detect(const DetectRequest& request) 
        request.continuous_listing.value_or(options.continuous_listing), options.max_exact_bits},
       request.proximity_listing.value_or(options.proximity_listing),
       options.comparison.colliding_vertices,
-      request.manifolds.value_or(options.manifolds)};
+      request.manifolds.value_or(options.manifolds),
+      request.depths.value_or(options.depths)};
   if (request.manifolds.value_or(false)) check_manifolds();
   if (question_.has_penetration()) check_penetration(request);
   const StopSignal stop = stop_of(request);
@@ -355,7 +356,9 @@ bool Scene::Implementation::find_penetrations(const StopSignal& stop) {
   found.groups = contact_pass_.groups();
   found.contacts = contact_pass_.contacts();
   found.contact_points = contact_pass_.contact_points();
-  if (!penetration_pass_.run(jobs_.jobs, penetrated_objects_, versions_, found, stop, parallel)) return false;
+  if (!penetration_pass_.run(jobs_.jobs, penetrated_objects_, versions_, found, question_.depths, stop,
+                             parallel))
+    return false;
   result.stats.penetrations = penetration_pass_.penetrations().size();
   result.stats.curves = penetration_pass_.curves().curves.size();
   return true;

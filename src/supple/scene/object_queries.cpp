@@ -85,7 +85,8 @@ double slop_of(const QueriedObject& object, const Vec3d& point, int axis) {
   return 0x1p-50 * (std::fabs(point[axis]) + std::fabs(offset) + largest);
 }
 
-/// A point as the boxes of an object's octree see it: in single precision, without the translation.
+}  // namespace
+
 PointBounds seen_by(const QueriedObject& object, const Vec3d& point) {
   PointBounds bounds;
   for (int axis = 0; axis < 3; ++axis) {
@@ -95,6 +96,8 @@ PointBounds seen_by(const QueriedObject& object, const Vec3d& point) {
   }
   return bounds;
 }
+
+namespace {
 
 /// A ray as the boxes of an object's octree see it: without the translation.
 RaySlabs slabs_of(const QueriedObject& object, const Ray& ray) {

@@ -45,6 +45,9 @@ constexpr double far_ratio = 0x1p8;
 /// Whether something at this distance is farther away than `ratio` times the size of the box.
 bool is_far(const Aabb& box, double distance, double ratio);
 
+/// A point as the boxes of an object's octree see it: in single precision, without the translation.
+PointBounds seen_by(const QueriedObject& object, const Vec3d& point);
+
 /// A triangle, by object in a list of objects and in octree order, and at most its distance to a point.
 struct NearTriangle {
   double distance = 0;

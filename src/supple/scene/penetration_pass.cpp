@@ -35,10 +35,10 @@ std::span<Item> part_of(std::vector<Item>& list, Range range) {
 
 bool PenetrationPass::run(std::span<const ContactJob> jobs, std::span<const PenetratedObject> objects,
                           std::span<const std::uint64_t> versions, const DetectResult& result,
-                          const StopSignal& stop, const Parallel& parallel) {
+                          PenetrationDepths depths, const StopSignal& stop, const Parallel& parallel) {
   objects_ = objects;
   list_pairs(jobs);
-  outcomes_.plan(pairs_, versions, true);
+  outcomes_.plan(pairs_, versions, std::exchange(depths_, depths) == depths);
   tasks_.clear();
   for (const std::uint32_t i : outcomes_.open_jobs()) tasks_.push_back({i, {}});
   outcomes_.expect_tasks(tasks_.size());
@@ -141,7 +141,6 @@ void PenetrationPass::find_inside(const Task& task, const DetectResult& result, 
   const PenetratedObject& inner = objects_[task.inner];
   const VertexTriangles& around = *inner.surface.around;
   const std::span<const QueriedObject> outer(&objects_[task.outer].queried, 1);
-  if (outer.front().has_inert_faces) return;
   worker.queries.start();
   if (std::exchange(worker.has_marks, true)) std::fill(worker.marks.begin(), worker.marks.end(), 0);
   worker.marks.resize(std::max(worker.marks.size(), around.vertex_count()), 0);
@@ -210,9 +209,32 @@ void PenetrationPass::find_inside(const Task& task, const DetectResult& result, 
   for (const std::uint32_t v : corners) marks[v] = 0;
   for (std::size_t i = first_inside; i < worker.inside.size(); ++i) marks[worker.inside[i]] = 0;
   worker.has_marks = false;
+  if (depths_ == PenetrationDepths::deepest) keep_deepest(task, first_inside, worker);
   std::sort(worker.inside.begin() + static_cast<std::ptrdiff_t>(first_inside), worker.inside.end());
   std::sort(worker.on_surface.begin() + static_cast<std::ptrdiff_t>(first_on_surface),
             worker.on_surface.end());
+}
+
+/// Leaves the deepest of the vertices from `first_inside` on. They were found from the surface inwards.
+void PenetrationPass::keep_deepest(const Task& task, std::size_t first_inside, Worker& worker) const {
+  const QueriedObject& outer = objects_[task.outer].queried;
+  worker.depth_search.start();
+  double depth = -1;
+  std::uint32_t deepest = 0;
+  for (std::size_t i = worker.inside.size(); i-- > first_inside;) {
+    const std::uint32_t v = worker.inside[i];
+    const Vec3d point = objects_[task.inner].surface.position(v);
+    const FoundTriangle* const nearest = worker.depth_search.find(outer, point, depth);
+    if (nearest == nullptr) continue;
+    bool used_exact = false;
+    const double distance = distance_of(nearest->elements(), nearest->features, used_exact).distance;
+    if (distance < depth || (distance == depth && v > deepest)) continue;
+    depth = distance;
+    deepest = v;
+  }
+  if (worker.inside.size() == first_inside) return;
+  worker.inside.resize(first_inside);
+  worker.inside.push_back(deepest);
 }
 
 /// Pairs are in canonical order. Reused items move within the lists; new items are written between them. New
@@ -284,30 +306,40 @@ void PenetrationPass::move_ranges(std::size_t i, const Outcomes::Ranges& from) {
 }
 
 bool PenetrationPass::find_depths(const StopSignal& stop, const Parallel& parallel) {
-  constexpr std::size_t grain = 64;
-  parallel.for_ranges(
-      new_penetrations_.size(), grain, [&](std::size_t begin, std::size_t end, std::uint32_t w) {
-        ObjectQueries& queries = workers_[w].queries;
-        ObjectId last_outer;
-        for (std::size_t i = begin; i < end && !stop.stop_requested(); ++i) {
-          Penetration& penetration = penetrations_[new_penetrations_[i]];
-          const PenetratedObject& inner = objects_[penetration.object_a.index];
-          const PenetratedObject& outer = objects_[penetration.object_b.index];
-          if (i == begin || penetration.object_b != last_outer) queries.start();
-          last_outer = penetration.object_b;
-          // There is one, because the vertex is inside.
-          const ClosestPoint closest =
-              *queries.closest(std::span(&outer.queried, 1), inner.surface.position(penetration.vertex),
-                               std::numeric_limits<double>::infinity());
-          penetration.triangle = closest.triangle;
-          penetration.feature = closest.feature;
-          penetration.depth = closest.distance;
-          penetration.barycentric = closest.barycentric;
-          penetration.point = closest.point;
-          penetration.normal = Vec3d{} - closest.normal;
-        }
-      });
+  constexpr std::size_t grain = ClosestPoints::capacity;
+  parallel.for_ranges(new_penetrations_.size(), grain,
+                      [&](std::size_t begin, std::size_t end, std::uint32_t w) {
+                        for (; begin < end && !stop.stop_requested(); begin += grain)
+                          find_depths(begin, std::min(begin + grain, end), workers_[w]);
+                      });
   return !stop.stop_requested();
+}
+
+/// Takes at most `ClosestPoints::capacity` new penetrations.
+void PenetrationPass::find_depths(std::size_t begin, std::size_t end, Worker& worker) {
+  std::array<FoundTriangle, ClosestPoints::capacity> found;
+  std::array<ElementDistance, ClosestPoints::capacity> distances;
+  ObjectId last_outer;
+  for (std::size_t i = begin; i < end; ++i) {
+    const Penetration& penetration = penetrations_[new_penetrations_[i]];
+    const PenetratedObject& outer = objects_[penetration.object_b.index];
+    if (i == begin || penetration.object_b != last_outer) worker.depth_search.start();
+    last_outer = penetration.object_b;
+    // There is one, because the vertex is inside.
+    const SurfaceView& inner = objects_[penetration.object_a.index].surface;
+    found[i - begin] = *worker.depth_search.find(outer.queried, inner.position(penetration.vertex));
+  }
+  worker.closest_points.compute(std::span(found).first(end - begin), distances);
+  for (std::size_t i = begin; i < end; ++i) {
+    Penetration& penetration = penetrations_[new_penetrations_[i]];
+    const ElementDistance& distance = distances[i - begin];
+    penetration.triangle = found[i - begin].id;
+    penetration.feature = distance.on_b;
+    penetration.depth = distance.distance;
+    penetration.barycentric = distance.barycentric_b;
+    penetration.point = distance.point_b;
+    penetration.normal = Vec3d{} - distance.normal;
+  }
 }
 
 }  // namespace supple

@@ -9,9 +9,11 @@
 #include "core/stop_signal.hpp"
 #include "scene/contact_tasks.hpp"
 #include "scene/curve_finder.hpp"
+#include "scene/depth_search.hpp"
 #include "scene/job_outcomes.hpp"
 #include "scene/object_queries.hpp"
 #include "scene/surface_view.hpp"
+#include "supple/options.hpp"
 #include "supple/penetration.hpp"
 #include "supple/result.hpp"
 
@@ -42,8 +44,8 @@ class PenetrationPass {
   /// `jobs` ascend and contain indices of `objects`; `versions` are those of the objects' positions; `result`
   /// has all contacts of the jobs. Returns false when it was stopped; the lists are then not valid.
   bool run(std::span<const ContactJob> jobs, std::span<const PenetratedObject> objects,
-           std::span<const std::uint64_t> versions, const DetectResult& result, const StopSignal& stop,
-           const Parallel& parallel);
+           std::span<const std::uint64_t> versions, const DetectResult& result, PenetrationDepths depths,
+           const StopSignal& stop, const Parallel& parallel);
 
   std::span<const PenetrationGroup> groups() const { return groups_; }
   std::span<const Penetration> penetrations() const { return penetrations_; }
@@ -74,6 +76,8 @@ class PenetrationPass {
   struct Worker {
     CurveFinder curve_finder;
     ObjectQueries queries;
+    DepthSearch depth_search;
+    ClosestPoints closest_points;
     CurveLists curves;
     std::vector<std::uint32_t> inside, on_surface;
     std::vector<ContainedPart> parts;
@@ -92,14 +96,17 @@ class PenetrationPass {
   void run_task(const Task& task, const DetectResult& result, Worker& worker) const;
   static std::array<std::uint32_t, list_count> sizes_of(const Worker& worker);
   void find_inside(const Task& task, const DetectResult& result, Worker& worker) const;
+  void keep_deepest(const Task& task, std::size_t first_inside, Worker& worker) const;
   void collect_touched(const Task& task, const DetectResult& result, Worker& worker) const;
   void gather();
   void move_known_curves(std::size_t i);
   void gather_found(std::size_t i);
   void move_ranges(std::size_t i, const Outcomes::Ranges& from);
   bool find_depths(const StopSignal& stop, const Parallel& parallel);
+  void find_depths(std::size_t begin, std::size_t end, Worker& worker);
 
   std::span<const PenetratedObject> objects_;
+  PenetrationDepths depths_ = PenetrationDepths::all;
   std::vector<Worker> workers_;
   std::vector<ContactJob> pairs_;  // inner and outer object, ascending
   std::vector<ContactTask> tasks_;

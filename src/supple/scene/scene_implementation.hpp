@@ -44,6 +44,7 @@ struct Question {
   ProximityListing proximity_listing = ProximityListing::features;
   bool colliding_vertices = false;
   bool manifolds = false;
+  PenetrationDepths depths = PenetrationDepths::all;
   std::optional<StepOptions> safe_step{};  ///< continuous contacts: for a safe step
 
   bool has_intersections() const { return contains(contacts, ContactKinds::intersection); }
@@ -202,9 +203,11 @@ class Scene::Implementation {
   /// With their elements on the way, or at its end.
   void list_element_objects(MovingShape::Part part);
   /// `group` holds the reported contacts of the pair; null when there are none.
-  void verify_contacts(const ObjectPair& pair, const ContactGroup* group, VerifyReport& report) const;
+  std::vector<TrianglePair> verify_contacts(const ObjectPair& pair, const ContactGroup* group,
+                                            VerifyReport& report) const;
   void verify_impacts(const ObjectPair& pair, const ContactGroup* group, VerifyReport& report) const;
-  void verify_penetrations(const ObjectPair& pair, VerifyReport& report) const;
+  void verify_penetrations(const ObjectPair& pair, std::span<const TrianglePair> touching,
+                           VerifyReport& report) const;
   void verify_proximity(const ObjectPair& pair, const ContactGroup* group, VerifyReport& report) const;
   class AnswerWords;
   /// The objects that the filter lets through.

@@ -22,12 +22,13 @@ std::vector<ObjectPair> Scene::Implementation::pairs_to_verify() const {
   return pairs;
 }
 
-void Scene::Implementation::verify_contacts(const ObjectPair& pair, const ContactGroup* group,
-                                            VerifyReport& report) const {
+std::vector<TrianglePair> Scene::Implementation::verify_contacts(const ObjectPair& pair,
+                                                                 const ContactGroup* group,
+                                                                 VerifyReport& report) const {
   const bool same_object = pair.a == pair.b;
   const PlainObject a = plain_object(*slots_[pair.a.index].object);
   const PlainObject b = same_object ? a : plain_object(*slots_[pair.b.index].object);
-  const std::vector<TrianglePair> truth = intersecting_pairs_by_brute_force(a, b, same_object, parallel);
+  std::vector<TrianglePair> truth = intersecting_pairs_by_brute_force(a, b, same_object, parallel);
   std::vector<TrianglePair> reported;
   if (group != nullptr) {
     for (const Contact& contact : result.contacts_of(*group))
@@ -46,6 +47,7 @@ void Scene::Implementation::verify_contacts(const ObjectPair& pair, const Contac
   };
   note(truth, reported, true);
   note(reported, truth, false);
+  return truth;
 }
 
 void Scene::Implementation::verify_impacts(const ObjectPair& pair, const ContactGroup* group,
@@ -84,11 +86,12 @@ void Scene::Implementation::verify_proximity(const ObjectPair& pair, const Conta
 }
 
 /// Both objects in each other, where the other one is solid.
-void Scene::Implementation::verify_penetrations(const ObjectPair& pair, VerifyReport& report) const {
+void Scene::Implementation::verify_penetrations(const ObjectPair& pair,
+                                                std::span<const TrianglePair> touching,
+                                                VerifyReport& report) const {
   if (pair.a == pair.b) return;
   const PlainObject a = plain_object(*slots_[pair.a.index].object),
                     b = plain_object(*slots_[pair.b.index].object);
-  const std::vector<TrianglePair> touching = intersecting_pairs_by_brute_force(a, b, false, parallel);
   const auto verify_inside = [&](const ObjectPair& in_order, const PlainObject& inner,
                                  const PlainObject& outer, std::uint32_t TrianglePair::*side) {
     if (!slots_[in_order.b.index].object->options.solid) return;
@@ -110,7 +113,8 @@ void Scene::Implementation::verify_penetrations(const ObjectPair& pair, VerifyRe
     for (const ContainedPart& part : result.contained_parts) {
       if (part.inner == in_order.a && part.outer == in_order.b) parts.push_back(part);
     }
-    compare_penetrations(in_order, inside, on_surface, parts, truth, report.penetration_differences);
+    compare_penetrations(in_order, inside, on_surface, parts, truth, question_.depths,
+                         report.penetration_differences);
   };
   verify_inside(pair, a, b, &TrianglePair::a);
   verify_inside({pair.b, pair.a}, b, a, &TrianglePair::b);
@@ -136,10 +140,11 @@ VerifyReport Scene::Implementation::verify(const CallLimits& limits) const {
     const ContactGroup* const of_contacts = next_of(contacts, result.groups, pair);
     const ContactGroup* const of_impacts = next_of(impacts, result.continuous_groups, pair);
     const ContactGroup* const of_proximity = next_of(near, result.proximity_groups, pair);
-    if (question_.has_intersections()) verify_contacts(pair, of_contacts, report);
+    std::vector<TrianglePair> touching;
+    if (question_.has_intersections()) touching = verify_contacts(pair, of_contacts, report);
     if (question_.is_continuous()) verify_impacts(pair, of_impacts, report);
     if (question_.has_proximity()) verify_proximity(pair, of_proximity, report);
-    if (question_.has_penetration()) verify_penetrations(pair, report);
+    if (question_.has_penetration()) verify_penetrations(pair, touching, report);
   }
   return report;
 }

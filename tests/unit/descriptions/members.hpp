@@ -38,8 +38,8 @@ inline auto members_of(ComparisonOptions& o) {
   return std::tie(a, b);
 }
 inline auto members_of(SceneOptions& o) {
-  auto& [a, b, c, d, e, f, g, h, i, j, k, l, m] = o;
-  return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m);
+  auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n] = o;
+  return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m, n);
 }
 inline auto members_of(BroadPhaseOptions& o) {
   auto& [a, b, c, d] = o;
