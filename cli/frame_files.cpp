@@ -33,8 +33,7 @@ namespace {
 /// Whether vertices keep their ids in frames of this format. Readers of other formats join corners at one
 /// place, so a frame in which vertices meet has fewer.
 bool stores_vertex_ids(const std::filesystem::path& path) {
-  const std::string extension = lower_case_extension(path);
-  return extension == ".obj" || extension == ".off" || extension == ".ply";
+  return lower_case_extension(path) != ".stl" && !is_read_by_assimp(path);
 }
 
 }  // namespace
