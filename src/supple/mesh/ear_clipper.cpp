@@ -4,8 +4,9 @@
 
 namespace supple {
 
-bool EarClipper::clip(const OutlineView& view, std::span<Triangle> triangles) {
+bool EarClipper::clip(const OutlineView& view, bool crosses_itself, std::span<Triangle> triangles) {
   start(view);
+  tests_left_ = crosses_itself ? 100 * std::uint64_t{view.size()} : std::numeric_limits<std::uint64_t>::max();
   bool all_turn_left = true;
   for (Triangle& triangle : triangles) {
     const std::uint32_t corner = next_corner();
@@ -82,6 +83,7 @@ bool EarClipper::pop(Rank rank, std::uint32_t& corner) {
 }
 
 bool EarClipper::may_cut_ear(std::uint32_t corner) {
+  if (tests_left_ == 0) return true;
   const Obstacles obstacles = find_obstacles(corner, true);
   if (obstacles.inside != none) {
     wait(corner, blocked, obstacles.inside);
@@ -94,6 +96,7 @@ bool EarClipper::may_cut_ear(std::uint32_t corner) {
 }
 
 bool EarClipper::may_cut_loose(std::uint32_t corner) {
+  if (tests_left_ == 0) return true;
   const Obstacles obstacles = find_obstacles(corner, false);
   if (obstacles.inside != none) {
     wait(corner, blocked, obstacles.inside);
@@ -105,12 +108,13 @@ bool EarClipper::may_cut_loose(std::uint32_t corner) {
   return false;
 }
 
-EarClipper::Obstacles EarClipper::find_obstacles(std::uint32_t corner, bool only_one) const {
+EarClipper::Obstacles EarClipper::find_obstacles(std::uint32_t corner, bool only_one) {
   const std::array triangle{previous_[corner], corner, next_[corner]};
   const auto [a, b, c] = triangle;
   Obstacles found{none, none};
   index_.search(a, b, c, [&](std::uint32_t d) {
     if (d == a || d == b || d == c) return false;
+    if (tests_left_ > 0) --tests_left_;
     const std::array sides{view_->side(a, b, d), view_->side(b, c, d), view_->side(c, a, d)};
     if (sides[0] < 0 || sides[1] < 0 || sides[2] < 0) return false;
     if (enters(previous_[d], triangle, sides) || enters(next_[d], triangle, sides)) {
@@ -131,7 +135,7 @@ bool EarClipper::enters(std::uint32_t end, const std::array<std::uint32_t, 3>& t
   return true;
 }
 
-bool EarClipper::winds_once_around(const std::array<std::uint32_t, 3>& triangle) const {
+bool EarClipper::winds_once_around(const std::array<std::uint32_t, 3>& triangle) {
   const auto [a, b, c] = triangle;
   const OutlineView& view = *view_;
   const Vec3d inside = view[a] / 3 + view[b] / 3 + view[c] / 3;
@@ -143,6 +147,7 @@ bool EarClipper::winds_once_around(const std::array<std::uint32_t, 3>& triangle)
   int winding = 0;
   std::uint32_t from = b;
   do {
+    if (tests_left_ > 0) --tests_left_;
     const std::uint32_t to = next_[from];
     const bool is_above = view.y(from) > y, ends_above = view.y(to) > y;
     if (is_above != ends_above) {

@@ -18,12 +18,13 @@ namespace supple {
 ///
 /// An ear is cut only where the outline winds once around its triangle. So when every corner can be cut, the
 /// triangles cover the inside once. When no ear is left, as in an outline that crosses itself, corners are
-/// cut whose triangle turns left, and then any.
+/// cut whose triangle turns left, and then any. Outlines that cross themselves can have many corners in many
+/// triangles, so their corners are no longer tested after 100 tests a corner.
 class EarClipper {
  public:
   /// Writes view.size() - 2 triangles of corner numbers, which keep the direction of the outline. Returns
   /// false when a triangle turns to the right.
-  bool clip(const OutlineView& view, std::span<Triangle> triangles);
+  bool clip(const OutlineView& view, bool crosses_itself, std::span<Triangle> triangles);
 
  private:
   /// What the corner and its neighbours form; the smaller ones are cut first.
@@ -59,11 +60,11 @@ class EarClipper {
   bool may_cut_ear(std::uint32_t corner);
   bool may_cut_loose(std::uint32_t corner);
   /// Of all obstacles in the triangle of the corner, or of the first one that is found.
-  Obstacles find_obstacles(std::uint32_t corner, bool only_one) const;
+  Obstacles find_obstacles(std::uint32_t corner, bool only_one);
   /// Whether an edge to `end`, from a corner with these sides of a triangle, goes into the open triangle.
   bool enters(std::uint32_t end, const std::array<std::uint32_t, 3>& triangle,
               const std::array<int, 3>& sides_of_start) const;
-  bool winds_once_around(const std::array<std::uint32_t, 3>& triangle) const;
+  bool winds_once_around(const std::array<std::uint32_t, 3>& triangle);
   void wait(std::uint32_t corner, Rank rank, std::uint32_t obstacle);
   void remove_obstacle(std::uint32_t corner);
   void cut(std::uint32_t corner);
@@ -73,6 +74,7 @@ class EarClipper {
   std::vector<Rank> rank_;
   std::vector<std::uint32_t> first_waiting_;  ///< of each corner, an index into `waiting_`
   std::vector<Waiting> waiting_;
+  std::uint64_t tests_left_ = 0;  ///< of a corner with a triangle
   std::array<Queue, ranks> queues_;
   CornerIndex
       index_;  ///< all corners but those that turn left: if any corner is in a triangle, one of these is

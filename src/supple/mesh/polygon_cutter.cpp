@@ -42,8 +42,8 @@ PolygonShape PolygonCutter::cut(std::span<const Vec3d> corners, std::span<Triang
   if (!view) return shape;
   shape.bent = is_bent(corners);
   if (!fan_stays_inside(view)) {
-    const bool all_turn_left = clipper_.clip(view, triangles);
-    shape.crosses = !all_turn_left || crosses_itself(view);
+    shape.crosses = crosses_itself(view);
+    if (!clipper_.clip(view, shape.crosses, triangles)) shape.crosses = true;
   }
   shape.concave = !shape.crosses && turns_right_somewhere(view);
   return shape;
