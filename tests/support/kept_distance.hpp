@@ -63,7 +63,8 @@ enum class StepFault { none, too_long, too_short };
 /// some milliseconds.
 inline StepFault check_step(const std::vector<MovingPair>& pairs, double separation, double keep, double step,
                             bool by_algebra = true) {
-  const Rational later = std::min(Rational(step) / (1 - Rational(0x1p-18)), Rational(1));
+  // A multiple of a power of two, because rational arithmetic is slow on other numbers.
+  const Rational later = std::min(Rational(step) * (1 + Rational(0x1p-18)), Rational(1));
   bool is_reached = step == 1;
   for (const MovingPair& pair : pairs) {
     const KeptSquare kept(pair, separation, keep);

@@ -10,7 +10,10 @@ std::string in_quotes(std::string_view text) {
     // Not the first bytes of a character.
     while (shown > longest - 4 && (text[shown] & 0xc0) == 0x80) --shown;
   }
-  return "'" + one_line(text.substr(0, shown), '?') + (shown < text.size() ? "...'" : "'");
+  std::string result = "'";
+  result += one_line(text.substr(0, shown), '?');
+  result += shown < text.size() ? "...'" : "'";
+  return result;
 }
 
 }  // namespace supple

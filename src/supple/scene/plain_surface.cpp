@@ -60,7 +60,7 @@ struct IntegerCorners {
         const OddMantissa value(all[i][axis]);
         Integer& number = points[i][static_cast<std::size_t>(axis)];
         number = value.mantissa;
-        if (value.mantissa != 0) number *= Integer(1) << static_cast<unsigned>(value.exponent - lowest);
+        if (value.mantissa != 0) number <<= static_cast<unsigned>(value.exponent - lowest);
       }
     }
     if (lowest == std::numeric_limits<int>::max()) lowest = 0;
