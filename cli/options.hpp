@@ -97,8 +97,8 @@ struct InfoOptions {
 /// Options of `supple query`.
 struct QueryOptions {
   SceneQuery kind = SceneQuery::closest;
-  std::string file;                                ///< of points or rays; none for distances
-  std::vector<std::string> inputs;                 ///< meshes, patterns, or one scene file or recording
+  std::string file;                 ///< of points or rays; none for distances
+  std::vector<std::string> inputs;  ///< meshes, patterns, or one scene file or recording
   CoordinateConversion conversion;
   viewer::Overrides<SceneOptions> given_scene;     ///< only the number of threads
   viewer::Overrides<ObjectOptions> given_objects;  ///< only welding

@@ -97,7 +97,10 @@ void print_difference(const Scene& scene, std::uint64_t frame, const VerifyRepor
 }  // namespace
 
 Reports::Reports(const DetectionOptions& options, const Input& input, const Scene& scene, std::string noun)
-    : options_(options), scene_(scene), solid_parts_(describe_solid_parts(input)), tested_(input, scene.options().contacts) {
+    : options_(options),
+      scene_(scene),
+      solid_parts_(describe_solid_parts(input)),
+      tested_(input, scene.options().contacts) {
   if (options.json_content.node_pairs) check_node_pairs(input, *options.json_content.node_pairs);
   if (!options.json.empty()) json_.emplace(options.json, input, scene, options.json_content);
   if (!options.csv.empty()) csv_.emplace(options.csv, options.scene);

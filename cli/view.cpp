@@ -38,7 +38,8 @@ void check_build() {
 
 /// Whether a mesh of the command line plays an animation.
 bool moves_by_itself(const Input& input) {
-  return input.scene_text.empty() && input.frames && std::any_of(input.objects.begin(), input.objects.end(), [](const InputObject& object) {
+  return input.scene_text.empty() && input.frames &&
+         std::any_of(input.objects.begin(), input.objects.end(), [](const InputObject& object) {
            return object.motion && std::holds_alternative<ComputedMotion>(*object.motion);
          });
 }

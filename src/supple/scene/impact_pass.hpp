@@ -200,8 +200,9 @@ class ImpactPass {
   JobOutcomes<1> outcomes_;
   ImpactSearchOptions last_options_;     // of the last `run`
   std::vector<std::uint32_t> all_jobs_;  // of `find_earliest`
-  // Safe steps: the first limit of each job, the free parts by job, and by object the islands as a forest. Each
-  // object points to one of its island with a smaller index, or to itself; then it has the island's step.
+  // Safe steps: the first limit of each job, the free parts by job, and by object the islands as a forest.
+  // Each object points to one of its island with a smaller index, or to itself; then it has the island's
+  // step.
   std::vector<StepLimit> limits_;
   std::vector<double> free_parts_;
   std::vector<std::uint32_t> island_;
