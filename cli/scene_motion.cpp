@@ -69,7 +69,7 @@ void SceneMotion::read_kind(TomlReader& reader, Vec3d gravity) {
 }
 
 void SceneMotion::read_playback(TomlReader& reader, bool is_cache) {
-  Playback& playback = playback_.emplace();
+  Playback& playback = playback_.emplace(Playback{.clip = {}, .cache = {}, .speed = 1, .loop = false});
   reader.read("loop", playback.loop);
   if (is_cache) {
     std::string file;

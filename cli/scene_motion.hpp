@@ -43,10 +43,10 @@ class SceneMotion {
 
   /// The keys of kind "clip" or "cache".
   struct Playback {
-    std::optional<std::string> clip{};
-    std::filesystem::path cache{};  ///< empty: a clip
-    double speed = 1;
-    bool loop = false;
+    std::optional<std::string> clip;
+    std::filesystem::path cache;  ///< empty: a clip
+    double speed;
+    bool loop;
   };
 
   void read_playback(TomlReader& reader, bool is_cache);

@@ -52,12 +52,10 @@ class Info(ProgramTest):
         self.assertIn(text, self.run_here("info", "a.obj").out)
 
     def test_files_that_make_assimp_crash(self):
-        # A failed assertion, and a null pointer.
-        for name, text in (("a.nff", "pabcdefg"), ("a.lws", "}abcdefg")):
-            self.write(name, text)
-            done = self.run_here("info", name)
-            self.assertEqual((done.status, done.out), (2, ""))
-            self.assertRegex(done.error, rf"\Asupple: {name}: Assimp, the library that reads this format, crashed. The file may be fine;.*\n\Z")
+        self.write("a.lws", "}abcdefg")  # a null pointer
+        done = self.run_here("info", "a.lws")
+        self.assertEqual((done.status, done.out), (2, ""))
+        self.assertRegex(done.error, r"\Asupple: a.lws: Assimp, the library that reads this format, crashed. The file may be fine;.*\n\Z")
 
     def test_scene_file(self):
         self.write("scene.toml", '[[object]]\nname = "ring"\nmodel = "torus"\ntranslate = [1, 0, 0]\n[[object]]\nmodel = "box"\n')

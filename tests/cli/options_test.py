@@ -81,11 +81,12 @@ class Options(ProgramTest):
         of_proximity = ("margin", "proximity_listing", "solid")
         of_intersections = ("neighbours",)
         of_penetration = ("depths",)
+        of_patches = ("manifolds",)
         of_triangles = ("contact_points", "colliding_vertices", "sphere_fit")
         for fixed, without in (
-            (octree | continuous, (*of_triangles, *of_proximity, *of_intersections, *of_penetration)),
-            (octree | intersection, (*of_continuous, *of_proximity, *of_penetration, "element_kinds")),
-            (intersection, (*of_continuous, *of_proximity, *of_penetration, "element_kinds", *with_octree)),
+            (octree | continuous, (*of_triangles, *of_proximity, *of_intersections, *of_penetration, *of_patches)),
+            (octree | intersection, (*of_continuous, *of_proximity, *of_penetration, *of_patches, "element_kinds")),
+            (intersection, (*of_continuous, *of_proximity, *of_penetration, *of_patches, "element_kinds", *with_octree)),
             (proximity, (*of_continuous, *of_triangles, *of_intersections, *of_penetration, *with_octree)),
             (penetration, (*(set(of_continuous + of_proximity) - {"solid"}), "element_kinds", *with_octree)),
         ):

@@ -51,7 +51,7 @@ class Parts(ProgramTest):
         self.assertTrue(part["options"]["solid"])
 
     def test_scene_files_have_parts(self):
-        self.write("scene.toml", scene('mesh = "three.obj"', "parts = true", 'motion = { kind = "wave", drift = [0, 0.1, 0] }') + scene('mesh = "three.obj"', "translate = [0, 20, 0]"))
+        self.write("scene.toml", scene('mesh = "three.obj"', "parts = true", 'motion = { kind = "wave", velocity = [0, 0.1, 0] }') + scene('mesh = "three.obj"', "translate = [0, 20, 0]"))
         self.assertEqual(len(self.detect("scene.toml", "--frames", "2")["objects"]), 4)
         self.assertEqual(len(self.detect("scene.toml", "--parts", "--frames", "2")["objects"]), 6)
         fixed = 'motion = { kind = "mass_spring", fixed = [[[8, -1, -1], [12, 3, 3]]] }'
@@ -81,8 +81,8 @@ class Manifolds(ProgramTest):
 
     def test_ids_last(self):
         self.write("floor.obj", moved(BOX, 0, -2.125, 0))
-        self.write("box_0.obj", BOX)
-        self.write("box_1.obj", moved(BOX, 0.25, 0, 0))
+        self.write("box_0.obj", moved(BOX, 0.25, 0, 0.25))
+        self.write("box_1.obj", moved(BOX, 0.5, 0, 0.25))
         self.write("box_2.obj", moved(BOX, 0, 5, 0))
         self.write("scene.toml", scene('mesh = "floor.obj"', "margin = 0.125") + scene('mesh = "box_0.obj"', "margin = 0.125", 'motion = { kind = "frames", files = "box_*.obj" }'))
         frames = self.detect("scene.toml", "--frames", "3", "--contacts", "proximity", "--manifolds")["frames"]

@@ -85,8 +85,9 @@ class Penetration(ProgramTest):
 
     def test_the_deepest_vertex_and_its_frame(self):
         for frame, depth in enumerate((0.125, 0.75, 0.375, 0.75)):
-            self.write(f"f_{frame}.obj", moved(BOX, 0, 0, 2 - depth))
-        done = self.run_here("detect", "a.obj", "f_*.obj", *PENETRATION)
+            self.write(f"f_{frame}.obj", moved(SMALL, 0.75, 0.75, 2 - depth))
+        self.write("scene.toml", '[[object]]\nmesh = "a.obj"\nsolid = true\n[[object]]\nsolid = true\nmotion = { kind = "frames", files = "f_*.obj" }\n')
+        done = self.run_here("detect", "scene.toml", "--frames", "4", "--contacts", "penetration")
         self.assertIn("The deepest is vertex", done.out)
         self.assertIn(": 0.75 in frame 1.", done.out)
 

@@ -34,6 +34,7 @@ KEYS = {
     "element_kinds": ('"edge_edge"', "edge_edge", 'contacts = "proximity"\n'),
     "continuous_listing": ('"first"', "first", 'contacts = "continuous"\n'),
     "depths": ('"deepest"', "deepest", 'contacts = "penetration"\n'),
+    "manifolds": ("true", True, 'contacts = "proximity"\n'),
     "max_exact_bits": ("300", 300, ""),
     "colliding_vertices": ("true", True, ""),
     "proximity_listing": ('"elements"', "elements", 'contacts = "proximity"\n'),

@@ -111,8 +111,8 @@ class UsageErrors(ProgramTest):
         self.expect("info", "bad.obj", parts=["bad.obj", "3", "99"])
 
     def test_unknown_format_says_which_are_known(self):
-        self.write("a.xyz", "0 0 0\n")
-        self.expect("detect", "a.xyz", parts=["a.xyz", "obj", "ply"])
+        self.write("a.nothing", "0 0 0\n")
+        self.expect("detect", "a.nothing", parts=["a.nothing", "obj", "ply"])
 
     def test_outputs(self):
         self.expect("detect", "a.obj", "--json", "no/such/folder.json", parts=["no/such/folder.json", "cannot write"])
