@@ -101,8 +101,8 @@ enum class ContinuousListing : std::uint8_t {
 enum class PenetrationDepths : std::uint8_t {
   all,
   /// One vertex for each object and each solid that it enters: that with the largest `Penetration::depth`,
-  /// the smallest of several. Takes a fraction of the time, because most vertices are only shown to be less
-  /// deep.
+  /// the smallest of several. Takes less time where depths take most of it, as for large meshes, because most
+  /// vertices are only shown to be less deep.
   deepest,
 };
 
@@ -204,9 +204,10 @@ struct DetectRequest {
   std::optional<bool> manifolds{};
   std::optional<PenetrationDepths> depths{};
   /// The largest number of contacts of each kind in the result: the first ones in canonical order, for any
-  /// number of threads. `DetectResult::truncated` says that there are more. The limit bounds the memory and
-  /// the number of exact tests. The search skips object pairs after the last reported contact, but it
-  /// searches one object pair to its end. First contacts of elements are all found first, which takes memory
+  /// number of threads. `DetectResult::truncated` says that there are more. The limit bounds the result and
+  /// saves exact tests. It does not bound the memory of intersections and continuous contacts: the search
+  /// skips object pairs after the last reported contact, but it searches one object pair to its end, in parts
+  /// that each keep up to twice the limit. First contacts of elements are all found first, which takes memory
   /// for each element that touches. Penetration needs all intersections: a limit is an error then.
   std::uint64_t max_contacts = std::numeric_limits<std::uint64_t>::max();
 #ifdef __cpp_lib_jthread
@@ -224,8 +225,9 @@ struct StepOptions {
 };
 
 /// Returns whether a pair of objects may be tested. The scene calls it from one thread, in ascending order,
-/// for pairs whose groups and masks agree: `detect` for pairs whose volumes overlap, `verify` for all pairs.
-/// It must return the same answer within one step.
+/// for pairs whose groups and masks agree: `detect` for pairs whose volumes overlap, and for further pairs
+/// where a kind of contacts had nothing to test (`DetectResult::untested`), `verify` for all pairs. It must
+/// return the same answer within one step.
 using PairFilter = std::function<bool(ObjectId, ObjectId)>;
 
 }  // namespace supple

@@ -50,7 +50,7 @@ void expect_equal_contacts(const Lists& found, const Lists& expected) {
     const Contact &p = found.contacts[i], &q = expected.contacts[i];
     ASSERT_TRUE(p.object_a == q.object_a && p.object_b == q.object_b && p.triangle_a == q.triangle_a &&
                 p.triangle_b == q.triangle_b && p.kind == q.kind && p.point_count == q.point_count &&
-                p.first_point == q.first_point)
+                p.first_point == q.first_point && p.normal == q.normal)
         << i;
   }
   ASSERT_EQ(found.points, expected.points);
@@ -284,6 +284,23 @@ TEST(MaxContacts, CutsTheListOfOneTask) {
     const DetectResult& result = scene.detect({.max_contacts = limit});
     EXPECT_TRUE(result.truncated);
     ASSERT_TRUE(std::ranges::equal(result.continuous_contacts, std::span(all.continuous).first(limit)));
+  }
+}
+
+TEST(MaxContacts, CutsTheListAndThePointsOfOneTask) {
+  Scene scene({.threads = 1});
+  for (std::uint64_t i = 0; i < 3; ++i) scene.add(random_soup(300, 1, 1.0, 40 + i), {.self_collision = true});
+  const Lists all(scene.detect());
+  ASSERT_GT(all.contacts.size(), 8000u);
+  for (const std::size_t limit : {0u, 5u, 100u, 700u, 3000u}) {
+    Lists expected = all;
+    expected.contacts.resize(limit);
+    std::size_t points = 0;
+    for (const Contact& contact : expected.contacts) points += contact.point_count;
+    expected.points.resize(points);
+    const DetectResult& result = scene.detect({.max_contacts = limit});
+    EXPECT_TRUE(result.truncated);
+    expect_equal_contacts(Lists(result), expected);
   }
 }
 

@@ -228,7 +228,8 @@ TEST(Scene, FiltersByGroupMaskStaticAndCallback) {
     return false;
   });
   EXPECT_EQ(pairs(), 0u);
-  EXPECT_EQ(calls, 1);
+  // `DetectResult::untested` asks again, because nothing was tested.
+  EXPECT_EQ(calls, 2);
   scene.set_pair_filter({});
   EXPECT_EQ(pairs(), 1u);
 }
