@@ -59,7 +59,7 @@ std::vector<TriangleMesh> intersecting() {
   const TriangleMesh blade{"", {{11, -0.5, -1}, {11, 0, -1}, {11, -0.25, 1}}, {{0, 1, 2}}};
   const TriangleMesh tip{"", {{10.5, -0.75, 0}, {10, -0.75, 1}, {10.5, -0.5, 1}}, {{0, 1, 2}}};
   const TriangleMesh box = moved(supple::make_box({1, 1, 1}, 1), {20, 0, 0});
-  return {sphere, moved(sphere, {1.5, 0, 0}), sheet, blade, tip, box, moved(box, {0.25, 1, 0.25})};
+  return {sphere, moved(sphere, {1.4, 0.13, 0.07}), sheet, blade, tip, box, moved(box, {0.25, 1, 0.25})};
 }
 
 /// The kinds that occurred, by the name of the record.

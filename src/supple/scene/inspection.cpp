@@ -271,9 +271,12 @@ CandidateList Scene::Implementation::candidates(std::size_t limit) const {
   for (const ContactJob& job : jobs_.jobs) {
     const std::span<const std::uint32_t> ids_a = slots_[job.a].object->octree().triangle_ids();
     const std::span<const std::uint32_t> ids_b = slots_[job.b].object->octree().triangle_ids();
+    const std::uint32_t faces_a = slots_[job.a].object->face_count();
+    const std::uint32_t faces_b = slots_[job.b].object->face_count();
     FirstPairs pairs(limit - list.pairs.size());
     for_each_candidate(*traversal, search_view(job), [&](const TrianglePair& pair) {
       TrianglePair named{ids_a[pair.a], ids_b[pair.b]};
+      if (named.a >= faces_a || named.b >= faces_b) return;  // an edge or a point of no triangle
       if (job.a == job.b && named.a > named.b) std::swap(named.a, named.b);
       pairs.add(named);
     });
