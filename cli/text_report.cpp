@@ -103,7 +103,7 @@ void TextReport::print(const Scene& scene, const TestedKinds& tested) const {
   if (verified_) print_verify(scene);
 }
 
-/// Of kinds that were not tested, it prints no "Nothing touches."
+/// Leaves out "Nothing touches." for kinds of contacts that were not tested.
 void TextReport::print_contacts(const Scene& scene, const TestedKinds& tested) const {
   if (tested.was_tested(ContactKinds::intersection)) {
     print_pairs(scene);

@@ -17,9 +17,9 @@ using Triangle = std::array<std::uint32_t, 3>;
 struct PolygonCounts {
   std::uint64_t quads = 0;     ///< with four corners
   std::uint64_t larger = 0;    ///< with five corners or more
-  std::uint64_t concave = 0;   ///< of these, those that turn both ways
-  std::uint64_t crossing = 0;  ///< of these, those whose outline crosses itself
-  /// Of these, those with a corner farther from the mean plane of the corners than 1/1000 of the size.
+  std::uint64_t concave = 0;   ///< polygons that turn both ways
+  std::uint64_t crossing = 0;  ///< polygons whose outline crosses itself
+  /// Polygons with a corner farther from the mean plane of the corners than 1/1000 of the size.
   std::uint64_t bent = 0;
 
   bool operator==(const PolygonCounts&) const = default;

@@ -59,7 +59,7 @@ class EarClipper {
   void set_rank(std::uint32_t corner, Rank rank);
   bool may_cut_ear(std::uint32_t corner);
   bool may_cut_loose(std::uint32_t corner);
-  /// Of all obstacles in the triangle of the corner, or of the first one that is found.
+  /// Finds the obstacles in the triangle of the corner: all, or only the first one.
   Obstacles find_obstacles(std::uint32_t corner, bool only_one);
   /// Whether an edge to `end`, from a corner with these sides of a triangle, goes into the open triangle.
   bool enters(std::uint32_t end, const std::array<std::uint32_t, 3>& triangle,

@@ -31,7 +31,7 @@ void count_edges(std::vector<std::uint64_t> edges, MeshTopology& topology) {
   }
 }
 
-/// Of each two equal keys, counts one pair.
+/// Counts the pairs of equal keys.
 std::uint64_t count_equal_pairs(std::vector<Triangle>& keys) {
   std::sort(keys.begin(), keys.end());
   std::uint64_t pairs = 0;

@@ -426,7 +426,7 @@ const std::vector<std::uint32_t>* CurveFinder::smaller_side(const SurfaceView& s
     for (std::size_t color = 0; color < 2; ++color) {
       if (smaller == nullptr && next == flooded_[color].size()) {
         smaller = &flooded_[color];
-        // Of two equal ones, the one that is behind counts as the smaller one.
+        // When both are equal, the one behind counts as the smaller one.
         if (behind && flooded_[*behind].size() == next) smaller = &flooded_[*behind];
       }
       if (smaller != nullptr && (!behind || next >= flooded_[*behind].size())) return smaller;

@@ -67,7 +67,7 @@ class DepthSearch {
   PointsBlock block_{};
   std::uint32_t nearest_ = none;  // about the nearest triangle of the last point
 
-  // Of one search.
+  // State of one search.
   const QueriedObject* object_ = nullptr;
   Vec3d point_;
   double least_ = 0, limit_ = 0;  // triangles beyond the limit are not of interest

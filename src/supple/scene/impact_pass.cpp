@@ -351,8 +351,9 @@ void ImpactPass::drop_excess(std::uint32_t job, std::size_t first, Worker& worke
   worker.found.erase(last + 1, worker.found.end());
 }
 
-/// Of the contacts of one task, which begin at `first`, keeps those that may be listed, if there are at least
-/// so many. A contact that is not the first of an element in its task is not the first in the scene.
+/// Keeps only those contacts of one task that may be listed, once the task has at least `least` contacts.
+/// They begin at `first`. A contact that is not the first of an element in its task is not the first in the
+/// scene.
 void ImpactPass::keep_first(std::size_t first, std::size_t least, Worker& worker) const {
   if (search_ != Search::all || !lists_first() || worker.found.size() - first < least) return;
   worker.first_contacts.keep_first(worker.found, first);

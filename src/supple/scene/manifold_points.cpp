@@ -87,7 +87,7 @@ double radius_of(const Plane& plane, PlanePoint& mean) {
   return radius;
 }
 
-/// Of the deepest candidates, to an accuracy of `least`, the farthest from the mean.
+/// Returns the candidate farthest from the mean among the deepest ones, to an accuracy of `least`.
 std::uint32_t first_point(const Plane& plane, PlanePoint mean, double least) {
   double deepest = plane.depth(0);
   for (std::size_t i = 1; i < plane.size(); ++i) deepest = std::max(deepest, plane.depth(i));

@@ -22,7 +22,7 @@ struct SquaredDistance {
 };
 /// The sign of the difference.
 int compare(const SquaredDistance& p, const SquaredDistance& q);
-/// Of a point and a triangle with finite coordinates.
+/// The squared distance of a point and a triangle with finite coordinates.
 SquaredDistance squared_distance_by_integers(const Vec3d& point, const TrianglePoints& corners);
 /// The square of a double.
 SquaredDistance square_of(double distance);
