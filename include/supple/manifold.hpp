@@ -29,10 +29,11 @@ struct ManifoldPoint {
 /// A patch of contacts of two objects, or of one object with itself, reduced to what a rigid body needs: one
 /// normal, one depth, and at most four points that span it. With penetration, each `IntersectionCurve` is a
 /// patch. Two objects without a curve have the patches of their proximity pairs: a patch grows from the
-/// nearest pair that is in no patch yet over all pairs in no patch that have vertices in common, on either
-/// object, and whose normals are within 45 degrees of its normal. It also replaces pairs with such vertices
-/// whose elements are as far apart along its normal as the nearest pair: for example an edge of a floor and
-/// an edge of the side of a box that stands on it.
+/// nearest pair that is in no patch yet over all pairs in no patch that are linked and whose normals are
+/// within 45 degrees of its normal. Two pairs are linked when they have vertices in common, or vertices of
+/// one triangle, on either object. A patch also replaces linked pairs whose elements are as far apart along
+/// its normal as the nearest pair: for example an edge of a floor and an edge of the side of a box that
+/// stands on it.
 ///
 /// The points are the deepest one, and those that are farthest from it, from the line, and outside the
 /// triangle of those before. Points nearer than 2^-10 of the size of the patch to what is spanned already

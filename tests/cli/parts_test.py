@@ -81,8 +81,8 @@ class Manifolds(ProgramTest):
 
     def test_ids_last(self):
         self.write("floor.obj", moved(BOX, 0, -2.125, 0))
-        self.write("box_0.obj", moved(BOX, 0.25, 0, 0.25))
-        self.write("box_1.obj", moved(BOX, 0.5, 0, 0.25))
+        self.write("box_0.obj", BOX)
+        self.write("box_1.obj", moved(BOX, 0.25, 0, 0))
         self.write("box_2.obj", moved(BOX, 0, 5, 0))
         self.write("scene.toml", scene('mesh = "floor.obj"', "margin = 0.125") + scene('mesh = "box_0.obj"', "margin = 0.125", 'motion = { kind = "frames", files = "box_*.obj" }'))
         frames = self.detect("scene.toml", "--frames", "3", "--contacts", "proximity", "--manifolds")["frames"]

@@ -434,6 +434,10 @@ void Scene::Implementation::find_manifolds(const DetectResult& found) {
     if (slot.object != nullptr)
       manifold_objects_.back() = {&slot.object->octree(), &slot.object->placement()};
   }
+  for (const ContactGroup& group : found.proximity_groups) {
+    for (const ObjectId id : {group.a, group.b})
+      manifold_objects_[id.index].around = &slots_[id.index].object->vertex_triangles();
+  }
   manifold_pass_.find(found, manifold_objects_);
 }
 

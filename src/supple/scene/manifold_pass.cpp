@@ -155,6 +155,7 @@ void ManifoldPass::link_pairs(const DetectResult& result, const ContactGroup& gr
     vertices_of_pair_[uses_[u].pair][count++] = static_cast<std::uint32_t>(first_use_.size() - 1);
   }
   scanned_by_.assign(first_use_.size(), ~std::uint32_t{0});
+  linked_by_ = scanned_by_;
   first_use_.push_back(static_cast<std::uint32_t>(uses_.size()));
 }
 
@@ -174,22 +175,46 @@ bool ManifoldPass::is_kept_apart(const ProximityPair& pair, const ProximityPair&
   return low_a - high_b >= nearest.distance - 0x1p-40 * size;
 }
 
-void ManifoldPass::grow_patch(std::span<const ProximityPair> pairs, std::uint32_t seed) {
+/// Calls `visit` for each vertex of the pairs that is in a triangle with this one: for itself, too.
+template <class Visit>
+void ManifoldPass::for_each_linked_vertex(const ContactGroup& group, std::uint32_t vertex,
+                                          const Visit& visit) const {
+  visit(vertex);
+  const auto [side, of_object, first_pair] = uses_[first_use_[vertex]];
+  const ManifoldObject& object = objects_[side == 0 ? group.a.index : group.b.index];
+  const auto vertices = std::span(first_use_).first(first_use_.size() - 1);
+  for (const std::uint32_t triangle : object.around->around(of_object)) {
+    for (const std::uint32_t corner : object.octree->user_triangle(triangle)) {
+      const auto place = std::ranges::lower_bound(
+          vertices, std::pair(side, corner), {},
+          [&](std::uint32_t u) { return std::pair(uses_[u].side, uses_[u].vertex); });
+      const bool is_used =
+          place != vertices.end() && uses_[*place].side == side && uses_[*place].vertex == corner;
+      if (is_used) visit(static_cast<std::uint32_t>(place - vertices.begin()));
+    }
+  }
+}
+
+void ManifoldPass::grow_patch(std::span<const ProximityPair> pairs, const ContactGroup& group,
+                              std::uint32_t seed) {
   patch_.assign(1, seed);
   is_in_patch_[seed] = 1;
+  const auto scan = [&](std::uint32_t vertex) {
+    if (std::exchange(scanned_by_[vertex], seed) == seed) return;
+    for (std::uint32_t u = first_use_[vertex]; u < first_use_[vertex + 1]; ++u) {
+      const std::uint32_t other = uses_[u].pair;
+      if (is_in_patch_[other] != 0) continue;
+      const bool has_direction = dot(pairs[other].normal, pairs[seed].normal) >= least_cosine;
+      if (!has_direction && !is_kept_apart(pairs[other], pairs[seed])) continue;
+      is_in_patch_[other] = 1;
+      if (has_direction) patch_.push_back(other);
+    }
+  };
   for (std::size_t next = 0; next < patch_.size(); ++next) {
     const std::uint32_t pair = patch_[next];
     for (std::size_t k = 0; k < vertex_count_of_pair_[pair]; ++k) {
       const std::uint32_t vertex = vertices_of_pair_[pair][k];
-      if (std::exchange(scanned_by_[vertex], seed) == seed) continue;
-      for (std::uint32_t u = first_use_[vertex]; u < first_use_[vertex + 1]; ++u) {
-        const std::uint32_t other = uses_[u].pair;
-        if (is_in_patch_[other] != 0) continue;
-        const bool has_direction = dot(pairs[other].normal, pairs[seed].normal) >= least_cosine;
-        if (!has_direction && !is_kept_apart(pairs[other], pairs[seed])) continue;
-        is_in_patch_[other] = 1;
-        if (has_direction) patch_.push_back(other);
-      }
+      if (std::exchange(linked_by_[vertex], seed) != seed) for_each_linked_vertex(group, vertex, scan);
     }
   }
 }
@@ -205,7 +230,7 @@ void ManifoldPass::add_patches(const DetectResult& result, const ContactGroup& g
   is_in_patch_.assign(pairs.size(), 0);
   for (const std::uint32_t seed : by_distance_) {
     if (is_in_patch_[seed] != 0) continue;
-    grow_patch(pairs, seed);
+    grow_patch(pairs, group, seed);
     candidates_.clear();
     for (const std::uint32_t i : patch_) {
       const ProximityPair& pair = pairs[i];

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "mesh/vertex_triangles.hpp"
 #include "octree/object_octree.hpp"
 #include "scene/manifold_points.hpp"
 #include "scene/placement.hpp"
@@ -18,6 +19,7 @@ namespace supple {
 struct ManifoldObject {
   const ObjectOctree* octree = nullptr;
   const Placement* placement = nullptr;
+  const VertexTriangles* around = nullptr;  ///< for objects with proximity pairs, by the user's numbers
 };
 
 /// The manifolds of one step, with the names of their points.
@@ -106,7 +108,9 @@ class ManifoldPass {
   void for_each_vertex(ObjectId object, FeatureKind kind, const std::array<std::uint32_t, 2>& element,
                        const Visit& visit) const;
   bool is_kept_apart(const ProximityPair& pair, const ProximityPair& nearest) const;
-  void grow_patch(std::span<const ProximityPair> pairs, std::uint32_t seed);
+  template <class Visit>
+  void for_each_linked_vertex(const ContactGroup& group, std::uint32_t vertex, const Visit& visit) const;
+  void grow_patch(std::span<const ProximityPair> pairs, const ContactGroup& group, std::uint32_t seed);
   void add_manifold(const Manifold& manifold);
   void match();
 
@@ -124,7 +128,8 @@ class ManifoldPass {
   };
   std::vector<Use> uses_;                  // sorted: those of a vertex follow each other
   std::vector<std::uint32_t> first_use_;   // of each vertex
-  std::vector<std::uint32_t> scanned_by_;  // the last patch that looked at a vertex
+  std::vector<std::uint32_t> scanned_by_;  // the last patch that looked at the pairs of a vertex
+  std::vector<std::uint32_t> linked_by_;   // the last patch that looked at the triangles around a vertex
   std::vector<std::array<std::uint32_t, 6>> vertices_of_pair_;
   std::vector<std::uint8_t> vertex_count_of_pair_;
   std::vector<std::uint8_t> is_in_patch_;

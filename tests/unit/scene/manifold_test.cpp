@@ -93,6 +93,25 @@ TEST(Manifold, BoxOnFloorHasItsCorners) {
   }
 }
 
+// Only corners of equal boxes in a stack are nearest features, so no two pairs have a vertex in common.
+TEST(Manifold, EqualBoxesInAStackHaveOnePatch) {
+  for (const std::uint32_t n : {1u, 4u}) {
+    Scene scene(near);
+    const ObjectId box = scene.add(make_box({2, 2, 2}, n), {.margin = 0.0625});
+    scene.add(make_box({2, 2, 2}, n), {.margin = 0.0625});
+    for (const double shift : {0.0, 0.25, 0.0}) {
+      scene.set_transform(box, {.translation = {shift, 2.125, 0}});
+      const DetectResult& result = scene.detect();
+      ASSERT_EQ(result.manifolds.size(), 1u) << n << ' ' << shift;
+      EXPECT_EQ(result.manifolds[0].id, 1u);
+      EXPECT_EQ(result.manifolds[0].normal, (Vec3d{0, 1, 0}));
+      EXPECT_EQ(result.manifolds[0].depth, -0.125);
+      ASSERT_EQ(result.manifolds[0].point_count, 4u) << n << ' ' << shift;
+      EXPECT_NEAR(area_of(result.points_of(result.manifolds[0]), {0, 1, 0}), 2 * (2 - shift), 1e-12);
+    }
+  }
+}
+
 TEST(Manifold, BoxInFloorHasItsCornersWithTheirDepths) {
   Scene scene(touching);
   const ObjectId box = scene.add(make_box({2, 2, 2}, 3), {.solid = true});
