@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "geometry/double_double.hpp"
+#include "geometry/integer_points.hpp"
 #include "geometry/number_vector.hpp"
 #include "geometry/quotient.hpp"
 #include "geometry/vector.hpp"
@@ -168,11 +169,6 @@ std::optional<RayParameter> RayParameter::find(const Ray& ray, const TrianglePoi
   return result;
 }
 
-RayParameter::Fraction RayParameter::exact() const {
-  const auto t = exact_parameter(*ray_, triangle_);
-  return {t->numerator, t->denominator};
-}
-
 double RayParameter::rounded() const {
   // Larger numbers times very small ones would lose the lower halves of pairs.
   double largest = largest_magnitude(ray_->direction);
@@ -184,7 +180,7 @@ double RayParameter::rounded() const {
     const auto sides = numbers.sides();
     return static_cast<double>(numbers.volume()) / static_cast<double>(sides[0] + sides[1] + sides[2]);
   }
-  const Fraction t = exact();
+  const IntegerFraction t = *exact_parameter(*ray_, triangle_);
   return Quotient(t.numerator, t.denominator).value();
 }
 
@@ -194,7 +190,8 @@ int RayParameter::compare(const RayParameter& other, bool& used_exact) const {
     if (side != unknown_sign) return side;
   }
   used_exact = true;
-  const Fraction a = exact(), b = other.exact();
+  const IntegerFraction a = *exact_parameter(*ray_, triangle_),
+                        b = *exact_parameter(*other.ray_, other.triangle_);
   return sign(UnboundedInteger(a.numerator * b.denominator - b.numerator * a.denominator));
 }
 

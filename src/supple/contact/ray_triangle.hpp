@@ -3,7 +3,6 @@
 #include <optional>
 
 #include "geometry/bounded_double.hpp"
-#include "geometry/integer_points.hpp"
 #include "supple/queries.hpp"
 #include "supple/triangle_intersection.hpp"
 
@@ -23,12 +22,7 @@ class RayParameter {
   int compare(const RayParameter& other, bool& used_exact) const;
 
  private:
-  struct Fraction {
-    UnboundedInteger numerator, denominator;  ///< the denominator is positive
-  };
-
   RayParameter(const Ray& ray, const TrianglePoints& triangle) : ray_(&ray), triangle_(triangle) {}
-  Fraction exact() const;
 
   const Ray* ray_;
   TrianglePoints triangle_;

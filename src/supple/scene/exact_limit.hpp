@@ -4,7 +4,7 @@
 #include <string>
 #include <utility>
 
-#include "geometry/integer_points.hpp"
+#include "geometry/bit_extent.hpp"
 #include "supple/types.hpp"
 
 namespace supple {
