@@ -20,7 +20,7 @@ LICENCES = {
     "libassimp": "BSD-3-Clause", "libboost": "BSL-1.0", "libc6": "LGPL-2.1-or-later", "libcli11": "BSD-3-Clause", "libdraco": "Apache-2.0",
     "libeigen3": "MPL-2.0", "libfmt": "MIT", "libgcc": "GPL-3.0-or-later WITH GCC-exception-3.1", "libhdf5": "BSD-3-Clause",
     "libhwy": "Apache-2.0", "libmeshoptimizer": "MIT", "libpugixml": "MIT", "libstdc++": "GPL-3.0-or-later WITH GCC-exception-3.1", "libtbb": "Apache-2.0",
-    "libtomlplusplus": "MIT", "libzip": "BSD-3-Clause", "linux-libc-dev": "GPL-2.0-only WITH Linux-syscall-note", "rapidjson": "MIT", "zlib1g": "Zlib",
+    "libtomlplusplus": "MIT", "libzip": "BSD-3-Clause", "linux-libc-dev": "GPL-2.0-only WITH Linux-syscall-note", "nlohmann-json3": "MIT", "rapidjson": "MIT", "zlib1g": "Zlib",
 }
 
 

@@ -1,16 +1,17 @@
 #include "gltf_file.hpp"
 
 #include <meshoptimizer.h>
-#include <rapidjson/error/en.h>
 
 #include <algorithm>
 #include <array>
+#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "core/error.hpp"
 #include "mesh/byte_order.hpp"
 #include "mesh/file_access.hpp"
 #include "mesh/quotes.hpp"
+#include "supple/utf8.hpp"
 
 namespace supple {
 namespace {
@@ -80,6 +81,20 @@ std::string without_percent_codes(std::string_view text) {
   return result;
 }
 
+/// The JSON of a file; names in it may be any bytes.
+std::shared_ptr<const nlohmann::json> parse_json(std::string_view text, const std::string& file) {
+  if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
+  try {
+    return std::make_shared<nlohmann::json>(nlohmann::json::parse(valid_utf8(text)));
+  } catch (const nlohmann::json::exception& error) {
+    // "[json.exception.parse_error.101] parse error at line 1, column 2: …; last read: …"
+    std::string_view reason = error.what();
+    reason.remove_prefix(std::min(reason.find("] ") + 2, reason.size()));
+    fail("cannot read " + file +
+         ": the JSON is not valid: " + one_line(reason.substr(0, reason.find("; last read"))));
+  }
+}
+
 }  // namespace
 
 GltfFile::GltfFile(const std::filesystem::path& path) : path_(path), name_(shown(path)) {
@@ -105,14 +120,7 @@ GltfFile::GltfFile(const std::filesystem::path& path) : path_(path), name_(shown
       place += 8 + (length + 3) / 4 * 4;
     }
   }
-  std::string_view text = json;
-  if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
-  document_.Parse<rapidjson::kParseIterativeFlag | rapidjson::kParseFullPrecisionFlag>(text.data(),
-                                                                                       text.size());
-  if (document_.HasParseError())
-    fail("cannot read " + name_ +
-         ": the JSON is not valid: " + rapidjson::GetParseError_En(document_.GetParseError()) + " (byte " +
-         std::to_string(document_.GetErrorOffset()) + ")");
+  document_ = parse_json(json, name_);
   const std::string version = root()["asset"]["version"].text_or("");
   if (!version.starts_with("2."))
     fail(name_ + ": has " +

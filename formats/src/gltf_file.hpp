@@ -1,9 +1,9 @@
 #pragma once
 
-#include <rapidjson/document.h>
-
 #include <cstdint>
 #include <filesystem>
+#include <memory>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -16,7 +16,7 @@ namespace supple {
 class GltfValue {
  public:
   /// `value` is null when the file does not have the value. `file` must outlive this object.
-  GltfValue(const rapidjson::Value* value, const std::string& file, std::string place)
+  GltfValue(const nlohmann::json* value, const std::string& file, std::string place)
       : value_(value), file_(&file), place_(std::move(place)) {}
 
   explicit operator bool() const { return value_ != nullptr; }
@@ -43,9 +43,9 @@ class GltfValue {
   [[noreturn]] void fail_here(const std::string& message) const;
 
  private:
-  const rapidjson::Value& required(const char* kind) const;
+  const nlohmann::json& required(const char* kind) const;
 
-  const rapidjson::Value* value_;
+  const nlohmann::json* value_;
   const std::string* file_;
   std::string place_;
 };
@@ -58,7 +58,7 @@ class GltfFile {
   explicit GltfFile(const std::filesystem::path& path);
 
   const std::string& name() const { return name_; }
-  GltfValue root() const { return {&document_, name_, ""}; }
+  GltfValue root() const { return {document_.get(), name_, ""}; }
   /// The bytes of a buffer view, decompressed.
   std::string_view view(std::uint64_t index);
   /// The bytes of all buffers together, which bound what a file can hold.
@@ -74,7 +74,7 @@ class GltfFile {
   std::filesystem::path path_;
   std::string name_;
   std::string binary_;  ///< of a GLB file
-  rapidjson::Document document_;
+  std::shared_ptr<const nlohmann::json> document_;
   std::vector<std::optional<std::string>> buffers_, views_;
   std::uint64_t bytes_ = 0;
 };
