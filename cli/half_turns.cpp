@@ -1,5 +1,6 @@
 #include "half_turns.hpp"
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,42 +10,8 @@
 namespace supple::cli {
 namespace {
 
-using Matrix4 = std::array<std::array<double, 4>, 4>;
-
 bool is_finite(const Vec3d& p) {
   return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
-}
-
-/// An eigenvalue and the first component of its unit vector.
-struct Eigenvalue {
-  double value = 0, first_component = 0;
-};
-
-/// The eigenvalues of a symmetric matrix, by Jacobi rotations.
-std::array<Eigenvalue, 4> eigenvalues_of(Matrix4 m) {
-  constexpr int sweeps = 12;
-  std::array<double, 4> first{1, 0, 0, 0};  // the first components of the vectors
-  for (int sweep = 0; sweep < sweeps; ++sweep) {
-    for (std::size_t p = 0; p < 4; ++p) {
-      for (std::size_t q = p + 1; q < 4; ++q) {
-        if (m[p][q] == 0) continue;
-        const double theta = (m[q][q] - m[p][p]) / (2 * m[p][q]);
-        const double t = (theta < 0 ? -1 : 1) / (std::fabs(theta) + std::sqrt(theta * theta + 1));
-        const double c = 1 / std::sqrt(t * t + 1), s = t * c;
-        const auto rotate = [c, s](double& x, double& y) {
-          const double old = x;
-          x = c * old - s * y;
-          y = s * old + c * y;
-        };
-        for (std::size_t k = 0; k < 4; ++k) rotate(m[k][p], m[k][q]);
-        for (std::size_t k = 0; k < 4; ++k) rotate(m[p][k], m[q][k]);
-        rotate(first[p], first[q]);
-      }
-    }
-  }
-  std::array<Eigenvalue, 4> eigenvalues;
-  for (std::size_t i = 0; i < 4; ++i) eigenvalues[i] = {m[i][i], first[i]};
-  return eigenvalues;
 }
 
 }  // namespace
@@ -82,17 +49,20 @@ bool turns_too_far(std::span<const Vec3d> from, std::span<const Vec3d> to) {
   const auto& [x, y, z] = s;
   const double yz = y[2] - z[1], zx = z[0] - x[2], xy = x[1] - y[0];
   const double sum_xy = x[1] + y[0], sum_zx = z[0] + x[2], sum_yz = y[2] + z[1];
-  const auto eigenvalues = eigenvalues_of({{{x[0] + y[1] + z[2], yz, zx, xy},
-                                            {yz, x[0] - y[1] - z[2], sum_xy, sum_zx},
-                                            {zx, sum_xy, y[1] - x[0] - z[2], sum_yz},
-                                            {xy, sum_zx, sum_yz, z[2] - x[0] - y[1]}}});
+  Eigen::Matrix4d products;
+  products << x[0] + y[1] + z[2], yz, zx, xy,  //
+      yz, x[0] - y[1] - z[2], sum_xy, sum_zx,  //
+      zx, sum_xy, y[1] - x[0] - z[2], sum_yz,  //
+      xy, sum_zx, sum_yz, z[2] - x[0] - y[1];
   if (!(motion > least_motion * size)) return false;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> rotations(products);
+  if (rotations.info() != Eigen::Success) return false;
   bool fits = false;
   double square_of_cosine = 0;
-  for (const auto& [value, first_component] : eigenvalues) {
-    if (!(size - 2 * value <= largest_misfit * motion)) continue;
+  for (Eigen::Index i = 0; i < 4; ++i) {
+    if (!(size - 2 * rotations.eigenvalues()[i] <= largest_misfit * motion)) continue;
     fits = true;
-    square_of_cosine += first_component * first_component;
+    square_of_cosine += rotations.eigenvectors()(0, i) * rotations.eigenvectors()(0, i);
   }
   return fits && square_of_cosine < square_of_cosine_of_60_degrees;
 }
