@@ -96,7 +96,8 @@ int Run::go() {
   Interruption interruption(options_.limits.seconds,
                             [this](const Interruption& end) { exit_now(end_early(end, Moment::in_a_step)); });
   start_ = Clock::now();
-  const bool is_whole = add_frame(interruption, simulation_.detect(request_of(interruption)));
+  const bool is_whole =
+      !interruption.is_requested() && add_frame(interruption, simulation_.detect(request_of(interruption)));
   const bool stable = !is_whole || take_steps(interruption);
   interruption.end();
   if (stable && frames_ < steps_ + 1) return end_early(interruption, Moment::between_steps);

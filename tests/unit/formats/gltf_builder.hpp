@@ -62,7 +62,7 @@ class GltfBuilder {
     if (result.contains("buffers"))
       result["buffers"].insert(result["buffers"].begin(), buffer);
     else
-      result["buffers"] = {buffer};
+      result["buffers"] = nlohmann::json::array({buffer});
     return result.dump();
   }
 
