@@ -114,37 +114,29 @@ void ContactPass::run_task(std::size_t task, Worker& worker) {
     if (!search_.colliding_vertices) return;
     for (const LeafPair& leaves : leaf_pairs) worker.leaves.push_back({job, leaves});
   };
+  const auto test = [&](std::span<const TrianglePair> candidates) {
+    test_candidates(input, candidates, worker);
+    if (!limit_.is_set()) return;
+    add_crossing(input, worker.crossing_count, worker);
+    drop_excess(job, first, first_point, worker);
+  };
   const auto on_candidates = [&](std::span<const TrianglePair> candidates) {
     if (!search_.contacts) return;
     Timer timer;
-    test_candidates(input, candidates, worker);
-    if (limit_.is_set()) {
-      add_crossing(input, worker.crossing_count, worker);
-      drop_excess(job, first, worker);
-    }
+    test(candidates);
     worker.stats.exact_seconds += timer.lap();
   };
   worker.traversal.find_triangle_pairs(input.pair, contact_task.root, worker.stats.traversal, on_leaves,
                                        on_candidates);
   Timer timer;
-  if (search_.contacts && input.pair.same_object && input.object_a.neighbours != nullptr) {
-    test_neighbours(input, task, worker);
-    if (limit_.is_set()) {
-      add_crossing(input, worker.crossing_count, worker);
-      drop_excess(job, first, worker);
-    }
-  }
+  if (search_.contacts && input.pair.same_object && input.object_a.neighbours != nullptr)
+    for_neighbours(input, task, worker, test);
   add_crossing(input, worker.crossing_count, worker);
   add_normals(worker);
   worker.stats.exact_seconds += timer.lap();
   outcome.ranges[of_contacts].count = static_cast<std::uint32_t>(worker.found.size() - first);
   outcome.ranges[of_points].count = static_cast<std::uint32_t>(worker.points.size() - first_point);
-  if (!limit_.is_set()) return;
-  limit_.add(job, outcome.ranges[of_contacts].count);
-  if (!search_.contact_points) return;
-  outcome.ranges[of_points].count = 0;  // counted again, because contacts were dropped
-  for (const FoundContact& found : std::span(worker.found).subspan(first))
-    outcome.ranges[of_points].count += found.point_count;
+  if (limit_.is_set()) limit_.add(job, outcome.ranges[of_contacts].count);
 }
 
 ContactPass::TaskInput ContactPass::input_of_job(std::uint32_t job) const {
@@ -160,8 +152,12 @@ ContactPass::TaskInput ContactPass::input_of_job(std::uint32_t job) const {
           objects_[b]};
 }
 
-/// Tests triangles that share a vertex. The tasks of a job share the vertices.
-void ContactPass::test_neighbours(const TaskInput& input, std::size_t task, Worker& worker) const {
+/// Calls `test` with lists of pairs of triangles that share a vertex and may meet elsewhere. The tasks of a job
+/// share the vertices.
+template <class Test>
+void ContactPass::for_neighbours(const TaskInput& input, std::size_t task, Worker& worker,
+                                 const Test& test) const {
+  constexpr std::size_t most_waiting = 4096;
   const std::span<const ContactTask> tasks = tasks_.tasks();
   const auto [first_task, end_task] =
       std::equal_range(tasks.begin(), tasks.end(), tasks[task],
@@ -171,6 +167,10 @@ void ContactPass::test_neighbours(const TaskInput& input, std::size_t task, Work
   const std::size_t part = task - static_cast<std::size_t>(first_task - tasks.begin());
   const auto corners = input.pair.a.arrays.triangles;
   worker.neighbours.clear();
+  const auto pass_on = [&] {
+    test(worker.neighbours);
+    worker.neighbours.clear();
+  };
   for (std::size_t v = count * part / parts; v < count * (part + 1) / parts && !stop_.stop_requested(); ++v) {
     const std::span<const std::uint32_t> around =
         input.object_a.neighbours->around(static_cast<std::uint32_t>(v));
@@ -181,9 +181,10 @@ void ContactPass::test_neighbours(const TaskInput& input, std::size_t task, Work
         if (meet_elsewhere(p, points_of(input.pair.a, around[i]), q, points_of(input.pair.a, around[k])))
           worker.neighbours.push_back({around[i], around[k]});
       }
+      if (worker.neighbours.size() >= most_waiting) pass_on();
     }
   }
-  test_candidates(input, worker.neighbours, worker);
+  pass_on();
 }
 
 /// A vector kernel decides a block of candidates at a time. The exact test decides the few that remain.
@@ -268,14 +269,32 @@ void ContactPass::add_normals(Worker& worker) {
   worker.unfinished.clear();
 }
 
-/// Drops the excess contacts of one task, which begin at `first`: those that follow the first `wanted()`.
-void ContactPass::drop_excess(std::uint32_t job, std::size_t first, Worker& worker) {
+/// Drops the excess contacts of one task, which begin at `first`: those that follow the first `wanted()`. Their
+/// points, from `first_point` on, go too.
+void ContactPass::drop_excess(std::uint32_t job, std::size_t first, std::size_t first_point, Worker& worker) {
   if (!limit_.drops_at(worker.found.size() - first)) return;
   const auto begin = worker.found.begin() + static_cast<std::ptrdiff_t>(first);
   const auto last = begin + static_cast<std::ptrdiff_t>(limit_.wanted() - 1);
   std::nth_element(begin, last, worker.found.end(), in_order_of_triangles);
   limit_.exclude_after(ContactLimit::place(job, last->triangle_a));
   worker.found.erase(last + 1, worker.found.end());
+  if (!search_.contact_points) return;
+  add_normals(worker);
+  // Each contact of the worker has one item in `details`. In the order of these, items only move down.
+  const std::span kept = std::span(worker.found).subspan(first);
+  std::sort(kept.begin(), kept.end(),
+            [](const FoundContact& p, const FoundContact& q) { return p.details < q.details; });
+  auto next = static_cast<std::uint32_t>(first), point = static_cast<std::uint32_t>(first_point);
+  for (FoundContact& found : kept) {
+    ContactDetails details = worker.details[found.details];
+    const auto points = worker.points.begin() + static_cast<std::ptrdiff_t>(details.first_point);
+    std::copy_n(points, found.point_count, worker.points.begin() + static_cast<std::ptrdiff_t>(point));
+    details.first_point = std::exchange(point, point + found.point_count);
+    worker.details[next] = details;
+    found.details = next++;
+  }
+  worker.details.resize(next);
+  worker.points.resize(point);
 }
 
 /// Jobs are in canonical order. Reused contacts move within the lists; new contacts are sorted and written

@@ -111,10 +111,11 @@ class ContactPass {
   void test_candidates(const TaskInput& input, std::span<const TrianglePair> candidates,
                        Worker& worker) const;
   void test_candidate(const TaskInput& input, TrianglePair candidate, Worker& worker) const;
-  void test_neighbours(const TaskInput& input, std::size_t task, Worker& worker) const;
+  template <class Test>
+  void for_neighbours(const TaskInput& input, std::size_t task, Worker& worker, const Test& test) const;
   void add_crossing(const TaskInput& input, std::size_t count, Worker& worker) const;
   static void add_normals(Worker& worker);
-  void drop_excess(std::uint32_t job, std::size_t first, Worker& worker);
+  void drop_excess(std::uint32_t job, std::size_t first, std::size_t first_point, Worker& worker);
   void gather_contacts(const Parallel& parallel);
   void renumber_points(std::size_t job);
   std::span<const FoundContact> found_of(std::size_t job, Worker& worker) const;
