@@ -77,12 +77,15 @@ inline constexpr std::array words<CurveKind>{"closed", "open", "branched"};
 ///
 /// `normal` and `depth` say how a leaves b. They concern two parts: on each surface, the triangles of the
 /// curve's contacts and those around the vertices behind it. These are the vertices on the side of the curve
-/// that is lower along the direction of its area for a, and higher for b; where the surface is about level
-/// there, they are the enclosed vertices. The depth along a direction is the longest way, in this direction,
-/// from a point of part a to a point of part b straight ahead. So this move brings part a past part b, and a
-/// shorter one does not. It is at most the smallest move in this direction after which two convex bodies do
-/// not overlap. Triangles parallel to the direction have nothing ahead, and triangles that touch only beside
-/// each other are not ahead of each other: sides that slide past each other do not count.
+/// that is lower along the direction of its area for a, and higher for b. They are the enclosed vertices
+/// where the surface is about level there, and where this side is the larger one and has more vertices than
+/// 16 for each contact of the curve and than four times the vertices of the surface divided by the curves of
+/// the two objects: so the time is in proportion to contacts, vertices and what is enclosed. The depth along
+/// a direction is the longest way, in this direction, from a point of part a to a point of part b straight
+/// ahead. So this move brings part a past part b, and a shorter one does not. It is at most the smallest move
+/// in this direction after which two convex bodies do not overlap. Triangles parallel to the direction have
+/// nothing ahead, and triangles that touch only beside each other are not ahead of each other: sides that
+/// slide past each other do not count.
 ///
 /// `normal` is the direction with the least depth of these: the outward normals of faces of b, and the
 /// reverse of those of a, on which at least half of the curve lies; and the direction of the area, for other

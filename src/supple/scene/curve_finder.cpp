@@ -373,8 +373,11 @@ std::size_t CurveFinder::enclose(std::span<const std::uint32_t> members, bool si
     if (is_one_sided && !join_corners(surface.triangle(of_b ? contact(i).triangle_a : contact(i).triangle_b)))
       return 0;
   }
-  const std::optional<std::size_t> behind = color_behind(surface, side_b);
-  const std::vector<std::uint32_t>* const enclosed = smaller_side(surface, behind);
+  std::optional<std::size_t> behind = color_behind(surface, side_b);
+  // All curves together flood as many vertices as there are contacts and vertices, about.
+  const std::size_t curves = first_member_.size() - 1;
+  const std::size_t most_behind = std::max(16 * members.size(), 4 * surface.around->vertex_count() / curves);
+  const std::vector<std::uint32_t>* const enclosed = smaller_side(surface, behind, most_behind);
   if (enclosed == nullptr) return 0;
   behind_[side_b ? 1 : 0] = behind ? flooded_[*behind] : *enclosed;
   const auto first = static_cast<std::ptrdiff_t>(lists.enclosed.size());
@@ -402,9 +405,11 @@ std::optional<std::size_t> CurveFinder::color_behind(const SurfaceView& surface,
 }
 
 /// Floods both sides of the curve in turns, without crossing it, until one of them is complete, and then the
-/// one that is behind. Null when they are the same side.
+/// one that is behind; `behind` loses its value when that side has more than `most_behind` vertices and is
+/// not the smaller one. Null when they are the same side.
 const std::vector<std::uint32_t>* CurveFinder::smaller_side(const SurfaceView& surface,
-                                                            std::optional<std::size_t> behind) {
+                                                            std::optional<std::size_t>& behind,
+                                                            std::size_t most_behind) {
   const auto mark_of = [&](std::size_t color) { return last_mark_ + static_cast<std::uint32_t>(color); };
   marks_.resize(std::max(marks_.size(), surface.around->vertex_count()), 0);
   constexpr std::uint32_t almost_all = 0xfffffff0;
@@ -429,6 +434,9 @@ const std::vector<std::uint32_t>* CurveFinder::smaller_side(const SurfaceView& s
         // When both are equal, the one behind counts as the smaller one.
         if (behind && flooded_[*behind].size() == next) smaller = &flooded_[*behind];
       }
+      if (smaller != nullptr && behind && smaller != &flooded_[*behind] &&
+          flooded_[*behind].size() > most_behind)
+        behind.reset();
       if (smaller != nullptr && (!behind || next >= flooded_[*behind].size())) return smaller;
       if (next >= flooded_[color].size()) continue;
       const std::uint32_t v = flooded_[color][next];

@@ -75,7 +75,7 @@ class CurveFinder {
   std::size_t enclose(std::span<const std::uint32_t> members, bool side_b, CurveLists& lists);
   std::optional<std::size_t> color_behind(const SurfaceView& surface, bool side_b);
   const std::vector<std::uint32_t>* smaller_side(const SurfaceView& surface,
-                                                 std::optional<std::size_t> behind);
+                                                 std::optional<std::size_t>& behind, std::size_t most_behind);
   bool is_cut(std::uint32_t v, std::uint32_t w) const;
 
   const Contact& contact(std::uint32_t i) const { return contacts_[i]; }

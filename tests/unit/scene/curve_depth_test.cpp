@@ -305,14 +305,47 @@ TEST(CurveDepth, NeverExceedsWhatSeparates) {
 }
 
 TEST(CurveDepth, OfBallsIsTheThicknessOfWhatTheyShare) {
-  const TriangleMesh ball = make_icosphere(8);
-  TriangleMesh other = ball;
-  const Vec3d offset{0, 1.75, 0};
-  for (Vec3d& p : other.positions) p = p + offset;
-  const auto curves = curves_of(ball, other);
-  ASSERT_EQ(curves.size(), 1u);
-  EXPECT_NEAR(curves[0].normal.y, -1, 1e-3);
-  EXPECT_NEAR(curves[0].depth, 0.25, 0.01);
+  // The larger side of each ball is behind the curve when they share more than half.
+  for (const double offset : {1.75, 1.0, 0.25}) {
+    const TriangleMesh ball = make_icosphere(8);
+    TriangleMesh other = ball;
+    for (Vec3d& p : other.positions) p = p + Vec3d{0, offset, 0};
+    const auto curves = curves_of(ball, other);
+    ASSERT_EQ(curves.size(), 1u);
+    EXPECT_NEAR(curves[0].normal.y, -1, 1e-3);
+    EXPECT_NEAR(curves[0].depth, 2 - offset, 0.01);
+  }
+}
+
+TEST(CurveDepth, OfManyPinsInASheetIsThatOfEachAlone) {
+  TriangleMesh sheet = make_cloth(81, 81, 40, 40);
+  for (Vec3d& p : sheet.positions) p.y = 0.2 * std::sin(p.x) * std::cos(0.7 * p.z);
+  TriangleMesh pins;
+  std::vector<IntersectionCurve> alone;
+  RandomNumbers random(3);
+  for (std::uint32_t i = 0; i < 100; ++i) {
+    TriangleMesh pin = make_box({0.8, 2, 0.8}, 1);
+    const Vec3d middle{4.0 * (i % 10) - 18, random.vector(0.5).y, 4.0 * (i / 10) - 18};
+    for (Vec3d& p : pin.positions) p = p + middle + 0.05 * Vec3d{p.y, 0, -p.y};
+    const auto curves = curves_of(sheet, pin);
+    ASSERT_EQ(curves.size(), 1u);
+    alone.push_back(curves[0]);
+    const auto first = static_cast<std::uint32_t>(pins.positions.size());
+    pins.positions.insert(pins.positions.end(), pin.positions.begin(), pin.positions.end());
+    for (const Triangle& t : pin.triangles)
+      pins.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+  }
+  const auto together = curves_of(sheet, pins);
+  ASSERT_EQ(together.size(), alone.size());
+  for (const IntersectionCurve& curve : together) {
+    const auto same = std::ranges::find_if(alone, [&](const IntersectionCurve& other) {
+      return std::abs(other.centroid.x - curve.centroid.x) + std::abs(other.centroid.z - curve.centroid.z) <
+             1;
+    });
+    ASSERT_NE(same, alone.end());
+    EXPECT_NEAR(curve.depth, same->depth, 1e-9);
+    EXPECT_NEAR(dot_of(exact(curve.normal), exact(same->normal)).convert_to<double>(), 1, 1e-9);
+  }
 }
 
 }  // namespace
