@@ -39,6 +39,10 @@ if(SUPPLE_SANITIZE)
   add_link_options(-fsanitize=${SUPPLE_SANITIZE})
   if(CMAKE_CXX_COMPILER_ID MATCHES "Clang")
     add_compile_options(-fsanitize-ignorelist=${CMAKE_CURRENT_LIST_DIR}/SanitizerIgnoreList.txt)
+    if(SUPPLE_SANITIZE MATCHES "undefined")
+      # They take a quarter of the time to compile, and the address sanitizer finds most of what they find.
+      add_compile_options(-fno-sanitize=null,object-size,vptr)
+    endif()
     if(SUPPLE_LIBFUZZER)
       # libFuzzer follows which branches an input reaches.
       add_compile_options(-fsanitize=fuzzer-no-link)

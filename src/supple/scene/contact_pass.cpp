@@ -152,8 +152,8 @@ ContactPass::TaskInput ContactPass::input_of_job(std::uint32_t job) const {
           objects_[b]};
 }
 
-/// Calls `test` with lists of pairs of triangles that share a vertex and may meet elsewhere. The tasks of a job
-/// share the vertices.
+/// Calls `test` with lists of pairs of triangles that share a vertex and may meet elsewhere. The tasks of a
+/// job share the vertices.
 template <class Test>
 void ContactPass::for_neighbours(const TaskInput& input, std::size_t task, Worker& worker,
                                  const Test& test) const {
@@ -269,8 +269,8 @@ void ContactPass::add_normals(Worker& worker) {
   worker.unfinished.clear();
 }
 
-/// Drops the excess contacts of one task, which begin at `first`: those that follow the first `wanted()`. Their
-/// points, from `first_point` on, go too.
+/// Drops the excess contacts of one task, which begin at `first`: those that follow the first `wanted()`.
+/// Their points, from `first_point` on, go too.
 void ContactPass::drop_excess(std::uint32_t job, std::size_t first, std::size_t first_point, Worker& worker) {
   if (!limit_.drops_at(worker.found.size() - first)) return;
   const auto begin = worker.found.begin() + static_cast<std::ptrdiff_t>(first);
@@ -295,6 +295,12 @@ void ContactPass::drop_excess(std::uint32_t job, std::size_t first, std::size_t 
   }
   worker.details.resize(next);
   worker.points.resize(point);
+}
+
+std::size_t ContactPass::largest_buffer() const {
+  std::size_t largest = 0;
+  for (const Worker& worker : workers_) largest = std::max(largest, worker.points.capacity());
+  return largest;
 }
 
 /// Jobs are in canonical order. Reused contacts move within the lists; new contacts are sorted and written

@@ -45,7 +45,8 @@ struct ContactSearch {
 };
 
 /// Narrow phase and exact stage of intersections for all jobs of a step, on all workers. The narrow phase
-/// hands its candidates to the exact stage in batches. The pass keeps its memory between steps.
+/// hands its candidates to the exact stage in batches. The pass keeps its memory between steps. It is
+/// proportional to the contacts of the result: a task drops those after the first `max_contacts`.
 class ContactPass {
  public:
   /// Finds the first `max_contacts` contacts in canonical order, for any number of threads. `jobs` ascend and
@@ -62,6 +63,8 @@ class ContactPass {
   std::span<const std::uint32_t> colliding_vertices() const { return vertices_; }
   /// There are more than `max_contacts` contacts.
   bool is_truncated() const { return is_truncated_; }
+  /// The most points of contacts for which a worker has had memory since it was made.
+  std::size_t largest_buffer() const;
 
  private:
   struct CollidingLeaves {

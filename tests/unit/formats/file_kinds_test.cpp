@@ -89,7 +89,7 @@ TEST(FileKinds, BinaryStlMayBeginLikeAnotherFormat) {
   const TemporaryFolder folder;
   std::string bytes = "ply is what this was made from";
   bytes.resize(80, ' ');
-  bytes += std::string("\1\0\0\0", 4) + std::string(50, '\0');
+  bytes.append("\1\0\0\0", 4).append(50, '\0');
   EXPECT_EQ(load_any_mesh(folder.write("a.stl", bytes)).triangles.size(), 1u);
 }
 
