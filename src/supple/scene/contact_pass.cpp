@@ -66,6 +66,7 @@ bool ContactPass::run(std::span<const ContactJob> jobs, std::span<const ContactO
   for (std::size_t w = 0; w < workers_.size(); ++w) {
     Worker& worker = workers_[w];
     worker.number = static_cast<std::uint16_t>(w);
+    worker.last_task = no_task;
     worker.traversal.set_stop(stop);
     worker.found.clear();
     worker.details.clear();
@@ -104,11 +105,21 @@ ObjectPairView ContactPass::view_of_job(std::uint32_t job) const {
 void ContactPass::run_task(std::size_t task, Worker& worker) {
   const ContactTask& contact_task = tasks_.tasks()[task];
   const std::uint32_t job = contact_task.job;
-  Outcomes::TaskOutcome& outcome = outcomes_.of_task(task);
-  const std::size_t first = worker.found.size(), first_point = worker.points.size();
-  outcome = {worker.number,
-             {{{static_cast<std::uint32_t>(first), 0}, {static_cast<std::uint32_t>(first_point), 0}}}};
-  if (limit_.excludes(ContactLimit::place(job, 0))) return;
+  // With a limit, the tasks of a job that follow each other share a list, so that it is cut where they
+  // together find too much.
+  const bool continues =
+      limit_.is_set() && worker.last_task != no_task && tasks_.tasks()[worker.last_task].job == job;
+  const auto end_of = [](const auto& list) { return Range{static_cast<std::uint32_t>(list.size()), 0}; };
+  const Outcomes::Ranges start = continues ? outcomes_.take(worker.last_task)
+                                           : Outcomes::Ranges{{end_of(worker.found), end_of(worker.points)}};
+  worker.last_task = task;
+  const std::uint32_t first = start[of_contacts].first, first_point = start[of_points].first;
+  const auto set_outcome = [&] {
+    outcomes_.of_task(task) = {worker.number,
+                               {{{first, end_of(worker.found).first - first},
+                                 {first_point, end_of(worker.points).first - first_point}}}};
+  };
+  if (limit_.excludes(ContactLimit::place(job, 0))) return set_outcome();
   const TaskInput input = input_of_job(job);
   const auto on_leaves = [&](std::span<const LeafPair> leaf_pairs) {
     if (!search_.colliding_vertices) return;
@@ -134,9 +145,9 @@ void ContactPass::run_task(std::size_t task, Worker& worker) {
   add_crossing(input, worker.crossing_count, worker);
   add_normals(worker);
   worker.stats.exact_seconds += timer.lap();
-  outcome.ranges[of_contacts].count = static_cast<std::uint32_t>(worker.found.size() - first);
-  outcome.ranges[of_points].count = static_cast<std::uint32_t>(worker.points.size() - first_point);
-  if (limit_.is_set()) limit_.add(job, outcome.ranges[of_contacts].count);
+  set_outcome();
+  const std::uint32_t count = outcomes_.of_task(task).ranges[of_contacts].count;
+  limit_.add(job, count - std::min(count, start[of_contacts].count));
 }
 
 ContactPass::TaskInput ContactPass::input_of_job(std::uint32_t job) const {

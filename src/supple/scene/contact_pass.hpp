@@ -46,7 +46,7 @@ struct ContactSearch {
 
 /// Narrow phase and exact stage of intersections for all jobs of a step, on all workers. The narrow phase
 /// hands its candidates to the exact stage in batches. The pass keeps its memory between steps. It is
-/// proportional to the contacts of the result: a task drops those after the first `max_contacts`.
+/// proportional to the contacts of the result: a worker drops those of a job after the first `max_contacts`.
 class ContactPass {
  public:
   /// Finds the first `max_contacts` contacts in canonical order, for any number of threads. `jobs` ascend and
@@ -78,6 +78,7 @@ class ContactPass {
   };
   struct Worker {
     std::uint16_t number = 0;
+    std::size_t last_task = no_task;
     Traversal traversal;
     std::vector<FoundContact> found;  // by all tasks of the worker; triangles have the user's ids
     std::vector<ContactDetails> details;

@@ -164,6 +164,7 @@ void ImpactPass::search(Search search, std::span<const std::uint32_t> jobs, floa
   workers_.resize(parallel.worker_count());
   for (Worker& worker : workers_) {
     worker.traversal.set_stop(stop_);
+    worker.last_task = no_task;
     worker.found.clear();
     worker.stats = {};
     worker.earliest.reset();
@@ -202,12 +203,18 @@ void ImpactPass::run_task(std::size_t task, std::uint32_t w) {
   const ContactTask& contact_task = tasks_.tasks()[task];
   const std::uint32_t job = contact_task.job;
   Worker& worker = workers_[w];
-  const std::size_t first = worker.found.size();
+  // As in `ContactPass`: with a limit, the tasks of a job that follow each other share a list.
+  const bool continues =
+      limit_.is_set() && worker.last_task != no_task && tasks_.tasks()[worker.last_task].job == job;
+  const Range start = continues ? outcomes_.take(worker.last_task)[0]
+                                : Range{static_cast<std::uint32_t>(worker.found.size()), 0};
+  worker.last_task = task;
+  const std::size_t first = start.first;
   worker.keep_first_at = least_to_keep_first;
   const auto set_outcome = [&] {
     const auto count = static_cast<std::uint32_t>(worker.found.size() - first);
-    if (search_ == Search::all) outcomes_.of_task(task) = {w, {{{static_cast<std::uint32_t>(first), count}}}};
-    limit_.add(job, count);
+    if (search_ == Search::all) outcomes_.of_task(task) = {w, {{{start.first, count}}}};
+    limit_.add(job, count - std::min(count, start.count));
   };
   if (limit_.excludes(ContactLimit::place(job, 0))) return set_outcome();
   worker.traversal.find_element_pairs(view_of_job(job), contact_task.root, worker.stats.traversal,

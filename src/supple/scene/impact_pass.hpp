@@ -120,6 +120,7 @@ class ImpactPass {
     LimitingPair pair;
   };
   struct Worker {
+    std::size_t last_task = no_task;
     Traversal traversal;
     RelativeMotionBlock block;
     std::array<OpenPair, RelativeMotionBlock::capacity> open;  // pairs of one block of candidates

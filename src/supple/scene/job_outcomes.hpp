@@ -71,6 +71,8 @@ class JobOutcomes {
   };
   void expect_tasks(std::size_t count) { task_outcomes_.resize(count); }
   TaskOutcome& of_task(std::size_t task) { return task_outcomes_[task]; }
+  /// The ranges of a task, which then has none: another task of its job and its worker continues them.
+  Ranges take(std::size_t task) { return std::exchange(task_outcomes_[task].ranges, Ranges{}); }
   std::span<const TaskOutcome> tasks_of(std::size_t i) const {
     return std::span(task_outcomes_).subspan(outcomes_[i].first_task, outcomes_[i].task_count);
   }

@@ -317,9 +317,16 @@ TEST(CurveDepth, OfBallsIsTheThicknessOfWhatTheyShare) {
   }
 }
 
-TEST(CurveDepth, OfManyPinsInASheetIsThatOfEachAlone) {
+TEST(CurveDepth, OfManyPinsInASheetIsNearlyThatOfEachAlone) {
   TriangleMesh sheet = make_cloth(81, 81, 40, 40);
   for (Vec3d& p : sheet.positions) p.y = 0.2 * std::sin(p.x) * std::cos(0.7 * p.z);
+  const auto curves_with = [&](const TriangleMesh& solid) {
+    Scene scene(penetration);
+    scene.add(sheet);
+    scene.add(solid, {.solid = true});
+    const auto found = scene.detect().curves;
+    return std::vector(found.begin(), found.end());
+  };
   TriangleMesh pins;
   std::vector<IntersectionCurve> alone;
   RandomNumbers random(3);
@@ -327,7 +334,7 @@ TEST(CurveDepth, OfManyPinsInASheetIsThatOfEachAlone) {
     TriangleMesh pin = make_box({0.8, 2, 0.8}, 1);
     const Vec3d middle{4.0 * (i % 10) - 18, random.vector(0.5).y, 4.0 * (i / 10) - 18};
     for (Vec3d& p : pin.positions) p = p + middle + 0.05 * Vec3d{p.y, 0, -p.y};
-    const auto curves = curves_of(sheet, pin);
+    const auto curves = curves_with(pin);
     ASSERT_EQ(curves.size(), 1u);
     alone.push_back(curves[0]);
     const auto first = static_cast<std::uint32_t>(pins.positions.size());
@@ -335,7 +342,7 @@ TEST(CurveDepth, OfManyPinsInASheetIsThatOfEachAlone) {
     for (const Triangle& t : pin.triangles)
       pins.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
   }
-  const auto together = curves_of(sheet, pins);
+  const auto together = curves_with(pins);
   ASSERT_EQ(together.size(), alone.size());
   for (const IntersectionCurve& curve : together) {
     const auto same = std::ranges::find_if(alone, [&](const IntersectionCurve& other) {
@@ -343,7 +350,9 @@ TEST(CurveDepth, OfManyPinsInASheetIsThatOfEachAlone) {
              1;
     });
     ASSERT_NE(same, alone.end());
-    EXPECT_NEAR(curve.depth, same->depth, 1e-9);
+    // Alone, the part of the sheet around the pin counts, too.
+    EXPECT_LE(curve.depth, same->depth * (1 + 1e-9));
+    EXPECT_GE(curve.depth, same->depth * 0.99);
     EXPECT_NEAR(dot_of(exact(curve.normal), exact(same->normal)).convert_to<double>(), 1, 1e-9);
   }
 }
