@@ -40,7 +40,7 @@ if(SUPPLE_SANITIZE)
   if(CMAKE_CXX_COMPILER_ID MATCHES "Clang")
     add_compile_options(-fsanitize-ignorelist=${CMAKE_CURRENT_LIST_DIR}/SanitizerIgnoreList.txt)
     if(SUPPLE_SANITIZE MATCHES "undefined")
-      # They take a quarter of the time to compile, and the address sanitizer finds most of what they find.
+      # They take up to a quarter of the time to compile, and the address sanitizer finds most of what they find.
       add_compile_options(-fno-sanitize=null,object-size,vptr)
     endif()
     if(SUPPLE_LIBFUZZER)

@@ -205,10 +205,10 @@ struct DetectRequest {
   std::optional<PenetrationDepths> depths{};
   /// The largest number of contacts of each kind in the result: the first ones in canonical order, for any
   /// number of threads. `DetectResult::truncated` says that there are more. The limit bounds the result and
-  /// saves exact tests. It does not bound the memory of intersections and continuous contacts: the search
-  /// skips object pairs after the last reported contact, but it searches one object pair to its end, in parts
-  /// that each keep up to twice the limit. First contacts of elements are all found first, which takes memory
-  /// for each element that touches. Penetration needs all intersections: a limit is an error then.
+  /// saves exact tests and memory: each worker holds at most about twice the limit for a pair of objects,
+  /// and the search skips pairs after the last reported contact. First contacts of elements are all found
+  /// first, which takes memory for each element that touches. Penetration needs all intersections: a limit is
+  /// an error then.
   std::uint64_t max_contacts = std::numeric_limits<std::uint64_t>::max();
 #ifdef __cpp_lib_jthread
   /// Any thread can stop the call: it ends within milliseconds during the search, otherwise after the current
