@@ -1,5 +1,5 @@
 // Time and peak memory of searches that hostile or unusual input makes slow: objects that are far from each
-// other, and many triangles at one distance. Each case runs in a process of its own.
+// other, many triangles at one distance, depths, and exact checks. Each case runs in a process of its own.
 //
 //   supple_bounds           all cases
 //   supple_bounds CASE ...  those whose names contain one of the words
@@ -105,6 +105,61 @@ std::function<std::size_t()> detect_of(const std::vector<TriangleMesh>& meshes, 
   };
 }
 
+/// A triangle of which each vertex is on one of three short arcs, so that all triangles meet.
+TriangleMesh triangles_that_all_meet(std::uint32_t count) {
+  TriangleMesh mesh;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+    const double turns = 0.3 * i / count, tilt = 0.1 * i / count;
+    for (int k = 0; k < 3; ++k)
+      mesh.positions.push_back(
+          {cos_turns(turns + k / 3.0), sin_turns(turns + k / 3.0), k == 0 ? tilt : -tilt});
+    mesh.triangles.push_back({first, first + 1, first + 2});
+  }
+  return mesh;
+}
+
+/// Balls in a grid, each a little inside its neighbours.
+std::vector<TriangleMesh> pile_of_balls() {
+  std::vector<TriangleMesh> balls;
+  for (int i = 0; i < 5; ++i) {
+    for (int j = 0; j < 5; ++j) {
+      for (int k = 0; k < 5; ++k)
+        balls.push_back(
+            moved(make_icosphere(8), {1.85 * i + 0.1 * (j % 2), 1.85 * j + 0.07 * k, 1.85 * k + 0.05 * i}));
+    }
+  }
+  return balls;
+}
+
+/// A ball whose vertices are mostly deep inside a larger one.
+std::vector<TriangleMesh> deep_balls() {
+  TriangleMesh inner = make_icosphere(30);
+  for (Vec3d& p : inner.positions) p = 0.7 * p;
+  return {make_icosphere(40), moved(inner, {0.6, 0.1, 0.05})};
+}
+
+/// One more step of a solver: the vertices have moved a little.
+std::function<std::size_t()> step_of(const std::vector<TriangleMesh>& meshes, ContactKinds kinds) {
+  auto world = std::make_shared<World>(World{Scene({.contacts = kinds, .threads = 1}), {}});
+  for (const TriangleMesh& mesh : meshes) world->ids.push_back(world->scene.add(mesh, {.solid = true}));
+  world->scene.detect();
+  for (std::size_t i = 0; i < meshes.size(); ++i) {
+    std::vector<Vec3d> positions = meshes[i].positions;
+    for (Vec3d& p : positions)
+      p += 0.002 * Vec3d{sin_turns(1.4 * p.y + 0.2 * static_cast<double>(i)), sin_turns(p.z), 0};
+    world->scene.set_positions(world->ids[i], positions);
+  }
+  return [world] { return world->scene.detect().penetrations.size(); };
+}
+
+std::function<std::size_t()> verify_of(const std::vector<TriangleMesh>& meshes, ContactKinds kinds) {
+  auto world = std::make_shared<World>(World{Scene({.contacts = kinds, .threads = 1}), {}});
+  for (const TriangleMesh& mesh : meshes) world->ids.push_back(world->scene.add(mesh, {.solid = true}));
+  world->scene.detect();
+  return [world] { return static_cast<std::size_t>(world->scene.verify().inside_vertices); };
+}
+
 std::vector<Case> all_cases() {
   std::vector<Case> cases;
   for (const std::uint32_t frequency : {9u, 59u}) {
@@ -154,6 +209,21 @@ std::vector<Case> all_cases() {
                    }});
   cases.push_back({"self-collision of 30000 equal triangles",
                    [] { return detect_of({equal_triangles(30000)}, {.self_collision = true}, {}); }});
+  cases.push_back({"1000 contacts of 2000 triangles that all meet", [] {
+                     return detect_of({triangles_that_all_meet(2000)}, {.self_collision = true},
+                                      {.max_contacts = 1000});
+                   }});
+  for (const auto& [kind, kinds] :
+       {std::pair{"penetration", ContactKinds::penetration}, {"intersections", ContactKinds::intersection}}) {
+    cases.push_back({fmt::format("step of a pile of 125 balls, {}", kind),
+                     [=] { return step_of(pile_of_balls(), kinds); }});
+    cases.push_back(
+        {fmt::format("step of deep balls, {}", kind), [=] { return step_of(deep_balls(), kinds); }});
+  }
+  cases.push_back({"verify of penetration of two balls of 69620 triangles", [] {
+                     const TriangleMesh ball = make_icosphere(59);
+                     return verify_of({ball, moved(ball, {0.5, 0.1, 0.2})}, ContactKinds::penetration);
+                   }});
   return cases;
 }
 

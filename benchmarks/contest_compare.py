@@ -44,16 +44,16 @@ def check_out(base):
     return sources
 
 
-def build(sources, name):
-    """Builds only the contest program, with the options of the release preset."""
+def build(sources, name, program="supple_contest"):
+    """Builds only this program, with the options of the release preset."""
     folder = FOLDER / name
     options = ["FORMATS", "RECORDING", "TOOLS", "TESTS", "EXAMPLES"]
     subprocess.run(["cmake", "-S", sources, "-B", folder, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release",
                     "-DCMAKE_CXX_FLAGS_RELEASE=-O3 -DNDEBUG", "-DSUPPLE_BUILD_BENCHMARKS=ON",
                     *(f"-DSUPPLE_BUILD_{option}=OFF" for option in options)], check=True, stdout=subprocess.DEVNULL)
-    subprocess.run(["cmake", "--build", folder, "--target", "supple_contest", "-j", str(os.cpu_count())], check=True,
+    subprocess.run(["cmake", "--build", folder, "--target", program, "-j", str(os.cpu_count())], check=True,
                    stdout=subprocess.DEVNULL)
-    return folder / "bin/supple_contest"
+    return folder / "bin" / program
 
 
 def measure(program, cell, seconds):

@@ -10,8 +10,9 @@ target_compile_options(supple_compile_options INTERFACE
   $<$<CXX_COMPILER_ID:GNU>:-fno-tree-slp-vectorize>)
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
   # Kernels are compiled once per instruction set. SSSE3 is left out to save time: processors since 2008 have
-  # SSE4, and older ones run portable code.
-  target_compile_definitions(supple_compile_options INTERFACE HWY_DISABLED_TARGETS=HWY_SSSE3)
+  # SSE4, and older ones run portable code. Sanitized builds have SSE4 and AVX2.
+  target_compile_definitions(supple_compile_options INTERFACE
+    "HWY_DISABLED_TARGETS=($<IF:$<BOOL:${SUPPLE_SANITIZE}>,HWY_AVX3|HWY_AVX3_DL,HWY_SSSE3>)")
   # Without this definition, Highway 1.0.3 refuses compilers that may use all of AVX-512, as -march=native
   # allows on recent processors.
   include(CheckCXXSourceCompiles)
@@ -49,7 +50,7 @@ if(SUPPLE_SANITIZE)
     endif()
   endif()
   if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
-    # Kernels for SSE4, AVX2 and AVX-512 only: with sanitizers, clang needs minutes for the portable kernels.
+    # SSE4 is the least instruction set then: clang needs minutes for the portable kernels with sanitizers.
     add_compile_options(-march=x86-64-v2 -maes -mpclmul)
   endif()
 endif()

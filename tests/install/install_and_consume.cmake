@@ -1,18 +1,9 @@
-# LIBRARY is a build folder to install from. If it is empty, PROJECT is first built with shared libraries.
+# Builds and runs projects that use only what LIBRARY, a build folder, installs.
 function(run)
   execute_process(COMMAND ${ARGN} COMMAND_ECHO STDOUT COMMAND_ERROR_IS_FATAL ANY)
 endfunction()
 
 file(REMOVE_RECURSE ${WORK}/prefix ${WORK}/consumer ${WORK}/recording_consumer)
-if(NOT LIBRARY)
-  set(LIBRARY ${WORK}/library)
-  # The test checks only the linking, so it uses the fastest build.
-  run(${CMAKE_COMMAND} -S ${PROJECT} -B ${LIBRARY} -G ${GENERATOR} -DCMAKE_CXX_COMPILER=${CXX_COMPILER}
-    -DCMAKE_BUILD_TYPE= "-DCMAKE_CXX_FLAGS=-O0 -DHWY_COMPILE_ONLY_STATIC" -DBUILD_SHARED_LIBS=ON -DSUPPLE_BUILD_TOOLS=OFF
-    -DSUPPLE_BUILD_FORMATS=OFF -DSUPPLE_BUILD_SIMULATION=OFF
-    -DSUPPLE_BUILD_TESTS=OFF -DSUPPLE_BUILD_EXAMPLES=OFF)
-  run(${CMAKE_COMMAND} --build ${LIBRARY})
-endif()
 run(${CMAKE_COMMAND} --install ${LIBRARY} --prefix ${WORK}/prefix)
 function(build_and_run name expected)
   run(${CMAKE_COMMAND} -S ${SOURCE}/${name} -B ${WORK}/${name} -G ${GENERATOR} -DCMAKE_CXX_COMPILER=${CXX_COMPILER}

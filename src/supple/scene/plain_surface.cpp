@@ -5,8 +5,9 @@
 #include <cmath>
 #include <cstdlib>
 #include <limits>
+#include <numeric>
 #include <optional>
-#include <tuple>
+#include <utility>
 
 #include "geometry/vector.hpp"
 
@@ -157,12 +158,19 @@ double increased(double distance) {
   return distance * (1 + 0x1p-40) + 0x1p-1000;
 }
 
-double box_distance(const Vec3d& p, const BoxedCorners& t) {
+double box_distance(const Vec3d& p, const Vec3d& min, const Vec3d& max) {
   Vec3d gap;
-  for (int axis = 0; axis < 3; ++axis)
-    gap[axis] = std::max({t.min[axis] - p[axis], p[axis] - t.max[axis], 0.0});
+  for (int axis = 0; axis < 3; ++axis) gap[axis] = std::max({min[axis] - p[axis], p[axis] - max[axis], 0.0});
   const double squared = dot(gap, gap);
   return squared > 0x1p-900 && squared < 0x1p900 ? std::sqrt(squared) : scaled_norm(gap);
+}
+
+/// Makes the box from `min` to `max` contain the box from `low` to `high`.
+void include(const Vec3d& low, const Vec3d& high, Vec3d& min, Vec3d& max) {
+  for (int axis = 0; axis < 3; ++axis) {
+    min[axis] = std::min(min[axis], low[axis]);
+    max[axis] = std::max(max[axis], high[axis]);
+  }
 }
 
 }  // namespace
@@ -218,54 +226,30 @@ SquaredDistance squared_distance_by_integers(const Vec3d& point, const TriangleP
   return *best;
 }
 
-PlainColumns::PlainColumns(const std::vector<BoxedCorners>& triangles) {
-  constexpr double most = 1024;
-  std::array<double, 2> high{};
-  for (std::size_t axis = 0; axis < 2; ++axis) {
-    const int of_box = axis == 0 ? 1 : 2;
-    low_[axis] = infinity;
-    high[axis] = -infinity;
-    for (const BoxedCorners& t : triangles) {
-      low_[axis] = std::min(low_[axis], t.min[of_box]);
-      high[axis] = std::max(high[axis], t.max[of_box]);
-    }
-  }
-  const auto number = static_cast<double>(triangles.size());
-  const auto cells_of = [&](const BoxedCorners& t) {
-    return std::array{cell(0, t.min.y), cell(0, t.max.y), cell(1, t.min.z), cell(1, t.max.z)};
-  };
-  // Fewer cells when triangles are in many of them.
-  for (count_ = static_cast<std::uint32_t>(std::min(1 + std::sqrt(number / 2), most));; count_ /= 2) {
-    for (std::size_t axis = 0; axis < 2; ++axis) {
-      const double scale = count_ / (high[axis] - low_[axis]);
-      scale_[axis] = std::isnormal(scale) ? scale : 0;
-    }
-    width_ = std::max(high[0] - low_[0], high[1] - low_[1]) / count_;
-    double items = 0;
-    for (const BoxedCorners& t : triangles) {
-      const auto [first_y, last_y, first_z, last_z] = cells_of(t);
-      items += static_cast<double>(last_y - first_y + 1) * (last_z - first_z + 1);
-    }
-    if (count_ == 1 || items <= 8 * number) break;
-  }
-  first_cell_.reserve(triangles.size());
-  first_.assign(std::size_t{count_} * count_ + 2, 0);
-  const auto for_each_cell = [&](const auto& visit) {
-    for (std::uint32_t i = 0; i < triangles.size(); ++i) {
-      const auto [first_y, last_y, first_z, last_z] = cells_of(triangles[i]);
-      for (std::uint32_t z = first_z; z <= last_z; ++z) {
-        for (std::uint32_t y = first_y; y <= last_y; ++y) visit(std::size_t{z} * count_ + y, i);
-      }
-    }
-  };
-  for (const BoxedCorners& t : triangles) {
-    const auto cells = cells_of(t);
-    first_cell_.push_back({cells[0], cells[2]});
-  }
-  for_each_cell([&](std::size_t place, std::uint32_t) { ++first_[place + 2]; });
-  for (std::size_t i = 1; i < first_.size(); ++i) first_[i] += first_[i - 1];
-  items_.resize(first_.back());
-  for_each_cell([&](std::size_t place, std::uint32_t i) { items_[first_[place + 1]++] = i; });
+PlainTree::PlainTree(const std::vector<BoxedCorners>& triangles) : items_(triangles.size()) {
+  std::iota(items_.begin(), items_.end(), 0u);
+  if (!triangles.empty()) build(triangles, 0, static_cast<std::uint32_t>(triangles.size()));
+}
+
+void PlainTree::build(const std::vector<BoxedCorners>& triangles, std::uint32_t begin, std::uint32_t end) {
+  constexpr std::uint32_t most_in_leaf = 4;
+  Node node{triangles[items_[begin]].min, triangles[items_[begin]].max, begin, end};
+  for (std::uint32_t i = begin + 1; i < end; ++i)
+    include(triangles[items_[i]].min, triangles[items_[i]].max, node.min, node.max);
+  const Vec3d size = node.max - node.min;
+  node.axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+  const std::size_t index = nodes_.size();
+  nodes_.push_back(node);
+  if (end - begin <= most_in_leaf) return;
+  const std::uint32_t middle = begin + (end - begin) / 2;
+  std::nth_element(items_.begin() + begin, items_.begin() + middle, items_.begin() + end,
+                   [&](std::uint32_t p, std::uint32_t q) {
+                     return std::pair(triangles[p].min[node.axis], p) <
+                            std::pair(triangles[q].min[node.axis], q);
+                   });
+  build(triangles, begin, middle);
+  nodes_[index].right = static_cast<std::uint32_t>(nodes_.size());
+  build(triangles, middle, end);
 }
 
 namespace {
@@ -280,12 +264,7 @@ std::vector<BoxedCorners> boxed_corners(const PlainObject& object, bool& has_ine
       continue;
     }
     boxed.min = boxed.max = boxed.corners[0];
-    for (const Vec3d& corner : boxed.corners) {
-      for (int axis = 0; axis < 3; ++axis) {
-        boxed.min[axis] = std::min(boxed.min[axis], corner[axis]);
-        boxed.max[axis] = std::max(boxed.max[axis], corner[axis]);
-      }
-    }
+    for (const Vec3d& corner : boxed.corners) include(corner, corner, boxed.min, boxed.max);
     boxed.triangle = t;
     triangles.push_back(boxed);
   }
@@ -295,13 +274,16 @@ std::vector<BoxedCorners> boxed_corners(const PlainObject& object, bool& has_ine
 }  // namespace
 
 PlainSurface::PlainSurface(const PlainObject& object)
-    : triangles(boxed_corners(object, has_inert)), columns(triangles) {}
+    : triangles(boxed_corners(object, has_inert)), tree(triangles) {}
 
 Containment PlainSurface::containment(const Vec3d& p) const {
   bool is_inside = false, is_on = false;
-  columns.visit(p, 0, [&](std::uint32_t i) {
+  const auto is_ahead = [&](const Vec3d& min, const Vec3d& max) {
+    return p.y >= min.y && p.y <= max.y && p.z >= min.z && p.z <= max.z && p.x <= max.x;
+  };
+  tree.visit(p, is_ahead, [&](std::uint32_t i) {
     const BoxedCorners& t = triangles[i];
-    if (p.y < t.min.y || p.y > t.max.y || p.z < t.min.z || p.z > t.max.z || p.x > t.max.x) return;
+    if (!is_ahead(t.min, t.max)) return;
     const int side = side_of_plane(t.corners, p);
     if (side == 0 && p.x >= t.min.x && triangles_intersect_by_axes({p, p, p}, t.corners)) is_on = true;
     if (crosses_ahead(t.corners, p, side)) is_inside = !is_inside;
@@ -310,21 +292,18 @@ Containment PlainSurface::containment(const Vec3d& p) const {
   return is_inside && !has_inert ? Containment::inside : Containment::outside;
 }
 
-/// Looks at the triangles within a radius, which grows until one of them is that near.
 PlainSurface::Nearest PlainSurface::nearest(const Vec3d& point) const {
   std::vector<std::pair<double, std::uint32_t>> candidates;
   double least = infinity;
-  for (double radius = columns.width() > 0 ? columns.width() : infinity;; radius *= 2) {
-    candidates.clear();
-    least = infinity;
-    columns.visit(point, increased(radius) + 0x1p-40 * largest_magnitude(point), [&](std::uint32_t i) {
-      if (box_distance(point, triangles[i]) > increased(std::min(radius, least))) return;
-      const auto [lower, upper] = bounds_of_distance(point, triangles[i].corners);
-      least = std::min(least, upper);
-      candidates.emplace_back(lower, i);
-    });
-    if (least <= radius || radius == infinity) break;
-  }
+  const auto is_in_reach = [&](const Vec3d& min, const Vec3d& max) {
+    return box_distance(point, min, max) <= increased(least);
+  };
+  tree.visit(point, is_in_reach, [&](std::uint32_t i) {
+    if (!is_in_reach(triangles[i].min, triangles[i].max)) return;
+    const auto [lower, upper] = bounds_of_distance(point, triangles[i].corners);
+    least = std::min(least, upper);
+    candidates.emplace_back(lower, i);
+  });
   std::optional<Nearest> best;
   for (const auto& [lower, i] : candidates) {
     if (lower > least) continue;

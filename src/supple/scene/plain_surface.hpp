@@ -36,50 +36,49 @@ struct BoxedCorners {
   std::uint32_t triangle = 0;  ///< the user's number
 };
 
-/// A grid of squares in the y-z plane, each with the triangles whose boxes touch it.
-class PlainColumns {
+/// A binary tree of boxes, each split at the median along its longest axis.
+class PlainTree {
  public:
-  explicit PlainColumns(const std::vector<BoxedCorners>& triangles);
+  explicit PlainTree(const std::vector<BoxedCorners>& triangles);
 
-  /// Calls `visit(i)` once for each triangle whose box may come within `radius` of the point in the y-z
-  /// plane.
-  template <class Visit>
-  void visit(const Vec3d& point, double radius, const Visit& visit) const {
-    const std::array first{cell(0, point.y - radius), cell(1, point.z - radius)},
-        last{cell(0, point.y + radius), cell(1, point.z + radius)};
-    for (std::uint32_t row = first[1]; row <= last[1]; ++row) {
-      for (std::uint32_t column = first[0]; column <= last[0]; ++column) {
-        const std::size_t place = std::size_t{row} * count_ + column;
-        for (std::uint32_t i = first_[place]; i < first_[place + 1]; ++i) {
-          // In the first of its cells that is visited.
-          const std::array<std::uint32_t, 2>& from = first_cell_[items_[i]];
-          if (column == std::max(from[0], first[0]) && row == std::max(from[1], first[1])) visit(items_[i]);
-        }
-      }
-    }
+  /// Calls `visit(i)` for the triangles of every leaf that `enter(min, max)` accepts with all boxes above it.
+  /// Boxes on the side of the point come first.
+  template <class Enter, class Visit>
+  void visit(const Vec3d& point, const Enter& enter, const Visit& visit) const {
+    if (!nodes_.empty()) visit_node(0, point, enter, visit);
   }
-  /// The edge of a cell.
-  double width() const { return width_; }
 
  private:
-  /// Never decreases with x.
-  std::uint32_t cell(std::size_t axis, double x) const {
-    const double place = (x - low_[axis]) * scale_[axis];
-    return place > 0 ? static_cast<std::uint32_t>(std::min(place, static_cast<double>(count_ - 1))) : 0;
+  struct Node {
+    Vec3d min, max;
+    std::uint32_t begin = 0, end = 0;  // in items_
+    std::uint32_t right = 0;           // 0 for a leaf; the left child is the next node
+    int axis = 0;
+  };
+
+  void build(const std::vector<BoxedCorners>& triangles, std::uint32_t begin, std::uint32_t end);
+  template <class Enter, class Visit>
+  void visit_node(std::uint32_t index, const Vec3d& point, const Enter& enter, const Visit& visit) const {
+    const Node& node = nodes_[index];
+    if (!enter(node.min, node.max)) return;
+    if (node.right == 0) {
+      for (std::uint32_t i = node.begin; i < node.end; ++i) visit(items_[i]);
+      return;
+    }
+    const bool is_right_first = point[node.axis] > nodes_[node.right].min[node.axis];
+    visit_node(is_right_first ? node.right : index + 1, point, enter, visit);
+    visit_node(is_right_first ? index + 1 : node.right, point, enter, visit);
   }
 
-  std::uint32_t count_ = 1;  // of rows and of columns
-  double width_ = 0;
-  std::array<double, 2> low_{}, scale_{};                 // of y and z
-  std::vector<std::array<std::uint32_t, 2>> first_cell_;  // of each triangle
-  std::vector<std::uint32_t> first_, items_;              // by cell
+  std::vector<Node> nodes_;
+  std::vector<std::uint32_t> items_;
 };
 
 /// The triangles of one object.
 struct PlainSurface {
   bool has_inert = false;               ///< triangles with a corner that is not finite are left out
   std::vector<BoxedCorners> triangles;  ///< the others, ascending
-  PlainColumns columns;
+  PlainTree tree;
 
   explicit PlainSurface(const PlainObject& object);
 
