@@ -11,8 +11,11 @@ target_compile_options(supple_compile_options INTERFACE
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
   # Kernels are compiled once per instruction set. SSSE3 is left out to save time: processors since 2008 have
   # SSE4, and older ones run portable code. Sanitized builds have SSE4 and AVX2.
-  target_compile_definitions(supple_compile_options INTERFACE
-    "HWY_DISABLED_TARGETS=($<IF:$<BOOL:${SUPPLE_SANITIZE}>,HWY_AVX3|HWY_AVX3_DL,HWY_SSSE3>)")
+  set(disabled_targets HWY_SSSE3)
+  if(SUPPLE_SANITIZE)
+    set(disabled_targets "(HWY_AVX3|HWY_AVX3_DL)")
+  endif()
+  target_compile_definitions(supple_compile_options INTERFACE "HWY_DISABLED_TARGETS=${disabled_targets}")
   # Without this definition, Highway 1.0.3 refuses compilers that may use all of AVX-512, as -march=native
   # allows on recent processors.
   include(CheckCXXSourceCompiles)

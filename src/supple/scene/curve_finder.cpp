@@ -11,12 +11,6 @@
 namespace supple {
 namespace {
 
-template <class List>
-void sort_once(List& list) {
-  std::sort(list.begin(), list.end());
-  list.erase(std::unique(list.begin(), list.end()), list.end());
-}
-
 Vec3d unit_or_zero(const Vec3d& v) {
   const double largest = std::max({std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)});
   if (!(largest > 0 && std::isfinite(largest))) return {};
@@ -319,141 +313,36 @@ void CurveFinder::list_normals(std::span<const std::uint32_t> members) {
   if (norm(by_length) > least * length) normals_.front() = unit_or_zero(by_length);
 }
 
-bool CurveFinder::is_cut(std::uint32_t v, std::uint32_t w) const {
-  return std::binary_search(cut_edges_.begin(), cut_edges_.end(), std::array{std::min(v, w), std::max(v, w)});
-}
-
 /// Appends the vertices that the curve encloses on one side and returns their number.
 std::size_t CurveFinder::enclose(std::span<const std::uint32_t> members, bool side_b, CurveLists& lists) {
   const SurfaceView& surface = side_b ? input_.b : input_.a;
   const bool is_one_sided = is_one_sided_[members.front()] != 0;
   if (is_one_sided && side_b) return 0;
-  corners_.clear();
-  crossed_edges_.clear();
-  const auto add_side = [&](std::uint32_t i, bool of_b) {
+  side_.clear();
+  const auto add_triangle = [&](std::uint32_t i, bool of_b) {
     const Triangle& triangle = surface.triangle(of_b ? contact(i).triangle_b : contact(i).triangle_a);
-    corners_.insert(corners_.end(), triangle.begin(), triangle.end());
+    side_.add_triangle(triangle);
     for (std::uint32_t k = 0; k < contact(i).point_count; ++k) {
       const std::uint32_t place = first_place(i) + k;
       const FeatureName name = name_of(of_b ? points_[place].on_b : points_[place].on_a, triangle, 0);
-      if (name.kind == FeatureKind::edge) crossed_edges_.push_back({name.first, name.last, key_[place]});
+      if (name.kind == FeatureKind::edge) side_.add_crossing({name.first, name.last, key_[place]});
     }
   };
   for (const std::uint32_t i : members) {
-    add_side(i, side_b != is_turned(i));
-    if (is_one_sided) add_side(i, !is_turned(i));
+    add_triangle(i, side_b != is_turned(i));
+    if (is_one_sided) add_triangle(i, !is_turned(i));
   }
-  sort_once(crossed_edges_);
-  sort_once(corners_);
-  cut_edges_.clear();
-  for (std::size_t begin = 0, end = 0; begin < crossed_edges_.size(); begin = end) {
-    const auto [v, w, key] = crossed_edges_[begin];
-    while (end < crossed_edges_.size() && crossed_edges_[end][0] == v && crossed_edges_[end][1] == w) ++end;
-    if ((end - begin) % 2 != 0) cut_edges_.push_back({v, w});
-  }
-  if (cut_edges_.empty()) return 0;
-
-  // Corners on the same side of the curve have the same colour.
-  colors_.start(corners_.size());
-  const auto corner = [&](std::uint32_t vertex) {
-    return static_cast<std::uint32_t>(std::lower_bound(corners_.begin(), corners_.end(), vertex) -
-                                      corners_.begin());
-  };
-  const auto join_corners = [&](const Triangle& triangle) {
-    bool agrees = true;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::uint32_t v = triangle[k], w = triangle[(k + 1) % 3];
-      if (v != w) agrees = colors_.join(corner(v), corner(w), is_cut(v, w)) && agrees;
-    }
-    return agrees;
-  };
-  for (const std::uint32_t i : members) {
-    const bool of_b = side_b != is_turned(i);
-    if (!join_corners(surface.triangle(of_b ? contact(i).triangle_b : contact(i).triangle_a))) return 0;
-    if (is_one_sided && !join_corners(surface.triangle(of_b ? contact(i).triangle_a : contact(i).triangle_b)))
-      return 0;
-  }
-  std::optional<std::size_t> behind = color_behind(surface, side_b);
   // All curves together flood as many vertices as there are contacts and vertices, about.
   const std::size_t curves = first_member_.size() - 1;
   const std::size_t most_behind = std::max(16 * members.size(), 4 * surface.around->vertex_count() / curves);
-  const std::vector<std::uint32_t>* const enclosed = smaller_side(surface, behind, most_behind);
-  if (enclosed == nullptr) return 0;
-  behind_[side_b ? 1 : 0] = behind ? flooded_[*behind] : *enclosed;
+  const Vec3d towards_behind = side_b ? of_area_ : Vec3d{} - of_area_;
+  const std::span<const std::uint32_t> enclosed =
+      side_.enclose(surface, {towards_behind, middle_, scale_}, most_behind);
+  behind_[side_b ? 1 : 0].assign(side_.behind().begin(), side_.behind().end());
   const auto first = static_cast<std::ptrdiff_t>(lists.enclosed.size());
-  lists.enclosed.insert(lists.enclosed.end(), enclosed->begin(), enclosed->end());
+  lists.enclosed.insert(lists.enclosed.end(), enclosed.begin(), enclosed.end());
   std::sort(lists.enclosed.begin() + first, lists.enclosed.end());
-  return enclosed->size();
-}
-
-/// The colour of the corners that are behind along the direction of the area: lower for a and higher for b.
-/// Nothing when there is no direction, or hardly a difference.
-std::optional<std::size_t> CurveFinder::color_behind(const SurfaceView& surface, bool side_b) {
-  std::array<double, 2> sums{}, counts{};
-  double extent = 0;
-  for (std::uint32_t c = 0; c < corners_.size(); ++c) {
-    const std::size_t color = colors_.find(c).is_opposite ? 1 : 0;
-    const Vec3d from_middle = scale_ * surface.position(corners_[c]) - middle_;
-    sums[color] += dot(of_area_, from_middle);
-    counts[color] += 1;
-    extent = std::max(extent, largest_magnitude(from_middle));
-  }
-  if (counts[0] == 0 || counts[1] == 0) return {};
-  const double difference = sums[0] / counts[0] - sums[1] / counts[1];
-  if (!(std::fabs(difference) > 0x1p-7 * extent)) return {};
-  return (difference > 0) == side_b ? 0 : 1;
-}
-
-/// Floods both sides of the curve in turns, without crossing it, until one of them is complete, and then the
-/// one that is behind; `behind` loses its value when that side has more than `most_behind` vertices and is
-/// not the smaller one. Null when they are the same side.
-const std::vector<std::uint32_t>* CurveFinder::smaller_side(const SurfaceView& surface,
-                                                            std::optional<std::size_t>& behind,
-                                                            std::size_t most_behind) {
-  const auto mark_of = [&](std::size_t color) { return last_mark_ + static_cast<std::uint32_t>(color); };
-  marks_.resize(std::max(marks_.size(), surface.around->vertex_count()), 0);
-  constexpr std::uint32_t almost_all = 0xfffffff0;
-  if (last_mark_ > almost_all) {
-    std::fill(marks_.begin(), marks_.end(), 0);
-    last_mark_ = 0;
-  }
-  last_mark_ += 2;
-  for (auto& flooded : flooded_) flooded.clear();
-  for (std::uint32_t c = 0; c < corners_.size(); ++c) {
-    const ParitySets::Place place = colors_.find(c);
-    if (place.root != 0) return nullptr;
-    const std::size_t color = place.is_opposite ? 1 : 0;
-    marks_[corners_[c]] = mark_of(color);
-    flooded_[color].push_back(corners_[c]);
-  }
-  const std::vector<std::uint32_t>* smaller = nullptr;
-  for (std::size_t next = 0;; ++next) {
-    for (std::size_t color = 0; color < 2; ++color) {
-      if (smaller == nullptr && next == flooded_[color].size()) {
-        smaller = &flooded_[color];
-        // When both are equal, the one behind counts as the smaller one.
-        if (behind && flooded_[*behind].size() == next) smaller = &flooded_[*behind];
-      }
-      if (smaller != nullptr && behind && smaller != &flooded_[*behind] &&
-          flooded_[*behind].size() > most_behind)
-        behind.reset();
-      if (smaller != nullptr && (!behind || next >= flooded_[*behind].size())) return smaller;
-      if (next >= flooded_[color].size()) continue;
-      const std::uint32_t v = flooded_[color][next];
-      for (const std::uint32_t t : surface.around->around(v)) {
-        for (const std::uint32_t w : surface.triangle(t)) {
-          if (marks_[w] == mark_of(color)) continue;
-          const bool is_other = marks_[w] == mark_of(1 - color);
-          if (is_other) {
-            if (is_cut(v, w)) continue;
-            return nullptr;
-          }
-          marks_[w] = mark_of(color);
-          flooded_[color].push_back(w);
-        }
-      }
-    }
-  }
+  return enclosed.size();
 }
 
 /// Collects the triangles of both sides, relative to a point of the curve and scaled to about 1 or less.

@@ -2,11 +2,11 @@
 
 #include <array>
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <vector>
 
 #include "scene/curve_parts.hpp"
+#include "scene/curve_side.hpp"
 #include "scene/feature_name.hpp"
 #include "scene/parity_sets.hpp"
 #include "scene/surface_view.hpp"
@@ -73,10 +73,6 @@ class CurveFinder {
   double collect_parts(std::span<const std::uint32_t> members);
   void find_way_out(std::span<const std::uint32_t> members, IntersectionCurve& curve);
   std::size_t enclose(std::span<const std::uint32_t> members, bool side_b, CurveLists& lists);
-  std::optional<std::size_t> color_behind(const SurfaceView& surface, bool side_b);
-  const std::vector<std::uint32_t>* smaller_side(const SurfaceView& surface,
-                                                 std::optional<std::size_t>& behind, std::size_t most_behind);
-  bool is_cut(std::uint32_t v, std::uint32_t w) const;
 
   const Contact& contact(std::uint32_t i) const { return contacts_[i]; }
   std::uint32_t first_place(std::uint32_t i) const {
@@ -119,17 +115,9 @@ class CurveFinder {
   std::vector<Vec3d> normals_;                        // from which that of the curve is chosen
   std::vector<double> ways_;                          // along them
   std::array<std::vector<std::uint32_t>, 2> behind_;  // vertices of both surfaces
+  CurveSide side_;
   CurveParts parts_;
   std::array<std::vector<std::uint32_t>, 2> triangles_;  // of the parts
-
-  // One side of a curve.
-  std::vector<std::uint32_t> corners_;                       // vertices of its triangles, ascending
-  std::vector<std::array<std::uint32_t, 3>> crossed_edges_;  // with the key of the crossing
-  std::vector<std::array<std::uint32_t, 2>> cut_edges_;      // crossed an odd number of times
-  ParitySets colors_;
-  std::vector<std::uint32_t> marks_;  // by vertex
-  std::uint32_t last_mark_ = 0;
-  std::array<std::vector<std::uint32_t>, 2> flooded_;
 };
 
 }  // namespace supple
