@@ -2,6 +2,7 @@
 
 #include <tuple>
 
+#include "core/sort_once.hpp"
 #include "geometry/vector.hpp"
 
 namespace supple {
@@ -40,12 +41,8 @@ BoxedElements boxed_elements(const PlainMovingObject& object) {
       if (low != high) edges.push_back({low, high});
     }
   }
-  const auto keep_distinct = [](auto& items) {
-    std::sort(items.begin(), items.end());
-    items.erase(std::unique(items.begin(), items.end()), items.end());
-  };
-  keep_distinct(vertices);
-  keep_distinct(edges);
+  sort_once(vertices);
+  sort_once(edges);
   BoxedElements elements;
   using enum FeatureKind;
   for (const std::uint32_t v : vertices) append(object, {v, v, v}, {v, v}, vertex, elements.vertices);

@@ -5,6 +5,7 @@
 #include <limits>
 #include <tuple>
 
+#include "core/sort_once.hpp"
 #include "geometry/exact_predicates.hpp"
 #include "geometry/vector.hpp"
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/sort_once.hpp"
 #include "geometry/vector.hpp"
 
 namespace supple {
@@ -31,10 +32,6 @@ bool CurveSide::is_cut(std::uint32_t v, std::uint32_t w) const {
 /// Gives corners on the same side of the curve the same colour. False when that is impossible or the curve
 /// crosses no edge.
 bool CurveSide::color_corners() {
-  const auto sort_once = [](auto& list) {
-    std::sort(list.begin(), list.end());
-    list.erase(std::unique(list.begin(), list.end()), list.end());
-  };
   sort_once(crossings_);
   sort_once(corners_);
   cut_edges_.clear();

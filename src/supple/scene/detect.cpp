@@ -7,6 +7,7 @@
 
 #include "core/error.hpp"
 #include "core/float_rounding.hpp"
+#include "core/sort_once.hpp"
 #include "core/timer.hpp"
 #include "geometry/aabb.hpp"
 #include "octree/way_boxes.hpp"
@@ -516,8 +517,7 @@ void Scene::Implementation::list_deep_pairs(const DetectResult& found) {
     if (group.penetration_count > 0) add(group.a, group.b);
   }
   for (const ContainedPart& part : found.contained_parts) add(part.inner, part.outer);
-  std::sort(deep_pairs_.begin(), deep_pairs_.end());
-  deep_pairs_.erase(std::unique(deep_pairs_.begin(), deep_pairs_.end()), deep_pairs_.end());
+  sort_once(deep_pairs_);
 }
 
 /// Pairs of objects that intersect or touch within the step, each once, ascending.
@@ -529,8 +529,7 @@ void Scene::Implementation::list_touching_pairs(const DetectResult& found) {
     }
   }
   if (found.groups.empty() || found.continuous_groups.empty()) return;
-  std::sort(touching_pairs_.begin(), touching_pairs_.end());
-  touching_pairs_.erase(std::unique(touching_pairs_.begin(), touching_pairs_.end()), touching_pairs_.end());
+  sort_once(touching_pairs_);
 }
 
 }  // namespace supple

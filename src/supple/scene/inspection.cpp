@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "core/error.hpp"
+#include "core/sort_once.hpp"
 #include "geometry/aabb.hpp"
 #include "geometry/polytope.hpp"
 #include "geometry/sphere.hpp"
@@ -75,8 +76,7 @@ class CollidingCells {
   }
   /// Call after all cells were added, and before `place_of`.
   std::vector<OctreeCell> list() {
-    std::sort(names_.begin(), names_.end());
-    names_.erase(std::unique(names_.begin(), names_.end()), names_.end());
+    sort_once(names_);
     std::vector<OctreeCell> cells;
     for (const Name name : names_)
       cells.push_back(name == 0 ? reader_.root()

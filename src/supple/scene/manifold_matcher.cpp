@@ -3,6 +3,7 @@
 #include <tuple>
 #include <utility>
 
+#include "core/sort_once.hpp"
 #include "scene/manifold_pass.hpp"
 
 namespace supple {
@@ -66,8 +67,7 @@ void ManifoldMatcher::match_by_names(const ManifoldLists& before, const Manifold
   named_.clear();
   for (std::uint32_t i = 0; i < before.manifolds.size(); ++i)
     for_each_key(before, i, [&](const Key& key) { named_.push_back({key, i}); });
-  std::sort(named_.begin(), named_.end());
-  named_.erase(std::unique(named_.begin(), named_.end()), named_.end());
+  sort_once(named_);
   common_.clear();
   for (std::uint32_t i = 0; i < now.manifolds.size(); ++i) {
     for_each_key(now, i, [&](const Key& key) {

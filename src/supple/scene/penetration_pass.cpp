@@ -6,6 +6,7 @@
 #include <tuple>
 #include <utility>
 
+#include "core/sort_once.hpp"
 #include "geometry/exact_predicates.hpp"
 #include "geometry/vector.hpp"
 #include "scene/feature_name.hpp"
@@ -14,12 +15,6 @@ namespace supple {
 namespace {
 
 constexpr std::uint8_t is_visited = 1, is_corner = 2, is_on_surface = 4;
-
-template <class List>
-void sort_once(List& list) {
-  std::sort(list.begin(), list.end());
-  list.erase(std::unique(list.begin(), list.end()), list.end());
-}
 
 template <class List>
 std::uint32_t size_of(const List& list) {

@@ -4,6 +4,7 @@
 #include <span>
 #include <utility>
 
+#include "core/sort_once.hpp"
 #include "core/timer.hpp"
 
 namespace supple {
@@ -215,8 +216,7 @@ void ProximityPass::keep(const Found& found, Worker& worker) const {
 /// more.
 void ProximityPass::merge(Worker& worker) const {
   std::vector<Found>& found = worker.found;
-  std::sort(found.begin(), found.end());
-  found.erase(std::unique(found.begin(), found.end()), found.end());
+  sort_once(found);
   if (found.size() > max_pairs_) {
     found.resize(static_cast<std::size_t>(max_pairs_) + 1);
     worker.is_full = true;

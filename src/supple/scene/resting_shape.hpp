@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/parallel.hpp"
+#include "core/sort_once.hpp"
 #include "narrow_phase/traversal.hpp"
 #include "octree/object_octree.hpp"
 #include "scene/adaptive_culling.hpp"
@@ -69,8 +70,7 @@ void list_non_finite(const ObjectOctree& octree, const IsFinite& is_finite_at,
       if (!is_finite_at(v)) vertices.push_back(v);
     }
   }
-  std::sort(vertices.begin(), vertices.end());
-  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+  sort_once(vertices);
 }
 
 /// Sets a byte per triangle in octree order: 1 when a vertex of the triangle is not finite, and for triangles

@@ -25,6 +25,7 @@
 #include "contact/impact_search.hpp"
 #include "contact/safe_time.hpp"
 #include "core/float_rounding.hpp"
+#include "core/sort_once.hpp"
 #include "geometry/vector.hpp"
 #include "scene/impact_pass.hpp"
 
@@ -150,8 +151,7 @@ void ImpactPass::prove_rounded_positions(const Parallel& parallel) {
   std::vector<std::uint32_t> open;
   for (const Worker& worker : workers_)
     open.insert(open.end(), worker.near_jobs.begin(), worker.near_jobs.end());
-  std::sort(open.begin(), open.end());
-  open.erase(std::unique(open.begin(), open.end()), open.end());
+  sort_once(open);
   std::erase_if(open, [&](std::uint32_t job) { return is_between_islands(job); });
   const auto safe_of = [&](std::uint32_t job) -> SafeStep& { return safe_[island_of(mover_of(job))]; };
   std::vector<std::uint8_t> is_shorter(safe_.size(), 0), fails(safe_.size(), 1);

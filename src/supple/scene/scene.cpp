@@ -1,4 +1,5 @@
 #include "supple/scene.hpp"
+#include "core/sort_once.hpp"
 
 #include <algorithm>
 #include <array>
@@ -155,8 +156,7 @@ ObjectId Scene::Implementation::add(const PositionsView& positions, const Triang
     for (Triangle& edge : extra) std::sort(edge.begin(), edge.begin() + 2);
     for (Triangle& edge : extra) edge[2] = edge[1];
   }
-  std::sort(extra.begin(), extra.end());
-  extra.erase(std::unique(extra.begin(), extra.end()), extra.end());
+  sort_once(extra);
   if (named.solid) {
     TriangleMesh surface{.name = {}, .positions = {}, .triangles = faces};
     for (std::size_t v = 0; v < positions.size(); ++v) surface.positions.push_back(positions[v]);
