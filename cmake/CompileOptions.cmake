@@ -70,10 +70,9 @@ endif()
 
 # Compiles the headers that most sources of a target include once instead of once for each source. A compiler
 # cache does not store the results of such compilations, so builds with a cache do not use it. The debug preset
-# does not use it either, which finds sources that miss an include. With the thread sanitizer and precompiled
-# headers, GCC 12 gives false warnings about strings.
+# does not use it either, which finds sources that miss an include.
 function(supple_precompile_headers target)
-  if(NOT CMAKE_CXX_COMPILER_LAUNCHER AND NOT SUPPLE_SANITIZE MATCHES "thread")
+  if(NOT CMAKE_CXX_COMPILER_LAUNCHER)
     target_precompile_headers(${target} PRIVATE <algorithm> <array> <cmath> <cstdint> <filesystem> <functional> <limits>
       <map> <memory> <optional> <span> <string> <utility> <vector> ${ARGN})
   endif()
