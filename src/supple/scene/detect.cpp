@@ -83,7 +83,8 @@ const DetectResult& Scene::Implementation::detect(const DetectRequest& request) 
   result.stopped = true;  // until `publish`
   mark_changed();
   Timer total, stage;
-  refit_objects(question_);
+  refit_objects(question_.shapes());
+  list_volumes(question_);
   result.stats.refit_seconds = stage.lap();
   find_object_pairs(jobs_);
   result.stats.broad_phase_method = pair_finder.stats().method;
@@ -144,20 +145,10 @@ double Scene::Implementation::half_separation_of(const SceneObject& object, std:
          safe_step_rounding * ways.largest_coordinate;
 }
 
-void Scene::Implementation::refit_objects(const Question& question) {
-  const SearchedShapes shapes = question.shapes();
-  const bool is_another_search = searched_ != shapes;
-  const auto growth_of = [&](const SceneObject& object, std::uint32_t index) {
-    return std::max(question.is_continuous() ? growth(half_separation_of(object, index, question)) : 0,
-                    question.has_proximity() ? growth(object.options.margin) : 0);
-  };
-  growths_.resize(slots_.size(), 0);
-  boxes_.resize(slots_.size());
-  spheres_.resize(slots_.size());
+void Scene::Implementation::refit_objects(const SearchedShapes& shapes) {
   versions_.resize(slots_.size(), 0);
   changed_.resize(slots_.size(), 0);
   stale_.clear();
-  last_version_before_ = last_version_;
   for (std::uint32_t index = 0; index < slots_.size(); ++index) {
     const SceneObject* const object = slots_[index].object.get();
     if (object == nullptr) continue;
@@ -176,6 +167,20 @@ void Scene::Implementation::refit_objects(const Question& question) {
                   [&](SceneObject& object, const Parallel& workers) { object.update(shapes, workers); });
   for (const std::uint32_t index : stale_)
     result.stats.triangles_refitted += slots_[index].object->refitted_triangles();
+}
+
+/// The boxes and spheres that the broad phase reads, and the slots where they may have changed since its last
+/// search.
+void Scene::Implementation::list_volumes(const Question& question) {
+  const SearchedShapes shapes = question.shapes();
+  const bool is_another_search = searched_ != shapes;
+  const auto growth_of = [&](const SceneObject& object, std::uint32_t index) {
+    return std::max(question.is_continuous() ? growth(half_separation_of(object, index, question)) : 0,
+                    question.has_proximity() ? growth(object.options.margin) : 0);
+  };
+  growths_.resize(slots_.size(), 0);
+  boxes_.resize(slots_.size());
+  spheres_.resize(slots_.size());
   changed_slots_.clear();
   for (std::uint32_t index = 0; index < slots_.size(); ++index) {
     const SceneObject* const object = slots_[index].object.get();
@@ -243,7 +248,7 @@ bool Scene::Implementation::may_pair(const IndexPair& pair) const {
 void Scene::Implementation::count_queries(const Jobs& jobs) {
   queries_.assign(slots_.size(), 0);
   for (const ContactJob& job : jobs.jobs) {
-    if (std::max(versions_[job.a], versions_[job.b]) <= last_version_before_) continue;
+    if (std::max(versions_[job.a], versions_[job.b]) <= counted_version_) continue;
     if (job.a == job.b) {
       queries_[job.a] += RebuildPolicy::queries_of_self;
     } else {
@@ -257,6 +262,11 @@ void Scene::Implementation::count_queries(const Jobs& jobs) {
 
 /// Rebuilds degraded octrees where that pays, some in each step: the others wait.
 void Scene::Implementation::rebuild_degraded(const Jobs& jobs) {
+  rebuild_those_that_pay(jobs);
+  counted_version_ = last_version_;
+}
+
+void Scene::Implementation::rebuild_those_that_pay(const Jobs& jobs) {
   constexpr std::uint64_t most_triangles = 65536;  // a step, but at least one object
   degraded_.clear();
   for (std::uint32_t index = 0; index < slots_.size(); ++index) {
@@ -368,7 +378,8 @@ bool Scene::Implementation::find_penetrations(const StopSignal& stop) {
 /// Prepares a search on the way that does not change the result of `detect`.
 void Scene::Implementation::search_on_the_way(const Question& question) {
   const StepStats stats = result.stats;
-  refit_objects(question);
+  refit_objects(question.shapes());
+  list_volumes(question);
   find_object_pairs(impact_jobs_);
   rebuild_degraded(impact_jobs_);
   result.stats = stats;

@@ -33,11 +33,10 @@ QueriedObject Scene::Implementation::queried_object(std::uint32_t index) const {
           found.needs_fine_boxes() ? found.fine_boxes() : nullptr};
 }
 
-/// Keeps the broad phase up to date, as `earliest_impact` does.
+/// The next search for pairs still sees which objects have moved.
 void Scene::Implementation::refit_for_queries() {
   const StepStats stats = result.stats;
-  refit_objects({});
-  find_object_pairs(impact_jobs_);
+  refit_objects(Question{}.shapes());
   result.stats = stats;
   for (const Slot& slot : slots_) {
     if (slot.object != nullptr && slot.object->needs_fine_boxes()) slot.object->update_fine_boxes();

@@ -167,7 +167,8 @@ class Scene::Implementation {
   };
 
   double half_separation_of(const SceneObject& object, std::uint32_t index, const Question& question) const;
-  void refit_objects(const Question& question);
+  void refit_objects(const SearchedShapes& shapes);
+  void list_volumes(const Question& question);
   template <class Work, class Function>
   void for_each_object(std::span<const std::uint32_t> indices, const Work& work, const Function& function);
   /// Refits the objects that have moved, without changing the result of `detect`.
@@ -187,6 +188,7 @@ class Scene::Implementation {
   void find_object_pairs(Jobs& found);
   void count_queries(const Jobs& jobs);
   void rebuild_degraded(const Jobs& jobs);
+  void rebuild_those_that_pay(const Jobs& jobs);
   /// These return false when they were stopped.
   bool find_contacts(const DetectRequest& request, const StopSignal& stop);
   bool find_impacts(const DetectRequest& request, const StopSignal& stop);
@@ -273,9 +275,9 @@ class Scene::Implementation {
   std::vector<std::uint32_t> changed_slots_;
   std::vector<std::uint64_t> versions_;  // of positions; a version is never used twice
   std::uint64_t last_version_ = 0,
-                last_version_before_ = 0;  // the newest, and the newest of the previous step
-  SearchedShapes searched_;                // by the last search
-  std::vector<double> growths_;            // of boxes and spheres in the last search
+                counted_version_ = 0;  // the newest, and the newest when queries of octrees were counted
+  SearchedShapes searched_;            // by the last search
+  std::vector<double> growths_;        // of boxes and spheres in the last search
   std::vector<std::uint32_t> stale_, degraded_, small_;
   std::vector<double> queries_;  // of degraded objects
   Jobs jobs_, impact_jobs_;      // of `detect`, and of `earliest_impact`

@@ -494,6 +494,28 @@ TEST(QueriesOfAScene, DoNotDisturbDetection) {
   }
 }
 
+TEST(QueriesOfAScene, DoNotSearchForPairsOfObjects) {
+  Scene scene;
+  int filtered = 0;
+  scene.set_pair_filter([&](ObjectId, ObjectId) {
+    ++filtered;
+    return true;
+  });
+  const ObjectId a = scene.add(corner_mesh), b = scene.add(corner_mesh);
+  scene.detect();
+  ASSERT_GT(filtered, 0);
+  filtered = 0;
+  scene.translate(a, {0.25, 0, 0});
+  closest_of(scene, {Vec3d{3, 0, 0}});
+  inside_of(scene, {Vec3d{3, 0, 0}});
+  hits_of(scene, {{{3, 0, 0}, {-1, 0, 0}}});
+  scene.distance(a, b);
+  scene.any_contact(a, b);
+  EXPECT_EQ(filtered, 0);
+  scene.detect();
+  EXPECT_GT(filtered, 0);
+}
+
 TEST(QueriesOfAScene, LeaveOutWhatIsNotFinite) {
   Scene scene;
   TriangleMesh mesh = corner_mesh;

@@ -206,6 +206,22 @@ TEST(SceneRebuild, ObjectsThatAreTurnedAndMovedAfterwardsKeepTheirShape) {
   }
 }
 
+TEST(SceneRebuild, HappensAsOftenWhenQueriesComeBeforeDetection) {
+  Drift drift = soups(250);
+  Living asked(drift, with_threads(1), true), plain(drift, with_threads(1), true);
+  const std::vector<Vec3d> points{{0, 0, 0}};
+  std::vector<std::optional<ClosestPoint>> closest(1);
+  for (int step = 0; step < 40; ++step) {
+    asked.place(drift);
+    plain.place(drift);
+    asked.scene.closest(points, closest);
+    expect_same(asked.scene.detect(), plain.scene.detect());
+    ASSERT_EQ(asked.rebuilds(), plain.rebuilds()) << step;
+    drift.advance();
+  }
+  EXPECT_GT(plain.rebuilds(), 1u);
+}
+
 TEST(SceneRebuild, SurvivesPositionsOfAllKinds) {
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   for (const std::uint32_t triangles : {1u, 2u, 5u, 9u, 33u, 70u}) {
