@@ -5,7 +5,6 @@
 #include <limits>
 #include <tuple>
 
-#include "core/sort_once.hpp"
 #include "geometry/exact_predicates.hpp"
 #include "geometry/vector.hpp"
 
@@ -44,6 +43,10 @@ void CurveFinder::find(const CurveInput& input, CurveLists& lists) {
   points_ = input.result->contact_points.subspan(
       contacts_[0].first_point, last.first_point + last.point_count - contacts_[0].first_point);
   link_contacts();
+  face_normals_.clear();
+  for (const Contact& of_pair : contacts_)
+    face_normals_.push_back({unit_normal(input_.a.corners(of_pair.triangle_a)),
+                             unit_normal(input_.b.corners(of_pair.triangle_b))});
   for (std::size_t c = 0; c + 1 < first_member_.size(); ++c)
     add_curve(std::span(members_).subspan(first_member_[c], first_member_[c + 1] - first_member_[c]), lists);
 }
@@ -146,8 +149,7 @@ void CurveFinder::walk(std::span<const std::uint32_t> members, CurveKind kind) {
 double CurveFinder::turn_of_steps() const {
   double sum = 0;
   for (const Step& step : steps_) {
-    const Vec3d n_a = unit_normal(input_.a.corners(contact(step.contact).triangle_a)),
-                n_b = unit_normal(input_.b.corners(contact(step.contact).triangle_b));
+    const auto& [n_a, n_b] = face_normals_[step.contact];
     const double turn = dot(cross(n_b, n_a), position(step.leave) - position(step.enter));
     if (std::isfinite(turn)) sum += is_turned(step.contact) ? -turn : turn;
   }
@@ -230,6 +232,16 @@ double CurveFinder::length_of(std::uint32_t i) const {
 
 /// Whether one of the two triangles is nowhere behind the other one.
 bool CurveFinder::only_touches(std::uint32_t i) const {
+  const auto pierces = [&](std::uint32_t place) {
+    const FeatureKind on_a = points_[place].on_a.kind, on_b = points_[place].on_b.kind;
+    return (on_a == FeatureKind::edge && on_b == FeatureKind::face) ||
+           (on_a == FeatureKind::face && on_b == FeatureKind::edge);
+  };
+  // An edge goes through the inside of a triangle that is not in its plane: each has corners on both sides of
+  // the other.
+  if (contact(i).kind == IntersectionKind::segment &&
+      (pierces(first_place(i)) || pierces(first_place(i) + 1)))
+    return false;
   bool used_exact = false;
   const auto is_outside = [&](const TrianglePoints& p, const TrianglePoints& q) {
     return std::all_of(p.begin(), p.end(), [&](const Vec3d& corner) {
@@ -256,8 +268,7 @@ void CurveFinder::list_face_normals(std::span<const std::uint32_t> members) {
       const double length = length_of(i);
       if (length == 0 || (!counts_touching && only_touches(i))) continue;
       whole += length;
-      const Vec3d n_a = unit_normal(input_.a.corners(contact(i).triangle_a)),
-                  n_b = unit_normal(input_.b.corners(contact(i).triangle_b));
+      const auto& [n_a, n_b] = face_normals_[i];
       add(is_turned(i) ? n_a : n_b, length);
       add(Vec3d{} - (is_turned(i) ? n_b : n_a), length);
     }
@@ -282,8 +293,7 @@ Vec3d CurveFinder::direction_of_segments(std::span<const std::uint32_t> members)
     if (contact(i).kind != IntersectionKind::segment) continue;
     const Vec3d p = scale_ * position(first_place(i)) - middle_,
                 q = scale_ * position(first_place(i) + 1) - middle_;
-    const Vec3d n_a = unit_normal(input_.a.corners(contact(i).triangle_a)),
-                n_b = unit_normal(input_.b.corners(contact(i).triangle_b));
+    const auto& [n_a, n_b] = face_normals_[i];
     const double along = dot(cross(n_b, n_a), q - p) * (is_turned(i) ? -1 : 1);
     if (along != 0) area = area + (along > 0 ? 1.0 : -1.0) * cross(p, q);
     length += norm(q - p);
@@ -319,14 +329,14 @@ std::size_t CurveFinder::enclose(std::span<const std::uint32_t> members, bool si
   const SurfaceView& surface = side_b ? input_.b : input_.a;
   const bool is_one_sided = is_one_sided_[members.front()] != 0;
   if (is_one_sided && side_b) return 0;
-  side_.clear();
+  side_.start(surface.around->vertex_count());
   const auto add_triangle = [&](std::uint32_t i, bool of_b) {
     const Triangle& triangle = surface.triangle(of_b ? contact(i).triangle_b : contact(i).triangle_a);
     side_.add_triangle(triangle);
     for (std::uint32_t k = 0; k < contact(i).point_count; ++k) {
       const std::uint32_t place = first_place(i) + k;
       const FeatureName name = name_of(of_b ? points_[place].on_b : points_[place].on_a, triangle, 0);
-      if (name.kind == FeatureKind::edge) side_.add_crossing({name.first, name.last, key_[place]});
+      if (name.kind == FeatureKind::edge) side_.add_crossing(name.first, name.last, key_[place]);
     }
   };
   for (const std::uint32_t i : members) {
@@ -355,15 +365,19 @@ double CurveFinder::collect_parts(std::span<const std::uint32_t> members) {
     const SurfaceView surface = surface_of(side);
     std::vector<std::uint32_t>& triangles = triangles_[side];
     triangles.clear();
+    is_listed_.resize(std::max(is_listed_.size(), surface.octree->triangles().size()), 0);
+    const auto add = [&](std::uint32_t t) {
+      if (is_listed_[t] == 0) triangles.push_back(t);
+      is_listed_[t] = 1;
+    };
     for (const std::uint32_t i : members) {
       const bool of_b = (side != 0) != is_turned(i);
-      triangles.push_back(of_b ? contact(i).triangle_b : contact(i).triangle_a);
+      add(of_b ? contact(i).triangle_b : contact(i).triangle_a);
     }
     for (const std::uint32_t v : behind_[side]) {
-      const std::span<const std::uint32_t> around = surface.around->around(v);
-      triangles.insert(triangles.end(), around.begin(), around.end());
+      for (const std::uint32_t t : surface.around->around(v)) add(t);
     }
-    sort_once(triangles);
+    for (const std::uint32_t t : triangles) is_listed_[t] = 0;
     for (const std::uint32_t t : triangles) {
       for (const Vec3d& p : surface.corners(t)) largest = std::max(largest, largest_magnitude(p));
     }

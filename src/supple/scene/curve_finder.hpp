@@ -93,12 +93,13 @@ class CurveFinder {
   std::span<const Contact> contacts_;     // of the group
   std::span<const ContactPoint> points_;  // of these contacts
 
-  std::vector<Link> links_;                 // sorted: by key
-  std::vector<std::uint32_t> first_link_;   // of each key
-  std::vector<std::uint32_t> key_;          // of each place
-  ParitySets sides_;                        // of the contacts; the sets are the curves
-  std::vector<std::uint8_t> is_one_sided_;  // by smallest contact: the sides of the curve are one
-  std::vector<std::uint8_t> is_turned_;     // by contact
+  std::vector<Link> links_;                         // sorted: by key
+  std::vector<std::uint32_t> first_link_;           // of each key
+  std::vector<std::uint32_t> key_;                  // of each place
+  ParitySets sides_;                                // of the contacts; the sets are the curves
+  std::vector<std::uint8_t> is_one_sided_;          // by smallest contact: the sides of the curve are one
+  std::vector<std::uint8_t> is_turned_;             // by contact
+  std::vector<std::array<Vec3d, 2>> face_normals_;  // of a and b, by contact
   std::vector<std::uint32_t> members_, first_member_, curve_of_;
   std::vector<Step> steps_;
 
@@ -118,6 +119,7 @@ class CurveFinder {
   CurveSide side_;
   CurveParts parts_;
   std::array<std::vector<std::uint32_t>, 2> triangles_;  // of the parts
+  std::vector<std::uint8_t> is_listed_;                  // by triangle
 };
 
 }  // namespace supple

@@ -94,7 +94,9 @@ double CurveParts::way_along(const Vec3d& normal) {
     projected_[side].clear();
     for (TrianglePoints triangle : triangles_[side]) {
       for (Vec3d& p : triangle) p = {dot(u, p), dot(v, p), dot(normal, p)};
-      projected_[side].push_back(triangle);
+      Box box{triangle[0], triangle[0]};
+      for (const Vec3d& p : triangle) box.include({p, p});
+      projected_[side].push_back({triangle, box});
     }
     if (projected_[side].empty()) return 0;
     build(side);
@@ -118,7 +120,7 @@ double CurveParts::way_along(const Vec3d& normal) {
     if (of_a.child == 0 && of_b.child == 0) {
       for (std::uint32_t i = of_a.first; i < of_a.last; ++i) {
         for (std::uint32_t k = of_b.first; k < of_b.last; ++k)
-          longest = std::max(longest, way_between(projected_[0][i], projected_[1][k]));
+          longest = std::max(longest, way_between(projected_[0][i].corners, projected_[1][k].corners));
       }
     } else if (of_b.child == 0 || (of_a.child != 0 && of_a.last - of_a.first >= of_b.last - of_b.first)) {
       push(of_a.child, b);
@@ -144,23 +146,16 @@ void CurveParts::split(std::size_t side, std::uint32_t number) {
   constexpr std::uint32_t leaf_size = 2;
   Node node = nodes_[side][number];
   auto& triangles = projected_[side];
-  node.box = {triangles[node.first][0], triangles[node.first][0]};
-  for (std::uint32_t i = node.first; i < node.last; ++i) {
-    for (const Vec3d& p : triangles[i]) {
-      for (int axis = 0; axis < 3; ++axis) {
-        node.box.min[axis] = std::min(node.box.min[axis], p[axis]);
-        node.box.max[axis] = std::max(node.box.max[axis], p[axis]);
-      }
-    }
-  }
+  node.box = triangles[node.first].box;
+  for (std::uint32_t i = node.first + 1; i < node.last; ++i) node.box.include(triangles[i].box);
   if (node.last - node.first > leaf_size) {
     const Vec3d size = node.box.max - node.box.min;
     const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
     const std::uint32_t middle = node.first + (node.last - node.first) / 2;
     const auto at = [&](std::uint32_t i) { return triangles.begin() + static_cast<std::ptrdiff_t>(i); };
     std::nth_element(at(node.first), at(middle), at(node.last),
-                     [axis](const TrianglePoints& p, const TrianglePoints& q) {
-                       return p[0][axis] + p[1][axis] + p[2][axis] < q[0][axis] + q[1][axis] + q[2][axis];
+                     [axis](const Projected& p, const Projected& q) {
+                       return p.box.min[axis] + p.box.max[axis] < q.box.min[axis] + q.box.max[axis];
                      });
     node.child = static_cast<std::uint32_t>(nodes_[side].size());
     nodes_[side].push_back({{}, node.first, middle, 0});

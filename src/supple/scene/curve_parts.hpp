@@ -28,6 +28,16 @@ class CurveParts {
   /// By the coordinates across the vector, and its height along it in z.
   struct Box {
     Vec3d min, max;
+    void include(const Box& other) {
+      for (int axis = 0; axis < 3; ++axis) {
+        min[axis] = other.min[axis] < min[axis] ? other.min[axis] : min[axis];
+        max[axis] = other.max[axis] > max[axis] ? other.max[axis] : max[axis];
+      }
+    }
+  };
+  struct Projected {
+    TrianglePoints corners;
+    Box box;
   };
   struct Node {
     Box box;
@@ -42,7 +52,8 @@ class CurveParts {
   void build(std::size_t side);
   void split(std::size_t side, std::uint32_t node);
 
-  std::array<std::vector<TrianglePoints>, 2> triangles_, projected_;
+  std::array<std::vector<TrianglePoints>, 2> triangles_;
+  std::array<std::vector<Projected>, 2> projected_;
   std::array<std::vector<Node>, 2> nodes_;
   std::vector<Pair> stack_;
 };

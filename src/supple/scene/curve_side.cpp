@@ -8,16 +8,38 @@
 
 namespace supple {
 
-void CurveSide::clear() {
-  triangles_.clear();
+void CurveSide::start(std::size_t vertex_count) {
+  for (const std::uint32_t v : corners_) corner_of_[v] = none;
+  corner_of_.resize(std::max(corner_of_.size(), vertex_count), none);
+  marks_.resize(std::max(marks_.size(), vertex_count), 0);
+  for (std::size_t c = 0; c < corners_.size(); ++c) crossings_[c].clear();
   corners_.clear();
-  crossings_.clear();
+  triangles_.clear();
   behind_ = {};
+}
+
+void CurveSide::add_triangle(const Triangle& triangle) {
+  Triangle corners;
+  for (std::size_t k = 0; k < 3; ++k) {
+    std::uint32_t& corner = corner_of_[triangle[k]];
+    if (corner == none) {
+      corner = static_cast<std::uint32_t>(corners_.size());
+      corners_.push_back(triangle[k]);
+    }
+    corners[k] = corner;
+  }
+  triangles_.push_back(corners);
+  if (crossings_.size() < corners_.size()) crossings_.resize(corners_.size());
+}
+
+void CurveSide::add_crossing(std::uint32_t v, std::uint32_t w, std::uint32_t key) {
+  const auto [first, other] = std::minmax(corner_of_[v], corner_of_[w]);
+  crossings_[first].push_back({other, key});
 }
 
 std::span<const std::uint32_t> CurveSide::enclose(const SurfaceView& surface, const Direction& direction,
                                                   std::size_t most_behind) {
-  if (!color_corners() || !start_flood(surface)) return {};
+  if (!color_corners() || !start_flood()) return {};
   std::optional<std::size_t> behind = color_behind(surface, direction);
   const std::vector<std::uint32_t>* const smaller = flood(surface, behind, most_behind);
   if (smaller == nullptr) return {};
@@ -25,33 +47,37 @@ std::span<const std::uint32_t> CurveSide::enclose(const SurfaceView& surface, co
   return *smaller;
 }
 
-bool CurveSide::is_cut(std::uint32_t v, std::uint32_t w) const {
-  return std::binary_search(cut_edges_.begin(), cut_edges_.end(), std::array{std::min(v, w), std::max(v, w)});
+bool CurveSide::is_cut(std::uint32_t corner, std::uint32_t other) const {
+  const std::vector<std::uint32_t>& cuts = cuts_[std::min(corner, other)];
+  return std::find(cuts.begin(), cuts.end(), std::max(corner, other)) != cuts.end();
 }
 
 /// Gives corners on the same side of the curve the same colour. False when that is impossible or the curve
 /// crosses no edge.
 bool CurveSide::color_corners() {
-  sort_once(crossings_);
-  sort_once(corners_);
-  cut_edges_.clear();
-  for (std::size_t begin = 0, end = 0; begin < crossings_.size(); begin = end) {
-    const auto [v, w, key] = crossings_[begin];
-    while (end < crossings_.size() && crossings_[end][0] == v && crossings_[end][1] == w) ++end;
-    if ((end - begin) % 2 != 0) cut_edges_.push_back({v, w});
-  }
-  if (cut_edges_.empty()) return false;
-  colors_.start(corners_.size());
-  const auto corner = [&](std::uint32_t vertex) {
-    return static_cast<std::uint32_t>(std::lower_bound(corners_.begin(), corners_.end(), vertex) -
-                                      corners_.begin());
-  };
-  for (const Triangle& triangle : triangles_) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::uint32_t v = triangle[k], w = triangle[(k + 1) % 3];
-      if (v != w && !colors_.join(corner(v), corner(w), is_cut(v, w))) return false;
+  if (cuts_.size() < corners_.size()) cuts_.resize(corners_.size());
+  bool is_any_cut = false;
+  for (std::size_t c = 0; c < corners_.size(); ++c) {
+    std::vector<Crossing>& crossings = crossings_[c];
+    cuts_[c].clear();
+    sort_once(crossings);
+    for (std::size_t begin = 0, end = 0; begin < crossings.size(); begin = end) {
+      while (end < crossings.size() && crossings[end].other == crossings[begin].other) ++end;
+      if ((end - begin) % 2 == 0) continue;
+      cuts_[c].push_back(crossings[begin].other);
+      is_any_cut = true;
     }
   }
+  if (!is_any_cut) return false;
+  colors_.start(corners_.size());
+  for (const Triangle& triangle : triangles_) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t c = triangle[k], d = triangle[(k + 1) % 3];
+      if (c != d && !colors_.join(c, d, is_cut(c, d))) return false;
+    }
+  }
+  const auto first = std::min_element(corners_.begin(), corners_.end()) - corners_.begin();
+  is_opposite_to_first_ = colors_.find(static_cast<std::uint32_t>(first)).is_opposite;
   return true;
 }
 
@@ -60,7 +86,7 @@ std::optional<std::size_t> CurveSide::color_behind(const SurfaceView& surface, c
   std::array<double, 2> sums{}, counts{};
   double extent = 0;
   for (std::uint32_t c = 0; c < corners_.size(); ++c) {
-    const std::size_t color = colors_.find(c).is_opposite ? 1 : 0;
+    const std::size_t color = color_of(c);
     const Vec3d way = direction.scale * surface.position(corners_[c]) - direction.from;
     sums[color] += dot(direction.towards_behind, way);
     counts[color] += 1;
@@ -73,8 +99,7 @@ std::optional<std::size_t> CurveSide::color_behind(const SurfaceView& surface, c
 }
 
 /// Marks the corners by their colours. False when the curve has several pieces on this surface.
-bool CurveSide::start_flood(const SurfaceView& surface) {
-  marks_.resize(std::max(marks_.size(), surface.around->vertex_count()), 0);
+bool CurveSide::start_flood() {
   constexpr std::uint32_t almost_all = 0xfffffff0;
   if (last_mark_ > almost_all) {
     std::fill(marks_.begin(), marks_.end(), 0);
@@ -83,9 +108,8 @@ bool CurveSide::start_flood(const SurfaceView& surface) {
   last_mark_ += 2;
   for (auto& flooded : flooded_) flooded.clear();
   for (std::uint32_t c = 0; c < corners_.size(); ++c) {
-    const ParitySets::Place place = colors_.find(c);
-    if (place.root != 0) return false;
-    const std::size_t color = place.is_opposite ? 1 : 0;
+    if (colors_.find(c).root != 0) return false;
+    const std::size_t color = color_of(c);
     marks_[corners_[c]] = mark_of(color);
     flooded_[color].push_back(corners_[c]);
   }
@@ -117,8 +141,9 @@ const std::vector<std::uint32_t>* CurveSide::flood(const SurfaceView& surface,
           if (marks_[w] == mark_of(color)) continue;
           const bool is_other = marks_[w] == mark_of(1 - color);
           if (is_other) {
-            if (is_cut(v, w)) continue;
-            return nullptr;
+            const std::uint32_t c = corner_of_[v], d = corner_of_[w];
+            if (c == none || d == none || !is_cut(c, d)) return nullptr;
+            continue;
           }
           marks_[w] = mark_of(color);
           flooded_[color].push_back(w);

@@ -17,9 +17,6 @@ namespace supple {
 /// The triangles of one surface that a curve crosses, and the vertices on both sides of it. Keeps its memory.
 class CurveSide {
  public:
-  /// The vertices of an edge, ascending, and the key of the point where the curve crosses it.
-  using Crossing = std::array<std::uint32_t, 3>;
-
   /// Where a curve leaves a surface: "behind" is farther along the direction, which may be zero, from a point
   /// in scaled coordinates.
   struct Direction {
@@ -27,12 +24,11 @@ class CurveSide {
     double scale = 1;
   };
 
-  void clear();
-  void add_triangle(const Triangle& triangle) {
-    corners_.insert(corners_.end(), triangle.begin(), triangle.end());
-    triangles_.push_back(triangle);
-  }
-  void add_crossing(const Crossing& crossing) { crossings_.push_back(crossing); }
+  /// Starts another curve.
+  void start(std::size_t vertex_count);
+  void add_triangle(const Triangle& triangle);
+  /// The edge is one of a triangle that was added. Repeated crossings count once.
+  void add_crossing(std::uint32_t v, std::uint32_t w, std::uint32_t key);
 
   /// The vertices of the smaller of the two parts into which the curve cuts the surface; when both are equal,
   /// the part behind. None when the curve does not cut it in two. The part behind counts only when it is the
@@ -44,20 +40,33 @@ class CurveSide {
   std::span<const std::uint32_t> behind() const { return behind_; }
 
  private:
+  /// Where the curve crosses an edge between two corners: the corner with the larger number, and the point.
+  struct Crossing {
+    std::uint32_t other = 0, key = 0;
+    constexpr auto operator<=>(const Crossing&) const = default;
+  };
+  static constexpr std::uint32_t none = ~std::uint32_t{0};
+
   bool color_corners();
+  std::size_t color_of(std::uint32_t corner) {
+    return (colors_.find(corner).is_opposite != is_opposite_to_first_) ? 1 : 0;
+  }
   std::optional<std::size_t> color_behind(const SurfaceView& surface, const Direction& direction);
-  bool start_flood(const SurfaceView& surface);
+  bool start_flood();
   const std::vector<std::uint32_t>* flood(const SurfaceView& surface, std::optional<std::size_t>& behind,
                                           std::size_t most_behind);
-  bool is_cut(std::uint32_t v, std::uint32_t w) const;
+  bool is_cut(std::uint32_t corner, std::uint32_t other) const;
   std::uint32_t mark_of(std::size_t color) const { return last_mark_ + static_cast<std::uint32_t>(color); }
 
-  std::vector<Triangle> triangles_;
-  std::vector<std::uint32_t> corners_;                   // vertices of these triangles, ascending
-  std::vector<Crossing> crossings_;                      // ascending
-  std::vector<std::array<std::uint32_t, 2>> cut_edges_;  // crossed an odd number of times, ascending
-  ParitySets colors_;                                    // of the corners
-  std::vector<std::uint32_t> marks_;                     // by vertex
+  std::vector<std::uint32_t> corner_of_;          // by vertex: its place in `corners_`, or `none`
+  std::vector<std::uint32_t> corners_;            // vertices of the triangles
+  std::vector<Triangle> triangles_;               // of places in `corners_`
+  std::vector<std::vector<Crossing>> crossings_;  // by the corner with the smaller place
+  std::vector<std::vector<std::uint32_t>>
+      cuts_;                           // the other corners of edges that are crossed an odd number of times
+  ParitySets colors_;                  // of the corners
+  bool is_opposite_to_first_ = false;  // the corner with the smallest vertex, to the first corner
+  std::vector<std::uint32_t> marks_;   // by vertex
   std::uint32_t last_mark_ = 0;
   std::array<std::vector<std::uint32_t>, 2> flooded_;  // by colour
   std::span<const std::uint32_t> behind_;

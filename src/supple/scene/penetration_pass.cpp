@@ -150,17 +150,17 @@ void PenetrationPass::find_inside(const Task& task, const DetectResult& result, 
 
   // Corners that edges of triangles with contacts connect are alike.
   const std::vector<std::uint32_t>& corners = worker.corners;
-  for (const std::uint32_t v : corners) marks[v] |= is_corner;
-  const auto corner = [&](std::uint32_t vertex) {
-    return static_cast<std::uint32_t>(std::lower_bound(corners.begin(), corners.end(), vertex) -
-                                      corners.begin());
-  };
+  worker.corner_of.resize(std::max(worker.corner_of.size(), around.vertex_count()));
+  for (std::uint32_t c = 0; c < corners.size(); ++c) {
+    marks[corners[c]] |= is_corner;
+    worker.corner_of[corners[c]] = c;
+  }
   worker.sets.start(corners.size());
   for (const std::uint32_t id : worker.triangles) {
     const Triangle& triangle = inner.surface.triangle(id);
     for (std::size_t k = 0; k < 3; ++k) {
       const std::uint32_t v = triangle[k], w = triangle[(k + 1) % 3];
-      if (v != w && !is_cut(v, w)) worker.sets.join(corner(v), corner(w), false);
+      if (v != w && !is_cut(v, w)) worker.sets.join(worker.corner_of[v], worker.corner_of[w], false);
     }
   }
   const std::size_t first_inside = worker.inside.size(), first_on_surface = worker.on_surface.size();

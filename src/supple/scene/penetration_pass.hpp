@@ -84,6 +84,7 @@ class PenetrationPass {
     // Scratch of one task.
     std::vector<std::array<std::uint32_t, 2>> cut_edges;
     std::vector<std::uint32_t> corners, triangles;
+    std::vector<std::uint32_t> corner_of;  // by vertex: its place in `corners`, if it is there
     ParitySets sets;
     std::vector<Containment> state;         // by set
     std::vector<std::uint8_t> marks;        // by vertex; zero between tasks
