@@ -60,13 +60,15 @@ BruteForcePenetrations find_penetrations_by_brute_force(const PlainObject& inner
   const PlainSurface surface(outer);
   std::vector<std::vector<ExactPenetration>> found(parallel.worker_count());
   parallel.for_ranges(inner.positions.size(), 64, [&](std::size_t begin, std::size_t end, std::uint32_t w) {
+    std::size_t guess = 0;
     for (std::size_t v = begin; v < end; ++v) {
       if (is_used[v] == 0) continue;
       const Vec3d& p = inner.positions[v];
       ExactPenetration penetration{static_cast<std::uint32_t>(v), surface.containment(p), 0, {}};
       if (penetration.where == Containment::outside) continue;
       if (penetration.where == Containment::inside) {
-        PlainSurface::Nearest nearest = surface.nearest(p);
+        PlainSurface::Nearest nearest = surface.nearest(p, guess);
+        guess = nearest.place;
         penetration.triangle = nearest.triangle;
         penetration.squared_depth = std::move(nearest.squared);
       }

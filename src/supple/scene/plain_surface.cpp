@@ -292,9 +292,9 @@ Containment PlainSurface::containment(const Vec3d& p) const {
   return is_inside && !has_inert ? Containment::inside : Containment::outside;
 }
 
-PlainSurface::Nearest PlainSurface::nearest(const Vec3d& point) const {
+PlainSurface::Nearest PlainSurface::nearest(const Vec3d& point, std::size_t guess) const {
   std::vector<std::pair<double, std::uint32_t>> candidates;
-  double least = infinity;
+  double least = bounds_of_distance(point, triangles[guess].corners).upper;
   const auto is_in_reach = [&](const Vec3d& min, const Vec3d& max) {
     return box_distance(point, min, max) <= increased(least);
   };
@@ -307,7 +307,7 @@ PlainSurface::Nearest PlainSurface::nearest(const Vec3d& point) const {
   std::optional<Nearest> best;
   for (const auto& [lower, i] : candidates) {
     if (lower > least) continue;
-    Nearest found{triangles[i].triangle, squared_distance_by_integers(point, triangles[i].corners)};
+    Nearest found{triangles[i].triangle, squared_distance_by_integers(point, triangles[i].corners), i};
     const int side = best ? compare(found.squared, best->squared) : -1;
     if (side < 0 || (side == 0 && found.triangle < best->triangle)) best = std::move(found);
   }

@@ -89,9 +89,10 @@ struct PlainSurface {
   struct Nearest {
     std::uint32_t triangle = 0;  ///< the user's number; the smallest of several
     SquaredDistance squared;
+    std::size_t place = 0;  ///< in `triangles`
   };
-  /// The nearest triangle of a finite point. There must be one.
-  Nearest nearest(const Vec3d& point) const;
+  /// The nearest triangle of a finite point. There must be one. The search starts at the place `guess`.
+  Nearest nearest(const Vec3d& point, std::size_t guess = 0) const;
 };
 
 }  // namespace supple
