@@ -364,11 +364,13 @@ double CurveFinder::collect_parts(std::span<const std::uint32_t> members) {
   for (std::size_t side = 0; side < 2; ++side) {
     const SurfaceView surface = surface_of(side);
     std::vector<std::uint32_t>& triangles = triangles_[side];
+    std::vector<std::uint8_t>& is_listed = is_listed_[side];
+    for (const std::uint32_t t : triangles) is_listed[t] = 0;
     triangles.clear();
-    is_listed_.resize(std::max(is_listed_.size(), surface.octree->triangles().size()), 0);
+    is_listed.resize(std::max(is_listed.size(), surface.octree->triangles().size()), 0);
     const auto add = [&](std::uint32_t t) {
-      if (is_listed_[t] == 0) triangles.push_back(t);
-      is_listed_[t] = 1;
+      if (is_listed[t] == 0) triangles.push_back(t);
+      is_listed[t] = 1;
     };
     for (const std::uint32_t i : members) {
       const bool of_b = (side != 0) != is_turned(i);
@@ -377,7 +379,6 @@ double CurveFinder::collect_parts(std::span<const std::uint32_t> members) {
     for (const std::uint32_t v : behind_[side]) {
       for (const std::uint32_t t : surface.around->around(v)) add(t);
     }
-    for (const std::uint32_t t : triangles) is_listed_[t] = 0;
     for (const std::uint32_t t : triangles) {
       for (const Vec3d& p : surface.corners(t)) largest = std::max(largest, largest_magnitude(p));
     }

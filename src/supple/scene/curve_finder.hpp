@@ -119,7 +119,7 @@ class CurveFinder {
   CurveSide side_;
   CurveParts parts_;
   std::array<std::vector<std::uint32_t>, 2> triangles_;  // of the parts
-  std::vector<std::uint8_t> is_listed_;                  // by triangle
+  std::array<std::vector<std::uint8_t>, 2> is_listed_;   // by triangle
 };
 
 }  // namespace supple

@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <utility>
 
-#include "core/sort_once.hpp"
 #include "geometry/vector.hpp"
 
 namespace supple {
@@ -12,7 +13,7 @@ void CurveSide::start(std::size_t vertex_count) {
   for (const std::uint32_t v : corners_) corner_of_[v] = none;
   corner_of_.resize(std::max(corner_of_.size(), vertex_count), none);
   marks_.resize(std::max(marks_.size(), vertex_count), 0);
-  for (std::size_t c = 0; c < corners_.size(); ++c) crossings_[c].clear();
+  crossings_.clear();
   corners_.clear();
   triangles_.clear();
   behind_ = {};
@@ -23,23 +24,23 @@ void CurveSide::add_triangle(const Triangle& triangle) {
   for (std::size_t k = 0; k < 3; ++k) {
     std::uint32_t& corner = corner_of_[triangle[k]];
     if (corner == none) {
-      corner = static_cast<std::uint32_t>(corners_.size());
+      // In this order, `start` finds all of them also after memory ran out.
       corners_.push_back(triangle[k]);
+      corner = static_cast<std::uint32_t>(corners_.size() - 1);
     }
     corners[k] = corner;
   }
   triangles_.push_back(corners);
-  if (crossings_.size() < corners_.size()) crossings_.resize(corners_.size());
 }
 
 void CurveSide::add_crossing(std::uint32_t v, std::uint32_t w, std::uint32_t key) {
-  const auto [first, other] = std::minmax(corner_of_[v], corner_of_[w]);
-  crossings_[first].push_back({other, key});
+  const auto [corner, other] = std::minmax(corner_of_[v], corner_of_[w]);
+  crossings_.push_back({corner, other, key});
 }
 
 std::span<const std::uint32_t> CurveSide::enclose(const SurfaceView& surface, const Direction& direction,
                                                   std::size_t most_behind) {
-  if (!color_corners() || !start_flood()) return {};
+  if (!list_cuts() || !color_corners() || !start_flood()) return {};
   std::optional<std::size_t> behind = color_behind(surface, direction);
   const std::vector<std::uint32_t>* const smaller = flood(surface, behind, most_behind);
   if (smaller == nullptr) return {};
@@ -48,27 +49,36 @@ std::span<const std::uint32_t> CurveSide::enclose(const SurfaceView& surface, co
 }
 
 bool CurveSide::is_cut(std::uint32_t corner, std::uint32_t other) const {
-  const std::vector<std::uint32_t>& cuts = cuts_[std::min(corner, other)];
-  return std::find(cuts.begin(), cuts.end(), std::max(corner, other)) != cuts.end();
+  if (other < corner) std::swap(corner, other);
+  const auto begin = cuts_.begin() + first_cut_[corner], end = cuts_.begin() + first_cut_[corner + 1];
+  return std::find(begin, end, other) != end;
 }
 
-/// Gives corners on the same side of the curve the same colour. False when that is impossible or the curve
-/// crosses no edge.
-bool CurveSide::color_corners() {
-  if (cuts_.size() < corners_.size()) cuts_.resize(corners_.size());
-  bool is_any_cut = false;
+/// Lists the edges that the curve crosses an odd number of times. False when there are none.
+bool CurveSide::list_cuts() {
+  first_crossing_.assign(corners_.size() + 2, 0);
+  for (const Crossing& crossing : crossings_) ++first_crossing_[crossing.corner + 2];
+  std::partial_sum(first_crossing_.begin(), first_crossing_.end(), first_crossing_.begin());
+  sorted_.resize(crossings_.size());
+  for (const Crossing& crossing : crossings_) sorted_[first_crossing_[crossing.corner + 1]++] = crossing;
+  cuts_.clear();
+  first_cut_.assign(1, 0);
   for (std::size_t c = 0; c < corners_.size(); ++c) {
-    std::vector<Crossing>& crossings = crossings_[c];
-    cuts_[c].clear();
-    sort_once(crossings);
-    for (std::size_t begin = 0, end = 0; begin < crossings.size(); begin = end) {
-      while (end < crossings.size() && crossings[end].other == crossings[begin].other) ++end;
-      if ((end - begin) % 2 == 0) continue;
-      cuts_[c].push_back(crossings[begin].other);
-      is_any_cut = true;
+    const auto begin = sorted_.begin() + first_crossing_[c], last = sorted_.begin() + first_crossing_[c + 1];
+    std::sort(begin, last);
+    const auto end = std::unique(begin, last);
+    for (auto first = begin, next = begin; first != end; first = next) {
+      next =
+          std::find_if(first, end, [&](const Crossing& crossing) { return crossing.other != first->other; });
+      if ((next - first) % 2 != 0) cuts_.push_back(first->other);
     }
+    first_cut_.push_back(static_cast<std::uint32_t>(cuts_.size()));
   }
-  if (!is_any_cut) return false;
+  return !cuts_.empty();
+}
+
+/// Gives corners on the same side of the curve the same colour. False when that is impossible.
+bool CurveSide::color_corners() {
   colors_.start(corners_.size());
   for (const Triangle& triangle : triangles_) {
     for (std::size_t k = 0; k < 3; ++k) {

@@ -40,13 +40,14 @@ class CurveSide {
   std::span<const std::uint32_t> behind() const { return behind_; }
 
  private:
-  /// Where the curve crosses an edge between two corners: the corner with the larger number, and the point.
+  /// Where the curve crosses an edge between two corners, and the key of that point.
   struct Crossing {
-    std::uint32_t other = 0, key = 0;
+    std::uint32_t corner = 0, other = 0, key = 0;  // corner < other
     constexpr auto operator<=>(const Crossing&) const = default;
   };
   static constexpr std::uint32_t none = ~std::uint32_t{0};
 
+  bool list_cuts();
   bool color_corners();
   std::size_t color_of(std::uint32_t corner) {
     return (colors_.find(corner).is_opposite != is_opposite_to_first_) ? 1 : 0;
@@ -58,12 +59,13 @@ class CurveSide {
   bool is_cut(std::uint32_t corner, std::uint32_t other) const;
   std::uint32_t mark_of(std::size_t color) const { return last_mark_ + static_cast<std::uint32_t>(color); }
 
-  std::vector<std::uint32_t> corner_of_;          // by vertex: its place in `corners_`, or `none`
-  std::vector<std::uint32_t> corners_;            // vertices of the triangles
-  std::vector<Triangle> triangles_;               // of places in `corners_`
-  std::vector<std::vector<Crossing>> crossings_;  // by the corner with the smaller place
-  std::vector<std::vector<std::uint32_t>>
-      cuts_;                           // the other corners of edges that are crossed an odd number of times
+  std::vector<std::uint32_t> corner_of_;       // by vertex: its place in `corners_`, or `none`
+  std::vector<std::uint32_t> corners_;         // vertices of the triangles
+  std::vector<Triangle> triangles_;            // of places in `corners_`
+  std::vector<Crossing> crossings_, sorted_;   // as they were added, and by corner
+  std::vector<std::uint32_t> first_crossing_;  // of each corner, in `sorted_`
+  std::vector<std::uint32_t> cuts_,
+      first_cut_;                      // by corner: others of edges that are crossed an odd number of times
   ParitySets colors_;                  // of the corners
   bool is_opposite_to_first_ = false;  // the corner with the smallest vertex, to the first corner
   std::vector<std::uint32_t> marks_;   // by vertex
