@@ -55,6 +55,7 @@ class NearestTriangle {
       if (!has_plane_ || !is_behind(objects_[index].corners(t))) list[count++] = {t, 0};
     }
     if (count == 0) return;
+    bounded_ += count;
     bound_distances(point_, {objects_[index].view.arrays, objects_[index].view.translation},
                     std::span(list).first(count), lower.data(), upper.data());
     const double least = *std::min_element(upper.begin(), upper.begin() + static_cast<std::ptrdiff_t>(count));
@@ -112,6 +113,8 @@ class NearestTriangle {
 
   /// How many triangles it decided exactly.
   std::uint64_t decided() const { return decided_; }
+  /// How many distances it bounded.
+  std::uint64_t bounded() const { return bounded_; }
   std::uint32_t object() const { return index_; }
   /// In octree order.
   std::uint32_t triangle() const { return triangle_; }
@@ -170,7 +173,7 @@ class NearestTriangle {
   std::uint32_t index_ = 0, triangle_ = 0, id_ = 0;
   FeatureName feature_;
   bool used_exact_ = false;
-  std::uint64_t decided_ = 0;
+  std::uint64_t decided_ = 0, bounded_ = 0;
 };
 
 }  // namespace supple

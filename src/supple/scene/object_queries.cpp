@@ -297,8 +297,12 @@ std::optional<ClosestPoint> ObjectQueries::closest(std::span<const QueriedObject
     const QueriedObject& object = objects[index];
     if (!(object_bound <= nearest.limit())) break;
     const PointBounds seen = seen_by(object, point);
-    // Distances in single precision hardly tell its triangles apart.
-    if (is_far(object.box, object_bound, far_ratio)) nearest.decide(index, frontmost_triangle(object, point));
+    // Distances in single precision hardly tell its triangles apart, so the search needs a plane.
+    if (is_far(object.box, object_bound, far_ratio)) {
+      nearest.decide(index, frontmost_triangle(object, point));
+      // The triangle of the query before was nearer than the frontmost one.
+      if (!nearest.has_plane()) nearest.decide();
+    }
     descent_.run(
         object.view,
         [&](std::uint32_t node, std::array<double, node_width>& bounds) {
@@ -315,6 +319,7 @@ std::optional<ClosestPoint> ObjectQueries::closest(std::span<const QueriedObject
   }
   nearest.decide();
   decided_ += nearest.decided();
+  bounded_ += nearest.bounded();
   const std::optional<ClosestPoint> result = nearest.result();
   if (result) last_nearest_ = {0, nearest.object(), nearest.triangle()};
   return result;

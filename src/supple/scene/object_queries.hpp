@@ -74,6 +74,8 @@ class ObjectQueries {
   std::uint32_t last_nearest_triangle() const { return last_nearest_->triangle; }
   /// How many triangles `closest` and the rays have decided exactly.
   std::uint64_t decided() const { return decided_; }
+  /// How many triangles `closest` has bounded.
+  std::uint64_t bounded() const { return bounded_; }
   std::optional<RayHit> cast(std::span<const QueriedObject> objects, const Ray& ray, bool count_hits);
   /// Appends all triangles on the ray, ordered by t, object and triangle.
   void cast_all(std::span<const QueriedObject> objects, const Ray& ray, std::uint32_t query,
@@ -111,7 +113,7 @@ class ObjectQueries {
   void order(std::span<const QueriedObject> objects, const BoundOf& bound_of, double limit);
 
   StopSignal stop_;
-  std::uint64_t decided_ = 0;
+  std::uint64_t decided_ = 0, bounded_ = 0;
   std::optional<NearTriangle> last_nearest_;
   std::vector<TriangleOnRay> on_ray_;  // of `cast_all`
   std::vector<NearTriangle> candidates_;

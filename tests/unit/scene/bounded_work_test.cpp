@@ -213,6 +213,23 @@ TEST(BoundedWork, OfAClosestPointIsThatOfANearOne) {
   }
 }
 
+TEST(BoundedWork, OfClosestPointsThatFollowEachOther) {
+  const TriangleMesh ball = make_icosphere(30);
+  const Searched searched(ball, 0);
+  const QueriedObject object = searched.view();
+  constexpr std::uint32_t count = 100;
+  for (const double ratio : ratios) {
+    ObjectQueries queries;
+    queries.start();
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const double turns = 1e-3 * i;
+      ASSERT_TRUE(queries.closest({&object, 1}, ratio * Vec3d{cos_turns(turns), sin_turns(turns), 0.3},
+                                  any_distance));
+    }
+    EXPECT_LT(queries.bounded(), count * ball.triangles.size() / 20) << ratio;
+  }
+}
+
 TEST(BoundedWork, OfARayIsThatOfANearOne) {
   const TriangleMesh ball = make_icosphere(9);
   for (const Vec3d& direction : directions()) {
