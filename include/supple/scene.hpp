@@ -184,10 +184,10 @@ class Scene {
   const DetectResult& result() const;
   /// Recomputes the last `detect`, all kinds of contacts that it found, by exact arithmetic over all pairs of
   /// triangles or elements, and lists every difference. It shares no octrees and no filters with `detect`;
-  /// exact boxes, sorted along an axis, in a grid or in a tree, exclude pairs that are apart. Quadratic at
-  /// worst: about a second for two meshes of 70,000 triangles, also with penetration. Throws `Error` when an
-  /// object or option changed since the last `detect`, and when that call was stopped, truncated, or found no
-  /// kind of contacts. A stop ends it after the pair of objects that it compares.
+  /// exact boxes, sorted along an axis or in a tree, exclude pairs that are apart. Quadratic at worst: about
+  /// a second for two meshes of 70,000 triangles, also with penetration. Throws `Error` when an object or
+  /// option changed since the last `detect`, and when that call was stopped, truncated, or found no kind of
+  /// contacts. A stop ends it after the pair of objects that it compares.
   VerifyReport verify(const CallLimits& limits = {}) const;
 
   // Queries. They refit the objects that have moved, as `detect` does, and run on all threads of the scene;

@@ -64,8 +64,8 @@ class CurveSide {
   std::vector<Triangle> triangles_;            // of places in `corners_`
   std::vector<Crossing> crossings_, sorted_;   // as they were added, and by corner
   std::vector<std::uint32_t> first_crossing_;  // of each corner, in `sorted_`
-  std::vector<std::uint32_t> cuts_,
-      first_cut_;                      // by corner: others of edges that are crossed an odd number of times
+  // The other corners of edges that are crossed an odd number of times, and where those of each corner begin.
+  std::vector<std::uint32_t> cuts_, first_cut_;
   ParitySets colors_;                  // of the corners
   bool is_opposite_to_first_ = false;  // the corner with the smallest vertex, to the first corner
   std::vector<std::uint32_t> marks_;   // by vertex

@@ -1,5 +1,4 @@
 #include "supple/scene.hpp"
-#include "core/sort_once.hpp"
 
 #include <algorithm>
 #include <array>
@@ -7,6 +6,7 @@
 #include <utility>
 
 #include "core/error.hpp"
+#include "core/sort_once.hpp"
 #include "mesh/vertex_triangles.hpp"
 #include "scene/scene_implementation.hpp"
 #include "supple/option_descriptions.hpp"
