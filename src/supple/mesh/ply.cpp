@@ -1,8 +1,10 @@
-// PLY, text or binary in either byte order: reads vertices with x, y, z, faces and triangle strips, and skips
-// everything else.
+// PLY, text or binary in either byte order: reads vertices with x, y, z, faces, triangle strips and edges,
+// and skips everything else.
 
 #include <algorithm>
+#include <array>
 #include <bit>
+#include <initializer_list>
 #include <limits>
 #include <optional>
 #include <utility>
@@ -277,6 +279,8 @@ class BodyReader {
         read_lists(element, [&](std::uint64_t face, const Property& list) { read_face(face, list); });
       } else if (element.name == "tristrips") {
         read_lists(element, [&](std::uint64_t strip, const Property& list) { read_strip(strip, list); });
+      } else if (element.name == "edge") {
+        read_edges(element);
       } else if (!element.properties.empty()) {
         for (std::uint64_t i = 0; i < element.count; ++i) {
           for (const Property& property : element.properties) skip_property(property);
@@ -314,7 +318,7 @@ class BodyReader {
 
   void read_vertices(const Element& element) {
     if (element.count == 0) return;
-    const std::vector<int> axes = axes_of(element);
+    const std::vector<int> axes = places_of({"x", "y", "z"}, element);
     mesh_.positions.resize(element.count);
     for (Vec3d& position : mesh_.positions) {
       for (std::size_t i = 0; i < axes.size(); ++i) {
@@ -327,20 +331,51 @@ class BodyReader {
     }
   }
 
-  // For each property, its coordinate, or -1.
-  std::vector<int> axes_of(const Element& element) const {
-    std::vector<int> axes(element.properties.size(), -1);
-    for (int axis = 0; axis < 3; ++axis) {
-      const std::string name(1, "xyz"[axis]);
+  void read_edges(const Element& element) {
+    if (element.count == 0) return;
+    const std::vector<int> ends = places_of({"vertex1", "vertex2"}, element);
+    for (std::size_t i = 0; i < ends.size(); ++i) {
+      if (ends[i] >= 0 && !is_integer(element.properties[i].type)) {
+        body_.fail_here("property " + in_quotes(element.properties[i].name) +
+                        " of element 'edge' must be of an integer type");
+      }
+    }
+    for (std::uint64_t number = 0; number < element.count; ++number) {
+      std::array<std::uint32_t, 2> edge{};
+      for (std::size_t i = 0; i < ends.size(); ++i) {
+        const Property& property = element.properties[i];
+        if (ends[i] >= 0) {
+          edge[static_cast<std::size_t>(ends[i])] =
+              checked_vertex(body_.integer(property.type), vertex_count_, "edge", number, body_);
+        } else {
+          skip_property(property);
+        }
+      }
+      if (edge[0] == edge[1]) {
+        body_.fail_here("edge " + std::to_string(number) + " joins vertex " + std::to_string(edge[0]) +
+                        " to itself; leave it out");
+      }
+      mesh_.edges.push_back(edge);
+    }
+  }
+
+  // For each property of the element, its place in the list of names, or -1. Every name must be there.
+  std::vector<int> places_of(std::initializer_list<const char*> names, const Element& element) const {
+    std::vector<int> places(element.properties.size(), -1);
+    int place = 0;
+    for (const char* name : names) {
       bool found = false;
-      for (std::size_t i = 0; i < axes.size(); ++i) {
+      for (std::size_t i = 0; i < places.size(); ++i) {
         if (element.properties[i].name != name || element.properties[i].count_type) continue;
-        axes[i] = axis;
+        places[i] = place;
         found = true;
       }
-      if (!found) body_.fail_here("element 'vertex' has no scalar property " + in_quotes(name));
+      if (!found) {
+        body_.fail_here("element " + in_quotes(element.name) + " has no scalar property " + in_quotes(name));
+      }
+      ++place;
     }
-    return axes;
+    return places;
   }
 
   // Calls `read(number, property)` for the list of vertices of each face or strip.

@@ -1,14 +1,16 @@
-// STL, text or binary: triangles of three points. Equal points become one vertex.
+// STL, text or binary: triangles of three points, in text also polygons. Equal points become one vertex.
 
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
 #include <utility>
+#include <vector>
 
 #include "core/error.hpp"
 #include "mesh/byte_order.hpp"
 #include "mesh/mesh_formats.hpp"
+#include "mesh/polygon.hpp"
 #include "mesh/text_scanner.hpp"
 #include "mesh/vertex_welder.hpp"
 
@@ -80,6 +82,7 @@ class StlTextReader {
   TriangleMesh read() {
     while (scanner_.skip_to_word()) read_solid();
     mesh_.positions = welder_.take_points();
+    cut_polygons(mesh_, fans_);
     return std::move(mesh_);
   }
 
@@ -102,16 +105,17 @@ class StlTextReader {
     for (int axis = 0; axis < 3; ++axis) next_word();
     expect("outer");
     expect("loop");
-    Triangle triangle;
-    for (std::uint32_t& id : triangle) id = read_vertex();
-    expect_end("loop");
+    corners_.clear();
+    std::string_view word = next_word();
+    for (; equal_ignoring_case(word, "vertex"); word = next_word()) {
+      corners_.push_back(welder_.id_of(scanner_.point()));
+    }
+    if (!ends(word, "loop")) scanner_.fail_expected("'vertex' or 'endloop'", word);
+    if (corners_.size() < 3) {
+      scanner_.fail_here("a facet has " + std::to_string(corners_.size()) + " corners; it needs at least 3");
+    }
     expect_end("facet");
-    mesh_.triangles.push_back(triangle);
-  }
-
-  std::uint32_t read_vertex() {
-    expect("vertex");
-    return welder_.id_of(scanner_.point());
+    add_face(mesh_, fans_, corners_);
   }
 
   std::string_view next_word() {
@@ -139,6 +143,8 @@ class StlTextReader {
   TextScanner scanner_;
   TriangleMesh mesh_;
   VertexWelder welder_;
+  std::vector<std::uint32_t> corners_;  // of the facet that is read
+  std::vector<PolygonFan> fans_;
 };
 
 // A unit vector, or zero when the corners give no direction.

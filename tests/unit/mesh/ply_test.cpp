@@ -111,6 +111,22 @@ TEST(Ply, ReadsWhatIsAllowed) {
   }
 }
 
+TEST(Ply, EdgesAreThoseOfTheirElement) {
+  const std::string edge = "element edge 2\nproperty uchar red\nproperty int vertex2\nproperty int vertex1\n";
+  const TriangleMesh after =
+      read_ply(header("ascii", "element vertex 4\n" + xyz + edge) + corners + "9 0 3\n9 1 2\n", "a.ply");
+  EXPECT_EQ(after.edges, (std::vector<std::array<std::uint32_t, 2>>{{3, 0}, {2, 1}}));
+  const TriangleMesh before =
+      read_ply(header("ascii", edge + "element vertex 4\n" + xyz) + "9 0 3\n9 1 2\n" + corners, "a.ply");
+  EXPECT_EQ(before.edges, after.edges);
+  const std::string little_endian =
+      header("binary_little_endian",
+             "element vertex 2\n" + xyz + "element edge 1\nproperty uint vertex1\nproperty uchar vertex2\n") +
+      Bytes(std::endian::little).add(0.0f).add(0.0f).add(0.0f).add(1.0f).add(0.0f).add(0.0f).text() +
+      Bytes(std::endian::little).add(std::uint32_t{1}).add(std::uint8_t{0}).text();
+  EXPECT_EQ(read_ply(little_endian, "a.ply").edges, (std::vector<std::array<std::uint32_t, 2>>{{1, 0}}));
+}
+
 TEST(Ply, TextIsReadAsDouble) {
   const TriangleMesh mesh =
       read_ply(header("ascii", "element vertex 2\n" + xyz) + "0.1 nan -inf\n1e400 1e-400 -0\n", "a.ply");
@@ -242,6 +258,20 @@ const ErrorCase ply_errors[] = {
      "a.ply:8: element 'vertex' has no scalar property 'x'"},
     {header("ascii", "element vertex 4\n" + xyz + "element face 1\nproperty int a\n") + corners + "1\n",
      "a.ply:13: element 'face' has no list 'vertex_indices' or 'vertex_index'"},
+    {header("ascii", "element vertex 4\n" + xyz + "element edge 1\nproperty int vertex1\n") + corners + "1\n",
+     "a.ply:13: element 'edge' has no scalar property 'vertex2'"},
+    {header("ascii",
+            "element vertex 4\n" + xyz + "element edge 1\nproperty int vertex1\nproperty float vertex2\n") +
+         corners + "1 2\n",
+     "a.ply:14: property 'vertex2' of element 'edge' must be of an integer type"},
+    {header("ascii",
+            "element vertex 4\n" + xyz + "element edge 2\nproperty int vertex1\nproperty int vertex2\n") +
+         corners + "1 2\n0 4\n",
+     "a.ply:15: edge 1: vertex index 4 is out of range; the file has 4 vertices, counted from 0"},
+    {header("ascii",
+            "element vertex 4\n" + xyz + "element edge 1\nproperty int vertex1\nproperty int vertex2\n") +
+         corners + "1 1\n",
+     "a.ply:14: edge 0 joins vertex 1 to itself; leave it out"},
     {plain + corners + "3 0 1 4\n",
      "a.ply:14: face 0: vertex index 4 is out of range; the file has 4 vertices, counted from 0"},
     {plain + corners + "3 0 1 -1\n",
