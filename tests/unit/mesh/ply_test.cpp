@@ -267,11 +267,11 @@ const ErrorCase ply_errors[] = {
     {header("ascii",
             "element vertex 4\n" + xyz + "element edge 2\nproperty int vertex1\nproperty int vertex2\n") +
          corners + "1 2\n0 4\n",
-     "a.ply:15: edge 1: vertex index 4 is out of range; the file has 4 vertices, counted from 0"},
+     "a.ply:16: edge 1: vertex index 4 is out of range; the file has 4 vertices, counted from 0"},
     {header("ascii",
             "element vertex 4\n" + xyz + "element edge 1\nproperty int vertex1\nproperty int vertex2\n") +
          corners + "1 1\n",
-     "a.ply:14: edge 0 joins vertex 1 to itself; leave it out"},
+     "a.ply:15: edge 0 joins vertex 1 to itself; leave it out"},
     {plain + corners + "3 0 1 4\n",
      "a.ply:14: face 0: vertex index 4 is out of range; the file has 4 vertices, counted from 0"},
     {plain + corners + "3 0 1 -1\n",

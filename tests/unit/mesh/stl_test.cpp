@@ -77,7 +77,7 @@ const StlCase stl_cases[] = {
     {"a facet of five corners, not convex",
      "solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 4 0 0\nvertex 4 4 0\nvertex 3 1 0\n"
      "vertex 0 1 0\nendloop\nendfacet\nendsolid\n",
-     {{3, 4, 0}, {3, 0, 1}, {3, 1, 2}},
+     {{4, 0, 1}, {1, 2, 3}, {3, 4, 1}},
      5},
     {"zero bytes at the end", "solid a\n" + two_facets + "endsolid a\n" + std::string(9, '\0'),
      two_triangles},
