@@ -175,4 +175,6 @@ class Comparison(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    unittest.main()
+    result = unittest.main(exit=False).result
+    sys.stdout.flush()
+    os._exit(0 if result.wasSuccessful() and result.testsRun > 0 else 1)  # Blender may crash when Python ends
