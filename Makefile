@@ -16,7 +16,7 @@ help:
 	@echo 'make bench    Supple against Embree, CGAL, FCL, Bullet and ODE: up to 25 minutes; bench-quick takes one'
 	@echo 'make bench-kernels   single stages and kernels of Supple'
 	@echo 'make bench-compare BASE=COMMIT   this working tree against a commit'
-	@echo 'make check    format, include order, prose, changelog, generated documents'
+	@echo 'make check    format, include order, prose, changelog, file sizes, generated documents'
 	@echo 'make format   format the C++ sources'
 	@echo 'make docs     write the documents that are generated from the command line'
 	@echo 'make figures  draw docs/figures/*.svg from their text (needs graphviz)'
@@ -87,6 +87,7 @@ check: program
 	tools/check_include_order.py
 	tools/check_prose.py
 	tools/check_changelog.sh
+	tools/check_file_sizes.sh
 	tools/generate_docs.sh --check build/release/bin/supple
 
 format:
