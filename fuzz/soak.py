@@ -18,7 +18,6 @@ import datetime
 import os
 import pathlib
 import re
-import shutil
 import subprocess
 import sys
 import tempfile
@@ -30,10 +29,11 @@ WAYS = {"simulate": [], "record": ["--record", "run.h5"], "replace": ["--replace
 MOST_GROWTH = {"simulate": 1, "record": 3, "replace": 1}  # percent
 WARM_UP = 0.1  # of the frames
 LEAST_ROWS = 10  # with fewer, a part of the run may have none
-MOST_ROWS = 200  # of a stored table
+MOST_ROWS = 20  # of a run in memory.csv
 MEGABYTE = 1e6
 COLUMNS = ["scene", "way", "commit", "frames", "seconds", "heap_start", "heap_end", "heap_growth", "resident_start", "resident_end",
            "resident_growth", "events", "checked", "replaced", "recordings", "result"]
+MEMORY = ["scene", "way", "frame", "heap", "resident", "contacts"]
 
 
 def run(program, scene, way, arguments):
@@ -92,58 +92,32 @@ def default_folder():
 def store(folder, summaries, rows_of):
     """Adds runs to a folder of results, in place of earlier ones of the same scenes and ways."""
     folder.mkdir(parents=True, exist_ok=True)
-    log = folder / "runs.csv"
-    kept = {(row["scene"], row["way"]): row for row in csv.DictReader(log.open())} if log.exists() else {}
-    kept |= {(s["scene"], s["way"]): s for s in summaries}
-    kept = [kept[key] for key in sorted(kept)]
-    write_csv(log, COLUMNS, kept)
+    key = lambda row: (row["scene"], row["way"])
+    runs = {key(row): row for row in read_csv(folder / "runs.csv")} | {key(row): row for row in summaries}
+    memory = [row for row in read_csv(folder / "memory.csv") if key(row) not in rows_of]
     for (scene, way), rows in rows_of.items():
         every = -(-len(rows) // MOST_ROWS)
-        thinned = [row for i, row in enumerate(rows) if i % every == 0 or i + 1 == len(rows)]
-        write_csv(folder / f"{scene}-{way}.csv", rows[0], [{name: f"{value:.10g}" for name, value in row.items()} for row in thinned])
-    write_page(folder, kept)
-    draw(folder, kept)
+        memory += [{"scene": scene, "way": way} | {name: f"{row[name]:.10g}" for name in MEMORY[2:]}
+                   for i, row in enumerate(rows) if i % every == 0 or i + 1 == len(rows)]
+    write_csv(folder / "runs.csv", COLUMNS, sorted(runs.values(), key=key))
+    write_csv(folder / "memory.csv", MEMORY, sorted(memory, key=key))
+
+
+def read_csv(path):
+    if not path.exists():
+        return []
+    return list(csv.DictReader(line for line in path.read_text().splitlines() if not line.startswith("#")))
 
 
 def write_csv(path, columns, rows):
     with path.open("w", newline="") as file:
+        file.writelines(f"# {name}: {value}\n" for name, value in (
+            ("date", datetime.date.today().isoformat()), ("commit", "of each run in runs.csv"),
+            ("machine", f"{processor()}, {os.cpu_count()} cores"), ("compiler", output_of("c++", "--version").split("\n")[0]),
+            ("command", " ".join(["fuzz/soak.py", *sys.argv[1:]]))))
         writer = csv.DictWriter(file, columns, lineterminator="\n")
         writer.writeheader()
         writer.writerows(rows)
-
-
-def write_page(folder, runs):
-    notes = [f"[{path.name}]({path.name})" for path in sorted(folder.glob("*.md")) if path.name != "README.md"]
-    lines = ["# Soak test", "", f"`fuzz/soak.py` wrote this page, last on {datetime.date.today().isoformat()}, on {processor()} with", f"{os.cpu_count()} cores. "
-             "The help of the script says what the ways are and how memory is judged.", *(["Notes: " + ", ".join(notes) + "."] if notes else []), "", "Memory is in MB (10⁶ bytes) after the warm-up and at the end; growth is that of the peak. Heap in use is what",
-             "the program allocated and did not free. `SCENE-WAY.csv` has up to 200 rows of each run.", "",
-             "![Memory of each scene over the frames](memory.svg)", "",
-             "| Scene | Way | Commit | Frames | Seconds | Heap, MB | Growth | Resident, MB | Growth | Events | Checked | Replaced | Files | Result |",
-             "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|"]
-    for r in runs:
-        lines.append(f"| {r['scene']} | {r['way']} | {r['commit']} | {int(r['frames']):,} | {r['seconds']} | {r['heap_start']} → {r['heap_end']} | {r['heap_growth']} % | "
-                     f"{r['resident_start']} → {r['resident_end']} | {r['resident_growth']} % | {int(r['events']):,} | {r['checked']} | "
-                     f"{r['replaced']} | {r['recordings']} | {r['result']} |")
-    (folder / "README.md").write_text("\n".join(lines) + "\n")
-
-
-def draw(folder, runs):
-    """One panel for each scene: heap in use over frames, a line for each way."""
-    scenes = sorted({r["scene"] for r in runs})
-    colors = dict(zip(WAYS, ["#0077bb", "#ee7733", "#009988"]))
-    columns = 3
-    rows = -(-len(scenes) // columns)
-    script = [f"set terminal svg noenhanced size 960,{70 + 190 * rows} dynamic font 'sans-serif,12' background '#ffffff'",
-              f"set output '{folder / 'memory.svg'}'", "set datafile separator ','", "set border 3", "set tics nomirror font ',9'",
-              "set grid lc rgb '#999999' lw 0.4 dt 1", "set xtics autofreq", "set yrange [0:*]", "set ylabel 'heap in use, MB'", "set xlabel 'thousand frames'",
-              "set key bottom right samplen 2", f"set multiplot layout {rows},{columns}"]
-    legend = max(scenes, key=lambda scene: sum(r["scene"] == scene for r in runs))
-    for scene in scenes:
-        script.append(f"set key {'on' if scene == legend else 'off'}")
-        lines = [f"'{folder / (scene + '-' + r['way'] + '.csv')}' using ($1/1e3):($4/1e6) with lines lw 2 lc rgb '{colors[r['way']]}' title '{r['way']}'"
-                 for r in runs if r["scene"] == scene]
-        script += [f"set title '{scene}'", "plot " + ", ".join(lines)]
-    subprocess.run(["gnuplot"], input="\n".join(script + ["unset multiplot"]) + "\n", text=True, check=True)
 
 
 def main():
@@ -160,13 +134,11 @@ def main():
     parser.add_argument("--most-growth", type=float, help="of memory, in percent (default: 1, for recordings 3)")
     parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="runs at the same time (default: one per core)")
     parser.add_argument("--record", nargs="?", type=pathlib.Path, const=default_folder(), metavar="FOLDER",
-                        help="store tables and plots in this folder (default: benchmarks/results/DATE-MACHINE-soak)")
+                        help="store tables in this folder (default: benchmarks/results/DATE-MACHINE-soak)")
     arguments = parser.parse_args()
     program = arguments.build.resolve() / "bin" / "soak"
     if not program.exists():
         sys.exit(f"fuzz/soak.py: {program} does not exist; build it: cmake --build {arguments.build} --target fuzz_soak")
-    if arguments.record and not shutil.which("gnuplot"):
-        sys.exit("fuzz/soak.py: --record draws plots with gnuplot, which is not there; install it, on Debian by: apt-get install gnuplot-nox")
 
     summaries, rows_of = [], {}
     runs = [(scene, way) for scene in arguments.scenes for way in arguments.ways]

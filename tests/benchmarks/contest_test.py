@@ -2,7 +2,6 @@
 same bits everywhere, and the driver writes correct results."""
 
 import contextlib
-import csv
 import io
 import json
 import pathlib
@@ -15,6 +14,8 @@ import xml.etree.ElementTree
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "benchmarks"))
 import contest  # noqa: E402
+import contest_report  # noqa: E402
+import contest_targets  # noqa: E402
 
 BUILD = pathlib.Path(sys.argv.pop(1)) if len(sys.argv) > 1 else ROOT / "build/release"
 PROGRAM = BUILD / "bin/supple_contest"
@@ -89,8 +90,8 @@ class Cells(unittest.TestCase):
                 times = {name: value for name, value in values.items() if name.startswith("milliseconds")}
                 self.assertGreaterEqual(len(times), 2)
                 self.assertTrue(all(time > 0 for time in times.values()), times)
-                self.assertTrue(contest.judged([{"cell": cell, "skipped": None, "values": values,
-                                                 "contestants": []}]).rows)
+                self.assertTrue(contest_targets.judged([{"cell": cell, "skipped": None, "values": values,
+                                                         "contestants": []}]).rows)
 
     def test_bodies_that_move_fast(self):
         for cell in ("C/passing", "C/rods"):
@@ -106,41 +107,92 @@ class Cells(unittest.TestCase):
                 self.assertIn("supple_contest: no ", done.stderr)
 
 
+def contestant_of(name, times, stages=None):
+    return {"name": name, "threads": 1, "pairs": 7, "cpu_ms": times, "wall_ms": times, "mean_stage_ms": stages or {}}
+
+
+def judged(*cells):
+    return contest_targets.judged(contest_targets.summarised(cells)).rows
+
+
 class Judgement(unittest.TestCase):
     @staticmethod
     def cell(name, **milliseconds):
         return {"cell": name, "skipped": None, "values": {}, "contestants": [
-            {"name": contestant.replace("_", " "), "cpu_ms": times, "wall_ms": times, "mean_stage_ms": {}}
-            for contestant, times in milliseconds.items()]}
+            contestant_of(contestant.replace("_", " "), times) for contestant, times in milliseconds.items()]}
 
     def test_against_the_best_library_and_the_best_baseline(self):
-        rows = contest.judged([self.cell("A/u1/1000", Supple=[1, 2, 9], Embree=[9, 9, 9], CGAL=[8, 8, 8],
-                                         baseline_sweep=[1, 1, 1], baseline_grid=[3, 3, 3])]).rows
-        judged = {row["row"]: (row["against"], row["ratio"], row["met"]) for row in rows}
-        self.assertEqual(judged["A, the best library"], ("CGAL", 4, "reach"))
-        self.assertEqual(judged["A, the baselines"], ("baseline sweep", 0.5, "missed"))
+        rows = judged(self.cell("A/u1/1000", Supple=[1, 2, 9], Embree=[9, 9, 9], CGAL=[8, 8, 8],
+                                baseline_sweep=[1, 1, 1], baseline_grid=[3, 3, 3]))
+        found = {row["row"]: (row["against"], row["ratio"], row["met"]) for row in rows}
+        self.assertEqual(found["A, the best library"], ("CGAL", 4, "reach"))
+        self.assertEqual(found["A, the baselines"], ("baseline sweep", 0.5, "missed"))
 
     def test_default_options_against_pairs(self):
         cell = self.cell("B/980x64", Supple=[2, 2, 2], Embree=[8, 8, 8])
         for name, time in (("Supple, pairs only", 1.6), ("Embree, contact points", 9)):
-            cell["contestants"].append({"name": name, "cpu_ms": [time], "wall_ms": [time], "mean_stage_ms": {}})
-        judged = {row["row"]: (row["against"], row["ratio"], row["met"]) for row in contest.judged([cell]).rows}
-        self.assertEqual(judged["B 980 × 64 and × 512, contact points, against pairs"], ("Embree", 4, "reach"))
-        self.assertEqual(judged["B, contact points in both"], ("Embree, contact points", 4.5, "reach"))
-        self.assertEqual(judged["B, cost of contact points and normals"], ("Supple, pairs only", 1.25, "missed"))
+            cell["contestants"].append(contestant_of(name, [time]))
+        found = {row["row"]: (row["against"], row["ratio"], row["met"]) for row in judged(cell)}
+        self.assertEqual(found["B 980 × 64 and × 512, contact points, against pairs"], ("Embree", 4, "reach"))
+        self.assertEqual(found["B, contact points in both"], ("Embree, contact points", 4.5, "reach"))
+        self.assertEqual(found["B, cost of contact points and normals"], ("Supple, pairs only", 1.25, "missed"))
+
+    def test_the_refit_alone_is_a_share_of_the_median_frame(self):
+        cell = self.cell("limits/refit/980", ideal__leaves_as_wide=[2, 2, 2])
+        cell["contestants"][0]["name"] = "ideal, leaves as wide"
+        cell["contestants"].append(contestant_of("Supple", [4, 4, 10], {"refit alone": 3}))
+        self.assertEqual([row["ratio"] for row in judged(cell)], [1])
 
     def test_smaller_is_better(self):
         cell = {"cell": "memory/980", "skipped": None, "values": {"heap bytes a triangle": 39.0}, "contestants": []}
-        self.assertEqual(contest.judged([cell]).rows[0]["met"], "aim")
+        self.assertEqual(judged(cell)[0]["met"], "aim")
         cell["values"]["heap bytes a triangle"] = 64.5
-        self.assertEqual(contest.judged([cell]).rows[0]["met"], "missed")
+        self.assertEqual(judged(cell)[0]["met"], "missed")
 
     def test_exponent(self):
-        self.assertAlmostEqual(contest.exponent([(1, 2), (10, 20), (100, 200)]), 1)
-        self.assertAlmostEqual(contest.exponent([(1, 1), (4, 8), (16, 64)]), 1.5)
+        self.assertAlmostEqual(contest_targets.exponent([(1, 2), (10, 20), (100, 200)]), 1)
+        self.assertAlmostEqual(contest_targets.exponent([(1, 1), (4, 8), (16, 64)]), 1.5)
+
+
+class Report(unittest.TestCase):
+    def test_a_table_is_read_as_written(self):
+        about = {"date": "2026-11-26 08:00 UTC", "command": "contest.py --only 'A/*'"}
+        cells = contest_targets.summarised([
+            {"cell": "memory/980", "skipped": None, "values": {"heap bytes a triangle": 39.5}, "contestants": []},
+            {"cell": "C/rods", "skipped": "no rods, no cell", "values": {}, "contestants": []},
+            {"cell": "B/980x64", "skipped": None, "values": {"triangles": 62720}, "contestants": [
+                contestant_of("Supple, pairs only", [2, 2, 2], {"update": 1, "order and events": 2}), contestant_of("Embree", [8])]}])
+        with tempfile.TemporaryDirectory() as folder:
+            table = pathlib.Path(folder) / "table.csv"
+            contest_report.write_csv(table, about, cells)
+            self.assertEqual(contest_report.read_csv(table), (about, cells))
+
+    def test_each_kept_table_makes_a_page(self):
+        tables = list((ROOT / "benchmarks/results").glob("*contest.csv"))
+        self.assertTrue(tables)
+        with tempfile.TemporaryDirectory() as folder:
+            for table in tables:
+                page = pathlib.Path(folder) / "page.html"
+                done = subprocess.run([sys.executable, ROOT / "benchmarks/contest_report.py", table, page],
+                                      capture_output=True, text=True, check=False)
+                self.assertEqual(done.returncode, 0, done.stderr)
+                tree = xml.etree.ElementTree.fromstring(page.read_text(encoding="utf-8").removeprefix("<!DOCTYPE html>\n"))
+                self.assertGreaterEqual(len(tree.findall(".//table")), 3, table)
+                self.assertIn(contest_report.read_csv(table)[0]["commit"], page.read_text(encoding="utf-8"))
 
 
 class Driver(unittest.TestCase):
+    def test_without_the_programs_it_ends_with_one_line(self):
+        with tempfile.TemporaryDirectory() as folder:
+            build = pathlib.Path(folder)
+            (build / "bin").mkdir()
+            for name in ("bin/supple_contest", "CMakeCache.txt", "bin/supple"):
+                done = subprocess.run([sys.executable, ROOT / "benchmarks/contest.py", "--build", build],
+                                      capture_output=True, text=True, check=False)
+                self.assertEqual((done.returncode, done.stdout), (1, ""))
+                self.assertEqual(done.stderr, f"contest.py: no {build / name}; run: make bench\n")
+                (build / name).touch()
+
     def test_writes_results(self):
         with tempfile.TemporaryDirectory() as folder:
             done = subprocess.run(
@@ -148,11 +200,11 @@ class Driver(unittest.TestCase):
                  "0.01", "--only", "A/u1/300", "--only", "A/u1/600", "--only", "B/80x8", "--only", "C/crumpled-small",
                  "--only", "limits/refit/80"], capture_output=True, text=True, check=False)
             self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
-            results = json.loads((pathlib.Path(folder) / "results.json").read_text(encoding="utf-8"))
-            self.assertEqual([cell["cell"] for cell in results["cells"]],
+            about, cells = contest_report.read_csv(pathlib.Path(folder) / "results.csv")
+            self.assertIn("--only limits/refit/80", about["command"])
+            self.assertEqual([cell["cell"] for cell in cells],
                              ["A/u1/300", "A/u1/600", "B/80x8", "C/crumpled-small", "limits/refit/80"])
-            with open(pathlib.Path(folder) / "results.csv", encoding="utf-8") as file:
-                self.assertIn("baseline sweep", [row["contestant"] for row in csv.DictReader(file)])
+            self.assertIn("baseline sweep", [c["name"] for c in cells[0]["contestants"]])
             page = (pathlib.Path(folder) / "results.html").read_text(encoding="utf-8")
             tree = xml.etree.ElementTree.fromstring(page.removeprefix("<!DOCTYPE html>\n"))
             self.assertGreaterEqual(len(tree.findall(".//svg")), 4)
