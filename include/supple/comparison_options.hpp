@@ -48,7 +48,7 @@ struct ObjectOctreeOptions {
   std::uint32_t max_level = 16;
   /// A node with at most this many triangles is not split, ≥ 1. Vector kernels test the triangles of two
   /// leaves that meet, so small leaves are slower, and they take more memory. The limit is half of this value
-  /// when `SceneOptions::contacts` has continuous contacts, unless the octree is regular.
+  /// when `SceneOptions::contacts` has continuous contacts or proximity, unless the octree is regular.
   std::uint32_t leaf_size = 64;
   /// Children of a node: 8, 4 or 2; balanced octrees have 8. In a regular octree, a level halves a cell along
   /// three axes, two or one, which take turns. Nodes have room for eight children in any case, so fewer

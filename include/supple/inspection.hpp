@@ -140,10 +140,10 @@ struct OctreeStatistics {
 /// none when a slab of a box is infinite.
 std::vector<std::array<Vec3d, 2>> edges_of(std::span<const Slab> slabs);
 
-/// Looks into a scene and its last `detect`, for drawing, learning and tests. When that call found both kinds
-/// of contacts, cells and candidates are those of the search for intersections. The inspector refers to the
-/// scene, which must outlive it and must not be moved. It keeps no memory. Each call allocates memory and
-/// uses one thread.
+/// Looks into a scene and its last `detect`, for drawing, learning and tests. When that call found several
+/// kinds of contacts, cells and candidates are those of the first search of these: intersections (also for
+/// penetration), continuous contacts, proximity. The inspector refers to the scene, which must outlive it and
+/// must not be moved. It keeps no memory. Each call allocates memory and uses one thread.
 ///
 /// `cells`, `leaf`, `node_pairs`, `candidates` and `explain` throw `Error` when something changed since the
 /// last `detect` (for `cells`: when the object moved).
@@ -153,8 +153,8 @@ class SceneInspector {
 
   /// The cells of an object's octree at `level` and the leaves above it, which together cover the object.
   /// Without a level: all leaves. Ordered by level. Cells enclose the triangles at their present positions,
-  /// rounded outward. With continuous contacts, they enclose the positions at the end of the step. Cells
-  /// without a finite triangle are empty.
+  /// rounded outward; for an object on a path, at the end of the step. Cells without a finite triangle are
+  /// empty.
   std::vector<OctreeCell> cells(ObjectId object, std::optional<std::uint32_t> level = {}) const;
   /// The leaf that contains a triangle. O(octree depth). Throws `Error` when the triangle is out of range.
   OctreeCell leaf(ObjectId object, std::uint32_t triangle) const;

@@ -97,7 +97,8 @@ struct Description<ObjectOctreeOptions> {
     visitor(Field<Options, std::uint32_t>{
         .name = "leaf_size",
         .member = &Options::leaf_size,
-        .doc = "A node with at most this many triangles is not split; half as many with continuous contacts",
+        .doc = "A node with at most this many triangles is not split; half as many with continuous contacts "
+               "or proximity",
         .range = ValueRange::from(1, 0xffffffff),
         .unit = "triangles"});
     visitor(Field<Options, std::uint32_t>{.name = "arity",

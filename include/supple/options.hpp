@@ -20,8 +20,8 @@
 namespace supple {
 
 /// Shape that encloses the nodes of an object's octree, and the object itself in the broad phase. The
-/// contacts are the same for all. With continuous contacts, nodes have boxes, and objects have boxes or
-/// spheres.
+/// contacts are the same for all. Searches for continuous contacts and proximity use boxes for the nodes, and
+/// boxes or spheres for the objects.
 ///
 /// Oriented boxes and k-DOPs are tested where boxes overlap. They are tighter than boxes, and take more
 /// memory and more time to refit and to test.
@@ -118,7 +118,8 @@ enum class Neighbours : std::uint8_t {
 struct ObjectOptions {
   /// Appears in messages and results; the mesh's name when empty.
   std::string name{};
-  /// Also test the object against itself. Triangles that share a vertex id are never a contact.
+  /// Also test the object against itself. Triangles that share a vertex id are not tested, unless
+  /// `neighbours` is `exact`.
   bool self_collision = false;
   Neighbours neighbours = Neighbours::skip;
   /// Vertices with equal positions when the object is added count as one: the first of them stands for all,
@@ -206,9 +207,9 @@ struct DetectRequest {
   /// The largest number of contacts of each kind in the result: the first ones in canonical order, for any
   /// number of threads. `DetectResult::truncated` says that there are more. The limit bounds the result and
   /// saves exact tests and memory: each worker holds at most about twice the limit for a pair of objects,
-  /// and the search skips pairs after the last reported contact. First contacts of elements are all found
-  /// first, which takes memory for each element that touches. Penetration needs all intersections: a limit is
-  /// an error then.
+  /// and the search skips pairs after the last reported contact. For first contacts of elements, the limit
+  /// shortens the result, not the search, which takes memory for each element that touches. Penetration needs
+  /// all intersections: a limit is an error then.
   std::uint64_t max_contacts = std::numeric_limits<std::uint64_t>::max();
 #ifdef __cpp_lib_jthread
   /// Any thread can stop the call: it ends within milliseconds during the search, otherwise after the current

@@ -70,10 +70,10 @@ inline constexpr std::array words<CurveKind>{"closed", "open", "branched"};
 /// ascending contacts and no points.
 ///
 /// On each of two surfaces, a curve encloses the vertices that it cuts off: those on the smaller of the two
-/// sides, by the number of vertices, and of equal sides the one that is behind. It encloses none where it
-/// does not divide the connected part of the surface, and none where it passes through vertices in a way that
-/// leaves the sides open. On a curve of an object with itself, side a has the smaller triangle of the curve's
-/// smallest contact. See Baraff, Witkin and Kass, Untangling Cloth, 2003.
+/// sides, by the number of vertices, and of equal sides the one that is behind. It encloses nothing where it
+/// does not divide the connected part of the surface, and where a vertex makes the sides ambiguous. On a
+/// curve of an object with itself, side a has the smaller triangle of the curve's smallest contact. See
+/// Baraff, Witkin and Kass, Untangling Cloth, 2003.
 ///
 /// `normal` and `depth` say how a leaves b. They concern two parts: on each surface, the triangles of the
 /// curve's contacts and those around the vertices behind it. These are the vertices on the side of the curve

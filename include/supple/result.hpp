@@ -111,8 +111,9 @@ struct StepStats {
   std::uint64_t curves = 0;           ///< reported curves of intersection
 };
 
-/// What `Scene::detect` found. `Scene` says how long the spans are valid. Everything is in one canonical
-/// order: by object a, object b, triangle a, triangle b. Lists of kinds that were not requested are empty.
+/// What `Scene::detect` found. `Scene` says how long the spans are valid. Each list has one canonical order:
+/// by object a and object b, and `contacts` then by triangle a and triangle b; the other lists say theirs.
+/// Lists of kinds that were not requested are empty.
 ///
 /// Pairs, kinds, features and element ids are exact: they are the answer of exact arithmetic on the given
 /// coordinates. `object_pairs` and the candidates are conservative. Normals, points, barycentric coordinates
@@ -149,8 +150,8 @@ struct DetectResult {
   std::span<const NonFiniteVertex> non_finite_vertices;
   PairEvents volume_events;  ///< of `object_pairs`
   /// Changes of the pairs of different objects whose leaves overlap. The paper's narrow phase counts these
-  /// pairs. Only with `ComparisonOptions::colliding_vertices`; a step that searches only continuous contacts
-  /// has no such pairs.
+  /// pairs. Only with `ComparisonOptions::colliding_vertices`, and only in a step that searches intersections
+  /// or penetration.
   PairEvents narrow_phase_events;
   PairEvents contact_events;      ///< of the pairs of different objects that intersect or touch in the step
   PairEvents proximity_events;    ///< of the pairs of different objects that have proximity pairs

@@ -48,7 +48,8 @@ struct RigidTransform {
 ///
 /// Memory: the scene keeps one copy of each object's positions, in the precision of the last call, and no
 /// copy of shared positions. It keeps a second copy for objects moved by `set_transform` or `set_motion`.
-/// Once continuous contacts are requested, it also keeps copies of the positions at both ends of the step.
+/// Once continuous contacts, proximity or a safe step are requested, it also keeps the positions at the end
+/// of the step, and for objects on a path those at its start.
 ///
 /// Spans: those of a result are valid until the next `detect`, and those that another function returns until
 /// the next call of a function with the same name; nothing else ends them, except the destructor and an
@@ -84,8 +85,8 @@ class Scene {
   /// Sets the positions of some vertices, O(k) for k of them, where only a part of the object moves: all
   /// others stay. `detect` then refits only the nodes of the octree around these vertices, to the same
   /// volumes. The positions are those that were last set, before the object's transform and translation,
-  /// which stay; a path ends. When more than an eighth of the vertices move, and for continuous contacts,
-  /// `detect` refits the whole object.
+  /// which stay; a path ends. When more than an eighth of the vertices move, and for continuous contacts and
+  /// proximity, `detect` refits the whole object.
   ///
   /// Shared positions are copied first, O(n). Throws `Error` when there is no such vertex, when the numbers
   /// of vertices and positions differ, and when one is `float` and the object's positions are `double`, or
@@ -97,7 +98,7 @@ class Scene {
   ///
   /// The scene copies the positions when it cannot read them in place: when x, y and z of a point are not
   /// adjacent (a column-major n x 3 matrix), and when the point stride or the address is not a multiple of
-  /// the scalar's size. `detect` also copies them when it searches for continuous contacts.
+  /// the scalar's size. Searches for continuous contacts, proximity and safe steps also copy them.
   void share_positions(ObjectId object, PositionsView positions);
   /// Moves the object by `offset` in O(1), without reading its vertices. Each coordinate becomes
   /// fl(position + D) in double. D is the translation of the last `set_transform` plus all offsets since it,
@@ -135,9 +136,9 @@ class Scene {
   /// excludes all pairs whose volumes overlap, `detect` also asks for others, until it accepts one.
   void set_pair_filter(PairFilter filter);
 
-  /// Finds every contact of the requested kinds: intersections at the current positions, continuous contacts
-  /// within the step, or pairs within the margins at the current positions. The request defaults to the
-  /// options of the scene. Time depends on the objects that moved and on the overlapping volumes; no memory
+  /// Finds every contact of the requested kinds: intersections, penetration and pairs within the margins at
+  /// the current positions, and continuous contacts within the step. The request defaults to the options of
+  /// the scene. Time depends on the objects that moved and on the overlapping volumes; no memory
   /// is allocated after the largest step so far. An empty list of contacts means that nothing touches, unless
   /// `DetectResult::untested` says that there was nothing to test. Throws `Error` when the request is out of
   /// range.
@@ -154,10 +155,10 @@ class Scene {
   /// A part of the step, 0 to 1, after which nothing has crossed and every pair of elements keeps a share of
   /// its distance at the start, `StepOptions::keep`; and the pair that ends it.
   ///
-  /// A pair at the distance D at the start keeps `keep` D. With a separation s, a pair that is farther apart
-  /// keeps s + `keep` (D - s), so a pair within the separation, or one that parts, does not end the step. The
-  /// step is never longer than up to the first time at which a pair is at the distance that it keeps, and
-  /// shorter by at most 2^-18 of it.
+  /// A pair at distance d at the start keeps at least `keep` d. With separation s, a pair at distance d > s
+  /// keeps at least s + `keep` (d - s), and a pair within the separation, or one that parts, does not end the
+  /// step. The exact step ends when the first pair is at the distance that it keeps. The returned step never
+  /// exceeds the exact one, and is shorter by at most 2^-18 of it.
   ///
   /// Elements that share a point at the start end the step there, unless they touch at rest: the vertices of
   /// the features that touch, as `ElementDistance` names them, all move by exactly the same way. Such a pair

@@ -24,13 +24,14 @@ namespace supple {
 TriangleArrays arrays_of(std::span<const Triangle> triangles, const VertexBuffer& vertices,
                          std::span<const std::uint8_t> inert);
 
-/// Octree over the triangles of one object, built top-down from the rest pose. `refit` updates its volumes
-/// when the object deforms.
+/// Octree over the triangles of one object, built from the rest pose. `refit` updates its volumes when the
+/// object deforms.
 ///
-/// It is balanced (`octree/balanced_build.hpp`) or regular as in the paper (`octree/regular_build.hpp`). In a
-/// regular octree, each triangle is in the octant that contains the centre of its box. A node whose triangles
-/// are all in one octant shrinks to that octant, so that a single vertex far away costs one level. With arity
-/// 4 or 2, nodes have quarters or halves instead of octants, and the other children are missing.
+/// It is built top-down, balanced (`octree/balanced_build.hpp`) or regular as in the paper
+/// (`octree/regular_build.hpp`), or bottom-up (`octree/bottom_up_build.hpp`). In a regular octree, each
+/// triangle is in the octant that contains the centre of its box. A node whose triangles are all in one
+/// octant shrinks to that octant, so that a single vertex far away costs one level. With arity 4 or 2, nodes
+/// have quarters or halves instead of octants, and the other children are missing.
 ///
 /// Each node below the root has at least two children. Nodes are stored level by level. Triangles are
 /// renumbered in octree order. Leaves are large: testing dozens of triangles with vector instructions costs
