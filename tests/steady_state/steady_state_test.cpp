@@ -18,6 +18,7 @@
 #include "supple/option_descriptions.hpp"
 #include "supple/scene.hpp"
 #include "supple/trigonometry.hpp"
+#include "support/option_word.hpp"
 
 namespace supple {
 namespace {
@@ -48,6 +49,10 @@ struct Configuration {
   BroadPhaseMethod broad_phase;
   int steps_when_optimised;
 };
+/// GoogleTest calls this function; ctest shows the name.
+void PrintTo(const Configuration& configuration, std::ostream* out) {
+  *out << configuration.name;
+}
 
 class SteadyState : public testing::TestWithParam<Configuration> {};
 
@@ -291,7 +296,7 @@ class MovingBalls {
   std::uint64_t contacts_ = 0;
 };
 
-class SteadyStateMoves : public testing::TestWithParam<ContactKinds> {};
+class SteadyStateMoves : public testing::TestWithParam<OptionWord<ContactKinds>> {};
 
 TEST_P(SteadyStateMoves, NoAllocationsAfterWarmUp) {
   MovingBalls balls(GetParam(), 1);
@@ -318,8 +323,8 @@ TEST_P(SteadyStateMoves, HardlyAnyAllocationsWithThreads) {
   EXPECT_LT(allocating_steps, counted / 5);
 }
 
-std::string name_of_kinds(const testing::TestParamInfo<ContactKinds>& kinds) {
-  std::string name = word_of(kinds.param);
+std::string name_of_kinds(const testing::TestParamInfo<OptionWord<ContactKinds>>& kinds) {
+  std::string name = word_of(kinds.param.value);
   name[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(name[0])));
   return name.find(',') == std::string::npos ? name : "Both";
 }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "supple/scene.hpp"
+#include "support/option_word.hpp"
 #include "support/scenes.hpp"
 
 namespace supple {
@@ -32,9 +33,11 @@ inline std::vector<ObjectOctreeOptions> all_octrees() {
   return octrees;
 }
 
+using EnclosingVolume = std::pair<OptionWord<BoundingVolume>, OptionWord<SphereFit>>;
+
 /// The volumes with the fits that enclose all triangles.
-inline std::vector<std::pair<BoundingVolume, SphereFit>> all_enclosing_volumes() {
-  std::vector<std::pair<BoundingVolume, SphereFit>> volumes{{BoundingVolume::sphere, SphereFit::minimal}};
+inline std::vector<EnclosingVolume> all_enclosing_volumes() {
+  std::vector<EnclosingVolume> volumes{{BoundingVolume::sphere, SphereFit::minimal}};
   for (const BoundingVolume volume : all_bounding_volumes) volumes.emplace_back(volume, SphereFit::vertices);
   return volumes;
 }

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <ostream>
 #include <vector>
 
 #include "support/soups.hpp"
@@ -15,6 +16,10 @@ struct Family {
   const char* name;
   std::function<std::vector<TriangleMesh>(std::uint64_t seed)> make;
 };
+/// GoogleTest calls this function; ctest shows the name.
+inline void PrintTo(const Family& family, std::ostream* out) {
+  *out << family.name;
+}
 
 inline std::vector<TriangleMesh> random_soups(std::uint64_t seed) {
   return {random_soup(60, 1, 0.5, seed), random_soup(40, 1, 0.6, seed + 1, {0.5, 0, 0}),

@@ -107,6 +107,10 @@ struct QueryFamily {
   const char* name;
   std::function<Paths(RandomNumbers&, bool edges)> make;
 };
+/// GoogleTest calls this function; ctest shows the name.
+void PrintTo(const QueryFamily& family, std::ostream* out) {
+  *out << family.name;
+}
 
 const QueryFamily query_families[] = {
     {"Random", [](RandomNumbers& r, bool) { return random_paths(r, 1, 1); }},

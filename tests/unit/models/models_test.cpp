@@ -164,6 +164,10 @@ struct Expected {
   int longest_axis;
   double least_roundness;
 };
+/// GoogleTest calls this function; ctest shows the name.
+void PrintTo(const Expected& model, std::ostream* out) {
+  *out << model.name;
+}
 
 class Models : public testing::TestWithParam<Expected> {};
 

@@ -85,6 +85,10 @@ struct Kind {
   const char* name;
   MassSpringOptions options;
 };
+/// GoogleTest calls this function; ctest shows the name.
+void PrintTo(const Kind& kind, std::ostream* out) {
+  *out << kind.name;
+}
 
 class Momentum : public testing::TestWithParam<Kind> {};
 

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "supple/triangle_intersection.hpp"
+#include "support/option_word.hpp"
 #include "support/scenes.hpp"
 #include "support/soups.hpp"
 
@@ -118,7 +119,8 @@ void expect_candidates(const Object& a, const Object& b, bool same_object, doubl
   }
 }
 
-struct TraversalTest : testing::TestWithParam<std::tuple<BoundingVolume, std::uint32_t, std::uint32_t>> {
+struct TraversalTest
+    : testing::TestWithParam<std::tuple<OptionWord<BoundingVolume>, std::uint32_t, std::uint32_t>> {
   BoundingVolume volume() const { return std::get<0>(GetParam()); }
   ObjectOctreeOptions options() const {
     return {.max_level = std::get<1>(GetParam()), .leaf_size = std::get<2>(GetParam())};
@@ -155,7 +157,7 @@ TEST_P(TraversalTest, TranslatedObjects) {
 }
 
 INSTANTIATE_TEST_SUITE_P(VolumesAndShapes, TraversalTest,
-                         testing::Combine(testing::ValuesIn(all_bounding_volumes),
+                         testing::Combine(testing::ValuesIn(option_words(all_bounding_volumes)),
                                           testing::Values(0u, 2u, 16u), testing::Values(1u, 4u, 9u)));
 
 }  // namespace

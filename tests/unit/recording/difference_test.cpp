@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "supple/error.hpp"
+#include "support/option_word.hpp"
 #include "support/soups.hpp"
 #include "unit/recording/recorded_scenes.hpp"
 
@@ -24,7 +25,7 @@ Contents touching(ContactKinds mode, bool colliding_vertices = false) {
 }
 
 /// Compares `base_` with a copy that `change` has modified.
-class FindFirstDifference : public testing::TestWithParam<ContactKinds> {
+class FindFirstDifference : public testing::TestWithParam<OptionWord<ContactKinds>> {
  protected:
   std::optional<RecordingDifference> after(const std::function<void(Contents&)>& change,
                                            double tolerance = 0) const {

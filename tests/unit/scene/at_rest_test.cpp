@@ -7,6 +7,7 @@
 #include "supple/inspection.hpp"
 #include "supple/models.hpp"
 #include "supple/scene.hpp"
+#include "support/option_word.hpp"
 #include "support/random.hpp"
 #include "support/scenes.hpp"
 
@@ -65,9 +66,10 @@ void expect_as_new(const World& world, const DetectResult& result, const SceneOp
     EXPECT_EQ(result.contact_points[i], expected.contact_points[i]);
 }
 
-class AtRest : public ::testing::TestWithParam<std::tuple<BoundingVolume, std::uint32_t, bool>> {};
+class AtRest : public ::testing::TestWithParam<std::tuple<OptionWord<BoundingVolume>, std::uint32_t, bool>> {
+};
 INSTANTIATE_TEST_SUITE_P(All, AtRest,
-                         ::testing::Combine(::testing::ValuesIn(all_bounding_volumes),
+                         ::testing::Combine(::testing::ValuesIn(option_words(all_bounding_volumes)),
                                             ::testing::Values(1u, 3u), ::testing::Bool()));
 
 TEST_P(AtRest, ContactsAreThoseOfASceneWithoutAPast) {

@@ -18,6 +18,7 @@
 #include "supple/error.hpp"
 #include "supple/models.hpp"
 #include "support/golden_scenes.hpp"
+#include "support/option_word.hpp"
 #include "support/soups.hpp"
 
 namespace supple {
@@ -357,7 +358,7 @@ std::vector<TriangleMesh> cut(std::vector<TriangleMesh> meshes, std::size_t tria
   return meshes;
 }
 
-class Inspection : public testing::TestWithParam<std::tuple<Family, BoundingVolume>> {
+class Inspection : public testing::TestWithParam<std::tuple<Family, OptionWord<BoundingVolume>>> {
  protected:
   std::vector<TriangleMesh> meshes(std::uint64_t seed) const { return std::get<0>(GetParam()).make(seed); }
   SceneOptions options() const {
@@ -467,7 +468,7 @@ TEST_P(Inspection, ExplanationsAgreeWithContinuousDetect) {
 
 INSTANTIATE_TEST_SUITE_P(HardFamilies, Inspection,
                          testing::Combine(testing::ValuesIn(hard_families()),
-                                          testing::ValuesIn(all_bounding_volumes)),
+                                          testing::ValuesIn(option_words(all_bounding_volumes))),
                          [](const auto& instance) {
                            return std::get<0>(instance.param).name + std::string("_") +
                                   name_of(std::get<1>(instance.param));

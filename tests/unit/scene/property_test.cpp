@@ -55,7 +55,7 @@ TEST_P(SceneProperties, AnyNumberOfThreadsGivesTheSameBits) {
   }
 }
 
-class OctreeLives : public testing::TestWithParam<std::pair<BoundingVolume, SphereFit>> {};
+class OctreeLives : public testing::TestWithParam<EnclosingVolume> {};
 
 /// One object per kind of octree, over 10,000 deformations.
 TEST_P(OctreeLives, StayValid) {

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "supple/inspection.hpp"
+#include "support/option_word.hpp"
 #include "support/scenes.hpp"
 #include "support/soups.hpp"
 
@@ -110,7 +111,8 @@ struct LivingScene {
   std::vector<TriangleMesh> meshes;  // by slot
 };
 
-class RandomOperations : public testing::TestWithParam<std::tuple<BoundingVolume, BroadPhaseMethod>> {};
+class RandomOperations
+    : public testing::TestWithParam<std::tuple<OptionWord<BoundingVolume>, OptionWord<BroadPhaseMethod>>> {};
 
 void expect_pairs(const std::set<ObjectPair>& expected, std::span<const ObjectPair> pairs) {
   ASSERT_TRUE(std::equal(expected.begin(), expected.end(), pairs.begin(), pairs.end()));
@@ -163,14 +165,14 @@ TEST_P(RandomOperations, EveryStepEqualsBruteForce) {
 
 std::string configuration_name(const testing::TestParamInfo<RandomOperations::ParamType>& info) {
   constexpr std::array methods{"Automatic", "Octree", "Grid", "Sweep", "Brute"};
-  return name_of(std::get<0>(info.param)) + methods[static_cast<std::size_t>(std::get<1>(info.param))];
+  return name_of(std::get<0>(info.param)) + methods[static_cast<std::size_t>(std::get<1>(info.param).value)];
 }
 
 constexpr std::array all_methods{BroadPhaseMethod::automatic, BroadPhaseMethod::octree,
                                  BroadPhaseMethod::grid, BroadPhaseMethod::sweep, BroadPhaseMethod::brute};
 INSTANTIATE_TEST_SUITE_P(Configurations, RandomOperations,
                          testing::Combine(testing::Values(BoundingVolume::aabb, BoundingVolume::sphere),
-                                          testing::ValuesIn(all_methods)),
+                                          testing::ValuesIn(option_words(all_methods))),
                          configuration_name);
 // Broad phases do not distinguish these volumes, except by their test after that of the boxes.
 INSTANTIATE_TEST_SUITE_P(OtherVolumes, RandomOperations,

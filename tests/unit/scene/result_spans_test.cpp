@@ -12,6 +12,7 @@
 
 #include "supple/models.hpp"
 #include "supple/scene.hpp"
+#include "support/option_word.hpp"
 
 namespace supple {
 namespace {
@@ -55,7 +56,7 @@ class HeldSpans {
   std::vector<Held> held_;
 };
 
-class ResultSpans : public testing::TestWithParam<ContinuousListing> {};
+class ResultSpans : public testing::TestWithParam<OptionWord<ContinuousListing>> {};
 
 TEST_P(ResultSpans, OnlyDetectEndsThem) {
   constexpr ContactKinds all = ContactKinds::intersection | ContactKinds::continuous |
