@@ -120,12 +120,9 @@ void option_table(const char* name) {
 
 template <class Struct>
 void attribute_table(const char* name) {
-  table(name, "| Attribute | Type | Unit | Allowed | Meaning |", [] {
-    for_each_row<Struct>([](const auto& field, const auto&) {
-      const std::string_view type = stored_type(field);
-      fmt::print("| `{}` | {} | {} | {} | {} |\n", field.key, type, field.unit,
-                 type == "uint8" ? "0, 1" : allowed_values(field), field.doc);
-    });
+  table(name, "| Attribute | Type |", [] {
+    for_each_row<Struct>(
+        [](const auto& field, const auto&) { fmt::print("| `{}` | {} |\n", field.key, stored_type(field)); });
   });
 }
 
@@ -171,7 +168,6 @@ void print_description_tables() {
   attribute_table<ObjectOptions>("recording_object_options");
   statistics_tables();
   record_table<Manifold, ManifoldPoint>("json_manifolds");
-  option_table<SceneOptions, ObjectOptions>("json_options");
   option_table<ObjectOptions>("scene_object_options");
   option_table<CoordinateConversion>("scene_coordinate_options");
   table("scene_simulation_options", option_header, [] {
@@ -187,9 +183,9 @@ void print_description_tables() {
   table("scene_response_options", option_header, [] {
     for_each_row<ContactResponse>([](const auto& field, const auto& value) { print_option(field, value); });
   });
-  table("protocol_settings", option_header, [] {
+  table("protocol_settings", "| Key | Default |", [] {
     const auto row = [](const auto& field, const auto& value) {
-      if (viewer::is_setting(field)) print_option(field, value);
+      if (viewer::is_setting(field)) fmt::print("| `{}` | {} |\n", field.key, default_value(field, value));
     };
     for_each_row<SceneOptions>(row);
     for_each_row<ObjectOctreeOptions>(row);

@@ -1,6 +1,7 @@
 #include "documents.hpp"
 
 #include <fmt/core.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -48,13 +49,64 @@ std::string arguments_of(const CLI::App& command) {
   return "[OPTIONS] " + inputs;
 }
 
-void print_markdown_options(const CLI::App& app) {
+/// An option that several commands have with the same description, which the documents have once.
+struct SharedOption {
+  const CLI::Option* option = nullptr;
+  std::vector<std::string> commands;
+};
+
+bool are_same(const CLI::Option* option, const CLI::Option* other) {
+  return spelling(option) == spelling(other) && option->get_description() == other->get_description();
+}
+
+/// In the order of their first occurrence.
+std::vector<SharedOption> shared_options(const CLI::App& program) {
+  std::vector<SharedOption> all;
+  for (const CLI::App* command : commands_of(program)) {
+    for (const CLI::Option* option : command->get_options()) {
+      if (!is_documented(option) || option->get_positional()) continue;
+      const auto known = std::find_if(all.begin(), all.end(), [&](const SharedOption& shared) {
+        return are_same(shared.option, option);
+      });
+      SharedOption& shared = known == all.end() ? all.emplace_back(SharedOption{option, {}}) : *known;
+      shared.commands.push_back(command->get_name());
+    }
+  }
+  std::erase_if(all, [](const SharedOption& shared) { return shared.commands.size() == 1; });
+  return all;
+}
+
+bool is_shared(const CLI::Option* option, const std::vector<SharedOption>& all) {
+  return std::any_of(all.begin(), all.end(),
+                     [&](const SharedOption& shared) { return are_same(shared.option, option); });
+}
+
+std::string markdown_spelling(const CLI::Option* option) {
+  return replaced(spelling(option), "|", "\\|");
+}
+
+void print_markdown_options(const CLI::App& app, const std::vector<SharedOption>& shared) {
+  std::string names;
   fmt::print("| Option | Meaning |\n|---|---|\n");
   for (const CLI::Option* option : app.get_options()) {
     if (!is_documented(option)) continue;
-    fmt::print("| `{}` | {} |\n", replaced(spelling(option), "|", "\\|"), option->get_description());
+    if (is_shared(option, shared))
+      names += fmt::format("{}`{}`", names.empty() ? "" : ", ",
+                           replaced(option->get_name(false, true), ",", ", "));
+    else
+      fmt::print("| `{}` | {} |\n", markdown_spelling(option), option->get_description());
   }
-  fmt::print("\n");
+  fmt::print("| [also](#options-of-several-commands) | {} |\n\n", names);
+}
+
+void print_shared_markdown_options(const std::vector<SharedOption>& all) {
+  fmt::print(
+      "\n## Options of several commands\n\n[Options](options.md) has the ranges and the keys of scene "
+      "files.\n\n"
+      "| Option | Meaning | Commands |\n|---|---|---|\n");
+  for (const SharedOption& shared : all)
+    fmt::print("| `{}` | {} | {} |\n", markdown_spelling(shared.option), shared.option->get_description(),
+               fmt::join(shared.commands, ", "));
 }
 
 /// The footer is `Examples:` with indented lines, optionally followed by a paragraph.
@@ -71,12 +123,14 @@ void print_markdown(const CLI::App& program) {
       "manual page have\nthe same content.\n\n{}\n\n",
       program.get_description());
   print_markdown_footer(program.get_footer());
+  const std::vector<SharedOption> shared = shared_options(program);
   for (const CLI::App* command : commands_of(program)) {
     fmt::print("\n## supple {}\n\n{}.\n\n`supple {} {}`\n\n", command->get_name(), command->get_description(),
                command->get_name(), arguments_of(*command));
-    print_markdown_options(*command);
+    print_markdown_options(*command, shared);
     print_markdown_footer(command->get_footer());
   }
+  print_shared_markdown_options(shared);
 }
 
 std::string upper_case(std::string text) {
@@ -108,6 +162,10 @@ void print_roff_footer(const std::string& footer) {
   if (end_of_examples != std::string::npos) fmt::print(".PP\n{}\n", roff(footer.substr(end_of_examples + 2)));
 }
 
+void print_roff_option(const CLI::Option* option) {
+  fmt::print(".TP\n.B {}\n{}\n", roff(spelling(option)), roff(option->get_description()));
+}
+
 void print_man(const CLI::App& program) {
   fmt::print(".TH SUPPLE 1 \"\" \"supple {}\" \"User Commands\"\n", SUPPLE_VERSION);
   fmt::print(
@@ -119,15 +177,24 @@ void print_man(const CLI::App& program) {
       "FBX, "
       "COLLADA and others that Assimp reads; scene files are TOML, recordings HDF5.\n",
       roff(program.get_description()));
+  const std::vector<SharedOption> shared = shared_options(program);
   for (const CLI::App* command : commands_of(program)) {
     fmt::print(".SH SUPPLE {}\n{}.\n", upper_case(command->get_name()), roff(command->get_description()));
+    std::string names;
     for (const CLI::Option* option : command->get_options()) {
-      if (is_documented(option))
-        fmt::print(".TP\n.B {}\n{}\n", roff(spelling(option)), roff(option->get_description()));
+      if (!is_documented(option)) continue;
+      if (is_shared(option, shared))
+        names += fmt::format("{}{}", names.empty() ? "" : ", ",
+                             replaced(option->get_name(false, true), ",", ", "));
+      else
+        print_roff_option(option);
     }
+    fmt::print(".PP\nAlso the options of several commands (below): {}\n", roff(names));
     fmt::print(".SS Examples\n");
     print_roff_footer(command->get_footer());
   }
+  fmt::print(".SH OPTIONS OF SEVERAL COMMANDS\n");
+  for (const SharedOption& each : shared) print_roff_option(each.option);
   fmt::print(
       ".SH EXIT STATUS\n"
       ".TP\n.B 0\nSuccess.\n"

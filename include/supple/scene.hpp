@@ -156,9 +156,9 @@ class Scene {
   /// its distance at the start, `StepOptions::keep`; and the pair that ends it.
   ///
   /// A pair at distance d at the start keeps at least `keep` d. With separation s, a pair at distance d > s
-  /// keeps at least s + `keep` (d - s), and a pair within the separation, or one that parts, does not end the
-  /// step. The exact step ends when the first pair is at the distance that it keeps. The returned step never
-  /// exceeds the exact one, and is shorter by at most 2^-18 of it.
+  /// keeps at least s + `keep` (d - s). So a pair within the separation does not make the step 0, and one
+  /// that parts does not end it. The exact step ends when the first pair is at the distance that it keeps.
+  /// The returned step never exceeds the exact one, and is shorter by at most 2^-18 of it.
   ///
   /// Elements that share a point at the start end the step there, unless they touch at rest: the vertices of
   /// the features that touch, as `ElementDistance` names them, all move by exactly the same way. Such a pair
