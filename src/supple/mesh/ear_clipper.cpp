@@ -109,8 +109,8 @@ bool EarClipper::may_cut_loose(std::uint32_t corner) {
 }
 
 EarClipper::Obstacles EarClipper::find_obstacles(std::uint32_t corner, bool only_one) {
-  const std::array triangle{previous_[corner], corner, next_[corner]};
-  const auto [a, b, c] = triangle;
+  const std::uint32_t a = previous_[corner], b = corner, c = next_[corner];
+  const std::array triangle{a, b, c};
   Obstacles found{none, none};
   index_.search(a, b, c, [&](std::uint32_t d) {
     if (d == a || d == b || d == c) return false;

@@ -360,8 +360,9 @@ void ProximityPass::sort_job(std::uint32_t job, std::vector<std::uint32_t>& bin_
   std::size_t count = 0, ids = 0;
   const auto for_each_found = [&](const auto& visit) {
     for (const Worker& worker : workers_) {
-      for (const Run& run : std::ranges::equal_range(worker.runs, job, {}, &Run::job)) {
-        for (std::uint32_t i = run.first; i < run.end; ++i) visit(worker.found[i]);
+      auto run = std::ranges::lower_bound(worker.runs, job, {}, &Run::job);
+      for (; run != worker.runs.end() && run->job == job; ++run) {
+        for (std::uint32_t i = run->first; i < run->end; ++i) visit(worker.found[i]);
       }
     }
   };
