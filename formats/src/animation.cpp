@@ -5,7 +5,7 @@
 
 #include "animated_model.hpp"
 #include "core/error.hpp"
-#include "mesh/file_access.hpp"
+#include "mesh/files/file_access.hpp"
 #include "model_readers.hpp"
 
 namespace supple {

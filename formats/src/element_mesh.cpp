@@ -8,7 +8,7 @@
 
 #include "core/error.hpp"
 #include "geometry/exact_predicates.hpp"
-#include "mesh/polygon.hpp"
+#include "mesh/polygon/polygon.hpp"
 
 namespace supple {
 namespace {

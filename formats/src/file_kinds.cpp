@@ -7,9 +7,9 @@
 #include <span>
 
 #include "core/error.hpp"
-#include "mesh/file_access.hpp"
-#include "mesh/quotes.hpp"
-#include "mesh/text_scanner.hpp"
+#include "mesh/files/file_access.hpp"
+#include "mesh/files/quotes.hpp"
+#include "mesh/files/text_scanner.hpp"
 
 namespace supple {
 namespace {

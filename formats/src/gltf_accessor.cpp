@@ -4,8 +4,8 @@
 #include <type_traits>
 
 #include "gltf_file.hpp"
-#include "mesh/byte_order.hpp"
-#include "mesh/quotes.hpp"
+#include "mesh/files/byte_order.hpp"
+#include "mesh/files/quotes.hpp"
 
 namespace supple {
 namespace {

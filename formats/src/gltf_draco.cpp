@@ -7,7 +7,7 @@
 #include <memory>
 #include <utility>
 
-#include "mesh/quotes.hpp"
+#include "mesh/files/quotes.hpp"
 
 namespace supple {
 

@@ -8,9 +8,9 @@
 #include <utility>
 
 #include "core/error.hpp"
-#include "mesh/byte_order.hpp"
-#include "mesh/file_access.hpp"
-#include "mesh/quotes.hpp"
+#include "mesh/files/byte_order.hpp"
+#include "mesh/files/file_access.hpp"
+#include "mesh/files/quotes.hpp"
 #include "supple/utf8.hpp"
 
 namespace supple {

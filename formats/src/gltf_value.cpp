@@ -4,7 +4,7 @@
 
 #include "core/error.hpp"
 #include "gltf_file.hpp"
-#include "mesh/quotes.hpp"
+#include "mesh/files/quotes.hpp"
 
 namespace supple {
 

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "element_mesh.hpp"
-#include "mesh/quotes.hpp"
+#include "mesh/files/quotes.hpp"
 #include "node_numbers.hpp"
 #include "readers.hpp"
 #include "scalar_reader.hpp"

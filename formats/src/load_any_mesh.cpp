@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "file_kinds.hpp"
-#include "mesh/file_access.hpp"
+#include "mesh/files/file_access.hpp"
 #include "model_readers.hpp"
 #include "own_formats.hpp"
 #include "supple/formats.hpp"

@@ -7,7 +7,7 @@
 
 #include "core/error.hpp"
 #include "element_mesh.hpp"
-#include "mesh/quotes.hpp"
+#include "mesh/files/quotes.hpp"
 #include "readers.hpp"
 #include "scalar_reader.hpp"
 

@@ -12,9 +12,9 @@
 #include "assimp_frame.hpp"
 #include "core/error.hpp"
 #include "file_kinds.hpp"
-#include "mesh/file_access.hpp"
-#include "mesh/polygon.hpp"
-#include "mesh/quotes.hpp"
+#include "mesh/files/file_access.hpp"
+#include "mesh/polygon/polygon.hpp"
+#include "mesh/files/quotes.hpp"
 #include "model_readers.hpp"
 
 namespace supple {

@@ -1,7 +1,7 @@
 #include "scalar_reader.hpp"
 
 #include "core/error.hpp"
-#include "mesh/byte_order.hpp"
+#include "mesh/files/byte_order.hpp"
 
 namespace supple {
 

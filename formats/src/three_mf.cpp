@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "core/error.hpp"
-#include "mesh/number_text.hpp"
-#include "mesh/quotes.hpp"
+#include "mesh/files/number_text.hpp"
+#include "mesh/files/quotes.hpp"
 #include "readers.hpp"
 #include "transform.hpp"
 #include "zip_reader.hpp"

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "element_mesh.hpp"
-#include "mesh/quotes.hpp"
+#include "mesh/files/quotes.hpp"
 #include "readers.hpp"
 #include "scalar_reader.hpp"
 

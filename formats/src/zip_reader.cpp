@@ -6,7 +6,7 @@
 #include <array>
 
 #include "core/error.hpp"
-#include "mesh/quotes.hpp"
+#include "mesh/files/quotes.hpp"
 
 namespace supple {
 namespace {

@@ -51,9 +51,9 @@ struct RigidTransform {
 /// Once continuous contacts, proximity or a safe step are requested, it also keeps the positions at the end
 /// of the step, and for objects on a path those at its start.
 ///
-/// Spans: those of a result are valid until the next `detect`, and those that another function returns until
-/// the next call of a function with the same name; nothing else ends them, except the destructor and an
-/// assignment.
+/// Spans: those of a result are valid until the next call of the function that found it, `detect` or `search`,
+/// and those of `collision_free_steps` until its next call. Nothing else ends them, except the destructor and
+/// an assignment.
 ///
 /// Threads: calls on one scene must not overlap, except calls of const functions. Different scenes are
 /// independent.
@@ -143,6 +143,13 @@ class Scene {
   /// `DetectResult::untested` says that there was nothing to test. Throws `Error` when the request is out of
   /// range.
   const DetectResult& detect(const DetectRequest& request = {});
+  /// As `detect`, but apart from the steps of the scene: `result`, `verify` and the events do not change, and
+  /// the result has no events and no manifolds. For a search within a step, for example of a solver that tries
+  /// out paths. Tests only the pairs of objects that `only` accepts, all when it is empty; for an object with
+  /// self-collision, it gets the same object twice. The result is valid until the next `search`. The first
+  /// call takes memory for the answers; the objects and their octrees are those of the scene. Throws `Error`
+  /// as `detect` does, and when manifolds are requested.
+  const DetectResult& search(const DetectRequest& request, const PairFilter& only = {});
   /// The first continuous contact with `SceneOptions::impact`, or nothing when nothing touches within the
   /// step. Of contacts with the same time, it is the first in canonical order. The search skips pairs that
   /// can only touch later, so with many contacts it is faster than `detect`. Does not change `result` and
@@ -191,9 +198,11 @@ class Scene {
   /// contacts. A stop ends it after the pair of objects that it compares.
   VerifyReport verify(const CallLimits& limits = {}) const;
 
-  // Queries. They refit the objects that have moved, as `detect` does, and run on all threads of the scene;
-  // results do not depend on their number. They do not change `result` and `verify`. All throw `Error` when
-  // the numbers of queries and results differ, and when the filter names an object that is not in the scene.
+  // Queries. The first one after a change refits the objects that have moved, as `detect` does. They run on
+  // all threads of the scene; results do not depend on their number. They do not change `result` and
+  // `verify`. Several threads may call them at the same time, as long as no other function changes the scene.
+  // All throw `Error` when the numbers of queries and results differ, and when the filter names an object
+  // that is not in the scene.
   //
   // Worst case: each query decides all triangles, and `distance` all pairs of elements, by exact arithmetic;
   // docs/conventions.md has a table of its time. That needs input made for it, such as many triangles at
@@ -207,22 +216,22 @@ class Scene {
   /// and 3.5 µs for those far away; longer for single points. Throws `Error` when the largest distance
   /// is negative or NaN, and for a signed distance when a surface is open.
   void closest(std::span<const Vec3d> points, std::span<std::optional<ClosestPoint>> results,
-               const ClosestOptions& options = {});
+               const ClosestOptions& options = {}) const;
   /// For each ray the first triangle on it, or nothing when there is none, when a number of the ray is not
   /// finite, and when its direction is zero. Watertight: a ray through an edge hits a triangle of the edge.
   void cast(std::span<const Ray> rays, std::span<std::optional<RayHit>> results,
-            const CastOptions& options = {});
+            const CastOptions& options = {}) const;
   /// All triangles on each ray, ordered by ray, then by t as exact arithmetic compares it, object and
   /// triangle.
-  std::span<const ListedRayHit> cast_all(std::span<const Ray> rays, const QueryFilter& filter = {},
-                                         const CallLimits& limits = {});
+  std::vector<ListedRayHit> cast_all(std::span<const Ray> rays, const QueryFilter& filter = {},
+                                     const CallLimits& limits = {}) const;
   /// All triangles that overlap each box or sphere, ordered by query, object and triangle. A box or sphere
   /// with a number that is not finite, a box with min > max, and a sphere with a negative radius overlap
   /// nothing.
-  std::span<const Overlap> overlaps(std::span<const QueryBox> boxes, const QueryFilter& filter = {},
-                                    const CallLimits& limits = {});
-  std::span<const Overlap> overlaps(std::span<const QuerySphere> spheres, const QueryFilter& filter = {},
-                                    const CallLimits& limits = {});
+  std::vector<Overlap> overlaps(std::span<const QueryBox> boxes, const QueryFilter& filter = {},
+                                const CallLimits& limits = {}) const;
+  std::vector<Overlap> overlaps(std::span<const QuerySphere> spheres, const QueryFilter& filter = {},
+                                const CallLimits& limits = {}) const;
   /// For each point whether it is inside an object of the filter: outside of all, else on a triangle of one,
   /// or inside at least one. Exact. A point inside a part of a surface that crosses itself is inside where a
   /// ray from it crosses the surface an odd number of times. Points that are not finite are outside, and so
@@ -233,7 +242,7 @@ class Scene {
   /// The surfaces must be closed: throws `Error` when an object of the filter has an edge with an odd number
   /// of triangles, and names it. The first call checks that in O(n log n).
   void inside(std::span<const Vec3d> points, std::span<Containment> results, const QueryFilter& filter = {},
-              const CallLimits& limits = {});
+              const CallLimits& limits = {}) const;
 
   /// The nearest features of two objects, as a pair of the listing of features, or nothing when one of them
   /// has no finite triangle. Of several pairs at the same distance, the first one in the order of
@@ -244,14 +253,14 @@ class Scene {
   /// call for these objects, so that objects that move little take less time. Objects that are far from each
   /// other need few decisions, unless their coordinates are so coarse that many elements are equally near.
   /// Throws `Error` when both are the same.
-  std::optional<ProximityPair> distance(ObjectId a, ObjectId b, const CallLimits& limits = {});
+  std::optional<ProximityPair> distance(ObjectId a, ObjectId b, const CallLimits& limits = {}) const;
   /// The same for all pairs of objects that `detect` would test and that are within `max_distance`, closed:
   /// one pair of features for each, ordered by objects. Throws `Error` when the distance is
   /// negative or NaN.
-  std::span<const ProximityPair> distances(double max_distance, const CallLimits& limits = {});
+  std::vector<ProximityPair> distances(double max_distance, const CallLimits& limits = {}) const;
   /// Whether any triangle of one object intersects one of the other. Stops at the first. Throws `Error` when
   /// both are the same.
-  bool any_contact(ObjectId a, ObjectId b, const CallLimits& limits = {});
+  bool any_contact(ObjectId a, ObjectId b, const CallLimits& limits = {}) const;
 
   // Checks of answers. Each takes the arguments of a query and its answer at the present positions. It
   // decides the query again by exact arithmetic over all triangles, without octrees and without code of the

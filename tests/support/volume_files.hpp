@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "element_mesh.hpp"
-#include "mesh/number_text.hpp"
+#include "mesh/files/number_text.hpp"
 #include "supple/mesh.hpp"
 #include "support/random.hpp"
 

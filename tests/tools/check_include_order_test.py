@@ -53,14 +53,22 @@ class CheckIncludeOrder(unittest.TestCase):
         self.assertEqual(run_on(GOOD), (0, ""))
 
     def test_long_chain(self):
-        files = [f"broad_phase/{name}.hpp" for name in "abcde"]
+        files = [f"broad_phase/{name}.hpp" for name in "abcdef"]
         chain = {f"src/supple/{a}": f'#include "{b}"\n' for a, b in zip(files, files[1:])}
-        code, error = run_on({**GOOD, **chain, "src/supple/broad_phase/e.hpp": ""})
+        code, error = run_on({**GOOD, **chain, "src/supple/broad_phase/f.hpp": ""})
         self.assertEqual(code, 1)
         self.assertIn("src/supple/broad_phase/a.hpp:1: ", error)
-        self.assertIn("a chain of more than 4 files", error)
+        self.assertIn("a chain of more than 5 files", error)
         del chain["src/supple/broad_phase/a.hpp"]
-        self.assertEqual(run_on({**GOOD, **chain, "src/supple/broad_phase/e.hpp": ""}), (0, ""))
+        self.assertEqual(run_on({**GOOD, **chain, "src/supple/broad_phase/f.hpp": ""}), (0, ""))
+
+    def test_crowded_folder(self):
+        files = {f"src/supple/mesh/polygon/{i}.cpp": "" for i in range(21)}
+        code, error = run_on({**GOOD, **files})
+        self.assertEqual(code, 1)
+        self.assertIn("src/supple/mesh/polygon:1: polygon: a folder of 21 files", error)
+        del files["src/supple/mesh/polygon/0.cpp"]
+        self.assertEqual(run_on({**GOOD, **files}), (0, ""))
 
     def expect(self, name, text, message):
         code, error = run_on({**GOOD, name: text})

@@ -55,20 +55,20 @@ struct ResponseBody {
 /// scene.set_positions(cloth, x);
 /// ```
 ///
-/// The scene holds the positions at the start of the step. `respond` detects: proximity once, with the
+/// The scene holds the positions at the start of the step. `respond` searches proximity once, with the
 /// margins of the objects, then continuous contacts with `SceneOptions::impact`, at most `iterations` times.
 /// Give objects that may meet margins whose sum is about 1.5 times the thickness; with smaller margins, or
 /// none, they come nearer than the thickness, but still do not pass through each other. Objects that are not
 /// among `bodies` are at rest and do not react. Groups, masks, the filter and `self_collision` apply.
 ///
-/// Afterwards `Scene::result` is that of the last detection, and the next events compare with it. The bodies
-/// are on the paths of the whole step (`Scene::set_motion`) until other positions are set.
+/// It does not change `Scene::result` and the events. The bodies are on the paths of the whole step
+/// (`Scene::set_motion`) until other positions are set.
 ///
 /// Returns the part of the step, 0 to 1, in which nothing touches: 1 when the impulses removed all impacts,
 /// otherwise `Scene::max_step`. Bodies that move no further than this do not pass through anything. Elements
 /// that touch at the start make it 0.
 ///
-/// Costs one detection of proximity and usually one or two of continuous contacts, and memory in proportion
+/// Costs one search of proximity and usually one or two of continuous contacts, and memory in proportion
 /// to the bodies and their contacts. Throws `Error` when an option, `dt` > 0 or a mass is out of its range,
 /// when the number of velocities or masses differs from that of the vertices, when an object is listed twice,
 /// and as `Scene::set_motion` does, which needs objects that are not static.

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "core/error.hpp"
-#include "mesh/number_text.hpp"
+#include "mesh/files/number_text.hpp"
 #include "motion/check_options.hpp"
 #include "motion/element_forces.hpp"
 #include "motion/plastic_flow.hpp"

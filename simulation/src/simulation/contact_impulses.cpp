@@ -17,7 +17,8 @@ constexpr double approach_part = 0.5;
 }  // namespace
 
 bool ContactImpulses::resolve(Scene& scene, std::span<const ProximityPair> near,
-                              std::span<const RespondingObject> objects) {
+                              std::span<const RespondingObject> objects, const DetectRequest& impacts,
+                              const PairFilter& only) {
   begin(objects);
   touches_.clear();
   for (const ProximityPair& pair : near) touches_.push_back(touch_of(scene, pair));
@@ -26,9 +27,9 @@ bool ContactImpulses::resolve(Scene& scene, std::span<const ProximityPair> near,
     if (round > 0 && !was_pushed) return false;
     show_paths(scene);
     if (round == options_.iterations) return false;
-    const auto impacts = scene.detect({.contacts = ContactKinds::continuous}).continuous_contacts;
-    if (impacts.empty()) return true;
-    for (const ContinuousContact& impact : impacts) touches_.push_back(touch_of(scene, impact));
+    const auto found = scene.search(impacts, only).continuous_contacts;
+    if (found.empty()) return true;
+    for (const ContinuousContact& impact : found) touches_.push_back(touch_of(scene, impact));
   }
 }
 

@@ -37,10 +37,10 @@ class ContactImpulses {
   ContactImpulses(const ContactResponse& options, double seconds) : options_(options), seconds_(seconds) {}
 
   /// Computes the impulses for a step. `objects` are those that move; all others are at rest where the scene
-  /// has them. `near` is the proximity at the start of the step, with the vertices that `scene` names; it may
-  /// be the result of `scene`. The call leaves the objects on their paths. Returns whether these are known to
-  /// be free of impacts.
-  bool resolve(Scene& scene, std::span<const ProximityPair> near, std::span<const RespondingObject> objects);
+  /// has them. `near` is the proximity at the start of the step. Searches `impacts` by `Scene::search`, and
+  /// leaves the objects on their paths. Returns whether these are known to be free of impacts.
+  bool resolve(Scene& scene, std::span<const ProximityPair> near, std::span<const RespondingObject> objects,
+               const DetectRequest& impacts, const PairFilter& only = {});
   /// The effect of the impulses on the vertices of one object.
   struct Change {
     std::span<const Vec3d> of_average_velocity;  // times the duration of the step, this is added to `to`

@@ -73,9 +73,10 @@ double respond(Scene& scene, std::span<const ResponseBody> bodies, double dt,
     objects.push_back({body.object, path.from, path.to, {}, path.inverse_masses});
   }
   const DetectResult& near =
-      scene.detect({.contacts = ContactKinds::proximity, .proximity_listing = ProximityListing::features});
+      scene.search({.contacts = ContactKinds::proximity, .proximity_listing = ProximityListing::features});
   ContactImpulses impulses(options, dt);
-  const bool is_free = impulses.resolve(scene, near.proximity_pairs, objects);
+  const bool is_free =
+      impulses.resolve(scene, near.proximity_pairs, objects, {.contacts = ContactKinds::continuous});
   for (const ResponseBody& body : bodies) {
     const auto change = impulses.change(body.object);
     if (!change) continue;

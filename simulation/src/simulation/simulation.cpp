@@ -59,12 +59,8 @@ Simulation::Implementation::Implementation(const SimulationOptions& simulation_o
     : options(checked(simulation_options)),
       scene(simulation_options.scene),
       parallel_(simulation_options.scene.threads) {
-  if (!options.response) return;
-  const SceneOptions search{.contacts = ContactKinds::continuous, .threads = options.scene.threads};
-  response_.emplace(Response{Scene(search), ContactImpulses(*options.response, options.time_step), {}});
-  response_->scene.set_pair_filter([this](ObjectId a, ObjectId b) {
-    return objects_[a.index]->moving_body != nullptr || objects_[b.index]->moving_body != nullptr;
-  });
+  if (options.response)
+    response_.emplace(Response{ContactImpulses(*options.response, options.time_step), {}});
 }
 
 /// Everything that may throw comes first.
@@ -99,7 +95,7 @@ ObjectId Simulation::Implementation::add(const TriangleMesh& mesh, ObjectOptions
     added->own_positions = mesh.positions;
     added->id = scene.add(mesh, object_options);
   }
-  if (response_) add_to_response(mesh, object_options, *added);
+  if (response_) prepare_response(mesh, *added);
   const ObjectId id = added->id;
   if (objects_.size() <= id.index) objects_.resize(id.index + 1);
   objects_[id.index] = std::move(added);
@@ -107,14 +103,7 @@ ObjectId Simulation::Implementation::add(const TriangleMesh& mesh, ObjectOptions
   return id;
 }
 
-void Simulation::Implementation::add_to_response(const TriangleMesh& mesh,
-                                                 const ObjectOptions& object_options,
-                                                 SimulatedObject& object) {
-  ObjectOptions own = object_options;
-  own.is_static = false;
-  own.self_collision = object_options.self_collision && object.moving_body != nullptr;
-  [[maybe_unused]] const ObjectId id = response_->scene.add(mesh, own);
-  assert(id == object.id);
+void Simulation::Implementation::prepare_response(const TriangleMesh& mesh, SimulatedObject& object) {
   if (object.moving_body == nullptr) return;
   const MassSpringOptions& springs = object.moving_body->body.options();
   object.spread = spread_of(mesh, springs);
@@ -136,7 +125,6 @@ std::shared_ptr<ImpulseSpread> Simulation::Implementation::spread_of(const Trian
 
 void Simulation::Implementation::remove(ObjectId id) {
   scene.remove(id);
-  if (response_) response_->scene.remove(id);
   objects_[id.index].reset();
   has_current_result_ = false;
 }
@@ -156,7 +144,6 @@ void Simulation::Implementation::set_positions(ObjectId id, std::span<const Vec3
          " is moved by a function, so its positions cannot be set; let the function write other positions");
   }
   scene.set_positions(id, positions);
-  if (response_) response_->scene.set_positions(id, positions);
   has_current_result_ = false;
   found.is_on_path = false;
   if (found.moving_body != nullptr) {
@@ -260,7 +247,12 @@ void Simulation::Implementation::step_rigid_bodies() {
 
 void Simulation::Implementation::respond_to_contacts() {
   gather_responding_objects();
-  response_->impulses.resolve(response_->scene, near_pairs(), response_->objects);
+  const DetectRequest impacts{.contacts = ContactKinds::continuous,
+                              .impact = ImpactOptions{},
+                              .element_kinds = ElementKinds::all,
+                              .continuous_listing = ContinuousListing::all};
+  response_->impulses.resolve(scene, near_pairs(), response_->objects, impacts,
+                              [this](ObjectId a, ObjectId b) { return may_respond(a, b); });
   for (const auto& object : objects_) {
     if (object == nullptr || object->moving_body == nullptr) continue;
     if (const auto change = response_->impulses.change(object->id))
@@ -290,9 +282,18 @@ std::span<const ProximityPair> Simulation::Implementation::near_pairs() {
       options.scene.proximity_listing == ProximityListing::features) {
     return scene.result().proximity_pairs;
   }
-  for (const RespondingObject& object : response_->objects)
-    response_->scene.set_positions(object.id, object.from);
-  return response_->scene.detect({.contacts = ContactKinds::proximity}).proximity_pairs;
+  for (const RespondingObject& object : response_->objects) scene.set_positions(object.id, object.from);
+  return scene
+      .search({.contacts = ContactKinds::proximity,
+               .proximity_listing = ProximityListing::features,
+               .element_kinds = ElementKinds::all},
+              [this](ObjectId a, ObjectId b) { return may_respond(a, b); })
+      .proximity_pairs;
+}
+
+/// Whether a response can move one of both objects.
+bool Simulation::Implementation::may_respond(ObjectId a, ObjectId b) const {
+  return objects_[a.index]->moving_body != nullptr || objects_[b.index]->moving_body != nullptr;
 }
 
 void Simulation::Implementation::accept_written_positions() {
@@ -309,7 +310,7 @@ void Simulation::Implementation::place_in_scene() {
     if (is_continuous()) {
       scene.set_motion(object->id, object->before, object->positions());
       object->is_on_path = true;
-    } else if (object->rigid_body) {
+    } else if (object->rigid_body && !response_) {
       object->rigid_body->place(scene, object->id);
     } else {
       scene.set_positions(object->id, object->positions());

@@ -61,8 +61,7 @@ class Simulation::Implementation {
   double motion_seconds = 0;
 
  private:
-  void add_to_response(const TriangleMesh& mesh, const ObjectOptions& object_options,
-                       SimulatedObject& object);
+  void prepare_response(const TriangleMesh& mesh, SimulatedObject& object);
   std::shared_ptr<ImpulseSpread> spread_of(const TriangleMesh& mesh, const MassSpringOptions& springs) const;
   void call_functions(double seconds);
   void remember_positions();
@@ -73,15 +72,14 @@ class Simulation::Implementation {
   void respond_to_contacts();
   void gather_responding_objects();
   std::span<const ProximityPair> near_pairs();
+  bool may_respond(ObjectId a, ObjectId b) const;
   void accept_written_positions();
   void place_in_scene();
   void prepare_next_step();
   bool needs_paths() const { return is_continuous() || response_; }
   bool is_continuous() const { return contains(options.scene.contacts, ContactKinds::continuous); }
 
-  /// A second scene, because detection within the step would change the events of the first scene.
   struct Response {
-    Scene scene;
     ContactImpulses impulses;
     std::vector<RespondingObject> objects;  // scratch memory of a step
   };

@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "geometry/integer_points.hpp"
+#include "geometry/numbers/integer_points.hpp"
 #include "geometry/plane_filter.hpp"
 
 namespace supple {

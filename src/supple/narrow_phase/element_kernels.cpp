@@ -13,7 +13,7 @@
 
 #include "core/packed_lanes-inl.hpp"
 #include "geometry/aabb.hpp"
-#include "octree/triangle_boxes-inl.hpp"
+#include "octree/volumes/triangle_boxes-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace supple {

@@ -6,7 +6,7 @@
 #include <span>
 
 #include "narrow_phase/overlap_kernels.hpp"
-#include "octree/moving_boxes.hpp"
+#include "octree/volumes/moving_boxes.hpp"
 #include "supple/contact.hpp"
 #include "supple/options.hpp"
 

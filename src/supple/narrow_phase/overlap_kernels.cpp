@@ -14,7 +14,7 @@
 #include "core/packed_lanes-inl.hpp"
 #include "geometry/sphere.hpp"
 #include "mesh/share_vertex.hpp"
-#include "octree/triangle_boxes-inl.hpp"
+#include "octree/volumes/triangle_boxes-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace supple {

@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "octree/box_kernels.hpp"
 #include "octree/octree_node.hpp"
+#include "octree/volumes/box_kernels.hpp"
 #include "supple/types.hpp"
 
 namespace supple {

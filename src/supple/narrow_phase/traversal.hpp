@@ -12,8 +12,8 @@
 #include "core/stop_signal.hpp"
 #include "narrow_phase/element_kernels.hpp"
 #include "narrow_phase/overlap_kernels.hpp"
-#include "octree/moving_boxes.hpp"
 #include "octree/object_octree.hpp"
+#include "octree/volumes/moving_boxes.hpp"
 
 namespace supple {
 

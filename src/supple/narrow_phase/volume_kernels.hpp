@@ -4,7 +4,7 @@
 #include <span>
 
 #include "narrow_phase/overlap_kernels.hpp"
-#include "octree/node_volumes.hpp"
+#include "octree/volumes/node_volumes.hpp"
 
 namespace supple {
 

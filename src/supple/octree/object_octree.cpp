@@ -9,10 +9,10 @@
 
 #include "geometry/aabb.hpp"
 #include "geometry/vector.hpp"
-#include "octree/balanced_build.hpp"
-#include "octree/bottom_up_build.hpp"
-#include "octree/box_kernels.hpp"
-#include "octree/regular_build.hpp"
+#include "octree/build/balanced_build.hpp"
+#include "octree/build/bottom_up_build.hpp"
+#include "octree/build/regular_build.hpp"
+#include "octree/volumes/box_kernels.hpp"
 
 namespace supple {
 namespace {

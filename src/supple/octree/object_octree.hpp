@@ -8,11 +8,11 @@
 #include <vector>
 
 #include "core/parallel.hpp"
-#include "octree/box_kernels.hpp"
-#include "octree/node_volumes.hpp"
 #include "octree/octree_node.hpp"
-#include "octree/sphere_fit.hpp"
 #include "octree/vertex_buffer.hpp"
+#include "octree/volumes/box_kernels.hpp"
+#include "octree/volumes/node_volumes.hpp"
+#include "octree/volumes/sphere_fit.hpp"
 #include "supple/inspection.hpp"
 #include "supple/mesh.hpp"
 #include "supple/options.hpp"

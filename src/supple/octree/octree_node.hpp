@@ -77,4 +77,23 @@ struct OctreeNode {
 };
 static_assert(sizeof(OctreeNode) == 48);
 
+/// Vertex lists of leaves are padded to a multiple of this.
+constexpr std::size_t leaf_vertices_step = 4;
+/// This many more entries follow all lists: kernels prefetch so far ahead.
+constexpr std::size_t leaf_vertices_ahead = 48;
+/// This many more entries follow each array of corners.
+constexpr std::size_t corners_ahead = 16;
+
+/// The distinct vertices of each leaf. Those of child i of node n are `vertices[first[8 n + i]]` up to
+/// `vertices[first[8 n + i + 1]]`; the last one fills the padding. Inner and missing children have none.
+///
+/// The corners of triangle t, as places in its leaf's list modulo 256, are `corners[t]`, `corners[t +
+/// stride]` and `corners[t + 2 stride]`.
+struct LeafVertexArrays {
+  const std::uint32_t* first = nullptr;
+  const std::uint32_t* vertices = nullptr;
+  const std::uint8_t* corners = nullptr;
+  std::size_t stride = 0;
+};
+
 }  // namespace supple

@@ -1,4 +1,5 @@
 #include "octree/self_collision_culling.hpp"
+#include "octree/object_octree.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -6,11 +6,13 @@
 #include <vector>
 
 #include "core/parallel.hpp"
-#include "octree/moving_box_kernels.hpp"
-#include "octree/object_octree.hpp"
+#include "octree/octree_node.hpp"
 #include "octree/vertex_buffer.hpp"
+#include "octree/volumes/moving_box_kernels.hpp"
 
 namespace supple {
+
+class ObjectOctree;
 
 /// Finds the children of octree nodes that cannot touch themselves during a step in which every vertex moves
 /// on a straight line: no two elements of the child's triangles touch unless they share a vertex. A traversal

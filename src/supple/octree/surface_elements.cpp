@@ -1,4 +1,5 @@
 #include "octree/surface_elements.hpp"
+#include "octree/object_octree.hpp"
 
 #include <algorithm>
 #include <limits>

@@ -6,10 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "octree/object_octree.hpp"
 #include "supple/mesh.hpp"
 
 namespace supple {
+
+class ObjectOctree;
 
 /// Two different vertices of a triangle; the smaller number is first.
 using Edge = std::array<std::uint32_t, 2>;

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "contact/distance_algebra.hpp"
+#include "contact/distance/distance_algebra.hpp"
 #include "supple/broad_phase.hpp"
 #include "supple/error.hpp"
 #include "unit/broad_phase/volume_scenes.hpp"

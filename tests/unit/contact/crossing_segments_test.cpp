@@ -1,4 +1,4 @@
-#include "contact/crossing_segments.hpp"
+#include "contact/intersection/crossing_segments.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "contact/pair_filter.hpp"
+#include "contact/intersection/pair_filter.hpp"
 #include "support/instruction_sets.hpp"
 #include "unit/contact/triangle_lists.hpp"
 #include "unit/contact/triangle_pairs.hpp"

@@ -1,6 +1,6 @@
 // Compares the kernels with the scalar functions, for every instruction set.
 
-#include "contact/distance_kernels.hpp"
+#include "contact/distance/distance_kernels.hpp"
 
 #include <gtest/gtest.h>
 

@@ -9,7 +9,7 @@
 #include <optional>
 #include <vector>
 
-#include "contact/distance_algebra.hpp"
+#include "contact/distance/distance_algebra.hpp"
 #include "geometry/vector.hpp"
 #include "supple/distance.hpp"
 #include "supple/error.hpp"

@@ -1,4 +1,4 @@
-#include "contact/exact_impact.hpp"
+#include "contact/impact/exact_impact.hpp"
 
 #include <gtest/gtest.h>
 

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "contact/exact_impact.hpp"
+#include "contact/impact/exact_impact.hpp"
 #include "supple/mesh.hpp"
 #include "support/shared_meshes.hpp"
 

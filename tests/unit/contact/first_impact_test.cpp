@@ -13,8 +13,8 @@
 #include <optional>
 #include <type_traits>
 
-#include "contact/coplanar_search.hpp"
-#include "contact/impact_filter.hpp"
+#include "contact/impact/impact_filter.hpp"
+#include "contact/intersection/coplanar_search.hpp"
 #include "core/float_rounding.hpp"
 #include "geometry/vector.hpp"
 #include "supple/continuous.hpp"

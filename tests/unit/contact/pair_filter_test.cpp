@@ -1,4 +1,4 @@
-#include "contact/pair_filter.hpp"
+#include "contact/intersection/pair_filter.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // Common roots of quadratic polynomials, which decide whether elements touch at a time that no number of bits
 // writes down, against the formula for roots of small integers.
 
-#include "contact/step_root.hpp"
+#include "contact/impact/step_root.hpp"
 
 #include <gtest/gtest.h>
 

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "mesh/byte_order.hpp"
+#include "mesh/files/byte_order.hpp"
 #include "supple/formats.hpp"
 #include "unit/mesh/mesh_files.hpp"
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "geometry/integer_points.hpp"
+#include "geometry/numbers/integer_points.hpp"
 #include "geometry/plane_filter.hpp"
 #include "support/random.hpp"
 

@@ -1,4 +1,4 @@
-#include "geometry/polynomial.hpp"
+#include "geometry/numbers/polynomial.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "geometry/root_refinement.hpp"
+#include "geometry/numbers/root_refinement.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "geometry/sturm.hpp"
+#include "geometry/numbers/sturm.hpp"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "mesh/mesh_formats.hpp"
+#include "mesh/files/mesh_formats.hpp"
 #include "support/random.hpp"
 #include "unit/mesh/mesh_files.hpp"
 

@@ -1,4 +1,4 @@
-#include "mesh/number_text.hpp"
+#include "mesh/files/number_text.hpp"
 
 #include <gtest/gtest.h>
 

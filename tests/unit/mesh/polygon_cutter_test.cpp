@@ -1,4 +1,4 @@
-#include "mesh/polygon_cutter.hpp"
+#include "mesh/polygon/polygon_cutter.hpp"
 
 #include <gtest/gtest.h>
 

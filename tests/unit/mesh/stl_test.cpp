@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "mesh/byte_order.hpp"
-#include "mesh/mesh_formats.hpp"
+#include "mesh/files/byte_order.hpp"
+#include "mesh/files/mesh_formats.hpp"
 #include "unit/mesh/mesh_files.hpp"
 
 namespace supple {

@@ -1,4 +1,4 @@
-#include "octree/balanced_build.hpp"
+#include "octree/build/balanced_build.hpp"
 
 #include <gtest/gtest.h>
 

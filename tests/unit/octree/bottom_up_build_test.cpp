@@ -1,4 +1,4 @@
-#include "octree/bottom_up_build.hpp"
+#include "octree/build/bottom_up_build.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "octree/cut_kernels.hpp"
+#include "octree/build/cut_kernels.hpp"
 
 #include <gtest/gtest.h>
 

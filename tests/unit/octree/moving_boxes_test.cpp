@@ -1,4 +1,4 @@
-#include "octree/moving_boxes.hpp"
+#include "octree/volumes/moving_boxes.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "octree/node_volumes.hpp"
+#include "octree/volumes/node_volumes.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "octree/query_cost.hpp"
+#include "octree/build/query_cost.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // Spheres around nodes: enclosing, smallest, and safe for degenerate positions.
 
-#include "octree/sphere_fit.hpp"
+#include "octree/volumes/sphere_fit.hpp"
 
 #include <gtest/gtest.h>
 

@@ -9,13 +9,13 @@
 #include <span>
 #include <vector>
 
+#include "answers/impact/impact_pass.hpp"
+#include "answers/intersection/contact_pass.hpp"
+#include "answers/proximity/proximity_pass.hpp"
 #include "core/parallel.hpp"
-#include "scene/contact_pass.hpp"
-#include "scene/impact_pass.hpp"
-#include "scene/proximity_pass.hpp"
-#include "scene/scene_object.hpp"
 #include "supple/scene.hpp"
 #include "supple/trigonometry.hpp"
+#include "world/object/world_object.hpp"
 
 namespace supple {
 namespace {
@@ -37,7 +37,7 @@ TriangleMesh make_fan(const Vec3d& apex, double height) {
 class Fans {
  public:
   Fans() : low_(add(make_fan({0, 0, 0}, -2))), high_(add(make_fan({0, 0, 1}, 2))) {
-    for (SceneObject* const object : {&low_, &high_}) {
+    for (WorldObject* const object : {&low_, &high_}) {
       const MovingShape& shape = object->moving();
       MovingObject& listed = listed_.emplace_back();
       listed.id = {static_cast<std::uint32_t>(listed_.size() - 1), 0};
@@ -66,14 +66,14 @@ class Fans {
   }
 
  private:
-  static SceneObject add(const TriangleMesh& mesh) {
-    SceneObject object(mesh.positions, mesh.triangles, {}, {}, {}, Parallel(1));
+  static WorldObject add(const TriangleMesh& mesh) {
+    WorldObject object(mesh.positions, mesh.triangles, {}, {}, {}, Parallel(1));
     object.move().set_positions(mesh.positions, Parallel(1));
     object.update({.moving = true}, Parallel(1));
     return object;
   }
 
-  SceneObject low_, high_;
+  WorldObject low_, high_;
   std::vector<MovingObject> listed_;
   std::array<ContactJob, 1> jobs_{{{0, 1}}};
   std::array<std::uint64_t, 2> versions_{1, 2};
@@ -133,7 +133,7 @@ TriangleMesh make_star(std::uint32_t count, bool has_common_vertex) {
 TEST(BoundedMemory, OfTheFirstIntersectionsIsLimited) {
   for (const bool has_common_vertex : {false, true}) {
     const TriangleMesh star = make_star(400, has_common_vertex);
-    SceneObject object(star.positions, star.triangles, {},
+    WorldObject object(star.positions, star.triangles, {},
                        {.self_collision = true, .neighbours = Neighbours::exact}, {}, Parallel(1));
     object.move().set_positions(star.positions, Parallel(1));
     object.update({.resting = true}, Parallel(1));

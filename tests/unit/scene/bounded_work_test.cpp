@@ -10,12 +10,12 @@
 #include <vector>
 
 #include "core/parallel.hpp"
-#include "scene/nearest_pair.hpp"
-#include "scene/object_queries.hpp"
-#include "scene/scene_object.hpp"
+#include "queries/object_queries.hpp"
+#include "queries/pairs/nearest_pair.hpp"
 #include "supple/models.hpp"
 #include "supple/scene.hpp"
 #include "supple/trigonometry.hpp"
+#include "world/object/world_object.hpp"
 
 namespace supple {
 namespace {
@@ -43,7 +43,7 @@ class Searched {
 
  private:
   ObjectId id_;
-  SceneObject object_;
+  WorldObject object_;
 };
 
 TriangleMesh moved(TriangleMesh mesh, const Vec3d& offset) {

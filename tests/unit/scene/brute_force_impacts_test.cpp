@@ -1,6 +1,6 @@
 // Checks that `verify` of continuous contacts finds every fault inserted into a correct result.
 
-#include "scene/brute_force_impacts.hpp"
+#include "verify/brute_force_impacts.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // The filter of the brute force in double precision, compared with rationals.
 
-#include "scene/brute_force_proximity.hpp"
+#include "verify/brute_force_proximity.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <cmath>
 #include <vector>
 
-#include "contact/distance_algebra.hpp"
+#include "contact/distance/distance_algebra.hpp"
 #include "support/random.hpp"
 
 namespace supple {

@@ -1,4 +1,4 @@
-#include "scene/contact_order.hpp"
+#include "answers/contact_order.hpp"
 
 #include <gtest/gtest.h>
 

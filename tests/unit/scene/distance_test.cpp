@@ -8,8 +8,7 @@
 #include <tuple>
 #include <vector>
 
-#include "contact/distance_algebra.hpp"
-#include "scene/brute_force_proximity.hpp"
+#include "contact/distance/distance_algebra.hpp"
 #include "supple/error.hpp"
 #include "supple/models.hpp"
 #include "supple/scene.hpp"
@@ -17,6 +16,7 @@
 #include "supple/trigonometry.hpp"
 #include "support/hard_scenes.hpp"
 #include "support/random.hpp"
+#include "verify/brute_force_proximity.hpp"
 
 namespace supple {
 namespace {

@@ -9,7 +9,7 @@
 #include <optional>
 #include <vector>
 
-#include "contact/distance_algebra.hpp"
+#include "contact/distance/distance_algebra.hpp"
 #include "supple/error.hpp"
 #include "supple/models.hpp"
 #include "supple/scene.hpp"

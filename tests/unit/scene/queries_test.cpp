@@ -9,7 +9,7 @@
 #include <tuple>
 #include <vector>
 
-#include "contact/distance_algebra.hpp"
+#include "contact/distance/distance_algebra.hpp"
 #include "supple/error.hpp"
 #include "supple/inspection.hpp"
 #include "supple/models.hpp"
@@ -268,7 +268,7 @@ TEST(QueriesOfRays, ListTheHitsOfManyRaysForAnyNumberOfThreads) {
     Scene scene({.threads = threads});
     for (const std::uint64_t seed : {1u, 2u}) scene.add(random_soup(200, 1, 0.4, seed));
     const auto first = hits_of(scene, rays, {.count_hits = true});
-    const std::span<const ListedRayHit> hits = scene.cast_all(rays);
+    const std::vector<ListedRayHit> hits = scene.cast_all(rays);
     std::size_t next = 0;
     for (std::uint32_t i = 0; i < rays.size(); ++i) {
       if (!first[i]) continue;
@@ -278,8 +278,8 @@ TEST(QueriesOfRays, ListTheHitsOfManyRaysForAnyNumberOfThreads) {
       next += first[i]->hits;
     }
     EXPECT_EQ(next, hits.size());
-    if (threads == 1) expected.assign(hits.begin(), hits.end());
-    EXPECT_EQ(std::vector(hits.begin(), hits.end()), expected);
+    if (threads == 1) expected = hits;
+    EXPECT_EQ(hits, expected);
     EXPECT_TRUE(scene.cast_all({}).empty());
   }
 }

@@ -1,4 +1,4 @@
-#include "scene/rebuild_policy.hpp"
+#include "world/object/rebuild_policy.hpp"
 
 #include <gtest/gtest.h>
 

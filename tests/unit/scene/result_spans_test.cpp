@@ -95,16 +95,17 @@ TEST_P(ResultSpans, OnlyDetectEndsThem) {
     scene.earliest_impact();
     scene.max_step();
     scene.collision_free_step();
+    scene.cast_all(rays);
+    scene.distances(10);
     held.check("queries");
   };
   query();
-  HeldSpans lists;
-  lists.hold(scene.cast_all(rays));
-  const std::vector<QueryBox> boxes{{{-1, -1, -1}, {1, 1, 1}}};
-  lists.hold(scene.overlaps(boxes));
-  lists.hold(scene.distances(10));
-  EXPECT_EQ(lists.check("the queries"), 3u);
-  held.check("lists of queries");
+  constexpr ContactKinds searched =
+      ContactKinds::intersection | ContactKinds::continuous | ContactKinds::proximity;
+  HeldSpans of_search;
+  of_search.hold(scene.search({.contacts = searched}));
+  EXPECT_GT(of_search.check("nothing"), 6u);
+  held.check("search");
 
   scene.set_motion(a, up, ball.positions);
   held.check("set_motion");
@@ -131,7 +132,9 @@ TEST_P(ResultSpans, OnlyDetectEndsThem) {
   query();
   Scene other = std::move(scene);
   EXPECT_GT(held.check("a move of the scene"), 18u);
-  EXPECT_EQ(lists.check("other queries"), 3u);
+  EXPECT_GT(of_search.check("queries and changes"), 6u);
+  other.search({.contacts = searched});
+  held.check("another search");
   other.set_vertex_groups(d, {}, {});
   EXPECT_EQ(other.detect().step, 2u);
 }

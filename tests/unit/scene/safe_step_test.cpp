@@ -6,12 +6,12 @@
 #include <limits>
 #include <vector>
 
-#include "scene/brute_force_elements.hpp"
 #include "supple/distance.hpp"
 #include "supple/error.hpp"
 #include "supple/scene.hpp"
 #include "support/hard_scenes.hpp"
 #include "support/random.hpp"
+#include "verify/brute_force_elements.hpp"
 
 namespace supple {
 namespace {

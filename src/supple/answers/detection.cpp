@@ -1,0 +1,150 @@
+#include "answers/detection.hpp"
+
+#include "core/timer.hpp"
+#include "queries/queries.hpp"
+#include "world/exact_limit.hpp"
+
+namespace supple {
+
+bool Detection::run(const Question& question, std::uint64_t max_contacts, const StopSignal& stop,
+                    StepStats& stats) {
+  question_ = question;
+  Timer stage;
+  const World::Work refitted = world_.refit(question_.shapes());
+  stats.objects_refitted = refitted.objects;
+  stats.triangles_refitted = refitted.triangles;
+  stats.refit_seconds = stage.lap();
+  pairs_.find(question_);
+  const BroadPhaseStats& broad_phase = pairs_.finder().stats();
+  stats.broad_phase_method = broad_phase.method;
+  stats.object_pairs_tested = broad_phase.object_pairs_tested;
+  stats.object_pairs = pairs_.pairs().size();
+  stats.broad_phase_seconds = stage.lap();
+  if (stop.stop_requested()) return false;
+  check_exact_bits();
+  const World::Work rebuilt = world_.rebuild_degraded(pairs_.jobs(), pairs_.boxes());
+  stats.octrees_rebuilt = rebuilt.objects;
+  stats.triangles_rebuilt = rebuilt.triangles;
+  stats.rebuild_seconds = stage.lap();
+  if (question_.searches_at_rest() && !find_contacts(max_contacts, stop, stats)) return false;
+  if (question_.is_continuous() && !find_impacts(max_contacts, stop, stats)) return false;
+  if (question_.has_proximity() && !find_proximity(max_contacts, stop, stats)) return false;
+  stage.lap();
+  if (question_.has_penetration()) {
+    if (!find_penetrations(stop, stats)) return false;
+    stats.penetration_seconds = stage.lap();
+  }
+  list_non_finite();
+  return true;
+}
+
+bool Detection::find_contacts(std::uint64_t max_contacts, const StopSignal& stop, StepStats& stats) {
+  contact_objects_.clear();
+  for (std::uint32_t slot = 0; slot < world_.slot_count(); ++slot) {
+    WorldObject* const object = world_.at(slot);
+    contact_objects_.emplace_back();
+    if (object == nullptr) continue;
+    contact_objects_.back() = {world_.id_of(slot),
+                               object->resting_view(),
+                               object->octree().triangle_ids(),
+                               object->octree().vertex_count(),
+                               object->vertex_groups(),
+                               object->neighbours()};
+  }
+  const ContactSearch search{question_.has_intersections(),
+                             question_.contact_points || question_.has_penetration(),
+                             question_.colliding_vertices};
+  return contact_pass_.run(pairs_.jobs(), contact_objects_, world_.versions(), search, max_contacts, stop,
+                           world_.parallel, stats);
+}
+
+bool Detection::find_impacts(std::uint64_t max_contacts, const StopSignal& stop, StepStats& stats) {
+  list_moving_objects(world_, MovingShape::Part::way, moving_objects_);
+  return impact_pass_.run(pairs_.jobs(), moving_objects_, world_.versions(), question_.impact, max_contacts,
+                          stop, world_.parallel, stats);
+}
+
+bool Detection::find_proximity(std::uint64_t max_contacts, const StopSignal& stop, StepStats& stats) {
+  list_moving_objects(world_, MovingShape::Part::end, moving_objects_);
+  return proximity_pass_.run(pairs_.jobs(), moving_objects_, world_.versions(),
+                             {question_.proximity_listing, question_.impact.kinds}, max_contacts, stop,
+                             world_.parallel, stats);
+}
+
+bool Detection::find_penetrations(const StopSignal& stop, StepStats& stats) {
+  penetrated_objects_.assign(world_.slot_count(), {});
+  for (const auto& [a, b] : pairs_.jobs()) {
+    for (const std::uint32_t slot : {a, b}) {
+      if (penetrated_objects_[slot].surface.octree != nullptr) continue;
+      WorldObject& object = world_[slot];
+      penetrated_objects_[slot] = {queried_object(world_, slot),
+                                   {&object.octree(), &object.vertex_triangles(), &object.placement().end(),
+                                    object.resting_view().translation},
+                                   object.options.solid};
+    }
+  }
+  DetectResult found;
+  found.groups = contact_pass_.groups();
+  found.contacts = contact_pass_.contacts();
+  found.contact_points = contact_pass_.contact_points();
+  if (!penetration_pass_.run(pairs_.jobs(), penetrated_objects_, world_.versions(), found, question_.depths,
+                             stop, world_.parallel))
+    return false;
+  stats.penetrations = penetration_pass_.penetrations().size();
+  stats.curves = penetration_pass_.curves().curves.size();
+  return true;
+}
+
+/// Impacts have a limit of their own for each pair of elements.
+void Detection::check_exact_bits() const {
+  const bool has_proximity = question_.has_proximity();
+  if (question_.has_intersections() || has_proximity)
+    check_exact_bits_of_jobs(world_, pairs_.jobs(), has_proximity);
+}
+
+void Detection::list_non_finite() {
+  non_finite_.clear();
+  for (std::uint32_t slot = 0; slot < world_.slot_count(); ++slot) {
+    const WorldObject* const object = world_.at(slot);
+    if (object == nullptr) continue;
+    for (const std::uint32_t vertex : object->non_finite_vertices(question_.shapes()))
+      non_finite_.push_back({world_.id_of(slot), vertex, object->non_finite_position(vertex)});
+  }
+}
+
+void Detection::list(DetectResult& found) {
+  if (question_.searches_at_rest()) {
+    found.truncated = contact_pass_.is_truncated();
+    found.groups = contact_pass_.groups();
+    found.contacts = contact_pass_.contacts();
+    found.contact_points = contact_pass_.contact_points();
+    found.colliding_vertex_groups = contact_pass_.colliding_vertex_groups();
+    found.colliding_vertices = contact_pass_.colliding_vertices();
+  }
+  if (question_.is_continuous()) {
+    found.truncated = found.truncated || impact_pass_.is_truncated();
+    found.continuous_groups = impact_pass_.groups();
+    found.continuous_contacts = impact_pass_.contacts();
+  }
+  if (question_.has_penetration()) {
+    found.penetration_groups = penetration_pass_.groups();
+    found.penetrations = penetration_pass_.penetrations();
+    found.vertices_on_surface = penetration_pass_.vertices_on_surface();
+    found.contained_parts = penetration_pass_.contained_parts();
+    const CurveLists& curves = penetration_pass_.curves();
+    found.curves = curves.curves;
+    found.curve_contacts = curves.contacts;
+    found.curve_points = curves.points;
+    found.enclosed_vertices = curves.enclosed;
+  }
+  if (question_.has_proximity()) {
+    found.truncated = found.truncated || proximity_pass_.is_truncated();
+    found.proximity_groups = proximity_pass_.groups();
+    found.proximity_pairs = proximity_pass_.pairs();
+  }
+  found.object_pairs = pairs_.pairs();
+  found.non_finite_vertices = non_finite_;
+  found.untested = untested_.list(world_, question_, found);
+}
+
+}  // namespace supple

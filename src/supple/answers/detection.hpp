@@ -1,0 +1,60 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "answers/impact/impact_pass.hpp"
+#include "answers/intersection/contact_pass.hpp"
+#include "answers/moving_objects.hpp"
+#include "answers/object_pairs.hpp"
+#include "answers/penetration/penetration_pass.hpp"
+#include "answers/proximity/proximity_pass.hpp"
+#include "answers/question.hpp"
+#include "answers/untested.hpp"
+#include "core/stop_signal.hpp"
+#include "world/world.hpp"
+
+namespace supple {
+
+/// One search for all contacts in a world: what `Scene::detect` finds, without events. Several of them can
+/// search the same world. Each keeps its answers and its memory until it runs again.
+class Detection {
+ public:
+  explicit Detection(World& world) : world_(world), pairs_(world) {}
+
+  /// Returns false when it was stopped; then there are no answers. Throws `Error` when coordinates exceed
+  /// `SceneOptions::max_exact_bits`.
+  bool run(const Question& question, std::uint64_t max_contacts, const StopSignal& stop, StepStats& stats);
+  /// Adds the answers to `found`; the spans are valid until the next run.
+  void list(DetectResult& found);
+
+  /// Those of the last run.
+  const Question& question() const { return question_; }
+  const ObjectPairs& pairs() const { return pairs_; }
+
+ private:
+  /// These return false when they were stopped.
+  bool find_contacts(std::uint64_t max_contacts, const StopSignal& stop, StepStats& stats);
+  bool find_impacts(std::uint64_t max_contacts, const StopSignal& stop, StepStats& stats);
+  bool find_proximity(std::uint64_t max_contacts, const StopSignal& stop, StepStats& stats);
+  bool find_penetrations(const StopSignal& stop, StepStats& stats);
+  void check_exact_bits() const;
+  void list_non_finite();
+
+  World& world_;
+  Question question_;
+  ObjectPairs pairs_;
+  ContactPass contact_pass_;
+  ImpactPass impact_pass_;
+  ProximityPass proximity_pass_;
+  PenetrationPass penetration_pass_;
+  UntestedKinds untested_;
+  std::vector<NonFiniteVertex> non_finite_;
+  // By slot.
+  std::vector<ContactObject> contact_objects_;
+  std::vector<MovingObject> moving_objects_;
+  std::vector<PenetratedObject> penetrated_objects_;
+};
+
+}  // namespace supple

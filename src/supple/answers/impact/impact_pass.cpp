@@ -1,0 +1,432 @@
+#include "answers/impact/impact_pass.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <limits>
+#include <numeric>
+#include <tuple>
+#include <utility>
+
+#include "contact/impact/first_impact.hpp"
+#include "contact/impact/impact_search.hpp"
+#include "contact/impact/safe_time.hpp"
+#include "core/float_rounding.hpp"
+#include "core/timer.hpp"
+#include "geometry/numbers/integer_points.hpp"
+#include "geometry/vector.hpp"
+
+namespace supple {
+namespace {
+
+constexpr std::size_t block_size = RelativeMotionBlock::capacity;
+constexpr std::size_t least_to_keep_first = 16384;  // contacts, 4 MB
+
+/// Orders the vertices of each edge, and the two edges of a self-collision, by the user's vertex ids. The
+/// contact then does not depend on the shape of the octrees.
+void sort_edges(const std::array<const MovingObject*, 4>& objects, std::array<std::uint32_t, 4>& vertices) {
+  const auto id = [&](std::size_t i) { return objects[i]->vertex_ids[vertices[i]]; };
+  for (const std::size_t i : {0u, 2u}) {
+    if (id(i + 1) < id(i)) std::swap(vertices[i], vertices[i + 1]);
+  }
+  if (objects[0] != objects[2]) return;
+  if (std::pair(id(2), id(3)) < std::pair(id(0), id(1))) {
+    std::swap(vertices[0], vertices[2]);
+    std::swap(vertices[1], vertices[3]);
+  }
+}
+
+/// The order of contacts within a job.
+auto order_of(const ContinuousContact& contact) {
+  return std::tie(contact.kind, contact.element_a, contact.element_b);
+}
+
+/// The order in which a search for the earliest contact prefers contacts.
+bool is_earlier(const ContinuousContact& p, std::uint32_t job_p, const ContinuousContact& q,
+                std::uint32_t job_q) {
+  if (p.toi != q.toi) return p.toi < q.toi;
+  return job_p != job_q ? job_p < job_q : order_of(p) < order_of(q);
+}
+
+std::uint64_t place_of(std::uint32_t job, ElementPairKind kind, std::uint32_t first_of_element_a) {
+  return ContactLimit::place(job, static_cast<std::uint32_t>(kind) << 29 | first_of_element_a >> 3);
+}
+
+/// Copies the impact to the contact, with the weights and the normal in the order of a and b.
+void set_impact(ContinuousContact& contact, const Impact& impact, bool is_turned) {
+  const auto& w = impact.barycentric;
+  contact.certainty = impact.certainty;
+  contact.touching_at_start = impact.touching_at_start;
+  contact.toi = impact.toi;
+  contact.start_distance = impact.start_distance;
+  contact.point = impact.point;
+  contact.normal = is_turned ? -1.0 * impact.normal : impact.normal;
+  if (contact.kind == ElementPairKind::edge_edge) {
+    contact.barycentric_a = {w[0], w[1], 0};
+    contact.barycentric_b = {w[2], w[3], 0};
+    return;
+  }
+  const auto [kind_a, kind_b] = feature_kinds(contact.kind);
+  auto& of_vertex = is_turned ? contact.barycentric_b : contact.barycentric_a;
+  auto& of_face = is_turned ? contact.barycentric_a : contact.barycentric_b;
+  of_vertex = {1, 0, 0};
+  switch (is_turned ? kind_a : kind_b) {
+    case FeatureKind::vertex:
+      of_face = {1, 0, 0};
+      break;
+    case FeatureKind::edge:
+      of_face = {w[1], w[2] + w[3], 0};
+      break;
+    case FeatureKind::face:
+      of_face = {w[1], w[2], w[3]};
+      break;
+  }
+}
+
+/// The bits of all numbers on which the impact depends.
+int bits_of(const ElementMotion& motion, double separation) {
+  BitExtent extent;
+  extent.include(separation);
+  for (const auto* moment : {&motion.start, &motion.end}) {
+    for (const Vec3d& p : *moment) {
+      for (int axis = 0; axis < 3; ++axis) extent.include(p[axis]);
+    }
+  }
+  return extent.bits();
+}
+
+}  // namespace
+
+bool ImpactPass::run(std::span<const ContactJob> jobs, std::span<const MovingObject> objects,
+                     std::span<const std::uint64_t> versions, const ImpactSearchOptions& options,
+                     std::uint64_t max_contacts, const StopSignal& stop, const Parallel& parallel,
+                     StepStats& stats) {
+  Timer timer;
+  const bool is_same_search = options.impact == last_options_.impact &&
+                              options.kinds == last_options_.kinds &&
+                              options.listing == last_options_.listing;
+  last_options_ = options;
+  start(jobs, objects, options, stop);
+  outcomes_.plan(jobs, versions, is_same_search);
+  limit_.start(lists_first() ? ContactLimit::unlimited : max_contacts, jobs.size());
+  for (std::uint32_t job = 0; limit_.is_set() && job < jobs.size(); ++job)
+    limit_.add(job, outcomes_.ranges(job)[0].count);
+  search(Search::all, outcomes_.open_jobs(), end_of_search(options_.impact), parallel);
+  add_stats(workers_, timer.lap(), stats);
+  if (stop.stop_requested()) return false;
+  gather_contacts(parallel);
+  is_truncated_ = !lists_first() && contacts_.size() > max_contacts;
+  if (is_truncated_) {
+    outcomes_.truncate(max_contacts);
+    contacts_.resize(static_cast<std::size_t>(max_contacts));
+  }
+  outcomes_.list_groups(groups_, [&](std::uint32_t object) { return objects_[object].id; });
+  if (lists_first()) is_truncated_ = first_contacts_.choose(contacts_, max_contacts, groups_);
+  stats.contacts += this->contacts().size();
+  stats.sort_and_events_seconds += timer.lap();
+  return true;
+}
+
+std::optional<ContinuousContact> ImpactPass::find_earliest(std::span<const ContactJob> jobs,
+                                                           std::span<const MovingObject> objects,
+                                                           const ImpactSearchOptions& options,
+                                                           const Parallel& parallel) {
+  start(jobs, objects, options, {});
+  limit_.start(ContactLimit::unlimited, 0);
+  all_jobs_.resize(jobs.size());
+  std::iota(all_jobs_.begin(), all_jobs_.end(), 0u);
+  search(Search::earliest, all_jobs_, end_of_search(options_.impact), parallel);
+  const Earliest* const best = earliest_of_workers();
+  return best != nullptr ? std::optional(best->contact) : std::nullopt;
+}
+
+const ImpactPass::Earliest* ImpactPass::earliest_of_workers() const {
+  const Earliest* best = nullptr;
+  for (const Worker& worker : workers_) {
+    if (!worker.earliest) continue;
+    const Earliest& found = *worker.earliest;
+    if (best == nullptr || is_earlier(found.contact, found.job, best->contact, best->job)) best = &found;
+  }
+  return best;
+}
+
+void ImpactPass::start(std::span<const ContactJob> jobs, std::span<const MovingObject> objects,
+                       const ImpactSearchOptions& options, const StopSignal& stop) {
+  jobs_ = jobs;
+  objects_ = objects;
+  options_ = options;
+  stop_ = stop;
+}
+
+void ImpactPass::search(Search search, std::span<const std::uint32_t> jobs, float until,
+                        const Parallel& parallel) {
+  search_ = search;
+  latest_ = until;
+  workers_.resize(parallel.worker_count());
+  for (Worker& worker : workers_) {
+    worker.traversal.set_stop(stop_);
+    worker.last_task = no_task;
+    worker.found.clear();
+    worker.stats = {};
+    worker.earliest.reset();
+    worker.limits.clear();
+    worker.near_jobs.clear();
+  }
+  tasks_.plan(jobs, workers_.size(), workers_[0].traversal,
+              [&](std::uint32_t job) { return view_of_job(job); });
+  if (search == Search::all) outcomes_.expect_tasks(tasks_.tasks().size());
+  tasks_.run(parallel, workers_, stop_, [&](std::size_t task, std::uint32_t w) { run_task(task, w); });
+}
+
+ImpactOptions ImpactPass::impact_of_job(std::uint32_t job) const {
+  ImpactOptions impact = options_.impact;
+  if (search_ == Search::touching || search_ == Search::rounded) return {.exact = impact.exact};
+  impact.min_separation = separation_of(impact.min_separation, objects_[jobs_[job].a].min_separation,
+                                        objects_[jobs_[job].b].min_separation);
+  return impact;
+}
+
+ObjectPairView ImpactPass::view_of_job(std::uint32_t job) const {
+  const MovingObject& a = objects_[jobs_[job].a];
+  const MovingObject& b = objects_[jobs_[job].b];
+  const double distance = searched_distance(job);
+  ObjectPairView pair =
+      &a == &b ? moving_self_pair_of(a.view, distance) : moving_pair_of(a.view, b.view, distance);
+  pair.kept_share = share_of_approach();
+  pair.any_parts = search_ == Search::free;
+  if (distance > 0 || pair.kept_share > 0) pair.a.culled = nullptr;
+  pair.kinds = options_.kinds;
+  if (latest_ < 1 || search_ != Search::all) pair.latest = &latest_;
+  return pair;
+}
+
+void ImpactPass::run_task(std::size_t task, std::uint32_t w) {
+  const ContactTask& contact_task = tasks_.tasks()[task];
+  const std::uint32_t job = contact_task.job;
+  Worker& worker = workers_[w];
+  // As in `ContactPass`: with a limit, the tasks of a job that follow each other share a list.
+  const bool continues =
+      limit_.is_set() && worker.last_task != no_task && tasks_.tasks()[worker.last_task].job == job;
+  const Range start = continues ? outcomes_.take(worker.last_task)[0]
+                                : Range{static_cast<std::uint32_t>(worker.found.size()), 0};
+  worker.last_task = task;
+  const std::size_t first = start.first;
+  worker.keep_first_at = least_to_keep_first;
+  const auto set_outcome = [&] {
+    const auto count = static_cast<std::uint32_t>(worker.found.size() - first);
+    if (search_ == Search::all) outcomes_.of_task(task) = {w, {{{start.first, count}}}};
+    limit_.add(job, count - std::min(count, start.count));
+  };
+  if (limit_.excludes(ContactLimit::place(job, 0))) return set_outcome();
+  worker.traversal.find_element_pairs(view_of_job(job), contact_task.root, worker.stats.traversal,
+                                      [&](ElementPairKind kind, std::span<const ElementPair> candidates) {
+                                        Timer timer;
+                                        test_candidates(job, kind, candidates, worker);
+                                        if (limit_.is_set()) drop_excess(job, first, worker);
+                                        keep_first(first, worker.keep_first_at, worker);
+                                        worker.stats.exact_seconds += timer.lap();
+                                      });
+  constexpr std::size_t many = 256;
+  keep_first(first, many, worker);
+  set_outcome();
+}
+
+void ImpactPass::test_candidates(std::uint32_t job, ElementPairKind kind,
+                                 std::span<const ElementPair> candidates, Worker& worker) {
+  const MovingObject& a = objects_[jobs_[job].a];
+  const MovingObject& b = objects_[jobs_[job].b];
+  const auto objects = objects_of(kind, a, b);
+  const bool are_edges = kind == ElementPairKind::edge_edge, excludes = limit_.excludes_some();
+  const double distance = searched_distance(job), kept = kept_distance(job);
+  std::array<std::array<std::uint32_t, 4>, block_size> vertices;
+  for (; !candidates.empty() && !stop_.stop_requested();
+       candidates = candidates.subspan(std::min(block_size, candidates.size()))) {
+    const auto part = candidates.first(std::min(block_size, candidates.size()));
+    for (std::size_t k = 0; k < part.size(); ++k) vertices[k] = vertices_of(kind, part[k], a, b);
+    const float latest = latest_.load(std::memory_order_relaxed);
+    fill(objects, std::span(vertices).first(part.size()), are_edges, latest, worker.block);
+    const float reach = round_up(distance + kept * latest);
+    std::uint64_t left = may_touch(worker.block, part.size(), are_edges, reach);
+    std::size_t count = 0;
+    for (; left != 0; left &= left - 1) {
+      const auto k = static_cast<std::size_t>(std::countr_zero(left));
+      if (excludes && is_excluded(job, kind, part[k], vertices[k])) continue;
+      if (!may_touch_by_groups(objects, vertices[k], are_edges)) continue;
+      OpenPair& pair = worker.open[count++];
+      pair.candidate = part[k];
+      pair.vertices = vertices[k];
+      if (are_edges) sort_edges(objects, pair.vertices);
+      set_motion(are_edges, objects, pair.vertices, pair.motion);
+      pair.relative = relative_motion(pair.motion);
+    }
+    decide_open_pairs(job, kind, count, worker);
+  }
+}
+
+/// A vector kernel decides most pairs that touch; the scalar search decides the others.
+void ImpactPass::decide_open_pairs(std::uint32_t job, ElementPairKind kind, std::size_t count,
+                                   Worker& worker) {
+  if (search_ == Search::safe_step || search_ == Search::free || search_ == Search::rounded) {
+    for (std::size_t k = 0; k < count; ++k) limit_step(job, kind, worker.open[k], worker);
+    return;
+  }
+  const ImpactOptions options = impact_of_job(job);
+  const bool is_vectorized = options.min_separation == 0 && count > 0;
+  if (is_vectorized) {
+    for (std::size_t k = 0; k < count; ++k) worker.motions.set(k, worker.open[k].relative);
+    search_coplanar_times(worker.motions, count, kind == ElementPairKind::edge_edge, worker.coplanar);
+  }
+  const auto search_of = [&](std::size_t k) -> ImpactSearch {
+    if (is_vectorized && (worker.coplanar.apart >> k & 1) != 0) return {ImpactSearch::Outcome::apart};
+    if (is_vectorized && (worker.coplanar.touching >> k & 1) != 0)
+      return {ImpactSearch::Outcome::touching, worker.coplanar.times[k]};
+    return search_impact(worker.open[k].relative, options.min_separation);
+  };
+  for (std::size_t k = 0; k < count && !stop_.stop_requested(); ++k) {
+    const OpenPair& pair = worker.open[k];
+    bool used_exact = false;
+    ImpactOptions of_pair = options;
+    of_pair.exact = may_be_exact(pair, options.min_separation);
+    const auto impact = first_impact_after(search_of(k), pair.motion, pair.relative, of_pair, used_exact);
+    worker.stats.exact_fallbacks += used_exact ? 1 : 0;
+    if (!impact) continue;
+    if (search_ == Search::touching && impact->touching_at_start && touch_at_rest(pair.motion)) continue;
+    add_contact(job, kind, pair, *impact, worker);
+  }
+}
+
+bool ImpactPass::may_be_exact(const OpenPair& pair, double separation) const {
+  if (!options_.impact.exact || !has_exact_limit()) return options_.impact.exact;
+  return bits_of(pair.motion, separation) <= static_cast<int>(options_.max_exact_bits);
+}
+
+/// Compares the first id of element a with the limit.
+bool ImpactPass::is_excluded(std::uint32_t job, ElementPairKind kind, ElementPair candidate,
+                             std::array<std::uint32_t, 4> vertices) const {
+  const MovingObject& a = objects_[jobs_[job].a];
+  const MovingObject& b = objects_[jobs_[job].b];
+  if (kind == ElementPairKind::edge_edge) sort_edges(objects_of(kind, a, b), vertices);
+  const std::optional<ElementNames> names = names_of(kind, candidate, vertices, a, b);
+  return !names || limit_.excludes(place_of(job, names->kind, names->a[0]));
+}
+
+void ImpactPass::add_contact(std::uint32_t job, ElementPairKind kind, const OpenPair& pair,
+                             const Impact& impact, Worker& worker) {
+  const MovingObject& a = objects_[jobs_[job].a];
+  const MovingObject& b = objects_[jobs_[job].b];
+  const std::optional<ElementNames> names = names_of(kind, pair.candidate, pair.vertices, a, b);
+  if (!names) return;
+  ContinuousContact contact;
+  contact.object_a = a.id;
+  contact.object_b = b.id;
+  contact.kind = names->kind;
+  contact.element_a = names->a;
+  contact.element_b = names->b;
+  set_impact(contact, impact, names->is_turned);
+  if (search_ == Search::all) {
+    worker.found.push_back(contact);
+  } else {
+    keep_earlier(job, contact, worker);
+  }
+}
+
+void ImpactPass::keep_earlier(std::uint32_t job, const ContinuousContact& contact, Worker& worker) {
+  if (worker.earliest && !is_earlier(contact, job, worker.earliest->contact, worker.earliest->job)) return;
+  worker.earliest = {contact, job};
+  search_until(contact.toi);
+}
+
+/// A reported time may be early by the tolerance. The pair with the earliest reported time may therefore
+/// touch later than another pair does.
+void ImpactPass::search_until(double time) {
+  // Which undecided pairs the search meets must not depend on the order in which threads find impacts.
+  if (has_exact_limit()) return;
+  const float until = round_up(time + toi_tolerance);
+  float latest = latest_.load(std::memory_order_relaxed);
+  while (until < latest && !latest_.compare_exchange_weak(latest, until, std::memory_order_relaxed)) {
+  }
+}
+
+/// Drops the excess contacts of one task, which begin at `first`: those that follow the first `wanted()`.
+void ImpactPass::drop_excess(std::uint32_t job, std::size_t first, Worker& worker) {
+  if (!limit_.drops_at(worker.found.size() - first)) return;
+  const auto begin = worker.found.begin() + static_cast<std::ptrdiff_t>(first);
+  const auto last = begin + static_cast<std::ptrdiff_t>(limit_.wanted() - 1);
+  std::nth_element(
+      begin, last, worker.found.end(),
+      [](const ContinuousContact& p, const ContinuousContact& q) { return order_of(p) < order_of(q); });
+  limit_.exclude_after(place_of(job, last->kind, last->element_a[0]));
+  worker.found.erase(last + 1, worker.found.end());
+}
+
+/// Keeps only those contacts of one task that may be listed, once the task has at least `least` contacts.
+/// They begin at `first`. A contact that is not the first of an element in its task is not the first in the
+/// scene.
+void ImpactPass::keep_first(std::size_t first, std::size_t least, Worker& worker) const {
+  if (search_ != Search::all || !lists_first() || worker.found.size() - first < least) return;
+  worker.first_contacts.keep_first(worker.found, first);
+  worker.keep_first_at = std::max(least_to_keep_first, 2 * (worker.found.size() - first));
+}
+
+std::size_t ImpactPass::largest_buffer() const {
+  std::size_t largest = 0;
+  for (const Worker& worker : workers_) largest = std::max(largest, worker.found.capacity());
+  return largest;
+}
+
+/// Jobs are in canonical order. Each job gets its range of the list; its contacts are sorted there. All
+/// workers share a job with many contacts.
+void ImpactPass::gather_contacts(const Parallel& parallel) {
+  constexpr std::uint32_t many = 8192;
+  outcomes_.place(tasks_.tasks());
+  outcomes_.move_known<0>(contacts_);
+  const auto has_many = [&](std::size_t job) { return outcomes_.ranges(job)[0].count >= many; };
+  parallel.for_ranges(outcomes_.size(), 8, [&](std::size_t begin, std::size_t end, std::uint32_t w) {
+    for (std::size_t job = begin; job < end; ++job) {
+      if (!outcomes_.is_known(job) && !has_many(job)) gather_found(job, workers_[w], Parallel(1));
+    }
+  });
+  for (std::size_t job = 0; job < outcomes_.size(); ++job) {
+    if (!outcomes_.is_known(job) && has_many(job)) gather_found(job, workers_[0], parallel);
+  }
+  outcomes_.complete();
+}
+
+/// Counts the contacts into buckets by kind and first id, a few in each, and sorts each bucket.
+void ImpactPass::gather_found(std::size_t job, Worker& worker, const Parallel& parallel) {
+  constexpr std::size_t contacts_of_bucket = 4;
+  worker.keys.clear();
+  std::uint64_t ids = 1, kinds = 1;
+  for (const auto& task : outcomes_.tasks_of(job)) {
+    for (std::uint32_t i = task.ranges[0].first; i < task.ranges[0].end(); ++i) {
+      const ContinuousContact& contact = workers_[task.worker].found[i];
+      worker.keys.push_back({contact.kind, contact.element_a, contact.element_b, task.worker, i});
+      ids = std::max(ids, std::uint64_t{contact.element_a[0]} + 1);
+      kinds = std::max(kinds, static_cast<std::uint64_t>(contact.kind) + 1);
+    }
+  }
+  const auto id_bits = static_cast<int>(std::bit_width(kinds * ids));
+  const auto count_bits = static_cast<int>(std::bit_width(worker.keys.size() / contacts_of_bucket));
+  const int shift = std::max(id_bits - count_bits, 0);
+  const auto bucket_of = [&](const Key& key) {
+    return static_cast<std::size_t>((static_cast<std::uint64_t>(key.kind) * ids + key.element_a[0]) >> shift);
+  };
+  const auto buckets = static_cast<std::size_t>((kinds * ids - 1) >> shift) + 1;
+  // Counts of the buckets before, then where each bucket begins, and in the end where it ends.
+  std::vector<std::uint32_t>& firsts = worker.first_of_bucket;
+  firsts.assign(buckets + 1, 0);
+  for (const Key& key : worker.keys) ++firsts[bucket_of(key) + 1];
+  for (std::size_t b = 0; b < buckets; ++b) firsts[b + 1] += firsts[b];
+  worker.sorted_keys.resize(worker.keys.size());
+  for (const Key& key : worker.keys) worker.sorted_keys[firsts[bucket_of(key)]++] = key;
+  ContinuousContact* const contacts = contacts_.data() + outcomes_.ranges(job)[0].first;
+  parallel.for_ranges(buckets, 256, [&](std::size_t begin, std::size_t end, std::uint32_t) {
+    for (std::size_t b = begin; b < end; ++b) {
+      const std::uint32_t first = b == 0 ? 0 : firsts[b - 1], last = firsts[b];
+      std::sort(worker.sorted_keys.begin() + first, worker.sorted_keys.begin() + last);
+      for (std::uint32_t i = first; i < last; ++i)
+        contacts[i] = workers_[worker.sorted_keys[i].worker].found[worker.sorted_keys[i].index];
+    }
+  });
+}
+
+}  // namespace supple

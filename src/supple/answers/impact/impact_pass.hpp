@@ -1,0 +1,197 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "answers/contact_limit.hpp"
+#include "answers/contact_tasks.hpp"
+#include "answers/element_candidates.hpp"
+#include "answers/first_contacts.hpp"
+#include "answers/job_outcomes.hpp"
+#include "answers/search_options.hpp"
+#include "contact/impact/impact_filter.hpp"
+#include "contact/impact/relative_motion.hpp"
+#include "contact/intersection/coplanar_search.hpp"
+#include "core/parallel.hpp"
+#include "core/stop_signal.hpp"
+#include "narrow_phase/traversal.hpp"
+#include "supple/contact.hpp"
+#include "supple/options.hpp"
+#include "supple/result.hpp"
+#include "supple/safe_step.hpp"
+
+namespace supple {
+
+/// The pair of elements of a contact.
+inline LimitingPair pair_of_contact(const ContinuousContact& contact) {
+  return {contact.object_a, contact.object_b, contact.kind, contact.element_a, contact.element_b};
+}
+
+/// Narrow phase and exact stage of continuous contacts for all jobs of a step, on all workers. The narrow
+/// phase hands its candidates to the exact stage in batches. The pass keeps its memory between steps.
+class ImpactPass {
+ public:
+  /// Finds the first `max_contacts` contacts in canonical order, for any number of threads. `jobs` ascend and
+  /// contain indices of `objects`; `versions` are those of the objects' positions. Returns false when it was
+  /// stopped; the lists are then not valid.
+  bool run(std::span<const ContactJob> jobs, std::span<const MovingObject> objects,
+           std::span<const std::uint64_t> versions, const ImpactSearchOptions& options,
+           std::uint64_t max_contacts, const StopSignal& stop, const Parallel& parallel, StepStats& stats);
+  /// The contact with the earliest time; the first in canonical order among equal times. Does not change the
+  /// lists.
+  std::optional<ContinuousContact> find_earliest(std::span<const ContactJob> jobs,
+                                                 std::span<const MovingObject> objects,
+                                                 const ImpactSearchOptions& options,
+                                                 const Parallel& parallel);
+  /// See `Scene::collision_free_step`. Does not change the lists.
+  SafeStep find_safe_step(std::span<const ContactJob> jobs, std::span<const MovingObject> objects,
+                          const ImpactSearchOptions& options, const StepOptions& step,
+                          const Parallel& parallel);
+  /// See `Scene::collision_free_steps`. One step for each element of `objects`; those of no job have the step
+  /// 1. Does not change the lists.
+  std::vector<ObjectStep> find_safe_steps(std::span<const ContactJob> jobs,
+                                          std::span<const MovingObject> objects,
+                                          const ImpactSearchOptions& options, const StepOptions& step,
+                                          const Parallel& parallel);
+
+  std::span<const ContactGroup> groups() const { return groups_; }
+  std::span<const ContinuousContact> contacts() const {
+    return lists_first() ? first_contacts_.contacts() : contacts_;
+  }
+  /// There are more than `max_contacts` contacts.
+  bool is_truncated() const { return is_truncated_; }
+  /// The most contacts that a worker has held at once since it was made.
+  std::size_t largest_buffer() const;
+
+ private:
+  /// Orders the contacts of a job canonically and says where each is stored.
+  struct Key {
+    ElementPairKind kind = ElementPairKind::vertex_face;
+    std::array<std::uint32_t, 2> element_a{}, element_b{};
+    std::uint32_t worker = 0, index = 0;
+
+    auto operator<=>(const Key&) const = default;
+  };
+  struct Earliest {
+    ContinuousContact contact;
+    std::uint32_t job = 0;
+  };
+  /// A pair of elements that passed the filter.
+  struct OpenPair {
+    ElementPair candidate;
+    std::array<std::uint32_t, 4> vertices;
+    ElementMotion motion;
+    RelativeMotion relative;
+  };
+  /// A pair that limits the step of a job, and the part of the step that it leaves.
+  struct StepLimit {
+    std::uint32_t job = 0;
+    double time = 1;
+    LimitingPair pair;
+  };
+  struct Worker {
+    std::size_t last_task = no_task;
+    Traversal traversal;
+    RelativeMotionBlock block;
+    std::array<OpenPair, RelativeMotionBlock::capacity> open;  // pairs of one block of candidates
+    MotionBlock motions;                                       // of these pairs
+    CoplanarSearch coplanar;
+    std::vector<ContinuousContact> found;  // by all tasks of the worker
+    FirstContacts first_contacts;
+    std::size_t keep_first_at = 0;  // number of contacts of the present task
+    TaskStats stats;
+    std::optional<Earliest> earliest;
+    std::vector<StepLimit> limits;         // the first of the job of each task
+    std::vector<std::uint32_t> near_jobs;  // with elements so near that rounded positions could touch
+    // Scratch for the contacts of one job.
+    std::vector<Key> keys, sorted_keys;
+    std::vector<std::uint32_t> first_of_bucket;
+  };
+  /// `touching`: the earliest contact without any separation. `safe_step`: the parts of the step that keep
+  /// distances. `free`: those that also keep them when both objects move by other parts. `rounded`: contacts
+  /// on the ways to the rounded positions at these parts.
+  enum class Search : std::uint8_t { all, earliest, touching, safe_step, free, rounded };
+
+  /// Plans and runs the tasks of `jobs`, which are indices into `jobs_`, until a time in the step.
+  void search(Search search, std::span<const std::uint32_t> jobs, float until, const Parallel& parallel);
+  const Earliest* earliest_of_workers() const;
+  void start(std::span<const ContactJob> jobs, std::span<const MovingObject> objects,
+             const ImpactSearchOptions& options, const StopSignal& stop);
+  ImpactOptions impact_of_job(std::uint32_t job) const;
+  /// The distance within which the pass searches, and what a safe step adds to it over the whole step: a
+  /// share of the largest approach.
+  double searched_distance(std::uint32_t job) const;
+  double kept_distance(std::uint32_t job) const;
+  double share_of_approach() const;
+  /// By how much rounding may bring two vertices of the job nearer in a safe step.
+  double rounding_of_job(std::uint32_t job) const;
+  double largest_approach(std::uint32_t job) const;
+  ObjectPairView view_of_job(std::uint32_t job) const;
+  void run_task(std::size_t task, std::uint32_t worker);
+  void test_candidates(std::uint32_t job, ElementPairKind kind, std::span<const ElementPair> candidates,
+                       Worker& worker);
+  bool is_excluded(std::uint32_t job, ElementPairKind kind, ElementPair candidate,
+                   std::array<std::uint32_t, 4> vertices) const;
+  void decide_open_pairs(std::uint32_t job, ElementPairKind kind, std::size_t count, Worker& worker);
+  void limit_step(std::uint32_t job, ElementPairKind kind, const OpenPair& pair, Worker& worker);
+  std::optional<double> limit_of(std::uint32_t job, const OpenPair& pair, Worker& worker);
+  static bool is_before(const StepLimit& p, const StepLimit& q);
+  void start_steps(std::span<const ContactJob> jobs, std::span<const MovingObject> objects,
+                   const ImpactSearchOptions& options, const StepOptions& step);
+  void list_limits();
+  void join_islands();
+  void shorten(std::uint32_t island, const StepLimit& limit);
+  void prove_rounded_positions(const Parallel& parallel);
+  bool moves(std::uint32_t object) const;
+  std::uint32_t island_of(std::uint32_t object) const;
+  std::uint32_t mover_of(std::uint32_t job) const;
+  bool is_between_islands(std::uint32_t job) const;
+  void add_contact(std::uint32_t job, ElementPairKind kind, const OpenPair& pair, const Impact& impact,
+                   Worker& worker);
+  void keep_earlier(std::uint32_t job, const ContinuousContact& contact, Worker& worker);
+  void search_until(double time);
+  bool has_exact_limit() const { return options_.max_exact_bits < most_exact_bits; }
+  /// Whether exact arithmetic may decide the pair.
+  bool may_be_exact(const OpenPair& pair, double separation) const;
+  void drop_excess(std::uint32_t job, std::size_t first, Worker& worker);
+  bool lists_first() const { return options_.listing == ContinuousListing::first; }
+  void keep_first(std::size_t first, std::size_t least, Worker& worker) const;
+  void gather_contacts(const Parallel& parallel);
+  void gather_found(std::size_t job, Worker& worker, const Parallel& parallel);
+
+  Search search_ = Search::all;
+  std::span<const ContactJob> jobs_;
+  std::span<const MovingObject> objects_;
+  ImpactSearchOptions options_;
+  StepOptions step_;
+  StopSignal stop_;
+  std::vector<Worker> workers_;
+  ContactTasks tasks_;
+  ContactLimit limit_;
+  JobOutcomes<1> outcomes_;
+  ImpactSearchOptions last_options_;     // of the last `run`
+  std::vector<std::uint32_t> all_jobs_;  // of `find_earliest`
+  // Safe steps: the first limit of each job, the free parts by job, and by object the islands as a forest.
+  // Each object points to one of its island with a smaller index, or to itself; then it has the island's
+  // step.
+  std::vector<StepLimit> limits_;
+  std::vector<double> free_parts_;
+  std::vector<std::uint32_t> island_;
+  std::vector<SafeStep> safe_;
+  bool ends_early_ = false;  ///< the search needs no limits after the first
+  /// `find_earliest` skips pairs that cannot touch before this time.
+  std::atomic<float> latest_ = 1;
+
+  std::vector<ContactGroup> groups_;
+  std::vector<ContinuousContact> contacts_;
+  FirstContacts first_contacts_;
+  bool is_truncated_ = false;
+};
+
+}  // namespace supple

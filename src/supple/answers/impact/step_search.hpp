@@ -1,0 +1,39 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "answers/impact/impact_pass.hpp"
+#include "answers/moving_objects.hpp"
+#include "answers/object_pairs.hpp"
+#include "octree/volumes/moving_boxes.hpp"
+#include "world/world.hpp"
+
+namespace supple {
+
+/// Searches of a world for the earliest impact and for safe steps. It keeps its memory between searches.
+class StepSearch {
+ public:
+  explicit StepSearch(World& world) : world_(world), pairs_(world) {}
+
+  std::optional<ContinuousContact> earliest_impact(const ImpactSearchOptions& options);
+  SafeStep safe_step(const ImpactSearchOptions& options, const StepOptions& step);
+  /// Ascending by object. The span is valid until the next call.
+  std::span<const ObjectStep> safe_steps(const ImpactSearchOptions& options, const StepOptions& step);
+
+ private:
+  void prepare(const Question& question);
+  void prepare_safe_step(const ImpactSearchOptions& options, const StepOptions& step);
+
+  World& world_;
+  ObjectPairs pairs_;
+  ImpactPass pass_;
+  // By slot.
+  std::vector<MovingObject> objects_;
+  std::vector<VertexWays> ways_;
+  std::vector<std::vector<ChildBoxes>> ways_of_nodes_;
+  std::vector<ObjectStep> steps_;
+};
+
+}  // namespace supple

@@ -1,0 +1,430 @@
+#include "answers/intersection/contact_pass.hpp"
+
+#include <hwy/cache_control.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <utility>
+
+#include "contact/intersection/neighbour_test.hpp"
+#include "contact/intersection/triangle_intersection.hpp"
+
+namespace supple {
+
+namespace {
+
+Vec3d position(const OctreeView& view, std::uint32_t vertex) {
+  const auto at = [&](const auto& vertices) {
+    return Vec3d{vertices[vertex][0], vertices[vertex][1], vertices[vertex][2]};
+  };
+  const TriangleArrays& arrays = view.arrays;
+  return (arrays.doubles.data != nullptr ? at(arrays.doubles) : at(arrays.floats)) + view.translation;
+}
+
+TrianglePoints points_of(const OctreeView& view, std::uint32_t triangle) {
+  const Triangle& corners = view.arrays.triangles[triangle];
+  return {position(view, corners[0]), position(view, corners[1]), position(view, corners[2])};
+}
+
+template <class Visit>
+void for_each_bit(std::uint64_t bits, Visit&& visit) {
+  for (; bits != 0; bits &= bits - 1) visit(static_cast<std::size_t>(std::countr_zero(bits)));
+}
+
+std::uint32_t smallest_common_vertex(const Triangle& p, const Triangle& q) {
+  std::uint32_t smallest = ~std::uint32_t{0};
+  for (const std::uint32_t v : p) {
+    if (std::find(q.begin(), q.end(), v) != q.end()) smallest = std::min(smallest, v);
+  }
+  return smallest;
+}
+
+/// Orders each pair as in the result, so that the exact stage does not depend on the shape of the octrees.
+std::span<const TrianglePair> in_order_of_results(std::span<const TrianglePair> pairs,
+                                                  std::span<const std::uint32_t> triangle_ids,
+                                                  std::span<TrianglePair> ordered) {
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    ordered[k] = pairs[k];
+    if (triangle_ids[pairs[k].a] > triangle_ids[pairs[k].b]) std::swap(ordered[k].a, ordered[k].b);
+  }
+  return ordered.first(pairs.size());
+}
+
+}  // namespace
+
+bool ContactPass::run(std::span<const ContactJob> jobs, std::span<const ContactObject> objects,
+                      std::span<const std::uint64_t> versions, const ContactSearch& search,
+                      std::uint64_t max_contacts, const StopSignal& stop, const Parallel& parallel,
+                      StepStats& stats) {
+  objects_ = objects;
+  // Colliding vertices are not reused from the previous step.
+  const bool is_same_search = search == search_ && !search.colliding_vertices;
+  search_ = search;
+  stop_ = stop;
+  workers_.resize(parallel.worker_count());
+  for (std::size_t w = 0; w < workers_.size(); ++w) {
+    Worker& worker = workers_[w];
+    worker.number = static_cast<std::uint16_t>(w);
+    worker.last_task = no_task;
+    worker.traversal.set_stop(stop);
+    worker.found.clear();
+    worker.details.clear();
+    worker.crossing_count = 0;
+    worker.unfinished.clear();
+    worker.points.clear();
+    worker.leaves.clear();
+    worker.stats = {};
+  }
+  Timer timer;
+  outcomes_.plan(jobs, versions, is_same_search);
+  limit_.start(max_contacts, jobs.size());
+  for (std::uint32_t job = 0; limit_.is_set() && job < jobs.size(); ++job)
+    limit_.add(job, outcomes_.ranges(job)[of_contacts].count);
+  tasks_.plan(outcomes_.open_jobs(), workers_.size(), workers_[0].traversal,
+              [&](std::uint32_t job) { return view_of_job(job); });
+  outcomes_.expect_tasks(tasks_.tasks().size());
+  tasks_.run(parallel, workers_, stop,
+             [&](std::size_t task, std::uint32_t w) { run_task(task, workers_[w]); });
+  add_stats(workers_, timer.lap(), stats);
+  if (stop.stop_requested()) return false;
+  gather_contacts(parallel);
+  truncate(max_contacts);
+  outcomes_.list_groups(groups_, [&](std::uint32_t object) { return objects_[object].id; });
+  gather_colliding_vertices();
+  stats.contacts += contacts_.size();
+  stats.sort_and_events_seconds += timer.lap();
+  return true;
+}
+
+ObjectPairView ContactPass::view_of_job(std::uint32_t job) const {
+  const auto [a, b] = outcomes_.job(job);
+  return a == b ? self_pair_of(objects_[a].view) : pair_of(objects_[a].view, objects_[b].view);
+}
+
+void ContactPass::run_task(std::size_t task, Worker& worker) {
+  const ContactTask& contact_task = tasks_.tasks()[task];
+  const std::uint32_t job = contact_task.job;
+  // With a limit, the tasks of a job that follow each other share a list, so that it is cut where they
+  // together find too much.
+  const bool continues =
+      limit_.is_set() && worker.last_task != no_task && tasks_.tasks()[worker.last_task].job == job;
+  const auto end_of = [](const auto& list) { return Range{static_cast<std::uint32_t>(list.size()), 0}; };
+  const Outcomes::Ranges start = continues ? outcomes_.take(worker.last_task)
+                                           : Outcomes::Ranges{{end_of(worker.found), end_of(worker.points)}};
+  worker.last_task = task;
+  const std::uint32_t first = start[of_contacts].first, first_point = start[of_points].first;
+  const auto set_outcome = [&] {
+    outcomes_.of_task(task) = {worker.number,
+                               {{{first, end_of(worker.found).first - first},
+                                 {first_point, end_of(worker.points).first - first_point}}}};
+  };
+  if (limit_.excludes(ContactLimit::place(job, 0))) return set_outcome();
+  const TaskInput input = input_of_job(job);
+  const auto on_leaves = [&](std::span<const LeafPair> leaf_pairs) {
+    if (!search_.colliding_vertices) return;
+    for (const LeafPair& leaves : leaf_pairs) worker.leaves.push_back({job, leaves});
+  };
+  const auto test = [&](std::span<const TrianglePair> candidates) {
+    test_candidates(input, candidates, worker);
+    if (!limit_.is_set()) return;
+    add_crossing(input, worker.crossing_count, worker);
+    drop_excess(job, first, first_point, worker);
+  };
+  const auto on_candidates = [&](std::span<const TrianglePair> candidates) {
+    if (!search_.contacts) return;
+    Timer timer;
+    test(candidates);
+    worker.stats.exact_seconds += timer.lap();
+  };
+  worker.traversal.find_triangle_pairs(input.pair, contact_task.root, worker.stats.traversal, on_leaves,
+                                       on_candidates);
+  Timer timer;
+  if (search_.contacts && input.pair.same_object && input.object_a.neighbours != nullptr)
+    for_neighbours(input, task, worker, test);
+  add_crossing(input, worker.crossing_count, worker);
+  add_normals(worker);
+  worker.stats.exact_seconds += timer.lap();
+  set_outcome();
+  const std::uint32_t count = outcomes_.of_task(task).ranges[of_contacts].count;
+  limit_.add(job, count - std::min(count, start[of_contacts].count));
+}
+
+ContactPass::TaskInput ContactPass::input_of_job(std::uint32_t job) const {
+  const auto [a, b] = outcomes_.job(job);
+  const ObjectPairView pair = view_of_job(job);
+  return {job,
+          pair,
+          {pair.a.arrays, pair.a.translation},
+          {pair.b.arrays, pair.b.translation},
+          objects_[a].triangle_ids,
+          objects_[b].triangle_ids,
+          objects_[a],
+          objects_[b]};
+}
+
+/// Calls `test` with lists of pairs of triangles that share a vertex and may meet elsewhere. The tasks of a
+/// job share the vertices.
+template <class Test>
+void ContactPass::for_neighbours(const TaskInput& input, std::size_t task, Worker& worker,
+                                 const Test& test) const {
+  constexpr std::size_t most_waiting = 4096;
+  const std::span<const ContactTask> tasks = tasks_.tasks();
+  const auto [first_task, end_task] =
+      std::equal_range(tasks.begin(), tasks.end(), tasks[task],
+                       [](const ContactTask& p, const ContactTask& q) { return p.job < q.job; });
+  const std::size_t count = input.object_a.vertex_count;
+  const auto parts = static_cast<std::size_t>(end_task - first_task);
+  const std::size_t part = task - static_cast<std::size_t>(first_task - tasks.begin());
+  const auto corners = input.pair.a.arrays.triangles;
+  worker.neighbours.clear();
+  const auto pass_on = [&] {
+    test(worker.neighbours);
+    worker.neighbours.clear();
+  };
+  for (std::size_t v = count * part / parts; v < count * (part + 1) / parts && !stop_.stop_requested(); ++v) {
+    const std::span<const std::uint32_t> around =
+        input.object_a.neighbours->around(static_cast<std::uint32_t>(v));
+    for (std::size_t i = 0; i < around.size(); ++i) {
+      for (std::size_t k = i + 1; k < around.size(); ++k) {
+        const Triangle &p = corners[around[i]], &q = corners[around[k]];
+        if (smallest_common_vertex(p, q) != v) continue;
+        if (meet_elsewhere(p, points_of(input.pair.a, around[i]), q, points_of(input.pair.a, around[k])))
+          worker.neighbours.push_back({around[i], around[k]});
+      }
+      if (worker.neighbours.size() >= most_waiting) pass_on();
+    }
+  }
+  pass_on();
+}
+
+/// A vector kernel decides a block of candidates at a time. The exact test decides the few that remain.
+void ContactPass::test_candidates(const TaskInput& input, std::span<const TrianglePair> candidates,
+                                  Worker& worker) const {
+  const bool has_groups = !input.object_a.groups.empty() || !input.object_b.groups.empty();
+  std::array<TrianglePair, pair_filter_capacity> ordered, wanted;
+  for (std::size_t first = 0; first < candidates.size(); first += pair_filter_capacity) {
+    if (stop_.stop_requested()) return;
+    auto part = candidates.subspan(first, std::min(pair_filter_capacity, candidates.size() - first));
+    if (input.pair.same_object) part = in_order_of_results(part, input.ids_a, ordered);
+    if (limit_.excludes_some() || has_groups) {
+      const auto end = std::copy_if(part.begin(), part.end(), wanted.begin(), [&](const TrianglePair& p) {
+        return !limit_.excludes(ContactLimit::place(input.job, input.ids_a[p.a])) &&
+               may_touch_by_groups(input.object_a.groups, input.pair.a.arrays.triangles[p.a],
+                                   input.object_b.groups, input.pair.b.arrays.triangles[p.b]);
+      });
+      part = {wanted.begin(), end};
+      if (part.empty()) continue;
+    }
+    const PairVerdicts verdicts = filter_pairs(input.triangles_a, input.triangles_b, part);
+    for_each_bit(verdicts.crossing, [&](std::size_t k) {
+      worker.crossing[worker.crossing_count++] = part[k];
+      // `add_crossing` reads these ids.
+      hwy::Prefetch(&input.ids_a[part[k].a]);
+      hwy::Prefetch(&input.ids_b[part[k].b]);
+    });
+    if (worker.crossing_count >= CrossingSegments::capacity)
+      add_crossing(input, CrossingSegments::capacity, worker);
+    const std::uint64_t asked = ~std::uint64_t{0} >> (pair_filter_capacity - part.size());
+    for_each_bit(asked & ~(verdicts.apart | verdicts.crossing),
+                 [&](std::size_t k) { test_candidate(input, part[k], worker); });
+  }
+}
+
+/// Adds the first `count` pairs that wait in `crossing` to the contacts.
+void ContactPass::add_crossing(const TaskInput& input, std::size_t count, Worker& worker) const {
+  const std::span<const TrianglePair> pairs = std::span(worker.crossing).first(count);
+  if (search_.contact_points) worker.segments.find(input.triangles_a, input.triangles_b, pairs);
+  for (std::size_t k = 0; k < count; ++k) {
+    const auto [a, b] = pairs[k];
+    if (search_.contact_points && !worker.segments.is_known(k)) {
+      test_candidate(input, pairs[k], worker);
+      continue;
+    }
+    worker.found.push_back({input.ids_a[a], input.ids_b[b], static_cast<std::uint32_t>(worker.details.size()),
+                            worker.number, IntersectionKind::segment, 2});
+    if (!search_.contact_points) continue;
+    worker.details.push_back({worker.segments.normal(k), static_cast<std::uint32_t>(worker.points.size())});
+    const std::array ends{worker.segments.end(0, k), worker.segments.end(1, k)};
+    worker.points.insert(worker.points.end(), ends.begin(), ends.end());
+  }
+  std::copy(worker.crossing.begin() + static_cast<std::ptrdiff_t>(count),
+            worker.crossing.begin() + static_cast<std::ptrdiff_t>(worker.crossing_count),
+            worker.crossing.begin());
+  worker.crossing_count -= count;
+}
+
+void ContactPass::test_candidate(const TaskInput& input, TrianglePair candidate, Worker& worker) const {
+  const TrianglePoints a = points_of(input.pair.a, candidate.a), b = points_of(input.pair.b, candidate.b);
+  const TriangleIntersection shared = intersect_triangles_without_normal(a, b);
+  worker.stats.exact_fallbacks += shared.used_exact_fallback ? 1 : 0;
+  if (!shared.intersects) return;
+  worker.found.push_back({input.ids_a[candidate.a], input.ids_b[candidate.b],
+                          static_cast<std::uint32_t>(worker.details.size()), worker.number, shared.kind,
+                          shared.point_count});
+  if (!search_.contact_points) return;
+  if (worker.unfinished.size() == IntersectingPairs::capacity) add_normals(worker);
+  worker.unfinished_details[worker.unfinished.size()] = static_cast<std::uint32_t>(worker.details.size());
+  worker.unfinished.add(a, b);
+  worker.details.push_back({{}, static_cast<std::uint32_t>(worker.points.size())});
+  const auto points = shared.extreme_points();
+  worker.points.insert(worker.points.end(), points.begin(), points.end());
+}
+
+void ContactPass::add_normals(Worker& worker) {
+  if (worker.unfinished.size() == 0) return;
+  std::array<Vec3d, IntersectingPairs::capacity> normals;
+  separating_normals(worker.unfinished, normals.data());
+  for (std::size_t i = 0; i < worker.unfinished.size(); ++i)
+    worker.details[worker.unfinished_details[i]].normal = normals[i];
+  worker.unfinished.clear();
+}
+
+/// Drops the excess contacts of one task, which begin at `first`: those that follow the first `wanted()`.
+/// Their points, from `first_point` on, go too.
+void ContactPass::drop_excess(std::uint32_t job, std::size_t first, std::size_t first_point, Worker& worker) {
+  if (!limit_.drops_at(worker.found.size() - first)) return;
+  const auto begin = worker.found.begin() + static_cast<std::ptrdiff_t>(first);
+  const auto last = begin + static_cast<std::ptrdiff_t>(limit_.wanted() - 1);
+  std::nth_element(begin, last, worker.found.end(), in_order_of_triangles);
+  limit_.exclude_after(ContactLimit::place(job, last->triangle_a));
+  worker.found.erase(last + 1, worker.found.end());
+  if (!search_.contact_points) return;
+  add_normals(worker);
+  // Each contact of the worker has one item in `details`. In the order of these, items only move down.
+  const std::span kept = std::span(worker.found).subspan(first);
+  std::sort(kept.begin(), kept.end(),
+            [](const FoundContact& p, const FoundContact& q) { return p.details < q.details; });
+  auto next = static_cast<std::uint32_t>(first), point = static_cast<std::uint32_t>(first_point);
+  for (FoundContact& found : kept) {
+    ContactDetails details = worker.details[found.details];
+    const auto points = worker.points.begin() + static_cast<std::ptrdiff_t>(details.first_point);
+    std::copy_n(points, found.point_count, worker.points.begin() + static_cast<std::ptrdiff_t>(point));
+    details.first_point = std::exchange(point, point + found.point_count);
+    worker.details[next] = details;
+    found.details = next++;
+  }
+  worker.details.resize(next);
+  worker.points.resize(point);
+}
+
+std::size_t ContactPass::largest_buffer() const {
+  std::size_t largest = 0;
+  for (const Worker& worker : workers_) largest = std::max(largest, worker.points.capacity());
+  return largest;
+}
+
+/// Jobs are in canonical order. Reused contacts move within the lists; new contacts are sorted and written
+/// between them.
+void ContactPass::gather_contacts(const Parallel& parallel) {
+  outcomes_.place(tasks_.tasks());
+  outcomes_.move_known<of_contacts>(contacts_);
+  outcomes_.move_known<of_points>(points_);
+  parallel.for_ranges(outcomes_.size(), 8, [&](std::size_t begin, std::size_t end, std::uint32_t w) {
+    for (std::size_t job = begin; job < end; ++job) {
+      if (outcomes_.is_known(job)) {
+        renumber_points(job);
+      } else {
+        gather_found(job, workers_[w]);
+      }
+    }
+  });
+  outcomes_.complete();
+}
+
+void ContactPass::renumber_points(std::size_t job) {
+  const std::uint32_t change =
+      outcomes_.ranges(job)[of_points].first - outcomes_.last_ranges(job)[of_points].first;
+  if (change == 0) return;
+  const Range contacts = outcomes_.ranges(job)[of_contacts];
+  for (Contact& contact : std::span(contacts_).subspan(contacts.first, contacts.count))
+    contact.first_point += change;
+}
+
+/// The contacts of a job. They are copied only when several tasks found them.
+std::span<const FoundContact> ContactPass::found_of(std::size_t job, Worker& worker) const {
+  const auto tasks = outcomes_.tasks_of(job);
+  const auto found = [&](const Outcomes::TaskOutcome& task) {
+    const Range contacts = task.ranges[of_contacts];
+    return std::span(workers_[task.worker].found).subspan(contacts.first, contacts.count);
+  };
+  if (tasks.size() == 1) return found(tasks.front());
+  worker.of_job.clear();
+  for (const Outcomes::TaskOutcome& task : tasks) {
+    const auto part = found(task);
+    worker.of_job.insert(worker.of_job.end(), part.begin(), part.end());
+  }
+  return worker.of_job;
+}
+
+void ContactPass::gather_found(std::size_t job, Worker& worker) {
+  const ObjectId a = objects_[outcomes_.job(job).a].id, b = objects_[outcomes_.job(job).b].id;
+  Contact* contact = contacts_.data() + outcomes_.ranges(job)[of_contacts].first;
+  std::uint32_t point = outcomes_.ranges(job)[of_points].first;
+  const std::span<const FoundContact> found_contacts = found_of(job, worker);
+  for (const std::uint32_t i : worker.order.sort(found_contacts)) {
+    const FoundContact& found = found_contacts[i];
+    *contact = {a, b, found.triangle_a, found.triangle_b, found.kind, found.point_count, point, {}};
+    if (search_.contact_points) {
+      const Worker& finder = workers_[found.worker];
+      const ContactDetails& details = finder.details[found.details];
+      contact->normal = details.normal;
+      const ContactPoint* const found_points = finder.points.data() + details.first_point;
+      for (std::size_t k = 0; k < found.point_count; ++k) points_[point++] = found_points[k];
+    }
+    ++contact;
+  }
+}
+
+void ContactPass::truncate(std::uint64_t max_contacts) {
+  is_truncated_ = contacts_.size() > max_contacts;
+  if (!is_truncated_) return;
+  outcomes_.truncate(max_contacts);
+  const auto count = static_cast<std::size_t>(max_contacts);
+  points_.resize(contacts_[count].first_point);
+  contacts_.resize(count);
+}
+
+void ContactPass::gather_colliding_vertices() {
+  vertex_groups_.clear();
+  vertices_.clear();
+  if (!search_.colliding_vertices) return;
+  leaves_.clear();
+  for (const Worker& worker : workers_)
+    leaves_.insert(leaves_.end(), worker.leaves.begin(), worker.leaves.end());
+  // The result is a set of vertices, so the order of leaves within a job does not matter.
+  std::sort(leaves_.begin(), leaves_.end(),
+            [](const CollidingLeaves& p, const CollidingLeaves& q) { return p.job < q.job; });
+  for (auto first = leaves_.begin(); first != leaves_.end();) {
+    const std::uint32_t job = first->job;
+    const auto last =
+        std::find_if(first, leaves_.end(), [&](const auto& leaves) { return leaves.job != job; });
+    const ContactJob pair = outcomes_.job(job);
+    CollidingVertices group{objects_[pair.a].id, objects_[pair.b].id,
+                            static_cast<std::uint32_t>(vertices_.size()), 0, 0};
+    append_marked_vertices(pair.a, {first, last}, false);
+    group.count_a = static_cast<std::uint32_t>(vertices_.size()) - group.first_vertex;
+    append_marked_vertices(pair.b, {first, last}, true);
+    group.count_b = static_cast<std::uint32_t>(vertices_.size()) - group.first_vertex - group.count_a;
+    vertex_groups_.push_back(group);
+    first = last;
+  }
+}
+
+void ContactPass::append_marked_vertices(std::uint32_t object, std::span<const CollidingLeaves> leaves,
+                                         bool side_b) {
+  const ContactObject& owner = objects_[object];
+  marked_.assign(owner.vertex_count, 0);
+  for (const CollidingLeaves& pair : leaves) {
+    const std::uint32_t begin = side_b ? pair.leaves.begin_b : pair.leaves.begin_a;
+    const std::uint32_t end = side_b ? pair.leaves.end_b : pair.leaves.end_a;
+    for (std::uint32_t t = begin; t < end; ++t) {
+      for (const std::uint32_t vertex : owner.view.arrays.triangles[t]) marked_[vertex] = 1;
+    }
+  }
+  for (std::uint32_t vertex = 0; vertex < marked_.size(); ++vertex) {
+    if (marked_[vertex] != 0) vertices_.push_back(vertex);
+  }
+}
+
+}  // namespace supple

@@ -1,0 +1,119 @@
+#include "answers/object_pairs.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "core/float_rounding.hpp"
+#include "geometry/aabb.hpp"
+
+namespace supple {
+namespace {
+
+// When each volume grows by half the separation, or by its margin, the volumes of two objects overlap if the
+// objects come within the separation or the sum of their margins. The growth is rounded up by more than its
+// sums can lose.
+
+double growth(double half_separation) {
+  return half_separation > 0 ? half_separation * (1 + 0x1p-19) + std::numeric_limits<float>::min() : 0;
+}
+
+Aabb grown(const Aabb& box, double by) {
+  if (by == 0 || box.empty()) return box;
+  Aabb result;
+  for (int axis = 0; axis < 3; ++axis) {
+    result.min[axis] = round_down(box.min[axis] - by);
+    result.max[axis] = round_up(box.max[axis] + by);
+  }
+  return result;
+}
+
+BoundingSphere grown(const BoundingSphere& sphere, double by) {
+  if (by == 0 || sphere.empty()) return sphere;
+  return {sphere.center, round_up(sphere.radius + by)};
+}
+
+/// The part of an object in the distance at which elements of two objects are of interest.
+double half_separation_of(const WorldObject& object, const VertexWays* ways, const Question& question) {
+  const double separation = question.impact.impact.min_separation / 2 + object.options.min_separation;
+  if (!question.safe_step) return separation;
+  return separation + kept_share(*question.safe_step) * ways->longest +
+         safe_step_rounding * ways->largest_coordinate;
+}
+
+double growth_of(const WorldObject& object, const VertexWays* ways, const Question& question) {
+  return std::max(question.is_continuous() ? growth(half_separation_of(object, ways, question)) : 0,
+                  question.has_proximity() ? growth(object.options.margin) : 0);
+}
+
+}  // namespace
+
+ObjectPairs::ObjectPairs(const World& world)
+    : world_(world),
+      finder_(world.options.broad_phase, world.options.bounding_volume, world.options.scene_octree) {}
+
+/// Lists the boxes and spheres that the broad phase reads, and the slots where they may have changed.
+void ObjectPairs::list_volumes(const Question& question, std::span<const VertexWays> ways) {
+  const SearchedShapes shapes = question.shapes();
+  const bool is_another_search = searched_ != shapes;
+  const std::size_t slots = world_.slot_count();
+  const std::span<const std::uint64_t> versions = world_.versions();
+  boxes_.resize(slots);
+  spheres_.resize(slots);
+  growths_.resize(slots, 0);
+  versions_.resize(slots, 0);
+  changed_.resize(slots, 0);
+  changed_slots_.clear();
+  for (std::uint32_t slot = 0; slot < slots; ++slot) {
+    const WorldObject* const object = world_.at(slot);
+    const double growth =
+        object != nullptr ? growth_of(*object, ways.empty() ? nullptr : &ways[slot], question) : 0;
+    if (versions_[slot] != versions[slot]) changed_[slot] = 1;
+    versions_[slot] = versions[slot];
+    if (changed_[slot] == 0 && !is_another_search && growths_[slot] == growth) continue;
+    growths_[slot] = growth;
+    const Aabb box = object != nullptr ? grown(object->box(), growth) : Aabb{};
+    const BoundingSphere sphere = object != nullptr ? grown(object->sphere(), growth) : BoundingSphere{};
+    if (changed_[slot] == 0 && box == boxes_[slot] && sphere == spheres_[slot]) continue;
+    changed_[slot] = 1;
+    changed_slots_.push_back(slot);
+    boxes_[slot] = box;
+    spheres_[slot] = sphere;
+  }
+  searched_ = shapes;
+}
+
+void ObjectPairs::find(const Question& question, std::span<const VertexWays> ways) {
+  list_volumes(question, ways);
+  ObjectVolumes volumes;
+  volumes.dirty = changed_slots_;
+  if (world_.options.bounding_volume == BoundingVolume::sphere) {
+    volumes.spheres = spheres_;
+  } else {
+    volumes.boxes = boxes_;
+  }
+  const std::span<const IndexPair> overlapping = finder_.find_pairs(volumes, world_.parallel);
+  std::fill(changed_.begin(), changed_.end(), std::uint8_t{0});
+  pairs_.clear();
+  for (const IndexPair& pair : overlapping) {
+    if (!are_apart(pair) && question.may_pair(world_, pair))
+      pairs_.push_back({world_.id_of(pair.a), world_.id_of(pair.b)});
+  }
+  jobs_.clear();
+  auto pair = pairs_.begin();
+  for (std::uint32_t slot = 0; slot < world_.slot_count(); ++slot) {
+    const WorldObject* const object = world_.at(slot);
+    if (object == nullptr) continue;
+    if (question.tests_itself(world_, slot)) jobs_.push_back({slot, slot});
+    for (; pair != pairs_.end() && pair->a.index == slot; ++pair) jobs_.push_back({slot, pair->b.index});
+  }
+}
+
+/// Whether the oriented boxes or k-DOPs of two objects are apart whose boxes overlap. They do not enclose the
+/// path of an object.
+bool ObjectPairs::are_apart(const IndexPair& pair) const {
+  if (searched_.moving || searched_.near || !is_tested_after_boxes(world_.options.bounding_volume))
+    return false;
+  return object_volumes_apart(pair_of(world_[pair.a].resting_view(), world_[pair.b].resting_view()));
+}
+
+}  // namespace supple

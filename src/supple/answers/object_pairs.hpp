@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "answers/question.hpp"
+#include "broad_phase/pair_finder.hpp"
+#include "world/world.hpp"
+
+namespace supple {
+
+/// The broad phase of one search over a world: the pairs of objects whose volumes overlap, and what the
+/// narrow phase tests. It keeps the volumes between searches, so a search tests only what changed.
+class ObjectPairs {
+ public:
+  explicit ObjectPairs(const World& world);
+
+  /// Call it after `World::refit`. `ways` are those of all slots, for a safe step.
+  void find(const Question& question, std::span<const VertexWays> ways = {});
+
+  /// In canonical order.
+  std::span<const ObjectPair> pairs() const { return pairs_; }
+  /// These pairs and the objects with self-collision, in canonical order.
+  std::span<const ContactJob> jobs() const { return jobs_; }
+  /// By slot: the boxes that the broad phase compared, which may enclose motion, separation and margin.
+  std::span<const Aabb> boxes() const { return boxes_; }
+  const PairFinder& finder() const { return finder_; }
+
+ private:
+  void list_volumes(const Question& question, std::span<const VertexWays> ways);
+  bool are_apart(const IndexPair& pair) const;
+
+  const World& world_;
+  PairFinder finder_;
+  std::vector<ObjectPair> pairs_;
+  std::vector<ContactJob> jobs_;
+  // By slot.
+  std::vector<Aabb> boxes_;
+  std::vector<BoundingSphere> spheres_;
+  std::vector<double> growths_;
+  std::vector<std::uint64_t> versions_;
+  std::vector<std::uint8_t> changed_;  // since the last search that succeeded
+  std::vector<std::uint32_t> changed_slots_;
+  SearchedShapes searched_;
+};
+
+}  // namespace supple

@@ -1,0 +1,125 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "answers/penetration/curve_parts.hpp"
+#include "answers/penetration/curve_side.hpp"
+#include "answers/penetration/parity_sets.hpp"
+#include "answers/penetration/surface_view.hpp"
+#include "queries/feature_name.hpp"
+#include "supple/penetration.hpp"
+#include "supple/result.hpp"
+
+namespace supple {
+
+/// Curves with the lists that they refer to.
+struct CurveLists {
+  std::vector<IntersectionCurve> curves;
+  std::vector<std::uint32_t> contacts;
+  std::vector<Vec3d> points;
+  std::vector<std::uint32_t> enclosed;
+
+  void clear() {
+    curves.clear();
+    contacts.clear();
+    points.clear();
+    enclosed.clear();
+  }
+};
+
+/// The contacts of two objects, or of one object with itself.
+struct CurveInput {
+  SurfaceView a, b;
+  bool same_object = false;
+  const ContactGroup* group = nullptr;
+  const DetectResult* result = nullptr;  ///< with the contacts of the group, and their points
+};
+
+/// Links contacts to curves. Holds the memory of one worker.
+class CurveFinder {
+ public:
+  /// Appends the curves of a group, ordered by their smallest contacts. O(n log n) for n contacts, and the
+  /// vertices that each curve encloses.
+  void find(const CurveInput& input, CurveLists& lists);
+
+ private:
+  /// A point of a contact. Points with the same names are one point of a curve.
+  struct Link {
+    FeatureName a, b;
+    std::uint32_t contact = 0, place = 0;  // of the group
+    bool is_swapped = false;               // within one object: the names are in the other order
+    constexpr auto operator<=>(const Link&) const = default;
+  };
+  /// A contact on its way along a curve: it enters and leaves it at these points.
+  struct Step {
+    std::uint32_t contact = 0, enter = 0, leave = 0;
+  };
+
+  void link_contacts();
+  void add_curve(std::span<const std::uint32_t> members, CurveLists& lists);
+  CurveKind kind_of(std::span<const std::uint32_t> members) const;
+  void walk(std::span<const std::uint32_t> members, CurveKind kind);
+  void turn_around(CurveKind kind);
+  double turn_of_steps() const;
+  void measure(std::span<const std::uint32_t> members, IntersectionCurve& curve);
+  void list_face_normals(std::span<const std::uint32_t> members);
+  Vec3d direction_of_segments(std::span<const std::uint32_t> members) const;
+  void list_normals(std::span<const std::uint32_t> members);
+  bool only_touches(std::uint32_t i) const;
+  double length_of(std::uint32_t i) const;
+  double collect_parts(std::span<const std::uint32_t> members);
+  void find_way_out(std::span<const std::uint32_t> members, IntersectionCurve& curve);
+  std::size_t enclose(std::span<const std::uint32_t> members, bool side_b, CurveLists& lists);
+
+  const Contact& contact(std::uint32_t i) const { return contacts_[i]; }
+  std::uint32_t first_place(std::uint32_t i) const {
+    return contacts_[i].first_point - contacts_[0].first_point;
+  }
+  Vec3d position(std::uint32_t place) const { return points_[place].position; }
+  template <class Function>
+  void for_each_point(std::span<const std::uint32_t> members, Function function) const {
+    for (const std::uint32_t i : members) {
+      for (std::uint32_t k = 0; k < contact(i).point_count; ++k) function(position(first_place(i) + k));
+    }
+  }
+  std::uint32_t degree(std::uint32_t key) const { return first_link_[key + 1] - first_link_[key]; }
+  /// Whether side a of the curve is object b of the contact: only within one object.
+  bool is_turned(std::uint32_t i) const { return is_turned_[i] != 0; }
+
+  CurveInput input_;
+  std::span<const Contact> contacts_;     // of the group
+  std::span<const ContactPoint> points_;  // of these contacts
+
+  std::vector<Link> links_;                         // sorted: by key
+  std::vector<std::uint32_t> first_link_;           // of each key
+  std::vector<std::uint32_t> key_;                  // of each place
+  ParitySets sides_;                                // of the contacts; the sets are the curves
+  std::vector<std::uint8_t> is_one_sided_;          // by smallest contact: the sides of the curve are one
+  std::vector<std::uint8_t> is_turned_;             // by contact
+  std::vector<std::array<Vec3d, 2>> face_normals_;  // of a and b, by contact
+  std::vector<std::uint32_t> members_, first_member_, curve_of_;
+  std::vector<Step> steps_;
+
+  double scale_ = 1;        // brings the points of the curve to about 1
+  Vec3d middle_, of_area_;  // its centroid, scaled, and the direction of its area, or zero
+
+  /// A direction in which a may leave b, with the length of the curve on faces of that normal.
+  struct Direction {
+    std::array<double, 3> rounded{}, normal{};  // the first is equal for normals that differ by rounding
+    double length = 0;
+    constexpr auto operator<=>(const Direction&) const = default;
+  };
+  std::vector<Direction> directions_;
+  std::vector<Vec3d> normals_;                        // from which that of the curve is chosen
+  std::vector<double> ways_;                          // along them
+  std::array<std::vector<std::uint32_t>, 2> behind_;  // vertices of both surfaces
+  CurveSide side_;
+  CurveParts parts_;
+  std::array<std::vector<std::uint32_t>, 2> triangles_;  // of the parts
+  std::array<std::vector<std::uint8_t>, 2> is_listed_;   // by triangle
+};
+
+}  // namespace supple

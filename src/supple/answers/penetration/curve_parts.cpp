@@ -1,0 +1,167 @@
+#include "answers/penetration/curve_parts.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "geometry/vector.hpp"
+
+namespace supple {
+namespace {
+
+/// Twice the area of a triangle across z.
+double turn(const Vec3d& p, const Vec3d& q, const Vec3d& r) {
+  return (q.x - p.x) * (r.y - p.y) - (q.y - p.y) * (r.x - p.x);
+}
+
+/// Whether a corner of b is on the inner side of each edge of a, by more than rounding.
+bool reaches_in(const TrianglePoints& a, const TrianglePoints& b, double slack) {
+  const double area = turn(a[0], a[1], a[2]);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Vec3d &p = a[i], &q = a[(i + 1) % 3];
+    const double least = slack * (std::fabs(q.x - p.x) + std::fabs(q.y - p.y));
+    const bool is_in = std::any_of(b.begin(), b.end(), [&](const Vec3d& r) {
+      const double height = turn(p, q, r);
+      return (area > 0 ? height : -height) > least;
+    });
+    if (!is_in) return false;
+  }
+  return true;
+}
+
+/// A convex polygon: the part of triangle a that lies above or below triangle b.
+class SharedPolygon {
+ public:
+  SharedPolygon(const TrianglePoints& a, const TrianglePoints& b) {
+    std::copy(a.begin(), a.end(), corners_.begin());
+    const double area = turn(b[0], b[1], b[2]);
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Vec3d &p = b[i], &q = b[(i + 1) % 3];
+      cut([&](const Vec3d& r) { return area > 0 ? turn(p, q, r) : -turn(p, q, r); });
+    }
+  }
+  const Vec3d* begin() const { return corners_.data(); }
+  const Vec3d* end() const { return corners_.data() + count_; }
+
+ private:
+  template <class Height>
+  void cut(const Height& height) {
+    std::array<Vec3d, 9> kept;
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < count_; ++i) {
+      const Vec3d &p = corners_[i], &q = corners_[(i + 1) % count_];
+      const double of_p = height(p), of_q = height(q);
+      if (of_p >= 0) kept[count++] = p;
+      if ((of_p > 0 && of_q < 0) || (of_p < 0 && of_q > 0)) kept[count++] = mix(p, q, of_p / (of_p - of_q));
+    }
+    corners_ = kept;
+    count_ = count;
+  }
+
+  std::array<Vec3d, 9> corners_;
+  std::size_t count_ = 3;
+};
+
+/// The longest way in z from a to b; minus infinity when nothing of b is straight ahead.
+double way_between(const TrianglePoints& a, const TrianglePoints& b) {
+  constexpr double none = -std::numeric_limits<double>::infinity();
+  double size = 0;
+  for (std::size_t i = 0; i < 3; ++i)
+    size = std::max({size, largest_magnitude(a[i] - a[0]), largest_magnitude(b[i] - b[0])});
+  const double slack = 0x1p-40 * size, area_a = turn(a[0], a[1], a[2]), area_b = turn(b[0], b[1], b[2]);
+  if (!(std::min(std::fabs(area_a), std::fabs(area_b)) > slack * size)) return none;
+  if (!reaches_in(a, b, slack) || !reaches_in(b, a, slack)) return none;
+  // The heights stay within those of the corners, so that no way exceeds the bound of a node.
+  const double lowest_a = std::min({a[0].z, a[1].z, a[2].z});
+  const auto [low, high] = std::minmax({b[0].z, b[1].z, b[2].z});
+  double longest = none;
+  for (const Vec3d& p : SharedPolygon(a, b)) {
+    const double along_1 = turn(b[2], b[0], p) / area_b, along_2 = turn(b[0], b[1], p) / area_b;
+    const double height = b[0].z + along_1 * (b[1].z - b[0].z) + along_2 * (b[2].z - b[0].z);
+    longest = std::max(longest, std::clamp(height, low, high) - std::max(p.z, lowest_a));
+  }
+  return longest;
+}
+
+}  // namespace
+
+double CurveParts::way_along(const Vec3d& normal) {
+  const Vec3d size = absolute(normal);
+  const bool x_is_least = size.x <= size.y && size.x <= size.z;
+  const Vec3d axis = x_is_least ? Vec3d{1, 0, 0} : size.y <= size.z ? Vec3d{0, 1, 0} : Vec3d{0, 0, 1};
+  const Vec3d across = cross(normal, axis), u = across / norm(across), v = cross(normal, u);
+  for (std::size_t side = 0; side < 2; ++side) {
+    projected_[side].clear();
+    for (TrianglePoints triangle : triangles_[side]) {
+      for (Vec3d& p : triangle) p = {dot(u, p), dot(v, p), dot(normal, p)};
+      Box box{triangle[0], triangle[0]};
+      for (const Vec3d& p : triangle) box.include({p, p});
+      projected_[side].push_back({triangle, box});
+    }
+    if (projected_[side].empty()) return 0;
+    build(side);
+  }
+  double longest = 0;
+  const auto push = [&](std::uint32_t a, std::uint32_t b) {
+    const Box &of_a = nodes_[0][a].box, &of_b = nodes_[1][b].box;
+    const double bound = of_b.max.z - of_a.min.z;
+    const bool overlap = of_a.min.x < of_b.max.x && of_b.min.x < of_a.max.x && of_a.min.y < of_b.max.y &&
+                         of_b.min.y < of_a.max.y;
+    if (overlap && bound > longest) stack_.push_back({a, b, bound});
+  };
+  stack_.clear();
+  push(0, 0);
+  while (!stack_.empty()) {
+    const auto [a, b, bound] = stack_.back();
+    stack_.pop_back();
+    if (bound <= longest) continue;
+    const Node &of_a = nodes_[0][a], &of_b = nodes_[1][b];
+    const std::size_t first = stack_.size();
+    if (of_a.child == 0 && of_b.child == 0) {
+      for (std::uint32_t i = of_a.first; i < of_a.last; ++i) {
+        for (std::uint32_t k = of_b.first; k < of_b.last; ++k)
+          longest = std::max(longest, way_between(projected_[0][i].corners, projected_[1][k].corners));
+      }
+    } else if (of_b.child == 0 || (of_a.child != 0 && of_a.last - of_a.first >= of_b.last - of_b.first)) {
+      push(of_a.child, b);
+      push(of_a.child + 1, b);
+    } else {
+      push(a, of_b.child);
+      push(a, of_b.child + 1);
+    }
+    if (stack_.size() == first + 2 && stack_[first].bound > stack_[first + 1].bound)
+      std::swap(stack_[first], stack_[first + 1]);
+  }
+  return longest;
+}
+
+/// A binary tree over the projected triangles of a side.
+void CurveParts::build(std::size_t side) {
+  nodes_[side].clear();
+  nodes_[side].push_back({{}, 0, static_cast<std::uint32_t>(projected_[side].size()), 0});
+  for (std::uint32_t node = 0; node < nodes_[side].size(); ++node) split(side, node);
+}
+
+void CurveParts::split(std::size_t side, std::uint32_t number) {
+  constexpr std::uint32_t leaf_size = 2;
+  Node node = nodes_[side][number];
+  auto& triangles = projected_[side];
+  node.box = triangles[node.first].box;
+  for (std::uint32_t i = node.first + 1; i < node.last; ++i) node.box.include(triangles[i].box);
+  if (node.last - node.first > leaf_size) {
+    const Vec3d size = node.box.max - node.box.min;
+    const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+    const std::uint32_t middle = node.first + (node.last - node.first) / 2;
+    const auto at = [&](std::uint32_t i) { return triangles.begin() + static_cast<std::ptrdiff_t>(i); };
+    std::nth_element(at(node.first), at(middle), at(node.last),
+                     [axis](const Projected& p, const Projected& q) {
+                       return p.box.min[axis] + p.box.max[axis] < q.box.min[axis] + q.box.max[axis];
+                     });
+    node.child = static_cast<std::uint32_t>(nodes_[side].size());
+    nodes_[side].push_back({{}, node.first, middle, 0});
+    nodes_[side].push_back({{}, middle, node.last, 0});
+  }
+  nodes_[side][number] = node;
+}
+
+}  // namespace supple

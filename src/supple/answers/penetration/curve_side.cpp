@@ -1,0 +1,166 @@
+#include "answers/penetration/curve_side.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+#include "geometry/vector.hpp"
+
+namespace supple {
+
+void CurveSide::start(std::size_t vertex_count) {
+  for (const std::uint32_t v : corners_) corner_of_[v] = none;
+  corner_of_.resize(std::max(corner_of_.size(), vertex_count), none);
+  marks_.resize(std::max(marks_.size(), vertex_count), 0);
+  crossings_.clear();
+  corners_.clear();
+  triangles_.clear();
+  behind_ = {};
+}
+
+void CurveSide::add_triangle(const Triangle& triangle) {
+  Triangle corners;
+  for (std::size_t k = 0; k < 3; ++k) {
+    std::uint32_t& corner = corner_of_[triangle[k]];
+    if (corner == none) {
+      // In this order, `start` finds all of them also after memory ran out.
+      corners_.push_back(triangle[k]);
+      corner = static_cast<std::uint32_t>(corners_.size() - 1);
+    }
+    corners[k] = corner;
+  }
+  triangles_.push_back(corners);
+}
+
+void CurveSide::add_crossing(std::uint32_t v, std::uint32_t w, std::uint32_t key) {
+  const auto [corner, other] = std::minmax(corner_of_[v], corner_of_[w]);
+  crossings_.push_back({corner, other, key});
+}
+
+std::span<const std::uint32_t> CurveSide::enclose(const SurfaceView& surface, const Direction& direction,
+                                                  std::size_t most_behind) {
+  if (!list_cuts() || !color_corners() || !start_flood()) return {};
+  std::optional<std::size_t> behind = color_behind(surface, direction);
+  const std::vector<std::uint32_t>* const smaller = flood(surface, behind, most_behind);
+  if (smaller == nullptr) return {};
+  behind_ = behind ? flooded_[*behind] : *smaller;
+  return *smaller;
+}
+
+bool CurveSide::is_cut(std::uint32_t corner, std::uint32_t other) const {
+  if (other < corner) std::swap(corner, other);
+  const auto begin = cuts_.begin() + first_cut_[corner], end = cuts_.begin() + first_cut_[corner + 1];
+  return std::find(begin, end, other) != end;
+}
+
+/// Lists the edges that the curve crosses an odd number of times. False when there are none.
+bool CurveSide::list_cuts() {
+  first_crossing_.assign(corners_.size() + 2, 0);
+  for (const Crossing& crossing : crossings_) ++first_crossing_[crossing.corner + 2];
+  std::partial_sum(first_crossing_.begin(), first_crossing_.end(), first_crossing_.begin());
+  sorted_.resize(crossings_.size());
+  for (const Crossing& crossing : crossings_) sorted_[first_crossing_[crossing.corner + 1]++] = crossing;
+  cuts_.clear();
+  first_cut_.assign(1, 0);
+  for (std::size_t c = 0; c < corners_.size(); ++c) {
+    const auto begin = sorted_.begin() + first_crossing_[c], last = sorted_.begin() + first_crossing_[c + 1];
+    std::sort(begin, last);
+    const auto end = std::unique(begin, last);
+    for (auto first = begin, next = begin; first != end; first = next) {
+      next =
+          std::find_if(first, end, [&](const Crossing& crossing) { return crossing.other != first->other; });
+      if ((next - first) % 2 != 0) cuts_.push_back(first->other);
+    }
+    first_cut_.push_back(static_cast<std::uint32_t>(cuts_.size()));
+  }
+  return !cuts_.empty();
+}
+
+/// Gives corners on the same side of the curve the same colour. False when that is impossible.
+bool CurveSide::color_corners() {
+  colors_.start(corners_.size());
+  for (const Triangle& triangle : triangles_) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t c = triangle[k], d = triangle[(k + 1) % 3];
+      if (c != d && !colors_.join(c, d, is_cut(c, d))) return false;
+    }
+  }
+  const auto first = std::min_element(corners_.begin(), corners_.end()) - corners_.begin();
+  is_opposite_to_first_ = colors_.find(static_cast<std::uint32_t>(first)).is_opposite;
+  return true;
+}
+
+/// The colour of the corners that are behind. Nothing when there is no direction, or hardly a difference.
+std::optional<std::size_t> CurveSide::color_behind(const SurfaceView& surface, const Direction& direction) {
+  std::array<double, 2> sums{}, counts{};
+  double extent = 0;
+  for (std::uint32_t c = 0; c < corners_.size(); ++c) {
+    const std::size_t color = color_of(c);
+    const Vec3d way = direction.scale * surface.position(corners_[c]) - direction.from;
+    sums[color] += dot(direction.towards_behind, way);
+    counts[color] += 1;
+    extent = std::max(extent, largest_magnitude(way));
+  }
+  if (counts[0] == 0 || counts[1] == 0) return {};
+  const double difference = sums[0] / counts[0] - sums[1] / counts[1];
+  if (!(std::fabs(difference) > 0x1p-7 * extent)) return {};
+  return difference > 0 ? 0 : 1;
+}
+
+/// Marks the corners by their colours. False when the curve has several pieces on this surface.
+bool CurveSide::start_flood() {
+  constexpr std::uint32_t almost_all = 0xfffffff0;
+  if (last_mark_ > almost_all) {
+    std::fill(marks_.begin(), marks_.end(), 0);
+    last_mark_ = 0;
+  }
+  last_mark_ += 2;
+  for (auto& flooded : flooded_) flooded.clear();
+  for (std::uint32_t c = 0; c < corners_.size(); ++c) {
+    if (colors_.find(c).root != 0) return false;
+    const std::size_t color = color_of(c);
+    marks_[corners_[c]] = mark_of(color);
+    flooded_[color].push_back(corners_[c]);
+  }
+  return true;
+}
+
+/// Floods both sides of the curve in turns, without crossing it, until one of them is complete, and then the
+/// one that is behind; `behind` loses its value when that side has more than `most_behind` vertices and is
+/// not the smaller one. Returns the smaller side; null when they are the same side.
+const std::vector<std::uint32_t>* CurveSide::flood(const SurfaceView& surface,
+                                                   std::optional<std::size_t>& behind,
+                                                   std::size_t most_behind) {
+  const std::vector<std::uint32_t>* smaller = nullptr;
+  for (std::size_t next = 0;; ++next) {
+    for (std::size_t color = 0; color < 2; ++color) {
+      if (smaller == nullptr && next == flooded_[color].size()) {
+        smaller = &flooded_[color];
+        // When both are equal, the one behind counts as the smaller one.
+        if (behind && flooded_[*behind].size() == next) smaller = &flooded_[*behind];
+      }
+      if (smaller != nullptr && behind && smaller != &flooded_[*behind] &&
+          flooded_[*behind].size() > most_behind)
+        behind.reset();
+      if (smaller != nullptr && (!behind || next >= flooded_[*behind].size())) return smaller;
+      if (next >= flooded_[color].size()) continue;
+      const std::uint32_t v = flooded_[color][next];
+      for (const std::uint32_t t : surface.around->around(v)) {
+        for (const std::uint32_t w : surface.triangle(t)) {
+          if (marks_[w] == mark_of(color)) continue;
+          const bool is_other = marks_[w] == mark_of(1 - color);
+          if (is_other) {
+            const std::uint32_t c = corner_of_[v], d = corner_of_[w];
+            if (c == none || d == none || !is_cut(c, d)) return nullptr;
+            continue;
+          }
+          marks_[w] = mark_of(color);
+          flooded_[color].push_back(w);
+        }
+      }
+    }
+  }
+}
+
+}  // namespace supple

@@ -1,0 +1,124 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "answers/contact_tasks.hpp"
+#include "answers/job_outcomes.hpp"
+#include "answers/penetration/curve_finder.hpp"
+#include "answers/penetration/depth_search.hpp"
+#include "answers/penetration/surface_view.hpp"
+#include "core/parallel.hpp"
+#include "core/stop_signal.hpp"
+#include "queries/object_queries.hpp"
+#include "supple/options.hpp"
+#include "supple/penetration.hpp"
+#include "supple/result.hpp"
+
+namespace supple {
+
+/// The data of an object that the pass reads.
+struct PenetratedObject {
+  QueriedObject queried;
+  SurfaceView surface;
+  bool is_solid = false;
+};
+
+/// Finds what objects that intersect or contain each other do: vertices inside solids, contained parts, and
+/// curves.
+///
+/// Vertices inside b: an edge of a that has no point in common with b has both ends inside b, or both
+/// outside. The contacts name all edges and vertices of a that have such a point (`intersect_triangles` lists
+/// every extreme point, and a face of a convex set has an extreme point of it). So the vertices that other
+/// edges connect are alike, and one query decides for all of them. If such a set holds no corner of a
+/// triangle with a contact, it is a whole connected part of a. So one query for each connected part without
+/// contacts, and one for each set of corners of triangles with contacts, leave no vertex out. Only sets that
+/// are inside are walked through.
+///
+/// The pass reuses what it found for two objects that have not moved since the previous run. It keeps its
+/// memory between steps.
+class PenetrationPass {
+ public:
+  /// `jobs` ascend and contain indices of `objects`; `versions` are those of the objects' positions; `result`
+  /// has all contacts of the jobs. Returns false when it was stopped; the lists are then not valid.
+  bool run(std::span<const ContactJob> jobs, std::span<const PenetratedObject> objects,
+           std::span<const std::uint64_t> versions, const DetectResult& result, PenetrationDepths depths,
+           const StopSignal& stop, const Parallel& parallel);
+
+  std::span<const PenetrationGroup> groups() const { return groups_; }
+  std::span<const Penetration> penetrations() const { return penetrations_; }
+  std::span<const std::uint32_t> vertices_on_surface() const { return on_surface_; }
+  std::span<const ContainedPart> contained_parts() const { return parts_; }
+  const CurveLists& curves() const { return curves_; }
+
+ private:
+  /// The vertices of one object, `inner`, inside another one, and the curves of the two. The curves belong to
+  /// the task with the smaller object inside.
+  struct Task {
+    std::uint32_t inner = 0, outer = 0;
+    const ContactGroup* group = nullptr;  // of both
+  };
+  /// The lists of the result in `JobOutcomes`. The contacts of the curves of a task are those of its group,
+  /// in another order, so both have the same range of their lists.
+  enum List : std::size_t {
+    of_penetrations,
+    of_surface,
+    of_parts,
+    of_curves,
+    of_curve_contacts,
+    of_curve_points,
+    of_enclosed,
+    list_count
+  };
+  using Outcomes = JobOutcomes<list_count>;
+  struct Worker {
+    CurveFinder curve_finder;
+    ObjectQueries queries;
+    DepthSearch depth_search;
+    ClosestPoints closest_points;
+    CurveLists curves;
+    std::vector<std::uint32_t> inside, on_surface;
+    std::vector<ContainedPart> parts;
+    // Scratch of one task.
+    std::vector<std::array<std::uint32_t, 2>> cut_edges;
+    std::vector<std::uint32_t> corners, triangles;
+    std::vector<std::uint32_t> corner_of;  // by vertex: its place in `corners`, if it is there
+    ParitySets sets;
+    std::vector<Containment> state;         // by set
+    std::vector<std::uint8_t> marks;        // by vertex; zero between tasks
+    bool has_marks = false;                 // a task did not end, because memory ran out
+    std::vector<std::uint8_t> has_contact;  // by part
+  };
+
+  void list_pairs(std::span<const ContactJob> jobs);
+  Task task_of(ContactJob pair, const DetectResult& result) const;
+  void run_task(const Task& task, const DetectResult& result, Worker& worker) const;
+  static std::array<std::uint32_t, list_count> sizes_of(const Worker& worker);
+  void find_inside(const Task& task, const DetectResult& result, Worker& worker) const;
+  void keep_deepest(const Task& task, std::size_t first_inside, Worker& worker) const;
+  void collect_touched(const Task& task, const DetectResult& result, Worker& worker) const;
+  void gather();
+  void move_known_curves(std::size_t i);
+  void gather_found(std::size_t i);
+  void move_ranges(std::size_t i, const Outcomes::Ranges& from);
+  bool find_depths(const StopSignal& stop, const Parallel& parallel);
+  void find_depths(std::size_t begin, std::size_t end, Worker& worker);
+
+  std::span<const PenetratedObject> objects_;
+  PenetrationDepths depths_ = PenetrationDepths::all;
+  std::vector<Worker> workers_;
+  std::vector<ContactJob> pairs_;  // inner and outer object, ascending
+  std::vector<ContactTask> tasks_;
+  Outcomes outcomes_;
+  std::vector<std::uint32_t> new_penetrations_;  // whose depths are not known
+
+  std::vector<PenetrationGroup> groups_;
+  std::vector<Penetration> penetrations_;
+  std::vector<std::uint32_t> on_surface_;
+  std::vector<ContainedPart> parts_;
+  CurveLists curves_;
+};
+
+}  // namespace supple

@@ -1,0 +1,400 @@
+#include "answers/proximity/proximity_pass.hpp"
+
+#include <algorithm>
+#include <span>
+#include <utility>
+
+#include "core/sort_once.hpp"
+#include "core/timer.hpp"
+
+namespace supple {
+namespace {
+
+constexpr std::size_t block_size = PointsBlock::capacity;
+constexpr std::size_t least_merge = 65536;  // candidates, 6 MB
+constexpr std::uint32_t no_job = ~std::uint32_t{0};
+
+template <std::size_t count>
+ElementIds element_of(const MovingObject& object, std::span<const std::uint32_t, count> vertices,
+                      std::uint32_t triangle) {
+  std::array<std::uint32_t, count> ids;
+  for (std::size_t i = 0; i < count; ++i) ids[i] = object.vertex_ids[vertices[i]];
+  return ElementIds(ids, triangle);
+}
+
+PairElement with_points_of(const MovingObject& object, const ElementIds& element,
+                           const std::uint32_t* vertices) {
+  std::array<Vec3d, 3> points{};
+  for (std::size_t i = 0; i < element.count; ++i) points[i] = placed((*object.end)[vertices[i]], object);
+  return {element, points};
+}
+
+/// Sets one vertex of each pair.
+void set_points(const MovingObject& object, std::span<const std::array<std::uint32_t, 4>> vertices,
+                std::size_t vertex, PointsBlock& block) {
+  const auto set = [&](const auto& positions) {
+    for (std::size_t k = 0; k < vertices.size(); ++k) {
+      const auto* const p = positions[vertices[k][vertex]];
+      block.set(vertex, k, placed(Vec3d{p[0], p[1], p[2]}, object));
+    }
+  };
+  if (object.end->is_double())
+    set(object.end->doubles());
+  else
+    set(object.end->floats());
+}
+
+/// Renumbers the vertices of features: vertex i becomes `places[i]`.
+ClosestFeatures renumbered(ClosestFeatures features, const std::array<std::uint8_t, 4>& places) {
+  using Kind = ClosestFeatures::Kind;
+  if (features.kind == Kind::interiors) return features;
+  features.vertex = places[features.vertex];
+  features.edge[0] = places[features.edge[0]];
+  if (features.kind == Kind::vertices) {
+    if (features.vertex > features.edge[0]) std::swap(features.vertex, features.edge[0]);
+    return features;
+  }
+  features.edge[1] = places[features.edge[1]];
+  if (features.edge[0] > features.edge[1]) std::swap(features.edge[0], features.edge[1]);
+  return features;
+}
+
+FeaturePair feature_pair_of(const ClosestFeatures& features, bool are_edges) {
+  using Kind = ClosestFeatures::Kind;
+  if (features.kind == Kind::vertices) return FeaturePair::vertices;
+  if (features.kind == Kind::vertex_edge) return FeaturePair::vertex_edge;
+  return are_edges ? FeaturePair::edges : FeaturePair::vertex_face;
+}
+
+/// The indices of the points that `compute_distance_numbers` needs.
+std::array<std::uint8_t, 4> points_of_features(const ClosestFeatures& features) {
+  if (features.kind == ClosestFeatures::Kind::interiors) return {0, 1, 2, 3};
+  return {features.vertex, features.edge[0], features.edge[1], 0};
+}
+
+}  // namespace
+
+bool ProximityPass::run(std::span<const ContactJob> jobs, std::span<const MovingObject> objects,
+                        std::span<const std::uint64_t> versions, const ProximitySearch& search,
+                        std::uint64_t max_pairs, const StopSignal& stop, const Parallel& parallel,
+                        StepStats& stats) {
+  Timer timer;
+  jobs_ = jobs;
+  objects_ = objects;
+  stop_ = stop;
+  outcomes_.plan(jobs, versions, search == search_);
+  search_ = search;
+  max_pairs_ = max_pairs;
+  workers_.resize(parallel.worker_count());
+  Found none;
+  none.job = no_job;
+  for (Worker& worker : workers_) {
+    worker.traversal.set_stop(stop);
+    worker.found.clear();
+    worker.runs.clear();
+    worker.run_first = 0;
+    worker.merge_at = least_merge;
+    worker.is_full = false;
+    worker.recent.fill(none);
+    worker.stats = {};
+  }
+  tasks_.plan(outcomes_.open_jobs(), workers_.size(), workers_[0].traversal,
+              [&](std::uint32_t job) { return view_of_job(job); });
+  outcomes_.expect_tasks(tasks_.tasks().size());
+  tasks_.run(parallel, workers_, stop, [&](std::size_t task, std::uint32_t w) { run_task(task, w); });
+  add_stats(workers_, timer.lap(), stats);
+  for (Worker& worker : workers_) worker.stats = {};
+  if (stop.stop_requested()) return false;
+  sort_found(parallel);
+  outcomes_.place(tasks_.tasks());
+  outcomes_.move_known<0>(pairs_);
+  stats.sort_and_events_seconds += timer.lap();
+  compute_found(parallel);
+  for (const Worker& worker : workers_) stats.exact_fallbacks += worker.stats.exact_fallbacks;
+  stats.exact_seconds += timer.lap();
+  outcomes_.complete();
+  is_truncated_ = pairs_.size() > max_pairs;
+  if (is_truncated_) {
+    outcomes_.truncate(max_pairs);
+    pairs_.resize(static_cast<std::size_t>(max_pairs));
+  }
+  outcomes_.list_groups(groups_, [&](std::uint32_t object) { return objects_[object].id; });
+  stats.proximity_pairs += pairs_.size();
+  stats.sort_and_events_seconds += timer.lap();
+  return true;
+}
+
+ObjectPairView ProximityPass::view_of_job(std::uint32_t job) const {
+  const MovingObject& a = objects_[jobs_[job].a];
+  const MovingObject& b = objects_[jobs_[job].b];
+  const double reach = reach_of_margins(a.margin, b.margin);
+  ObjectPairView pair = &a == &b ? moving_self_pair_of(a.view, reach) : moving_pair_of(a.view, b.view, reach);
+  pair.kinds = search_.kinds;
+  return pair;
+}
+
+void ProximityPass::run_task(std::size_t task, std::uint32_t w) {
+  const ContactTask& contact_task = tasks_.tasks()[task];
+  const std::uint32_t job = contact_task.job;
+  Worker& worker = workers_[w];
+  outcomes_.of_task(task) = {};  // `sort_found` counts the pairs
+  if (worker.is_full && worker.last.job < job) return;
+  worker.traversal.find_element_pairs(view_of_job(job), contact_task.root, worker.stats.traversal,
+                                      [&](ElementPairKind kind, std::span<const ElementPair> candidates) {
+                                        Timer timer;
+                                        test_candidates(job, kind, candidates, worker);
+                                        worker.stats.exact_seconds += timer.lap();
+                                      });
+  const auto end = static_cast<std::uint32_t>(worker.found.size());
+  if (worker.run_first < end) worker.runs.push_back({job, worker.run_first, end});
+  worker.run_first = end;
+}
+
+void ProximityPass::test_candidates(std::uint32_t job, ElementPairKind kind,
+                                    std::span<const ElementPair> candidates, Worker& worker) {
+  const MovingObject& a = objects_[jobs_[job].a];
+  const MovingObject& b = objects_[jobs_[job].b];
+  const auto objects = objects_of(kind, a, b);
+  const bool are_edges = kind == ElementPairKind::edge_edge;
+  const double reach = reach_of_margins(a.margin, b.margin);
+  std::array<std::array<std::uint32_t, 4>, block_size> vertices;
+  std::array<FeatureCode, block_size> codes;
+  for (; !candidates.empty() && !stop_.stop_requested();
+       candidates = candidates.subspan(std::min(block_size, candidates.size()))) {
+    const auto part = candidates.first(std::min(block_size, candidates.size()));
+    for (std::size_t k = 0; k < part.size(); ++k) vertices[k] = vertices_of(kind, part[k], a, b);
+    for (std::size_t i = 0; i < 4; ++i)
+      set_points(*objects[i], std::span(vertices).first(part.size()), i, worker.block);
+    classify(worker.block, part.size(), are_edges, reach, codes.data());
+    for (std::size_t k = 0; k < part.size(); ++k) {
+      if (codes[k] == FeatureCode::apart || !may_touch_by_groups(objects, vertices[k], are_edges)) continue;
+      add(job, kind, part[k], codes[k], worker);
+    }
+  }
+}
+
+void ProximityPass::add(std::uint32_t job, ElementPairKind kind, ElementPair candidate, FeatureCode code,
+                        Worker& worker) {
+  const bool are_edges = kind == ElementPairKind::edge_edge;
+  const Elements elements = elements_of(job, kind, candidate);
+  const auto& [first, second, vertices, is_swapped] = elements;
+  std::optional<ClosestFeatures> features;
+  const bool is_extra = first.count + second.count < 4;  // an edge or a point of no triangle
+  if (code == FeatureCode::unknown || is_extra) {
+    const auto [first_points, second_points] = with_points(job, kind, elements);
+    const double reach = reach_of_margins(objects_[jobs_[job].a].margin, objects_[jobs_[job].b].margin);
+    bool used_exact = false;
+    features = closest_features_within(points_of(first_points, second_points), reach, used_exact);
+    worker.stats.exact_fallbacks += used_exact ? 1 : 0;
+    if (!features) return;
+  } else {
+    std::array<std::uint8_t, 4> places{};
+    for (std::uint8_t i = 0; i < first.count; ++i) places[first.corners[i] + (is_swapped ? 2u : 0u)] = i;
+    for (std::uint8_t i = 0; i < second.count; ++i)
+      places[second.corners[i] + (is_swapped ? 0u : first.count)] =
+          static_cast<std::uint8_t>(first.count + i);
+    features = renumbered(features_of_code(code, are_edges), places);
+  }
+  keep({job, name_of_pair(first, second, *features, order_of(job, kind), search_.listing), kind, *features,
+        candidate},
+       worker);
+}
+
+/// Adds the candidate, unless it is one of the recent ones again or comes after all pairs of the result.
+void ProximityPass::keep(const Found& found, Worker& worker) const {
+  if (worker.is_full && worker.last < found) return;
+  const auto& [kind_a, kind_b, element_a, element_b] = found.name;
+  const std::uint32_t hash = (element_a[0] * 31 + element_a[1]) * 31 + element_b[0] * 7 + element_b[1];
+  Found& recent = worker.recent[hash % worker.recent.size()];
+  if (recent == found) return;
+  recent = found;
+  worker.found.push_back(found);
+  if (worker.found.size() >= worker.merge_at) merge(worker);
+}
+
+/// Keeps one candidate of each name, of the first `max_pairs_` names and one more, which shows that there are
+/// more.
+void ProximityPass::merge(Worker& worker) const {
+  std::vector<Found>& found = worker.found;
+  sort_once(found);
+  if (found.size() > max_pairs_) {
+    found.resize(static_cast<std::size_t>(max_pairs_) + 1);
+    worker.is_full = true;
+    worker.last = found.back();
+  }
+  worker.runs.clear();
+  for (std::uint32_t i = 0; i < found.size(); ++i) {
+    if (i == 0 || found[i].job != found[i - 1].job) worker.runs.push_back({found[i].job, i, i});
+    worker.runs.back().end = i + 1;
+  }
+  worker.run_first = static_cast<std::uint32_t>(found.size());
+  worker.merge_at = std::max(least_merge, 2 * found.size());
+}
+
+std::size_t ProximityPass::largest_buffer() const {
+  std::size_t largest = 0;
+  for (const Worker& worker : workers_) largest = std::max(largest, worker.found.capacity());
+  return largest;
+}
+
+PairOrder ProximityPass::order_of(std::uint32_t job, ElementPairKind kind) const {
+  if (jobs_[job].a == jobs_[job].b) return PairOrder::by_names;
+  return kind == ElementPairKind::face_vertex ? PairOrder::swapped : PairOrder::given;
+}
+
+ProximityPass::Elements ProximityPass::elements_of(std::uint32_t job, ElementPairKind kind,
+                                                   ElementPair candidate) const {
+  const MovingObject& a = objects_[jobs_[job].a];
+  const MovingObject& b = objects_[jobs_[job].b];
+  const auto objects = objects_of(kind, a, b);
+  auto vertices = vertices_of(kind, candidate, a, b);
+  const std::span<const std::uint32_t, 4> of_pair(vertices);
+  if (kind == ElementPairKind::edge_edge) {
+    const auto larger_first = [&](const MovingObject& object, std::size_t i) {
+      const auto [low, high] =
+          std::minmax({object.vertex_ids[vertices[i]], object.vertex_ids[vertices[i + 1]]});
+      return std::uint64_t{high} << 32 | low;
+    };
+    const bool is_swapped = &a == &b && larger_first(b, 2) < larger_first(a, 0);
+    if (is_swapped) vertices = {vertices[2], vertices[3], vertices[0], vertices[1]};
+    return {element_of(a, of_pair.first<2>(), 0), element_of(b, of_pair.last<2>(), 0), vertices, is_swapped};
+  }
+  // A vertex stands before a face here.
+  const std::uint32_t triangle =
+      kind == ElementPairKind::vertex_face ? b.triangle_ids[candidate.b] : a.triangle_ids[candidate.a];
+  const ElementIds vertex = element_of(*objects[0], of_pair.first<1>(), 0);
+  const MovingObject& other = *objects[3];
+  if (triangle < other.face_count)
+    return {vertex, element_of(other, of_pair.last<3>(), triangle), vertices, false};
+  if (vertices[1] == vertices[2])
+    return {vertex, element_of(other, of_pair.subspan<1, 1>(), 0), vertices, false};
+  return {vertex, element_of(other, of_pair.subspan<1, 2>(), 0), vertices, false};
+}
+
+/// Both elements with their positions.
+std::array<PairElement, 2> ProximityPass::with_points(std::uint32_t job, ElementPairKind kind,
+                                                      const Elements& elements) const {
+  const auto objects = objects_of(kind, objects_[jobs_[job].a], objects_[jobs_[job].b]);
+  const std::uint32_t* const vertices = elements.vertices.data();
+  return {with_points_of(*objects[0], elements.first, vertices),
+          with_points_of(*objects[3], elements.second, vertices + elements.first.count)};
+}
+
+/// Computes the pairs of all open jobs.
+void ProximityPass::compute_found(const Parallel& parallel) {
+  blocks_.clear();
+  for (std::uint32_t open = 0; open < outcomes_.open_jobs().size(); ++open) {
+    for (std::size_t first = 0; first < sorted_[open].size(); first += block_size)
+      blocks_.push_back({open, static_cast<std::uint32_t>(first)});
+  }
+  constexpr std::size_t grain = 8;
+  parallel.for_ranges(blocks_.size(), grain, [&](std::size_t begin, std::size_t end, std::uint32_t w) {
+    for (const auto& [open, first] : std::span(blocks_).subspan(begin, end - begin)) {
+      const std::uint32_t job = outcomes_.open_jobs()[open];
+      const auto rest = std::span<const Found>(sorted_[open]).subspan(first);
+      compute_pairs(job, rest.first(std::min(block_size, rest.size())), workers_[w],
+                    pairs_.data() + outcomes_.ranges(job)[0].first + first);
+    }
+  });
+}
+
+/// Computes the pairs of one block.
+void ProximityPass::compute_pairs(std::uint32_t job, std::span<const Found> found, Worker& worker,
+                                  ProximityPair* pairs) {
+  const ObjectPair objects{objects_[jobs_[job].a].id, objects_[jobs_[job].b].id};
+  std::array<std::size_t, block_size> members;
+  for (const FeaturePair kind :
+       {FeaturePair::vertices, FeaturePair::vertex_edge, FeaturePair::vertex_face, FeaturePair::edges}) {
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      const Found& pair = found[i];
+      if (feature_pair_of(pair.features, pair.kind == ElementPairKind::edge_edge) != kind) continue;
+      worker.elements[count] = with_points(job, pair.kind, elements_of(job, pair.kind, pair.candidate));
+      const auto& [first, second] = worker.elements[count];
+      const auto points = points_of_features(pair.features);
+      for (std::size_t k = 0; k < 4; ++k) {
+        const std::size_t point = points[k];
+        worker.block.set(k, count,
+                         point < first.count ? first.points[point] : second.points[point - first.count]);
+      }
+      members[count++] = i;
+    }
+    if (count == 0) continue;
+    compute_distance_numbers(worker.block, count, kind, worker.numbers);
+    for (std::size_t m = 0; m < count; ++m) {
+      const Found& pair = found[members[m]];
+      const auto& [first, second] = worker.elements[m];
+      const ElementPoints points = points_of(first, second);
+      bool used_exact = false;
+      const ElementDistance distance = worker.numbers.is_valid[m] != 0
+                                           ? distance_of(points, pair.features, worker.numbers.at(m))
+                                           : distance_of(points, pair.features, used_exact);
+      worker.stats.exact_fallbacks += used_exact ? 1 : 0;
+      pairs[members[m]] =
+          proximity_pair_of(first, second, distance, objects, order_of(job, pair.kind), search_.listing);
+    }
+  }
+}
+
+/// Orders the pairs of each open job, each once, and tells their number to the outcomes.
+void ProximityPass::sort_found(const Parallel& parallel) {
+  const std::span<const std::uint32_t> open_jobs = outcomes_.open_jobs();
+  const std::span<const ContactTask> tasks = tasks_.tasks();
+  if (sorted_.size() < open_jobs.size()) sorted_.resize(open_jobs.size());
+  for (std::vector<Found>& sorted : sorted_) sorted.clear();
+  for (Worker& worker : workers_) std::ranges::sort(worker.runs, {}, &Run::job);
+  parallel.for_ranges(open_jobs.size(), 1, [&](std::size_t begin, std::size_t end, std::uint32_t w) {
+    for (std::size_t open = begin; open < end; ++open) {
+      sort_job(open_jobs[open], workers_[w].bin_ends, sorted_[open]);
+      const auto task = std::ranges::lower_bound(tasks, open_jobs[open], {}, &ContactTask::job);
+      if (task == tasks.end() || task->job != open_jobs[open]) continue;
+      outcomes_.of_task(static_cast<std::size_t>(task - tasks.begin())).ranges[0].count =
+          static_cast<std::uint32_t>(sorted_[open].size());
+    }
+  });
+}
+
+/// Sorts by the first element and its kinds in linear time, then the few pairs of each.
+void ProximityPass::sort_job(std::uint32_t job, std::vector<std::uint32_t>& bin_ends,
+                             std::vector<Found>& sorted) const {
+  std::size_t count = 0, ids = 0;
+  const auto for_each_found = [&](const auto& visit) {
+    for (const Worker& worker : workers_) {
+      auto run = std::ranges::lower_bound(worker.runs, job, {}, &Run::job);
+      for (; run != worker.runs.end() && run->job == job; ++run) {
+        for (std::uint32_t i = run->first; i < run->end; ++i) visit(worker.found[i]);
+      }
+    }
+  };
+  for_each_found([&](const Found& found) {
+    ++count;
+    ids = std::max(ids, found.name.element_a[0] + std::size_t{1});
+  });
+  // Few pairs are in one bin.
+  if (count < ids) ids = 0;
+  const auto bin_of = [&](const PairName& name) {
+    return ids == 0
+               ? 0
+               : (3 * static_cast<std::size_t>(name.kind_a) + static_cast<std::size_t>(name.kind_b)) * ids +
+                     name.element_a[0];
+  };
+  bin_ends.assign(9 * ids + 1, 0);
+  for_each_found([&](const Found& found) { ++bin_ends[bin_of(found.name)]; });
+  std::uint32_t begin = 0;
+  for (std::uint32_t& end : bin_ends) begin += std::exchange(end, begin);
+  sorted.resize(count);
+  for_each_found([&](const Found& found) { sorted[bin_ends[bin_of(found.name)]++] = found; });
+  begin = 0;
+  auto last = sorted.begin();
+  for (const std::uint32_t end : bin_ends) {
+    const auto first = sorted.begin() + begin, behind = sorted.begin() + end;
+    std::sort(first, behind, [](const Found& p, const Found& q) { return p.name < q.name; });
+    const auto unique_end =
+        std::unique(first, behind, [](const Found& p, const Found& q) { return p.name == q.name; });
+    last = first == last ? unique_end : std::copy(first, unique_end, last);
+    begin = end;
+  }
+  sorted.erase(last, sorted.end());
+}
+
+}  // namespace supple

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "answers/search_options.hpp"
+#include "supple/options.hpp"
+#include "supple/safe_step.hpp"
+#include "world/world.hpp"
+
+namespace supple {
+
+/// What a search looks for.
+struct Question {
+  ContactKinds contacts = ContactKinds::none;
+  ImpactSearchOptions impact{};
+  ProximityListing proximity_listing = ProximityListing::features;
+  bool contact_points = false;
+  bool colliding_vertices = false;
+  bool manifolds = false;
+  PenetrationDepths depths = PenetrationDepths::all;
+  std::optional<StepOptions> safe_step{};  ///< continuous contacts: for a safe step
+  /// Only these pairs of objects of those that the world lets through; all when it is empty. For an object
+  /// with self-collision, both ids are the same.
+  PairFilter only{};
+
+  bool has_intersections() const { return contains(contacts, ContactKinds::intersection); }
+  bool is_continuous() const { return contains(contacts, ContactKinds::continuous); }
+  bool has_penetration() const { return contains(contacts, ContactKinds::penetration); }
+  bool has_proximity() const { return contains(contacts, ContactKinds::proximity); }
+  /// It searches intersections, or only counts their candidates.
+  bool searches_at_rest() const { return contacts == ContactKinds::none || has_intersections(); }
+  SearchedShapes shapes() const {
+    return {searches_at_rest(), is_continuous(), has_proximity(),
+            // Colliding vertices and separations need all overlapping leaves, so nothing may be culled.
+            searches_at_rest() && !colliding_vertices, is_continuous() && impact.impact.min_separation == 0};
+  }
+
+  bool may_pair(const World& world, const IndexPair& pair) const {
+    return world.may_pair(pair) && accepts(world, pair.a, pair.b);
+  }
+  bool tests_itself(const World& world, std::uint32_t slot) const {
+    return world[slot].options.self_collision && accepts(world, slot, slot);
+  }
+  bool has_filter(const World& world) const { return world.has_filter() || only; }
+
+  /// The shape of an object that the search reads.
+  OctreeView view(const WorldObject& object) const {
+    if (searches_at_rest()) return object.resting_view();
+    return is_continuous() ? object.moving_view() : object.near_view();
+  }
+  /// The separation at which elements of two objects touch.
+  double separation_of(const WorldObject& a, const WorldObject& b) const {
+    return supple::separation_of(impact.impact.min_separation, a.options.min_separation,
+                                 b.options.min_separation);
+  }
+
+ private:
+  bool accepts(const World& world, std::uint32_t a, std::uint32_t b) const {
+    return !only || only(world.id_of(a), world.id_of(b));
+  }
+};
+
+}  // namespace supple

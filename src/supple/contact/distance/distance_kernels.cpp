@@ -1,0 +1,439 @@
+#include "contact/distance/distance_kernels.hpp"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "contact/distance/distance_kernels.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include <algorithm>
+
+#include "geometry/vector3-inl.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace supple {
+namespace HWY_NAMESPACE {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+using Lanes = hn::CappedTag<double, 8>;
+using Doubles = hn::Vec<Lanes>;
+using LaneMask = hn::Mask<Lanes>;
+using Vector = Vector3<Lanes>;
+
+HWY_INLINE Doubles constant(double value) {
+  return hn::Set(Lanes(), value);
+}
+HWY_INLINE Vector point(const PointsBlock& block, std::size_t vertex, std::size_t first) {
+  const Lanes d;
+  const auto& axes = block.points[vertex];
+  return {hn::Load(d, axes[0] + first), hn::Load(d, axes[1] + first), hn::Load(d, axes[2] + first)};
+}
+HWY_INLINE Vector scaled(const Vector& v, Doubles s) {
+  return {hn::Mul(v.x, s), hn::Mul(v.y, s), hn::Mul(v.z, s)};
+}
+HWY_INLINE Vector backwards(const Vector& v) {
+  return {hn::Neg(v.x), hn::Neg(v.y), hn::Neg(v.z)};
+}
+
+// --- classify ---
+//
+// Operations are not fused, so that every instruction set leaves the same pairs undecided. Let e = 2^-53. A
+// sum of products of k factors in which each term takes part in r roundings has an error below
+// 1.01 r e times the sum of the magnitudes of its terms.
+
+/// The largest magnitude of a coordinate.
+HWY_INLINE Doubles size_of(const Vector& v) {
+  const Vector size = absolute(v);
+  return hn::Max(size.x, hn::Max(size.y, size.z));
+}
+
+/// One vector of pairs.
+class Classification {
+ public:
+  HWY_INLINE Classification(Doubles reach)
+      : squared_reach_(hn::Min(hn::Mul(reach, reach), constant(0x1p220))), code_(constant(unknown)) {}
+
+  /// Decides the pairs whose closest points are inside both elements: all signs are positive.
+  ///
+  /// With a, b, c the largest coordinates of u, v and w, `along_u` has 12 terms of at most a b² c and 11
+  /// roundings, an error below 2^-45 a b² c. In the same way, the error of `along_v` is below 2^-45 a² b c,
+  /// that of `whole` below 2^-45 a² b², and that of `volume`, with 6 terms and 8 roundings, below 2^-47 a b
+  /// c. Differences of these numbers add their errors and at most 24 e times the magnitudes, which the bounds
+  /// contain twice.
+  HWY_INLINE void try_interiors(const Vector& u, const Vector& v, const Vector& w, bool are_edges) {
+    const Lanes d;
+    const Doubles a = size_of(u), b = size_of(v), c = size_of(w), zero = hn::Zero(d);
+    const Vector normal = cross(u, v);
+    const Doubles volume = dot(normal, w), whole = dot(normal, normal);
+    const Doubles along_u = dot(are_edges ? cross(v, w) : cross(w, v), normal);
+    const Doubles along_v = dot(cross(u, w), normal);
+    const Doubles ab = hn::Mul(a, b), bound = constant(0x1p-45);
+    const Doubles error_u = hn::Mul(bound, hn::Mul(ab, hn::Mul(b, c)));
+    const Doubles error_v = hn::Mul(bound, hn::Mul(ab, hn::Mul(a, c)));
+    const Doubles error_whole = hn::Mul(bound, hn::Mul(ab, ab));
+    const Doubles least = hn::Min(a, hn::Min(b, c)), most = hn::Max(a, hn::Max(b, c));
+    // No product underflows or overflows. All comparisons with NaN are false.
+    const LaneMask in_range = hn::And(hn::Gt(least, constant(0x1p-100)), hn::Lt(most, constant(0x1p100)));
+    LaneMask inside = hn::And(hn::Gt(along_u, error_u), hn::Gt(along_v, error_v));
+    LaneMask outside = hn::Or(hn::Lt(along_u, hn::Neg(error_u)), hn::Lt(along_v, hn::Neg(error_v)));
+    const auto check_rest = [&](Doubles rest, Doubles error) HWY_ATTR {
+      inside = hn::And(inside, hn::Gt(rest, error));
+      outside = hn::Or(outside, hn::Lt(rest, hn::Neg(error)));
+    };
+    if (are_edges) {
+      check_rest(hn::Sub(whole, along_u), hn::Add(error_whole, error_u));
+      check_rest(hn::Sub(whole, along_v), hn::Add(error_whole, error_v));
+    } else {
+      check_rest(hn::Sub(hn::Sub(whole, along_u), along_v), hn::Add(error_whole, hn::Add(error_u, error_v)));
+    }
+    is_inside_ = hn::And(inside, in_range);
+    is_outside_ = hn::And(outside, in_range);
+    // The squared distance is volume² / whole.
+    const Doubles squared = hn::Mul(volume, volume), limit = hn::Mul(squared_reach_, whole);
+    const Doubles error_volume = hn::Mul(constant(0x1p-47), hn::Mul(ab, c));
+    const Doubles twice = hn::Add(hn::Abs(volume), hn::Abs(volume));
+    const Doubles error = hn::Add(
+        hn::Add(hn::Mul(error_volume, hn::Add(twice, error_volume)), hn::Mul(squared_reach_, error_whole)),
+        hn::Mul(constant(0x1p-49), hn::Add(squared, limit)));
+    decide(is_inside_, squared, limit, error, zero);
+  }
+  HWY_INLINE bool is_complete() const { return hn::AllTrue(Lanes(), is_inside_); }
+
+  /// Starts the search on the borders. `size` is a bound of all coordinates of differences.
+  HWY_INLINE void start_borders(Doubles size) {
+    // The error of a squared distance below, of `along` and of `whole` is less than 2^-45 size².
+    size_ = size;
+    error_ = hn::Mul(constant(0x1p-42), hn::Mul(size, size));
+    is_known_ =
+        hn::And(is_outside_, hn::And(hn::Gt(size, constant(0x1p-100)), hn::Lt(size, constant(0x1p100))));
+    best_ = constant(0x1p1000);
+    best_code_ = constant(unknown);
+    nearest_ = {hn::Zero(Lanes()), hn::Zero(Lanes()), hn::Zero(Lanes())};
+  }
+  /// A vertex against an edge from `low` to `high`. `to_vertex` starts at `low`.
+  ///
+  /// With s the bound of the coordinates, `along` and `whole` have 3 terms of at most s² and 5 roundings. The
+  /// parameter t is the quotient of two such numbers and is near the minimum of a parabola, so its error does
+  /// not count. Each coordinate of the difference has an error below 7 e s, and the squared distance one
+  /// below 2^-45 s².
+  HWY_INLINE void try_vertex_and_edge(const Vector& to_vertex, const Vector& edge, double low, double high,
+                                      double inside) {
+    const Lanes d;
+    const Doubles along = dot(to_vertex, edge), whole = dot(edge, edge), rest = hn::Sub(along, whole);
+    const LaneMask at_low = hn::Lt(along, hn::Neg(error_)), at_high = hn::Gt(rest, error_);
+    const LaneMask is_inside = hn::And(hn::Gt(along, error_), hn::Lt(rest, hn::Neg(error_)));
+    is_known_ = hn::And(is_known_, hn::Or(is_inside, hn::Or(at_low, at_high)));
+    const Doubles t =
+        hn::IfThenElse(is_inside, hn::Div(along, whole), hn::IfThenElse(at_high, constant(1), hn::Zero(d)));
+    const Doubles code =
+        hn::IfThenElse(is_inside, constant(inside), hn::IfThenElse(at_high, constant(high), constant(low)));
+    const Vector difference = subtract(to_vertex, scaled(edge, t));
+    const Doubles squared = dot(difference, difference), gain = hn::Sub(best_, squared);
+    const LaneMask is_other = hn::Ne(code, best_code_);
+    const LaneMask is_better = hn::And(is_other, hn::Gt(gain, error_));
+    const LaneMask is_worse = hn::Lt(gain, hn::Neg(error_));
+    is_known_ = hn::And(is_known_, hn::Or(is_better, hn::Or(is_worse, hn::Not(is_other))));
+    best_ = hn::IfThenElse(is_better, squared, best_);
+    nearest_ = select<Lanes>(is_better, difference, nearest_);
+    best_code_ = hn::IfThenElse(is_better, code, best_code_);
+  }
+  HWY_INLINE void finish_borders() {
+    decide(is_known_, best_, squared_reach_, hn::Add(error_, hn::Mul(constant(0x1p-49), squared_reach_)),
+           best_code_);
+  }
+  HWY_INLINE bool has_unknown() const { return !hn::AllFalse(Lanes(), hn::Eq(code_, constant(unknown))); }
+  /// Excludes undecided pairs, most of them with parallel edges, whose vertices are on different sides of a
+  /// slab. It is normal to the difference of the nearest points on the borders and wider than the distance.
+  ///
+  /// Each product has 3 terms and 4 roundings, an error below 2^-49 of the product of the sizes.
+  template <class... Differences>
+  HWY_INLINE void try_slab(Doubles reach, const Differences&... differences) {
+    const Doubles size = size_of(nearest_);
+    Doubles least = constant(0x1p1000);
+    ((least = hn::Min(least, dot(nearest_, differences))), ...);
+    const Doubles width = hn::Mul(hn::Mul(reach, hn::Sqrt(dot(nearest_, nearest_))), constant(1 + 0x1p-40));
+    const Doubles error = hn::Mul(constant(0x1p-45), hn::Mul(size, size_));
+    const LaneMask in_range = hn::And(hn::Gt(size, constant(0x1p-200)), hn::Lt(size_, constant(0x1p100)));
+    const LaneMask beyond = hn::And(in_range, hn::Gt(least, hn::Add(width, error)));
+    code_ = hn::IfThenElse(hn::And(hn::Eq(code_, constant(unknown)), beyond), constant(apart), code_);
+  }
+  HWY_INLINE void store(FeatureCode* codes, std::size_t count) const {
+    const Lanes d;
+    double numbers[8];
+    hn::StoreU(code_, d, numbers);
+    for (std::size_t i = 0; i < count; ++i) codes[i] = static_cast<FeatureCode>(numbers[i]);
+  }
+
+ private:
+  static constexpr double apart = static_cast<double>(FeatureCode::apart);
+  static constexpr double unknown = static_cast<double>(FeatureCode::unknown);
+
+  /// Sets the codes of the lanes where `value` is certainly at most `limit`, or above it.
+  HWY_INLINE void decide(LaneMask lanes, Doubles value, Doubles limit, Doubles error, Doubles code) {
+    const LaneMask within = hn::And(lanes, hn::Lt(value, hn::Sub(limit, error)));
+    const LaneMask beyond = hn::And(lanes, hn::Gt(value, hn::Add(limit, error)));
+    code_ = hn::IfThenElse(within, code, hn::IfThenElse(beyond, constant(apart), code_));
+  }
+
+  Doubles squared_reach_, code_;
+  LaneMask is_inside_, is_outside_;  // certainly
+  Doubles size_, error_, best_, best_code_;
+  Vector nearest_;  // difference of the nearest points on the borders, from b to a
+  LaneMask is_known_;
+};
+
+void Classify(const PointsBlock& block, std::size_t count, bool are_edges, double max_distance,
+              FeatureCode* codes) {
+  const Lanes d;
+  for (std::size_t first = 0; first < count; first += hn::Lanes(d)) {
+    const Vector p0 = point(block, 0, first), p1 = point(block, 1, first), p2 = point(block, 2, first),
+                 p3 = point(block, 3, first);
+    const Doubles reach = constant(max_distance);
+    Classification pairs(reach);
+    if (are_edges) {
+      const Vector u = subtract(p1, p0), v = subtract(p3, p2), w = subtract(p0, p2);
+      pairs.try_interiors(u, v, w, true);
+      if (!pairs.is_complete()) {
+        pairs.start_borders(hn::Add(size_of(u), hn::Add(size_of(v), size_of(w))));
+        const Vector p1_p2 = subtract(p1, p2), p0_p3 = subtract(p0, p3);
+        pairs.try_vertex_and_edge(w, v, 1, 2, 5);
+        pairs.try_vertex_and_edge(p1_p2, v, 3, 4, 6);
+        pairs.try_vertex_and_edge(w, backwards(u), 1, 3, 7);
+        pairs.try_vertex_and_edge(p0_p3, backwards(u), 2, 4, 8);
+        pairs.finish_borders();
+        if (pairs.has_unknown()) pairs.try_slab(reach, w, p1_p2, p0_p3, subtract(p1, p3));
+      }
+    } else {
+      const Vector u = subtract(p2, p1), v = subtract(p3, p1), w = subtract(p0, p1);
+      pairs.try_interiors(u, v, w, false);
+      if (!pairs.is_complete()) {
+        pairs.start_borders(hn::Add(size_of(u), hn::Add(size_of(v), size_of(w))));
+        const Vector p0_p2 = subtract(p0, p2);
+        pairs.try_vertex_and_edge(w, u, 1, 2, 4);
+        pairs.try_vertex_and_edge(w, v, 1, 3, 5);
+        pairs.try_vertex_and_edge(p0_p2, subtract(p3, p2), 2, 3, 6);
+        pairs.finish_borders();
+        if (pairs.has_unknown()) pairs.try_slab(reach, w, p0_p2, subtract(p0, p3));
+      }
+    }
+    pairs.store(codes + first, std::min(count - first, hn::Lanes(d)));
+  }
+}
+
+// --- compute_distance_numbers ---
+
+/// `DoubleDouble` in each lane, with the same operations.
+struct Pairs {
+  Doubles high, low;
+};
+
+HWY_INLINE Pairs exact_sum(Doubles a, Doubles b) {
+  const Doubles sum = hn::Add(a, b), of_b = hn::Sub(sum, a);
+  return {sum, hn::Add(hn::Sub(a, hn::Sub(sum, of_b)), hn::Sub(b, of_b))};
+}
+HWY_INLINE Pairs exact_sum_of_ordered(Doubles a, Doubles b) {
+  const Doubles sum = hn::Add(a, b);
+  return {sum, hn::Sub(b, hn::Sub(sum, a))};
+}
+HWY_INLINE Pairs exact_product(Doubles a, Doubles b) {
+  const Doubles splitter = constant(0x1p27 + 1);
+  const Doubles pa = hn::Mul(splitter, a), pb = hn::Mul(splitter, b);
+  const Doubles a_high = hn::Sub(pa, hn::Sub(pa, a)), b_high = hn::Sub(pb, hn::Sub(pb, b));
+  const Doubles a_low = hn::Sub(a, a_high), b_low = hn::Sub(b, b_high), product = hn::Mul(a, b);
+  const Doubles first = hn::Sub(hn::Mul(a_high, b_high), product);
+  return {product, hn::Add(hn::Add(hn::Add(first, hn::Mul(a_high, b_low)), hn::Mul(a_low, b_high)),
+                           hn::Mul(a_low, b_low))};
+}
+HWY_INLINE Pairs add(const Pairs& a, const Pairs& b) {
+  const Pairs high = exact_sum(a.high, b.high), low = exact_sum(a.low, b.low);
+  const Pairs sum = exact_sum_of_ordered(high.high, hn::Add(high.low, low.high));
+  return exact_sum_of_ordered(sum.high, hn::Add(sum.low, low.low));
+}
+HWY_INLINE Pairs subtract(const Pairs& a, const Pairs& b) {
+  return add(a, {hn::Neg(b.high), hn::Neg(b.low)});
+}
+HWY_INLINE Pairs multiply(const Pairs& a, const Pairs& b) {
+  const Pairs product = exact_product(a.high, b.high);
+  return exact_sum_of_ordered(product.high,
+                              hn::Add(product.low, hn::Add(hn::Mul(a.high, b.low), hn::Mul(a.low, b.high))));
+}
+HWY_INLINE Doubles rounded(const Pairs& a) {
+  return hn::Add(a.high, a.low);
+}
+
+struct PairsVector {
+  Pairs x, y, z;
+};
+HWY_INLINE PairsVector exact_difference(const Vector& p, const Vector& q) {
+  return {exact_sum(p.x, hn::Neg(q.x)), exact_sum(p.y, hn::Neg(q.y)), exact_sum(p.z, hn::Neg(q.z))};
+}
+HWY_NOINLINE Pairs dot(const PairsVector& a, const PairsVector& b) {
+  return add(add(multiply(a.x, b.x), multiply(a.y, b.y)), multiply(a.z, b.z));
+}
+HWY_NOINLINE PairsVector cross(const PairsVector& a, const PairsVector& b) {
+  return {subtract(multiply(a.y, b.z), multiply(a.z, b.y)), subtract(multiply(a.z, b.x), multiply(a.x, b.z)),
+          subtract(multiply(a.x, b.y), multiply(a.y, b.x))};
+}
+
+/// `direction_of` of element_distance.cpp; invalid where the vector is 0 or not finite.
+HWY_INLINE Vector direction_of(const Vector& v, LaneMask& is_valid) {
+  const Lanes d;
+  const hn::RebindToUnsigned<Lanes> words;
+  const Doubles size = size_of(v);
+  is_valid = hn::And(is_valid, hn::And(hn::Gt(size, constant(0x1p-1000)), hn::Lt(size, constant(0x1p1000))));
+  // 2^-ilogb(size): the exponent bits 2046 - exponent.
+  const auto exponent = hn::And(hn::BitCast(words, size), hn::Set(words, 0x7ff0000000000000u));
+  const auto inverse = hn::Sub(hn::Set(words, 0x7fe0000000000000u), exponent);
+  const Vector unit = scaled(v, hn::BitCast(d, inverse));
+  return scaled(unit, hn::Div(constant(1), hn::Sqrt(dot(unit, unit))));
+}
+
+/// Whether a squared length has the range in which pairs of doubles are accurate.
+HWY_INLINE LaneMask in_range(Doubles square) {
+  return hn::And(hn::Gt(square, constant(0x1p-120)), hn::Lt(square, constant(0x1p120)));
+}
+
+struct Numbers {
+  Pairs squared;
+  PairsVector direction;
+  LaneMask is_valid;
+};
+
+HWY_INLINE void store(const Numbers& n, Doubles divisor, std::size_t first, DistanceNumbersBlock& numbers) {
+  const Lanes d;
+  LaneMask is_valid = n.is_valid;
+  const Vector direction =
+      direction_of({rounded(n.direction.x), rounded(n.direction.y), rounded(n.direction.z)}, is_valid);
+  hn::Store(hn::Sqrt(hn::Div(rounded(n.squared), divisor)), d, numbers.distance + first);
+  hn::Store(direction.x, d, numbers.direction[0] + first);
+  hn::Store(direction.y, d, numbers.direction[1] + first);
+  hn::Store(direction.z, d, numbers.direction[2] + first);
+  hn::Store(hn::IfThenElse(is_valid, constant(1), hn::Zero(d)), d, numbers.is_valid + first);
+}
+
+// As `numbers_of` and `rounded_by_pairs` of element_distance.cpp, for each kind of features.
+
+void compute_vertices(const PointsBlock& block, std::size_t first, DistanceNumbersBlock& numbers) {
+  const Lanes d;
+  const Vector p = point(block, 0, first), q = point(block, 1, first), difference = subtract(p, q);
+  const PairsVector direction = exact_difference(p, q);
+  for (std::size_t i = 0; i < 2; ++i) {
+    hn::Store(hn::Zero(d), d, numbers.along[i] + first);
+    hn::Store(hn::Zero(d), d, numbers.rest[i] + first);
+  }
+  store({dot(direction, direction), direction, in_range(dot(difference, difference))}, constant(1), first,
+        numbers);
+}
+
+void compute_vertex_edge(const PointsBlock& block, std::size_t first, DistanceNumbersBlock& numbers) {
+  const Lanes d;
+  const Vector vertex = point(block, 0, first), low = point(block, 1, first), high = point(block, 2, first);
+  const Vector w = subtract(vertex, low), e = subtract(high, low), wxe = cross(w, e);
+  const Doubles ww = dot(w, w), ee = dot(e, e);
+  const LaneMask is_valid = hn::And(hn::And(in_range(ww), in_range(ee)),
+                                    hn::Gt(dot(wxe, wxe), hn::Mul(constant(0x1p-80), hn::Mul(ww, ee))));
+  const PairsVector to_vertex = exact_difference(vertex, low), edge = exact_difference(high, low);
+  const Pairs along = dot(to_vertex, edge), whole = dot(edge, edge);
+  const PairsVector moment = cross(to_vertex, edge);
+  const auto part = [&](const Pairs& of_vertex, const Pairs& of_edge)
+                        HWY_ATTR { return subtract(multiply(of_vertex, whole), multiply(of_edge, along)); };
+  const PairsVector direction{part(to_vertex.x, edge.x), part(to_vertex.y, edge.y),
+                              part(to_vertex.z, edge.z)};
+  const Doubles divisor = rounded(whole);
+  hn::Store(hn::Div(rounded(along), divisor), d, numbers.along[0] + first);
+  hn::Store(hn::Div(rounded(subtract(whole, along)), divisor), d, numbers.rest[0] + first);
+  hn::Store(hn::Zero(d), d, numbers.along[1] + first);
+  hn::Store(hn::Zero(d), d, numbers.rest[1] + first);
+  store({dot(moment, moment), direction, is_valid}, divisor, first, numbers);
+}
+
+template <bool are_edges>
+void compute_interiors(const PointsBlock& block, std::size_t first, DistanceNumbersBlock& numbers) {
+  const Lanes d;
+  const Vector p0 = point(block, 0, first), p1 = point(block, 1, first), p2 = point(block, 2, first),
+               p3 = point(block, 3, first);
+  const Vector u = are_edges ? subtract(p1, p0) : subtract(p2, p1);
+  const Vector v = are_edges ? subtract(p3, p2) : subtract(p3, p1);
+  const Vector w = are_edges ? subtract(p0, p2) : subtract(p0, p1);
+  const Doubles uu = dot(u, u), vv = dot(v, v), ww = dot(w, w);
+  const Doubles plain_volume = dot(cross(u, v), w);
+  const LaneMask is_valid = hn::And(
+      hn::And(in_range(uu), hn::And(in_range(vv), in_range(ww))),
+      hn::Gt(hn::Mul(plain_volume, plain_volume), hn::Mul(constant(0x1p-80), hn::Mul(hn::Mul(uu, vv), ww))));
+  const PairsVector pu = are_edges ? exact_difference(p1, p0) : exact_difference(p2, p1);
+  const PairsVector pv = are_edges ? exact_difference(p3, p2) : exact_difference(p3, p1);
+  const PairsVector pw = are_edges ? exact_difference(p0, p2) : exact_difference(p0, p1);
+  const PairsVector normal = cross(pu, pv);
+  const Pairs volume = dot(normal, pw), whole = dot(normal, normal);
+  const Pairs along_u = dot(are_edges ? cross(pv, pw) : cross(pw, pv), normal);
+  const Pairs along_v = dot(cross(pu, pw), normal);
+  const Pairs without_u = subtract(whole, along_u);
+  const Doubles divisor = rounded(whole);
+  hn::Store(hn::Div(rounded(along_u), divisor), d, numbers.along[0] + first);
+  hn::Store(hn::Div(rounded(along_v), divisor), d, numbers.along[1] + first);
+  hn::Store(hn::Div(rounded(are_edges ? without_u : subtract(without_u, along_v)), divisor), d,
+            numbers.rest[0] + first);
+  hn::Store(hn::Div(rounded(subtract(whole, along_v)), divisor), d, numbers.rest[1] + first);
+  store({multiply(volume, volume),
+         {multiply(normal.x, volume), multiply(normal.y, volume), multiply(normal.z, volume)},
+         is_valid},
+        divisor, first, numbers);
+}
+
+void ComputeDistanceNumbers(const PointsBlock& block, std::size_t count, FeaturePair kind,
+                            DistanceNumbersBlock& numbers) {
+  for (std::size_t first = 0; first < count; first += hn::Lanes(Lanes())) {
+    switch (kind) {
+      case FeaturePair::vertices:
+        compute_vertices(block, first, numbers);
+        break;
+      case FeaturePair::vertex_edge:
+        compute_vertex_edge(block, first, numbers);
+        break;
+      case FeaturePair::vertex_face:
+        compute_interiors<false>(block, first, numbers);
+        break;
+      case FeaturePair::edges:
+        compute_interiors<true>(block, first, numbers);
+        break;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace HWY_NAMESPACE
+}  // namespace supple
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace supple {
+
+HWY_EXPORT(Classify);
+HWY_EXPORT(ComputeDistanceNumbers);
+
+void classify(const PointsBlock& block, std::size_t count, bool are_edges, double max_distance,
+              FeatureCode* codes) {
+  HWY_DYNAMIC_DISPATCH(Classify)(block, count, are_edges, max_distance, codes);
+}
+
+ClosestFeatures features_of_code(FeatureCode code, bool are_edges) {
+  using Kind = ClosestFeatures::Kind;
+  static constexpr ClosestFeatures of_edges[] = {
+      {Kind::interiors, 0, {}},       {Kind::vertices, 0, {2, 0}},    {Kind::vertices, 0, {3, 0}},
+      {Kind::vertices, 1, {2, 0}},    {Kind::vertices, 1, {3, 0}},    {Kind::vertex_edge, 0, {2, 3}},
+      {Kind::vertex_edge, 1, {2, 3}}, {Kind::vertex_edge, 2, {0, 1}}, {Kind::vertex_edge, 3, {0, 1}}};
+  static constexpr ClosestFeatures of_face[] = {
+      {Kind::interiors, 0, {}},      {Kind::vertices, 0, {1, 0}},    {Kind::vertices, 0, {2, 0}},
+      {Kind::vertices, 0, {3, 0}},   {Kind::vertex_edge, 0, {1, 2}}, {Kind::vertex_edge, 0, {1, 3}},
+      {Kind::vertex_edge, 0, {2, 3}}};
+  return (are_edges ? of_edges : of_face)[static_cast<std::size_t>(code)];
+}
+
+void compute_distance_numbers(const PointsBlock& block, std::size_t count, FeaturePair kind,
+                              DistanceNumbersBlock& numbers) {
+  HWY_DYNAMIC_DISPATCH(ComputeDistanceNumbers)(block, count, kind, numbers);
+}
+
+}  // namespace supple
+#endif

@@ -1,0 +1,517 @@
+// The closest points of two elements lie inside both, or on the border of one of them. Signs of polynomials
+// in the coordinates decide the first. Otherwise the closest of all pairs of a vertex and an edge counts,
+// which a comparison of fractions finds. The same code runs on three kinds of numbers: on doubles with error
+// bounds, and where these cannot decide on integers, to find the features; on pairs of doubles, or on
+// integers again, to compute the distance, the weights and the direction.
+
+#include "contact/distance/element_distance.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <string>
+#include <tuple>
+
+#include "core/error.hpp"
+#include "geometry/numbers/bounded_double.hpp"
+#include "geometry/numbers/double_double.hpp"
+#include "geometry/numbers/number_vector.hpp"
+#include "geometry/numbers/quotient.hpp"
+#include "geometry/numbers/wide_integer.hpp"
+#include "geometry/vector.hpp"
+
+namespace supple {
+namespace {
+
+class BoundedNumbers {
+ public:
+  using Number = BoundedDouble;
+
+  explicit BoundedNumbers(const ElementPoints& elements) : points_(elements.points) {}
+  std::array<Number, 3> difference(std::size_t i, std::size_t j) const {
+    std::array<Number, 3> result;
+    for (int axis = 0; axis < 3; ++axis)
+      result[static_cast<std::size_t>(axis)] = BoundedDouble::difference(points_[i][axis], points_[j][axis]);
+    return result;
+  }
+  static Number number(double value) { return {value, 0}; }
+  static Number one() { return {1, 0}; }
+  static int sign_of(const Number& n) { return supple::sign_of(n); }
+
+ private:
+  const std::array<Vec3d, 4>& points_;
+};
+
+class DoubleDoubleNumbers {
+ public:
+  using Number = DoubleDouble;
+
+  explicit DoubleDoubleNumbers(const ElementPoints& elements) : points_(elements.points) {}
+  std::array<Number, 3> difference(std::size_t i, std::size_t j) const {
+    const Vec3d &p = points_[i], &q = points_[j];
+    return {exact_sum(p.x, -q.x), exact_sum(p.y, -q.y), exact_sum(p.z, -q.z)};
+  }
+  static Number one() { return Number(1); }
+
+ private:
+  const std::array<Vec3d, 4>& points_;
+};
+
+class IntegerNumbers {
+ public:
+  using Number = UnboundedInteger;
+
+  /// All numbers are multiplied by the same power of two.
+  IntegerNumbers(const ElementPoints& elements, double max_distance) {
+    std::array<double, 13> numbers{};
+    std::size_t i = 0;
+    for (const Vec3d& p : elements.points) {
+      for (int axis = 0; axis < 3; ++axis) numbers[i++] = p[axis];
+    }
+    numbers[i] = std::isfinite(max_distance) ? max_distance : 0;
+    lowest_ = BitRange(numbers).lowest;
+    for (i = 0; i < 12; ++i) points_[i / 3][i % 3] = number(numbers[i]);
+  }
+  std::array<Number, 3> difference(std::size_t i, std::size_t j) const {
+    return supple::difference(points_[i], points_[j]);
+  }
+  Number number(double value) const { return to_integer<Number>(value, lowest_); }
+  static Number one() { return 1; }
+  static int sign_of(const Number& n) { return sign(n); }
+  int lowest() const { return lowest_; }
+
+ private:
+  int lowest_ = 0;
+  std::array<std::array<Number, 3>, 4> points_;
+};
+
+template <class Number>
+using Vector = NumberVector<Number>;
+
+using Features = ClosestFeatures;
+
+/// Which features count where several hold the closest points: the smallest.
+auto rank_of(const Features& f, std::uint8_t count_a) {
+  const bool is_vertex_of_a = f.vertex < count_a, are_vertices = f.kind == Features::Kind::vertices;
+  const std::uint8_t of_a = is_vertex_of_a ? f.vertex : f.edge[1],
+                     of_b = is_vertex_of_a ? f.edge[1] : f.vertex;
+  return are_vertices ? std::tuple(0, f.vertex, f.edge[0], std::uint8_t{0})
+                      : std::tuple(is_vertex_of_a ? 1 : 2, of_a, of_b, f.edge[0]);
+}
+
+/// The volume that two elements span, and the place where the lines or planes through them are closest:
+/// `along_u` / whole and `along_v` / whole of u and v.
+template <class Number>
+struct InteriorNumbers {
+  Number volume, whole, along_u, along_v;
+  Vector<Number> normal;
+
+  template <class Numbers>
+  InteriorNumbers(const Numbers& numbers, bool are_edges) {
+    const Vector<Number> u = are_edges ? numbers.difference(1, 0) : numbers.difference(2, 1);
+    const Vector<Number> v = are_edges ? numbers.difference(3, 2) : numbers.difference(3, 1);
+    const Vector<Number> w = are_edges ? numbers.difference(0, 2) : numbers.difference(0, 1);
+    normal = cross(u, v);
+    volume = dot(normal, w);
+    whole = dot(normal, normal);
+    along_u = dot(are_edges ? cross(v, w) : cross(w, v), normal);
+    along_v = dot(cross(u, w), normal);
+  }
+};
+
+template <class Number>
+struct VertexEdgeNumbers {
+  Vector<Number> to_vertex, edge;
+  Number along, whole;
+
+  template <class Numbers>
+  VertexEdgeNumbers(const Numbers& numbers, std::uint8_t vertex, const std::array<std::uint8_t, 2>& ends)
+      : to_vertex(numbers.difference(vertex, ends[0])),
+        edge(numbers.difference(ends[1], ends[0])),
+        along(dot(to_vertex, edge)),
+        whole(dot(edge, edge)) {}
+  Number squared_moment() const {
+    const Vector<Number> moment = cross(to_vertex, edge);
+    return dot(moment, moment);
+  }
+};
+
+template <class Numbers>
+class FeatureSearch {
+ public:
+  using Number = typename Numbers::Number;
+
+  FeatureSearch(const Numbers& numbers, const ElementPoints& elements)
+      : numbers_(numbers), count_a_(elements.count_a), count_b_(elements.count_b) {}
+
+  /// Returns nothing when a sign is not known.
+  std::optional<Features> search() {
+    if (count_a_ + count_b_ == 4 && are_interiors_closest()) return known(best_);
+    if (count_a_ + count_b_ == 2) {
+      consider_vertices(0, 1);
+    } else if (count_b_ == 2) {
+      const auto first_b = count_a_;
+      for (std::uint8_t p = 0; p < count_a_; ++p) consider_vertex_and_edge(p, {first_b, next(first_b)});
+      for (std::uint8_t p = first_b; count_a_ == 2 && p < 4; ++p) consider_vertex_and_edge(p, {0, 1});
+    } else {
+      for (const std::array<std::uint8_t, 2>& edge : {std::array<std::uint8_t, 2>{1, 2}, {1, 3}, {2, 3}})
+        consider_vertex_and_edge(0, edge);
+    }
+    return known(best_);
+  }
+  /// The sign of the difference of this distance and another one, whose numbers are multiplied by 2^`scale`
+  /// with respect to these; nothing when it is not known.
+  std::optional<int> compare(const FeatureSearch& other, int scale) {
+    Number here = squared_ * other.divisor_, there = other.squared_ * divisor_;
+    if constexpr (requires { here <<= 1; }) {
+      if (scale > 0) here <<= 2 * scale;
+      if (scale < 0) there <<= -2 * scale;
+    }
+    const int side = sign_of(here - there);
+    return known(side);
+  }
+  /// Whether the distance is at most `most`; nothing when this is not known.
+  std::optional<bool> is_within(double most) {
+    if (std::isinf(most)) return true;
+    const Number length = numbers_.number(most);
+    const int side = sign_of(squared_ - length * length * divisor_);
+    return known(side <= 0);
+  }
+
+ private:
+  static std::uint8_t next(std::uint8_t index) { return static_cast<std::uint8_t>(index + 1); }
+  template <class Result>
+  std::optional<Result> known(const Result& result) const {
+    return is_known_ ? std::optional(result) : std::nullopt;
+  }
+  int sign_of(const Number& number) {
+    const int result = Numbers::sign_of(number);
+    is_known_ = is_known_ && result != unknown_sign;
+    return result;
+  }
+
+  bool are_interiors_closest() {
+    const bool are_edges = count_a_ == 2;
+    const InteriorNumbers<Number> n(numbers_, are_edges);
+    const std::array<int, 4> signs{
+        Numbers::sign_of(n.along_u), Numbers::sign_of(n.along_v),
+        Numbers::sign_of(are_edges ? n.whole - n.along_u : n.whole - n.along_u - n.along_v),
+        are_edges ? Numbers::sign_of(n.whole - n.along_v) : 1};
+    if (std::ranges::any_of(signs, [](int sign) { return sign <= 0; })) return false;
+    is_known_ = std::ranges::count(signs, unknown_sign) == 0;
+    best_ = {};
+    squared_ = n.volume * n.volume;
+    divisor_ = n.whole;
+    return true;
+  }
+
+  void consider_vertices(std::uint8_t p, std::uint8_t q) {
+    const Vector<Number> difference = numbers_.difference(p, q);
+    const bool in_order = p < q;
+    consider({Features::Kind::vertices, in_order ? p : q, {in_order ? q : p, 0}}, dot(difference, difference),
+             numbers_.one());
+  }
+  void consider_vertex_and_edge(std::uint8_t vertex, const std::array<std::uint8_t, 2>& ends) {
+    const VertexEdgeNumbers<Number> n(numbers_, vertex, ends);
+    if (sign_of(n.along) <= 0) return consider_vertices(vertex, ends[0]);
+    if (sign_of(n.along - n.whole) != -1) return consider_vertices(vertex, ends[1]);
+    consider({Features::Kind::vertex_edge, vertex, ends}, n.squared_moment(), n.whole);
+  }
+  void consider(const Features& features, const Number& squared, const Number& divisor) {
+    if (has_best_ && features == best_) return;
+    const int order = has_best_ ? sign_of(squared * divisor_ - squared_ * divisor) : -1;
+    const bool is_better =
+        order < 0 || (order == 0 && rank_of(features, count_a_) < rank_of(best_, count_a_));
+    if (!is_better) return;
+    has_best_ = true;
+    best_ = features;
+    squared_ = squared;
+    divisor_ = divisor;
+  }
+
+  const Numbers& numbers_;
+  std::uint8_t count_a_, count_b_;
+  Features best_;
+  Number squared_{}, divisor_{};  ///< the squared distance is their quotient
+  bool has_best_ = false, is_known_ = true;
+};
+
+/// The squared distance is `squared` / `divisor`, the weights are `along[i]` / `divisor`.
+template <class Number>
+struct QuotientNumbers {
+  Number squared, divisor;
+  std::array<Number, 2> along{}, rest{};  ///< `rest[0]` also leaves out `along[1]` for a face
+  Vector<Number> direction;               ///< from the edge to the vertex, or from b to a
+};
+
+template <class Numbers>
+auto numbers_of(const Numbers& numbers, const Features& features, bool are_edges) {
+  using Number = typename Numbers::Number;
+  QuotientNumbers<Number> result;
+  if (features.kind == Features::Kind::interiors) {
+    const InteriorNumbers<Number> n(numbers, are_edges);
+    result.squared = n.volume * n.volume;
+    result.divisor = n.whole;
+    result.along = {n.along_u, n.along_v};
+    result.rest = {are_edges ? n.whole - n.along_u : n.whole - n.along_u - n.along_v, n.whole - n.along_v};
+    for (std::size_t axis = 0; axis < 3; ++axis) result.direction[axis] = n.normal[axis] * n.volume;
+  } else if (features.kind == Features::Kind::vertex_edge) {
+    const VertexEdgeNumbers<Number> n(numbers, features.vertex, features.edge);
+    result.squared = n.squared_moment();
+    result.divisor = n.whole;
+    result.along[0] = n.along;
+    result.rest[0] = n.whole - n.along;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      result.direction[axis] = n.to_vertex[axis] * n.whole - n.edge[axis] * n.along;
+  } else {
+    result.direction = numbers.difference(features.vertex, features.edge[0]);
+    result.squared = dot(result.direction, result.direction);
+    result.divisor = numbers.one();
+  }
+  return result;
+}
+
+Vec3d direction_of(const Vec3d& v) {
+  const double size = largest_magnitude(v);
+  if (!(size > 0)) return {};
+  const Vec3d unit = std::ldexp(1.0, -std::ilogb(size)) * v;
+  return (1 / std::sqrt(supple::dot(unit, unit))) * unit;
+}
+
+/// Pairs of doubles have a relative error below 2^-96 of the magnitudes of all terms. Lengths are between
+/// 2^-60 and 2^60 here. With full accuracy, the sines of all angles are above 2^-40, so all results have a
+/// relative error below 2^-53. With rough accuracy, those at elements that nearly touch are above 2^-68, and
+/// the error is below 2^-26. Returns nothing otherwise.
+std::optional<DistanceNumbers> rounded_by_pairs(const ElementPoints& elements, const Features& features,
+                                                DistanceAccuracy accuracy) {
+  const auto vector = [&](std::size_t i, std::size_t j) { return elements.points[i] - elements.points[j]; };
+  const auto squared = [](const Vec3d& v) { return supple::dot(v, v); };
+  const auto in_range = [](double square) { return square > 0x1p-120 && square < 0x1p120; };
+  const bool is_full = accuracy == DistanceAccuracy::full;
+  constexpr double least = 0x1p-80;
+  double magnitude = 0;  // of the terms of the squared distance times its divisor
+  if (features.kind == Features::Kind::vertices) {
+    if (!in_range(squared(vector(features.vertex, features.edge[0])))) return {};
+  } else if (features.kind == Features::Kind::vertex_edge) {
+    const Vec3d w = vector(features.vertex, features.edge[0]), e = vector(features.edge[1], features.edge[0]);
+    const double ww = squared(w), ee = squared(e);
+    magnitude = ww * ee;
+    if (!in_range(ww) || !in_range(ee)) return {};
+    if (is_full && !(squared(supple::cross(w, e)) > least * magnitude)) return {};
+  } else {
+    const bool are_edges = elements.count_a == 2;
+    const Vec3d u = are_edges ? vector(1, 0) : vector(2, 1), v = are_edges ? vector(3, 2) : vector(3, 1);
+    const Vec3d w = are_edges ? vector(0, 2) : vector(0, 1);
+    const double uu = squared(u), vv = squared(v), ww = squared(w);
+    magnitude = uu * vv * ww;
+    if (!in_range(uu) || !in_range(vv) || !in_range(ww)) return {};
+    const Vec3d n = supple::cross(u, v);
+    const double volume = supple::dot(n, w);
+    if (is_full ? !(volume * volume > least * magnitude) : !(squared(n) > least * uu * vv)) return {};
+  }
+  const auto numbers = numbers_of(DoubleDoubleNumbers(elements), features, elements.count_a == 2);
+  if (!is_full && !(static_cast<double>(numbers.squared) > 0x1p-136 * magnitude)) return {};
+  const double divisor(numbers.divisor);
+  DistanceNumbers result;
+  result.distance = std::sqrt(static_cast<double>(numbers.squared) / divisor);
+  for (std::size_t i = 0; i < 2; ++i) {
+    result.along[i] = static_cast<double>(numbers.along[i]) / divisor;
+    result.rest[i] = static_cast<double>(numbers.rest[i]) / divisor;
+  }
+  const auto& d = numbers.direction;
+  result.direction =
+      direction_of({static_cast<double>(d[0]), static_cast<double>(d[1]), static_cast<double>(d[2])});
+  return result;
+}
+
+Vec3d rounded_direction(const Vector<UnboundedInteger>& v) {
+  int bits = 0;
+  for (const UnboundedInteger& x : v)
+    bits = std::max(bits, bit_length(sign(x) < 0 ? UnboundedInteger(-x) : x));
+  return direction_of({approximate(v[0], -bits), approximate(v[1], -bits), approximate(v[2], -bits)});
+}
+
+/// A direction across elements that touch.
+Vec3d direction_across(const IntegerNumbers& numbers, const ElementPoints& elements) {
+  const int vertices = elements.count_a + elements.count_b;
+  if (vertices == 2) return {1, 0, 0};
+  if (vertices == 4) {
+    const Vec3d normal =
+        rounded_direction(InteriorNumbers<UnboundedInteger>(numbers, elements.count_a == 2).normal);
+    if (normal != Vec3d{}) return normal;
+  }
+  // An edge that is not a point, if there is one. The longest edge of a triangle without area is not needed:
+  // all of its edges lie on one line.
+  for (std::size_t i = 0; i + 1 < static_cast<std::size_t>(vertices); ++i) {
+    if (elements.count_a != i + 1) {
+      const Vec3d e = rounded_direction(numbers.difference(i + 1, i));
+      const Vec3d size = absolute(e);
+      if (e == Vec3d{}) continue;
+      const bool x_is_least = size.x <= size.y && size.x <= size.z;
+      const Vec3d axis = x_is_least ? Vec3d{1, 0, 0} : size.y <= size.z ? Vec3d{0, 1, 0} : Vec3d{0, 0, 1};
+      return direction_of(supple::cross(e, axis));
+    }
+  }
+  return {1, 0, 0};
+}
+
+DistanceNumbers rounded_by_integers(const IntegerNumbers& numbers, const ElementPoints& elements,
+                                    const Features& features) {
+  const auto exact = numbers_of(numbers, features, elements.count_a == 2);
+  DistanceNumbers result;
+  result.distance = Quotient(exact.squared, exact.divisor).square_root(numbers.lowest());
+  for (std::size_t i = 0; i < 2; ++i) {
+    result.along[i] = Quotient(exact.along[i], exact.divisor).value();
+    result.rest[i] = Quotient(exact.rest[i], exact.divisor).value();
+  }
+  result.direction = rounded_direction(exact.direction);
+  return result;
+}
+
+/// The feature of a triangle's edge, or of an edge, by the ends' indices in the element.
+Feature edge_feature(std::uint8_t first, std::uint8_t last) {
+  return {FeatureKind::edge, static_cast<std::uint8_t>(first == 0 && last == 2 ? 2 : first)};
+}
+
+std::optional<ElementDistance> checked(const ElementPoints& elements, double max_distance) {
+  if (!(max_distance >= 0))
+    fail("distance: max_distance is " + std::to_string(max_distance) + "; it must be 0 or more");
+  if (!std::ranges::all_of(elements.points, is_finite)) return {};
+  bool used_exact = false;
+  return distance_within(elements, max_distance, used_exact);
+}
+
+}  // namespace
+
+std::optional<ClosestFeatures> closest_features_within(const ElementPoints& elements, double max_distance,
+                                                       bool& used_exact) {
+  const BoundedNumbers bounded(elements);
+  FeatureSearch<BoundedNumbers> search(bounded, elements);
+  std::optional<Features> features = search.search();
+  std::optional<bool> is_within = features ? search.is_within(max_distance) : std::nullopt;
+  if (!is_within) {
+    used_exact = true;
+    const IntegerNumbers integers(elements, max_distance);
+    FeatureSearch<IntegerNumbers> exact_search(integers, elements);
+    features = exact_search.search();
+    is_within = exact_search.is_within(max_distance);
+  }
+  return *is_within ? features : std::nullopt;
+}
+
+ElementDistance distance_of(const ElementPoints& elements, const ClosestFeatures& features, bool& used_exact,
+                            DistanceAccuracy accuracy) {
+  if (const auto numbers = rounded_by_pairs(elements, features, accuracy))
+    return distance_of(elements, features, *numbers);
+  used_exact = true;
+  const IntegerNumbers integers(elements, any_distance);
+  ElementDistance result = distance_of(elements, features, rounded_by_integers(integers, elements, features));
+  if (result.normal == Vec3d{}) result.normal = direction_across(integers, elements);
+  return result;
+}
+
+ElementDistance distance_of(const ElementPoints& elements, const ClosestFeatures& features,
+                            const DistanceNumbers& numbers) {
+  const std::uint8_t count_a = elements.count_a;
+  ElementDistance result;
+  result.distance = numbers.distance;
+  result.normal = numbers.direction;
+  const auto on = features_of_elements(features, count_a);
+  result.on_a = on[0];
+  result.on_b = on[1];
+  const auto set_vertex = [&](std::uint8_t vertex) {
+    if (vertex < count_a)
+      result.barycentric_a[vertex] = 1;
+    else
+      result.barycentric_b[static_cast<std::size_t>(vertex - count_a)] = 1;
+  };
+  switch (features.kind) {
+    case Features::Kind::vertices:
+      set_vertex(features.vertex);
+      set_vertex(features.edge[0]);
+      break;
+    case Features::Kind::vertex_edge: {
+      set_vertex(features.vertex);
+      const bool on_b = features.vertex < count_a;
+      const std::size_t base = on_b ? count_a : 0;
+      auto& weights = on_b ? result.barycentric_b : result.barycentric_a;
+      weights[features.edge[0] - base] = numbers.rest[0];
+      weights[features.edge[1] - base] = numbers.along[0];
+      if (!on_b) result.normal = -1.0 * result.normal;
+      break;
+    }
+    case Features::Kind::interiors:
+      if (count_a == 2) {
+        result.barycentric_a = {numbers.rest[0], numbers.along[0], 0};
+        result.barycentric_b = {numbers.rest[1], numbers.along[1], 0};
+      } else {
+        set_vertex(0);
+        result.barycentric_b = {numbers.rest[0], numbers.along[0], numbers.along[1]};
+      }
+      break;
+  }
+  for (std::size_t i = 0; i < count_a; ++i) result.point_a += result.barycentric_a[i] * elements.points[i];
+  for (std::size_t i = 0; i < elements.count_b; ++i)
+    result.point_b += result.barycentric_b[i] * elements.points[count_a + i];
+  return result;
+}
+
+std::array<Feature, 2> features_of_elements(const ClosestFeatures& features, std::uint8_t count_a) {
+  const auto vertex_feature = [&](std::uint8_t vertex) {
+    return Feature{FeatureKind::vertex,
+                   static_cast<std::uint8_t>(vertex < count_a ? vertex : vertex - count_a)};
+  };
+  switch (features.kind) {
+    case Features::Kind::vertices:
+      return {vertex_feature(features.vertex), vertex_feature(features.edge[0])};
+    case Features::Kind::vertex_edge: {
+      const bool on_b = features.vertex < count_a;
+      const std::uint8_t base = on_b ? count_a : 0;
+      const Feature edge = edge_feature(static_cast<std::uint8_t>(features.edge[0] - base),
+                                        static_cast<std::uint8_t>(features.edge[1] - base));
+      const Feature vertex = vertex_feature(features.vertex);
+      return on_b ? std::array{vertex, edge} : std::array{edge, vertex};
+    }
+    default:
+      if (count_a == 2) return {Feature{FeatureKind::edge, 0}, Feature{FeatureKind::edge, 0}};
+      return {Feature{FeatureKind::vertex, 0}, Feature{FeatureKind::face, 0}};
+  }
+}
+
+std::optional<ElementDistance> distance_within(const ElementPoints& elements, double max_distance,
+                                               bool& used_exact, DistanceAccuracy accuracy) {
+  const auto features = closest_features_within(elements, max_distance, used_exact);
+  if (!features) return {};
+  return distance_of(elements, *features, used_exact, accuracy);
+}
+
+int compare_distances(const ElementPoints& p, const ElementPoints& q, bool& used_exact) {
+  const BoundedNumbers bounded_p(p), bounded_q(q);
+  FeatureSearch<BoundedNumbers> of_p(bounded_p, p), of_q(bounded_q, q);
+  if (of_p.search() && of_q.search()) {
+    if (const std::optional<int> order = of_p.compare(of_q, 0)) return *order;
+  }
+  used_exact = true;
+  const IntegerNumbers exact_p(p, 0), exact_q(q, 0);
+  FeatureSearch<IntegerNumbers> of_exact_p(exact_p, p), of_exact_q(exact_q, q);
+  of_exact_p.search();
+  of_exact_q.search();
+  return *of_exact_p.compare(of_exact_q, exact_p.lowest() - exact_q.lowest());
+}
+
+std::optional<ElementDistance> point_point_distance(const Vec3d& a, const Vec3d& b, double max_distance) {
+  return checked({{a, b}, 1, 1}, max_distance);
+}
+std::optional<ElementDistance> point_edge_distance(const Vec3d& a, const EdgePoints& b, double max_distance) {
+  return checked({{a, b[0], b[1]}, 1, 2}, max_distance);
+}
+std::optional<ElementDistance> point_triangle_distance(const Vec3d& a, const TrianglePoints& b,
+                                                       double max_distance) {
+  return checked({{a, b[0], b[1], b[2]}, 1, 3}, max_distance);
+}
+std::optional<ElementDistance> edge_edge_distance(const EdgePoints& a, const EdgePoints& b,
+                                                  double max_distance) {
+  return checked({{a[0], a[1], b[0], b[1]}, 2, 2}, max_distance);
+}
+
+}  // namespace supple

@@ -1,0 +1,175 @@
+#include "contact/impact/safe_time.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <span>
+#include <tuple>
+
+#include "contact/distance/element_distance.hpp"
+#include "contact/impact/first_impact.hpp"
+#include "contact/impact/impact_search.hpp"
+#include "geometry/numbers/double_double.hpp"
+#include "geometry/vector.hpp"
+
+namespace supple {
+namespace {
+
+double longest_of(std::span<const Vec3d> ways) {
+  double longest = 0;
+  for (const Vec3d& way : ways) longest = std::max(longest, scaled_norm(way));
+  return longest;
+}
+
+std::array<Vec3d, 4> ways_of(const ElementMotion& motion) {
+  std::array<Vec3d, 4> ways;
+  for (std::size_t i = 0; i < 4; ++i) ways[i] = motion.end[i] - motion.start[i];
+  return ways;
+}
+
+/// A motion times a power of two, so that products of coordinates neither overflow nor underflow. Coordinates
+/// that vanish are far below the rounding of the others.
+struct ScaledMotion {
+  ElementMotion motion;
+  KeptDistance kept;
+  double factor = 1;
+
+  ScaledMotion(const ElementMotion& unscaled, const KeptDistance& unscaled_kept)
+      : motion(unscaled), kept(unscaled_kept) {
+    double size = 0;
+    for (const auto* moment : {&motion.start, &motion.end}) {
+      for (const Vec3d& p : *moment) size = std::max(size, largest_magnitude(p));
+    }
+    if (size == 0 || (size < 0x1p100 && size > 0x1p-100)) return;
+    const int exponent = std::clamp(-std::ilogb(size), -1000, 1000);
+    factor = std::ldexp(1.0, exponent);
+    for (auto* moment : {&motion.start, &motion.end}) {
+      for (Vec3d& p : *moment) p = scaled(p, exponent);
+    }
+    kept.separation = kept.separation * factor;
+  }
+};
+
+constexpr double smallest = std::numeric_limits<double>::denorm_min();
+
+/// Bounds of the distance that elements keep.
+struct KeptBounds {
+  double low = 0, high = 0;
+};
+
+/// `is_beyond`: the elements are farther apart than the separation at the start.
+KeptBounds kept_bounds(const DistanceBounds& distance, const KeptDistance& kept, bool is_beyond) {
+  constexpr double less = 1 - 0x1p-50, more = 1 + 0x1p-50;
+  const double base = is_beyond ? kept.separation : 0;
+  if (base == 0 && kept.keep == 0) return {};
+  const double low = std::max(distance.low - base, 0.0) * less, high = (distance.high - base) * more;
+  return {(base + kept.keep * low * less) * less - smallest,
+          (base + kept.keep * high * more) * more + smallest};
+}
+
+bool is_beyond(const DistanceBounds& distance, const ScaledMotion& scaled, const ElementMotion& motion,
+               const KeptDistance& kept) {
+  if (distance.low > scaled.kept.separation * (1 + 0x1p-50) + smallest) return true;
+  return kept.separation == 0 || !are_within(motion, kept.separation);
+}
+
+/// The most by which elements at this distance may come nearer, rounded down.
+double least_room(const DistanceBounds& distance, const KeptDistance& kept, bool is_beyond) {
+  const double beyond = distance.low - (is_beyond ? kept.separation : 0);
+  return std::max(beyond * (1 - kept.keep) * (1 - 0x1p-40), 0.0);
+}
+
+/// Whether the time of the search is early by no more than 2^-18 of the time at which the elements are at the
+/// distance that they keep. The search looked for its upper bound.
+bool is_precise(const ImpactSearch& search, const RelativeMotion& relative, const KeptBounds& least) {
+  if (search.outcome != ImpactSearch::Outcome::touching || !(search.time > 0)) return false;
+  const double later = std::min(search.time * (1 + 3 * 0x1p-20), 1.0);
+  return least.high == 0 || distance_bounds(relative, later).high <= least.low;
+}
+
+/// end - start = end_of_other - start_of_other, without rounding.
+bool have_same_way(const Vec3d& start, const Vec3d& end, const Vec3d& start_of_other,
+                   const Vec3d& end_of_other) {
+  const auto way = [](double from, double to) {
+    const double factor = std::isfinite(to - from) ? 1 : 0.25;
+    const DoubleDouble sum = exact_sum(factor * to, -factor * from);
+    return std::tuple(sum.high, sum.low, factor);
+  };
+  for (int axis = 0; axis < 3; ++axis) {
+    if (way(start[axis], end[axis]) != way(start_of_other[axis], end_of_other[axis])) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+double largest_approach(const ElementMotion& motion) {
+  const std::array<Vec3d, 4> ways = ways_of(motion);
+  double largest = 0;
+  const std::size_t count = motion.are_edges ? 2 : 1;
+  for (std::size_t i = 0; i < count; ++i) {
+    for (std::size_t k = count; k < 4; ++k) largest = std::max(largest, scaled_norm(ways[i] - ways[k]));
+  }
+  return largest * (1 + 0x1p-40) + rounding_of_ways * longest_of(ways);
+}
+
+SafeTime safe_time(const ElementMotion& motion, const KeptDistance& kept, double latest, bool exact) {
+  const ScaledMotion scaled(motion, kept);
+  const RelativeMotion relative = relative_motion(scaled.motion);
+  const DistanceBounds start = distance_bounds(relative, 0);
+  if (start.low == 0 && are_within(motion, 0)) {
+    constexpr double any = std::numeric_limits<double>::infinity();
+    return {touch_at_rest(motion) ? std::nullopt : std::optional(0.0), any, false};
+  }
+  const bool beyond = is_beyond(start, scaled, motion, kept);
+  const KeptBounds least = kept_bounds(start, scaled.kept, beyond);
+  const double approach = largest_approach(scaled.motion);
+  SafeTime result{{}, std::max(least.low, start.low - approach) / scaled.factor, false};
+  if (approach < least_room(start, scaled.kept, beyond)) return result;
+  const ImpactSearch search = search_impact(relative, least.high);
+  if (search.outcome == ImpactSearch::Outcome::apart) return result;
+  result.time = search.time;
+  if (!exact || search.time > latest || is_precise(search, relative, least)) return result;
+  result.used_exact = true;
+  const std::optional<TimeBracket> first = exact_first_contact(motion, kept);
+  result.time = first ? std::optional(first->low) : std::nullopt;
+  return result;
+}
+
+/// Along the direction between the closest points at the start, the elements come nearer by at most the sum
+/// of what each moves towards the other.
+double free_part(const ElementMotion& motion, const KeptDistance& kept, double rounding) {
+  const ScaledMotion scaled(motion, kept);
+  const DistanceBounds start = distance_bounds(relative_motion(scaled.motion), 0);
+  const std::array<Vec3d, 4> ways = ways_of(scaled.motion);
+  double most_a = 0, most_b = 0;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const bool is_of_a = i < (motion.are_edges ? 2u : 1u);
+    double& most = is_of_a ? most_a : most_b;
+    most = std::max(most, dot(is_of_a ? -1.0 * ways[i] : ways[i], start.direction));
+  }
+  const double approach = (most_a + most_b) * (1 + 0x1p-40) + rounding_of_ways * longest_of(ways);
+  const double room =
+      least_room(start, scaled.kept, is_beyond(start, scaled, motion, kept)) - 2 * rounding * scaled.factor;
+  return approach > 0 ? std::clamp(room / approach * (1 - 0x1p-40), 0.0, 1.0) : 1;
+}
+
+bool touch_at_rest(const ElementMotion& motion) {
+  bool used_exact = false;
+  const auto touching =
+      closest_features_within(element_points(motion.start, motion.are_edges), 0, used_exact);
+  if (!touching) return false;
+  const bool are_vertices = touching->kind == ClosestFeatures::Kind::vertices;
+  const std::array<std::size_t, 3> vertices{touching->vertex, touching->edge[0],
+                                            are_vertices ? touching->vertex : touching->edge[1]};
+  const auto moves_with = [&](std::size_t i, std::size_t k) {
+    return have_same_way(motion.start[i], motion.end[i], motion.start[k], motion.end[k]);
+  };
+  if (touching->kind == ClosestFeatures::Kind::interiors)
+    return moves_with(1, 0) && moves_with(2, 0) && moves_with(3, 0);
+  return moves_with(vertices[1], vertices[0]) && moves_with(vertices[2], vertices[0]);
+}
+
+}  // namespace supple

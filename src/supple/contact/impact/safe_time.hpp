@@ -1,0 +1,40 @@
+#pragma once
+
+#include <optional>
+
+#include "contact/impact/exact_impact.hpp"
+#include "contact/impact/relative_motion.hpp"
+
+namespace supple {
+
+/// The differences of ways are rounded, which counts where vertices move together.
+constexpr double rounding_of_ways = 0x1p-50;
+
+/// How two elements limit a safe step.
+struct SafeTime {
+  /// Never later than the first time at which the elements are at the distance that they keep, and earlier by
+  /// at most 2^-18 of it; nothing when they are farther apart in the whole step.
+  std::optional<double> time;
+  /// A lower bound of their distance up to `time`, or in the whole step; infinite for elements that touch at
+  /// the start.
+  double least_distance = 0;
+  bool used_exact = false;
+};
+
+/// Elements that touch at the start do not limit the step when they `touch_at_rest`; otherwise the time is 0.
+/// `motion` is finite. Without `exact` the time may be earlier, and there may be one when there is none. A
+/// time after `latest` may be early, too.
+SafeTime safe_time(const ElementMotion& motion, const KeptDistance& kept, double latest, bool exact);
+
+/// A part, 0 to 1, up to which two elements surely keep their distance when they move by any two parts of
+/// their ways. They then also stay farther apart than `rounding`.
+double free_part(const ElementMotion& motion, const KeptDistance& kept, double rounding);
+
+/// A bound of the most by which two vertices of a pair come nearer.
+double largest_approach(const ElementMotion& motion);
+
+/// Whether elements that touch at the start do not move against each other: the vertices of the features that
+/// touch, as `ElementDistance` names them, move by exactly the same way.
+bool touch_at_rest(const ElementMotion& motion);
+
+}  // namespace supple

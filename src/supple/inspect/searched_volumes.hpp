@@ -1,0 +1,85 @@
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "narrow_phase/traversal.hpp"
+#include "octree/volumes/moving_boxes.hpp"
+#include "supple/types.hpp"
+
+namespace supple {
+
+/// Swept boxes are clamped to the range of float. A bound at the end of the range stands for infinity.
+inline Aabb unclamped(const Aabb& box) {
+  constexpr float greatest = std::numeric_limits<float>::max(), inf = std::numeric_limits<float>::infinity();
+  Aabb result = box;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (box.min[axis] == -greatest) result.min[axis] = -inf;
+    if (box.max[axis] == greatest) result.max[axis] = inf;
+  }
+  return result;
+}
+
+/// The box of a child's triangles at the current positions, with continuous contacts at the end of the step,
+/// without the view's translation.
+inline Aabb child_box(const OctreeView& view, std::uint32_t node, int child) {
+  const bool is_moving = view.moving.start != nullptr;
+  return is_moving ? unclamped(child_box(view.moving.end[node], child)) : child_box(view.boxes[node], child);
+}
+inline BoundingSphere child_sphere(const OctreeView& view, std::uint32_t node, int child) {
+  return child_sphere(view.spheres[node], child);
+}
+
+/// The oriented box or k-DOP of a child, and of the whole object, where the object is now; empty for other
+/// volumes.
+inline std::vector<Slab> child_slabs(const OctreeView& view, std::uint32_t node, int child) {
+  if (view.volumes.empty()) return {};
+  return child_slabs(view.volumes, child_box(view.boxes[node], child), node, child, view.translation);
+}
+inline std::vector<Slab> object_slabs(const OctreeView& view) {
+  if (view.volumes.empty()) return {};
+  return child_slabs(view.volumes, enclosing_box(view.boxes[0]), view.volumes.object, 0, view.translation);
+}
+
+/// Whether the octree is a single leaf. Its only cell is then the root.
+inline bool is_one_leaf(const OctreeView& view) {
+  return !view.nodes.empty() && view.nodes[0].child_count == 1;
+}
+
+/// The level of the children of a node: k of the paper.
+inline std::uint32_t cell_level(const OctreeView& view, std::uint32_t node) {
+  return is_one_leaf(view) ? 0 : view.nodes[node].level + 1u;
+}
+
+/// `OctreeCell::number` of a child: h of the paper.
+inline std::optional<std::uint64_t> cell_number(const OctreeView& view, std::uint64_t arity,
+                                                std::uint32_t node, int child) {
+  if (is_one_leaf(view)) return 0;
+  const OctreeNode& of = view.nodes[node];
+  const auto parent = node == 0 ? 0 : cell_number(view, arity, of.parent, of.index_in_parent);
+  constexpr std::uint64_t most = std::numeric_limits<std::uint64_t>::max();
+  if (!parent || *parent > (most - arity) / arity) return std::nullopt;
+  return arity * *parent + 1 + static_cast<std::uint64_t>(child);
+}
+
+/// Whether one face stays on one side of the other along some axis, by more than the separation, at both ends
+/// of the step and therefore at all times. Faces are in octree order.
+inline bool moving_faces_apart(const ObjectPairView& pair, TrianglePair faces) {
+  const auto [start_a, end_a] = moving_face_boxes(pair.a.moving, faces.a);
+  const auto [start_b, end_b] = moving_face_boxes(pair.b.moving, faces.b);
+  const double separation = pair.separation;
+  if (start_a.empty() || start_b.empty()) return true;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double offset = pair.placement.offset[axis];
+    const auto below = [&](const Aabb& low, const Aabb& high, double offset_of_high) {
+      return double{high.min[axis]} + offset_of_high - low.max[axis] > separation;
+    };
+    if (below(start_a, start_b, offset) && below(end_a, end_b, offset)) return true;
+    if (below(start_b, start_a, -offset) && below(end_b, end_a, -offset)) return true;
+  }
+  return false;
+}
+
+}  // namespace supple

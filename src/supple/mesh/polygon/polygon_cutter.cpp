@@ -1,0 +1,52 @@
+#include "mesh/polygon/polygon_cutter.hpp"
+
+#include <algorithm>
+#include <cassert>
+
+#include "geometry/vector.hpp"
+#include "mesh/polygon/outline_winding.hpp"
+
+namespace supple {
+namespace {
+
+/// Whether the fan of the first corner covers the inside once: all triangles turn left, and all together turn
+/// around the first corner at most once.
+bool fan_stays_inside(const OutlineView& view) {
+  const auto count = static_cast<std::uint32_t>(view.size());
+  int half_turns = 0;
+  for (std::uint32_t k = 1; k + 1 < count; ++k) {
+    if (view.side(std::uint32_t{0}, k, k + 1) < 0) return false;
+    if (k > 1 && view.same_place(0, k)) return false;
+    if (view.before(0, k) != view.before(0, k + 1)) ++half_turns;
+  }
+  return half_turns < 2 || (half_turns == 2 && !view.same_place(0, 1) &&
+                            view.side(std::uint32_t{0}, std::uint32_t{1}, count - 1) <= 0);
+}
+
+bool turns_right_somewhere(const OutlineView& view) {
+  const auto count = static_cast<std::uint32_t>(view.size());
+  for (std::uint32_t k = 0; k < count; ++k) {
+    if (view.side(k, (k + 1) % count, (k + 2) % count) < 0) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+PolygonShape PolygonCutter::cut(std::span<const Vec3d> corners, std::span<Triangle> triangles) {
+  assert(corners.size() >= 3 && triangles.size() == corners.size() - 2);
+  for (std::uint32_t k = 0; k < triangles.size(); ++k) triangles[k] = {0, k + 1, k + 2};
+  PolygonShape shape;
+  if (corners.size() == 3 || !std::all_of(corners.begin(), corners.end(), is_finite)) return shape;
+  const OutlineView view(corners);
+  if (!view) return shape;
+  shape.bent = is_bent(corners);
+  if (!fan_stays_inside(view)) {
+    shape.crosses = crosses_itself(view);
+    if (!clipper_.clip(view, shape.crosses, triangles)) shape.crosses = true;
+  }
+  shape.concave = !shape.crosses && turns_right_somewhere(view);
+  return shape;
+}
+
+}  // namespace supple

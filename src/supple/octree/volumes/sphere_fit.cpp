@@ -1,0 +1,222 @@
+#include "octree/volumes/sphere_fit.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <optional>
+
+#include "core/float_rounding.hpp"
+#include "geometry/vector.hpp"
+
+namespace supple {
+namespace {
+
+/// Pivots after which the search ends. It usually takes fewer than ten.
+constexpr int most_pivots = 32;
+/// The search ends when no vertex is farther than this factor of the squared radius.
+constexpr double squared_tolerance = 1 + 0x1p-22;
+/// Covers the rounding of spheres around up to five points.
+constexpr double squared_slack = 1 + 0x1p-36;
+
+/// The paper's equations 3 and 4: the sphere inside the cube that has the lower corner and the longest side
+/// of the box.
+BoundingSphere sphere_from_box(const Aabb& box) {
+  const double side =
+      std::max({double{box.max.x} - box.min.x, double{box.max.y} - box.min.y, double{box.max.z} - box.min.z});
+  const auto half = static_cast<float>(side / 2);
+  return {{box.min.x + half, box.min.y + half, box.min.z + half}, half};
+}
+
+Vec3f middle_of(const Aabb& box) {
+  Vec3f middle;
+  constexpr double limit = std::numeric_limits<float>::max();
+  for (int axis = 0; axis < 3; ++axis) {
+    middle[axis] = static_cast<float>((std::clamp(double{box.min[axis]}, -limit, limit) +
+                                       std::clamp(double{box.max[axis]}, -limit, limit)) /
+                                      2);
+  }
+  return middle;
+}
+
+Vec3d in_double(const Vec3f& p) {
+  return {p.x, p.y, p.z};
+}
+
+/// Finds the vertex that is farthest from a centre.
+class FarthestVertex {
+ public:
+  explicit FarthestVertex(const SphereFitter& octree) : octree_(octree) {}
+
+  void start(const Vec3f& center) {
+    center_ = center;
+    from_ = in_double(center);
+    squared_distance_ = 0;
+  }
+
+  void search_child(std::uint32_t n, int child) {
+    const OctreeNode& node = octree_.nodes[n];
+    if (node.is_inner(child)) {
+      search_node(node.child_node(child));
+    } else if (octree_.inert.empty()) {
+      const std::uint32_t* const first = octree_.leaves.first + std::size_t{n} * node_width + child;
+      for (std::uint32_t i = first[0]; i < first[1]; ++i) consider(octree_.leaves.vertices[i]);
+    } else {
+      for (std::uint32_t t = node.first_triangle[child]; t < node.first_triangle[child + 1]; ++t) {
+        if (octree_.inert[t] != 0) continue;
+        for (const std::uint32_t vertex : octree_.triangles[t]) consider(vertex);
+      }
+    }
+  }
+
+  void search_node(std::uint32_t n) {
+    struct Reach {
+      double most;  ///< bound of the distance
+      int child;
+    };
+    std::array<Reach, node_width> reaches;
+    const int count = octree_.nodes[n].child_count;
+    for (int child = 0; child < count; ++child) {
+      const BoundingSphere sphere = child_sphere(octree_.spheres[n], child);
+      reaches[static_cast<std::size_t>(child)] = {norm(in_double(sphere.center) - from_) + sphere.radius,
+                                                  child};
+    }
+    std::sort(reaches.begin(), reaches.begin() + count, [](const Reach& a, const Reach& b) {
+      return a.most != b.most ? a.most > b.most : a.child < b.child;
+    });
+    for (int i = 0; i < count; ++i) {
+      const auto [most, child] = reaches[static_cast<std::size_t>(i)];
+      // The factor covers the rounding of the distances.
+      if (most * most * (1 + 0x1p-40) < squared_distance_) break;
+      if (!child_sphere(octree_.spheres[n], child).empty()) search_child(n, child);
+    }
+  }
+
+  Vec3d position() const { return position_; }
+  double squared_distance() const { return squared_distance_; }
+
+  /// The sphere around the centre that reaches the vertex.
+  BoundingSphere sphere() const {
+    // The factor covers the rounding of the sum and the root; the addend covers squares that underflow.
+    return {center_,
+            round_up(std::sqrt(squared_distance_) * (1 + 0x1p-50) + std::numeric_limits<float>::min())};
+  }
+
+ private:
+  void consider(std::uint32_t vertex) {
+    const Vec3d p = octree_.vertices[vertex];
+    const double squared_distance = squared_norm(p - from_);
+    if (!(squared_distance > squared_distance_)) return;
+    squared_distance_ = squared_distance;
+    position_ = p;
+  }
+
+  const SphereFitter& octree_;
+  Vec3f center_{};
+  Vec3d from_{}, position_{};
+  double squared_distance_ = 0;
+};
+
+struct Ball {
+  Vec3d center;
+  double squared_radius;
+};
+
+/// Up to four points on a ball.
+struct Support {
+  std::array<Vec3d, 4> points{};
+  std::size_t count = 0;
+
+  void push(const Vec3d& point) { points[count++] = point; }
+};
+
+/// The smallest ball with all points on its surface. The center is not finite when the points are not
+/// independent.
+Ball ball_through(const Support& support) {
+  const auto& p = support.points;
+  const Vec3d a = p[1] - p[0], b = p[2] - p[0], c = p[3] - p[0];
+  const double aa = squared_norm(a), bb = squared_norm(b), cc = squared_norm(c);
+  Vec3d offset{};
+  if (support.count == 2) offset = a / 2;
+  if (support.count == 3) {
+    const Vec3d normal = cross(a, b);
+    offset = cross(aa * b - bb * a, normal) / (2 * squared_norm(normal));
+  }
+  if (support.count == 4)
+    offset = (aa * cross(b, c) + bb * cross(c, a) + cc * cross(a, b)) / (2 * dot(a, cross(b, c)));
+  return {p[0] + offset, squared_norm(offset)};
+}
+
+/// The smallest ball around the support and a point outside of its ball, which is on the new ball. Replaces
+/// the support by the points on the new ball. Nothing when rounding hides it.
+std::optional<Ball> extended_ball(Support& support, const Vec3d& point) {
+  std::optional<Ball> smallest;
+  Support chosen;
+  for (std::uint32_t subset = 0; subset < 1u << support.count; ++subset) {
+    Support on_ball;
+    on_ball.push(point);
+    if (bit_count(subset) > 3) continue;
+    for (std::size_t i = 0; i < support.count; ++i) {
+      if ((subset >> i & 1) != 0) on_ball.push(support.points[i]);
+    }
+    const Ball ball = ball_through(on_ball);
+    if (smallest && !(ball.squared_radius < smallest->squared_radius)) continue;
+    const bool encloses = std::all_of(
+        support.points.begin(), support.points.begin() + support.count,
+        [&](const Vec3d& p) { return squared_norm(p - ball.center) <= ball.squared_radius * squared_slack; });
+    if (!encloses || !is_finite(ball.center)) continue;
+    smallest = ball;
+    chosen = on_ball;
+  }
+  support = chosen;
+  return smallest;
+}
+
+/// `farthest` starts with the vertex farthest from the middle of the box, and `search(farthest)` visits the
+/// vertices to enclose. Points are relative to the middle of the box, so that
+/// an object far from the origin loses no bits.
+template <class Search>
+BoundingSphere minimal_sphere(FarthestVertex& farthest, const Vec3f& middle, const Search& search) {
+  BoundingSphere smallest = farthest.sphere();
+  if (farthest.squared_distance() == 0) return smallest;
+  Support support;
+  double squared_radius = -1;
+  for (int pivot = 0; pivot < most_pivots; ++pivot) {
+    const std::optional<Ball> ball = extended_ball(support, farthest.position() - in_double(middle));
+    if (!ball || !(ball->squared_radius > squared_radius)) break;
+    squared_radius = ball->squared_radius;
+    Vec3f center;
+    for (int axis = 0; axis < 3; ++axis)
+      center[axis] = static_cast<float>(double{middle[axis]} + ball->center[axis]);
+    farthest.start(center);
+    search(farthest);
+    const BoundingSphere sphere = farthest.sphere();
+    if (sphere.radius < smallest.radius) smallest = sphere;
+    if (farthest.squared_distance() <= squared_radius * squared_tolerance) break;
+  }
+  return smallest;
+}
+
+template <class Search>
+BoundingSphere fitted_sphere(const SphereFitter& octree, const Aabb& box, const Search& search) {
+  if (box.empty()) return {};
+  if (octree.fit == SphereFit::box) return sphere_from_box(box);
+  const Vec3f middle = middle_of(box);
+  FarthestVertex farthest(octree);
+  farthest.start(middle);
+  search(farthest);
+  return octree.fit == SphereFit::minimal ? minimal_sphere(farthest, middle, search) : farthest.sphere();
+}
+
+}  // namespace
+
+BoundingSphere SphereFitter::sphere_of_child(std::uint32_t node, int child, const Aabb& box) const {
+  return fitted_sphere(*this, box, [&](FarthestVertex& farthest) { farthest.search_child(node, child); });
+}
+
+BoundingSphere SphereFitter::sphere_of_object(const Aabb& box) const {
+  return fitted_sphere(*this, box, [](FarthestVertex& farthest) { farthest.search_node(0); });
+}
+
+}  // namespace supple

@@ -1,0 +1,126 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "contact/distance/ray_triangle.hpp"
+#include "core/stop_signal.hpp"
+#include "narrow_phase/ordered_descent.hpp"
+#include "narrow_phase/overlap_kernels.hpp"
+#include "narrow_phase/query_kernels.hpp"
+#include "narrow_phase/recent_leaf_boxes.hpp"
+#include "octree/vertex_buffer.hpp"
+#include "supple/mesh.hpp"
+#include "supple/queries.hpp"
+#include "supple/triangle_intersection.hpp"
+
+namespace supple {
+
+class NearestTriangle;
+
+/// What queries read of one object at rest, whose octree is refitted.
+struct QueriedObject {
+  ObjectId id;
+  OctreeView view;
+  const VertexBuffer* positions = nullptr;
+  std::span<const Triangle> triangles;  ///< in octree order
+  std::span<const std::uint32_t> triangle_ids;
+  Aabb box;  ///< of the placed object
+  bool has_inert_faces = false;
+  const QueryBox* fine_boxes = nullptr;  ///< eight for each node; null where the octree's boxes serve as well
+
+  /// The placed corners of a triangle in octree order.
+  TrianglePoints corners(std::uint32_t triangle) const;
+  /// The box of the placed triangles of a child; inverted when it has none that is finite.
+  QueryBox child_box(std::uint32_t node, int child) const;
+  LeafArrays leaves() const { return {view.arrays, view.boxes, view.leaf_vertices}; }
+};
+
+/// From this ratio of distance and size on, distances in single precision hardly tell triangles apart.
+constexpr double far_ratio = 0x1p8;
+/// Whether something at this distance is farther away than `ratio` times the size of the box.
+bool is_far(const Aabb& box, double distance, double ratio);
+
+/// A point as the boxes of an object's octree see it: in single precision, without the translation.
+PointBounds seen_by(const QueriedObject& object, const Vec3d& point);
+
+/// A triangle, by object in a list of objects and in octree order, and at most its distance to a point.
+struct NearTriangle {
+  double distance = 0;
+  std::uint32_t object = 0, triangle = 0;
+};
+
+/// A triangle on a ray: its place on the ray, its object in a list of objects, and the user's number.
+struct TriangleOnRay {
+  RayParameter parameter;
+  std::uint32_t object = 0, id = 0;
+};
+
+/// Answers queries to a list of objects, one after the other. Holds the memory of one worker.
+class ObjectQueries {
+ public:
+  /// Call before queries to another list of objects, or after they changed. After a request to stop, queries
+  /// end early, and their results are of no use.
+  void start(const StopSignal& stop = {});
+  /// Looks first at the triangle that was nearest to the point before: for points that are close to each
+  /// other, hardly any other triangle is nearer.
+  std::optional<ClosestPoint> closest(std::span<const QueriedObject> objects, const Vec3d& point,
+                                      double max_distance);
+  /// The triangle of the last result of `closest`, in octree order.
+  std::uint32_t last_nearest_triangle() const { return last_nearest_->triangle; }
+  /// How many triangles `closest` and the rays have decided exactly.
+  std::uint64_t decided() const { return decided_; }
+  /// How many triangles `closest` has bounded.
+  std::uint64_t bounded() const { return bounded_; }
+  std::optional<RayHit> cast(std::span<const QueriedObject> objects, const Ray& ray, bool count_hits);
+  /// Appends all triangles on the ray, ordered by t, object and triangle.
+  void cast_all(std::span<const QueriedObject> objects, const Ray& ray, std::uint32_t query,
+                std::vector<ListedRayHit>& found);
+  /// Whether the point of the last `closest` is inside the object of its result.
+  bool is_inside_nearest(std::span<const QueriedObject> objects, const Vec3d& point) {
+    return inside(last_nearest_->object, objects[last_nearest_->object], point) == Containment::inside;
+  }
+  /// Appends the triangles that overlap the region.
+  void overlaps(std::span<const QueriedObject> objects, const QueryBox& box, std::uint32_t query,
+                std::vector<Overlap>& found);
+  void overlaps(std::span<const QueriedObject> objects, const QuerySphere& sphere, std::uint32_t query,
+                std::vector<Overlap>& found);
+  /// `index` is a number of the caller. Objects with an inert triangle contain nothing.
+  Containment inside(std::uint32_t index, const QueriedObject& object, const Vec3d& point);
+
+ private:
+  template <class Chosen, class Visit>
+  void visit_leaf(std::uint32_t index, const QueriedObject& object, std::uint32_t leaf, std::uint32_t begin,
+                  std::uint32_t end, const Chosen& chosen, const Visit& visit);
+  static void bound_children(const QueriedObject& object, std::uint32_t node, const Vec3d& point,
+                             const PointBounds& seen, const NearestTriangle& nearest,
+                             std::array<double, node_width>& bounds);
+  static std::uint32_t frontmost_triangle(const QueriedObject& object, const Vec3d& point);
+  /// Calls `visit` with the triangles of an object whose boxes overlap the region, in octree order within
+  /// leaves.
+  template <class Visit>
+  void visit_overlapping(std::uint32_t index, const QueriedObject& object, const QueryBox& region,
+                         const Visit& visit);
+  template <class Visit>
+  void visit_triangles_on_ray(std::span<const QueriedObject> objects, const Ray& ray, const double& limit,
+                              const Visit& visit);
+  /// The objects with a bound of at most `limit`, the smallest first.
+  template <class BoundOf>
+  void order(std::span<const QueriedObject> objects, const BoundOf& bound_of, double limit);
+
+  StopSignal stop_;
+  std::uint64_t decided_ = 0, bounded_ = 0;
+  std::optional<NearTriangle> last_nearest_;
+  std::vector<TriangleOnRay> on_ray_;  // of `cast_all`
+  std::vector<NearTriangle> candidates_;
+  OrderedDescent descent_;
+  std::vector<std::uint32_t> nodes_;
+  RecentLeafBoxes recent_;
+  std::vector<std::pair<double, std::uint32_t>> order_;
+};
+
+}  // namespace supple

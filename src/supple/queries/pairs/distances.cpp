@@ -1,0 +1,175 @@
+// Distances of objects, and whether they intersect.
+
+#include <algorithm>
+#include <cmath>
+
+#include "geometry/vector.hpp"
+#include "queries/check_queries.hpp"
+#include "queries/queries.hpp"
+
+namespace supple {
+namespace {
+
+double squared_gap(const Aabb& a, const Aabb& b) {
+  double square = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double gap = std::max({double{a.min[axis]} - b.max[axis], double{b.min[axis]} - a.max[axis], 0.0});
+    square += gap * gap;
+  }
+  return square;
+}
+
+/// Whether an object is far from something in another box.
+bool is_far_from(const Aabb& box, const Aabb& other) {
+  return is_far(box, std::sqrt(squared_gap(box, other)), far_ratio);
+}
+
+/// Whether two boxes may be within `distance` of each other.
+bool may_be_within(const Aabb& a, const Aabb& b, double distance) {
+  const double square = squared_gap(a, b);
+  return square * (1 - 0x1p-50) <= distance * distance * (1 + 0x1p-50) + 0x1p-1060;
+}
+
+}  // namespace
+
+/// Whether the boxes of the octrees of two objects are too rough for their distance.
+bool Queries::are_far(const ObjectPair& pair) const {
+  const Aabb &a = world_[pair.a.index].box(), &b = world_[pair.b.index].box();
+  return !a.empty() && !b.empty() && is_far_from(a, b) && is_far_from(b, a);
+}
+
+/// Call it before `find`. The caller holds the mutex.
+void Queries::prepare(NearObjects& near) const {
+  WorldObject &a = world_[near.pair.a.index], &b = world_[near.pair.b.index];
+  if (are_far(near.pair)) {
+    a.update_fine_boxes();
+    b.update_fine_boxes();
+  }
+  if (const auto known = nearest_triangles_.find(near.pair); known != nearest_triangles_.end()) {
+    const auto is_inert = [](const WorldObject& object, std::uint32_t triangle) {
+      const std::uint8_t* const inert = object.resting_view().arrays.inert;
+      return inert != nullptr && inert[triangle] != 0;
+    };
+    const TrianglePair last{a.octree().octree_triangle(known->second.a),
+                            b.octree().octree_triangle(known->second.b)};
+    if (!is_inert(a, last.a) && !is_inert(b, last.b)) near.guess = last;
+  }
+}
+
+/// The search starts at the triangles of the last one.
+void Queries::find(NearObjects& near, double max_distance, const StopSignal& stop,
+                   NearestPairSearch& search) const {
+  const WorldObject &a = world_[near.pair.a.index], &b = world_[near.pair.b.index];
+  QueriedObject of_a = queried_object(world_, near.pair.a.index),
+                of_b = queried_object(world_, near.pair.b.index);
+  if (are_far(near.pair)) {
+    of_a.fine_boxes = a.fine_boxes();
+    of_b.fine_boxes = b.fine_boxes();
+  }
+  near.found = search.nearest(of_a, of_b, max_distance, near.guess, stop);
+  if (near.found) {
+    near.triangles = {a.octree().triangle_ids()[search.triangles().a],
+                      b.octree().triangle_ids()[search.triangles().b]};
+  }
+}
+
+std::optional<ProximityPair> Queries::distance(ObjectId a, ObjectId b, const CallLimits& limits) const {
+  NearObjects near{.pair = world_.two_objects(a, b, "distance")};
+  const Lease use(*this);
+  use->workers.resize(world_.parallel.worker_count());
+  {
+    const std::lock_guard lock(mutex_);
+    refit();
+    prepare(near);
+  }
+  check_exact_bits_of_pairs(world_, {&near.pair, 1}, "distance");
+  const StopSignal stop = stop_of(limits);
+  find(near, any_distance, stop, use->workers.front().pair_search);
+  if (stop.stop_requested()) return {};
+  if (near.found) {
+    const std::lock_guard lock(mutex_);
+    nearest_triangles_[near.pair] = near.triangles;
+  }
+  return near.found;
+}
+
+bool Queries::any_contact(ObjectId a, ObjectId b, const CallLimits& limits) const {
+  const ObjectPair pair = world_.two_objects(a, b, "any_contact");
+  const Lease use(*this);
+  use->workers.resize(world_.parallel.worker_count());
+  {
+    const std::lock_guard lock(mutex_);
+    refit();
+  }
+  check_exact_bits_of_pairs(world_, {&pair, 1}, "any_contact");
+  const StopSignal stop = stop_of(limits);
+  const bool found = use->workers.front().pair_search.any_contact(queried_object(world_, pair.a.index),
+                                                                  queried_object(world_, pair.b.index), stop);
+  return found && !stop.stop_requested();
+}
+
+/// The pairs of objects whose boxes are within the distance, in canonical order.
+std::vector<Queries::NearObjects> Queries::near_objects(double max_distance) const {
+  std::vector<NearObjects> near;
+  std::vector<std::uint32_t> by_box;
+  for (std::uint32_t slot = 0; slot < world_.slot_count(); ++slot) {
+    if (world_.at(slot) != nullptr && !world_[slot].box().empty()) by_box.push_back(slot);
+  }
+  const auto box_of = [&](std::uint32_t slot) -> const Aabb& { return world_[slot].box(); };
+  std::sort(by_box.begin(), by_box.end(), [&](std::uint32_t p, std::uint32_t q) {
+    return std::pair(box_of(p).min.x, p) < std::pair(box_of(q).min.x, q);
+  });
+  for (std::size_t i = 0; i < by_box.size(); ++i) {
+    const double last = double{box_of(by_box[i]).max.x} + max_distance,
+                 end = last + 0x1p-50 * std::fabs(last);
+    for (std::size_t k = i + 1; k < by_box.size() && !(box_of(by_box[k]).min.x > end); ++k) {
+      const auto [a, b] = std::minmax(by_box[i], by_box[k]);
+      if (may_be_within(box_of(a), box_of(b), max_distance) && world_.may_pair({a, b}))
+        near.push_back({.pair = {world_.id_of(a), world_.id_of(b)}});
+    }
+  }
+  std::sort(near.begin(), near.end(),
+            [](const NearObjects& p, const NearObjects& q) { return p.pair < q.pair; });
+  return near;
+}
+
+std::vector<ProximityPair> Queries::distances(double max_distance, const CallLimits& limits) const {
+  check_distance(max_distance, "distances");
+  const Lease use(*this);
+  use->workers.resize(world_.parallel.worker_count());
+  {
+    const std::lock_guard lock(mutex_);
+    refit();
+  }
+  std::vector<NearObjects> near = near_objects(max_distance);  // calls the filter, so without the lock
+  {
+    const std::lock_guard lock(mutex_);
+    for (NearObjects& objects : near) prepare(objects);
+  }
+  if (has_exact_limit(world_)) {
+    std::vector<ObjectPair> pairs;
+    for (const NearObjects& objects : near) pairs.push_back(objects.pair);
+    check_exact_bits_of_pairs(world_, pairs, "distances");
+  }
+  const StopSignal stop = stop_of(limits);
+  world_.parallel.for_ranges(near.size(), 1, [&](std::size_t begin, std::size_t end, std::uint32_t worker) {
+    for (std::size_t i = begin; i < end && !stop.stop_requested(); ++i)
+      find(near[i], max_distance, stop, use->workers[worker].pair_search);
+  });
+  std::vector<ProximityPair> found;
+  if (stop.stop_requested()) return found;
+  const std::lock_guard lock(mutex_);
+  for (const NearObjects& objects : near) {
+    if (!objects.found) continue;
+    found.push_back(*objects.found);
+    nearest_triangles_[objects.pair] = objects.triangles;
+  }
+  return found;
+}
+
+void Queries::forget(ObjectId id) {
+  std::erase_if(nearest_triangles_,
+                [&](const auto& known) { return known.first.a == id || known.first.b == id; });
+}
+
+}  // namespace supple

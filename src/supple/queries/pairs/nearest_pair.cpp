@@ -1,0 +1,445 @@
+#include "queries/pairs/nearest_pair.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <tuple>
+
+#include "contact/intersection/triangle_intersection.hpp"
+#include "core/float_rounding.hpp"
+#include "geometry/aabb.hpp"
+#include "geometry/vector.hpp"
+#include "queries/feature_name.hpp"
+
+namespace supple {
+namespace {
+
+PairName name_of(const ProximityPair& pair) {
+  return {pair.kind_a, pair.kind_b, pair.element_a, pair.element_b};
+}
+
+/// Whether the boxes of some points are farther apart than `distance`.
+bool boxes_apart(std::span<const Vec3d> a, std::span<const Vec3d> b, double distance) {
+  double square = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    double low_a = a[0][axis], high_a = low_a, low_b = b[0][axis], high_b = low_b;
+    for (const Vec3d& p : a) {
+      low_a = std::min(low_a, p[axis]);
+      high_a = std::max(high_a, p[axis]);
+    }
+    for (const Vec3d& p : b) {
+      low_b = std::min(low_b, p[axis]);
+      high_b = std::max(high_b, p[axis]);
+    }
+    const double gap = std::max({low_a - high_b, low_b - high_a, 0.0});
+    if (gap > distance * (1 + 0x1p-50)) return true;
+    square += gap * gap;
+  }
+  return square > distance * distance * (1 + 0x1p-48) + 0x1p-1040;
+}
+
+/// The barycentric coordinates of a point on a feature of a triangle, by the vertices of the feature: those
+/// of an edge by ascending ids. Rounded.
+std::array<double, 3> weights_at(const Vec3d& point, const Feature& feature, const TrianglePoints& corners,
+                                 const Triangle& vertices) {
+  if (feature.kind == FeatureKind::vertex) return {1, 0, 0};
+  const std::size_t first = feature.index, next = (first + 1) % 3;
+  const Vec3d to_point = point - corners[first], along = corners[next] - corners[first];
+  const double size = feature.kind == FeatureKind::edge
+                          ? largest_magnitude(along)
+                          : std::max(largest_magnitude(along), largest_magnitude(corners[2] - corners[0]));
+  const auto scaled = [&](const Vec3d& v) { return Vec3d{v.x / size, v.y / size, v.z / size}; };
+  const Vec3d w = scaled(to_point), u = scaled(along);
+  if (feature.kind == FeatureKind::edge) {
+    const double part = std::clamp(dot(w, u) / dot(u, u), 0.0, 1.0);
+    const bool is_reversed = vertices[next] < vertices[first];
+    return is_reversed ? std::array{part, 1 - part, 0.0} : std::array{1 - part, part, 0.0};
+  }
+  const Vec3d v = scaled(corners[2] - corners[0]), n = cross(u, v);
+  const double whole = dot(n, n), s = dot(cross(w, v), n) / whole, t = dot(cross(u, w), n) / whole;
+  if (std::isfinite(s) && std::isfinite(t)) return {1 - s - t, s, t};
+  bool used_exact = false;  // almost without area
+  const ElementPoints elements{{point, corners[0], corners[1], corners[2]}, 1, 3};
+  return distance_within(elements, any_distance, used_exact, DistanceAccuracy::rough)->barycentric_b;
+}
+
+}  // namespace
+
+void NearestPairSearch::start(const QueriedObject& a, const QueriedObject& b, Search search,
+                              double max_distance, const StopSignal& stop) {
+  stop_ = stop;
+  a_ = &a;
+  b_ = &b;
+  search_ = search;
+  recent_.clear();
+  intersects_ = false;
+  best_.reset();
+  bound_.clear();
+  decided_triangles_ = decided_elements_ = 0;
+  stack_.clear();
+  vertices_and_faces_.count = 0;
+  edges_.count = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double from = a.view.translation[axis], to = b.view.translation[axis];
+    offset_[axis] = from - to;
+    const auto largest = [&](const Aabb& box) {
+      return std::max(std::fabs(double{box.min[axis]}), std::fabs(double{box.max[axis]}));
+    };
+    // More than the roundings of two translated vertices and of the sums below.
+    slop_[axis] = from == 0 && to == 0
+                      ? 0
+                      : 0x1p-49 * (std::fabs(from) + std::fabs(to) + largest(a.box) + largest(b.box));
+  }
+  set_limit(max_distance);
+}
+
+void NearestPairSearch::set_limit(double limit) {
+  limit_ = limit;
+  squared_limit_ = round_up(limit * limit * (1 + 0x1p-18) + 0x1p-120);
+}
+
+PointBounds NearestPairSearch::seen(const Aabb& box, double direction) const {
+  constexpr float most = std::numeric_limits<float>::max();
+  PointBounds bounds;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double offset = direction * offset_[axis];
+    // Always a step outwards, which is faster than `round_down` and `round_up`.
+    const float low = std::min(static_cast<float>(box.min[axis] + offset - slop_[axis]), most),
+                high = std::max(static_cast<float>(box.max[axis] + offset + slop_[axis]), -most);
+    bounds.low[axis] = low - outward_step(low);
+    bounds.high[axis] = high + outward_step(high);
+  }
+  return bounds;
+}
+
+bool NearestPairSearch::any_contact(const QueriedObject& a, const QueriedObject& b, const StopSignal& stop) {
+  start(a, b, Search::any_contact, 0, stop);
+  descend();
+  return intersects_;
+}
+
+std::optional<ProximityPair> NearestPairSearch::nearest(const QueriedObject& a, const QueriedObject& b,
+                                                        double max_distance,
+                                                        std::optional<TrianglePair> guess,
+                                                        const StopSignal& stop) {
+  start(a, b, Search::nearest, max_distance, stop);
+  if (a.box.empty() || b.box.empty()) return {};
+  if (guess)
+    decide(*guess);
+  else
+    guess_by_projection();
+  consider_all();
+  descend();
+  if (!intersects_) consider_all();
+  return intersects_ ? contact_pair() : best_;
+}
+
+/// Projects a point from one surface to the other and back, until the distance no longer decreases.
+void NearestPairSearch::guess_by_projection() {
+  Vec3d point;
+  for (int axis = 0; axis < 3; ++axis)
+    point[axis] = (double{a_->box.min[axis]} + double{a_->box.max[axis]}) / 2;
+  if (!is_finite(point)) point = a_->corners(0)[0];
+  if (!is_finite(point)) return;
+  constexpr int most = 6;
+  TrianglePair triangles;
+  double last = any_distance;
+  for (int i = 0; i < most; ++i) {
+    const QueriedObject& onto = i % 2 == 0 ? *b_ : *a_;
+    queries_.start(stop_);
+    const auto closest = queries_.closest(std::span(&onto, 1), point, any_distance);
+    if (!closest) return;
+    (i % 2 == 0 ? triangles.b : triangles.a) = queries_.last_nearest_triangle();
+    if (i > 1 && !(closest->distance < last)) break;
+    if (i > 0) last = closest->distance;
+    point = closest->point;
+    if (!is_finite(point)) return;
+  }
+  decide(triangles);
+}
+
+void NearestPairSearch::descend() {
+  const auto children = [](const QueriedObject& object, std::uint32_t node) {
+    return int{object.view.nodes[node].child_count};
+  };
+  if (a_->view.nodes.empty() || b_->view.nodes.empty()) return;
+  expand(0, 0, children(*a_, 0), 0, 0, children(*b_, 0));
+  while (!stack_.empty() && !is_done()) {
+    const Entry entry = stack_.back();
+    stack_.pop_back();
+    if (!(entry.square <= squared_limit_) || are_apart(entry)) continue;
+    const OctreeNode &node_a = a_->view.nodes[entry.node_a], &node_b = b_->view.nodes[entry.node_b];
+    const bool is_inner_a = node_a.is_inner(entry.child_a), is_inner_b = node_b.is_inner(entry.child_b);
+    if (!is_inner_a && !is_inner_b) {
+      test_leaves(entry);
+      continue;
+    }
+    const std::uint32_t next_a = is_inner_a ? node_a.child_node(entry.child_a) : entry.node_a,
+                        next_b = is_inner_b ? node_b.child_node(entry.child_b) : entry.node_b;
+    expand(next_a, is_inner_a ? 0 : entry.child_a, is_inner_a ? children(*a_, next_a) : entry.child_a + 1,
+           next_b, is_inner_b ? 0 : entry.child_b, is_inner_b ? children(*b_, next_b) : entry.child_b + 1);
+  }
+}
+
+/// Whether the bound, which may be another one than when the entry was pushed, excludes it.
+bool NearestPairSearch::are_apart(const Entry& entry) const {
+  if (!bound_.is_set()) return false;
+  const QueryBox box_a = a_->child_box(entry.node_a, entry.child_a),
+                 box_b = b_->child_box(entry.node_b, entry.child_b);
+  return bound_.are_apart(box_a, bound_.depth(NearestBound::a, box_a), box_b,
+                          bound_.depth(NearestBound::b, box_b));
+}
+
+/// Pushes the pairs of children within the limit, the nearest last.
+void NearestPairSearch::expand(std::uint32_t node_a, int first_a, int end_a, std::uint32_t node_b,
+                               int first_b, int end_b) {
+  const std::size_t first = stack_.size();
+  const ChildBoxes &boxes_a = a_->view.boxes[node_a], &boxes_b = b_->view.boxes[node_b];
+  const bool needs_placed = bound_.is_set() || a_->fine_boxes != nullptr || b_->fine_boxes != nullptr;
+  std::array<QueryBox, node_width> placed_b;
+  std::array<double, node_width> depths_b{};
+  for (int k = first_b; needs_placed && k < end_b; ++k) {
+    const auto place = static_cast<std::size_t>(k);
+    placed_b[place] = b_->child_box(node_b, k);
+    if (bound_.is_set()) depths_b[place] = bound_.depth(NearestBound::b, placed_b[place]);
+  }
+  for (int i = first_a; i < end_a; ++i) {
+    const Aabb box = child_box(boxes_a, i);
+    if (box.empty()) continue;
+    const QueryBox placed = needs_placed ? a_->child_box(node_a, i) : QueryBox{};
+    const double depth_a = bound_.is_set() ? bound_.depth(NearestBound::a, placed) : 0;
+    std::array<float, node_width> squares;
+    squared_distances_of(box, placed, node_b, first_b, end_b, placed_b, squares);
+    for (int k = first_b; k < end_b; ++k) {
+      const auto place = static_cast<std::size_t>(k);
+      if (!(squares[place] <= squared_limit_) || child_box(boxes_b, k).empty()) continue;
+      if (bound_.is_set() && bound_.are_apart(placed, depth_a, placed_b[place], depths_b[place])) continue;
+      const double depth = depth_a + depths_b[place];
+      stack_.push_back(
+          {squares[place], depth == depth ? static_cast<float>(depth) : 0, node_a, node_b, i, k});
+    }
+  }
+  std::sort(stack_.begin() + static_cast<std::ptrdiff_t>(first), stack_.end(),
+            [](const Entry& p, const Entry& q) {
+              return std::tie(q.square, q.depth, q.child_a, q.child_b) <
+                     std::tie(p.square, p.depth, p.child_a, p.child_b);
+            });
+}
+
+/// The squared distances of a box of a and the children of a node of b, as `squared_distances` bounds them.
+void NearestPairSearch::squared_distances_of(const Aabb& box, const QueryBox& placed, std::uint32_t node_b,
+                                             int first, int end, std::span<const QueryBox> placed_b,
+                                             std::array<float, node_width>& squares) const {
+  if (a_->fine_boxes == nullptr && b_->fine_boxes == nullptr)
+    return squared_distances(seen_by_b(box), b_->view.boxes[node_b], squares);
+  for (int k = first; k < end; ++k) {
+    const QueryBox& other = placed_b[static_cast<std::size_t>(k)];
+    double square = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      const double gap =
+          std::max({placed.min[axis] - other.max[axis], other.min[axis] - placed.max[axis], 0.0});
+      square += gap * gap;
+    }
+    squares[static_cast<std::size_t>(k)] = static_cast<float>(square);
+  }
+}
+
+void NearestPairSearch::test_leaves(const Entry& leaves) {
+  const OctreeNode &node_a = a_->view.nodes[leaves.node_a], &node_b = b_->view.nodes[leaves.node_b];
+  const std::uint32_t leaf_a = node_width * leaves.node_a + static_cast<std::uint32_t>(leaves.child_a),
+                      leaf_b = node_width * leaves.node_b + static_cast<std::uint32_t>(leaves.child_b);
+  const std::uint32_t end_a = node_a.first_triangle[leaves.child_a + 1],
+                      end_b = node_b.first_triangle[leaves.child_b + 1];
+  const PointBounds box_a = seen_by_b(child_box(a_->view.boxes[leaves.node_a], leaves.child_a)),
+                    box_b = seen_by_a(child_box(b_->view.boxes[leaves.node_b], leaves.child_b));
+  for (std::uint32_t begin_a = node_a.first_triangle[leaves.child_a]; begin_a < end_a;
+       begin_a += leaf_block) {
+    // A copy, because the next call may overwrite it.
+    const LeafBoxes boxes_a =
+        recent_.boxes_of(0, a_->leaves(), leaf_a, begin_a, std::min(begin_a + leaf_block, end_a));
+    const std::uint64_t near_a = near_triangles(box_b, boxes_a, squared_limit_);
+    if (near_a == 0) continue;
+    for (std::uint32_t begin_b = node_b.first_triangle[leaves.child_b]; begin_b < end_b;
+         begin_b += leaf_block) {
+      const LeafBoxes& boxes_b =
+          recent_.boxes_of(1, b_->leaves(), leaf_b, begin_b, std::min(begin_b + leaf_block, end_b));
+      const std::uint64_t near_b = near_triangles(box_a, boxes_b, squared_limit_);
+      if (near_b != 0) test_blocks(boxes_a, near_a, begin_a, boxes_b, near_b, begin_b);
+      if (is_done()) return;
+    }
+  }
+}
+
+void NearestPairSearch::test_blocks(const LeafBoxes& boxes_a, std::uint64_t near_a, std::uint32_t begin_a,
+                                    const LeafBoxes& boxes_b, std::uint64_t near_b, std::uint32_t begin_b) {
+  for (std::uint64_t left_a = near_a; left_a != 0; left_a &= left_a - 1) {
+    const auto i = static_cast<std::uint32_t>(std::countr_zero(left_a));
+    // A contact of this triangle would come after the first one so far.
+    if (intersects_ && a_->triangle_ids[triangles_.a] < a_->triangle_ids[begin_a + i]) continue;
+    const PointBounds box_a = seen_by_b({{boxes_a.min_x[i], boxes_a.min_y[i], boxes_a.min_z[i]},
+                                         {boxes_a.max_x[i], boxes_a.max_y[i], boxes_a.max_z[i]}});
+    for (std::uint64_t left_b = near_triangles(box_a, boxes_b, squared_limit_) & near_b; left_b != 0;
+         left_b &= left_b - 1) {
+      const auto k = static_cast<std::uint32_t>(std::countr_zero(left_b));
+      if (bound_.is_set()) {
+        find_depths(NearestBound::a, begin_a, near_a, block_a_);
+        find_depths(NearestBound::b, begin_b, near_b, block_b_);
+        if (block_a_.least[i] + block_b_.least[k] > 0 ||
+            bound_.excludes(block_a_.depths[i], NearestBound::all_corners, block_b_.depths[k],
+                            NearestBound::all_corners))
+          continue;
+      }
+      decide({begin_a + i, begin_b + k});
+      if (is_done()) return;
+    }
+  }
+}
+
+void NearestPairSearch::find_depths(NearestBound::Side side, std::uint32_t begin, std::uint64_t triangles,
+                                    BlockDepths& block) {
+  const bool is_same = block.begin == begin && block.version == bound_.version();
+  if (is_same && (triangles & ~block.triangles) == 0) return;
+  block.begin = begin;
+  block.version = bound_.version();
+  block.triangles = triangles;
+  const QueriedObject& object = side == NearestBound::a ? *a_ : *b_;
+  for (std::uint64_t left = triangles; left != 0; left &= left - 1) {
+    const auto i = static_cast<std::uint32_t>(std::countr_zero(left));
+    block.depths[i] = bound_.depths(side, object, begin + i);
+    block.least[i] = block.depths[i].least(NearestBound::all_corners);
+  }
+}
+
+void NearestPairSearch::decide(TrianglePair triangles) {
+  const TrianglePoints a = a_->corners(triangles.a), b = b_->corners(triangles.b);
+  const auto ids_of = [&](TrianglePair pair) {
+    return std::pair(a_->triangle_ids[pair.a], b_->triangle_ids[pair.b]);
+  };
+  if (intersects_ && search_ == Search::nearest && ids_of(triangles_) < ids_of(triangles)) return;
+  ++decided_triangles_;
+  if (!boxes_apart(a, b, 0)) {
+    if (triangles_intersect(a, b)) {
+      intersects_ = true;
+      bound_.clear();
+      triangles_ = triangles;
+      set_limit(0);
+      return;
+    }
+  }
+  if (!intersects_ && search_ == Search::nearest) decide_elements(triangles, a, b);
+}
+
+/// Considers the vertices and faces and the edges of two triangles that do not intersect.
+void NearestPairSearch::decide_elements(TrianglePair triangles, const TrianglePoints& a,
+                                        const TrianglePoints& b) {
+  const Triangle &vertices_a = a_->triangles[triangles.a], &vertices_b = b_->triangles[triangles.b];
+  const auto vertex = [](const Triangle& vertices, const TrianglePoints& corners, std::size_t i) {
+    return PairElement(std::span(&vertices[i], 1), {corners[i]}, 0);
+  };
+  const auto edge = [](const Triangle& vertices, const TrianglePoints& corners, std::size_t i) {
+    const std::size_t k = (i + 1) % 3;
+    return PairElement(std::array{vertices[i], vertices[k]}, {corners[i], corners[k]}, 0);
+  };
+  const auto face = [](const QueriedObject& object, std::uint32_t triangle, const TrianglePoints& corners) {
+    return PairElement(object.triangles[triangle], corners, object.triangle_ids[triangle]);
+  };
+  TriangleDepths depths_a, depths_b;
+  if (bound_.is_set()) {
+    depths_a = bound_.depths(NearestBound::a, *a_, triangles.a);
+    depths_b = bound_.depths(NearestBound::b, *b_, triangles.b);
+  }
+  const auto is_excluded = [&](unsigned corners_a, unsigned corners_b) {
+    return bound_.is_set() && bound_.excludes(depths_a, corners_a, depths_b, corners_b);
+  };
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::size_t next = (i + 1) % 3;
+    const std::array edge_a{a[i], a[next]};
+    if (!is_excluded(1u << i, NearestBound::all_corners) && !boxes_apart(std::span(&a[i], 1), b, limit_))
+      add({vertex(vertices_a, a, i), face(*b_, triangles.b, b), PairOrder::given, triangles});
+    if (!is_excluded(NearestBound::all_corners, 1u << i) && !boxes_apart(std::span(&b[i], 1), a, limit_))
+      add({vertex(vertices_b, b, i), face(*a_, triangles.a, a), PairOrder::swapped, triangles});
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::size_t after = (k + 1) % 3;
+      if (!is_excluded(1u << i | 1u << next, 1u << k | 1u << after) &&
+          !boxes_apart(edge_a, std::array{b[k], b[after]}, limit_))
+        add({edge(vertices_a, a, i), edge(vertices_b, b, k), PairOrder::given, triangles});
+    }
+  }
+}
+
+void NearestPairSearch::add(const ElementCandidate& candidate) {
+  Candidates& list = candidate.first.count == 1 ? vertices_and_faces_ : edges_;
+  const ElementPoints elements = points_of(candidate.first, candidate.second);
+  for (std::size_t i = 0; i < 4; ++i) list.block.set(i, list.count, elements.points[i]);
+  list.candidates[list.count++] = candidate;
+  if (list.count == PointsBlock::capacity) consider(list);
+}
+
+void NearestPairSearch::consider_all() {
+  consider(vertices_and_faces_);
+  consider(edges_);
+}
+
+/// Considers those that the kernel does not exclude.
+void NearestPairSearch::consider(Candidates& list) {
+  const bool are_edges = &list == &edges_;
+  std::array<FeatureCode, PointsBlock::capacity> codes;
+  classify(list.block, list.count, are_edges, limit_, codes.data());
+  for (std::size_t i = 0; i < list.count; ++i) {
+    if (codes[i] == FeatureCode::apart) continue;
+    const ElementCandidate& candidate = list.candidates[i];
+    // Most of the others have the nearest features again, which several triangles share.
+    const bool is_known =
+        codes[i] != FeatureCode::unknown && best_ &&
+        name_of_pair(candidate.first, candidate.second, features_of_code(codes[i], are_edges),
+                     candidate.order, ProximityListing::features) == name_of(*best_);
+    if (!is_known) consider(candidate);
+  }
+  list.count = 0;
+}
+
+void NearestPairSearch::consider(const ElementCandidate& candidate) {
+  ++decided_elements_;
+  const auto& [first, second, order, triangles] = candidate;
+  const auto pair = proximity_pair_within(first, second, {a_->id, b_->id}, order, ProximityListing::features,
+                                          limit_, used_exact_);
+  if (!pair) return;
+  const ElementPoints elements = points_of(first, second);
+  if (best_) {
+    const bool is_same = name_of(*pair) == name_of(*best_);
+    const int side = is_same ? 0 : compare_distances(elements, best_elements_, used_exact_);
+    if (side > 0 || (side == 0 && name_of(*best_) <= name_of(*pair))) return;
+  }
+  best_ = pair;
+  best_elements_ = elements;
+  triangles_ = triangles;
+  if (pair->distance > 0) bound_.set(*a_, *b_, *best_, triangles);
+  set_limit(std::min(limit_, pair->distance * (1 + 0x1p-36) + 0x1p-1060));
+}
+
+/// The first point of the first contact.
+ProximityPair NearestPairSearch::contact_pair() const {
+  const TrianglePoints a = a_->corners(triangles_.a), b = b_->corners(triangles_.b);
+  const TriangleIntersection shared = intersect_triangles(a, b);
+  const ContactPoint& point = shared.points[0];
+  const auto ids = [](const Feature& feature, const QueriedObject& object, std::uint32_t triangle) {
+    const FeatureName name = name_of(feature, object.triangles[triangle], object.triangle_ids[triangle]);
+    return std::array{name.first, name.last};
+  };
+  return {a_->id,
+          b_->id,
+          point.on_a.kind,
+          point.on_b.kind,
+          ids(point.on_a, *a_, triangles_.a),
+          ids(point.on_b, *b_, triangles_.b),
+          {point.on_a.kind, 0},
+          {point.on_b.kind, 0},
+          0,
+          weights_at(point.position, point.on_a, a, a_->triangles[triangles_.a]),
+          weights_at(point.position, point.on_b, b, b_->triangles[triangles_.b]),
+          point.position,
+          point.position,
+          shared.normal};
+}
+
+}  // namespace supple

@@ -1,0 +1,264 @@
+#include "queries/queries.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <utility>
+
+#include "geometry/vector.hpp"
+#include "queries/check_queries.hpp"
+
+namespace supple {
+namespace {
+
+/// Whether an object is far from a corner of another box.
+bool has_far_part(const Aabb& box, const Aabb& other) {
+  Vec3d farthest;
+  for (int axis = 0; axis < 3; ++axis)
+    farthest[axis] =
+        std::max({double{box.min[axis]} - other.min[axis], double{other.max[axis]} - box.max[axis], 0.0});
+  return !box.empty() && !other.empty() && is_far(box, scaled_norm(farthest), far_ratio);
+}
+
+/// The lists of all workers in one, sorted; empty after a stop. Equal items stay in their order.
+template <class Worker, class Item, class Less>
+std::vector<Item> gathered(const std::vector<Worker>& workers, std::vector<Item> Worker::*list,
+                           const StopSignal& stop, const Less& less) {
+  std::vector<Item> all;
+  if (stop.stop_requested()) return all;
+  std::size_t count = 0;
+  for (const Worker& worker : workers) count += (worker.*list).size();
+  all.reserve(count);
+  for (const Worker& worker : workers) all.insert(all.end(), (worker.*list).begin(), (worker.*list).end());
+  std::stable_sort(all.begin(), all.end(), less);
+  return all;
+}
+
+}  // namespace
+
+QueriedObject queried_object(const World& world, std::uint32_t slot) {
+  const WorldObject& found = world[slot];
+  return {world.id_of(slot),
+          found.resting_view(),
+          &found.placement().end(),
+          found.octree().triangles(),
+          found.octree().triangle_ids(),
+          found.box(),
+          found.has_inert_faces(),
+          found.needs_fine_boxes() ? found.fine_boxes() : nullptr};
+}
+
+Queries::Lease::Lease(const Queries& queries) : queries_(queries) {
+  const std::lock_guard lock(queries_.mutex_);
+  if (queries_.idle_.empty()) {
+    queries_.idle_.reserve(queries_.made_ + 1);
+    call_ = std::make_unique<Call>();
+    ++queries_.made_;
+  } else {
+    call_ = std::move(queries_.idle_.back());
+    queries_.idle_.pop_back();
+  }
+}
+
+Queries::Lease::~Lease() {
+  const std::lock_guard lock(queries_.mutex_);
+  queries_.idle_.push_back(std::move(call_));  // there is room
+}
+
+/// The next search for pairs still sees which objects have moved.
+void Queries::refit() const {
+  world_.refit(shapes_of_queries);
+  for (std::uint32_t slot = 0; slot < world_.slot_count(); ++slot) {
+    WorldObject* const object = world_.at(slot);
+    if (object != nullptr && object->needs_fine_boxes()) object->update_fine_boxes();
+  }
+}
+
+void Queries::list_objects(const QueryFilter& filter, const char* call, Call& use) const {
+  if (filter.object) world_.object(*filter.object, call);
+  refit();
+  use.objects.clear();
+  use.workers.resize(world_.parallel.worker_count());
+  for (std::uint32_t slot = 0; slot < world_.slot_count(); ++slot) {
+    const WorldObject* const object = world_.at(slot);
+    if (object != nullptr && sees(filter, world_.id_of(slot), object->options))
+      use.objects.push_back(queried_object(world_, slot));
+  }
+}
+
+void Queries::check_bits(const CoordinateBits& bits, const Call& use, const char* call) const {
+  for (const QueriedObject& object : use.objects)
+    check_exact_bits_of_queries(world_, bits, object.id.index, call);
+}
+
+/// `places` are those of the queries. Neighbours follow each other, because a search is fast where the one
+/// before it was near.
+template <class Answer>
+void Queries::answer(std::span<const Vec3d> places, const StopSignal& stop, Call& use,
+                     const Answer& answer) const {
+  constexpr std::size_t grain = 64;
+  use.order.resize(places.size());
+  for (std::uint32_t i = 0; i < places.size(); ++i) use.order[i].triangle = i;
+  sort_along_curve(use.order, places);
+  world_.parallel.for_ranges(places.size(), grain,
+                             [&](std::size_t begin, std::size_t end, std::uint32_t worker) {
+                               ObjectQueries& queries = use.workers[worker].queries;
+                               queries.start(stop);
+                               for (std::size_t k = begin; k < end && !stop.stop_requested(); ++k)
+                                 answer(queries, use.order[k].triangle);
+                             });
+}
+
+void Queries::closest(std::span<const Vec3d> points, std::span<std::optional<ClosestPoint>> results,
+                      const ClosestOptions& options) const {
+  check_counts(points.size(), results.size(), "closest");
+  check_distance(options.max_distance, "closest");
+  Aabb around;
+  for (const Vec3d& p : points) {
+    if (is_finite(p)) extend(around, p);
+  }
+  const Lease use(*this);
+  {
+    const std::lock_guard lock(mutex_);
+    if (options.signed_distance) check_closed(world_, options.filter, "closest");
+    list_objects(options.filter, "closest", *use);
+    for (QueriedObject& object : use->objects) {
+      if (!has_far_part(object.box, around)) continue;
+      WorldObject& far = world_[object.id.index];
+      far.update_fine_boxes();
+      object.fine_boxes = far.fine_boxes();
+    }
+  }
+  if (has_exact_limit(world_)) {
+    CoordinateBits bits = bits_of_points(points);
+    bits.add({options.max_distance, 0, 0}, CoordinateBits::no_point);
+    check_bits(bits, *use, "closest");
+  }
+  const StopSignal stop = stop_of(options.limits);
+  answer(points, stop, *use, [&](ObjectQueries& queries, std::size_t i) {
+    results[i] = queries.closest(use->objects, points[i], options.max_distance);
+    if (options.signed_distance && results[i] && queries.is_inside_nearest(use->objects, points[i]))
+      results[i]->distance = -results[i]->distance;
+  });
+  if (stop.stop_requested()) std::fill(results.begin(), results.end(), std::nullopt);
+}
+
+void Queries::cast(std::span<const Ray> rays, std::span<std::optional<RayHit>> results,
+                   const CastOptions& options) const {
+  check_counts(rays.size(), results.size(), "cast");
+  const Lease use(*this);
+  {
+    const std::lock_guard lock(mutex_);
+    list_objects(options.filter, "cast", *use);
+  }
+  if (has_exact_limit(world_)) check_bits(bits_of_rays(rays), *use, "cast");
+  use->origins.clear();
+  for (const Ray& ray : rays) use->origins.push_back(ray.origin);
+  const StopSignal stop = stop_of(options.limits);
+  answer(use->origins, stop, *use, [&](ObjectQueries& queries, std::size_t i) {
+    results[i] = queries.cast(use->objects, rays[i], options.count_hits);
+  });
+  if (stop.stop_requested()) std::fill(results.begin(), results.end(), std::nullopt);
+}
+
+std::vector<ListedRayHit> Queries::cast_all(std::span<const Ray> rays, const QueryFilter& filter,
+                                            const CallLimits& limits) const {
+  constexpr std::size_t grain = 64;
+  const Lease use(*this);
+  {
+    const std::lock_guard lock(mutex_);
+    list_objects(filter, "cast_all", *use);
+  }
+  if (has_exact_limit(world_)) check_bits(bits_of_rays(rays), *use, "cast_all");
+  const StopSignal stop = stop_of(limits);
+  for (Worker& worker : use->workers) worker.hits.clear();
+  world_.parallel.for_ranges(rays.size(), grain, [&](std::size_t begin, std::size_t end, std::uint32_t w) {
+    Worker& worker = use->workers[w];
+    worker.queries.start(stop);
+    for (std::size_t i = begin; i < end && !stop.stop_requested(); ++i)
+      worker.queries.cast_all(use->objects, rays[i], static_cast<std::uint32_t>(i), worker.hits);
+  });
+  return gathered(use->workers, &Worker::hits, stop, [](const ListedRayHit& p, const ListedRayHit& q) {
+    return p.query < q.query;  // the hits of a ray are in order already
+  });
+}
+
+void Queries::inside(std::span<const Vec3d> points, std::span<Containment> results, const QueryFilter& filter,
+                     const CallLimits& limits) const {
+  check_counts(points.size(), results.size(), "inside");
+  const Lease use(*this);
+  {
+    const std::lock_guard lock(mutex_);
+    check_closed(world_, filter, "inside");
+    list_objects(filter, "inside", *use);
+  }
+  if (has_exact_limit(world_)) check_bits(bits_of_points(points), *use, "inside");
+  const StopSignal stop = stop_of(limits);
+  std::fill(results.begin(), results.end(), Containment::outside);
+  for (const QueriedObject& object : use->objects) find_inside(object, points, stop, results, *use);
+  if (stop.stop_requested()) std::fill(results.begin(), results.end(), Containment::outside);
+}
+
+/// Raises the results of the points in the box of the object.
+void Queries::find_inside(const QueriedObject& object, std::span<const Vec3d> points, const StopSignal& stop,
+                          std::span<Containment> results, Call& use) const {
+  constexpr std::size_t grain = 4096;
+  const auto in_box = [&](const Vec3d& point) {
+    bool is_in = true;
+    for (int axis = 0; axis < 3; ++axis)
+      is_in &= object.box.min[axis] <= point[axis] && point[axis] <= object.box.max[axis];
+    return is_in;
+  };
+  const auto count = static_cast<std::size_t>(std::count_if(points.begin(), points.end(), in_box));
+  if (count == 0) return;
+  use.workers.front().queries.start(stop);
+  const bool has_cells = use.cells.build(object, count, use.workers.front().queries);
+  world_.parallel.for_ranges(points.size(), grain, [&](std::size_t begin, std::size_t end, std::uint32_t w) {
+    Worker& worker = use.workers[w];
+    std::vector<CurvePlace>& open = worker.order;
+    open.clear();
+    for (std::size_t i = begin; i < end; ++i) {
+      if (results[i] == Containment::inside || !in_box(points[i])) continue;
+      const auto side = has_cells ? use.cells.side_of(points[i]) : std::nullopt;
+      if (side) {
+        results[i] = std::max(results[i], *side);
+      } else {
+        open.push_back({0, static_cast<std::uint32_t>(i)});
+      }
+    }
+    sort_along_curve(open, points);
+    worker.queries.start(stop);
+    for (const CurvePlace& place : open) {
+      if (stop.stop_requested()) return;
+      Containment& answer = results[place.triangle];
+      answer = std::max(answer, worker.queries.inside(0, object, points[place.triangle]));
+    }
+  });
+}
+
+template <class Region>
+std::vector<Overlap> Queries::overlaps(std::span<const Region> regions, const QueryFilter& filter,
+                                       const CallLimits& limits) const {
+  constexpr std::size_t grain = 16;
+  const Lease use(*this);
+  {
+    const std::lock_guard lock(mutex_);
+    list_objects(filter, "overlaps", *use);
+  }
+  if (has_exact_limit(world_)) check_bits(bits_of_regions(regions), *use, "overlaps");
+  const StopSignal stop = stop_of(limits);
+  for (Worker& worker : use->workers) worker.overlaps.clear();
+  world_.parallel.for_ranges(regions.size(), grain, [&](std::size_t begin, std::size_t end, std::uint32_t w) {
+    Worker& worker = use->workers[w];
+    worker.queries.start(stop);
+    for (std::size_t i = begin; i < end && !stop.stop_requested(); ++i)
+      worker.queries.overlaps(use->objects, regions[i], static_cast<std::uint32_t>(i), worker.overlaps);
+  });
+  return gathered(use->workers, &Worker::overlaps, stop, std::less<>());
+}
+template std::vector<Overlap> Queries::overlaps(std::span<const QueryBox> regions, const QueryFilter& filter,
+                                                const CallLimits& limits) const;
+template std::vector<Overlap> Queries::overlaps(std::span<const QuerySphere> regions,
+                                                const QueryFilter& filter, const CallLimits& limits) const;
+
+}  // namespace supple

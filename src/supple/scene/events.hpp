@@ -1,0 +1,43 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "answers/manifold/manifold_pass.hpp"
+#include "answers/question.hpp"
+#include "scene/pair_cache.hpp"
+#include "supple/result.hpp"
+#include "world/world.hpp"
+
+namespace supple {
+
+/// What begins, stays and ends from one step of a scene to the next: pairs of objects and manifolds.
+class Events {
+ public:
+  /// Compares the answers of a step with those of the step before. It does everything that may run out of
+  /// memory, and the state stays that of the step before until `publish`.
+  void prepare(World& world, const Question& question, const DetectResult& found);
+  /// Takes the step over, and adds its events and manifolds to `found`. Each pair begins and ends exactly
+  /// once.
+  void publish(DetectResult& found);
+
+  /// Call it before `release`; this may run out of memory.
+  void prepare_release();
+  /// The object is removed: its pairs end at the next step.
+  void release(ObjectId id);
+
+ private:
+  void find_manifolds(World& world, const DetectResult& found);
+  void list_touching_pairs(const DetectResult& found);
+  void list_deep_pairs(const DetectResult& found);
+  void list_pairs_of_groups(const DetectResult& found);
+
+  PairCache volume_, narrow_phase_, contact_, proximity_, penetration_;
+  const std::array<PairCache*, 5> all_{&volume_, &narrow_phase_, &contact_, &proximity_, &penetration_};
+  ManifoldPass manifold_pass_;
+  // Scratch memory of a step.
+  std::vector<ObjectPair> touching_pairs_, leaf_pairs_, near_pairs_, deep_pairs_;
+  std::vector<ManifoldObject> manifold_objects_;
+};
+
+}  // namespace supple

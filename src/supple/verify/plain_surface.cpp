@@ -1,0 +1,317 @@
+#include "verify/plain_surface.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+#include <numeric>
+#include <optional>
+#include <utility>
+
+#include "geometry/vector.hpp"
+
+namespace supple {
+namespace {
+
+using Integer = boost::multiprecision::cpp_int;
+using IntegerVector = std::array<Integer, 3>;
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// A double as mantissa · 2^exponent, with an odd mantissa or 0.
+struct OddMantissa {
+  std::int64_t mantissa = 0;
+  int exponent = 0;
+
+  explicit OddMantissa(double value) {
+    if (value == 0) return;
+    const double part = std::frexp(value, &exponent);
+    mantissa = static_cast<std::int64_t>(std::ldexp(part, 53));
+    const int zeros = std::countr_zero(static_cast<std::uint64_t>(mantissa));
+    mantissa /= std::int64_t{1} << zeros;
+    exponent += zeros - 53;
+  }
+};
+
+IntegerVector difference(const IntegerVector& p, const IntegerVector& q) {
+  return {p[0] - q[0], p[1] - q[1], p[2] - q[2]};
+}
+Integer dot_of(const IntegerVector& p, const IntegerVector& q) {
+  return p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
+}
+IntegerVector cross_of(const IntegerVector& p, const IntegerVector& q) {
+  return {p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]};
+}
+
+/// A point and a triangle in units of 2^lowest.
+struct IntegerCorners {
+  std::array<IntegerVector, 4> points;  // the point first
+  int lowest = std::numeric_limits<int>::max();
+
+  IntegerCorners(const Vec3d& point, const TrianglePoints& corners) {
+    const std::array<Vec3d, 4> all{point, corners[0], corners[1], corners[2]};
+    for (const Vec3d& p : all) {
+      for (int axis = 0; axis < 3; ++axis) {
+        if (p[axis] != 0) lowest = std::min(lowest, OddMantissa(p[axis]).exponent);
+      }
+    }
+    for (std::size_t i = 0; i < 4; ++i) {
+      for (int axis = 0; axis < 3; ++axis) {
+        const OddMantissa value(all[i][axis]);
+        Integer& number = points[i][static_cast<std::size_t>(axis)];
+        number = value.mantissa;
+        if (value.mantissa != 0) number <<= static_cast<unsigned>(value.exponent - lowest);
+      }
+    }
+    if (lowest == std::numeric_limits<int>::max()) lowest = 0;
+  }
+};
+
+/// The sign of a number with an error; nothing when it is not known.
+std::optional<int> sign_of(double value, double error) {
+  if (value > error) return 1;
+  return value < -error ? std::optional(-1) : std::nullopt;
+}
+
+/// Sign of (b - a) x (p - a) in the y-z plane.
+int turn_of(const Vec3d& a, const Vec3d& b, const Vec3d& p) {
+  const double first = (b.y - a.y) * (p.z - a.z), second = (b.z - a.z) * (p.y - a.y);
+  const auto sign = sign_of(first - second, 0x1p-49 * (std::fabs(first) + std::fabs(second)) + 0x1p-1000);
+  if (sign) return *sign;
+  const IntegerCorners exact(p, {a, b, b});
+  const IntegerVector u = difference(exact.points[2], exact.points[1]),
+                      w = difference(exact.points[0], exact.points[1]);
+  return Integer(u[1] * w[2] - u[2] * w[1]).sign();
+}
+
+/// The same, where p is moved by (e, e²) for an infinitely small e > 0.
+int turn_beside(const Vec3d& a, const Vec3d& b, const Vec3d& p) {
+  if (const int turn = turn_of(a, b, p)) return turn;
+  if (a.z != b.z) return a.z > b.z ? 1 : -1;
+  return (b.y > a.y) - (b.y < a.y);
+}
+
+/// 1 on the side of the plane from which the corners go counter-clockwise.
+int side_of_plane(const TrianglePoints& t, const Vec3d& p) {
+  const Vec3d u = t[1] - t[0], v = t[2] - t[0], w = p - t[0], m = absolute(u), n = absolute(v);
+  const Vec3d size{m.y * n.z + m.z * n.y, m.z * n.x + m.x * n.z, m.x * n.y + m.y * n.x};
+  const auto sign = sign_of(dot(cross(u, v), w), 0x1p-48 * dot(size, absolute(w)) + 0x1p-1000);
+  if (sign) return *sign;
+  const IntegerCorners exact(p, t);
+  const auto& [x, a, b, c] = exact.points;
+  return dot_of(cross_of(difference(b, a), difference(c, a)), difference(x, a)).sign();
+}
+
+/// Whether the ray in the direction of x from beside the point crosses the triangle, which does not contain
+/// the point. `side` is that of the point.
+bool crosses_ahead(const TrianglePoints& t, const Vec3d& p, int side) {
+  const int turn = turn_beside(t[0], t[1], p);
+  if (turn == 0 || turn_beside(t[1], t[2], p) != turn || turn_beside(t[2], t[0], p) != turn) return false;
+  return side * turn < 0;
+}
+
+/// Numbers between which a distance is.
+struct Bounds {
+  double lower = 0, upper = infinity;
+};
+
+/// About the point of the segment from `a` along `u` that is closest to the origin.
+Vec3d closest_on_edge(const Vec3d& a, const Vec3d& u) {
+  const double whole = dot(u, u);
+  return whole > 0 ? a + std::clamp(-dot(a, u) / whole, 0.0, 1.0) * u : a;
+}
+
+/// The distance is at most that of a point of the triangle, and at least that of a plane beyond which the
+/// triangle lies. Where rounding leaves nothing certain, the bounds are 0 and infinite.
+Bounds bounds_of_distance(const Vec3d& point, const TrianglePoints& corners) {
+  TrianglePoints c;
+  double largest = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    c[i] = corners[i] - point;
+    largest = std::max(largest, largest_magnitude(c[i]));
+  }
+  if (largest == 0) return {0, 0};
+  if (!std::isfinite(largest)) return {};
+  const double factor = std::ldexp(1.0, -std::clamp(std::ilogb(largest), -1000, 1000));
+  for (Vec3d& p : c) p = factor * p;
+  const Vec3d u = c[1] - c[0], v = c[2] - c[0], n = cross(u, v);
+  const double whole = dot(n, n), s = -dot(cross(c[0], v), n), t = -dot(cross(u, c[0]), n);
+  Vec3d nearest = c[0];
+  if (whole > 0 && s >= 0 && t >= 0 && s + t <= whole) {
+    nearest = c[0] + (s / whole) * u + (t / whole) * v;
+  } else {
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Vec3d p = closest_on_edge(c[i], c[(i + 1) % 3] - c[i]);
+      if (i == 0 || dot(p, p) < dot(nearest, nearest)) nearest = p;
+    }
+  }
+  // Lengths are at most 4 here, and a sum of products has an error below 2^-50 of the product of two lengths.
+  constexpr double slack = 0x1p-44;
+  const double length = norm(nearest);
+  const double ahead = std::min({dot(c[0], nearest), dot(c[1], nearest), dot(c[2], nearest)});
+  return {length > 0 ? std::max(0.0, ahead / length - slack) / factor : 0, (length + slack) / factor};
+}
+
+/// A distance that is certainly larger, and one that is certainly smaller.
+double increased(double distance) {
+  return distance * (1 + 0x1p-40) + 0x1p-1000;
+}
+
+double box_distance(const Vec3d& p, const Vec3d& min, const Vec3d& max) {
+  Vec3d gap;
+  for (int axis = 0; axis < 3; ++axis) gap[axis] = std::max({min[axis] - p[axis], p[axis] - max[axis], 0.0});
+  const double squared = dot(gap, gap);
+  return squared > 0x1p-900 && squared < 0x1p900 ? std::sqrt(squared) : scaled_norm(gap);
+}
+
+/// Makes the box from `min` to `max` contain the box from `low` to `high`.
+void include(const Vec3d& low, const Vec3d& high, Vec3d& min, Vec3d& max) {
+  for (int axis = 0; axis < 3; ++axis) {
+    min[axis] = std::min(min[axis], low[axis]);
+    max[axis] = std::max(max[axis], high[axis]);
+  }
+}
+
+}  // namespace
+
+int compare(const SquaredDistance& p, const SquaredDistance& q) {
+  Integer here = p.over * q.under, there = q.over * p.under;
+  const int shift = p.exponent - q.exponent;
+  (shift > 0 ? here : there) <<= static_cast<unsigned>(std::abs(shift));
+  return here.compare(there) < 0 ? -1 : here == there ? 0 : 1;
+}
+
+SquaredDistance square_of(double distance) {
+  const OddMantissa value(distance);
+  return {Integer(value.mantissa) * value.mantissa, 1, 2 * value.exponent};
+}
+
+bool is_within_units(double distance, const SquaredDistance& squared, int units) {
+  if (!std::isfinite(distance)) return false;
+  double low = distance, high = distance;
+  for (int i = 0; i < units; ++i) {
+    low = std::max(0.0, std::nextafter(low, 0.0));
+    high = std::nextafter(high, infinity);
+  }
+  return compare(square_of(low), squared) <= 0 &&
+         (high == infinity || compare(square_of(high), squared) >= 0);
+}
+
+SquaredDistance squared_distance_by_integers(const Vec3d& point, const TrianglePoints& corners) {
+  const IntegerCorners exact(point, corners);
+  const auto& [p, a, b, c] = exact.points;
+  const int exponent = 2 * exact.lowest;
+  const IntegerVector u = difference(b, a), v = difference(c, a), w = difference(p, a), n = cross_of(u, v);
+  if (const Integer whole = dot_of(n, n); whole != 0) {
+    const Integer s = dot_of(cross_of(w, v), n), t = dot_of(cross_of(u, w), n);
+    if (s >= 0 && t >= 0 && s + t <= whole) {
+      const Integer volume = dot_of(n, w);
+      return {volume * volume, whole, exponent};
+    }
+  }
+  std::optional<SquaredDistance> best;
+  const auto keep = [&](const Integer& over, const Integer& under) {
+    SquaredDistance found{over, under, exponent};
+    if (!best || compare(found, *best) < 0) best = std::move(found);
+  };
+  for (std::size_t i = 1; i <= 3; ++i) {
+    const IntegerVector edge = difference(exact.points[i % 3 + 1], exact.points[i]),
+                        to_point = difference(p, exact.points[i]);
+    const Integer whole = dot_of(edge, edge), along = dot_of(to_point, edge),
+                  squared = dot_of(to_point, to_point);
+    keep(squared, 1);
+    if (along > 0 && along < whole) keep(squared * whole - along * along, whole);
+  }
+  return *best;
+}
+
+PlainTree::PlainTree(const std::vector<BoxedCorners>& triangles) : items_(triangles.size()) {
+  std::iota(items_.begin(), items_.end(), 0u);
+  if (!triangles.empty()) build(triangles, 0, static_cast<std::uint32_t>(triangles.size()));
+}
+
+void PlainTree::build(const std::vector<BoxedCorners>& triangles, std::uint32_t begin, std::uint32_t end) {
+  constexpr std::uint32_t most_in_leaf = 4;
+  Node node{triangles[items_[begin]].min, triangles[items_[begin]].max, begin, end};
+  for (std::uint32_t i = begin + 1; i < end; ++i)
+    include(triangles[items_[i]].min, triangles[items_[i]].max, node.min, node.max);
+  const Vec3d size = node.max - node.min;
+  node.axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+  const std::size_t index = nodes_.size();
+  nodes_.push_back(node);
+  if (end - begin <= most_in_leaf) return;
+  const std::uint32_t middle = begin + (end - begin) / 2;
+  std::nth_element(items_.begin() + begin, items_.begin() + middle, items_.begin() + end,
+                   [&](std::uint32_t p, std::uint32_t q) {
+                     return std::pair(triangles[p].min[node.axis], p) <
+                            std::pair(triangles[q].min[node.axis], q);
+                   });
+  build(triangles, begin, middle);
+  nodes_[index].right = static_cast<std::uint32_t>(nodes_.size());
+  build(triangles, middle, end);
+}
+
+namespace {
+
+std::vector<BoxedCorners> boxed_corners(const PlainObject& object, bool& has_inert) {
+  std::vector<BoxedCorners> triangles;
+  for (std::uint32_t t = 0; t < object.triangles.size(); ++t) {
+    BoxedCorners boxed;
+    for (std::size_t k = 0; k < 3; ++k) boxed.corners[k] = object.positions[object.triangles[t][k]];
+    if (!std::ranges::all_of(boxed.corners, is_finite)) {
+      has_inert = true;
+      continue;
+    }
+    boxed.min = boxed.max = boxed.corners[0];
+    for (const Vec3d& corner : boxed.corners) include(corner, corner, boxed.min, boxed.max);
+    boxed.triangle = t;
+    triangles.push_back(boxed);
+  }
+  return triangles;
+}
+
+}  // namespace
+
+PlainSurface::PlainSurface(const PlainObject& object)
+    : triangles(boxed_corners(object, has_inert)), tree(triangles) {}
+
+Containment PlainSurface::containment(const Vec3d& p) const {
+  bool is_inside = false, is_on = false;
+  const auto is_ahead = [&](const Vec3d& min, const Vec3d& max) {
+    return p.y >= min.y && p.y <= max.y && p.z >= min.z && p.z <= max.z && p.x <= max.x;
+  };
+  tree.visit(p, is_ahead, [&](std::uint32_t i) {
+    const BoxedCorners& t = triangles[i];
+    if (!is_ahead(t.min, t.max)) return;
+    const int side = side_of_plane(t.corners, p);
+    if (side == 0 && p.x >= t.min.x && triangles_intersect_by_axes({p, p, p}, t.corners)) is_on = true;
+    if (crosses_ahead(t.corners, p, side)) is_inside = !is_inside;
+  });
+  if (is_on) return Containment::on;
+  return is_inside && !has_inert ? Containment::inside : Containment::outside;
+}
+
+PlainSurface::Nearest PlainSurface::nearest(const Vec3d& point, std::size_t guess) const {
+  std::vector<std::pair<double, std::uint32_t>> candidates;
+  double least = bounds_of_distance(point, triangles[guess].corners).upper;
+  const auto is_in_reach = [&](const Vec3d& min, const Vec3d& max) {
+    return box_distance(point, min, max) <= increased(least);
+  };
+  tree.visit(point, is_in_reach, [&](std::uint32_t i) {
+    if (!is_in_reach(triangles[i].min, triangles[i].max)) return;
+    const auto [lower, upper] = bounds_of_distance(point, triangles[i].corners);
+    least = std::min(least, upper);
+    candidates.emplace_back(lower, i);
+  });
+  std::optional<Nearest> best;
+  for (const auto& [lower, i] : candidates) {
+    if (lower > least) continue;
+    Nearest found{triangles[i].triangle, squared_distance_by_integers(point, triangles[i].corners), i};
+    const int side = best ? compare(found.squared, best->squared) : -1;
+    if (side < 0 || (side == 0 && found.triangle < best->triangle)) best = std::move(found);
+  }
+  return *best;
+}
+
+}  // namespace supple

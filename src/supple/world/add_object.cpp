@@ -1,0 +1,134 @@
+// Adds an object to a world, after checks of all that the user gives.
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "core/error.hpp"
+#include "core/sort_once.hpp"
+#include "mesh/vertex_triangles.hpp"
+#include "supple/option_descriptions.hpp"
+#include "supple/topology.hpp"
+#include "world/world.hpp"
+
+namespace supple {
+namespace {
+
+std::vector<Triangle> checked_triangles(const std::string& name, std::size_t vertex_count,
+                                        const TrianglesView& view, const Parallel& parallel) {
+  constexpr std::size_t most = 0xffffffff, grain = 8192;
+  if (vertex_count >= most || view.size() >= most) fail(name + ": more than 2^32 - 2 vertices or triangles");
+  const auto is_vertex = [&](std::int64_t id) {
+    return id >= 0 && id < static_cast<std::int64_t>(vertex_count);
+  };
+  std::vector<Triangle> triangles(view.size());
+  const bool are_all = parallel.all_of_ranges(view.size(), grain, [&](std::size_t begin, std::size_t end) {
+    bool are_vertices = true;
+    for (std::size_t t = begin; t < end; ++t) {
+      const std::array<std::int64_t, 3> ids = view[t];
+      for (std::size_t corner = 0; corner < 3; ++corner) {
+        are_vertices = are_vertices && is_vertex(ids[corner]);
+        triangles[t][corner] = static_cast<std::uint32_t>(ids[corner]);
+      }
+    }
+    return are_vertices;
+  });
+  for (std::size_t t = 0; !are_all && t < triangles.size(); ++t) {
+    for (const std::int64_t id : view[t]) {
+      if (is_vertex(id)) continue;
+      fail(name + ": triangle " + std::to_string(t) + " uses vertex " + std::to_string(id) +
+           ", but there are " + std::to_string(vertex_count) + " vertices, numbered from 0");
+    }
+  }
+  return triangles;
+}
+
+/// `ObjectOptions::same_vertex`, or its replacement by `weld`; empty when each vertex is its own.
+std::vector<std::uint32_t> checked_same_vertices(const PositionsView& positions,
+                                                 const ObjectOptions& options) {
+  const std::vector<std::uint32_t>& same = options.same_vertex;
+  if (options.weld && !same.empty())
+    fail(options.name + ": weld and same_vertex are both set; choose one of them");
+  if (options.weld) return vertices_at_same_position(positions);
+  if (!same.empty() && same.size() != positions.size()) {
+    fail(options.name + ": same_vertex has " + std::to_string(same.size()) + " ids for " +
+         std::to_string(positions.size()) + " vertices; give one for each vertex");
+  }
+  for (std::size_t v = 0; v < same.size(); ++v) {
+    if (same[v] < same.size() && same[same[v]] == same[v]) continue;
+    fail(options.name + ": same_vertex of vertex " + std::to_string(v) + " is " + std::to_string(same[v]) +
+         ", which is no vertex that counts as itself");
+  }
+  return same;
+}
+
+/// The edges and points of no triangle, as triangles with repeated corners.
+std::vector<Triangle> checked_extra_elements(std::size_t vertex_count, const ObjectOptions& options) {
+  const auto check_vertex = [&](std::uint32_t vertex, const char* what, std::size_t i) {
+    if (vertex < vertex_count) return;
+    fail(options.name + ": " + what + " " + std::to_string(i) + " uses vertex " + std::to_string(vertex) +
+         ", but there are " + std::to_string(vertex_count) + " vertices, numbered from 0");
+  };
+  std::vector<Triangle> elements;
+  for (std::size_t i = 0; i < options.edges.size(); ++i) {
+    const auto [v, w] = std::minmax(options.edges[i][0], options.edges[i][1]);
+    check_vertex(w, "edge", i);
+    if (v == w)
+      fail(options.name + ": both ends of edge " + std::to_string(i) + " are vertex " + std::to_string(v) +
+           "; list it in points");
+    elements.push_back({v, w, w});
+  }
+  for (std::size_t i = 0; i < options.points.size(); ++i) {
+    const std::uint32_t v = options.points[i];
+    check_vertex(v, "point", i);
+    elements.push_back({v, v, v});
+  }
+  return elements;
+}
+
+}  // namespace
+
+ObjectId World::add(const PositionsView& positions, const TrianglesView& triangles,
+                    const ObjectOptions& object_options, const std::string& fallback_name) {
+  const auto index = free_slots_.empty() ? static_cast<std::uint32_t>(slots_.size()) : free_slots_.back();
+  ObjectOptions named = object_options;
+  if (named.name.empty())
+    named.name = fallback_name.empty() ? "object " + std::to_string(index) : fallback_name;
+  check(named);
+  if (named.octree.build == ObjectOctreeBuild::balanced && named.octree.arity != node_width)
+    fail(named.name + ": a balanced octree has eight children; for an arity of " +
+         std::to_string(named.octree.arity) + ", build it regular or bottom-up");
+  std::vector<Triangle> faces = checked_triangles(named.name, positions.size(), triangles, parallel);
+  std::vector<Triangle> extra = checked_extra_elements(positions.size(), named);
+  if (faces.size() + extra.size() >= 0xffffffff) fail(named.name + ": more than 2^32 - 2 elements");
+  if (const auto same = checked_same_vertices(positions, named); !same.empty()) {
+    for (auto* const elements : {&faces, &extra}) {
+      for (Triangle& triangle : *elements) {
+        for (std::uint32_t& vertex : triangle) vertex = same[vertex];
+      }
+    }
+    // Welded ends make an edge a point.
+    for (Triangle& edge : extra) std::sort(edge.begin(), edge.begin() + 2);
+    for (Triangle& edge : extra) edge[2] = edge[1];
+  }
+  sort_once(extra);
+  if (named.solid) {
+    TriangleMesh surface{.name = {}, .positions = {}, .triangles = faces};
+    for (std::size_t v = 0; v < positions.size(); ++v) surface.positions.push_back(positions[v]);
+    if (const std::string fault = fault_of_solid(surface); !fault.empty())
+      fail(named.name + " is no solid: " + fault);
+  }
+  auto object = std::make_unique<WorldObject>(positions, std::move(faces), extra, named, options, parallel);
+  object->move().set_positions(positions, parallel);
+  object->measure_built_octree(parallel);
+  if (free_slots_.empty()) {
+    slots_.emplace_back();
+  } else {
+    free_slots_.pop_back();
+  }
+  slots_[index].object = std::move(object);
+  mark_changed();
+  return id_of(index);
+}
+
+}  // namespace supple

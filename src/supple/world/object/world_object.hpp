@@ -1,0 +1,165 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/parallel.hpp"
+#include "mesh/vertex_triangles.hpp"
+#include "octree/object_octree.hpp"
+#include "supple/inspection.hpp"
+#include "supple/options.hpp"
+#include "world/object/fine_boxes.hpp"
+#include "world/object/moving_shape.hpp"
+#include "world/object/placement.hpp"
+#include "world/object/rebuild_policy.hpp"
+#include "world/object/resting_shape.hpp"
+#include "world/object/vertex_groups.hpp"
+#include "world/object/vertex_ways.hpp"
+
+namespace supple {
+
+/// The data of objects that a search needs.
+struct SearchedShapes {
+  bool resting = false, moving = false;
+  bool near = false;  ///< elements at the end of the step
+  /// Self-collision culling, for objects that are tested against themselves.
+  bool cull_resting = false, cull_moving = false;
+
+  constexpr bool operator==(const SearchedShapes&) const = default;
+};
+
+/// The data of objects that queries of points, rays and distances need.
+constexpr SearchedShapes shapes_of_queries{.resting = true, .cull_resting = true};
+
+/// One object of a scene: its octree, its placement, and the shapes that searches read.
+class WorldObject {
+ public:
+  /// `extra` are edges and points of no triangle, with the last vertex repeated.
+  WorldObject(const PositionsView& positions, std::vector<Triangle> faces, std::span<const Triangle> extra,
+              const ObjectOptions& object_options, const SceneOptions& scene_options,
+              const Parallel& parallel);
+
+  /// For changes of the placement; marks the object as moved.
+  Placement& move() {
+    has_moved_ = true;
+    return placement_;
+  }
+  const Placement& placement() const { return placement_; }
+  /// Whether the object has moved since the last update.
+  bool has_moved() const { return has_moved_; }
+  /// Whether a shape or the volumes are out of date.
+  bool is_stale(const SearchedShapes& shapes) const;
+  /// Whether a shape is out of date, so that triangles must be refitted.
+  bool needs_refit(const SearchedShapes& shapes) const;
+  /// Updates the shapes and the volumes.
+  void update(const SearchedShapes& shapes, const Parallel& parallel);
+
+  /// The triangles in the leaves that the last update refitted.
+  std::size_t refitted_triangles() const { return refitted_triangles_; }
+
+  /// Call when the placement has the positions that the octree was built from.
+  void measure_built_octree(const Parallel& parallel);
+  const RebuildPolicy& rebuild_policy() const { return rebuild_policy_; }
+  RebuildPolicy& rebuild_policy() { return rebuild_policy_; }
+  /// Builds an octree from the current positions. Returns whether it is so much better that it replaced the
+  /// present one: then the shapes are up to date, but views are invalid. Contacts do not change.
+  bool rebuild(const Parallel& parallel);
+
+  /// The box of the placed object at the last update. It encloses all shapes, so it may enclose the whole
+  /// motion.
+  const Aabb& box() const { return box_; }
+  const BoundingSphere& sphere() const { return sphere_; }
+  const ObjectOctree& octree() const { return octree_; }
+  /// The octree's triangles with ids from here on are edges and points of no triangle.
+  std::uint32_t face_count() const { return face_count_; }
+  bool has_extra_elements() const { return face_count_ != octree_.triangles().size(); }
+  std::span<const std::uint8_t> is_point() const { return is_point_; }
+  /// Whether a face has a vertex that is not finite; its object contains nothing.
+  bool has_inert_faces() const { return resting_.has_inert_faces(); }
+
+  VertexGroups vertex_groups() const { return {groups_, masks_}; }
+  void set_vertex_groups(std::span<const std::uint32_t> groups, std::span<const std::uint32_t> masks) {
+    groups_.reserve(groups.size());
+    masks_.reserve(masks.size());  // so that both change, or none
+    groups_.assign(groups.begin(), groups.end());
+    masks_.assign(masks.begin(), masks.end());
+  }
+  /// O(n).
+  VertexWays ways(const Parallel& parallel) const;
+  const MovingShape& moving() const { return moving_; }
+  /// The elements at the end of the step: those of `moving` for an object at rest.
+  const MovingShape& near() const { return placement_.has_motion() ? near_ : moving_; }
+  bool needs_fine_boxes() const { return FineBoxes::are_needed(resting_view()); }
+  /// Takes O(n) when the octree or the positions have changed.
+  void update_fine_boxes() { fine_boxes_.update(resting_view(), placement_.end(), placement_.version()); }
+  /// The boxes of the octree at rest in double; null when they are not up to date.
+  const QueryBox* fine_boxes() const { return fine_boxes_.of_version(placement_.version()); }
+  OctreeView resting_view() const { return resting_.view(octree_, placement_); }
+  OctreeView moving_view() const {
+    OctreeView view = moving_.view(octree_, placement_);
+    if (has_extra_elements()) view.culled = nullptr;
+    return view;
+  }
+  OctreeView near_view() const {
+    OctreeView view = near().view(octree_, placement_);
+    view.culled = nullptr;
+    return view;
+  }
+  /// The user's ids, ascending.
+  std::span<const std::uint32_t> non_finite_vertices(const SearchedShapes& shapes) const {
+    if (shapes.moving) return moving_.non_finite_vertices();
+    return shapes.resting ? resting_.non_finite_vertices() : near().non_finite_vertices();
+  }
+  /// The position of a vertex that is not finite: at the end of the step, or at its start if the end is
+  /// finite.
+  Vec3d non_finite_position(std::uint32_t vertex) const;
+  /// An edge with an odd number of triangles, as the user's vertices; nothing when the surface is closed.
+  /// The first call takes O(n log n), later ones nothing.
+  std::optional<std::array<std::uint32_t, 2>> open_edge();
+  /// The triangles around each vertex at rest, without inert ones. The first call takes O(n), and so does
+  /// each call while there are inert triangles.
+  const VertexTriangles& vertex_triangles();
+  /// The triangles around each vertex in octree order, without inert ones, or null when neighbours are not
+  /// tested. Takes O(n) when the octree or the inert triangles have changed.
+  const VertexTriangles* neighbours();
+  /// Checks the shapes that are up to date.
+  std::string validate() const;
+  OctreeStatistics octree_statistics() const;
+
+  ObjectOptions options;
+
+ private:
+  void refit(const SearchedShapes& shapes, const Parallel& parallel);
+  /// Adds the shapes that are up to date.
+  SearchedShapes with_current(SearchedShapes shapes) const;
+  double current_query_cost() const;
+  void update_volumes(const SearchedShapes& shapes);
+
+  std::uint32_t face_count_;
+  ObjectOctree octree_;
+  Placement placement_;
+  RestingShape resting_{face_count_};
+  MovingShape moving_{MovingShape::Part::way}, near_{MovingShape::Part::end};
+  FineBoxes fine_boxes_;
+  RebuildPolicy rebuild_policy_;
+  std::uint64_t rebuilds_ = 0;
+  std::size_t refitted_triangles_ = 0;
+  std::vector<std::uint32_t> groups_, masks_;  // by vertex
+  std::vector<std::uint8_t> is_point_;         // by vertex, or empty
+  bool has_moved_ = true;
+  bool knows_open_edge_ = false;
+  std::optional<std::array<std::uint32_t, 2>> open_edge_;
+  std::optional<VertexTriangles> vertex_triangles_;
+  bool leaves_out_inert_ = false;  // `vertex_triangles_` does
+  std::optional<VertexTriangles> neighbours_;
+  bool neighbours_leave_out_inert_ = false;
+  SearchedShapes updated_;  // by the last update
+  Aabb box_;
+  BoundingSphere sphere_;
+};
+
+}  // namespace supple

@@ -1,0 +1,226 @@
+#include "world/world.hpp"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+#include "core/error.hpp"
+#include "supple/option_descriptions.hpp"
+
+namespace supple {
+namespace {
+
+std::string described(ObjectId id) {
+  return "object " + std::to_string(id.index);
+}
+
+const SceneOptions& checked(const SceneOptions& options) {
+  check(options);
+  return options;
+}
+
+void check_count(const WorldObject& object, std::size_t count, const char* call) {
+  const std::size_t vertices = object.octree().vertex_count();
+  if (count == vertices) return;
+  fail(std::string(call) + ": " + std::to_string(count) + " positions for " + object.options.name +
+       ", which has " + std::to_string(vertices) + " vertices; give one for each vertex");
+}
+
+}  // namespace
+
+void check_vertex(const WorldObject& object, std::uint32_t vertex, const char* call) {
+  const std::size_t count = object.octree().vertex_count();
+  if (vertex < count) return;
+  fail(std::string(call) + ": " + object.options.name + " has no vertex " + std::to_string(vertex) +
+       "; it has " + std::to_string(count) + ", numbered from 0");
+}
+
+void check_triangle(const WorldObject& object, std::uint32_t triangle, const char* call) {
+  const std::size_t count = object.face_count();
+  if (triangle < count) return;
+  fail(std::string(call) + ": " + object.options.name + " has no triangle " + std::to_string(triangle) +
+       "; it has " + std::to_string(count) + ", numbered from 0");
+}
+
+World::World(const SceneOptions& scene_options)
+    : options(checked(scene_options)), parallel(scene_options.threads) {}
+
+void World::remove(ObjectId id) {
+  object(id, "remove");
+  // What may run out of memory comes first, so that no object is half removed.
+  free_slots_.reserve(slots_.capacity());
+  versions_.resize(slots_.size(), 0);
+  slots_[id.index].object.reset();
+  ++slots_[id.index].generation;
+  free_slots_.push_back(id.index);
+  versions_[id.index] = ++last_version_;
+  mark_changed();
+}
+
+bool World::contains(ObjectId id) const {
+  return id.index < slots_.size() && slots_[id.index].object != nullptr &&
+         slots_[id.index].generation == id.generation;
+}
+
+std::vector<ObjectId> World::objects() const {
+  std::vector<ObjectId> ids;
+  for (std::uint32_t slot = 0; slot < slots_.size(); ++slot) {
+    if (slots_[slot].object != nullptr) ids.push_back(id_of(slot));
+  }
+  return ids;
+}
+
+WorldObject& World::object(ObjectId id, const char* call) const {
+  if (!contains(id)) {
+    fail(std::string(call) + ": " + described(id) + " (generation " + std::to_string(id.generation) +
+         ") is not in the scene; it was removed or belongs to another scene");
+  }
+  return *slots_[id.index].object;
+}
+
+WorldObject& World::movable_object(ObjectId id, const char* call) const {
+  WorldObject& found = object(id, call);
+  if (found.options.is_static) {
+    fail(std::string(call) + ": " + found.options.name +
+         " is static and cannot move; call set_static(id, false) first");
+  }
+  return found;
+}
+
+ObjectPair World::two_objects(ObjectId a, ObjectId b, const char* call) const {
+  object(a, call);
+  object(b, call);
+  if (a == b) fail(std::string(call) + ": both objects are " + object(a, call).options.name + "; give two");
+  return a < b ? ObjectPair{a, b} : ObjectPair{b, a};
+}
+
+void World::set_positions(ObjectId id, const PositionsView& positions) {
+  WorldObject& found = movable_object(id, "set_positions");
+  check_count(found, positions.size(), "set_positions");
+  found.move().set_positions(positions, parallel);
+  mark_changed();
+}
+
+void World::set_vertices(ObjectId id, std::span<const std::uint32_t> vertices,
+                         const PositionsView& positions) {
+  WorldObject& found = movable_object(id, "set_vertices");
+  const std::string& name = found.options.name;
+  if (positions.size() != vertices.size()) {
+    fail("set_vertices: " + std::to_string(positions.size()) + " positions for " +
+         std::to_string(vertices.size()) + " vertices of " + name + "; give one for each vertex");
+  }
+  for (const std::uint32_t vertex : vertices) check_vertex(found, vertex, "set_vertices");
+  const bool is_double = found.placement().is_double();
+  if (!vertices.empty() && positions.is_double() != is_double) {
+    fail("set_vertices: the positions are " + std::string(is_double ? "float" : "double") + ", those of " +
+         name + " are " + (is_double ? "double" : "float") + "; give both in one precision");
+  }
+  found.move().set_vertices(vertices, positions, parallel);
+  mark_changed();
+}
+
+void World::share_positions(ObjectId id, const PositionsView& positions) {
+  WorldObject& found = movable_object(id, "share_positions");
+  check_count(found, positions.size(), "share_positions");
+  found.move().share_positions(positions, parallel);
+  mark_changed();
+}
+
+void World::set_motion(ObjectId id, const PositionsView& from, const PositionsView& to) {
+  WorldObject& found = movable_object(id, "set_motion");
+  check_count(found, from.size(), "set_motion");
+  check_count(found, to.size(), "set_motion");
+  if (from.is_double() != to.is_double())
+    fail("set_motion: one end of the path is float, the other double; give both in one precision");
+  found.move().set_motion(from, to, parallel);
+  mark_changed();
+}
+
+void World::translate(ObjectId id, const Vec3d& offset) {
+  movable_object(id, "translate").move().translate(offset, parallel);
+  mark_changed();
+}
+
+void World::set_transform(ObjectId id, const RigidTransform& transform) {
+  movable_object(id, "set_transform").move().set_transform(transform, parallel);
+  mark_changed();
+}
+
+void World::set_static(ObjectId id, bool is_static) {
+  object(id, "set_static").options.is_static = is_static;
+  mark_changed();
+}
+
+void World::set_group(ObjectId id, std::uint32_t group, std::uint32_t mask) {
+  ObjectOptions& changed = object(id, "set_group").options;
+  changed.group = group;
+  changed.mask = mask;
+  mark_changed();
+}
+
+void World::set_vertex_groups(ObjectId id, std::span<const std::uint32_t> groups,
+                              std::span<const std::uint32_t> masks) {
+  WorldObject& found = object(id, "set_vertex_groups");
+  const std::size_t count = found.octree().vertex_count();
+  for (const std::size_t given : {groups.size(), masks.size()}) {
+    if (given == count || (groups.empty() && masks.empty())) continue;
+    fail("set_vertex_groups: " + std::to_string(given) + " numbers for " + found.options.name +
+         ", which has " + std::to_string(count) + " vertices; give a group and a mask for each vertex");
+  }
+  found.set_vertex_groups(groups, masks);
+  found.move();  // so that its pairs are found again
+  mark_changed();
+}
+
+void World::set_self_collision(ObjectId id, bool enabled) {
+  object(id, "set_self_collision").options.self_collision = enabled;
+  mark_changed();
+}
+
+void World::set_distance(ObjectId id, double ObjectOptions::*member, double distance, const char* call) {
+  WorldObject& found = object(id, call);
+  ObjectOptions changed = found.options;
+  changed.*member = distance;
+  check(changed, call);
+  found.options.*member = distance;
+  found.move();  // so that its pairs are found again
+  mark_changed();
+}
+
+void World::set_filter(PairFilter filter) {
+  filter_ = std::move(filter);
+  mark_changed();
+}
+
+bool World::may_pair_by_groups(const IndexPair& pair) const {
+  const ObjectOptions &a = slots_[pair.a].object->options, &b = slots_[pair.b].object->options;
+  if (a.is_static && b.is_static) return false;
+  return (a.group & b.mask) != 0 && (b.group & a.mask) != 0;
+}
+
+bool World::may_pair(const IndexPair& pair) const {
+  return may_pair_by_groups(pair) && (!filter_ || filter_(id_of(pair.a), id_of(pair.b)));
+}
+
+std::vector<ObjectPair> World::all_pairs() const {
+  std::vector<ObjectPair> pairs;
+  const std::vector<ObjectId> ids = objects();
+  for (const ObjectId a : ids) {
+    if (slots_[a.index].object->options.self_collision) pairs.push_back({a, a});
+    for (const ObjectId b : ids) {
+      if (a < b && may_pair({a.index, b.index})) pairs.push_back({a, b});
+    }
+  }
+  return pairs;
+}
+
+std::string World::validate() const {
+  for (const Slot& slot : slots_) {
+    if (slot.object == nullptr) continue;
+    if (const std::string wrong = slot.object->validate(); !wrong.empty())
+      return slot.object->options.name + ": " + wrong;
+  }
+  return {};
+}
+
+}  // namespace supple
