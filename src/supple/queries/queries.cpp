@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
+#include <tuple>
 #include <utility>
 
 #include "geometry/vector.hpp"
@@ -20,17 +20,20 @@ bool has_far_part(const Aabb& box, const Aabb& other) {
   return !box.empty() && !other.empty() && is_far(box, scaled_norm(farthest), far_ratio);
 }
 
-/// The lists of all workers in one, sorted; empty after a stop. Equal items stay in their order.
-template <class Worker, class Item, class Less>
+/// The lists of all workers in one, ascending by query; empty after a stop. The items of a query stay in
+/// their order: one worker has all of them.
+template <class Worker, class Item>
 std::vector<Item> gathered(const std::vector<Worker>& workers, std::vector<Item> Worker::*list,
-                           const StopSignal& stop, const Less& less) {
+                           const StopSignal& stop) {
   std::vector<Item> all;
   if (stop.stop_requested()) return all;
-  std::size_t count = 0;
-  for (const Worker& worker : workers) count += (worker.*list).size();
-  all.reserve(count);
-  for (const Worker& worker : workers) all.insert(all.end(), (worker.*list).begin(), (worker.*list).end());
-  std::stable_sort(all.begin(), all.end(), less);
+  std::vector<std::tuple<std::uint32_t, std::size_t, const Item*>> places;
+  for (const Worker& worker : workers) {
+    for (const Item& item : worker.*list) places.emplace_back(item.query, places.size(), &item);
+  }
+  std::sort(places.begin(), places.end());
+  all.reserve(places.size());
+  for (const auto& [query, place, item] : places) all.push_back(*item);
   return all;
 }
 
@@ -49,7 +52,7 @@ QueriedObject queried_object(const World& world, std::uint32_t slot) {
 }
 
 Queries::Lease::Lease(const Queries& queries) : queries_(queries) {
-  const std::lock_guard lock(queries_.mutex_);
+  const Lock lock(queries_.mutex_);
   if (queries_.idle_.empty()) {
     queries_.idle_.reserve(queries_.made_ + 1);
     call_ = std::make_unique<Call>();
@@ -61,7 +64,7 @@ Queries::Lease::Lease(const Queries& queries) : queries_(queries) {
 }
 
 Queries::Lease::~Lease() {
-  const std::lock_guard lock(queries_.mutex_);
+  const Lock lock(queries_.mutex_);
   queries_.idle_.push_back(std::move(call_));  // there is room
 }
 
@@ -119,7 +122,7 @@ void Queries::closest(std::span<const Vec3d> points, std::span<std::optional<Clo
   }
   const Lease use(*this);
   {
-    const std::lock_guard lock(mutex_);
+    const Lock lock(mutex_);
     if (options.signed_distance) check_closed(world_, options.filter, "closest");
     list_objects(options.filter, "closest", *use);
     for (QueriedObject& object : use->objects) {
@@ -148,7 +151,7 @@ void Queries::cast(std::span<const Ray> rays, std::span<std::optional<RayHit>> r
   check_counts(rays.size(), results.size(), "cast");
   const Lease use(*this);
   {
-    const std::lock_guard lock(mutex_);
+    const Lock lock(mutex_);
     list_objects(options.filter, "cast", *use);
   }
   if (has_exact_limit(world_)) check_bits(bits_of_rays(rays), *use, "cast");
@@ -166,7 +169,7 @@ std::vector<ListedRayHit> Queries::cast_all(std::span<const Ray> rays, const Que
   constexpr std::size_t grain = 64;
   const Lease use(*this);
   {
-    const std::lock_guard lock(mutex_);
+    const Lock lock(mutex_);
     list_objects(filter, "cast_all", *use);
   }
   if (has_exact_limit(world_)) check_bits(bits_of_rays(rays), *use, "cast_all");
@@ -178,9 +181,7 @@ std::vector<ListedRayHit> Queries::cast_all(std::span<const Ray> rays, const Que
     for (std::size_t i = begin; i < end && !stop.stop_requested(); ++i)
       worker.queries.cast_all(use->objects, rays[i], static_cast<std::uint32_t>(i), worker.hits);
   });
-  return gathered(use->workers, &Worker::hits, stop, [](const ListedRayHit& p, const ListedRayHit& q) {
-    return p.query < q.query;  // the hits of a ray are in order already
-  });
+  return gathered(use->workers, &Worker::hits, stop);
 }
 
 void Queries::inside(std::span<const Vec3d> points, std::span<Containment> results, const QueryFilter& filter,
@@ -188,7 +189,7 @@ void Queries::inside(std::span<const Vec3d> points, std::span<Containment> resul
   check_counts(points.size(), results.size(), "inside");
   const Lease use(*this);
   {
-    const std::lock_guard lock(mutex_);
+    const Lock lock(mutex_);
     check_closed(world_, filter, "inside");
     list_objects(filter, "inside", *use);
   }
@@ -242,7 +243,7 @@ std::vector<Overlap> Queries::overlaps(std::span<const Region> regions, const Qu
   constexpr std::size_t grain = 16;
   const Lease use(*this);
   {
-    const std::lock_guard lock(mutex_);
+    const Lock lock(mutex_);
     list_objects(filter, "overlaps", *use);
   }
   if (has_exact_limit(world_)) check_bits(bits_of_regions(regions), *use, "overlaps");
@@ -254,7 +255,9 @@ std::vector<Overlap> Queries::overlaps(std::span<const Region> regions, const Qu
     for (std::size_t i = begin; i < end && !stop.stop_requested(); ++i)
       worker.queries.overlaps(use->objects, regions[i], static_cast<std::uint32_t>(i), worker.overlaps);
   });
-  return gathered(use->workers, &Worker::overlaps, stop, std::less<>());
+  std::vector<Overlap> found = gathered(use->workers, &Worker::overlaps, stop);
+  std::sort(found.begin(), found.end());
+  return found;
 }
 template std::vector<Overlap> Queries::overlaps(std::span<const QueryBox> regions, const QueryFilter& filter,
                                                 const CallLimits& limits) const;

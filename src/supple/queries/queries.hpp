@@ -4,11 +4,11 @@
 #include <cstdint>
 #include <map>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <span>
 #include <vector>
 
+#include "core/lock.hpp"
 #include "core/stop_signal.hpp"
 #include "octree/morton_curve.hpp"
 #include "queries/containment_cells.hpp"
@@ -104,7 +104,7 @@ class Queries {
   void find(NearObjects& near, double max_distance, const StopSignal& stop, NearestPairSearch& search) const;
 
   World& world_;
-  mutable std::mutex mutex_;  // for the refit of the world, and for what follows
+  mutable Mutex mutex_;  // for the refit of the world, and for what follows
   mutable std::vector<std::unique_ptr<Call>> idle_;
   mutable std::size_t made_ = 0;  // calls, idle or not
   /// Triangles with the nearest features of pairs of objects, the user's numbers.

@@ -15,8 +15,7 @@ void check_manifolds(const Question& question) {
 
 }  // namespace
 
-Scene::Implementation::Implementation(const SceneOptions& options)
-    : world(options), contacts_(with_included(options.contacts)) {}
+Scene::Implementation::Implementation(const SceneOptions& options) : world(options) {}
 
 ImpactSearchOptions Scene::Implementation::impact_options() const {
   const SceneOptions& options = world.options;
@@ -27,7 +26,7 @@ Question Scene::Implementation::question_of(const DetectRequest& request) const 
   if (request.impact) check(*request.impact, "DetectRequest::impact");
   const SceneOptions& options = world.options;
   Question question{
-      .contacts = request.contacts ? with_included(*request.contacts) : contacts_,
+      .contacts = with_included(request.contacts.value_or(options.contacts)),
       .impact = {request.impact.value_or(options.impact),
                  request.element_kinds.value_or(options.element_kinds),
                  request.continuous_listing.value_or(options.continuous_listing), options.max_exact_bits},

@@ -44,7 +44,6 @@ class Scene::Implementation {
   Events events_;
   std::optional<Detection> search_;  // of `search`
   DetectResult found_by_search_;
-  ContactKinds contacts_;  // of a request that names none
   std::uint64_t step_ = 0;
   std::uint64_t detected_at_ = 0;  // `World::changes` at the last `detect` that succeeded
 };

@@ -14,8 +14,9 @@ std::string described(ObjectId id) {
   return "object " + std::to_string(id.index);
 }
 
-const SceneOptions& checked(const SceneOptions& options) {
+SceneOptions checked(SceneOptions options) {
   check(options);
+  options.contacts = with_included(options.contacts);
   return options;
 }
 

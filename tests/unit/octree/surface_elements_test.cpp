@@ -4,6 +4,7 @@
 
 #include <set>
 
+#include "octree/object_octree.hpp"
 #include "support/soups.hpp"
 
 namespace supple {

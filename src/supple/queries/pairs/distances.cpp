@@ -78,7 +78,7 @@ std::optional<ProximityPair> Queries::distance(ObjectId a, ObjectId b, const Cal
   const Lease use(*this);
   use->workers.resize(world_.parallel.worker_count());
   {
-    const std::lock_guard lock(mutex_);
+    const Lock lock(mutex_);
     refit();
     prepare(near);
   }
@@ -87,7 +87,7 @@ std::optional<ProximityPair> Queries::distance(ObjectId a, ObjectId b, const Cal
   find(near, any_distance, stop, use->workers.front().pair_search);
   if (stop.stop_requested()) return {};
   if (near.found) {
-    const std::lock_guard lock(mutex_);
+    const Lock lock(mutex_);
     nearest_triangles_[near.pair] = near.triangles;
   }
   return near.found;
@@ -98,7 +98,7 @@ bool Queries::any_contact(ObjectId a, ObjectId b, const CallLimits& limits) cons
   const Lease use(*this);
   use->workers.resize(world_.parallel.worker_count());
   {
-    const std::lock_guard lock(mutex_);
+    const Lock lock(mutex_);
     refit();
   }
   check_exact_bits_of_pairs(world_, {&pair, 1}, "any_contact");
@@ -138,12 +138,12 @@ std::vector<ProximityPair> Queries::distances(double max_distance, const CallLim
   const Lease use(*this);
   use->workers.resize(world_.parallel.worker_count());
   {
-    const std::lock_guard lock(mutex_);
+    const Lock lock(mutex_);
     refit();
   }
   std::vector<NearObjects> near = near_objects(max_distance);  // calls the filter, so without the lock
   {
-    const std::lock_guard lock(mutex_);
+    const Lock lock(mutex_);
     for (NearObjects& objects : near) prepare(objects);
   }
   if (has_exact_limit(world_)) {
@@ -158,7 +158,7 @@ std::vector<ProximityPair> Queries::distances(double max_distance, const CallLim
   });
   std::vector<ProximityPair> found;
   if (stop.stop_requested()) return found;
-  const std::lock_guard lock(mutex_);
+  const Lock lock(mutex_);
   for (const NearObjects& objects : near) {
     if (!objects.found) continue;
     found.push_back(*objects.found);
