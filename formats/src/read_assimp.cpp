@@ -13,8 +13,8 @@
 #include "core/error.hpp"
 #include "file_kinds.hpp"
 #include "mesh/files/file_access.hpp"
-#include "mesh/polygon/polygon.hpp"
 #include "mesh/files/quotes.hpp"
+#include "mesh/polygon/polygon.hpp"
 #include "model_readers.hpp"
 
 namespace supple {

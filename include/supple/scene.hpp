@@ -51,9 +51,9 @@ struct RigidTransform {
 /// Once continuous contacts, proximity or a safe step are requested, it also keeps the positions at the end
 /// of the step, and for objects on a path those at its start.
 ///
-/// Spans: those of a result are valid until the next call of the function that found it, `detect` or `search`,
-/// and those of `collision_free_steps` until its next call. Nothing else ends them, except the destructor and
-/// an assignment.
+/// Spans: those of a result are valid until the next call of the function that found it, `detect` or
+/// `search`, and those of `collision_free_steps` until its next call. Nothing else ends them, except the
+/// destructor and an assignment.
 ///
 /// Threads: calls on one scene must not overlap, except calls of const functions. Different scenes are
 /// independent.
@@ -144,11 +144,11 @@ class Scene {
   /// range.
   const DetectResult& detect(const DetectRequest& request = {});
   /// As `detect`, but apart from the steps of the scene: `result`, `verify` and the events do not change, and
-  /// the result has no events and no manifolds. For a search within a step, for example of a solver that tries
-  /// out paths. Tests only the pairs of objects that `only` accepts, all when it is empty; for an object with
-  /// self-collision, it gets the same object twice. The result is valid until the next `search`. The first
-  /// call takes memory for the answers; the objects and their octrees are those of the scene. Throws `Error`
-  /// as `detect` does, and when manifolds are requested.
+  /// the result has no events and no manifolds. For a search within a step, for example of a solver that
+  /// tries out paths. Tests only the pairs of objects that `only` accepts, all when it is empty; for an
+  /// object with self-collision, it gets the same object twice. The result is valid until the next `search`.
+  /// The first call takes memory for the answers; the objects and their octrees are those of the scene.
+  /// Throws `Error` as `detect` does, and when manifolds are requested.
   const DetectResult& search(const DetectRequest& request, const PairFilter& only = {});
   /// The first continuous contact with `SceneOptions::impact`, or nothing when nothing touches within the
   /// step. Of contacts with the same time, it is the first in canonical order. The search skips pairs that
