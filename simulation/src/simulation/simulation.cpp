@@ -251,7 +251,10 @@ void Simulation::Implementation::respond_to_contacts() {
                               .impact = ImpactOptions{},
                               .element_kinds = ElementKinds::all,
                               .continuous_listing = ContinuousListing::all};
-  response_->impulses.resolve(scene, near_pairs(), response_->objects, impacts,
+  const std::span<const ProximityPair> near = near_pairs();
+  has_current_result_ = false;  // from here on, the scene has paths that are tried out
+  for (const RespondingObject& object : response_->objects) objects_[object.id.index]->is_on_path = true;
+  response_->impulses.resolve(scene, near, response_->objects, impacts,
                               [this](ObjectId a, ObjectId b) { return may_respond(a, b); });
   for (const auto& object : objects_) {
     if (object == nullptr || object->moving_body == nullptr) continue;
@@ -307,9 +310,9 @@ void Simulation::Implementation::accept_written_positions() {
 void Simulation::Implementation::place_in_scene() {
   for (const auto& object : objects_) {
     if (object == nullptr || !object->moves()) continue;
-    if (is_continuous()) {
+    object->is_on_path = is_continuous();
+    if (object->is_on_path) {
       scene.set_motion(object->id, object->before, object->positions());
-      object->is_on_path = true;
     } else if (object->rigid_body && !response_) {
       object->rigid_body->place(scene, object->id);
     } else {

@@ -30,7 +30,7 @@ struct SimulatedObject {
   std::vector<Vec3d> own_positions;       // for objects without a body
   std::vector<Vec3d> next;                // the output of the function, until the step succeeds
   std::vector<Vec3d> before;              // positions before the last step, kept only when paths are needed
-  bool is_on_path = false;                // the scene has the path of the last step
+  bool is_on_path = false;                // the scene has a path: of the last step, or one that was tried out
   std::shared_ptr<ImpulseSpread> spread;  // for bodies, with a response; shared by those with equal springs
   std::vector<double> inverse_masses;
   std::optional<std::string> failure;  // why the body failed in this step, as text

@@ -15,8 +15,8 @@ namespace supple {
 /// Finds the kinds of contacts for which a world has nothing to test, and the reason.
 class UntestedKinds {
  public:
-  /// Of the kinds of the question; `found` has the groups of all contacts. The span is valid until the next
-  /// call.
+  /// Lists each requested kind that has nothing to test. `found` has the groups of all contacts. The span is
+  /// valid until the next call.
   std::span<const UntestedKind> list(const World& world, const Question& question, const DetectResult& found);
 
  private:

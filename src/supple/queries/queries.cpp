@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <tuple>
 #include <utility>
 
 #include "geometry/vector.hpp"
@@ -20,21 +19,26 @@ bool has_far_part(const Aabb& box, const Aabb& other) {
   return !box.empty() && !other.empty() && is_far(box, scaled_norm(farthest), far_ratio);
 }
 
-/// The lists of all workers in one, ascending by query; empty after a stop. The items of a query stay in
-/// their order: one worker has all of them.
+/// The lists of all workers in one; empty after a stop.
 template <class Worker, class Item>
 std::vector<Item> gathered(const std::vector<Worker>& workers, std::vector<Item> Worker::*list,
                            const StopSignal& stop) {
   std::vector<Item> all;
   if (stop.stop_requested()) return all;
-  std::vector<std::tuple<std::uint32_t, std::size_t, const Item*>> places;
-  for (const Worker& worker : workers) {
-    for (const Item& item : worker.*list) places.emplace_back(item.query, places.size(), &item);
-  }
-  std::sort(places.begin(), places.end());
-  all.reserve(places.size());
-  for (const auto& [query, place, item] : places) all.push_back(*item);
+  for (const Worker& worker : workers) all.insert(all.end(), (worker.*list).begin(), (worker.*list).end());
   return all;
+}
+
+/// Ascending by ray. The hits of a ray stay in their order: one worker has found all of them.
+std::vector<ListedRayHit> sorted_by_ray(const std::vector<ListedRayHit>& hits) {
+  std::vector<std::pair<std::uint32_t, std::size_t>> places;
+  places.reserve(hits.size());
+  for (std::size_t i = 0; i < hits.size(); ++i) places.emplace_back(hits[i].query, i);
+  std::sort(places.begin(), places.end());
+  std::vector<ListedRayHit> sorted;
+  sorted.reserve(hits.size());
+  for (const auto& [query, place] : places) sorted.push_back(hits[place]);
+  return sorted;
 }
 
 }  // namespace
@@ -181,7 +185,7 @@ std::vector<ListedRayHit> Queries::cast_all(std::span<const Ray> rays, const Que
     for (std::size_t i = begin; i < end && !stop.stop_requested(); ++i)
       worker.queries.cast_all(use->objects, rays[i], static_cast<std::uint32_t>(i), worker.hits);
   });
-  return gathered(use->workers, &Worker::hits, stop);
+  return sorted_by_ray(gathered(use->workers, &Worker::hits, stop));
 }
 
 void Queries::inside(std::span<const Vec3d> points, std::span<Containment> results, const QueryFilter& filter,

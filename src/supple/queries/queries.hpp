@@ -45,7 +45,7 @@ class Queries {
   std::optional<ProximityPair> distance(ObjectId a, ObjectId b, const CallLimits& limits) const;
   std::vector<ProximityPair> distances(double max_distance, const CallLimits& limits) const;
   bool any_contact(ObjectId a, ObjectId b, const CallLimits& limits) const;
-  /// Call it before the object is removed.
+  /// The object is removed: `distance` no longer starts at its last answers.
   void forget(ObjectId id);
 
  private:

@@ -101,9 +101,6 @@ class World {
 
   /// As `object`; also throws an error when the object is static.
   WorldObject& movable_object(ObjectId id, const char* call) const;
-  /// Moves the object: `change(placement)`.
-  template <class Change>
-  void move(WorldObject& object, const Change& change);
   void mark_changed() { ++changes_; }
   template <class Size, class Function>
   void for_each_object(std::span<const std::uint32_t> slots, const Size& size, const Function& function);
