@@ -95,12 +95,12 @@ class RecordedFrames : public viewer::Frames {
         for (const ObjectPair& pair : pairs)
           events.push_back({static_cast<std::uint32_t>(number), places.at(pair.a), places.at(pair.b)});
       };
-      add(frame.contact_begin, series_.contacts.begin);
-      add(frame.contact_end, series_.contacts.end);
-      add(frame.narrow_phase_begin, series_.narrow_phase.begin);
-      add(frame.narrow_phase_end, series_.narrow_phase.end);
-      add(frame.volume_begin, series_.volumes.begin);
-      add(frame.volume_end, series_.volumes.end);
+      add(frame.contact_events.begin, series_.contacts.begin);
+      add(frame.contact_events.end, series_.contacts.end);
+      add(frame.narrow_phase_events.begin, series_.narrow_phase.begin);
+      add(frame.narrow_phase_events.end, series_.narrow_phase.end);
+      add(frame.volume_events.begin, series_.volumes.begin);
+      add(frame.volume_events.end, series_.volumes.end);
       progress.update(number + 1, fmt::format("reading frame {} of {}", number + 1, count()));
     }
   }

@@ -3,15 +3,20 @@
 #include <fmt/core.h>
 #include <fmt/ranges.h>
 
+#include <array>
 #include <cmath>
+#include <iterator>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <type_traits>
+#include <utility>
+#include <vector>
 
+#include "session/sections.hpp"
 #include "session/settings.hpp"
 #include "supple/format_descriptions.hpp"
-#include "supple/result_descriptions.hpp"
+#include "supple/record_descriptions.hpp"
 #include "supple/simulation_descriptions.hpp"
 
 namespace supple::cli {
@@ -149,12 +154,117 @@ void statistics_tables() {
   });
 }
 
+/// The type and the width of a member of a record in a recording.
+template <class Value>
+std::pair<const char*, int> stored_as() {
+  if constexpr (std::is_same_v<Value, Vec3d> || std::is_same_v<Value, std::array<double, 3>>)
+    return {"float64", 3};
+  else if constexpr (std::is_same_v<Value, std::array<std::uint32_t, 2>>)
+    return {"uint32", 2};
+  else if constexpr (std::is_same_v<Value, double>)
+    return {"float64", 1};
+  else if constexpr (std::is_same_v<Value, std::uint64_t>)
+    return {"uint64", 1};
+  else if constexpr (std::is_same_v<Value, std::uint32_t> || std::is_same_v<Value, ObjectId>)
+    return {"uint32", 1};
+  else
+    return {"uint8", 1};
+}
+
+const char* unit_of(const Role& role, const char* unit) {
+  switch (role.names) {
+    case Names::object:
+      return "objects";
+    case Names::triangle:
+      return "triangles";
+    case Names::vertex:
+      return "vertices";
+    case Names::element:
+      return "vertices or triangles";
+    case Names::rows:
+      return role.side == 0 ? "rows" : "vertices";
+    case Names::first_row:
+      return "rows";
+    default:
+      return unit;
+  }
+}
+
+void print_dataset(const std::string& name, std::pair<const char*, int> type, const char* unit,
+                   const std::string& doc) {
+  const std::string shape = type.second == 1 ? "(rows)" : fmt::format("(rows, {})", type.second);
+  fmt::print("| `{}` | {} | {} | {} | {} |\n", name, shape, type.first, unit, doc);
+}
+
+/// The datasets of a record; a feature has two.
+template <class Row, class Value>
+void print_datasets(const std::string& group, const Field<Row, Value>& field) {
+  const Role& role = field.role;
+  std::string name = field.key, doc = field.doc;
+  if (role.names == Names::object) name = std::string("object_") + role.side;
+  if (role.names == Names::first_row)
+    doc += fmt::format(": a row of `{}`, from the first one of the frame", role.list);
+  if (role.names == Names::element) doc += ": v v for a vertex, the two vertices for an edge, t t for a face";
+  if (role.names == Names::weights) doc += ": 1 0 0 for a vertex, 1−s s 0 for an edge, three for a face";
+  if constexpr (Worded<Value>) {
+    for (std::size_t i = 0; i < words<Value>.size(); ++i)
+      doc += fmt::format("{} {} {}", i == 0 ? ":" : ",", i, words<Value>[i]);
+  }
+  if (std::is_same_v<Value, Feature>) doc += ": 0 vertex, 1 edge, 2 face";
+  if (std::is_same_v<Value, bool>) doc += ": 0 no, 1 yes";
+  print_dataset(group + "/" + name, stored_as<Value>(), unit_of(role, field.unit), doc);
+  if (std::is_same_v<Value, Feature>)
+    print_dataset(group + "/" + name.insert(std::string_view("feature").size(), "_index"), {"uint8", 1}, "",
+                  "Index of this part: the corner, or the corner where the edge starts");
+}
+
+void lists_table() {
+  table("recording_lists", "| Dataset | Shape | Type | Unit | Meaning |", [] {
+    for_each_list([]<class Row>(const ResultList<Row>& list, auto) {
+      const std::string group = list.name;
+      fmt::print("| `{}/end` | (F) | uint64 | rows | a row is: {} |\n", group, list.doc);
+      if constexpr (Described<Row>)
+        for_each_field<Row>([&](const auto& field) { print_datasets(group, field); });
+      else
+        print_dataset(group + "/" + list.value, stored_as<Row>(), unit_of(list.role, list.unit), "");
+    });
+  });
+}
+
+constexpr const char* scalars_of_sections[] = {"u8", "u32", "f32", "f64"};
+constexpr const char* arrays_of_sections[] = {"Uint8Array", "Uint32Array", "Float32Array", "Float64Array"};
+
+std::vector<std::string> kinds_of(const viewer::SectionForm& form, std::string_view quote) {
+  std::vector<std::string> kinds;
+  for (std::size_t kind = 1; kind < std::size(viewer::names_of_message_kinds); ++kind) {
+    if ((form.kinds >> kind & 1) != 0)
+      kinds.push_back(fmt::format("{0}{1}{0}", quote, viewer::names_of_message_kinds[kind]));
+  }
+  return kinds;
+}
+
+void sections_table() {
+  table("protocol_sections", "| tag | name | element | in |", [] {
+    for (const viewer::SectionForm& form : viewer::section_forms) {
+      const std::string width = form.width == 1   ? ""
+                                : form.width == 0 ? " × names"
+                                                  : fmt::format(" × {}", form.width);
+      fmt::print("| {} | `{}` | {}{}: {} | {}{}{}{} |\n", static_cast<std::uint32_t>(form.tag), form.name,
+                 scalars_of_sections[static_cast<std::size_t>(form.scalar)], width, form.element,
+                 fmt::join(kinds_of(form, ""), ", "), form.is_of_object ? "; one per object" : "",
+                 *form.when == 0 ? "" : "; ", form.when);
+    }
+  });
+}
+
 template <class... Records>
 void record_table(const char* name) {
   table(name, "| Record | Key | Unit | Meaning |", [] {
     const auto rows = []<class Record>(const Record&) {
       for_each_field<Record>([](const auto& field) {
-        fmt::print("| {} | `{}` | {} | {} |\n", Description<Record>::name, field.key, field.unit, field.doc);
+        if (field.role.names == Names::rows || field.role.names == Names::first_row) return;
+        fmt::print("| {} | `{}` | {} | {} |\n", Description<Record>::name, field.key,
+                   unit_of(field.role, field.unit), field.doc);
       });
     };
     (rows(Records{}), ...);
@@ -163,9 +273,31 @@ void record_table(const char* name) {
 
 }  // namespace
 
+void print_sections() {
+  fmt::print(
+      "// `make docs` writes this file from viewer/session/sections.hpp.\n\n"
+      "export interface Form {{\n  name: string;\n"
+      "  array: Uint8ArrayConstructor | Uint32ArrayConstructor | Float32ArrayConstructor | "
+      "Float64ArrayConstructor;\n"
+      "  /** Numbers per element; 0 when the scene determines it. */\n  width: number;\n"
+      "  kinds: readonly string[];\n  perObject: boolean;\n}}\n\n");
+  std::vector<std::string> kinds;
+  for (const char* name : viewer::names_of_message_kinds) kinds.push_back(fmt::format("\"{}\"", name));
+  fmt::print("export const KINDS = [{}] as const;\n\nexport const FORMS: Record<number, Form> = {{\n",
+             fmt::join(kinds, ", "));
+  for (const viewer::SectionForm& form : viewer::section_forms)
+    fmt::print("  {}: {{ name: \"{}\", array: {}, width: {}, kinds: [{}], perObject: {} }},\n",
+               static_cast<std::uint32_t>(form.tag), form.name,
+               arrays_of_sections[static_cast<std::size_t>(form.scalar)], form.width,
+               fmt::join(kinds_of(form, "\""), ", "), form.is_of_object);
+  fmt::print("}};\n");
+}
+
 void print_description_tables() {
   attribute_table<SceneOptions>("recording_scene_options");
   attribute_table<ObjectOptions>("recording_object_options");
+  lists_table();
+  sections_table();
   statistics_tables();
   record_table<Manifold, ManifoldPoint>("json_manifolds");
   option_table<ObjectOptions>("scene_object_options");

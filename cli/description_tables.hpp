@@ -6,5 +6,7 @@ namespace supple::cli {
 /// table it prints a line `<!-- begin NAME -->`, the table as Markdown, and `<!-- end NAME -->`.
 /// tools/generate_docs.sh puts them into the documents.
 void print_description_tables();
+/// Prints the sections of the viewer's messages as a module of TypeScript, for the reader of the page.
+void print_sections();
 
 }  // namespace supple::cli

@@ -213,7 +213,9 @@ void print_document(const CLI::App& program, const std::string& name) {
   if (name == "markdown") return print_markdown(program);
   if (name == "man") return print_man(program);
   if (name == "tables") return print_description_tables();
-  throw CLI::ValidationError("--generate", fmt::format("'{}' is not one of man, markdown, tables", name));
+  if (name == "sections") return print_sections();
+  throw CLI::ValidationError("--generate",
+                             fmt::format("'{}' is not one of man, markdown, sections, tables", name));
 }
 
 }  // namespace supple::cli

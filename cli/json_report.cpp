@@ -9,15 +9,10 @@
 #include <variant>
 #include <vector>
 
-#include "continuous_json.hpp"
-#include "manifold_json.hpp"
-#include "penetration_json.hpp"
-#include "proximity_json.hpp"
-#include "session/described_json.hpp"
+#include "record_json.hpp"
+#include "result_json.hpp"
 #include "supple/option_descriptions.hpp"
-#include "supple/result_descriptions.hpp"
 #include "supple/version.hpp"
-#include "text.hpp"
 
 namespace supple::cli {
 namespace {
@@ -69,78 +64,6 @@ void write_object_pairs(JsonWriter& json, const char* name, std::span<const Obje
   json.end_array();
 }
 
-/// Writes the groups of different objects, or the groups of objects with themselves.
-void write_groups(JsonWriter& json, const char* name, const DetectResult& result, bool self) {
-  json.key(name);
-  json.begin_array();
-  for (const ContactGroup& group : result.groups) {
-    if ((group.a == group.b) != self) continue;
-    json.begin_object();
-    json.member("a", std::uint64_t{group.a.index});
-    if (!self) json.member("b", std::uint64_t{group.b.index});
-    json.key("pairs");
-    json.begin_array();
-    for (const Contact& contact : result.contacts_of(group))
-      json.pair(contact.triangle_a, contact.triangle_b);
-    json.end_array();
-    json.end_object();
-  }
-  json.end_array();
-}
-
-void write_points(JsonWriter& json, std::span<const ContactPoint> points) {
-  json.key("points");
-  json.begin_array();
-  for (const ContactPoint& point : points) {
-    json.begin_object();
-    json.member("position", point.position);
-    json.member("on_a", name_of(point.on_a));
-    json.member("on_b", name_of(point.on_b));
-    json.end_object();
-  }
-  json.end_array();
-}
-
-void write_contacts(JsonWriter& json, const DetectResult& result, bool with_points) {
-  json.key("contacts");
-  json.begin_array();
-  for (const Contact& contact : result.contacts) {
-    json.begin_object();
-    json.member("a", std::uint64_t{contact.object_a.index});
-    json.member("b", std::uint64_t{contact.object_b.index});
-    json.key("triangles");
-    json.pair(contact.triangle_a, contact.triangle_b);
-    json.member("kind", word_of(contact.kind));
-    if (with_points) {
-      json.member("normal", contact.normal);
-      write_points(json, result.points_of(contact));
-    }
-    json.end_object();
-  }
-  json.end_array();
-}
-
-/// Writes the paper's output: the vertices in colliding leaves.
-void write_colliding_vertices(JsonWriter& json, const DetectResult& result) {
-  json.key("colliding_vertices");
-  json.begin_array();
-  for (const CollidingVertices& group : result.colliding_vertex_groups) {
-    const auto write = [&](const char* name, std::size_t first, std::size_t count) {
-      json.key(name);
-      json.begin_array();
-      for (const std::uint32_t vertex : result.colliding_vertices.subspan(first, count)) json.value(vertex);
-      json.end_array();
-    };
-    json.begin_object();
-    json.member("a", std::uint64_t{group.a.index});
-    json.member("b", std::uint64_t{group.b.index});
-    write("vertices_a", group.first_vertex, group.count_a);
-    write("vertices_b", group.first_vertex + group.count_a, group.count_b);
-    json.end_object();
-  }
-  json.end_array();
-}
-
 /// `stay` is left out: it follows from earlier frames and would repeat every lasting pair in every frame.
 void write_events(JsonWriter& json, const char* name, const PairEvents& events) {
   json.key(name);
@@ -150,26 +73,12 @@ void write_events(JsonWriter& json, const char* name, const PairEvents& events) 
   json.end_object();
 }
 
-void write_non_finite(JsonWriter& json, std::span<const NonFiniteVertex> vertices) {
-  json.key("non_finite");
-  json.begin_array();
-  for (const NonFiniteVertex& vertex : vertices) {
-    json.begin_object();
-    json.member("object", std::uint64_t{vertex.object.index});
-    json.member("vertex", std::uint64_t{vertex.vertex});
-    json.member("position", vertex.position);
-    json.end_object();
-  }
-  json.end_array();
-}
-
 void write_untested(JsonWriter& json, const Frame& frame) {
   json.key("untested");
   json.begin_array();
   for (const UntestedKind& untested : frame.result.untested) {
     json.begin_object();
-    json.member("kind", word_of(untested.kind));
-    json.member("reason", word_of(untested.reason));
+    write_fields(json, untested);
     json.end_object();
   }
   for (const ObjectId object : frame.turned) {
@@ -190,23 +99,15 @@ void write_stats(JsonWriter& json, const Frame& frame) {
   json.end_object();
 }
 
-void write_verify(JsonWriter& json, const VerifyReport& report) {
-  json.key("verify");
+/// Two counts of the brute force, and the differences from it.
+template <class Row>
+void write_verify(JsonWriter& json, const char* name, std::pair<const char*, std::uint64_t> checked,
+                  std::pair<const char*, std::uint64_t> found, const std::vector<Row>& differences) {
+  json.key(name);
   json.begin_object();
-  json.member("triangle_pairs_checked", report.triangle_pairs_checked);
-  json.member("intersecting_pairs", report.intersecting_pairs);
-  json.key("differences");
-  json.begin_array();
-  for (const Difference& difference : report.differences) {
-    json.begin_object();
-    json.member("a", std::uint64_t{difference.object_a.index});
-    json.member("b", std::uint64_t{difference.object_b.index});
-    json.key("triangles");
-    json.pair(difference.triangle_a, difference.triangle_b);
-    json.member("missed", difference.missed);
-    json.end_object();
-  }
-  json.end_array();
+  json.member(checked.first, checked.second);
+  json.member(found.first, found.second);
+  write_records(json, "differences", std::span<const Row>(differences));
   json.end_object();
 }
 
@@ -274,16 +175,12 @@ void JsonReport::add(const Frame& frame) {
   if (continuous) {
     write_continuous_groups(json_, result, !options.impact.exact || options.max_exact_bits < most_exact_bits);
     if (content_.contact_details)
-      write_continuous_contacts(json_, both ? "continuous_contacts" : "contacts", result);
+      write_records(json_, both ? "continuous_contacts" : "contacts", result.continuous_contacts);
   }
-  if (at_rest) {
-    write_groups(json_, "triangle_pairs", result, false);
-    write_groups(json_, "self", result, true);
-    if (content_.contact_details) write_contacts(json_, result, options.contact_points);
-  }
+  if (at_rest) write_intersections(json_, result, {content_.contact_details, options.contact_points});
   if (proximity) {
     write_proximity_groups(json_, result, options.proximity_listing);
-    if (content_.contact_details) write_proximity_pairs(json_, result);
+    if (content_.contact_details) write_records(json_, "proximity_pairs", result.proximity_pairs);
   }
   const bool penetration = contains(options.contacts, ContactKinds::penetration);
   if (penetration) write_penetration(json_, result, content_.contact_details);
@@ -298,12 +195,23 @@ void JsonReport::add(const Frame& frame) {
   if (proximity) write_events(json_, "proximity", result.proximity_events);
   if (penetration) write_events(json_, "penetration", result.penetration_events);
   json_.end_object();
-  write_non_finite(json_, result.non_finite_vertices);
+  write_records(json_, "non_finite", result.non_finite_vertices);
   if (frame.verify) {
-    if (continuous) write_continuous_verify(json_, both ? "continuous_verify" : "verify", *frame.verify);
-    if (contains(options.contacts, ContactKinds::intersection)) write_verify(json_, *frame.verify);
-    if (proximity) write_proximity_verify(json_, *frame.verify);
-    if (penetration) write_penetration_verify(json_, *frame.verify);
+    const VerifyReport& report = *frame.verify;
+    if (continuous)
+      write_verify(json_, both ? "continuous_verify" : "verify",
+                   {"element_pairs_checked", report.element_pairs_checked},
+                   {"touching_element_pairs", report.touching_element_pairs}, report.continuous_differences);
+    if (contains(options.contacts, ContactKinds::intersection))
+      write_verify(json_, "verify", {"triangle_pairs_checked", report.triangle_pairs_checked},
+                   {"intersecting_pairs", report.intersecting_pairs}, report.differences);
+    if (proximity)
+      write_verify(json_, "proximity_verify", {"element_pairs_checked", report.proximity_pairs_checked},
+                   {"near_pairs", report.near_pairs}, report.proximity_differences);
+    if (penetration)
+      write_verify(json_, "penetration_verify",
+                   {"vertex_triangle_pairs_checked", report.vertex_triangle_pairs_checked},
+                   {"inside_vertices", report.inside_vertices}, report.penetration_differences);
   }
   if (content_.stats) write_stats(json_, frame);
   json_.end_object();

@@ -21,7 +21,7 @@
 #include "output_names.hpp"
 #include "point_file.hpp"
 #include "progress.hpp"
-#include "proximity_json.hpp"
+#include "result_json.hpp"
 #include "supple/error.hpp"
 #include "supple/result_descriptions.hpp"
 #include "supple/scene.hpp"

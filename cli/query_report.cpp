@@ -4,7 +4,6 @@
 
 #include <algorithm>
 
-#include "continuous_json.hpp"
 #include "supple/result_descriptions.hpp"
 #include "supple/version.hpp"
 #include "text.hpp"

@@ -1,12 +1,14 @@
 #!/usr/bin/env bash
-# Writes docs/supple.1, docs/cli.md and the tables of options and statistics in other documents (between lines
-# `<!-- begin NAME -->` and `<!-- end NAME -->`) from the program's own definitions.
+# Writes docs/supple.1, docs/cli.md, the tables of options, records and statistics in other documents (between
+# lines `<!-- begin NAME -->` and `<!-- end NAME -->`), and the sections of the viewer's messages for the page,
+# from the program's own definitions.
 #
 # usage: generate_docs.sh [--check] PROGRAM
 #
 # With --check it writes nothing and fails when a document is out of date.
 set -euo pipefail
-docs="$(cd "$(dirname "$0")/.." && pwd)/docs"
+root="$(cd "$(dirname "$0")/.." && pwd)"
+docs=$root/docs
 
 check=false
 if [ "${1:-}" = "--check" ]; then
@@ -34,11 +36,14 @@ for document in $(grep -l '^<!-- begin ' "$docs"/*.md | xargs -r -n1 basename); 
   awk -v tables="$fresh/tables" "$fill" "$fresh/tables" "$docs/$document" >"$fresh/$document"
 done
 rm "$fresh/tables"
+"$program" --generate sections >"$fresh/sections.ts"
 for document in $(ls "$fresh"); do
+  place=docs/$document
+  [ "$document" != sections.ts ] || place=viewer/page/src/protocol/sections.ts
   if ! $check; then
-    cp "$fresh/$document" "$docs/$document"
-  elif ! diff -u "$docs/$document" "$fresh/$document" >&2; then
-    echo "docs/$document: differs from the program's options; run: make docs" >&2
+    cp "$fresh/$document" "$root/$place"
+  elif ! diff -u "$root/$place" "$fresh/$document" >&2; then
+    echo "$place: differs from the program's definitions; run: make docs" >&2
     exit 1
   fi
 done

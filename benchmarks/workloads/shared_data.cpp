@@ -1,6 +1,7 @@
 #include "workloads/shared_data.hpp"
 
 #include <cstdlib>
+#include <filesystem>
 
 namespace supple::benchmarks {
 

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <assimp/Importer.hpp>
+#include <filesystem>
 #include <string>
 #include <utility>
 #include <vector>

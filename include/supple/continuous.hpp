@@ -1,6 +1,5 @@
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <optional>
@@ -41,7 +40,9 @@ inline constexpr double toi_tolerance = 0x1p-30, toi_relative_tolerance = 0x1p-2
 
 /// The most by which a reported time may be earlier than the true time `toi`.
 constexpr double toi_tolerance_at(double toi) {
-  return std::min(toi_tolerance, std::max(toi_relative_tolerance * toi, 0x1p-1022));
+  const double relative = toi_relative_tolerance * toi;
+  if (relative < 0x1p-1022) return 0x1p-1022;
+  return relative < toi_tolerance ? relative : toi_tolerance;
 }
 
 struct ImpactOptions {

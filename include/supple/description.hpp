@@ -134,6 +134,49 @@ struct ValueRange {
 /// The range in words: `a whole number from 0 to 32`, `a finite number above 0`, `2, 4 or 8`.
 std::string text_of(const ValueRange& range, bool is_whole);
 
+/// What a number of a record means.
+enum class Names : std::uint8_t {
+  nothing,    ///< a value
+  object,     ///< an object, the one of this side
+  triangle,   ///< a triangle of the object of this side, by the user's number
+  vertex,     ///< a vertex of this object
+  element,    ///< {v, v} for a vertex, {v, w} for an edge, {t, t} for a face of this object
+  weights,    ///< barycentric coordinates in the element of this side
+  rows,       ///< a number of rows of `list`, which are vertices of this object if there is a side; without a
+              ///< list, a number of its vertices
+  first_row,  ///< the first of these rows
+};
+
+/// What a member of a record means to programs that know no record by name.
+struct Role {
+  Names names = Names::nothing;
+  char side = 0;            ///< 'a' or 'b'; 0 when it concerns both objects or none
+  const char* list = "";    ///< the list of the result, for rows
+  bool is_key = false;      ///< the first members of a record are its key; lists are sorted by it
+  bool is_rounded = false;  ///< not exact: comparisons may allow a tolerance
+};
+namespace role {
+constexpr Role object(char side) {
+  return {.names = Names::object, .side = side, .is_key = true};
+}
+constexpr Role key(Names names, char side) {
+  return {.names = names, .side = side, .is_key = true};
+}
+constexpr Role id(Names names, char side) {
+  return {.names = names, .side = side};
+}
+constexpr Role rows(const char* list, char side = 0) {
+  return {.names = Names::rows, .side = side, .list = list};
+}
+constexpr Role first_row(const char* list) {
+  return {.names = Names::first_row, .list = list};
+}
+constexpr Role weights(char side) {
+  return {.names = Names::weights, .side = side, .is_rounded = true};
+}
+inline constexpr Role rounded{.is_rounded = true};
+}  // namespace role
+
 /// One member of a structure.
 template <class Struct, class Value>
 struct Field {
@@ -150,9 +193,17 @@ struct Field {
   /// The value belongs to the machine and not to the scene: a number of threads, a measured time, or a count
   /// that depends on the number of threads. Two runs of the same scene may differ in it.
   bool is_of_machine = false;
+  Role role{};  ///< of members of records
 
   constexpr bool has_truth_words() const { return truth_words[0] != nullptr; }
 };
+
+/// Visits a member of a record; `key` is its name for users.
+template <class Visitor, class Struct, class Value>
+constexpr void visit_field(Visitor& visitor, const char* key, Value Struct::*member, const char* doc,
+                           Role role = {}, const char* unit = "") {
+  visitor(Field<Struct, Value>{.name = key, .member = member, .doc = doc, .unit = unit, .role = role});
+}
 
 /// `name` is the name of the structure. `visit(visitor)` calls `visitor(field)` for each member, in the order
 /// of the structure.

@@ -2,7 +2,6 @@
 
 #include <array>
 #include <cstdint>
-#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -56,13 +55,13 @@ struct TriangleMesh {
 /// that are not flat.
 ///
 /// Throws `Error`; the message names the file, the line or byte, the value, and the allowed values.
-TriangleMesh load_mesh(const std::filesystem::path& path);
+TriangleMesh load_mesh(const std::string& path);
 
 /// Writes a file in the format of its extension: .obj, .off, .ply (binary little endian, double), .stl
 /// (binary, single precision). Text formats print the shortest digits that read back to the same double.
 /// Throws `Error` when the extension is unknown, when the file cannot be written, and when the mesh has edges
 /// or points of no triangle and the format is not OBJ.
-void save_mesh(const TriangleMesh& mesh, const std::filesystem::path& path);
+void save_mesh(const TriangleMesh& mesh, const std::string& path);
 
 /// Throws `Error` when a triangle, an edge or a point uses a vertex that does not exist, and when both ends
 /// of an edge are the same vertex; the message names the mesh, the place in its list, and the value.

@@ -32,6 +32,8 @@ struct CollidingVertices {
   std::uint32_t first_vertex = 0;
   std::uint32_t count_a = 0;
   std::uint32_t count_b = 0;
+
+  constexpr bool operator==(const CollidingVertices&) const = default;
 };
 
 /// A vertex with a coordinate that is not a finite number. The triangles that use it are inert: they are in

@@ -104,44 +104,6 @@ struct Description<StepStats> {
 };
 
 template <>
-struct Description<ManifoldPoint> {
-  static constexpr const char* name = "ManifoldPoint";
-  template <class Visitor>
-  static constexpr void visit(Visitor&& visitor) {
-    using Point = ManifoldPoint;
-    const auto value = [&]<class Value>(const char* field, Value Point::*member, const char* doc,
-                                        const char* unit = "") {
-      visitor(Field<Point, Value>{.name = field, .member = member, .doc = doc, .unit = unit});
-    };
-    value("id", &Point::id, "Id of the point, while it stays");
-    value("lasting", &Point::lasting, "Whether the point was there in the last step (stay) or not (begin)");
-    value("position", &Point::position, "The point", "length");
-    value("depth", &Point::depth, "How deep the point is; negative where the objects are apart", "length");
-  }
-};
-
-template <>
-struct Description<Manifold> {
-  static constexpr const char* name = "Manifold";
-  template <class Visitor>
-  static constexpr void visit(Visitor&& visitor) {
-    using Patch = Manifold;
-    const auto value = [&]<class Value>(const char* field, Value Patch::*member, const char* doc,
-                                        const char* unit = "") {
-      visitor(Field<Patch, Value>{.name = field, .member = member, .doc = doc, .unit = unit});
-    };
-    value("id", &Patch::id, "Id of the manifold, while it stays");
-    value("lasting", &Patch::lasting,
-          "Whether the manifold was there in the last step (stay) or not (begin)");
-    value("source", &Patch::source,
-          "What the manifold summarises: a curve of intersection (curve) or proximity pairs (pairs)");
-    value("normal", &Patch::normal, "Unit vector from b to a");
-    value("depth", &Patch::depth, "Depth of the curve, or minus the smallest distance", "length");
-    value("record", &Patch::record, "Index of the curve or of the nearest proximity pair");
-  }
-};
-
-template <>
 struct Description<BroadPhaseStats> {
   static constexpr const char* name = "BroadPhaseStats";
   template <class Visitor>

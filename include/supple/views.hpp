@@ -5,9 +5,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
-#include <ranges>
+#include <iterator>
 #include <span>
 #include <type_traits>
+#include <utility>
 
 #include "supple/mesh.hpp"
 #include "supple/types.hpp"
@@ -83,10 +84,12 @@ requires(sizeof(Element) == 3 * sizeof(typename Element::Scalar)) struct TripleE
 };
 
 template <class Range>
-concept PlainRange = !DenseMatrix<Range> && std::ranges::contiguous_range<const Range> &&
-                     std::ranges::sized_range<const Range>;
+concept PlainRange = !DenseMatrix<Range> && requires(const Range& range) {
+  { *std::data(range) } -> std::convertible_to<const std::remove_cvref_t<decltype(*std::data(range))>&>;
+  { std::size(range) } -> std::convertible_to<std::size_t>;
+};
 template <class Range>
-using Element = std::ranges::range_value_t<const Range>;
+using Element = std::remove_cvref_t<decltype(*std::data(std::declval<const Range&>()))>;
 template <class Range>
 concept TripleRange = PlainRange<Range> && requires {
   typename TripleElement<Element<Range>>::Scalar;
@@ -95,7 +98,7 @@ concept TripleRange = PlainRange<Range> && requires {
 template <TripleRange Range>
 Triples triples_in(const Range& range) {
   constexpr std::ptrdiff_t size = sizeof(typename TripleElement<Element<Range>>::Scalar);
-  return {std::ranges::data(range), std::ranges::size(range), 3 * size, size};
+  return {std::data(range), std::size(range), 3 * size, size};
 }
 
 template <class Scalar>
@@ -149,8 +152,8 @@ class PositionsView {
   /// Packed x y z. Throws `Error` when the number of coordinates is not a multiple of 3.
   template <detail::PlainRange Coordinates>
   requires Coordinate<detail::Element<Coordinates>> PositionsView(const Coordinates& xyz)
-      : triples_(detail::packed_triples(std::ranges::data(xyz), std::ranges::size(xyz),
-                                        sizeof(detail::Element<Coordinates>))),
+      : triples_(
+            detail::packed_triples(std::data(xyz), std::size(xyz), sizeof(detail::Element<Coordinates>))),
         is_double_(sizeof(detail::Element<Coordinates>) == sizeof(double)) {}
 
   /// A matrix has its points in rows when it has three columns, and in columns when it has three rows. Throws
@@ -209,8 +212,7 @@ class TrianglesView {
   /// Packed ids. Throws `Error` when their number is not a multiple of 3.
   template <detail::PlainRange Ids>
   requires VertexIndex<detail::Element<Ids>> TrianglesView(const Ids& ids)
-      : triples_(detail::packed_triples(std::ranges::data(ids), std::ranges::size(ids),
-                                        sizeof(detail::Element<Ids>))),
+      : triples_(detail::packed_triples(std::data(ids), std::size(ids), sizeof(detail::Element<Ids>))),
         index_(index_of<detail::Element<Ids>>()) {}
 
   template <DenseMatrix Matrix>

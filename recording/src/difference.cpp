@@ -2,13 +2,12 @@
 #include <cmath>
 #include <cstddef>
 #include <span>
-#include <tuple>
 #include <type_traits>
 
+#include "layout.hpp"
 #include "supple/error.hpp"
 #include "supple/option_descriptions.hpp"
 #include "supple/recording.hpp"
-#include "supple/result_descriptions.hpp"
 #include "text.hpp"
 
 namespace supple {
@@ -128,64 +127,30 @@ class Comparison {
   Line object(std::size_t place) const;
   Line points_of(const char* item, const std::string& of, std::span<const Vec3d> a,
                  std::span<const Vec3d> b) const;
-  Line pairs(const char* item, const std::vector<ObjectPair>& a, const std::vector<ObjectPair>& b) const;
-  Line contacts(const RecordedFrame& a, const RecordedFrame& b) const;
-  Line contact_points(const RecordedFrame& a, const RecordedFrame& b) const;
-  Line continuous_contacts(const RecordedFrame& a, const RecordedFrame& b) const;
-  Line proximity_pairs(const RecordedFrame& a, const RecordedFrame& b) const;
-  Line penetrations(const RecordedFrame& a, const RecordedFrame& b) const;
-  Line penetration_groups(const RecordedFrame& a, const RecordedFrame& b) const;
-  Line contained_parts(const RecordedFrame& a, const RecordedFrame& b) const;
-  Line curves(const RecordedFrame& a, const RecordedFrame& b) const;
-  Line lists_of_curves(const IntersectionCurve& curve, const RecordedFrame& a, const RecordedFrame& b) const;
-  Line colliding_vertices(const RecordedFrame& a, const RecordedFrame& b) const;
+  Line lists(const RecordedFrame& a, const RecordedFrame& b) const;
+  template <class Row>
+  Line list(const ResultList<Row>& list, const RecordedFrame& a, const RecordedFrame& b,
+            std::span<const Row> rows_a, std::span<const Row> rows_b) const;
+  template <class Row>
+  Line row(const Row& p, const Row& q) const;
+  template <class Row>
+  Line rows_of(const Row& row, const RecordedFrame& a, const RecordedFrame& b) const;
+  template <class Value>
+  Line value(const std::string& item, const Role& role, const Value& a, const Value& b) const {
+    if constexpr (!std::is_integral_v<Value> && requires { equal(a, b); }) {
+      if (role.is_rounded) return compare(item, a, b);
+    }
+    return compare_exactly(item, a, b);
+  }
 
   std::string name(ObjectId id) const;
-  std::string name(const ObjectPair& pair) const { return name(pair.a) + " and " + name(pair.b); }
-  std::string name(const CollidingVertices& group) const { return name(ObjectPair{group.a, group.b}); }
-  std::string name(const PenetrationGroup& group) const { return name(ObjectPair{group.a, group.b}); }
-  std::string name(const IntersectionCurve& curve) const { return name(ObjectPair{curve.a, curve.b}); }
-  std::string name(const Penetration& p) const {
-    return "vertex " + std::to_string(p.vertex) + " of " + name(p.object_a) + " in " + name(p.object_b);
-  }
-  std::string name(const ContainedPart& part) const {
-    return "vertex " + std::to_string(part.vertex) + " of " + name(part.inner) + " in " + name(part.outer);
-  }
-  std::string name(const Contact& c) const {
-    return "triangle " + std::to_string(c.triangle_a) + " of " + name(c.object_a) + " and triangle " +
-           std::to_string(c.triangle_b) + " of " + name(c.object_b);
-  }
-  std::string name(const ContinuousContact& c) const;
-  std::string name(const ProximityPair& pair) const;
-  /// An edge has two different ids.
-  std::string name(const char* noun, const std::array<std::uint32_t, 2>& ids, ObjectId object) const;
-
-  /// Compares lists in ascending order of `key`. `compare_rows` compares two rows with equal keys.
-  template <class Row, class Key, class CompareRows>
-  Line lists(const std::string& item, const std::vector<Row>& a, const std::vector<Row>& b, Key key,
-             CompareRows compare_rows) const;
+  template <class Row>
+  std::string name(const Row& row) const;
 
   const Recording& a_;
   const Recording& b_;
   double tolerance_;
 };
-
-template <class Row, class Key, class CompareRows>
-Line Comparison::lists(const std::string& item, const std::vector<Row>& a, const std::vector<Row>& b, Key key,
-                       CompareRows compare_rows) const {
-  for (std::size_t i = 0; i < a.size() || i < b.size(); ++i) {
-    const bool only_a = i == b.size() || (i < a.size() && key(a[i]) < key(b[i]));
-    const bool only_b = i == a.size() || (i < b.size() && key(b[i]) < key(a[i]));
-    if (only_a || only_b) {
-      return item + " " + std::to_string(i) + ": " + name(only_a ? a[i] : b[i]) + " only in the " +
-             (only_a ? "first" : "second") + " recording (" + std::to_string(a.size()) + " and " +
-             std::to_string(b.size()) + " in all)";
-    }
-    if (const Line line = compare_rows(a[i], b[i]))
-      return item + " " + std::to_string(i) + ", " + name(a[i]) + ", " + *line;
-  }
-  return {};
-}
 
 std::string Comparison::name(ObjectId id) const {
   const std::vector<RecordedObject>& objects = a_.header().objects;
@@ -196,22 +161,28 @@ std::string Comparison::name(ObjectId id) const {
   return "object of id " + std::to_string(id.index);
 }
 
-std::string Comparison::name(const char* noun, const std::array<std::uint32_t, 2>& ids,
-                             ObjectId object) const {
-  std::string text = std::string(noun) + " " + std::to_string(ids[0]);
-  if (ids[0] != ids[1]) text.append(" ").append(std::to_string(ids[1]));
-  return text + " of " + name(object);
-}
-
-std::string Comparison::name(const ProximityPair& pair) const {
-  return name(word_of(pair.kind_a), pair.element_a, pair.object_a) + " and " +
-         name(word_of(pair.kind_b), pair.element_b, pair.object_b);
-}
-
-std::string Comparison::name(const ContinuousContact& c) const {
-  const auto [kind_a, kind_b] = feature_kinds(c.kind);
-  return name(word_of(kind_a), c.element_a, c.object_a) + " and " +
-         name(word_of(kind_b), c.element_b, c.object_b);
+/// The key of a record: `triangle 3 of object 0 'cloth' and triangle 5 of object 1 'ball'`.
+template <class Row>
+std::string Comparison::name(const Row& row) const {
+  std::string text;
+  for (const char side : {'a', 'b'}) {
+    std::string part, object;
+    for_each_field<Row>([&]<class Value>(const Field<Row, Value>& field) {
+      if (!field.role.is_key || field.role.side != side) return;
+      if constexpr (std::is_same_v<Value, ObjectId>) {
+        object = name(row.*field.member);
+      } else if constexpr (std::is_same_v<Value, std::array<std::uint32_t, 2>>) {
+        const auto& [first, second] = row.*field.member;
+        part = std::string(word_of(kind_of_element(row, side))) + " " + std::to_string(first);
+        if (first != second) part += " " + std::to_string(second);  // an edge
+      } else if constexpr (std::is_integral_v<Value>) {
+        part = (field.role.names == Names::triangle ? "triangle " : "vertex ") +
+               std::to_string(row.*field.member);
+      }
+    });
+    text += (text.empty() ? "" : " and ") + part + (part.empty() ? "" : " of ") + object;
+  }
+  return text;
 }
 
 Line Comparison::headers() const {
@@ -263,189 +234,113 @@ Line Comparison::points_of(const char* item, const std::string& of, std::span<co
   return {};
 }
 
-Line Comparison::pairs(const char* item, const std::vector<ObjectPair>& a,
-                       const std::vector<ObjectPair>& b) const {
-  return lists(
-      item, a, b, [](const ObjectPair& pair) { return pair; },
-      [](const ObjectPair&, const ObjectPair&) { return Line(); });
-}
+/// The key of a record, by which lists are sorted.
+struct Key {
+  std::array<std::uint64_t, 10> numbers{};
+  std::size_t count = 0;
 
-Line Comparison::contacts(const RecordedFrame& a, const RecordedFrame& b) const {
-  const auto key = [](const Contact& c) {
-    return std::tuple(c.object_a, c.object_b, c.triangle_a, c.triangle_b);
-  };
-  return lists("contact", a.contacts, b.contacts, key, [this](const Contact& p, const Contact& q) {
-    return first_of([&] { return compare_exactly("kind", p.kind, q.kind); },
-                    [&] { return compare_exactly("point_count", p.point_count, q.point_count); },
-                    [&] { return compare_exactly("first_point", p.first_point, q.first_point); },
-                    [&] { return compare("normal", p.normal, q.normal); });
+  void add(std::uint64_t number) { numbers[count++] = number; }
+  auto operator<=>(const Key&) const = default;
+};
+
+template <class Row>
+Key key_of(const Row& row) {
+  Key key;
+  for_each_field<Row>([&]<class Value>(const Field<Row, Value>& field) {
+    if (!field.role.is_key) return;
+    const Value& value = row.*field.member;
+    if constexpr (std::is_same_v<Value, ObjectId>) {
+      key.add(value.index);
+      key.add(value.generation);
+    } else if constexpr (std::is_same_v<Value, std::array<std::uint32_t, 2>>) {
+      for (const std::uint32_t number : value) key.add(number);
+    } else if constexpr (std::is_integral_v<Value> || std::is_enum_v<Value>) {
+      key.add(static_cast<std::uint64_t>(value));
+    }
   });
+  return key;
 }
 
-Line Comparison::contact_points(const RecordedFrame& a, const RecordedFrame& b) const {
-  if (Line line =
-          compare_exactly("number of contact points", a.contact_points.size(), b.contact_points.size()))
-    return line;
-  for (std::size_t i = 0; i < a.contact_points.size(); ++i) {
-    const ContactPoint &p = a.contact_points[i], &q = b.contact_points[i];
-    const std::string item = "contact point " + std::to_string(i) + ", ";
-    const auto line =
-        first_of([&] { return compare(item + "position", p.position, q.position); },
-                 [&] { return compare_exactly(item + "feature_a", p.on_a.kind, q.on_a.kind); },
-                 [&] { return compare_exactly(item + "feature_index_a", p.on_a.index, q.on_a.index); },
-                 [&] { return compare_exactly(item + "feature_b", p.on_b.kind, q.on_b.kind); },
-                 [&] { return compare_exactly(item + "feature_index_b", p.on_b.index, q.on_b.index); });
-    if (line) return line;
+/// Compares all lists: of records row by row, in the order of their keys. What a record refers to in lists of
+/// values is compared with the record.
+Line Comparison::lists(const RecordedFrame& a, const RecordedFrame& b) const {
+  Line line;
+  for_each_list([&]<class Row>(const ResultList<Row>& of, auto member) {
+    if constexpr (Described<Row>) {
+      if (!line) line = list(of, a, b, std::span<const Row>(member(a)), std::span<const Row>(member(b)));
+    }
+  });
+  return line;
+}
+
+template <class Row>
+Line Comparison::list(const ResultList<Row>& list, const RecordedFrame& a, const RecordedFrame& b,
+                      std::span<const Row> rows_a, std::span<const Row> rows_b) const {
+  std::string item = list.item;
+  if (item.starts_with("events/")) item = "event " + item.substr(std::string_view("events/").size());
+  const bool has_key = key_of(Row{}).count > 0;
+  if (!has_key) {
+    if (Line line = compare_exactly("number of " + item + "s", rows_a.size(), rows_b.size())) return line;
+  }
+  for (std::size_t i = 0; i < rows_a.size() || i < rows_b.size(); ++i) {
+    const Key key_a = i < rows_a.size() ? key_of(rows_a[i]) : Key{};
+    const Key key_b = i < rows_b.size() ? key_of(rows_b[i]) : Key{};
+    const bool only_a = i >= rows_b.size() || (i < rows_a.size() && key_a < key_b);
+    const bool only_b = i >= rows_a.size() || (i < rows_b.size() && key_b < key_a);
+    if (only_a || only_b)
+      return item + " " + std::to_string(i) + ": " + name(only_a ? rows_a[i] : rows_b[i]) + " only in the " +
+             (only_a ? "first" : "second") + " recording (" + std::to_string(rows_a.size()) + " and " +
+             std::to_string(rows_b.size()) + " in all)";
+    Line line = row(rows_a[i], rows_b[i]);
+    if (!line) line = rows_of(rows_a[i], a, b);
+    if (!line) continue;
+    return item + " " + std::to_string(i) + ", " + (has_key ? name(rows_a[i]) + ", " : "") + *line;
   }
   return {};
 }
 
-Line Comparison::continuous_contacts(const RecordedFrame& a, const RecordedFrame& b) const {
-  const auto key = [](const ContinuousContact& c) {
-    return std::tuple(c.object_a, c.object_b, c.kind, c.element_a, c.element_b);
-  };
-  const auto compare_rows = [this](const ContinuousContact& p, const ContinuousContact& q) {
-    return first_of(
-        [&] { return compare_exactly("certainty", p.certainty, q.certainty); },
-        [&] { return compare_exactly("touching_at_start", p.touching_at_start, q.touching_at_start); },
-        [&] { return compare("toi", p.toi, q.toi); },
-        [&] { return compare("start_distance", p.start_distance, q.start_distance); },
-        [&] { return compare("barycentric_a", p.barycentric_a, q.barycentric_a); },
-        [&] { return compare("barycentric_b", p.barycentric_b, q.barycentric_b); },
-        [&] { return compare("point", p.point, q.point); },
-        [&] { return compare("normal", p.normal, q.normal); });
-  };
-  return lists("continuous contact", a.continuous_contacts, b.continuous_contacts, key, compare_rows);
-}
-
-Line Comparison::proximity_pairs(const RecordedFrame& a, const RecordedFrame& b) const {
-  const auto key = [](const ProximityPair& p) {
-    return std::tuple(p.object_a, p.object_b, p.kind_a, p.kind_b, p.element_a, p.element_b);
-  };
-  const auto compare_rows = [this](const ProximityPair& p, const ProximityPair& q) {
-    return first_of([&] { return compare_exactly("feature_a", p.on_a.kind, q.on_a.kind); },
-                    [&] { return compare_exactly("feature_index_a", p.on_a.index, q.on_a.index); },
-                    [&] { return compare_exactly("feature_b", p.on_b.kind, q.on_b.kind); },
-                    [&] { return compare_exactly("feature_index_b", p.on_b.index, q.on_b.index); },
-                    [&] { return compare("distance", p.distance, q.distance); },
-                    [&] { return compare("barycentric_a", p.barycentric_a, q.barycentric_a); },
-                    [&] { return compare("barycentric_b", p.barycentric_b, q.barycentric_b); },
-                    [&] { return compare("point_a", p.point_a, q.point_a); },
-                    [&] { return compare("point_b", p.point_b, q.point_b); },
-                    [&] { return compare("normal", p.normal, q.normal); });
-  };
-  return lists("proximity pair", a.proximity_pairs, b.proximity_pairs, key, compare_rows);
-}
-
-Line Comparison::penetrations(const RecordedFrame& a, const RecordedFrame& b) const {
-  const auto key = [](const Penetration& p) { return std::tuple(p.object_a, p.object_b, p.vertex); };
-  const auto compare_rows = [this](const Penetration& p, const Penetration& q) {
-    return first_of([&] { return compare_exactly("triangle", p.triangle, q.triangle); },
-                    [&] { return compare_exactly("feature", p.feature.kind, q.feature.kind); },
-                    [&] { return compare_exactly("feature_index", p.feature.index, q.feature.index); },
-                    [&] { return compare("depth", p.depth, q.depth); },
-                    [&] { return compare("barycentric", p.barycentric, q.barycentric); },
-                    [&] { return compare("point", p.point, q.point); },
-                    [&] { return compare("normal", p.normal, q.normal); });
-  };
-  return lists("penetration", a.penetrations, b.penetrations, key, compare_rows);
-}
-
-Line Comparison::penetration_groups(const RecordedFrame& a, const RecordedFrame& b) const {
-  const auto compare_groups = [&](const PenetrationGroup& p, const PenetrationGroup& q) {
-    Line line = first_of(
-        [&] { return compare_exactly("penetration_count", p.penetration_count, q.penetration_count); },
-        [&] { return compare_exactly("first_penetration", p.first_penetration, q.first_penetration); },
-        [&] { return compare_exactly("on_surface_count", p.on_surface_count, q.on_surface_count); },
-        [&] { return compare_exactly("first_on_surface", p.first_on_surface, q.first_on_surface); });
-    for (std::size_t i = 0; !line && i < p.on_surface_count; ++i) {
-      line = compare_exactly("vertex on surface " + std::to_string(i),
-                             a.vertices_on_surface[p.first_on_surface + i],
-                             b.vertices_on_surface[p.first_on_surface + i]);
+template <class Row>
+Line Comparison::row(const Row& p, const Row& q) const {
+  Line line;
+  for_each_field<Row>([&]<class Value>(const Field<Row, Value>& field) {
+    if (line || field.role.is_key) return;
+    const Value &a = p.*field.member, &b = q.*field.member;
+    if constexpr (std::is_same_v<Value, Feature>) {
+      line = first_of([&] { return compare_exactly(field.key, a.kind, b.kind); },
+                      [&] { return compare_exactly(name_of_feature_index(field.key), a.index, b.index); });
+    } else if constexpr (!std::is_same_v<Value, ObjectId>) {
+      line = value(field.key, field.role, a, b);
     }
-    return line;
-  };
-  return lists(
-      "penetration group", a.penetration_groups, b.penetration_groups,
-      [](const PenetrationGroup& group) {
-        return ObjectPair{group.a, group.b};
-      },
-      compare_groups);
+  });
+  return line;
 }
 
-Line Comparison::contained_parts(const RecordedFrame& a, const RecordedFrame& b) const {
-  const auto key = [](const ContainedPart& part) { return std::tuple(part.inner, part.outer, part.vertex); };
-  const auto compare_rows = [](const ContainedPart& p, const ContainedPart& q) {
-    return first_of([&] { return compare_exactly("vertex_count", p.vertex_count, q.vertex_count); },
-                    [&] { return compare_exactly("is_whole", p.is_whole, q.is_whole); });
-  };
-  return lists("contained part", a.contained_parts, b.contained_parts, key, compare_rows);
-}
-
-Line Comparison::curves(const RecordedFrame& a, const RecordedFrame& b) const {
-  const auto compare_rows = [&](const IntersectionCurve& p, const IntersectionCurve& q) {
-    return first_of(
-        [&] { return compare_exactly("kind", p.kind, q.kind); },
-        [&] { return compare_exactly("contact_count", p.contact_count, q.contact_count); },
-        [&] { return compare_exactly("first_contact", p.first_contact, q.first_contact); },
-        [&] { return compare_exactly("point_count", p.point_count, q.point_count); },
-        [&] { return compare_exactly("first_point", p.first_point, q.first_point); },
-        [&] { return compare_exactly("enclosed_count_a", p.enclosed_count_a, q.enclosed_count_a); },
-        [&] { return compare_exactly("enclosed_count_b", p.enclosed_count_b, q.enclosed_count_b); },
-        [&] { return compare_exactly("first_enclosed", p.first_enclosed, q.first_enclosed); },
-        [&] { return lists_of_curves(p, a, b); }, [&] { return compare("centroid", p.centroid, q.centroid); },
-        [&] { return compare("area", p.area, q.area); },
-        [&] { return compare("normal", p.normal, q.normal); },
-        [&] { return compare("depth", p.depth, q.depth); });
-  };
-  return lists(
-      "curve", a.curves, b.curves,
-      [](const IntersectionCurve& curve) {
-        return ObjectPair{curve.a, curve.b};
-      },
-      compare_rows);
-}
-
-/// Compares the lists of two curves with equal ranges.
-Line Comparison::lists_of_curves(const IntersectionCurve& curve, const RecordedFrame& a,
-                                 const RecordedFrame& b) const {
-  for (std::size_t i = 0; i < curve.contact_count; ++i) {
-    const std::size_t row = curve.first_contact + i;
-    if (Line line =
-            compare_exactly("contact " + std::to_string(i), a.curve_contacts[row], b.curve_contacts[row]))
-      return line;
-  }
-  for (std::size_t i = 0; i < curve.point_count; ++i) {
-    const std::size_t row = curve.first_point + i;
-    if (Line line = compare("point " + std::to_string(i), a.curve_points[row], b.curve_points[row]))
-      return line;
-  }
-  for (std::size_t i = 0; i < curve.enclosed_count_a + curve.enclosed_count_b; ++i) {
-    const std::size_t row = curve.first_enclosed + i;
-    if (Line line = compare_exactly("enclosed vertex " + std::to_string(i), a.enclosed_vertices[row],
-                                    b.enclosed_vertices[row]))
-      return line;
-  }
-  return {};
-}
-
-Line Comparison::colliding_vertices(const RecordedFrame& a, const RecordedFrame& b) const {
-  const auto compare_groups = [&](const CollidingVertices& p, const CollidingVertices& q) {
-    Line line = first_of([&] { return compare_exactly("count_a", p.count_a, q.count_a); },
-                         [&] { return compare_exactly("count_b", p.count_b, q.count_b); },
-                         [&] { return compare_exactly("first_vertex", p.first_vertex, q.first_vertex); });
-    for (std::size_t i = p.first_vertex; !line && i < p.first_vertex + p.count_a + p.count_b; ++i) {
-      line = compare_exactly("vertex " + std::to_string(i - p.first_vertex), a.colliding_vertices[i],
-                             b.colliding_vertices[i]);
+/// Compares the values to which two records with equal ranges refer.
+template <class Row>
+Line Comparison::rows_of(const Row& row, const RecordedFrame& a, const RecordedFrame& b) const {
+  Line line;
+  for_each_field<Row>([&]<class Value>(const Field<Row, Value>& first) {
+    if constexpr (std::is_same_v<Value, std::uint32_t>) {
+      if (first.role.names != Names::first_row) return;
+      const std::string_view name = first.role.list;
+      std::size_t count = 0;
+      for_each_field<Row>([&]<class Count>(const Field<Row, Count>& field) {
+        if constexpr (std::is_integral_v<Count>) {
+          if (field.role.names == Names::rows && name == field.role.list) count += row.*field.member;
+        }
+      });
+      for_each_list([&]<class Item>(const ResultList<Item>& list, auto member) {
+        if constexpr (!Described<Item>) {
+          for (std::size_t i = 0; !line && name == list.name && i < count; ++i) {
+            const std::size_t at = row.*first.member + i;
+            line = value(std::string(list.item) + " " + std::to_string(i), list.role, member(a)[at],
+                         member(b)[at]);
+          }
+        }
+      });
     }
-    return line;
-  };
-  return lists(
-      "colliding vertices", a.colliding_vertex_groups, b.colliding_vertex_groups,
-      [](const CollidingVertices& group) {
-        return ObjectPair{group.a, group.b};
-      },
-      compare_groups);
+  });
+  return line;
 }
 
 Line Comparison::frame(std::uint64_t number) const {
@@ -458,23 +353,8 @@ Line Comparison::frame(std::uint64_t number) const {
                               b_.positions(number, place)))
       return line;
   }
-  return first_of(
-      [&] { return pairs("object pair", a.object_pairs, b.object_pairs); }, [&] { return contacts(a, b); },
-      [&] { return contact_points(a, b); }, [&] { return continuous_contacts(a, b); },
-      [&] { return proximity_pairs(a, b); }, [&] { return penetrations(a, b); },
-      [&] { return penetration_groups(a, b); }, [&] { return contained_parts(a, b); },
-      [&] { return curves(a, b); }, [&] { return colliding_vertices(a, b); },
-      [&] { return pairs("event volume_begin", a.volume_begin, b.volume_begin); },
-      [&] { return pairs("event volume_end", a.volume_end, b.volume_end); },
-      [&] { return pairs("event narrow_phase_begin", a.narrow_phase_begin, b.narrow_phase_begin); },
-      [&] { return pairs("event narrow_phase_end", a.narrow_phase_end, b.narrow_phase_end); },
-      [&] { return pairs("event contact_begin", a.contact_begin, b.contact_begin); },
-      [&] { return pairs("event contact_end", a.contact_end, b.contact_end); },
-      [&] { return pairs("event proximity_begin", a.proximity_begin, b.proximity_begin); },
-      [&] { return pairs("event proximity_end", a.proximity_end, b.proximity_end); },
-      [&] { return pairs("event penetration_begin", a.penetration_begin, b.penetration_begin); },
-      [&] { return pairs("event penetration_end", a.penetration_end, b.penetration_end); },
-      [&] { return compare_described("statistics, ", a.stats, b.stats); });
+  return first_of([&] { return lists(a, b); },
+                  [&] { return compare_described("statistics, ", a.stats, b.stats); });
 }
 
 }  // namespace

@@ -1,292 +1,64 @@
 #include "layout.hpp"
 
-#include "supple/result_descriptions.hpp"
+#include <span>
+#include <utility>
 
 namespace supple {
+namespace {
 
-template <>
-const std::vector<ColumnOf<ObjectPair>>& columns_of() {
-  static const std::vector<ColumnOf<ObjectPair>> columns{
-      column<ObjectPair>(
-          "object_a", [](auto& row) -> auto& { return row.a.index; }),
-      column<ObjectPair>(
-          "object_b", [](auto& row) -> auto& { return row.b.index; }),
-  };
+template <class Struct, class Value>
+std::size_t offset_of(Value Struct::*member) {
+  const Struct row{};
+  return static_cast<std::size_t>(reinterpret_cast<const std::byte*>(&(row.*member)) -
+                                  reinterpret_cast<const std::byte*>(&row));
+}
+
+template <class Value>
+Column column(std::string name, std::size_t offset) {
+  using Stored = Storage<Value>;
+  static_assert(sizeof(Value) == size_of(Stored::type) * Stored::width);
+  return {std::move(name), Stored::type, Stored::width, offset, std::is_same_v<Value, bool>, false};
+}
+
+template <Described Row>
+std::vector<Column> columns_of_record() {
+  static_assert(std::is_trivially_copyable_v<Row>);
+  std::vector<Column> columns;
+  for_each_field<Row>([&]<class Value>(const Field<Row, Value>& field) {
+    const std::size_t offset = offset_of(field.member);
+    if constexpr (std::is_same_v<Value, ObjectId>) {
+      columns.push_back(column<std::uint32_t>(std::string("object_") + field.role.side,
+                                              offset + offset_of(&ObjectId::index)));
+      columns.back().is_object = true;
+    } else if constexpr (std::is_same_v<Value, Feature>) {
+      columns.push_back(column<FeatureKind>(field.key, offset + offset_of(&Feature::kind)));
+      columns.push_back(
+          column<std::uint8_t>(name_of_feature_index(field.key), offset + offset_of(&Feature::index)));
+    } else {
+      columns.push_back(column<Value>(field.key, offset));
+    }
+  });
   return columns;
 }
 
-template <>
-const std::vector<ColumnOf<Contact>>& columns_of() {
-  static const std::vector<ColumnOf<Contact>> columns{
-      column<Contact>(
-          "object_a", [](auto& row) -> auto& { return row.object_a.index; }),
-      column<Contact>(
-          "object_b", [](auto& row) -> auto& { return row.object_b.index; }),
-      column<Contact>(
-          "triangle_a", [](auto& row) -> auto& { return row.triangle_a; }),
-      column<Contact>(
-          "triangle_b", [](auto& row) -> auto& { return row.triangle_b; }),
-      column<Contact>(
-          "kind", [](auto& row) -> auto& { return row.kind; }),
-      column<Contact>(
-          "point_count", [](auto& row) -> auto& { return row.point_count; }),
-      column<Contact>(
-          "first_point", [](auto& row) -> auto& { return row.first_point; }),
-      column<Contact>(
-          "normal", [](auto& row) -> auto& { return row.normal; }),
-  };
-  return columns;
-}
+}  // namespace
 
-template <>
-const std::vector<ColumnOf<ContactPoint>>& columns_of() {
-  static const std::vector<ColumnOf<ContactPoint>> columns{
-      column<ContactPoint>(
-          "position", [](auto& row) -> auto& { return row.position; }),
-      column<ContactPoint>(
-          "feature_a", [](auto& row) -> auto& { return row.on_a.kind; }),
-      column<ContactPoint>(
-          "feature_index_a", [](auto& row) -> auto& { return row.on_a.index; }),
-      column<ContactPoint>(
-          "feature_b", [](auto& row) -> auto& { return row.on_b.kind; }),
-      column<ContactPoint>(
-          "feature_index_b", [](auto& row) -> auto& { return row.on_b.index; }),
-  };
-  return columns;
-}
-
-template <>
-const std::vector<ColumnOf<ContinuousContact>>& columns_of() {
-  using Row = ContinuousContact;
-  static const std::vector<ColumnOf<Row>> columns{
-      column<Row>(
-          "object_a", [](auto& row) -> auto& { return row.object_a.index; }),
-      column<Row>(
-          "object_b", [](auto& row) -> auto& { return row.object_b.index; }),
-      column<Row>(
-          "kind", [](auto& row) -> auto& { return row.kind; }),
-      column<Row>(
-          "element_a", [](auto& row) -> auto& { return row.element_a; }),
-      column<Row>(
-          "element_b", [](auto& row) -> auto& { return row.element_b; }),
-      column<Row>(
-          "certainty", [](auto& row) -> auto& { return row.certainty; }),
-      column<Row>(
-          "touching_at_start", [](auto& row) -> auto& { return row.touching_at_start; }),
-      column<Row>(
-          "toi", [](auto& row) -> auto& { return row.toi; }),
-      column<Row>(
-          "start_distance", [](auto& row) -> auto& { return row.start_distance; }),
-      column<Row>(
-          "barycentric_a", [](auto& row) -> auto& { return row.barycentric_a; }),
-      column<Row>(
-          "barycentric_b", [](auto& row) -> auto& { return row.barycentric_b; }),
-      column<Row>(
-          "point", [](auto& row) -> auto& { return row.point; }),
-      column<Row>(
-          "normal", [](auto& row) -> auto& { return row.normal; }),
-  };
-  return columns;
-}
-
-template <>
-const std::vector<ColumnOf<ProximityPair>>& columns_of() {
-  using Row = ProximityPair;
-  static const std::vector<ColumnOf<Row>> columns{
-      column<Row>(
-          "object_a", [](auto& row) -> auto& { return row.object_a.index; }),
-      column<Row>(
-          "object_b", [](auto& row) -> auto& { return row.object_b.index; }),
-      column<Row>(
-          "kind_a", [](auto& row) -> auto& { return row.kind_a; }),
-      column<Row>(
-          "kind_b", [](auto& row) -> auto& { return row.kind_b; }),
-      column<Row>(
-          "element_a", [](auto& row) -> auto& { return row.element_a; }),
-      column<Row>(
-          "element_b", [](auto& row) -> auto& { return row.element_b; }),
-      column<Row>(
-          "feature_a", [](auto& row) -> auto& { return row.on_a.kind; }),
-      column<Row>(
-          "feature_index_a", [](auto& row) -> auto& { return row.on_a.index; }),
-      column<Row>(
-          "feature_b", [](auto& row) -> auto& { return row.on_b.kind; }),
-      column<Row>(
-          "feature_index_b", [](auto& row) -> auto& { return row.on_b.index; }),
-      column<Row>(
-          "distance", [](auto& row) -> auto& { return row.distance; }),
-      column<Row>(
-          "barycentric_a", [](auto& row) -> auto& { return row.barycentric_a; }),
-      column<Row>(
-          "barycentric_b", [](auto& row) -> auto& { return row.barycentric_b; }),
-      column<Row>(
-          "point_a", [](auto& row) -> auto& { return row.point_a; }),
-      column<Row>(
-          "point_b", [](auto& row) -> auto& { return row.point_b; }),
-      column<Row>(
-          "normal", [](auto& row) -> auto& { return row.normal; }),
-  };
-  return columns;
-}
-
-template <>
-const std::vector<ColumnOf<PenetrationGroup>>& columns_of() {
-  using Row = PenetrationGroup;
-  static const std::vector<ColumnOf<Row>> columns{
-      column<Row>(
-          "object_a", [](auto& row) -> auto& { return row.a.index; }),
-      column<Row>(
-          "object_b", [](auto& row) -> auto& { return row.b.index; }),
-      column<Row>(
-          "first_penetration", [](auto& row) -> auto& { return row.first_penetration; }),
-      column<Row>(
-          "penetration_count", [](auto& row) -> auto& { return row.penetration_count; }),
-      column<Row>(
-          "first_on_surface", [](auto& row) -> auto& { return row.first_on_surface; }),
-      column<Row>(
-          "on_surface_count", [](auto& row) -> auto& { return row.on_surface_count; }),
-  };
-  return columns;
-}
-
-template <>
-const std::vector<ColumnOf<Penetration>>& columns_of() {
-  using Row = Penetration;
-  static const std::vector<ColumnOf<Row>> columns{
-      column<Row>(
-          "object_a", [](auto& row) -> auto& { return row.object_a.index; }),
-      column<Row>(
-          "object_b", [](auto& row) -> auto& { return row.object_b.index; }),
-      column<Row>(
-          "vertex", [](auto& row) -> auto& { return row.vertex; }),
-      column<Row>(
-          "triangle", [](auto& row) -> auto& { return row.triangle; }),
-      column<Row>(
-          "feature", [](auto& row) -> auto& { return row.feature.kind; }),
-      column<Row>(
-          "feature_index", [](auto& row) -> auto& { return row.feature.index; }),
-      column<Row>(
-          "depth", [](auto& row) -> auto& { return row.depth; }),
-      column<Row>(
-          "barycentric", [](auto& row) -> auto& { return row.barycentric; }),
-      column<Row>(
-          "point", [](auto& row) -> auto& { return row.point; }),
-      column<Row>(
-          "normal", [](auto& row) -> auto& { return row.normal; }),
-  };
-  return columns;
-}
-
-template <>
-const std::vector<ColumnOf<ContainedPart>>& columns_of() {
-  using Row = ContainedPart;
-  static const std::vector<ColumnOf<Row>> columns{
-      column<Row>(
-          "object_a", [](auto& row) -> auto& { return row.inner.index; }),
-      column<Row>(
-          "object_b", [](auto& row) -> auto& { return row.outer.index; }),
-      column<Row>(
-          "vertex", [](auto& row) -> auto& { return row.vertex; }),
-      column<Row>(
-          "vertex_count", [](auto& row) -> auto& { return row.vertex_count; }),
-      column<Row>(
-          "is_whole", [](auto& row) -> auto& { return row.is_whole; }),
-  };
-  return columns;
-}
-
-template <>
-const std::vector<ColumnOf<IntersectionCurve>>& columns_of() {
-  using Row = IntersectionCurve;
-  static const std::vector<ColumnOf<Row>> columns{
-      column<Row>(
-          "object_a", [](auto& row) -> auto& { return row.a.index; }),
-      column<Row>(
-          "object_b", [](auto& row) -> auto& { return row.b.index; }),
-      column<Row>(
-          "kind", [](auto& row) -> auto& { return row.kind; }),
-      column<Row>(
-          "first_contact", [](auto& row) -> auto& { return row.first_contact; }),
-      column<Row>(
-          "contact_count", [](auto& row) -> auto& { return row.contact_count; }),
-      column<Row>(
-          "first_point", [](auto& row) -> auto& { return row.first_point; }),
-      column<Row>(
-          "point_count", [](auto& row) -> auto& { return row.point_count; }),
-      column<Row>(
-          "first_enclosed", [](auto& row) -> auto& { return row.first_enclosed; }),
-      column<Row>(
-          "enclosed_count_a", [](auto& row) -> auto& { return row.enclosed_count_a; }),
-      column<Row>(
-          "enclosed_count_b", [](auto& row) -> auto& { return row.enclosed_count_b; }),
-      column<Row>(
-          "centroid", [](auto& row) -> auto& { return row.centroid; }),
-      column<Row>(
-          "area", [](auto& row) -> auto& { return row.area; }),
-      column<Row>(
-          "normal", [](auto& row) -> auto& { return row.normal; }),
-      column<Row>(
-          "depth", [](auto& row) -> auto& { return row.depth; }),
-  };
-  return columns;
-}
-
-template <>
-const std::vector<ColumnOf<CurveContact>>& columns_of() {
-  static const std::vector<ColumnOf<CurveContact>> columns{
-      column<CurveContact>(
-          "contact", [](auto& row) -> auto& { return row.contact; }),
-  };
-  return columns;
-}
-
-/// Points of curves.
-template <>
-const std::vector<ColumnOf<Vec3d>>& columns_of() {
-  static const std::vector<ColumnOf<Vec3d>> columns{
-      column<Vec3d>(
-          "position", [](auto& row) -> auto& { return row; }),
-  };
-  return columns;
-}
-
-template <>
-const std::vector<ColumnOf<CollidingVertices>>& columns_of() {
-  static const std::vector<ColumnOf<CollidingVertices>> columns{
-      column<CollidingVertices>(
-          "object_a", [](auto& row) -> auto& { return row.a.index; }),
-      column<CollidingVertices>(
-          "object_b", [](auto& row) -> auto& { return row.b.index; }),
-      column<CollidingVertices>(
-          "first_vertex", [](auto& row) -> auto& { return row.first_vertex; }),
-      column<CollidingVertices>(
-          "count_a", [](auto& row) -> auto& { return row.count_a; }),
-      column<CollidingVertices>(
-          "count_b", [](auto& row) -> auto& { return row.count_b; }),
-  };
-  return columns;
-}
-
-/// Vertices on surfaces, enclosed by curves, or in colliding leaves.
-template <>
-const std::vector<ColumnOf<std::uint32_t>>& columns_of() {
-  static const std::vector<ColumnOf<std::uint32_t>> columns{
-      column<std::uint32_t>(
-          "vertex", [](auto& row) -> auto& { return row; }),
-  };
-  return columns;
-}
-
-template <>
-const std::vector<ColumnOf<StepStats>>& columns_of() {
-  static const std::vector<ColumnOf<StepStats>> columns = [] {
-    std::vector<ColumnOf<StepStats>> list;
-    for_each_field<StepStats>([&](const auto& field) {
-      list.push_back(column<StepStats>(
-          field.key, [&](auto& row) -> auto& { return row.*field.member; }));
+const std::vector<ListLayout>& list_layouts() {
+  static const std::vector<ListLayout> layouts = [] {
+    std::vector<ListLayout> all;
+    for_each_list([&]<class Row>(const ResultList<Row>& list, auto) {
+      if constexpr (Described<Row>)
+        all.push_back({list.name, sizeof(Row), columns_of_record<Row>()});
+      else
+        all.push_back({list.name, sizeof(Row), {column<Row>(list.value, 0)}});
     });
-    return list;
+    return all;
   }();
+  return layouts;
+}
+
+const std::vector<Column>& columns_of_statistics() {
+  static const std::vector<Column> columns = columns_of_record<StepStats>();
   return columns;
 }
 

@@ -122,11 +122,11 @@ class Json(ContinuousTest):
         for given, expected in zip(weights + point, [0.5, 0.25, 0.25, 1, 1, 0]):
             self.assertAlmostEqual(given, expected, delta=1e-8)
         normal = [0.0, 0.0, -1.0]
-        expected = {"a": 0, "b": 1, "kind": "fv", "elements": [0, 0], "touching_at_start": False, "start_distance": 1.0, "certain": True, "barycentric_b": [1.0], "normal": normal}
+        expected = {"a": 0, "b": 1, "kind": "fv", "element_a": 0, "element_b": 0, "touching_at_start": False, "start_distance": 1.0, "certainty": "certain", "barycentric_b": [1.0], "normal": normal}
         self.assertEqual(contact, expected)
         self.write_scene(("blade", BLADE, [0, 0, -4]), ("upper", UPPER_EDGE, None))
         (contact,) = self.steps("scene.toml", "--contact-details")[0]["contacts"]
-        self.assertEqual((contact["kind"], contact["elements"]), ("ee", [[0, 1], [0, 1]]))
+        self.assertEqual((contact["kind"], contact["element_a"], contact["element_b"]), ("ee", [0, 1], [0, 1]))
         self.assertEqual((len(contact["barycentric_a"]), len(contact["barycentric_b"])), (2, 2))
 
     def test_min_separation(self):
@@ -147,7 +147,7 @@ class Json(ContinuousTest):
         uncertain = group["within_tolerance"]
         self.assertEqual(list(uncertain), ["vf", "fv", "ee"])
         self.assertTrue(uncertain["fv"] + uncertain["vf"] + uncertain["ee"])
-        certainty = [(c["kind"], c["certain"]) for c in step["contacts"]]
+        certainty = [(c["kind"], c["certainty"] == "certain") for c in step["contacts"]]
         for kind in ("vf", "fv", "ee"):
             rows = [certain for name, certain in certainty if name == kind]
             self.assertEqual([row for row, certain in enumerate(rows) if not certain], uncertain[kind])

@@ -38,12 +38,12 @@ class Json(ProgramTest):
         self.assertEqual(set(stats), STATS)
         self.assertEqual(stats["contacts"], 1)
         points = [
-            {"position": [0.25, 0.25, 0.0], "on_a": "f", "on_b": "e0"},
-            {"position": [0.75, 0.25, 0.0], "on_a": "e1", "on_b": "v2"},
+            {"position": [0.25, 0.25, 0.0], "feature_a": "f", "feature_b": "e0"},
+            {"position": [0.75, 0.25, 0.0], "feature_a": "e1", "feature_b": "v2"},
         ]
         (contact,) = frame.pop("contacts")
         self.assertCountEqual(contact.pop("points"), points)
-        self.assertEqual(contact, {"a": 0, "b": 1, "triangles": [0, 0], "kind": "segment", "normal": [0.0, 1.0, 0.0]})
+        self.assertEqual(contact, {"a": 0, "b": 1, "triangle_a": 0, "triangle_b": 0, "kind": "segment", "normal": [0.0, 1.0, 0.0]})
         self.assertEqual(
             frame,
             {
@@ -84,7 +84,7 @@ class Json(ProgramTest):
 
     def test_no_contact_points(self):
         (frame,) = self.detect("a.obj", "b.obj", "--no-contact-points", "--contact-details")["frames"]
-        self.assertEqual(frame["contacts"], [{"a": 0, "b": 1, "triangles": [0, 0], "kind": "segment"}])
+        self.assertEqual(frame["contacts"], [{"a": 0, "b": 1, "triangle_a": 0, "triangle_b": 0, "kind": "segment"}])
 
     def test_no_stats(self):
         result = self.detect("a.obj", "b.obj", "--no-stats")
@@ -161,7 +161,7 @@ class Json(ProgramTest):
         (frame,) = self.detect("tip.obj", "other.obj", "--contact-details")["frames"]
         (contact,) = frame["contacts"]
         self.assertEqual(contact["kind"], "point")
-        self.assertEqual(contact["points"], [{"position": list(tip), "on_a": "v0", "on_b": "v0"}])
+        self.assertEqual(contact["points"], [{"position": list(tip), "feature_a": "v0", "feature_b": "v0"}])
 
     def test_names_that_are_not_text(self):
         name = os.fsdecode(b"caf\xe9 \xc3\xa9\xed\xa0\x80.obj")
@@ -195,7 +195,7 @@ class Json(ProgramTest):
         done = self.run_here("detect", *arguments, "--csv", "-")
         self.assertEqual((done.status, done.error), (0, ""))
         (frame,) = self.detect(*arguments, "--contact-details")["frames"]
-        rows = [f"0,{c['a']},{c['b']},{c['triangles'][0]},{c['triangles'][1]}" for c in frame["contacts"]]
+        rows = [f"0,{c['a']},{c['b']},{c['triangle_a']},{c['triangle_b']}" for c in frame["contacts"]]
         self.assertEqual(done.out.splitlines(), ["frame,a,b,i,j", *rows])
         self.assertIn("0,2,2,0,1", rows)
 

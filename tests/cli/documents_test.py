@@ -63,7 +63,7 @@ class Documents(ProgramTest):
                 self.assertIn(flag, page)
 
     def test_unknown_document(self):
-        self.assert_one_line_error(run("--generate", "pdf"), "pdf", "man, markdown, tables")
+        self.assert_one_line_error(run("--generate", "pdf"), "pdf", "man, markdown, sections, tables")
 
     def test_example_of_the_scene_file_page_is_accepted(self):
         page = (ROOT / "docs/scene_file.md").read_text()

@@ -40,7 +40,7 @@ class Penetration(ProgramTest):
         self.write("within.obj", joined(moved(SMALL, 0.5, 0.5, 0.5), moved(SMALL, 1.25, 1.25, 1.25)))
         frame = self.frame("within.obj", "a.obj", "--verify")
         self.assertEqual(frame["containment"], [[0, 1]])
-        self.assertEqual(frame["contained_parts"], [{"inner": 0, "outer": 1, "vertex": v, "vertices": 8} for v in (0, 8)])
+        self.assertEqual(frame["contained_parts"], [{"inner": 0, "outer": 1, "vertex": v, "vertex_count": 8, "is_whole": True} for v in (0, 8)])
         self.assertEqual((frame["triangle_pairs"], frame["curves"]), ([], []))
         self.assertEqual(len(frame["penetration"][0]["vertices"]), 16)
         self.write("partly.obj", joined(moved(SMALL, 0.5, 0.5, 0.5), moved(SMALL, 1.75, 1.75, 1.75)))
@@ -56,10 +56,10 @@ class Penetration(ProgramTest):
     def test_details(self):
         frame = self.frame("a.obj", "b.obj", "--contact-details")
         first = frame["penetrations"][0]
-        self.assertEqual(list(first), ["a", "b", "vertex", "triangle", "on", "depth", "barycentric", "point", "normal"])
+        self.assertEqual(list(first), ["a", "b", "vertex", "triangle", "feature", "depth", "barycentric", "point", "normal"])
         self.assertEqual((first["point"], first["normal"]), ([2, 2, 1.625], [0, 0, -1]))
         (curve,) = frame["curves"]
-        self.assertEqual(list(curve), ["a", "b", "kind", "segments", "pairs", "points", "centroid", "area", "normal", "depth", "enclosed_a", "enclosed_b"])
+        self.assertEqual(list(curve), ["a", "b", "kind", "centroid", "area", "normal", "depth", "segments", "pairs", "points", "enclosed_a", "enclosed_b"])
         self.assertEqual((curve["enclosed_a"], curve["enclosed_b"]), ([7], [0]))
         self.assertEqual((len(curve["pairs"]), len(curve["points"])), (curve["segments"], curve["segments"]))
         self.assertGreater(curve["depth"], 0)

@@ -50,9 +50,9 @@ class Proximity(ProgramTest):
 
     def test_details(self):
         pair = self.frame("--contact-details", "--proximity-listing", "elements")["proximity_pairs"][0]
-        keys = ["a", "b", "kind", "elements", "on_a", "on_b", "distance", "barycentric_a", "barycentric_b", "point_a", "point_b", "normal"]
+        keys = ["a", "b", "kind_a", "kind_b", "element_a", "element_b", "feature_a", "feature_b", "distance", "barycentric_a", "barycentric_b", "point_a", "point_b", "normal"]
         self.assertEqual(list(pair), keys)
-        self.assertEqual((pair["kind"], pair["elements"], pair["on_a"], pair["on_b"]), ("vf", [0, 0], "v0", "v0"))
+        self.assertEqual((pair["kind_a"], pair["kind_b"], pair["element_a"], pair["element_b"], pair["feature_a"], pair["feature_b"]), ("vertex", "face", 0, 0, "v0", "v0"))
         self.assertEqual((pair["barycentric_a"], pair["barycentric_b"], pair["normal"]), ([1], [1, 0, 0], [0, 0, -1]))
 
     def test_with_other_kinds(self):

@@ -359,7 +359,7 @@ class Detect(RecordingTest):
                 self.assertEqual(frame["verify"]["differences"], [])
                 pairs = [tuple(pair) for pair in frame["object_pairs"]]
                 self.assertEqual(pairs, self.recorded(file, number, "object_pairs", "object_a", "object_b"))
-                contacts = [(c["a"], c["b"], *c["triangles"], ("point", "segment", "polygon").index(c["kind"]),
+                contacts = [(c["a"], c["b"], c["triangle_a"], c["triangle_b"], ("point", "segment", "polygon").index(c["kind"]),
                              len(c["points"])) for c in frame["contacts"]]
                 columns = ("object_a", "object_b", "triangle_a", "triangle_b", "kind", "point_count")
                 self.assertEqual(contacts, self.recorded(file, number, "contacts", *columns))
@@ -505,7 +505,7 @@ class Penetration(RecordingTest):
         fields = ("vertex", "triangle", "depth", "barycentric", "point", "normal")
         self.assertEqual(recorded("penetrations", "object_a", "object_b", *fields),
                          [(p["a"], p["b"], *(p[field] for field in fields)) for p in frame["penetrations"]])
-        self.assertEqual(["vef"[kind] for (kind,) in recorded("penetrations", "feature")], [p["on"][0] for p in frame["penetrations"]])
+        self.assertEqual(["vef"[kind] for (kind,) in recorded("penetrations", "feature")], [p["feature"][0] for p in frame["penetrations"]])
         groups = recorded("penetration_groups", "object_a", "object_b", "first_penetration", "penetration_count", "first_on_surface", "on_surface_count")
         vertices = recorded("penetrations", "vertex", "triangle", "depth")
         on_surface = [v for (v,) in recorded("vertices_on_surface", "vertex")]
@@ -513,7 +513,7 @@ class Penetration(RecordingTest):
                            "on_surface": on_surface[first_on:first_on + count_on]} for a, b, first, count, first_on, count_on in groups],
                          frame["penetration"])
         parts = recorded("contained_parts", "object_a", "object_b", "vertex", "vertex_count", "is_whole")
-        self.assertEqual([part[:4] for part in parts], [tuple(part.values()) for part in frame["contained_parts"]])
+        self.assertEqual(parts, [tuple(part.values()) for part in frame["contained_parts"]])
         self.assertEqual({part[:2] for part in parts if part[4]}, {tuple(pair) for pair in frame["containment"]})
         contacts = recorded("contacts", "triangle_a", "triangle_b")
         along = [list(contacts[contact]) for (contact,) in recorded("curve_contacts", "contact")]
@@ -591,7 +591,7 @@ class Penetration(RecordingTest):
             file["curves/depth"][int(file["curves/end"][4])] += 1
         done = self.run_here("diff", "run.h5", "other.h5")
         self.assertEqual((done.status, done.error), (1, ""))
-        self.assertRegex(done.out, r"^run\.h5 and other\.h5 differ in frame 4: penetration 0, vertex \d+ of object 0 'box' in object 1 'ball', "
+        self.assertRegex(done.out, r"^run\.h5 and other\.h5 differ in frame 4: penetration 0, vertex \d+ of object 0 'box' and object 1 'ball', "
                                    r"depth: [\d.]+ and [\d.]+\n$")
         done = self.run_here("diff", "run.h5", "other.h5", "--tolerance", "0.5")
         self.assertRegex(done.out, r"differ in frame 5: curve 0, object 0 'box' and object 1 'ball', depth: ")

@@ -309,7 +309,7 @@ class ExitStatus(ProgramTest):
         self.assertEqual(done.status, 3)
         self.assertEqual(len(done.error.splitlines()), 1)
         self.assertIn("not reported", done.error)
-        self.assertIn('"differences":[{"a":0,"b":1,"triangles":[0,0],"missed":true}]', (self.folder / "result.json").read_text())
+        self.assertIn('"differences":[{"a":0,"b":1,"triangle_a":0,"triangle_b":0,"missed":true}]', (self.folder / "result.json").read_text())
 
 
 if __name__ == "__main__":

@@ -10,9 +10,11 @@
 
 namespace supple::viewer {
 
-// The numbers are those of docs/protocol.md.
+// `section_forms` (sections.hpp) says what the sections contain.
 
 enum class MessageKind : std::uint16_t { scene = 1, frame = 2, answer = 3, failure = 4, series = 5 };
+
+inline constexpr const char* names_of_message_kinds[] = {"", "scene", "frame", "answer", "failure", "series"};
 
 enum class Tag : std::uint32_t {
   text = 1,

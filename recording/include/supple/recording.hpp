@@ -31,7 +31,12 @@ struct RecordingHeader {
   std::string scene_file{};  ///< text of the simulated scene file; empty when there is none
 };
 
-/// All data of one frame, as in `DetectResult`.
+/// The object pairs that begin and end in a frame, as in `PairEvents`.
+struct RecordedEvents {
+  std::vector<ObjectPair> begin{}, end{};
+};
+
+/// All data of one frame: the lists of `DetectResult`. Its lists of groups follow from the records.
 struct RecordedFrame {
   double time = 0;
   std::vector<ObjectPair> object_pairs{};
@@ -47,13 +52,12 @@ struct RecordedFrame {
   std::vector<std::uint32_t> curve_contacts{};
   std::vector<Vec3d> curve_points{};
   std::vector<std::uint32_t> enclosed_vertices{};
+  std::vector<Manifold> manifolds{};
+  std::vector<ManifoldPoint> manifold_points{};
   std::vector<CollidingVertices> colliding_vertex_groups{};
   std::vector<std::uint32_t> colliding_vertices{};
-  std::vector<ObjectPair> volume_begin{}, volume_end{};
-  std::vector<ObjectPair> narrow_phase_begin{}, narrow_phase_end{};
-  std::vector<ObjectPair> contact_begin{}, contact_end{};
-  std::vector<ObjectPair> proximity_begin{}, proximity_end{};
-  std::vector<ObjectPair> penetration_begin{}, penetration_end{};
+  RecordedEvents volume_events{}, narrow_phase_events{}, contact_events{}, proximity_events{},
+      penetration_events{};
   StepStats stats{};
 };
 

@@ -2,6 +2,7 @@
 #include <hdf5.h>
 
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <functional>
 #include <iterator>
@@ -212,7 +213,7 @@ TEST_F(DamagedRecording, CollidingVerticesThatEarlierProgramsDidNotRecordAreNoDa
   EXPECT_EQ(error_after(change, "paper.h5"), "");
   const RecordedFrame frame = Recording(folder_ / "bad.h5").frame(0);
   EXPECT_TRUE(frame.colliding_vertices.empty() && frame.colliding_vertex_groups.empty() &&
-              frame.narrow_phase_begin.empty());
+              frame.narrow_phase_events.begin.empty());
   EXPECT_FALSE(frame.object_pairs.empty());
 }
 
@@ -241,7 +242,7 @@ TEST_F(DamagedRecording, PenetrationThatEarlierProgramsDidNotRecordIsNoDamage) {
   EXPECT_EQ(error_after(change, "solids.h5"), "");
   const RecordedFrame frame = Recording(folder_ / "bad.h5").frame(2);
   EXPECT_TRUE(frame.penetrations.empty() && frame.penetration_groups.empty() && frame.curves.empty() &&
-              frame.penetration_begin.empty());
+              frame.penetration_events.begin.empty());
   EXPECT_FALSE(frame.contacts.empty());
 }
 

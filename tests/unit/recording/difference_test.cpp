@@ -111,21 +111,21 @@ TEST_P(InEveryMode, TimesPositionsAndPairs) {
          [](Contents& c) { c.frames[0].object_pairs.erase(c.frames[0].object_pairs.begin() + 1); });
   expect(3, "event volume_begin 0: object 0 'object 0' and object 1 'object 1' only in the second",
          [](Contents& c) {
-           c.frames[3].volume_begin = {{c.header.objects[0].id, c.header.objects[1].id}};
+           c.frames[3].volume_events.begin = {{c.header.objects[0].id, c.header.objects[1].id}};
          });
-  for (const auto& [name, pairs] : {std::pair{"event volume_end", &RecordedFrame::volume_end},
-                                    std::pair{"event narrow_phase_begin", &RecordedFrame::narrow_phase_begin},
-                                    std::pair{"event narrow_phase_end", &RecordedFrame::narrow_phase_end},
-                                    std::pair{"event contact_begin", &RecordedFrame::contact_begin},
-                                    std::pair{"event contact_end", &RecordedFrame::contact_end},
-                                    std::pair{"event proximity_begin", &RecordedFrame::proximity_begin},
-                                    std::pair{"event proximity_end", &RecordedFrame::proximity_end},
-                                    std::pair{"event penetration_begin", &RecordedFrame::penetration_begin},
-                                    std::pair{"event penetration_end", &RecordedFrame::penetration_end}}) {
-    auto member = pairs;
-    expect(3, name, [member](Contents& c) {
-      (c.frames[3].*member).push_back({c.header.objects[1].id, c.header.objects[2].id});
-    });
+  const auto add_pair = [](RecordedEvents RecordedFrame::*events, bool at_end) {
+    return [=](Contents& c) {
+      RecordedEvents& of = c.frames[3].*events;
+      (at_end ? of.end : of.begin).push_back({c.header.objects[1].id, c.header.objects[2].id});
+    };
+  };
+  expect(3, "event volume_end", add_pair(&RecordedFrame::volume_events, true));
+  for (const auto& [name, events] : {std::pair{"narrow_phase", &RecordedFrame::narrow_phase_events},
+                                     std::pair{"contact", &RecordedFrame::contact_events},
+                                     std::pair{"proximity", &RecordedFrame::proximity_events},
+                                     std::pair{"penetration", &RecordedFrame::penetration_events}}) {
+    expect(3, std::string("event ") + name + "_begin", add_pair(events, false));
+    expect(3, std::string("event ") + name + "_end", add_pair(events, true));
   }
   expect(2, "statistics, contacts: ", [](Contents& c) { ++c.frames[2].stats.contacts; });
   expect(1, "statistics, candidate_pairs: ", [](Contents& c) { ++c.frames[1].stats.candidate_pairs; });
@@ -280,7 +280,7 @@ TEST_P(OfPenetration, EveryFieldOfPenetrations) {
   const Penetration& first = base_.frames[2].penetrations[0];
   expect(2,
          "penetration 0: vertex " + std::to_string(first.vertex) +
-             " of object 0 'object 0' in object 1 'object 1' only in the first",
+             " of object 0 'object 0' and object 1 'object 1' only in the first",
          [](Contents& c) { ++c.frames[2].penetrations[0].vertex; });
   EXPECT_FALSE(after([](Contents& c) { c.frames[2].penetrations[1].depth += 1e-9; }, 1e-8));
 }
@@ -305,11 +305,11 @@ TEST_P(OfPenetration, EveryFieldOfGroups) {
 }
 
 TEST_P(OfPenetration, EveryFieldOfContainedParts) {
-  expect(3, "contained part 0, vertex 0 of object 2 'object 2' in object 0 'object 0', vertex_count: ",
+  expect(3, "contained part 0, vertex 0 of object 2 'object 2' and object 0 'object 0', vertex_count: ",
          [](Contents& c) { --c.frames[3].contained_parts.at(0).vertex_count; });
-  expect(3, "contained part 0, vertex 0 of object 2 'object 2' in object 0 'object 0', is_whole: 1 and 0",
+  expect(3, "contained part 0, vertex 0 of object 2 'object 2' and object 0 'object 0', is_whole: 1 and 0",
          [](Contents& c) { c.frames[3].contained_parts.at(0).is_whole = false; });
-  expect(3, "contained part 0: vertex 0 of object 2 'object 2' in object 0 'object 0' only in the first",
+  expect(3, "contained part 0: vertex 0 of object 2 'object 2' and object 0 'object 0' only in the first",
          [](Contents& c) { c.frames[3].contained_parts.clear(); });
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "supple/models.hpp"
+#include "supple/record_descriptions.hpp"
 #include "supple/recording.hpp"
 #include "supple/scene.hpp"
 #include "unit/mesh/mesh_files.hpp"
@@ -16,33 +17,9 @@ namespace supple {
 /// Copies the result of a frame.
 inline RecordedFrame kept(double time, const DetectResult& result) {
   RecordedFrame frame;
-  const auto keep = [](auto& to, auto from) { to.assign(from.begin(), from.end()); };
   frame.time = time;
-  keep(frame.object_pairs, result.object_pairs);
-  keep(frame.contacts, result.contacts);
-  keep(frame.contact_points, result.contact_points);
-  keep(frame.continuous_contacts, result.continuous_contacts);
-  keep(frame.volume_begin, result.volume_events.begin);
-  keep(frame.volume_end, result.volume_events.end);
-  keep(frame.colliding_vertex_groups, result.colliding_vertex_groups);
-  keep(frame.colliding_vertices, result.colliding_vertices);
-  keep(frame.narrow_phase_begin, result.narrow_phase_events.begin);
-  keep(frame.narrow_phase_end, result.narrow_phase_events.end);
-  keep(frame.contact_begin, result.contact_events.begin);
-  keep(frame.contact_end, result.contact_events.end);
-  keep(frame.proximity_begin, result.proximity_events.begin);
-  keep(frame.proximity_end, result.proximity_events.end);
-  keep(frame.proximity_pairs, result.proximity_pairs);
-  keep(frame.penetration_groups, result.penetration_groups);
-  keep(frame.penetrations, result.penetrations);
-  keep(frame.vertices_on_surface, result.vertices_on_surface);
-  keep(frame.contained_parts, result.contained_parts);
-  keep(frame.curves, result.curves);
-  keep(frame.curve_contacts, result.curve_contacts);
-  keep(frame.curve_points, result.curve_points);
-  keep(frame.enclosed_vertices, result.enclosed_vertices);
-  keep(frame.penetration_begin, result.penetration_events.begin);
-  keep(frame.penetration_end, result.penetration_events.end);
+  for_each_list(
+      [&](const auto&, auto member) { member(frame).assign(member(result).begin(), member(result).end()); });
   frame.stats = result.stats;
   return frame;
 }
@@ -50,31 +27,7 @@ inline RecordedFrame kept(double time, const DetectResult& result) {
 /// A `DetectResult` with views of a frame.
 inline DetectResult shown(const RecordedFrame& frame) {
   DetectResult result;
-  result.object_pairs = frame.object_pairs;
-  result.contacts = frame.contacts;
-  result.contact_points = frame.contact_points;
-  result.continuous_contacts = frame.continuous_contacts;
-  result.volume_events.begin = frame.volume_begin;
-  result.volume_events.end = frame.volume_end;
-  result.colliding_vertex_groups = frame.colliding_vertex_groups;
-  result.colliding_vertices = frame.colliding_vertices;
-  result.narrow_phase_events.begin = frame.narrow_phase_begin;
-  result.narrow_phase_events.end = frame.narrow_phase_end;
-  result.contact_events.begin = frame.contact_begin;
-  result.contact_events.end = frame.contact_end;
-  result.proximity_events.begin = frame.proximity_begin;
-  result.proximity_events.end = frame.proximity_end;
-  result.proximity_pairs = frame.proximity_pairs;
-  result.penetration_groups = frame.penetration_groups;
-  result.penetrations = frame.penetrations;
-  result.vertices_on_surface = frame.vertices_on_surface;
-  result.contained_parts = frame.contained_parts;
-  result.curves = frame.curves;
-  result.curve_contacts = frame.curve_contacts;
-  result.curve_points = frame.curve_points;
-  result.enclosed_vertices = frame.enclosed_vertices;
-  result.penetration_events.begin = frame.penetration_begin;
-  result.penetration_events.end = frame.penetration_end;
+  for_each_list([&](const auto&, auto member) { member(result) = member(frame); });
   result.stats = frame.stats;
   return result;
 }

@@ -9,9 +9,10 @@
 #include <ctime>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <iterator>
 #include <limits>
-#include <tuple>
+#include <string_view>
 
 #include "supple/error.hpp"
 #include "supple/models.hpp"
@@ -29,42 +30,9 @@ void expect_equal_bits(const std::vector<Vec3d>& a, const std::vector<Vec3d>& b)
   EXPECT_TRUE(a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(Vec3d)) == 0);
 }
 
-void expect_equal_colliding_vertices(const RecordedFrame& a, const RecordedFrame& b) {
-  EXPECT_EQ(a.colliding_vertices, b.colliding_vertices);
-  ASSERT_EQ(a.colliding_vertex_groups.size(), b.colliding_vertex_groups.size());
-  for (std::size_t i = 0; i < a.colliding_vertex_groups.size(); ++i) {
-    const CollidingVertices &p = a.colliding_vertex_groups[i], &q = b.colliding_vertex_groups[i];
-    EXPECT_EQ(std::tie(p.a, p.b, p.first_vertex, p.count_a, p.count_b),
-              std::tie(q.a, q.b, q.first_vertex, q.count_a, q.count_b));
-  }
-}
-
 void expect_equal(const RecordedFrame& a, const RecordedFrame& b) {
   EXPECT_EQ(a.time, b.time);
-  EXPECT_EQ(a.object_pairs, b.object_pairs);
-  EXPECT_EQ(a.contacts, b.contacts);
-  EXPECT_EQ(a.contact_points, b.contact_points);
-  EXPECT_EQ(a.continuous_contacts, b.continuous_contacts);
-  EXPECT_EQ(a.volume_begin, b.volume_begin);
-  EXPECT_EQ(a.volume_end, b.volume_end);
-  EXPECT_EQ(a.narrow_phase_begin, b.narrow_phase_begin);
-  EXPECT_EQ(a.narrow_phase_end, b.narrow_phase_end);
-  expect_equal_colliding_vertices(a, b);
-  EXPECT_EQ(a.contact_begin, b.contact_begin);
-  EXPECT_EQ(a.contact_end, b.contact_end);
-  EXPECT_EQ(a.proximity_pairs, b.proximity_pairs);
-  EXPECT_EQ(a.proximity_begin, b.proximity_begin);
-  EXPECT_EQ(a.proximity_end, b.proximity_end);
-  EXPECT_EQ(a.penetration_groups, b.penetration_groups);
-  EXPECT_EQ(a.penetrations, b.penetrations);
-  EXPECT_EQ(a.vertices_on_surface, b.vertices_on_surface);
-  EXPECT_EQ(a.contained_parts, b.contained_parts);
-  EXPECT_EQ(a.curves, b.curves);
-  EXPECT_EQ(a.curve_contacts, b.curve_contacts);
-  EXPECT_EQ(a.curve_points, b.curve_points);
-  EXPECT_EQ(a.enclosed_vertices, b.enclosed_vertices);
-  EXPECT_EQ(a.penetration_begin, b.penetration_begin);
-  EXPECT_EQ(a.penetration_end, b.penetration_end);
+  for_each_list([&](const auto& list, auto member) { EXPECT_EQ(member(a), member(b)) << list.name; });
   for_each_leaf([](const auto& field, const auto& p, const auto& q) { EXPECT_EQ(p, q) << field.name; },
                 a.stats, b.stats);
 }
@@ -114,21 +82,9 @@ Contents round_trip(const Contents& contents) {
   for (std::size_t f = 0; f < std::min(contents.frames.size(), read.frames.size()); ++f) {
     expect_equal(contents.frames[f], read.frames[f]);
     RecordedFrame without_contacts = contents.frames[f];
-    without_contacts.object_pairs.clear();
-    without_contacts.contacts.clear();
-    without_contacts.contact_points.clear();
-    without_contacts.continuous_contacts.clear();
-    without_contacts.proximity_pairs.clear();
-    without_contacts.penetration_groups.clear();
-    without_contacts.penetrations.clear();
-    without_contacts.vertices_on_surface.clear();
-    without_contacts.contained_parts.clear();
-    without_contacts.curves.clear();
-    without_contacts.curve_contacts.clear();
-    without_contacts.curve_points.clear();
-    without_contacts.enclosed_vertices.clear();
-    without_contacts.colliding_vertex_groups.clear();
-    without_contacts.colliding_vertices.clear();
+    for_each_list([&](const auto& list, auto member) {
+      if (!std::string_view(list.name).starts_with("events/")) member(without_contacts).clear();
+    });
     expect_equal(without_contacts, recording.summary(f));
     for (std::size_t i = 0; i < read.header.objects.size(); ++i)
       expect_equal_bits(contents.positions[f][i], read.positions[f][i]);
@@ -150,10 +106,17 @@ Contents soups(ContactKinds mode, std::uint64_t frames = 12, bool colliding_vert
                   {folding, ObjectOptions{}, fixed}, scene, frames);
 }
 
+auto begin_of(RecordedEvents RecordedFrame::*events) {
+  return [events](const RecordedFrame& frame) { return (frame.*events).begin; };
+}
+auto end_of(RecordedEvents RecordedFrame::*events) {
+  return [events](const RecordedFrame& frame) { return (frame.*events).end; };
+}
+
 template <class Rows>
 std::size_t count_all(const std::vector<RecordedFrame>& frames, Rows rows) {
   std::size_t count = 0;
-  for (const RecordedFrame& frame : frames) count += (frame.*rows).size();
+  for (const RecordedFrame& frame : frames) count += std::invoke(rows, frame).size();
   return count;
 }
 
@@ -161,14 +124,14 @@ TEST(Recording, RoundTripOfIntersections) {
   const Contents read = round_trip(soups(ContactKinds::intersection));
   EXPECT_GT(count_all(read.frames, &RecordedFrame::contacts), 100u);
   EXPECT_GT(count_all(read.frames, &RecordedFrame::contact_points), 100u);
-  EXPECT_GT(count_all(read.frames, &RecordedFrame::volume_begin), 0u);
-  EXPECT_GT(count_all(read.frames, &RecordedFrame::contact_begin), 0u);
+  EXPECT_GT(count_all(read.frames, begin_of(&RecordedFrame::volume_events)), 0u);
+  EXPECT_GT(count_all(read.frames, begin_of(&RecordedFrame::contact_events)), 0u);
 }
 
 TEST(Recording, RoundTripOfProximity) {
   const Contents read = round_trip(soups(ContactKinds::proximity));
   EXPECT_GT(count_all(read.frames, &RecordedFrame::proximity_pairs), 100u);
-  EXPECT_GT(count_all(read.frames, &RecordedFrame::proximity_begin), 0u);
+  EXPECT_GT(count_all(read.frames, begin_of(&RecordedFrame::proximity_events)), 0u);
 }
 
 TEST(Recording, RoundTripOfPenetration) {
@@ -180,8 +143,8 @@ TEST(Recording, RoundTripOfPenetration) {
   EXPECT_GT(count_all(read.frames, &RecordedFrame::penetration_groups), 8u);
   EXPECT_GT(count_all(read.frames, &RecordedFrame::contained_parts), 1u);
   EXPECT_GT(count_all(read.frames, &RecordedFrame::curve_points), 20u);
-  EXPECT_GT(count_all(read.frames, &RecordedFrame::penetration_begin), 1u);
-  EXPECT_GT(count_all(read.frames, &RecordedFrame::penetration_end), 0u);
+  EXPECT_GT(count_all(read.frames, begin_of(&RecordedFrame::penetration_events)), 1u);
+  EXPECT_GT(count_all(read.frames, end_of(&RecordedFrame::penetration_events)), 0u);
   std::array<std::size_t, 3> of_kind{};
   std::size_t of_itself = 0;
   for (const RecordedFrame& frame : read.frames) {
@@ -222,21 +185,37 @@ TEST(Recording, RoundTripOfContinuousContacts) {
   EXPECT_EQ(count_all(read.frames, &RecordedFrame::contacts), 0u);
 }
 
+TEST(Recording, RoundTripOfManifolds) {
+  ObjectOptions with_margin;
+  with_margin.margin = 0.3;
+  SceneOptions scene;
+  scene.contacts = ContactKinds::proximity;
+  scene.manifolds = true;
+  const auto offset_of = [](std::uint64_t frame, std::size_t object, std::size_t) {
+    return object == 0 ? Vec3d{} : Vec3d{0, 0, 1.1 + 0.1 * static_cast<double>(frame)};
+  };
+  const Contents read = round_trip(simulate({make_box({2, 2, 1}, 2), make_box({1, 1, 1}, 2)},
+                                            {with_margin, with_margin}, scene, 3, offset_of));
+  EXPECT_EQ(count_all(read.frames, &RecordedFrame::manifolds), 3u);
+  EXPECT_EQ(count_all(read.frames, &RecordedFrame::manifold_points), 12u);
+}
+
 TEST(Recording, RoundTripOfCollidingVertices) {
   Contents contents = soups(ContactKinds::none, 12, true);
-  contents.frames[5].narrow_phase_end = {{contents.header.objects[0].id, contents.header.objects[1].id}};
+  contents.frames[5].narrow_phase_events.end = {
+      {contents.header.objects[0].id, contents.header.objects[1].id}};
   const Contents read = round_trip(contents);
   EXPECT_GT(count_all(read.frames, &RecordedFrame::colliding_vertices), 100u);
   EXPECT_GT(count_all(read.frames, &RecordedFrame::colliding_vertex_groups), 12u);
-  EXPECT_GT(count_all(read.frames, &RecordedFrame::narrow_phase_begin), 0u);
+  EXPECT_GT(count_all(read.frames, begin_of(&RecordedFrame::narrow_phase_events)), 0u);
   EXPECT_EQ(count_all(soups(ContactKinds::none).frames, &RecordedFrame::colliding_vertices), 0u);
 }
 
 TEST(Recording, RoundTripOfEndingPairs) {
   Contents contents = soups(ContactKinds::intersection, 3);
   const auto& objects = contents.header.objects;
-  contents.frames[2].volume_end = {{objects[0].id, objects[2].id}};
-  contents.frames[2].contact_end = {{objects[0].id, objects[1].id}, {objects[1].id, objects[2].id}};
+  contents.frames[2].volume_events.end = {{objects[0].id, objects[2].id}};
+  contents.frames[2].contact_events.end = {{objects[0].id, objects[1].id}, {objects[1].id, objects[2].id}};
   round_trip(contents);
 }
 
@@ -273,7 +252,7 @@ TEST(Recording, RoundTripOfIdsThatWereUsedBefore) {
   const auto rename = [&](ObjectId from, ObjectId to) {
     for (RecordedObject& object : contents.header.objects) object.id = object.id == from ? to : object.id;
     for (RecordedFrame& frame : contents.frames) {
-      for (auto* pairs : {&frame.object_pairs, &frame.volume_begin, &frame.contact_begin}) {
+      for (auto* pairs : {&frame.object_pairs, &frame.volume_events.begin, &frame.contact_events.begin}) {
         for (ObjectPair& pair : *pairs) pair = {pair.a == from ? to : pair.a, pair.b == from ? to : pair.b};
       }
       for (Contact& c : frame.contacts) {

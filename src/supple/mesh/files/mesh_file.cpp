@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <filesystem>
 #include <limits>
 #include <string>
 
@@ -31,7 +32,8 @@ const MeshFormat* find_format(const std::filesystem::path& path) {
 
 }  // namespace
 
-TriangleMesh load_mesh(const std::filesystem::path& path) {
+TriangleMesh load_mesh(const std::string& file) {
+  const std::filesystem::path path = file;
   const MeshFormat* format = find_format(path);
   if (format == nullptr) {
     fail("cannot read " + shown(path) + ": the extension " + in_quotes(path.extension().string()) +
@@ -48,7 +50,8 @@ TriangleMesh load_mesh(const std::filesystem::path& path) {
   return mesh;
 }
 
-void save_mesh(const TriangleMesh& mesh, const std::filesystem::path& path) {
+void save_mesh(const TriangleMesh& mesh, const std::string& file) {
+  const std::filesystem::path path = file;
   const MeshFormat* format = find_format(path);
   if (format == nullptr) {
     fail("cannot write " + shown(path) + ": the extension " + in_quotes(path.extension().string()) +

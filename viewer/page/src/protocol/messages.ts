@@ -3,6 +3,8 @@
  * and returns typed arrays that view the message; nothing is copied.
  */
 
+import { FORMS, KINDS, type Form } from "./sections";
+
 export const NONE = 0xffffffff;
 const MAGIC = 0x4c505553;
 const VERSION = 1;
@@ -130,58 +132,6 @@ export interface SeriesMessage {
 
 export type Message = SceneMessage | FrameMessage | AnswerMessage | FailureMessage | SeriesMessage;
 
-const KINDS = ["", "scene", "frame", "answer", "failure", "series"] as const;
-
-interface Form {
-  name: string;
-  array: Uint8ArrayConstructor | Uint32ArrayConstructor | Float32ArrayConstructor | Float64ArrayConstructor;
-  /** Numbers per element; 0 when the scene determines it. */
-  width: number;
-  kinds: readonly string[];
-  perObject?: boolean;
-}
-
-const FORMS: Record<number, Form> = {
-  1: { name: "text", array: Uint8Array, width: 1, kinds: ["scene", "frame", "answer", "failure"] },
-  16: { name: "triangles", array: Uint32Array, width: 3, kinds: ["scene"], perObject: true },
-  32: { name: "positions", array: Float32Array, width: 3, kinds: ["frame"], perObject: true },
-  33: { name: "object_pairs", array: Uint32Array, width: 2, kinds: ["frame"] },
-  34: { name: "contacts", array: Uint32Array, width: 8, kinds: ["frame"] },
-  35: { name: "contact_points", array: Float32Array, width: 8, kinds: ["frame"] },
-  36: { name: "impacts", array: Uint32Array, width: 8, kinds: ["frame"] },
-  37: { name: "impact_points", array: Float32Array, width: 8, kinds: ["frame"] },
-  38: { name: "candidates", array: Uint32Array, width: 4, kinds: ["frame"] },
-  39: { name: "scene_regions", array: Float32Array, width: 8, kinds: ["frame"] },
-  40: { name: "octree_boxes", array: Float32Array, width: 8, kinds: ["frame"], perObject: true },
-  41: { name: "octree_spheres", array: Float32Array, width: 8, kinds: ["frame"], perObject: true },
-  42: { name: "colliding_vertices", array: Uint32Array, width: 1, kinds: ["frame"], perObject: true },
-  43: { name: "statistics", array: Float64Array, width: 1, kinds: ["frame"] },
-  44: { name: "contact_begin", array: Uint32Array, width: 2, kinds: ["frame"] },
-  45: { name: "contact_end", array: Uint32Array, width: 2, kinds: ["frame"] },
-  46: { name: "narrow_phase_begin", array: Uint32Array, width: 2, kinds: ["frame"] },
-  47: { name: "narrow_phase_end", array: Uint32Array, width: 2, kinds: ["frame"] },
-  48: { name: "volume_begin", array: Uint32Array, width: 2, kinds: ["frame"] },
-  49: { name: "volume_end", array: Uint32Array, width: 2, kinds: ["frame"] },
-  50: { name: "colliding_boxes", array: Float32Array, width: 8, kinds: ["frame"], perObject: true },
-  51: { name: "colliding_spheres", array: Float32Array, width: 8, kinds: ["frame"], perObject: true },
-  52: { name: "octree_edges", array: Float32Array, width: 8, kinds: ["frame"], perObject: true },
-  53: { name: "colliding_edges", array: Float32Array, width: 8, kinds: ["frame"], perObject: true },
-  54: { name: "gaps", array: Uint32Array, width: 2, kinds: ["frame"] },
-  55: { name: "gap_points", array: Float32Array, width: 8, kinds: ["frame"] },
-  56: { name: "penetrations", array: Uint32Array, width: 4, kinds: ["frame"] },
-  57: { name: "penetration_points", array: Float32Array, width: 8, kinds: ["frame"] },
-  58: { name: "patches", array: Uint32Array, width: 8, kinds: ["frame"] },
-  59: { name: "patch_points", array: Float32Array, width: 8, kinds: ["frame"] },
-  60: { name: "enclosed_vertices", array: Uint32Array, width: 1, kinds: ["frame"] },
-  64: { name: "series", array: Float64Array, width: 0, kinds: ["series"] },
-  65: { name: "series_contact_begin", array: Uint32Array, width: 3, kinds: ["series"] },
-  66: { name: "series_contact_end", array: Uint32Array, width: 3, kinds: ["series"] },
-  67: { name: "series_narrow_phase_begin", array: Uint32Array, width: 3, kinds: ["series"] },
-  68: { name: "series_narrow_phase_end", array: Uint32Array, width: 3, kinds: ["series"] },
-  69: { name: "series_volume_begin", array: Uint32Array, width: 3, kinds: ["series"] },
-  70: { name: "series_volume_end", array: Uint32Array, width: 3, kinds: ["series"] },
-};
-
 /** Whether the page reads sections with this tag. */
 export const readsTag = (tag: number): boolean => tag in FORMS;
 
@@ -266,7 +216,7 @@ function readSections(buffer: ArrayBuffer, kind: string, count: number, seriesWi
     const form = FORMS[tag];
     if (!form) continue;  // a section of a later version
     if (!form.kinds.includes(kind)) fail(`a message of kind ${kind} has a section ${form.name}`);
-    if ((form.perObject ?? false) !== (object !== NONE)) fail(`its section ${form.name} has a wrong object`);
+    if (form.perObject !== (object !== NONE)) fail(`its section ${form.name} has a wrong object`);
     const width = form.width || seriesWidth;
     const numbers = elements * width;
     if (numbers * form.array.BYTES_PER_ELEMENT !== bytes) fail(`its section ${form.name} has a wrong length`);

@@ -1,0 +1,96 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "hdf5_write.hpp"
+#include "layout.hpp"
+#include "supple/error.hpp"
+#include "supple/recording.hpp"
+
+namespace supple {
+
+/// Maps object ids of results to indices in the file.
+class Places {
+ public:
+  explicit Places(const std::vector<RecordedObject>& objects) {
+    for (std::size_t place = 0; place < objects.size(); ++place) {
+      const ObjectId id = objects[place].id;
+      if (id.index >= by_index_.size()) by_index_.resize(id.index + std::size_t{1});
+      if (by_index_[id.index])
+        throw Error("objects " + std::to_string(by_index_[id.index]->place) + " and " +
+                    std::to_string(place) + " of a recording have the same id; give each its own");
+      by_index_[id.index] = Entry{id.generation, static_cast<std::uint32_t>(place)};
+    }
+  }
+
+  std::uint32_t operator()(ObjectId id) const {
+    if (id.index >= by_index_.size() || !by_index_[id.index] ||
+        by_index_[id.index]->generation != id.generation)
+      throw Error("a result names object " + std::to_string(id.index) + " of generation " +
+                  std::to_string(id.generation) +
+                  ", which the recording's header does not have; list every object");
+    return by_index_[id.index]->place;
+  }
+
+ private:
+  struct Entry {
+    std::uint32_t generation = 0, place = 0;
+  };
+  std::vector<std::optional<Entry>> by_index_;
+};
+
+/// The rows of one list of a frame.
+struct Rows {
+  const std::byte* data = nullptr;
+  std::size_t count = 0;
+};
+
+/// The rows of all lists, in the order of `for_each_list`. Throws `Error` when a row names an object that the
+/// recording does not have.
+std::vector<Rows> rows_of(const DetectResult& result, const Places& place_of);
+
+/// A group with any number of rows per frame, and the end of each frame.
+class RaggedWriter {
+ public:
+  RaggedWriter(hid_t file, const ListLayout& layout);
+
+  void append(const Rows& rows, const Places& place_of);
+  template <class Function>
+  void for_each_column(Function function) {
+    for (ColumnWriter& column : columns_) function(column);
+    function(end_);
+  }
+
+ private:
+  const ListLayout* layout_;
+  std::vector<ColumnWriter> columns_;
+  ColumnWriter end_;
+  std::uint64_t rows_ = 0;
+};
+
+/// Throws `Error` when a triangle, an edge or a point uses a vertex that does not exist.
+void check_header(const RecordingHeader& header);
+
+/// The growing datasets of a file, and their unwritten rows.
+struct Datasets {
+  Datasets(hid_t file, const RecordingHeader& header);
+
+  template <class Function>
+  void for_each_column(Function function) {
+    for (RaggedWriter& list : lists) list.for_each_column(function);
+    for (ColumnWriter& column : statistics) function(column);
+    function(*time);
+  }
+
+  std::vector<PositionsWriter> positions;
+  std::vector<RaggedWriter> lists;  ///< in the order of `for_each_list`
+  std::vector<ColumnWriter> statistics;
+  std::optional<ColumnWriter> time;
+};
+
+}  // namespace supple
