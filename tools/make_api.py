@@ -10,8 +10,8 @@ The file has a list `headers`, the core first; each has its `library`, its `name
 order of the header. `kind` is struct, class, enum, function, constant, macro, alias or concept. Names are
 without `supple::`; a nested type has the name of its owner in front and is listed after it. Each overload is an
 entity. `default` and `value` are as spelled, types as libclang prints them. `doc` is the comment that begins
-with `///`, one line for each paragraph; it is absent where the header has none. `follows` marks a function
-or constant in the line after the declaration before it, whose comment may be for both. Left out are the
+with `///`, one line for each paragraph; it is absent where the header has none. `follows` marks a
+declaration without a comment in the line after another one, whose comment may be for both. Left out are the
 namespace `detail`, what is private, explicit specialisations (such as `Description<...>` and `words<...>`),
 defaulted comparisons and destructors.
 """
@@ -31,7 +31,9 @@ except ImportError:
 MEMBER_LISTS = ("values", "fields", "constructors", "methods", "operators")
 SIMPLE_KINDS = cindex and {Kind.VAR_DECL: "constant", Kind.MACRO_DEFINITION: "macro", Kind.CONCEPT_DECL: "concept",
                            Kind.TYPE_ALIAS_DECL: "alias", Kind.TYPE_ALIAS_TEMPLATE_DECL: "alias"}
-FUNCTIONS = cindex and (Kind.FUNCTION_DECL, Kind.FUNCTION_TEMPLATE, Kind.CXX_METHOD, Kind.CONSTRUCTOR, Kind.CONVERSION_FUNCTION)
+FUNCTIONS = cindex and (Kind.FUNCTION_DECL, Kind.FUNCTION_TEMPLATE, Kind.CXX_METHOD, Kind.CONSTRUCTOR,
+                        Kind.CONVERSION_FUNCTION)
+BEGIN = re.compile(r"\s*(#define |friend |\[\[\w+\]\] )?")  # what stands before the part that libclang reports
 COMPARISON = re.compile(r"operator(==|!=|<=>|<|>|<=|>=)$")
 
 
@@ -72,7 +74,7 @@ class Header:
     def doc(self, cursor):
         """The `///` lines above a declaration, then the `///<` comment after it."""
         first = number = cursor.extent.start.line - 1
-        begins_line = self.lines[first].encode()[:cursor.extent.start.column - 1].strip() in (b"", b"#define")
+        begins_line = BEGIN.fullmatch(self.lines[first].encode()[:cursor.extent.start.column - 1].decode())
         while begins_line and number > 0 and re.match(r"\s*///(?!<)", self.lines[number - 1]):
             number -= 1
         before = [line.strip() for line in self.lines[number:first]]
@@ -108,21 +110,19 @@ def template(header, cursor):
     own = [child for child in cursor.get_children() if child.kind in kinds]
     if not own:
         return [], ""
-    match = re.match(r"> requires (.*)", header.text(own[-1].extent.end.offset, cursor.location.offset))
-    begins = [cursor.extent.start.offset, *(child.extent.end.offset for child in own)]
-    spelling = [re.sub(r"^(template ?<|,) ?", "", header.text(begin, child.extent.end.offset)) for begin, child in zip(begins, own)]
-    return spelling, match[1].removesuffix(spelled(cursor.result_type)).strip() if match else ""
-
-
-def parameter(header, cursor):
-    entity = add({}, name=cursor.spelling) | {"type": spelled(cursor.type)}
-    return add(entity, default=initializer(header, cursor) if cursor.spelling else "")
+    match = re.match(r"> requires\b ?(.*)", header.text(own[-1].extent.end.offset, cursor.location.offset))
+    ends = [child.extent.end.offset for child in own]
+    parameters = [header.text(begin, end) for begin, end in zip([cursor.extent.start.offset, *ends], ends)]
+    requires = match[1].removesuffix(spelled(cursor.result_type)).strip() if match else ""
+    return [re.sub(r"^(template ?<|,) ?", "", text) for text in parameters], requires
 
 
 def function(header, cursor, is_constructor=False):
     parameters, requires = template(header, cursor)
     entity = add({"name": re.sub(r"(?<!operator)<.*", "", cursor.spelling)}, template=parameters, requires=requires)
-    entity["parameters"] = [parameter(header, child) for child in cursor.get_children() if child.kind == Kind.PARM_DECL]
+    own = [child for child in cursor.get_children() if child.kind == Kind.PARM_DECL]
+    entity["parameters"] = [add(add({}, name=each.spelling) | {"type": spelled(each.type)},
+                                default=each.spelling and initializer(header, each)) for each in own]
     if not is_constructor:
         entity["returns"] = spelled(cursor.result_type)
     add(entity, static=cursor.is_static_method(), const=cursor.is_const_method())
@@ -142,7 +142,6 @@ def class_entities(header, cursor, scope):
     name = scope + cursor.spelling
     keyword = re.findall(r"\bstruct\b|\bclass\b", header.text(cursor.extent.start.offset, cursor.location.offset))[-1]
     entity = add({"kind": keyword, "name": name}, template=template(header, cursor)[0], doc=header.doc(cursor))
-    header.last_line = 0
     members, starts, nested = {key: [] for key in MEMBER_LISTS}, [], []
     for child in cursor.get_children():
         if child.kind == Kind.CXX_BASE_SPECIFIER:
@@ -152,22 +151,23 @@ def class_entities(header, cursor, scope):
         if child.kind == Kind.FRIEND_DECL:
             child = next(child.get_children(), child)
         if child.kind == Kind.FIELD_DECL:
-            field = {"name": child.spelling, "type": spelled(child.type)}
-            members["fields"].append(add(field, default=initializer(header, child), doc=header.doc(child)))
+            field = add({"name": child.spelling, "type": spelled(child.type)}, default=initializer(header, child))
+            members["fields"].append(described(header, child, field))
             starts.append(child.extent.start.offset)
-            header.last_line = 0
         elif child.kind in FUNCTIONS:
             if COMPARISON.match(child.spelling) and child.is_default_method():
                 continue
             is_constructor = child.spelling.split("<")[0] == cursor.spelling
-            kind = "constructors" if is_constructor else "operators" if child.spelling.startswith("operator") else "methods"
-            members[kind].append(function(header, child, is_constructor))
+            key = "operators" if child.spelling.startswith("operator") else "methods"
+            members["constructors" if is_constructor else key].append(function(header, child, is_constructor))
         else:
             nested += entities_of(header, child, name + "::")
     # Several declarators of one declaration, `ObjectId a, b;`, share a comment.
     docs = {start: field["doc"] for start, field in zip(starts, members["fields"]) if "doc" in field}
     for start, field in zip(starts, members["fields"]):
-        add(field, doc=docs.get(start))
+        if start in docs:
+            field.pop("follows", None)
+            field["doc"] = docs[start]
     return [add(entity, **members)] + nested
 
 
@@ -181,14 +181,14 @@ def enum_entity(header, cursor, scope):
 def entities_of(header, cursor, scope=""):
     """The entities of one declaration, none when it is not public."""
     name = scope + cursor.spelling
-    if cursor.spelling == "detail" or header.text(cursor.extent.start.offset, cursor.location.offset).startswith("template <>"):
+    begin = header.text(cursor.extent.start.offset, cursor.location.offset)
+    if cursor.spelling == "detail" or begin.startswith("template <>"):
         return []
     if cursor.kind == Kind.NAMESPACE:
         inner = "" if name == "supple" else name + "::"
         return [entity for child in cursor.get_children() for entity in entities_of(header, child, inner)]
     if cursor.kind in (Kind.STRUCT_DECL, Kind.CLASS_DECL, Kind.CLASS_TEMPLATE):
-        is_whole = cursor.is_definition() or cursor.get_definition() is None
-        return class_entities(header, cursor, scope) if is_whole else []
+        return class_entities(header, cursor, scope) if (cursor.get_definition() or cursor) == cursor else []
     if cursor.kind == Kind.ENUM_DECL:
         return [enum_entity(header, cursor, scope)]
     if cursor.kind in FUNCTIONS:
@@ -216,26 +216,29 @@ def read_api(root):
         cindex.TranslationUnit.PARSE_DETAILED_PROCESSING_RECORD)
     errors = [problem for problem in unit.diagnostics if problem.severity >= cindex.Diagnostic.Error]
     if errors:
-        sys.exit(f"make_api: {errors[0].location.file}:{errors[0].location.line}: {errors[0].spelling}".replace(f"{root}/", ""))
+        place = f"{errors[0].location.file}:{errors[0].location.line}".replace(f"{root}/", "")
+        sys.exit(f"{place}: {errors[0].spelling}")
     found, headers = {str(path): [] for _, path in paths}, {str(path): Header(path) for _, path in paths}
     for cursor in unit.cursor.get_children():
         path = str(cursor.location.file)
         if path in found:
             found[path] += entities_of(headers[path], cursor)
-    return {"headers": [{"library": library, "name": f"supple/{path.name}", "entities": found[str(path)]} for library, path in paths]}
+    return {"headers": [{"library": library, "name": f"supple/{path.name}", "entities": found[str(path)]}
+                        for library, path in paths]}
 
 
 def write(value, indent=""):
     """JSON in which each header, entity and member begins a line."""
     lists = [key for key in value if key in MEMBER_LISTS + ("entities", "headers")]
     begin = json.dumps({key: part for key, part in value.items() if key not in lists}, ensure_ascii=False)[1:-1]
-    parts = [f'"{key}": [\n' + ",\n".join(indent + "  " + write(item, indent + "  ") for item in value[key]) + "]" for key in lists]
+    inner = indent + "  "
+    parts = [f'"{key}": [\n' + ",\n".join(inner + write(item, inner) for item in value[key]) + "]" for key in lists]
     return "{" + ", ".join(filter(None, [begin, *parts])) + "}"
 
 
 def main(arguments):
-    places = [argument for argument in arguments if argument != "--check"]
-    root = pathlib.Path(places[0] if places else pathlib.Path(__file__).parent.parent).resolve()
+    places = [argument for argument in arguments if argument != "--check"] or [pathlib.Path(__file__).parent.parent]
+    root = pathlib.Path(places[0]).resolve()
     if cindex is None:
         sys.exit("make_api: needs libclang for Python; run: apt-get install python3-clang-19")
     path, text = root / "docs/api.json", write(read_api(root)) + "\n"
