@@ -16,9 +16,9 @@ help:
 	@echo 'make bench    Supple against Embree, CGAL, FCL, Bullet and ODE: up to 25 minutes; bench-quick takes one'
 	@echo 'make bench-kernels   single stages and kernels of Supple'
 	@echo 'make bench-compare BASE=COMMIT   this working tree against a commit'
-	@echo 'make check    format, include order, prose, changelog, file sizes, generated documents'
+	@echo 'make check    format, include order, prose, changelog, file sizes, public interface, generated documents'
 	@echo 'make format   format the C++ sources'
-	@echo 'make docs     write the documents that are generated from the command line'
+	@echo 'make docs     write the documents that are generated from the command line and the headers'
 	@echo 'make figures  draw docs/figures/*.svg from their text (needs graphviz)'
 	@echo 'make clean    remove build/'
 
@@ -88,6 +88,8 @@ check: program
 	tools/check_prose.py
 	tools/check_changelog.sh
 	tools/check_file_sizes.sh
+	tools/make_api.py --check
+	tools/check_api.py
 	tools/generate_docs.sh --check build/release/bin/supple
 
 format:
@@ -101,6 +103,8 @@ docs/figures/%.svg: docs/figures/%.dot
 	dot -Tsvg $< -o $@
 
 docs: program
+	tools/install_dependencies.sh --ci
+	tools/make_api.py
 	tools/generate_docs.sh build/release/bin/supple
 
 clean:

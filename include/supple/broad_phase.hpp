@@ -55,6 +55,7 @@ struct KindPair {
   constexpr bool operator==(const KindPair&) const = default;
 };
 
+/// Options of a broad phase, fixed at its construction.
 struct BroadPhaseOptions {
   BroadPhaseMethod method = BroadPhaseMethod::automatic;
   /// For the methods automatic and octree.

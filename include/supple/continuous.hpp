@@ -45,6 +45,7 @@ constexpr double toi_tolerance_at(double toi) {
   return relative < toi_tolerance ? relative : toi_tolerance;
 }
 
+/// When two elements touch, and which of their contacts are reported.
 struct ImpactOptions {
   /// Elements count as touching when their distance is at most this value, finite and ≥ 0, in the unit of
   /// the coordinates.
@@ -61,6 +62,7 @@ struct ImpactOptions {
   constexpr bool operator==(const ImpactOptions&) const = default;
 };
 
+/// Whether an impact is proven.
 enum class ImpactCertainty : std::uint8_t {
   certain,  ///< proven: the elements touch
   /// So close that floating point cannot decide. Only when `exact` is off, or for coordinates of more than

@@ -24,6 +24,7 @@ namespace supple {
 template <class Enum>
 inline constexpr std::array<const char*, 0> words{};
 
+/// An enumeration whose values have words.
 template <class Enum>
 concept Worded = std::is_enum_v<Enum> &&(words<Enum>.size() > 0);
 
@@ -59,6 +60,7 @@ std::string list_of_words(std::string_view separator = ", ") {
 template <class Enum>
 inline constexpr std::array<const char*, 0> set_words{};
 
+/// An enumeration whose values are sets of members that have words.
 template <class Enum>
 concept WordedSet = Worded<Enum> &&(set_words<Enum>.size() > 0);
 
@@ -111,6 +113,7 @@ struct ValueRange {
   constexpr bool allows(Whole value) const {
     return allows(static_cast<double>(value)) && !(powers_of_two && (value & (value - 1)) != 0);
   }
+  /// The finite values from `lowest` on, from `lowest` to `highest`, or above `lowest`.
   static constexpr ValueRange from(double lowest) { return {.lowest = lowest}; }
   static constexpr ValueRange from(double lowest, double highest) { return {lowest, highest}; }
   static constexpr ValueRange above(double lowest) { return {.lowest = lowest, .excludes_lowest = true}; }
@@ -210,6 +213,7 @@ constexpr void visit_field(Visitor& visitor, const char* key, Value Struct::*mem
 template <class Struct>
 struct Description;
 
+/// A structure that has a `Description`.
 template <class Struct>
 concept Described = requires {
   Description<std::remove_const_t<Struct>>::name;
@@ -259,7 +263,7 @@ bool is_valid(const RootCube& cube);
 inline constexpr const char* range_of_root_cube =
     "three coordinates from -1e36 to 1e36 and an edge from 1e-30 to 1e36";
 
-// What `check` throws: `WHERE: STRUCTURE::NAME is VALUE; it must be WHAT`.
+/// What `check` throws: `WHERE: STRUCTURE::NAME is VALUE; it must be WHAT`.
 [[noreturn]] void fail_range(std::string_view where, const char* structure, const char* name,
                              std::uint64_t value, const ValueRange& range);
 [[noreturn]] void fail_range(std::string_view where, const char* structure, const char* name, double value,

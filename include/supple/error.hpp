@@ -14,6 +14,7 @@ namespace supple {
 /// invariant inside the library is never an `Error`; it asserts in debug builds.
 class Error : public std::runtime_error {
  public:
+  /// `what()` returns the message after `one_line`.
   explicit Error(const std::string& message) : std::runtime_error(one_line(message)) {}
 };
 

@@ -52,6 +52,7 @@ struct CandidateList {
 /// leaf stays while the other side descends, so the nodes of a pair of level k are at level k, or one is a
 /// leaf above it.
 struct NodePairList {
+  /// Two nodes that collide, one of each object.
   struct Pair {
     std::uint32_t a = 0, b = 0;  ///< places in `nodes_a` and `nodes_b`
     constexpr auto operator<=>(const Pair&) const = default;
@@ -149,6 +150,7 @@ std::vector<std::array<Vec3d, 2>> edges_of(std::span<const Slab> slabs);
 /// last `detect` (for `cells`: when the object moved).
 class SceneInspector {
  public:
+  /// Refers to the scene, O(1).
   explicit SceneInspector(const Scene& scene) : scene_(&scene) {}
 
   /// The cells of an object's octree at `level` and the leaves above it, which together cover the object.

@@ -22,6 +22,7 @@ struct QueryFilter {
   std::uint32_t mask = 0xffffffff;   ///< objects whose `ObjectOptions::group` has a bit in common with it
 };
 
+/// Options of `Scene::closest`.
 struct ClosestOptions {
   QueryFilter filter{};
   /// Points without a triangle within this distance, closed, have no result; ≥ 0.
@@ -56,6 +57,7 @@ struct Ray {
   Vec3d origin, direction;
 };
 
+/// Options of `Scene::cast`.
 struct CastOptions {
   QueryFilter filter{};
   /// Also counts all triangles on the ray, which takes longer.

@@ -184,6 +184,7 @@ struct DetectResult {
   std::span<const Vec3d> points_of(const IntersectionCurve& curve) const {
     return curve_points.subspan(curve.first_point, curve.point_count);
   }
+  /// The vertices that a curve encloses on one side.
   std::span<const std::uint32_t> enclosed_vertices_of(const IntersectionCurve& curve,
                                                       ContactSide side) const {
     return side == ContactSide::a ? enclosed_vertices.subspan(curve.first_enclosed, curve.enclosed_count_a)
@@ -212,6 +213,7 @@ struct Difference {
 
 /// A pair of elements on which `Scene::verify` and the last `Scene::detect` differ.
 struct ContinuousDifference {
+  /// What is wrong with the pair.
   enum class Fault : std::uint8_t {
     missed,  ///< the pair touches and was not reported
     added,   ///< reported as certain, but does not touch
@@ -228,6 +230,7 @@ struct ContinuousDifference {
 
 /// A pair of features or elements on which `Scene::verify` and the last `Scene::detect` differ.
 struct ProximityDifference {
+  /// What is wrong with the pair.
   enum class Fault : std::uint8_t {
     missed,   ///< the pair is within the margins and was not reported
     added,    ///< reported, but not within the margins, or not of closest features, or twice
@@ -244,6 +247,7 @@ struct ProximityDifference {
 /// A vertex of a on which `Scene::verify` and the last `Scene::detect` differ: inside b, on its surface, or
 /// the smallest vertex of a contained part.
 struct PenetrationDifference {
+  /// What is wrong with the vertex.
   enum class Fault : std::uint8_t {
     missed,   ///< inside, on the surface or contained, and not reported as that
     added,    ///< reported, but not so

@@ -271,6 +271,7 @@ class Scene {
   // `Error` as the query does, and when a list is not ordered by query. 1,000 points or rays on 70,000
   // triangles take seconds.
 
+  /// Decides a query of this name again by exact brute force and returns its wrong answers.
   std::vector<WrongAnswer> verify_closest(std::span<const Vec3d> points,
                                           std::span<const std::optional<ClosestPoint>> results,
                                           const ClosestOptions& options = {}) const;
@@ -310,9 +311,9 @@ class Scene {
   ElementVertices vertices_of(const ProximityPair& pair, ContactSide side) const;
   ElementVertices vertices_of(const LimitingPair& pair, ContactSide side) const;
   /// Calls `function(object, vertex, weight)` for each vertex of a pair: first those of a, then those of b.
-  /// The weights are the barycentric coordinates of the closest or touching points, with the sign + for a and
-  /// - for b. So their sum is 0, but for rounding, and the sum of weight times position is the vector from
-  /// the point of b to the point of a. Of a `Contact`, the points are the mean of its points in both
+  /// The weights are the barycentric coordinates of the closest or touching points, positive for a and
+  /// negative for b. So their sum is 0, but for rounding, and the sum of weight times position is the vector
+  /// from the point of b to the point of a. Of a `Contact`, the points are the mean of its points in both
   /// triangles, or the centres of the triangles when `SceneOptions::contact_points` is off or a triangle is
   /// flat. O(1). Throws `Error` as `vertices_of` does; of a `Contact` also when it is not of `result`.
   template <class Pair, class Function>

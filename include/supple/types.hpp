@@ -28,7 +28,7 @@ struct Vec3 {
   friend constexpr Vec3 operator/(Vec3 a, Scalar s) { return {a.x / s, a.y / s, a.z / s}; }
 };
 
-// Sums run from left to right and each operation rounds once: error bounds in the library rely on it.
+/// Sums run from left to right and each operation rounds once: error bounds in the library rely on it.
 template <class Scalar>
 constexpr Scalar dot(Vec3<Scalar> a, Vec3<Scalar> b) {
   return a.x * b.x + a.y * b.y + a.z * b.z;
@@ -46,6 +46,7 @@ Scalar norm(Vec3<Scalar> a) {
   return std::sqrt(dot(a, a));
 }
 
+/// The vectors in double and in single precision.
 using Vec3d = Vec3<double>;
 using Vec3f = Vec3<float>;
 

@@ -113,6 +113,7 @@ Scalar read(const Triples& triples, std::size_t item, int scalar) {
 
 }  // namespace detail
 
+/// The scalars of `PositionsView`.
 template <class Scalar>
 concept Coordinate = std::same_as<Scalar, double> || std::same_as<Scalar, float>;
 
@@ -188,6 +189,7 @@ class PositionsView {
   bool is_double_ = true;
 };
 
+/// The vertex ids of `TrianglesView`.
 template <class Integer>
 concept VertexIndex = std::same_as<Integer, std::uint32_t> || std::same_as<Integer, std::int32_t> ||
     std::same_as<Integer, std::uint16_t> || std::same_as<Integer, std::int64_t>;
@@ -198,6 +200,7 @@ concept VertexIndex = std::same_as<Integer, std::uint32_t> || std::same_as<Integ
 class TrianglesView {
  public:
   TrianglesView() = default;
+  /// Corner c of triangle i is at `first + i * triangle_stride + c * corner_stride`, the strides in bytes.
   template <VertexIndex Integer>
   TrianglesView(const Integer* first, std::size_t count, std::ptrdiff_t triangle_stride = 3 * sizeof(Integer),
                 std::ptrdiff_t corner_stride = sizeof(Integer))

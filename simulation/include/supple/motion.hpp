@@ -148,7 +148,7 @@ class MassSpringBody {
 
   std::span<const Vec3d> positions() const;
   std::span<const Vec3d> velocities() const;  ///< m/s
-  // Both replace all values. They throw `Error` when the size differs from the mesh.
+  /// Both replace all values. They throw `Error` when the size differs from the mesh.
   void set_positions(std::span<const Vec3d> positions);
   void set_velocities(std::span<const Vec3d> velocities);
   /// Forces on each vertex in addition to gravity, in newtons. They stay until they are set again and do not

@@ -68,6 +68,7 @@ struct RigidMotion {
 /// again for the same step when the step failed and is repeated. The function must not call the simulation.
 using MotionFunction = std::function<void(double seconds, std::span<Vec3d> positions)>;
 
+/// Options of a simulation, fixed at its construction.
 struct SimulationOptions {
   SceneOptions scene{};
   double time_step = 0.01;  ///< s, > 0
@@ -103,6 +104,7 @@ struct SimulationOptions {
 /// A step of a body failed: a number was no longer finite, or a vertex moved too far. The message names the
 /// object, the step and a stable time step.
 struct MotionError : Error {
+  /// The message, the name of the object, and the step that failed.
   MotionError(const std::string& message, std::string object_name, std::uint64_t at_step)
       : Error(message), object(std::move(object_name)), step(at_step) {}
   std::string object;
