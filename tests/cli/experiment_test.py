@@ -2,6 +2,7 @@
 
 import csv
 import os
+import pathlib
 import shutil
 import signal
 import subprocess
@@ -160,6 +161,14 @@ class Experiment(ProgramTest):
         self.assert_one_line_error(
             self.run_here("experiment", *TINY, "--output", "file/below", "--quiet"), "file/below", "--output"
         )
+
+    def test_without_its_program(self):
+        alone = shutil.copy(PROGRAM, self.folder / "supple")
+        done = subprocess.run([alone, "experiment", "table1"], capture_output=True, text=True, env={"PATH": "/nonexistent"})
+        self.assertEqual((done.returncode, done.stdout, len(done.stderr.splitlines())), (2, "", 1))
+        self.assertIn("supple-experiment", done.stderr)
+        os.symlink(pathlib.Path(PROGRAM).parent / "supple-experiment", self.folder / "supple-experiment")
+        self.assertEqual(subprocess.run([alone, "experiment", "--help"], stdout=subprocess.DEVNULL).returncode, 0)
 
     def test_tree_arity(self):
         expected = self.run_here("detect", "--json", "-", "--no-stats", *self.models()).out
